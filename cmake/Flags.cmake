@@ -1,0 +1,14 @@
+# One interface target carries the flags of every target of ours; third-party headers come as SYSTEM and stay silent.
+add_library(robomill_flags INTERFACE)
+target_compile_options(robomill_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wold-style-cast -Werror
+  -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 sees an uninitialised read in Eigen's packet code where there is none (GCC bug 105562).
+  target_compile_options(robomill_flags INTERFACE -Wno-maybe-uninitialized)
+endif()
+if(ROBOMILL_SANITIZE)
+  target_compile_options(robomill_flags INTERFACE -fsanitize=${ROBOMILL_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
+  target_link_options(robomill_flags INTERFACE -fsanitize=${ROBOMILL_SANITIZE})
+endif()

@@ -1,0 +1,32 @@
+# The one shared library that consumers link, and its CMake package. A consumer needs Eigen and nothing else.
+get_property(objects GLOBAL PROPERTY ROBOMILL_STAGE_OBJECTS)
+get_property(libraries GLOBAL PROPERTY ROBOMILL_STAGE_LIBRARIES)
+get_property(headers GLOBAL PROPERTY ROBOMILL_PUBLIC_HEADERS)
+
+add_library(robomill SHARED ${objects})
+set_target_properties(robomill PROPERTIES LINKER_LANGUAGE CXX)
+target_link_libraries(robomill PRIVATE robomill_flags ${libraries} INTERFACE Eigen3::Eigen)
+target_include_directories(robomill INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+target_compile_features(robomill INTERFACE cxx_std_20)
+set_target_properties(robomill PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+
+install(TARGETS robomill EXPORT robomill LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+foreach(header IN LISTS headers)
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+endforeach()
+install(EXPORT robomill NAMESPACE robomill:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/robomill FILE robomillTargets.cmake)
+if(TARGET robomill_app)
+  install(TARGETS robomill_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+
+include(CMakePackageConfigHelpers)
+file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/robomillConfig.cmake @ONLY CONTENT
+"include(CMakeFindDependencyMacro)
+find_dependency(Eigen3 3.4 NO_MODULE)
+include(\"\${CMAKE_CURRENT_LIST_DIR}/robomillTargets.cmake\")
+")
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/robomillConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/robomillConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/robomillConfigVersion.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/robomill)

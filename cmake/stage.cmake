@@ -1,0 +1,72 @@
+# robomill_stage(NAME modal LAYER 2
+#                SOURCES frf.cpp ...            library sources of the stage
+#                PUBLIC_HEADERS frf.hpp ...     installed, and compiled on their own
+#                DEPENDS base signal            stages on lower layers
+#                LIBRARIES Ceres::ceres         third-party libraries, private to the stage
+#                TESTS frf_test.cpp ...         one test program: <name>_test
+#                BENCHES lobes_bench.cpp ...    one benchmark program: <name>_bench
+#                TEST_LIBRARIES ...             what only tests and benchmarks link: any stage, any library
+#                THREADED)                      its tests run under ThreadSanitizer too
+function(robomill_stage)
+  cmake_parse_arguments(S "THREADED" "NAME;LAYER"
+    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;TESTS;BENCHES;TEST_LIBRARIES" ${ARGN})
+  set(target robomill_${S_NAME})
+  foreach(dependency IN LISTS S_DEPENDS)
+    if(NOT TARGET robomill_${dependency})
+      message(FATAL_ERROR "stage ${S_NAME}: '${dependency}' is no stage on a lower layer")
+    endif()
+    get_target_property(below robomill_${dependency} ROBOMILL_LAYER)
+    if(NOT below LESS S_LAYER)
+      message(FATAL_ERROR "stage ${S_NAME} (layer ${S_LAYER}) must not depend on ${dependency} (layer ${below})")
+    endif()
+  endforeach()
+
+  # Compiled once; the archive serves tests and the program, the objects the shared library.
+  add_library(${target}_objects OBJECT ${S_SOURCES})
+  target_include_directories(${target}_objects PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${target}_objects PRIVATE robomill_flags Eigen3::Eigen ${S_LIBRARIES})
+  add_library(${target} STATIC $<TARGET_OBJECTS:${target}_objects>)
+  set_target_properties(${target} PROPERTIES ROBOMILL_LAYER ${S_LAYER})
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${target} PRIVATE ${S_LIBRARIES} PUBLIC Eigen3::Eigen)
+  foreach(dependency IN LISTS S_DEPENDS)
+    target_link_libraries(${target} PUBLIC robomill_${dependency})
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY ROBOMILL_STAGE_OBJECTS $<TARGET_OBJECTS:${target}_objects>)
+  set_property(GLOBAL APPEND PROPERTY ROBOMILL_STAGE_LIBRARIES ${S_LIBRARIES})
+
+  foreach(header IN LISTS S_PUBLIC_HEADERS)
+    set_property(GLOBAL APPEND PROPERTY ROBOMILL_PUBLIC_HEADERS robomill/${S_NAME}/${header})
+  endforeach()
+
+  if(ROBOMILL_TESTS)
+    # A public header that needs another one first does not compile here.
+    set(alone "")
+    foreach(header IN LISTS S_PUBLIC_HEADERS)
+      set(source ${CMAKE_CURRENT_BINARY_DIR}/alone_${header}.cpp)
+      file(CONFIGURE OUTPUT ${source} CONTENT "#include \"robomill/${S_NAME}/${header}\"\n#include \"robomill/${S_NAME}/${header}\"\n")
+      list(APPEND alone ${source})
+    endforeach()
+    if(alone)
+      add_library(${target}_headers OBJECT ${alone})
+      target_link_libraries(${target}_headers PRIVATE robomill_flags Eigen3::Eigen)
+      target_include_directories(${target}_headers PRIVATE ${PROJECT_SOURCE_DIR})
+    endif()
+    if(S_TESTS)
+      add_executable(${S_NAME}_test ${S_TESTS})
+      target_link_libraries(${S_NAME}_test PRIVATE robomill_flags ${target} GTest::gtest_main ${S_TEST_LIBRARIES})
+      target_compile_definitions(${S_NAME}_test PRIVATE ROBOMILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+      set(labels ${S_NAME})
+      if(S_THREADED)
+        list(APPEND labels threaded)
+      endif()
+      gtest_discover_tests(${S_NAME}_test DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+        PROPERTIES LABELS "${labels}" TIMEOUT 1200)
+    endif()
+  endif()
+  if(ROBOMILL_BENCHES AND S_BENCHES)
+    add_executable(${S_NAME}_bench ${S_BENCHES})
+    target_link_libraries(${S_NAME}_bench PRIVATE robomill_flags ${target} benchmark::benchmark_main ${S_TEST_LIBRARIES})
+    target_compile_definitions(${S_NAME}_bench PRIVATE ROBOMILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  endif()
+endfunction()

@@ -1,0 +1,84 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::formats {
+
+/// One TOML file while it is read. Every reading call is one row of the file's table: its key, the SI member that it fills and the
+/// factor between them; the rows it has seen serve to tell errors in the file's own words and to refuse unknown keys.
+///
+/// Keys are full paths: "tool.teeth", "hits[0].file" (tables of an array count from 0 here, from 1 in messages). The bool
+/// readers leave `out` alone and return false where the key is absent; a value of the wrong type throws InvalidInput with file,
+/// line, key and value.
+class TomlFile {
+ public:
+  /// @throws InvalidInput if the file is missing, empty or no TOML (with line)
+  explicit TomlFile(const std::filesystem::path& path);
+  ~TomlFile();
+  TomlFile(const TomlFile&) = delete;
+  TomlFile& operator=(const TomlFile&) = delete;
+
+  /// out = value * factor
+  bool number(std::string_view key, std::string_view member, double factor, double& out);
+  bool numbers(std::string_view key, std::string_view member, double factor, std::vector<double>& out);
+  bool integer(std::string_view key, std::string_view member, int& out);
+  bool integers(std::string_view key, std::string_view member, std::vector<int>& out);
+  bool boolean(std::string_view key, bool& out);
+  bool text(std::string_view key, std::string& out);
+  bool texts(std::string_view key, std::vector<std::string>& out);
+  /// A path, made relative to the folder of this file.
+  bool path(std::string_view key, std::filesystem::path& out);
+  /// One of the named values.
+  template <class Enum>
+  bool choice(std::string_view key, const std::vector<std::pair<std::string_view, Enum>>& values, Enum& out) {
+    std::string name;
+    if (!text(key, name)) return false;
+    std::string known;
+    for (const auto& [text_value, value] : values) {
+      if (name == text_value) {
+        out = value;
+        return true;
+      }
+      known += (known.empty() ? "\"" : ", \"") + std::string(text_value) + "\"";
+    }
+    throw refuse(key, "must be one of " + known);
+  }
+
+  [[nodiscard]] bool has(std::string_view key) const;
+  /// Number of tables in an array of tables; 0 where it is absent.
+  [[nodiscard]] std::size_t tables(std::string_view key) const;
+  /// Names of the keys in a table, in the order of the file.
+  [[nodiscard]] std::vector<std::string> keys(std::string_view table) const;
+  /// @throws InvalidInput "file: key is missing; hint"
+  void require(std::string_view key, std::string_view hint = {}) const;
+
+  /// The error for a key of this file: file:line: key = value unit; rule. hint
+  [[nodiscard]] InvalidInput refuse(std::string_view key, std::string rule, std::string hint = {}) const;
+  /// An error about an SI member told in the words of this file (key, value in the file's unit, line); unchanged where the member
+  /// did not come from here.
+  [[nodiscard]] InvalidInput located(const InvalidInput& error) const;
+  /// Calls f; an InvalidInput that it throws comes out located.
+  template <class F>
+  auto locate(F&& f) const {
+    try {
+      return f();
+    } catch (const InvalidInput& error) {
+      throw located(error);
+    }
+  }
+  /// @throws InvalidInput on a key that no call has read, naming the nearest known one
+  void done() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace robomill::formats

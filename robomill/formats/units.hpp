@@ -1,0 +1,19 @@
+#pragma once
+#include <numbers>
+
+/// Shop units in SI: value_m = value_mm * units::mm, value_mm = value_m / units::mm. The only conversions in the project.
+namespace robomill::units {
+
+inline constexpr double mm = 1e-3;
+inline constexpr double um = 1e-6;
+inline constexpr double ms = 1e-3;
+inline constexpr double us = 1e-6;
+inline constexpr double n_per_mm = 1e3;
+inline constexpr double n_per_mm2 = 1e6;
+inline constexpr double mm3 = 1e-9;
+inline constexpr double kw = 1e3;
+inline constexpr double gpa = 1e9;
+inline constexpr double deg = std::numbers::pi / 180.0;
+inline constexpr double rpm = std::numbers::pi / 30.0;  ///< rad/s
+
+}  // namespace robomill::units

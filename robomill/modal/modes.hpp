@@ -1,0 +1,46 @@
+#pragma once
+#include <Eigen/Core>
+#include <complex>
+#include <limits>
+#include <vector>
+
+#include "robomill/modal/frf.hpp"
+
+namespace robomill::modal {
+
+/// One pair of conjugate poles λ = -ζ ω + iω sqrt(1 - ζ²) of a structure that need not be symmetric.
+///
+/// Only the residue matrix right * left^T is physical; of the freedom left -> c left, right -> right/c we take ‖left‖ = ‖right‖ and
+/// left's largest component real and positive.
+struct Mode {
+  double frequency_hz = 0.0;   ///< ω / 2π, undamped natural frequency [Hz], > 0
+  double damping_ratio = 0.0;  ///< ζ, in (0, 1)
+  Eigen::VectorXcd left;       ///< length of ModalModel::excitations [sqrt(s/kg)]
+  Eigen::VectorXcd right;      ///< length of ModalModel::responses [sqrt(s/kg)]
+  /// Standard deviations from a fit; NaN where unknown.
+  double frequency_std_hz = std::numeric_limits<double>::quiet_NaN();
+  double damping_ratio_std = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// What the modes outside the band leave in it: mass / (-ω²) + stiffness.
+struct Residual {
+  FrfName name;
+  std::complex<double> mass = 0.0;       ///< [1/kg]
+  std::complex<double> stiffness = 0.0;  ///< [m/N]
+};
+
+/// H_ij(ω) = Σ_k R_ik L_jk / (iω - λ_k) + conj(R_ik L_jk) / (iω - conj λ_k) + residuals.
+struct ModalModel {
+  std::vector<Dof> excitations;  ///< what the entries of Mode::left belong to
+  std::vector<Dof> responses;    ///< what the entries of Mode::right belong to
+  std::vector<Mode> modes;
+  std::vector<Residual> residuals = {};  ///< empty, or at most one an FRF
+
+  /// @throws InvalidInput naming "modes[k].member" if a shape, frequency, damping ratio or value is wrong (k from 1)
+  ROBOMILL_API void validate() const;
+};
+
+/// λ = -ζ ω + iω sqrt(1 - ζ²) [rad/s].
+[[nodiscard]] ROBOMILL_API std::complex<double> pole(const Mode& mode);
+
+}  // namespace robomill::modal
