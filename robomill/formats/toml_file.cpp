@@ -1,0 +1,1 @@
+#include "robomill/formats/toml_file.hpp"
