@@ -1,0 +1,115 @@
+#pragma once
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/modal/frf.hpp"
+#include "robomill/modal/modes.hpp"
+
+namespace robomill::modal {
+
+/// What the response channels of a hit hold; their SI unit is m/s², m/s or m.
+enum class ResponseKind { acceleration, velocity, displacement };
+
+/// H1 = Σ X F* / Σ |F|² (no bias from noise on the response), H2 = Σ |X|² / Σ F X* (no bias from noise on the force),
+/// Hv = their geometric mean. [Rocklin1985]
+enum class Estimator { h1, h2, hv };
+
+enum class ExponentialWindow { automatic, off, on };
+
+/// One response of a hit.
+struct HitChannel {
+  Dof dof;
+  Eigen::VectorXd samples;    ///< as long as the force; in the SI unit of HitOptions::response
+  bool against_axis = false;  ///< the sensor points against the axis of dof
+};
+
+/// One record of one hit with an instrumented hammer.
+struct Hit {
+  std::string file;             ///< where it was read from; names the hit in verdicts and messages
+  Dof excitation;               ///< where and along which axis the hammer hit
+  bool against_axis = false;    ///< the hammer pushed against the axis of excitation
+  double sample_rate_hz = 0.0;  ///< > 0; required
+  Eigen::VectorXd force_n;      ///< length n; a push reads positive, whichever way it goes along the axis
+  std::vector<HitChannel> responses;
+};
+
+struct HitOptions {
+  ResponseKind response = ResponseKind::acceleration;
+  Estimator estimator = Estimator::h1;
+  double accelerometer_mass_kg = 0.0;  ///< >= 0; taken out of the FRFs
+  double min_frequency_hz = 0.0;  ///< lowest line that is given; 0: the first above zero, which has no double integral
+  double max_frequency_hz = 0.0;  ///< highest line that is given; 0: sample rate / 2.56
+  double frequency_resolution_hz = 0.0;  ///< 0: 1 / record length; coarser cuts the records, finer pads them with zeros
+  double force_overload_n = 0.0;         ///< a force that reaches it is overloaded; 0: only flat tops are
+  double response_overload = 0.0;        ///< the same for responses, in the SI unit of `response`
+  double double_hit_limit = 0.03;        ///< a second pulse above this part of the first rejects the hit, in (0, 1]
+  bool force_window = true;              ///< zero the force outside the pulse
+  double force_window_s = 0.0;           ///< length of the force window; 0: from the pulse
+  ExponentialWindow exponential_window = ExponentialWindow::automatic;  ///< automatic: where a response has not decayed
+  double exponential_time_constant_s = 0.0;  ///< τ of exp(-t/τ); 0: so that it falls to 0.5 % at the record's end
+  bool remove_added_damping = true;          ///< take what the exponential window adds out of the FRFs again
+
+  /// @throws InvalidInput naming the field
+  ROBOMILL_API void validate() const;
+};
+
+/// What became of one hit.
+struct HitVerdict {
+  std::string file;
+  bool accepted = false;
+  std::vector<std::string> reasons;  ///< why it was rejected; empty where it was accepted
+  double peak_force_n = 0.0;
+  double pulse_width_s = 0.0;       ///< full width of the pulse at half its peak
+  double second_pulse_ratio = 0.0;  ///< highest further pulse / first
+};
+
+enum class Grade { good, usable, poor };
+/// "good", "usable", "poor"
+[[nodiscard]] ROBOMILL_API std::string to_string(Grade grade);
+
+/// How far one FRF is to be trusted before any fit, and what to do about it. Unknown numbers are NaN.
+struct FrfGrade {
+  FrfName name;
+  Grade grade = Grade::poor;
+  int hits = 0;                                                         ///< averaged
+  double mean_coherence = std::numeric_limits<double>::quiet_NaN();     ///< over the band below; unknown from one hit
+  double relative_noise = std::numeric_limits<double>::quiet_NaN();     ///< median of deviation / |H| over the band
+  double reciprocity_error = std::numeric_limits<double>::quiet_NaN();  ///< ‖H_xy − H_yx‖ / mean norm over the band
+  double excited_low_hz = 0.0;                                          ///< band that the hammer excites:
+  double excited_high_hz = 0.0;                                         ///< force spectrum within 20 dB of its highest
+  double lowest_trustworthy_frequency_hz = 0.0;
+  std::vector<std::string> faults;    ///< "the hammer excites nothing above 800 Hz"
+  std::vector<std::string> remedies;  ///< as long as faults: "use a harder tip"
+};
+
+struct FrfResult {
+  FrfSet set;
+  std::vector<HitVerdict> hits;  ///< one for each hit, in their order
+  /// Above it every FRF is ruled by the structure, below it one at least by the noise of the sensors.
+  double lowest_trustworthy_frequency_hz = 0.0;
+  double added_decay_per_s = 0.0;    ///< 1/τ of the exponential window; 0 where none was needed
+  bool added_decay_removed = false;  ///< whether `set` is free of it (else correct the modes: without_added_decay)
+  std::vector<FrfGrade> grades;      ///< one for each FRF of the set, in its order
+  std::vector<std::string> notes;    ///< what a reader of the result must know: windows, mass, resolution
+};
+
+/// Receptances from hammer hits: accepted hits of each excitation are averaged (`estimator`), integrated to
+/// displacement, freed of the accelerometer's mass and of the exponential window's damping. x and y hits with x and y
+/// responses give xx, yx, xy, yy.
+///
+/// @throws InvalidInput if hits is empty, a record is too short, holds a value that is not finite or a force of zeros,
+/// lengths or sample rates differ, a response comes twice, or no hit is accepted (with the reasons) Source: [Ewins2000]
+/// ch. 3; equations in robomill/modal/README.md
+[[nodiscard]] ROBOMILL_API FrfResult estimate_frfs(const std::vector<Hit>& hits, const HitOptions& options,
+                                                   Progress& progress = Progress::none());
+
+/// The model whose poles are λ_k + decay_per_s: undoes what a window exp(-t decay_per_s) on force and response did to
+/// the modes.
+/// @throws InvalidInput if decay_per_s < 0, or a mode would be left with no damping
+[[nodiscard]] ROBOMILL_API ModalModel without_added_decay(const ModalModel& model, double decay_per_s);
+
+}  // namespace robomill::modal
