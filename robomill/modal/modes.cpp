@@ -45,4 +45,62 @@ void ModalModel::validate() const {
   }
 }
 
+void normalise(Mode& mode) {
+  if (mode.left.size() == 0 || mode.right.size() == 0) throw InvalidInput("mode", "has an empty vector");
+  if (!mode.left.allFinite() || !mode.right.allFinite()) {
+    throw InvalidInput("mode", "holds a value that is not finite");
+  }
+  const double left = mode.left.stableNorm();
+  const double right = mode.right.stableNorm();
+  if (left == 0.0 || right == 0.0) {
+    mode.left.setZero();
+    mode.right.setZero();
+    return;
+  }
+  Eigen::Index largest = 0;
+  mode.left.cwiseAbs().maxCoeff(&largest);
+  const std::complex<double> turn = std::abs(mode.left(largest)) / mode.left(largest);
+  const double norm = std::sqrt(left) * std::sqrt(right);
+  mode.left *= turn * (norm / left);
+  mode.right *= std::conj(turn) * (norm / right);
+  mode.left(largest) = mode.left(largest).real();
+}
+
+FrfSet synthesize(const ModalModel& model, const Eigen::VectorXd& frequency_hz) {
+  model.validate();
+  FrfSet set;
+  set.frequency_hz = frequency_hz;
+  for (const Dof& excitation : model.excitations) {
+    for (const Dof& response : model.responses) {
+      set.frfs.push_back({.name = {.response = response, .excitation = excitation},
+                          .receptance = Eigen::VectorXcd::Zero(frequency_hz.size())});
+    }
+  }
+  set.validate();
+  const Eigen::ArrayXcd s = std::complex<double>(0.0, 2.0 * std::numbers::pi) * frequency_hz.array();
+  const auto responses = static_cast<Eigen::Index>(model.responses.size());
+  for (const Mode& mode : model.modes) {
+    const std::complex<double> lambda = pole(mode);
+    const Eigen::ArrayXcd basis = (s - lambda).inverse();
+    const Eigen::ArrayXcd conjugate_basis = (s - std::conj(lambda)).inverse();
+    for (std::size_t f = 0; f < set.frfs.size(); ++f) {
+      const auto index = static_cast<Eigen::Index>(f);
+      const std::complex<double> residue = mode.right(index % responses) * mode.left(index / responses);
+      set.frfs[f].receptance.array() += residue * basis + std::conj(residue) * conjugate_basis;
+    }
+  }
+  for (const Residual& residual : model.residuals) {
+    for (Frf& frf : set.frfs) {
+      if (frf.name != residual.name) continue;
+      frf.receptance.array() += residual.stiffness;
+      if (residual.mass == 0.0) continue;
+      if (frequency_hz(0) == 0.0) {
+        throw InvalidInput("frequency_hz[0]", 0.0, "Hz", "must be > 0 where a residual has a mass");
+      }
+      frf.receptance.array() += residual.mass / s.square();
+    }
+  }
+  return set;
+}
+
 }  // namespace robomill::modal

@@ -10,8 +10,8 @@ namespace robomill::modal {
 
 /// One pair of conjugate poles λ = -ζ ω + iω sqrt(1 - ζ²) of a structure that need not be symmetric.
 ///
-/// Only the residue matrix right * left^T is physical; of the freedom left -> c left, right -> right/c we take ‖left‖ = ‖right‖ and
-/// left's largest component real and positive.
+/// Only the residue matrix right * left^T is physical; of the freedom left -> c left, right -> right/c we take ‖left‖ =
+/// ‖right‖ and left's largest component real and positive.
 struct Mode {
   double frequency_hz = 0.0;   ///< ω / 2π, undamped natural frequency [Hz], > 0
   double damping_ratio = 0.0;  ///< ζ, in (0, 1)
@@ -42,5 +42,16 @@ struct ModalModel {
 
 /// λ = -ζ ω + iω sqrt(1 - ζ²) [rad/s].
 [[nodiscard]] ROBOMILL_API std::complex<double> pole(const Mode& mode);
+
+/// Fixes the freedom left -> c left, right -> right / c without changing right * left^T: ‖left‖ = ‖right‖ and left's
+/// largest component (the first of equals) real and positive. A mode whose residue is zero gets zero vectors.
+/// @throws InvalidInput if a vector is empty or holds a value that is not finite
+ROBOMILL_API void normalise(Mode& mode);
+
+/// FRFs of every response and excitation of the model, excitation by excitation (xx, yx, xy, yy), residuals included:
+/// H_ij(ω) = Σ_k R_ik L_jk / (iω - λ_k) + conj(R_ik L_jk) / (iω - conj λ_k) - mass_ij / ω² + stiffness_ij.
+/// @param frequency_hz  length n, strictly increasing, >= 0 [Hz]; > 0 where a residual has a mass
+/// @throws InvalidInput if the model or the frequencies are not valid
+[[nodiscard]] ROBOMILL_API FrfSet synthesize(const ModalModel& model, const Eigen::VectorXd& frequency_hz);
 
 }  // namespace robomill::modal
