@@ -1,0 +1,214 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/modal/frf.hpp"
+#include "robomill/modal/modes.hpp"
+
+/// Results of the other stages, as a page to look at and as the data of its plots. The structs are filled by whoever
+/// ran the stages; every part may be left empty, and the page leaves its section out. NaN means "unknown", or "none in
+/// the range" where a member says so; it becomes null.
+namespace robomill::report {
+
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// What a cut did, or is predicted to do.
+enum class Verdict { unknown, stable, borderline, chatter };
+
+/// A row of two texts: "Cutter", "3 teeth, 12 mm".
+struct Fact {
+  std::string label, value;
+};
+
+/// Cutting conditions that will not chatter, and what keeps them from being faster.
+struct Recommendation {
+  double spindle_speed_rad_per_s = unknown;  ///< [rad/s], > 0
+  double axial_depth_m = unknown;            ///< [m], > 0
+  double feed_per_tooth_m = unknown;         ///< [m]
+  double margin = unknown;                   ///< 1 - axial depth / lowest limit near this speed
+  double removal_rate_m3_per_s = unknown;    ///< [m^3/s]
+  std::string limited_by = {};               ///< plain words: "mode 8, chatter at 566 Hz", "the spindle's torque"
+  double chatter_frequency_hz = unknown;     ///< of the limit, where chatter is what limits [Hz]
+  int mode = 0;                              ///< of the limit, from 1; 0 where none
+};
+
+/// How well a measurement serves, before any fit.
+enum class Grade { unknown, good, fair, poor };
+
+/// One FRF, measured and fitted, over Report::frf_frequency_hz.
+struct FrfPlot {
+  modal::FrfName name;
+  Eigen::VectorXcd measured = {};  ///< length n, receptance [m/N], or the unit its name says; empty where none
+  Eigen::VectorXcd fitted = {};    ///< length n; empty where none
+  Eigen::VectorXd coherence = {};  ///< length n, in [0, 1]; empty where unknown
+  Grade grade = Grade::unknown;
+  std::vector<std::string> findings = {};  ///< why that grade: "coherence below 0.9 on 12 % of the band"
+  std::vector<std::string> remedies = {};  ///< what to do about it: "use a harder tip"
+  double trusted_from_hz = unknown;        ///< lowest trustworthy frequency [Hz]
+  double trusted_to_hz = unknown;          ///< highest, where the hammer stops exciting [Hz]
+  double relative_error = unknown;         ///< ‖fitted - measured‖ / ‖measured‖ over the fit's band
+};
+
+/// One hammer hit.
+struct HitRow {
+  std::string file;
+  std::string direction = {};  ///< of the force: "x", "-y"
+  bool accepted = true;
+  std::vector<std::string> reasons = {};  ///< why it was rejected, or what was noticed
+};
+
+/// One pole of one model order in a stabilisation diagram.
+struct StabilisationPole {
+  int order = 0;
+  double frequency_hz = 0.0;  ///< [Hz]
+  bool stable = false;        ///< frequency, damping and mode shape hardly moved since the order below
+};
+
+/// How the modes came out of the FRFs.
+struct FitSummary {
+  std::string method = {};               ///< "hybrid", "pso", "lscf"
+  double relative_error = unknown;       ///< ‖H_fit - H‖ / ‖H‖ over the band, all FRFs together
+  double mean_relative_error = unknown;  ///< mean over lines and FRFs of |H_fit - H| / |H|
+  double band_from_hz = unknown;         ///< [Hz]
+  double band_to_hz = unknown;           ///< [Hz]
+  bool converged = true;
+  Eigen::VectorXd convergence = {};  ///< best objective after each iteration; empty where the method has none
+  std::vector<StabilisationPole> stabilisation = {};  ///< empty where the method has none
+};
+
+enum class BoundaryKind { hopf, flip, fold };
+
+/// A point of the stability boundary.
+struct BoundaryPoint {
+  double spindle_speed_rad_per_s = 0.0;
+  double axial_depth_m = 0.0;
+  double chatter_frequency_hz = unknown;
+  BoundaryKind kind = BoundaryKind::hopf;
+  int mode = 0;  ///< from 1; 0 where unknown
+};
+
+/// Depth over spindle speed.
+struct DepthCurve {
+  std::string label = {};                        ///< "spindle torque"
+  Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing
+  Eigen::VectorXd axial_depth_m = {};            ///< length n; NaN: none in the range
+};
+
+/// Stability lobes of all modes or of some.
+struct Lobes {
+  std::string label = {};                        ///< "all modes", "modes 1–2"
+  std::vector<int> modes = {};                   ///< from 1; empty: all
+  Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing
+  Eigen::VectorXd limit_depth_m = {};            ///< length n, lowest unstable depth; NaN: none up to searched_depth_m
+  double searched_depth_m = unknown;             ///< the deepest that was looked at
+  std::vector<BoundaryPoint> boundary = {};
+  Eigen::VectorXd map_speed_rad_per_s = {};  ///< length n_s, increasing; the next three are empty where there is no map
+  Eigen::VectorXd map_depth_m = {};          ///< length n_d, increasing
+  Eigen::MatrixXd spectral_radius = {};      ///< n_d x n_s
+};
+
+/// A cut that was made, beside what was predicted for it.
+struct TestCut {
+  double spindle_speed_rad_per_s = 0.0;
+  double axial_depth_m = 0.0;
+  Verdict result = Verdict::unknown;  ///< as made
+  Verdict predicted = Verdict::unknown;
+  double limit_depth_m = unknown;   ///< predicted limit at this speed; NaN: none in the range
+  std::optional<bool> agrees = {};  ///< none where there is nothing to compare
+  std::string note = {};            ///< "chatter at 325, 667 Hz"; the recording's file
+};
+
+/// How many test cuts came out as predicted.
+struct Agreement {
+  std::size_t agree = 0, disagree = 0, not_compared = 0;
+};
+
+enum class PeakKind { rotation, tooth_passing, chatter, other };
+
+/// A peak in the spectrum of a recorded cut.
+struct Peak {
+  double frequency_hz = 0.0;
+  double amplitude = 0.0;  ///< in Recording::amplitude_unit
+  PeakKind kind = PeakKind::other;
+  std::string text = {};  ///< what it is: "29 × rotation", "mode 8 (543.7 Hz)"
+};
+
+/// The spectrum of a recorded cut.
+struct Recording {
+  std::string file = {};
+  double spindle_speed_rad_per_s = 0.0;  ///< > 0
+  int teeth = 0;                         ///< > 0
+  double axial_depth_m = unknown;
+  Eigen::VectorXd frequency_hz = {};  ///< length n, increasing
+  Eigen::VectorXd amplitude = {};     ///< length n, >= 0
+  std::string amplitude_unit = "m/s²";
+  std::vector<Peak> peaks = {};
+  Verdict verdict = Verdict::unknown;  ///< what the spectrum says
+  std::string reason = {};             ///< why
+};
+
+/// The limit over the direction of the feed.
+struct FeedDirections {
+  Eigen::VectorXd direction_rad = {};        ///< length n, increasing, counter-clockwise from x of the FRFs
+  Eigen::VectorXd lowest_limit_m = {};       ///< length n, lowest over all speeds; NaN: none up to searched_depth_m
+  Eigen::VectorXd limit_at_speed_m = {};     ///< length n, at the recommended speed; empty where none was recommended
+  double spindle_speed_rad_per_s = unknown;  ///< the speed of limit_at_speed_m
+  double used_direction_rad = unknown;       ///< the job's own direction
+  double searched_depth_m = unknown;
+};
+
+/// A file that a stage wrote beside the report.
+struct StageFile {
+  std::string stage, file, description;
+};
+
+struct Report {
+  std::string title = "Cutting conditions without chatter";
+  std::string created = {};                ///< "31 July 2026, robomill 0.1.0"
+  std::vector<Fact> facts = {};            ///< the job in short: cutter, cut, material
+  std::vector<std::string> warnings = {};  ///< what the reader must know before using a number
+  std::vector<std::string> notes = {};     ///< what the reader may want to know
+
+  std::optional<Recommendation> recommendation = {};
+  std::vector<Recommendation> alternatives = {};
+  std::string no_recommendation = {};  ///< why there is none, where there is none
+
+  Eigen::VectorXd frf_frequency_hz = {};  ///< length n, increasing
+  std::vector<FrfPlot> frfs = {};
+  std::vector<HitRow> hits = {};
+
+  std::optional<modal::ModalModel> model = {};
+  Eigen::VectorXd limit_share = {};  ///< one a mode, in [0, 1]: its share in the limit; empty where unknown
+  std::optional<FitSummary> fit = {};
+
+  std::vector<Lobes> lobes = {};              ///< the first is the one that counts: all modes
+  std::vector<DepthCurve> other_limits = {};  ///< torque, power, the cutter's length
+  std::vector<TestCut> cuts = {};
+  std::optional<FeedDirections> feed_directions = {};
+  std::vector<Recording> recordings = {};
+  std::vector<StageFile> files = {};
+
+  /// @throws InvalidInput naming the member if lengths do not match, an axis does not increase, or a required number is
+  /// missing
+  ROBOMILL_API void validate() const;
+};
+
+/// Counts Report::cuts.
+[[nodiscard]] ROBOMILL_API Agreement agreement(const std::vector<TestCut>& cuts);
+
+/// The data of the page in shop units, keys with their unit, about six significant digits; numbers finite, "none" is
+/// null.
+/// @throws InvalidInput as Report::validate
+[[nodiscard]] ROBOMILL_API std::string report_json(const Report& report);
+
+/// One file that opens without a network: the tables as HTML, the plots drawn by the script inside from the data
+/// inside. A build without the page's script (ROBOMILL_WEB=OFF) has the tables and says that the plots are missing.
+/// @throws InvalidInput as Report::validate
+[[nodiscard]] ROBOMILL_API std::string report_html(const Report& report);
+
+}  // namespace robomill::report
