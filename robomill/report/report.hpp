@@ -15,7 +15,7 @@
 /// the range" where a member says so; it becomes null.
 namespace robomill::report {
 
-inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// What a cut did, or is predicted to do.
 enum class Verdict { unknown, stable, borderline, chatter };
@@ -27,13 +27,13 @@ struct Fact {
 
 /// Cutting conditions that will not chatter, and what keeps them from being faster.
 struct Recommendation {
-  double spindle_speed_rad_per_s = unknown;  ///< [rad/s], > 0
-  double axial_depth_m = unknown;            ///< [m], > 0
-  double feed_per_tooth_m = unknown;         ///< [m]
-  double margin = unknown;                   ///< 1 - axial depth / lowest limit near this speed
-  double removal_rate_m3_per_s = unknown;    ///< [m^3/s]
+  double spindle_speed_rad_per_s = missing;  ///< [rad/s], > 0
+  double axial_depth_m = missing;            ///< [m], > 0
+  double feed_per_tooth_m = missing;         ///< [m]
+  double margin = missing;                   ///< 1 - axial depth / lowest limit near this speed
+  double removal_rate_m3_per_s = missing;    ///< [m^3/s]
   std::string limited_by = {};               ///< plain words: "mode 8, chatter at 566 Hz", "the spindle's torque"
-  double chatter_frequency_hz = unknown;     ///< of the limit, where chatter is what limits [Hz]
+  double chatter_frequency_hz = missing;     ///< of the limit, where chatter is what limits [Hz]
   int mode = 0;                              ///< of the limit, from 1; 0 where none
 };
 
@@ -49,9 +49,9 @@ struct FrfPlot {
   Grade grade = Grade::unknown;
   std::vector<std::string> findings = {};  ///< why that grade: "coherence below 0.9 on 12 % of the band"
   std::vector<std::string> remedies = {};  ///< what to do about it: "use a harder tip"
-  double trusted_from_hz = unknown;        ///< lowest trustworthy frequency [Hz]
-  double trusted_to_hz = unknown;          ///< highest, where the hammer stops exciting [Hz]
-  double relative_error = unknown;         ///< ‖fitted - measured‖ / ‖measured‖ over the fit's band
+  double trusted_from_hz = missing;        ///< lowest trustworthy frequency [Hz]
+  double trusted_to_hz = missing;          ///< highest, where the hammer stops exciting [Hz]
+  double relative_error = missing;         ///< ‖fitted - measured‖ / ‖measured‖ over the fit's band
 };
 
 /// One hammer hit.
@@ -72,10 +72,10 @@ struct StabilisationPole {
 /// How the modes came out of the FRFs.
 struct FitSummary {
   std::string method = {};               ///< "hybrid", "pso", "lscf"
-  double relative_error = unknown;       ///< ‖H_fit - H‖ / ‖H‖ over the band, all FRFs together
-  double mean_relative_error = unknown;  ///< mean over lines and FRFs of |H_fit - H| / |H|
-  double band_from_hz = unknown;         ///< [Hz]
-  double band_to_hz = unknown;           ///< [Hz]
+  double relative_error = missing;       ///< ‖H_fit - H‖ / ‖H‖ over the band, all FRFs together
+  double mean_relative_error = missing;  ///< mean over lines and FRFs of |H_fit - H| / |H|
+  double band_from_hz = missing;         ///< [Hz]
+  double band_to_hz = missing;           ///< [Hz]
   bool converged = true;
   Eigen::VectorXd convergence = {};  ///< best objective after each iteration; empty where the method has none
   std::vector<StabilisationPole> stabilisation = {};  ///< empty where the method has none
@@ -87,7 +87,7 @@ enum class BoundaryKind { hopf, flip, fold };
 struct BoundaryPoint {
   double spindle_speed_rad_per_s = 0.0;
   double axial_depth_m = 0.0;
-  double chatter_frequency_hz = unknown;
+  double chatter_frequency_hz = missing;
   BoundaryKind kind = BoundaryKind::hopf;
   int mode = 0;  ///< from 1; 0 where unknown
 };
@@ -105,7 +105,7 @@ struct Lobes {
   std::vector<int> modes = {};                   ///< from 1; empty: all
   Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing
   Eigen::VectorXd limit_depth_m = {};            ///< length n, lowest unstable depth; NaN: none up to searched_depth_m
-  double searched_depth_m = unknown;             ///< the deepest that was looked at
+  double searched_depth_m = missing;             ///< the deepest that was looked at
   std::vector<BoundaryPoint> boundary = {};
   Eigen::VectorXd map_speed_rad_per_s = {};  ///< length n_s, increasing; the next three are empty where there is no map
   Eigen::VectorXd map_depth_m = {};          ///< length n_d, increasing
@@ -118,7 +118,7 @@ struct TestCut {
   double axial_depth_m = 0.0;
   Verdict result = Verdict::unknown;  ///< as made
   Verdict predicted = Verdict::unknown;
-  double limit_depth_m = unknown;   ///< predicted limit at this speed; NaN: none in the range
+  double limit_depth_m = missing;   ///< predicted limit at this speed; NaN: none in the range
   std::optional<bool> agrees = {};  ///< none where there is nothing to compare
   std::string note = {};            ///< "chatter at 325, 667 Hz"; the recording's file
 };
@@ -143,7 +143,7 @@ struct Recording {
   std::string file = {};
   double spindle_speed_rad_per_s = 0.0;  ///< > 0
   int teeth = 0;                         ///< > 0
-  double axial_depth_m = unknown;
+  double axial_depth_m = missing;
   Eigen::VectorXd frequency_hz = {};  ///< length n, increasing
   Eigen::VectorXd amplitude = {};     ///< length n, >= 0
   std::string amplitude_unit = "m/s²";
@@ -157,9 +157,9 @@ struct FeedDirections {
   Eigen::VectorXd direction_rad = {};        ///< length n, increasing, counter-clockwise from x of the FRFs
   Eigen::VectorXd lowest_limit_m = {};       ///< length n, lowest over all speeds; NaN: none up to searched_depth_m
   Eigen::VectorXd limit_at_speed_m = {};     ///< length n, at the recommended speed; empty where none was recommended
-  double spindle_speed_rad_per_s = unknown;  ///< the speed of limit_at_speed_m
-  double used_direction_rad = unknown;       ///< the job's own direction
-  double searched_depth_m = unknown;
+  double spindle_speed_rad_per_s = missing;  ///< the speed of limit_at_speed_m
+  double used_direction_rad = missing;       ///< the job's own direction
+  double searched_depth_m = missing;
 };
 
 /// A file that a stage wrote beside the report.
