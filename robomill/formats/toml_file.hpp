@@ -11,12 +11,13 @@
 
 namespace robomill::formats {
 
-/// One TOML file while it is read. Every reading call is one row of the file's table: its key, the SI member that it fills and the
-/// factor between them; the rows it has seen serve to tell errors in the file's own words and to refuse unknown keys.
+/// One TOML file while it is read. Every reading call is one row of the file's table: its key, the SI member that it
+/// fills and the factor between them; the rows it has seen serve to tell errors in the file's own words and to refuse
+/// unknown keys.
 ///
-/// Keys are full paths: "tool.teeth", "hits[0].file" (tables of an array count from 0 here, from 1 in messages). The bool
-/// readers leave `out` alone and return false where the key is absent; a value of the wrong type throws InvalidInput with file,
-/// line, key and value.
+/// Keys are full paths: "tool.teeth", "hits[0].file" (tables of an array count from 0 here, from 1 in messages). The
+/// bool readers leave `out` alone and return false where the key is absent; a value of the wrong type throws
+/// InvalidInput with file, line, key and value.
 class TomlFile {
  public:
   /// @throws InvalidInput if the file is missing, empty or no TOML (with line)
@@ -27,6 +28,7 @@ class TomlFile {
 
   /// out = value * factor
   bool number(std::string_view key, std::string_view member, double factor, double& out);
+  /// A list of numbers; a single number is a list of one.
   bool numbers(std::string_view key, std::string_view member, double factor, std::vector<double>& out);
   bool integer(std::string_view key, std::string_view member, int& out);
   bool integers(std::string_view key, std::string_view member, std::vector<int>& out);
@@ -51,6 +53,8 @@ class TomlFile {
     throw refuse(key, "must be one of " + known);
   }
 
+  /// Accepts a key or a whole table unread: it is for another reader of the same file.
+  void skip(std::string_view key);
   [[nodiscard]] bool has(std::string_view key) const;
   /// Number of tables in an array of tables; 0 where it is absent.
   [[nodiscard]] std::size_t tables(std::string_view key) const;
@@ -61,8 +65,8 @@ class TomlFile {
 
   /// The error for a key of this file: file:line: key = value unit; rule. hint
   [[nodiscard]] InvalidInput refuse(std::string_view key, std::string rule, std::string hint = {}) const;
-  /// An error about an SI member told in the words of this file (key, value in the file's unit, line); unchanged where the member
-  /// did not come from here.
+  /// An error about an SI member told in the words of this file (key, value in the file's unit, line); unchanged where
+  /// the member did not come from here.
   [[nodiscard]] InvalidInput located(const InvalidInput& error) const;
   /// Calls f; an InvalidInput that it throws comes out located.
   template <class F>

@@ -1,7 +1,8 @@
 #pragma once
 #include <numbers>
 
-/// Shop units in SI: value_m = value_mm * units::mm, value_mm = value_m / units::mm. The only conversions in the project.
+/// Shop units in SI: value_m = value_mm * units::mm, value_mm = value_m / units::mm. The only conversions in the
+/// project.
 namespace robomill::units {
 
 inline constexpr double mm = 1e-3;

@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "robomill/base/export.hpp"
+
+namespace robomill::formats {
+
+/// What a file's ending says about its content.
+enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
+
+/// .uff .unv .uf, .csv, .txt .dat .asc, .mat, .json, .toml, .wav; case does not matter.
+[[nodiscard]] ROBOMILL_API Format format_of(const std::filesystem::path& path);
+
+/// The whole content of a file.
+/// @throws InvalidInput if there is no such file, it is a directory, cannot be read, is empty or holds more than
+/// max_bytes
+[[nodiscard]] ROBOMILL_API std::string read_file(const std::filesystem::path& path,
+                                                 std::uintmax_t max_bytes = std::uintmax_t{1} << 31);
+
+/// Makes a file appear whole or not at all: written beside its place, then renamed.
+/// @throws InvalidInput if the place cannot be written
+ROBOMILL_API void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// A file under a temporary name beside its place, for writers that insist on a path of their own. Goes away unless
+/// committed.
+class PendingFile {
+ public:
+  /// @throws InvalidInput if the folder is missing or path is one
+  explicit PendingFile(std::filesystem::path path);
+  ~PendingFile();
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+
+  /// Where to write.
+  [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
+  /// Moves what was written to its place. @throws InvalidInput if that fails
+  void commit();
+
+ private:
+  std::filesystem::path path_, temporary_;
+};
+
+}  // namespace robomill::formats

@@ -1,0 +1,49 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace robomill::formats {
+
+/// What a machinist saw and measured at one test cut.
+struct TestCut {
+  enum class Result { unknown, stable, borderline, chatter };
+  double spindle_speed_rad_per_s = 0.0;  ///< > 0
+  double axial_depth_m = 0.0;            ///< > 0
+  Result result = Result::unknown;
+  std::vector<double> peaks_hz = {};  ///< peaks of its spectrum, where known
+  std::filesystem::path file = {};    ///< its recording, where there is one
+  std::string column = "1";           ///< the recording's column, name or number from 1
+  double sample_rate_hz = 0.0;        ///< of a recording without a time column; 0: from the file
+};
+
+/// One point of the spindle's curve; torque and power are interpolated linearly between points.
+struct SpindlePoint {
+  double spindle_speed_rad_per_s = 0.0;
+  double torque_n_m = 0.0;
+  double power_w = 0.0;
+};
+
+/// job.toml. Paths are resolved; an empty one is absent. Exactly one of hits, frf and modes is given.
+struct Job {
+  std::string title = {};
+  std::filesystem::path hits = {}, modes = {}, lobes = {};
+  std::vector<std::filesystem::path> frf = {};
+  std::vector<std::string> frf_as = {};
+  double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data
+  int fit_modes = 0;                             ///< 0: chosen by the fit
+  double max_axial_depth_m = 0.0;                ///< the cutter's flute length; 0: the lobes' range alone
+  double max_spindle_speed_rad_per_s = 0.0;      ///< 0: the lobes' range alone
+  double min_spindle_speed_rad_per_s = 0.0;
+  double depth_margin = 0.2;   ///< the recommended depth stays this fraction below the limit
+  double speed_window = 0.02;  ///< … over ± this fraction of speed
+  std::vector<SpindlePoint> spindle_curve = {};
+  std::vector<TestCut> cuts = {};
+
+  void validate() const;
+};
+
+/// @throws InvalidInput with file, line, key and value
+[[nodiscard]] Job read_job(const std::filesystem::path& path);
+
+}  // namespace robomill::formats

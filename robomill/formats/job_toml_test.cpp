@@ -1,0 +1,82 @@
+#include "robomill/formats/job_toml.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/units.hpp"
+
+namespace robomill::formats {
+namespace {
+
+class JobToml : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("job_toml_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  std::string refusal(const std::string& text) {
+    try {
+      static_cast<void>(read_job(write("job.toml", text)));
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(JobToml, ReadsEveryPartInSi) {
+  write("cuts.toml", "[[cuts]]\nspindle_speed_rpm = 8000\naxial_depth_mm = 1.2\nresult = \"stable\"\n");
+  const Job job = read_job(write("job.toml", R"([job]
+frf = ["xx.txt", "yy.txt"]
+frf_as = ["xx", "yy"]
+lobes = "lobes.toml"
+cuts = "cuts.toml"
+[spindle]
+max_speed_rpm = 18000
+curve = [{ speed_rpm = 6000, torque_n_m = 12, power_kw = 7.5 }]
+[[cuts]]
+spindle_speed_rpm = 6500
+axial_depth_mm = 0.8
+result = "chatter"
+)"));
+  ASSERT_EQ(job.frf.size(), 2U);
+  EXPECT_EQ(job.frf[1], folder_ / "yy.txt");
+  EXPECT_EQ(job.lobes, folder_ / "lobes.toml");
+  EXPECT_DOUBLE_EQ(job.max_spindle_speed_rad_per_s, 18000 * units::rpm);
+  ASSERT_EQ(job.spindle_curve.size(), 1U);
+  EXPECT_DOUBLE_EQ(job.spindle_curve[0].power_w, 7500.0);
+  ASSERT_EQ(job.cuts.size(), 2U);
+  EXPECT_EQ(job.cuts[0].result, TestCut::Result::chatter);
+  EXPECT_DOUBLE_EQ(job.cuts[1].axial_depth_m, 1.2e-3);
+}
+
+TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
+  const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
+  EXPECT_NE(refusal("[job]\nlobes = \"l.toml\"\n").find("exactly one of hits, frf and modes"), std::string::npos);
+  EXPECT_NE(refusal(source + "[spindle]\nmax_speed_rpm = -5\n").find("job.toml:5: spindle.max_speed_rpm = -5 rpm"),
+            std::string::npos)
+      << refusal(source + "[spindle]\nmax_speed_rpm = -5\n");
+  EXPECT_NE(refusal(source + "[[cuts]]\nspindle_speed_rpm = 0\naxial_depth_mm = 1\n").find("spindle_speed_rpm = 0 rpm"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(source + "[[cuts]]\nspindle_speed_rpm = 10\naxial_depth_mm = 1\nresult = \"loud\"\n").find("\"stable\""),
+      std::string::npos);
+  EXPECT_NE(refusal(source + "[safety]\ndepth_margin = 20\n").find("0.2 stays 20 % below"), std::string::npos);
+  EXPECT_NE(refusal(source + "[spindel]\nmax_speed_rpm = 5\n").find("spindel"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace robomill::formats
