@@ -55,7 +55,9 @@ Eigen::VectorXcd transform(const Eigen::VectorXcd& x, bool inverse) {
 
 }  // namespace
 
-Eigen::VectorXcd fft(const Eigen::Ref<const Eigen::VectorXcd>& x) { return transform(x, false); }
+Eigen::VectorXcd fft(const Eigen::Ref<const Eigen::VectorXcd>& x) {
+  return transform(x, false);
+}
 
 Eigen::VectorXcd inverse_fft(const Eigen::Ref<const Eigen::VectorXcd>& spectrum) {
   return transform(spectrum, true) / static_cast<double>(spectrum.size());

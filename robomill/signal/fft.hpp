@@ -13,9 +13,10 @@ namespace robomill::signal {
 [[nodiscard]] ROBOMILL_API Eigen::VectorXcd inverse_fft(const Eigen::Ref<const Eigen::VectorXcd>& spectrum);
 /// The lines k = 0 … n/2 (rounded down) of the transform of a real signal of length n.
 [[nodiscard]] ROBOMILL_API Eigen::VectorXcd real_fft(const Eigen::Ref<const Eigen::VectorXd>& x);
-/// The real signal of length n whose real_fft is `half` (length n/2 + 1, rounded down); imaginary parts that no real signal can
-/// have (at zero and, for even n, at the last line) are dropped.
+/// The real signal of length n whose real_fft is `half` (length n/2 + 1, rounded down); imaginary parts that no real
+/// signal can have (at zero and, for even n, at the last line) are dropped.
 /// @throws InvalidInput if the lengths do not fit
-[[nodiscard]] ROBOMILL_API Eigen::VectorXd inverse_real_fft(const Eigen::Ref<const Eigen::VectorXcd>& half, Eigen::Index n);
+[[nodiscard]] ROBOMILL_API Eigen::VectorXd inverse_real_fft(const Eigen::Ref<const Eigen::VectorXcd>& half,
+                                                            Eigen::Index n);
 
 }  // namespace robomill::signal

@@ -27,7 +27,8 @@ TEST_P(Fft, IsTheDefiningSum) {
   for (Eigen::Index k = 0; k < n; k += 1 + n / 13) {
     std::complex<double> sum = 0.0;
     for (Eigen::Index j = 0; j < n; ++j) {
-      sum += x(j) * std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>((j * k) % n) / static_cast<double>(n));
+      sum +=
+          x(j) * std::polar(1.0, -2.0 * std::numbers::pi * static_cast<double>((j * k) % n) / static_cast<double>(n));
     }
     EXPECT_LT(std::abs(spectrum(k) - sum), 1e-13 * static_cast<double>(n) + 1e-14);
   }
