@@ -1,0 +1,106 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "robomill/base/progress.hpp"
+#include "robomill/modal/modes.hpp"
+
+namespace robomill::modal {
+
+/// How modes are found.
+enum class FitMethod {
+  hybrid,  ///< poles of lscf, then weighted nonlinear least squares over all FRFs; order by an information criterion
+  pso,     ///< particle swarm, one fit an excitation, as published
+  lscf     ///< poly-reference least-squares complex frequency, poles picked from the stabilisation diagram
+};
+
+/// What a line's error is taken to be; each line counts by its inverse.
+enum class Weighting {
+  automatic,  ///< deviation where every FRF has it, else coherence where every FRF has it, else estimated
+  none,       ///< the same on every line of an FRF and on every FRF
+  relative,   ///< proportional to |H|
+  coherence,  ///< |H| sqrt((1 - γ²) / γ²), γ² smoothed
+  deviation,  ///< Frf::deviation, smoothed
+  estimated   ///< sqrt(a² + b² |H|²), a and b an FRF from the scatter between neighbouring lines
+};
+
+/// What to fit and how.
+struct FitOptions {
+  FitMethod method = FitMethod::hybrid;
+  double band_low_hz = 0.0;                                       ///< >= 0 [Hz]
+  double band_high_hz = std::numeric_limits<double>::infinity();  ///< > band_low_hz [Hz]; infinite: to the last line
+  int modes = 0;       ///< exactly so many modes; 0: as many as the data shows
+  int max_modes = 20;  ///< at most so many where `modes` is 0, in 1 … 60
+  Weighting weighting = Weighting::automatic;
+  bool residuals =
+      true;  ///< allow mass and stiffness residuals for modes outside the band; hybrid drops them if not needed
+  double max_damping_ratio = 0.4;  ///< no mode above it, in (0, 1)
+  /// Subtracted from every pole's decay after the fit [1/s], >= 0: 1/τ where the hits had the window exp(-t/τ): λ -> λ
+  /// + 1/τ.
+  double exponential_decay_per_s = 0.0;
+  std::uint64_t seed = 1;  ///< of pso
+
+  int lscf_max_order = 40;         ///< highest polynomial order of the stabilisation diagram, in 2 … 200
+  double stable_frequency = 0.01;  ///< a pole is stable if it moved less than this share of its frequency, > 0 …
+  double stable_damping = 0.05;    ///< … its damping ratio less than this share, > 0 …
+  double stable_mac = 0.95;        ///< … and its vector's MAC with the one before is above this, in (0, 1)
+
+  int pso_particles = 400;               ///< >= 2
+  int pso_max_iterations = 8000;         ///< >= 1
+  double pso_frequency_margin_hz = 0.0;  ///< Δω of the published method as a frequency [Hz]; 0: from the peak's width
+
+  /// @throws InvalidInput naming the field
+  ROBOMILL_API void validate() const;
+};
+
+/// One pole of the stabilisation diagram, against the nearest one of the order below.
+struct StabilisationPoint {
+  int order = 0;
+  double frequency_hz = 0.0, damping_ratio = 0.0;
+  bool frequency_stable = false, damping_stable = false, vector_stable = false;
+};
+
+/// How far fit and data are apart on one FRF, or on all.
+struct FitError {
+  double relative = 0.0;       ///< ‖H_fit - H‖ / ‖H‖ over the band
+  double mean_relative = 0.0;  ///< mean over the lines of |H_fit - H| / |H|; lines with H = 0 left out
+};
+struct FrfFitError {
+  FrfName name;
+  FitError error;
+};
+
+/// The modes and how well they describe the FRFs.
+struct FitResult {
+  enum class Status { converged, not_converged };
+  Status status = Status::not_converged;
+  ModalModel model;                  ///< modes by rising frequency, normalised
+  double relative_error = 0.0;       ///< ‖H_fit - H‖ / ‖H‖ over the band and all FRFs, residuals included
+  double mean_relative_error = 0.0;  ///< mean over lines and FRFs of |H_fit - H| / |H|, residuals included
+  std::vector<FrfFitError> by_frf;   ///< in the order of the input
+  int iterations = 0;
+  std::vector<double> best;  ///< the objective after each iteration (pso: mean relative error; hybrid: relative error)
+  std::vector<StabilisationPoint> stabilisation;  ///< hybrid and lscf
+  double band_low_hz = 0.0, band_high_hz = 0.0;   ///< first and last line used [Hz]
+  Eigen::Index lines = 0;                         ///< number of lines used
+  Weighting weighting = Weighting::none;          ///< the one used, never `automatic`
+  std::vector<std::string> warnings;              ///< sentences for the user
+};
+
+/// Finds the modes of FRFs: H_ij(ω) = Σ_k R_ik L_jk / (iω - λ_k) + conjugate + mass_ij / (-ω²) + stiffness_ij.
+///
+/// The set may hold any FRFs. An FRF that is missing follows from the others where they determine it (xx, yx, yy give
+/// xy); FRFs that share neither response nor excitation (xx, yy) are fitted apart, their cross FRFs are taken as zero,
+/// and a warning says so. A line at 0 Hz is left out. A fit that is not passive or not reciprocal is a fit with a
+/// warning. Steps and measured accuracy in README.md.
+/// @throws InvalidInput if an option or the set is not valid, the band holds too few lines for the modes asked for, or
+/// the
+///         weighting asked for has no data
+/// Source: [Peeters2004] (lscf), [GolubPereyra2003] (variable projection)
+[[nodiscard]] ROBOMILL_API FitResult fit_modes(const FrfSet& set, const FitOptions& options,
+                                               Progress& progress = Progress::none());
+
+}  // namespace robomill::modal
