@@ -1,0 +1,232 @@
+#include "robomill/cutting/milling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::cutting {
+namespace {
+
+using std::numbers::pi;
+constexpr double revolution = 2.0 * pi;
+
+/// κ(φ) = constant + cosine cos 2φ + sine sin 2φ.
+struct Harmonics {
+  Eigen::Matrix2d constant, cosine, sine;
+};
+
+Harmonics harmonics(const ForceCoefficients& c) {
+  const double kt = 0.5 * c.tangential_n_per_m2;
+  const double kr = 0.5 * c.radial_n_per_m2;
+  Harmonics h;
+  h.constant << -kr, -kt, kt, -kr;
+  h.cosine << kr, -kt, -kt, -kr;
+  h.sine << -kt, -kr, -kr, kt;
+  return h;
+}
+
+double standing_angle(const FlatEndMill& tool, int tooth) {
+  double angle = 0.0;
+  for (int j = 0; j < tooth; ++j) angle += tool.pitch(j);
+  return angle;
+}
+
+/// ∫ g κ over [low, high], inside which angles may pass several revolutions. Written with lengths and midpoints, so
+/// that nothing cancels where the range is short.
+Eigen::Matrix2d integral(const Harmonics& h, const Immersion& immersion, double low, double high) {
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (double start = revolution * std::floor(low / revolution); start < high; start += revolution) {
+    const double from = std::max(low - start, immersion.entry_rad);
+    const double to = std::min(high - start, immersion.exit_rad);
+    if (to <= from) continue;
+    const double sum_of_ends = from + to;
+    const double chord = std::sin(to - from);
+    sum += h.constant * (to - from) + h.cosine * (std::cos(sum_of_ends) * chord) +
+           h.sine * (std::sin(sum_of_ends) * chord);
+  }
+  return sum;
+}
+
+/// ∫ C(s) ds over [low, high] with C(s) = ∫ g κ over [start of s's first revolution, s], by the same rule; `first` is
+/// the start of the revolution that C counts from.
+Eigen::Matrix2d double_integral(const Harmonics& h, const Immersion& immersion, double first, double low, double high) {
+  const double entry = immersion.entry_rad;
+  const double exit = immersion.exit_rad;
+  const Eigen::Matrix2d whole = integral(h, immersion, entry, exit);
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (double start = revolution * std::floor(low / revolution); start < high; start += revolution) {
+    const double a = std::max(low - start, 0.0);
+    const double b = std::min(high - start, revolution);
+    if (b <= a) continue;
+    sum += whole * (std::round((start - first) / revolution) * (b - a));
+    const double from = std::max(a, entry);
+    const double to = std::min(b, exit);
+    if (to > from) {
+      const double length = to - from;
+      const double chord = std::sin(length);
+      sum += h.constant * (length * (0.5 * (from + to) - entry)) +
+             h.cosine * (0.5 * (std::sin(from + to) * chord - length * std::sin(2.0 * entry))) +
+             h.sine * (0.5 * (length * std::cos(2.0 * entry) - std::cos(from + to) * chord));
+    }
+    const double after = b - std::max(a, exit);
+    if (after > 0.0) sum += whole * after;
+  }
+  return sum;
+}
+
+void require_material(const char* field, double value, const char* hint) {
+  constexpr double least = 1e6;
+  constexpr double most = 1e12;
+  if (std::abs(value) < least) throw InvalidInput(field, value, "N/m^2", "is too small for any material", hint);
+  if (std::abs(value) > most) throw InvalidInput(field, value, "N/m^2", "is too large for any material", hint);
+}
+
+}  // namespace
+
+double FlatEndMill::pitch(int tooth) const {
+  return pitch_rad.empty() ? revolution / teeth : pitch_rad[static_cast<std::size_t>(tooth)];
+}
+
+bool FlatEndMill::has_equal_pitch() const {
+  return std::ranges::all_of(pitch_rad, [&](double p) { return std::abs(p - revolution / teeth) <= 1e-9; });
+}
+
+double FlatEndMill::lag_rad_per_m() const {
+  return 2.0 * std::tan(helix_rad) / diameter_m;
+}
+
+void FlatEndMill::validate() const {
+  if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");
+  if (teeth > 100) throw InvalidInput("teeth", teeth, "", "must be at most 100");
+  require_positive("diameter_m", diameter_m, "m");
+  if (diameter_m > 1.0) {
+    throw InvalidInput("diameter_m", diameter_m, "m", "is too large for a milling cutter", "Are the units mixed up?");
+  }
+  if (!(std::abs(helix_rad) < 0.48 * pi)) {
+    throw InvalidInput("helix_rad", helix_rad, "rad", "must lie between -86 and 86 degrees");
+  }
+  if (pitch_rad.empty()) return;
+  if (pitch_rad.size() != static_cast<std::size_t>(teeth)) {
+    throw InvalidInput("pitch_rad", static_cast<double>(pitch_rad.size()), "entries",
+                       "must have one entry for each tooth (" + std::to_string(teeth) + ")");
+  }
+  double sum = 0.0;
+  for (std::size_t j = 0; j < pitch_rad.size(); ++j) {
+    require_positive(("pitch_rad[" + std::to_string(j) + "]").c_str(), pitch_rad[j], "rad");
+    sum += pitch_rad[j];
+  }
+  if (!(std::abs(sum - revolution) <= 1e-6 * revolution)) {
+    throw InvalidInput("pitch_rad", "must sum to one revolution, 360 degrees");
+  }
+}
+
+void Immersion::validate() const {
+  if (!(entry_rad >= 0.0 && entry_rad < pi)) {
+    throw InvalidInput("entry_rad", entry_rad, "rad", "must be at least 0 and less than 180 degrees",
+                       "Angles run clockwise from +y, x being the feed; the chip has no thickness beyond 180 degrees");
+  }
+  if (!(exit_rad > entry_rad)) {
+    throw InvalidInput("exit_rad", exit_rad, "rad", "must be greater than the entry angle");
+  }
+  if (!(exit_rad <= pi * (1.0 + 1e-12))) {
+    throw InvalidInput("exit_rad", exit_rad, "rad", "must be at most 180 degrees",
+                       "Angles run clockwise from +y, x being the feed; the chip has no thickness beyond 180 degrees");
+  }
+}
+
+void ForceCoefficients::validate() const {
+  constexpr const char* hint = "Aluminium is near 700 N/mm^2 = 7e8 N/m^2; are the units mixed up?";
+  require_positive("tangential_n_per_m2", tangential_n_per_m2, "N/m^2", hint);
+  require_finite("radial_n_per_m2", radial_n_per_m2, "N/m^2", hint);
+  require_material("tangential_n_per_m2", tangential_n_per_m2, hint);
+  if (radial_n_per_m2 != 0.0) require_material("radial_n_per_m2", radial_n_per_m2, hint);
+}
+
+void Milling::validate() const {
+  tool.validate();
+  immersion.validate();
+  coefficients.validate();
+}
+
+Immersion immersion(MillingDirection direction, double radial_depth_m, double diameter_m) {
+  require_positive("diameter_m", diameter_m, "m");
+  if (direction == MillingDirection::slot) return {.entry_rad = 0.0, .exit_rad = pi};
+  require_positive("radial_depth_m", radial_depth_m, "m");
+  if (radial_depth_m > diameter_m * (1.0 + 1e-12)) {
+    throw InvalidInput("radial_depth_m", radial_depth_m, "m", "must be at most the cutter's diameter");
+  }
+  const double ratio = std::min(2.0 * radial_depth_m / diameter_m, 2.0);
+  if (direction == MillingDirection::up) return {.entry_rad = 0.0, .exit_rad = std::acos(1.0 - ratio)};
+  return {.entry_rad = std::acos(ratio - 1.0), .exit_rad = pi};
+}
+
+double radial_depth(const Immersion& immersion, double diameter_m) {
+  return 0.5 * diameter_m * (std::cos(immersion.entry_rad) - std::cos(immersion.exit_rad));
+}
+
+Eigen::Matrix2d directional_coefficients(const ForceCoefficients& coefficients, double angle_rad) {
+  const double s = std::sin(angle_rad);
+  const double c = std::cos(angle_rad);
+  const double kt = coefficients.tangential_n_per_m2;
+  const double kr = coefficients.radial_n_per_m2;
+  Eigen::Matrix2d kappa;
+  kappa << -s * (kt * c + kr * s), -c * (kt * c + kr * s), s * (kt * s - kr * c), c * (kt * s - kr * c);
+  return kappa;
+}
+
+Eigen::Matrix2d cutting_stiffness(const Milling& milling, int tooth, double rotation_rad, double axial_depth_m) {
+  const double tip = rotation_rad + standing_angle(milling.tool, tooth);
+  const double top = tip - milling.tool.lag_rad_per_m() * axial_depth_m;
+  if (top == tip) {
+    const double angle = tip - revolution * std::floor(tip / revolution);
+    const bool cuts = angle >= milling.immersion.entry_rad && angle <= milling.immersion.exit_rad;
+    if (!cuts) return Eigen::Matrix2d::Zero();
+    return directional_coefficients(milling.coefficients, angle) * axial_depth_m;
+  }
+  const double low = std::min(tip, top);
+  const double high = std::max(tip, top);
+  return integral(harmonics(milling.coefficients), milling.immersion, low, high) * (axial_depth_m / (high - low));
+}
+
+Eigen::Matrix2d mean_cutting_stiffness(const Milling& milling, int tooth, double from_rad, double to_rad,
+                                       double axial_depth_m) {
+  const Harmonics h = harmonics(milling.coefficients);
+  const double standing = standing_angle(milling.tool, tooth);
+  const double from = from_rad + standing;
+  const double to = to_rad + standing;
+  const double lag = milling.tool.lag_rad_per_m() * axial_depth_m;
+  if (from - lag == from || to - lag == to) {
+    return integral(h, milling.immersion, from, to) * (axial_depth_m / (to - from));
+  }
+  const double first = revolution * std::floor(std::min(from, from - lag) / revolution);
+  const auto mean = [&](double angle) -> Eigen::Matrix2d {
+    const double low = std::min(angle, angle - lag);
+    const double high = std::max(angle, angle - lag);
+    return double_integral(h, milling.immersion, first, low, high) / (high - low);
+  };
+  return (mean(to) - mean(from)) * (axial_depth_m / (to - from));
+}
+
+CutLoad mean_load(const Milling& milling, double axial_depth_m, double feed_per_tooth_m,
+                  double spindle_speed_rad_per_s) {
+  milling.validate();
+  require_non_negative("axial_depth_m", axial_depth_m, "m");
+  require_non_negative("feed_per_tooth_m", feed_per_tooth_m, "m");
+  require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  const double area = radial_depth(milling.immersion, milling.tool.diameter_m) * feed_per_tooth_m;
+  const double volume_per_rad = milling.tool.teeth * area * axial_depth_m / revolution;
+  const double kt = milling.coefficients.tangential_n_per_m2;
+  const double thickest = std::clamp(0.5 * pi, milling.immersion.entry_rad, milling.immersion.exit_rad);
+  CutLoad load;
+  load.torque_n_m = kt * volume_per_rad;
+  load.power_w = load.torque_n_m * spindle_speed_rad_per_s;
+  load.removal_rate_m3_per_s = volume_per_rad * spindle_speed_rad_per_s;
+  load.peak_tooth_force_n =
+      std::hypot(kt, milling.coefficients.radial_n_per_m2) * axial_depth_m * feed_per_tooth_m * std::sin(thickest);
+  return load;
+}
+
+}  // namespace robomill::cutting

@@ -1,0 +1,125 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <complex>
+#include <string_view>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/cutting/milling.hpp"
+#include "robomill/modal/modes.hpp"
+
+namespace robomill::stability {
+
+/// A structure that vibrates and the cut that excites it.
+struct ROBOMILL_API LobesProblem {
+  cutting::Milling milling;
+  /// Modes at the tool tip in fixed axes x, y (other axes are ignored; x or y alone is a structure of one direction).
+  /// The stiffness residuals (real parts) act as a static compliance, the mass residuals are left out.
+  modal::ModalModel dynamics;
+  std::vector<int> keep_modes = {};  ///< numbers of the modes that take part, from 1; empty: all
+  double feed_direction_rad = 0.0;   ///< of the feed in the x-y plane, counter-clockwise from x [rad]
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+enum class Method { semi_discretization };
+enum class Output { boundary, map };
+enum class Period { tooth, revolution };
+/// How stability is lost: a pair of multipliers, -1, or +1.
+enum class Kind { hopf, flip, fold };
+
+/// "semi-discretization", "tooth", "hopf", …: as the files write them.
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Method method);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Period period);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Kind kind);
+
+/// One point of the stability chart.
+struct OperatingPoint {
+  double spindle_speed_rad_per_s = 0.0;  ///< Ω [rad/s], > 0
+  double axial_depth_m = 0.0;            ///< a [m], >= 0
+};
+
+struct ROBOMILL_API LobesOptions {
+  std::array<double, 2> spindle_speed_rad_per_s = {0.0, 0.0};  ///< lowest and highest [rad/s], 0 < low < high; required
+  std::array<double, 2> axial_depth_m = {0.0, 0.0};  ///< least and greatest [m], 0 <= least < greatest; required
+  std::array<int, 2> grid = {200, 200};              ///< speeds and depths, each at least 2
+  Method method = Method::semi_discretization;
+  int intervals = 40;                       ///< m, time steps in a mean tooth period, at least 4
+  double tolerance = 1e-6;                  ///< boundary and limit end where |spectral radius - 1| <= tolerance
+  Output output = Output::boundary;         ///< map: no boundary points
+  std::vector<OperatingPoint> points = {};  ///< evaluated beside the grid; may lie outside its range
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// What happens at one point of the chart.
+struct PointResult {
+  double spindle_speed_rad_per_s = 0.0;
+  double axial_depth_m = 0.0;
+  double spectral_radius = 0.0;           ///< greatest |multiplier| of the period
+  std::complex<double> multiplier = 0.0;  ///< the one with it, imaginary part >= 0
+  bool stable = false;                    ///< spectral radius < 1
+  double error_estimate = 0.0;            ///< of the spectral radius: from a second run at twice the intervals
+  double chatter_frequency_hz = 0.0;      ///< at which this multiplier's motion is greatest [Hz]
+  Kind kind = Kind::hopf;
+  int mode = 0;  ///< the mode that moves most in it, numbered as in dynamics from 1
+};
+
+/// A point where the spectral radius is 1.
+struct BoundaryPoint {
+  double spindle_speed_rad_per_s = 0.0;
+  double axial_depth_m = 0.0;
+  double chatter_frequency_hz = 0.0;
+  Kind kind = Kind::hopf;
+  int mode = 0;  ///< from 1
+};
+
+/// The lowest unstable depth at one speed.
+struct Limit {
+  /// found: the other members hold. stable_in_range: no depth of the grid is unstable; they are 0.
+  enum class Status { found, stable_in_range };
+  double spindle_speed_rad_per_s = 0.0;
+  Status status = Status::stable_in_range;
+  double axial_depth_m = 0.0;
+  double chatter_frequency_hz = 0.0;
+  Kind kind = Kind::hopf;
+  int mode = 0;
+};
+
+struct LobesResult {
+  Eigen::VectorXd spindle_speed_rad_per_s;  ///< length grid[0]
+  Eigen::VectorXd axial_depth_m;            ///< length grid[1]
+  Eigen::MatrixXd spectral_radius;          ///< grid[1] x grid[0]: a row a depth
+  std::vector<BoundaryPoint> boundary;      ///< by speed, then depth; empty for Output::map
+  std::vector<Limit> limit;                 ///< one a grid speed
+  std::vector<PointResult> points;          ///< one for each of LobesOptions::points
+  Method method = Method::semi_discretization;
+  Period period = Period::tooth;  ///< of the spectral radius
+  long long evaluations = 0;      ///< spectral radii found
+  double seconds = 0.0;
+};
+
+/// The stability chart of milling with regenerative chip thickness,
+///   q(t) = 2 Re Σ_k R_k z_k + S F,  dz_k/dt = λ_k z_k + L_k^T F,  F = Σ_j K_j(t) (q(t) - q(t - τ_j)),
+/// by zeroth-order semi-discretization. Method, accuracy and cost: robomill/stability/README.md. Sources:
+/// [Insperger2004], [Altintas1995].
+/// @throws InvalidInput if the problem or an option is out of range
+/// @throws Interrupted  when progress asks to stop
+[[nodiscard]] ROBOMILL_API LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& options,
+                                                     Progress& progress = Progress::none());
+
+/// One point of that chart. Of the options only method and intervals count.
+/// @throws InvalidInput if the problem, the point or an option is out of range
+[[nodiscard]] ROBOMILL_API PointResult evaluate_point(const LobesProblem& problem, const LobesOptions& options,
+                                                      const OperatingPoint& point);
+
+/// The lowest unstable depth at each of these speeds; depths are searched on the grid of options.axial_depth_m and
+/// refined to options.tolerance. Of the options the speeds do not count.
+/// @throws InvalidInput if the problem, a speed or an option is out of range
+[[nodiscard]] ROBOMILL_API std::vector<Limit> limit_depths(const LobesProblem& problem, const LobesOptions& options,
+                                                           const std::vector<double>& spindle_speeds_rad_per_s,
+                                                           Progress& progress = Progress::none());
+
+}  // namespace robomill::stability

@@ -1,0 +1,85 @@
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "robomill/base/error.hpp"
+#include "robomill/stability/lobes.hpp"
+
+namespace robomill::stability {
+namespace {
+
+void require_range(const char* field, const std::array<double, 2>& range, const char* unit, bool zero_allowed) {
+  for (const double end : range) {
+    if (!std::isfinite(end)) throw InvalidInput(field, end, unit, "must be a finite number");
+  }
+  if (!(zero_allowed ? range[0] >= 0.0 : range[0] > 0.0)) {
+    throw InvalidInput(field, range[0], unit, zero_allowed ? "must start at 0 or above" : "must start above 0");
+  }
+  if (!(range[1] > range[0])) {
+    throw InvalidInput(field, range[1], unit, "must end above its start", "Give the lower end first");
+  }
+}
+
+void require_depth(const char* field, double depth_m) {
+  if (depth_m > 0.5) {
+    throw InvalidInput(field, depth_m, "m", "is deeper than any milling cut", "Are the units mixed up?");
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(Method) {
+  return "semi-discretization";
+}
+
+std::string_view to_string(Period period) {
+  return period == Period::tooth ? "tooth" : "revolution";
+}
+
+std::string_view to_string(Kind kind) {
+  switch (kind) {
+    case Kind::flip:
+      return "flip";
+    case Kind::fold:
+      return "fold";
+    default:
+      return "hopf";
+  }
+}
+
+void LobesOptions::validate() const {
+  require_range("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", false);
+  require_range("axial_depth_m", axial_depth_m, "m", true);
+  require_depth("axial_depth_m", axial_depth_m[1]);
+  for (const int count : grid) {
+    if (count < 2) throw InvalidInput("grid", count, "", "must have at least 2 points in each direction");
+    if (count > 20000) throw InvalidInput("grid", count, "", "must have at most 20000 points in each direction");
+  }
+  if (intervals < 4) throw InvalidInput("intervals", intervals, "", "must be at least 4", "40 is usual");
+  if (intervals > 100000) throw InvalidInput("intervals", intervals, "", "must be at most 100000", "40 is usual");
+  if (!(tolerance >= 1e-10 && tolerance <= 0.1)) {
+    throw InvalidInput("tolerance", tolerance, "", "must lie between 1e-10 and 0.1");
+  }
+  for (const OperatingPoint& point : points) {
+    require_positive("points.spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
+    require_non_negative("points.axial_depth_m", point.axial_depth_m, "m");
+    require_depth("points.axial_depth_m", point.axial_depth_m);
+  }
+}
+
+void LobesProblem::validate() const {
+  milling.validate();
+  require_finite("feed_direction_rad", feed_direction_rad, "rad");
+  dynamics.validate();
+  if (dynamics.modes.empty()) throw InvalidInput("modes", "must hold at least one mode");
+  std::set<int> seen;
+  for (const int number : keep_modes) {
+    const std::string count = std::to_string(dynamics.modes.size());
+    if (number < 1 || number > static_cast<int>(dynamics.modes.size())) {
+      throw InvalidInput("keep_modes", number, "", "must be a mode's number, 1 to " + count);
+    }
+    if (!seen.insert(number).second) throw InvalidInput("keep_modes", number, "", "is named twice");
+  }
+}
+
+}  // namespace robomill::stability
