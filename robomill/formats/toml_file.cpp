@@ -222,15 +222,26 @@ bool TomlFile::text(std::string_view key, std::string& out) {
 bool TomlFile::texts(std::string_view key, std::vector<std::string>& out) {
   const toml::node* node = state_->ask(key);
   if (node == nullptr) return false;
-  const toml::array* array = node->as_array();
-  if (array == nullptr) throw refuse(key, "must be a list of texts in quotes");
   std::vector<std::string> values;
-  for (const toml::node& entry : *array) {
+  const auto take = [&](const toml::node& entry) {
     const auto* value = entry.as_string();
     if (value == nullptr) throw refuse(key, "must be a list of texts in quotes");
     values.push_back(value->get());
+  };
+  if (const toml::array* array = node->as_array()) {
+    for (const toml::node& entry : *array) take(entry);
+  } else {
+    take(*node);
   }
   out = std::move(values);
+  return true;
+}
+
+bool TomlFile::paths(std::string_view key, std::vector<std::filesystem::path>& out) {
+  std::vector<std::string> names;
+  if (!texts(key, names)) return false;
+  out.clear();
+  for (const std::string& name : names) out.push_back(state_->path.parent_path() / name);
   return true;
 }
 

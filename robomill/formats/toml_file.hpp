@@ -34,9 +34,11 @@ class TomlFile {
   bool integers(std::string_view key, std::string_view member, std::vector<int>& out);
   bool boolean(std::string_view key, bool& out);
   bool text(std::string_view key, std::string& out);
+  /// A list of texts; a single text is a list of one.
   bool texts(std::string_view key, std::vector<std::string>& out);
   /// A path, made relative to the folder of this file.
   bool path(std::string_view key, std::filesystem::path& out);
+  bool paths(std::string_view key, std::vector<std::filesystem::path>& out);
   /// One of the named values.
   template <class Enum>
   bool choice(std::string_view key, const std::vector<std::pair<std::string_view, Enum>>& values, Enum& out) {
