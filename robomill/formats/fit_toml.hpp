@@ -1,0 +1,13 @@
+#pragma once
+#include <filesystem>
+
+#include "robomill/base/export.hpp"
+#include "robomill/modal/fit.hpp"
+
+namespace robomill::formats {
+
+/// Reads how modes are to be fitted: the table [fit], whose keys are the members of FitOptions; band_hz = [low, high].
+/// @throws InvalidInput with file, line and key
+[[nodiscard]] ROBOMILL_API modal::FitOptions read_fit_options(const std::filesystem::path& path);
+
+}  // namespace robomill::formats

@@ -1,0 +1,59 @@
+#pragma once
+// For .cpp files inside the library: public headers stay free of nlohmann/json.
+#include <Eigen/Core>
+#include <complex>
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::formats {
+
+using Json = nlohmann::ordered_json;
+
+/// A number of 15 significant digits; null where it is not finite.
+[[nodiscard]] Json number(double value);
+/// [re, im]
+[[nodiscard]] Json complex_number(const std::complex<double>& value);
+/// A list of all digits of each.
+[[nodiscard]] Json numbers(const Eigen::Ref<const Eigen::VectorXd>& values);
+/// {"re": […], "im": […]}
+[[nodiscard]] Json complex_numbers(const Eigen::Ref<const Eigen::VectorXcd>& values);
+
+/// JSON text for people too: objects over lines, lists of plain values on one; null for what is not finite; a line's
+/// end last.
+[[nodiscard]] std::string dump(const Json& json);
+
+/// A place in a JSON file while it is read; errors name the file and the path, "tip.json: modes[2].damping_ratio",
+/// lists counted from 1.
+class JsonNode {
+ public:
+  JsonNode(const Json& json, std::string file, std::string path = {});
+
+  [[nodiscard]] const Json& json() const { return *json_; }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] bool has(const char* key) const;
+  /// @throws InvalidInput if there is no such member
+  [[nodiscard]] JsonNode at(const std::string& key) const;
+  /// @throws InvalidInput if this is no list
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] JsonNode at(std::size_t index) const;
+  /// @throws InvalidInput if this is no object
+  void require_object() const;
+  [[nodiscard]] double number() const;
+  [[nodiscard]] std::complex<double> complex_number() const;
+  [[nodiscard]] Eigen::VectorXd numbers() const;
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] InvalidInput refuse(std::string rule, std::string hint = {}) const;
+
+ private:
+  const Json* json_;
+  std::string file_, path_;
+};
+
+/// @throws InvalidInput with file and line if the file is missing, empty or no JSON
+[[nodiscard]] Json read_json(const std::filesystem::path& path);
+
+}  // namespace robomill::formats

@@ -1,0 +1,26 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "robomill/base/export.hpp"
+#include "robomill/modal/fit.hpp"
+#include "robomill/modal/modes.hpp"
+
+namespace robomill::formats {
+
+/// Reads modes.json, or the same as TOML ([[modes]] with frequency_hz, damping_ratio, left = { x = [re, im], … },
+/// right).
+///
+/// A mode needs no more than these four; residuals and standard deviations are read where they stand, all else is left
+/// alone. A direction that one mode names and another does not is 0 in the other.
+/// @throws InvalidInput with the file and "modes[2].damping_ratio" (counted from 1) or the line if a value is missing,
+/// no
+///         finite number or outside its range, or the ending is neither .json nor .toml
+[[nodiscard]] ROBOMILL_API modal::ModalModel read_modes(const std::filesystem::path& path);
+
+/// modes.json as text: modes, standard deviations, residuals. @throws InvalidInput if the model is not valid
+[[nodiscard]] ROBOMILL_API std::string modes_json(const modal::ModalModel& model);
+/// With how well they fit, the convergence, the band and the warnings.
+[[nodiscard]] ROBOMILL_API std::string modes_json(const modal::FitResult& fit);
+
+}  // namespace robomill::formats

@@ -1,0 +1,42 @@
+#pragma once
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+
+namespace robomill::formats {
+
+/// Columns over time, as recorded.
+struct Record {
+  std::filesystem::path file;
+  double sample_rate_hz = 0.0;           ///< [Hz]; 0 where the file does not say
+  std::vector<std::string> names;        ///< one a column; empty texts where the file names none
+  std::vector<Eigen::VectorXd> columns;  ///< in the order of the file, a column of time among them
+  std::vector<std::string> notes = {};   ///< what a reader must know: data sets skipped, units converted
+
+  /// The column of that name, or of that number from 1 where no column has the name.
+  /// @throws InvalidInput naming the columns that are there
+  [[nodiscard]] ROBOMILL_API const Eigen::VectorXd& column(const std::string& name_or_number) const;
+};
+
+struct RecordOptions {
+  /// Column of the time [s], by name or number from 1. Empty: a column named time_s, time or t, where there is one.
+  std::string time = {};
+  double scale = 1.0;  ///< what full scale means in WAV, in any unit; finite, not 0
+  void validate() const;
+};
+
+/// Reads a record by its ending: .csv .txt .dat .asc (columns parted by commas, semicolons, tabs or blanks, with or
+/// without header), .mat (v5, v7.3: one variable a column), .uff .unv .uf (time responses), .wav (one channel a
+/// column).
+/// @throws InvalidInput with file and line if it is missing or empty, a value is no finite number, a line has another
+/// number
+///         of values than those before it, or the time does not run evenly
+[[nodiscard]] ROBOMILL_API Record read_record(const std::filesystem::path& path, const RecordOptions& options = {});
+
+/// The rate of evenly rising times. @throws InvalidInput naming `where` if a step is more than half a step off
+[[nodiscard]] ROBOMILL_API double sample_rate_of(const Eigen::VectorXd& time_s, const std::string& where);
+
+}  // namespace robomill::formats
