@@ -23,7 +23,9 @@ std::atomic<int>& requested_threads() {
 
 }  // namespace
 
-void set_thread_count(int threads) { requested_threads() = std::max(threads, 0); }
+void set_thread_count(int threads) {
+  requested_threads() = std::max(threads, 0);
+}
 
 int thread_count() {
   const int requested = requested_threads();

@@ -6,11 +6,12 @@
 
 namespace robomill {
 
-/// Runs body(begin, end) over blocks that cover [0, n), at most `grain` items a block, on the threads of set_thread_count.
+/// Runs body(begin, end) over blocks that cover [0, n), at most `grain` items a block, on the threads of
+/// set_thread_count.
 ///
-/// The blocks are the same at any thread count; body writes results into slots of their own and sums are taken afterwards in
-/// fixed order, so results never depend on the number of threads. The first exception that a block throws is thrown again here
-/// and no further blocks start.
+/// The blocks are the same at any thread count; body writes results into slots of their own and sums are taken
+/// afterwards in fixed order, so results never depend on the number of threads. The first exception that a block throws
+/// is thrown again here and no further blocks start.
 ROBOMILL_API void parallel_for(std::size_t n, std::size_t grain,
                                const std::function<void(std::size_t begin, std::size_t end)>& body);
 

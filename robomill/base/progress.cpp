@@ -5,7 +5,9 @@
 
 namespace robomill {
 
-const char* Interrupted::what() const noexcept { return "interrupted"; }
+const char* Interrupted::what() const noexcept {
+  return "interrupted";
+}
 
 Progress::Progress(Report report, const std::atomic<bool>* stop) : report_(std::move(report)), stop_(stop) {}
 

@@ -11,7 +11,12 @@ namespace {
 
 TEST(Progress, ReportsFromStartToEnd) {
   std::vector<double> fractions;
-  Progress progress([&](const std::string& task, double f) { EXPECT_EQ(task, "lobes"); fractions.push_back(f); }, nullptr);
+  Progress progress(
+      [&](const std::string& task, double f) {
+        EXPECT_EQ(task, "lobes");
+        fractions.push_back(f);
+      },
+      nullptr);
   progress.start("lobes", 4);
   for (int i = 0; i < 4; ++i) progress.advance();
   EXPECT_EQ(fractions, (std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0}));

@@ -20,6 +20,7 @@ void read_sources(TomlFile& file, Job& job) {
     job.band_low_hz = band[0];
     job.band_high_hz = band[1];
   }
+  file.boolean("job.equal_directions", job.equal_directions);
   file.integer("job.fit_modes", "fit_modes", job.fit_modes);
   const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1);
   if (sources != 1) {
@@ -64,6 +65,7 @@ void read_cuts(TomlFile& file, Job& job) {
     file.numbers(row + "peaks_hz", member + "peaks_hz", 1.0, cut.peaks_hz);
     file.path(row + "file", cut.file);
     file.text(row + "column", cut.column);
+    file.number(row + "scale", member + "scale", 1.0, cut.scale);
     file.number(row + "sample_rate_hz", member + "sample_rate_hz", 1.0, cut.sample_rate_hz);
     job.cuts.push_back(cut);
   }

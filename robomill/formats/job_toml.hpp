@@ -14,6 +14,7 @@ struct TestCut {
   std::vector<double> peaks_hz = {};  ///< peaks of its spectrum, where known
   std::filesystem::path file = {};    ///< its recording, where there is one
   std::string column = "1";           ///< the recording's column, name or number from 1
+  double scale = 1.0;                 ///< of a WAV: what full scale means, in m/s²
   double sample_rate_hz = 0.0;        ///< of a recording without a time column; 0: from the file
 };
 
@@ -31,6 +32,7 @@ struct Job {
   std::vector<std::filesystem::path> frf = {};
   std::vector<std::string> frf_as = {};
   double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data
+  bool equal_directions = false;                 ///< one direction was measured, the other is taken equal to it
   int fit_modes = 0;                             ///< 0: chosen by the fit
   double max_axial_depth_m = 0.0;                ///< the cutter's flute length; 0: the lobes' range alone
   double max_spindle_speed_rad_per_s = 0.0;      ///< 0: the lobes' range alone

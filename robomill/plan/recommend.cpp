@@ -22,7 +22,8 @@ SpindleCapacity capacity_at(const std::vector<SpindleCapacity>& curve, double sp
     return above->spindle_speed_rad_per_s == speed ? *above : SpindleCapacity{.spindle_speed_rad_per_s = speed};
   }
   const SpindleCapacity& low = *(above - 1);
-  const double t = (speed - low.spindle_speed_rad_per_s) / (above->spindle_speed_rad_per_s - low.spindle_speed_rad_per_s);
+  const double t =
+      (speed - low.spindle_speed_rad_per_s) / (above->spindle_speed_rad_per_s - low.spindle_speed_rad_per_s);
   return {.spindle_speed_rad_per_s = speed,
           .torque_n_m = std::lerp(low.torque_n_m, above->torque_n_m, t),
           .power_w = std::lerp(low.power_w, above->power_w, t)};
@@ -55,8 +56,8 @@ Operation operation_at(double speed, const DepthLimit& lowest, const RecommendOp
   op.margin = op.limit_depth_m > 0.0 ? 1.0 - op.axial_depth_m / op.limit_depth_m : 0.0;
   op.torque_n_m = options.torque_per_depth_n * op.axial_depth_m;
   op.power_w = op.torque_n_m * speed;
-  op.removal_rate_m3_per_s = op.axial_depth_m * options.radial_depth_m * options.feed_per_tooth_m * options.teeth * speed /
-                             (2.0 * std::numbers::pi);
+  op.removal_rate_m3_per_s = op.axial_depth_m * options.radial_depth_m * options.feed_per_tooth_m * options.teeth *
+                             speed / (2.0 * std::numbers::pi);
   return op;
 }
 
@@ -83,7 +84,8 @@ std::vector<Operation> candidates(const std::vector<DepthLimit>& limits, const R
 
 bool distinct(const Operation& op, const std::vector<Operation>& chosen, double fraction) {
   return std::all_of(chosen.begin(), chosen.end(), [&](const Operation& other) {
-    return std::abs(op.spindle_speed_rad_per_s - other.spindle_speed_rad_per_s) >= fraction * other.spindle_speed_rad_per_s;
+    return std::abs(op.spindle_speed_rad_per_s - other.spindle_speed_rad_per_s) >=
+           fraction * other.spindle_speed_rad_per_s;
   });
 }
 
@@ -140,7 +142,8 @@ void RecommendOptions::validate() const {
   require_positive("searched_depth_m", searched_depth_m, "m");
   require_non_negative("max_axial_depth_m", max_axial_depth_m, "m");
   require_non_negative("torque_per_depth_n", torque_per_depth_n, "N");
-  if (!(depth_margin >= 0.0 && depth_margin < 1.0)) throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)");
+  if (!(depth_margin >= 0.0 && depth_margin < 1.0))
+    throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)");
   if (!(speed_window >= 0.0 && speed_window < 0.5)) {
     throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)");
   }

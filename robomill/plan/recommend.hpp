@@ -25,19 +25,20 @@ struct SpindleCapacity {
 
 /// What recommend needs to know of the cut and how careful it is.
 struct RecommendOptions {
-  int teeth = 0;                          ///< >= 1; required
-  double radial_depth_m = 0.0;            ///< > 0; required
-  double feed_per_tooth_m = 0.0;          ///< > 0; required
-  double searched_depth_m = 0.0;          ///< largest depth that the limits were looked for at, > 0; required
-  double max_axial_depth_m = 0.0;         ///< the cutter's; 0: searched_depth_m
-  double torque_per_depth_n = 0.0;        ///< mean cutting torque per axial depth [N m/m], >= 0
+  int teeth = 0;                    ///< >= 1; required
+  double radial_depth_m = 0.0;      ///< > 0; required
+  double feed_per_tooth_m = 0.0;    ///< > 0; required
+  double searched_depth_m = 0.0;    ///< largest depth that the limits were looked for at, > 0; required
+  double max_axial_depth_m = 0.0;   ///< the cutter's; 0: searched_depth_m
+  double torque_per_depth_n = 0.0;  ///< mean cutting torque per axial depth [N m/m], >= 0
   double min_spindle_speed_rad_per_s = 0.0;
   double max_spindle_speed_rad_per_s = 0.0;  ///< 0: as far as the limits go
-  std::vector<SpindleCapacity> spindle = {};  ///< by increasing speed; empty: no limit. Outside it the spindle gives nothing.
-  double depth_margin = 0.2;              ///< stay this fraction below the limit, in [0, 1)
-  double speed_window = 0.02;             ///< over ± this fraction of speed, in [0, 0.5)
-  int alternatives = 3;                   ///< >= 0
-  double distinct_speed = 0.05;           ///< alternatives differ by at least this fraction of speed
+  std::vector<SpindleCapacity> spindle =
+      {};                        ///< by increasing speed; empty: no limit. Outside it the spindle gives nothing.
+  double depth_margin = 0.2;     ///< stay this fraction below the limit, in [0, 1)
+  double speed_window = 0.02;    ///< over ± this fraction of speed, in [0, 0.5)
+  int alternatives = 3;          ///< >= 0
+  double distinct_speed = 0.05;  ///< alternatives differ by at least this fraction of speed
 
   void validate() const;  ///< throws InvalidInput naming the field
 };
@@ -54,21 +55,21 @@ struct Operation {
   double margin = 0.0;                 ///< 1 - depth / limit
   double torque_n_m = 0.0, power_w = 0.0;
   LimitedBy limited_by = LimitedBy::chatter;
-  double chatter_frequency_hz = 0.0;   ///< what chatters at the window's lowest limit; 0: nothing
+  double chatter_frequency_hz = 0.0;  ///< what chatters at the window's lowest limit; 0: nothing
   int mode = 0;
 };
 
 struct Recommendation {
   enum class Status { found, no_safe_depth };
   Status status = Status::no_safe_depth;
-  std::string reason = {};                  ///< why there is no safe depth
+  std::string reason = {};  ///< why there is no safe depth
   std::optional<Operation> recommended = {};
   std::vector<Operation> alternatives = {};  ///< by falling removal rate
 };
 
-/// The speed and depth with the highest removal rate such that the depth is at most (1 - depth_margin) times the limit at every
-/// speed of the window, within the spindle's range, torque and power and the cutter's depth; and the next best, each at another
-/// lobe where there is one.
+/// The speed and depth with the highest removal rate such that the depth is at most (1 - depth_margin) times the limit
+/// at every speed of the window, within the spindle's range, torque and power and the cutter's depth; and the next
+/// best, each at another lobe where there is one.
 ///
 /// @param limits  by increasing speed, at least two
 /// @param limit_at  the limit at any speed: looks between the given ones before an operation is offered

@@ -49,7 +49,8 @@ TEST(Recommend, KeepsTheMarginOverTheSpeedWindow) {
       const DepthLimit limit = lobe(op.spindle_speed_rad_per_s * (1.0 + 0.005 * i));
       EXPECT_LE(op.axial_depth_m, 0.8 * limit.axial_depth_m.value_or(4e-3) * (1 + 1e-12));
     }
-    EXPECT_NEAR(op.removal_rate_m3_per_s, op.axial_depth_m * 1.8e-3 * 1e-5 * 3 * op.spindle_speed_rad_per_s / (2 * pi), 1e-18);
+    EXPECT_NEAR(op.removal_rate_m3_per_s, op.axial_depth_m * 1.8e-3 * 1e-5 * 3 * op.spindle_speed_rad_per_s / (2 * pi),
+                1e-18);
   }
 }
 
@@ -111,7 +112,8 @@ TEST(Recommend, ObeysCutterAndSpindle) {
 // A dip between two grid speeds, narrower than their distance, is found by looking closer.
 TEST(Recommend, LooksBetweenTheGivenSpeeds) {
   std::vector<DepthLimit> limits;
-  for (int i = 0; i <= 10; ++i) limits.push_back({.spindle_speed_rad_per_s = 1000.0 + 100.0 * i, .axial_depth_m = 2e-3});
+  for (int i = 0; i <= 10; ++i)
+    limits.push_back({.spindle_speed_rad_per_s = 1000.0 + 100.0 * i, .axial_depth_m = 2e-3});
   const auto with_dip = [](double speed) {
     const bool dip = std::abs(speed / 100.0 - std::round(speed / 100.0)) > 1e-6;
     return DepthLimit{.spindle_speed_rad_per_s = speed, .axial_depth_m = dip ? 1e-3 : 2e-3, .mode = 2};

@@ -1,0 +1,140 @@
+// Runs the program as a user does: a shell, files, exit codes.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace robomill::app {
+namespace {
+
+struct Run {
+  int exit = -1;
+  std::string out, err;
+};
+
+std::string slurp(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+class App : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("app_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  Run shell(const std::string& command) {
+    const std::string full = "cd '" + folder_.string() + "' && { " + command + " ; } >out.txt 2>err.txt";
+    const int status = std::system(full.c_str());  // NOLINT(cert-env33-c): a user's shell is what is tested
+    return {.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+            .out = slurp(folder_ / "out.txt"),
+            .err = slurp(folder_ / "err.txt")};
+  }
+  Run robomill(const std::string& arguments) { return shell("'" ROBOMILL_PROGRAM "' " + arguments); }
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  void write_lobes(const std::string& coefficients = "tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n",
+                   const std::string& grid = "[20, 10]") {
+    write("lobes.toml",
+          "[tool]\nteeth = 3\ndiameter_mm = 12\n[cut]\ndirection = \"up\"\nradial_depth_mm = 1.8\n"
+          "feed_per_tooth_mm = 0.01\n[coefficients]\n" +
+              coefficients +
+              "[dynamics]\nmodes = \"" ROBOMILL_SOURCE_DIR
+              "/data/robot-modes.toml\"\n[lobes]\nspindle_speed_rpm = [6000, 9000]\naxial_depth_mm = [0, 3]\ngrid = " +
+              grid + "\n");
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(App, TellsVersionAndHelp) {
+  EXPECT_EQ(robomill("--version").out.rfind("robomill ", 0), 0U);
+  EXPECT_EQ(robomill("--help").exit, 0);
+  EXPECT_NE(robomill("lobes --help").out.find("--at"), std::string::npos);
+}
+
+TEST_F(App, WrongUsageExitsWithTwo) {
+  EXPECT_EQ(robomill("").exit, 2);
+  EXPECT_EQ(robomill("dance").exit, 2);
+  EXPECT_EQ(robomill("lobes").exit, 2);
+  EXPECT_EQ(robomill("lobes lobes.toml --sideways").exit, 2);
+  EXPECT_EQ(robomill("modes tip.uff --method magic").exit, 2);
+}
+
+TEST_F(App, BadInputExitsWithOneAndOneMessage) {
+  write_lobes("tangential_n_per_mm2 = 0\nradial_n_per_mm2 = 287\n");
+  const Run run = robomill("lobes lobes.toml -o lobes.json");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_NE(run.err.find("lobes.toml:9: coefficients.tangential_n_per_mm2 = 0 N/mm^2"), std::string::npos) << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1);
+  EXPECT_TRUE(run.out.empty());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "lobes.json"));
+  EXPECT_EQ(robomill("lobes missing.toml").exit, 1);
+  EXPECT_EQ(robomill("modes missing.uff").exit, 1);
+  EXPECT_EQ(robomill("frf missing.toml").exit, 1);
+  EXPECT_EQ(robomill("plan missing.toml -o out").exit, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(App, DashWritesJsonAndNothingElse) {
+  write_lobes();
+  const Run run = robomill("lobes lobes.toml --at 6500,0.6 --at 8000,1.2 -o -");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  ASSERT_EQ(json["points"].size(), 2U);
+  // Converged values of these points are 1.10584684 and 1.07595981; 40 intervals come within a percent or two.
+  EXPECT_NEAR(json["points"][0]["spectral_radius"].get<double>(), 1.10584684, 0.02);
+  EXPECT_NEAR(json["points"][1]["spectral_radius"].get<double>(), 1.07595981, 0.02);
+  EXPECT_FALSE(json["points"][0]["stable"].get<bool>());
+  EXPECT_NE(robomill("lobes lobes.toml --at 6500 -o -").err.find("RPM,MM"), std::string::npos);
+}
+
+TEST_F(App, ResultsDoNotDependOnTheNumberOfThreads) {
+  write_lobes();
+  const auto lobes = [this](const char* threads) {
+    auto json = nlohmann::json::parse(robomill(std::string("lobes lobes.toml -o - --threads ") + threads).out);
+    json.erase("seconds");
+    return json;
+  };
+  EXPECT_EQ(lobes("1"), lobes("4"));
+}
+
+// From hits to FRFs to modes, each verb by its own files.
+TEST_F(App, GoesFromHitsToModes) {
+  ASSERT_EQ(shell("'" ROBOMILL_SIMULATE_HITS "' hits").exit, 0);
+  const Run frf = robomill("frf hits/hits.toml -o tip.uff");
+  ASSERT_EQ(frf.exit, 0) << frf.err;
+  EXPECT_NE(frf.out.find("accepted"), std::string::npos);
+  for (const char* name : {"tip.csv", "tip.json", "tip.mat"}) {
+    EXPECT_EQ(robomill(std::string("frf hits/hits.toml --quiet -o ") + name).exit, 0) << name;
+  }
+  const Run modes = robomill("modes tip.uff --band 10,700 -o modes.json");
+  ASSERT_EQ(modes.exit, 0) << modes.err;
+  const auto json = nlohmann::json::parse(slurp(folder_ / "modes.json"));
+  EXPECT_GE(json["modes"].size(), 6U);
+  EXPECT_LT(json["fit"]["relative_error"].get<double>(), 0.1);
+}
+
+TEST_F(App, CtrlCStopsAndLeavesNoFile) {
+  write_lobes("tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n", "[4000, 4000]");
+  const Run run =
+      shell("timeout --signal=INT 1 '" ROBOMILL_PROGRAM "' lobes lobes.toml -o lobes.json; echo $? >code.txt");
+  EXPECT_NE(run.err.find("interrupted"), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "lobes.json"));
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_TRUE(name == "lobes.toml" || name == "out.txt" || name == "err.txt" || name == "code.txt") << name;
+  }
+}
+
+}  // namespace
+}  // namespace robomill::app

@@ -1,0 +1,45 @@
+#include <fmt/format.h>
+
+#include "robomill/formats/frf_files.hpp"
+#include "robomill/formats/hits_toml.hpp"
+#include "robomill/modal/hits.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+void print_summary(const modal::FrfResult& result, const std::vector<std::string>& read_notes) {
+  for (const modal::HitVerdict& hit : result.hits) {
+    std::string reasons;
+    for (const std::string& reason : hit.reasons) reasons += (reasons.empty() ? "" : "; ") + reason;
+    fmt::print("{:<10} {} {}\n", hit.accepted ? "accepted" : "rejected", hit.file, reasons);
+  }
+  fmt::print("\nFRF    grade   coherence  excited band\n");
+  for (const modal::FrfGrade& grade : result.grades) {
+    const std::string coherence = grade.mean_coherence >= 0.0 ? fmt::format("{:.3f}", grade.mean_coherence) : "-";
+    fmt::print("{:<6} {:<7} {:>9}  {:.0f} to {:.0f} Hz\n", to_string(grade.name), to_string(grade.grade), coherence,
+               grade.excited_low_hz, grade.excited_high_hz);
+    for (std::size_t i = 0; i < grade.faults.size(); ++i) {
+      fmt::print("       {}: {}\n", grade.faults[i], i < grade.remedies.size() ? grade.remedies[i] : "");
+    }
+  }
+  fmt::print("\nTrustworthy from {:.4g} Hz.\n", result.lowest_trustworthy_frequency_hz);
+  for (const std::string& note : read_notes) fmt::print("{}\n", note);
+  for (const std::string& note : result.notes) fmt::print("{}\n", note);
+}
+
+}  // namespace
+
+Exit run(const FrfCommand& command, const Common& common, Progress& progress) {
+  const formats::HitsFile hits = formats::read_hits(command.hits);
+  const modal::FrfResult result = modal::estimate_frfs(hits.hits, hits.options, progress);
+  if (common.to_stdout()) {
+    fmt::print("{}", formats::frf_json(result));
+  } else if (!common.output.empty()) {
+    formats::write_frfs(common.output, result);
+  }
+  if (common.wants_summary()) print_summary(result, hits.notes);
+  return done;
+}
+
+}  // namespace robomill::app

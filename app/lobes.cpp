@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/lobes_json.hpp"
+#include "robomill/formats/lobes_toml.hpp"
+#include "robomill/formats/modes_files.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/stability/lobes.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+stability::OperatingPoint parse_point(const std::string& text) {
+  const auto refuse = [&text] {
+    return InvalidInput(InvalidInput::Parts{
+        .field = "--at", .value = "\"" + text + "\"", .rule = "must read RPM,MM", .hint = "For example --at 6500,0.8"});
+  };
+  double rpm = 0.0;
+  double mm = 0.0;
+  const char* const end = text.data() + text.size();
+  const std::from_chars_result first = std::from_chars(text.data(), end, rpm);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ',') throw refuse();
+  const std::from_chars_result second = std::from_chars(first.ptr + 1, end, mm);
+  if (second.ec != std::errc() || second.ptr != end || !(rpm > 0.0) || !(mm >= 0.0)) throw refuse();
+  return {.spindle_speed_rad_per_s = rpm * units::rpm, .axial_depth_m = mm * units::mm};
+}
+
+void print_summary(const stability::LobesResult& result) {
+  for (const stability::PointResult& point : result.points) {
+    fmt::print("{:.6g} rpm, {:.4g} mm: |μ| = {:.6g} ± {:.1g}, {}", point.spindle_speed_rad_per_s / units::rpm,
+               point.axial_depth_m / units::mm, point.spectral_radius, point.error_estimate,
+               point.stable ? "stable" : "chatter");
+    if (!point.stable) {
+      fmt::print(" at {:.1f} Hz (mode {}, {})", point.chatter_frequency_hz, point.mode, to_string(point.kind));
+    }
+    fmt::print("\n");
+  }
+  const stability::Limit* lowest = nullptr;
+  for (const stability::Limit& limit : result.limit) {
+    if (limit.status != stability::Limit::Status::found) continue;
+    if (lowest == nullptr || limit.axial_depth_m < lowest->axial_depth_m) lowest = &limit;
+  }
+  if (lowest == nullptr) {
+    fmt::print("No chatter in the whole range.\n");
+  } else {
+    fmt::print("Stable at every speed up to {:.4g} mm; above that chatter at {:.6g} rpm and {:.1f} Hz (mode {}).\n",
+               lowest->axial_depth_m / units::mm, lowest->spindle_speed_rad_per_s / units::rpm,
+               lowest->chatter_frequency_hz, lowest->mode);
+  }
+  fmt::print("{} points of the chart in {:.2f} s, {}.\n", result.evaluations, result.seconds, to_string(result.method));
+}
+
+}  // namespace
+
+Exit run(const LobesCommand& command, const Common& common, Progress& progress) {
+  if (!common.output.empty() && !common.to_stdout() && formats::format_of(common.output) != formats::Format::json) {
+    throw InvalidInput(common.output, "lobes are written as .json");
+  }
+  formats::LobesFile file = formats::read_lobes(command.input);
+  if (!file.modes.empty()) file.problem.dynamics = formats::read_modes(file.modes);
+  if (!file.frf.empty()) {
+    throw InvalidInput(command.input.string(), "dynamics.frf needs a fit first",
+                       "Run robomill modes on it and name the result as dynamics.modes");
+  }
+  file.validate();
+  for (const std::string& text : command.at) file.options.points.push_back(parse_point(text));
+  const stability::LobesResult result = stability::compute_lobes(file.problem, file.options, progress);
+  const bool with_map = file.options.output == stability::Output::map;
+  if (common.to_stdout()) {
+    fmt::print("{}", formats::lobes_json(result, with_map));
+  } else if (!common.output.empty()) {
+    formats::write_file(common.output, formats::lobes_json(result, with_map));
+  }
+  if (common.wants_summary()) print_summary(result);
+  return done;
+}
+
+}  // namespace robomill::app

@@ -1,0 +1,97 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <new>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "terminal.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+/// Every verb's parser and what it runs once parsed.
+struct CommandLine {
+  CLI::App parser{"robomill keeps a milling robot out of chatter: hammer hits to safe cutting conditions.", "robomill"};
+  Common common;
+  FrfCommand frf;
+  ModesCommand modes;
+  LobesCommand lobes;
+  PlanCommand plan;
+  std::function<Exit(Progress&)> chosen;
+
+  CommandLine();
+  CLI::App* verb(const char* name, const char* description, std::function<Exit(Progress&)> run);
+};
+
+CLI::App* CommandLine::verb(const char* name, const char* description, std::function<Exit(Progress&)> run) {
+  CLI::App* sub = parser.add_subcommand(name, description);
+  sub->add_option("-o,--output", common.output,
+                  "write here, the format by its ending; - writes JSON to standard output");
+  sub->add_flag("--quiet", common.quiet, "no summary and no progress");
+  sub->add_option("--threads", common.threads, "threads to use (default: one a core)")->check(CLI::PositiveNumber);
+  sub->add_option("--seed", common.seed, "seed of every random number (default: 1)");
+  sub->callback([this, run = std::move(run)] { chosen = run; });
+  return sub;
+}
+
+CommandLine::CommandLine() {
+  parser.set_version_flag("--version", "robomill " ROBOMILL_VERSION);
+  parser.require_subcommand(1);
+
+  CLI::App* sub =
+      verb("frf", "hammer hits to frequency response functions", [this](Progress& p) { return run(frf, common, p); });
+  sub->add_option("hits", frf.hits, "hits.toml")->required();
+
+  sub = verb("modes", "frequency response functions to modes", [this](Progress& p) { return run(modes, common, p); });
+  sub->add_option("frfs", modes.inputs, "FRF files: .uff .csv .txt .mat .json")->required();
+  sub->add_option("--as", modes.as, "names of headerless FRFs, one a file: xx,yy")->delimiter(',');
+  sub->add_option("--band", modes.band_hz, "low,high in Hz")->delimiter(',')->expected(2);
+  sub->add_option("--modes", modes.modes, "exactly this many modes")->check(CLI::PositiveNumber);
+  sub->add_option("--method", modes.method, "hybrid, pso or lscf")->check(CLI::IsMember({"hybrid", "pso", "lscf"}));
+  sub->add_option("--config", modes.config, "modes.toml: every option of the fit");
+
+  sub = verb("lobes", "modes and a cut to stability lobes", [this](Progress& p) { return run(lobes, common, p); });
+  sub->add_option("lobes", lobes.input, "lobes.toml")->required();
+  sub->add_option("--at", lobes.at, "RPM,MM: spectral radius at this point; may be repeated");
+
+  sub = verb("plan", "the whole job: hits to safe cutting conditions",
+             [this](Progress& p) { return run(plan, common, p); });
+  sub->add_option("job", plan.job, "job.toml")->required();
+}
+
+int report_error(const char* text, Exit exit) {
+  std::fprintf(stderr, "robomill: %s\n", text);
+  return exit;
+}
+
+int main(int argc, char** argv) {
+  CommandLine line;
+  try {
+    line.parser.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return line.parser.exit(error) == 0 ? done : wrong_usage;
+  }
+  try {
+    set_thread_count(line.common.threads);
+    ProgressBar bar(line.common.quiet);
+    return line.chosen(bar.progress());
+  } catch (const InvalidInput& error) {
+    return report_error(error.what(), bad_input);
+  } catch (const Interrupted&) {
+    return report_error("interrupted", interrupted);
+  } catch (const std::bad_alloc&) {
+    return report_error("not enough memory for this input", bad_input);
+  } catch (const std::exception& error) {
+    return report_error(error.what(), bad_input);
+  }
+}
+
+}  // namespace
+}  // namespace robomill::app
+
+int main(int argc, char** argv) {
+  return robomill::app::main(argc, argv);
+}

@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/fit_toml.hpp"
+#include "robomill/formats/frf_files.hpp"
+#include "robomill/formats/modes_files.hpp"
+#include "robomill/modal/fit.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+modal::FitOptions options_of(const ModesCommand& command, const Common& common) {
+  modal::FitOptions options;
+  if (!command.config.empty()) options = formats::read_fit_options(command.config);
+  options.seed = common.seed;
+  if (command.method) {
+    options.method = *command.method == "pso"    ? modal::FitMethod::pso
+                     : *command.method == "lscf" ? modal::FitMethod::lscf
+                                                 : modal::FitMethod::hybrid;
+  }
+  if (!command.band_hz.empty()) {
+    options.band_low_hz = command.band_hz[0];
+    options.band_high_hz = command.band_hz[1];
+  }
+  if (command.modes > 0) options.modes = command.modes;
+  return options;
+}
+
+void print_summary(const modal::FitResult& fit) {
+  fmt::print("mode  frequency Hz     damping %\n");
+  for (std::size_t k = 0; k < fit.model.modes.size(); ++k) {
+    const modal::Mode& mode = fit.model.modes[k];
+    const auto spread = [](double std) { return std::isfinite(std) ? fmt::format(" ± {:.2g}", std) : std::string(); };
+    fmt::print("{:>4}  {:.6g}{}  {:.4g}{}\n", k + 1, mode.frequency_hz, spread(mode.frequency_std_hz),
+               100.0 * mode.damping_ratio, spread(100.0 * mode.damping_ratio_std));
+  }
+  fmt::print("\n{:.4g} to {:.4g} Hz: relative error {:.4g}, mean relative error {:.4g}\n", fit.band_low_hz,
+             fit.band_high_hz, fit.relative_error, fit.mean_relative_error);
+  for (const std::string& warning : fit.warnings) fmt::print("Warning: {}\n", warning);
+}
+
+}  // namespace
+
+Exit run(const ModesCommand& command, const Common& common, Progress& progress) {
+  if (!common.output.empty() && !common.to_stdout() && formats::format_of(common.output) != formats::Format::json) {
+    throw InvalidInput(common.output, "modes are written as .json");
+  }
+  const formats::FrfFile file = formats::read_frfs(command.inputs, command.as);
+  modal::FitOptions options = options_of(command, common);
+  if (file.added_decay_per_s > 0.0) options.exponential_decay_per_s = file.added_decay_per_s;
+  const modal::FitResult fit = modal::fit_modes(file.set, options, progress);
+  if (common.to_stdout()) {
+    fmt::print("{}", formats::modes_json(fit));
+  } else if (!common.output.empty()) {
+    formats::write_file(common.output, formats::modes_json(fit));
+  }
+  if (common.wants_summary()) {
+    for (const std::string& note : file.notes) fmt::print("Note: {}\n", note);
+    print_summary(fit);
+  }
+  if (fit.status == modal::FitResult::Status::converged) return done;
+  fmt::print(stderr, "robomill: the fit did not converge\n");
+  return not_reached;
+}
+
+}  // namespace robomill::app

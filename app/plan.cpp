@@ -1,0 +1,50 @@
+#include "robomill/plan/plan.hpp"
+
+#include <fmt/format.h>
+
+#include "robomill/formats/units.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+void print_operation(const char* label, const plan::Operation& op) {
+  fmt::print("{:<12} {:>7.0f} rpm  {:.3f} mm  {:.3g} mm/tooth  {:.4g} mm³/s  limited by {}\n", label,
+             op.spindle_speed_rad_per_s / units::rpm, op.axial_depth_m / units::mm, op.feed_per_tooth_m / units::mm,
+             op.removal_rate_m3_per_s / units::mm3, plan::limited_by_text(op));
+}
+
+void print_summary(const plan::PlanResult& result) {
+  if (result.hits) {
+    for (const modal::HitVerdict& hit : result.hits->hits) {
+      if (!hit.accepted) fmt::print("rejected     {}: {}\n", hit.file, hit.reasons.empty() ? "" : hit.reasons.front());
+    }
+  }
+  if (result.recommendation.recommended) {
+    print_operation("recommended", *result.recommendation.recommended);
+    for (const plan::Operation& op : result.recommendation.alternatives) print_operation("alternative", op);
+  } else {
+    fmt::print("no safe depth: {}\n", result.recommendation.reason);
+  }
+  const report::Agreement count = report::agreement(result.cuts);
+  if (!result.cuts.empty()) {
+    fmt::print("test cuts    {} agree, {} disagree, {} without a result\n", count.agree, count.disagree,
+               count.not_compared);
+  }
+  for (const std::string& warning : result.warnings) fmt::print("warning      {}\n", warning);
+}
+
+}  // namespace
+
+Exit run(const PlanCommand& command, const Common& common, Progress& progress) {
+  const plan::PlanResult result = plan::run_job(command.job, common.seed, progress);
+  if (common.to_stdout()) {
+    fmt::print("{}", plan::plan_json(result));
+  } else if (!common.output.empty()) {
+    plan::write_plan(common.output, result);
+  }
+  if (common.wants_summary()) print_summary(result);
+  return result.recommendation.status == plan::Recommendation::Status::found ? done : not_reached;
+}
+
+}  // namespace robomill::app

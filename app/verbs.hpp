@@ -1,0 +1,51 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robomill/base/progress.hpp"
+
+namespace robomill::app {
+
+/// Exit codes of a verb that ended by itself; bad input, wrong usage and Ctrl-C are main's.
+enum Exit : int { done = 0, bad_input = 1, wrong_usage = 2, not_reached = 3, interrupted = 130 };
+
+/// What every verb takes.
+struct Common {
+  std::string output;  ///< path, "-" for JSON on standard output, empty for a summary alone
+  bool quiet = false;
+  int threads = 0;
+  std::uint64_t seed = 1;
+
+  [[nodiscard]] bool to_stdout() const { return output == "-"; }
+  [[nodiscard]] bool wants_summary() const { return !quiet && !to_stdout(); }
+};
+
+struct FrfCommand {
+  std::filesystem::path hits;
+};
+struct ModesCommand {
+  std::vector<std::filesystem::path> inputs;
+  std::vector<std::string> as;
+  std::vector<double> band_hz;  ///< empty, or low and high
+  int modes = 0;                ///< 0: chosen by the fit
+  std::optional<std::string> method;
+  std::filesystem::path config;
+};
+struct LobesCommand {
+  std::filesystem::path input;
+  std::vector<std::string> at;  ///< "RPM,MM"
+};
+struct PlanCommand {
+  std::filesystem::path job;
+};
+
+Exit run(const FrfCommand& command, const Common& common, Progress& progress);
+Exit run(const ModesCommand& command, const Common& common, Progress& progress);
+Exit run(const LobesCommand& command, const Common& common, Progress& progress);
+Exit run(const PlanCommand& command, const Common& common, Progress& progress);
+
+}  // namespace robomill::app

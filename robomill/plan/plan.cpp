@@ -1,0 +1,254 @@
+#include "robomill/plan/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+#include "robomill/cutting/milling.hpp"
+#include "robomill/formats/frf_files.hpp"
+#include "robomill/formats/hits_toml.hpp"
+#include "robomill/formats/modes_files.hpp"
+#include "robomill/plan/test_cuts.hpp"
+
+namespace robomill::plan {
+namespace {
+
+constexpr int feed_directions = 36;
+constexpr int speeds_a_direction = 60;
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+void measure(PlanResult& result, Progress& progress) {
+  if (!result.job.hits.empty()) {
+    const formats::HitsFile hits = formats::read_hits(result.job.hits);
+    append(result.notes, hits.notes);
+    result.hits = modal::estimate_frfs(hits.hits, hits.options, progress);
+    append(result.notes, result.hits->notes);
+    result.frfs = result.hits->set;
+    if (!result.hits->added_decay_removed) result.added_decay_per_s = result.hits->added_decay_per_s;
+  } else if (!result.job.frf.empty()) {
+    const formats::FrfFile file = formats::read_frfs(result.job.frf, result.job.frf_as);
+    append(result.notes, file.notes);
+    result.frfs = file.set;
+    result.added_decay_per_s = file.added_decay_per_s;
+  }
+}
+
+void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
+  if (!result.frfs) {
+    result.model = formats::read_modes(result.job.modes);
+    return;
+  }
+  modal::FitOptions options;
+  options.seed = seed;
+  options.modes = result.job.fit_modes;
+  if (result.job.band_high_hz > 0.0) {
+    options.band_low_hz = result.job.band_low_hz;
+    options.band_high_hz = result.job.band_high_hz;
+  } else if (result.hits) {
+    // Without a band from the user: where the sensors can be trusted and the hammer excites.
+    options.band_low_hz = result.hits->lowest_trustworthy_frequency_hz;
+    double highest = 0.0;
+    for (const modal::FrfGrade& grade : result.hits->grades) highest = std::max(highest, grade.excited_high_hz);
+    if (highest > options.band_low_hz) options.band_high_hz = highest;
+  }
+  options.exponential_decay_per_s = result.added_decay_per_s;
+  result.fit = modal::fit_modes(*result.frfs, options, progress);
+  result.model = result.fit->model;
+  append(result.warnings, result.fit->warnings);
+  if (result.fit->status == modal::FitResult::Status::not_converged) {
+    result.warnings.push_back("The fit of the modes did not converge: look at the FRFs before using a number.");
+  }
+}
+
+stability::LobesOptions limit_options(const PlanResult& result) {
+  stability::LobesOptions options = result.cut.options;
+  options.points.clear();
+  options.output = stability::Output::boundary;
+  return options;
+}
+
+/// The limit of each pair of neighbouring modes alone.
+void pairs(PlanResult& result, Progress& progress) {
+  const int modes = static_cast<int>(result.model.modes.size());
+  if (modes < 3 || !result.cut.problem.keep_modes.empty()) return;
+  const stability::LobesOptions options = limit_options(result);
+  const std::vector<double> speeds(result.lobes.spindle_speed_rad_per_s.begin(),
+                                   result.lobes.spindle_speed_rad_per_s.end());
+  for (int k = 1; k <= modes; k += 2) {
+    stability::LobesProblem problem = result.cut.problem;
+    problem.keep_modes = k < modes ? std::vector<int>{k, k + 1} : std::vector<int>{k};
+    const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
+    report::Lobes lobes;
+    lobes.label = k < modes ? fmt::format("modes {}–{}", k, k + 1) : fmt::format("mode {}", k);
+    lobes.modes = problem.keep_modes;
+    lobes.spindle_speed_rad_per_s = result.lobes.spindle_speed_rad_per_s;
+    lobes.searched_depth_m = options.axial_depth_m[1];
+    lobes.limit_depth_m.resize(static_cast<Eigen::Index>(limits.size()));
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      const bool found = limits[i].status == stability::Limit::Status::found;
+      lobes.limit_depth_m(static_cast<Eigen::Index>(i)) = found ? limits[i].axial_depth_m : report::missing;
+    }
+    result.pairs.push_back(lobes);
+  }
+}
+
+DepthLimit to_depth_limit(const stability::Limit& limit) {
+  DepthLimit out{.spindle_speed_rad_per_s = limit.spindle_speed_rad_per_s};
+  if (limit.status == stability::Limit::Status::found) {
+    out.axial_depth_m = limit.axial_depth_m;
+    out.chatter_frequency_hz = limit.chatter_frequency_hz;
+    out.mode = limit.mode;
+  }
+  return out;
+}
+
+RecommendOptions recommend_options(const PlanResult& result) {
+  const formats::LobesFile& cut = result.cut;
+  RecommendOptions options;
+  options.teeth = cut.problem.milling.tool.teeth;
+  options.radial_depth_m = cut.radial_depth_m;
+  options.feed_per_tooth_m = cut.feed_per_tooth_m;
+  options.searched_depth_m = cut.options.axial_depth_m[1];
+  options.max_axial_depth_m = result.job.max_axial_depth_m;
+  options.min_spindle_speed_rad_per_s = result.job.min_spindle_speed_rad_per_s;
+  options.max_spindle_speed_rad_per_s = result.job.max_spindle_speed_rad_per_s;
+  options.depth_margin = result.job.depth_margin;
+  options.speed_window = result.job.speed_window;
+  // The mean torque is proportional to depth, so one metre of depth gives the factor.
+  options.torque_per_depth_n = cutting::mean_load(cut.problem.milling, 1.0, cut.feed_per_tooth_m, 1.0).torque_n_m;
+  for (const formats::SpindlePoint& p : result.job.spindle_curve) {
+    options.spindle.push_back(
+        {.spindle_speed_rad_per_s = p.spindle_speed_rad_per_s, .torque_n_m = p.torque_n_m, .power_w = p.power_w});
+  }
+  return options;
+}
+
+void choose(PlanResult& result) {
+  std::vector<DepthLimit> limits;
+  for (const stability::Limit& limit : result.lobes.limit) limits.push_back(to_depth_limit(limit));
+  const stability::LobesOptions options = limit_options(result);
+  result.recommendation = recommend(limits, recommend_options(result), [&](double speed) {
+    return to_depth_limit(stability::limit_depths(result.cut.problem, options, {speed}).front());
+  });
+}
+
+/// The limit as the feed turns through the plane: a robot is not the same in every direction.
+void turn_feed(PlanResult& result, Progress& progress) {
+  report::FeedDirections out;
+  const stability::LobesOptions options = limit_options(result);
+  const double low = options.spindle_speed_rad_per_s[0];
+  const double high = options.spindle_speed_rad_per_s[1];
+  std::vector<double> speeds;
+  for (int i = 0; i < speeds_a_direction; ++i)
+    speeds.push_back(std::lerp(low, high, static_cast<double>(i) / (speeds_a_direction - 1)));
+  const bool recommended = result.recommendation.recommended.has_value();
+  if (recommended) {
+    out.spindle_speed_rad_per_s = result.recommendation.recommended->spindle_speed_rad_per_s;
+    speeds.push_back(out.spindle_speed_rad_per_s);
+    out.limit_at_speed_m.resize(feed_directions);
+  }
+  out.direction_rad.resize(feed_directions);
+  out.lowest_limit_m.setConstant(feed_directions, report::missing);
+  out.used_direction_rad = result.cut.problem.feed_direction_rad;
+  out.searched_depth_m = options.axial_depth_m[1];
+  stability::LobesProblem problem = result.cut.problem;
+  for (Eigen::Index i = 0; i < feed_directions; ++i) {
+    problem.feed_direction_rad = 2.0 * std::numbers::pi * static_cast<double>(i) / feed_directions;
+    out.direction_rad(i) = problem.feed_direction_rad;
+    const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+      const double depth =
+          limits[k].status == stability::Limit::Status::found ? limits[k].axial_depth_m : report::missing;
+      if (k < speeds_a_direction) {
+        out.lowest_limit_m(i) = std::fmin(out.lowest_limit_m(i), depth);
+      } else {
+        out.limit_at_speed_m(i) = depth;
+      }
+    }
+  }
+  result.feed_directions = out;
+}
+
+void compare(PlanResult& result, Progress& progress) {
+  result.cuts = compare_cuts(result.job.cuts, result.cut.problem, limit_options(result), progress);
+  std::vector<double> modes_hz;
+  for (const modal::Mode& mode : result.model.modes) modes_hz.push_back(mode.frequency_hz);
+  for (std::size_t i = 0; i < result.job.cuts.size(); ++i) {
+    const formats::TestCut& cut = result.job.cuts[i];
+    if (cut.file.empty()) continue;
+    result.recordings.push_back(read_recording(cut, result.cut.problem.milling.tool.teeth, modes_hz));
+    const report::Recording& heard = result.recordings.back();
+    report::TestCut& row = result.cuts[i];
+    if (row.result == report::Verdict::unknown) {
+      row.result = heard.verdict;
+      if (row.result != report::Verdict::borderline) row.agrees = row.result == row.predicted;
+    }
+    row.note += "; " + heard.file + ": " + heard.reason;
+  }
+}
+
+}  // namespace
+
+modal::ModalModel with_equal_directions(const modal::ModalModel& model) {
+  const bool one = model.excitations.size() == 1 && model.responses.size() == 1 && model.excitations == model.responses;
+  const bool planar =
+      one && (model.excitations[0].axis == modal::Axis::x || model.excitations[0].axis == modal::Axis::y);
+  if (!planar) {
+    throw InvalidInput("equal_directions", "needs FRFs of one direction alone, xx or yy",
+                       "Leave it out where both were measured");
+  }
+  modal::ModalModel out;
+  for (const modal::Axis axis : {modal::Axis::x, modal::Axis::y}) {
+    const modal::Dof dof{.point = model.excitations[0].point, .axis = axis};
+    out.excitations.push_back(dof);
+    out.responses.push_back(dof);
+    for (const modal::Residual& residual : model.residuals) {
+      modal::Residual copy = residual;
+      copy.name = {.response = dof, .excitation = dof};
+      out.residuals.push_back(copy);
+    }
+  }
+  for (const modal::Mode& mode : model.modes) {
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      modal::Mode copy = mode;
+      copy.left = Eigen::VectorXcd::Unit(2, axis) * mode.left(0);
+      copy.right = Eigen::VectorXcd::Unit(2, axis) * mode.right(0);
+      out.modes.push_back(copy);
+    }
+  }
+  return out;
+}
+
+PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress) {
+  PlanResult result;
+  result.job = formats::read_job(job);
+  // Everything that is quick to refuse is read before the long work starts.
+  result.cut = formats::read_lobes(result.job.lobes);
+  if (!(result.cut.feed_per_tooth_m > 0.0)) {
+    throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
+                       "plan needs it for the removal rate");
+  }
+  measure(result, progress);
+  fit(result, seed, progress);
+  if (result.job.equal_directions) {
+    result.model = with_equal_directions(result.model);
+    result.warnings.push_back("One direction was measured; the other is taken equal to it, without cross terms.");
+  }
+  result.cut.problem.dynamics = result.model;
+  result.cut.validate();
+  result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
+  choose(result);
+  pairs(result, progress);
+  turn_feed(result, progress);
+  compare(result, progress);
+  return result;
+}
+
+}  // namespace robomill::plan

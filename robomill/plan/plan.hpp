@@ -1,0 +1,66 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/formats/job_toml.hpp"
+#include "robomill/formats/lobes_toml.hpp"
+#include "robomill/modal/fit.hpp"
+#include "robomill/modal/hits.hpp"
+#include "robomill/plan/recommend.hpp"
+#include "robomill/report/report.hpp"
+#include "robomill/stability/lobes.hpp"
+
+namespace robomill::plan {
+
+/// Everything a job came to, stage by stage. What the job did not ask for is empty.
+struct PlanResult {
+  formats::Job job;
+  formats::LobesFile cut;                ///< with the dynamics that the job gave
+  std::optional<modal::FrfResult> hits;  ///< of a job that starts from hits
+  std::optional<modal::FrfSet> frfs;     ///< measured: from hits or files
+  double added_decay_per_s = 0.0;        ///< of an exponential window, still in frfs
+  std::optional<modal::FitResult> fit;   ///< of a job that starts from hits or FRFs
+  modal::ModalModel model;
+  stability::LobesResult lobes;      ///< of all modes
+  std::vector<report::Lobes> pairs;  ///< limits of modes 1–2, 3–4, …
+  std::optional<report::FeedDirections> feed_directions;
+  Recommendation recommendation;
+  std::vector<report::TestCut> cuts;
+  std::vector<report::Recording> recordings;
+  std::vector<std::string> warnings, notes;
+};
+
+/// Runs a job: hits ─▶ FRFs ─▶ modes ─▶ lobes ─▶ a recommended speed and depth, and its comparison with test cuts.
+/// @param seed  of every random number
+/// @throws InvalidInput with file, line, key and value; Interrupted
+[[nodiscard]] PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
+                                 Progress& progress = Progress::none());
+
+/// The report of a job.
+/// @param files  that stand beside it
+[[nodiscard]] report::Report make_report(const PlanResult& result, const std::vector<report::StageFile>& files);
+
+/// plan.json as text: the recommendation, its alternatives, the test cuts, and every stage's result.
+[[nodiscard]] std::string plan_json(const PlanResult& result);
+
+/// Writes report.html, plan.json and each stage's own files (tip.uff, modes.json, lobes.json) into a folder, which is
+/// made where it is missing. Each file appears whole or not at all.
+void write_plan(const std::filesystem::path& folder, const PlanResult& result);
+
+/// One line for people: what limits an operation.
+[[nodiscard]] std::string limited_by_text(const Operation& operation);
+
+/// Each mode's share of the speeds at which some mode limits the depth, in [0, 1]; empty where none does.
+[[nodiscard]] Eigen::VectorXd limit_share(const PlanResult& result);
+
+/// A structure of one measured direction with the other taken equal: every mode twice, in x and in y, without cross
+/// terms.
+/// @throws InvalidInput unless the model has one excitation and one response, both x or both y
+[[nodiscard]] modal::ModalModel with_equal_directions(const modal::ModalModel& model);
+
+}  // namespace robomill::plan

@@ -1,0 +1,123 @@
+#include <nlohmann/json.hpp>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/frf_files.hpp"
+#include "robomill/formats/json.hpp"
+#include "robomill/formats/lobes_json.hpp"
+#include "robomill/formats/modes_files.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/plan/plan.hpp"
+
+namespace robomill::plan {
+namespace {
+
+using formats::Json;
+using formats::number;
+
+Json to_json(const Operation& op) {
+  return {{"spindle_speed_rpm", number(op.spindle_speed_rad_per_s / units::rpm)},
+          {"axial_depth_mm", number(op.axial_depth_m / units::mm)},
+          {"feed_per_tooth_mm", number(op.feed_per_tooth_m / units::mm)},
+          {"margin", number(op.margin)},
+          {"removal_rate_mm3_per_s", number(op.removal_rate_m3_per_s / units::mm3)},
+          {"limited_by", limited_by_text(op)},
+          {"limit_depth_mm", number(op.limit_depth_m / units::mm)},
+          {"chatter_frequency_hz", op.mode > 0 ? number(op.chatter_frequency_hz) : Json()},
+          {"mode", op.mode > 0 ? Json(op.mode) : Json()},
+          {"torque_n_m", number(op.torque_n_m)},
+          {"power_w", number(op.power_w)}};
+}
+
+const char* to_text(report::Verdict verdict) {
+  switch (verdict) {
+    case report::Verdict::stable:
+      return "stable";
+    case report::Verdict::borderline:
+      return "borderline";
+    case report::Verdict::chatter:
+      return "chatter";
+    case report::Verdict::unknown:
+      break;
+  }
+  return nullptr;
+}
+
+Json text_or_null(const char* text) {
+  return text == nullptr ? Json() : Json(text);
+}
+
+Json cuts_json(const PlanResult& result) {
+  Json rows = Json::array();
+  for (const report::TestCut& cut : result.cuts) {
+    rows.push_back({{"spindle_speed_rpm", number(cut.spindle_speed_rad_per_s / units::rpm)},
+                    {"axial_depth_mm", number(cut.axial_depth_m / units::mm)},
+                    {"result", text_or_null(to_text(cut.result))},
+                    {"predicted", text_or_null(to_text(cut.predicted))},
+                    {"limit_depth_mm", number(cut.limit_depth_m / units::mm)},
+                    {"agrees", cut.agrees ? Json(*cut.agrees) : Json()},
+                    {"note", cut.note}});
+  }
+  return rows;
+}
+
+Json feed_directions_json(const report::FeedDirections& directions) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < directions.direction_rad.size(); ++i) {
+    Json row = {{"feed_direction_deg", number(directions.direction_rad(i) / units::deg)},
+                {"lowest_limit_mm", number(directions.lowest_limit_m(i) / units::mm)}};
+    if (directions.limit_at_speed_m.size() > 0)
+      row["limit_at_speed_mm"] = number(directions.limit_at_speed_m(i) / units::mm);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string modes_json(const PlanResult& result) {
+  return result.fit ? formats::modes_json(*result.fit) : formats::modes_json(result.model);
+}
+
+std::string lobes_json(const PlanResult& result) {
+  return formats::lobes_json(result.lobes, result.cut.options.output == stability::Output::map);
+}
+
+}  // namespace
+
+std::string plan_json(const PlanResult& result) {
+  Json json;
+  json["recommended"] = result.recommendation.recommended ? to_json(*result.recommendation.recommended) : Json();
+  json["alternatives"] = Json::array();
+  for (const Operation& op : result.recommendation.alternatives) json["alternatives"].push_back(to_json(op));
+  if (!result.recommendation.recommended) json["reason"] = result.recommendation.reason;
+  json["cuts"] = cuts_json(result);
+  const report::Agreement count = report::agreement(result.cuts);
+  json["agreement"] = {{"agree", count.agree}, {"disagree", count.disagree}, {"not_compared", count.not_compared}};
+  if (result.feed_directions) json["feed_directions"] = feed_directions_json(*result.feed_directions);
+  json["warnings"] = result.warnings;
+  json["notes"] = result.notes;
+  if (result.hits) json["frf"] = Json::parse(formats::hits_json(*result.hits));
+  json["modes"] = Json::parse(modes_json(result));
+  json["lobes"] = Json::parse(lobes_json(result));
+  return json.dump(1) + "\n";
+}
+
+void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw InvalidInput(folder.string(), "cannot be made: " + error.message(), "Give a folder that you may write to");
+  std::vector<report::StageFile> files;
+  if (result.frfs) {
+    formats::write_frfs(folder / "tip.uff", *result.frfs);
+    files.push_back({.stage = "frf", .file = "tip.uff", .description = "measured FRFs, universal file 58"});
+  }
+  formats::write_file(folder / "modes.json", modes_json(result));
+  files.push_back({.stage = "modes", .file = "modes.json", .description = "modal parameters"});
+  formats::write_file(folder / "lobes.json", lobes_json(result));
+  files.push_back({.stage = "lobes", .file = "lobes.json", .description = "stability lobes"});
+  formats::write_file(folder / "plan.json", plan_json(result));
+  files.push_back({.stage = "plan", .file = "plan.json", .description = "recommendation and every stage's result"});
+  formats::write_file(folder / "report.html", report::report_html(make_report(result, files)));
+}
+
+}  // namespace robomill::plan

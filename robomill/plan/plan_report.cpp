@@ -1,0 +1,234 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "robomill/cutting/milling.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/plan/plan.hpp"
+
+namespace robomill::plan {
+namespace {
+
+report::Recommendation to_report(const Operation& op) {
+  report::Recommendation out;
+  out.spindle_speed_rad_per_s = op.spindle_speed_rad_per_s;
+  out.axial_depth_m = op.axial_depth_m;
+  out.feed_per_tooth_m = op.feed_per_tooth_m;
+  out.margin = op.margin;
+  out.removal_rate_m3_per_s = op.removal_rate_m3_per_s;
+  out.limited_by = limited_by_text(op);
+  if (op.mode > 0) {
+    out.chatter_frequency_hz = op.chatter_frequency_hz;
+    out.mode = op.mode;
+  }
+  return out;
+}
+
+std::vector<report::Fact> facts(const PlanResult& result) {
+  const cutting::Milling& cut = result.cut.problem.milling;
+  return {
+      {"Cutter", fmt::format("{} teeth, {:.4g} mm, helix {:.3g}°", cut.tool.teeth, cut.tool.diameter_m / units::mm,
+                             cut.tool.helix_rad / units::deg)},
+      {"Cut", fmt::format("radial depth {:.4g} mm, teeth in cut from {:.1f}° to {:.1f}°, {:.4g} mm a tooth",
+                          result.cut.radial_depth_m / units::mm, cut.immersion.entry_rad / units::deg,
+                          cut.immersion.exit_rad / units::deg, result.cut.feed_per_tooth_m / units::mm)},
+      {"Material", fmt::format("tangential {:.4g} N/mm², radial {:.4g} N/mm²",
+                               cut.coefficients.tangential_n_per_m2 / units::n_per_mm2,
+                               cut.coefficients.radial_n_per_m2 / units::n_per_mm2)},
+      {"Feed direction", fmt::format("{:.4g}° from x", result.cut.problem.feed_direction_rad / units::deg)},
+  };
+}
+
+report::Grade to_report(modal::Grade grade) {
+  switch (grade) {
+    case modal::Grade::good:
+      return report::Grade::good;
+    case modal::Grade::usable:
+      return report::Grade::fair;
+    case modal::Grade::poor:
+      break;
+  }
+  return report::Grade::poor;
+}
+
+void add_frfs(report::Report& report, const PlanResult& result) {
+  if (!result.frfs) return;
+  const modal::FrfSet& set = *result.frfs;
+  report.frf_frequency_hz = set.frequency_hz;
+  std::optional<modal::FrfSet> fitted;
+  if (result.fit && set.frequency_hz(0) > 0.0) fitted = modal::synthesize(result.fit->model, set.frequency_hz);
+  for (std::size_t i = 0; i < set.frfs.size(); ++i) {
+    const modal::Frf& frf = set.frfs[i];
+    report::FrfPlot plot{.name = frf.name, .measured = frf.receptance, .coherence = frf.coherence};
+    if (fitted) {
+      if (const modal::Frf* model = fitted->find(frf.name)) plot.fitted = model->receptance;
+    }
+    if (result.fit) {
+      for (const modal::FrfFitError& error : result.fit->by_frf) {
+        if (error.name == frf.name) plot.relative_error = error.error.relative;
+      }
+    }
+    if (result.hits) {
+      const modal::FrfGrade& grade = result.hits->grades[i];
+      plot.grade = to_report(grade.grade);
+      plot.findings = grade.faults;
+      plot.remedies = grade.remedies;
+      plot.trusted_from_hz = grade.lowest_trustworthy_frequency_hz;
+      plot.trusted_to_hz = grade.excited_high_hz;
+    }
+    report.frfs.push_back(std::move(plot));
+  }
+}
+
+void add_hits(report::Report& report, const PlanResult& result) {
+  if (!result.hits) return;
+  for (const modal::HitVerdict& hit : result.hits->hits) {
+    report.hits.push_back({.file = std::filesystem::path(hit.file).filename().string(),
+                           .accepted = hit.accepted,
+                           .reasons = hit.reasons});
+  }
+}
+
+void add_fit(report::Report& report, const PlanResult& result) {
+  report.model = result.model;
+  report.limit_share = limit_share(result);
+  if (!result.fit) return;
+  const modal::FitResult& fit = *result.fit;
+  report::FitSummary summary;
+  summary.method = "hybrid";
+  summary.relative_error = fit.relative_error;
+  summary.mean_relative_error = fit.mean_relative_error;
+  summary.band_from_hz = fit.band_low_hz;
+  summary.band_to_hz = fit.band_high_hz;
+  summary.converged = fit.status == modal::FitResult::Status::converged;
+  summary.convergence = Eigen::Map<const Eigen::VectorXd>(fit.best.data(), static_cast<Eigen::Index>(fit.best.size()));
+  for (const modal::StabilisationPoint& point : fit.stabilisation) {
+    summary.stabilisation.push_back({.order = point.order,
+                                     .frequency_hz = point.frequency_hz,
+                                     .stable = point.frequency_stable && point.damping_stable && point.vector_stable});
+  }
+  report.fit = std::move(summary);
+}
+
+report::BoundaryKind to_report(stability::Kind kind) {
+  switch (kind) {
+    case stability::Kind::flip:
+      return report::BoundaryKind::flip;
+    case stability::Kind::fold:
+      return report::BoundaryKind::fold;
+    case stability::Kind::hopf:
+      break;
+  }
+  return report::BoundaryKind::hopf;
+}
+
+void add_lobes(report::Report& report, const PlanResult& result) {
+  const stability::LobesResult& lobes = result.lobes;
+  report::Lobes all;
+  all.label = "all modes";
+  all.spindle_speed_rad_per_s = lobes.spindle_speed_rad_per_s;
+  all.searched_depth_m = result.cut.options.axial_depth_m[1];
+  all.limit_depth_m.resize(static_cast<Eigen::Index>(lobes.limit.size()));
+  for (std::size_t i = 0; i < lobes.limit.size(); ++i) {
+    const bool found = lobes.limit[i].status == stability::Limit::Status::found;
+    all.limit_depth_m(static_cast<Eigen::Index>(i)) = found ? lobes.limit[i].axial_depth_m : report::missing;
+  }
+  for (const stability::BoundaryPoint& point : lobes.boundary) {
+    all.boundary.push_back({.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
+                            .axial_depth_m = point.axial_depth_m,
+                            .chatter_frequency_hz = point.chatter_frequency_hz,
+                            .kind = to_report(point.kind),
+                            .mode = point.mode});
+  }
+  if (result.cut.options.output == stability::Output::map) {
+    all.map_speed_rad_per_s = lobes.spindle_speed_rad_per_s;
+    all.map_depth_m = lobes.axial_depth_m;
+    all.spectral_radius = lobes.spectral_radius;
+  }
+  report.lobes.push_back(std::move(all));
+  report.lobes.insert(report.lobes.end(), result.pairs.begin(), result.pairs.end());
+}
+
+report::DepthCurve spindle_curve(const PlanResult& result, const std::string& label, bool torque) {
+  const double per_depth =
+      cutting::mean_load(result.cut.problem.milling, 1.0, result.cut.feed_per_tooth_m, 1.0).torque_n_m;
+  report::DepthCurve curve;
+  curve.label = label;
+  const auto n = static_cast<Eigen::Index>(result.job.spindle_curve.size());
+  curve.spindle_speed_rad_per_s.resize(n);
+  curve.axial_depth_m.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const formats::SpindlePoint& p = result.job.spindle_curve[static_cast<std::size_t>(i)];
+    curve.spindle_speed_rad_per_s(i) = p.spindle_speed_rad_per_s;
+    curve.axial_depth_m(i) = (torque ? p.torque_n_m : p.power_w / p.spindle_speed_rad_per_s) / per_depth;
+  }
+  return curve;
+}
+
+void add_other_limits(report::Report& report, const PlanResult& result) {
+  if (result.job.spindle_curve.size() > 1) {
+    report.other_limits.push_back(spindle_curve(result, "spindle torque", true));
+    report.other_limits.push_back(spindle_curve(result, "spindle power", false));
+  }
+  if (result.job.max_axial_depth_m > 0.0) {
+    report.other_limits.push_back(
+        {.label = "cutter's depth",
+         .spindle_speed_rad_per_s = Eigen::Vector2d(result.cut.options.spindle_speed_rad_per_s[0],
+                                                    result.cut.options.spindle_speed_rad_per_s[1]),
+         .axial_depth_m = Eigen::Vector2d::Constant(result.job.max_axial_depth_m)});
+  }
+}
+
+}  // namespace
+
+std::string limited_by_text(const Operation& operation) {
+  switch (operation.limited_by) {
+    case LimitedBy::chatter:
+      return fmt::format("chatter of mode {} at {:.1f} Hz", operation.mode, operation.chatter_frequency_hz);
+    case LimitedBy::depth_range:
+      return "the depth range of the lobes: no chatter found up to its end";
+    case LimitedBy::cutter:
+      return "the cutter's depth";
+    case LimitedBy::spindle_torque:
+      return "the spindle's torque";
+    case LimitedBy::spindle_power:
+      return "the spindle's power";
+  }
+  return {};
+}
+
+Eigen::VectorXd limit_share(const PlanResult& result) {
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(result.model.modes.size()));
+  for (const stability::Limit& limit : result.lobes.limit) {
+    if (limit.status == stability::Limit::Status::found && limit.mode > 0) share(limit.mode - 1) += 1.0;
+  }
+  const double total = share.sum();
+  return total > 0.0 ? Eigen::VectorXd(share / total) : Eigen::VectorXd();
+}
+
+report::Report make_report(const PlanResult& result, const std::vector<report::StageFile>& files) {
+  report::Report report;
+  if (!result.job.title.empty()) report.title = result.job.title;
+  report.created = fmt::format("{:%Y-%m-%d %H:%M} UTC, robomill " ROBOMILL_VERSION, fmt::gmtime(std::time(nullptr)));
+  report.facts = facts(result);
+  report.warnings = result.warnings;
+  report.notes = result.notes;
+  if (result.recommendation.recommended) report.recommendation = to_report(*result.recommendation.recommended);
+  for (const Operation& op : result.recommendation.alternatives) report.alternatives.push_back(to_report(op));
+  report.no_recommendation = result.recommendation.reason;
+  add_frfs(report, result);
+  add_hits(report, result);
+  add_fit(report, result);
+  add_lobes(report, result);
+  add_other_limits(report, result);
+  report.cuts = result.cuts;
+  report.feed_directions = result.feed_directions;
+  report.recordings = result.recordings;
+  report.files = files;
+  return report;
+}
+
+}  // namespace robomill::plan

@@ -1,0 +1,145 @@
+#include "robomill/plan/plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "data/robot_modes.hpp"
+#include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/units.hpp"
+
+namespace robomill::plan {
+namespace {
+
+const std::string data = ROBOMILL_SOURCE_DIR "/data/";
+
+class Plan : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("plan_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder_);
+    write("lobes.toml", R"([tool]
+teeth = 3
+diameter_mm = 12
+[cut]
+direction = "up"
+radial_depth_mm = 1.8
+feed_per_tooth_mm = 0.01
+[coefficients]
+tangential_n_per_mm2 = 712
+radial_n_per_mm2 = 287
+[lobes]
+spindle_speed_rpm = [6000, 9000]
+axial_depth_mm = [0, 3]
+grid = [31, 20]
+method = "semi-discretization"
+intervals = 20
+)");
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  std::filesystem::path job(const std::string& more = "") {
+    return write("job.toml", "[job]\nmodes = \"" + data + "robot-modes.toml\"\nlobes = \"lobes.toml\"\n" + more);
+  }
+
+  std::filesystem::path folder_;
+};
+
+// What is promised: over ± 2 % of speed the recommended depth is at most 80 % of the limit, so at 1.2 times it the cut
+// is stable.
+TEST_F(Plan, RecommendsADepthBelowTheLimitOfTheWholeWindow) {
+  const PlanResult result = run_job(job(), 1);
+  ASSERT_EQ(result.recommendation.status, Recommendation::Status::found);
+  const Operation& op = *result.recommendation.recommended;
+  EXPECT_GT(op.axial_depth_m, 0.0);
+  for (const double part : {-0.02, -0.01, 0.0, 0.01, 0.02}) {
+    const stability::PointResult point =
+        stability::evaluate_point(result.cut.problem, result.cut.options,
+                                  {.spindle_speed_rad_per_s = op.spindle_speed_rad_per_s * (1.0 + part),
+                                   .axial_depth_m = 1.2 * op.axial_depth_m});
+    EXPECT_TRUE(point.stable) << part;
+  }
+  EXPECT_EQ(result.pairs.size(), 4U);
+  EXPECT_NEAR(limit_share(result).sum(), 1.0, 1e-12);
+}
+
+// Turning the feed by 180° turns forces and displacements alike.
+TEST_F(Plan, LimitIsTheSameInOppositeFeedDirections) {
+  const PlanResult result = run_job(job(), 1);
+  const report::FeedDirections& turned = *result.feed_directions;
+  const Eigen::Index half = turned.direction_rad.size() / 2;
+  for (Eigen::Index i = 0; i < half; ++i) {
+    EXPECT_NEAR(turned.lowest_limit_m(i), turned.lowest_limit_m(i + half), 1e-6 * turned.lowest_limit_m(i));
+  }
+  EXPECT_GT(turned.lowest_limit_m.maxCoeff(), 1.05 * turned.lowest_limit_m.minCoeff());
+}
+
+TEST_F(Plan, WritesEveryFileAndTheyAgree) {
+  const PlanResult result =
+      run_job(job("[[cuts]]\nspindle_speed_rpm = 8000\naxial_depth_mm = 2.9\nresult = \"chatter\"\n"), 1);
+  write_plan(folder_ / "out", result);
+  const auto json = nlohmann::json::parse(formats::read_file(folder_ / "out" / "plan.json"));
+  EXPECT_NEAR(json["recommended"]["spindle_speed_rpm"].get<double>(),
+              result.recommendation.recommended->spindle_speed_rad_per_s / units::rpm, 1e-6);
+  EXPECT_GE(json["recommended"]["margin"].get<double>(), 0.2 - 1e-12);
+  EXPECT_EQ(json["modes"]["modes"].size(), 8U);
+  EXPECT_EQ(json["lobes"]["limit"].size(), 31U);
+  EXPECT_EQ(json["cuts"].size(), 1U);
+  EXPECT_EQ(json["cuts"][0]["agrees"], json["cuts"][0]["predicted"] == "chatter");
+  for (const char* name : {"modes.json", "lobes.json", "report.html"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / name)) << name;
+  }
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_ / "out")) ++files;
+  EXPECT_EQ(files, 4U);
+}
+
+TEST_F(Plan, SaysWhatIsMissing) {
+  const auto refusal = [](const std::filesystem::path& path) -> std::string {
+    try {
+      static_cast<void>(run_job(path, 1));
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_NE(refusal(folder_ / "none.toml").find("none.toml"), std::string::npos);
+  const std::string lobes = formats::read_file(folder_ / "lobes.toml");
+  std::string without_feed = lobes;
+  without_feed.erase(without_feed.find("feed_per_tooth_mm"), std::string("feed_per_tooth_mm = 0.01").size());
+  write("lobes.toml", without_feed);
+  EXPECT_NE(refusal(job()).find("feed_per_tooth_mm"), std::string::npos);
+}
+
+TEST(EqualDirections, DoublesTheMeasuredOne) {
+  modal::ModalModel one;
+  one.excitations = one.responses = {{.axis = modal::Axis::x}};
+  one.modes = {{.frequency_hz = 500.0,
+                .damping_ratio = 0.02,
+                .left = Eigen::VectorXcd::Constant(1, 0.01),
+                .right = Eigen::VectorXcd::Constant(1, std::complex<double>(0.0, -0.01))}};
+  const modal::ModalModel both = with_equal_directions(one);
+  const Eigen::Vector2d frequency_hz(100.0, 499.0);
+  const modal::FrfSet measured = modal::synthesize(one, frequency_hz);
+  const modal::FrfSet planar = modal::synthesize(both, frequency_hz);
+  for (const char* name : {"xx", "yy"}) {
+    EXPECT_LT((planar.find(modal::parse_frf_name(name))->receptance - measured.frfs[0].receptance).norm(), 1e-18);
+  }
+  for (const char* name : {"xy", "yx"}) {
+    EXPECT_EQ(planar.find(modal::parse_frf_name(name))->receptance.norm(), 0.0);
+  }
+  EXPECT_THROW(static_cast<void>(with_equal_directions(both)), InvalidInput);
+}
+
+}  // namespace
+}  // namespace robomill::plan

@@ -1,0 +1,128 @@
+#include "robomill/plan/test_cuts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/units.hpp"
+
+namespace robomill::plan {
+namespace {
+
+const std::vector<double> robot_modes_hz = {17.40, 19.57, 49.86, 53.51, 57.77, 67.26, 540.08, 543.67};
+
+report::Peak explain(double frequency_hz, double rpm) {
+  return explain_peak(frequency_hz, 1.0, rpm * units::rpm, 3, robot_modes_hz, 1.0);
+}
+
+// Source: the peaks of the published cuts in data/robot-cuts.toml; 324.99 Hz is 3 × 108.33 Hz, 3866.9 Hz is 29 × 133.33
+// Hz, and 666.98 Hz lies 17 Hz above 6 × 108.33 Hz.
+TEST(ExplainPeak, NamesThePeaksOfThePublishedCuts) {
+  EXPECT_EQ(explain(324.99, 6500).kind, report::PeakKind::tooth_passing);
+  EXPECT_EQ(explain(324.99, 6500).text, "1 × tooth passing");
+  EXPECT_EQ(explain(3866.9, 8000).kind, report::PeakKind::rotation);
+  EXPECT_EQ(explain(3866.9, 8000).text, "29 × rotation");
+  for (const double peak : {666.98, 991.98, 1966.95}) {
+    EXPECT_EQ(explain(peak, 6500).kind, report::PeakKind::chatter) << peak;
+    EXPECT_NE(explain(peak, 6500).text.find("rotation + mode 1"), std::string::npos) << explain(peak, 6500).text;
+  }
+  EXPECT_EQ(explain(543.67, 7900).text, "mode 8");
+  EXPECT_EQ(explain(300.0, 6000).kind, report::PeakKind::tooth_passing);
+  EXPECT_EQ(explain(337.0, 6000).kind, report::PeakKind::other);
+}
+
+class Recording : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = std::filesystem::temp_directory_path() /
+            ("cut_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".csv");
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  // 6,000 rpm, three teeth: tooth passing at 300 Hz with amplitude 1, and something else at 1,234.5 Hz.
+  report::Recording record(double chatter_amplitude, double length_s = 1.0) {
+    std::ofstream file(path_);
+    file << "time_s,ax_m_per_s2\n";
+    const double rate_hz = 8192.0;
+    for (int i = 0; i < static_cast<int>(length_s * rate_hz); ++i) {
+      const double t = i / rate_hz;
+      file << t << ","
+           << std::cos(2 * std::numbers::pi * 300.0 * t) + 0.2 * std::cos(2 * std::numbers::pi * 100.0 * t) +
+                  chatter_amplitude * std::cos(2 * std::numbers::pi * 1234.5 * t)
+           << "\n";
+    }
+    file.close();
+    formats::TestCut cut;
+    cut.spindle_speed_rad_per_s = 6000 * units::rpm;
+    cut.axial_depth_m = 1e-3;
+    cut.file = path_;
+    cut.column = "ax_m_per_s2";
+    return read_recording(cut, 3, robot_modes_hz);
+  }
+
+  std::filesystem::path path_;
+};
+
+TEST_F(Recording, TellsStableFromChatter) {
+  EXPECT_EQ(record(0.0).verdict, report::Verdict::stable);
+  EXPECT_EQ(record(0.35).verdict, report::Verdict::borderline);
+  const report::Recording loud = record(0.8);
+  EXPECT_EQ(loud.verdict, report::Verdict::chatter);
+  EXPECT_NE(loud.reason.find("1234.5 Hz"), std::string::npos) << loud.reason;
+  ASSERT_GE(loud.peaks.size(), 3U);
+  EXPECT_EQ(loud.peaks[0].kind, report::PeakKind::tooth_passing);
+  EXPECT_NEAR(loud.peaks[0].amplitude, 1.0, 1e-3);
+}
+
+TEST_F(Recording, RefusesTooLittle) {
+  EXPECT_THROW(static_cast<void>(record(0.0, 0.1)), InvalidInput);
+}
+
+// One mode in x and y and a slot: far below the limit is predicted stable, far above chatter; the comparison counts
+// both.
+TEST(CompareCuts, ComparesWithThePrediction) {
+  modal::ModalModel model;
+  for (const modal::Axis axis : {modal::Axis::x, modal::Axis::y}) {
+    model.excitations.push_back({.axis = axis});
+    model.responses.push_back({.axis = axis});
+  }
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    // R L = 1 / (2 i m ω_d) gives a mode of modal mass m.
+    const double omega_d = 2 * std::numbers::pi * 922.0;
+    const std::complex<double> residue = 1.0 / (std::complex<double>(0.0, 2.0) * 0.04 * omega_d);
+    modal::Mode mode{.frequency_hz = 922.0, .damping_ratio = 0.011};
+    mode.left = Eigen::Vector2cd::Unit(i) * std::sqrt(std::abs(residue));
+    mode.right = Eigen::Vector2cd::Unit(i) * (residue / std::sqrt(std::abs(residue)));
+    model.modes.push_back(mode);
+  }
+  stability::LobesProblem problem;
+  problem.dynamics = model;
+  problem.milling.tool = {.teeth = 2, .diameter_m = 12e-3};
+  problem.milling.immersion = {.entry_rad = 0.0, .exit_rad = std::numbers::pi};
+  problem.milling.coefficients = {.tangential_n_per_m2 = 6e8, .radial_n_per_m2 = 2e8};
+  stability::LobesOptions options;
+  options.spindle_speed_rad_per_s = {4000 * units::rpm, 16000 * units::rpm};
+  options.axial_depth_m = {0.0, 3e-3};
+  std::vector<formats::TestCut> cuts(3);
+  for (formats::TestCut& cut : cuts) cut.spindle_speed_rad_per_s = 5000 * units::rpm;
+  cuts[0].axial_depth_m = 0.01e-3;
+  cuts[0].result = formats::TestCut::Result::stable;
+  cuts[1].axial_depth_m = 2e-3;
+  cuts[1].result = formats::TestCut::Result::stable;
+  cuts[2].axial_depth_m = 2e-3;
+  const std::vector<report::TestCut> rows = compare_cuts(cuts, problem, options, Progress::none());
+  EXPECT_EQ(rows[0].predicted, report::Verdict::stable);
+  EXPECT_EQ(rows[0].agrees, std::optional<bool>(true));
+  EXPECT_EQ(rows[1].predicted, report::Verdict::chatter);
+  EXPECT_EQ(rows[1].agrees, std::optional<bool>(false));
+  EXPECT_FALSE(rows[2].agrees.has_value());
+  EXPECT_GT(rows[2].limit_depth_m, 0.01e-3);
+  EXPECT_LT(rows[2].limit_depth_m, 2e-3);
+}
+
+}  // namespace
+}  // namespace robomill::plan
