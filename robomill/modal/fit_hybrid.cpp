@@ -1,0 +1,184 @@
+#include "robomill/modal/fit_hybrid.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "robomill/modal/fit_noise.hpp"
+
+namespace robomill::modal::detail {
+namespace {
+
+using Eigen::Index;
+
+LscfOptions lscf_options(const FitOptions& options, const FitData& data) {
+  // A quarter of the equations at most go into the fraction's coefficients.
+  const auto most = static_cast<int>(data.omega.size() / 4);
+  return {.max_order = std::clamp(options.lscf_max_order, 1, std::max(1, most)),
+          .zeta_high = options.max_damping_ratio,
+          .stable_frequency = options.stable_frequency,
+          .stable_damping = options.stable_damping,
+          .stable_mac = options.stable_mac};
+}
+
+SearchOptions search_options(const FitOptions& options, const FitData& data, int modes) {
+  const Index n = data.omega.size();
+  const double spacing = (data.omega(n - 1) - data.omega(0)) / static_cast<double>(n - 1);
+  return {.modes = modes,
+          .max_modes = options.max_modes,
+          .omega_low = data.omega(0),
+          .omega_high = data.omega(n - 1),
+          .zeta_low = std::min(0.1 * spacing, 0.1 * options.max_damping_ratio),
+          .zeta_high = options.max_damping_ratio};
+}
+
+void set_weight(FitEntry& entry, const Eigen::VectorXd& variance) {
+  const double floor = 1e-24 + 1e-20 * variance.maxCoeff();
+  entry.weight = (variance.array() + floor).sqrt().inverse();
+}
+
+// Weights from the residuals of a fit: the noise, and evenly what the model cannot follow.
+void update_weights(Part& part, const FrfSet& set, const Evaluation& at, Weighting weighting) {
+  for (std::size_t f = 0; f < part.data.entries.size(); ++f) {
+    FitEntry& entry = part.data.entries[f];
+    const Eigen::VectorXd squares = at.residual[f].cwiseAbs2();
+    if (weighting != Weighting::estimated) {
+      // Only the scale of a known variance is in question.
+      set_weight(entry, variance_of_size(squares, known_variance(set.frfs[part.frfs[f]], weighting) /
+                                                      std::pow(part.unit(entry), 2)));
+      continue;
+    }
+    const Eigen::VectorXd size2 = (entry.receptance - at.residual[f]).cwiseAbs2();
+    const Eigen::VectorXd noise = variance_of_size(scatter(part.data.omega, at.residual[f]), size2);
+    set_weight(entry, noise.array() + misfit_variance(squares, noise));
+  }
+}
+
+void set_deviations(PartFit& fit, const FitData& data) {
+  const Index modes = fit.poles.size();
+  if (modes == 0) return;
+  const auto entries = static_cast<Index>(data.entries.size());
+  const Index unknowns = 2 * modes * (data.excitations + data.responses) + (data.residuals ? 4 * entries : 0);
+  const Index freedom = 2 * data.omega.size() * entries - unknowns;
+  if (freedom <= 0) return;
+  const double variance = fit.at.cost / static_cast<double>(freedom) * correlation_length(data, fit.at.residual);
+  const Eigen::MatrixXd covariance = fit.at.hessian.inverse() * variance;
+  fit.omega_std.resize(modes);
+  fit.zeta_std.resize(modes);
+  const Index stride = parameter_count(data, modes) / modes;
+  for (Index k = 0; k < modes; ++k) {
+    fit.omega_std(k) = std::sqrt(std::max(0.0, covariance(stride * k, stride * k)));
+    fit.zeta_std(k) = std::sqrt(std::max(0.0, covariance(stride * k + 1, stride * k + 1)));
+  }
+}
+
+Poles as_poles(const std::vector<LscfPole>& physical, const FitData& data) {
+  Poles poles{.omega = Eigen::VectorXd(static_cast<Index>(physical.size())),
+              .zeta = Eigen::VectorXd(static_cast<Index>(physical.size())),
+              .left = Eigen::MatrixXcd(data.excitations, static_cast<Index>(physical.size())),
+              .gauge = {}};
+  for (std::size_t k = 0; k < physical.size(); ++k) {
+    const auto at = static_cast<Index>(k);
+    poles.omega(at) = physical[k].omega;
+    poles.zeta(at) = physical[k].zeta;
+    poles.left.col(at) = physical[k].left;
+  }
+  poles.fix_gauge();
+  return poles;
+}
+
+}  // namespace
+
+void set_first_weights(Part& part, const FrfSet& set, Weighting weighting) {
+  for (std::size_t f = 0; f < part.data.entries.size(); ++f) {
+    FitEntry& entry = part.data.entries[f];
+    const Frf& frf = set.frfs[part.frfs[f]];
+    const double unit2 = std::pow(part.unit(entry), 2);
+    const Eigen::VectorXd size2 = entry.receptance.cwiseAbs2();
+    switch (weighting) {
+      case Weighting::none:
+        set_weight(entry, Eigen::VectorXd::Constant(size2.size(), 1.0 / unit2));
+        break;
+      case Weighting::relative:
+        set_weight(entry, size2.array() + 1e-12 * size2.mean());
+        break;
+      case Weighting::coherence:
+      case Weighting::deviation:
+        set_weight(entry, known_variance(frf, weighting) / unit2);
+        break;
+      case Weighting::automatic:
+      case Weighting::estimated:
+        set_weight(entry, first_variance(part.data.omega, entry.receptance));
+        break;
+    }
+  }
+  // Only ratios count: bring the largest weight of the part to 1.
+  double largest = 0.0;
+  for (const FitEntry& entry : part.data.entries) largest = std::max(largest, entry.weight.maxCoeff());
+  for (FitEntry& entry : part.data.entries) entry.weight /= largest;
+}
+
+PartFit fit_lscf(Part& part, const FitOptions& options, int modes, Progress& progress) {
+  const LscfOptions lscf = lscf_options(options, part.data);
+  PartFit fit;
+  fit.diagram = lscf_poles(part.data, lscf, progress);
+  std::vector<LscfPole> physical = physical_poles(fit.diagram, lscf);
+  if (modes > 0) {
+    std::stable_sort(physical.begin(), physical.end(),
+                     [](const LscfPole& a, const LscfPole& b) { return a.stable_orders > b.stable_orders; });
+    physical.resize(std::min(physical.size(), static_cast<std::size_t>(modes)));
+  }
+  const Kernel kernel(part.data);
+  const Poles picked = as_poles(physical, part.data);
+  fit.poles = with_left_vectors(kernel, picked.omega, picked.zeta);
+  fit.at = kernel.evaluate(fit.poles, false);
+  fit.converged = modes == 0 ? !physical.empty() : static_cast<int>(physical.size()) == modes;
+  return fit;
+}
+
+PartFit fit_hybrid(Part& part, const FrfSet& set, const FitOptions& options, int modes, Weighting weighting,
+                   Progress& progress) {
+  const LscfOptions lscf = lscf_options(options, part.data);
+  PartFit fit;
+  fit.diagram = lscf_poles(part.data, lscf, progress);
+  const bool adaptive = weighting != Weighting::none && weighting != Weighting::relative;
+  SearchOptions search_for = search_options(options, part.data, modes);
+  Poles start = as_poles(physical_poles(fit.diagram, lscf), part.data);
+  Found found;
+  for (int round = 0; round < (adaptive ? 3 : 1); ++round) {
+    if (round > 0) update_weights(part, set, found.fit.at, weighting);
+    const Kernel kernel(part.data);
+    found = search(kernel, start, search_for, progress);
+    fit.cost.insert(fit.cost.end(), found.cost.begin(), found.cost.end());
+    fit.iterations += found.iterations;
+    start = found.fit.poles;
+  }
+  if (part.data.residuals) {
+    FitData plain = part.data;
+    plain.residuals = false;
+    const Kernel kernel(plain);
+    SearchOptions same = search_for;
+    same.modes = static_cast<int>(start.size());
+    Refined without = refine(kernel, start,
+                             {.omega_low = same.omega_low,
+                              .omega_high = same.omega_high,
+                              .zeta_low = same.zeta_low,
+                              .zeta_high = same.zeta_high,
+                              .max_iterations = 100,
+                              .tolerance = 1e-13},
+                             progress);
+    if (!worth_it(plain, found.fit.at, without.at, 4.0 * static_cast<double>(plain.entries.size()))) {
+      part.data.residuals = false;
+      fit.iterations += without.iterations;
+      found.fit = std::move(without);
+    }
+  }
+  fit.poles = found.fit.poles;
+  fit.at = found.fit.at;
+  fit.converged = found.fit.converged && (modes == 0 || static_cast<int>(fit.poles.size()) == modes);
+  set_deviations(fit, part.data);
+  return fit;
+}
+
+}  // namespace robomill::modal::detail

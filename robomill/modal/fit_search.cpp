@@ -1,0 +1,255 @@
+#include "robomill/modal/fit_search.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "robomill/modal/fit_noise.hpp"
+
+namespace robomill::modal::detail {
+namespace {
+
+using Eigen::Index;
+
+constexpr int tried_candidates = 3;        // of those measured, refined
+constexpr double exact = 1e-9;             // relative error at which nothing is left to explain
+constexpr double coarse_tolerance = 1e-4;  // of the cost, to compare fits
+constexpr double fine_tolerance = 1e-13;
+
+RefineOptions refine_options(const SearchOptions& options, double tolerance, int iterations) {
+  return {.omega_low = options.omega_low,
+          .omega_high = options.omega_high,
+          .zeta_low = options.zeta_low,
+          .zeta_high = options.zeta_high,
+          .max_iterations = iterations,
+          .tolerance = tolerance};
+}
+
+// The cost at a relative error of `exact`.
+double smallest_cost(const FitData& data) {
+  double cost = 0.0;
+  for (const FitEntry& entry : data.entries) cost += entry.receptance.cwiseProduct(entry.weight).squaredNorm();
+  return exact * exact * cost;
+}
+
+// The weighted residual's size over the lines, summed over the FRFs.
+Eigen::VectorXd residual_size(const FitData& data, const Evaluation& at) {
+  Eigen::VectorXd size = Eigen::VectorXd::Zero(data.omega.size());
+  for (std::size_t f = 0; f < data.entries.size(); ++f) {
+    size += at.residual[f].cwiseProduct(data.entries[f].weight).cwiseAbs2();
+  }
+  return size;
+}
+
+// Frequencies where the residual, averaged over 2 half + 1 lines, has its highest peaks.
+std::vector<double> residual_peaks(const FitData& data, const Evaluation& at, Index half, std::size_t count) {
+  const Eigen::VectorXd size = residual_size(data, at);
+  const Index n = size.size();
+  Eigen::VectorXd total = Eigen::VectorXd::Zero(n + 1);
+  for (Index i = 0; i < n; ++i) total(i + 1) = total(i) + size(i);
+  Eigen::VectorXd mean(n);
+  for (Index i = 0; i < n; ++i) {
+    const Index begin = std::max<Index>(0, i - half);
+    const Index end = std::min<Index>(n, i + half + 1);
+    mean(i) = (total(end) - total(begin)) / static_cast<double>(end - begin);
+  }
+  std::vector<Index> peaks;
+  for (Index i = 1; i + 1 < n; ++i) {
+    if (mean(i) > mean(i - 1) && mean(i) >= mean(i + 1)) peaks.push_back(i);
+  }
+  std::sort(peaks.begin(), peaks.end(), [&](Index a, Index b) { return mean(a) > mean(b); });
+  std::vector<double> found;
+  for (const Index peak : peaks) {
+    if (found.size() == count) break;
+    found.push_back(data.omega(peak));
+  }
+  return found;
+}
+
+std::vector<Candidate> candidates(const FitData& data, const Evaluation& at, const SearchOptions& options) {
+  std::vector<Candidate> list;
+  const auto add = [&](double omega, double zeta) {
+    if (zeta < options.zeta_low || zeta > options.zeta_high) return;
+    list.push_back({.omega = std::clamp(omega, options.omega_low, options.omega_high), .zeta = zeta});
+  };
+  for (const Index half : {Index{1}, Index{6}, Index{30}}) {
+    for (const double omega : residual_peaks(data, at, half, 6)) {
+      for (const double zeta : {0.002, 0.006, 0.02, 0.06}) add(omega, zeta);
+    }
+  }
+  for (const double zeta : {0.04, 0.12, 0.3}) {
+    for (double omega = options.omega_low; omega < options.omega_high; omega *= 1.0 + 2.0 * zeta) add(omega, zeta);
+  }
+  return list;
+}
+
+Eigen::VectorXcd first_left_vector(const Eigen::MatrixXcd& residue) {
+  const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(residue, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return svd.matrixV().col(0).conjugate();
+}
+
+class Search {
+ public:
+  Search(const Kernel& kernel, const SearchOptions& options, Progress& progress)
+      : kernel_(kernel), options_(options), progress_(progress), smallest_cost_(smallest_cost(kernel.data())) {}
+
+  Found run(const Poles& start) {
+    state_ = fit(start, coarse_tolerance, 40);
+    keep_curve(state_);
+    if (options_.modes > 0) {
+      reach(options_.modes);
+      swap();
+    } else {
+      by_criterion();
+    }
+    state_ = fit(state_.poles, fine_tolerance, 200);
+    keep_curve(state_);
+    Found found;
+    found.iterations = iterations_;
+    found.cost = curve_;
+    found.fit = std::move(state_);
+    return found;
+  }
+
+ private:
+  Refined fit(const Poles& from, double tolerance, int iterations) {
+    Refined result = refine(kernel_, from, refine_options(options_, tolerance, iterations), progress_);
+    iterations_ += result.iterations;
+    return result;
+  }
+  [[nodiscard]] bool one_more_is_worth_it(const Refined& larger, const Refined& smaller) const {
+    const FitData& data = kernel_.data();
+    return worth_it(data, larger.at, smaller.at, static_cast<double>(2 * (data.excitations + data.responses)));
+  }
+  void keep_curve(const Refined& fit) { curve_.insert(curve_.end(), fit.cost.begin(), fit.cost.end()); }
+  void accept(Refined next) {
+    keep_curve(next);
+    state_ = std::move(next);
+  }
+  // A mode at a bound of damping or at the edge of the band stands for something that is no mode in the band.
+  [[nodiscard]] bool all_inside(const Poles& poles) const {
+    for (Index k = 0; k < poles.size(); ++k) {
+      if (poles.zeta(k) >= 0.999 * options_.zeta_high || poles.zeta(k) <= 1.001 * options_.zeta_low) return false;
+      if (poles.omega(k) >= options_.omega_high || poles.omega(k) <= options_.omega_low) return false;
+    }
+    return true;
+  }
+
+  // The state with one mode more, the best of a few starts.
+  Refined grown() {
+    std::vector<Candidate> list = candidates(kernel_.data(), state_.at, options_);
+    kernel_.measure(list, state_.poles, state_.at);
+    std::sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
+    std::vector<Candidate> tried;
+    Refined best;
+    for (const Candidate& c : list) {
+      if (static_cast<int>(tried.size()) == tried_candidates) break;
+      const bool near = std::any_of(tried.begin(), tried.end(), [&](const Candidate& t) {
+        return std::abs(t.omega - c.omega) < 2.0 * (t.zeta + c.zeta) * c.omega &&
+               std::max(t.zeta, c.zeta) < 4.0 * std::min(t.zeta, c.zeta);
+      });
+      if (near || c.gain <= 0.0) continue;
+      tried.push_back(c);
+      Refined next = fit(state_.poles.with(c.omega, c.zeta, first_left_vector(c.residue)), coarse_tolerance, 25);
+      const bool better = best.poles.size() == 0 || (all_inside(next.poles) && !all_inside(best.poles)) ||
+                          (all_inside(next.poles) == all_inside(best.poles) && next.at.cost < best.at.cost);
+      if (better) best = std::move(next);
+    }
+    return best.poles.size() > 0 ? best : state_;
+  }
+
+  // The state without the mode that it misses least.
+  Refined pruned(const Refined& from) {
+    Index weakest = 0;
+    double lowest = 0.0;
+    for (Index k = 0; k < from.poles.size(); ++k) {
+      const double cost = kernel_.evaluate(from.poles.without(k), false).cost;
+      if (k > 0 && cost >= lowest) continue;
+      lowest = cost;
+      weakest = k;
+    }
+    return fit(from.poles.without(weakest), coarse_tolerance, 25);
+  }
+
+  void reach(int modes) {
+    while (state_.poles.size() > modes) accept(pruned(state_));
+    while (state_.poles.size() < modes) {
+      Refined next = grown();
+      if (next.poles.size() == state_.poles.size()) return;
+      accept(std::move(next));
+    }
+  }
+
+  // One more and one less, as long as it helps.
+  void swap() {
+    for (int round = 0; round < 6 && state_.at.cost > smallest_cost_; ++round) {
+      const Refined more = grown();
+      if (more.poles.size() == state_.poles.size()) return;
+      Refined next = pruned(more);
+      if (!(next.at.cost < (1.0 - coarse_tolerance) * state_.at.cost)) return;
+      accept(std::move(next));
+    }
+  }
+
+  void by_criterion() {
+    while (state_.poles.size() > 0) {
+      Refined next = pruned(state_);
+      if (all_inside(state_.poles) && state_.poles.size() <= options_.max_modes && one_more_is_worth_it(state_, next))
+        break;
+      accept(std::move(next));
+    }
+    while (state_.poles.size() < options_.max_modes && state_.at.cost > smallest_cost_) {
+      Refined next = grown();
+      if (next.poles.size() == state_.poles.size() || !all_inside(next.poles) || !one_more_is_worth_it(next, state_))
+        break;
+      accept(std::move(next));
+    }
+    swap();
+  }
+
+  const Kernel& kernel_;
+  SearchOptions options_;
+  Progress& progress_;
+  double smallest_cost_;
+  Refined state_;
+  std::vector<double> curve_;
+  int iterations_ = 0;
+};
+
+}  // namespace
+
+bool worth_it(const FitData& data, const Evaluation& larger, const Evaluation& smaller, double more_unknowns) {
+  const auto equations = static_cast<double>(2 * data.omega.size() * static_cast<Index>(data.entries.size()));
+  const double independent = equations / correlation_length(data, larger.residual);
+  const double floor = smallest_cost(data);
+  return independent * std::log(std::max(smaller.cost, floor) / std::max(larger.cost, floor)) >
+         more_unknowns * std::log(independent);
+}
+
+Found search(const Kernel& kernel, const Poles& start, const SearchOptions& options, Progress& progress) {
+  return Search(kernel, options, progress).run(start);
+}
+
+Poles with_left_vectors(const Kernel& kernel, const Eigen::VectorXd& omega, const Eigen::VectorXd& zeta) {
+  const FitData& data = kernel.data();
+  Poles poles{
+      .omega = omega, .zeta = zeta, .left = Eigen::MatrixXcd::Zero(data.excitations, omega.size()), .gauge = {}};
+  std::vector<Eigen::MatrixXcd> residue(static_cast<std::size_t>(omega.size()),
+                                        Eigen::MatrixXcd::Zero(data.responses, data.excitations));
+  for (const FitEntry& entry : data.entries) {
+    FitData one{.omega = data.omega, .responses = 1, .excitations = 1, .entries = {entry}, .residuals = data.residuals};
+    one.entries.front().response = one.entries.front().excitation = 0;
+    Poles alone{.omega = omega, .zeta = zeta, .left = Eigen::MatrixXcd::Ones(1, omega.size()), .gauge = {}};
+    alone.fix_gauge();
+    const Evaluation e = Kernel(one).evaluate(alone, false);
+    for (Index k = 0; k < omega.size(); ++k) {
+      residue[static_cast<std::size_t>(k)](entry.response, entry.excitation) = e.right(0, k);
+    }
+  }
+  for (Index k = 0; k < omega.size(); ++k) poles.left.col(k) = first_left_vector(residue[static_cast<std::size_t>(k)]);
+  poles.fix_gauge();
+  return poles;
+}
+
+}  // namespace robomill::modal::detail
