@@ -11,7 +11,7 @@
 #include "robomill/modal/modes.hpp"
 
 /// Results of the other stages, as a page to look at and as the data of its plots. The structs are filled by whoever
-/// ran the stages; every part may be left empty, and the page leaves its section out. NaN means "unknown", or "none in
+/// ran the stages; every part may be left empty, and the page leaves its section out. NaN means "missing", or "none in
 /// the range" where a member says so; it becomes null.
 namespace robomill::report {
 

@@ -1,0 +1,118 @@
+#include "robomill/report/report.hpp"
+
+#include <cmath>
+#include <string_view>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::report {
+namespace {
+
+std::string member(std::string_view list, std::size_t index, std::string_view name) {
+  return std::string(list) + "[" + std::to_string(index) + "]." + std::string(name);
+}
+
+void require_axis(const std::string& field, const Eigen::VectorXd& axis) {
+  for (Eigen::Index i = 0; i < axis.size(); ++i) {
+    if (!std::isfinite(axis[i])) throw InvalidInput(field, "must be finite");
+    if (i > 0 && axis[i] <= axis[i - 1]) throw InvalidInput(field, "must increase");
+  }
+}
+
+void require_length(const std::string& field, Eigen::Index length, Eigen::Index expected, bool may_be_empty) {
+  if (length == expected || (may_be_empty && length == 0)) return;
+  throw InvalidInput(field, "has " + std::to_string(length) + " values where its axis has " + std::to_string(expected));
+}
+
+void validate_frfs(const Report& report) {
+  require_axis("frf_frequency_hz", report.frf_frequency_hz);
+  const Eigen::Index n = report.frf_frequency_hz.size();
+  for (std::size_t k = 0; k < report.frfs.size(); ++k) {
+    const FrfPlot& frf = report.frfs[k];
+    require_length(member("frfs", k, "measured"), frf.measured.size(), n, true);
+    require_length(member("frfs", k, "fitted"), frf.fitted.size(), n, true);
+    require_length(member("frfs", k, "coherence"), frf.coherence.size(), n, true);
+  }
+}
+
+void validate_lobes(const Report& report) {
+  for (std::size_t k = 0; k < report.lobes.size(); ++k) {
+    const Lobes& lobes = report.lobes[k];
+    require_axis(member("lobes", k, "spindle_speed_rad_per_s"), lobes.spindle_speed_rad_per_s);
+    require_length(member("lobes", k, "limit_depth_m"), lobes.limit_depth_m.size(),
+                   lobes.spindle_speed_rad_per_s.size(), false);
+    require_axis(member("lobes", k, "map_speed_rad_per_s"), lobes.map_speed_rad_per_s);
+    require_axis(member("lobes", k, "map_depth_m"), lobes.map_depth_m);
+    const std::string map = member("lobes", k, "spectral_radius");
+    require_length(map + " columns", lobes.spectral_radius.cols(), lobes.map_speed_rad_per_s.size(), false);
+    require_length(map + " rows", lobes.spectral_radius.rows(), lobes.map_depth_m.size(), false);
+  }
+  for (std::size_t k = 0; k < report.other_limits.size(); ++k) {
+    const DepthCurve& curve = report.other_limits[k];
+    require_axis(member("other_limits", k, "spindle_speed_rad_per_s"), curve.spindle_speed_rad_per_s);
+    require_length(member("other_limits", k, "axial_depth_m"), curve.axial_depth_m.size(),
+                   curve.spindle_speed_rad_per_s.size(), false);
+  }
+  if (report.feed_directions) {
+    const FeedDirections& feed = *report.feed_directions;
+    require_axis("feed_directions.direction_rad", feed.direction_rad);
+    require_length("feed_directions.lowest_limit_m", feed.lowest_limit_m.size(), feed.direction_rad.size(), false);
+    require_length("feed_directions.limit_at_speed_m", feed.limit_at_speed_m.size(), feed.direction_rad.size(), true);
+  }
+}
+
+void validate_cuts(const Report& report) {
+  for (std::size_t k = 0; k < report.cuts.size(); ++k) {
+    require_positive(member("cuts", k, "spindle_speed_rad_per_s").c_str(), report.cuts[k].spindle_speed_rad_per_s,
+                     "rad/s");
+    require_non_negative(member("cuts", k, "axial_depth_m").c_str(), report.cuts[k].axial_depth_m, "m");
+  }
+  for (std::size_t k = 0; k < report.recordings.size(); ++k) {
+    const Recording& recording = report.recordings[k];
+    require_positive(member("recordings", k, "spindle_speed_rad_per_s").c_str(), recording.spindle_speed_rad_per_s,
+                     "rad/s");
+    if (recording.teeth < 1) {
+      throw InvalidInput(member("recordings", k, "teeth"), recording.teeth, "", "must be at least 1");
+    }
+    require_axis(member("recordings", k, "frequency_hz"), recording.frequency_hz);
+    require_length(member("recordings", k, "amplitude"), recording.amplitude.size(), recording.frequency_hz.size(),
+                   false);
+  }
+}
+
+void validate_recommendation(const std::string& name, const Recommendation& recommendation) {
+  require_positive((name + ".spindle_speed_rad_per_s").c_str(), recommendation.spindle_speed_rad_per_s, "rad/s");
+  require_positive((name + ".axial_depth_m").c_str(), recommendation.axial_depth_m, "m");
+}
+
+}  // namespace
+
+void Report::validate() const {
+  if (recommendation) validate_recommendation("recommendation", *recommendation);
+  for (std::size_t k = 0; k < alternatives.size(); ++k) {
+    validate_recommendation("alternatives[" + std::to_string(k) + "]", alternatives[k]);
+  }
+  validate_frfs(*this);
+  if (model) {
+    model->validate();
+    require_length("limit_share", limit_share.size(), static_cast<Eigen::Index>(model->modes.size()), true);
+  }
+  validate_lobes(*this);
+  validate_cuts(*this);
+}
+
+Agreement agreement(const std::vector<TestCut>& cuts) {
+  Agreement counts;
+  for (const TestCut& cut : cuts) {
+    if (!cut.agrees) {
+      ++counts.not_compared;
+    } else if (*cut.agrees) {
+      ++counts.agree;
+    } else {
+      ++counts.disagree;
+    }
+  }
+  return counts;
+}
+
+}  // namespace robomill::report

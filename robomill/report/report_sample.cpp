@@ -1,0 +1,319 @@
+#include "robomill/report/report_sample.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "robomill/base/random.hpp"
+#include "robomill/formats/units.hpp"
+
+namespace robomill::report {
+namespace {
+
+using modal::Axis;
+using modal::Dof;
+using std::complex;
+constexpr int teeth = 3;
+
+/// The eight modes of data/robot-modes.toml.
+modal::ModalModel robot_modes() {
+  struct Row {
+    double frequency_hz, damping_percent;
+    complex<double> left_x, left_y, right_x, right_y;
+  };
+  const std::array<Row, 8> rows = {
+      {{17.40, 1.27, {-0.52, 0.88}, {-92.57, 23.71}, {-1.13, -18.25}, {-8.9, 93.36}},
+       {19.57, 2.23, {-41.87, 24.01}, {-0.025, -0.49}, {-118.74, 168.83}, {35.74, -40.36}},
+       {49.86, 10, {51.08, 147.75}, {-0.47, 0.45}, {-149.35, 15.18}, {12.66, -25.99}},
+       {53.51, 10, {0.66, -0.09}, {-94.27, -136.68}, {-34.35, -57.71}, {14.96, -155.42}},
+       {57.77, 10, {-0.3, -0.77}, {-27.26, 163.60}, {15.67, -53.87}, {-58.20, -145.84}},
+       {67.26, 10, {-105.83, -82.49}, {0.51, 0.49}, {-93.87, 88.52}, {12.15, -16.74}},
+       {540.08, 0.68, {-0.81, 0.61}, {-317.91, -148.16}, {19.27, -26.45}, {173.44, 303.95}},
+       {543.67, 2.1, {-246.87, 215.31}, {0.24, -0.32}, {-269.37, 275.61}, {36.20, 7.45}}}};
+  modal::ModalModel model;
+  model.excitations = {Dof{0, Axis::x}, Dof{0, Axis::y}};
+  model.responses = model.excitations;
+  for (const Row& row : rows) {
+    modal::Mode mode;
+    mode.frequency_hz = row.frequency_hz;
+    mode.damping_ratio = row.damping_percent / 100.0;
+    mode.left = Eigen::Vector2cd(row.left_x, row.left_y) * 1e-4;
+    mode.right = Eigen::Vector2cd(row.right_x, row.right_y) * 1e-4;
+    mode.frequency_std_hz = 2e-4 * mode.frequency_hz;
+    mode.damping_ratio_std = 0.01 * mode.damping_ratio;
+    model.modes.push_back(mode);
+  }
+  return model;
+}
+
+complex<double> receptance(const modal::ModalModel& model, int response, int excitation, double frequency_hz,
+                           const std::vector<int>& keep = {}) {
+  const complex<double> s(0.0, 2.0 * std::numbers::pi * frequency_hz);
+  complex<double> sum = 0.0;
+  for (std::size_t k = 0; k < model.modes.size(); ++k) {
+    if (!keep.empty() && std::ranges::find(keep, static_cast<int>(k) + 1) == keep.end()) continue;
+    const modal::Mode& mode = model.modes[k];
+    const double omega = 2.0 * std::numbers::pi * mode.frequency_hz;
+    const complex<double> pole(-mode.damping_ratio * omega, omega * std::sqrt(1.0 - std::pow(mode.damping_ratio, 2)));
+    const complex<double> residue = mode.right[response] * mode.left[excitation];
+    sum += residue / (s - pole) + std::conj(residue) / (s - std::conj(pole));
+  }
+  return sum;
+}
+
+void add_frfs(Report& report) {
+  Random random(7);
+  const Eigen::Index lines = 1991;
+  report.frf_frequency_hz = Eigen::VectorXd::LinSpaced(lines, 5.0, 1000.0);
+  const std::array<std::pair<int, int>, 4> names = {{{0, 0}, {1, 0}, {0, 1}, {1, 1}}};
+  for (const auto& [response, excitation] : names) {
+    FrfPlot frf;
+    frf.name = {Dof{0, response == 0 ? Axis::x : Axis::y}, Dof{0, excitation == 0 ? Axis::x : Axis::y}};
+    frf.measured.resize(lines);
+    frf.fitted.resize(lines);
+    frf.coherence.resize(lines);
+    for (Eigen::Index i = 0; i < lines; ++i) {
+      const complex<double> exact = receptance(*report.model, response, excitation, report.frf_frequency_hz[i]);
+      const complex<double> noise(random.normal(), random.normal());
+      frf.fitted[i] = exact;
+      frf.measured[i] = exact + 0.02 / std::numbers::sqrt2 * std::abs(exact) * noise + 2e-10 * noise;
+      frf.coherence[i] = 1.0 / (1.0 + std::norm(0.03 * noise) + 1e-18 / std::norm(exact));
+    }
+    frf.grade = response == excitation ? Grade::good : Grade::fair;
+    frf.trusted_from_hz = 8.0;
+    frf.trusted_to_hz = 940.0;
+    frf.relative_error = 0.021 + 0.002 * response;
+    if (response != excitation) {
+      frf.findings = {"coherence below 0.9 on 14 % of the band", "xy and yx differ by 38 %"};
+      frf.remedies = {"hit again, closer to the axis", "check that the accelerometer sits where the hammer hits"};
+    }
+    report.frfs.push_back(frf);
+  }
+}
+
+/// Limit depth of the feed direction alone: b = -1 / (2 Ks Re G N*) at each chatter frequency, its speeds from the
+/// phase.
+void add_lobes(Report& report, const std::string& label, const std::vector<int>& keep) {
+  const double specific_force_n_per_m2 = 712e6;
+  const double teeth_in_cut = 0.38;
+  Lobes lobes;
+  lobes.label = label;
+  lobes.modes = keep;
+  lobes.searched_depth_m = 3.0 * units::mm;
+  lobes.spindle_speed_rad_per_s = Eigen::VectorXd::LinSpaced(241, 4000.0, 16000.0) * units::rpm;
+  lobes.limit_depth_m.setConstant(241, missing);
+  for (double f = 8.0; f < 900.0; f += f < 100.0 ? 0.02 : 0.1) {
+    const complex<double> g = receptance(*report.model, 0, 0, f, keep) + receptance(*report.model, 1, 1, f, keep);
+    if (g.real() >= 0.0) continue;
+    const double depth = -1.0 / (2.0 * specific_force_n_per_m2 * teeth_in_cut * g.real());
+    if (depth > lobes.searched_depth_m) continue;
+    const double waves = 0.5 + std::atan2(g.imag(), g.real()) / std::numbers::pi;
+    for (int lobe = 0; lobe < 40; ++lobe) {
+      const double speed_rad_per_s = 2.0 * std::numbers::pi * f / (teeth * (lobe + 1.0 + waves - std::floor(waves)));
+      const double at = (speed_rad_per_s / units::rpm - 4000.0) / 50.0;
+      if (at < 0.0 || at > 240.0) continue;
+      double& limit = lobes.limit_depth_m[static_cast<Eigen::Index>(std::lround(at))];
+      if (limit <= depth) continue;
+      limit = depth;
+      const int mode = f > 541.5 ? 8 : f > 300.0 ? 7 : f > 40.0 ? 4 : 1;
+      lobes.boundary.push_back(
+          {speed_rad_per_s, depth, f, lobe % 7 == 0 ? BoundaryKind::flip : BoundaryKind::hopf, mode});
+    }
+  }
+  if (keep.empty()) {
+    lobes.map_speed_rad_per_s = Eigen::VectorXd::LinSpaced(61, 4000.0, 16000.0) * units::rpm;
+    lobes.map_depth_m = Eigen::VectorXd::LinSpaced(31, 0.0, 3.0) * units::mm;
+    lobes.spectral_radius.resize(31, 61);
+    for (Eigen::Index j = 0; j < 61; ++j) {
+      const double limit = lobes.limit_depth_m[4 * j];
+      for (Eigen::Index i = 0; i < 31; ++i) {
+        const double depth = lobes.map_depth_m[i];
+        lobes.spectral_radius(i, j) = std::sqrt(0.4 + 0.6 * depth / (std::isfinite(limit) ? limit : 3.2 * units::mm));
+      }
+    }
+  }
+  report.lobes.push_back(lobes);
+}
+
+double limit_at(const Lobes& lobes, double speed_rad_per_s) {
+  Eigen::Index nearest = 0;
+  (lobes.spindle_speed_rad_per_s.array() - speed_rad_per_s).abs().minCoeff(&nearest);
+  return lobes.limit_depth_m[nearest];
+}
+
+void add_cuts(Report& report) {
+  struct Cut {
+    double rpm, depth_mm;
+    Verdict result;
+    const char* note;
+  };
+  const std::array<Cut, 12> cuts = {{{5000, 0.5, Verdict::unknown, ""},
+                                     {5000, 0.9, Verdict::unknown, ""},
+                                     {6500, 0.4, Verdict::stable, ""},
+                                     {6500, 0.6, Verdict::borderline, "667.5, 1967.5, 2076 Hz"},
+                                     {6500, 0.8, Verdict::chatter, "325.0, 667.0, 992.0 Hz"},
+                                     {8000, 1.0, Verdict::stable, ""},
+                                     {8000, 1.2, Verdict::stable, ""},
+                                     {8000, 1.5, Verdict::chatter, "817.5, 2017.5 Hz"},
+                                     {9500, 0.9, Verdict::unknown, ""},
+                                     {11000, 0.8, Verdict::unknown, ""},
+                                     {15000, 1.1, Verdict::stable, ""},
+                                     {15000, 1.3, Verdict::borderline, ""}}};
+  for (const Cut& made : cuts) {
+    TestCut cut;
+    cut.spindle_speed_rad_per_s = made.rpm * units::rpm;
+    cut.axial_depth_m = made.depth_mm * units::mm;
+    cut.result = made.result;
+    cut.limit_depth_m = limit_at(report.lobes.front(), cut.spindle_speed_rad_per_s);
+    cut.predicted = cut.axial_depth_m > cut.limit_depth_m ? Verdict::chatter : Verdict::stable;
+    if (cut.result == Verdict::stable || cut.result == Verdict::chatter) cut.agrees = cut.result == cut.predicted;
+    cut.note = made.note;
+    report.cuts.push_back(cut);
+  }
+}
+
+void add_recording(Report& report) {
+  Random random(11);
+  Recording recording;
+  recording.file = "cut_6500_08.csv";
+  recording.spindle_speed_rad_per_s = 6500 * units::rpm;
+  recording.teeth = teeth;
+  recording.axial_depth_m = 0.8 * units::mm;
+  recording.frequency_hz = Eigen::VectorXd::LinSpaced(10001, 0.0, 2500.0);
+  recording.amplitude.resize(10001);
+  const double rotation_hz = 6500.0 / 60.0;
+  std::vector<std::pair<double, double>> lines = {{667.0, 5.1}, {991.98, 3.4}, {342.1, 1.6}, {1966.95, 1.9}};
+  for (int k = 1; k < 23; ++k) lines.emplace_back(k * rotation_hz, k % teeth == 0 ? 3.2 / std::sqrt(k) : 0.5);
+  for (Eigen::Index i = 0; i < 10001; ++i) {
+    const double f = recording.frequency_hz[i];
+    double sum = 0.03 * std::hypot(random.normal(), random.normal());
+    for (const auto& [centre, height] : lines) sum += height * std::exp(-std::pow((f - centre) / 0.8, 2));
+    recording.amplitude[i] = sum;
+  }
+  recording.peaks = {{325.0, 1.85, PeakKind::tooth_passing, "3 × rotation: tooth passing"},
+                     {667.0, 5.1, PeakKind::chatter, "chatter, mode 1: 6 × rotation + 17.0 Hz"},
+                     {991.98, 3.4, PeakKind::chatter, "chatter, mode 1: 9 × rotation + 17.0 Hz"},
+                     {108.33, 0.5, PeakKind::rotation, "rotation"}};
+  recording.verdict = Verdict::chatter;
+  recording.reason = "Two peaks above the tooth-passing line stand between the harmonics";
+  report.recordings.push_back(recording);
+}
+
+void add_feed_directions(Report& report) {
+  FeedDirections feed;
+  feed.direction_rad = Eigen::VectorXd::LinSpaced(72, 0.0, 355.0) * units::deg;
+  feed.lowest_limit_m.resize(72);
+  feed.limit_at_speed_m.resize(72);
+  for (Eigen::Index i = 0; i < 72; ++i) {
+    const double turn = std::cos(2.0 * (feed.direction_rad[i] - 0.6));
+    feed.lowest_limit_m[i] = (0.42 + 0.13 * turn) * units::mm;
+    const double at_speed = (1.9 + 1.3 * turn) * units::mm;
+    feed.limit_at_speed_m[i] = at_speed > 3.0 * units::mm ? missing : at_speed;
+  }
+  feed.spindle_speed_rad_per_s = 11000 * units::rpm;
+  feed.used_direction_rad = 0.0;
+  feed.searched_depth_m = 3.0 * units::mm;
+  report.feed_directions = feed;
+}
+
+void add_fit(Report& report) {
+  FitSummary fit;
+  fit.method = "hybrid";
+  fit.relative_error = 0.0213;
+  fit.mean_relative_error = 0.0187;
+  fit.band_from_hz = 5.0;
+  fit.band_to_hz = 1000.0;
+  fit.convergence.resize(24);
+  for (Eigen::Index i = 0; i < 24; ++i) fit.convergence[i] = 0.0187 + 0.6 * std::exp(-0.45 * static_cast<double>(i));
+  Random random(3);
+  for (int order = 4; order <= 40; order += 2) {
+    for (const modal::Mode& mode : report.model->modes) {
+      const bool settled = order > 8 + static_cast<int>(mode.damping_ratio * 100.0);
+      const double scatter = settled ? 1e-3 : 3e-2;
+      fit.stabilisation.push_back({order, mode.frequency_hz * (1.0 + scatter * random.normal()), settled});
+    }
+    for (int k = 0; k < order / 6; ++k) fit.stabilisation.push_back({order, random.uniform(5.0, 1000.0), false});
+  }
+  report.fit = fit;
+}
+
+/// The fastest depth 20 % below the limit, and three more at other speeds.
+void add_recommendations(Report& report) {
+  const Lobes& all = report.lobes.front();
+  std::vector<Recommendation> found;
+  for (Eigen::Index i = 5; i + 5 < all.limit_depth_m.size(); ++i) {
+    double limit = all.searched_depth_m;
+    for (Eigen::Index j = i - 5; j <= i + 5; ++j)
+      limit = std::min(limit, std::isnan(all.limit_depth_m[j]) ? limit : all.limit_depth_m[j]);
+    Recommendation r;
+    r.spindle_speed_rad_per_s = all.spindle_speed_rad_per_s[i];
+    r.axial_depth_m = 0.8 * limit;
+    r.feed_per_tooth_m = 0.01 * units::mm;
+    r.margin = 0.2;
+    r.removal_rate_m3_per_s = r.axial_depth_m * 1.8 * units::mm * r.feed_per_tooth_m * teeth *
+                              r.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
+    r.limited_by = "mode 8, chatter";
+    r.chatter_frequency_hz = 566.4;
+    r.mode = 8;
+    found.push_back(r);
+  }
+  std::ranges::sort(found,
+                    [](const auto& a, const auto& b) { return a.removal_rate_m3_per_s > b.removal_rate_m3_per_s; });
+  report.recommendation = found.front();
+  for (const Recommendation& r : found) {
+    const auto near = [&](const Recommendation& other) {
+      return std::abs(other.spindle_speed_rad_per_s / r.spindle_speed_rad_per_s - 1.0) < 0.06;
+    };
+    if (near(*report.recommendation) || std::ranges::any_of(report.alternatives, near)) continue;
+    report.alternatives.push_back(r);
+    if (report.alternatives.size() == 3) break;
+  }
+}
+
+}  // namespace
+
+Report sample_report() {
+  Report report;
+  report.title = "Cutting conditions without chatter: sample of the page";
+  report.created = "Made by the tests of robomill from invented lobes";
+  report.facts = {{"Cutter", "3 teeth, 12 mm, flat end"},
+                  {"Cut", "up-milling, 1.8 mm radial depth"},
+                  {"Feed", "0.01 mm per tooth, towards 0°"},
+                  {"Material", "Kt 712 N/mm², Kr 287 N/mm²"},
+                  {"Speeds", "4 000 to 16 000 rpm"}};
+  report.warnings = {"The measured model is not passive: Im H_yy > 0 on 46 % of lines."};
+  report.notes = {
+      "The lobes on this page come from a formula for the feed direction alone; they serve to look at the page."};
+  report.model = robot_modes();
+  report.limit_share = (Eigen::VectorXd(8) << 0.03, 0.02, 0.01, 0.02, 0.02, 0.01, 0.31, 0.58).finished();
+  add_fit(report);
+  add_frfs(report);
+  add_lobes(report, "all modes", {});
+  for (int k = 1; k < 8; k += 2) {
+    add_lobes(report, "modes " + std::to_string(k) + "–" + std::to_string(k + 1), {k, k + 1});
+  }
+  DepthCurve torque;
+  torque.label = "spindle torque";
+  torque.spindle_speed_rad_per_s = Eigen::VectorXd::LinSpaced(25, 4000.0, 16000.0) * units::rpm;
+  torque.axial_depth_m = (3.4 - 1.6 * Eigen::ArrayXd::LinSpaced(25, 0.0, 1.0)) * units::mm;
+  report.other_limits.push_back(torque);
+  add_recommendations(report);
+  add_cuts(report);
+  add_feed_directions(report);
+  add_recording(report);
+  for (int k = 1; k <= 10; ++k) {
+    HitRow hit{"hit_" + std::string(k <= 5 ? "x_" : "y_") + std::to_string((k - 1) % 5 + 1) + ".csv",
+               k <= 5 ? "x" : "y"};
+    if (k == 4) hit.accepted = false;
+    if (k == 4) hit.reasons = {"double hit: a second one of 7 % of the peak after 3.1 ms"};
+    report.hits.push_back(hit);
+  }
+  report.files = {{"frf", "tip.uff", "frequency response functions"},
+                  {"modes", "modes.json", "modal parameters"},
+                  {"lobes", "lobes.json", "limit and boundary"}};
+  return report;
+}
+
+}  // namespace robomill::report

@@ -1,0 +1,27 @@
+#include <fstream>
+#include <iostream>
+#include <string_view>
+
+#include "robomill/report/report_sample.hpp"
+
+/// report_sample OUT.html [sample|hostile]: the sample page for the browser test; hostile puts markup into every text it can.
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::cerr << "usage: report_sample OUT.html [sample|hostile]\n";
+    return 2;
+  }
+  robomill::report::Report report = robomill::report::sample_report();
+  if (argc > 2 && std::string_view(argv[2]) == "hostile") {
+    const std::string evil =
+        "</script><script>throw new Error('escaped')</script><img src=x onerror=alert(1)><!--<script>";
+    report.title = evil;
+    report.notes = {evil};
+    report.recommendation->limited_by = evil;
+    report.cuts.front().note = evil;
+    report.lobes.back().label = evil;
+    report.recordings.front().file = evil;
+    report.recordings.front().peaks.front().text = evil;
+  }
+  std::ofstream(argv[1], std::ios::binary) << robomill::report::report_html(report);
+  return 0;
+}

@@ -1,0 +1,266 @@
+#include "robomill/report/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/random.hpp"
+#include "robomill/report/html.hpp"
+#include "robomill/report/page.hpp"
+#include "robomill/report/report_sample.hpp"
+#include "robomill/report/thin.hpp"
+
+namespace robomill::report {
+namespace {
+
+using nlohmann::json;
+
+/// The content of the element that carries the data.
+std::string embedded(const std::string& html) {
+  const std::string open = "<script type=\"application/json\" id=\"report-data\">";
+  const std::size_t begin = html.find(open);
+  if (begin == std::string::npos) return {};
+  const std::size_t end = html.find("</script>", begin);
+  return html.substr(begin + open.size(), end - begin - open.size());
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+TEST(ReportJson, NumbersAreTheStructsInShopUnits) {
+  const Report report = sample_report();
+  const json data = json::parse(report_json(report));
+  const auto& cut = data["cuts"][4];
+  EXPECT_DOUBLE_EQ(cut["spindle_speed_rpm"].get<double>(), 6500.0);
+  EXPECT_DOUBLE_EQ(cut["axial_depth_mm"].get<double>(), 0.8);
+  EXPECT_EQ(cut["result"], "chatter");
+  const auto& recommended = data["recommendation"];
+  const Recommendation& r = *report.recommendation;
+  EXPECT_NEAR(recommended["spindle_speed_rpm"].get<double>(), r.spindle_speed_rad_per_s * 30.0 / std::numbers::pi,
+              0.05);
+  EXPECT_NEAR(recommended["axial_depth_mm"].get<double>(), r.axial_depth_m * 1e3, 1e-5);
+  EXPECT_NEAR(recommended["removal_rate_mm3_per_s"].get<double>(), r.removal_rate_m3_per_s * 1e9, 1e-4);
+  EXPECT_NEAR(data["feed_directions"]["direction_deg"][9].get<double>(), 45.0, 1e-4);
+  EXPECT_EQ(data["lobes"].size(), 5u);
+  EXPECT_EQ(data["modes"][6]["frequency_hz"].get<double>(), 540.08);
+  EXPECT_NEAR(data["recordings"][0]["tooth_passing_hz"].get<double>(), 325.0, 1e-3);
+  ASSERT_EQ(data["frfs"][0]["frequency_hz"].size(), data["frfs"][0]["measured"]["magnitude"].size());
+  EXPECT_NEAR(data["frfs"][0]["fitted"]["magnitude"][100].get<double>(), std::abs(report.frfs[0].fitted[100]) * 1e6,
+              1e-5);
+  EXPECT_EQ(data["frfs"][1]["name"], "yx");
+  EXPECT_EQ(data["frfs"][1]["unit"], "µm/N");
+}
+
+TEST(ReportJson, HoldsSixDigits) {
+  Report report;
+  report.cuts.push_back({1234.56789123 * std::numbers::pi / 30.0, 0.123456789e-3});
+  const json data = json::parse(report_json(report));
+  EXPECT_EQ(data["cuts"][0]["spindle_speed_rpm"].get<double>(), 1234.57);
+  EXPECT_EQ(data["cuts"][0]["axial_depth_mm"].get<double>(), 0.123457);
+}
+
+// A rounded number is within half a unit of the sixth digit, whatever its size.
+TEST(ReportJson, RoundsWithinHalfAUnitOfTheSixthDigit) {
+  Random random(5);
+  Report report;
+  report.recordings.resize(1);
+  report.recordings[0].spindle_speed_rad_per_s = 100.0;
+  report.recordings[0].teeth = 2;
+  report.recordings[0].frequency_hz = Eigen::VectorXd::LinSpaced(500, 0.0, 499.0);
+  report.recordings[0].amplitude.resize(500);
+  for (double& value : report.recordings[0].amplitude) value = std::pow(10.0, random.uniform(-300.0, 300.0));
+  const json data = json::parse(report_json(report));
+  for (Eigen::Index i = 0; i < 500; ++i) {
+    const double exact = report.recordings[0].amplitude[i];
+    EXPECT_NEAR(data["recordings"][0]["amplitude"][static_cast<std::size_t>(i)].get<double>(), exact,
+                0.5001e-5 * exact);
+  }
+}
+
+TEST(ReportJson, NonFiniteIsNull) {
+  Report report;
+  Lobes lobes;
+  lobes.spindle_speed_rad_per_s = Eigen::Vector3d(100.0, 200.0, 300.0);
+  lobes.limit_depth_m = Eigen::Vector3d(missing, 1e-3, std::numeric_limits<double>::infinity());
+  report.lobes.push_back(lobes);
+  report.recommendation = Recommendation{};
+  report.recommendation->spindle_speed_rad_per_s = 100.0;
+  report.recommendation->axial_depth_m = 1e-3;
+  const std::string text = report_json(report);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  EXPECT_EQ(text.find("inf"), std::string::npos);
+  const json data = json::parse(text);
+  EXPECT_TRUE(data["lobes"][0]["limit_mm"][0].is_null());
+  EXPECT_EQ(data["lobes"][0]["limit_mm"][1].get<double>(), 1.0);
+  EXPECT_TRUE(data["lobes"][0]["limit_mm"][2].is_null());
+  EXPECT_TRUE(data["recommendation"]["margin"].is_null());
+  EXPECT_TRUE(data["feed_directions"].is_null());
+}
+
+TEST(ReportJson, StrayBytesBecomeValidText) {
+  Report report;
+  report.title = "Fr\xe4ser";
+  EXPECT_EQ(json::parse(report_json(report))["title"], "Fr\xef\xbf\xbdser");
+  EXPECT_NE(report_html(report).find("Fr\xef\xbf\xbdser"), std::string::npos);
+}
+
+TEST(ReportHtml, TextsCannotBreakOut) {
+  const std::string evil = "</script><script>alert(1)</script><!--<img src=x onerror=alert(1)>\"'&";
+  Report report = sample_report();
+  const std::size_t scripts = count(report_html(report), "<script");
+  report.title = evil;
+  report.created = evil;
+  report.facts = {{evil, evil}};
+  report.warnings = {evil};
+  report.notes = {evil};
+  report.recommendation->limited_by = evil;
+  report.alternatives.front().limited_by = evil;
+  report.frfs.front().findings = {evil};
+  report.frfs.front().remedies = {evil};
+  report.hits.front() = {evil, evil, false, {evil}};
+  report.fit->method = evil;
+  for (Lobes& lobes : report.lobes) lobes.label = evil;
+  report.other_limits.front().label = evil;
+  report.cuts.front().note = evil;
+  report.recordings.front().file = evil;
+  report.recordings.front().reason = evil;
+  report.recordings.front().amplitude_unit = evil;
+  report.recordings.front().peaks.front().text = evil;
+  report.files = {{evil, evil, evil}};
+  const std::string html = report_html(report);
+  EXPECT_EQ(count(html, "<script"), scripts);
+  EXPECT_EQ(html.find("<img"), std::string::npos);
+  EXPECT_EQ(html.find("\"'&\""), std::string::npos);
+  if (!page_script().empty()) {
+    EXPECT_EQ(json::parse(embedded(html))["title"], evil);
+  }
+}
+
+TEST(ReportHtml, CarriesTheSameDataAsTheJson) {
+  const Report report = sample_report();
+  const std::string html = report_html(report);
+  if (page_script().empty()) {
+    EXPECT_EQ(embedded(html), "");
+    EXPECT_NE(html.find("Plots were left out of this build"), std::string::npos);
+    EXPECT_EQ(html.find("data-plot"), std::string::npos);
+  } else {
+    EXPECT_EQ(json::parse(embedded(html)), json::parse(report_json(report)));
+    EXPECT_NE(html.find("data-plot=\"lobes\""), std::string::npos);
+  }
+}
+
+TEST(ReportHtml, TablesStandWithoutTheScript) {
+  const std::string html = report_html(sample_report());
+  for (const char* part : {"<td class=\"number\">540.08\u202f±\u202f0.11</td>", "hit_x_4.csv", "double hit",
+                           "<strong>3 of 6</strong> test cuts", "Limited by <strong>mode 8", "id=\"recordings\""}) {
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(count(html, "<section"), count(html, "</section>"));
+  EXPECT_EQ(count(html, "<table"), count(html, "</table>"));
+  EXPECT_EQ(html.find("http://"), html.find("http://www.w3.org")) << "only names of namespaces";
+}
+
+TEST(ReportHtml, AnEmptyReportIsAPage) {
+  const std::string html = report_html(Report{});
+  EXPECT_TRUE(html.starts_with("<!doctype html>"));
+  EXPECT_EQ(html.find("<section"), std::string::npos);
+}
+
+TEST(ReportHtml, SaysWhyThereIsNoSafeDepth) {
+  Report report;
+  report.no_recommendation = "every speed chatters below 0.05 mm";
+  const std::string html = report_html(report);
+  EXPECT_NE(html.find("No safe depth."), std::string::npos);
+  EXPECT_NE(html.find("every speed chatters below 0.05 mm"), std::string::npos);
+}
+
+template <class Change>
+std::string refused(Change&& change) {
+  Report report = sample_report();
+  change(report);
+  try {
+    report.validate();
+  } catch (const InvalidInput& error) {
+    return error.parts().field;
+  }
+  return "accepted";
+}
+
+TEST(ReportValidate, NamesTheMember) {
+  EXPECT_EQ(refused([](Report&) {}), "accepted");
+  EXPECT_EQ(refused([](Report& r) { r.frfs[1].fitted.resize(3); }), "frfs[1].fitted");
+  EXPECT_EQ(refused([](Report& r) { r.frf_frequency_hz[4] = r.frf_frequency_hz[3]; }), "frf_frequency_hz");
+  EXPECT_EQ(refused([](Report& r) { r.lobes[2].limit_depth_m.resize(1); }), "lobes[2].limit_depth_m");
+  EXPECT_EQ(refused([](Report& r) { r.lobes[0].spectral_radius.resize(2, 2); }), "lobes[0].spectral_radius columns");
+  EXPECT_EQ(refused([](Report& r) { r.limit_share.resize(3); }), "limit_share");
+  EXPECT_EQ(refused([](Report& r) { r.cuts[0].axial_depth_m = missing; }), "cuts[0].axial_depth_m");
+  EXPECT_EQ(refused([](Report& r) { r.recordings[0].teeth = 0; }), "recordings[0].teeth");
+  EXPECT_EQ(refused([](Report& r) { r.recommendation = Recommendation{}; }), "recommendation.spindle_speed_rad_per_s");
+  EXPECT_EQ(refused([](Report& r) { r.feed_directions->limit_at_speed_m.resize(5); }),
+            "feed_directions.limit_at_speed_m");
+}
+
+TEST(Agreement, CountsEveryCutOnce) {
+  const Report report = sample_report();
+  const Agreement counts = agreement(report.cuts);
+  EXPECT_EQ(counts.agree + counts.disagree + counts.not_compared, report.cuts.size());
+  EXPECT_EQ(counts.agree + counts.disagree, 6u);
+}
+
+// Property: increasing indices, within the bound, and the extremes of the whole curve are among them.
+TEST(Thin, KeepsPeaksAndDips) {
+  Random random(21);
+  for (int round = 0; round < 50; ++round) {
+    const auto n = static_cast<Eigen::Index>(1 + random.index(5000));
+    const auto most = static_cast<Eigen::Index>(10 + random.index(500));
+    Eigen::VectorXd values(n);
+    for (double& value : values) value = random.uniform() < 0.02 ? missing : random.normal();
+    const std::vector<Eigen::Index> keep = thin(values, most);
+    ASSERT_LE(static_cast<Eigen::Index>(keep.size()), std::max(most + 2, Eigen::Index{1}));
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+      if (i > 0) {
+        ASSERT_LT(keep[i - 1], keep[i]);
+      }
+      if (!std::isnan(values[keep[i]])) {
+        low = std::min(low, values[keep[i]]);
+        high = std::max(high, values[keep[i]]);
+      }
+    }
+    double lowest = std::numeric_limits<double>::infinity();
+    double highest = -lowest;
+    for (const double value : values) {
+      if (std::isnan(value)) continue;
+      lowest = std::min(lowest, value);
+      highest = std::max(highest, value);
+    }
+    EXPECT_EQ(low, lowest);
+    EXPECT_EQ(high, highest);
+  }
+}
+
+TEST(Html, NumbersReadWell) {
+  EXPECT_EQ(fixed(14850.2, 0), "14\u202f850");
+  EXPECT_EQ(fixed(1234567.5, 1), "1\u202f234\u202f567.5");
+  EXPECT_EQ(fixed(-12345, 0), "-12\u202f345");
+  EXPECT_EQ(fixed(8000, 0), "8000");
+  EXPECT_EQ(fixed(nullptr, 2), "–");
+  EXPECT_EQ(significant(0.01), "0.0100");
+  EXPECT_EQ(significant(0.0), "0");
+  EXPECT_EQ(significant(1.5e-7), "1.50e-07");
+  EXPECT_EQ(percent(0.0127, 2), "1.27\u202f%");
+  EXPECT_EQ(with_deviation(17.4123, 0.0352, 1.0, 2), "17.412\u202f±\u202f0.035");
+  EXPECT_EQ(with_deviation(17.4123, nullptr, 1.0, 2), "17.41");
+  EXPECT_EQ(with_deviation(0.021, 0.0012, 100.0, 2), "2.10\u202f±\u202f0.12");
+}
+
+}  // namespace
+}  // namespace robomill::report

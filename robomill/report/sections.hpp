@@ -1,0 +1,29 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+/// The page's sections, each from the report in shop units; an empty text where there is nothing to show. With `plots`,
+/// they carry the places where the script draws.
+namespace robomill::report {
+
+using Json = nlohmann::ordered_json;
+
+// sections_cut.cpp: what to cut and why
+[[nodiscard]] std::string recommendation_section(const Json& report);
+[[nodiscard]] std::string lobes_section(const Json& report, bool plots);
+[[nodiscard]] std::string feed_section(const Json& report, bool plots);
+[[nodiscard]] std::string pairs_section(const Json& report, bool plots);
+[[nodiscard]] std::string recordings_section(const Json& report, bool plots);
+
+// sections_structure.cpp: what was measured and fitted
+[[nodiscard]] std::string frf_section(const Json& report, bool plots);
+[[nodiscard]] std::string modes_section(const Json& report, bool plots);
+[[nodiscard]] std::string hits_section(const Json& report);
+[[nodiscard]] std::string notes_section(const Json& report);
+
+/// A section with a heading and a sentence on what it shows; empty if its body is.
+[[nodiscard]] std::string section(const char* id, const char* heading, const char* lead, const std::string& body);
+/// The place of a plot: which one the script draws there, what it shows to someone who cannot see it, and its caption.
+[[nodiscard]] std::string plot(const char* which, const std::string& shows, const char* caption);
+
+}  // namespace robomill::report

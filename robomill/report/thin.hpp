@@ -1,0 +1,11 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace robomill::report {
+
+/// Indices that draw a long curve like the whole one: all of them up to `most`; else the ends and, of each of most / 2
+/// equal runs, the lowest and the highest finite value. No peak and no dip is lost. Increasing.
+[[nodiscard]] std::vector<Eigen::Index> thin(const Eigen::VectorXd& values, Eigen::Index most = 6000);
+
+}  // namespace robomill::report

@@ -1,0 +1,122 @@
+// node browser_check.mjs REPORT.html [--shots FOLDER] [--chromium PATH]
+// Opens a report in headless Chromium and looks: every plot is there, no script error, nothing fetched, nothing too wide. Exit 0 or 1.
+import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
+import { basename, join, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { launch, openPage } from './chromium.mjs';
+
+function argument(name, fallback) {
+  const at = process.argv.indexOf(name);
+  return at > 0 ? process.argv[at + 1] : fallback;
+}
+
+/** Runs in the page: what each plot shows. A panel without a drawn mark is a missing plot. */
+function inspect() {
+  const marks = '.scatterlayer .trace path, .heatmaplayer image, .contourlayer path, .scatterlayer .point';
+  const plots = [...document.querySelectorAll('figure[data-plot]')].map((figure) => {
+    const canvas = figure.querySelector('.canvas');
+    const roots = canvas.classList.contains('several') ? [...canvas.children] : [canvas];
+    return {
+      name: figure.dataset.plot,
+      panels: roots.length,
+      drawn: roots.filter((root) => root.querySelector('svg.main-svg') && root.querySelector(marks)).length,
+      caption: (figure.querySelector('figcaption')?.textContent ?? '').trim().length,
+      titles: [...figure.querySelectorAll('.xtitle, .ytitle, .gtitle')].length,
+    };
+  });
+  const bad = [...document.querySelectorAll('svg text')].filter((text) => /NaN|undefined|Infinity/.test(text.textContent)).length;
+  const root = document.documentElement;
+  return { plots, bad, scroll: root.scrollWidth, inner: window.innerWidth, height: root.scrollHeight, tables: document.querySelectorAll('table').length };
+}
+
+const openAll = `for (const part of document.querySelectorAll('details')) part.open = true`;
+const allDrawn = `[...document.querySelectorAll('figure[data-plot] .canvas')].every((canvas) =>
+  (canvas.classList.contains('several') ? [...canvas.children] : [canvas]).every((root) => root.querySelector('svg.main-svg')))`;
+
+async function look(browser, url, view, problems, shots) {
+  const where = `${view.name} (${view.width} px, ${view.scheme})`;
+  const page = await openPage(browser, url, view);
+  const hasPlots = await page.evaluate(`document.querySelector('figure[data-plot]') !== null`);
+  if (hasPlots) {
+    await page.until(`document.documentElement.dataset.plots === 'ready'`, `${where}: plots ready`);
+    if (shots) writeFileSync(join(shots, `${view.name}.png`), await page.screenshot(await whole(page, view)));
+    await page.evaluate(openAll);
+    await page.until(allDrawn, `${where}: plots in closed parts`);
+    await page.evaluate(`new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`);
+  } else {
+    problems.push(`${where}: the report has no plots`);
+  }
+  const seen = await page.evaluate(`(${inspect})()`);
+  for (const plot of seen.plots) {
+    if (plot.drawn < plot.panels || plot.panels === 0) problems.push(`${where}: plot ${plot.name}: ${plot.drawn} of ${plot.panels} panels drawn`);
+    if (plot.caption === 0) problems.push(`${where}: plot ${plot.name} has no caption`);
+    if (plot.titles === 0) problems.push(`${where}: plot ${plot.name} has no title on any axis`);
+  }
+  if (seen.bad > 0) problems.push(`${where}: ${seen.bad} labels read NaN, undefined or Infinity`);
+  if (seen.scroll > seen.inner) problems.push(`${where}: ${seen.scroll} px wide in a window of ${seen.inner} px`);
+  for (const error of page.errors) problems.push(`${where}: ${error}`);
+  const fetched = page.requests.filter((address) => address !== url && !/^(data|blob):/.test(address));
+  for (const address of fetched) problems.push(`${where}: fetched ${address}`);
+  if (shots) writeFileSync(join(shots, `${view.name}-open.png`), await page.screenshot(await whole(page, view)));
+  if (hasPlots && view.controls) await tryControls(page, where, problems);
+  await page.close();
+  return seen;
+}
+
+async function whole(page, view) {
+  const height = await page.evaluate('document.documentElement.scrollHeight');
+  return { x: 0, y: 0, width: view.width, height: Math.min(height, 16000), scale: 1 };
+}
+
+/** Every radio button is chosen once; each FRF must then be the one drawn. */
+async function tryControls(page, where, problems) {
+  const count = await page.evaluate(`document.querySelectorAll('fieldset.choice input').length`);
+  for (let i = 0; i < count; ++i) {
+    await page.evaluate(`document.querySelectorAll('fieldset.choice input')[${i}].click()`);
+    await page.evaluate(`new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`);
+  }
+  const names = await page.evaluate(`[...document.querySelectorAll('[data-plot="frf"] fieldset.choice')]
+    .filter((group) => group.querySelector('legend').textContent === 'FRF')
+    .flatMap((group) => [...group.querySelectorAll('label span')].map((span) => span.textContent))`);
+  for (const [i, name] of names.entries()) {
+    await page.evaluate(`document.querySelectorAll('[data-plot="frf"] fieldset.choice input')[${i}].click()`);
+    await page.until(`document.querySelector('[data-plot="frf"] .ytitle')?.textContent.startsWith('|' + ${JSON.stringify(name)} + '|')`,
+      `${where}: FRF ${name} chosen`, 10);
+  }
+  for (const error of page.errors) if (!problems.some((problem) => problem.endsWith(error))) problems.push(`${where}: ${error}`);
+}
+
+async function main() {
+  const file = process.argv[2];
+  if (!file || file.startsWith('--') || !existsSync(file)) {
+    console.error(`usage: node browser_check.mjs REPORT.html [--shots FOLDER] [--chromium PATH]${file ? `; no file ${file}` : ''}`);
+    return 1;
+  }
+  const shots = argument('--shots', undefined);
+  if (shots) mkdirSync(shots, { recursive: true });
+  const url = pathToFileURL(resolve(file)).href;
+  const name = basename(file, '.html');
+  const views = [
+    { name: `${name}-light`, width: 1280, scheme: 'light', controls: true },
+    { name: `${name}-dark`, width: 1280, scheme: 'dark' },
+    { name: `${name}-narrow`, width: 360, scheme: 'light' },
+  ];
+  const problems = [];
+  const browser = await launch(argument('--chromium', process.env['CHROMIUM'] ?? '/usr/bin/chromium'));
+  try {
+    let seen;
+    for (const view of views) seen = await look(browser, url, view, problems, shots);
+    if (problems.length === 0) {
+      console.log(`${file}: ${seen.plots.map((plot) => `${plot.name} (${plot.panels})`).join(', ')}; ${seen.tables} tables; no error, nothing fetched`);
+    }
+  } finally {
+    await browser.close();
+  }
+  for (const problem of problems) console.error(problem);
+  return problems.length === 0 ? 0 : 1;
+}
+
+process.exitCode = await main().catch((error) => {
+  console.error(error.message);
+  return 1;
+});

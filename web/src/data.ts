@@ -1,0 +1,113 @@
+/** What robomill writes into the page: shop units, null for "none". */
+export type Num = number | null;
+export type Verdict = 'stable' | 'borderline' | 'chatter';
+export type Kind = 'hopf' | 'flip' | 'fold';
+
+export interface Recommendation {
+  spindle_speed_rpm: number;
+  axial_depth_mm: number;
+  feed_per_tooth_mm: Num;
+  margin: Num;
+  removal_rate_mm3_per_s: Num;
+  limited_by: string;
+  chatter_frequency_hz: Num;
+  mode: Num;
+}
+
+export interface Curve {
+  magnitude: Num[];
+  phase_deg: Num[];
+}
+
+export interface Frf {
+  name: string;
+  unit: string;
+  frequency_hz: number[];
+  measured: Curve | null;
+  fitted: Curve | null;
+  coherence: Num[] | null;
+  trusted_from_hz: Num;
+  trusted_to_hz: Num;
+}
+
+export interface Mode {
+  mode: number;
+  frequency_hz: number;
+}
+
+export interface Fit {
+  convergence: Num[];
+  stabilisation: { order: number[]; frequency_hz: number[]; stable: boolean[] } | null;
+}
+
+export interface Lobes {
+  label: string;
+  modes: number[];
+  spindle_speed_rpm: number[];
+  limit_mm: Num[];
+  searched_depth_mm: Num;
+  boundary: {
+    spindle_speed_rpm: number[];
+    axial_depth_mm: number[];
+    chatter_frequency_hz: Num[];
+    kind: Kind[];
+    mode: Num[];
+  };
+  map: { spindle_speed_rpm: number[]; axial_depth_mm: number[]; spectral_radius: Num[][] } | null;
+}
+
+export interface DepthCurve {
+  label: string;
+  spindle_speed_rpm: number[];
+  axial_depth_mm: Num[];
+}
+
+export interface Cut {
+  spindle_speed_rpm: number;
+  axial_depth_mm: number;
+  result: Verdict | null;
+  predicted: Verdict | null;
+  limit_mm: Num;
+  agrees: boolean | null;
+  note: string;
+}
+
+export interface FeedDirections {
+  direction_deg: number[];
+  lowest_limit_mm: Num[];
+  limit_at_speed_mm: Num[] | null;
+  spindle_speed_rpm: Num;
+  used_direction_deg: Num;
+  searched_depth_mm: Num;
+}
+
+export interface Peak {
+  frequency_hz: number;
+  amplitude: number;
+  kind: 'rotation' | 'tooth_passing' | 'chatter' | 'other';
+  text: string;
+}
+
+export interface Recording {
+  file: string;
+  rotation_hz: number;
+  tooth_passing_hz: number;
+  teeth: number;
+  amplitude_unit: string;
+  frequency_hz: number[];
+  amplitude: Num[];
+  peaks: Peak[];
+}
+
+export interface Report {
+  recommendation: Recommendation | null;
+  alternatives: Recommendation[];
+  frfs: Frf[];
+  modes: Mode[];
+  fit: Fit | null;
+  lobes: Lobes[];
+  other_limits: DepthCurve[];
+  cuts: Cut[];
+  feed_directions: FeedDirections | null;
+  recordings: Recording[];
+}

@@ -1,0 +1,147 @@
+import type { Frf, Mode } from './data';
+import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+
+/** Breaks a phase curve where it jumps by more than half a turn, so that no line crosses the plot. */
+export function breakJumps(frequency: number[], phase: (number | null)[]): { x: number[]; y: (number | null)[] } {
+  const x: number[] = [];
+  const y: (number | null)[] = [];
+  phase.forEach((value, i) => {
+    const before = i > 0 ? phase[i - 1] : null;
+    if (value !== null && before != null && Math.abs(value - before) > 180) {
+      x.push(frequency[i]!);
+      y.push(null);
+    }
+    x.push(frequency[i]!);
+    y.push(value);
+  });
+  return { x, y };
+}
+
+/** A logarithmic axis serves where the band spans more than a decade and a half. */
+export function prefersLogFrequency(frf: Frf): boolean {
+  const from = frf.frequency_hz.find((f) => f > 0) ?? 1;
+  const to = frf.frequency_hz[frf.frequency_hz.length - 1] ?? 1;
+  return to / from > 30;
+}
+
+function untrusted(frf: Frf, theme: Theme): Layout[] {
+  const from = frf.frequency_hz.find((f) => f > 0) ?? 0;
+  const to = frf.frequency_hz[frf.frequency_hz.length - 1] ?? 0;
+  const band = (x0: number, x1: number) => ({
+    type: 'rect',
+    xref: 'x',
+    yref: 'paper',
+    x0,
+    x1,
+    y0: 0,
+    y1: 1,
+    fillcolor: theme.muted,
+    opacity: 0.13,
+    line: { width: 0 },
+    layer: 'below',
+  });
+  const bands: Layout[] = [];
+  if (frf.trusted_from_hz !== null && frf.trusted_from_hz > from) bands.push(band(from, frf.trusted_from_hz));
+  if (frf.trusted_to_hz !== null && frf.trusted_to_hz < to) bands.push(band(frf.trusted_to_hz, to));
+  return bands;
+}
+
+function modeMarks(frf: Frf, modes: Mode[], logarithmic: boolean, theme: Theme): { shapes: Layout[]; annotations: Layout[] } {
+  const from = frf.frequency_hz[0] ?? 0;
+  const to = frf.frequency_hz[frf.frequency_hz.length - 1] ?? 0;
+  const inside = modes.filter((mode) => mode.frequency_hz >= from && mode.frequency_hz <= to);
+  const place = (f: number) => (logarithmic ? Math.log10(f) : f);
+  const width = Math.max(place(to) - place(Math.max(from, logarithmic ? 0.1 : 0)), 1e-9);
+  let level = 0;
+  let last = -Infinity;
+  const annotations = [...inside]
+    .sort((a, b) => a.frequency_hz - b.frequency_hz)
+    .map((mode) => {
+      const at = place(mode.frequency_hz);
+      level = at - last < 0.025 * width ? (level + 1) % 4 : 0;
+      last = at;
+      return {
+        x: at,
+        y: 1,
+        xref: 'x',
+        yref: 'paper',
+        yanchor: 'bottom',
+        yshift: 11 * level,
+        text: `${mode.mode}`,
+        showarrow: false,
+        font: { size: 10, color: theme.muted },
+        hovertext: `mode ${mode.mode}: ${mode.frequency_hz} Hz`,
+      };
+    });
+  const shapes = inside.map((mode) => ({
+    type: 'line',
+    xref: 'x',
+    yref: 'paper',
+    x0: mode.frequency_hz,
+    x1: mode.frequency_hz,
+    y0: 0,
+    y1: 1,
+    line: { color: theme.grid, width: 1 },
+    layer: 'below',
+  }));
+  return { shapes, annotations };
+}
+
+function curves(frf: Frf, theme: Theme): Trace[] {
+  const data: Trace[] = [];
+  const unit = plain(frf.unit);
+  const magnitudeText = `%{y:.4g}${thinSpace}${unit} at %{x:.2f}${thinSpace}Hz`;
+  const add = (which: 'measured' | 'fitted', line: Layout) => {
+    const curve = frf[which];
+    if (curve === null) return;
+    const phase = breakJumps(frf.frequency_hz, curve.phase_deg);
+    const common = { type: 'scatter', mode: 'lines', name: which, legendgroup: which, line };
+    data.push(
+      { ...common, x: frf.frequency_hz, y: curve.magnitude, yaxis: 'y', hovertemplate: `${magnitudeText}<extra>${which}</extra>` },
+      {
+        ...common,
+        ...phase,
+        yaxis: 'y2',
+        showlegend: false,
+        hovertemplate: `%{y:.1f}° at %{x:.2f}${thinSpace}Hz<extra>${which}</extra>`,
+      },
+    );
+  };
+  add('measured', { color: theme.measured, width: 1.6 });
+  add('fitted', { color: theme.chatter, width: 1.6, dash: frf.measured === null ? 'solid' : '5px,2px' });
+  if (frf.coherence !== null) {
+    data.push({
+      type: 'scatter',
+      mode: 'lines',
+      name: 'coherence',
+      showlegend: false,
+      x: frf.frequency_hz,
+      y: frf.coherence,
+      yaxis: 'y3',
+      line: { color: theme.stable, width: 1.2 },
+      hovertemplate: `%{y:.3f} at %{x:.2f}${thinSpace}Hz<extra>coherence</extra>`,
+    });
+  }
+  return data;
+}
+
+/** Magnitude, phase and coherence over one frequency axis. */
+export function frfFigure(frf: Frf, modes: Mode[], logarithmic: boolean, theme: Theme): Figure {
+  const coherent = frf.coherence !== null;
+  const marks = modeMarks(frf, modes, logarithmic, theme);
+  const domains = coherent ? [[0.46, 1], [0.2, 0.42], [0, 0.16]] : [[0.34, 1], [0, 0.3]];
+  return {
+    data: curves(frf, theme),
+    layout: layout(theme, coherent ? 620 : 540, {
+      hovermode: 'x',
+      margin: { l: 64, r: 16, t: 64, b: 48 },
+      legend: { orientation: 'h', yanchor: 'bottom', y: 1.07, xanchor: 'left', x: 0 },
+      xaxis: axis(theme, 'Frequency (Hz)', { type: logarithmic ? 'log' : 'linear', anchor: coherent ? 'y3' : 'y2', hoverformat: '.2f' }),
+      yaxis: axis(theme, `|${plain(frf.name)}| (${plain(frf.unit)})`, { type: 'log', domain: domains[0], exponentformat: 'power', dtick: 1 }),
+      yaxis2: axis(theme, 'Phase (°)', { domain: domains[1], range: [-185, 185], tickvals: [-180, -90, 0, 90, 180] }),
+      ...(coherent ? { yaxis3: axis(theme, 'Coherence', { domain: domains[2], range: [0, 1.05], tickvals: [0, 0.5, 1] }) } : {}),
+      shapes: [...untrusted(frf, theme), ...marks.shapes],
+      annotations: marks.annotations,
+    }),
+  };
+}

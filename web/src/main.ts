@@ -1,0 +1,161 @@
+import * as Plotly from 'plotly.js-cartesian-dist-min';
+import type { Report } from './data';
+import { convergenceFigure, stabilisationFigure } from './fit';
+import { frfFigure, prefersLogFrequency } from './frf';
+import { lobesFigure, mapFigure, pairFigure } from './lobes';
+import { polarFigure } from './polar';
+import { spectrumFigure } from './spectrum';
+import { dark, light, type Figure, type Theme } from './theme';
+
+type Draw = (theme: Theme, width: number) => Figure;
+interface Plot {
+  root: HTMLElement;
+  draw: Draw;
+}
+
+const config = {
+  displaylogo: false,
+  responsive: true,
+  modeBarButtonsToRemove: ['lasso2d', 'select2d', 'autoScale2d'],
+  toImageButtonOptions: { format: 'svg', filename: 'robomill' },
+};
+
+const plots: Plot[] = [];
+const scheme = window.matchMedia('(prefers-color-scheme: dark)');
+let printing = false;
+
+function currentTheme(): Theme {
+  return scheme.matches && !printing ? dark : light;
+}
+
+/** Draws, unless the place is inside a closed part of the page: it has no width yet and is drawn when it opens. */
+async function draw(plot: Plot, width?: number): Promise<void> {
+  if (plot.root.offsetParent === null) return;
+  const figure = plot.draw(currentTheme(), width ?? plot.root.clientWidth);
+  if (width !== undefined) Object.assign(figure.layout, { width, autosize: false });
+  await Plotly.react(plot.root, figure.data, figure.layout, config);
+}
+
+function drawAll(width?: number): Promise<void[]> {
+  return Promise.all(plots.map((plot) => draw(plot, width)));
+}
+
+function element<K extends keyof HTMLElementTagNameMap>(tag: K, className: string, parent: HTMLElement): HTMLElementTagNameMap[K] {
+  const made = document.createElement(tag);
+  made.className = className;
+  parent.append(made);
+  return made;
+}
+
+/** A group of radio buttons above a plot. */
+function choice(figure: HTMLElement, legend: string, names: string[], chosen: number, changed: (index: number) => void): void {
+  const group = document.createElement('fieldset');
+  group.className = 'choice';
+  element('legend', '', group).textContent = legend;
+  const id = `choice-${document.querySelectorAll('fieldset.choice').length}`;
+  names.forEach((name, index) => {
+    const label = element('label', '', group);
+    const input = element('input', '', label);
+    input.type = 'radio';
+    input.name = id;
+    input.checked = index === chosen;
+    input.addEventListener('change', () => changed(index));
+    element('span', '', label).textContent = name;
+  });
+  const controls = figure.querySelector<HTMLElement>('.controls') ?? document.createElement('div');
+  controls.className = 'controls';
+  controls.append(group);
+  figure.prepend(controls);
+}
+
+function add(root: HTMLElement, make: Draw): Plot {
+  const plot = { root, draw: make };
+  plots.push(plot);
+  return plot;
+}
+
+function several(canvas: HTMLElement, makers: Draw[]): void {
+  canvas.classList.add('several');
+  for (const make of makers) add(element('div', 'panel', canvas), make);
+}
+
+function addFrf(report: Report, figure: HTMLElement, canvas: HTMLElement): void {
+  let shown = 0;
+  let logarithmic = report.frfs.some(prefersLogFrequency);
+  const plot = add(canvas, (theme) => frfFigure(report.frfs[shown]!, report.modes, logarithmic, theme));
+  choice(figure, 'FRF', report.frfs.map((frf) => frf.name), 0, (index) => {
+    shown = index;
+    void draw(plot);
+  });
+  choice(figure, 'Frequency', ['linear', 'logarithmic'], logarithmic ? 1 : 0, (index) => {
+    logarithmic = index === 1;
+    void draw(plot);
+  });
+}
+
+function addRecording(report: Report, index: number, figure: HTMLElement, canvas: HTMLElement): void {
+  const recording = report.recordings[index]!;
+  let logarithmic = false;
+  const plot = add(canvas, (theme) => spectrumFigure(recording, logarithmic, theme));
+  choice(figure, 'Amplitude', ['linear', 'logarithmic'], 0, (chosen) => {
+    logarithmic = chosen === 1;
+    void draw(plot);
+  });
+}
+
+function addPlot(report: Report, figure: HTMLElement, canvas: HTMLElement): void {
+  const [which, index] = (figure.dataset['plot'] ?? '').split(':');
+  const all = report.lobes[0];
+  if (which === 'lobes' && all) {
+    const { other_limits: otherLimits, cuts, recommendation, alternatives } = report;
+    add(canvas, (theme, width) => lobesFigure({ lobes: all, otherLimits, cuts, recommendation, alternatives }, theme, width < 600));
+  } else if (which === 'map' && all) {
+    add(canvas, (theme) => mapFigure(all, theme));
+  } else if (which === 'pairs' && all) {
+    several(canvas, report.lobes.slice(1).map((part) => (theme) => pairFigure(part, all, report.cuts, theme)));
+  } else if (which === 'feed' && report.feed_directions) {
+    const feed = report.feed_directions;
+    const parts: ('lowest' | 'speed')[] = feed.limit_at_speed_mm ? ['lowest', 'speed'] : ['lowest'];
+    several(canvas, parts.map((part) => (theme) => polarFigure(feed, part, theme)));
+  } else if (which === 'frf') {
+    addFrf(report, figure, canvas);
+  } else if (which === 'recording') {
+    addRecording(report, Number(index), figure, canvas);
+  } else if (which === 'convergence' && report.fit) {
+    const { fit } = report;
+    add(canvas, (theme) => convergenceFigure(fit, theme));
+  } else if (which === 'stabilisation' && report.fit) {
+    const { fit } = report;
+    add(canvas, (theme) => stabilisationFigure(fit, theme));
+  }
+}
+
+/** A4 between its margins, at 96 pixels an inch. */
+const paperWidth = 680;
+
+async function start(): Promise<void> {
+  const report = JSON.parse(document.getElementById('report-data')?.textContent ?? '{}') as Report;
+  for (const figure of document.querySelectorAll<HTMLElement>('figure[data-plot]')) {
+    const canvas = figure.querySelector<HTMLElement>('.canvas');
+    if (canvas) addPlot(report, figure, canvas);
+  }
+  for (const part of document.querySelectorAll('details')) {
+    part.addEventListener('toggle', () => {
+      if (!part.open) return;
+      for (const plot of plots) if (part.contains(plot.root)) void draw(plot);
+    });
+  }
+  scheme.addEventListener('change', () => void drawAll());
+  window.addEventListener('beforeprint', () => {
+    printing = true;
+    for (const plot of plots) void draw(plot, plot.root.classList.contains('panel') ? paperWidth / 2 - 10 : paperWidth);
+  });
+  window.addEventListener('afterprint', () => {
+    printing = false;
+    void drawAll();
+  });
+  await drawAll();
+  document.documentElement.dataset['plots'] = 'ready';
+}
+
+void start();

@@ -1,0 +1,87 @@
+/** Colours that stay apart for the colour-blind (after Okabe and Ito), each with its own marker shape as well. */
+export interface Theme {
+  text: string;
+  muted: string;
+  grid: string;
+  panel: string;
+  stable: string;
+  stableFill: string;
+  chatter: string;
+  borderline: string;
+  unknown: string;
+  accent: string;
+  measured: string;
+  series: string[];
+}
+
+export const light: Theme = {
+  text: '#1c2430',
+  muted: '#5c6878',
+  grid: '#e3e7ec',
+  panel: '#ffffff',
+  stable: '#007f5f',
+  stableFill: 'rgba(0, 127, 95, 0.10)',
+  chatter: '#c8401c',
+  borderline: '#c98a00',
+  unknown: '#8a94a3',
+  accent: '#0b5cad',
+  measured: '#8796aa',
+  series: ['#0b5cad', '#c8401c', '#007f5f', '#a3498e', '#c98a00', '#2f9ec4', '#6b6f76', '#7a5230'],
+};
+
+export const dark: Theme = {
+  text: '#e6eaf0',
+  muted: '#9aa6b6',
+  grid: '#2c3644',
+  panel: '#171d26',
+  stable: '#3ecf9f',
+  stableFill: 'rgba(62, 207, 159, 0.12)',
+  chatter: '#ff7a55',
+  borderline: '#f0b840',
+  unknown: '#8a97a8',
+  accent: '#63b0ff',
+  measured: '#76869b',
+  series: ['#63b0ff', '#ff7a55', '#3ecf9f', '#d98cc7', '#f0b840', '#7fd3ef', '#a8adb5', '#c79a74'],
+};
+
+export type Trace = Record<string, unknown>;
+export type Layout = Record<string, unknown>;
+export interface Figure {
+  data: Trace[];
+  layout: Layout;
+}
+
+export const thinSpace = '\u202f';
+
+/** An axis with a title, in the theme's colours. */
+export function axis(theme: Theme, title: string, more: Layout = {}): Layout {
+  return {
+    title: { text: title, standoff: 8 },
+    gridcolor: theme.grid,
+    linecolor: theme.grid,
+    zerolinecolor: theme.grid,
+    automargin: true,
+    ...more,
+  };
+}
+
+/** What every figure shares. */
+export function layout(theme: Theme, height: number, more: Layout = {}): Layout {
+  return {
+    height,
+    autosize: true,
+    paper_bgcolor: 'rgba(0,0,0,0)',
+    plot_bgcolor: 'rgba(0,0,0,0)',
+    font: { family: 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif', size: 13, color: theme.text },
+    margin: { l: 56, r: 16, t: 16, b: 48 },
+    separators: `.${thinSpace}`,
+    hoverlabel: { bgcolor: theme.panel, bordercolor: theme.muted, font: { color: theme.text }, align: 'left' },
+    legend: { orientation: 'h', yanchor: 'bottom', y: 1.01, xanchor: 'left', x: 0, font: { size: 12 } },
+    ...more,
+  };
+}
+
+/** Plotly reads some tags in texts; texts from outside must stay texts. */
+export function plain(text: string): string {
+  return text.replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/>/g, '&gt;');
+}
