@@ -1,0 +1,28 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace robomill::formats {
+
+/// Columns of numbers in a text file.
+struct Table {
+  std::vector<std::string> names;            ///< one a column; empty where the file has no header
+  std::vector<std::vector<double>> columns;  ///< all of one length, >= 1
+};
+
+/// Reads columns parted by semicolons, tabs, commas or blanks, whichever the first line of numbers shows, in this
+/// order.
+///
+/// Lines that are empty or begin with #, % or // are skipped. Lines before the first line of numbers are a header; the
+/// names are the first of the last two of them that have as many fields as there are columns (the second may hold
+/// units). Names and numbers may stand in double quotes; numbers may have a sign +, exponents of any length, D for E,
+/// and a comma for the point where columns are parted by semicolons or tabs.
+/// @param where  names the file in messages
+/// @throws InvalidInput with file and line if there is no line of numbers, a value is empty or no finite number, or a
+/// line has
+///         another number of values than those before it
+[[nodiscard]] Table parse_table(std::string_view content, const std::string& where);
+
+}  // namespace robomill::formats
