@@ -261,6 +261,11 @@ bool TomlFile::has(std::string_view key) const {
   return find(state_->root, key) != nullptr;
 }
 
+bool TomlFile::is_number(std::string_view key) const {
+  const toml::node* node = find(state_->root, key);
+  return node != nullptr && node->is_number();
+}
+
 std::size_t TomlFile::tables(std::string_view key) const {
   const toml::node* node = state_->ask(key);
   if (node == nullptr) return 0;

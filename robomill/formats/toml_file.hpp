@@ -58,6 +58,8 @@ class TomlFile {
   /// Accepts a key or a whole table unread: it is for another reader of the same file.
   void skip(std::string_view key);
   [[nodiscard]] bool has(std::string_view key) const;
+  /// Whether the key is there and holds a number.
+  [[nodiscard]] bool is_number(std::string_view key) const;
   /// Number of tables in an array of tables; 0 where it is absent.
   [[nodiscard]] std::size_t tables(std::string_view key) const;
   /// Names of the keys in a table, in the order of the file.
