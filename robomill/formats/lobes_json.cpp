@@ -1,0 +1,72 @@
+#include "robomill/formats/lobes_json.hpp"
+
+#include "robomill/formats/json.hpp"
+#include "robomill/formats/units.hpp"
+
+namespace robomill::formats {
+namespace {
+
+Json grid_json(const Eigen::VectorXd& values, double unit) {
+  Json out = Json::array();
+  for (const double value : values) out.push_back(number(value / unit));
+  return out;
+}
+
+Json point_json(double spindle_speed_rad_per_s, double axial_depth_m) {
+  return {{"spindle_speed_rpm", number(spindle_speed_rad_per_s / units::rpm)},
+          {"axial_depth_mm", number(axial_depth_m / units::mm)}};
+}
+
+template <class Point>
+void add_chatter(Json& json, const Point& point) {
+  json["chatter_frequency_hz"] = number(point.chatter_frequency_hz);
+  json["kind"] = stability::to_string(point.kind);
+  json["mode"] = point.mode;
+}
+
+Json map_json(const Eigen::MatrixXd& spectral_radius) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < spectral_radius.rows(); ++i) rows.push_back(numbers(spectral_radius.row(i).transpose()));
+  return rows;
+}
+
+}  // namespace
+
+std::string lobes_json(const stability::LobesResult& result, bool with_map) {
+  Json json;
+  json["spindle_speed_rpm"] = grid_json(result.spindle_speed_rad_per_s, units::rpm);
+  json["axial_depth_mm"] = grid_json(result.axial_depth_m, units::mm);
+  if (with_map) json["spectral_radius"] = map_json(result.spectral_radius);
+  json["boundary"] = Json::array();
+  for (const stability::BoundaryPoint& point : result.boundary) {
+    json["boundary"].push_back(point_json(point.spindle_speed_rad_per_s, point.axial_depth_m));
+    add_chatter(json["boundary"].back(), point);
+  }
+  json["limit"] = Json::array();
+  for (const stability::Limit& limit : result.limit) {
+    Json row = point_json(limit.spindle_speed_rad_per_s, limit.axial_depth_m);
+    if (limit.status == stability::Limit::Status::found) {
+      add_chatter(row, limit);
+    } else {
+      row["axial_depth_mm"] = nullptr;
+    }
+    json["limit"].push_back(row);
+  }
+  json["points"] = Json::array();
+  for (const stability::PointResult& point : result.points) {
+    Json row = point_json(point.spindle_speed_rad_per_s, point.axial_depth_m);
+    row["spectral_radius"] = number(point.spectral_radius);
+    row["stable"] = point.stable;
+    row["error_estimate"] = number(point.error_estimate);
+    row["multiplier"] = complex_number(point.multiplier);
+    add_chatter(row, point);
+    json["points"].push_back(row);
+  }
+  json["method"] = stability::to_string(result.method);
+  json["period"] = stability::to_string(result.period);
+  json["evaluations"] = result.evaluations;
+  json["seconds"] = number(result.seconds);
+  return dump(json);
+}
+
+}  // namespace robomill::formats

@@ -1,0 +1,152 @@
+#include "robomill/formats/lobes_toml.hpp"
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <string>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/toml_file.hpp"
+#include "robomill/formats/units.hpp"
+
+namespace robomill::formats {
+namespace {
+
+void read_tool(TomlFile& file, cutting::FlatEndMill& tool) {
+  file.integer("tool.teeth", "teeth", tool.teeth);
+  file.number("tool.diameter_mm", "diameter_m", units::mm, tool.diameter_m);
+  file.number("tool.helix_deg", "helix_rad", units::deg, tool.helix_rad);
+  file.numbers("tool.pitch_deg", "pitch_rad", units::deg, tool.pitch_rad);
+  file.locate([&] { tool.validate(); });
+}
+
+void read_cut(TomlFile& file, LobesFile& out) {
+  cutting::Milling& milling = out.problem.milling;
+  file.number("cut.feed_per_tooth_mm", "feed_per_tooth_m", units::mm, out.feed_per_tooth_m);
+  file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
+  const bool radial = file.number("cut.radial_depth_mm", "radial_depth_m", units::mm, out.radial_depth_m) ||
+                      file.number("cut.stepover_mm", "radial_depth_m", units::mm, out.radial_depth_m);
+  const bool entry = file.number("cut.entry_deg", "entry_rad", units::deg, milling.immersion.entry_rad);
+  const bool exit = file.number("cut.exit_deg", "exit_rad", units::deg, milling.immersion.exit_rad);
+  cutting::MillingDirection direction = cutting::MillingDirection::up;
+  const bool named = file.choice<cutting::MillingDirection>("cut.direction",
+                                                            {{"up", cutting::MillingDirection::up},
+                                                             {"down", cutting::MillingDirection::down},
+                                                             {"slot", cutting::MillingDirection::slot}},
+                                                            direction);
+  if (out.feed_per_tooth_m < 0.0) throw file.refuse("cut.feed_per_tooth_mm", "must be >= 0");
+  if (named && (entry || exit)) throw file.refuse("cut.direction", "must not stand beside entry_deg and exit_deg");
+  if (entry != exit) file.require(entry ? "cut.exit_deg" : "cut.entry_deg", "Both angles are needed");
+  const double diameter_m = milling.tool.diameter_m;
+  if (entry) {
+    file.locate([&] { milling.immersion.validate(); });
+    out.radial_depth_m = cutting::radial_depth(milling.immersion, diameter_m);
+    return;
+  }
+  if (!named) file.require("cut.direction", "\"up\", \"down\" or \"slot\"; or give entry_deg and exit_deg");
+  if (direction == cutting::MillingDirection::slot) {
+    if (!radial) out.radial_depth_m = diameter_m;
+  } else if (!radial) {
+    file.require("cut.radial_depth_mm");
+  }
+  file.locate([&] { milling.immersion = cutting::immersion(direction, out.radial_depth_m, diameter_m); });
+}
+
+/// One direction's mode of its own, x = F / (m (ω_n² - ω² + 2iζω_nω)): residue 1 / (2 i m ω_d), shared evenly by both
+/// vectors.
+modal::Mode read_inline_mode(TomlFile& file, const std::string& row, const std::string& member, Eigen::Index axis) {
+  double modal_mass_kg = 0.0;
+  modal::Mode mode;
+  for (const char* key : {"frequency_hz", "damping_ratio", "modal_mass_kg"}) file.require(row + key);
+  file.number(row + "frequency_hz", member + "frequency_hz", 1.0, mode.frequency_hz);
+  file.number(row + "damping_ratio", member + "damping_ratio", 1.0, mode.damping_ratio);
+  file.number(row + "modal_mass_kg", member + "modal_mass_kg", 1.0, modal_mass_kg);
+  if (!(modal_mass_kg > 0.0)) throw file.refuse(row + "modal_mass_kg", "must be > 0");
+  if (!(mode.frequency_hz > 0.0)) throw file.refuse(row + "frequency_hz", "must be > 0");
+  if (!(mode.damping_ratio > 0.0 && mode.damping_ratio < 1.0)) {
+    throw file.refuse(row + "damping_ratio", "must lie between 0 and 1", "It is a ratio, not a percentage");
+  }
+  const double size = 1.0 / std::sqrt(2.0 * modal_mass_kg * modal::pole(mode).imag());
+  mode.left = Eigen::VectorXcd::Unit(2, axis) * size;
+  mode.right = Eigen::VectorXcd::Unit(2, axis) * std::complex<double>(0.0, -size);
+  return mode;
+}
+
+void read_dynamics(TomlFile& file, LobesFile& out) {
+  file.path("dynamics.modes", out.modes);
+  file.path("dynamics.frf", out.frf);
+  file.integers("dynamics.keep_modes", "keep_modes", out.problem.keep_modes);
+  modal::ModalModel own;
+  own.excitations = own.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}};
+  for (const char* axis : {"x", "y"}) {
+    const std::string key = std::string("dynamics.") + axis;
+    for (std::size_t i = 0; i < file.tables(key); ++i) {
+      const std::string member = "modes[" + std::to_string(own.modes.size() + 1) + "].";
+      own.modes.push_back(
+          read_inline_mode(file, key + "[" + std::to_string(i) + "].", member, axis == std::string_view("x") ? 0 : 1));
+    }
+  }
+  const int sources = (out.modes.empty() ? 0 : 1) + (out.frf.empty() ? 0 : 1) + (own.modes.empty() ? 0 : 1);
+  if (sources > 1) throw file.refuse("dynamics", "must give only one of modes, frf, and x and y");
+  if (!own.modes.empty()) out.problem.dynamics = own;
+}
+
+void read_pair(TomlFile& file, const char* key, const char* member, double factor, std::array<double, 2>& out) {
+  std::vector<double> values;
+  if (!file.numbers(key, member, factor, values)) return;
+  if (values.size() != 2) throw file.refuse(key, "must be [from, to]");
+  out = {values[0], values[1]};
+}
+
+void read_chart(TomlFile& file, stability::LobesOptions& options) {
+  file.require("lobes.spindle_speed_rpm", "[from, to]");
+  file.require("lobes.axial_depth_mm", "[from, to]");
+  read_pair(file, "lobes.spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm, options.spindle_speed_rad_per_s);
+  read_pair(file, "lobes.axial_depth_mm", "axial_depth_m", units::mm, options.axial_depth_m);
+  std::vector<int> grid;
+  if (file.integers("lobes.grid", "grid", grid)) {
+    if (grid.size() != 2) throw file.refuse("lobes.grid", "must be [speeds, depths]");
+    options.grid = {grid[0], grid[1]};
+  }
+  file.choice<stability::Method>("lobes.method", {{"semi-discretization", stability::Method::semi_discretization}},
+                                 options.method);
+  file.choice<stability::Output>(
+      "lobes.output", {{"boundary", stability::Output::boundary}, {"map", stability::Output::map}}, options.output);
+  file.integer("lobes.intervals", "intervals", options.intervals);
+  file.number("lobes.tolerance", "tolerance", 1.0, options.tolerance);
+  file.locate([&] { options.validate(); });
+}
+
+LobesFile read(TomlFile& file, const std::filesystem::path& path) {
+  LobesFile out;
+  out.path = path;
+  read_tool(file, out.problem.milling.tool);
+  read_cut(file, out);
+  cutting::ForceCoefficients& coefficients = out.problem.milling.coefficients;
+  file.number("coefficients.tangential_n_per_mm2", "tangential_n_per_m2", units::n_per_mm2,
+              coefficients.tangential_n_per_m2);
+  file.number("coefficients.radial_n_per_mm2", "radial_n_per_m2", units::n_per_mm2, coefficients.radial_n_per_m2);
+  file.locate([&] { coefficients.validate(); });
+  read_dynamics(file, out);
+  read_chart(file, out.options);
+  file.done();
+  return out;
+}
+
+}  // namespace
+
+void LobesFile::validate() const {
+  TomlFile file(path);
+  static_cast<void>(read(file, path));
+  if (problem.dynamics.modes.empty()) {
+    throw file.refuse("dynamics", "must name the structure: modes, frf, or x and y");
+  }
+  file.locate([&] { problem.validate(); });
+}
+
+LobesFile read_lobes(const std::filesystem::path& path) {
+  TomlFile file(path);
+  return read(file, path);
+}
+
+}  // namespace robomill::formats

@@ -1,0 +1,115 @@
+#include "robomill/formats/lobes_toml.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <string>
+
+#include "robomill/formats/test_files.hpp"
+#include "robomill/formats/units.hpp"
+
+namespace robomill::formats {
+namespace {
+
+const std::string good = R"([tool]
+teeth = 2
+diameter_mm = 12
+helix_deg = 30
+[cut]
+direction = "down"
+radial_depth_mm = 1.2
+feed_per_tooth_mm = 0.1
+feed_direction_deg = 90
+[coefficients]
+tangential_n_per_mm2 = 600
+radial_n_per_mm2 = 200
+[dynamics]
+x = [{ frequency_hz = 922, damping_ratio = 0.011, modal_mass_kg = 0.03993 }]
+y = [{ frequency_hz = 922, damping_ratio = 0.011, modal_mass_kg = 0.03993 }]
+[lobes]
+spindle_speed_rpm = [5000, 25000]
+axial_depth_mm = [0, 5]
+grid = [30, 20]
+method = "semi-discretization"
+)";
+
+std::string with(const std::string& old_text, const std::string& new_text) {
+  std::string text = good;
+  text.replace(text.find(old_text), old_text.size(), new_text);
+  return text;
+}
+
+TEST(LobesToml, ReadsEverythingInSi) {
+  const testing::Folder folder;
+  const LobesFile file = read_lobes(folder.file("lobes.toml", good));
+  EXPECT_NO_THROW(file.validate());
+  const cutting::Milling& milling = file.problem.milling;
+  EXPECT_DOUBLE_EQ(milling.tool.diameter_m, 0.012);
+  EXPECT_DOUBLE_EQ(milling.tool.helix_rad, 30 * units::deg);
+  EXPECT_NEAR(milling.immersion.entry_rad, std::acos(2 * 1.2 / 12 - 1), 1e-14);
+  EXPECT_NEAR(milling.immersion.exit_rad, std::numbers::pi, 1e-14);
+  EXPECT_DOUBLE_EQ(milling.coefficients.tangential_n_per_m2, 6e8);
+  EXPECT_DOUBLE_EQ(file.problem.feed_direction_rad, std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(file.radial_depth_m, 1.2e-3);
+  EXPECT_DOUBLE_EQ(file.options.axial_depth_m[1], 5e-3);
+  EXPECT_DOUBLE_EQ(file.options.spindle_speed_rad_per_s[0], 5000 * units::rpm);
+  EXPECT_EQ(file.options.grid[0], 30);
+}
+
+// The modes given by modal mass have the receptance 1 / (m (ω_n² - ω² + 2iζω_nω)).
+TEST(LobesToml, InlineModesHaveTheirModalMass) {
+  const testing::Folder folder;
+  const modal::ModalModel model = read_lobes(folder.file("lobes.toml", good)).problem.dynamics;
+  const Eigen::Vector3d frequency_hz(100.0, 922.0, 3000.0);
+  const modal::FrfSet frfs = modal::synthesize(model, frequency_hz);
+  const double natural = 2 * std::numbers::pi * 922;
+  for (const char* name : {"xx", "yy"}) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double omega = 2 * std::numbers::pi * frequency_hz(i);
+      const std::complex<double> expected =
+          1.0 / (0.03993 * std::complex<double>(natural * natural - omega * omega, 2 * 0.011 * natural * omega));
+      const std::complex<double> found = frfs.find(modal::parse_frf_name(name))->receptance(i);
+      EXPECT_LT(std::abs(found - expected), 1e-12 * std::abs(expected));
+    }
+  }
+}
+
+TEST(LobesToml, AnglesStandInForTheDirection) {
+  const testing::Folder folder;
+  const LobesFile file = read_lobes(
+      folder.file("lobes.toml", with("direction = \"down\"\nradial_depth_mm = 1.2", "entry_deg = 0\nexit_deg = 90")));
+  EXPECT_NEAR(file.radial_depth_m, 6e-3, 1e-15);
+  const LobesFile slot = read_lobes(
+      folder.file("lobes.toml", with("direction = \"down\"\nradial_depth_mm = 1.2", "direction = \"slot\"")));
+  EXPECT_NEAR(slot.radial_depth_m, 12e-3, 1e-15);
+}
+
+TEST(LobesToml, RefusesInTheFilesWords) {
+  const testing::Folder folder;
+  const auto say = [&](const std::string& text) {
+    return testing::refusal([&] { read_lobes(folder.file("lobes.toml", text)).validate(); });
+  };
+  const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& words) {
+    const std::string said = say(with(old_text, new_text));
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  expect("teeth = 2", "teeth = 0", "lobes.toml:2: tool.teeth = 0");
+  expect("radial_depth_mm = 1.2", "radial_depth_mm = 13", "lobes.toml:7: cut.radial_depth_mm = 13 mm");
+  expect("tangential_n_per_mm2 = 600", "tangential_n_per_mm2 = 0.6",
+         "lobes.toml:11: coefficients.tangential_n_per_mm2 = 0.6 N/mm^2");
+  expect("tangential_n_per_mm2 = 600", "tangential_n_per_mm2 = 6e8",
+         "coefficients.tangential_n_per_mm2 = 6e+08 N/mm^2");
+  expect("axial_depth_mm = [0, 5]", "axial_depth_mm = [0, 1000]", "lobes.axial_depth_mm = 1000 mm");
+  expect("spindle_speed_rpm = [5000, 25000]", "spindle_speed_rpm = [5000, 5000]", "lobes.spindle_speed_rpm = 5000 rpm");
+  expect("damping_ratio = 0.011", "damping_ratio = -0.011", "damping_ratio = -0.011");
+  expect("method = \"semi-discretization\"", "method = \"guess\"", "semi-discretization");
+  expect("radial_depth_mm = 1.2\n", "", "cut.radial_depth_mm");
+  expect("teeth = 2", "teth = 2", "tool.teeth");
+  expect("[dynamics]", "[dynamics]\nmodes = \"m.json\"", "only one of modes, frf");
+  expect("[dynamics]", "[dynamics]\nkeep_modes = [3]", "lobes.toml:14: dynamics.keep_modes");
+}
+
+}  // namespace
+}  // namespace robomill::formats
