@@ -58,7 +58,7 @@ struct ROBOMILL_API LobesOptions {
 struct PointResult {
   double spindle_speed_rad_per_s = 0.0;
   double axial_depth_m = 0.0;
-  double spectral_radius = 0.0;           ///< greatest |multiplier| of the period
+  double spectral_radius = 0.0;           ///< greatest |multiplier| of the period; 1e100 where the motion overflows
   std::complex<double> multiplier = 0.0;  ///< the one with it, imaginary part >= 0
   bool stable = false;                    ///< spectral radius < 1
   double error_estimate = 0.0;            ///< of the spectral radius: from a second run at twice the intervals
@@ -98,6 +98,7 @@ struct LobesResult {
   Method method = Method::semi_discretization;
   Period period = Period::tooth;  ///< of the spectral radius
   long long evaluations = 0;      ///< spectral radii found
+  long long unsettled = 0;  ///< of these, how many the eigenvalue iterations did not settle; 0 unless the cut is absurd
   double seconds = 0.0;
 };
 

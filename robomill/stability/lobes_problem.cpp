@@ -4,6 +4,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/tip_dynamics.hpp"
 
 namespace robomill::stability {
 namespace {
@@ -56,7 +57,7 @@ void LobesOptions::validate() const {
     if (count > 20000) throw InvalidInput("grid", count, "", "must have at most 20000 points in each direction");
   }
   if (intervals < 4) throw InvalidInput("intervals", intervals, "", "must be at least 4", "40 is usual");
-  if (intervals > 100000) throw InvalidInput("intervals", intervals, "", "must be at most 100000", "40 is usual");
+  if (intervals > 10000) throw InvalidInput("intervals", intervals, "", "must be at most 10000", "40 is usual");
   if (!(tolerance >= 1e-10 && tolerance <= 0.1)) {
     throw InvalidInput("tolerance", tolerance, "", "must lie between 1e-10 and 0.1");
   }
@@ -80,6 +81,7 @@ void LobesProblem::validate() const {
     }
     if (!seen.insert(number).second) throw InvalidInput("keep_modes", number, "", "is named twice");
   }
+  static_cast<void>(detail::tip_dynamics(*this));
 }
 
 }  // namespace robomill::stability

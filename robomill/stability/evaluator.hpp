@@ -1,0 +1,70 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "robomill/stability/arnoldi.hpp"
+#include "robomill/stability/cut_steps.hpp"
+#include "robomill/stability/lobes.hpp"
+#include "robomill/stability/monodromy.hpp"
+#include "robomill/stability/speed_plan.hpp"
+#include "robomill/stability/tip_dynamics.hpp"
+
+namespace robomill::stability::detail {
+
+/// Everything about a problem that no point of the chart changes. Shared by threads.
+struct Model {
+  Model(const LobesProblem& problem, int intervals) : tip(tip_dynamics(problem)), cut(problem.milling, intervals) {}
+  TipDynamics tip;
+  CutSteps cut;
+};
+
+/// How the motion that belongs to a multiplier looks.
+struct Motion {
+  double frequency_hz = 0.0;
+  int mode = 0;  ///< from 1, numbered as in the problem
+};
+
+/// Hopf unless the multiplier is real.
+Kind kind_of(std::complex<double> multiplier);
+/// |multiplier|; where the motion overflows in a single period, 1e100.
+double spectral_radius(const Dominant& dominant);
+
+/// One thread's means to find multipliers, eight points at a time; nothing is allocated from the second time on.
+class Evaluator {
+ public:
+  /// model must outlive this.
+  explicit Evaluator(const Model& model, const ArnoldiOptions& options = {})
+      : model_(model), monodromy_(model.tip, model.cut), arnoldi_(options) {}
+
+  struct Point {
+    double spindle_speed_rad_per_s = 0.0;
+    double axial_depth_m = 0.0;
+    const DepthPlan* plan = nullptr;  ///< of this depth, where there is one already
+  };
+  /// One to eight points; out has as many.
+  void evaluate(std::span<const Point> points, std::span<Dominant> out);
+  /// Of the points of the last evaluate. The eigenvector's motion is a sum of harmonics exp(s_j t), s_j = (ln μ + 2πij)
+  /// / T; the force has the coefficient F_j, mode k the displacement R_k L_k^T F_j / (s_j - λ_k) + conjugate pole's
+  /// term. Named are the mode and the harmonic whose displacement is greatest.
+  void describe(std::span<const Dominant> dominant, std::span<Motion> out);
+
+  [[nodiscard]] long long evaluations() const { return evaluations_; }
+  [[nodiscard]] long long unsettled() const { return unsettled_; }
+
+ private:
+  void apply_vectors(std::span<const Eigen::VectorXcd> vectors, bool imaginary);
+  Motion motion(std::size_t lane, const Eigen::VectorXcd& vector, std::complex<double> multiplier) const;
+
+  const Model& model_;
+  Monodromy monodromy_;
+  Arnoldi arnoldi_;
+  std::array<SpeedPlan, lane_count> speeds_;
+  std::array<DepthPlan, lane_count> depths_;
+  std::array<LanePoint, lane_count> points_;
+  std::vector<Lanes> in_, out_;
+  std::vector<std::array<Eigen::Vector2cd, lane_count>> forces_;  ///< [cut]
+  long long evaluations_ = 0, unsettled_ = 0;
+};
+
+}  // namespace robomill::stability::detail
