@@ -5,10 +5,14 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <mutex>
+#include <string_view>
+#include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/child.hpp"
 #include "robomill/formats/file.hpp"
 
 namespace robomill::formats {
@@ -110,11 +114,13 @@ MatVariable converted(const matvar_t& variable, const std::string& file) {
   return out;
 }
 
-}  // namespace
+/// "MI" or "IM" after the version 1.0: the header of version 5; version 7.3 has 2.0 there, version 4 no header.
+bool is_version_5(std::string_view content) {
+  return content.size() >= 128 && (content.substr(124, 4) == std::string_view("\0\1IM", 4) ||
+                                   content.substr(124, 4) == std::string_view("\1\0MI", 4));
+}
 
-std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
-  const double file_bytes = static_cast<double>(read_file(path).size());
-  const std::lock_guard lock(library());
+std::vector<MatVariable> read_variables(const std::filesystem::path& path, double file_bytes) {
   const std::string file = path.string();
   const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY), &Mat_Close);
   if (!mat) throw InvalidInput(file, "is no MAT file");
@@ -129,6 +135,58 @@ std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
     out.push_back(converted(*variable, file));
   }
   return out;
+}
+
+void append(std::string& out, const void* data, std::size_t bytes) {
+  out.append(static_cast<const char*>(data), bytes);
+}
+
+/// For the way from one process to another: sizes, name, values.
+std::string pack(const std::vector<MatVariable>& variables) {
+  std::string out;
+  for (const MatVariable& variable : variables) {
+    const std::array<Eigen::Index, 4> sizes = {static_cast<Eigen::Index>(variable.name.size()), variable.re.rows(),
+                                               variable.re.cols(), variable.im.size()};
+    append(out, sizes.data(), sizeof(sizes));
+    out += variable.name;
+    for (const Eigen::MatrixXd* part : {&variable.re, &variable.im}) {
+      append(out, part->data(), static_cast<std::size_t>(part->size()) * sizeof(double));
+    }
+  }
+  return out;
+}
+
+std::vector<MatVariable> unpack(std::string_view bytes) {
+  std::vector<MatVariable> out;
+  const auto take = [&bytes](void* to, std::size_t count) {
+    if (count > 0) std::memcpy(to, bytes.data(), count);
+    bytes.remove_prefix(count);
+  };
+  while (!bytes.empty()) {
+    std::array<Eigen::Index, 4> sizes{};
+    take(sizes.data(), sizeof(sizes));
+    MatVariable variable{.name = std::string(static_cast<std::size_t>(sizes[0]), ' '), .re = {}};
+    take(variable.name.data(), variable.name.size());
+    variable.re.resize(sizes[1], sizes[2]);
+    if (sizes[3] > 0) variable.im.resize(sizes[1], sizes[2]);
+    for (Eigen::MatrixXd* part : {&variable.re, &variable.im}) {
+      take(part->data(), static_cast<std::size_t>(part->size()) * sizeof(double));
+    }
+    out.push_back(std::move(variable));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
+  const std::string content = read_file(path);
+  const std::lock_guard lock(library());
+  if (is_version_5(content)) return read_variables(path, static_cast<double>(content.size()));
+  // HDF5 trusts what a file says of its types, and a damaged one brings the process down.
+  const auto packed = run_in_child([&] { return pack(read_variables(path, static_cast<double>(content.size()))); });
+  if (!packed) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
+  return unpack(*packed);
 }
 
 void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>& variables) {

@@ -103,9 +103,10 @@ Record read_wav_record(const Path& path, double scale) {
   record.names.resize(channels);
   std::vector<std::vector<double>> columns(channels);
   // In blocks: what the header says of the length may be wrong.
-  std::vector<double> block(4096 * channels);
+  const std::size_t block_frames = std::max<std::size_t>(1, 8192 / channels);
+  std::vector<double> block(block_frames * channels);
   sf_count_t frames = 0;
-  while ((frames = sf_readf_double(sound.get(), block.data(), 4096)) > 0) {
+  while ((frames = sf_readf_double(sound.get(), block.data(), static_cast<sf_count_t>(block_frames))) > 0) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(frames) * channels; ++i) {
       columns[i % channels].push_back(scale * block[i]);
     }
