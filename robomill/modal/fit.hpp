@@ -48,9 +48,9 @@ struct FitOptions {
   double stable_damping = 0.05;    ///< … its damping ratio less than this share, > 0 …
   double stable_mac = 0.95;        ///< … and its vector's MAC with the one before is above this, in (0, 1)
 
-  int pso_particles = 400;               ///< >= 2
-  int pso_max_iterations = 8000;         ///< >= 1
-  double pso_frequency_margin_hz = 0.0;  ///< Δω of the published method as a frequency [Hz]; 0: from the peak's width
+  int pso_particles = 400;                ///< >= 2
+  int pso_max_iterations = 8000;          ///< >= 1
+  double pso_frequency_half_width = 0.1;  ///< a mode stays within (1 ± this) of its peak, in (0, 1)
 
   /// @throws InvalidInput naming the field
   ROBOMILL_API void validate() const;
@@ -82,7 +82,9 @@ struct FitResult {
   double mean_relative_error = 0.0;  ///< mean over lines and FRFs of |H_fit - H| / |H|, residuals included
   std::vector<FrfFitError> by_frf;   ///< in the order of the input
   int iterations = 0;
-  std::vector<double> best;  ///< the objective after each iteration (pso: mean relative error; hybrid: relative error)
+  /// The objective after each iteration. pso: mean relative error; hybrid: the relative error with lines weighted,
+  /// which jumps where the weights are estimated anew or a mode comes or goes, part after part.
+  std::vector<double> best;
   std::vector<StabilisationPoint> stabilisation;  ///< hybrid and lscf
   double band_low_hz = 0.0, band_high_hz = 0.0;   ///< first and last line used [Hz]
   Eigen::Index lines = 0;                         ///< number of lines used

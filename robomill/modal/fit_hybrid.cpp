@@ -42,15 +42,16 @@ void set_weight(FitEntry& entry, const Eigen::VectorXd& variance) {
 void update_weights(Part& part, const FrfSet& set, const Evaluation& at, Weighting weighting) {
   for (std::size_t f = 0; f < part.data.entries.size(); ++f) {
     FitEntry& entry = part.data.entries[f];
-    const Eigen::VectorXd squares = at.residual[f].cwiseAbs2();
+    const Eigen::VectorXd squares = at.residual.col(static_cast<Index>(f)).cwiseAbs2();
     if (weighting != Weighting::estimated) {
       // Only the scale of a known variance is in question.
       set_weight(entry, variance_of_size(squares, known_variance(set.frfs[part.frfs[f]], weighting) /
                                                       std::pow(part.unit(entry), 2)));
       continue;
     }
-    const Eigen::VectorXd size2 = (entry.receptance - at.residual[f]).cwiseAbs2();
-    const Eigen::VectorXd noise = variance_of_size(scatter(part.data.omega, at.residual[f]), size2);
+    const Eigen::VectorXd size2 = (entry.receptance - at.residual.col(static_cast<Index>(f))).cwiseAbs2();
+    const Eigen::VectorXd noise =
+        variance_of_size(scatter(part.data.omega, at.residual.col(static_cast<Index>(f))), size2);
     set_weight(entry, noise.array() + misfit_variance(squares, noise));
   }
 }
@@ -71,6 +72,14 @@ void set_deviations(PartFit& fit, const FitData& data) {
     fit.omega_std(k) = std::sqrt(std::max(0.0, covariance(stride * k, stride * k)));
     fit.zeta_std(k) = std::sqrt(std::max(0.0, covariance(stride * k + 1, stride * k + 1)));
   }
+}
+
+// Costs become weighted relative errors.
+void keep(PartFit& fit, const FitData& data, const std::vector<double>& cost, int iterations) {
+  double size = 0.0;
+  for (const FitEntry& entry : data.entries) size += entry.receptance.cwiseProduct(entry.weight).squaredNorm();
+  for (const double c : cost) fit.cost.push_back(std::sqrt(c / size));
+  fit.iterations += iterations;
 }
 
 Poles as_poles(const std::vector<LscfPole>& physical, const FitData& data) {
@@ -142,41 +151,36 @@ PartFit fit_hybrid(Part& part, const FrfSet& set, const FitOptions& options, int
   const LscfOptions lscf = lscf_options(options, part.data);
   PartFit fit;
   fit.diagram = lscf_poles(part.data, lscf, progress);
+  const SearchOptions search_for = search_options(options, part.data, modes);
   const bool adaptive = weighting != Weighting::none && weighting != Weighting::relative;
-  SearchOptions search_for = search_options(options, part.data, modes);
   Poles start = as_poles(physical_poles(fit.diagram, lscf), part.data);
-  Found found;
-  for (int round = 0; round < (adaptive ? 3 : 1); ++round) {
-    if (round > 0) update_weights(part, set, found.fit.at, weighting);
+  // First weights, weights from the first fit's residuals, and those from the second's.
+  for (int round = adaptive ? 0 : 1; round < (adaptive ? 3 : 2); ++round) {
+    SearchOptions here = search_for;
+    here.grow = round < 2;
+    here.swap = round == 1;
     const Kernel kernel(part.data);
-    found = search(kernel, start, search_for, progress);
-    fit.cost.insert(fit.cost.end(), found.cost.begin(), found.cost.end());
-    fit.iterations += found.iterations;
+    const Found found = search(kernel, start, here, progress);
+    keep(fit, part.data, found.cost, found.iterations);
     start = found.fit.poles;
+    if (adaptive && round < 2) update_weights(part, set, found.fit.at, weighting);
   }
+  const Kernel kernel(part.data);
+  Refined last = refine(kernel, start, fine_options(search_for), progress);
+  keep(fit, part.data, last.cost, last.iterations);
   if (part.data.residuals) {
-    FitData plain = part.data;
-    plain.residuals = false;
-    const Kernel kernel(plain);
-    SearchOptions same = search_for;
-    same.modes = static_cast<int>(start.size());
-    Refined without = refine(kernel, start,
-                             {.omega_low = same.omega_low,
-                              .omega_high = same.omega_high,
-                              .zeta_low = same.zeta_low,
-                              .zeta_high = same.zeta_high,
-                              .max_iterations = 100,
-                              .tolerance = 1e-13},
-                             progress);
-    if (!worth_it(plain, found.fit.at, without.at, 4.0 * static_cast<double>(plain.entries.size()))) {
-      part.data.residuals = false;
-      fit.iterations += without.iterations;
-      found.fit = std::move(without);
+    part.data.residuals = false;
+    const Kernel plain(part.data);
+    Refined without = refine(plain, last.poles, fine_options(search_for), progress);
+    part.data.residuals = worth_it(part.data, last.at, without.at, 4.0 * static_cast<double>(part.data.entries.size()));
+    if (!part.data.residuals) {
+      keep(fit, part.data, without.cost, without.iterations);
+      last = std::move(without);
     }
   }
-  fit.poles = found.fit.poles;
-  fit.at = found.fit.at;
-  fit.converged = found.fit.converged && (modes == 0 || static_cast<int>(fit.poles.size()) == modes);
+  fit.poles = last.poles;
+  fit.at = last.at;
+  fit.converged = last.converged && (modes == 0 || static_cast<int>(fit.poles.size()) == modes);
   set_deviations(fit, part.data);
   return fit;
 }

@@ -115,7 +115,8 @@ TEST(FitKernel, HessianIsThatOfTheReducedResidualAtAnExactFit) {
   for (const bool partial : {false, true}) {
     Problem p = random_problem(11, true, partial);
     Evaluation e = Kernel(p.data).evaluate(p.poles, false);
-    for (std::size_t f = 0; f < p.data.entries.size(); ++f) p.data.entries[f].receptance -= e.residual[f];
+    for (std::size_t f = 0; f < p.data.entries.size(); ++f)
+      p.data.entries[f].receptance -= e.residual.col(static_cast<Index>(f));
     e = Kernel(p.data).evaluate(p.poles, true);
     EXPECT_LT(e.cost, 1e-20);
     const Eigen::VectorXd at = to_parameters(p.poles);

@@ -103,16 +103,16 @@ double misfit_variance(const Eigen::VectorXd& squares, const Eigen::VectorXd& va
   return misfit;
 }
 
-double correlation_length(const FitData& data, const std::vector<Eigen::VectorXcd>& residual) {
+double correlation_length(const FitData& data, const Eigen::MatrixXcd& residual) {
   const Index n = data.omega.size();
   double power = 0.0;
   std::vector<Eigen::VectorXcd> weighted;
-  for (std::size_t f = 0; f < residual.size(); ++f) {
-    weighted.emplace_back(residual[f].cwiseProduct(data.entries[f].weight));
+  for (std::size_t f = 0; f < data.entries.size(); ++f) {
+    weighted.emplace_back(residual.col(static_cast<Index>(f)).cwiseProduct(data.entries[f].weight));
     power += weighted.back().squaredNorm();
   }
   double length = 1.0;
-  const double insignificant = 2.0 / std::sqrt(static_cast<double>(n) * static_cast<double>(residual.size()));
+  const double insignificant = 2.0 / std::sqrt(static_cast<double>(n) * static_cast<double>(residual.cols()));
   for (Index lag = 1; lag < n / 10 && power > 0.0; ++lag) {
     double sum = 0.0;
     for (const Eigen::VectorXcd& r : weighted) sum += r.head(n - lag).dot(r.tail(n - lag)).real();

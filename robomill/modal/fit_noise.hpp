@@ -27,6 +27,6 @@ namespace robomill::modal::detail {
 
 /// Lines that carry as much information as one independent line: 1 + 2 Σ autocorrelation of the weighted residuals,
 /// >= 1.
-[[nodiscard]] double correlation_length(const FitData& data, const std::vector<Eigen::VectorXcd>& residual);
+[[nodiscard]] double correlation_length(const FitData& data, const Eigen::MatrixXcd& residual);
 
 }  // namespace robomill::modal::detail

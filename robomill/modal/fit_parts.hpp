@@ -33,7 +33,7 @@ struct PartFit {
   Eigen::VectorXd omega_std, zeta_std;  // empty where unknown
   bool converged = false;
   int iterations = 0;
-  std::vector<double> cost;
+  std::vector<double> cost;  // weighted relative error after each iteration
   std::vector<LscfPole> diagram;
 };
 

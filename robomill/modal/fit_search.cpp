@@ -3,6 +3,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "robomill/modal/fit_noise.hpp"
@@ -15,7 +16,6 @@ using Eigen::Index;
 constexpr int tried_candidates = 3;        // of those measured, refined
 constexpr double exact = 1e-9;             // relative error at which nothing is left to explain
 constexpr double coarse_tolerance = 1e-4;  // of the cost, to compare fits
-constexpr double fine_tolerance = 1e-13;
 
 RefineOptions refine_options(const SearchOptions& options, double tolerance, int iterations) {
   return {.omega_low = options.omega_low,
@@ -37,7 +37,7 @@ double smallest_cost(const FitData& data) {
 Eigen::VectorXd residual_size(const FitData& data, const Evaluation& at) {
   Eigen::VectorXd size = Eigen::VectorXd::Zero(data.omega.size());
   for (std::size_t f = 0; f < data.entries.size(); ++f) {
-    size += at.residual[f].cwiseProduct(data.entries[f].weight).cwiseAbs2();
+    size += at.residual.col(static_cast<Index>(f)).cwiseProduct(data.entries[f].weight).cwiseAbs2();
   }
   return size;
 }
@@ -99,12 +99,10 @@ class Search {
     keep_curve(state_);
     if (options_.modes > 0) {
       reach(options_.modes);
-      swap();
     } else {
       by_criterion();
     }
-    state_ = fit(state_.poles, fine_tolerance, 200);
-    keep_curve(state_);
+    if (options_.swap) swap();
     Found found;
     found.iterations = iterations_;
     found.cost = curve_;
@@ -126,6 +124,7 @@ class Search {
   void accept(Refined next) {
     keep_curve(next);
     state_ = std::move(next);
+    grown_.reset();
   }
   // A mode at a bound of damping or at the edge of the band stands for something that is no mode in the band.
   [[nodiscard]] bool all_inside(const Poles& poles) const {
@@ -136,8 +135,14 @@ class Search {
     return true;
   }
 
-  // The state with one mode more, the best of a few starts.
-  Refined grown() {
+  // The state with one mode more.
+  const Refined& grown() {
+    if (!grown_) grown_ = best_start();
+    return *grown_;
+  }
+
+  // The best of a few starts with one mode more; the state itself where there is none.
+  Refined best_start() {
     std::vector<Candidate> list = candidates(kernel_.data(), state_.at, options_);
     kernel_.measure(list, state_.poles, state_.at);
     std::sort(list.begin(), list.end(), [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
@@ -175,18 +180,16 @@ class Search {
   void reach(int modes) {
     while (state_.poles.size() > modes) accept(pruned(state_));
     while (state_.poles.size() < modes) {
-      Refined next = grown();
-      if (next.poles.size() == state_.poles.size()) return;
-      accept(std::move(next));
+      if (grown().poles.size() == state_.poles.size()) return;
+      accept(Refined(grown()));
     }
   }
 
   // One more and one less, as long as it helps.
   void swap() {
     for (int round = 0; round < 6 && state_.at.cost > smallest_cost_; ++round) {
-      const Refined more = grown();
-      if (more.poles.size() == state_.poles.size()) return;
-      Refined next = pruned(more);
+      if (grown().poles.size() == state_.poles.size()) return;
+      Refined next = pruned(grown());
       if (!(next.at.cost < (1.0 - coarse_tolerance) * state_.at.cost)) return;
       accept(std::move(next));
     }
@@ -195,17 +198,16 @@ class Search {
   void by_criterion() {
     while (state_.poles.size() > 0) {
       Refined next = pruned(state_);
-      if (all_inside(state_.poles) && state_.poles.size() <= options_.max_modes && one_more_is_worth_it(state_, next))
-        break;
+      const bool allowed = all_inside(state_.poles) && state_.poles.size() <= options_.max_modes;
+      if (allowed && one_more_is_worth_it(state_, next)) break;
       accept(std::move(next));
     }
-    while (state_.poles.size() < options_.max_modes && state_.at.cost > smallest_cost_) {
-      Refined next = grown();
-      if (next.poles.size() == state_.poles.size() || !all_inside(next.poles) || !one_more_is_worth_it(next, state_))
-        break;
-      accept(std::move(next));
+    while (options_.grow && state_.poles.size() < options_.max_modes && state_.at.cost > smallest_cost_) {
+      const Refined& next = grown();
+      if (next.poles.size() == state_.poles.size() || !all_inside(next.poles)) break;
+      if (!one_more_is_worth_it(next, state_)) break;
+      accept(Refined(next));
     }
-    swap();
   }
 
   const Kernel& kernel_;
@@ -213,6 +215,7 @@ class Search {
   Progress& progress_;
   double smallest_cost_;
   Refined state_;
+  std::optional<Refined> grown_;
   std::vector<double> curve_;
   int iterations_ = 0;
 };
@@ -225,6 +228,10 @@ bool worth_it(const FitData& data, const Evaluation& larger, const Evaluation& s
   const double floor = smallest_cost(data);
   return independent * std::log(std::max(smaller.cost, floor) / std::max(larger.cost, floor)) >
          more_unknowns * std::log(independent);
+}
+
+RefineOptions fine_options(const SearchOptions& options) {
+  return refine_options(options, 1e-13, 200);
 }
 
 Found search(const Kernel& kernel, const Poles& start, const SearchOptions& options, Progress& progress) {

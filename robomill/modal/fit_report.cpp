@@ -1,0 +1,139 @@
+#include "robomill/modal/fit_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+namespace robomill::modal::detail {
+namespace {
+
+using Eigen::Index;
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+void warn_of_gaps(FitResult& result, const FrfSet& set, const FrfSet& model) {
+  std::vector<std::string> implied;
+  std::vector<std::string> zero;
+  for (const Frf& frf : model.frfs) {
+    if (set.find(frf.name) != nullptr) continue;
+    (frf.receptance.squaredNorm() > 0.0 ? implied : zero).push_back(to_string(frf.name));
+  }
+  if (!zero.empty()) {
+    result.warnings.push_back(fmt::format(
+        "{} not measured: taken as zero. Measure the cross FRFs to know how the directions act on each other.",
+        list_of(zero)));
+  }
+  if (!implied.empty()) {
+    result.warnings.push_back(fmt::format(
+        "{} not measured: follows from the other FRFs' mode vectors, with their errors.", list_of(implied)));
+  }
+}
+
+// A force at rest must not take power out of the structure: Im H_ii <= 0.
+void warn_of_activity(FitResult& result, const FrfSet& model) {
+  constexpr double negligible = 1e-6;  // of the largest |H_ii|
+  for (const Frf& frf : model.frfs) {
+    if (frf.name.response != frf.name.excitation) continue;
+    const double threshold = negligible * frf.receptance.cwiseAbs().maxCoeff();
+    const auto active = static_cast<double>((frf.receptance.imag().array() > threshold).count());
+    const double share = active / static_cast<double>(frf.receptance.size());
+    if (share < 0.005) continue;
+    result.warnings.push_back(fmt::format(
+        "The model is not passive: Im H_{} > 0 on {:.0f} % of the lines (a force there would take power out).",
+        to_string(frf.name), 100.0 * share));
+  }
+}
+
+void warn_of_one_way(FitResult& result, const FrfSet& model) {
+  constexpr double tolerated = 0.05;
+  for (const Frf& frf : model.frfs) {
+    if (!(frf.name.response < frf.name.excitation)) continue;
+    const Frf* other = model.find({.response = frf.name.excitation, .excitation = frf.name.response});
+    if (other == nullptr) continue;
+    const double size = std::max(frf.receptance.norm(), other->receptance.norm());
+    const double difference = (frf.receptance - other->receptance).norm();
+    if (difference <= tolerated * size) continue;
+    result.warnings.push_back(
+        fmt::format("The model is not reciprocal: H_{} and H_{} differ by {:.0f} % of the larger.", to_string(frf.name),
+                    to_string(other->name), 100.0 * difference / size));
+  }
+}
+
+// A blow cannot move a mass at once: 2 Re Σ R Lᵀ = 0, or H falls as 1/ω above the modes where it should as 1/ω².
+void warn_of_jump(FitResult& result) {
+  constexpr double tolerated = 0.02;
+  const ModalModel& model = result.model;
+  Eigen::MatrixXd sum =
+      Eigen::MatrixXd::Zero(static_cast<Index>(model.responses.size()), static_cast<Index>(model.excitations.size()));
+  double size = 0.0;
+  for (const Mode& mode : model.modes) {
+    const Eigen::MatrixXcd residue = mode.right * mode.left.transpose();
+    sum += 2.0 * residue.real();
+    size += 2.0 * residue.norm();
+  }
+  if (sum.norm() <= tolerated * size) return;
+  result.warnings.push_back(
+      fmt::format("2 Re Σ R Lᵀ is {:.0f} % of the residues' size where a complete structure has 0: modes outside the "
+                  "band, or noise.",
+                  100.0 * sum.norm() / size));
+}
+
+void warn_of_vague_modes(FitResult& result) {
+  for (std::size_t k = 0; k < result.model.modes.size(); ++k) {
+    const Mode& mode = result.model.modes[k];
+    const double share = mode.damping_ratio_std / mode.damping_ratio;
+    if (!(share > 0.5)) continue;
+    result.warnings.push_back(
+        fmt::format("Mode {} ({:.1f} Hz) is vague: the standard deviation of its damping ratio is {:.0f} % of it.",
+                    k + 1, mode.frequency_hz, 100.0 * share));
+  }
+}
+
+}  // namespace
+
+void set_errors(FitResult& result, const FrfSet& set) {
+  const FrfSet model = synthesize(result.model, set.frequency_hz);
+  double error2 = 0.0;
+  double size2 = 0.0;
+  double sum = 0.0;
+  double lines = 0.0;
+  for (const Frf& frf : set.frfs) {
+    const Frf* fitted = model.find(frf.name);
+    const Eigen::VectorXcd difference = fitted == nullptr ? frf.receptance : fitted->receptance - frf.receptance;
+    FrfFitError one{.name = frf.name, .error = {}};
+    double ratio = 0.0;
+    double counted = 0.0;
+    for (Index i = 0; i < difference.size(); ++i) {
+      if (frf.receptance(i) == 0.0) continue;
+      ratio += std::abs(difference(i)) / std::abs(frf.receptance(i));
+      counted += 1.0;
+    }
+    if (counted > 0.0) {
+      one.error.relative = difference.norm() / frf.receptance.norm();
+      one.error.mean_relative = ratio / counted;
+    }
+    error2 += difference.squaredNorm();
+    size2 += frf.receptance.squaredNorm();
+    sum += ratio;
+    lines += counted;
+    result.by_frf.push_back(one);
+  }
+  result.relative_error = size2 > 0.0 ? std::sqrt(error2 / size2) : 0.0;
+  result.mean_relative_error = lines > 0.0 ? sum / lines : 0.0;
+}
+
+void add_warnings(FitResult& result, const FrfSet& set) {
+  const FrfSet model = synthesize(result.model, set.frequency_hz);
+  warn_of_gaps(result, set, model);
+  warn_of_activity(result, model);
+  warn_of_one_way(result, model);
+  warn_of_jump(result);
+  warn_of_vague_modes(result);
+}
+
+}  // namespace robomill::modal::detail
