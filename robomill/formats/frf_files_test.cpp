@@ -1,0 +1,163 @@
+#include "robomill/formats/frf_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "data/robot_modes.hpp"
+#include "robomill/base/random.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/test_files.hpp"
+#include "robomill/formats/uff.hpp"
+
+namespace robomill::formats {
+namespace {
+
+modal::FrfSet robot_frfs() {
+  modal::FrfSet set = modal::synthesize(data::robot_modes(), Eigen::VectorXd::LinSpaced(97, 5.0, 600.0));
+  for (modal::Frf& frf : set.frfs) {
+    frf.coherence = Eigen::VectorXd::LinSpaced(97, 0.5, 1.0);
+    frf.deviation = 1e-3 * frf.receptance.cwiseAbs();
+  }
+  return set;
+}
+
+void expect_same(const modal::FrfSet& read, const modal::FrfSet& written, double tolerance, bool with_deviation) {
+  ASSERT_EQ(read.frfs.size(), written.frfs.size());
+  EXPECT_LT((read.frequency_hz - written.frequency_hz).norm(), 1e-6 * written.frequency_hz.norm());
+  for (const modal::Frf& frf : written.frfs) {
+    const modal::Frf* other = read.find(frf.name);
+    ASSERT_NE(other, nullptr) << modal::to_string(frf.name);
+    EXPECT_LT((other->receptance - frf.receptance).norm(), tolerance * frf.receptance.norm());
+    ASSERT_EQ(other->coherence.size(), frf.coherence.size());
+    EXPECT_LT((other->coherence - frf.coherence).norm(), tolerance * frf.coherence.norm());
+    if (!with_deviation) continue;
+    ASSERT_EQ(other->deviation.size(), frf.deviation.size());
+    EXPECT_LT((other->deviation - frf.deviation).norm(), tolerance * frf.deviation.norm());
+  }
+}
+
+TEST(FrfFiles, EveryFormatGivesTheSetBack) {
+  const testing::Folder folder;
+  const modal::FrfSet set = robot_frfs();
+  for (const char* name : {"tip.csv", "tip.txt", "tip.mat", "tip.json", "tip.uff"}) {
+    write_frfs(folder.at(name), set);
+    expect_same(read_frfs({folder.at(name)}).set, set, 1e-11, std::string(name) != "tip.uff");
+  }
+  write_frfs(folder.at("binary.uff"), set, {.binary_uff = true});
+  expect_same(read_frfs({folder.at("binary.uff")}).set, set, 1e-14, false);
+}
+
+TEST(FrfFiles, PointsAndRotationsKeepTheirNames) {
+  const testing::Folder folder;
+  modal::FrfSet set;
+  set.frequency_hz = Eigen::Vector3d(1.0, 2.0, 3.0);
+  for (const char* name : {"1x:3x", "1x:3my", "1ry:3my"}) {
+    set.frfs.push_back({.name = modal::parse_frf_name(name), .receptance = Eigen::Vector3cd::Random()});
+  }
+  for (const char* name : {"p.csv", "p.mat", "p.json", "p.uff"}) {
+    write_frfs(folder.at(name), set);
+    expect_same(read_frfs({folder.at(name)}).set, set, 1e-11, false);
+  }
+}
+
+TEST(FrfFiles, HeaderlessColumnsTakeTheirNamesFromTheUser) {
+  const testing::Folder folder;
+  const auto a = folder.file("a.txt", "0 7e-001 0\n1 1e-6 -2e-6\n2 3e-6 4e-6\n");
+  const auto b = folder.file("b.txt", "0\t1\t0\n1\t5e-6\t6e-6\n2\t7e-6\t8e-6\n");
+  EXPECT_EQ(modal::to_string(read_frfs({a}).set.frfs[0].name), "xx");
+  const modal::FrfSet both = read_frfs({a, b}, {"xx", "yy"}).set;
+  EXPECT_EQ(both.find(modal::parse_frf_name("yy"))->receptance(2), std::complex<double>(7e-6, 8e-6));
+  EXPECT_NE(testing::refusal([&] { static_cast<void>(read_frfs({a, b})); }).find("--as"), std::string::npos);
+  EXPECT_NE(testing::refusal([&] {
+              static_cast<void>(read_frfs({a, b}, {"xx", "xx"}));
+            }).find("comes twice"),
+            std::string::npos);
+}
+
+TEST(FrfFiles, RefusesAxesThatDiffer) {
+  const testing::Folder folder;
+  const auto a = folder.file("a.txt", "1 1 0\n2 1 0\n");
+  const auto b = folder.file("b.txt", "1 1 0\n2.1 1 0\n");
+  const std::string said = testing::refusal([&] { static_cast<void>(read_frfs({a, b}, {"xx", "yy"})); });
+  EXPECT_NE(said.find("a.txt"), std::string::npos);
+  EXPECT_NE(said.find("b.txt"), std::string::npos);
+}
+
+// A sine of displacement X has the acceleration -ω² X.
+TEST(FrfFiles, AccelerancesBecomeReceptances) {
+  const testing::Folder folder;
+  UffFunction function;
+  function.type = 4;
+  function.is_complex = true;
+  function.response_direction = -1;
+  function.reference_direction = 1;
+  function.abscissa = Eigen::Vector3d(0.0, 10.0, 20.0);
+  function.values = Eigen::Vector3cd(0.0, {2.0, 1.0}, 3.0);
+  function.abscissa_axis = {.type = 18, .unit = "Hz"};
+  function.numerator = {.type = 12, .unit = "m/s^2"};
+  function.denominator = {.type = 13, .unit = "N"};
+  const FrfFile file = read_frfs({folder.file("a.uff", format_uff({function}, false))});
+  ASSERT_EQ(file.set.frequency_hz.size(), 2);
+  const double omega = 2 * std::numbers::pi * 10.0;
+  const std::complex<double> expected = std::complex<double>(2.0, 1.0) / (omega * omega);
+  EXPECT_LT(std::abs(file.set.frfs[0].receptance(0) - expected), 1e-11 * std::abs(expected));
+  EXPECT_FALSE(file.notes.empty());
+}
+
+TEST(FrfFiles, OneNumberedPointIsTheTip) {
+  const testing::Folder folder;
+  modal::FrfSet set;
+  set.frequency_hz = Eigen::Vector2d(1.0, 2.0);
+  set.frfs.push_back({.name = modal::parse_frf_name("4x:4x"), .receptance = Eigen::Vector2cd(1.0, 2.0)});
+  write_frfs(folder.at("p.json"), set);
+  const FrfFile file = read_frfs({folder.at("p.json")});
+  EXPECT_EQ(modal::to_string(file.set.frfs[0].name), "xx");
+  EXPECT_NE(file.notes.back().find("point 4"), std::string::npos);
+}
+
+TEST(FrfFiles, RefusesWhatCannotBeAnFrf) {
+  const testing::Folder folder;
+  const auto say = [&](const char* name, const std::string& text) {
+    return testing::refusal([&] { static_cast<void>(read_frfs({folder.file(name, text)})); });
+  };
+  EXPECT_NE(say("a.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n1,2,nan\n").find("a.csv:2"), std::string::npos);
+  EXPECT_NE(say("a.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n2,2,1\n1,2,1\n").find("must be above"),
+            std::string::npos);
+  EXPECT_NE(say("a.csv", "frequency_hz,xx_re_m_per_n\n2,2\n").find("xx_im_m_per_n"), std::string::npos);
+  EXPECT_NE(say("a.txt", "1 2\n2 3\n").find("three columns"), std::string::npos);
+  EXPECT_NE(say("a.json", "{\"frequency_hz\":[1,2]}").find("receptance_m_per_n"), std::string::npos);
+  EXPECT_NE(say("a.json", "{\"frequency_hz\":[1,\"x\"],\"receptance_m_per_n\":{}}").find("frequency_hz[2]"),
+            std::string::npos);
+  EXPECT_NE(say("a.doc", "hello").find(".uff"), std::string::npos);
+  EXPECT_NE(say("a.csv", " ").find("a.csv"), std::string::npos);
+}
+
+// Cut off or changed at any place, a file is refused or read, and never anything worse.
+TEST(FrfFiles, SurviveMutations) {
+  const testing::Folder folder;
+  const modal::FrfSet set = robot_frfs();
+  for (const char* name : {"m.csv", "m.json", "m.uff"}) {
+    write_frfs(folder.at(name), set);
+    const std::string good = read_file(folder.at(name));
+    Random random(7);
+    for (int i = 0; i < testing::seeds(500); ++i) {
+      std::string text = good;
+      if (i % 2 == 0) {
+        text.resize(1 + random.index(good.size() - 1));
+      } else {
+        text[random.index(text.size())] = static_cast<char>(random.index(256));
+      }
+      try {
+        read_frfs({folder.file(name, text)}).set.validate();
+      } catch (const InvalidInput&) {
+        continue;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace robomill::formats

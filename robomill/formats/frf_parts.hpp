@@ -1,0 +1,42 @@
+#pragma once
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/modal/frf.hpp"
+
+namespace robomill::formats {
+
+/// One FRF of a file, which may leave it unnamed.
+struct FrfPart {
+  std::optional<modal::FrfName> name = {};
+  Eigen::VectorXcd receptance = {};
+  Eigen::VectorXd coherence = {}, deviation = {};  ///< empty where the file has none
+};
+
+/// The FRFs of one file over their common axis.
+struct FrfParts {
+  std::filesystem::path file;
+  Eigen::VectorXd frequency_hz = {};
+  std::vector<FrfPart> frfs = {};
+  std::vector<std::string> notes = {};
+  double added_decay_per_s = 0.0;
+};
+
+/// Columns frequency_hz, xx_re_m_per_n, xx_im_m_per_n, …, xx_coherence, xx_deviation_m_per_n; or no header and a
+/// frequency, then pairs of real and imaginary parts.
+[[nodiscard]] FrfParts read_frf_table(const std::filesystem::path& path);
+/// Functions of type 4, with coherences of type 6; accelerances and mobilities are integrated.
+[[nodiscard]] FrfParts read_frf_uff(const std::filesystem::path& path);
+/// frequency_hz, H_xx, C_xx (coherence), S_xx (deviation); a colon in a name is an underscore: H_1x_3x.
+[[nodiscard]] FrfParts read_frf_mat(const std::filesystem::path& path);
+/// tip.json
+[[nodiscard]] FrfParts read_frf_json(const std::filesystem::path& path);
+
+[[nodiscard]] std::string frf_table(const modal::FrfSet& set, char separator);
+[[nodiscard]] std::string frf_uff(const modal::FrfSet& set, bool binary);
+void write_frf_mat(const std::filesystem::path& path, const modal::FrfSet& set);
+
+}  // namespace robomill::formats
