@@ -41,7 +41,7 @@ modal::FitOptions read_fit_options(const std::filesystem::path& path) {
   number("stable_frequency", o.stable_frequency);
   number("stable_damping", o.stable_damping);
   number("stable_mac", o.stable_mac);
-  number("pso_frequency_margin_hz", o.pso_frequency_margin_hz);
+  number("pso_frequency_half_width", o.pso_frequency_half_width);
   file.done();
   file.locate([&] { o.validate(); });
   return o;
