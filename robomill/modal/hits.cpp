@@ -80,9 +80,12 @@ Tails look_at_tails(const std::vector<Struck>& accepted, const Layout& layout, c
 
 double choose_decay(const Tails& tails, const Layout& layout, const HitOptions& options) {
   if (options.exponential_window == ExponentialWindow::off) return 0.0;
-  if (options.exponential_window == ExponentialWindow::automatic && tails.remaining <= 0.02) return 0.0;
+  const bool automatic = options.exponential_window == ExponentialWindow::automatic;
+  if (automatic && tails.remaining <= 0.02) return 0.0;
   if (options.exponential_time_constant_s > 0.0) return 1.0 / options.exponential_time_constant_s;
-  return std::log(200.0) * layout.sample_rate_hz / static_cast<double>(layout.samples);
+  // No stronger than needed: what it adds has to be taken out again.
+  const double fall = std::max(tails.remaining / 0.005, automatic ? 4.0 : 20.0);
+  return std::log(fall) * layout.sample_rate_hz / static_cast<double>(layout.samples);
 }
 
 int integrations(ResponseKind kind) {

@@ -50,8 +50,10 @@ struct HitOptions {
   bool force_window = true;              ///< zero the force outside the pulse
   double force_window_s = 0.0;           ///< length of the force window; 0: from the pulse
   ExponentialWindow exponential_window = ExponentialWindow::automatic;  ///< automatic: where a response has not decayed
-  double exponential_time_constant_s = 0.0;  ///< τ of exp(-t/τ); 0: so that it falls to 0.5 % at the record's end
-  bool remove_added_damping = true;          ///< take what the exponential window adds out of the FRFs again
+  /// τ of exp(-t/τ); 0: so that what still rings at the record's end is brought down to 0.5 % there, and with `on` that
+  /// it falls to 5 % at least.
+  double exponential_time_constant_s = 0.0;
+  bool remove_added_damping = true;  ///< take what the exponential window adds out of the FRFs again
 
   /// @throws InvalidInput naming the field
   ROBOMILL_API void validate() const;

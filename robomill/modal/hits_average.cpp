@@ -19,12 +19,13 @@ Eigen::VectorXd force_stretch(const Struck& struck, const Layout& layout, const 
   const Index begin = stretch_begin(struck.pulse);
   Eigen::VectorXd force = struck.hit->force_n.segment(begin, layout.samples).array() - struck.pulse.offset_n;
   if (options.force_window) {
-    // What a filter rings on after the pulse rings in the response too, so the window leaves room for it.
+    // What a filter rings on beside the pulse rings in the response too, so the window leaves room for it.
     const Index room = std::max<Index>(2, std::lround(2.0 * struck.pulse.width));
     const Index chosen = std::lround(options.force_window_s * layout.sample_rate_hz);
     const Index end = chosen > 0 ? struck.pulse.first + chosen : struck.pulse.last + room;
-    const Index last = std::min(end - begin, layout.samples - 1);
-    force = force.cwiseProduct(signal::force_window(layout.samples, 0, last, room));
+    const Index first = std::max<Index>(0, struck.pulse.first - room - begin);
+    const Index last = std::clamp<Index>(end - begin, first, layout.samples - 1);
+    force = force.cwiseProduct(signal::force_window(layout.samples, first, last, room));
   }
   return struck.hit->against_axis ? Eigen::VectorXd(-force) : force;
 }
@@ -94,7 +95,8 @@ Eigen::VectorXd tail_power(const std::vector<Tail>& tails, const Layout& layout)
 }  // namespace
 
 Index stretch_begin(const Pulse& pulse) {
-  return std::max<Index>(0, pulse.first - static_cast<Index>(std::ceil(4.0 * pulse.width)));
+  const Index lead = std::max<Index>(128, static_cast<Index>(std::ceil(8.0 * pulse.width)));
+  return std::max<Index>(0, pulse.first - lead);
 }
 
 Layout lay_out(const std::vector<Struck>& hits, const HitOptions& options) {

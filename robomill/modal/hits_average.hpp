@@ -28,7 +28,9 @@ struct Layout {
   [[nodiscard]] Eigen::Index lines() const { return last_line - first_line + 1; }
 };
 
-/// Where the stretch of a hit begins that is transformed: four pulse widths before the pulse.
+/// Where the stretch of a hit begins that is transformed: far enough before the pulse for what the recorder's filters
+/// let ring ahead of it. Cut off, that would be an error of equal size on every line, and large after two integrations
+/// at low ones.
 [[nodiscard]] Eigen::Index stretch_begin(const Pulse& pulse);
 
 /// @throws InvalidInput if nothing of the band asked for lies below half the sample rate

@@ -1,5 +1,6 @@
 #include "robomill/modal/hits_axis.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -19,13 +20,30 @@ constexpr Index reach = 6;  // lines on each side
 constexpr Index points = 2 * reach + 1;
 using Values = Eigen::Matrix<Complex, points, 1>;
 
+using Weights = Eigen::Matrix<double, points, 1>;
+
 struct Local {
-  Complex value = 0.0;                                        // at the place asked for
-  double residual = std::numeric_limits<double>::infinity();  // sum of squares per degree of freedom
+  Complex value = 0.0;    // at the place asked for
+  double residual = 0.0;  // sum of squares per degree of freedom; infinite where there is no answer
 };
 
+// Whether 1 + Σ_p a_p x^p has no root with |Im x| < 1 and `limit` < Re x < -limit.
+bool poles_stay_away(const Eigen::Ref<const Eigen::VectorXcd>& a, double limit) {
+  const Index degree = a.size();
+  // The companion matrix of the reversed polynomial has the inverses of the roots.
+  Eigen::MatrixXcd companion = Eigen::MatrixXcd::Zero(degree, degree);
+  companion.row(0) = -a.transpose();
+  if (degree > 1) companion.diagonal(-1).setOnes();
+  const Eigen::VectorXcd inverses = companion.eigenvalues();
+  for (const Complex inverse : inverses) {
+    const Complex root = 1.0 / inverse;
+    if (std::abs(root.imag()) < 1.0 && root.real() > limit && root.real() < -limit) return false;
+  }
+  return true;
+}
+
 // Σ_p c_p x^p, p = 0 … 3.
-Local cubic(const Values& x, const Values& h, const Eigen::Matrix<double, points, 1>& weight, Complex at) {
+Local cubic(const Values& x, const Values& h, const Weights& weight, Complex at) {
   Eigen::Matrix<Complex, points, 4> a;
   a.col(0).setOnes();
   for (Index p = 1; p < 4; ++p) a.col(p) = a.col(p - 1).cwiseProduct(x);
@@ -36,36 +54,45 @@ Local cubic(const Values& x, const Values& h, const Eigen::Matrix<double, points
           .residual = (aw * c - hw).squaredNorm() / (weight.sum() - 4.0)};
 }
 
-// (b0 + b1 x + b2 x²) / (1 + a1 x + a2 x²), linearised and weighted by the last denominator [Sanathanan1963].
-Local rational(const Values& x, const Values& h, const Eigen::Matrix<double, points, 1>& weight, Complex at) {
+// Σ_p b_p x^p / (1 + Σ_p a_p x^p), p up to `above` and `below` <= above, linearised and weighted by the denominator of
+// the round before [Sanathanan1963].
+template <int above, int below>
+Local rational(const Values& x, const Values& h, const Weights& weight, Complex at) {
+  constexpr int unknowns = above + below + 1;
+  Eigen::Matrix<Complex, points, above + 1> powers;
+  Eigen::Matrix<Complex, above + 1, 1> powers_at;
+  powers.col(0).setOnes();
+  powers_at(0) = 1.0;
+  for (Index p = 1; p <= above; ++p) {
+    powers.col(p) = powers.col(p - 1).cwiseProduct(x);
+    powers_at(p) = powers_at(p - 1) * at;
+  }
+  Eigen::Matrix<Complex, points, unknowns> a;
+  a.template leftCols<above + 1>() = powers;
+  a.template rightCols<below>() = -(h.asDiagonal() * powers.template middleCols<below>(1));
   Values denominator = Values::Ones();
-  Eigen::Matrix<Complex, 5, 1> c;
+  Eigen::Matrix<Complex, unknowns, 1> c;
   for (int round = 0; round < 3; ++round) {
-    Eigen::Matrix<Complex, points, 5> a;
-    a.col(0).setOnes();
-    a.col(1) = x;
-    a.col(2) = x.cwiseProduct(x);
-    a.col(3) = -h.cwiseProduct(a.col(1));
-    a.col(4) = -h.cwiseProduct(a.col(2));
-    const Values scale = weight.cast<Complex>().cwiseQuotient(denominator);
-    const Eigen::Matrix<Complex, points, 5> aw = scale.asDiagonal() * a;
+    const Values scale = weight.template cast<Complex>().cwiseQuotient(denominator);
+    const Eigen::Matrix<Complex, points, unknowns> aw = scale.asDiagonal() * a;
     c = aw.colPivHouseholderQr().solve(scale.cwiseProduct(h).eval());
-    denominator = Values::Ones() + c(3) * x + c(4) * x.cwiseProduct(x);
+    denominator = Values::Ones() + powers.template middleCols<below>(1) * c.template tail<below>();
   }
-  const Values fitted = (Values::Constant(c(0)) + c(1) * x + c(2) * x.cwiseProduct(x)).cwiseQuotient(denominator);
-  const double residual = (weight.asDiagonal() * (fitted - h)).squaredNorm() / (weight.sum() - 5.0);
-  // A pole between the lines and the place asked for would belong to a mode that grows: noise. Then there is no answer.
-  const Complex root = std::sqrt(c(3) * c(3) - 4.0 * c(4));
-  for (const Complex pole : {(-c(3) + root) / (2.0 * c(4)), (-c(3) - root) / (2.0 * c(4))}) {
-    if (std::abs(pole.imag()) < 1.0 && pole.real() > at.real() && pole.real() < -at.real()) return {};
+  // A pole between the lines and the place asked for would belong to a mode that grows: noise.
+  if (!poles_stay_away(c.template tail<below>(), at.real())) {
+    return {.value = 0.0, .residual = std::numeric_limits<double>::infinity()};
   }
-  return {.value = (c(0) + at * (c(1) + at * c(2))) / (1.0 + at * (c(3) + at * c(4))), .residual = residual};
+  const Values fitted = (powers * c.template head<above + 1>()).cwiseQuotient(denominator);
+  const Complex top = (powers_at.transpose() * c.template head<above + 1>()).value();
+  const Complex bottom = 1.0 + (powers_at.template segment<below>(1).transpose() * c.template tail<below>()).value();
+  return {.value = top / bottom,
+          .residual = (weight.asDiagonal() * (fitted - h)).squaredNorm() / (weight.sum() - unknowns)};
 }
 
 Complex continued(const Eigen::VectorXcd& lines, Index k, double decay_in_reaches) {
   Values x;
   Values h;
-  Eigen::Matrix<double, points, 1> weight;
+  Weights weight;
   const Index centre = std::min(k, lines.size() - 1 - reach);
   for (Index j = 0; j < points; ++j) {
     const Index line = centre - reach + j;
@@ -77,10 +104,15 @@ Complex continued(const Eigen::VectorXcd& lines, Index k, double decay_in_reache
   const double scale = h.cwiseAbs().maxCoeff();
   if (scale == 0.0) return 0.0;
   h /= scale;
-  const Local smooth = cubic(x, h, weight, at);
-  const Local resonant = rational(x, h, weight, at);
-  // The smoother one must be worse by more than chance makes it; it carries noise less far.
-  return smooth.residual > 3.0 * resonant.residual ? scale * resonant.value : scale * smooth.value;
+  // More unknowns follow noise more closely and carry it further: they must earn their place.
+  Local best = cubic(x, h, weight, at);
+  const auto prefer = [&best](const Local& other, double factor) {
+    if (factor * other.residual < best.residual) best = {.value = other.value, .residual = factor * other.residual};
+  };
+  prefer(rational<2, 1>(x, h, weight, at), 1.0);
+  prefer(rational<2, 2>(x, h, weight, at), 3.0);
+  prefer(rational<3, 3>(x, h, weight, at), 30.0);
+  return scale * best.value;
 }
 
 }  // namespace

@@ -95,22 +95,30 @@ double second_far(const Eigen::VectorXd& f, const Pulse& pulse, Index width) {
   return highest / contrast(means, pulse.peak, width, 1.0);
 }
 
-// Beside the pulse: a rise after a valley, less what swings below zero there.
+// Standard deviation of white noise under whatever slow motion: from the differences of neighbours.
+double white_noise(const Eigen::VectorXd& f) {
+  return robust_deviation(f.tail(f.size() - 1) - f.head(f.size() - 1)) / std::sqrt(2.0);
+}
+
+// Beside the pulse: a rise after a valley, less what swings below the level there.
 double second_near(const Eigen::VectorXd& f, const Pulse& pulse, Index width, Index step) {
   const Means means(f);
   const Index smooth = std::max<Index>(1, width / 4);
-  const Index limit = (step > 0 ? pulse.last : pulse.first) + step * 3 * width;
-  const double noise = pulse.noise_n / std::sqrt(static_cast<double>(smooth));
+  const Index foot = step > 0 ? pulse.last : pulse.first;
+  const Index beyond = std::clamp<Index>(foot + step * 8 * width, 0, f.size() - 1);
+  const double level = median(Eigen::VectorXd(f.segment(std::min(foot, beyond), std::abs(beyond - foot) + 1)));
+  const Index limit = foot + step * 3 * width;
   double valley = pulse.peak_n;
-  double lowest = 0.0;
+  double lowest = level;
   double rise = 0.0;
   for (Index j = pulse.peak; j != limit && j >= 0 && j < f.size(); j += step) {
     const double value = means.over(j - smooth / 2, j - smooth / 2 + smooth);
     valley = std::min(valley, value);
     lowest = std::min(lowest, value);
-    rise = std::max(rise, value - std::max(valley, 0.0));
+    rise = std::max(rise, value - std::max(valley, level));
   }
-  const double height = rise + lowest;
+  const double height = rise - (level - lowest);
+  const double noise = white_noise(f) / std::sqrt(static_cast<double>(smooth));
   return height > 6.0 * noise ? height / pulse.peak_n : 0.0;
 }
 
@@ -181,8 +189,10 @@ bool has_flat_top(const Eigen::VectorXd& samples) {
   for (const double extreme : {highest, lowest}) {
     // A record that only ever goes one way rests at its other extreme.
     if (std::abs(extreme) < 0.2 * std::max(std::abs(highest), std::abs(lowest))) continue;
-    // Files round to some digits: what differs less than 1e-4 of the extreme may have been rounded together.
-    if (has_plateau(samples, extreme, 4.0 * std::max(step, 1e-4 * std::abs(extreme)))) return true;
+    // Files round to some digits: what differs less than 1e-4 of the extreme may have been rounded together. No
+    // converter that is used to 0.2 % of its range needs judging.
+    const double size = std::abs(extreme);
+    if (has_plateau(samples, extreme, 4.0 * std::clamp(step, 1e-4 * size, 2e-3 * size))) return true;
   }
   return false;
 }

@@ -1,0 +1,105 @@
+// simulate_hits DIRECTORY [MODES] [SEED]: ten hammer hits on the robot of data/robot-modes.toml, five in x and five in
+// y, as CSV files with the hits.toml that `robomill frf` and `robomill plan` read.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "examples/first-lobes/hammer.hpp"
+#include "robomill/formats/modes_files.hpp"
+
+namespace {
+
+using namespace robomill;
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw std::runtime_error(fmt::format("{}: cannot be written", path.string()));
+}
+
+std::string column_of(const modal::HitChannel& channel) {
+  return fmt::format("a{}_m_per_s2", modal::to_string(channel.dof));
+}
+
+std::string csv_of(const modal::Hit& hit) {
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text), "time_s,force_n");
+  for (const modal::HitChannel& channel : hit.responses) {
+    fmt::format_to(std::back_inserter(text), ",{}", column_of(channel));
+  }
+  text.push_back('\n');
+  for (Eigen::Index j = 0; j < hit.force_n.size(); ++j) {
+    fmt::format_to(std::back_inserter(text), "{:.9g},{:.4f}", static_cast<double>(j) / hit.sample_rate_hz,
+                   hit.force_n(j));
+    for (const modal::HitChannel& channel : hit.responses) {
+      fmt::format_to(std::back_inserter(text), ",{:.5f}", channel.samples(j));
+    }
+    text.push_back('\n');
+  }
+  return fmt::to_string(text);
+}
+
+std::string toml_of(const std::vector<modal::Hit>& hits, std::uint64_t seed) {
+  std::string text = fmt::format(
+      "# Hammer hits simulated by simulate_hits, seed {}.\n"
+      "[acquisition]\n"
+      "response = \"acceleration\"\n"
+      "estimator = \"H1\"\n"
+      "min_frequency_hz = 5\n"
+      "max_frequency_hz = 1000\n",
+      seed);
+  for (const modal::Hit& hit : hits) {
+    std::string responses;
+    for (const modal::HitChannel& channel : hit.responses) {
+      responses += fmt::format("{}{} = \"{}\"", responses.empty() ? "" : ", ", modal::to_string(channel.dof),
+                               column_of(channel));
+    }
+    text += fmt::format(
+        "\n[[hits]]\nfile = \"{}\"\ntime = \"time_s\"\nforce = \"force_n\"\nforce_direction = \"{}\"\n"
+        "responses = {{ {} }}\n",
+        hit.file, modal::to_string(hit.excitation), responses);
+  }
+  return text;
+}
+
+void run(const std::filesystem::path& directory, const std::filesystem::path& modes, std::uint64_t seed) {
+  const modal::ModalModel model = formats::read_modes(modes);
+  const std::vector<modal::Hit> hits = examples::simulate_hits(model, 5, 0.05, examples::Hammer{}, seed);
+  std::filesystem::create_directories(directory);
+  for (const modal::Hit& hit : hits) write_text(directory / hit.file, csv_of(hit));
+  write_text(directory / "hits.toml", toml_of(hits, seed));
+  fmt::print("{} hits in {}\n", hits.size(), directory.string());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2 || argc > 4) {
+    std::fputs("usage: simulate_hits DIRECTORY [MODES] [SEED]\n", stderr);
+    return 2;
+  }
+  try {
+    std::uint64_t seed = 1;
+    if (argc == 4) {
+      const std::string_view text = argv[3];
+      const std::from_chars_result number = std::from_chars(text.data(), text.data() + text.size(), seed);
+      if (number.ec != std::errc() || number.ptr != text.data() + text.size()) {
+        throw std::runtime_error(fmt::format("seed = {}; must be a whole number >= 0", text));
+      }
+    }
+    run(argv[1], argc > 2 ? argv[2] : ROBOMILL_SOURCE_DIR "/data/robot-modes.toml", seed);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
