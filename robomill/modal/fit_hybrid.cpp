@@ -132,17 +132,18 @@ PartFit fit_lscf(Part& part, const FitOptions& options, int modes, Progress& pro
   const LscfOptions lscf = lscf_options(options, part.data);
   PartFit fit;
   fit.diagram = lscf_poles(part.data, lscf, progress);
-  std::vector<LscfPole> physical = physical_poles(fit.diagram, lscf);
-  if (modes > 0) {
-    std::stable_sort(physical.begin(), physical.end(),
-                     [](const LscfPole& a, const LscfPole& b) { return a.stable_orders > b.stable_orders; });
-    physical.resize(std::min(physical.size(), static_cast<std::size_t>(modes)));
-  }
+  const Poles physical = as_poles(physical_poles(fit.diagram, lscf), part.data);
   const Kernel kernel(part.data);
-  const Poles picked = as_poles(physical, part.data);
-  fit.poles = with_left_vectors(kernel, picked.omega, picked.zeta);
-  fit.at = kernel.evaluate(fit.poles, false);
-  fit.converged = modes == 0 ? !physical.empty() : static_cast<int>(physical.size()) == modes;
+  fit.poles = with_left_vectors(kernel, physical.omega, physical.zeta);
+  fit.at = kernel.evaluate(fit.poles, true);
+  // Asked for fewer, it leaves out those that the fit misses least.
+  while (modes > 0 && fit.poles.size() > modes) {
+    Index weakest = 0;
+    fit.at.loss.minCoeff(&weakest);
+    fit.poles = fit.poles.without(weakest);
+    fit.at = kernel.evaluate(fit.poles, true);
+  }
+  fit.converged = modes == 0 ? fit.poles.size() > 0 : fit.poles.size() == modes;
   return fit;
 }
 

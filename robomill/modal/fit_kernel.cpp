@@ -62,6 +62,16 @@ std::vector<Column> parameter_columns(const Poles& poles, Index excitation, cons
   return columns;
 }
 
+// Least squares without some of its unknowns x: the cost rises by xᵀ C⁻¹ x, C their block of the inverse normal matrix.
+void add_loss(VectorXd& loss, const ScaledCholesky& normal, const Eigen::RowVectorXcd& right) {
+  const MatrixXd inverse = normal.solve(MatrixXd::Identity(2 * right.size(), 2 * right.size()));
+  for (Index k = 0; k < right.size(); ++k) {
+    const Eigen::Matrix2d block = inverse.block<2, 2>(2 * k, 2 * k);
+    const Eigen::Vector2d x(right(k).real(), right(k).imag());
+    if (block.determinant() > 0.0) loss(k) += x.dot(block.inverse() * x);
+  }
+}
+
 }  // namespace
 
 Kernel::Kernel(const FitData& data) : data_(data), lines_(data) {}
@@ -135,6 +145,7 @@ void Kernel::reduce(const Poles& poles, const Atoms& basis, const std::vector<Pa
   const Index unknowns = parameter_count(data_, modes);
   into.hessian = MatrixXd::Zero(unknowns, unknowns);
   into.gradient = VectorXd::Zero(unknowns);
+  into.loss = VectorXd::Zero(modes);
   const MatrixXcd products = basis.paired(2 * modes, into.residual, lines_);
   for (Index i = 0; i < data_.responses; ++i) {
     MatrixXd normal = MatrixXd::Zero(2 * modes, 2 * modes);
@@ -151,8 +162,10 @@ void Kernel::reduce(const Poles& poles, const Atoms& basis, const std::vector<Pa
       add_product(slope, products, static_cast<Index>(f), linear);
       add_product(into.gradient, products, static_cast<Index>(f), free);
     }
+    const ScaledCholesky factor(normal);
+    add_loss(into.loss, factor, into.right.row(i));
     // The slope is zero but for rounding in the linear solution, which it takes out of the gradient.
-    const MatrixXd eliminated = ScaledCholesky(normal).solve(mixed);
+    const MatrixXd eliminated = factor.solve(mixed);
     into.hessian -= mixed.transpose() * eliminated;
     into.gradient -= eliminated.transpose() * slope;
   }

@@ -18,6 +18,7 @@ struct Evaluation {
   Eigen::MatrixXcd residual;         // n x entries: data - model, not weighted
   Eigen::MatrixXd hessian;           // parameters x parameters: JᵀJ with the linear parameters eliminated
   Eigen::VectorXd gradient;          // Jᵀ residual, likewise (the direction of descent)
+  Eigen::VectorXd loss;              // what the cost would rise by without each mode, poles and left vectors kept
 };
 
 /// One more mode, tried on top of an evaluation.
@@ -32,7 +33,7 @@ class Kernel {
  public:
   /// @param data  must outlive the kernel
   explicit Kernel(const FitData& data);
-  /// @param derivatives  whether hessian and gradient are wanted
+  /// @param derivatives  whether hessian, gradient and loss are wanted
   [[nodiscard]] Evaluation evaluate(const Poles& poles, bool derivatives) const;
   /// Fills in gain and residue of candidates from their ω and ζ. @param base  the evaluation at `poles`
   void measure(std::vector<Candidate>& candidates, const Poles& poles, const Evaluation& base) const;

@@ -136,6 +136,16 @@ TEST(FitKernel, HessianIsThatOfTheReducedResidualAtAnExactFit) {
   }
 }
 
+TEST(FitKernel, LossIsWhatTheCostRises) {
+  const Problem p = random_problem(7, true, true);
+  const Kernel kernel(p.data);
+  const Evaluation all = kernel.evaluate(p.poles, true);
+  for (Index k = 0; k < p.poles.size(); ++k) {
+    const double cost = kernel.evaluate(p.poles.without(k), false).cost;
+    EXPECT_NEAR(all.loss(k), cost - all.cost, 1e-9 * cost);
+  }
+}
+
 TEST(FitKernel, GainOfACandidateIsWhatTheCostFalls) {
   // With one excitation a residue matrix has rank one, so the gain is exact.
   Problem p = random_problem(5, true, false);

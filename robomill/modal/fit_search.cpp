@@ -95,7 +95,7 @@ class Search {
       : kernel_(kernel), options_(options), progress_(progress), smallest_cost_(smallest_cost(kernel.data())) {}
 
   Found run(const Poles& start) {
-    state_ = fit(start, coarse_tolerance, 40);
+    state_ = fit(sifted(start), coarse_tolerance, 40);
     keep_curve(state_);
     if (options_.modes > 0) {
       reach(options_.modes);
@@ -167,14 +167,24 @@ class Search {
   // The state without the mode that it misses least.
   Refined pruned(const Refined& from) {
     Index weakest = 0;
-    double lowest = 0.0;
-    for (Index k = 0; k < from.poles.size(); ++k) {
-      const double cost = kernel_.evaluate(from.poles.without(k), false).cost;
-      if (k > 0 && cost >= lowest) continue;
-      lowest = cost;
-      weakest = k;
-    }
+    from.at.loss.minCoeff(&weakest);
     return fit(from.poles.without(weakest), coarse_tolerance, 25);
+  }
+
+  // Those poles of the start whose worth shows before any is refined.
+  [[nodiscard]] Poles sifted(Poles poles) const {
+    const FitData& data = kernel_.data();
+    const auto unknowns = static_cast<double>(2 * (data.excitations + data.responses));
+    while (poles.size() > options_.modes) {
+      const Evaluation at = kernel_.evaluate(poles, true);
+      Index weakest = 0;
+      at.loss.minCoeff(&weakest);
+      Evaluation less;
+      less.cost = at.cost + at.loss(weakest);
+      if (poles.size() <= options_.max_modes && worth_it(data, at, less, unknowns)) break;
+      poles = poles.without(weakest);
+    }
+    return poles;
   }
 
   void reach(int modes) {

@@ -218,7 +218,9 @@ std::vector<LscfPole> lscf_poles(const FitData& data, const LscfOptions& options
     std::vector<LscfPole> here;
     for (const Complex y : inverse_roots(fraction)) {
       const Complex root = 1.0 / y;
-      const Complex lambda = std::log(root) / period + Complex(0.0, low);
+      // The band begins at the angle 0 and ends at 3π/2: the gap is halved between its ends.
+      const double turn = std::arg(root) < -0.25 * std::numbers::pi ? 2.0 * std::numbers::pi : 0.0;
+      const Complex lambda = (std::log(root) + Complex(0.0, turn)) / period + Complex(0.0, low);
       LscfPole pole{.order = order,
                     .omega = std::abs(lambda),
                     .zeta = -lambda.real() / std::abs(lambda),
