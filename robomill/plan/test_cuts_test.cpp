@@ -94,7 +94,9 @@ TEST(CompareCuts, ComparesWithThePrediction) {
     // R L = 1 / (2 i m ω_d) gives a mode of modal mass m.
     const double omega_d = 2 * std::numbers::pi * 922.0;
     const std::complex<double> residue = 1.0 / (std::complex<double>(0.0, 2.0) * 0.04 * omega_d);
-    modal::Mode mode{.frequency_hz = 922.0, .damping_ratio = 0.011};
+    modal::Mode mode;
+    mode.frequency_hz = 922.0;
+    mode.damping_ratio = 0.011;
     mode.left = Eigen::Vector2cd::Unit(i) * std::sqrt(std::abs(residue));
     mode.right = Eigen::Vector2cd::Unit(i) * (residue / std::sqrt(std::abs(residue)));
     model.modes.push_back(mode);
