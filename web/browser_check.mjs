@@ -1,5 +1,6 @@
-// node browser_check.mjs REPORT.html [--shots FOLDER] [--chromium PATH]
+// node browser_check.mjs REPORT.html [--shots FOLDER] [--chromium PATH] [--quick]
 // Opens a report in headless Chromium and looks: every plot is there, no script error, nothing fetched, nothing too wide. Exit 0 or 1.
+// --quick looks at one width only.
 import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -41,7 +42,7 @@ async function look(browser, url, view, problems, shots) {
     await page.until(`document.documentElement.dataset.plots === 'ready'`, `${where}: plots ready`);
     if (shots) writeFileSync(join(shots, `${view.name}.png`), await page.screenshot(await whole(page, view)));
     await page.evaluate(openAll);
-    await page.until(allDrawn, `${where}: plots in closed parts`);
+    await page.until(allDrawn, 'all drawn', 15).catch(() => {}); // which is missing, inspect says
     await page.evaluate(`new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`);
   } else {
     problems.push(`${where}: the report has no plots`);
@@ -59,6 +60,7 @@ async function look(browser, url, view, problems, shots) {
   for (const address of fetched) problems.push(`${where}: fetched ${address}`);
   if (shots) writeFileSync(join(shots, `${view.name}-open.png`), await page.screenshot(await whole(page, view)));
   if (hasPlots && view.controls) await tryControls(page, where, problems);
+  if (hasPlots && view.controls) await tryPrint(page, where, problems, shots && join(shots, `${view.name}-print.png`));
   await page.close();
   return seen;
 }
@@ -86,10 +88,25 @@ async function tryControls(page, where, problems) {
   for (const error of page.errors) if (!problems.some((problem) => problem.endsWith(error))) problems.push(`${where}: ${error}`);
 }
 
+/** On paper (A4 between its margins) no plot may be wider than the page, nor keep the dark colours. */
+async function tryPrint(page, where, problems, shot) {
+  const width = 688;
+  await page.send('Emulation.setDeviceMetricsOverride', { width, height: 970, deviceScaleFactor: 1, mobile: false });
+  await page.send('Emulation.setEmulatedMedia', { media: 'print', features: [{ name: 'prefers-color-scheme', value: 'dark' }] });
+  await page.evaluate(`window.dispatchEvent(new Event('beforeprint'))`);
+  await page.evaluate(`new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`);
+  const widest = await page.evaluate(`Math.max(...[...document.querySelectorAll('svg.main-svg')].map((svg) => svg.getBoundingClientRect().right))`);
+  if (widest > width) problems.push(`${where}: printed, a plot reaches ${widest} px on ${width} px of paper`);
+  const ink = await page.evaluate(`getComputedStyle(document.querySelector('.xtitle')).fill`);
+  if (!/rgb\(28, 36, 48\)/.test(ink)) problems.push(`${where}: printed, axis titles are ${ink}`);
+  if (shot) writeFileSync(shot, await page.screenshot(await whole(page, { width })));
+  await page.evaluate(`window.dispatchEvent(new Event('afterprint'))`);
+}
+
 async function main() {
   const file = process.argv[2];
   if (!file || file.startsWith('--') || !existsSync(file)) {
-    console.error(`usage: node browser_check.mjs REPORT.html [--shots FOLDER] [--chromium PATH]${file ? `; no file ${file}` : ''}`);
+    console.error(`usage: node browser_check.mjs REPORT.html [--shots FOLDER] [--chromium PATH] [--quick]${file ? `; no file ${file}` : ''}`);
     return 1;
   }
   const shots = argument('--shots', undefined);
@@ -105,7 +122,7 @@ async function main() {
   const browser = await launch(argument('--chromium', process.env['CHROMIUM'] ?? '/usr/bin/chromium'));
   try {
     let seen;
-    for (const view of views) seen = await look(browser, url, view, problems, shots);
+    for (const view of process.argv.includes('--quick') ? views.slice(0, 1) : views) seen = await look(browser, url, view, problems, shots);
     if (problems.length === 0) {
       console.log(`${file}: ${seen.plots.map((plot) => `${plot.name} (${plot.panels})`).join(', ')}; ${seen.tables} tables; no error, nothing fetched`);
     }

@@ -28,6 +28,7 @@ export async function launch(executable) {
   let complaint = '';
   let buffered = '';
   let last = 0;
+  let dead = null;
   const waiting = new Map();
   const listeners = [];
   const gone = new Promise((resolve) => {
@@ -35,6 +36,7 @@ export async function launch(executable) {
     child.once('exit', (code) => resolve(`${executable} ended with ${code}: ${complaint.slice(-500)}`));
   });
   gone.then((reason) => {
+    dead = reason;
     for (const { reject } of waiting.values()) reject(new Error(reason));
     waiting.clear();
   });
@@ -57,9 +59,11 @@ export async function launch(executable) {
 
   const send = (method, params = {}, sessionId = undefined) =>
     new Promise((resolve, reject) => {
+      if (dead !== null) return reject(new Error(dead));
       const id = ++last;
       waiting.set(id, { resolve, reject });
       input.write(`${JSON.stringify({ id, method, params, sessionId })}\0`);
+      return undefined;
     });
   const close = async () => {
     await send('Browser.close').catch(() => {});

@@ -87,7 +87,11 @@ std::string significant(const nlohmann::ordered_json& value) {
   const double size = std::abs(number);
   if (size == 0.0) return "0";
   if (size < 1e-4 || size >= 1e6) return fmt::format("{:.2e}", number);
-  return fixed(value, std::clamp(2 - static_cast<int>(std::floor(std::log10(size))), 0, 6));
+  std::string text = fixed(value, std::clamp(2 - static_cast<int>(std::floor(std::log10(size))), 0, 6));
+  if (text.find('.') == std::string::npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
 }
 
 std::string percent(const nlohmann::ordered_json& ratio, int decimals) {
@@ -112,12 +116,15 @@ void Table::row(const std::vector<std::string>& cells, std::string_view row_clas
   rows_ += row_class.empty() ? std::string("<tr>") : fmt::format("<tr class=\"{}\">", row_class);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const bool numeric = i < headings_.size() && is_numeric(headings_[i]);
-    rows_ += fmt::format("<td{}>{}</td>", numeric ? " class=\"number\"" : "", cells[i]);
+    const bool wraps = !numeric && cells[i].size() > 24 && !cells[i].starts_with('<');
+    rows_ += fmt::format("<td{}>{}</td>", numeric ? " class=\"number\"" : wraps ? " class=\"long\"" : "", cells[i]);
   }
   rows_ += "</tr>\n";
 }
 
 std::string Table::html() const {
+  const bool quiet = caption_.starts_with('~');
+  const std::string caption = escape(quiet ? caption_.substr(1) : caption_);
   std::string head;
   for (const std::string& heading : headings_) {
     const bool numeric = is_numeric(heading);
@@ -125,9 +132,9 @@ std::string Table::html() const {
                         numeric ? heading.substr(1) : heading);
   }
   return fmt::format(
-      "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table><caption>{0}</caption>\n"
-      "<thead><tr>{1}</tr></thead>\n<tbody>\n{2}</tbody></table></div>\n",
-      escape(caption_), head, rows_);
+      "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table><caption{1}>{0}</caption>\n"
+      "<thead><tr>{2}</tr></thead>\n<tbody>\n{3}</tbody></table></div>\n",
+      caption, quiet ? " class=\"quiet\"" : "", head, rows_);
 }
 
 std::string bullet_list(const nlohmann::ordered_json& texts) {

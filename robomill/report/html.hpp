@@ -14,7 +14,8 @@ namespace robomill::report {
 
 /// A number with that many decimals and a thin space between thousands from 10 000 on; an en dash for null.
 [[nodiscard]] std::string fixed(const nlohmann::ordered_json& value, int decimals);
-/// A number to three significant digits, without an exponent where that reads well; an en dash for null.
+/// A number to three significant digits, without an exponent or zeros at its end where that reads well; an en dash for
+/// null.
 [[nodiscard]] std::string significant(const nlohmann::ordered_json& value);
 /// A ratio as percent: 0.0127 with 2 decimals is "1.27 %"; an en dash for null.
 [[nodiscard]] std::string percent(const nlohmann::ordered_json& ratio, int decimals);
@@ -22,7 +23,8 @@ namespace robomill::report {
 [[nodiscard]] std::string with_deviation(const nlohmann::ordered_json& value, const nlohmann::ordered_json& deviation,
                                          double scale, int decimals);
 
-/// A table whose cells are HTML already. A column whose heading starts with '#' holds numbers.
+/// A table whose cells are HTML already. A column whose heading starts with '#' holds numbers. A caption that starts
+/// with '~' is only for who cannot see the heading above it.
 class Table {
  public:
   explicit Table(std::string caption, std::vector<std::string> headings);

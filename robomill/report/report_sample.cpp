@@ -97,30 +97,34 @@ void add_frfs(Report& report) {
 /// phase.
 void add_lobes(Report& report, const std::string& label, const std::vector<int>& keep) {
   const double specific_force_n_per_m2 = 712e6;
-  const double teeth_in_cut = 0.38;
+  const double teeth_in_cut = 0.09;
   Lobes lobes;
   lobes.label = label;
   lobes.modes = keep;
   lobes.searched_depth_m = 3.0 * units::mm;
   lobes.spindle_speed_rad_per_s = Eigen::VectorXd::LinSpaced(241, 4000.0, 16000.0) * units::rpm;
   lobes.limit_depth_m.setConstant(241, missing);
-  for (double f = 8.0; f < 900.0; f += f < 100.0 ? 0.02 : 0.1) {
+  std::vector<BoundaryPoint> lowest(241);
+  for (double f = 8.0; f < 900.0; f += 0.02) {
     const complex<double> g = receptance(*report.model, 0, 0, f, keep) + receptance(*report.model, 1, 1, f, keep);
     if (g.real() >= 0.0) continue;
     const double depth = -1.0 / (2.0 * specific_force_n_per_m2 * teeth_in_cut * g.real());
     if (depth > lobes.searched_depth_m) continue;
     const double waves = 0.5 + std::atan2(g.imag(), g.real()) / std::numbers::pi;
     for (int lobe = 0; lobe < 40; ++lobe) {
-      const double speed_rad_per_s = 2.0 * std::numbers::pi * f / (teeth * (lobe + 1.0 + waves - std::floor(waves)));
+      const double speed_rad_per_s = 2.0 * std::numbers::pi * f / (teeth * (lobe + waves - std::floor(waves)));
       const double at = (speed_rad_per_s / units::rpm - 4000.0) / 50.0;
-      if (at < 0.0 || at > 240.0) continue;
-      double& limit = lobes.limit_depth_m[static_cast<Eigen::Index>(std::lround(at))];
-      if (limit <= depth) continue;
-      limit = depth;
+      if (!(at >= 0.0 && at <= 240.0)) continue;
+      const auto index = std::lround(at);
+      if (lobes.limit_depth_m[index] <= depth) continue;
+      lobes.limit_depth_m[index] = depth;
       const int mode = f > 541.5 ? 8 : f > 300.0 ? 7 : f > 40.0 ? 4 : 1;
-      lobes.boundary.push_back(
-          {speed_rad_per_s, depth, f, lobe % 7 == 0 ? BoundaryKind::flip : BoundaryKind::hopf, mode});
+      const BoundaryKind kind = index % 40 == 0 ? BoundaryKind::flip : BoundaryKind::hopf;
+      lowest[static_cast<std::size_t>(index)] = {speed_rad_per_s, depth, f, kind, mode};
     }
+  }
+  for (const BoundaryPoint& point : lowest) {
+    if (point.mode > 0) lobes.boundary.push_back(point);
   }
   if (keep.empty()) {
     lobes.map_speed_rad_per_s = Eigen::VectorXd::LinSpaced(61, 4000.0, 16000.0) * units::rpm;
@@ -247,6 +251,7 @@ void add_recommendations(Report& report) {
     double limit = all.searched_depth_m;
     for (Eigen::Index j = i - 5; j <= i + 5; ++j)
       limit = std::min(limit, std::isnan(all.limit_depth_m[j]) ? limit : all.limit_depth_m[j]);
+    limit = std::min(limit, (3.4 - 1.6 * static_cast<double>(i) / 240.0) * units::mm / 0.8);
     Recommendation r;
     r.spindle_speed_rad_per_s = all.spindle_speed_rad_per_s[i];
     r.axial_depth_m = 0.8 * limit;

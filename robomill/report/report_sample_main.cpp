@@ -4,7 +4,8 @@
 
 #include "robomill/report/report_sample.hpp"
 
-/// report_sample OUT.html [sample|hostile]: the sample page for the browser test; hostile puts markup into every text it can.
+/// report_sample OUT.html [sample|hostile]: the sample page for the browser test; hostile puts markup into every text
+/// it can.
 int main(int argc, char** argv) {
   if (argc < 2) {
     std::cerr << "usage: report_sample OUT.html [sample|hostile]\n";

@@ -253,7 +253,7 @@ TEST(Html, NumbersReadWell) {
   EXPECT_EQ(fixed(-12345, 0), "-12\u202f345");
   EXPECT_EQ(fixed(8000, 0), "8000");
   EXPECT_EQ(fixed(nullptr, 2), "–");
-  EXPECT_EQ(significant(0.01), "0.0100");
+  EXPECT_EQ(significant(0.01), "0.01");
   EXPECT_EQ(significant(0.0), "0");
   EXPECT_EQ(significant(1.5e-7), "1.50e-07");
   EXPECT_EQ(percent(0.0127, 2), "1.27\u202f%");

@@ -53,8 +53,8 @@ std::string agreement_sentence(const Json& counts) {
 }
 
 std::string cuts_table(const Json& cuts) {
-  Table table("Test cuts", {"#Spindle speed (rpm)", "#Axial depth (mm)", "Result", "Predicted",
-                            "#Limit at this speed (mm)", "Agrees", "Note"});
+  Table table("~Test cuts", {"#Spindle speed (rpm)", "#Axial depth (mm)", "Result", "Predicted",
+                             "#Limit at this speed (mm)", "Agrees", "Note"});
   for (const Json& cut : cuts) {
     const Json& agrees = cut["agrees"];
     const char* verdict = agrees.is_boolean() ? (agrees.get<bool>() ? "yes" : "<strong>no</strong>") : "–";
@@ -70,8 +70,7 @@ std::string limit_table(const Json& lobes) {
   const Json& limit = lobes["limit_mm"];
   if (speed.empty()) return {};
   const std::size_t step = std::max<std::size_t>(1, speed.size() / 24);
-  Table table("Limit depth at every " + std::to_string(step) + ". computed speed",
-              {"#Spindle speed (rpm)", "#Limit depth (mm)"});
+  Table table("Limit depth at some of the computed speeds", {"#Spindle speed (rpm)", "#Limit depth (mm)"});
   for (std::size_t i = 0; i < speed.size(); i += step) {
     const bool none = !limit[i].is_number();
     table.row({fixed(speed[i], 0), none ? "above " + significant(lobes["searched_depth_mm"]) : fixed(limit[i], 3)});
@@ -142,7 +141,7 @@ std::string feed_section(const Json& report, bool plots) {
   const bool at_speed = feed["limit_at_speed_mm"].is_array();
   std::vector<std::string> headings = {"#Feed direction (°)", "#Lowest limit (mm)"};
   if (at_speed) headings.push_back(fmt::format("#Limit at {} rpm (mm)", fixed(feed["spindle_speed_rpm"], 0)));
-  Table table("Limit over feed direction", headings);
+  Table table("~Limit over feed direction", headings);
   const auto depth = [&](const Json& value) {
     return value.is_number() ? fixed(value, 3) : "above " + significant(feed["searched_depth_mm"]);
   };

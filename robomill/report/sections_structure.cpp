@@ -118,7 +118,7 @@ std::string modes_section(const Json& report, bool plots) {
   std::string body;
   if (!fit.is_null()) body += fit_sentence(fit);
   if (!modes.empty()) {
-    Table table("Modes",
+    Table table("~Modes",
                 {"#Mode", "#Frequency (Hz)", "#Damping (%)", "Force that drives it", "Motion", "Share in the limit"});
     for (const Json& mode : modes) {
       table.row({std::to_string(mode["mode"].get<int>()),
@@ -144,7 +144,7 @@ std::string modes_section(const Json& report, bool plots) {
 std::string hits_section(const Json& report) {
   const Json& hits = report["hits"];
   if (hits.empty()) return {};
-  Table table("Hammer hits", {"File", "Force", "Used", "Remarks"});
+  Table table("~Hammer hits", {"File", "Force", "Used", "Remarks"});
   int used = 0;
   for (const Json& hit : hits) {
     const bool accepted = hit["accepted"].get<bool>();

@@ -1,5 +1,5 @@
 import type { Frf, Mode } from './data';
-import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { axis, layout, logTicks, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 /** Breaks a phase curve where it jumps by more than half a turn, so that no line crosses the plot. */
 export function breakJumps(frequency: number[], phase: (number | null)[]): { x: number[]; y: (number | null)[] } {
@@ -17,17 +17,20 @@ export function breakJumps(frequency: number[], phase: (number | null)[]): { x: 
   return { x, y };
 }
 
+/** Lowest frequency above zero, and the highest. */
+function band(frf: Frf): [number, number] {
+  return [frf.frequency_hz.find((f) => f > 0) ?? 1, frf.frequency_hz[frf.frequency_hz.length - 1] ?? 1];
+}
+
 /** A logarithmic axis serves where the band spans more than a decade and a half. */
 export function prefersLogFrequency(frf: Frf): boolean {
-  const from = frf.frequency_hz.find((f) => f > 0) ?? 1;
-  const to = frf.frequency_hz[frf.frequency_hz.length - 1] ?? 1;
+  const [from, to] = band(frf);
   return to / from > 30;
 }
 
 function untrusted(frf: Frf, theme: Theme): Layout[] {
-  const from = frf.frequency_hz.find((f) => f > 0) ?? 0;
-  const to = frf.frequency_hz[frf.frequency_hz.length - 1] ?? 0;
-  const band = (x0: number, x1: number) => ({
+  const [from, to] = band(frf);
+  const shade = (x0: number, x1: number) => ({
     type: 'rect',
     xref: 'x',
     yref: 'paper',
@@ -41,8 +44,8 @@ function untrusted(frf: Frf, theme: Theme): Layout[] {
     layer: 'below',
   });
   const bands: Layout[] = [];
-  if (frf.trusted_from_hz !== null && frf.trusted_from_hz > from) bands.push(band(from, frf.trusted_from_hz));
-  if (frf.trusted_to_hz !== null && frf.trusted_to_hz < to) bands.push(band(frf.trusted_to_hz, to));
+  if (frf.trusted_from_hz !== null && frf.trusted_from_hz > from) bands.push(shade(from, frf.trusted_from_hz));
+  if (frf.trusted_to_hz !== null && frf.trusted_to_hz < to) bands.push(shade(frf.trusted_to_hz, to));
   return bands;
 }
 
@@ -81,7 +84,7 @@ function modeMarks(frf: Frf, modes: Mode[], logarithmic: boolean, theme: Theme):
     x1: mode.frequency_hz,
     y0: 0,
     y1: 1,
-    line: { color: theme.grid, width: 1 },
+    line: { color: theme.unknown, width: 1, dash: '1px,3px' },
     layer: 'below',
   }));
   return { shapes, annotations };
@@ -107,8 +110,8 @@ function curves(frf: Frf, theme: Theme): Trace[] {
       },
     );
   };
-  add('measured', { color: theme.measured, width: 1.6 });
-  add('fitted', { color: theme.chatter, width: 1.6, dash: frf.measured === null ? 'solid' : '5px,2px' });
+  add('measured', { color: theme.measured, width: 3.5 });
+  add('fitted', { color: theme.chatter, width: 1.5 });
   if (frf.coherence !== null) {
     data.push({
       type: 'scatter',
@@ -129,14 +132,21 @@ function curves(frf: Frf, theme: Theme): Trace[] {
 export function frfFigure(frf: Frf, modes: Mode[], logarithmic: boolean, theme: Theme): Figure {
   const coherent = frf.coherence !== null;
   const marks = modeMarks(frf, modes, logarithmic, theme);
+  const [from, to] = band(frf);
   const domains = coherent ? [[0.46, 1], [0.2, 0.42], [0, 0.16]] : [[0.34, 1], [0, 0.3]];
   return {
     data: curves(frf, theme),
     layout: layout(theme, coherent ? 620 : 540, {
       hovermode: 'x',
-      margin: { l: 64, r: 16, t: 64, b: 48 },
+      margin: { l: 64, r: 36, t: 64, b: 48 },
       legend: { orientation: 'h', yanchor: 'bottom', y: 1.07, xanchor: 'left', x: 0 },
-      xaxis: axis(theme, 'Frequency (Hz)', { type: logarithmic ? 'log' : 'linear', anchor: coherent ? 'y3' : 'y2', hoverformat: '.2f' }),
+      xaxis: axis(theme, 'Frequency (Hz)', {
+        anchor: coherent ? 'y3' : 'y2',
+        hoverformat: '.2f',
+        ...(logarithmic
+          ? { type: 'log', range: [Math.log10(from), Math.log10(to)], tickmode: 'array', ...logTicks(from, to) }
+          : { type: 'linear', range: [frf.frequency_hz[0] ?? 0, to] }),
+      }),
       yaxis: axis(theme, `|${plain(frf.name)}| (${plain(frf.unit)})`, { type: 'log', domain: domains[0], exponentformat: 'power', dtick: 1 }),
       yaxis2: axis(theme, 'Phase (°)', { domain: domains[1], range: [-185, 185], tickvals: [-180, -90, 0, 90, 180] }),
       ...(coherent ? { yaxis3: axis(theme, 'Coherence', { domain: domains[2], range: [0, 1.05], tickvals: [0, 0.5, 1] }) } : {}),

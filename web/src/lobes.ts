@@ -1,5 +1,5 @@
 import type { Cut, DepthCurve, Lobes, Num, Recommendation, Verdict } from './data';
-import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { axis, layout, plain, rpm, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 export interface LobesInput {
   lobes: Lobes;
@@ -9,6 +9,7 @@ export interface LobesInput {
   alternatives: Recommendation[];
 }
 
+const dashes = ['dash', 'dot', 'dashdot', 'longdash'];
 const speedAxis = 'Spindle speed (rpm)';
 const depthAxis = 'Axial depth (mm)';
 
@@ -38,12 +39,13 @@ export function limitTraces(lobes: Lobes, theme: Theme, name = 'limit', colour =
     },
     {
       type: 'scatter',
-      mode: 'lines',
+      mode: 'lines+markers', // a limit at one speed between two without is a point
       name,
       x: lobes.spindle_speed_rpm,
       y: lobes.limit_mm,
       connectgaps: false,
       line: { color: colour, width: 2 },
+      marker: { color: colour, size: 2 },
       hovertemplate: `limit %{y:.3f}${thinSpace}mm at %{x:.0f}${thinSpace}rpm<extra></extra>`,
     },
   ];
@@ -62,7 +64,7 @@ function verdictColour(theme: Theme, verdict: Verdict | null): string {
 
 function cutText(cut: Cut): string {
   const lines = [
-    `<b>${cut.spindle_speed_rpm.toFixed(0)} rpm, ${cut.axial_depth_mm} mm</b>`,
+    `<b>${rpm(cut.spindle_speed_rpm)}, ${cut.axial_depth_mm} mm</b>`,
     `made: ${cut.result ?? 'not stated'}`,
     `predicted: ${cut.predicted ?? 'not known'}`,
   ];
@@ -110,7 +112,7 @@ export function cutTraces(cuts: Cut[], theme: Theme): Trace[] {
 }
 
 function recommendationText(r: Recommendation): string {
-  const lines = [`<b>${r.spindle_speed_rpm.toFixed(0)} rpm, ${r.axial_depth_mm.toFixed(2)} mm</b>`];
+  const lines = [`<b>${rpm(r.spindle_speed_rpm)}, ${r.axial_depth_mm.toFixed(2)} mm</b>`];
   if (r.removal_rate_mm3_per_s !== null) lines.push(`${r.removal_rate_mm3_per_s.toPrecision(3)} mm³/s`);
   if (r.limited_by !== '') lines.push(`limited by ${plain(r.limited_by)}`);
   return lines.join('<br>');
@@ -181,6 +183,7 @@ export function frequencyTraces(lobes: Lobes, theme: Theme): Trace[] {
       mode: 'markers',
       name: mode > 0 ? `mode ${mode}` : 'mode unknown',
       legend: 'legend2',
+      xaxis: 'x2',
       yaxis: 'y2',
       x: indices.map((i) => boundary.spindle_speed_rpm[i]),
       y: indices.map((i) => boundary.chatter_frequency_hz[i]),
@@ -215,7 +218,7 @@ export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): F
       name: plain(curve.label),
       x: curve.spindle_speed_rpm,
       y: curve.axial_depth_mm,
-      line: { color: theme.series[(3 + i) % theme.series.length], width: 1.5, dash: 'dash' },
+      line: { color: theme.muted, width: 1.5, dash: dashes[i % dashes.length] },
       hovertemplate: `${plain(curve.label)}: %{y:.3f}${thinSpace}mm<extra></extra>`,
     })),
     ...cutTraces(input.cuts, theme),
@@ -227,14 +230,14 @@ export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): F
   const speeds = { range: [left, right], hoverformat: '.0f', tickformat: ',d' };
   return {
     data,
-    layout: layout(theme, two ? (narrow ? 640 : 720) : 480, {
+    layout: layout(theme, two ? (narrow ? 700 : 720) : 480, {
       hovermode: 'closest',
-      xaxis: axis(theme, two ? '' : speedAxis, { ...speeds, showticklabels: !two, anchor: 'y', matches: two ? 'x2' : undefined }),
+      xaxis: axis(theme, two ? '' : speedAxis, { ...speeds, showticklabels: !two, anchor: 'y' }),
       yaxis: axis(theme, depthAxis, { range: [0, depthTop(input)], domain: two ? [0.42, 1] : [0, 1] }),
       ...(two
         ? {
-            xaxis2: axis(theme, speedAxis, { ...speeds, anchor: 'y2' }),
-            yaxis2: axis(theme, 'Chatter frequency (Hz)', { domain: [0, 0.3], rangemode: 'tozero', anchor: 'x2' }),
+            xaxis2: axis(theme, speedAxis, { ...speeds, anchor: 'y2', matches: 'x' }),
+            yaxis2: axis(theme, 'Chatter frequency (Hz)', { domain: [0, 0.3], anchor: 'x2' }),
             legend2: { orientation: 'h', yanchor: 'bottom', y: 0.31, xanchor: 'left', x: 0, font: { size: 12 } },
           }
         : {}),
@@ -261,7 +264,7 @@ export function pairFigure(part: Lobes, all: Lobes, cuts: Cut[], theme: Theme): 
     ],
     layout: layout(theme, 320, {
       title: { text: plain(part.label), font: { size: 14 }, x: 0.02, xanchor: 'left', y: 0.97 },
-      margin: { l: 52, r: 12, t: 34, b: 44 },
+      margin: { l: 52, r: 32, t: 34, b: 44 },
       showlegend: false,
       hovermode: 'closest',
       xaxis: axis(theme, speedAxis, { tickformat: ',d' }),

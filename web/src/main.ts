@@ -31,13 +31,25 @@ function currentTheme(): Theme {
 /** Draws, unless the place is inside a closed part of the page: it has no width yet and is drawn when it opens. */
 async function draw(plot: Plot, width?: number): Promise<void> {
   if (plot.root.offsetParent === null) return;
-  const figure = plot.draw(currentTheme(), width ?? plot.root.clientWidth);
-  if (width !== undefined) Object.assign(figure.layout, { width, autosize: false });
-  await Plotly.react(plot.root, figure.data, figure.layout, config);
+  try {
+    await drawFigure(plot, width);
+  } catch (error) {
+    plot.root.textContent = 'This plot could not be drawn.';
+    console.error(error);
+  }
 }
 
-function drawAll(width?: number): Promise<void[]> {
-  return Promise.all(plots.map((plot) => draw(plot, width)));
+async function drawFigure(plot: Plot, width?: number): Promise<void> {
+  const room = width ?? plot.root.clientWidth;
+  const figure = plot.draw(currentTheme(), room);
+  if (width !== undefined) Object.assign(figure.layout, { width, autosize: false });
+  const bar = room > 300 && window.innerWidth > 600;
+  if (!bar) Object.assign(figure.layout['margin'] as object, { r: 12 });
+  await Plotly.react(plot.root, figure.data, figure.layout, { ...config, displayModeBar: bar ? 'hover' : false });
+}
+
+function drawAll(): Promise<void[]> {
+  return Promise.all(plots.map((plot) => draw(plot)));
 }
 
 function element<K extends keyof HTMLElementTagNameMap>(tag: K, className: string, parent: HTMLElement): HTMLElementTagNameMap[K] {
@@ -116,7 +128,7 @@ function addPlot(report: Report, figure: HTMLElement, canvas: HTMLElement): void
   } else if (which === 'feed' && report.feed_directions) {
     const feed = report.feed_directions;
     const parts: ('lowest' | 'speed')[] = feed.limit_at_speed_mm ? ['lowest', 'speed'] : ['lowest'];
-    several(canvas, parts.map((part) => (theme) => polarFigure(feed, part, theme)));
+    several(canvas, parts.map((part) => (theme, width) => polarFigure(feed, part, theme, width)));
   } else if (which === 'frf') {
     addFrf(report, figure, canvas);
   } else if (which === 'recording') {

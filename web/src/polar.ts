@@ -1,5 +1,5 @@
 import type { FeedDirections, Num } from './data';
-import { axis, layout, thinSpace, type Figure, type Layout, type Theme } from './theme';
+import { axis, layout, rpm, thinSpace, type Figure, type Layout, type Theme } from './theme';
 
 /** Rings at round numbers, three to six of them, the last at or beyond `most`. */
 export function rings(most: number): number[] {
@@ -49,7 +49,7 @@ function frame(most: number, theme: Theme): { shapes: Layout[]; annotations: Lay
 }
 
 /** Depth over feed direction; where no limit was found, a hollow marker stands at the searched depth. */
-export function polarFigure(feed: FeedDirections, which: 'lowest' | 'speed', theme: Theme): Figure {
+export function polarFigure(feed: FeedDirections, which: 'lowest' | 'speed', theme: Theme, width = 440): Figure {
   const limit = which === 'lowest' ? feed.lowest_limit_mm : (feed.limit_at_speed_mm ?? []);
   const searched = feed.searched_depth_mm;
   const found = limit.filter((depth): depth is number => depth !== null);
@@ -108,14 +108,14 @@ export function polarFigure(feed: FeedDirections, which: 'lowest' | 'speed', the
       hovertext: `feed of this job: ${feed.used_direction_deg}°`,
     });
   }
-  const speed = feed.spindle_speed_rpm === null ? 'one speed' : `${feed.spindle_speed_rpm.toFixed(0)} rpm`;
+  const speed = feed.spindle_speed_rpm === null ? 'one speed' : rpm(feed.spindle_speed_rpm);
   const title = which === 'lowest' ? 'Lowest limit over all speeds (mm)' : `Limit at ${speed} (mm)`;
-  const hidden = { visible: false, range: [-1.25 * most, 1.25 * most], fixedrange: true };
+  const hidden = { visible: false, range: [-1.2 * most, 1.2 * most], fixedrange: true };
   return {
     data,
-    layout: layout(theme, 400, {
+    layout: layout(theme, Math.min(440, Math.max(240, width)) + (open ? 24 : 0), {
       title: { text: title, font: { size: 14 }, x: 0.5, y: 0.98 },
-      margin: { l: 8, r: 8, t: 36, b: 28 },
+      margin: { l: 8, r: 28, t: 36, b: 28 },
       hovermode: 'closest',
       showlegend: open,
       legend: { orientation: 'h', yanchor: 'top', y: 0, xanchor: 'center', x: 0.5, font: { size: 12 } },

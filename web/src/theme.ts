@@ -26,7 +26,7 @@ export const light: Theme = {
   unknown: '#8a94a3',
   accent: '#0b5cad',
   measured: '#8796aa',
-  series: ['#0b5cad', '#c8401c', '#007f5f', '#a3498e', '#c98a00', '#2f9ec4', '#6b6f76', '#7a5230'],
+  series: ['#0b5cad', '#c8401c', '#007f5f', '#a3498e', '#c98a00', '#2f9ec4', '#3c4450', '#7ba800'],
 };
 
 export const dark: Theme = {
@@ -41,7 +41,7 @@ export const dark: Theme = {
   unknown: '#8a97a8',
   accent: '#63b0ff',
   measured: '#76869b',
-  series: ['#63b0ff', '#ff7a55', '#3ecf9f', '#d98cc7', '#f0b840', '#7fd3ef', '#a8adb5', '#c79a74'],
+  series: ['#63b0ff', '#ff7a55', '#3ecf9f', '#d98cc7', '#f0b840', '#7fd3ef', '#c9ced6', '#b6e04a'],
 };
 
 export type Trace = Record<string, unknown>;
@@ -65,6 +65,21 @@ export function axis(theme: Theme, title: string, more: Layout = {}): Layout {
   };
 }
 
+/** Ticks of a logarithmic axis at 1, 2 and 5 of each decade, as plain numbers; 1 alone where that would be too many. */
+export function logTicks(from: number, to: number): { tickvals: number[]; ticktext: string[] } {
+  if (!(from > 0) || !(to > from)) return { tickvals: [], ticktext: [] };
+  const decades = Math.log10(to / from);
+  const heads = decades > 4 ? [1] : [1, 2, 5];
+  const tickvals: number[] = [];
+  for (let decade = Math.floor(Math.log10(from)); decade <= Math.ceil(Math.log10(to)); ++decade) {
+    for (const head of heads) {
+      const value = Number((head * 10 ** decade).toPrecision(3));
+      if (value >= from * 0.999 && value <= to * 1.001) tickvals.push(value);
+    }
+  }
+  return { tickvals, ticktext: tickvals.map((value) => (value < 1e-4 || value >= 1e5 ? value.toExponential(0) : `${value}`)) };
+}
+
 /** What every figure shares. */
 export function layout(theme: Theme, height: number, more: Layout = {}): Layout {
   return {
@@ -73,12 +88,19 @@ export function layout(theme: Theme, height: number, more: Layout = {}): Layout 
     paper_bgcolor: 'rgba(0,0,0,0)',
     plot_bgcolor: 'rgba(0,0,0,0)',
     font: { family: 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif', size: 13, color: theme.text },
-    margin: { l: 56, r: 16, t: 16, b: 48 },
+    margin: { l: 56, r: 36, t: 16, b: 48 },
+    modebar: { orientation: 'v', bgcolor: 'rgba(0,0,0,0)', color: theme.unknown, activecolor: theme.accent },
     separators: `.${thinSpace}`,
     hoverlabel: { bgcolor: theme.panel, bordercolor: theme.muted, font: { color: theme.text }, align: 'left' },
     legend: { orientation: 'h', yanchor: 'bottom', y: 1.01, xanchor: 'left', x: 0, font: { size: 12 } },
     ...more,
   };
+}
+
+/** A spindle speed in whole rpm, thousands apart from 10 000 on. */
+export function rpm(speed: number): string {
+  const digits = speed.toFixed(0);
+  return `${digits.length > 4 ? digits.replace(/(?<=\d)(?=(\d{3})+$)/g, thinSpace) : digits}${thinSpace}rpm`;
 }
 
 /** Plotly reads some tags in texts; texts from outside must stay texts. */
