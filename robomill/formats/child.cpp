@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <fstream>
 #include <string_view>
 
 namespace robomill::formats {
@@ -23,11 +24,29 @@ bool write_whole(int to, std::string_view bytes) {
   return true;
 }
 
-[[noreturn]] void be_child(int to, const std::function<std::string()>& body) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool sanitized = true;  // their shadow memory fills the address space
+#elif defined(__has_feature)
+constexpr bool sanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#else
+constexpr bool sanitized = false;
+#endif
+
+void limit_memory(std::size_t more_bytes) {
+  if (sanitized) return;
+  std::size_t pages = 0;
+  if (!(std::ifstream("/proc/self/statm") >> pages)) return;
+  const rlim_t most = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + more_bytes;
+  const rlimit memory{most, most};
+  ::setrlimit(RLIMIT_AS, &memory);
+}
+
+[[noreturn]] void be_child(int to, std::size_t more_memory_bytes, const std::function<std::string()>& body) {
   int status = 1;
   try {
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
+    limit_memory(more_memory_bytes);
     for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE}) ::signal(signal, SIG_DFL);
     const int nowhere = ::open("/dev/null", O_WRONLY);
     if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
@@ -51,11 +70,11 @@ std::string read_whole(int from) {
 
 }  // namespace
 
-std::optional<std::string> run_in_child(const std::function<std::string()>& body) {
+std::optional<std::string> run_in_child(std::size_t more_memory_bytes, const std::function<std::string()>& body) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
   const pid_t child = ::fork();
-  if (child == 0) be_child(ends[1], body);
+  if (child == 0) be_child(ends[1], more_memory_bytes, body);
   ::close(ends[1]);
   std::string bytes = child > 0 ? read_whole(ends[0]) : std::string();
   ::close(ends[0]);

@@ -30,6 +30,12 @@ std::mutex& library() {
 /// zlib packs at most some thousand to one: a variable that claims more is a broken one, and must not be allocated.
 constexpr double most_packed = 1100.0;
 
+/// Beyond what is in use already and what the file's size asks for [bytes].
+constexpr std::size_t most_memory = std::size_t{64} << 20;
+
+/// How the child's answer begins.
+constexpr char answered = '+', refused = '-';
+
 std::size_t bytes_of(matio_classes type) {
   switch (type) {
     case MAT_C_DOUBLE:
@@ -114,12 +120,6 @@ MatVariable converted(const matvar_t& variable, const std::string& file) {
   return out;
 }
 
-/// "MI" or "IM" after the version 1.0: the header of version 5; version 7.3 has 2.0 there, version 4 no header.
-bool is_version_5(std::string_view content) {
-  return content.size() >= 128 && (content.substr(124, 4) == std::string_view("\0\1IM", 4) ||
-                                   content.substr(124, 4) == std::string_view("\1\0MI", 4));
-}
-
 std::vector<MatVariable> read_variables(const std::filesystem::path& path, double file_bytes) {
   const std::string file = path.string();
   const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY), &Mat_Close);
@@ -180,13 +180,20 @@ std::vector<MatVariable> unpack(std::string_view bytes) {
 }  // namespace
 
 std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
-  const std::string content = read_file(path);
+  const std::size_t file_bytes = read_file(path).size();
   const std::lock_guard lock(library());
-  if (is_version_5(content)) return read_variables(path, static_cast<double>(content.size()));
-  // HDF5 trusts what a file says of its types, and a damaged one brings the process down.
-  const auto packed = run_in_child([&] { return pack(read_variables(path, static_cast<double>(content.size()))); });
-  if (!packed) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
-  return unpack(*packed);
+  // The libraries trust what a file says of its types and lengths: a damaged one brings HDF5 down, and makes matio ask
+  // for gigabytes.
+  const auto packed = run_in_child(most_memory + 64 * file_bytes, [&]() -> std::string {
+    try {
+      return answered + pack(read_variables(path, static_cast<double>(file_bytes)));
+    } catch (const InvalidInput& error) {
+      return refused + error.parts().rule;
+    }
+  });
+  if (!packed || packed->empty()) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
+  if (packed->front() == refused) throw InvalidInput(path.string(), packed->substr(1));
+  return unpack(std::string_view(*packed).substr(1));
 }
 
 void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>& variables) {
