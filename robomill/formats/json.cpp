@@ -1,56 +1,65 @@
 #include "robomill/formats/json.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
-#include "robomill/base/error.hpp"
 #include "robomill/formats/file.hpp"
+#include "robomill/formats/text.hpp"
 
 namespace robomill::formats {
 namespace {
 
-bool is_plain(const Json& value) {
-  return !value.is_array() && !value.is_object();
+bool is_plain(const Json& json) {
+  return !json.is_structured();
 }
 
-/// Text that is no UTF-8, a file's name for one, must not end the writing.
-std::string one_line(const Json& json) {
+/// Rows of numbers stay on a line each.
+bool on_one_line(const Json& json) {
+  return json.is_array() && std::all_of(json.begin(), json.end(), [](const Json& entry) {
+           return is_plain(entry) ||
+                  (entry.is_array() && entry.size() <= 2 && std::all_of(entry.begin(), entry.end(), is_plain));
+         });
+}
+
+/// One place for text that is not UTF-8: file names may be anything.
+std::string plain_text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Objects over lines; lists of plain values, and pairs of them, on one.
-void write(const Json& json, int depth, std::string& out) {
-  const std::string indent(static_cast<std::size_t>(depth) + 1, ' ');
-  const char* joint = "";
-  if (json.is_object() && !json.empty()) {
-    out += "{\n";
-    for (const auto& item : json.items()) {
-      out += joint + indent + one_line(item.key()) + ": ";
-      write(item.value(), depth + 1, out);
-      joint = ",\n";
-    }
-    out += "\n" + std::string(static_cast<std::size_t>(depth), ' ') + "}";
-  } else if (json.is_array() && !std::all_of(json.begin(), json.end(), is_plain)) {
-    out += "[\n";
-    for (const Json& entry : json) {
-      out += joint + indent + one_line(entry);
-      joint = ",\n";
-    }
-    out += "\n" + std::string(static_cast<std::size_t>(depth), ' ') + "]";
-  } else {
-    out += one_line(json);
+void append(std::string& out, const Json& json, std::size_t depth) {
+  if (is_plain(json) || json.empty()) {
+    out += plain_text(json);
+    return;
   }
+  const bool is_object = json.is_object();
+  const bool one_line = on_one_line(json);
+  std::string line_end(2 * depth + 3, ' ');
+  line_end.front() = '\n';
+  out += is_object ? '{' : '[';
+  bool first = true;
+  for (const auto& [key, value] : json.items()) {
+    if (!first) out += one_line ? ", " : ",";
+    first = false;
+    if (!one_line) out += line_end;
+    if (is_object) out.append(plain_text(Json(key))).append(": ");
+    append(out, value, depth + 1);
+  }
+  if (!one_line) out += line_end.substr(0, line_end.size() - 2);
+  out += is_object ? '}' : ']';
+}
+
+std::size_t line_of(std::string_view content, std::size_t byte) {
+  const std::string_view before = content.substr(0, byte);
+  return static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
 }
 
 }  // namespace
 
 Json number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.15g", value);
-  return std::strtod(text, nullptr);
+  return std::isfinite(value) ? Json(round_15(value)) : Json();
 }
 
 Json complex_number(const std::complex<double>& value) {
@@ -58,9 +67,9 @@ Json complex_number(const std::complex<double>& value) {
 }
 
 Json numbers(const Eigen::Ref<const Eigen::VectorXd>& values) {
-  Json out = Json::array();
-  for (const double value : values) out.push_back(std::isfinite(value) ? Json(value) : Json());
-  return out;
+  Json list = Json::array();
+  for (Eigen::Index i = 0; i < values.size(); ++i) list.push_back(std::isfinite(values(i)) ? Json(values(i)) : Json());
+  return list;
 }
 
 Json complex_numbers(const Eigen::Ref<const Eigen::VectorXcd>& values) {
@@ -69,8 +78,9 @@ Json complex_numbers(const Eigen::Ref<const Eigen::VectorXcd>& values) {
 
 std::string dump(const Json& json) {
   std::string out;
-  write(json, 0, out);
-  return out + "\n";
+  append(out, json, 0);
+  out += '\n';
+  return out;
 }
 
 JsonNode::JsonNode(const Json& json, std::string file, std::string path)
@@ -81,7 +91,7 @@ InvalidInput JsonNode::refuse(std::string rule, std::string hint) const {
   if (json_->is_number()) {
     parts.number = json_->get<double>();
   } else if (is_plain(*json_)) {
-    parts.value = one_line(*json_).substr(0, 60);
+    parts.value = plain_text(*json_).substr(0, 60);
   }
   return InvalidInput(std::move(parts));
 }
@@ -91,69 +101,67 @@ bool JsonNode::has(const char* key) const {
 }
 
 void JsonNode::require_object() const {
-  if (!json_->is_object()) throw refuse("must be an object, {…}");
+  if (!json_->is_object()) throw refuse("must be an object {…}");
 }
 
 JsonNode JsonNode::at(const std::string& key) const {
   require_object();
-  const std::string path = path_.empty() ? key : path_ + "." + key;
-  const auto found = json_->find(key);
-  if (found == json_->end())
+  const std::string path = path_.empty() ? key : fmt::format("{}.{}", path_, key);
+  const auto member = json_->find(key);
+  if (member == json_->end()) {
     throw InvalidInput(InvalidInput::Parts{.where = file_, .field = path, .rule = "is missing"});
-  return {*found, file_, path};
+  }
+  return {*member, file_, path};
 }
 
 std::size_t JsonNode::size() const {
-  if (!json_->is_array()) throw refuse("must be a list, […]");
+  if (!json_->is_array()) throw refuse("must be a list […]");
   return json_->size();
 }
 
 JsonNode JsonNode::at(std::size_t index) const {
-  if (index >= size()) throw refuse("has too few entries");
-  return {(*json_)[index], file_, path_ + "[" + std::to_string(index + 1) + "]"};
+  return {json_->at(index), file_, fmt::format("{}[{}]", path_, index + 1)};
 }
 
 double JsonNode::number() const {
-  if (!json_->is_number()) throw refuse("must be a number");
-  const double value = json_->get<double>();
-  if (!std::isfinite(value)) throw refuse("must be a finite number");
-  return value;
+  if (!json_->is_number() || !std::isfinite(json_->get<double>())) throw refuse("must be a finite number");
+  return json_->get<double>();
 }
 
 std::complex<double> JsonNode::complex_number() const {
-  if (size() != 2) throw refuse("must be [re, im]");
+  if (json_->is_number()) return number();
+  if (!json_->is_array() || size() != 2) throw refuse("must be [re, im]");
   return {at(std::size_t{0}).number(), at(std::size_t{1}).number()};
 }
 
 Eigen::VectorXd JsonNode::numbers() const {
-  Eigen::VectorXd out(static_cast<Eigen::Index>(size()));
-  for (std::size_t i = 0; i < size(); ++i) {
-    const Json& entry = (*json_)[i];
-    // The fast way for what nearly every entry is; at() names the entry where it is not.
-    out(static_cast<Eigen::Index>(i)) = entry.is_number_float() ? entry.get<double>() : at(i).number();
-    if (!std::isfinite(out(static_cast<Eigen::Index>(i)))) throw at(i).refuse("must be a finite number");
+  Eigen::VectorXd values(static_cast<Eigen::Index>(size()));
+  Eigen::Index i = 0;
+  for (const Json& entry : *json_) {
+    if (!entry.is_number() || !std::isfinite(entry.get<double>())) {
+      throw at(static_cast<std::size_t>(i)).refuse("must be a finite number");
+    }
+    values(i++) = entry.get<double>();
   }
-  return out;
+  return values;
 }
 
 std::string JsonNode::text() const {
-  if (!json_->is_string()) throw refuse("must be text in quotes");
+  if (!json_->is_string()) throw refuse("must be text");
   return json_->get<std::string>();
 }
 
 Json read_json(const std::filesystem::path& path) {
-  const std::string text = read_file(path);
+  const std::string content = read_file(path);
   try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    const auto line = 1 + std::count(text.begin(), end, '\n');
-    throw InvalidInput(InvalidInput::Parts{.where = path.string() + ":" + std::to_string(line),
-                                           .field = "text",
-                                           .rule = "is no JSON",
-                                           .hint = "A comma, quote or bracket is missing or too many"});
-  } catch (const Json::exception&) {
-    throw InvalidInput(path.string(), "is no JSON that can be read");
+    return Json::parse(content);
+  } catch (const nlohmann::json::exception& error) {
+    const auto* parse = dynamic_cast<const nlohmann::json::parse_error*>(&error);
+    const std::size_t line = line_of(content, parse != nullptr ? parse->byte : 0);
+    std::string reason = error.what();
+    reason = reason.substr(std::min(reason.find("] ") + 2, reason.size()));
+    throw InvalidInput(
+        InvalidInput::Parts{.where = fmt::format("{}:{}", path.string(), line), .rule = "is no JSON: " + reason});
   }
 }
 
