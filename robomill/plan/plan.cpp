@@ -16,8 +16,10 @@
 namespace robomill::plan {
 namespace {
 
-constexpr int feed_directions = 36;
+constexpr Eigen::Index feed_directions = 36;
 constexpr int speeds_a_direction = 60;
+/// Depths at which the comparisons beside the main lobes look for the limit, before they refine it.
+constexpr int comparison_depths = 40;
 
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
@@ -67,10 +69,9 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   }
 }
 
-stability::LobesOptions limit_options(const PlanResult& result) {
+stability::LobesOptions comparison_options(const PlanResult& result) {
   stability::LobesOptions options = result.cut.options;
-  options.points.clear();
-  options.output = stability::Output::boundary;
+  options.grid[1] = std::min(options.grid[1], comparison_depths);
   return options;
 }
 
@@ -78,7 +79,7 @@ stability::LobesOptions limit_options(const PlanResult& result) {
 void pairs(PlanResult& result, Progress& progress) {
   const int modes = static_cast<int>(result.model.modes.size());
   if (modes < 3 || !result.cut.problem.keep_modes.empty()) return;
-  const stability::LobesOptions options = limit_options(result);
+  const stability::LobesOptions options = comparison_options(result);
   const std::vector<double> speeds(result.lobes.spindle_speed_rad_per_s.begin(),
                                    result.lobes.spindle_speed_rad_per_s.end());
   for (int k = 1; k <= modes; k += 2) {
@@ -133,16 +134,36 @@ RecommendOptions recommend_options(const PlanResult& result) {
 void choose(PlanResult& result) {
   std::vector<DepthLimit> limits;
   for (const stability::Limit& limit : result.lobes.limit) limits.push_back(to_depth_limit(limit));
-  const stability::LobesOptions options = limit_options(result);
+  const stability::LobesOptions& options = result.cut.options;
   result.recommendation = recommend(limits, recommend_options(result), [&](double speed) {
     return to_depth_limit(stability::limit_depths(result.cut.problem, options, {speed}).front());
   });
 }
 
+/// The deepest pockets of the lobes stand where tooth passing meets a mode: no chatter there, but resonance.
+void warn_of_resonance(PlanResult& result) {
+  if (!result.recommendation.recommended) return;
+  const double tooth_passing_hz = result.recommendation.recommended->spindle_speed_rad_per_s /
+                                  (2.0 * std::numbers::pi) * result.cut.problem.milling.tool.teeth;
+  for (std::size_t k = 0; k < result.model.modes.size(); ++k) {
+    const modal::Mode& mode = result.model.modes[k];
+    const double harmonic = std::round(mode.frequency_hz / tooth_passing_hz);
+    if (harmonic < 1.0 ||
+        std::abs(harmonic * tooth_passing_hz - mode.frequency_hz) > mode.damping_ratio * mode.frequency_hz) {
+      continue;
+    }
+    result.warnings.push_back(
+        fmt::format("At the recommended speed {:.0f} × tooth passing ({:.1f} Hz) excites mode {} ({:.1f} Hz): no "
+                    "chatter, but forced "
+                    "vibration is greatest there. Check the surface, or take an alternative.",
+                    harmonic, harmonic * tooth_passing_hz, k + 1, mode.frequency_hz));
+  }
+}
+
 /// The limit as the feed turns through the plane: a robot is not the same in every direction.
 void turn_feed(PlanResult& result, Progress& progress) {
   report::FeedDirections out;
-  const stability::LobesOptions options = limit_options(result);
+  const stability::LobesOptions options = comparison_options(result);
   const double low = options.spindle_speed_rad_per_s[0];
   const double high = options.spindle_speed_rad_per_s[1];
   std::vector<double> speeds;
@@ -159,9 +180,12 @@ void turn_feed(PlanResult& result, Progress& progress) {
   out.used_direction_rad = result.cut.problem.feed_direction_rad;
   out.searched_depth_m = options.axial_depth_m[1];
   stability::LobesProblem problem = result.cut.problem;
-  for (Eigen::Index i = 0; i < feed_directions; ++i) {
-    problem.feed_direction_rad = 2.0 * std::numbers::pi * static_cast<double>(i) / feed_directions;
+  // Turning the feed by half a turn turns forces and displacements alike: the limit is the same.
+  constexpr Eigen::Index half = feed_directions / 2;
+  for (Eigen::Index i = 0; i < half; ++i) {
+    problem.feed_direction_rad = std::numbers::pi * static_cast<double>(i) / half;
     out.direction_rad(i) = problem.feed_direction_rad;
+    out.direction_rad(i + half) = problem.feed_direction_rad + std::numbers::pi;
     const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
     for (std::size_t k = 0; k < limits.size(); ++k) {
       const double depth =
@@ -173,11 +197,13 @@ void turn_feed(PlanResult& result, Progress& progress) {
       }
     }
   }
+  out.lowest_limit_m.tail(half) = out.lowest_limit_m.head(half);
+  if (recommended) out.limit_at_speed_m.tail(half) = out.limit_at_speed_m.head(half);
   result.feed_directions = out;
 }
 
 void compare(PlanResult& result, Progress& progress) {
-  result.cuts = compare_cuts(result.job.cuts, result.cut.problem, limit_options(result), progress);
+  result.cuts = compare_cuts(result.job.cuts, result.cut.problem, result.cut.options, progress);
   std::vector<double> modes_hz;
   for (const modal::Mode& mode : result.model.modes) modes_hz.push_back(mode.frequency_hz);
   for (std::size_t i = 0; i < result.job.cuts.size(); ++i) {
@@ -245,6 +271,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   result.cut.validate();
   result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
   choose(result);
+  warn_of_resonance(result);
   pairs(result, progress);
   turn_feed(result, progress);
   compare(result, progress);
