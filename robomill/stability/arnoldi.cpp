@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "robomill/base/random.hpp"
 
@@ -38,7 +39,10 @@ bool Arnoldi::settle(std::size_t lane, std::size_t columns, bool whole_space, Do
     const Lanes* column = hessenberg_.data() + c * (most_ + 1);
     for (std::size_t r = 0; r < std::min(columns, c + 2); ++r) small_(r, c) = column[r].v[lane];
   }
-  if (!small_.dominant(out.multiplier)) return false;
+  if (!small_.dominant(out.multiplier)) {
+    out.multiplier = std::numeric_limits<double>::infinity();  // the motion overflows within a period
+    return false;
+  }
   ritz_[lane] = small_.vector(out.multiplier);
   const double next = hessenberg_[(columns - 1) * (most_ + 1) + columns].v[lane];
   out.residual = whole_space ? 0.0 : next * std::abs(ritz_[lane].back());
@@ -97,6 +101,7 @@ void Arnoldi::full_matrix(Monodromy& monodromy, std::span<Dominant> out) {
   }
   for (std::size_t lane = 0; lane < out.size(); ++lane) {
     if (out[lane].by == Dominant::By::arnoldi) continue;
+    if (!matrix[lane].allFinite()) continue;
     const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix[lane], true);
     if (solver.info() != Eigen::Success) continue;
     Eigen::Index best = 0;

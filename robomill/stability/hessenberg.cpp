@@ -106,8 +106,9 @@ void Hessenberg::sweep(std::size_t low, std::size_t high, int iteration) {
 }
 
 bool Hessenberg::dominant(std::complex<double>& value) {
-  work_ = matrix_;
   value = 0.0;
+  if (!std::isfinite(norm())) return false;
+  work_ = matrix_;
   double largest = -1.0;
   const auto consider = [&](double real, double imaginary) {
     const double square = real * real + imaginary * imaginary;

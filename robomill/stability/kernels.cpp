@@ -270,16 +270,17 @@ CORE void subtract_and_dot(std::size_t size, const V& h, const Lanes* v, const L
 CORE void orthogonalise_core(OrthogonalArguments& a, std::size_t lane) {
   Lanes* w = a.basis + (a.column + 1) * a.size;
   V h = {};
-  subtract_and_dot<V>(a.size, h, a.basis, a.basis, w, h, lane);
-  for (std::size_t j = 0; j <= a.column; ++j) {
-    // Modified Gram-Schmidt; the product with the next vector is taken on the way, at the end that with w itself.
-    const Lanes* v = a.basis + j * a.size;
-    L(a.coefficients[j]) = h;
-    const V along = h;
-    if (j < a.column) {
-      subtract_and_dot<V>(a.size, along, v, v + a.size, w, h, lane);
-    } else {
-      subtract_and_dot<V>(a.size, along, v, w, w, h, lane);
+  for (std::size_t j = 0; j <= a.column; ++j) L(a.coefficients[j]) = h;
+  // Modified Gram-Schmidt, twice, so that nothing of the basis is left where little of w remains. The product with the
+  // next vector is taken on the way; the last one with w itself.
+  for (int pass = 0; pass < 2; ++pass) {
+    h = V{};
+    subtract_and_dot<V>(a.size, h, a.basis, a.basis, w, h, lane);
+    for (std::size_t j = 0; j <= a.column; ++j) {
+      const Lanes* v = a.basis + j * a.size;
+      const V along = h;
+      L(a.coefficients[j]) += along;
+      subtract_and_dot<V>(a.size, along, v, j < a.column ? v + a.size : w, w, h, lane);
     }
   }
   V inverse = {};

@@ -116,7 +116,7 @@ PointResult point_result(const LobesProblem& problem, const LobesOptions& option
   result.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
   result.axial_depth_m = point.axial_depth_m;
   result.spectral_radius = spectral_radius(dominant);
-  result.multiplier = dominant.multiplier;
+  result.multiplier = std::isfinite(std::abs(dominant.multiplier)) ? dominant.multiplier : result.spectral_radius;
   result.stable = result.spectral_radius < 1.0;
   result.error_estimate = 4.0 / 3.0 * std::abs(spectral_radius(finer) - result.spectral_radius);
   result.chatter_frequency_hz = motion.frequency_hz;

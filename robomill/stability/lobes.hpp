@@ -62,9 +62,9 @@ struct PointResult {
   std::complex<double> multiplier = 0.0;  ///< the one with it, imaginary part >= 0
   bool stable = false;                    ///< spectral radius < 1
   double error_estimate = 0.0;            ///< of the spectral radius: from a second run at twice the intervals
-  double chatter_frequency_hz = 0.0;      ///< at which this multiplier's motion is greatest [Hz]
+  double chatter_frequency_hz = 0.0;      ///< at which this multiplier's motion is greatest [Hz]; 0 where it overflows
   Kind kind = Kind::hopf;
-  int mode = 0;  ///< the mode that moves most in it, numbered as in dynamics from 1
+  int mode = 0;  ///< the mode that moves most in it, numbered as in dynamics from 1; 0 where it overflows
 };
 
 /// A point where the spectral radius is 1.

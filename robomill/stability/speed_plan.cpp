@@ -100,8 +100,8 @@ Resolution resolution(const TipDynamics& tip, double step_s, double largest_n_pe
   }
   // How fast the structure moves while the cut holds it: its poles, stiffened by the cut.
   const double rate = std::sqrt(square + shift * largest_n_per_m) + jump.norm() * largest_n_per_m;
-  // Gauss collocation: error x^(2p+1) (p!)^4 / ((2p+1) (2p)!^3) <= 1e-12 for x up to:
-  constexpr std::array<double, 4> reach = {0.14, 0.49, 1.1, 1.9};  // p = 3, 4, 5, 6
+  // Gauss collocation: error x^(2p+1) (p!)^4 / ((2p+1) (2p)!^3) <= 1e-13 for x up to:
+  constexpr std::array<double, 4> reach = {0.10, 0.38, 0.90, 1.6};  // p = 3, 4, 5, 6
   Resolution r;
   double x = rate * step_s;
   while (x > reach.back() && r.halvings < 30) {

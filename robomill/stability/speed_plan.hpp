@@ -11,7 +11,7 @@ struct Resolution {
   int halvings = 0;  ///< a step is 2^halvings substeps, put together by squaring
 };
 
-/// So fine that one step is right to about 1e-12 of its motion.
+/// So fine that one step is right to about 1e-13 of its motion.
 /// @param step_s  length of a time step
 /// @param largest_n_per_m  greatest stiffness of the cut
 Resolution resolution(const TipDynamics& tip, double step_s, double largest_n_per_m);
