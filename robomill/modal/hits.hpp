@@ -15,7 +15,7 @@ namespace robomill::modal {
 enum class ResponseKind { acceleration, velocity, displacement };
 
 /// H1 = Σ X F* / Σ |F|² (no bias from noise on the response), H2 = Σ |X|² / Σ F X* (no bias from noise on the force),
-/// Hv = their geometric mean. [Rocklin1985]
+/// Hv = their geometric mean: total least squares with force and response scaled to equal power. [Rocklin1985]
 enum class Estimator { h1, h2, hv };
 
 enum class ExponentialWindow { automatic, off, on };

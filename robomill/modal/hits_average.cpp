@@ -110,9 +110,9 @@ Layout lay_out(const std::vector<Struck>& hits, const HitOptions& options) {
   }
   if (options.frequency_resolution_hz > 0.0) {
     const double wanted = std::round(layout.sample_rate_hz / options.frequency_resolution_hz);
-    if (!(wanted >= 64.0 && wanted < 1e8)) {
+    if (!(wanted >= 64.0 && wanted <= 1e7)) {
       throw InvalidInput("frequency_resolution_hz", options.frequency_resolution_hz, "Hz",
-                         "must leave between 64 and 1e8 samples in a transform");
+                         "must leave between 64 and 1e7 samples in a transform");
     }
     layout.transform = static_cast<Index>(wanted);
     layout.samples = std::min(layout.samples, layout.transform);

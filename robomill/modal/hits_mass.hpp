@@ -17,7 +17,7 @@ namespace robomill::modal {
 /// their deviations
 /// @param line_s   s of each line [1/s]
 /// @return degrees of freedom whose loading remains (D without K)
-/// Source: [Ewins2000] sec. 3.10 has the one-sensor case
+/// Source: [Ewins2000] ch. 3 has the one-sensor case
 std::vector<Dof> remove_mass(std::vector<Frf>& frfs, const std::vector<Dof>& sensors, const Eigen::VectorXcd& line_s,
                              double mass_kg);
 

@@ -92,7 +92,8 @@ double second_far(const Eigen::VectorXd& f, const Pulse& pulse, Index width) {
     }
     highest = std::max(highest, push(j) - swing);
   }
-  return highest / contrast(means, pulse.peak, width, 1.0);
+  const double first = contrast(means, pulse.peak, width, 1.0);
+  return first > 0.0 ? highest / first : 0.0;
 }
 
 // Standard deviation of white noise under whatever slow motion: from the differences of neighbours.

@@ -106,6 +106,17 @@ TEST(FindPulse, ReboundBelowZeroIsNoHit) {
   EXPECT_LT(find_pulse(force).second_ratio, 0.005);
 }
 
+TEST(FindPulse, StaysFiniteInNoise) {
+  for (int seed = 0; seed < 20; ++seed) {
+    Random random(14, static_cast<std::uint64_t>(seed));
+    Eigen::VectorXd force(length);
+    for (Index j = 0; j < length; ++j) force(j) = random.normal();
+    const Pulse pulse = find_pulse(force);
+    EXPECT_TRUE(std::isfinite(pulse.second_ratio) && std::isfinite(pulse.width));
+    EXPECT_NEAR(pulse.noise_n, 1.0, 0.1);
+  }
+}
+
 TEST(FindPulse, PullHasANegativePeak) {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(length);
   add_pulse(force, 500.0, 55.0, -250.0);
