@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <iterator>
+#include <numbers>
 #include <set>
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/frf_parts.hpp"
-#include "robomill/formats/json.hpp"
-#include "robomill/formats/mat.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -33,15 +34,36 @@ FrfParts read_parts(const std::filesystem::path& path) {
 }
 
 void drop_first_line(FrfParts& parts) {
-  const Eigen::Index n = parts.frequency_hz.size() - 1;
-  const auto tail = [n](auto& values) {
-    if (values.size() > 0) values = values.tail(n).eval();
+  const Eigen::Index lines = parts.frequency_hz.size();
+  const auto tail = [lines](auto& values) {
+    if (values.size() == lines) values = values.tail(lines - 1).eval();
   };
   tail(parts.frequency_hz);
   for (FrfPart& frf : parts.frfs) {
-    tail(frf.receptance);
+    tail(frf.values);
     tail(frf.coherence);
     tail(frf.deviation);
+  }
+}
+
+/// A / (iω)² and V / iω; at 0 Hz there is none.
+void integrate(FrfParts& parts) {
+  const auto derived = [](const FrfPart& frf) { return frf.derivatives > 0; };
+  if (std::none_of(parts.frfs.begin(), parts.frfs.end(), derived)) return;
+  if (parts.frequency_hz(0) == 0.0) {
+    drop_first_line(parts);
+    parts.notes.push_back(parts.file.string() + ": the line at 0 Hz has no displacement and is left out");
+  }
+  const Eigen::VectorXd omega = 2.0 * std::numbers::pi * parts.frequency_hz;
+  for (FrfPart& frf : parts.frfs) {
+    if (!derived(frf) || frf.values.size() != omega.size()) continue;
+    const std::string name = frf.name ? " (" + modal::to_string(*frf.name) + ")" : "";
+    parts.notes.push_back(parts.file.string() + name +
+                          (frf.derivatives == 2 ? ": accelerance, divided by (iω)²" : ": mobility, divided by iω"));
+    for (int i = 0; i < frf.derivatives; ++i) {
+      frf.values = (frf.values.array() / (std::complex<double>(0.0, 1.0) * omega.array())).matrix().eval();
+      if (frf.deviation.size() == omega.size()) frf.deviation = (frf.deviation.array() / omega.array()).matrix().eval();
+    }
   }
 }
 
@@ -102,69 +124,6 @@ void number_less(std::vector<FrfPart*>& frfs, std::vector<std::string>& notes) {
   for (FrfPart* frf : frfs) frf->name->response.point = frf->name->excitation.point = 0;
 }
 
-Json set_json(const modal::FrfSet& set) {
-  set.validate();
-  Json json;
-  json["frequency_hz"] = numbers(set.frequency_hz);
-  json["receptance_m_per_n"] = Json::object();
-  json["coherence"] = Json::object();
-  json["deviation_m_per_n"] = Json::object();
-  for (const modal::Frf& frf : set.frfs) {
-    const std::string name = modal::to_string(frf.name);
-    json["receptance_m_per_n"][name] = complex_numbers(frf.receptance);
-    if (frf.coherence.size() > 0) json["coherence"][name] = numbers(frf.coherence);
-    if (frf.deviation.size() > 0) json["deviation_m_per_n"][name] = numbers(frf.deviation);
-  }
-  return json;
-}
-
-Json grade_json(const modal::FrfGrade& grade) {
-  return {{"grade", modal::to_string(grade.grade)},
-          {"hits", grade.hits},
-          {"mean_coherence", number(grade.mean_coherence)},
-          {"relative_noise", number(grade.relative_noise)},
-          {"reciprocity_error", number(grade.reciprocity_error)},
-          {"excited_band_hz", Json::array({number(grade.excited_low_hz), number(grade.excited_high_hz)})},
-          {"lowest_trustworthy_frequency_hz", number(grade.lowest_trustworthy_frequency_hz)},
-          {"faults", grade.faults},
-          {"remedies", grade.remedies}};
-}
-
-void add_hits(Json& json, const modal::FrfResult& result) {
-  json["hits"] = Json::array();
-  for (const modal::HitVerdict& hit : result.hits) {
-    json["hits"].push_back({{"file", hit.file},
-                            {"accepted", hit.accepted},
-                            {"reasons", hit.reasons},
-                            {"peak_force_n", number(hit.peak_force_n)},
-                            {"pulse_width_s", number(hit.pulse_width_s)},
-                            {"second_pulse_ratio", number(hit.second_pulse_ratio)}});
-  }
-  json["grades"] = Json::object();
-  for (const modal::FrfGrade& grade : result.grades) json["grades"][modal::to_string(grade.name)] = grade_json(grade);
-  json["lowest_trustworthy_frequency_hz"] = number(result.lowest_trustworthy_frequency_hz);
-  json["added_decay_per_s"] = number(result.added_decay_removed ? 0.0 : result.added_decay_per_s);
-  json["notes"] = result.notes;
-}
-
-/// "H_1x_3x" of 1x:3x with letter H.
-std::string mat_name(char letter, const modal::FrfName& name) {
-  std::string text = modal::to_string(name);
-  std::replace(text.begin(), text.end(), ':', '_');
-  return std::string(1, letter) + "_" + text;
-}
-
-Eigen::VectorXd to_vector(const Eigen::MatrixXd& matrix, const std::string& where) {
-  if (matrix.rows() != 1 && matrix.cols() != 1) throw InvalidInput(where, "must be a vector");
-  return matrix.reshaped();
-}
-
-const MatVariable* find(const std::vector<MatVariable>& variables, const std::string& name) {
-  const auto found =
-      std::find_if(variables.begin(), variables.end(), [&](const MatVariable& v) { return v.name == name; });
-  return found == variables.end() ? nullptr : &*found;
-}
-
 void write_as(const std::filesystem::path& path, const modal::FrfSet& set, const FrfWriteOptions& options,
               const std::string& json) {
   set.validate();
@@ -187,64 +146,15 @@ void write_as(const std::filesystem::path& path, const modal::FrfSet& set, const
 
 }  // namespace
 
-FrfParts read_frf_json(const std::filesystem::path& path) {
-  const Json json = read_json(path);
-  const JsonNode root(json, path.string());
-  FrfParts out{.file = path, .frequency_hz = root.at("frequency_hz").numbers()};
-  const JsonNode receptances = root.at("receptance_m_per_n");
-  receptances.require_object();
-  const auto extra = [&root](const char* key, const std::string& name) {
-    const bool there = root.has(key) && root.at(key).has(name.c_str());
-    return there ? root.at(key).at(name).numbers() : Eigen::VectorXd();
-  };
-  for (const auto& item : receptances.json().items()) {
-    const JsonNode node = receptances.at(item.key());
-    const Eigen::VectorXd re = node.at("re").numbers();
-    const Eigen::VectorXd im = node.at("im").numbers();
-    if (re.size() != im.size()) throw node.refuse("must have as many real as imaginary parts");
-    FrfPart part{.name = modal::parse_frf_name(item.key()),
-                 .receptance = re.cast<std::complex<double>>() + std::complex<double>(0.0, 1.0) * im,
-                 .coherence = extra("coherence", item.key()),
-                 .deviation = extra("deviation_m_per_n", item.key())};
-    out.frfs.push_back(std::move(part));
+modal::FrfName frf_name_at(const std::string& where, std::string_view text) {
+  try {
+    return modal::parse_frf_name(text);
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    parts.where = where;
+    parts.value = "\"" + std::string(text) + "\"";
+    throw InvalidInput(parts);
   }
-  if (root.has("added_decay_per_s") && !root.at("added_decay_per_s").json().is_null()) {
-    out.added_decay_per_s = root.at("added_decay_per_s").number();
-  }
-  return out;
-}
-
-FrfParts read_frf_mat(const std::filesystem::path& path) {
-  const std::vector<MatVariable> variables = read_mat(path);
-  const MatVariable* frequency = find(variables, "frequency_hz");
-  if (frequency == nullptr) throw InvalidInput(path.string(), "has no variable frequency_hz");
-  FrfParts out{.file = path, .frequency_hz = to_vector(frequency->re, path.string() + ": frequency_hz")};
-  for (const MatVariable& variable : variables) {
-    if (!variable.name.starts_with("H_")) continue;
-    std::string text = variable.name.substr(2);
-    std::replace(text.begin(), text.end(), '_', ':');
-    const std::string where = path.string() + ": " + variable.name;
-    const Eigen::VectorXd re = to_vector(variable.re, where);
-    FrfPart part{.name = modal::parse_frf_name(text), .receptance = re.cast<std::complex<double>>()};
-    if (variable.im.size() > 0) part.receptance.imag() = to_vector(variable.im, where);
-    if (const MatVariable* other = find(variables, mat_name('C', *part.name)))
-      part.coherence = to_vector(other->re, where);
-    if (const MatVariable* other = find(variables, mat_name('S', *part.name)))
-      part.deviation = to_vector(other->re, where);
-    out.frfs.push_back(std::move(part));
-  }
-  if (out.frfs.empty()) throw InvalidInput(path.string(), "has no variable such as H_xx");
-  return out;
-}
-
-void write_frf_mat(const std::filesystem::path& path, const modal::FrfSet& set) {
-  std::vector<MatVariable> variables = {{.name = "frequency_hz", .re = set.frequency_hz}};
-  for (const modal::Frf& frf : set.frfs) {
-    variables.push_back({.name = mat_name('H', frf.name), .re = frf.receptance.real(), .im = frf.receptance.imag()});
-    if (frf.coherence.size() > 0) variables.push_back({.name = mat_name('C', frf.name), .re = frf.coherence});
-    if (frf.deviation.size() > 0) variables.push_back({.name = mat_name('S', frf.name), .re = frf.deviation});
-  }
-  write_mat(path, variables);
 }
 
 FrfFile read_frfs(const std::vector<std::filesystem::path>& paths, const std::vector<std::string>& as) {
@@ -253,6 +163,7 @@ FrfFile read_frfs(const std::vector<std::filesystem::path>& paths, const std::ve
   for (const std::filesystem::path& path : paths) {
     all.push_back(read_parts(path));
     if (all.back().frequency_hz.size() == 0) throw InvalidInput(path.string(), "holds no line");
+    integrate(all.back());
   }
   agree_on_zero(all);
   FrfFile out;
@@ -268,7 +179,7 @@ FrfFile read_frfs(const std::vector<std::filesystem::path>& paths, const std::ve
   out.set.frequency_hz = all.front().frequency_hz;
   for (FrfPart* frf : frfs) {
     out.set.frfs.push_back({.name = *frf->name,
-                            .receptance = std::move(frf->receptance),
+                            .receptance = std::move(frf->values),
                             .coherence = std::move(frf->coherence),
                             .deviation = std::move(frf->deviation)});
   }
@@ -280,22 +191,6 @@ FrfFile read_frfs(const std::vector<std::filesystem::path>& paths, const std::ve
     throw InvalidInput(parts);
   }
   return out;
-}
-
-std::string frf_json(const modal::FrfSet& set) {
-  return dump(set_json(set));
-}
-
-std::string frf_json(const modal::FrfResult& result) {
-  Json json = set_json(result.set);
-  add_hits(json, result);
-  return dump(json);
-}
-
-std::string hits_json(const modal::FrfResult& result) {
-  Json json = Json::object();
-  add_hits(json, result);
-  return dump(json);
 }
 
 void write_frfs(const std::filesystem::path& path, const modal::FrfSet& set, const FrfWriteOptions& options) {

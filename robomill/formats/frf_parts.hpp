@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/modal/frf.hpp"
@@ -12,8 +13,9 @@ namespace robomill::formats {
 /// One FRF of a file, which may leave it unnamed.
 struct FrfPart {
   std::optional<modal::FrfName> name = {};
-  Eigen::VectorXcd receptance = {};
-  Eigen::VectorXd coherence = {}, deviation = {};  ///< empty where the file has none
+  Eigen::VectorXcd values = {};                    ///< receptance, mobility or accelerance in SI
+  Eigen::VectorXd coherence = {}, deviation = {};  ///< empty where the file has none; deviation as values
+  int derivatives = 0;                             ///< 0 receptance, 1 mobility, 2 accelerance
 };
 
 /// The FRFs of one file over their common axis.
@@ -25,10 +27,10 @@ struct FrfParts {
   double added_decay_per_s = 0.0;
 };
 
-/// Columns frequency_hz, xx_re_m_per_n, xx_im_m_per_n, …, xx_coherence, xx_deviation_m_per_n; or no header and a
-/// frequency, then pairs of real and imaginary parts.
+/// Columns frequency_hz, xx_re_m_per_n, xx_im_m_per_n, …, xx_coherence, xx_deviation_m_per_n, in these units or those
+/// of a mobility or accelerance; or no names and a frequency, then pairs of real and imaginary parts.
 [[nodiscard]] FrfParts read_frf_table(const std::filesystem::path& path);
-/// Functions of type 4, with coherences of type 6; accelerances and mobilities are integrated.
+/// Functions of type 4 with coherences of type 6, in the units that the file says.
 [[nodiscard]] FrfParts read_frf_uff(const std::filesystem::path& path);
 /// frequency_hz, H_xx, C_xx (coherence), S_xx (deviation); a colon in a name is an underscore: H_1x_3x.
 [[nodiscard]] FrfParts read_frf_mat(const std::filesystem::path& path);
@@ -38,5 +40,8 @@ struct FrfParts {
 [[nodiscard]] std::string frf_table(const modal::FrfSet& set, char separator);
 [[nodiscard]] std::string frf_uff(const modal::FrfSet& set, bool binary);
 void write_frf_mat(const std::filesystem::path& path, const modal::FrfSet& set);
+
+/// The FRF that text names. @throws InvalidInput with where
+[[nodiscard]] modal::FrfName frf_name_at(const std::string& where, std::string_view text);
 
 }  // namespace robomill::formats

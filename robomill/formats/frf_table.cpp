@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <string_view>
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/frf_parts.hpp"
+#include "robomill/formats/si.hpp"
 #include "robomill/formats/table.hpp"
+#include "robomill/formats/text.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -26,45 +29,107 @@ Eigen::VectorXcd to_complex(const std::vector<double>& re, const std::vector<dou
 std::string unit_of(const modal::FrfName& name) {
   const bool rotation = static_cast<int>(name.response.axis) > 3;
   const bool moment = static_cast<int>(name.excitation.axis) > 3;
-  return std::string(rotation ? "rad" : "m") + (moment ? "_per_n_m" : "_per_n");
+  return fmt::format("{}_per_n{}", rotation ? "rad" : "m", moment ? "_m" : "");
 }
 
-/// "xx" of "xx_re_m_per_n" with part "_re".
-std::optional<modal::FrfName> named(std::string_view column, std::string_view part) {
-  const std::size_t at = column.find(part);
-  if (at == std::string_view::npos || at == 0) return {};
-  return modal::parse_frf_name(column.substr(0, at));
+/// "xx_re_m_per_n" in its parts; nothing where a column is no such.
+struct Column {
+  std::string_view name, part, unit;
+};
+std::optional<Column> take_apart(std::string_view text) {
+  const std::size_t first = text.find('_');
+  if (first == std::string_view::npos || first == 0) return std::nullopt;
+  const std::string_view rest = text.substr(first + 1);
+  const std::size_t second = std::min(rest.find('_'), rest.size());
+  const Column column{text.substr(0, first), rest.substr(0, second), rest.substr(std::min(second + 1, rest.size()))};
+  for (const std::string_view known : {"re", "im", "coherence", "deviation"}) {
+    if (column.part == known) return column;
+  }
+  return std::nullopt;
 }
 
-const std::vector<double>* find_column(const Table& table, const std::string& start) {
-  for (std::size_t i = 0; i < table.names.size(); ++i) {
-    if (table.names[i].starts_with(start)) return &table.columns[i];
+/// "m_per_s2_per_n" as parse_unit knows it; nothing said is m/N.
+SiFactor factor_of(const Column& column, const std::string& where) {
+  std::string_view unit = column.unit;
+  if (unit.empty()) return {.quantity = Quantity::displacement};
+  const bool per_force = unit.ends_with("_per_n") || unit.ends_with("_per_n_m");
+  std::string numerator(unit.substr(0, unit.rfind("_per_n")));
+  if (const std::size_t per = numerator.find("_per_"); per != std::string::npos) {
+    numerator = fmt::format("{}/{}", numerator.substr(0, per), numerator.substr(per + 5));
   }
-  return nullptr;
+  const SiFactor factor = parse_unit(numerator);
+  if (!per_force || factor.quantity == Quantity::unknown || factor.quantity == Quantity::force) {
+    throw InvalidInput(where,
+                       fmt::format("column {}_{}_{} has a unit that is not known here", column.name, column.part, unit),
+                       "Receptances are m_per_n, rad_per_n, m_per_n_m or rad_per_n_m; accelerances m_per_s2_per_n");
+  }
+  return factor;
 }
 
-void read_named(const Table& table, FrfParts& out) {
-  const std::vector<double>* frequency = find_column(table, "frequency");
-  if (frequency == nullptr) throw InvalidInput(out.file.string(), "has no column frequency_hz");
-  out.frequency_hz = to_vector(*frequency);
-  for (std::size_t i = 0; i < table.names.size(); ++i) {
-    const std::optional<modal::FrfName> name = named(table.names[i], "_re");
-    if (!name) continue;
-    const std::string text = modal::to_string(*name);
-    const std::vector<double>* im = find_column(table, text + "_im");
-    if (im == nullptr) throw InvalidInput(out.file.string(), "has no column " + text + "_im_" + unit_of(*name));
-    FrfPart part{.name = name, .receptance = to_complex(table.columns[i], *im)};
-    if (const std::vector<double>* column = find_column(table, text + "_coherence"))
-      part.coherence = to_vector(*column);
-    if (const std::vector<double>* column = find_column(table, text + "_deviation"))
-      part.deviation = to_vector(*column);
-    out.frfs.push_back(std::move(part));
+bool is_frequency(std::string_view name) {
+  const std::string word = lowered(name);
+  for (const char* known : {"frequency_hz", "frequency", "freq_hz", "freq", "f_hz", "f", "hz", "frequency (hz)",
+                            "frequency [hz]", "freq (hz)", "freq [hz]", "f (hz)", "f [hz]"}) {
+    if (word == known) return true;
   }
-  if (out.frfs.empty()) {
-    throw InvalidInput(out.file.string(), "has no column such as xx_re_m_per_n",
-                       "Columns are frequency_hz, xx_re_m_per_n, xx_im_m_per_n, yx_re_m_per_n, …");
-  }
+  return false;
 }
+
+class NamedColumns {
+ public:
+  NamedColumns(const Table& table, FrfParts& out) : table_(table), out_(out), where_(out.file.string()) {}
+
+  void read() {
+    const auto frequency = std::find_if(table_.names.begin(), table_.names.end(), is_frequency);
+    if (frequency == table_.names.end()) throw InvalidInput(where_, "has no column frequency_hz");
+    out_.frequency_hz = to_vector(table_.columns[static_cast<std::size_t>(frequency - table_.names.begin())]);
+    for (const std::string& text : table_.names) {
+      const std::optional<Column> column = take_apart(text);
+      if (column && column->part == "re") out_.frfs.push_back(read_frf(*column));
+    }
+    for (const std::string& text : table_.names) {
+      if (!take_apart(text) && !is_frequency(text))
+        out_.notes.push_back(fmt::format("{}: column {} is left out", where_, text));
+    }
+  }
+
+ private:
+  [[nodiscard]] const std::vector<double>* find(const Column& like, std::string_view part, Column& found) const {
+    for (std::size_t i = 0; i < table_.names.size(); ++i) {
+      const std::optional<Column> column = take_apart(table_.names[i]);
+      if (!column || column->name != like.name || column->part != part) continue;
+      found = *column;
+      return &table_.columns[i];
+    }
+    return nullptr;
+  }
+
+  FrfPart read_frf(const Column& re) const {
+    FrfPart part{.name = frf_name_at(where_, re.name)};
+    Column im;
+    const std::vector<double>* real = find(re, "re", im);
+    const std::vector<double>* imaginary = find(re, "im", im);
+    const char* joint = re.unit.empty() ? "" : "_";
+    if (imaginary == nullptr)
+      throw InvalidInput(where_, fmt::format("has no column {}_im{}{}", re.name, joint, re.unit));
+    if (im.unit != re.unit) throw InvalidInput(where_, fmt::format("{}_re and {}_im differ in unit", re.name, re.name));
+    const SiFactor factor = factor_of(re, where_);
+    part.derivatives = static_cast<int>(factor.quantity);
+    part.values = factor.factor * to_complex(*real, *imaginary);
+    Column extra;
+    if (const std::vector<double>* coherence = find(re, "coherence", extra)) part.coherence = to_vector(*coherence);
+    if (const std::vector<double>* deviation = find(re, "deviation", extra)) {
+      if (extra.unit != re.unit)
+        throw InvalidInput(where_, fmt::format("{}_re and {}_deviation differ in unit", re.name, re.name));
+      part.deviation = factor.factor * to_vector(*deviation);
+    }
+    return part;
+  }
+
+  const Table& table_;
+  FrfParts& out_;
+  std::string where_;
+};
 
 void read_unnamed(const Table& table, FrfParts& out) {
   if (table.columns.size() < 3 || table.columns.size() % 2 == 0) {
@@ -74,7 +139,7 @@ void read_unnamed(const Table& table, FrfParts& out) {
   }
   out.frequency_hz = to_vector(table.columns[0]);
   for (std::size_t i = 1; i + 1 < table.columns.size(); i += 2) {
-    out.frfs.push_back({.receptance = to_complex(table.columns[i], table.columns[i + 1])});
+    out.frfs.push_back({.values = to_complex(table.columns[i], table.columns[i + 1])});
   }
 }
 
@@ -83,10 +148,18 @@ void read_unnamed(const Table& table, FrfParts& out) {
 FrfParts read_frf_table(const std::filesystem::path& path) {
   const Table table = parse_table(read_file(path), path.string());
   FrfParts out{.file = path};
-  if (table.names.empty()) {
+  const auto is_frf = [](const std::string& name) {
+    const std::optional<Column> column = take_apart(name);
+    return column && column->part == "re";
+  };
+  if (std::any_of(table.names.begin(), table.names.end(), is_frf)) {
+    NamedColumns(table, out).read();
+  } else if (table.names.empty() || table.columns.size() == 3) {
+    // A header of words of its own, "Frequency, Real, Imaginary", names no FRF.
     read_unnamed(table, out);
   } else {
-    read_named(table, out);
+    throw InvalidInput(path.string(), "has no column such as xx_re_m_per_n",
+                       "Columns are frequency_hz, xx_re_m_per_n, xx_im_m_per_n, yx_re_m_per_n, …");
   }
   return out;
 }

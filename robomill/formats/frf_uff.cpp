@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <numbers>
 
@@ -9,64 +8,146 @@
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/frf_parts.hpp"
 #include "robomill/formats/si.hpp"
+#include "robomill/formats/text.hpp"
 #include "robomill/formats/uff.hpp"
 
 namespace robomill::formats {
 namespace {
 
+constexpr int type_general = 0;
 constexpr int type_frf = 4;
 constexpr int type_coherence = 6;
 constexpr int axis_displacement = 8;
 constexpr int axis_force = 13;
 constexpr int axis_frequency = 18;
 
-modal::Dof to_dof(int node, int direction) {
-  return {.point = std::max(node, 0), .axis = static_cast<modal::Axis>(std::abs(direction))};
+/// No function type of the format means it: a general function with this description in its fourth line.
+constexpr const char* standard_deviation = "robomill: standard deviation";
+
+bool is_angular(int direction) {
+  return std::abs(direction) > 3;
 }
 
 std::optional<modal::FrfName> name_of(const UffFunction& function) {
   const auto known = [](int direction) { return direction != 0 && std::abs(direction) <= 6; };
-  if (!known(function.response_direction) || !known(function.reference_direction)) return {};
-  return modal::FrfName{.response = to_dof(function.response_node, function.response_direction),
-                        .excitation = to_dof(function.reference_node, function.reference_direction)};
+  if (!known(function.response_direction) || !known(function.reference_direction)) return std::nullopt;
+  const auto dof = [](int node, int direction) {
+    return modal::Dof{.point = std::max(node, 0), .axis = static_cast<modal::Axis>(std::abs(direction))};
+  };
+  return modal::FrfName{.response = dof(function.response_node, function.response_direction),
+                        .excitation = dof(function.reference_node, function.reference_direction)};
 }
 
-std::string title(const UffFunction& function, const std::filesystem::path& path) {
-  const std::optional<modal::FrfName> name = name_of(function);
-  return fmt::format("{}:{}{}", path.filename().string(), function.line,
-                     name ? " (" + modal::to_string(*name) + ")" : "");
+bool same_place(const UffFunction& a, const UffFunction& b) {
+  return a.response_node == b.response_node && a.reference_node == b.reference_node &&
+         std::abs(a.response_direction) == std::abs(b.response_direction) &&
+         std::abs(a.reference_direction) == std::abs(b.reference_direction);
 }
 
-/// Displacement per force in SI; drops the line at 0 Hz where it has to integrate.
-void to_receptance(const UffFunction& function, const std::string& title, Eigen::VectorXd& frequency_hz,
-                   Eigen::VectorXcd& values, std::vector<std::string>& notes) {
-  const SiFactor response = si_factor(function.numerator, function.length_factor, function.force_factor);
-  const SiFactor force = si_factor(function.denominator, function.length_factor, function.force_factor);
-  for (const SiFactor* factor : {&response, &force}) {
-    if (!factor->note.empty()) notes.push_back(title + ": " + factor->note);
-  }
-  const double sign = (function.response_direction < 0 ? -1.0 : 1.0) * (function.reference_direction < 0 ? -1.0 : 1.0);
-  values *= sign * response.factor / force.factor;
-  if (response.quantity == Quantity::unknown || response.quantity == Quantity::force) {
-    notes.push_back(title + ": does not say what it holds; taken as a receptance in m/N");
-    return;
-  }
-  const int derivatives = static_cast<int>(response.quantity);
-  if (derivatives == 0) return;
-  notes.push_back(title + (derivatives == 2 ? ": accelerance, divided by (iω)²" : ": mobility, divided by iω"));
-  const Eigen::Index first = frequency_hz(0) == 0.0 ? 1 : 0;
-  frequency_hz = frequency_hz.tail(frequency_hz.size() - first).eval();
-  values = values.tail(values.size() - first).eval();
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    const std::complex<double> derivative(0.0, 2.0 * std::numbers::pi * frequency_hz(i));
-    values(i) /= derivatives == 2 ? derivative * derivative : derivative;
-  }
+bool is_deviation(const UffFunction& function) {
+  return function.type == type_general && function.id[3] == standard_deviation;
 }
 
-/// Leaves out the first lines that `values` has and the axis has not.
-Eigen::VectorXd tail_of(const Eigen::VectorXd& values, Eigen::Index lines) {
-  return values.size() >= lines ? Eigen::VectorXd(values.tail(lines)) : Eigen::VectorXd();
-}
+class UffFrfs {
+ public:
+  explicit UffFrfs(const std::filesystem::path& path) : file_(parse_uff(read_file(path), path.string())) {
+    out_.file = path;
+    out_.notes = file_.notes;
+  }
+
+  FrfParts read() {
+    for (const UffFunction& function : file_.functions) {
+      if (function.type == type_frf) {
+        check_axis(function);
+        out_.frfs.push_back(read_frf(function));
+        from_.push_back(&function);
+      } else if (function.type != type_coherence && !is_deviation(function)) {
+        note(function, fmt::format("function type {} is no FRF and left out", function.type));
+      }
+    }
+    if (out_.frfs.empty()) {
+      throw InvalidInput(out_.file.string(), "holds no frequency response function (data set 58, function type 4)",
+                         "Time responses become FRFs with robomill frf");
+    }
+    for (const UffFunction& function : file_.functions) {
+      if (function.type == type_coherence || is_deviation(function)) attach(function);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] std::string where(const UffFunction& function) const {
+    const std::optional<modal::FrfName> name = name_of(function);
+    const std::string title = name ? fmt::format(" ({})", modal::to_string(*name)) : "";
+    return fmt::format("{}:{}{}", out_.file.string(), function.line, title);
+  }
+  void note(const UffFunction& function, const std::string& text) {
+    out_.notes.push_back(fmt::format("{}: {}", where(function), text));
+  }
+
+  static Eigen::VectorXd frequencies(const UffFunction& function) {
+    const bool angular = lowered(function.abscissa_axis.unit) == "rad/s";
+    return angular ? Eigen::VectorXd(function.abscissa / (2.0 * std::numbers::pi)) : function.abscissa;
+  }
+
+  void check_axis(const UffFunction& function) {
+    const Eigen::VectorXd frequency_hz = frequencies(function);
+    if (out_.frfs.empty()) out_.frequency_hz = frequency_hz;
+    const Eigen::VectorXd& first = out_.frequency_hz;
+    const double tolerance = 1e-5 * first.cwiseAbs().maxCoeff();
+    if (frequency_hz.size() != first.size() || (frequency_hz - first).cwiseAbs().maxCoeff() > tolerance) {
+      throw InvalidInput(where(function), "has other frequencies than the FRF before it",
+                         "FRFs that go together need one axis");
+    }
+  }
+
+  FrfPart read_frf(const UffFunction& function) {
+    FrfPart part{.name = name_of(function), .values = function.values};
+    const double length = is_angular(function.response_direction) ? 1.0 : function.length_factor;
+    SiFactor response = si_factor(function.numerator, length, function.force_factor);
+    UffAxis force_axis = function.denominator;
+    if (is_angular(function.reference_direction) && force_axis.length_exponent == 0 && force_axis.force_exponent == 0) {
+      force_axis.length_exponent = force_axis.force_exponent = 1;
+    }
+    SiFactor force = si_factor(force_axis, function.length_factor, function.force_factor);
+    if (response.is_ratio) force = SiFactor{};
+    for (const SiFactor* factor : {&response, &force}) {
+      if (!factor->note.empty()) note(function, factor->note);
+    }
+    if (response.quantity == Quantity::force ||
+        (force.quantity != Quantity::force && force.quantity != Quantity::unknown)) {
+      throw InvalidInput(where(function), "is no displacement, velocity or acceleration per force",
+                         "Dynamic stiffnesses and transmissibilities are not read");
+    }
+    if (response.quantity == Quantity::unknown) {
+      note(function, "does not say what it holds; taken as a receptance in m/N");
+    } else {
+      part.derivatives = static_cast<int>(response.quantity);
+    }
+    part.values *= sign(function) * response.factor / force.factor;
+    return part;
+  }
+
+  static double sign(const UffFunction& function) {
+    return (function.response_direction < 0 ? -1.0 : 1.0) * (function.reference_direction < 0 ? -1.0 : 1.0);
+  }
+
+  void attach(const UffFunction& function) {
+    const auto owner =
+        std::find_if(from_.begin(), from_.end(), [&](const UffFunction* f) { return same_place(*f, function); });
+    const bool fits = function.values.size() == out_.frequency_hz.size();
+    if (owner == from_.end() || !fits) {
+      note(function, fmt::format("function type {} belongs to no FRF here and is left out", function.type));
+      return;
+    }
+    FrfPart& part = out_.frfs[static_cast<std::size_t>(owner - from_.begin())];
+    (is_deviation(function) ? part.deviation : part.coherence) = function.values.real();
+  }
+
+  UffFile file_;
+  FrfParts out_;
+  std::vector<const UffFunction*> from_;  ///< what each FRF was read from
+};
 
 UffFunction describe(const modal::FrfName& name, int type, const modal::FrfSet& set) {
   UffFunction out;
@@ -81,57 +162,45 @@ UffFunction describe(const modal::FrfName& name, int type, const modal::FrfSet& 
   return out;
 }
 
+void name_receptance_axes(UffFunction& function) {
+  const bool rotation = is_angular(function.response_direction), moment = is_angular(function.reference_direction);
+  function.numerator = {.type = axis_displacement,
+                        .length_exponent = rotation ? 0 : 1,
+                        .label = rotation ? "Rotation" : "Displacement",
+                        .unit = rotation ? "rad" : "m"};
+  function.denominator = {.type = axis_force,
+                          .length_exponent = moment ? 1 : 0,
+                          .force_exponent = 1,
+                          .label = moment ? "Moment" : "Force",
+                          .unit = moment ? "N m" : "N"};
+}
+
 }  // namespace
 
 FrfParts read_frf_uff(const std::filesystem::path& path) {
-  const UffFile file = parse_uff(read_file(path), path.string());
-  FrfParts out{.file = path, .frequency_hz = {}, .frfs = {}, .notes = file.notes};
-  for (const UffFunction& function : file.functions) {
-    if (function.type != type_frf || function.values.size() == 0) {
-      if (function.type != type_coherence)
-        out.notes.push_back(title(function, path) + ": no frequency response function, skipped");
-      continue;
-    }
-    Eigen::VectorXd frequency_hz = function.abscissa;
-    FrfPart part{.name = name_of(function), .receptance = function.values};
-    to_receptance(function, title(function, path), frequency_hz, part.receptance, out.notes);
-    if (out.frfs.empty()) {
-      out.frequency_hz = frequency_hz;
-    } else if (frequency_hz.size() != out.frequency_hz.size() ||
-               (frequency_hz - out.frequency_hz).cwiseAbs().maxCoeff() >
-                   1e-5 * out.frequency_hz.cwiseAbs().maxCoeff()) {
-      throw InvalidInput(title(function, path), "has other frequencies than the FRF before it");
-    }
-    out.frfs.push_back(std::move(part));
-  }
-  if (out.frfs.empty()) {
-    throw InvalidInput(path.string(), "holds no frequency response function (data set 58, type 4)",
-                       "Time responses become FRFs with robomill frf");
-  }
-  for (const UffFunction& function : file.functions) {
-    if (function.type != type_coherence) continue;
-    for (FrfPart& part : out.frfs) {
-      if (part.name && part.name == name_of(function)) {
-        part.coherence = tail_of(function.values.real(), out.frequency_hz.size());
-      }
-    }
-  }
-  return out;
+  return UffFrfs(path).read();
 }
 
 std::string frf_uff(const modal::FrfSet& set, bool binary) {
   std::vector<UffFunction> functions;
   for (const modal::Frf& frf : set.frfs) {
     UffFunction function = describe(frf.name, type_frf, set);
+    name_receptance_axes(function);
     function.is_complex = true;
     function.values = frf.receptance;
-    function.numerator = {.type = axis_displacement, .label = "Displacement", .unit = "m"};
-    function.denominator = {.type = axis_force, .label = "Force", .unit = "N"};
     functions.push_back(std::move(function));
-    if (frf.coherence.size() == 0) continue;
-    UffFunction coherence = describe(frf.name, type_coherence, set);
-    coherence.values = frf.coherence.cast<std::complex<double>>();
-    functions.push_back(std::move(coherence));
+    if (frf.coherence.size() > 0) {
+      UffFunction coherence = describe(frf.name, type_coherence, set);
+      coherence.values = frf.coherence.cast<std::complex<double>>();
+      functions.push_back(std::move(coherence));
+    }
+    if (frf.deviation.size() > 0) {
+      UffFunction deviation = describe(frf.name, type_general, set);
+      name_receptance_axes(deviation);
+      deviation.id[3] = standard_deviation;
+      deviation.values = frf.deviation.cast<std::complex<double>>();
+      functions.push_back(std::move(deviation));
+    }
   }
   return format_uff(functions, binary);
 }

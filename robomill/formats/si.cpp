@@ -116,6 +116,7 @@ SiFactor parse_unit(std::string_view text) {
     SiFactor ratio = find(numerator);
     if (ratio.quantity == Quantity::unknown) continue;
     ratio.factor /= force.factor;
+    ratio.is_ratio = true;
     return ratio;
   }
   return {};

@@ -13,6 +13,7 @@ enum class Quantity : int { displacement = 0, velocity = 1, acceleration = 2, fo
 struct SiFactor {
   Quantity quantity = Quantity::unknown;
   double factor = 1.0;
+  bool is_ratio = false;  ///< the unit is one per force: "m/s²/N"
   std::string note = {};  ///< what was converted or assumed, where that is worth saying
 };
 

@@ -45,8 +45,9 @@ struct UffFile {
 /// data Source: [SDRC58]
 [[nodiscard]] UffFile parse_uff(std::string_view content, const std::string& where);
 
-/// Data sets 58 (numbers as E20.12) or 58b (little-endian doubles). An abscissa is written as first value and step
-/// where these, in the 12 characters that they have, give it back to a millionth of the step (58b: a billionth).
+/// Data set 164 with SI units, then data sets 58 (numbers as E20.12) or 58b (little-endian doubles). An abscissa is
+/// written as first value and step where these, in the 12 characters that they have, give it back to a millionth of the
+/// step (58b: a billionth).
 [[nodiscard]] std::string format_uff(const std::vector<UffFunction>& functions, bool binary);
 
 }  // namespace robomill::formats

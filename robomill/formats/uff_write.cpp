@@ -10,6 +10,12 @@
 namespace robomill::formats {
 namespace {
 
+/// Data set 164: metre, newton, kelvin.
+constexpr const char* si_units =
+    "    -1\n   164\n         1SI: Meter (newton)            2\n"
+    "  1.00000000000000000D+00  1.00000000000000000D+00  1.00000000000000000D+00\n"
+    "  2.73149999999999977D+02\n    -1\n";
+
 /// As many digits as go into 12 characters: more than E13.5 has, in the same columns.
 std::string in_12_characters(double number) {
   for (int digits = 12; digits > 5; --digits) {
@@ -98,7 +104,7 @@ void append_function(std::string& out, const UffFunction& function, bool binary)
 }  // namespace
 
 std::string format_uff(const std::vector<UffFunction>& functions, bool binary) {
-  std::string out;
+  std::string out = si_units;
   for (const UffFunction& function : functions) append_function(out, function, binary);
   return out;
 }
