@@ -167,6 +167,13 @@ TEST(ReportHtml, TablesStandWithoutTheScript) {
   EXPECT_EQ(html.find("http://"), html.find("http://www.w3.org")) << "only names of namespaces";
 }
 
+TEST(ReportHtml, SaysTheChatterFrequencyOnce) {
+  Report report = sample_report();
+  EXPECT_NE(report_html(report).find("Chatter would sound at 566"), std::string::npos);
+  report.recommendation->limited_by = "chatter of mode 8 at 566.4 Hz";
+  EXPECT_EQ(report_html(report).find("Chatter would sound"), std::string::npos);
+}
+
 TEST(ReportHtml, AnEmptyReportIsAPage) {
   const std::string html = report_html(Report{});
   EXPECT_TRUE(html.starts_with("<!doctype html>"));

@@ -93,8 +93,9 @@ std::string recommendation_section(const Json& report) {
            figure_of_merit("Feed per tooth", significant(r["feed_per_tooth_mm"]), "mm") +
            figure_of_merit("Removal rate", significant(r["removal_rate_mm3_per_s"]), "mm³/s") +
            "</dl>\n<p class=\"why\">";
-    if (const std::string why = limited_by(r); !why.empty()) body += "Limited by <strong>" + why + "</strong>. ";
-    if (r["chatter_frequency_hz"].is_number()) {
+    const std::string why = limited_by(r);
+    if (!why.empty()) body += "Limited by <strong>" + why + "</strong>. ";
+    if (r["chatter_frequency_hz"].is_number() && why.find(" Hz") == std::string::npos) {
       body += fmt::format("Chatter would sound at {} Hz. ", fixed(r["chatter_frequency_hz"], 0));
     }
     if (r["margin"].is_number()) {

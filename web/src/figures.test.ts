@@ -54,6 +54,10 @@ describe('FRF', () => {
     expect((figure.layout['annotations'] as { x: number }[])[0]!.x).toBeCloseTo(1); // log10 of the place, as Plotly wants it
     expect(figure.layout['xaxis']).toMatchObject({ type: 'log', anchor: 'y3' });
   });
+  it('never shades beyond the band, where a logarithmic axis has no place', () => {
+    const figure = frfFigure({ ...frf, trusted_from_hz: 9000, trusted_to_hz: 0 }, [], true, light);
+    expect(figure.layout['shapes']).toMatchObject([{ x0: 5, x1: 500 }, { x0: 5, x1: 500 }]);
+  });
   it('does without fit and coherence', () => {
     const figure = frfFigure({ ...frf, fitted: null, coherence: null }, [], false, light);
     expect(figure.data.map((trace) => trace['name'])).toEqual(['measured', 'measured']);

@@ -44,8 +44,8 @@ function untrusted(frf: Frf, theme: Theme): Layout[] {
     layer: 'below',
   });
   const bands: Layout[] = [];
-  if (frf.trusted_from_hz !== null && frf.trusted_from_hz > from) bands.push(shade(from, frf.trusted_from_hz));
-  if (frf.trusted_to_hz !== null && frf.trusted_to_hz < to) bands.push(shade(frf.trusted_to_hz, to));
+  if (frf.trusted_from_hz !== null && frf.trusted_from_hz > from) bands.push(shade(from, Math.min(to, frf.trusted_from_hz)));
+  if (frf.trusted_to_hz !== null && frf.trusted_to_hz < to) bands.push(shade(Math.max(from, frf.trusted_to_hz), to));
   return bands;
 }
 
