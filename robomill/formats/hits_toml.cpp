@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
 #include "robomill/formats/records.hpp"
 #include "robomill/formats/toml_file.hpp"
 
@@ -18,6 +19,7 @@ struct Sensors {
   double force_factor = 1.0;
   double response_factor = 1.0;
   double scale = 1.0;  ///< full scale of a WAV
+  bool has_scale = false;
   double sample_rate_hz = 0.0;
 };
 
@@ -77,7 +79,7 @@ Sensors read_sensors(TomlFile& file, modal::ResponseKind kind) {
   Sensors sensors;
   sensitivity(file, "acquisition.force_mv_per_n", sensors.force_factor);
   sensitivity(file, fmt::format("acquisition.response_mv_per_{}", unit_of(kind)), sensors.response_factor);
-  file.number("acquisition.scale", "scale", 1.0, sensors.scale);
+  sensors.has_scale = file.number("acquisition.scale", "scale", 1.0, sensors.scale);
   if (file.number("acquisition.sample_rate_hz", "sample_rate_hz", 1.0, sensors.sample_rate_hz) &&
       !(sensors.sample_rate_hz > 0.0)) {
     throw file.refuse("acquisition.sample_rate_hz", "must be > 0");
@@ -126,14 +128,18 @@ double rate_of(const TomlFile& file, const std::string& key, const Record& recor
 }
 
 modal::Hit read_hit(TomlFile& file, std::size_t index, const Sensors& sensors, std::vector<std::string>& notes) {
-  const std::string row = "hits[" + std::to_string(index) + "].";
+  const std::string row = fmt::format("hits[{}].", index);
   for (const char* key : {"file", "force", "force_direction", "responses"}) file.require(row + key);
   std::filesystem::path path;
   file.path(row + "file", path);
+  if (format_of(path) == Format::wav && !sensors.has_scale) {
+    throw file.refuse(row + "file", "is a WAV, and acquisition.scale is missing",
+                      "scale says what full scale means: volts where the sensors' mV per unit are given");
+  }
   RecordOptions reading{.scale = sensors.scale};
   if (file.has(row + "time")) reading.time = column(file, row + "time");
-  const Record record = read_record(path, reading);
-  for (const std::string& note : record.notes) notes.push_back(path.filename().string() + ": " + note);
+  const Record record = file.locate([&] { return read_record(path, reading); });
+  notes.insert(notes.end(), record.notes.begin(), record.notes.end());
 
   modal::Hit hit;
   hit.file = path.string();

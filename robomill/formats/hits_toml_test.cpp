@@ -1,9 +1,13 @@
 #include "robomill/formats/hits_toml.hpp"
 
 #include <gtest/gtest.h>
+#include <sndfile.h>
 
+#include <memory>
 #include <string>
+#include <vector>
 
+#include "robomill/base/random.hpp"
 #include "robomill/formats/test_files.hpp"
 
 namespace robomill::formats {
@@ -79,6 +83,57 @@ TEST(HitsToml, RefusesInTheFilesWords) {
                 .find("none.csv"),
             std::string::npos);
   EXPECT_NE(say("[acquisition]\nfilter = 3\n" + row).find("filter"), std::string::npos);
+}
+
+TEST(HitsToml, ReadsSoundWithItsScale) {
+  const testing::Folder folder;
+  {
+    SF_INFO info{.frames = 0,
+                 .samplerate = 10240,
+                 .channels = 2,
+                 .format = SF_FORMAT_WAV | SF_FORMAT_DOUBLE,
+                 .sections = 0,
+                 .seekable = 0};
+    const std::unique_ptr<SNDFILE, decltype(&sf_close)> sound(sf_open(folder.at("a.wav").c_str(), SFM_WRITE, &info),
+                                                              &sf_close);
+    const std::vector<double> frames = {0.0, 0.0, 0.5, -0.25, 0.0, 0.0};
+    sf_write_double(sound.get(), frames.data(), 6);
+  }
+  const std::string row = "[[hits]]\nfile = \"a.wav\"\nforce = 1\nforce_direction = \"x\"\nresponses = { x = 2 }\n";
+  // Full scale is 5 V: 2.5 V at 2.5 mV/N are 1000 N.
+  const HitsFile file = read_hits(folder.file(
+      "hits.toml", "[acquisition]\nscale = 5\nforce_mv_per_n = 2.5\nresponse_mv_per_m_per_s2 = 10\n" + row));
+  EXPECT_EQ(file.hits[0].sample_rate_hz, 10240.0);
+  EXPECT_DOUBLE_EQ(file.hits[0].force_n(1), 1000.0);
+  EXPECT_DOUBLE_EQ(file.hits[0].responses[0].samples(1), -125.0);
+  const auto say = [&](const std::string& text) {
+    return testing::refusal([&] { static_cast<void>(read_hits(folder.file("bad.toml", text))); });
+  };
+  EXPECT_NE(say(row).find("acquisition.scale is missing"), std::string::npos);
+  EXPECT_NE(say("[acquisition]\nscale = 0\n" + row).find("bad.toml:2: acquisition.scale = 0"), std::string::npos);
+}
+
+// Cut off or changed at any place, a file is refused or read, and never anything worse.
+TEST(HitsToml, SurvivesMutations) {
+  const testing::Folder folder;
+  static_cast<void>(folder.file("a.csv", record));
+  const std::string good =
+      "[acquisition]\nresponse = \"acceleration\"\nforce_mv_per_n = 2.5\nsample_rate_hz = 1000\nforce_window_s = 0.1\n"
+      "[[hits]]\nfile = \"a.csv\"\ntime = 1\nforce = \"force_v\"\nforce_direction = \"-x\"\n"
+      "responses = { x = \"ax\", -y = 4 }\n";
+  for (int seed = 0; seed < testing::seeds(2000); ++seed) {
+    Random random(static_cast<std::uint64_t>(seed));
+    std::string text = good;
+    for (std::uint64_t i = random.index(4); i > 0; --i)
+      text[random.index(text.size())] = static_cast<char>(random.index(128));
+    if (random.index(4) == 0) text.resize(1 + random.index(text.size()));
+    try {
+      const HitsFile file = read_hits(folder.file("hits.toml", text));
+      EXPECT_FALSE(file.hits.empty());
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(folder.path().string()), std::string::npos) << error.what();
+    }
+  }
 }
 
 }  // namespace

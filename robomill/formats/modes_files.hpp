@@ -8,14 +8,12 @@
 
 namespace robomill::formats {
 
-/// Reads modes.json, or the same as TOML ([[modes]] with frequency_hz, damping_ratio, left = { x = [re, im], … },
-/// right).
+/// Reads modes.json, or the same as TOML: [[modes]] with frequency_hz, damping_ratio, left = { x = [re, im], … }, right.
 ///
-/// A mode needs no more than these four; residuals and standard deviations are read where they stand, all else is left
+/// A mode needs no more than these four; .json may have residuals and standard deviations, and all else in it is left
 /// alone. A direction that one mode names and another does not is 0 in the other.
 /// @throws InvalidInput with the file and "modes[2].damping_ratio" (counted from 1) or the line if a value is missing,
-/// no
-///         finite number or outside its range, or the ending is neither .json nor .toml
+///     no finite number or outside its range, or the ending is neither .json nor .toml
 [[nodiscard]] ROBOMILL_API modal::ModalModel read_modes(const std::filesystem::path& path);
 
 /// modes.json as text: modes, standard deviations, residuals. @throws InvalidInput if the model is not valid
