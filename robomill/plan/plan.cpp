@@ -17,9 +17,10 @@ namespace robomill::plan {
 namespace {
 
 constexpr Eigen::Index feed_directions = 36;
-constexpr int speeds_a_direction = 60;
+constexpr int speeds_a_direction = 40;
 /// Depths at which the comparisons beside the main lobes look for the limit, before they refine it.
-constexpr int comparison_depths = 40;
+constexpr int comparison_depths = 30;
+constexpr int comparison_speeds = 100;
 
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
@@ -80,8 +81,10 @@ void pairs(PlanResult& result, Progress& progress) {
   const int modes = static_cast<int>(result.model.modes.size());
   if (modes < 3 || !result.cut.problem.keep_modes.empty()) return;
   const stability::LobesOptions options = comparison_options(result);
-  const std::vector<double> speeds(result.lobes.spindle_speed_rad_per_s.begin(),
-                                   result.lobes.spindle_speed_rad_per_s.end());
+  const Eigen::Index count = std::min<Eigen::Index>(options.grid[0], comparison_speeds);
+  const Eigen::VectorXd axis =
+      Eigen::VectorXd::LinSpaced(count, options.spindle_speed_rad_per_s[0], options.spindle_speed_rad_per_s[1]);
+  const std::vector<double> speeds(axis.begin(), axis.end());
   for (int k = 1; k <= modes; k += 2) {
     stability::LobesProblem problem = result.cut.problem;
     problem.keep_modes = k < modes ? std::vector<int>{k, k + 1} : std::vector<int>{k};
@@ -89,7 +92,7 @@ void pairs(PlanResult& result, Progress& progress) {
     report::Lobes lobes;
     lobes.label = k < modes ? fmt::format("modes {}–{}", k, k + 1) : fmt::format("mode {}", k);
     lobes.modes = problem.keep_modes;
-    lobes.spindle_speed_rad_per_s = result.lobes.spindle_speed_rad_per_s;
+    lobes.spindle_speed_rad_per_s = axis;
     lobes.searched_depth_m = options.axial_depth_m[1];
     lobes.limit_depth_m.resize(static_cast<Eigen::Index>(limits.size()));
     for (std::size_t i = 0; i < limits.size(); ++i) {
