@@ -29,7 +29,7 @@ SearchOptions search_options(const FitOptions& options, const FitData& data, int
           .max_modes = options.max_modes,
           .omega_low = data.omega(0),
           .omega_high = data.omega(n - 1),
-          .zeta_low = std::min(0.1 * spacing, 0.1 * options.max_damping_ratio),
+          .zeta_low = std::min(0.001 * spacing, 0.1 * options.max_damping_ratio),
           .zeta_high = options.max_damping_ratio};
 }
 
@@ -140,7 +140,8 @@ PartFit fit_lscf(Part& part, const FitOptions& options, int modes, Progress& pro
   while (modes > 0 && fit.poles.size() > modes) {
     Index weakest = 0;
     fit.at.loss.minCoeff(&weakest);
-    fit.poles = fit.poles.without(weakest);
+    const Poles rest = fit.poles.without(weakest);
+    fit.poles = with_left_vectors(kernel, rest.omega, rest.zeta);
     fit.at = kernel.evaluate(fit.poles, true);
   }
   fit.converged = modes == 0 ? fit.poles.size() > 0 : fit.poles.size() == modes;
@@ -155,6 +156,9 @@ PartFit fit_hybrid(Part& part, const FrfSet& set, const FitOptions& options, int
   const SearchOptions search_for = search_options(options, part.data, modes);
   const bool adaptive = weighting != Weighting::none && weighting != Weighting::relative;
   Poles start = as_poles(physical_poles(fit.diagram, lscf), part.data);
+  if (static_cast<Index>(part.data.entries.size()) != part.data.responses * part.data.excitations) {
+    start = with_left_vectors(Kernel(part.data), start.omega, start.zeta);
+  }
   // First weights, weights from the first fit's residuals, and those from the second's.
   for (int round = adaptive ? 0 : 1; round < (adaptive ? 3 : 2); ++round) {
     SearchOptions here = search_for;
@@ -173,7 +177,9 @@ PartFit fit_hybrid(Part& part, const FrfSet& set, const FitOptions& options, int
     part.data.residuals = false;
     const Kernel plain(part.data);
     Refined without = refine(plain, last.poles, fine_options(search_for), progress);
-    part.data.residuals = worth_it(part.data, last.at, without.at, 4.0 * static_cast<double>(part.data.entries.size()));
+    // Left out only where the data would not notice: what they explain would bias the modes.
+    part.data.residuals =
+        evidence(part.data, last.at, without.at).is_significant(4.0 * static_cast<double>(part.data.entries.size()));
     if (!part.data.residuals) {
       keep(fit, part.data, without.cost, without.iterations);
       last = std::move(without);

@@ -26,6 +26,10 @@ RefineOptions refine_options(const SearchOptions& options, double tolerance, int
           .tolerance = tolerance};
 }
 
+double unknowns_of_a_mode(const FitData& data) {
+  return static_cast<double>(2 * (data.excitations + data.responses));
+}
+
 // The cost at a relative error of `exact`.
 double smallest_cost(const FitData& data) {
   double cost = 0.0;
@@ -84,9 +88,29 @@ std::vector<Candidate> candidates(const FitData& data, const Evaluation& at, con
   return list;
 }
 
-Eigen::VectorXcd first_left_vector(const Eigen::MatrixXcd& residue) {
+// L of the R Lᵀ nearest to a residue matrix on the entries that the data has.
+Eigen::VectorXcd left_vector(const Eigen::MatrixXcd& residue, const FitData& data) {
   const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(residue, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  return svd.matrixV().col(0).conjugate();
+  Eigen::VectorXcd left = svd.matrixV().col(0).conjugate();
+  if (static_cast<Index>(data.entries.size()) == residue.size()) return left;
+  Eigen::VectorXcd right = svd.matrixU().col(0);
+  const auto fit_to = [&](Eigen::VectorXcd& own, const Eigen::VectorXcd& other, bool of_right) {
+    Eigen::VectorXcd product = Eigen::VectorXcd::Zero(own.size());
+    Eigen::VectorXd size2 = Eigen::VectorXd::Zero(own.size());
+    for (const FitEntry& entry : data.entries) {
+      const Index here = of_right ? entry.response : entry.excitation;
+      const std::complex<double> factor = other(of_right ? entry.excitation : entry.response);
+      product(here) += std::conj(factor) * residue(entry.response, entry.excitation);
+      size2(here) += std::norm(factor);
+    }
+    for (Index i = 0; i < own.size(); ++i) own(i) = size2(i) > 0.0 ? product(i) / size2(i) : 0.0;
+  };
+  for (int round = 0; round < 100; ++round) {
+    fit_to(right, left, true);
+    fit_to(left, right, false);
+    left.stableNormalize();
+  }
+  return left;
 }
 
 class Search {
@@ -118,7 +142,7 @@ class Search {
   }
   [[nodiscard]] bool one_more_is_worth_it(const Refined& larger, const Refined& smaller) const {
     const FitData& data = kernel_.data();
-    return worth_it(data, larger.at, smaller.at, static_cast<double>(2 * (data.excitations + data.responses)));
+    return evidence(data, larger.at, smaller.at).supports_mode(unknowns_of_a_mode(data));
   }
   void keep_curve(const Refined& fit) { curve_.insert(curve_.end(), fit.cost.begin(), fit.cost.end()); }
   void accept(Refined next) {
@@ -156,7 +180,8 @@ class Search {
       });
       if (near || c.gain <= 0.0) continue;
       tried.push_back(c);
-      Refined next = fit(state_.poles.with(c.omega, c.zeta, first_left_vector(c.residue)), coarse_tolerance, 25);
+      Refined next =
+          fit(state_.poles.with(c.omega, c.zeta, left_vector(c.residue, kernel_.data())), coarse_tolerance, 25);
       const bool better = best.poles.size() == 0 || (all_inside(next.poles) && !all_inside(best.poles)) ||
                           (all_inside(next.poles) == all_inside(best.poles) && next.at.cost < best.at.cost);
       if (better) best = std::move(next);
@@ -174,14 +199,13 @@ class Search {
   // Those poles of the start whose worth shows before any is refined.
   [[nodiscard]] Poles sifted(Poles poles) const {
     const FitData& data = kernel_.data();
-    const auto unknowns = static_cast<double>(2 * (data.excitations + data.responses));
     while (poles.size() > options_.modes) {
       const Evaluation at = kernel_.evaluate(poles, true);
       Index weakest = 0;
       at.loss.minCoeff(&weakest);
       Evaluation less;
       less.cost = at.cost + at.loss(weakest);
-      if (poles.size() <= options_.max_modes && worth_it(data, at, less, unknowns)) break;
+      if (poles.size() <= options_.max_modes && evidence(data, at, less).supports_mode(unknowns_of_a_mode(data))) break;
       poles = poles.without(weakest);
     }
     return poles;
@@ -232,12 +256,20 @@ class Search {
 
 }  // namespace
 
-bool worth_it(const FitData& data, const Evaluation& larger, const Evaluation& smaller, double more_unknowns) {
+bool Evidence::supports_mode(double more_unknowns) const {
+  return gain > more_unknowns * std::log(equations);
+}
+
+bool Evidence::is_significant(double more_unknowns) const {
+  return gain > more_unknowns + 2.0 * std::sqrt(2.0 * more_unknowns);
+}
+
+Evidence evidence(const FitData& data, const Evaluation& larger, const Evaluation& smaller) {
   const auto equations = static_cast<double>(2 * data.omega.size() * static_cast<Index>(data.entries.size()));
   const double independent = equations / correlation_length(data, larger.residual);
   const double floor = smallest_cost(data);
-  return independent * std::log(std::max(smaller.cost, floor) / std::max(larger.cost, floor)) >
-         more_unknowns * std::log(independent);
+  return {.gain = independent * std::log(std::max(smaller.cost, floor) / std::max(larger.cost, floor)),
+          .equations = independent};
 }
 
 RefineOptions fine_options(const SearchOptions& options) {
@@ -264,7 +296,7 @@ Poles with_left_vectors(const Kernel& kernel, const Eigen::VectorXd& omega, cons
       residue[static_cast<std::size_t>(k)](entry.response, entry.excitation) = e.right(0, k);
     }
   }
-  for (Index k = 0; k < omega.size(); ++k) poles.left.col(k) = first_left_vector(residue[static_cast<std::size_t>(k)]);
+  for (Index k = 0; k < omega.size(); ++k) poles.left.col(k) = left_vector(residue[static_cast<std::size_t>(k)], data);
   poles.fix_gauge();
   return poles;
 }

@@ -21,11 +21,17 @@ struct Found {
   int iterations = 0;
 };
 
-/// Whether the information criterion -2 log likelihood + unknowns · log(equations) is lower for `larger`, which has so
-/// many real unknowns more than `smaller`; the noise level is estimated, lines that are not independent are counted
-/// once [Schwarz1978].
-[[nodiscard]] bool worth_it(const FitData& data, const Evaluation& larger, const Evaluation& smaller,
-                            double more_unknowns);
+/// How far two fits to the same data are apart: twice the logarithm of the ratio of likelihoods, the noise level
+/// estimated, and how many independent real equations it rests on, lines whose residuals are alike counted once.
+struct Evidence {
+  double gain = 0.0;  // of the fit with more unknowns
+  double equations = 0.0;
+  /// By Schwarz's criterion, for unknowns that make a mode [Schwarz1978].
+  [[nodiscard]] bool supports_mode(double more_unknowns) const;
+  /// Whether noise alone would hardly do it: above mean and two standard deviations of χ².
+  [[nodiscard]] bool is_significant(double more_unknowns) const;
+};
+[[nodiscard]] Evidence evidence(const FitData& data, const Evaluation& larger, const Evaluation& smaller);
 
 /// Refines `start`, then adds modes where the residual is greatest, takes the weakest away and swaps, as long as the
 /// criterion (or, at a given number of modes, the cost) falls. Deterministic.

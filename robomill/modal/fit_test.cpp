@@ -1,0 +1,160 @@
+#include "robomill/modal/fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "robomill/modal/fit_cases.hpp"
+
+namespace robomill::modal {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+
+bool all_seeds() {
+  const char* const full = std::getenv("ROBOMILL_FULL");
+  return full != nullptr && *full == '1';
+}
+
+bool warns_of(const FitResult& result, const std::string& text) {
+  return std::any_of(result.warnings.begin(), result.warnings.end(),
+                     [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+double residue_error(const Mode& fitted, const Mode& truth) {
+  const Eigen::MatrixXcd expected = truth.right * truth.left.transpose();
+  return (fitted.right * fitted.left.transpose() - expected).norm() / expected.norm();
+}
+
+FrfSet noisy_robot(double relative, std::uint64_t seed) {
+  FrfSet set = synthesize(cases::robot(), cases::robot_lines());
+  cases::add_noise(set, relative, seed);
+  return set;
+}
+
+// The model put back into itself: eight modes, four of them heavily damped and close, found without any start.
+TEST(HybridFit, FindsTheRobotsModesInCleanFrfs) {
+  const ModalModel truth = cases::robot();
+  const FitResult result = fit_modes(noisy_robot(0.0, 1), {});
+  EXPECT_EQ(result.status, FitResult::Status::converged);
+  EXPECT_LT(result.relative_error, 1e-9);
+  EXPECT_LT(result.mean_relative_error, 1e-9);
+  ASSERT_EQ(result.model.modes.size(), truth.modes.size());
+  for (std::size_t k = 0; k < truth.modes.size(); ++k) {
+    const Mode& mode = result.model.modes[k];
+    EXPECT_NEAR(mode.frequency_hz, truth.modes[k].frequency_hz, 1e-9 * truth.modes[k].frequency_hz);
+    EXPECT_NEAR(mode.damping_ratio, truth.modes[k].damping_ratio, 1e-9 * truth.modes[k].damping_ratio);
+    EXPECT_LT(residue_error(mode, truth.modes[k]), 1e-8);
+  }
+  EXPECT_TRUE(result.model.residuals.empty());
+  // Counted on the model itself: the published table is neither passive nor reciprocal.
+  EXPECT_TRUE(warns_of(result, "Im H_yy > 0 on 46 %"));
+  EXPECT_TRUE(warns_of(result, "not reciprocal"));
+  EXPECT_TRUE(warns_of(result, "2 Re Σ R Lᵀ"));
+}
+
+// Noise of 2 % of every value. The information bound is 0.11 % of modes 4 and 5's frequencies and 1.1 % of their
+// dampings, 0.025 % and 0.6 % at most of the others'.
+TEST(HybridFit, NoisyFrfsAndHonestDeviations) {
+  const ModalModel truth = cases::robot();
+  const std::uint64_t seeds = all_seeds() ? 200 : 20;
+  int within = 0;
+  int values = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const FitResult result = fit_modes(noisy_robot(0.02, seed), {});
+    ASSERT_EQ(result.status, FitResult::Status::converged) << "seed " << seed;
+    ASSERT_EQ(result.model.modes.size(), truth.modes.size()) << "seed " << seed;
+    EXPECT_NEAR(result.relative_error, 0.02, 0.002);
+    for (std::size_t k = 0; k < truth.modes.size(); ++k) {
+      const Mode& mode = result.model.modes[k];
+      const double frequency = std::abs(mode.frequency_hz - truth.modes[k].frequency_hz);
+      const double damping = std::abs(mode.damping_ratio - truth.modes[k].damping_ratio);
+      const double tolerance = k == 3 || k == 4 ? 0.005 : 0.001;
+      EXPECT_LT(frequency, tolerance * truth.modes[k].frequency_hz) << "seed " << seed << " mode " << k + 1;
+      EXPECT_LT(damping, 0.05 * truth.modes[k].damping_ratio) << "seed " << seed << " mode " << k + 1;
+      within += frequency < 2.0 * mode.frequency_std_hz ? 1 : 0;
+      within += damping < 2.0 * mode.damping_ratio_std ? 1 : 0;
+      values += 2;
+    }
+  }
+  const double share = static_cast<double>(within) / values;
+  EXPECT_GT(share, 0.90);
+  EXPECT_LT(share, 0.99);
+}
+
+// Structures at random: 1 to 5 modes, up to 2 excitations and 3 responses, modes outside the band, noise of both kinds.
+struct RandomCase {
+  ModalModel inside;
+  FrfSet set;
+};
+
+RandomCase random_case(std::uint64_t seed) {
+  Random random(seed, 5);
+  RandomCase c;
+  const std::array<Axis, 3> axes = {Axis::x, Axis::y, Axis::z};
+  ModalModel& model = c.inside;
+  for (std::uint64_t j = random.index(2) + 1; j > 0; --j) model.excitations.push_back({.axis = axes.at(j - 1)});
+  for (std::uint64_t i = random.index(3) + 1; i > 0; --i) model.responses.push_back({.axis = axes.at(i - 1)});
+  const auto mode_at = [&](double frequency_hz) {
+    Mode mode{.frequency_hz = frequency_hz,
+              .damping_ratio = std::exp(random.uniform(std::log(0.003), std::log(0.06))),
+              .left = Eigen::VectorXcd(static_cast<Index>(model.excitations.size())),
+              .right = Eigen::VectorXcd(static_cast<Index>(model.responses.size()))};
+    for (Complex& l : mode.left) l = random.uniform(0.4, 1.0) * (random.uniform() < 0.5 ? -1.0 : 1.0);
+    for (Complex& r : mode.right) {
+      const double size = random.uniform(0.4, 1.0) * (random.uniform() < 0.5 ? -1.0 : 1.0);
+      r = 1e-3 * Complex(0.2 * random.normal(), -1.0) * size / frequency_hz;
+    }
+    return mode;
+  };
+  const std::uint64_t modes = random.index(5) + 1;
+  for (std::uint64_t k = 0; k < modes; ++k) {
+    const double slot = 160.0 / static_cast<double>(modes);
+    model.modes.push_back(mode_at(120.0 + slot * (static_cast<double>(k) + random.uniform(0.2, 0.8))));
+  }
+  ModalModel all = model;
+  // Far enough away, and with imaginary residues, for mass and stiffness to stand for them.
+  for (const double outside_hz : {10.0, 3000.0}) {
+    all.modes.push_back(mode_at(outside_hz));
+    all.modes.back().right = Eigen::VectorXcd(Complex(0.0, 1.0) * all.modes.back().right.imag());
+  }
+  c.set = synthesize(all, Eigen::VectorXd::LinSpaced(801, 100.0, 300.0));
+  cases::add_noise(c.set, 0.01, seed);
+  for (Frf& frf : c.set.frfs) {
+    const double floor = 1e-3 * frf.receptance.cwiseAbs().maxCoeff();
+    for (Complex& h : frf.receptance) h += floor * Complex(random.normal(), random.normal());
+  }
+  return c;
+}
+
+TEST(HybridFit, RandomStructuresWithModesOutsideTheBand) {
+  const std::uint64_t seeds = all_seeds() ? 200 : 20;
+  int within = 0;
+  int values = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const RandomCase c = random_case(seed);
+    const FitResult result = fit_modes(c.set, {});
+    ASSERT_EQ(result.model.modes.size(), c.inside.modes.size()) << "seed " << seed;
+    for (std::size_t k = 0; k < c.inside.modes.size(); ++k) {
+      const Mode& mode = result.model.modes[k];
+      const Mode& truth = c.inside.modes[k];
+      EXPECT_LT(std::abs(mode.frequency_hz - truth.frequency_hz), 6.0 * mode.frequency_std_hz) << "seed " << seed;
+      EXPECT_LT(std::abs(mode.damping_ratio - truth.damping_ratio), 6.0 * mode.damping_ratio_std) << "seed " << seed;
+      EXPECT_LT(mode.frequency_std_hz, 0.01 * truth.frequency_hz) << "seed " << seed;
+      within += std::abs(mode.frequency_hz - truth.frequency_hz) < 2.0 * mode.frequency_std_hz ? 1 : 0;
+      within += std::abs(mode.damping_ratio - truth.damping_ratio) < 2.0 * mode.damping_ratio_std ? 1 : 0;
+      values += 2;
+    }
+  }
+  const double share = static_cast<double>(within) / values;
+  EXPECT_GT(share, 0.90);
+  EXPECT_LT(share, 0.99);
+}
+
+}  // namespace
+}  // namespace robomill::modal
