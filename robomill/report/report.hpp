@@ -30,11 +30,11 @@ struct Recommendation {
   double spindle_speed_rad_per_s = missing;  ///< [rad/s], > 0
   double axial_depth_m = missing;            ///< [m], > 0
   double feed_per_tooth_m = missing;         ///< [m]
-  double margin = missing;                   ///< 1 - axial depth / lowest limit near this speed
-  double removal_rate_m3_per_s = missing;    ///< [m^3/s]
-  std::string limited_by = {};               ///< plain words: "mode 8, chatter at 566 Hz", "the spindle's torque"
-  double chatter_frequency_hz = missing;     ///< of the limit, where chatter is what limits [Hz]
-  int mode = 0;                              ///< of the limit, from 1; 0 where none
+  double margin = missing;  ///< 1 - axial depth / lowest limit near this speed (the searched depth where mode = 0)
+  double removal_rate_m3_per_s = missing;  ///< [m^3/s]
+  std::string limited_by = {};             ///< plain words: "mode 8, chatter at 566 Hz", "the spindle's torque"
+  double chatter_frequency_hz = missing;   ///< of the limit, where chatter is what limits [Hz]
+  int mode = 0;                            ///< of the limit, from 1; 0 where none
 };
 
 /// How well a measurement serves, before any fit.

@@ -45,9 +45,9 @@ std::string agreement_sentence(const Json& counts) {
   const auto compared = agree + counts["disagree"].get<int>();
   const auto rest = counts["not_compared"].get<int>();
   std::string out = "<p class=\"agreement\">";
-  out += compared == 0 ? std::string("No test cut carries a result to compare with the prediction.")
-                       : fmt::format("<strong>{} of {}</strong> test cuts with a clear result came out as predicted.",
-                                     agree, compared);
+  out += compared == 0
+             ? std::string("No test cut carries a result to compare with the prediction.")
+             : fmt::format("<strong>{} of {}</strong> test cuts with a result came out as predicted.", agree, compared);
   if (rest > 0 && compared > 0) out += fmt::format(" {} more could not be compared.", rest);
   return out + "</p>\n";
 }
@@ -99,7 +99,12 @@ std::string recommendation_section(const Json& report) {
       body += fmt::format("Chatter would sound at {} Hz. ", fixed(r["chatter_frequency_hz"], 0));
     }
     if (r["margin"].is_number()) {
-      body += fmt::format("The depth stays {} below the limit near this speed.", percent(r["margin"], 0));
+      const char* sentence =
+          r["mode"].is_number() || r["chatter_frequency_hz"].is_number()
+              ? "The depth stays {} below the chatter limit near this speed."
+              : "No chatter limit was found near this speed: the depth stays {} below the deepest cut "
+                "that was looked at.";
+      body += fmt::format(fmt::runtime(sentence), percent(r["margin"], 0));
     }
     body += "</p>\n";
   }

@@ -71,11 +71,9 @@ std::string fit_sentence(const Json& fit) {
     out += fmt::format(" from {} to {} Hz", significant(fit["band_from_hz"]), significant(fit["band_to_hz"]));
   }
   if (fit["relative_error"].is_number()) {
-    const double ratio = fit["relative_error"].get<double>();
-    out += fmt::format("; the fit differs from the measurement by {}",
-                       percent(fit["relative_error"], ratio < 0.01 ? 3 : 1));
+    out += fmt::format("; the fit differs from the measurement by {}", percent(fit["relative_error"], 2));
     if (fit["mean_relative_error"].is_number()) {
-      out += fmt::format(" (mean over lines {})", percent(fit["mean_relative_error"], 1));
+      out += fmt::format(" (mean over lines {})", percent(fit["mean_relative_error"], 2));
     }
   }
   out += ".";
@@ -89,7 +87,7 @@ std::string quality_table(const Json& frfs) {
     const std::string grade = frf["grade"].is_string() ? text_of(frf["grade"]) : "unknown";
     table.row({escape(text_of(frf["name"])),
                fmt::format("<span class=\"grade {0}\">{1}</span>", grade, grade == "unknown" ? "not graded" : grade),
-               joined(frf["findings"]), joined(frf["remedies"]), percent(frf["relative_error"], 1)});
+               joined(frf["findings"]), joined(frf["remedies"]), percent(frf["relative_error"], 2)});
   }
   return table.html();
 }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Cut, Lobes } from './data';
-import { cutTraces, depthTop, frequencyTraces, limitTraces, lobesFigure, mapFigure, pairFigure, searchedDepth, stableDepth } from './lobes';
+import { cutTraces, depthTop, frequencyTraces, limitTraces, lobesFigure, mapFigure, pairFigure, searchedDepth, stableDepth, visibleLimits } from './lobes';
 import { dark, light, thinSpace } from './theme';
 
 const lobes: Lobes = {
@@ -90,6 +90,11 @@ describe('lobes', () => {
     expect(star['hovertext']).toEqual([`<b>6000${thinSpace}rpm, 1.00 mm</b><br>limited by a &lt; b`]);
     expect(figure.data.find((trace) => trace['name'] === 'alternatives')!['text']).toEqual(['1']);
     expect(figure.layout['shapes']).toHaveLength(2);
+  });
+  it('leave out other limits that never come into view', () => {
+    const curve = (label: string, axial_depth_mm: (number | null)[]) => ({ label, spindle_speed_rpm: [4000, 7000], axial_depth_mm });
+    const otherLimits = [curve('torque', [2, 9]), curve('power', [9, 12]), curve('none', [null, null])];
+    expect(visibleLimits({ ...input, otherLimits }).map((limit) => limit.label)).toEqual(['torque']);
   });
   it('reach to the deepest cut', () => {
     expect(depthTop({ ...input, cuts: [{ ...cut('chatter', true), axial_depth_mm: 5 }] })).toBeCloseTo(5.2);

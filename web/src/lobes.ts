@@ -199,11 +199,21 @@ export function frequencyTraces(lobes: Lobes, theme: Theme): Trace[] {
     }));
 }
 
+function speedRange(lobes: Lobes): [number, number] {
+  return [lobes.spindle_speed_rpm[0] ?? 0, lobes.spindle_speed_rpm[lobes.spindle_speed_rpm.length - 1] ?? 1];
+}
+
 /** Top of the depth axis: what was searched, or the highest point that must be seen. */
 export function depthTop(input: LobesInput): number {
   const shown: Num[] = [searchedDepth(input.lobes), input.recommendation?.axial_depth_mm ?? 0];
   for (const cut of input.cuts) shown.push(cut.axial_depth_mm);
   return 1.04 * shown.reduce<number>((most, depth) => Math.max(most, depth ?? 0), 0);
+}
+
+/** The other limits that come into view at all. */
+export function visibleLimits(input: LobesInput): DepthCurve[] {
+  const top = depthTop(input);
+  return input.otherLimits.filter((curve) => curve.axial_depth_mm.some((depth) => depth !== null && depth <= top));
 }
 
 export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): Figure {
@@ -212,7 +222,7 @@ export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): F
   const two = frequencies.length > 0;
   const data: Trace[] = [
     ...limitTraces(lobes, theme),
-    ...input.otherLimits.map((curve, i) => ({
+    ...visibleLimits(input).map((curve, i) => ({
       type: 'scatter',
       mode: 'lines',
       name: plain(curve.label),
@@ -225,8 +235,7 @@ export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): F
     ...recommendationTraces(input, theme),
     ...frequencies,
   ];
-  const left = lobes.spindle_speed_rpm[0] ?? 0;
-  const right = lobes.spindle_speed_rpm[lobes.spindle_speed_rpm.length - 1] ?? 1;
+  const [left, right] = speedRange(lobes);
   const speeds = { range: [left, right], hoverformat: '.0f', tickformat: ',d' };
   return {
     data,
@@ -267,7 +276,7 @@ export function pairFigure(part: Lobes, all: Lobes, cuts: Cut[], theme: Theme): 
       margin: { l: 52, r: 32, t: 34, b: 44 },
       showlegend: false,
       hovermode: 'closest',
-      xaxis: axis(theme, speedAxis, { tickformat: ',d' }),
+      xaxis: axis(theme, speedAxis, { range: speedRange(all), tickformat: ',d' }),
       yaxis: axis(theme, depthAxis, { range: [0, 1.04 * Math.max(searchedDepth(part), searchedDepth(all))] }),
     }),
   };
