@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
+
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -13,7 +15,7 @@
 namespace robomill::app {
 namespace {
 
-struct Run {
+struct Ended {
   int exit = -1;
   std::string out, err;
 };
@@ -33,14 +35,14 @@ class App : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  Run shell(const std::string& command) {
+  Ended shell(const std::string& command) {
     const std::string full = "cd '" + folder_.string() + "' && { " + command + " ; } >out.txt 2>err.txt";
     const int status = std::system(full.c_str());  // NOLINT(cert-env33-c): a user's shell is what is tested
     return {.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
             .out = slurp(folder_ / "out.txt"),
             .err = slurp(folder_ / "err.txt")};
   }
-  Run robomill(const std::string& arguments) { return shell("'" ROBOMILL_PROGRAM "' " + arguments); }
+  Ended robomill(const std::string& arguments) { return shell("'" ROBOMILL_PROGRAM "' " + arguments); }
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   void write_lobes(const std::string& coefficients = "tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n",
                    const std::string& grid = "[20, 10]") {
@@ -72,7 +74,7 @@ TEST_F(App, WrongUsageExitsWithTwo) {
 
 TEST_F(App, BadInputExitsWithOneAndOneMessage) {
   write_lobes("tangential_n_per_mm2 = 0\nradial_n_per_mm2 = 287\n");
-  const Run run = robomill("lobes lobes.toml -o lobes.json");
+  const Ended run = robomill("lobes lobes.toml -o lobes.json");
   EXPECT_EQ(run.exit, 1);
   EXPECT_NE(run.err.find("lobes.toml:9: coefficients.tangential_n_per_mm2 = 0 N/mm^2"), std::string::npos) << run.err;
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1);
@@ -87,7 +89,7 @@ TEST_F(App, BadInputExitsWithOneAndOneMessage) {
 
 TEST_F(App, DashWritesJsonAndNothingElse) {
   write_lobes();
-  const Run run = robomill("lobes lobes.toml --at 6500,0.6 --at 8000,1.2 -o -");
+  const Ended run = robomill("lobes lobes.toml --at 6500,0.6 --at 8000,1.2 -o -");
   ASSERT_EQ(run.exit, 0) << run.err;
   const auto json = nlohmann::json::parse(run.out);
   ASSERT_EQ(json["points"].size(), 2U);
@@ -111,13 +113,13 @@ TEST_F(App, ResultsDoNotDependOnTheNumberOfThreads) {
 // From hits to FRFs to modes, each verb by its own files.
 TEST_F(App, GoesFromHitsToModes) {
   ASSERT_EQ(shell("'" ROBOMILL_SIMULATE_HITS "' hits").exit, 0);
-  const Run frf = robomill("frf hits/hits.toml -o tip.uff");
+  const Ended frf = robomill("frf hits/hits.toml -o tip.uff");
   ASSERT_EQ(frf.exit, 0) << frf.err;
   EXPECT_NE(frf.out.find("accepted"), std::string::npos);
   for (const char* name : {"tip.csv", "tip.json", "tip.mat"}) {
     EXPECT_EQ(robomill(std::string("frf hits/hits.toml --quiet -o ") + name).exit, 0) << name;
   }
-  const Run modes = robomill("modes tip.uff --band 10,700 -o modes.json");
+  const Ended modes = robomill("modes tip.uff --band 10,700 -o modes.json");
   ASSERT_EQ(modes.exit, 0) << modes.err;
   const auto json = nlohmann::json::parse(slurp(folder_ / "modes.json"));
   EXPECT_GE(json["modes"].size(), 6U);
@@ -126,7 +128,7 @@ TEST_F(App, GoesFromHitsToModes) {
 
 TEST_F(App, CtrlCStopsAndLeavesNoFile) {
   write_lobes("tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n", "[4000, 4000]");
-  const Run run =
+  const Ended run =
       shell("timeout --signal=INT 1 '" ROBOMILL_PROGRAM "' lobes lobes.toml -o lobes.json; echo $? >code.txt");
   EXPECT_NE(run.err.find("interrupted"), std::string::npos) << run.err;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "lobes.json"));
