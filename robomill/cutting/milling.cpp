@@ -115,7 +115,7 @@ void FlatEndMill::validate() const {
   }
   double sum = 0.0;
   for (std::size_t j = 0; j < pitch_rad.size(); ++j) {
-    require_positive(("pitch_rad[" + std::to_string(j) + "]").c_str(), pitch_rad[j], "rad");
+    require_positive(("pitch_rad[" + std::to_string(j + 1) + "]").c_str(), pitch_rad[j], "rad");
     sum += pitch_rad[j];
   }
   if (!(std::abs(sum - revolution) <= 1e-6 * revolution)) {

@@ -215,7 +215,7 @@ TEST(Milling, RefusesWhatCannotBe) {
   EXPECT_EQ(refused([](Milling& m) { m.tool.helix_rad = 30.0; }), "helix_rad");
   EXPECT_EQ(refused([](Milling& m) { m.tool.pitch_rad = {2.0, 2.0}; }), "pitch_rad");
   EXPECT_EQ(refused([](Milling& m) { m.tool.pitch_rad = {2.0, 2.0, 2.0}; }), "pitch_rad");
-  EXPECT_EQ(refused([](Milling& m) { m.tool.pitch_rad = {5.0, 2.0, 2.0 * pi - 7.0}; }), "pitch_rad[2]");
+  EXPECT_EQ(refused([](Milling& m) { m.tool.pitch_rad = {5.0, 2.0, 2.0 * pi - 7.0}; }), "pitch_rad[3]");
   EXPECT_EQ(refused([](Milling& m) { m.immersion = {.entry_rad = -0.1, .exit_rad = 1.0}; }), "entry_rad");
   EXPECT_EQ(refused([](Milling& m) { m.immersion = {.entry_rad = 1.0, .exit_rad = 1.0}; }), "exit_rad");
   EXPECT_EQ(refused([](Milling& m) { m.immersion = {.entry_rad = 1.0, .exit_rad = 3.2}; }), "exit_rad");

@@ -65,6 +65,7 @@ std::string lobes_json(const stability::LobesResult& result, bool with_map) {
   json["method"] = stability::to_string(result.method);
   json["period"] = stability::to_string(result.period);
   json["evaluations"] = result.evaluations;
+  json["unsettled"] = result.unsettled;
   json["seconds"] = number(result.seconds);
   return dump(json);
 }

@@ -105,6 +105,17 @@ TEST(LobesToml, RefusesInTheFilesWords) {
   expect("spindle_speed_rpm = [5000, 25000]", "spindle_speed_rpm = [5000, 5000]", "lobes.spindle_speed_rpm = 5000 rpm");
   expect("damping_ratio = 0.011", "damping_ratio = -0.011", "damping_ratio = -0.011");
   expect("method = \"semi-discretization\"", "method = \"guess\"", "semi-discretization");
+  expect("method = \"semi-discretization\"", "method = \"collocation\"", "must be one of \"semi-discretization\"");
+  expect("helix_deg = 30", "pitch_deg = [170, 180]", "lobes.toml:4: tool.pitch_deg: must sum to one revolution");
+  expect("helix_deg = 30", "pitch_deg = [120, 120, 120]", "must have one entry for each tooth (2)");
+  expect("helix_deg = 30", "pitch_deg = [-10, 370]", "lobes.toml:4: tool.pitch_deg[1] = -10 deg; must be > 0");
+  expect("helix_deg = 30", "helix_deg = 100", "lobes.toml:4: tool.helix_deg = 100 deg");
+  expect("diameter_mm = 12", "diameter_mm = 0", "lobes.toml:3: tool.diameter_mm = 0 mm; must be > 0");
+  expect("grid = [30, 20]", "grid = [30, 1]", "lobes.toml:19: lobes.grid = 1");
+  expect("grid = [30, 20]", "intervals = 2", "lobes.intervals = 2; must be at least 4");
+  expect("grid = [30, 20]", "tolerance = 0", "lobes.tolerance = 0");
+  expect("direction = \"down\"\nradial_depth_mm = 1.2", "entry_deg = 10\nexit_deg = 190", "cut.exit_deg = 190 deg");
+  expect("direction = \"down\"\nradial_depth_mm = 1.2", "entry_deg = 10", "cut.exit_deg: is missing");
   expect("radial_depth_mm = 1.2\n", "", "cut.radial_depth_mm");
   expect("teeth = 2", "teth = 2", "tool.teeth");
   expect("[dynamics]", "[dynamics]\nmodes = \"m.json\"", "only one of modes, frf");
