@@ -129,10 +129,11 @@ std::vector<BoundaryPoint> refine(Evaluator& evaluator, const std::vector<Edge>&
 }
 
 Column column(Evaluator& evaluator, double spindle_speed_rad_per_s, const std::vector<double>& depths_m,
-              const std::vector<DepthPlan>& plans, double tolerance, bool first_only, const Progress& progress) {
+              const std::vector<DepthPlan>& plans, double tolerance, Look look, const Progress& progress) {
   Column result;
-  result.spectral_radius.resize(depths_m.size());
-  for (std::size_t first = 0; first < depths_m.size(); first += lane_count) {
+  result.spectral_radius.reserve(depths_m.size());
+  bool unstable = false;
+  for (std::size_t first = 0; first < depths_m.size() && !(unstable && look == Look::limit); first += lane_count) {
     progress.check();
     const std::size_t count = std::min(lane_count, depths_m.size() - first);
     std::array<Evaluator::Point, lane_count> points;
@@ -141,21 +142,24 @@ Column column(Evaluator& evaluator, double spindle_speed_rad_per_s, const std::v
       points[i] = {spindle_speed_rad_per_s, depths_m[first + i], plans.empty() ? nullptr : &plans[first + i]};
     }
     evaluator.evaluate(std::span(points).first(count), std::span(dominant).first(count));
-    for (std::size_t i = 0; i < count; ++i) result.spectral_radius[first + i] = spectral_radius(dominant[i]);
+    for (std::size_t i = 0; i < count; ++i) {
+      result.spectral_radius.push_back(spectral_radius(dominant[i]));
+      unstable = unstable || result.spectral_radius.back() >= 1.0;
+    }
   }
 
   std::vector<Edge> edges;
   const auto point = [&](std::size_t j) { return OperatingPoint{spindle_speed_rad_per_s, depths_m[j]}; };
-  for (std::size_t j = 0; j + 1 < depths_m.size(); ++j) {
+  for (std::size_t j = 0; j + 1 < result.spectral_radius.size(); ++j) {
     const double below = result.spectral_radius[j];
     const double above = result.spectral_radius[j + 1];
     if ((below < 1.0) == (above < 1.0)) continue;
     edges.push_back({point(j), point(j + 1), below, above});
-    if (first_only) break;
+    if (look != Look::boundary) break;
   }
   result.limit.spindle_speed_rad_per_s = spindle_speed_rad_per_s;
   const bool unstable_at_start = result.spectral_radius.front() >= 1.0;
-  if (unstable_at_start && first_only) edges.clear();
+  if (unstable_at_start && look != Look::boundary) edges.clear();
   result.boundary = refine(evaluator, edges, tolerance, progress);
   if (unstable_at_start) {
     result.limit = limit_at_start(evaluator, point(0));

@@ -19,14 +19,17 @@ std::vector<BoundaryPoint> refine(Evaluator& evaluator, const std::vector<Edge>&
 
 /// What one spindle speed shows over the depths of the grid.
 struct Column {
-  std::vector<double> spectral_radius;
-  std::vector<BoundaryPoint> boundary;  ///< by depth
+  std::vector<double> spectral_radius;  ///< Look::limit: up to the first unstable depth and a little beyond
+  std::vector<BoundaryPoint> boundary;  ///< by depth; the lowest alone but for Look::boundary
   Limit limit;
 };
 
-/// @param plans          of the depths, or empty
-/// @param first_only     refine the lowest change of stability alone
+/// What is wanted of a column: the lowest change of stability alone, that and the spectral radius at every depth, or
+/// that and every change of stability.
+enum class Look { limit, map, boundary };
+
+/// @param plans  of the depths, or empty
 Column column(Evaluator& evaluator, double spindle_speed_rad_per_s, const std::vector<double>& depths_m,
-              const std::vector<DepthPlan>& plans, double tolerance, bool first_only, const Progress& progress);
+              const std::vector<DepthPlan>& plans, double tolerance, Look look, const Progress& progress);
 
 }  // namespace robomill::stability::detail

@@ -46,7 +46,7 @@ struct Count {
 };
 
 std::vector<Column> columns(const Model& model, const LobesProblem& problem, const LobesOptions& options,
-                            const std::vector<double>& speeds, const std::vector<double>& depths_m, bool first_only,
+                            const std::vector<double>& speeds, const std::vector<double>& depths_m, Look look,
                             Count& count, Progress& progress) {
   const std::vector<DepthPlan> plans = depth_plans(model, problem.milling.tool.helix_rad != 0.0, depths_m);
   std::vector<Column> result(speeds.size());
@@ -55,7 +55,7 @@ std::vector<Column> columns(const Model& model, const LobesProblem& problem, con
   parallel_for(speeds.size(), 4, [&](std::size_t begin, std::size_t end) {
     Evaluator evaluator(model);
     for (std::size_t i = begin; i < end; ++i) {
-      result[i] = column(evaluator, speeds[i], depths_m, plans, options.tolerance, first_only, progress);
+      result[i] = column(evaluator, speeds[i], depths_m, plans, options.tolerance, look, progress);
       progress.advance();
     }
     counts[begin].add(evaluator);
@@ -145,7 +145,8 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   result.period = model.cut.period();
   Count count;
   const bool map = options.output == Output::map;
-  const std::vector<Column> found = columns(model, problem, options, speeds, depths, map, count, progress);
+  const std::vector<Column> found =
+      columns(model, problem, options, speeds, depths, map ? Look::map : Look::boundary, count, progress);
   result.spectral_radius.resize(options.grid[1], options.grid[0]);
   for (std::size_t i = 0; i < found.size(); ++i) {
     result.spectral_radius.col(static_cast<Eigen::Index>(i)) = to_eigen(found[i].spectral_radius);
@@ -190,7 +191,7 @@ std::vector<Limit> limit_depths(const LobesProblem& problem, const LobesOptions&
   const std::vector<double> depths = even(options.axial_depth_m, options.grid[1]);
   Count count;
   const std::vector<Column> found =
-      columns(model, problem, options, spindle_speeds_rad_per_s, depths, true, count, progress);
+      columns(model, problem, options, spindle_speeds_rad_per_s, depths, Look::limit, count, progress);
   std::vector<Limit> limits;
   for (const Column& c : found) limits.push_back(c.limit);
   return limits;
