@@ -31,6 +31,10 @@ void measure(PlanResult& result, Progress& progress) {
   if (!result.job.hits.empty()) {
     const formats::HitsFile hits = formats::read_hits(result.job.hits);
     append(result.notes, hits.notes);
+    for (const modal::Hit& hit : hits.hits) {
+      result.hit_directions.push_back(
+          fmt::format("{}{}", hit.against_axis ? "-" : "", modal::to_string(hit.excitation)));
+    }
     result.hits = modal::estimate_frfs(hits.hits, hits.options, progress);
     append(result.notes, result.hits->notes);
     result.frfs = result.hits->set;

@@ -20,11 +20,12 @@ namespace robomill::plan {
 /// Everything a job came to, stage by stage. What the job did not ask for is empty.
 struct PlanResult {
   formats::Job job;
-  formats::LobesFile cut;                ///< with the dynamics that the job gave
-  std::optional<modal::FrfResult> hits;  ///< of a job that starts from hits
-  std::optional<modal::FrfSet> frfs;     ///< measured: from hits or files
-  double added_decay_per_s = 0.0;        ///< of an exponential window, still in frfs
-  std::optional<modal::FitResult> fit;   ///< of a job that starts from hits or FRFs
+  formats::LobesFile cut;                   ///< with the dynamics that the job gave
+  std::optional<modal::FrfResult> hits;     ///< of a job that starts from hits
+  std::vector<std::string> hit_directions;  ///< one a hit: "x", "-y"
+  std::optional<modal::FrfSet> frfs;        ///< measured: from hits or files
+  double added_decay_per_s = 0.0;           ///< of an exponential window, still in frfs
+  std::optional<modal::FitResult> fit;      ///< of a job that starts from hits or FRFs
   modal::ModalModel model;
   stability::LobesResult lobes;      ///< of all modes
   std::vector<report::Lobes> pairs;  ///< limits of modes 1–2, 3–4, …

@@ -59,12 +59,17 @@ void add_frfs(report::Report& report, const PlanResult& result) {
   const modal::FrfSet& set = *result.frfs;
   report.frf_frequency_hz = set.frequency_hz;
   std::optional<modal::FrfSet> fitted;
-  if (result.fit && set.frequency_hz(0) > 0.0) fitted = modal::synthesize(result.fit->model, set.frequency_hz);
+  // A mass residual has no value at 0 Hz: the fitted curve starts behind it.
+  const Eigen::Index first = set.frequency_hz(0) == 0.0 ? 1 : 0;
+  if (result.fit) fitted = modal::synthesize(result.fit->model, set.frequency_hz.tail(set.frequency_hz.size() - first));
   for (std::size_t i = 0; i < set.frfs.size(); ++i) {
     const modal::Frf& frf = set.frfs[i];
     report::FrfPlot plot{.name = frf.name, .measured = frf.receptance, .coherence = frf.coherence};
     if (fitted) {
-      if (const modal::Frf* model = fitted->find(frf.name)) plot.fitted = model->receptance;
+      if (const modal::Frf* model = fitted->find(frf.name)) {
+        plot.fitted.setConstant(set.frequency_hz.size(), report::missing);
+        plot.fitted.tail(model->receptance.size()) = model->receptance;
+      }
     }
     if (result.fit) {
       for (const modal::FrfFitError& error : result.fit->by_frf) {
@@ -85,8 +90,10 @@ void add_frfs(report::Report& report, const PlanResult& result) {
 
 void add_hits(report::Report& report, const PlanResult& result) {
   if (!result.hits) return;
-  for (const modal::HitVerdict& hit : result.hits->hits) {
+  for (std::size_t i = 0; i < result.hits->hits.size(); ++i) {
+    const modal::HitVerdict& hit = result.hits->hits[i];
     report.hits.push_back({.file = std::filesystem::path(hit.file).filename().string(),
+                           .direction = result.hit_directions.at(i),
                            .accepted = hit.accepted,
                            .reasons = hit.reasons});
   }

@@ -112,6 +112,28 @@ TEST_F(Plan, WritesEveryFileAndTheyAgree) {
   EXPECT_EQ(files, 4U);
 }
 
+// Headerless FRFs that start at 0 Hz, one direction: the fit leaves that line out, and so does the fitted curve.
+TEST_F(Plan, StartsFromFrfsWithALineAtZero) {
+  const modal::FrfSet set = modal::synthesize(data::robot_modes(), Eigen::VectorXd::LinSpaced(2801, 0.0, 700.0));
+  const modal::Frf& xx = *set.find(modal::parse_frf_name("xx"));
+  std::ofstream file(folder_ / "xx.txt");
+  file.precision(15);
+  for (Eigen::Index i = 0; i < set.frequency_hz.size(); ++i) {
+    file << set.frequency_hz(i) << ' ' << xx.receptance(i).real() << ' ' << xx.receptance(i).imag() << '\n';
+  }
+  file.close();
+  const PlanResult result = run_job(write("job.toml",
+                                          "[job]\nfrf = \"xx.txt\"\nlobes = \"lobes.toml\"\nband_hz = [400, "
+                                          "650]\nfit_modes = 2\nequal_directions = true\n"),
+                                    1);
+  EXPECT_EQ(result.model.modes.size(), 4U);
+  const report::Report report = make_report(result, {});
+  ASSERT_EQ(report.frfs.size(), 1U);
+  EXPECT_TRUE(std::isnan(report.frfs[0].fitted(0).real()));
+  EXPECT_LT(std::abs(report.frfs[0].fitted(2160) - xx.receptance(2160)), 0.05 * std::abs(xx.receptance(2160)));
+  EXPECT_NO_THROW(static_cast<void>(report::report_html(report)));
+}
+
 TEST_F(Plan, SaysWhatIsMissing) {
   const auto refusal = [](const std::filesystem::path& path) -> std::string {
     try {
