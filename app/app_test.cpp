@@ -110,6 +110,18 @@ TEST_F(App, ResultsDoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(lobes("1"), lobes("4"));
 }
 
+// A structure that chatters at any depth that matters: finished, but without the answer; the report is there all the
+// same.
+TEST_F(App, NoSafeDepthExitsWithThree) {
+  write_lobes();
+  write("job.toml", "[job]\nmodes = \"" ROBOMILL_SOURCE_DIR
+                    "/data/robot-modes.toml\"\nlobes = \"lobes.toml\"\n[spindle]\nmax_speed_rpm = 3000\n");
+  const Ended ended = robomill("plan job.toml -o out");
+  EXPECT_EQ(ended.exit, 3) << ended.err;
+  EXPECT_NE(ended.out.find("no safe depth"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "report.html"));
+}
+
 // From hits to FRFs to modes, each verb by its own files.
 TEST_F(App, GoesFromHitsToModes) {
   ASSERT_EQ(shell("'" ROBOMILL_SIMULATE_HITS "' hits").exit, 0);
@@ -119,6 +131,8 @@ TEST_F(App, GoesFromHitsToModes) {
   for (const char* name : {"tip.csv", "tip.json", "tip.mat"}) {
     EXPECT_EQ(robomill(std::string("frf hits/hits.toml --quiet -o ") + name).exit, 0) << name;
   }
+  EXPECT_EQ(robomill("frf hits/hits.toml --quiet --binary -o binary.uff").exit, 0);
+  EXPECT_LT(std::filesystem::file_size(folder_ / "binary.uff"), std::filesystem::file_size(folder_ / "tip.uff"));
   const Ended modes = robomill("modes tip.uff --band 10,700 -o modes.json");
   ASSERT_EQ(modes.exit, 0) << modes.err;
   const auto json = nlohmann::json::parse(slurp(folder_ / "modes.json"));

@@ -36,7 +36,7 @@ Exit run(const FrfCommand& command, const Common& common, Progress& progress) {
   if (common.to_stdout()) {
     fmt::print("{}", formats::frf_json(result));
   } else if (!common.output.empty()) {
-    formats::write_frfs(common.output, result);
+    formats::write_frfs(common.output, result, {.binary_uff = command.binary});
   }
   if (common.wants_summary()) print_summary(result, hits.notes);
   return done;

@@ -44,6 +44,7 @@ CommandLine::CommandLine() {
   CLI::App* sub =
       verb("frf", "hammer hits to frequency response functions", [this](Progress& p) { return run(frf, common, p); });
   sub->add_option("hits", frf.hits, "hits.toml")->required();
+  sub->add_flag("--binary", frf.binary, "write .uff as data set 58b");
 
   sub = verb("modes", "frequency response functions to modes", [this](Progress& p) { return run(modes, common, p); });
   sub->add_option("frfs", modes.inputs, "FRF files: .uff .csv .txt .mat .json")->required();

@@ -26,6 +26,7 @@ struct Common {
 
 struct FrfCommand {
   std::filesystem::path hits;
+  bool binary = false;  ///< .uff as data set 58b
 };
 struct ModesCommand {
   std::vector<std::filesystem::path> inputs;
