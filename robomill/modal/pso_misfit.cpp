@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstring>
 #include <numbers>
 
 namespace robomill::modal::detail {
@@ -11,7 +12,7 @@ namespace {
 constexpr std::size_t lanes = 4;
 // Four doubles that the compiler maps to what the processor has; arithmetic lane by lane rounds the same in both
 // variants.
-using Lanes __attribute__((vector_size(lanes * sizeof(double)), aligned(alignof(double)), may_alias)) = double;
+using Lanes __attribute__((vector_size(lanes * sizeof(double)))) = double;
 
 constexpr std::size_t block_lines = 256;  // one block's squares stay in the first-level cache
 static_assert(block_lines % lanes == 0);
@@ -31,8 +32,13 @@ struct Lines {
   const double* inverse_square[2];
 };
 
-inline __attribute__((always_inline)) const Lanes& at(const double* values, std::size_t i) {
-  return *reinterpret_cast<const Lanes*>(values + i);
+// Copies, since neither the arrays nor the blocks of lines are aligned to whole vectors; the compiler makes a load of
+// them.
+inline __attribute__((always_inline)) void load(Lanes& to, const double* from) {
+  std::memcpy(&to, from, sizeof(Lanes));
+}
+inline __attribute__((always_inline)) void store(double* to, const Lanes& from) {
+  std::memcpy(to, &from, sizeof(Lanes));
 }
 
 /// squares[f][i] = |H_fit - H|² / |H|² for `frfs` FRFs and lines [0, count), count a multiple of `lanes`.
@@ -40,7 +46,8 @@ template <std::size_t frfs>
 inline __attribute__((always_inline)) void relative_squares(std::span<const Fraction> modes, const Lines& lines,
                                                             std::size_t count, double* const* squares) {
   for (std::size_t i = 0; i < count; i += lanes) {
-    const Lanes u = at(lines.omega_squared, i);
+    Lanes u;
+    load(u, lines.omega_squared + i);
     Lanes real[frfs] = {};
     Lanes imag[frfs] = {};
     for (const Fraction& mode : modes) {
@@ -51,11 +58,19 @@ inline __attribute__((always_inline)) void relative_squares(std::span<const Frac
         imag[f] += (mode.imag_constant[f] + mode.imag_slope[f] * u) * inverse;
       }
     }
+    Lanes omega;
+    load(omega, lines.omega + i);
     for (std::size_t f = 0; f < frfs; ++f) {
-      const Lanes real_error = real[f] - at(lines.real[f], i);
-      const Lanes imag_error = at(lines.omega, i) * imag[f] - at(lines.imag[f], i);
-      *reinterpret_cast<Lanes*>(squares[f] + i) =
-          (real_error * real_error + imag_error * imag_error) * at(lines.inverse_square[f], i);
+      Lanes real_target;
+      Lanes imag_target;
+      Lanes inverse_square;
+      load(real_target, lines.real[f] + i);
+      load(imag_target, lines.imag[f] + i);
+      load(inverse_square, lines.inverse_square[f] + i);
+      const Lanes real_error = real[f] - real_target;
+      const Lanes imag_error = omega * imag[f] - imag_target;
+      const Lanes square = (real_error * real_error + imag_error * imag_error) * inverse_square;
+      store(squares[f] + i, square);
     }
   }
 }
