@@ -229,7 +229,8 @@ Search plan_search(const FrfSet& frfs, const Dof& excitation, std::size_t count,
                        "show no peak for a force in " + to_string(excitation, true) + " that stands out of the noise",
                        "Widen the band, or name the frequencies to look at");
   }
-  search.peaks = share_peaks(std::move(peaks), options.modes == 0 ? peaks.size() : count);
+  const std::size_t wanted = options.modes == 0 ? peaks.size() : count;
+  search.peaks = share_peaks(std::move(peaks), wanted);
   const std::size_t unknowns = search.peaks.size() * search.unknowns_per_mode();
   if (unknowns > 2 * search.misfit->terms()) {
     throw InvalidInput("modes", static_cast<double>(search.peaks.size()), "modes",
