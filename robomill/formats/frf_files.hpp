@@ -19,7 +19,7 @@ struct FrfFile {
 };
 
 /// Reads FRFs from .uff (.unv .uf), .csv, .txt (.dat .asc), .mat and .json; what each holds stands in
-/// formats/README.md. Several files are put together on the axis of the first; axes are the same where no frequency
+/// docs/formats.md. Several files are put together on the axis of the first; axes are the same where no frequency
 /// differs by more than 1e-5 of itself.
 ///
 /// Accelerances and mobilities become receptances, A / (iω)² and V / (iω), where the file says that it holds them; a
@@ -27,9 +27,8 @@ struct FrfFile {
 /// @param as  names for all FRFs in the order of the files, or for those that the files leave unnamed (columns without
 ///            header, universal files without directions); one unnamed FRF alone is xx
 /// @throws InvalidInput with file, and line or JSON path, if a file is missing, empty or of unknown ending, a value is
-/// not
-///         finite, frequencies do not increase, axes differ (naming both files), a name comes twice, or `as` does not
-///         fit
+///     not finite, frequencies do not increase, axes differ (naming both files), a name comes twice, or `as` does not
+///     fit
 [[nodiscard]] ROBOMILL_API FrfFile read_frfs(const std::vector<std::filesystem::path>& paths,
                                              const std::vector<std::string>& as = {});
 

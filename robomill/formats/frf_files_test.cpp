@@ -30,7 +30,7 @@ void expect_same(const modal::FrfSet& read, const modal::FrfSet& written, double
   for (const modal::Frf& frf : written.frfs) {
     const modal::Frf* other = read.find(frf.name);
     ASSERT_NE(other, nullptr) << modal::to_string(frf.name);
-    EXPECT_LT((other->receptance - frf.receptance).norm(), tolerance * frf.receptance.norm());
+    EXPECT_LE((other->receptance - frf.receptance).norm(), tolerance * frf.receptance.norm());
     ASSERT_EQ(other->coherence.size(), frf.coherence.size());
     EXPECT_LE((other->coherence - frf.coherence).norm(), tolerance * frf.coherence.norm());
     ASSERT_EQ(other->deviation.size(), frf.deviation.size());
@@ -41,12 +41,15 @@ void expect_same(const modal::FrfSet& read, const modal::FrfSet& written, double
 TEST(FrfFiles, EveryFormatGivesTheSetBack) {
   const testing::Folder folder;
   const modal::FrfSet set = robot_frfs();
-  for (const char* name : {"tip.csv", "tip.txt", "tip.mat", "tip.json", "tip.uff"}) {
+  for (const char* name : {"tip.csv", "tip.txt", "tip.mat", "tip.json"}) {
     write_frfs(folder.at(name), set);
-    expect_same(read_frfs({folder.at(name)}).set, set, 1e-11);
+    expect_same(read_frfs({folder.at(name)}).set, set, 0.0);
   }
+  // E20.12 carries 13 digits.
+  write_frfs(folder.at("tip.uff"), set);
+  expect_same(read_frfs({folder.at("tip.uff")}).set, set, 1e-12);
   write_frfs(folder.at("binary.uff"), set, {.binary_uff = true});
-  expect_same(read_frfs({folder.at("binary.uff")}).set, set, 1e-14);
+  expect_same(read_frfs({folder.at("binary.uff")}).set, set, 0.0);
 }
 
 TEST(FrfFiles, PointsAndRotationsKeepTheirNames) {

@@ -15,10 +15,9 @@ struct HitsFile {
   std::vector<std::string> notes = {};  ///< what the readers of the records had to say
 };
 
-/// Reads hits.toml and every record it names (.csv .txt .mat .uff .wav); the keys stand in formats/README.md.
+/// Reads hits.toml and every record it names (.csv .txt .mat .uff .wav); the keys stand in docs/formats.md.
 /// @throws InvalidInput with file, line and key (of hits.toml or of a record) if a key is unknown, missing or wrong, a
-/// record
-///         cannot be read, a column is not there, or no sample rate is known
+///     record cannot be read, a column is not there, or no sample rate is known
 [[nodiscard]] ROBOMILL_API HitsFile read_hits(const std::filesystem::path& path);
 
 }  // namespace robomill::formats

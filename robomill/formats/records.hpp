@@ -32,8 +32,7 @@ struct RecordOptions {
 /// without header), .mat (v5, v7.3: one variable a column), .uff .unv .uf (time responses), .wav (one channel a
 /// column).
 /// @throws InvalidInput with file and line if it is missing or empty, a value is no finite number, a line has another
-/// number
-///         of values than those before it, or the time does not run evenly
+///     number of values than those before it, or the time does not run evenly
 [[nodiscard]] ROBOMILL_API Record read_record(const std::filesystem::path& path, const RecordOptions& options = {});
 
 /// The rate of evenly rising times. @throws InvalidInput naming `where` if a step is more than half a step off

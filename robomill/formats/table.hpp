@@ -21,8 +21,7 @@ struct Table {
 /// and a comma for the point where columns are parted by semicolons or tabs.
 /// @param where  names the file in messages
 /// @throws InvalidInput with file and line if there is no line of numbers, a value is empty or no finite number, or a
-/// line has
-///         another number of values than those before it
+///     line has another number of values than those before it
 [[nodiscard]] Table parse_table(std::string_view content, const std::string& where);
 
 }  // namespace robomill::formats

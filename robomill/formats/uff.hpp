@@ -42,7 +42,8 @@ struct UffFile {
 /// is not ASCII, half-filled last lines, wrong byte counts, an abscissa in single or double precision.
 /// @param where  names the file in messages
 /// @throws InvalidInput with file and line if a header record or a number cannot be read, or the file ends within the
-/// data Source: [SDRC58]
+///     data
+/// Source: [SDRC58], [SDRC164]
 [[nodiscard]] UffFile parse_uff(std::string_view content, const std::string& where);
 
 /// Data set 164 with SI units, then data sets 58 (numbers as E20.12) or 58b (little-endian doubles). An abscissa is
