@@ -152,19 +152,24 @@ void warn_of_resonance(PlanResult& result) {
   if (!result.recommendation.recommended) return;
   const double tooth_passing_hz = result.recommendation.recommended->spindle_speed_rad_per_s /
                                   (2.0 * std::numbers::pi) * result.cut.problem.milling.tool.teeth;
-  for (std::size_t k = 0; k < result.model.modes.size(); ++k) {
-    const modal::Mode& mode = result.model.modes[k];
-    const double harmonic = std::round(mode.frequency_hz / tooth_passing_hz);
-    if (harmonic < 1.0 ||
-        std::abs(harmonic * tooth_passing_hz - mode.frequency_hz) > mode.damping_ratio * mode.frequency_hz) {
-      continue;
-    }
-    result.warnings.push_back(
-        fmt::format("At the recommended speed {:.0f} × tooth passing ({:.1f} Hz) excites mode {} ({:.1f} Hz): no "
-                    "chatter, but forced "
-                    "vibration is greatest there. Check the surface, or take an alternative.",
-                    harmonic, harmonic * tooth_passing_hz, k + 1, mode.frequency_hz));
+  const modal::Mode* nearest = nullptr;
+  double nearest_harmonic = 0.0;
+  double nearest_distance = 1.0;  // in half-power half-widths ζ f
+  for (const modal::Mode& mode : result.model.modes) {
+    const double harmonic = std::max(1.0, std::round(mode.frequency_hz / tooth_passing_hz));
+    const double distance =
+        std::abs(harmonic * tooth_passing_hz - mode.frequency_hz) / (mode.damping_ratio * mode.frequency_hz);
+    if (distance >= nearest_distance) continue;
+    nearest = &mode;
+    nearest_harmonic = harmonic;
+    nearest_distance = distance;
   }
+  if (nearest == nullptr) return;
+  result.warnings.push_back(fmt::format(
+      "At the recommended speed {:.0f} × tooth passing ({:.1f} Hz) excites mode {} ({:.1f} Hz): no chatter, but forced "
+      "vibration is greatest there. Check the surface, or take an alternative.",
+      nearest_harmonic, nearest_harmonic * tooth_passing_hz, nearest - result.model.modes.data() + 1,
+      nearest->frequency_hz));
 }
 
 /// The limit as the feed turns through the plane: a robot is not the same in every direction.
