@@ -9,6 +9,44 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
+/// I - w v^T with v = (1, v1, v2), which turns (x, y, z) into (-length, 0, 0).
+struct Reflector {
+  double length, v1, v2, w0, w1, w2;
+
+  Reflector(double x, double y, double z, double square) : length(std::copysign(std::sqrt(square), x)) {
+    const double by_first = 1.0 / (x + length);
+    const double by_length = 1.0 / length;
+    v1 = y * by_first;
+    v2 = z * by_first;
+    w0 = (x + length) * by_length;
+    w1 = y * by_length;
+    w2 = z * by_length;
+  }
+  /// From the left on three rows, or on two where row2 is null.
+  void on_rows(double* __restrict row0, double* __restrict row1, double* __restrict row2, std::size_t count) const {
+    for (std::size_t c = 0; row2 != nullptr && c < count; ++c) {
+      const double t = row0[c] + v1 * row1[c] + v2 * row2[c];
+      row0[c] -= w0 * t;
+      row1[c] -= w1 * t;
+      row2[c] -= w2 * t;
+    }
+    for (std::size_t c = 0; row2 == nullptr && c < count; ++c) {
+      const double t = row0[c] + v1 * row1[c];
+      row0[c] -= w0 * t;
+      row1[c] -= w1 * t;
+    }
+  }
+  /// From the right on three neighbouring columns, or on two.
+  void on_columns(double* entry, std::size_t stride, std::size_t count, bool three) const {
+    for (std::size_t r = 0; r < count; ++r, entry += stride) {
+      const double t = w0 * entry[0] + w1 * entry[1] + (three ? w2 * entry[2] : 0.0);
+      entry[0] -= t;
+      entry[1] -= t * v1;
+      if (three) entry[2] -= t * v2;
+    }
+  }
+};
+
 }  // namespace
 
 void Hessenberg::resize(std::size_t size) {
@@ -53,49 +91,18 @@ void Hessenberg::sweep(std::size_t low, std::size_t high, int iteration) {
   double z = at(low + 1, low) * at(low + 2, low + 1);
   for (std::size_t k = low; k < high; ++k) {
     const bool three = k + 1 < high;
-    const double scale = std::abs(x) + std::abs(y) + (three ? std::abs(z) : 0.0);
-    if (scale > 0.0) {
-      x /= scale;
-      y /= scale;
-      z = three ? z / scale : 0.0;
-      const double length = std::copysign(std::sqrt(x * x + y * y + z * z), x);
-      // I - w v^T with v = (1, y', z')
-      const double first = x + length;
-      const double v1 = y / first;
-      const double v2 = z / first;
-      const double w0 = first / length;
-      const double w1 = y / length;
-      const double w2 = z / length;
+    // The matrix is scaled to about 1: what would underflow here is nothing beside it.
+    const double square = x * x + y * y + z * z;
+    if (square > 1e-280) {
+      const Reflector reflector(x, y, z, square);
       if (k > low) {
-        at(k, k - 1) = -scale * length;
+        at(k, k - 1) = -reflector.length;
         at(k + 1, k - 1) = 0.0;
         if (three) at(k + 2, k - 1) = 0.0;
       }
-      double* row0 = h + k * n;
-      double* row1 = row0 + n;
-      if (three) {
-        double* row2 = row1 + n;
-        for (std::size_t c = k; c <= high; ++c) {
-          const double t = row0[c] + v1 * row1[c] + v2 * row2[c];
-          row0[c] -= w0 * t;
-          row1[c] -= w1 * t;
-          row2[c] -= w2 * t;
-        }
-      } else {
-        for (std::size_t c = k; c <= high; ++c) {
-          const double t = row0[c] + v1 * row1[c];
-          row0[c] -= w0 * t;
-          row1[c] -= w1 * t;
-        }
-      }
-      const std::size_t last = std::min(k + 3, high);
-      for (std::size_t r = low; r <= last; ++r) {
-        double* entry = h + r * n + k;
-        const double t = w0 * entry[0] + w1 * entry[1] + (three ? w2 * entry[2] : 0.0);
-        entry[0] -= t;
-        entry[1] -= t * v1;
-        if (three) entry[2] -= t * v2;
-      }
+      double* diagonal = h + k * n + k;
+      reflector.on_rows(diagonal, diagonal + n, three ? diagonal + 2 * n : nullptr, high + 1 - k);
+      reflector.on_columns(h + low * n + k, n, std::min(k + 3, high) + 1 - low, three);
     }
     if (k + 1 < high) {
       x = at(k + 1, k);
@@ -107,8 +114,12 @@ void Hessenberg::sweep(std::size_t low, std::size_t high, int iteration) {
 
 bool Hessenberg::dominant(std::complex<double>& value) {
   value = 0.0;
-  if (!std::isfinite(norm())) return false;
+  const double size = norm();
+  if (!std::isfinite(size)) return false;
+  if (size == 0.0) return true;
+  const double unit = std::ldexp(1.0, std::ilogb(size));  // a power of two, so that scaling changes no digit
   work_ = matrix_;
+  for (double& entry : work_) entry /= unit;
   double largest = -1.0;
   const auto consider = [&](double real, double imaginary) {
     const double square = real * real + imaginary * imaginary;
@@ -147,6 +158,7 @@ bool Hessenberg::dominant(std::complex<double>& value) {
     }
     end -= 2;
   }
+  value *= unit;
   return true;
 }
 
