@@ -1,5 +1,7 @@
 #include "robomill/modal/pso.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -29,6 +31,7 @@ constexpr double residue_margin =
     4.0;  // of the largest residue over that which a lone mode with the peak's height would have
 constexpr double min_frequency_half_width = 0.01;
 constexpr std::size_t max_picked_peaks = 20;
+constexpr double poor_misfit = 0.2;  // a swarm that ends above it missed a mode
 constexpr std::size_t particles_per_block = 4;
 
 /// One excitation's search: what is fitted, and what a particle's numbers mean. A mode has frequency [Hz], damping
@@ -316,6 +319,13 @@ void add_notes(const FrfSet& frfs, const std::vector<std::size_t>& terms, PsoRes
   if (result.runs.size() > 1) {
     result.notes.push_back(
         "Each excitation was fitted on its own: a mode that several excite stands in the list once for each of them.");
+  }
+  for (const PsoRun& run : result.runs) {
+    if (run.best.back() <= poor_misfit) continue;
+    result.notes.push_back(fmt::format(
+        "The swarm for forces in {} ended {:.0f} % off on average, which is no fit: try another seed, or the "
+        "hybrid method.",
+        to_string(run.excitation, true), 100.0 * run.best.back()));
   }
   std::size_t used = 0;
   for (const std::size_t count : terms) used += count;
