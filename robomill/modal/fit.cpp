@@ -131,6 +131,7 @@ std::vector<int> deal(std::vector<PartFits>& parts, int total) {
                        "Measure the cross FRFs too, or fit the files one by one");
   }
   std::vector<int> counts;
+  counts.reserve(parts.size());
   for (PartFits& part : parts) counts.push_back(std::max(1, static_cast<int>(part.at(0).fit.poles.size())));
   for (int sum = std::accumulate(counts.begin(), counts.end(), 0); sum != total;) {
     const int step = sum < total ? 1 : -1;
@@ -166,6 +167,7 @@ void fit_by_poles(FitResult& result, const FrfSet& set, const FitOptions& option
   result.weighting = settle(options.weighting, set);
   const std::vector<Part> parts = detail::split(set);
   std::vector<PartFits> fits;
+  fits.reserve(parts.size());
   for (const Part& part : parts) fits.emplace_back(part, set, options, result.weighting, progress);
   std::vector<int> counts(parts.size(), options.modes);
   if (parts.size() > 1 && options.modes > 0) counts = deal(fits, options.modes);

@@ -28,7 +28,8 @@ struct Candidate {
   Eigen::MatrixXcd residue = {};  // that matrix, responses x excitations; zero where no entry is
 };
 
-/// Variable projection in O(lines x modes), since inner products of the basis functions need one sum a pole (PairGram).
+/// Variable projection [GolubPereyra2003], its JᵀJ without the term in the residual [Kaufman1975]. O(lines x modes),
+/// since inner products of the basis functions need one sum a pole (PairGram).
 class Kernel {
  public:
   /// @param data  must outlive the kernel

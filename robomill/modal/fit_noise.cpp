@@ -60,7 +60,7 @@ Eigen::VectorXd variance_of_size(const Eigen::VectorXd& squares, const Eigen::Ve
   double constant = 0.5 * squares.mean() + floor;
   double relative = 0.5 * squares.sum() / std::max(size2.sum(), 1e-300) + smallest_variance;
   Eigen::ArrayXd variance;
-  // Each step raises the likelihood Σ -log v - squares / v (a majorisation of it is solved exactly).
+  // Each step raises the likelihood Σ -log v - squares / v: a bound below it is maximised [Zhou2019].
   for (int step = 0; step < 60; ++step) {
     variance = constant + relative * size2.array() + floor;
     const Eigen::ArrayXd inverse = variance.inverse();

@@ -13,9 +13,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int tried_candidates = 3;        // of those measured, refined
-constexpr double exact = 1e-9;             // relative error at which nothing is left to explain
-constexpr double coarse_tolerance = 1e-4;  // of the cost, to compare fits
+constexpr std::size_t tried_candidates = 3;  // of those measured, refined …
+constexpr std::size_t most_candidates = 8;   // … or more, while none of them becomes a mode inside the bounds
+constexpr double exact = 1e-9;               // relative error at which nothing is left to explain
+constexpr double coarse_tolerance = 1e-4;    // of the cost, to compare fits
 
 RefineOptions refine_options(const SearchOptions& options, double tolerance, int iterations) {
   return {.omega_low = options.omega_low,
@@ -83,7 +84,9 @@ std::vector<Candidate> candidates(const FitData& data, const Evaluation& at, con
     }
   }
   for (const double zeta : {0.04, 0.12, 0.3}) {
-    for (double omega = options.omega_low; omega < options.omega_high; omega *= 1.0 + 2.0 * zeta) add(omega, zeta);
+    const double step = std::log1p(2.0 * zeta);
+    const int count = static_cast<int>(std::log(options.omega_high / options.omega_low) / step);
+    for (int i = 0; i <= count; ++i) add(options.omega_low * std::exp(step * i), zeta);
   }
   return list;
 }
@@ -173,7 +176,8 @@ class Search {
     std::vector<Candidate> tried;
     Refined best;
     for (const Candidate& c : list) {
-      if (static_cast<int>(tried.size()) == tried_candidates) break;
+      const bool found = best.poles.size() > 0 && all_inside(best.poles);
+      if (tried.size() >= (found ? tried_candidates : most_candidates)) break;
       const bool near = std::any_of(tried.begin(), tried.end(), [&](const Candidate& t) {
         return std::abs(t.omega - c.omega) < 2.0 * (t.zeta + c.zeta) * c.omega &&
                std::max(t.zeta, c.zeta) < 4.0 * std::min(t.zeta, c.zeta);

@@ -132,7 +132,7 @@ VectorXcd inverse_roots(const Fraction& fraction) {
 void set_vectors(LscfPole& pole, const Fraction& fraction, Complex z) {
   const Index refs = fraction.alpha.front().rows();
   MatrixXcd a = MatrixXcd::Zero(refs, refs);
-  for (auto it = fraction.alpha.rbegin(); it != fraction.alpha.rend(); ++it) a = (a * z + *it).eval();
+  for (std::size_t r = fraction.alpha.size(); r > 0; --r) a = (a * z + fraction.alpha[r - 1]).eval();
   const Eigen::JacobiSVD<MatrixXcd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const VectorXcd v = svd.matrixV().col(refs - 1);
   pole.left = svd.matrixU().col(refs - 1).conjugate();
@@ -208,6 +208,7 @@ std::vector<LscfPole> lscf_poles(const FitData& data, const LscfOptions& options
   const double period = 2.0 * std::numbers::pi * 0.75 / width;
   const VectorXcd z = ((data.omega.array() - low) * Complex(0.0, period)).exp();
   std::vector<PowerSums> sums;
+  sums.reserve(rows.size());
   for (const Output& row : rows) sums.push_back(power_sums(row, z, options.max_order));
   const int step = std::max(1, options.max_order / std::max(1, options.orders));
   std::vector<LscfPole> diagram;
