@@ -8,7 +8,8 @@
 
 namespace robomill::formats {
 
-/// Reads modes.json, or the same as TOML: [[modes]] with frequency_hz, damping_ratio, left = { x = [re, im], … }, right.
+/// Reads modes.json, or the same as TOML: [[modes]] with frequency_hz, damping_ratio, left = { x = [re, im], … },
+/// right.
 ///
 /// A mode needs no more than these four; .json may have residuals and standard deviations, and all else in it is left
 /// alone. A direction that one mode names and another does not is 0 in the other.

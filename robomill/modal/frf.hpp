@@ -19,8 +19,8 @@ struct Dof {
   auto operator<=>(const Dof&) const = default;
 };
 
-/// Which FRF: response due to excitation. "xy" is x due to a force in y; "1x:3x" names points; "x:my" is x due to a moment about
-/// y, "ry:x" the rotation about y due to a force in x, "ry:my" the rotation due to the moment.
+/// Which FRF: response due to excitation. "xy" is x due to a force in y; "1x:3x" names points; "x:my" is x due to a
+/// moment about y, "ry:x" the rotation about y due to a force in x, "ry:my" the rotation due to the moment.
 struct FrfName {
   Dof response, excitation;
   auto operator<=>(const FrfName&) const = default;
@@ -34,12 +34,14 @@ struct FrfName {
 /// Inverse of to_string. @throws InvalidInput if text names no FRF
 [[nodiscard]] ROBOMILL_API FrfName parse_frf_name(std::string_view text);
 
-/// One receptance, displacement per force (m/N; rad/N, m/(N m), rad/(N m) where a rotation or moment is named), as exp(+iωt).
+/// One receptance, displacement per force (m/N; rad/N, m/(N m), rad/(N m) where a rotation or moment is named), as
+/// exp(+iωt).
 struct Frf {
   FrfName name;
-  Eigen::VectorXcd receptance;        ///< length n
-  Eigen::VectorXd coherence = {};     ///< length n, in [0, 1]; empty where unknown
-  Eigen::VectorXd deviation = {};     ///< length n: standard deviation of |receptance's error| (complex, E|e|^2 = deviation^2); empty where unknown
+  Eigen::VectorXcd receptance;     ///< length n
+  Eigen::VectorXd coherence = {};  ///< length n, in [0, 1]; empty where unknown
+  Eigen::VectorXd deviation = {};  ///< length n: standard deviation of |receptance's error| (complex, E|e|^2 =
+                                   ///< deviation^2); empty where unknown
 };
 
 /// Receptances over one common frequency axis.
@@ -47,7 +49,8 @@ struct FrfSet {
   Eigen::VectorXd frequency_hz;  ///< length n, strictly increasing, >= 0 [Hz]
   std::vector<Frf> frfs;
 
-  /// @throws InvalidInput if empty, a length differs, a value is not finite, frequencies do not increase, or a name comes twice
+  /// @throws InvalidInput if empty, a length differs, a value is not finite, frequencies do not increase, or a name
+  /// comes twice
   ROBOMILL_API void validate() const;
   /// The FRF of that name, or nullptr.
   [[nodiscard]] ROBOMILL_API const Frf* find(const FrfName& name) const;

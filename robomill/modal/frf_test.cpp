@@ -31,7 +31,9 @@ FrfSet two_lines() {
   return set;
 }
 
-TEST(FrfSet, AcceptsAGoodSet) { EXPECT_NO_THROW(two_lines().validate()); }
+TEST(FrfSet, AcceptsAGoodSet) {
+  EXPECT_NO_THROW(two_lines().validate());
+}
 
 TEST(FrfSet, RefusesEveryFault) {
   FrfSet set = two_lines();
