@@ -193,6 +193,8 @@ TEST(TomlFiles, RefusesWhatIsNoTomlWithItsLine) {
   const Folder folder;
   const std::filesystem::path twice = folder.file("twice.toml", "a = 1\n\na = 2\n");
   EXPECT_EQ(refusal([&] { TomlFile file(twice); }).find(twice.string() + ":3: is no TOML: "), 0u);
+  const std::filesystem::path star = folder.file("star.toml", "a = 1\n[*]\n");
+  EXPECT_EQ(refusal([&] { TomlFile file(star); }).find(star.string() + ":2: is no TOML: "), 0u);
   EXPECT_NE(refusal([&] { TomlFile file(folder.at("none.toml")); }).find("there is no such file"), std::string::npos);
   EXPECT_NE(refusal([&] { TomlFile file(folder.file("empty.toml", "")); }).find("is empty"), std::string::npos);
   EXPECT_NE(refusal([&] { TomlFile file(folder.path()); }).find("is a folder"), std::string::npos);
