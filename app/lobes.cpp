@@ -7,7 +7,6 @@
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/lobes_json.hpp"
 #include "robomill/formats/lobes_toml.hpp"
-#include "robomill/formats/modes_files.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "verbs.hpp"
@@ -62,7 +61,7 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
     throw InvalidInput(common.output, "lobes are written as .json");
   }
   formats::LobesFile file = formats::read_lobes(command.input);
-  if (!file.modes.empty()) file.problem.dynamics = formats::read_modes(file.modes);
+  formats::load_modes(file);
   if (!file.frf.empty()) {
     throw InvalidInput(command.input.string(), "dynamics.frf needs a fit first",
                        "Run robomill modes on it and name the result as dynamics.modes");

@@ -28,12 +28,6 @@ Harmonics harmonics(const ForceCoefficients& c) {
   return h;
 }
 
-double standing_angle(const FlatEndMill& tool, int tooth) {
-  double angle = 0.0;
-  for (int j = 0; j < tooth; ++j) angle += tool.pitch(j);
-  return angle;
-}
-
 /// ∫ g κ over [low, high], inside which angles may pass several revolutions. Written with lengths and midpoints, so
 /// that nothing cancels where the range is short.
 Eigen::Matrix2d integral(const Harmonics& h, const Immersion& immersion, double low, double high) {
@@ -77,6 +71,24 @@ Eigen::Matrix2d double_integral(const Harmonics& h, const Immersion& immersion, 
   return sum;
 }
 
+/// ∫ g κ dz between two heights.
+Eigen::Matrix2d stiffness_between(const Milling& milling, const ForceCoefficients& coefficients, int tooth,
+                                  double rotation_rad, double low_m, double high_m) {
+  const double lag = milling.tool.lag_rad_per_m(tooth);
+  const double standing = rotation_rad + milling.tool.standing_angle(tooth);
+  const double tip = standing - lag * low_m;
+  const double top = standing - lag * high_m;
+  if (top == tip) {
+    const double angle = tip - revolution * std::floor(tip / revolution);
+    const bool cuts = angle >= milling.immersion.entry_rad && angle <= milling.immersion.exit_rad;
+    if (!cuts) return Eigen::Matrix2d::Zero();
+    return directional_coefficients(coefficients, angle) * (high_m - low_m);
+  }
+  const double low = std::min(tip, top);
+  const double high = std::max(tip, top);
+  return integral(harmonics(coefficients), milling.immersion, low, high) * ((high_m - low_m) / (high - low));
+}
+
 void require_material(const char* field, double value, const char* hint) {
   constexpr double least = 1e6;
   constexpr double most = 1e12;
@@ -94,8 +106,24 @@ bool FlatEndMill::has_equal_pitch() const {
   return std::ranges::all_of(pitch_rad, [&](double p) { return std::abs(p - revolution / teeth) <= 1e-9; });
 }
 
-double FlatEndMill::lag_rad_per_m() const {
-  return 2.0 * std::tan(helix_rad) / diameter_m;
+double FlatEndMill::standing_angle(int tooth) const {
+  double angle = 0.0;
+  for (int j = 0; j < tooth; ++j) angle += pitch(j);
+  return angle;
+}
+
+bool FlatEndMill::has_equal_helix() const {
+  return std::ranges::all_of(tooth_helix_rad, [&](double helix) { return helix == tooth_helix_rad.front(); });
+}
+
+double FlatEndMill::lag_rad_per_m(int tooth) const {
+  const double helix = tooth_helix_rad.empty() ? helix_rad : tooth_helix_rad[static_cast<std::size_t>(tooth)];
+  return 2.0 * std::tan(helix) / diameter_m;
+}
+
+double FlatEndMill::radius_deviation_m(int tooth, double height_m) const {
+  if (runout_m == 0.0) return 0.0;
+  return runout_m * std::cos(standing_angle(tooth) - lag_rad_per_m(tooth) * height_m - runout_angle_rad);
 }
 
 void FlatEndMill::validate() const {
@@ -105,9 +133,24 @@ void FlatEndMill::validate() const {
   if (diameter_m > 1.0) {
     throw InvalidInput("diameter_m", diameter_m, "m", "is too large for a milling cutter", "Are the units mixed up?");
   }
-  if (!(std::abs(helix_rad) < 0.48 * pi)) {
-    throw InvalidInput("helix_rad", helix_rad, "rad", "must lie between -86 and 86 degrees");
+  const auto check_helix = [](const char* field, double helix) {
+    if (!(std::abs(helix) < 0.48 * pi)) {
+      throw InvalidInput(field, helix, "rad", "must lie between -86 and 86 degrees");
+    }
+  };
+  check_helix("helix_rad", helix_rad);
+  for (std::size_t j = 0; j < tooth_helix_rad.size(); ++j) {
+    check_helix(("tooth_helix_rad[" + std::to_string(j + 1) + "]").c_str(), tooth_helix_rad[j]);
   }
+  if (!tooth_helix_rad.empty() && tooth_helix_rad.size() != static_cast<std::size_t>(teeth)) {
+    throw InvalidInput("tooth_helix_rad", static_cast<double>(tooth_helix_rad.size()), "entries",
+                       "must have one entry for each tooth (" + std::to_string(teeth) + ")");
+  }
+  require_non_negative("runout_m", runout_m, "m");
+  if (runout_m > 0.1 * diameter_m) {
+    throw InvalidInput("runout_m", runout_m, "m", "is too large for this cutter", "Are the units mixed up?");
+  }
+  require_finite("runout_angle_rad", runout_angle_rad, "rad");
   if (pitch_rad.empty()) return;
   if (pitch_rad.size() != static_cast<std::size_t>(teeth)) {
     throw InvalidInput("pitch_rad", static_cast<double>(pitch_rad.size()), "entries",
@@ -143,12 +186,43 @@ void ForceCoefficients::validate() const {
   require_finite("radial_n_per_m2", radial_n_per_m2, "N/m^2", hint);
   require_material("tangential_n_per_m2", tangential_n_per_m2, hint);
   if (radial_n_per_m2 != 0.0) require_material("radial_n_per_m2", radial_n_per_m2, hint);
+  require_non_negative("tangential_edge_n_per_m", tangential_edge_n_per_m, "N/m");
+  require_non_negative("radial_edge_n_per_m", radial_edge_n_per_m, "N/m");
+}
+
+void ProcessDamping::validate() const {
+  constexpr const char* hint = "Steel is near 40,000 N/mm^3 = 4e13 N/m^3";
+  require_non_negative("indentation_n_per_m3", indentation_n_per_m3, "N/m^3", hint);
+  if (indentation_n_per_m3 > 1e16) {
+    throw InvalidInput("indentation_n_per_m3", indentation_n_per_m3, "N/m^3", "is too large for any material", hint);
+  }
+  require_non_negative("wear_land_m", wear_land_m, "m");
+  if (wear_land_m > 1e-3) {
+    throw InvalidInput("wear_land_m", wear_land_m, "m", "is longer than any usable edge's", "0.05 to 0.1 mm is usual");
+  }
+  require_non_negative("friction", friction, "");
+}
+
+void SpeedVariation::validate() const {
+  if (!(amplitude_ratio >= 0.0 && amplitude_ratio <= 0.9)) {
+    throw InvalidInput("amplitude_ratio", amplitude_ratio, "", "must lie between 0 and 0.9",
+                       "It is a share of the mean speed");
+  }
+  if (!active()) return;
+  require_positive("frequency_ratio", frequency_ratio, "", "It is the swing's frequency over that of rotation");
 }
 
 void Milling::validate() const {
   tool.validate();
   immersion.validate();
   coefficients.validate();
+  process_damping.validate();
+  speed_variation.validate();
+  require_non_negative("feed_per_tooth_m", feed_per_tooth_m, "m");
+  if (tool.runout_m > 0.0 && !(feed_per_tooth_m > 0.0)) {
+    throw InvalidInput("feed_per_tooth_m", feed_per_tooth_m, "m", "must be > 0 where there is runout",
+                       "It decides which teeth miss the cut");
+  }
 }
 
 Immersion immersion(MillingDirection direction, double radial_depth_m, double diameter_m) {
@@ -178,26 +252,29 @@ Eigen::Matrix2d directional_coefficients(const ForceCoefficients& coefficients, 
 }
 
 Eigen::Matrix2d cutting_stiffness(const Milling& milling, int tooth, double rotation_rad, double axial_depth_m) {
-  const double tip = rotation_rad + standing_angle(milling.tool, tooth);
-  const double top = tip - milling.tool.lag_rad_per_m() * axial_depth_m;
-  if (top == tip) {
-    const double angle = tip - revolution * std::floor(tip / revolution);
-    const bool cuts = angle >= milling.immersion.entry_rad && angle <= milling.immersion.exit_rad;
-    if (!cuts) return Eigen::Matrix2d::Zero();
-    return directional_coefficients(milling.coefficients, angle) * axial_depth_m;
-  }
-  const double low = std::min(tip, top);
-  const double high = std::max(tip, top);
-  return integral(harmonics(milling.coefficients), milling.immersion, low, high) * (axial_depth_m / (high - low));
+  return cutting_stiffness(milling, tooth, rotation_rad, 0.0, axial_depth_m);
+}
+
+Eigen::Matrix2d cutting_stiffness(const Milling& milling, int tooth, double rotation_rad, double low_m, double high_m) {
+  return stiffness_between(milling, milling.coefficients, tooth, rotation_rad, low_m, high_m);
+}
+
+Eigen::Matrix2d cutting_damping(const Milling& milling, int tooth, double rotation_rad, double low_m, double high_m,
+                                double speed_rad_per_s) {
+  const ProcessDamping& damping = milling.process_damping;
+  const double radial = damping.indentation_n_per_m3 * damping.wear_land_m * damping.wear_land_m /
+                        (speed_rad_per_s * milling.tool.diameter_m);
+  const ForceCoefficients viscous = {.tangential_n_per_m2 = damping.friction * radial, .radial_n_per_m2 = radial};
+  return stiffness_between(milling, viscous, tooth, rotation_rad, low_m, high_m);
 }
 
 Eigen::Matrix2d mean_cutting_stiffness(const Milling& milling, int tooth, double from_rad, double to_rad,
                                        double axial_depth_m) {
   const Harmonics h = harmonics(milling.coefficients);
-  const double standing = standing_angle(milling.tool, tooth);
+  const double standing = milling.tool.standing_angle(tooth);
   const double from = from_rad + standing;
   const double to = to_rad + standing;
-  const double lag = milling.tool.lag_rad_per_m() * axial_depth_m;
+  const double lag = milling.tool.lag_rad_per_m(tooth) * axial_depth_m;
   if (from - lag == from || to - lag == to) {
     return integral(h, milling.immersion, from, to) * (axial_depth_m / (to - from));
   }

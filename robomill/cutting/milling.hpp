@@ -8,21 +8,31 @@
 /// towards the spindle. The cutter turns clockwise, so φ grows with time. Convention of [Altintas1995].
 namespace robomill::cutting {
 
-/// A cylindrical cutter with teeth of one helix angle.
+/// A cylindrical cutter.
 struct ROBOMILL_API FlatEndMill {
   int teeth = 0;                       ///< N, >= 1; required
   double diameter_m = 0.0;             ///< D [m], > 0; required
   double helix_rad = 0.0;              ///< β [rad], |β| < π/2; a point at height z lags the tip by 2 z tan(β) / D
   std::vector<double> pitch_rad = {};  ///< empty (equal), or N angles > 0 that sum to 2π [rad]: tooth j stands at
                                        ///< Σ_{k<j} pitch_k and cuts what the tooth pitch_j before it left
+  std::vector<double> tooth_helix_rad = {};  ///< empty (helix_rad for all), or one helix angle a tooth [rad]
+  double runout_m = 0.0;                     ///< offset of the cutter's axis from the spindle's [m], >= 0
+  double runout_angle_rad = 0.0;             ///< of that offset, from where tooth 0 stands at the tip, clockwise [rad]
   /// @throws InvalidInput naming the member
   void validate() const;
-  /// Angle between tooth j and the one before it, j from 0 [rad].
+  /// Angle between tooth j and the one it follows, at the tip, j from 0 [rad].
   [[nodiscard]] double pitch(int tooth) const;
+  /// Where tooth j stands on the cutter at the tip, Σ_{k<j} pitch_k [rad].
+  [[nodiscard]] double standing_angle(int tooth) const;
   /// Whether all pitches are 2π / N, to within 1e-9.
   [[nodiscard]] bool has_equal_pitch() const;
-  /// Lag of the angle per axial height, 2 tan(β) / D [rad/m].
-  [[nodiscard]] double lag_rad_per_m() const;
+  /// Whether all teeth have one helix angle.
+  [[nodiscard]] bool has_equal_helix() const;
+  /// Lag of tooth j's angle per axial height, 2 tan(β_j) / D [rad/m].
+  [[nodiscard]] double lag_rad_per_m(int tooth) const;
+  /// By how much tooth j's radius exceeds D / 2 at a height: e cos(σ_j - lag_j z - ρ), with the runout's offset e and
+  /// angle ρ [m].
+  [[nodiscard]] double radius_deviation_m(int tooth, double height_m) const;
 };
 
 enum class MillingDirection { up, down, slot };
@@ -42,19 +52,46 @@ struct ROBOMILL_API Immersion {
 /// Radial depth that belongs to these angles, D/2 (cos entry - cos exit) [m].
 [[nodiscard]] ROBOMILL_API double radial_depth(const Immersion& immersion, double diameter_m);
 
-/// Linear cutting force on a tooth: tangential Kt h, radial Kr h, per axial depth, with chip thickness h.
+/// Linear cutting force on a tooth, per axial depth: tangential Kt h + Kte, radial Kr h + Kre, with chip thickness h.
 struct ROBOMILL_API ForceCoefficients {
-  double tangential_n_per_m2 = 0.0;  ///< Kt [N/m^2], > 0; required
-  double radial_n_per_m2 = 0.0;      ///< Kr [N/m^2]
+  double tangential_n_per_m2 = 0.0;      ///< Kt [N/m^2], > 0; required
+  double radial_n_per_m2 = 0.0;          ///< Kr [N/m^2]
+  double tangential_edge_n_per_m = 0.0;  ///< Kte [N/m], >= 0; no part in stability
+  double radial_edge_n_per_m = 0.0;      ///< Kre [N/m], >= 0; no part in stability
   /// @throws InvalidInput naming the member, also where the value cannot be that of a material (units mixed up)
   void validate() const;
 };
 
-/// A cut: who cuts, where and against what.
+/// The worn land under an edge is pressed into the wave that it rides over: the tooth is pushed back by the specific
+/// indentation force on the displaced volume, in its equivalent viscous form for small vibration. Per axial depth, with
+/// r the outward displacement of the tooth and V = Ω D / 2: radial K l² r' / (2 V), tangential μ times that, both
+/// against the edge's motion. Source: [Ahmadi2011].
+struct ROBOMILL_API ProcessDamping {
+  double indentation_n_per_m3 = 0.0;  ///< K, specific indentation force [N/m^3], >= 0; 0: none
+  double wear_land_m = 0.0;           ///< l, length of the land [m], >= 0
+  double friction = 0.3;              ///< μ, >= 0
+  [[nodiscard]] bool active() const { return indentation_n_per_m3 > 0.0 && wear_land_m > 0.0; }
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// The spindle speed swings about its mean: Ω(t) = Ω_0 (1 + amplitude sin(ratio Ω_0 t)).
+struct ROBOMILL_API SpeedVariation {
+  double amplitude_ratio = 0.0;  ///< in [0, 0.9]; 0: none
+  double frequency_ratio = 0.0;  ///< of the swing to the mean rotation, > 0 where there is an amplitude
+  [[nodiscard]] bool active() const { return amplitude_ratio > 0.0; }
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// A cut: who cuts, where, against what, and how the spindle turns.
 struct ROBOMILL_API Milling {
   FlatEndMill tool;
   Immersion immersion;
   ForceCoefficients coefficients;
+  double feed_per_tooth_m = 0.0;  ///< f [m], >= 0; with runout it decides which teeth miss the cut
+  ProcessDamping process_damping = {};
+  SpeedVariation speed_variation = {};
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -68,10 +105,21 @@ struct ROBOMILL_API Milling {
 
 /// All of tooth j's height at one rotation angle: F = K Δ [N/m], K = ∫_0^a g(φ) κ(φ) dz with φ = rotation + Σ_{k<j}
 /// pitch_k
-/// - 2 z tan(β)/D and g = 1 between entry and exit, else 0; in closed form, the limit of infinitely thin axial slices.
+/// - 2 z tan(β_j)/D and g = 1 between entry and exit, else 0; in closed form, the limit of infinitely thin axial
+/// slices. Runout has no part in it.
 /// @param tooth  j, from 0
 [[nodiscard]] ROBOMILL_API Eigen::Matrix2d cutting_stiffness(const Milling& milling, int tooth, double rotation_rad,
                                                              double axial_depth_m);
+
+/// The part of it between two heights: K = ∫_low^high g(φ) κ(φ) dz [N/m].
+[[nodiscard]] ROBOMILL_API Eigen::Matrix2d cutting_stiffness(const Milling& milling, int tooth, double rotation_rad,
+                                                             double low_m, double high_m);
+
+/// Process damping of tooth j between two heights: F = C dq/dt [N s/m], C = ∫_low^high g(φ) c(φ) dz, c as κ with
+/// μ K l² / (2 V) for Kt and K l² / (2 V) for Kr.
+/// @param speed_rad_per_s  Ω at that moment, > 0
+[[nodiscard]] ROBOMILL_API Eigen::Matrix2d cutting_damping(const Milling& milling, int tooth, double rotation_rad,
+                                                           double low_m, double high_m, double speed_rad_per_s);
 
 /// Mean of cutting_stiffness over from <= rotation <= to [N/m], in closed form. to > from.
 [[nodiscard]] ROBOMILL_API Eigen::Matrix2d mean_cutting_stiffness(const Milling& milling, int tooth, double from_rad,

@@ -148,7 +148,7 @@ TEST(MeanCuttingStiffness, LosesNothingWhereTheHelixIsSmall) {
 TEST(CuttingStiffness, OfAFullPitchOfLagDoesNotDependOnRotation) {
   Milling m = robot_cut();
   m.tool.helix_rad = 0.6;
-  const double depth = 2.0 * pi / 3.0 / m.tool.lag_rad_per_m();
+  const double depth = 2.0 * pi / 3.0 / m.tool.lag_rad_per_m(0);
   const auto all = [&](double rotation) {
     Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
     for (int j = 0; j < 3; ++j) sum += cutting_stiffness(m, j, rotation, depth);

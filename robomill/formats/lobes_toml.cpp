@@ -1,11 +1,14 @@
 #include "robomill/formats/lobes_toml.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/modes_files.hpp"
 #include "robomill/formats/toml_file.hpp"
 #include "robomill/formats/units.hpp"
 
@@ -15,14 +18,20 @@ namespace {
 void read_tool(TomlFile& file, cutting::FlatEndMill& tool) {
   file.integer("tool.teeth", "teeth", tool.teeth);
   file.number("tool.diameter_mm", "diameter_m", units::mm, tool.diameter_m);
-  file.number("tool.helix_deg", "helix_rad", units::deg, tool.helix_rad);
+  if (file.is_number("tool.helix_deg")) {
+    file.number("tool.helix_deg", "helix_rad", units::deg, tool.helix_rad);
+  } else {
+    file.numbers("tool.helix_deg", "tooth_helix_rad", units::deg, tool.tooth_helix_rad);
+  }
   file.numbers("tool.pitch_deg", "pitch_rad", units::deg, tool.pitch_rad);
+  file.number("tool.runout_um", "runout_m", units::um, tool.runout_m);
+  file.number("tool.runout_angle_deg", "runout_angle_rad", units::deg, tool.runout_angle_rad);
   file.locate([&] { tool.validate(); });
 }
 
 void read_cut(TomlFile& file, LobesFile& out) {
   cutting::Milling& milling = out.problem.milling;
-  file.number("cut.feed_per_tooth_mm", "feed_per_tooth_m", units::mm, out.feed_per_tooth_m);
+  file.number("cut.feed_per_tooth_mm", "feed_per_tooth_m", units::mm, milling.feed_per_tooth_m);
   file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
   const bool radial = file.number("cut.radial_depth_mm", "radial_depth_m", units::mm, out.radial_depth_m) ||
                       file.number("cut.stepover_mm", "radial_depth_m", units::mm, out.radial_depth_m);
@@ -34,7 +43,7 @@ void read_cut(TomlFile& file, LobesFile& out) {
                                                              {"down", cutting::MillingDirection::down},
                                                              {"slot", cutting::MillingDirection::slot}},
                                                             direction);
-  if (out.feed_per_tooth_m < 0.0) throw file.refuse("cut.feed_per_tooth_mm", "must be >= 0");
+  if (milling.feed_per_tooth_m < 0.0) throw file.refuse("cut.feed_per_tooth_mm", "must be >= 0");
   if (named && (entry || exit)) throw file.refuse("cut.direction", "must not stand beside entry_deg and exit_deg");
   if (entry != exit) file.require(entry ? "cut.exit_deg" : "cut.entry_deg", "Both angles are needed");
   const double diameter_m = milling.tool.diameter_m;
@@ -72,23 +81,43 @@ modal::Mode read_inline_mode(TomlFile& file, const std::string& row, const std::
   return mode;
 }
 
-void read_dynamics(TomlFile& file, LobesFile& out) {
-  file.path("dynamics.modes", out.modes);
-  file.path("dynamics.frf", out.frf);
-  file.integers("dynamics.keep_modes", "keep_modes", out.problem.keep_modes);
+/// A table that holds a structure: a file of modes, a file of FRFs, or modes of its own in x and y.
+void read_structure(TomlFile& file, const std::string& table, std::filesystem::path& modes, std::filesystem::path& frf,
+                    modal::ModalModel& out) {
+  file.path(table + ".modes", modes);
+  file.path(table + ".frf", frf);
   modal::ModalModel own;
   own.excitations = own.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}};
   for (const char* axis : {"x", "y"}) {
-    const std::string key = std::string("dynamics.") + axis;
+    const std::string key = fmt::format("{}.{}", table, axis);
     for (std::size_t i = 0; i < file.tables(key); ++i) {
-      const std::string member = "modes[" + std::to_string(own.modes.size() + 1) + "].";
+      const std::string member = fmt::format("modes[{}].", own.modes.size() + 1);
       own.modes.push_back(
-          read_inline_mode(file, key + "[" + std::to_string(i) + "].", member, axis == std::string_view("x") ? 0 : 1));
+          read_inline_mode(file, fmt::format("{}[{}].", key, i), member, axis == std::string_view("x") ? 0 : 1));
     }
   }
-  const int sources = (out.modes.empty() ? 0 : 1) + (out.frf.empty() ? 0 : 1) + (own.modes.empty() ? 0 : 1);
-  if (sources > 1) throw file.refuse("dynamics", "must give only one of modes, frf, and x and y");
-  if (!own.modes.empty()) out.problem.dynamics = own;
+  const int sources = (modes.empty() ? 0 : 1) + (frf.empty() ? 0 : 1) + (own.modes.empty() ? 0 : 1);
+  if (sources > 1) throw file.refuse(table, "must give only one of modes, frf, and x and y");
+  if (!own.modes.empty()) out = own;
+}
+
+/// What pushes on the teeth: coefficients, process damping; and how the spindle turns.
+void read_forces(TomlFile& file, cutting::Milling& milling) {
+  cutting::ForceCoefficients& k = milling.coefficients;
+  file.number("coefficients.tangential_n_per_mm2", "tangential_n_per_m2", units::n_per_mm2, k.tangential_n_per_m2);
+  file.number("coefficients.radial_n_per_mm2", "radial_n_per_m2", units::n_per_mm2, k.radial_n_per_m2);
+  file.number("coefficients.tangential_edge_n_per_mm", "tangential_edge_n_per_m", units::n_per_mm,
+              k.tangential_edge_n_per_m);
+  file.number("coefficients.radial_edge_n_per_mm", "radial_edge_n_per_m", units::n_per_mm, k.radial_edge_n_per_m);
+  file.locate([&] { k.validate(); });
+  cutting::ProcessDamping& damping = milling.process_damping;
+  file.number("process_damping.indentation_n_per_mm3", "indentation_n_per_m3", units::n_per_mm3,
+              damping.indentation_n_per_m3);
+  file.number("process_damping.wear_land_mm", "wear_land_m", units::mm, damping.wear_land_m);
+  file.number("process_damping.friction", "friction", 1.0, damping.friction);
+  file.number("speed_variation.amplitude_ratio", "amplitude_ratio", 1.0, milling.speed_variation.amplitude_ratio);
+  file.number("speed_variation.frequency_ratio", "frequency_ratio", 1.0, milling.speed_variation.frequency_ratio);
+  file.locate([&] { milling.validate(); });
 }
 
 void read_pair(TomlFile& file, const char* key, const char* member, double factor, std::array<double, 2>& out) {
@@ -122,12 +151,10 @@ LobesFile read(TomlFile& file, const std::filesystem::path& path) {
   out.path = path;
   read_tool(file, out.problem.milling.tool);
   read_cut(file, out);
-  cutting::ForceCoefficients& coefficients = out.problem.milling.coefficients;
-  file.number("coefficients.tangential_n_per_mm2", "tangential_n_per_m2", units::n_per_mm2,
-              coefficients.tangential_n_per_m2);
-  file.number("coefficients.radial_n_per_mm2", "radial_n_per_m2", units::n_per_mm2, coefficients.radial_n_per_m2);
-  file.locate([&] { coefficients.validate(); });
-  read_dynamics(file, out);
+  read_forces(file, out.problem.milling);
+  read_structure(file, "dynamics", out.modes, out.frf, out.problem.dynamics);
+  file.integers("dynamics.keep_modes", "keep_modes", out.problem.keep_modes);
+  read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf, out.problem.workpiece_dynamics);
   read_chart(file, out.options);
   file.done();
   return out;
@@ -147,6 +174,11 @@ void LobesFile::validate() const {
 LobesFile read_lobes(const std::filesystem::path& path) {
   TomlFile file(path);
   return read(file, path);
+}
+
+void load_modes(LobesFile& file) {
+  if (!file.modes.empty()) file.problem.dynamics = read_modes(file.modes);
+  if (!file.workpiece_modes.empty()) file.problem.workpiece_dynamics = read_modes(file.workpiece_modes);
 }
 
 }  // namespace robomill::formats

@@ -9,12 +9,13 @@ namespace robomill::formats {
 /// lobes.toml. What it says of the structure is one of: nothing, a file of modes, a file of FRFs, or modes of its own.
 struct LobesFile {
   std::filesystem::path path;
-  stability::LobesProblem problem;   ///< dynamics is empty unless modes stand in the file itself
-  stability::LobesOptions options;   ///< without points
-  std::filesystem::path modes = {};  ///< dynamics.modes, resolved; empty where absent
-  std::filesystem::path frf = {};    ///< dynamics.frf, resolved; empty where absent
-  double radial_depth_m = 0.0;       ///< b [m]; from the angles where they are given
-  double feed_per_tooth_m = 0.0;     ///< f [m]; 0 where absent
+  stability::LobesProblem problem;             ///< dynamics is empty unless modes stand in the file itself
+  stability::LobesOptions options;             ///< without points
+  std::filesystem::path modes = {};            ///< dynamics.modes, resolved; empty where absent
+  std::filesystem::path frf = {};              ///< dynamics.frf, resolved; empty where absent
+  std::filesystem::path workpiece_modes = {};  ///< workpiece_dynamics.modes, the same
+  std::filesystem::path workpiece_frf = {};    ///< workpiece_dynamics.frf, the same
+  double radial_depth_m = 0.0;                 ///< b [m]; from the angles where they are given
   /// What the problem still needs is checked here, with errors in the file's words: call it when dynamics is there.
   /// @throws InvalidInput
   void validate() const;
@@ -22,5 +23,9 @@ struct LobesFile {
 
 /// Everything but the structure is checked. @throws InvalidInput with file, line, key and value
 [[nodiscard]] ROBOMILL_API LobesFile read_lobes(const std::filesystem::path& path);
+
+/// Reads the files of modes that it names, of the tool and of the workpiece, into its problem.
+/// @throws InvalidInput
+ROBOMILL_API void load_modes(LobesFile& file);
 
 }  // namespace robomill::formats

@@ -11,6 +11,7 @@ inline constexpr double ms = 1e-3;
 inline constexpr double us = 1e-6;
 inline constexpr double n_per_mm = 1e3;
 inline constexpr double n_per_mm2 = 1e6;
+inline constexpr double n_per_mm3 = 1e9;
 inline constexpr double mm3 = 1e-9;
 inline constexpr double kw = 1e3;
 inline constexpr double gpa = 1e9;

@@ -122,7 +122,7 @@ RecommendOptions recommend_options(const PlanResult& result) {
   RecommendOptions options;
   options.teeth = cut.problem.milling.tool.teeth;
   options.radial_depth_m = cut.radial_depth_m;
-  options.feed_per_tooth_m = cut.feed_per_tooth_m;
+  options.feed_per_tooth_m = cut.problem.milling.feed_per_tooth_m;
   options.searched_depth_m = cut.options.axial_depth_m[1];
   options.max_axial_depth_m = result.job.max_axial_depth_m;
   options.min_spindle_speed_rad_per_s = result.job.min_spindle_speed_rad_per_s;
@@ -130,7 +130,8 @@ RecommendOptions recommend_options(const PlanResult& result) {
   options.depth_margin = result.job.depth_margin;
   options.speed_window = result.job.speed_window;
   // The mean torque is proportional to depth, so one metre of depth gives the factor.
-  options.torque_per_depth_n = cutting::mean_load(cut.problem.milling, 1.0, cut.feed_per_tooth_m, 1.0).torque_n_m;
+  options.torque_per_depth_n =
+      cutting::mean_load(cut.problem.milling, 1.0, cut.problem.milling.feed_per_tooth_m, 1.0).torque_n_m;
   for (const formats::SpindlePoint& p : result.job.spindle_curve) {
     options.spindle.push_back(
         {.spindle_speed_rad_per_s = p.spindle_speed_rad_per_s, .torque_n_m = p.torque_n_m, .power_w = p.power_w});
@@ -269,7 +270,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   result.job = formats::read_job(job);
   // Everything that is quick to refuse is read before the long work starts.
   result.cut = formats::read_lobes(result.job.lobes);
-  if (!(result.cut.feed_per_tooth_m > 0.0)) {
+  if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
                        "plan needs it for the removal rate");
   }

@@ -32,9 +32,10 @@ std::vector<report::Fact> facts(const PlanResult& result) {
   return {
       {"Cutter", fmt::format("{} teeth, {:.4g} mm, helix {:.3g}°", cut.tool.teeth, cut.tool.diameter_m / units::mm,
                              cut.tool.helix_rad / units::deg)},
-      {"Cut", fmt::format("radial depth {:.4g} mm, teeth in cut from {:.1f}° to {:.1f}°, {:.4g} mm a tooth",
-                          result.cut.radial_depth_m / units::mm, cut.immersion.entry_rad / units::deg,
-                          cut.immersion.exit_rad / units::deg, result.cut.feed_per_tooth_m / units::mm)},
+      {"Cut",
+       fmt::format("radial depth {:.4g} mm, teeth in cut from {:.1f}° to {:.1f}°, {:.4g} mm a tooth",
+                   result.cut.radial_depth_m / units::mm, cut.immersion.entry_rad / units::deg,
+                   cut.immersion.exit_rad / units::deg, result.cut.problem.milling.feed_per_tooth_m / units::mm)},
       {"Material", fmt::format("tangential {:.4g} N/mm², radial {:.4g} N/mm²",
                                cut.coefficients.tangential_n_per_m2 / units::n_per_mm2,
                                cut.coefficients.radial_n_per_m2 / units::n_per_mm2)},
@@ -161,7 +162,7 @@ void add_lobes(report::Report& report, const PlanResult& result) {
 
 report::DepthCurve spindle_curve(const PlanResult& result, const std::string& label, bool torque) {
   const double per_depth =
-      cutting::mean_load(result.cut.problem.milling, 1.0, result.cut.feed_per_tooth_m, 1.0).torque_n_m;
+      cutting::mean_load(result.cut.problem.milling, 1.0, result.cut.problem.milling.feed_per_tooth_m, 1.0).torque_n_m;
   report::DepthCurve curve;
   curve.label = label;
   const auto n = static_cast<Eigen::Index>(result.job.spindle_curve.size());

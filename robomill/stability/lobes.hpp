@@ -20,6 +20,9 @@ struct ROBOMILL_API LobesProblem {
   modal::ModalModel dynamics;
   std::vector<int> keep_modes = {};  ///< numbers of the modes that take part, from 1; empty: all
   double feed_direction_rad = 0.0;   ///< of the feed in the x-y plane, counter-clockwise from x [rad]
+  /// Of the part and its fixture where the tool cuts, in the same axes; no modes: it stands still. Its modes are
+  /// numbered on from the tool's.
+  modal::ModalModel workpiece_dynamics = {};
   /// @throws InvalidInput naming the member
   void validate() const;
 };

@@ -1,6 +1,4 @@
 #include <cmath>
-#include <set>
-#include <string>
 
 #include "robomill/base/error.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -73,14 +71,7 @@ void LobesProblem::validate() const {
   require_finite("feed_direction_rad", feed_direction_rad, "rad");
   dynamics.validate();
   if (dynamics.modes.empty()) throw InvalidInput("modes", "must hold at least one mode");
-  std::set<int> seen;
-  for (const int number : keep_modes) {
-    const std::string count = std::to_string(dynamics.modes.size());
-    if (number < 1 || number > static_cast<int>(dynamics.modes.size())) {
-      throw InvalidInput("keep_modes", number, "", "must be a mode's number, 1 to " + count);
-    }
-    if (!seen.insert(number).second) throw InvalidInput("keep_modes", number, "", "is named twice");
-  }
+  if (!workpiece_dynamics.modes.empty()) workpiece_dynamics.validate();
   static_cast<void>(detail::tip_dynamics(*this));
 }
 

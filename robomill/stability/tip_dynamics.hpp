@@ -15,7 +15,7 @@ struct TipDynamics {
   Eigen::Matrix2Xcd right;     ///< 2 x n, in x and y of the feed
   Eigen::Matrix2Xcd left;      ///< 2 x n [m/(N s)]
   Eigen::Matrix2d compliance;  ///< S, real part of the stiffness residuals [m/N]
-  std::vector<int> number;     ///< length n: which mode of the model it is, from 1
+  std::vector<int> number;     ///< length n: which mode it is, from 1; the workpiece's follow the tool's
 };
 
 /// @throws InvalidInput if the model has no x or y at a tip, or several points that could be the tip

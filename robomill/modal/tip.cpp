@@ -1,0 +1,125 @@
+#include "robomill/modal/tip.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <string>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::modal {
+namespace {
+
+bool in_plane(const Dof& dof) {
+  return dof.axis == Axis::x || dof.axis == Axis::y;
+}
+
+/// 0, 1, 2 for x, y, z; -1 for a rotation.
+int row_of(const Dof& dof) {
+  switch (dof.axis) {
+    case Axis::x:
+      return 0;
+    case Axis::y:
+      return 1;
+    case Axis::z:
+      return 2;
+    default:
+      return -1;
+  }
+}
+
+int tip_point(const ModalModel& model) {
+  std::set<int> points;
+  for (const auto* dofs : {&model.excitations, &model.responses}) {
+    for (const Dof& dof : *dofs) {
+      if (in_plane(dof)) points.insert(dof.point);
+    }
+  }
+  if (points.empty()) throw InvalidInput("modes", "must know x or y at the tool tip");
+  if (points.size() > 1 && !points.contains(0)) {
+    throw InvalidInput("modes", "name several points, none of them the tool tip", "The tip carries no number");
+  }
+  return *points.begin();
+}
+
+/// The entries of a vector over dofs that move the point; zero where there is none.
+Eigen::Vector3cd at_point(const Eigen::VectorXcd& vector, const std::vector<Dof>& dofs, int point) {
+  Eigen::Vector3cd xyz = Eigen::Vector3cd::Zero();
+  for (std::size_t i = 0; i < dofs.size(); ++i) {
+    const int row = row_of(dofs[i]);
+    if (dofs[i].point == point && row >= 0) xyz(row) = vector(static_cast<Eigen::Index>(i));
+  }
+  return xyz;
+}
+
+std::vector<int> kept(const ModalModel& model, const std::vector<int>& keep_modes) {
+  const int count = static_cast<int>(model.modes.size());
+  std::set<int> seen;
+  for (const int number : keep_modes) {
+    if (number < 1 || number > count) {
+      throw InvalidInput("keep_modes", number, "", "must be a mode's number, 1 to " + std::to_string(count));
+    }
+    if (!seen.insert(number).second) throw InvalidInput("keep_modes", number, "", "is named twice");
+  }
+  if (!keep_modes.empty()) return keep_modes;
+  std::vector<int> all(model.modes.size());
+  std::iota(all.begin(), all.end(), 1);
+  return all;
+}
+
+}  // namespace
+
+TipModes tip_modes(const ModalModel& model, const std::vector<int>& keep_modes, double feed_direction_rad) {
+  const int point = tip_point(model);
+  const double c = std::cos(feed_direction_rad);
+  const double s = std::sin(feed_direction_rad);
+  Eigen::Matrix3d to_feed;
+  to_feed << c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0;
+
+  TipModes tip;
+  tip.number = kept(model, keep_modes);
+  const Eigen::Index n = static_cast<Eigen::Index>(tip.number.size());
+  tip.pole.resize(n);
+  tip.right.resize(3, n);
+  tip.left.resize(3, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Mode& mode = model.modes[static_cast<std::size_t>(tip.number[static_cast<std::size_t>(k)] - 1)];
+    const Eigen::Vector3cd right = to_feed * at_point(mode.right, model.responses, point);
+    const Eigen::Vector3cd left = to_feed * at_point(mode.left, model.excitations, point);
+    const double size = 2.0 * right.norm();
+    const double scale = size > 0.0 ? size : 1.0;
+    tip.pole(k) = pole(mode);
+    tip.right.col(k) = right / scale;
+    tip.left.col(k) = left * scale;
+  }
+
+  tip.compliance.setZero();
+  for (const Residual& residual : model.residuals) {
+    const auto& [response, excitation] = residual.name;
+    const bool here = response.point == point && excitation.point == point;
+    if (!here || row_of(response) < 0 || row_of(excitation) < 0) continue;
+    tip.compliance(row_of(response), row_of(excitation)) = residual.stiffness.real();
+  }
+  tip.compliance = (to_feed * tip.compliance * to_feed.transpose()).eval();
+  return tip;
+}
+
+TipModes joined(const TipModes& tool, const TipModes& workpiece) {
+  TipModes both = tool;
+  const Eigen::Index n = tool.pole.size();
+  const Eigen::Index m = workpiece.pole.size();
+  both.pole.conservativeResize(n + m);
+  both.right.conservativeResize(3, n + m);
+  both.left.conservativeResize(3, n + m);
+  both.pole.tail(m) = workpiece.pole;
+  both.right.rightCols(m) = workpiece.right;
+  both.left.rightCols(m) = workpiece.left;
+  both.compliance += workpiece.compliance;
+  int last = 0;
+  for (const int number : tool.number) last = std::max(last, number);
+  for (const int number : workpiece.number) both.number.push_back(last + number);
+  return both;
+}
+
+}  // namespace robomill::modal

@@ -1,0 +1,32 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/modal/modes.hpp"
+
+namespace robomill::modal {
+
+/// A modal model as the cut sees it: at the tool tip and in the feed's frame (x along the feed, y to its left, z kept),
+///   q = 2 Re Σ_k right_k z_k + compliance F,  dz_k/dt = pole_k z_k + left_k^T F.
+/// Scaled so that ‖2 right_k‖ = 1: every z_k is then a displacement in m, whatever scale the mode came with.
+struct TipModes {
+  Eigen::VectorXcd pole;       ///< length n [rad/s]
+  Eigen::Matrix3Xcd right;     ///< 3 x n; a row that the model does not know is zero
+  Eigen::Matrix3Xcd left;      ///< 3 x n [m/(N s)]
+  Eigen::Matrix3d compliance;  ///< real part of the stiffness residuals [m/N]
+  std::vector<int> number;     ///< length n: which mode of the model it is, from 1
+};
+
+/// @param keep_modes  numbers of the modes that take part, from 1; empty: all
+/// @param feed_direction_rad  of the feed in the model's x-y plane, counter-clockwise from x
+/// @throws InvalidInput if the model knows neither x nor y at a tip, has several points that could be the tip, or a
+/// number is wrong
+[[nodiscard]] ROBOMILL_API TipModes tip_modes(const ModalModel& model, const std::vector<int>& keep_modes,
+                                              double feed_direction_rad);
+
+/// The tool's modes and then the workpiece's: what counts in a cut is the displacement of one against the other, and
+/// the force that pushes one pushes the other back, so that receptances add. The workpiece's modes are numbered on.
+[[nodiscard]] ROBOMILL_API TipModes joined(const TipModes& tool, const TipModes& workpiece);
+
+}  // namespace robomill::modal
