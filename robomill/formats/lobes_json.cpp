@@ -41,12 +41,15 @@ std::string lobes_json(const stability::LobesResult& result, bool with_map) {
   for (const stability::BoundaryPoint& point : result.boundary) {
     json["boundary"].push_back(point_json(point.spindle_speed_rad_per_s, point.axial_depth_m));
     add_chatter(json["boundary"].back(), point);
+    json["boundary"].back()["curve"] = point.curve;
+    json["boundary"].back()["error_estimate"] = number(point.error_estimate);
   }
   json["limit"] = Json::array();
   for (const stability::Limit& limit : result.limit) {
     Json row = point_json(limit.spindle_speed_rad_per_s, limit.axial_depth_m);
     if (limit.status == stability::Limit::Status::found) {
       add_chatter(row, limit);
+      row["error_estimate"] = number(limit.error_estimate);
     } else {
       row["axial_depth_mm"] = nullptr;
     }
@@ -66,6 +69,7 @@ std::string lobes_json(const stability::LobesResult& result, bool with_map) {
   json["period"] = stability::to_string(result.period);
   json["evaluations"] = result.evaluations;
   json["unsettled"] = result.unsettled;
+  json["uncertain"] = result.uncertain;
   json["seconds"] = number(result.seconds);
   return dump(json);
 }

@@ -137,7 +137,9 @@ void read_chart(TomlFile& file, stability::LobesOptions& options) {
     if (grid.size() != 2) throw file.refuse("lobes.grid", "must be [speeds, depths]");
     options.grid = {grid[0], grid[1]};
   }
-  file.choice<stability::Method>("lobes.method", {{"semi-discretization", stability::Method::semi_discretization}},
+  file.choice<stability::Method>("lobes.method",
+                                 {{"collocation", stability::Method::collocation},
+                                  {"semi-discretization", stability::Method::semi_discretization}},
                                  options.method);
   file.choice<stability::Output>(
       "lobes.output", {{"boundary", stability::Output::boundary}, {"map", stability::Output::map}}, options.output);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "robomill/base/random.hpp"
+#include "robomill/stability/kernels.hpp"
 
 namespace robomill::stability::detail {
 namespace {
@@ -52,9 +53,9 @@ bool Arnoldi::settle(std::size_t lane, std::size_t columns, bool whole_space, Do
   return true;
 }
 
-void Arnoldi::find(Monodromy& monodromy, std::span<Dominant> out) {
-  size_ = monodromy.size();
-  most_ = std::min(size_, monodromy.modal_size() + options_.extra);
+void Arnoldi::find(PeriodMap& map, std::span<Dominant> out) {
+  size_ = map.size();
+  most_ = std::min(size_, map.modal_size() + options_.extra);
   basis_.resize((most_ + 1) * size_);
   hessenberg_.resize((most_ + 1) * most_);
   std::ranges::fill(out, Dominant{});
@@ -62,12 +63,12 @@ void Arnoldi::find(Monodromy& monodromy, std::span<Dominant> out) {
   start(size_);
   std::array<bool, lane_count> done = {};
   std::size_t left = out.size();
-  std::size_t look = options_.full_matrix_only ? most_ + 1 : std::min(most_, monodromy.modal_size() + first_extra);
+  std::size_t look = options_.full_matrix_only ? most_ + 1 : std::min(most_, map.modal_size() + first_extra);
   OrthogonalArguments arguments;
   arguments.size = size_;
   arguments.basis = basis_.data();
   for (std::size_t k = 0; k < most_ && left > 0 && !options_.full_matrix_only; ++k) {
-    monodromy.apply(basis_.data() + k * size_, basis_.data() + (k + 1) * size_);
+    map.apply(basis_.data() + k * size_, basis_.data() + (k + 1) * size_);
     arguments.column = k;
     arguments.coefficients = hessenberg_.data() + k * (most_ + 1);
     orthogonalise(arguments);
@@ -79,17 +80,17 @@ void Arnoldi::find(Monodromy& monodromy, std::span<Dominant> out) {
       if (done[lane]) --left;
     }
   }
-  if (left > 0) full_matrix(monodromy, out);
+  if (left > 0) full_matrix(map, out);
 }
 
-void Arnoldi::full_matrix(Monodromy& monodromy, std::span<Dominant> out) {
+void Arnoldi::full_matrix(PeriodMap& map, std::span<Dominant> out) {
   if (size_ > options_.largest_matrix) return;
   const Eigen::Index n = static_cast<Eigen::Index>(size_);
   std::array<Eigen::MatrixXd, lane_count> matrix;
   std::vector<Lanes> in(size_, Lanes{}), column(size_);
   for (std::size_t j = 0; j < size_; ++j) {
     for (std::size_t lane = 0; lane < lane_count; ++lane) in[j].v[lane] = 1.0;
-    monodromy.apply(in.data(), column.data());
+    map.apply(in.data(), column.data());
     in[j] = Lanes{};
     for (std::size_t lane = 0; lane < out.size(); ++lane) {
       if (out[lane].by == Dominant::By::arnoldi) continue;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "robomill/stability/hessenberg.hpp"
-#include "robomill/stability/monodromy.hpp"
+#include "robomill/stability/period_map.hpp"
 
 namespace robomill::stability::detail {
 
@@ -25,21 +25,21 @@ struct ArnoldiOptions {
   bool full_matrix_only = false;      ///< for tests
 };
 
-/// Arnoldi's iteration from one start vector for the eight lanes of a Monodromy at once. A lane is done when the
+/// Arnoldi's iteration from one start vector for the eight lanes of a PeriodMap at once. A lane is done when the
 /// residual of its dominant Ritz pair is small enough, and then keeps what it has while others go on. Where that does
 /// not happen the matrix is formed and solved whole.
 class Arnoldi {
  public:
   explicit Arnoldi(const ArnoldiOptions& options = {}) : options_(options) {}
   /// Of the first out.size() lanes.
-  void find(Monodromy& monodromy, std::span<Dominant> out);
+  void find(PeriodMap& map, std::span<Dominant> out);
   /// Eigenvector of a lane of the last find, ‖x‖ = 1; length size().
   [[nodiscard]] Eigen::VectorXcd vector(std::size_t lane);
 
  private:
   void start(std::size_t size);
   bool settle(std::size_t lane, std::size_t columns, bool whole_space, Dominant& out);
-  void full_matrix(Monodromy& monodromy, std::span<Dominant> out);
+  void full_matrix(PeriodMap& map, std::span<Dominant> out);
 
   ArnoldiOptions options_;
   std::size_t size_ = 0, most_ = 0;

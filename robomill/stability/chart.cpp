@@ -3,62 +3,200 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
+#include <limits>
+#include <map>
+
+#include "robomill/base/parallel.hpp"
 
 namespace robomill::stability::detail {
 namespace {
 
-/// Where an edge's search stands; the root lies between low and high, as fractions of the edge.
-struct Search {
-  std::size_t edge = 0;
-  double low = 0.0, high = 1.0;
-  double value_low = 0.0, value_high = 0.0;  ///< ln of the spectral radius
-  int side = 0;                              ///< which end stayed last
-  int dragging = 0;                          ///< times that the interval did not halve
-  double next = 0.5;
+/// A node of the grid: speed and depth.
+struct Node {
+  std::size_t speed = 0, depth = 0;
+  auto operator<=>(const Node&) const = default;
 };
 
-OperatingPoint along(const Edge& edge, double t) {
-  const auto mix = [t](double a, double b) { return a == b ? a : (1.0 - t) * a + t * b; };
-  return {.spindle_speed_rad_per_s = mix(edge.from.spindle_speed_rad_per_s, edge.to.spindle_speed_rad_per_s),
-          .axial_depth_m = mix(edge.from.axial_depth_m, edge.to.axial_depth_m)};
+Eigen::Index row(std::size_t i) {
+  return static_cast<Eigen::Index>(i);
 }
 
-void choose(Search& s) {
-  const double slope = s.value_high - s.value_low;
-  const double secant = s.low - s.value_low * (s.high - s.low) / slope;
-  const bool inside = secant > s.low && secant < s.high;
-  s.next = inside && s.dragging < 3 ? secant : 0.5 * (s.low + s.high);
-  if (s.dragging >= 3) s.dragging = 0;
-}
-
-/// Illinois: an end that stays twice counts half.
-void narrow(Search& s, double value) {
-  const double width = s.high - s.low;
-  if ((value < 0.0) == (s.value_low < 0.0)) {
-    s.low = s.next;
-    s.value_low = value;
-    if (s.side == 1) s.value_high *= 0.5;
-    s.side = 1;
-  } else {
-    s.high = s.next;
-    s.value_high = value;
-    if (s.side == -1) s.value_low *= 0.5;
-    s.side = -1;
+/// Evaluates nodes that are in order, speed by speed.
+void evaluate_nodes(const Scheme& scheme, const Axes& axes, const std::vector<Node>& nodes, bool estimate,
+                    GridRadii& grid, Count& count, Progress& progress) {
+  std::vector<std::size_t> starts;  // of each speed's nodes
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (i == 0 || nodes[i].speed != nodes[i - 1].speed) starts.push_back(i);
   }
-  s.dragging = s.high - s.low > 0.5 * width ? s.dragging + 1 : 0;
-  choose(s);
+  starts.push_back(nodes.size());
+  std::vector<Count> counts(starts.size());
+  parallel_for(starts.size() - 1, 4, [&](std::size_t begin, std::size_t end) {
+    const std::unique_ptr<PointEvaluator> evaluator = scheme.evaluator();
+    for (std::size_t c = begin; c < end; ++c) {
+      for (std::size_t first = starts[c]; first < starts[c + 1]; first += lane_count) {
+        progress.check();
+        const std::size_t size = std::min(lane_count, starts[c + 1] - first);
+        std::array<OperatingPoint, lane_count> points;
+        std::array<Outcome, lane_count> outcomes;
+        for (std::size_t i = 0; i < size; ++i) points[i] = axes.at(nodes[first + i].speed, nodes[first + i].depth);
+        evaluator->evaluate(std::span(points).first(size), {.estimate = estimate}, std::span(outcomes).first(size));
+        for (std::size_t i = 0; i < size; ++i) {
+          const Node& node = nodes[first + i];
+          grid.radius(row(node.depth), row(node.speed)) = outcomes[i].spectral_radius;
+          grid.unstable(row(node.depth), row(node.speed)) = outcomes[i].spectral_radius >= 1.0;
+        }
+      }
+      progress.advance();
+    }
+    counts[begin].add(*evaluator);
+  });
+  for (const Count& c : counts) count.add(c);
 }
 
-BoundaryPoint boundary_point(const OperatingPoint& point, const Dominant& dominant, const Motion& motion) {
-  BoundaryPoint b;
-  b.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
-  b.axial_depth_m = point.axial_depth_m;
-  b.chatter_frequency_hz = motion.frequency_hz;
-  b.kind = kind_of(dominant.multiplier);
-  b.mode = motion.mode;
-  return b;
+GridRadii empty_grid(const Axes& axes) {
+  GridRadii grid;
+  const Eigen::Index rows = row(axes.axial_depth_m.size());
+  const Eigen::Index columns = row(axes.spindle_speed_rad_per_s.size());
+  grid.radius = Eigen::MatrixXd::Constant(rows, columns, std::numeric_limits<double>::quiet_NaN());
+  grid.unstable = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>::Constant(rows, columns, false);
+  return grid;
 }
+
+/// A rectangle of the grid, from node to node.
+struct Cell {
+  std::size_t speed_low = 0, speed_high = 0, depth_low = 0, depth_high = 0;
+  [[nodiscard]] bool whole() const { return speed_high - speed_low <= 1 && depth_high - depth_low <= 1; }
+  [[nodiscard]] std::array<Node, 4> corners() const {
+    return {Node{speed_low, depth_low}, Node{speed_low, depth_high}, Node{speed_high, depth_low},
+            Node{speed_high, depth_high}};
+  }
+};
+
+/// Cuts a cell in four, or in two where it is one node wide.
+void cut(const Cell& cell, std::vector<Cell>& out) {
+  const std::size_t speed = (cell.speed_low + cell.speed_high) / 2;
+  const std::size_t depth = (cell.depth_low + cell.depth_high) / 2;
+  std::vector<std::array<std::size_t, 2>> speeds = {{cell.speed_low, cell.speed_high}};
+  std::vector<std::array<std::size_t, 2>> depths = {{cell.depth_low, cell.depth_high}};
+  if (cell.speed_high - cell.speed_low > 1) speeds = {{cell.speed_low, speed}, {speed, cell.speed_high}};
+  if (cell.depth_high - cell.depth_low > 1) depths = {{cell.depth_low, depth}, {depth, cell.depth_high}};
+  for (const auto& s : speeds) {
+    for (const auto& d : depths) out.push_back({s[0], s[1], d[0], d[1]});
+  }
+}
+
+class BoundarySearch {
+ public:
+  BoundarySearch(const Scheme& scheme, const Axes& axes, Count& count, Progress& progress)
+      : scheme_(scheme), axes_(axes), count_(count), progress_(progress), grid_(empty_grid(axes)) {}
+
+  GridRadii run() {
+    std::vector<Cell> cells = coarse_cells();
+    progress_.start("stability boundary", axes_.spindle_speed_rad_per_s.size());
+    evaluate_corners(cells);
+    while (!cells.empty()) {
+      std::vector<Cell> finer;
+      std::vector<Cell> kept;
+      for (const Cell& cell : cells) {
+        if (cell.whole()) continue;
+        if (changes_along_border(cell) || could_hide(cell)) {
+          cut(cell, finer);
+        } else {
+          kept.push_back(cell);
+        }
+      }
+      if (finer.empty()) {
+        fill(kept);
+        break;
+      }
+      evaluate_corners(finer);
+      cells = kept;
+      cells.insert(cells.end(), finer.begin(), finer.end());
+    }
+    return grid_;
+  }
+
+ private:
+  static constexpr std::size_t coarse_width = 8;
+
+  static std::vector<std::size_t> coarse_marks(std::size_t nodes) {
+    std::vector<std::size_t> marks;
+    for (std::size_t i = 0; i + 1 < nodes; i += coarse_width) marks.push_back(i);
+    marks.push_back(nodes - 1);
+    return marks;
+  }
+
+  [[nodiscard]] std::vector<Cell> coarse_cells() const {
+    const std::vector<std::size_t> speeds = coarse_marks(axes_.spindle_speed_rad_per_s.size());
+    const std::vector<std::size_t> depths = coarse_marks(axes_.axial_depth_m.size());
+    std::vector<Cell> cells;
+    for (std::size_t s = 0; s + 1 < speeds.size(); ++s) {
+      for (std::size_t d = 0; d + 1 < depths.size(); ++d) {
+        cells.push_back({speeds[s], speeds[s + 1], depths[d], depths[d + 1]});
+      }
+    }
+    return cells;
+  }
+
+  void evaluate_corners(const std::vector<Cell>& cells) {
+    std::vector<Node> nodes;
+    for (const Cell& cell : cells) {
+      for (const Node& node : cell.corners()) {
+        if (!grid_.known(row(node.depth), row(node.speed))) nodes.push_back(node);
+      }
+    }
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    evaluate_nodes(scheme_, axes_, nodes, false, grid_, count_, progress_);
+  }
+
+  /// Whether known nodes on the cell's border, its corners or those of finer neighbours, differ in stability.
+  [[nodiscard]] bool changes_along_border(const Cell& cell) const {
+    const bool first = grid_.unstable(row(cell.depth_low), row(cell.speed_low));
+    const auto differs = [&](std::size_t speed, std::size_t depth) {
+      return grid_.known(row(depth), row(speed)) && grid_.unstable(row(depth), row(speed)) != first;
+    };
+    for (std::size_t s = cell.speed_low; s <= cell.speed_high; ++s) {
+      if (differs(s, cell.depth_low) || differs(s, cell.depth_high)) return true;
+    }
+    for (std::size_t d = cell.depth_low; d <= cell.depth_high; ++d) {
+      if (differs(cell.speed_low, d) || differs(cell.speed_high, d)) return true;
+    }
+    return false;
+  }
+
+  /// Whether ln |μ| falls or rises so steeply across the cell that it could reach 0 and come back inside.
+  [[nodiscard]] bool could_hide(const Cell& cell) const {
+    double least = std::numeric_limits<double>::infinity();
+    double low = least;
+    double high = -least;
+    for (const Node& node : cell.corners()) {
+      const double value = std::log(grid_.radius(row(node.depth), row(node.speed)));
+      least = std::min(least, std::abs(value));
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    return least < 0.5 * (high - low);
+  }
+
+  /// Inside what was not cut all is as its corners are.
+  void fill(const std::vector<Cell>& cells) {
+    for (const Cell& cell : cells) {
+      const bool unstable = grid_.unstable(row(cell.depth_low), row(cell.speed_low));
+      for (std::size_t s = cell.speed_low; s <= cell.speed_high; ++s) {
+        for (std::size_t d = cell.depth_low; d <= cell.depth_high; ++d) {
+          if (!grid_.known(row(d), row(s))) grid_.unstable(row(d), row(s)) = unstable;
+        }
+      }
+    }
+  }
+
+  const Scheme& scheme_;
+  const Axes& axes_;
+  Count& count_;
+  Progress& progress_;
+  GridRadii grid_;
+};
 
 Limit limit_at(const BoundaryPoint& b) {
   Limit limit;
@@ -68,105 +206,133 @@ Limit limit_at(const BoundaryPoint& b) {
   limit.chatter_frequency_hz = b.chatter_frequency_hz;
   limit.kind = b.kind;
   limit.mode = b.mode;
+  limit.error_estimate = b.error_estimate;
   return limit;
 }
 
 /// Already unstable at the least depth.
-Limit limit_at_start(Evaluator& evaluator, const OperatingPoint& point) {
-  const Evaluator::Point at{point.spindle_speed_rad_per_s, point.axial_depth_m, nullptr};
-  Dominant dominant;
-  Motion motion;
-  evaluator.evaluate({&at, 1}, {&dominant, 1});
-  evaluator.describe({&dominant, 1}, {&motion, 1});
-  return limit_at(boundary_point(point, dominant, motion));
+Limit limit_at_start(PointEvaluator& evaluator, const OperatingPoint& point) {
+  Outcome outcome;
+  evaluator.evaluate({&point, 1}, {.estimate = true, .motion = true}, {&outcome, 1});
+  Limit limit;
+  limit.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
+  limit.status = Limit::Status::found;
+  limit.axial_depth_m = point.axial_depth_m;
+  limit.chatter_frequency_hz = outcome.chatter_frequency_hz;
+  limit.kind = outcome.kind;
+  limit.mode = outcome.mode;
+  limit.error_estimate = outcome.error_estimate;
+  return limit;
+}
+
+/// Radii of one speed from the lowest depth up to the first that is unstable and a little beyond.
+std::vector<double> climb(PointEvaluator& evaluator, const Axes& axes, std::size_t speed, const Progress& progress) {
+  std::vector<double> radii;
+  const std::size_t depths = axes.axial_depth_m.size();
+  for (std::size_t first = 0; first < depths; first += lane_count) {
+    progress.check();
+    const std::size_t size = std::min(lane_count, depths - first);
+    std::array<OperatingPoint, lane_count> points;
+    std::array<Outcome, lane_count> outcomes;
+    for (std::size_t i = 0; i < size; ++i) points[i] = axes.at(speed, first + i);
+    evaluator.evaluate(std::span(points).first(size), {}, std::span(outcomes).first(size));
+    bool unstable = false;
+    for (std::size_t i = 0; i < size; ++i) {
+      radii.push_back(outcomes[i].spectral_radius);
+      unstable = unstable || radii.back() >= 1.0;
+    }
+    if (unstable) break;
+  }
+  return radii;
 }
 
 }  // namespace
 
-std::vector<BoundaryPoint> refine(Evaluator& evaluator, const std::vector<Edge>& edges, double tolerance,
-                                  const Progress& progress) {
-  std::vector<BoundaryPoint> found(edges.size());
-  std::vector<Search> searches(edges.size());
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    searches[e].edge = e;
-    searches[e].value_low = std::log(edges[e].radius_from);
-    searches[e].value_high = std::log(edges[e].radius_to);
-    choose(searches[e]);
+GridRadii evaluate_grid(const Scheme& scheme, const Axes& axes, bool estimate, Count& count, Progress& progress) {
+  GridRadii grid = empty_grid(axes);
+  std::vector<Node> nodes;
+  for (std::size_t s = 0; s < axes.spindle_speed_rad_per_s.size(); ++s) {
+    for (std::size_t d = 0; d < axes.axial_depth_m.size(); ++d) nodes.push_back({s, d});
   }
-  while (!searches.empty()) {
-    std::size_t kept = 0;
-    for (std::size_t first = 0; first < searches.size(); first += lane_count) {
-      progress.check();
-      const std::size_t count = std::min(lane_count, searches.size() - first);
-      std::array<Evaluator::Point, lane_count> points;
-      std::array<Dominant, lane_count> dominant;
-      std::array<Motion, lane_count> motion;
-      for (std::size_t i = 0; i < count; ++i) {
-        const OperatingPoint p = along(edges[searches[first + i].edge], searches[first + i].next);
-        points[i] = {p.spindle_speed_rad_per_s, p.axial_depth_m, nullptr};
-      }
-      evaluator.evaluate(std::span(points).first(count), std::span(dominant).first(count));
-      bool described = false;
-      for (std::size_t i = 0; i < count; ++i) {
-        Search search = searches[first + i];
-        const double radius = spectral_radius(dominant[i]);
-        if (std::abs(radius - 1.0) > tolerance && search.high - search.low > 1e-14) {
-          narrow(search, std::log(radius));
-          searches[kept++] = search;
-          continue;
-        }
-        if (!described) {
-          evaluator.describe(std::span(dominant).first(count), std::span(motion).first(count));
-          described = true;
-        }
-        const OperatingPoint p{points[i].spindle_speed_rad_per_s, points[i].axial_depth_m};
-        found[search.edge] = boundary_point(p, dominant[i], motion[i]);
-      }
-    }
-    searches.resize(kept);
-  }
-  return found;
+  progress.start("stability lobes", axes.spindle_speed_rad_per_s.size());
+  evaluate_nodes(scheme, axes, nodes, estimate, grid, count, progress);
+  return grid;
 }
 
-Column column(Evaluator& evaluator, double spindle_speed_rad_per_s, const std::vector<double>& depths_m,
-              const std::vector<DepthPlan>& plans, double tolerance, Look look, const Progress& progress) {
-  Column result;
-  result.spectral_radius.reserve(depths_m.size());
-  bool unstable = false;
-  for (std::size_t first = 0; first < depths_m.size() && !(unstable && look == Look::limit); first += lane_count) {
-    progress.check();
-    const std::size_t count = std::min(lane_count, depths_m.size() - first);
-    std::array<Evaluator::Point, lane_count> points;
-    std::array<Dominant, lane_count> dominant;
-    for (std::size_t i = 0; i < count; ++i) {
-      points[i] = {spindle_speed_rad_per_s, depths_m[first + i], plans.empty() ? nullptr : &plans[first + i]};
-    }
-    evaluator.evaluate(std::span(points).first(count), std::span(dominant).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      result.spectral_radius.push_back(spectral_radius(dominant[i]));
-      unstable = unstable || result.spectral_radius.back() >= 1.0;
-    }
-  }
+GridRadii find_boundary_nodes(const Scheme& scheme, const Axes& axes, Count& count, Progress& progress) {
+  return BoundarySearch(scheme, axes, count, progress).run();
+}
 
-  std::vector<Edge> edges;
-  const auto point = [&](std::size_t j) { return OperatingPoint{spindle_speed_rad_per_s, depths_m[j]}; };
-  for (std::size_t j = 0; j + 1 < result.spectral_radius.size(); ++j) {
-    const double below = result.spectral_radius[j];
-    const double above = result.spectral_radius[j + 1];
-    if ((below < 1.0) == (above < 1.0)) continue;
-    edges.push_back({point(j), point(j + 1), below, above});
-    if (look != Look::boundary) break;
+std::vector<Limit> grid_limits(const Scheme& scheme, const Axes& axes, const GridRadii& grid,
+                               const std::vector<BoundaryPoint>& boundary, double tolerance, Count& count,
+                               Progress& progress) {
+  const std::size_t speeds = axes.spindle_speed_rad_per_s.size();
+  std::map<double, BoundaryPoint> lowest;  // by speed
+  for (const BoundaryPoint& point : boundary) {
+    const auto [at, fresh] = lowest.emplace(point.spindle_speed_rad_per_s, point);
+    if (!fresh && point.axial_depth_m < at->second.axial_depth_m) at->second = point;
   }
-  result.limit.spindle_speed_rad_per_s = spindle_speed_rad_per_s;
-  const bool unstable_at_start = result.spectral_radius.front() >= 1.0;
-  if (unstable_at_start && look != Look::boundary) edges.clear();
-  result.boundary = refine(evaluator, edges, tolerance, progress);
-  if (unstable_at_start) {
-    result.limit = limit_at_start(evaluator, point(0));
-  } else if (!result.boundary.empty()) {
-    result.limit = limit_at(result.boundary.front());
-  }
-  return result;
+  std::vector<Limit> limits(speeds);
+  std::vector<Count> counts(speeds);
+  progress.start("stability limits", speeds);
+  parallel_for(speeds, 2 * lane_count, [&](std::size_t begin, std::size_t end) {
+    const std::unique_ptr<PointEvaluator> evaluator = scheme.evaluator();
+    std::vector<Edge> edges;
+    std::vector<std::size_t> owner;
+    for (std::size_t s = begin; s < end; ++s) {
+      limits[s].spindle_speed_rad_per_s = axes.spindle_speed_rad_per_s[s];
+      if (grid.unstable(0, row(s))) {
+        limits[s] = limit_at_start(*evaluator, axes.at(s, 0));
+        continue;
+      }
+      std::size_t d = 0;
+      while (d < axes.axial_depth_m.size() && !grid.unstable(row(d), row(s))) ++d;
+      if (d == axes.axial_depth_m.size()) continue;
+      if (const auto known = lowest.find(axes.spindle_speed_rad_per_s[s]); known != lowest.end()) {
+        limits[s] = limit_at(known->second);
+        continue;
+      }
+      edges.push_back({axes.at(s, d - 1), axes.at(s, d), grid.radius(row(d - 1), row(s)), grid.radius(row(d), row(s))});
+      owner.push_back(s);
+    }
+    const std::vector<BoundaryPoint> found = refine(*evaluator, edges, tolerance, progress);
+    for (std::size_t i = 0; i < found.size(); ++i) limits[owner[i]] = limit_at(found[i]);
+    counts[begin].add(*evaluator);
+    progress.advance(end - begin);
+  });
+  for (const Count& c : counts) count.add(c);
+  return limits;
+}
+
+std::vector<Limit> column_limits(const Scheme& scheme, const Axes& axes, double tolerance, Count& count,
+                                 Progress& progress) {
+  const std::size_t speeds = axes.spindle_speed_rad_per_s.size();
+  std::vector<Limit> limits(speeds);
+  std::vector<Count> counts(speeds);
+  progress.start("stability limits", speeds);
+  parallel_for(speeds, lane_count, [&](std::size_t begin, std::size_t end) {
+    const std::unique_ptr<PointEvaluator> evaluator = scheme.evaluator();
+    std::vector<Edge> edges;
+    std::vector<std::size_t> owner;
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::vector<double> radii = climb(*evaluator, axes, s, progress);
+      limits[s].spindle_speed_rad_per_s = axes.spindle_speed_rad_per_s[s];
+      const auto first = std::ranges::find_if(radii, [](double radius) { return radius >= 1.0; });
+      if (first == radii.begin()) {
+        limits[s] = limit_at_start(*evaluator, axes.at(s, 0));
+      } else if (first != radii.end()) {
+        const std::size_t d = static_cast<std::size_t>(first - radii.begin());
+        edges.push_back({axes.at(s, d - 1), axes.at(s, d), radii[d - 1], radii[d]});
+        owner.push_back(s);
+      }
+    }
+    const std::vector<BoundaryPoint> found = refine(*evaluator, edges, tolerance, progress);
+    for (std::size_t i = 0; i < found.size(); ++i) limits[owner[i]] = limit_at(found[i]);
+    counts[begin].add(*evaluator);
+    progress.advance(end - begin);
+  });
+  for (const Count& c : counts) count.add(c);
+  return limits;
 }
 
 }  // namespace robomill::stability::detail

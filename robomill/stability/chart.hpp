@@ -1,35 +1,62 @@
 #pragma once
+#include <Eigen/Core>
 #include <vector>
 
 #include "robomill/base/progress.hpp"
-#include "robomill/stability/evaluator.hpp"
-#include "robomill/stability/lobes.hpp"
+#include "robomill/stability/edges.hpp"
+#include "robomill/stability/point_evaluator.hpp"
 
 namespace robomill::stability::detail {
 
-/// A line between two points of the chart, one stable and one not.
-struct Edge {
-  OperatingPoint from, to;
-  double radius_from = 0.0, radius_to = 0.0;
+struct Count {
+  long long evaluations = 0, unsettled = 0;
+  void add(const PointEvaluator& evaluator) {
+    evaluations += evaluator.evaluations();
+    unsettled += evaluator.unsettled();
+  }
+  void add(const Count& other) {
+    evaluations += other.evaluations;
+    unsettled += other.unsettled;
+  }
 };
 
-/// Finds on each edge a point where |spectral radius - 1| <= tolerance, by regula falsi that halves where it drags.
-std::vector<BoundaryPoint> refine(Evaluator& evaluator, const std::vector<Edge>& edges, double tolerance,
-                                  const Progress& progress);
-
-/// What one spindle speed shows over the depths of the grid.
-struct Column {
-  std::vector<double> spectral_radius;  ///< Look::limit: up to the first unstable depth and a little beyond
-  std::vector<BoundaryPoint> boundary;  ///< by depth; the lowest alone but for Look::boundary
-  Limit limit;
+/// Where a chart is looked at.
+struct Axes {
+  std::vector<double> spindle_speed_rad_per_s, axial_depth_m;
+  [[nodiscard]] OperatingPoint at(std::size_t speed, std::size_t depth) const {
+    return {spindle_speed_rad_per_s[speed], axial_depth_m[depth]};
+  }
 };
 
-/// What is wanted of a column: the lowest change of stability alone, that and the spectral radius at every depth, or
-/// that and every change of stability.
-enum class Look { limit, map, boundary };
+/// Spectral radius on the grid, a row a depth. A node that nobody had to look at has the stability of its surroundings
+/// and the value NaN in `radius`.
+struct GridRadii {
+  Eigen::MatrixXd radius;
+  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> unstable;
+  [[nodiscard]] bool known(Eigen::Index depth, Eigen::Index speed) const {
+    return radius(depth, speed) == radius(depth, speed);
+  }
+};
 
-/// @param plans  of the depths, or empty
-Column column(Evaluator& evaluator, double spindle_speed_rad_per_s, const std::vector<double>& depths_m,
-              const std::vector<DepthPlan>& plans, double tolerance, Look look, const Progress& progress);
+/// Every node.
+GridRadii evaluate_grid(const Scheme& scheme, const Axes& axes, bool estimate, Count& count, Progress& progress);
+
+/// The nodes that the boundary needs. Cells of several nodes' width are looked at by their corners, and cut in four
+/// where a boundary passes, where it passes on a neighbour's side, and where the radius comes so near to 1, by its own
+/// slope there, that an island could hide inside.
+GridRadii find_boundary_nodes(const Scheme& scheme, const Axes& axes, Count& count, Progress& progress);
+
+/// The boundary as curves: where it cuts the edges of the grid, refined to the tolerance, strung together cell by cell.
+std::vector<BoundaryPoint> string_boundary(const Scheme& scheme, const Axes& axes, const GridRadii& grid,
+                                           double tolerance, Count& count, Progress& progress);
+
+/// The lowest unstable depth at each speed of a grid; taken from its boundary where that is known.
+std::vector<Limit> grid_limits(const Scheme& scheme, const Axes& axes, const GridRadii& grid,
+                               const std::vector<BoundaryPoint>& boundary, double tolerance, Count& count,
+                               Progress& progress);
+
+/// The same without a grid: depths are looked at from the lowest up to the first that is unstable.
+std::vector<Limit> column_limits(const Scheme& scheme, const Axes& axes, double tolerance, Count& count,
+                                 Progress& progress);
 
 }  // namespace robomill::stability::detail

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace robomill::stability::detail {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 bool finer(const Resolution& a, const Resolution& b) {
   return a.halvings != b.halvings ? a.halvings > b.halvings : a.nodes > b.nodes;
@@ -19,11 +17,6 @@ bool finite(Complex value) {
 }
 
 }  // namespace
-
-Kind kind_of(Complex multiplier) {
-  if (std::abs(multiplier.imag()) > 1e-9 * std::abs(multiplier)) return Kind::hopf;
-  return multiplier.real() < 0.0 ? Kind::flip : Kind::fold;
-}
 
 double spectral_radius(const Dominant& dominant) {
   const double modulus = std::abs(dominant.multiplier);
@@ -102,53 +95,17 @@ void Evaluator::describe(std::span<const Dominant> dominant, std::span<Motion> o
 }
 
 Motion Evaluator::motion(std::size_t lane, const Eigen::VectorXcd& vector, Complex multiplier) const {
-  const TipDynamics& tip = model_.tip;
-  const Eigen::Index n = tip.pole.size();
   const double step_s = points_[lane].speed->step_s;
-  const double period_s = step_s * model_.cut.steps();
-  const Complex growth = std::log(multiplier) / period_s;
-  Motion best;
-  double greatest = 0.0;
-  const auto offer = [&](double amplitude, Eigen::Index k, double frequency) {
-    if (amplitude <= greatest) return;
-    greatest = amplitude;
-    best.mode = tip.number[static_cast<std::size_t>(k)];
-    best.frequency_hz = std::abs(frequency) / two_pi;
-  };
-
-  // A mode that the cut leaves alone: the eigenvector's entries Re z, Im z are complex, and so z and its conjugate part
-  // ways.
-  double alone = 0.0;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Complex i(0.0, 1.0);
-    const Complex z = vector(2 * k) + i * vector(2 * k + 1);
-    const Complex other = vector(2 * k) - i * vector(2 * k + 1);
-    const double amplitude = 1e-6 * std::max(std::abs(z), std::abs(other));
-    alone = std::max(alone, amplitude);
-    offer(amplitude, k, tip.pole(k).imag());
-  }
-
-  const double highest = 1.5 * tip.pole.cwiseAbs().maxCoeff() + two_pi / period_s;
-  const int last = static_cast<int>(std::min(highest * period_s / two_pi, 5000.0)) + 1;
-  for (int j = -last; j <= last; ++j) {
-    const Complex s = growth + Complex(0.0, two_pi * j / period_s);
+  const auto force = [&](Complex s) -> Eigen::Vector2cd {
     const Complex x = s * step_s;
     const Complex weight = std::abs(x) > 1e-6 ? (1.0 - std::exp(-x)) / x : 1.0 - 0.5 * x;
-    Eigen::Vector2cd force = Eigen::Vector2cd::Zero();
+    Eigen::Vector2cd sum = Eigen::Vector2cd::Zero();
     for (std::size_t c = 0; c < forces_.size(); ++c) {
-      force += forces_[c][lane] * std::exp(-x * static_cast<double>(monodromy_.cut_steps()[c]));
+      sum += forces_[c][lane] * std::exp(-x * static_cast<double>(monodromy_.cut_steps()[c]));
     }
-    force *= weight / static_cast<double>(model_.cut.steps());
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const Complex pole = tip.pole(k);
-      if (std::abs(s - pole) < 1e-9 * std::abs(pole) || std::abs(s - std::conj(pole)) < 1e-9 * std::abs(pole)) continue;
-      const Complex z = (tip.left.col(k).transpose() * force).value() / (s - pole);
-      const Complex other = (tip.left.col(k).adjoint() * force).value() / (s - std::conj(pole));
-      const Eigen::Vector2cd q = tip.right.col(k) * z + tip.right.col(k).conjugate() * other;
-      offer(q.norm(), k, s.imag());
-    }
-  }
-  return best;
+    return sum * (weight / static_cast<double>(model_.cut.steps()));
+  };
+  return find_motion(model_.tip, multiplier, step_s * model_.cut.steps(), vector, force);
 }
 
 }  // namespace robomill::stability::detail

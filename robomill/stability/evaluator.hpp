@@ -7,6 +7,7 @@
 #include "robomill/stability/cut_steps.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/monodromy.hpp"
+#include "robomill/stability/motion.hpp"
 #include "robomill/stability/speed_plan.hpp"
 #include "robomill/stability/tip_dynamics.hpp"
 
@@ -19,14 +20,6 @@ struct Model {
   CutSteps cut;
 };
 
-/// How the motion that belongs to a multiplier looks.
-struct Motion {
-  double frequency_hz = 0.0;
-  int mode = 0;  ///< from 1, numbered as in the problem
-};
-
-/// Hopf unless the multiplier is real.
-Kind kind_of(std::complex<double> multiplier);
 /// |multiplier|; where the motion overflows in a single period, 1e100.
 double spectral_radius(const Dominant& dominant);
 
@@ -44,9 +37,7 @@ class Evaluator {
   };
   /// One to eight points; out has as many.
   void evaluate(std::span<const Point> points, std::span<Dominant> out);
-  /// Of the points of the last evaluate. The eigenvector's motion is a sum of harmonics exp(s_j t), s_j = (ln μ + 2πij)
-  /// / T; the force has the coefficient F_j, mode k the displacement R_k L_k^T F_j / (s_j - λ_k) + conjugate pole's
-  /// term. Named are the mode and the harmonic whose displacement is greatest.
+  /// Of the points of the last evaluate.
   void describe(std::span<const Dominant> dominant, std::span<Motion> out);
 
   [[nodiscard]] long long evaluations() const { return evaluations_; }

@@ -2,19 +2,10 @@
 
 #include <cmath>
 
+#include "robomill/stability/kernel_parts.hpp"
+
 namespace robomill::stability::detail {
 namespace {
-
-#define CORE ROBOMILL_KERNEL_CORE
-
-/// The lanes at hand of one operand.
-CORE V& at(Lanes& operand, std::size_t lane) {
-  return *reinterpret_cast<V*>(operand.v + lane);
-}
-CORE const V& at(const Lanes& operand, std::size_t lane) {
-  return *reinterpret_cast<const V*>(operand.v + lane);
-}
-#define L(operand) at<V>(operand, lane)
 
 /// Solves (I - G K) X = [V, G 1] in place of the right-hand side. G K is small by the choice of the substep: no pivots.
 CORE void solve_nodes(const BlockArguments& a, Lanes* matrix, Lanes* right, std::size_t lane) {
@@ -36,22 +27,7 @@ CORE void solve_nodes(const BlockArguments& a, Lanes* matrix, Lanes* right, std:
     L(right[r * columns + a.modal]) = sum0;
     L(right[r * columns + a.modal + 1]) = sum1;
   }
-  for (std::size_t k = 0; k < m; ++k) {
-    const V inverse = 1.0 / L(matrix[k * m + k]);
-    for (std::size_t c = k + 1; c < m; ++c) L(matrix[k * m + c]) *= inverse;
-    for (std::size_t c = 0; c < columns; ++c) L(right[k * columns + c]) *= inverse;
-    for (std::size_t r = k + 1; r < m; ++r) {
-      const V factor = L(matrix[r * m + k]);
-      for (std::size_t c = k + 1; c < m; ++c) L(matrix[r * m + c]) -= factor * L(matrix[k * m + c]);
-      for (std::size_t c = 0; c < columns; ++c) L(right[r * columns + c]) -= factor * L(right[k * columns + c]);
-    }
-  }
-  for (std::size_t k = m; k-- > 0;) {
-    for (std::size_t r = 0; r < k; ++r) {
-      const V factor = L(matrix[r * m + k]);
-      for (std::size_t c = 0; c < columns; ++c) L(right[r * columns + c]) -= factor * L(right[k * columns + c]);
-    }
-  }
+  eliminate<V>(m, columns, matrix, right, lane);
 }
 
 /// Displacements at the nodes become forces there: f = K q - c.
@@ -145,34 +121,6 @@ CORE void displacement_of(const PeriodArguments& a, const Lanes* z, Lanes* q, st
   L(q[1]) = y0 + y1;
 }
 
-CORE void coast(const PeriodArguments& a, const Lanes* factor, Lanes* z, std::size_t lane) {
-  for (std::size_t k = 0; k < a.modal; k += 2) {
-    const V re = L(z[k]);
-    const V im = L(z[k + 1]);
-    L(z[k]) = L(factor[k]) * re - L(factor[k + 1]) * im;
-    L(z[k + 1]) = L(factor[k + 1]) * re + L(factor[k]) * im;
-  }
-}
-
-CORE void multiply_block(std::size_t modal, const Lanes* block, const Lanes* in, Lanes* out, std::size_t lane) {
-  const std::size_t columns = modal + 2;
-  for (std::size_t r = 0; r < modal; r += 4) {
-    V sum0 = {}, sum1 = {}, sum2 = {}, sum3 = {};
-    for (std::size_t c = 0; c < columns; ++c) {
-      const V x = L(in[c]);
-      sum0 += L(block[0]) * x;
-      sum1 += L(block[1]) * x;
-      sum2 += L(block[2]) * x;
-      sum3 += L(block[3]) * x;
-      block += 4;
-    }
-    L(out[r]) = sum0;
-    L(out[r + 1]) = sum1;
-    L(out[r + 2]) = sum2;
-    L(out[r + 3]) = sum3;
-  }
-}
-
 /// The two delayed forces c of a step.
 CORE void delayed_force(const PeriodArguments& a, const Step& step, Lanes* c, std::size_t lane) {
   V x = {}, y = {};
@@ -193,7 +141,7 @@ CORE void cut(const PeriodArguments& a, const Step& step, Lanes* z, Lanes* next,
   delayed_force<V>(a, step, c, lane);
   L(z[a.modal]) = -L(c[0]);
   L(z[a.modal + 1]) = -L(c[1]);
-  multiply_block<V>(a.modal, a.blocks + step.index * block_size(a.modal), z, next, lane);
+  multiply<V>(a.modal, a.modal + 2, a.blocks + step.index * block_size(a.modal), z, next, lane);
   const V before_x = L(q[0]);
   const V before_y = L(q[1]);
   displacement_of<V>(a, next, q, lane);
@@ -232,7 +180,7 @@ CORE void run_period_core(PeriodArguments& a, std::size_t lane) {
     }
     const V before_x = L(q[0]);
     const V before_y = L(q[1]);
-    coast<V>(a, a.coasts + step.index * a.modal, z, lane);
+    coast<V>(a.modal, a.coasts + step.index * a.modal, z, lane);
     displacement_of<V>(a, z, q, lane);
     if (step.record < 0) continue;
     Lanes* d = a.memory + 2 * static_cast<std::size_t>(step.record);

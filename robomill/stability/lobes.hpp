@@ -27,8 +27,9 @@ struct ROBOMILL_API LobesProblem {
   void validate() const;
 };
 
-enum class Method { semi_discretization };
-enum class Output { boundary, map };
+enum class Method { collocation, semi_discretization };
+/// both: the map and the boundary.
+enum class Output { boundary, map, both };
 enum class Period { tooth, revolution };
 /// How stability is lost: a pair of multipliers, -1, or +1.
 enum class Kind { hopf, flip, fold };
@@ -48,10 +49,12 @@ struct ROBOMILL_API LobesOptions {
   std::array<double, 2> spindle_speed_rad_per_s = {0.0, 0.0};  ///< lowest and highest [rad/s], 0 < low < high; required
   std::array<double, 2> axial_depth_m = {0.0, 0.0};  ///< least and greatest [m], 0 <= least < greatest; required
   std::array<int, 2> grid = {200, 200};              ///< speeds and depths, each at least 2
-  Method method = Method::semi_discretization;
-  int intervals = 40;                       ///< m, time steps in a mean tooth period, at least 4
-  double tolerance = 1e-6;                  ///< boundary and limit end where |spectral radius - 1| <= tolerance
-  Output output = Output::boundary;         ///< map: no boundary points
+  Method method = Method::collocation;
+  int intervals = 40;  ///< m of semi-discretization: time steps in a mean tooth period, at least 4
+  /// Collocation is refined until its spectral radii are that accurate; boundary and limit end where
+  /// |spectral radius - 1| <= tolerance.
+  double tolerance = 1e-6;
+  Output output = Output::boundary;
   std::vector<OperatingPoint> points = {};  ///< evaluated beside the grid; may lie outside its range
   /// @throws InvalidInput naming the member
   void validate() const;
@@ -64,7 +67,7 @@ struct PointResult {
   double spectral_radius = 0.0;           ///< greatest |multiplier| of the period; 1e100 where the motion overflows
   std::complex<double> multiplier = 0.0;  ///< the one with it, imaginary part >= 0
   bool stable = false;                    ///< spectral radius < 1
-  double error_estimate = 0.0;            ///< of the spectral radius: from a second run at twice the intervals
+  double error_estimate = 0.0;            ///< of the spectral radius: from a second, finer run
   double chatter_frequency_hz = 0.0;      ///< at which this multiplier's motion is greatest [Hz]; 0 where it overflows
   Kind kind = Kind::hopf;
   int mode = 0;  ///< the mode that moves most in it, numbered as in dynamics from 1; 0 where it overflows
@@ -76,7 +79,9 @@ struct BoundaryPoint {
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = 0.0;
   Kind kind = Kind::hopf;
-  int mode = 0;  ///< from 1
+  int mode = 0;                 ///< from 1
+  double error_estimate = 0.0;  ///< of the spectral radius there
+  int curve = 0;                ///< which curve of the boundary it is on, from 1
 };
 
 /// The lowest unstable depth at one speed.
@@ -89,32 +94,34 @@ struct Limit {
   double chatter_frequency_hz = 0.0;
   Kind kind = Kind::hopf;
   int mode = 0;
+  double error_estimate = 0.0;  ///< of the spectral radius there
 };
 
 struct LobesResult {
   Eigen::VectorXd spindle_speed_rad_per_s;  ///< length grid[0]
   Eigen::VectorXd axial_depth_m;            ///< length grid[1]
-  Eigen::MatrixXd spectral_radius;          ///< grid[1] x grid[0]: a row a depth
-  std::vector<BoundaryPoint> boundary;      ///< by speed, then depth; empty for Output::map
+  Eigen::MatrixXd spectral_radius;          ///< grid[1] x grid[0]: a row a depth; empty for Output::boundary
+  std::vector<BoundaryPoint> boundary;      ///< curve by curve, along each; empty for Output::map
   std::vector<Limit> limit;                 ///< one a grid speed
   std::vector<PointResult> points;          ///< one for each of LobesOptions::points
-  Method method = Method::semi_discretization;
+  Method method = Method::collocation;
   Period period = Period::tooth;  ///< of the spectral radius
   long long evaluations = 0;      ///< spectral radii found
   long long unsettled = 0;  ///< of these, how many the eigenvalue iterations did not settle; 0 unless the cut is absurd
+  long long uncertain = 0;  ///< points of boundary, limit and points whose error estimate stays above the tolerance
   double seconds = 0.0;
 };
 
 /// The stability chart of milling with regenerative chip thickness,
 ///   q(t) = 2 Re Σ_k R_k z_k + S F,  dz_k/dt = λ_k z_k + L_k^T F,  F = Σ_j K_j(t) (q(t) - q(t - τ_j)),
-/// by zeroth-order semi-discretization. Method, accuracy and cost: robomill/stability/README.md. Sources:
-/// [Insperger2004], [Altintas1995].
+/// by collocation or semi-discretization. Method, accuracy and cost: robomill/stability/README.md. Sources:
+/// [Altintas1995], [Insperger2004].
 /// @throws InvalidInput if the problem or an option is out of range
 /// @throws Interrupted  when progress asks to stop
 [[nodiscard]] ROBOMILL_API LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& options,
                                                      Progress& progress = Progress::none());
 
-/// One point of that chart. Of the options only method and intervals count.
+/// One point of that chart. Of the options only method, intervals and tolerance count.
 /// @throws InvalidInput if the problem, the point or an option is out of range
 [[nodiscard]] ROBOMILL_API PointResult evaluate_point(const LobesProblem& problem, const LobesOptions& options,
                                                       const OperatingPoint& point);

@@ -16,6 +16,7 @@ using testing::rpm;
 
 double radius(const LobesProblem& problem, double speed_rpm, double depth_m, int intervals) {
   LobesOptions options;
+  options.method = Method::semi_discretization;
   options.intervals = intervals;
   return evaluate_point(problem, options, {speed_rpm * rpm, depth_m}).spectral_radius;
 }
@@ -69,7 +70,9 @@ TEST(LobesAccuracy, ErrorEstimateIsOfTheErrorsSize) {
   std::vector<Known> all = interrupted();
   for (const Known& known : continuous()) all.push_back(known);
   for (const Known& known : all) {
-    const PointResult point = evaluate_point(known.problem, {}, {known.speed_rpm * rpm, known.depth_m});
+    LobesOptions options;
+    options.method = Method::semi_discretization;
+    const PointResult point = evaluate_point(known.problem, options, {known.speed_rpm * rpm, known.depth_m});
     const double error = std::abs(point.spectral_radius - known.converged);
     EXPECT_LT(error, 1.2 * point.error_estimate);
     EXPECT_GT(error, 0.6 * point.error_estimate);

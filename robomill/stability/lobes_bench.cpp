@@ -51,8 +51,46 @@ void robot_unequal_pitch_map(benchmark::State& state) {
   run(state, problem, stability::testing::chart(4000, 16000, 0.003, 200, 200), Output::map);
 }
 
+LobesOptions traced(double from_rpm, double to_rpm, double depth_m) {
+  LobesOptions options = stability::testing::chart(from_rpm, to_rpm, depth_m, 200, 200);
+  options.method = Method::collocation;
+  return options;
+}
+void collocation_point(benchmark::State& state) {
+  const LobesProblem problem = stability::testing::benchmark(0.01 * static_cast<double>(state.range(0)));
+  PointResult point;
+  for (auto _ : state) {
+    point = evaluate_point(problem, {}, {5000.0 * stability::testing::rpm, 0.2e-3});
+    benchmark::DoNotOptimize(point);
+  }
+  state.counters["error_estimate"] = point.error_estimate;
+}
+void collocation_map(benchmark::State& state) {
+  run(state, stability::testing::benchmark(0.05), traced(5000, 25000, 0.01), Output::map);
+}
+void collocation_boundary(benchmark::State& state) {
+  run(state, stability::testing::benchmark(0.05), traced(5000, 25000, 0.01), Output::boundary);
+}
+void collocation_slot_boundary(benchmark::State& state) {
+  run(state, stability::testing::benchmark(1.0), traced(5000, 25000, 0.004), Output::boundary);
+}
+void collocation_robot_boundary(benchmark::State& state) {
+  run(state, stability::testing::robot(), traced(4000, 16000, 0.003), Output::boundary);
+}
+void collocation_robot_helix_boundary(benchmark::State& state) {
+  LobesProblem problem = stability::testing::robot();
+  problem.milling.tool.helix_rad = 30.0 / 180.0 * std::numbers::pi;
+  run(state, problem, traced(4000, 16000, 0.003), Output::boundary);
+}
+
 }  // namespace
 
+BENCHMARK(collocation_point)->Arg(5)->Arg(100)->Unit(benchmark::kMicrosecond);
+BENCHMARK(collocation_map)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(collocation_boundary)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(collocation_slot_boundary)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(collocation_robot_boundary)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(collocation_robot_helix_boundary)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(benchmark_map)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(benchmark_slot_map)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(benchmark_boundary)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();

@@ -27,8 +27,8 @@ void require_depth(const char* field, double depth_m) {
 
 }  // namespace
 
-std::string_view to_string(Method) {
-  return "semi-discretization";
+std::string_view to_string(Method method) {
+  return method == Method::collocation ? "collocation" : "semi-discretization";
 }
 
 std::string_view to_string(Period period) {

@@ -28,6 +28,7 @@ using testing::rpm;
 
 PointResult at(const LobesProblem& problem, double speed_rpm, double depth_m, int intervals = 40) {
   LobesOptions options;
+  options.method = Method::semi_discretization;
   options.intervals = intervals;
   return evaluate_point(problem, options, {speed_rpm * rpm, depth_m});
 }
@@ -215,13 +216,19 @@ TEST(Lobes, BoundaryAndLimitLieWhereTheRadiusIsOne) {
   const LobesProblem problem = robot();
   LobesOptions options = chart(4000, 16000, 3e-3, 30, 24);
   options.tolerance = 1e-8;
+  options.output = Output::both;
   const LobesResult result = compute_lobes(problem, options);
   EXPECT_EQ(result.unsettled, 0);
   ASSERT_GT(result.boundary.size(), 40U);
   for (std::size_t i = 0; i < result.boundary.size(); ++i) {
     const BoundaryPoint& b = result.boundary[i];
     EXPECT_NEAR(radius(problem, b.spindle_speed_rad_per_s / rpm, b.axial_depth_m), 1.0, 1.1e-8);
-    EXPECT_GE(b.spindle_speed_rad_per_s, result.boundary[i > 0 ? i - 1 : 0].spindle_speed_rad_per_s);
+    const BoundaryPoint& before = result.boundary[i > 0 ? i - 1 : 0];
+    EXPECT_GE(b.curve, before.curve);
+    if (b.curve == before.curve) {
+      EXPECT_NEAR(b.spindle_speed_rad_per_s, before.spindle_speed_rad_per_s, 12000.0 / 29.0 * rpm * 1.0001);
+      EXPECT_NEAR(b.axial_depth_m, before.axial_depth_m, 3e-3 / 23.0 * 1.0001);
+    }
     EXPECT_GT(b.mode, 0);
   }
   ASSERT_EQ(result.limit.size(), 30U);
@@ -246,7 +253,7 @@ TEST(Lobes, MapBoundaryPointsAndLimitsAgree) {
   options.output = Output::map;
   const LobesResult map = compute_lobes(robot(), options);
   EXPECT_TRUE(map.boundary.empty());
-  EXPECT_EQ(map.spectral_radius, boundary.spectral_radius);
+  EXPECT_EQ(boundary.spectral_radius.size(), 0);
   ASSERT_EQ(map.points.size(), 2U);
   EXPECT_NEAR(map.points[0].spectral_radius, map.spectral_radius(9, 0), 1e-10);
   EXPECT_EQ(map.points[1].axial_depth_m, 4e-3);
@@ -254,7 +261,7 @@ TEST(Lobes, MapBoundaryPointsAndLimitsAgree) {
   const std::vector<Limit> limits = limit_depths(robot(), options, speeds);
   for (std::size_t i = 0; i < 12; ++i) {
     EXPECT_EQ(limits[i].status, map.limit[i].status);
-    EXPECT_EQ(limits[i].axial_depth_m, map.limit[i].axial_depth_m);
+    EXPECT_NEAR(limits[i].axial_depth_m, map.limit[i].axial_depth_m, 1e-12);
     EXPECT_EQ(boundary.limit[i].mode, map.limit[i].mode);
     EXPECT_NEAR(boundary.limit[i].axial_depth_m, map.limit[i].axial_depth_m, 1e-8);
   }
@@ -283,7 +290,8 @@ TEST(Lobes, NoLimitIsAnAnswer) {
 TEST(Lobes, SameBitsAtAnyNumberOfThreads) {
   LobesProblem problem = robot();
   problem.milling.tool.helix_rad = 0.5;
-  const LobesOptions options = chart(4000, 16000, 3e-3, 11, 10);
+  LobesOptions options = chart(4000, 16000, 3e-3, 11, 10);
+  options.output = Output::both;
   set_thread_count(1);
   const LobesResult one = compute_lobes(problem, options);
   for (const int threads : {2, 8}) {
@@ -324,6 +332,7 @@ TEST(Lobes, AbsurdCutsGiveNumbersAndNoNan) {
   LobesProblem absurd = benchmark(1.0);
   absurd.milling.coefficients = {.tangential_n_per_m2 = 9e11, .radial_n_per_m2 = -9e11};
   LobesOptions options = chart(50, 100, 0.5, 3, 4);
+  options.output = Output::map;
   const LobesResult result = compute_lobes(absurd, options);
   EXPECT_TRUE(result.spectral_radius.allFinite());
   EXPECT_GT(result.unsettled, 0);

@@ -6,6 +6,7 @@
 
 #include "robomill/stability/cut_steps.hpp"
 #include "robomill/stability/kernels.hpp"
+#include "robomill/stability/period_map.hpp"
 #include "robomill/stability/speed_plan.hpp"
 
 namespace robomill::stability::detail {
@@ -23,7 +24,7 @@ struct LanePoint {
 /// a step is its mean displacement, (q_i + q_{i+1}) / 2 of the modes and S times the mean force; for a delay of whole
 /// steps this is the published weighting, one half of either end. Only steps that some tooth looks back at are
 /// remembered, so that the state is the 2n numbers of the modes and two for each of those steps.
-class Monodromy {
+class Monodromy final : public PeriodMap {
  public:
   /// Both must outlive this.
   Monodromy(const TipDynamics& tip, const CutSteps& cut);
@@ -31,11 +32,9 @@ class Monodromy {
   /// Takes one to eight points, whose speeds have one resolution; lanes left over repeat the last.
   void prepare(std::span<const LanePoint> points);
   /// Length of the state for the points at hand.
-  [[nodiscard]] std::size_t size() const { return modal_ + 2 * outputs_.size(); }
-  /// Number of entries that belong to the modes, 2n; they come first: Re z_1, Im z_1, ….
-  [[nodiscard]] std::size_t modal_size() const { return modal_; }
-  /// out = state after one period. Lengths size(); they must not overlap.
-  void apply(const Lanes* in, Lanes* out);
+  [[nodiscard]] std::size_t size() const override { return modal_ + 2 * outputs_.size(); }
+  [[nodiscard]] std::size_t modal_size() const override { return modal_; }
+  void apply(const Lanes* in, Lanes* out) override;
 
   /// The time steps that cut, and after apply the mean force during each of them [N].
   [[nodiscard]] const std::vector<int>& cut_steps() const { return cut_numbers_; }

@@ -54,8 +54,10 @@ inline LobesProblem robot() {
   return p;
 }
 
+/// Of semi-discretization.
 inline LobesOptions chart(double from_rpm, double to_rpm, double depth_m, int speeds, int depths, int intervals = 40) {
   LobesOptions o;
+  o.method = Method::semi_discretization;
   o.spindle_speed_rad_per_s = {from_rpm * rpm, to_rpm * rpm};
   o.axial_depth_m = {0.0, depth_m};
   o.grid = {speeds, depths};

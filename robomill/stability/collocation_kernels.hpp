@@ -1,0 +1,69 @@
+#pragma once
+#include <cstddef>
+
+#include "robomill/stability/lanes.hpp"
+
+/// The inner loops of collocation: plain arrays of Lanes, nothing allocated. Matrices are row by row, m is the number of
+/// nodes times that of channels, modal is 2n.
+namespace robomill::stability::detail {
+
+/// One piece with contact maps the modes z at its start and what it looks back to, c, to the modes at its end and to
+/// what is remembered of its nodes, u:
+///   g = O z + a R g - c,  z' = E z + a W g,  u = g + c, or u = D z + a C g where `displacement` is given.
+struct NodeBlockArguments {
+  std::size_t modal = 0, nodes = 0;      ///< 2n, m
+  const Lanes* depth = nullptr;          ///< a
+  const Lanes* coupling = nullptr;       ///< R, m x m
+  const Lanes* observation = nullptr;    ///< O, m x 2n
+  const Lanes* influence = nullptr;      ///< W, 2n x m
+  const Lanes* factor = nullptr;         ///< E: real and imaginary part for each mode
+  const Lanes* displacement = nullptr;   ///< D, m x 2n, or nullptr
+  const Lanes* node_response = nullptr;  ///< C, m x m
+  Lanes* work = nullptr;                 ///< node_block_work(modal, nodes)
+  Lanes* block = nullptr;                ///< node_block_size(modal, nodes): [z', u] = block [z, c]
+};
+[[nodiscard]] constexpr std::size_t node_block_size(std::size_t modal, std::size_t nodes) {
+  return (modal + nodes + 3) / 4 * 4 * (modal + nodes);
+}
+[[nodiscard]] constexpr std::size_t node_block_work(std::size_t modal, std::size_t nodes) {
+  return nodes * (2 * nodes + modal);
+}
+void build_node_block(NodeBlockArguments& a);
+
+/// What a node takes of one earlier surface: from memory, matrix times weights times what a piece remembers.
+struct NodeLook {
+  std::size_t from = 0;            ///< entry of memory: of the node where `exact`, else of the piece's first
+  bool exact = true;               ///< else weights are
+  std::size_t weights = 0;         ///< entry of PeriodOfNodes::weights, one a node of the piece
+  bool through_stiffness = false;  ///< else as it is
+  std::size_t matrix = 0;          ///< entry of PeriodOfNodes::matrices, 2 x 2
+  std::size_t to = 0;              ///< entry of c
+};
+
+struct NodePiece {
+  bool coasts = false;
+  std::size_t factor = 0;  ///< of a coast: entry of factors, 2n
+  std::size_t block = 0;   ///< entry of blocks
+  std::size_t record = 0;  ///< entry of memory that u goes to, m
+  std::size_t first_look = 0, last_look = 0;
+};
+
+struct PeriodOfNodes {
+  std::size_t modal = 0, nodes = 0, channels = 0;  ///< 2n, m, m / p
+  const NodePiece* pieces = nullptr;
+  std::size_t piece_count = 0;
+  const NodeLook* looks = nullptr;
+  const Lanes* weights = nullptr;
+  const Lanes* matrices = nullptr;
+  const Lanes* factors = nullptr;
+  const Lanes* blocks = nullptr;
+  Lanes* memory = nullptr;
+  std::size_t carried = 0;               ///< first entries of memory: what comes from the period before
+  const std::size_t* handed = nullptr;   ///< length carried: entries of memory that go to the next
+  Lanes* state = nullptr;                ///< 2 (2n + m rounded up to fours)
+  const Lanes* in = nullptr;             ///< 2n + carried
+  Lanes* out = nullptr;
+};
+void run_period_of_nodes(PeriodOfNodes& a);
+
+}  // namespace robomill::stability::detail

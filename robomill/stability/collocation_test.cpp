@@ -1,0 +1,194 @@
+#include "robomill/stability/collocation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <numbers>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/random.hpp"
+#include "robomill/stability/test_problems.hpp"
+#include "robomill/stability/time_domain_reference.hpp"
+
+namespace robomill::stability::detail {
+namespace {
+
+using std::numbers::pi;
+using testing::benchmark;
+using testing::robot;
+using testing::rpm;
+
+int seeds(int all) {
+  return std::getenv("ROBOMILL_FULL") != nullptr ? all : all / 10;
+}
+
+PointResult at(const LobesProblem& problem, double speed_rpm, double depth_m, double tolerance = 1e-6) {
+  LobesOptions options;
+  options.tolerance = tolerance;
+  return evaluate_point(problem, options, {speed_rpm * rpm, depth_m});
+}
+
+double stepped(const LobesProblem& problem, double speed_rpm, double depth_m, int intervals) {
+  LobesOptions options;
+  options.method = Method::semi_discretization;
+  options.intervals = intervals;
+  return evaluate_point(problem, options, {speed_rpm * rpm, depth_m}).spectral_radius;
+}
+
+struct Known {
+  LobesProblem problem;
+  double speed_rpm, depth_m, converged;
+};
+
+// Source: converged spectral radii of one tooth period, eight digits.
+std::vector<Known> known_points() {
+  return {{benchmark(0.05), 5000, 0.2e-3, 0.70098118},    {benchmark(0.05), 5000, 1e-3, 0.84047032},
+          {benchmark(0.1), 5000, 0.2e-3, 0.74477499},     {benchmark(0.1), 5000, 1e-3, 1.03111539},
+          {benchmark(0.5), 5000, 0.2e-3, 1.18540555},     {benchmark(0.5), 5000, 1e-3, 3.62871024},
+          {benchmark(1.0), 5000, 0.2e-3, 2.13659148},     {benchmark(1.0), 5000, 1e-3, 10.90390056},
+          {benchmark(0.05, 1), 5000, 0.2e-3, 0.67803588}, {benchmark(0.05, 1), 5000, 1e-3, 0.74950284},
+          {benchmark(1.0, 1), 5000, 0.2e-3, 0.81974278},  {benchmark(1.0, 1), 5000, 1e-3, 1.40647353},
+          {robot(), 6500, 0.6e-3, 1.10584684},            {robot(), 8000, 1.2e-3, 1.07595981},
+          {robot(), 15000, 1.1e-3, 1.11946237}};
+}
+
+TEST(Collocation, ReachesTheKnownRadii) {
+  for (const Known& known : known_points()) {
+    const PointResult point = at(known.problem, known.speed_rpm, known.depth_m);
+    EXPECT_NEAR(point.spectral_radius, known.converged, 1e-7) << known.speed_rpm;
+    EXPECT_LE(point.error_estimate, 1e-6);
+  }
+}
+
+// The estimate is the coarser level's error, so that it bounds that of the result.
+TEST(Collocation, ErrorEstimateBoundsTheError) {
+  for (const Known& known : known_points()) {
+    const double converged = at(known.problem, known.speed_rpm, known.depth_m, 1e-10).spectral_radius;
+    EXPECT_NEAR(converged, known.converged, 6e-9);
+    for (const double tolerance : {1e-3, 1e-5, 1e-7}) {
+      const PointResult point = at(known.problem, known.speed_rpm, known.depth_m, tolerance);
+      EXPECT_LE(point.error_estimate, tolerance);
+      EXPECT_LE(std::abs(point.spectral_radius - converged), point.error_estimate + 1e-12);
+    }
+  }
+}
+
+// Source: limits at a/D = 0.05, six digits.
+TEST(Collocation, ReachesTheKnownLimits) {
+  LobesOptions options;
+  options.axial_depth_m = {0.0, 5e-3};
+  options.grid = {2, 50};
+  const std::vector<Limit> limits =
+      limit_depths(benchmark(0.05), options, {5000 * rpm, 10000 * rpm, 15000 * rpm, 20000 * rpm});
+  const double expected_m[] = {1.843802e-3, 1.486950e-3, 1.651214e-3, 3.250386e-3};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(limits[i].axial_depth_m, expected_m[i], 1e-8);
+    EXPECT_EQ(limits[i].kind, i == 3 ? Kind::flip : Kind::hopf);
+    EXPECT_LE(limits[i].error_estimate, 1e-6);
+  }
+}
+
+// No depth: the slowest mode dies down by exp(-ζωT).
+TEST(Collocation, NoDepthLeavesTheStructureAlone) {
+  const double period_s = 60.0 / 5000.0 / 2.0;
+  const double omega = 2.0 * pi * 922.0;
+  EXPECT_NEAR(at(benchmark(0.1), 5000, 0.0).spectral_radius, std::exp(-0.011 * omega * period_s), 1e-12);
+}
+
+modal::ModalModel random_structure(Random& random) {
+  modal::ModalModel model = testing::plane_model({});
+  const std::size_t count = 1 + random.index(6);
+  for (std::size_t k = 0; k < count; ++k) {
+    modal::Mode mode = testing::mass_mode(0, random.uniform(20.0, 1500.0), random.uniform(0.005, 0.1), 1.0);
+    const double size = std::sqrt(1.0 / (2.0 * random.uniform(0.05, 2.0) * modal::pole(mode).imag()));
+    const auto entry = [&] { return size * std::complex<double>(random.normal(), random.normal()); };
+    mode.left << entry(), entry();
+    mode.right << entry(), entry();
+    model.modes.push_back(mode);
+  }
+  if (random.index(3) == 0) {
+    model.residuals.push_back({.name = modal::parse_frf_name("xx"), .stiffness = random.uniform(0.0, 3e-8)});
+  }
+  return model;
+}
+
+/// Teeth, helix, pitch, immersion, structure: any.
+LobesProblem random_problem(Random& random) {
+  LobesProblem p;
+  p.milling.tool.teeth = 1 + static_cast<int>(random.index(5));
+  p.milling.tool.diameter_m = random.uniform(0.004, 0.04);
+  if (random.index(2) == 0) p.milling.tool.helix_rad = random.uniform(-0.7, 0.7);
+  p.milling.immersion.entry_rad = random.uniform(0.0, 0.9 * pi);
+  p.milling.immersion.exit_rad = random.uniform(p.milling.immersion.entry_rad + 0.2, pi);
+  p.milling.coefficients = {.tangential_n_per_m2 = random.uniform(2e8, 2e9),
+                            .radial_n_per_m2 = random.uniform(0.0, 1e9)};
+  p.feed_direction_rad = random.uniform(0.0, 2.0 * pi);
+  p.dynamics = random_structure(random);
+  if (random.index(3) == 0) {
+    double sum = 0.0;
+    for (int j = 0; j < p.milling.tool.teeth; ++j) {
+      p.milling.tool.pitch_rad.push_back(random.uniform(0.7, 1.3));
+      sum += p.milling.tool.pitch_rad.back();
+    }
+    for (double& pitch : p.milling.tool.pitch_rad) pitch *= 2.0 * pi / sum;
+  }
+  return p;
+}
+
+// Two methods that share neither steps nor weights: the difference falls with the square of the other one's step.
+TEST(Collocation, AgreesWithSemiDiscretizationOnRandomCuts) {
+  const int count = seeds(300);
+  for (int seed = 0; seed < count; ++seed) {
+    Random random(static_cast<std::uint64_t>(seed) + 77);
+    const LobesProblem problem = random_problem(random);
+    const double speed_rpm = random.uniform(1500.0, 20000.0);
+    const double depth_m = random.uniform(0.0, 1.5e-3);
+    const double collocated = at(problem, speed_rpm, depth_m).spectral_radius;
+    const double coarse = stepped(problem, speed_rpm, depth_m, 160);
+    const double fine = stepped(problem, speed_rpm, depth_m, 640);
+    const double scale = 1.0 + collocated;
+    EXPECT_NEAR(fine, collocated, 0.35 * std::abs(coarse - collocated) + 2e-5 * scale)
+        << seed << ": " << coarse << " " << fine;
+  }
+}
+
+// What is remembered of the nodes is chosen for speed; the result does not depend on it.
+TEST(Collocation, OneChannelAndTwoAreTheSame) {
+  for (const LobesProblem& problem : {benchmark(0.1), robot()}) {
+    const CollocationModel chip(problem);
+    const CollocationModel plane(problem, true);
+    const OperatingPoint point{7000 * rpm, 0.7e-3};
+    Dominant a, b;
+    CollocationEvaluator(chip, 1e-6).evaluate_at({&point, 1}, 4, {&a, 1});
+    CollocationEvaluator(plane, 1e-6).evaluate_at({&point, 1}, 4, {&b, 1});
+    EXPECT_NEAR(std::abs(a.multiplier), std::abs(b.multiplier), 1e-12);
+  }
+}
+
+// The multiplier and its vector put back into a plain run over the period, written apart from the kernels.
+TEST(Collocation, EigenvectorComesBackMultiplied) {
+  Random random(5);
+  for (int i = 0; i < 12; ++i) {
+    LobesProblem problem = random_problem(random);
+    if (i % 3 == 0) problem.milling.process_damping = {.indentation_n_per_m3 = 4e13, .wear_land_m = 5e-5};
+    const CollocationModel model(problem);
+    const OperatingPoint point{random.uniform(3000.0, 15000.0) * rpm, random.uniform(0.1e-3, 1e-3)};
+    CollocationCase here;
+    prepare_case(model, point.spindle_speed_rad_per_s, point.axial_depth_m, mesh_level(3), here);
+    CollocationMap map;
+    const CollocationMap::Point mapped{&here, point.axial_depth_m};
+    map.prepare(model, {&mapped, 1});
+    Arnoldi arnoldi;
+    Dominant found;
+    arnoldi.find(map, {&found, 1});
+    const Eigen::VectorXcd vector = arnoldi.vector(0);
+    const NodeForces run = trace(model, here, point.axial_depth_m, vector);
+    EXPECT_LT((run.end - found.multiplier * vector).norm(), 1e-9 * (1.0 + std::abs(found.multiplier))) << i;
+  }
+}
+
+}  // namespace
+}  // namespace robomill::stability::detail

@@ -1,0 +1,19 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+namespace robomill::stability::detail {
+
+/// Points and weights on [0, 1].
+struct GaussRule {
+  std::vector<double> node, weight;
+};
+
+inline constexpr int most_gauss_points = 32;
+/// Gauss-Legendre, exact for polynomials of degree 2 points - 1. 1 <= points <= most_gauss_points.
+const GaussRule& gauss_rule(int points);
+
+/// The polynomial that is 1 at node l and 0 at the others.
+double lagrange(const std::vector<double>& node, std::size_t l, double x);
+
+}  // namespace robomill::stability::detail

@@ -1,0 +1,28 @@
+#pragma once
+#include <complex>
+#include <functional>
+
+#include "robomill/stability/lobes.hpp"
+#include "robomill/stability/tip_dynamics.hpp"
+
+namespace robomill::stability::detail {
+
+/// How the motion that belongs to a multiplier looks.
+struct Motion {
+  double frequency_hz = 0.0;
+  int mode = 0;  ///< from 1, numbered as in the problem
+};
+
+/// Hopf unless the multiplier is real.
+Kind kind_of(std::complex<double> multiplier);
+
+/// The motion is a sum of harmonics exp(s_j t), s_j = (ln μ + 2πij) / T; the force has the coefficient F_j, mode k the
+/// displacement R_k L_k^T F_j / (s_j - λ_k) + conjugate pole's term. Named are the mode and the harmonic whose
+/// displacement is greatest.
+/// @param modal_state  Re z_1, Im z_1, Re z_2, … at the start of the period, complex as the eigenvector's entries are
+/// @param force        F_j of s_j: (1/T) ∫ F(t) exp(-s_j t) dt over a period
+Motion find_motion(const TipDynamics& tip, std::complex<double> multiplier, double period_s,
+                   const Eigen::VectorXcd& modal_state,
+                   const std::function<Eigen::Vector2cd(std::complex<double>)>& force);
+
+}  // namespace robomill::stability::detail

@@ -1,0 +1,20 @@
+#pragma once
+#include <cstddef>
+
+#include "robomill/stability/lanes.hpp"
+
+namespace robomill::stability::detail {
+
+/// The map of a state over one period, for eight points at once, without its matrix.
+class PeriodMap {
+ public:
+  virtual ~PeriodMap() = default;
+  /// Length of the state.
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  /// Number of entries that belong to the modes, 2n; they come first: Re z_1, Im z_1, ….
+  [[nodiscard]] virtual std::size_t modal_size() const = 0;
+  /// out = state after one period. Lengths size(); they must not overlap.
+  virtual void apply(const Lanes* in, Lanes* out) = 0;
+};
+
+}  // namespace robomill::stability::detail

@@ -1,0 +1,56 @@
+#pragma once
+#include <complex>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "robomill/stability/lanes.hpp"
+#include "robomill/stability/lobes.hpp"
+
+namespace robomill::stability::detail {
+
+/// What is wanted of a point beside its multiplier.
+struct Ask {
+  bool estimate = false;  ///< an estimate of the error, and the accuracy that the options ask for
+  bool motion = false;    ///< frequency and mode
+};
+
+/// What is found at a point.
+struct Outcome {
+  std::complex<double> multiplier = 0.0;  ///< of greatest modulus, imaginary part >= 0
+  double spectral_radius = 0.0;           ///< 1e100 where the motion overflows within a period
+  double error_estimate = std::numeric_limits<double>::quiet_NaN();  ///< of the spectral radius
+  Kind kind = Kind::hopf;
+  double chatter_frequency_hz = 0.0;
+  int mode = 0;
+};
+
+/// One thread's means to find multipliers, eight points at a time. What it says of a point does not depend on the
+/// points beside it.
+class PointEvaluator {
+ public:
+  virtual ~PointEvaluator() = default;
+  /// One to eight points; out has as many.
+  virtual void evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) = 0;
+  [[nodiscard]] long long evaluations() const { return evaluations_; }
+  [[nodiscard]] long long unsettled() const { return unsettled_; }
+
+ protected:
+  long long evaluations_ = 0, unsettled_ = 0;
+};
+
+/// A method applied to a problem. Shared by threads.
+class Scheme {
+ public:
+  virtual ~Scheme() = default;
+  [[nodiscard]] virtual std::unique_ptr<PointEvaluator> evaluator() const = 0;
+  [[nodiscard]] virtual Period period() const = 0;
+  /// Told which depths will be asked for often, before evaluators are made.
+  virtual void expect(std::span<const double> depths_m) { static_cast<void>(depths_m); }
+};
+
+std::unique_ptr<Scheme> make_scheme(const LobesProblem& problem, const LobesOptions& options);
+std::unique_ptr<Scheme> semi_discretization(const LobesProblem& problem, int intervals);
+std::unique_ptr<Scheme> collocation(const LobesProblem& problem, double tolerance);
+
+}  // namespace robomill::stability::detail

@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "robomill/stability/evaluator.hpp"
+#include "robomill/stability/point_evaluator.hpp"
+
+namespace robomill::stability::detail {
+namespace {
+
+/// Semi-discretization's evaluator as the chart wants it. Of the order 2, so that four thirds of what a run at twice
+/// the intervals differs by is the error.
+class SteppedEvaluator final : public PointEvaluator {
+ public:
+  SteppedEvaluator(const LobesProblem& problem, int intervals, const Model& model, const std::vector<DepthPlan>& plans)
+      : problem_(problem), intervals_(intervals), plans_(plans), evaluator_(model) {}
+
+  void evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) override {
+    std::array<Evaluator::Point, lane_count> at;
+    std::array<Dominant, lane_count> found;
+    std::array<Motion, lane_count> motion;
+    const std::size_t size = points.size();
+    for (std::size_t i = 0; i < size; ++i) {
+      at[i] = {points[i].spindle_speed_rad_per_s, points[i].axial_depth_m, plan_of(points[i].axial_depth_m)};
+    }
+    evaluator_.evaluate(std::span(at).first(size), std::span(found).first(size));
+    if (ask.motion) evaluator_.describe(std::span(found).first(size), std::span(motion).first(size));
+    for (std::size_t i = 0; i < size; ++i) {
+      out[i] = Outcome{};
+      out[i].spectral_radius = spectral_radius(found[i]);
+      const bool finite = std::isfinite(std::abs(found[i].multiplier));
+      out[i].multiplier = finite ? found[i].multiplier : out[i].spectral_radius;
+      out[i].kind = kind_of(found[i].multiplier);
+      out[i].chatter_frequency_hz = motion[i].frequency_hz;
+      out[i].mode = motion[i].mode;
+      if (found[i].by == Dominant::By::unsettled) ++unsettled_;
+    }
+    evaluations_ += static_cast<long long>(size);
+    if (ask.estimate) estimate(std::span(at).first(size), out);
+  }
+
+ private:
+  [[nodiscard]] const DepthPlan* plan_of(double depth_m) const {
+    const auto plan = std::ranges::lower_bound(plans_, depth_m, {}, &DepthPlan::axial_depth_m);
+    return plan != plans_.end() && plan->axial_depth_m == depth_m ? &*plan : nullptr;
+  }
+
+  void estimate(std::span<Evaluator::Point> points, std::span<Outcome> out) {
+    if (!fine_) {
+      fine_model_.emplace(problem_, 2 * intervals_);
+      fine_.emplace(*fine_model_);
+    }
+    std::array<Dominant, lane_count> finer;
+    for (Evaluator::Point& point : points) point.plan = nullptr;
+    fine_->evaluate(points, std::span(finer).first(points.size()));
+    evaluations_ += static_cast<long long>(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      out[i].error_estimate = 4.0 / 3.0 * std::abs(spectral_radius(finer[i]) - out[i].spectral_radius);
+    }
+  }
+
+  const LobesProblem& problem_;
+  int intervals_;
+  const std::vector<DepthPlan>& plans_;
+  Evaluator evaluator_;
+  std::optional<Model> fine_model_;
+  std::optional<Evaluator> fine_;
+};
+
+class SemiDiscretization final : public Scheme {
+ public:
+  SemiDiscretization(const LobesProblem& problem, int intervals)
+      : problem_(problem), intervals_(intervals), model_(problem, intervals) {}
+
+  [[nodiscard]] std::unique_ptr<PointEvaluator> evaluator() const override {
+    return std::make_unique<SteppedEvaluator>(problem_, intervals_, model_, plans_);
+  }
+  [[nodiscard]] Period period() const override { return model_.cut.period(); }
+
+  /// With a helix the stiffness takes time to find; it is kept where that does not cost much memory.
+  void expect(std::span<const double> depths_m) override {
+    const std::size_t matrices =
+        depths_m.size() * static_cast<std::size_t>(model_.cut.steps()) * model_.cut.delays().size();
+    if (problem_.milling.tool.lag_rad_per_m(0) == 0.0 || matrices > 4'000'000) return;
+    plans_.resize(depths_m.size());
+    parallel_for(depths_m.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) model_.cut.at_depth(depths_m[j], plans_[j]);
+    });
+  }
+
+ private:
+  LobesProblem problem_;
+  int intervals_;
+  Model model_;
+  std::vector<DepthPlan> plans_;
+};
+
+void refuse(bool asked, const char* field, const char* what) {
+  if (!asked) return;
+  throw InvalidInput(field, std::string("does not go with semi-discretization: ") + what,
+                     "Take method = \"collocation\"");
+}
+
+}  // namespace
+
+std::unique_ptr<Scheme> semi_discretization(const LobesProblem& problem, int intervals) {
+  const cutting::Milling& milling = problem.milling;
+  refuse(!milling.tool.has_equal_helix(), "tooth_helix_rad", "its delays do not change with height");
+  refuse(milling.tool.runout_m > 0.0, "runout_m", "it has no missed cuts");
+  refuse(milling.process_damping.active(), "indentation_n_per_m3", "it has no process damping");
+  refuse(milling.speed_variation.active(), "amplitude_ratio", "its speed is constant");
+  return std::make_unique<SemiDiscretization>(problem, intervals);
+}
+
+std::unique_ptr<Scheme> make_scheme(const LobesProblem& problem, const LobesOptions& options) {
+  if (options.method == Method::collocation) return collocation(problem, options.tolerance);
+  return semi_discretization(problem, options.intervals);
+}
+
+}  // namespace robomill::stability::detail
