@@ -1,7 +1,10 @@
 #include "robomill/stability/piece_plan.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <complex>
+#include <mutex>
 
 #include "robomill/stability/gauss.hpp"
 
@@ -10,51 +13,71 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Lagrange values that depend on the number of nodes alone. The last of `end` is the end of the piece.
+/// Lagrange values that depend on the numbers of nodes and quadrature points alone. The last end is that of the piece.
 struct Table {
   const GaussRule* nodes = nullptr;
   const GaussRule* quadrature = nullptr;
-  std::vector<double> end;                              ///< [i]: node i, then 1
-  std::vector<std::vector<std::vector<double>>> value;  ///< [i][q][l]: ℓ_l at end_i * quadrature node q
+  std::vector<double> end;    ///< [i]: node i, then 1
+  std::vector<double> value;  ///< [(i * points + q) * p + l]: ℓ_l at end_i * quadrature node q
 };
 
-Table make_table(int p) {
+Table make_table(int p, int points) {
   Table table;
   table.nodes = &gauss_rule(p);
-  // Twelve points more than the polynomial needs carry an exponential of 8 rad to rounding.
-  table.quadrature = &gauss_rule(p / 2 + 12);
+  table.quadrature = &gauss_rule(points);
   table.end = table.nodes->node;
   table.end.push_back(1.0);
   for (const double end : table.end) {
-    auto& rows = table.value.emplace_back();
     for (const double x : table.quadrature->node) {
-      auto& row = rows.emplace_back();
       for (std::size_t l = 0; l < table.nodes->node.size(); ++l) {
-        row.push_back(lagrange(table.nodes->node, l, end * x));
+        table.value.push_back(lagrange(table.nodes->node, l, end * x));
       }
     }
   }
   return table;
 }
 
-const Table& table(int p) {
-  static const std::array<Table, most_nodes + 1> tables = [] {
-    std::array<Table, most_nodes + 1> all;
-    for (int i = 1; i <= most_nodes; ++i) all[static_cast<std::size_t>(i)] = make_table(i);
-    return all;
-  }();
-  return tables[static_cast<std::size_t>(p)];
+constexpr int least_more = 4;  // quadrature points beyond half the nodes
+constexpr int most_more = 12;
+
+/// Gauss's rule is exact where the force's polynomial and 2 more - 1 powers of the exponential's series end together:
+/// for `more` of 4 plus the radians in the piece what is left of the series is below rounding.
+const Table& table(int p, double radians) {
+  const int more = std::clamp(static_cast<int>(std::ceil(radians)) + least_more, least_more, most_more);
+  struct Slot {
+    std::once_flag made;
+    Table table;
+  };
+  static std::array<std::array<Slot, most_more - least_more + 1>, most_nodes + 1> slots;
+  Slot& slot = slots[static_cast<std::size_t>(p)][static_cast<std::size_t>(more - least_more)];
+  std::call_once(slot.made, [&] { slot.table = make_table(p, p / 2 + more); });
+  return slot.table;
 }
 
-struct Residues {
-  Eigen::Matrix2cd displacement, velocity;
-};
+/// e^(pole t) at the quadrature points of one end: points that lie as far on either side of the middle share what
+/// they turn and fade by.
+void decays(Complex pole, const std::array<double, most_gauss_points>& before_s, std::size_t points, bool mirrored,
+            std::array<Complex, most_gauss_points>& out) {
+  if (!mirrored) {
+    for (std::size_t q = 0; q < points; ++q) out[q] = std::exp(pole * before_s[q]);
+    return;
+  }
+  const double middle_s = 0.5 * (before_s[0] + before_s[points - 1]);
+  const Complex middle = std::exp(pole * middle_s);
+  for (std::size_t q = 0; q < points / 2; ++q) {
+    const Complex away = std::exp(pole * (before_s[q] - middle_s));
+    out[q] = middle * away;
+    out[points - 1 - q] = middle * (std::conj(away) / std::norm(away));
+  }
+  if (points % 2 == 1) out[points / 2] = middle;
+}
 
 }  // namespace
 
 void plan_piece(const TipDynamics& tip, const Rotation& rotation, double from_rad, double length_rad, int nodes,
                 bool velocities, PiecePlan& out) {
-  const Table& t = table(nodes);
+  const double radians = tip.pole.cwiseAbs().maxCoeff() * length_rad / rotation.slowest_rad_per_s();
+  const Table& t = table(nodes, radians);
   const std::size_t p = static_cast<std::size_t>(nodes);
   const std::size_t points = t.quadrature->node.size();
   const Eigen::Index n = tip.pole.size();
@@ -78,6 +101,7 @@ void plan_piece(const TipDynamics& tip, const Rotation& rotation, double from_ra
   out.influence.resize(2 * n, 2 * nodes);
   out.velocity_at_nodes.resize(velocities ? 2 * nodes : 0, 2 * n);
   out.velocity_response.setZero(velocities ? 2 * nodes : 0, 2 * nodes);
+  std::array<Complex, most_gauss_points> decay;
   for (Eigen::Index k = 0; k < n; ++k) {
     const Complex pole = tip.pole(k);
     const Eigen::Vector2cd right = tip.right.col(k);
@@ -87,12 +111,14 @@ void plan_piece(const TipDynamics& tip, const Rotation& rotation, double from_ra
       const Eigen::Index row = 2 * static_cast<Eigen::Index>(i);
       const Complex decay_to_end = std::exp(pole * end_s[i]);
       std::array<double, most_nodes> real = {}, imaginary = {};  // ∫ exp(pole (end - s)) ℓ_l(s) ds
+      decays(pole, before_s[i], points, rotation.even(), decay);
       for (std::size_t q = 0; q < points; ++q) {
-        const Complex decay = std::exp(pole * before_s[i][q]) * weight_s[i][q];
-        const std::vector<double>& value = t.value[i][q];
+        const double re = decay[q].real() * weight_s[i][q];
+        const double im = decay[q].imag() * weight_s[i][q];
+        const double* value = t.value.data() + (i * points + q) * p;
         for (std::size_t l = 0; l < p; ++l) {
-          real[l] += decay.real() * value[l];
-          imaginary[l] += decay.imag() * value[l];
+          real[l] += re * value[l];
+          imaginary[l] += im * value[l];
         }
       }
       if (i == p) {

@@ -13,6 +13,7 @@ class Rotation {
 
   [[nodiscard]] bool even() const { return amplitude_ == 0.0; }
   [[nodiscard]] double mean_rad_per_s() const { return mean_; }
+  [[nodiscard]] double slowest_rad_per_s() const { return mean_ * (1.0 - amplitude_); }
   /// [s]
   [[nodiscard]] double time_s(double angle_rad) const { return (even() ? angle_rad : phase(angle_rad)) / mean_; }
   /// Ω at that angle [rad/s].
