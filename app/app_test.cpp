@@ -141,7 +141,7 @@ TEST_F(App, GoesFromHitsToModes) {
 }
 
 TEST_F(App, CtrlCStopsAndLeavesNoFile) {
-  write_lobes("tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n", "[4000, 4000]");
+  write_lobes("tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n", "[4000, 4000]\noutput = \"map\"");
   const Ended run =
       shell("timeout --signal=INT 1 '" ROBOMILL_PROGRAM "' lobes lobes.toml -o lobes.json; echo $? >code.txt");
   EXPECT_NE(run.err.find("interrupted"), std::string::npos) << run.err;

@@ -52,6 +52,10 @@ void print_summary(const stability::LobesResult& result) {
                lowest->chatter_frequency_hz, lowest->mode);
   }
   fmt::print("{} points of the chart in {:.2f} s, {}.\n", result.evaluations, result.seconds, to_string(result.method));
+  if (result.uncertain > 0) {
+    fmt::print("{} points are less accurate than the tolerance; their error_estimate says how much.\n",
+               result.uncertain);
+  }
 }
 
 }  // namespace
@@ -69,11 +73,10 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
   file.validate();
   for (const std::string& text : command.at) file.options.points.push_back(parse_point(text));
   const stability::LobesResult result = stability::compute_lobes(file.problem, file.options, progress);
-  const bool with_map = file.options.output == stability::Output::map;
   if (common.to_stdout()) {
-    fmt::print("{}", formats::lobes_json(result, with_map));
+    fmt::print("{}", formats::lobes_json(result));
   } else if (!common.output.empty()) {
-    formats::write_file(common.output, formats::lobes_json(result, with_map));
+    formats::write_file(common.output, formats::lobes_json(result));
   }
   if (common.wants_summary()) print_summary(result);
   return done;

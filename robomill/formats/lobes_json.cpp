@@ -32,11 +32,11 @@ Json map_json(const Eigen::MatrixXd& spectral_radius) {
 
 }  // namespace
 
-std::string lobes_json(const stability::LobesResult& result, bool with_map) {
+std::string lobes_json(const stability::LobesResult& result) {
   Json json;
   json["spindle_speed_rpm"] = grid_json(result.spindle_speed_rad_per_s, units::rpm);
   json["axial_depth_mm"] = grid_json(result.axial_depth_m, units::mm);
-  if (with_map) json["spectral_radius"] = map_json(result.spectral_radius);
+  if (result.spectral_radius.size() > 0) json["spectral_radius"] = map_json(result.spectral_radius);
   json["boundary"] = Json::array();
   for (const stability::BoundaryPoint& point : result.boundary) {
     json["boundary"].push_back(point_json(point.spindle_speed_rad_per_s, point.axial_depth_m));

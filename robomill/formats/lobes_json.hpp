@@ -6,7 +6,7 @@
 
 namespace robomill::formats {
 
-/// lobes.json as text; the map's spectral radii are written if with_map.
-[[nodiscard]] ROBOMILL_API std::string lobes_json(const stability::LobesResult& result, bool with_map);
+/// lobes.json as text; with the map where it has one.
+[[nodiscard]] ROBOMILL_API std::string lobes_json(const stability::LobesResult& result);
 
 }  // namespace robomill::formats

@@ -280,8 +280,12 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
     result.model = with_equal_directions(result.model);
     result.warnings.push_back("One direction was measured; the other is taken equal to it, without cross terms.");
   }
+  result.cut.modes.clear();  // the job's stand in their place
+  formats::load_modes(result.cut);
   result.cut.problem.dynamics = result.model;
   result.cut.validate();
+  // The report draws the boundary in any case.
+  if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
   result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
   choose(result);
   warn_of_resonance(result);

@@ -151,7 +151,7 @@ void add_lobes(report::Report& report, const PlanResult& result) {
                             .kind = to_report(point.kind),
                             .mode = point.mode});
   }
-  if (result.cut.options.output == stability::Output::map) {
+  if (lobes.spectral_radius.size() > 0) {
     all.map_speed_rad_per_s = lobes.spindle_speed_rad_per_s;
     all.map_depth_m = lobes.axial_depth_m;
     all.spectral_radius = lobes.spectral_radius;

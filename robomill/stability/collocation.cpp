@@ -22,7 +22,7 @@ class Collocation final : public Scheme {
   }
   [[nodiscard]] Period period() const override {
     return model_.told_rad() < 0.999 * 2.0 * std::numbers::pi || model_.milling.tool.teeth == 1 ? Period::tooth
-                                                                                                 : Period::revolution;
+                                                                                                : Period::revolution;
   }
 
  private:
@@ -72,7 +72,8 @@ void CollocationEvaluator::settle(std::size_t lane, std::size_t column, const Do
   const double radius = radius_of(dominant);
   const double told = share == 1.0 ? radius : std::pow(radius, share);
   const double difference = std::abs(told - here.coarse);
-  here.done = !ask.estimate || (here.compared && (difference <= tolerance_ || here.level == last_level || map_.size() > largest_state));
+  here.done = !ask.estimate ||
+              (here.compared && (difference <= tolerance_ || here.level == last_level || map_.size() > largest_state));
   if (!here.done) {
     here.coarse = told;
     here.compared = true;

@@ -198,10 +198,12 @@ NodeForces trace(const CollocationModel& model, const CollocationCase& point, do
       Eigen::VectorXcd c = Eigen::VectorXcd::Zero(m);
       for (std::size_t s = 0; s < topology.pieces[e].sources.size(); ++s) {
         const Source& source = topology.pieces[e].sources[s];
-        const std::size_t from = (source.before ? layout.before : layout.record)[static_cast<std::size_t>(source.piece)];
+        const std::size_t from =
+            (source.before ? layout.before : layout.record)[static_cast<std::size_t>(source.piece)];
         Eigen::Vector2cd seen = Eigen::Vector2cd::Zero();
         for (Eigen::Index l = 0; l < topology.nodes; ++l) {
-          const double weight = mesh.weights[s * static_cast<std::size_t>(topology.nodes) + static_cast<std::size_t>(l)];
+          const double weight =
+              mesh.weights[s * static_cast<std::size_t>(topology.nodes) + static_cast<std::size_t>(l)];
           for (Eigen::Index k = 0; k < channels; ++k) {
             seen(k) += weight * memory(static_cast<Eigen::Index>(from) + l * channels + k);
           }

@@ -30,12 +30,12 @@ struct CollocationModel {
 /// a b g at the nodes of each piece, with g = O z + a R g - c (collocation_kernels.hpp).
 struct CollocationCase {
   struct Piece {
-    std::size_t plan = 0;                   ///< entry of plans
-    Eigen::MatrixXd coupling;               ///< R, m x m
-    Eigen::MatrixXd observation;            ///< O, m x 2n
-    Eigen::MatrixXd influence;              ///< W, 2n x m
-    Eigen::MatrixXd displacement;           ///< D, m x 2n; Form::several alone
-    Eigen::MatrixXd node_response;          ///< C, m x m; Form::several alone
+    std::size_t plan = 0;           ///< entry of plans
+    Eigen::MatrixXd coupling;       ///< R, m x m
+    Eigen::MatrixXd observation;    ///< O, m x 2n
+    Eigen::MatrixXd influence;      ///< W, 2n x m
+    Eigen::MatrixXd displacement;   ///< D, m x 2n; Form::several alone
+    Eigen::MatrixXd node_response;  ///< C, m x m; Form::several alone
   };
   double spindle_speed_rad_per_s = 0.0;
   double axial_depth_m = 0.0;  ///< that the mesh was made for
@@ -51,21 +51,21 @@ void prepare_case(const CollocationModel& model, double spindle_speed_rad_per_s,
 struct NodeLayout {
   NodeLayout() = default;
   NodeLayout(const MeshTopology& topology, std::size_t modes);
-  std::size_t modal = 0;                ///< 2n
-  std::size_t nodes = 0;                ///< m, nodes times channels of a piece
-  std::vector<std::size_t> before;      ///< [piece]: entry of memory with what it left in the period before
-  std::vector<std::size_t> record;      ///< [piece]: entry of memory for what it leaves in this one
-  std::vector<std::size_t> handed;      ///< entries of memory that the next period starts from
-  std::size_t memory = 0;               ///< length
+  std::size_t modal = 0;            ///< 2n
+  std::size_t nodes = 0;            ///< m, nodes times channels of a piece
+  std::vector<std::size_t> before;  ///< [piece]: entry of memory with what it left in the period before
+  std::vector<std::size_t> record;  ///< [piece]: entry of memory for what it leaves in this one
+  std::vector<std::size_t> handed;  ///< entries of memory that the next period starts from
+  std::size_t memory = 0;           ///< length
   [[nodiscard]] std::size_t size() const { return modal + handed.size(); }
   static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 };
 
 /// The force of one period's motion at every node, from its state at the start.
 struct NodeForces {
-  std::vector<double> time_s, weight_s;       ///< of the nodes; weights integrate over the period
+  std::vector<double> time_s, weight_s;  ///< of the nodes; weights integrate over the period
   std::vector<Eigen::Vector2cd> force_n;
-  Eigen::VectorXcd end;                       ///< state after the period
+  Eigen::VectorXcd end;  ///< state after the period
 };
 NodeForces trace(const CollocationModel& model, const CollocationCase& point, double axial_depth_m,
                  const Eigen::VectorXcd& state);

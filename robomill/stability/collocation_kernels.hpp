@@ -3,8 +3,8 @@
 
 #include "robomill/stability/lanes.hpp"
 
-/// The inner loops of collocation: plain arrays of Lanes, nothing allocated. Matrices are row by row, m is the number of
-/// nodes times that of channels, modal is 2n.
+/// The inner loops of collocation: plain arrays of Lanes, nothing allocated. Matrices are row by row, m is the number
+/// of nodes times that of channels, modal is 2n.
 namespace robomill::stability::detail {
 
 /// One piece with contact maps the modes z at its start and what it looks back to, c, to the modes at its end and to
@@ -58,10 +58,10 @@ struct PeriodOfNodes {
   const Lanes* factors = nullptr;
   const Lanes* blocks = nullptr;
   Lanes* memory = nullptr;
-  std::size_t carried = 0;               ///< first entries of memory: what comes from the period before
-  const std::size_t* handed = nullptr;   ///< length carried: entries of memory that go to the next
-  Lanes* state = nullptr;                ///< 2 (2n + m rounded up to fours)
-  const Lanes* in = nullptr;             ///< 2n + carried
+  std::size_t carried = 0;              ///< first entries of memory: what comes from the period before
+  const std::size_t* handed = nullptr;  ///< length carried: entries of memory that go to the next
+  Lanes* state = nullptr;               ///< 2 (2n + m rounded up to fours)
+  const Lanes* in = nullptr;            ///< 2n + carried
   Lanes* out = nullptr;
 };
 void run_period_of_nodes(PeriodOfNodes& a);

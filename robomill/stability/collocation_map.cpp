@@ -113,7 +113,8 @@ void CollocationMap::fill(std::span<const Point> points) {
         if (!looks_[i].through_stiffness) continue;
         const Eigen::Matrix2d& k = mesh.delayed_stiffness[s];
         for (std::size_t j = 0; j < 4; ++j) {
-          matrices_[looks_[i].matrix + j].v[lane] = k(static_cast<Eigen::Index>(j / 2), static_cast<Eigen::Index>(j % 2));
+          matrices_[looks_[i].matrix + j].v[lane] =
+              k(static_cast<Eigen::Index>(j / 2), static_cast<Eigen::Index>(j % 2));
         }
       }
     }

@@ -45,13 +45,20 @@ struct Known {
 
 // Source: converged spectral radii of one tooth period, eight digits.
 std::vector<Known> known_points() {
-  return {{benchmark(0.05), 5000, 0.2e-3, 0.70098118},    {benchmark(0.05), 5000, 1e-3, 0.84047032},
-          {benchmark(0.1), 5000, 0.2e-3, 0.74477499},     {benchmark(0.1), 5000, 1e-3, 1.03111539},
-          {benchmark(0.5), 5000, 0.2e-3, 1.18540555},     {benchmark(0.5), 5000, 1e-3, 3.62871024},
-          {benchmark(1.0), 5000, 0.2e-3, 2.13659148},     {benchmark(1.0), 5000, 1e-3, 10.90390056},
-          {benchmark(0.05, 1), 5000, 0.2e-3, 0.67803588}, {benchmark(0.05, 1), 5000, 1e-3, 0.74950284},
-          {benchmark(1.0, 1), 5000, 0.2e-3, 0.81974278},  {benchmark(1.0, 1), 5000, 1e-3, 1.40647353},
-          {robot(), 6500, 0.6e-3, 1.10584684},            {robot(), 8000, 1.2e-3, 1.07595981},
+  return {{benchmark(0.05), 5000, 0.2e-3, 0.70098118},
+          {benchmark(0.05), 5000, 1e-3, 0.84047032},
+          {benchmark(0.1), 5000, 0.2e-3, 0.74477499},
+          {benchmark(0.1), 5000, 1e-3, 1.03111539},
+          {benchmark(0.5), 5000, 0.2e-3, 1.18540555},
+          {benchmark(0.5), 5000, 1e-3, 3.62871024},
+          {benchmark(1.0), 5000, 0.2e-3, 2.13659148},
+          {benchmark(1.0), 5000, 1e-3, 10.90390056},
+          {benchmark(0.05, 1), 5000, 0.2e-3, 0.67803588},
+          {benchmark(0.05, 1), 5000, 1e-3, 0.74950284},
+          {benchmark(1.0, 1), 5000, 0.2e-3, 0.81974278},
+          {benchmark(1.0, 1), 5000, 1e-3, 1.40647353},
+          {robot(), 6500, 0.6e-3, 1.10584684},
+          {robot(), 8000, 1.2e-3, 1.07595981},
           {robot(), 15000, 1.1e-3, 1.11946237}};
 }
 
@@ -188,6 +195,118 @@ TEST(Collocation, EigenvectorComesBackMultiplied) {
     const NodeForces run = trace(model, here, point.axial_depth_m, vector);
     EXPECT_LT((run.end - found.multiplier * vector).norm(), 1e-9 * (1.0 + std::abs(found.multiplier))) << i;
   }
+}
+
+LobesProblem three_teeth() {
+  LobesProblem problem = benchmark(0.3);
+  problem.milling.tool.teeth = 3;
+  problem.milling.feed_per_tooth_m = 0.1e-3;
+  return problem;
+}
+
+struct InTime {
+  int steps = 800;  ///< in a mean tooth period
+  int periods = 60, slices = 1, teeth_a_period = 0;
+  double told_periods = 1.0;  ///< periods of the spectral radius in that of the integration
+  double relative = 5e-4;
+};
+
+/// By integration in time, which shares nothing with collocation; it is of first order where teeth enter and leave
+/// within its steps.
+void expect_as_in_time(const LobesProblem& problem, double speed_rpm, double depth_m, const InTime& how) {
+  const double seen = testing::time_domain_radius(problem, {speed_rpm * rpm, depth_m}, how.steps, how.periods,
+                                                  how.slices, how.teeth_a_period);
+  const PointResult found = at(problem, speed_rpm, depth_m);
+  EXPECT_NEAR(std::pow(found.spectral_radius, how.told_periods), seen, how.relative * seen);
+  EXPECT_LE(found.error_estimate, 1e-6);
+}
+
+TEST(Collocation, UnequalPitchAsInTime) {
+  LobesProblem problem = three_teeth();
+  problem.milling.tool.pitch_rad = {110.0 * pi / 180.0, 115.0 * pi / 180.0, 135.0 * pi / 180.0};
+  expect_as_in_time(problem, 8000, 0.6e-3, {.teeth_a_period = 3});
+}
+
+TEST(Collocation, UnequalHelixAsInTime) {
+  LobesProblem problem = three_teeth();
+  problem.milling.tool.tooth_helix_rad = {0.6, 0.5, 0.7};
+  expect_as_in_time(problem, 8000, 2e-3,
+                    {.steps = 200, .periods = 40, .slices = 40, .teeth_a_period = 3, .relative = 1.5e-3});
+}
+
+TEST(Collocation, RunoutAsInTime) {
+  LobesProblem problem = three_teeth();
+  problem.milling.tool.runout_m = 60e-6;
+  problem.milling.tool.runout_angle_rad = 0.4;
+  expect_as_in_time(problem, 8000, 0.6e-3, {.teeth_a_period = 3});
+}
+
+TEST(Collocation, ProcessDampingAsInTime) {
+  LobesProblem problem = benchmark(1.0);
+  const double without = at(problem, 3000, 0.3e-3).spectral_radius;
+  problem.milling.process_damping = {.indentation_n_per_m3 = 4e13, .wear_land_m = 6e-5};
+  expect_as_in_time(problem, 3000, 0.3e-3, {.relative = 1e-5});
+  EXPECT_LT(at(problem, 3000, 0.3e-3).spectral_radius, 0.9 * without);
+}
+
+TEST(Collocation, SpeedVariationAsInTime) {
+  LobesProblem problem = benchmark(1.0);
+  problem.milling.speed_variation = {.amplitude_ratio = 0.2, .frequency_ratio = 0.5};
+  expect_as_in_time(problem, 6000, 0.3e-3,
+                    {.steps = 400, .periods = 40, .teeth_a_period = 4, .told_periods = 2.0, .relative = 1e-5});
+}
+
+// Runout on a cutter with helix: slices, finer with each level.
+TEST(Collocation, RunoutWithHelixAsInTime) {
+  LobesProblem problem = three_teeth();
+  problem.milling.tool.runout_m = 40e-6;
+  problem.milling.tool.helix_rad = 0.4;
+  LobesOptions options;
+  options.tolerance = 1e-4;
+  const PointResult found = evaluate_point(problem, options, {8000 * rpm, 1e-3});
+  const double seen = testing::time_domain_radius(problem, {8000 * rpm, 1e-3}, 200, 40, 32, 3);
+  EXPECT_NEAR(found.spectral_radius, seen, 5e-3 * seen);
+}
+
+// The part's receptance adds to the tool's: half of it on either side is the same as all of it on one.
+TEST(Collocation, WorkpieceThatMovesAddsToTheTool) {
+  LobesProblem split = benchmark(0.3);
+  for (modal::Mode& mode : split.dynamics.modes) {
+    mode.left *= std::sqrt(0.5);
+    mode.right *= std::sqrt(0.5);
+  }
+  split.workpiece_dynamics = split.dynamics;
+  const PointResult found = at(split, 7000, 0.4e-3);
+  EXPECT_NEAR(found.spectral_radius, at(benchmark(0.3), 7000, 0.4e-3).spectral_radius, 1e-9);
+  LobesProblem moved = benchmark(0.3);
+  moved.workpiece_dynamics = testing::plane_model({testing::mass_mode(1, 300.0, 0.02, 0.05)});
+  const PointResult part = at(moved, 3000, 0.4e-3);
+  EXPECT_EQ(part.mode, 3);  // the workpiece's
+}
+
+// A cutter whose teeth stand true cuts as one without the wish for it; a very small runout changes nothing.
+TEST(Collocation, SmallRunoutIsNone) {
+  LobesProblem problem = three_teeth();
+  const double tooth = at(problem, 8000, 0.6e-3).spectral_radius;
+  problem.milling.tool.runout_m = 1e-12;
+  const double revolution = at(problem, 8000, 0.6e-3).spectral_radius;
+  EXPECT_NEAR(revolution, tooth * tooth * tooth, 1e-6);
+}
+
+// So far out that one tooth alone cuts: a cutter of one tooth, with the delay of a revolution.
+TEST(Collocation, GreatRunoutLeavesOneTooth) {
+  LobesProblem many = benchmark(0.3);
+  many.milling.feed_per_tooth_m = 0.05e-3;
+  many.milling.tool.runout_m = 0.2e-3;
+  LobesProblem one = benchmark(0.3);
+  one.milling.tool.teeth = 1;
+  EXPECT_NEAR(at(many, 7000, 0.6e-3).spectral_radius, at(one, 7000, 0.6e-3).spectral_radius, 1e-9);
+}
+
+TEST(Collocation, RefusesASwingThatNeverComesRound) {
+  LobesProblem problem = benchmark(0.3);
+  problem.milling.speed_variation = {.amplitude_ratio = 0.1, .frequency_ratio = 0.1 * pi};
+  EXPECT_THROW(static_cast<void>(at(problem, 7000, 1e-4)), InvalidInput);
 }
 
 }  // namespace

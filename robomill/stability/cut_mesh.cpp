@@ -72,8 +72,8 @@ class Builder {
     std::ranges::sort(borders);
     std::vector<double> distinct;
     for (const double border : borders) {
-      const bool known = !distinct.empty() && (border - distinct.back() < same_angle ||
-                                               distinct.front() + base_rad_ - border < same_angle);
+      const bool known = !distinct.empty() &&
+                         (border - distinct.back() < same_angle || distinct.front() + base_rad_ - border < same_angle);
       if (!known) distinct.push_back(border);
     }
     return distinct;
@@ -178,7 +178,8 @@ class Builder {
         continue;
       }
       const auto same = std::ranges::find_if(groups, [&](const Group& group) {
-        return group.height < 0 && std::abs(contacts_[group.contacts.front()].delay_rad - contacts_[i].delay_rad) < same_angle;
+        return group.height < 0 &&
+               std::abs(contacts_[group.contacts.front()].delay_rad - contacts_[i].delay_rad) < same_angle;
       });
       if (same == groups.end()) {
         groups.push_back({{i}, -1});
@@ -201,8 +202,7 @@ class Builder {
       for (const std::size_t i : group.contacts) {
         const Contact& c = contacts_[i];
         term.delay_rad = c.delay_rad;
-        term.stiffness +=
-            cutting::cutting_stiffness(part_of(c), c.tooth, rotation_rad, c.low_m, c.high_m) / depth_m_;
+        term.stiffness += cutting::cutting_stiffness(part_of(c), c.tooth, rotation_rad, c.low_m, c.high_m) / depth_m_;
       }
       return term;
     }
@@ -273,9 +273,13 @@ class Builder {
     const std::vector<Group> groups = groups_of(active_[e]);
     topology.groups = static_cast<int>(groups.size());
     piece.stiffness.assign(form == MeshTopology::Form::chip ? 0 : nodes.size(), Eigen::Matrix2d::Zero());
+    // Contacts were found in the cutter's first period.
+    const double first_rad = mesh.pieces.front().from_rad;
+    const double geometry_rad =
+        piece.from_rad - base_rad_ * std::floor((piece.from_rad - first_rad) / base_rad_ + 1e-9);
     for (const Group& group : groups) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const double rotation = piece.from_rad + nodes[i] * piece.length_rad;
+        const double rotation = geometry_rad + nodes[i] * piece.length_rad;
         if (form == MeshTopology::Form::chip) {
           chip_at(rotation, active_[e].front(), piece);
           look_back(e, i, contacts_[active_[e].front()].delay_rad, mesh);
@@ -288,11 +292,12 @@ class Builder {
       }
     }
     for (std::size_t i = 0; damped && i < nodes.size(); ++i) {
-      const double rotation = piece.from_rad + nodes[i] * piece.length_rad;
+      const double rotation = geometry_rad + nodes[i] * piece.length_rad;
+      const double speed = turning.speed_rad_per_s(piece.from_rad + nodes[i] * piece.length_rad);
       Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
       for (const std::size_t c : active_[e]) {
         sum += cutting::cutting_damping(part_of(contacts_[c]), contacts_[c].tooth, rotation, contacts_[c].low_m,
-                                        contacts_[c].high_m, turning.speed_rad_per_s(rotation));
+                                        contacts_[c].high_m, speed);
       }
       piece.damping.push_back(sum / depth_m_);
     }

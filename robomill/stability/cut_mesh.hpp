@@ -29,9 +29,9 @@ struct MeshTopology {
   /// plane: q, where all that cut look back by one delay; several: q, with several delays or process damping.
   enum class Form { chip, plane, several };
   struct Piece {
-    bool records = false;               ///< false: free flight that nobody looks back to
-    int groups = 0;                     ///< delays at work
-    std::vector<Source> sources = {};   ///< [group * nodes + node]
+    bool records = false;              ///< false: free flight that nobody looks back to
+    int groups = 0;                    ///< delays at work
+    std::vector<Source> sources = {};  ///< [group * nodes + node]
     bool operator==(const Piece&) const = default;
   };
   int nodes = 0;

@@ -88,8 +88,8 @@ void plan_piece(const TipDynamics& tip, const Rotation& rotation, double from_ra
     end_s[i] = rotation.time_s(from_rad + t.end[i] * length_rad) - start;
     for (std::size_t q = 0; q < points; ++q) {
       const double angle = from_rad + t.end[i] * t.quadrature->node[q] * length_rad;
-      before_s[i][q] = rotation.even() ? end_s[i] * (1.0 - t.quadrature->node[q])
-                                       : end_s[i] - (rotation.time_s(angle) - start);
+      before_s[i][q] =
+          rotation.even() ? end_s[i] * (1.0 - t.quadrature->node[q]) : end_s[i] - (rotation.time_s(angle) - start);
       weight_s[i][q] = t.quadrature->weight[q] * t.end[i] * length_rad / rotation.speed_rad_per_s(angle);
     }
   }

@@ -22,7 +22,8 @@ class Rotation {
   }
 
  private:
-  /// Ω_0 t. The angle grows steadily with it, at 1 - A at least, so that Newton's method with a halving in reserve ends.
+  /// Ω_0 t. The angle grows steadily with it, at 1 - A at least, so that Newton's method with a halving in reserve
+  /// ends.
   [[nodiscard]] double phase(double angle_rad) const {
     const double reach = 2.0 * amplitude_ / ratio_;
     double low = angle_rad - reach;

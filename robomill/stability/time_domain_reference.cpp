@@ -55,11 +55,63 @@ struct History {
   }
 };
 
+/// How far the spindle has turned, by the varied speed's integral.
+double turned(const LobesProblem& problem, double mean_speed, double time) {
+  const cutting::SpeedVariation& v = problem.milling.speed_variation;
+  if (v.amplitude_ratio == 0.0) return mean_speed * time;
+  const double swing = v.frequency_ratio * mean_speed;
+  return mean_speed * (time + v.amplitude_ratio / swing * (1.0 - std::cos(swing * time)));
+}
+
+/// When it had turned by less.
+double time_before(const LobesProblem& problem, double mean_speed, double time, double less) {
+  if (problem.milling.speed_variation.amplitude_ratio == 0.0) return time - less / mean_speed;
+  const double wanted = turned(problem, mean_speed, time) - less;
+  double early = time - 20.0 * less / mean_speed, late = time;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (early + late);
+    (turned(problem, mean_speed, middle) < wanted ? early : late) = middle;
+  }
+  return 0.5 * (early + late);
+}
+
+/// The rotation since the surface under tooth j at height z was left, by trying every tooth before it; negative where
+/// there is no chip.
+double rotation_since(const LobesProblem& problem, int j, double z, double angle) {
+  const cutting::FlatEndMill& tool = problem.milling.tool;
+  const auto helix = [&](int k) {
+    return tool.tooth_helix_rad.empty() ? tool.helix_rad : tool.tooth_helix_rad[static_cast<std::size_t>(k)];
+  };
+  const auto pitch = [&](int k) {
+    return tool.pitch_rad.empty() ? revolution / tool.teeth : tool.pitch_rad[static_cast<std::size_t>(k)];
+  };
+  const auto stands = [&](int k) {
+    double at = -2.0 * std::tan(helix(k)) / tool.diameter_m * z;
+    for (int i = 0; i < k; ++i) at += pitch(i);
+    return at;
+  };
+  const auto radius = [&](int k) { return tool.runout_m * std::cos(stands(k) - tool.runout_angle_rad); };
+  double thinnest = 1e9, since = -1.0;
+  for (int m = 1; m <= tool.teeth; ++m) {
+    const int other = (j + m) % tool.teeth;
+    double delay = stands(other) - stands(j);
+    while (delay <= 0.0) delay += revolution;
+    const double chip = radius(j) - radius(other) +
+                        problem.milling.feed_per_tooth_m * tool.teeth * delay / revolution * std::sin(angle);
+    if (chip < thinnest - 1e-15 || (chip < thinnest + 1e-15 && delay < since)) {
+      thinnest = chip;
+      since = delay;
+    }
+  }
+  return tool.runout_m > 0.0 && thinnest <= 0.0 ? -1.0 : since;
+}
+
 /// Force on the tool in the fixed axes, tooth by tooth and slice by slice.
 Eigen::Vector2d cutting_force(const LobesProblem& problem, const OperatingPoint& point, int slices, double time,
-                              const Eigen::Vector2d& q, const History& history) {
+                              const Eigen::Vector2d& q, const Eigen::Vector2d& velocity, const History& history) {
   const cutting::FlatEndMill& tool = problem.milling.tool;
   const cutting::ForceCoefficients& k = problem.milling.coefficients;
+  const cutting::ProcessDamping& damping = problem.milling.process_damping;
   const double c = std::cos(problem.feed_direction_rad), s = std::sin(problem.feed_direction_rad);
   const Eigen::Vector2d feed(c, s), side(-s, c);
   const double thickness = point.axial_depth_m / slices;
@@ -67,19 +119,28 @@ Eigen::Vector2d cutting_force(const LobesProblem& problem, const OperatingPoint&
   double standing = 0.0;
   for (int j = 0; j < tool.teeth; ++j) {
     const double pitch = tool.pitch_rad.empty() ? revolution / tool.teeth : tool.pitch_rad[static_cast<std::size_t>(j)];
+    const double helix =
+        tool.tooth_helix_rad.empty() ? tool.helix_rad : tool.tooth_helix_rad[static_cast<std::size_t>(j)];
+    double looked = -1.0;
     Eigen::Vector2d change = Eigen::Vector2d::Zero();
-    bool looked = false;
     for (int i = 0; i < slices; ++i) {
-      double angle = point.spindle_speed_rad_per_s * time + standing -
-                     2.0 * std::tan(tool.helix_rad) / tool.diameter_m * thickness * (i + 0.5);
+      const double z = thickness * (i + 0.5);
+      double angle =
+          turned(problem, point.spindle_speed_rad_per_s, time) + standing - 2.0 * std::tan(helix) / tool.diameter_m * z;
       angle -= revolution * std::floor(angle / revolution);
       if (angle < problem.milling.immersion.entry_rad || angle > problem.milling.immersion.exit_rad) continue;
-      if (!looked) change = q - history.at(time - pitch / point.spindle_speed_rad_per_s);
-      looked = true;
+      const double since = rotation_since(problem, j, z, angle);
+      if (since < 0.0) continue;
+      if (since != looked) change = q - history.at(time_before(problem, point.spindle_speed_rad_per_s, time, since));
+      looked = since;
       const Eigen::Vector2d radius = std::sin(angle) * feed + std::cos(angle) * side;
       const Eigen::Vector2d path = std::cos(angle) * feed - std::sin(angle) * side;
       const double chip = change.dot(radius);
       force -= (k.tangential_n_per_m2 * path + k.radial_n_per_m2 * radius) * (thickness * chip);
+      const double surface_speed = 0.5 * tool.diameter_m * point.spindle_speed_rad_per_s;
+      const double pressed = 0.5 * damping.indentation_n_per_m3 * damping.wear_land_m * damping.wear_land_m *
+                             thickness * velocity.dot(radius) / surface_speed;
+      force -= pressed * (radius + damping.friction * path);
     }
     standing += pitch;
   }
@@ -88,12 +149,11 @@ Eigen::Vector2d cutting_force(const LobesProblem& problem, const OperatingPoint&
 
 }  // namespace
 
-double time_domain_radius(const LobesProblem& problem, const OperatingPoint& point, int steps, int periods,
-                          int slices) {
+double time_domain_radius(const LobesProblem& problem, const OperatingPoint& point, int steps, int periods, int slices,
+                          int teeth_a_period) {
   const Structure structure(problem.dynamics);
   const cutting::FlatEndMill& tool = problem.milling.tool;
-  const bool equal = tool.has_equal_pitch();
-  const int period = equal ? steps : steps * tool.teeth;
+  const int period = steps * (teeth_a_period > 0 ? teeth_a_period : tool.has_equal_pitch() ? 1 : tool.teeth);
   const double h = revolution / tool.teeth / point.spindle_speed_rad_per_s / steps;
   History history;
   history.step = h;
@@ -102,7 +162,8 @@ double time_domain_radius(const LobesProblem& problem, const OperatingPoint& poi
   for (Eigen::Index k = 0; k < z.size(); ++k) z(k) = {1e-3 * random.normal(), 1e-3 * random.normal()};
   const auto slope = [&](double time, const Eigen::VectorXcd& state) {
     const Eigen::Vector2d q = structure.displacement(state);
-    return structure.slope(state, cutting_force(problem, point, slices, time, q, history));
+    const Eigen::Vector2d velocity = structure.displacement(structure.slope(state, Eigen::Vector2d::Zero()));
+    return structure.slope(state, cutting_force(problem, point, slices, time, q, velocity, history));
   };
   for (int i = 0; i <= period * periods; ++i) {
     const double t = i * h;

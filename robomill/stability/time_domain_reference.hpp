@@ -13,7 +13,9 @@ namespace robomill::stability::testing {
 /// @param steps     of a mean tooth period
 /// @param periods   how many are simulated
 /// @param slices    axial slices; 1 without helix
+/// @param teeth_a_period  mean tooth periods in that of the multiplier; 0: one, or N for unequal pitch
+/// Process damping takes the modes' velocities alone: the structure's must not jump with the force.
 double time_domain_radius(const LobesProblem& problem, const OperatingPoint& point, int steps, int periods,
-                          int slices = 1);
+                          int slices = 1, int teeth_a_period = 0);
 
 }  // namespace robomill::stability::testing
