@@ -73,10 +73,15 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
   file.validate();
   for (const std::string& text : command.at) file.options.points.push_back(parse_point(text));
   const stability::LobesResult result = stability::compute_lobes(file.problem, file.options, progress);
+  stability::UncertainLimits uncertain;
+  if (file.uncertainty.samples > 0) {
+    file.uncertainty.seed = common.seed;
+    uncertain = stability::uncertain_limits(file.problem, file.options, file.uncertainty, progress);
+  }
   if (common.to_stdout()) {
-    fmt::print("{}", formats::lobes_json(result));
+    fmt::print("{}", formats::lobes_json(result, uncertain));
   } else if (!common.output.empty()) {
-    formats::write_file(common.output, formats::lobes_json(result));
+    formats::write_file(common.output, formats::lobes_json(result, uncertain));
   }
   if (common.wants_summary()) print_summary(result);
   return done;

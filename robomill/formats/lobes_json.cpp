@@ -1,5 +1,7 @@
 #include "robomill/formats/lobes_json.hpp"
 
+#include <cmath>
+
 #include "robomill/formats/json.hpp"
 #include "robomill/formats/units.hpp"
 
@@ -30,9 +32,33 @@ Json map_json(const Eigen::MatrixXd& spectral_radius) {
   return rows;
 }
 
+/// A limit beyond the range is null.
+Json depths_json(const Eigen::VectorXd& depths_m) {
+  Json out = Json::array();
+  for (const double depth : depths_m) {
+    if (std::isfinite(depth)) {
+      out.push_back(number(depth / units::mm));
+    } else {
+      out.push_back(nullptr);
+    }
+  }
+  return out;
+}
+
+Json uncertainty_json(const stability::UncertainLimits& limits) {
+  return {{"samples", limits.samples},
+          {"spindle_speed_rpm", grid_json(limits.spindle_speed_rad_per_s, units::rpm)},
+          {"axial_depth_mm", grid_json(limits.axial_depth_m, units::mm)},
+          {"limit_5_percent_mm", depths_json(limits.limit_5_percent_m)},
+          {"limit_50_percent_mm", depths_json(limits.limit_50_percent_m)},
+          {"limit_95_percent_mm", depths_json(limits.limit_95_percent_m)},
+          {"chatter_probability", map_json(limits.chatter_probability)},
+          {"seconds", number(limits.seconds)}};
+}
+
 }  // namespace
 
-std::string lobes_json(const stability::LobesResult& result) {
+std::string lobes_json(const stability::LobesResult& result, const stability::UncertainLimits& uncertain) {
   Json json;
   json["spindle_speed_rpm"] = grid_json(result.spindle_speed_rad_per_s, units::rpm);
   json["axial_depth_mm"] = grid_json(result.axial_depth_m, units::mm);
@@ -71,6 +97,7 @@ std::string lobes_json(const stability::LobesResult& result) {
   json["unsettled"] = result.unsettled;
   json["uncertain"] = result.uncertain;
   json["seconds"] = number(result.seconds);
+  if (uncertain.samples > 0) json["uncertainty"] = uncertainty_json(uncertain);
   return dump(json);
 }
 

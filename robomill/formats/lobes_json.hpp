@@ -3,10 +3,12 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/uncertainty.hpp"
 
 namespace robomill::formats {
 
-/// lobes.json as text; with the map where it has one.
-[[nodiscard]] ROBOMILL_API std::string lobes_json(const stability::LobesResult& result);
+/// lobes.json as text; with the map and the uncertain limits where there are some.
+[[nodiscard]] ROBOMILL_API std::string lobes_json(const stability::LobesResult& result,
+                                                  const stability::UncertainLimits& uncertain = {});
 
 }  // namespace robomill::formats

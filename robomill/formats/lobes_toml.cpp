@@ -148,6 +148,24 @@ void read_chart(TomlFile& file, stability::LobesOptions& options) {
   file.locate([&] { options.validate(); });
 }
 
+void read_uncertainty(TomlFile& file, stability::Uncertainty& u) {
+  if (!file.has("uncertainty")) return;
+  u.samples = 200;
+  file.integer("uncertainty.samples", "samples", u.samples);
+  file.number("uncertainty.tangential_std_n_per_mm2", "tangential_std_n_per_m2", units::n_per_mm2,
+              u.tangential_std_n_per_m2);
+  file.number("uncertainty.radial_std_n_per_mm2", "radial_std_n_per_m2", units::n_per_mm2, u.radial_std_n_per_m2);
+  file.number("uncertainty.frequency_std_ratio", "frequency_std_ratio", 1.0, u.frequency_std_ratio);
+  file.number("uncertainty.damping_std_ratio", "damping_std_ratio", 1.0, u.damping_std_ratio);
+  file.number("uncertainty.residue_std_ratio", "residue_std_ratio", 1.0, u.residue_std_ratio);
+  std::vector<int> grid;
+  if (file.integers("uncertainty.grid", "grid", grid)) {
+    if (grid.size() != 2) throw file.refuse("uncertainty.grid", "must be [speeds, depths]");
+    u.grid = {grid[0], grid[1]};
+  }
+  file.locate([&] { u.validate(); });
+}
+
 LobesFile read(TomlFile& file, const std::filesystem::path& path) {
   LobesFile out;
   out.path = path;
@@ -158,6 +176,7 @@ LobesFile read(TomlFile& file, const std::filesystem::path& path) {
   file.integers("dynamics.keep_modes", "keep_modes", out.problem.keep_modes);
   read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf, out.problem.workpiece_dynamics);
   read_chart(file, out.options);
+  read_uncertainty(file, out.uncertainty);
   file.done();
   return out;
 }

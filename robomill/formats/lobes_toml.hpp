@@ -3,6 +3,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/uncertainty.hpp"
 
 namespace robomill::formats {
 
@@ -15,6 +16,7 @@ struct LobesFile {
   std::filesystem::path frf = {};              ///< dynamics.frf, resolved; empty where absent
   std::filesystem::path workpiece_modes = {};  ///< workpiece_dynamics.modes, the same
   std::filesystem::path workpiece_frf = {};    ///< workpiece_dynamics.frf, the same
+  stability::Uncertainty uncertainty = {};     ///< samples: 0 where the file has none
   double radial_depth_m = 0.0;                 ///< b [m]; from the angles where they are given
   /// What the problem still needs is checked here, with errors in the file's words: call it when dynamics is there.
   /// @throws InvalidInput

@@ -233,6 +233,16 @@ void compare(PlanResult& result, Progress& progress) {
   }
 }
 
+/// How far the limit moves with what the fit, and the file of the cut, leave uncertain.
+void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
+  const auto known = [](const modal::Mode& mode) { return std::isfinite(mode.frequency_std_hz); };
+  stability::Uncertainty& uncertainty = result.cut.uncertainty;
+  if (uncertainty.samples == 0 && std::ranges::any_of(result.model.modes, known)) uncertainty.samples = 100;
+  if (uncertainty.samples == 0) return;
+  uncertainty.seed = seed;
+  result.uncertain = stability::uncertain_limits(result.cut.problem, result.cut.options, uncertainty, progress);
+}
+
 }  // namespace
 
 modal::ModalModel with_equal_directions(const modal::ModalModel& model) {
@@ -287,6 +297,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   // The report draws the boundary in any case.
   if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
   result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
+  spread(result, seed, progress);
   choose(result);
   warn_of_resonance(result);
   pairs(result, progress);

@@ -14,6 +14,7 @@
 #include "robomill/plan/recommend.hpp"
 #include "robomill/report/report.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/uncertainty.hpp"
 
 namespace robomill::plan {
 
@@ -27,8 +28,9 @@ struct PlanResult {
   double added_decay_per_s = 0.0;           ///< of an exponential window, still in frfs
   std::optional<modal::FitResult> fit;      ///< of a job that starts from hits or FRFs
   modal::ModalModel model;
-  stability::LobesResult lobes;      ///< of all modes
-  std::vector<report::Lobes> pairs;  ///< limits of modes 1–2, 3–4, …
+  stability::LobesResult lobes;          ///< of all modes
+  stability::UncertainLimits uncertain;  ///< samples: 0 where nothing is known to be uncertain
+  std::vector<report::Lobes> pairs;      ///< limits of modes 1–2, 3–4, …
   std::optional<report::FeedDirections> feed_directions;
   Recommendation recommendation;
   std::vector<report::TestCut> cuts;

@@ -78,7 +78,7 @@ std::string modes_json(const PlanResult& result) {
 }
 
 std::string lobes_json(const PlanResult& result) {
-  return formats::lobes_json(result.lobes);
+  return formats::lobes_json(result.lobes, result.uncertain);
 }
 
 }  // namespace

@@ -151,6 +151,15 @@ void add_lobes(report::Report& report, const PlanResult& result) {
                             .kind = to_report(point.kind),
                             .mode = point.mode});
   }
+  if (result.uncertain.samples > 0) {
+    const auto shown = [](const Eigen::VectorXd& depth_m) -> Eigen::VectorXd {
+      return depth_m.unaryExpr([](double depth) { return std::isfinite(depth) ? depth : report::missing; });
+    };
+    all.band.label = fmt::format("5 to 95 % of {} samples", result.uncertain.samples);
+    all.band.spindle_speed_rad_per_s = result.uncertain.spindle_speed_rad_per_s;
+    all.band.low_m = shown(result.uncertain.limit_5_percent_m);
+    all.band.high_m = shown(result.uncertain.limit_95_percent_m);
+  }
   if (lobes.spectral_radius.size() > 0) {
     all.map_speed_rad_per_s = lobes.spindle_speed_rad_per_s;
     all.map_depth_m = lobes.axial_depth_m;

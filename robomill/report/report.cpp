@@ -41,6 +41,10 @@ void validate_lobes(const Report& report) {
     require_axis(member("lobes", k, "spindle_speed_rad_per_s"), lobes.spindle_speed_rad_per_s);
     require_length(member("lobes", k, "limit_depth_m"), lobes.limit_depth_m.size(),
                    lobes.spindle_speed_rad_per_s.size(), false);
+    require_axis(member("lobes", k, "band.spindle_speed_rad_per_s"), lobes.band.spindle_speed_rad_per_s);
+    for (const Eigen::VectorXd* side : {&lobes.band.low_m, &lobes.band.high_m}) {
+      require_length(member("lobes", k, "band"), side->size(), lobes.band.spindle_speed_rad_per_s.size(), false);
+    }
     require_axis(member("lobes", k, "map_speed_rad_per_s"), lobes.map_speed_rad_per_s);
     require_axis(member("lobes", k, "map_depth_m"), lobes.map_depth_m);
     const std::string map = member("lobes", k, "spectral_radius");

@@ -99,6 +99,13 @@ struct DepthCurve {
   Eigen::VectorXd axial_depth_m = {};            ///< length n; NaN: none in the range
 };
 
+/// Where the limit lies with all that is not known exactly.
+struct LimitBand {
+  std::string label = {};                        ///< "5 to 95 % of 200 samples"
+  Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing; empty where there is none
+  Eigen::VectorXd low_m = {}, high_m = {};       ///< length n; NaN: beyond searched_depth_m
+};
+
 /// Stability lobes of all modes or of some.
 struct Lobes {
   std::string label = {};                        ///< "all modes", "modes 1–2"
@@ -106,6 +113,7 @@ struct Lobes {
   Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing
   Eigen::VectorXd limit_depth_m = {};            ///< length n, lowest unstable depth; NaN: none up to searched_depth_m
   double searched_depth_m = missing;             ///< the deepest that was looked at
+  LimitBand band = {};
   std::vector<BoundaryPoint> boundary = {};
   Eigen::VectorXd map_speed_rad_per_s = {};  ///< length n_s, increasing; the next three are empty where there is no map
   Eigen::VectorXd map_depth_m = {};          ///< length n_d, increasing

@@ -246,12 +246,21 @@ Json map_json(const Lobes& lobes) {
           {"spectral_radius", std::move(rows)}};
 }
 
+Json band_json(const LimitBand& band) {
+  if (band.spindle_speed_rad_per_s.size() == 0) return nullptr;
+  return {{"label", text(band.label)},
+          {"spindle_speed_rpm", numbers(band.spindle_speed_rad_per_s, units::rpm)},
+          {"low_mm", numbers(band.low_m, units::mm)},
+          {"high_mm", numbers(band.high_m, units::mm)}};
+}
+
 Json lobes_json(const Lobes& lobes) {
   return {{"label", text(lobes.label)},
           {"modes", lobes.modes},
           {"spindle_speed_rpm", numbers(lobes.spindle_speed_rad_per_s, units::rpm)},
           {"limit_mm", numbers(lobes.limit_depth_m, units::mm)},
           {"searched_depth_mm", number(lobes.searched_depth_m, units::mm)},
+          {"band", band_json(lobes.band)},
           {"boundary", boundary_json(lobes.boundary)},
           {"map", map_json(lobes)}};
 }

@@ -127,6 +127,10 @@ void add_lobes(Report& report, const std::string& label, const std::vector<int>&
     if (point.mode > 0) lobes.boundary.push_back(point);
   }
   if (keep.empty()) {
+    lobes.band.label = "5 to 95 % of 200 samples";
+    lobes.band.spindle_speed_rad_per_s = lobes.spindle_speed_rad_per_s;
+    lobes.band.low_m = 0.9 * lobes.limit_depth_m;
+    lobes.band.high_m = 1.15 * lobes.limit_depth_m;
     lobes.map_speed_rad_per_s = Eigen::VectorXd::LinSpaced(61, 4000.0, 16000.0) * units::rpm;
     lobes.map_depth_m = Eigen::VectorXd::LinSpaced(31, 0.0, 3.0) * units::mm;
     lobes.spectral_radius.resize(31, 61);

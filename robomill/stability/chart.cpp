@@ -248,6 +248,19 @@ std::vector<double> climb(PointEvaluator& evaluator, const Axes& axes, std::size
 
 }  // namespace
 
+std::vector<double> even(const std::array<double, 2>& range, int count) {
+  std::vector<double> values(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    const double t = static_cast<double>(i) / (count - 1);
+    values[static_cast<std::size_t>(i)] = (1.0 - t) * range[0] + t * range[1];
+  }
+  return values;
+}
+
+Axes even_axes(const LobesOptions& options) {
+  return {even(options.spindle_speed_rad_per_s, options.grid[0]), even(options.axial_depth_m, options.grid[1])};
+}
+
 GridRadii evaluate_grid(const Scheme& scheme, const Axes& axes, bool estimate, Count& count, Progress& progress) {
   GridRadii grid = empty_grid(axes);
   std::vector<Node> nodes;
@@ -304,6 +317,28 @@ std::vector<Limit> grid_limits(const Scheme& scheme, const Axes& axes, const Gri
   return limits;
 }
 
+std::vector<Limit> limits_between(PointEvaluator& evaluator, const Axes& axes, std::size_t first, std::size_t last,
+                                  double tolerance, const Progress& progress) {
+  std::vector<Limit> limits(last - first);
+  std::vector<Edge> edges;
+  std::vector<std::size_t> owner;
+  for (std::size_t s = first; s < last; ++s) {
+    const std::vector<double> radii = climb(evaluator, axes, s, progress);
+    limits[s - first].spindle_speed_rad_per_s = axes.spindle_speed_rad_per_s[s];
+    const auto unstable = std::ranges::find_if(radii, [](double radius) { return radius >= 1.0; });
+    if (unstable == radii.begin()) {
+      limits[s - first] = limit_at_start(evaluator, axes.at(s, 0));
+    } else if (unstable != radii.end()) {
+      const std::size_t d = static_cast<std::size_t>(unstable - radii.begin());
+      edges.push_back({axes.at(s, d - 1), axes.at(s, d), radii[d - 1], radii[d]});
+      owner.push_back(s - first);
+    }
+  }
+  const std::vector<BoundaryPoint> found = refine(evaluator, edges, tolerance, progress);
+  for (std::size_t i = 0; i < found.size(); ++i) limits[owner[i]] = limit_at(found[i]);
+  return limits;
+}
+
 std::vector<Limit> column_limits(const Scheme& scheme, const Axes& axes, double tolerance, Count& count,
                                  Progress& progress) {
   const std::size_t speeds = axes.spindle_speed_rad_per_s.size();
@@ -312,22 +347,8 @@ std::vector<Limit> column_limits(const Scheme& scheme, const Axes& axes, double 
   progress.start("stability limits", speeds);
   parallel_for(speeds, lane_count, [&](std::size_t begin, std::size_t end) {
     const std::unique_ptr<PointEvaluator> evaluator = scheme.evaluator();
-    std::vector<Edge> edges;
-    std::vector<std::size_t> owner;
-    for (std::size_t s = begin; s < end; ++s) {
-      const std::vector<double> radii = climb(*evaluator, axes, s, progress);
-      limits[s].spindle_speed_rad_per_s = axes.spindle_speed_rad_per_s[s];
-      const auto first = std::ranges::find_if(radii, [](double radius) { return radius >= 1.0; });
-      if (first == radii.begin()) {
-        limits[s] = limit_at_start(*evaluator, axes.at(s, 0));
-      } else if (first != radii.end()) {
-        const std::size_t d = static_cast<std::size_t>(first - radii.begin());
-        edges.push_back({axes.at(s, d - 1), axes.at(s, d), radii[d - 1], radii[d]});
-        owner.push_back(s);
-      }
-    }
-    const std::vector<BoundaryPoint> found = refine(*evaluator, edges, tolerance, progress);
-    for (std::size_t i = 0; i < found.size(); ++i) limits[owner[i]] = limit_at(found[i]);
+    const std::vector<Limit> found = limits_between(*evaluator, axes, begin, end, tolerance, progress);
+    std::ranges::copy(found, limits.begin() + static_cast<std::ptrdiff_t>(begin));
     counts[begin].add(*evaluator);
     progress.advance(end - begin);
   });

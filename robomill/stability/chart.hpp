@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "robomill/base/progress.hpp"
@@ -28,6 +29,10 @@ struct Axes {
   }
 };
 
+/// The options' grid.
+Axes even_axes(const LobesOptions& options);
+std::vector<double> even(const std::array<double, 2>& range, int count);
+
 /// Spectral radius on the grid, a row a depth. A node that nobody had to look at has the stability of its surroundings
 /// and the value NaN in `radius`.
 struct GridRadii {
@@ -55,7 +60,11 @@ std::vector<Limit> grid_limits(const Scheme& scheme, const Axes& axes, const Gri
                                const std::vector<BoundaryPoint>& boundary, double tolerance, Count& count,
                                Progress& progress);
 
-/// The same without a grid: depths are looked at from the lowest up to the first that is unstable.
+/// The same without a grid, of the speeds first to last - 1: depths are looked at from the lowest up to the first that
+/// is unstable.
+std::vector<Limit> limits_between(PointEvaluator& evaluator, const Axes& axes, std::size_t first, std::size_t last,
+                                  double tolerance, const Progress& progress);
+/// Of all speeds, on all threads:
 std::vector<Limit> column_limits(const Scheme& scheme, const Axes& axes, double tolerance, Count& count,
                                  Progress& progress);
 

@@ -13,15 +13,6 @@ namespace {
 
 using namespace detail;
 
-std::vector<double> even(const std::array<double, 2>& range, int count) {
-  std::vector<double> values(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
-    const double t = static_cast<double>(i) / (count - 1);
-    values[static_cast<std::size_t>(i)] = (1.0 - t) * range[0] + t * range[1];
-  }
-  return values;
-}
-
 PointResult point_result(PointEvaluator& evaluator, const OperatingPoint& point) {
   Outcome outcome;
   evaluator.evaluate({&point, 1}, {.estimate = true, .motion = true}, {&outcome, 1});
@@ -54,8 +45,7 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   problem.validate();
   options.validate();
   const std::unique_ptr<Scheme> scheme = make_scheme(problem, options);
-  const Axes axes = {even(options.spindle_speed_rad_per_s, options.grid[0]),
-                     even(options.axial_depth_m, options.grid[1])};
+  const Axes axes = even_axes(options);
   LobesResult result;
   result.spindle_speed_rad_per_s = to_eigen(axes.spindle_speed_rad_per_s);
   result.axial_depth_m = to_eigen(axes.axial_depth_m);

@@ -4,6 +4,7 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/stability/test_problems.hpp"
+#include "robomill/stability/uncertainty.hpp"
 
 namespace {
 
@@ -83,8 +84,37 @@ void collocation_robot_helix_boundary(benchmark::State& state) {
   run(state, problem, traced(4000, 16000, 0.003), Output::boundary);
 }
 
+void uncertain_samples(benchmark::State& state) {
+  const LobesProblem problem = stability::testing::benchmark(0.05);
+  const LobesOptions options = traced(5000, 25000, 0.01);
+  Uncertainty uncertainty;
+  uncertainty.grid = {100, 50};
+  uncertainty.samples = static_cast<int>(state.range(0));
+  uncertainty.tangential_std_n_per_m2 = 3e7;
+  uncertainty.frequency_std_ratio = 0.01;
+  uncertainty.damping_std_ratio = 0.1;
+  for (auto _ : state) benchmark::DoNotOptimize(uncertain_limits(problem, options, uncertainty));
+  state.counters["samples"] = static_cast<double>(state.range(0));
+}
+/// The robot's modes again and again, a little apart.
+void modes(benchmark::State& state) {
+  LobesProblem problem = stability::testing::robot();
+  const std::vector<modal::Mode> eight = problem.dynamics.modes;
+  problem.dynamics.modes.clear();
+  for (std::int64_t k = 0; k < state.range(0); ++k) {
+    modal::Mode mode = eight[static_cast<std::size_t>((7 - k % 8) % 8)];
+    const double round = static_cast<double>(k / 8);
+    mode.frequency_hz *= 1.0 + 0.07 * round;
+    mode.right *= 1.0 / (1.0 + round);
+    problem.dynamics.modes.push_back(mode);
+  }
+  run(state, problem, traced(4000, 16000, 0.003), Output::map);
+}
+
 }  // namespace
 
+BENCHMARK(uncertain_samples)->Arg(100)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(modes)->RangeMultiplier(2)->Range(1, 32)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(collocation_point)->Arg(5)->Arg(100)->Unit(benchmark::kMicrosecond);
 BENCHMARK(collocation_map)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(collocation_boundary)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();

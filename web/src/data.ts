@@ -46,6 +46,7 @@ export interface Lobes {
   spindle_speed_rpm: number[];
   limit_mm: Num[];
   searched_depth_mm: Num;
+  band: { label: string; spindle_speed_rpm: number[]; low_mm: Num[]; high_mm: Num[] } | null;
   boundary: {
     spindle_speed_rpm: number[];
     axial_depth_mm: number[];

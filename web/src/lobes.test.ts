@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Cut, Lobes } from './data';
-import { cutTraces, depthTop, frequencyTraces, limitTraces, lobesFigure, mapFigure, pairFigure, searchedDepth, stableDepth, visibleLimits } from './lobes';
+import { bandTraces, cutTraces, depthTop, frequencyTraces, limitTraces, lobesFigure, mapFigure, pairFigure, searchedDepth, stableDepth, visibleLimits } from './lobes';
 import { dark, light, thinSpace } from './theme';
 
 const lobes: Lobes = {
@@ -9,6 +9,7 @@ const lobes: Lobes = {
   spindle_speed_rpm: [4000, 5000, 6000, 7000],
   limit_mm: [0.5, null, 1.25, 0.75],
   searched_depth_mm: 3,
+  band: null,
   boundary: {
     spindle_speed_rpm: [4000, 4100, 6000, 7000],
     axial_depth_mm: [0.5, 0.6, 1.25, 0.75],
@@ -104,6 +105,14 @@ describe('lobes', () => {
     const figure = pairFigure({ ...lobes, label: 'modes 1–2' }, lobes, [], light);
     expect(figure.data[0]!['name']).toBe('all modes');
     expect((figure.layout['title'] as { text: string }).text).toBe('modes 1–2');
+  });
+  it('show what is uncertain behind the limit, up to the top where there is none', () => {
+    const band = { label: '5 to 95 %', spindle_speed_rpm: [4000, 7000], low_mm: [1, 2], high_mm: [2, null] };
+    const [low, high] = bandTraces({ ...lobes, band }, light);
+    expect(low!['y']).toEqual([1, 2]);
+    expect(high!['y']).toEqual([2, 3]);
+    expect(high!['fill']).toBe('tonexty');
+    expect(bandTraces(lobes, light)).toEqual([]);
   });
   it('draw the line of spectral radius one over the map', () => {
     const map = { spindle_speed_rpm: [1, 2], axial_depth_mm: [0, 1], spectral_radius: [[0.5, 0.6], [1.5, null]] };

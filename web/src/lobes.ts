@@ -24,6 +24,18 @@ export function searchedDepth(lobes: Lobes): number {
   return lobes.limit_mm.reduce<number>((most, depth) => Math.max(most, depth ?? 0), 0);
 }
 
+/** Where the limit lies with all that is uncertain; up to the top where none was found. */
+export function bandTraces(lobes: Lobes, theme: Theme): Trace[] {
+  const { band } = lobes;
+  if (band === null) return [];
+  const top = searchedDepth(lobes);
+  const side = { type: 'scatter', mode: 'lines', x: band.spindle_speed_rpm, line: { width: 0 }, hoverinfo: 'skip' };
+  return [
+    { ...side, y: band.low_mm.map((depth) => depth ?? top), showlegend: false },
+    { ...side, y: band.high_mm.map((depth) => depth ?? top), fill: 'tonexty', fillcolor: theme.bandFill, name: plain(band.label) },
+  ];
+}
+
 export function limitTraces(lobes: Lobes, theme: Theme, name = 'limit', colour = theme.text): Trace[] {
   return [
     {
@@ -221,6 +233,7 @@ export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): F
   const frequencies = frequencyTraces(lobes, theme);
   const two = frequencies.length > 0;
   const data: Trace[] = [
+    ...bandTraces(lobes, theme),
     ...limitTraces(lobes, theme),
     ...visibleLimits(input).map((curve, i) => ({
       type: 'scatter',

@@ -6,6 +6,7 @@ export interface Theme {
   panel: string;
   stable: string;
   stableFill: string;
+  bandFill: string;
   chatter: string;
   borderline: string;
   unknown: string;
@@ -21,6 +22,7 @@ export const light: Theme = {
   panel: '#ffffff',
   stable: '#007f5f',
   stableFill: 'rgba(0, 127, 95, 0.10)',
+  bandFill: 'rgba(204, 121, 167, 0.30)',
   chatter: '#c8401c',
   borderline: '#c98a00',
   unknown: '#8a94a3',
@@ -36,6 +38,7 @@ export const dark: Theme = {
   panel: '#171d26',
   stable: '#3ecf9f',
   stableFill: 'rgba(62, 207, 159, 0.12)',
+  bandFill: 'rgba(204, 121, 167, 0.35)',
   chatter: '#ff7a55',
   borderline: '#f0b840',
   unknown: '#8a97a8',
