@@ -37,6 +37,18 @@ FrfSet noisy_robot(double relative, std::uint64_t seed) {
   return set;
 }
 
+/// ‖H_model − H‖ / ‖H‖ over all lines and FRFs.
+double relative_distance(const ModalModel& model, const FrfSet& set) {
+  const FrfSet exact = synthesize(model, set.frequency_hz);
+  double difference = 0.0;
+  double size = 0.0;
+  for (std::size_t f = 0; f < set.frfs.size(); ++f) {
+    difference += (exact.frfs[f].receptance - set.frfs[f].receptance).squaredNorm();
+    size += set.frfs[f].receptance.squaredNorm();
+  }
+  return std::sqrt(difference / size);
+}
+
 // The model put back into itself: eight modes, four of them heavily damped and close, found without any start.
 TEST(HybridFit, FindsTheRobotsModesInCleanFrfs) {
   const ModalModel truth = cases::robot();
@@ -66,10 +78,14 @@ TEST(HybridFit, NoisyFrfsAndHonestDeviations) {
   int within = 0;
   int values = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const FitResult result = fit_modes(noisy_robot(0.02, seed), {});
+    const FrfSet set = noisy_robot(0.02, seed);
+    const FitResult result = fit_modes(set, {});
     ASSERT_EQ(result.status, FitResult::Status::converged) << "seed " << seed;
     ASSERT_EQ(result.model.modes.size(), truth.modes.size()) << "seed " << seed;
-    EXPECT_NEAR(result.relative_error, 0.02, 0.002);
+    // What is left is this seed's noise, less the little that 80 unknowns take of 31,848 values.
+    const double noise = relative_distance(truth, set);
+    EXPECT_GT(result.relative_error, 0.93 * noise) << "seed " << seed;
+    EXPECT_LT(result.relative_error, 1.03 * noise) << "seed " << seed;
     for (std::size_t k = 0; k < truth.modes.size(); ++k) {
       const Mode& mode = result.model.modes[k];
       const double frequency = std::abs(mode.frequency_hz - truth.modes[k].frequency_hz);
