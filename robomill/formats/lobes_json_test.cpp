@@ -31,6 +31,7 @@ stability::LobesResult small_result() {
   point.mode = 8;
   r.points = {point};
   r.evaluations = 8;
+  r.unsettled = 3;
   r.seconds = 0.25;
   return r;
 }
@@ -58,7 +59,7 @@ TEST(LobesJson, SaysEverythingInShopUnits) {
   EXPECT_EQ(json["method"], "semi-discretization");
   EXPECT_EQ(json["period"], "tooth");
   EXPECT_EQ(json["evaluations"], 8);
-  EXPECT_EQ(json["unsettled"], 0);
+  EXPECT_EQ(json["unsettled"], 3);
   EXPECT_EQ(json["seconds"], 0.25);
 }
 
