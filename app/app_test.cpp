@@ -12,6 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "robomill/base/test_support.hpp"
+
 namespace robomill::app {
 namespace {
 
@@ -27,23 +29,15 @@ std::string slurp(const std::filesystem::path& path) {
 
 class App : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("app_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   Ended shell(const std::string& command) {
-    const std::string full = "cd '" + folder_.string() + "' && { " + command + " ; } >out.txt 2>err.txt";
+    const std::string full = "cd '" + folder_.path().string() + "' && { " + command + " ; } >out.txt 2>err.txt";
     const int status = std::system(full.c_str());  // NOLINT(cert-env33-c): a user's shell is what is tested
     return {.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-            .out = slurp(folder_ / "out.txt"),
-            .err = slurp(folder_ / "err.txt")};
+            .out = slurp(folder_.at("out.txt")),
+            .err = slurp(folder_.at("err.txt"))};
   }
   Ended robomill(const std::string& arguments) { return shell("'" ROBOMILL_PROGRAM "' " + arguments); }
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  void write(const std::string& name, const std::string& text) { folder_.file(name, text); }
   void write_lobes(const std::string& coefficients = "tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n",
                    const std::string& grid = "[20, 10]") {
     write("lobes.toml",
@@ -55,7 +49,7 @@ class App : public testing::Test {
               grid + "\n");
   }
 
-  std::filesystem::path folder_;
+  test::Folder folder_;
 };
 
 TEST_F(App, TellsVersionAndHelp) {
@@ -79,12 +73,12 @@ TEST_F(App, BadInputExitsWithOneAndOneMessage) {
   EXPECT_NE(run.err.find("lobes.toml:9: coefficients.tangential_n_per_mm2 = 0 N/mm^2"), std::string::npos) << run.err;
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1);
   EXPECT_TRUE(run.out.empty());
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "lobes.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.at("lobes.json")));
   EXPECT_EQ(robomill("lobes missing.toml").exit, 1);
   EXPECT_EQ(robomill("modes missing.uff").exit, 1);
   EXPECT_EQ(robomill("frf missing.toml").exit, 1);
   EXPECT_EQ(robomill("plan missing.toml -o out").exit, 1);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.at("out")));
 }
 
 TEST_F(App, DashWritesJsonAndNothingElse) {
@@ -119,7 +113,7 @@ TEST_F(App, NoSafeDepthExitsWithThree) {
   const Ended ended = robomill("plan job.toml -o out");
   EXPECT_EQ(ended.exit, 3) << ended.err;
   EXPECT_NE(ended.out.find("no safe depth"), std::string::npos);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "report.html"));
+  EXPECT_TRUE(std::filesystem::exists(folder_.at("out") / "report.html"));
 }
 
 // From hits to FRFs to modes, each verb by its own files.
@@ -132,10 +126,10 @@ TEST_F(App, GoesFromHitsToModes) {
     EXPECT_EQ(robomill(std::string("frf hits/hits.toml --quiet -o ") + name).exit, 0) << name;
   }
   EXPECT_EQ(robomill("frf hits/hits.toml --quiet --binary -o binary.uff").exit, 0);
-  EXPECT_LT(std::filesystem::file_size(folder_ / "binary.uff"), std::filesystem::file_size(folder_ / "tip.uff"));
+  EXPECT_LT(std::filesystem::file_size(folder_.at("binary.uff")), std::filesystem::file_size(folder_.at("tip.uff")));
   const Ended modes = robomill("modes tip.uff --band 10,700 -o modes.json");
   ASSERT_EQ(modes.exit, 0) << modes.err;
-  const auto json = nlohmann::json::parse(slurp(folder_ / "modes.json"));
+  const auto json = nlohmann::json::parse(slurp(folder_.at("modes.json")));
   EXPECT_GE(json["modes"].size(), 6U);
   EXPECT_LT(json["fit"]["relative_error"].get<double>(), 0.1);
 }
@@ -145,8 +139,8 @@ TEST_F(App, CtrlCStopsAndLeavesNoFile) {
   const Ended run =
       shell("timeout --signal=INT 1 '" ROBOMILL_PROGRAM "' lobes lobes.toml -o lobes.json; echo $? >code.txt");
   EXPECT_NE(run.err.find("interrupted"), std::string::npos) << run.err;
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "lobes.json"));
-  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+  EXPECT_FALSE(std::filesystem::exists(folder_.at("lobes.json")));
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
     const std::string name = entry.path().filename().string();
     EXPECT_TRUE(name == "lobes.toml" || name == "out.txt" || name == "err.txt" || name == "code.txt") << name;
   }

@@ -68,7 +68,7 @@ int report_error(const char* text, Exit exit) {
   return exit;
 }
 
-int main(int argc, char** argv) {
+int run_chosen(int argc, char** argv) {
   CommandLine line;
   try {
     line.parser.parse(argc, argv);
@@ -94,5 +94,11 @@ int main(int argc, char** argv) {
 }  // namespace robomill::app
 
 int main(int argc, char** argv) {
-  return robomill::app::main(argc, argv);
+  try {
+    return robomill::app::run_chosen(argc, argv);
+  } catch (...) {
+    // Thrown before there is a verb to blame, or by the report of another error.
+    std::fputs("robomill: cannot run\n", stderr);
+    return robomill::app::bad_input;
+  }
 }

@@ -59,7 +59,7 @@ void limit_memory(std::size_t more_bytes) {
 
 std::string read_whole(int from) {
   std::string bytes;
-  std::array<char, 1 << 16> block;
+  std::array<char, 1 << 16> block = {};
   while (true) {
     const ssize_t count = ::read(from, block.data(), block.size());
     if (count < 0 && errno == EINTR) continue;

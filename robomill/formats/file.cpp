@@ -75,7 +75,7 @@ std::string read_file(const fs::path& path, std::uintmax_t max_bytes) {
     if (!error && size > max_bytes) refuse(path, "holds more than " + std::to_string(max_bytes) + " bytes");
     if (!error) content.reserve(static_cast<std::size_t>(size));
   }
-  std::array<char, 1 << 16> block;
+  std::array<char, 1 << 16> block = {};
   while (in.read(block.data(), block.size()) || in.gcount() > 0) {
     content.append(block.data(), static_cast<std::size_t>(in.gcount()));
     if (content.size() > max_bytes) refuse(path, "holds more than " + std::to_string(max_bytes) + " bytes");

@@ -4,14 +4,14 @@
 
 #include <iterator>
 
-#include "robomill/formats/test_files.hpp"
+#include "robomill/base/test_support.hpp"
 
 namespace robomill::formats {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Folder;
-using testing::refusal;
+using test::Folder;
+using test::refusal;
 
 std::size_t count(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));

@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "robomill/formats/test_files.hpp"
+#include "robomill/base/test_support.hpp"
 
 namespace robomill::formats {
 namespace {
 
 TEST(FitToml, ReadsMethodBandAndNumbers) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const modal::FitOptions o = read_fit_options(folder.file(
       "modes.toml",
       "[fit]\nmethod = \"lscf\"\nweighting = \"relative\"\nband_hz = [500, 3500]\nmodes = 6\nstable_mac = 0.9\n"));
@@ -21,9 +21,9 @@ TEST(FitToml, ReadsMethodBandAndNumbers) {
 }
 
 TEST(FitToml, RefusesInTheFilesWords) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const auto say = [&](const char* text) {
-    return testing::refusal([&] { static_cast<void>(read_fit_options(folder.file("modes.toml", text))); });
+    return test::refusal([&] { static_cast<void>(read_fit_options(folder.file("modes.toml", text))); });
   };
   EXPECT_NE(say("[fit]\nmax_damping_ratio = -1\n").find("modes.toml:2: fit.max_damping_ratio = -1"), std::string::npos);
   EXPECT_NE(say("[fit]\nband_hz = [3, 2]\n").find("low < high"), std::string::npos);

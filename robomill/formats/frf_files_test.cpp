@@ -8,8 +8,8 @@
 
 #include "data/robot_modes.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/file.hpp"
-#include "robomill/formats/test_files.hpp"
 #include "robomill/formats/uff.hpp"
 
 namespace robomill::formats {
@@ -39,7 +39,7 @@ void expect_same(const modal::FrfSet& read, const modal::FrfSet& written, double
 }
 
 TEST(FrfFiles, EveryFormatGivesTheSetBack) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const modal::FrfSet set = robot_frfs();
   for (const char* name : {"tip.csv", "tip.txt", "tip.mat", "tip.json"}) {
     write_frfs(folder.at(name), set);
@@ -53,7 +53,7 @@ TEST(FrfFiles, EveryFormatGivesTheSetBack) {
 }
 
 TEST(FrfFiles, PointsAndRotationsKeepTheirNames) {
-  const testing::Folder folder;
+  const test::Folder folder;
   modal::FrfSet set;
   set.frequency_hz = Eigen::Vector3d(1.0, 2.0, 3.0);
   for (const char* name : {"1x:3x", "1x:3my", "1ry:3my"}) {
@@ -66,31 +66,31 @@ TEST(FrfFiles, PointsAndRotationsKeepTheirNames) {
 }
 
 TEST(FrfFiles, HeaderlessColumnsTakeTheirNamesFromTheUser) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const auto a = folder.file("a.txt", "0 7e-001 0\n1 1e-6 -2e-6\n2 3e-6 4e-6\n");
   const auto b = folder.file("b.txt", "0\t1\t0\n1\t5e-6\t6e-6\n2\t7e-6\t8e-6\n");
   EXPECT_EQ(modal::to_string(read_frfs({a}).set.frfs[0].name), "xx");
   const modal::FrfSet both = read_frfs({a, b}, {"xx", "yy"}).set;
   EXPECT_EQ(both.find(modal::parse_frf_name("yy"))->receptance(2), std::complex<double>(7e-6, 8e-6));
-  EXPECT_NE(testing::refusal([&] { static_cast<void>(read_frfs({a, b})); }).find("--as"), std::string::npos);
-  EXPECT_NE(testing::refusal([&] {
+  EXPECT_NE(test::refusal([&] { static_cast<void>(read_frfs({a, b})); }).find("--as"), std::string::npos);
+  EXPECT_NE(test::refusal([&] {
               static_cast<void>(read_frfs({a, b}, {"xx", "xx"}));
             }).find("comes twice"),
             std::string::npos);
 }
 
 TEST(FrfFiles, RefusesAxesThatDiffer) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const auto a = folder.file("a.txt", "1 1 0\n2 1 0\n");
   const auto b = folder.file("b.txt", "1 1 0\n2.1 1 0\n");
-  const std::string said = testing::refusal([&] { static_cast<void>(read_frfs({a, b}, {"xx", "yy"})); });
+  const std::string said = test::refusal([&] { static_cast<void>(read_frfs({a, b}, {"xx", "yy"})); });
   EXPECT_NE(said.find("a.txt"), std::string::npos);
   EXPECT_NE(said.find("b.txt"), std::string::npos);
 }
 
 // A sine of displacement X has the acceleration -ω² X.
 TEST(FrfFiles, AccelerancesBecomeReceptances) {
-  const testing::Folder folder;
+  const test::Folder folder;
   UffFunction function;
   function.type = 4;
   function.is_complex = true;
@@ -121,7 +121,7 @@ UffFunction one_function() {
 }
 
 TEST(FrfFiles, UniversalFilesKeepTheirUnits) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const auto read = [&](const std::vector<UffFunction>& functions) {
     return read_frfs({folder.file("a.uff", format_uff(functions, true))});
   };
@@ -147,13 +147,13 @@ TEST(FrfFiles, UniversalFilesKeepTheirUnits) {
   EXPECT_GT(first(function).real(), 0.0);
   // Force per displacement, and acceleration per acceleration.
   function.numerator = {.type = 13};
-  EXPECT_NE(testing::refusal([&] { static_cast<void>(read({function})); }).find("per force"), std::string::npos);
+  EXPECT_NE(test::refusal([&] { static_cast<void>(read({function})); }).find("per force"), std::string::npos);
   function.numerator = function.denominator = {.type = 12};
-  EXPECT_NE(testing::refusal([&] { static_cast<void>(read({function})); }).find("per force"), std::string::npos);
+  EXPECT_NE(test::refusal([&] { static_cast<void>(read({function})); }).find("per force"), std::string::npos);
 }
 
 TEST(FrfFiles, UniversalFilesMixWhatTheyHold) {
-  const testing::Folder folder;
+  const test::Folder folder;
   UffFunction receptance = one_function(), accelerance = one_function(), time = one_function(),
               coherence = one_function();
   receptance.abscissa(0) = accelerance.abscissa(0) = coherence.abscissa(0) = 0.0;
@@ -174,24 +174,24 @@ TEST(FrfFiles, UniversalFilesMixWhatTheyHold) {
   EXPECT_EQ(file.set.find(modal::parse_frf_name("yx"))->coherence, Eigen::Vector2d(0.5, 1.0));
   EXPECT_EQ(file.notes.size(), 3U);
   accelerance.abscissa *= 1.01;
-  EXPECT_NE(testing::refusal([&] {
+  EXPECT_NE(test::refusal([&] {
               static_cast<void>(read_frfs({folder.file("a.uff", format_uff({receptance, accelerance}, false))}));
             }).find("has other frequencies than the FRF before it"),
             std::string::npos);
 }
 
 TEST(FrfFiles, UniversalFilesWithoutDirectionsTakeNamesFromTheUser) {
-  const testing::Folder folder;
+  const test::Folder folder;
   UffFunction function = one_function();
   function.response_direction = function.reference_direction = 0;
   const auto path = folder.file("a.uff", format_uff({function, function}, false));
-  EXPECT_NE(testing::refusal([&] { static_cast<void>(read_frfs({path})); }).find("--as"), std::string::npos);
+  EXPECT_NE(test::refusal([&] { static_cast<void>(read_frfs({path})); }).find("--as"), std::string::npos);
   EXPECT_NE(read_frfs({path}, {"xx", "yy"}).set.find(modal::parse_frf_name("yy")), nullptr);
   EXPECT_EQ(modal::to_string(read_frfs({folder.file("b.uff", format_uff({function}, false))}).set.frfs[0].name), "xx");
 }
 
 TEST(FrfFiles, ColumnsKeepTheirUnits) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const FrfFile um = read_frfs(
       {folder.file("a.csv", "xx_re_um_per_n;xx_im_um_per_n;f_hz;xx_coherence;spare\n1,5;2;10;0,5;7\n3;4;20;1;7\n")});
   EXPECT_NEAR(std::abs(um.set.frfs[0].receptance(0) - std::complex<double>(1.5e-6, 2e-6)), 0.0, 1e-18);
@@ -207,7 +207,7 @@ TEST(FrfFiles, ColumnsKeepTheirUnits) {
   const FrfFile words = read_frfs({folder.file("c.csv", "Frequency (Hz),Real,Imag\n1,2,3\n")});
   EXPECT_EQ(words.set.frfs[0].receptance(0), std::complex<double>(2.0, 3.0));
   const auto say = [&](const std::string& text) {
-    return testing::refusal([&] { static_cast<void>(read_frfs({folder.file("d.csv", text)})); });
+    return test::refusal([&] { static_cast<void>(read_frfs({folder.file("d.csv", text)})); });
   };
   EXPECT_NE(say("f,xx_re_v,xx_im_v\n1,2,3\n").find("xx_re_v has a unit that is not known"), std::string::npos);
   EXPECT_NE(say("f,xx_re_m_per_n,xx_im_mm_per_n\n1,2,3\n").find("differ in unit"), std::string::npos);
@@ -216,7 +216,7 @@ TEST(FrfFiles, ColumnsKeepTheirUnits) {
 }
 
 TEST(FrfFiles, OneNumberedPointIsTheTip) {
-  const testing::Folder folder;
+  const test::Folder folder;
   modal::FrfSet set;
   set.frequency_hz = Eigen::Vector2d(1.0, 2.0);
   set.frfs.push_back({.name = modal::parse_frf_name("4x:4x"), .receptance = Eigen::Vector2cd(1.0, 2.0)});
@@ -227,9 +227,9 @@ TEST(FrfFiles, OneNumberedPointIsTheTip) {
 }
 
 TEST(FrfFiles, RefusesWhatCannotBeAnFrf) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const auto say = [&](const char* name, const std::string& text) {
-    return testing::refusal([&] { static_cast<void>(read_frfs({folder.file(name, text)})); });
+    return test::refusal([&] { static_cast<void>(read_frfs({folder.file(name, text)})); });
   };
   EXPECT_NE(say("a.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n1,2,nan\n").find("a.csv:2"), std::string::npos);
   EXPECT_NE(say("a.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n2,2,1\n1,2,1\n").find("must be above"),
@@ -245,13 +245,13 @@ TEST(FrfFiles, RefusesWhatCannotBeAnFrf) {
 
 // Cut off or changed at any place, a file is refused or read, and never anything worse.
 TEST(FrfFiles, SurviveMutations) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const modal::FrfSet set = robot_frfs();
   for (const char* name : {"m.csv", "m.json", "m.uff", "m.mat"}) {
     write_frfs(folder.at(name), set);
     const std::string good = read_file(folder.at(name));
     Random random(7);
-    for (int i = 0; i < testing::seeds(500); ++i) {
+    for (int i = 0; i < test::seeds(500); ++i) {
       std::string text = good;
       if (i % 2 == 0) {
         text.resize(1 + random.index(good.size() - 1));

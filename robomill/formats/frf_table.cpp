@@ -57,7 +57,7 @@ SiFactor factor_of(const Column& column, const std::string& where) {
   if (const std::size_t per = numerator.find("_per_"); per != std::string::npos) {
     numerator = fmt::format("{}/{}", numerator.substr(0, per), numerator.substr(per + 5));
   }
-  const SiFactor factor = parse_unit(numerator);
+  SiFactor factor = parse_unit(numerator);
   if (!per_force || factor.quantity == Quantity::unknown || factor.quantity == Quantity::force) {
     throw InvalidInput(where,
                        fmt::format("column {}_{}_{} has a unit that is not known here", column.name, column.part, unit),

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/formats/test_files.hpp"
+#include "robomill/base/test_support.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 const std::string record = "time_s,force_v,ax,ay\n0,0,1,2\n0.001,0.5,3,4\n0.002,0,5,6\n";
 
 TEST(HitsToml, TurnsVoltsIntoUnitsAndNamesDirections) {
-  const testing::Folder folder;
+  const test::Folder folder;
   static_cast<void>(folder.file("a.csv", record));
   const HitsFile file = read_hits(folder.file("hits.toml", R"([acquisition]
 response = "acceleration"
@@ -48,24 +48,24 @@ responses = { x = "ax", -y = 4 }
 }
 
 TEST(HitsToml, TakesTheRateFromTheFileWhereThereIsNoTime) {
-  const testing::Folder folder;
+  const test::Folder folder;
   static_cast<void>(folder.file("b.txt", "0 1\n2 3\n0 5\n"));
   const std::string row = "[[hits]]\nfile = \"b.txt\"\nforce = 1\nforce_direction = \"y\"\nresponses = { y = 2 }\n";
   const HitsFile file = read_hits(folder.file("hits.toml", "[acquisition]\nsample_rate_hz = 51200\n" + row));
   EXPECT_EQ(file.hits[0].sample_rate_hz, 51200.0);
   EXPECT_EQ(file.hits[0].responses[0].samples(2), 5.0);
   const std::string said =
-      testing::refusal([&] { static_cast<void>(read_hits(folder.file("none.toml", "[acquisition]\n" + row))); });
+      test::refusal([&] { static_cast<void>(read_hits(folder.file("none.toml", "[acquisition]\n" + row))); });
   EXPECT_NE(said.find("sample_rate_hz is missing"), std::string::npos) << said;
 }
 
 TEST(HitsToml, RefusesInTheFilesWords) {
-  const testing::Folder folder;
+  const test::Folder folder;
   static_cast<void>(folder.file("a.csv", record));
   const std::string row =
       "[[hits]]\nfile = \"a.csv\"\nforce = \"force_v\"\nforce_direction = \"x\"\nresponses = { x = \"ax\" }\n";
   const auto say = [&](const std::string& text) {
-    return testing::refusal([&] { static_cast<void>(read_hits(folder.file("hits.toml", text))); });
+    return test::refusal([&] { static_cast<void>(read_hits(folder.file("hits.toml", text))); });
   };
   EXPECT_NE(say("[acquisition]\naccelerometer_mass_kg = -1\n" + row)
                 .find("hits.toml:2: acquisition.accelerometer_mass_kg = -1 kg"),
@@ -86,7 +86,7 @@ TEST(HitsToml, RefusesInTheFilesWords) {
 }
 
 TEST(HitsToml, ReadsSoundWithItsScale) {
-  const testing::Folder folder;
+  const test::Folder folder;
   {
     SF_INFO info{.frames = 0,
                  .samplerate = 10240,
@@ -107,7 +107,7 @@ TEST(HitsToml, ReadsSoundWithItsScale) {
   EXPECT_DOUBLE_EQ(file.hits[0].force_n(1), 1000.0);
   EXPECT_DOUBLE_EQ(file.hits[0].responses[0].samples(1), -125.0);
   const auto say = [&](const std::string& text) {
-    return testing::refusal([&] { static_cast<void>(read_hits(folder.file("bad.toml", text))); });
+    return test::refusal([&] { static_cast<void>(read_hits(folder.file("bad.toml", text))); });
   };
   EXPECT_NE(say(row).find("acquisition.scale is missing"), std::string::npos);
   EXPECT_NE(say("[acquisition]\nscale = 0\n" + row).find("bad.toml:2: acquisition.scale = 0"), std::string::npos);
@@ -115,13 +115,13 @@ TEST(HitsToml, ReadsSoundWithItsScale) {
 
 // Cut off or changed at any place, a file is refused or read, and never anything worse.
 TEST(HitsToml, SurvivesMutations) {
-  const testing::Folder folder;
+  const test::Folder folder;
   static_cast<void>(folder.file("a.csv", record));
   const std::string good =
       "[acquisition]\nresponse = \"acceleration\"\nforce_mv_per_n = 2.5\nsample_rate_hz = 1000\nforce_window_s = 0.1\n"
       "[[hits]]\nfile = \"a.csv\"\ntime = 1\nforce = \"force_v\"\nforce_direction = \"-x\"\n"
       "responses = { x = \"ax\", -y = 4 }\n";
-  for (int seed = 0; seed < testing::seeds(2000); ++seed) {
+  for (int seed = 0; seed < test::seeds(2000); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     std::string text = good;
     for (std::uint64_t i = random.index(4); i > 0; --i)

@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
-#include "robomill/base/error.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::formats {
@@ -14,27 +13,12 @@ namespace {
 
 class JobToml : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("job_toml_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
+  std::filesystem::path write(const std::string& name, const std::string& text) { return folder_.file(name, text); }
   std::string refusal(const std::string& text) {
-    try {
-      static_cast<void>(read_job(write("job.toml", text)));
-    } catch (const InvalidInput& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusal([&] { static_cast<void>(read_job(write("job.toml", text))); });
   }
 
-  std::filesystem::path folder_;
+  test::Folder folder_;
 };
 
 TEST_F(JobToml, ReadsEveryPartInSi) {
@@ -53,8 +37,8 @@ axial_depth_mm = 0.8
 result = "chatter"
 )"));
   ASSERT_EQ(job.frf.size(), 2U);
-  EXPECT_EQ(job.frf[1], folder_ / "yy.txt");
-  EXPECT_EQ(job.lobes, folder_ / "lobes.toml");
+  EXPECT_EQ(job.frf[1], folder_.at("yy.txt"));
+  EXPECT_EQ(job.lobes, folder_.at("lobes.toml"));
   EXPECT_DOUBLE_EQ(job.max_spindle_speed_rad_per_s, 18000 * units::rpm);
   ASSERT_EQ(job.spindle_curve.size(), 1U);
   EXPECT_DOUBLE_EQ(job.spindle_curve[0].power_w, 7500.0);

@@ -6,14 +6,14 @@
 #include <limits>
 
 #include "robomill/base/random.hpp"
-#include "robomill/formats/test_files.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::formats {
 namespace {
 
-using testing::Folder;
-using testing::refusal;
+using test::Folder;
+using test::refusal;
 
 TEST(JsonText, WritesForPeopleToo) {
   Json json;

@@ -11,15 +11,15 @@
 #include <stdexcept>
 
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/child.hpp"
 #include "robomill/formats/file.hpp"
-#include "robomill/formats/test_files.hpp"
 
 namespace robomill::formats {
 namespace {
 
-using testing::Folder;
-using testing::refusal;
+using test::Folder;
+using test::refusal;
 
 /// What others write: single precision and integers, a complex vector, text and a struct among them.
 void write_foreign(const std::filesystem::path& path, mat_ft version, matio_compression compression) {
@@ -110,7 +110,7 @@ TEST(Mat, SurvivesMutations) {
     write_foreign(folder.at("a.mat"), version, MAT_COMPRESSION_NONE);
     const std::string original = read_file(folder.at("a.mat"));
     const std::size_t from = version == MAT_FT_MAT4 ? 0 : 116;
-    for (int seed = 0; seed < testing::seeds(count); ++seed) {
+    for (int seed = 0; seed < test::seeds(count); ++seed) {
       Random random(static_cast<std::uint64_t>(seed));
       std::string content = original;
       for (std::uint64_t i = random.index(6); i > 0; --i) {

@@ -7,8 +7,8 @@
 
 #include "data/robot_modes.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/file.hpp"
-#include "robomill/formats/test_files.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -30,7 +30,7 @@ TEST(ModesFiles, TheDataFileHoldsTheTypedTable) {
 }
 
 TEST(ModesFiles, JsonGivesTheModelBack) {
-  const testing::Folder folder;
+  const test::Folder folder;
   modal::ModalModel model = data::robot_modes();
   model.modes[2].frequency_std_hz = 0.01;
   model.residuals.push_back({.name = modal::parse_frf_name("xy"), .mass = {1.0, -2.0}, .stiffness = {3e-9, 4e-9}});
@@ -43,9 +43,9 @@ TEST(ModesFiles, JsonGivesTheModelBack) {
 }
 
 TEST(ModesFiles, RefusesWithTheJsonPath) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const auto say = [&](const std::string& text) {
-    return testing::refusal([&] { static_cast<void>(read_modes(folder.file("modes.json", text))); });
+    return test::refusal([&] { static_cast<void>(read_modes(folder.file("modes.json", text))); });
   };
   const auto mode = [](const std::string& damping, const std::string& left) {
     return R"({"modes":[{"frequency_hz":500,"damping_ratio":)" + damping + R"(,"left":)" + left +
@@ -58,16 +58,16 @@ TEST(ModesFiles, RefusesWithTheJsonPath) {
   EXPECT_NE(say("{\"modes\":[{}]}").find("modes[1].frequency_hz: is missing"), std::string::npos);
   EXPECT_NE(say("{\"modes\":\n[}").find("modes.json:2"), std::string::npos);
   const std::string wrong_ending =
-      testing::refusal([&] { static_cast<void>(read_modes(folder.file("tip.uff", "    -1\n"))); });
+      test::refusal([&] { static_cast<void>(read_modes(folder.file("tip.uff", "    -1\n"))); });
   EXPECT_NE(wrong_ending.find("robomill modes"), std::string::npos);
 }
 
 // Cut off or changed at any place, a file is refused or read, and never anything worse.
 TEST(ModesFiles, SurvivesMutations) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const std::string good = modes_json(data::robot_modes());
   Random random(5);
-  for (int i = 0; i < testing::seeds(2000); ++i) {
+  for (int i = 0; i < test::seeds(2000); ++i) {
     std::string text = good;
     if (i % 2 == 0) {
       text.resize(1 + random.index(good.size() - 1));

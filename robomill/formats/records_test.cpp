@@ -8,16 +8,16 @@
 #include <memory>
 
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/mat.hpp"
-#include "robomill/formats/test_files.hpp"
 #include "robomill/formats/uff.hpp"
 
 namespace robomill::formats {
 namespace {
 
-using testing::Folder;
-using testing::refusal;
+using test::Folder;
+using test::refusal;
 
 TEST(Records, ReadsColumnsByNameAndNumber) {
   const Folder folder;
@@ -136,7 +136,7 @@ TEST(Records, SaysWhatIsWrong) {
 /// Mutated copies of a valid file are read or refused, never more.
 void survive(const std::string& name, const std::string& original, int count, std::size_t from = 0) {
   const Folder folder;
-  for (int seed = 0; seed < testing::seeds(count); ++seed) {
+  for (int seed = 0; seed < test::seeds(count); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     std::string content = original;
     for (std::uint64_t i = random.index(5); i > 0; --i) {

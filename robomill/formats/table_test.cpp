@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "robomill/base/random.hpp"
-#include "robomill/formats/test_files.hpp"
+#include "robomill/base/test_support.hpp"
 
 namespace robomill::formats {
 namespace {
 
-using testing::refusal;
+using test::refusal;
 using Columns = std::vector<std::vector<double>>;
 using Names = std::vector<std::string>;
 
@@ -90,7 +90,7 @@ TEST(Table, GivesBackEveryBit) {
 
 TEST(Table, SurvivesMutations) {
   const std::string original = "time,\"force\",a\n0.0,1.5e-020,+3\n1.0;2,5;3\n\"4\",-5D3,6\n";
-  for (int seed = 0; seed < testing::seeds(20000); ++seed) {
+  for (int seed = 0; seed < test::seeds(20000); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     std::string content = original;
     for (std::uint64_t i = random.index(6); i > 0; --i) {

@@ -68,7 +68,7 @@ std::optional<double> parse_number(std::string_view text) {
 
 double round_15(double number) {
   if (!std::isfinite(number)) return number;
-  std::array<char, 40> digits;
+  std::array<char, 40> digits = {};
   const auto end = fmt::format_to_n(digits.data(), digits.size(), "{:.14e}", number).out;
   double rounded = number;
   std::from_chars(digits.data(), end, rounded);

@@ -288,6 +288,7 @@ std::vector<std::string> TomlFile::keys(std::string_view table) const {
   for (const auto& [name, value] : *node->as_table()) found.emplace_back(name.source().begin, name.str());
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> names;
+  names.reserve(found.size());
   for (auto& [position, name] : found) names.push_back(std::move(name));
   return names;
 }

@@ -3,14 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "robomill/base/random.hpp"
-#include "robomill/formats/test_files.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::formats {
 namespace {
 
-using testing::Folder;
-using testing::refusal;
+using test::Folder;
+using test::refusal;
 
 constexpr const char* example = R"(# a cut
 [tool]
@@ -213,7 +213,7 @@ TEST(TomlFiles, RefusesWhatIsNoTomlWithItsLine) {
 
 TEST(TomlFiles, SurvivesMutations) {
   const Folder folder;
-  for (int seed = 0; seed < testing::seeds(2000); ++seed) {
+  for (int seed = 0; seed < test::seeds(2000); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     std::string content = example;
     for (std::uint64_t i = random.index(6) + 1; i > 0; --i) {

@@ -8,12 +8,12 @@
 #include <cstdint>
 
 #include "robomill/base/random.hpp"
-#include "robomill/formats/test_files.hpp"
+#include "robomill/base/test_support.hpp"
 
 namespace robomill::formats {
 namespace {
 
-using testing::refusal;
+using test::refusal;
 using Complex = std::complex<double>;
 
 UffFunction sample(Eigen::Index n, double step, bool is_complex) {
@@ -304,7 +304,7 @@ TEST(Uff, SurvivesMutations) {
     uneven.abscissa(3) += 0.1;
     originals.push_back(format_uff({sample(9, 0.5, true), sample(8, 0.1, false), uneven}, binary));
   }
-  for (int seed = 0; seed < testing::seeds(20000); ++seed) {
+  for (int seed = 0; seed < test::seeds(20000); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     std::string content = originals[random.index(2)];
     for (std::uint64_t i = random.index(8); i > 0; --i) {

@@ -188,6 +188,7 @@ void fit_by_swarm(FitResult& result, const FrfSet& set, const FitOptions& option
   const PsoResult swarm = fit_pso(set,
                                   {.modes = options.modes,
                                    .frequency_half_width = options.pso_frequency_half_width,
+                                   .max_damping_ratio = options.max_damping_ratio,
                                    .particles = options.pso_particles,
                                    .max_iterations = options.pso_max_iterations,
                                    .seed = options.seed},

@@ -2,6 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "data/robot_modes.hpp"
 #include "robomill/modal/fit_cases.hpp"
 
 namespace robomill::modal {
@@ -26,7 +27,7 @@ FrfSet five_points() {
 }
 
 FrfSet noisy_robot() {
-  FrfSet set = synthesize(cases::robot(), cases::robot_lines());
+  FrfSet set = synthesize(data::robot_modes(), cases::robot_lines());
   cases::add_noise(set, 0.02, 1);
   return set;
 }

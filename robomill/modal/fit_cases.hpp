@@ -4,20 +4,25 @@
 #include <complex>
 #include <cstdint>
 
-#include "data/robot_modes.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/modal/modes.hpp"
 
 namespace robomill::modal::cases {
 
-/// The eight modes of a robot with a milling spindle.
-inline ModalModel robot() {
-  return data::robot_modes();
-}
-
 /// 5 to 1,000 Hz, 0.25 Hz apart.
 inline Eigen::VectorXd robot_lines() {
   return Eigen::VectorXd::LinSpaced(3981, 5.0, 1000.0);
+}
+
+/// ‖a − b‖ / ‖a‖ over all lines and FRFs of a.
+inline double relative_error(const FrfSet& a, const FrfSet& b) {
+  double difference = 0.0;
+  double size = 0.0;
+  for (const Frf& frf : a.frfs) {
+    difference += (frf.receptance - b.find(frf.name)->receptance).squaredNorm();
+    size += frf.receptance.squaredNorm();
+  }
+  return std::sqrt(difference / size);
 }
 
 /// Adds complex Gaussian noise e, E|e|² = (relative |H|)², to every line.

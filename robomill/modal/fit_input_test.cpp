@@ -8,7 +8,9 @@
 #include <numbers>
 #include <string>
 
+#include "data/robot_modes.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/fit_cases.hpp"
 
@@ -46,7 +48,7 @@ FrfSet two_mode_frf(double noise = 0.01, Index lines = 401) {
 }
 
 FrfSet robot_without(const std::vector<std::string>& names) {
-  FrfSet set = synthesize(cases::robot(), cases::robot_lines());
+  FrfSet set = synthesize(data::robot_modes(), cases::robot_lines());
   cases::add_noise(set, 0.02, 1);
   std::erase_if(set.frfs, [&](const Frf& frf) {
     return std::find(names.begin(), names.end(), to_string(frf.name)) != names.end();
@@ -83,7 +85,7 @@ TEST(FitParts, ExactlySoManyModesOverAllParts) {
 
 TEST(FitParts, AMissingFrfFollowsFromTheOthers) {
   // Left vectors that both excitations feel, so that three FRFs tell the fourth.
-  ModalModel truth = cases::robot();
+  ModalModel truth = data::robot_modes();
   Random random(2);
   for (Mode& mode : truth.modes)
     mode.left = 1e-2 * Eigen::Vector2cd(random.uniform(0.5, 1.0), random.uniform(0.5, 1.0));
@@ -265,12 +267,8 @@ TEST(FitInput, RefusesBadFrfs) {
   FrfSet set = two_mode_frf();
   set.frfs.front().receptance(7) = nan;
   EXPECT_THROW(static_cast<void>(fit_modes(set, {})), InvalidInput);
-  try {
-    static_cast<void>(fit_modes(two_mode_frf(0.01, 30), {.modes = 14}));
-    FAIL();
-  } catch (const InvalidInput& error) {
-    EXPECT_NE(std::string(error.what()).find("needs at least 32 lines; the band holds 30"), std::string::npos);
-  }
+  const auto too_few = [] { static_cast<void>(fit_modes(two_mode_frf(0.01, 30), {.modes = 14})); };
+  EXPECT_NE(test::refusal(too_few).find("needs at least 32 lines; the band holds 30"), std::string::npos);
 }
 
 TEST(FitInput, SurvivesOddFrfs) {

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 
+#include "data/robot_modes.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/modal/fit_cases.hpp"
 
 namespace robomill::modal {
@@ -15,11 +16,6 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
-
-bool all_seeds() {
-  const char* const full = std::getenv("ROBOMILL_FULL");
-  return full != nullptr && *full == '1';
-}
 
 bool warns_of(const FitResult& result, const std::string& text) {
   return std::any_of(result.warnings.begin(), result.warnings.end(),
@@ -32,14 +28,14 @@ double residue_error(const Mode& fitted, const Mode& truth) {
 }
 
 FrfSet noisy_robot(double relative, std::uint64_t seed) {
-  FrfSet set = synthesize(cases::robot(), cases::robot_lines());
+  FrfSet set = synthesize(data::robot_modes(), cases::robot_lines());
   cases::add_noise(set, relative, seed);
   return set;
 }
 
 // The model put back into itself: eight modes, four of them heavily damped and close, found without any start.
 TEST(HybridFit, FindsTheRobotsModesInCleanFrfs) {
-  const ModalModel truth = cases::robot();
+  const ModalModel truth = data::robot_modes();
   const FitResult result = fit_modes(noisy_robot(0.0, 1), {});
   EXPECT_EQ(result.status, FitResult::Status::converged);
   EXPECT_LT(result.relative_error, 1e-9);
@@ -61,15 +57,19 @@ TEST(HybridFit, FindsTheRobotsModesInCleanFrfs) {
 // Noise of 2 % of every value. The information bound is 0.11 % of modes 4 and 5's frequencies and 1.1 % of their
 // dampings, 0.025 % and 0.6 % at most of the others'.
 TEST(HybridFit, NoisyFrfsAndHonestDeviations) {
-  const ModalModel truth = cases::robot();
-  const std::uint64_t seeds = all_seeds() ? 200 : 20;
+  const ModalModel truth = data::robot_modes();
+  const auto seeds = static_cast<std::uint64_t>(test::seeds(200));
   int within = 0;
   int values = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const FitResult result = fit_modes(noisy_robot(0.02, seed), {});
+    const FrfSet set = noisy_robot(0.02, seed);
+    const FitResult result = fit_modes(set, {});
     ASSERT_EQ(result.status, FitResult::Status::converged) << "seed " << seed;
     ASSERT_EQ(result.model.modes.size(), truth.modes.size()) << "seed " << seed;
-    EXPECT_NEAR(result.relative_error, 0.02, 0.002);
+    // What is left is this seed's noise, less the little that 80 unknowns take of 31,848 values.
+    const double noise = cases::relative_error(set, synthesize(truth, set.frequency_hz));
+    EXPECT_GT(result.relative_error, 0.93 * noise) << "seed " << seed;
+    EXPECT_LT(result.relative_error, 1.03 * noise) << "seed " << seed;
     for (std::size_t k = 0; k < truth.modes.size(); ++k) {
       const Mode& mode = result.model.modes[k];
       const double frequency = std::abs(mode.frequency_hz - truth.modes[k].frequency_hz);
@@ -133,7 +133,7 @@ RandomCase random_case(std::uint64_t seed) {
 }
 
 TEST(HybridFit, RandomStructuresWithModesOutsideTheBand) {
-  const std::uint64_t seeds = all_seeds() ? 200 : 20;
+  const auto seeds = static_cast<std::uint64_t>(test::seeds(200));
   int within = 0;
   int values = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {

@@ -53,9 +53,9 @@ struct Sums {
 };
 
 Eigen::VectorXcd estimate(const Sums& sums, Estimator estimator) {
-  const Eigen::VectorXcd h1 = sums.cross.cwiseQuotient(sums.force.cast<Complex>());
+  Eigen::VectorXcd h1 = sums.cross.cwiseQuotient(sums.force.cast<Complex>());
   if (estimator == Estimator::h1) return h1;
-  const Eigen::VectorXcd h2 = sums.response.cast<Complex>().cwiseQuotient(sums.cross.conjugate());
+  Eigen::VectorXcd h2 = sums.response.cast<Complex>().cwiseQuotient(sums.cross.conjugate());
   if (estimator == Estimator::h2) return h2;
   // H1 and H2 have one phase, so their geometric mean is plain.
   return h1.cwiseProduct((h2.cwiseAbs().cwiseQuotient(h1.cwiseAbs())).cwiseSqrt().cast<Complex>());

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -44,10 +44,6 @@ void add_nuisance(Eigen::VectorXd& force, double start, double base, double peak
   }
 }
 
-int seeds() {
-  return std::getenv("ROBOMILL_FULL") != nullptr ? 2000 : 200;
-}
-
 TEST(FindPulse, MeasuresAHalfSine) {
   Eigen::VectorXd force = Eigen::VectorXd::Constant(length, 1.5);
   add_pulse(force, 399.5, 60.0, 200.0);
@@ -62,7 +58,7 @@ TEST(FindPulse, MeasuresAHalfSine) {
 }
 
 TEST(FindPulse, OneHitIsOneHitWhateverSurroundsIt) {
-  for (int seed = 0; seed < seeds(); ++seed) {
+  for (int seed = 0; seed < test::seeds(2000); ++seed) {
     Random random(11, static_cast<std::uint64_t>(seed));
     const double base = random.uniform(8.0, 90.0);
     const double start = random.uniform(1.0, 0.5 * static_cast<double>(length));
@@ -75,7 +71,7 @@ TEST(FindPulse, OneHitIsOneHitWhateverSurroundsIt) {
 }
 
 TEST(FindPulse, SecondHitOfFivePercentIsSeen) {
-  for (int seed = 0; seed < seeds(); ++seed) {
+  for (int seed = 0; seed < test::seeds(2000); ++seed) {
     Random random(12, static_cast<std::uint64_t>(seed));
     const double base = random.uniform(8.0, 90.0);
     const double start = random.uniform(400.0, 0.5 * static_cast<double>(length));
@@ -124,7 +120,7 @@ TEST(FindPulse, PullHasANegativePeak) {
 }
 
 TEST(HasFlatTop, SeesClippingAndNothingElse) {
-  for (int seed = 0; seed < seeds(); ++seed) {
+  for (int seed = 0; seed < test::seeds(2000); ++seed) {
     Random random(13, static_cast<std::uint64_t>(seed));
     const double frequency = random.uniform(0.001, 0.05);
     const double step = std::pow(10.0, random.uniform(-7.0, -3.5));  // the converter's

@@ -14,6 +14,7 @@
 #include "examples/first-lobes/hammer.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/base/test_support.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -83,17 +84,8 @@ double error(const FrfResult& result, const ModalModel& truth, double low_hz, do
   return error(result.set, truth, FrfName{}, low_hz, high_hz);
 }
 
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InvalidInput& refusal) {
-    return refusal.what();
-  }
-  return "";
-}
-
 void expect_refusal(const std::vector<Hit>& hits, const HitOptions& options, const std::string& part) {
-  const std::string message = message_of([&] { static_cast<void>(estimate_frfs(hits, options)); });
+  const std::string message = test::refusal([&] { static_cast<void>(estimate_frfs(hits, options)); });
   EXPECT_NE(message.find(part), std::string::npos) << "message: " << message;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "data/robot_modes.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/modal/fit_cases.hpp"
 
@@ -61,7 +62,7 @@ TEST(Synthesize, OneDegreeOfFreedomSolvesItsEquationOfMotion) {
 }
 
 TEST(Synthesize, OrderNamesResidualsAndInvariance) {
-  ModalModel model = cases::robot();
+  ModalModel model = data::robot_modes();
   const Eigen::VectorXd lines = Eigen::VectorXd::LinSpaced(50, 5.0, 1000.0);
   const FrfSet plain = synthesize(model, lines);
   const std::vector<std::string> names = {"xx", "yx", "xy", "yy"};
@@ -83,7 +84,7 @@ TEST(Synthesize, OrderNamesResidualsAndInvariance) {
 }
 
 TEST(Synthesize, RefusesFaults) {
-  ModalModel model = cases::robot();
+  ModalModel model = data::robot_modes();
   const Eigen::Vector2d lines(0.0, 10.0);
   EXPECT_NO_THROW(static_cast<void>(synthesize(model, lines)));
   EXPECT_THROW(static_cast<void>(synthesize(model, Eigen::Vector2d(10.0, 5.0))), InvalidInput);

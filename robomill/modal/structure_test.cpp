@@ -6,12 +6,12 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
-#include <cstdlib>
 #include <numbers>
 #include <string>
 
-#include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/modal/fit_cases.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -49,10 +49,6 @@ Structure one_mass(double mass_kg, double damping_n_s_per_m, double stiffness_n_
           .stiffness_n_per_m = Eigen::MatrixXd::Constant(1, 1, stiffness_n_per_m)};
 }
 
-int seeds(int all) {
-  return std::getenv("ROBOMILL_FULL") != nullptr ? all : all / 10;
-}
-
 // ψR, ψL and λ as vectors that carry both poles of each pair.
 struct Poles {
   Eigen::VectorXcd lambda;
@@ -75,28 +71,18 @@ Poles all_poles(const ModalModel& model) {
   return poles;
 }
 
-double relative_error(const FrfSet& a, const FrfSet& b) {
-  double difference = 0.0;
-  double size = 0.0;
-  for (const Frf& frf : a.frfs) {
-    difference += (frf.receptance - b.find(frf.name)->receptance).squaredNorm();
-    size += frf.receptance.squaredNorm();
-  }
-  return std::sqrt(difference / size);
-}
-
 TEST(Structure, ModalFrfIsTheInverseOfTheDynamicStiffness) {
-  for (int seed = 0; seed < seeds(1000); ++seed) {
+  for (int seed = 0; seed < test::seeds(1000); ++seed) {
     const Structure structure = random_structure(static_cast<std::uint64_t>(seed));
     const ModalModel model = modes_of(structure);
     const Eigen::VectorXd lines = Eigen::VectorXd::LinSpaced(201, 0.0, 2.0 * model.modes.back().frequency_hz);
-    ASSERT_LT(relative_error(receptance(structure, lines), synthesize(model, lines)), 1e-10) << seed;
+    ASSERT_LT(cases::relative_error(receptance(structure, lines), synthesize(model, lines)), 1e-10) << seed;
   }
 }
 
 // The eigenvalue equations of both sides, Ψ_Lᵀ A Ψ_R = I, and what follows from it for large and small frequencies.
 TEST(Structure, EigenvectorsSolveTheirEquationsAndAreBiorthogonal) {
-  for (int seed = 0; seed < seeds(1000); ++seed) {
+  for (int seed = 0; seed < test::seeds(1000); ++seed) {
     const Structure structure = random_structure(static_cast<std::uint64_t>(seed));
     const Eigen::Index n = structure.mass_kg.rows();
     const Poles poles = all_poles(modes_of(structure));
@@ -189,18 +175,16 @@ TEST(Structure, RepeatedPolesKeepIndependentVectors) {
                               .damping_n_s_per_m = turned(10.0),
                               .stiffness_n_per_m = turned(1e6)};
     const Eigen::VectorXd lines = Eigen::VectorXd::LinSpaced(101, 0.0, 500.0);
-    EXPECT_LT(relative_error(receptance(structure, lines), synthesize(modes_of(structure), lines)), 1e-10) << angle;
+    EXPECT_LT(cases::relative_error(receptance(structure, lines), synthesize(modes_of(structure), lines)), 1e-10)
+        << angle;
   }
 }
 
 void expect_refusal(const Structure& structure, const std::string& field, const std::string& word) {
-  try {
-    static_cast<void>(modes_of(structure));
-    ADD_FAILURE() << "accepted; expected a refusal of " << field;
-  } catch (const InvalidInput& error) {
-    EXPECT_EQ(error.parts().field, field) << error.what();
-    EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
-  }
+  const auto solve = [&] { static_cast<void>(modes_of(structure)); };
+  EXPECT_EQ(test::field_of(solve), field);
+  const std::string message = test::refusal(solve);
+  EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
 TEST(Structure, RefusesPolesThatNoModeCanHold) {

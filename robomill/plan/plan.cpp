@@ -180,6 +180,7 @@ void turn_feed(PlanResult& result, Progress& progress) {
   const double low = options.spindle_speed_rad_per_s[0];
   const double high = options.spindle_speed_rad_per_s[1];
   std::vector<double> speeds;
+  speeds.reserve(speeds_a_direction + 1);
   for (int i = 0; i < speeds_a_direction; ++i)
     speeds.push_back(std::lerp(low, high, static_cast<double>(i) / (speeds_a_direction - 1)));
   const bool recommended = result.recommendation.recommended.has_value();

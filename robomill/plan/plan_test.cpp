@@ -9,7 +9,7 @@
 #include <string>
 
 #include "data/robot_modes.hpp"
-#include "robomill/base/error.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/units.hpp"
 
@@ -21,9 +21,6 @@ const std::string data = ROBOMILL_SOURCE_DIR "/data/";
 class Plan : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("plan_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
     write("lobes.toml", R"([tool]
 teeth = 3
 diameter_mm = 12
@@ -42,17 +39,13 @@ method = "semi-discretization"
 intervals = 20
 )");
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::filesystem::path write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
+  std::filesystem::path write(const std::string& name, const std::string& text) { return folder_.file(name, text); }
   std::filesystem::path job(const std::string& more = "") {
     return write("job.toml", "[job]\nmodes = \"" + data + "robot-modes.toml\"\nlobes = \"lobes.toml\"\n" + more);
   }
 
-  std::filesystem::path folder_;
+  test::Folder folder_;
 };
 
 // What is promised: over ± 2 % of speed the recommended depth is at most 80 % of the limit, so at 1.2 times it the cut
@@ -95,8 +88,8 @@ TEST_F(Plan, LimitOverFeedDirectionIsThatOfTheTurnedProblem) {
 TEST_F(Plan, WritesEveryFileAndTheyAgree) {
   const PlanResult result =
       run_job(job("[[cuts]]\nspindle_speed_rpm = 8000\naxial_depth_mm = 2.9\nresult = \"chatter\"\n"), 1);
-  write_plan(folder_ / "out", result);
-  const auto json = nlohmann::json::parse(formats::read_file(folder_ / "out" / "plan.json"));
+  write_plan(folder_.at("out"), result);
+  const auto json = nlohmann::json::parse(formats::read_file(folder_.at("out") / "plan.json"));
   EXPECT_NEAR(json["recommended"]["spindle_speed_rpm"].get<double>(),
               result.recommendation.recommended->spindle_speed_rad_per_s / units::rpm, 1e-6);
   EXPECT_GE(json["recommended"]["margin"].get<double>(), 0.2 - 1e-12);
@@ -105,10 +98,10 @@ TEST_F(Plan, WritesEveryFileAndTheyAgree) {
   EXPECT_EQ(json["cuts"].size(), 1U);
   EXPECT_EQ(json["cuts"][0]["agrees"], json["cuts"][0]["predicted"] == "chatter");
   for (const char* name : {"modes.json", "lobes.json", "report.html"}) {
-    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / name)) << name;
+    EXPECT_TRUE(std::filesystem::exists(folder_.at("out") / name)) << name;
   }
   std::size_t files = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_ / "out")) ++files;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.at("out"))) ++files;
   EXPECT_EQ(files, 4U);
 }
 
@@ -116,7 +109,7 @@ TEST_F(Plan, WritesEveryFileAndTheyAgree) {
 TEST_F(Plan, StartsFromFrfsWithALineAtZero) {
   const modal::FrfSet set = modal::synthesize(data::robot_modes(), Eigen::VectorXd::LinSpaced(2801, 0.0, 700.0));
   const modal::Frf& xx = *set.find(modal::parse_frf_name("xx"));
-  std::ofstream file(folder_ / "xx.txt");
+  std::ofstream file(folder_.at("xx.txt"));
   file.precision(15);
   for (Eigen::Index i = 0; i < set.frequency_hz.size(); ++i) {
     file << set.frequency_hz(i) << ' ' << xx.receptance(i).real() << ' ' << xx.receptance(i).imag() << '\n';
@@ -135,16 +128,11 @@ TEST_F(Plan, StartsFromFrfsWithALineAtZero) {
 }
 
 TEST_F(Plan, SaysWhatIsMissing) {
-  const auto refusal = [](const std::filesystem::path& path) -> std::string {
-    try {
-      static_cast<void>(run_job(path, 1));
-    } catch (const InvalidInput& error) {
-      return error.what();
-    }
-    return "accepted";
+  const auto refusal = [](const std::filesystem::path& path) {
+    return test::refusal([&] { static_cast<void>(run_job(path, 1)); });
   };
-  EXPECT_NE(refusal(folder_ / "none.toml").find("none.toml"), std::string::npos);
-  const std::string lobes = formats::read_file(folder_ / "lobes.toml");
+  EXPECT_NE(refusal(folder_.at("none.toml")).find("none.toml"), std::string::npos);
+  const std::string lobes = formats::read_file(folder_.at("lobes.toml"));
   std::string without_feed = lobes;
   without_feed.erase(without_feed.find("feed_per_tooth_mm"), std::string("feed_per_tooth_mm = 0.01").size());
   write("lobes.toml", without_feed);

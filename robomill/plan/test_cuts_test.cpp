@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::plan {
@@ -37,12 +38,6 @@ TEST(ExplainPeak, NamesThePeaksOfThePublishedCuts) {
 
 class Recording : public testing::Test {
  protected:
-  void SetUp() override {
-    path_ = std::filesystem::temp_directory_path() /
-            ("cut_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".csv");
-  }
-  void TearDown() override { std::filesystem::remove(path_); }
-
   // 6,000 rpm, three teeth: tooth passing at 300 Hz with amplitude 1, and something else at 1,234.5 Hz.
   report::Recording record(double chatter_amplitude, double length_s = 1.0) {
     std::ofstream file(path_);
@@ -64,7 +59,8 @@ class Recording : public testing::Test {
     return read_recording(cut, 3, robot_modes_hz);
   }
 
-  std::filesystem::path path_;
+  test::Folder folder_;
+  std::filesystem::path path_ = folder_.at("cut.csv");
 };
 
 TEST_F(Recording, TellsStableFromChatter) {

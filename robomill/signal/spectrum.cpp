@@ -38,7 +38,8 @@ Spectrum amplitude_spectrum(const Eigen::Ref<const Eigen::VectorXd>& x, double s
   spectrum.amplitude(0) = std::abs(mean);
   if (n % 2 == 0) spectrum.amplitude(n / 2) *= 0.5;
   const double spacing_hz = sample_rate_hz / static_cast<double>(n);
-  spectrum.frequency_hz = Eigen::VectorXd::LinSpaced(n / 2 + 1, 0.0, static_cast<double>(n / 2) * spacing_hz);
+  const Eigen::Index last = n / 2;
+  spectrum.frequency_hz = Eigen::VectorXd::LinSpaced(last + 1, 0.0, static_cast<double>(last) * spacing_hz);
   return spectrum;
 }
 

@@ -30,7 +30,7 @@ void Arnoldi::start(std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) square += start_[i] * start_[i];
   const double scale = 1.0 / std::sqrt(square);
   for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t lane = 0; lane < lane_count; ++lane) basis_[i].v[lane] = start_[i] * scale;
+    for (double& lane : basis_[i].v) lane = start_[i] * scale;
   }
 }
 
@@ -89,7 +89,7 @@ void Arnoldi::full_matrix(PeriodMap& map, std::span<Dominant> out) {
   std::array<Eigen::MatrixXd, lane_count> matrix;
   std::vector<Lanes> in(size_, Lanes{}), column(size_);
   for (std::size_t j = 0; j < size_; ++j) {
-    for (std::size_t lane = 0; lane < lane_count; ++lane) in[j].v[lane] = 1.0;
+    for (double& lane : in[j].v) lane = 1.0;
     map.apply(in.data(), column.data());
     in[j] = Lanes{};
     for (std::size_t lane = 0; lane < out.size(); ++lane) {

@@ -1,0 +1,76 @@
+#pragma once
+// What the tests of every stage share.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::test {
+
+/// A folder of one test's own, gone with it.
+class Folder {
+ public:
+  Folder() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    std::string name = std::string(test->test_suite_name()) + "_" + test->name() + "_" + std::to_string(::getpid());
+    for (char& letter : name) {
+      if (letter == '/') letter = '_';
+    }
+    path_ = std::filesystem::temp_directory_path() / name;
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] std::filesystem::path at(const std::string& name) const { return path_ / name; }
+  /// Writes a file and returns its path.
+  std::filesystem::path file(const std::string& name, std::string_view content) const {
+    std::ofstream(at(name), std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
+    return at(name);
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// What the InvalidInput that f throws says; fails the test where it throws none.
+template <class F>
+std::string refusal(F&& f) {
+  try {
+    f();
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "threw no InvalidInput";
+  return {};
+}
+
+/// The field that the InvalidInput which f throws names, or "accepted" where it throws none.
+template <class F>
+std::string field_of(F&& f) {
+  try {
+    f();
+  } catch (const InvalidInput& error) {
+    return error.parts().field;
+  }
+  return "accepted";
+}
+
+/// Seeds of a heavy property: a tenth of them unless ROBOMILL_FULL=1.
+inline int seeds(int all) {
+  const char* full = std::getenv("ROBOMILL_FULL");
+  return full != nullptr && std::string_view(full) == "1" ? all : all / 10;
+}
+
+}  // namespace robomill::test
