@@ -86,14 +86,14 @@ void reduce_several(const CutMesh::Piece& mesh, const PiecePlan& plan, const Eig
 
 }  // namespace
 
-CollocationModel::CollocationModel(const LobesProblem& problem, bool plane_only)
+CollocationModel::CollocationModel(const LobesProblem& problem, MeshTopology::Form least_form)
     : tip(tip_dynamics(problem)),
       variation(problem.milling.speed_variation),
       contacts(problem.milling, MeshLevel{}.slices),
       milling(problem.milling),
       repeats(common_repeats(variation, contacts.period_rad())),
       fastest_rad_per_s(tip.pole.cwiseAbs().maxCoeff()),
-      keep_plane(plane_only) {}
+      least(least_form) {}
 
 double CollocationModel::told_rad() const {
   return contacts.period() == Period::tooth && !variation.active() ? contacts.period_rad() : revolution;
@@ -109,7 +109,7 @@ void prepare_case(const CollocationModel& model, double spindle_speed_rad_per_s,
   const double depth_m = model.contacts.depends_on_depth() ? std::max(axial_depth_m, least_depth_m) : 1.0;
   const bool sliced = model.contacts.depends_on_depth() && model.milling.tool.runout_m > 0.0;
   const CutterContacts contacts = sliced ? CutterContacts(model.milling, level.slices) : model.contacts;
-  build_mesh(contacts, model.repeats, model.fastest_rad_per_s, turning, depth_m, level, model.keep_plane, out.mesh);
+  build_mesh(contacts, model.repeats, model.fastest_rad_per_s, turning, depth_m, level, model.least, out.mesh);
 
   const bool velocities = model.milling.process_damping.active();
   out.plans.clear();
@@ -172,7 +172,7 @@ NodeLayout::NodeLayout(const MeshTopology& topology, std::size_t modes)
 }
 
 NodeForces trace(const CollocationModel& model, const CollocationCase& point, double axial_depth_m,
-                 const Eigen::VectorXcd& state) {
+                 const Eigen::VectorXcd& state, std::span<const Eigen::Vector2d> forcing_n_per_m) {
   const MeshTopology& topology = point.mesh.topology;
   const NodeLayout layout(topology, static_cast<std::size_t>(model.tip.pole.size()));
   const Eigen::Index modal = static_cast<Eigen::Index>(layout.modal);
@@ -188,6 +188,7 @@ NodeForces trace(const CollocationModel& model, const CollocationCase& point, do
     const CollocationCase::Piece& piece = point.pieces[e];
     const CutMesh::Piece& mesh = point.mesh.pieces[e];
     const PiecePlan& plan = point.plans[piece.plan];
+    out.starts.push_back(z);
     Eigen::VectorXcd end(modal);  // the modes alone
     for (Eigen::Index k = 0; k < modal; k += 2) {
       const std::complex<double> factor = plan.factor(k / 2);
@@ -212,6 +213,11 @@ NodeForces trace(const CollocationModel& model, const CollocationCase& point, do
         if (topology.form == Form::several) seen = (mesh.delayed_stiffness[s] * seen).eval();
         for (Eigen::Index k = 0; k < channels; ++k) c(node * channels + k) += seen(k);
       }
+      for (Eigen::Index i = 0; i < topology.nodes && !forcing_n_per_m.empty(); ++i) {
+        const Eigen::Vector2d& forcing = forcing_n_per_m[out.force_n.size() + static_cast<std::size_t>(i)];
+        c(2 * i) -= forcing(0);
+        c(2 * i + 1) -= forcing(1);
+      }
       const Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(m, m) - axial_depth_m * piece.coupling;
       const Eigen::PartialPivLU<Eigen::MatrixXd> solver(matrix);
       const Eigen::VectorXcd right = piece.observation * z - c;
@@ -232,6 +238,7 @@ NodeForces trace(const CollocationModel& model, const CollocationCase& point, do
           if (topology.form == Form::plane) force = (mesh.stiffness[node] * force).eval();
         }
         out.force_n.emplace_back(axial_depth_m * force);
+        if (topology.form == Form::several) out.displacement_m.emplace_back(left(2 * i), left(2 * i + 1));
         out.time_s.push_back(start_s + plan.time_s[node]);
         const Rotation turning(point.spindle_speed_rad_per_s, model.variation);
         const double speed = turning.speed_rad_per_s(mesh.from_rad + rule.node[node] * mesh.length_rad);

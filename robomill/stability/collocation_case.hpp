@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <complex>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "robomill/stability/cut_mesh.hpp"
@@ -13,14 +14,14 @@ namespace robomill::stability::detail {
 /// What no point of the chart changes. Shared by threads.
 struct CollocationModel {
   /// @throws InvalidInput if swing and cut of a varied speed have no common period of a sensible length
-  explicit CollocationModel(const LobesProblem& problem, bool plane_only = false);
+  explicit CollocationModel(const LobesProblem& problem, MeshTopology::Form least = MeshTopology::Form::chip);
   TipDynamics tip;
   cutting::SpeedVariation variation;
   CutterContacts contacts;  ///< its angles and delays; where slices count, see MeshLevel
   cutting::Milling milling;
-  int repeats = 1;                 ///< of the cutter's period in that of the whole
-  double fastest_rad_per_s = 0.0;  ///< of the modes
-  bool keep_plane = false;         ///< for tests
+  int repeats = 1;                                      ///< of the cutter's period in that of the whole
+  double fastest_rad_per_s = 0.0;                       ///< of the modes
+  MeshTopology::Form least = MeshTopology::Form::chip;  ///< remember no less
   /// Rotation over which the spectral radius is told, and that of the whole period.
   [[nodiscard]] double told_rad() const;
   [[nodiscard]] double whole_rad() const { return contacts.period_rad() * repeats; }
@@ -61,13 +62,17 @@ struct NodeLayout {
   static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 };
 
-/// The force of one period's motion at every node, from its state at the start.
+/// One period's motion from its state at the start.
 struct NodeForces {
   std::vector<double> time_s, weight_s;  ///< of the nodes; weights integrate over the period
   std::vector<Eigen::Vector2cd> force_n;
-  Eigen::VectorXcd end;  ///< state after the period
+  std::vector<Eigen::Vector2cd> displacement_m;  ///< at the nodes of pieces with contact; Form::several alone
+  std::vector<Eigen::VectorXcd> starts;          ///< modes at the start of each piece
+  Eigen::VectorXcd end;                          ///< state after the period
 };
+/// @param forcing_n_per_m  force per depth that acts beside the regenerative one, at the nodes in order; Form::several
+///                         alone, or empty
 NodeForces trace(const CollocationModel& model, const CollocationCase& point, double axial_depth_m,
-                 const Eigen::VectorXcd& state);
+                 const Eigen::VectorXcd& state, std::span<const Eigen::Vector2d> forcing_n_per_m = {});
 
 }  // namespace robomill::stability::detail

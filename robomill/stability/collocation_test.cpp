@@ -163,15 +163,18 @@ TEST(Collocation, AgreesWithSemiDiscretizationOnRandomCuts) {
 }
 
 // What is remembered of the nodes is chosen for speed; the result does not depend on it.
-TEST(Collocation, OneChannelAndTwoAreTheSame) {
+TEST(Collocation, WhatIsRememberedDoesNotMatter) {
   for (const LobesProblem& problem : {benchmark(0.1), robot()}) {
     const CollocationModel chip(problem);
-    const CollocationModel plane(problem, true);
+    const CollocationModel plane(problem, MeshTopology::Form::plane);
+    const CollocationModel several(problem, MeshTopology::Form::several);
     const OperatingPoint point{7000 * rpm, 0.7e-3};
-    Dominant a, b;
+    Dominant a, b, c;
     CollocationEvaluator(chip, 1e-6).evaluate_at({&point, 1}, 4, {&a, 1});
     CollocationEvaluator(plane, 1e-6).evaluate_at({&point, 1}, 4, {&b, 1});
+    CollocationEvaluator(several, 1e-6).evaluate_at({&point, 1}, 4, {&c, 1});
     EXPECT_NEAR(std::abs(a.multiplier), std::abs(b.multiplier), 1e-12);
+    EXPECT_NEAR(std::abs(a.multiplier), std::abs(c.multiplier), 1e-12);
   }
 }
 

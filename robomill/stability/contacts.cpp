@@ -22,6 +22,31 @@ struct Surface {
 
 }  // namespace
 
+double wrap(double angle, double period) {
+  const double wrapped = angle - period * std::floor(angle / period);
+  return wrapped < period ? wrapped : 0.0;
+}
+
+HeightsInCut heights_in_cut(const Contact& contact, double lag_rad_per_m, double tip_rad) {
+  const cutting::Immersion& immersion = contact.immersion;
+  const double start = immersion.entry_rad + std::min(lag_rad_per_m * contact.low_m, lag_rad_per_m * contact.high_m);
+  HeightsInCut in;
+  in.turned_rad = start + wrap(tip_rad - start, revolution);
+  double low = contact.low_m;
+  double high = contact.high_m;
+  if (lag_rad_per_m != 0.0) {
+    const double a = (in.turned_rad - immersion.entry_rad) / lag_rad_per_m;
+    const double b = (in.turned_rad - immersion.exit_rad) / lag_rad_per_m;
+    low = std::max(low, std::min(a, b));
+    high = std::min(high, std::max(a, b));
+  } else if (in.turned_rad > immersion.exit_rad) {
+    high = low;
+  }
+  in.low_m = low;
+  in.length_m = std::max(high - low, 0.0);
+  return in;
+}
+
 CutterContacts::CutterContacts(const cutting::Milling& milling, int slices)
     : milling_(milling), runout_(milling.tool.runout_m > 0.0) {
   const cutting::FlatEndMill& tool = milling.tool;
@@ -49,7 +74,7 @@ void CutterContacts::at_depth(double axial_depth_m, std::vector<Contact>& out) c
     if (tool.pitch(j) + slope * axial_depth_m < 0.02) {
       throw InvalidInput("tooth_helix_rad", "lets one tooth overtake another within the axial depth");
     }
-    out.push_back({j, 0.0, axial_depth_m, milling_.immersion, tool.pitch(j), slope});
+    out.push_back({j, 0.0, axial_depth_m, milling_.immersion, tool.pitch(j), slope, 0.0});
   }
 }
 
@@ -102,7 +127,7 @@ void CutterContacts::add_slice(int tooth, double low_m, double high_m, std::vect
     if (here != nullptr && here == before) {
       out.back().immersion.exit_rad = angles[i + 1];
     } else if (here != nullptr) {
-      out.push_back({tooth, low_m, high_m, {angles[i], angles[i + 1]}, here->delay_rad, 0.0});
+      out.push_back({tooth, low_m, high_m, {angles[i], angles[i + 1]}, here->delay_rad, 0.0, here->step_m});
     }
     before = here;
   }

@@ -12,7 +12,19 @@ struct Contact {
   cutting::Immersion immersion;      ///< φ over which it cuts so
   double delay_rad = 0.0;            ///< rotation between the two, at the tip
   double delay_rad_per_m = 0.0;      ///< how it changes with height
+  double step_m = 0.0;               ///< radius of the one that cuts less that of the other
 };
+
+/// The angle less whole periods, in [0, period).
+double wrap(double angle, double period);
+
+/// The part of a contact's edge whose angle φ = turned - lag z lies between entry and exit.
+struct HeightsInCut {
+  double turned_rad = 0.0;  ///< of the tooth's tip, less whole revolutions
+  double low_m = 0.0, length_m = 0.0;
+};
+/// @param tip_rad  where the tooth's tip stands
+HeightsInCut heights_in_cut(const Contact& contact, double lag_rad_per_m, double tip_rad);
 
 /// Who cuts what who left, from the cutter's shape, runout and feed alone; vibration has no part in it.
 ///

@@ -12,11 +12,6 @@ namespace {
 constexpr double revolution = 2.0 * std::numbers::pi;
 constexpr double same_angle = 1e-10;
 
-double wrap(double angle, double period) {
-  const double wrapped = angle - period * std::floor(angle / period);
-  return wrapped < period ? wrapped : 0.0;
-}
-
 /// Rotation over which some of a contact's edge is in the cut.
 struct Span {
   double from_rad = 0.0, to_rad = 0.0;
@@ -48,11 +43,11 @@ class Builder {
     }
   }
 
-  void build(bool keep_plane, const Rotation& turning, CutMesh& out) {
+  void build(MeshTopology::Form least, const Rotation& turning, CutMesh& out) {
     std::vector<double> borders = find_borders();
     find_raw_pieces(borders);
     split(out);
-    choose_form(keep_plane, out);
+    choose_form(least, out);
     for (std::size_t e = 0; e < out.pieces.size(); ++e) fill_piece(e, turning, out);
   }
 
@@ -148,10 +143,11 @@ class Builder {
     }
   }
 
-  void choose_form(bool keep_plane, CutMesh& out) const {
+  void choose_form(MeshTopology::Form least, CutMesh& out) const {
+    using Form = MeshTopology::Form;
     const bool damped = milling_.process_damping.active();
-    bool chip = !keep_plane && !damped && !source_.depends_on_depth();
-    bool plane = !damped;
+    bool chip = least == Form::chip && !damped && !source_.depends_on_depth();
+    bool plane = least != Form::several && !damped;
     for (const Raw& raw : raw_) {
       chip = chip && raw.active.size() <= 1 && (raw.records == !raw.active.empty());
       for (const std::size_t i : raw.active) {
@@ -159,7 +155,6 @@ class Builder {
         plane = plane && contacts_[i].delay_rad_per_m == 0.0 && contacts_[i].delay_rad == first.delay_rad;
       }
     }
-    using Form = MeshTopology::Form;
     out.topology.nodes = level_.nodes;
     out.topology.form = chip ? Form::chip : plane ? Form::plane : Form::several;
   }
@@ -206,26 +201,15 @@ class Builder {
       }
       return term;
     }
-    // The heights in the cut are those where φ = turned - lag z lies between entry and exit.
     const std::size_t i = group.contacts.front();
     const Contact& c = contacts_[i];
-    const double start = c.immersion.entry_rad + std::min(lag_[i] * c.low_m, lag_[i] * c.high_m);
-    const double turned = start + wrap(rotation_rad + standing_[i] - start, revolution);
-    double low = c.low_m;
-    double high = c.high_m;
-    if (lag_[i] != 0.0) {
-      const double a = (turned - c.immersion.entry_rad) / lag_[i];
-      const double b = (turned - c.immersion.exit_rad) / lag_[i];
-      low = std::max(low, std::min(a, b));
-      high = std::min(high, std::max(a, b));
-    }
+    const HeightsInCut in = heights_in_cut(c, lag_[i], rotation_rad + standing_[i]);
     const GaussRule& rule = gauss_rule(level_.heights);
     const std::size_t h = static_cast<std::size_t>(group.height);
-    const double length = std::max(high - low, 0.0);
-    const double height = low + length * rule.node[h];
+    const double height = in.low_m + in.length_m * rule.node[h];
     term.delay_rad = c.delay_rad + c.delay_rad_per_m * height;
-    term.stiffness = cutting::directional_coefficients(milling_.coefficients, turned - lag_[i] * height) *
-                     (length * rule.weight[h] / depth_m_);
+    term.stiffness = cutting::directional_coefficients(milling_.coefficients, in.turned_rad - lag_[i] * height) *
+                     (in.length_m * rule.weight[h] / depth_m_);
     return term;
   }
 
@@ -330,9 +314,9 @@ class Builder {
 }  // namespace
 
 void build_mesh(const CutterContacts& contacts, int repeats, double fastest_rad_per_s, const Rotation& turning,
-                double axial_depth_m, const MeshLevel& level, bool keep_plane, CutMesh& out) {
+                double axial_depth_m, const MeshLevel& level, MeshTopology::Form least, CutMesh& out) {
   Builder(contacts, repeats, fastest_rad_per_s / turning.mean_rad_per_s(), axial_depth_m, level)
-      .build(keep_plane, turning, out);
+      .build(least, turning, out);
 }
 
 }  // namespace robomill::stability::detail

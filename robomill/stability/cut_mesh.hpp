@@ -60,8 +60,8 @@ struct CutMesh {
 /// @param repeats            how often the cutter's period fits into that of the whole
 /// @param fastest_rad_per_s  of the structure's modes
 /// @param axial_depth_m      > 0
-/// @param keep_plane         do without Form::chip; for tests
+/// @param least              remember no less than this
 void build_mesh(const CutterContacts& contacts, int repeats, double fastest_rad_per_s, const Rotation& turning,
-                double axial_depth_m, const MeshLevel& level, bool keep_plane, CutMesh& out);
+                double axial_depth_m, const MeshLevel& level, MeshTopology::Form least, CutMesh& out);
 
 }  // namespace robomill::stability::detail

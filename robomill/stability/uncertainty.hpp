@@ -11,14 +11,14 @@ namespace robomill::stability {
 
 /// How well a problem is known. All errors are independent and normal; shares are of the value itself.
 struct ROBOMILL_API Uncertainty {
-  int samples = 0;                         ///< how many problems are drawn, 20 to 1,000,000; required
-  std::array<int, 2> grid = {60, 60};      ///< speeds and depths, 2 to 20,000 each
-  std::uint64_t seed = 1;                  ///< the same seed draws the same problems
-  double tangential_std_n_per_m2 = 0.0;    ///< of Kt [N/m^2], >= 0
-  double radial_std_n_per_m2 = 0.0;        ///< of Kr [N/m^2], >= 0
-  double frequency_std_ratio = 0.0;        ///< of the frequency of modes that do not know their own, [0, 0.5]
-  double damping_std_ratio = 0.0;          ///< of the damping ratio of modes that do not know their own, [0, 1]
-  double residue_std_ratio = 0.0;          ///< of the size of every mode's residue matrix, [0, 1]
+  int samples = 0;                       ///< how many problems are drawn, 20 to 1,000,000; required
+  std::array<int, 2> grid = {60, 60};    ///< speeds and depths, 2 to 20,000 each
+  std::uint64_t seed = 1;                ///< the same seed draws the same problems
+  double tangential_std_n_per_m2 = 0.0;  ///< of Kt [N/m^2], >= 0
+  double radial_std_n_per_m2 = 0.0;      ///< of Kr [N/m^2], >= 0
+  double frequency_std_ratio = 0.0;      ///< of the frequency of modes that do not know their own, [0, 0.5]
+  double damping_std_ratio = 0.0;        ///< of the damping ratio of modes that do not know their own, [0, 1]
+  double residue_std_ratio = 0.0;        ///< of the size of every mode's residue matrix, [0, 1]
   /// @throws InvalidInput naming the member
   void validate() const;
 };

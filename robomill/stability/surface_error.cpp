@@ -1,0 +1,197 @@
+#include "robomill/stability/surface_error.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "robomill/stability/chart.hpp"
+#include "robomill/stability/collocation.hpp"
+#include "robomill/stability/gauss.hpp"
+
+namespace robomill::stability {
+namespace {
+
+using namespace detail;
+constexpr double revolution = 2.0 * std::numbers::pi;
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+/// Force per depth that a contact makes without any vibration: chip of the feed and of runout, and the edge.
+Eigen::Vector2d steady_force(const cutting::Milling& milling, const Contact& contact, double rotation_rad,
+                             double depth_m) {
+  const cutting::ForceCoefficients& k = milling.coefficients;
+  const double lag = milling.tool.lag_rad_per_m(contact.tooth);
+  const HeightsInCut in =
+      heights_in_cut(contact, lag, rotation_rad + milling.tool.standing_angle(contact.tooth));
+  const double feed_m = milling.tool.teeth * milling.feed_per_tooth_m / revolution;  // a radian
+  constexpr int heights = 12;
+  const GaussRule& rule = gauss_rule(heights);
+  Eigen::Vector2d force = Eigen::Vector2d::Zero();
+  for (std::size_t h = 0; h < rule.node.size(); ++h) {
+    const double height = in.low_m + in.length_m * rule.node[h];
+    const double angle = in.turned_rad - lag * height;
+    const double sine = std::sin(angle);
+    const double cosine = std::cos(angle);
+    const double chip_m =
+        contact.step_m + feed_m * (contact.delay_rad + contact.delay_rad_per_m * height) * sine;
+    const double tangential = k.tangential_n_per_m2 * chip_m + k.tangential_edge_n_per_m;
+    const double radial = k.radial_n_per_m2 * chip_m + k.radial_edge_n_per_m;
+    force -= Eigen::Vector2d(tangential * cosine + radial * sine, radial * cosine - tangential * sine) *
+             (in.length_m * rule.weight[h] / depth_m);
+  }
+  return force;
+}
+
+/// The same at every node of a case, in order.
+std::vector<Eigen::Vector2d> steady_forces(const CollocationModel& model, const CollocationCase& at) {
+  const double depth_m = model.contacts.depends_on_depth() ? at.axial_depth_m : 1.0;
+  const bool sliced = model.contacts.depends_on_depth() && model.milling.tool.runout_m > 0.0;
+  const CutterContacts cutter = sliced ? CutterContacts(model.milling, at.level.slices) : model.contacts;
+  std::vector<Contact> contacts;
+  cutter.at_depth(depth_m, contacts);
+  const GaussRule& rule = gauss_rule(at.level.nodes);
+  std::vector<Eigen::Vector2d> forces;
+  for (std::size_t e = 0; e < at.mesh.pieces.size(); ++e) {
+    if (!at.mesh.topology.pieces[e].records) continue;
+    const CutMesh::Piece& piece = at.mesh.pieces[e];
+    for (const double node : rule.node) {
+      Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+      for (const Contact& contact : contacts) {
+        sum += steady_force(cutter.milling(), contact, piece.from_rad + node * piece.length_rad, depth_m);
+      }
+      forces.push_back(sum);
+    }
+  }
+  return forces;
+}
+
+/// Tip in y as the first tooth's tip stands at an angle, from the modes at the start of the piece before.
+double y_at(const CollocationModel& model, const CollocationCase& at, const NodeForces& orbit, double angle_rad) {
+  const double wanted = at.mesh.pieces.front().from_rad + wrap(angle_rad - at.mesh.pieces.front().from_rad,
+                                                               at.mesh.period_rad);
+  for (std::size_t e = 0; e < at.mesh.pieces.size(); ++e) {
+    const CutMesh::Piece& piece = at.mesh.pieces[e];
+    if (wanted > piece.from_rad + piece.length_rad - 1e-9) continue;
+    const Rotation turning(at.spindle_speed_rad_per_s, model.variation);
+    const double time_s = turning.time_s(wanted) - turning.time_s(piece.from_rad);
+    const Eigen::VectorXcd& z = orbit.starts[e];
+    double y = 0.0;
+    for (Eigen::Index k = 0; k < model.tip.pole.size(); ++k) {
+      const std::complex<double> here(z(2 * k).real(), z(2 * k + 1).real());
+      y += 2.0 * (model.tip.right(1, k) * here * std::exp(model.tip.pole(k) * time_s)).real();
+    }
+    return y;
+  }
+  return missing;
+}
+
+SurfacePoint orbit_at(const CollocationModel& model, const OperatingPoint& point, int level) {
+  CollocationCase at;
+  prepare_case(model, point.spindle_speed_rad_per_s, point.axial_depth_m, mesh_level(level), at);
+  const std::vector<Eigen::Vector2d> forces = steady_forces(model, at);
+  const NodeLayout layout(at.mesh.topology, static_cast<std::size_t>(model.tip.pole.size()));
+  const Eigen::Index size = static_cast<Eigen::Index>(layout.size());
+  // One real run carries two entries of the state, one in each part.
+  const Eigen::VectorXcd rest = Eigen::VectorXcd::Zero(size);
+  Eigen::MatrixXd matrix(size, size);
+  for (Eigen::Index j = 0; j < size; j += 2) {
+    Eigen::VectorXcd unit = Eigen::VectorXcd::Zero(size);
+    unit(j) = 1.0;
+    if (j + 1 < size) unit(j + 1) = std::complex<double>(0.0, 1.0);
+    const Eigen::VectorXcd end = trace(model, at, point.axial_depth_m, unit).end;
+    matrix.col(j) = end.real();
+    if (j + 1 < size) matrix.col(j + 1) = end.imag();
+  }
+  const Eigen::VectorXd pushed = trace(model, at, point.axial_depth_m, rest, forces).end.real();
+  const Eigen::VectorXd start = (Eigen::MatrixXd::Identity(size, size) - matrix).partialPivLu().solve(pushed);
+  const NodeForces orbit = trace(model, at, point.axial_depth_m, start.cast<std::complex<double>>(), forces);
+
+  SurfacePoint result;
+  result.stable = true;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high = -low;
+  for (const Eigen::Vector2cd& q : orbit.displacement_m) {
+    low = low.cwiseMin(q.real());
+    high = high.cwiseMax(q.real());
+  }
+  result.peak_to_peak_x_m = high(0) - low(0);
+  result.peak_to_peak_y_m = high(1) - low(1);
+  const bool up = model.milling.immersion.entry_rad <= 1e-9;
+  // A tooth at φ = 0 stands at the wall on the left, at φ = π at that on the right.
+  const double y = y_at(model, at, orbit, up ? 0.0 : std::numbers::pi);
+  result.surface_location_error_m = up ? -y : y;
+  return result;
+}
+
+void require_feed(const LobesProblem& problem) {
+  if (!(problem.milling.feed_per_tooth_m > 0.0)) {
+    throw InvalidInput("feed_per_tooth_m", problem.milling.feed_per_tooth_m, "m", "must be > 0 for a surface");
+  }
+}
+
+SurfacePoint unstable_point() {
+  return {false, missing, missing, missing};
+}
+
+}  // namespace
+
+SurfacePoint surface_point(const LobesProblem& problem, const OperatingPoint& point, double tolerance) {
+  problem.validate();
+  require_feed(problem);
+  require_positive("axial_depth_m", point.axial_depth_m, "m");
+  require_positive("spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
+  const CollocationModel model(problem, MeshTopology::Form::several);
+  const CollocationModel plain(problem);
+  CollocationEvaluator evaluator(plain, tolerance);
+  Outcome outcome;
+  evaluator.evaluate({&point, 1}, {.estimate = true}, {&outcome, 1});
+  if (outcome.spectral_radius >= 1.0) return unstable_point();
+  return orbit_at(model, point, first_level(model, point.spindle_speed_rad_per_s, tolerance) + 1);
+}
+
+SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options, const std::array<int, 2>& grid,
+                       Progress& progress) {
+  problem.validate();
+  options.validate();
+  require_feed(problem);
+  for (const int points : grid) {
+    if (points < 2 || points > 2000) throw InvalidInput("grid", points, "", "must lie between 2 and 2000");
+  }
+  std::vector<double> depths = even(options.axial_depth_m, grid[1] + 1);
+  depths.erase(depths.begin());
+  const Axes axes = {even(options.spindle_speed_rad_per_s, grid[0]), depths};
+  const std::unique_ptr<Scheme> scheme = collocation(problem, options.tolerance);
+  const CollocationModel model(problem, MeshTopology::Form::several);
+  Count count;
+  const GridRadii radii = evaluate_grid(*scheme, axes, false, count, progress);
+  SurfaceMap map;
+  const Eigen::Index n = grid[0];
+  const Eigen::Index m = grid[1];
+  map.spindle_speed_rad_per_s = Eigen::Map<const Eigen::VectorXd>(axes.spindle_speed_rad_per_s.data(), n);
+  map.axial_depth_m = Eigen::Map<const Eigen::VectorXd>(depths.data(), m);
+  map.surface_location_error_m = Eigen::MatrixXd::Constant(m, n, missing);
+  map.peak_to_peak_m = map.surface_location_error_m;
+  progress.start("surface error", static_cast<std::size_t>(n));
+  parallel_for(static_cast<std::size_t>(n), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const int level = first_level(model, axes.spindle_speed_rad_per_s[s], options.tolerance);
+      for (std::size_t d = 0; d < depths.size(); ++d) {
+        progress.check();
+        const Eigen::Index row = static_cast<Eigen::Index>(d);
+        const Eigen::Index column = static_cast<Eigen::Index>(s);
+        if (radii.unstable(row, column)) continue;
+        const SurfacePoint point = orbit_at(model, axes.at(s, d), level);
+        map.surface_location_error_m(row, column) = point.surface_location_error_m;
+        map.peak_to_peak_m(row, column) = std::max(point.peak_to_peak_x_m, point.peak_to_peak_y_m);
+      }
+      progress.advance();
+    }
+  });
+  return map;
+}
+
+}  // namespace robomill::stability
