@@ -1,0 +1,81 @@
+#include "robomill/stability/frequency_domain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::stability {
+namespace {
+
+using std::numbers::pi;
+
+std::string band(double low_rad_per_s, double high_rad_per_s) {
+  char text[96];
+  if (std::isfinite(high_rad_per_s)) {
+    std::snprintf(text, sizeof text, "%.6g to %.6g Hz", low_rad_per_s / (2.0 * pi), high_rad_per_s / (2.0 * pi));
+  } else {
+    std::snprintf(text, sizeof text, "above %.6g Hz", low_rad_per_s / (2.0 * pi));
+  }
+  return text;
+}
+
+[[noreturn]] void refuse(const std::string& missing, const std::string& rule, const std::string& hint) {
+  throw InvalidInput(
+      InvalidInput::Parts{.field = "frf", .value = "band " + missing + " missing", .rule = rule, .hint = hint});
+}
+
+/// d ln ‖G‖ / d ln ω between two frequencies.
+double slope(const FrequencyResponse& response, double from, double to) {
+  return std::log(response.at(to).norm() / response.at(from).norm()) / std::log(to / from);
+}
+
+}  // namespace
+
+void FrequencyOptions::validate() const {
+  require_positive("largest_depth_m", largest_depth_m, "m");
+  if (largest_depth_m > 0.5) {
+    throw InvalidInput("largest_depth_m", largest_depth_m, "m", "is deeper than any milling cut",
+                       "Are the units mixed up?");
+  }
+  if (!(tolerance >= 1e-12 && tolerance <= 0.1)) {
+    throw InvalidInput("tolerance", tolerance, "", "must lie between 1e-12 and 0.1");
+  }
+  if (depths < 4 || depths > 10000) throw InvalidInput("depths", depths, "", "must lie between 4 and 10000");
+}
+
+void require_coverage(const FrequencyResponse& response, const std::vector<FrequencyLimit>& limits,
+                      double largest_ratio) {
+  if (!response.measured()) return;
+  const double low = response.low_rad_per_s();
+  const double high = response.high_rad_per_s();
+  double largest = 0.0;
+  for (const Resonance& r : response.resonances()) {
+    largest = std::max(largest, response.at(r.frequency_rad_per_s).norm());
+  }
+  // An end that stands high and still rises is the flank of a peak that was not measured.
+  const char* const again = "Measure that band too";
+  if (response.at(high).norm() > 0.25 * largest && slope(response, 0.98 * high, high) > 0.5) {
+    refuse(band(high, std::numeric_limits<double>::infinity()), "FRFs must reach beyond the last peak", again);
+  }
+  if (low > 0.0 && response.at(low).norm() > 0.25 * largest && slope(response, low, 1.02 * low) < -1.0) {
+    refuse(band(0.0, low), "FRFs must begin below the first peak", again);
+  }
+  const FrequencyLimit* worst = nullptr;
+  for (const FrequencyLimit& limit : limits) {
+    if (limit.status == FrequencyLimit::Status::stable_in_range) continue;
+    if (worst == nullptr || limit.uncovered_ratio > worst->uncovered_ratio) worst = &limit;
+  }
+  if (worst == nullptr || worst->uncovered_ratio <= largest_ratio) return;
+  const bool below = 2.0 * pi * worst->chatter_frequency_hz < std::sqrt(std::max(low, 1e-3 * high) * high);
+  char rule[160];
+  std::snprintf(rule, sizeof rule, "what is not measured moves the limit at %.6g rpm, chatter at %.5g Hz, by %.2g %%",
+                worst->spindle_speed_rad_per_s * 30.0 / pi, worst->chatter_frequency_hz,
+                100.0 * worst->uncovered_ratio);
+  refuse(below && low > 0.0 ? band(0.0, low) : band(high, std::numeric_limits<double>::infinity()), rule, again);
+}
+
+}  // namespace robomill::stability
