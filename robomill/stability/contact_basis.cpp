@@ -13,7 +13,31 @@ namespace {
 
 using std::numbers::pi;
 using Complex = std::complex<double>;
-constexpr std::size_t tail_powers = 11;
+constexpr int chebyshev_points = 8;
+
+/// In (0, 1).
+double chebyshev(int k) {
+  return 0.5 - 0.5 * std::cos(pi * (k + 0.5) / chebyshev_points);
+}
+
+/// What each point's value counts for in the polynomial through all of them at x.
+std::array<double, chebyshev_points> chebyshev_shares(double x) {
+  std::array<double, chebyshev_points> share{};
+  double sum = 0.0;
+  for (int k = 0; k < chebyshev_points; ++k) {
+    const double away = x - chebyshev(k);
+    if (away == 0.0) {
+      share.fill(0.0);
+      share[static_cast<std::size_t>(k)] = 1.0;
+      return share;
+    }
+    const double weight = (k % 2 == 0 ? 1.0 : -1.0) * std::sin(pi * (k + 0.5) / chebyshev_points) / away;
+    share[static_cast<std::size_t>(k)] = weight;
+    sum += weight;
+  }
+  for (double& s : share) s /= sum;
+  return share;
+}
 
 /// P_0(x) … P_{count-1}(x), scaled to mean square 1 over (-1, 1).
 Eigen::VectorXd legendre(Eigen::Index count, double x) {
@@ -145,22 +169,18 @@ void require_frequency_domain(const cutting::Milling& milling) {
 
 ContactBasis::ContactBasis(const cutting::Milling& milling, const FrequencyResponse& response,
                            double spindle_speed_rad_per_s, double axial_depth_m, const Size& size)
-    : response_(response), speed_(spindle_speed_rad_per_s) {
-  const bool equal = milling.tool.has_equal_pitch();
-  period_rad_ = equal ? 2.0 * pi / milling.tool.teeth : 2.0 * pi;
+    : response_(response), speed_(spindle_speed_rad_per_s), interpolated_(size.interpolated) {
+  period_rad_ = milling.tool.has_equal_pitch() ? 2.0 * pi / milling.tool.teeth : 2.0 * pi;
   period_frequency_ = 2.0 * pi / period_rad_ * speed_;
-  // Below near_ each harmonic has its own receptance, beyond it the series stands for all.
   near_ = std::max<Eigen::Index>(
-      4, static_cast<Eigen::Index>(std::ceil(response.series_from_rad_per_s() / period_frequency_)) + 1);
+      2, static_cast<Eigen::Index>(std::ceil(response.smooth_from_rad_per_s() / period_frequency_)) + 1);
   far_ = std::max<Eigen::Index>(near_ + 1, size.harmonics);
-  find_arcs(milling, axial_depth_m, 1.0 / speed_, size);
-  find_transforms();
-  find_stiffness(milling, speed_, axial_depth_m);
-  find_tails();
+  find_arcs(milling, axial_depth_m, size);
+  find_stiffness(milling, axial_depth_m);
+  if (interpolated_) find_tails();
 }
 
-void ContactBasis::find_arcs(const cutting::Milling& milling, double axial_depth_m, double time_per_rad,
-                             const Size& size) {
+void ContactBasis::find_arcs(const cutting::Milling& milling, double axial_depth_m, const Size& size) {
   const std::vector<double> angles = contact_angles(milling, axial_depth_m, period_rad_);
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const double to = i + 1 < angles.size() ? angles[i + 1] : angles.front() + period_rad_;
@@ -171,182 +191,177 @@ void ContactBasis::find_arcs(const cutting::Milling& milling, double axial_depth
     }
     if (!cuts) continue;
     const double half = 0.5 * (to - angles[i]);
-    const auto degree = static_cast<Eigen::Index>(std::ceil(size.highest_rad_per_s * half * time_per_rad + half));
+    const auto degree = static_cast<Eigen::Index>(std::ceil((size.highest_rad_per_s / speed_ + 1.0) * half));
     arcs_.push_back({angles[i], to, count_, degree + size.extra});
     count_ += arcs_.back().count;
   }
 }
 
-void ContactBasis::find_transforms() {
-  transform_.resize(2 * far_ + 1, count_);
-  const double turns = 2.0 * pi / period_rad_;
+void ContactBasis::transform(double turns, Eigen::Ref<Eigen::RowVectorXcd> out) const {
+  Eigen::VectorXd bessel(count_);
   for (const Arc& arc : arcs_) {
-    const double middle = 0.5 * (arc.from + arc.to);
+    const double turn = turns * 2.0 * pi / period_rad_;
     const double half = 0.5 * (arc.to - arc.from);
-    const double scale = std::sqrt(2.0 * half / period_rad_);
-    Eigen::VectorXd bessel(arc.count);
-    for (Eigen::Index n = 0; n <= far_; ++n) {
-      const double turn = turns * static_cast<double>(n);
-      spherical_bessel(turn * half, bessel);
-      const Complex phase = std::polar(scale, -turn * middle);
-      for (Eigen::Index m = 0; m < arc.count; ++m) {
-        const Complex value = phase * power_of_minus_i(m) * (std::sqrt(2.0 * static_cast<double>(m) + 1.0) * bessel(m));
-        transform_(far_ + n, arc.first + m) = value;
-        transform_(far_ - n, arc.first + m) = std::conj(value);
-      }
+    const Complex phase = std::polar(std::sqrt(2.0 * half / period_rad_), -0.5 * turn * (arc.from + arc.to));
+    auto values = bessel.head(arc.count);
+    spherical_bessel(turn * half, values);
+    for (Eigen::Index m = 0; m < arc.count; ++m) {
+      out(arc.first + m) = phase * power_of_minus_i(m) * (std::sqrt(2.0 * static_cast<double>(m) + 1.0) * values(m));
     }
   }
 }
 
-void ContactBasis::find_stiffness(const cutting::Milling& milling, double spindle_speed, double axial_depth_m) {
+void ContactBasis::find_stiffness(const cutting::Milling& milling, double axial_depth_m) {
   const bool equal = milling.tool.has_equal_pitch();
   const int teeth = milling.tool.teeth;
-  std::vector<int> term_of(static_cast<std::size_t>(teeth), 0);
+  std::vector<std::size_t> term_of(static_cast<std::size_t>(teeth), 0);
   for (int j = 0; j < teeth; ++j) {
     const double pitch = equal ? period_rad_ : milling.tool.pitch(j);
     std::size_t t = 0;
     while (t < terms_.size() && std::abs(terms_[t].delay_angle - pitch) > 1e-9) ++t;
-    if (t == terms_.size()) terms_.push_back({.delay_angle = pitch, .stiffness = {}, .tail = {}, .delayed_tail = {}});
-    term_of[static_cast<std::size_t>(j)] = static_cast<int>(t);
+    if (t == terms_.size()) terms_.push_back({.delay_angle = pitch});
+    term_of[static_cast<std::size_t>(j)] = t;
   }
   const bool damped = milling.process_damping.active();
-  if (damped) terms_.push_back({.damping = true, .stiffness = {}, .tail = {}, .delayed_tail = {}});
+  if (damped) terms_.push_back({.damping = true});
   for (Term& term : terms_) {
-    for (auto& row : term.stiffness) {
-      for (Eigen::MatrixXd& entry : row) entry = Eigen::MatrixXd::Zero(count_, count_);
+    // Over whole periods the delay's factor is one number, so that the limit counts for it too.
+    const bool whole = !term.damping && std::abs(term.delay_angle - period_rad_) < 1e-12;
+    const Eigen::Matrix2d& limit = term.damping ? response_.first_moment() : response_.compliance();
+    term.limit = {limit, whole ? limit : Eigen::Matrix2d::Zero()};
+    for (auto& entry : term.stiffness) {
+      for (const Arc& arc : arcs_) entry.push_back(Eigen::MatrixXd::Zero(arc.count, arc.count));
     }
   }
   Eigen::VectorXd nodes, weights;
-  for (const Arc& arc : arcs_) {
+  for (std::size_t a = 0; a < arcs_.size(); ++a) {
+    const Arc& arc = arcs_[a];
     // The stiffness itself is smooth on the arc; eight more nodes than the product of two polynomials needs.
     gauss_legendre(arc.count + 8, nodes, weights);
     for (Eigen::Index q = 0; q < nodes.size(); ++q) {
       const double angle = 0.5 * (arc.from + arc.to) + 0.5 * (arc.to - arc.from) * nodes(q);
       const Eigen::VectorXd p = legendre(arc.count, nodes(q));
       const auto add = [&](Term& term, const Eigen::Matrix2d& value) {
-        if (value.isZero(0.0)) return;
-        for (int i = 0; i < 2; ++i) {
-          for (int j = 0; j < 2; ++j) {
-            term.stiffness[i][j].block(arc.first, arc.first, arc.count, arc.count) +=
-                (0.5 * weights(q) * value(i, j)) * p * p.transpose();
-          }
+        for (Eigen::Index e = 0; e < 4; ++e) {
+          if (value(e) == 0.0) continue;
+          term.stiffness[static_cast<std::size_t>(e)][a] += (0.5 * weights(q) * value(e)) * p * p.transpose();
         }
       };
       for (int j = 0; j < teeth; ++j) {
-        add(terms_[static_cast<std::size_t>(term_of[static_cast<std::size_t>(j)])],
+        add(terms_[term_of[static_cast<std::size_t>(j)]],
             cutting::cutting_stiffness(milling, j, angle, axial_depth_m) / axial_depth_m);
         if (damped) {
-          add(terms_.back(),
-              cutting::cutting_damping(milling, j, angle, 0.0, axial_depth_m, spindle_speed) / axial_depth_m);
+          add(terms_.back(), cutting::cutting_damping(milling, j, angle, 0.0, axial_depth_m, speed_) / axial_depth_m);
         }
+      }
+    }
+  }
+}
+
+/// c(s) G(s) less what it tends to.
+Eigen::Matrix2cd ContactBasis::gain(const Term& term, double frequency, const Eigen::Matrix2cd& receptance) const {
+  if (term.damping) {
+    const Complex s(0.0, frequency);
+    return s * (receptance - response_.compliance().cast<Complex>()) - term.limit[0].cast<Complex>();
+  }
+  const Complex delayed = std::polar(1.0, -frequency * term.delay_angle / speed_);
+  return (1.0 - delayed) * receptance - term.limit[0].cast<Complex>() + delayed * term.limit[1].cast<Complex>();
+}
+
+bool ContactBasis::acts(const Term& term, std::size_t arc) const {
+  return std::ranges::any_of(term.stiffness, [arc](const auto& entry) { return !entry[arc].isZero(0.0); });
+}
+
+/// Harmonics of from <= |n| <= to, for each term in the rows of the arcs where it acts.
+void ContactBasis::add_rows(double frequency, Eigen::Index from, Eigen::Index to, bool covered_only,
+                            std::vector<Blocks>& sums) const {
+  const Eigen::Index negative = from == 0 ? to : to - from + 1;
+  const Eigen::Index rows = negative + to - from + 1;
+  Eigen::MatrixXcd psi(rows, count_);
+  Eigen::RowVectorXcd values(count_);
+  std::vector<double> omega;
+  std::vector<Eigen::Matrix2cd> receptance;
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const Eigen::Index n = row < negative ? row - to : from + row - negative;
+    omega.push_back(frequency + static_cast<double>(n) * period_frequency_);
+    transform(omega.back() / period_frequency_, values);
+    psi.row(row) = values;
+    receptance.push_back(response_.at(omega.back()));
+  }
+  Eigen::VectorXcd gains(rows);
+  Eigen::MatrixXcd weighted;
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    for (Eigen::Index e = 0; e < 4; ++e) {
+      for (Eigen::Index row = 0; row < rows; ++row) {
+        const auto r = static_cast<std::size_t>(row);
+        gains(row) = covered_only && !response_.covers(omega[r]) ? 0.0 : gain(terms_[t], omega[r], receptance[r])(e);
+      }
+      if (gains.isZero(0.0)) continue;
+      weighted.noalias() = gains.asDiagonal() * psi;
+      for (std::size_t a = 0; a < arcs_.size(); ++a) {
+        if (!acts(terms_[t], a)) continue;
+        sums[t][static_cast<std::size_t>(e)].middleRows(arcs_[a].first, arcs_[a].count).noalias() +=
+            psi.middleCols(arcs_[a].first, arcs_[a].count).adjoint() * weighted;
       }
     }
   }
 }
 
 void ContactBasis::find_tails() {
-  const bool needed = std::ranges::any_of(response_.series(), [](const Eigen::Matrix2d& c) { return !c.isZero(0.0); });
-  if (!needed) return;
-  const Eigen::Index tail = far_ - near_;
-  const Eigen::MatrixXcd high = transform_.bottomRows(tail);
-  // Coefficients of -n are the conjugates of those of n, so that both halves of the sum are conjugate but for (±in)^p.
-  const auto sums = [&](double angle) {
-    std::vector<Eigen::MatrixXcd> out;
-    for (std::size_t p = 0; p < tail_powers; ++p) {
-      Eigen::VectorXcd factor(tail);
-      for (Eigen::Index i = 0; i < tail; ++i) {
-        const double n = static_cast<double>(near_ + 1 + i);
-        factor(i) = std::polar(1.0, -n * angle) / std::pow(Complex(0.0, n), static_cast<double>(p));
-      }
-      const Eigen::MatrixXcd half = high.adjoint() * factor.asDiagonal() * high;
-      out.emplace_back(half + half.conjugate());
-    }
-    return out;
-  };
-  const std::vector<Eigen::MatrixXcd> plain = sums(0.0);
-  const auto middle = transform_.middleRows(far_ - near_, 2 * near_ + 1);
-  for (Term& term : terms_) {
-    term.tail = plain;
-    // All harmonics together are the identity.
-    term.tail[0] = Eigen::MatrixXcd::Identity(count_, count_) - middle.adjoint() * middle;
-    if (term.damping) continue;
-    const bool whole = std::abs(term.delay_angle - period_rad_) < 1e-12;
-    term.delayed_tail = whole ? term.tail : sums(term.delay_angle * 2.0 * pi / period_rad_);
-  }
-}
-
-void ContactBasis::add_tail(const Term& term, double omega, Complex delay_factor, Eigen::MatrixXcd (&sum)[2][2]) const {
-  if (term.tail.empty()) return;
-  // 1 / (u + v)^k = Σ_r (-1)^r C(k + r - 1, r) v^r / u^(k + r), u = i n ω_P, v = iω.
-  const auto& series = response_.series();
-  const std::size_t shift = term.damping ? 1 : 0;
-  std::array<Eigen::Matrix2cd, tail_powers> gain;
-  gain.fill(Eigen::Matrix2cd::Zero());
-  for (std::size_t k = 0; k + shift < series.size(); ++k) {
-    Complex factor = 1.0;
-    for (std::size_t r = 0; k + r < tail_powers; ++r) {
-      gain[k + r] += series[k + shift].cast<Complex>() * factor;
-      if (k == 0) break;
-      factor *= -Complex(0.0, omega) * (static_cast<double>(k + r) / static_cast<double>(r + 1));
-    }
-  }
-  double unit = 1.0;
-  for (std::size_t p = 0; p < tail_powers; ++p) {
-    if (!gain[p].isZero(0.0)) {
-      Eigen::MatrixXcd shape = term.tail[p];
-      if (!term.damping) shape -= delay_factor * term.delayed_tail[p];
-      for (int i = 0; i < 2; ++i) {
-        for (int j = 0; j < 2; ++j) sum[i][j] += (gain[p](i, j) * unit) * shape;
-      }
-    }
-    unit /= period_frequency_;
+  for (int k = 0; k < chebyshev_points; ++k) {
+    std::vector<Blocks> sums(terms_.size());
+    for (Blocks& sum : sums) sum.fill(Eigen::MatrixXcd::Zero(count_, count_));
+    add_rows(chebyshev(k) * 0.5 * period_frequency_, near_ + 1, far_, false, sums);
+    for (std::size_t t = 0; t < terms_.size(); ++t) terms_[t].tail.push_back(std::move(sums[t]));
   }
 }
 
 void ContactBasis::matrix(double frequency_rad_per_s, Eigen::MatrixXcd& out, bool covered_only) const {
-  const double omega = frequency_rad_per_s;
-  const Eigen::Index rows = 2 * near_ + 1;
-  const auto middle = transform_.middleRows(far_ - near_, rows);
-  std::array<Eigen::VectorXcd, 4> receptance;
-  for (Eigen::VectorXcd& r : receptance) r.resize(rows);
-  for (Eigen::Index row = 0; row < rows; ++row) {
-    const double at = omega + static_cast<double>(row - near_) * period_frequency_;
-    const bool left_out = covered_only && !response_.covers(at);
-    const Eigen::Matrix2cd g = left_out ? Eigen::Matrix2cd(Eigen::Matrix2cd::Zero()) : response_.at(at);
-    for (Eigen::Index e = 0; e < 4; ++e) receptance[static_cast<std::size_t>(e)](row) = g(e % 2, e / 2);
-  }
+  const std::array<double, chebyshev_points> share = chebyshev_shares(2.0 * frequency_rad_per_s / period_frequency_);
+  std::vector<Blocks> sums(terms_.size());
+  for (Blocks& sum : sums) sum.fill(Eigen::MatrixXcd::Zero(count_, count_));
+  add_rows(frequency_rad_per_s, 0, interpolated_ ? near_ : far_, covered_only, sums);
   out.setZero(2 * count_, 2 * count_);
-  for (const Term& term : terms_) {
-    const Complex delay_factor = std::polar(1.0, -omega * term.delay_angle / speed_);
-    const double turns = 2.0 * pi / period_rad_;
-    Eigen::VectorXcd factor(rows);
-    for (Eigen::Index row = 0; row < rows; ++row) {
-      const double n = static_cast<double>(row - near_);
-      factor(row) = term.damping ? Complex(0.0, omega + n * period_frequency_)
-                                 : 1.0 - delay_factor * std::polar(1.0, -n * turns * term.delay_angle);
-    }
-    Eigen::MatrixXcd sum[2][2];
-    for (int i = 0; i < 2; ++i) {
-      for (int j = 0; j < 2; ++j) {
-        const Eigen::VectorXcd gain = factor.cwiseProduct(receptance[static_cast<std::size_t>(i + 2 * j)]);
-        const Eigen::MatrixXcd weighted = gain.asDiagonal() * middle;
-        sum[i][j].noalias() = middle.adjoint() * weighted;
+  for (std::size_t t = 0; t < terms_.size(); ++t) {
+    const Term& term = terms_[t];
+    Blocks& sum = sums[t];
+    if (!covered_only) {
+      const Complex delayed = std::polar(1.0, -frequency_rad_per_s * term.delay_angle / speed_);
+      for (std::size_t e = 0; e < 4; ++e) {
+        for (std::size_t k = 0; k < term.tail.size(); ++k) sum[e] += share[k] * term.tail[k][e];
+        const auto entry = static_cast<Eigen::Index>(e);
+        sum[e].diagonal().array() += term.limit[0](entry) - delayed * term.limit[1](entry);
       }
     }
-    if (!covered_only) add_tail(term, omega, delay_factor, sum);
-    for (int i = 0; i < 2; ++i) {
-      for (int j = 0; j < 2; ++j) {
-        for (int k = 0; k < 2; ++k) {
-          out.block(i * count_, j * count_, count_, count_) += term.stiffness[i][k].cast<Complex>() * sum[k][j];
-        }
+    for (std::size_t a = 0; a < arcs_.size(); ++a) {
+      if (acts(term, a)) multiply(term, a, sum, out);
+    }
+  }
+}
+
+/// Adds 𝒦_d of one arc times what stands in its rows.
+void ContactBasis::multiply(const Term& term, std::size_t arc, const Blocks& sum, Eigen::MatrixXcd& out) const {
+  const Eigen::Index first = arcs_[arc].first;
+  const Eigen::Index count = arcs_[arc].count;
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    for (Eigen::Index j = 0; j < 2; ++j) {
+      auto block = out.block(i * count_ + first, j * count_, count, count_);
+      for (Eigen::Index k = 0; k < 2; ++k) {
+        const auto rows = sum[static_cast<std::size_t>(k + 2 * j)].middleRows(first, count);
+        const Eigen::MatrixXd& stiffness = term.stiffness[static_cast<std::size_t>(i + 2 * k)][arc];
+        const Eigen::MatrixXd real = stiffness * rows.real();
+        const Eigen::MatrixXd imaginary = stiffness * rows.imag();
+        block.real() += real;
+        block.imag() += imaginary;
       }
     }
   }
 }
 
-Eigen::Vector2cd ContactBasis::harmonic(const Eigen::VectorXcd& coefficients, int n) const {
-  const auto row = transform_.row(far_ + n);
-  return {(row * coefficients.head(count_)).value(), (row * coefficients.tail(count_)).value()};
+Eigen::Vector2cd ContactBasis::harmonic(const Eigen::VectorXcd& coefficients, double frequency_rad_per_s, int n) const {
+  Eigen::RowVectorXcd psi(count_);
+  transform(frequency_rad_per_s / period_frequency_ + n, psi);
+  return {(psi * coefficients.head(count_)).value(), (psi * coefficients.tail(count_)).value()};
 }
 
 }  // namespace robomill::stability::detail

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "robomill/cutting/milling.hpp"
@@ -7,22 +8,26 @@
 
 namespace robomill::stability::detail {
 
-/// The force of a vibration q e^{iωt} over one period of the cut, by Legendre polynomials on the arcs between the
-/// angles at which some tooth enters or leaves: there it is smooth, so that few of them say it, while harmonics of a
-/// force that jumps come slowly. Orthonormal over the period.
+/// The force F(t) = e^{iωt} (periodic) of a vibration over one period of the cut, by Legendre polynomials on the arcs
+/// between the angles at which some tooth enters or leaves: there it is smooth, so that few of them say it, while
+/// harmonics of a force that jumps come slowly. Orthonormal over the period.
 ///
-/// The force density is a A(ω) f for force coefficients f,
-///   A(ω) = Σ_d 𝒦_d S_d(ω),  S_d = Σ_n ψ_nᴴ (c_d(s_n) G(s_n)) ψ_n,  s_n = i(ω + n ω_P),
-/// with ψ_n the polynomials' n-th Fourier coefficients (spherical Bessel functions), 𝒦_d the specific cutting stiffness
+/// The force coefficients f obey f = a A(ω) f,
+///   A(ω) = Σ_d 𝒦_d Σ_n ψ_nᴴ (c_d(s_n) G(s_n)) ψ_n,  s_n = i(ω + n ω_P),
+/// with ψ_n the polynomials' Fourier transforms at s_n (spherical Bessel functions), 𝒦_d the specific cutting stiffness
 /// of the teeth with delay τ_d, c_d = 1 - exp(-s τ_d); process damping adds a term with c = s. This is Hill's
-/// determinant of the harmonic FRF blocks, det(I - a A(ω)) = 0, after a change of basis.
+/// determinant of the harmonic FRF blocks, det(I - a A(ω)) = 0, after a change of basis. All n together give the
+/// identity, which takes care of what G tends to; harmonics beyond the resonances are smooth in ω and are interpolated
+/// from a few Chebyshev points.
 class ContactBasis {
  public:
   struct Size {
     double highest_rad_per_s = 0.0;  ///< the highest frequency that the polynomials must follow
     int extra = 6;                   ///< polynomials beyond that
     int harmonics = 600;             ///< N, at least; |n| <= N
+    bool interpolated = true;        ///< the harmonics beyond the resonances, for many frequencies; else each anew
   };
+  /// Frequencies must lie in [0, ω_P / 2].
   /// @param axial_depth_m  what the helix' lag is taken at; without helix nothing depends on it
   ContactBasis(const cutting::Milling& milling, const FrequencyResponse& response, double spindle_speed_rad_per_s,
                double axial_depth_m, const Size& size);
@@ -34,34 +39,41 @@ class ContactBasis {
   /// A(ω) [m^-1], 2m x 2m: the x components of all polynomials, then y's.
   /// @param covered_only  leave out what the measured FRFs do not cover
   void matrix(double frequency_rad_per_s, Eigen::MatrixXcd& out, bool covered_only = false) const;
-  /// F_n of force coefficients, n from -near to near.
-  [[nodiscard]] Eigen::Vector2cd harmonic(const Eigen::VectorXcd& coefficients, int n) const;
+  /// F_n of force coefficients.
+  [[nodiscard]] Eigen::Vector2cd harmonic(const Eigen::VectorXcd& coefficients, double frequency_rad_per_s,
+                                          int n) const;
   [[nodiscard]] int near() const { return static_cast<int>(near_); }
 
  private:
+  using Blocks = std::array<Eigen::MatrixXcd, 4>;  ///< xx, yx, xy, yy
   struct Arc {
     double from = 0.0, to = 0.0;  ///< rotation angles of the tip of tooth 0
     Eigen::Index first = 0, count = 0;
   };
   struct Term {
     bool damping = false;
-    double delay_angle = 0.0;                    ///< Ω τ_d
-    Eigen::MatrixXd stiffness[2][2];             ///< 𝒦_d, count x count each
-    std::vector<Eigen::MatrixXcd> tail;          ///< Σ over near < |n| <= far of ψᴴψ / (in)^p, p from 0
-    std::vector<Eigen::MatrixXcd> delayed_tail;  ///< the same with e^{-i n ω_P τ_d}
+    double delay_angle = 0.0;                                    ///< Ω τ_d
+    std::array<std::vector<Eigen::MatrixXd>, 4> stiffness = {};  ///< 𝒦_d by arc: xx, yx, xy, yy
+    std::array<Eigen::Matrix2d, 2> limit = {};  ///< what the gain tends to: constant, and times the delay's factor
+    std::vector<Blocks> tail = {};  ///< Σ over near < |n| <= far of ψᴴ (gain - limit) ψ at the Chebyshev points
   };
-  void find_arcs(const cutting::Milling& milling, double axial_depth_m, double time_per_rad, const Size& size);
-  void find_transforms();
-  void find_stiffness(const cutting::Milling& milling, double spindle_speed, double axial_depth_m);
+  void find_arcs(const cutting::Milling& milling, double axial_depth_m, const Size& size);
+  void find_stiffness(const cutting::Milling& milling, double axial_depth_m);
   void find_tails();
-  void add_tail(const Term& term, double omega, std::complex<double> delay_factor, Eigen::MatrixXcd (&sum)[2][2]) const;
+  void multiply(const Term& term, std::size_t arc, const Blocks& sum, Eigen::MatrixXcd& out) const;
+  [[nodiscard]] bool acts(const Term& term, std::size_t arc) const;
+  /// ψ at ω + n ω_P = turns κ Ω.
+  void transform(double turns, Eigen::Ref<Eigen::RowVectorXcd> out) const;
+  [[nodiscard]] Eigen::Matrix2cd gain(const Term& term, double frequency, const Eigen::Matrix2cd& receptance) const;
+  void add_rows(double frequency, Eigen::Index from, Eigen::Index to, bool covered_only,
+                std::vector<Blocks>& sums) const;
 
   const FrequencyResponse& response_;
   double period_rad_ = 0.0, period_frequency_ = 0.0, speed_ = 0.0;
   std::vector<Arc> arcs_;
   std::vector<Term> terms_;
+  bool interpolated_ = true;
   Eigen::Index count_ = 0, near_ = 0, far_ = 0;
-  Eigen::MatrixXcd transform_;  ///< (2 far + 1) x count: row far + n
 };
 
 /// Where a tooth enters or leaves at the tip or at the top, in [0, period), increasing [rad].

@@ -13,6 +13,77 @@ namespace {
 
 using Complex = std::complex<double>;
 
+/// An eigenvalue is real by symmetry where its imaginary part is at most this share of it.
+constexpr double real_enough = 1e-6;
+
+/// The eigenvalues of greatest modulus, by Arnoldi's iteration from a fixed start vector, twice orthogonalised; a Ritz
+/// value counts when its residual is below 1e-9 of the norm of the small matrix. The whole spectrum where that does
+/// not come soon. Source: [Saad2011].
+class LargestEigenvalues {
+ public:
+  /// Those above `least`, in any order.
+  void find(const Eigen::MatrixXcd& a, double least, std::vector<Complex>& out) {
+    const Eigen::Index n = a.rows();
+    for (Eigen::Index columns = 10; 2 * columns <= n; columns += 6) {
+      iterate(a, columns);
+      if (settled(columns, least, out)) return;
+    }
+    built_ = 0;
+    solver_.compute(a, false);
+    keep(solver_.eigenvalues(), least, out);
+    built_ = 0;
+  }
+
+ private:
+  static void keep(const Eigen::VectorXcd& values, double least, std::vector<Complex>& out) {
+    out.clear();
+    for (const Complex value : values) {
+      if (std::abs(value) > least) out.push_back(value);
+    }
+  }
+  void iterate(const Eigen::MatrixXcd& a, Eigen::Index columns) {
+    const Eigen::Index n = a.rows();
+    if (columns == 10 || basis_.rows() != n) {
+      basis_.resize(n, n + 1);
+      small_.setZero(n + 1, n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        basis_(i, 0) =
+            Complex(1.0 + 0.3 * std::sin(1.7 * static_cast<double>(i)), 0.2 * std::cos(2.3 * static_cast<double>(i)));
+      }
+      basis_.col(0).normalize();
+      built_ = 0;
+    }
+    for (; built_ < columns; ++built_) {
+      next_.noalias() = a * basis_.col(built_);
+      for (int pass = 0; pass < 2; ++pass) {
+        share_.noalias() = basis_.leftCols(built_ + 1).adjoint() * next_;
+        next_.noalias() -= basis_.leftCols(built_ + 1) * share_;
+        small_.col(built_).head(built_ + 1) += share_;
+      }
+      const double left = next_.norm();
+      small_(built_ + 1, built_) = left;
+      if (left > 0.0) basis_.col(built_ + 1) = next_ / left;
+    }
+  }
+  bool settled(Eigen::Index columns, double least, std::vector<Complex>& out) {
+    const Eigen::MatrixXcd h = small_.topLeftCorner(columns, columns);
+    solver_.compute(h, true);
+    const double rest = std::abs(small_(columns, columns - 1));
+    const double allowed = 1e-9 * h.norm();
+    for (Eigen::Index i = 0; i < columns; ++i) {
+      if (std::abs(solver_.eigenvalues()(i)) < least) continue;
+      if (rest * std::abs(solver_.eigenvectors()(columns - 1, i)) > allowed) return false;
+    }
+    keep(solver_.eigenvalues(), least, out);
+    return true;
+  }
+
+  Eigen::Index built_ = 0;
+  Eigen::MatrixXcd basis_, small_;
+  Eigen::VectorXcd next_, share_;
+  Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver_;
+};
+
 struct Sample {
   double frequency = 0.0;
   std::vector<Complex> values = {};  ///< those that could count within a neighbouring interval
@@ -47,12 +118,13 @@ class Tracer {
     nodes.erase(same.begin(), same.end());
     nodes.back() = sweep_.to;
     Sample left = sample(nodes.front());
-    if (sweep_.real_from) ends(left, Crossing::At::from);
+    const Sample first = left;
     for (std::size_t i = 1; i < nodes.size(); ++i) {
       Sample right = sample(nodes[i]);
       interval(left, right, 0);
       left = right;
     }
+    if (sweep_.real_from) ends(first, Crossing::At::from);
     if (sweep_.real_to) ends(left, Crossing::At::to);
     std::ranges::sort(found_, {}, &Crossing::gain);
     return found_;
@@ -63,19 +135,17 @@ class Tracer {
     matrix_(frequency, work_);
     Sample s{.frequency = frequency};
     if (work_.size() == 0 || work_.norm() < 0.3 * floor_) return s;
-    solver_.compute(work_, false);
-    for (const Complex value : solver_.eigenvalues()) {
-      if (std::abs(value) > 0.1 * floor_) s.values.push_back(value);
-    }
+    eigenvalues_.find(work_, 0.3 * floor_, s.values);
     return s;
   }
 
   void ends(const Sample& s, Crossing::At at) {
     for (const Complex value : s.values) {
-      if (value.real() * sweep_.largest_gain < 1.0 || std::abs(value.imag()) > 1e-6 * value.real()) continue;
-      const double step = (sweep_.to - sweep_.from) * (at == Crossing::At::from ? 1e-6 : -1e-6);
+      if (value.real() * sweep_.largest_gain < 1.0 || std::abs(value.imag()) > real_enough * value.real()) continue;
+      if (std::abs(nearest(s.values, std::conj(value)) - value) > 0.5 * std::abs(value.imag())) continue;  // a pair
+      const double step = (sweep_.to - sweep_.from) * (at == Crossing::At::from ? 1e-4 : -1e-4);
       const Sample beside = sample(s.frequency + step);
-      const double slope = nearest(beside.values, value).imag() / step;
+      const double slope = (nearest(beside.values, value).imag() - value.imag()) / step;
       found_.push_back({s.frequency, 1.0 / value.real(), slope < 0.0, at});
     }
   }
@@ -177,7 +247,7 @@ class Tracer {
   double floor_;
   bool last_below_ = false;
   Eigen::MatrixXcd work_;
-  Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver_;
+  LargestEigenvalues eigenvalues_;
   std::vector<Crossing> found_;
 };
 
@@ -188,11 +258,24 @@ std::vector<Crossing> find_crossings(const MatrixAt& matrix, const Sweep& sweep)
 }
 
 Complex nearest_eigenvalue(const Eigen::MatrixXcd& matrix, Complex guess, Eigen::VectorXcd& vector) {
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(matrix, true);
-  Eigen::Index best = 0;
-  (solver.eigenvalues().array() - guess).abs().minCoeff(&best);
-  vector = solver.eigenvectors().col(best).normalized();
-  return solver.eigenvalues()(best);
+  const Eigen::Index n = matrix.rows();
+  if (vector.size() != n) vector = Eigen::VectorXcd::Constant(n, Complex(1.0, 0.1));
+  vector.normalize();
+  const double size = matrix.norm();
+  Complex value = guess;
+  for (int factored = 0; factored < 4; ++factored) {
+    // A shift beside the eigenvalue, so that what is solved is not singular.
+    const Complex shift = value + Complex(1e-7, 1.3e-7) * std::abs(guess);
+    const Eigen::PartialPivLU<Eigen::MatrixXcd> solver(matrix - shift * Eigen::MatrixXcd::Identity(n, n));
+    for (int step = 0; step < 8; ++step) {
+      const Eigen::VectorXcd next = solver.solve(vector);
+      vector = next.normalized();
+      const Eigen::VectorXcd image = matrix * vector;
+      value = vector.dot(image);
+      if ((image - value * vector).norm() <= 1e-14 * size) return value;
+    }
+  }
+  return value;
 }
 
 Crossing follow(const MatrixAt& matrix, const Crossing& from) {
@@ -222,7 +305,8 @@ Crossing follow(const MatrixAt& matrix, const Crossing& from) {
       step = std::clamp(next, -0.02 * from.frequency, 0.02 * from.frequency);
     }
   }
-  const bool found = value.real() > 0.0 && std::abs(value.imag()) <= 1e-6 * value.real();
+  const double allowed = from.at == Crossing::At::inside ? 1e-6 : real_enough;
+  const bool found = value.real() > 0.0 && std::abs(value.imag()) <= allowed * value.real();
   out.gain = found ? 1.0 / value.real() : 0.0;
   return out;
 }

@@ -11,7 +11,8 @@ namespace robomill::stability {
 
 struct ROBOMILL_API FrequencyOptions {
   double largest_depth_m = 0.0;  ///< greatest axial depth to look at [m], > 0; required
-  double tolerance = 1e-7;  ///< polynomials and harmonics grow until the limit moves less than this share of itself
+  double tolerance = 1e-7;     ///< polynomials and harmonics grow until the limit moves less than this share of itself
+  bool all_crossings = false;  ///< look for every change of stability up to the greatest depth, not the first alone
   int depths =
       40;  ///< with helix, whose lag changes with the depth: depths at which stability is looked at, at least 4
   /// @throws InvalidInput naming the member
@@ -41,7 +42,7 @@ struct FrequencyLimit {
   double error_estimate_m = 0.0;  ///< by how much the last refinement moved the limit
   /// Share by which the limit moves where receptances outside the band of measured FRFs are left out.
   double uncovered_ratio = 0.0;
-  std::vector<DepthCrossing> crossings = {};  ///< all that were found, by depth; with helix the first alone
+  std::vector<DepthCrossing> crossings = {};  ///< by depth: the first, or all that were asked for; with helix the first
 };
 
 /// Zeroth-order approximation: the cutting stiffness is replaced by its mean over a period,

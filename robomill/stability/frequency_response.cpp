@@ -17,7 +17,6 @@ namespace robomill::stability {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr std::size_t series_terms = 9;
 
 Eigen::Matrix2cd modal_receptance(const detail::TipDynamics& tip, double omega) {
   const Complex s(0.0, omega);
@@ -27,20 +26,6 @@ Eigen::Matrix2cd modal_receptance(const detail::TipDynamics& tip, double omega) 
     g += residue / (s - tip.pole(k)) + residue.conjugate() / (s - std::conj(tip.pole(k)));
   }
   return g;
-}
-
-/// 1 / (s - λ) = Σ_k λ^(k-1) / s^k.
-std::vector<Eigen::Matrix2d> modal_series(const detail::TipDynamics& tip) {
-  std::vector<Eigen::Matrix2d> series(series_terms, Eigen::Matrix2d::Zero());
-  series[0] = tip.compliance;
-  for (Eigen::Index m = 0; m < tip.pole.size(); ++m) {
-    Eigen::Matrix2cd term = tip.right.col(m) * tip.left.col(m).transpose();
-    for (std::size_t k = 1; k < series_terms; ++k) {
-      series[k] += 2.0 * term.real();
-      term *= tip.pole(m);
-    }
-  }
-  return series;
 }
 
 /// Highest of their neighbourhood, with the width at which they have fallen to 0.7; the highest forty.
@@ -89,24 +74,20 @@ struct FrequencyResponse::Part {
 };
 
 void FrequencyResponse::add(std::shared_ptr<const Part> part) {
-  std::vector<Eigen::Matrix2d> series(series_terms, Eigen::Matrix2d::Zero());
   if (part->modes) {
-    series = modal_series(*part->modes);
-    for (Eigen::Index k = 0; k < part->modes->pole.size(); ++k) {
-      const Complex pole = part->modes->pole(k);
-      resonances_.push_back({pole.imag(), -pole.real()});
-      // The series' last term that is left out is then below 1e-4 of its first.
-      series_from_ = std::max(series_from_, 3.0 * std::abs(pole));
+    const detail::TipDynamics& tip = *part->modes;
+    compliance_ += tip.compliance;
+    for (Eigen::Index k = 0; k < tip.pole.size(); ++k) {
+      first_moment_ += 2.0 * (tip.right.col(k) * tip.left.col(k).transpose()).real();
+      resonances_.push_back({tip.pole(k).imag(), -tip.pole(k).real()});
+      smooth_from_ = std::max(smooth_from_, 1.5 * std::abs(tip.pole(k)));
     }
   } else {
     for (const Resonance& r : peaks(*part->frf)) resonances_.push_back(r);
     low_ = std::max(low_, part->frf->low());
     high_ = std::min(high_, part->frf->high());
-    series_from_ = std::max(series_from_, part->frf->high() * (1.0 + 1e-12));
-    series[2] = part->frf->mass_line();
+    smooth_from_ = std::max(smooth_from_, part->frf->high());
   }
-  if (series_.empty()) series_.assign(series_terms, Eigen::Matrix2d::Zero());
-  for (std::size_t k = 0; k < series_terms; ++k) series_[k] += series[k];
   std::ranges::sort(resonances_, {}, &Resonance::frequency_rad_per_s);
   parts_.push_back(std::move(part));
 }
@@ -181,14 +162,10 @@ bool FrequencyResponse::covers(double frequency_rad_per_s) const {
   return omega >= low_ && omega <= high_;
 }
 
-double FrequencyResponse::highest_that_counts_rad_per_s() const {
+double FrequencyResponse::highest_peak() const {
   double largest = 0.0;
   for (const Resonance& r : resonances_) largest = std::max(largest, at(r.frequency_rad_per_s).norm());
-  double highest = 0.0;
-  for (const Resonance& r : resonances_) {
-    if (at(r.frequency_rad_per_s).norm() >= 1e-3 * largest) highest = std::max(highest, r.frequency_rad_per_s);
-  }
-  return highest;
+  return largest;
 }
 
 int FrequencyResponse::mode_of(double frequency_rad_per_s, const Eigen::Vector2cd& force,

@@ -47,11 +47,13 @@ class ROBOMILL_API FrequencyResponse {
   [[nodiscard]] bool covers(double frequency_rad_per_s) const;
   /// By frequency.
   [[nodiscard]] const std::vector<Resonance>& resonances() const { return resonances_; }
-  /// Beyond `series_from_rad_per_s` G(s) = Σ_k C_k / s^k, k from 0; 2x2 each.
-  [[nodiscard]] const std::vector<Eigen::Matrix2d>& series() const { return series_; }
-  [[nodiscard]] double series_from_rad_per_s() const { return series_from_; }
-  /// Above it nothing answers that matters: there no resonance is higher than a thousandth of the highest.
-  [[nodiscard]] double highest_that_counts_rad_per_s() const;
+  /// What G and s (G - compliance) tend to at high frequency [m/N, m/(N s)].
+  [[nodiscard]] const Eigen::Matrix2d& compliance() const { return compliance_; }
+  [[nodiscard]] const Eigen::Matrix2d& first_moment() const { return first_moment_; }
+  /// Above it there is neither a resonance nor a measured line.
+  [[nodiscard]] double smooth_from_rad_per_s() const { return smooth_from_; }
+  /// Greatest ‖G‖ (Frobenius) at a resonance [m/N].
+  [[nodiscard]] double highest_peak() const;
   /// Of a displacement q e^{iωt} that a force F e^{iωt} makes: which mode's share is greatest, and how great [m]. 0
   /// where no modes are known.
   [[nodiscard]] int mode_of(double frequency_rad_per_s, const Eigen::Vector2cd& force, double& displacement_m) const;
@@ -62,8 +64,8 @@ class ROBOMILL_API FrequencyResponse {
 
   std::vector<std::shared_ptr<const Part>> parts_;
   std::vector<Resonance> resonances_;
-  std::vector<Eigen::Matrix2d> series_;
-  double series_from_ = 0.0, low_ = 0.0, high_ = std::numeric_limits<double>::infinity();
+  Eigen::Matrix2d compliance_ = Eigen::Matrix2d::Zero(), first_moment_ = Eigen::Matrix2d::Zero();
+  double smooth_from_ = 0.0, low_ = 0.0, high_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace robomill::stability

@@ -24,7 +24,12 @@ class Solver {
   Solver(const cutting::Milling& milling, const FrequencyResponse& response, double speed,
          const FrequencyOptions& options)
       : milling_(milling), response_(response), speed_(speed), options_(options) {
-    highest_ = response.highest_that_counts_rad_per_s();
+    const double least = 1e-3 * response.highest_peak();
+    for (const Resonance& r : response.resonances()) {
+      if (response.at(r.frequency_rad_per_s).norm() < least) continue;
+      counting_.push_back(r);
+      highest_ = std::max(highest_, r.frequency_rad_per_s);
+    }
     for (int j = 0; j < milling.tool.teeth; ++j) helix_ = helix_ || milling.tool.lag_rad_per_m(j) != 0.0;
   }
 
@@ -58,8 +63,9 @@ class Solver {
   [[nodiscard]] std::shared_ptr<const ContactBasis> basis(double depth_m, int level) const {
     ContactBasis::Size size;
     size.highest_rad_per_s = highest_;
-    size.extra = 5 + 3 * level;
-    size.harmonics = 150 << level;
+    size.extra = 4 + 3 * level;
+    size.harmonics = 80 << level;
+    size.interpolated = level == first_level;
     return std::make_shared<const ContactBasis>(milling_, response_, speed_, depth_m, size);
   }
   [[nodiscard]] static MatrixAt matrix_of(const ContactBasis& basis) {
@@ -74,7 +80,7 @@ class Solver {
     sweep.largest_gain = largest_depth_m;
     sweep.real_from = sweep.real_to = true;
     for (int i = 1; i < 12; ++i) sweep.nodes.push_back(sweep.to * i / 12.0);
-    for (const Resonance& r : response_.resonances()) {
+    for (const Resonance& r : counting_) {
       for (const double widths : {-10.0, -4.0, -1.5, -0.5, 0.5, 1.5, 4.0, 10.0}) {
         const double away = widths * r.half_width_rad_per_s;
         if (std::abs(away) > sweep.to) continue;
@@ -88,7 +94,11 @@ class Solver {
 
   std::optional<Found> first_crossing(FrequencyLimit& limit) const {
     const auto level0 = basis(options_.largest_depth_m, first_level);
-    const std::vector<Crossing> all = crossings(*level0, options_.largest_depth_m);
+    // Fewer eigenvalues count for a small depth: the first crossing is looked for from there.
+    std::vector<Crossing> all;
+    for (double share = options_.all_crossings ? 1.0 : 1.0 / 64.0; share <= 1.0 && all.empty(); share *= 4.0) {
+      all = crossings(*level0, share * options_.largest_depth_m);
+    }
     for (const Crossing& c : all) {
       const Motion motion = motion_of({c.gain, c, level0});
       limit.crossings.push_back({c.gain, motion.frequency_hz, kind_of(c), c.opens});
@@ -122,9 +132,13 @@ class Solver {
   }
 
   std::optional<Found> first_by_depth() const {
+    // What the helix changes repeats with the height on which it passes a pitch.
+    const double pitch_rad = 2.0 * pi / milling_.tool.teeth;
+    const double passes = std::abs(milling_.tool.lag_rad_per_m(0)) * options_.largest_depth_m / pitch_rad;
+    const int depths = static_cast<int>(std::clamp(std::ceil(12.0 * passes), 6.0, 400.0));
     std::vector<Look> looks = {Look{}};
-    for (int i = 1; i <= options_.depths; ++i) {
-      looks.push_back(look(options_.largest_depth_m * i / options_.depths));
+    for (int i = 1; i <= depths; ++i) {
+      looks.push_back(look(options_.largest_depth_m * i / depths));
       const std::size_t n = looks.size();
       if (looks.back().unstable) return between(looks[n - 2].depth_m, looks.back());
       // An island may hide where the crossings come near and go away again.
@@ -211,7 +225,7 @@ class Solver {
     double largest = 0.0, largest_share = 0.0;
     for (int n = -found.basis->near(); n <= found.basis->near(); ++n) {
       const double omega = found.crossing.frequency + n * found.basis->period_frequency_rad_per_s();
-      const Eigen::Vector2cd harmonic = found.basis->harmonic(force, n);
+      const Eigen::Vector2cd harmonic = found.basis->harmonic(force, found.crossing.frequency, n);
       const double displacement = (response_.at(omega) * harmonic).norm();
       if (displacement > largest * (1.0 + 1e-9)) {
         largest = displacement;
@@ -265,6 +279,7 @@ class Solver {
   double speed_, highest_ = 0.0;
   const FrequencyOptions& options_;
   bool helix_ = false;
+  std::vector<Resonance> counting_;  ///< the others are below a thousandth of the highest
 };
 
 }  // namespace
