@@ -28,9 +28,12 @@ std::string band(double low_rad_per_s, double high_rad_per_s) {
       InvalidInput::Parts{.field = "frf", .value = "band " + missing + " missing", .rule = rule, .hint = hint});
 }
 
-/// d ln ‖G‖ / d ln ω between two frequencies.
-double slope(const FrequencyResponse& response, double from, double to) {
-  return std::log(response.at(to).norm() / response.at(from).norm()) / std::log(to / from);
+/// Mean of ‖G‖ over a stretch of the band, so that noise weighs less.
+double mean_size(const FrequencyResponse& response, double from, double to) {
+  constexpr int points = 40;
+  double sum = 0.0;
+  for (int i = 0; i < points; ++i) sum += response.at(from + (to - from) * (i + 0.5) / points).norm();
+  return sum / points;
 }
 
 }  // namespace
@@ -52,12 +55,14 @@ void require_coverage(const FrequencyResponse& response, const std::vector<Frequ
   const double low = response.low_rad_per_s();
   const double high = response.high_rad_per_s();
   const double largest = response.highest_peak();
-  // An end that stands high and still rises is the flank of a peak that was not measured.
+  // An end towards which the response rises is the flank of a peak that was not measured.
   const char* const again = "Measure that band too";
-  if (response.at(high).norm() > 0.25 * largest && slope(response, 0.98 * high, high) > 0.5) {
+  const double at_high = mean_size(response, 0.975 * high, high);
+  if (at_high > 0.02 * largest && at_high > 1.05 * mean_size(response, 0.9 * high, 0.925 * high)) {
     refuse(band(high, std::numeric_limits<double>::infinity()), "FRFs must reach beyond the last peak", again);
   }
-  if (low > 0.0 && response.at(low).norm() > 0.25 * largest && slope(response, low, 1.02 * low) < -1.0) {
+  const double at_low = mean_size(response, low, 1.05 * low);
+  if (low > 0.0 && at_low > 0.2 * largest && at_low > 1.15 * mean_size(response, 1.15 * low, 1.2 * low)) {
     refuse(band(0.0, low), "FRFs must begin below the first peak", again);
   }
   const FrequencyLimit* worst = nullptr;

@@ -68,6 +68,6 @@ struct FrequencyLimit {
 /// if
 ///     what they leave out moves a limit by more than `largest_ratio` of itself
 ROBOMILL_API void require_coverage(const FrequencyResponse& response, const std::vector<FrequencyLimit>& limits,
-                                   double largest_ratio = 0.05);
+                                   double largest_ratio = 0.2);
 
 }  // namespace robomill::stability

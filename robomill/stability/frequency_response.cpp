@@ -86,6 +86,7 @@ void FrequencyResponse::add(std::shared_ptr<const Part> part) {
     for (const Resonance& r : peaks(*part->frf)) resonances_.push_back(r);
     low_ = std::max(low_, part->frf->low());
     high_ = std::min(high_, part->frf->high());
+    first_moment_ += part->frf->first_moment();
     smooth_from_ = std::max(smooth_from_, part->frf->high());
   }
   std::ranges::sort(resonances_, {}, &Resonance::frequency_rad_per_s);

@@ -48,7 +48,7 @@ FrfInterpolation::FrfInterpolation(Eigen::VectorXd frequency_rad_per_s, Lines li
     : frequency_(std::move(frequency_rad_per_s)), lines_(std::move(lines)) {
   pieces_.reserve(static_cast<std::size_t>(frequency_.size() - 1));
   for (Eigen::Index i = 0; i + 1 < frequency_.size(); ++i) pieces_.push_back(piece(i));
-  find_mass_line();
+  find_continuation();
 }
 
 FrfInterpolation::Piece FrfInterpolation::piece(Eigen::Index line) const {
@@ -93,18 +93,36 @@ FrfInterpolation::Piece FrfInterpolation::piece(Eigen::Index line) const {
   return p;
 }
 
-void FrfInterpolation::find_mass_line() {
-  const Eigen::Index count = std::max<Eigen::Index>(4, frequency_.size() / 10);
-  const auto top = lines_.bottomRows(count);
-  const Eigen::ArrayXd squared = frequency_.tail(count).array().square();
-  Eigen::RowVector4d mass;
-  for (Eigen::Index e = 0; e < 4; ++e) {
-    // Least squares of H = -A / ω².
-    mass(e) = -(top.col(e).real().array() / squared).sum() / squared.square().inverse().sum();
+void FrfInterpolation::find_continuation() {
+  const Eigen::Index n = frequency_.size();
+  const Eigen::VectorXd size = lines_.rowwise().norm();
+  const Eigen::Index quarter = std::max<Eigen::Index>(window, n / 4);
+  const bool peak = size.tail(quarter).maxCoeff() > 4.0 * size.tail(std::max<Eigen::Index>(4, n / 20)).mean();
+  const Eigen::Index count = peak ? std::max<Eigen::Index>(4, n / 10) : quarter;
+  if (frequency_(n - count) == 0.0) return;
+  const Lines top = lines_.bottomRows(count);
+  // Real and imaginary parts as equations of their own, for the coefficients are real.
+  Eigen::MatrixXd powers(2 * count, 4);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Complex step = high() / Complex(0.0, frequency_(n - count + i));
+    Complex power = step;
+    for (Eigen::Index k = 0; k < 4; ++k) {
+      powers(i, k) = power.real();
+      powers(count + i, k) = power.imag();
+      power *= step;
+    }
   }
-  Lines rest = top;
-  for (Eigen::Index i = 0; i < count; ++i) rest.row(i) += (mass / squared(i)).cast<Complex>();
-  if (rest.norm() <= 0.5 * top.norm()) mass_line_ = matrix(mass.cast<Complex>()).real();
+  if (peak) {
+    for (const Eigen::Index k : {0, 2, 3}) powers.col(k).setZero();
+  }
+  Eigen::MatrixXd values(2 * count, 4);
+  values << top.real(), top.imag();
+  const Eigen::Matrix4d fitted = powers.colPivHouseholderQr().solve(values);
+  if (fitted.allFinite() && (powers * fitted - values).norm() <= 0.5 * values.norm()) above_ = fitted;
+}
+
+Eigen::Matrix2d FrfInterpolation::first_moment() const {
+  return matrix(above_.row(0).cast<Complex>() * high()).real();
 }
 
 Eigen::Matrix2cd FrfInterpolation::at(double frequency_rad_per_s) const {
@@ -115,7 +133,13 @@ Eigen::Matrix2cd FrfInterpolation::at(double frequency_rad_per_s) const {
       value(e) = Complex(lines_(0, e).real(), lines_(0, e).imag() * omega / low());
     }
   } else if (omega > high()) {
-    return (-mass_line_ / (omega * omega)).cast<Complex>();
+    const Complex step = high() / Complex(0.0, omega);
+    Complex power = step;
+    value.setZero();
+    for (Eigen::Index k = 0; k < 4; ++k) {
+      value += power * above_.row(k).cast<Complex>();
+      power *= step;
+    }
   } else {
     const double* const begin = frequency_.data();
     const double* const after = std::upper_bound(begin, begin + frequency_.size(), omega);

@@ -27,8 +27,8 @@ class FrfInterpolation {
   [[nodiscard]] Eigen::Matrix2cd at(double frequency_rad_per_s) const;
   [[nodiscard]] double low() const { return frequency_(0); }
   [[nodiscard]] double high() const { return frequency_(frequency_.size() - 1); }
-  /// A of H = -A / ω² above the highest line [1/kg]; 0 where there is no such line.
-  [[nodiscard]] const Eigen::Matrix2d& mass_line() const { return mass_line_; }
+  /// C_1 of what continues above the highest line [m/(N s)].
+  [[nodiscard]] Eigen::Matrix2d first_moment() const;
   [[nodiscard]] const Eigen::VectorXd& frequency() const { return frequency_; }
   [[nodiscard]] const Lines& lines() const { return lines_; }
 
@@ -41,12 +41,12 @@ class FrfInterpolation {
     std::array<std::complex<double>, 2> denominator = {};               ///< d = 1 + d₁ x + d₂ x²
   };
   [[nodiscard]] Piece piece(Eigen::Index line) const;
-  void find_mass_line();
+  void find_continuation();
 
   Eigen::VectorXd frequency_;
   Lines lines_;
   std::vector<Piece> pieces_;
-  Eigen::Matrix2d mass_line_ = Eigen::Matrix2d::Zero();
+  Eigen::Matrix4d above_ = Eigen::Matrix4d::Zero();  ///< C_k times high^-k: a row a power, a column an entry
 };
 
 }  // namespace robomill::stability::detail
