@@ -42,6 +42,7 @@ std::vector<Explanation> explanations(double peak_hz, double rotation_hz, int te
         if (signed_hz * sign < 0.0) continue;
         consider({.kind = Named::chatter,
                   .harmonic = static_cast<int>(n),
+                  .mirrored = sign < 0.0,
                   .mode = static_cast<int>(k) + 1,
                   .expected_hz = std::abs(signed_hz),
                   .tolerance_hz = allowed_hz});
@@ -100,7 +101,7 @@ double rotation_of(const MeasuredPeaks& peaks, const modal::ModalModel& modes, c
 }
 
 /// The mode that explains most chatter peaks; of equals the one whose peaks fit better.
-void name_mode(const modal::ModalModel& modes, Fingerprint& out) {
+void name_mode(Fingerprint& out) {
   struct Share {
     int peaks = 0;
     double misfit = 0.0, frequency_hz = 0.0;
@@ -112,10 +113,7 @@ void name_mode(const modal::ModalModel& modes, Fingerprint& out) {
     ++share.peaks;
     share.misfit += std::abs(peak.best.difference_hz) / peak.best.tolerance_hz;
     const double moved_hz = peak.best.harmonic * out.spindle_speed_rad_per_s / (2.0 * pi);
-    // Where f_k + n f_rotation is negative the peak is its mirror image.
-    const double mode_hz = modes.modes[static_cast<std::size_t>(peak.best.mode - 1)].frequency_hz;
-    const bool below = mode_hz + moved_hz < 0.0;
-    share.frequency_hz += (below ? -peak.frequency_hz : peak.frequency_hz) - moved_hz;
+    share.frequency_hz += (peak.best.mirrored ? -peak.frequency_hz : peak.frequency_hz) - moved_hz;
   }
   for (const auto& [mode, share] : shares) {
     const Share best = out.mode == 0 ? Share{} : shares[out.mode];
@@ -180,7 +178,7 @@ Fingerprint explain(const MeasuredPeaks& peaks, const modal::ModalModel& modes, 
     }
     out.peaks.push_back(std::move(peak));
   }
-  name_mode(modes, out);
+  name_mode(out);
   return out;
 }
 

@@ -27,7 +27,8 @@ struct Explanation {
   /// tooth_passing: n rotations, n a multiple of the teeth. rotation: n rotations. chatter: |f_k + n rotations|.
   enum class Kind { tooth_passing, rotation, chatter, unexplained };
   Kind kind = Kind::unexplained;
-  int harmonic = 0;               ///< n; negative where the peak is n rotations less the mode's frequency
+  int harmonic = 0;               ///< n
+  bool mirrored = false;          ///< f_k + n rotations is negative: the peak is -n rotations less the mode's frequency
   int mode = 0;                   ///< k, from 1; 0 but for chatter
   bool of_tooth_passing = false;  ///< whether n is a multiple of the teeth
   double expected_hz = 0.0;       ///< what n, the speed and the mode give

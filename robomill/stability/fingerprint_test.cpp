@@ -73,6 +73,7 @@ TEST(Fingerprint, PeaksBelowAMultipleAreItsMirrorImage) {
   const Fingerprint found = robot_peaks({6.0 * rotation_hz - 17.4, 12.0 * rotation_hz - 17.0}, 6500);
   EXPECT_EQ(found.peaks[0].best.kind, Named::chatter);
   EXPECT_EQ(found.peaks[0].best.harmonic, -6);
+  EXPECT_TRUE(found.peaks[0].best.mirrored);
   EXPECT_EQ(found.peaks[0].best.mode, 1);
   EXPECT_NEAR(found.peaks[0].best.difference_hz, 0.0, 1e-9);
   EXPECT_NEAR(found.peaks[1].best.difference_hz, 0.4, 1e-9);
