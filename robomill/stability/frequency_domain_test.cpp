@@ -138,6 +138,26 @@ TEST(MultiFrequency, AgreesWithSemiDiscretizationOfOtherCuts) {
   }
 }
 
+// Its force follows the velocity, harmonics fall more slowly; judged by collocation.
+TEST(MultiFrequency, HasProcessDamping) {
+  LobesProblem damped = benchmark(0.3);
+  damped.milling.process_damping = {.indentation_n_per_m3 = 4e13, .wear_land_m = 60e-6, .friction = 0.3};
+  LobesProblem helix = damped, pitch = damped;
+  helix.milling.tool.helix_rad = 0.5;
+  pitch.milling.tool.pitch_rad = {2.9, 2.0 * pi - 2.9};
+  for (const LobesProblem& p : {damped, helix, pitch}) {
+    for (const double speed_rpm : {4000.0, 9000.0}) {
+      const FrequencyLimit limit = multi(p, 8e-3, {speed_rpm}).front();
+      ASSERT_EQ(limit.status, Status::found);
+      EXPECT_NEAR(collocated(p, speed_rpm, limit.axial_depth_m), 1.0, 3e-6) << speed_rpm;
+      EXPECT_LT(collocated(p, speed_rpm, 0.98 * limit.axial_depth_m), 1.0);
+    }
+  }
+  LobesProblem bare = damped;
+  bare.milling.process_damping = {};
+  EXPECT_GT(multi(damped, 8e-3, {4000}).front().axial_depth_m, 1.2 * multi(bare, 8e-3, {4000}).front().axial_depth_m);
+}
+
 int seeds(int all) {
   return std::getenv("ROBOMILL_FULL") != nullptr ? all : all / 10;
 }
