@@ -146,8 +146,8 @@ std::vector<double> contact_angles(const cutting::Milling& milling, double axial
     }
   }
   std::ranges::sort(angles);
-  const auto same = std::ranges::unique(angles, [](double a, double b) { return b - a < 1e-10; });
-  angles.erase(same.begin(), same.end());
+  const auto close = [](double a, double b) { return b - a < 1e-10; };
+  angles.erase(std::unique(angles.begin(), angles.end(), close), angles.end());
   return angles;
 }
 

@@ -114,8 +114,8 @@ class Tracer {
     std::erase_if(nodes, [&](double f) { return f < sweep_.from || f > sweep_.to; });
     std::ranges::sort(nodes);
     const double apart = 1e-9 * (sweep_.to - sweep_.from);
-    const auto same = std::ranges::unique(nodes, [&](double a, double b) { return b - a < apart; });
-    nodes.erase(same.begin(), same.end());
+    const auto close = [apart](double a, double b) { return b - a < apart; };
+    nodes.erase(std::unique(nodes.begin(), nodes.end(), close), nodes.end());
     nodes.back() = sweep_.to;
     Sample left = sample(nodes.front());
     const Sample first = left;

@@ -153,9 +153,9 @@ class Solver {
     for (int step = 0; step < 5; ++step) {
       const bool dips = middle.nearest_ratio <= low.nearest_ratio && middle.nearest_ratio <= high.nearest_ratio;
       if (!dips || middle.nearest_ratio > 1.2) break;
-      const Look left = look(0.5 * (low.depth_m + middle.depth_m));
+      Look left = look(0.5 * (low.depth_m + middle.depth_m));
       if (left.unstable) return left;
-      const Look right = look(0.5 * (middle.depth_m + high.depth_m));
+      Look right = look(0.5 * (middle.depth_m + high.depth_m));
       if (right.unstable) return right;
       if (left.nearest_ratio < middle.nearest_ratio && left.nearest_ratio <= right.nearest_ratio) {
         high = middle;
@@ -175,7 +175,7 @@ class Solver {
   std::optional<Found> between(double stable_m, Look unstable) const {
     for (int step = 0; step < 40 && unstable.depth_m - stable_m > 1e-9 * unstable.depth_m; ++step) {
       if (step >= 3) {
-        const std::optional<Found> found = refined(*unstable.lowest, first_level);
+        std::optional<Found> found = refined(*unstable.lowest, first_level);
         if (found && found->depth_m > stable_m && found->depth_m <= unstable.depth_m) return found;
       }
       Look middle = look(0.5 * (stable_m + unstable.depth_m));
