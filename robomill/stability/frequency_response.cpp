@@ -48,6 +48,7 @@ std::vector<Resonance> peaks(const detail::FrfInterpolation& frf) {
   std::ranges::sort(found, [](const auto& a, const auto& b) { return a.first > b.first; });
   if (found.size() > 40) found.resize(40);
   std::vector<Resonance> out;
+  out.reserve(found.size());
   for (const auto& f : found) out.push_back(f.second);
   return out;
 }
