@@ -104,6 +104,38 @@ TEST_F(App, ResultsDoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(lobes("1"), lobes("4"));
 }
 
+// The peaks that a study of this robot names at 6,500 rpm: the first is tooth passing, the others are its first mode.
+TEST_F(App, ExplainNamesMeasuredPeaks) {
+  const std::string peaks =
+      "explain --peaks 324.99,666.98,991.98,1966.95 --rpm 6500 --teeth 3 --modes " ROBOMILL_SOURCE_DIR
+      "/data/robot-modes.toml ";
+  const Ended told = robomill(peaks + "-o explain.json");
+  ASSERT_EQ(told.exit, 0) << told.err;
+  EXPECT_NE(told.out.find("324.99 Hz  tooth passing x 1"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("666.98 Hz  chatter: mode 1 at 17.40 Hz + tooth passing x 2"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("cannot be told without the cut"), std::string::npos);
+  const auto json = nlohmann::json::parse(slurp(folder_.at("explain.json")));
+  EXPECT_EQ(json["peaks"][3]["mode"], 1);
+  EXPECT_EQ(json["peaks"][3]["rotations"], 18);
+  EXPECT_TRUE(json["chatter"].is_null());
+
+  write_lobes();
+  const Ended judged = robomill(peaks + "--lobes lobes.toml --at 6500,0.6 -o -");
+  ASSERT_EQ(judged.exit, 0) << judged.err;
+  const auto verdict = nlohmann::json::parse(judged.out)["chatter"];
+  EXPECT_NEAR(verdict["spectral_radius"].get<double>(), 1.10584684, 1e-4);
+  EXPECT_EQ(verdict["kind"],
+            verdict["spectral_radius_without_delay"].get<double>() < 1.0 ? "regenerative" : "mode coupling");
+
+  EXPECT_EQ(robomill("explain --peaks 300 --rpm 6500 --teeth 3").exit, 2);
+  EXPECT_EQ(robomill(peaks + "--lobes lobes.toml").exit, 1);
+  EXPECT_EQ(robomill(peaks + "--tolerance-hz 40").exit, 1);
+  const Ended bad =
+      robomill("explain --peaks 300,-4 --rpm 6500 --teeth 3 --modes " ROBOMILL_SOURCE_DIR "/data/robot-modes.toml");
+  EXPECT_EQ(bad.exit, 1);
+  EXPECT_NE(bad.err.find("--peaks = -4 Hz"), std::string::npos) << bad.err;
+}
+
 // A structure that chatters at any depth that matters: finished, but without the answer; the report is there all the
 // same.
 TEST_F(App, NoSafeDepthExitsWithThree) {

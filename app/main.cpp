@@ -19,6 +19,7 @@ struct CommandLine {
   FrfCommand frf;
   ModesCommand modes;
   LobesCommand lobes;
+  ExplainCommand explain;
   PlanCommand plan;
   std::function<Exit(Progress&)> chosen;
 
@@ -57,6 +58,20 @@ CommandLine::CommandLine() {
   sub = verb("lobes", "modes and a cut to stability lobes", [this](Progress& p) { return run(lobes, common, p); });
   sub->add_option("lobes", lobes.input, "lobes.toml")->required();
   sub->add_option("--at", lobes.at, "RPM,MM: spectral radius at this point; may be repeated");
+
+  sub = verb("explain", "measured peaks to what they are: rotation, tooth passing, or chatter and its mode",
+             [this](Progress& p) { return run(explain, common, p); });
+  sub->add_option("--peaks", explain.peaks_hz, "frequencies of the peaks in Hz: F,F,...")->delimiter(',')->required();
+  sub->add_option("--rpm", explain.rpm, "spindle speed")->required();
+  sub->add_option("--teeth", explain.teeth, "teeth of the cutter")->required();
+  sub->add_option("--modes", explain.modes, "modes.json or modes.toml")->required();
+  sub->add_option(
+      "--tolerance-hz", explain.tolerance_hz,
+      "how far a peak may lie from what explains it, or half a mode's width where that is more (default: 1)");
+  sub->add_option("--speed-tolerance-percent", explain.speed_tolerance_percent,
+                  "by how much the true speed may differ from --rpm (default: 0.2)");
+  sub->add_option("--lobes", explain.lobes, "lobes.toml of the cut: tells whether its chatter needs the delay");
+  sub->add_option("--at", explain.at, "RPM,MM of the cut, with --lobes")->delimiter(',')->expected(2);
 
   sub = verb("plan", "the whole job: hits to safe cutting conditions",
              [this](Progress& p) { return run(plan, common, p); });

@@ -40,6 +40,16 @@ struct LobesCommand {
   std::filesystem::path input;
   std::vector<std::string> at;  ///< "RPM,MM"
 };
+struct ExplainCommand {
+  std::vector<double> peaks_hz;
+  double rpm = 0.0;
+  int teeth = 0;
+  std::filesystem::path modes;
+  double tolerance_hz = 1.0;
+  double speed_tolerance_percent = 0.2;
+  std::filesystem::path lobes;  ///< empty: no cut to judge
+  std::vector<double> at;       ///< empty, or rpm and mm
+};
 struct PlanCommand {
   std::filesystem::path job;
 };
@@ -47,6 +57,7 @@ struct PlanCommand {
 Exit run(const FrfCommand& command, const Common& common, Progress& progress);
 Exit run(const ModesCommand& command, const Common& common, Progress& progress);
 Exit run(const LobesCommand& command, const Common& common, Progress& progress);
+Exit run(const ExplainCommand& command, const Common& common, Progress& progress);
 Exit run(const PlanCommand& command, const Common& common, Progress& progress);
 
 }  // namespace robomill::app

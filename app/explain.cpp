@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/fingerprint_json.hpp"
+#include "robomill/formats/lobes_toml.hpp"
+#include "robomill/formats/modes_files.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/stability/fingerprint.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+using Kind = stability::Explanation::Kind;
+
+InvalidInput refuse(const char* option, double value, const char* unit, const char* rule, const char* hint = "") {
+  return {option, value, unit, rule, hint};
+}
+
+/// In the user's words and units.
+void check(const ExplainCommand& command) {
+  for (const double f : command.peaks_hz) {
+    if (!(f > 0.0 && f <= 1e6)) throw refuse("--peaks", f, "Hz", "must lie between 0 and 1 MHz");
+  }
+  if (!(command.rpm > 0.0 && command.rpm <= 1e6)) throw refuse("--rpm", command.rpm, "rpm", "must be > 0");
+  if (!(command.tolerance_hz > 0.0 && command.tolerance_hz < 0.25 * command.rpm / 60.0)) {
+    throw refuse("--tolerance-hz", command.tolerance_hz, "Hz",
+                 "must be > 0 and below a quarter of the rotation frequency",
+                 "Otherwise every peak is a multiple of it");
+  }
+  if (!(command.speed_tolerance_percent >= 0.0 && command.speed_tolerance_percent <= 5.0)) {
+    throw refuse("--speed-tolerance-percent", command.speed_tolerance_percent, "%", "must lie between 0 and 5");
+  }
+  if (command.lobes.empty() != command.at.empty()) {
+    throw InvalidInput(command.at.empty() ? "--at" : "--lobes", "--lobes and --at go together",
+                       "The cut says whether its chatter needs the delay: --lobes lobes.toml --at 6500,0.8");
+  }
+}
+
+std::optional<stability::DelayVerdict> verdict_of(const ExplainCommand& command) {
+  if (command.lobes.empty()) return std::nullopt;
+  formats::LobesFile file = formats::read_lobes(command.lobes);
+  formats::load_modes(file);
+  if (!file.frf.empty() || !file.workpiece_frf.empty()) {
+    throw InvalidInput(command.lobes.string(), "must name modes: without them the equation has no time",
+                       "Run robomill modes on the FRFs and name the result as dynamics.modes");
+  }
+  file.validate();
+  if (!(command.at[0] > 0.0 && command.at[1] >= 0.0)) throw InvalidInput("--at", "must read RPM,MM, RPM > 0, MM >= 0");
+  return stability::needs_delay(file.problem, {command.at[0] * units::rpm, command.at[1] * units::mm});
+}
+
+std::string words(const stability::Explanation& e, const modal::ModalModel& modes, int teeth) {
+  switch (e.kind) {
+    case Kind::tooth_passing:
+      return fmt::format("tooth passing x {} ({:+.2f} Hz)", e.harmonic / teeth, e.difference_hz);
+    case Kind::rotation:
+      return fmt::format("rotation x {} ({:+.2f} Hz)", e.harmonic, e.difference_hz);
+    case Kind::chatter: {
+      const double mode_hz = modes.modes[static_cast<std::size_t>(e.mode - 1)].frequency_hz;
+      const std::string name = fmt::format("mode {} at {:.2f} Hz", e.mode, mode_hz);
+      const std::string turns = e.of_tooth_passing ? fmt::format("tooth passing x {}", std::abs(e.harmonic) / teeth)
+                                                   : fmt::format("rotation x {}", std::abs(e.harmonic));
+      const std::string tail = fmt::format(" ({:+.2f} Hz, within {:.2f})", e.difference_hz, e.tolerance_hz);
+      if (e.harmonic == 0) return fmt::format("chatter: {}{}", name, tail);
+      if (e.harmonic > 0) return fmt::format("chatter: {} + {}{}", name, turns, tail);
+      return fmt::format("chatter: {}{}",
+                         e.mirrored ? fmt::format("{} - {}", turns, name) : fmt::format("{} - {}", name, turns), tail);
+    }
+    default:
+      return "unexplained";
+  }
+}
+
+void print_summary(const stability::Fingerprint& found, const modal::ModalModel& modes, int teeth,
+                   const std::optional<stability::DelayVerdict>& verdict) {
+  fmt::print("spindle {:.1f} rpm{}\n", found.spindle_speed_rad_per_s / units::rpm,
+             found.speed_from_peaks ? ", from the peaks that are multiples of rotation" : ", as given");
+  for (const stability::ExplainedPeak& peak : found.peaks) {
+    fmt::print("{:>10.2f} Hz  {}\n", peak.frequency_hz, words(peak.best, modes, teeth));
+    for (const stability::Explanation& other : peak.others) {
+      fmt::print("               or {}\n", words(other, modes, teeth));
+    }
+  }
+  if (found.mode == 0) {
+    fmt::print("No peak is chatter of a known mode.\n");
+  } else {
+    fmt::print("Chatter of mode {} at {:.2f} Hz.\n", found.mode, found.chatter_frequency_hz);
+  }
+  if (!verdict) {
+    fmt::print("Whether it is regenerative cannot be told without the cut: give --lobes and --at.\n");
+    return;
+  }
+  fmt::print("The cut: {} (|μ| = {:.5g}, without the delay {:.5g}).\n", to_string(verdict->kind),
+             verdict->spectral_radius, verdict->without_delay);
+}
+
+}  // namespace
+
+Exit run(const ExplainCommand& command, const Common& common, Progress&) {
+  if (!common.output.empty() && !common.to_stdout() && formats::format_of(common.output) != formats::Format::json) {
+    throw InvalidInput(common.output, "explanations are written as .json");
+  }
+  check(command);
+  const modal::ModalModel modes = formats::read_modes(command.modes);
+  const stability::MeasuredPeaks peaks = {command.peaks_hz, command.rpm * units::rpm, command.teeth};
+  const stability::FingerprintOptions options = {command.tolerance_hz, command.speed_tolerance_percent / 100.0};
+  const stability::Fingerprint found = stability::explain(peaks, modes, options);
+  const std::optional<stability::DelayVerdict> verdict = verdict_of(command);
+  const std::string json = formats::fingerprint_json(found, modes, verdict ? &*verdict : nullptr);
+  if (common.to_stdout()) {
+    fmt::print("{}", json);
+  } else if (!common.output.empty()) {
+    formats::write_file(common.output, json);
+  }
+  if (common.wants_summary()) print_summary(found, modes, command.teeth, verdict);
+  return done;
+}
+
+}  // namespace robomill::app

@@ -1,0 +1,39 @@
+#include "robomill/formats/fingerprint_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "data/robot_modes.hpp"
+#include "robomill/formats/units.hpp"
+
+namespace robomill::formats {
+namespace {
+
+TEST(FingerprintJson, HoldsEveryPeakInShopUnits) {
+  const modal::ModalModel modes = data::robot_modes();
+  const stability::Fingerprint found = stability::explain({{324.99, 666.98, 250.0}, 6500.0 * units::rpm, 3}, modes);
+  const stability::DelayVerdict verdict = {stability::DelayVerdict::Kind::regenerative, 1.1, 0.9, 563.5, 8};
+  const auto json = nlohmann::json::parse(fingerprint_json(found, modes, &verdict));
+  EXPECT_NEAR(json["spindle_speed_rpm"].get<double>(), 6499.8, 1e-6);
+  ASSERT_EQ(json["peaks"].size(), 3U);
+  EXPECT_EQ(json["peaks"][0]["kind"], "tooth passing");
+  EXPECT_TRUE(json["peaks"][0]["mode"].is_null());
+  EXPECT_EQ(json["peaks"][1]["kind"], "chatter");
+  EXPECT_EQ(json["peaks"][1]["mode"], 1);
+  EXPECT_EQ(json["peaks"][1]["mode_frequency_hz"], 17.40);
+  EXPECT_EQ(json["peaks"][1]["rotations"], 6);
+  EXPECT_EQ(json["peaks"][2]["kind"], "unexplained");
+  EXPECT_EQ(json["mode"], 1);
+  EXPECT_EQ(json["chatter"]["kind"], "regenerative");
+  EXPECT_EQ(json["chatter"]["spectral_radius_without_delay"], 0.9);
+  const auto bare = nlohmann::json::parse(
+      fingerprint_json(stability::explain({{324.99}, 6500.0 * units::rpm, 3}, modes), modes, nullptr));
+  EXPECT_TRUE(bare["mode"].is_null());
+  EXPECT_TRUE(bare["chatter_frequency_hz"].is_null());
+  EXPECT_TRUE(bare["chatter"].is_null());
+}
+
+}  // namespace
+}  // namespace robomill::formats

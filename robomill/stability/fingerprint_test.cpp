@@ -1,0 +1,184 @@
+#include "robomill/stability/fingerprint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/random.hpp"
+#include "robomill/stability/test_problems.hpp"
+
+namespace robomill::stability {
+namespace {
+
+using std::numbers::pi;
+using testing::rpm;
+using Named = Explanation::Kind;
+
+Fingerprint robot_peaks(std::vector<double> peaks_hz, double speed_rpm) {
+  return explain({std::move(peaks_hz), speed_rpm * rpm, 3}, data::robot_modes());
+}
+
+// Source: [RobotMillingChatter] cuts at 6,500 rpm, 0.8 and 0.6 mm, and at 8,000 rpm; which peak is what:
+// docs/errata.md.
+TEST(Fingerprint, NamesTheDocumentedPeaks) {
+  const Fingerprint found = robot_peaks({324.99, 666.98, 991.98, 1966.95}, 6500);
+  ASSERT_EQ(found.peaks.size(), 4U);
+  EXPECT_EQ(found.peaks[0].best.kind, Named::tooth_passing);
+  EXPECT_EQ(found.peaks[0].best.harmonic, 3);
+  const int harmonic[] = {0, 6, 9, 18};
+  for (std::size_t i = 1; i < 4; ++i) {
+    const Explanation& e = found.peaks[i].best;
+    EXPECT_EQ(e.kind, Named::chatter);
+    EXPECT_EQ(e.mode, 1);
+    EXPECT_EQ(e.harmonic, harmonic[i]);
+    EXPECT_TRUE(e.of_tooth_passing);
+    EXPECT_NEAR(e.difference_hz, -0.42, 0.1);
+  }
+  EXPECT_EQ(found.mode, 1);
+  EXPECT_NEAR(found.chatter_frequency_hz, 17.0, 0.05);
+  EXPECT_TRUE(found.speed_from_peaks);
+  EXPECT_NEAR(found.spindle_speed_rad_per_s / rpm, 6499.8, 0.05);
+
+  const Fingerprint milder = robot_peaks({667.483, 1967.45, 2075.95}, 6500);
+  EXPECT_FALSE(milder.speed_from_peaks);
+  EXPECT_EQ(milder.peaks[2].best.harmonic, 19);
+  EXPECT_FALSE(milder.peaks[2].best.of_tooth_passing);
+  for (const ExplainedPeak& peak : milder.peaks) EXPECT_EQ(peak.best.mode, 1);
+
+  const Fingerprint faster = robot_peaks({3866.9}, 8000);
+  EXPECT_EQ(faster.peaks[0].best.kind, Named::rotation);
+  EXPECT_EQ(faster.peaks[0].best.harmonic, 29);
+  EXPECT_EQ(faster.mode, 0);
+}
+
+// The spindle runs 0.15 % slow under load: the 30th multiple is 5 Hz off, and still one.
+TEST(Fingerprint, FindsTheTrueSpeedInThePeaks) {
+  const double rotation_hz = 6500.0 / 60.0 * 0.9985;
+  const Fingerprint found =
+      robot_peaks({3 * rotation_hz, 18 * rotation_hz, 30 * rotation_hz, 9 * rotation_hz + 17.2}, 6500);
+  EXPECT_NEAR(found.spindle_speed_rad_per_s / (2.0 * pi), rotation_hz, 1e-9);
+  for (const std::size_t i : {0U, 1U, 2U}) EXPECT_EQ(found.peaks[i].best.kind, Named::tooth_passing);
+  EXPECT_EQ(found.peaks[3].best.mode, 1);
+  // With one peak alone nothing says that the speed is another.
+  EXPECT_FALSE(robot_peaks({30 * rotation_hz}, 6500).speed_from_peaks);
+}
+
+TEST(Fingerprint, PeaksBelowAMultipleAreItsMirrorImage) {
+  const double rotation_hz = 6500.0 / 60.0;
+  const Fingerprint found = robot_peaks({6.0 * rotation_hz - 17.4, 12.0 * rotation_hz - 17.0}, 6500);
+  EXPECT_EQ(found.peaks[0].best.kind, Named::chatter);
+  EXPECT_EQ(found.peaks[0].best.harmonic, -6);
+  EXPECT_TRUE(found.peaks[0].best.mirrored);
+  EXPECT_EQ(found.peaks[0].best.mode, 1);
+  EXPECT_NEAR(found.peaks[0].best.difference_hz, 0.0, 1e-9);
+  EXPECT_NEAR(found.peaks[1].best.difference_hz, 0.4, 1e-9);
+  EXPECT_NEAR(found.chatter_frequency_hz, 17.2, 1e-9);
+}
+
+// 540.9 Hz lies within the widths of modes 7 and 8 both; 541.67 Hz is a multiple of rotation as well.
+TEST(Fingerprint, TellsWhatElseItCouldBe) {
+  const ExplainedPeak peak = robot_peaks({540.9}, 6500).peaks[0];
+  EXPECT_EQ(peak.best.kind, Named::rotation);
+  ASSERT_EQ(peak.others.size(), 4U);  // both modes, and the mirror images at 10 rotations less each
+  EXPECT_EQ(peak.others[0].mode, 7);
+  EXPECT_EQ(peak.others[1].mode, 8);
+  EXPECT_NEAR(peak.others[1].tolerance_hz, 0.021 * 543.67, 1e-9);
+  const ExplainedPeak free = robot_peaks({539.5}, 6500).peaks[0];
+  EXPECT_EQ(free.best.mode, 7);
+  EXPECT_EQ(free.best.harmonic, 0);
+  EXPECT_EQ(free.others.front().mode, 8);
+}
+
+// Peaks made from one mode and the speed are named so, whatever the mode, the speed and the teeth.
+TEST(Fingerprint, PropertyNamesWhatWasMade) {
+  for (int seed = 0; seed < 200; ++seed) {
+    Random random(static_cast<std::uint64_t>(seed), 7);
+    const int teeth = 1 + static_cast<int>(random.index(5));
+    const double rotation_hz = random.uniform(40.0, 400.0);
+    const double mode_hz = random.uniform(30.0, 2000.0);
+    const modal::ModalModel modes = testing::plane_model({testing::mass_mode(0, mode_hz, 0.0005, 1.0)});
+    const double off = std::abs(std::remainder(mode_hz, rotation_hz));
+    if (off < 3.0 || off > 0.5 * rotation_hz - 3.0) continue;  // there two names fit
+    std::vector<double> peaks;
+    for (const int n : {0, 1, teeth, 3 * teeth, -teeth, -40}) peaks.push_back(std::abs(mode_hz + n * rotation_hz));
+    for (const int n : {1, teeth, 2 * teeth}) peaks.push_back(n * rotation_hz);
+    const Fingerprint found = explain({peaks, 2.0 * pi * rotation_hz, teeth}, modes);
+    const int expected[] = {0, 1, teeth, 3 * teeth, -teeth, -40};
+    for (std::size_t i = 0; i < 6; ++i) {
+      EXPECT_EQ(found.peaks[i].best.kind, Named::chatter) << seed << ' ' << i;
+      EXPECT_EQ(found.peaks[i].best.harmonic, expected[i]) << seed << ' ' << i;
+    }
+    for (std::size_t i = 6; i < 9; ++i) EXPECT_NE(found.peaks[i].best.kind, Named::chatter) << seed;
+    EXPECT_NEAR(found.chatter_frequency_hz, mode_hz, 1e-6) << seed;
+  }
+}
+
+template <class F>
+std::string field_of(F&& f) {
+  try {
+    f();
+  } catch (const InvalidInput& error) {
+    return error.parts().field;
+  }
+  return "accepted";
+}
+
+TEST(Fingerprint, RefusesWhatCannotBe) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [](const MeasuredPeaks& peaks, const FingerprintOptions& options = {}) {
+    return field_of([&] { static_cast<void>(explain(peaks, data::robot_modes(), options)); });
+  };
+  EXPECT_EQ(refused({{100.0}, 680.0, 3}), "accepted");
+  EXPECT_EQ(refused({{}, 680.0, 3}), "frequency_hz");
+  EXPECT_EQ(refused({{100.0, -1.0}, 680.0, 3}), "frequency_hz");
+  EXPECT_EQ(refused({{nan}, 680.0, 3}), "frequency_hz");
+  EXPECT_EQ(refused({{1e300}, 680.0, 3}), "frequency_hz");
+  EXPECT_EQ(refused({std::vector<double>(20000, 5.0), 680.0, 3}), "frequency_hz");
+  EXPECT_EQ(refused({{100.0}, 0.0, 3}), "spindle_speed_rad_per_s");
+  EXPECT_EQ(refused({{100.0}, nan, 3}), "spindle_speed_rad_per_s");
+  EXPECT_EQ(refused({{100.0}, 680.0, 0}), "teeth");
+  EXPECT_EQ(refused({{100.0}, 680.0, 3}, {.tolerance_hz = 0.0}), "tolerance_hz");
+  EXPECT_EQ(refused({{100.0}, 680.0, 3}, {.tolerance_hz = 60.0}), "tolerance_hz");
+  EXPECT_EQ(refused({{1e6}, 1e-3, 3}), "tolerance_hz");
+  EXPECT_EQ(refused({{100.0}, 680.0, 3}, {.speed_tolerance = 0.3}), "speed_tolerance");
+  EXPECT_EQ(robot_peaks({1e6}, 6500).peaks.size(), 1U);
+}
+
+// One direction has no second mode to couple with, and milling pushes it back: it needs the delay.
+TEST(DelayVerdict, OneDirectionIsRegenerative) {
+  const DelayVerdict verdict = needs_delay(testing::benchmark(1.0, 1), {5000 * rpm, 0.5e-3});
+  EXPECT_EQ(verdict.kind, DelayVerdict::Kind::regenerative);
+  EXPECT_NEAR(verdict.spectral_radius, 1.07397559, 1e-5);
+  EXPECT_LT(verdict.without_delay, 1.0);
+  EXPECT_EQ(needs_delay(testing::benchmark(1.0, 1), {5000 * rpm, 0.2e-3}).kind, DelayVerdict::Kind::stable);
+}
+
+// No depth: the slowest mode fades, with or without the delay.
+TEST(DelayVerdict, WithoutDepthBothFade) {
+  const DelayVerdict verdict = needs_delay(testing::robot(), {6500 * rpm, 0.0});
+  const double expected = std::exp(-0.0127 * 2.0 * pi * 17.40 * 60.0 / 6500.0 / 3.0);
+  EXPECT_EQ(verdict.kind, DelayVerdict::Kind::stable);
+  EXPECT_NEAR(verdict.without_delay, expected, 1e-10);
+  EXPECT_NEAR(verdict.spectral_radius, expected, 1e-6);
+}
+
+// Two equal modes in a slot without radial force: the mean stiffness has opposite signs off its diagonal and turns the
+// motion round, which damping bears up to a K̄ = 2 k ζ: mode coupling, at any speed at which the cut is fast.
+TEST(DelayVerdict, OppositeCrossStiffnessCouplesModes) {
+  LobesProblem p = testing::benchmark(1.0);
+  p.milling.tool.teeth = 8;
+  p.milling.coefficients.radial_n_per_m2 = 0.0;
+  const double stiffness = 0.03993 * std::pow(2.0 * pi * 922.0, 2);
+  const double mean = 8.0 / (2.0 * pi) * 0.5 * pi * p.milling.coefficients.tangential_n_per_m2;
+  const double limit_m = 2.0 * stiffness * 0.011 / mean;
+  EXPECT_LT(needs_delay(p, {60000 * rpm, 0.97 * limit_m}).without_delay, 1.0);
+  EXPECT_GT(needs_delay(p, {60000 * rpm, 1.03 * limit_m}).without_delay, 1.0);
+}
+
+}  // namespace
+}  // namespace robomill::stability
