@@ -19,6 +19,7 @@ struct CommandLine {
   FrfCommand frf;
   ModesCommand modes;
   LobesCommand lobes;
+  SimulateCommand simulate;
   PlanCommand plan;
   std::function<Exit(Progress&)> chosen;
 
@@ -57,6 +58,14 @@ CommandLine::CommandLine() {
   sub = verb("lobes", "modes and a cut to stability lobes", [this](Progress& p) { return run(lobes, common, p); });
   sub->add_option("lobes", lobes.input, "lobes.toml")->required();
   sub->add_option("--at", lobes.at, "RPM,MM: spectral radius at this point; may be repeated");
+
+  sub = verb("simulate", "a cut in the time domain: vibration, forces, the wall, stable or chatter",
+             [this](Progress& p) { return run(simulate, common, p); });
+  sub->add_option("lobes", simulate.input, "lobes.toml")->required();
+  sub->add_option("--at", simulate.at, "RPM,MM: spindle speed and axial depth")->required();
+  sub->add_option("--seconds", simulate.seconds, "how long to cut (default: 2)");
+  sub->add_option("--sample-rate-hz", simulate.sample_rate_hz, "of the output (default: 10240)");
+  sub->add_flag("--linear", simulate.linear, "no loss of contact, as lobes take the cut");
 
   sub = verb("plan", "the whole job: hits to safe cutting conditions",
              [this](Progress& p) { return run(plan, common, p); });

@@ -40,6 +40,13 @@ struct LobesCommand {
   std::filesystem::path input;
   std::vector<std::string> at;  ///< "RPM,MM"
 };
+struct SimulateCommand {
+  std::filesystem::path input;
+  std::string at;  ///< "RPM,MM"
+  double seconds = 2.0;
+  double sample_rate_hz = 10240.0;
+  bool linear = false;
+};
 struct PlanCommand {
   std::filesystem::path job;
 };
@@ -47,6 +54,7 @@ struct PlanCommand {
 Exit run(const FrfCommand& command, const Common& common, Progress& progress);
 Exit run(const ModesCommand& command, const Common& common, Progress& progress);
 Exit run(const LobesCommand& command, const Common& common, Progress& progress);
+Exit run(const SimulateCommand& command, const Common& common, Progress& progress);
 Exit run(const PlanCommand& command, const Common& common, Progress& progress);
 
 }  // namespace robomill::app

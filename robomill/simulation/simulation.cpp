@@ -363,6 +363,7 @@ SmallVibration small_vibration(const MillingCut& cut, const SimulationOptions& o
 }
 
 Simulation simulate(const MillingCut& cut, const SimulationOptions& options, Progress& progress) {
+  require_positive("feed_per_tooth_m", cut.milling.feed_per_tooth_m, "m", "Without feed nothing is cut");
   return simulate_job(job_of(cut, options), options, progress);
 }
 
