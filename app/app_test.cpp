@@ -117,6 +117,22 @@ TEST_F(App, SimulatesACut) {
   EXPECT_NE(robomill("simulate lobes.toml --at 6500").err.find("RPM,MM"), std::string::npos);
 }
 
+TEST_F(App, SimulatesDrilling) {
+  write("drill.toml",
+        "[tool]\nteeth = 2\ndiameter_mm = 10\npoint_angle_deg = 118\n[cut]\nkind = \"drilling\"\n"
+        "feed_per_revolution_mm = 0.1\n[coefficients]\ntangential_n_per_mm2 = 900\nradial_n_per_mm2 = 500\n"
+        "[dynamics]\nx = [{ frequency_hz = 400, damping_ratio = 0.03, modal_mass_kg = 0.3 }]\n"
+        "z = [{ frequency_hz = 900, damping_ratio = 0.03, modal_mass_kg = 0.5 }]\n"
+        "[lobes]\nspindle_speed_rpm = [1000, 5000]\naxial_depth_mm = [0, 5]\n");
+  const Ended told = robomill("simulate drill.toml --at 3000,1 --seconds 0.2 -o -");
+  ASSERT_EQ(told.exit, 0) << told.err;
+  const auto json = nlohmann::json::parse(told.out);
+  // Two lips: n (b / sin p) (Kr f/n sin p) sin p = 500 * 1 * 0.1 * sin 59 degrees.
+  EXPECT_NEAR(json["peak_force_n"][2].get<double>(), 42.9, 4.0);
+  EXPECT_EQ(robomill("simulate drill.toml --at 3000,6 --seconds 0.2").exit, 1);
+  EXPECT_NE(robomill("lobes drill.toml").err.find("milling"), std::string::npos);
+}
+
 TEST_F(App, ResultsDoNotDependOnTheNumberOfThreads) {
   write_lobes();
   const auto lobes = [this](const char* threads) {

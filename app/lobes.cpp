@@ -55,6 +55,9 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
     throw InvalidInput(command.input.string(), "dynamics.frf needs a fit first",
                        "Run robomill modes on it and name the result as dynamics.modes");
   }
+  if (file.drilling) {
+    throw InvalidInput(command.input.string(), "lobes are those of milling", "robomill simulate takes drilling");
+  }
   file.validate();
   for (const std::string& text : command.at) file.options.points.push_back(parse_point(text));
   const stability::LobesResult result = stability::compute_lobes(file.problem, file.options, progress);

@@ -9,7 +9,7 @@
 #include "robomill/formats/simulation_files.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/modal/tip.hpp"
-#include "robomill/simulation/simulation.hpp"
+#include "robomill/simulation/drilling.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -41,7 +41,7 @@ formats::LobesFile read_cut(const std::filesystem::path& path) {
                        "Run robomill modes on the FRFs and name the result as dynamics.modes");
   }
   file.validate();
-  if (!(file.problem.milling.feed_per_tooth_m > 0.0)) {
+  if (!file.drilling && !(file.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(InvalidInput::Parts{.where = path.string(),
                                            .field = "cut.feed_per_tooth_mm",
                                            .rule = "must be given and > 0",
@@ -105,21 +105,39 @@ void print_summary(const Simulation& s, const stability::OperatingPoint& point) 
              s.resolved ? "" : " (above tolerance)", s.seconds);
 }
 
+simulation::MillingCut milling_of(const formats::LobesFile& file, const stability::OperatingPoint& point) {
+  return {.milling = file.problem.milling,
+          .structure = structure_of(file.problem),
+          .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
+          .axial_depth_m = point.axial_depth_m};
+}
+
+/// The point's depth is the lips' radial width: from the pilot hole to the rim.
+simulation::DrillingCut drilling_of(const formats::LobesFile& file, const stability::OperatingPoint& point) {
+  simulation::DrillingCut cut;
+  cut.lips = file.problem.milling.tool.teeth;
+  cut.diameter_m = file.problem.milling.tool.diameter_m;
+  if (file.point_angle_rad != 0.0) cut.point_angle_rad = file.point_angle_rad;
+  cut.radial_width_m = point.axial_depth_m;
+  cut.feed_per_revolution_m = file.feed_per_revolution_m;
+  cut.coefficients = file.problem.milling.coefficients;
+  cut.structure = structure_of(file.problem);
+  cut.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
+  return cut;
+}
+
 }  // namespace
 
 Exit run(const SimulateCommand& command, const Common& common, Progress& progress) {
   check_output(common);
   const stability::OperatingPoint point = parse_point(command.at);
   const formats::LobesFile file = read_cut(command.input);
-  const simulation::MillingCut cut = {.milling = file.problem.milling,
-                                      .structure = structure_of(file.problem),
-                                      .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
-                                      .axial_depth_m = point.axial_depth_m};
   const simulation::SimulationOptions options = {.seconds = command.seconds,
                                                  .sample_rate_hz = command.sample_rate_hz,
                                                  .loss_of_contact = !command.linear,
                                                  .seed = common.seed};
-  const Simulation result = simulation::simulate(cut, options, progress);
+  const Simulation result = file.drilling ? simulation::simulate(drilling_of(file, point), options, progress)
+                                          : simulation::simulate(milling_of(file, point), options, progress);
   if (common.to_stdout()) {
     fmt::print("{}", formats::simulation_json(result, point.spindle_speed_rad_per_s, point.axial_depth_m));
   } else if (!common.output.empty()) {

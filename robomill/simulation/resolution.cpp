@@ -8,10 +8,7 @@ namespace robomill::simulation::detail {
 namespace {
 
 constexpr double revolution = 2.0 * std::numbers::pi;
-constexpr double steps_per_natural_period = 30.0;
-constexpr double steps_per_tooth = 60.0;
 constexpr double steps_in_cut = 20.0;
-constexpr double steps_per_sample = 4.0;
 constexpr double slice_lag_rad = 0.07;       // about 4 degrees
 constexpr double slice_vibration_rad = 0.5;  // of the fastest mode while a slice's edge runs by
 constexpr int most_slices = 200;

@@ -4,6 +4,12 @@
 
 namespace robomill::simulation::detail {
 
+/// At least so many steps are taken in a period of the fastest mode, between two teeth, and between two samples of the
+/// output.
+inline constexpr double steps_per_natural_period = 30.0;
+inline constexpr double steps_per_tooth = 60.0;
+inline constexpr double steps_per_sample = 4.0;
+
 /// How often the cut repeats.
 struct Period {
   bool repeats = true;
