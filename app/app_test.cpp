@@ -94,6 +94,45 @@ TEST_F(App, DashWritesJsonAndNothingElse) {
   EXPECT_NE(robomill("lobes lobes.toml --at 6500 -o -").err.find("RPM,MM"), std::string::npos);
 }
 
+TEST_F(App, SimulatesACut) {
+  write_lobes();
+  const Ended summary = robomill("simulate lobes.toml --at 6500,0.6 --seconds 0.5 -o vibration.csv");
+  ASSERT_EQ(summary.exit, 0) << summary.err;
+  EXPECT_NE(summary.out.find("6500 rpm, 0.6 mm: chatter at"), std::string::npos) << summary.out;
+  const std::string csv = slurp(folder_ / "vibration.csv");
+  EXPECT_EQ(csv.rfind("time_s,x_m,y_m,ax_m_per_s2,ay_m_per_s2,fx_n,fy_n,fz_n\n0,", 0), 0U);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5121);
+  const Ended told = robomill("simulate lobes.toml --at 6500,0.6 --seconds 0.5 -o -");
+  ASSERT_EQ(told.exit, 0) << told.err;
+  const auto json = nlohmann::json::parse(told.out);
+  EXPECT_EQ(json["verdict"], "chatter");
+  // Converged value of this point: 1.10584684.
+  EXPECT_NEAR(json["small_vibration"]["spectral_radius"].get<double>(), 1.10584684, 1e-4);
+  EXPECT_EQ(robomill("simulate lobes.toml --at 6500,0.1 --seconds 0.5 --sample-rate-hz 5000 -o a.wav -o a.wav").exit,
+            2);
+  EXPECT_EQ(robomill("simulate lobes.toml --at 6500,0.1 --seconds 0.5 --sample-rate-hz 5000 -o a.wav").exit, 0);
+  EXPECT_EQ(robomill("simulate lobes.toml --at 6500,0.1 --seconds 0.5 -o a.uff").exit, 1);
+  EXPECT_EQ(robomill("simulate lobes.toml --at 6500,0.1 --seconds -1").exit, 1);
+  EXPECT_EQ(robomill("simulate lobes.toml").exit, 2);
+  EXPECT_NE(robomill("simulate lobes.toml --at 6500").err.find("RPM,MM"), std::string::npos);
+}
+
+TEST_F(App, SimulatesDrilling) {
+  write("drill.toml",
+        "[tool]\nteeth = 2\ndiameter_mm = 10\npoint_angle_deg = 118\n[cut]\nkind = \"drilling\"\n"
+        "feed_per_revolution_mm = 0.1\n[coefficients]\ntangential_n_per_mm2 = 900\nradial_n_per_mm2 = 500\n"
+        "[dynamics]\nx = [{ frequency_hz = 400, damping_ratio = 0.03, modal_mass_kg = 0.3 }]\n"
+        "z = [{ frequency_hz = 900, damping_ratio = 0.03, modal_mass_kg = 0.5 }]\n"
+        "[lobes]\nspindle_speed_rpm = [1000, 5000]\naxial_depth_mm = [0, 5]\n");
+  const Ended told = robomill("simulate drill.toml --at 3000,1 --seconds 0.2 -o -");
+  ASSERT_EQ(told.exit, 0) << told.err;
+  const auto json = nlohmann::json::parse(told.out);
+  // Two lips: n (b / sin p) (Kr f/n sin p) sin p = 500 * 1 * 0.1 * sin 59 degrees.
+  EXPECT_NEAR(json["peak_force_n"][2].get<double>(), 42.9, 4.0);
+  EXPECT_EQ(robomill("simulate drill.toml --at 3000,6 --seconds 0.2").exit, 1);
+  EXPECT_NE(robomill("lobes drill.toml").err.find("milling"), std::string::npos);
+}
+
 TEST_F(App, ResultsDoNotDependOnTheNumberOfThreads) {
   write_lobes();
   const auto lobes = [this](const char* threads) {

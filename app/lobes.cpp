@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
+#include "point.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/lobes_json.hpp"
@@ -13,21 +13,6 @@
 
 namespace robomill::app {
 namespace {
-
-stability::OperatingPoint parse_point(const std::string& text) {
-  const auto refuse = [&text] {
-    return InvalidInput(InvalidInput::Parts{
-        .field = "--at", .value = "\"" + text + "\"", .rule = "must read RPM,MM", .hint = "For example --at 6500,0.8"});
-  };
-  double rpm = 0.0;
-  double mm = 0.0;
-  const char* const end = text.data() + text.size();
-  const std::from_chars_result first = std::from_chars(text.data(), end, rpm);
-  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ',') throw refuse();
-  const std::from_chars_result second = std::from_chars(first.ptr + 1, end, mm);
-  if (second.ec != std::errc() || second.ptr != end || !(rpm > 0.0) || !(mm >= 0.0)) throw refuse();
-  return {.spindle_speed_rad_per_s = rpm * units::rpm, .axial_depth_m = mm * units::mm};
-}
 
 void print_summary(const stability::LobesResult& result) {
   for (const stability::PointResult& point : result.points) {
@@ -69,6 +54,9 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
   if (!file.frf.empty()) {
     throw InvalidInput(command.input.string(), "dynamics.frf needs a fit first",
                        "Run robomill modes on it and name the result as dynamics.modes");
+  }
+  if (file.drilling) {
+    throw InvalidInput(command.input.string(), "lobes are those of milling", "robomill simulate takes drilling");
   }
   file.validate();
   for (const std::string& text : command.at) file.options.points.push_back(parse_point(text));

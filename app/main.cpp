@@ -20,6 +20,7 @@ struct CommandLine {
   ModesCommand modes;
   LobesCommand lobes;
   ExplainCommand explain;
+  SimulateCommand simulate;
   PlanCommand plan;
   std::function<Exit(Progress&)> chosen;
 
@@ -72,6 +73,14 @@ CommandLine::CommandLine() {
                   "by how much the true speed may differ from --rpm (default: 0.2)");
   sub->add_option("--lobes", explain.lobes, "lobes.toml of the cut: tells whether its chatter needs the delay");
   sub->add_option("--at", explain.at, "RPM,MM of the cut, with --lobes")->delimiter(',')->expected(2);
+
+  sub = verb("simulate", "a cut in the time domain: vibration, forces, the wall, stable or chatter",
+             [this](Progress& p) { return run(simulate, common, p); });
+  sub->add_option("lobes", simulate.input, "lobes.toml")->required();
+  sub->add_option("--at", simulate.at, "RPM,MM: spindle speed and axial depth")->required();
+  sub->add_option("--seconds", simulate.seconds, "how long to cut (default: 2)");
+  sub->add_option("--sample-rate-hz", simulate.sample_rate_hz, "of the output (default: 10240)");
+  sub->add_flag("--linear", simulate.linear, "no loss of contact, as lobes take the cut");
 
   sub = verb("plan", "the whole job: hits to safe cutting conditions",
              [this](Progress& p) { return run(plan, common, p); });

@@ -50,6 +50,13 @@ struct ExplainCommand {
   std::filesystem::path lobes;  ///< empty: no cut to judge
   std::vector<double> at;       ///< empty, or rpm and mm
 };
+struct SimulateCommand {
+  std::filesystem::path input;
+  std::string at;  ///< "RPM,MM"
+  double seconds = 2.0;
+  double sample_rate_hz = 10240.0;
+  bool linear = false;
+};
 struct PlanCommand {
   std::filesystem::path job;
 };
@@ -58,6 +65,7 @@ Exit run(const FrfCommand& command, const Common& common, Progress& progress);
 Exit run(const ModesCommand& command, const Common& common, Progress& progress);
 Exit run(const LobesCommand& command, const Common& common, Progress& progress);
 Exit run(const ExplainCommand& command, const Common& common, Progress& progress);
+Exit run(const SimulateCommand& command, const Common& common, Progress& progress);
 Exit run(const PlanCommand& command, const Common& common, Progress& progress);
 
 }  // namespace robomill::app

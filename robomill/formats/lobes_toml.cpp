@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -29,8 +30,27 @@ void read_tool(TomlFile& file, cutting::FlatEndMill& tool) {
   file.locate([&] { tool.validate(); });
 }
 
+/// What a drill needs; its lips are the tool's teeth, and in the cut all round.
+void read_drilling(TomlFile& file, LobesFile& out) {
+  for (const char* key : {"tool.pitch_deg", "tool.runout_um", "process_damping", "speed_variation"}) {
+    if (file.has(key)) throw file.refuse(key, "is no part of drilling");
+  }
+  file.number("tool.point_angle_deg", "point_angle_rad", units::deg, out.point_angle_rad);
+  file.require("cut.feed_per_revolution_mm", "A drill feeds along its axis");
+  file.number("cut.feed_per_revolution_mm", "feed_per_revolution_m", units::mm, out.feed_per_revolution_m);
+  file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
+  if (!(out.feed_per_revolution_m > 0.0)) throw file.refuse("cut.feed_per_revolution_mm", "must be > 0");
+  out.radial_depth_m = out.problem.milling.tool.diameter_m;
+  out.problem.milling.immersion = {.entry_rad = 0.0, .exit_rad = std::numbers::pi};
+}
+
 void read_cut(TomlFile& file, LobesFile& out) {
   cutting::Milling& milling = out.problem.milling;
+  file.choice<bool>("cut.kind", {{"milling", false}, {"drilling", true}}, out.drilling);
+  if (out.drilling) {
+    read_drilling(file, out);
+    return;
+  }
   file.number("cut.feed_per_tooth_mm", "feed_per_tooth_m", units::mm, milling.feed_per_tooth_m);
   file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
   const bool radial = file.number("cut.radial_depth_mm", "radial_depth_m", units::mm, out.radial_depth_m) ||
@@ -76,28 +96,29 @@ modal::Mode read_inline_mode(TomlFile& file, const std::string& row, const std::
     throw file.refuse(row + "damping_ratio", "must lie between 0 and 1", "It is a ratio, not a percentage");
   }
   const double size = 1.0 / std::sqrt(2.0 * modal_mass_kg * modal::pole(mode).imag());
-  mode.left = Eigen::VectorXcd::Unit(2, axis) * size;
-  mode.right = Eigen::VectorXcd::Unit(2, axis) * std::complex<double>(0.0, -size);
+  mode.left = Eigen::VectorXcd::Unit(3, axis) * size;
+  mode.right = Eigen::VectorXcd::Unit(3, axis) * std::complex<double>(0.0, -size);
   return mode;
 }
 
-/// A table that holds a structure: a file of modes, a file of FRFs, or modes of its own in x and y.
+/// A table that holds a structure: a file of modes, a file of FRFs, or modes of its own in x, y and z.
 void read_structure(TomlFile& file, const std::string& table, std::filesystem::path& modes, std::filesystem::path& frf,
                     modal::ModalModel& out) {
   file.path(table + ".modes", modes);
   file.path(table + ".frf", frf);
   modal::ModalModel own;
-  own.excitations = own.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}};
-  for (const char* axis : {"x", "y"}) {
-    const std::string key = fmt::format("{}.{}", table, axis);
+  own.excitations = own.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
+  const std::array<const char*, 3> axes = {"x", "y", "z"};
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    const std::string key = fmt::format("{}.{}", table, axes[axis]);
     for (std::size_t i = 0; i < file.tables(key); ++i) {
       const std::string member = fmt::format("modes[{}].", own.modes.size() + 1);
       own.modes.push_back(
-          read_inline_mode(file, fmt::format("{}[{}].", key, i), member, axis == std::string_view("x") ? 0 : 1));
+          read_inline_mode(file, fmt::format("{}[{}].", key, i), member, static_cast<Eigen::Index>(axis)));
     }
   }
   const int sources = (modes.empty() ? 0 : 1) + (frf.empty() ? 0 : 1) + (own.modes.empty() ? 0 : 1);
-  if (sources > 1) throw file.refuse(table, "must give only one of modes, frf, and x and y");
+  if (sources > 1) throw file.refuse(table, "must give only one of modes, frf, and x, y and z");
   if (!own.modes.empty()) out = own;
 }
 

@@ -18,6 +18,9 @@ struct LobesFile {
   std::filesystem::path workpiece_frf = {};    ///< workpiece_dynamics.frf, the same
   stability::Uncertainty uncertainty = {};     ///< samples: 0 where the file has none
   double radial_depth_m = 0.0;                 ///< b [m]; from the angles where they are given
+  bool drilling = false;               ///< cut.kind: the next two count, and of the cut neither angles nor radial depth
+  double point_angle_rad = 0.0;        ///< of the drill [rad]; 0: not given
+  double feed_per_revolution_m = 0.0;  ///< of the drill [m]
   /// What the problem still needs is checked here, with errors in the file's words: call it when dynamics is there.
   /// @throws InvalidInput
   void validate() const;

@@ -1,0 +1,155 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "point.hpp"
+#include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/lobes_toml.hpp"
+#include "robomill/formats/simulation_files.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/modal/tip.hpp"
+#include "robomill/simulation/drilling.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+using simulation::Simulation;
+using simulation::SmallVibration;
+using simulation::Verdict;
+
+/// @throws InvalidInput if the ending is none that a simulation has
+void check_output(const Common& common) {
+  if (common.output.empty() || common.to_stdout()) return;
+  switch (formats::format_of(common.output)) {
+    case formats::Format::csv:
+    case formats::Format::mat:
+    case formats::Format::wav:
+    case formats::Format::json:
+      return;
+    default:
+      throw InvalidInput(common.output, "a simulation is written as .csv, .mat, .wav or .json");
+  }
+}
+
+formats::LobesFile read_cut(const std::filesystem::path& path) {
+  formats::LobesFile file = formats::read_lobes(path);
+  formats::load_modes(file);
+  if (!file.frf.empty() || !file.workpiece_frf.empty()) {
+    throw InvalidInput(path.string(), "a simulation needs modes, not FRFs",
+                       "Run robomill modes on the FRFs and name the result as dynamics.modes");
+  }
+  file.validate();
+  if (!file.drilling && !(file.problem.milling.feed_per_tooth_m > 0.0)) {
+    throw InvalidInput(InvalidInput::Parts{.where = path.string(),
+                                           .field = "cut.feed_per_tooth_mm",
+                                           .rule = "must be given and > 0",
+                                           .hint = "Without feed nothing is cut"});
+  }
+  return file;
+}
+
+modal::TipModes structure_of(const stability::LobesProblem& problem) {
+  const modal::TipModes tool = modal::tip_modes(problem.dynamics, problem.keep_modes, problem.feed_direction_rad);
+  if (problem.workpiece_dynamics.modes.empty()) return tool;
+  return modal::joined(tool, modal::tip_modes(problem.workpiece_dynamics, {}, problem.feed_direction_rad));
+}
+
+void print_small(const SmallVibration& small) {
+  switch (small.status) {
+    case SmallVibration::Status::found:
+      fmt::print("Small vibration {} by |μ| = {:.5f} ± {:.0e} in each period of {:.4g} ms.\n",
+                 small.spectral_radius < 1.0 ? "dies out" : "grows", small.spectral_radius, small.error_estimate,
+                 small.period_s / units::ms);
+      return;
+    case SmallVibration::Status::unsettled:
+      fmt::print("Whether small vibration grows was not settled.\n");
+      return;
+    case SmallVibration::Status::not_periodic:
+      fmt::print("The swing of the speed repeats in no 50 revolutions: no multiplier.\n");
+      return;
+    case SmallVibration::Status::rigid:
+      fmt::print("Nothing can vibrate.\n");
+  }
+}
+
+void print_summary(const Simulation& s, const stability::OperatingPoint& point) {
+  const char* const verdict = s.verdict == Verdict::stable    ? "stable"
+                              : s.verdict == Verdict::chatter ? "chatter"
+                                                              : "undecided: simulate for longer";
+  fmt::print("{:.6g} rpm, {:.4g} mm: {}", point.spindle_speed_rad_per_s / units::rpm, point.axial_depth_m / units::mm,
+             verdict);
+  if (s.chatter_frequency_hz > 0.0) {
+    fmt::print(" at {:.1f} Hz, {:.3g} µm", s.chatter_frequency_hz, s.chatter_amplitude_m / units::um);
+  }
+  fmt::print(".\n");
+  print_small(s.small);
+  if (s.force_n.rows() > 0) {
+    fmt::print(
+        "Forces up to {:.4g}, {:.4g}, {:.4g} N in x, y, z; edges between entry and exit touch nothing in {:.1f} % of "
+        "the time.\n",
+        s.force_n.col(0).cwiseAbs().maxCoeff(), s.force_n.col(1).cwiseAbs().maxCoeff(),
+        s.force_n.col(2).cwiseAbs().maxCoeff(), 100.0 * s.missed_share);
+  }
+  for (const simulation::Wall& wall : s.walls) {
+    fmt::print(
+        "Wall where teeth {}: {:.3g} µm too {} (from {:.3g} to {:.3g} over the height), Ra {:.3g}, Rz {:.3g} µm.\n",
+        wall.angle_rad < 1.0 ? "enter" : "leave", std::abs(wall.location_error_m) / units::um,
+        wall.location_error_m > 0.0 ? "deep" : "shallow", wall.least_location_error_m / units::um,
+        wall.greatest_location_error_m / units::um, wall.ra_m / units::um, wall.rz_m / units::um);
+  }
+  if (s.diverged) fmt::print("Without loss of contact the motion grew beyond a metre; the columns end there.\n");
+  fmt::print("{} samples, {} steps a revolution, {} slice{}, estimated error {:.1g}{}, in {:.2f} s.\n",
+             s.force_n.rows(), s.steps_per_revolution, s.slices, s.slices == 1 ? "" : "s", s.error_estimate,
+             s.resolved ? "" : " (above tolerance)", s.seconds);
+}
+
+simulation::MillingCut milling_of(const formats::LobesFile& file, const stability::OperatingPoint& point) {
+  return {.milling = file.problem.milling,
+          .structure = structure_of(file.problem),
+          .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
+          .axial_depth_m = point.axial_depth_m};
+}
+
+/// The point's depth is the lips' radial width: from the pilot hole to the rim.
+simulation::DrillingCut drilling_of(const formats::LobesFile& file, const stability::OperatingPoint& point) {
+  simulation::DrillingCut cut;
+  cut.lips = file.problem.milling.tool.teeth;
+  cut.diameter_m = file.problem.milling.tool.diameter_m;
+  if (file.point_angle_rad != 0.0) cut.point_angle_rad = file.point_angle_rad;
+  cut.radial_width_m = point.axial_depth_m;
+  cut.feed_per_revolution_m = file.feed_per_revolution_m;
+  cut.coefficients = file.problem.milling.coefficients;
+  cut.structure = structure_of(file.problem);
+  cut.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
+  return cut;
+}
+
+}  // namespace
+
+Exit run(const SimulateCommand& command, const Common& common, Progress& progress) {
+  check_output(common);
+  const stability::OperatingPoint point = parse_point(command.at);
+  const formats::LobesFile file = read_cut(command.input);
+  const simulation::SimulationOptions options = {.seconds = command.seconds,
+                                                 .sample_rate_hz = command.sample_rate_hz,
+                                                 .loss_of_contact = !command.linear,
+                                                 .seed = common.seed};
+  const Simulation result = file.drilling ? simulation::simulate(drilling_of(file, point), options, progress)
+                                          : simulation::simulate(milling_of(file, point), options, progress);
+  if (common.to_stdout()) {
+    fmt::print("{}", formats::simulation_json(result, point.spindle_speed_rad_per_s, point.axial_depth_m));
+  } else if (!common.output.empty()) {
+    if (formats::format_of(common.output) == formats::Format::json) {
+      formats::write_file(common.output,
+                          formats::simulation_json(result, point.spindle_speed_rad_per_s, point.axial_depth_m));
+    } else {
+      formats::write_simulation(common.output, result);
+    }
+  }
+  if (common.wants_summary()) print_summary(result, point);
+  return result.resolved && result.verdict != Verdict::undecided ? done : not_reached;
+}
+
+}  // namespace robomill::app

@@ -1,0 +1,294 @@
+#include "robomill/simulation/job.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/random.hpp"
+#include "robomill/simulation/engine.hpp"
+#include "robomill/simulation/resample.hpp"
+#include "robomill/simulation/verdict.hpp"
+#include "robomill/simulation/wall.hpp"
+
+namespace robomill::simulation::detail {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double diverged_m = 1.0;
+constexpr Eigen::Index phases = 8;           // looked at in a period
+constexpr std::int64_t check_every = 20000;  // steps between looks at Ctrl-C
+
+template <int D>
+Eigen::Vector3d in_space(const Vector<D>& v) {
+  Eigen::Vector3d all = Eigen::Vector3d::Zero();
+  all.template head<D>() = v;
+  return all;
+}
+
+/// ---------------------------------------------------------------- small vibration
+
+/// The largest multiplier at one resolution.
+struct Multiplier {
+  std::complex<double> value = 0.0;
+  bool settled = false;
+};
+
+template <int D>
+Multiplier multiplier_at(const CutModel& model, const modal::TipModes& structure, int period_steps, std::uint64_t seed,
+                         Progress& progress) {
+  constexpr int most_blocks = 40;
+  constexpr double tolerance = 1e-7;
+  Engine<D> engine(model, structure, Physics::perturbation);
+  Random random(seed);
+  for (std::size_t k = 0; k < engine.modes(); ++k) engine.set_mode(k, {random.normal(), random.normal()});
+  const Eigen::Index columns = std::min<Eigen::Index>(2 * structure.pole.size() + 10, 60);
+  const Eigen::Index looks = std::max<Eigen::Index>(16, columns);
+  Eigen::MatrixXd snapshots(looks * D, columns);
+  Multiplier found;
+  for (int block = 0; block < most_blocks; ++block) {
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      Eigen::Index look = 0;
+      for (int i = 1; i <= period_steps; ++i) {
+        engine.step();
+        while (look < looks && (look + 1) * period_steps <= i * looks) {
+          snapshots.block<D, 1>(D * look++, c) = engine.displacement();
+        }
+      }
+      progress.check();
+    }
+    const double size = snapshots.rightCols(1).norm();
+    const std::complex<double> value = dominant_multiplier(snapshots);
+    found.settled = std::abs(std::abs(value) - std::abs(found.value)) <= tolerance * std::max(1.0, std::abs(value));
+    found.value = value;
+    if (block > 0 && found.settled) break;
+    if (!(size > 0.0) || !std::isfinite(size)) break;
+    engine.scale(1.0 / size);
+  }
+  return found;
+}
+
+/// ---------------------------------------------------------------- resolution
+
+/// Relative difference of the displacements over the first revolutions, of the finer one's error by order two.
+template <int D>
+double error_at(const CutModel& coarse_model, const CutModel& fine_model, const modal::TipModes& structure,
+                Physics physics, double seconds) {
+  constexpr double trial_revolutions = 8.0;
+  Engine<D> coarse(coarse_model, structure, physics);
+  Engine<D> fine(fine_model, structure, physics);
+  const double turns = std::min(trial_revolutions, seconds * coarse_model.spindle.mean_rad_per_s / (2.0 * pi));
+  const auto steps = static_cast<std::int64_t>(std::max(1.0, turns * coarse_model.steps_per_revolution));
+  double difference = 0.0, size = 0.0;
+  for (std::int64_t i = 0; i < steps; ++i) {
+    coarse.step();
+    fine.step();
+    fine.step();
+    difference += (coarse.displacement() - fine.displacement()).squaredNorm();
+    size += fine.displacement().squaredNorm();
+  }
+  return size > 0.0 ? std::sqrt(difference / size) / 3.0 : 0.0;
+}
+
+struct Chosen {
+  Resolution resolution;
+  double error = 0.0;
+};
+
+template <int D, class MakeModel>
+Chosen choose(const Resolution& first, const modal::TipModes& structure, const MakeModel& make_model, Physics physics,
+              const SimulationOptions& options, Progress& progress) {
+  constexpr int most_doublings = 5;
+  Chosen chosen = {first, 0.0};
+  if (structure.pole.size() == 0) return chosen;
+  for (int i = 0;; ++i) {
+    progress.check();
+    const bool odd = chosen.resolution.steps_per_revolution % 2 != 0;
+    const Resolution coarse = odd ? chosen.resolution : halved(chosen.resolution);
+    const Resolution fine = odd ? doubled(chosen.resolution) : chosen.resolution;
+    chosen.error = error_at<D>(make_model(coarse), make_model(fine), structure, physics, options.seconds);
+    if (options.steps_per_revolution > 0 || chosen.error <= options.tolerance || i == most_doublings) return chosen;
+    chosen.resolution = doubled(chosen.resolution);
+  }
+}
+
+/// ---------------------------------------------------------------- the run
+
+/// What the run keeps beside the output: once-a-period samples, and the motion of the last half for its spectrum.
+struct Watch {
+  Watch(std::int64_t steps, int period_steps, int dimensions) : period(period_steps) {
+    constexpr std::int64_t longest = std::int64_t{1} << 20;
+    const std::int64_t kept = std::min({steps - steps / 2, longest, steps});
+    motion.resize(static_cast<Eigen::Index>(kept), dimensions);
+    from = steps - kept;
+    samples.resize(phases * dimensions, static_cast<Eigen::Index>(steps / period));
+  }
+  template <int D>
+  void look(std::int64_t step, const Vector<D>& q) {  // step from 0
+    const Eigen::Index column = static_cast<Eigen::Index>(step / period);
+    const std::int64_t within = step % period;
+    if (column < samples.cols()) {
+      const std::int64_t before = within * phases / period;
+      const std::int64_t now = (within + 1) * phases / period;
+      for (std::int64_t p = before; p < now; ++p) samples.block<D, 1>(static_cast<Eigen::Index>(p) * D, column) = q;
+    }
+    if (step >= from && step - from < motion.rows()) {
+      motion.row(static_cast<Eigen::Index>(step - from)) = q.transpose();
+    }
+  }
+  std::int64_t period, from = 0;
+  Eigen::MatrixXd samples, motion;
+};
+
+void add_wall(double angle, double feed_per_tooth_m, int rings, const std::vector<WallPass>& passes, Simulation& out) {
+  Wall wall;
+  wall.angle_rad = angle;
+  std::vector<std::vector<WallPass>> of_ring(static_cast<std::size_t>(rings));
+  for (const WallPass& pass : passes) of_ring[static_cast<std::size_t>(pass.ring)].push_back(pass);
+  int heights = 0;
+  for (const std::vector<WallPass>& ring : of_ring) {
+    const WallLine line = wall_line(ring, feed_per_tooth_m);
+    if (line.out_m.empty()) continue;
+    const Roughness r = roughness(line);
+    wall.least_location_error_m = heights == 0 ? r.mean_m : std::min(wall.least_location_error_m, r.mean_m);
+    wall.greatest_location_error_m = heights == 0 ? r.mean_m : std::max(wall.greatest_location_error_m, r.mean_m);
+    wall.location_error_m += r.mean_m;
+    wall.ra_m = std::max(wall.ra_m, r.ra_m);
+    wall.rz_m = std::max(wall.rz_m, r.rz_m);
+    ++heights;
+  }
+  if (heights == 0) return;
+  wall.location_error_m /= heights;
+  out.walls.push_back(wall);
+}
+
+template <int D>
+void run(const Job& job, const SimulationOptions& options, Progress& progress, Simulation& out) {
+  const Physics physics = options.loss_of_contact ? Physics::full : Physics::linear;
+  const Chosen chosen = choose<D>(job.first, job.structure, job.model_at, physics, options, progress);
+  out.steps_per_revolution = chosen.resolution.steps_per_revolution;
+  out.slices = chosen.resolution.slices;
+  out.error_estimate = chosen.error;
+  out.resolved = chosen.error <= options.tolerance;
+  const CutModel model = job.model_at(chosen.resolution);
+  Engine<D> engine(model, job.structure, physics);
+  const double h = engine.step_s();
+  Resampler resampler(h, options.sample_rate_hz,
+                      static_cast<Eigen::Index>(std::floor(options.seconds * options.sample_rate_hz + 1e-9)));
+  const auto steps = static_cast<std::int64_t>(options.seconds / h);
+  const std::int64_t all = steps + static_cast<std::int64_t>(resampler.reach()) + 4;
+  const double half_turns = 0.5 * options.seconds * job.spindle_speed_rad_per_s / (2.0 * pi);
+  for (const double angle : job.walls) {
+    engine.watch_wall(angle, static_cast<std::size_t>(half_turns) * model.elements.size() + 1);
+  }
+  Watch watch(steps, job.period.steps(out.steps_per_revolution), D);
+  progress.start("simulating", static_cast<std::size_t>(all));
+  resampler.push(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+  std::int64_t missed = 0;
+  for (std::int64_t i = 0; i < all; ++i) {
+    engine.step();
+    const Vector<D>& q = engine.displacement();
+    resampler.push(in_space<D>(q), in_space<D>(engine.mean_force()));
+    if (i < steps) {
+      watch.look<D>(i, q);
+      missed = engine.steps_without_contact();
+    }
+    if ((i + 1) % check_every == 0) progress.advance(check_every);
+    if (!(q.squaredNorm() < diverged_m * diverged_m)) {
+      out.diverged = true;
+      break;
+    }
+  }
+  const Eigen::Index rows = resampler.rows_done();
+  out.displacement_m = resampler.displacement_m.topRows(rows);
+  out.acceleration_m_per_s2 = resampler.acceleration_m_per_s2.topRows(rows);
+  out.force_n = resampler.force_n.topRows(rows);
+  out.missed_share = static_cast<double>(missed) / static_cast<double>(std::max<std::int64_t>(steps, 1));
+  if (out.diverged) {
+    out.verdict = Verdict::chatter;
+    return;
+  }
+  const Judgement judgement = judge(watch.samples, out.small);
+  out.verdict = judgement.verdict;
+  out.growth_per_period = judgement.growth_per_period;
+  if (out.verdict == Verdict::chatter) {
+    const int repeat = job.period.repeats ? job.period.revolutions * out.steps_per_revolution : 0;
+    const Tone tone = strongest_tone(watch.motion, repeat, 1.0 / h);
+    out.chatter_frequency_hz = tone.frequency_hz;
+    out.chatter_amplitude_m = tone.amplitude_m;
+  }
+  for (std::size_t w = 0; w < job.walls.size(); ++w) {
+    add_wall(job.walls[w], job.feed_per_tooth_m, model.rings, engine.wall_passes(w), out);
+  }
+}
+
+}  // namespace
+
+SmallVibration small_vibration(const Job& job, const SimulationOptions& options, Progress& progress) {
+  SmallVibration small;
+  if (job.structure.pole.size() == 0) return small;
+  small.status = SmallVibration::Status::not_periodic;
+  if (!job.period.repeats) return small;
+  small.period_s = 2.0 * pi / job.spindle_speed_rad_per_s * job.period.revolutions / job.period.parts;
+  std::array<Multiplier, 2> found;
+  Resolution resolution = job.first;
+  for (Multiplier& m : found) {
+    const CutModel model = job.model_at(resolution);
+    const int steps = job.period.steps(resolution.steps_per_revolution);
+    m = model.axial > 0.0 ? multiplier_at<3>(model, job.structure, steps, options.seed, progress)
+                          : multiplier_at<2>(model, job.structure, steps, options.seed, progress);
+    resolution = doubled(resolution);
+  }
+  const double coarse = std::abs(found[0].value), fine = std::abs(found[1].value);
+  small.multiplier = found[1].value;
+  small.spectral_radius = std::max(0.0, fine + (fine - coarse) / 3.0);
+  small.error_estimate = std::abs(fine - coarse) / 3.0;
+  const bool settled = found[0].settled && found[1].settled && std::isfinite(fine);
+  small.status = settled ? SmallVibration::Status::found : SmallVibration::Status::unsettled;
+  return small;
+}
+
+Simulation simulate(const Job& job, const SimulationOptions& options, Progress& progress) {
+  const auto begun = std::chrono::steady_clock::now();
+  Simulation out;
+  out.sample_rate_hz = options.sample_rate_hz;
+  out.small = small_vibration(job, options, progress);
+  out.period_s = 2.0 * pi / job.spindle_speed_rad_per_s * job.period.revolutions / job.period.parts;
+  if (job.model_at(job.first).axial > 0.0) {
+    run<3>(job, options, progress, out);
+  } else {
+    run<2>(job, options, progress, out);
+  }
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return out;
+}
+
+void require_turning(double spindle_speed_rad_per_s) {
+  require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  if (spindle_speed_rad_per_s > 1e5) {
+    throw InvalidInput("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", "is faster than any spindle",
+                       "Are the units mixed up?");
+  }
+}
+
+void require_damped(const modal::TipModes& structure) {
+  const Eigen::Index n = structure.pole.size();
+  if (structure.right.cols() != n || structure.left.cols() != n) {
+    throw InvalidInput("structure", "must have one left and one right vector for each pole");
+  }
+  if (!structure.pole.allFinite() || !structure.right.allFinite() || !structure.left.allFinite() ||
+      !structure.compliance.allFinite()) {
+    throw InvalidInput("structure", "must hold finite numbers only");
+  }
+  for (const std::complex<double>& pole : structure.pole) {
+    if (!(pole.real() < 0.0)) {
+      throw InvalidInput("structure.pole", pole.real(), "rad/s", "must have a negative real part",
+                         "A structure that is unstable without cutting cannot be judged in a cut");
+    }
+  }
+}
+
+}  // namespace robomill::simulation::detail
