@@ -45,7 +45,7 @@ void check(const ExplainCommand& command) {
 std::optional<stability::DelayVerdict> verdict_of(const ExplainCommand& command) {
   if (command.lobes.empty()) return std::nullopt;
   formats::LobesFile file = formats::read_lobes(command.lobes);
-  formats::load_modes(file);
+  formats::load_dynamics(file);
   if (!file.frf.empty() || !file.workpiece_frf.empty()) {
     throw InvalidInput(command.lobes.string(), "must name modes: without them the equation has no time",
                        "Run robomill modes on the FRFs and name the result as dynamics.modes");

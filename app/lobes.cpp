@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "point.hpp"
 #include "robomill/base/error.hpp"
@@ -16,9 +18,11 @@ namespace {
 
 void print_summary(const stability::LobesResult& result) {
   for (const stability::PointResult& point : result.points) {
-    fmt::print("{:.6g} rpm, {:.4g} mm: |μ| = {:.6g} ± {:.1g}, {}", point.spindle_speed_rad_per_s / units::rpm,
-               point.axial_depth_m / units::mm, point.spectral_radius, point.error_estimate,
-               point.stable ? "stable" : "chatter");
+    fmt::print("{:.6g} rpm, {:.4g} mm: ", point.spindle_speed_rad_per_s / units::rpm, point.axial_depth_m / units::mm);
+    if (std::isfinite(point.spectral_radius)) {
+      fmt::print("|μ| = {:.6g} ± {:.1g}, ", point.spectral_radius, point.error_estimate);
+    }
+    fmt::print("{}", point.stable ? "stable" : "chatter");
     if (!point.stable) {
       fmt::print(" at {:.1f} Hz (mode {}, {})", point.chatter_frequency_hz, point.mode, to_string(point.kind));
     }
@@ -43,6 +47,43 @@ void print_summary(const stability::LobesResult& result) {
   }
 }
 
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.2g} %", 100.0 * share) : "-";
+}
+
+/// Every method beside the first: a row each.
+Exit compare(const formats::LobesFile& file, const Common& common, Progress& progress) {
+  constexpr int most_speeds = 60;
+  const int speeds = std::min(file.options.grid[0], most_speeds);
+  const stability::MethodComparison comparison =
+      stability::compare_methods(file.problem, file.options, speeds, progress);
+  if (common.to_stdout()) {
+    fmt::print("{}", formats::comparison_json(comparison));
+  } else if (!common.output.empty()) {
+    formats::write_file(common.output, formats::comparison_json(comparison));
+  }
+  if (!common.wants_summary()) return done;
+  fmt::print("{:<22}{:>14}{:>14}{:>14}{:>8}{:>10}\n", "method", "lowest limit", "median error", "worst error", "differ",
+             "seconds");
+  for (const stability::MethodRow& row : comparison.rows) {
+    if (!row.refusal.empty()) {
+      fmt::print("{:<22}{}\n", to_string(row.method), row.refusal);
+      continue;
+    }
+    std::string lowest = "none";
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const stability::Limit& limit : row.limits) {
+      if (limit.status == stability::Limit::Status::found) least_m = std::min(least_m, limit.axial_depth_m);
+    }
+    if (std::isfinite(least_m)) lowest = fmt::format("{:.4g} mm", least_m / units::mm);
+    fmt::print("{:<22}{:>14}{:>14}{:>14}{:>8}{:>10.3f}\n", to_string(row.method), lowest, percent(row.median_error),
+               percent(row.worst_error), row.differ, row.seconds);
+  }
+  fmt::print("Limits at {} speeds; errors are against the first row, differ counts speeds at which only one has a limit.\n",
+             comparison.spindle_speed_rad_per_s.size());
+  return done;
+}
+
 }  // namespace
 
 Exit run(const LobesCommand& command, const Common& common, Progress& progress) {
@@ -50,16 +91,13 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
     throw InvalidInput(common.output, "lobes are written as .json");
   }
   formats::LobesFile file = formats::read_lobes(command.input);
-  formats::load_modes(file);
-  if (!file.frf.empty()) {
-    throw InvalidInput(command.input.string(), "dynamics.frf needs a fit first",
-                       "Run robomill modes on it and name the result as dynamics.modes");
-  }
+  formats::load_dynamics(file);
   if (file.drilling) {
     throw InvalidInput(command.input.string(), "lobes are those of milling", "robomill simulate takes drilling");
   }
   file.validate();
   for (const std::string& text : command.at) file.options.points.push_back(parse_point(text));
+  if (command.compare) return compare(file, common, progress);
   const stability::LobesResult result = stability::compute_lobes(file.problem, file.options, progress);
   stability::UncertainLimits uncertain;
   if (file.uncertainty.samples > 0) {

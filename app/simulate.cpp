@@ -35,7 +35,7 @@ void check_output(const Common& common) {
 
 formats::LobesFile read_cut(const std::filesystem::path& path) {
   formats::LobesFile file = formats::read_lobes(path);
-  formats::load_modes(file);
+  formats::load_dynamics(file);
   if (!file.frf.empty() || !file.workpiece_frf.empty()) {
     throw InvalidInput(path.string(), "a simulation needs modes, not FRFs",
                        "Run robomill modes on the FRFs and name the result as dynamics.modes");

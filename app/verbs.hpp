@@ -39,6 +39,7 @@ struct ModesCommand {
 struct LobesCommand {
   std::filesystem::path input;
   std::vector<std::string> at;  ///< "RPM,MM"
+  bool compare = false;         ///< every method, in place of the chart
 };
 struct ExplainCommand {
   std::vector<double> peaks_hz;

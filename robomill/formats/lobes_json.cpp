@@ -101,4 +101,28 @@ std::string lobes_json(const stability::LobesResult& result, const stability::Un
   return dump(json);
 }
 
+std::string comparison_json(const stability::MethodComparison& comparison) {
+  Json json;
+  json["spindle_speed_rpm"] = Json::array();
+  for (const double speed : comparison.spindle_speed_rad_per_s) {
+    json["spindle_speed_rpm"].push_back(number(speed / units::rpm));
+  }
+  json["methods"] = Json::array();
+  for (const stability::MethodRow& row : comparison.rows) {
+    Json limits = Json::array();
+    for (const stability::Limit& limit : row.limits) {
+      const bool found = limit.status == stability::Limit::Status::found;
+      limits.push_back(found ? number(limit.axial_depth_m / units::mm) : Json(nullptr));
+    }
+    json["methods"].push_back({{"method", stability::to_string(row.method)},
+                               {"limit_mm", std::move(limits)},
+                               {"median_error", number(row.median_error)},
+                               {"worst_error", number(row.worst_error)},
+                               {"differ", row.differ},
+                               {"refusal", row.refusal},
+                               {"seconds", number(row.seconds)}});
+  }
+  return dump(json);
+}
+
 }  // namespace robomill::formats

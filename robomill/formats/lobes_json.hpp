@@ -2,6 +2,7 @@
 #include <string>
 
 #include "robomill/base/export.hpp"
+#include "robomill/stability/compare.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
@@ -10,5 +11,8 @@ namespace robomill::formats {
 /// lobes.json as text; with the map and the uncertain limits where there are some.
 [[nodiscard]] ROBOMILL_API std::string lobes_json(const stability::LobesResult& result,
                                                   const stability::UncertainLimits& uncertain = {});
+
+/// `robomill lobes --compare` as JSON text.
+[[nodiscard]] ROBOMILL_API std::string comparison_json(const stability::MethodComparison& comparison);
 
 }  // namespace robomill::formats

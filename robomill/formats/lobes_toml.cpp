@@ -9,6 +9,7 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/modes_files.hpp"
 #include "robomill/formats/toml_file.hpp"
 #include "robomill/formats/units.hpp"
@@ -160,7 +161,9 @@ void read_chart(TomlFile& file, stability::LobesOptions& options) {
   }
   file.choice<stability::Method>("lobes.method",
                                  {{"collocation", stability::Method::collocation},
-                                  {"semi-discretization", stability::Method::semi_discretization}},
+                                  {"semi-discretization", stability::Method::semi_discretization},
+                                  {"zeroth-order", stability::Method::zeroth_order},
+                                  {"multi-frequency", stability::Method::multi_frequency}},
                                  options.method);
   file.choice<stability::Output>(
       "lobes.output", {{"boundary", stability::Output::boundary}, {"map", stability::Output::map}}, options.output);
@@ -207,7 +210,7 @@ LobesFile read(TomlFile& file, const std::filesystem::path& path) {
 void LobesFile::validate() const {
   TomlFile file(path);
   static_cast<void>(read(file, path));
-  if (problem.dynamics.modes.empty()) {
+  if (problem.dynamics.modes.empty() && problem.measured.frfs.empty()) {
     throw file.refuse("dynamics", "must name the structure: modes, frf, or x and y");
   }
   file.locate([&] { problem.validate(); });
@@ -218,9 +221,19 @@ LobesFile read_lobes(const std::filesystem::path& path) {
   return read(file, path);
 }
 
-void load_modes(LobesFile& file) {
+void load_dynamics(LobesFile& file) {
   if (!file.modes.empty()) file.problem.dynamics = read_modes(file.modes);
   if (!file.workpiece_modes.empty()) file.problem.workpiece_dynamics = read_modes(file.workpiece_modes);
+  const auto measured = [](const std::filesystem::path& path) {
+    FrfFile frfs = read_frfs({path});
+    if (frfs.added_decay_per_s > 0.0) {
+      throw InvalidInput(path.string(), "still holds the damping of an exponential window",
+                         "Fit modes, which can do without it, or estimate the FRFs with remove_added_damping");
+    }
+    return std::move(frfs.set);
+  };
+  if (!file.frf.empty()) file.problem.measured = measured(file.frf);
+  if (!file.workpiece_frf.empty()) file.problem.workpiece_measured = measured(file.workpiece_frf);
 }
 
 }  // namespace robomill::formats

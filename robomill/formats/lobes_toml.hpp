@@ -29,8 +29,8 @@ struct LobesFile {
 /// Everything but the structure is checked. @throws InvalidInput with file, line, key and value
 [[nodiscard]] ROBOMILL_API LobesFile read_lobes(const std::filesystem::path& path);
 
-/// Reads the files of modes that it names, of the tool and of the workpiece, into its problem.
-/// @throws InvalidInput
-ROBOMILL_API void load_modes(LobesFile& file);
+/// Reads the files of modes and of FRFs that it names, of the tool and of the workpiece, into its problem.
+/// @throws InvalidInput, also where an exponential window's damping is still in FRFs: without modes it stays there
+ROBOMILL_API void load_dynamics(LobesFile& file);
 
 }  // namespace robomill::formats

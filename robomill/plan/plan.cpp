@@ -292,7 +292,8 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
     result.warnings.push_back("One direction was measured; the other is taken equal to it, without cross terms.");
   }
   result.cut.modes.clear();  // the job's stand in their place
-  formats::load_modes(result.cut);
+  result.cut.frf.clear();
+  formats::load_dynamics(result.cut);
   result.cut.problem.dynamics = result.model;
   result.cut.validate();
   // The report draws the boundary in any case.

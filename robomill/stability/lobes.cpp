@@ -6,6 +6,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/stability/chart.hpp"
+#include "robomill/stability/frequency_lobes.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 
 namespace robomill::stability {
@@ -44,6 +45,11 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   const auto begin = std::chrono::steady_clock::now();
   problem.validate();
   options.validate();
+  if (in_frequency_domain(options.method)) {
+    LobesResult result = frequency_lobes(problem, options, progress);
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return result;
+  }
   const std::unique_ptr<Scheme> scheme = make_scheme(problem, options);
   const Axes axes = even_axes(options);
   LobesResult result;
@@ -88,7 +94,9 @@ PointResult evaluate_point(const LobesProblem& problem, const LobesOptions& opti
   checked.axial_depth_m = {0.0, 0.1};
   checked.points = {point};
   checked.validate();
-  return point_result(*make_scheme(problem, options)->evaluator(), point);
+  if (in_frequency_domain(options.method)) return frequency_point(problem, options, point);
+  const std::unique_ptr<Scheme> scheme = make_scheme(problem, options);
+  return point_result(*scheme->evaluator(), point);
 }
 
 std::vector<Limit> limit_depths(const LobesProblem& problem, const LobesOptions& options,
@@ -98,6 +106,9 @@ std::vector<Limit> limit_depths(const LobesProblem& problem, const LobesOptions&
   checked.spindle_speed_rad_per_s = {1.0, 2.0};
   checked.validate();
   for (const double speed : spindle_speeds_rad_per_s) require_positive("spindle_speed_rad_per_s", speed, "rad/s");
+  if (in_frequency_domain(options.method)) {
+    return frequency_limits(problem, options, spindle_speeds_rad_per_s, progress);
+  }
   const std::unique_ptr<Scheme> scheme = make_scheme(problem, options);
   const Axes axes = {spindle_speeds_rad_per_s, even(options.axial_depth_m, options.grid[1])};
   scheme->expect(axes.axial_depth_m);

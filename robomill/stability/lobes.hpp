@@ -23,11 +23,16 @@ struct ROBOMILL_API LobesProblem {
   /// Of the part and its fixture where the tool cuts, in the same axes; no modes: it stands still. Its modes are
   /// numbered on from the tool's.
   modal::ModalModel workpiece_dynamics = {};
+  /// Measured FRFs of tool and workpiece in place of their modes: for the frequency-domain methods, without a fit.
+  modal::FrfSet measured = {}, workpiece_measured = {};
+  [[nodiscard]] bool has_measured() const { return !measured.frfs.empty() || !workpiece_measured.frfs.empty(); }
   /// @throws InvalidInput naming the member
   void validate() const;
 };
 
-enum class Method { collocation, semi_discretization };
+/// zeroth_order, multi_frequency: in the frequency domain, limits alone; from modes or measured FRFs. The others need
+/// modes and know the spectral radius.
+enum class Method { collocation, semi_discretization, zeroth_order, multi_frequency };
 /// both: the map and the boundary.
 enum class Output { boundary, map, both };
 enum class Period { tooth, revolution };
@@ -64,10 +69,11 @@ struct ROBOMILL_API LobesOptions {
 struct PointResult {
   double spindle_speed_rad_per_s = 0.0;
   double axial_depth_m = 0.0;
-  double spectral_radius = 0.0;           ///< greatest |multiplier| of the period; 1e100 where the motion overflows
+  /// Greatest |multiplier| of the period; 1e100 where the motion overflows; NaN for a method that does not know it.
+  double spectral_radius = 0.0;
   std::complex<double> multiplier = 0.0;  ///< the one with it, imaginary part >= 0
   bool stable = false;                    ///< spectral radius < 1
-  double error_estimate = 0.0;            ///< of the spectral radius: from a second, finer run
+  double error_estimate = 0.0;            ///< of the spectral radius: from a second, finer run; or NaN as it
   double chatter_frequency_hz = 0.0;      ///< at which this multiplier's motion is greatest [Hz]; 0 where it overflows
   Kind kind = Kind::hopf;
   int mode = 0;  ///< the mode that moves most in it, numbered as in dynamics from 1; 0 where it overflows
@@ -80,8 +86,8 @@ struct BoundaryPoint {
   double chatter_frequency_hz = 0.0;
   Kind kind = Kind::hopf;
   int mode = 0;                 ///< from 1
-  double error_estimate = 0.0;  ///< of the spectral radius there
-  int curve = 0;                ///< which curve of the boundary it is on, from 1
+  double error_estimate = 0.0;  ///< of the spectral radius there; in the frequency domain of the depth, as a share of it
+  int curve = 0;                ///< which curve of the boundary it is on, from 1; 0: points of each speed alone
 };
 
 /// The lowest unstable depth at one speed.
@@ -93,8 +99,8 @@ struct Limit {
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = 0.0;
   Kind kind = Kind::hopf;
-  int mode = 0;
-  double error_estimate = 0.0;  ///< of the spectral radius there
+  int mode = 0;                 ///< 0 for measured FRFs
+  double error_estimate = 0.0;  ///< as of a boundary point
 };
 
 struct LobesResult {
@@ -114,7 +120,7 @@ struct LobesResult {
 
 /// The stability chart of milling with regenerative chip thickness,
 ///   q(t) = 2 Re Σ_k R_k z_k + S F,  dz_k/dt = λ_k z_k + L_k^T F,  F = Σ_j K_j(t) (q(t) - q(t - τ_j)),
-/// by collocation or semi-discretization. Method, accuracy and cost: robomill/stability/README.md. Sources:
+/// by the method that the options name. Method, accuracy and cost: robomill/stability/README.md. Sources:
 /// [Altintas1995], [Insperger2004].
 /// @throws InvalidInput if the problem or an option is out of range
 /// @throws Interrupted  when progress asks to stop

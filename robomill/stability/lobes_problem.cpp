@@ -28,7 +28,16 @@ void require_depth(const char* field, double depth_m) {
 }  // namespace
 
 std::string_view to_string(Method method) {
-  return method == Method::collocation ? "collocation" : "semi-discretization";
+  switch (method) {
+    case Method::semi_discretization:
+      return "semi-discretization";
+    case Method::zeroth_order:
+      return "zeroth-order";
+    case Method::multi_frequency:
+      return "multi-frequency";
+    default:
+      return "collocation";
+  }
 }
 
 std::string_view to_string(Period period) {
@@ -69,9 +78,15 @@ void LobesOptions::validate() const {
 void LobesProblem::validate() const {
   milling.validate();
   require_finite("feed_direction_rad", feed_direction_rad, "rad");
+  if (!measured.frfs.empty()) measured.validate();
+  if (!workpiece_measured.frfs.empty()) workpiece_measured.validate();
+  if (!workpiece_dynamics.modes.empty()) workpiece_dynamics.validate();
+  if (!measured.frfs.empty()) {
+    if (!dynamics.modes.empty()) throw InvalidInput("modes", "must not stand beside measured FRFs of the tool");
+    return;
+  }
   dynamics.validate();
   if (dynamics.modes.empty()) throw InvalidInput("modes", "must hold at least one mode");
-  if (!workpiece_dynamics.modes.empty()) workpiece_dynamics.validate();
   static_cast<void>(detail::tip_dynamics(*this));
 }
 
