@@ -16,7 +16,7 @@
 namespace robomill::app {
 namespace {
 
-void print_summary(const stability::LobesResult& result) {
+void print_summary(const stability::LobesResult& result, const stability::SurfaceMap& surface) {
   for (const stability::PointResult& point : result.points) {
     fmt::print("{:.6g} rpm, {:.4g} mm: ", point.spindle_speed_rad_per_s / units::rpm, point.axial_depth_m / units::mm);
     if (std::isfinite(point.spectral_radius)) {
@@ -41,6 +41,18 @@ void print_summary(const stability::LobesResult& result) {
                lowest->chatter_frequency_hz, lowest->mode);
   }
   fmt::print("{} points of the chart in {:.2f} s, {}.\n", result.evaluations, result.seconds, to_string(result.method));
+  const auto known = [](double error) { return std::isfinite(error); };
+  if (std::ranges::any_of(surface.surface_location_error_m.reshaped(), known)) {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (const double error : surface.surface_location_error_m.reshaped()) {
+      if (!known(error)) continue;
+      least = std::min(least, error);
+      most = std::max(most, error);
+    }
+    fmt::print("Surface error of the stable cuts from {:.3g} to {:.3g} µm (positive: material left).\n",
+               least / units::um, most / units::um);
+  }
   if (result.uncertain > 0) {
     fmt::print("{} points are less accurate than the tolerance; their error_estimate says how much.\n",
                result.uncertain);
@@ -79,8 +91,9 @@ Exit compare(const formats::LobesFile& file, const Common& common, Progress& pro
     fmt::print("{:<22}{:>14}{:>14}{:>14}{:>8}{:>10.3f}\n", to_string(row.method), lowest, percent(row.median_error),
                percent(row.worst_error), row.differ, row.seconds);
   }
-  fmt::print("Limits at {} speeds; errors are against the first row, differ counts speeds at which only one has a limit.\n",
-             comparison.spindle_speed_rad_per_s.size());
+  fmt::print(
+      "Limits at {} speeds; errors are against the first row, differ counts speeds at which only one has a limit.\n",
+      comparison.spindle_speed_rad_per_s.size());
   return done;
 }
 
@@ -104,12 +117,16 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
     file.uncertainty.seed = common.seed;
     uncertain = stability::uncertain_limits(file.problem, file.options, file.uncertainty, progress);
   }
-  if (common.to_stdout()) {
-    fmt::print("{}", formats::lobes_json(result, uncertain));
-  } else if (!common.output.empty()) {
-    formats::write_file(common.output, formats::lobes_json(result, uncertain));
+  stability::SurfaceMap surface;
+  if (file.surface_grid[0] > 0) {
+    surface = stability::surface_map(file.problem, file.options, file.surface_grid, progress);
   }
-  if (common.wants_summary()) print_summary(result);
+  if (common.to_stdout()) {
+    fmt::print("{}", formats::lobes_json(result, uncertain, surface));
+  } else if (!common.output.empty()) {
+    formats::write_file(common.output, formats::lobes_json(result, uncertain, surface));
+  }
+  if (common.wants_summary()) print_summary(result, surface);
   return done;
 }
 

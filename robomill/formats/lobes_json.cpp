@@ -58,7 +58,8 @@ Json uncertainty_json(const stability::UncertainLimits& limits) {
 
 }  // namespace
 
-std::string lobes_json(const stability::LobesResult& result, const stability::UncertainLimits& uncertain) {
+std::string lobes_json(const stability::LobesResult& result, const stability::UncertainLimits& uncertain,
+                       const stability::SurfaceMap& surface) {
   Json json;
   json["spindle_speed_rpm"] = grid_json(result.spindle_speed_rad_per_s, units::rpm);
   json["axial_depth_mm"] = grid_json(result.axial_depth_m, units::mm);
@@ -98,6 +99,12 @@ std::string lobes_json(const stability::LobesResult& result, const stability::Un
   json["uncertain"] = result.uncertain;
   json["seconds"] = number(result.seconds);
   if (uncertain.samples > 0) json["uncertainty"] = uncertainty_json(uncertain);
+  if (surface.axial_depth_m.size() > 0) {
+    json["surface"] = {{"spindle_speed_rpm", grid_json(surface.spindle_speed_rad_per_s, units::rpm)},
+                       {"axial_depth_mm", grid_json(surface.axial_depth_m, units::mm)},
+                       {"surface_location_error_um", map_json(surface.surface_location_error_m / units::um)},
+                       {"peak_to_peak_um", map_json(surface.peak_to_peak_m / units::um)}};
+  }
   return dump(json);
 }
 

@@ -4,13 +4,15 @@
 #include "robomill/base/export.hpp"
 #include "robomill/stability/compare.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/surface_error.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
 namespace robomill::formats {
 
-/// lobes.json as text; with the map and the uncertain limits where there are some.
+/// lobes.json as text; with the map, the uncertain limits and the surface where there are some.
 [[nodiscard]] ROBOMILL_API std::string lobes_json(const stability::LobesResult& result,
-                                                  const stability::UncertainLimits& uncertain = {});
+                                                  const stability::UncertainLimits& uncertain = {},
+                                                  const stability::SurfaceMap& surface = {});
 
 /// `robomill lobes --compare` as JSON text.
 [[nodiscard]] ROBOMILL_API std::string comparison_json(const stability::MethodComparison& comparison);

@@ -201,6 +201,15 @@ LobesFile read(TomlFile& file, const std::filesystem::path& path) {
   read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf, out.problem.workpiece_dynamics);
   read_chart(file, out.options);
   read_uncertainty(file, out.uncertainty);
+  if (file.has("surface_error")) {
+    std::vector<int> grid = {60, 60};
+    file.integers("surface_error.grid", "grid", grid);
+    if (grid.size() != 2) throw file.refuse("surface_error.grid", "must be [speeds, depths]");
+    if (grid[0] < 2 || grid[1] < 2)
+      throw file.refuse("surface_error.grid", "must have at least 2 points in each direction");
+    if (!(out.problem.milling.feed_per_tooth_m > 0.0)) file.require("cut.feed_per_tooth_mm", "surface_error needs it");
+    out.surface_grid = {grid[0], grid[1]};
+  }
   file.done();
   return out;
 }

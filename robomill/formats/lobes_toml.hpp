@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <filesystem>
 
 #include "robomill/base/export.hpp"
@@ -16,6 +17,7 @@ struct LobesFile {
   std::filesystem::path frf = {};              ///< dynamics.frf, resolved; empty where absent
   std::filesystem::path workpiece_modes = {};  ///< workpiece_dynamics.modes, the same
   std::filesystem::path workpiece_frf = {};    ///< workpiece_dynamics.frf, the same
+  std::array<int, 2> surface_grid = {0, 0};    ///< speeds and depths of the map of surface errors; 0: none
   stability::Uncertainty uncertainty = {};     ///< samples: 0 where the file has none
   double radial_depth_m = 0.0;                 ///< b [m]; from the angles where they are given
   bool drilling = false;               ///< cut.kind: the next two count, and of the cut neither angles nor radial depth

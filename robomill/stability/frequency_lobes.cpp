@@ -105,9 +105,8 @@ std::vector<Limit> frequency_limits(const LobesProblem& problem, const LobesOpti
 
 PointResult frequency_point(const LobesProblem& problem, const LobesOptions& options, const OperatingPoint& point) {
   constexpr double least_m = 1e-9;
-  const std::vector<FrequencyLimit> found =
-      solve(problem, options, {point.spindle_speed_rad_per_s}, std::max(point.axial_depth_m, least_m), false,
-            Progress::none());
+  const std::vector<FrequencyLimit> found = solve(problem, options, {point.spindle_speed_rad_per_s},
+                                                  std::max(point.axial_depth_m, least_m), false, Progress::none());
   return to_point(found.front(), point);
 }
 
@@ -117,7 +116,8 @@ LobesResult frequency_lobes(const LobesProblem& problem, const LobesOptions& opt
   LobesResult result;
   result.method = options.method;
   result.period = problem.milling.tool.has_equal_pitch() ? Period::tooth : Period::revolution;
-  result.spindle_speed_rad_per_s = Eigen::Map<const Eigen::VectorXd>(axes.spindle_speed_rad_per_s.data(), options.grid[0]);
+  result.spindle_speed_rad_per_s =
+      Eigen::Map<const Eigen::VectorXd>(axes.spindle_speed_rad_per_s.data(), options.grid[0]);
   result.axial_depth_m = Eigen::Map<const Eigen::VectorXd>(axes.axial_depth_m.data(), options.grid[1]);
   const std::vector<FrequencyLimit> found =
       solve(problem, options, axes.spindle_speed_rad_per_s, options.axial_depth_m[1], true, progress);

@@ -85,9 +85,10 @@ struct BoundaryPoint {
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = 0.0;
   Kind kind = Kind::hopf;
-  int mode = 0;                 ///< from 1
-  double error_estimate = 0.0;  ///< of the spectral radius there; in the frequency domain of the depth, as a share of it
-  int curve = 0;                ///< which curve of the boundary it is on, from 1; 0: points of each speed alone
+  int mode = 0;  ///< from 1
+  double error_estimate =
+      0.0;        ///< of the spectral radius there; in the frequency domain of the depth, as a share of it
+  int curve = 0;  ///< which curve of the boundary it is on, from 1; 0: points of each speed alone
 };
 
 /// The lowest unstable depth at one speed.

@@ -117,8 +117,10 @@ std::unique_ptr<Scheme> semi_discretization(const LobesProblem& problem, int int
 
 std::unique_ptr<Scheme> make_scheme(const LobesProblem& problem, const LobesOptions& options) {
   if (problem.has_measured()) {
-    throw InvalidInput("dynamics.frf", std::string("does not go with ") + std::string(to_string(options.method)) + ", which needs modes",
-                       "Take method = \"multi-frequency\", or fit modes first: robomill modes");
+    throw InvalidInput(
+        "dynamics.frf",
+        std::string("does not go with ") + std::string(to_string(options.method)) + ", which needs modes",
+        "Take method = \"multi-frequency\", or fit modes first: robomill modes");
   }
   if (options.method == Method::collocation) return collocation(problem, options.tolerance);
   return semi_discretization(problem, options.intervals);

@@ -25,8 +25,7 @@ Eigen::Vector2d steady_force(const cutting::Milling& milling, const Contact& con
                              double depth_m) {
   const cutting::ForceCoefficients& k = milling.coefficients;
   const double lag = milling.tool.lag_rad_per_m(contact.tooth);
-  const HeightsInCut in =
-      heights_in_cut(contact, lag, rotation_rad + milling.tool.standing_angle(contact.tooth));
+  const HeightsInCut in = heights_in_cut(contact, lag, rotation_rad + milling.tool.standing_angle(contact.tooth));
   const double feed_m = milling.tool.teeth * milling.feed_per_tooth_m / revolution;  // a radian
   constexpr int heights = 12;
   const GaussRule& rule = gauss_rule(heights);
@@ -36,8 +35,7 @@ Eigen::Vector2d steady_force(const cutting::Milling& milling, const Contact& con
     const double angle = in.turned_rad - lag * height;
     const double sine = std::sin(angle);
     const double cosine = std::cos(angle);
-    const double chip_m =
-        contact.step_m + feed_m * (contact.delay_rad + contact.delay_rad_per_m * height) * sine;
+    const double chip_m = contact.step_m + feed_m * (contact.delay_rad + contact.delay_rad_per_m * height) * sine;
     const double tangential = k.tangential_n_per_m2 * chip_m + k.tangential_edge_n_per_m;
     const double radial = k.radial_n_per_m2 * chip_m + k.radial_edge_n_per_m;
     force -= Eigen::Vector2d(tangential * cosine + radial * sine, radial * cosine - tangential * sine) *
@@ -71,8 +69,8 @@ std::vector<Eigen::Vector2d> steady_forces(const CollocationModel& model, const 
 
 /// Tip in y as the first tooth's tip stands at an angle, from the modes at the start of the piece before.
 double y_at(const CollocationModel& model, const CollocationCase& at, const NodeForces& orbit, double angle_rad) {
-  const double wanted = at.mesh.pieces.front().from_rad + wrap(angle_rad - at.mesh.pieces.front().from_rad,
-                                                               at.mesh.period_rad);
+  const double wanted =
+      at.mesh.pieces.front().from_rad + wrap(angle_rad - at.mesh.pieces.front().from_rad, at.mesh.period_rad);
   for (std::size_t e = 0; e < at.mesh.pieces.size(); ++e) {
     const CutMesh::Piece& piece = at.mesh.pieces[e];
     if (wanted > piece.from_rad + piece.length_rad - 1e-9) continue;

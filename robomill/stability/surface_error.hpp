@@ -10,8 +10,9 @@ namespace robomill::stability {
 /// What the steady vibration of a stable cut leaves on the wall.
 struct SurfacePoint {
   bool stable = false;  ///< where not, the rest is NaN
-  /// Where the tooth's tip stands as it finishes the wall, against where a stiff tool's would [m]; positive: material is
-  /// left standing. Up-milling finishes at φ = 0, down-milling at φ = π, a slot has both walls and that at φ = 0 is told.
+  /// Where the tooth's tip stands as it finishes the wall, against where a stiff tool's would [m]; positive: material
+  /// is left standing. Up-milling finishes at φ = 0, down-milling at φ = π, a slot has both walls and that at φ = 0 is
+  /// told.
   double surface_location_error_m = 0.0;
   double peak_to_peak_x_m = 0.0, peak_to_peak_y_m = 0.0;  ///< of the tool's tip, at the nodes of the cut
 };

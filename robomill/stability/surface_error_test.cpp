@@ -39,7 +39,8 @@ double y_of_harmonics(const LobesProblem& problem, const OperatingPoint& point, 
         const double phi = rotation + j * pitch;
         if (phi < m.immersion.entry_rad || phi > m.immersion.exit_rad) continue;
         const double chip = m.feed_per_tooth_m * std::sin(phi);
-        sum -= (m.coefficients.radial_n_per_m2 * std::cos(phi) - m.coefficients.tangential_n_per_m2 * std::sin(phi)) * chip;
+        sum -= (m.coefficients.radial_n_per_m2 * std::cos(phi) - m.coefficients.tangential_n_per_m2 * std::sin(phi)) *
+               chip;
       }
       force += sum * point.axial_depth_m * std::polar(1.0, -h * 2.0 * pi * (i + 0.5) / samples) / double(samples);
     }
