@@ -177,7 +177,7 @@ void run(const Job& job, const SimulationOptions& options, Progress& progress, S
   Engine<D> engine(model, job.structure, physics);
   const double h = engine.step_s();
   Resampler resampler(h, options.sample_rate_hz,
-                      static_cast<Eigen::Index>(std::floor(options.seconds * options.sample_rate_hz + 1e-9)));
+                      static_cast<Eigen::Index>(std::floor(options.seconds * options.sample_rate_hz + 1e-9)), D);
   const auto steps = static_cast<std::int64_t>(options.seconds / h);
   const std::int64_t all = steps + static_cast<std::int64_t>(resampler.reach()) + 4;
   const double half_turns = 0.5 * options.seconds * job.spindle_speed_rad_per_s / (2.0 * pi);
