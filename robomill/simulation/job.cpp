@@ -153,9 +153,9 @@ void add_wall(double angle, double feed_per_tooth_m, int rings, const std::vecto
     const WallLine line = wall_line(ring, feed_per_tooth_m);
     if (line.out_m.empty()) continue;
     const Roughness r = roughness(line);
-    wall.least_location_error_m = heights == 0 ? r.mean_m : std::min(wall.least_location_error_m, r.mean_m);
-    wall.greatest_location_error_m = heights == 0 ? r.mean_m : std::max(wall.greatest_location_error_m, r.mean_m);
-    wall.location_error_m += r.mean_m;
+    wall.least_location_error_m = heights == 0 ? -r.mean_m : std::min(wall.least_location_error_m, -r.mean_m);
+    wall.greatest_location_error_m = heights == 0 ? -r.mean_m : std::max(wall.greatest_location_error_m, -r.mean_m);
+    wall.location_error_m -= r.mean_m;
     wall.ra_m = std::max(wall.ra_m, r.ra_m);
     wall.rz_m = std::max(wall.rz_m, r.rz_m);
     ++heights;
