@@ -99,7 +99,7 @@ TEST_F(App, SimulatesACut) {
   const Ended summary = robomill("simulate lobes.toml --at 6500,0.6 --seconds 0.5 -o vibration.csv");
   ASSERT_EQ(summary.exit, 0) << summary.err;
   EXPECT_NE(summary.out.find("6500 rpm, 0.6 mm: chatter at"), std::string::npos) << summary.out;
-  const std::string csv = slurp(folder_ / "vibration.csv");
+  const std::string csv = slurp(folder_.at("vibration.csv"));
   EXPECT_EQ(csv.rfind("time_s,x_m,y_m,ax_m_per_s2,ay_m_per_s2,fx_n,fy_n,fz_n\n0,", 0), 0U);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5121);
   const Ended told = robomill("simulate lobes.toml --at 6500,0.6 --seconds 0.5 -o -");

@@ -96,7 +96,7 @@ void print_summary(const Simulation& s, const stability::OperatingPoint& point) 
     fmt::print(
         "Wall where teeth {}: {:.3g} µm too {} (from {:.3g} to {:.3g} over the height), Ra {:.3g}, Rz {:.3g} µm.\n",
         wall.angle_rad < 1.0 ? "enter" : "leave", std::abs(wall.location_error_m) / units::um,
-        wall.location_error_m > 0.0 ? "deep" : "shallow", wall.least_location_error_m / units::um,
+        wall.location_error_m > 0.0 ? "shallow" : "deep", wall.least_location_error_m / units::um,
         wall.greatest_location_error_m / units::um, wall.ra_m / units::um, wall.rz_m / units::um);
   }
   if (s.diverged) fmt::print("Without loss of contact the motion grew beyond a metre; the columns end there.\n");

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/json.hpp"
 #include "robomill/formats/records.hpp"
 
@@ -26,16 +27,13 @@ simulation::Simulation sample(bool with_z) {
   return s;
 }
 
-std::filesystem::path place(const char* name) {
-  return std::filesystem::temp_directory_path() / name;
-}
-
 // What is written comes back through the readers that every verb uses.
 TEST(SimulationFiles, ComeBackAsRecords) {
+  const test::Folder folder;
   for (const bool with_z : {false, true}) {
     const simulation::Simulation s = sample(with_z);
     for (const char* name : {"simulation_files.csv", "simulation_files.mat"}) {
-      const auto path = place(name);
+      const auto path = folder.at(name);
       write_simulation(path, s);
       const Record record = read_record(path);
       EXPECT_NEAR(record.sample_rate_hz, 10240.0, 1e-3);
@@ -43,25 +41,24 @@ TEST(SimulationFiles, ComeBackAsRecords) {
       EXPECT_LT((record.column("x_m") - s.displacement_m.col(0)).cwiseAbs().maxCoeff(), 1e-13);
       EXPECT_LT((record.column("ay_m_per_s2") - s.acceleration_m_per_s2.col(1)).cwiseAbs().maxCoeff(), 1e-5);
       EXPECT_LT((record.column("fz_n") - s.force_n.col(2)).cwiseAbs().maxCoeff(), 1e-9);
-      std::filesystem::remove(path);
     }
   }
-  const auto path = place("simulation_files.wav");
+  const auto path = folder.at("simulation_files.wav");
   write_simulation(path, sample(false));
   const Record record = read_record(path);
   EXPECT_EQ(record.sample_rate_hz, 10240.0);
   ASSERT_EQ(record.columns.size(), 2U);
   EXPECT_LT((record.columns[1] - sample(false).acceleration_m_per_s2.col(1)).cwiseAbs().maxCoeff(), 1e-3);
-  std::filesystem::remove(path);
 }
 
 TEST(SimulationFiles, RefusesWhatItCannotWrite) {
+  const test::Folder folder;
   simulation::Simulation s = sample(false);
-  EXPECT_THROW(write_simulation(place("simulation_files.uff"), s), InvalidInput);
+  EXPECT_THROW(write_simulation(folder.at("simulation_files.uff"), s), InvalidInput);
   EXPECT_THROW(write_simulation("/nowhere/at/all.csv", s), InvalidInput);
   s.sample_rate_hz = 1000.5;
-  EXPECT_THROW(write_simulation(place("simulation_files.wav"), s), InvalidInput);
-  EXPECT_FALSE(std::filesystem::exists(place("simulation_files.wav")));
+  EXPECT_THROW(write_simulation(folder.at("simulation_files.wav"), s), InvalidInput);
+  EXPECT_FALSE(std::filesystem::exists(folder.at("simulation_files.wav")));
 }
 
 TEST(SimulationFiles, JsonSaysNullForNone) {

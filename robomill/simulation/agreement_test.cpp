@@ -2,21 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/simulation/test_cuts.hpp"
 
 namespace robomill::simulation {
 namespace {
 
 using std::numbers::pi;
-
-/// A tenth of the points in the default run.
-int points(int all) {
-  return std::getenv("ROBOMILL_FULL") != nullptr ? all : all / 10;
-}
 
 struct Drawn {
   stability::LobesProblem problem;
@@ -89,7 +84,7 @@ double floquet_radius(const Drawn& drawn, double period_s) {
 // Both judge the same equation; 200 points reach from dead stable to multipliers of thousands.
 TEST(Agreement, OfSmallVibrationAndFloquetTheoryOverRandomCuts) {
   int compared = 0, unstable = 0;
-  for (int seed = 0; seed < points(200); ++seed) {
+  for (int seed = 0; seed < test::seeds(200); ++seed) {
     const Drawn drawn = draw(static_cast<std::uint64_t>(seed));
     const MillingCut cut = testing::cut_of(drawn.problem, drawn.speed_rpm, drawn.depth_m);
     const SmallVibration small = small_vibration(cut);
@@ -104,7 +99,7 @@ TEST(Agreement, OfSmallVibrationAndFloquetTheoryOverRandomCuts) {
     unstable += expected > 1.0 ? 1 : 0;
     EXPECT_EQ(small.spectral_radius < 1.0, expected < 1.0) << seed;
   }
-  EXPECT_GE(compared, points(200) * 9 / 10);
+  EXPECT_GE(compared, test::seeds(200) * 9 / 10);
   EXPECT_GE(unstable, compared / 4);
   EXPECT_LE(unstable, compared * 3 / 4);
 }
@@ -114,7 +109,7 @@ TEST(Agreement, OfSmallVibrationAndFloquetTheoryOverRandomCuts) {
 // happens in 1 of 100 of these cuts.
 TEST(Agreement, OfTheFullCutsVerdictAndFloquetTheoryOverRandomCuts) {
   int compared = 0, differ = 0;
-  for (int seed = 0; seed < points(100); ++seed) {
+  for (int seed = 0; seed < test::seeds(100); ++seed) {
     const Drawn drawn = draw(static_cast<std::uint64_t>(seed));
     const MillingCut cut = testing::cut_of(drawn.problem, drawn.speed_rpm, drawn.depth_m);
     const Simulation full = simulate(cut, {.seconds = 0.5, .sample_rate_hz = 4096.0});

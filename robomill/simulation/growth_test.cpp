@@ -6,6 +6,7 @@
 
 #include "robomill/simulation/test_cuts.hpp"
 #include "robomill/simulation/verdict.hpp"
+#include "robomill/stability/surface_error.hpp"
 
 namespace robomill::simulation {
 namespace {
@@ -29,7 +30,7 @@ TEST(Growth, IsThatOfConvergedFloquetTheory) {
         Case{"robot", stability::testing::robot(), 15000, 1.1e-3, 1.11946237}}) {
     const SmallVibration s = small_vibration(testing::cut_of(c.problem, c.speed_rpm, c.depth_m));
     ASSERT_EQ(s.status, SmallVibration::Status::found) << c.name;
-    EXPECT_NEAR(s.spectral_radius, c.radius, 1e-4 * c.radius) << c.name;
+    EXPECT_NEAR(s.spectral_radius, c.radius, 1e-5 * c.radius) << c.name;
     EXPECT_LT(s.error_estimate, 1e-3 * c.radius) << c.name;
   }
 }
@@ -94,6 +95,23 @@ TEST(Growth, ACutterWhoseOtherToothMissesIsOneOfOneTooth) {
   ASSERT_EQ(a.status, SmallVibration::Status::found);
   EXPECT_DOUBLE_EQ(a.period_s, b.period_s);
   EXPECT_NEAR(a.spectral_radius, b.spectral_radius, 1e-3);
+}
+
+// The orbit of the same collocation as the lobes; scallops come on top, a third of f²/8R' on average.
+TEST(Growth, TheWallIsWhereThePeriodicOrbitLeavesIt) {
+  stability::LobesProblem up = stability::testing::robot();
+  stability::LobesProblem down = stability::testing::benchmark(0.1);
+  for (stability::LobesProblem* problem : {&up, &down}) {
+    problem->milling.feed_per_tooth_m = 2e-5;
+    const double speed_rpm = problem == &up ? 7000.0 : 5000.0, depth_m = problem == &up ? 0.1e-3 : 0.4e-3;
+    const stability::SurfacePoint orbit = stability::surface_point(*problem, {speed_rpm * testing::rpm, depth_m});
+    ASSERT_TRUE(orbit.stable);
+    const Simulation s = simulate(testing::cut_of(*problem, speed_rpm, depth_m), {.seconds = 4.0, .tolerance = 5e-4});
+    ASSERT_EQ(s.walls.size(), 1U);
+    const double scallop = 4e-10 / (4.0 * problem->milling.tool.diameter_m);
+    EXPECT_NEAR(s.walls[0].location_error_m, orbit.surface_location_error_m + scallop / 3.0,
+                0.01 * orbit.peak_to_peak_y_m);
+  }
 }
 
 // Source: snapshots that are a sum of known modes.

@@ -153,9 +153,9 @@ void add_wall(double angle, double feed_per_tooth_m, int rings, const std::vecto
     const WallLine line = wall_line(ring, feed_per_tooth_m);
     if (line.out_m.empty()) continue;
     const Roughness r = roughness(line);
-    wall.least_location_error_m = heights == 0 ? r.mean_m : std::min(wall.least_location_error_m, r.mean_m);
-    wall.greatest_location_error_m = heights == 0 ? r.mean_m : std::max(wall.greatest_location_error_m, r.mean_m);
-    wall.location_error_m += r.mean_m;
+    wall.least_location_error_m = heights == 0 ? -r.mean_m : std::min(wall.least_location_error_m, -r.mean_m);
+    wall.greatest_location_error_m = heights == 0 ? -r.mean_m : std::max(wall.greatest_location_error_m, -r.mean_m);
+    wall.location_error_m -= r.mean_m;
     wall.ra_m = std::max(wall.ra_m, r.ra_m);
     wall.rz_m = std::max(wall.rz_m, r.rz_m);
     ++heights;
@@ -177,7 +177,7 @@ void run(const Job& job, const SimulationOptions& options, Progress& progress, S
   Engine<D> engine(model, job.structure, physics);
   const double h = engine.step_s();
   Resampler resampler(h, options.sample_rate_hz,
-                      static_cast<Eigen::Index>(std::floor(options.seconds * options.sample_rate_hz + 1e-9)));
+                      static_cast<Eigen::Index>(std::floor(options.seconds * options.sample_rate_hz + 1e-9)), D);
   const auto steps = static_cast<std::int64_t>(options.seconds / h);
   const std::int64_t all = steps + static_cast<std::int64_t>(resampler.reach()) + 4;
   const double half_turns = 0.5 * options.seconds * job.spindle_speed_rad_per_s / (2.0 * pi);

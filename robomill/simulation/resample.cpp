@@ -10,7 +10,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int fractions = 16;          // of a fine step, in the kernels' table
+constexpr double places_per_period = 512.0;  // of the output, in the kernels' table
 constexpr double half_periods = 33.5;  // of the output, on either side: the window's main lobe is then 0.12 of the rate
 constexpr std::array nuttall = {0.355768, 0.487396, 0.144232, 0.012604};
 
@@ -47,12 +47,13 @@ Jet window(double t, double half_s) {
 
 }  // namespace
 
-Resampler::Resampler(double step_s, double rate_hz, Eigen::Index rows)
+Resampler::Resampler(double step_s, double rate_hz, Eigen::Index rows, int directions)
     : displacement_m(Eigen::Matrix<double, Eigen::Dynamic, 3>::Zero(rows, 3)),
       acceleration_m_per_s2(displacement_m),
       force_n(displacement_m),
       step_s_(step_s),
-      rate_hz_(rate_hz) {
+      rate_hz_(rate_hz),
+      directions_(static_cast<std::size_t>(directions)) {
   const double half_s = half_periods / rate_hz;
   half_ = static_cast<int>(std::ceil(half_s / step_s)) + 1;
   taps_ = 2 * static_cast<std::size_t>(half_);
@@ -61,11 +62,12 @@ Resampler::Resampler(double step_s, double rate_hz, Eigen::Index rows)
   // Zeros for the time before the first sample.
   filled_ = taps_;
   first_ = -static_cast<long long>(taps_);
-  value_.rows.assign((fractions + 3) * taps_, 0.0);
+  fractions_ = static_cast<std::size_t>(std::ceil(std::max(1.0, places_per_period * step_s * rate_hz)));
+  value_.rows.assign((fractions_ + 1) * taps_, 0.0);
   second_.rows = value_.rows;
   // Tap k of fraction f weighs the sample at floor + 1 - half + k for an output at floor + f.
-  for (std::size_t row = 0; row < fractions + 3; ++row) {
-    const double fraction = (static_cast<double>(row) - 1.0) / fractions;
+  for (std::size_t row = 0; row <= fractions_; ++row) {
+    const double fraction = static_cast<double>(row) / static_cast<double>(fractions_);
     for (std::size_t k = 0; k < taps_; ++k) {
       const double t = (fraction - (static_cast<double>(k) + 1.0 - half_)) * step_s;
       if (std::abs(t) >= half_s) continue;
@@ -81,18 +83,12 @@ Resampler::Resampler(double step_s, double rate_hz, Eigen::Index rows)
 }
 
 void Resampler::weights(const Kernel& kernel, double fraction, std::vector<double>& out) const {
-  const double place = fraction * fractions;
-  const double whole = std::min(std::floor(place), fractions - 1.0);
-  const double r = place - whole;
-  const double a = -r * (r - 1.0) * (r - 2.0) / 6.0;
-  const double b = (r + 1.0) * (r - 1.0) * (r - 2.0) / 2.0;
-  const double c = -(r + 1.0) * r * (r - 2.0) / 2.0;
-  const double d = (r + 1.0) * r * (r - 1.0) / 6.0;
-  const double* const p = kernel.rows.data() + static_cast<std::size_t>(whole) * taps_;
+  const double place = fraction * static_cast<double>(fractions_);
+  const auto row = std::min(static_cast<std::size_t>(place), fractions_ - 1);
+  const double r = place - static_cast<double>(row);
+  const double* const p = kernel.rows.data() + row * taps_;
   const double* const q = p + taps_;
-  const double* const u = q + taps_;
-  const double* const v = u + taps_;
-  for (std::size_t k = 0; k < taps_; ++k) out[k] = a * p[k] + b * q[k] + c * u[k] + d * v[k];
+  for (std::size_t k = 0; k < taps_; ++k) out[k] = p[k] + r * (q[k] - p[k]);
 }
 
 void Resampler::emit() {
@@ -119,7 +115,7 @@ void Resampler::emit() {
     const Eigen::Map<const Eigen::VectorXd> second(second_weights_.data(), static_cast<Eigen::Index>(taps_));
     // Against the sample in the middle: a displacement at rest then has no acceleration, to the last bit.
     const double total = second.sum();
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < directions_; ++c) {
       const Eigen::Index column = static_cast<Eigen::Index>(c);
       const double* const q = channel(c) + begin;
       displacement_m(next_, column) = sum(value_weights_, q);

@@ -8,7 +8,7 @@ namespace robomill::simulation::detail {
 /// output.
 inline constexpr double steps_per_natural_period = 30.0;
 inline constexpr double steps_per_tooth = 60.0;
-inline constexpr double steps_per_sample = 4.0;
+inline constexpr double steps_per_sample = 8.0;
 
 /// How often the cut repeats.
 struct Period {

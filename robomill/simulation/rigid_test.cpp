@@ -199,7 +199,7 @@ TEST(RigidCut, LeavesScallopsOfTheClosedForm) {
     EXPECT_DOUBLE_EQ(s.walls[0].angle_rad, up ? 0.0 : pi);
     EXPECT_NEAR(s.walls[0].rz_m, scallop, 2e-2 * scallop);
     EXPECT_NEAR(s.walls[0].ra_m, 4.0 / (9.0 * std::sqrt(3.0)) * scallop, 2e-2 * scallop);
-    EXPECT_NEAR(s.walls[0].location_error_m, -scallop / 3.0, 2e-2 * scallop);
+    EXPECT_NEAR(s.walls[0].location_error_m, scallop / 3.0, 2e-2 * scallop);
     EXPECT_EQ(s.verdict, Verdict::stable);
   }
 }
@@ -215,7 +215,7 @@ TEST(RigidCut, RunoutCoarsensTheWall) {
   ASSERT_EQ(s.walls.size(), 1U);
   const double scallop = 4e-8 / (8.0 * (0.005 + 2e-4 / pi));
   EXPECT_NEAR(s.walls[0].rz_m, scallop, 2e-2 * scallop);
-  EXPECT_NEAR(s.walls[0].location_error_m, 2e-5 - scallop / 3.0, 2e-2 * scallop);
+  EXPECT_NEAR(s.walls[0].location_error_m, scallop / 3.0 - 2e-5, 2e-2 * scallop);
   // Up to where the feed has made up for what the other tooth lacks.
   EXPECT_NEAR(s.missed_share, std::asin(0.4) / revolution, 0.005);
 }

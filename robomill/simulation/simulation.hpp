@@ -58,8 +58,9 @@ enum class Verdict { stable, chatter, undecided };
 /// time.
 struct Wall {
   double angle_rad = 0.0;  ///< 0 or π
-  /// Where the wall lies beyond the commanded one, seen from the cutter's axis; > 0: too much was removed. Mean along
-  /// the feed; then mean, least and greatest over the heights.
+  /// By how much the wall falls short of the commanded one, seen from the cutter's axis; > 0: material is left
+  /// standing, < 0: too much was removed. Mean along the feed, scallops included; then mean, least and greatest over
+  /// the heights.
   double location_error_m = 0.0, least_location_error_m = 0.0, greatest_location_error_m = 0.0;
   double ra_m = 0.0;  ///< mean distance from the mean line, along the feed; of the roughest height
   double rz_m = 0.0;  ///< highest to lowest, the same

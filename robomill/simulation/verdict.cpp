@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 
 #include "robomill/signal/spectrum.hpp"
@@ -53,6 +54,23 @@ Judgement judge(const Eigen::MatrixXd& samples, const SmallVibration& small) {
   return {by_small(), growth};
 }
 
+namespace {
+
+/// The greatest length up to n, >= 1, without prime factors above 5: quick to transform.
+Eigen::Index quick_length(Eigen::Index n) {
+  Eigen::Index best = 1;
+  for (Eigen::Index two = 1; two <= n; two *= 2) {
+    for (Eigen::Index three = two; three <= n; three *= 3) {
+      Eigen::Index five = three;
+      while (five <= n / 5) five *= 5;
+      best = std::max(best, five);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
 Tone strongest_tone(const Eigen::MatrixXd& motion, Eigen::Index period, double sample_rate_hz) {
   Tone tone;
   const Eigen::Index turns = period > 0 ? motion.rows() / period : 0;
@@ -64,7 +82,8 @@ Tone strongest_tone(const Eigen::MatrixXd& motion, Eigen::Index period, double s
     Eigen::Map<Eigen::MatrixXd> folded(rest.data(), period, turns);
     const Eigen::VectorXd repeated = folded.rowwise().mean();
     folded.colwise() -= repeated;
-    const auto peaks = signal::find_peaks(signal::amplitude_spectrum(rest, sample_rate_hz), {.count = 1});
+    const auto peaks =
+        signal::find_peaks(signal::amplitude_spectrum(rest.tail(quick_length(length)), sample_rate_hz), {.count = 1});
     if (!peaks.empty() && peaks.front().amplitude > tone.amplitude_m) {
       tone = {peaks.front().frequency_hz, peaks.front().amplitude};
     }
