@@ -205,6 +205,17 @@ TEST_F(App, GoesFromHitsToModes) {
   EXPECT_LT(json["fit"]["relative_error"].get<double>(), 0.1);
 }
 
+TEST_F(App, LobesComparesMethodsAndTakesFrfs) {
+  write_lobes("tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n", "[12, 30]");
+  const Ended table = robomill("lobes lobes.toml --compare");
+  EXPECT_EQ(table.exit, 0) << table.err;
+  for (const char* method : {"collocation", "semi-discretization", "zeroth-order", "multi-frequency"}) {
+    EXPECT_NE(table.out.find(method), std::string::npos) << table.out;
+  }
+  const Ended json = robomill("lobes lobes.toml --compare -o -");
+  EXPECT_EQ(nlohmann::json::parse(json.out)["methods"][0]["worst_error"], 0.0);
+}
+
 TEST_F(App, CtrlCStopsAndLeavesNoFile) {
   write_lobes("tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n", "[4000, 4000]\noutput = \"map\"");
   const Ended run =

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "robomill/formats/test_files.hpp"
 #include "robomill/formats/units.hpp"
@@ -84,6 +86,54 @@ TEST(LobesToml, AnglesStandInForTheDirection) {
   const LobesFile slot = read_lobes(
       folder.file("lobes.toml", with("direction = \"down\"\nradial_depth_mm = 1.2", "direction = \"slot\"")));
   EXPECT_NEAR(slot.radial_depth_m, 12e-3, 1e-15);
+}
+
+TEST(LobesToml, ReadsWhatElseActsInTheCut) {
+  const testing::Folder folder;
+  const std::string text = with("helix_deg = 30", "helix_deg = [30, 35]\nrunout_um = 5\nrunout_angle_deg = 90") + R"(
+[process_damping]
+indentation_n_per_mm3 = 40000
+wear_land_mm = 0.08
+friction = 0.25
+[speed_variation]
+amplitude_ratio = 0.1
+frequency_ratio = 0.25
+[workpiece_dynamics]
+y = [{ frequency_hz = 300, damping_ratio = 0.02, modal_mass_kg = 2 }]
+[uncertainty]
+tangential_std_n_per_mm2 = 30
+frequency_std_ratio = 0.01
+grid = [20, 10]
+[surface_error]
+)";
+  const LobesFile file = read_lobes(folder.file("lobes.toml", text));
+  EXPECT_NO_THROW(file.validate());
+  const cutting::Milling& milling = file.problem.milling;
+  EXPECT_EQ(milling.tool.tooth_helix_rad, (std::vector<double>{30 * units::deg, 35 * units::deg}));
+  EXPECT_DOUBLE_EQ(milling.tool.runout_m, 5e-6);
+  EXPECT_DOUBLE_EQ(milling.tool.runout_angle_rad, std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(milling.process_damping.indentation_n_per_m3, 4e13);
+  EXPECT_DOUBLE_EQ(milling.process_damping.wear_land_m, 8e-5);
+  EXPECT_DOUBLE_EQ(milling.process_damping.friction, 0.25);
+  EXPECT_DOUBLE_EQ(milling.speed_variation.amplitude_ratio, 0.1);
+  EXPECT_DOUBLE_EQ(milling.speed_variation.frequency_ratio, 0.25);
+  EXPECT_EQ(file.problem.workpiece_dynamics.modes.size(), 1U);
+  EXPECT_EQ(file.uncertainty.samples, 200);
+  EXPECT_DOUBLE_EQ(file.uncertainty.tangential_std_n_per_m2, 3e7);
+  EXPECT_EQ(file.uncertainty.grid, (std::array<int, 2>{20, 10}));
+  EXPECT_EQ(file.surface_grid, (std::array<int, 2>{60, 60}));
+  const auto refused = [&](const std::string& row, const std::string& words) {
+    const std::string said =
+        testing::refusal([&] { static_cast<void>(read_lobes(folder.file("bad.toml", good + row))); });
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  refused("[process_damping]\nwear_land_mm = 5\n", "bad.toml:22: process_damping.wear_land_mm = 5 mm; is longer");
+  refused("[speed_variation]\namplitude_ratio = 10\n", "speed_variation.amplitude_ratio = 10; must lie between");
+  refused("[speed_variation]\namplitude_ratio = 0.1\n", "frequency_ratio");
+  refused("[uncertainty]\nsamples = 3\n", "uncertainty.samples = 3; must be at least 20");
+  refused("[uncertainty]\ndamping_std_ratio = 10\n", "It is a share of the value, not a percentage");
+  refused("[surface_error]\ngrid = [1, 2]\n", "must have at least 2 points");
+  refused("[workpiece_dynamics]\nmass_kg = 2\n", "workpiece_dynamics.mass_kg");
 }
 
 TEST(LobesToml, RefusesInTheFilesWords) {

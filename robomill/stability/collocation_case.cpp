@@ -101,7 +101,7 @@ double CollocationModel::told_rad() const {
 
 void prepare_case(const CollocationModel& model, double spindle_speed_rad_per_s, double axial_depth_m,
                   const MeshLevel& level, CollocationCase& out) {
-  constexpr double least_depth_m = 1e-12;  // no depth at all: the limit of a thin slice
+  constexpr double least_depth_m = 1e-6;  // below it the mesh is that of a thin slice, whose ends do not fall together
   out.spindle_speed_rad_per_s = spindle_speed_rad_per_s;
   out.axial_depth_m = axial_depth_m;
   out.level = level;
