@@ -238,10 +238,16 @@ void compare(PlanResult& result, Progress& progress) {
 void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
   const auto known = [](const modal::Mode& mode) { return std::isfinite(mode.frequency_std_hz); };
   stability::Uncertainty& uncertainty = result.cut.uncertainty;
-  if (uncertainty.samples == 0 && std::ranges::any_of(result.model.modes, known)) uncertainty.samples = 100;
+  if (uncertainty.samples == 0 && std::ranges::any_of(result.model.modes, known)) {
+    uncertainty.samples = 100;
+    uncertainty.grid = {40, 30};
+  }
   if (uncertainty.samples == 0) return;
   uncertainty.seed = seed;
-  result.uncertain = stability::uncertain_limits(result.cut.problem, result.cut.options, uncertainty, progress);
+  // A band needs no more than three digits of each limit.
+  stability::LobesOptions options = result.cut.options;
+  options.tolerance = std::max(options.tolerance, 1e-4);
+  result.uncertain = stability::uncertain_limits(result.cut.problem, options, uncertainty, progress);
 }
 
 }  // namespace

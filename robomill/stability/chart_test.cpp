@@ -62,7 +62,8 @@ TEST(Chart, CurvesRunFromCellToCell) {
   }
   for (const Limit& limit : result.limit) {
     if (limit.status != Limit::Status::found) continue;
-    const double below = evaluate_point(robot(), {}, {limit.spindle_speed_rad_per_s, 0.999 * limit.axial_depth_m}).spectral_radius;
+    const double below =
+        evaluate_point(robot(), {}, {limit.spindle_speed_rad_per_s, 0.999 * limit.axial_depth_m}).spectral_radius;
     EXPECT_LT(below, 1.0);
   }
 }
