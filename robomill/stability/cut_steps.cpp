@@ -51,7 +51,7 @@ CutSteps::CutSteps(const cutting::Milling& milling, int intervals) : milling_(mi
       if (same == delays_.end()) delays_.push_back(delay);
     }
   }
-  if (milling_.tool.helix_rad == 0.0) fill(1.0, per_depth_);
+  if (milling_.tool.lag_rad_per_m(0) == 0.0) fill(1.0, per_depth_);
 }
 
 void CutSteps::fill(double axial_depth_m, std::vector<Eigen::Matrix2d>& stiffness) const {

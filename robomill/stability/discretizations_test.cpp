@@ -266,6 +266,16 @@ TEST(Discretizations, LanesDoNotMeet) {
   }
 }
 
+// One helix angle for all teeth is one helix, however it is given.
+TEST(Discretizations, TakeEqualToothHelixAsHelix) {
+  LobesProblem helix = testing::robot(), each = testing::robot();
+  helix.milling.tool.helix_rad = 0.5;
+  each.milling.tool.tooth_helix_rad = {0.5, 0.5, 0.5};
+  for (const Make make : {methods[0], methods[1], Make{semi_discretization}}) {
+    EXPECT_EQ(radius(make, helix, 6500, 1e-3, 40), radius(make, each, 6500, 1e-3, 40));
+  }
+}
+
 TEST(Discretizations, StayFiniteWhateverIsAsked) {
   for (const Make make : methods) {
     for (const double speed_rpm : {0.5, 300.0, 1e6}) {
