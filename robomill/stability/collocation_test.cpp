@@ -18,6 +18,8 @@ namespace {
 
 using std::numbers::pi;
 using testing::benchmark;
+using testing::Known;
+using testing::known_points;
 using testing::robot;
 using testing::rpm;
 
@@ -36,30 +38,6 @@ double stepped(const LobesProblem& problem, double speed_rpm, double depth_m, in
   options.method = Method::semi_discretization;
   options.intervals = intervals;
   return evaluate_point(problem, options, {speed_rpm * rpm, depth_m}).spectral_radius;
-}
-
-struct Known {
-  LobesProblem problem;
-  double speed_rpm, depth_m, converged;
-};
-
-// Source: converged spectral radii of one tooth period, eight digits.
-std::vector<Known> known_points() {
-  return {{benchmark(0.05), 5000, 0.2e-3, 0.70098118},
-          {benchmark(0.05), 5000, 1e-3, 0.84047032},
-          {benchmark(0.1), 5000, 0.2e-3, 0.74477499},
-          {benchmark(0.1), 5000, 1e-3, 1.03111539},
-          {benchmark(0.5), 5000, 0.2e-3, 1.18540555},
-          {benchmark(0.5), 5000, 1e-3, 3.62871024},
-          {benchmark(1.0), 5000, 0.2e-3, 2.13659148},
-          {benchmark(1.0), 5000, 1e-3, 10.90390056},
-          {benchmark(0.05, 1), 5000, 0.2e-3, 0.67803588},
-          {benchmark(0.05, 1), 5000, 1e-3, 0.74950284},
-          {benchmark(1.0, 1), 5000, 0.2e-3, 0.81974278},
-          {benchmark(1.0, 1), 5000, 1e-3, 1.40647353},
-          {robot(), 6500, 0.6e-3, 1.10584684},
-          {robot(), 8000, 1.2e-3, 1.07595981},
-          {robot(), 15000, 1.1e-3, 1.11946237}};
 }
 
 TEST(Collocation, ReachesTheKnownRadii) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
 
 namespace robomill::stability::detail {
 namespace {
@@ -50,7 +51,7 @@ CutSteps::CutSteps(const cutting::Milling& milling, int intervals) : milling_(mi
       if (same == delays_.end()) delays_.push_back(delay);
     }
   }
-  if (milling_.tool.helix_rad == 0.0) fill(1.0, per_depth_);
+  if (milling_.tool.lag_rad_per_m(0) == 0.0) fill(1.0, per_depth_);
 }
 
 void CutSteps::fill(double axial_depth_m, std::vector<Eigen::Matrix2d>& stiffness) const {
@@ -86,6 +87,20 @@ void CutSteps::at_depth(double axial_depth_m, DepthPlan& out) const {
     }
     out.largest_n_per_m = std::max(out.largest_n_per_m, sum.norm());
   }
+}
+
+void KnownDepths::expect(const CutSteps& cut, std::span<const double> depths_m) {
+  const std::size_t matrices = depths_m.size() * static_cast<std::size_t>(cut.steps()) * cut.delays().size();
+  if (cut.grows_with_depth() || matrices > 4'000'000) return;
+  plans_.resize(depths_m.size());
+  parallel_for(depths_m.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) cut.at_depth(depths_m[j], plans_[j]);
+  });
+}
+
+const DepthPlan* KnownDepths::find(double axial_depth_m) const {
+  const auto plan = std::ranges::lower_bound(plans_, axial_depth_m, {}, &DepthPlan::axial_depth_m);
+  return plan != plans_.end() && plan->axial_depth_m == axial_depth_m ? &*plan : nullptr;
 }
 
 }  // namespace robomill::stability::detail

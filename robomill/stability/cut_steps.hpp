@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "robomill/cutting/milling.hpp"
@@ -32,6 +33,7 @@ class CutSteps {
   [[nodiscard]] double step_rad() const { return step_rad_; }
   [[nodiscard]] const std::vector<Delay>& delays() const { return delays_; }
   [[nodiscard]] Period period() const { return period_; }
+  [[nodiscard]] bool grows_with_depth() const { return !per_depth_.empty(); }
   /// Fills out, whose storage is used again.
   void at_depth(double axial_depth_m, DepthPlan& out) const;
 
@@ -45,6 +47,18 @@ class CutSteps {
   std::vector<Delay> delays_;
   std::vector<int> delay_of_tooth_;
   std::vector<Eigen::Matrix2d> per_depth_;  ///< without helix the stiffness grows with the depth [N/m^2]; else empty
+};
+
+/// With a helix the stiffness takes time to find; here it is kept for depths that will be asked for often.
+class KnownDepths {
+ public:
+  /// Does nothing without helix, or where it would cost much memory.
+  void expect(const CutSteps& cut, std::span<const double> depths_m);
+  /// nullptr where it is not kept.
+  [[nodiscard]] const DepthPlan* find(double axial_depth_m) const;
+
+ private:
+  std::vector<DepthPlan> plans_;
 };
 
 }  // namespace robomill::stability::detail

@@ -6,14 +6,8 @@
 namespace robomill::stability::detail {
 namespace {
 
-using Complex = std::complex<double>;
-
 bool finer(const Resolution& a, const Resolution& b) {
   return a.halvings != b.halvings ? a.halvings > b.halvings : a.nodes > b.nodes;
-}
-
-bool finite(Complex value) {
-  return std::isfinite(value.real()) && std::isfinite(value.imag());
 }
 
 }  // namespace
@@ -52,60 +46,10 @@ void Evaluator::evaluate(std::span<const Point> points, std::span<Dominant> out)
   unsettled_ += std::ranges::count_if(out, [](const Dominant& d) { return d.by == Dominant::By::unsettled; });
 }
 
-void Evaluator::apply_vectors(std::span<const Eigen::VectorXcd> vectors, bool imaginary) {
-  for (std::size_t i = 0; i < in_.size(); ++i) {
-    for (std::size_t lane = 0; lane < vectors.size(); ++lane) {
-      const Complex entry = vectors[lane](static_cast<Eigen::Index>(i));
-      in_[i].v[lane] = imaginary ? entry.imag() : entry.real();
-    }
-  }
-  monodromy_.apply(in_.data(), out_.data());
-}
-
 void Evaluator::describe(std::span<const Dominant> dominant, std::span<Motion> out) {
-  std::array<Eigen::VectorXcd, lane_count> vectors;
-  std::size_t known = 0;
-  for (std::size_t lane = 0; lane < dominant.size(); ++lane) {
-    vectors[lane] = arnoldi_.vector(lane);
-    if (finite(dominant[lane].multiplier) && vectors[lane].allFinite()) {
-      ++known;
-    } else {
-      vectors[lane].setZero();
-    }
-  }
-  std::ranges::fill(out, Motion{});
-  if (known == 0) return;
-  in_.assign(monodromy_.size(), Lanes{});
-  out_.resize(monodromy_.size());
-  forces_.resize(monodromy_.cut_steps().size());
-  const std::span<const Eigen::VectorXcd> used = std::span(vectors).first(dominant.size());
-  for (const bool imaginary : {false, true}) {
-    apply_vectors(used, imaginary);
-    for (std::size_t c = 0; c < forces_.size(); ++c) {
-      for (std::size_t lane = 0; lane < lane_count; ++lane) {
-        const Lanes* force = monodromy_.force(c);
-        const Eigen::Vector2cd part(force[0].v[lane], force[1].v[lane]);
-        forces_[c][lane] = imaginary ? (forces_[c][lane] + Complex(0.0, 1.0) * part).eval() : part;
-      }
-    }
-  }
-  for (std::size_t lane = 0; lane < dominant.size(); ++lane) {
-    if (!vectors[lane].isZero(0.0)) out[lane] = motion(lane, vectors[lane], dominant[lane].multiplier);
-  }
-}
-
-Motion Evaluator::motion(std::size_t lane, const Eigen::VectorXcd& vector, Complex multiplier) const {
-  const double step_s = points_[lane].speed->step_s;
-  const auto force = [&](Complex s) -> Eigen::Vector2cd {
-    const Complex x = s * step_s;
-    const Complex weight = std::abs(x) > 1e-6 ? (1.0 - std::exp(-x)) / x : 1.0 - 0.5 * x;
-    Eigen::Vector2cd sum = Eigen::Vector2cd::Zero();
-    for (std::size_t c = 0; c < forces_.size(); ++c) {
-      sum += forces_[c][lane] * std::exp(-x * static_cast<double>(monodromy_.cut_steps()[c]));
-    }
-    return sum * (weight / static_cast<double>(model_.cut.steps()));
-  };
-  return find_motion(model_.tip, multiplier, step_s * model_.cut.steps(), vector, force);
+  std::array<double, lane_count> step_s = {};
+  for (std::size_t lane = 0; lane < dominant.size(); ++lane) step_s[lane] = points_[lane].speed->step_s;
+  motion_.find(model_.tip, model_.cut.steps(), step_s, monodromy_, arnoldi_, dominant, out);
 }
 
 }  // namespace robomill::stability::detail

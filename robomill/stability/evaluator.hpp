@@ -9,6 +9,7 @@
 #include "robomill/stability/monodromy.hpp"
 #include "robomill/stability/motion.hpp"
 #include "robomill/stability/speed_plan.hpp"
+#include "robomill/stability/step_motion.hpp"
 #include "robomill/stability/tip_dynamics.hpp"
 
 namespace robomill::stability::detail {
@@ -44,17 +45,13 @@ class Evaluator {
   [[nodiscard]] long long unsettled() const { return unsettled_; }
 
  private:
-  void apply_vectors(std::span<const Eigen::VectorXcd> vectors, bool imaginary);
-  Motion motion(std::size_t lane, const Eigen::VectorXcd& vector, std::complex<double> multiplier) const;
-
   const Model& model_;
   Monodromy monodromy_;
   Arnoldi arnoldi_;
   std::array<SpeedPlan, lane_count> speeds_;
   std::array<DepthPlan, lane_count> depths_;
   std::array<LanePoint, lane_count> points_;
-  std::vector<Lanes> in_, out_;
-  std::vector<std::array<Eigen::Vector2cd, lane_count>> forces_;  ///< [cut]
+  StepMotion motion_;
   long long evaluations_ = 0, unsettled_ = 0;
 };
 

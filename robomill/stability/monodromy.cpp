@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <complex>
 
+#include "robomill/stability/lane_math.hpp"
+
 namespace robomill::stability::detail {
 namespace {
 
@@ -14,13 +16,6 @@ std::complex<double> power(std::complex<double> base, int exponent) {
     base *= base;
   }
   return result;
-}
-
-void set(Lanes* to, std::size_t lane, const Eigen::Matrix2d& matrix) {
-  to[0].v[lane] = matrix(0, 0);
-  to[1].v[lane] = matrix(0, 1);
-  to[2].v[lane] = matrix(1, 0);
-  to[3].v[lane] = matrix(1, 1);
 }
 
 /// Row by row.

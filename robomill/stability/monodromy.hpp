@@ -24,7 +24,7 @@ struct LanePoint {
 /// a step is its mean displacement, (q_i + q_{i+1}) / 2 of the modes and S times the mean force; for a delay of whole
 /// steps this is the published weighting, one half of either end. Only steps that some tooth looks back at are
 /// remembered, so that the state is the 2n numbers of the modes and two for each of those steps.
-class Monodromy final : public PeriodMap {
+class Monodromy final : public SteppedMap {
  public:
   /// Both must outlive this.
   Monodromy(const TipDynamics& tip, const CutSteps& cut);
@@ -36,9 +36,8 @@ class Monodromy final : public PeriodMap {
   [[nodiscard]] std::size_t modal_size() const override { return modal_; }
   void apply(const Lanes* in, Lanes* out) override;
 
-  /// The time steps that cut, and after apply the mean force during each of them [N].
-  [[nodiscard]] const std::vector<int>& cut_steps() const { return cut_numbers_; }
-  [[nodiscard]] const Lanes* force(std::size_t cut) const { return contacts_[cut].force; }
+  [[nodiscard]] const std::vector<int>& cut_steps() const override { return cut_numbers_; }
+  [[nodiscard]] const Lanes* force(std::size_t cut) const override { return contacts_[cut].force; }
 
  private:
   void lay_out();

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <vector>
 
 #include "robomill/stability/lanes.hpp"
 
@@ -15,6 +16,14 @@ class PeriodMap {
   [[nodiscard]] virtual std::size_t modal_size() const = 0;
   /// out = state after one period. Lengths size(); they must not overlap.
   virtual void apply(const Lanes* in, Lanes* out) = 0;
+};
+
+/// One that goes through the period in equal time steps.
+class SteppedMap : public PeriodMap {
+ public:
+  /// The time steps that cut, and after apply the mean force during each of them [N]: x, y.
+  [[nodiscard]] virtual const std::vector<int>& cut_steps() const = 0;
+  [[nodiscard]] virtual const Lanes* force(std::size_t cut) const = 0;
 };
 
 }  // namespace robomill::stability::detail

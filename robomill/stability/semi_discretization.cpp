@@ -2,9 +2,10 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/parallel.hpp"
+#include "robomill/stability/discretizations.hpp"
 #include "robomill/stability/evaluator.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 
@@ -15,8 +16,8 @@ namespace {
 /// the intervals differs by is the error.
 class SteppedEvaluator final : public PointEvaluator {
  public:
-  SteppedEvaluator(const LobesProblem& problem, int intervals, const Model& model, const std::vector<DepthPlan>& plans)
-      : problem_(problem), intervals_(intervals), plans_(plans), evaluator_(model) {}
+  SteppedEvaluator(const LobesProblem& problem, int intervals, const Model& model, const KnownDepths& depths)
+      : problem_(problem), intervals_(intervals), depths_(depths), evaluator_(model) {}
 
   void evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) override {
     std::array<Evaluator::Point, lane_count> at;
@@ -24,7 +25,7 @@ class SteppedEvaluator final : public PointEvaluator {
     std::array<Motion, lane_count> motion;
     const std::size_t size = points.size();
     for (std::size_t i = 0; i < size; ++i) {
-      at[i] = {points[i].spindle_speed_rad_per_s, points[i].axial_depth_m, plan_of(points[i].axial_depth_m)};
+      at[i] = {points[i].spindle_speed_rad_per_s, points[i].axial_depth_m, depths_.find(points[i].axial_depth_m)};
     }
     evaluator_.evaluate(std::span(at).first(size), std::span(found).first(size));
     if (ask.motion) evaluator_.describe(std::span(found).first(size), std::span(motion).first(size));
@@ -43,11 +44,6 @@ class SteppedEvaluator final : public PointEvaluator {
   }
 
  private:
-  [[nodiscard]] const DepthPlan* plan_of(double depth_m) const {
-    const auto plan = std::ranges::lower_bound(plans_, depth_m, {}, &DepthPlan::axial_depth_m);
-    return plan != plans_.end() && plan->axial_depth_m == depth_m ? &*plan : nullptr;
-  }
-
   void estimate(std::span<Evaluator::Point> points, std::span<Outcome> out) {
     if (!fine_) {
       fine_model_.emplace(problem_, 2 * intervals_);
@@ -64,7 +60,7 @@ class SteppedEvaluator final : public PointEvaluator {
 
   const LobesProblem& problem_;
   int intervals_;
-  const std::vector<DepthPlan>& plans_;
+  const KnownDepths& depths_;
   Evaluator evaluator_;
   std::optional<Model> fine_model_;
   std::optional<Evaluator> fine_;
@@ -76,42 +72,22 @@ class SemiDiscretization final : public Scheme {
       : problem_(problem), intervals_(intervals), model_(problem, intervals) {}
 
   [[nodiscard]] std::unique_ptr<PointEvaluator> evaluator() const override {
-    return std::make_unique<SteppedEvaluator>(problem_, intervals_, model_, plans_);
+    return std::make_unique<SteppedEvaluator>(problem_, intervals_, model_, depths_);
   }
   [[nodiscard]] Period period() const override { return model_.cut.period(); }
-
-  /// With a helix the stiffness takes time to find; it is kept where that does not cost much memory.
-  void expect(std::span<const double> depths_m) override {
-    const std::size_t matrices =
-        depths_m.size() * static_cast<std::size_t>(model_.cut.steps()) * model_.cut.delays().size();
-    if (problem_.milling.tool.lag_rad_per_m(0) == 0.0 || matrices > 4'000'000) return;
-    plans_.resize(depths_m.size());
-    parallel_for(depths_m.size(), 4, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t j = begin; j < end; ++j) model_.cut.at_depth(depths_m[j], plans_[j]);
-    });
-  }
+  void expect(std::span<const double> depths_m) override { depths_.expect(model_.cut, depths_m); }
 
  private:
   LobesProblem problem_;
   int intervals_;
   Model model_;
-  std::vector<DepthPlan> plans_;
+  KnownDepths depths_;
 };
-
-void refuse(bool asked, const char* field, const char* what) {
-  if (!asked) return;
-  throw InvalidInput(field, std::string("does not go with semi-discretization: ") + what,
-                     "Take method = \"collocation\"");
-}
 
 }  // namespace
 
 std::unique_ptr<Scheme> semi_discretization(const LobesProblem& problem, int intervals) {
-  const cutting::Milling& milling = problem.milling;
-  refuse(!milling.tool.has_equal_helix(), "tooth_helix_rad", "its delays do not change with height");
-  refuse(milling.tool.runout_m > 0.0, "runout_m", "it has no missed cuts");
-  refuse(milling.process_damping.active(), "indentation_n_per_m3", "it has no process damping");
-  refuse(milling.speed_variation.active(), "amplitude_ratio", "its speed is constant");
+  refuse_changing_delays(problem.milling, "semi-discretization");
   return std::make_unique<SemiDiscretization>(problem, intervals);
 }
 

@@ -3,6 +3,7 @@
 #include <complex>
 #include <initializer_list>
 #include <numbers>
+#include <vector>
 
 #include "data/robot_modes.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -63,6 +64,30 @@ inline LobesOptions chart(double from_rpm, double to_rpm, double depth_m, int sp
   o.grid = {speeds, depths};
   o.intervals = intervals;
   return o;
+}
+
+struct Known {
+  LobesProblem problem;
+  double speed_rpm, depth_m, converged;
+};
+
+/// Converged spectral radii of one tooth period, eight digits.
+inline std::vector<Known> known_points() {
+  return {{benchmark(0.05), 5000, 0.2e-3, 0.70098118},
+          {benchmark(0.05), 5000, 1e-3, 0.84047032},
+          {benchmark(0.1), 5000, 0.2e-3, 0.74477499},
+          {benchmark(0.1), 5000, 1e-3, 1.03111539},
+          {benchmark(0.5), 5000, 0.2e-3, 1.18540555},
+          {benchmark(0.5), 5000, 1e-3, 3.62871024},
+          {benchmark(1.0), 5000, 0.2e-3, 2.13659148},
+          {benchmark(1.0), 5000, 1e-3, 10.90390056},
+          {benchmark(0.05, 1), 5000, 0.2e-3, 0.67803588},
+          {benchmark(0.05, 1), 5000, 1e-3, 0.74950284},
+          {benchmark(1.0, 1), 5000, 0.2e-3, 0.81974278},
+          {benchmark(1.0, 1), 5000, 1e-3, 1.40647353},
+          {robot(), 6500, 0.6e-3, 1.10584684},
+          {robot(), 8000, 1.2e-3, 1.07595981},
+          {robot(), 15000, 1.1e-3, 1.11946237}};
 }
 
 }  // namespace robomill::stability::testing
