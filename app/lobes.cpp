@@ -75,11 +75,11 @@ Exit compare(const formats::LobesFile& file, const Common& common, Progress& pro
     formats::write_file(common.output, formats::comparison_json(comparison));
   }
   if (!common.wants_summary()) return done;
-  fmt::print("{:<22}{:>14}{:>14}{:>14}{:>8}{:>10}\n", "method", "lowest limit", "median error", "worst error", "differ",
+  fmt::print("{:<34}{:>14}{:>14}{:>14}{:>8}{:>10}\n", "method", "lowest limit", "median error", "worst error", "differ",
              "seconds");
   for (const stability::MethodRow& row : comparison.rows) {
     if (!row.refusal.empty()) {
-      fmt::print("{:<22}{}\n", to_string(row.method), row.refusal);
+      fmt::print("{:<34}{}\n", to_string(row.method), row.refusal);
       continue;
     }
     std::string lowest = "none";
@@ -88,7 +88,7 @@ Exit compare(const formats::LobesFile& file, const Common& common, Progress& pro
       if (limit.status == stability::Limit::Status::found) least_m = std::min(least_m, limit.axial_depth_m);
     }
     if (std::isfinite(least_m)) lowest = fmt::format("{:.4g} mm", least_m / units::mm);
-    fmt::print("{:<22}{:>14}{:>14}{:>14}{:>8}{:>10.3f}\n", to_string(row.method), lowest, percent(row.median_error),
+    fmt::print("{:<34}{:>14}{:>14}{:>14}{:>8}{:>10.3f}\n", to_string(row.method), lowest, percent(row.median_error),
                percent(row.worst_error), row.differ, row.seconds);
   }
   fmt::print(

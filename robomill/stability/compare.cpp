@@ -36,8 +36,9 @@ MethodComparison compare_methods(const LobesProblem& problem, const LobesOptions
   if (speeds < 2) throw InvalidInput("speeds", speeds, "", "must be at least 2");
   MethodComparison result;
   result.spindle_speed_rad_per_s = detail::even(options.spindle_speed_rad_per_s, speeds);
-  std::vector<Method> methods = {Method::collocation, Method::multi_frequency, Method::semi_discretization,
-                                 Method::zeroth_order};
+  std::vector<Method> methods = {Method::collocation,         Method::multi_frequency,
+                                 Method::semi_discretization, Method::semi_discretization_first_order,
+                                 Method::full_discretization, Method::zeroth_order};
   if (problem.has_measured()) methods = {Method::multi_frequency, Method::zeroth_order};
   for (const Method method : methods) {
     MethodRow row;

@@ -32,7 +32,14 @@ struct ROBOMILL_API LobesProblem {
 
 /// zeroth_order, multi_frequency: in the frequency domain, limits alone; from modes or measured FRFs. The others need
 /// modes and know the spectral radius.
-enum class Method { collocation, semi_discretization, zeroth_order, multi_frequency };
+enum class Method {
+  collocation,
+  semi_discretization,
+  semi_discretization_first_order,
+  full_discretization,
+  zeroth_order,
+  multi_frequency
+};
 /// both: the map and the boundary.
 enum class Output { boundary, map, both };
 enum class Period { tooth, revolution };

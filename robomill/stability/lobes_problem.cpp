@@ -31,6 +31,10 @@ std::string_view to_string(Method method) {
   switch (method) {
     case Method::semi_discretization:
       return "semi-discretization";
+    case Method::semi_discretization_first_order:
+      return "semi-discretization-first-order";
+    case Method::full_discretization:
+      return "full-discretization";
     case Method::zeroth_order:
       return "zeroth-order";
     case Method::multi_frequency:

@@ -98,8 +98,16 @@ std::unique_ptr<Scheme> make_scheme(const LobesProblem& problem, const LobesOpti
         std::string("does not go with ") + std::string(to_string(options.method)) + ", which needs modes",
         "Take method = \"multi-frequency\", or fit modes first: robomill modes");
   }
-  if (options.method == Method::collocation) return collocation(problem, options.tolerance);
-  return semi_discretization(problem, options.intervals);
+  switch (options.method) {
+    case Method::semi_discretization:
+      return semi_discretization(problem, options.intervals);
+    case Method::semi_discretization_first_order:
+      return first_order_semi_discretization(problem, options.intervals);
+    case Method::full_discretization:
+      return full_discretization(problem, options.intervals);
+    default:
+      return collocation(problem, options.tolerance);
+  }
 }
 
 }  // namespace robomill::stability::detail
