@@ -429,7 +429,8 @@ template <int D>
 std::vector<WallPass> Engine<D>::wall_passes(std::size_t wall) const {
   const WatchedWall& watched = walls_[wall];
   std::vector<WallPass> passes = watched.passes;
-  std::ranges::rotate(passes, passes.begin() + static_cast<std::ptrdiff_t>(watched.next));
+  // std::ranges::rotate does not compile with clang 14 and libstdc++ 12.
+  std::rotate(passes.begin(), passes.begin() + static_cast<std::ptrdiff_t>(watched.next), passes.end());
   return passes;
 }
 

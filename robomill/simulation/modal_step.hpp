@@ -37,7 +37,7 @@ class ModalStep {
 
  private:
   struct Mode {
-    double decay_re, decay_im;                     ///< e^{λh}
+    double decay_re = 0.0, decay_im = 0.0;         ///< e^{λh}
     Vector<D> right_re, right_im;                  ///< 2 Re R, -2 Im R
     Vector<D> start_re, start_im, end_re, end_im;  ///< weights times left
   };

@@ -116,7 +116,7 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
   for (std::size_t first = 0; first < points.size(); ++first) {
     if (!waits[first]) continue;
     std::array<CollocationMap::Point, lane_count> together;
-    std::array<std::size_t, lane_count> lane_of;
+    std::array<std::size_t, lane_count> lane_of = {};
     std::array<Dominant, lane_count> found;
     std::size_t count = 0;
     for (std::size_t lane = first; lane < points.size(); ++lane) {

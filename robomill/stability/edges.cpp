@@ -91,7 +91,7 @@ std::vector<BoundaryPoint> refine(PointEvaluator& evaluator, const std::vector<E
     for (const bool careful : {false, true}) {
       std::array<OperatingPoint, lane_count> points;
       std::array<Outcome, lane_count> outcomes;
-      std::array<std::size_t, lane_count> which;
+      std::array<std::size_t, lane_count> which = {};
       std::size_t count = 0;
       for (std::size_t i = 0; i < active.size(); ++i) {
         if (active[i].careful != careful) continue;

@@ -82,8 +82,9 @@ void plan_piece(const TipDynamics& tip, const Rotation& rotation, double from_ra
   const std::size_t points = t.quadrature->node.size();
   const Eigen::Index n = tip.pole.size();
   const double start = rotation.time_s(from_rad);
-  std::array<double, most_nodes + 1> end_s;
-  std::array<std::array<double, most_gauss_points>, most_nodes + 1> before_s, weight_s;  // of quadrature, to each end
+  std::array<double, most_nodes + 1> end_s = {};
+  std::array<std::array<double, most_gauss_points>, most_nodes + 1> before_s = {},
+                                                                    weight_s = {};  // of quadrature, to each end
   for (std::size_t i = 0; i <= p; ++i) {
     end_s[i] = rotation.time_s(from_rad + t.end[i] * length_rad) - start;
     for (std::size_t q = 0; q < points; ++q) {
