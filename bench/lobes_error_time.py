@@ -40,7 +40,6 @@ def main():
         out.append(f'<text x="{LEFT - 8}" y="{at + 4:.1f}" text-anchor="end">1e{power}</text>')
     for i, (method, points) in enumerate(methods.items()):
         colour = COLOURS[i % len(COLOURS)]
-        points.sort()
         line = " ".join(f"{x(t):.1f},{y(e):.1f}" for t, e in points)
         out.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>')
         out += [f'<circle cx="{x(t):.1f}" cy="{y(e):.1f}" r="4" fill="{colour}"/>' for t, e in points]
