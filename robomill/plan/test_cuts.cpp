@@ -80,7 +80,8 @@ bool is_image(double peak_hz, double chatter_hz, double tooth_passing_hz) {
 
 std::string note_on(const formats::TestCut& cut, const stability::PointResult& point, int teeth,
                     const std::vector<double>& modes_hz) {
-  std::string note = fmt::format("predicted |μ| = {:.3f}", point.spectral_radius);
+  std::string note = std::isfinite(point.spectral_radius) ? fmt::format("predicted |μ| = {:.3f}", point.spectral_radius)
+                                                          : std::string("predicted by the limit");
   if (!point.stable) note += fmt::format(", {:.1f} Hz (mode {})", point.chatter_frequency_hz, point.mode);
   if (cut.peaks_hz.empty()) return note;
   note += "; measured";
