@@ -284,6 +284,23 @@ TEST(Collocation, GreatRunoutLeavesOneTooth) {
   EXPECT_NEAR(at(many, 7000, 0.6e-3).spectral_radius, at(one, 7000, 0.6e-3).spectral_radius, 1e-9);
 }
 
+TEST(Collocation, SameBitsWhateverVectorsTheMachineHas) {
+  LobesProblem uneven = robot();
+  uneven.milling.tool.helix_rad = 0.5;
+  uneven.milling.tool.pitch_rad = {110.0 * pi / 180.0, 115.0 * pi / 180.0, 135.0 * pi / 180.0};
+  const Kernels best = best_kernels();
+  for (const LobesProblem& problem : {robot(), uneven}) {
+    std::vector<double> radii;
+    for (const Kernels variant : {Kernels::baseline, Kernels::avx2, Kernels::avx512}) {
+      if (static_cast<int>(variant) > static_cast<int>(best)) continue;
+      kernels() = variant;
+      radii.push_back(at(problem, 7000, 0.7e-3).spectral_radius);
+    }
+    kernels() = best;
+    for (const double radius : radii) EXPECT_EQ(std::memcmp(&radius, radii.data(), sizeof radius), 0);
+  }
+}
+
 TEST(Collocation, RefusesASwingThatNeverComesRound) {
   LobesProblem problem = benchmark(0.3);
   problem.milling.speed_variation = {.amplitude_ratio = 0.1, .frequency_ratio = 0.1 * pi};
