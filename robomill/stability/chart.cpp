@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "robomill/base/parallel.hpp"
 
@@ -21,15 +22,16 @@ Eigen::Index row(std::size_t i) {
   return static_cast<Eigen::Index>(i);
 }
 
-/// Evaluates nodes that are in order, speed by speed.
-void evaluate_nodes(const Scheme& scheme, const Axes& axes, const std::vector<Node>& nodes, bool estimate,
-                    GridRadii& grid, Count& count, Progress& progress) {
+/// Evaluates nodes that are in order, speed by speed; to the tolerance where one is given.
+void evaluate_nodes(const Scheme& scheme, const Axes& axes, const std::vector<Node>& nodes,
+                    std::optional<double> tolerance, GridRadii& grid, Count& count, Progress& progress) {
   std::vector<std::size_t> starts;  // of each speed's nodes
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (i == 0 || nodes[i].speed != nodes[i - 1].speed) starts.push_back(i);
   }
   starts.push_back(nodes.size());
   std::vector<Count> counts(starts.size());
+  std::vector<long long> uncertain(starts.size(), 0);
   parallel_for(starts.size() - 1, 4, [&](std::size_t begin, std::size_t end) {
     const std::unique_ptr<PointEvaluator> evaluator = scheme.evaluator();
     for (std::size_t c = begin; c < end; ++c) {
@@ -39,11 +41,13 @@ void evaluate_nodes(const Scheme& scheme, const Axes& axes, const std::vector<No
         std::array<OperatingPoint, lane_count> points;
         std::array<Outcome, lane_count> outcomes;
         for (std::size_t i = 0; i < size; ++i) points[i] = axes.at(nodes[first + i].speed, nodes[first + i].depth);
-        evaluator->evaluate(std::span(points).first(size), {.estimate = estimate}, std::span(outcomes).first(size));
+        evaluator->evaluate(std::span(points).first(size), {.estimate = tolerance.has_value()},
+                            std::span(outcomes).first(size));
         for (std::size_t i = 0; i < size; ++i) {
           const Node& node = nodes[first + i];
           grid.radius(row(node.depth), row(node.speed)) = outcomes[i].spectral_radius;
           grid.unstable(row(node.depth), row(node.speed)) = outcomes[i].spectral_radius >= 1.0;
+          if (tolerance && !(outcomes[i].error_estimate <= *tolerance)) ++uncertain[begin];
         }
       }
       progress.advance();
@@ -51,6 +55,7 @@ void evaluate_nodes(const Scheme& scheme, const Axes& axes, const std::vector<No
     counts[begin].add(*evaluator);
   });
   for (const Count& c : counts) count.add(c);
+  for (const long long number : uncertain) grid.uncertain += number;
 }
 
 GridRadii empty_grid(const Axes& axes) {
@@ -147,7 +152,7 @@ class BoundarySearch {
     }
     std::ranges::sort(nodes);
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    evaluate_nodes(scheme_, axes_, nodes, false, grid_, count_, progress_);
+    evaluate_nodes(scheme_, axes_, nodes, {}, grid_, count_, progress_);
   }
 
   /// Whether known nodes on the cell's border, its corners or those of finer neighbours, differ in stability.
@@ -261,14 +266,15 @@ Axes even_axes(const LobesOptions& options) {
   return {even(options.spindle_speed_rad_per_s, options.grid[0]), even(options.axial_depth_m, options.grid[1])};
 }
 
-GridRadii evaluate_grid(const Scheme& scheme, const Axes& axes, bool estimate, Count& count, Progress& progress) {
+GridRadii evaluate_grid(const Scheme& scheme, const Axes& axes, std::optional<double> tolerance, Count& count,
+                        Progress& progress) {
   GridRadii grid = empty_grid(axes);
   std::vector<Node> nodes;
   for (std::size_t s = 0; s < axes.spindle_speed_rad_per_s.size(); ++s) {
     for (std::size_t d = 0; d < axes.axial_depth_m.size(); ++d) nodes.push_back({s, d});
   }
   progress.start("stability lobes", axes.spindle_speed_rad_per_s.size());
-  evaluate_nodes(scheme, axes, nodes, estimate, grid, count, progress);
+  evaluate_nodes(scheme, axes, nodes, tolerance, grid, count, progress);
   return grid;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "robomill/base/progress.hpp"
@@ -38,13 +39,15 @@ std::vector<double> even(const std::array<double, 2>& range, int count);
 struct GridRadii {
   Eigen::MatrixXd radius;
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> unstable;
+  long long uncertain = 0;  ///< nodes whose error estimate stays above the tolerance
   [[nodiscard]] bool known(Eigen::Index depth, Eigen::Index speed) const {
     return radius(depth, speed) == radius(depth, speed);
   }
 };
 
-/// Every node.
-GridRadii evaluate_grid(const Scheme& scheme, const Axes& axes, bool estimate, Count& count, Progress& progress);
+/// Every node; to the tolerance where one is given.
+GridRadii evaluate_grid(const Scheme& scheme, const Axes& axes, std::optional<double> tolerance, Count& count,
+                        Progress& progress);
 
 /// The nodes that the boundary needs. Cells of several nodes' width are looked at by their corners, and cut in four
 /// where a boundary passes, where it passes on a neighbour's side, and where the radius comes so near to 1, by its own

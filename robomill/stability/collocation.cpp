@@ -41,12 +41,14 @@ MeshLevel mesh_level(int number) {
   return level;
 }
 
-int first_level(const CollocationModel& model, double spindle_speed_rad_per_s, double tolerance) {
-  // The longest stretch that one polynomial has to follow, in radians of the fastest mode.
+int first_level(const CollocationModel& model, const OperatingPoint& point, double tolerance) {
+  // A piece is cut to the structure's own radians; the cut makes it quicker.
   const cutting::Immersion& immersion = model.milling.immersion;
   const double stretch = std::min(immersion.exit_rad - immersion.entry_rad, model.contacts.period_rad()) *
-                         model.fastest_rad_per_s / spindle_speed_rad_per_s;
-  const double nodes = 0.5 * std::min(stretch, 8.0) + 1.5 - 0.5 * std::log10(tolerance);
+                         model.fastest_rad_per_s / point.spindle_speed_rad_per_s;
+  const double quicker =
+      std::sqrt(1.0 + model.quickening * point.axial_depth_m / (model.fastest_rad_per_s * model.fastest_rad_per_s));
+  const double nodes = 0.5 * std::min(stretch, 8.0) * quicker + 1.5 - 0.5 * std::log10(tolerance);
   return std::clamp(static_cast<int>(std::ceil((nodes - 4.0) / 2.0)), 1, 6);
 }
 
@@ -136,7 +138,7 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
 
 void CollocationEvaluator::evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) {
   for (std::size_t lane = 0; lane < points.size(); ++lane) {
-    const int level = first_level(model_, points[lane].spindle_speed_rad_per_s, tolerance_);
+    const int level = first_level(model_, points[lane], tolerance_);
     lanes_[lane] = {.level = ask.estimate ? level - 1 : level};
     out[lane] = Outcome{};
   }

@@ -12,8 +12,8 @@ namespace robomill::stability::detail {
 inline constexpr int last_level = 11;
 /// Ever finer meshes: 4, 6, … 16 nodes in pieces of 8 rad, then 14 in ever shorter ones.
 MeshLevel mesh_level(int number);
-/// Where the search for an accuracy starts at a spindle speed.
-int first_level(const CollocationModel& model, double spindle_speed_rad_per_s, double tolerance);
+/// Where the search for an accuracy starts.
+int first_level(const CollocationModel& model, const OperatingPoint& point, double tolerance);
 
 /// Multipliers by collocation. With an estimate, levels rise until two of them agree within the tolerance; the estimate
 /// is by how much they differ, which is the error of the coarser.

@@ -93,7 +93,15 @@ CollocationModel::CollocationModel(const LobesProblem& problem, MeshTopology::Fo
       milling(problem.milling),
       repeats(common_repeats(variation, contacts.period_rad())),
       fastest_rad_per_s(tip.pole.cwiseAbs().maxCoeff()),
-      least(least_form) {}
+      least(least_form) {
+  for (Eigen::Index k = 0; k < tip.pole.size(); ++k) {
+    quickening += std::abs(tip.pole(k)) * 2.0 * tip.right.col(k).norm() * tip.left.col(k).norm();
+  }
+  const cutting::ForceCoefficients& c = milling.coefficients;
+  const double teeth_in_cut =
+      std::ceil((milling.immersion.exit_rad - milling.immersion.entry_rad) * milling.tool.teeth / revolution);
+  quickening *= std::hypot(c.tangential_n_per_m2, c.radial_n_per_m2) * teeth_in_cut;
+}
 
 double CollocationModel::told_rad() const {
   return contacts.period() == Period::tooth && !variation.active() ? contacts.period_rad() : revolution;

@@ -19,8 +19,10 @@ struct CollocationModel {
   cutting::SpeedVariation variation;
   CutterContacts contacts;  ///< its angles and delays; where slices count, see MeshLevel
   cutting::Milling milling;
-  int repeats = 1;                                      ///< of the cutter's period in that of the whole
-  double fastest_rad_per_s = 0.0;                       ///< of the modes
+  int repeats = 1;                 ///< of the cutter's period in that of the whole
+  double fastest_rad_per_s = 0.0;  ///< of the modes
+  /// By how much the cut quickens the structure: the square of its rate grows by this with the depth [rad^2/(s^2 m)].
+  double quickening = 0.0;
   MeshTopology::Form least = MeshTopology::Form::chip;  ///< remember no less
   /// Rotation over which the spectral radius is told, and that of the whole period.
   [[nodiscard]] double told_rad() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "robomill/base/error.hpp"
 #include "robomill/stability/chart.hpp"
@@ -58,12 +59,14 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   result.method = options.method;
   result.period = scheme->period();
   scheme->expect(axes.axial_depth_m);
+  const bool collocated = options.method == Method::collocation;
   Count count;
   GridRadii grid;
   if (options.output == Output::boundary) {
     grid = find_boundary_nodes(*scheme, axes, count, progress);
   } else {
-    grid = evaluate_grid(*scheme, axes, false, count, progress);
+    // The discretizations tell the error that their intervals leave; a map of it would triple their cost.
+    grid = evaluate_grid(*scheme, axes, collocated ? std::optional(options.tolerance) : std::nullopt, count, progress);
     result.spectral_radius = grid.radius;
   }
   if (options.output != Output::map) {
@@ -78,8 +81,8 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   count.add(*evaluator);
   result.evaluations = count.evaluations;
   result.unsettled = count.unsettled;
-  if (options.method == Method::collocation) {
-    result.uncertain = count_uncertain(result.boundary, options.tolerance) +
+  if (collocated) {
+    result.uncertain = grid.uncertain + count_uncertain(result.boundary, options.tolerance) +
                        count_uncertain(result.limit, options.tolerance) +
                        count_uncertain(result.points, options.tolerance);
   }

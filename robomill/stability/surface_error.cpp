@@ -148,7 +148,7 @@ SurfacePoint surface_point(const LobesProblem& problem, const OperatingPoint& po
   Outcome outcome;
   evaluator.evaluate({&point, 1}, {.estimate = true}, {&outcome, 1});
   if (outcome.spectral_radius >= 1.0) return unstable_point();
-  return orbit_at(model, point, first_level(model, point.spindle_speed_rad_per_s, tolerance) + 1);
+  return orbit_at(model, point, first_level(model, point, tolerance) + 1);
 }
 
 SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options, const std::array<int, 2>& grid,
@@ -165,7 +165,7 @@ SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options,
   const std::unique_ptr<Scheme> scheme = collocation(problem, options.tolerance);
   const CollocationModel model(problem, MeshTopology::Form::several);
   Count count;
-  const GridRadii radii = evaluate_grid(*scheme, axes, false, count, progress);
+  const GridRadii radii = evaluate_grid(*scheme, axes, options.tolerance, count, progress);
   SurfaceMap map;
   const Eigen::Index n = grid[0];
   const Eigen::Index m = grid[1];
@@ -176,13 +176,12 @@ SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options,
   progress.start("surface error", static_cast<std::size_t>(n));
   parallel_for(static_cast<std::size_t>(n), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const int level = first_level(model, axes.spindle_speed_rad_per_s[s], options.tolerance);
       for (std::size_t d = 0; d < depths.size(); ++d) {
         progress.check();
         const Eigen::Index row = static_cast<Eigen::Index>(d);
         const Eigen::Index column = static_cast<Eigen::Index>(s);
         if (radii.unstable(row, column)) continue;
-        const SurfacePoint point = orbit_at(model, axes.at(s, d), level);
+        const SurfacePoint point = orbit_at(model, axes.at(s, d), first_level(model, axes.at(s, d), options.tolerance));
         map.surface_location_error_m(row, column) = point.surface_location_error_m;
         map.peak_to_peak_m(row, column) = std::max(point.peak_to_peak_x_m, point.peak_to_peak_y_m);
       }
