@@ -58,7 +58,7 @@ void require_coverage(const FrequencyResponse& response, const std::vector<Frequ
   // An end towards which the response rises is the flank of a peak that was not measured.
   const char* const again = "Measure that band too";
   const double at_high = mean_size(response, 0.975 * high, high);
-  if (at_high > 0.02 * largest && at_high > 1.05 * mean_size(response, 0.9 * high, 0.925 * high)) {
+  if (at_high > 0.02 * largest && at_high > 1.02 * mean_size(response, 0.9 * high, 0.925 * high)) {
     refuse(band(high, std::numeric_limits<double>::infinity()), "FRFs must reach beyond the last peak", again);
   }
   const double at_low = mean_size(response, low, 1.05 * low);

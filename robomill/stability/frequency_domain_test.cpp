@@ -427,6 +427,8 @@ TEST(FrequencyResponse, SaysWhichBandIsMissing) {
   EXPECT_EQ(said(5.0, 3000.0), "accepted");
   EXPECT_NE(said(100.0, 900.0).find("band above 900 Hz missing"), std::string::npos) << said(100.0, 900.0);
   EXPECT_NE(said(100.0, 1200.0).find("band above 1200 Hz missing"), std::string::npos) << said(100.0, 1200.0);
+  // The flank of a mode far above.
+  EXPECT_NE(said(1.0, 400.0).find("band above 400 Hz missing"), std::string::npos) << said(1.0, 400.0);
   EXPECT_NE(said(930.0, 4000.0).find("band 0 to 930 Hz missing"), std::string::npos) << said(930.0, 4000.0);
 }
 
