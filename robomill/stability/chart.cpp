@@ -47,7 +47,8 @@ void evaluate_nodes(const Scheme& scheme, const Axes& axes, const std::vector<No
           const Node& node = nodes[first + i];
           grid.radius(row(node.depth), row(node.speed)) = outcomes[i].spectral_radius;
           grid.unstable(row(node.depth), row(node.speed)) = outcomes[i].spectral_radius >= 1.0;
-          if (tolerance && !(outcomes[i].error_estimate <= *tolerance)) ++uncertain[begin];
+          const double allowed = tolerance.value_or(0.0) * std::max(1.0, outcomes[i].spectral_radius);
+          if (tolerance && !(outcomes[i].error_estimate <= allowed)) ++uncertain[begin];
         }
       }
       progress.advance();

@@ -35,7 +35,7 @@ class Collocation final : public Scheme {
 MeshLevel mesh_level(int number) {
   MeshLevel level;
   level.nodes = number <= 6 ? 4 + 2 * number : 14;
-  level.reach_rad = number <= 6 ? 8.0 : std::ldexp(8.0, 6 - number);
+  level.splits = number <= 6 ? 1 : 1 << (number - 6);
   level.heights = std::min(4 + 2 * number, 24);
   level.slices = 4 << std::min(number, 5);
   return level;
@@ -57,7 +57,7 @@ const CollocationCase& CollocationEvaluator::find_case(std::size_t lane, const O
   const MeshLevel wanted = mesh_level(level);
   const auto fits = [&](const CollocationCase& c) {
     return c.spindle_speed_rad_per_s == point.spindle_speed_rad_per_s && c.level.nodes == wanted.nodes &&
-           c.level.reach_rad == wanted.reach_rad && (!by_depth || c.axial_depth_m == point.axial_depth_m);
+           c.level.splits == wanted.splits && (!by_depth || c.axial_depth_m == point.axial_depth_m);
   };
   auto& cases = cases_[static_cast<std::size_t>(level % 2)];
   if (lane > 0 && at_[lane - 1] != nullptr && fits(*at_[lane - 1])) return *at_[lane - 1];
@@ -74,8 +74,8 @@ void CollocationEvaluator::settle(std::size_t lane, std::size_t column, const Do
   const double radius = radius_of(dominant);
   const double told = share == 1.0 ? radius : std::pow(radius, share);
   const double difference = std::abs(told - here.coarse);
-  here.done = !ask.estimate ||
-              (here.compared && (difference <= tolerance_ || here.level == last_level || map_.size() > largest_state));
+  here.done = !ask.estimate || (here.compared && (difference <= tolerance_ * std::max(1.0, told) ||
+                                                  here.level == last_level || map_.size() > largest_state));
   if (!here.done) {
     here.coarse = told;
     here.compared = true;

@@ -10,7 +10,7 @@
 namespace robomill::stability::detail {
 
 inline constexpr int last_level = 11;
-/// Ever finer meshes: 4, 6, … 16 nodes in pieces of 8 rad, then 14 in ever shorter ones.
+/// Ever finer meshes: 4, 6, … 16 nodes in a piece, then 14 in halves, quarters, … of it.
 MeshLevel mesh_level(int number);
 /// Where the search for an accuracy starts.
 int first_level(const CollocationModel& model, const OperatingPoint& point, double tolerance);

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double revolution = 2.0 * std::numbers::pi;
 constexpr double same_angle = 1e-10;
+constexpr double longest_piece_rad = 8.0;  // of the fastest mode
 
 /// Rotation over which some of a contact's edge is in the cut.
 struct Span {
@@ -125,10 +126,11 @@ class Builder {
     out.topology.pieces.clear();
     active_.clear();
     out.period_rad = base_rad_ * repeats_;
-    const double reach_rad = std::min(level_.reach_rad / fastest_, shortest_delay_rad_);
+    const double reach_rad = std::min(longest_piece_rad / fastest_, shortest_delay_rad_);
     for (int r = 0; r < repeats_; ++r) {
       for (const Raw& raw : raw_) {
-        const int parts = raw.records ? std::max(1, static_cast<int>(std::ceil(raw.length_rad / reach_rad - 1e-9))) : 1;
+        const int needed = std::max(1, static_cast<int>(std::ceil(raw.length_rad / reach_rad - 1e-9)));
+        const int parts = raw.records ? needed * level_.splits : 1;
         for (int i = 0; i < parts; ++i) {
           CutMesh::Piece piece;
           piece.length_rad = raw.length_rad / parts;

@@ -9,10 +9,10 @@ namespace robomill::stability::detail {
 
 /// How finely the rotation is taken.
 struct MeshLevel {
-  int nodes = 8;           ///< p, Gauss points of a piece
-  double reach_rad = 8.0;  ///< longest piece, in radians of the fastest mode
-  int heights = 6;         ///< Gauss points along the edge where the delay changes with height
-  int slices = 8;          ///< of a cutter with runout and helix
+  int nodes = 8;    ///< p, Gauss points of a piece
+  int splits = 1;   ///< parts of each piece that is otherwise as long as it may be
+  int heights = 6;  ///< Gauss points along the edge where the delay changes with height
+  int slices = 8;   ///< of a cutter with runout and helix
 };
 
 /// Where a node looks back to.

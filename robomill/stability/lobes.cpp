@@ -35,9 +35,14 @@ Eigen::VectorXd to_eigen(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+/// Points of the boundary and limits have the radius 1.
 template <class Points>
 long long count_uncertain(const Points& points, double tolerance) {
-  return std::ranges::count_if(points, [&](const auto& point) { return !(point.error_estimate <= tolerance); });
+  return std::ranges::count_if(points, [&](const auto& point) {
+    double radius = 1.0;
+    if constexpr (requires { point.spectral_radius; }) radius = std::max(radius, point.spectral_radius);
+    return !(point.error_estimate <= tolerance * radius);
+  });
 }
 
 }  // namespace

@@ -63,8 +63,8 @@ struct ROBOMILL_API LobesOptions {
   std::array<int, 2> grid = {200, 200};              ///< speeds and depths, each at least 2
   Method method = Method::collocation;
   int intervals = 40;  ///< m of semi-discretization: time steps in a mean tooth period, at least 4
-  /// Collocation is refined until its spectral radii are that accurate; boundary and limit end where
-  /// |spectral radius - 1| <= tolerance.
+  /// Collocation is refined until its spectral radii are that accurate (a share of them above 1); boundary and limit
+  /// end where |spectral radius - 1| <= tolerance.
   double tolerance = 1e-6;
   Output output = Output::boundary;
   std::vector<OperatingPoint> points = {};  ///< evaluated beside the grid; may lie outside its range
