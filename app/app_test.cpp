@@ -3,13 +3,16 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <complex>
 
+#include <complex>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
 #include "robomill/base/test_support.hpp"
@@ -87,9 +90,9 @@ TEST_F(App, DashWritesJsonAndNothingElse) {
   ASSERT_EQ(run.exit, 0) << run.err;
   const auto json = nlohmann::json::parse(run.out);
   ASSERT_EQ(json["points"].size(), 2U);
-  // Converged values of these points are 1.10584684 and 1.07595981; 40 intervals come within a percent or two.
-  EXPECT_NEAR(json["points"][0]["spectral_radius"].get<double>(), 1.10584684, 0.02);
-  EXPECT_NEAR(json["points"][1]["spectral_radius"].get<double>(), 1.07595981, 0.02);
+  // Converged values of these points.
+  EXPECT_NEAR(json["points"][0]["spectral_radius"].get<double>(), 1.10584684, 1e-7);
+  EXPECT_NEAR(json["points"][1]["spectral_radius"].get<double>(), 1.07595981, 1e-7);
   EXPECT_FALSE(json["points"][0]["stable"].get<bool>());
   EXPECT_NE(robomill("lobes lobes.toml --at 6500 -o -").err.find("RPM,MM"), std::string::npos);
 }
@@ -115,6 +118,31 @@ TEST_F(App, SimulatesACut) {
   EXPECT_EQ(robomill("simulate lobes.toml --at 6500,0.1 --seconds -1").exit, 1);
   EXPECT_EQ(robomill("simulate lobes.toml").exit, 2);
   EXPECT_NE(robomill("simulate lobes.toml --at 6500").err.find("RPM,MM"), std::string::npos);
+}
+
+// One mode of 922 Hz, 1.1 %, 0.03993 kg in x, as its receptance.
+TEST_F(App, SimulatesFromFrfs) {
+  std::string csv = "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n";
+  const double natural = 2.0 * std::numbers::pi * 922.0;
+  for (int line = 400; line <= 4000; ++line) {
+    const double omega = std::numbers::pi * line;
+    const std::complex<double> h =
+        1.0 / (0.03993 * std::complex<double>(natural * natural - omega * omega, 0.022 * natural * omega));
+    csv += std::to_string(0.5 * line) + ',' + std::to_string(1e9 * h.real()) + "e-9," + std::to_string(1e9 * h.imag()) +
+           "e-9\n";
+  }
+  write("tip.csv", csv);
+  write_lobes();
+  std::string text = slurp(folder_.at("lobes.toml"));
+  const std::size_t from = text.find("modes = ");
+  text.replace(from, text.find('\n', from) - from, "frf = \"tip.csv\"");
+  write("lobes.toml", text);
+  const Ended told = robomill("simulate lobes.toml --at 6500,0.3 --seconds 0.5");
+  EXPECT_EQ(told.exit, 0) << told.err;
+  EXPECT_EQ(told.out.rfind("tip.csv: 1 modes fitted", 0), 0U) << told.out;
+  const Ended lobes = robomill("lobes lobes.toml");
+  EXPECT_EQ(lobes.exit, 1);
+  EXPECT_NE(lobes.err.find("multi-frequency"), std::string::npos) << lobes.err;
 }
 
 TEST_F(App, SimulatesDrilling) {

@@ -8,6 +8,7 @@
 #include "robomill/formats/lobes_toml.hpp"
 #include "robomill/formats/simulation_files.hpp"
 #include "robomill/formats/units.hpp"
+#include "robomill/modal/fit.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/simulation/drilling.hpp"
 #include "verbs.hpp"
@@ -33,13 +34,25 @@ void check_output(const Common& common) {
   }
 }
 
-formats::LobesFile read_cut(const std::filesystem::path& path) {
+/// A simulation steps modes: where FRFs are given, those of the hybrid fit over all their lines.
+void fit_where_measured(const std::filesystem::path& path, modal::FrfSet& measured, modal::ModalModel& model, bool told,
+                        Progress& progress) {
+  if (measured.frfs.empty()) return;
+  const modal::FitResult fit = modal::fit_modes(measured, {}, progress);
+  model = fit.model;
+  measured = {};
+  if (told) {
+    fmt::print("{}: {} modes fitted, {:.2g} % of the FRFs left over.\n", path.filename().string(), model.modes.size(),
+               100.0 * fit.relative_error);
+  }
+}
+
+formats::LobesFile read_cut(const std::filesystem::path& path, bool told, Progress& progress) {
   formats::LobesFile file = formats::read_lobes(path);
   formats::load_dynamics(file);
-  if (!file.frf.empty() || !file.workpiece_frf.empty()) {
-    throw InvalidInput(path.string(), "a simulation needs modes, not FRFs",
-                       "Run robomill modes on the FRFs and name the result as dynamics.modes");
-  }
+  stability::LobesProblem& problem = file.problem;
+  fit_where_measured(file.frf, problem.measured, problem.dynamics, told, progress);
+  fit_where_measured(file.workpiece_frf, problem.workpiece_measured, problem.workpiece_dynamics, told, progress);
   file.validate();
   if (!file.drilling && !(file.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(InvalidInput::Parts{.where = path.string(),
@@ -131,7 +144,7 @@ simulation::DrillingCut drilling_of(const formats::LobesFile& file, const stabil
 Exit run(const SimulateCommand& command, const Common& common, Progress& progress) {
   check_output(common);
   const stability::OperatingPoint point = parse_point(command.at);
-  const formats::LobesFile file = read_cut(command.input);
+  const formats::LobesFile file = read_cut(command.input, common.wants_summary(), progress);
   const simulation::SimulationOptions options = {.seconds = command.seconds,
                                                  .sample_rate_hz = command.sample_rate_hz,
                                                  .loss_of_contact = !command.linear,
