@@ -41,9 +41,9 @@ std::vector<FrequencyLimit> solve(const LobesProblem& problem, const LobesOption
   how.largest_depth_m = largest_depth_m;
   how.tolerance = options.tolerance;
   how.all_crossings = all_crossings;
-  const auto limits = options.method == Method::zeroth_order
-                          ? zeroth_order_limits(problem.milling, response, speeds, how, progress)
-                          : multi_frequency_limits(problem.milling, response, speeds, how, progress);
+  auto limits = options.method == Method::zeroth_order
+                    ? zeroth_order_limits(problem.milling, response, speeds, how, progress)
+                    : multi_frequency_limits(problem.milling, response, speeds, how, progress);
   if (response.measured()) require_coverage(response, limits);
   return limits;
 }
