@@ -185,10 +185,12 @@ void fit_by_poles(FitResult& result, const FrfSet& set, const FitOptions& option
 }
 
 void fit_by_swarm(FitResult& result, const FrfSet& set, const FitOptions& options, Progress& progress) {
+  // As published the swarm's damping ratios go up to 1, unless another bound is asked for.
+  const bool bound = options.max_damping_ratio != FitOptions{}.max_damping_ratio;
   const PsoResult swarm = fit_pso(set,
                                   {.modes = options.modes,
                                    .frequency_half_width = options.pso_frequency_half_width,
-                                   .max_damping_ratio = options.max_damping_ratio,
+                                   .max_damping_ratio = bound ? options.max_damping_ratio : 1.0,
                                    .particles = options.pso_particles,
                                    .max_iterations = options.pso_max_iterations,
                                    .seed = options.seed},

@@ -37,7 +37,7 @@ struct FitOptions {
   Weighting weighting = Weighting::automatic;
   bool residuals =
       true;  ///< allow mass and stiffness residuals for modes outside the band; hybrid drops them if not needed
-  double max_damping_ratio = 0.4;  ///< no mode above it, in (0, 1)
+  double max_damping_ratio = 0.4;  ///< no mode above it, in (0, 1); the swarm goes up to 1 where it is left as it is
   /// Subtracted from every pole's decay after the fit [1/s], >= 0: 1/τ where the hits had the window exp(-t/τ): λ -> λ
   /// + 1/τ.
   double exponential_decay_per_s = 0.0;
