@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "robomill/base/error.hpp"
 #include "robomill/stability/gauss.hpp"
 
 namespace robomill::stability::detail {
@@ -228,9 +229,31 @@ class Builder {
     const double within = source.before ? rotation_rad + mesh.period_rad : rotation_rad;
     const auto after = std::ranges::upper_bound(mesh.pieces, within + same_angle, {},
                                                 [](const CutMesh::Piece& piece) { return piece.from_rad; });
-    const CutMesh::Piece& piece = after == mesh.pieces.begin() ? mesh.pieces.front() : *(after - 1);
-    source.piece = static_cast<int>(&piece - mesh.pieces.data());
-    inside = (within - piece.from_rad) / piece.length_rad;
+    std::size_t at = after == mesh.pieces.begin() ? 0 : static_cast<std::size_t>(after - mesh.pieces.begin()) - 1;
+    double position = within;
+    // A border's width beside what is remembered: that is meant.
+    if (!mesh.topology.pieces[at].records) {
+      const bool early = position - mesh.pieces[at].from_rad < 0.5 * mesh.pieces[at].length_rad;
+      if (early && at > 0) {
+        --at;
+      } else if (early && !source.before) {
+        at = mesh.pieces.size() - 1;
+        source.before = true;
+        position += mesh.period_rad;
+      } else if (!early && at + 1 < mesh.pieces.size()) {
+        ++at;
+      } else if (!early && source.before) {
+        at = 0;
+        source.before = false;
+        position -= mesh.period_rad;
+      }
+    }
+    if (!mesh.topology.pieces[at].records) {
+      throw InvalidInput("runout_m", milling_.tool.runout_m, "m",
+                         "leaves stretches of the cut too short to tell apart");
+    }
+    source.piece = static_cast<int>(at);
+    inside = (position - mesh.pieces[at].from_rad) / mesh.pieces[at].length_rad;
   }
 
   /// Fills the sources and weights of one delay at one node.
