@@ -20,6 +20,11 @@ std::complex<double> upper_half(std::complex<double> value) {
 
 }  // namespace
 
+double spectral_radius(const Dominant& dominant) {
+  const double modulus = std::abs(dominant.multiplier);
+  return std::isfinite(modulus) && modulus < 1e100 ? modulus : 1e100;
+}
+
 void Arnoldi::start(std::size_t size) {
   if (start_.size() < size) {
     Random random(20040101);

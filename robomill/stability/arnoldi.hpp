@@ -18,6 +18,9 @@ struct Dominant {
   enum class By { arnoldi, full_matrix, unsettled } by = By::unsettled;
 };
 
+/// |multiplier|; where the motion overflows in a single period, 1e100.
+double spectral_radius(const Dominant& dominant);
+
 struct ArnoldiOptions {
   double tolerance = 1e-12;           ///< settled where the residual is at most this times (|μ| + 0.1 ‖H‖)
   std::size_t extra = 72;             ///< vectors beyond 2n before the matrix is formed

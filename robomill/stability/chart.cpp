@@ -220,15 +220,7 @@ Limit limit_at(const BoundaryPoint& b) {
 Limit limit_at_start(PointEvaluator& evaluator, const OperatingPoint& point) {
   Outcome outcome;
   evaluator.evaluate({&point, 1}, {.estimate = true, .motion = true}, {&outcome, 1});
-  Limit limit;
-  limit.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
-  limit.status = Limit::Status::found;
-  limit.axial_depth_m = point.axial_depth_m;
-  limit.chatter_frequency_hz = outcome.chatter_frequency_hz;
-  limit.kind = outcome.kind;
-  limit.mode = outcome.mode;
-  limit.error_estimate = outcome.error_estimate;
-  return limit;
+  return limit_at(boundary_point(point, outcome));
 }
 
 /// Radii of one speed from the lowest depth up to the first that is unstable and a little beyond.

@@ -9,11 +9,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-double radius_of(const Dominant& dominant) {
-  const double modulus = std::abs(dominant.multiplier);
-  return std::isfinite(modulus) && modulus < 1e100 ? modulus : 1e100;
-}
-
 class Collocation final : public Scheme {
  public:
   Collocation(const LobesProblem& problem, double tolerance) : model_(problem), tolerance_(tolerance) {}
@@ -71,7 +66,7 @@ void CollocationEvaluator::settle(std::size_t lane, std::size_t column, const Do
                                   const OperatingPoint& point, Ask ask, Outcome& out) {
   Lane& here = lanes_[lane];
   const double share = model_.told_rad() / model_.whole_rad();
-  const double radius = radius_of(dominant);
+  const double radius = spectral_radius(dominant);
   const double told = share == 1.0 ? radius : std::pow(radius, share);
   const double difference = std::abs(told - here.coarse);
   here.done = !ask.estimate || (here.compared && (difference <= tolerance_ * std::max(1.0, told) ||

@@ -24,6 +24,7 @@ class Builder {
   Builder(const CutterContacts& contacts, int repeats, double fastest, double axial_depth_m, const MeshLevel& level)
       : source_(contacts),
         milling_(contacts.milling()),
+        part_(contacts.milling()),
         base_rad_(contacts.period_rad()),
         repeats_(repeats),
         fastest_(fastest),
@@ -194,7 +195,7 @@ class Builder {
     Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
   };
 
-  [[nodiscard]] Term term_of(const Group& group, double rotation_rad) const {
+  [[nodiscard]] Term term_of(const Group& group, double rotation_rad) {
     Term term;
     if (group.height < 0) {
       for (const std::size_t i : group.contacts) {
@@ -216,10 +217,10 @@ class Builder {
     return term;
   }
 
-  [[nodiscard]] cutting::Milling part_of(const Contact& c) const {
-    cutting::Milling part = milling_;
-    part.immersion = c.immersion;
-    return part;
+  /// The cut with one contact's angles.
+  const cutting::Milling& part_of(const Contact& c) {
+    part_.immersion = c.immersion;
+    return part_;
   }
 
   /// The piece that holds a rotation of this period or the one before.
@@ -324,6 +325,7 @@ class Builder {
 
   const CutterContacts& source_;
   const cutting::Milling& milling_;
+  cutting::Milling part_;
   double base_rad_;
   int repeats_;
   double fastest_, depth_m_;

@@ -50,17 +50,6 @@ void narrow(Search& s, double value) {
   choose(s);
 }
 
-BoundaryPoint boundary_point(const OperatingPoint& point, const Outcome& outcome) {
-  BoundaryPoint b;
-  b.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
-  b.axial_depth_m = point.axial_depth_m;
-  b.chatter_frequency_hz = outcome.chatter_frequency_hz;
-  b.kind = outcome.kind;
-  b.mode = outcome.mode;
-  b.error_estimate = outcome.error_estimate;
-  return b;
-}
-
 Search start(const std::vector<Edge>& edges, std::size_t edge) {
   Search search;
   search.edge = edge;
@@ -79,6 +68,17 @@ bool ends(Search& search, double radius, double tolerance) {
 }
 
 }  // namespace
+
+BoundaryPoint boundary_point(const OperatingPoint& point, const Outcome& outcome) {
+  BoundaryPoint b;
+  b.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
+  b.axial_depth_m = point.axial_depth_m;
+  b.chatter_frequency_hz = outcome.chatter_frequency_hz;
+  b.kind = outcome.kind;
+  b.mode = outcome.mode;
+  b.error_estimate = outcome.error_estimate;
+  return b;
+}
 
 std::vector<BoundaryPoint> refine(PointEvaluator& evaluator, const std::vector<Edge>& edges, double tolerance,
                                   const Progress& progress) {

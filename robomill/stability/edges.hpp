@@ -12,6 +12,8 @@ struct Edge {
   double radius_from = 0.0, radius_to = 0.0;
 };
 
+BoundaryPoint boundary_point(const OperatingPoint& point, const Outcome& outcome);
+
 /// Finds on each edge a point where |spectral radius - 1| <= tolerance, by the Illinois rule on the radius' logarithm
 /// that halves where it drags. Source: [DowellJarratt1971].
 std::vector<BoundaryPoint> refine(PointEvaluator& evaluator, const std::vector<Edge>& edges, double tolerance,

@@ -12,11 +12,6 @@ bool finer(const Resolution& a, const Resolution& b) {
 
 }  // namespace
 
-double spectral_radius(const Dominant& dominant) {
-  const double modulus = std::abs(dominant.multiplier);
-  return std::isfinite(modulus) && modulus < 1e100 ? modulus : 1e100;
-}
-
 void Evaluator::evaluate(std::span<const Point> points, std::span<Dominant> out) {
   Resolution finest = {.nodes = 0};
   const auto step_s = [&](std::size_t lane) { return model_.cut.step_rad() / points[lane].spindle_speed_rad_per_s; };

@@ -21,9 +21,6 @@ struct Model {
   CutSteps cut;
 };
 
-/// |multiplier|; where the motion overflows in a single period, 1e100.
-double spectral_radius(const Dominant& dominant);
-
 /// One thread's means to find multipliers, eight points at a time; nothing is allocated from the second time on.
 class Evaluator {
  public:
