@@ -1,0 +1,81 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "robomill/base/progress.hpp"
+#include "robomill/coupling/assembly.hpp"
+
+namespace robomill::coupling {
+
+enum class JointMethod {
+  hybrid,  ///< differential evolution on logarithms, then nonlinear least squares on complex residuals
+  ga       ///< genetic algorithm on ‖ |H11| - |H11 model| ‖, as published
+};
+
+/// Of the genetic algorithm.
+enum class Mutation {
+  uniform,  ///< a gene in a hundred is drawn anew from its range, as published
+  adaptive  ///< Gaussian steps that shrink over the generations
+};
+
+/// The four unknowns, in this order everywhere: k_u, c_u, k_θ, c_θ.
+inline constexpr int joint_unknowns = 4;
+enum class JointUnknown { translational_stiffness, translational_damping, rotational_stiffness, rotational_damping };
+/// "translational stiffness", …
+[[nodiscard]] ROBOMILL_API std::string to_string(JointUnknown unknown);
+
+struct JointFitOptions {
+  JointMethod method = JointMethod::hybrid;
+  Mutation mutation = Mutation::uniform;
+  modal::Axis axis = modal::Axis::x;  ///< which driving-point FRF is fitted: x or y
+  std::uint64_t seed = 1;
+  /// Of the unknowns; where a range is left empty (0, 0), the method's own: ga as published, stiffness [1e5, 1e8],
+  /// damping [0, 100]; hybrid [1e3, 1e12] and [0, 1e6].
+  std::array<double, joint_unknowns> lower = {}, upper = {};
+  int population = 20;          ///< of ga, >= 4
+  int generations = 50;         ///< of ga, >= 1
+  double crossover = 0.8;       ///< of ga: share of children by arithmetic crossover, in [0, 1]
+  double mutation_rate = 0.01;  ///< of ga with Mutation::uniform: a gene's chance, in [0, 1]
+  /// No FRF is taken to be truer than this share of itself, > 0: it keeps deviations honest where data has no noise.
+  double noise_floor = 1e-4;
+  /// @throws InvalidInput naming the member
+  ROBOMILL_API void validate() const;
+};
+
+/// What the FRF tells of one unknown.
+struct JointKnowledge {
+  double deviation = 0.0;     ///< standard deviation, in the unknown's unit; infinite where the FRF says nothing
+  bool identifiable = false;  ///< whether the FRF bounds it from both sides
+  /// Of a stiffness: beyond it the FRF cannot tell the joint from a rigid one. 0 for damping.
+  double visible_up_to = 0.0;
+  std::string note =
+      {};  ///< a sentence where it is not identifiable: "rotational damping: not identifiable from this FRF"
+};
+
+struct JointFitResult {
+  enum class Status { converged, not_converged };
+  Status status = Status::not_converged;
+  Joint joint;
+  double objective_m_per_n = 0.0;  ///< ‖ |H11| - |H11 model| ‖₂ over the lines
+  double relative_error = 0.0;     ///< ‖H11 - H11 model‖ / ‖H11‖, complex
+  std::array<JointKnowledge, joint_unknowns> knowledge;
+  int iterations = 0;        ///< generations and steps together
+  std::vector<double> best;  ///< the objective after each: of ga in m/N, of hybrid the relative one that it minimises
+  modal::FrfSet model;       ///< H11 of the joint found, on the measured axis
+  std::vector<double> suspect_hz;  ///< as of tip_frfs
+  std::vector<std::string> notes;
+};
+
+/// Finds the joint with which the assembly's tip moves as measured. The assembly's own joint is not looked at but for
+/// its points, shank and cross stiffness; method and accuracy in README.md.
+/// @param measured  holds xx (or yy, by options.axis); with a measured holder on the same axis
+/// @throws InvalidInput if an option, the assembly or the set is not valid, the FRF is missing, or the axes differ
+/// @throws Interrupted when progress says so
+/// Source: [JointIdentification] (ga); [Storn1997] (differential evolution)
+[[nodiscard]] ROBOMILL_API JointFitResult fit_joint(const Assembly& assembly, const modal::FrfSet& measured,
+                                                    const JointFitOptions& options,
+                                                    Progress& progress = Progress::none());
+
+}  // namespace robomill::coupling
