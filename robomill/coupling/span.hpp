@@ -19,7 +19,7 @@ struct Span {
 };
 
 /// The spans of segments joined rigidly, one a frequency; end 1 is that of the first segment.
-/// @throws InvalidInput naming the member as "[i].length_m" (from 1)
+/// Any @throws as Segment::validate; the frequencies are > 0.
 [[nodiscard]] std::vector<Span> spans(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz);
 
 /// Kc⁻¹ of a whole joint.

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 
-#include "robomill/stability/lanes.hpp"
+#include "robomill/base/lanes.hpp"
 
 /// The inner loops of collocation: plain arrays of Lanes, nothing allocated. Matrices are row by row, m is the number
 /// of nodes times that of channels, modal is 2n.

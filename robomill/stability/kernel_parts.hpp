@@ -1,5 +1,5 @@
 #pragma once
-#include "robomill/stability/lanes.hpp"
+#include "robomill/base/lanes.hpp"
 
 /// What kernels are put together from. Each works on the lanes that one register holds, from `lane` on.
 namespace robomill::stability::detail {

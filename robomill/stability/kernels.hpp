@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 
-#include "robomill/stability/lanes.hpp"
+#include "robomill/base/lanes.hpp"
 
 /// The inner loops: plain arrays of Lanes, nothing allocated. Matrices are row by row.
 namespace robomill::stability::detail {

@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "robomill/stability/lanes.hpp"
+#include "robomill/base/lanes.hpp"
 
 /// Small sums and products of Lanes. 2 x 2 matrices are four Lanes, row by row.
 namespace robomill::stability::detail {

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "robomill/stability/lanes.hpp"
+#include "robomill/base/lanes.hpp"
 
 namespace robomill::stability::detail {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "robomill/stability/lanes.hpp"
+#include "robomill/base/lanes.hpp"
 #include "robomill/stability/lobes.hpp"
 
 namespace robomill::stability::detail {

@@ -4,7 +4,7 @@
 /// Eight points at a time: every arithmetic step of a kernel is done for the eight lanes of its operands. Lanes never
 /// meet and nothing is contracted (-ffp-contract=off), so that each lane has the same bits whatever vectors the machine
 /// has.
-namespace robomill::stability::detail {
+namespace robomill {
 
 inline constexpr std::size_t lane_count = 8;
 
@@ -57,4 +57,4 @@ struct Register {
   }
 #endif
 
-}  // namespace robomill::stability::detail
+}  // namespace robomill

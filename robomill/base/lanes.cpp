@@ -1,6 +1,6 @@
-#include "robomill/stability/lanes.hpp"
+#include "robomill/base/lanes.hpp"
 
-namespace robomill::stability::detail {
+namespace robomill {
 
 Kernels best_kernels() {
 #if defined(__x86_64__)
@@ -15,4 +15,4 @@ Kernels& kernels() {
   return chosen;
 }
 
-}  // namespace robomill::stability::detail
+}  // namespace robomill

@@ -1,0 +1,34 @@
+#pragma once
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+#include "robomill/coupling/assembly.hpp"
+
+namespace robomill::coupling::detail {
+
+template <int N>
+using Square = Eigen::Matrix<std::complex<double>, N, N>;
+
+/// The same in each plane and none between: N is twice the number of planes.
+template <int N>
+[[nodiscard]] Square<N> planes(const Eigen::Matrix2cd& plane) {
+  Square<N> out = Square<N>::Zero();
+  for (int i = 0; i < N; i += 2) out.template block<2, 2>(i, i) = plane;
+  return out;
+}
+
+/// Receptance of the shank where it leaves the holder's mouth, the shank standing in the holder on joint.points points.
+/// Shank and holder are beams side by side over the insertion; a holder that was measured moves there as a rigid body.
+/// @param base  of the holder's mouth without the shank, one a frequency
+template <int N>
+[[nodiscard]] std::vector<Square<N>> distributed(const Joint& joint, const Holder& holder,
+                                                 const std::vector<Square<N>>& base,
+                                                 const Eigen::VectorXd& frequency_hz);
+
+extern template std::vector<Square<2>> distributed<2>(const Joint&, const Holder&, const std::vector<Square<2>>&,
+                                                      const Eigen::VectorXd&);
+extern template std::vector<Square<4>> distributed<4>(const Joint&, const Holder&, const std::vector<Square<4>>&,
+                                                      const Eigen::VectorXd&);
+
+}  // namespace robomill::coupling::detail

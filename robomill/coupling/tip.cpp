@@ -1,0 +1,224 @@
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <complex>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "robomill/coupling/assembly.hpp"
+#include "robomill/coupling/base.hpp"
+#include "robomill/coupling/distributed.hpp"
+#include "robomill/coupling/span.hpp"
+
+namespace robomill::coupling {
+namespace {
+
+using detail::Base;
+using detail::Span;
+using Eigen::Index;
+using modal::Axis;
+
+constexpr std::size_t lines_per_block = 128;
+
+template <class F>
+void at_member(const std::string& member, F&& f) {
+  try {
+    f();
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    parts.field = member + parts.field;
+    throw InvalidInput(std::move(parts));
+  }
+}
+
+void validate_segments(const char* member, const std::vector<Segment>& segments) {
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    at_member(fmt::format("{}[{}].", member, i + 1), [&] { segments[i].validate(); });
+  }
+}
+
+void require_frequencies(const Eigen::VectorXd& frequency_hz) {
+  if (frequency_hz.size() == 0) throw InvalidInput("frequency_hz", "is empty");
+  for (Index i = 0; i < frequency_hz.size(); ++i) {
+    require_positive("frequency_hz", frequency_hz(i), "Hz", "A structure that hangs free has no receptance at 0 Hz");
+    if (i > 0 && frequency_hz(i) <= frequency_hz(i - 1)) {
+      throw InvalidInput("frequency_hz", frequency_hz(i), "Hz", "must be above the frequency before it");
+    }
+  }
+}
+
+double total_length(const std::vector<Segment>& segments) {
+  double sum = 0.0;
+  for (const Segment& segment : segments) sum += segment.length_m;
+  return sum;
+}
+
+/// The tip's receptance, (u, θ) for (f, m); N is 2 for one plane, 4 for both.
+template <int N>
+detail::Square<N> tip(const Span& tool, const detail::Square<N>& base) {
+  const detail::Square<N> held =
+      (detail::Square<N>::Identity() + base * detail::planes<N>(tool.stiffness)).inverse() * base;
+  const detail::Square<N> carry = detail::planes<N>(tool.carry);
+  return detail::planes<N>(tool.clamped) + carry * held * carry.transpose();
+}
+
+/// What the tool stands on, through the joint: the base of one plane, or of both where N is 4.
+template <int N>
+std::vector<detail::Square<N>> under_tool(const Assembly& assembly, const std::vector<detail::Square<N>>& base,
+                                          const Eigen::VectorXd& frequency_hz) {
+  if (!assembly.joint) return base;
+  if (assembly.joint->points > 1) {
+    return detail::distributed<N>(*assembly.joint, assembly.holder, base, frequency_hz);
+  }
+  std::vector<detail::Square<N>> out = base;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] += detail::planes<N>(detail::flexibility(*assembly.joint, frequency_hz(static_cast<Index>(i))));
+  }
+  return out;
+}
+
+template <int N>
+std::vector<detail::Square<N>> tips(const Assembly& assembly, const std::vector<Span>& tool,
+                                    const std::vector<detail::Square<N>>& base, const Eigen::VectorXd& frequency_hz) {
+  const std::vector<detail::Square<N>> under = under_tool<N>(assembly, base, frequency_hz);
+  std::vector<detail::Square<N>> out(under.size());
+  parallel_for(under.size(), lines_per_block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) out[i] = tip<N>(tool[i], under[i]);
+  });
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out[i].allFinite()) continue;
+    throw InvalidInput("frequency_hz", frequency_hz(static_cast<Index>(i)), "Hz",
+                       "is a resonance without damping, where the receptance has no value",
+                       "Give the segments a loss factor: steel has 0.001 to 0.02");
+  }
+  return out;
+}
+
+/// Adds elements (rows x columns) of the matrices as FRFs of a plane for loads in a plane.
+template <class Matrices>
+void add_frfs(const Matrices& matrices, Axis plane, Axis load_plane, Index row0, Index column0, bool rotations,
+              modal::FrfSet& set) {
+  const int size = rotations ? 2 : 1;
+  for (int column = 0; column < size; ++column) {
+    for (int row = 0; row < size; ++row) {
+      modal::Frf frf;
+      frf.name = detail::element_name(plane, row, load_plane, column);
+      const double sign = detail::element_sign(plane, row, load_plane, column);
+      frf.receptance.resize(static_cast<Index>(matrices.size()));
+      for (std::size_t i = 0; i < matrices.size(); ++i) {
+        frf.receptance(static_cast<Index>(i)) = sign * matrices[i](row0 + row, column0 + column);
+      }
+      set.frfs.push_back(std::move(frf));
+    }
+  }
+}
+
+std::vector<Eigen::Matrix4cd> both_planes(const Base& base) {
+  std::vector<Eigen::Matrix4cd> out(base.x.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] << base.x[i], base.xy[i], base.yx[i], base.y[i];
+  return out;
+}
+
+}  // namespace
+
+void Joint::validate() const {
+  require_positive("translational_stiffness_n_per_m", translational_stiffness_n_per_m, "N/m");
+  require_non_negative("translational_damping_n_s_per_m", translational_damping_n_s_per_m, "N s/m");
+  require_positive("rotational_stiffness_n_m_per_rad", rotational_stiffness_n_m_per_rad, "N m/rad");
+  require_non_negative("rotational_damping_n_m_s_per_rad", rotational_damping_n_m_s_per_rad, "N m s/rad");
+  require_finite("cross_stiffness_n_per_rad", cross_stiffness_n_per_rad, "N/rad");
+  if (!(cross_stiffness_n_per_rad * cross_stiffness_n_per_rad <
+        translational_stiffness_n_per_m * rotational_stiffness_n_m_per_rad)) {
+    throw InvalidInput("cross_stiffness_n_per_rad", cross_stiffness_n_per_rad, "N/rad",
+                       "must be below the geometric mean of the two stiffnesses",
+                       "Else some load would move the joint against itself");
+  }
+  if (points < 1 || points > 100) throw InvalidInput("points", points, "", "must be in 1 ... 100");
+  if (points == 1) {
+    if (!shank.empty()) throw InvalidInput("shank", "must be left out where the joint has one point, at the mouth");
+    return;
+  }
+  require_positive("insertion_length_m", insertion_length_m, "m", "Several points stand over the shank's length");
+  if (shank.empty()) throw InvalidInput("shank", "is missing: the part of the tool that stands in the holder");
+  validate_segments("shank", shank);
+  if (std::abs(total_length(shank) - insertion_length_m) > 1e-9 + 1e-6 * insertion_length_m) {
+    throw InvalidInput("insertion_length_m", insertion_length_m, "m", "must be the length of the shank's segments");
+  }
+}
+
+void Assembly::validate() const {
+  if (tool.empty()) throw InvalidInput("tool", "has no segment", "At least one, from the tip to the joint");
+  validate_segments("tool", tool);
+  validate_segments("holder.segments", holder.segments);
+  if (!holder.receptances.frfs.empty()) {
+    if (!holder.segments.empty()) throw InvalidInput("holder", "must have segments or receptances, not both");
+    holder.receptances.validate();
+  }
+  if (!joint) return;
+  at_member("joint.", [&] { joint->validate(); });
+  if (joint->points > 1 && !holder.segments.empty() && total_length(holder.segments) < joint->insertion_length_m) {
+    throw InvalidInput("joint.insertion_length_m", joint->insertion_length_m, "m",
+                       "must not be longer than the holder");
+  }
+}
+
+TipResult tip_frfs(const Assembly& assembly, const Eigen::VectorXd& frequency_hz, const TipOptions& options) {
+  assembly.validate();
+  require_frequencies(frequency_hz);
+  Base base = detail::base_receptances(assembly.holder, frequency_hz);
+  const std::vector<Span> tool = detail::spans(assembly.tool, frequency_hz);
+  TipResult result;
+  result.frfs.frequency_hz = frequency_hz;
+  const bool rotations = options.rotations;
+  if (!base.xy.empty()) {
+    const auto both = tips<4>(assembly, tool, both_planes(base), frequency_hz);
+    add_frfs(both, Axis::x, Axis::x, 0, 0, rotations, result.frfs);
+    add_frfs(both, Axis::y, Axis::x, 2, 0, rotations, result.frfs);
+    add_frfs(both, Axis::x, Axis::y, 0, 2, rotations, result.frfs);
+    add_frfs(both, Axis::y, Axis::y, 2, 2, rotations, result.frfs);
+  } else {
+    const auto x = tips<2>(assembly, tool, base.x, frequency_hz);
+    add_frfs(x, Axis::x, Axis::x, 0, 0, rotations, result.frfs);
+    // A round assembly is the same in both planes.
+    const auto y = base.measured ? tips<2>(assembly, tool, base.y, frequency_hz) : x;
+    add_frfs(y, Axis::y, Axis::y, 0, 0, rotations, result.frfs);
+  }
+  result.suspect_hz = std::move(base.suspect_hz);
+  result.notes = std::move(base.notes);
+  if (!result.suspect_hz.empty()) {
+    result.notes.push_back(
+        fmt::format("At {} lines, the first at {:.6g} Hz, the measured holder would create energy (Im H > 0 beyond its "
+                    "noise): do not trust the tip there.",
+                    result.suspect_hz.size(), result.suspect_hz.front()));
+  }
+  return result;
+}
+
+modal::FrfSet free_frfs(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz) {
+  if (segments.empty()) throw InvalidInput("segments", "are none");
+  validate_segments("segments", segments);
+  require_frequencies(frequency_hz);
+  std::vector<Eigen::Matrix4cd> receptance;
+  for (const Span& span : detail::spans(segments, frequency_hz)) {
+    const Eigen::Matrix2cd r22 = span.stiffness.inverse();
+    const Eigen::Matrix2cd r12 = span.carry * r22;
+    receptance.emplace_back();
+    receptance.back() << span.clamped + r12 * span.carry.transpose(), r12, r12.transpose(), r22;
+  }
+  modal::FrfSet set{.frequency_hz = frequency_hz, .frfs = {}};
+  for (int load = 0; load < 2; ++load) {
+    for (int end = 0; end < 2; ++end) {
+      const std::size_t first = set.frfs.size();
+      add_frfs(receptance, Axis::x, Axis::x, 2 * end, 2 * load, true, set);
+      for (std::size_t i = first; i < set.frfs.size(); ++i) {
+        set.frfs[i].name.response.point = end + 1;
+        set.frfs[i].name.excitation.point = load + 1;
+      }
+    }
+  }
+  return set;
+}
+
+}  // namespace robomill::coupling
