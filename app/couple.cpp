@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "robomill/base/error.hpp"
+#include "robomill/coupling/assembly.hpp"
+#include "robomill/formats/assembly_toml.hpp"
+#include "robomill/formats/frf_files.hpp"
+#include "robomill/formats/units.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+constexpr std::size_t peaks_shown = 6;
+
+/// Where |H| is above its neighbours, the highest few by rising frequency.
+std::vector<Eigen::Index> peaks_of(const Eigen::VectorXd& magnitude) {
+  std::vector<Eigen::Index> peaks;
+  for (Eigen::Index i = 1; i + 1 < magnitude.size(); ++i) {
+    if (magnitude(i) > magnitude(i - 1) && magnitude(i) >= magnitude(i + 1)) peaks.push_back(i);
+  }
+  const auto higher = [&](Eigen::Index a, Eigen::Index b) { return magnitude(a) > magnitude(b); };
+  std::stable_sort(peaks.begin(), peaks.end(), higher);
+  peaks.resize(std::min(peaks.size(), peaks_shown));
+  std::sort(peaks.begin(), peaks.end());
+  return peaks;
+}
+
+void print_peaks(const modal::FrfSet& set, const modal::Frf& frf) {
+  const Eigen::VectorXd magnitude = frf.receptance.cwiseAbs();
+  const std::string name = modal::to_string(frf.name);
+  const std::vector<Eigen::Index> peaks = peaks_of(magnitude);
+  if (peaks.empty()) fmt::print("{}: no peak between the first line and the last\n", name);
+  for (const Eigen::Index i : peaks) {
+    fmt::print("{}: peak at {:.6g} Hz, {:.4g} µm/N\n", name, set.frequency_hz(i), magnitude(i) / units::um);
+  }
+}
+
+/// Of an assembly of beams far below its lines; of a measured holder, which has no such lines, at the first.
+void print_compliance(const formats::AssemblyFile& file, const modal::FrfSet& tip, const modal::FrfName& name) {
+  const std::string text = modal::to_string(name);
+  if (!file.assembly.holder.receptances.frfs.empty()) {
+    const double compliance = std::abs(tip.find(name)->receptance(0));
+    fmt::print("{}: {:.4g} µm/N at the first line, {:.6g} Hz\n", text, compliance / units::um, tip.frequency_hz(0));
+    return;
+  }
+  const Eigen::VectorXd low = Eigen::VectorXd::Constant(1, 0.01 * tip.frequency_hz(0));
+  const double compliance = coupling::tip_frfs(file.assembly, low).frfs.find(name)->receptance(0).real();
+  fmt::print("{}: static compliance {:.4g} µm/N (stiffness {:.4g} N/µm)\n", text, compliance / units::um,
+             units::um / compliance);
+}
+
+void print_lines(const char* what, const std::vector<double>& lines_hz) {
+  if (lines_hz.empty()) return;
+  fmt::print("{}: {} lines, {:.6g} to {:.6g} Hz\n", what, lines_hz.size(), lines_hz.front(), lines_hz.back());
+}
+
+void print_summary(const formats::AssemblyFile& file, const coupling::TipResult& tip) {
+  const modal::Frf& x = *tip.frfs.find(modal::parse_frf_name("xx"));
+  const modal::Frf& y = *tip.frfs.find(modal::parse_frf_name("yy"));
+  print_peaks(tip.frfs, x);
+  print_compliance(file, tip.frfs, x.name);
+  if (y.receptance == x.receptance) {
+    fmt::print("yy: the same as xx\n");
+  } else {
+    print_peaks(tip.frfs, y);
+    print_compliance(file, tip.frfs, y.name);
+  }
+  print_lines("Suspect", tip.suspect_hz);
+  if (file.holder) {
+    print_lines("Holder not reliable", file.holder->unreliable_hz);
+    for (const std::string& note : file.holder->notes) fmt::print("Note: {}\n", note);
+  }
+  for (const std::string& note : file.notes) fmt::print("Note: {}\n", note);
+  for (const std::string& note : tip.notes) fmt::print("Note: {}\n", note);
+}
+
+}  // namespace
+
+Exit run(const CoupleCommand& command, const Common& common, Progress& progress) {
+  const formats::AssemblyFile file = formats::read_assembly(command.input);
+  const modal::FrfSet& holder = file.assembly.holder.receptances;
+  if (!command.holder_out.empty() && holder.frfs.empty()) {
+    throw InvalidInput("--holder-out", "needs a measured holder",
+                       "A holder of segments, or a rigid wall, has nothing to keep for the next tool");
+  }
+  progress.check();
+  const coupling::TipResult tip =
+      coupling::tip_frfs(file.assembly, file.frequency_hz, {.rotations = command.rotations});
+  if (common.to_stdout()) {
+    fmt::print("{}", formats::frf_json(tip.frfs));
+  } else if (!common.output.empty()) {
+    formats::write_frfs(common.output, tip.frfs);
+  }
+  if (!command.holder_out.empty()) formats::write_frfs(command.holder_out, holder);
+  if (common.wants_summary()) print_summary(file, tip);
+  return done;
+}
+
+}  // namespace robomill::app
