@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <optional>
 
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/formats/assembly_toml.hpp"
+#include "robomill/formats/file.hpp"
 #include "robomill/formats/frf_files.hpp"
+#include "robomill/formats/lobes_toml.hpp"
+#include "robomill/formats/tools_csv.hpp"
 #include "robomill/formats/units.hpp"
+#include "robomill/plan/tools.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -78,9 +83,57 @@ void print_summary(const formats::AssemblyFile& file, const coupling::TipResult&
   for (const std::string& note : tip.notes) fmt::print("Note: {}\n", note);
 }
 
+void print_tools(const std::vector<plan::ToolResult>& results) {
+  fmt::print("{:<20} {:>5} {:>9} {:>9} {:>10} {:>5} {:>10} {:>9} {:>9}\n", "tool", "teeth", "overhang", "peak Hz",
+             "µm/N", "modes", "lowest mm", "rpm", "depth mm");
+  for (const plan::ToolResult& tool : results) {
+    fmt::print("{:<20} {:>5} {:>9.4g} ", tool.name, tool.teeth, tool.overhang_m / units::mm);
+    if (!tool.failure.empty()) {
+      fmt::print("{}\n", tool.failure);
+      continue;
+    }
+    fmt::print("{:>9.5g} {:>9.4g} {:>5} ", tool.peak_hz, tool.peak_m_per_n / units::um, tool.modes.modes.size());
+    const bool limited = tool.lowest_limit_m.has_value();
+    fmt::print("{:>10} ", limited ? fmt::format("{:.4g}", *tool.lowest_limit_m / units::mm) : "-");
+    if (tool.recommendation && tool.recommendation->recommended) {
+      const plan::Operation& best = *tool.recommendation->recommended;
+      fmt::print("{:>9.0f} {:>9.4g}\n", best.spindle_speed_rad_per_s / units::rpm, best.axial_depth_m / units::mm);
+    } else {
+      fmt::print("{}\n", tool.recommendation ? tool.recommendation->reason : "-");
+    }
+  }
+}
+
+/// A table of many tools in the assembly's holder.
+Exit try_tools(const CoupleCommand& command, const Common& common, Progress& progress) {
+  const bool as_json = common.to_stdout() || formats::format_of(common.output) == formats::Format::json;
+  if (!common.output.empty() && !as_json && formats::format_of(common.output) != formats::Format::csv) {
+    throw InvalidInput(common.output, "a table of tools is written as .csv or .json");
+  }
+  const formats::AssemblyFile assembly = formats::read_assembly(command.input);
+  const auto tools = formats::read_tools(command.tools, assembly.assembly.tool.front());
+  std::optional<formats::LobesFile> cut;
+  if (!command.lobes.empty()) cut = formats::read_lobes(command.lobes);
+  const std::vector<plan::ToolResult> results = plan::try_tools(assembly, tools, cut, common.seed, progress);
+  if (common.to_stdout()) {
+    fmt::print("{}", plan::tools_json(results));
+  } else if (!common.output.empty()) {
+    formats::write_file(common.output, as_json ? plan::tools_json(results) : plan::tools_csv(results));
+  }
+  if (common.wants_summary()) {
+    print_tools(results);
+    for (const std::string& note : assembly.notes) fmt::print("Note: {}\n", note);
+  }
+  const bool all_done = std::all_of(results.begin(), results.end(), [](const auto& t) { return t.failure.empty(); });
+  if (all_done) return done;
+  fmt::print(stderr, "robomill: not every tool could be coupled; its row says why\n");
+  return not_reached;
+}
+
 }  // namespace
 
 Exit run(const CoupleCommand& command, const Common& common, Progress& progress) {
+  if (!command.tools.empty()) return try_tools(command, common, progress);
   const formats::AssemblyFile file = formats::read_assembly(command.input);
   const modal::FrfSet& holder = file.assembly.holder.receptances;
   if (!command.holder_out.empty() && holder.frfs.empty()) {

@@ -64,6 +64,8 @@ CommandLine::CommandLine() {
   sub->add_flag("--rotations", couple.rotations, "also the rotations and moments at the tip");
   sub->add_option("--holder-out", couple.holder_out,
                   "keep the measured holder's receptances here, for every tool after: .uff .csv .mat .json");
+  CLI::Option* tools = sub->add_option("--tools", couple.tools, "tools.csv: a table of them, as .csv or .json");
+  sub->add_option("--lobes", couple.lobes, "lobes.toml: each tool's best speed and depth in this cut")->needs(tools);
 
   sub = verb("joint", "a measured tip FRF to the stiffness and damping between tool and holder",
              [this](Progress& p) { return run(joint, common, p); });

@@ -40,6 +40,8 @@ struct CoupleCommand {
   std::filesystem::path input;
   bool rotations = false;
   std::filesystem::path holder_out;  ///< empty: the holder's receptances are not kept
+  std::filesystem::path tools;       ///< tools.csv: a table of them in place of the assembly's own
+  std::filesystem::path lobes;       ///< with tools: the cut that each is to make
 };
 struct JointCommand {
   std::filesystem::path input;

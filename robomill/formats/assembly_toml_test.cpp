@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <complex>
 #include <string>
 #include <vector>
@@ -165,19 +166,19 @@ TEST(AssemblyToml, RefusesInTheFilesWords) {
   expect("flutes = 3", "flutes = -3", "assembly.toml:7: tool[1].flutes = -3");
   expect("flutes = 3", "flutes = 2.5", "must be a whole number");
   expect("beam = \"euler-bernoulli\"", "beam = \"euler\"",
-         "assembly.toml:19: tool[2].beam = \"euler\"; must be one of \"timoshenko\", \"euler-bernoulli\"");
+         "assembly.toml:20: tool[2].beam = \"euler\"; must be one of \"timoshenko\", \"euler-bernoulli\"");
   expect("translational_stiffness_n_per_m = 9.7e7", "translational_stiffness_n_per_m = -1",
-         "assembly.toml:21: joint.translational_stiffness_n_per_m = -1 N/m; must be > 0");
+         "assembly.toml:22: joint.translational_stiffness_n_per_m = -1 N/m; must be > 0");
   expect("rotational_stiffness_n_m_per_rad = 9.6e5\n", "", "joint.rotational_stiffness_n_m_per_rad: is missing");
   expect("rotational_damping_n_m_s_per_rad = 10.4", "rotational_damping_n_m_s_per_rad = -10.4",
-         "assembly.toml:24: joint.rotational_damping_n_m_s_per_rad = -10.4 N m s/rad");
+         "assembly.toml:25: joint.rotational_damping_n_m_s_per_rad = -10.4 N m s/rad");
   expect("cross_stiffness_n_per_rad = 1e3", "cross_stiffness_n_per_rad = 1e9",
-         "assembly.toml:25: joint.cross_stiffness_n_per_rad = 1e+09 N/rad");
-  expect("points = 5", "points = 0", "assembly.toml:26: joint.points = 0");
-  expect("insertion_length_mm = 30", "insertion_length_mm = 31", "assembly.toml:27: joint.insertion_length_mm = 31 mm");
+         "assembly.toml:26: joint.cross_stiffness_n_per_rad = 1e+09 N/rad");
+  expect("points = 5", "points = 0", "assembly.toml:27: joint.points = 0");
+  expect("insertion_length_mm = 30", "insertion_length_mm = 31", "assembly.toml:28: joint.insertion_length_mm = 31 mm");
   expect("[[joint.shank]]\nlength_mm = 30", "[[joint.shank]]\nlength_mm = -30",
-         "assembly.toml:29: joint.shank[1].length_mm = -30 mm");
-  expect("length_mm = 50.90", "length_mm = -50.90", "assembly.toml:34: holder.segments[1].length_mm = -50.9 mm");
+         "assembly.toml:30: joint.shank[1].length_mm = -30 mm");
+  expect("length_mm = 50.90", "length_mm = -50.90", "assembly.toml:35: holder.segments[1].length_mm = -50.9 mm");
   expect("range_hz = [1, 5000]", "range_hz = [5000, 1]", "assembly.toml:2: frequency.range_hz: must be [from, to]");
   expect("range_hz = [1, 5000]", "range_hz = [0, 5000]", "must begin above 0 Hz");
   expect("range_hz = [1, 5000]", "range_hz = [1]", "must be [from, to]");
@@ -377,7 +378,7 @@ TEST(AssemblyToml, LinesBetweenKeepWhatTheyCarry) {
 TEST(AssemblyToml, SurvivesMutations) {
   const testing::Folder folder;
   Random random(11);
-  for (int i = 0; i < testing::seeds(2000); ++i) {
+  for (int i = 0; i < testing::seeds(1000); ++i) {
     std::string text = good;
     text[random.index(text.size())] = static_cast<char>(random.index(256));
     if (i % 2 == 0) text.resize(1 + random.index(good.size() - 1));

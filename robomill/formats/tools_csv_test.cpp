@@ -106,7 +106,7 @@ TEST(ToolsCsv, SurvivesMutations) {
   const testing::Folder folder;
   const std::string good = "tool,length_mm,diameter_mm,beam\n\"a\",20,10,timoshenko\n\"b\",30,12,euler-bernoulli\n";
   Random random(3);
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < testing::seeds(1000); ++i) {
     std::string text = good;
     text[random.index(text.size())] = static_cast<char>(random.index(256));
     if (i % 2 == 0) text.resize(1 + random.index(good.size() - 1));
