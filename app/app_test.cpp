@@ -321,6 +321,29 @@ TEST_F(App, CoupleRefusesInTheFilesWords) {
   EXPECT_EQ(robomill("couple a.toml --sideways").exit, 2);
 }
 
+TEST_F(App, CouplesAListOfTools) {
+  write_assembly("assembly.toml", "", "[[holder.segments]]\n" + bar(50.90),
+                 "[frequency]\nrange_hz = [20, 1000]\nstep_hz = 2\n");
+  write("tools.csv", "tool,length_mm,diameter_mm,teeth\nbar,118.92,12,2\nthin,118.92,1,2\nshort,80,12,3\n");
+  write_lobes();
+  const Ended told = robomill("couple assembly.toml --tools tools.csv --lobes lobes.toml -o table.csv");
+  EXPECT_EQ(told.exit, 3) << told.err;  // 1.8 mm are more than the thin one has
+  EXPECT_NE(told.out.find("must be at most the cutter's diameter"), std::string::npos) << told.out;
+  const std::string csv = slurp(folder_.at("table.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4) << csv;
+  EXPECT_NE(csv.find("\"bar\",2,12,118.92,294,"), std::string::npos) << csv;
+  const Ended json = robomill("couple assembly.toml --tools tools.csv -o -");
+  ASSERT_EQ(json.exit, 0) << json.err;
+  const auto rows = nlohmann::json::parse(json.out)["tools"];
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_NEAR(rows[0]["modes"][0]["frequency_hz"].get<double>(), 294.7, 1.0);
+  EXPECT_EQ(robomill("couple assembly.toml --tools tools.csv -o table.uff").exit, 1);
+  EXPECT_EQ(robomill("couple assembly.toml --lobes lobes.toml").exit, 2);
+  write("bad.csv", "tool,length_mm,diameter_mm\nbar,0,12\n");
+  EXPECT_NE(robomill("couple assembly.toml --tools bad.csv").err.find("bad.csv:2: length_mm = 0 mm; must be > 0"),
+            std::string::npos);
+}
+
 // A planted joint, seen through the tip FRF that it gives.
 TEST_F(App, FindsAJoint) {
   write_assembly("true.toml",
@@ -359,7 +382,8 @@ TEST_F(App, JointRefusesWhatDoesNotFit) {
   refused("assembly.toml --measured tip.csv -o joint.uff", "joints are written as .json");
   refused("assembly.toml --measured missing.csv", "missing.csv");
   write("lone.txt", "10 1e-6 0\n20 1e-6 0\n");
-  refused("assembly.toml --measured lone.txt --axis y", "yy");
+  refused("assembly.toml --measured lone.txt --axis y", "lone.txt: lacks yy");
+  refused("assembly.toml --measured lone.txt", "lone.txt: has 2 lines above 0 Hz");
   write_assembly("far.toml", "", "[[holder.segments]]\n" + bar(50.90), "[frequency]\nrange_hz = [4000, 5000]\n");
   refused("far.toml --measured tip.csv", "has no line from 4000 to 5000 Hz");
   write("bare.toml", "[frequency]\nrange_hz = [10, 1000]\nstep_hz = 10\n[[tool]]\n" + bar(50.90));

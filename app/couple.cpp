@@ -113,7 +113,13 @@ Exit try_tools(const CoupleCommand& command, const Common& common, Progress& pro
   const formats::AssemblyFile assembly = formats::read_assembly(command.input);
   const auto tools = formats::read_tools(command.tools, assembly.assembly.tool.front());
   std::optional<formats::LobesFile> cut;
-  if (!command.lobes.empty()) cut = formats::read_lobes(command.lobes);
+  if (!command.lobes.empty()) {
+    cut = formats::read_lobes(command.lobes);
+    // Each tool brings its own dynamics; those of a workpiece stay.
+    cut->modes.clear();
+    cut->frf.clear();
+    formats::load_dynamics(*cut);
+  }
   const std::vector<plan::ToolResult> results = plan::try_tools(assembly, tools, cut, common.seed, progress);
   if (common.to_stdout()) {
     fmt::print("{}", plan::tools_json(results));

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/joint_fit.hpp"
@@ -9,7 +10,6 @@
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/joint_json.hpp"
-#include "robomill/formats/units.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -44,27 +44,44 @@ void print_summary(const coupling::JointFitResult& fit, const std::vector<std::s
   for (const std::string& note : read_notes) fmt::print("Note: {}\n", note);
 }
 
+/// An error about the measured FRFs names their file, any other the assembly's.
+InvalidInput located(const InvalidInput& error, const JointCommand& command) {
+  InvalidInput::Parts parts = error.parts();
+  if (!parts.where.empty()) return error;
+  const bool measured = parts.field == "measured";
+  parts.where = measured ? command.measured.front().string() : command.input.string();
+  if (measured) parts.field.clear();
+  return InvalidInput(std::move(parts));
+}
+
+coupling::JointFitResult find_joint(const formats::AssemblyFile& file, const modal::FrfSet& measured,
+                                    const JointCommand& command, const Common& common, Progress& progress) {
+  coupling::JointFitOptions options;
+  options.method = command.method == "ga" ? coupling::JointMethod::ga : coupling::JointMethod::hybrid;
+  options.mutation = command.mutation == "adaptive" ? coupling::Mutation::adaptive : coupling::Mutation::uniform;
+  options.axis = command.axis == "y" ? modal::Axis::y : modal::Axis::x;
+  options.seed = common.seed;
+  try {
+    return coupling::fit_joint(file.assembly, formats::lines_between(measured, file.low_hz, file.high_hz), options,
+                               progress);
+  } catch (const InvalidInput& error) {
+    throw located(error, command);
+  }
+}
+
 }  // namespace
 
 Exit run(const JointCommand& command, const Common& common, Progress& progress) {
   if (!common.output.empty() && !common.to_stdout() && formats::format_of(common.output) != formats::Format::json) {
     throw InvalidInput(common.output, "joints are written as .json");
   }
-  formats::AssemblyFile file = formats::read_assembly(command.input, {.joint_sought = true});
+  const formats::AssemblyFile file = formats::read_assembly(command.input, {.joint_sought = true});
   const formats::FrfFile measured = formats::read_frfs(command.measured, command.as);
   if (measured.added_decay_per_s > 0.0) {
     throw InvalidInput(command.measured.front().string(), "still holds the damping of an exponential window",
                        "It would be taken for the joint's: estimate the FRFs with remove_added_damping");
   }
-  coupling::JointFitOptions options;
-  options.method = command.method == "ga" ? coupling::JointMethod::ga : coupling::JointMethod::hybrid;
-  options.mutation = command.mutation == "adaptive" ? coupling::Mutation::adaptive : coupling::Mutation::uniform;
-  options.axis = command.axis == "y" ? modal::Axis::y : modal::Axis::x;
-  options.seed = common.seed;
-  const modal::FrfSet band = formats::lines_between(measured.set, file.low_hz, file.high_hz);
-  modal::FrfSet& holder = file.assembly.holder.receptances;
-  if (!holder.frfs.empty()) holder = formats::lines_between(holder, file.low_hz, file.high_hz);
-  const coupling::JointFitResult fit = coupling::fit_joint(file.assembly, band, options, progress);
+  const coupling::JointFitResult fit = find_joint(file, measured.set, command, common, progress);
   if (common.to_stdout()) {
     fmt::print("{}", formats::joint_json(fit));
   } else if (!common.output.empty()) {
