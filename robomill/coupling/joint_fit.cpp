@@ -66,7 +66,8 @@ const modal::Frf& tip_frf(const modal::FrfSet& measured, Axis axis) {
     throw InvalidInput("measured", "lacks " + modal::to_string(name),
                        "The joint is found from the tip's response at the point and in the direction of the hit");
   }
-  throw InvalidInput("measured", "holds several points", "The tip is the one without a number: " + modal::to_string(name));
+  throw InvalidInput("measured", "holds several points",
+                     "The tip is the one without a number: " + modal::to_string(name));
 }
 
 /// The lines above 0 Hz.
@@ -195,17 +196,15 @@ JointFitResult fit_joint(const Assembly& assembly, const modal::FrfSet& measured
   detail::Base base = detail::base_receptances(assembly.holder, frequency_hz);
   result.notes.insert(result.notes.end(), base.notes.begin(), base.notes.end());
   note_suspects(measured, frf, base, result);
-  const detail::JointModel model(detail::spans(assembly.tool, frequency_hz),
-                                 options.axis == Axis::x ? base.x : base.y, frequency_hz,
-                                 frame.cross_stiffness_n_per_rad);
+  const detail::JointModel model(detail::spans(assembly.tool, frequency_hz), options.axis == Axis::x ? base.x : base.y,
+                                 frequency_hz, frame.cross_stiffness_n_per_rad);
   detail::JointData data = detail::joint_data(frf, lines, options.noise_floor);
   detail::JointSearch search = options.method == JointMethod::ga
                                    ? detail::search_by_genes(model, data.measured, bounded, progress)
                                    : detail::search_by_evolution(model, data, bounded, progress);
   detail::update_deviation(model, search.joint, data);
 
-  result.status =
-      search.converged ? JointFitResult::Status::converged : JointFitResult::Status::not_converged;
+  result.status = search.converged ? JointFitResult::Status::converged : JointFitResult::Status::not_converged;
   result.joint = frame;
   set_values(search.joint, result.joint);
   result.iterations = static_cast<int>(search.best.size());

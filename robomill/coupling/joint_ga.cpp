@@ -155,7 +155,8 @@ JointSearch search_by_genes(const JointModel& model, const Eigen::VectorXcd& mea
   pagmo::population population{problem, 0U, 0U};
   for (int i = 0; i < options.population; ++i) {
     Genes genes;
-    for (std::size_t d = 0; d < joint_unknowns; ++d) genes.push_back(random.uniform(options.lower[d], options.upper[d]));
+    for (std::size_t d = 0; d < joint_unknowns; ++d)
+      genes.push_back(random.uniform(options.lower[d], options.upper[d]));
     population.push_back(genes);
   }
   JointSearch search;

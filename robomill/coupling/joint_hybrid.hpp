@@ -21,8 +21,7 @@ struct JointData {
 void update_deviation(const JointModel& model, const JointValues& joint, JointData& data);
 
 /// (H model - H) / σ, real parts first.
-[[nodiscard]] Eigen::VectorXd joint_residuals(const JointModel& model, const JointValues& joint,
-                                              const JointData& data);
+[[nodiscard]] Eigen::VectorXd joint_residuals(const JointModel& model, const JointValues& joint, const JointData& data);
 
 /// Differential evolution on thinned lines, then least squares on all of them, twice: with the deviations as given and
 /// with those of the first fit, which data keeps.

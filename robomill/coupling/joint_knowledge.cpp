@@ -86,7 +86,10 @@ std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& mod
   const Eigen::VectorXd residual = joint_residuals(model, joint, data);
   const double spare = static_cast<double>(residual.size() - std::ranges::count(free, true));
   // A complex line's σ² is that of its real and imaginary parts together.
-  const double variance = std::max(0.5, residual.squaredNorm() / spare * correlation_length(residual));
+  const double random = std::max(0.5, residual.squaredNorm() / spare * correlation_length(residual));
+  // An error that all lines share, at its worst, is not averaged out.
+  const double shared = (data.noise_floor * data.measured.cwiseAbs().array() / data.deviation).square().sum();
+  const double variance = std::max(random, shared);
   const auto deviation = deviations(jacobian(model, joint, data), free, variance);
 
   std::array<JointKnowledge, joint_unknowns> knowledge;

@@ -62,7 +62,7 @@ template <bool derivatives>
 inline __attribute__((always_inline)) void respond(const Input& in, const JointValues& joint, std::size_t count,
                                                    const Output& out) {
   for (std::size_t i = 0; i < count; i += lanes) {
-    const auto get = [i](Numbers& to, const double* const (&from)[2]) __attribute__((always_inline)) {
+    const auto get = [i](Numbers & to, const double* const(&from)[2]) __attribute__((always_inline)) {
       load(to, from[0] + i, from[1] + i);
     };
     Four omega;
@@ -184,7 +184,7 @@ JointModel JointModel::part(const std::vector<Index>& lines) const {
 
 template <bool derivatives>
 void JointModel::evaluate(const JointValues& joint, Response& response) const {
-  const auto pair = [&](const double* (&to)[2], Constant constant) {
+  const auto pair = [&](const double*(&to)[2], Constant constant) {
     to[0] = real_[constant].data();
     to[1] = imag_[constant].data();
   };
