@@ -21,11 +21,13 @@ using Eigen::Index;
 using Coordinates = pagmo::vector_double;
 
 constexpr std::size_t thinned_count = 256;
-constexpr unsigned individuals = 32;
-constexpr unsigned generations = 60;
+constexpr unsigned individuals = 40;
+constexpr unsigned generations = 100;
 constexpr double differential_weight = 0.7;
 constexpr double crossover_rate = 0.9;
-constexpr std::size_t candidates = 4;  // of the search, refined on the thinned lines
+// Of the search, refined on the thinned lines: no two nearer to each other than a factor of e in every unknown.
+constexpr std::size_t candidates = 6;
+constexpr double least_apart = 1.0;
 
 /// Where least squares and evolution look at the unknowns: x = arsinh(flexibility / unit) of a stiffness, x =
 /// arsinh(damping / unit) of a damping. Far above the unit that is a logarithm; below it is linear, and the rigid and
@@ -248,6 +250,29 @@ Refined refine(const JointModel& model, const JointData& data, const JointValues
   return refined;
 }
 
+/// The best that least squares reach from several starts, and from there with one unknown at a time moved far off: a
+/// damping that is taken for a stiffness, or the other way round, is a valley of its own.
+Refined refine_best(const JointModel& model, const JointData& data, const std::vector<JointValues>& starts,
+                    const Bounds& bounds, Progress& progress) {
+  constexpr int steps = 30;
+  Refined best;
+  best.cost = std::numeric_limits<double>::infinity();
+  const auto from = [&](const JointValues& start) {
+    Refined refined = refine(model, data, start, bounds, steps, progress);
+    if (refined.cost < best.cost) best = std::move(refined);
+  };
+  for (const JointValues& start : starts) from(start);
+  const JointValues found = best.joint;
+  for (std::size_t i = 0; i < joint_unknowns; ++i) {
+    for (const double factor : {0.03, 30.0}) {
+      JointValues moved = found;
+      moved[i] = bounds.hold(i, factor * found[i]);
+      if (model.allows(moved)) from(moved);
+    }
+  }
+  return best;
+}
+
 JointData part(const JointData& data, const std::vector<Index>& lines) {
   JointData out = data;
   out.measured = data.measured(lines);
@@ -255,7 +280,7 @@ JointData part(const JointData& data, const std::vector<Index>& lines) {
   return out;
 }
 
-/// The best individuals of an evolution, best first.
+/// The best individuals of an evolution that are apart, best first.
 std::vector<JointValues> evolve(const JointModel& model, const JointData& data, const Bounds& bounds,
                                 std::uint64_t seed, std::vector<double>& best, Progress& progress) {
   const Scale scale = search_scale(model, bounds);
@@ -283,7 +308,19 @@ std::vector<JointValues> evolve(const JointModel& model, const JointData& data, 
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return population.get_f()[i][0]; });
   std::vector<JointValues> found;
-  for (std::size_t i = 0; i < candidates; ++i) found.push_back(view.joint(population.get_x()[order[i]]));
+  std::vector<const Coordinates*> taken;
+  const std::vector<Coordinates> all = population.get_x();
+  for (const std::size_t i : order) {
+    const bool near = std::ranges::any_of(taken, [&](const Coordinates* other) {
+      double apart = 0.0;
+      for (std::size_t d = 0; d < joint_unknowns; ++d) apart = std::max(apart, std::abs(all[i][d] - (*other)[d]));
+      return apart < least_apart;
+    });
+    if (near) continue;
+    taken.push_back(&all[i]);
+    found.push_back(view.joint(all[i]));
+    if (found.size() == candidates) break;
+  }
   return found;
 }
 
@@ -385,12 +422,8 @@ JointSearch search_by_evolution(const JointModel& model, JointData& data, const 
   const JointData thin = part(data, lines);
   progress.start("joint search", generations);
   JointSearch search;
-  Refined best;
-  best.cost = std::numeric_limits<double>::infinity();
-  for (const JointValues& start : evolve(thin_model, thin, bounds, options.seed, search.best, progress)) {
-    Refined refined = refine(thin_model, thin, start, bounds, 30, progress);
-    if (refined.cost < best.cost) best = std::move(refined);
-  }
+  const std::vector<JointValues> starts = evolve(thin_model, thin, bounds, options.seed, search.best, progress);
+  Refined best = refine_best(thin_model, thin, starts, bounds, progress);
   for (int pass = 0; pass < 2; ++pass) {
     best = refine(model, data, best.joint, bounds, 100, progress);
     for (const double cost : best.costs) {
