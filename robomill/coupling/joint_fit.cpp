@@ -108,8 +108,7 @@ void note_suspects(const modal::FrfSet& measured, const modal::Frf& frf, detail:
         tip.size(), tip.front()));
     result.suspect_hz.insert(result.suspect_hz.end(), tip.begin(), tip.end());
     std::ranges::sort(result.suspect_hz);
-    const auto repeated = std::ranges::unique(result.suspect_hz);
-    result.suspect_hz.erase(repeated.begin(), repeated.end());
+    result.suspect_hz.erase(std::unique(result.suspect_hz.begin(), result.suspect_hz.end()), result.suspect_hz.end());
   }
   if (!base.xy.empty()) {
     result.notes.push_back("The holder's receptances between x and y are left out: a joint is found in one plane.");

@@ -76,6 +76,21 @@ bool at_bound(double value, double bound) {
   return std::abs(value - bound) <= 1e-6 * std::abs(bound);
 }
 
+/// What the FRF says of a stiffness that it does not bound from both sides.
+/// @param bound  where it ends; 0: at none
+std::string note_of_stiffness(std::size_t i, double value, const JointKnowledge& known, double bound) {
+  const std::string name = to_string(static_cast<JointUnknown>(i));
+  if (std::isinf(known.deviation)) {
+    return fmt::format("Above {:.3g} {} this FRF cannot tell the {} from a rigid one.", known.visible_up_to, units[i],
+                       name);
+  }
+  if (bound > 0.0) {
+    return fmt::format("The {} ends at its bound of {:.4g} {}: the joint may lie beyond it.", name, bound, units[i]);
+  }
+  return fmt::format("The {} is below {:.3g} {}; more this FRF does not tell.", name, value + 2.0 * known.deviation,
+                     units[i]);
+}
+
 }  // namespace
 
 std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& model, const JointValues& joint,
@@ -118,17 +133,8 @@ std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& mod
     JointValues rigid = joint;
     rigid[i] = std::max(1e15, joint[i]);
     const double rise = joint_residuals(model, rigid, data).squaredNorm() - residual.squaredNorm();
-    if (rise < 4.0 * variance) {
-      known.deviation = infinite;
-      notes.push_back(fmt::format("Above {:.3g} {} this FRF cannot tell the {} from a rigid one.", known.visible_up_to,
-                                  units[i], name));
-    } else if (bound) {
-      notes.push_back(fmt::format("The {} ends at its bound of {:.4g} {}: the joint may lie beyond it.", name,
-                                  bound_value, units[i]));
-    } else {
-      notes.push_back(fmt::format("The {} is below {:.3g} {}; more this FRF does not tell.", name,
-                                  joint[i] + 2.0 * known.deviation, units[i]));
-    }
+    if (rise < 4.0 * variance) known.deviation = infinite;
+    notes.push_back(note_of_stiffness(i, joint[i], known, bound ? bound_value : 0.0));
   }
   return knowledge;
 }
