@@ -436,8 +436,8 @@ TEST(FrequencyDomain, RefusesWhatCannotBe) {
     change(p.milling);
     const std::string multi = message_of(
         [&] { static_cast<void>(multi_frequency_limits(p.milling, g, {speed}, {.largest_depth_m = depth_m})); });
-    const std::string zeroth =
-        message_of([&] { static_cast<void>(zeroth_order_limits(p.milling, g, {speed}, {.largest_depth_m = depth_m})); });
+    const std::string zeroth = message_of(
+        [&] { static_cast<void>(zeroth_order_limits(p.milling, g, {speed}, {.largest_depth_m = depth_m})); });
     EXPECT_EQ(multi, zeroth);
     return multi;
   };
