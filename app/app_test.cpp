@@ -337,6 +337,8 @@ TEST_F(App, CouplesAListOfTools) {
   const auto rows = nlohmann::json::parse(json.out)["tools"];
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_NEAR(rows[0]["modes"][0]["frequency_hz"].get<double>(), 294.7, 1.0);
+  EXPECT_EQ(robomill("couple assembly.toml --tools tools.csv --frfs tips --quiet").exit, 0);
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder_.at("tips/3_short.uff")));
   EXPECT_EQ(robomill("couple assembly.toml --tools tools.csv -o table.uff").exit, 1);
   EXPECT_EQ(robomill("couple assembly.toml --lobes lobes.toml").exit, 2);
   write("bad.csv", "tool,length_mm,diameter_mm\nbar,0,12\n");

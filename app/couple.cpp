@@ -138,6 +138,7 @@ Exit try_tools(const CoupleCommand& command, const Common& common, Progress& pro
   } else if (!common.output.empty()) {
     formats::write_file(common.output, as_json ? plan::tools_json(results) : plan::tools_csv(results));
   }
+  if (!command.frfs.empty()) plan::write_tips(command.frfs, results);
   if (common.wants_summary()) {
     print_tools(results);
     for (const std::string& note : assembly.notes) fmt::print("Note: {}\n", note);

@@ -66,6 +66,7 @@ CommandLine::CommandLine() {
                   "keep the measured holder's receptances here, for every tool after: .uff .csv .mat .json");
   CLI::Option* tools = sub->add_option("--tools", couple.tools, "tools.csv: a table of them, as .csv or .json");
   sub->add_option("--lobes", couple.lobes, "lobes.toml: each tool's best speed and depth in this cut")->needs(tools);
+  sub->add_option("--frfs", couple.frfs, "a folder for the FRFs at each tool's tip, N_TOOL.uff")->needs(tools);
 
   sub = verb("joint", "a measured tip FRF to the stiffness and damping between tool and holder",
              [this](Progress& p) { return run(joint, common, p); });

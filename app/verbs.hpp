@@ -42,6 +42,7 @@ struct CoupleCommand {
   std::filesystem::path holder_out;  ///< empty: the holder's receptances are not kept
   std::filesystem::path tools;       ///< tools.csv: a table of them in place of the assembly's own
   std::filesystem::path lobes;       ///< with tools: the cut that each is to make
+  std::filesystem::path frfs;        ///< with tools: a folder for the FRFs at each one's tip
 };
 struct JointCommand {
   std::filesystem::path input;

@@ -95,6 +95,12 @@ void write_file(const fs::path& path, std::string_view content) {
   pending.commit();
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) refuse(folder, "cannot be made: " + error.message(), "Give a folder that you may write to");
+}
+
 PendingFile::PendingFile(fs::path path) : path_(std::move(path)) {
   static std::atomic<unsigned> counter{0};
   std::error_code ignored;

@@ -20,6 +20,10 @@ enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
 [[nodiscard]] ROBOMILL_API std::string read_file(const std::filesystem::path& path,
                                                  std::uintmax_t max_bytes = std::uintmax_t{1} << 31);
 
+/// Makes a folder, and those above it, where they are missing.
+/// @throws InvalidInput if it cannot be made
+ROBOMILL_API void make_folder(const std::filesystem::path& folder);
+
 /// Makes a file appear whole or not at all: written beside its place, then renamed.
 /// @throws InvalidInput if the place cannot be written
 ROBOMILL_API void write_file(const std::filesystem::path& path, std::string_view content);

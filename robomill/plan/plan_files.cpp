@@ -102,10 +102,7 @@ std::string plan_json(const PlanResult& result) {
 }
 
 void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw InvalidInput(folder.string(), "cannot be made: " + error.message(), "Give a folder that you may write to");
+  formats::make_folder(folder);
   std::vector<report::StageFile> files;
   if (result.frfs) {
     formats::write_frfs(folder / "tip.uff", *result.frfs);

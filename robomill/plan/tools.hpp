@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,5 +49,10 @@ struct ToolResult {
 /// A row a tool. Columns that hold nothing for any tool are empty.
 [[nodiscard]] ROBOMILL_API std::string tools_csv(const std::vector<ToolResult>& results);
 [[nodiscard]] ROBOMILL_API std::string tools_json(const std::vector<ToolResult>& results);
+
+/// The FRFs at each tool's tip as N_TOOL.uff, N its row from 1, in a folder that is made where it is missing. A tool
+/// that failed has none.
+/// @throws InvalidInput if the folder cannot be made or written to
+ROBOMILL_API void write_tips(const std::filesystem::path& folder, const std::vector<ToolResult>& results);
 
 }  // namespace robomill::plan

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/json.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/plan/plan.hpp"
@@ -104,6 +107,18 @@ std::string tools_json(const std::vector<ToolResult>& results) {
   Json json;
   json["tools"] = tools;
   return formats::dump(json);
+}
+
+void write_tips(const std::filesystem::path& folder, const std::vector<ToolResult>& results) {
+  formats::make_folder(folder);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (!results[i].failure.empty()) continue;
+    std::string name = results[i].name;
+    for (char& letter : name) {
+      if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '-' && letter != '.') letter = '_';
+    }
+    formats::write_frfs(folder / fmt::format("{}_{}.uff", i + 1, name), results[i].tip);
+  }
 }
 
 }  // namespace robomill::plan
