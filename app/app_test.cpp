@@ -52,6 +52,18 @@ class App : public testing::Test {
               grid + "\n");
   }
 
+  /// The bar of a published experiment, in two parts: 169.82 mm from the wall, whose first mode is at 294.7 Hz.
+  static std::string bar(double length_mm) {
+    return "length_mm = " + std::to_string(length_mm) +
+           "\ndiameter_mm = 12\nyoungs_modulus_gpa = 200\ndensity_kg_per_m3 = 7800\nloss_factor = 0.02\n"
+           "beam = \"euler-bernoulli\"\n";
+  }
+  void write_assembly(const std::string& name, const std::string& joint = "",
+                      const std::string& holder = "[[holder.segments]]\n" + bar(50.90),
+                      const std::string& frequency = "[frequency]\nrange_hz = [1, 1000]\nstep_hz = 1\n") {
+    write(name, frequency + "[[tool]]\n" + bar(118.92) + joint + "[holder]\n" + holder);
+  }
+
   test::Folder folder_;
 };
 
@@ -242,6 +254,145 @@ TEST_F(App, LobesComparesMethodsAndTakesFrfs) {
   }
   const Ended json = robomill("lobes lobes.toml --compare -o -");
   EXPECT_EQ(nlohmann::json::parse(json.out)["methods"][0]["worst_error"], 0.0);
+}
+
+TEST_F(App, CouplesAToolToItsHolder) {
+  write_assembly("assembly.toml");
+  const Ended told = robomill("couple assembly.toml -o tip.uff");
+  ASSERT_EQ(told.exit, 0) << told.err;
+  EXPECT_NE(told.out.find("xx: peak at 295 Hz"), std::string::npos) << told.out;
+  // L³ / (3 E I) / (1 + η²) = 8.016 µm/N.
+  EXPECT_NE(told.out.find("static compliance 8.016 µm/N (stiffness 0.1248 N/µm)"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("yy: the same as xx"), std::string::npos);
+  const Ended json = robomill("couple assembly.toml --rotations -o -");
+  ASSERT_EQ(json.exit, 0) << json.err;
+  const auto tip = nlohmann::json::parse(json.out);
+  EXPECT_EQ(tip["frequency_hz"].size(), 1000U);
+  for (const char* name : {"xx", "x:my", "ry:x", "ry:my", "yy", "y:mx", "rx:y", "rx:mx"}) {
+    EXPECT_EQ(tip["receptance_m_per_n"][name]["re"].size(), 1000U) << name;
+  }
+  for (const char* name : {"tip.csv", "tip.json", "tip.mat"}) {
+    EXPECT_EQ(robomill(std::string("couple assembly.toml --quiet -o ") + name).exit, 0) << name;
+    const Ended modes = robomill(std::string("modes ") + name + " --modes 1 --band 200,400 -o -");
+    EXPECT_NEAR(nlohmann::json::parse(modes.out)["modes"][0]["frequency_hz"].get<double>(), 294.7, 0.1) << name;
+  }
+}
+
+// The holder alone, measured with its rotations, carries the same tool alike, and is kept for the next one.
+TEST_F(App, CouplesAToolToAMeasuredHolder) {
+  write("bare.toml", "[frequency]\nrange_hz = [1, 1000]\nstep_hz = 1\n[[tool]]\n" + bar(50.90));
+  const Ended bare = robomill("couple bare.toml --rotations -o holder.uff");
+  ASSERT_EQ(bare.exit, 0) << bare.err;
+  EXPECT_NE(bare.out.find("rigid wall"), std::string::npos);
+  write_assembly("assembly.toml", "", "receptances = \"holder.uff\"\n", "");
+  const Ended told = robomill("couple assembly.toml -o tip.json --holder-out kept.mat");
+  ASSERT_EQ(told.exit, 0) << told.err;
+  EXPECT_NE(told.out.find("xx: peak at 295 Hz"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("µm/N at the first line, 1 Hz"), std::string::npos);
+  write_assembly("next.toml", "", "receptances = \"kept.mat\"\n", "");
+  EXPECT_NE(robomill("couple next.toml").out.find("xx: peak at 295 Hz"), std::string::npos);
+}
+
+TEST_F(App, CoupleRefusesInTheFilesWords) {
+  const auto refused = [&](const std::string& arguments, const std::string& words) {
+    const Ended run = robomill("couple " + arguments + " -o tip.uff");
+    EXPECT_EQ(run.exit, 1);
+    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_.at("tip.uff")));
+  };
+  write_assembly("a.toml", "[joint]\ntranslational_stiffness_n_per_m = -1\nrotational_stiffness_n_m_per_rad = 1\n");
+  refused("a.toml", "a.toml:12: joint.translational_stiffness_n_per_m = -1 N/m; must be > 0");
+  write_assembly("a.toml", "", "[[holder.segments]]\n" + bar(-3));
+  refused("a.toml", "holder.segments[1].length_mm = -3 mm; must be > 0");
+  write_assembly("a.toml", "", "[[holder.segments]]\n" + bar(50.90), "");
+  refused("a.toml", "a.toml: frequency: is missing");
+  write_assembly("a.toml");
+  refused("a.toml --holder-out holder.uff", "--holder-out: needs a measured holder");
+  write("half.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n1,1e-6,0\n2,1e-6,0\n");
+  write_assembly("a.toml", "", "receptances = \"half.csv\"\n", "");
+  refused("a.toml", "half.csv: lacks ry:x (or x:my) and ry:my");
+  write("bare.toml", "[frequency]\nrange_hz = [10, 1000]\nstep_hz = 10\n[[tool]]\n" + bar(50.90));
+  ASSERT_EQ(robomill("couple bare.toml --rotations -o holder.mat").exit, 0);
+  write_assembly("a.toml", "", "receptances = \"holder.mat\"\n");
+  refused("a.toml", "Hz");
+  refused("missing.toml", "missing.toml");
+  EXPECT_EQ(robomill("couple").exit, 2);
+  EXPECT_EQ(robomill("couple a.toml --sideways").exit, 2);
+}
+
+TEST_F(App, CouplesAListOfTools) {
+  write_assembly("assembly.toml", "", "[[holder.segments]]\n" + bar(50.90),
+                 "[frequency]\nrange_hz = [20, 1000]\nstep_hz = 2\n");
+  write("tools.csv", "tool,length_mm,diameter_mm,teeth\nbar,118.92,12,2\nthin,118.92,1,2\nshort,80,12,3\n");
+  write_lobes();
+  const Ended told = robomill("couple assembly.toml --tools tools.csv --lobes lobes.toml -o table.csv");
+  EXPECT_EQ(told.exit, 3) << told.err;  // 1.8 mm are more than the thin one has
+  EXPECT_NE(told.out.find("must be at most the cutter's diameter"), std::string::npos) << told.out;
+  const std::string csv = slurp(folder_.at("table.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4) << csv;
+  EXPECT_NE(csv.find("\"bar\",2,12,118.92,294,"), std::string::npos) << csv;
+  const Ended json = robomill("couple assembly.toml --tools tools.csv -o -");
+  ASSERT_EQ(json.exit, 0) << json.err;
+  const auto rows = nlohmann::json::parse(json.out)["tools"];
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_NEAR(rows[0]["modes"][0]["frequency_hz"].get<double>(), 294.7, 1.0);
+  EXPECT_EQ(robomill("couple assembly.toml --tools tools.csv -o table.uff").exit, 1);
+  EXPECT_EQ(robomill("couple assembly.toml --lobes lobes.toml").exit, 2);
+  write("bad.csv", "tool,length_mm,diameter_mm\nbar,0,12\n");
+  EXPECT_NE(robomill("couple assembly.toml --tools bad.csv").err.find("bad.csv:2: length_mm = 0 mm; must be > 0"),
+            std::string::npos);
+}
+
+// A planted joint, seen through the tip FRF that it gives.
+TEST_F(App, FindsAJoint) {
+  write_assembly("true.toml",
+                 "[joint]\ntranslational_stiffness_n_per_m = 2e7\ntranslational_damping_n_s_per_m = 40\n"
+                 "rotational_stiffness_n_m_per_rad = 5e4\nrotational_damping_n_m_s_per_rad = 0.5\n");
+  ASSERT_EQ(robomill("couple true.toml -o tip.uff").exit, 0);
+  write_assembly("assembly.toml", "", "[[holder.segments]]\n" + bar(50.90), "[frequency]\nrange_hz = [5, 900]\n");
+  for (const char* axis : {"x", "y"}) {
+    const Ended told = robomill(std::string("joint assembly.toml --measured tip.uff -o joint.json --axis ") + axis);
+    ASSERT_EQ(told.exit, 0) << told.err;
+    EXPECT_NE(told.out.find("rotational stiffness"), std::string::npos) << told.out;
+    const auto json = nlohmann::json::parse(slurp(folder_.at("joint.json")));
+    EXPECT_NEAR(json["joint"]["translational_stiffness_n_per_m"].get<double>(), 2e7, 2e4);
+    EXPECT_NEAR(json["joint"]["rotational_stiffness_n_m_per_rad"].get<double>(), 5e4, 50.0);
+    EXPECT_EQ(json["convergence"]["status"], "converged");
+  }
+  const auto ga = [&](const char* seed) {
+    const std::string arguments =
+        "joint assembly.toml --measured tip.uff -o - --method ga --mutation adaptive --seed " + std::string(seed);
+    return robomill(arguments).out;
+  };
+  const std::string first = ga("1");
+  EXPECT_EQ(first, ga("1"));
+  EXPECT_NE(first, ga("2"));
+  EXPECT_EQ(nlohmann::json::parse(first)["joint"].size(), 4U);
+}
+
+TEST_F(App, JointRefusesWhatDoesNotFit) {
+  write_assembly("assembly.toml");
+  ASSERT_EQ(robomill("couple assembly.toml -o tip.csv").exit, 0);
+  const auto refused = [&](const std::string& arguments, const std::string& words) {
+    const Ended run = robomill("joint " + arguments);
+    EXPECT_EQ(run.exit, 1) << run.out;
+    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+  };
+  refused("assembly.toml --measured tip.csv -o joint.uff", "joints are written as .json");
+  refused("assembly.toml --measured missing.csv", "missing.csv");
+  write("lone.txt", "10 1e-6 0\n20 1e-6 0\n");
+  refused("assembly.toml --measured lone.txt --axis y", "lone.txt: lacks yy");
+  refused("assembly.toml --measured lone.txt", "lone.txt: has 2 lines above 0 Hz");
+  write_assembly("far.toml", "", "[[holder.segments]]\n" + bar(50.90), "[frequency]\nrange_hz = [4000, 5000]\n");
+  refused("far.toml --measured tip.csv", "has no line from 4000 to 5000 Hz");
+  write("bare.toml", "[frequency]\nrange_hz = [10, 1000]\nstep_hz = 10\n[[tool]]\n" + bar(50.90));
+  ASSERT_EQ(robomill("couple bare.toml --rotations -o holder.mat").exit, 0);
+  write_assembly("coarse.toml", "", "receptances = \"holder.mat\"\n", "");
+  refused("coarse.toml --measured tip.csv", "Hz");
+  EXPECT_EQ(robomill("joint assembly.toml").exit, 2);
+  EXPECT_EQ(robomill("joint assembly.toml --measured tip.csv --method magic").exit, 2);
+  EXPECT_EQ(robomill("joint assembly.toml --measured tip.csv --axis z").exit, 2);
 }
 
 TEST_F(App, CtrlCStopsAndLeavesNoFile) {

@@ -18,6 +18,8 @@ struct CommandLine {
   Common common;
   FrfCommand frf;
   ModesCommand modes;
+  CoupleCommand couple;
+  JointCommand joint;
   LobesCommand lobes;
   ExplainCommand explain;
   SimulateCommand simulate;
@@ -55,6 +57,28 @@ CommandLine::CommandLine() {
   sub->add_option("--modes", modes.modes, "exactly this many modes")->check(CLI::PositiveNumber);
   sub->add_option("--method", modes.method, "hybrid, pso or lscf")->check(CLI::IsMember({"hybrid", "pso", "lscf"}));
   sub->add_option("--config", modes.config, "modes.toml: every option of the fit");
+
+  sub = verb("couple", "a tool in a holder to the FRFs at its tip, without a tap test",
+             [this](Progress& p) { return run(couple, common, p); });
+  sub->add_option("assembly", couple.input, "assembly.toml")->required();
+  sub->add_flag("--rotations", couple.rotations, "also the rotations and moments at the tip");
+  sub->add_option("--holder-out", couple.holder_out,
+                  "keep the measured holder's receptances here, for every tool after: .uff .csv .mat .json");
+  CLI::Option* tools = sub->add_option("--tools", couple.tools, "tools.csv: a table of them, as .csv or .json");
+  sub->add_option("--lobes", couple.lobes, "lobes.toml: each tool's best speed and depth in this cut")->needs(tools);
+
+  sub = verb("joint", "a measured tip FRF to the stiffness and damping between tool and holder",
+             [this](Progress& p) { return run(joint, common, p); });
+  sub->add_option("assembly", joint.input, "assembly.toml")->required();
+  sub->add_option("--measured", joint.measured, "FRFs at the tip: .uff .csv .txt .mat .json")
+      ->required()
+      ->allow_extra_args(false);
+  sub->add_option("--as", joint.as, "names of headerless FRFs, one a file: xx,yy")->delimiter(',');
+  sub->add_option("--method", joint.method, "hybrid or ga (default: hybrid)")->check(CLI::IsMember({"hybrid", "ga"}));
+  sub->add_option("--mutation", joint.mutation, "of ga: uniform or adaptive (default: uniform)")
+      ->check(CLI::IsMember({"uniform", "adaptive"}));
+  sub->add_option("--axis", joint.axis, "which FRF is fitted: x (xx) or y (yy) (default: x)")
+      ->check(CLI::IsMember({"x", "y"}));
 
   sub = verb("lobes", "modes and a cut to stability lobes", [this](Progress& p) { return run(lobes, common, p); });
   sub->add_option("lobes", lobes.input, "lobes.toml")->required();

@@ -36,6 +36,19 @@ struct ModesCommand {
   std::optional<std::string> method;
   std::filesystem::path config;
 };
+struct CoupleCommand {
+  std::filesystem::path input;
+  bool rotations = false;
+  std::filesystem::path holder_out;  ///< empty: the holder's receptances are not kept
+  std::filesystem::path tools;       ///< tools.csv: a table of them in place of the assembly's own
+  std::filesystem::path lobes;       ///< with tools: the cut that each is to make
+};
+struct JointCommand {
+  std::filesystem::path input;
+  std::vector<std::filesystem::path> measured;
+  std::vector<std::string> as;
+  std::string method = "hybrid", mutation = "uniform", axis = "x";
+};
 struct LobesCommand {
   std::filesystem::path input;
   std::vector<std::string> at;  ///< "RPM,MM"
@@ -64,6 +77,8 @@ struct PlanCommand {
 
 Exit run(const FrfCommand& command, const Common& common, Progress& progress);
 Exit run(const ModesCommand& command, const Common& common, Progress& progress);
+Exit run(const CoupleCommand& command, const Common& common, Progress& progress);
+Exit run(const JointCommand& command, const Common& common, Progress& progress);
 Exit run(const LobesCommand& command, const Common& common, Progress& progress);
 Exit run(const ExplainCommand& command, const Common& common, Progress& progress);
 Exit run(const SimulateCommand& command, const Common& common, Progress& progress);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "data/robot_modes.hpp"
 #include "robomill/base/random.hpp"
@@ -54,15 +56,43 @@ TEST(FrfFiles, EveryFormatGivesTheSetBack) {
 
 TEST(FrfFiles, PointsAndRotationsKeepTheirNames) {
   const test::Folder folder;
+  const auto gives_back = [&](const std::vector<const char*>& names) {
+    modal::FrfSet set;
+    set.frequency_hz = Eigen::Vector3d(1.0, 2.0, 3.0);
+    for (const char* name : names) {
+      set.frfs.push_back({.name = modal::parse_frf_name(name), .receptance = Eigen::Vector3cd::Random()});
+      set.frfs.back().deviation = Eigen::Vector3d(1e-3, 2e-3, 3e-3);
+    }
+    for (const char* name : {"p.csv", "p.txt", "p.mat", "p.json", "p.uff"}) {
+      write_frfs(folder.at(name), set);
+      expect_same(read_frfs({folder.at(name)}).set, set, 1e-11);
+    }
+    write_frfs(folder.at("binary.uff"), set, {.binary_uff = true});
+    const FrfFile binary = read_frfs({folder.at("binary.uff")});
+    expect_same(binary.set, set, 0.0);
+    EXPECT_TRUE(binary.notes.empty());
+  };
+  gives_back({"xx", "x:my", "ry:x", "ry:my", "yy", "y:mx", "rx:y", "rx:mx", "zx", "rz:mz"});
+  gives_back({"1x:1x", "2x:1x", "1x:3my", "1ry:3my", "12ry:3x"});
+}
+
+// Record 6 of data set 58 names directions 1 to 3 for translations and 4 to 6 for rotations; records 9 and 10 hold the
+// exponents of length, force and temperature.
+TEST(FrfFiles, UniversalFilesHoldRotationsAsTheFormatHasThem) {
   modal::FrfSet set;
-  set.frequency_hz = Eigen::Vector3d(1.0, 2.0, 3.0);
-  for (const char* name : {"1x:3x", "1x:3my", "1ry:3my"}) {
-    set.frfs.push_back({.name = modal::parse_frf_name(name), .receptance = Eigen::Vector3cd::Random()});
-  }
-  for (const char* name : {"p.csv", "p.mat", "p.json", "p.uff"}) {
-    write_frfs(folder.at(name), set);
-    expect_same(read_frfs({folder.at(name)}).set, set, 1e-11);
-  }
+  set.frequency_hz = Eigen::Vector2d(1.0, 2.0);
+  const auto text = [&](const char* name) {
+    set.frfs = {{.name = modal::parse_frf_name(name), .receptance = Eigen::Vector2cd(1.0, 2.0)}};
+    const test::Folder folder;
+    write_frfs(folder.at("a.uff"), set);
+    return read_file(folder.at("a.uff"));
+  };
+  EXPECT_NE(text("ry:3mx").find(" NONE               0   5 NONE               3   4\n"), std::string::npos)
+      << text("ry:3mx");
+  EXPECT_NE(text("x:my").find("         8    1    0    0 Displacement         m "), std::string::npos) << text("x:my");
+  EXPECT_NE(text("x:my").find("        13    1    1    0 Moment               N m "), std::string::npos);
+  EXPECT_NE(text("ry:x").find("         8    0    0    0 Rotation             rad "), std::string::npos);
+  EXPECT_NE(text("ry:x").find("        13    0    1    0 Force                N "), std::string::npos);
 }
 
 TEST(FrfFiles, HeaderlessColumnsTakeTheirNamesFromTheUser) {
@@ -152,6 +182,57 @@ TEST(FrfFiles, UniversalFilesKeepTheirUnits) {
   EXPECT_NE(test::refusal([&] { static_cast<void>(read({function})); }).find("per force"), std::string::npos);
 }
 
+// Millimetres and newtons by data set 164 alone: an angle has no length, and a moment has one.
+TEST(FrfFiles, UniversalFilesKeepTheUnitsOfRotations) {
+  const test::Folder folder;
+  const auto first = [&](int response, int reference, bool say_exponents) {
+    UffFunction function = one_function();
+    function.response_direction = response;
+    function.reference_direction = reference;
+    function.numerator = {.type = 8, .length_exponent = say_exponents && response < 4 ? 1 : 0};
+    function.denominator = {.type = 13, .force_exponent = say_exponents ? 1 : 0};
+    if (say_exponents && reference > 3) function.denominator.length_exponent = 1;
+    std::string text = format_uff({function}, false);
+    const std::string metre = "  1.00000000000000000D+00";
+    text.replace(text.find(metre), metre.size(), "  1.00000000000000000D+03");
+    return read_frfs({folder.file("a.uff", text)}).set.frfs[0].receptance(0).real();
+  };
+  for (const bool say_exponents : {false, true}) {
+    EXPECT_DOUBLE_EQ(first(1, 1, say_exponents), 1e-3);
+    EXPECT_DOUBLE_EQ(first(1, 5, say_exponents), 1.0);
+    EXPECT_DOUBLE_EQ(first(5, 1, say_exponents), 1.0);
+    EXPECT_DOUBLE_EQ(first(5, 5, say_exponents), 1e3);
+  }
+  UffFunction function = one_function();
+  function.response_direction = -5;
+  function.reference_direction = 5;
+  function.numerator = {.type = 8, .unit = "mrad"};
+  function.denominator = {.type = 13, .unit = "N*mm"};
+  const FrfFile file = read_frfs({folder.file("a.uff", format_uff({function}, true))});
+  EXPECT_EQ(modal::to_string(file.set.frfs[0].name), "ry:my");
+  EXPECT_DOUBLE_EQ(file.set.frfs[0].receptance(0).real(), -1.0);
+}
+
+TEST(FrfFiles, ColumnsOfRotationsKeepTheirUnits) {
+  const test::Folder folder;
+  const auto first = [&](const std::string& name, const std::string& unit) {
+    return read_frfs({folder.file("a.csv", "f," + name + "_re_" + unit + "," + name + "_im_" + unit + "\n10,2,0\n")})
+        .set.frfs[0]
+        .receptance(0)
+        .real();
+  };
+  EXPECT_DOUBLE_EQ(first("x:my", "m_per_n_m"), 2.0);
+  EXPECT_DOUBLE_EQ(first("x:my", "um_per_n_m"), 2e-6);
+  EXPECT_DOUBLE_EQ(first("ry:x", "urad_per_n"), 2e-6);
+  EXPECT_DOUBLE_EQ(first("ry:my", "rad_per_n_mm"), 2e3);
+  const double omega = 2 * std::numbers::pi * 10.0;
+  EXPECT_DOUBLE_EQ(first("ry:my", "rad_per_s2_per_n_m"), -2.0 / (omega * omega));
+  for (const auto& [name, unit] : {std::pair{"x:my", "m_per_n"}, {"ry:x", "m_per_n"}, {"xx", "rad_per_n_m"}}) {
+    const std::string said = test::refusal([&] { static_cast<void>(first(name, unit)); });
+    EXPECT_NE(said.find("does not fit its name"), std::string::npos) << said;
+  }
+}
+
 TEST(FrfFiles, UniversalFilesMixWhatTheyHold) {
   const test::Folder folder;
   UffFunction receptance = one_function(), accelerance = one_function(), time = one_function(),
@@ -224,6 +305,9 @@ TEST(FrfFiles, OneNumberedPointIsTheTip) {
   const FrfFile file = read_frfs({folder.at("p.json")});
   EXPECT_EQ(modal::to_string(file.set.frfs[0].name), "xx");
   EXPECT_NE(file.notes.back().find("point 4"), std::string::npos);
+  set.frfs.push_back({.name = modal::parse_frf_name("4ry:4x"), .receptance = Eigen::Vector2cd(1.0, 2.0)});
+  write_frfs(folder.at("p.uff"), set);
+  EXPECT_NE(read_frfs({folder.at("p.uff")}).set.find(modal::parse_frf_name("ry:x")), nullptr);
 }
 
 TEST(FrfFiles, RefusesWhatCannotBeAnFrf) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <string_view>
 
@@ -25,11 +26,13 @@ Eigen::VectorXcd to_complex(const std::vector<double>& re, const std::vector<dou
   return out;
 }
 
+bool is_angular(const modal::Dof& dof) {
+  return static_cast<int>(dof.axis) > 3;
+}
+
 /// "m_per_n" of xx, "rad_per_n_m" of rx:my.
 std::string unit_of(const modal::FrfName& name) {
-  const bool rotation = static_cast<int>(name.response.axis) > 3;
-  const bool moment = static_cast<int>(name.excitation.axis) > 3;
-  return fmt::format("{}_per_n{}", rotation ? "rad" : "m", moment ? "_m" : "");
+  return fmt::format("{}_per_n{}", is_angular(name.response) ? "rad" : "m", is_angular(name.excitation) ? "_m" : "");
 }
 
 /// "xx_re_m_per_n" in its parts; nothing where a column is no such.
@@ -48,21 +51,40 @@ std::optional<Column> take_apart(std::string_view text) {
   return std::nullopt;
 }
 
-/// "m_per_s2_per_n" as parse_unit knows it; nothing said is m/N.
-SiFactor factor_of(const Column& column, const std::string& where) {
-  std::string_view unit = column.unit;
-  if (unit.empty()) return {.quantity = Quantity::displacement};
-  const bool per_force = unit.ends_with("_per_n") || unit.ends_with("_per_n_m");
-  std::string numerator(unit.substr(0, unit.rfind("_per_n")));
-  if (const std::size_t per = numerator.find("_per_"); per != std::string::npos) {
-    numerator = fmt::format("{}/{}", numerator.substr(0, per), numerator.substr(per + 5));
+/// "m_per_s2_per_n" as parse_unit knows it; nothing said is SI.
+SiFactor factor_of(const Column& column, const modal::FrfName& name, const std::string& where) {
+  if (column.unit.empty()) return {.quantity = Quantity::displacement};
+  struct Excitation {
+    std::string_view suffix;
+    bool moment;
+    double si;
+  };
+  static constexpr std::array<Excitation, 3> excitations = {
+      {{"_per_n", false, 1.0}, {"_per_n_m", true, 1.0}, {"_per_n_mm", true, 1e-3}}};
+  const auto below = std::find_if(excitations.begin(), excitations.end(),
+                                  [&](const Excitation& e) { return column.unit.ends_with(e.suffix); });
+  SiFactor factor;
+  std::string numerator;
+  if (below != excitations.end()) {
+    numerator = column.unit.substr(0, column.unit.size() - below->suffix.size());
+    if (const std::size_t per = numerator.find("_per_"); per != std::string::npos) {
+      numerator = fmt::format("{}/{}", numerator.substr(0, per), numerator.substr(per + 5));
+    }
+    factor = parse_unit(numerator);
   }
-  SiFactor factor = parse_unit(numerator);
-  if (!per_force || factor.quantity == Quantity::unknown || factor.quantity == Quantity::force) {
-    throw InvalidInput(where,
-                       fmt::format("column {}_{}_{} has a unit that is not known here", column.name, column.part, unit),
-                       "Receptances are m_per_n, rad_per_n, m_per_n_m or rad_per_n_m; accelerances m_per_s2_per_n");
+  if (factor.quantity == Quantity::unknown || factor.quantity == Quantity::force) {
+    throw InvalidInput(
+        where, fmt::format("column {}_{}_{} has a unit that is not known here", column.name, column.part, column.unit),
+        "Receptances are m_per_n, rad_per_n, m_per_n_m or rad_per_n_m; accelerances m_per_s2_per_n");
   }
+  const bool angle = numerator.find("rad") != std::string::npos;
+  if (angle != is_angular(name.response) || below->moment != is_angular(name.excitation)) {
+    throw InvalidInput(
+        where,
+        fmt::format("column {}_{}_{} has a unit that does not fit its name", column.name, column.part, column.unit),
+        fmt::format("{} is {}", column.name, unit_of(name)));
+  }
+  factor.factor /= below->si;
   return factor;
 }
 
@@ -113,7 +135,7 @@ class NamedColumns {
     if (imaginary == nullptr)
       throw InvalidInput(where_, fmt::format("has no column {}_im{}{}", re.name, joint, re.unit));
     if (im.unit != re.unit) throw InvalidInput(where_, fmt::format("{}_re and {}_im differ in unit", re.name, re.name));
-    const SiFactor factor = factor_of(re, where_);
+    const SiFactor factor = factor_of(re, *part.name, where_);
     part.derivatives = static_cast<int>(factor.quantity);
     part.values = factor.factor * to_complex(*real, *imaginary);
     Column extra;

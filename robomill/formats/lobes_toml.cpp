@@ -74,6 +74,7 @@ void read_cut(TomlFile& file, LobesFile& out) {
     return;
   }
   if (!named) file.require("cut.direction", "\"up\", \"down\" or \"slot\"; or give entry_deg and exit_deg");
+  out.direction = direction;
   if (direction == cutting::MillingDirection::slot) {
     if (!radial) out.radial_depth_m = diameter_m;
   } else if (!radial) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <optional>
 
 #include "robomill/base/export.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -11,15 +12,16 @@ namespace robomill::formats {
 /// lobes.toml. What it says of the structure is one of: nothing, a file of modes, a file of FRFs, or modes of its own.
 struct LobesFile {
   std::filesystem::path path;
-  stability::LobesProblem problem;             ///< dynamics is empty unless modes stand in the file itself
-  stability::LobesOptions options;             ///< without points
-  std::filesystem::path modes = {};            ///< dynamics.modes, resolved; empty where absent
-  std::filesystem::path frf = {};              ///< dynamics.frf, resolved; empty where absent
-  std::filesystem::path workpiece_modes = {};  ///< workpiece_dynamics.modes, the same
-  std::filesystem::path workpiece_frf = {};    ///< workpiece_dynamics.frf, the same
-  std::array<int, 2> surface_grid = {0, 0};    ///< speeds and depths of the map of surface errors; 0: none
-  stability::Uncertainty uncertainty = {};     ///< samples: 0 where the file has none
-  double radial_depth_m = 0.0;                 ///< b [m]; from the angles where they are given
+  stability::LobesProblem problem;                          ///< dynamics is empty unless modes stand in the file itself
+  stability::LobesOptions options;                          ///< without points
+  std::filesystem::path modes = {};                         ///< dynamics.modes, resolved; empty where absent
+  std::filesystem::path frf = {};                           ///< dynamics.frf, resolved; empty where absent
+  std::filesystem::path workpiece_modes = {};               ///< workpiece_dynamics.modes, the same
+  std::filesystem::path workpiece_frf = {};                 ///< workpiece_dynamics.frf, the same
+  std::array<int, 2> surface_grid = {0, 0};                 ///< speeds and depths of the map of surface errors; 0: none
+  stability::Uncertainty uncertainty = {};                  ///< samples: 0 where the file has none
+  double radial_depth_m = 0.0;                              ///< b [m]; from the angles where they are given
+  std::optional<cutting::MillingDirection> direction = {};  ///< cut.direction; none where the angles are given
   bool drilling = false;               ///< cut.kind: the next two count, and of the cut neither angles nor radial depth
   double point_angle_rad = 0.0;        ///< of the drill [rad]; 0: not given
   double feed_per_revolution_m = 0.0;  ///< of the drill [m]

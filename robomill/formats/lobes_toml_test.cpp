@@ -83,9 +83,11 @@ TEST(LobesToml, AnglesStandInForTheDirection) {
   const LobesFile file = read_lobes(
       folder.file("lobes.toml", with("direction = \"down\"\nradial_depth_mm = 1.2", "entry_deg = 0\nexit_deg = 90")));
   EXPECT_NEAR(file.radial_depth_m, 6e-3, 1e-15);
+  EXPECT_FALSE(file.direction);
   const LobesFile slot = read_lobes(
       folder.file("lobes.toml", with("direction = \"down\"\nradial_depth_mm = 1.2", "direction = \"slot\"")));
   EXPECT_NEAR(slot.radial_depth_m, 12e-3, 1e-15);
+  EXPECT_EQ(slot.direction, cutting::MillingDirection::slot);
 }
 
 TEST(LobesToml, ReadsWhatElseActsInTheCut) {

@@ -19,11 +19,13 @@ constexpr double standard_gravity_m_per_s2 = 9.80665;
 constexpr double inch_m = 0.0254;
 constexpr double pound_force_n = 4.4482216152605;
 
-constexpr std::array<Unit, 33> units = {{{"m", Quantity::displacement, 1.0},
+constexpr std::array<Unit, 36> units = {{{"m", Quantity::displacement, 1.0},
                                          {"mm", Quantity::displacement, 1e-3},
                                          {"um", Quantity::displacement, 1e-6},
                                          {"in", Quantity::displacement, inch_m},
                                          {"rad", Quantity::displacement, 1.0},
+                                         {"mrad", Quantity::displacement, 1e-3},
+                                         {"urad", Quantity::displacement, 1e-6},
                                          {"m/s", Quantity::velocity, 1.0},
                                          {"mm/s", Quantity::velocity, 1e-3},
                                          {"um/s", Quantity::velocity, 1e-6},
@@ -49,6 +51,7 @@ constexpr std::array<Unit, 33> units = {{{"m", Quantity::displacement, 1.0},
                                          {"lb", Quantity::force, pound_force_n},
                                          {"nm", Quantity::force, 1.0},
                                          {"n-m", Quantity::force, 1.0},
+                                         {"nmm", Quantity::force, 1e-3},
                                          {"meter", Quantity::displacement, 1.0},
                                          {"metre", Quantity::displacement, 1.0},
                                          {"g's", Quantity::acceleration, standard_gravity_m_per_s2}}};

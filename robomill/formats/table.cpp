@@ -34,7 +34,7 @@ std::string_view unquoted(std::string_view field) {
 /// The fields of a line; separators within quotes part nothing. A separator at the line's end parts nothing either.
 std::vector<std::string_view> split(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
-  line = trimmed(line);
+  if (separator != '\t') line = trimmed(line);  // a first field may be empty
   while (!line.empty()) {
     std::size_t end = 0;
     for (bool quoted = false; end < line.size(); ++end) {
@@ -64,12 +64,33 @@ char separator_of(std::string_view line) {
   return blanks;
 }
 
+/// Takes the byte order mark off.
+void check_encoding(std::string_view& content, const std::string& where) {
+  if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
+  if (content.substr(0, 4096).find('\0') == std::string_view::npos) return;
+  const bool utf16 = content.starts_with("\xFF\xFE") || content.starts_with("\xFE\xFF");
+  throw InvalidInput(where, "is no plain text", utf16 ? "It is UTF-16: save it as UTF-8" : "Is it a binary file?");
+}
+
+/// The next line, taken off the front with its ending.
+std::string_view take_line(std::string_view& rest) {
+  const std::size_t end = rest.find_first_of("\r\n");
+  const std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(std::min(line.size(), rest.size()));
+  if (rest.starts_with("\r\n")) {
+    rest.remove_prefix(2);
+  } else if (!rest.empty()) {
+    rest.remove_prefix(1);
+  }
+  return line;
+}
+
 class TableReader {
  public:
   TableReader(std::string_view content, const std::string& where) : rest_(content), where_(where) {}
 
   Table read() {
-    check_encoding();
+    check_encoding(rest_, where_);
     read_header();
     while (!rest_.empty()) {
       const std::string_view line = next_line();
@@ -88,24 +109,9 @@ class TableReader {
                                             .hint = std::move(hint)});
   }
 
-  void check_encoding() {
-    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
-    if (rest_.substr(0, 4096).find('\0') == std::string_view::npos) return;
-    const bool utf16 = rest_.starts_with("\xFF\xFE") || rest_.starts_with("\xFE\xFF");
-    throw InvalidInput(where_, "is no plain text", utf16 ? "It is UTF-16: save it as UTF-8" : "Is it a binary file?");
-  }
-
   std::string_view next_line() {
-    const std::size_t end = rest_.find_first_of("\r\n");
-    const std::string_view line = rest_.substr(0, end);
-    rest_.remove_prefix(std::min(line.size(), rest_.size()));
-    if (rest_.starts_with("\r\n")) {
-      rest_.remove_prefix(2);
-    } else if (!rest_.empty()) {
-      rest_.remove_prefix(1);
-    }
     ++line_number_;
-    return line;
+    return take_line(rest_);
   }
 
   /// On to the first line of numbers, which tells the separator and the number of columns.
@@ -209,6 +215,45 @@ class TableReader {
 
 Table parse_table(std::string_view content, const std::string& where) {
   return TableReader(content, where).read();
+}
+
+std::optional<double> parse_cell(std::string_view field) {
+  return parse_field(field, ';');
+}
+
+TextTable parse_text_table(std::string_view content, const std::string& where) {
+  check_encoding(content, where);
+  TextTable out;
+  char separator = ',';
+  for (std::size_t line_number = 1; !content.empty(); ++line_number) {
+    const std::string_view line = take_line(content);
+    if (is_comment(line)) continue;
+    const auto refuse = [&](std::string rule, std::string hint = {}) {
+      return InvalidInput(InvalidInput::Parts{
+          .where = fmt::format("{}:{}", where, line_number), .rule = std::move(rule), .hint = std::move(hint)});
+    };
+    if (out.names.empty()) {
+      if (separator_of(line) != blanks) separator = separator_of(line);
+      for (const std::string_view name : split(line, separator)) {
+        if (name.empty()) throw refuse("has a column without a name");
+        if (std::find(out.names.begin(), out.names.end(), name) != out.names.end()) {
+          throw refuse(fmt::format("names the column {} twice", name));
+        }
+        out.names.emplace_back(name);
+      }
+      continue;
+    }
+    const std::vector<std::string_view> fields = split(line, separator);
+    if (fields.size() > out.names.size()) {
+      throw refuse(fmt::format("has {} fields where there are {} columns", fields.size(), out.names.size()),
+                   separator == ',' ? "Decimal commas need semicolons between the columns" : "");
+    }
+    TextTable::Row row{.line = line_number, .fields = {fields.begin(), fields.end()}};
+    row.fields.resize(out.names.size());
+    out.rows.push_back(std::move(row));
+  }
+  if (out.rows.empty()) throw InvalidInput(where, "holds no row below a line of names");
+  return out;
 }
 
 }  // namespace robomill::formats

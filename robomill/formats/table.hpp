@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,5 +24,25 @@ struct Table {
 /// @throws InvalidInput with file and line if there is no line of numbers, a value is empty or no finite number, or a
 ///     line has another number of values than those before it
 [[nodiscard]] Table parse_table(std::string_view content, const std::string& where);
+
+/// Rows of text under named columns.
+struct TextTable {
+  struct Row {
+    std::size_t line = 0;             ///< in the file, from 1
+    std::vector<std::string> fields;  ///< as many as there are columns; empty where the row ends before
+  };
+  std::vector<std::string> names;  ///< one a column
+  std::vector<Row> rows;
+};
+
+/// Reads a first line of names and rows below it, parted by semicolons, tabs or commas, whichever the names are. Lines
+/// that are empty or begin with #, % or // are skipped; fields may stand in double quotes.
+/// @param where  names the file in messages
+/// @throws InvalidInput with file and line if there is no row, a name is empty or comes twice, or a row has more fields
+///     than there are names
+[[nodiscard]] TextTable parse_text_table(std::string_view content, const std::string& where);
+
+/// The number in a field of such a table, with a point or a comma.
+[[nodiscard]] std::optional<double> parse_cell(std::string_view field);
 
 }  // namespace robomill::formats

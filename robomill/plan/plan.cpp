@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
-#include "robomill/cutting/milling.hpp"
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/hits_toml.hpp"
 #include "robomill/formats/modes_files.hpp"
+#include "robomill/plan/choose.hpp"
 #include "robomill/plan/test_cuts.hpp"
 
 namespace robomill::plan {
@@ -107,45 +107,18 @@ void pairs(PlanResult& result, Progress& progress) {
   }
 }
 
-DepthLimit to_depth_limit(const stability::Limit& limit) {
-  DepthLimit out{.spindle_speed_rad_per_s = limit.spindle_speed_rad_per_s};
-  if (limit.status == stability::Limit::Status::found) {
-    out.axial_depth_m = limit.axial_depth_m;
-    out.chatter_frequency_hz = limit.chatter_frequency_hz;
-    out.mode = limit.mode;
-  }
-  return out;
-}
-
-RecommendOptions recommend_options(const PlanResult& result) {
-  const formats::LobesFile& cut = result.cut;
+RecommendOptions recommend_options(const formats::Job& job) {
   RecommendOptions options;
-  options.teeth = cut.problem.milling.tool.teeth;
-  options.radial_depth_m = cut.radial_depth_m;
-  options.feed_per_tooth_m = cut.problem.milling.feed_per_tooth_m;
-  options.searched_depth_m = cut.options.axial_depth_m[1];
-  options.max_axial_depth_m = result.job.max_axial_depth_m;
-  options.min_spindle_speed_rad_per_s = result.job.min_spindle_speed_rad_per_s;
-  options.max_spindle_speed_rad_per_s = result.job.max_spindle_speed_rad_per_s;
-  options.depth_margin = result.job.depth_margin;
-  options.speed_window = result.job.speed_window;
-  // The mean torque is proportional to depth, so one metre of depth gives the factor.
-  options.torque_per_depth_n =
-      cutting::mean_load(cut.problem.milling, 1.0, cut.problem.milling.feed_per_tooth_m, 1.0).torque_n_m;
-  for (const formats::SpindlePoint& p : result.job.spindle_curve) {
+  options.max_axial_depth_m = job.max_axial_depth_m;
+  options.min_spindle_speed_rad_per_s = job.min_spindle_speed_rad_per_s;
+  options.max_spindle_speed_rad_per_s = job.max_spindle_speed_rad_per_s;
+  options.depth_margin = job.depth_margin;
+  options.speed_window = job.speed_window;
+  for (const formats::SpindlePoint& p : job.spindle_curve) {
     options.spindle.push_back(
         {.spindle_speed_rad_per_s = p.spindle_speed_rad_per_s, .torque_n_m = p.torque_n_m, .power_w = p.power_w});
   }
   return options;
-}
-
-void choose(PlanResult& result) {
-  std::vector<DepthLimit> limits;
-  for (const stability::Limit& limit : result.lobes.limit) limits.push_back(to_depth_limit(limit));
-  const stability::LobesOptions& options = result.cut.options;
-  result.recommendation = recommend(limits, recommend_options(result), [&](double speed) {
-    return to_depth_limit(stability::limit_depths(result.cut.problem, options, {speed}).front());
-  });
 }
 
 /// The deepest pockets of the lobes stand where tooth passing meets a mode: no chatter there, but resonance.
@@ -306,7 +279,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
   result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
   spread(result, seed, progress);
-  choose(result);
+  result.recommendation = choose(result.cut, result.lobes.limit, recommend_options(result.job));
   warn_of_resonance(result);
   pairs(result, progress);
   turn_feed(result, progress);

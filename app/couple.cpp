@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <optional>
+
+#include "robomill/base/error.hpp"
+#include "robomill/coupling/assembly.hpp"
+#include "robomill/formats/assembly_toml.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/frf_files.hpp"
+#include "robomill/formats/lobes_toml.hpp"
+#include "robomill/formats/tools_csv.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/plan/tools.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+constexpr std::size_t peaks_shown = 6;
+
+/// Where |H| is above its neighbours, the highest few by rising frequency.
+std::vector<Eigen::Index> peaks_of(const Eigen::VectorXd& magnitude) {
+  std::vector<Eigen::Index> peaks;
+  for (Eigen::Index i = 1; i + 1 < magnitude.size(); ++i) {
+    if (magnitude(i) > magnitude(i - 1) && magnitude(i) >= magnitude(i + 1)) peaks.push_back(i);
+  }
+  const auto higher = [&](Eigen::Index a, Eigen::Index b) { return magnitude(a) > magnitude(b); };
+  std::stable_sort(peaks.begin(), peaks.end(), higher);
+  peaks.resize(std::min(peaks.size(), peaks_shown));
+  std::sort(peaks.begin(), peaks.end());
+  return peaks;
+}
+
+void print_peaks(const modal::FrfSet& set, const modal::Frf& frf) {
+  const Eigen::VectorXd magnitude = frf.receptance.cwiseAbs();
+  const std::string name = modal::to_string(frf.name);
+  const std::vector<Eigen::Index> peaks = peaks_of(magnitude);
+  if (peaks.empty()) fmt::print("{}: no peak between the first line and the last\n", name);
+  for (const Eigen::Index i : peaks) {
+    fmt::print("{}: peak at {:.6g} Hz, {:.4g} µm/N\n", name, set.frequency_hz(i), magnitude(i) / units::um);
+  }
+}
+
+/// Of an assembly of beams far below its lines; of a measured holder, which has no such lines, at the first.
+void print_compliance(const formats::AssemblyFile& file, const modal::FrfSet& tip, const modal::FrfName& name) {
+  const std::string text = modal::to_string(name);
+  if (!file.assembly.holder.receptances.frfs.empty()) {
+    const double compliance = std::abs(tip.find(name)->receptance(0));
+    fmt::print("{}: {:.4g} µm/N at the first line, {:.6g} Hz\n", text, compliance / units::um, tip.frequency_hz(0));
+    return;
+  }
+  const Eigen::VectorXd low = Eigen::VectorXd::Constant(1, 0.01 * tip.frequency_hz(0));
+  const double compliance = coupling::tip_frfs(file.assembly, low).frfs.find(name)->receptance(0).real();
+  fmt::print("{}: static compliance {:.4g} µm/N (stiffness {:.4g} N/µm)\n", text, compliance / units::um,
+             units::um / compliance);
+}
+
+void print_lines(const char* what, const std::vector<double>& lines_hz) {
+  if (lines_hz.empty()) return;
+  fmt::print("{}: {} lines, {:.6g} to {:.6g} Hz\n", what, lines_hz.size(), lines_hz.front(), lines_hz.back());
+}
+
+void print_summary(const formats::AssemblyFile& file, const coupling::TipResult& tip) {
+  const modal::Frf& x = *tip.frfs.find(modal::parse_frf_name("xx"));
+  const modal::Frf& y = *tip.frfs.find(modal::parse_frf_name("yy"));
+  print_peaks(tip.frfs, x);
+  print_compliance(file, tip.frfs, x.name);
+  if (y.receptance == x.receptance) {
+    fmt::print("yy: the same as xx\n");
+  } else {
+    print_peaks(tip.frfs, y);
+    print_compliance(file, tip.frfs, y.name);
+  }
+  print_lines("Suspect", tip.suspect_hz);
+  if (file.holder) {
+    print_lines("Holder not reliable", file.holder->unreliable_hz);
+    for (const std::string& note : file.holder->notes) fmt::print("Note: {}\n", note);
+  }
+  for (const std::string& note : file.notes) fmt::print("Note: {}\n", note);
+  for (const std::string& note : tip.notes) fmt::print("Note: {}\n", note);
+}
+
+void print_tools(const std::vector<plan::ToolResult>& results) {
+  fmt::print("{:<20} {:>5} {:>9} {:>9} {:>10} {:>5} {:>10} {:>9} {:>9}\n", "tool", "teeth", "overhang", "peak Hz",
+             "µm/N", "modes", "lowest mm", "rpm", "depth mm");
+  for (const plan::ToolResult& tool : results) {
+    fmt::print("{:<20} {:>5} {:>9.4g} ", tool.name, tool.teeth, tool.overhang_m / units::mm);
+    if (!tool.failure.empty()) {
+      fmt::print("{}\n", tool.failure);
+      continue;
+    }
+    fmt::print("{:>9.5g} {:>9.4g} {:>5} ", tool.peak_hz, tool.peak_m_per_n / units::um, tool.modes.modes.size());
+    const bool limited = tool.lowest_limit_m.has_value();
+    fmt::print("{:>10} ", limited ? fmt::format("{:.4g}", *tool.lowest_limit_m / units::mm) : "-");
+    if (tool.recommendation && tool.recommendation->recommended) {
+      const plan::Operation& best = *tool.recommendation->recommended;
+      fmt::print("{:>9.0f} {:>9.4g}\n", best.spindle_speed_rad_per_s / units::rpm, best.axial_depth_m / units::mm);
+    } else {
+      fmt::print("{}\n", tool.recommendation ? tool.recommendation->reason : "-");
+    }
+  }
+}
+
+/// A table of many tools in the assembly's holder.
+Exit try_tools(const CoupleCommand& command, const Common& common, Progress& progress) {
+  const bool as_json = common.to_stdout() || formats::format_of(common.output) == formats::Format::json;
+  if (!common.output.empty() && !as_json && formats::format_of(common.output) != formats::Format::csv) {
+    throw InvalidInput(common.output, "a table of tools is written as .csv or .json");
+  }
+  const formats::AssemblyFile assembly = formats::read_assembly(command.input);
+  const auto tools = formats::read_tools(command.tools, assembly.assembly.tool.front());
+  std::optional<formats::LobesFile> cut;
+  if (!command.lobes.empty()) {
+    cut = formats::read_lobes(command.lobes);
+    // Each tool brings its own dynamics; those of a workpiece stay.
+    cut->modes.clear();
+    cut->frf.clear();
+    formats::load_dynamics(*cut);
+  }
+  const std::vector<plan::ToolResult> results = plan::try_tools(assembly, tools, cut, common.seed, progress);
+  if (common.to_stdout()) {
+    fmt::print("{}", plan::tools_json(results));
+  } else if (!common.output.empty()) {
+    formats::write_file(common.output, as_json ? plan::tools_json(results) : plan::tools_csv(results));
+  }
+  if (common.wants_summary()) {
+    print_tools(results);
+    for (const std::string& note : assembly.notes) fmt::print("Note: {}\n", note);
+  }
+  const bool all_done = std::all_of(results.begin(), results.end(), [](const auto& t) { return t.failure.empty(); });
+  if (all_done) return done;
+  fmt::print(stderr, "robomill: not every tool could be coupled; its row says why\n");
+  return not_reached;
+}
+
+}  // namespace
+
+Exit run(const CoupleCommand& command, const Common& common, Progress& progress) {
+  if (!command.tools.empty()) return try_tools(command, common, progress);
+  const formats::AssemblyFile file = formats::read_assembly(command.input);
+  const modal::FrfSet& holder = file.assembly.holder.receptances;
+  if (!command.holder_out.empty() && holder.frfs.empty()) {
+    throw InvalidInput("--holder-out", "needs a measured holder",
+                       "A holder of segments, or a rigid wall, has nothing to keep for the next tool");
+  }
+  progress.check();
+  const coupling::TipResult tip =
+      coupling::tip_frfs(file.assembly, file.frequency_hz, {.rotations = command.rotations});
+  if (common.to_stdout()) {
+    fmt::print("{}", formats::frf_json(tip.frfs));
+  } else if (!common.output.empty()) {
+    formats::write_frfs(common.output, tip.frfs);
+  }
+  if (!command.holder_out.empty()) formats::write_frfs(command.holder_out, holder);
+  if (common.wants_summary()) print_summary(file, tip);
+  return done;
+}
+
+}  // namespace robomill::app

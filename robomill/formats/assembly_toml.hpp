@@ -1,0 +1,46 @@
+#pragma once
+#include <Eigen/Core>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/coupling/assembly.hpp"
+#include "robomill/coupling/holder.hpp"
+
+namespace robomill::formats {
+
+/// assembly.toml, with the measured holder that it names.
+struct AssemblyFile {
+  std::filesystem::path path = {};
+  coupling::Assembly assembly = {};
+  /// Lines to give: those of [frequency]; with a measured holder those of its axis within frequency.range_hz. Empty
+  /// where the joint is sought, whose FRF brings its own.
+  Eigen::VectorXd frequency_hz = {};
+  double low_hz = 0.0;  ///< frequency.range_hz; all where absent
+  double high_hz = std::numeric_limits<double>::infinity();
+  std::filesystem::path receptances = {};             ///< holder.receptances, resolved; empty where absent
+  std::optional<coupling::HolderResult> holder = {};  ///< where rotations were completed or an artefact taken off
+  std::vector<std::string> notes = {};                ///< sentences for the user
+};
+
+struct AssemblyReading {
+  /// The joint is what is looked for: its stiffness may be left out (any value then stands there), and no frequencies
+  /// are needed.
+  bool joint_sought = false;
+};
+
+/// Reads the assembly, its holder's receptances, and makes of these what tip_frfs takes: as they are where they hold
+/// rotations, by coupling::complete_rotations where holder.points_mm says where they were measured, and by
+/// coupling::remove_artefact where holder.artefact says on what.
+/// @throws InvalidInput with file, line, key and value, or with the file of receptances and the FRFs that it lacks
+[[nodiscard]] ROBOMILL_API AssemblyFile read_assembly(const std::filesystem::path& path,
+                                                      const AssemblyReading& reading = {});
+
+/// The lines of a set within [low_hz, high_hz] and above 0 Hz.
+/// @throws InvalidInput if there is none
+[[nodiscard]] ROBOMILL_API modal::FrfSet lines_between(const modal::FrfSet& set, double low_hz, double high_hz);
+
+}  // namespace robomill::formats

@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+
+#include "robomill/base/export.hpp"
+#include "robomill/coupling/joint_fit.hpp"
+
+namespace robomill::formats {
+
+/// joint.json as text: the joint in the keys of assembly.toml, how well it fits and what the FRF tells of it. A
+/// deviation that is infinite is null.
+[[nodiscard]] ROBOMILL_API std::string joint_json(const coupling::JointFitResult& result);
+
+}  // namespace robomill::formats

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "robomill/formats/json.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/plan/plan.hpp"
+#include "robomill/plan/tools.hpp"
+
+namespace robomill::plan {
+namespace {
+
+using formats::Json;
+using formats::number;
+
+const Operation* best_of(const ToolResult& tool) {
+  return tool.recommendation && tool.recommendation->recommended ? &*tool.recommendation->recommended : nullptr;
+}
+
+/// Why a row has no operation, or what to know of it: the failure, the reason, then the notes.
+std::string remark_of(const ToolResult& tool) {
+  if (!tool.failure.empty()) return tool.failure;
+  std::string text = tool.recommendation && best_of(tool) == nullptr ? tool.recommendation->reason : "";
+  for (const std::string& note : tool.notes) text += (text.empty() ? "" : "; ") + note;
+  return text;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char letter : text) out += letter == '"' ? '\'' : letter == '\n' || letter == '\r' ? ' ' : letter;
+  return out + "\"";
+}
+
+/// In the file's unit; empty where there is none.
+std::string cell(double value, double unit, bool known = true) {
+  return known ? fmt::format("{:.6g}", value / unit) : std::string();
+}
+
+Json operation_json(const Operation* op) {
+  if (op == nullptr) return {};
+  return {{"spindle_speed_rpm", number(op->spindle_speed_rad_per_s / units::rpm)},
+          {"axial_depth_mm", number(op->axial_depth_m / units::mm)},
+          {"limit_depth_mm", number(op->limit_depth_m / units::mm)},
+          {"removal_rate_mm3_per_s", number(op->removal_rate_m3_per_s / units::mm3)},
+          {"limited_by", limited_by_text(*op)}};
+}
+
+Json tool_json(const ToolResult& tool) {
+  Json modes = Json::array();
+  for (const modal::Mode& mode : tool.modes.modes) {
+    modes.push_back({{"frequency_hz", number(mode.frequency_hz)}, {"damping_ratio", number(mode.damping_ratio)}});
+  }
+  const bool done = tool.failure.empty();
+  Json json;
+  json["tool"] = tool.name;
+  json["teeth"] = tool.teeth > 0 ? Json(tool.teeth) : Json();
+  json["diameter_mm"] = number(tool.diameter_m / units::mm);
+  json["overhang_mm"] = number(tool.overhang_m / units::mm);
+  json["failure"] = done ? Json() : Json(tool.failure);
+  json["peak_hz"] = done ? number(tool.peak_hz) : Json();
+  json["peak_um_per_n"] = done ? number(tool.peak_m_per_n / units::um) : Json();
+  json["modes"] = modes;
+  json["fit_relative_error"] = done ? number(tool.fit_error) : Json();
+  json["suspect_lines"] = tool.suspect_lines;
+  json["lowest_limit_mm"] = tool.lowest_limit_m ? number(*tool.lowest_limit_m / units::mm) : Json();
+  json["recommended"] = operation_json(best_of(tool));
+  json["reason"] = tool.recommendation ? Json(tool.recommendation->reason) : Json();
+  json["notes"] = tool.notes;
+  return json;
+}
+
+}  // namespace
+
+std::string tools_csv(const std::vector<ToolResult>& results) {
+  std::string out =
+      "tool,teeth,diameter_mm,overhang_mm,peak_hz,peak_um_per_n,modes,mode_frequency_hz,mode_damping_ratio,"
+      "lowest_limit_mm,spindle_speed_rpm,axial_depth_mm,removal_rate_mm3_per_s,remark\n";
+  for (const ToolResult& tool : results) {
+    const bool done = tool.failure.empty();
+    const Operation* best = best_of(tool);
+    // The mode that the peak belongs to.
+    const auto nearest =
+        std::min_element(tool.modes.modes.begin(), tool.modes.modes.end(), [&](const auto& a, const auto& b) {
+          return std::abs(a.frequency_hz - tool.peak_hz) < std::abs(b.frequency_hz - tool.peak_hz);
+        });
+    const bool mode = nearest != tool.modes.modes.end();
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(tool.name),
+                       tool.teeth > 0 ? std::to_string(tool.teeth) : std::string(), cell(tool.diameter_m, units::mm),
+                       cell(tool.overhang_m, units::mm), cell(tool.peak_hz, 1.0, done),
+                       cell(tool.peak_m_per_n, units::um, done), tool.modes.modes.size(),
+                       mode ? cell(nearest->frequency_hz, 1.0) : "", mode ? cell(nearest->damping_ratio, 1.0) : "",
+                       cell(tool.lowest_limit_m.value_or(0.0), units::mm, tool.lowest_limit_m.has_value()),
+                       best != nullptr ? cell(best->spindle_speed_rad_per_s, units::rpm) : "",
+                       best != nullptr ? cell(best->axial_depth_m, units::mm) : "",
+                       best != nullptr ? cell(best->removal_rate_m3_per_s, units::mm3) : "", quoted(remark_of(tool)));
+  }
+  return out;
+}
+
+std::string tools_json(const std::vector<ToolResult>& results) {
+  Json tools = Json::array();
+  for (const ToolResult& tool : results) tools.push_back(tool_json(tool));
+  Json json;
+  json["tools"] = tools;
+  return formats::dump(json);
+}
+
+}  // namespace robomill::plan
