@@ -319,9 +319,9 @@ std::string scale_bar(const Layout& layout, double y) {
 std::vector<std::string> joint_texts(const Json& assembly) {
   const Json& joint = assembly["joint"];
   if (!joint.is_object()) return {"rigid joint"};
-  return {fmt::format("Shift: {} N/m, {} N·s/m", with_power(joint["translational_stiffness_n_per_m"]),
+  return {fmt::format("Shift: k {} N/m, c {} N·s/m", with_power(joint["translational_stiffness_n_per_m"]),
                       with_power(joint["translational_damping_n_s_per_m"])),
-          fmt::format("Rotation: {} N·m/rad, {} N·m·s/rad", with_power(joint["rotational_stiffness_n_m_per_rad"]),
+          fmt::format("Rotation: k {} N·m/rad, c {} N·m·s/rad", with_power(joint["rotational_stiffness_n_m_per_rad"]),
                       with_power(joint["rotational_damping_n_m_s_per_rad"]))};
 }
 

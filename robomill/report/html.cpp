@@ -99,7 +99,7 @@ std::string with_power(const nlohmann::ordered_json& value) {
   if (!value.is_number()) return std::string(dash);
   const double number = value.get<double>();
   const double size = std::abs(number);
-  if (size == 0.0 || (size >= 1e-3 && size < 1e5)) return fmt::format("{:.4g}", number);
+  if (size == 0.0 || (size >= 1e-3 && size < 1e4)) return fmt::format("{:.4g}", number);
   const std::string text = fmt::format("{:.3e}", number);
   const std::size_t split = text.find('e');
   std::string out = text.substr(0, split);
