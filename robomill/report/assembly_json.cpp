@@ -78,8 +78,10 @@ Json bands_json(const Eigen::VectorXd& axis_hz, const std::vector<double>& lines
   std::size_t next = 0;
   double from = missing;
   for (Eigen::Index i = 0; i < n; ++i) {
-    while (next < lines_hz.size() && lines_hz[next] < axis_hz[i]) ++next;
-    const bool marked = next < lines_hz.size() && lines_hz[next] == axis_hz[i];
+    // Axes that differ by less than this are the same, as for files.
+    const double slack = 1e-5 * std::abs(axis_hz[i]);
+    while (next < lines_hz.size() && lines_hz[next] < axis_hz[i] - slack) ++next;
+    const bool marked = next < lines_hz.size() && lines_hz[next] <= axis_hz[i] + slack;
     const double low = i > 0 ? 0.5 * (axis_hz[i - 1] + axis_hz[i]) : axis_hz[i];
     if (marked && std::isnan(from)) from = low;
     if (!marked && !std::isnan(from)) {
