@@ -88,7 +88,7 @@ struct TipResult {
 /// @param frequency_hz  length n, strictly increasing, > 0 [Hz]; with a measured holder lines of its axis
 /// @throws InvalidInput if the assembly is not valid, or a frequency is not > 0, outside the measured holder's range or
 ///     none of its lines (naming both steps), or an undamped assembly resonates at it
-/// Source: [SchmitzDonaldson2000], [Park2003]; derivation in docs/theory/receptance-coupling.md
+/// Source: [SchmitzDonaldson2000], [ParkAltintasMovahhedy2003]; derivation in docs/theory/receptance-coupling.md
 [[nodiscard]] ROBOMILL_API TipResult tip_frfs(const Assembly& assembly, const Eigen::VectorXd& frequency_hz,
                                               const TipOptions& options = {});
 

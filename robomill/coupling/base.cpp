@@ -94,19 +94,19 @@ void read_measured(const modal::FrfSet& set, const Eigen::VectorXd& frequency_hz
     base.xy = xy.read(lines);
     base.yx = Block(set, Axis::y, Axis::x).read(lines);
   } else if (!xy.empty()) {
-    base.notes.push_back(fmt::format("The holder's FRFs between x and y are left out: {} missing.",
-                                     fmt::join(xy.missing(), ", ")));
+    base.notes.push_back(
+        fmt::format("The holder's FRFs between x and y are left out: {} missing.", fmt::join(xy.missing(), ", ")));
   }
   std::set<double> suspect;
   for (const Block* block : {&x, &y}) {
     for (std::size_t i = 0; i < 2 && !block->empty(); ++i) {
       const std::vector<double> found = suspect_lines(block->diagonal(i), set.frequency_hz);
       if (2 * found.size() > static_cast<std::size_t>(set.frequency_hz.size())) {
-        throw InvalidInput("receptances",
-                           fmt::format("{} has a positive imaginary part at {} of {} lines: it would create energy",
-                                       modal::to_string(block->diagonal(i).name), found.size(),
-                                       set.frequency_hz.size()),
-                           "Is the sign of a sensor wrong, or the time axis turned round?");
+        throw InvalidInput(
+            "receptances",
+            fmt::format("{} has a positive imaginary part at {} of {} lines: it would create energy",
+                        modal::to_string(block->diagonal(i).name), found.size(), set.frequency_hz.size()),
+            "Is the sign of a sensor wrong, or the time axis turned round?");
       }
       suspect.insert(found.begin(), found.end());
     }

@@ -1,32 +1,15 @@
 #include "robomill/coupling/distributed.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
 
 #include "robomill/base/parallel.hpp"
+#include "robomill/coupling/artefact.hpp"
 #include "robomill/coupling/span.hpp"
 
 namespace robomill::coupling::detail {
 namespace {
 
 constexpr std::size_t lines_per_block = 64;
-
-/// The piece of segments between two distances from the first one's free end.
-std::vector<Segment> piece(const std::vector<Segment>& segments, double from_m, double to_m) {
-  std::vector<Segment> out;
-  double start = 0.0;
-  for (const Segment& segment : segments) {
-    const double end = start + segment.length_m;
-    const double length = std::min(end, to_m) - std::max(start, from_m);
-    if (length > 1e-9 * segment.length_m) {
-      out.push_back(segment);
-      out.back().length_m = length;
-      out.back().mass_kg *= length / segment.length_m;
-    }
-    start = end;
-  }
-  return out;
-}
 
 /// A rigid body without mass; the mouth's side is end 1.
 Span rigid_link(double length_m) {
@@ -116,8 +99,7 @@ std::vector<Square<N>> distributed(const Joint& joint, const Holder& holder, con
   std::vector<Square<N>> out(deep.size());
   parallel_for(out.size(), lines_per_block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Square<N> share =
-          joint.points * planes<N>(flexibility(joint, frequency_hz(static_cast<Eigen::Index>(i))));
+      const Square<N> share = joint.points * planes<N>(flexibility(joint, frequency_hz(static_cast<Eigen::Index>(i))));
       out[i] = climb<N>(gaps, i, deep[i], share);
     }
   });

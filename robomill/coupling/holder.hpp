@@ -21,7 +21,7 @@ struct HolderResult {
 struct HolderOptions {
   double max_amplification = 100.0;  ///< > 0
   /// Tikhonov's, as a share of the largest singular value, >= 0; a line whose condition is κ is biased by (share κ)².
-  double regularisation = 1e-6;
+  double regularisation = 1e-5;
 };
 
 /// Completes rotations by finite difference of translations at two or three points near the mouth:

@@ -9,9 +9,9 @@ namespace robomill::coupling::detail {
 /// with E* = E (1 + iη), G* = G (1 + iη); β_1 = β = 0 for Euler and Bernoulli.
 struct Section {
   double half_length_m = 0.0;
-  double bending_stiffness_n_m2 = 0.0;        ///< E I
+  double bending_stiffness_n_m2 = 0.0;              ///< E I
   double bending = 0.0, rotary = 0.0, shear = 0.0;  ///< Λ, β_1 and β where η = 0
-  std::complex<double> loss = 1.0;            ///< 1 + iη
+  std::complex<double> loss = 1.0;                  ///< 1 + iη
 };
 
 /// @throws InvalidInput as Segment::validate

@@ -59,8 +59,7 @@ void waves_over_exp(SpanWork& work) {
       set(work.cosine[i], l, 0.5 * (1.0 + back));
       set(work.sine[i], l, std::abs(wave) > 0.0 ? 0.5 * (1.0 - back) / wave : Complex(1.0));
     }
-    set(work.x, l,
-        get(work.sine[0], l) * get(work.cosine[1], l) - get(work.sine[1], l) * get(work.cosine[0], l));
+    set(work.x, l, get(work.sine[0], l) * get(work.cosine[1], l) - get(work.sine[1], l) * get(work.cosine[0], l));
   }
 }
 

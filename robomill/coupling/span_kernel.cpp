@@ -48,8 +48,7 @@ struct M {
 };
 template <class V>
 INLINE M<V> operator*(const M<V>& a, const M<V>& b) {
-  return {a.uu * b.uu + a.ut * b.tu, a.uu * b.ut + a.ut * b.tt, a.tu * b.uu + a.tt * b.tu,
-          a.tu * b.ut + a.tt * b.tt};
+  return {a.uu * b.uu + a.ut * b.tu, a.uu * b.ut + a.ut * b.tt, a.tu * b.uu + a.tt * b.tu, a.tu * b.ut + a.tt * b.tt};
 }
 template <class V>
 INLINE M<V> operator+(const M<V>& a, const M<V>& b) {
@@ -200,8 +199,9 @@ ROBOMILL_KERNEL_CORE void span_matrices_core(SpanWork& w, std::size_t lane) {
                         (-1.0 / h) * (softness * compliance.tu), (1.0 / (h * h)) * (softness * compliance.tt)};
   store(clamped, w.span.clamped, lane);
   store(M<V>{-1.0 * carry.uu, -h * carry.ut, (1.0 / h) * carry.tu, carry.tt}, w.span.carry, lane);
-  store(M<V>{stiffness * free.uu, h * (stiffness * free.ut), h * (stiffness * free.tu), (h * h) * (stiffness * free.tt)},
-        w.span.stiffness, lane);
+  store(
+      M<V>{stiffness * free.uu, h * (stiffness * free.ut), h * (stiffness * free.tu), (h * h) * (stiffness * free.tt)},
+      w.span.stiffness, lane);
 }
 
 ROBOMILL_KERNEL_CORE void span_join_core(SpanJoin& join, std::size_t lane) {

@@ -18,14 +18,14 @@ struct SpanLanes {
 /// numbers, q = (k h)², each C, T pair may carry a factor of its own, which cancels.
 struct SpanWork {
   Section section;
-  Lanes omega2;                                    ///< ω² [rad²/s²]
-  ComplexLanes bending, rotary, shear;             ///< Λ, β_1, β
-  ComplexLanes discriminant;                       ///< ((β_1 - β) / 2)² + Λ
-  ComplexLanes root;                               ///< (q_1 - q_2) / 2, its square root
-  ComplexLanes q[2];                               ///< of the waves
-  ComplexLanes cosine[2], sine[2];                 ///< C_i, T_i
-  ComplexLanes x;                                  ///< T_1 C_2 - T_2 C_1
-  SpanLanes span;                                  ///< of the section
+  Lanes omega2;                         ///< ω² [rad²/s²]
+  ComplexLanes bending, rotary, shear;  ///< Λ, β_1, β
+  ComplexLanes discriminant;            ///< ((β_1 - β) / 2)² + Λ
+  ComplexLanes root;                    ///< (q_1 - q_2) / 2, its square root
+  ComplexLanes q[2];                    ///< of the waves
+  ComplexLanes cosine[2], sine[2];      ///< C_i, T_i
+  ComplexLanes x;                       ///< T_1 C_2 - T_2 C_1
+  SpanLanes span;                       ///< of the section
 };
 
 /// Λ, β_1, β and the discriminant from section and omega2.

@@ -44,14 +44,9 @@ BeamFunctions beam_functions(LongComplex x) {
   if (std::abs(x) > 3.0L) {
     return {s * sh, c * ch - 1.0L, c * ch + 1.0L, c * sh - s * ch, c * sh + s * ch, s + sh, s - sh, c - ch};
   }
-  return {2.0L * power_sum(x, 2, -4.0L),
-          power_sum(x, 4, -4.0L) * -4.0L,
-          c * ch + 1.0L,
-          -4.0L * power_sum(x, 3, -4.0L),
-          2.0L * power_sum(x, 1, -4.0L),
-          2.0L * power_sum(x, 1, 1.0L),
-          -2.0L * power_sum(x, 3, 1.0L),
-          -2.0L * power_sum(x, 2, 1.0L)};
+  return {2.0L * power_sum(x, 2, -4.0L),  power_sum(x, 4, -4.0L) * -4.0L, c * ch + 1.0L,
+          -4.0L * power_sum(x, 3, -4.0L), 2.0L * power_sum(x, 1, -4.0L),  2.0L * power_sum(x, 1, 1.0L),
+          -2.0L * power_sum(x, 3, 1.0L),  -2.0L * power_sum(x, 2, 1.0L)};
 }
 
 Eigen::MatrixXcd to_double(const Eigen::Matrix<LongComplex, -1, -1>& a) {
@@ -71,9 +66,9 @@ Eigen::MatrixXcd free_beam(LongComplex x, double length, std::complex<double> st
   const LongComplex d2 = ei * lambda * lambda * f.f3;
   const LongComplex d1 = ei * lambda * f.f3;
   Eigen::Matrix<LongComplex, -1, -1> r(4, 4);
-  r << -f.f5 / d3, -f.f1 / d2, f.f8 / d3, f.f10 / d2,   //
-      -f.f1 / d2, f.f6 / d1, -f.f10 / d2, f.f7 / d1,    //
-      f.f8 / d3, -f.f10 / d2, -f.f5 / d3, f.f1 / d2,    //
+  r << -f.f5 / d3, -f.f1 / d2, f.f8 / d3, f.f10 / d2,  //
+      -f.f1 / d2, f.f6 / d1, -f.f10 / d2, f.f7 / d1,   //
+      f.f8 / d3, -f.f10 / d2, -f.f5 / d3, f.f1 / d2,   //
       f.f10 / d2, f.f7 / d1, f.f1 / d2, f.f6 / d1;
   return to_double(r);
 }
@@ -110,8 +105,7 @@ TEST(Span, FreeBeamIsBishopsFromLambdaL1em3To100) {
   const detail::Section s = detail::section(segment);
   for (double x = 1e-3; x < 100.5; x *= 1.07) {
     const Span span = detail::spans({segment}, Eigen::VectorXd::Constant(1, frequency_at(x, segment))).front();
-    const Eigen::MatrixXcd expected =
-        free_beam(lossy(x, segment), segment.length_m, s.bending_stiffness_n_m2 * s.loss);
+    const Eigen::MatrixXcd expected = free_beam(lossy(x, segment), segment.length_m, s.bending_stiffness_n_m2 * s.loss);
     // At a resonance of the free beam the stiffness is all but singular, and its inverse loses as many digits.
     EXPECT_LT(misfit(free_matrix(span), expected, segment.length_m), 1e-12 * std::max(1.0, x)) << x;
   }
@@ -177,9 +171,9 @@ Span span_of(const Eigen::Matrix4cd& t) {
   const Eigen::Matrix2cd xx = t.topLeftCorner<2, 2>(), xf = t.topRightCorner<2, 2>();
   const Eigen::Matrix2cd fx = t.bottomLeftCorner<2, 2>(), ff = t.bottomRightCorner<2, 2>();
   Span out;
-  out.clamped = xx.inverse() * xf;            // 0 = xx x_1 - xf f_1
-  out.carry = xx.inverse();                   // x_2 = xx x_1
-  out.stiffness = fx * xx.inverse();          // f_2 = fx x_1
+  out.clamped = xx.inverse() * xf;    // 0 = xx x_1 - xf f_1
+  out.carry = xx.inverse();           // x_2 = xx x_1
+  out.stiffness = fx * xx.inverse();  // f_2 = fx x_1
   EXPECT_LT((ff - fx * xx.inverse() * xf - xx.inverse().transpose()).norm(), 1e-6 * ff.norm());
   return out;
 }

@@ -98,8 +98,8 @@ TEST(Tip, IsTheCouplingFormula) {
     return out;
   };
   for (Eigen::Index i = 0; i < f.size(); ++i) {
-    const Eigen::Matrix2cd sum = block(free, "2", "2", i) + block(holder, "", "", i) +
-                                 detail::flexibility(*assembly.joint, f(i));
+    const Eigen::Matrix2cd sum =
+        block(free, "2", "2", i) + block(holder, "", "", i) + detail::flexibility(*assembly.joint, f(i));
     const Eigen::Matrix2cd expected =
         block(free, "1", "1", i) - block(free, "1", "2", i) * sum.inverse() * block(free, "2", "1", i);
     EXPECT_LT((block(tip, "", "", i) - expected).norm(), 1e-9 * expected.norm()) << f(i);
