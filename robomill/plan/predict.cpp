@@ -35,14 +35,21 @@ double dip(const Eigen::VectorXd& size, Eigen::Index peak, Eigen::Index step) {
   return lowest;
 }
 
-/// A curve at frequencies between its lines.
+/// A curve at frequencies between its lines, by the cubic through the four next to each: about a resonance a straight
+/// line would be percents away.
 Eigen::VectorXcd interpolate(const Eigen::VectorXd& axis, const Eigen::VectorXcd& values, const Eigen::VectorXd& at) {
-  Eigen::VectorXcd out(at.size());
+  const Eigen::Index points = std::min<Eigen::Index>(4, axis.size());
+  Eigen::VectorXcd out = Eigen::VectorXcd::Zero(at.size());
   for (Eigen::Index i = 0; i < at.size(); ++i) {
     const auto above = std::lower_bound(axis.begin(), axis.end(), at(i)) - axis.begin();
-    const Eigen::Index high = std::clamp<Eigen::Index>(above, 1, axis.size() - 1);
-    const double share = std::clamp((at(i) - axis(high - 1)) / (axis(high) - axis(high - 1)), 0.0, 1.0);
-    out(i) = (1.0 - share) * values(high - 1) + share * values(high);
+    const Eigen::Index first = std::clamp<Eigen::Index>(above - 2, 0, axis.size() - points);
+    for (Eigen::Index j = first; j < first + points; ++j) {
+      double weight = 1.0;
+      for (Eigen::Index k = first; k < first + points; ++k) {
+        if (k != j) weight *= (at(i) - axis(k)) / (axis(j) - axis(k));
+      }
+      out(i) += weight * values(j);
+    }
   }
   return out;
 }
@@ -167,12 +174,14 @@ TipPrediction predict_tip(const std::filesystem::path& assembly, const std::file
 
 modal::FitResult fit_tip(const TipPrediction& prediction, const modal::FitOptions& options, Progress& progress) {
   const modal::FrfSet& tip = prediction.tip.frfs;
-  if (!prediction.round) return modal::fit_modes(tip, options, progress);
-  const modal::FrfName yy = modal::parse_frf_name("yy");
   const modal::FrfSet x{.frequency_hz = tip.frequency_hz, .frfs = {*tip.find(modal::parse_frf_name("xx"))}};
-  modal::FitResult out = modal::fit_modes(x, options, progress);
-  out.model = with_equal_directions(out.model);
-  out.by_frf.push_back({.name = yy, .error = out.by_frf.front().error});
+  modal::FitResult out = modal::fit_modes(prediction.round ? x : tip, options, progress);
+  if (prediction.round) {
+    out.model = with_equal_directions(out.model);
+    out.by_frf.push_back({.name = modal::parse_frf_name("yy"), .error = out.by_frf.front().error});
+  }
+  // What is left after the fit is not noise: it says nothing of how well joint and material are known.
+  for (modal::Mode& mode : out.model.modes) mode.frequency_std_hz = mode.damping_ratio_std = report::missing;
   return out;
 }
 

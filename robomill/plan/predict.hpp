@@ -28,7 +28,7 @@ struct TipPrediction {
 /// @throws InvalidInput as read_assembly, tip_frfs and read_frfs, or if nothing measured can be compared
 [[nodiscard]] TipPrediction predict_tip(const std::filesystem::path& assembly, const std::filesystem::path& measured);
 
-/// Its modes. A round tool is fitted in x, and the same modes stand in y.
+/// Its modes, without standard deviations. A round tool is fitted in x, and the same modes stand in y.
 /// @throws InvalidInput as fit_modes
 [[nodiscard]] modal::FitResult fit_tip(const TipPrediction& prediction, const modal::FitOptions& options,
                                        Progress& progress);
