@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t peaks_an_frf = 6;
 /// A peak stands so far above the dips beside it: scatter of a measured holder does not.
 constexpr double prominence = 1.5;
+/// A fit of a prediction, which has no noise, is closer than this to it.
+constexpr double poor_fit = 0.02;
 /// Peaks further apart than this share of frequency are not the same.
 constexpr double same_peak = 0.25;
 
@@ -179,6 +181,12 @@ modal::FitResult fit_tip(const TipPrediction& prediction, const modal::FitOption
   if (prediction.round) {
     out.model = with_equal_directions(out.model);
     out.by_frf.push_back({.name = modal::parse_frf_name("yy"), .error = out.by_frf.front().error});
+  }
+  if (out.relative_error > poor_fit) {
+    out.warnings.push_back(fmt::format(
+        "The modes differ from the predicted FRFs by {:.0f} %. A mode close beyond the last line is the usual "
+        "cause: extend frequency.range_hz of the assembly, or end job.band_hz well below that mode.",
+        100.0 * out.relative_error));
   }
   // What is left after the fit is not noise: it says nothing of how well joint and material are known.
   for (modal::Mode& mode : out.model.modes) mode.frequency_std_hz = mode.damping_ratio_std = report::missing;
