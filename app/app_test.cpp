@@ -315,7 +315,7 @@ TEST_F(App, CoupleRefusesInTheFilesWords) {
   write("bare.toml", "[frequency]\nrange_hz = [10, 1000]\nstep_hz = 10\n[[tool]]\n" + bar(50.90));
   ASSERT_EQ(robomill("couple bare.toml --rotations -o holder.mat").exit, 0);
   write_assembly("a.toml", "", "receptances = \"holder.mat\"\n");
-  refused("a.toml", "Hz");
+  refused("a.toml", "a.toml: frequency_hz = 1 Hz; must lie in the range of the measured holder, 10 to 1000 Hz");
   refused("missing.toml", "missing.toml");
   EXPECT_EQ(robomill("couple").exit, 2);
   EXPECT_EQ(robomill("couple a.toml --sideways").exit, 2);
@@ -389,7 +389,7 @@ TEST_F(App, JointRefusesWhatDoesNotFit) {
   write("bare.toml", "[frequency]\nrange_hz = [10, 1000]\nstep_hz = 10\n[[tool]]\n" + bar(50.90));
   ASSERT_EQ(robomill("couple bare.toml --rotations -o holder.mat").exit, 0);
   write_assembly("coarse.toml", "", "receptances = \"holder.mat\"\n", "");
-  refused("coarse.toml --measured tip.csv", "Hz");
+  refused("coarse.toml --measured tip.csv", "coarse.toml: frequency_hz = 1 Hz; must lie in the range");
   EXPECT_EQ(robomill("joint assembly.toml").exit, 2);
   EXPECT_EQ(robomill("joint assembly.toml --measured tip.csv --method magic").exit, 2);
   EXPECT_EQ(robomill("joint assembly.toml --measured tip.csv --axis z").exit, 2);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <optional>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/assembly.hpp"
@@ -83,6 +84,17 @@ void print_summary(const formats::AssemblyFile& file, const coupling::TipResult&
   for (const std::string& note : tip.notes) fmt::print("Note: {}\n", note);
 }
 
+/// The tip's FRFs; an error about the assembly names its file.
+coupling::TipResult couple(const formats::AssemblyFile& file, const coupling::TipOptions& options) {
+  try {
+    return coupling::tip_frfs(file.assembly, file.frequency_hz, options);
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    if (parts.where.empty()) parts.where = file.path.string();
+    throw InvalidInput(std::move(parts));
+  }
+}
+
 void print_tools(const std::vector<plan::ToolResult>& results) {
   fmt::print("{:<20} {:>5} {:>9} {:>9} {:>10} {:>5} {:>10} {:>9} {:>9}\n", "tool", "teeth", "overhang", "peak Hz",
              "µm/N", "modes", "lowest mm", "rpm", "depth mm");
@@ -147,8 +159,7 @@ Exit run(const CoupleCommand& command, const Common& common, Progress& progress)
                        "A holder of segments, or a rigid wall, has nothing to keep for the next tool");
   }
   progress.check();
-  const coupling::TipResult tip =
-      coupling::tip_frfs(file.assembly, file.frequency_hz, {.rotations = command.rotations});
+  const coupling::TipResult tip = couple(file, {.rotations = command.rotations});
   if (common.to_stdout()) {
     fmt::print("{}", formats::frf_json(tip.frfs));
   } else if (!common.output.empty()) {

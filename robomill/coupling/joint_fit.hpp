@@ -32,13 +32,14 @@ struct JointFitOptions {
   modal::Axis axis = modal::Axis::x;  ///< which driving-point FRF is fitted: x or y
   std::uint64_t seed = 1;
   /// Of the unknowns; where a range is left empty (0, 0), the method's own: ga as published, stiffness [1e5, 1e8],
-  /// damping [0, 100]; hybrid [1e3, 1e12] and [0, 1e6].
+  /// damping [0, 100]; hybrid [1e3, 1e12] and [0, 1e6]. A range of one value is not fitted.
   std::array<double, joint_unknowns> lower = {}, upper = {};
   int population = 20;          ///< of ga, >= 4
   int generations = 50;         ///< of ga, >= 1
   double crossover = 0.8;       ///< of ga: share of children by arithmetic crossover, in [0, 1]
   double mutation_rate = 0.01;  ///< of ga with Mutation::uniform: a gene's chance, in [0, 1]
-  /// No FRF is taken to be truer than this share of itself, > 0: it keeps deviations honest where data has no noise.
+  /// No FRF is taken to be truer than this share of itself, in (0, 1], by an error that all lines may share: it keeps
+  /// deviations honest where data has no noise.
   double noise_floor = 1e-4;
   /// @throws InvalidInput naming the member
   ROBOMILL_API void validate() const;
@@ -46,7 +47,7 @@ struct JointFitOptions {
 
 /// What the FRF tells of one unknown.
 struct JointKnowledge {
-  double deviation = 0.0;     ///< standard deviation, in the unknown's unit; infinite where the FRF says nothing
+  double deviation = 0.0;     ///< standard deviation, in the unknown's unit; infinite where the FRF sets no upper bound
   bool identifiable = false;  ///< whether the FRF bounds it from both sides
   /// Of a stiffness: beyond it the FRF cannot tell the joint from a rigid one. 0 for damping.
   double visible_up_to = 0.0;
@@ -61,17 +62,21 @@ struct JointFitResult {
   double objective_m_per_n = 0.0;  ///< ‖ |H11| - |H11 model| ‖₂ over the lines
   double relative_error = 0.0;     ///< ‖H11 - H11 model‖ / ‖H11‖, complex
   std::array<JointKnowledge, joint_unknowns> knowledge;
-  int iterations = 0;        ///< generations and steps together
-  std::vector<double> best;  ///< the objective after each: of ga in m/N, of hybrid the relative one that it minimises
-  modal::FrfSet model;       ///< H11 of the joint found, on the measured axis
-  std::vector<double> suspect_hz;  ///< as of tip_frfs
+  int iterations = 0;  ///< generations and steps together
+  /// The misfit after each: of ga the objective [m/N]; of hybrid first the evolution's, the mean over thinned lines of
+  /// |H - H model|² / (|H|² + |H model|²), then root mean squares of |H - H model| / σ.
+  std::vector<double> best;
+  modal::FrfSet model;             ///< H11 of the joint found, at the lines fitted
+  std::vector<double> suspect_hz;  ///< lines where holder or tip would create energy, beyond their noise
   std::vector<std::string> notes;
 };
 
-/// Finds the joint with which the assembly's tip moves as measured. The assembly's own joint is not looked at but for
-/// its points, shank and cross stiffness; method and accuracy in README.md.
-/// @param measured  holds xx (or yy, by options.axis); with a measured holder on the same axis
-/// @throws InvalidInput if an option, the assembly or the set is not valid, the FRF is missing, or the axes differ
+/// Finds the joint with which the assembly's tip moves as measured. Of the assembly's own joint the cross stiffness is
+/// kept, and it must have one point; method and accuracy in README.md.
+/// @param measured  holds xx (or yy, by options.axis), of the unnumbered tip or of one point alone; with a measured
+///     holder on its axis. A line at 0 Hz is left out.
+/// @throws InvalidInput if an option, the assembly or the set is not valid, the FRF is missing, zero or creates energy
+///     at most lines, the axes differ, or the joint is distributed
 /// @throws Interrupted when progress says so
 /// Source: [JointIdentification] (ga); [Storn1997] (differential evolution)
 [[nodiscard]] ROBOMILL_API JointFitResult fit_joint(const Assembly& assembly, const modal::FrfSet& measured,

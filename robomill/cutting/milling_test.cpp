@@ -3,22 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <string>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 
 namespace robomill::cutting {
 namespace {
 
 using std::numbers::pi;
-
-int seeds(int all) {
-  return std::getenv("ROBOMILL_FULL") != nullptr ? all : all / 10;
-}
+using test::field_of;
+using test::seeds;
 
 Milling robot_cut() {
   Milling m;
@@ -189,16 +187,6 @@ TEST(MeanLoad, AgreesWithTheForceOverARevolution) {
   EXPECT_NEAR(load.removal_rate_m3_per_s, depth * 1.8e-3 * feed * 3.0 * speed / (2.0 * pi), 1e-20);
   EXPECT_NEAR(load.power_w, 712e6 * load.removal_rate_m3_per_s, 1e-12 * load.power_w);
   EXPECT_NEAR(load.peak_tooth_force_n, std::hypot(712e6, 287e6) * depth * feed * std::sin(m.immersion.exit_rad), 1e-9);
-}
-
-template <class F>
-std::string field_of(F&& f) {
-  try {
-    f();
-  } catch (const InvalidInput& error) {
-    return error.parts().field;
-  }
-  return "accepted";
 }
 
 TEST(Milling, RefusesWhatCannotBe) {

@@ -101,13 +101,13 @@ void read_range(TomlFile& file, AssemblyFile& out) {
   file.require("frequency.range_hz", "[from, to]");
   file.numbers("frequency.range_hz", "range_hz", 1.0, range);
   if (range.size() != 2) throw file.refuse("frequency.range_hz", "must be [from, to]");
-  if (!(range[0] > 0.0)) throw file.refuse("frequency.range_hz", "must begin above 0 Hz");
+  if (!(range[0] >= 0.0)) throw file.refuse("frequency.range_hz", "must begin at 0 Hz or above");
   if (!(range[1] > range[0])) throw file.refuse("frequency.range_hz", "must be [from, to] with from below to");
   out.low_hz = range[0];
   out.high_hz = range[1];
 }
 
-/// Evenly from low to high; empty where no step is given.
+/// Evenly from low to high, without 0 Hz; empty where no step is given.
 Eigen::VectorXd read_step(TomlFile& file, const AssemblyFile& out) {
   double step_hz = 0.0;
   if (!file.number("frequency.step_hz", "step_hz", 1.0, step_hz)) return {};
@@ -119,8 +119,11 @@ Eigen::VectorXd read_step(TomlFile& file, const AssemblyFile& out) {
     throw file.refuse("frequency.step_hz", fmt::format("would give {:.3g} lines; at most {:.0f}", steps, most_lines),
                       "Take a larger step or a shorter range");
   }
-  const auto count = static_cast<Eigen::Index>(steps) + 1;
-  return out.low_hz + step_hz * Eigen::ArrayXd::LinSpaced(count, 0.0, steps);
+  // A structure has no receptance where it would fly away: a range from 0 begins with its first step.
+  const double first = out.low_hz > 0.0 ? 0.0 : 1.0;
+  const auto count = static_cast<Eigen::Index>(steps - first) + 1;
+  if (count < 1) throw file.refuse("frequency.step_hz", "must not be longer than the range");
+  return out.low_hz + step_hz * Eigen::ArrayXd::LinSpaced(count, first, steps);
 }
 
 std::string joined(const std::vector<std::string>& words) {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/assembly_toml.hpp"
-#include "robomill/formats/test_files.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -53,7 +53,7 @@ TEST(JointJson, HoldsWhatWasFound) {
 
 // The keys are those of assembly.toml: what was found can be pasted there.
 TEST(JointJson, ItsKeysAreThoseOfTheAssembly) {
-  const testing::Folder folder;
+  const test::Folder folder;
   std::string text =
       "[frequency]\nrange_hz = [1, 2]\nstep_hz = 1\n[[tool]]\nlength_mm = 100\ndiameter_mm = 12\n"
       "youngs_modulus_gpa = 200\ndensity_kg_per_m3 = 7800\n[joint]\n";

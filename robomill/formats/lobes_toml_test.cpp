@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "robomill/formats/test_files.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::formats {
@@ -44,7 +44,7 @@ std::string with(const std::string& old_text, const std::string& new_text) {
 }
 
 TEST(LobesToml, ReadsEverythingInSi) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const LobesFile file = read_lobes(folder.file("lobes.toml", good));
   EXPECT_NO_THROW(file.validate());
   const cutting::Milling& milling = file.problem.milling;
@@ -62,7 +62,7 @@ TEST(LobesToml, ReadsEverythingInSi) {
 
 // The modes given by modal mass have the receptance 1 / (m (ω_n² - ω² + 2iζω_nω)).
 TEST(LobesToml, InlineModesHaveTheirModalMass) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const modal::ModalModel model = read_lobes(folder.file("lobes.toml", good)).problem.dynamics;
   const Eigen::Vector3d frequency_hz(100.0, 922.0, 3000.0);
   const modal::FrfSet frfs = modal::synthesize(model, frequency_hz);
@@ -79,7 +79,7 @@ TEST(LobesToml, InlineModesHaveTheirModalMass) {
 }
 
 TEST(LobesToml, AnglesStandInForTheDirection) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const LobesFile file = read_lobes(
       folder.file("lobes.toml", with("direction = \"down\"\nradial_depth_mm = 1.2", "entry_deg = 0\nexit_deg = 90")));
   EXPECT_NEAR(file.radial_depth_m, 6e-3, 1e-15);
@@ -91,7 +91,7 @@ TEST(LobesToml, AnglesStandInForTheDirection) {
 }
 
 TEST(LobesToml, ReadsWhatElseActsInTheCut) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const std::string text = with("helix_deg = 30", "helix_deg = [30, 35]\nrunout_um = 5\nrunout_angle_deg = 90") + R"(
 [process_damping]
 indentation_n_per_mm3 = 40000
@@ -125,8 +125,7 @@ grid = [20, 10]
   EXPECT_EQ(file.uncertainty.grid, (std::array<int, 2>{20, 10}));
   EXPECT_EQ(file.surface_grid, (std::array<int, 2>{60, 60}));
   const auto refused = [&](const std::string& row, const std::string& words) {
-    const std::string said =
-        testing::refusal([&] { static_cast<void>(read_lobes(folder.file("bad.toml", good + row))); });
+    const std::string said = test::refusal([&] { static_cast<void>(read_lobes(folder.file("bad.toml", good + row))); });
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
   refused("[process_damping]\nwear_land_mm = 5\n", "bad.toml:22: process_damping.wear_land_mm = 5 mm; is longer");
@@ -139,9 +138,9 @@ grid = [20, 10]
 }
 
 TEST(LobesToml, RefusesInTheFilesWords) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const auto say = [&](const std::string& text) {
-    return testing::refusal([&] { read_lobes(folder.file("lobes.toml", text)).validate(); });
+    return test::refusal([&] { read_lobes(folder.file("lobes.toml", text)).validate(); });
   };
   const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& words) {
     const std::string said = say(with(old_text, new_text));

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/formats/test_files.hpp"
+#include "robomill/base/test_support.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -25,7 +25,7 @@ coupling::Segment carbide() {
 }
 
 TEST(ToolsCsv, ReadsARowASegment) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const auto tools = read_tools(folder.file("tools.csv",
                                             "# the rack by the window\n"
                                             "tool,length_mm,diameter_mm,flutes,youngs_modulus_gpa,beam,teeth\n"
@@ -62,7 +62,7 @@ TEST(ToolsCsv, ReadsARowASegment) {
 }
 
 TEST(ToolsCsv, TakesSemicolonsTabsAndCommasForThePoint) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const auto german =
       read_tools(folder.file("tools.csv", "\xEF\xBB\xBFtool;length_mm;diameter_mm\r\nFräser;20,5;10\r\n"), carbide());
   ASSERT_EQ(german.size(), 1U);
@@ -74,10 +74,10 @@ TEST(ToolsCsv, TakesSemicolonsTabsAndCommasForThePoint) {
 }
 
 TEST(ToolsCsv, RefusesInTheFilesWords) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const auto expect = [&](const std::string& text, const std::string& words) {
     const std::string said =
-        testing::refusal([&] { static_cast<void>(read_tools(folder.file("tools.csv", text), carbide())); });
+        test::refusal([&] { static_cast<void>(read_tools(folder.file("tools.csv", text), carbide())); });
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
   const std::string head = "tool,length_mm,diameter_mm,inner_diameter_mm,beam,teeth,density_kg_per_m3\n";
@@ -103,10 +103,10 @@ TEST(ToolsCsv, RefusesInTheFilesWords) {
 
 // Cut off or changed at any place, a file is refused or read, and never anything worse.
 TEST(ToolsCsv, SurvivesMutations) {
-  const testing::Folder folder;
+  const test::Folder folder;
   const std::string good = "tool,length_mm,diameter_mm,beam\n\"a\",20,10,timoshenko\n\"b\",30,12,euler-bernoulli\n";
   Random random(3);
-  for (int i = 0; i < testing::seeds(1000); ++i) {
+  for (int i = 0; i < test::seeds(1000); ++i) {
     std::string text = good;
     text[random.index(text.size())] = static_cast<char>(random.index(256));
     if (i % 2 == 0) text.resize(1 + random.index(good.size() - 1));

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <numbers>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/stability/test_problems.hpp"
 #include "robomill/stability/time_domain_reference.hpp"
 
@@ -18,15 +18,12 @@ namespace robomill::stability::detail {
 namespace {
 
 using std::numbers::pi;
+using test::seeds;
 using testing::benchmark;
 using testing::Known;
 using testing::known_points;
 using testing::robot;
 using testing::rpm;
-
-int seeds(int all) {
-  return std::getenv("ROBOMILL_FULL") != nullptr ? all : all / 10;
-}
 
 PointResult at(const LobesProblem& problem, double speed_rpm, double depth_m, double tolerance = 1e-6) {
   LobesOptions options;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/stability/gauss.hpp"
 
 namespace robomill::stability::detail {
 namespace {
@@ -61,32 +62,6 @@ Complex power_of_minus_i(Eigen::Index m) {
 }
 
 }  // namespace
-
-void gauss_legendre(Eigen::Index count, Eigen::VectorXd& nodes, Eigen::VectorXd& weights) {
-  nodes.resize(count);
-  weights.resize(count);
-  const double n = static_cast<double>(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    double x = std::cos(pi * (static_cast<double>(i) + 0.75) / (n + 0.5));
-    double slope = 1.0;
-    for (int step = 0; step < 20; ++step) {
-      double before = 0.0;
-      double now = 1.0;
-      for (Eigen::Index m = 0; m < count; ++m) {
-        const double degree = static_cast<double>(m);
-        const double next = ((2.0 * degree + 1.0) * x * now - degree * before) / (degree + 1.0);
-        before = now;
-        now = next;
-      }
-      slope = n * (before - x * now) / (1.0 - x * x);
-      const double change = now / slope;
-      x -= change;
-      if (std::abs(change) < 1e-15) break;
-    }
-    nodes(i) = x;
-    weights(i) = 2.0 / ((1.0 - x * x) * slope * slope);
-  }
-}
 
 void spherical_bessel(double z, Eigen::Ref<Eigen::VectorXd> out) {
   const Eigen::Index count = out.size();
@@ -233,18 +208,17 @@ void ContactBasis::find_stiffness(const cutting::Milling& milling, double axial_
       for (const Arc& arc : arcs_) entry.push_back(Eigen::MatrixXd::Zero(arc.count, arc.count));
     }
   }
-  Eigen::VectorXd nodes, weights;
   for (std::size_t a = 0; a < arcs_.size(); ++a) {
     const Arc& arc = arcs_[a];
     // The stiffness itself is smooth on the arc; eight more nodes than the product of two polynomials needs.
-    gauss_legendre(arc.count + 8, nodes, weights);
-    for (Eigen::Index q = 0; q < nodes.size(); ++q) {
-      const double angle = 0.5 * (arc.from + arc.to) + 0.5 * (arc.to - arc.from) * nodes(q);
-      const Eigen::VectorXd p = legendre(arc.count, nodes(q));
+    const GaussRule rule = make_gauss_rule(static_cast<int>(arc.count) + 8);
+    for (std::size_t q = 0; q < rule.node.size(); ++q) {
+      const double angle = arc.from + (arc.to - arc.from) * rule.node[q];
+      const Eigen::VectorXd p = legendre(arc.count, 2.0 * rule.node[q] - 1.0);
       const auto add = [&](Term& term, const Eigen::Matrix2d& value) {
         for (Eigen::Index e = 0; e < 4; ++e) {
           if (value(e) == 0.0) continue;
-          term.stiffness[static_cast<std::size_t>(e)][a] += (0.5 * weights(q) * value(e)) * p * p.transpose();
+          term.stiffness[static_cast<std::size_t>(e)][a] += (rule.weight[q] * value(e)) * p * p.transpose();
         }
       };
       for (int j = 0; j < teeth; ++j) {

@@ -79,8 +79,6 @@ class ContactBasis {
 /// Where a tooth enters or leaves at the tip or at the top, in [0, period), increasing [rad].
 [[nodiscard]] std::vector<double> contact_angles(const cutting::Milling& milling, double axial_depth_m,
                                                  double period_rad);
-/// Nodes in (-1, 1) and weights of Gauss' rule.
-void gauss_legendre(Eigen::Index count, Eigen::VectorXd& nodes, Eigen::VectorXd& weights);
 /// j_0(z) … j_{count-1}(z).
 void spherical_bessel(double z, Eigen::Ref<Eigen::VectorXd> out);
 /// Refuses what a frequency-domain method of one spindle speed and whole teeth cannot have.

@@ -10,12 +10,14 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/stability/test_problems.hpp"
 
 namespace robomill::stability {
 namespace {
 
 using std::numbers::pi;
+using test::field_of;
 using testing::rpm;
 using Named = Explanation::Kind;
 
@@ -116,16 +118,6 @@ TEST(Fingerprint, PropertyNamesWhatWasMade) {
     for (std::size_t i = 6; i < 9; ++i) EXPECT_NE(found.peaks[i].best.kind, Named::chatter) << seed;
     EXPECT_NEAR(found.chatter_frequency_hz, mode_hz, 1e-6) << seed;
   }
-}
-
-template <class F>
-std::string field_of(F&& f) {
-  try {
-    f();
-  } catch (const InvalidInput& error) {
-    return error.parts().field;
-  }
-  return "accepted";
 }
 
 TEST(Fingerprint, RefusesWhatCannotBe) {

@@ -6,7 +6,6 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <complex>
-#include <cstdlib>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/stability/contact_basis.hpp"
 #include "robomill/stability/crossings.hpp"
 #include "robomill/stability/test_problems.hpp"
@@ -22,6 +22,7 @@ namespace robomill::stability {
 namespace {
 
 using std::numbers::pi;
+using test::seeds;
 using testing::benchmark;
 using testing::robot;
 using testing::rpm;
@@ -156,10 +157,6 @@ TEST(MultiFrequency, HasProcessDamping) {
   LobesProblem bare = damped;
   bare.milling.process_damping = {};
   EXPECT_GT(multi(damped, 8e-3, {4000}).front().axial_depth_m, 1.2 * multi(bare, 8e-3, {4000}).front().axial_depth_m);
-}
-
-int seeds(int all) {
-  return std::getenv("ROBOMILL_FULL") != nullptr ? all : all / 10;
 }
 
 // Stable just below the limit and unstable just above it, or stable at every depth: told by another method.

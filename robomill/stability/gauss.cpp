@@ -5,10 +5,8 @@
 #include <numbers>
 
 namespace robomill::stability::detail {
-namespace {
-
 /// Newton's method on the three-term recurrence of the Legendre polynomials.
-GaussRule make_rule(int points) {
+GaussRule make_gauss_rule(int points) {
   GaussRule rule;
   for (int i = 0; i < points; ++i) {
     double x = -std::cos(std::numbers::pi * (i + 0.75) / (points + 0.5));
@@ -32,12 +30,10 @@ GaussRule make_rule(int points) {
   return rule;
 }
 
-}  // namespace
-
 const GaussRule& gauss_rule(int points) {
   static const std::array<GaussRule, most_gauss_points + 1> rules = [] {
     std::array<GaussRule, most_gauss_points + 1> all;
-    for (int i = 1; i <= most_gauss_points; ++i) all[static_cast<std::size_t>(i)] = make_rule(i);
+    for (int i = 1; i <= most_gauss_points; ++i) all[static_cast<std::size_t>(i)] = make_gauss_rule(i);
     return all;
   }();
   return rules[static_cast<std::size_t>(points)];

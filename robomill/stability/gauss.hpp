@@ -9,8 +9,11 @@ struct GaussRule {
   std::vector<double> node, weight;
 };
 
+/// Gauss-Legendre, exact for polynomials of degree 2 points - 1; points >= 1.
+GaussRule make_gauss_rule(int points);
+
 inline constexpr int most_gauss_points = 32;
-/// Gauss-Legendre, exact for polynomials of degree 2 points - 1. 1 <= points <= most_gauss_points.
+/// The same, kept; 1 <= points <= most_gauss_points.
 const GaussRule& gauss_rule(int points);
 
 /// The polynomial that is 1 at node l and 0 at the others.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -15,12 +14,14 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/stability/test_problems.hpp"
 
 namespace robomill::stability {
 namespace {
 
 using std::numbers::pi;
+using test::field_of;
 using testing::benchmark;
 using testing::chart;
 using testing::robot;
@@ -337,16 +338,6 @@ TEST(Lobes, AbsurdCutsGiveNumbersAndNoNan) {
   EXPECT_TRUE(result.spectral_radius.allFinite());
   EXPECT_GT(result.unsettled, 0);
   for (const Limit& limit : result.limit) EXPECT_EQ(limit.status, Limit::Status::found);
-}
-
-template <class F>
-std::string field_of(F&& f) {
-  try {
-    f();
-  } catch (const InvalidInput& error) {
-    return error.parts().field;
-  }
-  return "accepted";
 }
 
 TEST(LobesOptions, RefusesWhatCannotBe) {

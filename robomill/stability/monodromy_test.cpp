@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <cstdlib>
 #include <cstring>
 #include <numbers>
 #include <vector>
 
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
 #include "robomill/stability/evaluator.hpp"
 #include "robomill/stability/physical_steps.hpp"
 #include "robomill/stability/test_problems.hpp"
@@ -20,13 +20,10 @@ namespace robomill::stability::detail {
 namespace {
 
 using std::numbers::pi;
+using test::seeds;
 using testing::exponential;
 using testing::mean_stiffness;
 using testing::rpm;
-
-int seeds(int all) {
-  return std::getenv("ROBOMILL_FULL") != nullptr ? all : all / 10;
-}
 
 /// Spectral radius as published: physical coordinates u, v, one matrix exponential a step, all past positions in the
 /// state, the whole matrix. Source: [Insperger2004] with the delay a whole number of steps, so that both weights are

@@ -8,6 +8,7 @@
 #include "robomill/stability/contact_basis.hpp"
 #include "robomill/stability/crossings.hpp"
 #include "robomill/stability/frequency_domain.hpp"
+#include "robomill/stability/gauss.hpp"
 
 namespace robomill::stability {
 namespace {
@@ -28,13 +29,12 @@ class MeanCut {
     cutting::Milling straight = milling;
     straight.tool.helix_rad = 0.0;
     straight.tool.tooth_helix_rad.clear();
-    Eigen::VectorXd nodes, weights;
-    gauss_legendre(24, nodes, weights);
-    const double half = 0.5 * (milling.immersion.exit_rad - milling.immersion.entry_rad);
-    const double middle = 0.5 * (milling.immersion.exit_rad + milling.immersion.entry_rad);
-    for (Eigen::Index q = 0; q < nodes.size(); ++q) {
-      damping_ += (milling.tool.teeth * half * weights(q) / (2.0 * pi)) *
-                  cutting::cutting_damping(straight, 0, middle + half * nodes(q), 0.0, 1.0, spindle_speed_rad_per_s);
+    const GaussRule& rule = gauss_rule(24);
+    const double entry = milling.immersion.entry_rad;
+    const double arc = milling.immersion.exit_rad - entry;
+    for (std::size_t q = 0; q < rule.node.size(); ++q) {
+      damping_ += (milling.tool.teeth * arc * rule.weight[q] / (2.0 * pi)) *
+                  cutting::cutting_damping(straight, 0, entry + arc * rule.node[q], 0.0, 1.0, spindle_speed_rad_per_s);
     }
   }
   [[nodiscard]] Eigen::Matrix2cd at(double omega) const {
