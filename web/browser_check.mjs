@@ -26,8 +26,15 @@ function inspect() {
     };
   });
   const bad = [...document.querySelectorAll('svg text')].filter((text) => /NaN|undefined|Infinity/.test(text.textContent)).length;
+  // Labels of the drawing: none over another, none outside.
+  const drawing = document.querySelector('svg.assembly');
+  const labels = drawing ? [...drawing.querySelectorAll('text')].map((text) => text.getBBox()) : [];
+  const overlaps = (a, b) => Math.min(a.x + a.width, b.x + b.width) - Math.max(a.x, b.x) > 1 && Math.min(a.y + a.height, b.y + b.height) - Math.max(a.y, b.y) > 3;
+  const room = drawing?.viewBox.baseVal;
+  const outside = labels.filter((a) => a.x < -1 || a.x + a.width > room.width + 1 || a.y < -1 || a.y + a.height > room.height + 1).length;
+  const over = labels.filter((a, i) => labels.some((b, j) => j > i && overlaps(a, b))).length;
   const root = document.documentElement;
-  return { plots, bad, scroll: root.scrollWidth, inner: window.innerWidth, height: root.scrollHeight, tables: document.querySelectorAll('table').length };
+  return { drawing: { labels: labels.length, over, outside }, plots, bad, scroll: root.scrollWidth, inner: window.innerWidth, height: root.scrollHeight, tables: document.querySelectorAll('table').length };
 }
 
 const openAll = `for (const part of document.querySelectorAll('details')) part.open = true`;
@@ -53,6 +60,8 @@ async function look(browser, url, view, problems, shots) {
     if (plot.caption === 0) problems.push(`${where}: plot ${plot.name} has no caption`);
     if (plot.titles === 0) problems.push(`${where}: plot ${plot.name} has no title on any axis`);
   }
+  const { over, outside } = seen.drawing;
+  if (over + outside > 0) problems.push(`${where}: of the drawing's labels ${over} stand over another, ${outside} outside`);
   if (seen.bad > 0) problems.push(`${where}: ${seen.bad} labels read NaN, undefined or Infinity`);
   if (seen.scroll > seen.inner) problems.push(`${where}: ${seen.scroll} px wide in a window of ${seen.inner} px`);
   for (const error of page.errors) problems.push(`${where}: ${error}`);
@@ -124,7 +133,7 @@ async function main() {
     let seen;
     for (const view of process.argv.includes('--quick') ? views.slice(0, 1) : views) seen = await look(browser, url, view, problems, shots);
     if (problems.length === 0) {
-      console.log(`${file}: ${seen.plots.map((plot) => `${plot.name} (${plot.panels})`).join(', ')}; ${seen.tables} tables; no error, nothing fetched`);
+      console.log(`${file}: ${seen.plots.map((plot) => `${plot.name} (${plot.panels})`).join(', ')}; ${seen.drawing.labels} labels in the drawing; ${seen.tables} tables; no error, nothing fetched`);
     }
   } finally {
     await browser.close();

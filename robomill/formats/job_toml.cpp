@@ -12,6 +12,8 @@ void read_sources(TomlFile& file, Job& job) {
   file.path("job.hits", job.hits);
   file.path("job.modes", job.modes);
   file.path("job.lobes", job.lobes);
+  file.path("job.assembly", job.assembly);
+  const bool measured = file.path("job.measured", job.measured);
   file.paths("job.frf", job.frf);
   file.texts("job.frf_as", job.frf_as);
   std::vector<double> band;
@@ -22,10 +24,18 @@ void read_sources(TomlFile& file, Job& job) {
   }
   file.boolean("job.equal_directions", job.equal_directions);
   file.integer("job.fit_modes", "fit_modes", job.fit_modes);
-  const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1);
+  const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1) +
+                      (job.assembly.empty() ? 0 : 1);
   if (sources != 1) {
-    throw file.refuse("job", "must name exactly one of hits, frf and modes",
+    throw file.refuse("job", "must name exactly one of hits, frf, modes and assembly",
                       sources == 0 ? "None is given" : "Several are given");
+  }
+  if (measured && job.assembly.empty()) {
+    throw file.refuse("job.measured", "goes with job.assembly", "FRFs to start from are job.frf");
+  }
+  if (job.equal_directions && !job.assembly.empty()) {
+    throw file.refuse("job.equal_directions", "must not stand beside job.assembly",
+                      "Both directions of an assembly are predicted");
   }
   file.require("job.lobes", "It names the cut: lobes.toml");
 }

@@ -25,10 +25,13 @@ struct SpindlePoint {
   double power_w = 0.0;
 };
 
-/// job.toml. Paths are resolved; an empty one is absent. Exactly one of hits, frf and modes is given.
+/// job.toml. Paths are resolved; an empty one is absent. Exactly one of hits, frf, modes and assembly
+/// is given.
 struct Job {
   std::string title = {};
   std::filesystem::path hits = {}, modes = {}, lobes = {};
+  std::filesystem::path assembly = {};  ///< whose tip is predicted …
+  std::filesystem::path measured = {};  ///< … and FRFs of the tip to compare with it
   std::vector<std::filesystem::path> frf = {};
   std::vector<std::string> frf_as = {};
   double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data

@@ -47,9 +47,23 @@ result = "chatter"
   EXPECT_DOUBLE_EQ(job.cuts[1].axial_depth_m, 1.2e-3);
 }
 
+TEST_F(JobToml, TakesAnAssemblyAndAMeasurementOfItsTip) {
+  const Job job =
+      read_job(write("job.toml", "[job]\nassembly = \"a.toml\"\nmeasured = \"tip.uff\"\nlobes = \"l.toml\"\n"));
+  EXPECT_EQ(job.assembly, folder_.at("a.toml"));
+  EXPECT_EQ(job.measured, folder_.at("tip.uff"));
+}
+
 TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
   const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
-  EXPECT_NE(refusal("[job]\nlobes = \"l.toml\"\n").find("exactly one of hits, frf and modes"), std::string::npos);
+  EXPECT_NE(refusal("[job]\nlobes = \"l.toml\"\n").find("exactly one of hits, frf, modes and assembly"),
+            std::string::npos);
+  EXPECT_NE(refusal(source + "assembly = \"a.toml\"\n").find("Several are given"), std::string::npos);
+  EXPECT_NE(refusal(source + "measured = \"tip.uff\"\n").find("job.measured goes with job.assembly"), std::string::npos)
+      << refusal(source + "measured = \"tip.uff\"\n");
+  EXPECT_NE(refusal("[job]\nassembly = \"a.toml\"\nlobes = \"l.toml\"\nequal_directions = true\n")
+                .find("Both directions of an assembly are predicted"),
+            std::string::npos);
   EXPECT_NE(refusal(source + "[spindle]\nmax_speed_rpm = -5\n").find("job.toml:5: spindle.max_speed_rpm = -5 rpm"),
             std::string::npos)
       << refusal(source + "[spindle]\nmax_speed_rpm = -5\n");

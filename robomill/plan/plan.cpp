@@ -27,6 +27,25 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
+void warn_of_prediction(PlanResult& result) {
+  const TipPrediction& prediction = *result.prediction;
+  result.notes.push_back(
+      prediction.measured ? "The FRFs are predicted from the assembly; the measured ones are only compared with them."
+                          : "The FRFs are predicted from the assembly, not measured.");
+  if (!prediction.tip.suspect_hz.empty()) {
+    result.warnings.push_back(fmt::format(
+        "At {} lines, from {:.6g} Hz on, the measured holder would create energy: what is predicted there is suspect.",
+        prediction.tip.suspect_hz.size(), prediction.tip.suspect_hz.front()));
+  }
+  if (prediction.file.holder && !prediction.file.holder->unreliable_hz.empty()) {
+    const std::vector<double>& lines = prediction.file.holder->unreliable_hz;
+    result.warnings.push_back(
+        fmt::format("At {} lines, from {:.6g} Hz on, a small error of the holder's measurement became a large one of "
+                    "its receptances: they are unreliable there.",
+                    lines.size(), lines.front()));
+  }
+}
+
 void measure(PlanResult& result, Progress& progress) {
   if (!result.job.hits.empty()) {
     const formats::HitsFile hits = formats::read_hits(result.job.hits);
@@ -44,6 +63,10 @@ void measure(PlanResult& result, Progress& progress) {
     append(result.notes, file.notes);
     result.frfs = file.set;
     result.added_decay_per_s = file.added_decay_per_s;
+  } else if (!result.job.assembly.empty()) {
+    result.prediction = predict_tip(result.job.assembly, result.job.measured);
+    result.frfs = result.prediction->tip.frfs;
+    warn_of_prediction(result);
   }
 }
 
@@ -66,7 +89,8 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
     if (highest > options.band_low_hz) options.band_high_hz = highest;
   }
   options.exponential_decay_per_s = result.added_decay_per_s;
-  result.fit = modal::fit_modes(*result.frfs, options, progress);
+  result.fit = result.prediction ? fit_tip(*result.prediction, options, progress)
+                                 : modal::fit_modes(*result.frfs, options, progress);
   result.model = result.fit->model;
   append(result.warnings, result.fit->warnings);
   if (result.fit->status == modal::FitResult::Status::not_converged) {

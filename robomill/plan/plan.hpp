@@ -11,6 +11,7 @@
 #include "robomill/formats/lobes_toml.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/hits.hpp"
+#include "robomill/plan/predict.hpp"
 #include "robomill/plan/recommend.hpp"
 #include "robomill/report/report.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -24,9 +25,10 @@ struct PlanResult {
   formats::LobesFile cut;                   ///< with the dynamics that the job gave
   std::optional<modal::FrfResult> hits;     ///< of a job that starts from hits
   std::vector<std::string> hit_directions;  ///< one a hit: "x", "-y"
-  std::optional<modal::FrfSet> frfs;        ///< measured: from hits or files
+  std::optional<TipPrediction> prediction;  ///< of a job that starts from an assembly
+  std::optional<modal::FrfSet> frfs;        ///< measured, from hits or files, or predicted
   double added_decay_per_s = 0.0;           ///< of an exponential window, still in frfs
-  std::optional<modal::FitResult> fit;      ///< of a job that starts from hits or FRFs
+  std::optional<modal::FitResult> fit;      ///< unless the job starts from modes
   modal::ModalModel model;
   stability::LobesResult lobes;          ///< of all modes
   stability::UncertainLimits uncertain;  ///< samples: 0 where nothing is known to be uncertain
@@ -38,7 +40,8 @@ struct PlanResult {
   std::vector<std::string> warnings, notes;
 };
 
-/// Runs a job: hits ─▶ FRFs ─▶ modes ─▶ lobes ─▶ a recommended speed and depth, and its comparison with test cuts.
+/// Runs a job: hits, or tool and holder, ─▶ FRFs ─▶ modes ─▶ lobes ─▶ a recommended speed and depth, and its comparison
+/// with test cuts.
 /// @param seed  of every random number
 /// @throws InvalidInput with file, line, key and value; Interrupted
 [[nodiscard]] PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,

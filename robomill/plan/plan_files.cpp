@@ -95,6 +95,7 @@ std::string plan_json(const PlanResult& result) {
   if (result.feed_directions) json["feed_directions"] = feed_directions_json(*result.feed_directions);
   json["warnings"] = result.warnings;
   json["notes"] = result.notes;
+  if (result.prediction) json["assembly"] = Json::parse(prediction_json(*result.prediction));
   if (result.hits) json["frf"] = Json::parse(formats::hits_json(*result.hits));
   json["modes"] = Json::parse(modes_json(result));
   json["lobes"] = Json::parse(lobes_json(result));
@@ -106,7 +107,10 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   std::vector<report::StageFile> files;
   if (result.frfs) {
     formats::write_frfs(folder / "tip.uff", *result.frfs);
-    files.push_back({.stage = "frf", .file = "tip.uff", .description = "measured FRFs, universal file 58"});
+    files.push_back(
+        {.stage = "frf",
+         .file = "tip.uff",
+         .description = result.prediction ? "predicted FRFs, universal file 58" : "measured FRFs, universal file 58"});
   }
   formats::write_file(folder / "modes.json", modes_json(result));
   files.push_back({.stage = "modes", .file = "modes.json", .description = "modal parameters"});

@@ -237,6 +237,7 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   for (const Operation& op : result.recommendation.alternatives) report.alternatives.push_back(to_report(op));
   report.no_recommendation = result.recommendation.reason;
   add_frfs(report, result);
+  if (result.prediction) add_prediction(report, *result.prediction);
   add_hits(report, result);
   add_fit(report, result);
   add_lobes(report, result);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -92,6 +93,24 @@ std::string significant(const nlohmann::ordered_json& value) {
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text;
+}
+
+std::string with_power(const nlohmann::ordered_json& value) {
+  if (!value.is_number()) return std::string(dash);
+  const double number = value.get<double>();
+  const double size = std::abs(number);
+  if (size == 0.0 || (size >= 1e-3 && size < 1e4)) return fmt::format("{:.4g}", number);
+  const std::string text = fmt::format("{:.3e}", number);
+  const std::size_t split = text.find('e');
+  std::string out = text.substr(0, split);
+  out.erase(out.find_last_not_of('0') + 1);
+  if (out.back() == '.') out.pop_back();
+  out += "·10";
+  constexpr std::array<const char*, 10> raised = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  for (const char c : std::to_string(std::stoi(text.substr(split + 1)))) {
+    out += c == '-' ? "⁻" : raised.at(static_cast<std::size_t>(c - '0'));
+  }
+  return out;
 }
 
 std::string percent(const nlohmann::ordered_json& ratio, int decimals) {

@@ -17,6 +17,9 @@ namespace robomill::report {
 /// A number to three significant digits, without an exponent or zeros at its end where that reads well; an en dash for
 /// null.
 [[nodiscard]] std::string significant(const nlohmann::ordered_json& value);
+/// A number to four significant digits with its power of ten where that reads better: "9.706·10⁷"; an en dash for
+/// null.
+[[nodiscard]] std::string with_power(const nlohmann::ordered_json& value);
 /// A ratio as percent: 0.0127 with 2 decimals is "1.27 %"; an en dash for null.
 [[nodiscard]] std::string percent(const nlohmann::ordered_json& ratio, int decimals);
 /// "17.412 ± 0.035": decimals so that the standard deviation shows two digits; without one, `decimals`.

@@ -1,5 +1,8 @@
 #pragma once
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "robomill/report/report.hpp"
 
@@ -7,5 +10,22 @@ namespace robomill::report {
 
 /// The report in shop units, as report_json writes it. Texts are valid UTF-8.
 [[nodiscard]] nlohmann::ordered_json shop_units(const Report& report);
+
+/// Its part on an assembly: every segment in the order of the drawing, the joint, the peaks.
+[[nodiscard]] nlohmann::ordered_json assembly_json(const Prediction& prediction);
+
+/// Lines of an axis as bands [from, to], neighbours in one; a band reaches half a step beyond its lines.
+[[nodiscard]] nlohmann::ordered_json bands_json(const Eigen::VectorXd& axis_hz, const std::vector<double>& lines_hz);
+
+/// To six significant digits; null unless finite.
+[[nodiscard]] nlohmann::ordered_json number(double value);
+/// SI to a shop unit: the edge of the stage.
+[[nodiscard]] nlohmann::ordered_json number(double si, double unit);
+[[nodiscard]] nlohmann::ordered_json numbers(const Eigen::VectorXd& si, double unit = 1.0);
+[[nodiscard]] nlohmann::ordered_json numbers(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& keep,
+                                             double unit = 1.0);
+/// Bytes that are no UTF-8 become U+FFFD, so that a stray file name cannot break the page.
+[[nodiscard]] nlohmann::ordered_json text(const std::string& raw);
+[[nodiscard]] nlohmann::ordered_json texts(const std::vector<std::string>& raw);
 
 }  // namespace robomill::report

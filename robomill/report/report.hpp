@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/coupling/assembly.hpp"
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/modes.hpp"
 
@@ -40,18 +41,39 @@ struct Recommendation {
 /// How well a measurement serves, before any fit.
 enum class Grade { unknown, good, fair, poor };
 
-/// One FRF, measured and fitted, over Report::frf_frequency_hz.
+/// One FRF, measured, predicted and fitted, over Report::frf_frequency_hz.
 struct FrfPlot {
   modal::FrfName name;
-  Eigen::VectorXcd measured = {};  ///< length n, receptance [m/N], or the unit its name says; empty where none
-  Eigen::VectorXcd fitted = {};    ///< length n; empty where none
-  Eigen::VectorXd coherence = {};  ///< length n, in [0, 1]; empty where unknown
+  Eigen::VectorXcd measured = {};   ///< length n, receptance [m/N], or the unit its name says; empty where none
+  Eigen::VectorXcd predicted = {};  ///< length n, of Report::prediction; empty where none
+  Eigen::VectorXcd fitted = {};     ///< length n; empty where none
+  Eigen::VectorXd coherence = {};   ///< length n, in [0, 1]; empty where unknown
+  Eigen::VectorXd measured_frequency_hz = {};  ///< of measured where it has an axis of its own; empty: the common one
   Grade grade = Grade::unknown;
   std::vector<std::string> findings = {};  ///< why that grade: "coherence below 0.9 on 12 % of the band"
   std::vector<std::string> remedies = {};  ///< what to do about it: "use a harder tip"
   double trusted_from_hz = missing;        ///< lowest trustworthy frequency [Hz]
   double trusted_to_hz = missing;          ///< highest, where the hammer stops exciting [Hz]
-  double relative_error = missing;         ///< ‖fitted - measured‖ / ‖measured‖ over the fit's band
+  double relative_error = missing;         ///< ‖fitted - H‖ / ‖H‖ over the fit's band, H what was fitted
+  double prediction_error = missing;       ///< ‖predicted - measured‖ / ‖measured‖ over the lines of both
+};
+
+/// A peak of a predicted FRF.
+struct TipPeak {
+  modal::FrfName name;
+  double frequency_hz = missing;
+  double receptance_m_per_n = missing;     ///< its magnitude
+  double measured_frequency_hz = missing;  ///< of the measured peak nearest to it, where there is one
+};
+
+/// A tool in its holder, and what is predicted of its tip. The FRFs stand in Report::frfs.
+struct Prediction {
+  coupling::Assembly assembly = {};
+  std::string holder_file = {};  ///< of a measured holder
+  std::vector<TipPeak> peaks = {};
+  std::vector<double> suspect_hz = {};     ///< lines where the measured holder would create energy
+  std::vector<double> unreliable_hz = {};  ///< lines where a small error of the measurement became a large one
+  std::vector<std::string> notes = {};
 };
 
 /// One hammer hit.
@@ -186,6 +208,7 @@ struct Report {
   std::vector<Recommendation> alternatives = {};
   std::string no_recommendation = {};  ///< why there is none, where there is none
 
+  std::optional<Prediction> prediction = {};
   Eigen::VectorXd frf_frequency_hz = {};  ///< length n, increasing
   std::vector<FrfPlot> frfs = {};
   std::vector<HitRow> hits = {};

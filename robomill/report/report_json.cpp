@@ -1,10 +1,7 @@
-#include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <string_view>
+#include <utility>
 
 #include "robomill/formats/units.hpp"
 #include "robomill/report/json.hpp"
@@ -14,45 +11,6 @@ namespace robomill::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// To six significant digits; null unless finite.
-Json number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 5).ptr;
-  double rounded = 0.0;
-  std::from_chars(text.data(), end, rounded);
-  return rounded;
-}
-
-/// SI to a shop unit: the edge of this file.
-Json number(double si, double unit) {
-  return number(si / unit);
-}
-
-/// Bytes that are no UTF-8 become U+FFFD, so that a stray file name cannot break the page.
-Json text(const std::string& raw) {
-  const Json quoted = raw;
-  return Json::parse(quoted.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
-
-Json texts(const std::vector<std::string>& raw) {
-  Json list = Json::array();
-  for (const std::string& line : raw) list.push_back(text(line));
-  return list;
-}
-
-Json numbers(const Eigen::VectorXd& si, double unit = 1.0) {
-  Json list = Json::array();
-  for (const double value : si) list.push_back(number(value, unit));
-  return list;
-}
-
-Json numbers(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& keep, double unit = 1.0) {
-  Json list = Json::array();
-  for (const Eigen::Index i : keep) list.push_back(number(values[i], unit));
-  return list;
-}
 
 Json complex_number(std::complex<double> value) {
   return Json::array({number(value.real()), number(value.imag())});
@@ -150,22 +108,34 @@ Json curve_json(const Eigen::VectorXcd& values, const std::vector<Eigen::Index>&
   return {{"magnitude", std::move(magnitude)}, {"phase_deg", std::move(phase)}};
 }
 
-Json frf_json(const Eigen::VectorXd& frequency_hz, const FrfPlot& frf) {
+Json frf_json(const Report& report, const FrfPlot& frf) {
   const auto [unit_name, unit] = unit_of(frf.name);
-  const Eigen::VectorXcd& shown = frf.measured.size() > 0 ? frf.measured : frf.fitted;
+  const bool own_axis = frf.measured_frequency_hz.size() > 0;
+  const Eigen::VectorXcd& shown = frf.predicted.size() > 0               ? frf.predicted
+                                  : frf.measured.size() > 0 && !own_axis ? frf.measured
+                                                                         : frf.fitted;
   const std::vector<Eigen::Index> keep = thin(shown.cwiseAbs());
-  return {{"name", modal::to_string(frf.name)},
-          {"unit", unit_name},
-          {"frequency_hz", numbers(frequency_hz, keep)},
-          {"measured", curve_json(frf.measured, keep, unit)},
-          {"fitted", curve_json(frf.fitted, keep, unit)},
-          {"coherence", frf.coherence.size() > 0 ? numbers(frf.coherence, keep) : Json(nullptr)},
-          {"grade", name_of(frf.grade)},
-          {"findings", texts(frf.findings)},
-          {"remedies", texts(frf.remedies)},
-          {"trusted_from_hz", number(frf.trusted_from_hz)},
-          {"trusted_to_hz", number(frf.trusted_to_hz)},
-          {"relative_error", number(frf.relative_error)}};
+  const std::vector<Eigen::Index> keep_measured = own_axis ? thin(frf.measured.cwiseAbs()) : keep;
+  const std::optional<Prediction>& prediction = report.prediction;
+  return {
+      {"name", modal::to_string(frf.name)},
+      {"unit", unit_name},
+      {"frequency_hz", numbers(report.frf_frequency_hz, keep)},
+      {"measured_frequency_hz", own_axis ? numbers(frf.measured_frequency_hz, keep_measured) : Json(nullptr)},
+      {"measured", curve_json(frf.measured, keep_measured, unit)},
+      {"predicted", curve_json(frf.predicted, keep, unit)},
+      {"fitted", curve_json(frf.fitted, keep, unit)},
+      {"suspect_bands_hz", prediction ? bands_json(report.frf_frequency_hz, prediction->suspect_hz) : Json::array()},
+      {"unreliable_bands_hz",
+       prediction ? bands_json(report.frf_frequency_hz, prediction->unreliable_hz) : Json::array()},
+      {"coherence", frf.coherence.size() > 0 ? numbers(frf.coherence, keep) : Json(nullptr)},
+      {"grade", name_of(frf.grade)},
+      {"findings", texts(frf.findings)},
+      {"remedies", texts(frf.remedies)},
+      {"trusted_from_hz", number(frf.trusted_from_hz)},
+      {"trusted_to_hz", number(frf.trusted_to_hz)},
+      {"relative_error", number(frf.relative_error)},
+      {"prediction_error", number(frf.prediction_error)}};
 }
 
 Json vector_json(const std::vector<modal::Dof>& dofs, const Eigen::VectorXcd& values, bool as_excitation) {
@@ -338,7 +308,8 @@ Json shop_units(const Report& report) {
   json["recommendation"] = report.recommendation ? recommendation_json(*report.recommendation) : Json(nullptr);
   json["alternatives"] = list_of(report.alternatives, recommendation_json);
   json["no_recommendation"] = text(report.no_recommendation);
-  json["frfs"] = list_of(report.frfs, [&](const FrfPlot& frf) { return frf_json(report.frf_frequency_hz, frf); });
+  json["assembly"] = report.prediction ? assembly_json(*report.prediction) : Json(nullptr);
+  json["frfs"] = list_of(report.frfs, [&](const FrfPlot& frf) { return frf_json(report, frf); });
   json["hits"] = list_of(report.hits, [](const HitRow& hit) {
     return Json{{"file", text(hit.file)},
                 {"direction", text(hit.direction)},

@@ -247,6 +247,42 @@ void add_fit(Report& report) {
   report.fit = fit;
 }
 
+/// A tool in a holder that has nothing to do with the robot; what would be measured and predicted are its FRFs.
+void add_prediction(Report& report) {
+  const auto segment = [](double length_mm, double diameter_mm, double bore_mm, double modulus_gpa, double density) {
+    return coupling::Segment{.length_m = length_mm * units::mm,
+                             .diameter_m = diameter_mm * units::mm,
+                             .inner_diameter_m = bore_mm * units::mm,
+                             .youngs_modulus_pa = modulus_gpa * units::gpa,
+                             .density_kg_per_m3 = density,
+                             .loss_factor = 0.005};
+  };
+  Prediction prediction;
+  coupling::Assembly& assembly = prediction.assembly;
+  assembly.tool = {segment(26.0, 12.0, 0.0, 580.0, 14400.0), segment(7.0, 11.5, 2.0, 580.0, 14400.0),
+                   segment(4.0, 12.0, 2.0, 580.0, 14400.0)};
+  assembly.tool[0].flutes = 4;
+  assembly.joint = coupling::Joint{.translational_stiffness_n_per_m = 2e7,
+                                   .translational_damping_n_s_per_m = 40.0,
+                                   .rotational_stiffness_n_m_per_rad = 5e4,
+                                   .rotational_damping_n_m_s_per_rad = 0.5};
+  assembly.holder.segments = {segment(30.0, 28.0, 12.0, 200.0, 7800.0), segment(22.5, 40.0, 0.0, 200.0, 7800.0),
+                              segment(12.0, 63.0, 0.0, 200.0, 7800.0)};
+  const FrfPlot& xx = report.frfs.front();
+  for (Eigen::Index i = 0; i < report.frf_frequency_hz.size(); ++i) {
+    const double f = report.frf_frequency_hz[i];
+    if (f > 120.0 && f < 160.0) prediction.suspect_hz.push_back(f);
+    if (f > 700.0 && f < 760.0) prediction.unreliable_hz.push_back(f);
+  }
+  prediction.peaks = {{xx.name, 543.9, 2.31e-6, 540.5}, {xx.name, 57.7, 0.85e-6, missing}};
+  prediction.notes = {"The assembly is drawn beside FRFs of a robot; it serves to look at the page."};
+  for (FrfPlot& frf : report.frfs) {
+    frf.predicted = 1.1 * frf.fitted;
+    frf.prediction_error = 0.1;
+  }
+  report.prediction = prediction;
+}
+
 /// The fastest depth 20 % below the limit, and three more at other speeds.
 void add_recommendations(Report& report) {
   const Lobes& all = report.lobes.front();
@@ -299,6 +335,7 @@ Report sample_report() {
   report.limit_share = (Eigen::VectorXd(8) << 0.03, 0.02, 0.01, 0.02, 0.02, 0.01, 0.31, 0.58).finished();
   add_fit(report);
   add_frfs(report);
+  add_prediction(report);
   add_lobes(report, "all modes", {});
   for (int k = 1; k < 8; k += 2) {
     add_lobes(report, "modes " + std::to_string(k) + "–" + std::to_string(k + 1), {k, k + 1});

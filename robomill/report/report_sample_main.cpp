@@ -19,6 +19,8 @@ int main(int argc, char** argv) {
     report.notes = {evil};
     report.recommendation->limited_by = evil;
     report.cuts.front().note = evil;
+    report.prediction->holder_file = evil;
+    report.prediction->notes = {evil};
     report.lobes.back().label = evil;
     report.recordings.front().file = evil;
     report.recordings.front().peaks.front().text = evil;

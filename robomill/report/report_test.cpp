@@ -134,6 +134,8 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.recordings.front().amplitude_unit = evil;
   report.recordings.front().peaks.front().text = evil;
   report.files = {{evil, evil, evil}};
+  report.prediction->holder_file = evil;
+  report.prediction->notes = {evil};
   const std::string html = report_html(report);
   EXPECT_EQ(count(html, "<script"), scripts);
   EXPECT_EQ(html.find("<img"), std::string::npos);
@@ -160,12 +162,37 @@ TEST(ReportHtml, TablesStandWithoutTheScript) {
   const std::string html = report_html(sample_report());
   for (const char* part :
        {"<td class=\"number\">540.08\u202f±\u202f0.11</td>", "hit_x_4.csv", "double hit",
+        "4 flutes, counted as a solid round of 9.6 mm", "2·10⁷", "class=\"assembly\"",
         "<strong>3 of 6</strong> test cuts with a result", "Limited by <strong>mode 8", "id=\"recordings\""}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(count(html, "<section"), count(html, "</section>"));
   EXPECT_EQ(count(html, "<table"), count(html, "</table>"));
   EXPECT_EQ(html.find("http://"), html.find("http://www.w3.org")) << "only names of namespaces";
+}
+
+TEST(ReportJson, SegmentsAndJointAreTheAssembly) {
+  Report report = sample_report();
+  const json data = json::parse(report_json(report));
+  const auto& tool = data["assembly"]["tool"];
+  ASSERT_EQ(tool.size(), 3u);
+  EXPECT_EQ(tool[0]["length_mm"].get<double>(), 26.0);
+  EXPECT_NEAR(tool[0]["equivalent_diameter_mm"].get<double>(), 9.6, 1e-9);
+  EXPECT_TRUE(tool[0]["inner_diameter_mm"].is_null());
+  EXPECT_EQ(tool[1]["inner_diameter_mm"].get<double>(), 2.0);
+  EXPECT_EQ(data["assembly"]["joint"]["rotational_stiffness_n_m_per_rad"].get<double>(), 5e4);
+  EXPECT_EQ(data["assembly"]["holder"]["kind"], "segments");
+  EXPECT_EQ(data["assembly"]["peaks"][0]["receptance_um_per_n"].get<double>(), 2.31);
+  EXPECT_TRUE(data["assembly"]["peaks"][1]["measured_frequency_hz"].is_null());
+  ASSERT_EQ(data["frfs"][0]["suspect_bands_hz"].size(), 1u);
+  EXPECT_NEAR(data["frfs"][0]["suspect_bands_hz"][0][0].get<double>(), 120.0, 0.5);
+  // A measurement with an axis of its own keeps it.
+  report.frfs[0].measured_frequency_hz = Eigen::Vector3d(10.0, 20.0, 30.0);
+  report.frfs[0].measured = Eigen::Vector3cd(1e-6, 2e-6, 3e-6);
+  const json own = json::parse(report_json(report))["frfs"][0];
+  EXPECT_EQ(own["measured_frequency_hz"], (json{10.0, 20.0, 30.0}));
+  EXPECT_EQ(own["measured"]["magnitude"], (json{1.0, 2.0, 3.0}));
+  EXPECT_EQ(own["frequency_hz"].size(), own["predicted"]["magnitude"].size());
 }
 
 TEST(ReportHtml, SaysTheChatterFrequencyOnce) {
@@ -200,6 +227,14 @@ TEST(ReportValidate, NamesTheMember) {
   EXPECT_EQ(refused([](Report&) {}), "accepted");
   EXPECT_EQ(refused([](Report& r) { r.frfs[1].fitted.resize(3); }), "frfs[1].fitted");
   EXPECT_EQ(refused([](Report& r) { r.frf_frequency_hz[4] = r.frf_frequency_hz[3]; }), "frf_frequency_hz");
+  EXPECT_EQ(refused([](Report& r) { r.frfs[1].predicted.resize(3); }), "frfs[1].predicted");
+  EXPECT_EQ(refused([](Report& r) { r.prediction->assembly.tool.clear(); }), "prediction.assembly.tool");
+  EXPECT_EQ(refused([](Report& r) { r.prediction->assembly.tool[1].length_m = missing; }),
+            "prediction.assembly.tool[1].length_m");
+  EXPECT_EQ(refused([](Report& r) { r.prediction->assembly.holder.segments[0].inner_diameter_m = 1.0; }),
+            "prediction.assembly.holder.segments[0].inner_diameter_m");
+  EXPECT_EQ(refused([](Report& r) { r.prediction->assembly.joint->points = 3; }),
+            "prediction.assembly.joint.insertion_length_m");
   EXPECT_EQ(refused([](Report& r) { r.lobes[2].limit_depth_m.resize(1); }), "lobes[2].limit_depth_m");
   EXPECT_EQ(refused([](Report& r) { r.lobes[0].spectral_radius.resize(2, 2); }), "lobes[0].spectral_radius columns");
   EXPECT_EQ(refused([](Report& r) { r.limit_share.resize(3); }), "limit_share");
@@ -259,6 +294,10 @@ TEST(Html, NumbersReadWell) {
   EXPECT_EQ(significant(0.01), "0.01");
   EXPECT_EQ(significant(0.0), "0");
   EXPECT_EQ(significant(1.5e-7), "1.50e-07");
+  EXPECT_EQ(with_power(97062227.0), "9.706·10⁷");
+  EXPECT_EQ(with_power(2e-5), "2·10⁻⁵");
+  EXPECT_EQ(with_power(18.633), "18.63");
+  EXPECT_EQ(with_power(nullptr), "–");
   EXPECT_EQ(percent(0.0127, 2), "1.27\u202f%");
   EXPECT_EQ(with_deviation(17.4123, 0.0352, 1.0, 2), "17.412\u202f±\u202f0.035");
   EXPECT_EQ(with_deviation(17.4123, nullptr, 1.0, 2), "17.41");

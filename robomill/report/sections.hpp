@@ -15,6 +15,9 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] std::string pairs_section(const Json& report, bool plots);
 [[nodiscard]] std::string recordings_section(const Json& report, bool plots);
 
+// sections_assembly.cpp: tool, joint and holder, and what is predicted of them
+[[nodiscard]] std::string assembly_section(const Json& report);
+
 // sections_structure.cpp: what was measured and fitted
 [[nodiscard]] std::string frf_section(const Json& report, bool plots);
 [[nodiscard]] std::string modes_section(const Json& report, bool plots);

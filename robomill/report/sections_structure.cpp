@@ -81,6 +81,21 @@ std::string fit_sentence(const Json& fit) {
   return out + "</p>\n";
 }
 
+/// Of predicted FRFs: how far the modes are from them, and they from a measurement.
+std::string prediction_table(const Json& frfs) {
+  bool measured = false;
+  for (const Json& frf : frfs) measured = measured || frf["prediction_error"].is_number();
+  std::vector<std::string> headings = {"FRF", "#Fit from prediction"};
+  if (measured) headings.emplace_back("#Prediction from measurement");
+  Table table("How far the curves are apart", headings);
+  for (const Json& frf : frfs) {
+    std::vector<std::string> cells = {escape(text_of(frf["name"])), percent(frf["relative_error"], 2)};
+    if (measured) cells.push_back(percent(frf["prediction_error"], 1));
+    table.row(cells);
+  }
+  return table.html();
+}
+
 std::string quality_table(const Json& frfs) {
   Table table("Quality before the fit", {"FRF", "Grade", "What was found", "What to do", "#Fit error"});
   for (const Json& frf : frfs) {
@@ -98,15 +113,22 @@ std::string frf_section(const Json& report, bool plots) {
   const Json& frfs = report["frfs"];
   if (frfs.empty()) return {};
   std::string body;
-  if (plots) {
+  const bool predicted = !report["assembly"].is_null();
+  if (plots && predicted) {
+    body +=
+        plot("frf", "Frequency response functions, predicted, measured where known, and fitted: magnitude and phase",
+             "A peak is a frequency at which the tool tip gives way easily.");
+  } else if (plots) {
     body +=
         plot("frf", "Frequency response functions, measured and fitted: magnitude, phase and coherence",
              "A peak is a frequency at which the tool tip gives way easily; coherence near 1 means the hits agree.");
   }
-  return section(
-      "frf", "Frequency response",
-      "How far the tool tip moves for a force of one newton, at each frequency: xy is x due to a force in y.",
-      body + quality_table(frfs));
+  const char* lead =
+      predicted
+          ? "How far the tool tip moves for a force of one newton, as predicted from tool, joint and holder; xx is x "
+            "due to a force in x."
+          : "How far the tool tip moves for a force of one newton, at each frequency: xy is x due to a force in y.";
+  return section("frf", "Frequency response", lead, body + (predicted ? prediction_table(frfs) : quality_table(frfs)));
 }
 
 std::string modes_section(const Json& report, bool plots) {

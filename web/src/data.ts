@@ -23,11 +23,15 @@ export interface Frf {
   name: string;
   unit: string;
   frequency_hz: number[];
+  measured_frequency_hz: number[] | null; // where measured has an axis of its own
   measured: Curve | null;
+  predicted: Curve | null;
   fitted: Curve | null;
   coherence: Num[] | null;
   trusted_from_hz: Num;
   trusted_to_hz: Num;
+  suspect_bands_hz: [number, number][];
+  unreliable_bands_hz: [number, number][];
 }
 
 export interface Mode {

@@ -29,6 +29,10 @@ const frf: Frf = {
   name: 'xy',
   unit: 'µm/N',
   frequency_hz: [5, 10, 20, 500],
+  measured_frequency_hz: null,
+  predicted: null,
+  suspect_bands_hz: [],
+  unreliable_bands_hz: [],
   measured: { magnitude: [1, 2, null, 0.5], phase_deg: [0, -170, 170, 160] },
   fitted: { magnitude: [1, 2, 3, 0.5], phase_deg: [0, -170, -190, -200] },
   coherence: [1, 0.9, 0.8, 1],
@@ -57,6 +61,21 @@ describe('FRF', () => {
   it('never shades beyond the band, where a logarithmic axis has no place', () => {
     const figure = frfFigure({ ...frf, trusted_from_hz: 9000, trusted_to_hz: 0 }, [], true, light);
     expect(figure.layout['shapes']).toMatchObject([{ x0: 5, x1: 500 }, { x0: 5, x1: 500 }]);
+  });
+  it('shows a prediction over a measurement with an axis of its own, and where it is in doubt', () => {
+    const figure = frfFigure(
+      { ...frf, predicted: frf.fitted, coherence: null, measured_frequency_hz: [6, 7, 8, 9], suspect_bands_hz: [[0, 15], [18, 20]], unreliable_bands_hz: [[300, 500]] },
+      [],
+      true,
+      light,
+    );
+    expect(figure.data.map((trace) => trace['name'])).toEqual([
+      'measured', 'measured', 'predicted', 'predicted', 'fitted', 'fitted', 'suspect: the holder would create energy', 'unreliable: the measurement is amplified',
+    ]);
+    expect(figure.data[0]!['x']).toEqual([6, 7, 8, 9]);
+    expect(figure.data[2]!['x']).toEqual([5, 10, 20, 500]);
+    const shapes = (figure.layout['shapes'] as { type: string; x0: number; x1: number; line: { width: number } }[]).filter((shape) => shape.type === 'rect');
+    expect(shapes.slice(1)).toMatchObject([{ x0: 5, x1: 15 }, { x0: 18, x1: 20 }, { x0: 300, x1: 500, line: { dash: 'dot' } }]);
   });
   it('does without fit and coherence', () => {
     const figure = frfFigure({ ...frf, fitted: null, coherence: null }, [], false, light);

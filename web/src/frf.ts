@@ -17,6 +17,9 @@ export function breakJumps(frequency: number[], phase: (number | null)[]): { x: 
   return { x, y };
 }
 
+const energy = 'suspect: the holder would create energy';
+const amplified = 'unreliable: the measurement is amplified';
+
 /** Lowest frequency above zero, and the highest. */
 function band(frf: Frf): [number, number] {
   return [frf.frequency_hz.find((f) => f > 0) ?? 1, frf.frequency_hz[frf.frequency_hz.length - 1] ?? 1];
@@ -47,6 +50,25 @@ function untrusted(frf: Frf, theme: Theme): Layout[] {
   if (frf.trusted_from_hz !== null && frf.trusted_from_hz > from) bands.push(shade(from, Math.min(to, frf.trusted_from_hz)));
   if (frf.trusted_to_hz !== null && frf.trusted_to_hz < to) bands.push(shade(Math.max(from, frf.trusted_to_hz), to));
   return bands;
+}
+
+/** Where the prediction is not to be trusted: suspect bands are tinted, unreliable ones stand between dotted lines. */
+function marked(frf: Frf, theme: Theme): { shapes: Layout[]; keys: Trace[] } {
+  const whole = { type: 'rect', xref: 'x', yref: 'paper', y0: 0, y1: 1, layer: 'below' };
+  const place = ([x0, x1]: [number, number]) => ({ x0: Math.max(x0, band(frf)[0]), x1 });
+  const suspect = frf.suspect_bands_hz.map((part) => ({ ...whole, ...place(part), fillcolor: theme.borderline, opacity: 0.25, line: { width: 0 } }));
+  const unreliable = frf.unreliable_bands_hz.map((part) => ({ ...whole, ...place(part), fillcolor: 'rgba(0,0,0,0)', line: { width: 1.5, dash: 'dot', color: theme.borderline } }));
+  const key = (name: string, symbol: string) => ({
+    type: 'scatter',
+    mode: 'markers',
+    x: [null],
+    y: [null],
+    name,
+    hoverinfo: 'skip',
+    marker: { symbol, size: 12, color: theme.borderline, line: { width: 1.5, color: theme.borderline } },
+  });
+  const keys = [...(suspect.length > 0 ? [key(energy, 'square')] : []), ...(unreliable.length > 0 ? [key(amplified, 'square-open')] : [])];
+  return { shapes: [...suspect, ...unreliable], keys };
 }
 
 function modeMarks(frf: Frf, modes: Mode[], logarithmic: boolean, theme: Theme): { shapes: Layout[]; annotations: Layout[] } {
@@ -94,13 +116,14 @@ function curves(frf: Frf, theme: Theme): Trace[] {
   const data: Trace[] = [];
   const unit = plain(frf.unit);
   const magnitudeText = `%{y:.4g}${thinSpace}${unit} at %{x:.2f}${thinSpace}Hz`;
-  const add = (which: 'measured' | 'fitted', line: Layout) => {
+  const add = (which: 'measured' | 'predicted' | 'fitted', line: Layout) => {
     const curve = frf[which];
     if (curve === null) return;
-    const phase = breakJumps(frf.frequency_hz, curve.phase_deg);
+    const frequency = (which === 'measured' ? frf.measured_frequency_hz : null) ?? frf.frequency_hz;
+    const phase = breakJumps(frequency, curve.phase_deg);
     const common = { type: 'scatter', mode: 'lines', name: which, legendgroup: which, line };
     data.push(
-      { ...common, x: frf.frequency_hz, y: curve.magnitude, yaxis: 'y', hovertemplate: `${magnitudeText}<extra>${which}</extra>` },
+      { ...common, x: frequency, y: curve.magnitude, yaxis: 'y', hovertemplate: `${magnitudeText}<extra>${which}</extra>` },
       {
         ...common,
         ...phase,
@@ -111,7 +134,8 @@ function curves(frf: Frf, theme: Theme): Trace[] {
     );
   };
   add('measured', { color: theme.measured, width: 3.5 });
-  add('fitted', { color: theme.chatter, width: 1.5 });
+  add('predicted', { color: theme.accent, width: 2.2 });
+  add('fitted', { color: theme.chatter, width: 1.5, ...(frf.predicted === null ? {} : { dash: '4px,3px' }) });
   if (frf.coherence !== null) {
     data.push({
       type: 'scatter',
@@ -128,14 +152,15 @@ function curves(frf: Frf, theme: Theme): Trace[] {
   return data;
 }
 
-/** Magnitude, phase and coherence over one frequency axis. */
+/** Magnitude, phase and coherence over one frequency axis: measured, predicted and fitted. */
 export function frfFigure(frf: Frf, modes: Mode[], logarithmic: boolean, theme: Theme): Figure {
   const coherent = frf.coherence !== null;
   const marks = modeMarks(frf, modes, logarithmic, theme);
+  const doubts = marked(frf, theme);
   const [from, to] = band(frf);
   const domains = coherent ? [[0.46, 1], [0.2, 0.42], [0, 0.16]] : [[0.34, 1], [0, 0.3]];
   return {
-    data: curves(frf, theme),
+    data: [...curves(frf, theme), ...doubts.keys],
     layout: layout(theme, coherent ? 620 : 540, {
       hovermode: 'x',
       margin: { l: 64, r: 36, t: 64, b: 48 },
@@ -150,7 +175,7 @@ export function frfFigure(frf: Frf, modes: Mode[], logarithmic: boolean, theme: 
       yaxis: axis(theme, `|${plain(frf.name)}| (${plain(frf.unit)})`, { type: 'log', domain: domains[0], exponentformat: 'power', dtick: 1 }),
       yaxis2: axis(theme, 'Phase (°)', { domain: domains[1], range: [-185, 185], tickvals: [-180, -90, 0, 90, 180] }),
       ...(coherent ? { yaxis3: axis(theme, 'Coherence', { domain: domains[2], range: [0, 1.05], tickvals: [0, 0.5, 1] }) } : {}),
-      shapes: [...untrusted(frf, theme), ...marks.shapes],
+      shapes: [...untrusted(frf, theme), ...doubts.shapes, ...marks.shapes],
       annotations: marks.annotations,
     }),
   };
