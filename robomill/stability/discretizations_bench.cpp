@@ -22,7 +22,7 @@ void points(benchmark::State& state, Make make, const LobesProblem& problem, dou
   for (int i = 0; i < 10; ++i) {
     for (int j = 1; j <= 200; ++j) all.push_back({(5000.0 + 1000.0 * i) * testing::rpm, depth_m * j / 200.0});
   }
-  std::array<detail::Outcome, lane_count> out;
+  std::array<detail::Outcome, robomill::lane_count> out;
   for (auto _ : state) {
     for (std::size_t at = 0; at < all.size(); at += out.size()) {
       evaluator->evaluate(std::span(all).subspan(at, out.size()), {}, out);
