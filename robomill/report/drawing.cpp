@@ -237,7 +237,7 @@ std::vector<double> draw_labels(std::string& out, const std::vector<Label>& labe
     places.push_back(one.place);
     widths.push_back((one.passes ? 0.0 : text_width(one.text)) + label_gap);
   }
-  const std::vector<double> centres = side_by_side(places, widths, 0.0, view_width);
+  std::vector<double> centres = side_by_side(places, widths, 0.0, view_width);
   const double near = y > clear_y ? y - font : y + 5.0;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const Label& one = labels[i];
