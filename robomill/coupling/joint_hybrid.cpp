@@ -1,10 +1,7 @@
 #include "robomill/coupling/joint_hybrid.hpp"
 
-#include <ceres/ceres.h>
-
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <pagmo/algorithm.hpp>
 #include <pagmo/algorithms/de.hpp>
@@ -13,6 +10,7 @@
 #include <utility>
 
 #include "robomill/base/random.hpp"
+#include "robomill/modal/least_squares.hpp"
 
 namespace robomill::coupling::detail {
 namespace {
@@ -171,30 +169,6 @@ class Residuals : public ceres::CostFunction {
   mutable JointModel::Response response_;
 };
 
-/// Keeps the curve of the cost; an Interrupted must not pass through Ceres, so it waits here.
-class Watch : public ceres::IterationCallback {
- public:
-  Watch(Progress& progress, std::vector<double>& cost) : progress_(progress), cost_(cost) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    cost_.push_back(2.0 * summary.cost);
-    try {
-      progress_.check();
-    } catch (...) {
-      stopped_ = std::current_exception();
-      return ceres::SOLVER_ABORT;
-    }
-    return ceres::SOLVER_CONTINUE;
-  }
-  void rethrow() const {
-    if (stopped_) std::rethrow_exception(stopped_);
-  }
-
- private:
-  Progress& progress_;
-  std::vector<double>& cost_;
-  std::exception_ptr stopped_;
-};
-
 struct Refined {
   JointValues joint{};
   double cost = 0.0;          // Σ |residual|²
@@ -231,19 +205,8 @@ Refined refine(const JointModel& model, const JointData& data, const JointValues
   } else if (!fixed.empty()) {
     problem.SetManifold(x.data(), new ceres::SubsetManifold(joint_unknowns, fixed));
   }
-  Watch watch(progress, refined.costs);
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.num_threads = 1;
-  solver.logging_type = ceres::SILENT;
-  solver.max_num_iterations = max_iterations;
-  solver.function_tolerance = 1e-10;
-  solver.gradient_tolerance = 0.0;
-  solver.parameter_tolerance = 1e-13;
-  solver.callbacks.push_back(&watch);
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  watch.rethrow();
+  const ceres::Solver::Summary summary =
+      modal::detail::solve(problem, max_iterations, 1e-10, 1e-13, refined.costs, progress);
   for (std::size_t i = 0; i < x.size(); ++i) refined.joint[i] = bounds.hold(i, scale.from(i, x[i]));
   refined.cost = 2.0 * summary.final_cost;
   refined.converged = summary.termination_type == ceres::CONVERGENCE;

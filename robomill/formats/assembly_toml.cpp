@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/frf_files.hpp"
+#include "robomill/formats/segment_fields.hpp"
 #include "robomill/formats/toml_file.hpp"
 #include "robomill/formats/units.hpp"
 
@@ -26,25 +27,10 @@ InvalidInput within(const std::string& table, const InvalidInput& error) {
 
 /// @param key  of the table: "tool[0]."; @param member  the same as stages count: "tool[1]."
 coupling::Segment read_segment(TomlFile& file, const std::string& key, const std::string& member) {
-  struct Row {
-    const char* key;
-    const char* member;
-    double factor;
-    double coupling::Segment::*value;
-  };
-  static constexpr std::array<Row, 9> rows = {{
-      {"length_mm", "length_m", units::mm, &coupling::Segment::length_m},
-      {"diameter_mm", "diameter_m", units::mm, &coupling::Segment::diameter_m},
-      {"inner_diameter_mm", "inner_diameter_m", units::mm, &coupling::Segment::inner_diameter_m},
-      {"youngs_modulus_gpa", "youngs_modulus_pa", units::gpa, &coupling::Segment::youngs_modulus_pa},
-      {"density_kg_per_m3", "density_kg_per_m3", 1.0, &coupling::Segment::density_kg_per_m3},
-      {"mass_kg", "mass_kg", 1.0, &coupling::Segment::mass_kg},
-      {"poissons_ratio", "poissons_ratio", 1.0, &coupling::Segment::poissons_ratio},
-      {"loss_factor", "loss_factor", 1.0, &coupling::Segment::loss_factor},
-      {"flute_diameter_ratio", "flute_diameter_ratio", 1.0, &coupling::Segment::flute_diameter_ratio},
-  }};
   coupling::Segment segment;
-  for (const Row& row : rows) file.number(key + row.key, member + row.member, row.factor, segment.*row.value);
+  for (const SegmentField& field : segment_fields) {
+    file.number(key + field.key, member + field.member, field.factor, segment.*field.value);
+  }
   file.integer(key + "flutes", member + "flutes", segment.flutes);
   file.choice<coupling::Beam>(
       key + "beam", {{"timoshenko", coupling::Beam::timoshenko}, {"euler-bernoulli", coupling::Beam::euler_bernoulli}},

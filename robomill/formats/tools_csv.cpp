@@ -13,27 +13,11 @@
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/table.hpp"
 #include "robomill/formats/text.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/formats/segment_fields.hpp"
 
 namespace robomill::formats {
 namespace {
 
-struct NumberColumn {
-  std::string_view key, member;
-  double factor;
-  double coupling::Segment::*value;
-};
-constexpr std::array<NumberColumn, 9> number_columns = {{
-    {"length_mm", "length_m", units::mm, &coupling::Segment::length_m},
-    {"diameter_mm", "diameter_m", units::mm, &coupling::Segment::diameter_m},
-    {"inner_diameter_mm", "inner_diameter_m", units::mm, &coupling::Segment::inner_diameter_m},
-    {"youngs_modulus_gpa", "youngs_modulus_pa", units::gpa, &coupling::Segment::youngs_modulus_pa},
-    {"density_kg_per_m3", "density_kg_per_m3", 1.0, &coupling::Segment::density_kg_per_m3},
-    {"mass_kg", "mass_kg", 1.0, &coupling::Segment::mass_kg},
-    {"poissons_ratio", "poissons_ratio", 1.0, &coupling::Segment::poissons_ratio},
-    {"loss_factor", "loss_factor", 1.0, &coupling::Segment::loss_factor},
-    {"flute_diameter_ratio", "flute_diameter_ratio", 1.0, &coupling::Segment::flute_diameter_ratio},
-}};
 constexpr std::array<std::string_view, 4> other_columns = {"tool", "flutes", "beam", "teeth"};
 
 /// One row of the table while it is read.
@@ -81,7 +65,7 @@ class Row {
   [[nodiscard]] InvalidInput located(const InvalidInput& error) const {
     InvalidInput::Parts parts = error.parts();
     parts.where = where_;
-    for (const NumberColumn& column : number_columns) {
+    for (const SegmentField& column : segment_fields) {
       if (parts.field != column.member) continue;
       parts.field = column.key;
       if (text(column.key).empty()) {
@@ -104,7 +88,7 @@ class Row {
 
 void check_columns(const TextTable& table, const std::string& file) {
   std::vector<std::string> known(other_columns.begin(), other_columns.end());
-  for (const NumberColumn& column : number_columns) known.emplace_back(column.key);
+  for (const SegmentField& column : segment_fields) known.emplace_back(column.key);
   for (const std::string& name : table.names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const std::string near = nearest_word(name, known);
@@ -122,7 +106,7 @@ coupling::Segment read_segment(const Row& row, const coupling::Segment& like) {
   coupling::Segment segment = like;
   segment.length_m = segment.diameter_m = segment.inner_diameter_m = segment.mass_kg = 0.0;
   segment.flutes = 0;
-  for (const NumberColumn& column : number_columns) row.number(column.key, column.factor, segment.*column.value);
+  for (const SegmentField& column : segment_fields) row.number(column.key, column.factor, segment.*column.value);
   row.integer("flutes", segment.flutes);
   const std::string_view beam = row.text("beam");
   if (beam == "timoshenko") {

@@ -1,11 +1,10 @@
 #include "robomill/modal/refine.hpp"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <exception>
+
+#include "robomill/modal/least_squares.hpp"
 
 namespace robomill::modal::detail {
 namespace {
@@ -54,42 +53,6 @@ class ReducedCost : public ceres::CostFunction {
   Index unknowns_ = 0;
 };
 
-// Keeps the curve of the cost; an Interrupted must not pass through Ceres, so it waits here.
-class Watch : public ceres::IterationCallback {
- public:
-  Watch(Progress& progress, std::vector<double>& cost) : progress_(progress), cost_(cost) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    cost_.push_back(2.0 * summary.cost);
-    try {
-      progress_.check();
-    } catch (...) {
-      stopped_ = std::current_exception();
-      return ceres::SOLVER_ABORT;
-    }
-    return ceres::SOLVER_CONTINUE;
-  }
-  void rethrow() const {
-    if (stopped_) std::rethrow_exception(stopped_);
-  }
-
- private:
-  Progress& progress_;
-  std::vector<double>& cost_;
-  std::exception_ptr stopped_;
-};
-
-ceres::Solver::Options solver_options(const RefineOptions& options) {
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;
-  solver.num_threads = 1;
-  solver.logging_type = ceres::SILENT;
-  solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = options.tolerance;
-  solver.gradient_tolerance = 0.0;
-  solver.parameter_tolerance = 1e-14;
-  return solver;
-}
-
 }  // namespace
 
 Refined refine(const Kernel& kernel, Poles start, const RefineOptions& options, Progress& progress) {
@@ -110,12 +73,8 @@ Refined refine(const Kernel& kernel, Poles start, const RefineOptions& options, 
       problem.SetParameterLowerBound(parameters.data(), k * stride + 1, options.zeta_low);
       problem.SetParameterUpperBound(parameters.data(), k * stride + 1, options.zeta_high);
     }
-    Watch watch(progress, result.cost);
-    ceres::Solver::Options solver = solver_options(options);
-    solver.callbacks.push_back(&watch);
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
-    watch.rethrow();
+    const ceres::Solver::Summary summary =
+        solve(problem, options.max_iterations, options.tolerance, 1e-14, result.cost, progress);
     result.poles = from_parameters(parameters, start);
     result.converged = summary.termination_type == ceres::CONVERGENCE;
     result.iterations = static_cast<int>(summary.iterations.size()) - 1;

@@ -71,7 +71,7 @@ std::string fit_sentence(const Json& fit) {
     out += fmt::format(" from {} to {} Hz", significant(fit["band_from_hz"]), significant(fit["band_to_hz"]));
   }
   if (fit["relative_error"].is_number()) {
-    out += fmt::format("; the fit differs from the measurement by {}", percent(fit["relative_error"], 2));
+    out += fmt::format("; the fit differs from the FRFs by {}", percent(fit["relative_error"], 2));
     if (fit["mean_relative_error"].is_number()) {
       out += fmt::format(" (mean over lines {})", percent(fit["mean_relative_error"], 2));
     }
