@@ -14,6 +14,7 @@
 #include "robomill/formats/lobes_toml.hpp"
 #include "robomill/formats/tools_csv.hpp"
 #include "robomill/formats/units.hpp"
+#include "robomill/plan/predict.hpp"
 #include "robomill/plan/tools.hpp"
 #include "verbs.hpp"
 
@@ -22,26 +23,13 @@ namespace {
 
 constexpr std::size_t peaks_shown = 6;
 
-/// Where |H| is above its neighbours, the highest few by rising frequency.
-std::vector<Eigen::Index> peaks_of(const Eigen::VectorXd& magnitude) {
-  std::vector<Eigen::Index> peaks;
-  for (Eigen::Index i = 1; i + 1 < magnitude.size(); ++i) {
-    if (magnitude(i) > magnitude(i - 1) && magnitude(i) >= magnitude(i + 1)) peaks.push_back(i);
-  }
-  const auto higher = [&](Eigen::Index a, Eigen::Index b) { return magnitude(a) > magnitude(b); };
-  std::stable_sort(peaks.begin(), peaks.end(), higher);
-  peaks.resize(std::min(peaks.size(), peaks_shown));
-  std::sort(peaks.begin(), peaks.end());
-  return peaks;
-}
-
 void print_peaks(const modal::FrfSet& set, const modal::Frf& frf) {
-  const Eigen::VectorXd magnitude = frf.receptance.cwiseAbs();
   const std::string name = modal::to_string(frf.name);
-  const std::vector<Eigen::Index> peaks = peaks_of(magnitude);
+  std::vector<plan::PeakFound> peaks = plan::find_peaks(set.frequency_hz, frf.receptance);
   if (peaks.empty()) fmt::print("{}: no peak between the first line and the last\n", name);
-  for (const Eigen::Index i : peaks) {
-    fmt::print("{}: peak at {:.6g} Hz, {:.4g} µm/N\n", name, set.frequency_hz(i), magnitude(i) / units::um);
+  peaks.resize(std::min(peaks.size(), peaks_shown));
+  for (const plan::PeakFound& peak : peaks) {
+    fmt::print("{}: peak at {:.6g} Hz, {:.4g} µm/N\n", name, peak.frequency_hz, peak.magnitude / units::um);
   }
 }
 

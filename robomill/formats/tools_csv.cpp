@@ -11,9 +11,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/file.hpp"
+#include "robomill/formats/segment_fields.hpp"
 #include "robomill/formats/table.hpp"
 #include "robomill/formats/text.hpp"
-#include "robomill/formats/segment_fields.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -89,8 +89,8 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
     if (highest > options.band_low_hz) options.band_high_hz = highest;
   }
   options.exponential_decay_per_s = result.added_decay_per_s;
-  result.fit = result.prediction ? fit_tip(*result.prediction, options, progress)
-                                 : modal::fit_modes(*result.frfs, options, progress);
+  result.fit =
+      result.prediction ? fit_tip(*result.frfs, options, progress) : modal::fit_modes(*result.frfs, options, progress);
   result.model = result.fit->model;
   append(result.warnings, result.fit->warnings);
   if (result.fit->status == modal::FitResult::Status::not_converged) {

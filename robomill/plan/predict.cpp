@@ -174,11 +174,11 @@ TipPrediction predict_tip(const std::filesystem::path& assembly, const std::file
   return out;
 }
 
-modal::FitResult fit_tip(const TipPrediction& prediction, const modal::FitOptions& options, Progress& progress) {
-  const modal::FrfSet& tip = prediction.tip.frfs;
+modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& options, Progress& progress) {
+  const bool round = is_round(tip);
   const modal::FrfSet x{.frequency_hz = tip.frequency_hz, .frfs = {*tip.find(modal::parse_frf_name("xx"))}};
-  modal::FitResult out = modal::fit_modes(prediction.round ? x : tip, options, progress);
-  if (prediction.round) {
+  modal::FitResult out = modal::fit_modes(round ? x : tip, options, progress);
+  if (round) {
     out.model = with_equal_directions(out.model);
     out.by_frf.push_back({.name = modal::parse_frf_name("yy"), .error = out.by_frf.front().error});
   }

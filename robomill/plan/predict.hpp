@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/export.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/formats/assembly_toml.hpp"
 #include "robomill/modal/fit.hpp"
@@ -28,10 +29,10 @@ struct TipPrediction {
 /// @throws InvalidInput as read_assembly, tip_frfs and read_frfs, or if nothing measured can be compared
 [[nodiscard]] TipPrediction predict_tip(const std::filesystem::path& assembly, const std::filesystem::path& measured);
 
-/// Its modes, without standard deviations. A round tool is fitted in x, and the same modes stand in y.
+/// The modes of predicted FRFs, without standard deviations. A round tool is fitted in x, and the same modes stand in
+/// y.
 /// @throws InvalidInput as fit_modes
-[[nodiscard]] modal::FitResult fit_tip(const TipPrediction& prediction, const modal::FitOptions& options,
-                                       Progress& progress);
+[[nodiscard]] modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& options, Progress& progress);
 
 /// Draws it.
 void add_prediction(report::Report& report, const TipPrediction& prediction);
@@ -47,7 +48,7 @@ struct PeakFound {
 
 /// Local maxima of |H| that stand by half above the higher of the dips to either side, between the lines by a parabola
 /// through log |H|.
-[[nodiscard]] std::vector<PeakFound> find_peaks(const Eigen::VectorXd& frequency_hz,
-                                                const Eigen::VectorXcd& receptance);
+[[nodiscard]] ROBOMILL_API std::vector<PeakFound> find_peaks(const Eigen::VectorXd& frequency_hz,
+                                                             const Eigen::VectorXcd& receptance);
 
 }  // namespace robomill::plan

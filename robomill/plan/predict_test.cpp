@@ -58,9 +58,9 @@ TEST(FindPeaks, LieBetweenTheLinesAndNotInTheNoise) {
 // The second mode of the bar, 1,847 Hz, lies 10 Hz behind the last line: its flank is no mode of the fit.
 TEST(FitTip, WarnsWhereAModeStandsCloseBehindTheLastLine) {
   TipPrediction prediction = predict_tip(examples / "joint-bar/rigid.toml", {});
-  EXPECT_TRUE(fit_tip(prediction, {}, Progress::none()).warnings.empty());
+  EXPECT_TRUE(fit_tip(prediction.tip.frfs, {}, Progress::none()).warnings.empty());
   prediction.tip = coupling::tip_frfs(prediction.file.assembly, Eigen::VectorXd::LinSpaced(919, 1.0, 1837.0));
-  const modal::FitResult fit = fit_tip(prediction, {}, Progress::none());
+  const modal::FitResult fit = fit_tip(prediction.tip.frfs, {}, Progress::none());
   ASSERT_FALSE(fit.warnings.empty()) << fit.relative_error;
   EXPECT_NE(fit.warnings.back().find("close beyond the last line"), std::string::npos) << fit.relative_error;
 }

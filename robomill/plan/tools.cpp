@@ -10,7 +10,7 @@
 #include "robomill/cutting/milling.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/plan/choose.hpp"
-#include "robomill/plan/plan.hpp"
+#include "robomill/plan/predict.hpp"
 #include "robomill/stability/lobes.hpp"
 
 namespace robomill::plan {
@@ -52,14 +52,10 @@ void find_peak(ToolResult& out) {
 }
 
 void fit(ToolResult& out, std::uint64_t seed) {
-  const modal::Frf& x = *out.tip.find(modal::parse_frf_name("xx"));
-  const modal::Frf& y = *out.tip.find(modal::parse_frf_name("yy"));
-  const bool round = x.receptance == y.receptance;
   modal::FitOptions options;
   options.seed = seed;
-  const modal::FrfSet one{.frequency_hz = out.tip.frequency_hz, .frfs = {x}};
-  const modal::FitResult found = modal::fit_modes(round ? one : out.tip, options);
-  out.modes = round ? with_equal_directions(found.model) : found.model;
+  const modal::FitResult found = fit_tip(out.tip, options, Progress::none());
+  out.modes = found.model;
   out.fit_error = found.relative_error;
   out.notes.insert(out.notes.end(), found.warnings.begin(), found.warnings.end());
   if (found.status == modal::FitResult::Status::not_converged) {
