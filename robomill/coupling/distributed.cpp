@@ -80,11 +80,13 @@ Square<N> climb(const std::vector<Gap>& gaps, std::size_t line, const Square<N>&
     const Span& holder = gaps[i].holder[line];
     const Both carry = both<N>(shank.carry, holder.carry);
     const Both stiffness = both<N>(shank.stiffness, holder.stiffness);
-    const Both held = (Both::Identity() + b * stiffness).inverse() * b;
+    const Both held = (Both::Identity() + b * stiffness).partialPivLu().solve(b);
     b = both<N>(shank.clamped, holder.clamped) + carry * held * carry.transpose();
     const Eigen::Matrix<std::complex<double>, 2 * N, N> pulled = b * apart;
     const Square<N> gap_flexibility = apart.transpose() * pulled + flexibility;
     b -= (pulled * gap_flexibility.inverse() * pulled.transpose()).eval();
+    // Rounding leaves b a little unsymmetric, which would grow from point to point.
+    b = (0.5 * (b + b.transpose())).eval();
   }
   return b.template topLeftCorner<N, N>();
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -44,6 +45,9 @@ void require_points(const FrfSet& measured, const std::vector<double>& position_
   }
   const int count = static_cast<int>(position_m.size());
   for (const Frf& frf : measured.frfs) {
+    if (frf.receptance.norm() == 0.0) {
+      throw InvalidInput("receptances", fmt::format("{} is zero at every line", modal::to_string(frf.name)));
+    }
     for (const int point : {frf.name.response.point, frf.name.excitation.point}) {
       if (point >= 1 && point <= count) continue;
       throw InvalidInput("position_m", fmt::format("says where points 1 to {} stand, but there is an FRF {}", count,
@@ -57,6 +61,11 @@ const Frf* find(const FrfSet& set, Axis plane, int point, int load_point) {
   const modal::FrfName name = detail::element_name(plane, 0, plane, 0, point, load_point);
   const Frf* frf = set.find(name);
   return frf != nullptr ? frf : set.find({.response = name.excitation, .excitation = name.response});
+}
+
+/// Keeps the larger; what is no number is without bound.
+void raise(double& amplification, double value) {
+  amplification = std::isnan(value) ? std::numeric_limits<double>::infinity() : std::max(amplification, value);
 }
 
 bool has_plane(const FrfSet& set, Axis plane) {
@@ -90,6 +99,13 @@ HolderResult by_planes(const FrfSet& measured, const HolderOptions& options, Pla
   }
   for (const Axis plane : {Axis::x, Axis::y}) {
     if (has_plane(measured, plane)) add_plane(find_plane(plane, result), plane, result.receptances);
+  }
+  const auto between = [](const Frf& frf) {
+    return frf.name.response.axis != frf.name.excitation.axis && static_cast<int>(frf.name.response.axis) <= 2 &&
+           static_cast<int>(frf.name.excitation.axis) <= 2;
+  };
+  if (std::ranges::any_of(measured.frfs, between)) {
+    result.notes.emplace_back("FRFs between x and y are left out: each plane is taken by itself.");
   }
   for (Index i = 0; i < result.amplification.size(); ++i) {
     if (!(result.amplification(i) <= options.max_amplification)) {
@@ -134,7 +150,8 @@ void complete_from_pairs(const std::vector<std::vector<const Frf*>>& h, const Ei
   }
   out = weights * all * weights.transpose();
   const Eigen::MatrixXd power = weights.cwiseAbs2() * all.cwiseAbs2() * weights.transpose().cwiseAbs2();
-  amplification = std::max(amplification, (power.cwiseSqrt().array() / out.cwiseAbs().array()).maxCoeff());
+  const Eigen::Matrix2d share = power.cwiseSqrt().array() / out.cwiseAbs().array();
+  for (const double value : share.reshaped()) raise(amplification, value);
 }
 
 /// From hits at the mouth alone: θ per moment follows as l n / h, which holds where one mode stands out.
@@ -145,9 +162,10 @@ void complete_from_column(const std::vector<std::vector<const Frf*>>& h, const E
   for (Index i = 0; i < n; ++i) column(i) = h[static_cast<std::size_t>(i)][0]->receptance(line);
   const std::complex<double> slope = weights.row(1) * column;
   const std::complex<double> direct = column(0);
-  out << direct, slope, slope, slope * slope / direct;
+  out << direct, slope, slope, direct == 0.0 ? 0.0 : slope * slope / direct;
   const double power = (weights.row(1).transpose().cwiseProduct(column.cwiseAbs())).squaredNorm();
-  amplification = std::max(amplification, 2.0 * std::sqrt(power) / std::abs(slope));
+  raise(amplification, 2.0 * std::sqrt(power) / std::abs(slope));
+  if (direct == 0.0) raise(amplification, std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
@@ -157,7 +175,8 @@ HolderResult complete_rotations(const FrfSet& measured, const std::vector<double
   require_options(options);
   const int points = static_cast<int>(position_m.size());
   if (points != 2 && points != 3) {
-    throw InvalidInput("position_m", points, "points", "must be two or three", "A slope needs two, its error three");
+    throw InvalidInput("position_m", fmt::format("has {} positions; must be two or three", points),
+                       "A slope needs two, its error three");
   }
   require_points(measured, position_m);
   const Eigen::MatrixXd weights = stencil(position_m);
@@ -248,14 +267,16 @@ Eigen::Matrix2cd take_off(const std::vector<Equation>& equations, const detail::
     const std::complex<double> h = equation.sign * equation.frf->receptance(line);
     const Eigen::Vector2cd t(points.carry(equation.row, 0), points.carry(equation.row, 1) / length_m);
     const Eigen::Vector2cd s(points.carry(equation.column, 0), points.carry(equation.column, 1) / length_m);
-    const double weight = 1.0 / std::abs(h);  // an FRF is as true as a share of itself
+    // An FRF is as true as a share of itself; a line where it is zero was not measured.
+    const double weight = h == 0.0 ? 0.0 : 1.0 / std::abs(h);
+    if (h == 0.0) raise(amplification, std::numeric_limits<double>::infinity());
     a.row(e) << weight * t(0) * s(0), weight * (t(0) * s(1) + t(1) * s(0)), weight * t(1) * s(1);
     b(e) = weight * (h - points.receptance(equation.row, equation.column));
   }
   const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& sigma = svd.singularValues();
   const double floor = regularisation * sigma(0);
-  const Eigen::VectorXd gain = sigma.array() / (sigma.array().square() + floor * floor);
+  const Eigen::VectorXd gain = sigma.unaryExpr([&](double s) { return s > 0.0 ? s / (s * s + floor * floor) : 0.0; });
   const Eigen::MatrixXcd inverse = svd.matrixV() * gain.asDiagonal() * svd.matrixU().adjoint();
   const auto matrix = [](const Eigen::Vector3cd& m) { return Eigen::Matrix2cd{{m(0), m(1)}, {m(1), m(2)}}; };
   const Eigen::Matrix2cd seen = matrix(inverse * b);
@@ -268,7 +289,7 @@ Eigen::Matrix2cd take_off(const std::vector<Equation>& equations, const detail::
   for (Index e = 0; e < n; ++e) {
     power += (back * matrix(inverse.col(e)) * back.transpose()).squaredNorm();
   }
-  amplification = std::max(amplification, std::sqrt(power) / base.norm());
+  raise(amplification, std::sqrt(power) / base.norm());
   Eigen::Matrix2cd out = base;
   out.row(1) /= length_m;
   out.col(1) /= length_m;
@@ -303,8 +324,9 @@ HolderResult remove_artefact(const FrfSet& measured, const std::vector<double>& 
   return by_planes(measured, options, [&](Axis plane, HolderResult& out) {
     const std::vector<Equation> equations = equations_of(measured, plane, rank);
     if (equations.size() < 3) {
-      throw InvalidInput("receptances", static_cast<double>(equations.size()), "FRFs",
-                         "must be at least three a plane, of two points: 1x:1x, 2x:1x, 2x:2x",
+      throw InvalidInput("receptances",
+                         fmt::format("hold {} FRFs; must be at least three a plane, of two points: 1x:1x, 2x:1x, 2x:2x",
+                                     equations.size()),
                          "The holder has three unknowns: h, l = n and p");
     }
     std::vector<Eigen::Matrix2cd> matrices(points.size());

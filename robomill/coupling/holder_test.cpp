@@ -277,6 +277,32 @@ TEST(CompleteRotations, TakesHitsAtTheMouthAlone) {
             std::string::npos);
 }
 
+TEST(Holder, MarksLinesThatAreZero) {
+  const Eigen::VectorXd f = hertz(300, 50);
+  FrfSet measured = two_points({stout(0.03)}, {stout(0.03)}, true_base(f), f);
+  measured.frfs[0].receptance.segment(10, 3).setZero();
+  measured.frfs[1].receptance.segment(20, 2).setZero();
+  for (const HolderResult& found : {remove_artefact(measured, {0.0, 0.03}, {stout(0.06)}),
+                                    remove_artefact(measured, {0.0, 0.03}, {stout(0.06)}, {.regularisation = 0.0})}) {
+    for (const Eigen::Index line : {10, 11, 12, 20, 21}) EXPECT_TRUE(std::isinf(found.amplification(line))) << line;
+    EXPECT_GE(found.unreliable_hz.size(), 5U);
+    EXPECT_NO_THROW(found.receptances.validate());
+  }
+  for (modal::Frf& frf : measured.frfs) frf.receptance.segment(30, 2).setZero();
+  const HolderResult slopes = complete_rotations(measured, {0.0, 0.03});
+  for (const Eigen::Index line : {30, 31}) EXPECT_TRUE(std::isinf(slopes.amplification(line))) << line;
+  EXPECT_NO_THROW(slopes.receptances.validate());
+  measured.frfs.pop_back();
+  const HolderResult column = complete_rotations(measured, {0.0, 0.03});
+  for (const Eigen::Index line : {10, 30}) EXPECT_TRUE(std::isinf(column.amplification(line))) << line;
+  EXPECT_NO_THROW(column.receptances.validate());
+  measured.frfs[0].receptance.setZero();
+  EXPECT_NE(refusal([&] {
+              static_cast<void>(complete_rotations(measured, {0.0, 0.03}));
+            }).find("1x:1x is zero"),
+            std::string::npos);
+}
+
 TEST(Holder, RefusesWhatItCannotRead) {
   const Eigen::VectorXd f = hertz(100, 50);
   const FrfSet measured = two_points({bar(0.03)}, {bar(0.05)}, true_base(f), f);
@@ -292,7 +318,9 @@ TEST(Holder, RefusesWhatItCannotRead) {
   FrfSet none = measured;
   for (modal::Frf& frf : none.frfs) frf.name.response.axis = frf.name.excitation.axis = modal::Axis::z;
   EXPECT_NE(removed(none, {0.0, 0.03}).find("no translation in x or y"), std::string::npos);
-  EXPECT_NE(refusal([&] { static_cast<void>(complete_rotations(measured, {0.0})); }).find("must be two or three"),
+  EXPECT_NE(refusal([&] {
+              static_cast<void>(complete_rotations(measured, {0.0}));
+            }).find("has 1 positions; must be two or three"),
             std::string::npos);
 }
 

@@ -90,8 +90,8 @@ std::vector<detail::Square<N>> tips(const Assembly& assembly, const std::vector<
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (out[i].allFinite()) continue;
     throw InvalidInput("frequency_hz", frequency_hz(static_cast<Index>(i)), "Hz",
-                       "is a resonance without damping, where the receptance has no value",
-                       "Give the segments a loss factor: steel has 0.001 to 0.02");
+                       "has no receptance: it is a resonance without damping, or beyond what can be computed",
+                       "Give the segments a loss factor (steel has 0.001 to 0.02), and frequencies of a machine");
   }
   return out;
 }

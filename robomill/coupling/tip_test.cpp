@@ -240,6 +240,34 @@ TEST(Tip, AShankGluedIntoItsHolderIsOneBeamOfBoth) {
   EXPECT_LT(relative(tip_xx(assembly, f), tip_xx(whole, f)), 1e-6);
 }
 
+TEST(Tip, ADistributedJointSettlesWithItsPoints) {
+  Segment holder = bar(0.05, Beam::timoshenko);
+  holder.diameter_m = 0.040;
+  Assembly assembly = clamped(bar(0.1, Beam::timoshenko));
+  assembly.holder.segments = {holder};
+  const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(101, 4150.0, 4250.0);
+  const auto with_points = [&](int points) {
+    assembly.joint = Joint{.translational_stiffness_n_per_m = 2e7,
+                           .rotational_stiffness_n_m_per_rad = 5e4,
+                           .points = points,
+                           .insertion_length_m = 0.03,
+                           .shank = {bar(0.03, Beam::timoshenko)}};
+    return tip_xx(assembly, f);
+  };
+  const Eigen::VectorXcd most = with_points(100);
+  // A row of springs comes to a bed of them with the first power of the spacing.
+  const double coarse = relative(with_points(13), most);
+  const double fine = relative(with_points(25), most);
+  EXPECT_LT(fine, 0.65 * coarse);
+  EXPECT_LT(fine, 0.01);
+  // And is as smooth as the curve itself.
+  double scatter = 0.0;
+  for (Eigen::Index i = 1; i + 1 < f.size(); ++i) {
+    scatter = std::max(scatter, std::abs(most(i) - 0.5 * (most(i - 1) + most(i + 1))) / std::abs(most(i)));
+  }
+  EXPECT_LT(scatter, 1e-6);
+}
+
 TEST(Tip, ADistributedJointInAMeasuredHolderMovesWithItsMouth) {
   const Eigen::VectorXd f = hertz(2000, 10);
   Assembly assembly = clamped(bar(0.08));
