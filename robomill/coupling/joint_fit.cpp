@@ -85,6 +85,11 @@ std::vector<Index> fitted_lines(const Eigen::VectorXd& frequency_hz, const modal
     throw InvalidInput("measured", fmt::format("has {} lines above 0 Hz; a joint has four unknowns", lines.size()));
   }
   if (!(largest > 0.0)) throw InvalidInput("measured", modal::to_string(frf.name) + " is zero at every line");
+  if (largest < 1e-30 || largest > 1e3) {
+    throw InvalidInput("measured",
+                       fmt::format("{} reaches {:.3g} m/N, which no machine has", modal::to_string(frf.name), largest),
+                       "Tips move by 1e-9 to 1e-2 m/N: is the unit right?");
+  }
   return lines;
 }
 

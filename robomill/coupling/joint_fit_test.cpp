@@ -326,6 +326,39 @@ TEST(JointFit, SaysWhatCannotBeSeen) {
   EXPECT_GT(squares_with(measured, 2, 0.1 * visible, options) - rigid, 20.0) << "and steep below";
 }
 
+// Genes end beside the minimum, or far from it where the joint lies outside their bounds: no deviation is told then.
+TEST(JointFit, SaysNothingOfDeviationsAwayFromTheMinimum) {
+  for (const double rotation : {3e5, 5e4}) {
+    modal::FrfSet measured = tip_with(test::published_pair(), joint_of({2e7, 40.0, rotation, 5.0}), test::hertz(2000));
+    add_noise(measured, 0.01, 3);
+    for (const Mutation mutation : {Mutation::uniform, Mutation::adaptive}) {
+      const JointFitResult genes =
+          fit_joint(test::published_pair(), measured, {.method = JointMethod::ga, .mutation = mutation});
+      for (const JointKnowledge& known : genes.knowledge) {
+        EXPECT_FALSE(known.identifiable);
+        EXPECT_TRUE(std::isinf(known.deviation));
+        EXPECT_NE(known.note.find("not told by this search"), std::string::npos);
+      }
+      EXPECT_FALSE(genes.notes.empty());
+    }
+    for (const JointKnowledge& known : fit_joint(test::published_pair(), measured, {}).knowledge) {
+      EXPECT_TRUE(known.identifiable);
+    }
+  }
+}
+
+TEST(JointFit, SaysWhenNoJointGivesTheFrf) {
+  modal::FrfSet measured = tip_with(test::published_pair(), joint_of(planted), test::hertz(1000));
+  measured.frfs[0].receptance *= 1000.0;
+  const JointFitResult result = fit_joint(test::published_pair(), measured, {});
+  ASSERT_FALSE(result.notes.empty());
+  EXPECT_NE(result.notes.back().find("cannot give this FRF"), std::string::npos);
+  for (const JointKnowledge& known : result.knowledge) EXPECT_FALSE(known.identifiable);
+  measured.frfs[0].receptance *= 1e160;
+  EXPECT_NE(refusal([&] { static_cast<void>(fit_joint(test::published_pair(), measured, {})); }).find("no machine has"),
+            std::string::npos);
+}
+
 // Weights are the FRF's own where it has them: a band of rubbish that says so does no harm.
 TEST(JointFit, TrustsTheFrfsOwnDeviation) {
   modal::FrfSet measured = tip_with(test::published_pair(), joint_of(planted), test::hertz(3000));

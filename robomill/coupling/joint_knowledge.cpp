@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,8 @@ namespace {
 using Eigen::Index;
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, joint_unknowns>;
 
+/// A model that misses more than this share of what was measured says nothing.
+constexpr double no_fit = 0.3;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::array<const char*, joint_unknowns> units = {"N/m", "N s/m", "N m/rad", "N m s/rad"};
 
@@ -72,6 +75,20 @@ std::array<double, joint_unknowns> deviations(const Jacobian& columns, const std
   return out;
 }
 
+/// By how much a step of Gauss and Newton in the unknowns that no bound holds would lower Σ |residual|².
+double decrement(const Jacobian& columns, const std::array<bool, joint_unknowns>& moves,
+                 const Eigen::VectorXd& residual) {
+  std::vector<Index> used;
+  for (Index i = 0; i < joint_unknowns; ++i) {
+    if (moves[static_cast<std::size_t>(i)] && columns.col(i).norm() > 0.0) used.push_back(i);
+  }
+  if (used.empty()) return 0.0;
+  const Eigen::VectorXd scale = columns(Eigen::all, used).colwise().norm().transpose();
+  const Eigen::MatrixXd scaled = columns(Eigen::all, used) * scale.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd gradient = scaled.transpose() * residual;
+  return gradient.dot((scaled.transpose() * scaled).completeOrthogonalDecomposition().solve(gradient));
+}
+
 bool at_bound(double value, double bound) {
   return std::abs(value - bound) <= 1e-6 * std::abs(bound);
 }
@@ -105,9 +122,35 @@ std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& mod
   // An error that all lines share, at its worst, is not averaged out.
   const double shared = (data.noise_floor * data.measured.cwiseAbs().array() / data.deviation).square().sum();
   const double variance = std::max(random, shared);
-  const auto deviation = deviations(jacobian(model, joint, data), free, variance);
-
+  const Jacobian columns = jacobian(model, joint, data);
+  std::array<bool, joint_unknowns> moves = free;
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    moves[i] = free[i] && !at_bound(joint[i], options.lower[i]) && !at_bound(joint[i], options.upper[i]);
+  }
+  const double misfit = (residual.array() * data.deviation.replicate(2, 1)).matrix().norm() / data.measured.norm();
   std::array<JointKnowledge, joint_unknowns> knowledge;
+  std::string untold;
+  if (misfit > no_fit) {
+    untold = fmt::format(
+        "The assembly cannot give this FRF with any joint found: it misses {:.0f} % of it. Are units, tool "
+        "and holder right?",
+        100.0 * misfit);
+  } else if (decrement(columns, moves, residual) > variance) {
+    untold =
+        "The search ended beside the best joint, so that nothing can be said of deviations: --method hybrid goes on.";
+  }
+  if (!untold.empty()) {
+    notes.push_back(untold);
+    for (std::size_t i = 0; i < knowledge.size(); ++i) {
+      if (!free[i]) continue;
+      knowledge[i].deviation = infinite;
+      if (i % 2 == 0) knowledge[i].visible_up_to = infinite;
+      knowledge[i].note = to_string(static_cast<JointUnknown>(i)) + ": not told by this search";
+    }
+    return knowledge;
+  }
+  const auto deviation = deviations(columns, free, variance);
+
   for (std::size_t i = 0; i < knowledge.size(); ++i) {
     JointKnowledge& known = knowledge[i];
     const std::string name = to_string(static_cast<JointUnknown>(i));
