@@ -20,6 +20,11 @@ void print_summary(const plan::PlanResult& result) {
       if (!hit.accepted) fmt::print("rejected     {}: {}\n", hit.file, hit.reasons.empty() ? "" : hit.reasons.front());
     }
   }
+  if (result.prediction && !result.prediction->peaks.empty()) {
+    const report::TipPeak& first = result.prediction->peaks.front();
+    fmt::print("predicted    first peak of {} at {:.1f} Hz, {:.3g} µm/N\n", modal::to_string(first.name),
+               first.frequency_hz, first.receptance_m_per_n / units::um);
+  }
   if (result.recommendation.recommended) {
     print_operation("recommended", *result.recommendation.recommended);
     for (const plan::Operation& op : result.recommendation.alternatives) print_operation("alternative", op);
