@@ -108,13 +108,44 @@ std::string note_of_stiffness(std::size_t i, double value, const JointKnowledge&
                      units[i]);
 }
 
+using Flags = std::array<bool, joint_unknowns>;
+
+/// Why nothing can be said of deviations; empty where it can.
+std::string why_untold(const Jacobian& columns, const Flags& moves, const Eigen::VectorXd& residual, double variance,
+                       const JointData& data) {
+  const double misfit = (residual.array() * data.deviation.replicate(2, 1)).matrix().norm() / data.measured.norm();
+  if (misfit > no_fit) {
+    return fmt::format(
+        "The assembly cannot give this FRF with any joint found: it misses {:.0f} % of it. Are units, tool and holder "
+        "right?",
+        100.0 * misfit);
+  }
+  if (decrement(columns, moves, residual) > variance) {
+    return "The search ended beside the best joint, so that nothing can be said of deviations: --method hybrid goes "
+           "on.";
+  }
+  return {};
+}
+
+void tell_nothing(const Flags& free, std::array<JointKnowledge, joint_unknowns>& knowledge) {
+  for (std::size_t i = 0; i < knowledge.size(); ++i) {
+    if (!free[i]) continue;
+    knowledge[i].deviation = infinite;
+    if (i % 2 == 0) knowledge[i].visible_up_to = infinite;
+    knowledge[i].note = to_string(static_cast<JointUnknown>(i)) + ": not told by this search";
+  }
+}
+
 }  // namespace
 
 std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& model, const JointValues& joint,
                                                            const JointData& data, const JointFitOptions& options,
                                                            std::vector<std::string>& notes) {
-  std::array<bool, joint_unknowns> free{};
-  for (std::size_t i = 0; i < free.size(); ++i) free[i] = options.lower[i] < options.upper[i];
+  Flags free{}, moves{};
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    free[i] = options.lower[i] < options.upper[i];
+    moves[i] = free[i] && !at_bound(joint[i], options.lower[i]) && !at_bound(joint[i], options.upper[i]);
+  }
   const Eigen::VectorXd residual = joint_residuals(model, joint, data);
   const double spare = static_cast<double>(residual.size() - std::ranges::count(free, true));
   // A complex line's σ² is that of its real and imaginary parts together.
@@ -123,34 +154,14 @@ std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& mod
   const double shared = (data.noise_floor * data.measured.cwiseAbs().array() / data.deviation).square().sum();
   const double variance = std::max(random, shared);
   const Jacobian columns = jacobian(model, joint, data);
-  std::array<bool, joint_unknowns> moves = free;
-  for (std::size_t i = 0; i < moves.size(); ++i) {
-    moves[i] = free[i] && !at_bound(joint[i], options.lower[i]) && !at_bound(joint[i], options.upper[i]);
-  }
-  const double misfit = (residual.array() * data.deviation.replicate(2, 1)).matrix().norm() / data.measured.norm();
   std::array<JointKnowledge, joint_unknowns> knowledge;
-  std::string untold;
-  if (misfit > no_fit) {
-    untold = fmt::format(
-        "The assembly cannot give this FRF with any joint found: it misses {:.0f} % of it. Are units, tool "
-        "and holder right?",
-        100.0 * misfit);
-  } else if (decrement(columns, moves, residual) > variance) {
-    untold =
-        "The search ended beside the best joint, so that nothing can be said of deviations: --method hybrid goes on.";
-  }
+  const std::string untold = why_untold(columns, moves, residual, variance, data);
   if (!untold.empty()) {
     notes.push_back(untold);
-    for (std::size_t i = 0; i < knowledge.size(); ++i) {
-      if (!free[i]) continue;
-      knowledge[i].deviation = infinite;
-      if (i % 2 == 0) knowledge[i].visible_up_to = infinite;
-      knowledge[i].note = to_string(static_cast<JointUnknown>(i)) + ": not told by this search";
-    }
+    tell_nothing(free, knowledge);
     return knowledge;
   }
-  const auto deviation = deviations(columns, free, variance);
-
+  const std::array<double, joint_unknowns> deviation = deviations(columns, free, variance);
   for (std::size_t i = 0; i < knowledge.size(); ++i) {
     JointKnowledge& known = knowledge[i];
     const std::string name = to_string(static_cast<JointUnknown>(i));
@@ -161,11 +172,9 @@ std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& mod
       known.note = name + ": given, not fitted";
       continue;
     }
-    const bool bound = at_bound(joint[i], options.lower[i]) || at_bound(joint[i], options.upper[i]);
-    known.identifiable = !bound && 2.0 * known.deviation < joint[i];
+    known.identifiable = moves[i] && 2.0 * known.deviation < joint[i];
     if (known.identifiable) continue;
     known.note = name + ": not identifiable from this FRF";
-    const double bound_value = at_bound(joint[i], options.lower[i]) ? options.lower[i] : options.upper[i];
     if (!stiffness) {
       const double most = joint[i] + 2.0 * known.deviation;
       if (most < options.upper[i]) {
@@ -177,7 +186,8 @@ std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& mod
     rigid[i] = std::max(1e15, joint[i]);
     const double rise = joint_residuals(model, rigid, data).squaredNorm() - residual.squaredNorm();
     if (rise < 4.0 * variance) known.deviation = infinite;
-    notes.push_back(note_of_stiffness(i, joint[i], known, bound ? bound_value : 0.0));
+    const double bound = at_bound(joint[i], options.lower[i]) ? options.lower[i] : options.upper[i];
+    notes.push_back(note_of_stiffness(i, joint[i], known, moves[i] ? 0.0 : bound));
   }
   return knowledge;
 }
