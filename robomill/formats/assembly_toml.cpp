@@ -61,15 +61,16 @@ void read_joint(TomlFile& file, const AssemblyReading& reading, std::optional<co
   };
   const auto plain = [&](const std::string& name, double& value) { number(name, 1.0, name, value); };
   plain("cross_stiffness_n_per_rad", joint.cross_stiffness_n_per_rad);
-  if (reading.joint_sought) {
-    // Whatever is not said must only be valid: the search puts its own in.
-    const double any = std::max(1e6, 2.0 * std::abs(joint.cross_stiffness_n_per_rad));
-    joint.translational_stiffness_n_per_m = joint.rotational_stiffness_n_m_per_rad = any;
-  }
   plain("translational_stiffness_n_per_m", joint.translational_stiffness_n_per_m);
   plain("translational_damping_n_s_per_m", joint.translational_damping_n_s_per_m);
   plain("rotational_stiffness_n_m_per_rad", joint.rotational_stiffness_n_m_per_rad);
   plain("rotational_damping_n_m_s_per_rad", joint.rotational_damping_n_m_s_per_rad);
+  if (reading.joint_sought) {
+    // The search uses none of the four; what stands for them must only be valid.
+    joint.translational_stiffness_n_per_m = joint.rotational_stiffness_n_m_per_rad =
+        std::max(1e6, 2.0 * std::abs(joint.cross_stiffness_n_per_rad));
+    joint.translational_damping_n_s_per_m = joint.rotational_damping_n_m_s_per_rad = 0.0;
+  }
   number("insertion_length_mm", units::mm, "insertion_length_m", joint.insertion_length_m);
   file.integer("joint.points", "joint.points", joint.points);
   joint.shank = read_segments(file, "joint.shank");

@@ -213,6 +213,18 @@ TEST(AssemblyToml, ASoughtJointNeedsNoStiffness) {
   EXPECT_NO_THROW(file.assembly.validate());
   EXPECT_EQ(file.low_hz, 200.0);
   EXPECT_EQ(file.high_hz, 3000.0);
+  // Values to start from are not used, so they are not judged either; what is kept is.
+  const std::string start =
+      "[joint]\ntranslational_stiffness_n_per_m = 0\ntranslational_damping_n_s_per_m = -1\n"
+      "rotational_stiffness_n_m_per_rad = 10\nrotational_damping_n_m_s_per_rad = -1\n"
+      "cross_stiffness_n_per_rad = 1e5\n";
+  const auto sought = [&](const std::string& joint) {
+    return read_assembly(folder.file("assembly.toml", bar + joint), {.joint_sought = true}).assembly;
+  };
+  EXPECT_EQ(sought(start).joint->cross_stiffness_n_per_rad, 1e5);
+  EXPECT_NO_THROW(sought(start).validate());
+  EXPECT_NE(test::refusal([&] { static_cast<void>(sought(start + "points = 0\n")); }).find("joint.points = 0"),
+            std::string::npos);
 }
 
 // A holder's segments and their receptances, written and read, carry the tool alike.
