@@ -161,6 +161,14 @@ auto about(const TomlFile& file, const std::filesystem::path& receptances, F&& f
   }
 }
 
+/// A file whose FRFs all stand at one point was taken as one of the tip; on an artefact that point has its position.
+void number_one_point(FrfFile& measured) {
+  for (modal::Frf& frf : measured.set.frfs) {
+    for (modal::Dof* dof : {&frf.name.response, &frf.name.excitation}) dof->point = std::max(dof->point, 1);
+  }
+  std::erase_if(measured.notes, [](const std::string& note) { return note.ends_with(taken_as_tip); });
+}
+
 void read_measured(TomlFile& file, AssemblyFile& out) {
   std::vector<double> position_m;
   coupling::HolderOptions options;
@@ -181,6 +189,7 @@ void read_measured(TomlFile& file, AssemblyFile& out) {
     throw InvalidInput(out.receptances.string(), "still holds the damping of an exponential window",
                        "Estimate the FRFs with remove_added_damping");
   }
+  if (points && position_m.size() == 1 && !artefact.empty()) number_one_point(measured);
   out.notes.insert(out.notes.end(), measured.notes.begin(), measured.notes.end());
   coupling::Holder& holder = out.assembly.holder;
   if (!points) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -8,6 +9,9 @@
 #include "robomill/modal/hits.hpp"
 
 namespace robomill::formats {
+
+/// How the note ends that tells of a file whose FRFs all stand at one numbered point: they have lost the number.
+constexpr std::string_view taken_as_tip = ": taken as the tip";
 
 /// FRFs as files hold them, and what a reader of the result must know: data sets skipped, lines left out, units
 /// converted.
