@@ -144,6 +144,10 @@ TEST_F(Predicted, SaysWhatCannotBeCompared) {
   set.frequency_hz *= 0.1;
   set.frfs[0].name = modal::parse_frf_name("1z:1z");
   EXPECT_NE(refusal(set).find("none of the FRFs that are predicted"), std::string::npos) << refusal(set);
+  EXPECT_NE(refusal(set).find("without a number"), std::string::npos) << refusal(set);
+  set.frfs[0].name = modal::parse_frf_name("1x:1x");
+  formats::write_frfs(folder_.at("tip.json"), set);
+  EXPECT_EQ(predict_tip(examples / "joint-bar/rigid.toml", folder_.at("tip.json")).error.size(), 1U);
 }
 
 // A round tool is fitted in x alone; fitted in both directions, the FRFs of the plan's own file give the same modes.
