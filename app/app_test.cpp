@@ -341,6 +341,11 @@ TEST_F(App, CouplesAListOfTools) {
   EXPECT_TRUE(std::filesystem::is_regular_file(folder_.at("tips/3_short.uff")));
   EXPECT_EQ(robomill("couple assembly.toml --tools tools.csv -o table.uff").exit, 1);
   EXPECT_EQ(robomill("couple assembly.toml --lobes lobes.toml").exit, 2);
+  for (const char* other : {"--rotations", "--holder-out kept.uff"}) {
+    const Ended both = robomill(std::string("couple assembly.toml --tools tools.csv ") + other);
+    EXPECT_EQ(both.exit, 2) << other;
+    EXPECT_NE(both.err.find("excludes"), std::string::npos) << both.err;
+  }
   write("bad.csv", "tool,length_mm,diameter_mm\nbar,0,12\n");
   EXPECT_NE(robomill("couple assembly.toml --tools bad.csv").err.find("bad.csv:2: length_mm = 0 mm; must be > 0"),
             std::string::npos);
