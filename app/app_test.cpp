@@ -329,6 +329,7 @@ TEST_F(App, CouplesAListOfTools) {
   const Ended told = robomill("couple assembly.toml --tools tools.csv --lobes lobes.toml -o table.csv");
   EXPECT_EQ(told.exit, 3) << told.err;  // 1.8 mm are more than the thin one has
   EXPECT_NE(told.out.find("must be at most the cutter's diameter"), std::string::npos) << told.out;
+  EXPECT_NE(told.err.find("not every tool has a result; its row says why"), std::string::npos) << told.err;
   const std::string csv = slurp(folder_.at("table.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4) << csv;
   EXPECT_NE(csv.find("\"bar\",2,12,118.92,294,"), std::string::npos) << csv;

@@ -98,8 +98,10 @@ void print_tools(const std::vector<plan::ToolResult>& results) {
     if (tool.recommendation && tool.recommendation->recommended) {
       const plan::Operation& best = *tool.recommendation->recommended;
       fmt::print("{:>9.0f} {:>9.4g}\n", best.spindle_speed_rad_per_s / units::rpm, best.axial_depth_m / units::mm);
+    } else if (tool.recommendation) {
+      fmt::print("{}\n", tool.recommendation->reason);
     } else {
-      fmt::print("{}\n", tool.recommendation ? tool.recommendation->reason : "-");
+      fmt::print("{}\n", tool.no_cut.empty() ? "-" : tool.no_cut);
     }
   }
 }
@@ -131,7 +133,8 @@ Exit try_tools(const CoupleCommand& command, const Common& common, Progress& pro
     print_tools(results);
     for (const std::string& note : assembly.notes) fmt::print("Note: {}\n", note);
   }
-  const bool all_done = std::all_of(results.begin(), results.end(), [](const auto& t) { return t.failure.empty(); });
+  const bool all_done =
+      std::all_of(results.begin(), results.end(), [](const auto& t) { return t.failure.empty() && t.no_cut.empty(); });
   if (all_done) return done;
   fmt::print(stderr, "robomill: not every tool could be coupled; its row says why\n");
   return not_reached;
