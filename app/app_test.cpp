@@ -3,8 +3,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <complex>
-
+#include <cmath>
 #include <complex>
 #include <cstdio>
 #include <cstdlib>
@@ -291,6 +290,50 @@ TEST_F(App, CouplesAToolToAMeasuredHolder) {
   EXPECT_NE(told.out.find("µm/N at the first line, 1 Hz"), std::string::npos);
   write_assembly("next.toml", "", "receptances = \"kept.mat\"\n", "");
   EXPECT_NE(robomill("couple next.toml").out.find("xx: peak at 294.77"), std::string::npos);
+}
+
+// What a finite difference makes unreliable is told in every file that comes of it.
+TEST_F(App, CoupleWritesWhichLinesAreNotReliable) {
+  const std::string head =
+      "frequency_hz,1x:1x_re_m_per_n,1x:1x_im_m_per_n,2x:1x_re_m_per_n,2x:1x_im_m_per_n,2x:2x_re_m_per_n,"
+      "2x:2x_im_m_per_n\n";
+  std::string rows;
+  for (int line = 1; line <= 40; ++line) {
+    rows += std::to_string(10 * line) + ",1e-6,-1e-7,0.98e-6,-0.98e-7,0.961e-6,-0.961e-7\n";
+  }
+  write("points.csv", head + rows);
+  write_assembly("a.toml", "", "receptances = \"points.csv\"\npoints_mm = [0, 10]\nmax_amplification = 20\n", "");
+  const Ended told = robomill("couple a.toml -o tip.json --holder-out kept.uff");
+  ASSERT_EQ(told.exit, 0) << told.err;
+  const auto tip = nlohmann::json::parse(slurp(folder_.at("tip.json")));
+  EXPECT_EQ(tip["unreliable_hz"].size(), 40U);
+  EXPECT_EQ(tip["unreliable_hz"][1], 20.0);
+  EXPECT_TRUE(tip["suspect_hz"].is_array());
+  EXPECT_NE(tip["notes"].dump().find("do not rely on them"), std::string::npos) << tip["notes"];
+  EXPECT_EQ(nlohmann::json::parse(robomill("couple a.toml -o -").out)["unreliable_hz"], tip["unreliable_hz"]);
+
+  // The kept file says it too: more than 20 × 1 % of each receptance, the same share of all of one line.
+  EXPECT_EQ(robomill("couple a.toml --quiet --holder-out kept.json").exit, 0);
+  const auto kept = nlohmann::json::parse(slurp(folder_.at("kept.json")));
+  double share = 0.0;
+  for (const char* name : {"xx", "ry:x", "ry:my"}) {
+    const auto& h = kept["receptance_m_per_n"][name];
+    const double size = std::hypot(h["re"][4].get<double>(), h["im"][4].get<double>());
+    const double part = kept["deviation_m_per_n"][name][4].get<double>() / size;
+    EXPECT_GT(part, 0.2) << name;
+    if (share == 0.0) share = part;
+    EXPECT_NEAR(part, share, 1e-9 * share) << name;
+  }
+  write_assembly("next.toml", "", "receptances = \"kept.uff\"\n", "");
+  EXPECT_EQ(robomill("couple next.toml").exit, 0);
+  EXPECT_NE(slurp(folder_.at("kept.uff")).find("standard deviation"), std::string::npos);
+
+  write("tools.csv", "tool,length_mm,diameter_mm\nbar,118.92,12\n");
+  const Ended table = robomill("couple a.toml --tools tools.csv -o table.json");
+  EXPECT_NE(table.out.find("do not rely on them"), std::string::npos) << table.out << table.err;
+  const auto holder = nlohmann::json::parse(slurp(folder_.at("table.json")))["holder"];
+  EXPECT_EQ(holder["unreliable_hz"].size(), 40U);
+  EXPECT_NE(holder["notes"].dump().find("do not rely on them"), std::string::npos);
 }
 
 TEST_F(App, CoupleRefusesInTheFilesWords) {

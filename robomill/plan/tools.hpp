@@ -50,7 +50,9 @@ struct ToolResult {
 
 /// A row a tool. Columns that hold nothing for any tool are empty.
 [[nodiscard]] ROBOMILL_API std::string tools_csv(const std::vector<ToolResult>& results);
-[[nodiscard]] ROBOMILL_API std::string tools_json(const std::vector<ToolResult>& results);
+/// @param holder  where it was found from a measurement: its unreliable lines and notes stand beside the rows
+[[nodiscard]] ROBOMILL_API std::string tools_json(const std::vector<ToolResult>& results,
+                                                  const std::optional<coupling::HolderResult>& holder = {});
 
 /// The FRFs at each tool's tip as N_TOOL.uff, N its row from 1, in a folder that is made where it is missing. A tool
 /// that failed has none.

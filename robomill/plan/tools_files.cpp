@@ -109,11 +109,12 @@ std::string tools_csv(const std::vector<ToolResult>& results) {
   return out;
 }
 
-std::string tools_json(const std::vector<ToolResult>& results) {
+std::string tools_json(const std::vector<ToolResult>& results, const std::optional<coupling::HolderResult>& holder) {
   Json tools = Json::array();
   for (const ToolResult& tool : results) tools.push_back(tool_json(tool));
   Json json;
   json["tools"] = tools;
+  json["holder"] = holder ? Json{{"unreliable_hz", holder->unreliable_hz}, {"notes", holder->notes}} : Json();
   return formats::dump(json);
 }
 
