@@ -3,8 +3,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <complex>
-
+#include <cmath>
 #include <complex>
 #include <cstdio>
 #include <cstdlib>
@@ -293,6 +292,50 @@ TEST_F(App, CouplesAToolToAMeasuredHolder) {
   EXPECT_NE(robomill("couple next.toml").out.find("xx: peak at 294.77"), std::string::npos);
 }
 
+// What a finite difference makes unreliable is told in every file that comes of it.
+TEST_F(App, CoupleWritesWhichLinesAreNotReliable) {
+  const std::string head =
+      "frequency_hz,1x:1x_re_m_per_n,1x:1x_im_m_per_n,2x:1x_re_m_per_n,2x:1x_im_m_per_n,2x:2x_re_m_per_n,"
+      "2x:2x_im_m_per_n\n";
+  std::string rows;
+  for (int line = 1; line <= 40; ++line) {
+    rows += std::to_string(10 * line) + ",1e-6,-1e-7,0.98e-6,-0.98e-7,0.961e-6,-0.961e-7\n";
+  }
+  write("points.csv", head + rows);
+  write_assembly("a.toml", "", "receptances = \"points.csv\"\npoints_mm = [0, 10]\nmax_amplification = 20\n", "");
+  const Ended told = robomill("couple a.toml -o tip.json --holder-out kept.uff");
+  ASSERT_EQ(told.exit, 0) << told.err;
+  const auto tip = nlohmann::json::parse(slurp(folder_.at("tip.json")));
+  EXPECT_EQ(tip["unreliable_hz"].size(), 40U);
+  EXPECT_EQ(tip["unreliable_hz"][1], 20.0);
+  EXPECT_TRUE(tip["suspect_hz"].is_array());
+  EXPECT_NE(tip["notes"].dump().find("do not rely on them"), std::string::npos) << tip["notes"];
+  EXPECT_EQ(nlohmann::json::parse(robomill("couple a.toml -o -").out)["unreliable_hz"], tip["unreliable_hz"]);
+
+  // The kept file says it too: more than 20 × 1 % of each receptance, the same share of all of one line.
+  EXPECT_EQ(robomill("couple a.toml --quiet --holder-out kept.json").exit, 0);
+  const auto kept = nlohmann::json::parse(slurp(folder_.at("kept.json")));
+  double share = 0.0;
+  for (const char* name : {"xx", "ry:x", "ry:my"}) {
+    const auto& h = kept["receptance_m_per_n"][name];
+    const double size = std::hypot(h["re"][4].get<double>(), h["im"][4].get<double>());
+    const double part = kept["deviation_m_per_n"][name][4].get<double>() / size;
+    EXPECT_GT(part, 0.2) << name;
+    if (share == 0.0) share = part;
+    EXPECT_NEAR(part, share, 1e-9 * share) << name;
+  }
+  write_assembly("next.toml", "", "receptances = \"kept.uff\"\n", "");
+  EXPECT_EQ(robomill("couple next.toml").exit, 0);
+  EXPECT_NE(slurp(folder_.at("kept.uff")).find("standard deviation"), std::string::npos);
+
+  write("tools.csv", "tool,length_mm,diameter_mm\nbar,118.92,12\n");
+  const Ended table = robomill("couple a.toml --tools tools.csv -o table.json");
+  EXPECT_NE(table.out.find("do not rely on them"), std::string::npos) << table.out << table.err;
+  const auto holder = nlohmann::json::parse(slurp(folder_.at("table.json")))["holder"];
+  EXPECT_EQ(holder["unreliable_hz"].size(), 40U);
+  EXPECT_NE(holder["notes"].dump().find("do not rely on them"), std::string::npos);
+}
+
 TEST_F(App, CoupleRefusesInTheFilesWords) {
   const auto refused = [&](const std::string& arguments, const std::string& words) {
     const Ended run = robomill("couple " + arguments + " -o tip.uff");
@@ -329,6 +372,7 @@ TEST_F(App, CouplesAListOfTools) {
   const Ended told = robomill("couple assembly.toml --tools tools.csv --lobes lobes.toml -o table.csv");
   EXPECT_EQ(told.exit, 3) << told.err;  // 1.8 mm are more than the thin one has
   EXPECT_NE(told.out.find("must be at most the cutter's diameter"), std::string::npos) << told.out;
+  EXPECT_NE(told.err.find("not every tool has a result; its row says why"), std::string::npos) << told.err;
   const std::string csv = slurp(folder_.at("table.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4) << csv;
   EXPECT_NE(csv.find("\"bar\",2,12,118.92,294,"), std::string::npos) << csv;
@@ -341,6 +385,11 @@ TEST_F(App, CouplesAListOfTools) {
   EXPECT_TRUE(std::filesystem::is_regular_file(folder_.at("tips/3_short.uff")));
   EXPECT_EQ(robomill("couple assembly.toml --tools tools.csv -o table.uff").exit, 1);
   EXPECT_EQ(robomill("couple assembly.toml --lobes lobes.toml").exit, 2);
+  for (const char* other : {"--rotations", "--holder-out kept.uff"}) {
+    const Ended both = robomill(std::string("couple assembly.toml --tools tools.csv ") + other);
+    EXPECT_EQ(both.exit, 2) << other;
+    EXPECT_NE(both.err.find("excludes"), std::string::npos) << both.err;
+  }
   write("bad.csv", "tool,length_mm,diameter_mm\nbar,0,12\n");
   EXPECT_NE(robomill("couple assembly.toml --tools bad.csv").err.find("bad.csv:2: length_mm = 0 mm; must be > 0"),
             std::string::npos);
@@ -399,8 +448,8 @@ TEST_F(App, JointRefusesWhatDoesNotFit) {
 
 TEST_F(App, CtrlCStopsAndLeavesNoFile) {
   write_lobes("tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n", "[4000, 4000]\noutput = \"map\"");
-  const Ended run =
-      shell("timeout --signal=INT 1 '" ROBOMILL_PROGRAM "' lobes lobes.toml -o lobes.json; echo $? >code.txt");
+  const Ended run = shell("timeout --foreground --signal=INT 1 '" ROBOMILL_PROGRAM
+                          "' lobes lobes.toml -o lobes.json; echo $? >code.txt");
   EXPECT_NE(run.err.find("interrupted"), std::string::npos) << run.err;
   EXPECT_FALSE(std::filesystem::exists(folder_.at("lobes.json")));
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {

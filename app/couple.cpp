@@ -22,6 +22,8 @@ namespace robomill::app {
 namespace {
 
 constexpr std::size_t peaks_shown = 6;
+/// Of a holder's measurement, as a share of itself: what its notes speak of too.
+constexpr double measurement_error = 0.01;
 
 void print_peaks(const modal::FrfSet& set, const modal::Frf& frf) {
   const std::string name = modal::to_string(frf.name);
@@ -52,6 +54,13 @@ void print_lines(const char* what, const std::vector<double>& lines_hz) {
   fmt::print("{}: {} lines, {:.6g} to {:.6g} Hz\n", what, lines_hz.size(), lines_hz.front(), lines_hz.back());
 }
 
+/// What to know of a holder that was found from a measurement.
+void print_holder(const formats::AssemblyFile& file) {
+  if (!file.holder) return;
+  print_lines("Holder not reliable", file.holder->unreliable_hz);
+  for (const std::string& note : file.holder->notes) fmt::print("Note: {}\n", note);
+}
+
 void print_summary(const formats::AssemblyFile& file, const coupling::TipResult& tip) {
   const modal::Frf& x = *tip.frfs.find(modal::parse_frf_name("xx"));
   const modal::Frf& y = *tip.frfs.find(modal::parse_frf_name("yy"));
@@ -64,12 +73,37 @@ void print_summary(const formats::AssemblyFile& file, const coupling::TipResult&
     print_compliance(file, tip.frfs, y.name);
   }
   print_lines("Suspect", tip.suspect_hz);
-  if (file.holder) {
-    print_lines("Holder not reliable", file.holder->unreliable_hz);
-    for (const std::string& note : file.holder->notes) fmt::print("Note: {}\n", note);
-  }
+  print_holder(file);
   for (const std::string& note : file.notes) fmt::print("Note: {}\n", note);
   for (const std::string& note : tip.notes) fmt::print("Note: {}\n", note);
+}
+
+/// tip.json with what the summary says of lines that are not to be trusted.
+std::string tip_json(const formats::AssemblyFile& file, const coupling::TipResult& tip) {
+  formats::FrfDoubts doubts{.suspect_hz = tip.suspect_hz};
+  const auto note = [&](const std::vector<std::string>& notes) {
+    doubts.notes.insert(doubts.notes.end(), notes.begin(), notes.end());
+  };
+  if (file.holder) {
+    doubts.unreliable_hz = file.holder->unreliable_hz;
+    note(file.holder->notes);
+  }
+  note(file.notes);
+  note(tip.notes);
+  return formats::frf_json(tip.frfs, doubts);
+}
+
+/// The holder's receptances with their uncertainty, so that whoever couples to the file sees which lines are bad.
+modal::FrfSet holder_with_deviation(const formats::AssemblyFile& file) {
+  modal::FrfSet out = file.assembly.holder.receptances;
+  if (!file.holder) return out;  // as it was measured
+  // Where the receptance itself vanishes the amplification has no bound.
+  const Eigen::ArrayXd amplification =
+      file.holder->amplification.array().isFinite().select(file.holder->amplification.array(), 1e6).min(1e6);
+  for (modal::Frf& frf : out.frfs) {
+    frf.deviation = measurement_error * amplification * frf.receptance.array().abs();
+  }
+  return out;
 }
 
 /// The tip's FRFs; an error about the assembly names its file.
@@ -98,8 +132,10 @@ void print_tools(const std::vector<plan::ToolResult>& results) {
     if (tool.recommendation && tool.recommendation->recommended) {
       const plan::Operation& best = *tool.recommendation->recommended;
       fmt::print("{:>9.0f} {:>9.4g}\n", best.spindle_speed_rad_per_s / units::rpm, best.axial_depth_m / units::mm);
+    } else if (tool.recommendation) {
+      fmt::print("{}\n", tool.recommendation->reason);
     } else {
-      fmt::print("{}\n", tool.recommendation ? tool.recommendation->reason : "-");
+      fmt::print("{}\n", tool.no_cut.empty() ? "-" : tool.no_cut);
     }
   }
 }
@@ -122,18 +158,20 @@ Exit try_tools(const CoupleCommand& command, const Common& common, Progress& pro
   }
   const std::vector<plan::ToolResult> results = plan::try_tools(assembly, tools, cut, common.seed, progress);
   if (common.to_stdout()) {
-    fmt::print("{}", plan::tools_json(results));
+    fmt::print("{}", plan::tools_json(results, assembly.holder));
   } else if (!common.output.empty()) {
-    formats::write_file(common.output, as_json ? plan::tools_json(results) : plan::tools_csv(results));
+    formats::write_file(common.output, as_json ? plan::tools_json(results, assembly.holder) : plan::tools_csv(results));
   }
   if (!command.frfs.empty()) plan::write_tips(command.frfs, results);
   if (common.wants_summary()) {
     print_tools(results);
+    print_holder(assembly);
     for (const std::string& note : assembly.notes) fmt::print("Note: {}\n", note);
   }
-  const bool all_done = std::all_of(results.begin(), results.end(), [](const auto& t) { return t.failure.empty(); });
+  const bool all_done =
+      std::all_of(results.begin(), results.end(), [](const auto& t) { return t.failure.empty() && t.no_cut.empty(); });
   if (all_done) return done;
-  fmt::print(stderr, "robomill: not every tool could be coupled; its row says why\n");
+  fmt::print(stderr, "robomill: not every tool has a result; its row says why\n");
   return not_reached;
 }
 
@@ -150,11 +188,13 @@ Exit run(const CoupleCommand& command, const Common& common, Progress& progress)
   progress.check();
   const coupling::TipResult tip = couple(file, {.rotations = command.rotations});
   if (common.to_stdout()) {
-    fmt::print("{}", formats::frf_json(tip.frfs));
+    fmt::print("{}", tip_json(file, tip));
+  } else if (!common.output.empty() && formats::format_of(common.output) == formats::Format::json) {
+    formats::write_file(common.output, tip_json(file, tip));
   } else if (!common.output.empty()) {
     formats::write_frfs(common.output, tip.frfs);
   }
-  if (!command.holder_out.empty()) formats::write_frfs(command.holder_out, holder);
+  if (!command.holder_out.empty()) formats::write_frfs(command.holder_out, holder_with_deviation(file));
   if (common.wants_summary()) print_summary(file, tip);
   return done;
 }

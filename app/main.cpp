@@ -61,10 +61,14 @@ CommandLine::CommandLine() {
   sub = verb("couple", "a tool in a holder to the FRFs at its tip, without a tap test",
              [this](Progress& p) { return run(couple, common, p); });
   sub->add_option("assembly", couple.input, "assembly.toml")->required();
-  sub->add_flag("--rotations", couple.rotations, "also the rotations and moments at the tip");
-  sub->add_option("--holder-out", couple.holder_out,
-                  "keep the measured holder's receptances here, for every tool after: .uff .csv .mat .json");
-  CLI::Option* tools = sub->add_option("--tools", couple.tools, "tools.csv: a table of them, as .csv or .json");
+  CLI::Option* rotations =
+      sub->add_flag("--rotations", couple.rotations, "also the rotations and moments at the tip; not with --tools");
+  CLI::Option* holder_out = sub->add_option(
+      "--holder-out", couple.holder_out,
+      "keep the measured holder's receptances here, for every tool after: .uff .csv .mat .json; not with --tools");
+  CLI::Option* tools = sub->add_option("--tools", couple.tools, "tools.csv: a table of them, as .csv or .json")
+                           ->excludes(rotations)
+                           ->excludes(holder_out);
   sub->add_option("--lobes", couple.lobes, "lobes.toml: each tool's best speed and depth in this cut")->needs(tools);
   sub->add_option("--frfs", couple.frfs, "a folder for the FRFs at each tool's tip, N_TOOL.uff")->needs(tools);
 

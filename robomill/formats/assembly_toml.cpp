@@ -61,15 +61,16 @@ void read_joint(TomlFile& file, const AssemblyReading& reading, std::optional<co
   };
   const auto plain = [&](const std::string& name, double& value) { number(name, 1.0, name, value); };
   plain("cross_stiffness_n_per_rad", joint.cross_stiffness_n_per_rad);
-  if (reading.joint_sought) {
-    // Whatever is not said must only be valid: the search puts its own in.
-    const double any = std::max(1e6, 2.0 * std::abs(joint.cross_stiffness_n_per_rad));
-    joint.translational_stiffness_n_per_m = joint.rotational_stiffness_n_m_per_rad = any;
-  }
   plain("translational_stiffness_n_per_m", joint.translational_stiffness_n_per_m);
   plain("translational_damping_n_s_per_m", joint.translational_damping_n_s_per_m);
   plain("rotational_stiffness_n_m_per_rad", joint.rotational_stiffness_n_m_per_rad);
   plain("rotational_damping_n_m_s_per_rad", joint.rotational_damping_n_m_s_per_rad);
+  if (reading.joint_sought) {
+    // The search uses none of the four; what stands for them must only be valid.
+    joint.translational_stiffness_n_per_m = joint.rotational_stiffness_n_m_per_rad =
+        std::max(1e6, 2.0 * std::abs(joint.cross_stiffness_n_per_rad));
+    joint.translational_damping_n_s_per_m = joint.rotational_damping_n_m_s_per_rad = 0.0;
+  }
   number("insertion_length_mm", units::mm, "insertion_length_m", joint.insertion_length_m);
   file.integer("joint.points", "joint.points", joint.points);
   joint.shank = read_segments(file, "joint.shank");
@@ -160,6 +161,14 @@ auto about(const TomlFile& file, const std::filesystem::path& receptances, F&& f
   }
 }
 
+/// A file whose FRFs all stand at one point was taken as one of the tip; on an artefact that point has its position.
+void number_one_point(FrfFile& measured) {
+  for (modal::Frf& frf : measured.set.frfs) {
+    for (modal::Dof* dof : {&frf.name.response, &frf.name.excitation}) dof->point = std::max(dof->point, 1);
+  }
+  std::erase_if(measured.notes, [](const std::string& note) { return note.ends_with(taken_as_tip); });
+}
+
 void read_measured(TomlFile& file, AssemblyFile& out) {
   std::vector<double> position_m;
   coupling::HolderOptions options;
@@ -180,6 +189,7 @@ void read_measured(TomlFile& file, AssemblyFile& out) {
     throw InvalidInput(out.receptances.string(), "still holds the damping of an exponential window",
                        "Estimate the FRFs with remove_added_damping");
   }
+  if (points && position_m.size() == 1 && !artefact.empty()) number_one_point(measured);
   out.notes.insert(out.notes.end(), measured.notes.begin(), measured.notes.end());
   coupling::Holder& holder = out.assembly.holder;
   if (!points) {

@@ -27,8 +27,8 @@ struct AssemblyFile {
 };
 
 struct AssemblyReading {
-  /// The joint is what is looked for: its stiffness may be left out (any value then stands there), and no frequencies
-  /// are needed.
+  /// The joint is what is looked for: its stiffness and damping may be left out and are not used (any valid values
+  /// stand there), and no frequencies are needed.
   bool joint_sought = false;
 };
 

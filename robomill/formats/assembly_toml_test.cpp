@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <complex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "robomill/base/random.hpp"
@@ -213,6 +214,18 @@ TEST(AssemblyToml, ASoughtJointNeedsNoStiffness) {
   EXPECT_NO_THROW(file.assembly.validate());
   EXPECT_EQ(file.low_hz, 200.0);
   EXPECT_EQ(file.high_hz, 3000.0);
+  // Values to start from are not used, so they are not judged either; what is kept is.
+  const std::string start =
+      "[joint]\ntranslational_stiffness_n_per_m = 0\ntranslational_damping_n_s_per_m = -1\n"
+      "rotational_stiffness_n_m_per_rad = 10\nrotational_damping_n_m_s_per_rad = -1\n"
+      "cross_stiffness_n_per_rad = 1e5\n";
+  const auto sought = [&](const std::string& joint) {
+    return read_assembly(folder.file("assembly.toml", bar + joint), {.joint_sought = true}).assembly;
+  };
+  EXPECT_EQ(sought(start).joint->cross_stiffness_n_per_rad, 1e5);
+  EXPECT_NO_THROW(sought(start).validate());
+  EXPECT_NE(test::refusal([&] { static_cast<void>(sought(start + "points = 0\n")); }).find("joint.points = 0"),
+            std::string::npos);
 }
 
 // A holder's segments and their receptances, written and read, carry the tool alike.
@@ -359,6 +372,36 @@ TEST(AssemblyToml, TakesAnArtefactOff) {
     const modal::Frf* found = file.assembly.holder.receptances.find(modal::parse_frf_name(name));
     ASSERT_NE(found, nullptr);
     EXPECT_LT((found->receptance - expected).norm(), 1e-6 * expected.norm()) << name;
+  }
+}
+
+// At the free end of a rod: translation, rotation and moment of one point give the holder back.
+TEST(AssemblyToml, TakesAnArtefactOffFromOnePoint) {
+  const test::Folder folder;
+  const modal::FrfSet holder = holder_frfs();
+  const modal::FrfSet tip =
+      coupling::tip_frfs({.tool = {steel(0.06, 0.012)}, .joint = {}, .holder = {.receptances = holder}},
+                         holder.frequency_hz, {.rotations = true})
+          .frfs;
+  for (const std::string point : {"1", ""}) {
+    modal::FrfSet measured{.frequency_hz = holder.frequency_hz, .frfs = {}};
+    for (const auto& [to, from] : {std::pair("x", "x"), std::pair("ry", "x"), std::pair("ry", "my")}) {
+      measured.frfs.push_back(
+          frf((point + to + ":" + point + from).c_str(),
+              tip.find(modal::parse_frf_name(std::string(to) + ":" + std::string(from)))->receptance));
+    }
+    write_frfs(folder.at("rod.mat"), measured);
+    const AssemblyFile file = read_assembly(folder.file(
+        "assembly.toml", bar + "[holder]\nreceptances = \"rod.mat\"\npoints_mm = [0]\nregularisation = 0\n"
+                               "[[holder.artefact]]\nlength_mm = 60\ndiameter_mm = 12\nyoungs_modulus_gpa = 200\n"
+                               "density_kg_per_m3 = 7800\nloss_factor = 0.02\n"));
+    for (const std::string& note : file.notes) EXPECT_EQ(note.find("taken as the tip"), std::string::npos) << note;
+    for (const char* name : {"xx", "ry:my"}) {
+      const Eigen::VectorXcd& expected = holder.find(modal::parse_frf_name(name))->receptance;
+      const modal::Frf* found = file.assembly.holder.receptances.find(modal::parse_frf_name(name));
+      ASSERT_NE(found, nullptr);
+      EXPECT_LT((found->receptance - expected).norm(), 1e-6 * expected.norm()) << name;
+    }
   }
 }
 

@@ -120,7 +120,7 @@ void number_less(std::vector<FrfPart*>& frfs, std::vector<std::string>& notes) {
   std::set<int> points;
   for (const FrfPart* frf : frfs) points.insert({frf->name->response.point, frf->name->excitation.point});
   if (points.size() != 1 || *points.begin() == 0) return;
-  notes.push_back("All FRFs stand at point " + std::to_string(*points.begin()) + ": taken as the tip");
+  notes.push_back("All FRFs stand at point " + std::to_string(*points.begin()) + std::string(taken_as_tip));
   for (FrfPart* frf : frfs) frf->name->response.point = frf->name->excitation.point = 0;
 }
 

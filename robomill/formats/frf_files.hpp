@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -8,6 +9,9 @@
 #include "robomill/modal/hits.hpp"
 
 namespace robomill::formats {
+
+/// How the note ends that tells of a file whose FRFs all stand at one numbered point: they have lost the number.
+constexpr std::string_view taken_as_tip = ": taken as the tip";
 
 /// FRFs as files hold them, and what a reader of the result must know: data sets skipped, lines left out, units
 /// converted.
@@ -49,6 +53,14 @@ ROBOMILL_API void write_frfs(const std::filesystem::path& path, const modal::Frf
 [[nodiscard]] ROBOMILL_API std::string frf_json(const modal::FrfSet& set);
 /// tip.json with verdicts, grades and notes.
 [[nodiscard]] ROBOMILL_API std::string frf_json(const modal::FrfResult& result);
+/// What to know of FRFs that were predicted.
+struct FrfDoubts {
+  std::vector<double> suspect_hz = {};     ///< lines where the measured holder would create energy
+  std::vector<double> unreliable_hz = {};  ///< lines where an error of the holder's measurement became a large one
+  std::vector<std::string> notes = {};     ///< sentences for the user
+};
+/// tip.json with these.
+[[nodiscard]] ROBOMILL_API std::string frf_json(const modal::FrfSet& set, const FrfDoubts& doubts);
 /// Verdicts, grades and notes alone, as JSON text.
 [[nodiscard]] ROBOMILL_API std::string hits_json(const modal::FrfResult& result);
 

@@ -46,6 +46,11 @@ TEST(FrfFiles, EveryFormatGivesTheSetBack) {
     write_frfs(folder.at(name), set);
     expect_same(read_frfs({folder.at(name)}).set, set, 0.0);
   }
+  // What is told of a prediction stands beside it and does not disturb the reader.
+  const std::string told = frf_json(set, {.suspect_hz = {7.0}, .unreliable_hz = {8.0, 9.5}, .notes = {"a \"note\""}});
+  expect_same(read_frfs({folder.file("told.json", told)}).set, set, 0.0);
+  EXPECT_NE(told.find("\"suspect_hz\": [7.0]"), std::string::npos);
+  EXPECT_NE(told.find("\"unreliable_hz\": [8.0, 9.5]"), std::string::npos);
   // E20.12 carries 13 digits.
   write_frfs(folder.at("tip.uff"), set);
   expect_same(read_frfs({folder.at("tip.uff")}).set, set, 1e-12);

@@ -96,6 +96,14 @@ std::string frf_json(const modal::FrfResult& result) {
   return dump(json);
 }
 
+std::string frf_json(const modal::FrfSet& set, const FrfDoubts& doubts) {
+  Json json = set_json(set);
+  json["suspect_hz"] = doubts.suspect_hz;
+  json["unreliable_hz"] = doubts.unreliable_hz;
+  json["notes"] = doubts.notes;
+  return dump(json);
+}
+
 std::string hits_json(const modal::FrfResult& result) {
   Json json = Json::object();
   add_hits(json, result);

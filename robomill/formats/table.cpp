@@ -24,15 +24,25 @@ bool is_comment(std::string_view line) {
   return line.empty() || line.front() == '#' || line.front() == '%' || line.starts_with("//");
 }
 
-std::string_view unquoted(std::string_view field) {
-  field = trimmed(field);
-  if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
-    field = trimmed(field.substr(1, field.size() - 2));
-  return field;
+bool is_quoted(std::string_view field) {
+  return field.size() >= 2 && field.front() == '"' && field.back() == '"';
 }
 
-/// The fields of a line; separators within quotes part nothing. A separator at the line's end parts nothing either.
-std::vector<std::string_view> split(std::string_view line, char separator) {
+std::string_view unquoted(std::string_view field) {
+  return is_quoted(field) ? trimmed(field.substr(1, field.size() - 2)) : field;
+}
+
+/// As a text: within quotes, two of them are one.
+std::string text_of(std::string_view field) {
+  std::string out(unquoted(field));
+  if (!is_quoted(field)) return out;
+  for (std::size_t at = 0; (at = out.find("\"\"", at)) != std::string::npos; ++at) out.erase(at, 1);
+  return out;
+}
+
+/// The fields of a line, with their quotes; separators within these part nothing. A separator at the line's end parts
+/// nothing either.
+std::vector<std::string_view> split_quoted(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
   if (separator != '\t') line = trimmed(line);  // a first field may be empty
   while (!line.empty()) {
@@ -42,11 +52,23 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
       const bool parts = separator == blanks ? line[end] == ' ' || line[end] == '\t' : line[end] == separator;
       if (parts && !quoted) break;
     }
-    fields.push_back(unquoted(line.substr(0, end)));
+    fields.push_back(trimmed(line.substr(0, end)));
     line.remove_prefix(std::min(end + 1, line.size()));
     if (separator == blanks) line = trimmed(line);
   }
   return fields;
+}
+
+std::vector<std::string_view> split(std::string_view line, char separator) {
+  std::vector<std::string_view> fields = split_quoted(line, separator);
+  for (std::string_view& field : fields) field = unquoted(field);
+  return fields;
+}
+
+std::vector<std::string> split_texts(std::string_view line, char separator) {
+  std::vector<std::string> out;
+  for (const std::string_view field : split_quoted(line, separator)) out.push_back(text_of(field));
+  return out;
 }
 
 std::optional<double> parse_field(std::string_view field, char separator) {
@@ -234,21 +256,21 @@ TextTable parse_text_table(std::string_view content, const std::string& where) {
     };
     if (out.names.empty()) {
       if (separator_of(line) != blanks) separator = separator_of(line);
-      for (const std::string_view name : split(line, separator)) {
+      for (std::string& name : split_texts(line, separator)) {
         if (name.empty()) throw refuse("has a column without a name");
         if (std::find(out.names.begin(), out.names.end(), name) != out.names.end()) {
           throw refuse(fmt::format("names the column {} twice", name));
         }
-        out.names.emplace_back(name);
+        out.names.push_back(std::move(name));
       }
       continue;
     }
-    const std::vector<std::string_view> fields = split(line, separator);
+    std::vector<std::string> fields = split_texts(line, separator);
     if (fields.size() > out.names.size()) {
       throw refuse(fmt::format("has {} fields where there are {} columns", fields.size(), out.names.size()),
                    separator == ',' ? "Decimal commas need semicolons between the columns" : "");
     }
-    TextTable::Row row{.line = line_number, .fields = {fields.begin(), fields.end()}};
+    TextTable::Row row{.line = line_number, .fields = std::move(fields)};
     row.fields.resize(out.names.size());
     out.rows.push_back(std::move(row));
   }

@@ -73,6 +73,16 @@ TEST(ToolsCsv, TakesSemicolonsTabsAndCommasForThePoint) {
   EXPECT_DOUBLE_EQ(tabs[0].segments[0].length_m, 0.02);
 }
 
+TEST(ToolsCsv, TwoQuotesWithinQuotesAreOne) {
+  const test::Folder folder;
+  const auto tools = read_tools(
+      folder.file("tools.csv", "tool,length_mm,diameter_mm\n\"1/2\"\" mill, \"\"long\"\"\",20,10\n1/2\"\",30,10\n"),
+      carbide());
+  ASSERT_EQ(tools.size(), 2U);
+  EXPECT_EQ(tools[0].name, "1/2\" mill, \"long\"");
+  EXPECT_EQ(tools[1].name, "1/2\"\"") << "without quotes about it, a field is as it stands";
+}
+
 TEST(ToolsCsv, RefusesInTheFilesWords) {
   const test::Folder folder;
   const auto expect = [&](const std::string& text, const std::string& words) {

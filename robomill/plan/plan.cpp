@@ -27,11 +27,33 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
+/// Where prediction and measurement are further apart than this, the lobes are those of another tip.
+constexpr double far_apart = 0.2;
+
+void warn_of_distance(const TipPrediction& prediction, std::vector<std::string>& warnings) {
+  for (const modal::FrfFitError& error : prediction.error) {
+    if (!(error.error.relative > far_apart)) continue;
+    std::string text = fmt::format("The predicted {} differs from the measured one by {:.0f} %",
+                                   modal::to_string(error.name), 100.0 * error.error.relative);
+    // Of a round tool the peaks stand in x alone, for both.
+    const auto peak = std::ranges::find_if(
+        prediction.peaks, [&](const report::TipPeak& p) { return prediction.round || p.name == error.name; });
+    if (peak != prediction.peaks.end()) {
+      text += fmt::format(": its first peak is predicted at {:.6g} Hz, ", peak->frequency_hz);
+      text += std::isfinite(peak->measured_frequency_hz)
+                  ? fmt::format("the measured one next to it stands at {:.6g} Hz", peak->measured_frequency_hz)
+                  : std::string("where no measured one is near");
+    }
+    warnings.push_back(text + ". Plan from the measurement, or find the joint with robomill joint.");
+  }
+}
+
 void warn_of_prediction(PlanResult& result) {
   const TipPrediction& prediction = *result.prediction;
   result.notes.push_back(
       prediction.measured ? "The FRFs are predicted from the assembly; the measured ones are only compared with them."
                           : "The FRFs are predicted from the assembly, not measured.");
+  warn_of_distance(prediction, result.warnings);
   if (!prediction.tip.suspect_hz.empty()) {
     result.warnings.push_back(fmt::format(
         "At {} lines, from {:.6g} Hz on, the measured holder would create energy: what is predicted there is suspect.",

@@ -105,7 +105,8 @@ void compare(TipPrediction& prediction, const std::filesystem::path& path) {
   }
   if (measured.frfs.empty()) {
     throw InvalidInput(path.string(), "holds none of the FRFs that are predicted, xx and yy",
-                       "Points at the tip have no number: xx, not 1x:1x");
+                       "Write xx and yy without a number; only FRFs that all stand at one point, as 1x:1x and 1y:1y, "
+                       "are taken as the tip's");
   }
   prediction.measured = std::move(measured);
 }

@@ -111,6 +111,27 @@ TEST_F(Predicted, IsComparedAtTheLinesOfTheMeasurement) {
   EXPECT_GT(other.error[0].error.relative, 0.5);
 }
 
+TEST_F(Predicted, PlanWarnsOfAMeasurementFarAway) {
+  const auto measure = [&](const char* file) {
+    const TipPrediction whole = predict_tip(examples / "joint-bar" / file, {});
+    formats::write_frfs(folder_.at("tip.json"), whole.tip.frfs);
+  };
+  folder_.file("job.toml", "[job]\nassembly = \"" + (examples / "joint-bar/soft.toml").string() +
+                               "\"\nmeasured = \"tip.json\"\nlobes = \"lobes.toml\"\nband_hz = [200, 600]\n");
+  const auto warnings = [&] {
+    std::string all;
+    for (const std::string& text : run_job(folder_.at("job.toml"), 1).warnings) all += text + "\n";
+    return all;
+  };
+  measure("rigid.toml");
+  const std::string far = warnings();
+  EXPECT_NE(far.find("The predicted xx differs from the measured one by "), std::string::npos) << far;
+  EXPECT_NE(far.find("predicted at 275"), std::string::npos) << far;
+  EXPECT_NE(far.find("stands at 294.7"), std::string::npos) << far;
+  measure("soft.toml");
+  EXPECT_EQ(warnings().find("differs from the measured one"), std::string::npos);
+}
+
 // With a measured holder the prediction stands on the holder's lines and is compared between them.
 TEST_F(Predicted, OfAMeasuredHolderIsComparedBetweenItsLines) {
   const Eigen::VectorXd lines = Eigen::VectorXd::LinSpaced(601, 50.0, 650.0);
@@ -144,6 +165,10 @@ TEST_F(Predicted, SaysWhatCannotBeCompared) {
   set.frequency_hz *= 0.1;
   set.frfs[0].name = modal::parse_frf_name("1z:1z");
   EXPECT_NE(refusal(set).find("none of the FRFs that are predicted"), std::string::npos) << refusal(set);
+  EXPECT_NE(refusal(set).find("without a number"), std::string::npos) << refusal(set);
+  set.frfs[0].name = modal::parse_frf_name("1x:1x");
+  formats::write_frfs(folder_.at("tip.json"), set);
+  EXPECT_EQ(predict_tip(examples / "joint-bar/rigid.toml", folder_.at("tip.json")).error.size(), 1U);
 }
 
 // A round tool is fitted in x alone; fitted in both directions, the FRFs of the plan's own file give the same modes.

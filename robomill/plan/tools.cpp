@@ -90,7 +90,12 @@ void try_tool(const formats::AssemblyFile& assembly, const formats::ListedTool& 
   fit(out, seed);
   if (!cut) return;
   if (out.teeth == 0) out.teeth = cut->problem.milling.tool.teeth;
-  find_best(*cut, out);
+  try {
+    find_best(*cut, out);
+  } catch (const InvalidInput& error) {
+    out.lowest_limit_m.reset();
+    out.no_cut = error.what();
+  }
 }
 
 }  // namespace

@@ -31,13 +31,15 @@ struct ToolResult {
   /// With a cut: the lowest limit over its speeds (none: stable at every depth searched), and the best operation.
   std::optional<double> lowest_limit_m = {};
   std::optional<Recommendation> recommendation = {};
+  std::string no_cut = {};  ///< why the cut does not suit the tool, whose FRFs and modes stand all the same
   std::vector<std::string> notes = {};
 };
 
 /// Puts every tool of a list into the assembly's joint and holder: the FRFs at its tip, their modes, and, with a cut,
 /// the best speed and depth. The tool's teeth and tip diameter stand in place of the cut's, whose immersion follows
 /// from its radial depth (an unequal pitch, a runout and a helix a tooth are those of the cut's own cutter and must not
-/// be there). Tools run in parallel; one that fails says why in its row and stops no other.
+/// be there). Tools run in parallel; one that fails, or that the cut does not suit, says why in its row and
+/// stops no other.
 /// @param cut  without dynamics: those of each tool are put in
 /// @throws InvalidInput  if the list is empty or the cut cannot be used for any tool
 /// @throws Interrupted  when progress asks to stop
@@ -48,7 +50,9 @@ struct ToolResult {
 
 /// A row a tool. Columns that hold nothing for any tool are empty.
 [[nodiscard]] ROBOMILL_API std::string tools_csv(const std::vector<ToolResult>& results);
-[[nodiscard]] ROBOMILL_API std::string tools_json(const std::vector<ToolResult>& results);
+/// @param holder  where it was found from a measurement: its unreliable lines and notes stand beside the rows
+[[nodiscard]] ROBOMILL_API std::string tools_json(const std::vector<ToolResult>& results,
+                                                  const std::optional<coupling::HolderResult>& holder = {});
 
 /// The FRFs at each tool's tip as N_TOOL.uff, N its row from 1, in a folder that is made where it is missing. A tool
 /// that failed has none.

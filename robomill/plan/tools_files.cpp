@@ -21,17 +21,25 @@ const Operation* best_of(const ToolResult& tool) {
   return tool.recommendation && tool.recommendation->recommended ? &*tool.recommendation->recommended : nullptr;
 }
 
+/// Why there is no operation, where there is none, or how the recommended one was chosen; empty without a cut.
+std::string reason_of(const ToolResult& tool) {
+  return tool.recommendation ? tool.recommendation->reason : tool.no_cut;
+}
+
 /// Why a row has no operation, or what to know of it: the failure, the reason, then the notes.
 std::string remark_of(const ToolResult& tool) {
   if (!tool.failure.empty()) return tool.failure;
-  std::string text = tool.recommendation && best_of(tool) == nullptr ? tool.recommendation->reason : "";
+  std::string text = best_of(tool) == nullptr ? reason_of(tool) : "";
   for (const std::string& note : tool.notes) text += (text.empty() ? "" : "; ") + note;
   return text;
 }
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
-  for (const char letter : text) out += letter == '"' ? '\'' : letter == '\n' || letter == '\r' ? ' ' : letter;
+  for (const char letter : text) {
+    if (letter == '"') out += '"';  // a quote within quotes is written twice
+    out += letter == '\n' || letter == '\r' ? ' ' : letter;
+  }
   return out + "\"";
 }
 
@@ -68,7 +76,7 @@ Json tool_json(const ToolResult& tool) {
   json["suspect_lines"] = tool.suspect_lines;
   json["lowest_limit_mm"] = tool.lowest_limit_m ? number(*tool.lowest_limit_m / units::mm) : Json();
   json["recommended"] = operation_json(best_of(tool));
-  json["reason"] = tool.recommendation ? Json(tool.recommendation->reason) : Json();
+  json["reason"] = tool.recommendation || !tool.no_cut.empty() ? Json(reason_of(tool)) : Json();
   json["notes"] = tool.notes;
   return json;
 }
@@ -101,11 +109,12 @@ std::string tools_csv(const std::vector<ToolResult>& results) {
   return out;
 }
 
-std::string tools_json(const std::vector<ToolResult>& results) {
+std::string tools_json(const std::vector<ToolResult>& results, const std::optional<coupling::HolderResult>& holder) {
   Json tools = Json::array();
   for (const ToolResult& tool : results) tools.push_back(tool_json(tool));
   Json json;
   json["tools"] = tools;
+  json["holder"] = holder ? Json{{"unreliable_hz", holder->unreliable_hz}, {"notes", holder->notes}} : Json();
   return formats::dump(json);
 }
 

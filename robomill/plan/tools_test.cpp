@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -63,9 +64,20 @@ TEST(Tools, EachRowIsWhatTheToolComesToAlone) {
   EXPECT_LT(point.spectral_radius, 1.0);
   ASSERT_TRUE(rows[0].lowest_limit_m);
   EXPECT_LE(*rows[0].lowest_limit_m, best.limit_depth_m * (1.0 + 1e-9));
-  // 1.2 mm are more than the thin cutter has.
-  EXPECT_NE(rows[2].failure.find("must be at most the cutter's diameter"), std::string::npos) << rows[2].failure;
+  // 1.2 mm are more than the thin cutter has; its coupling stands.
+  const std::string why = "must be at most the cutter's diameter";
+  EXPECT_NE(rows[2].no_cut.find(why), std::string::npos) << rows[2].no_cut;
+  EXPECT_TRUE(rows[2].failure.empty());
   EXPECT_FALSE(rows[2].recommendation);
+  EXPECT_FALSE(rows[2].lowest_limit_m);
+  EXPECT_GT(rows[2].peak_hz, 0.0);
+  const auto json = nlohmann::json::parse(tools_json(rows))["tools"][2];
+  EXPECT_TRUE(json["failure"].is_null());
+  EXPECT_NE(json["reason"].get<std::string>().find(why), std::string::npos);
+  EXPECT_FALSE(json["modes"].empty());
+  EXPECT_NE(tools_csv(rows).find(why), std::string::npos);
+  write_tips(folder.at("tips"), rows);
+  EXPECT_TRUE(std::filesystem::exists(folder.at("tips/3_thin.uff")));
 }
 
 TEST(Tools, AreTheSameAtAnyNumberOfThreads) {
@@ -94,9 +106,11 @@ TEST(Tools, WithoutACutThereAreModesAlone) {
   EXPECT_TRUE(json["tools"][3]["teeth"].is_null());
   EXPECT_TRUE(json["tools"][0]["recommended"].is_null());
   EXPECT_DOUBLE_EQ(json["tools"][1]["overhang_mm"].get<double>(), 90.0);
-  const std::string csv = tools_csv(rows);
+  std::string csv = tools_csv(rows);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_NE(csv.find("\n\"long\",3,12,90,"), std::string::npos) << csv;
+  csv = tools_csv({ToolResult{.name = "1/2\" mill"}});
+  EXPECT_NE(csv.find("\n\"1/2\"\" mill\","), std::string::npos) << csv;
 }
 
 TEST(Tools, RefuseACutOfOneCutter) {
