@@ -38,10 +38,11 @@ int point_of(const modal::FrfSet& set) {
 /// Reads one plane's 2 x 2, or one plane's for loads in the other.
 class Block {
  public:
-  Block(const modal::FrfSet& set, Axis plane, Axis load_plane) : set_(set), point_(point_of(set)) {
+  Block(const modal::FrfSet& set, Axis plane, Axis load_plane) {
+    const int point = point_of(set);
     for (int row = 0; row < 2; ++row) {
       for (int column = 0; column < 2; ++column) {
-        const modal::FrfName name = element_name(plane, row, load_plane, column, point_, point_);
+        const modal::FrfName name = element_name(plane, row, load_plane, column, point, point);
         const modal::Frf* frf = set.find(name);
         if (frf == nullptr) frf = set.find({.response = name.excitation, .excitation = name.response});
         const std::size_t at = static_cast<std::size_t>(2 * row + column);
@@ -67,8 +68,6 @@ class Block {
   }
 
  private:
-  const modal::FrfSet& set_;
-  int point_;
   std::array<const modal::Frf*, 4> frfs_ = {};
   std::array<double, 4> sign_ = {};
   std::vector<std::string> missing_, found_;

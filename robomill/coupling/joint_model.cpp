@@ -115,11 +115,13 @@ void respond_baseline(const Input& in, const JointValues& joint, std::size_t cou
   respond<derivatives>(in, joint, count, out);
 }
 
+#if defined(__x86_64__)
 template <bool derivatives>
 __attribute__((target("avx2"))) void respond_avx2(const Input& in, const JointValues& joint, std::size_t count,
                                                   const Output& out) {
   respond<derivatives>(in, joint, count, out);
 }
+#endif
 
 std::size_t whole_vectors(Index lines) {
   return (static_cast<std::size_t>(lines) + lanes - 1) / lanes * lanes;
@@ -205,11 +207,10 @@ void JointModel::evaluate(const JointValues& joint, Response& response) const {
       out.along[j][1] = response.along_imag[j].data();
     }
   }
-  if (kernels() != Kernels::baseline) {
-    respond_avx2<derivatives>(in, joint, omega_.size(), out);
-  } else {
-    respond_baseline<derivatives>(in, joint, omega_.size(), out);
-  }
+#if defined(__x86_64__)
+  if (kernels() != Kernels::baseline) return respond_avx2<derivatives>(in, joint, omega_.size(), out);
+#endif
+  respond_baseline<derivatives>(in, joint, omega_.size(), out);
 }
 
 void JointModel::receptance(const JointValues& joint, Response& response) const {
