@@ -76,6 +76,7 @@ std::vector<ArtefactPoints> artefact_points(const std::vector<Segment>& artefact
   out.reserve(static_cast<std::size_t>(frequency_hz.size()));
   for (std::size_t i = 0; i < static_cast<std::size_t>(frequency_hz.size()); ++i) {
     std::vector<const Span*> at;
+    at.reserve(pieces.size());
     for (const std::vector<Span>& p : pieces) at.push_back(p.empty() ? &no_span() : &p[i]);
     out.push_back(at_points(at));
   }

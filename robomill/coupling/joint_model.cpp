@@ -22,7 +22,7 @@ using Four __attribute__((vector_size(lanes * sizeof(double)))) = double;
 /// Complex numbers of four lines: std::complex looks for infinities in every product. They go by reference, since a
 /// vector by value has another calling convention with AVX than without.
 struct Numbers {
-  Four re, im;
+  Four re = {}, im = {};
 };
 
 inline __attribute__((always_inline)) void load(Numbers& to, const double* re, const double* im) {
