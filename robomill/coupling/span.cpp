@@ -92,6 +92,7 @@ Eigen::Matrix2cd flexibility(const Joint& joint, double frequency_hz) {
 
 std::vector<Span> spans(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz) {
   std::vector<Section> sections;
+  sections.reserve(segments.size());
   for (const Segment& segment : segments) sections.push_back(section(segment));
   const std::size_t count = static_cast<std::size_t>(frequency_hz.size());
   std::vector<Span> out(count);

@@ -6,7 +6,7 @@
 namespace robomill::coupling::detail {
 
 struct ComplexLanes {
-  Lanes re, im;
+  Lanes re = {}, im = {};
 };
 
 /// A Span; matrices row by row.
@@ -18,7 +18,7 @@ struct SpanLanes {
 /// numbers, q = (k h)², each C, T pair may carry a factor of its own, which cancels.
 struct SpanWork {
   Section section;
-  Lanes omega2;                         ///< ω² [rad²/s²]
+  Lanes omega2 = {};                    ///< ω² [rad²/s²]
   ComplexLanes bending, rotary, shear;  ///< Λ, β_1, β
   ComplexLanes discriminant;            ///< ((β_1 - β) / 2)² + Λ
   ComplexLanes root;                    ///< (q_1 - q_2) / 2, its square root
