@@ -38,6 +38,12 @@ InvalidInput::InvalidInput(std::string field, double number, std::string unit, s
 InvalidInput::InvalidInput(std::string field, std::string rule, std::string hint)
     : InvalidInput(Parts{.field = std::move(field), .rule = std::move(rule), .hint = std::move(hint)}) {}
 
+InvalidInput within(const std::string& prefix, const InvalidInput& error) {
+  InvalidInput::Parts parts = error.parts();
+  parts.field = prefix + parts.field;
+  return InvalidInput(std::move(parts));
+}
+
 void require_positive(const char* field, double number, const char* unit, const char* hint) {
   if (!(std::isfinite(number) && number > 0.0)) throw InvalidInput(field, number, unit, "must be > 0", hint);
 }

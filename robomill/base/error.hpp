@@ -35,6 +35,9 @@ class ROBOMILL_API InvalidInput : public std::runtime_error {
   Parts parts_;
 };
 
+/// The same error of a member of something larger: its field reads prefix + field, "tool[1]." + "length_m".
+[[nodiscard]] ROBOMILL_API InvalidInput within(const std::string& prefix, const InvalidInput& error);
+
 /// Throws InvalidInput unless number is finite and > 0.
 ROBOMILL_API void require_positive(const char* field, double number, const char* unit, const char* hint = "");
 /// Throws InvalidInput unless number is finite and >= 0.

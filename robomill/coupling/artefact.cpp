@@ -1,8 +1,8 @@
 #include "robomill/coupling/artefact.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
 
+#include "robomill/coupling/section.hpp"
 #include "robomill/coupling/span.hpp"
 
 namespace robomill::coupling::detail {
@@ -44,26 +44,9 @@ ArtefactPoints at_points(const std::vector<const Span*>& pieces) {
 
 }  // namespace
 
-std::vector<Segment> piece(const std::vector<Segment>& segments, double from_m, double to_m) {
-  std::vector<Segment> out;
-  double start = 0.0;
-  for (const Segment& segment : segments) {
-    const double end = start + segment.length_m;
-    const double length = std::min(end, to_m) - std::max(start, from_m);
-    if (length > 1e-9 * segment.length_m) {
-      out.push_back(segment);
-      out.back().length_m = length;
-      out.back().mass_kg *= length / segment.length_m;
-    }
-    start = end;
-  }
-  return out;
-}
-
 std::vector<ArtefactPoints> artefact_points(const std::vector<Segment>& artefact, const std::vector<double>& position_m,
                                             const Eigen::VectorXd& frequency_hz) {
-  double length = 0.0;
-  for (const Segment& segment : artefact) length += segment.length_m;
+  const double length = total_length(artefact);
   std::vector<std::vector<Span>> pieces;
   double from = 0.0;
   for (std::size_t k = 0; k <= position_m.size(); ++k) {

@@ -20,7 +20,4 @@ struct ArtefactPoints {
                                                           const std::vector<double>& position_m,
                                                           const Eigen::VectorXd& frequency_hz);
 
-/// The piece of segments between two distances from the first one's free end.
-[[nodiscard]] std::vector<Segment> piece(const std::vector<Segment>& segments, double from_m, double to_m);
-
 }  // namespace robomill::coupling::detail

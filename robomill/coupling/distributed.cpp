@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 
 #include "robomill/base/parallel.hpp"
-#include "robomill/coupling/artefact.hpp"
+#include "robomill/coupling/section.hpp"
 #include "robomill/coupling/span.hpp"
 
 namespace robomill::coupling::detail {
@@ -49,9 +49,7 @@ std::vector<Square<N>> deep_base(const Joint& joint, const Holder& holder, const
     for (Square<N>& base : out) base = carry * base * carry.transpose();
     return out;
   }
-  double length = 0.0;
-  for (const Segment& segment : holder.segments) length += segment.length_m;
-  const std::vector<Segment> rest = piece(holder.segments, joint.insertion_length_m, length);
+  const std::vector<Segment> rest = piece(holder.segments, joint.insertion_length_m, total_length(holder.segments));
   const std::vector<Span> deep = rest.empty() ? std::vector<Span>() : spans(rest, frequency_hz);
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = rest.empty() ? Square<N>(Square<N>::Zero()) : planes<N>(deep[i].clamped);
@@ -78,10 +76,8 @@ Square<N> climb(const std::vector<Gap>& gaps, std::size_t line, const Square<N>&
   for (std::size_t i = gaps.size(); i-- > 0;) {
     const Span& shank = gaps[i].shank[line];
     const Span& holder = gaps[i].holder[line];
-    const Both carry = both<N>(shank.carry, holder.carry);
-    const Both stiffness = both<N>(shank.stiffness, holder.stiffness);
-    const Both held = (Both::Identity() + b * stiffness).partialPivLu().solve(b);
-    b = both<N>(shank.clamped, holder.clamped) + carry * held * carry.transpose();
+    b = on_base<Both>(both<N>(shank.clamped, holder.clamped), both<N>(shank.carry, holder.carry),
+                      both<N>(shank.stiffness, holder.stiffness), b);
     const Eigen::Matrix<std::complex<double>, 2 * N, N> pulled = b * apart;
     const Square<N> gap_flexibility = apart.transpose() * pulled + flexibility;
     b -= (pulled * gap_flexibility.inverse() * pulled.transpose()).eval();

@@ -1,22 +1,11 @@
 #pragma once
 #include <Eigen/Core>
-#include <complex>
 #include <vector>
 
 #include "robomill/coupling/assembly.hpp"
+#include "robomill/coupling/span.hpp"
 
 namespace robomill::coupling::detail {
-
-template <int N>
-using Square = Eigen::Matrix<std::complex<double>, N, N>;
-
-/// The same in each plane and none between: N is twice the number of planes.
-template <int N>
-[[nodiscard]] Square<N> planes(const Eigen::Matrix2cd& plane) {
-  Square<N> out = Square<N>::Zero();
-  for (int i = 0; i < N; i += 2) out.template block<2, 2>(i, i) = plane;
-  return out;
-}
 
 /// Receptance of the shank where it leaves the holder's mouth, the shank standing in the holder on joint.points points.
 /// Shank and holder are beams side by side over the insertion; a holder that was measured moves there as a rigid body.

@@ -16,6 +16,7 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/coupling/artefact.hpp"
 #include "robomill/coupling/base.hpp"
+#include "robomill/coupling/section.hpp"
 
 namespace robomill::coupling {
 namespace {
@@ -304,8 +305,7 @@ HolderResult remove_artefact(const FrfSet& measured, const std::vector<double>& 
   if (artefact.empty()) throw InvalidInput("artefact", "has no segment");
   for (const Segment& segment : artefact) segment.validate();
   require_points(measured, position_m);
-  const double length = std::accumulate(artefact.begin(), artefact.end(), 0.0,
-                                        [](double sum, const Segment& s) { return sum + s.length_m; });
+  const double length = detail::total_length(artefact);
   for (const double z : position_m) {
     if (!(z >= 0.0 && z <= length * (1.0 + 1e-9))) {
       throw InvalidInput("position_m", z, "m", "must lie on the artefact, from its free end to the joint");

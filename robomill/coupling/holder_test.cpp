@@ -44,9 +44,9 @@ FrfSet two_points(const std::vector<Segment>& front, const std::vector<Segment>&
   }
   for (Eigen::Index i = 0; i < f.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
-    const Eigen::Matrix2cd under = detail::on_base(b[k], base[k]);
+    const Eigen::Matrix2cd under = detail::on_base<2>(b[k], base[k]);
     const Eigen::Matrix2cd at2 = (under.inverse() + a[k].stiffness).inverse();
-    const Eigen::Matrix2cd at1 = detail::on_base(a[k], under);
+    const Eigen::Matrix2cd at1 = detail::on_base<2>(a[k], under);
     set.frfs[0].receptance(i) = at1(0, 0);
     set.frfs[1].receptance(i) = (a[k].carry * at2)(0, 0);
     set.frfs[2].receptance(i) = at2(0, 0);

@@ -1,43 +1,9 @@
 #include "robomill/coupling/section.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <numbers>
 
-#include "robomill/base/error.hpp"
-
-namespace robomill::coupling {
-
-void Segment::validate() const {
-  require_positive("length_m", length_m, "m");
-  require_positive("diameter_m", diameter_m, "m");
-  if (!(inner_diameter_m >= 0.0 && inner_diameter_m < diameter_m)) {
-    throw InvalidInput("inner_diameter_m", inner_diameter_m, "m", "must be >= 0 and below the diameter");
-  }
-  require_positive("youngs_modulus_pa", youngs_modulus_pa, "Pa",
-                   "Steel is near 200 GPa, cemented carbide near 600 GPa");
-  require_non_negative("mass_kg", mass_kg, "kg");
-  if (mass_kg == 0.0) {
-    require_positive("density_kg_per_m3", density_kg_per_m3, "kg/m^3",
-                     "Steel is near 7800, cemented carbide near 14500");
-  }
-  if (!(poissons_ratio > -1.0 && poissons_ratio <= 0.5)) {
-    throw InvalidInput("poissons_ratio", poissons_ratio, "", "must be above -1 and at most 0.5", "Steel is near 0.3");
-  }
-  if (!(loss_factor >= 0.0 && loss_factor <= 1.0)) {
-    throw InvalidInput("loss_factor", loss_factor, "", "must be in [0, 1]",
-                       "It is twice the damping ratio, not a percentage");
-  }
-  if (flutes < 0) throw InvalidInput("flutes", flutes, "", "must be >= 0");
-  if (!(flute_diameter_ratio > 0.0 && flute_diameter_ratio <= 1.0)) {
-    throw InvalidInput("flute_diameter_ratio", flute_diameter_ratio, "", "must be above 0 and at most 1");
-  }
-  if (flutes > 0 && inner_diameter_m >= diameter_m * flute_diameter_ratio) {
-    throw InvalidInput("inner_diameter_m", inner_diameter_m, "m", "must be below the fluted part's core",
-                       "The core counts as flute_diameter_ratio of the diameter");
-  }
-}
-
-namespace detail {
+namespace robomill::coupling::detail {
 
 double shear_coefficient(double poissons_ratio, double bore) {
   const double nu = poissons_ratio;
@@ -70,5 +36,26 @@ Section section(const Segment& segment) {
   return out;
 }
 
-}  // namespace detail
-}  // namespace robomill::coupling
+double total_length(const std::vector<Segment>& segments) {
+  double sum = 0.0;
+  for (const Segment& segment : segments) sum += segment.length_m;
+  return sum;
+}
+
+std::vector<Segment> piece(const std::vector<Segment>& segments, double from_m, double to_m) {
+  std::vector<Segment> out;
+  double start = 0.0;
+  for (const Segment& segment : segments) {
+    const double end = start + segment.length_m;
+    const double length = std::min(end, to_m) - std::max(start, from_m);
+    if (length > 1e-9 * segment.length_m) {
+      out.push_back(segment);
+      out.back().length_m = length;
+      out.back().mass_kg *= length / segment.length_m;
+    }
+    start = end;
+  }
+  return out;
+}
+
+}  // namespace robomill::coupling::detail

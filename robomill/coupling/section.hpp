@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <vector>
 
 #include "robomill/coupling/assembly.hpp"
 
@@ -19,5 +20,12 @@ struct Section {
 
 /// Shear coefficient of a round tube, inner over outer diameter `bore`: [Hutchinson2001].
 [[nodiscard]] double shear_coefficient(double poissons_ratio, double bore);
+
+/// @throws InvalidInput naming the member as member[i].length_m (from 1)
+void validate_segments(const char* member, const std::vector<Segment>& segments);
+
+[[nodiscard]] double total_length(const std::vector<Segment>& segments);
+/// The piece of segments between two distances from the first one's free end.
+[[nodiscard]] std::vector<Segment> piece(const std::vector<Segment>& segments, double from_m, double to_m);
 
 }  // namespace robomill::coupling::detail

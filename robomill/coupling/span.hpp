@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/LU>
+#include <complex>
 #include <vector>
 
 #include "robomill/coupling/assembly.hpp"
@@ -25,10 +27,33 @@ struct Span {
 /// Kc⁻¹ of a whole joint.
 [[nodiscard]] Eigen::Matrix2cd flexibility(const Joint& joint, double frequency_hz);
 
-/// G of a span on a base.
-[[nodiscard]] inline Eigen::Matrix2cd on_base(const Span& span, const Eigen::Matrix2cd& base) {
-  const Eigen::Matrix2cd held = (Eigen::Matrix2cd::Identity() + base * span.stiffness).inverse() * base;
-  return span.clamped + span.carry * held * span.carry.transpose();
+template <int N>
+using Square = Eigen::Matrix<std::complex<double>, N, N>;
+
+/// The same in each plane and none between: N is twice the number of planes.
+template <int N>
+[[nodiscard]] Square<N> planes(const Eigen::Matrix2cd& plane) {
+  Square<N> out = Square<N>::Zero();
+  for (int i = 0; i < N; i += 2) out.template block<2, 2>(i, i) = plane;
+  return out;
+}
+
+/// clamped + carry (1 + base stiffness)⁻¹ base carryᵀ
+template <class Matrix>
+[[nodiscard]] inline Matrix on_base(const Matrix& clamped, const Matrix& carry, const Matrix& stiffness,
+                                    const Matrix& base) {
+  const Matrix moved = Matrix::Identity() + base * stiffness;
+  const auto held = [&]() -> Matrix {
+    if constexpr (Matrix::RowsAtCompileTime == 2) return moved.inverse() * base;
+    return moved.partialPivLu().solve(base);  // the closed form of a 4 x 4 inverse takes no pivots
+  };
+  return clamped + carry * held() * carry.transpose();
+}
+
+/// G of a span, the same in each plane, on a base.
+template <int N>
+[[nodiscard]] Square<N> on_base(const Span& span, const Square<N>& base) {
+  return on_base<Square<N>>(planes<N>(span.clamped), planes<N>(span.carry), planes<N>(span.stiffness), base);
 }
 
 }  // namespace robomill::coupling::detail

@@ -10,6 +10,7 @@
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/base.hpp"
 #include "robomill/coupling/distributed.hpp"
+#include "robomill/coupling/section.hpp"
 #include "robomill/coupling/span.hpp"
 
 namespace robomill::coupling {
@@ -22,23 +23,6 @@ using modal::Axis;
 
 constexpr std::size_t lines_per_block = 128;
 
-template <class F>
-void at_member(const std::string& member, F&& f) {
-  try {
-    f();
-  } catch (const InvalidInput& error) {
-    InvalidInput::Parts parts = error.parts();
-    parts.field = member + parts.field;
-    throw InvalidInput(std::move(parts));
-  }
-}
-
-void validate_segments(const char* member, const std::vector<Segment>& segments) {
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    at_member(fmt::format("{}[{}].", member, i + 1), [&] { segments[i].validate(); });
-  }
-}
-
 void require_frequencies(const Eigen::VectorXd& frequency_hz) {
   if (frequency_hz.size() == 0) throw InvalidInput("frequency_hz", "is empty");
   for (Index i = 0; i < frequency_hz.size(); ++i) {
@@ -47,21 +31,6 @@ void require_frequencies(const Eigen::VectorXd& frequency_hz) {
       throw InvalidInput("frequency_hz", frequency_hz(i), "Hz", "must be above the frequency before it");
     }
   }
-}
-
-double total_length(const std::vector<Segment>& segments) {
-  double sum = 0.0;
-  for (const Segment& segment : segments) sum += segment.length_m;
-  return sum;
-}
-
-/// The tip's receptance, (u, θ) for (f, m); N is 2 for one plane, 4 for both.
-template <int N>
-detail::Square<N> tip(const Span& tool, const detail::Square<N>& base) {
-  const detail::Square<N> held =
-      (detail::Square<N>::Identity() + base * detail::planes<N>(tool.stiffness)).inverse() * base;
-  const detail::Square<N> carry = detail::planes<N>(tool.carry);
-  return detail::planes<N>(tool.clamped) + carry * held * carry.transpose();
 }
 
 /// What the tool stands on, through the joint: the base of one plane, or of both where N is 4.
@@ -85,7 +54,7 @@ std::vector<detail::Square<N>> tips(const Assembly& assembly, const std::vector<
   const std::vector<detail::Square<N>> under = under_tool<N>(assembly, base, frequency_hz);
   std::vector<detail::Square<N>> out(under.size());
   parallel_for(under.size(), lines_per_block, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) out[i] = tip<N>(tool[i], under[i]);
+    for (std::size_t i = begin; i < end; ++i) out[i] = detail::on_base<N>(tool[i], under[i]);
   });
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (out[i].allFinite()) continue;
@@ -123,47 +92,6 @@ std::vector<Eigen::Matrix4cd> both_planes(const Base& base) {
 
 }  // namespace
 
-void Joint::validate() const {
-  require_positive("translational_stiffness_n_per_m", translational_stiffness_n_per_m, "N/m");
-  require_non_negative("translational_damping_n_s_per_m", translational_damping_n_s_per_m, "N s/m");
-  require_positive("rotational_stiffness_n_m_per_rad", rotational_stiffness_n_m_per_rad, "N m/rad");
-  require_non_negative("rotational_damping_n_m_s_per_rad", rotational_damping_n_m_s_per_rad, "N m s/rad");
-  require_finite("cross_stiffness_n_per_rad", cross_stiffness_n_per_rad, "N/rad");
-  if (!(cross_stiffness_n_per_rad * cross_stiffness_n_per_rad <
-        translational_stiffness_n_per_m * rotational_stiffness_n_m_per_rad)) {
-    throw InvalidInput("cross_stiffness_n_per_rad", cross_stiffness_n_per_rad, "N/rad",
-                       "must be below the geometric mean of the two stiffnesses",
-                       "Else some load would move the joint against itself");
-  }
-  if (points < 1 || points > 100) throw InvalidInput("points", points, "", "must be in 1 ... 100");
-  if (points == 1) {
-    if (!shank.empty()) throw InvalidInput("shank", "must be left out where the joint has one point, at the mouth");
-    return;
-  }
-  require_positive("insertion_length_m", insertion_length_m, "m", "Several points stand over the shank's length");
-  if (shank.empty()) throw InvalidInput("shank", "is missing: the part of the tool that stands in the holder");
-  validate_segments("shank", shank);
-  if (std::abs(total_length(shank) - insertion_length_m) > 1e-9 + 1e-6 * insertion_length_m) {
-    throw InvalidInput("insertion_length_m", insertion_length_m, "m", "must be the length of the shank's segments");
-  }
-}
-
-void Assembly::validate() const {
-  if (tool.empty()) throw InvalidInput("tool", "has no segment", "At least one, from the tip to the joint");
-  validate_segments("tool", tool);
-  validate_segments("holder.segments", holder.segments);
-  if (!holder.receptances.frfs.empty()) {
-    if (!holder.segments.empty()) throw InvalidInput("holder", "must have segments or receptances, not both");
-    holder.receptances.validate();
-  }
-  if (!joint) return;
-  at_member("joint.", [&] { joint->validate(); });
-  if (joint->points > 1 && !holder.segments.empty() && total_length(holder.segments) < joint->insertion_length_m) {
-    throw InvalidInput("joint.insertion_length_m", joint->insertion_length_m, "m",
-                       "must not be longer than the holder");
-  }
-}
-
 TipResult tip_frfs(const Assembly& assembly, const Eigen::VectorXd& frequency_hz, const TipOptions& options) {
   assembly.validate();
   require_frequencies(frequency_hz);
@@ -198,7 +126,7 @@ TipResult tip_frfs(const Assembly& assembly, const Eigen::VectorXd& frequency_hz
 
 modal::FrfSet free_frfs(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz) {
   if (segments.empty()) throw InvalidInput("segments", "are none");
-  validate_segments("segments", segments);
+  detail::validate_segments("segments", segments);
   require_frequencies(frequency_hz);
   std::vector<Eigen::Matrix4cd> receptance;
   for (const Span& span : detail::spans(segments, frequency_hz)) {

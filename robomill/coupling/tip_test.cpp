@@ -172,7 +172,7 @@ TEST(Tip, OfAHolderThatDiffersByDirectionTurnsWithIt) {
   const Eigen::VectorXcd& b = receptance(straight, "yy");
   EXPECT_LT((receptance(turned, "xx") - (c * c * a + s * s * b)).norm(), 1e-10 * a.norm());
   EXPECT_LT((receptance(turned, "xy") - c * s * (a - b)).norm(), 1e-10 * a.norm());
-  EXPECT_EQ(receptance(turned, "xy").size(), receptance(turned, "yx").size());
+  EXPECT_LT((receptance(turned, "xy") - receptance(turned, "yx")).norm(), 1e-10 * a.norm());
   EXPECT_LT((receptance(straight, "xy")).norm(), 1e-12 * a.norm());
   // The soft direction alone is the plane's own coupling.
   Assembly soft = assembly;
@@ -216,9 +216,9 @@ TEST(Tip, ADistributedJointOfTwoPointsIsTheirCoupling) {
   for (Eigen::Index i = 0; i < f.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
     const Eigen::Matrix2cd point = 2.0 * detail::flexibility(*assembly.joint, f(i));
-    const Eigen::Matrix2cd deep = detail::on_base(shank[k], point);
+    const Eigen::Matrix2cd deep = detail::on_base<2>(shank[k], point);
     const Eigen::Matrix2cd mouth = (deep.inverse() + point.inverse()).inverse();
-    const std::complex<double> expected = detail::on_base(tool[k], mouth)(0, 0);
+    const std::complex<double> expected = detail::on_base<2>(tool[k], mouth)(0, 0);
     EXPECT_LT(std::abs(found(i) - expected), 1e-9 * std::abs(expected)) << f(i);
   }
 }
@@ -350,7 +350,6 @@ TEST(Tip, RefusesWhatItCannotCouple) {
   std::erase_if(assembly.holder.receptances.frfs,
                 [](const modal::Frf& frf) { return static_cast<int>(frf.name.excitation.axis) > 3; });
   EXPECT_NE(message(assembly, hertz(50, 10)).find("lack x:my, ry:x, ry:my"), std::string::npos);
-  // Undamped, at its resonance: a rigid mass on one spring would do; a beam's is not a machine number.
   assembly = published_pair();
   assembly.holder.receptances = measured;
   EXPECT_NE(message(assembly, hertz(50, 10)).find("not both"), std::string::npos);

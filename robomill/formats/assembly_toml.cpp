@@ -18,13 +18,6 @@ namespace {
 
 constexpr double most_lines = 2e6;
 
-/// An SI member told without the table that it stands in.
-InvalidInput within(const std::string& table, const InvalidInput& error) {
-  InvalidInput::Parts parts = error.parts();
-  parts.field = table + parts.field;
-  return InvalidInput(std::move(parts));
-}
-
 /// @param key  of the table: "tool[0]."; @param member  the same as stages count: "tool[1]."
 coupling::Segment read_segment(TomlFile& file, const std::string& key, const std::string& member) {
   coupling::Segment segment;
