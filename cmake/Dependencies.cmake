@@ -14,6 +14,8 @@ if(ROBOMILL_APP)
 endif()
 pkg_check_modules(matio REQUIRED IMPORTED_TARGET matio)
 pkg_check_modules(sndfile REQUIRED IMPORTED_TARGET sndfile)
+pkg_check_modules(kdl REQUIRED IMPORTED_TARGET orocos-kdl)
+pkg_check_modules(urdfdom REQUIRED IMPORTED_TARGET urdfdom)
 
 # kissfft.hh is one header, a template over the scalar.
 find_path(KISSFFT_INCLUDE_DIR kissfft.hh PATH_SUFFIXES kissfft REQUIRED)

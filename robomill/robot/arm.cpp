@@ -1,0 +1,1 @@
+#include "robomill/robot/arm.hpp"

@@ -1,0 +1,69 @@
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+
+/// Base frame B of the robot, flange frame E; docs/frames.md. Joint quantities are rad or m, by joint.
+namespace robomill::robot {
+
+/// A rigid body that moves with a joint, in the frame after that joint (Arm::Joint).
+struct Link {
+  double mass_kg = 0.0;
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  ///< about the centre of mass
+};
+
+/// Turns about (or runs along) `axis` of the frame that `before` leads to from the frame after the joint below.
+struct Joint {
+  std::string name = {};
+  bool prismatic = false;
+  Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  double min_position = -1e300, max_position = 1e300;
+  double max_velocity = 0.0, max_acceleration = 0.0, max_jerk = 0.0;  ///< > 0; 0: not given
+  double stiffness = 0.0;                                             ///< Kθ [N m/rad or N/m]; 0: not given
+  double damping = 0.0;                                               ///< [N m s/rad or N s/m]
+  double rotor_inertia = 0.0;                                         ///< of the drive, at the joint [kg m² or kg]
+  Link link = {};                                                     ///< what it moves
+};
+
+/// A serial arm.
+struct ROBOMILL_API Arm {
+  std::vector<Joint> joints = {};
+  Eigen::Isometry3d flange = Eigen::Isometry3d::Identity();  ///< from the frame after the last joint
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// Standard Denavit-Hartenberg row: Rz(θ + theta_offset) Tz(d) Tx(a) Rx(α).
+struct DhRow {
+  double a_m = 0.0, alpha_rad = 0.0, d_m = 0.0, theta_offset_rad = 0.0;
+};
+/// @param base  where the first row begins, in B
+[[nodiscard]] ROBOMILL_API Arm arm_from_dh(const std::vector<DhRow>& rows,
+                                           const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity());
+
+/// Pose of the flange in B.
+/// @param position  length n
+[[nodiscard]] ROBOMILL_API Eigen::Isometry3d forward(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position);
+
+/// 6 x n geometric Jacobian in B of a point that moves with the flange: velocity of the point (3 rows), angular
+/// velocity (3 rows).
+/// @param point_m  in the flange frame, the tool's tip say
+[[nodiscard]] ROBOMILL_API Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(
+    const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position, const Eigen::Vector3d& point_m);
+
+/// A robot with a tool before a workpiece.
+struct ROBOMILL_API Cell {
+  Arm arm;
+  Eigen::Isometry3d workpiece = Eigen::Isometry3d::Identity();  ///< work frame W in B
+  double tool_length_m = 0.0;  ///< from the flange to the tip along the flange's z, >= 0; the tool's axis is -z of the
+                               ///< flange, from the tip to the spindle
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+}  // namespace robomill::robot
