@@ -34,20 +34,26 @@ struct Joint {
 struct ROBOMILL_API Arm {
   std::vector<Joint> joints = {};
   Eigen::Isometry3d flange = Eigen::Isometry3d::Identity();  ///< from the frame after the last joint
-  /// @throws InvalidInput naming the member
+  /// @throws InvalidInput naming the member ("joints[2].axis", counted from 1)
   void validate() const;
+  /// Number of joints, n.
+  [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(joints.size()); }
 };
 
 /// Standard Denavit-Hartenberg row: Rz(θ + theta_offset) Tz(d) Tx(a) Rx(α).
 struct DhRow {
   double a_m = 0.0, alpha_rad = 0.0, d_m = 0.0, theta_offset_rad = 0.0;
 };
+/// Tz(d) Tx(a) Rx(α): from the frame after the row's joint to the row's end, the DH frame of its link.
+[[nodiscard]] ROBOMILL_API Eigen::Isometry3d dh_link(const DhRow& row);
 /// @param base  where the first row begins, in B
+/// @throws InvalidInput if there is no row or a number is not finite
 [[nodiscard]] ROBOMILL_API Arm arm_from_dh(const std::vector<DhRow>& rows,
                                            const Eigen::Isometry3d& base = Eigen::Isometry3d::Identity());
 
 /// Pose of the flange in B.
 /// @param position  length n
+/// @throws InvalidInput if it has another length or is not finite
 [[nodiscard]] ROBOMILL_API Eigen::Isometry3d forward(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position);
 
 /// 6 x n geometric Jacobian in B of a point that moves with the flange: velocity of the point (3 rows), angular
@@ -55,6 +61,44 @@ struct DhRow {
 /// @param point_m  in the flange frame, the tool's tip say
 [[nodiscard]] ROBOMILL_API Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(
     const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position, const Eigen::Vector3d& point_m);
+
+/// The most joints that an arm may have.
+inline constexpr int max_joints = 16;
+
+/// Where the axes of an arm stand at one position: forward kinematics and Jacobian together, without allocation.
+struct ROBOMILL_API Posture {
+  using Axes = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, max_joints>;
+  Axes axis = {};      ///< 3 x n, of each joint in B
+  Axes origin_m = {};  ///< 3 x n, of each joint's frame in B
+  Eigen::Isometry3d flange = Eigen::Isometry3d::Identity();
+  /// @param arm       of at most max_joints joints
+  /// @param position  length n, finite; neither is checked
+  void update(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position);
+  /// The Jacobian of jacobian().
+  /// @param at_m  the point in B, flange * point_m
+  /// @param out   6 x n
+  void jacobian(const Arm& arm, const Eigen::Vector3d& at_m,
+                Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>> out) const;
+};
+
+/// ∂J/∂q_k, 6 x n, of a Jacobian J with columns (v_i, w_i), from the screws alone: with a = min(i, k), b = max(i, k)
+///     ∂v_i/∂q_k = w_a × v_b,    ∂w_i/∂q_k = w_k × w_i for k < i, else 0
+/// (w = 0 for a prismatic joint).
+/// @param joint  k, from 0
+/// @throws InvalidInput if there is no such joint
+[[nodiscard]] ROBOMILL_API Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian_derivative(
+    const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& jacobian, Eigen::Index joint);
+
+/// How far a position is from the limits of its joints.
+struct LimitCheck {
+  bool inside = true;
+  Eigen::Index joint = -1;  ///< the one nearest to its limit, or farthest beyond it, by its share of the joint's half
+                            ///< range (half a turn at most); from 0; -1 where no joint has limits
+  double distance = 1e300;  ///< of that joint to its nearer limit, < 0 beyond [rad or m]
+};
+/// @param position  length n
+/// @throws InvalidInput if it has another length
+[[nodiscard]] ROBOMILL_API LimitCheck within_limits(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position);
 
 /// A robot with a tool before a workpiece.
 struct ROBOMILL_API Cell {

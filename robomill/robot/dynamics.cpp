@@ -1,0 +1,218 @@
+#include "robomill/robot/dynamics.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <kdl/chain.hpp>
+#include <kdl/chaindynparam.hpp>
+#include <numbers>
+#include <string>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::robot {
+namespace {
+
+using Complex = std::complex<double>;
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+KDL::Vector kdl_vector(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+KDL::Frame kdl_frame(const Eigen::Isometry3d& pose) {
+  const Eigen::Matrix3d r = pose.linear();
+  return {KDL::Rotation(r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)),
+          kdl_vector(pose.translation())};
+}
+
+KDL::Chain kdl_chain(const Arm& arm) {
+  KDL::Chain chain;
+  for (const Joint& joint : arm.joints) {
+    chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::None), kdl_frame(joint.before)));
+    const Eigen::Matrix3d& i = joint.link.inertia_kg_m2;
+    const KDL::RigidBodyInertia body(joint.link.mass_kg, kdl_vector(joint.link.center_m),
+                                     KDL::RotationalInertia(i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2)));
+    chain.addSegment(KDL::Segment(KDL::Joint(KDL::Vector::Zero(), kdl_vector(joint.axis),
+                                             joint.prismatic ? KDL::Joint::TransAxis : KDL::Joint::RotAxis),
+                                  KDL::Frame::Identity(), body));
+  }
+  return chain;
+}
+
+/// M and its Cholesky factor.
+struct Mass {
+  Eigen::MatrixXd matrix;
+  Eigen::LLT<Eigen::MatrixXd> factor;
+};
+Mass factored_mass(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position, Inertia inertia) {
+  Mass out{.matrix = mass_matrix(arm, position), .factor = {}};
+  if (inertia == Inertia::diagonal) out.matrix = Eigen::MatrixXd(out.matrix.diagonal().asDiagonal());
+  for (Eigen::Index i = 0; i < arm.size(); ++i) {
+    if (out.matrix(i, i) > 0.0) continue;
+    throw InvalidInput("joints[" + std::to_string(i + 1) + "].link.mass_kg", 0.0, "kg",
+                       "must be > 0: the joint moves no mass",
+                       "Links' masses, centres and inertia, or the drives' rotor inertia, are needed");
+  }
+  out.factor.compute(out.matrix);
+  if (out.factor.info() != Eigen::Success) {
+    throw InvalidInput("joints", "must move masses that make the mass matrix positive definite",
+                       "The wrist's links need an inertia, or its drives a rotor inertia");
+  }
+  return out;
+}
+
+/// right and left of one pole scaled to one size, and to be equal where they are parallel.
+template <class Scalar>
+void balance(Eigen::Matrix<Scalar, 6, 1>& right, Eigen::Matrix<Scalar, 6, 1>& left, const Scalar& ratio) {
+  const Scalar scale = std::sqrt(ratio);
+  right *= scale;
+  left /= scale;
+}
+
+/// σ² y + σ damping y + stiffness y = Pᵀ F / rate², with σ = s / rate.
+struct Normal {
+  Eigen::MatrixXd stiffness, damping;
+  Eigen::MatrixXd input;  // n x 6, P
+  double rate_per_s = 1.0;
+};
+
+/// The pole's vectors: x on top of its eigenvector, y at the bottom of its row of the inverse.
+ToolMode make_mode(const Normal& system, const Complex& pole, const Eigen::VectorXcd& x, const Eigen::VectorXcd& y) {
+  ToolMode mode;
+  const double size = std::abs(pole);
+  mode.frequency_hz = size * system.rate_per_s / (2.0 * std::numbers::pi);
+  mode.damping_ratio = -pole.real() / size;
+  const double root = std::sqrt(system.rate_per_s);
+  mode.right = system.input.transpose() * x / root;
+  mode.left = system.input.transpose() * y / root;
+  // y = β x for symmetric systems, and β in size for others.
+  const Complex beta = x.dot(y) / x.squaredNorm();
+  const double wanted = y.norm() / x.norm();
+  const double unit = std::abs(beta);
+  balance(mode.right, mode.left, unit > 0.0 ? Complex(beta * (wanted / unit)) : Complex(wanted));
+  return mode;
+}
+
+CreepMode make_creep(const Normal& system, double pole, const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
+  CreepMode mode{.decay_per_s = -pole * system.rate_per_s};
+  const double root = std::sqrt(system.rate_per_s);
+  mode.right = system.input.transpose() * x / root;
+  mode.left = system.input.transpose() * y / root;
+  balance(mode.right, mode.left, y.norm() / x.norm());
+  return mode;
+}
+
+void solve_modes(const Normal& system, ToolModes& out) {
+  const Eigen::Index n = system.stiffness.rows();
+  Eigen::MatrixXd state = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  state.topRightCorner(n, n).setIdentity();
+  state.bottomLeftCorner(n, n) = -system.stiffness;
+  state.bottomRightCorner(n, n) = -system.damping;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(state);
+  const Eigen::MatrixXcd vectors = solver.eigenvectors(), inverse = vectors.partialPivLu().inverse();
+  for (Eigen::Index k = 0; k < 2 * n; ++k) {
+    const Complex pole = solver.eigenvalues()(k);
+    const Eigen::VectorXcd x = vectors.col(k).head(n), y = inverse.row(k).tail(n).transpose();
+    if (pole.imag() > 0.0) {
+      out.modes.push_back(make_mode(system, pole, x, y));
+    } else if (pole.imag() == 0.0) {
+      out.creeping.push_back(make_creep(system, pole.real(), x.real(), y.real()));
+    }
+  }
+  std::sort(out.modes.begin(), out.modes.end(),
+            [](const ToolMode& a, const ToolMode& b) { return a.frequency_hz < b.frequency_hz; });
+}
+
+/// Damping that gives every undamped mode one ratio.
+Eigen::MatrixXd damping_of_ratio(const Eigen::MatrixXd& stiffness, double ratio) {
+  const Eigen::MatrixXd symmetric = 0.5 * (stiffness + stiffness.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
+  const Eigen::VectorXd rate = 2.0 * ratio * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  return solver.eigenvectors() * rate.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+void ToolModesOptions::validate() const {
+  if (!damping_ratio) return;
+  require_non_negative("damping_ratio", *damping_ratio, "");
+  if (!(*damping_ratio < 1.0)) throw InvalidInput("damping_ratio", *damping_ratio, "", "must be < 1");
+}
+
+Eigen::MatrixXd mass_matrix(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position) {
+  arm.validate();
+  (void)forward(arm, position);  // refuses a position of another length
+  const auto n = static_cast<unsigned>(arm.size());
+  KDL::JntArray at(n);
+  at.data = position;
+  KDL::JntSpaceInertiaMatrix mass(static_cast<int>(n));
+  KDL::ChainDynParam(kdl_chain(arm), KDL::Vector::Zero()).JntToMass(at, mass);
+  Eigen::MatrixXd out = mass.data;
+  for (Eigen::Index i = 0; i < arm.size(); ++i) out(i, i) += arm.joints[static_cast<std::size_t>(i)].rotor_inertia;
+  return out;
+}
+
+CartesianMass cartesian_mass(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position,
+                             const Eigen::Vector3d& point_m, Inertia inertia, const SingularityOptions& options) {
+  options.validate();
+  const Mass mass = factored_mass(arm, position, inertia);
+  const Jacobian jac = jacobian(arm, position, point_m);
+  CartesianMass out;
+  out.condition_number = condition_number(jac, options.characteristic_length_m);
+  if (out.condition_number > options.max_condition_number) return out;
+  const Eigen::Matrix<double, 6, 6> mobility = jac * mass.factor.solve(jac.transpose());
+  out.mass = mobility.inverse();
+  out.status = CartesianMass::Status::regular;
+  return out;
+}
+
+ToolModes tool_modes(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position, const Eigen::Vector3d& point_m,
+                     const ToolModesOptions& options) {
+  options.validate();
+  ToolModes out;
+  // Checks what is given, and whether the arm holds it.
+  if (stiffness(arm, position, point_m, options.wrench).status == Stiffness::Status::buckled) return out;
+  const Mass mass = factored_mass(arm, position, options.inertia);
+  const Jacobian jac = jacobian(arm, position, point_m);
+  Eigen::MatrixXd joint = -load_stiffness(jac, options.wrench), damping = Eigen::MatrixXd::Zero(arm.size(), arm.size());
+  for (Eigen::Index i = 0; i < arm.size(); ++i) {
+    joint(i, i) += arm.joints[static_cast<std::size_t>(i)].stiffness;
+    damping(i, i) = arm.joints[static_cast<std::size_t>(i)].damping;
+  }
+  // In y = Lᵀ q with M = L Lᵀ.
+  const auto lower = mass.factor.matrixL();
+  const auto normal = [&](const Eigen::MatrixXd& matrix) {
+    const Eigen::MatrixXd half = lower.solve(matrix);
+    return Eigen::MatrixXd(lower.solve(half.transpose()).transpose());
+  };
+  Normal system{
+      .stiffness = normal(joint), .damping = normal(damping), .input = lower.solve(Eigen::MatrixXd(jac.transpose()))};
+  system.rate_per_s = std::sqrt(system.stiffness.trace() / static_cast<double>(arm.size()));
+  system.stiffness /= system.rate_per_s * system.rate_per_s;
+  system.damping /= system.rate_per_s;
+  if (options.damping_ratio) system.damping = damping_of_ratio(system.stiffness, *options.damping_ratio);
+  solve_modes(system, out);
+  out.status = ToolModes::Status::found;
+  return out;
+}
+
+Eigen::Matrix<Complex, 6, 6> ToolModes::receptance(double frequency_hz) const {
+  const Complex s(0.0, 2.0 * std::numbers::pi * frequency_hz);
+  Eigen::Matrix<Complex, 6, 6> out = Eigen::Matrix<Complex, 6, 6>::Zero();
+  for (const ToolMode& mode : modes) {
+    const double rate = 2.0 * std::numbers::pi * mode.frequency_hz;
+    const Complex pole(-mode.damping_ratio * rate,
+                       rate * std::sqrt(std::max(0.0, 1.0 - mode.damping_ratio * mode.damping_ratio)));
+    const Eigen::Matrix<Complex, 6, 6> residue = mode.right * mode.left.transpose();
+    out += residue / (s - pole) + residue.conjugate() / (s - std::conj(pole));
+  }
+  for (const CreepMode& mode : creeping) {
+    out += (mode.right * mode.left.transpose()).cast<Complex>() / (s + mode.decay_per_s);
+  }
+  return out;
+}
+
+}  // namespace robomill::robot

@@ -1,0 +1,55 @@
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/robot/arm.hpp"
+#include "robomill/robot/choose.hpp"
+#include "robomill/robot/inverse.hpp"
+#include "robomill/robot/pose.hpp"
+#include "robomill/robot/stiffness.hpp"
+
+namespace robomill::robot {
+
+struct ROBOMILL_API RedundancyOptions {
+  /// What the best gamma makes least: the length of the tip's error, its part along `normal`, or the condition number.
+  enum class Least { error, error_along_normal, condition_number };
+  Least least = Least::error;
+  Eigen::Vector3d force_n = Eigen::Vector3d::Zero();  ///< of the cut on the robot at the tip, in W
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of the surface, in W, unit
+  int samples = 72;                                   ///< >= 4; over a full turn
+  double tolerance_rad = 1e-4;                        ///< > 0; of the best gamma
+  SingularityOptions singularity = {};                ///< at the tip
+  std::optional<Position6> previous = {};  ///< keeps to the branch nearest to it; else the best of all branches
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// A posture with one turn about the tool's axis.
+struct RedundancySample {
+  double gamma_rad = 0.0;
+  Choice::Status status = Choice::Status::out_of_reach;  ///< the numbers below stand where it is `found`
+  Position6 position_rad = Position6::Zero();
+  double limit_distance_rad = 0.0;  ///< of the joint nearest to its limit
+  double condition_number = 0.0;
+  Eigen::Matrix<double, 6, 6> compliance = Eigen::Matrix<double, 6, 6>::Zero();  ///< at the tip under the force, in W
+  Eigen::Vector3d error_m = Eigen::Vector3d::Zero();  ///< of the tip under the force, C F, in W
+  double error_along_normal_m = 0.0;                  ///< its part along the normal
+};
+
+struct Redundancy {
+  enum class Status { found, none };  ///< none: no gamma gives a regular posture within limits
+  Status status = Status::none;
+  std::vector<RedundancySample> samples = {};  ///< gamma from −π, evenly
+  RedundancySample best = {};
+};
+
+/// What turning the flange about the tool's axis does to a cut: every gamma's posture, stiffness and error, and the
+/// best gamma, refined between the samples on its branch by golden section.
+/// @param tool  its gamma is not used
+/// @throws InvalidInput if an option is invalid, the cell is invalid, or a joint has no stiffness
+[[nodiscard]] ROBOMILL_API Redundancy redundancy(const Cell& cell, const SphericalWristInverse& inverse,
+                                                 const ToolPose& tool, const RedundancyOptions& options = {});
+
+}  // namespace robomill::robot

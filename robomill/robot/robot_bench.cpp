@@ -1,0 +1,106 @@
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "robomill/robot/arm.hpp"
+#include "robomill/robot/choose.hpp"
+#include "robomill/robot/dynamics.hpp"
+#include "robomill/robot/inverse.hpp"
+#include "robomill/robot/redundancy.hpp"
+#include "robomill/robot/stiffness.hpp"
+#include "robomill/robot/test_arms.hpp"
+
+namespace {
+
+using namespace robomill;
+using namespace robomill::robot;
+
+std::vector<robot::Position6> positions(int count) {
+  Random random(1);
+  std::vector<robot::Position6> out;
+  for (int k = 0; k < count; ++k) out.emplace_back(testing::random_position(random, 6));
+  return out;
+}
+
+void inverse_all_solutions(benchmark::State& state) {
+  const Arm arm = testing::kr210();
+  const SphericalWristInverse inverse(arm);
+  std::vector<Eigen::Isometry3d> poses;
+  for (const robot::Position6& position : positions(1000)) {
+    const Eigen::Isometry3d pose = forward(arm, position);
+    if (inverse.solve(pose).count == 8) poses.push_back(pose);
+  }
+  std::size_t k = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(inverse.solve(poses[k]));
+    k = k + 1 == poses.size() ? 0 : k + 1;
+  }
+}
+BENCHMARK(inverse_all_solutions);
+
+void choose_of_eight(benchmark::State& state) {
+  const Arm arm = testing::with_limits(testing::kr210());
+  const robot::Position6 previous = testing::kr210_posture();
+  const InverseSolutions solutions = SphericalWristInverse(arm).solve(forward(arm, previous));
+  for (auto _ : state) benchmark::DoNotOptimize(choose(arm, solutions, previous));
+}
+BENCHMARK(choose_of_eight);
+
+void forward_and_jacobian(benchmark::State& state) {
+  const Arm arm = testing::kr210();
+  const auto at = positions(1000);
+  const Eigen::Vector3d tip(0.0, 0.0, 0.3);
+  Posture posture;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> jac(6, 6);
+  std::size_t k = 0;
+  for (auto _ : state) {
+    posture.update(arm, at[k]);
+    posture.jacobian(arm, posture.flange * tip, jac);
+    benchmark::DoNotOptimize(jac.data());
+    k = k + 1 == at.size() ? 0 : k + 1;
+  }
+}
+BENCHMARK(forward_and_jacobian);
+
+void compliance_under_load(benchmark::State& state) {
+  const Arm arm = testing::kr210();
+  const Wrench wrench{.force_n = {100.0, -200.0, 300.0}};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(stiffness(arm, testing::kr210_posture(), Eigen::Vector3d(0.0, 0.0, 0.3), wrench));
+  }
+}
+BENCHMARK(compliance_under_load);
+
+void equilibrium_under_load(benchmark::State& state) {
+  const Arm arm = testing::kr210();
+  const Wrench wrench{.force_n = {100.0, -200.0, 300.0}};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(loaded_posture(arm, testing::kr210_posture(), Eigen::Vector3d(0.0, 0.0, 0.3), wrench));
+  }
+}
+BENCHMARK(equilibrium_under_load);
+
+void modes_at_the_tool(benchmark::State& state) {
+  Arm arm = testing::kr210();
+  for (Joint& joint : arm.joints) {
+    joint.damping = 500.0;
+    joint.rotor_inertia = 5.0;
+    joint.link.mass_kg = 100.0;
+    joint.link.center_m = Eigen::Vector3d(0.1, 0.2, 0.0);
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(tool_modes(arm, testing::kr210_posture(), Eigen::Vector3d(0.0, 0.0, 0.3)));
+  }
+}
+BENCHMARK(modes_at_the_tool);
+
+void redundancy_of_72(benchmark::State& state) {
+  Cell cell{.arm = testing::with_limits(testing::kr210()), .tool_length_m = 0.25};
+  cell.workpiece = Eigen::Translation3d(1.6, 0.2, 0.7);
+  const SphericalWristInverse inverse(cell.arm);
+  const RedundancyOptions options{.force_n = {300.0, -200.0, 100.0}};
+  for (auto _ : state) benchmark::DoNotOptimize(redundancy(cell, inverse, {}, options));
+}
+BENCHMARK(redundancy_of_72)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
