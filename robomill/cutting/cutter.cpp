@@ -205,4 +205,13 @@ double Profile::max_radius_m() const {
   return most;
 }
 
+double edge_length_per_width(const FlatEndMill& mill, int tooth, const Profile::Point& point) {
+  return std::hypot(1.0, point.radius_m * std::sin(point.position_rad) * mill.lag_rad_per_m(tooth));
+}
+
+Eigen::Vector3d edge_position_m(const FlatEndMill& mill, int tooth, const Profile::Point& point, double rotation_rad) {
+  const double angle = rotation_rad + mill.standing_angle(tooth) - mill.lag_rad_per_m(tooth) * point.height_m;
+  return {point.radius_m * std::sin(angle), point.radius_m * std::cos(angle), point.height_m};
+}
+
 }  // namespace robomill::cutting

@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -57,5 +58,13 @@ class ROBOMILL_API Profile {
  private:
   std::vector<Piece> pieces_;
 };
+
+/// ds / db of tooth j: its helical edge against the meridian, sqrt(1 + (r sin κ dφ/dz)²) with the lag dφ/dz = 2
+/// tan(β_j) / D; on a ball sqrt(1 + sin⁴κ tan²β).
+[[nodiscard]] ROBOMILL_API double edge_length_per_width(const FlatEndMill& mill, int tooth,
+                                                        const Profile::Point& point);
+/// Where tooth j's edge passes a height, in T [m]: φ = rotation + standing angle - lag. Runout has no part in it.
+[[nodiscard]] ROBOMILL_API Eigen::Vector3d edge_position_m(const FlatEndMill& mill, int tooth,
+                                                           const Profile::Point& point, double rotation_rad);
 
 }  // namespace robomill::cutting

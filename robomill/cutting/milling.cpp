@@ -130,6 +130,9 @@ void FlatEndMill::validate() const {
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");
   if (teeth > 100) throw InvalidInput("teeth", teeth, "", "must be at most 100");
   require_positive("diameter_m", diameter_m, "m");
+  if (diameter_m < 1e-5) {
+    throw InvalidInput("diameter_m", diameter_m, "m", "is too small for a milling cutter", "Are the units mixed up?");
+  }
   if (diameter_m > 1.0) {
     throw InvalidInput("diameter_m", diameter_m, "m", "is too large for a milling cutter", "Are the units mixed up?");
   }

@@ -1,0 +1,94 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/cutting/engagement.hpp"
+#include "robomill/cutting/workpiece.hpp"
+#include "robomill/program/program.hpp"
+
+/// Where the cutter touches material while a program runs, found from a workpiece of rays.
+namespace robomill::cutting {
+
+/// A cutter's motion at one instant: the tip's velocity and how the axis turns, in W.
+struct Motion {
+  Eigen::Vector3d tip_m_per_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turn_rad_per_s = Eigen::Vector3d::Zero();  ///< rotation vector, across the axis
+};
+
+/// The engagement at one pose.
+struct ROBOMILL_API PoseEngagement {
+  Engagement engagement;                                         ///< rings that cut, with their arcs in T
+  Eigen::Matrix3d work_from_feed = Eigen::Matrix3d::Identity();  ///< columns x_F, y_F, z_F in W
+  double feed_speed_m_per_s = 0.0;  ///< of the point that x_F was taken at; over teeth per second it is the feed per
+                                    ///< tooth
+  double axial_depth_m = 0.0;       ///< extent of the engaged part along the tool's axis
+  double radial_depth_m = 0.0;      ///< its extent along y_F, across feed and axis
+};
+
+struct ROBOMILL_API WalkOptions {
+  double ring_width_m = 0.0;    ///< along the meridian; 0: a dexel, at least twelve over the corner and the bottom
+  double angle_step_rad = 0.0;  ///< first look around a ring; 0: two dexels, at most 10 degrees
+  double max_step_m = 0.0;      ///< longest way of the tip between two looks; 0: half the cutter's radius
+  double max_turn_rad = 0.05;   ///< largest turn of the axis between two looks, > 0
+  std::size_t batch = 256;      ///< results handed out at once, >= 1
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// Rings of a cutter, to look at poses with.
+class ROBOMILL_API EngagementFinder {
+ public:
+  /// @throws InvalidInput for a bad cutter or bad options
+  EngagementFinder(const Cutter& cutter, double dexel_m, const WalkOptions& options);
+  /// A point p of the envelope, with outward normal n and velocity v, cuts where n·v > 0 and material stands at p. The
+  /// material must be as the cutter has left it when it came; `ahead_m` looks that much further along v where the
+  /// cutter has come a shorter way since. x_F runs along the velocity of the middle of what cuts (of the tip, while the
+  /// axis holds); z_F is the axis without its part along x_F, y_F = z_F × x_F. Where the feed runs along the axis, z_F
+  /// is any direction across. T has y_T = y_F, so that the tool leads but never tilts in F.
+  [[nodiscard]] PoseEngagement at(const Workpiece& workpiece, const program::Pose& pose, const Motion& motion,
+                                  double ahead_m) const;
+  /// All rings that it looks at.
+  [[nodiscard]] const std::vector<EdgeSlice>& slices() const { return slices_; }
+
+ private:
+  std::vector<EdgeSlice> slices_;
+  double angle_step_rad_ = 0.0;  ///< largest
+  double dexel_m_ = 0.0, step_m_ = 0.0;
+  std::size_t ring_grain_ = 0;
+  [[nodiscard]] double step_rad(const EdgeSlice& slice) const;
+};
+
+/// A part of a block: the cutter at its end, and what it took away.
+struct BlockEngagement {
+  std::size_t block = 0;                    ///< of the program
+  double share_from = 0.0, share_to = 0.0;  ///< of the block
+  double duration_s = 0.0;                  ///< of the part
+  program::Pose pose;                       ///< at its end
+  PoseEngagement cut;                       ///< there; empty for rapid moves
+  double removed_volume_m3 = 0.0;           ///< by edges and shank
+  double shank_volume_m3 = 0.0;             ///< the shank's part of it
+  double shank_depth_m = 0.0;               ///< how deep the shank ran into material
+  bool shank = false;                       ///< that was more than a dexel
+  bool rapid_in_material = false;           ///< a rapid move took away more than a cube of a dexel
+};
+
+using Deliver = std::function<void(std::span<const BlockEngagement>)>;
+
+/// Runs the program through the workpiece, part by part, and hands out what it finds in order, a batch at a time;
+/// memory does not grow with the program.
+/// @throws InvalidInput for a bad cutter, bad options or a feed move without duration, Interrupted when asked to stop
+ROBOMILL_API void walk(const program::Program& program, const Cutter& cutter, Workpiece& workpiece,
+                       const WalkOptions& options, const Deliver& deliver, Progress& progress = Progress::none());
+
+/// Stock where a job gives none: the box of the tips of all feed moves, larger by the cutter's radius in x and y, from
+/// a dexel below the lowest tip to `axial_depth_m` above the highest.
+/// @throws InvalidInput if the program has no feed move or a length is not > 0
+[[nodiscard]] ROBOMILL_API Stock stock_about(const program::Program& program, const Cutter& cutter, double dexel_m,
+                                             double axial_depth_m);
+
+}  // namespace robomill::cutting

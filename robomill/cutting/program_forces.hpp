@@ -1,0 +1,47 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/cutting/force.hpp"
+#include "robomill/cutting/program_engagement.hpp"
+#include "robomill/program/program.hpp"
+
+namespace robomill::cutting {
+
+/// What one block of a program asks of tool, spindle and part. Forces on the tool, in W; means over the block's time.
+struct BlockForce {
+  std::size_t block = 0;        ///< of the program, from 0
+  double axial_depth_m = 0.0;   ///< greatest extent of the engaged part along the tool's axis
+  double radial_depth_m = 0.0;  ///< … across the feed
+  double feed_per_tooth_m = 0.0;
+  double spindle_speed_rad_per_s = 0.0;
+  Eigen::Vector3d mean_force_n = Eigen::Vector3d::Zero();
+  double peak_force_n = 0.0;  ///< largest magnitude
+  double mean_torque_n_m = 0.0, peak_torque_n_m = 0.0;
+  double power_w = 0.0;
+  double removed_volume_m3 = 0.0;
+  double shank_depth_m = 0.0;      ///< how deep the shank ran into material, where more than a dexel
+  bool rapid_in_material = false;  ///< a rapid move went through material
+};
+
+struct ROBOMILL_API ProgramForceOptions {
+  double spindle_speed_rad_per_s = 0.0;  ///< Ω [rad/s]; 0: what the program says
+  ForceOptions force = {.steps = 180};
+  WalkOptions walk = {};
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// Runs the program through the workpiece and gives a force for each of its blocks, in their order. The feed per tooth
+/// is that of the middle of what cuts. A feed move without a spindle speed is refused.
+/// @throws InvalidInput for a bad cutter, coefficients or options; Interrupted when asked to stop
+[[nodiscard]] ROBOMILL_API std::vector<BlockForce> program_forces(const program::Program& program, const Cutter& cutter,
+                                                                  const MillingCoefficients& coefficients,
+                                                                  Workpiece& workpiece,
+                                                                  const ProgramForceOptions& options,
+                                                                  Progress& progress = Progress::none());
+
+}  // namespace robomill::cutting

@@ -1,0 +1,133 @@
+#include "robomill/cutting/program_forces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/cutting/analytic_engagement.hpp"
+
+namespace robomill::cutting {
+namespace {
+
+using program::Block;
+using program::Program;
+
+constexpr double speed = 1000.0;  // rad/s
+constexpr double feed_m_per_s = 0.03;
+
+Cutter ball() {
+  Cutter cutter;
+  cutter.kind = CutterKind::ball_end;
+  cutter.mill = {.teeth = 2, .diameter_m = 6e-3, .helix_rad = std::numbers::pi / 6.0};
+  return cutter;
+}
+
+MillingCoefficients tangential_only() {
+  return {.tangential_n_per_m2 = {900e6}};
+}
+
+Block move(const program::Pose& from, const Eigen::Vector3d& tip, std::size_t line) {
+  Block block;
+  block.line = line;
+  block.end = {.tip_m = tip, .axis = from.axis};
+  block.duration_s = (tip - from.tip_m).norm() / feed_m_per_s;
+  return block;
+}
+
+/// Along y, then beside it at a step-over of 0.5 mm, 1 mm below the top of a slab.
+Program two_passes(const Eigen::Vector3d& axis) {
+  Program program;
+  program.start = {.tip_m = {0.0, -8e-3, -1e-3}, .axis = axis.normalized()};
+  const Eigen::Vector3d places[] = {{0.0, 8e-3, -1e-3},     {0.0, 8e-3, 8e-3},      {0.5e-3, -8e-3, 8e-3},
+                                    {0.5e-3, -8e-3, -1e-3}, {0.5e-3, -1e-3, -1e-3}, {0.5e-3, 1e-3, -1e-3}};
+  program::Pose at = program.start;
+  std::size_t line = 1;
+  for (const Eigen::Vector3d& tip : places) {
+    program.blocks.push_back(move(at, tip, line++));
+    at = program.blocks.back().end;
+  }
+  return program;
+}
+
+Stock slab() {
+  Stock stock;
+  stock.min_m = {-6e-3, -12e-3, -4e-3};
+  stock.max_m = {6e-3, 12e-3, 0.0};
+  return stock;
+}
+
+std::vector<BlockForce> run(const Program& program, double dexel_m, const MillingCoefficients& coefficients) {
+  Workpiece workpiece(slab(), dexel_m);
+  return program_forces(program, ball(), coefficients, workpiece, {.spindle_speed_rad_per_s = speed});
+}
+
+// Two ways: the workpiece of rays, and the analytic engagement in F turned into W. The feed runs along +y, so that
+// x_F = y_W, y_F = -x_W, and the neighbouring pass at x_W = 0 lies at +y_F: down-milling.
+TEST(ProgramForces, AgreeWithTheAnalyticCut) {
+  MillingCoefficients coefficients = tangential_only();
+  coefficients.radial_n_per_m2 = {350e6};
+  coefficients.axial_n_per_m2 = {150e6};
+  const Cut cut = {.axial_depth_m = 1e-3, .radial_depth_m = 0.5e-3, .direction = MillingDirection::down};
+  const CuttingForce force =
+      cutting_force(ball(), engage(ball(), cut), coefficients,
+                    {.feed_per_tooth_m = feed_m_per_s * std::numbers::pi / speed, .spindle_speed_rad_per_s = speed});
+  const Eigen::Vector3d expected(-force.mean_n.y(), force.mean_n.x(), force.mean_n.z());
+  const std::vector<BlockForce> blocks = run(two_passes(Eigen::Vector3d::UnitZ()), 0.04e-3, coefficients);
+  const BlockForce& block = blocks.back();
+  EXPECT_NEAR(block.feed_per_tooth_m, feed_m_per_s * std::numbers::pi / speed, 1e-12);
+  EXPECT_LE((block.mean_force_n - expected).norm(), 0.02 * expected.norm());
+  EXPECT_NEAR(block.peak_force_n, force.peak_force_n, 0.03 * force.peak_force_n);
+  EXPECT_NEAR(block.mean_torque_n_m, force.mean_torque_n_m, 0.02 * force.mean_torque_n_m);
+  EXPECT_NEAR(block.power_w, block.mean_torque_n_m * speed, 1e-12 * block.power_w);
+  EXPECT_NEAR(block.axial_depth_m, 1e-3, 0.06e-3);
+}
+
+// With Kt alone energy is Kt times volume, in any posture.
+TEST(ProgramForces, EnergyIsThatOfTheVolume) {
+  const Eigen::Vector3d axes[] = {{0.0, 0.0, 1.0}, {0.2, -0.1, 1.0}, {-0.3, 0.2, 1.0}};
+  for (const Eigen::Vector3d& axis : axes) {
+    const Program program = two_passes(axis);
+    const std::vector<BlockForce> blocks = run(program, 0.1e-3, tangential_only());
+    double energy = 0.0;
+    double volume = 0.0;
+    for (const BlockForce& block : {blocks[4], blocks[5]}) {  // the others begin inside the material, or in the air
+      energy += block.power_w * program.blocks[block.block].duration_s;
+      volume += block.removed_volume_m3;
+    }
+    EXPECT_NEAR(energy, 900e6 * volume, 0.03 * energy) << axis.transpose();
+  }
+}
+
+TEST(ProgramForces, DoNotDependOnTheThreads) {
+  const Program program = two_passes({0.1, 0.1, 1.0});
+  set_thread_count(1);
+  const std::vector<BlockForce> one = run(program, 0.1e-3, tangential_only());
+  set_thread_count(4);
+  const std::vector<BlockForce> four = run(program, 0.1e-3, tangential_only());
+  set_thread_count(0);
+  ASSERT_EQ(one.size(), four.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].mean_force_n, four[i].mean_force_n);
+    EXPECT_EQ(one[i].peak_force_n, four[i].peak_force_n);
+    EXPECT_EQ(one[i].removed_volume_m3, four[i].removed_volume_m3);
+  }
+}
+
+TEST(ProgramForces, TakesTheProgramsSpindleSpeedAndMissesNone) {
+  Program program = two_passes(Eigen::Vector3d::UnitZ());
+  Workpiece workpiece(slab(), 0.5e-3);
+  EXPECT_EQ(
+      test::field_of([&] { static_cast<void>(program_forces(program, ball(), tangential_only(), workpiece, {})); }),
+      "spindle_speed_rad_per_s");
+  for (Block& block : program.blocks) block.spindle_speed_rad_per_s = 500.0;
+  const std::vector<BlockForce> blocks = program_forces(program, ball(), tangential_only(), workpiece, {});
+  EXPECT_EQ(blocks.front().spindle_speed_rad_per_s, 500.0);
+  EXPECT_NEAR(blocks.front().feed_per_tooth_m, feed_m_per_s * 2.0 * std::numbers::pi / 1000.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace robomill::cutting
