@@ -105,6 +105,14 @@ TipModes tip_modes(const ModalModel& model, const std::vector<int>& keep_modes, 
   return tip;
 }
 
+TipModes turned(const TipModes& modes, const Eigen::Matrix3d& turn) {
+  TipModes other = modes;
+  other.right = turn * modes.right;
+  other.left = turn * modes.left;
+  other.compliance = turn * modes.compliance * turn.transpose();
+  return other;
+}
+
 TipModes joined(const TipModes& tool, const TipModes& workpiece) {
   TipModes both = tool;
   const Eigen::Index n = tool.pole.size();

@@ -25,6 +25,10 @@ struct TipModes {
 [[nodiscard]] ROBOMILL_API TipModes tip_modes(const ModalModel& model, const std::vector<int>& keep_modes,
                                               double feed_direction_rad);
 
+/// The same structure in another frame: q' = T q, F' = T F.
+/// @param turn  T, orthogonal
+[[nodiscard]] ROBOMILL_API TipModes turned(const TipModes& modes, const Eigen::Matrix3d& turn);
+
 /// The tool's modes and then the workpiece's: what counts in a cut is the displacement of one against the other, and
 /// the force that pushes one pushes the other back, so that receptances add. The workpiece's modes are numbered on.
 [[nodiscard]] ROBOMILL_API TipModes joined(const TipModes& tool, const TipModes& workpiece);

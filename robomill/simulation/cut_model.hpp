@@ -1,4 +1,6 @@
 #pragma once
+#include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "robomill/cutting/milling.hpp"
@@ -15,28 +17,52 @@ struct Spindle {
   [[nodiscard]] double speed(double time_s) const;     ///< [rad/s]
 };
 
-/// A piece of a cutting edge: a tooth's slice, or a drill's lip.
+/// What a piece of edge at φ meets, a width of cut: against its motion t = (cos φ, -sin φ, 0), outward
+/// r = (sin φ, cos φ, 0) and z of the tool frame.
+struct Resistance {
+  double tangential = 0.0, radial = 0.0, axial = 0.0;
+};
+
+/// A piece of a cutting edge: a tooth's slice, or a drill's lip. Force on the tool, chip thickness h:
+/// F = -width (chip h + edge).
 struct Element {
   double standing_rad = 0.0;  ///< its angle at rotation 0, in [0, 2π)
   double sine = 0.0, cosine = 1.0;
-  double radius_m = 0.0;  ///< beyond the nominal
+  double radius_m = 0.0;  ///< beyond the nominal, along the chip
   double width_m = 0.0;   ///< of cut
   int ring = 0;           ///< on whose surface it cuts: that of its slice
+  Resistance chip;        ///< [N/m²]
+  Resistance edge;        ///< [N/m]
 };
 
-/// A cut as the time step sees it. Elements at φ cut a chip along n = (lateral sin φ, lateral cos φ, -axial).
+/// A ring of the cutter's envelope within one range of angles: its chips are cut along
+/// n = (lateral sin φ, lateral cos φ, -axial).
+struct Ring {
+  double entry_rad = 0.0, exit_rad = 0.0;  ///< entry in [0, 2π), exit less than a revolution after it
+  bool whole_circle = false;               ///< in the cut at every angle
+  double lateral = 1.0, axial = 0.0;       ///< sin κ, cos κ
+  /// Half the envelope's curvatures, along t and along the meridian.
+  double bend_around_per_m = 0.0, bend_along_per_m = 0.0;
+};
+
+/// Of coefficients that act against t, against the chip's direction n, and, axial, on the tool along the meridian
+/// (cos κ sin φ, cos κ cos φ, sin κ).
+[[nodiscard]] Resistance resistance(const Ring& ring, double tangential, double radial, double axial);
+
+/// A cut as the time step sees it, in the tool frame.
 struct CutModel {
+  int dimensions = 2;  ///< 2: a cylinder fed along x that moves in x and y; 3: any
   std::vector<Element> elements;
-  int rings = 1;
-  double entry_rad = 0.0, exit_rad = 0.0;
-  bool whole_circle = false;  ///< a drill: in the cut at every angle
-  double lateral = 1.0, axial = 0.0;
+  std::vector<Ring> rings;
+  int slices = 1;
   double radius_m = 0.0;
-  double feed_m_per_s = 0.0;  ///< along x, or for a drill along -z
-  cutting::ForceCoefficients coefficients;
+  double feed_m_per_s = 0.0;
+  Eigen::Vector3d feed_direction = Eigen::Vector3d::UnitX();
   cutting::ProcessDamping damping;
   Spindle spindle;
   int steps_per_revolution = 0;
+  /// Appends an element. @param angle_rad  at rotation 0, any
+  Element& add(double angle_rad, std::size_t ring);
 };
 
 /// How fine: time steps of a mean revolution, axial slices.

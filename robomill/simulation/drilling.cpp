@@ -1,6 +1,5 @@
 #include "robomill/simulation/drilling.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -17,33 +16,21 @@ constexpr double revolution = 2.0 * std::numbers::pi;
 CutModel model_of(const DrillingCut& cut, int steps_per_revolution) {
   CutModel model;
   const double half_angle = 0.5 * cut.point_angle_rad;
-  model.whole_circle = true;
-  model.lateral = std::cos(half_angle);
-  model.axial = std::sin(half_angle);
+  const Ring cone = {.whole_circle = true, .lateral = std::cos(half_angle), .axial = std::sin(half_angle)};
+  model.dimensions = 3;
+  model.rings = {cone};
   model.radius_m = 0.5 * cut.diameter_m;
   model.feed_m_per_s = cut.feed_per_revolution_m * cut.spindle_speed_rad_per_s / revolution;
-  model.coefficients = cut.coefficients;
+  model.feed_direction = -Eigen::Vector3d::UnitZ();
   model.spindle.mean_rad_per_s = cut.spindle_speed_rad_per_s;
   model.steps_per_revolution = steps_per_revolution;
   for (int j = 0; j < cut.lips; ++j) {
-    Element lip;
-    lip.standing_rad = revolution * j / cut.lips;
-    lip.sine = std::sin(lip.standing_rad);
-    lip.cosine = std::cos(lip.standing_rad);
-    lip.width_m = cut.radial_width_m / model.axial;
-    model.elements.push_back(lip);
+    Element& lip = model.add(revolution * j / cut.lips, 0);
+    lip.width_m = cut.radial_width_m / cone.axial;
+    lip.chip = resistance(cone, cut.coefficients.tangential_n_per_m2, cut.coefficients.radial_n_per_m2, 0.0);
+    lip.edge = resistance(cone, cut.coefficients.tangential_edge_n_per_m, cut.coefficients.radial_edge_n_per_m, 0.0);
   }
   return model;
-}
-
-int first_steps(const DrillingCut& cut, const SimulationOptions& options) {
-  double fastest = 0.0;
-  for (const std::complex<double>& pole : cut.structure.pole) fastest = std::max(fastest, std::abs(pole));
-  double steps = std::max(steps_per_natural_period * fastest / cut.spindle_speed_rad_per_s, steps_per_tooth * cut.lips);
-  steps = std::max(steps, steps_per_sample * options.sample_rate_hz * revolution / cut.spindle_speed_rad_per_s);
-  if (options.steps_per_revolution > 0) steps = options.steps_per_revolution;
-  const int multiple = options.steps_per_revolution > 0 ? cut.lips : 2 * cut.lips;
-  return multiple * static_cast<int>(std::ceil(std::min(steps, 1e7) / multiple));
 }
 
 Job job_of(const DrillingCut& cut, const SimulationOptions& options) {
@@ -53,7 +40,8 @@ Job job_of(const DrillingCut& cut, const SimulationOptions& options) {
   job.model_at = [&cut](const Resolution& resolution) { return model_of(cut, resolution.steps_per_revolution); };
   job.structure = cut.structure;
   job.period.parts = cut.lips;
-  job.first.steps_per_revolution = first_steps(cut, options);
+  job.first.steps_per_revolution =
+      first_steps(cut.structure, cut.spindle_speed_rad_per_s, {.teeth = cut.lips}, revolution, options);
   job.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s;
   job.feed_per_tooth_m = cut.feed_per_revolution_m / cut.lips;
   return job;

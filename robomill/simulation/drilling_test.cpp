@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 #include "robomill/base/test_support.hpp"
@@ -52,24 +51,6 @@ TEST(Drilling, OneLipPushesSideways) {
   EXPECT_NEAR(s.force_n.row(middle).head<2>().norm(), std::hypot(tangential, inward), 1e-3 * tangential);
 }
 
-/// Largest |exp(λτ)| of m (λ² + 2ζωλ + ω²) = -c (1 - exp(-λτ)), by Newton's method from a fan of starts.
-double axial_radius(double mass, double zeta, double omega, double c, double delay) {
-  double best = 0.0;
-  for (int i = 0; i <= 400; ++i) {
-    std::complex<double> root(0.0, omega * (0.02 + 2.5 * i / 400.0));
-    const auto value = [&](std::complex<double> l) {
-      return mass * (l * l + 2.0 * zeta * omega * l + omega * omega) + c * (1.0 - std::exp(-l * delay));
-    };
-    for (int k = 0; k < 60; ++k) {
-      const std::complex<double> slope = mass * (2.0 * root + 2.0 * zeta * omega) + c * delay * std::exp(-root * delay);
-      root -= value(root) / slope;
-    }
-    const double size = mass * omega * omega + c;
-    if (std::abs(value(root)) < 1e-9 * size) best = std::max(best, std::exp(root.real() * delay));
-  }
-  return best;
-}
-
 // An axial mode sees a delay equation with constant coefficients, c = n Kr b sin p: its roots by another method.
 TEST(Drilling, AxialGrowthIsThatOfTheCharacteristicEquation) {
   const double mass = 0.8, zeta = 0.03, frequency = 600.0, omega = 2.0 * pi * frequency;
@@ -80,7 +61,7 @@ TEST(Drilling, AxialGrowthIsThatOfTheCharacteristicEquation) {
       cut.spindle_speed_rad_per_s = speed_rpm * testing::rpm;
       cut.radial_width_m = width_m;
       const double c = 2.0 * 5e8 * width_m * std::sin(0.5 * cut.point_angle_rad);
-      const double expected = axial_radius(mass, zeta, omega, c, 30.0 / speed_rpm);
+      const double expected = testing::axial_radius(mass, zeta, omega, c, 30.0 / speed_rpm);
       const SmallVibration small = small_vibration(cut);
       ASSERT_EQ(small.status, SmallVibration::Status::found);
       EXPECT_NEAR(small.spectral_radius, expected, 1e-3 * expected) << speed_rpm << " " << width_m;

@@ -11,10 +11,12 @@ namespace {
 constexpr double revolution = 2.0 * std::numbers::pi;
 constexpr int most_passes = 8;  // to find which edges touch
 
+constexpr double rounding = 1e-7;  // of a position, in nodes
+
 /// An edge that stands at a node up to rounding stands there: not before it in one step and behind it in the next.
 double snapped(double position) {
   const double nearest = std::round(position);
-  return std::abs(position - nearest) < 1e-7 ? nearest : position;
+  return std::abs(position - nearest) < rounding ? nearest : position;
 }
 
 }  // namespace
@@ -39,57 +41,59 @@ Engine<D>::Engine(const CutModel& model, const modal::TipModes& structure, Physi
       step_s_(revolution / model.steps_per_revolution / model.spindle.mean_rad_per_s),
       modes_(structure, step_s_),
       surface_(model),
+      elements_(model.elements),
       compliance_(structure.compliance.topLeftCorner<D, D>()),
       compliant_(!compliance_.isZero(0.0)),
       damped_(model.damping.active()),
-      tangential_edge_(physics == Physics::perturbation ? 0.0 : model.coefficients.tangential_edge_n_per_m),
-      radial_edge_(physics == Physics::perturbation ? 0.0 : model.coefficients.radial_edge_n_per_m),
       pending_(model.elements.size()) {
-  near_.reserve(model.elements.size());
-  touches_.reserve(model.elements.size());
+  near_.reserve(elements_.size());
+  touches_.reserve(elements_.size());
+  if (physics_ == Physics::perturbation) {
+    for (Element& element : elements_) element.edge = {};
+  }
   surface_.set_rigid();
   leave_start();
 }
 
 template <int D>
-Vector<D> Engine<D>::normal(double sine, double cosine) const {
-  Vector<D> n;
-  n(0) = model_.lateral * sine;
-  n(1) = model_.lateral * cosine;
-  if constexpr (D == 3) n(2) = -model_.axial;
-  return n;
+Vector<D> Engine<D>::normal(const Ring& ring, double sine, double cosine) const {
+  if constexpr (D == 2) return {sine, cosine};
+  if constexpr (D == 3) return {ring.lateral * sine, ring.lateral * cosine, -ring.axial};
 }
 
 template <int D>
 typename Engine<D>::Chip Engine<D>::chip(const Element& element, double position, double sine, double cosine,
                                          double feed_m) const {
-  const Node left = surface_.at(element.ring, position);
-  const double rigid = element.radius_m - left.out_m + surface_.fed(feed_m, left, sine, cosine);
+  const Node left = surface_.at(surface_.strip(element.ring), position);
+  const double rigid = element.radius_m - left.out_m + surface_.fed(ring_of(element), feed_m, left, sine, cosine);
   if (physics_ == Physics::full) return {sine, cosine, rigid, true};
   return {sine, cosine, (physics_ == Physics::linear ? rigid : 0.0) - left.vibration_m, rigid >= 0.0};
 }
 
 /// Whether the chip's contact changed with this displacement.
 template <int D>
-bool Engine<D>::settle(Chip& chip, const Vector<D>& q) const {
+bool Engine<D>::settle(const Touch& touch, Chip& chip, const Vector<D>& q) const {
   if (physics_ != Physics::full) return false;
-  const bool cuts = normal(chip.sine, chip.cosine).dot(q) + chip.gap_m > 0.0;
+  const bool cuts = normal(*touch.ring, chip.sine, chip.cosine).dot(q) + chip.gap_m > 0.0;
   const bool changed = cuts != chip.cuts;
   chip.cuts = cuts;
   return changed;
 }
 
 template <int D>
-void Engine<D>::add(const Chip& chip, double width, Affine& sum) const {
+void Engine<D>::add(const Touch& touch, const Chip& chip, double width, Affine& sum) const {
   if (!chip.cuts) return;
-  const Vector<D> n = normal(chip.sine, chip.cosine);
-  Vector<D> t = Vector<D>::Zero();
-  t(0) = chip.cosine;
-  t(1) = -chip.sine;
-  const cutting::ForceCoefficients& k = model_.coefficients;
-  const Vector<D> per_chip = -width * (k.tangential_n_per_m2 * t + k.radial_n_per_m2 * n);
-  sum.k.noalias() += per_chip * n.transpose();
-  sum.f += per_chip * chip.gap_m - width * (tangential_edge_ * t + radial_edge_ * n);
+  const auto against = [&](const Resistance& resistance) {
+    const double t = resistance.tangential, r = resistance.radial;
+    Vector<D> force;
+    force(0) = -width * (t * chip.cosine + r * chip.sine);
+    force(1) = -width * (r * chip.cosine - t * chip.sine);
+    if constexpr (D == 3) force(2) = -width * resistance.axial;
+    return force;
+  };
+  const Vector<D> per_chip = against(touch.element->chip);
+  sum.k.noalias() += per_chip * normal(*touch.ring, chip.sine, chip.cosine).transpose();
+  sum.f += per_chip * chip.gap_m + against(touch.element->edge);
 }
 
 template <int D>
@@ -98,7 +102,7 @@ void Engine<D>::add_damping(const Touch& touch, Square<D>& sum) const {
                           ? 0.5 * (static_cast<double>(touch.start.cuts) + static_cast<double>(touch.end.cuts))
                           : static_cast<double>(touch.middle.cuts);
   if (cuts == 0.0) return;
-  const Vector<D> n = normal(touch.middle.sine, touch.middle.cosine);
+  const Vector<D> n = normal(*touch.ring, touch.middle.sine, touch.middle.cosine);
   Vector<D> t = Vector<D>::Zero();
   t(0) = touch.middle.cosine;
   t(1) = -touch.middle.sine;
@@ -108,13 +112,13 @@ void Engine<D>::add_damping(const Touch& touch, Square<D>& sum) const {
 
 template <int D>
 void Engine<D>::touch(const Near& near) {
-  const Element& element = model_.elements[static_cast<std::size_t>(near.element)];
+  const Element& element = elements_[static_cast<std::size_t>(near.element)];
+  const Strip& strip = surface_.strip(element.ring);
   double from = 0.0, to = 1.0;
   const double run = near.position_b - near.position_a;
-  if (!model_.whole_circle) {
-    const double first = surface_.offset_rad(element.ring);
-    from = ((model_.entry_rad - first) / surface_.step_rad() - near.position_a) / run;
-    to = ((model_.exit_rad - first) / surface_.step_rad() - near.position_a) / run;
+  if (!strip.whole_circle) {
+    from = (strip.entry - near.position_a) / run;
+    to = (strip.exit - near.position_a) / run;
     // Rounding must not make a sliver of an edge that enters or leaves at a step's end.
     from = from < 1e-9 ? 0.0 : from;
     to = to > 1.0 - 1e-9 ? 1.0 : to;
@@ -122,6 +126,7 @@ void Engine<D>::touch(const Near& near) {
   }
   Touch& t = touches_.emplace_back();
   t.element = &element;
+  t.ring = &ring_of(element);
   t.from_start = from == 0.0;
   t.to_end = to == 1.0;
   t.share = to - from;
@@ -139,12 +144,14 @@ void Engine<D>::touch(const Near& near) {
                   near.cosine_a * c - near.sine_a * s, feed_a_ + t.mid * (feed_b_ - feed_a_));
 }
 
-/// As the step begins, in nodes of its ring; negative where there are none.
+/// As the step begins, in nodes of its ring, less than a revolution before the last; negative where there are none.
 template <int D>
 double Engine<D>::position(const Element& element) const {
-  double nodes = (angle_a_ + element.standing_rad - surface_.offset_rad(element.ring)) / surface_.step_rad();
-  const double top = model_.whole_circle ? surface_.count() : surface_.count() + 1.0;
-  while (snapped(nodes) >= top) nodes -= model_.steps_per_revolution;
+  const Strip& strip = surface_.strip(element.ring);
+  double nodes = (angle_a_ + element.standing_rad - strip.offset_rad) / surface_.step_rad();
+  const double top = (strip.whole_circle ? strip.count : strip.count + 1.0) - rounding;
+  while (nodes > top) nodes -= model_.steps_per_revolution;
+  if (nodes < top - model_.steps_per_revolution) nodes += model_.steps_per_revolution;
   return nodes;
 }
 
@@ -157,8 +164,8 @@ void Engine<D>::collect() {
   const double sine_b = std::sin(angle_b_), cosine_b = std::cos(angle_b_);
   const double per_step = 1.0 / surface_.step_rad();
   const double run = (angle_b_ - angle_a_) * per_step;
-  for (std::size_t i = 0; i < model_.elements.size(); ++i) {
-    const Element& e = model_.elements[i];
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    const Element& e = elements_[i];
     const double from = position(e);
     if (from + run < 0.0) continue;
     Near& near = near_.emplace_back();
@@ -179,7 +186,7 @@ void Engine<D>::solve_start() {
   q_a_ = modal_a_;
   if (!compliant_) {
     for (Touch& t : touches_) {
-      if (t.from_start) settle(t.start, q_a_);
+      if (t.from_start) settle(t, t.start, q_a_);
     }
     return;
   }
@@ -188,8 +195,8 @@ void Engine<D>::solve_start() {
     Affine sum;
     for (Touch& t : touches_) {
       if (!t.from_start) continue;
-      settle(t.start, q_a_);
-      add(t.start, t.element->width_m, sum);
+      settle(t, t.start, q_a_);
+      add(t, t.start, t.element->width_m, sum);
     }
     const Square<D> implicit = Square<D>::Identity() - sum.k * compliance_;
     q_a_ = modal_a_ + compliance_ * (implicit.inverse() * (sum.k * modal_a_ + sum.f));
@@ -197,7 +204,7 @@ void Engine<D>::solve_start() {
     for (Touch& t : touches_) {
       if (!t.from_start) continue;
       Chip looked = t.start;
-      changed = settle(looked, q_a_) || changed;
+      changed = settle(t, looked, q_a_) || changed;
     }
     if (!changed) break;
   }
@@ -207,12 +214,12 @@ template <int D>
 void Engine<D>::assemble(Assembly& sum) {
   for (const Touch& t : touches_) {
     const double width = t.element->width_m;
-    if (t.to_end) add(t.end, width, sum.end);
+    if (t.to_end) add(t, t.end, width, sum.end);
     if (t.whole()) {
-      add(t.end, width, sum.whole);
+      add(t, t.end, width, sum.whole);
     } else if (t.middle.cuts) {
       Affine part;
-      add(t.middle, width * t.share, part);
+      add(t, t.middle, width * t.share, part);
       // Its displacement: (1 - σ) x_a + σ x and the static part of the side on which it cuts.
       part.f += part.k * ((1.0 - t.mid) * modal_a_);
       if (t.from_start) part.f += part.k * (q_a_ - modal_a_);
@@ -234,13 +241,13 @@ template <int D>
 void Engine<D>::solve_step() {
   Affine start;
   for (Touch& t : touches_) {
-    if (t.whole()) add(t.start, t.element->width_m, start);
+    if (t.whole()) add(t, t.start, t.element->width_m, start);
   }
   const Vector<D> fixed_start = start.k * q_a_ + start.f;
   const Vector<D> free = modes_.free_motion();
   for (Touch& t : touches_) {
-    if (t.to_end) settle(t.end, q_a_);
-    if (!t.whole()) settle(t.middle, q_a_);
+    if (t.to_end) settle(t, t.end, q_a_);
+    if (!t.whole()) settle(t, t.middle, q_a_);
   }
   Vector<D> from = Vector<D>::Zero(), to = Vector<D>::Zero();
   modal_b_ = free;
@@ -279,8 +286,8 @@ void Engine<D>::solve_step() {
     to = b.k * modal_b_ + b.f;
     bool changed = false;
     for (Touch& t : touches_) {
-      if (t.to_end) changed = settle(t.end, q_) || changed;
-      if (!t.whole()) changed = settle(t.middle, (1.0 - t.mid) * q_a_ + t.mid * q_) || changed;
+      if (t.to_end) changed = settle(t, t.end, q_) || changed;
+      if (!t.whole()) changed = settle(t, t.middle, (1.0 - t.mid) * q_a_ + t.mid * q_) || changed;
     }
     if (!changed) break;
   }
@@ -290,15 +297,18 @@ void Engine<D>::solve_step() {
 
 template <int D>
 void Engine<D>::leave_node(const Near& near, int node) {
-  const Element& e = model_.elements[static_cast<std::size_t>(near.element)];
-  const int kept = model_.whole_circle && node >= surface_.count() ? node - surface_.count() : node;
-  if (kept < 0 || kept >= surface_.count()) return;
+  const Element& e = elements_[static_cast<std::size_t>(near.element)];
+  const Ring& ring = ring_of(e);
+  const Strip& strip = surface_.strip(e.ring);
+  const int kept = strip.whole_circle && node >= strip.count ? node - strip.count : node;
+  if (kept < 0 || kept >= strip.count) return;
   const double s = (node - near.position_a) / (near.position_b - near.position_a);
-  const double sine = surface_.sine(e.ring, kept), cosine = surface_.cosine(e.ring, kept);
-  const double vibration = normal(sine, cosine).dot((1.0 - s) * q_a_ + s * q_);
+  const std::size_t index = strip.index(kept);
+  const double sine = surface_.sine(index), cosine = surface_.cosine(index);
+  const double vibration = normal(ring, sine, cosine).dot((1.0 - s) * q_a_ + s * q_);
   const double feed = feed_a_ + s * (feed_b_ - feed_a_);
-  const Node& old = surface_.node(e.ring, kept);
-  const double fed = surface_.fed(feed, old, sine, cosine);
+  const Node& old = surface_.node(index);
+  const double fed = surface_.fed(ring, feed, old, sine, cosine);
   Pending& p = pending_[static_cast<std::size_t>(near.element)];
   p.node = kept;
   if (physics_ == Physics::full) {
@@ -314,10 +324,10 @@ void Engine<D>::leave_node(const Near& near, int node) {
 template <int D>
 void Engine<D>::leave_start() {
   feed_b_ = model_.feed_m_per_s * step_s_;
-  for (std::size_t i = 0; i < model_.elements.size(); ++i) {
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
     Near near;
     near.element = static_cast<int>(i);
-    near.position_a = snapped(position(model_.elements[i]));
+    near.position_a = snapped(position(elements_[i]));
     near.position_b = near.position_a + 1.0;
     if (near.position_a >= 0.0) leave_node(near, static_cast<int>(near.position_a));
   }
@@ -333,7 +343,8 @@ void Engine<D>::leave_surface() {
     for (int k = static_cast<int>(std::floor(near.position_a)) + 1; k <= last; ++k) {
       Pending& p = pending_[static_cast<std::size_t>(near.element)];
       if (p.node >= 0 && p.cuts) {
-        surface_.node(model_.elements[static_cast<std::size_t>(near.element)].ring, p.node) = p.value;
+        const Strip& strip = surface_.strip(elements_[static_cast<std::size_t>(near.element)].ring);
+        surface_.node(strip.index(p.node)) = p.value;
       }
       p.node = -1;
       leave_node(near, k);
@@ -344,8 +355,8 @@ void Engine<D>::leave_surface() {
 template <int D>
 void Engine<D>::pass_wall(const Near& near, WatchedWall& watched) {
   const double position_a = near.position_a, position_b = near.position_b;
-  const Element& e = model_.elements[static_cast<std::size_t>(near.element)];
-  const double wall = (watched.angle_rad - surface_.offset_rad(e.ring)) / surface_.step_rad();
+  const Element& e = elements_[static_cast<std::size_t>(near.element)];
+  const double wall = (watched.angle_rad - surface_.strip(e.ring).offset_rad) / surface_.step_rad();
   if (!(position_a < wall && wall <= position_b)) return;
   const double s = (wall - position_a) / (position_b - position_a);
   const double outward = watched.angle_rad < 1.0 ? 1.0 : -1.0;  // of y

@@ -60,6 +60,7 @@ class Engine {
   /// An element between entry and exit during a part of the step, [mid - share/2, mid + share/2].
   struct Touch {
     const Element* element = nullptr;
+    const Ring* ring = nullptr;
     bool from_start = false, to_end = false;
     double share = 1.0, mid = 0.5;
     Chip start, end, middle;
@@ -86,13 +87,16 @@ class Engine {
     Vector<D> f = Vector<D>::Zero();
   };
 
-  [[nodiscard]] Vector<D> normal(double sine, double cosine) const;
+  [[nodiscard]] const Ring& ring_of(const Element& element) const {
+    return model_.rings[static_cast<std::size_t>(element.ring)];
+  }
+  [[nodiscard]] Vector<D> normal(const Ring& ring, double sine, double cosine) const;
   [[nodiscard]] Chip chip(const Element& element, double position, double sine, double cosine, double feed_m) const;
   void collect();
   void touch(const Near& near);
-  void add(const Chip& chip, double width, Affine& sum) const;
+  void add(const Touch& touch, const Chip& chip, double width, Affine& sum) const;
   void add_damping(const Touch& touch, Square<D>& sum) const;
-  bool settle(Chip& chip, const Vector<D>& q) const;
+  bool settle(const Touch& touch, Chip& chip, const Vector<D>& q) const;
   void solve_start();
   void solve_step();
   struct Assembly;
@@ -107,10 +111,10 @@ class Engine {
   Physics physics_;
   double step_s_;
   ModalStep<D> modes_;
-  Surface surface_;
+  Surface<D> surface_;
+  std::vector<Element> elements_;
   Square<D> compliance_;
   bool compliant_ = false, damped_ = false;
-  double tangential_edge_, radial_edge_;
   std::int64_t steps_ = 0, without_contact_ = 0;
   double angle_a_ = 0.0, angle_b_ = 0.0, feed_a_ = 0.0, feed_b_ = 0.0, damping_ = 0.0;
   Vector<D> modal_a_ = Vector<D>::Zero(), modal_b_ = Vector<D>::Zero();  ///< of the modes alone

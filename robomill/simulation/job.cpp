@@ -22,11 +22,11 @@ constexpr double diverged_m = 1.0;
 constexpr Eigen::Index phases = 8;           // looked at in a period
 constexpr std::int64_t check_every = 20000;  // steps between looks at Ctrl-C
 
+/// Two dimensions: x and y of the feed's frame.
 template <int D>
-Eigen::Vector3d in_space(const Vector<D>& v) {
-  Eigen::Vector3d all = Eigen::Vector3d::Zero();
-  all.template head<D>() = v;
-  return all;
+Eigen::Vector3d in_feed_frame(const Eigen::Matrix3d& feed_from_tool, const Vector<D>& v) {
+  if constexpr (D == 2) return {v(0), v(1), 0.0};
+  if constexpr (D == 3) return feed_from_tool * v;
 }
 
 /// ---------------------------------------------------------------- small vibration
@@ -170,10 +170,10 @@ void run(const Job& job, const SimulationOptions& options, Progress& progress, S
   const Physics physics = options.loss_of_contact ? Physics::full : Physics::linear;
   const Chosen chosen = choose<D>(job.first, job.structure, job.model_at, physics, options, progress);
   out.steps_per_revolution = chosen.resolution.steps_per_revolution;
-  out.slices = chosen.resolution.slices;
   out.error_estimate = chosen.error;
   out.resolved = chosen.error <= options.tolerance;
   const CutModel model = job.model_at(chosen.resolution);
+  out.slices = model.slices;
   Engine<D> engine(model, job.structure, physics);
   const double h = engine.step_s();
   Resampler resampler(h, options.sample_rate_hz,
@@ -190,10 +190,10 @@ void run(const Job& job, const SimulationOptions& options, Progress& progress, S
   std::int64_t missed = 0;
   for (std::int64_t i = 0; i < all; ++i) {
     engine.step();
-    const Vector<D>& q = engine.displacement();
-    resampler.push(in_space<D>(q), in_space<D>(engine.mean_force()));
+    const Eigen::Vector3d q = in_feed_frame<D>(job.feed_from_tool, engine.displacement());
+    resampler.push(q, in_feed_frame<D>(job.feed_from_tool, engine.mean_force()));
     if (i < steps) {
-      watch.look<D>(i, q);
+      watch.look<D>(i, q.head<D>());
       missed = engine.steps_without_contact();
     }
     if ((i + 1) % check_every == 0) progress.advance(check_every);
@@ -221,7 +221,7 @@ void run(const Job& job, const SimulationOptions& options, Progress& progress, S
     out.chatter_amplitude_m = tone.amplitude_m;
   }
   for (std::size_t w = 0; w < job.walls.size(); ++w) {
-    add_wall(job.walls[w], job.feed_per_tooth_m, model.rings, engine.wall_passes(w), out);
+    add_wall(job.walls[w], job.feed_per_tooth_m, static_cast<int>(model.rings.size()), engine.wall_passes(w), out);
   }
 }
 
@@ -238,8 +238,8 @@ SmallVibration small_vibration(const Job& job, const SimulationOptions& options,
   for (Multiplier& m : found) {
     const CutModel model = job.model_at(resolution);
     const int steps = job.period.steps(resolution.steps_per_revolution);
-    m = model.axial > 0.0 ? multiplier_at<3>(model, job.structure, steps, options.seed, progress)
-                          : multiplier_at<2>(model, job.structure, steps, options.seed, progress);
+    m = model.dimensions == 3 ? multiplier_at<3>(model, job.structure, steps, options.seed, progress)
+                              : multiplier_at<2>(model, job.structure, steps, options.seed, progress);
     resolution = doubled(resolution);
   }
   const double coarse = std::abs(found[0].value), fine = std::abs(found[1].value);
@@ -257,7 +257,7 @@ Simulation simulate(const Job& job, const SimulationOptions& options, Progress& 
   out.sample_rate_hz = options.sample_rate_hz;
   out.small = small_vibration(job, options, progress);
   out.period_s = 2.0 * pi / job.spindle_speed_rad_per_s * job.period.revolutions / job.period.parts;
-  if (job.model_at(job.first).axial > 0.0) {
+  if (job.model_at(job.first).dimensions == 3) {
     run<3>(job, options, progress, out);
   } else {
     run<2>(job, options, progress, out);

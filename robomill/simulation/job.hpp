@@ -10,7 +10,8 @@ namespace robomill::simulation::detail {
 /// A cut made ready: how to model it at any resolution, and what its result is looked at for.
 struct Job {
   std::function<CutModel(const Resolution&)> model_at;
-  modal::TipModes structure;
+  modal::TipModes structure;                                     ///< in the model's frame
+  Eigen::Matrix3d feed_from_tool = Eigen::Matrix3d::Identity();  ///< of the result's frame from the model's
   Period period;
   Resolution first;
   double spindle_speed_rad_per_s = 0.0;

@@ -18,7 +18,13 @@ struct Period {
   [[nodiscard]] int steps(int steps_per_revolution) const { return steps_per_revolution * revolutions / parts; }
 };
 [[nodiscard]] Period period_of(const cutting::Milling& milling);
+[[nodiscard]] Period period_of(const cutting::FlatEndMill& teeth);
 
+/// Time steps of a revolution where the search begins, or what the options fix; a multiple of the number of teeth
+/// where they are evenly spaced.
+/// @param arc_rad  between entry and exit
+[[nodiscard]] int first_steps(const modal::TipModes& structure, double spindle_speed_rad_per_s,
+                              const cutting::FlatEndMill& teeth, double arc_rad, const SimulationOptions& options);
 /// Where the search for a resolution starts; with what the options fix.
 [[nodiscard]] Resolution first_resolution(const MillingCut& cut, const SimulationOptions& options);
 [[nodiscard]] Resolution halved(const Resolution& resolution);

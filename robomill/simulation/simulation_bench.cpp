@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "robomill/simulation/drilling.hpp"
+#include "robomill/simulation/posture_cases.hpp"
 #include "robomill/simulation/test_cuts.hpp"
 
 namespace {
@@ -53,6 +54,24 @@ void drilling_three_modes(benchmark::State& state) {
   two_seconds(state, cut);
 }
 
+/// A ball end of two teeth at 18,000 rpm, 30 rings, on an arm that moves in all directions.
+PostureCut ball_on_arm() {
+  PostureCut cut = simulation::testing::ball_cut(0.2, 0.1);
+  cut.motion.feed_per_tooth_m = 2e-5;
+  cut.structure = simulation::testing::arm_modes();
+  return cut;
+}
+void ball_end(benchmark::State& state) {
+  two_seconds(state, ball_on_arm());
+}
+void small_vibration_of_ball_end(benchmark::State& state) {
+  const PostureCut cut = ball_on_arm();
+  for (auto _ : state) {
+    SmallVibration small = small_vibration(cut);
+    benchmark::DoNotOptimize(small);
+  }
+}
+
 void small_vibration_of_robot(benchmark::State& state) {
   const MillingCut cut = robot();
   for (auto _ : state) {
@@ -84,5 +103,7 @@ BENCHMARK(robot_helix)->Unit(benchmark::kMillisecond);
 BENCHMARK(benchmark_low_immersion)->Unit(benchmark::kMillisecond);
 BENCHMARK(benchmark_slot)->Unit(benchmark::kMillisecond);
 BENCHMARK(drilling_three_modes)->Unit(benchmark::kMillisecond);
+BENCHMARK(ball_end)->Unit(benchmark::kMillisecond);
+BENCHMARK(small_vibration_of_ball_end)->Unit(benchmark::kMillisecond);
 BENCHMARK(small_vibration_of_robot)->Unit(benchmark::kMillisecond);
 BENCHMARK(modes)->RangeMultiplier(2)->Range(1, 32)->Unit(benchmark::kMillisecond);

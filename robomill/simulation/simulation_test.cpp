@@ -166,7 +166,7 @@ TEST(Simulation, ProcessDampingIsADashpotWhereTheCutIsContinuous) {
   cut.milling.immersion = {.entry_rad = 0.0, .exit_rad = pi};
   cut.milling.process_damping = {.indentation_n_per_m3 = 4e13, .wear_land_m = 6e-5, .friction = 0.0};
   CutModel model = model_of(cut, 8000);
-  model.coefficients = {};
+  for (detail::Element& element : model.elements) element.chip = {};
   Engine<2> engine(model, cut.structure, Physics::perturbation);
   engine.set_mode(0, 1.0);
   for (int i = 0; i < 8000; ++i) engine.step();

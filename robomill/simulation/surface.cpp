@@ -10,49 +10,60 @@ constexpr double revolution = 2.0 * std::numbers::pi;
 
 }  // namespace
 
-Surface::Surface(const CutModel& model)
-    : model_(model),
-      step_(revolution / model.steps_per_revolution),
-      inverse_diameter_(model.radius_m > 0.0 ? 0.5 / model.radius_m : 0.0) {
-  base_ = model.whole_circle ? 0.0 : model.entry_rad - 2.0 * step_;
-  count_ = model.whole_circle ? model.steps_per_revolution
-                              : static_cast<int>(std::ceil((model.exit_rad - model.entry_rad) / step_)) + 6;
-  const std::size_t size = static_cast<std::size_t>(model.rings) * static_cast<std::size_t>(count_);
-  offset_.assign(static_cast<std::size_t>(model.rings), base_);
+template <int D>
+Surface<D>::Surface(const CutModel& model) : model_(model), step_(revolution / model.steps_per_revolution) {
+  strips_.reserve(model.rings.size());
+  std::size_t size = 0;
+  for (const Ring& ring : model.rings) {
+    Strip& strip = strips_.emplace_back();
+    strip.first = size;
+    strip.whole_circle = ring.whole_circle;
+    strip.offset_rad = ring.whole_circle ? 0.0 : ring.entry_rad - 2.0 * step_;
+    strip.count = ring.whole_circle ? model.steps_per_revolution
+                                    : static_cast<int>(std::ceil((ring.exit_rad - ring.entry_rad) / step_)) + 6;
+    size += static_cast<std::size_t>(strip.count);
+  }
+  // Where the ring's first element stands at the steps' ends: most elements then find nodes, and nothing is blurred.
+  for (auto element = model.elements.rbegin(); element != model.elements.rend(); ++element) {
+    const auto r = static_cast<std::size_t>(element->ring);
+    if (model.rings[r].whole_circle) continue;
+    const double base = model.rings[r].entry_rad - 2.0 * step_;
+    const double steps = (element->standing_rad - base) / step_;
+    double rest = steps - std::floor(steps);
+    if (rest > 1.0 - 1e-9) rest = 0.0;
+    strips_[r].offset_rad = base + (rest - (rest > 1e-9 ? 1.0 : 0.0)) * step_;
+  }
   sine_.resize(size);
   cosine_.resize(size);
   nodes_.resize(size);
-  // Where the ring's first element stands at the steps' ends: most elements then find nodes, and nothing is blurred.
-  if (!model.whole_circle) {
-    for (auto element = model.elements.rbegin(); element != model.elements.rend(); ++element) {
-      const double steps = (element->standing_rad - base_) / step_;
-      double rest = steps - std::floor(steps);
-      if (rest > 1.0 - 1e-9) rest = 0.0;
-      offset_[static_cast<std::size_t>(element->ring)] = base_ + (rest - (rest > 1e-9 ? 1.0 : 0.0)) * step_;
-    }
-  }
-  for (int r = 0; r < model.rings; ++r) {
-    for (int k = 0; k < count_; ++k) {
-      const double angle = offset_rad(r) + k * step_;
-      sine_[index(r, k)] = std::sin(angle);
-      cosine_[index(r, k)] = std::cos(angle);
+  for (std::size_t r = 0; r < strips_.size(); ++r) {
+    Strip& strip = strips_[r];
+    strip.entry = (model.rings[r].entry_rad - strip.offset_rad) / step_;
+    strip.exit = (model.rings[r].exit_rad - strip.offset_rad) / step_;
+    for (int k = 0; k < strip.count; ++k) {
+      const double angle = strip.offset_rad + k * step_;
+      sine_[strip.index(k)] = std::sin(angle);
+      cosine_[strip.index(k)] = std::cos(angle);
     }
   }
 }
 
-void Surface::set_rigid() {
+template <int D>
+void Surface<D>::set_rigid() {
   const double metres_per_rad = model_.feed_m_per_s / model_.spindle.mean_rad_per_s;
   std::vector<bool> seen(nodes_.size(), false);
   for (const Element& element : model_.elements) {
-    for (int k = 0; k < count_; ++k) {
-      const double ahead = element.standing_rad - (offset_rad(element.ring) + k * step_);
+    const Ring& ring = model_.rings[static_cast<std::size_t>(element.ring)];
+    const Strip& on = strip(element.ring);
+    for (int k = 0; k < on.count; ++k) {
+      const double ahead = element.standing_rad - (on.offset_rad + k * step_);
       double since = ahead - revolution * std::floor(ahead / revolution);
       // An edge still reads the node behind it: that it passed there is left for it to say.
       if (since < step_ * (1.0 - 1e-7)) since += revolution;
-      const std::size_t i = index(element.ring, k);
+      const std::size_t i = on.index(k);
       const Node mine = {element.radius_m, -since * metres_per_rad, 0.0};
-      const double ours = mine.out_m - fed(0.0, mine, sine_[i], cosine_[i]);
-      const double theirs = nodes_[i].out_m - fed(0.0, nodes_[i], sine_[i], cosine_[i]);
+      const double ours = mine.out_m - fed(ring, 0.0, mine, sine_[i], cosine_[i]);
+      const double theirs = nodes_[i].out_m - fed(ring, 0.0, nodes_[i], sine_[i], cosine_[i]);
       const bool later = mine.feed_m > nodes_[i].feed_m;
       if (!seen[i] || ours > theirs || (ours == theirs && later)) nodes_[i] = mine;
       seen[i] = true;
@@ -60,8 +71,12 @@ void Surface::set_rigid() {
   }
 }
 
-void Surface::scale_vibration(double factor) {
+template <int D>
+void Surface<D>::scale_vibration(double factor) {
   for (Node& node : nodes_) node.vibration_m *= factor;
 }
+
+template class Surface<2>;
+template class Surface<3>;
 
 }  // namespace robomill::simulation::detail

@@ -14,12 +14,28 @@ struct Node {
   double vibration_m = 0.0;
 };
 
-/// What all earlier edges left, at angles one time step apart; for a mill only where it cuts and two nodes beyond.
+/// The nodes of a ring's angles, one time step apart.
+struct Strip {
+  double offset_rad = 0.0;         ///< of the first
+  double entry = 0.0, exit = 0.0;  ///< positions, in nodes from the first
+  int count = 0;
+  bool whole_circle = false;  ///< the first follows the last
+  std::size_t first = 0;      ///< in the tables of all rings
+
+  [[nodiscard]] std::size_t index(int node) const {
+    if (node >= count) node = whole_circle ? node - count : count - 1;
+    return first + static_cast<std::size_t>(node);
+  }
+};
+
+/// What all earlier edges left; of a ring that does not cut all round only where it cuts and two nodes beyond.
 ///
-/// An edge that now stands out_m beyond the nominal circle with the feed at feed_m has before it
-///   h = out - node.out + d g(φ) + (d cos φ)² / 2R,  d = feed - node.feed,
-/// with g = sin φ for a mill (the last term is what an earlier circle falls back beside its own direction) and the
-/// axial part of the chip's direction for a drill.
+/// An edge that now stands out_m beyond the nominal ring with the feed at feed_m has before it
+///   h = out - node.out + d (n·u) + d² ((t·u)² / 2r_t + (m·u)² / 2r_m),  d = feed - node.feed,
+/// u the feed's direction, r_t and r_m the envelope's radii of curvature along the cut t and the meridian m (the last
+/// term is what an earlier surface falls back beside its own direction). Of a cylinder fed along x that is
+/// d sin φ + (d cos φ)² / 2R, and of a drill d times the axial part of n.
+template <int D>
 class Surface {
  public:
   explicit Surface(const CutModel& model);
@@ -28,42 +44,47 @@ class Surface {
   void set_rigid();
   void scale_vibration(double factor);
 
-  [[nodiscard]] double base_rad() const { return base_; }
   [[nodiscard]] double step_rad() const { return step_; }
-  [[nodiscard]] int count() const { return count_; }
-  [[nodiscard]] double sine(int ring, int node) const { return sine_[index(ring, node)]; }
-  [[nodiscard]] double cosine(int ring, int node) const { return cosine_[index(ring, node)]; }
-  [[nodiscard]] double offset_rad(int ring) const { return offset_[static_cast<std::size_t>(ring)]; }
-  [[nodiscard]] Node& node(int ring, int node) { return nodes_[index(ring, node)]; }
+  [[nodiscard]] const Strip& strip(int ring) const { return strips_[static_cast<std::size_t>(ring)]; }
+  [[nodiscard]] double sine(std::size_t index) const { return sine_[index]; }
+  [[nodiscard]] double cosine(std::size_t index) const { return cosine_[index]; }
+  [[nodiscard]] Node& node(std::size_t index) { return nodes_[index]; }
 
-  /// Between nodes by a straight line; position in nodes from the ring's first.
-  [[nodiscard]] Node at(int ring, double position) const {
+  /// Between nodes by a straight line; position in nodes from the strip's first.
+  [[nodiscard]] Node at(const Strip& strip, double position) const {
     const int k = static_cast<int>(position);
     const double f = position - k;
-    const Node& a = nodes_[index(ring, k)];
-    const Node& b = nodes_[index(ring, k + 1)];
+    const Node& a = nodes_[strip.index(k)];
+    const Node& b = nodes_[strip.index(k + 1)];
     return {a.out_m + f * (b.out_m - a.out_m), a.feed_m + f * (b.feed_m - a.feed_m),
             a.vibration_m + f * (b.vibration_m - a.vibration_m)};
   }
-  /// The terms of h that come with the feed.
-  [[nodiscard]] double fed(double feed_m, const Node& node, double sine, double cosine) const {
+  /// The terms of h that come with the feed. Just beyond entry and exit, where n·u < 0, the feed brings nothing.
+  [[nodiscard]] double fed(const Ring& ring, double feed_m, const Node& node, double sine, double cosine) const {
     const double d = feed_m - node.feed_m;
-    if (model_.whole_circle) return d * model_.axial;
-    const double across = d * cosine;
-    return d * (sine > 0.0 ? sine : 0.0) + across * across * inverse_diameter_;
+    if constexpr (D == 2) {
+      const double across = d * cosine;
+      return d * (sine > 0.0 ? sine : 0.0) + across * across * ring.bend_around_per_m;
+    } else {
+      const Eigen::Vector3d& u = model_.feed_direction;
+      const double outward = u.x() * sine + u.y() * cosine;
+      const double ahead = ring.lateral * outward - ring.axial * u.z();
+      const double around = u.x() * cosine - u.y() * sine;
+      const double along = ring.axial * outward + ring.lateral * u.z();
+      const double bend = ring.bend_around_per_m * around * around + ring.bend_along_per_m * along * along;
+      return d * (ahead > 0.0 ? ahead : 0.0) + d * d * bend;
+    }
   }
 
  private:
-  [[nodiscard]] std::size_t index(int ring, int node) const {
-    if (node >= count_) node -= model_.whole_circle ? count_ : node - count_ + 1;
-    return static_cast<std::size_t>(ring) * static_cast<std::size_t>(count_) + static_cast<std::size_t>(node);
-  }
   const CutModel& model_;
-  double step_ = 0.0, base_ = 0.0, inverse_diameter_ = 0.0;
-  int count_ = 0;
-  std::vector<double> offset_;  ///< of a ring's first node [rad]
+  double step_ = 0.0;
+  std::vector<Strip> strips_;
   std::vector<double> sine_, cosine_;
   std::vector<Node> nodes_;
 };
+
+extern template class Surface<2>;
+extern template class Surface<3>;
 
 }  // namespace robomill::simulation::detail

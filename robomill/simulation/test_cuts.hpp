@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <complex>
 #include <numbers>
 
@@ -62,6 +64,24 @@ inline modal::TipModes one_mode(Eigen::Index axis, double frequency_hz, double d
   modes.left(axis, 0) = std::complex<double>(0.0, -1.0 / (mass_kg * damped));
   modes.number = {1};
   return modes;
+}
+
+/// Largest |exp(λτ)| of m (λ² + 2ζωλ + ω²) = -c (1 - exp(-λτ)), by Newton's method from a fan of starts.
+inline double axial_radius(double mass, double zeta, double omega, double c, double delay) {
+  double best = 0.0;
+  for (int i = 0; i <= 400; ++i) {
+    std::complex<double> root(0.0, omega * (0.02 + 2.5 * i / 400.0));
+    const auto value = [&](std::complex<double> l) {
+      return mass * (l * l + 2.0 * zeta * omega * l + omega * omega) + c * (1.0 - std::exp(-l * delay));
+    };
+    for (int k = 0; k < 60; ++k) {
+      const std::complex<double> slope = mass * (2.0 * root + 2.0 * zeta * omega) + c * delay * std::exp(-root * delay);
+      root -= value(root) / slope;
+    }
+    const double size = mass * omega * omega + c;
+    if (std::abs(value(root)) < 1e-9 * size) best = std::max(best, std::exp(root.real() * delay));
+  }
+  return best;
 }
 
 }  // namespace robomill::simulation::testing
