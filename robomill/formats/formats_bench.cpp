@@ -8,6 +8,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/frf_files.hpp"
+#include "robomill/formats/gcode.hpp"
 #include "robomill/formats/records.hpp"
 
 namespace robomill::formats {
@@ -42,6 +43,24 @@ void read_hit_text(benchmark::State& state) {
   std::filesystem::remove(path);
 }
 BENCHMARK(read_hit_text)->Unit(benchmark::kMillisecond);
+
+/// A program of 200,000 five-axis moves, 12 MB.
+void read_program(benchmark::State& state) {
+  Random random(2);
+  std::string text = "G93\nG0 X0 Y0 Z0 A0 C0\n";
+  constexpr int lines = 200000;
+  for (int i = 0; i < lines; ++i) {
+    text += fmt::format("G1  X {:7.3f}  Y {:7.3f}  Z {:7.3f}  A {:7.3f}  C {:7.3f}  F 159\n",
+                        random.uniform(-50.0, 50.0), random.uniform(-50.0, 50.0), random.uniform(0.0, 40.0),
+                        random.uniform(-80.0, 0.0), random.uniform(-90.0, 90.0));
+  }
+  const std::filesystem::path path = place("part.ngc");
+  write_file(path, text);
+  for (auto _ : state) benchmark::DoNotOptimize(read_gcode(path, program::Machine::xyzac_trt));
+  state.SetItemsProcessed(state.iterations() * lines);
+  std::filesystem::remove(path);
+}
+BENCHMARK(read_program)->Unit(benchmark::kMillisecond);
 
 /// Four FRFs of 3,500 lines, written and read.
 void frfs(benchmark::State& state, const std::string& ending, bool write) {

@@ -1,5 +1,7 @@
 #include "robomill/formats/job_toml.hpp"
 
+#include <utility>
+
 #include "robomill/base/error.hpp"
 #include "robomill/formats/toml_file.hpp"
 #include "robomill/formats/units.hpp"
@@ -13,6 +15,10 @@ void read_sources(TomlFile& file, Job& job) {
   file.path("job.modes", job.modes);
   file.path("job.lobes", job.lobes);
   file.path("job.assembly", job.assembly);
+  file.path("job.forces", job.forces);
+  for (const auto& [key, path] : {std::pair{"job.cell", &job.cell}, std::pair{"job.program", &job.program}}) {
+    if (file.path(key, *path) && job.forces.empty()) throw file.refuse(key, "goes with job.forces");
+  }
   const bool measured = file.path("job.measured", job.measured);
   file.paths("job.frf", job.frf);
   file.texts("job.frf_as", job.frf_as);

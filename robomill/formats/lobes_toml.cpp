@@ -1,14 +1,11 @@
 #include "robomill/formats/lobes_toml.hpp"
 
-#include <fmt/format.h>
-
 #include <array>
-#include <cmath>
-#include <complex>
 #include <numbers>
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/cut_fields.hpp"
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/modes_files.hpp"
 #include "robomill/formats/toml_file.hpp"
@@ -16,20 +13,6 @@
 
 namespace robomill::formats {
 namespace {
-
-void read_tool(TomlFile& file, cutting::FlatEndMill& tool) {
-  file.integer("tool.teeth", "teeth", tool.teeth);
-  file.number("tool.diameter_mm", "diameter_m", units::mm, tool.diameter_m);
-  if (file.is_number("tool.helix_deg")) {
-    file.number("tool.helix_deg", "helix_rad", units::deg, tool.helix_rad);
-  } else {
-    file.numbers("tool.helix_deg", "tooth_helix_rad", units::deg, tool.tooth_helix_rad);
-  }
-  file.numbers("tool.pitch_deg", "pitch_rad", units::deg, tool.pitch_rad);
-  file.number("tool.runout_um", "runout_m", units::um, tool.runout_m);
-  file.number("tool.runout_angle_deg", "runout_angle_rad", units::deg, tool.runout_angle_rad);
-  file.locate([&] { tool.validate(); });
-}
 
 /// What a drill needs; its lips are the tool's teeth, and in the cut all round.
 void read_drilling(TomlFile& file, LobesFile& out) {
@@ -54,16 +37,11 @@ void read_cut(TomlFile& file, LobesFile& out) {
   }
   file.number("cut.feed_per_tooth_mm", "feed_per_tooth_m", units::mm, milling.feed_per_tooth_m);
   file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
-  const bool radial = file.number("cut.radial_depth_mm", "radial_depth_m", units::mm, out.radial_depth_m) ||
-                      file.number("cut.stepover_mm", "radial_depth_m", units::mm, out.radial_depth_m);
+  const bool radial = read_radial_depth(file, out.radial_depth_m);
   const bool entry = file.number("cut.entry_deg", "entry_rad", units::deg, milling.immersion.entry_rad);
   const bool exit = file.number("cut.exit_deg", "exit_rad", units::deg, milling.immersion.exit_rad);
   cutting::MillingDirection direction = cutting::MillingDirection::up;
-  const bool named = file.choice<cutting::MillingDirection>("cut.direction",
-                                                            {{"up", cutting::MillingDirection::up},
-                                                             {"down", cutting::MillingDirection::down},
-                                                             {"slot", cutting::MillingDirection::slot}},
-                                                            direction);
+  const bool named = read_direction(file, direction);
   if (milling.feed_per_tooth_m < 0.0) throw file.refuse("cut.feed_per_tooth_mm", "must be >= 0");
   if (named && (entry || exit)) throw file.refuse("cut.direction", "must not stand beside entry_deg and exit_deg");
   if (entry != exit) file.require(entry ? "cut.exit_deg" : "cut.entry_deg", "Both angles are needed");
@@ -81,47 +59,6 @@ void read_cut(TomlFile& file, LobesFile& out) {
     file.require("cut.radial_depth_mm");
   }
   file.locate([&] { milling.immersion = cutting::immersion(direction, out.radial_depth_m, diameter_m); });
-}
-
-/// One direction's mode of its own, x = F / (m (ω_n² - ω² + 2iζω_nω)): residue 1 / (2 i m ω_d), shared evenly by both
-/// vectors.
-modal::Mode read_inline_mode(TomlFile& file, const std::string& row, const std::string& member, Eigen::Index axis) {
-  double modal_mass_kg = 0.0;
-  modal::Mode mode;
-  for (const char* key : {"frequency_hz", "damping_ratio", "modal_mass_kg"}) file.require(row + key);
-  file.number(row + "frequency_hz", member + "frequency_hz", 1.0, mode.frequency_hz);
-  file.number(row + "damping_ratio", member + "damping_ratio", 1.0, mode.damping_ratio);
-  file.number(row + "modal_mass_kg", member + "modal_mass_kg", 1.0, modal_mass_kg);
-  if (!(modal_mass_kg > 0.0)) throw file.refuse(row + "modal_mass_kg", "must be > 0");
-  if (!(mode.frequency_hz > 0.0)) throw file.refuse(row + "frequency_hz", "must be > 0");
-  if (!(mode.damping_ratio > 0.0 && mode.damping_ratio < 1.0)) {
-    throw file.refuse(row + "damping_ratio", "must lie between 0 and 1", "It is a ratio, not a percentage");
-  }
-  const double size = 1.0 / std::sqrt(2.0 * modal_mass_kg * modal::pole(mode).imag());
-  mode.left = Eigen::VectorXcd::Unit(3, axis) * size;
-  mode.right = Eigen::VectorXcd::Unit(3, axis) * std::complex<double>(0.0, -size);
-  return mode;
-}
-
-/// A table that holds a structure: a file of modes, a file of FRFs, or modes of its own in x, y and z.
-void read_structure(TomlFile& file, const std::string& table, std::filesystem::path& modes, std::filesystem::path& frf,
-                    modal::ModalModel& out) {
-  file.path(table + ".modes", modes);
-  file.path(table + ".frf", frf);
-  modal::ModalModel own;
-  own.excitations = own.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
-  const std::array<const char*, 3> axes = {"x", "y", "z"};
-  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    const std::string key = fmt::format("{}.{}", table, axes[axis]);
-    for (std::size_t i = 0; i < file.tables(key); ++i) {
-      const std::string member = fmt::format("modes[{}].", own.modes.size() + 1);
-      own.modes.push_back(
-          read_inline_mode(file, fmt::format("{}[{}].", key, i), member, static_cast<Eigen::Index>(axis)));
-    }
-  }
-  const int sources = (modes.empty() ? 0 : 1) + (frf.empty() ? 0 : 1) + (own.modes.empty() ? 0 : 1);
-  if (sources > 1) throw file.refuse(table, "must give only one of modes, frf, and x, y and z");
-  if (!own.modes.empty()) out = own;
 }
 
 /// What pushes on the teeth: coefficients, process damping; and how the spindle turns.
@@ -197,7 +134,7 @@ void read_uncertainty(TomlFile& file, stability::Uncertainty& u) {
 LobesFile read(TomlFile& file, const std::filesystem::path& path) {
   LobesFile out;
   out.path = path;
-  read_tool(file, out.problem.milling.tool);
+  read_mill(file, out.problem.milling.tool);
   read_cut(file, out);
   read_forces(file, out.problem.milling);
   read_structure(file, "dynamics", out.modes, out.frf, out.problem.dynamics);

@@ -1,0 +1,224 @@
+#include "robomill/formats/cell_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/text.hpp"
+#include "robomill/formats/toml_file.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/formats/urdf.hpp"
+
+namespace robomill::formats {
+namespace {
+
+/// Lists with one value a joint, SI in the file too.
+struct JointList {
+  const char* key;
+  const char* member;
+  double robot::Joint::*value;
+};
+constexpr std::array<JointList, 8> joint_lists = {{
+    {"robot.joint_min_position", "min_position", &robot::Joint::min_position},
+    {"robot.joint_max_position", "max_position", &robot::Joint::max_position},
+    {"robot.joint_max_velocity", "max_velocity", &robot::Joint::max_velocity},
+    {"robot.joint_max_acceleration", "max_acceleration", &robot::Joint::max_acceleration},
+    {"robot.joint_max_jerk", "max_jerk", &robot::Joint::max_jerk},
+    {"robot.joint_stiffness_n_m_per_rad", "stiffness", &robot::Joint::stiffness},
+    {"robot.joint_damping_n_m_s_per_rad", "damping", &robot::Joint::damping},
+    {"robot.joint_rotor_inertia_kg_m2", "rotor_inertia", &robot::Joint::rotor_inertia},
+}};
+
+constexpr std::array<const char*, 4> machines = {"xyzac-trt", "xyzbc-trt", "xyzac-head", "xyzbc-head"};
+
+std::optional<Eigen::Vector3d> read_vector(TomlFile& file, const char* key, const char* member, double factor) {
+  std::vector<double> values;
+  if (!file.numbers(key, member, factor, values)) return std::nullopt;
+  if (values.size() != 3) throw file.refuse(key, "must hold three numbers");
+  return Eigen::Vector3d(values[0], values[1], values[2]);
+}
+
+/// R = Rz Ry Rx, as the file says it.
+Eigen::Isometry3d read_pose(TomlFile& file, const char* origin_key, const char* rotation_key) {
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  if (const auto origin_m = read_vector(file, origin_key, "origin_m", units::mm)) out.translation() = *origin_m;
+  if (const auto angle_rad = read_vector(file, rotation_key, "rotation_rad", units::deg)) {
+    out.linear() = (Eigen::AngleAxisd(angle_rad->z(), Eigen::Vector3d::UnitZ()) *
+                    Eigen::AngleAxisd(angle_rad->y(), Eigen::Vector3d::UnitY()) *
+                    Eigen::AngleAxisd(angle_rad->x(), Eigen::Vector3d::UnitX()))
+                       .toRotationMatrix();
+  }
+  return out;
+}
+
+void read_kind(TomlFile& file) {
+  std::string kind = "serial";
+  file.text("robot.kind", kind);
+  if (kind == "serial") return;
+  if (kind == "hybrid-2upr-rpu") {
+    throw file.refuse("robot.kind", "is a hybrid machine, which cannot be read yet",
+                      "Serial arms can: kind = \"serial\"");
+  }
+  throw file.refuse("robot.kind", "must be one of \"serial\", \"hybrid-2upr-rpu\"");
+}
+
+std::vector<robot::DhRow> read_dh(TomlFile& file) {
+  std::vector<robot::DhRow> rows(file.tables("robot.dh"));
+  if (rows.empty())
+    throw file.refuse("robot.dh", "must hold a row a joint", "dh = [{ a_mm = 350, alpha_deg = -90, … }, …]");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto number = [&](const char* name, const char* member, double factor, double& value) {
+      file.number(fmt::format("robot.dh[{}].{}", i, name), fmt::format("dh[{}].{}", i + 1, member), factor, value);
+    };
+    number("a_mm", "a_m", units::mm, rows[i].a_m);
+    number("alpha_deg", "alpha_rad", units::deg, rows[i].alpha_rad);
+    number("d_mm", "d_m", units::mm, rows[i].d_m);
+    number("theta_offset_deg", "theta_offset_rad", units::deg, rows[i].theta_offset_rad);
+  }
+  return rows;
+}
+
+/// Bodies of the links; with DH they are given in the row's own frame.
+void read_links(TomlFile& file, const std::vector<robot::DhRow>& rows, robot::Arm& arm) {
+  if (!file.has("robot.links")) return;
+  const std::size_t count = file.tables("robot.links");
+  if (count != arm.joints.size()) {
+    throw file.refuse("robot.links",
+                      fmt::format("must hold one table a joint, {}; it holds {}", arm.joints.size(), count));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string key = fmt::format("robot.links[{}].", i), member = fmt::format("joints[{}].link.", i + 1);
+    robot::Link link;
+    file.require(key + "mass_kg");
+    file.number(key + "mass_kg", member + "mass_kg", 1.0, link.mass_kg);
+    if (const auto center_m =
+            read_vector(file, (key + "center_mm").c_str(), (member + "center_m").c_str(), units::mm)) {
+      link.center_m = *center_m;
+    }
+    std::vector<double> tensor;
+    if (file.numbers(key + "inertia_kg_m2", member + "inertia_kg_m2", 1.0, tensor)) {
+      if (tensor.size() != 6) throw file.refuse(key + "inertia_kg_m2", "must be [xx, yy, zz, xy, xz, yz]");
+      link.inertia_kg_m2 << tensor[0], tensor[3], tensor[4], tensor[3], tensor[1], tensor[5], tensor[4], tensor[5],
+          tensor[2];
+    }
+    if (!rows.empty()) {
+      const Eigen::Isometry3d frame = robot::dh_link(rows[i]);
+      link.center_m = frame * link.center_m;
+      link.inertia_kg_m2 = (frame.linear() * link.inertia_kg_m2 * frame.linear().transpose()).eval();
+    }
+    arm.joints[i].link = link;
+  }
+}
+
+void read_joint_lists(TomlFile& file, robot::Arm& arm) {
+  for (const JointList& list : joint_lists) {
+    std::vector<double> values;
+    if (!file.numbers(list.key, list.member, 1.0, values)) continue;
+    if (values.size() != arm.joints.size()) {
+      throw file.refuse(list.key,
+                        fmt::format("must hold one number a joint, {}; it holds {}", arm.joints.size(), values.size()));
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) arm.joints[i].*list.value = values[i];
+  }
+}
+
+/// An error about a joint's member, told with the list's key and the joint's place in it.
+InvalidInput located(const TomlFile& file, const InvalidInput& error) {
+  const InvalidInput::Parts& parts = error.parts();
+  for (const JointList& list : joint_lists) {
+    if (!parts.field.starts_with("joints[") || !parts.field.ends_with(std::string("].") + list.member)) continue;
+    if (!file.has(list.key)) continue;
+    InvalidInput::Parts told = file.refuse(list.key, parts.rule, parts.hint).parts();
+    told.field += parts.field.substr(6, parts.field.find(']') - 5);
+    told.number = parts.number;
+    told.unit = parts.unit;
+    told.value.clear();
+    return InvalidInput(std::move(told));
+  }
+  return file.located(error);
+}
+
+void read_arm(TomlFile& file, CellFile& out) {
+  read_kind(file);
+  std::filesystem::path urdf;
+  const bool from_urdf = file.path("robot.urdf", urdf);
+  if (from_urdf == file.has("robot.dh")) {
+    if (!from_urdf)
+      file.require("robot.dh",
+                   "Give the arm as dh = [{ a_mm = …, alpha_deg = …, d_mm = … }, …] or as urdf = \"arm.urdf\"");
+    throw file.refuse("robot.urdf", "must not stand beside dh");
+  }
+  robot::Arm& arm = out.cell.arm;
+  std::vector<robot::DhRow> rows;
+  UrdfReading reading;
+  file.text("robot.urdf_tip", reading.tip);
+  file.text("robot.urdf_base", reading.base);
+  if (from_urdf) {
+    file.require("robot.urdf_tip", "The link that is the flange");
+    UrdfArm read = read_urdf(urdf, reading);
+    arm = std::move(read.arm);
+    out.notes = std::move(read.notes);
+  } else {
+    for (const char* key : {"robot.urdf_tip", "robot.urdf_base"}) {
+      if (file.has(key)) throw file.refuse(key, "goes with robot.urdf");
+    }
+    rows = read_dh(file);
+    arm = file.locate([&] { return robot::arm_from_dh(rows); });
+  }
+  read_joint_lists(file, arm);
+  read_links(file, rows, arm);
+  robot::Joint& first = arm.joints.front();
+  first.before = read_pose(file, "robot.base_origin_mm", "robot.base_rotation_deg") * first.before;
+  arm.flange = arm.flange * read_pose(file, "tool.mount_origin_mm", "tool.mount_rotation_deg");
+  try {
+    arm.validate();
+  } catch (const InvalidInput& error) {
+    throw located(file, error);
+  }
+}
+
+void read_start(TomlFile& file, CellFile& out) {
+  const robot::Arm& arm = out.cell.arm;
+  if (!file.numbers("robot.start_joints_deg", "start_joints", units::deg, out.start_joints)) return;
+  if (out.start_joints.size() != arm.joints.size()) {
+    throw file.refuse("robot.start_joints_deg", fmt::format("must hold one angle a joint, {}", arm.joints.size()));
+  }
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const robot::Joint& joint = arm.joints[i];
+    if (joint.prismatic)
+      throw file.refuse("robot.start_joints_deg", fmt::format("must be angles; joint {} slides", i + 1));
+    if (out.start_joints[i] < joint.min_position || out.start_joints[i] > joint.max_position) {
+      throw file.refuse("robot.start_joints_deg",
+                        fmt::format("must lie within the limits; joint {} has {:.6g} to {:.6g} deg", i + 1,
+                                    joint.min_position / units::deg, joint.max_position / units::deg));
+    }
+  }
+}
+
+}  // namespace
+
+CellFile read_cell(const std::filesystem::path& path) {
+  TomlFile file(path);
+  CellFile out{.path = path};
+  file.skip("smoothing");
+  file.require("robot", "Write [robot] with the arm, kind = \"serial\" and dh or urdf");
+  read_arm(file, out);
+  read_start(file, out);
+  file.number("robot.gamma_deg", "redundant_gamma_rad", units::deg, out.redundant_gamma_rad);
+  out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
+  file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
+  if (file.text("program.machine", out.machine) &&
+      std::find(machines.begin(), machines.end(), out.machine) == machines.end()) {
+    throw file.refuse("program.machine", "must be one of \"xyzac-trt\", \"xyzbc-trt\", \"xyzac-head\", \"xyzbc-head\"");
+  }
+  file.done();
+  file.locate([&] { out.cell.validate(); });
+  return out;
+}
+
+}  // namespace robomill::formats

@@ -1,0 +1,214 @@
+#include "robomill/formats/cell_toml.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/robot/pose.hpp"
+#include "robomill/robot/test_arms.hpp"
+
+namespace robomill::formats {
+namespace {
+
+using robomill::test::Folder;
+using robomill::test::refusal;
+using robomill::test::seeds;
+namespace arms = robot::testing;
+
+const std::string good = R"([robot]
+kind = "serial"
+dh = [{ a_mm = 350, alpha_deg = -90, d_mm = 449.4, theta_offset_deg = 0 },
+      { a_mm = 1150, theta_offset_deg = -90 },
+      { a_mm = 41, alpha_deg = -90, theta_offset_deg = 180 },
+      { alpha_deg = 90, d_mm = -1200 },
+      { alpha_deg = -90 },
+      { alpha_deg = 180, d_mm = -420, theta_offset_deg = 180 }]
+base_origin_mm = [0, 0, 225.6]
+base_rotation_deg = [0, 0, 0]
+joint_min_position = [-3, -2, -2, -6, -2, -6]
+joint_max_position = [3, 1, 3, 6, 2, 6]
+joint_max_velocity = [2, 2, 2, 3, 3, 4]
+joint_max_acceleration = [5, 5, 5, 6, 6, 7]
+joint_max_jerk = [50, 50, 50, 60, 60, 70]
+joint_stiffness_n_m_per_rad = [2.2072e6, 3.37672e6, 2.77569e6, 2.35016e6, 2.15746e6, 0.467056e6]
+joint_damping_n_m_s_per_rad = [100, 90, 80, 70, 60, 50]
+joint_rotor_inertia_kg_m2 = [6, 5, 4, 3, 2, 1]
+links = [{ mass_kg = 300, center_mm = [-100, 50, 0], inertia_kg_m2 = [10, 20, 30, 1, 2, 3] },
+         { mass_kg = 200 }, { mass_kg = 150 }, { mass_kg = 50 }, { mass_kg = 30 }, { mass_kg = 20 }]
+gamma_deg = 30
+start_joints_deg = [-10.09, 9.36, 17.81, 21.30, -28.85, -18.86]
+[workpiece]
+origin_mm = [1270, 0, 776]
+rotation_deg = [10, 20, 90]
+[tool]
+length_mm = 100
+[program]
+machine = "xyzac-trt"
+[smoothing]
+tip_tolerance_mm = 0.02
+)";
+
+std::string with(const std::string& old_text, const std::string& new_text) {
+  std::string text = good;
+  EXPECT_NE(text.find(old_text), std::string::npos) << old_text;
+  return text.replace(text.find(old_text), old_text.size(), new_text);
+}
+
+TEST(CellToml, ReadsADhArmWithAllItsLists) {
+  const Folder folder;
+  const CellFile file = read_cell(folder.file("cell.toml", good));
+  const robot::Arm& arm = file.cell.arm;
+  const robot::Arm expected = arms::kr210();
+  ASSERT_EQ(arm.joints.size(), 6U);
+  const Eigen::VectorXd at = arms::kr210_posture();
+  EXPECT_LT((forward(arm, at).matrix() - forward(expected, at).matrix()).cwiseAbs().maxCoeff(), 1e-12);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_DOUBLE_EQ(arm.joints[i].stiffness, expected.joints[i].stiffness);
+    EXPECT_EQ(arm.joints[i].damping, 100.0 - 10.0 * static_cast<double>(i));
+    EXPECT_EQ(arm.joints[i].rotor_inertia, 6.0 - static_cast<double>(i));
+  }
+  EXPECT_EQ(arm.joints[1].min_position, -2.0);
+  EXPECT_EQ(arm.joints[1].max_position, 1.0);
+  EXPECT_EQ(arm.joints[5].max_velocity, 4.0);
+  EXPECT_EQ(arm.joints[5].max_acceleration, 7.0);
+  EXPECT_EQ(arm.joints[5].max_jerk, 70.0);
+  EXPECT_EQ(file.machine, "xyzac-trt");
+  EXPECT_DOUBLE_EQ(file.redundant_gamma_rad, arms::pi / 6.0);
+  EXPECT_DOUBLE_EQ(file.cell.tool_length_m, 0.1);
+  ASSERT_EQ(file.start_joints.size(), 6U);
+  for (Eigen::Index i = 0; i < 6; ++i) EXPECT_NEAR(file.start_joints[static_cast<std::size_t>(i)], at(i), 1e-15);
+  EXPECT_TRUE(file.notes.empty());
+}
+
+TEST(CellToml, ReadsLinksInTheFrameOfTheirRow) {
+  const Folder folder;
+  const robot::Link link = read_cell(folder.file("cell.toml", good)).cell.arm.joints[0].link;
+  EXPECT_EQ(link.mass_kg, 300.0);
+  // Row 1: Tz(0.4494) Tx(0.35) Rx(-90 deg), which takes (x, y, z) to (x + 0.35, z, 0.4494 - y).
+  EXPECT_LT((link.center_m - Eigen::Vector3d(0.25, 0.0, 0.3994)).norm(), 1e-14);
+  Eigen::Matrix3d expected;
+  expected << 10.0, 2.0, -1.0, 2.0, 30.0, -3.0, -1.0, -3.0, 20.0;
+  EXPECT_LT((link.inertia_kg_m2 - expected).norm(), 1e-13);
+}
+
+TEST(CellToml, TurnsTheWorkpieceAboutXThenYThenZ) {
+  const Folder folder;
+  const Eigen::Isometry3d workpiece = read_cell(folder.file("cell.toml", good)).cell.workpiece;
+  EXPECT_LT((workpiece.translation() - Eigen::Vector3d(1.27, 0.0, 0.776)).norm(), 1e-15);
+  const double x = arms::pi / 18.0, y = arms::pi / 9.0;
+  Eigen::Matrix3d rx, ry, rz;
+  rx << 1, 0, 0, 0, std::cos(x), -std::sin(x), 0, std::sin(x), std::cos(x);
+  ry << std::cos(y), 0, std::sin(y), 0, 1, 0, -std::sin(y), 0, std::cos(y);
+  rz << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  EXPECT_LT((workpiece.linear() - rz * ry * rx).norm(), 1e-15);
+}
+
+const std::string urdf = R"(<robot name="one"><link name="base"/><link name="arm"/><link name="tool0"/>
+<joint name="j1" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="1" velocity="2"/></joint>
+<joint name="f" type="fixed"><parent link="arm"/><child link="tool0"/><origin xyz="1 0 0"/></joint></robot>
+)";
+
+// The tool's axis is -z of the spindle frame: bolted on sideways it lies across the flange's z.
+TEST(CellToml, BoltsTheSpindleToTheFlange) {
+  const Folder folder;
+  const robot::Cell plain = read_cell(folder.file("plain.toml", good)).cell;
+  const robot::Cell bolted =
+      read_cell(folder.file("bolted.toml", with("length_mm = 100",
+                                                "length_mm = 100\nmount_origin_mm = [0, 80, 150]\n"
+                                                "mount_rotation_deg = [0, -90, 0]")))
+          .cell;
+  const Eigen::VectorXd q = arms::kr210_posture();
+  const Eigen::Isometry3d flange = robot::forward(plain.arm, q);
+  const Eigen::Isometry3d spindle = robot::forward(bolted.arm, q);
+  EXPECT_LE((flange.inverse() * spindle.translation() - Eigen::Vector3d(0.0, 0.08, 0.15)).norm(), 1e-12);
+  EXPECT_LE((flange.linear().transpose() * spindle.linear().col(2) + Eigen::Vector3d::UnitX()).norm(), 1e-12);
+}
+
+TEST(CellToml, ReadsAUrdfBesideItAndItsListsStandFirst) {
+  const Folder folder;
+  folder.file("one.urdf", urdf);
+  const CellFile file = read_cell(folder.file("cell.toml",
+                                              "[robot]\nurdf = \"one.urdf\"\nurdf_tip = \"tool0\"\n"
+                                              "urdf_base = \"base\"\njoint_max_velocity = 1.5\n"
+                                              "base_origin_mm = [0, 0, 500]\nbase_rotation_deg = [0, 0, 90]\n"));
+  ASSERT_EQ(file.cell.arm.joints.size(), 1U);
+  EXPECT_EQ(file.cell.arm.joints[0].max_position, 1.0);
+  EXPECT_EQ(file.cell.arm.joints[0].max_velocity, 1.5);
+  EXPECT_LT((forward(file.cell.arm, Eigen::VectorXd::Zero(1)).translation() - Eigen::Vector3d(0.0, 1.0, 0.5)).norm(),
+            1e-15);
+  EXPECT_EQ(file.machine, "");
+  EXPECT_TRUE(file.start_joints.empty());
+  EXPECT_TRUE(file.cell.workpiece.isApprox(Eigen::Isometry3d::Identity()));
+}
+
+TEST(CellToml, SaysWhatIsWrongAndWhere) {
+  const Folder folder;
+  folder.file("one.urdf", urdf);
+  const auto said = [&](const std::string& text) {
+    const auto path = folder.file("cell.toml", text);
+    return refusal([&] { (void)read_cell(path); }).substr(folder.path().string().size() + 1);
+  };
+  const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& message) {
+    EXPECT_EQ(said(with(old_text, new_text)).substr(0, message.size()), message);
+  };
+  expect("\"serial\"", "\"parallel\"", "cell.toml:2: robot.kind = \"parallel\"; must be one of \"serial\"");
+  expect("\"serial\"", "\"hybrid-2upr-rpu\"",
+         "cell.toml:2: robot.kind = \"hybrid-2upr-rpu\"; is a hybrid machine, which cannot be read yet");
+  expect("kind = \"serial\"", "urdf = \"one.urdf\"",
+         "cell.toml:2: robot.urdf = \"one.urdf\"; must not stand beside dh");
+  expect("kind = \"serial\"", "urdf_tip = \"x\"", "cell.toml:2: robot.urdf_tip = \"x\"; goes with robot.urdf");
+  expect("[-3, -2, -2, -6, -2, -6]", "[-3, -2, 9, -6, -2, -6]",
+         "cell.toml:11: robot.joint_min_position[3] = 9 rad; must be below max_position");
+  expect("[-3, -2, -2, -6, -2, -6]", "[-3, -2, -2]",
+         "cell.toml:11: robot.joint_min_position: must hold one number a joint, 6; it holds 3");
+  expect("[2, 2, 2, 3, 3, 4]", "[2, -2, 2, 3, 3, 4]",
+         "cell.toml:13: robot.joint_max_velocity[2] = -2 rad/s; must be >= 0");
+  expect("{ mass_kg = 30 }, ", "", "cell.toml:19: robot.links: must hold one table a joint, 6; it holds 5");
+  expect("{ mass_kg = 30 }", "{ center_mm = [0, 0, 0] }", "cell.toml: robot.links[5].mass_kg: is missing");
+  expect("{ mass_kg = 30 }", "{ mass_kg = -30 }", "cell.toml:20: robot.links[5].mass_kg = -30 kg; must be >= 0");
+  expect("[10, 20, 30, 1, 2, 3]", "[10, 20, 30]",
+         "cell.toml:19: robot.links[1].inertia_kg_m2: must be [xx, yy, zz, xy, xz, yz]");
+  expect("[10, 20, 30, 1, 2, 3]", "[10, 20, -30, 1, 2, 3]",
+         "cell.toml:19: robot.links[1].inertia_kg_m2: must be positive");
+  expect("length_mm = 100", "length_mm = -100", "cell.toml:27: tool.length_mm = -100 mm; must be >= 0");
+  expect("[1270, 0, 776]", "[1270, 0]", "cell.toml:24: workpiece.origin_mm: must hold three numbers");
+  expect("xyzac-trt", "xyzac", "cell.toml:29: program.machine = \"xyzac\"; must be one of \"xyzac-trt\"");
+  expect("[-10.09, 9.36", "[-1000, 9.36",
+         "cell.toml:22: robot.start_joints_deg: must lie within the limits; joint 1 has");
+  expect("a_mm = 1150", "a_m = 1150",
+         "cell.toml:4: robot.dh[2].a_m: is not known here. Did you mean robot.dh[2].a_mm?");
+  EXPECT_EQ(said("[tool]\nlength_mm = 1\n").substr(0, 27), "cell.toml: robot: is missin");
+  EXPECT_NE(said("[robot]\nkind = \"serial\"\n").find("robot.dh: is missing"), std::string::npos);
+  EXPECT_NE(said("[robot]\nurdf = \"one.urdf\"\n").find("robot.urdf_tip: is missing"), std::string::npos);
+  EXPECT_NE(said("[robot]\nurdf = \"one.urdf\"\nurdf_tip = \"tol0\"\n").find("Did you mean tool0?"), std::string::npos);
+  EXPECT_NE(said("[robot]\nurdf = \"two.urdf\"\nurdf_tip = \"tool0\"\n").find("two.urdf"), std::string::npos);
+}
+
+TEST(CellToml, DamagedFilesAreReadOrRefused) {
+  const Folder folder;
+  Random random(53);
+  int read = 0;
+  for (int k = 0; k < seeds(2000); ++k) {
+    std::string text = good;
+    const std::size_t at = random.index(text.size());
+    if (k % 2 == 0) {
+      text[at] = good[random.index(good.size())];
+    } else {
+      text.erase(at, 1 + random.index(10));
+    }
+    const auto path = folder.file("cell.toml", text);
+    try {
+      read_cell(path).cell.validate();
+      ++read;
+    } catch (const InvalidInput&) {
+      continue;
+    }
+  }
+  EXPECT_GT(read, 10);
+}
+
+}  // namespace
+}  // namespace robomill::formats

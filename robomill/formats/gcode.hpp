@@ -1,0 +1,30 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "robomill/base/export.hpp"
+#include "robomill/program/machine.hpp"
+#include "robomill/program/program.hpp"
+
+namespace robomill::formats {
+
+/// "xyzac-trt", "xyzbc-trt", "xyzac-head", "xyzbc-head".
+/// @throws InvalidInput naming the field program.machine
+[[nodiscard]] ROBOMILL_API program::Machine parse_machine(std::string_view name);
+
+/// Reads G-code (.ngc .nc .gcode): straight moves G0 and G1, in mm or inches (G21, G20), absolute or incremental (G90,
+/// G91), with F in mm/min (G94; deg/min where only the axis moves) or as the inverse of the move's minutes (G93). The
+/// axis comes from A, B and C in degrees or from I, J and K, its unit vector. A program that says nothing else is in
+/// mm, absolute, G94, its axis along z.
+///
+/// The first line after which X, Y and Z are all known makes the start. Moves that move nothing are left out. M codes,
+/// tools, offsets' numbers and G codes that move nothing stand in `skipped`.
+/// @param machine  what A, B and C mean; a program without them needs none
+/// @throws InvalidInput with file, line, word and value: what cannot be read, feeds that are missing or not above 0,
+///     two G codes of one group, words of axes that the machine does not have, and codes that would move the tool or
+///     its frame in ways that are not read (arcs, cycles, offsets G10 and G92, other coordinate systems, G28)
+[[nodiscard]] ROBOMILL_API program::Program read_gcode(const std::filesystem::path& path,
+                                                       std::optional<program::Machine> machine = {});
+
+}  // namespace robomill::formats

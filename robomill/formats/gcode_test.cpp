@@ -1,0 +1,239 @@
+#include "robomill/formats/gcode.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/formats/gcode_reader.hpp"
+
+namespace robomill::formats {
+namespace {
+
+using Eigen::Vector3d;
+using program::Block;
+using program::Machine;
+using program::Program;
+
+Program read(const std::string& text, std::optional<Machine> machine = {}) {
+  const test::Folder folder;
+  return read_gcode(folder.file("part.ngc", text), machine);
+}
+
+void expect_refused(const std::string& text, const std::string& words, std::optional<Machine> machine = {}) {
+  const std::string said = test::refusal([&] { static_cast<void>(read(text, machine)); });
+  EXPECT_NE(said.find(words), std::string::npos) << text << "\n" << said;
+}
+
+TEST(Gcode, ReadsAFiveAxisProgram) {
+  const Program program = read(
+      "%\n( Impeller )\nM428 ;TCP:xyzac\nG93\nS600 M3\n\n"
+      "G0  X  16.339  Y -25.409  Z  33.353  A -71.841  C -35.930\n"
+      "G0  X   7.417  Y -13.098  Z  28.366  A -71.841  C -35.930\n"
+      "G1  X   6.302  Y -11.560  Z  27.743  A -71.841  C -35.930  F 318\n"
+      "G1  X   6.358  Y -12.418  Z  26.178  A -71.266  C -32.919  F 159\n"
+      "M5\nM30\nG1 X1 Y1 F1 (not carried out)\n",
+      Machine::xyzac_trt);
+  ASSERT_EQ(program.blocks.size(), 3U);
+  EXPECT_LT((program.start.tip_m - Vector3d(0.016339, -0.025409, 0.033353)).norm(), 1e-15);
+  EXPECT_EQ(program.blocks[0].kind, Block::Kind::rapid);
+  EXPECT_EQ(program.blocks[0].duration_s, 0.0);
+  const Block& last = program.blocks[2];
+  EXPECT_EQ(last.kind, Block::Kind::feed);
+  EXPECT_EQ(last.line, 10U);
+  EXPECT_DOUBLE_EQ(last.duration_s, 60.0 / 159.0);
+  EXPECT_DOUBLE_EQ(last.spindle_speed_rad_per_s, 600.0 * std::numbers::pi / 30.0);
+  constexpr double deg = std::numbers::pi / 180.0;
+  EXPECT_LT((last.end.axis - program::tool_axis(Machine::xyzac_trt, -71.266 * deg, 0.0, -32.919 * deg)).norm(), 1e-15);
+  EXPECT_LT((program.begin_of(2).tip_m - Vector3d(0.006302, -0.011560, 0.027743)).norm(), 1e-15);
+  ASSERT_EQ(program.skipped.size(), 4U);
+  EXPECT_EQ(program.skipped[0].line, 3U);
+  EXPECT_EQ(program.skipped[0].what, "M428");
+  EXPECT_EQ(program.skipped[1].what, "M3");
+  EXPECT_EQ(program.skipped[3].what, "M30");
+}
+
+TEST(Gcode, FeedPerMinuteIsModalAndTimesTheWay) {
+  const Program program = read("G21 G90 G94\nG0 X0 Y0 Z5\nG1 Z-1 F 120\nX30 Y40\nF600 X0\n\nY0 F300\nG0 Z5\nG1 Z4\n");
+  ASSERT_EQ(program.blocks.size(), 6U);
+  EXPECT_NEAR(program.blocks[0].duration_s, 6.0 / 120.0 * 60.0, 1e-12);
+  EXPECT_NEAR(program.blocks[1].duration_s, 50.0 / 120.0 * 60.0, 1e-12);
+  EXPECT_NEAR(program.blocks[2].duration_s, 30.0 / 600.0 * 60.0, 1e-12);
+  EXPECT_NEAR(program.blocks[3].duration_s, 40.0 / 300.0 * 60.0, 1e-12);
+  EXPECT_EQ(program.blocks[4].kind, Block::Kind::rapid);
+  EXPECT_NEAR(program.blocks[5].duration_s, 1.0 / 300.0 * 60.0, 1e-12);
+}
+
+TEST(Gcode, OnlyTheAxisTurningTakesDegreesAMinute) {
+  const Program program = read("G0 X0 Y0 Z0 A0 C0\nG1 A3 C4 F50\nG1 X10 A0 F50\nG20 G1 A6 F60\n", Machine::xyzac_trt);
+  ASSERT_EQ(program.blocks.size(), 3U);
+  EXPECT_NEAR(program.blocks[0].duration_s, 5.0 / 50.0 * 60.0, 1e-12);
+  EXPECT_NEAR(program.blocks[1].duration_s, 10.0 / 50.0 * 60.0, 1e-12) << "the tip's way counts where it moves";
+  EXPECT_NEAR(program.blocks[2].duration_s, 6.0 / 60.0 * 60.0, 1e-12) << "degrees have no inches";
+  const Program vectors = read("G0 X0 Y0 Z0 I0 J0 K1\nG1 I0.6 J0 K0.8 F 30\n");
+  EXPECT_NEAR(vectors.blocks[0].duration_s, std::atan2(0.6, 0.8) * 180.0 / std::numbers::pi / 30.0 * 60.0, 1e-12);
+}
+
+TEST(Gcode, InchesAndSteps) {
+  const Program program = read("G20 G0 X1 Y2 Z3\nG91 G1 X1 F10\nG21 X25.4 F254\nG90 Z 1\n");
+  ASSERT_EQ(program.blocks.size(), 3U);
+  EXPECT_LT((program.start.tip_m - Vector3d(0.0254, 0.0508, 0.0762)).norm(), 1e-15);
+  EXPECT_LT((program.blocks[0].end.tip_m - Vector3d(0.0508, 0.0508, 0.0762)).norm(), 1e-15);
+  EXPECT_NEAR(program.blocks[0].duration_s, 6.0, 1e-12);
+  EXPECT_LT((program.blocks[1].end.tip_m - Vector3d(0.0762, 0.0508, 0.0762)).norm(), 1e-15);
+  EXPECT_NEAR(program.blocks[1].duration_s, 6.0, 1e-12);
+  EXPECT_NEAR(program.blocks[2].end.tip_m.z(), 0.001, 1e-15);
+  // A feed keeps the unit that it was given in.
+  const Program kept = read("G20 G0 X0 Y0 Z0\nG1 X1 F10\nG21 X0\n");
+  EXPECT_NEAR(kept.blocks[1].duration_s, 6.0, 1e-12);
+}
+
+TEST(Gcode, SpacesCaseCommentsNumbersAndDeletedBlocks) {
+  const Program program = read(
+      "o1234\nn10 g0 x 1 2 . 5 y+.5 z-0.25 (a (comment) ; and more\n/ g1 x99 f1\nN20 G 1 X(why)13 F1 0 0\r\n   "
+      "\t\r\n%\n");
+  EXPECT_LT((program.start.tip_m - Vector3d(0.0125, 0.0005, -0.00025)).norm(), 1e-15);
+  ASSERT_EQ(program.blocks.size(), 1U);
+  EXPECT_NEAR(program.blocks[0].duration_s, 0.5 / 100.0 * 60.0, 1e-12);
+  ASSERT_EQ(program.skipped.size(), 2U);
+  EXPECT_EQ(program.skipped[0].what, "O1234");
+  EXPECT_EQ(program.skipped[1].what, "/g1x99f1");
+}
+
+TEST(Gcode, TheStartIsTheFirstCompletePosition) {
+  const Program program = read("G0 Z10\nG0 Z20\nG0 X1 Y2\nG0 Z5\nG1 Z0 F1\n");
+  EXPECT_LT((program.start.tip_m - Vector3d(0.001, 0.002, 0.020)).norm(), 1e-15);
+  EXPECT_EQ(program.blocks.size(), 2U);
+}
+
+TEST(Gcode, LeavesOutWhatDoesNotMove) {
+  const Program program = read(
+      "G17 G40 G49 G80 G54 G64 P0.01\nT1 M6\nG43 H1\nG0 X0 Y0 Z0\nG0 X0\nG1 Y0 F10\nG4 P1\nG1 A0 C90 F10\nG1 X1 F10\n",
+      Machine::xyzac_trt);
+  ASSERT_EQ(program.blocks.size(), 1U) << "at A0, C turns the part about the tool's own axis";
+  ASSERT_EQ(program.skipped.size(), 4U);
+  EXPECT_EQ(program.skipped[0].what, "G17 G40 G49 G80 G54 G64 P0.01");
+  EXPECT_EQ(program.skipped[1].what, "T1 M6");
+  EXPECT_EQ(program.skipped[2].what, "G43 H1");
+}
+
+TEST(Gcode, RefusesWithLineWordAndRule) {
+  const std::string head = "G0 X0 Y0 Z0\n";
+  expect_refused(head + "G1 X1\n", "part.ngc:2: F: is missing: no line up to this G1 gives a feed");
+  expect_refused(head + "G1 X1 F0\n", "part.ngc:2: F = 0 mm/min; must be > 0 on a G1 line");
+  expect_refused(head + "G1 X1 F-3\n", "part.ngc:2: F = -3; must be > 0");
+  expect_refused(head + "G93 G1 X1 F2\nX2\n", "part.ngc:3: F: is missing: under G93 every G1 line");
+  expect_refused(head + "G1 X1 F5\nG93 X2\n", "part.ngc:3: F: is missing");
+  expect_refused(head + "G93 G1 X1 F2\nG94 X2\n", "part.ngc:3: F: is missing");
+  expect_refused(head + "G0 G1 X1\n", "part.ngc:2: G = 1; is the second code of its modal group");
+  expect_refused(head + "G20 G21\n", "G = 21; is the second code");
+  expect_refused(head + "G1 X1 X2 F1\n", "part.ngc:2: X = 2; comes twice");
+  expect_refused(head + "G1 Xnan F1\n", "part.ngc:2: \"xnanf1\": must be a letter and a number");
+  expect_refused(head + "G1 Xinf F1\n", "must be a letter and a number");
+  expect_refused(head + "G1 X--1 F1\n", "must be a letter and a number");
+  expect_refused(head + "G1 X+-1 F1\n", "must be a letter and a number");
+  expect_refused(head + "G1 X F1\n", "must be a letter and a number");
+  expect_refused(head + "G1 X1e3 F1\n", "E = 3; is a word not known here");
+  expect_refused(head + "G1 X1 U2 F1\n", "U = 2; is a word not known here");
+  expect_refused(head + "G1 X" + std::string(400, '9') + " F1\n", "that a double can hold");
+  expect_refused(head + "G1 X9999999 F1\n", "X = 1e+07 mm; must lie within 1 km");
+  expect_refused(head + "G2 X1 I1 J0\n",
+                 "part.ngc:2: G = 2; is not read: it may move the tool or its frame. Let the CAM");
+  expect_refused(head + "G92 X0\n", "It would move the program's frame");
+  expect_refused(head + "G10 L2 P1 X1\n", "G = 10; is not read");
+  expect_refused(head + "G28\n", "G = 28; is not read");
+  expect_refused(head + "G81 X1 Z-1 R1 F1\n", "cycles");
+  expect_refused(head + "G55\n", "G = 55; changes the coordinate system");
+  expect_refused(head + "G1234567\n", "is no G code");
+  expect_refused(head + "G1.05 X1\n", "is no G code");
+  expect_refused(head + "G4 X2\n", "part.ngc:2: G = 4; stands on a line with positions");
+  expect_refused(head + "G1 X#1 F1\n", "must be a letter and a number");
+  expect_refused(head + "#1=5\n", "is a parameter or an expression");
+  expect_refused(head + "o100 call [1]\n", "part.ngc:2: \"call[1]\": must be a letter and a number");
+  expect_refused(head + "o100 X1\n", "O = 100; is a subroutine or its control");
+  expect_refused(head + "osub call\n", "is a subroutine");
+  expect_refused(head + "M98 P1\n", "calls a subroutine");
+  expect_refused(head + "G1 X1 F1 (half\n", "is a comment that does not end");
+  expect_refused(head + "S-1\n", "S = -1 rpm; must be >= 0");
+  expect_refused(head + "\xC3\xA4\n", "\"\\xc3\\xa4\": must begin with a letter");
+  expect_refused("X1 Y1 Z1\n", "part.ngc:1: G: is missing: neither G0 nor G1");
+  expect_refused("G0 X1 Y1\nG1 X2 F1\n", "part.ngc:2: Z: is not known where the first G1 begins");
+  expect_refused("G91 G0 X1\n", "X = 1; is a step (G91) from a position");
+  expect_refused("(nothing)\n", "part.ngc: holds no complete position");
+}
+
+TEST(Gcode, RefusesAxesThatTheMachineDoesNotHave) {
+  const std::string head = "G0 X0 Y0 Z0\n";
+  expect_refused(head + "G0 A1\n", "part.ngc:2: A = 1 deg; turns an axis of a machine that is not stated");
+  expect_refused(head + "G0 B1\n", "B = 1 deg; turns an axis that the stated machine does not have",
+                 Machine::xyzac_trt);
+  expect_refused(head + "G0 A1\n", "does not have", Machine::xyzbc_head);
+  expect_refused(head + "G0 A-90\nG0 A90\n", "turns by half a circle in one move", Machine::xyzac_trt);
+  expect_refused(head + "G0 I1 J0\n", "K: is missing; I, J and K come together");
+  expect_refused(head + "G0 I3 J4 K0\n", "I, J, K = 5; must be a vector of length 1");
+  expect_refused(head + "G0 I0 J0 K1\nG0 A1\n", "the other way as well", Machine::xyzac_trt);
+  EXPECT_EQ(test::field_of([] { static_cast<void>(parse_machine("xyzab")); }), "program.machine");
+  EXPECT_EQ(parse_machine("xyzbc-head"), Machine::xyzbc_head);
+}
+
+// The reader takes a line at a time and gives the same blocks as the whole file.
+TEST(Gcode, ReadsLineByLine) {
+  GcodeReader reader("part.ngc", std::nullopt);
+  EXPECT_FALSE(reader.next("G0 X0 Y0 Z0").has_value());
+  ASSERT_TRUE(reader.start().has_value());
+  const std::optional<Block> block = reader.next("G1 X3 Y4 F300 M8");
+  ASSERT_TRUE(block.has_value());
+  EXPECT_NEAR(block->duration_s, 1.0, 1e-15);
+  ASSERT_EQ(reader.skipped().size(), 1U);
+  reader.skipped().clear();
+  EXPECT_FALSE(reader.ended());
+  EXPECT_FALSE(reader.next("M2").has_value());
+  EXPECT_TRUE(reader.ended());
+  EXPECT_FALSE(reader.next("X8").has_value());
+}
+
+// Cut off or changed at any place, or made of nothing but noise, a program is refused or read; what is read is finite.
+TEST(Gcode, SurvivesMutations) {
+  const std::string good =
+      "%\n(p)\nG93 G21\nS600 M3\nG0 X16.339 Y-25.409 Z33.353 A-71.841 C-35.930\nG1 X6.302 Y-11.5 Z27 A-71 C-35 F318\n"
+      "G94 F100\nX1\nG91 Y1\nG90 G20 Z.5\nN5 G1 X 1 A3 ; end\nM30\n";
+  const test::Folder folder;
+  Random random(11);
+  int accepted = 0;
+  for (int i = 0; i < test::seeds(20000); ++i) {
+    std::string text = good;
+    const bool noise = i % 4 == 0;
+    if (noise) {
+      text.resize(1 + random.index(120));
+      for (char& c : text) c = static_cast<char>(random.index(256));
+    } else {
+      static constexpr std::string_view letters = "GXYZABCIJKFNMSTO0123456789.-+ ()%;/\n\r";
+      for (std::uint64_t n = random.index(4); n-- > 0;) {
+        text[random.index(text.size())] =
+            i % 4 == 1 ? static_cast<char>(random.index(256)) : letters[random.index(letters.size())];
+      }
+      if (i % 4 == 2) text.resize(1 + random.index(good.size() - 1));
+    }
+    try {
+      const Program program = read_gcode(folder.file("part.ngc", text), Machine::xyzac_trt);
+      ++accepted;
+      for (const Block& block : program.blocks) {
+        ASSERT_TRUE(block.end.tip_m.allFinite()) << text;
+        ASSERT_NEAR(block.end.axis.norm(), 1.0, 1e-12) << text;
+        ASSERT_TRUE(std::isfinite(block.duration_s)) << text;
+        ASSERT_EQ(block.kind == Block::Kind::feed, block.duration_s > 0.0) << text;
+        ASSERT_GE(block.line, 1U);
+      }
+    } catch (const InvalidInput&) {
+      continue;
+    }
+  }
+  EXPECT_GT(accepted, 10);
+}
+
+}  // namespace
+}  // namespace robomill::formats

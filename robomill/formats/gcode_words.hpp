@@ -1,0 +1,35 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace robomill::formats {
+
+/// One line of G-code taken apart into words; keeps its memory from line to line.
+class GcodeWords {
+ public:
+  struct Word {
+    char letter = 0;        ///< lower case
+    double number = 0.0;    ///< finite
+    std::string_view text;  ///< letter and number, without blanks; until the next scan
+  };
+
+  /// Blanks within words, comments in parentheses or behind a semicolon, and any case are allowed.
+  /// @param where  "part.ngc:12", for errors
+  /// @throws InvalidInput if a word cannot be read
+  void scan(std::string_view line, const std::string& file, std::size_t number);
+
+  [[nodiscard]] const std::vector<Word>& words() const { return words_; }
+  /// The line begins with a slash: not carried out where the machine's block delete is on.
+  [[nodiscard]] bool deleted() const { return !compact_.empty() && compact_.front() == '/'; }
+  [[nodiscard]] std::string_view compact() const { return compact_; }
+
+ private:
+  std::string compact_;
+  std::vector<Word> words_;
+};
+
+}  // namespace robomill::formats

@@ -1,0 +1,28 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/cutting/coefficients.hpp"
+
+namespace robomill::formats {
+
+/// slots.csv: mean forces of slots, on the tool.
+struct SlotsFile {
+  std::vector<cutting::SlotForce> slots;
+  std::vector<std::size_t> lines;  ///< of each in the file, from 1
+};
+
+/// Columns feed_per_tooth_mm, axial_depth_mm, fx_n, fy_n, fz_n, and spindle_speed_rpm where it is known.
+/// @throws InvalidInput with file, line, column and value
+[[nodiscard]] ROBOMILL_API SlotsFile read_slots(const std::filesystem::path& path);
+
+/// coefficients.toml: the coefficients, and a table [identification] that says how well they are known. What is
+/// infinite or not known is left out.
+[[nodiscard]] ROBOMILL_API std::string slot_fit_toml(const cutting::SlotFit& fit, const SlotsFile& file);
+/// The same as JSON, with null for it.
+[[nodiscard]] ROBOMILL_API std::string slot_fit_json(const cutting::SlotFit& fit, const SlotsFile& file);
+
+}  // namespace robomill::formats
