@@ -1,28 +1,12 @@
 #include "robomill/report/report.hpp"
 
 #include <cmath>
-#include <string_view>
 
 #include "robomill/base/error.hpp"
+#include "robomill/report/checks.hpp"
 
 namespace robomill::report {
 namespace {
-
-std::string member(std::string_view list, std::size_t index, std::string_view name) {
-  return std::string(list) + "[" + std::to_string(index) + "]." + std::string(name);
-}
-
-void require_axis(const std::string& field, const Eigen::VectorXd& axis) {
-  for (Eigen::Index i = 0; i < axis.size(); ++i) {
-    if (!std::isfinite(axis[i])) throw InvalidInput(field, "must be finite");
-    if (i > 0 && axis[i] <= axis[i - 1]) throw InvalidInput(field, "must increase");
-  }
-}
-
-void require_length(const std::string& field, Eigen::Index length, Eigen::Index expected, bool may_be_empty) {
-  if (length == expected || (may_be_empty && length == 0)) return;
-  throw InvalidInput(field, "has " + std::to_string(length) + " values where its axis has " + std::to_string(expected));
-}
 
 void validate_frfs(const Report& report) {
   require_axis("frf_frequency_hz", report.frf_frequency_hz);
@@ -134,6 +118,12 @@ void Report::validate() const {
   }
   validate_lobes(*this);
   validate_cuts(*this);
+  if (!forces) return;
+  try {
+    forces->validate();
+  } catch (const InvalidInput& error) {
+    throw within("forces.", error);
+  }
 }
 
 Agreement agreement(const std::vector<TestCut>& cuts) {

@@ -1,7 +1,6 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,21 +9,16 @@
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/modes.hpp"
+#include "robomill/report/fact.hpp"
+#include "robomill/report/forces.hpp"
 
 /// Results of the other stages, as a page to look at and as the data of its plots. The structs are filled by whoever
 /// ran the stages; every part may be left empty, and the page leaves its section out. NaN means "missing", or "none in
 /// the range" where a member says so; it becomes null.
 namespace robomill::report {
 
-inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-
 /// What a cut did, or is predicted to do.
 enum class Verdict { unknown, stable, borderline, chatter };
-
-/// A row of two texts: "Cutter", "3 teeth, 12 mm".
-struct Fact {
-  std::string label, value;
-};
 
 /// Cutting conditions that will not chatter, and what keeps them from being faster.
 struct Recommendation {
@@ -221,6 +215,7 @@ struct Report {
   std::vector<DepthCurve> other_limits = {};  ///< torque, power, the cutter's length
   std::vector<TestCut> cuts = {};
   std::optional<FeedDirections> feed_directions = {};
+  std::optional<Forces> forces = {};
   std::vector<Recording> recordings = {};
   std::vector<StageFile> files = {};
 

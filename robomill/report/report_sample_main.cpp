@@ -22,6 +22,11 @@ int main(int argc, char** argv) {
     report.prediction->holder_file = evil;
     report.prediction->notes = {evil};
     report.lobes.back().label = evil;
+    report.forces->facts = {{evil, evil}};
+    report.forces->warnings = {evil};
+    report.forces->notes = {evil};
+    report.forces->revolution->verdict = evil;
+    report.forces->path->troubles = {evil};
     report.recordings.front().file = evil;
     report.recordings.front().peaks.front().text = evil;
   }

@@ -136,6 +136,11 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.files = {{evil, evil, evil}};
   report.prediction->holder_file = evil;
   report.prediction->notes = {evil};
+  report.forces->facts = {{evil, evil}};
+  report.forces->warnings = {evil};
+  report.forces->notes = {evil};
+  report.forces->revolution->verdict = evil;
+  report.forces->path->troubles = {evil};
   const std::string html = report_html(report);
   EXPECT_EQ(count(html, "<script"), scripts);
   EXPECT_EQ(html.find("<img"), std::string::npos);
@@ -243,6 +248,7 @@ TEST(ReportValidate, NamesTheMember) {
   EXPECT_EQ(refused([](Report& r) { r.recommendation = Recommendation{}; }), "recommendation.spindle_speed_rad_per_s");
   EXPECT_EQ(refused([](Report& r) { r.feed_directions->limit_at_speed_m.resize(5); }),
             "feed_directions.limit_at_speed_m");
+  EXPECT_EQ(refused([](Report& r) { r.forces->path->cuts.pop_back(); }), "forces.path.cuts");
 }
 
 TEST(Agreement, CountsEveryCutOnce) {

@@ -15,6 +15,9 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] std::string pairs_section(const Json& report, bool plots);
 [[nodiscard]] std::string recordings_section(const Json& report, bool plots);
 
+// sections_forces.cpp: over a revolution, along a program, over the spindle's rotation
+[[nodiscard]] std::string forces_section(const Json& report, bool plots);
+
 // sections_assembly.cpp: tool, joint and holder, and what is predicted of them
 [[nodiscard]] std::string assembly_section(const Json& report);
 

@@ -34,4 +34,18 @@ std::vector<Eigen::Index> thin(const Eigen::VectorXd& values, Eigen::Index most)
   return keep;
 }
 
+std::vector<Eigen::Index> thin_together(const std::vector<Eigen::VectorXd>& curves, Eigen::Index most) {
+  std::vector<Eigen::Index> keep;
+  if (curves.empty()) return keep;
+  if (curves.front().size() <= most) return thin(curves.front(), most);
+  const Eigen::Index share = most / static_cast<Eigen::Index>(curves.size());
+  for (const Eigen::VectorXd& curve : curves) {
+    const std::vector<Eigen::Index> own = thin(curve, share);
+    keep.insert(keep.end(), own.begin(), own.end());
+  }
+  std::sort(keep.begin(), keep.end());
+  keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
+  return keep;
+}
+
 }  // namespace robomill::report

@@ -8,4 +8,9 @@ namespace robomill::report {
 /// equal runs, the lowest and the highest finite value. No peak and no dip is lost. Increasing.
 [[nodiscard]] std::vector<Eigen::Index> thin(const Eigen::VectorXd& values, Eigen::Index most = 6000);
 
+/// The same for several curves over one axis, equally long: the peaks and dips of each are kept. At most some `most`
+/// indices; increasing.
+[[nodiscard]] std::vector<Eigen::Index> thin_together(const std::vector<Eigen::VectorXd>& curves,
+                                                      Eigen::Index most = 6000);
+
 }  // namespace robomill::report

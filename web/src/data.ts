@@ -104,6 +104,66 @@ export interface Recording {
   peaks: Peak[];
 }
 
+export interface Ring {
+  height_mm: number;
+  position_deg: Num;
+  arcs: { entry_deg: number; exit_deg: number }[];
+}
+
+export interface Revolution {
+  on: 'tool' | 'workpiece';
+  rotation_deg: number[];
+  fx_n: number[];
+  fy_n: number[];
+  fz_n: number[];
+  torque_n_m: number[];
+  engagement: Ring[];
+}
+
+export interface ForceCurves {
+  path_mm: number[];
+  block: number[];
+  line: number[];
+  peak_force_n: Num[];
+  torque_n_m: Num[];
+  peak_torque_n_m: Num[];
+  power_w: Num[];
+  deflection_um: Num[] | null;
+}
+
+export interface Track {
+  x_mm: number[];
+  y_mm: number[];
+  z_mm: number[];
+  block: number[];
+  line: number[];
+  peak_force_n: Num[];
+  cuts: boolean[];
+}
+
+export interface Program {
+  torque_limit_n_m: Num;
+  power_limit_w: Num;
+  curves: ForceCurves;
+  track: Track;
+}
+
+export interface SpindleRotation {
+  rotation_deg: number[];
+  deflection_um: Num[];
+  condition_number: Num[] | null;
+  best_deg: Num;
+  best_um: Num;
+  used_deg: Num;
+  used_um: Num;
+}
+
+export interface Forces {
+  revolution: Revolution | null;
+  program: Program | null;
+  spindle_rotation: SpindleRotation | null;
+}
+
 export interface Report {
   recommendation: Recommendation | null;
   alternatives: Recommendation[];
@@ -114,5 +174,6 @@ export interface Report {
   other_limits: DepthCurve[];
   cuts: Cut[];
   feed_directions: FeedDirections | null;
+  forces: Forces | null;
   recordings: Recording[];
 }

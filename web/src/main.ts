@@ -1,10 +1,12 @@
 import * as Plotly from 'plotly.js-cartesian-dist-min';
-import type { Report } from './data';
+import type { Forces, Report } from './data';
 import { convergenceFigure, stabilisationFigure } from './fit';
+import { engagementFigure, gammaFigure, programFigure, revolutionFigure } from './forces';
 import { frfFigure, prefersLogFrequency } from './frf';
 import { lobesFigure, mapFigure, pairFigure } from './lobes';
 import { polarFigure } from './polar';
 import { spectrumFigure } from './spectrum';
+import { trackFigure } from './track';
 import { dark, light, type Figure, type Theme } from './theme';
 
 type Draw = (theme: Theme, width: number) => Figure;
@@ -115,6 +117,15 @@ function addRecording(report: Report, index: number, figure: HTMLElement, canvas
   });
 }
 
+function addForces(forces: Forces, which: string | undefined, canvas: HTMLElement): void {
+  const { revolution, program, spindle_rotation: rotation } = forces;
+  if (which === 'revolution' && revolution) add(canvas, (theme, width) => revolutionFigure(revolution, theme, width < 600));
+  else if (which === 'engagement' && revolution) add(canvas, (theme, width) => engagementFigure(revolution.engagement, theme, width < 600));
+  else if (which === 'program' && program) add(canvas, (theme) => programFigure(program, theme));
+  else if (which === 'track' && program) add(canvas, (theme, width) => trackFigure(program.track, theme, width));
+  else if (which === 'gamma' && rotation) add(canvas, (theme, width) => gammaFigure(rotation, theme, width < 600));
+}
+
 function addPlot(report: Report, figure: HTMLElement, canvas: HTMLElement): void {
   const [which, index] = (figure.dataset['plot'] ?? '').split(':');
   const all = report.lobes[0];
@@ -139,6 +150,8 @@ function addPlot(report: Report, figure: HTMLElement, canvas: HTMLElement): void
   } else if (which === 'stabilisation' && report.fit) {
     const { fit } = report;
     add(canvas, (theme) => stabilisationFigure(fit, theme));
+  } else if (report.forces) {
+    addForces(report.forces, which, canvas);
   }
 }
 

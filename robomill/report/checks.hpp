@@ -1,0 +1,16 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+/// Rules that the parts of a report share. Each throws InvalidInput naming the field.
+namespace robomill::report {
+
+/// "lobes[2].limit_depth_m"
+[[nodiscard]] std::string member(std::string_view list, std::size_t index, std::string_view name);
+/// Finite, and each value above the one before.
+void require_axis(const std::string& field, const Eigen::VectorXd& axis);
+void require_length(const std::string& field, Eigen::Index length, Eigen::Index expected, bool may_be_empty);
+
+}  // namespace robomill::report
