@@ -10,6 +10,7 @@
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/hits_toml.hpp"
 #include "robomill/formats/modes_files.hpp"
+#include "robomill/formats/units.hpp"
 #include "robomill/plan/choose.hpp"
 #include "robomill/plan/test_cuts.hpp"
 
@@ -167,6 +168,35 @@ RecommendOptions recommend_options(const formats::Job& job) {
   return options;
 }
 
+/// Whether the spindle can turn the cutter through the cut whose forces were asked for.
+void warn_of_spindle(PlanResult& result) {
+  const std::vector<SpindleCapacity> curve = recommend_options(result.job).spindle;
+  if (curve.empty()) return;
+  std::size_t weak = 0;
+  SpindleLoad worst;
+  double most = 0.0;
+  for (const SpindleLoad& load : spindle_loads(*result.forces)) {
+    const SpindleCapacity able = capacity_at(curve, load.spindle_speed_rad_per_s);
+    const bool inside = able.torque_n_m > 0.0 && able.power_w > 0.0;
+    const double share = inside ? std::max(load.torque_n_m / able.torque_n_m, load.power_w / able.power_w) : HUGE_VAL;
+    if (!(share > 1.0)) continue;
+    if (++weak == 1 || share > most) {
+      most = share;
+      worst = load;
+    }
+  }
+  if (weak == 0) return;
+  const std::string place = worst.line > 0 ? fmt::format("in {} blocks, most in line {}: ", weak, worst.line) : "";
+  const SpindleCapacity able = capacity_at(curve, worst.spindle_speed_rad_per_s);
+  const std::string has = std::isinf(most) ? std::string("that speed is outside the spindle's curve")
+                                           : fmt::format("the spindle has {:.3g} N·m and {:.3g} kW", able.torque_n_m,
+                                                         able.power_w / units::kw);
+  result.warnings.push_back(
+      fmt::format("The cut asks for more than the spindle has, {}{:.3g} N·m and {:.3g} kW at "
+                  "{:.0f} rpm; {}.",
+                  place, worst.torque_n_m, worst.power_w / units::kw, worst.spindle_speed_rad_per_s / units::rpm, has));
+}
+
 /// The deepest pockets of the lobes stand where tooth passing meets a mode: no chatter there, but resonance.
 void warn_of_resonance(PlanResult& result) {
   if (!result.recommendation.recommended) return;
@@ -311,6 +341,10 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
                        "plan needs it for the removal rate");
   }
   measure(result, progress);
+  if (!result.job.forces.empty()) {
+    result.forces = run_forces(result.job.forces, result.job.program, result.job.cell, progress);
+    warn_of_spindle(result);
+  }
   fit(result, seed, progress);
   if (result.job.equal_directions) {
     result.model = with_equal_directions(result.model);

@@ -11,6 +11,7 @@
 #include "robomill/formats/lobes_toml.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/hits.hpp"
+#include "robomill/plan/forces.hpp"
 #include "robomill/plan/predict.hpp"
 #include "robomill/plan/recommend.hpp"
 #include "robomill/report/report.hpp"
@@ -35,6 +36,7 @@ struct PlanResult {
   std::vector<report::Lobes> pairs;      ///< limits of modes 1–2, 3–4, …
   std::optional<report::FeedDirections> feed_directions;
   Recommendation recommendation;
+  std::optional<ForcesResult> forces;  ///< of a job that asks for them
   std::vector<report::TestCut> cuts;
   std::vector<report::Recording> recordings;
   std::vector<std::string> warnings, notes;

@@ -7,6 +7,7 @@
 #include "robomill/formats/lobes_json.hpp"
 #include "robomill/formats/modes_files.hpp"
 #include "robomill/formats/units.hpp"
+#include "robomill/plan/forces_json.hpp"
 #include "robomill/plan/plan.hpp"
 
 namespace robomill::plan {
@@ -99,6 +100,7 @@ std::string plan_json(const PlanResult& result) {
   if (result.hits) json["frf"] = Json::parse(formats::hits_json(*result.hits));
   json["modes"] = Json::parse(modes_json(result));
   json["lobes"] = Json::parse(lobes_json(result));
+  if (result.forces) json["forces"] = forces_object(*result.forces);
   return json.dump(1) + "\n";
 }
 
@@ -116,6 +118,13 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   files.push_back({.stage = "modes", .file = "modes.json", .description = "modal parameters"});
   formats::write_file(folder / "lobes.json", lobes_json(result));
   files.push_back({.stage = "lobes", .file = "lobes.json", .description = "stability lobes"});
+  if (result.forces) {
+    formats::write_file(folder / "forces.csv", forces_csv(*result.forces));
+    files.push_back({.stage = "forces",
+                     .file = "forces.csv",
+                     .description = result.forces->program ? "cutting forces, a row a block of the program"
+                                                           : "cutting forces over a revolution"});
+  }
   formats::write_file(folder / "plan.json", plan_json(result));
   files.push_back({.stage = "plan", .file = "plan.json", .description = "recommendation and every stage's result"});
   formats::write_file(folder / "report.html", report::report_html(make_report(result, files)));

@@ -199,6 +199,26 @@ void add_other_limits(report::Report& report, const PlanResult& result) {
   }
 }
 
+/// What the spindle has, where the whole program runs at one speed of its curve.
+report::Forces with_limits(report::Forces forces, const PlanResult& result) {
+  if (!forces.path || result.job.spindle_curve.empty()) return forces;
+  const std::vector<SpindleLoad> loads = spindle_loads(*result.forces);
+  if (loads.empty()) return forces;
+  const double speed = loads.front().spindle_speed_rad_per_s;
+  if (std::ranges::any_of(loads, [&](const SpindleLoad& l) { return l.spindle_speed_rad_per_s != speed; })) {
+    return forces;
+  }
+  std::vector<SpindleCapacity> curve;
+  curve.reserve(result.job.spindle_curve.size());
+  for (const formats::SpindlePoint& p : result.job.spindle_curve) {
+    curve.push_back({p.spindle_speed_rad_per_s, p.torque_n_m, p.power_w});
+  }
+  const SpindleCapacity able = capacity_at(curve, speed);
+  if (able.torque_n_m > 0.0) forces.path->torque_limit_n_m = able.torque_n_m;
+  if (able.power_w > 0.0) forces.path->power_limit_w = able.power_w;
+  return forces;
+}
+
 }  // namespace
 
 std::string limited_by_text(const Operation& operation) {
@@ -245,6 +265,7 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   report.cuts = result.cuts;
   report.feed_directions = result.feed_directions;
   report.recordings = result.recordings;
+  if (result.forces) report.forces = with_limits(forces_report(*result.forces), result);
   report.files = files;
   return report;
 }

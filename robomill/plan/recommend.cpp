@@ -13,22 +13,6 @@ double depth_or_all(const DepthLimit& limit, const RecommendOptions& options) {
   return std::min(limit.axial_depth_m.value_or(options.searched_depth_m), options.searched_depth_m);
 }
 
-/// Linear in speed; nothing outside the curve.
-SpindleCapacity capacity_at(const std::vector<SpindleCapacity>& curve, double speed) {
-  const auto above = std::find_if(curve.begin(), curve.end(),
-                                  [&](const SpindleCapacity& p) { return p.spindle_speed_rad_per_s >= speed; });
-  if (above == curve.end()) return {.spindle_speed_rad_per_s = speed};
-  if (above == curve.begin()) {
-    return above->spindle_speed_rad_per_s == speed ? *above : SpindleCapacity{.spindle_speed_rad_per_s = speed};
-  }
-  const SpindleCapacity& low = *(above - 1);
-  const double t =
-      (speed - low.spindle_speed_rad_per_s) / (above->spindle_speed_rad_per_s - low.spindle_speed_rad_per_s);
-  return {.spindle_speed_rad_per_s = speed,
-          .torque_n_m = std::lerp(low.torque_n_m, above->torque_n_m, t),
-          .power_w = std::lerp(low.power_w, above->power_w, t)};
-}
-
 /// The operation at `speed`, given the lowest limit in its window.
 Operation operation_at(double speed, const DepthLimit& lowest, const RecommendOptions& options) {
   Operation op;
@@ -134,6 +118,22 @@ void validate_limits(const std::vector<DepthLimit>& limits) {
 }
 
 }  // namespace
+
+SpindleCapacity capacity_at(const std::vector<SpindleCapacity>& curve, double spindle_speed_rad_per_s) {
+  const double speed = spindle_speed_rad_per_s;
+  const auto above = std::find_if(curve.begin(), curve.end(),
+                                  [&](const SpindleCapacity& p) { return p.spindle_speed_rad_per_s >= speed; });
+  if (above == curve.end()) return {.spindle_speed_rad_per_s = speed};
+  if (above == curve.begin()) {
+    return above->spindle_speed_rad_per_s == speed ? *above : SpindleCapacity{.spindle_speed_rad_per_s = speed};
+  }
+  const SpindleCapacity& low = *(above - 1);
+  const double t =
+      (speed - low.spindle_speed_rad_per_s) / (above->spindle_speed_rad_per_s - low.spindle_speed_rad_per_s);
+  return {.spindle_speed_rad_per_s = speed,
+          .torque_n_m = std::lerp(low.torque_n_m, above->torque_n_m, t),
+          .power_w = std::lerp(low.power_w, above->power_w, t)};
+}
 
 void RecommendOptions::validate() const {
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be >= 1");

@@ -22,6 +22,9 @@ struct SpindleCapacity {
   double torque_n_m = 0.0;
   double power_w = 0.0;
 };
+/// Linear in speed between the points of a curve; no torque and no power outside it.
+[[nodiscard]] ROBOMILL_API SpindleCapacity capacity_at(const std::vector<SpindleCapacity>& curve,
+                                                       double spindle_speed_rad_per_s);
 
 /// What recommend needs to know of the cut and how careful it is.
 struct RecommendOptions {

@@ -1,0 +1,163 @@
+#include "robomill/plan/program_forces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "robomill/formats/gcode.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/robot/choose.hpp"
+#include "robomill/robot/inverse.hpp"
+#include "robomill/robot/stiffness.hpp"
+
+namespace robomill::plan {
+namespace {
+
+using cutting::BlockForce;
+
+std::string where(const std::filesystem::path& program, const program::Block& block) {
+  return fmt::format("{}:{}", program.string(), block.line);
+}
+
+/// Why the robot cannot stand where a block ends.
+std::string reason(const robot::Choice& choice) {
+  switch (choice.status) {
+    case robot::Choice::Status::out_of_reach:
+      return choice.out_of_reach_m > 0.0
+                 ? fmt::format("is out of the robot's reach by {:.4g} mm", choice.out_of_reach_m / units::mm)
+                 : fmt::format("asks the wrist to bend {:.3g}° too far", choice.out_of_reach_rad / units::deg);
+    case robot::Choice::Status::outside_limits:
+      return fmt::format("takes joint {} {:.3g}° beyond its limit", choice.joint + 1, choice.beyond_rad / units::deg);
+    case robot::Choice::Status::singular:
+      return fmt::format("is singular for the robot (condition number {:.3g})", choice.condition_number);
+    case robot::Choice::Status::jump:
+      return fmt::format("makes a joint jump by {:.3g}°", choice.travel_rad / units::deg);
+    case robot::Choice::Status::found:
+      break;
+  }
+  return "can be reached";
+}
+
+/// An error that names no place is one of the cell.
+template <class F>
+void told_of_cell(const formats::CellFile& cell, F&& f) {
+  try {
+    f();
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    if (!parts.where.empty()) throw;
+    parts.where = cell.path.string();
+    throw InvalidInput(std::move(parts));
+  }
+}
+
+/// Joints at the end of every block.
+std::vector<robot::Position6> joints_along(const formats::CellFile& file, const program::Program& program,
+                                           const std::filesystem::path& path) {
+  const robot::Cell& cell = file.cell;
+  const robot::SphericalWristInverse inverse(cell.arm);
+  std::vector<Eigen::Isometry3d> flanges;
+  flanges.reserve(program.blocks.size());
+  for (const program::Block& block : program.blocks) {
+    flanges.push_back(robot::flange_pose(
+        cell, {.tip_m = block.end.tip_m, .axis = block.end.axis, .gamma_rad = file.redundant_gamma_rad}));
+  }
+  std::optional<robot::Position6> start;
+  if (file.start_joints.size() == 6) start = robot::Position6(file.start_joints.data());
+  const robot::Followed way = robot::follow(cell.arm, inverse, flanges, start, {.point_m = robot::tip_point(cell)});
+  if (way.status != robot::Choice::Status::found) {
+    throw InvalidInput(
+        InvalidInput::Parts{.where = where(path, program.blocks[way.reached]),
+                            .field = "this block",
+                            .rule = reason(way.last),
+                            .hint = "Move [workpiece] origin_mm, or turn the flange with robot.gamma_deg"});
+  }
+  return way.position_rad;
+}
+
+/// The tip gives way under the mean force of every block.
+void bend(const formats::CellFile& file, const std::vector<robot::Position6>& joints, const program::Program& program,
+          const std::filesystem::path& path, std::vector<BlockResult>& rows) {
+  const robot::Cell& cell = file.cell;
+  const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
+  parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      BlockResult& row = rows[i];
+      row.joints = joints[i];
+      const Eigen::Vector3d force = base_from_work * row.force.mean_force_n;
+      const robot::Stiffness stiffness =
+          robot::stiffness(cell.arm, row.joints, robot::tip_point(cell), {.force_n = force});
+      if (stiffness.status != robot::Stiffness::Status::regular) {
+        throw InvalidInput(InvalidInput::Parts{.where = where(path, program.blocks[i]),
+                                               .field = "this block",
+                                               .rule = "bends the robot beyond what its joints hold",
+                                               .hint = "Is joint_stiffness_n_m_per_rad right?"});
+      }
+      row.condition_number = stiffness.condition_number;
+      row.deflection_m = base_from_work.transpose() * (stiffness.compliance.topLeftCorner<3, 3>() * force);
+    }
+  });
+}
+
+/// The first of the blocks for which something is so, and how many they are.
+template <class Is>
+void warn_of(const ProgramForces& program, std::vector<std::string>& warnings, Is is, const char* text) {
+  std::size_t count = 0;
+  std::size_t first = 0;
+  for (const BlockResult& row : program.blocks) {
+    if (!is(row.force)) continue;
+    if (count == 0) first = program.program.blocks[row.force.block].line;
+    ++count;
+  }
+  if (count > 0)
+    warnings.push_back(fmt::format("{} block{} {}, the first in line {}.", count, count == 1 ? "" : "s", text, first));
+}
+
+}  // namespace
+
+ProgramForces run_program(const formats::ForcesFile& file, const std::optional<formats::CellFile>& cell,
+                          const std::filesystem::path& path, std::vector<std::string>& warnings,
+                          std::vector<std::string>& notes, Progress& progress) {
+  const auto begun = std::chrono::steady_clock::now();
+  ProgramForces out;
+  std::optional<program::Machine> machine;
+  if (cell && !cell->machine.empty()) machine = formats::parse_machine(cell->machine);
+  out.program = formats::read_gcode(path, machine);
+  if (out.program.blocks.empty()) {
+    throw InvalidInput(InvalidInput::Parts{.where = path.string(), .rule = "has no move"});
+  }
+  std::vector<robot::Position6> joints;
+  if (cell) told_of_cell(*cell, [&] { joints = joints_along(*cell, out.program, path); });
+  if (!file.stock) notes.emplace_back("No stock is given: a box around the program's feed moves is taken for it.");
+  const std::vector<BlockForce> forces = file.located([&] {
+    const cutting::Stock stock = file.stock ? *file.stock
+                                            : cutting::stock_about(out.program, file.cutter, file.dexel_m,
+                                                                   std::max(file.cut.axial_depth_m, file.dexel_m));
+    cutting::Workpiece workpiece(stock, file.dexel_m);
+    return cutting::program_forces(
+        out.program, file.cutter, file.coefficients, workpiece,
+        {.spindle_speed_rad_per_s = file.motion.spindle_speed_rad_per_s, .force = file.force}, progress);
+  });
+  out.blocks.reserve(forces.size());
+  for (const BlockForce& force : forces) {
+    out.blocks.push_back({.force = force});
+    out.removed_volume_m3 += force.removed_volume_m3;
+  }
+  if (cell) told_of_cell(*cell, [&] { bend(*cell, joints, out.program, path, out.blocks); });
+  warn_of(
+      out, warnings, [](const BlockForce& f) { return f.shank_depth_m > 0.0; }, "run the shank into material");
+  warn_of(
+      out, warnings, [](const BlockForce& f) { return f.rapid_in_material; }, "move through material in rapid");
+  if (!out.program.skipped.empty()) {
+    notes.push_back(fmt::format("{} words of the program were not read, the first in line {}: {}.",
+                                out.program.skipped.size(), out.program.skipped.front().line,
+                                out.program.skipped.front().what));
+  }
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return out;
+}
+
+}  // namespace robomill::plan

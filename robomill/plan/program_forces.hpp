@@ -1,0 +1,17 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/plan/forces.hpp"
+
+namespace robomill::plan {
+
+/// Forces along a program, and the robot under them where there is a cell.
+/// @throws InvalidInput with file and line, also where a block is out of the robot's reach; Interrupted
+[[nodiscard]] ProgramForces run_program(const formats::ForcesFile& file, const std::optional<formats::CellFile>& cell,
+                                        const std::filesystem::path& program, std::vector<std::string>& warnings,
+                                        std::vector<std::string>& notes, Progress& progress);
+
+}  // namespace robomill::plan
