@@ -395,6 +395,33 @@ TEST_F(App, CouplesAListOfTools) {
             std::string::npos);
 }
 
+// Two joints of 1e6 and 1e5 N m/rad, levers 0.8 and 0.2 m: each displacement is Σ J_i (J_i · F) / k_i, but for the
+// second order of the joints' 1e-4 rad.
+TEST_F(App, StiffnessComesBackFromLoads) {
+  write("cell.toml", "[robot]\ndh = [{ a_mm = 800 }, { a_mm = 200, alpha_deg = 90 }]\n");
+  write("loads.csv",
+        "q1_deg,q2_deg,fx_n,fy_n,fz_n,dx_mm,dy_mm,dz_mm\n0,90,100,0,0,0.044,-0.016,0\n0,0,0,100,0,0,0.14,0\n"
+        "0,90,0,100,0,-0.016,0.064,0\n");
+  const Ended told = robomill("stiffness loads.csv --cell cell.toml -o stiffness.json");
+  EXPECT_EQ(told.exit, 0) << told.err;
+  EXPECT_NE(told.out.find("joint 1  "), std::string::npos) << told.out;
+  const auto json = nlohmann::json::parse(slurp(folder_.at("stiffness.json")));
+  EXPECT_NEAR(json["joint_stiffness_n_m_per_rad"][0].get<double>(), 1e6, 1e3);
+  EXPECT_NEAR(json["joint_stiffness_n_m_per_rad"][1].get<double>(), 1e5, 1e2);
+  EXPECT_EQ(json["convergence"]["status"], "converged");
+  EXPECT_EQ(robomill("stiffness loads.csv --cell cell.toml -o stiffness.toml").exit, 0);
+  EXPECT_NE(slurp(folder_.at("stiffness.toml")).find("joint_stiffness_n_m_per_rad = ["), std::string::npos);
+  const Ended standard = robomill("stiffness loads.csv --cell cell.toml -o -");
+  EXPECT_EQ(nlohmann::json::parse(standard.out), json);
+  EXPECT_EQ(robomill("stiffness loads.csv --cell cell.toml -o stiffness.csv").exit, 1);
+  EXPECT_EQ(robomill("stiffness loads.csv").exit, 2);
+  write("loads.csv", "q1_deg,q2_deg,fx_n,fy_n,fz_n,dx_mm,dy_mm,dz_mm\n0,90,100,zero,0,0,0,0\n");
+  const Ended refused = robomill("stiffness loads.csv --cell cell.toml");
+  EXPECT_EQ(refused.exit, 1);
+  EXPECT_NE(refused.err.find("loads.csv:2: fy_n = \"zero\"; must be a finite number"), std::string::npos)
+      << refused.err;
+}
+
 // A planted joint, seen through the tip FRF that it gives.
 TEST_F(App, FindsAJoint) {
   write_assembly("true.toml",
@@ -444,6 +471,68 @@ TEST_F(App, JointRefusesWhatDoesNotFit) {
   EXPECT_EQ(robomill("joint assembly.toml").exit, 2);
   EXPECT_EQ(robomill("joint assembly.toml --measured tip.csv --method magic").exit, 2);
   EXPECT_EQ(robomill("joint assembly.toml --measured tip.csv --axis z").exit, 2);
+}
+
+// Source: [BudakAltintasArmarego1996], Ti6Al4V; the first row's means are those of its constants, the others' too.
+TEST_F(App, FindsCoefficientsFromSlots) {
+  const std::string head = "feed_per_tooth_mm,axial_depth_mm,spindle_speed_rpm,fx_n,fy_n,fz_n\n";
+  const std::string first = "0.05,5.08,3000,-555.8508,655.6513,255.9891\n";
+  write("slots.csv",
+        head + first + "0.1,5.08,3000,-751.4308,1119.2013,493.6902\n0.025,5.08,3000,-458.0608,423.8763,137.1385\n");
+  const Ended told = robomill("coefficients slots.csv --teeth 4 -o coefficients.toml");
+  ASSERT_EQ(told.exit, 0) << told.err;
+  EXPECT_NE(told.out.find("1825"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("R² 1.000000"), std::string::npos) << told.out;
+  EXPECT_NE(slurp(folder_.at("coefficients.toml")).find("[identification]"), std::string::npos);
+  const auto json = nlohmann::json::parse(robomill("coefficients slots.csv --teeth 4 -o -").out);
+  const auto expect = [&](const char* key, double value) {
+    EXPECT_NEAR(json["coefficients"][key].get<double>(), value, 1e-4 * value) << key;
+  };
+  expect("tangential_n_per_mm2", 1825.0);
+  expect("radial_n_per_mm2", 770.0);
+  expect("axial_n_per_mm2", 735.0);
+  expect("tangential_edge_n_per_mm", 29.7);
+  expect("radial_edge_n_per_mm", 55.7);
+  expect("axial_edge_n_per_mm", 1.8);
+  EXPECT_NE(robomill("coefficients slots.csv").out.find("4 are taken"), std::string::npos);
+  // One feed: finished, but not told.
+  write("one.csv", head + first + "0.05,2.54,3000,-277.9254,327.82565,127.99455\n");
+  const Ended one = robomill("coefficients one.csv --teeth 4 -o one.json");
+  EXPECT_EQ(one.exit, 3);
+  EXPECT_EQ(nlohmann::json::parse(slurp(folder_.at("one.json")))["identification"]["status"], "edge unknown");
+  EXPECT_NE(one.out.find("not told"), std::string::npos) << one.out;
+  write("bad.csv", head + first + "0.1,0,3000,-751,887,493\n");
+  const Ended bad = robomill("coefficients bad.csv --teeth 4 -o bad.toml");
+  EXPECT_EQ(bad.exit, 1);
+  EXPECT_NE(bad.err.find("bad.csv:3: axial_depth_mm = 0 mm"), std::string::npos) << bad.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_.at("bad.toml")));
+  write("short.csv", head + first);
+  EXPECT_NE(robomill("coefficients short.csv --teeth 4").err.find("short.csv: slots = 1"), std::string::npos);
+  EXPECT_EQ(robomill("coefficients slots.csv --teeth 4 -o k.csv").exit, 1);
+}
+
+TEST_F(App, TellsForcesOverARevolutionAndAlongAProgram) {
+  const std::string along = std::string(ROBOMILL_SOURCE_DIR) + "/examples/force-along-program/";
+  const Ended cut = robomill("forces " + std::string(ROBOMILL_SOURCE_DIR) +
+                             "/examples/ball-end-ur5e/cut-1.toml -o forces.csv --report forces.json");
+  ASSERT_EQ(cut.exit, 0) << cut.err;
+  EXPECT_NE(cut.out.find("deflection"), std::string::npos) << cut.out;
+  EXPECT_EQ(slurp(folder_.at("forces.csv")).rfind("rotation_deg,fx_n,fy_n,fz_n,torque_n_m\n", 0), 0U);
+  EXPECT_TRUE(nlohmann::json::parse(slurp(folder_.at("forces.json")))["forces"]["revolution"].is_object());
+  const std::string program = "forces " + along + "forces.toml --program " + along + "hollow.ngc --cell ";
+  const Ended run = robomill(program + along + "cell.toml -o -");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(run.out)["blocks"].size(), 254U);
+  // Out of reach: one message with file and line, no output.
+  std::string cell = slurp(along + "cell.toml");
+  cell.replace(cell.find("[1700"), 5, "[9700");
+  write("far.toml", cell);
+  const Ended far = robomill(program + "far.toml -o far.csv");
+  EXPECT_EQ(far.exit, 1);
+  EXPECT_NE(far.err.find("hollow.ngc:5"), std::string::npos) << far.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_.at("far.csv")));
+  EXPECT_EQ(robomill("forces " + along + "forces.toml -o forces.wav").exit, 1);
+  EXPECT_EQ(robomill("forces").exit, 2);
 }
 
 TEST_F(App, CtrlCStopsAndLeavesNoFile) {

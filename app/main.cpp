@@ -23,6 +23,9 @@ struct CommandLine {
   LobesCommand lobes;
   ExplainCommand explain;
   SimulateCommand simulate;
+  ForcesCommand forces;
+  CoefficientsCommand coefficients;
+  StiffnessCommand stiffness;
   PlanCommand plan;
   std::function<Exit(Progress&)> chosen;
 
@@ -111,6 +114,28 @@ CommandLine::CommandLine() {
   sub->add_option("--seconds", simulate.seconds, "how long to cut (default: 2)");
   sub->add_option("--sample-rate-hz", simulate.sample_rate_hz, "of the output (default: 10240)");
   sub->add_flag("--linear", simulate.linear, "no loss of contact, as lobes take the cut");
+
+  sub = verb("forces", "a cutter in its cut, or along a program, to cutting forces",
+             [this](Progress& p) { return run(forces, common, p); });
+  sub->add_option("forces", forces.input, "forces.toml")->required();
+  sub->add_option("--program", forces.program, "an NC program: a row a block in place of one revolution");
+  sub->add_option("--cell", forces.cell, "cell.toml: the robot that the cut bends");
+  sub->add_option("--report", forces.report, "a page to look at (.html), or its data (.json)");
+
+  sub = verb("coefficients", "average forces of slots to cutting force coefficients",
+             [this](Progress& p) { return run(coefficients, common, p); });
+  sub->add_option("slots", coefficients.slots, "slots.csv")->required();
+  sub->add_option("--teeth", coefficients.teeth, "teeth of the cutter (default: 4, told in the notes)")
+      ->check(CLI::Range(1, 100));
+
+  sub = verb("stiffness", "loads on a robot's tool and the displacements measured to joint stiffness",
+             [this](Progress& p) { return run(stiffness, common, p); });
+  sub->add_option("loads", stiffness.loads, "loads.csv: joint angles, force on the robot, displacement")->required();
+  sub->add_option("--cell", stiffness.cell, "cell.toml: the robot and its tool")->required();
+  sub->add_option("--point-mm", stiffness.point_mm,
+                  "X,Y,Z where the load attacks, in the flange frame (default: the tool's tip)")
+      ->delimiter(',')
+      ->expected(3);
 
   sub = verb("plan", "the whole job: hits to safe cutting conditions",
              [this](Progress& p) { return run(plan, common, p); });

@@ -72,6 +72,20 @@ struct SimulateCommand {
   double sample_rate_hz = 10240.0;
   bool linear = false;
 };
+struct ForcesCommand {
+  std::filesystem::path input;
+  std::filesystem::path program;  ///< empty: one revolution
+  std::filesystem::path cell;     ///< empty: the one that the input names, if any
+  std::filesystem::path report;   ///< .html or .json; empty: none
+};
+struct CoefficientsCommand {
+  std::filesystem::path slots;
+  int teeth = 0;  ///< 0: not said
+};
+struct StiffnessCommand {
+  std::filesystem::path loads, cell;
+  std::vector<double> point_mm;  ///< in the flange frame; empty: the tool's tip
+};
 struct PlanCommand {
   std::filesystem::path job;
 };
@@ -83,6 +97,9 @@ Exit run(const JointCommand& command, const Common& common, Progress& progress);
 Exit run(const LobesCommand& command, const Common& common, Progress& progress);
 Exit run(const ExplainCommand& command, const Common& common, Progress& progress);
 Exit run(const SimulateCommand& command, const Common& common, Progress& progress);
+Exit run(const ForcesCommand& command, const Common& common, Progress& progress);
+Exit run(const CoefficientsCommand& command, const Common& common, Progress& progress);
+Exit run(const StiffnessCommand& command, const Common& common, Progress& progress);
 Exit run(const PlanCommand& command, const Common& common, Progress& progress);
 
 }  // namespace robomill::app

@@ -1,0 +1,123 @@
+#include "robomill/plan/forces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/report/report.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+void print_vector(const char* label, const Eigen::Vector3d& v) {
+  fmt::print("{:<12} {:>10.4g} {:>10.4g} {:>10.4g} N\n", label, v.x(), v.y(), v.z());
+}
+
+void print_vibration(const simulation::Simulation& vibration) {
+  const char* const verdict = vibration.verdict == simulation::Verdict::stable    ? "stable"
+                              : vibration.verdict == simulation::Verdict::chatter ? "chatter"
+                                                                                  : "undecided";
+  fmt::print("vibration    {}", verdict);
+  if (vibration.chatter_frequency_hz > 0.0) {
+    fmt::print(" at {:.1f} Hz, {:.3g} µm", vibration.chatter_frequency_hz, vibration.chatter_amplitude_m / units::um);
+  }
+  if (vibration.small.status == simulation::SmallVibration::Status::found) {
+    fmt::print(", |μ| = {:.4f}", vibration.small.spectral_radius);
+  }
+  fmt::print("\n");
+}
+
+void print_revolution(const plan::RevolutionForces& revolution, bool on_workpiece) {
+  const double sign = on_workpiece ? -1.0 : 1.0;
+  const cutting::CuttingForce& force = revolution.settled.force;
+  fmt::print("{:<12} {:>10} {:>10} {:>10}   on the {}, feed frame\n", "", "x", "y", "z",
+             on_workpiece ? "workpiece" : "tool");
+  print_vector("mean", sign * force.mean_n);
+  print_vector("peak", sign * force.peak_n);
+  print_vector("rms", force.rms_n);
+  fmt::print("torque       {:.4g} N·m, at most {:.4g}; power {:.4g} W; {:.4g} mm³/s\n", force.mean_torque_n_m,
+             force.peak_torque_n_m, force.power_w, force.removal_rate_m3_per_s / units::mm3);
+  if (revolution.posture) {
+    const Eigen::Vector3d q = revolution.settled.deflection_m / units::um;
+    fmt::print("deflection   {:.4g}, {:.4g}, {:.4g} µm under the mean force; depth left {:.6g} mm\n", q.x(), q.y(),
+               q.z(), revolution.settled.cut.axial_depth_m / units::mm);
+  }
+  if (revolution.spindle_rotation && revolution.spindle_rotation->status == robot::Redundancy::Status::found) {
+    fmt::print("best γ       {:.1f}°: {:.4g} µm\n", revolution.spindle_rotation->best.gamma_rad / units::deg,
+               revolution.spindle_rotation->best.error_m.norm() / units::um);
+  }
+  if (revolution.vibration) print_vibration(*revolution.vibration);
+}
+
+void print_row(const plan::ProgramForces& program, const char* label, const plan::BlockResult& row) {
+  const program::Block& block = program.program.blocks[row.force.block];
+  fmt::print("{:<12} line {}: {:.4g} N, {:.3g} N·m, {:.4g} W, {:.4g} µm, depth {:.3g} mm\n", label, block.line,
+             row.force.peak_force_n, row.force.peak_torque_n_m, row.force.power_w, row.deflection_m.norm() / units::um,
+             row.force.axial_depth_m / units::mm);
+}
+
+void print_program(const plan::ProgramForces& program) {
+  const auto highest = [&](auto value) {
+    return *std::ranges::max_element(program.blocks, {}, [&](const plan::BlockResult& row) { return value(row); });
+  };
+  const auto cutting = std::ranges::count_if(
+      program.blocks, [](const plan::BlockResult& row) { return row.force.removed_volume_m3 > 0.0; });
+  fmt::print("{} blocks, {} of them cut; {:.4g} mm³ removed; {:.2f} s\n", program.blocks.size(), cutting,
+             program.removed_volume_m3 / units::mm3, program.seconds);
+  print_row(program, "most force", highest([](const plan::BlockResult& r) { return r.force.peak_force_n; }));
+  print_row(program, "most power", highest([](const plan::BlockResult& r) { return r.force.power_w; }));
+  print_row(program, "bends most", highest([](const plan::BlockResult& r) { return r.deflection_m.norm(); }));
+}
+
+void write_report(const std::filesystem::path& path, const plan::ForcesResult& result) {
+  report::Report page;
+  page.title = "Cutting forces";
+  page.forces = plan::forces_report(result);
+  const bool html = path.extension() == ".html";
+  formats::write_file(path, html ? report::report_html(page) : report::report_json(page));
+}
+
+bool reached(const plan::ForcesResult& result) {
+  if (!result.revolution) return true;
+  const plan::RevolutionForces& revolution = *result.revolution;
+  if (revolution.settled.status != cutting::SettledCut::Status::found) return false;
+  return !revolution.vibration || revolution.vibration->verdict != simulation::Verdict::undecided;
+}
+
+}  // namespace
+
+Exit run(const ForcesCommand& command, const Common& common, Progress& progress) {
+  if (!common.output.empty() && !common.to_stdout()) {
+    const formats::Format format = formats::format_of(common.output);
+    if (format != formats::Format::csv && format != formats::Format::json) {
+      throw InvalidInput(common.output, "forces are written as .csv or .json");
+    }
+  }
+  if (!command.report.empty() && command.report.extension() != ".html" && command.report.extension() != ".json") {
+    throw InvalidInput(command.report.string(), "a report is written as .html or .json");
+  }
+  const plan::ForcesResult result = plan::run_forces(command.input, command.program, command.cell, progress);
+  if (common.to_stdout()) {
+    fmt::print("{}", plan::forces_json(result));
+  } else if (!common.output.empty()) {
+    const bool csv = formats::format_of(common.output) == formats::Format::csv;
+    formats::write_file(common.output, csv ? plan::forces_csv(result) : plan::forces_json(result));
+  }
+  if (!command.report.empty()) write_report(command.report, result);
+  if (common.wants_summary()) {
+    if (result.revolution) print_revolution(*result.revolution, result.file.on_workpiece);
+    if (result.program) print_program(*result.program);
+    for (const std::string& warning : result.warnings) fmt::print("warning      {}\n", warning);
+    for (const std::string& note : result.notes) fmt::print("note         {}\n", note);
+  }
+  return reached(result) ? done : not_reached;
+}
+
+}  // namespace robomill::app

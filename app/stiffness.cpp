@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/cell_toml.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/loads_csv.hpp"
+#include "robomill/formats/stiffness_files.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/robot/pose.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+void print_summary(const robot::IdentifiedStiffness& found, const formats::CellFile& cell) {
+  for (std::size_t i = 0; i < found.joints.size(); ++i) {
+    const robot::IdentifiedJoint& joint = found.joints[i];
+    const char* unit = cell.cell.arm.joints[i].prismatic ? "N/m" : "N m/rad";
+    if (joint.identifiable) {
+      fmt::print("joint {}  {:.6g} ± {:.2g} {}\n", i + 1, joint.stiffness, joint.deviation, unit);
+    } else {
+      fmt::print("joint {}  not identifiable: {}\n", i + 1, joint.reason);
+    }
+  }
+  fmt::print("\n{} loads, residual {:.3g} mm (root mean square), R² = {:.6f}, {} iterations\n", found.residual_m.cols(),
+             found.rms_m / units::mm, found.r_squared, found.iterations);
+  for (const std::string& note : cell.notes) fmt::print("Note: {}\n", note);
+}
+
+Eigen::Vector3d point_of(const StiffnessCommand& command, const robot::Cell& cell) {
+  if (command.point_mm.empty()) return robot::tip_point(cell);
+  return units::mm * Eigen::Vector3d(command.point_mm[0], command.point_mm[1], command.point_mm[2]);
+}
+
+}  // namespace
+
+Exit run(const StiffnessCommand& command, const Common& common, Progress&) {
+  const formats::Format format = formats::format_of(common.output);
+  const bool to_file = !common.output.empty() && !common.to_stdout();
+  if (to_file && format != formats::Format::json && format != formats::Format::toml) {
+    throw InvalidInput(common.output, "joint stiffness is written as .json or as .toml, a line for cell.toml");
+  }
+  const formats::CellFile cell = formats::read_cell(command.cell);
+  const formats::LoadsFile loads = formats::read_loads(command.loads, cell.cell.arm);
+  const robot::IdentifiedStiffness found =
+      formats::identify_joint_stiffness(cell.cell.arm, point_of(command, cell.cell), loads);
+  const bool converged = found.status == robot::IdentifiedStiffness::Status::converged;
+  if (common.to_stdout()) {
+    fmt::print("{}", formats::stiffness_json(found));
+  } else if (to_file && format == formats::Format::json) {
+    formats::write_file(common.output, formats::stiffness_json(found));
+  } else if (to_file && converged) {
+    formats::write_file(common.output, formats::stiffness_toml(found, cell.cell.arm));
+  }
+  if (common.wants_summary()) print_summary(found, cell);
+  const bool seen = std::ranges::any_of(found.joints, [](const auto& joint) { return joint.identifiable; });
+  if (converged && !seen) {
+    fmt::print(stderr, "robomill: these loads tell the stiffness of no joint\n");
+    return not_reached;
+  }
+  if (converged) return done;
+  fmt::print(stderr, "robomill: the joint stiffness was not found to convergence\n");
+  return not_reached;
+}
+
+}  // namespace robomill::app
