@@ -1,11 +1,15 @@
 #include "robomill/cutting/program_forces.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <string>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/cutting/analytic_engagement.hpp"
+#include "robomill/cutting/program_engagement_local.hpp"
 
 namespace robomill::cutting {
 namespace {
@@ -43,9 +47,10 @@ void ProgramForceOptions::validate() const {
   walk.validate();
 }
 
-std::vector<BlockForce> program_forces(const program::Program& program, const Cutter& cutter,
-                                       const MillingCoefficients& coefficients, Workpiece& workpiece,
-                                       const ProgramForceOptions& options, Progress& progress) {
+namespace {
+
+/// Every block with its spindle speed.
+std::vector<BlockForce> turning_blocks(const program::Program& program, const ProgramForceOptions& options) {
   options.validate();
   std::vector<BlockForce> blocks(program.blocks.size());
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -58,7 +63,43 @@ std::vector<BlockForce> program_forces(const program::Program& program, const Cu
                          "The program has no S word before it");
     }
   }
-  constexpr std::size_t grain = 16;
+  return blocks;
+}
+
+constexpr std::size_t grain = 16;
+
+/// A block's cut in the frame of the surface that it runs on, and that frame in W.
+struct SurfaceCut {
+  Cut cut;
+  Eigen::Matrix3d work_from_feed = Eigen::Matrix3d::Identity();
+};
+
+SurfaceCut surface_cut(const LocalCut& local, const Eigen::Vector3d& axis, double axial_depth_m, double radius_m) {
+  SurfaceCut out;
+  out.work_from_feed = local.work_from_feed * Eigen::AngleAxisd(local.slope_rad, Eigen::Vector3d::UnitX());
+  const Eigen::Vector3d leant =
+      out.work_from_feed.transpose() * axis;  // (sin lead, -sin tilt cos lead, cos tilt cos lead)
+  out.cut.axial_depth_m = axial_depth_m;
+  out.cut.lead_rad = std::asin(std::clamp(leant.x(), -1.0, 1.0));
+  out.cut.tilt_rad = std::atan2(-leant.y(), leant.z());
+  // Tips run beside the surface: curvature and distance there are k / (1 + k R) and (1 + k R) times those on it.
+  const double stretch = 1.0 - local.curvature_per_m * radius_m;
+  constexpr double least_stretch = 0.1;
+  const bool curved = stretch > least_stretch;
+  out.cut.curvature_across_feed_per_m = curved ? local.curvature_per_m / stretch : 0.0;
+  out.cut.radial_depth_m = std::min(local.stepover_m * (curved ? stretch : 1.0), 2.0 * radius_m);
+  out.cut.direction = local.neighbour == LocalCut::Neighbour::none   ? MillingDirection::slot
+                      : local.neighbour == LocalCut::Neighbour::left ? MillingDirection::down
+                                                                     : MillingDirection::up;
+  return out;
+}
+
+}  // namespace
+
+std::vector<BlockForce> program_forces(const program::Program& program, const Cutter& cutter,
+                                       const MillingCoefficients& coefficients, Workpiece& workpiece,
+                                       const ProgramForceOptions& options, Progress& progress) {
+  std::vector<BlockForce> blocks = turning_blocks(program, options);
   std::vector<PartForce> forces;
   const auto deliver = [&](std::span<const BlockEngagement> parts) {
     forces.assign(parts.size(), {});
@@ -82,6 +123,45 @@ std::vector<BlockForce> program_forces(const program::Program& program, const Cu
     }
   };
   walk(program, cutter, workpiece, options.walk, deliver, progress);
+  return blocks;
+}
+
+std::vector<BlockForce> local_program_forces(const program::Program& program, const Cutter& cutter,
+                                             const MillingCoefficients& coefficients, double axial_depth_m,
+                                             const ProgramForceOptions& options, Progress& progress) {
+  if (cutter.kind != CutterKind::ball_end) {
+    throw InvalidInput("kind", "must be a ball end where there is no stock", "Other cutters need a workpiece");
+  }
+  const double radius = 0.5 * cutter.mill.diameter_m;
+  std::vector<BlockForce> blocks = turning_blocks(program, options);
+  const LocalCuts cuts(program, cutter.mill.diameter_m);
+  progress.start("forces", blocks.size());
+  parallel_for(blocks.size(), grain, [&](std::size_t begin, std::size_t end) {
+    ForceKernel kernel(cutter, coefficients, options.force);
+    for (std::size_t i = begin; i < end; ++i) {
+      progress.advance();
+      const program::Block& block = program.blocks[i];
+      const program::Pose& from = program.begin_of(i);
+      const double way = (block.end.tip_m - from.tip_m).norm();
+      if (block.kind != program::Block::Kind::feed || !(way > 0.0)) continue;
+      const SurfaceCut surface =
+          surface_cut(cuts.at(i), program::between(from, block.end, 0.5).axis, axial_depth_m, radius);
+      BlockForce& out = blocks[i];
+      const double teeth_per_s = out.spindle_speed_rad_per_s * cutter.mill.teeth / (2.0 * std::numbers::pi);
+      out.feed_per_tooth_m = way / block.duration_s / teeth_per_s;
+      out.axial_depth_m = axial_depth_m;
+      out.radial_depth_m = surface.cut.radial_depth_m;
+      const ForceSummary force = kernel.summary(
+          engage(cutter, surface.cut),
+          {.feed_per_tooth_m = out.feed_per_tooth_m, .spindle_speed_rad_per_s = out.spindle_speed_rad_per_s});
+      out.mean_force_n = surface.work_from_feed * force.mean_n;
+      out.peak_force_n = force.peak_force_n;
+      out.mean_torque_n_m = force.mean_torque_n_m;
+      out.peak_torque_n_m = force.peak_torque_n_m;
+      out.power_w = force.power_w;
+      out.removed_volume_m3 = force.removal_rate_m3_per_s * block.duration_s;
+    }
+  });
   return blocks;
 }
 

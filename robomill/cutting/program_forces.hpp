@@ -44,4 +44,12 @@ struct ROBOMILL_API ProgramForceOptions {
                                                                   const ProgramForceOptions& options,
                                                                   Progress& progress = Progress::none());
 
+/// The same for a finishing program of a ball end, from the program alone: every block cuts `axial_depth_m` deep beside
+/// its neighbouring pass, on the plane or the cylinder that LocalCuts makes out; a block without one is a slot. The
+/// middle of a block stands for all of it, and options.walk has no part.
+/// @throws InvalidInput as above, and for a cutter that is no ball end
+[[nodiscard]] ROBOMILL_API std::vector<BlockForce> local_program_forces(
+    const program::Program& program, const Cutter& cutter, const MillingCoefficients& coefficients,
+    double axial_depth_m, const ProgramForceOptions& options, Progress& progress = Progress::none());
+
 }  // namespace robomill::cutting

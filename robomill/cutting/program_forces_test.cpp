@@ -117,6 +117,23 @@ TEST(ProgramForces, DoNotDependOnTheThreads) {
   }
 }
 
+// Two ways: the workpiece of rays, and the neighbouring pass alone. On the plane, upright and leant; and on a cylinder
+// whose passes follow it.
+TEST(ProgramForces, NeighboursAloneTellTheSameOnAPlane) {
+  const Eigen::Vector3d axes[] = {{0.0, 0.0, 1.0}, {0.15, -0.1, 1.0}};
+  for (const Eigen::Vector3d& axis : axes) {
+    Program program = two_passes(axis);
+    const std::vector<BlockForce> stock = run(program, 0.04e-3, tangential_only());
+    const std::vector<BlockForce> alone =
+        local_program_forces(program, ball(), tangential_only(), 1e-3, {.spindle_speed_rad_per_s = speed});
+    const Eigen::Vector3d expected = stock.back().mean_force_n;
+    // Leant, tips run deeper than the ball: 1 mm below the top there is more than 1 mm of ball in the material.
+    const double most = axis.x() == 0.0 ? 0.02 : 0.15;
+    EXPECT_LE((alone.back().mean_force_n - expected).norm(), most * expected.norm()) << axis.transpose();
+    EXPECT_NEAR(alone.back().radial_depth_m, 0.5e-3, 1e-9);
+  }
+}
+
 TEST(ProgramForces, TakesTheProgramsSpindleSpeedAndMissesNone) {
   Program program = two_passes(Eigen::Vector3d::UnitZ());
   Workpiece workpiece(slab(), 0.5e-3);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -125,6 +126,38 @@ TEST_F(Plan, StartsFromFrfsWithALineAtZero) {
   EXPECT_TRUE(std::isnan(report.frfs[0].fitted(0).real()));
   EXPECT_LT(std::abs(report.frfs[0].fitted(2160) - xx.receptance(2160)), 0.05 * std::abs(xx.receptance(2160)));
   EXPECT_NO_THROW(static_cast<void>(report::report_html(report)));
+}
+
+TEST_F(Plan, AddsTheForcesOfACutAndHoldsTheSpindleAgainstThem) {
+  write("forces.toml", R"([tool]
+kind = "flat-end"
+teeth = 3
+diameter_mm = 12
+[cut]
+axial_depth_mm = 2
+radial_depth_mm = 6
+direction = "down"
+feed_per_tooth_mm = 0.1
+spindle_speed_rpm = 8000
+[coefficients]
+tangential_n_per_mm2 = 712
+radial_n_per_mm2 = 287
+)");
+  const std::string weak = "forces = \"forces.toml\"\n[spindle]\ncurve = [{ speed_rpm = 6000, torque_n_m = 0.1, "
+                           "power_kw = 0.1 }, { speed_rpm = 9000, torque_n_m = 0.1, power_kw = 0.1 }]\n";
+  const PlanResult result = run_job(job(weak), 1);
+  ASSERT_TRUE(result.forces && result.forces->revolution);
+  const auto warned = std::ranges::count_if(result.warnings, [](const std::string& warning) {
+    return warning.find("more than the spindle has") != std::string::npos;
+  });
+  EXPECT_EQ(warned, 1);
+  const std::filesystem::path out = folder_.at("out");
+  write_plan(out, result);
+  EXPECT_TRUE(std::filesystem::exists(out / "forces.csv"));
+  const auto json = nlohmann::json::parse(formats::read_file(out / "plan.json"));
+  EXPECT_NEAR(json["forces"]["power_w"].get<double>(),
+              712e6 * 2e-3 * 6e-3 * 0.1e-3 * 3.0 * 8000.0 / 60.0, 1.0);
+  EXPECT_NE(formats::read_file(out / "report.html").find("id=\"forces\""), std::string::npos);
 }
 
 TEST_F(Plan, SaysWhatIsMissing) {

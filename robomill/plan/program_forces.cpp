@@ -131,15 +131,19 @@ ProgramForces run_program(const formats::ForcesFile& file, const std::optional<f
   }
   std::vector<robot::Position6> joints;
   if (cell) told_of_cell(*cell, [&] { joints = joints_along(*cell, out.program, path); });
-  if (!file.stock) notes.emplace_back("No stock is given: a box around the program's feed moves is taken for it.");
+  if (!file.stock && !file.neighbours) notes.emplace_back("No stock is given: a box around the program's feed moves is taken for it.");
+  const cutting::ProgramForceOptions options = {.spindle_speed_rad_per_s = file.motion.spindle_speed_rad_per_s,
+                                                .force = file.force};
   const std::vector<BlockForce> forces = file.located([&] {
+    if (file.neighbours) {
+      return cutting::local_program_forces(out.program, file.cutter, file.coefficients, file.cut.axial_depth_m, options,
+                                           progress);
+    }
     const cutting::Stock stock = file.stock ? *file.stock
                                             : cutting::stock_about(out.program, file.cutter, file.dexel_m,
                                                                    std::max(file.cut.axial_depth_m, file.dexel_m));
     cutting::Workpiece workpiece(stock, file.dexel_m);
-    return cutting::program_forces(
-        out.program, file.cutter, file.coefficients, workpiece,
-        {.spindle_speed_rad_per_s = file.motion.spindle_speed_rad_per_s, .force = file.force}, progress);
+    return cutting::program_forces(out.program, file.cutter, file.coefficients, workpiece, options, progress);
   });
   out.blocks.reserve(forces.size());
   for (const BlockForce& force : forces) {
