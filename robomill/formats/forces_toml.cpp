@@ -135,6 +135,16 @@ void read_stock(TomlFile& file, ForcesFile& out) {
   using Shape = cutting::Stock::Shape;
   file.number("stock.dexel_mm", "dexel_m", units::mm, out.dexel_m);
   if (!(out.dexel_m > 0.0)) throw file.refuse("stock.dexel_mm", "must be > 0");
+  std::string kind;
+  if (file.text("stock.kind", kind) && kind == "neighbours") {
+    out.neighbours = true;
+    file.require("cut.axial_depth_mm", "How deep every block cuts beside its neighbour");
+    if (!(out.cut.axial_depth_m > 0.0)) throw file.refuse("cut.axial_depth_mm", "must be > 0");
+    if (out.cutter.kind != cutting::CutterKind::ball_end) {
+      throw file.refuse("tool.kind", "must be \"ball-end\" where there is no stock");
+    }
+    return;
+  }
   cutting::Stock stock;
   if (!file.choice<Shape>("stock.kind", {{"box", Shape::box}, {"cylinder", Shape::cylinder}, {"turned", Shape::turned}},
                           stock.shape)) {

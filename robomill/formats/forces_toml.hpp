@@ -34,6 +34,7 @@ struct ForcesFile {
   double feed_direction_rad = 0.0;  ///< in the axes of the structures
   modal::ModalModel dynamics = {}, workpiece_dynamics = {};  ///< what vibrates; no modes where absent
   std::optional<cutting::Stock> stock = {};                  ///< none: a box around the program
+  bool neighbours = false;  ///< stock.kind: no stock, but the neighbouring pass of each block
   double dexel_m = 0.25e-3;
   /// Calls f; an InvalidInput about a member that this file gave comes out in its words.
   template <class F>

@@ -117,6 +117,7 @@ TEST(ForcesToml, SaysWhatIsWrongAndWhere) {
   expect("outline_z_mm = [0, 10, 30]", "outline_z_mm = [0, 10]", "stock.outline_z_mm");
   expect("dexel_mm = 0.5", "dexel_mm = 0", "stock.dexel_mm = 0");
   expect("tangential_n_per_mm2 = [100, 900]\n", "", "coefficients.tangential_n_per_mm2: is missing");
+  expect("kind = \"turned\"", "kind = \"neighbours\"", "tool.kind = \"bull-nose\"; must be \"ball-end\"");
   expect("lead_deg = 10", "surface_radius_along_feed_mm = 0", "surface_radius_along_feed_mm = 0");
   expect("[workpiece_dynamics]\nz = [{ frequency_hz = 200, damping_ratio = 0.02, modal_mass_kg = 3 }]",
          "[robot]\njoints_deg = [0, 0, 0]", "robot.cell: is missing");
