@@ -143,8 +143,9 @@ spindle_speed_rpm = 8000
 tangential_n_per_mm2 = 712
 radial_n_per_mm2 = 287
 )");
-  const std::string weak = "forces = \"forces.toml\"\n[spindle]\ncurve = [{ speed_rpm = 6000, torque_n_m = 0.1, "
-                           "power_kw = 0.1 }, { speed_rpm = 9000, torque_n_m = 0.1, power_kw = 0.1 }]\n";
+  const std::string weak =
+      "forces = \"forces.toml\"\n[spindle]\ncurve = [{ speed_rpm = 6000, torque_n_m = 0.1, "
+      "power_kw = 0.1 }, { speed_rpm = 9000, torque_n_m = 0.1, power_kw = 0.1 }]\n";
   const PlanResult result = run_job(job(weak), 1);
   ASSERT_TRUE(result.forces && result.forces->revolution);
   const auto warned = std::ranges::count_if(result.warnings, [](const std::string& warning) {
@@ -155,8 +156,7 @@ radial_n_per_mm2 = 287
   write_plan(out, result);
   EXPECT_TRUE(std::filesystem::exists(out / "forces.csv"));
   const auto json = nlohmann::json::parse(formats::read_file(out / "plan.json"));
-  EXPECT_NEAR(json["forces"]["power_w"].get<double>(),
-              712e6 * 2e-3 * 6e-3 * 0.1e-3 * 3.0 * 8000.0 / 60.0, 1.0);
+  EXPECT_NEAR(json["forces"]["power_w"].get<double>(), 712e6 * 2e-3 * 6e-3 * 0.1e-3 * 3.0 * 8000.0 / 60.0, 1.0);
   EXPECT_NE(formats::read_file(out / "report.html").find("id=\"forces\""), std::string::npos);
 }
 

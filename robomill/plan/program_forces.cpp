@@ -131,7 +131,8 @@ ProgramForces run_program(const formats::ForcesFile& file, const std::optional<f
   }
   std::vector<robot::Position6> joints;
   if (cell) told_of_cell(*cell, [&] { joints = joints_along(*cell, out.program, path); });
-  if (!file.stock && !file.neighbours) notes.emplace_back("No stock is given: a box around the program's feed moves is taken for it.");
+  if (!file.stock && !file.neighbours)
+    notes.emplace_back("No stock is given: a box around the program's feed moves is taken for it.");
   const cutting::ProgramForceOptions options = {.spindle_speed_rad_per_s = file.motion.spindle_speed_rad_per_s,
                                                 .force = file.force};
   const std::vector<BlockForce> forces = file.located([&] {
