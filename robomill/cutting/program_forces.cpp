@@ -146,6 +146,14 @@ std::vector<BlockForce> local_program_forces(const program::Program& program, co
       if (block.kind != program::Block::Kind::feed || !(way > 0.0)) continue;
       const SurfaceCut surface =
           surface_cut(cuts.at(i), program::between(from, block.end, 0.5).axis, axial_depth_m, radius);
+      constexpr double steepest = 1.5;  // beyond 86 degrees
+      if (std::abs(surface.cut.lead_rad) > steepest) {
+        throw InvalidInput("program",
+                           "line " + std::to_string(block.line) +
+                               " plunges along the tool's axis; neighbouring passes "
+                               "cannot tell such a cut",
+                           "Give the stock");
+      }
       BlockForce& out = blocks[i];
       const double teeth_per_s = out.spindle_speed_rad_per_s * cutter.mill.teeth / (2.0 * std::numbers::pi);
       out.feed_per_tooth_m = way / block.duration_s / teeth_per_s;

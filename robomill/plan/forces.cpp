@@ -41,7 +41,7 @@ Eigen::Matrix3d base_from_feed(const formats::ForcesFile& file, const robot::Cel
 }
 
 Eigen::VectorXd joints_of(const formats::ForcesFile& file, const robot::Cell& cell) {
-  const Eigen::VectorXd q =
+  Eigen::VectorXd q =
       Eigen::Map<const Eigen::VectorXd>(file.joints_rad.data(), static_cast<Eigen::Index>(file.joints_rad.size()));
   if (q.size() != cell.arm.size()) {
     throw refuse(file, "robot.joints_deg", fmt::format("must have one angle for each of {} joints", cell.arm.size()));
