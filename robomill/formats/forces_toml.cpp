@@ -208,7 +208,7 @@ InvalidInput ForcesFile::in_its_words(const InvalidInput& error) const {
   if (!error.parts().where.empty()) return error;
   TomlFile file(path);
   static_cast<void>(read(file, path, job));
-  const InvalidInput told = file.located(error);
+  InvalidInput told = file.located(error);
   if (!told.parts().where.empty()) return told;
   InvalidInput::Parts parts = error.parts();
   parts.where = path.string();
