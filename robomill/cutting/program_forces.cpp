@@ -66,6 +66,14 @@ std::vector<BlockForce> turning_blocks(const program::Program& program, const Pr
   return blocks;
 }
 
+/// Said with the line, before the kernel refuses it without.
+void check_feed(double feed_per_tooth_m, const program::Block& block) {
+  if (feed_per_tooth_m <= 0.01) return;
+  throw InvalidInput("feed_per_tooth_m", feed_per_tooth_m, "m",
+                     "is too large for any cutter, in line " + std::to_string(block.line) + " of the program",
+                     "Are its feed and the spindle speed right?");
+}
+
 constexpr std::size_t grain = 16;
 
 /// A block's cut in the frame of the surface that it runs on, and that frame in W.
@@ -112,6 +120,7 @@ std::vector<BlockForce> program_forces(const program::Program& program, const Cu
         const double teeth_per_s = speed * cutter.mill.teeth / (2.0 * std::numbers::pi);
         PartForce& out = forces[i];
         out.feed_per_tooth_m = part.cut.feed_speed_m_per_s / teeth_per_s;
+        check_feed(out.feed_per_tooth_m, program.blocks[part.block]);
         out.summary = kernel.summary(part.cut.engagement,
                                      {.feed_per_tooth_m = out.feed_per_tooth_m, .spindle_speed_rad_per_s = speed});
         out.mean_force_n = part.cut.work_from_feed * out.summary.mean_n;
@@ -157,6 +166,7 @@ std::vector<BlockForce> local_program_forces(const program::Program& program, co
       BlockForce& out = blocks[i];
       const double teeth_per_s = out.spindle_speed_rad_per_s * cutter.mill.teeth / (2.0 * std::numbers::pi);
       out.feed_per_tooth_m = way / block.duration_s / teeth_per_s;
+      check_feed(out.feed_per_tooth_m, block);
       out.axial_depth_m = axial_depth_m;
       out.radial_depth_m = surface.cut.radial_depth_m;
       const ForceSummary force = kernel.summary(

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/units.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/plan/program_forces.hpp"
 #include "robomill/robot/dynamics.hpp"
@@ -49,17 +50,9 @@ Eigen::VectorXd joints_of(const formats::ForcesFile& file, const robot::Cell& ce
   const robot::LimitCheck limits = robot::within_limits(cell.arm, q);
   if (!limits.inside) {
     throw refuse(file, "robot.joints_deg", fmt::format("must lie within the limits of joint {}", limits.joint + 1),
-                 fmt::format("It is {:.4g} rad beyond", -limits.distance));
+                 fmt::format("It is {:.4g} degrees beyond", -limits.distance / units::deg));
   }
   return q;
-}
-
-std::optional<robot::SphericalWristInverse> spherical_wrist(const robot::Arm& arm) {
-  try {
-    return robot::SphericalWristInverse(arm);
-  } catch (const InvalidInput&) {
-    return std::nullopt;
-  }
 }
 
 /// @param force_n  on the tool, in F
@@ -203,6 +196,14 @@ std::filesystem::path cell_path(const formats::ForcesFile& file, const std::file
 }
 
 }  // namespace
+
+std::optional<robot::SphericalWristInverse> spherical_wrist(const robot::Arm& arm) {
+  try {
+    return robot::SphericalWristInverse(arm);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
 
 ForcesResult run_forces(const std::filesystem::path& forces, const std::filesystem::path& program,
                         const std::filesystem::path& cell, Progress& progress) {

@@ -132,6 +132,31 @@ TEST(RunForces, RunsAlongAProgramWithTheRobot) {
   EXPECT_GT(loads[0].torque_n_m, 0.0);
 }
 
+// An arm without a spherical wrist is followed from where it stands.
+TEST(RunForces, FollowsAProgramWithAUr5e) {
+  const Folder folder;
+  std::string cell = formats::read_file(examples / "ball-end-ur5e" / "cell.toml");
+  cell.replace(cell.find("origin_mm"), 9, "rotation_deg = [0, 0, 0]\norigin_mm");
+  cell += "[program]\nmachine = \"xyzac-trt\"\n";
+  const std::string start = "start_joints_deg = [0, -90, 90, -90, -90, 0]\n";
+  const std::string with_start = std::string(cell).insert(cell.find("dh = ["), start);
+  const auto path = folder.file("cell.toml", with_start);
+  const ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", path);
+  ASSERT_EQ(result.program->blocks.front().joints.size(), 6);
+  const formats::CellFile file = formats::read_cell(path);
+  for (const BlockResult& row : result.program->blocks) {
+    const program::Block& block = result.program->program.blocks[row.force.block];
+    const robot::ToolPose pose = robot::tool_pose(file.cell, robot::forward(file.cell.arm, row.joints));
+    EXPECT_LE((pose.tip_m - block.end.tip_m).norm(), 1e-9);
+    EXPECT_LE((pose.axis - block.end.axis).norm(), 1e-9);
+  }
+  EXPECT_NE(
+      refusal([&] {
+        static_cast<void>(run_forces(along / "forces.toml", along / "hollow.ngc", folder.file("plain.toml", cell)));
+      }).find("start_joints_deg"),
+      std::string::npos);
+}
+
 TEST(RunForces, SaysWhichBlockTheRobotCannotReach) {
   const Folder folder;
   std::string cell = formats::read_file(along / "cell.toml");

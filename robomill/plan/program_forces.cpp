@@ -54,26 +54,62 @@ void told_of_cell(const formats::CellFile& cell, F&& f) {
   }
 }
 
+InvalidInput out_of_the_way(const std::filesystem::path& path, const program::Block& block, std::string rule) {
+  return InvalidInput(
+      InvalidInput::Parts{.where = where(path, block),
+                          .field = "this block",
+                          .rule = std::move(rule),
+                          .hint = "Move [workpiece] origin_mm, or turn the flange with robot.gamma_deg"});
+}
+
+/// Joints at the end of every block of an arm without a spherical wrist: by Newton's method from one block to the next.
+std::vector<robot::Position6> joints_near(const formats::CellFile& file, const program::Program& program,
+                                          const std::vector<Eigen::Isometry3d>& flanges,
+                                          const std::filesystem::path& path) {
+  const robot::Arm& arm = file.cell.arm;
+  if (arm.size() != 6 || file.start_joints.size() != 6) {
+    throw InvalidInput("robot.start_joints_deg", "must be given for an arm without a spherical wrist, of six joints",
+                       "It is followed from there, near the program's first position");
+  }
+  std::vector<robot::Position6> out;
+  out.reserve(flanges.size());
+  robot::Position6 at(file.start_joints.data());
+  for (std::size_t i = 0; i < flanges.size(); ++i) {
+    const robot::NearResult near = robot::solve_near(arm, flanges[i], at);
+    if (near.status != robot::NearResult::Status::converged) {
+      throw out_of_the_way(path, program.blocks[i],
+                           fmt::format("was not reached: {:.3g} mm and {:.3g}° are left", near.error_m / units::mm,
+                                       near.error_rad / units::deg));
+    }
+    at = near.position;
+    const robot::LimitCheck limits = robot::within_limits(arm, at);
+    if (!limits.inside) {
+      throw out_of_the_way(
+          path, program.blocks[i],
+          fmt::format("takes joint {} {:.3g}° beyond its limit", limits.joint + 1, -limits.distance / units::deg));
+    }
+    out.push_back(at);
+  }
+  return out;
+}
+
 /// Joints at the end of every block.
 std::vector<robot::Position6> joints_along(const formats::CellFile& file, const program::Program& program,
                                            const std::filesystem::path& path) {
   const robot::Cell& cell = file.cell;
-  const robot::SphericalWristInverse inverse(cell.arm);
   std::vector<Eigen::Isometry3d> flanges;
   flanges.reserve(program.blocks.size());
   for (const program::Block& block : program.blocks) {
     flanges.push_back(robot::flange_pose(
         cell, {.tip_m = block.end.tip_m, .axis = block.end.axis, .gamma_rad = file.redundant_gamma_rad}));
   }
+  const std::optional<robot::SphericalWristInverse> inverse = spherical_wrist(cell.arm);
+  if (!inverse) return joints_near(file, program, flanges, path);
   std::optional<robot::Position6> start;
   if (file.start_joints.size() == 6) start = robot::Position6(file.start_joints.data());
-  const robot::Followed way = robot::follow(cell.arm, inverse, flanges, start, {.point_m = robot::tip_point(cell)});
+  const robot::Followed way = robot::follow(cell.arm, *inverse, flanges, start, {.point_m = robot::tip_point(cell)});
   if (way.status != robot::Choice::Status::found) {
-    throw InvalidInput(
-        InvalidInput::Parts{.where = where(path, program.blocks[way.reached]),
-                            .field = "this block",
-                            .rule = reason(way.last),
-                            .hint = "Move [workpiece] origin_mm, or turn the flange with robot.gamma_deg"});
+    throw out_of_the_way(path, program.blocks[way.reached], reason(way.last));
   }
   return way.position_rad;
 }
@@ -90,7 +126,12 @@ void bend(const formats::CellFile& file, const std::vector<robot::Position6>& jo
       const Eigen::Vector3d force = base_from_work * row.force.mean_force_n;
       const robot::Stiffness stiffness =
           robot::stiffness(cell.arm, row.joints, robot::tip_point(cell), {.force_n = force});
-      if (stiffness.status != robot::Stiffness::Status::regular) {
+      if (stiffness.status == robot::Stiffness::Status::singular) {
+        throw out_of_the_way(
+            path, program.blocks[i],
+            fmt::format("is singular for the robot (condition number {:.3g})", stiffness.condition_number));
+      }
+      if (stiffness.status == robot::Stiffness::Status::buckled) {
         throw InvalidInput(InvalidInput::Parts{.where = where(path, program.blocks[i]),
                                                .field = "this block",
                                                .rule = "bends the robot beyond what its joints hold",

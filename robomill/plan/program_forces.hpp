@@ -5,8 +5,12 @@
 #include <vector>
 
 #include "robomill/plan/forces.hpp"
+#include "robomill/robot/inverse.hpp"
 
 namespace robomill::plan {
+
+/// None for an arm that has no spherical wrist.
+[[nodiscard]] std::optional<robot::SphericalWristInverse> spherical_wrist(const robot::Arm& arm);
 
 /// Forces along a program, and the robot under them where there is a cell.
 /// @throws InvalidInput with file and line, also where a block is out of the robot's reach; Interrupted
