@@ -229,14 +229,11 @@ EngagementFinder::EngagementFinder(const Cutter& cutter, double dexel_m, const W
     const double count = std::clamp(std::ceil(piece.length_m / width - 1e-9), least, 1e5);
     for (double i = 0.0; i < count; i += 1.0) {
       const Profile::Point at = profile.at(piece.start_m + piece.length_m * (i + 0.5) / count);
-      const double slope = 2.0 * at.radius_m / cutter.mill.diameter_m * std::tan(cutter.mill.helix_rad);
-      // Constant lead: the lag 2 z tan β / D times r is the way around; along the meridian dz = sin κ db.
-      const double around = slope * std::sin(at.position_rad);
       slices_.push_back({.radius_m = at.radius_m,
                          .height_m = at.height_m,
                          .position_rad = at.position_rad,
                          .width_m = piece.length_m / count,
-                         .edge_length_per_width = std::sqrt(1.0 + around * around)});
+                         .edge_length_per_width = edge_length_per_width(cutter.mill, 0, at)});
     }
   }
   double looks = 0.0;

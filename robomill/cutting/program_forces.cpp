@@ -39,16 +39,6 @@ double speed_of(const program::Block& block, const ProgramForceOptions& options)
   return options.spindle_speed_rad_per_s > 0.0 ? options.spindle_speed_rad_per_s : block.spindle_speed_rad_per_s;
 }
 
-}  // namespace
-
-void ProgramForceOptions::validate() const {
-  require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
-  force.validate();
-  walk.validate();
-}
-
-namespace {
-
 /// Every block with its spindle speed.
 std::vector<BlockForce> turning_blocks(const program::Program& program, const ProgramForceOptions& options) {
   options.validate();
@@ -103,6 +93,12 @@ SurfaceCut surface_cut(const LocalCut& local, const Eigen::Vector3d& axis, doubl
 }
 
 }  // namespace
+
+void ProgramForceOptions::validate() const {
+  require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  force.validate();
+  walk.validate();
+}
 
 std::vector<BlockForce> program_forces(const program::Program& program, const Cutter& cutter,
                                        const MillingCoefficients& coefficients, Workpiece& workpiece,
