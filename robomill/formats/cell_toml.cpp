@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/gcode.hpp"
 #include "robomill/formats/text.hpp"
 #include "robomill/formats/toml_file.hpp"
 #include "robomill/formats/units.hpp"
@@ -33,8 +33,6 @@ constexpr std::array<JointList, 8> joint_lists = {{
     {"robot.joint_damping_n_m_s_per_rad", "damping", &robot::Joint::damping},
     {"robot.joint_rotor_inertia_kg_m2", "rotor_inertia", &robot::Joint::rotor_inertia},
 }};
-
-constexpr std::array<const char*, 4> machines = {"xyzac-trt", "xyzbc-trt", "xyzac-head", "xyzbc-head"};
 
 std::optional<Eigen::Vector3d> read_vector(TomlFile& file, const char* key, const char* member, double factor) {
   std::vector<double> values;
@@ -212,9 +210,12 @@ CellFile read_cell(const std::filesystem::path& path) {
   file.number("robot.gamma_deg", "redundant_gamma_rad", units::deg, out.redundant_gamma_rad);
   out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
   file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
-  if (file.text("program.machine", out.machine) &&
-      std::find(machines.begin(), machines.end(), out.machine) == machines.end()) {
-    throw file.refuse("program.machine", "must be one of \"xyzac-trt\", \"xyzbc-trt\", \"xyzac-head\", \"xyzbc-head\"");
+  if (file.text("program.machine", out.machine)) {
+    try {
+      static_cast<void>(parse_machine(out.machine));
+    } catch (const InvalidInput& error) {
+      throw file.refuse("program.machine", error.parts().rule);
+    }
   }
   file.done();
   file.locate([&] { out.cell.validate(); });
