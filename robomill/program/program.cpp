@@ -9,6 +9,12 @@ double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+bool ProgramSource::next(Block& out) {
+  if (next_ == program_.blocks.size()) return false;
+  out = program_.blocks[next_++];
+  return true;
+}
+
 Pose between(const Pose& from, const Pose& to, double share) {
   Pose pose;
   pose.tip_m = from.tip_m + share * (to.tip_m - from.tip_m);

@@ -15,13 +15,14 @@ struct Pose {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit vector from the tip to the spindle
 };
 
-/// One straight move; the tip runs along a line, the axis along a great circle, both evenly in time.
+/// One straight move; the tip runs along a line, the axis along a great circle, both evenly in time. A dwell stands
+/// still where the block before it ends.
 struct Block {
-  enum class Kind { rapid, feed };
+  enum class Kind { rapid, feed, dwell };
   Kind kind = Kind::feed;
   std::size_t line = 0;  ///< in the program's file, from 1
   Pose end;
-  double duration_s = 0.0;               ///< of a feed move; 0 for a rapid: as fast as the machine can
+  double duration_s = 0.0;               ///< of a feed move or a dwell; 0 for a rapid: as fast as the machine can
   double spindle_speed_rad_per_s = 0.0;  ///< as commanded; 0 where the program has not said
 };
 
@@ -34,10 +35,43 @@ struct Skipped {
 /// An NC program as data.
 struct ROBOMILL_API Program {
   Pose start;                 ///< where the first block begins
-  std::vector<Block> blocks;  ///< no block without motion
+  std::vector<Block> blocks;  ///< no block without motion but dwells
   std::vector<Skipped> skipped = {};
+  std::vector<std::string> notes = {};  ///< sentences for the user: what was mended or taken for granted
   /// Where block i begins.
   [[nodiscard]] const Pose& begin_of(std::size_t block) const { return block == 0 ? start : blocks[block - 1].end; }
+};
+
+/// A program that comes block by block, in memory that does not grow with it.
+class ROBOMILL_API Source {
+ public:
+  Source() = default;
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+  Source(Source&&) = delete;
+  Source& operator=(Source&&) = delete;
+  virtual ~Source() = default;
+  /// Where the first block begins.
+  [[nodiscard]] virtual const Pose& start() const = 0;
+  /// The next block into `out`; false at the end.
+  /// @throws InvalidInput what the program's reader throws
+  virtual bool next(Block& out) = 0;
+  /// Begins anew with the first block.
+  virtual void rewind() = 0;
+};
+
+/// A program in memory as a source.
+class ROBOMILL_API ProgramSource final : public Source {
+ public:
+  /// @param program  outlives the source
+  explicit ProgramSource(const Program& program) : program_(program) {}
+  [[nodiscard]] const Pose& start() const override { return program_.start; }
+  bool next(Block& out) override;
+  void rewind() override { next_ = 0; }
+
+ private:
+  const Program& program_;
+  std::size_t next_ = 0;
 };
 
 /// Between two poses, share in [0, 1]: line of the tip, great circle of the axis.

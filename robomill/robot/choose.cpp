@@ -1,56 +1,17 @@
 #include "robomill/robot/choose.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/robot/condition.hpp"
+#include "robomill/robot/images.hpp"
+#include "robomill/robot/newton.hpp"
 
 namespace robomill::robot {
 namespace {
-
-constexpr double turn = 2.0 * std::numbers::pi;
-
-/// An angle's image by whole turns that is nearest to `previous` within the joint's limits, and how far beyond them the
-/// best image is where none is within.
-struct Image {
-  double position = 0.0, beyond = 0.0;
-};
-Image nearest_image(const Joint& joint, double angle, double previous) noexcept {
-  const double lowest = std::ceil((joint.min_position - angle) / turn);
-  const double highest = std::floor((joint.max_position - angle) / turn);
-  const double wanted = std::round((previous - angle) / turn);
-  if (lowest <= highest) return {.position = angle + turn * std::clamp(wanted, lowest, highest)};
-  // The range holds no image: highest is just below it, lowest = highest + 1 just above.
-  const double below = joint.min_position - (angle + turn * highest);
-  const double above = angle + turn * lowest - joint.max_position;
-  return below <= above ? Image{.position = angle + turn * highest, .beyond = below}
-                        : Image{.position = angle + turn * lowest, .beyond = above};
-}
-
-struct Placed {
-  Position6 position_rad = Position6::Zero();
-  Eigen::Index joint = -1;
-  double beyond_rad = 0.0, cost = 0.0;
-};
-Placed place(const Arm& arm, const Position6& solution, const Position6& previous, const Position6& weight) noexcept {
-  Placed out;
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    const Image image = nearest_image(arm.joints[static_cast<std::size_t>(i)], solution(i), previous(i));
-    out.position_rad(i) = image.position;
-    if (image.beyond > out.beyond_rad) {
-      out.beyond_rad = image.beyond;
-      out.joint = i;
-    }
-    const double travel = weight(i) * (image.position - previous(i));
-    out.cost += travel * travel;
-  }
-  return out;
-}
 
 double condition_at(const Arm& arm, const Position6& position, const ChooseOptions& options) noexcept {
   Posture posture;
@@ -116,14 +77,6 @@ void require_six(const Arm& arm) {
   throw InvalidInput("arm.joints", static_cast<double>(arm.joints.size()), "joints", "must be six");
 }
 
-/// What takes `pose` to `wanted`: translation, and rotation as axis times angle, in B.
-Position6 pose_error(const Eigen::Isometry3d& wanted, const Eigen::Isometry3d& pose) {
-  const Eigen::AngleAxisd rotation(Eigen::Matrix3d(wanted.linear() * pose.linear().transpose()));
-  Position6 out;
-  out << wanted.translation() - pose.translation(), rotation.angle() * rotation.axis();
-  return out;
-}
-
 }  // namespace
 
 void ChooseOptions::validate() const {
@@ -149,27 +102,17 @@ Choice choose(const Arm& arm, const InverseSolutions& solutions, const Position6
              .out_of_reach_m = solutions.out_of_reach_m,
              .out_of_reach_rad = solutions.out_of_reach_rad};
   if (solutions.count == 0) return out;
-  Placed best;
-  const InverseSolution* chosen = nullptr;
-  for (int k = 0; k < solutions.count; ++k) {
-    const InverseSolution& solution = solutions.solution[static_cast<std::size_t>(k)];
-    const Placed placed = place(arm, solution.position_rad, previous, options.weight);
-    const bool better =
-        placed.beyond_rad < best.beyond_rad || (placed.beyond_rad == best.beyond_rad && placed.cost < best.cost);
-    if (chosen != nullptr && !better) continue;
-    best = placed;
-    chosen = &solution;
-  }
-  out.position_rad = best.position_rad;
-  out.solution = *chosen;
-  out.travel_rad = (best.position_rad - previous).cwiseAbs().maxCoeff();
-  out.joint = best.joint;
-  out.beyond_rad = best.beyond_rad;
-  if (best.joint >= 0) {
+  const Picked best = pick(arm, solutions, previous, options.weight);
+  out.position_rad = best.placed.position_rad;
+  out.solution = solutions.solution[static_cast<std::size_t>(best.solution)];
+  out.travel_rad = (out.position_rad - previous).cwiseAbs().maxCoeff();
+  out.joint = best.placed.joint;
+  out.beyond_rad = best.placed.beyond_rad;
+  if (out.joint >= 0) {
     out.status = Choice::Status::outside_limits;
     return out;
   }
-  out.condition_number = condition_at(arm, best.position_rad, options);
+  out.condition_number = condition_at(arm, out.position_rad, options);
   const bool singular = !(out.condition_number <= options.singularity.max_condition_number);
   out.status = singular                                  ? Choice::Status::singular
                : out.travel_rad > options.max_travel_rad ? Choice::Status::jump
@@ -213,28 +156,15 @@ NearResult solve_near(const Arm& arm, const Eigen::Isometry3d& flange, const Eig
   options.validate();
   if (!flange.matrix().allFinite()) throw InvalidInput("flange", "must be finite");
   NearResult out{.position = seed};
-  Position6 error = pose_error(flange, forward(arm, seed));
-  double damping = 1e-4;
-  Posture posture;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> jac(6, arm.size());
-  for (; out.iterations < options.max_iterations; ++out.iterations) {
-    if (error.head<3>().norm() <= options.tolerance_m && error.tail<3>().norm() <= options.tolerance_rad) break;
-    posture.update(arm, out.position);
-    posture.jacobian(arm, posture.flange.translation(), jac);
-    Eigen::Matrix<double, 6, 6> gram = jac * jac.transpose();
-    gram.diagonal().array() += damping;
-    const Eigen::VectorXd trial = out.position + jac.transpose() * gram.ldlt().solve(error);
-    const Position6 left = pose_error(flange, forward(arm, trial));
-    if (left.squaredNorm() < error.squaredNorm()) {
-      out.position = trial;
-      error = left;
-      damping = std::max(0.1 * damping, 1e-18);
-    } else {
-      damping *= 10.0;
-    }
+  if (seed.size() != arm.size()) {
+    throw InvalidInput("position", static_cast<double>(seed.size()), "joints",
+                       "must have one value a joint, " + std::to_string(arm.size()));
   }
-  out.error_m = error.head<3>().norm();
-  out.error_rad = error.tail<3>().norm();
+  if (!seed.allFinite()) throw InvalidInput("position", "must be finite");
+  const NewtonEnd end = newton(arm, flange, out.position, options);
+  out.error_m = end.error_m;
+  out.error_rad = end.error_rad;
+  out.iterations = end.iterations;
   if (out.error_m <= options.tolerance_m && out.error_rad <= options.tolerance_rad) {
     out.status = NearResult::Status::converged;
   }

@@ -57,6 +57,8 @@ class ROBOMILL_API SphericalWristInverse {
   /// @param hint    joints 1 and 4 where a singular posture leaves them free: the position before, say
   [[nodiscard]] InverseSolutions solve(const Eigen::Isometry3d& flange,
                                        const Position6& hint = Position6::Zero()) const noexcept;
+  /// The point where axes 4, 5 and 6 meet, in the flange frame.
+  [[nodiscard]] const Eigen::Vector3d& centre_m() const noexcept { return centre_m_; }
 
  private:
   struct Elbow;

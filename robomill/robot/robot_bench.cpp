@@ -5,10 +5,13 @@
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/choose.hpp"
 #include "robomill/robot/dynamics.hpp"
+#include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/inverse.hpp"
 #include "robomill/robot/redundancy.hpp"
+#include "robomill/robot/serial_kinematics.hpp"
 #include "robomill/robot/stiffness.hpp"
 #include "robomill/robot/test_arms.hpp"
+#include "robomill/robot/test_kinematics.hpp"
 
 namespace {
 
@@ -102,5 +105,53 @@ void redundancy_of_72(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(redundancy(cell, inverse, {}, options));
 }
 BENCHMARK(redundancy_of_72)->Unit(benchmark::kMicrosecond);
+
+/// A smooth way of 1,000 steps around a posture.
+std::vector<ToolJet> way_of(const Kinematics& kinematics, const robot::Position6& middle) {
+  Random random(5);
+  const testing::RandomWay way(random, kinematics.forward(middle), 0.03, 0.05, 0.05);
+  std::vector<ToolJet> out;
+  for (int k = 0; k < 1000; ++k) out.push_back(way.jet(0.001 * k));
+  return out;
+}
+
+void follow_poses(benchmark::State& state, const Kinematics& kinematics, const robot::Position6& middle) {
+  const std::vector<ToolJet> way = way_of(kinematics, middle);
+  robot::Position6 position = middle;
+  std::size_t k = 0;
+  if (kinematics.follow(ToolPose{way[0].tip_m.col(0), way[0].axis.col(0), way[0].gamma_rad(0)}, middle, position)
+          .status != Reach::Status::found) {
+    state.SkipWithError("the way begins out of reach");
+  }
+  for (auto _ : state) {
+    const ToolPose pose{way[k].tip_m.col(0), way[k].axis.col(0), way[k].gamma_rad(0)};
+    benchmark::DoNotOptimize(kinematics.follow(pose, position, position));
+    k = k + 1 == way.size() ? 0 : k + 1;
+  }
+}
+
+void follow_jets(benchmark::State& state, const Kinematics& kinematics, const robot::Position6& middle) {
+  const std::vector<ToolJet> way = way_of(kinematics, middle);
+  JointJet joints;
+  joints.col(0) = middle;
+  std::size_t k = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(kinematics.follow(way[k], joints.col(0), joints));
+    k = k + 1 == way.size() ? 0 : k + 1;
+  }
+}
+
+const SerialKinematics spherical_wrist({.arm = testing::with_limits(testing::kr210()), .tool_length_m = 0.25});
+const SerialKinematics offset_wrist({.arm = testing::ur5e(), .tool_length_m = 0.25});
+const HybridKinematics hybrid({});
+const robot::Position6 bent = (robot::Position6() << 0.3, -1.2, 1.4, -0.8, 1.1, 0.2).finished();
+const robot::Position6 raised = (robot::Position6() << 0.7, 0.75, 0.72, 0.0, 0.0, 0.0).finished();
+
+BENCHMARK_CAPTURE(follow_poses, spherical_wrist, spherical_wrist, testing::kr210_posture());
+BENCHMARK_CAPTURE(follow_jets, spherical_wrist, spherical_wrist, testing::kr210_posture());
+BENCHMARK_CAPTURE(follow_poses, offset_wrist, offset_wrist, bent);
+BENCHMARK_CAPTURE(follow_jets, offset_wrist, offset_wrist, bent);
+BENCHMARK_CAPTURE(follow_poses, hybrid, hybrid, raised);
+BENCHMARK_CAPTURE(follow_jets, hybrid, hybrid, raised);
 
 }  // namespace

@@ -1,0 +1,70 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "robomill/base/export.hpp"
+#include "robomill/robot/inverse.hpp"
+#include "robomill/robot/pose.hpp"
+
+namespace robomill::robot {
+
+/// What the drives of a machine can do; entries beyond its joints are 0. Rad or m, by joint.
+struct ROBOMILL_API JointLimits {
+  Position6 min_position = Position6::Constant(-1e300), max_position = Position6::Constant(1e300);
+  Position6 max_velocity = Position6::Zero(), max_acceleration = Position6::Zero(), max_jerk = Position6::Zero();
+  /// @param joints  how many
+  /// @throws InvalidInput naming the member ("max_jerk[2]", counted from 1): limits that are not > 0, min >= max
+  void validate(int joints) const;
+};
+
+/// A tool's pose along a parameter u with its derivatives by u; columns 0 to 3 hold the value and derivatives 1 to 3.
+/// In the work frame W; the axis stays a unit vector (its derivatives say so).
+struct ToolJet {
+  Eigen::Matrix<double, 3, 4> tip_m = Eigen::Matrix<double, 3, 4>::Zero();
+  Eigen::Matrix<double, 3, 4> axis = Eigen::Matrix<double, 3, 4>::Zero();
+  Eigen::Matrix<double, 1, 4> gamma_rad = Eigen::Matrix<double, 1, 4>::Zero();
+};
+
+/// Joints along u: q, q', q'', q''' in columns 0 to 3; rows beyond the machine's joints are 0.
+using JointJet = Eigen::Matrix<double, 6, 4>;
+
+/// Whether a pose can be taken, and if not, why.
+struct Reach {
+  /// singular: the joints cannot follow a motion in some direction (condition number above the largest allowed).
+  /// jump: reached, but farther from the position before than is allowed.
+  enum class Status { found, out_of_reach, outside_limits, singular, jump };
+  Status status = Status::out_of_reach;
+  int joint = -1;       ///< the one beyond its limit, or at fault in a singularity, from 0; -1 where none is
+  double beyond = 0.0;  ///< outside limits: of that joint beyond its limit [rad or m]; out of reach: by how much [m]
+};
+
+/// A machine that puts a tool at poses: up to six joints, one position followed from pose to pose.
+class ROBOMILL_API Kinematics {
+ public:
+  Kinematics() = default;
+  Kinematics(const Kinematics&) = delete;
+  Kinematics& operator=(const Kinematics&) = delete;
+  Kinematics(Kinematics&&) = delete;
+  Kinematics& operator=(Kinematics&&) = delete;
+  virtual ~Kinematics() = default;
+
+  /// Number of joints, n <= 6.
+  [[nodiscard]] virtual int joints() const noexcept = 0;
+  [[nodiscard]] virtual const JointLimits& limits() const noexcept = 0;
+  /// Whether gamma means anything to the machine.
+  [[nodiscard]] virtual bool turns_about_axis() const noexcept = 0;
+  /// All positions within limits (turns by ±2π too) that reach a pose; at most `room` of them into `out`, their number.
+  [[nodiscard]] virtual int all(const ToolPose& pose, Position6* out, int room) const noexcept = 0;
+  /// The position for a pose that is nearest to one before. Allocates nothing.
+  [[nodiscard]] virtual Reach follow(const ToolPose& pose, const Position6& near,
+                                     Position6& position) const noexcept = 0;
+  /// The joints with their derivatives along u, exact: those of follow() and what implicit differentiation of the
+  /// forward kinematics gives. Allocates nothing.
+  [[nodiscard]] virtual Reach follow(const ToolJet& jet, const Position6& near, JointJet& joints) const noexcept = 0;
+  /// The tool's pose that a position makes.
+  [[nodiscard]] virtual ToolPose forward(const Position6& position) const noexcept = 0;
+  /// How far a position is from a singularity, in (0, 1]: 1 / condition number of the machine's Jacobian, lengths in
+  /// units of a characteristic length.
+  [[nodiscard]] virtual double regularity(const Position6& position) const noexcept = 0;
+};
+
+}  // namespace robomill::robot

@@ -1,0 +1,302 @@
+#include "robomill/robot/serial_kinematics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_allocations.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/robot/choose.hpp"
+#include "robomill/robot/hybrid.hpp"
+#include "robomill/robot/test_arms.hpp"
+#include "robomill/robot/test_kinematics.hpp"
+
+namespace robomill::robot {
+namespace {
+
+using robomill::test::field_of;
+using robomill::test::seeds;
+using testing::RandomWay;
+using Status = Reach::Status;
+
+Cell cell_of(const Arm& arm, Random& random) {
+  Cell out{.arm = arm, .tool_length_m = 0.25};
+  out.workpiece = testing::random_pose(random, 0.5);
+  return out;
+}
+
+/// A posture away from singularities.
+Position6 regular_position(const SerialKinematics& kinematics, Random& random, double least) {
+  for (;;) {
+    const Position6 position = 0.9 * testing::random_position(random, 6);
+    if (kinematics.regularity(position) > least) return position;
+  }
+}
+
+std::vector<Arm> arms() {
+  return {testing::kr210(), testing::irb(), testing::ur5e()};
+}
+
+TEST(SerialKinematics, FollowsAsChooseDoes) {
+  Random random(71);
+  const Cell cell = cell_of(testing::with_limits(testing::kr210()), random);
+  const SerialKinematics kinematics(cell);
+  ASSERT_TRUE(kinematics.closed_form());
+  const SphericalWristInverse inverse(cell.arm);
+  std::array<int, 5> met = {};
+  for (int k = 0; k < seeds(20000); ++k) {
+    const Position6 target = testing::random_position(random, 6);
+    const Position6 near = k % 2 == 0 ? Position6(1.5 * testing::random_position(random, 6))
+                                      : Position6(target.array() + 0.1 * random.normal());
+    ToolPose pose = kinematics.forward(target);
+    if (k % 5 == 0) pose.tip_m *= 1.5;
+    const Choice expected =
+        choose(cell.arm, inverse.solve(flange_pose(cell, pose), near), near, {.point_m = tip_point(cell)});
+    Position6 position;
+    const Reach reach = kinematics.follow(pose, near, position);
+    ASSERT_EQ(static_cast<int>(reach.status), static_cast<int>(expected.status));
+    ++met[static_cast<std::size_t>(reach.status)];
+    if (reach.status == Status::out_of_reach) continue;
+    EXPECT_LT((position - expected.position_rad).norm(), 1e-12);
+    if (reach.status != Status::outside_limits) continue;
+    EXPECT_EQ(reach.joint, expected.joint);
+    EXPECT_EQ(reach.beyond, expected.beyond_rad);
+  }
+  EXPECT_GT(met[0], 10);
+  EXPECT_GT(met[1], 10);
+  EXPECT_GT(met[2], 10);
+}
+
+TEST(SerialKinematics, NewtonFollowsAnArmWithoutClosedForm) {
+  Random random(72);
+  const Cell cell = cell_of(testing::ur5e(), random);
+  const SerialKinematics kinematics(cell);
+  ASSERT_FALSE(kinematics.closed_form());
+  for (int k = 0; k < seeds(2000); ++k) {
+    const Position6 target = regular_position(kinematics, random, 0.02);
+    Position6 near = target, position;
+    for (double& angle : near) angle += random.uniform(-0.02, 0.02);
+    const Reach reach = kinematics.follow(kinematics.forward(target), near, position);
+    ASSERT_EQ(reach.status, Status::found);
+    EXPECT_LT((position - target).norm(), 1e-10);
+  }
+  ToolPose far = kinematics.forward(Position6::Constant(0.5));
+  far.tip_m += Eigen::Vector3d(9.0, 0.0, 0.0);
+  Position6 position;
+  const Reach reach = kinematics.follow(far, Position6::Constant(0.5), position);
+  EXPECT_EQ(reach.status, Status::out_of_reach);
+  EXPECT_GT(reach.beyond, 5.0);
+}
+
+// Central differences of tenth order of follow(ToolPose) are the second method.
+TEST(SerialKinematics, DerivativesAreThoseOfThePositions) {
+  Random random(73);
+  for (const Arm& arm : arms()) {
+    for (int k = 0; k < seeds(500); ++k) {
+      const SerialKinematics kinematics(cell_of(arm, random));
+      const Position6 start = regular_position(kinematics, random, 0.05);
+      const ToolPose middle = kinematics.forward(start);
+      if (middle.axis.z() < -0.5) continue;  // where gamma's reference turns fast
+      const RandomWay way(random, middle, 0.02, 0.02, 0.05);
+      Position6 near;
+      ASSERT_EQ(kinematics.follow(way.pose(0.3), start, near).status, Status::found);
+      JointJet jet;
+      ASSERT_EQ(kinematics.follow(way.jet(0.3), near, jet).status, Status::found);
+      const auto position = [&](double u) {
+        Position6 out;
+        EXPECT_EQ(kinematics.follow(way.pose(u), near, out).status, Status::found);
+        return out;
+      };
+      // Of three steps each way has its best, between rounding and what the tenth order leaves.
+      std::array<double, 4> error = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+      for (const double step : {0.05, 0.025, 0.0125}) {
+        const JointJet expected = testing::differences(position, 0.3, step);
+        for (int order = 1; order < 4; ++order) {
+          double& least = error.at(static_cast<std::size_t>(order));
+          least = std::min(least, testing::jet_error(jet, expected, order));
+        }
+      }
+      EXPECT_LT(error[1], 1e-8);
+      EXPECT_LT(error[2], 1e-7);
+      EXPECT_LT(error[3], 1e-6);
+    }
+  }
+}
+
+// The other way round: the Taylor polynomial of the joints brings the tool where the way goes, up to O(h⁴).
+TEST(SerialKinematics, TaylorPolynomialOfTheJointsKeepsTheToolOnItsWay) {
+  Random random(74);
+  for (const Arm& arm : arms()) {
+    for (int k = 0; k < seeds(200); ++k) {
+      const SerialKinematics kinematics(cell_of(arm, random));
+      const Position6 start = regular_position(kinematics, random, 0.1);
+      const ToolPose middle = kinematics.forward(start);
+      if (middle.axis.z() < -0.5) continue;
+      const RandomWay way(random, middle, 0.02, 0.02, 0.05);
+      JointJet jet;
+      ASSERT_EQ(kinematics.follow(way.jet(0.0), start, jet).status, Status::found);
+      const auto miss = [&](double h) {
+        const Position6 position =
+            jet.col(0) + h * jet.col(1) + h * h / 2.0 * jet.col(2) + h * h * h / 6.0 * jet.col(3);
+        return (flange_pose(kinematics.cell(), kinematics.forward(position)).matrix() -
+                flange_pose(kinematics.cell(), way.pose(h)).matrix())
+            .norm();
+      };
+      const double coarse = miss(0.02), fine = miss(0.01);
+      EXPECT_GT(std::log2(coarse / fine), 3.5);
+      EXPECT_LT(coarse, 1e-4);
+    }
+  }
+}
+
+TEST(SerialKinematics, AllWaysReachThePoseWithinLimits) {
+  Random random(75);
+  const SerialKinematics kinematics(cell_of(testing::with_limits(testing::kr210()), random));
+  std::array<Position6, 256> ways;
+  for (int k = 0; k < 200; ++k) {
+    Position6 target = 0.9 * testing::random_position(random, 6);
+    target = 0.999 * target.cwiseMin(kinematics.limits().max_position).cwiseMax(kinematics.limits().min_position);
+    const ToolPose pose = kinematics.forward(target);
+    const int count = kinematics.all(pose, ways.data(), 256);
+    ASSERT_GE(count, 1);
+    bool own = false;
+    for (int way = 0; way < count; ++way) {
+      const Position6& position = ways[static_cast<std::size_t>(way)];
+      EXPECT_LT((kinematics.forward(position).tip_m - pose.tip_m).norm(), 1e-9);
+      EXPECT_TRUE(within_limits(kinematics.cell().arm, position).inside);
+      own = own || (position - target).norm() < 1e-6;
+      for (int other = 0; other < way; ++other) {
+        EXPECT_GT((position - ways[static_cast<std::size_t>(other)]).norm(), 1e-6);
+      }
+    }
+    EXPECT_TRUE(own);
+    EXPECT_EQ(kinematics.all(pose, ways.data(), 1), 1);
+  }
+}
+
+// A UR arm reaches a pose in up to eight ways; the search from seeds finds the one that was planted, and not one twice.
+TEST(SerialKinematics, SearchFindsThePlantedWay) {
+  Random random(76);
+  Arm arm = testing::ur5e();
+  for (Joint& joint : arm.joints) {
+    joint.min_position = -testing::pi;
+    joint.max_position = testing::pi;
+  }
+  const SerialKinematics kinematics(cell_of(arm, random));
+  std::array<Position6, 64> ways;
+  int most = 0;
+  for (int k = 0; k < 30; ++k) {
+    const Position6 target = regular_position(kinematics, random, 0.03);
+    const int count = kinematics.all(kinematics.forward(target), ways.data(), 64);
+    most = std::max(most, count);
+    EXPECT_LE(count, 8);
+    EXPECT_TRUE(std::any_of(ways.begin(), ways.begin() + count,
+                            [&](const Position6& way) { return (way - target).norm() < 1e-6; }));
+  }
+  EXPECT_EQ(most, 8);
+}
+
+TEST(SerialKinematics, TellsASingularPostureWithTheJointAtFault) {
+  const SerialKinematics kinematics({.arm = testing::with_limits(testing::kr210()), .tool_length_m = 0.25});
+  Position6 straight = testing::kr210_posture(), position;
+  straight(4) = 1e-4;
+  const Reach wrist = kinematics.follow(kinematics.forward(straight), straight, position);
+  EXPECT_EQ(wrist.status, Status::singular);
+  EXPECT_TRUE(wrist.joint == 3 || wrist.joint == 5) << wrist.joint;
+  EXPECT_LT((position - straight).norm(), 1e-6);
+  straight(4) = 0.05;
+  EXPECT_EQ(kinematics.follow(kinematics.forward(straight), straight, position).status, Status::found);
+  const SerialKinematics careful(
+      {.arm = testing::with_limits(testing::kr210()), .tool_length_m = 0.25},
+      {.singularity = {.max_condition_number = 1.0 / kinematics.regularity(straight) - 0.1}});
+  EXPECT_EQ(careful.follow(careful.forward(straight), straight, position).status, Status::singular);
+  const SerialKinematics just({.arm = testing::with_limits(testing::kr210()), .tool_length_m = 0.25},
+                              {.singularity = {.max_condition_number = 1.0 / kinematics.regularity(straight) + 0.1}});
+  EXPECT_EQ(just.follow(just.forward(straight), straight, position).status, Status::found);
+  const SerialKinematics slow({.arm = testing::with_limits(testing::kr210()), .tool_length_m = 0.25},
+                              {.max_travel_rad = 0.1});
+  const Position6 away = straight.array() + 0.11;
+  EXPECT_EQ(slow.follow(slow.forward(straight), away, position).status, Status::jump);
+  // γ counts from nowhere where the spindle points straight down in W.
+  Cell below{.arm = testing::kr210(), .tool_length_m = 0.25};
+  below.workpiece.linear() = Eigen::AngleAxisd(testing::pi, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  ToolJet jet;
+  jet.tip_m.col(0) = below.workpiece.inverse() * Eigen::Vector3d(1.5, 0.0, 1.0);
+  jet.axis.col(0) = -Eigen::Vector3d::UnitZ();
+  const SerialKinematics upside(below);
+  JointJet joints;
+  std::array<Position6, 1> way;
+  ASSERT_EQ(upside.all({.tip_m = jet.tip_m.col(0), .axis = jet.axis.col(0)}, way.data(), 1), 1);
+  const Reach reach = upside.follow(jet, way[0], joints);
+  EXPECT_EQ(reach.status, Status::singular);
+  EXPECT_EQ(reach.joint, -1);
+}
+
+TEST(SerialKinematics, TakesNothingFromTheHeap) {
+#if !ROBOMILL_OWN_MALLOC
+  GTEST_SKIP() << "a sanitizer has its own heap";
+#endif
+  // Through a volatile pointer, or the compiler may leave the allocation out.
+  std::vector<double> counted;
+  double* volatile kept = nullptr;
+  EXPECT_EQ(test::allocations([&] {
+              counted.resize(1000);
+              kept = counted.data();
+            }),
+            1U);
+  Random random(77);
+  HybridMachine hybrid;
+  hybrid.workpiece = Eigen::Translation3d(0.0, 0.0, 0.8) * Eigen::AngleAxisd(testing::pi, Eigen::Vector3d::UnitX());
+  std::vector<std::unique_ptr<Kinematics>> machines;
+  for (const Arm& arm : arms()) {
+    machines.push_back(std::make_unique<SerialKinematics>(Cell{.arm = arm, .tool_length_m = 0.25}));
+  }
+  machines.push_back(std::make_unique<HybridKinematics>(hybrid));
+  for (const auto& machine : machines) {
+    Position6 start = testing::kr210_posture();
+    if (machine->joints() == 5) start << 0.7, 0.7, 0.7, 0.0, 0.0, 0.0;
+    const RandomWay way(random, machine->forward(start), 0.01, 0.01, 0.01);
+    Position6 position;
+    JointJet jet;
+    std::array<Position6, 64> ways;
+    int sum = 0;
+    const auto work = [&] {
+      for (int k = 0; k < 20; ++k) {
+        const double u = 0.05 * k;
+        sum += static_cast<int>(machine->follow(way.pose(u), start, position).status);
+        sum += static_cast<int>(machine->follow(way.jet(u), start, jet).status);
+        sum += machine->forward(start).tip_m.x() > 0.0 ? 1 : 0;
+        sum += machine->regularity(start) > 0.0 ? 1 : 0;
+      }
+      sum += machine->all(way.pose(0.0), ways.data(), 64);
+      ToolPose far = way.pose(0.0);
+      far.tip_m *= 10.0;
+      sum += static_cast<int>(machine->follow(far, start, position).status);
+    };
+    EXPECT_EQ(test::allocations(work), 0U) << machine->joints();
+    EXPECT_GT(sum, 0);
+  }
+}
+
+TEST(SerialKinematics, RefusesWhatItCannotFollow) {
+  Cell cell{.arm = testing::kr210()};
+  EXPECT_EQ(field_of([&] { (void)SerialKinematics(cell, {.max_travel_rad = -1.0}); }), "max_travel_rad");
+  EXPECT_EQ(field_of([&] { (void)SerialKinematics(cell, {.singularity = {.max_condition_number = 0.5}}); }),
+            "singularity.max_condition_number");
+  cell.tool_length_m = -1.0;
+  EXPECT_EQ(field_of([&] { (void)SerialKinematics(cell); }), "cell.tool_length_m");
+  cell = {.arm = testing::kr210()};
+  cell.arm.joints.pop_back();
+  EXPECT_EQ(field_of([&] { (void)SerialKinematics(cell); }), "cell.arm.joints");
+  cell = {.arm = testing::kr210()};
+  cell.arm.joints[2].prismatic = true;
+  EXPECT_EQ(field_of([&] { (void)SerialKinematics(cell); }), "cell.arm.joints");
+}
+
+}  // namespace
+}  // namespace robomill::robot
