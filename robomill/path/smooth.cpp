@@ -1,0 +1,253 @@
+#include "robomill/path/smooth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ctime>
+#include <deque>
+#include <string>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/path/emitter.hpp"
+#include "robomill/path/fir.hpp"
+#include "robomill/path/planner.hpp"
+#include "robomill/path/posture.hpp"
+
+namespace robomill::path {
+namespace {
+
+/// Rounds of planning before it is given up.
+constexpr int max_rounds = 40;
+/// Blocks up to which the lower bound is found.
+constexpr std::size_t lower_bound_blocks = 50'000;
+
+double processor_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// One program for two readers, who run at their own pace.
+class Shared {
+ public:
+  explicit Shared(program::Source& source) : source_(source) {}
+  bool next(std::size_t reader, program::Block& out) {
+    std::size_t& at = at_[reader];
+    if (at == held_.size()) {
+      program::Block block;
+      if (!source_.next(block)) return false;
+      held_.push_back(block);
+    }
+    out = held_[at++];
+    for (; at_[0] > 0 && at_[1] > 0; --at_[0], --at_[1]) held_.pop_front();
+    return true;
+  }
+  [[nodiscard]] const program::Pose& start() const { return source_.start(); }
+
+ private:
+  program::Source& source_;
+  std::deque<program::Block> held_;
+  std::array<std::size_t, 2> at_ = {};
+};
+class Reader final : public program::Source {
+ public:
+  Reader(Shared& shared, std::size_t index) : shared_(shared), index_(index) {}
+  [[nodiscard]] const program::Pose& start() const override { return shared_.start(); }
+  bool next(program::Block& out) override { return shared_.next(index_, out); }
+  void rewind() override {}
+
+ private:
+  Shared& shared_;
+  std::size_t index_;
+};
+
+/// The turn about the tool's axis at the end of a block; block −1 is the start.
+double gamma_after(const Posture& posture, std::size_t blocks_done) {
+  const std::vector<double>& gamma = posture.gamma_rad;
+  if (gamma.empty()) return 0.0;
+  return gamma[std::min(blocks_done, gamma.size() - 1)];
+}
+
+[[noreturn]] void refuse(const Planner::Status& status, const robot::Kinematics& kinematics) {
+  using Kind = Planner::Status::Kind;
+  if (status.kind == Kind::antipodal) {
+    throw InvalidInput(
+        "block " + std::to_string(status.block + 1),
+        "turns the tool's axis by half a circle (line " + std::to_string(status.line) + "): no one way leads there",
+        "Give a pose between");
+  }
+  throw cannot_take(status.reach, kinematics, status.block, status.line);
+}
+
+/// Feeds a program through a planner; `take` gets what is planned.
+template <class Take>
+void run(program::Source& source, const Posture& posture, const robot::Kinematics& kinematics, Planner& planner,
+         Progress& progress, std::size_t& blocks, Take&& take) {
+  const auto hold = [&](const Planner::Status& status) {
+    if (!status.ok()) refuse(status, kinematics);
+    take();
+    while (planner.busy()) {
+      const Planner::Status more = planner.resume();
+      if (!more.ok()) refuse(more, kinematics);
+      take();
+    }
+  };
+  hold(planner.begin(source.start(), gamma_after(posture, 0), posture.start));
+  program::Block block;
+  for (blocks = 0; source.next(block); ++blocks) {
+    hold(planner.push(block, blocks, gamma_after(posture, blocks + 1)));
+    if (blocks % 64 == 0) progress.check();
+  }
+  hold(planner.finish());
+}
+
+/// Slower, or nearer to the programmed path, where limits were broken.
+void mend(const std::vector<Breach>& breaches, Mends& mends) {
+  Mends more;
+  const auto least = [](auto& map, auto key, double factor) {
+    const auto [at, fresh] = map.emplace(key, factor);
+    if (!fresh) at->second = std::min(at->second, factor);
+  };
+  for (const Breach& breach : breaches) {
+    if (breach.order == 0) {
+      const double factor = std::clamp(0.97 / breach.ratio, 0.5, 0.97);
+      for (std::size_t block = breach.block == 0 ? 0 : breach.block - 1; block <= breach.block + 1; ++block) {
+        least(more.tolerance, block, factor);
+      }
+    } else {
+      // Differences reach over three samples.
+      const double factor = std::clamp(0.97 * std::pow(breach.ratio, -1.0 / breach.order), 0.5, 0.97);
+      const auto cell = static_cast<std::int64_t>(std::floor(breach.path_m * Mends::cells_per_m));
+      for (std::int64_t at = cell - 1; at <= cell + 1; ++at) least(more.speed, at, factor);
+    }
+  }
+  for (const auto& [block, factor] : more.tolerance) mends.tolerance.emplace(block, 1.0).first->second *= factor;
+  for (const auto& [cell, factor] : more.speed) mends.speed.emplace(cell, 1.0).first->second *= factor;
+}
+
+double lower_bound_s(program::Source& source, const Posture& posture, const robot::Kinematics& kinematics,
+                     const SmoothingOptions& options, const Mends& mends, Progress& progress) {
+  PlannerOptions to_the_limit;
+  to_the_limit.share = 1.0;
+  const Mends shape{.tolerance = mends.tolerance, .speed = {}};  // the same path, at any speed
+  std::vector<BoundPoint> points;
+  Planner planner(kinematics, options, to_the_limit, &shape, &points);
+  source.rewind();
+  double dwells_s = 0.0;
+  std::size_t blocks = 0;
+  run(source, posture, kinematics, planner, progress, blocks, [&] {
+    for (const Span& span : planner.motion()) dwells_s += span.dwell_s;
+    planner.motion().clear();
+    planner.path().clear();
+  });
+  return dwells_s + least_time_s(points, planner.limits());
+}
+
+/// A plan of the windowed planner, its samples and their check; once.
+void plan_once(program::Source& source, const robot::Kinematics& kinematics, const Posture& posture,
+               const SmoothingOptions& options, const Mends& mends, const SampleSink& sink, Progress& progress,
+               Summary& out) {
+  Shared shared(source);
+  Reader to_plan(shared, 0), to_check(shared, 1);
+  Planner planner(kinematics, options, options.method == Method::optimal ? PlannerOptions::optimal() : PlannerOptions{},
+                  &mends);
+  Emitter emitter(kinematics, options.sample_period_s, posture.start);
+  Checker checker(to_check, kinematics, options);
+  std::vector<Sample> samples;
+  out.samples = 0;
+  out.emit_s = 0.0;
+  double aside_s = 0.0;
+  const double begin_s = processor_s();
+  const auto send = [&](bool whole) {
+    if (!whole) throw cannot_take(emitter.reach(), kinematics, emitter.at().block, emitter.at().line);
+    checker.add(samples);
+    sink(samples);
+    out.samples += samples.size();
+    samples.clear();
+  };
+  run(to_plan, posture, kinematics, planner, progress, out.blocks, [&] {
+    const double from_s = processor_s();
+    double sent_s = 0.0;
+    const bool whole = emitter.add(planner.path(), planner.motion(), samples, [&] {
+      const double at_s = processor_s();
+      progress.check();
+      send(true);
+      sent_s += processor_s() - at_s;
+    });
+    out.emit_s += processor_s() - from_s - sent_s;
+    planner.path().clear();
+    planner.motion().clear();
+    send(whole);
+    progress.check();
+    aside_s += processor_s() - from_s;
+  });
+  out.plan_s += processor_s() - begin_s - aside_s;
+  const bool whole = emitter.finish(samples);
+  send(whole);
+  out.duration_s = emitter.duration_s();
+  out.check = checker.finish();
+}
+
+/// The published methods: the program in memory, no second round.
+void plan_published(program::Source& source, const robot::Kinematics& kinematics, const Posture& posture,
+                    const SmoothingOptions& options, const SampleSink& sink, Progress& progress, Summary& out) {
+  program::Program program{.start = source.start(), .blocks = {}};
+  program::Block block;
+  while (source.next(block)) program.blocks.push_back(block);
+  progress.check();
+  double begin_s = processor_s();
+  const FirPlan plan = plan_fir(program, kinematics, posture, options);
+  out.plan_s = processor_s() - begin_s;
+  out.blocks = program.blocks.size();
+  out.duration_s = plan.duration_s;
+  out.sum_t2_s = plan.sum_t2_s;
+  out.largest_overlap_s = plan.largest_overlap_s;
+  program::ProgramSource to_check(program);
+  Checker checker(to_check, kinematics, options);
+  double aside_s = 0.0;
+  begin_s = processor_s();
+  out.samples =
+      sample_fir(plan, program, kinematics, posture, options.sample_period_s, [&](std::span<const Sample> samples) {
+        const double from_s = processor_s();
+        progress.check();
+        checker.add(samples);
+        sink(samples);
+        aside_s += processor_s() - from_s;
+      });
+  out.emit_s = processor_s() - begin_s - aside_s;
+  out.check = checker.finish();
+}
+
+}  // namespace
+
+Summary smooth(program::Source& source, const robot::Kinematics& kinematics, const Posture& posture,
+               const SmoothingOptions& options, const SampleSink& sink, const std::function<void()>& restart,
+               Progress& progress) {
+  options.validate();
+  Summary out;
+  source.rewind();
+  restart();
+  if (options.method != Method::verified && options.method != Method::optimal) {
+    out.rounds = 1;
+    plan_published(source, kinematics, posture, options, sink, progress, out);
+    return out;
+  }
+  Mends mends;
+  for (out.rounds = 1;; ++out.rounds) {
+    plan_once(source, kinematics, posture, options, mends, sink, progress, out);
+    if (out.samples == 0) {
+      throw InvalidInput("program", "moves nothing", "A program of dwells alone has no path to plan");
+    }
+    if (out.check.violations() == 0 || out.rounds == max_rounds) break;
+    mend(out.check.breaches, mends);
+    source.rewind();
+    restart();
+  }
+  if (out.blocks <= lower_bound_blocks) {
+    out.lower_bound_s = lower_bound_s(source, posture, kinematics, options, mends, progress);
+  }
+  return out;
+}
+
+}  // namespace robomill::path

@@ -1,0 +1,251 @@
+#include "robomill/path/smooth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/path/planner.hpp"
+#include "robomill/path/posture.hpp"
+#include "robomill/path/test_random_program.hpp"
+#include "robomill/path/test_s_path.hpp"
+#include "robomill/robot/hybrid.hpp"
+#include "robomill/robot/serial_kinematics.hpp"
+#include "robomill/robot/test_arms.hpp"
+
+namespace robomill::path {
+namespace {
+
+/// A KR210-like arm over a part in front of it; the accelerations and jerks of its joints are chosen.
+robot::Cell kr210_cell() {
+  robot::Cell cell;
+  cell.arm = robot::testing::with_limits(robot::testing::kr210());
+  cell.tool_length_m = 0.25;
+  cell.workpiece = Eigen::Translation3d(1.5, 0.2, 0.9);
+  const double velocity[] = {2.1, 2.0, 1.9, 3.1, 3.0, 3.8}, acceleration[] = {3, 3, 3, 8, 8, 10},
+               jerk[] = {60, 60, 60, 200, 200, 250};
+  for (std::size_t i = 0; i < 6; ++i) {
+    cell.arm.joints[i].max_velocity = velocity[i];
+    cell.arm.joints[i].max_acceleration = acceleration[i];
+    cell.arm.joints[i].max_jerk = jerk[i];
+  }
+  return cell;
+}
+
+struct Smoothed {
+  Summary summary;
+  std::vector<Sample> samples;
+};
+
+Smoothed smoothed(const program::Program& program, const robot::Kinematics& kinematics, const SmoothingOptions& options,
+                  const Posture& posture = {}) {
+  program::ProgramSource source(program);
+  Smoothed out;
+  out.summary = smooth(
+      source, kinematics, posture, options,
+      [&](std::span<const Sample> some) { out.samples.insert(out.samples.end(), some.begin(), some.end()); },
+      [&] { out.samples.clear(); }, Progress::none());
+  return out;
+}
+
+Posture posture_for(const program::Program& program, const robot::Kinematics& kinematics) {
+  program::ProgramSource source(program);
+  return choose_posture(source, kinematics).posture;
+}
+
+/// The largest share of any joint's jerk limit.
+double joint_jerk(const CheckResult& check) {
+  double out = 0.0;
+  for (const CheckResult::Joint& joint : check.joints) out = std::max(out, joint.jerk.max / joint.jerk.limit);
+  return out;
+}
+
+/// A random program of 10 to 300 blocks of 0.05 to 50 mm with corners of any angle, reversals, pure rotations, blocks
+/// that do not move, and dwells.
+program::Program program_of(std::uint64_t seed, double max_lean_rad) {
+  Random random(seed);
+  const int blocks = static_cast<int>(random.uniform(10.0, 300.0));
+  program::Program out = test::random_program(
+      random, {.blocks = blocks, .max_lean_rad = max_lean_rad, .feed_m_per_s = random.uniform(0.01, 0.08)});
+  for (int i = 0; i < blocks / 20; ++i) {
+    const auto at = static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(out.blocks.size())));
+    program::Block still = out.blocks[at];
+    still.kind = i % 2 == 0 ? program::Block::Kind::dwell : program::Block::Kind::feed;
+    still.duration_s = random.uniform(0.0, 0.3);
+    out.blocks.insert(out.blocks.begin() + static_cast<std::ptrdiff_t>(at) + 1, still);
+  }
+  return out;
+}
+
+class RandomPrograms : public ::testing::TestWithParam<int> {};
+
+// 1,000 seeds in ten parts, two thirds on the hybrid machine and one third on the arm; every twentieth optimal.
+TEST_P(RandomPrograms, BreakNoLimit) {
+  const robot::HybridKinematics hybrid(test::s_machine(0.4, 8.0));
+  const robot::SerialKinematics arm(kr210_cell());
+  const int count = robomill::test::seeds(100);
+  for (int i = 0; i < count; ++i) {
+    const int seed = 100 * GetParam() + i;
+    const bool on_arm = seed % 3 == 0;
+    const robot::Kinematics& kinematics = on_arm ? static_cast<const robot::Kinematics&>(arm) : hybrid;
+    const program::Program program = program_of(static_cast<std::uint64_t>(seed), on_arm ? 0.5 : 0.4);
+    const SmoothingOptions options =
+        test::published_options(i % 20 == 0 && program.blocks.size() < 150 ? Method::optimal : Method::verified);
+    const Smoothed run = smoothed(program, kinematics, options, posture_for(program, kinematics));
+    EXPECT_EQ(run.summary.check.violations(), 0U) << "seed " << seed;
+    EXPECT_GT(run.summary.lower_bound_s, 0.0) << "seed " << seed;
+    EXPECT_GE(run.summary.duration_s, run.summary.lower_bound_s) << "seed " << seed;
+    EXPECT_LT((run.samples.back().tip_m - program.blocks.back().end.tip_m).norm(), 1e-9) << "seed " << seed;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomPrograms, ::testing::Range(0, 10));
+
+// Under the published conditions, joints of 0.4 m/s² and 12.8 m/s³ (the source states none).
+TEST(SPath, PaperCostsLittleVerifiedLessAndNeitherBreaksTheJointsJerk) {
+  const robot::HybridKinematics machine(test::s_machine(0.4, 12.8));
+  const auto by = [&](Method method) {
+    return smoothed(test::s_path(), machine, test::published_options(method)).summary;
+  };
+  const Summary earlier = by(Method::no_joint_jerk), paper = by(Method::paper), verified = by(Method::verified),
+                optimal = by(Method::optimal);
+  EXPECT_GT(joint_jerk(earlier.check), 1.2);
+  EXPECT_LE(joint_jerk(paper.check), 1.0);
+  EXPECT_LT(paper.duration_s, 1.05 * earlier.duration_s);
+  EXPECT_EQ(verified.check.violations(), 0U);
+  EXPECT_EQ(optimal.check.violations(), 0U);
+  EXPECT_LT(verified.duration_s, paper.duration_s);
+  EXPECT_LT(optimal.duration_s, verified.duration_s);
+  // 9 % here; 7 % with joints of 20 m/s³: the bound knows no jerk, and fifteen corners ask for it.
+  EXPECT_LT(optimal.duration_s, 1.10 * optimal.lower_bound_s);
+}
+
+TEST(SPath, OptimalIsNearTheBoundWhereJointJerkIsLoose) {
+  const robot::HybridKinematics machine(test::s_machine(0.4, 20.0));
+  const Summary optimal = smoothed(test::s_path(), machine, test::published_options(Method::optimal)).summary;
+  EXPECT_EQ(optimal.check.violations(), 0U);
+  EXPECT_LT(optimal.duration_s, 1.08 * optimal.lower_bound_s);
+}
+
+/// 3,000 blocks of 0.1 to 1 mm along a smooth curve.
+program::Program dense_program() {
+  Random random(7);
+  program::Program out;
+  program::Pose at;
+  out.start = at;
+  double heading = 0.0, way_m = 0.0;
+  for (std::size_t i = 0; i < 3000; ++i) {
+    const double length_m = 1e-4 * std::pow(10.0, random.uniform());
+    way_m += length_m;
+    heading += length_m / 0.02 * std::sin(25.0 * way_m);
+    at.tip_m += length_m * Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.1 * std::sin(50.0 * way_m));
+    at.axis = Eigen::Vector3d(0.2 * std::sin(10.0 * way_m), 0.2 * (std::cos(8.0 * way_m) - 1.0), 1.0).normalized();
+    out.blocks.push_back({.line = i + 1, .end = at, .duration_s = length_m / 0.05});
+  }
+  return out;
+}
+
+TEST(DenseProgram, FlowsNearTheBound) {
+  const program::Program program = dense_program();
+  for (const double jerk : {8.0, 20.0}) {  // the second: fifty times the acceleration a second
+    const robot::HybridKinematics machine(test::s_machine(0.4, jerk));
+    const Summary verified = smoothed(program, machine, test::published_options(Method::verified)).summary;
+    const Summary optimal = smoothed(program, machine, test::published_options(Method::optimal)).summary;
+    EXPECT_EQ(verified.check.violations(), 0U);
+    EXPECT_EQ(optimal.check.violations(), 0U);
+    EXPECT_LT(verified.duration_s, 1.4 * optimal.duration_s);
+    EXPECT_LT(optimal.duration_s, 1.1 * optimal.lower_bound_s);
+  }
+}
+
+/// The planner's own time, without check and rounds.
+double planned_s(const program::Program& program, const robot::Kinematics& kinematics, const PlannerOptions& how) {
+  Planner planner(kinematics, test::published_options(Method::optimal), how);
+  double sum_s = 0.0;
+  const auto take = [&](const Planner::Status& status) {
+    EXPECT_TRUE(status.ok());
+    for (const Span& span : planner.motion()) sum_s += duration_s(span);
+    planner.motion().clear();
+    planner.path().clear();
+  };
+  const auto go = [&](const Planner::Status& status) {
+    take(status);
+    while (planner.busy()) take(planner.resume());
+  };
+  go(planner.begin(program.start, 0.0, robot::Position6::Zero()));
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) go(planner.push(program.blocks[i], i, 0.0));
+  go(planner.finish());
+  return sum_s;
+}
+
+// The same problem on a grid four times as fine, run to a hundredth of the gap.
+TEST(Optimal, IsNearAMuchFinerSolution) {
+  const robot::HybridKinematics machine(test::s_machine(0.4, 8.0));
+  PlannerOptions finer = PlannerOptions::optimal();
+  finer.spacing /= 4.0;
+  finer.speed = {.relative_gap = 1e-6, .max_iterations = 400};
+  for (const program::Program& program : {test::s_path(), program_of(11, 0.4)}) {
+    const double fast_s = planned_s(program, machine, PlannerOptions::optimal());
+    const double fine_s = planned_s(program, machine, finer);
+    EXPECT_LT(fast_s, 1.05 * fine_s);
+    EXPECT_GT(fast_s, 0.98 * fine_s);
+  }
+}
+
+TEST(Smooth, ThreeFiltersKeepTheLimitsToo) {
+  const robot::HybridKinematics machine(test::s_machine(0.4, 8.0));
+  SmoothingOptions options = test::published_options(Method::verified);
+  options.filters = 3;
+  EXPECT_EQ(smoothed(test::s_path(), machine, options).summary.check.violations(), 0U);
+}
+
+TEST(Smooth, SendsWholeTrajectoriesFromRestToRest) {
+  const robot::HybridKinematics machine(test::s_machine(0.4, 8.0));
+  const program::Program program = test::s_path();
+  const Smoothed run = smoothed(program, machine, test::published_options(Method::verified));
+  ASSERT_EQ(run.samples.size(), run.summary.samples);
+  EXPECT_EQ(run.samples.front().tip_m, program.start.tip_m);
+  EXPECT_LT((run.samples.back().tip_m - program.blocks.back().end.tip_m).norm(), 1e-12);
+  for (std::size_t i = 0; i < run.samples.size(); ++i) {
+    EXPECT_DOUBLE_EQ(run.samples[i].time_s, 1e-3 * static_cast<double>(i));
+  }
+  EXPECT_GT(run.summary.duration_s, run.summary.lower_bound_s);
+}
+
+TEST(Smooth, StandsStillForADwell) {
+  const robot::HybridKinematics machine(test::s_machine(0.4, 8.0));
+  program::Program program = test::s_path();
+  const double without_s = smoothed(program, machine, test::published_options(Method::verified)).summary.duration_s;
+  program::Block dwell = program.blocks[7];
+  dwell.kind = program::Block::Kind::dwell;
+  dwell.duration_s = 0.5;
+  program::Block motionless = program.blocks[7];
+  motionless.duration_s = 0.01;
+  program.blocks.insert(program.blocks.begin() + 8, {motionless, dwell});
+  const Smoothed run = smoothed(program, machine, test::published_options(Method::verified));
+  EXPECT_EQ(run.summary.check.violations(), 0U);
+  std::size_t still = 0;
+  for (std::size_t i = 1; i < run.samples.size(); ++i) still += run.samples[i].tip_m == run.samples[i - 1].tip_m;
+  EXPECT_NEAR(static_cast<double>(still), 500.0, 2.0);
+  EXPECT_GT(run.summary.duration_s, without_s + 0.5);
+}
+
+TEST(Smooth, RefusesWhatCannotBeReachedByBlockAndLine) {
+  const robot::HybridKinematics machine(test::s_machine(0.4, 8.0));
+  program::Program program = test::s_path();
+  program.blocks[5].end.tip_m.x() += 5.0;
+  const std::string far =
+      robomill::test::refusal([&] { smoothed(program, machine, test::published_options(Method::verified)); });
+  EXPECT_NE(far.find("block 6 (line 6)"), std::string::npos) << far;
+  program = test::s_path();
+  program.blocks[2].end.axis = -program.blocks[1].end.axis;
+  const std::string turned =
+      robomill::test::refusal([&] { smoothed(program, machine, test::published_options(Method::verified)); });
+  EXPECT_NE(turned.find("half a circle (line 3)"), std::string::npos) << turned;
+}
+
+}  // namespace
+}  // namespace robomill::path
