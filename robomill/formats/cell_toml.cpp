@@ -13,6 +13,7 @@
 #include "robomill/formats/toml_file.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/formats/urdf.hpp"
+#include "robomill/robot/serial_kinematics.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -54,15 +55,16 @@ Eigen::Isometry3d read_pose(TomlFile& file, const char* origin_key, const char* 
   return out;
 }
 
-void read_kind(TomlFile& file) {
-  std::string kind = "serial";
-  file.text("robot.kind", kind);
-  if (kind == "serial") return;
-  if (kind == "hybrid-2upr-rpu") {
-    throw file.refuse("robot.kind", "is a hybrid machine, which cannot be read yet",
-                      "Serial arms can: kind = \"serial\"");
+enum class Kind { serial, hybrid };
+
+Kind read_kind(TomlFile& file, Robots usable) {
+  Kind kind = Kind::serial;
+  file.choice<Kind>("robot.kind", {{"serial", Kind::serial}, {"hybrid-2upr-rpu", Kind::hybrid}}, kind);
+  if (kind == Kind::hybrid && usable == Robots::serial) {
+    throw file.refuse("robot.kind", "is a hybrid machine; this needs a serial arm",
+                      "Forces and stiffness at the joints are known of serial arms alone; robomill smooth takes both");
   }
-  throw file.refuse("robot.kind", "must be one of \"serial\", \"hybrid-2upr-rpu\"");
+  return kind;
 }
 
 std::vector<robot::DhRow> read_dh(TomlFile& file) {
@@ -142,7 +144,6 @@ InvalidInput located(const TomlFile& file, const InvalidInput& error) {
 }
 
 void read_arm(TomlFile& file, CellFile& out) {
-  read_kind(file);
   std::filesystem::path urdf;
   const bool from_urdf = file.path("robot.urdf", urdf);
   if (from_urdf == file.has("robot.dh")) {
@@ -198,16 +199,77 @@ void read_start(TomlFile& file, CellFile& out) {
   }
 }
 
+constexpr Eigen::Index hybrid_joints = 5;
+
+/// Sizes of the hybrid machine.
+struct Size {
+  const char* key;
+  const char* member;
+  double robot::HybridMachine::*value;
+};
+constexpr std::array<Size, 5> hybrid_sizes = {{
+    {"robot.base_half_width_mm", "base_half_width_m", &robot::HybridMachine::base_half_width_m},
+    {"robot.platform_half_width_mm", "platform_half_width_m", &robot::HybridMachine::platform_half_width_m},
+    {"robot.platform_offset_mm", "platform_offset_m", &robot::HybridMachine::platform_offset_m},
+    {"robot.base_offset_mm", "base_offset_m", &robot::HybridMachine::base_offset_m},
+    {"robot.platform_to_flange_mm", "platform_to_flange_m", &robot::HybridMachine::platform_to_flange_m},
+}};
+
+/// Limits of its five joints, SI in the file too.
+struct LimitList {
+  const char* key;
+  const char* member;
+  robot::Position6 robot::JointLimits::*values;
+};
+constexpr std::array<LimitList, 5> limit_lists = {{
+    {"robot.joint_min_position", "min_position", &robot::JointLimits::min_position},
+    {"robot.joint_max_position", "max_position", &robot::JointLimits::max_position},
+    {"robot.joint_max_velocity", "max_velocity", &robot::JointLimits::max_velocity},
+    {"robot.joint_max_acceleration", "max_acceleration", &robot::JointLimits::max_acceleration},
+    {"robot.joint_max_jerk", "max_jerk", &robot::JointLimits::max_jerk},
+}};
+
+void read_hybrid(TomlFile& file, CellFile& out) {
+  for (const char* key : {"robot.dh", "robot.urdf", "robot.links", "robot.start_joints_deg", "robot.gamma_deg",
+                          "tool.mount_origin_mm", "tool.mount_rotation_deg"}) {
+    if (file.has(key)) throw file.refuse(key, "goes with kind = \"serial\"");
+  }
+  robot::HybridMachine& machine = out.hybrid.emplace();
+  for (const Size& size : hybrid_sizes) file.number(size.key, size.member, units::mm, machine.*size.value);
+  for (const LimitList& list : limit_lists) {
+    std::vector<double> values;
+    if (!file.numbers(list.key, list.member, 1.0, values)) continue;
+    if (static_cast<Eigen::Index>(values.size()) != hybrid_joints) {
+      throw file.refuse(
+          list.key, fmt::format("must hold one number a joint, {}: q1, q2, q3 the legs, q4, q5 the slides, in m; it "
+                                "holds {}",
+                                hybrid_joints, values.size()));
+    }
+    for (Eigen::Index i = 0; i < hybrid_joints; ++i) {
+      (machine.limits.*list.values)(i) = values[static_cast<std::size_t>(i)];
+    }
+  }
+}
+
+void read_serial(TomlFile& file, CellFile& out) {
+  for (const Size& size : hybrid_sizes) {
+    if (file.has(size.key)) throw file.refuse(size.key, "goes with kind = \"hybrid-2upr-rpu\"");
+  }
+  read_arm(file, out);
+  read_start(file, out);
+  out.gamma_given = file.number("robot.gamma_deg", "redundant_gamma_rad", units::deg, out.redundant_gamma_rad);
+}
+
 }  // namespace
 
-CellFile read_cell(const std::filesystem::path& path) {
+CellFile read_cell(const std::filesystem::path& path, Robots usable) {
   TomlFile file(path);
   CellFile out{.path = path};
   file.skip("smoothing");
   file.require("robot", "Write [robot] with the arm, kind = \"serial\" and dh or urdf");
-  read_arm(file, out);
-  read_start(file, out);
-  file.number("robot.gamma_deg", "redundant_gamma_rad", units::deg, out.redundant_gamma_rad);
+  const Kind kind = read_kind(file, usable);
+  if (kind == Kind::serial) read_serial(file, out);
+  if (kind == Kind::hybrid) read_hybrid(file, out);
   out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
   file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
   if (file.text("program.machine", out.machine)) {
@@ -218,8 +280,26 @@ CellFile read_cell(const std::filesystem::path& path) {
     }
   }
   file.done();
-  file.locate([&] { out.cell.validate(); });
+  if (out.hybrid) {
+    out.hybrid->workpiece = out.cell.workpiece;
+    out.hybrid->tool_length_m = out.cell.tool_length_m;
+    file.locate([&] { out.hybrid->validate(); });
+  } else {
+    file.locate([&] { out.cell.validate(); });
+  }
   return out;
+}
+
+std::unique_ptr<robot::Kinematics> kinematics(const CellFile& file) {
+  if (file.hybrid) return std::make_unique<robot::HybridKinematics>(*file.hybrid);
+  try {
+    return std::make_unique<robot::SerialKinematics>(file.cell);
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    parts.where = file.path.string();
+    parts.field = "robot";
+    throw InvalidInput(std::move(parts));
+  }
 }
 
 }  // namespace robomill::formats

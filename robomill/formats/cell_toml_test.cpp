@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "robomill/base/random.hpp"
@@ -156,7 +157,7 @@ TEST(CellToml, SaysWhatIsWrongAndWhere) {
   };
   expect("\"serial\"", "\"parallel\"", "cell.toml:2: robot.kind = \"parallel\"; must be one of \"serial\"");
   expect("\"serial\"", "\"hybrid-2upr-rpu\"",
-         "cell.toml:2: robot.kind = \"hybrid-2upr-rpu\"; is a hybrid machine, which cannot be read yet");
+         "cell.toml:2: robot.kind = \"hybrid-2upr-rpu\"; is a hybrid machine; this needs a serial arm");
   expect("kind = \"serial\"", "urdf = \"one.urdf\"",
          "cell.toml:2: robot.urdf = \"one.urdf\"; must not stand beside dh");
   expect("kind = \"serial\"", "urdf_tip = \"x\"", "cell.toml:2: robot.urdf_tip = \"x\"; goes with robot.urdf");
@@ -185,6 +186,78 @@ TEST(CellToml, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(said("[robot]\nurdf = \"one.urdf\"\n").find("robot.urdf_tip: is missing"), std::string::npos);
   EXPECT_NE(said("[robot]\nurdf = \"one.urdf\"\nurdf_tip = \"tol0\"\n").find("Did you mean tool0?"), std::string::npos);
   EXPECT_NE(said("[robot]\nurdf = \"two.urdf\"\nurdf_tip = \"tool0\"\n").find("two.urdf"), std::string::npos);
+}
+
+const std::string hybrid = R"([robot]
+kind = "hybrid-2upr-rpu"
+platform_offset_mm = 130
+joint_min_position = [0.4, 0.4, 0.4, -1, -1]
+joint_max_position = [1.2, 1.2, 1.2, 1, 1]
+joint_max_velocity = [0.5, 0.5, 0.5, 1, 2]
+[workpiece]
+origin_mm = [0, 0, 900]
+rotation_deg = [180, 0, 0]
+[tool]
+length_mm = 100
+)";
+
+TEST(CellToml, ReadsTheHybridMachine) {
+  const Folder folder;
+  const CellFile file = read_cell(folder.file("cell.toml", hybrid), Robots::any);
+  ASSERT_TRUE(file.hybrid);
+  EXPECT_DOUBLE_EQ(file.hybrid->base_half_width_m, 0.3);
+  EXPECT_DOUBLE_EQ(file.hybrid->platform_half_width_m, 0.12);
+  EXPECT_DOUBLE_EQ(file.hybrid->platform_offset_m, 0.13);
+  EXPECT_DOUBLE_EQ(file.hybrid->base_offset_m, 0.3);
+  EXPECT_DOUBLE_EQ(file.hybrid->platform_to_flange_m, 0.05);
+  EXPECT_DOUBLE_EQ(file.hybrid->tool_offset_m(), 0.15);
+  EXPECT_EQ(file.hybrid->limits.min_position(0), 0.4);
+  EXPECT_EQ(file.hybrid->limits.max_velocity(4), 2.0);
+  EXPECT_EQ(file.hybrid->limits.max_velocity(5), 0.0);
+  EXPECT_FALSE(file.gamma_given);
+  const auto machine = kinematics(file);
+  EXPECT_EQ(machine->joints(), 5);
+  robot::Position6 position;
+  ASSERT_EQ(machine->follow(robot::ToolPose{}, robot::Position6::Zero(), position).status, robot::Reach::Status::found);
+  // The part's zero is 0.9 m below the base's plane, the tool upright: l = 0.9 - 0.15.
+  EXPECT_NEAR(position(0), std::hypot(0.3 - 0.12, 0.75), 1e-15);
+  EXPECT_NEAR(position(2), std::hypot(0.3 - 0.13, 0.75), 1e-15);
+}
+
+TEST(CellToml, SaysWhatIsWrongWithAHybridMachine) {
+  const Folder folder;
+  const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& message) {
+    std::string text = hybrid;
+    text.replace(text.find(old_text), old_text.size(), new_text);
+    const std::string said = refusal([&] { (void)read_cell(folder.file("cell.toml", text), Robots::any); });
+    EXPECT_EQ(said.substr(folder.path().string().size() + 1).substr(0, message.size()), message);
+  };
+  expect("platform_offset_mm = 130", "base_half_width_mm = 0",
+         "cell.toml:3: robot.base_half_width_mm = 0 mm; must be > 0");
+  expect("[0.4, 0.4, 0.4, -1, -1]", "[0.4, 0.4, 0.4]",
+         "cell.toml:4: robot.joint_min_position: must hold one number a joint, 5: q1, q2, q3 the legs");
+  expect("[0.4, 0.4, 0.4, -1, -1]", "[0.4, 0.4, 1.4, -1, -1]",
+         "cell.toml:4: robot.joint_min_position[3] = 1.4 m; must be below max_position");
+  expect("platform_offset_mm = 130", "dh = [{}]", "cell.toml:3: robot.dh: goes with kind = \"serial\"");
+  expect("platform_offset_mm = 130", "gamma_deg = 3", "cell.toml:3: robot.gamma_deg = 3 deg; goes with kind");
+  expect("length_mm = 100", "length_mm = -1", "cell.toml:11: tool.length_mm = -1 mm; must be >= 0");
+  EXPECT_NE(refusal([&] {
+              (void)read_cell(folder.file("cell.toml", with("gamma_deg = 30", "base_offset_mm = 30")), Robots::any);
+            }).find("cell.toml:21: robot.base_offset_mm = 30 mm; goes with kind = \"hybrid-2upr-rpu\""),
+            std::string::npos);
+}
+
+TEST(CellToml, MakesTheMachineOfTheCell) {
+  const Folder folder;
+  const CellFile file = read_cell(folder.file("cell.toml", good));
+  EXPECT_TRUE(file.gamma_given);
+  const auto machine = kinematics(file);
+  EXPECT_EQ(machine->joints(), 6);
+  EXPECT_EQ(machine->limits().max_jerk(5), 70.0);
+  folder.file("one.urdf", urdf);
+  const auto one = folder.file("one.toml", "[robot]\nurdf = \"one.urdf\"\nurdf_tip = \"tool0\"\n");
+  const std::string said = refusal([&] { (void)kinematics(read_cell(one)); });
+  EXPECT_NE(said.find("one.toml: robot = 1 joints; must be six"), std::string::npos) << said;
 }
 
 TEST(CellToml, DamagedFilesAreReadOrRefused) {

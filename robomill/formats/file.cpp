@@ -9,7 +9,6 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -62,15 +61,21 @@ Format format_of(const fs::path& path) {
   return Format::unknown;
 }
 
-std::string read_file(const fs::path& path, std::uintmax_t max_bytes) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
+std::ifstream open_file(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
   if (!fs::exists(status)) refuse(path, "there is no such file");
   if (fs::is_directory(status)) refuse(path, "is a folder, not a file");
   std::ifstream in(path, std::ios::binary);
   if (!in) refuse(path, "cannot be read", "Are its permissions right?");
+  return in;
+}
+
+std::string read_file(const fs::path& path, std::uintmax_t max_bytes) {
+  std::ifstream in = open_file(path);
+  std::error_code error;
   std::string content;
-  if (fs::is_regular_file(status)) {
+  if (fs::is_regular_file(path, error)) {
     const std::uintmax_t size = fs::file_size(path, error);
     if (!error && size > max_bytes) refuse(path, "holds more than " + std::to_string(max_bytes) + " bytes");
     if (!error) content.reserve(static_cast<std::size_t>(size));

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,10 @@ enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
 
 /// .uff .unv .uf, .csv, .txt .dat .asc, .mat, .json, .toml, .wav; case does not matter.
 [[nodiscard]] ROBOMILL_API Format format_of(const std::filesystem::path& path);
+
+/// A file opened to be read.
+/// @throws InvalidInput if there is no such file, it is a directory, or cannot be read
+[[nodiscard]] std::ifstream open_file(const std::filesystem::path& path);
 
 /// The whole content of a file.
 /// @throws InvalidInput if there is no such file, it is a directory, cannot be read, is empty or holds more than

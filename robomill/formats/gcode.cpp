@@ -3,14 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/gcode_reader.hpp"
-#include "robomill/formats/text.hpp"
+#include "robomill/formats/program_files.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -36,22 +32,7 @@ Machine parse_machine(std::string_view name) {
 }
 
 program::Program read_gcode(const std::filesystem::path& path, std::optional<Machine> machine) {
-  const std::string content = read_file(path);
-  std::string_view rest = content;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-  GcodeReader reader(path.string(), machine);
-  program::Program out;
-  while (!rest.empty() && !reader.ended()) {
-    const std::size_t end = rest.find('\n');
-    if (std::optional<program::Block> block = reader.next(rest.substr(0, end))) out.blocks.push_back(*block);
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-  }
-  if (!reader.start()) {
-    throw InvalidInput(path.string(), "holds no complete position", "A program gives X, Y and Z by G0 before it cuts");
-  }
-  out.start = *reader.start();
-  out.skipped = std::move(reader.skipped());
-  return out;
+  return read_program(path, {.machine = machine, .format = ProgramFormat::gcode});
 }
 
 }  // namespace robomill::formats

@@ -4,82 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "robomill/base/error.hpp"
+#include "robomill/formats/text.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::formats {
 namespace {
 
+using program::Block;
 using program::Machine;
-
-constexpr double inch = 25.4 * units::mm;
-constexpr double farthest_m = 1e3;
-
-/// Modal groups: of each, a line may name one.
-enum Group : std::uint32_t {
-  motion_group = 1,
-  distance_group = 2,
-  unit_group = 4,
-  feed_group = 8,
-  plane_group = 16,
-  radius_group = 32,
-  length_group = 64,
-  system_group = 128,
-  path_group = 256,
-  other_group = 512
-};
-
-/// G codes that move neither the tool nor its frame, in tenths.
-struct Still {
-  int code;
-  Group group;
-};
-constexpr std::array<Still, 24> still = {
-    {{40, other_group},   {80, other_group},   {150, other_group},  {170, plane_group},  {180, plane_group},
-     {190, plane_group},  {400, radius_group}, {430, length_group}, {432, length_group}, {434, length_group},
-     {435, length_group}, {490, length_group}, {500, other_group},  {610, path_group},   {611, path_group},
-     {640, path_group},   {690, other_group},  {901, other_group},  {911, other_group},  {921, other_group},
-     {922, other_group},  {970, other_group},  {980, other_group},  {990, other_group}}};
-
-const char* hint_of_g(int code) {
-  switch (code / 10) {
-    case 2:
-    case 3:
-      return "Let the CAM system write arcs as straight moves";
-    case 28:
-    case 30:
-    case 53:
-      return "Where the machine's own positions lie in the part is not known here";
-    case 10:
-    case 52:
-    case 92:
-      return "It would move the program's frame";
-    case 41:
-    case 42:
-      return "Let the CAM system write the path of the tool's tip";
-    case 43:
-      return "It would move the tip by the words that come with it";
-    case 51:
-    case 68:
-    case 16:
-    case 7:
-      return "It would change what the words of positions mean";
-    case 95:
-    case 96:
-      return "Use G93 or G94, with a spindle speed in rpm";
-    default:
-      return code >= 730 && code <= 890 ? "Let the CAM system write cycles as straight moves" : "";
-  }
-}
 
 constexpr std::size_t letter_index(char letter) {
   return static_cast<std::size_t>(letter - 'a');
 }
 
-char upper(char letter) {
-  return static_cast<char>(letter - 'a' + 'A');
+std::string upper(char letter) {
+  return std::string(1, static_cast<char>(letter - 'a' + 'A'));
 }
 
 bool has_axis(Machine machine, std::size_t rotary) {
@@ -94,8 +34,12 @@ bool any(const std::array<std::optional<double>, 3>& words) {
 
 }  // namespace
 
+bool GcodeReader::Line::has(char letter) const {
+  return (letters & (1U << letter_index(letter))) != 0;
+}
+
 bool GcodeReader::Line::moves() const {
-  return any(position) || any(rotary) || any(axis);
+  return any(position) || any(rotary) || any(vector) || radius;
 }
 
 void GcodeReader::Line::leave_out(const GcodeWords::Word& word) {
@@ -104,44 +48,49 @@ void GcodeReader::Line::leave_out(const GcodeWords::Word& word) {
   left_out += word.text.substr(1);
 }
 
-GcodeReader::GcodeReader(std::string file, std::optional<Machine> machine)
-    : file_(std::move(file)), machine_(machine) {}
-
-void GcodeReader::refuse(std::string field, std::optional<double> number, const char* unit, std::string rule,
-                         std::string hint) const {
-  throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file_, line_),
-                                         .field = std::move(field),
-                                         .number = number,
-                                         .unit = unit,
-                                         .rule = std::move(rule),
-                                         .hint = std::move(hint)});
+double GcodeReader::unit_m() const {
+  return inches_ ? units::inch : units::mm;
 }
 
-std::optional<program::Block> GcodeReader::next(std::string_view text) {
-  ++line_;
-  if (ended_) return std::nullopt;
-  words_.scan(text, file_, line_);
-  if (words_.deleted()) {
-    skipped_.push_back({.line = line_, .what = std::string(words_.compact())});
-    return std::nullopt;
+// Heidenhain ends a line that goes on with a tilde, Okuma begins the next one with a dollar sign.
+ProgramReader::Part GcodeReader::part_of(std::string_view line, char ahead, bool continued) const {
+  if (continued) {
+    const std::size_t first = line.find_first_not_of(" \t");
+    if (first != std::string_view::npos && line[first] == '$') line.remove_prefix(first + 1);
   }
-  if (words_.words().empty()) return std::nullopt;
+  std::size_t end = line.size();
+  while (end > 0 && (line[end - 1] == ' ' || line[end - 1] == '\t')) --end;
+  const bool tilde = end > 0 && line[end - 1] == '~' && line.find(';') == std::string_view::npos;
+  return {.text = tilde ? line.substr(0, end - 1) : line, .continues = tilde || ahead == '$'};
+}
+
+void GcodeReader::read(std::string_view statement) {
+  words_.scan(statement, file_, line_);
+  if (words_.words().empty()) {
+    if (words_.compact().empty()) return;
+    const char mark = words_.compact().front();
+    if (mark != '%') skip(words_.compact());
+    // What a lone % opens the next one closes.
+    ended_ = words_.compact() == "%" && begun_;
+    begun_ = true;
+    return;
+  }
+  begun_ = true;
   Line line;
-  for (const GcodeWords::Word& word : words_.words()) take(word, line);
-  if (line.dwells && line.moves()) {
-    refuse("G", 4.0, "", "stands on a line with positions", "Is one of them the time of the dwell? Give that as P");
-  }
-  if (!line.left_out.empty()) skipped_.push_back({.line = line_, .what = std::move(line.left_out)});
+  for (const GcodeWords::Word& word : words_.words()) take_word(word, line);
+  if (line.dwells) wait(line);
+  const bool goes_round = motion_ == Motion::clockwise || motion_ == Motion::counterclockwise;
+  if (line.p && !line.dwells && !(goes_round && line.moves())) line.leave_out(*line.p);
+  if (!line.left_out.empty()) skip(line.left_out);
   take_feed(line);
-  return line.moves() ? move(line) : std::nullopt;
+  if (line.moves()) go(line);
 }
 
-void GcodeReader::take(const GcodeWords::Word& word, Line& line) {
-  const std::uint32_t bit = 1U << letter_index(word.letter);
-  if ((line.letters & bit) != 0 && word.letter != 'g' && word.letter != 'm') {
-    refuse(std::string(1, upper(word.letter)), word.number, "", "comes twice on one line");
+void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
+  if (line.has(word.letter) && word.letter != 'g' && word.letter != 'm') {
+    refuse(upper(word.letter), word.number, "", "comes twice on one line");
   }
-  line.letters |= bit;
+  line.letters |= 1U << letter_index(word.letter);
   switch (word.letter) {
     case 'x':
     case 'y':
@@ -156,10 +105,16 @@ void GcodeReader::take(const GcodeWords::Word& word, Line& line) {
     case 'i':
     case 'j':
     case 'k':
-      line.axis[letter_index(word.letter) - letter_index('i')] = word.number;
+      line.vector[letter_index(word.letter) - letter_index('i')] = word.number;
+      return;
+    case 'r':
+      line.radius = word.number;
       return;
     case 'f':
       line.feed = word.number;
+      return;
+    case 'p':
+      line.p = word;
       return;
     case 's':
       if (!(word.number >= 0.0)) refuse("S", word.number, "rpm", "must be >= 0");
@@ -180,7 +135,6 @@ void GcodeReader::take(const GcodeWords::Word& word, Line& line) {
     case 't':
     case 'd':
     case 'h':
-    case 'p':
     case 'q':
     case 'l':
       line.leave_out(word);
@@ -193,9 +147,18 @@ void GcodeReader::take(const GcodeWords::Word& word, Line& line) {
       refuse("O", word.number, "", "is a subroutine or its control, which are not read",
              "Let the CAM system write the program out");
     default:
-      refuse(std::string(1, upper(word.letter)), word.number, "", "is a word not known here",
-             "Known are A B C D F G H I J K L M N P Q S T X Y Z");
+      refuse(upper(word.letter), word.number, "", "is a word not known here",
+             line.dwells ? "Is it the time of the dwell? Give that as P, in seconds"
+                         : "Known are A B C D F G H I J K L M N P Q R S T X Y Z");
   }
+}
+
+void GcodeReader::claim(GcodeGroup group, const GcodeWords::Word& word, Line& line) const {
+  const auto bit = static_cast<std::uint32_t>(group);
+  if (group != GcodeGroup::other && (line.groups & bit) != 0) {
+    refuse("G", word.number, "", "is the second code of its modal group on this line", "Only one of them can hold");
+  }
+  line.groups |= bit;
 }
 
 void GcodeReader::take_g(const GcodeWords::Word& word, Line& line) {
@@ -205,54 +168,78 @@ void GcodeReader::take_g(const GcodeWords::Word& word, Line& line) {
     refuse("G", word.number, "", "is no G code");
   }
   const int code = static_cast<int>(whole);
-  const auto claim = [&](Group group) {
-    if (group != other_group && (line.groups & group) != 0) {
-      refuse("G", word.number, "", "is the second code of its modal group on this line", "Only one of them can hold");
+  if (set_mode(code, word, line)) return;
+  if (code >= 540 && code <= 593) {
+    claim(GcodeGroup::system, word, line);
+    choose_system(code, word);
+  } else {
+    const GcodeGroup* const group = still_gcode(code);
+    if (group == nullptr) {
+      refuse("G", word.number, "", "is not read: it may move the tool or its frame", gcode_hint(code));
     }
-    line.groups |= group;
+    claim(*group, word, line);
+  }
+  line.leave_out(word);
+}
+
+bool GcodeReader::set_mode(int code, const GcodeWords::Word& word, Line& line) {
+  const auto holds = [&](GcodeGroup group) {
+    claim(group, word, line);
+    return true;
+  };
+  const auto moves = [&](Motion motion) {
+    motion_ = motion;
+    return holds(GcodeGroup::motion);
+  };
+  const auto lies = [&](const Plane& plane) {
+    plane_ = plane;
+    return holds(GcodeGroup::plane);
+  };
+  const auto feeds = [&](FeedMode mode) {
+    if (mode != feed_mode_) feed_.reset();  // F of the other mode means something else
+    feed_mode_ = mode;
+    return holds(GcodeGroup::feed);
   };
   switch (code) {
     case 0:
+      return moves(Motion::rapid);
     case 10:
-      claim(motion_group);
-      motion_ = code == 0 ? Motion::rapid : Motion::feed;
-      return;
+      return moves(Motion::feed);
+    case 20:
+      return moves(Motion::clockwise);
+    case 30:
+      return moves(Motion::counterclockwise);
+    case 40:
+      line.dwells = true;
+      return true;
+    case 170:
+      return lies({});
+    case 180:
+      return lies({.first = 2, .second = 0, .normal = 1, .centers = "K, I", .name = "G18"});
+    case 190:
+      return lies({.first = 1, .second = 2, .normal = 0, .centers = "J, K", .name = "G19"});
     case 200:
     case 210:
-      claim(unit_group);
       inches_ = code == 200;
-      return;
+      return holds(GcodeGroup::unit);
+    case 800:
+      line.leave_out(word);
+      return moves(Motion::none);
     case 900:
     case 910:
-      claim(distance_group);
       incremental_ = code == 910;
-      return;
+      return holds(GcodeGroup::distance);
+    case 901:
+    case 911:
+      centers_absolute_ = code == 901;
+      return holds(GcodeGroup::center);
     case 930:
-    case 940: {
-      claim(feed_group);
-      const FeedMode mode = code == 930 ? FeedMode::inverse_time : FeedMode::per_minute;
-      if (mode != feed_mode_) feed_.reset();  // F of the other mode means something else
-      feed_mode_ = mode;
-      return;
-    }
-    case 800:
-      claim(motion_group);
-      motion_ = Motion::none;
-      break;
+      return feeds(FeedMode::inverse_time);
+    case 940:
+      return feeds(FeedMode::per_minute);
     default:
-      if (code >= 540 && code <= 593) {
-        claim(system_group);
-        choose_system(code, word);
-        break;
-      }
-      const auto* const found = std::ranges::find(still, code, &Still::code);
-      if (found == still.end()) {
-        refuse("G", word.number, "", "is not read: it may move the tool or its frame", hint_of_g(code));
-      }
-      claim(found->group);
-      line.dwells = line.dwells || code == 40;
+      return false;
   }
-  line.leave_out(word);
 }
 
 void GcodeReader::choose_system(int code, const GcodeWords::Word& word) {
@@ -268,16 +255,35 @@ void GcodeReader::choose_system(int code, const GcodeWords::Word& word) {
 
 void GcodeReader::take_feed(const Line& line) {
   if (!line.feed) return;
-  constexpr double most = 1e9;  // beyond any machine in any unit
-  if (!(*line.feed >= 0.0)) refuse("F", *line.feed, "", "must be > 0");
-  if (!(*line.feed <= most)) refuse("F", *line.feed, "", "is too large for any machine");
+  check_feed("F", *line.feed);
   feed_ = line.feed;
   feed_in_inches_ = inches_;
 }
 
+void GcodeReader::wait(const Line& line) {
+  if (line.moves()) {
+    refuse("G", 4.0, "", "stands on a line with positions", "Is one of them the time of the dwell? Give that as P");
+  }
+  if (!line.p) {
+    refuse("P", std::nullopt, "", "is missing: the time of the dwell G4, in seconds",
+           line.feed || line.has('s') ? "F and S are a feed and a speed here" : "");
+  }
+  constexpr double day_s = 86400.0;
+  constexpr double long_s = 100.0;
+  const double time_s = line.p->number;
+  if (!(time_s >= 0.0 && time_s <= day_s)) {
+    refuse("P", time_s, "s", "must lie between 0 and a day", "P counts in seconds here");
+  }
+  if (!start_ || time_s == 0.0) {
+    skip(fmt::format("G4 P{:g}", time_s));
+    return;
+  }
+  if (time_s >= long_s) remarks_.long_dwell(line_, time_s);
+  dwell(time_s);
+}
+
 Eigen::Vector3d GcodeReader::position_after(const Line& line) {
   static constexpr std::array<const char*, 3> names = {"X", "Y", "Z"};
-  const double unit_m = inches_ ? inch : units::mm;
   Eigen::Vector3d position = pose_.tip_m;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!line.position[i]) continue;
@@ -286,45 +292,33 @@ Eigen::Vector3d GcodeReader::position_after(const Line& line) {
       refuse(names[i], *line.position[i], "", "is a step (G91) from a position that no line has given",
              "Begin with G90 and a G0 to X, Y and Z");
     }
-    position[axis] = *line.position[i] * unit_m + (incremental_ ? position[axis] : 0.0);
+    position[axis] = *line.position[i] * unit_m() + (incremental_ ? position[axis] : 0.0);
     known_[i] = true;
-    if (!(std::abs(position[axis]) <= farthest_m)) {
-      refuse(names[i], *line.position[i], inches_ ? "in" : "mm", "must lie within 1 km");
-    }
+    check_coordinate(names[i], position[axis], *line.position[i], unit_name());
   }
   return position;
 }
 
-Eigen::Vector3d GcodeReader::axis_of_words(const Line& line) const {
+Eigen::Vector3d GcodeReader::axis_of_vector(const Line& line) const {
   static constexpr std::array<const char*, 3> names = {"I", "J", "K"};
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!line.axis[i]) refuse(names[i], std::nullopt, "", "is missing; I, J and K come together, the axis of the tool");
+    if (!line.vector[i]) {
+      refuse(names[i], std::nullopt, "", "is missing; I, J and K come together, the axis of the tool",
+             "With G2 and G3 they are the centre of the arc");
+    }
   }
-  const Eigen::Vector3d axis(*line.axis[0], *line.axis[1], *line.axis[2]);
-  const double length = axis.norm();
-  if (!(std::abs(length - 1.0) <= 0.01)) {
-    refuse("I, J, K", length, "", "must be a vector of length 1", "They are the axis of the tool, not an arc's centre");
-  }
-  return axis / length;
+  return unit_axis("I, J, K", {*line.vector[0], *line.vector[1], *line.vector[2]});
 }
 
-Eigen::Vector3d GcodeReader::axis_after(const Line& line) {
+void GcodeReader::turn_rotary(const Line& line) {
   static constexpr std::array<const char*, 3> names = {"A", "B", "C"};
-  by_rotary_ = by_rotary_ || any(line.rotary);
-  by_vector_ = by_vector_ || any(line.axis);
-  if (by_rotary_ && by_vector_) {
-    refuse(any(line.axis) ? "I, J, K" : "A, B, C", std::nullopt, "",
-           "stand in a program that gives its axis the other way as well", "Use A, B and C or I, J and K");
-  }
-  if (any(line.axis)) return axis_of_words(line);
-  if (!any(line.rotary)) return pose_.axis;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!line.rotary[i]) continue;
-    if (!machine_) {
+    if (!reading_.machine) {
       refuse(names[i], *line.rotary[i], "deg", "turns an axis of a machine that is not stated",
              "Give program.machine: \"xyzac-trt\", \"xyzbc-trt\", \"xyzac-head\" or \"xyzbc-head\"");
     }
-    if (!has_axis(*machine_, i)) {
+    if (!has_axis(*reading_.machine, i)) {
       refuse(names[i], *line.rotary[i], "deg", "turns an axis that the stated machine does not have",
              "Is it the other machine, with A in place of B or B in place of A?");
     }
@@ -334,61 +328,84 @@ Eigen::Vector3d GcodeReader::axis_after(const Line& line) {
       refuse(names[i], *line.rotary[i], "deg", "must lie within a million degrees");
     }
   }
-  const Eigen::Vector3d angles = rotary_deg_ * units::deg;
-  return program::tool_axis(*machine_, angles.x(), angles.y(), angles.z());
 }
 
-double GcodeReader::duration_s(const Line& line, const program::Pose& end, double rotary_change_deg) const {
-  constexpr double minute_s = 60.0;
+Eigen::Vector3d GcodeReader::axis_at(const Eigen::Vector3d& rotary_deg) const {
+  const Eigen::Vector3d angles = rotary_deg * units::deg;
+  return program::tool_axis(*reading_.machine, angles.x(), angles.y(), angles.z());
+}
+
+Eigen::Vector3d GcodeReader::axis_after(const Line& line) {
+  by_rotary_ = by_rotary_ || any(line.rotary);
+  by_vector_ = by_vector_ || any(line.vector);
+  if (by_rotary_ && by_vector_) {
+    refuse(any(line.vector) ? "I, J, K" : "A, B, C", std::nullopt, "",
+           "stand in a program that gives its axis the other way as well", "Use A, B and C or I, J and K");
+  }
+  if (any(line.vector)) return axis_of_vector(line);
+  if (!any(line.rotary)) return pose_.axis;
+  turn_rotary(line);
+  return axis_at(rotary_deg_);
+}
+
+double GcodeReader::feed_duration_s(const Line& line, double length_m, double turn_deg) const {
   if (feed_mode_ == FeedMode::inverse_time) {
     if (!line.feed) {
-      refuse("F", std::nullopt, "", "is missing: under G93 every G1 line gives its own",
+      refuse("F", std::nullopt, "", "is missing: under G93 every move at feed gives its own",
              "F is 1 / minutes of the move; is the program meant to be in G94?");
     }
-    if (!(*line.feed > 0.0)) refuse("F", *line.feed, "1/min", "must be > 0 on a G1 line");
-    return minute_s / *line.feed;
+    if (!(*line.feed > 0.0)) refuse("F", *line.feed, "1/min", "must be > 0 for a move at feed");
+    return units::minute / *line.feed;
   }
-  if (!feed_) refuse("F", std::nullopt, "", "is missing: no line up to this G1 gives a feed under G94");
-  if (!(*feed_ > 0.0)) refuse("F", *feed_, feed_in_inches_ ? "in/min" : "mm/min", "must be > 0 on a G1 line");
-  const double length_m = (end.tip_m - pose_.tip_m).norm();
-  if (length_m > 0.0) return minute_s * length_m / (*feed_ * (feed_in_inches_ ? inch : units::mm));
-  return minute_s * rotary_change_deg / *feed_;
+  if (!feed_) refuse("F", std::nullopt, "", "is missing: no line up to this move at feed gives one under G94");
+  if (!(*feed_ > 0.0)) refuse("F", *feed_, feed_in_inches_ ? "in/min" : "mm/min", "must be > 0 for a move at feed");
+  if (length_m > 0.0) return units::minute * length_m / (*feed_ * (feed_in_inches_ ? units::inch : units::mm));
+  return units::minute * turn_deg / *feed_;
 }
 
-std::optional<program::Block> GcodeReader::move(const Line& line) {
-  if (motion_ == Motion::none) {
-    refuse("G", std::nullopt, "", "is missing: neither G0 nor G1 holds where this line gives a position");
+void GcodeReader::go(const Line& line) {
+  switch (motion_) {
+    case Motion::none:
+      refuse("G", std::nullopt, "", "is missing: none of G0 to G3 holds where this line gives a position");
+    case Motion::rapid:
+    case Motion::feed:
+      go_straight(line);
+      return;
+    case Motion::clockwise:
+    case Motion::counterclockwise:
+      go_round(line);
+  }
+}
+
+void GcodeReader::go_straight(const Line& line) {
+  if (line.radius) {
+    refuse("R", *line.radius, unit_name(), "stands on a line that is no arc", "Is a G2 or G3 missing before it?");
   }
   const Eigen::Vector3d rotary_before = rotary_deg_;
-  program::Block block;
-  block.end = {.tip_m = position_after(line), .axis = axis_after(line)};
-  block.line = line_;
-  block.kind = motion_ == Motion::rapid ? program::Block::Kind::rapid : program::Block::Kind::feed;
-  block.spindle_speed_rad_per_s = spindle_speed_rad_per_s_;
+  const program::Pose end = {.tip_m = position_after(line), .axis = axis_after(line)};
   const bool complete = known_[0] && known_[1] && known_[2];
   if (!complete && motion_ == Motion::feed) {
     refuse(!known_[0]   ? "X"
            : !known_[1] ? "Y"
                         : "Z",
-           std::nullopt, "", "is not known where the first G1 begins", "Begin with a G0 to X, Y and Z");
+           std::nullopt, "", "is not known where the first move at feed begins", "Begin with a G0 to X, Y and Z");
   }
-  if (!complete || !start_) {
-    pose_ = block.end;
-    if (complete) start_ = pose_;
-    return std::nullopt;
+  if (!complete) {
+    pose_ = end;
+    return;
   }
-  if (block.end.tip_m == pose_.tip_m && block.end.axis == pose_.axis) return std::nullopt;
-  const double turned = program::angle_between(pose_.axis, block.end.axis);
-  if (turned > 179.9 * units::deg) {
-    refuse("axis", turned / units::deg, "deg", "turns by half a circle in one move, which could go any way round",
-           "Split the move");
+  if (!start_) {
+    begin_at(end);
+    return;
   }
-  if (block.kind == program::Block::Kind::feed) {
-    const double rotary_change_deg = any(line.rotary) ? (rotary_deg_ - rotary_before).norm() : turned / units::deg;
-    block.duration_s = duration_s(line, block.end, rotary_change_deg);
+  if (!moves_to(end)) return;
+  const double turn_rad = turn_to(end.axis);
+  if (motion_ == Motion::rapid) {
+    move(Block::Kind::rapid, end, 0.0);
+    return;
   }
-  pose_ = block.end;
-  return block;
+  const double turn_deg = any(line.rotary) ? (rotary_deg_ - rotary_before).norm() : turn_rad / units::deg;
+  move(Block::Kind::feed, end, feed_duration_s(line, (end.tip_m - pose_.tip_m).norm(), turn_deg));
 }
 
 }  // namespace robomill::formats

@@ -1,84 +1,105 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "robomill/formats/gcode_codes.hpp"
 #include "robomill/formats/gcode_words.hpp"
-#include "robomill/program/machine.hpp"
-#include "robomill/program/program.hpp"
+#include "robomill/formats/program_arc.hpp"
+#include "robomill/formats/program_reader.hpp"
 
 namespace robomill::formats {
 
-/// Turns lines of G-code into blocks, one after another; what it holds does not grow with the program, except for what
-/// it skips, which a caller may take away. What is read: gcode.hpp.
-class GcodeReader {
+/// Reads G-code; gcode.hpp says what of it.
+class GcodeReader final : public ProgramReader {
  public:
-  /// @param file  its name, for errors
-  GcodeReader(std::string file, std::optional<program::Machine> machine);
-
-  /// The move that the next line makes, if it makes one. @throws InvalidInput as read_gcode
-  std::optional<program::Block> next(std::string_view line);
-  /// Where the first block begins; empty until X, Y and Z are known.
-  [[nodiscard]] const std::optional<program::Pose>& start() const { return start_; }
-  /// M2 or M30 came: what follows is not carried out.
-  [[nodiscard]] bool ended() const { return ended_; }
-  [[nodiscard]] std::vector<program::Skipped>& skipped() { return skipped_; }
+  using ProgramReader::ProgramReader;
 
  private:
-  enum class Motion { none, rapid, feed };
+  enum class Motion { none, rapid, feed, clockwise, counterclockwise };
   enum class FeedMode { per_minute, inverse_time };
+  /// The plane of arcs: its axes turn from first to second; normal is the third.
+  struct Plane {
+    Eigen::Index first = 0, second = 1, normal = 2;
+    const char* centers = "I, J";  ///< words of its centre
+    const char* name = "G17";
+  };
 
   /// What one line says.
   struct Line {
     std::array<std::optional<double>, 3> position = {};  ///< X, Y, Z in the program's unit
     std::array<std::optional<double>, 3> rotary = {};    ///< A, B, C [deg]
-    std::array<std::optional<double>, 3> axis = {};      ///< I, J, K
-    std::optional<double> feed = {};
+    std::array<std::optional<double>, 3> vector = {};    ///< I, J, K: the tool's axis, or an arc's centre
+    std::optional<double> feed = {}, radius = {};
+    std::optional<GcodeWords::Word> p = {};
     std::uint32_t groups = 0;   ///< modal groups that a G code has named
     std::uint32_t letters = 0;  ///< that have come
     bool dwells = false;
     std::string left_out = {};
+    [[nodiscard]] bool has(char letter) const;
     [[nodiscard]] bool moves() const;
     void leave_out(const GcodeWords::Word& word);
   };
 
-  [[noreturn]] void refuse(std::string field, std::optional<double> number, const char* unit, std::string rule,
-                           std::string hint = {}) const;
-  void take(const GcodeWords::Word& word, Line& line);
+  [[nodiscard]] Part part_of(std::string_view line, char ahead, bool continued) const override;
+  void read(std::string_view statement) override;
+  bool advance() override;
+
+  void take_word(const GcodeWords::Word& word, Line& line);
   void take_g(const GcodeWords::Word& word, Line& line);
+  /// Whether the code sets a mode that is read here.
+  bool set_mode(int code, const GcodeWords::Word& word, Line& line);
+  void claim(GcodeGroup group, const GcodeWords::Word& word, Line& line) const;
   void choose_system(int code, const GcodeWords::Word& word);
   void take_feed(const Line& line);
+  void wait(const Line& line);
   [[nodiscard]] Eigen::Vector3d position_after(const Line& line);
   [[nodiscard]] Eigen::Vector3d axis_after(const Line& line);
-  [[nodiscard]] Eigen::Vector3d axis_of_words(const Line& line) const;
-  [[nodiscard]] double duration_s(const Line& line, const program::Pose& end, double rotary_change_deg) const;
-  std::optional<program::Block> move(const Line& line);
+  [[nodiscard]] Eigen::Vector3d axis_of_vector(const Line& line) const;
+  void turn_rotary(const Line& line);
+  [[nodiscard]] Eigen::Vector3d axis_at(const Eigen::Vector3d& rotary_deg) const;
+  [[nodiscard]] double feed_duration_s(const Line& line, double length_m, double turn_deg) const;
+  [[nodiscard]] double unit_m() const;
+  [[nodiscard]] const char* unit_name() const { return inches_ ? "in" : "mm"; }
+  void go(const Line& line);
+  void go_straight(const Line& line);
 
-  std::string file_;
-  std::optional<program::Machine> machine_;
+  void go_round(const Line& line);  // gcode_arcs.cpp
+  [[nodiscard]] Eigen::Vector2d center_of_words(const Line& line, const Eigen::Vector2d& from) const;
+  [[nodiscard]] Eigen::Vector2d center_of_radius(const Line& line, const Eigen::Vector2d& from,
+                                                 const Eigen::Vector2d& to) const;
+  [[nodiscard]] double allowed_radius_error_m(double radius_m) const;
+  [[nodiscard]] Arc arc_to(const Line& line, const Eigen::Vector3d& end_m) const;
+  [[nodiscard]] double turns_of(const Line& line) const;
+
   GcodeWords words_;
-  std::size_t line_ = 0;
-  bool ended_ = false;
+  bool begun_ = false;  ///< a line that is not empty has come
 
   Motion motion_ = Motion::none;
   FeedMode feed_mode_ = FeedMode::per_minute;
-  bool inches_ = false, incremental_ = false;
+  bool inches_ = false, incremental_ = false, centers_absolute_ = false;
+  Plane plane_;
   int system_ = 0;              ///< coordinate system named so far; 0: none
   std::optional<double> feed_;  ///< under G94, in the unit of the line that said it per minute
   bool feed_in_inches_ = false;
-  double spindle_speed_rad_per_s_ = 0.0;
 
   std::array<bool, 3> known_ = {};  ///< X, Y, Z
-  program::Pose pose_;
   Eigen::Vector3d rotary_deg_ = Eigen::Vector3d::Zero();
   bool by_rotary_ = false, by_vector_ = false;  ///< how this program gives its axis
-  std::optional<program::Pose> start_;
-  std::vector<program::Skipped> skipped_;
+
+  /// The arc that is being given away chord by chord.
+  struct Chords {
+    Arc arc = {};
+    Eigen::Vector3d end_m = Eigen::Vector3d::Zero();
+    bool turns = false;  ///< A, B or C come with it
+    Eigen::Vector3d rotary_begin_deg = Eigen::Vector3d::Zero(), rotary_end_deg = Eigen::Vector3d::Zero();
+    double duration_s = 0.0;  ///< of one
+    double count = 0.0, next = 0.0;
+  };
+  Chords chords_;
 };
 
 }  // namespace robomill::formats

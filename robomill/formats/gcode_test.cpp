@@ -10,6 +10,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
 #include "robomill/formats/gcode_reader.hpp"
+#include "robomill/formats/program_test_support.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -114,19 +115,20 @@ TEST(Gcode, LeavesOutWhatDoesNotMove) {
   const Program program = read(
       "G17 G40 G49 G80 G54 G64 P0.01\nT1 M6\nG43 H1\nG0 X0 Y0 Z0\nG0 X0\nG1 Y0 F10\nG4 P1\nG1 A0 C90 F10\nG1 X1 F10\n",
       Machine::xyzac_trt);
-  ASSERT_EQ(program.blocks.size(), 1U) << "at A0, C turns the part about the tool's own axis";
-  ASSERT_EQ(program.skipped.size(), 4U);
-  EXPECT_EQ(program.skipped[0].what, "G17 G40 G49 G80 G54 G64 P0.01");
+  ASSERT_EQ(program.blocks.size(), 2U) << "at A0, C turns the part about the tool's own axis";
+  EXPECT_EQ(program.blocks[0].kind, Block::Kind::dwell);
+  ASSERT_EQ(program.skipped.size(), 3U);
+  EXPECT_EQ(program.skipped[0].what, "G40 G49 G80 G54 G64 P0.01");
   EXPECT_EQ(program.skipped[1].what, "T1 M6");
   EXPECT_EQ(program.skipped[2].what, "G43 H1");
 }
 
 TEST(Gcode, RefusesWithLineWordAndRule) {
   const std::string head = "G0 X0 Y0 Z0\n";
-  expect_refused(head + "G1 X1\n", "part.ngc:2: F: is missing: no line up to this G1 gives a feed");
-  expect_refused(head + "G1 X1 F0\n", "part.ngc:2: F = 0 mm/min; must be > 0 on a G1 line");
+  expect_refused(head + "G1 X1\n", "part.ngc:2: F: is missing: no line up to this move at feed gives one");
+  expect_refused(head + "G1 X1 F0\n", "part.ngc:2: F = 0 mm/min; must be > 0 for a move at feed");
   expect_refused(head + "G1 X1 F-3\n", "part.ngc:2: F = -3; must be > 0");
-  expect_refused(head + "G93 G1 X1 F2\nX2\n", "part.ngc:3: F: is missing: under G93 every G1 line");
+  expect_refused(head + "G93 G1 X1 F2\nX2\n", "part.ngc:3: F: is missing: under G93 every move at feed");
   expect_refused(head + "G1 X1 F5\nG93 X2\n", "part.ngc:3: F: is missing");
   expect_refused(head + "G93 G1 X1 F2\nG94 X2\n", "part.ngc:3: F: is missing");
   expect_refused(head + "G0 G1 X1\n", "part.ngc:2: G = 1; is the second code of its modal group");
@@ -141,8 +143,16 @@ TEST(Gcode, RefusesWithLineWordAndRule) {
   expect_refused(head + "G1 X1 U2 F1\n", "U = 2; is a word not known here");
   expect_refused(head + "G1 X" + std::string(400, '9') + " F1\n", "that a double can hold");
   expect_refused(head + "G1 X9999999 F1\n", "X = 1e+07 mm; must lie within 1 km");
-  expect_refused(head + "G2 X1 I1 J0\n",
-                 "part.ngc:2: G = 2; is not read: it may move the tool or its frame. Let the CAM");
+  expect_refused(head + "G5 X1 I1 J0 P1 Q1\n",
+                 "part.ngc:2: G = 5; is not read: it may move the tool or its frame. Let the CAM");
+  expect_refused(head + "G93 G1 X1 F0\n", "part.ngc:2: F = 0 1/min; must be > 0 for a move at feed");
+  expect_refused(head + "G1 X1 F2000000000\n", "F = 2e+09; is too large for any machine");
+  expect_refused(head + "G58.5\n", "G = 58.5; is no G code");
+  expect_refused(head + "G43.1 Z5\n", "It would move the tip by the words that come with it");
+  expect_refused(head + "G41 D1\n", "path of the tool's tip");
+  expect_refused(head + "G68 R30\n", "what the words of positions mean");
+  expect_refused(head + "G95\n", "Use G93 or G94");
+  expect_refused(head + "G1 X1 R2 F1\n", "part.ngc:2: R = 2 mm; stands on a line that is no arc");
   expect_refused(head + "G92 X0\n", "It would move the program's frame");
   expect_refused(head + "G10 L2 P1 X1\n", "G = 10; is not read");
   expect_refused(head + "G28\n", "G = 28; is not read");
@@ -160,8 +170,8 @@ TEST(Gcode, RefusesWithLineWordAndRule) {
   expect_refused(head + "G1 X1 F1 (half\n", "is a comment that does not end");
   expect_refused(head + "S-1\n", "S = -1 rpm; must be >= 0");
   expect_refused(head + "\xC3\xA4\n", "\"\\xc3\\xa4\": must begin with a letter");
-  expect_refused("X1 Y1 Z1\n", "part.ngc:1: G: is missing: neither G0 nor G1");
-  expect_refused("G0 X1 Y1\nG1 X2 F1\n", "part.ngc:2: Z: is not known where the first G1 begins");
+  expect_refused("X1 Y1 Z1\n", "part.ngc:1: G: is missing: none of G0 to G3 holds");
+  expect_refused("G0 X1 Y1\nG1 X2 F1\n", "part.ngc:2: Z: is not known where the first move at feed begins");
   expect_refused("G91 G0 X1\n", "X = 1; is a step (G91) from a position");
   expect_refused("(nothing)\n", "part.ngc: holds no complete position");
 }
@@ -180,38 +190,104 @@ TEST(Gcode, RefusesAxesThatTheMachineDoesNotHave) {
   EXPECT_EQ(parse_machine("xyzbc-head"), Machine::xyzbc_head);
 }
 
-// The reader takes a line at a time and gives the same blocks as the whole file.
+TEST(Gcode, ADwellStandsWhereTheLastMoveEnded) {
+  const Program program = read("G4 P1\nG0 X1 Y2 Z3 S100\nG04 P0.5\nG1 X2 F60\nG4 P150 F90 (a new feed)\nG4 P0\nX3\n");
+  ASSERT_EQ(program.blocks.size(), 4U);
+  EXPECT_EQ(program.blocks[0].kind, Block::Kind::dwell);
+  EXPECT_EQ(program.blocks[0].duration_s, 0.5);
+  EXPECT_EQ(program.blocks[0].line, 3U);
+  EXPECT_EQ(program.blocks[0].end.tip_m, program.start.tip_m);
+  EXPECT_GT(program.blocks[0].spindle_speed_rad_per_s, 0.0);
+  EXPECT_EQ(program.blocks[2].duration_s, 150.0);
+  EXPECT_EQ(program.blocks[2].end.tip_m, program.blocks[1].end.tip_m);
+  EXPECT_NEAR(program.blocks[3].duration_s, 1.0 / 90.0 * 60.0, 1e-12);
+  ASSERT_EQ(program.skipped.size(), 2U) << "before the first position, and of no time";
+  EXPECT_EQ(program.skipped[0].what, "G4 P1");
+  EXPECT_EQ(program.skipped[1].line, 6U);
+  ASSERT_EQ(program.notes.size(), 1U);
+  EXPECT_EQ(program.notes[0],
+            "1 dwell of up to 150 s, the first in line 5: P counts in seconds here, on some controllers in ms.");
+
+  const std::string head = "G0 X0 Y0 Z0\n";
+  expect_refused(head + "G4\n", "part.ngc:2: P: is missing: the time of the dwell G4, in seconds");
+  expect_refused(head + "G4 F2\n", "in seconds. F and S are a feed and a speed here");
+  expect_refused(head + "G4 S2\n", "F and S are a feed and a speed here");
+  expect_refused(head + "G4 U2\n", "U = 2; is a word not known here. Is it the time of the dwell? Give that as P");
+  expect_refused(head + "G4 P-1\n", "P = -1 s; must lie between 0 and a day");
+  expect_refused(head + "G4 P90000\n", "P = 90000 s; must lie between 0 and a day");
+}
+
+TEST(Gcode, AxesAreMadeUnitVectorsWithANoteWhereTheyNearlyAre) {
+  const Program program = read(
+      "G0 X0 Y0 Z0 I0 J0 K1\nG1 X1 I0.6003 J0 K0.8004 F10\nX2 I0.6 J0 K0.8\nX3 I0.599999 J0 K0.8\n"
+      "X4 I0 J-0.6 K0.7993\nX5 I0 J0 K1.0000009\n");
+  ASSERT_EQ(program.blocks.size(), 5U);
+  EXPECT_LT((program.blocks[0].end.axis - Vector3d(0.6, 0.0, 0.8)).norm(), 1e-12);
+  for (const Block& block : program.blocks) EXPECT_NEAR(block.end.axis.norm(), 1.0, 1e-15);
+  ASSERT_EQ(program.notes.size(), 1U);
+  EXPECT_EQ(program.notes[0], "2 axes made a unit vector, off by up to 0.00056, the first in line 2.");
+  expect_refused("G0 X0 Y0 Z0 I0 J0 K1.0011\n", "I, J, K = 1.0011; must be a vector of length 1, within 1e-3");
+  expect_refused("G0 X0 Y0 Z0 I0 J0 K0\n", "I, J, K = 0; must be a vector of length 1");
+  expect_refused("G0 X0 Y0 Z0 I0 J0 K1\nG1 I0 J0 K-1 F1\n", "part.ngc:2: axis = 180 deg; turns by half a circle");
+}
+
+// A statement over several lines counts where it begins.
+TEST(Gcode, StatementsGoOnInTheNextLine) {
+  const Program program = read(
+      "$PART.MIN%\nG0 X0 Y0 ~\n Z0\nG1 X1 F60 ~  \nY2 ~\n\nG1 X3\n  $ Y4 (Okuma)\n$Z5\nX6 ; a comment ~\nX7\nX8 ~");
+  ASSERT_EQ(program.blocks.size(), 5U);
+  EXPECT_EQ(program.blocks[0].end.tip_m, Vector3d(0.001, 0.002, 0.0));
+  EXPECT_EQ(program.blocks[0].line, 4U);
+  EXPECT_EQ(program.blocks[1].end.tip_m, Vector3d(0.003, 0.004, 0.005));
+  EXPECT_EQ(program.blocks[1].line, 7U);
+  EXPECT_EQ(program.blocks[2].line, 10U);
+  EXPECT_EQ(program.blocks[4].end.tip_m.x(), 0.008);
+  ASSERT_EQ(program.skipped.size(), 1U);
+  EXPECT_EQ(program.skipped[0].what, "$part.min%");
+  expect_refused("G0 X0 Y0 Z0\nG1 ~\nX1\n", "part.ngc:2: F: is missing");
+  std::string endless = "G0 X0 Y0 Z0\n";
+  for (int i = 0; i < 9000; ++i) endless += "X1 ~\n";
+  expect_refused(endless, "part.ngc:2: begins a statement of more than 32768 bytes");
+}
+
+TEST(Gcode, TheSecondPercentEndsTheProgram) {
+  const Program program = read("(name)\n%\nO1\nG0 X0 Y0 Z0\nX1\n%\nX2\n");
+  EXPECT_EQ(program.blocks.size(), 1U);
+  EXPECT_EQ(program.skipped.size(), 1U);
+}
+
 TEST(Gcode, ReadsLineByLine) {
-  GcodeReader reader("part.ngc", std::nullopt);
-  EXPECT_FALSE(reader.next("G0 X0 Y0 Z0").has_value());
+  ProgramRemarks remarks(10);
+  GcodeReader reader("part.ngc", {}, remarks);
+  Block block;
+  reader.take("G0 X0 Y0 Z0");
+  EXPECT_FALSE(reader.pop(block));
   ASSERT_TRUE(reader.start().has_value());
-  const std::optional<Block> block = reader.next("G1 X3 Y4 F300 M8");
-  ASSERT_TRUE(block.has_value());
-  EXPECT_NEAR(block->duration_s, 1.0, 1e-15);
-  ASSERT_EQ(reader.skipped().size(), 1U);
-  reader.skipped().clear();
+  reader.take("G1 X3 Y4 F300 M8");
+  ASSERT_TRUE(reader.pop(block));
+  EXPECT_NEAR(block.duration_s, 1.0, 1e-15);
+  EXPECT_FALSE(reader.pop(block));
+  EXPECT_EQ(remarks.skipped_count(), 1U);
   EXPECT_FALSE(reader.ended());
-  EXPECT_FALSE(reader.next("M2").has_value());
+  reader.take("M2");
   EXPECT_TRUE(reader.ended());
-  EXPECT_FALSE(reader.next("X8").has_value());
 }
 
 // Cut off or changed at any place, or made of nothing but noise, a program is refused or read; what is read is finite.
 TEST(Gcode, SurvivesMutations) {
   const std::string good =
       "%\n(p)\nG93 G21\nS600 M3\nG0 X16.339 Y-25.409 Z33.353 A-71.841 C-35.930\nG1 X6.302 Y-11.5 Z27 A-71 C-35 F318\n"
-      "G94 F100\nX1\nG91 Y1\nG90 G20 Z.5\nN5 G1 X 1 A3 ; end\nM30\n";
-  const test::Folder folder;
+      "G94 F100\nX1\nG2 X3 I1 A-70\nG4 P1\nG91 Y1\nG3 G18 X1 Z2 Y1 R4\nG90 G20 Z.5\nN5 G1 X 1 A3 ; end\nM30\n";
   Random random(11);
   int accepted = 0;
-  for (int i = 0; i < test::seeds(20000); ++i) {
+  for (int i = 0; i < test::seeds(100000); ++i) {
     std::string text = good;
     const bool noise = i % 4 == 0;
     if (noise) {
       text.resize(1 + random.index(120));
       for (char& c : text) c = static_cast<char>(random.index(256));
     } else {
-      static constexpr std::string_view letters = "GXYZABCIJKFNMSTO0123456789.-+ ()%;/\n\r";
+      static constexpr std::string_view letters = "GXYZABCIJKRPFNMSTO0123456789.-+ ()%$~;/\n\r";
       for (std::uint64_t n = random.index(4); n-- > 0;) {
         text[random.index(text.size())] =
             i % 4 == 1 ? static_cast<char>(random.index(256)) : letters[random.index(letters.size())];
@@ -219,13 +295,14 @@ TEST(Gcode, SurvivesMutations) {
       if (i % 4 == 2) text.resize(1 + random.index(good.size() - 1));
     }
     try {
-      const Program program = read_gcode(folder.file("part.ngc", text), Machine::xyzac_trt);
+      const Program program =
+          test_support::read_text<GcodeReader>(text, {.machine = Machine::xyzac_trt, .chord_tolerance_m = 1e-4});
       ++accepted;
       for (const Block& block : program.blocks) {
         ASSERT_TRUE(block.end.tip_m.allFinite()) << text;
         ASSERT_NEAR(block.end.axis.norm(), 1.0, 1e-12) << text;
         ASSERT_TRUE(std::isfinite(block.duration_s)) << text;
-        ASSERT_EQ(block.kind == Block::Kind::feed, block.duration_s > 0.0) << text;
+        ASSERT_EQ(block.kind != Block::Kind::rapid, block.duration_s > 0.0) << text;
         ASSERT_GE(block.line, 1U);
       }
     } catch (const InvalidInput&) {

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/program_reader.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -16,13 +17,8 @@ struct Place {
 };
 
 [[noreturn]] void refuse(const Place& place, std::string_view text, const char* rule, const char* hint = "") {
-  std::string shown;
-  for (const char letter : text.substr(0, 24)) {
-    const bool plain = letter >= 0x20 && letter < 0x7f;
-    shown += plain ? std::string(1, letter) : fmt::format("\\x{:02x}", static_cast<unsigned char>(letter));
-  }
   throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", place.file, place.line),
-                                         .field = fmt::format("\"{}\"", shown),
+                                         .field = fmt::format("\"{}\"", printable(text, 24)),
                                          .rule = rule,
                                          .hint = hint});
 }
@@ -55,7 +51,7 @@ void GcodeWords::scan(std::string_view line, const std::string& file, std::size_
   const Place place = {.file = file, .line = number};
   words_.clear();
   compact_line(line, place, compact_);
-  if (compact_.empty() || compact_.front() == '%' || compact_.front() == '/') return;
+  if (compact_.empty() || compact_.front() == '%' || compact_.front() == '$' || compact_.front() == '/') return;
   const char* at = compact_.data();
   const char* const end = at + compact_.size();
   while (at != end) {

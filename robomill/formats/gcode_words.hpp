@@ -18,7 +18,8 @@ class GcodeWords {
   };
 
   /// Blanks within words, comments in parentheses or behind a semicolon, and any case are allowed.
-  /// @param where  "part.ngc:12", for errors
+  /// @param file    its name, for errors
+  /// @param number  of the line, for errors
   /// @throws InvalidInput if a word cannot be read
   void scan(std::string_view line, const std::string& file, std::size_t number);
 

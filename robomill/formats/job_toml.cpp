@@ -17,7 +17,11 @@ void read_sources(TomlFile& file, Job& job) {
   file.path("job.assembly", job.assembly);
   file.path("job.forces", job.forces);
   for (const auto& [key, path] : {std::pair{"job.cell", &job.cell}, std::pair{"job.program", &job.program}}) {
-    if (file.path(key, *path) && job.forces.empty()) throw file.refuse(key, "goes with job.forces");
+    file.path(key, *path);
+  }
+  if (job.forces.empty() && job.cell.empty() != job.program.empty()) {
+    throw file.refuse(job.cell.empty() ? "job.program" : "job.cell", "goes with job.forces, or cell with program",
+                      "A program and a cell with [smoothing] make a trajectory");
   }
   const bool measured = file.path("job.measured", job.measured);
   file.paths("job.frf", job.frf);

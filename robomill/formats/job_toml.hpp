@@ -34,7 +34,7 @@ struct Job {
   std::filesystem::path measured = {};  ///< … and FRFs of the tip to compare with it
   std::filesystem::path forces = {};    ///< a cut whose forces are told …
   std::filesystem::path cell = {};      ///< … with the robot that it bends …
-  std::filesystem::path program = {};   ///< … and along a program
+  std::filesystem::path program = {};   ///< … and along a program, which a cell with [smoothing] smooths
   std::vector<std::filesystem::path> frf = {};
   std::vector<std::string> frf_as = {};
   double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data

@@ -54,6 +54,17 @@ TEST_F(JobToml, TakesAnAssemblyAndAMeasurementOfItsTip) {
   EXPECT_EQ(job.measured, folder_.at("tip.uff"));
 }
 
+TEST_F(JobToml, TakesAProgramWithItsCell) {
+  const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
+  const Job job = read_job(write("job.toml", source + "program = \"part.ngc\"\ncell = \"cell.toml\"\n"));
+  EXPECT_EQ(job.program, folder_.at("part.ngc"));
+  EXPECT_TRUE(job.forces.empty());
+  EXPECT_NE(refusal(source + "program = \"part.ngc\"\n").find("job.toml:4: job.program"), std::string::npos);
+  EXPECT_NE(refusal(source + "cell = \"cell.toml\"\n").find("job.toml:4: job.cell"), std::string::npos);
+  EXPECT_EQ(read_job(write("job.toml", source + "forces = \"f.toml\"\ncell = \"cell.toml\"\n")).cell,
+            folder_.at("cell.toml"));
+}
+
 TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
   const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
   EXPECT_NE(refusal("[job]\nlobes = \"l.toml\"\n").find("exactly one of hits, frf, modes and assembly"),

@@ -19,11 +19,6 @@ constexpr char blanks = ' ';  ///< separator: any run of blanks and tabs
 /// A header longer than this is no header.
 constexpr std::size_t max_header_lines = 200;
 
-bool is_comment(std::string_view line) {
-  line = trimmed(line);
-  return line.empty() || line.front() == '#' || line.front() == '%' || line.starts_with("//");
-}
-
 bool is_quoted(std::string_view field) {
   return field.size() >= 2 && field.front() == '"' && field.back() == '"';
 }
@@ -65,25 +60,12 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   return fields;
 }
 
-std::vector<std::string> split_texts(std::string_view line, char separator) {
-  std::vector<std::string> out;
-  for (const std::string_view field : split_quoted(line, separator)) out.push_back(text_of(field));
-  return out;
-}
-
 std::optional<double> parse_field(std::string_view field, char separator) {
   if (std::optional<double> number = parse_number(field)) return number;
   if (separator == ',' || std::count(field.begin(), field.end(), ',') != 1) return std::nullopt;
   std::string mended(field);
   mended[mended.find(',')] = '.';
   return parse_number(mended);
-}
-
-char separator_of(std::string_view line) {
-  for (const char separator : {';', '\t', ','}) {
-    if (trimmed(line).find(separator) != std::string_view::npos) return separator;
-  }
-  return blanks;
 }
 
 /// Takes the byte order mark off.
@@ -116,7 +98,7 @@ class TableReader {
     read_header();
     while (!rest_.empty()) {
       const std::string_view line = next_line();
-      if (!read_quickly(line) && !is_comment(line)) read_carefully(line);
+      if (!read_quickly(line) && !is_table_comment(line)) read_carefully(line);
     }
     return std::move(table_);
   }
@@ -142,7 +124,7 @@ class TableReader {
     while (!rest_.empty()) {
       const std::string_view before = rest_;
       const std::string_view line = next_line();
-      if (is_comment(line)) continue;
+      if (is_table_comment(line)) continue;
       // Columns lined up with tabs may have several between them.
       separator_ = separator_of(line) == '\t' ? blanks : separator_of(line);
       const std::vector<std::string_view> fields = split(line, separator_);
@@ -235,6 +217,24 @@ class TableReader {
 
 }  // namespace
 
+bool is_table_comment(std::string_view line) {
+  line = trimmed(line);
+  return line.empty() || line.front() == '#' || line.front() == '%' || line.starts_with("//");
+}
+
+char separator_of(std::string_view line) {
+  for (const char separator : {';', '\t', ','}) {
+    if (trimmed(line).find(separator) != std::string_view::npos) return separator;
+  }
+  return blanks;
+}
+
+std::vector<std::string> split_texts(std::string_view line, char separator) {
+  std::vector<std::string> out;
+  for (const std::string_view field : split_quoted(line, separator)) out.push_back(text_of(field));
+  return out;
+}
+
 Table parse_table(std::string_view content, const std::string& where) {
   return TableReader(content, where).read();
 }
@@ -249,7 +249,7 @@ TextTable parse_text_table(std::string_view content, const std::string& where) {
   char separator = ',';
   for (std::size_t line_number = 1; !content.empty(); ++line_number) {
     const std::string_view line = take_line(content);
-    if (is_comment(line)) continue;
+    if (is_table_comment(line)) continue;
     const auto refuse = [&](std::string rule, std::string hint = {}) {
       return InvalidInput(InvalidInput::Parts{
           .where = fmt::format("{}:{}", where, line_number), .rule = std::move(rule), .hint = std::move(hint)});

@@ -42,6 +42,16 @@ struct TextTable {
 ///     than there are names
 [[nodiscard]] TextTable parse_text_table(std::string_view content, const std::string& where);
 
+/// Whether a line of a table is skipped: empty, or beginning with #, % or //.
+[[nodiscard]] bool is_table_comment(std::string_view line);
+
+/// What parts the columns of a line: a semicolon, a tab or a comma, whichever is there, in this order; else a blank,
+/// which stands for any run of blanks and tabs.
+[[nodiscard]] char separator_of(std::string_view line);
+
+/// The fields of a line, without their quotes; separators within quotes and one at the line's end part nothing.
+[[nodiscard]] std::vector<std::string> split_texts(std::string_view line, char separator);
+
 /// The number in a field of such a table, with a point or a comma.
 [[nodiscard]] std::optional<double> parse_cell(std::string_view field);
 

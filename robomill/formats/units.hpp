@@ -7,8 +7,10 @@ namespace robomill::units {
 
 inline constexpr double mm = 1e-3;
 inline constexpr double um = 1e-6;
+inline constexpr double inch = 25.4e-3;
 inline constexpr double ms = 1e-3;
 inline constexpr double us = 1e-6;
+inline constexpr double minute = 60.0;
 inline constexpr double n_per_mm = 1e3;
 inline constexpr double n_per_mm2 = 1e6;
 inline constexpr double n_per_mm3 = 1e9;

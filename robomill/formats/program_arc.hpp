@@ -1,0 +1,24 @@
+#pragma once
+#include <Eigen/Core>
+
+namespace robomill::formats {
+
+/// A circular arc, or a helix about its axis, in W. Its radius runs evenly from the begin's to the end's, which differ
+/// by what the program has rounded.
+struct Arc {
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();  ///< in the plane of the begin
+  Eigen::Vector3d towards = Eigen::Vector3d::UnitX();  ///< unit vector from the centre to the begin
+  Eigen::Vector3d ahead = Eigen::Vector3d::UnitY();    ///< unit vector along the arc where it begins
+  Eigen::Vector3d rise_m = Eigen::Vector3d::Zero();    ///< of the whole arc, along its axis
+  double begin_radius_m = 0.0, end_radius_m = 0.0;
+  double sweep_rad = 0.0;  ///< > 0; beyond 2π more than one turn
+
+  /// c + r(s) (cos φ a + sin φ b) + s h with φ = s sweep, s in [0, 1].
+  [[nodiscard]] Eigen::Vector3d at(double share) const;
+  [[nodiscard]] double length_m() const;
+  /// Number of equal chords that leave the arc by no more than the tolerance, and no chord above a quarter of a turn.
+  /// Linear interpolation errs by at most Δφ²/8 max |p''|, and |p''| <= r + 2 |dr/dφ|.
+  [[nodiscard]] double chords(double tolerance_m) const;
+};
+
+}  // namespace robomill::formats

@@ -1,0 +1,78 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/program/machine.hpp"
+#include "robomill/program/program.hpp"
+
+namespace robomill::formats {
+
+/// How a program's file is written.
+enum class ProgramFormat { gcode, apt, csv };
+
+/// .apt .cls .cl, .csv; anything else is G-code. Case does not matter.
+[[nodiscard]] ROBOMILL_API ProgramFormat program_format_of(const std::filesystem::path& path);
+
+/// How to read a program.
+struct ROBOMILL_API ProgramReading {
+  std::optional<program::Machine> machine = {};  ///< what A, B and C mean; a program without them needs none
+  double chord_tolerance_m = 1e-6;               ///< >= 1 nm; by how much a chord may leave the arc that it stands for
+  std::optional<ProgramFormat> format = {};      ///< none: by the file's ending
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// An NC program read block by block from its file, in memory that does not grow with it.
+///
+/// Every format: blocks that move nothing are left out; what is not carried out stands in `skipped`, with its line; the
+/// first position that is complete makes the start. An axis whose length is within 1e-3 of 1 is made a unit vector,
+/// with a note where it was off by more than 1e-6. G-code:  gcode.hpp. APT/CL:  GOTO, GODLTA, FROM; RAPID holds for one
+/// move; FEDRAT a minute or a revolution; UNITS (mm unless said),
+///     SPINDL, DELAY in seconds. Unknown statements are skipped, those that move the tool or its frame refused.
+/// CSV:     columns x_mm, y_mm, z_mm, i, j, k, feed_mm_per_min in any order; the first row is the start, and the feed
+/// of
+///     a row that of the move to it.
+/// A feed counts the tip's way, and degrees where the axis alone turns.
+class ROBOMILL_API ProgramFile final : public program::Source {
+ public:
+  /// @throws InvalidInput if the options are invalid, the file cannot be read, or as next() up to the start
+  explicit ProgramFile(const std::filesystem::path& path, const ProgramReading& reading = {});
+  ~ProgramFile() override;
+  ProgramFile(const ProgramFile&) = delete;
+  ProgramFile& operator=(const ProgramFile&) = delete;
+  ProgramFile(ProgramFile&&) = delete;
+  ProgramFile& operator=(ProgramFile&&) = delete;
+
+  [[nodiscard]] const program::Pose& start() const override;
+  /// @throws InvalidInput with file, line, word and value: what cannot be read, feeds that are missing or not above 0,
+  ///     axes that are no unit vectors or turn by half a circle in one move, and what would move the tool or its frame
+  ///     in ways that are not read
+  bool next(program::Block& out) override;
+  /// @throws InvalidInput if the file is a pipe
+  void rewind() override;
+
+  /// What was left out up to the last block read, in whichever pass came farthest: the first 500.
+  [[nodiscard]] const std::vector<program::Skipped>& skipped() const;
+  /// … and how many they are.
+  [[nodiscard]] std::size_t skipped_count() const;
+  /// What was mended or taken for granted so far, in sentences.
+  [[nodiscard]] std::vector<std::string> notes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+[[nodiscard]] ROBOMILL_API std::unique_ptr<ProgramFile> open_program(const std::filesystem::path& path,
+                                                                     const ProgramReading& reading = {});
+
+/// The whole program, with all that was left out. @throws InvalidInput as ProgramFile
+[[nodiscard]] ROBOMILL_API program::Program read_program(const std::filesystem::path& path,
+                                                         const ProgramReading& reading = {});
+
+}  // namespace robomill::formats

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <vector>
+
+namespace robomill::formats {
+
+/// The lines of a text file one after another, in memory that does not grow with it.
+class ProgramLines {
+ public:
+  static constexpr std::size_t longest = std::size_t{1} << 15;  ///< bytes of a line
+
+  /// @throws InvalidInput if the file cannot be read, is empty, or is no plain text
+  explicit ProgramLines(std::filesystem::path path);
+
+  /// The next line without its ending, good until the next call; false at the end.
+  /// @throws InvalidInput with file and line if it is too long
+  bool next(std::string_view& line);
+  /// The first letter of the line that comes next, blanks aside; '\n' where there is none.
+  [[nodiscard]] char ahead() const;
+  /// Begins anew. @throws InvalidInput if the file is a pipe
+  void rewind();
+
+ private:
+  void fill();
+
+  std::filesystem::path path_;
+  std::ifstream in_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0, end_ = 0;  ///< of what the buffer holds
+  std::size_t line_ = 0;
+  bool whole_ = false;  ///< the file's end is in the buffer
+};
+
+}  // namespace robomill::formats

@@ -1,0 +1,34 @@
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/path/options.hpp"
+#include "robomill/robot/kinematics.hpp"
+
+namespace robomill::formats {
+
+/// [smoothing] of cell.toml.
+struct SmoothingFile {
+  path::SmoothingOptions options = {};
+  bool free_gamma = false;  ///< the flange may turn about the tool's axis along the way
+  /// Of each joint's position servo; empty where not given, then no tracking error can be told.
+  std::vector<double> drive_bandwidth_hz = {};
+  double drive_damping_ratio = 0.7;  ///< > 0; of the servos
+  /// Natural frequency of the flexible joint behind each drive; empty: stiff.
+  std::vector<double> flexible_joint_hz = {};
+  double flexible_joint_damping_ratio = 0.05;  ///< >= 0
+};
+
+/// Whether a cell.toml has [smoothing]. @throws InvalidInput if the file is missing, empty or no TOML
+[[nodiscard]] ROBOMILL_API bool has_smoothing(const std::filesystem::path& path);
+
+/// Reads [smoothing] and checks the joints' limits, which smoothing needs all of.
+/// @param path    the cell.toml
+/// @param limits  of the machine that it describes (a URDF gives some of them)
+/// @param joints  how many
+/// @throws InvalidInput with file, line, key, value and rule
+[[nodiscard]] ROBOMILL_API SmoothingFile read_smoothing(const std::filesystem::path& path,
+                                                        const robot::JointLimits& limits, int joints);
+
+}  // namespace robomill::formats

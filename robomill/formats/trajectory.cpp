@@ -1,0 +1,96 @@
+#include "robomill/formats/trajectory.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/joint_programs.hpp"
+#include "robomill/formats/text.hpp"
+#include "robomill/formats/trajectory_parts.hpp"
+
+namespace robomill::formats {
+namespace {
+
+constexpr std::size_t large = std::size_t{1} << 20;
+
+}  // namespace
+
+void TrajectoryInfo::validate() const {
+  if (joints < 1 || joints > 6) throw InvalidInput("joints", joints, "", "must be 1 to 6");
+  require_positive("sample_period_s", sample_period_s, "s");
+  require_non_negative("program_period_s", program_period_s, "s");
+}
+
+void require_regular(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw InvalidInput(path.string(), "must be a regular file", "A trajectory appears whole, by renaming");
+  }
+}
+
+PendingText::PendingText(const std::filesystem::path& path) : path_(path), pending_((require_regular(path), path)) {
+  restart();
+}
+
+void PendingText::require(bool good) const {
+  if (!good) throw InvalidInput(path_.string(), "cannot be written", errno != 0 ? std::strerror(errno) : "");
+}
+
+void PendingText::restart() {
+  buffer_.clear();
+  written_ = 0;
+  file_.reset();
+  errno = 0;
+  file_.reset(std::fopen(pending_.temporary().c_str(), "wb"));
+  require(file_ != nullptr);
+}
+
+void PendingText::flush() {
+  errno = 0;
+  require(std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) == buffer_.size());
+  written_ += buffer_.size();
+  buffer_.clear();
+}
+
+void PendingText::drain() {
+  if (buffer_.size() >= large) flush();
+}
+
+void PendingText::patch(std::size_t at, std::string_view bytes) {
+  flush();
+  errno = 0;
+  require(std::fseek(file_.get(), static_cast<long>(at), SEEK_SET) == 0);
+  require(std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size());
+  require(std::fseek(file_.get(), 0, SEEK_END) == 0);
+}
+
+void PendingText::commit() {
+  flush();
+  errno = 0;
+  require(std::fclose(file_.release()) == 0);
+  pending_.commit();
+}
+
+std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path, const TrajectoryInfo& info) {
+  info.validate();
+  const std::string ending = lowered(path.extension().string());
+  const bool csv = ending == ".csv";
+  if (csv || ending == ".h5" || ending == ".hdf5") {
+    if (info.program_period_s > 0.0) {
+      throw InvalidInput("program_period_s", info.program_period_s, "s", "is of joint programs, not of trajectories");
+    }
+    return csv ? open_trajectory_csv(path, info) : open_trajectory_hdf5(path, info);
+  }
+  if (ending == ".src") return open_joint_program(path, info, JointLanguage::krl);
+  if (ending == ".mod") return open_joint_program(path, info, JointLanguage::rapid);
+  if (ending == ".script") return open_joint_program(path, info, JointLanguage::urscript);
+  if (ending == ".servoj") return open_joint_program(path, info, JointLanguage::servoj);
+  throw InvalidInput(path.string(),
+                     "a trajectory is written as .csv or .h5, a joint program as .src (KUKA), .mod (ABB), .script or "
+                     ".servoj (Universal Robots)");
+}
+
+}  // namespace robomill::formats

@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "robomill/base/export.hpp"
+#include "robomill/path/sample.hpp"
+#include "robomill/robot/kinematics.hpp"
+
+namespace robomill::formats {
+
+/// What a trajectory's file tells beside its samples.
+struct ROBOMILL_API TrajectoryInfo {
+  int joints = 0;                       ///< n, 1 to 6
+  std::array<bool, 6> slides = {};      ///< joints that are lengths [m]; the others are angles [rad]
+  robot::JointLimits limits = {};       ///< told in .h5
+  double sample_period_s = 0.001;       ///< > 0
+  double program_period_s = 0.0;        ///< of joint programs: time from point to point; 0: 20 ms, servoj 2 ms, or the
+                                        ///< sample period where that is longer
+  std::string cell = {}, program = {};  ///< names of the files it comes from
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// Samples as a file, written as they come in memory that does not grow with them. The file appears by commit(), whole,
+/// or not at all.
+class ROBOMILL_API SampleFile {
+ public:
+  SampleFile() = default;
+  SampleFile(const SampleFile&) = delete;
+  SampleFile& operator=(const SampleFile&) = delete;
+  SampleFile(SampleFile&&) = delete;
+  SampleFile& operator=(SampleFile&&) = delete;
+  virtual ~SampleFile() = default;
+  /// Begins anew: what was added is forgotten.
+  virtual void restart() = 0;
+  /// @throws InvalidInput if the place cannot be written
+  virtual void add(std::span<const path::Sample> samples) = 0;
+  /// Ends the file and moves it to its place. @throws InvalidInput if that fails
+  virtual void commit() = 0;
+};
+
+/// A file for samples by its ending: the trajectory as .csv or as .h5 .hdf5 (columns time_s, q1 … qn, x_mm, y_mm, z_mm,
+/// i, j, k, block, which counts from 1), or a joint program: .src (KUKA KRL), .mod (ABB RAPID), .script (Universal
+/// Robots URScript), .servoj (rows of joints, one a cycle). docs/formats.md.
+/// @throws InvalidInput if the ending is another one, the info is invalid, the place cannot be written or is no regular
+///     file, or the machine is none that such a program can drive: six joints that all turn
+[[nodiscard]] ROBOMILL_API std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path,
+                                                                        const TrajectoryInfo& info);
+
+}  // namespace robomill::formats
