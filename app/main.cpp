@@ -26,6 +26,7 @@ struct CommandLine {
   ForcesCommand forces;
   CoefficientsCommand coefficients;
   StiffnessCommand stiffness;
+  SmoothCommand smooth;
   PlanCommand plan;
   std::function<Exit(Progress&)> chosen;
 
@@ -136,6 +137,19 @@ CommandLine::CommandLine() {
                   "X,Y,Z where the load attacks, in the flange frame (default: the tool's tip)")
       ->delimiter(',')
       ->expected(3);
+
+  sub = verb("smooth", "an NC program to a joint trajectory within every limit of the robot",
+             [this](Progress& p) { return run(smooth, common, p); });
+  sub->add_option("program", smooth.program, "an NC program: .ngc .nc .gcode, .apt .cls, .csv")->required();
+  sub->add_option("--cell", smooth.cell, "cell.toml: the robot, its joints' limits, [smoothing]")->required();
+  sub->add_option("--report", smooth.report, "a page to look at (.html), or its figures (.json)");
+  sub->add_option("--method", smooth.method, "verified, optimal, paper, paper-as-printed or no-joint-jerk")
+      ->check(CLI::IsMember({"verified", "optimal", "paper", "paper-as-printed", "no-joint-jerk"}));
+  sub->add_flag("--compare", smooth.compare, "all other methods beside it, in the summary and the report");
+  sub->add_flag("--keep-breaches", smooth.keep_breaches, "write the trajectory even where it breaks a limit");
+  sub->add_option("--program-period-ms", smooth.program_period_ms,
+                  "time between the points of a joint program (default: 20; 2 for .script and .servoj)")
+      ->check(CLI::PositiveNumber);
 
   sub = verb("plan", "the whole job: hits to safe cutting conditions",
              [this](Progress& p) { return run(plan, common, p); });

@@ -31,6 +31,11 @@ void print_summary(const plan::PlanResult& result) {
   } else {
     fmt::print("no safe depth: {}\n", result.recommendation.reason);
   }
+  if (result.path) {
+    const path::Summary& smoothed = result.path->first().summary;
+    fmt::print("program      {:.3f} s for {} blocks; {} samples break a limit\n", smoothed.duration_s, smoothed.blocks,
+               smoothed.check.violations());
+  }
   const report::Agreement count = report::agreement(result.cuts);
   if (!result.cuts.empty()) {
     fmt::print("test cuts    {} agree, {} disagree, {} without a result\n", count.agree, count.disagree,
@@ -42,13 +47,15 @@ void print_summary(const plan::PlanResult& result) {
 }  // namespace
 
 Exit run(const PlanCommand& command, const Common& common, Progress& progress) {
-  const plan::PlanResult result = plan::run_job(command.job, common.seed, progress);
+  const std::filesystem::path folder = common.to_stdout() ? std::string() : common.output;
+  const plan::PlanResult result = plan::run_job(command.job, common.seed, progress, folder);
   if (common.to_stdout()) {
     fmt::print("{}", plan::plan_json(result));
   } else if (!common.output.empty()) {
     plan::write_plan(common.output, result);
   }
   if (common.wants_summary()) print_summary(result);
+  if (result.path && !result.path->holds()) return not_reached;
   return result.recommendation.status == plan::Recommendation::Status::found ? done : not_reached;
 }
 

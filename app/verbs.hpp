@@ -86,6 +86,14 @@ struct StiffnessCommand {
   std::filesystem::path loads, cell;
   std::vector<double> point_mm;  ///< in the flange frame; empty: the tool's tip
 };
+struct SmoothCommand {
+  std::filesystem::path program, cell;
+  std::filesystem::path report;       ///< .html or .json; empty: none
+  std::optional<std::string> method;  ///< the cell's unless given
+  bool compare = false;               ///< the other methods beside it
+  bool keep_breaches = false;         ///< write a trajectory that breaks limits
+  double program_period_ms = 0.0;     ///< of joint programs; 0: the language's
+};
 struct PlanCommand {
   std::filesystem::path job;
 };
@@ -100,6 +108,7 @@ Exit run(const SimulateCommand& command, const Common& common, Progress& progres
 Exit run(const ForcesCommand& command, const Common& common, Progress& progress);
 Exit run(const CoefficientsCommand& command, const Common& common, Progress& progress);
 Exit run(const StiffnessCommand& command, const Common& common, Progress& progress);
+Exit run(const SmoothCommand& command, const Common& common, Progress& progress);
 Exit run(const PlanCommand& command, const Common& common, Progress& progress);
 
 }  // namespace robomill::app

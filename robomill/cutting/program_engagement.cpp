@@ -366,6 +366,7 @@ class Walker {
     part.share_to = static_cast<double>(part_) / parts;
     part.duration_s = block.duration_s / parts;
     part.pose = part_ == parts_ ? block.end : program::between(program_.begin_of(block_), block.end, part.share_to);
+    if (block.kind == program::Block::Kind::dwell) return;  // the tool stands where it has cut already
     if (feed) part.cut = finder_.at(workpiece_, part.pose, motion_, std::max(0.0, 0.5 * dexel - way_m_ / parts));
     const Removal removal = workpiece_.remove(profile_, at_, part.pose);
     part.removed_volume_m3 = removal.volume_m3();

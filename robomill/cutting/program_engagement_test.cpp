@@ -235,6 +235,29 @@ Walked walked(const Program& program, const Cutter& cutter, double dexel, const 
   return out;
 }
 
+// The tool stands still where it has cut already.
+TEST(Walk, DwellsCutNothing) {
+  const Program program = zigzag();
+  Program dwelling = program;
+  dwelling.blocks.clear();
+  for (const Block& block : program.blocks) {
+    dwelling.blocks.push_back(block);
+    dwelling.blocks.push_back(block);
+    dwelling.blocks.back().kind = Block::Kind::dwell;
+    dwelling.blocks.back().duration_s = 1.5;
+  }
+  const Walked plain = walked(program, end_mill(CutterKind::ball_end, 3e-3), 0.3e-3, {});
+  const Walked with = walked(dwelling, end_mill(CutterKind::ball_end, 3e-3), 0.3e-3, {});
+  EXPECT_EQ(plain.removed, with.removed);
+  for (const BlockEngagement& part : with.parts) {
+    if (dwelling.blocks[part.block].kind != Block::Kind::dwell) continue;
+    EXPECT_TRUE(part.cut.engagement.empty());
+    EXPECT_EQ(part.removed_volume_m3, 0.0) << part.block;
+    EXPECT_FALSE(part.rapid_in_material || part.shank) << part.block;
+  }
+  EXPECT_EQ(with.parts.size(), plain.parts.size() + program.blocks.size());
+}
+
 // Chip area times speed and time, and volume, are two accounts of the same material.
 TEST(Walk, ChipAreasAccountForTheVolume) {
   const Walked out =

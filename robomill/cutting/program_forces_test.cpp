@@ -146,5 +146,28 @@ TEST(ProgramForces, TakesTheProgramsSpindleSpeedAndMissesNone) {
   EXPECT_NEAR(blocks.front().feed_per_tooth_m, feed_m_per_s * 2.0 * std::numbers::pi / 1000.0, 1e-12);
 }
 
+// A dwell has no forces, with the stock and without, and changes those of no other block.
+TEST(ProgramForces, DwellsHaveNone) {
+  const Program program = two_passes(Eigen::Vector3d::UnitZ());
+  Program dwelling = program;
+  Block dwell = dwelling.blocks[0];
+  dwell.kind = Block::Kind::dwell;
+  dwell.duration_s = 2.0;
+  dwelling.blocks.insert(dwelling.blocks.begin() + 1, dwell);
+  const ProgramForceOptions options = {.spindle_speed_rad_per_s = speed};
+  const auto check = [](const std::vector<BlockForce>& plain, const std::vector<BlockForce>& with) {
+    ASSERT_EQ(with.size(), plain.size() + 1);
+    EXPECT_EQ(with[1].peak_force_n, 0.0);
+    EXPECT_EQ(with[1].removed_volume_m3, 0.0);
+    EXPECT_FALSE(with[1].rapid_in_material);
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      EXPECT_EQ(with[i == 0 ? 0 : i + 1].mean_force_n, plain[i].mean_force_n) << i;
+    }
+  };
+  check(run(program, 0.1e-3, tangential_only()), run(dwelling, 0.1e-3, tangential_only()));
+  check(local_program_forces(program, ball(), tangential_only(), 1e-3, options),
+        local_program_forces(dwelling, ball(), tangential_only(), 1e-3, options));
+}
+
 }  // namespace
 }  // namespace robomill::cutting

@@ -7,9 +7,11 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/hits_toml.hpp"
 #include "robomill/formats/modes_files.hpp"
+#include "robomill/formats/smoothing_toml.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/plan/choose.hpp"
 #include "robomill/plan/test_cuts.hpp"
@@ -197,6 +199,30 @@ void warn_of_spindle(PlanResult& result) {
                   place, worst.torque_n_m, worst.power_w / units::kw, worst.spindle_speed_rad_per_s / units::rpm, has));
 }
 
+constexpr const char* trajectory_name = "trajectory.csv";
+
+/// The program as the robot will run it.
+void smooth(PlanResult& result, const std::filesystem::path& folder, Progress& progress) {
+  const formats::Job& job = result.job;
+  if (job.program.empty() || job.cell.empty()) return;
+  if (!formats::has_smoothing(job.cell)) {
+    if (!job.forces.empty()) return;
+    throw InvalidInput(job.cell.string(), "has no [smoothing]",
+                       "job.program without job.forces is smoothed: write the tolerances and limits there");
+  }
+  SmoothJob smooth = {.program = job.program, .cell = job.cell};
+  if (!folder.empty()) {
+    formats::make_folder(folder);
+    smooth.output = folder / trajectory_name;
+  }
+  result.path = run_smooth(smooth, progress);
+  if (!result.path->holds()) {
+    result.warnings.push_back(fmt::format(
+        "The smoothed program breaks limits at {} samples: there is no trajectory. See the limits of each joint.",
+        result.path->first().summary.check.violations()));
+  }
+}
+
 /// The deepest pockets of the lobes stand where tooth passing meets a mode: no chatter there, but resonance.
 void warn_of_resonance(PlanResult& result) {
   if (!result.recommendation.recommended) return;
@@ -331,7 +357,8 @@ modal::ModalModel with_equal_directions(const modal::ModalModel& model) {
   return out;
 }
 
-PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress) {
+PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress,
+                   const std::filesystem::path& folder) {
   PlanResult result;
   result.job = formats::read_job(job);
   // Everything that is quick to refuse is read before the long work starts.
@@ -345,6 +372,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
     result.forces = run_forces(result.job.forces, result.job.program, result.job.cell, progress);
     warn_of_spindle(result);
   }
+  smooth(result, folder, progress);
   fit(result, seed, progress);
   if (result.job.equal_directions) {
     result.model = with_equal_directions(result.model);

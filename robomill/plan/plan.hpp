@@ -14,6 +14,7 @@
 #include "robomill/plan/forces.hpp"
 #include "robomill/plan/predict.hpp"
 #include "robomill/plan/recommend.hpp"
+#include "robomill/plan/smooth.hpp"
 #include "robomill/report/report.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/uncertainty.hpp"
@@ -37,6 +38,7 @@ struct PlanResult {
   std::optional<report::FeedDirections> feed_directions;
   Recommendation recommendation;
   std::optional<ForcesResult> forces;  ///< of a job that asks for them
+  std::optional<SmoothResult> path;    ///< of a job with a program and a cell with [smoothing]
   std::vector<report::TestCut> cuts;
   std::vector<report::Recording> recordings;
   std::vector<std::string> warnings, notes;
@@ -44,10 +46,11 @@ struct PlanResult {
 
 /// Runs a job: hits, or tool and holder, ─▶ FRFs ─▶ modes ─▶ lobes ─▶ a recommended speed and depth, and its comparison
 /// with test cuts.
-/// @param seed  of every random number
+/// @param seed    of every random number
+/// @param folder  for the trajectory of a program, made where it is missing; empty: none is written
 /// @throws InvalidInput with file, line, key and value; Interrupted
 [[nodiscard]] PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
-                                 Progress& progress = Progress::none());
+                                 Progress& progress = Progress::none(), const std::filesystem::path& folder = {});
 
 /// The report of a job.
 /// @param files  that stand beside it

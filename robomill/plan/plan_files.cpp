@@ -101,6 +101,7 @@ std::string plan_json(const PlanResult& result) {
   json["modes"] = Json::parse(modes_json(result));
   json["lobes"] = Json::parse(lobes_json(result));
   if (result.forces) json["forces"] = forces_object(*result.forces);
+  if (result.path) json["path"] = Json::parse(formats::smooth_json(result.path->smoothed));
   return json.dump(1) + "\n";
 }
 
@@ -124,6 +125,13 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
                      .file = "forces.csv",
                      .description = result.forces->program ? "cutting forces, a row a block of the program"
                                                            : "cutting forces over a revolution"});
+  }
+  if (result.path) {
+    formats::write_file(folder / "smooth.json", formats::smooth_json(result.path->smoothed));
+    files.push_back({.stage = "path", .file = "smooth.json", .description = "the smoothed program beside its limits"});
+    if (result.path->smoothed.written) {
+      files.push_back({.stage = "path", .file = "trajectory.csv", .description = "joints and tool, a row a sample"});
+    }
   }
   formats::write_file(folder / "plan.json", plan_json(result));
   files.push_back({.stage = "plan", .file = "plan.json", .description = "recommendation and every stage's result"});

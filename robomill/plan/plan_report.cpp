@@ -266,6 +266,7 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   report.feed_directions = result.feed_directions;
   report.recordings = result.recordings;
   if (result.forces) report.forces = with_limits(forces_report(*result.forces), result);
+  if (result.path) report.smooth = smooth_report(*result.path);
   report.files = files;
   return report;
 }

@@ -8,6 +8,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/formats/gcode.hpp"
+#include "robomill/formats/program_files.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/robot/choose.hpp"
 #include "robomill/robot/inverse.hpp"
@@ -166,7 +167,7 @@ ProgramForces run_program(const formats::ForcesFile& file, const std::optional<f
   ProgramForces out;
   std::optional<program::Machine> machine;
   if (cell && !cell->machine.empty()) machine = formats::parse_machine(cell->machine);
-  out.program = formats::read_gcode(path, machine);
+  out.program = formats::read_program(path, {.machine = machine});
   if (out.program.blocks.empty()) {
     throw InvalidInput(InvalidInput::Parts{.where = path.string(), .rule = "has no move"});
   }
@@ -202,6 +203,7 @@ ProgramForces run_program(const formats::ForcesFile& file, const std::optional<f
                                 out.program.skipped.size(), out.program.skipped.front().line,
                                 out.program.skipped.front().what));
   }
+  notes.insert(notes.end(), out.program.notes.begin(), out.program.notes.end());
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   return out;
 }

@@ -17,6 +17,9 @@ namespace robomill::report {
 /// Its part on forces. Long curves are thinned with their peaks; the worst blocks come from all of them.
 [[nodiscard]] nlohmann::ordered_json forces_json(const Forces& forces);
 
+/// Its part on a smoothed program.
+[[nodiscard]] nlohmann::ordered_json smooth_json(const Smooth& smooth);
+
 /// Lines of an axis as bands [from, to], neighbours in one; a band reaches half a step beyond its lines.
 [[nodiscard]] nlohmann::ordered_json bands_json(const Eigen::VectorXd& axis_hz, const std::vector<double>& lines_hz);
 

@@ -103,6 +103,16 @@ void validate_prediction(const Prediction& prediction) {
   require_positive("prediction.assembly.joint.insertion_length_m", assembly.joint->insertion_length_m, "m");
 }
 
+template <class Part>
+void validate_part(const char* name, const std::optional<Part>& part) {
+  if (!part) return;
+  try {
+    part->validate();
+  } catch (const InvalidInput& error) {
+    throw within(name, error);
+  }
+}
+
 }  // namespace
 
 void Report::validate() const {
@@ -118,12 +128,8 @@ void Report::validate() const {
   }
   validate_lobes(*this);
   validate_cuts(*this);
-  if (!forces) return;
-  try {
-    forces->validate();
-  } catch (const InvalidInput& error) {
-    throw within("forces.", error);
-  }
+  validate_part("forces.", forces);
+  validate_part("smooth.", smooth);
 }
 
 Agreement agreement(const std::vector<TestCut>& cuts) {

@@ -11,6 +11,7 @@
 #include "robomill/modal/modes.hpp"
 #include "robomill/report/fact.hpp"
 #include "robomill/report/forces.hpp"
+#include "robomill/report/smooth.hpp"
 
 /// Results of the other stages, as a page to look at and as the data of its plots. The structs are filled by whoever
 /// ran the stages; every part may be left empty, and the page leaves its section out. NaN means "missing", or "none in
@@ -216,6 +217,7 @@ struct Report {
   std::vector<TestCut> cuts = {};
   std::optional<FeedDirections> feed_directions = {};
   std::optional<Forces> forces = {};
+  std::optional<Smooth> smooth = {};
   std::vector<Recording> recordings = {};
   std::vector<StageFile> files = {};
 

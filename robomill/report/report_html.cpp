@@ -42,9 +42,10 @@ std::string warnings(const Json& report) {
 }
 
 std::string navigation(const std::string& body) {
-  constexpr std::array<std::pair<const char*, const char*>, 10> entries = {{{"lobes", "Lobes"},
+  constexpr std::array<std::pair<const char*, const char*>, 11> entries = {{{"lobes", "Lobes"},
                                                                             {"feed", "Feed direction"},
                                                                             {"forces", "Forces"},
+                                                                            {"smooth", "Smoothed program"},
                                                                             {"assembly", "Tool and holder"},
                                                                             {"frf", "Frequency response"},
                                                                             {"modes", "Modes"},
@@ -80,9 +81,9 @@ std::string report_html(const Report& report) {
   const std::string_view script = page_script();
   const bool plots = !script.empty();
   const std::string body = lobes_section(json, plots) + feed_section(json, plots) + forces_section(json, plots) +
-                           assembly_section(json) + frf_section(json, plots) + modes_section(json, plots) +
-                           pairs_section(json, plots) + recordings_section(json, plots) + hits_section(json) +
-                           notes_section(json);
+                           smooth_section(json, plots) + assembly_section(json) + frf_section(json, plots) +
+                           modes_section(json, plots) + pairs_section(json, plots) + recordings_section(json, plots) +
+                           hits_section(json) + notes_section(json);
   std::string page = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n";
   page += fmt::format("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n", policy);
   page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";

@@ -324,6 +324,7 @@ Json shop_units(const Report& report) {
   json["agreement"] = {{"agree", counts.agree}, {"disagree", counts.disagree}, {"not_compared", counts.not_compared}};
   json["feed_directions"] = report.feed_directions ? feed_json(*report.feed_directions) : Json(nullptr);
   json["forces"] = report.forces ? forces_json(*report.forces) : Json(nullptr);
+  json["smooth"] = report.smooth ? smooth_json(*report.smooth) : Json(nullptr);
   json["recordings"] = list_of(report.recordings, recording_json);
   json["files"] = list_of(report.files, [](const StageFile& file) {
     return Json{{"stage", text(file.stage)}, {"file", text(file.file)}, {"description", text(file.description)}};

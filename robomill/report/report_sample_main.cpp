@@ -27,6 +27,11 @@ int main(int argc, char** argv) {
     report.forces->notes = {evil};
     report.forces->revolution->verdict = evil;
     report.forces->path->troubles = {evil};
+    report.smooth->facts = {{evil, evil}};
+    report.smooth->notes = {evil};
+    report.smooth->skipped = {evil};
+    report.smooth->methods.front().name = evil;
+    report.smooth->methods.front().uses.front().what = evil;
     report.recordings.front().file = evil;
     report.recordings.front().peaks.front().text = evil;
   }

@@ -141,6 +141,10 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.forces->notes = {evil};
   report.forces->revolution->verdict = evil;
   report.forces->path->troubles = {evil};
+  report.smooth->facts = {{evil, evil}};
+  report.smooth->warnings = report.smooth->notes = report.smooth->skipped = {evil};
+  report.smooth->methods.front().name = evil;
+  report.smooth->methods.front().uses.front().what = evil;
   const std::string html = report_html(report);
   EXPECT_EQ(count(html, "<script"), scripts);
   EXPECT_EQ(html.find("<img"), std::string::npos);
@@ -249,6 +253,7 @@ TEST(ReportValidate, NamesTheMember) {
   EXPECT_EQ(refused([](Report& r) { r.feed_directions->limit_at_speed_m.resize(5); }),
             "feed_directions.limit_at_speed_m");
   EXPECT_EQ(refused([](Report& r) { r.forces->path->cuts.pop_back(); }), "forces.path.cuts");
+  EXPECT_EQ(refused([](Report& r) { r.smooth->methods.clear(); }), "smooth.methods");
 }
 
 TEST(Agreement, CountsEveryCutOnce) {

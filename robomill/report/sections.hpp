@@ -18,6 +18,9 @@ using Json = nlohmann::ordered_json;
 // sections_forces.cpp: over a revolution, along a program, over the spindle's rotation
 [[nodiscard]] std::string forces_section(const Json& report, bool plots);
 
+// sections_smooth.cpp: what a machine does with a program, beside its limits
+[[nodiscard]] std::string smooth_section(const Json& report, bool plots);
+
 // sections_assembly.cpp: tool, joint and holder, and what is predicted of them
 [[nodiscard]] std::string assembly_section(const Json& report);
 

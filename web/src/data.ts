@@ -131,10 +131,7 @@ export interface ForceCurves {
   deflection_um: Num[] | null;
 }
 
-export interface Track {
-  x_mm: number[];
-  y_mm: number[];
-  z_mm: number[];
+export interface Track extends Places {
   block: number[];
   line: number[];
   peak_force_n: Num[];
@@ -164,6 +161,56 @@ export interface Forces {
   spindle_rotation: SpindleRotation | null;
 }
 
+/** One point after another in the work frame. */
+export interface Places {
+  x_mm: number[];
+  y_mm: number[];
+  z_mm: number[];
+}
+
+export interface JointMotion {
+  unit: '°' | 'mm';
+  velocity: number[];
+  acceleration: number[];
+  jerk: number[];
+  tracking_error: number[] | null;
+  max_velocity: Num;
+  max_acceleration: Num;
+  max_jerk: Num;
+}
+
+export interface Motion {
+  time_s: number[];
+  tip_speed_mm_per_s: number[];
+  axis_speed_deg_per_s: number[];
+  joints: JointMotion[];
+  track: Places & { speed_mm_per_s: number[] };
+}
+
+export interface SmoothMethod {
+  name: string;
+  duration_s: number;
+  motion: Motion;
+}
+
+export interface Corner {
+  block: number;
+  line: number;
+  turn_deg: number;
+  radius_mm: number;
+  program: { x_mm: number[]; y_mm: number[] };
+  ways: { x_mm: number[]; y_mm: number[] }[]; // one a method
+}
+
+export interface Smooth {
+  tip_tolerance_mm: number;
+  max_tip_speed_mm_per_s: Num;
+  max_axis_speed_deg_per_s: Num;
+  program: Places;
+  methods: SmoothMethod[];
+  corners: Corner[];
+}
+
 export interface Report {
   recommendation: Recommendation | null;
   alternatives: Recommendation[];
@@ -175,5 +222,6 @@ export interface Report {
   cuts: Cut[];
   feed_directions: FeedDirections | null;
   forces: Forces | null;
+  smooth: Smooth | null;
   recordings: Recording[];
 }

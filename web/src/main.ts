@@ -1,10 +1,12 @@
 import * as Plotly from 'plotly.js-cartesian-dist-min';
-import type { Forces, Report } from './data';
+import { cornerFigure, pathFigure } from './corners';
+import type { Forces, Report, Smooth } from './data';
 import { convergenceFigure, stabilisationFigure } from './fit';
 import { engagementFigure, gammaFigure, programFigure, revolutionFigure } from './forces';
 import { frfFigure, prefersLogFrequency } from './frf';
 import { lobesFigure, mapFigure, pairFigure } from './lobes';
 import { polarFigure } from './polar';
+import { jointFigure, speedFigure } from './smooth';
 import { spectrumFigure } from './spectrum';
 import { trackFigure } from './track';
 import { dark, light, type Figure, type Theme } from './theme';
@@ -126,6 +128,28 @@ function addForces(forces: Forces, which: string | undefined, canvas: HTMLElemen
   else if (which === 'gamma' && rotation) add(canvas, (theme, width) => gammaFigure(rotation, theme, width < 600));
 }
 
+function addJoints(smooth: Smooth, figure: HTMLElement, canvas: HTMLElement): void {
+  let method = 0;
+  let joint = 0;
+  const plot = add(canvas, (theme) => jointFigure(smooth.methods[method]!, smooth.methods[method]!.motion.joints[joint]!, theme));
+  choice(figure, 'Joint', smooth.methods[0]!.motion.joints.map((_, i) => `${i + 1}`), 0, (index) => {
+    joint = index;
+    void draw(plot);
+  });
+  if (smooth.methods.length < 2) return;
+  choice(figure, 'Method', smooth.methods.map((each) => each.name), 0, (index) => {
+    method = index;
+    void draw(plot);
+  });
+}
+
+function addSmooth(smooth: Smooth, which: string | undefined, figure: HTMLElement, canvas: HTMLElement): void {
+  if (which === 'smooth-path') add(canvas, (theme, width) => pathFigure(smooth, theme, width));
+  else if (which === 'smooth-corners') several(canvas, smooth.corners.map((corner) => (theme, width) => cornerFigure(smooth, corner, theme, width)));
+  else if (which === 'smooth-speed') add(canvas, (theme) => speedFigure(smooth, theme));
+  else if (which === 'smooth-joint') addJoints(smooth, figure, canvas);
+}
+
 function addPlot(report: Report, figure: HTMLElement, canvas: HTMLElement): void {
   const [which, index] = (figure.dataset['plot'] ?? '').split(':');
   const all = report.lobes[0];
@@ -150,6 +174,8 @@ function addPlot(report: Report, figure: HTMLElement, canvas: HTMLElement): void
   } else if (which === 'stabilisation' && report.fit) {
     const { fit } = report;
     add(canvas, (theme) => stabilisationFigure(fit, theme));
+  } else if (which?.startsWith('smooth-')) {
+    if (report.smooth) addSmooth(report.smooth, which, figure, canvas);
   } else if (report.forces) {
     addForces(report.forces, which, canvas);
   }

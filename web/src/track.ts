@@ -1,4 +1,4 @@
-import type { Num, Track } from './data';
+import type { Num, Places, Track } from './data';
 import { axis, layout, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 interface Line {
@@ -72,12 +72,18 @@ function extent(values: number[]): [number, number] {
   return values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
 }
 
+/** The two views: their vertical axis, and where they are drawn. */
+export const views = [
+  { name: 'from above', up: 'y' as const, axes: {} },
+  { name: 'from the side', up: 'z' as const, axes: { xaxis: 'x2', yaxis: 'y2' } },
+];
+
 const margin = { l: 64, r: 24, t: 30, b: 104 };
 const between = 78;
 const highestView = 460;
 
 /** Ranges and places of the two views, so that a millimetre is as long in all four axes. Side by side, or stacked where narrow. */
-export function frame(track: Track, width: number): Frame {
+export function frame(track: Places, width: number): Frame {
   const stacked = width < 640;
   const sides = { x: extent(track.x_mm), y: extent(track.y_mm), z: extent(track.z_mm) };
   const room = Math.max(120, width - margin.l - margin.r);
@@ -118,16 +124,51 @@ export function frame(track: Track, width: number): Frame {
   };
 }
 
+/** What the two views of a path share; a colour scale below where something has a colour. */
+export function viewsLayout(place: Frame, theme: Theme, scale: string | null): Layout {
+  const title = (text: string, [from, to]: [number, number], y: number): Layout => ({
+    text,
+    showarrow: false,
+    font: { size: 13, color: theme.muted },
+    xref: 'paper',
+    yref: 'paper',
+    x: (from + to) / 2,
+    xanchor: 'center',
+    y,
+    yanchor: 'bottom',
+    yshift: 4,
+  });
+  const equal = { scaleanchor: 'x', scaleratio: 1, automargin: false, zeroline: false };
+  return layout(theme, place.height, {
+    hovermode: 'closest',
+    margin,
+    annotations: [title('From above', place.top[0]!, place.top[1]![1]), title('From the side', place.side[0]!, place.side[1]![1])],
+    xaxis: axis(theme, place.stacked ? '' : 'x (mm)', { range: place.x, domain: place.top[0], anchor: 'y', automargin: false, zeroline: false }),
+    yaxis: axis(theme, 'y (mm)', { ...equal, range: place.y, domain: place.top[1], anchor: 'x' }),
+    xaxis2: axis(theme, 'x (mm)', { matches: 'x', range: place.x, domain: place.side[0], anchor: 'y2', automargin: false, zeroline: false }),
+    yaxis2: axis(theme, 'z (mm)', { ...equal, range: place.z, domain: place.side[1], anchor: 'x2' }),
+    coloraxis: {
+      colorscale: theme.scale,
+      showscale: scale !== null,
+      colorbar: {
+        orientation: 'h',
+        title: { text: scale ?? '', side: 'top' },
+        thickness: 10,
+        outlinewidth: 0,
+        y: -52 / (place.height - margin.t - margin.b),
+        yanchor: 'top',
+        len: place.stacked ? 1 : 0.5,
+      },
+    },
+  });
+}
+
 /** The path from above and from the side, each block that cuts in the colour of its peak force. */
 export function trackFigure(track: Track, theme: Theme, width: number): Figure {
   const place = frame(track, width);
   const air = moves(track, false);
   const cut = moves(track, true);
   const points = marks(track);
-  const views = [
-    { name: 'from above', up: 'y' as const, axes: {} },
-    { name: 'from the side', up: 'z' as const, axes: { xaxis: 'x2', yaxis: 'y2' } },
-  ];
   const line = { type: 'scatter', mode: 'lines', hoverinfo: 'skip', showlegend: false };
   const data: Trace[] = views.flatMap((view) => [
     { ...line, ...view.axes, name: 'air', x: air.x, y: air[view.up], line: { color: theme.unknown, width: 0.8 } },
@@ -145,42 +186,5 @@ export function trackFigure(track: Track, theme: Theme, width: number): Figure {
       hovertemplate: `%{marker.color:.4g}${thinSpace}N in block %{customdata[0]}, line %{customdata[1]}<br>at x %{x:.2f}, ${view.up} %{y:.2f}${thinSpace}mm<extra></extra>`,
     },
   ]);
-  const title = (text: string, [from, to]: [number, number], y: number): Layout => ({
-    text,
-    showarrow: false,
-    font: { size: 13, color: theme.muted },
-    xref: 'paper',
-    yref: 'paper',
-    x: (from + to) / 2,
-    xanchor: 'center',
-    y,
-    yanchor: 'bottom',
-    yshift: 4,
-  });
-  const equal = { scaleanchor: 'x', scaleratio: 1, automargin: false, zeroline: false };
-  return {
-    data,
-    layout: layout(theme, place.height, {
-      hovermode: 'closest',
-      margin,
-      annotations: [title('From above', place.top[0]!, place.top[1]![1]), title('From the side', place.side[0]!, place.side[1]![1])],
-      xaxis: axis(theme, place.stacked ? '' : 'x (mm)', { range: place.x, domain: place.top[0], anchor: 'y', automargin: false, zeroline: false }),
-      yaxis: axis(theme, 'y (mm)', { ...equal, range: place.y, domain: place.top[1], anchor: 'x' }),
-      xaxis2: axis(theme, 'x (mm)', { matches: 'x', range: place.x, domain: place.side[0], anchor: 'y2', automargin: false, zeroline: false }),
-      yaxis2: axis(theme, 'z (mm)', { ...equal, range: place.z, domain: place.side[1], anchor: 'x2' }),
-      coloraxis: {
-        colorscale: theme.scale,
-        showscale: points.force.length > 0,
-        colorbar: {
-          orientation: 'h',
-          title: { text: 'Peak force (N)', side: 'top' },
-          thickness: 10,
-          outlinewidth: 0,
-          y: -52 / (place.height - margin.t - margin.b),
-          yanchor: 'top',
-          len: place.stacked ? 1 : 0.5,
-        },
-      },
-    }),
-  };
+  return { data, layout: viewsLayout(place, theme, points.force.length > 0 ? 'Peak force (N)' : null) };
 }

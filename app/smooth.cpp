@@ -1,0 +1,122 @@
+#include "robomill/plan/smooth.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/text.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/report/report.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+/// "43 %", or "–" without a limit; "!" behind what breaks it.
+std::string share(const path::Usage& usage) {
+  if (!(usage.limit > 0.0)) return "–";
+  return fmt::format("{:.1f} %{}", 100.0 * usage.max / usage.limit, usage.violations > 0 ? " !" : "");
+}
+
+void print_row(const char* name, const std::array<std::string, 4>& cells, const std::string& more = {}) {
+  fmt::print("{:<10}{:>12}{:>14}{:>12}{:>12}  {}\n", name, cells[0], cells[1], cells[2], cells[3], more);
+}
+
+void print_check(const formats::SmoothedBy& by) {
+  const path::CheckResult& check = by.summary.check;
+  print_row("", {"velocity", "acceleration", "jerk", "tolerance"}, "of the limits");
+  print_row("tip",
+            {share(check.tip_velocity), share(check.tip_acceleration), share(check.tip_jerk), share(check.tip_error_m)},
+            fmt::format("{:.4g} mm from the program; {:.1f} % of the feed", check.tip_error_m.max / units::mm,
+                        100.0 * check.feed.max));
+  print_row(
+      "axis",
+      {share(check.axis_velocity), share(check.axis_acceleration), share(check.axis_jerk), share(check.axis_error_rad)},
+      fmt::format("{:.4g}° from the program", check.axis_error_rad.max / units::deg));
+  for (std::size_t i = 0; i < check.joints.size(); ++i) {
+    const path::CheckResult::Joint& joint = check.joints[i];
+    std::string more;
+    if (joint.position.violations > 0) more = "beyond its range";
+    print_row(fmt::format("joint {}", i + 1).c_str(),
+              {share(joint.velocity), share(joint.acceleration), share(joint.jerk), ""}, more);
+  }
+}
+
+void print_methods(const formats::SmoothedProgram& smoothed) {
+  fmt::print("\n{:<18}{:>12}{:>12}{:>14}{:>14}{:>12}\n", "", "duration", "violations", "joint limits", "tip error",
+             "planned in");
+  for (const formats::SmoothedBy& by : smoothed.methods) {
+    fmt::print("{:<18}{:>10.3f} s{:>12}{:>12.1f} %{:>11.4g} mm{:>10.3f} s\n", formats::name_of(by.method),
+               by.summary.duration_s, by.summary.check.violations(), 100.0 * plan::joint_share(by.summary.check),
+               by.summary.check.tip_error_m.max / units::mm, by.summary.plan_s);
+  }
+}
+
+void print_summary(const plan::SmoothResult& result) {
+  const formats::SmoothedBy& by = result.first();
+  const path::Summary& summary = by.summary;
+  fmt::print("{}  {:.3f} s", formats::name_of(by.method), summary.duration_s);
+  if (summary.lower_bound_s > 0.0) fmt::print(" (bound {:.3f} s)", summary.lower_bound_s);
+  fmt::print(" for {} blocks; {} samples; planned in {:.3g} s", summary.blocks, summary.samples, summary.plan_s);
+  if (summary.rounds > 1) fmt::print(", {} rounds", summary.rounds);
+  fmt::print("\n\n");
+  print_check(by);
+  if (result.smoothed.methods.size() > 1) print_methods(result.smoothed);
+  fmt::print("\n{} samples break a limit\n", summary.check.violations());
+  for (const program::Skipped& item : result.smoothed.skipped)
+    fmt::print("skipped    line {}: {}\n", item.line, item.what);
+  for (const std::string& note : result.smoothed.notes) fmt::print("note       {}\n", note);
+}
+
+void write_report(const std::filesystem::path& path, const plan::SmoothResult& result) {
+  if (formats::lowered(path.extension().string()) == ".json") {
+    formats::write_file(path, formats::smooth_json(result.smoothed));
+    return;
+  }
+  report::Report page;
+  page.title = "Smoothed program";
+  page.smooth = plan::smooth_report(result);
+  formats::write_file(path, report::report_html(page));
+}
+
+/// Runs the job; what it refuses of the command line is told in the command line's words.
+plan::SmoothResult run_job(const plan::SmoothJob& job, Progress& progress) {
+  try {
+    return plan::run_smooth(job, progress);
+  } catch (const InvalidInput& error) {
+    if (error.parts().field != "program_period_s" || !error.parts().number) throw;
+    throw InvalidInput("--program-period-ms", *error.parts().number / units::ms, "ms", error.parts().rule);
+  }
+}
+
+}  // namespace
+
+Exit run(const SmoothCommand& command, const Common& common, Progress& progress) {
+  const std::string ending = formats::lowered(command.report.extension().string());
+  if (!command.report.empty() && ending != ".html" && ending != ".json") {
+    throw InvalidInput(command.report.string(), "a report is written as .html or .json");
+  }
+  plan::SmoothJob job;
+  job.program = command.program;
+  job.cell = command.cell;
+  if (!common.to_stdout()) job.output = common.output;
+  if (command.method) job.method = formats::method_of(*command.method);
+  job.compare = command.compare;
+  job.keep_breaches = command.keep_breaches;
+  job.record = ending == ".html";
+  job.program_period_s = command.program_period_ms * units::ms;
+  const plan::SmoothResult result = run_job(job, progress);
+  if (common.to_stdout()) fmt::print("{}", formats::smooth_json(result.smoothed));
+  if (!command.report.empty()) write_report(command.report, result);
+  if (common.wants_summary()) print_summary(result);
+  if (result.holds()) return done;
+  fmt::print(stderr, "robomill: the trajectory breaks limits{}\n",
+             job.output.empty() || result.smoothed.written ? "" : "; it was not written");
+  return not_reached;
+}
+
+}  // namespace robomill::app

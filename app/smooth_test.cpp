@@ -1,0 +1,125 @@
+// robomill smooth as a user runs it.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "robomill/base/test_support.hpp"
+
+namespace robomill::app {
+namespace {
+
+struct Ended {
+  int exit = -1;
+  std::string out, err;
+};
+
+std::string slurp(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+class SmoothVerb : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::copy_file(ROBOMILL_SOURCE_DIR "/examples/smooth-impeller-like/cell.toml", folder_.at("cell.toml"));
+    folder_.file("part.ngc",
+                 "G21 G90 G94\nM8\nG0 X0 Y0 Z40 A-20 C0\nG1 X4 F1800\nG1 X4 Y3 A-22\nG1 X0 Y3\nG1 X0 Y0 C2\nM30\n");
+  }
+  Ended robomill(const std::string& arguments) {
+    const std::string full =
+        "cd '" + folder_.path().string() + "' && '" ROBOMILL_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
+    const int status = std::system(full.c_str());  // NOLINT(cert-env33-c): a user's shell is what is tested
+    return {.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+            .out = slurp(folder_.at("out.txt")),
+            .err = slurp(folder_.at("err.txt"))};
+  }
+  [[nodiscard]] bool there(const char* name) const { return std::filesystem::exists(folder_.at(name)); }
+  test::Folder folder_;
+};
+
+TEST_F(SmoothVerb, WritesATrajectoryAndTellsTheLimits) {
+  const Ended run = robomill("smooth part.ngc --cell cell.toml -o t.csv --report smooth.json");
+  ASSERT_EQ(run.exit, 0) << run.out << run.err;
+  EXPECT_TRUE(run.out.starts_with("verified  "));
+  EXPECT_NE(run.out.find("joint 6"), std::string::npos);
+  EXPECT_NE(run.out.find("0 samples break a limit"), std::string::npos);
+  EXPECT_NE(run.out.find("skipped    line 2"), std::string::npos);
+  const auto json = nlohmann::json::parse(slurp(folder_.at("smooth.json")));
+  const std::string rows = slurp(folder_.at("t.csv"));
+  EXPECT_EQ(static_cast<std::size_t>(std::count(rows.begin(), rows.end(), '\n')),
+            json["samples"].get<std::size_t>() + 1);
+  EXPECT_EQ(json["method"], "verified");
+}
+
+TEST_F(SmoothVerb, WritesProgramsAndPages) {
+  ASSERT_EQ(robomill("smooth part.ngc --cell cell.toml -o part.src --report page.html --quiet").exit, 0);
+  EXPECT_NE(slurp(folder_.at("part.src")).find("PTP_SPLINE"), std::string::npos);
+  EXPECT_NE(slurp(folder_.at("page.html")).find("<section id=\"smooth\""), std::string::npos);
+  EXPECT_EQ(slurp(folder_.at("out.txt")), "");
+  ASSERT_EQ(robomill("smooth part.ngc --cell cell.toml -o part.servoj --program-period-ms 4").exit, 0);
+  EXPECT_NE(slurp(folder_.at("part.servoj")).find("a point every 4 ms"), std::string::npos);
+}
+
+TEST_F(SmoothVerb, DashWritesJsonAndNothingElse) {
+  const Ended run = robomill("smooth part.ngc --cell cell.toml --method paper -o -");
+  const auto json = nlohmann::json::parse(run.out);
+  EXPECT_EQ(json["method"], "paper");
+  EXPECT_EQ(run.exit, json["violations"] == 0 ? 0 : 3);
+}
+
+// Where a limit is broken, the report tells it and there is no trajectory.
+TEST_F(SmoothVerb, ABreachExitsWithThreeAndLeavesOnlyTheReport) {
+  std::string cell = slurp(folder_.at("cell.toml"));
+  const std::string jerk = "joint_max_jerk = [60, 60, 60, 200, 200, 250]";
+  cell.replace(cell.find(jerk), jerk.size(), "joint_max_jerk = [0.5, 0.5, 0.5, 1, 1, 1]");
+  folder_.file("tight.toml", cell);
+  const Ended run = robomill("smooth part.ngc --cell tight.toml --method no-joint-jerk -o t.csv --report smooth.json");
+  EXPECT_EQ(run.exit, 3) << run.err;
+  EXPECT_FALSE(there("t.csv"));
+  EXPECT_NE(run.err.find("was not written"), std::string::npos);
+  const auto json = nlohmann::json::parse(slurp(folder_.at("smooth.json")));
+  EXPECT_GT(json["violations"].get<int>(), 0);
+  EXPECT_FALSE(json["written"].get<bool>());
+  EXPECT_EQ(robomill("smooth part.ngc --cell tight.toml --method no-joint-jerk -o t.csv --keep-breaches").exit, 3);
+  EXPECT_TRUE(there("t.csv"));
+}
+
+TEST_F(SmoothVerb, SetsMethodsSideBySide) {
+  const Ended run = robomill("smooth part.ngc --cell cell.toml --compare");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  for (const char* method : {"optimal", "paper", "paper-as-printed", "no-joint-jerk"}) {
+    EXPECT_NE(run.out.find(std::string("\n") + method + " "), std::string::npos) << method;
+  }
+}
+
+TEST_F(SmoothVerb, RefusesBadInput) {
+  EXPECT_EQ(robomill("smooth part.ngc").exit, 2);
+  EXPECT_EQ(robomill("smooth part.ngc --cell cell.toml --method fast").exit, 2);
+  const auto refused = [&](const std::string& arguments, const char* part) {
+    const Ended run = robomill("smooth " + arguments);
+    EXPECT_EQ(run.exit, 1) << arguments;
+    EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  };
+  refused("none.ngc --cell cell.toml", "none.ngc");
+  refused("part.ngc --cell none.toml", "none.toml");
+  refused("part.ngc --cell cell.toml -o t.step", "t.step");
+  refused("part.ngc --cell cell.toml --report t.pdf", "t.pdf");
+  refused("part.ngc --cell cell.toml -o t.src --program-period-ms 12.5",
+          "--program-period-ms = 12.5 ms; must be a multiple");
+  refused("part.ngc --cell cell.toml -o t.csv --program-period-ms 20",
+          "--program-period-ms = 20 ms; is of joint programs");
+  folder_.file("far.ngc", "G21 G90 G94\nG0 X0 Y0 Z40\nG1 X9000 F1800\n");
+  refused("far.ngc --cell cell.toml -o t.csv", "line 3");
+  EXPECT_FALSE(there("t.csv"));
+}
+
+}  // namespace
+}  // namespace robomill::app

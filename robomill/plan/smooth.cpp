@@ -1,0 +1,260 @@
+#include "robomill/plan/smooth.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/cell_toml.hpp"
+#include "robomill/formats/gcode.hpp"
+#include "robomill/formats/program_files.hpp"
+#include "robomill/formats/smoothing_toml.hpp"
+#include "robomill/formats/trajectory.hpp"
+#include "robomill/path/drive.hpp"
+#include "robomill/path/smooth.hpp"
+#include "robomill/report/smooth_recorder.hpp"
+
+namespace robomill::plan {
+namespace {
+
+/// Of an arc's chords: within a tenth of the tolerance.
+constexpr double chord_share = 0.1;
+/// … but not less, in m: what a reader takes.
+constexpr double least_chord_m = 1e-9;
+
+/// A machine with a program before it.
+struct Bench {
+  formats::CellFile cell;
+  std::unique_ptr<robot::Kinematics> machine;
+  formats::SmoothingFile smoothing;
+  std::array<bool, 6> slides = {};
+  std::unique_ptr<formats::ProgramFile> program;
+  path::PostureChoice posture;
+};
+
+std::array<bool, 6> slides_of(const formats::CellFile& cell) {
+  std::array<bool, 6> slides = {};
+  if (cell.hybrid) {
+    slides.fill(true);
+    return slides;
+  }
+  const std::vector<robot::Joint>& joints = cell.cell.arm.joints;
+  for (std::size_t i = 0; i < std::min(joints.size(), slides.size()); ++i) slides.at(i) = joints[i].prismatic;
+  return slides;
+}
+
+path::PostureChoice posture_of(const Bench& bench) {
+  path::PostureOptions options;
+  if (bench.cell.gamma_given) options.gamma_rad = bench.cell.redundant_gamma_rad;
+  options.free_gamma = bench.smoothing.free_gamma;
+  const std::vector<double>& start = bench.cell.start_joints;
+  if (!start.empty()) {
+    robot::Position6 joints = robot::Position6::Zero();
+    for (std::size_t i = 0; i < std::min<std::size_t>(start.size(), 6); ++i) {
+      joints[static_cast<Eigen::Index>(i)] = start[i];
+    }
+    options.start = joints;
+  }
+  return path::choose_posture(*bench.program, *bench.machine, options);
+}
+
+/// Calls f; what it refuses without a place is of the program.
+template <class F>
+auto told_of_program(const std::filesystem::path& program, F&& f) {
+  try {
+    return f();
+  } catch (const InvalidInput& error) {
+    if (!error.parts().where.empty()) throw;
+    InvalidInput::Parts parts = error.parts();
+    parts.where = program.string();
+    throw InvalidInput(std::move(parts));
+  }
+}
+
+Bench prepare(const SmoothJob& job) {
+  Bench bench;
+  bench.cell = formats::read_cell(job.cell, formats::Robots::any);
+  bench.machine = formats::kinematics(bench.cell);
+  bench.smoothing = formats::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints());
+  if (job.method) bench.smoothing.options.method = *job.method;
+  bench.slides = slides_of(bench.cell);
+  formats::ProgramReading reading;
+  if (!bench.cell.machine.empty()) reading.machine = formats::parse_machine(bench.cell.machine);
+  reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
+  bench.program = formats::open_program(job.program, reading);
+  bench.posture = told_of_program(job.program, [&] { return posture_of(bench); });
+  return bench;
+}
+
+std::unique_ptr<formats::SampleFile> open_output(const SmoothJob& job, const Bench& bench) {
+  if (job.output.empty()) return nullptr;
+  formats::TrajectoryInfo info;
+  info.joints = bench.machine->joints();
+  info.slides = bench.slides;
+  info.limits = bench.machine->limits();
+  info.sample_period_s = bench.smoothing.options.sample_period_s;
+  info.program_period_s = job.program_period_s;
+  info.cell = job.cell.filename().string();
+  info.program = job.program.filename().string();
+  return formats::open_sample_file(job.output, info);
+}
+
+/// The drives that [smoothing] tells of; none where it does not.
+std::vector<path::Drive> drives_of(const formats::SmoothingFile& smoothing) {
+  std::vector<path::Drive> drives(smoothing.drive_bandwidth_hz.size());
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    path::Drive& drive = drives[i];
+    drive.natural_frequency_hz = smoothing.drive_bandwidth_hz[i];
+    drive.damping_ratio = smoothing.drive_damping_ratio;
+    if (i >= smoothing.flexible_joint_hz.size()) continue;
+    // Of the load's equation only the ratios count.
+    const double omega = 2.0 * std::numbers::pi * smoothing.flexible_joint_hz[i];
+    drive.load_inertia = 1.0;
+    drive.joint_stiffness = omega * omega;
+    drive.joint_damping = 2.0 * smoothing.flexible_joint_damping_ratio * omega;
+  }
+  return drives;
+}
+
+/// Drives that follow a trajectory sample by sample.
+class Follower {
+ public:
+  Follower(const std::vector<path::Drive>& drives, double sample_period_s)
+      : model_(drives, sample_period_s,
+               [this](double, std::span<const double> error) { std::ranges::copy(error, behind_.begin()); }) {}
+  Follower(const Follower&) = delete;
+  Follower& operator=(const Follower&) = delete;
+  Follower(Follower&&) = delete;
+  Follower& operator=(Follower&&) = delete;
+  ~Follower() = default;
+
+  const robot::Position6& follow(const path::Sample& sample) {
+    model_.add(std::span(&sample, 1));
+    return behind_;
+  }
+  [[nodiscard]] std::vector<double> worst() const {
+    std::vector<double> out;
+    for (const path::TrackingError::Joint& joint : model_.result().joints) out.push_back(joint.max);
+    return out;
+  }
+
+ private:
+  robot::Position6 behind_ = robot::Position6::Zero();
+  path::DriveModel model_;
+};
+
+/// One method over the whole program.
+/// @param file      takes the samples; may be null
+/// @param recorder  as well
+formats::SmoothedBy smooth_by(path::Method method, const Bench& bench, formats::SampleFile* file,
+                              report::MotionRecorder* recorder, Progress& progress) {
+  path::SmoothingOptions options = bench.smoothing.options;
+  options.method = method;
+  formats::SmoothedBy out{.method = method};
+  const std::vector<path::Drive> drives = drives_of(bench.smoothing);
+  std::optional<Follower> follower;
+  const auto take = [&](std::span<const path::Sample> samples) {
+    if (file != nullptr) file->add(samples);
+    if (recorder != nullptr) {
+      recorder->add(samples);
+    } else if (follower) {
+      for (const path::Sample& sample : samples) follower->follow(sample);
+    }
+  };
+  const auto restart = [&] {
+    if (file != nullptr) file->restart();
+    if (!drives.empty()) follower.emplace(drives, options.sample_period_s);
+    if (recorder == nullptr) return;
+    recorder->restart(follower ? report::Tracking([&](const path::Sample& sample) { return follower->follow(sample); })
+                               : report::Tracking());
+  };
+  out.summary = path::smooth(*bench.program, *bench.machine, bench.posture.posture, options, take, restart, progress);
+  if (follower) out.tracking_error = follower->worst();
+  return out;
+}
+
+std::vector<path::Method> methods_of(const SmoothJob& job, path::Method first) {
+  std::vector<path::Method> methods = {first};
+  if (!job.compare) return methods;
+  std::ranges::copy_if(formats::smoothing_methods(), std::back_inserter(methods),
+                       [&](path::Method method) { return method != first; });
+  return methods;
+}
+
+void tell(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
+  formats::SmoothedProgram& smoothed = result.smoothed;
+  smoothed.program = job.program.filename().string();
+  smoothed.cell = job.cell.filename().string();
+  smoothed.slides = bench.slides;
+  smoothed.skipped = bench.program->skipped();
+  std::vector<std::string>& notes = smoothed.notes;
+  notes.insert(notes.end(), bench.cell.notes.begin(), bench.cell.notes.end());
+  const std::vector<std::string> mended = bench.program->notes();
+  notes.insert(notes.end(), mended.begin(), mended.end());
+  const std::size_t left_out = bench.program->skipped_count();
+  if (left_out > smoothed.skipped.size()) {
+    notes.push_back(fmt::format("{} statements of the program were left out; the first {} are listed.", left_out,
+                                smoothed.skipped.size()));
+  }
+  if (!bench.posture.whole) {
+    notes.push_back(
+        fmt::format("The machine's posture was chosen by the program's first {} blocks.", bench.posture.blocks));
+  }
+}
+
+}  // namespace
+
+SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
+  const Bench bench = prepare(job);
+  SmoothResult result;
+  result.options = bench.smoothing.options;
+  result.posture = bench.posture;
+  result.turns_about_axis = bench.machine->turns_about_axis();
+  const std::unique_ptr<formats::SampleFile> file = open_output(job, bench);
+  std::optional<report::MotionRecorder> recorder;
+  if (job.record) {
+    result.outline = report::outline(*bench.program, result.options.tip_tolerance_m);
+    recorder.emplace(*bench.machine, bench.slides, result.options.sample_period_s, result.outline.corners);
+  }
+  for (const path::Method method : methods_of(job, result.options.method)) {
+    const bool asked_for = result.smoothed.methods.empty();
+    try {
+      result.smoothed.methods.push_back(told_of_program(job.program, [&] {
+        return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr, progress);
+      }));
+    } catch (const InvalidInput& error) {
+      if (asked_for) throw;
+      result.smoothed.notes.push_back(
+          fmt::format("{} cannot do this program: {}", formats::name_of(method), error.what()));
+      continue;
+    }
+    if (recorder) {
+      result.motions.push_back(recorder->motion());
+      result.ways.push_back(recorder->ways());
+    }
+  }
+  tell(result, job, bench);
+  if (file != nullptr && (result.holds() || job.keep_breaches)) {
+    file->commit();
+    result.smoothed.written = true;
+  }
+  return result;
+}
+
+double joint_share(const path::CheckResult& check) {
+  double share = 0.0;
+  for (const path::CheckResult::Joint& joint : check.joints) {
+    for (const path::Usage* usage : {&joint.velocity, &joint.acceleration, &joint.jerk}) {
+      if (usage->limit > 0.0) share = std::max(share, usage->max / usage->limit);
+    }
+  }
+  return share;
+}
+
+}  // namespace robomill::plan

@@ -1,0 +1,52 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/formats/smooth_json.hpp"
+#include "robomill/path/options.hpp"
+#include "robomill/path/posture.hpp"
+#include "robomill/report/smooth.hpp"
+#include "robomill/report/smooth_outline.hpp"
+
+namespace robomill::plan {
+
+/// A program to smooth and what to make of it.
+struct SmoothJob {
+  std::filesystem::path program, cell;
+  std::filesystem::path output = {};        ///< of the trajectory, by its ending; empty: none
+  std::optional<path::Method> method = {};  ///< not given: the cell's
+  bool compare = false;                     ///< all other methods too
+  bool keep_breaches = false;               ///< write a trajectory that breaks limits all the same
+  bool record = true;                       ///< curves for a report
+  double program_period_s = 0.0;            ///< of joint programs; 0: formats::TrajectoryInfo's
+};
+
+struct SmoothResult {
+  formats::SmoothedProgram smoothed = {};
+  path::SmoothingOptions options = {};
+  path::PostureChoice posture = {};
+  bool turns_about_axis = false;
+  report::ProgramOutline outline = {};                   ///< the rest only of a job that records
+  std::vector<report::Motion> motions = {};              ///< one a method
+  std::vector<std::vector<Eigen::Matrix2Xd>> ways = {};  ///< one a method and corner
+
+  [[nodiscard]] const formats::SmoothedBy& first() const { return smoothed.methods.front(); }
+  /// Whether the trajectory asked for breaks no limit.
+  [[nodiscard]] bool holds() const { return first().summary.check.violations() == 0; }
+};
+
+/// Smooths a program and writes its trajectory if it holds every limit.
+/// @throws InvalidInput with file, line, key and value, or with what cannot be reached; Interrupted
+[[nodiscard]] ROBOMILL_API SmoothResult run_smooth(const SmoothJob& job, Progress& progress = Progress::none());
+
+/// The part of the report on it. @param result  of a job that recorded
+[[nodiscard]] ROBOMILL_API report::Smooth smooth_report(const SmoothResult& result);
+
+/// The most of a joint's velocity, acceleration or jerk limit that a trajectory uses.
+[[nodiscard]] ROBOMILL_API double joint_share(const path::CheckResult& check);
+
+}  // namespace robomill::plan

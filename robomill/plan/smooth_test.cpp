@@ -1,0 +1,267 @@
+#include "robomill/plan/smooth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/plan/plan.hpp"
+#include "robomill/report/report.hpp"
+
+namespace robomill::plan {
+namespace {
+
+using robomill::test::refusal;
+
+constexpr double jerk_limit = 100.0;
+
+/// The hybrid machine over a part that lies 0.9 m before it.
+std::string hybrid(const std::string& smoothing = "", double max_jerk = jerk_limit) {
+  const std::string jerk = std::to_string(max_jerk);
+  return R"([robot]
+kind = "hybrid-2upr-rpu"
+joint_min_position = [0.4, 0.4, 0.4, -0.8, -0.8]
+joint_max_position = [1.4, 1.4, 1.4, 0.8, 0.8]
+joint_max_velocity = [0.5, 0.5, 0.5, 1, 1]
+joint_max_acceleration = [3, 3, 3, 5, 5]
+joint_max_jerk = [)" +
+         jerk + ", " + jerk + ", " + jerk + ", " + jerk + ", " + jerk + R"(]
+[workpiece]
+origin_mm = [0, 0, 900]
+rotation_deg = [180, 0, 0]
+[tool]
+length_mm = 100
+[program]
+machine = "xyzac-trt"
+[smoothing]
+tip_tolerance_mm = 0.02
+axis_tolerance_deg = 0.1
+max_velocity_mm_per_s = 50
+max_acceleration_mm_per_s2 = 500
+max_jerk_mm_per_s3 = 10000
+max_angular_velocity_deg_per_s = 60
+max_angular_acceleration_deg_per_s2 = 600
+max_angular_jerk_deg_per_s3 = 12000
+)" + smoothing;
+}
+
+const std::string zigzag =
+    "G21 G90 G94\nM8\nG0 X0 Y0 Z0 A0 C0\nG1 X10 Y0 Z0 A-5 C10 F2400\nG1 X10 Y3 A-8\nG1 X0 Y3 A-4 C20\nG1 X0 Y6\nG2 X6 "
+    "Y12 I6 J0\nG4 P0.1\nG1 X6 Y6 Z2\nM30\n";
+
+class Smoothing : public testing::Test {
+ protected:
+  SmoothJob job(const std::string& cell = hybrid(), const std::string& program = zigzag) {
+    SmoothJob out;
+    out.cell = folder_.file("cell.toml", cell);
+    out.program = folder_.file("part.ngc", program);
+    out.output = folder_.at("t.csv");
+    return out;
+  }
+  struct Rows {
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> rows;
+  };
+  [[nodiscard]] Rows read(const std::filesystem::path& path) const {
+    Rows out;
+    std::istringstream text(formats::read_file(path));
+    std::string line;
+    const auto cells = [](const std::string& from) {
+      std::vector<std::string> parts;
+      std::istringstream stream(from);
+      for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+      return parts;
+    };
+    std::getline(text, line);
+    out.names = cells(line);
+    while (std::getline(text, line)) {
+      std::vector<double> row;
+      for (const std::string& cell : cells(line)) row.push_back(std::stod(cell));
+      out.rows.push_back(row);
+    }
+    return out;
+  }
+  test::Folder folder_;
+};
+
+// What is promised holds of what is in the file, by differences of its numbers.
+TEST_F(Smoothing, TheFileKeepsTheLimitsOfEveryJoint) {
+  const SmoothResult result = run_smooth(job());
+  ASSERT_TRUE(result.holds());
+  ASSERT_TRUE(result.smoothed.written);
+  const Rows file = read(folder_.at("t.csv"));
+  ASSERT_EQ(file.names.size(), 13U);
+  EXPECT_EQ(file.names[1], "q1");
+  ASSERT_EQ(file.rows.size(), result.first().summary.samples);
+  const double h = 1e-3;
+  const double velocity[] = {0.5, 0.5, 0.5, 1, 1};
+  const double acceleration[] = {3, 3, 3, 5, 5};
+  double most = 0.0;
+  for (std::size_t i = 3; i < file.rows.size(); ++i) {
+    ASSERT_NEAR(file.rows[i][0] - file.rows[i - 1][0], h, 1e-12);
+    for (std::size_t joint = 0; joint < 5; ++joint) {
+      const auto q = [&](std::size_t back) { return file.rows[i - back][1 + joint]; };
+      ASSERT_LE(std::abs(q(0) - q(1)) / h, velocity[joint] * (1 + 1e-6));
+      ASSERT_LE(std::abs(q(0) - 2 * q(1) + q(2)) / (h * h), acceleration[joint] * (1 + 1e-6));
+      const double jerk = std::abs(q(0) - 3 * q(1) + 3 * q(2) - q(3)) / (h * h * h);
+      ASSERT_LE(jerk, jerk_limit * (1 + 1e-6));
+      most = std::max(most, jerk);
+    }
+  }
+  const auto& joints = result.first().summary.check.joints;
+  double told = 0.0;
+  for (const auto& joint : joints) told = std::max(told, joint.jerk.max);
+  EXPECT_NEAR(told, most, 1e-6 * most);
+  // It begins and ends where the program does.
+  EXPECT_NEAR(file.rows.front()[6], 0.0, 1e-6);
+  EXPECT_NEAR(file.rows.back()[6], 6.0, 1e-6);
+  EXPECT_NEAR(file.rows.back()[7], 6.0, 1e-6);
+  EXPECT_NEAR(file.rows.back()[8], 2.0, 1e-6);
+  EXPECT_EQ(file.rows.back()[12], static_cast<double>(result.first().summary.blocks));
+}
+
+TEST_F(Smoothing, TellsWhatWasLeftOutAndWhatWasFound) {
+  const SmoothResult result = run_smooth(job());
+  ASSERT_FALSE(result.smoothed.skipped.empty());
+  EXPECT_EQ(result.smoothed.skipped.front().line, 2U);
+  const auto json = nlohmann::json::parse(formats::smooth_json(result.smoothed));
+  EXPECT_EQ(json["program"], "part.ngc");
+  EXPECT_EQ(json["joints"].size(), 5U);
+  EXPECT_EQ(json["joints"][0]["unit"], "m");
+  EXPECT_EQ(json["violations"], 0);
+  EXPECT_LE(json["max_tip_error_mm"].get<double>(), 0.02);
+  const report::Smooth page = smooth_report(result);
+  EXPECT_EQ(page.methods.size(), 1U);
+  EXPECT_EQ(page.methods[0].motion.joints.size(), 5U);
+  EXPECT_FALSE(page.corners.empty());
+  EXPECT_TRUE(page.warnings.empty());
+  for (const report::CornerView& corner : page.corners) EXPECT_GT(corner.tip_m.at(0).cols(), 2);
+  // The page's curves reach what the check found.
+  const report::JointMotion& joint = page.methods[0].motion.joints[0];
+  const double jerk = std::max(joint.jerk.high.maxCoeff(), -joint.jerk.low.minCoeff());
+  EXPECT_NEAR(jerk, result.first().summary.check.joints[0].jerk.max, 1e-3 * jerk);
+  EXPECT_NO_THROW(page.validate());
+}
+
+// Without the joints' jerk the earlier method breaks a tight limit of it: no file, unless it is wished.
+TEST_F(Smoothing, WritesNothingThatBreaksALimit) {
+  SmoothJob broken = job(hybrid("", 4.0));
+  broken.method = path::Method::no_joint_jerk;
+  const SmoothResult result = run_smooth(broken);
+  EXPECT_FALSE(result.holds());
+  EXPECT_FALSE(result.smoothed.written);
+  EXPECT_FALSE(std::filesystem::exists(broken.output));
+  EXPECT_EQ(smooth_report(result).warnings.size(), 1U);
+  broken.keep_breaches = true;
+  EXPECT_TRUE(run_smooth(broken).smoothed.written);
+  EXPECT_TRUE(std::filesystem::exists(broken.output));
+}
+
+TEST_F(Smoothing, SetsMethodsSideBySide) {
+  SmoothJob both = job(hybrid("method = \"paper\"\ndrive_bandwidth_hz = 8\n"));
+  both.compare = true;
+  both.keep_breaches = true;
+  const SmoothResult result = run_smooth(both);
+  ASSERT_EQ(result.smoothed.methods.size(), 5U);
+  EXPECT_EQ(result.first().method, path::Method::paper);
+  EXPECT_EQ(read(both.output).rows.size(), result.first().summary.samples) << "the file is of the method asked for";
+  const report::Smooth page = smooth_report(result);
+  ASSERT_EQ(page.methods.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const formats::SmoothedBy& by = result.smoothed.methods[i];
+    EXPECT_GT(by.summary.duration_s, 0.5);
+    ASSERT_EQ(by.tracking_error.size(), 5U);
+    EXPECT_GT(by.tracking_error[3], 1e-6);
+    EXPECT_EQ(page.corners.front().tip_m.size(), 5U);
+    const report::Band& behind = page.methods[i].motion.joints[3].tracking_error;
+    EXPECT_DOUBLE_EQ(std::max(behind.high.maxCoeff(), -behind.low.minCoeff()), by.tracking_error[3]);
+  }
+  // The drives do not depend on whether a page is wished.
+  both.record = false;
+  EXPECT_EQ(run_smooth(both).first().tracking_error, result.first().tracking_error);
+}
+
+TEST_F(Smoothing, RefusesInTheUsersWords) {
+  const auto said = [&](const std::string& cell, const std::string& program) {
+    return refusal([&] { static_cast<void>(run_smooth(job(cell, program))); });
+  };
+  const std::string far = said(hybrid(), "G21 G90 G94\nG0 X0 Y0 Z0\nG1 X10 F600\nG1 X3000\n");
+  EXPECT_NE(far.find("part.ngc"), std::string::npos) << far;
+  EXPECT_NE(far.find("line 4"), std::string::npos) << far;
+  std::string bare = hybrid();
+  bare.resize(bare.find("[smoothing]"));
+  EXPECT_NE(said(bare, zigzag).find("smoothing"), std::string::npos);
+  EXPECT_NE(said(hybrid("method = \"fast\"\n"), zigzag).find("smoothing.method"), std::string::npos);
+  EXPECT_NE(said(hybrid(), "G21 G90\nG0 X0 Y0 Z0\nG1 X10\n").find("part.ngc:3"), std::string::npos);
+  SmoothJob program = job();
+  program.output = folder_.at("t.src");
+  EXPECT_NE(refusal([&] { static_cast<void>(run_smooth(program)); }).find("six joints"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder_.at("t.csv")));
+}
+
+TEST_F(Smoothing, StopsWhenAskedTo) {
+  const std::atomic<bool> stop{true};
+  Progress progress({}, &stop);
+  EXPECT_THROW(static_cast<void>(run_smooth(job(), progress)), Interrupted);
+  EXPECT_FALSE(std::filesystem::exists(folder_.at("t.csv")));
+}
+
+class PlanPath : public Smoothing {
+ protected:
+  std::filesystem::path plan(const std::string& more) {
+    static_cast<void>(job());
+    folder_.file("lobes.toml", R"([tool]
+teeth = 3
+diameter_mm = 12
+[cut]
+direction = "up"
+radial_depth_mm = 1.8
+feed_per_tooth_mm = 0.01
+[coefficients]
+tangential_n_per_mm2 = 712
+radial_n_per_mm2 = 287
+[lobes]
+spindle_speed_rpm = [7000, 7500]
+axial_depth_mm = [0, 3]
+grid = [5, 6]
+method = "zeroth-order"
+)");
+    return folder_.file("job.toml", "[job]\nmodes = \"" ROBOMILL_SOURCE_DIR
+                                    "/data/robot-modes.toml\"\nlobes = \"lobes.toml\"\n" +
+                                        more);
+  }
+};
+
+TEST_F(PlanPath, AddsTheTrajectoryToTheJob) {
+  const PlanResult result =
+      run_job(plan("program = \"part.ngc\"\ncell = \"cell.toml\"\n"), 1, Progress::none(), folder_.at("out"));
+  ASSERT_TRUE(result.path && result.path->holds());
+  write_plan(folder_.at("out"), result);
+  const auto json = nlohmann::json::parse(formats::read_file(folder_.at("out") / "plan.json"));
+  EXPECT_EQ(json["path"]["samples"], result.path->first().summary.samples);
+  EXPECT_EQ(read(folder_.at("out") / "trajectory.csv").rows.size(), result.path->first().summary.samples);
+  EXPECT_EQ(nlohmann::json::parse(formats::read_file(folder_.at("out") / "smooth.json")), json["path"]);
+  EXPECT_NE(formats::read_file(folder_.at("out") / "report.html").find("<section id=\"smooth\""), std::string::npos);
+}
+
+TEST_F(PlanPath, NeedsTheCellToSaySo) {
+  EXPECT_NE(refusal([&] { static_cast<void>(run_job(plan("program = \"part.ngc\"\n"), 1)); }).find("job.program"),
+            std::string::npos);
+  const std::filesystem::path file = plan("program = \"part.ngc\"\ncell = \"bare.toml\"\n");
+  std::string bare = hybrid();
+  bare.resize(bare.find("[smoothing]"));
+  folder_.file("bare.toml", bare);
+  EXPECT_NE(refusal([&] { static_cast<void>(run_job(file, 1)); }).find("has no [smoothing]"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace robomill::plan

@@ -1,0 +1,170 @@
+#include "robomill/report/smooth_recorder.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace robomill::report {
+namespace {
+
+constexpr std::size_t shown_runs = 800;
+constexpr std::size_t most_points = 1000;
+constexpr std::size_t most_steps = 1000;  // of the way round one corner
+constexpr std::size_t of_joint = 4;       // curves: velocity, acceleration, jerk, tracking error
+
+}  // namespace
+
+Bands::Bands(std::size_t curves, std::size_t most_runs) : curves_(curves), most_(most_runs + most_runs % 2) {
+  low_.reserve(most_ * curves);
+  high_.reserve(most_ * curves);
+}
+
+void Bands::clear() {
+  low_.clear();
+  high_.clear();
+  length_ = 1;
+  in_last_ = 0;
+}
+
+void Bands::halve() {
+  const std::size_t runs = low_.size() / curves_ / 2;
+  for (std::size_t run = 0; run < runs; ++run) {
+    for (std::size_t c = 0; c < curves_; ++c) {
+      const std::size_t first = 2 * run * curves_ + c;
+      low_[run * curves_ + c] = std::min(low_[first], low_[first + curves_]);
+      high_[run * curves_ + c] = std::max(high_[first], high_[first + curves_]);
+    }
+  }
+  low_.resize(runs * curves_);
+  high_.resize(runs * curves_);
+  length_ *= 2;
+  in_last_ = length_;
+}
+
+void Bands::add(std::span<const double> values) {
+  if (in_last_ == length_ || low_.empty()) {
+    if (low_.size() == most_ * curves_) halve();
+    low_.insert(low_.end(), values.begin(), values.end());
+    high_.insert(high_.end(), values.begin(), values.end());
+    in_last_ = 1;
+    return;
+  }
+  ++in_last_;
+  const std::size_t last = low_.size() - curves_;
+  for (std::size_t c = 0; c < curves_; ++c) {
+    low_[last + c] = std::min(low_[last + c], values[c]);
+    high_[last + c] = std::max(high_[last + c], values[c]);
+  }
+}
+
+Band Bands::band(std::size_t curve) const {
+  const auto runs = static_cast<Eigen::Index>(low_.size() / curves_);
+  Band out{.low = Eigen::VectorXd(runs), .high = Eigen::VectorXd(runs)};
+  for (Eigen::Index run = 0; run < runs; ++run) {
+    const std::size_t at = static_cast<std::size_t>(run) * curves_ + curve;
+    out.low[run] = low_[at];
+    out.high[run] = high_[at];
+  }
+  return out;
+}
+
+MotionRecorder::MotionRecorder(const robot::Kinematics& kinematics, const std::array<bool, 6>& slides,
+                               double sample_period_s, const std::vector<ProgramCorner>& corners)
+    : joints_(kinematics.joints()),
+      slides_(slides),
+      limits_(kinematics.limits()),
+      period_s_(sample_period_s),
+      corners_(corners),
+      bands_(2 + of_joint * static_cast<std::size_t>(kinematics.joints()), shown_runs),
+      values_(2 + of_joint * static_cast<std::size_t>(kinematics.joints())),
+      path_(most_points),
+      passes_(corners.size()) {}
+
+void MotionRecorder::restart(Tracking tracking) {
+  tracking_ = std::move(tracking);
+  bands_.clear();
+  path_ = Decimated<Point>(most_points);
+  any_ = false;
+  for (auto& pass : passes_) pass.clear();
+}
+
+void MotionRecorder::add(std::span<const path::Sample> samples) {
+  for (const path::Sample& sample : samples) add(sample);
+}
+
+void MotionRecorder::add(const path::Sample& sample) {
+  // Before its first sample the machine stood there.
+  if (!std::exchange(any_, true)) before_.fill(sample);
+  const auto& [one, two, three] = before_;
+  const double h = period_s_;
+  const robot::Position6 velocity = (sample.joints - one.joints) / h;
+  const robot::Position6 acceleration = (sample.joints - 2.0 * one.joints + two.joints) / (h * h);
+  const robot::Position6 jerk = (sample.joints - 3.0 * one.joints + 3.0 * two.joints - three.joints) / (h * h * h);
+  robot::Position6 behind = robot::Position6::Zero();
+  if (tracking_) behind = tracking_(sample);
+  values_[0] = (sample.tip_m - one.tip_m).norm() / h;
+  values_[1] = program::angle_between(one.axis, sample.axis) / h;
+  for (int joint = 0; joint < joints_; ++joint) {
+    double* const at = values_.data() + 2 + of_joint * static_cast<std::size_t>(joint);
+    at[0] = velocity[joint];
+    at[1] = acceleration[joint];
+    at[2] = jerk[joint];
+    at[3] = behind[joint];
+  }
+  bands_.add(values_);
+  path_.add({.tip_m = sample.tip_m, .speed_m_per_s = values_[0]});
+  pass_corners(sample);
+  before_ = {sample, one, two};
+}
+
+void MotionRecorder::pass_corners(const path::Sample& sample) {
+  constexpr std::size_t near_blocks = 8;
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const ProgramCorner& corner = corners_[i];
+    if (sample.block + near_blocks < corner.block || sample.block > corner.block + near_blocks) continue;
+    const Eigen::Vector3d from = sample.tip_m - corner.corner_m;
+    if (from.norm() > 2.0 * corner.radius_m || passes_[i].size() >= most_steps) continue;
+    const Eigen::Vector2d at = corner.plane * from;
+    const bool moved = passes_[i].empty() || (at - passes_[i].back()).norm() > 2e-3 * corner.radius_m;
+    if (moved) passes_[i].push_back(at);
+  }
+}
+
+Motion MotionRecorder::motion() const {
+  const auto limit = [](double value) { return value > 0.0 ? value : missing; };
+  Motion out;
+  out.run_s = static_cast<double>(bands_.length()) * period_s_;
+  out.tip_speed_m_per_s = bands_.band(0);
+  out.axis_speed_rad_per_s = bands_.band(1);
+  for (int joint = 0; joint < joints_; ++joint) {
+    const std::size_t at = 2 + of_joint * static_cast<std::size_t>(joint);
+    JointMotion motion{.slides = slides_[static_cast<std::size_t>(joint)],
+                       .velocity = bands_.band(at),
+                       .acceleration = bands_.band(at + 1),
+                       .jerk = bands_.band(at + 2)};
+    if (tracking_) motion.tracking_error = bands_.band(at + 3);
+    motion.max_velocity = limit(limits_.max_velocity[joint]);
+    motion.max_acceleration = limit(limits_.max_acceleration[joint]);
+    motion.max_jerk = limit(limits_.max_jerk[joint]);
+    out.joints.push_back(std::move(motion));
+  }
+  const std::vector<Point>& points = path_.kept();
+  const auto n = static_cast<Eigen::Index>(points.size());
+  out.tip_m.resize(3, n);
+  out.tip_speed_at_m_per_s.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    out.tip_m.col(i) = points[static_cast<std::size_t>(i)].tip_m;
+    out.tip_speed_at_m_per_s[i] = points[static_cast<std::size_t>(i)].speed_m_per_s;
+  }
+  return out;
+}
+
+std::vector<Eigen::Matrix2Xd> MotionRecorder::ways() const {
+  std::vector<Eigen::Matrix2Xd> out(passes_.size());
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    out[i].resize(2, static_cast<Eigen::Index>(passes_[i].size()));
+    for (std::size_t k = 0; k < passes_[i].size(); ++k) out[i].col(static_cast<Eigen::Index>(k)) = passes_[i][k];
+  }
+  return out;
+}
+
+}  // namespace robomill::report
