@@ -31,11 +31,17 @@ struct Share {
   double to_jerk, velocity_to_jerk;     // |x''| / J, |x'| / J
 };
 
+/// A jerk beyond what a plan may have is one that the planner's points have missed, shorter than a period perhaps: the
+/// differences of samples see a step of acceleration then, which sinks with s² only.
+double jerk_at(const Share& c, double s) {
+  return c.jerk * s * s * (c.jerk > rate::beta ? 1.0 : s);
+}
+
 /// Largest slope at a rate; <= 0: none.
 double slope_at(const Share& c, double s) {
   const double g = gain(s), bend = s < 1.0 ? 2.0 * rate::alpha * s : 0.0;
   const double by_acceleration = (used - c.acceleration * s * s) / std::max(c.velocity * g, 1e-12);
-  const double left = used - c.jerk * s * s * s;
+  const double left = used - jerk_at(c, s);
   if (left <= 0.0) return 0.0;
   const double b = 3.0 * c.to_jerk * s * g, a = c.velocity_to_jerk * g * (rate::kappa + bend);
   return std::min(by_acceleration, 2.0 * left / std::max(b + std::sqrt(b * b + 4.0 * a * left), 1e-12));
@@ -62,9 +68,10 @@ Stretch stretch_of(const Demand& demand, const ChannelLimits& limits, double max
          .jerk = demand.jerk[k] / limits.jerk[k],
          .to_jerk = demand.acceleration[k] / limits.jerk[k],
          .velocity_to_jerk = demand.velocity[k] / limits.jerk[k]};
-    cap = std::min({cap, used_velocity * limits.velocity[k] / std::max(demand.velocity[k], 1e-12),
-                    std::sqrt(rate::alpha / std::max(c.acceleration, 1e-12)),
-                    std::cbrt(rate::beta / std::max(c.jerk, 1e-12))});
+    cap = std::min(
+        {cap, used_velocity * limits.velocity[k] / std::max(demand.velocity[k], 1e-12),
+         std::sqrt(rate::alpha / std::max(c.acceleration, 1e-12)),
+         c.jerk > rate::beta ? std::sqrt(rate::beta / c.jerk) : std::cbrt(rate::beta / std::max(c.jerk, 1e-12))});
   }
   const auto step = [](double s) { return std::max(std::floor(s * caps_per_unit), 1.0) / caps_per_unit; };
   cap = step(cap);

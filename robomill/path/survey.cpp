@@ -33,15 +33,36 @@ ChannelLimits limits_of(const robot::Kinematics& kinematics, const SmoothingOpti
   return out;
 }
 
-/// From three steps of a tip or an axis, the newest first: speed, its rate and the jerk along the path.
-void along(const Eigen::Vector3d& step, const Eigen::Vector3d& before, const Eigen::Vector3d& first, double rate,
-           std::size_t channel, Demand& out) {
-  const double speed = step.norm(), speed_before = before.norm();
-  const Eigen::Vector3d second = step - before, third = second - (before - first);
-  double change = std::abs(speed - speed_before), jerk = third.norm();
-  if (speed_before > no_step) {
-    change = std::max(change, std::abs(second.dot(before)) / speed_before);
-    jerk = std::abs(third.dot(before)) / speed_before;
+/// Steps of a tip or an axis in one period each, the newest first.
+struct Steps {
+  Eigen::Vector3d last, middle, first;
+  [[nodiscard]] Eigen::Vector3d third() const { return last - 2.0 * middle + first; }
+};
+
+/// The largest component of a vector along any direction between two steps: of itself in their plane where that lies
+/// between them, or opposite.
+double largest_along(const Eigen::Vector3d& vector, const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
+  const double aa = one.squaredNorm(), bb = other.squaredNorm(), ab = one.dot(other);
+  const double va = vector.dot(one), vb = vector.dot(other);
+  const double ends = std::max(std::abs(va) / std::sqrt(aa), std::abs(vb) / std::sqrt(bb));
+  // vector = α one + β other + what is across their plane.
+  const double alpha = va * bb - vb * ab, beta = vb * aa - va * ab, square = aa * bb - ab * ab;
+  if (!(alpha * beta > 0.0) || !(square > 1e-12 * aa * bb)) return ends;
+  return std::max(ends, std::sqrt(std::max(0.0, (alpha * va + beta * vb) / square)));
+}
+
+/// Speed, its rate and the jerk along the path, whenever within the last half of a period the samples are taken: at a
+/// reversal the direction sweeps past in less than that.
+void along(const Steps& now, const Steps& before, double rate, std::size_t channel, Demand& out) {
+  const double speed = now.last.norm(), middle = now.middle.norm();
+  const Eigen::Vector3d second = now.last - now.middle, third = now.third();
+  double change = std::abs(speed - middle), jerk = third.norm();
+  if (middle > no_step) {
+    change = std::max(change, std::abs(second.dot(now.middle)) / middle);
+    if (before.middle.norm() > no_step) {
+      jerk = std::max(largest_along(third, now.middle, before.middle),
+                      largest_along(before.third(), now.middle, before.middle));
+    }
   }
   out.velocity[channel] = speed * rate;
   out.acceleration[channel] = change * rate * rate;
@@ -99,13 +120,14 @@ Demand Survey::demand() const noexcept {
     out.acceleration[k] = std::abs(second) * rate * rate;
     out.jerk[k] = std::abs(second - (before[j] - first[j])) * rate * rate * rate;
   }
-  along(step.segment<3>(6), before.segment<3>(6), first.segment<3>(6), rate, 6, out);
+  const auto tip = [this](std::size_t from) -> Eigen::Vector3d {
+    return (rows_[from] - rows_[from + 2]).segment<3>(6);
+  };
+  along({tip(0), tip(2), tip(4)}, {tip(1), tip(3), tip(5)}, rate, 6, out);
   // In the half period, as samples may begin anywhere.
   out.feed = 2.0 * rate * (rows_[0] - rows_[1]).segment<3>(6).norm() / std::max(feeds_[0], feeds_[1]);
-  const auto turn = [this](std::size_t from, std::size_t to) {
-    return rotation(rows_[from].tail<3>(), rows_[to].tail<3>());
-  };
-  along(turn(2, 0), turn(4, 2), turn(6, 4), rate, 7, out);
+  const auto turn = [this](std::size_t from) { return rotation(rows_[from + 2].tail<3>(), rows_[from].tail<3>()); };
+  along({turn(0), turn(2), turn(4)}, {turn(1), turn(3), turn(5)}, rate, 7, out);
   return out;
 }
 

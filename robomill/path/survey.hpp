@@ -26,7 +26,7 @@ class Survey {
 
  private:
   static constexpr std::size_t steps = 8;       // of half a period, in a stretch
-  static constexpr std::size_t reach_back = 6;  // of them, in a third difference
+  static constexpr std::size_t reach_back = 7;  // of them, in two third differences half a period apart
   using Row = Eigen::Matrix<double, 12, 1>;     // joints, tip, axis
 
   [[nodiscard]] bool look(double u_m) noexcept;
