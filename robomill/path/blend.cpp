@@ -293,7 +293,7 @@ void Blend::expand(std::size_t piece, double middle_m, Polynomial& out) const no
 std::size_t Blend::polynomials(std::size_t piece, Polynomial* out) const noexcept {
   const Node& here = node(piece);
   const double begin_m = here.u_m, end_m = node(piece + 1).u_m;
-  std::array<double, max_polynomials + 1> knot;
+  std::array<double, max_polynomials + 1> knot = {};
   std::size_t knots = 0;
   knot[knots++] = begin_m;
   const double least_m = 1e-9 * (end_m - begin_m);

@@ -106,8 +106,8 @@ void Checker::State::watch_all(const CheckOptions& check) {
   tip_error_ = Watch(result_.tip_error_m, options_.tip_tolerance_m, slack, 0);
   axis_error_ = Watch(result_.axis_error_rad, options_.axis_tolerance_rad, slack, 0);
   synchrony_ = Watch(result_.synchrony_rad, 0.0, slack, 0);
-  pose_error_ = Watch(result_.pose_error, check.max_pose_error, slack, 0);
-  dwell_ = Watch(result_.dwell_s, 2.0 * options_.sample_period_s, slack, 0);
+  pose_error_ = Watch(result_.pose_error, check.max_pose_error, slack, -1);
+  dwell_ = Watch(result_.dwell_s, 2.0 * options_.sample_period_s, slack, -1);
 }
 
 void Checker::State::begin(const Sample& sample) {
@@ -157,7 +157,7 @@ void Checker::State::add(const Sample& given) {
   if (first) block_before_ = block_;
   if (faulty) {
     ++result_.faulty;
-    book_.add({.time_s = sample.time_s, .block = block_}, 0, std::numeric_limits<double>::infinity());
+    book_.add({.time_s = sample.time_s, .block = block_}, -1, std::numeric_limits<double>::infinity());
   }
   step.tail<3>() = rotation(axis_from, sample.axis);
   differences(step);
@@ -212,7 +212,7 @@ void Checker::State::positions(const Sample& sample) {
     }
     if (beyond > 0.0) {
       ++usage.violations;
-      book_.add(place, 0, 1.0 + beyond / (limits.max_position[j] - limits.min_position[j]));
+      book_.add(place, -1, 1.0 + beyond / (limits.max_position[j] - limits.min_position[j]));
     }
   }
   const robot::ToolPose pose = machine_.forward(sample.joints);

@@ -29,7 +29,8 @@ struct Breach {
   double time_s = 0.0;
   double path_m = 0.0;  ///< Sample::path_m
   double ratio = 1.0;   ///< of what was met to the limit
-  int order = 1;        ///< 0: tolerance; 1, 2, 3: velocity, acceleration, jerk
+  int order = 1;  ///< 0: tolerance; 1, 2, 3: velocity, acceleration, jerk; −1: what neither a narrower nor a slower
+                  ///< path mends (faulty samples, positions beyond joint limits, poses, dwells)
 };
 
 /// What a trajectory does, found from its samples alone.

@@ -196,7 +196,7 @@ TEST_F(CheckerLimit, OfAJointsPositionIsWatched) {
   EXPECT_NEAR(r.joints[0].position.max, most - 0.008, 1e-15);
   EXPECT_EQ(r.violations(), r.joints[0].position.violations);
   ASSERT_FALSE(r.breaches.empty());
-  EXPECT_EQ(r.breaches[0].order, 0);
+  EXPECT_EQ(r.breaches[0].order, -1);
 }
 
 TEST_F(CheckerLimit, OfTheFeedIsWatched) {

@@ -23,8 +23,8 @@ bool Emitter::emit(double u_m, std::vector<Sample>& out) {
   return true;
 }
 
-bool Emitter::add(const std::vector<Polynomial>& path, const std::vector<Span>& motion, std::vector<Sample>& out,
-                  const std::function<void()>& take) {
+bool Emitter::add(std::span<const Polynomial> path, std::span<const Span> motion, std::vector<Sample>& out,
+                  const std::function<void()>& take, std::size_t chunk) {
   path_.erase(path_.begin(), path_.begin() + static_cast<std::ptrdiff_t>(path_at_));
   path_at_ = 0;
   path_.insert(path_.end(), path.begin(), path.end());

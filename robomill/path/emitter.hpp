@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "robomill/path/blend.hpp"
@@ -15,11 +16,10 @@ namespace robomill::path {
 class Emitter {
  public:
   Emitter(const robot::Kinematics& kinematics, double period_s, const robot::Position6& start);
-  /// Takes motion over; samples that it reaches go to `out`, whose taker is called whenever it holds chunk of them.
+  /// Takes motion over; samples that it reaches go to `out`, whose taker is called whenever it holds `chunk` of them.
   /// @return false where a pose cannot be reached; reach() says why
-  bool add(const std::vector<Polynomial>& path, const std::vector<Span>& motion, std::vector<Sample>& out,
-           const std::function<void()>& take = {});
-  static constexpr std::size_t chunk = 4096;
+  bool add(std::span<const Polynomial> path, std::span<const Span> motion, std::vector<Sample>& out,
+           const std::function<void()>& take = {}, std::size_t chunk = 4096);
   /// The last sample.
   bool finish(std::vector<Sample>& out);
   [[nodiscard]] const robot::Reach& reach() const { return reach_; }

@@ -20,6 +20,8 @@ PlannerOptions planner_options() {
   PlannerOptions out = PlannerOptions::real_time();
   out.acceleration_share = 0.975 * rate::alpha;
   out.jerk_share = 0.95 * rate::beta;
+  // Nothing is planned again here where a corner comes out wider than its nodes and middles say.
+  out.tolerance_share = 0.9;
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "robomill/base/random.hpp"
@@ -199,6 +200,60 @@ TEST(Planner, LimitsHoldBetweenThePointsToo) {
   }
 }
 
+/// Plans row by row; in each proposed row some 2 mm are asked to run at 0.8 of all speeds.
+/// @param asked  gets where
+Made make_revised(const program::Program& program, const robot::Kinematics& machine, const PlannerOptions& how,
+                  std::vector<double>& asked) {
+  Mends mends;
+  Planner planner(machine, options(), how, &mends, Planner::Task::proposals);
+  Made out;
+  out.status = run(planner, program, [&](Planner& at) {
+    if (at.proposes()) {
+      EXPECT_FALSE(at.revise());  // nothing is asked
+      const std::vector<Span> before = at.motion();
+      const Span& middle = before[at.kept() / 2];
+      const auto cell = static_cast<std::int64_t>(middle.begin_m * Mends::cells_per_m);
+      for (std::int64_t i = cell; i < cell + 10; ++i) mends.speed.emplace(i, 0.8);
+      EXPECT_TRUE(at.revise());
+      asked.push_back(middle.begin_m);
+      EXPECT_EQ(at.motion().size(), before.size());
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        EXPECT_EQ(at.motion()[i].begin_m, before[i].begin_m);
+        if (how.dip && i > 0 && i + 1 < before.size() && !at.suspect(i - 1) && !at.suspect(i) && !at.suspect(i + 1)) {
+          EXPECT_NEAR(at.motion()[i].middle_b, before[i].middle_b, 1e-3 * before[i].middle_b);
+        }
+      }
+    }
+    out.motion.insert(out.motion.end(), at.motion().begin(),
+                      at.motion().begin() + static_cast<std::ptrdiff_t>(at.kept()));
+    out.path.insert(out.path.end(), at.path().begin(), at.path().end());
+  });
+  return out;
+}
+
+TEST(Planner, RevisesWhatItProposes) {
+  const robot::HybridKinematics machine(test::s_machine(2.0, 40.0));
+  const program::Program program = dense(1500, 3e-4);
+  const Made plain = make(program, machine, options(), {});
+  for (const bool dip : {true, false}) {
+    std::vector<double> asked;
+    PlannerOptions how;
+    how.dip = dip;
+    const Made made = make_revised(program, machine, how, asked);
+    ASSERT_NO_FATAL_FAILURE(expect_whole(made));
+    EXPECT_LT(used(made, machine, options()), 1.03);
+    ASSERT_GT(asked.size(), 1U);
+    // As slow as asked there, hardly slower than without in all.
+    for (const double at_m : asked) {
+      const auto span = std::ranges::upper_bound(made.motion, at_m + 1e-3, {}, &Span::begin_m) - 1;
+      const auto plainly = std::ranges::upper_bound(plain.motion, at_m + 1e-3, {}, &Span::begin_m) - 1;
+      EXPECT_LT(span->middle_b, 0.7 * plainly->middle_b);
+    }
+    EXPECT_GT(made.time_s(), plain.time_s());
+    EXPECT_LT(made.time_s(), plain.time_s() + 0.15 * static_cast<double>(asked.size()));
+  }
+}
+
 TEST(Planner, PlansRandomPrograms) {
   for (int seed = 0; seed < seeds(100); ++seed) {
     Random random(31, static_cast<std::uint64_t>(seed));
@@ -386,7 +441,7 @@ TEST(Emitter, RunsAlongTheMotion) {
   Emitter slowly(head(), 1e-3, robot::Position6::Zero());
   std::vector<Sample> again;
   ASSERT_TRUE(slowly.add(made.path, {}, again));
-  for (const Span& span : made.motion) ASSERT_TRUE(slowly.add({}, {span}, again));
+  for (const Span& span : made.motion) ASSERT_TRUE(slowly.add({}, std::span(&span, 1), again));
   ASSERT_TRUE(slowly.finish(again));
   ASSERT_EQ(again.size(), samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_EQ(again[i].joints, samples[i].joints);

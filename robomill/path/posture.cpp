@@ -161,7 +161,8 @@ InvalidInput cannot_take(const robot::Reach& reach, const robot::Kinematics& kin
                          std::size_t line) {
   const char* unit = kinematics.turns_about_axis() ? "rad" : "m";
   const std::string joint = "joint " + std::to_string(reach.joint + 1);
-  InvalidInput::Parts parts{.field = "block " + std::to_string(block + 1) + " (line " + std::to_string(line) + ")",
+  const std::string place = "block " + std::to_string(block + 1) + " (line " + std::to_string(line) + ")";
+  InvalidInput::Parts parts{.field = line > 0 ? place : "the program's start",
                             .hint = kinematics.turns_about_axis()
                                         ? "Move the workpiece, or turn the flange about the tool's axis"
                                         : "Move the workpiece"};
@@ -174,7 +175,7 @@ InvalidInput cannot_take(const robot::Reach& reach, const robot::Kinematics& kin
       parts.rule = "takes " + joint + " " + number(reach.beyond, unit) + " beyond its limit";
       break;
     case robot::Reach::Status::singular:
-      parts.rule = "leads through a singularity";
+      parts.rule = line > 0 ? "leads through a singularity" : "stands in a singularity";
       if (reach.joint >= 0) parts.rule += ", where " + joint + " cannot follow";
       break;
     case robot::Reach::Status::jump:
@@ -200,7 +201,7 @@ PostureChoice choose_posture(program::Source& source, const robot::Kinematics& k
   };
   if (all.empty()) {
     const robot::Position6 near = options.start.value_or(robot::Position6::Zero());
-    throw refuse(reach_of(kinematics, head.pose.front(), near, options), 0);
+    throw cannot_take(reach_of(kinematics, head.pose.front(), near, options), kinematics, 0, 0);
   }
   walk_all(kinematics, head, thinned(along, first_places), roughly, all);
   if (all.size() > second_candidates) all.resize(second_candidates);

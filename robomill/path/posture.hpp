@@ -42,13 +42,13 @@ struct PostureChoice {
 /// to the first pose the one that goes through with the largest margin; where no constant gamma does, gamma turns from
 /// block to block. The program is looked at in steps, finer near a singularity and wherever a joint moves far.
 /// @throws InvalidInput if an option is invalid, or no way goes through: the block (from 1) where the one that gets
-///     farthest ends, its line, joint and amount
+///     farthest ends, its line, joint and amount; or that the start cannot be taken
 [[nodiscard]] ROBOMILL_API PostureChoice choose_posture(program::Source& source, const robot::Kinematics& kinematics,
                                                         const PostureOptions& options = {});
 
 /// The error for a pose that cannot be taken.
 /// @param block  from 0
-/// @param line   in the program's file
+/// @param line   in the program's file; 0: the pose is the program's start
 [[nodiscard]] ROBOMILL_API InvalidInput cannot_take(const robot::Reach& reach, const robot::Kinematics& kinematics,
                                                     std::size_t block, std::size_t line);
 

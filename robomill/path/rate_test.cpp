@@ -141,7 +141,6 @@ TEST(Rate, TravelBoundsWhatTheBrakeTakes) {
   }
   EXPECT_GT(feasible, 8'000);
   EXPECT_LT(worst, 1.25);
-  printf("lag %g worst %g\n", lag, worst);
 }
 
 // The reserve pays by its logarithm: the way from full rate to rest at full slope is 1.92 and not 10.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ctime>
 #include <deque>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -13,12 +14,15 @@
 #include "robomill/path/fir.hpp"
 #include "robomill/path/planner.hpp"
 #include "robomill/path/posture.hpp"
+#include "robomill/path/preview.hpp"
 
 namespace robomill::path {
 namespace {
 
 /// Rounds of planning before it is given up.
 constexpr int max_rounds = 40;
+/// Times that a row is planned again before it is left to the check.
+constexpr int max_revisions = 6;
 /// Blocks up to which the lower bound is found.
 constexpr std::size_t lower_bound_blocks = 50'000;
 
@@ -103,13 +107,15 @@ void run(program::Source& source, const Posture& posture, const robot::Kinematic
 }
 
 /// Slower, or nearer to the programmed path, where limits were broken.
-void mend(const std::vector<Breach>& breaches, Mends& mends) {
+/// @return false where nothing of it helps
+bool mend(const std::vector<Breach>& breaches, Mends& mends) {
   Mends more;
   const auto least = [](auto& map, auto key, double factor) {
     const auto [at, fresh] = map.emplace(key, factor);
     if (!fresh) at->second = std::min(at->second, factor);
   };
   for (const Breach& breach : breaches) {
+    if (breach.order < 0) continue;
     if (breach.order == 0) {
       const double factor = std::clamp(0.97 / breach.ratio, 0.5, 0.97);
       for (std::size_t block = breach.block == 0 ? 0 : breach.block - 1; block <= breach.block + 1; ++block) {
@@ -124,6 +130,7 @@ void mend(const std::vector<Breach>& breaches, Mends& mends) {
   }
   for (const auto& [block, factor] : more.tolerance) mends.tolerance.emplace(block, 1.0).first->second *= factor;
   for (const auto& [cell, factor] : more.speed) mends.speed.emplace(cell, 1.0).first->second *= factor;
+  return !more.tolerance.empty() || !more.speed.empty();
 }
 
 double lower_bound_s(program::Source& source, const Posture& posture, const robot::Kinematics& kinematics,
@@ -132,13 +139,15 @@ double lower_bound_s(program::Source& source, const Posture& posture, const robo
   to_the_limit.share = 1.0;
   const Mends shape{.tolerance = mends.tolerance, .speed = {}};  // the same path, at any speed
   std::vector<BoundPoint> points;
-  Planner planner(kinematics, options, to_the_limit, &shape, &points);
+  Planner planner(kinematics, options, to_the_limit, &shape, Planner::Task::points);
   source.rewind();
   double dwells_s = 0.0;
   std::size_t blocks = 0;
   run(source, posture, kinematics, planner, progress, blocks, [&] {
     for (const Span& span : planner.motion()) dwells_s += span.dwell_s;
+    points.insert(points.end(), planner.points().begin(), planner.points().end());
     planner.motion().clear();
+    planner.points().clear();
     planner.path().clear();
   });
   return dwells_s + least_time_s(points, planner.limits());
@@ -146,14 +155,15 @@ double lower_bound_s(program::Source& source, const Posture& posture, const robo
 
 /// A plan of the windowed planner, its samples and their check; once.
 void plan_once(program::Source& source, const robot::Kinematics& kinematics, const Posture& posture,
-               const SmoothingOptions& options, const Mends& mends, const SampleSink& sink, Progress& progress,
+               const SmoothingOptions& options, Mends& mends, const SampleSink& sink, Progress& progress,
                Summary& out) {
   Shared shared(source);
   Reader to_plan(shared, 0), to_check(shared, 1);
   Planner planner(kinematics, options, options.method == Method::optimal ? PlannerOptions::optimal() : PlannerOptions{},
-                  &mends);
+                  &mends, Planner::Task::proposals);
   Emitter emitter(kinematics, options.sample_period_s, posture.start);
   Checker checker(to_check, kinematics, options);
+  Preview preview(kinematics, options);
   std::vector<Sample> samples;
   out.samples = 0;
   out.emit_s = 0.0;
@@ -162,21 +172,41 @@ void plan_once(program::Source& source, const robot::Kinematics& kinematics, con
   const auto send = [&](bool whole) {
     if (!whole) throw cannot_take(emitter.reach(), kinematics, emitter.at().block, emitter.at().line);
     checker.add(samples);
+    preview.pass(samples);
     sink(samples);
     out.samples += samples.size();
     samples.clear();
   };
+  // A row that would break limits is planned again before it is taken over.
+  const auto revise = [&] {
+    std::vector<Breach> breaches;
+    for (int i = 0; planner.proposes() && i < max_revisions; ++i) {
+      breaches.clear();
+      const std::span<const Span> motion = planner.motion();
+      Emitter ahead = emitter;
+      for (std::size_t from = 0, to = 0; from < motion.size(); from = to + 1) {
+        for (to = from; to < motion.size() && planner.suspect(to); ++to) {
+        }
+        if (to > from) preview.look(ahead, motion.subspan(from, to - from), from == 0, breaches);
+      }
+      progress.check();
+      if (!mend(breaches, mends) || !planner.revise()) return;
+    }
+  };
   run(to_plan, posture, kinematics, planner, progress, out.blocks, [&] {
+    static_cast<void>(emitter.add(planner.path(), {}, samples));
+    planner.path().clear();
+    revise();
     const double from_s = processor_s();
     double sent_s = 0.0;
-    const bool whole = emitter.add(planner.path(), planner.motion(), samples, [&] {
+    const std::span<const Span> kept = std::span<const Span>(planner.motion()).first(planner.kept());
+    const bool whole = emitter.add({}, kept, samples, [&] {
       const double at_s = processor_s();
       progress.check();
       send(true);
       sent_s += processor_s() - at_s;
     });
     out.emit_s += processor_s() - from_s - sent_s;
-    planner.path().clear();
     planner.motion().clear();
     send(whole);
     progress.check();
@@ -240,7 +270,7 @@ Summary smooth(program::Source& source, const robot::Kinematics& kinematics, con
       throw InvalidInput("program", "moves nothing", "A program of dwells alone has no path to plan");
     }
     if (out.check.violations() == 0 || out.rounds == max_rounds) break;
-    mend(out.check.breaches, mends);
+    if (!mend(out.check.breaches, mends)) break;
     source.rewind();
     restart();
   }

@@ -105,8 +105,8 @@ namespace {
 
 /// What one iteration knows of a row of spans.
 struct Row {
-  SpeedSpan* spans;
-  std::size_t size, first, last;
+  SpeedSpan* spans = nullptr;
+  std::size_t size = 0, first = 0, last = 0;
   const ChannelLimits& limits;
   const SpeedOptions& options;
 };
@@ -114,6 +114,8 @@ struct Row {
 }  // namespace
 
 struct SpeedSolver::Direction {
+  Direction(const Row& of, Work* with) : row(of), work(with) {}
+
   Row row;
   Work* work;
   double mu = 0.0, dual_step = 0.0;
@@ -141,7 +143,8 @@ struct SpeedSolver::Direction {
 
   void prepare(std::size_t i);
   [[nodiscard]] double time() const;
-  void start_duals();
+  /// False where a limit is broken.
+  [[nodiscard]] bool start_duals();
   void assemble_span(std::size_t i, double& gap);
   void solve();
   void find_step(double& primal, double& dual);
@@ -199,7 +202,8 @@ double SpeedSolver::Direction::time() const {
   return sum;
 }
 
-void SpeedSolver::Direction::start_duals() {
+bool SpeedSolver::Direction::start_duals() {
+  bool within = true;
   for (std::size_t i = from(); i < to(); ++i) {
     const SpeedSpan& span = row.spans[i];
     Work& w = work[i];
@@ -213,6 +217,7 @@ void SpeedSolver::Direction::start_duals() {
         const double limit = row.limits.acceleration[k] * point.speed * point.speed;
         const double j = point.c3[k] * s.b + 1.5 * point.c2[k] * s.first + 0.5 * point.c1[k] * s.second;
         const double r = row.limits.jerk[k] * cube(point.speed) * root;
+        within = within && std::abs(a) < limit && std::abs(j) < r;
         w.z[p][0][k] = mu / (limit - a);
         w.z[p][1][k] = mu / (limit + a);
         w.z[p][2][k] = mu / (r - j);
@@ -221,12 +226,15 @@ void SpeedSolver::Direction::start_duals() {
       w.dz[p] = {};
       w.z_speed[p] = mu / (point.max_b - s.b);
       w.dz_speed[p] = 0.0;
+      within = within && s.b > 0.0 && s.b < point.max_b;
     }
     w.z_cap = mu / (w.cap - span.b);
     w.dz_cap = 0.0;
     w.z_floor = mu / (span.b - w.floor);
     w.dz_floor = 0.0;
+    within = within && span.b < w.cap && span.b > w.floor;
   }
+  return within;
 }
 
 void SpeedSolver::Direction::assemble_span(std::size_t i, double& gap) {
@@ -407,7 +415,7 @@ double SpeedSolver::Direction::promised_s() const {
 
 SpeedResult SpeedSolver::solve(SpeedSpan* spans, std::size_t size, std::size_t first, std::size_t last,
                                const SpeedOptions& options) noexcept {
-  Direction direction{.row = {spans, size, first, last, limits_, options}, .work = work_.get()};
+  Direction direction({spans, size, first, last, limits_, options}, work_.get());
   Work* const work = work_.get();
   SpeedResult out;
   const std::size_t from = direction.from(), to = direction.to();
@@ -422,7 +430,8 @@ SpeedResult SpeedSolver::solve(SpeedSpan* spans, std::size_t size, std::size_t f
   out.duration_s = direction.time();
   double best_s = out.duration_s;
   direction.mu = out.duration_s / rows;
-  direction.start_duals();
+  out.feasible = direction.start_duals();
+  if (!out.feasible) return out;
   for (out.iterations = 0; out.iterations < options.max_iterations; ++out.iterations) {
     for (std::size_t i = from; i < to; ++i) work[i].diagonal = work[i].next = work[i].after = work[i].right = 0.0;
     double gap = 0.0;

@@ -23,6 +23,7 @@ struct SpeedOptions {
 };
 
 struct SpeedResult {
+  bool feasible = true;  ///< false: b as given breaks a limit, and stays
   bool converged = false;
   int iterations = 0;
   double duration_s = 0.0;

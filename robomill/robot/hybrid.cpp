@@ -1,6 +1,6 @@
 #include "robomill/robot/hybrid.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,10 +34,10 @@ std::array<T, 5> joints_of(const HybridMachine& machine, const std::array<T, 3>&
 
 /// How much higher the platform must stand to be on the side of the legs' singularities on which it is built [m]:
 /// ℓ² cos β > a b sin² β, and B3 above the base's plane, c sin α + ℓ cos α > 0.
-double missing_height(const HybridMachine& machine, const PlatformPose& at) noexcept {
-  const double sb = std::sin(at.beta_rad), cb = std::cos(at.beta_rad);
-  const double of_legs = std::abs(sb) * std::sqrt(machine.base_half_width_m * machine.platform_half_width_m / cb);
-  return std::max(of_legs, -machine.platform_offset_m * std::tan(at.alpha_rad)) - at.height_m;
+double missing_height(const HybridMachine& machine, const HybridKinematics::Stand& at) noexcept {
+  const double of_legs =
+      std::abs(at.sin_beta) * std::sqrt(machine.base_half_width_m * machine.platform_half_width_m / at.cos_beta);
+  return std::max(of_legs, -machine.platform_offset_m * at.sin_alpha / at.cos_alpha) - at.height_m;
 }
 
 /// Largest over smallest singular value, of five columns in the frame of condition_of's six: the sixth value lies
@@ -126,9 +126,12 @@ Reach HybridKinematics::follow(const ToolPose& pose, const Position6& near, Posi
   const std::array<double, 5> joints =
       joints_of<double>(machine_, {tip.x(), tip.y(), tip.z()}, {down.x(), down.y(), down.z()}, height);
   for (int i = 0; i < legs_and_slides; ++i) position(i) = joints[static_cast<std::size_t>(i)];
-  const PlatformPose at{.alpha_rad = std::atan2(-down.y(), down.z()),
-                        .beta_rad = std::atan2(down.x(), std::hypot(down.y(), down.z())),
-                        .height_m = height};
+  const double across = std::sqrt(down.y() * down.y() + down.z() * down.z());
+  const Stand at{.sin_alpha = -down.y() / across,
+                 .cos_alpha = down.z() / across,
+                 .sin_beta = down.x(),
+                 .cos_beta = across,
+                 .height_m = height};
   const double missing = missing_height(machine_, at);
   if (!(missing < 0.0)) return {.beyond = missing};
   return check(position, near, at);
@@ -165,37 +168,58 @@ ToolPose HybridKinematics::forward(const Position6& position) const noexcept {
 }
 
 double HybridKinematics::regularity(const Position6& position) const noexcept {
-  return 1.0 / condition_of_five(rates(platform(position)));
+  const PlatformPose at = platform(position);
+  return 1.0 / condition_of_five(rates(position, {.sin_alpha = std::sin(at.alpha_rad),
+                                                  .cos_alpha = std::cos(at.alpha_rad),
+                                                  .sin_beta = std::sin(at.beta_rad),
+                                                  .cos_beta = std::cos(at.beta_rad),
+                                                  .height_m = at.height_m})
+                                     .forth);
 }
 
-/// ∂(joints)/∂(tip, axis), the axis' two angles times the characteristic length, from those by (X, Y, α, β, ℓ).
-HybridKinematics::Matrix5 HybridKinematics::rates(const PlatformPose& at) const noexcept {
+/// From those of the legs and of the tool by (X, Y, α, β, ℓ); both have few entries, and their inverses stand here.
+HybridKinematics::Rates HybridKinematics::rates(const Position6& position, const Stand& at) const noexcept {
   const double a = machine_.base_half_width_m, b = machine_.platform_half_width_m, c = machine_.platform_offset_m,
                e = machine_.base_offset_m, h = machine_.tool_offset_m(), l = at.height_m;
-  const double sa = std::sin(at.alpha_rad), ca = std::cos(at.alpha_rad), sb = std::sin(at.beta_rad),
-               cb = std::cos(at.beta_rad);
-  const double q1 = std::hypot(b * cb - a, l - b * sb), q2 = std::hypot(b * cb - a, l + b * sb),
-               q3 = std::hypot(c - e * ca, l + e * sa);
-  Matrix5 joints = Matrix5::Zero(), tool = Matrix5::Zero();
-  joints(0, 3) = b * (a * sb - l * cb) / q1;
-  joints(0, 4) = (l - b * sb) / q1;
-  joints(1, 3) = b * (a * sb + l * cb) / q2;
-  joints(1, 4) = (l + b * sb) / q2;
-  joints(2, 2) = e * (c * sa + l * ca) / q3;
-  joints(2, 4) = (l + e * sa) / q3;
-  joints(3, 0) = joints(4, 1) = 1.0;
+  const double sa = at.sin_alpha, ca = at.cos_alpha, sb = at.sin_beta, cb = at.cos_beta;
+  const double by_q1 = 1.0 / position(0), by_q2 = 1.0 / position(1), by_q3 = 1.0 / position(2), by_ca = 1.0 / ca;
+  // Legs 1 and 2 by (β, ℓ), leg 3 by (α, ℓ).
+  const double first_beta = b * (a * sb - l * cb) * by_q1, first_height = (l - b * sb) * by_q1;
+  const double second_beta = b * (a * sb + l * cb) * by_q2, second_height = (l + b * sb) * by_q2;
+  const double third_alpha = e * (c * sa + l * ca) * by_q3, third_height = (l + e * sa) * by_q3;
+  // The tip by α, β, ℓ; the axis' angles in units of length.
   const double reach = l + h * cb, unit = options_.singularity.characteristic_length_m;
-  tool(0, 0) = 1.0;
-  tool(0, 3) = h * cb;
-  tool(1, 1) = 1.0;
-  tool.row(1).tail<3>() << -reach * ca, h * sb * sa, -sa;
-  tool.row(2).tail<3>() << -reach * sa, -h * sb * ca, ca;
-  tool(3, 2) = unit * cb;
-  tool(4, 3) = unit;
-  return joints * tool.inverse();
+  const double y_alpha = -reach * ca, y_beta = h * sb * sa, z_alpha = -reach * sa, z_beta = -h * sb * ca;
+
+  Rates of;
+  // (X, Y, α, β, ℓ) by the tool's five.
+  Row5 alpha = Row5::Zero(), beta = Row5::Zero(), height = Row5::Zero();
+  alpha(3) = 1.0 / (unit * cb);
+  beta(4) = 1.0 / unit;
+  height << 0.0, 0.0, by_ca, -z_alpha * alpha(3) * by_ca, -z_beta * beta(4) * by_ca;
+  of.forth.row(0) = first_beta * beta + first_height * height;
+  of.forth.row(1) = second_beta * beta + second_height * height;
+  of.forth.row(2) = third_alpha * alpha + third_height * height;
+  of.forth.row(3) << 1.0, 0.0, 0.0, 0.0, -h * cb * beta(4);
+  of.forth.row(4) = -y_alpha * alpha - y_beta * beta + sa * height;
+  of.forth(4, 1) += 1.0;
+  // … and by the joints.
+  const double inverse = 1.0 / (first_beta * second_height - second_beta * first_height), by_third = 1.0 / third_alpha;
+  beta << second_height * inverse, -first_height * inverse, 0.0, 0.0, 0.0;
+  height << -second_beta * inverse, first_beta * inverse, 0.0, 0.0, 0.0;
+  alpha = -third_height * by_third * height;
+  alpha(2) = by_third;
+  of.back.row(0) = h * cb * beta;
+  of.back(0, 3) += 1.0;
+  of.back.row(1) = y_alpha * alpha + y_beta * beta - sa * height;
+  of.back(1, 4) += 1.0;
+  of.back.row(2) = z_alpha * alpha + z_beta * beta + ca * height;
+  of.back.row(3) = unit * cb * alpha;
+  of.back.row(4) = unit * beta;
+  return of;
 }
 
-Reach HybridKinematics::check(const Position6& position, const Position6& near, const PlatformPose& at) const noexcept {
+Reach HybridKinematics::check(const Position6& position, const Position6& near, const Stand& at) const noexcept {
   Reach out{.status = Reach::Status::found};
   for (int i = 0; i < legs_and_slides; ++i) {
     const double beyond =
@@ -203,7 +227,7 @@ Reach HybridKinematics::check(const Position6& position, const Position6& near, 
     if (beyond > out.beyond) out = {.status = Reach::Status::outside_limits, .joint = i, .beyond = beyond};
   }
   if (out.joint >= 0) return out;
-  const Matrix5 forth = rates(at), back = forth.inverse();
+  const auto [forth, back] = rates(position, at);
   const double most = options_.singularity.max_condition_number;
   // Of Frobenius norms: never below the condition number, and cheap.
   if (!(forth.norm() * back.norm() <= most) && !(condition_of_five(forth) <= most)) {

@@ -68,10 +68,20 @@ class ROBOMILL_API HybridKinematics final : public Kinematics {
   [[nodiscard]] ToolPose forward(const Position6& position) const noexcept override;
   [[nodiscard]] double regularity(const Position6& position) const noexcept override;
 
+  /// A PlatformPose by the sines and cosines of its angles.
+  struct Stand {
+    double sin_alpha = 0.0, cos_alpha = 1.0, sin_beta = 0.0, cos_beta = 1.0, height_m = 0.0;
+  };
+
  private:
   using Matrix5 = Eigen::Matrix<double, 5, 5>;
-  [[nodiscard]] Matrix5 rates(const PlatformPose& at) const noexcept;
-  [[nodiscard]] Reach check(const Position6& position, const Position6& near, const PlatformPose& at) const noexcept;
+  using Row5 = Eigen::Matrix<double, 1, 5>;
+  /// ∂(joints)/∂(tip, axis), the axis' two angles times the characteristic length, and its inverse.
+  struct Rates {
+    Matrix5 forth = Matrix5::Zero(), back = Matrix5::Zero();
+  };
+  [[nodiscard]] Rates rates(const Position6& position, const Stand& at) const noexcept;
+  [[nodiscard]] Reach check(const Position6& position, const Position6& near, const Stand& at) const noexcept;
 
   HybridMachine machine_;
   HybridOptions options_;

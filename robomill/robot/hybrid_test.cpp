@@ -235,6 +235,25 @@ TEST(Hybrid, RegularityVanishesWhereTheLegsGiveWay) {
   EXPECT_LT(before, 1e-3);
 }
 
+// What follow() finds singular lies where regularity() says so: the bound that spares it the singular values is one.
+TEST(Hybrid, FollowsUpToTheConditionNumberAllowed) {
+  Random random(55);
+  for (int i = 0; i < 500; ++i) {
+    const PlatformPose at = random_platform(random);
+    const ToolPose pose = tool_of(machine_of(), at, random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
+    Position6 position;
+    const HybridKinematics kinematics(machine_of());
+    if (kinematics.follow(pose, Position6::Zero(), position).status != Reach::Status::found) continue;
+    const double condition = 1.0 / kinematics.regularity(position);
+    for (const double share : {0.99, 1.01}) {
+      const HybridKinematics narrow(machine_of(), {.singularity = {.max_condition_number = share * condition}});
+      EXPECT_EQ(narrow.follow(pose, Position6::Zero(), position).status,
+                share < 1.0 ? Reach::Status::singular : Reach::Status::found)
+          << i;
+    }
+  }
+}
+
 TEST(Hybrid, RefusesMachinesThatCannotBe) {
   const auto refused = [](auto&& change) {
     HybridMachine machine = machine_of();

@@ -44,10 +44,11 @@ inline Taylor operator*(const Taylor& a, const Taylor& b) noexcept {
 /// From out · b = a.
 inline Taylor operator/(const Taylor& a, const Taylor& b) noexcept {
   Taylor out;
+  const double inverse = 1.0 / b.c[0];
   for (std::size_t k = 0; k < 4; ++k) {
     double left = a.c[k];
     for (std::size_t i = 0; i < k; ++i) left -= out.c[i] * b.c[k - i];
-    out.c[k] = left / b.c[0];
+    out.c[k] = left * inverse;
   }
   return out;
 }
@@ -55,10 +56,11 @@ inline Taylor operator/(const Taylor& a, const Taylor& b) noexcept {
 inline Taylor sqrt(const Taylor& a) noexcept {
   Taylor out;
   out.c[0] = std::sqrt(a.c[0]);
+  const double inverse = 0.5 / out.c[0];
   for (std::size_t k = 1; k < 4; ++k) {
     double left = a.c[k];
     for (std::size_t i = 1; i < k; ++i) left -= out.c[i] * out.c[k - i];
-    out.c[k] = left / (2.0 * out.c[0]);
+    out.c[k] = left * inverse;
   }
   return out;
 }
