@@ -108,14 +108,21 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
   job.compare = command.compare;
   job.keep_breaches = command.keep_breaches;
   job.record = ending == ".html";
-  job.program_period_s = command.program_period_ms * units::ms;
+  if (command.program_period_ms) {
+    require_positive("--program-period-ms", *command.program_period_ms, "ms");
+    job.program_period_s = *command.program_period_ms * units::ms;
+  }
   const plan::SmoothResult result = run_job(job, progress);
   if (common.to_stdout()) fmt::print("{}", formats::smooth_json(result.smoothed));
   if (!command.report.empty()) write_report(command.report, result);
   if (common.wants_summary()) print_summary(result);
   if (result.holds()) return done;
-  fmt::print(stderr, "robomill: the trajectory breaks limits{}\n",
-             job.output.empty() || result.smoothed.written ? "" : "; it was not written");
+  std::string become;
+  if (!job.output.empty() && !result.smoothed.written) {
+    become = "; it was not written";
+    if (result.stale) become += fmt::format(", and the {} of an earlier run was removed", job.output.string());
+  }
+  fmt::print(stderr, "robomill: the trajectory breaks limits{}\n", become);
   return not_reached;
 }
 

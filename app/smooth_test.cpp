@@ -87,8 +87,19 @@ TEST_F(SmoothVerb, ABreachExitsWithThreeAndLeavesOnlyTheReport) {
   const auto json = nlohmann::json::parse(slurp(folder_.at("smooth.json")));
   EXPECT_GT(json["violations"].get<int>(), 0);
   EXPECT_FALSE(json["written"].get<bool>());
+  EXPECT_EQ(run.err.find("earlier"), std::string::npos) << run.err;
   EXPECT_EQ(robomill("smooth part.ngc --cell tight.toml --method no-joint-jerk -o t.csv --keep-breaches").exit, 3);
   EXPECT_TRUE(there("t.csv"));
+  // That one must not stay looking like the next run's.
+  for (const char* name : {"t.csv", "t.h5", "t.src"}) {
+    folder_.file(name, "older");
+    const std::string output = std::string(" -o ") + name;
+    const Ended again = robomill("smooth part.ngc --cell tight.toml --method no-joint-jerk --quiet" + output);
+    EXPECT_EQ(again.exit, 3) << again.err;
+    EXPECT_FALSE(there(name));
+    EXPECT_NE(again.err.find(std::string("and the ") + name + " of an earlier run was removed"), std::string::npos)
+        << again.err;
+  }
 }
 
 TEST_F(SmoothVerb, SetsMethodsSideBySide) {
@@ -116,9 +127,21 @@ TEST_F(SmoothVerb, RefusesBadInput) {
           "--program-period-ms = 12.5 ms; must be a multiple");
   refused("part.ngc --cell cell.toml -o t.csv --program-period-ms 20",
           "--program-period-ms = 20 ms; is of joint programs");
+  refused("part.ngc --cell cell.toml -o t.src --program-period-ms 20000",
+          "--program-period-ms = 20000 ms; must be at most 10 s");
+  refused("part.ngc --cell cell.toml -o t.src --program-period-ms 0", "--program-period-ms = 0 ms; must be > 0");
+  refused("part.ngc --cell cell.toml -o t.src --program-period-ms=-4", "--program-period-ms = -4 ms; must be > 0");
+  std::string one = slurp(folder_.at("cell.toml"));
+  one.replace(one.find("[smoothing]"), 11, "[smoothing]\nmethod = \"paper\"\nfilters = 1");
+  folder_.file("one.toml", one);
+  refused("part.ngc --cell one.toml --method verified", "smoothing.filters = 1; must be at least 2");
   folder_.file("far.ngc", "G21 G90 G94\nG0 X0 Y0 Z40\nG1 X9000 F1800\n");
   refused("far.ngc --cell cell.toml -o t.csv", "line 3");
   EXPECT_FALSE(there("t.csv"));
+  // What was never smoothed takes nothing away.
+  folder_.file("t.csv", "older");
+  refused("far.ngc --cell cell.toml -o t.csv", "line 3");
+  EXPECT_TRUE(there("t.csv"));
 }
 
 }  // namespace

@@ -306,9 +306,8 @@ void AptReader::take_delay() {
     skip_statement();
     return;
   }
-  constexpr double day_s = 86400.0;
   const double time_s = number_of(fields_[0]);
-  if (!(time_s >= 0.0 && time_s <= day_s)) refuse("DELAY", time_s, "s", "must lie between 0 and a day");
+  check_dwell("DELAY", time_s);
   if (time_s == 0.0) {
     skip_statement();
   } else {

@@ -168,7 +168,7 @@ TEST(CellToml, SaysWhatIsWrongAndWhere) {
   expect("[2, 2, 2, 3, 3, 4]", "[2, -2, 2, 3, 3, 4]",
          "cell.toml:13: robot.joint_max_velocity[2] = -2 rad/s; must be >= 0");
   expect("{ mass_kg = 30 }, ", "", "cell.toml:19: robot.links: must hold one table a joint, 6; it holds 5");
-  expect("{ mass_kg = 30 }", "{ center_mm = [0, 0, 0] }", "cell.toml: robot.links[5].mass_kg: is missing");
+  expect("{ mass_kg = 30 }", "{ center_mm = [0, 0, 0] }", "cell.toml:20: robot.links[5].mass_kg: is missing");
   expect("{ mass_kg = 30 }", "{ mass_kg = -30 }", "cell.toml:20: robot.links[5].mass_kg = -30 kg; must be >= 0");
   expect("[10, 20, 30, 1, 2, 3]", "[10, 20, 30]",
          "cell.toml:19: robot.links[1].inertia_kg_m2: must be [xx, yy, zz, xy, xz, yz]");

@@ -31,6 +31,14 @@ void write_all(const fs::path& place, const fs::path& named, std::string_view co
   if (!out) refuse(named, "cannot be written", errno != 0 ? std::strerror(errno) : "");
 }
 
+/// A link stays a link: what it points to is replaced, or taken away.
+fs::path behind_link(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_symlink(path, ignored)) return path;
+  const fs::path target = fs::weakly_canonical(path, ignored);
+  return ignored || target.empty() ? path : target;
+}
+
 /// A device or a pipe cannot be renamed over; nothing of it remains half-written either.
 bool is_special(const fs::path& path) {
   std::error_code ignored;
@@ -106,15 +114,19 @@ void make_folder(const fs::path& folder) {
   if (error) refuse(folder, "cannot be made: " + error.message(), "Give a folder that you may write to");
 }
 
+bool remove_file(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return false;
+  const bool removed = fs::remove(behind_link(path), error);
+  if (error) refuse(path, "cannot be removed: " + error.message());
+  return removed;
+}
+
 PendingFile::PendingFile(fs::path path) : path_(std::move(path)) {
   static std::atomic<unsigned> counter{0};
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) refuse(path_, "is a folder, not a file");
-  // A link stays a link: what it points to is replaced.
-  if (fs::is_symlink(path_, ignored)) {
-    const fs::path target = fs::weakly_canonical(path_, ignored);
-    if (!ignored && !target.empty()) path_ = target;
-  }
+  path_ = behind_link(path_);
   const fs::path folder = path_.parent_path();
   if (path_.filename().empty() || (!folder.empty() && !fs::is_directory(folder, ignored))) {
     refuse(path_, "cannot be written", "There is no folder " + (folder.empty() ? "." : folder.string()));

@@ -33,6 +33,10 @@ ROBOMILL_API void make_folder(const std::filesystem::path& folder);
 /// @throws InvalidInput if the place cannot be written
 ROBOMILL_API void write_file(const std::filesystem::path& path, std::string_view content);
 
+/// Takes a regular file away, through a link the one it points to. Whether there was one.
+/// @throws InvalidInput if it cannot be removed
+ROBOMILL_API bool remove_file(const std::filesystem::path& path);
+
 /// A file under a temporary name beside its place, for writers that insist on a path of their own. Goes away unless
 /// committed.
 class PendingFile {

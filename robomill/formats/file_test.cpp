@@ -54,6 +54,18 @@ TEST(File, LeavesNothingHalfWritten) {
   EXPECT_EQ(count(folder.path()), 1u);
 }
 
+TEST(File, TakesRegularFilesAwayAlone) {
+  const Folder folder;
+  const fs::path target = folder.file("target.csv", "old");
+  fs::create_symlink(target, folder.at("link.csv"));
+  EXPECT_FALSE(remove_file(folder.at("none")));
+  EXPECT_FALSE(remove_file(folder.path()));
+  EXPECT_FALSE(remove_file("/dev/null"));
+  EXPECT_TRUE(remove_file(folder.at("link.csv")));
+  EXPECT_FALSE(fs::exists(target));
+  EXPECT_TRUE(fs::is_symlink(folder.at("link.csv")));
+}
+
 TEST(File, WritesThroughLinksAndIntoDevices) {
   const Folder folder;
   const fs::path target = folder.file("target.csv", "old");

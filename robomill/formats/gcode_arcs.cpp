@@ -15,7 +15,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double farthest_m = 1e3;
 constexpr double same_place_m = 1e-10;
 constexpr double rotary_step_deg = 2.0;  ///< of a chord; its great circle leaves the machine's way by 0.01 deg
 constexpr double most_chords = 1e6;

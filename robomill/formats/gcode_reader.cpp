@@ -268,12 +268,9 @@ void GcodeReader::wait(const Line& line) {
     refuse("P", std::nullopt, "", "is missing: the time of the dwell G4, in seconds",
            line.feed || line.has('s') ? "F and S are a feed and a speed here" : "");
   }
-  constexpr double day_s = 86400.0;
   constexpr double long_s = 100.0;
   const double time_s = line.p->number;
-  if (!(time_s >= 0.0 && time_s <= day_s)) {
-    refuse("P", time_s, "s", "must lie between 0 and a day", "P counts in seconds here");
-  }
+  check_dwell("P", time_s, "P counts in seconds here");
   if (!start_ || time_s == 0.0) {
     skip(fmt::format("G4 P{:g}", time_s));
     return;

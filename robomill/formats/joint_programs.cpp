@@ -20,16 +20,30 @@ constexpr double usual_period_s = 0.020;
 constexpr double standing = 1e-9;          // rad; less than any of these languages can tell apart
 constexpr double servoj_period_s = 0.002;  // the 500 Hz of an e-Series controller
 
-/// A name that all controllers take: letters, digits and underscores, a letter first.
-std::string name_of(const std::filesystem::path& path) {
-  constexpr std::size_t longest = 24;
+/// Of a name, in the language's rules; none: without a limit.
+std::optional<std::size_t> longest_name(JointLanguage language) {
+  if (language == JointLanguage::krl) return 24;
+  if (language == JointLanguage::rapid) return 32;
+  return std::nullopt;
+}
+
+/// A name that all controllers take: letters, digits and underscores, a letter first. A longer one than the controller
+/// takes is not cut off: two programs would be one to it.
+std::string name_of(const std::filesystem::path& path, JointLanguage language) {
   std::string name;
   for (const char letter : path.stem().string()) {
     const bool plain = std::isalnum(static_cast<unsigned char>(letter)) != 0;
     name += plain ? letter : '_';
   }
   if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) name = 'p' + name;
-  return name.substr(0, longest);
+  const std::optional<std::size_t> longest = longest_name(language);
+  if (longest && name.size() > *longest) {
+    throw InvalidInput(path.string(),
+                       fmt::format("names its program {}, {} characters; {} takes at most {}", name, name.size(),
+                                   language == JointLanguage::krl ? "KRL" : "RAPID", *longest),
+                       "Give the file a shorter name");
+  }
+  return name;
 }
 
 std::string one_line(std::string text) {
@@ -58,7 +72,7 @@ std::size_t stride_of(const TrajectoryInfo& info, JointLanguage language) {
   const bool servo = language == JointLanguage::urscript || language == JointLanguage::servoj;
   const double usual = servo ? servoj_period_s : usual_period_s;
   const double wished = info.program_period_s > 0.0 ? info.program_period_s : usual;
-  if (!(wished <= 10.0)) throw InvalidInput("program_period_s", wished, "s", "must be at most 10");
+  if (!(wished <= 10.0)) throw InvalidInput("program_period_s", wished, "s", "must be at most 10 s");
   const double ratio = wished / info.sample_period_s;
   const double whole = std::max(1.0, std::round(ratio));
   if (info.program_period_s > 0.0 && std::abs(ratio - whole) > 1e-6 * whole) {
@@ -70,7 +84,11 @@ std::size_t stride_of(const TrajectoryInfo& info, JointLanguage language) {
 class JointProgram final : public SampleFile {
  public:
   JointProgram(const std::filesystem::path& path, const TrajectoryInfo& info, JointLanguage language)
-      : info_(info), language_(language), name_(name_of(path)), stride_(stride_of(info, language)), text_(path) {
+      : info_(info),
+        language_(language),
+        name_(name_of(path, language)),
+        stride_(stride_of(info, language)),
+        text_(path) {
     between_.reserve(stride_);
     begin();
   }

@@ -318,6 +318,30 @@ TEST_P(Program, RefusesMachinesThatAreNoSuchArm) {
   EXPECT_EQ(robomill::test::field_of([&] { static_cast<void>(open_sample_file(path, odd)); }), "program_period_s");
 }
 
+// A name cut off would make one program of two.
+TEST(ProgramNames, AreWholeOrRefused) {
+  const Folder folder;
+  const auto named = [&](std::size_t letters, const char* ending) {
+    const auto path = folder.at(std::string(letters - 1, 'a') + "-" + ending);
+    const auto file = open_sample_file(path, test::arm_info());
+    file->add(test::sines(101));
+    file->commit();
+    return read_file(path);
+  };
+  const auto written = [](std::size_t letters) { return std::string(letters - 1, 'a') + "_"; };
+  EXPECT_NE(named(24, ".src").find("\nDEF " + written(24) + "()\n"), std::string::npos);
+  EXPECT_TRUE(named(32, ".mod").starts_with("MODULE " + written(32) + "\n"));
+  EXPECT_TRUE(named(80, ".script").starts_with("def " + written(80) + "():\n"));
+  EXPECT_NE(robomill::test::refusal([&] {
+              static_cast<void>(named(25, ".src"));
+            }).find("25 characters; KRL takes at most 24. Give the file a shorter name"),
+            std::string::npos);
+  EXPECT_NE(robomill::test::refusal([&] {
+              static_cast<void>(named(33, ".mod"));
+            }).find("33 characters; RAPID takes at most 32"),
+            std::string::npos);
+}
+
 INSTANTIATE_TEST_SUITE_P(Joint, Program,
                          testing::Values(Case{".src", 0.020, units::deg, 1e-6}, Case{".mod", 0.020, units::deg, 1e-6},
                                          Case{".script", 0.002, 1.0, 1e-9}, Case{".servoj", 0.002, 1.0, 1e-9}),

@@ -14,7 +14,6 @@
 namespace robomill::formats {
 namespace {
 
-constexpr double farthest_m = 1e3;
 constexpr double fastest = 1e9;  ///< beyond any machine in any unit
 constexpr double largest_length_error = 1e-3;
 constexpr double silent_length_error = 1e-6;  ///< of six printed decimals
@@ -122,6 +121,11 @@ void ProgramReader::refuse_text(std::string field, std::string_view value, std::
 
 void ProgramReader::check_coordinate(const char* name, double coordinate_m, double written, const char* unit) const {
   if (!(std::abs(coordinate_m) <= farthest_m)) refuse(name, written, unit, "must lie within 1 km");
+}
+
+void ProgramReader::check_dwell(const char* name, double time_s, const char* hint) const {
+  constexpr double day_s = 86400.0;
+  if (!(time_s >= 0.0 && time_s <= day_s)) refuse(name, time_s, "s", "must lie between 0 and a day", hint);
 }
 
 void ProgramReader::check_feed(const char* name, double feed) const {

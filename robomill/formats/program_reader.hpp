@@ -72,6 +72,7 @@ class ProgramReader {
   [[nodiscard]] const std::optional<program::Pose>& start() const { return start_; }
 
  protected:
+  static constexpr double farthest_m = 1e3;  ///< of a coordinate or a radius
   struct Part {
     std::string_view text;   ///< what of a line counts
     bool continues = false;  ///< the statement goes on in the next line
@@ -90,6 +91,8 @@ class ProgramReader {
                                 std::string hint = {}) const;
   /// @throws InvalidInput unless a coordinate lies within 1 km
   void check_coordinate(const char* name, double coordinate_m, double written, const char* unit) const;
+  /// @throws InvalidInput unless a dwell lasts from 0 to a day
+  void check_dwell(const char* name, double time_s, const char* hint = "") const;
   /// @throws InvalidInput unless a feed of any unit lies in [0, 1e9]
   void check_feed(const char* name, double feed) const;
   /// The direction that a program writes as a unit vector. @throws InvalidInput unless its length is about 1

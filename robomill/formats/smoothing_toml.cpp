@@ -62,6 +62,9 @@ void check_limits(TomlFile& file, const robot::JointLimits& limits, int joints) 
     limits.validate(joints);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = file.located(error).parts();
+    // Without a URDF a list that is missing is so for every joint.
+    const std::string list = parts.field.substr(0, parts.field.find('['));
+    if (!file.has(list) && !file.has("robot.urdf")) parts.field = list;
     if (parts.hint.empty())
       parts.hint = "Smoothing needs every joint's velocity, acceleration and jerk: rad or m, by joint";
     throw InvalidInput(std::move(parts));
@@ -74,7 +77,8 @@ bool has_smoothing(const std::filesystem::path& path) {
   return TomlFile(path).has("smoothing");
 }
 
-SmoothingFile read_smoothing(const std::filesystem::path& path, const robot::JointLimits& limits, int joints) {
+SmoothingFile read_smoothing(const std::filesystem::path& path, const robot::JointLimits& limits, int joints,
+                             std::optional<path::Method> method) {
   TomlFile file(path);
   for (const char* other : {"workpiece", "tool", "program"}) file.skip(other);
   for (const std::string& name : file.keys("robot")) file.skip("robot." + name);
@@ -91,6 +95,7 @@ SmoothingFile read_smoothing(const std::filesystem::path& path, const robot::Joi
                              {"paper-as-printed", path::Method::paper_as_printed},
                              {"no-joint-jerk", path::Method::no_joint_jerk}},
                             out.options.method);
+  if (method) out.options.method = *method;
   file.integer("smoothing.filters", "filters", out.options.filters);
   file.boolean("smoothing.free_gamma", out.free_gamma);
   read_per_joint(file, "smoothing.drive_bandwidth_hz", "drive_bandwidth_hz", joints, out.drive_bandwidth_hz);

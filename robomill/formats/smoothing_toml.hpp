@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -27,8 +28,10 @@ struct SmoothingFile {
 /// @param path    the cell.toml
 /// @param limits  of the machine that it describes (a URDF gives some of them)
 /// @param joints  how many
+/// @param method  stands before the file's
 /// @throws InvalidInput with file, line, key, value and rule
 [[nodiscard]] ROBOMILL_API SmoothingFile read_smoothing(const std::filesystem::path& path,
-                                                        const robot::JointLimits& limits, int joints);
+                                                        const robot::JointLimits& limits, int joints,
+                                                        std::optional<path::Method> method = {});
 
 }  // namespace robomill::formats

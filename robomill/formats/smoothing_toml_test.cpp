@@ -107,7 +107,7 @@ TEST(SmoothingToml, SaysWhatIsWrongAndWhere) {
   };
   expect("tip_tolerance_mm = 0.02", "tip_tolerance_mm = 0",
          "cell.toml:14: smoothing.tip_tolerance_mm = 0 mm; must be > 0. 0.02 mm suits finishing");
-  expect("axis_tolerance_deg = 0.03\n", "", "cell.toml: smoothing.axis_tolerance_deg: is missing; must be > 0");
+  expect("axis_tolerance_deg = 0.03\n", "", "cell.toml:13: smoothing.axis_tolerance_deg: is missing; must be > 0");
   expect("max_jerk_mm_per_s3 = 10000", "max_jerk_mm_per_s3 = -3",
          "cell.toml:18: smoothing.max_jerk_mm_per_s3 = -3 mm/s^3; must be > 0");
   expect("max_angular_jerk_deg_per_s3 = 2000", "max_angular_jerk_deg_per_s3 = \"fast\"",
@@ -125,12 +125,32 @@ TEST(SmoothingToml, SaysWhatIsWrongAndWhere) {
          "cell.toml:27: smoothing.drive_damping_ratio = 0; must be > 0");
   expect("tip_tolerance_mm", "tip_tolerance_m", "cell.toml:14: smoothing.tip_tolerance_m: is not known here");
   expect("joint_max_jerk = [100, 100, 100, 200, 200]\n", "",
-         "cell.toml: robot.joint_max_jerk[1]: is missing; must be > 0. Smoothing needs every joint's velocity");
+         "cell.toml:1: robot.joint_max_jerk: is missing; must be > 0. Smoothing needs every joint's velocity");
+  expect("joint_max_jerk = [100, 100, 100, 200, 200]", "joint_max_jerk = [100, 100, 0, 200, 200]",
+         "cell.toml:7: robot.joint_max_jerk[3] = 0; must be > 0. Smoothing needs every joint's velocity");
   expect("[5, 5, 5, 8, 8]", "[5, 5, -5, 8, 8]",
          "cell.toml:6: robot.joint_max_acceleration[3] = -5; must be > 0. Smoothing needs");
   EXPECT_NE(
       refusal([&] { (void)read(folder, good.substr(0, good.find("[smoothing]"))); }).find("smoothing: is missing"),
       std::string::npos);
+}
+
+// What holds is the method that will run, whichever of the two the file names.
+TEST(SmoothingToml, AMethodBeforeTheFilesIsTheOneThatIsChecked) {
+  const Folder folder;
+  const auto read_by = [&](const std::string& text, path::Method method) {
+    const auto path = folder.file("cell.toml", text);
+    const auto machine = kinematics(read_cell(path, Robots::any));
+    return read_smoothing(path, machine->limits(), machine->joints(), method);
+  };
+  std::string one = with("filters = 3", "filters = 1");
+  EXPECT_EQ(read_by(one, path::Method::paper).options.method, path::Method::paper);
+  one.replace(one.find("\"optimal\""), 9, "\"paper\"");
+  EXPECT_EQ(read(folder, one).options.filters, 1);
+  const std::string said = refusal([&] { (void)read_by(one, path::Method::verified); });
+  EXPECT_NE(said.find("cell.toml:24: smoothing.filters = 1; must be at least 2 where jerk is limited"),
+            std::string::npos)
+      << said;
 }
 
 TEST(SmoothingToml, DamagedFilesAreReadOrRefused) {

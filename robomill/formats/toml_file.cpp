@@ -73,6 +73,16 @@ const toml::node* find(const toml::table& root, std::string_view path) {
   return node;
 }
 
+/// The key, or the innermost table around it that the file has; none where that is the file itself.
+const toml::node* nearest(const toml::table& root, std::string_view key) {
+  for (;;) {
+    if (const toml::node* node = find(root, key)) return node;
+    const std::size_t end = key.find_last_of(".[");
+    if (end == std::string_view::npos) return nullptr;
+    key = key.substr(0, end);
+  }
+}
+
 std::optional<double> finite_number(const toml::node& node) {
   std::optional<double> number;
   if (const toml::value<std::int64_t>* whole = node.as_integer()) number = static_cast<double>(whole->get());
@@ -295,14 +305,18 @@ std::vector<std::string> TomlFile::keys(std::string_view table) const {
 
 void TomlFile::require(std::string_view key, std::string_view hint) const {
   if (has(key)) return;
-  throw InvalidInput(InvalidInput::Parts{
-      .where = state_->path.string(), .field = shown(key), .rule = "is missing", .hint = std::string(hint)});
+  throw InvalidInput(InvalidInput::Parts{.where = state_->where(nearest(state_->root, key)),
+                                         .field = shown(key),
+                                         .rule = "is missing",
+                                         .hint = std::string(hint)});
 }
 
 InvalidInput TomlFile::refuse(std::string_view key, std::string rule, std::string hint) const {
   const toml::node* node = find(state_->root, key);
-  InvalidInput::Parts parts{
-      .where = state_->where(node), .field = shown(key), .rule = std::move(rule), .hint = std::move(hint)};
+  InvalidInput::Parts parts{.where = state_->where(nearest(state_->root, key)),
+                            .field = shown(key),
+                            .rule = std::move(rule),
+                            .hint = std::move(hint)};
   if (node != nullptr) {
     parts.number = finite_number(*node);
     parts.value = value_text(*node);
@@ -334,7 +348,7 @@ InvalidInput TomlFile::located(const InvalidInput& error) const {
   if (row == nullptr) return error;
   const bool entry = parts.field.back() == ']' && row->member.back() != ']';
   const std::string index = entry ? parts.field.substr(parts.field.rfind('[')) : "";
-  parts.where = state_->where(row->present ? find(state_->root, row->key) : nullptr);
+  parts.where = state_->where(nearest(state_->root, row->key));
   parts.field = shown(row->key) + index;
   if (parts.number && !parts.unit.ends_with("entries")) {
     parts.number = round_15(*parts.number / row->factor);

@@ -64,13 +64,13 @@ class TomlFile {
   [[nodiscard]] std::size_t tables(std::string_view key) const;
   /// Names of the keys in a table, in the order of the file.
   [[nodiscard]] std::vector<std::string> keys(std::string_view table) const;
-  /// @throws InvalidInput "file: key is missing; hint"
+  /// @throws InvalidInput "file:line: key is missing; hint", the line that of the table it belongs in
   void require(std::string_view key, std::string_view hint = {}) const;
 
   /// The error for a key of this file: file:line: key = value unit; rule. hint
   [[nodiscard]] InvalidInput refuse(std::string_view key, std::string rule, std::string hint = {}) const;
-  /// An error about an SI member told in the words of this file (key, value in the file's unit, line); unchanged where
-  /// the member did not come from here.
+  /// An error about an SI member told in the words of this file (key, value in the file's unit, line; of a key that is
+  /// missing the line of its table); unchanged where the member did not come from here.
   [[nodiscard]] InvalidInput located(const InvalidInput& error) const;
   /// Calls f; an InvalidInput that it throws comes out located.
   template <class F>

@@ -107,7 +107,7 @@ TEST_F(Toml, NamesFileLineKeyAndValueOfAWrongType) {
             }),
             name + ":10: lobes.method = \"collocation\"; must be one of \"zeroth\"");
   EXPECT_EQ(refusal([&] { file.require("tool.helix_deg", "The angle of the flutes"); }),
-            name + ": tool.helix_deg: is missing. The angle of the flutes");
+            name + ":2: tool.helix_deg: is missing. The angle of the flutes");
 }
 
 // The message that a user of the library is promised: file, line, key, value and unit of the file, the rule and the
@@ -151,7 +151,7 @@ TEST_F(Toml, SaysThatAnInvalidDefaultIsAMissingKey) {
   EXPECT_EQ(std::string(file.located(InvalidInput("radial_depth_m", 0.0, "m", "must be > 0")).what()),
             name + ": cut.radial_depth_mm: is missing; must be > 0");
   EXPECT_EQ(std::string(file.located(InvalidInput("radius_m", 0.5, "m", "is too big")).what()),
-            name + ": tool.radius_mm = 500 mm; is the default, not in the file; is too big");
+            name + ":2: tool.radius_mm = 500 mm; is the default, not in the file; is too big");
 }
 
 TEST_F(Toml, LeavesErrorsAloneThatAreNotItsOwn) {

@@ -199,8 +199,6 @@ void warn_of_spindle(PlanResult& result) {
                   place, worst.torque_n_m, worst.power_w / units::kw, worst.spindle_speed_rad_per_s / units::rpm, has));
 }
 
-constexpr const char* trajectory_name = "trajectory.csv";
-
 /// The program as the robot will run it.
 void smooth(PlanResult& result, const std::filesystem::path& folder, Progress& progress) {
   const formats::Job& job = result.job;
@@ -210,16 +208,17 @@ void smooth(PlanResult& result, const std::filesystem::path& folder, Progress& p
     throw InvalidInput(job.cell.string(), "has no [smoothing]",
                        "job.program without job.forces is smoothed: write the tolerances and limits there");
   }
-  SmoothJob smooth = {.program = job.program, .cell = job.cell};
+  SmoothJob smooth = {.program = job.program, .cell = job.cell, .place = false};
   if (!folder.empty()) {
     formats::make_folder(folder);
-    smooth.output = folder / trajectory_name;
+    smooth.output = folder / "trajectory.csv";
   }
   result.path = run_smooth(smooth, progress);
   if (!result.path->holds()) {
     result.warnings.push_back(fmt::format(
-        "The smoothed program breaks limits at {} samples: there is no trajectory. See the limits of each joint.",
-        result.path->first().summary.check.violations()));
+        "The smoothed program breaks limits at {} samples: there is no trajectory{}. See the limits of each joint.",
+        result.path->first().summary.check.violations(),
+        result.path->stale ? ", and the one of an earlier run was removed" : ""));
   }
 }
 

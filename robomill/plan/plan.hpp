@@ -47,7 +47,8 @@ struct PlanResult {
 /// Runs a job: hits, or tool and holder, ─▶ FRFs ─▶ modes ─▶ lobes ─▶ a recommended speed and depth, and its comparison
 /// with test cuts.
 /// @param seed    of every random number
-/// @param folder  for the trajectory of a program, made where it is missing; empty: none is written
+/// @param folder  for the trajectory of a program, made where it is missing; write_plan() puts it there in its place.
+///     Empty: none is written
 /// @throws InvalidInput with file, line, key and value; Interrupted
 [[nodiscard]] PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
                                  Progress& progress = Progress::none(), const std::filesystem::path& folder = {});
@@ -60,7 +61,7 @@ struct PlanResult {
 [[nodiscard]] std::string plan_json(const PlanResult& result);
 
 /// Writes report.html, plan.json and each stage's own files (tip.uff, modes.json, lobes.json) into a folder, which is
-/// made where it is missing. Each file appears whole or not at all.
+/// made where it is missing. Each file appears whole or not at all; the trajectory where run_job() was told to.
 void write_plan(const std::filesystem::path& folder, const PlanResult& result);
 
 /// One line for people: what limits an operation.

@@ -127,15 +127,21 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
                                                            : "cutting forces over a revolution"});
   }
   if (result.path) {
-    formats::write_file(folder / "smooth.json", formats::smooth_json(result.path->smoothed));
     files.push_back({.stage = "path", .file = "smooth.json", .description = "the smoothed program beside its limits"});
     if (result.path->smoothed.written) {
-      files.push_back({.stage = "path", .file = "trajectory.csv", .description = "joints and tool, a row a sample"});
+      files.push_back({.stage = "path",
+                       .file = result.path->output.filename().string(),
+                       .description = "joints and tool, a row a sample"});
     }
   }
-  formats::write_file(folder / "plan.json", plan_json(result));
   files.push_back({.stage = "plan", .file = "plan.json", .description = "recommendation and every stage's result"});
-  formats::write_file(folder / "report.html", report::report_html(make_report(result, files)));
+  const std::string page = report::report_html(make_report(result, files));
+  if (result.path) {
+    place(*result.path);
+    formats::write_file(folder / "smooth.json", formats::smooth_json(result.path->smoothed));
+  }
+  formats::write_file(folder / "plan.json", plan_json(result));
+  formats::write_file(folder / "report.html", page);
 }
 
 }  // namespace robomill::plan

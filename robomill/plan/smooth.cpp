@@ -8,10 +8,12 @@
 #include <memory>
 #include <numbers>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/cell_toml.hpp"
+#include "robomill/formats/file.hpp"
 #include "robomill/formats/gcode.hpp"
 #include "robomill/formats/program_files.hpp"
 #include "robomill/formats/smoothing_toml.hpp"
@@ -81,8 +83,7 @@ Bench prepare(const SmoothJob& job) {
   Bench bench;
   bench.cell = formats::read_cell(job.cell, formats::Robots::any);
   bench.machine = formats::kinematics(bench.cell);
-  bench.smoothing = formats::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints());
-  if (job.method) bench.smoothing.options.method = *job.method;
+  bench.smoothing = formats::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), job.method);
   bench.slides = slides_of(bench.cell);
   formats::ProgramReading reading;
   if (!bench.cell.machine.empty()) reading.machine = formats::parse_machine(bench.cell.machine);
@@ -216,7 +217,7 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
   result.options = bench.smoothing.options;
   result.posture = bench.posture;
   result.turns_about_axis = bench.machine->turns_about_axis();
-  const std::unique_ptr<formats::SampleFile> file = open_output(job, bench);
+  std::unique_ptr<formats::SampleFile> file = open_output(job, bench);
   std::optional<report::MotionRecorder> recorder;
   if (job.record) {
     result.outline = report::outline(*bench.program, result.options.tip_tolerance_m);
@@ -225,13 +226,16 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
   for (const path::Method method : methods_of(job, result.options.method)) {
     const bool asked_for = result.smoothed.methods.empty();
     try {
+      // What the cell says may suit one method and not another.
+      if (!asked_for) {
+        static_cast<void>(formats::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), method));
+      }
       result.smoothed.methods.push_back(told_of_program(job.program, [&] {
         return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr, progress);
       }));
     } catch (const InvalidInput& error) {
       if (asked_for) throw;
-      result.smoothed.notes.push_back(
-          fmt::format("{} cannot do this program: {}", formats::name_of(method), error.what()));
+      result.smoothed.notes.push_back(fmt::format("{} is left out: {}", formats::name_of(method), error.what()));
       continue;
     }
     if (recorder) {
@@ -240,11 +244,26 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
     }
   }
   tell(result, job, bench);
-  if (file != nullptr && (result.holds() || job.keep_breaches)) {
-    file->commit();
-    result.smoothed.written = true;
+  if (file == nullptr) return result;
+  result.output = job.output;
+  result.smoothed.written = result.holds() || job.keep_breaches;
+  if (result.smoothed.written) {
+    result.trajectory = std::move(file);
+  } else {
+    std::error_code ignored;
+    result.stale = std::filesystem::is_regular_file(job.output, ignored);
   }
+  if (result.stale) {
+    result.smoothed.notes.push_back(
+        fmt::format("The {} of an earlier run was removed: this one has none.", job.output.filename().string()));
+  }
+  if (job.place) place(result);
   return result;
+}
+
+void place(const SmoothResult& result) {
+  if (result.trajectory) result.trajectory->commit();
+  if (result.stale) formats::remove_file(result.output);
 }
 
 double joint_share(const path::CheckResult& check) {

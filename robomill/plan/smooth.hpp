@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/formats/smooth_json.hpp"
+#include "robomill/formats/trajectory.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/path/posture.hpp"
 #include "robomill/report/smooth.hpp"
@@ -23,10 +25,14 @@ struct SmoothJob {
   bool keep_breaches = false;               ///< write a trajectory that breaks limits all the same
   bool record = true;                       ///< curves for a report
   double program_period_s = 0.0;            ///< of joint programs; 0: formats::TrajectoryInfo's
+  bool place = true;                        ///< at the end; else place() is the caller's to call
 };
 
 struct SmoothResult {
   formats::SmoothedProgram smoothed = {};
+  std::filesystem::path output = {};                     ///< of the trajectory, as the job says
+  bool stale = false;                                    ///< a file of an earlier run stood there and goes
+  std::shared_ptr<formats::SampleFile> trajectory = {};  ///< whole, beside its place
   path::SmoothingOptions options = {};
   path::PostureChoice posture = {};
   bool turns_about_axis = false;
@@ -39,9 +45,14 @@ struct SmoothResult {
   [[nodiscard]] bool holds() const { return first().summary.check.violations() == 0; }
 };
 
-/// Smooths a program and writes its trajectory if it holds every limit.
+/// Smooths a program and writes its trajectory if it holds every limit; if not, a file that stands in its place from an
+/// earlier run is taken away.
 /// @throws InvalidInput with file, line, key and value, or with what cannot be reached; Interrupted
 [[nodiscard]] ROBOMILL_API SmoothResult run_smooth(const SmoothJob& job, Progress& progress = Progress::none());
+
+/// Moves the trajectory of a job that does not place it to its place, or takes away what stands there from an earlier
+/// run. Once. @throws InvalidInput if that fails
+ROBOMILL_API void place(const SmoothResult& result);
 
 /// The part of the report on it. @param result  of a job that recorded
 [[nodiscard]] ROBOMILL_API report::Smooth smooth_report(const SmoothResult& result);

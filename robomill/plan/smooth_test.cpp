@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -164,6 +165,33 @@ TEST_F(Smoothing, WritesNothingThatBreaksALimit) {
   broken.keep_breaches = true;
   EXPECT_TRUE(run_smooth(broken).smoothed.written);
   EXPECT_TRUE(std::filesystem::exists(broken.output));
+  // The one that is there now is taken for a result no longer.
+  broken.keep_breaches = false;
+  const SmoothResult again = run_smooth(broken);
+  EXPECT_FALSE(std::filesystem::exists(broken.output));
+  ASSERT_FALSE(again.smoothed.notes.empty());
+  EXPECT_EQ(again.smoothed.notes.back(), "The t.csv of an earlier run was removed: this one has none.");
+}
+
+TEST_F(Smoothing, ChecksTheMethodThatRuns) {
+  SmoothJob trapezoid = job(hybrid("filters = 1\nmethod = \"paper\"\n"));
+  trapezoid.record = false;
+  trapezoid.keep_breaches = true;
+  trapezoid.compare = true;
+  const SmoothResult result = run_smooth(trapezoid);
+  EXPECT_EQ(result.first().method, path::Method::paper);
+  ASSERT_FALSE(result.smoothed.notes.empty());
+  const std::string& note = result.smoothed.notes.front();
+  EXPECT_TRUE(note.starts_with("verified is left out: ")) << note;
+  EXPECT_NE(note.find("cell.toml:24: smoothing.filters = 1; must be at least 2"), std::string::npos) << note;
+  trapezoid.method = path::Method::verified;
+  const std::string said = refusal([&] { static_cast<void>(run_smooth(trapezoid)); });
+  EXPECT_NE(said.find("cell.toml:24: smoothing.filters = 1; must be at least 2"), std::string::npos) << said;
+  // … and a file whose own method could not.
+  SmoothJob other = job(hybrid("filters = 1\n"));
+  other.method = path::Method::paper;
+  other.keep_breaches = true;
+  EXPECT_EQ(run_smooth(other).first().method, path::Method::paper);
 }
 
 TEST_F(Smoothing, SetsMethodsSideBySide) {
@@ -251,6 +279,36 @@ TEST_F(PlanPath, AddsTheTrajectoryToTheJob) {
   EXPECT_EQ(read(folder_.at("out") / "trajectory.csv").rows.size(), result.path->first().summary.samples);
   EXPECT_EQ(nlohmann::json::parse(formats::read_file(folder_.at("out") / "smooth.json")), json["path"]);
   EXPECT_NE(formats::read_file(folder_.at("out") / "report.html").find("<section id=\"smooth\""), std::string::npos);
+}
+
+// The trajectory is there with the rest or not at all, and none of an earlier run is taken for this one's.
+TEST_F(PlanPath, LeavesNoTrajectoryThatIsNotItsOwn) {
+  const std::filesystem::path out = folder_.at("out");
+  const std::filesystem::path file = plan("program = \"part.ngc\"\ncell = \"cell.toml\"\n");
+  const PlanResult whole = run_job(file, 1, Progress::none(), out);
+  EXPECT_FALSE(std::filesystem::exists(out / "trajectory.csv"));
+  write_plan(out, whole);
+  EXPECT_TRUE(std::filesystem::exists(out / "trajectory.csv"));
+  const std::string listed = "\"file\":\"trajectory.csv\"";
+  EXPECT_NE(formats::read_file(out / "report.html").find(listed), std::string::npos);
+  // A later stage that cannot go on leaves all as it was.
+  const std::string before = formats::read_file(out / "trajectory.csv");
+  const std::filesystem::path bad = plan("program = \"part.ngc\"\ncell = \"cell.toml\"\nequal_directions = true\n");
+  folder_.file("part.ngc", "G21 G90 G94\nG0 X0 Y0 Z0 A0 C0\nG1 X5 F2400\n");
+  EXPECT_NE(refusal([&] { static_cast<void>(run_job(bad, 1, Progress::none(), out)); }), "accepted");
+  EXPECT_EQ(formats::read_file(out / "trajectory.csv"), before);
+  const auto files = std::filesystem::directory_iterator(out);
+  EXPECT_EQ(std::distance(begin(files), end(files)), 6) << "nothing half-written is left";
+  // One that breaks limits takes the older one away.
+  const std::filesystem::path tight = plan("program = \"part.ngc\"\ncell = \"tight.toml\"\n");
+  folder_.file("tight.toml", hybrid("method = \"no-joint-jerk\"\n", 4.0));
+  const PlanResult broken = run_job(tight, 1, Progress::none(), out);
+  ASSERT_FALSE(broken.path->holds());
+  EXPECT_NE(broken.warnings.front().find("the one of an earlier run was removed"), std::string::npos);
+  write_plan(out, broken);
+  EXPECT_FALSE(std::filesystem::exists(out / "trajectory.csv"));
+  EXPECT_EQ(formats::read_file(out / "report.html").find(listed), std::string::npos);
+  EXPECT_FALSE(nlohmann::json::parse(formats::read_file(out / "smooth.json"))["written"].get<bool>());
 }
 
 TEST_F(PlanPath, NeedsTheCellToSaySo) {
