@@ -12,11 +12,13 @@ constexpr double revolution = 2.0 * std::numbers::pi;
 
 double Spindle::rotation(double time_s) const {
   const double mean = mean_rad_per_s * time_s;
-  return steady() ? mean : mean + amplitude / ratio * (1.0 - std::cos(ratio * mean));
+  if (amplitude == 0.0) return schedule.empty() ? mean : mean_rad_per_s * schedule.before(time_s);
+  return mean + amplitude / ratio * (1.0 - std::cos(ratio * mean));
 }
 
 double Spindle::speed(double time_s) const {
-  return steady() ? mean_rad_per_s : mean_rad_per_s * (1.0 + amplitude * std::sin(ratio * mean_rad_per_s * time_s));
+  if (amplitude == 0.0) return mean_rad_per_s * schedule.at(time_s);
+  return mean_rad_per_s * (1.0 + amplitude * std::sin(ratio * mean_rad_per_s * time_s));
 }
 
 Resistance resistance(const Ring& ring, double tangential, double radial, double axial) {
@@ -43,8 +45,8 @@ CutModel milling_model(const cutting::Milling& milling, double spindle_speed_rad
   model.radius_m = 0.5 * tool.diameter_m;
   model.feed_m_per_s = milling.feed_per_tooth_m * tool.teeth * spindle_speed_rad_per_s / revolution;
   model.damping = milling.process_damping;
-  model.spindle = {spindle_speed_rad_per_s, milling.speed_variation.amplitude_ratio,
-                   milling.speed_variation.frequency_ratio};
+  model.spindle = {
+      spindle_speed_rad_per_s, milling.speed_variation.amplitude_ratio, milling.speed_variation.frequency_ratio, {}};
   model.steps_per_revolution = resolution.steps_per_revolution;
   const Ring ring = {.entry_rad = milling.immersion.entry_rad,
                      .exit_rad = milling.immersion.exit_rad,

@@ -4,15 +4,21 @@
 #include <vector>
 
 #include "robomill/cutting/milling.hpp"
+#include "robomill/simulation/schedule.hpp"
 
-namespace robomill::simulation::detail {
+namespace robomill::simulation {
 
-/// Ω(t) = Ω_0 (1 + a sin(r Ω_0 t)); the rotation is its integral from 0.
+struct DrillingCut;
+
+namespace detail {
+
+/// Ω(t) = Ω_0 (1 + a sin(r Ω_0 t)), or Ω_0 times a schedule; the rotation is its integral from 0.
 struct Spindle {
   double mean_rad_per_s = 0.0;
   double amplitude = 0.0;
   double ratio = 0.0;
-  [[nodiscard]] bool steady() const { return amplitude == 0.0; }
+  Profile schedule = {};
+  [[nodiscard]] bool steady() const { return amplitude == 0.0 && schedule.empty(); }
   [[nodiscard]] double rotation(double time_s) const;  ///< [rad]
   [[nodiscard]] double speed(double time_s) const;     ///< [rad/s]
 };
@@ -57,6 +63,7 @@ struct CutModel {
   int slices = 1;
   double radius_m = 0.0;
   double feed_m_per_s = 0.0;
+  Profile depth;  ///< of the elements' width, ring by ring from the first; with points: every ring a slice
   Eigen::Vector3d feed_direction = Eigen::Vector3d::UnitX();
   cutting::ProcessDamping damping;
   Spindle spindle;
@@ -73,5 +80,7 @@ struct Resolution {
 
 [[nodiscard]] CutModel milling_model(const cutting::Milling& milling, double spindle_speed_rad_per_s,
                                      double axial_depth_m, const Resolution& resolution);
+[[nodiscard]] CutModel drilling_model(const DrillingCut& cut, int steps_per_revolution);
 
-}  // namespace robomill::simulation::detail
+}  // namespace detail
+}  // namespace robomill::simulation

@@ -12,9 +12,11 @@ struct ROBOMILL_API DrillingCut {
   double point_angle_rad = 2.0594885173533087;  ///< 2p [rad], in (0, π]; 118 degrees
   double radial_width_m = 0.0;                  ///< b [m], from the pilot hole (or the core) to the rim, 0 < b <= D/2
   double feed_per_revolution_m = 0.0;           ///< f [m], > 0; required
+  double runout_m = 0.0;                        ///< offset of the drill's axis towards the first lip [m], >= 0
   cutting::ForceCoefficients coefficients;      ///< edge forces per length of lip
   modal::TipModes structure;                    ///< x, y and z; no modes: rigid
   double spindle_speed_rad_per_s = 0.0;         ///< Ω [rad/s], > 0; required
+  Schedule schedule = {};                       ///< of width and speed in time
   /// @throws InvalidInput naming the member
   void validate() const;
 };

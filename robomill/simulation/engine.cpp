@@ -52,6 +52,7 @@ Engine<D>::Engine(const CutModel& model, const modal::TipModes& structure, Physi
     for (Element& element : elements_) element.edge = {};
   }
   surface_.set_rigid();
+  set_depth(0.0);
   leave_start();
 }
 
@@ -67,6 +68,7 @@ typename Engine<D>::Chip Engine<D>::chip(const Element& element, double position
   const Node left = surface_.at(surface_.strip(element.ring), position);
   const double rigid = element.radius_m - left.out_m + surface_.fed(ring_of(element), feed_m, left, sine, cosine);
   if (physics_ == Physics::full) return {sine, cosine, rigid, true};
+  if (physics_ == Physics::forced) return {sine, cosine, rigid, rigid >= 0.0};
   return {sine, cosine, (physics_ == Physics::linear ? rigid : 0.0) - left.vibration_m, rigid >= 0.0};
 }
 
@@ -92,7 +94,9 @@ void Engine<D>::add(const Touch& touch, const Chip& chip, double width, Affine& 
     return force;
   };
   const Vector<D> per_chip = against(touch.element->chip);
-  sum.k.noalias() += per_chip * normal(*touch.ring, chip.sine, chip.cosine).transpose();
+  if (physics_ != Physics::forced) {
+    sum.k.noalias() += per_chip * normal(*touch.ring, chip.sine, chip.cosine).transpose();
+  }
   sum.f += per_chip * chip.gap_m + against(touch.element->edge);
 }
 
@@ -113,6 +117,7 @@ void Engine<D>::add_damping(const Touch& touch, Square<D>& sum) const {
 template <int D>
 void Engine<D>::touch(const Near& near) {
   const Element& element = elements_[static_cast<std::size_t>(near.element)];
+  if (element.width_m == 0.0 && !model_.depth.empty()) return;
   const Strip& strip = surface_.strip(element.ring);
   double from = 0.0, to = 1.0;
   const double run = near.position_b - near.position_a;
@@ -323,7 +328,7 @@ void Engine<D>::leave_node(const Near& near, int node) {
 /// The node behind each edge as the cut starts, as leave_surface would have found it.
 template <int D>
 void Engine<D>::leave_start() {
-  feed_b_ = model_.feed_m_per_s * step_s_;
+  feed_b_ = model_.feed_m_per_s * surface_.step_rad() / model_.spindle.speed(0.0);
   for (std::size_t i = 0; i < elements_.size(); ++i) {
     Near near;
     near.element = static_cast<int>(i);
@@ -378,6 +383,16 @@ void Engine<D>::pass_wall(const Near& near, WatchedWall& watched) {
   }
 }
 
+/// The depth cuts through one slice, whose width is the part of it below.
+template <int D>
+void Engine<D>::set_depth(double time_s) {
+  if (model_.depth.empty()) return;
+  const double slices = model_.depth.at(time_s) * static_cast<double>(model_.rings.size());
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    elements_[i].width_m = model_.elements[i].width_m * std::clamp(slices - elements_[i].ring, 0.0, 1.0);
+  }
+}
+
 template <int D>
 void Engine<D>::step() {
   angle_a_ = angle_b_;
@@ -395,6 +410,7 @@ void Engine<D>::step() {
     angle_b_ = model_.spindle.rotation(end_s) - turns * revolution;
   }
   feed_b_ = model_.feed_m_per_s * end_s;
+  set_depth(0.5 * (time_s() + end_s));
   if (damped_) {
     // K l² / 2V with V = Ω D / 2.
     const double speed = model_.spindle.speed(0.5 * (time_s() + end_s));

@@ -14,6 +14,7 @@ namespace robomill::simulation::detail {
 enum class Physics {
   full,         ///< loss of contact, everything left by earlier teeth
   linear,       ///< as if the chip could have negative thickness; which tooth misses follows from feed and runout alone
+  forced,       ///< of the linear cut, chips as a rigid cutter would cut them: nothing regenerates
   perturbation  ///< of the linear cut: without feed and edge forces
 };
 
@@ -104,6 +105,7 @@ class Engine {
   void leave_surface();
   void leave_node(const Near& near, int node);
   void leave_start();
+  void set_depth(double time_s);
   [[nodiscard]] double position(const Element& element) const;
   void pass_wall(const Near& near, WatchedWall& wall);
 

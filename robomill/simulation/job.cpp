@@ -165,14 +165,23 @@ void add_wall(double angle, double feed_per_tooth_m, int rings, const std::vecto
   out.walls.push_back(wall);
 }
 
+/// Whether the last half of the time, at which verdicts look, repeats with the period of the full speed.
+bool repeats_at_end(const Schedule& schedule, double seconds) {
+  return schedule.settled(0.5 * seconds) && Profile(schedule.speed).at(seconds) == 1.0;
+}
+
 template <int D>
 void run(const Job& job, const SimulationOptions& options, Progress& progress, Simulation& out) {
-  const Physics physics = options.loss_of_contact ? Physics::full : Physics::linear;
+  const Physics physics = !options.regeneration     ? Physics::forced
+                          : options.loss_of_contact ? Physics::full
+                                                    : Physics::linear;
   const Chosen chosen = choose<D>(job.first, job.structure, job.model_at, physics, options, progress);
   out.steps_per_revolution = chosen.resolution.steps_per_revolution;
   out.error_estimate = chosen.error;
   out.resolved = chosen.error <= options.tolerance;
-  const CutModel model = job.model_at(chosen.resolution);
+  CutModel model = job.model_at(chosen.resolution);
+  model.depth = Profile(job.schedule.depth);
+  model.spindle.schedule = Profile(job.schedule.speed);
   out.slices = model.slices;
   Engine<D> engine(model, job.structure, physics);
   const double h = engine.step_s();
@@ -211,7 +220,10 @@ void run(const Job& job, const SimulationOptions& options, Progress& progress, S
     out.verdict = Verdict::chatter;
     return;
   }
-  const Judgement judgement = judge(watch.samples, out.small);
+  if (!repeats_at_end(job.schedule, options.seconds)) return;
+  // Small vibration is that of the full depth, which the cut need not have come to.
+  const SmallVibration unknown = {.status = SmallVibration::Status::unsettled};
+  const Judgement judgement = judge(watch.samples, job.schedule.active() ? unknown : out.small);
   out.verdict = judgement.verdict;
   out.growth_per_period = judgement.growth_per_period;
   if (out.verdict == Verdict::chatter) {

@@ -18,6 +18,7 @@ struct Job {
   double feed_per_tooth_m = 0.0;
   int teeth = 1;
   std::vector<double> walls;  ///< angles
+  Schedule schedule;          ///< model_at leaves it out
 };
 
 [[nodiscard]] SmallVibration small_vibration(const Job& job, const SimulationOptions& options, Progress& progress);

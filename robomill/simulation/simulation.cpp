@@ -24,7 +24,8 @@ Job job_of(const MillingCut& cut, const SimulationOptions& options) {
   job.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s;
   job.feed_per_tooth_m = cut.milling.feed_per_tooth_m;
   job.teeth = cut.milling.tool.teeth;
-  if (cut.milling.feed_per_tooth_m > 0.0 && cut.axial_depth_m > 0.0) {
+  job.schedule = cut.schedule;
+  if (cut.milling.feed_per_tooth_m > 0.0 && cut.axial_depth_m > 0.0 && !cut.schedule.active()) {
     if (cut.milling.immersion.entry_rad == 0.0) job.walls.push_back(0.0);
     if (cut.milling.immersion.exit_rad >= pi * (1.0 - 1e-9)) job.walls.push_back(pi);
   }
@@ -40,6 +41,10 @@ void MillingCut::validate() const {
   if (axial_depth_m > 0.5) {
     throw InvalidInput("axial_depth_m", axial_depth_m, "m", "is deeper than any milling cut",
                        "Are the units mixed up?");
+  }
+  schedule.validate();
+  if (!schedule.speed.empty() && milling.speed_variation.active()) {
+    throw InvalidInput("schedule.speed", "must be empty where the speed swings");
   }
   require_damped(structure);
 }

@@ -8,15 +8,17 @@
 #include "robomill/base/progress.hpp"
 #include "robomill/cutting/milling.hpp"
 #include "robomill/modal/tip.hpp"
+#include "robomill/simulation/schedule.hpp"
 
 namespace robomill::simulation {
 
-/// Milling at one speed and depth, and what vibrates in it.
+/// Milling at one speed and depth, or a schedule of them, and what vibrates in it.
 struct ROBOMILL_API MillingCut {
   cutting::Milling milling;
   modal::TipModes structure;             ///< of the tool against the workpiece, in the feed's frame; no modes: rigid
   double spindle_speed_rad_per_s = 0.0;  ///< Ω [rad/s], > 0; required
   double axial_depth_m = 0.0;            ///< a [m], >= 0
+  Schedule schedule = {};                ///< of depth and speed in time; not with milling.speed_variation
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -25,8 +27,10 @@ struct ROBOMILL_API SimulationOptions {
   double seconds = 2.0;             ///< how much is simulated [s], > 0
   double sample_rate_hz = 10240.0;  ///< of the output [Hz], > 0
   bool loss_of_contact = true;      ///< false: the linear cut, whose chip may have negative thickness
-  int steps_per_revolution = 0;     ///< 0: chosen, see robomill/simulation/README.md
-  int slices = 0;                   ///< along the axis; 0: chosen
+  /// false: chips as a rigid cutter would cut them, whatever vibrates: the forced vibration, which cannot chatter.
+  bool regeneration = true;
+  int steps_per_revolution = 0;  ///< 0: chosen, see robomill/simulation/README.md
+  int slices = 0;                ///< along the axis; 0: chosen
   /// Steps and slices are doubled until the estimated error of the displacement over the first revolutions is below
   /// this share of its root mean square; only where steps_per_revolution is 0.
   double tolerance = 2e-3;

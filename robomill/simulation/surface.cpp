@@ -50,7 +50,7 @@ Surface<D>::Surface(const CutModel& model) : model_(model), step_(revolution / m
 
 template <int D>
 void Surface<D>::set_rigid() {
-  const double metres_per_rad = model_.feed_m_per_s / model_.spindle.mean_rad_per_s;
+  const double metres_per_rad = model_.feed_m_per_s / model_.spindle.speed(0.0);
   std::vector<bool> seen(nodes_.size(), false);
   for (const Element& element : model_.elements) {
     const Ring& ring = model_.rings[static_cast<std::size_t>(element.ring)];
