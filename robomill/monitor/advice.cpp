@@ -1,0 +1,95 @@
+#include "robomill/monitor/advice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+#include "robomill/stability/fingerprint.hpp"
+
+namespace robomill::monitor {
+namespace {
+
+constexpr double turn = 2.0 * std::numbers::pi;
+constexpr double deviations = 3.0;  // within which a line is a mode's
+
+void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const modal::ModalModel& modes) {
+  // The tolerance of explain() must stay below a quarter of rotation.
+  const double most = 0.24 * spindle_speed_rad_per_s / turn;
+  const double tolerance = std::clamp(deviations * advice.std_hz, std::min(1.0, most), most);
+  const stability::Fingerprint named = stability::explain(
+      {.frequency_hz = {advice.frequency_hz}, .spindle_speed_rad_per_s = spindle_speed_rad_per_s, .teeth = teeth},
+      modes, {.tolerance_hz = tolerance});
+  const stability::ExplainedPeak& peak = named.peaks.front();
+  // The comb has taken out what rotates with the spindle: what is left is chatter where a mode explains it.
+  const auto is_chatter = [](const stability::Explanation& e) {
+    return e.kind == stability::Explanation::Kind::chatter;
+  };
+  const auto* found = is_chatter(peak.best) ? &peak.best : nullptr;
+  for (const stability::Explanation& other : peak.others) {
+    if (found == nullptr && is_chatter(other)) found = &other;
+  }
+  if (found == nullptr) return;
+  advice.mode = found->mode;
+  const double multiple = found->harmonic * named.spindle_speed_rad_per_s / turn;
+  advice.frequency_hz = std::abs((found->mirrored ? -1.0 : 1.0) * advice.frequency_hz - multiple);
+  advice.expected_hz = modes.modes[static_cast<std::size_t>(found->mode - 1)].frequency_hz;
+}
+
+void choose(Advice& advice, const stability::LobesResult& lobes, const AdviceOptions& options) {
+  const double deepest = lobes.axial_depth_m.size() > 0 ? lobes.axial_depth_m.maxCoeff() : 0.0;
+  for (const stability::Limit& limit : lobes.limit) {
+    const double speed = limit.spindle_speed_rad_per_s;
+    if (speed < options.lowest_rad_per_s || speed > options.highest_rad_per_s) continue;
+    const double depth = limit.status == stability::Limit::Status::found ? limit.axial_depth_m : deepest;
+    if (!advice.best || depth > advice.best->axial_depth_m) {
+      advice.best = stability::OperatingPoint{.spindle_speed_rad_per_s = speed, .axial_depth_m = depth};
+    }
+  }
+}
+
+}  // namespace
+
+void AdviceOptions::validate() const {
+  require_non_negative("lowest_rad_per_s", lowest_rad_per_s, "rad/s");
+  require_positive("highest_rad_per_s", highest_rad_per_s, "rad/s");
+  if (highest_rad_per_s <= lowest_rad_per_s) {
+    throw InvalidInput("highest_rad_per_s", highest_rad_per_s, "rad/s", "must be above lowest_rad_per_s");
+  }
+  if (most_speeds < 1) throw InvalidInput("most_speeds", most_speeds, "", "must be at least 1");
+}
+
+Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s, int teeth,
+              const modal::ModalModel* modes, const stability::LobesResult* lobes, const AdviceOptions& options) {
+  options.validate();
+  require_positive("frequency_hz", frequency_hz, "Hz");
+  require_non_negative("std_hz", std_hz, "Hz");
+  require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");
+  Advice out;
+  out.frequency_hz = frequency_hz;
+  out.std_hz = std_hz;
+  if (modes != nullptr) {
+    require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", "Modes are told apart by it");
+    name_mode(out, spindle_speed_rad_per_s, teeth, *modes);
+  }
+  // Lobes far down lie close together: no more of them than can be told apart from their neighbours.
+  const double first = turn * out.frequency_hz / teeth;
+  const auto last = static_cast<int>(std::min(200.0, first / std::max(1.0, options.lowest_rad_per_s)));
+  for (int k = 1; k <= last; ++k) {
+    const double speed = first / k;
+    if (speed < options.lowest_rad_per_s || speed > options.highest_rad_per_s) continue;
+    out.speeds.push_back({.lobe = k, .spindle_speed_rad_per_s = speed, .std_rad_per_s = turn * out.std_hz / teeth / k});
+  }
+  const double present = spindle_speed_rad_per_s;
+  std::ranges::sort(out.speeds, [&](const StableSpeed& a, const StableSpeed& b) {
+    return std::abs(a.spindle_speed_rad_per_s - present) < std::abs(b.spindle_speed_rad_per_s - present);
+  });
+  if (out.speeds.size() > static_cast<std::size_t>(options.most_speeds)) {
+    out.speeds.resize(static_cast<std::size_t>(options.most_speeds));
+  }
+  if (lobes != nullptr) choose(out, *lobes, options);
+  return out;
+}
+
+}  // namespace robomill::monitor

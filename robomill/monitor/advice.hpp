@@ -1,0 +1,51 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/modal/modes.hpp"
+#include "robomill/stability/lobes.hpp"
+
+namespace robomill::monitor {
+
+/// A speed at which the cut follows the chatter's own wave: the teeth pass a whole number of times k a period of it.
+struct StableSpeed {
+  int lobe = 1;                          ///< k
+  double spindle_speed_rad_per_s = 0.0;  ///< 2π f_c/(N k); n = 60 f_c/(N k) revolutions a minute
+  double std_rad_per_s = 0.0;            ///< from that of the frequency
+};
+
+struct AdviceOptions {
+  double lowest_rad_per_s = 0.0;      ///< of the spindle
+  double highest_rad_per_s = 2100.0;  ///< > lowest; 20,000 rpm
+  int most_speeds = 6;                ///< nearest to the present one; >= 1
+  /// @throws InvalidInput naming the field
+  ROBOMILL_API void validate() const;
+};
+
+/// What to do about chatter.
+struct Advice {
+  int mode = 0;               ///< that chatters, from 1; 0: none explains it, or no modes were given
+  double frequency_hz = 0.0;  ///< of the mode's motion: the one measured less its multiple of tooth passing or rotation
+  double std_hz = 0.0;
+  double expected_hz = 0.0;         ///< of that mode; 0 without one
+  std::vector<StableSpeed> speeds;  ///< nearest to the present speed first
+  /// With a chart: the speed in range with the greatest limit of depth, and that limit; of a depth that is stable up to
+  /// the end of the chart, that end.
+  std::optional<stability::OperatingPoint> best = {};
+};
+
+/// The mode is that which stability::explain names for the measured line; its own frequency then counts for the speeds,
+/// because a sideband n f_tooth ± f is no vibration of the structure. Without modes the measured frequency counts.
+/// @param frequency_hz            of chatter, > 0
+/// @param std_hz                  its standard deviation, >= 0
+/// @param spindle_speed_rad_per_s > 0 where modes are given
+/// @param teeth                   >= 1
+/// @param modes, lobes            may be null; of the lobes the limits count
+/// @throws InvalidInput naming what is out of range
+[[nodiscard]] ROBOMILL_API Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s, int teeth,
+                                         const modal::ModalModel* modes = nullptr,
+                                         const stability::LobesResult* lobes = nullptr,
+                                         const AdviceOptions& options = {});
+
+}  // namespace robomill::monitor

@@ -1,0 +1,99 @@
+#pragma once
+#include <complex>
+#include <memory>
+#include <vector>
+
+#include "robomill/monitor/comb.hpp"
+#include "robomill/monitor/cusum.hpp"
+#include "robomill/monitor/detector.hpp"
+#include "robomill/monitor/entropy.hpp"
+#include "robomill/monitor/frequency.hpp"
+#include "robomill/monitor/speed.hpp"
+#include "robomill/monitor/tachometer.hpp"
+#include "robomill/signal/synchrosqueeze.hpp"
+
+namespace robomill::monitor {
+
+/// The default detector. Method: README.md.
+class CombCusum final : public Detector {
+ public:
+  explicit CombCusum(const MonitorOptions& options);
+  void decide(const Hop& hop, Decision& decision) noexcept override;
+  void set_spindle_speed(double rad_per_s) noexcept override;
+  void reset() noexcept override;
+
+ private:
+  static constexpr std::size_t columns_a_hop = 4;  // of the transform
+
+  void take_in(const Hop& hop) noexcept;
+  // Speed
+  void find_speed() noexcept;
+  void follow_tachometer(const Hop& hop) noexcept;
+  void seek_everywhere() noexcept;
+  void look(std::size_t window, double centre_hz, double share) noexcept;
+  bool speed_holds() noexcept;
+  void lock(double rotation_hz) noexcept;
+  void replay() noexcept;
+  void lose() noexcept;
+  void learn_anew() noexcept;
+  [[nodiscard]] bool trusted() const noexcept;
+  bool look_for_hidden() noexcept;
+  // Comb
+  void comb() noexcept;
+  void comb_block(std::size_t first, std::size_t count) noexcept;
+  void follow_speed() noexcept;
+  void leftover() noexcept;
+  // Lines
+  void squeeze() noexcept;
+  void judge(Decision& decision) noexcept;
+  void in_cut(const Cusum::Verdict& verdict) noexcept;
+  void in_chatter() noexcept;
+  void follow_line() noexcept;
+  void tell_frequency(Decision& decision) noexcept;
+  void tell_bands(Decision& decision) const noexcept;
+  [[nodiscard]] double level(std::size_t line) const noexcept;
+  [[nodiscard]] double line_hz(std::size_t line) const noexcept;
+
+  MonitorOptions options_;
+  std::size_t channels_, frames_, block_, lines_;
+  std::size_t tachometer_;  // channel; channels_: none
+  SpeedSearch search_;
+  Tachometer pulses_;
+  std::vector<Comb> combs_;
+  std::vector<signal::SynchrosqueezeStream> streams_;
+  std::vector<FrequencyRing> rings_;
+  Cusum lines_test_;
+  std::vector<float> past_, past_residual_;
+  std::vector<float> input_, residual_;  // of the hop, channel after channel
+  std::vector<double> mean_;             // of each channel, slow
+  std::vector<double> rms_;              // of the residual, slow
+  std::vector<std::complex<double>> column_, innovation_;
+  std::vector<double> energy_, taken_, power_, harmonic_, harmonic_before_;
+  std::unique_ptr<bool[]> certain_;
+  std::vector<double> history_;     // of the lines' log energies, loudest channel; `kept` hops
+  std::vector<double> band_power_;  // of the hop, each channel's bands
+  std::uint64_t bad_ = 0;           // channels that are not listened to
+  std::size_t still_bad_ = 0;       // hops until a channel that is well again counts
+  bool everywhere_ = false;         // the search goes beyond the hint
+  double suggested_rate_hz_ = 0.0;
+  double hint_hz_ = 0.0, rotation_hz_ = 0.0, angle_ = 0.0;
+  double revolutions_ = 0.0;  // since the comb began to learn
+  double since_s_ = 0.0;      // what is looked at for the speed has begun
+  double since_look_s_ = 0.0, since_lock_s_ = 0.0;
+  std::size_t window_ = 0;  // of the next look
+  double slow_power_ = 0.0;
+  std::size_t jumps_ = 0;
+  std::uint64_t hops_ = 0;
+
+  State state_ = State::stable;
+  std::size_t line_ = 0, channel_ = 0;  // of chatter
+  bool above_baseline_ = true;
+  double highest_ = 0.0;  // log energy of chatter's line, at most so far
+  std::size_t broad_ = 0, calm_ = 0, steady_ = 0;
+  FrequencyEstimate found_;
+  Hidden hidden_ = Hidden::none;
+  std::size_t hidden_hops_ = 0, hidden_harmonic_ = 0;
+  double hidden_power_ = 0.0;
+};
+
+}  // namespace robomill::monitor

@@ -1,0 +1,173 @@
+#include "robomill/monitor/monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/monitor/comb_cusum.hpp"
+#include "robomill/monitor/detector.hpp"
+#include "robomill/monitor/entropy_detector.hpp"
+#include "robomill/monitor/guard.hpp"
+
+namespace robomill::monitor {
+namespace {
+
+constexpr double silence = 1e-8;  // share of the loudest channel's power below which a channel is dead
+
+void require_between(const char* field, double number, double low, double high, const char* unit, const char* rule) {
+  if (!(number >= low && number <= high)) throw InvalidInput(field, number, unit, rule);
+}
+
+std::unique_ptr<Detector> make_detector(const MonitorOptions& options) {
+  if (options.kind == Kind::energy_entropy) return std::make_unique<EntropyDetector>(options);
+  return std::make_unique<CombCusum>(options);
+}
+
+}  // namespace
+
+void MonitorOptions::validate() const {
+  require_between("sample_rate_hz", sample_rate_hz, 100.0, 1e6, "Hz", "must be in [100, 1e6]");
+  require_between("channels", channels, 1.0, 64.0, "", "must be in [1, 64]");
+  require_between("tachometer_channel", tachometer_channel, -1.0, channels - 1.0, "",
+                  "must name a channel, from 0, or be -1");
+  if (tachometer_channel >= 0 && channels == 1) {
+    throw InvalidInput("tachometer_channel", tachometer_channel, "", "leaves no channel to listen to");
+  }
+  require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  require_between("teeth", teeth, 0.0, 64.0, "", "must be in [0, 64]");
+  require_positive("window_s", window_s, "s");
+  require_positive("hop_s", hop_s, "s");
+  require_between("hop_s", std::round(hop_s * sample_rate_hz), 16.0, 1e6, "samples",
+                  "must be at least 16 samples long");
+  require_between("window_s", std::round(window_s * sample_rate_hz), 32.0, 1e6, "samples",
+                  "must be at least 32 samples long");
+  if (window_s < hop_s) throw InvalidInput("window_s", window_s, "s", "must be at least hop_s");
+  require_between("bands", bands, 2.0, 64.0, "", "must be in [2, 64]");
+  require_finite("threshold", threshold, "");
+  require_positive("false_alarms_per_hour", false_alarms_per_hour, "1/h");
+  require_non_negative("full_scale", full_scale, "");
+}
+
+std::size_t MonitorOptions::hop_samples() const noexcept {
+  return static_cast<std::size_t>(std::lround(hop_s * sample_rate_hz));
+}
+
+std::size_t MonitorOptions::window_samples() const noexcept {
+  return static_cast<std::size_t>(std::lround(window_s * sample_rate_hz));
+}
+
+struct ChatterMonitor::Parts {
+  explicit Parts(const MonitorOptions& o)
+      : options(o),
+        channels(static_cast<std::size_t>(o.channels)),
+        hop_frames(o.hop_samples()),
+        samples(channels * hop_frames),
+        guards(channels, Guard(o)),
+        detector(make_detector(o)) {}
+
+  void take(float sample) noexcept {
+    samples[channel * hop_frames + frame] = guards[channel].take(sample);
+    if (++channel < channels) return;
+    channel = 0;
+    if (++frame < hop_frames) return;
+    frame = 0;
+    decide();
+  }
+
+  void decide() noexcept {
+    const State before = last.state;
+    const std::uint64_t hop = last.hop + 1;
+    last = {.hop = hop, .time_s = static_cast<double>(hop * hop_frames - 1) / options.sample_rate_hz};
+    Hop of{.samples = samples, .frames = hop_frames, .first_frame = (hop - 1) * hop_frames};
+    double power = 0.0;
+    double loudest = 0.0;
+    for (Guard& guard : guards) {
+      last.faults |= guard.hop_faults();
+      power += guard.variance();
+      loudest = std::max(loudest, guard.variance());
+    }
+    for (std::size_t c = 0; c < channels; ++c) {
+      if (static_cast<int>(c) == options.tachometer_channel) continue;
+      const bool silent = guards[c].variance() < silence * loudest;
+      if (silent) last.faults |= dead_channel;
+      if (silent || guards[c].bad()) of.bad_channels |= std::uint64_t{1} << c;
+    }
+    last.level = std::sqrt(power / static_cast<double>(channels));
+    detector->decide(of, last);
+    last.changed = last.state != before;
+  }
+
+  MonitorOptions options;
+  std::size_t channels = 1, hop_frames = 1;
+  std::vector<double> samples;  // of this hop, channel after channel
+  std::size_t frame = 0, channel = 0;
+  std::vector<Guard> guards;
+  std::unique_ptr<Detector> detector;
+  Decision last;
+};
+
+ChatterMonitor::ChatterMonitor(const MonitorOptions& options) {
+  options.validate();
+  parts_ = std::make_unique<Parts>(options);
+}
+ChatterMonitor::~ChatterMonitor() = default;
+ChatterMonitor::ChatterMonitor(ChatterMonitor&&) noexcept = default;
+ChatterMonitor& ChatterMonitor::operator=(ChatterMonitor&&) noexcept = default;
+
+Decision ChatterMonitor::push(std::span<const float> samples) noexcept {
+  for (const float sample : samples) parts_->take(sample);
+  return parts_->last;
+}
+
+std::size_t ChatterMonitor::frames_to_next_decision() const noexcept {
+  return parts_->hop_frames - parts_->frame;
+}
+
+void ChatterMonitor::set_spindle_speed(double rad_per_s) noexcept {
+  parts_->options.spindle_speed_rad_per_s = std::isfinite(rad_per_s) && rad_per_s > 0.0 ? rad_per_s : 0.0;
+  parts_->detector->set_spindle_speed(parts_->options.spindle_speed_rad_per_s);
+}
+
+void ChatterMonitor::reset() noexcept {
+  parts_->frame = 0;
+  parts_->channel = 0;
+  parts_->last = {};
+  for (Guard& guard : parts_->guards) guard.reset();
+  parts_->detector->reset();
+}
+
+const MonitorOptions& ChatterMonitor::options() const noexcept {
+  return parts_->options;
+}
+
+std::string_view to_string(Kind kind) {
+  return kind == Kind::comb_cusum ? "comb-cusum" : "energy-entropy";
+}
+std::string_view to_string(Entropy entropy) {
+  return entropy == Entropy::normalised ? "normalised" : "energy";
+}
+std::string_view to_string(State state) {
+  return state == State::stable ? "stable" : state == State::transition ? "transition" : "chatter";
+}
+std::string_view to_string(Hidden hidden) {
+  return hidden == Hidden::none ? "none" : hidden == Hidden::locked ? "locked" : "period-doubling";
+}
+std::string_view to_string(Fault fault) {
+  switch (fault) {
+    case Fault::not_finite:
+      return "not-finite";
+    case Fault::stuck:
+      return "stuck";
+    case Fault::clipped:
+      return "clipped";
+    case Fault::dead_channel:
+      return "dead-channel";
+    case Fault::wrong_sample_rate:
+      return "wrong-sample-rate";
+    default:
+      return "speed-unknown";
+  }
+}
+
+}  // namespace robomill::monitor

@@ -1,0 +1,114 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "robomill/base/export.hpp"
+
+namespace robomill::monitor {
+
+/// Kind::comb_cusum: what the tracking comb leaves, band by band in a sequential test. Kind::energy_entropy: the
+/// published detector.
+enum class Kind { comb_cusum, energy_entropy };
+/// Of the bands' energies: normalised, -Σ p ln p; or un-normalised, which grows with the amplitude.
+enum class Entropy { normalised, energy };
+/// transition: the test is on its way up, or an alarm is on its way down.
+enum class State { stable, transition, chatter };
+/// How chatter was seen that a comb takes for a part of the cut. locked: at a multiple of rotation, by amplitude and
+/// phase against their learnt values. period_doubling: between the multiples of tooth passing.
+enum class Hidden { none, locked, period_doubling };
+
+/// What is wrong with the input; a bit mask, since several may be.
+enum Fault : std::uint32_t {
+  not_finite = 1,          ///< NaN or infinite samples; the last good one stands in for them
+  stuck = 2,               ///< a channel that moved repeats one value for 20 ms and longer
+  clipped = 4,             ///< samples at full scale, or runs of equal samples at the extremes
+  dead_channel = 8,        ///< a channel that never moved, or hardly, against the others
+  wrong_sample_rate = 16,  ///< the comb fits at another one, Decision::suggested_sample_rate_hz
+  speed_unknown = 32       ///< no comb was found: the test runs without
+};
+
+struct ROBOMILL_API MonitorOptions {
+  Kind kind = Kind::comb_cusum;
+  double sample_rate_hz = 0.0;           ///< in [100, 1e6]; required
+  int channels = 1;                      ///< in [1, 64]; interleaved, in the order of the files
+  int tachometer_channel = -1;           ///< of these, from 0: pulses once a revolution; -1: none
+  double spindle_speed_rad_per_s = 0.0;  ///< a hint, off by several percent in real metadata; 0: unknown
+  int teeth = 0;                         ///< in [0, 64]; 0: unknown
+  double window_s = 0.05;                ///< of the short-time transform; at least 32 samples and one hop
+  double hop_s = 0.025;                  ///< between decisions; at least 16 samples
+  int bands = 16;                        ///< equal, from 0 to half the sample rate; in [2, 64]
+  Entropy entropy = Entropy::energy;     ///< energy-entropy
+  double threshold = 105.0;              ///< energy-entropy
+  bool alarm_below = false;              ///< energy-entropy: which side of the threshold is chatter, from calibration
+  double false_alarms_per_hour = 0.1;    ///< comb-cusum, > 0
+  double full_scale = 0.0;               ///< |sample| at which the converter clips, >= 0; 0: unknown
+  /// @throws InvalidInput naming the field
+  void validate() const;
+  /// Samples a hop and a window: the times, rounded.
+  [[nodiscard]] std::size_t hop_samples() const noexcept;
+  [[nodiscard]] std::size_t window_samples() const noexcept;
+};
+
+/// One a hop, by value.
+struct Decision {
+  std::uint64_t hop = 0;  ///< from 1; 0: none was made yet
+  double time_s = 0.0;    ///< of the last sample it used: when it could be made
+  State state = State::stable;
+  bool changed = false;         ///< state differs from the last decision's
+  double score = 0.0;           ///< of the test
+  double threshold = 0.0;       ///< that the score is held against
+  double energy_entropy = 0.0;  ///< Σ over the channels of the bands' energy entropy, as MonitorOptions::entropy has it
+  double level = 0.0;           ///< rms of all channels over the hop, mean taken off [input's unit]
+  double chatter_frequency_hz = 0.0;      ///< 0: none
+  double chatter_frequency_std_hz = 0.0;  ///< its standard deviation
+  int channel = 0;                        ///< in which chatter is strongest, from 0
+  double spindle_speed_rad_per_s = 0.0;   ///< as tracked; 0: unknown
+  double suggested_sample_rate_hz = 0.0;  ///< with Fault::wrong_sample_rate
+  std::uint32_t faults = 0;               ///< of Fault
+  Hidden hidden = Hidden::none;
+  int bands = 0;                          ///< used of band_level
+  std::array<float, 64> band_level = {};  ///< rms of each band, all channels [input's unit]
+};
+
+/// Hears chatter in a stream of samples. Method and accuracy: robomill/monitor/README.md.
+///
+/// Nothing throws, and nothing is allocated, after construction. Not to be used by two threads at once.
+class ROBOMILL_API ChatterMonitor {
+ public:
+  /// @throws InvalidInput naming an option that is out of range
+  explicit ChatterMonitor(const MonitorOptions& options);
+  ~ChatterMonitor();
+  ChatterMonitor(ChatterMonitor&&) noexcept;
+  ChatterMonitor& operator=(ChatterMonitor&&) noexcept;
+  ChatterMonitor(const ChatterMonitor&) = delete;
+  ChatterMonitor& operator=(const ChatterMonitor&) = delete;
+
+  /// Samples of all channels interleaved, any number of them; what is left of a frame waits for the next call.
+  /// @return the last decision made; its hop counts them
+  Decision push(std::span<const float> samples) noexcept;
+  /// Frames still wanted for the next decision; who pushes no more than these sees every one.
+  [[nodiscard]] std::size_t frames_to_next_decision() const noexcept;
+  /// A new hint [rad/s]; 0, negative or not finite: unknown.
+  void set_spindle_speed(double rad_per_s) noexcept;
+  /// As after construction; the last hint stays.
+  void reset() noexcept;
+  [[nodiscard]] const MonitorOptions& options() const noexcept;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// "comb-cusum", "normalised", "stable", "locked", …: as the files write them.
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Kind kind);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Entropy entropy);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(State state);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Hidden hidden);
+/// "not-finite", …; of one bit.
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Fault fault);
+
+}  // namespace robomill::monitor
