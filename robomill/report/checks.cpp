@@ -22,4 +22,15 @@ void require_length(const std::string& field, Eigen::Index length, Eigen::Index 
   throw InvalidInput(field, "has " + std::to_string(length) + " values where its axis has " + std::to_string(expected));
 }
 
+void require_all_finite(const std::string& field, const Eigen::Ref<const Eigen::MatrixXd>& values) {
+  if (!values.allFinite()) throw InvalidInput(field, "must be finite");
+}
+
+void require_band(const std::string& field, const Band& band, Eigen::Index runs, bool may_be_empty) {
+  require_length(field + ".low", band.low.size(), runs, may_be_empty);
+  require_length(field + ".high", band.high.size(), band.low.size(), false);
+  require_all_finite(field + ".low", band.low);
+  require_all_finite(field + ".high", band.high);
+}
+
 }  // namespace robomill::report

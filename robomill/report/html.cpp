@@ -156,10 +156,30 @@ std::string Table::html() const {
       caption, quiet ? " class=\"quiet\"" : "", head, rows_);
 }
 
+const std::string& text_of(const nlohmann::ordered_json& value) {
+  return value.get_ref<const std::string&>();
+}
+
+std::string facts_list(const nlohmann::ordered_json& facts) {
+  if (facts.empty()) return {};
+  std::string out = "<dl class=\"facts\">";
+  for (const auto& fact : facts) {
+    out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", escape(text_of(fact["label"])),
+                       escape(text_of(fact["value"])));
+  }
+  return out + "</dl>\n";
+}
+
+std::string warning_box(std::string_view heading, const nlohmann::ordered_json& texts) {
+  if (texts.empty()) return {};
+  return fmt::format("<aside class=\"warnings\" aria-label=\"{0}\"><h3>{0}</h3>\n{1}</aside>\n", escape(heading),
+                     bullet_list(texts));
+}
+
 std::string bullet_list(const nlohmann::ordered_json& texts) {
   if (texts.empty()) return {};
   std::string out = "<ul>";
-  for (const auto& line : texts) out += "<li>" + escape(line.get_ref<const std::string&>()) + "</li>";
+  for (const auto& line : texts) out += "<li>" + escape(text_of(line)) + "</li>";
   return out + "</ul>\n";
 }
 

@@ -39,6 +39,12 @@ class Table {
   std::vector<std::string> headings_;
 };
 
+/// A text that JSON holds.
+[[nodiscard]] const std::string& text_of(const nlohmann::ordered_json& value);
+/// <dl> of labels and values; empty where there are none.
+[[nodiscard]] std::string facts_list(const nlohmann::ordered_json& facts);
+/// What to know first, under a heading; empty where there is nothing.
+[[nodiscard]] std::string warning_box(std::string_view heading, const nlohmann::ordered_json& texts);
 /// <ul> of the texts, escaped; empty where there are none.
 [[nodiscard]] std::string bullet_list(const nlohmann::ordered_json& texts);
 /// A part that opens on a click.

@@ -44,4 +44,27 @@ Json texts(const std::vector<std::string>& raw) {
   return list;
 }
 
+bool is_single(const Band& band) {
+  return band.low == band.high;
+}
+
+Json run_times_json(Eigen::Index runs, bool points, double run_s) {
+  Json list = Json::array();
+  for (Eigen::Index run = 0; run < runs; ++run) {
+    const double begin = static_cast<double>(run) * run_s;
+    list.push_back(number(begin + (points ? 0.0 : 0.25 * run_s)));
+    if (!points) list.push_back(number(begin + 0.75 * run_s));
+  }
+  return list;
+}
+
+Json band_json(const Band& band, bool points, double unit) {
+  Json list = Json::array();
+  for (Eigen::Index run = 0; run < band.low.size(); ++run) {
+    list.push_back(number(band.low[run], unit));
+    if (!points) list.push_back(number(band.high[run], unit));
+  }
+  return list;
+}
+
 }  // namespace robomill::report

@@ -20,8 +20,19 @@ namespace robomill::report {
 /// Its part on a smoothed program.
 [[nodiscard]] nlohmann::ordered_json smooth_json(const Smooth& smooth);
 
+/// Its parts on a monitored recording and on a calibration.
+[[nodiscard]] nlohmann::ordered_json monitor_json(const MonitorRun& run);
+[[nodiscard]] nlohmann::ordered_json calibration_json(const CalibrationRun& run);
+
 /// Lines of an axis as bands [from, to], neighbours in one; a band reaches half a step beyond its lines.
 [[nodiscard]] nlohmann::ordered_json bands_json(const Eigen::VectorXd& axis_hz, const std::vector<double>& lines_hz);
+
+/// Whether every run of a curve is one sample.
+[[nodiscard]] bool is_single(const Band& band);
+/// Where the values of band_json stand, for each of `runs`: with `points` its one value at its begin; else its lowest
+/// and highest value a quarter before and after its middle.
+[[nodiscard]] nlohmann::ordered_json run_times_json(Eigen::Index runs, bool points, double run_s);
+[[nodiscard]] nlohmann::ordered_json band_json(const Band& band, bool points, double unit = 1.0);
 
 /// To six significant digits; null unless finite.
 [[nodiscard]] nlohmann::ordered_json number(double value);

@@ -130,6 +130,8 @@ void Report::validate() const {
   validate_cuts(*this);
   validate_part("forces.", forces);
   validate_part("smooth.", smooth);
+  validate_part("monitor.", monitor);
+  validate_part("calibration.", calibration);
 }
 
 Agreement agreement(const std::vector<TestCut>& cuts) {

@@ -11,6 +11,7 @@
 #include "robomill/modal/modes.hpp"
 #include "robomill/report/fact.hpp"
 #include "robomill/report/forces.hpp"
+#include "robomill/report/monitor.hpp"
 #include "robomill/report/smooth.hpp"
 
 /// Results of the other stages, as a page to look at and as the data of its plots. The structs are filled by whoever
@@ -218,6 +219,8 @@ struct Report {
   std::optional<FeedDirections> feed_directions = {};
   std::optional<Forces> forces = {};
   std::optional<Smooth> smooth = {};
+  std::optional<MonitorRun> monitor = {};
+  std::optional<CalibrationRun> calibration = {};
   std::vector<Recording> recordings = {};
   std::vector<StageFile> files = {};
 

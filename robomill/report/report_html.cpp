@@ -11,10 +11,6 @@
 namespace robomill::report {
 namespace {
 
-const std::string& text_of(const Json& value) {
-  return value.get_ref<const std::string&>();
-}
-
 /// Nothing may be fetched: the policy forbids it, whatever a text in the data says.
 constexpr const char* policy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
@@ -24,14 +20,7 @@ std::string header(const Json& report) {
   std::string out = "<header><h1>" + escape(text_of(report["title"])) + "</h1>\n";
   if (!text_of(report["created"]).empty())
     out += "<p class=\"created\">" + escape(text_of(report["created"])) + "</p>\n";
-  if (!report["facts"].empty()) {
-    out += "<dl class=\"facts\">";
-    for (const Json& fact : report["facts"]) {
-      out +=
-          "<div><dt>" + escape(text_of(fact["label"])) + "</dt><dd>" + escape(text_of(fact["value"])) + "</dd></div>";
-    }
-    out += "</dl>\n";
-  }
+  out += facts_list(report["facts"]);
   return out + "</header>\n";
 }
 
@@ -42,17 +31,19 @@ std::string warnings(const Json& report) {
 }
 
 std::string navigation(const std::string& body) {
-  constexpr std::array<std::pair<const char*, const char*>, 11> entries = {{{"lobes", "Lobes"},
-                                                                            {"feed", "Feed direction"},
-                                                                            {"forces", "Forces"},
-                                                                            {"smooth", "Smoothed program"},
-                                                                            {"assembly", "Tool and holder"},
-                                                                            {"frf", "Frequency response"},
-                                                                            {"modes", "Modes"},
-                                                                            {"pairs", "Which modes matter"},
-                                                                            {"recordings", "Recorded cuts"},
-                                                                            {"hits", "Hits"},
-                                                                            {"notes", "Notes"}}};
+  constexpr auto entries = std::to_array<std::pair<const char*, const char*>>({{"monitor", "Monitor"},
+                                                                               {"calibration", "Calibration"},
+                                                                               {"lobes", "Lobes"},
+                                                                               {"feed", "Feed direction"},
+                                                                               {"forces", "Forces"},
+                                                                               {"smooth", "Smoothed program"},
+                                                                               {"assembly", "Tool and holder"},
+                                                                               {"frf", "Frequency response"},
+                                                                               {"modes", "Modes"},
+                                                                               {"pairs", "Which modes matter"},
+                                                                               {"recordings", "Recorded cuts"},
+                                                                               {"hits", "Hits"},
+                                                                               {"notes", "Notes"}});
   std::string links;
   for (const auto& [id, label] : entries) {
     if (body.find(fmt::format("<section id=\"{}\"", id)) == std::string::npos) continue;
@@ -80,7 +71,8 @@ std::string report_html(const Report& report) {
   const Json json = shop_units(report);
   const std::string_view script = page_script();
   const bool plots = !script.empty();
-  const std::string body = lobes_section(json, plots) + feed_section(json, plots) + forces_section(json, plots) +
+  const std::string body = monitor_section(json, plots) + calibration_section(json, plots) +
+                           lobes_section(json, plots) + feed_section(json, plots) + forces_section(json, plots) +
                            smooth_section(json, plots) + assembly_section(json) + frf_section(json, plots) +
                            modes_section(json, plots) + pairs_section(json, plots) + recordings_section(json, plots) +
                            hits_section(json) + notes_section(json);

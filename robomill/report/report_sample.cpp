@@ -9,6 +9,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/report/forces_sample.hpp"
+#include "robomill/report/monitor_sample.hpp"
 #include "robomill/report/smooth_sample.hpp"
 
 namespace robomill::report {
@@ -352,6 +353,8 @@ Report sample_report() {
   add_feed_directions(report);
   report.forces = sample_forces();
   report.smooth = sample_smooth();
+  report.monitor = sample_monitor();
+  report.calibration = sample_calibration();
   add_recording(report);
   for (int k = 1; k <= 10; ++k) {
     HitRow hit{"hit_" + std::string(k <= 5 ? "x_" : "y_") + std::to_string((k - 1) % 5 + 1) + ".csv",

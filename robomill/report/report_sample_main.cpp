@@ -32,6 +32,12 @@ int main(int argc, char** argv) {
     report.smooth->skipped = {evil};
     report.smooth->methods.front().name = evil;
     report.smooth->methods.front().uses.front().what = evil;
+    report.monitor->facts = {{evil, evil}};
+    report.monitor->notes = {evil};
+    report.monitor->channels.front().name = evil;
+    report.monitor->events.front().note = evil;
+    report.calibration->rows.front().name = evil;
+    report.calibration->curves.front().label = evil;
     report.recordings.front().file = evil;
     report.recordings.front().peaks.front().text = evil;
   }

@@ -145,6 +145,14 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.smooth->warnings = report.smooth->notes = report.smooth->skipped = {evil};
   report.smooth->methods.front().name = evil;
   report.smooth->methods.front().uses.front().what = evil;
+  report.monitor->facts = {{evil, evil}};
+  report.monitor->warnings = report.monitor->notes = {evil};
+  report.monitor->unit = report.monitor->detector = evil;
+  report.monitor->channels.front().name = evil;
+  report.monitor->events.front().note = evil;
+  report.calibration->facts = {{evil, evil}};
+  report.calibration->rows.front().name = evil;
+  report.calibration->curves.front().label = evil;
   const std::string html = report_html(report);
   EXPECT_EQ(count(html, "<script"), scripts);
   EXPECT_EQ(html.find("<img"), std::string::npos);

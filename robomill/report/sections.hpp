@@ -21,6 +21,10 @@ using Json = nlohmann::ordered_json;
 // sections_smooth.cpp: what a machine does with a program, beside its limits
 [[nodiscard]] std::string smooth_section(const Json& report, bool plots);
 
+// sections_monitor.cpp: what the chatter monitor heard, and how it was calibrated
+[[nodiscard]] std::string monitor_section(const Json& report, bool plots);
+[[nodiscard]] std::string calibration_section(const Json& report, bool plots);
+
 // sections_assembly.cpp: tool, joint and holder, and what is predicted of them
 [[nodiscard]] std::string assembly_section(const Json& report);
 

@@ -7,10 +7,6 @@
 namespace robomill::report {
 namespace {
 
-const std::string& text_of(const Json& value) {
-  return value.get_ref<const std::string&>();
-}
-
 std::string segment_remark(const Json& segment) {
   std::string out = text_of(segment["beam"]);
   if (segment["flutes"].get<int>() > 0) {

@@ -8,10 +8,6 @@
 namespace robomill::report {
 namespace {
 
-const std::string& text_of(const Json& value) {
-  return value.get_ref<const std::string&>();
-}
-
 std::string verdict_badge(const Json& verdict) {
   if (!verdict.is_string()) return "<span class=\"verdict unknown\">not stated</span>";
   return fmt::format("<span class=\"verdict {0}\">{0}</span>", text_of(verdict));

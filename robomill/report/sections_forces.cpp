@@ -8,27 +8,7 @@
 namespace robomill::report {
 namespace {
 
-const std::string& text_of(const Json& value) {
-  return value.get_ref<const std::string&>();
-}
-
 /// A box of its own, so that it is not read past.
-std::string warning_box(const char* heading, const Json& texts) {
-  if (texts.empty()) return {};
-  return fmt::format("<aside class=\"warnings\" aria-label=\"{0}\"><h3>{0}</h3>\n{1}</aside>\n", heading,
-                     bullet_list(texts));
-}
-
-std::string facts_list(const Json& facts) {
-  if (facts.empty()) return {};
-  std::string out = "<dl class=\"facts\">";
-  for (const Json& fact : facts) {
-    out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", escape(text_of(fact["label"])),
-                       escape(text_of(fact["value"])));
-  }
-  return out + "</dl>\n";
-}
-
 /// "12.1, −3, 40": three numbers in one cell.
 std::string coordinates(const Json& triple) {
   return fmt::format("{}, {}, {}", significant(triple[0]), significant(triple[1]), significant(triple[2]));

@@ -8,26 +8,6 @@
 namespace robomill::report {
 namespace {
 
-const std::string& text_of(const Json& value) {
-  return value.get_ref<const std::string&>();
-}
-
-std::string facts_list(const Json& facts) {
-  if (facts.empty()) return {};
-  std::string out = "<dl class=\"facts\">";
-  for (const Json& fact : facts) {
-    out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", escape(text_of(fact["label"])),
-                       escape(text_of(fact["value"])));
-  }
-  return out + "</dl>\n";
-}
-
-std::string warning_box(const Json& texts) {
-  if (texts.empty()) return {};
-  return "<aside class=\"warnings\" aria-label=\"Before you run it\"><h3>Before you run it</h3>\n" +
-         bullet_list(texts) + "</aside>\n";
-}
-
 /// "11.2 s for 16 blocks; the bound is 10.9 s (2.8 % below). No sample breaks a limit."
 std::string verdict(const Json& smooth) {
   const Json& method = smooth["methods"][0];
@@ -124,8 +104,8 @@ std::string smooth_section(const Json& report, bool plots) {
   const Json& smooth = report["smooth"];
   if (smooth.is_null()) return {};
   const Json& methods = smooth["methods"];
-  std::string body =
-      facts_list(smooth["facts"]) + warning_box(smooth["warnings"]) + verdict(smooth) + methods_table(methods);
+  std::string body = facts_list(smooth["facts"]) + warning_box("Before you run it", smooth["warnings"]) +
+                     verdict(smooth) + methods_table(methods);
   if (plots && !methods[0]["motion"]["time_s"].empty()) body += plots_of(smooth);
   body += "<h3>Limits and what is used of them</h3>\n" + uses_table(methods[0]);
   for (std::size_t i = 1; i < methods.size(); ++i) {

@@ -8,10 +8,6 @@
 namespace robomill::report {
 namespace {
 
-const std::string& text_of(const Json& value) {
-  return value.get_ref<const std::string&>();
-}
-
 std::string joined(const Json& texts) {
   std::string out;
   for (const Json& line : texts) out += (out.empty() ? "" : "; ") + escape(text_of(line));

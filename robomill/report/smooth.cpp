@@ -8,28 +8,17 @@
 namespace robomill::report {
 namespace {
 
-void require_all_finite(const std::string& field, const Eigen::Ref<const Eigen::MatrixXd>& values) {
-  if (!values.allFinite()) throw InvalidInput(field, "must be finite");
-}
-
-void validate_band(const std::string& field, const Band& band, Eigen::Index runs, bool may_be_empty) {
-  require_length(field + ".low", band.low.size(), runs, may_be_empty);
-  require_length(field + ".high", band.high.size(), band.low.size(), false);
-  require_all_finite(field + ".low", band.low);
-  require_all_finite(field + ".high", band.high);
-}
-
 void validate_motion(const std::string& field, const Motion& motion) {
   const Eigen::Index runs = motion.tip_speed_m_per_s.low.size();
   if (runs > 0) require_positive((field + ".run_s").c_str(), motion.run_s, "s");
-  validate_band(field + ".tip_speed_m_per_s", motion.tip_speed_m_per_s, runs, false);
-  validate_band(field + ".axis_speed_rad_per_s", motion.axis_speed_rad_per_s, runs, false);
+  require_band(field + ".tip_speed_m_per_s", motion.tip_speed_m_per_s, runs, false);
+  require_band(field + ".axis_speed_rad_per_s", motion.axis_speed_rad_per_s, runs, false);
   for (std::size_t k = 0; k < motion.joints.size(); ++k) {
     const JointMotion& joint = motion.joints[k];
-    validate_band(member(field + ".joints", k, "velocity"), joint.velocity, runs, false);
-    validate_band(member(field + ".joints", k, "acceleration"), joint.acceleration, runs, false);
-    validate_band(member(field + ".joints", k, "jerk"), joint.jerk, runs, false);
-    validate_band(member(field + ".joints", k, "tracking_error"), joint.tracking_error, runs, true);
+    require_band(member(field + ".joints", k, "velocity"), joint.velocity, runs, false);
+    require_band(member(field + ".joints", k, "acceleration"), joint.acceleration, runs, false);
+    require_band(member(field + ".joints", k, "jerk"), joint.jerk, runs, false);
+    require_band(member(field + ".joints", k, "tracking_error"), joint.tracking_error, runs, true);
   }
   require_all_finite(field + ".tip_m", motion.tip_m);
   require_length(field + ".tip_speed_at_m_per_s", motion.tip_speed_at_m_per_s.size(), motion.tip_m.cols(), false);

@@ -5,15 +5,11 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/report/band.hpp"
 #include "robomill/report/fact.hpp"
 
 /// A smoothed program as a part of the report. Work frame.
 namespace robomill::report {
-
-/// A curve over equal runs of time: the lowest and the highest value in each.
-struct Band {
-  Eigen::VectorXd low = {}, high = {};
-};
 
 /// What one joint does; rad or m.
 struct JointMotion {

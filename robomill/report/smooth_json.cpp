@@ -46,31 +46,6 @@ Json uses_json(const SmoothMethod& method) {
   return rows;
 }
 
-/// A run has one point where it is one sample, else its lowest and highest value a quarter before and after its middle.
-bool single(const Band& band) {
-  return band.low == band.high;
-}
-
-Json times_json(const Motion& motion) {
-  Json list = Json::array();
-  const bool points = single(motion.tip_speed_m_per_s);
-  for (Eigen::Index run = 0; run < motion.tip_speed_m_per_s.low.size(); ++run) {
-    const double begin = static_cast<double>(run) * motion.run_s;
-    list.push_back(number(begin + (points ? 0.0 : 0.25 * motion.run_s)));
-    if (!points) list.push_back(number(begin + 0.75 * motion.run_s));
-  }
-  return list;
-}
-
-Json band_json(const Band& band, bool points, double unit) {
-  Json list = Json::array();
-  for (Eigen::Index run = 0; run < band.low.size(); ++run) {
-    list.push_back(number(band.low[run], unit));
-    if (!points) list.push_back(number(band.high[run], unit));
-  }
-  return list;
-}
-
 Json joint_json(const JointMotion& joint, bool points) {
   const double unit = joint.slides ? units::mm : units::deg;
   const bool tracked = joint.tracking_error.low.size() > 0;
@@ -95,12 +70,12 @@ Json flat_json(const Eigen::Matrix2Xd& way) {
 }
 
 Json motion_json(const Motion& motion) {
-  const bool points = single(motion.tip_speed_m_per_s);
+  const bool points = is_single(motion.tip_speed_m_per_s);
   Json joints = Json::array();
   for (const JointMotion& joint : motion.joints) joints.push_back(joint_json(joint, points));
   Json track = way_json(motion.tip_m);
   track["speed_mm_per_s"] = numbers(motion.tip_speed_at_m_per_s, units::mm);
-  return {{"time_s", times_json(motion)},
+  return {{"time_s", run_times_json(motion.tip_speed_m_per_s.low.size(), points, motion.run_s)},
           {"tip_speed_mm_per_s", band_json(motion.tip_speed_m_per_s, points, units::mm)},
           {"axis_speed_deg_per_s", band_json(motion.axis_speed_rad_per_s, points, units::deg)},
           {"joints", std::move(joints)},

@@ -112,7 +112,8 @@ program::Program sample_program() {
   for (int i = 1; i <= 12; ++i) {
     program::Block block;
     block.line = static_cast<std::size_t>(10 + i);
-    block.end.tip_m = Eigen::Vector3d((i % 2 == 0 ? 0.0 : 0.012), 0.0015 * (i / 2), 0.004 * std::sin(0.5 * i));
+    block.end.tip_m =
+        Eigen::Vector3d((i % 2 == 0 ? 0.0 : 0.012), 0.0015 * std::floor(0.5 * i), 0.004 * std::sin(0.5 * i));
     block.end.axis = Eigen::Vector3d(0.05 * std::sin(0.6 * i), 0.1 * std::cos(0.4 * i), 1.0).normalized();
     block.duration_s = 0.3;
     program.blocks.push_back(block);
@@ -183,7 +184,7 @@ Smooth sample_smooth() {
     MotionRecorder recorder(machine, {true, true, true, false, false, false}, period_s, outlined.corners);
     path::Sample last;
     recorder.restart([&last](const path::Sample& sample) -> robot::Position6 {
-      const robot::Position6 behind =
+      robot::Position6 behind =
           sample.time_s > 0.0 ? robot::Position6(0.2 * (sample.joints - last.joints)) : robot::Position6::Zero();
       last = sample;
       return behind;

@@ -211,6 +211,25 @@ export interface Smooth {
   corners: Corner[];
 }
 
+export type MonitorState = 'stable' | 'transition' | 'chatter';
+
+export interface Monitor {
+  unit: string;
+  entropy_unit: string;
+  wave_time_s: number[];
+  channels: { name: string; wave: number[] }[];
+  spectrogram: { channel: string; begin_s: number; step_s: number; frequency_hz: number[]; level_db: number[][] } | null; // a row a frequency
+  decisions: { time_s: number[]; score: number[]; threshold: number[]; energy_entropy: number[] | null; spindle_speed_rpm: number[] | null };
+  stays: { state: MonitorState; from_s: number; to_s: number }[];
+  events: { time_s: number; state: MonitorState; chatter_frequency_hz: Num }[];
+}
+
+export interface Calibration {
+  false_alarm_rate: Num;
+  detection_rate: Num;
+  curves: { label: string; false_alarm_rate: number[]; detection_rate: number[]; threshold: Num[] }[];
+}
+
 export interface Report {
   recommendation: Recommendation | null;
   alternatives: Recommendation[];
@@ -224,4 +243,6 @@ export interface Report {
   forces: Forces | null;
   smooth: Smooth | null;
   recordings: Recording[];
+  monitor: Monitor | null;
+  calibration: Calibration | null;
 }

@@ -1,10 +1,11 @@
 import * as Plotly from 'plotly.js-cartesian-dist-min';
 import { cornerFigure, pathFigure } from './corners';
-import type { Forces, Report, Smooth } from './data';
+import type { Forces, Monitor, Report, Smooth } from './data';
 import { convergenceFigure, stabilisationFigure } from './fit';
 import { engagementFigure, gammaFigure, programFigure, revolutionFigure } from './forces';
 import { frfFigure, prefersLogFrequency } from './frf';
 import { lobesFigure, mapFigure, pairFigure } from './lobes';
+import { rocFigure, scoreFigure, spectrogramFigure, waveFigure } from './monitor';
 import { polarFigure } from './polar';
 import { jointFigure, speedFigure } from './smooth';
 import { spectrumFigure } from './spectrum';
@@ -150,6 +151,12 @@ function addSmooth(smooth: Smooth, which: string | undefined, figure: HTMLElemen
   else if (which === 'smooth-joint') addJoints(smooth, figure, canvas);
 }
 
+function addMonitor(monitor: Monitor, which: string | undefined, canvas: HTMLElement): void {
+  if (which === 'monitor-wave') add(canvas, (theme) => waveFigure(monitor, theme));
+  else if (which === 'monitor-spectrogram' && monitor.spectrogram) add(canvas, (theme) => spectrogramFigure(monitor, theme));
+  else if (which === 'monitor-score') add(canvas, (theme) => scoreFigure(monitor, theme));
+}
+
 function addPlot(report: Report, figure: HTMLElement, canvas: HTMLElement): void {
   const [which, index] = (figure.dataset['plot'] ?? '').split(':');
   const all = report.lobes[0];
@@ -176,6 +183,11 @@ function addPlot(report: Report, figure: HTMLElement, canvas: HTMLElement): void
     add(canvas, (theme) => stabilisationFigure(fit, theme));
   } else if (which?.startsWith('smooth-')) {
     if (report.smooth) addSmooth(report.smooth, which, figure, canvas);
+  } else if (which?.startsWith('monitor-')) {
+    if (report.monitor) addMonitor(report.monitor, which, canvas);
+  } else if (which === 'calibration-roc' && report.calibration) {
+    const { calibration } = report;
+    add(canvas, (theme, width) => rocFigure(calibration, theme, width < 600));
   } else if (report.forces) {
     addForces(report.forces, which, canvas);
   }

@@ -1,0 +1,11 @@
+#pragma once
+#include <Eigen/Core>
+
+namespace robomill::report {
+
+/// A curve over equal runs of time: the lowest and the highest value in each.
+struct Band {
+  Eigen::VectorXd low = {}, high = {};
+};
+
+}  // namespace robomill::report

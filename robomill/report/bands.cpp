@@ -1,0 +1,61 @@
+#include "robomill/report/bands.hpp"
+
+#include <algorithm>
+
+namespace robomill::report {
+
+Bands::Bands(std::size_t curves, std::size_t most_runs) : curves_(curves), most_(most_runs + most_runs % 2) {
+  low_.reserve(most_ * curves);
+  high_.reserve(most_ * curves);
+}
+
+void Bands::clear() {
+  low_.clear();
+  high_.clear();
+  length_ = 1;
+  in_last_ = 0;
+}
+
+void Bands::halve() {
+  const std::size_t runs = low_.size() / curves_ / 2;
+  for (std::size_t run = 0; run < runs; ++run) {
+    for (std::size_t c = 0; c < curves_; ++c) {
+      const std::size_t first = 2 * run * curves_ + c;
+      low_[run * curves_ + c] = std::min(low_[first], low_[first + curves_]);
+      high_[run * curves_ + c] = std::max(high_[first], high_[first + curves_]);
+    }
+  }
+  low_.resize(runs * curves_);
+  high_.resize(runs * curves_);
+  length_ *= 2;
+  in_last_ = length_;
+}
+
+void Bands::add(std::span<const double> values) {
+  if (in_last_ == length_ || low_.empty()) {
+    if (low_.size() == most_ * curves_) halve();
+    low_.insert(low_.end(), values.begin(), values.end());
+    high_.insert(high_.end(), values.begin(), values.end());
+    in_last_ = 1;
+    return;
+  }
+  ++in_last_;
+  const std::size_t last = low_.size() - curves_;
+  for (std::size_t c = 0; c < curves_; ++c) {
+    low_[last + c] = std::min(low_[last + c], values[c]);
+    high_[last + c] = std::max(high_[last + c], values[c]);
+  }
+}
+
+Band Bands::band(std::size_t curve) const {
+  const auto runs = static_cast<Eigen::Index>(low_.size() / curves_);
+  Band out{.low = Eigen::VectorXd(runs), .high = Eigen::VectorXd(runs)};
+  for (Eigen::Index run = 0; run < runs; ++run) {
+    const std::size_t at = static_cast<std::size_t>(run) * curves_ + curve;
+    out.low[run] = low_[at];
+    out.high[run] = high_[at];
+  }
+  return out;
+}
+
+}  // namespace robomill::report
