@@ -12,6 +12,10 @@ if(ROBOMILL_THREADS STREQUAL "tbb")
 endif()
 if(ROBOMILL_APP)
   find_package(CLI11 2.1 REQUIRED)
+  find_package(OpenSSL REQUIRED)  # which Paho's targets name
+  find_package(eclipse-paho-mqtt-c 1.3 REQUIRED)
+  # One header and the library that carries its functions.
+  pkg_check_modules(httplib REQUIRED IMPORTED_TARGET cpp-httplib)
 endif()
 pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5)
 pkg_check_modules(matio REQUIRED IMPORTED_TARGET matio)

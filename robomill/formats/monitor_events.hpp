@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/monitor/monitor.hpp"
+
+namespace robomill::formats {
+
+/// What a monitor has to tell.
+struct MonitorEvent {
+  /// state: it changed, or chatter's frequency moved. window: a decision without a change. fault: what is wrong with
+  /// the input changed. stream: the way of the samples. recording: an alarm was recorded.
+  enum class Kind { state, window, fault, stream, recording };
+  Kind kind = Kind::state;
+  double time_s = 0.0;                             ///< of the stream [s]
+  monitor::Decision decision = {};                 ///< the last one
+  int mode = 0;                                    ///< that chatters, from 1; 0: unknown
+  double suggested_spindle_speed_rad_per_s = 0.0;  ///< 0: none
+  double suggested_axial_depth_m = 0.0;            ///< 0: none
+  std::vector<double> stable_speeds_rad_per_s = {};
+  double compute_s = 0.0;    ///< that the decision took
+  std::string what = {};     ///< of streams: "lost-blocks", …
+  std::uint64_t count = 0;   ///< of streams: how many
+  std::string message = {};  ///< for people
+  std::string file = {};     ///< of recordings
+};
+
+[[nodiscard]] ROBOMILL_API const char* to_string(MonitorEvent::Kind kind);
+
+/// One line of JSON with its end. What is not known is null; numbers are finite.
+[[nodiscard]] ROBOMILL_API std::string event_line(const MonitorEvent& event);
+
+/// "not-finite", … of a mask.
+[[nodiscard]] ROBOMILL_API std::vector<std::string> fault_names(std::uint32_t faults);
+
+}  // namespace robomill::formats

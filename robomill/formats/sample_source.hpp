@@ -1,0 +1,95 @@
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+
+namespace robomill::formats {
+
+/// Which columns of a recording are wanted, and what its numbers mean.
+struct SampleColumns {
+  std::vector<std::string> channels;  ///< names, or numbers from 1; at least one
+  std::string tachometer = {};        ///< the same; it becomes the last channel. Empty: none
+  int raw_columns = 0;                ///< of raw samples; 0: as many as are named, or the highest number
+  double scale = 1.0;                 ///< unit per full scale of WAV and int16, per 1 of raw float32; finite, not 0
+  double sample_rate_hz = 0.0;        ///< what the recording must run at [Hz]; 0: what it says itself
+
+  /// Channels that come out.
+  [[nodiscard]] std::size_t count() const { return channels.size() + (tachometer.empty() ? 0 : 1); }
+  /// @throws InvalidInput
+  void validate() const;
+};
+
+/// How bytes without an ending are to be read. automatic: text is CSV, all else float32.
+enum class RawFormat { automatic, float32, int16, csv };
+
+/// Frames in a row.
+struct SampleBlock {
+  std::vector<float> samples;  ///< all channels interleaved; NaN where a row could not be read
+  /// The last that the recording tells [rad/s]; NaN: none
+  double spindle_speed_rad_per_s = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// A recording read from its begin to its end. WAV, text and raw samples take the same memory whatever their length;
+/// MAT and UFF are held whole.
+class ROBOMILL_API SampleSource {
+ public:
+  SampleSource() = default;
+  virtual ~SampleSource() = default;
+  SampleSource(const SampleSource&) = delete;
+  SampleSource& operator=(const SampleSource&) = delete;
+
+  /// The next frames, at most so many; false at the end, or when asked to stop. A pipe gives what is there.
+  virtual bool next(std::size_t frames, SampleBlock& block) = 0;
+
+  /// What it runs at [Hz]; 0 where it does not say.
+  [[nodiscard]] double sample_rate_hz() const { return sample_rate_hz_; }
+  /// Magnitude at which its converter clips, in the unit of the samples; 0: unknown.
+  [[nodiscard]] double full_scale() const { return full_scale_; }
+  /// Rows of text that held something else than their numbers, and the line of the first.
+  [[nodiscard]] std::uint64_t unreadable_rows() const { return unreadable_rows_; }
+  [[nodiscard]] std::uint64_t first_unreadable_line() const { return first_unreadable_line_; }
+
+ protected:
+  double sample_rate_hz_ = 0.0, full_scale_ = 0.0;
+  std::uint64_t unreadable_rows_ = 0, first_unreadable_line_ = 0;
+};
+
+/// A file by its ending (.wav; .csv .txt .dat .asc; .mat; .uff .unv .uf), or as `format` says.
+///
+/// Text: as parse_table reads it, but a column named spindle_speed_rpm is followed, empty fields and "nan" are NaN, and
+/// rows that cannot be read are frames of NaN that are counted. Names of channels stand for columns in their order
+/// where the recording names none and has as many.
+/// @param stop  becomes true when reading should end; outlives the source; may be null
+/// @throws InvalidInput if it is missing, has no such columns, or runs at another rate than columns.sample_rate_hz
+[[nodiscard]] ROBOMILL_API std::unique_ptr<SampleSource> open_samples(const std::filesystem::path& path,
+                                                                      const SampleColumns& columns,
+                                                                      RawFormat format = RawFormat::automatic,
+                                                                      const std::atomic<bool>* stop = nullptr);
+
+/// Bytes from an open descriptor, standard input say, which stays open.
+/// @param where  names it in messages
+/// @throws InvalidInput if text has no such columns
+[[nodiscard]] ROBOMILL_API std::unique_ptr<SampleSource> open_sample_stream(int descriptor, const std::string& where,
+                                                                            const SampleColumns& columns,
+                                                                            RawFormat format,
+                                                                            const std::atomic<bool>* stop = nullptr);
+
+/// Where the wanted channels stand among the columns of raw samples, which have no names, the tachometer last.
+/// @throws InvalidInput if they cannot be told
+[[nodiscard]] ROBOMILL_API std::vector<std::size_t> pick_channels(const SampleColumns& columns, std::size_t count,
+                                                                  const std::string& where);
+
+/// Writes float samples as WAV, whole or not at all.
+/// @param samples  channels interleaved
+/// @throws InvalidInput if the rate is no whole number of Hz or the place cannot be written
+ROBOMILL_API void write_wav(const std::filesystem::path& path, const std::vector<float>& samples, int channels,
+                            double sample_rate_hz);
+
+}  // namespace robomill::formats
