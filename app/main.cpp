@@ -27,6 +27,8 @@ struct CommandLine {
   CoefficientsCommand coefficients;
   StiffnessCommand stiffness;
   SmoothCommand smooth;
+  MonitorCommand monitor;
+  CalibrateCommand calibrate;
   PlanCommand plan;
   std::function<Exit(Progress&)> chosen;
 
@@ -148,8 +150,30 @@ CommandLine::CommandLine() {
   sub->add_flag("--compare", smooth.compare, "all other methods beside it, in the summary and the report");
   sub->add_flag("--keep-breaches", smooth.keep_breaches, "write the trajectory even where it breaks a limit");
   sub->add_option("--program-period-ms", smooth.program_period_ms,
-                  "time between the points of a joint program (default: 20; 2 for .script and .servoj)")
-      ->check(CLI::PositiveNumber);
+                  "time between the points of a joint program (default: 20; 2 for .script and .servoj)");
+
+  sub = verb("monitor", "a running accelerometer to an alarm, the mode that chatters and a better speed",
+             [this](Progress& p) { return run(monitor, common, p); });
+  sub->add_option("monitor", monitor.config, "monitor.toml: channels, process, detector")->required();
+  sub->add_option("--input", monitor.input,
+                  "a recording (.wav .csv .txt .mat .uff), - for standard input, or mqtt://HOST:PORT/TOPIC (mqtts:// "
+                  "with TLS); default: mqtt.topic of monitor.toml");
+  sub->add_option("--format", monitor.format,
+                  "of standard input, or of a file whatever its ending: f32, i16 or csv (default: auto)")
+      ->check(CLI::IsMember({"auto", "f32", "i16", "csv"}));
+  sub->add_flag("--live", monitor.live, "do not keep standard input waiting: leave out hops that come too fast");
+  sub->add_flag("--every-window", monitor.every_window, "an event each hop, not only on change");
+  sub->add_flag("--watch", monitor.watch, "level, score, state and spectrum on standard error");
+  sub->add_option("--report", monitor.report, "a page to look at (.html), or its figures (.json)");
+  sub->add_option("--record", monitor.record, "a folder for the seconds before each alarm, as WAV");
+  sub->add_option("--metrics-port", monitor.metrics_port, "answer GET /metrics on loopback; 0: any port that is free")
+      ->check(CLI::Range(0, 65535));
+  sub->add_option("--seconds", monitor.seconds, "hear so much of the stream, then end")->check(CLI::PositiveNumber);
+
+  sub = verb("calibrate", "labelled recordings to the published detector's threshold",
+             [this](Progress& p) { return run(calibrate, common, p); });
+  sub->add_option("recordings", calibrate.recordings, "recordings.toml: files with labels")->required();
+  sub->add_option("--report", calibrate.report, "a page to look at (.html), or its figures (.json)");
 
   sub = verb("plan", "the whole job: hits to safe cutting conditions",
              [this](Progress& p) { return run(plan, common, p); });

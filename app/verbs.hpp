@@ -88,11 +88,26 @@ struct StiffnessCommand {
 };
 struct SmoothCommand {
   std::filesystem::path program, cell;
-  std::filesystem::path report;       ///< .html or .json; empty: none
-  std::optional<std::string> method;  ///< the cell's unless given
-  bool compare = false;               ///< the other methods beside it
-  bool keep_breaches = false;         ///< write a trajectory that breaks limits
-  double program_period_ms = 0.0;     ///< of joint programs; 0: the language's
+  std::filesystem::path report;             ///< .html or .json; empty: none
+  std::optional<std::string> method;        ///< the cell's unless given
+  bool compare = false;                     ///< the other methods beside it
+  bool keep_breaches = false;               ///< write a trajectory that breaks limits
+  std::optional<double> program_period_ms;  ///< of joint programs; not given: the language's
+};
+struct MonitorCommand {
+  std::filesystem::path config;
+  std::string input;            ///< file, "-", mqtt://HOST/TOPIC; empty: mqtt.topic of the file
+  std::string format = "auto";  ///< of bytes without an ending: auto, f32, i16, csv
+  bool every_window = false, watch = false;
+  bool live = false;             ///< standard input is not kept waiting
+  std::filesystem::path report;  ///< .html or .json; empty: none
+  std::filesystem::path record;  ///< folder for alarms; empty: the file's
+  std::optional<int> metrics_port;
+  double seconds = 0.0;  ///< of the stream; 0: to its end
+};
+struct CalibrateCommand {
+  std::filesystem::path recordings;
+  std::filesystem::path report;  ///< .html or .json; empty: none
 };
 struct PlanCommand {
   std::filesystem::path job;
@@ -109,6 +124,8 @@ Exit run(const ForcesCommand& command, const Common& common, Progress& progress)
 Exit run(const CoefficientsCommand& command, const Common& common, Progress& progress);
 Exit run(const StiffnessCommand& command, const Common& common, Progress& progress);
 Exit run(const SmoothCommand& command, const Common& common, Progress& progress);
+Exit run(const MonitorCommand& command, const Common& common, Progress& progress);
+Exit run(const CalibrateCommand& command, const Common& common, Progress& progress);
 Exit run(const PlanCommand& command, const Common& common, Progress& progress);
 
 }  // namespace robomill::app

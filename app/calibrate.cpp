@@ -1,0 +1,128 @@
+#include "robomill/monitor/calibrate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "monitor/report.hpp"
+#include "robomill/base/error.hpp"
+#include "robomill/formats/calibration_json.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/recordings_toml.hpp"
+#include "robomill/formats/text.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+namespace fs = std::filesystem;
+using monitor::Calibration;
+using monitor::Recording;
+
+constexpr std::size_t block_frames = 1 << 16;
+
+void check_places(const CalibrateCommand& command, const Common& common) {
+  if (!common.output.empty() && !common.to_stdout() && formats::format_of(common.output) != formats::Format::toml) {
+    throw InvalidInput(common.output, "a calibrated detector is written as .toml");
+  }
+  check_report_place(command.report);
+}
+
+/// All recordings run at one rate: that of recordings.toml, or of the first.
+std::vector<Recording> read_all(formats::RecordingsFile& file, Progress& progress) {
+  monitor::MonitorOptions& options = file.monitor.options;
+  std::vector<Recording> out;
+  progress.start("recordings", file.recordings.size());
+  for (const formats::LabelledRecording& labelled : file.recordings) {
+    const auto source = formats::open_samples(labelled.file, file.monitor.columns);
+    if (options.sample_rate_hz <= 0.0) {
+      options.sample_rate_hz = source->sample_rate_hz();
+      formats::validate(file.monitor);
+      file.monitor.columns.sample_rate_hz = options.sample_rate_hz;
+    }
+    Recording recording;
+    recording.name = labelled.file.string();
+    recording.chatter = labelled.chatter;
+    recording.onset_s = labelled.onset_s;
+    formats::SampleBlock block;
+    while (source->next(block_frames, block)) {
+      recording.samples.insert(recording.samples.end(), block.samples.begin(), block.samples.end());
+    }
+    out.push_back(std::move(recording));
+    progress.advance();
+  }
+  return out;
+}
+
+/// Relative to the folder of the file that names it.
+fs::path from_folder_of(const fs::path& file, const fs::path& named) {
+  if (named.empty()) return named;
+  return fs::proximate(fs::absolute(named), fs::absolute(file).parent_path());
+}
+
+void print_half(const char* name, const monitor::CalibratedHalf& half) {
+  const monitor::RocPoint& p = half.chosen;
+  fmt::print("{:<10}{:>4} stable, {:.1f} % raise a false alarm; {:>4} with chatter, {:.1f} % found", name, half.stable,
+             100.0 * p.false_alarm_rate, half.chatter, 100.0 * p.detection_rate);
+  if (std::isfinite(p.median_delay_s)) fmt::print(", {:.0f} ms after their onset (median)", 1e3 * p.median_delay_s);
+  fmt::print("\n");
+}
+
+std::string direction(const Calibration& calibration) {
+  return fmt::format("{} entropy {} {:.6g}", monitor::to_string(calibration.options.entropy),
+                     calibration.options.alarm_below ? "below" : "above", calibration.options.threshold);
+}
+
+void print_summary(const Calibration& calibration) {
+  fmt::print("Chatter is {}.\n", direction(calibration));
+  print_half("setting", calibration.setting);
+  print_half("verifying", calibration.verifying);
+  if (std::isfinite(calibration.median_lead_s)) {
+    fmt::print("The alarm comes {:.0f} ms before the line is seen in the spectrogram (median of the verifying half).\n",
+               1e3 * calibration.median_lead_s);
+  }
+}
+
+}  // namespace
+
+Exit run(const CalibrateCommand& command, const Common& common, Progress& progress) {
+  check_places(command, common);
+  formats::RecordingsFile file = formats::read_recordings(command.recordings);
+  const std::vector<Recording> recordings = read_all(file, progress);
+  const Calibration calibration = monitor::calibrate(recordings, file.monitor.options,
+                                                     {.false_alarm_rate = file.false_alarm_rate, .seed = common.seed});
+  const std::string json = formats::calibration_json(calibration);
+  if (common.to_stdout()) {
+    fmt::print("{}", json);
+  } else if (!common.output.empty()) {
+    formats::MonitorFile monitor = file.monitor;
+    monitor.options = calibration.options;
+    monitor.modes = from_folder_of(common.output, monitor.modes);
+    monitor.lobes = from_folder_of(common.output, monitor.lobes);
+    const monitor::RocPoint& verified = calibration.verifying.chosen;
+    formats::write_file(
+        common.output,
+        formats::monitor_toml(
+            monitor,
+            fmt::format("robomill calibrate {}: {} recordings, half of them to verify.\n"
+                        "Verified: {:.1f} % of the cuts with chatter found, {:.1f} % of the stable ones raise a "
+                        "false alarm.",
+                        command.recordings.filename().string(), recordings.size(), 100.0 * verified.detection_rate,
+                        100.0 * verified.false_alarm_rate)));
+  }
+  if (formats::lowered(command.report.extension().string()) == ".html") {
+    write_report(command.report, calibration_page(calibration));
+  } else if (!command.report.empty()) {
+    formats::write_file(command.report, json);
+  }
+  if (common.wants_summary()) print_summary(calibration);
+  return calibration.verifying.chosen.detection_rate > 0.0 ? done : not_reached;
+}
+
+}  // namespace robomill::app

@@ -1,0 +1,260 @@
+#include "robomill/monitor/monitor.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "monitor/advisor.hpp"
+#include "monitor/metrics.hpp"
+#include "monitor/report.hpp"
+#include "monitor/session.hpp"
+#include "monitor/session_input.hpp"
+#include "monitor/watch.hpp"
+#include "robomill/base/error.hpp"
+#include "robomill/formats/file.hpp"
+#include "robomill/formats/monitor_toml.hpp"
+#include "robomill/formats/units.hpp"
+#include "robomill/report/monitor_recorder.hpp"
+#include "terminal.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+namespace {
+
+using formats::MonitorEvent;
+using formats::RawFormat;
+
+/// Lines of events: of a recording the file appears whole at the end, of a stream line by line as they come.
+class EventFile {
+ public:
+  EventFile(const Common& common, bool live) : to_stdout_(common.to_stdout()), live_(live) {
+    if (common.output.empty() || to_stdout_) return;
+    const std::filesystem::path path = common.output;
+    std::error_code ignored;
+    const auto kind = std::filesystem::status(path, ignored).type();
+    const bool is_pipe = kind == std::filesystem::file_type::fifo || kind == std::filesystem::file_type::character;
+    if (!is_pipe) pending_ = std::make_unique<formats::PendingFile>(path);
+    if (is_pipe || live) pending_.reset();  // it has checked the place
+    file_.open(pending_ ? pending_->temporary() : path, std::ios::binary | std::ios::trunc);
+    if (!file_) throw InvalidInput(path.string(), "cannot be written");
+  }
+
+  bool write(const std::string& line) {
+    if (to_stdout_) {
+      if (std::fwrite(line.data(), 1, line.size(), stdout) == line.size() && std::fflush(stdout) == 0) return true;
+      failed_ = errno != EPIPE;  // a reader that has seen enough is none of our trouble
+      return false;
+    }
+    if (!file_.is_open()) return true;
+    file_.write(line.data(), static_cast<std::streamsize>(line.size()));
+    if (live_) file_.flush();
+    return file_.good();
+  }
+
+  /// @throws InvalidInput if something could not be written
+  void close(const std::string& name) {
+    if (failed_) throw InvalidInput("standard output", "could not be written", "Is the disk full?");
+    if (!file_.is_open()) return;
+    file_.close();
+    if (!file_) throw InvalidInput(name, "could not be written to its end", "Is the disk full?");
+    if (pending_) pending_->commit();
+  }
+
+ private:
+  bool to_stdout_, live_, failed_ = false;
+  std::unique_ptr<formats::PendingFile> pending_;
+  std::ofstream file_;
+};
+
+RawFormat raw_format(const std::string& name) {
+  if (name == "f32") return RawFormat::float32;
+  if (name == "i16") return RawFormat::int16;
+  return name == "csv" ? RawFormat::csv : RawFormat::automatic;
+}
+
+/// What is heard.
+struct Input {
+  bool is_stream = false;  ///< from the broker
+  bool is_live = false;    ///< events are wanted as they come
+  bool can_wait = true;
+  std::string name;
+  std::unique_ptr<formats::SampleSource> source;
+};
+
+Input open_input(const MonitorCommand& command, formats::MonitorFile& file, const std::atomic<bool>& ended) {
+  Input input;
+  input.is_stream =
+      command.input.empty() ? !file.mqtt.topic.empty() : formats::parse_mqtt_address(command.input, file.mqtt);
+  if (input.is_stream) {
+    input.is_live = true;
+    input.name = fmt::format("mqtt://{}:{}/{}", file.mqtt.host, file.mqtt.port_or_default(), file.mqtt.topic);
+    if (file.options.sample_rate_hz <= 0.0) {
+      throw InvalidInput(InvalidInput::Parts{
+          .where = file.path.string(), .field = "signal.sample_rate_hz", .rule = "must be given to hear a stream"});
+    }
+    return input;
+  }
+  if (command.input.empty()) {
+    throw InvalidInput("--input", "is missing, and monitor.toml names no mqtt.topic",
+                       "Give a recording, - for standard input, or mqtt://HOST/TOPIC");
+  }
+  const RawFormat format = raw_format(command.format);
+  if (command.input == "-") {
+    input.name = "standard input";
+    input.is_live = true;
+    input.can_wait = !command.live;
+    input.source = formats::open_sample_stream(STDIN_FILENO, input.name, file.columns, format, &ended);
+  } else {
+    input.name = command.input;
+    input.source = formats::open_samples(command.input, file.columns, format, &ended);
+  }
+  if (file.options.sample_rate_hz <= 0.0) file.options.sample_rate_hz = input.source->sample_rate_hz();
+  if (file.options.full_scale <= 0.0) file.options.full_scale = input.source->full_scale();
+  return input;
+}
+
+void print_event(std::FILE* to, const MonitorEvent& event) {
+  const monitor::Decision& d = event.decision;
+  if (event.kind == MonitorEvent::Kind::window) return;
+  fmt::print(to, "{:10.3f} s  ", event.time_s);
+  switch (event.kind) {
+    case MonitorEvent::Kind::state:
+      fmt::print(to, "{}", monitor::to_string(d.state));
+      if (d.state == monitor::State::chatter && d.chatter_frequency_hz > 0.0) {
+        fmt::print(to, " at {:.1f} ± {:.2g} Hz", d.chatter_frequency_hz, d.chatter_frequency_std_hz);
+        if (d.hidden != monitor::Hidden::none) fmt::print(to, " ({})", monitor::to_string(d.hidden));
+        if (event.mode > 0) fmt::print(to, ", mode {}", event.mode);
+        if (event.suggested_spindle_speed_rad_per_s > 0.0) {
+          fmt::print(to, "; try {:.0f} rpm", event.suggested_spindle_speed_rad_per_s / units::rpm);
+        }
+        if (event.suggested_axial_depth_m > 0.0) {
+          fmt::print(to, " and {:.3g} mm", event.suggested_axial_depth_m / units::mm);
+        }
+      }
+      break;
+    case MonitorEvent::Kind::fault: {
+      std::string names;
+      for (const std::string& name : formats::fault_names(d.faults)) names += (names.empty() ? "" : ", ") + name;
+      fmt::print(to, "input: {}", names.empty() ? "all well" : names);
+      if ((d.faults & monitor::wrong_sample_rate) != 0 && d.suggested_sample_rate_hz > 0.0) {
+        fmt::print(to, " (the comb suggests {:.6g} Hz)", d.suggested_sample_rate_hz);
+      }
+      break;
+    }
+    case MonitorEvent::Kind::recording:
+      fmt::print(to, "recorded {}", event.file);
+      break;
+    default:
+      fmt::print(to, "{}{}: {}", event.what, event.count > 1 ? fmt::format(" ({})", event.count) : "", event.message);
+  }
+  fmt::print(to, "\n");
+  std::fflush(to);
+}
+
+/// Lets go whoever waits for the queue or for input, before it is waited for.
+class Ending {
+ public:
+  Ending(HopQueue& queue, std::atomic<bool>& ended) : queue_(&queue), ended_(&ended) {}
+  ~Ending() {
+    *ended_ = true;
+    queue_->close();
+  }
+  Ending(const Ending&) = delete;
+  Ending& operator=(const Ending&) = delete;
+
+ private:
+  HopQueue* queue_;
+  std::atomic<bool>* ended_;
+};
+
+/// The file with what the command line says in its place.
+formats::MonitorFile read_config(const MonitorCommand& command) {
+  formats::MonitorFile file = formats::read_monitor(command.config);
+  if (!command.record.empty()) file.recording_folder = command.record;
+  if (command.metrics_port) file.metrics_port = *command.metrics_port;
+  return file;
+}
+
+/// As they lie in a frame.
+std::vector<std::string> channel_names(const formats::MonitorFile& file) {
+  std::vector<std::string> names = file.columns.channels;
+  if (!file.columns.tachometer.empty()) names.push_back(file.columns.tachometer);
+  return names;
+}
+
+}  // namespace
+
+Exit run(const MonitorCommand& command, const Common& common, Progress& progress) {
+  check_report_place(command.report);
+  formats::MonitorFile file = read_config(command);
+  std::atomic<bool> ended{false};
+  Input input = open_input(command, file, ended);
+  formats::validate(file);
+  const Advisor advisor(file, progress);
+  EventFile events(common, input.is_live);
+
+  std::optional<report::MonitorRecorder> recorder;
+  if (!command.report.empty()) recorder.emplace(file.options, channel_names(file), "");
+  std::optional<Watch> watch;
+  if (command.watch) watch.emplace();
+  std::FILE* const people = common.wants_summary() ? stdout : stderr;
+  Broker* broker = nullptr;
+  SessionOutputs outputs;
+  outputs.event = [&](const MonitorEvent& event, const std::string& line) {
+    if (broker) broker->publish(event, line);
+    const bool news = common.wants_summary() || (!common.quiet && event.kind == MonitorEvent::Kind::stream);
+    if (news && !watch) print_event(people, event);
+    return events.write(line);
+  };
+  outputs.decision = [&](const monitor::Decision& decision, double time_s) {
+    if (watch) watch->show(decision, time_s);
+  };
+  outputs.advise = [&](MonitorEvent& event) { advisor.advise(event); };
+  if (recorder) outputs.recorder = &*recorder;
+
+  Session session(file, {.every_window = command.every_window, .seconds = command.seconds}, std::move(outputs));
+  std::optional<MetricsServer> metrics;
+  if (file.metrics_port >= 0) {
+    metrics.emplace(session.metrics(), file.metrics_host, file.metrics_port);
+    if (!common.quiet) fmt::print(stderr, "metrics at http://{}:{}/metrics\n", file.metrics_host, metrics->port());
+  }
+  const std::atomic<bool>& stop = stop_on_signal();
+  {
+    std::optional<Broker> connection;
+    if (input.is_stream || !file.mqtt.events_topic.empty()) {
+      connection.emplace(file, input.is_stream, session.queue(), session.notices(), session.metrics());
+      broker = &*connection;
+      if (!input.is_stream) broker->wait_a_little();
+    }
+    std::optional<SourceInput> reader;
+    if (input.source) {
+      reader.emplace(std::move(input.source), file, session.queue(), session.notices(), session.metrics(),
+                     input.can_wait);
+    }
+    const Ending ending(session.queue(), ended);
+    session.run(stop);
+  }
+  watch.reset();
+  events.close(common.output);
+  if (recorder) write_report(command.report, monitor_page(recorder->run(), file, input.name));
+  if (common.wants_summary()) {
+    const MetricValues& m = session.metrics();
+    fmt::print("{:.3f} s of {} heard in {} decisions, {} alarm{}.\n", session.time_s(), input.name, m.decisions.load(),
+               m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
+  }
+  return stop ? interrupted : done;
+}
+
+}  // namespace robomill::app

@@ -1,0 +1,52 @@
+#include "hop_queue.hpp"
+
+#include <utility>
+
+namespace robomill::app {
+
+bool HopQueue::push(Hop&& hop) {
+  std::unique_lock lock(mutex_);
+  emptied_.wait(lock, [this] { return closed_ || hops_.size() < capacity_; });
+  if (closed_) return false;
+  hops_.push_back(std::move(hop));
+  lock.unlock();
+  filled_.notify_one();
+  return true;
+}
+
+bool HopQueue::offer(Hop& hop) {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (closed_ || hops_.size() >= capacity_) return false;
+    hops_.push_back(std::move(hop));
+  }
+  filled_.notify_one();
+  return true;
+}
+
+void HopQueue::close() {
+  {
+    const std::scoped_lock lock(mutex_);
+    closed_ = true;
+  }
+  filled_.notify_all();
+  emptied_.notify_all();
+}
+
+HopQueue::Taken HopQueue::pop(Hop& hop, std::chrono::milliseconds wait) {
+  std::unique_lock lock(mutex_);
+  filled_.wait_for(lock, wait, [this] { return closed_ || !hops_.empty(); });
+  if (hops_.empty()) return closed_ ? Taken::closed : Taken::nothing;
+  hop = std::move(hops_.front());
+  hops_.pop_front();
+  lock.unlock();
+  emptied_.notify_one();
+  return Taken::hop;
+}
+
+std::size_t HopQueue::size() const {
+  const std::scoped_lock lock(mutex_);
+  return hops_.size();
+}
+
+}  // namespace robomill::app

@@ -1,0 +1,47 @@
+#pragma once
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <mutex>
+#include <vector>
+
+namespace robomill::app {
+
+/// Samples of one hop on their way from the input to the detector.
+struct Hop {
+  std::vector<float> samples;  ///< channels interleaved
+  double spindle_speed_rad_per_s = std::numeric_limits<double>::quiet_NaN();
+  std::uint64_t frames_before = 0;  ///< frames left out between the hop before and this
+  bool restarted = false;           ///< what was before this has nothing to do with it
+};
+
+/// A queue of bounded length between the thread that reads the input and the one that hears.
+class HopQueue {
+ public:
+  explicit HopQueue(std::size_t capacity) : capacity_(capacity) {}
+
+  /// Waits for room; false once closed.
+  bool push(Hop&& hop);
+  /// Does not wait; false, and the hop stays with the caller, where there is no room or the queue is closed.
+  bool offer(Hop& hop);
+  /// No more hops; what is in it can still be taken.
+  void close();
+
+  enum class Taken { hop, nothing, closed };
+  /// nothing: none came within the time.
+  Taken pop(Hop& hop, std::chrono::milliseconds wait);
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] std::size_t capacity() const { return capacity_; }
+
+ private:
+  const std::size_t capacity_;
+  mutable std::mutex mutex_;
+  std::condition_variable filled_, emptied_;
+  std::deque<Hop> hops_;
+  bool closed_ = false;
+};
+
+}  // namespace robomill::app

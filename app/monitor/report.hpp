@@ -1,0 +1,25 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "robomill/formats/monitor_events.hpp"
+#include "robomill/formats/monitor_toml.hpp"
+#include "robomill/monitor/calibrate.hpp"
+#include "robomill/report/report.hpp"
+
+namespace robomill::app {
+
+/// An event as a row of the report's table. States and input troubles alike.
+[[nodiscard]] report::MonitorEvent report_event(const formats::MonitorEvent& event);
+
+/// The page of a recorded session. @param source  a file or an address
+[[nodiscard]] report::Report monitor_page(report::MonitorRun run, const formats::MonitorFile& file,
+                                          const std::string& source);
+[[nodiscard]] report::Report calibration_page(const monitor::Calibration& calibration);
+
+/// @throws InvalidInput unless the path is empty or ends in .json or .html
+void check_report_place(const std::filesystem::path& path);
+/// As JSON or as a page, by the ending.
+void write_report(const std::filesystem::path& path, const report::Report& page);
+
+}  // namespace robomill::app

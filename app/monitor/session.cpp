@@ -1,0 +1,187 @@
+#include "session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "report.hpp"
+
+namespace robomill::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using formats::MonitorEvent;
+
+/// Hops between input and detector: 1.6 s at 25 ms.
+constexpr std::size_t queued_hops = 64;
+constexpr std::chrono::milliseconds longest_wait{100};
+/// Faults that come and go are told at most so often.
+constexpr double fault_pause_s = 1.0;
+/// Chatter is told again when its frequency has moved by so much, and at most so often.
+constexpr double frequency_step_hz = 2.0, frequency_pause_s = 0.25;
+constexpr double speed_patience_s = 3.0;
+
+}  // namespace
+
+Session::Session(const formats::MonitorFile& file, SessionOptions options, SessionOutputs outputs)
+    : file_(file),
+      options_(options),
+      outputs_(std::move(outputs)),
+      monitor_((formats::validate(file), file.options)),
+      queue_(queued_hops) {
+  if (!file_.recording_folder.empty()) {
+    ring_.emplace(AlarmRing::Options{.folder = file_.recording_folder,
+                                     .seconds = file_.recording_s,
+                                     .channels = file_.options.channels,
+                                     .sample_rate_hz = file_.options.sample_rate_hz},
+                  [this](const std::filesystem::path& written, const std::string& error) {
+                    if (error.empty()) {
+                      notices_.add("alarm-recorded", written.string());
+                    } else {
+                      notices_.add("recording-failed", error);
+                    }
+                  });
+  }
+}
+
+double Session::time_s() const {
+  return static_cast<double>(frames_) / file_.options.sample_rate_hz;
+}
+
+void Session::run(const std::atomic<bool>& stop) {
+  Hop hop;
+  while (!stop && !ended_) {
+    const HopQueue::Taken taken = queue_.pop(hop, longest_wait);
+    if (taken == HopQueue::Taken::closed) break;
+    if (taken == HopQueue::Taken::hop) hear(std::move(hop));
+    metrics_.queued_hops = queue_.size();
+    tell_notices();
+    if (options_.seconds > 0.0 && time_s() >= options_.seconds) break;
+  }
+  queue_.close();
+  if (ring_) ring_->finish();
+  tell_notices(true);
+}
+
+void Session::hear(Hop&& hop) {
+  frames_ += hop.frames_before;
+  base_s_ += static_cast<double>(hop.frames_before) / file_.options.sample_rate_hz;
+  if (outputs_.recorder != nullptr) outputs_.recorder->skip(hop.frames_before);
+  if (hop.restarted) {
+    monitor_.reset();
+    base_s_ = time_s();
+    last_.hop = 0;
+  }
+  if (std::isfinite(hop.spindle_speed_rad_per_s) && hop.spindle_speed_rad_per_s != speed_rad_per_s_) {
+    speed_rad_per_s_ = hop.spindle_speed_rad_per_s;
+    monitor_.set_spindle_speed(speed_rad_per_s_);
+  }
+  const auto channels = static_cast<std::size_t>(file_.options.channels);
+  std::span<const float> rest = hop.samples;
+  while (!rest.empty()) {
+    const std::size_t count = std::min(rest.size(), monitor_.frames_to_next_decision() * channels);
+    const Clock::time_point begin = Clock::now();
+    const monitor::Decision decision = monitor_.push(rest.first(count));
+    compute_s_ += std::chrono::duration<double>(Clock::now() - begin).count();
+    rest = rest.subspan(count);
+    frames_ += count / channels;
+    if (decision.hop != last_.hop) decide(decision, std::exchange(compute_s_, 0.0));
+  }
+  if (outputs_.recorder != nullptr) outputs_.recorder->add(hop.samples);
+  if (!ring_) return;
+  ring_->add(std::move(hop.samples));
+  if (std::exchange(alarm_, false) && !ring_->alarm(base_s_ + last_.time_s)) {
+    notices_.add("recording-failed", "alarms come faster than they can be written");
+  }
+}
+
+void Session::decide(monitor::Decision decision, double compute_s) {
+  // Against what was told: a detector that begins anew is stable and calls it no change.
+  decision.changed = decision.state != last_.state;
+  last_ = decision;
+  const double time_s = base_s_ + decision.time_s;
+  metrics_.set(decision);
+  metrics_.stream_s = time_s;
+  metrics_.compute_s = compute_s;
+  if (decision.changed && decision.state == monitor::State::chatter) {
+    ++metrics_.alarms;
+    alarm_ = true;
+  }
+  if (outputs_.recorder != nullptr) {
+    monitor::Decision placed = decision;
+    placed.time_s = time_s;
+    outputs_.recorder->add(placed, compute_s);
+  }
+  if (outputs_.decision) outputs_.decision(decision, time_s);
+  const bool fault_news = fault_is_news(decision);
+  const bool frequency_news = frequency_is_news(decision);
+  if (!decision.changed && !fault_news && !frequency_news && !options_.every_window) return;
+  MonitorEvent event;
+  event.kind = decision.changed || frequency_news ? MonitorEvent::Kind::state
+               : fault_news                       ? MonitorEvent::Kind::fault
+                                                  : MonitorEvent::Kind::window;
+  event.time_s = time_s;
+  event.decision = decision;
+  event.compute_s = compute_s;
+  tell(std::move(event));
+}
+
+bool Session::fault_is_news(const monitor::Decision& decision) {
+  const double time_s = base_s_ + decision.time_s;
+  std::uint32_t faults = decision.faults;
+  // A comb takes a while to be found: no fault yet.
+  if ((faults & monitor::speed_unknown) == 0) {
+    speed_known_s_ = time_s;
+  } else if (time_s - speed_known_s_ < speed_patience_s) {
+    faults &= ~static_cast<std::uint32_t>(monitor::speed_unknown);
+  }
+  if (faults == told_faults_ || time_s - faults_told_s_ < fault_pause_s) return false;
+  told_faults_ = faults;
+  faults_told_s_ = time_s;
+  return true;
+}
+
+bool Session::frequency_is_news(const monitor::Decision& decision) {
+  if (decision.state != monitor::State::chatter || decision.chatter_frequency_hz <= 0.0) return false;
+  const double time_s = base_s_ + decision.time_s;
+  const double step_hz = std::max(frequency_step_hz, 3.0 * decision.chatter_frequency_std_hz);
+  const bool moved = std::abs(decision.chatter_frequency_hz - told_frequency_hz_) > step_hz;
+  if (!decision.changed && (!moved || time_s - frequency_told_s_ < frequency_pause_s)) return false;
+  told_frequency_hz_ = decision.chatter_frequency_hz;
+  frequency_told_s_ = time_s;
+  return true;
+}
+
+void Session::tell_notices(bool all) {
+  for (Notice& notice : notices_.take(Notices::Clock::now(), all)) {
+    MonitorEvent event;
+    event.kind = MonitorEvent::Kind::stream;
+    event.time_s = time_s();
+    event.decision = last_;
+    event.what = notice.what;
+    event.count = notice.count;
+    event.message = std::move(notice.message);
+    if (notice.what == "alarm-recorded") {
+      event.kind = MonitorEvent::Kind::recording;
+      event.file = std::exchange(event.message, {});
+    }
+    tell(std::move(event));
+  }
+}
+
+void Session::tell(MonitorEvent event) {
+  if (event.decision.state == monitor::State::chatter && event.decision.chatter_frequency_hz > 0.0 && outputs_.advise) {
+    outputs_.advise(event);
+  }
+  ++metrics_.events;
+  if (outputs_.recorder != nullptr && event.kind != MonitorEvent::Kind::window) {
+    outputs_.recorder->add(report_event(event));
+  }
+  if (outputs_.event && !outputs_.event(event, formats::event_line(event))) ended_ = true;
+}
+
+}  // namespace robomill::app

@@ -1,0 +1,192 @@
+#include "session_input.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <string_view>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/formats/stream_block.hpp"
+
+namespace robomill::app {
+namespace {
+
+/// A block's rate may be a measured one.
+constexpr double rate_tolerance = 0.01;
+/// Of lost samples: longer gaps are left out.
+constexpr double longest_filled_s = 1.0;
+constexpr std::chrono::milliseconds publish_wait{2000};
+
+}  // namespace
+
+std::function<void(std::uint64_t)> tell_dropped(Notices& notices, MetricValues& metrics) {
+  return [&notices, &metrics](std::uint64_t hops) {
+    metrics.dropped_hops += hops;
+    notices.add("dropped-hops", "samples come faster than they can be heard; whole hops are left out", hops);
+  };
+}
+
+SourceInput::SourceInput(std::unique_ptr<formats::SampleSource> source, const formats::MonitorFile& file,
+                         HopQueue& queue, Notices& notices, MetricValues& metrics, bool can_wait)
+    : source_(std::move(source)),
+      queue_(&queue),
+      notices_(&notices),
+      intake_(queue, static_cast<std::size_t>(file.options.channels), file.options.hop_samples(), can_wait,
+              tell_dropped(notices, metrics)),
+      hop_frames_(file.options.hop_samples()),
+      thread_([this] { read(); }) {}
+
+void SourceInput::read() {
+  try {
+    formats::SampleBlock block;
+    std::uint64_t told_rows = 0;
+    while (source_->next(hop_frames_, block)) {
+      intake_.speed(block.spindle_speed_rad_per_s);
+      if (!intake_.add(block.samples)) return;
+      if (source_->unreadable_rows() == told_rows) continue;
+      notices_->add("unreadable-rows",
+                    fmt::format("rows that cannot be read, from line {} on", source_->first_unreadable_line()),
+                    source_->unreadable_rows() - told_rows);
+      told_rows = source_->unreadable_rows();
+    }
+    intake_.finish();
+  } catch (const std::exception& error) {
+    notices_->add("input-failed", error.what());
+  }
+  queue_->close();
+}
+
+StreamIntake::StreamIntake(const formats::MonitorFile& file, HopQueue& queue, Notices& notices, MetricValues& metrics)
+    : columns_(file.columns),
+      sample_rate_hz_(file.options.sample_rate_hz),
+      notices_(&notices),
+      metrics_(&metrics),
+      intake_(queue, static_cast<std::size_t>(file.options.channels), file.options.hop_samples(), false,
+              tell_dropped(notices, metrics)) {}
+
+void StreamIntake::refuse(const std::string& why) {
+  ++metrics_->refused_messages;
+  notices_->add("refused-messages", why);
+}
+
+bool StreamIntake::pick(int channels) {
+  if (channels == picked_channels_) return true;
+  try {
+    pick_ = formats::pick_channels(columns_, static_cast<std::size_t>(channels), "a message");
+    picked_channels_ = channels;
+    return true;
+  } catch (const InvalidInput& error) {
+    refuse(error.what());
+    return false;
+  }
+}
+
+void StreamIntake::message(std::span<const std::byte> payload) {
+  formats::DecodedBlock decoded = formats::decode_stream_block(payload);
+  if (!decoded.block) {
+    refuse(fmt::format("a message {}", decoded.refusal));
+    return;
+  }
+  if (std::abs(decoded.block->sample_rate_hz / sample_rate_hz_ - 1.0) > rate_tolerance) {
+    refuse(fmt::format("a message was sampled at {:.6g} Hz, not at signal.sample_rate_hz = {:.6g} Hz",
+                       decoded.block->sample_rate_hz, sample_rate_hz_));
+    return;
+  }
+  if (!pick(decoded.block->channels)) return;
+  order_.take(std::move(*decoded.block), given_);
+  give();
+}
+
+void StreamIntake::give_up() {
+  order_.give_up(given_);
+  give();
+}
+
+void StreamIntake::give() {
+  const auto most_filled = static_cast<std::uint64_t>(longest_filled_s * sample_rate_hz_);
+  for (const BlockOrder::Given& given : given_) {
+    const formats::StreamBlock& block = given.block;
+    if (!pick(block.channels)) continue;
+    if (given.restarted) intake_.restart();
+    // Lost blocks are taken to have been as long as this one.
+    if (given.lost_before > 0) intake_.gap(given.lost_before * block.frames(), most_filled);
+    intake_.speed(block.spindle_speed_rad_per_s);
+    const auto channels = static_cast<std::size_t>(block.channels);
+    picked_.clear();
+    for (std::size_t frame = 0; frame < block.frames(); ++frame) {
+      for (const std::size_t column : pick_) picked_.push_back(block.samples[frame * channels + column]);
+    }
+    intake_.add(picked_);
+  }
+  given_.clear();
+  tell_counts();
+}
+
+void StreamIntake::tell_counts() {
+  const OrderCounts& now = order_.counts();
+  const auto tell = [this](const char* what, const char* message, std::uint64_t count, std::uint64_t& told) {
+    if (count == told) return;
+    notices_->add(what, message, count - told);
+    told = count;
+  };
+  metrics_->lost_blocks = now.lost;
+  tell("lost-blocks", "blocks of the stream never came", now.lost, told_.lost);
+  tell("doubled-blocks", "blocks came twice", now.doubled, told_.doubled);
+  tell("late-blocks", "blocks came after they had been given up", now.late, told_.late);
+  tell("reordered-blocks", "blocks came in another order and were put back", now.reordered, told_.reordered);
+  tell("stream-restarted", "the sender counts its blocks anew", now.restarts, told_.restarts);
+}
+
+Broker::Broker(const formats::MonitorFile& file, bool stream, HopQueue& queue, Notices& notices, MetricValues& metrics)
+    : address_(fmt::format("{}:{}", file.mqtt.host, file.mqtt.port_or_default())),
+      events_topic_(file.mqtt.events_topic),
+      notices_(&notices),
+      metrics_(&metrics) {
+  if (stream) stream_.emplace(file, queue, notices, metrics);
+  client_ = std::make_unique<MqttClient>(
+      file.mqtt, stream ? file.mqtt.topic : std::string(),
+      MqttClient::Calls{.message =
+                            [this](std::span<const std::byte> payload) {
+                              const std::scoped_lock lock(mutex_);
+                              if (stream_) stream_->message(payload);
+                            },
+                        .connection = [this](bool connected, const std::string& why) { connection(connected, why); }});
+  client_->start();
+}
+
+Broker::~Broker() {
+  if (!events_topic_.empty()) client_->flush(publish_wait);
+}
+
+void Broker::wait_a_little() const {
+  client_->wait_until_connected(publish_wait);
+}
+
+void Broker::connection(bool connected, const std::string& why) {
+  if (connected && !why.empty()) {
+    notices_->add("subscription-refused", fmt::format("{}: {}", address_, why));
+    return;
+  }
+  const bool was = metrics_->connected.exchange(connected);
+  if (connected) {
+    notices_->add("broker-connected", address_);
+    return;
+  }
+  notices_->add(was ? "broker-lost" : "broker-unreachable", fmt::format("{}: {}; trying again", address_, why));
+  const std::scoped_lock lock(mutex_);
+  if (stream_) stream_->give_up();
+}
+
+void Broker::publish(const formats::MonitorEvent& event, const std::string& line) {
+  if (events_topic_.empty()) return;
+  const std::string_view text = std::string_view(line).substr(0, line.size() - 1);
+  // Of its own trouble it tells once.
+  if (!client_->publish(events_topic_, text) && event.what != "events-not-published") {
+    notices_->add("events-not-published", fmt::format("{} has no connection or does not take them", address_));
+  }
+}
+
+}  // namespace robomill::app

@@ -1,0 +1,203 @@
+#include "session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "report.hpp"
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/formats/stream_block.hpp"
+#include "session_input.hpp"
+
+namespace robomill::app {
+namespace {
+
+using formats::MonitorEvent;
+
+formats::MonitorFile some_file() {
+  formats::MonitorFile file;
+  file.columns.channels = {"ax"};
+  file.options.sample_rate_hz = 10'240.0;
+  return file;
+}
+
+Hop noise(Random& random, std::size_t frames = 256) {
+  Hop hop;
+  for (std::size_t i = 0; i < frames; ++i) hop.samples.push_back(static_cast<float>(random.normal()));
+  return hop;
+}
+
+/// Keeps the events of a session.
+struct Kept {
+  std::vector<MonitorEvent> events;
+  SessionOutputs outputs() {
+    SessionOutputs out;
+    out.event = [this](const MonitorEvent& event, const std::string& line) {
+      EXPECT_EQ(line.back(), '\n');
+      events.push_back(event);
+      return true;
+    };
+    return out;
+  }
+};
+
+TEST(Session, TimeRunsOnOverWhatIsMissing) {
+  Kept kept;
+  Session session(some_file(), {.every_window = true}, kept.outputs());
+  Random random(1);
+  session.hear(noise(random));
+  Hop after_gap = noise(random);
+  after_gap.frames_before = 1024;
+  session.hear(std::move(after_gap));
+  Hop anew = noise(random);
+  anew.restarted = true;
+  session.hear(std::move(anew));
+  session.hear(noise(random, 100));  // no hop of the detector's yet
+  ASSERT_EQ(kept.events.size(), 3U);
+  EXPECT_NEAR(kept.events[0].time_s, 256 / 10'240.0, 1.1e-4);
+  EXPECT_NEAR(kept.events[1].time_s, (512 + 1024) / 10'240.0, 1.1e-4);
+  EXPECT_NEAR(kept.events[2].time_s, (768 + 1024) / 10'240.0, 1.1e-4);
+  EXPECT_EQ(kept.events[2].decision.hop, 1U);
+  EXPECT_NEAR(session.time_s(), (868 + 1024) / 10'240.0, 1e-9);
+}
+
+TEST(Session, TellsNoticesAsEvents) {
+  Kept kept;
+  Session session(some_file(), {}, kept.outputs());
+  session.notices().add("lost-blocks", "gone", 3);
+  session.tell_notices();
+  session.notices().add("alarm-recorded", "alarms/a.wav");
+  session.tell_notices();
+  ASSERT_EQ(kept.events.size(), 2U);
+  EXPECT_EQ(kept.events[0].kind, MonitorEvent::Kind::stream);
+  EXPECT_EQ(kept.events[0].count, 3U);
+  EXPECT_EQ(kept.events[1].kind, MonitorEvent::Kind::recording);
+  EXPECT_EQ(kept.events[1].file, "alarms/a.wav");
+}
+
+TEST(Session, RunsToTheEndOfItsQueue) {
+  Kept kept;
+  const std::atomic<bool> stop{false};
+  Session session(some_file(), {.every_window = true}, kept.outputs());
+  Random random(1);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(session.queue().push(noise(random)));
+  session.queue().close();
+  session.run(stop);
+  EXPECT_EQ(kept.events.size(), 20U);
+  EXPECT_EQ(session.metrics().decisions, 20U);
+}
+
+TEST(Session, EndsWhereItIsToldTo) {
+  Random random(1);
+  const auto heard = [&](SessionOptions options, SessionOutputs outputs, bool stopped) {
+    const std::atomic<bool> stop{stopped};
+    Session session(some_file(), options, std::move(outputs));
+    for (int i = 0; i < 20; ++i) EXPECT_TRUE(session.queue().push(noise(random)));
+    session.run(stop);
+    Hop more = noise(random);
+    EXPECT_FALSE(session.queue().offer(more));  // whoever still reads is let go
+    return session.metrics().decisions.load();
+  };
+  EXPECT_EQ(heard({.seconds = 0.1}, {}, false), 4U);
+  EXPECT_EQ(heard({}, {}, true), 0U);
+  SessionOutputs nobody;
+  nobody.event = [](const MonitorEvent&, const std::string&) { return false; };
+  EXPECT_EQ(heard({.every_window = true}, nobody, false), 1U);
+}
+
+TEST(Session, GathersWhatAReportNeeds) {
+  const formats::MonitorFile file = some_file();
+  report::MonitorRecorder recorder(file.options, file.columns.channels, "");
+  SessionOutputs outputs;
+  outputs.recorder = &recorder;
+  Session session(file, {}, std::move(outputs));
+  Random random(1);
+  session.hear(noise(random));
+  Hop after_gap = noise(random);
+  after_gap.frames_before = 100;
+  session.hear(std::move(after_gap));
+  session.notices().add("lost-blocks", "gone");
+  session.tell_notices();
+  const report::Report page = monitor_page(recorder.run(), file, "cut.wav");
+  const report::MonitorRun& run = *page.monitor;
+  EXPECT_EQ(run.decisions, 2U);
+  ASSERT_EQ(run.channels[0].wave.low.size(), 612);
+  EXPECT_EQ(run.channels[0].wave.low[300], 0.0);
+  EXPECT_NE(run.channels[0].wave.low[356], 0.0);
+  ASSERT_EQ(run.events.size(), 1U);
+  EXPECT_EQ(run.events[0].note, "gone");
+  EXPECT_NEAR(run.stays.back().to_s, session.time_s(), 1e-3);
+  EXPECT_NO_THROW(page.validate());
+}
+
+std::string message(std::uint64_t number, double rate_hz = 10'240.0, int channels = 1) {
+  formats::StreamBlock block;
+  block.sequence = number;
+  block.sample_rate_hz = rate_hz;
+  block.channels = channels;
+  block.samples.assign(256 * static_cast<std::size_t>(channels), static_cast<float>(number));
+  return formats::encode_stream_block(block);
+}
+
+TEST(StreamIntake, RefusesWhatIsNotWanted) {
+  HopQueue queue(100);
+  Notices notices;
+  MetricValues metrics;
+  StreamIntake intake(some_file(), queue, notices, metrics);
+  const auto take = [&](const std::string& payload) {
+    intake.message(std::as_bytes(std::span(payload.data(), payload.size())));
+  };
+  const auto told = [&] {
+    const std::vector<Notice> all = notices.take(Notices::Clock::now(), true);
+    return all.empty() ? std::string() : all.front().message;
+  };
+  take("x");
+  EXPECT_EQ(told(), "a message is shorter than its header");
+  take(message(0, 5000.0));
+  EXPECT_NE(told().find("was sampled at 5000 Hz"), std::string::npos);
+  take(message(0, 10'240.0, 3));
+  EXPECT_NE(told().find("has no column ax"), std::string::npos);
+  EXPECT_EQ(queue.size(), 0U);
+  EXPECT_EQ(metrics.refused_messages, 3U);
+  take(message(0, 10'245.0));
+  EXPECT_EQ(told(), "");
+  EXPECT_EQ(queue.size(), 1U);
+}
+
+// Hops leave in order with NaN in the place of what was lost.
+TEST(StreamIntake, FillsWhatWasLost) {
+  HopQueue queue(100);
+  Notices notices;
+  MetricValues metrics;
+  StreamIntake intake(some_file(), queue, notices, metrics);
+  for (const std::uint64_t number : std::vector<std::uint64_t>{0, 1, 3, 2, 6, 7}) {
+    const std::string payload = message(number);
+    intake.message(std::as_bytes(std::span(payload.data(), payload.size())));
+  }
+  EXPECT_EQ(queue.size(), 4U);
+  intake.give_up();
+  std::vector<float> firsts;
+  Hop hop;
+  while (queue.pop(hop, std::chrono::milliseconds(0)) == HopQueue::Taken::hop) firsts.push_back(hop.samples.front());
+  ASSERT_EQ(firsts.size(), 8U);
+  for (std::size_t i = 0; i < 8; ++i) {
+    if (i == 4 || i == 5) {
+      EXPECT_TRUE(std::isnan(firsts[i])) << i;
+    } else {
+      EXPECT_EQ(firsts[i], static_cast<float>(i));
+    }
+  }
+  EXPECT_EQ(metrics.lost_blocks, 2U);
+  const std::vector<Notice> told = notices.take(Notices::Clock::now(), true);
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0].what, "lost-blocks");
+  EXPECT_EQ(told[0].count, 2U);
+  EXPECT_EQ(told[1].what, "reordered-blocks");
+}
+
+}  // namespace
+}  // namespace robomill::app
