@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "robomill/report/html.hpp"
 #include "robomill/report/sections.hpp"
@@ -16,11 +17,16 @@ std::string verdict(const Json& run) {
     const double from = stay["from_s"].get<double>(), to = stay["to_s"].get<double>();
     out += fmt::format("<p class=\"why\"><strong>Chatter</strong> from {} s to {} s", fixed(stay["from_s"], 2),
                        fixed(stay["to_s"], 2));
-    const Json* told = nullptr;  // the last: the frequency settles
+    const Json* told = nullptr;  // the surest: the frequency settles, and is lost when chatter ends
+    const auto deviation = [](const Json& event) {
+      const Json& std_hz = event["chatter_frequency_std_hz"];
+      return std_hz.is_number() ? std_hz.get<double>() : std::numeric_limits<double>::infinity();
+    };
     for (const Json& event : run["events"]) {
       const double at = event["time_s"].get<double>();
       const bool chatters = text_of(event["state"]) == "chatter" && event["chatter_frequency_hz"].is_number();
-      if (chatters && at >= from && at <= to) told = &event;
+      if (!chatters || at < from || at > to) continue;
+      if (told == nullptr || deviation(event) < deviation(*told)) told = &event;
     }
     if (told != nullptr) {
       const Json& event = *told;
