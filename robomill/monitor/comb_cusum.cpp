@@ -11,13 +11,10 @@ namespace {
 constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double drift_hz = 3.0;        // corner of the high-pass
 constexpr double comb_s = 0.25;         // memory of the comb
-constexpr double lowest_hz = 5.0;       // of rotation
 constexpr double jump = 4.0;            // of the power: the tool enters or leaves
-constexpr double settle_turns = 4.0;    // of the comb
-constexpr std::size_t kept = 8;         // hops of log energies
 constexpr std::size_t coherent = 3;     // hops in which a part of the residual stays in phase with the spindle
 constexpr double longest_look_s = 0.3;  // for the frequency
-constexpr double least_share = 0.0025;  // the same, below which no line counts
+constexpr double least_share = 0.0025;  // of the whole power, below which no line counts
 
 signal::SynchrosqueezeOptions transform_of(const MonitorOptions& o, std::size_t columns_a_hop) {
   signal::SynchrosqueezeOptions out;
@@ -130,7 +127,6 @@ void CombCusum::take_in(const Hop& hop) noexcept {
   if (hops_ == 1) slow_power_ = total;
   if (jumps_ == 1 && rotation_hz_ == 0.0) {
     since_s_ = 0.0;
-
     window_ = 0;
   }
   if (jumps_ >= 2) slow_power_ = total;

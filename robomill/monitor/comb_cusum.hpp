@@ -24,6 +24,9 @@ class CombCusum final : public Detector {
 
  private:
   static constexpr std::size_t columns_a_hop = 4;  // of the transform
+  static constexpr std::size_t kept = 8;           // hops of log energies
+  static constexpr double lowest_hz = 5.0;         // of rotation
+  static constexpr double settle_turns = 4.0;      // of the comb
 
   void take_in(const Hop& hop) noexcept;
   // Speed

@@ -7,7 +7,6 @@
 namespace robomill::monitor {
 namespace {
 
-constexpr std::size_t kept = 8;       // hops of log energies
 constexpr double dying = 0.3;         // fall of a log energy that no growing chatter shows
 constexpr double died = 4.0;          // fall of a log energy at which chatter is over
 constexpr double faint = 1.5;         // height over the baseline at which it is over, too
@@ -129,8 +128,6 @@ void CombCusum::in_cut(const Cusum::Verdict& verdict) noexcept {
   if (verdict.score > 0.4 * threshold) {
     line_ = verdict.line;
     channel_ = verdict.channel;
-  }
-  if (verdict.score > 0.4 * threshold) {
     const double before_hz = found_.frequency_hz;
     found_ = rings_[channel_].estimate(line_hz(line_), line_hz(1), 4.0 * options_.hop_s);
     const double most = (rotation_hz_ > 0.0 ? 0.5 : 0.07) * line_hz(1);

@@ -10,14 +10,12 @@ namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double hint_share = 0.07;  // how far a hint may be off
-constexpr double lowest_hz = 5.0;    // of rotation
 constexpr double highest_hz = 500.0;
 constexpr double found_score = 5.0;    // of SpeedSearch
 constexpr double certain_score = 9.0;  // beyond the hint
 constexpr std::size_t candidates_a_hop = 800;
 constexpr double look_again_s = 0.25;
-constexpr double no_comb_s = 0.45;    // after which the test runs without
-constexpr double settle_turns = 4.0;  // of the comb
+constexpr double no_comb_s = 0.45;  // after which the test runs without
 constexpr double settle_s = 0.06;
 constexpr double little = 3e-3;         // change of speed that leaves the baselines as they are
 constexpr std::size_t steady_hops = 4;  // of a tone where there is no comb

@@ -161,6 +161,18 @@ TEST(DenseProgram, FlowsNearTheBound) {
   }
 }
 
+/// The whole program through a planner; `take` gets what is planned.
+template <class Take>
+void feed(Planner& planner, const program::Program& program, const Take& take) {
+  const auto go = [&](const Planner::Status& status) {
+    take(status);
+    while (planner.busy()) take(planner.resume());
+  };
+  go(planner.begin(program.start, 0.0, robot::Position6::Zero()));
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) go(planner.push(program.blocks[i], i, 0.0));
+  go(planner.finish());
+}
+
 /// The planner's own time, without check and rounds.
 double planned_s(const program::Program& program, const robot::Kinematics& kinematics, const PlannerOptions& how) {
   Planner planner(kinematics, test::published_options(Method::optimal), how);
@@ -171,13 +183,7 @@ double planned_s(const program::Program& program, const robot::Kinematics& kinem
     planner.motion().clear();
     planner.path().clear();
   };
-  const auto go = [&](const Planner::Status& status) {
-    take(status);
-    while (planner.busy()) take(planner.resume());
-  };
-  go(planner.begin(program.start, 0.0, robot::Position6::Zero()));
-  for (std::size_t i = 0; i < program.blocks.size(); ++i) go(planner.push(program.blocks[i], i, 0.0));
-  go(planner.finish());
+  feed(planner, program, take);
   return sum_s;
 }
 
@@ -197,13 +203,7 @@ double bound_s(const program::Program& program, const robot::Kinematics& kinemat
     planner.points().clear();
     planner.path().clear();
   };
-  const auto go = [&](const Planner::Status& status) {
-    take(status);
-    while (planner.busy()) take(planner.resume());
-  };
-  go(planner.begin(program.start, 0.0, robot::Position6::Zero()));
-  for (std::size_t i = 0; i < program.blocks.size(); ++i) go(planner.push(program.blocks[i], i, 0.0));
-  go(planner.finish());
+  feed(planner, program, take);
   return dwells_s + least_time_s(points, planner.limits());
 }
 

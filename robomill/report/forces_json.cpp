@@ -208,16 +208,12 @@ Json sweep_json(const RedundancySweep& sweep) {
 }  // namespace
 
 Json forces_json(const Forces& forces) {
-  Json facts = Json::array();
-  for (const Fact& fact : forces.facts) {
-    facts.push_back({{"label", text(fact.label)}, {"value", text(fact.value)}});
-  }
   std::vector<std::string> warnings = forces.warnings;
   if (forces.path && forces.path->block.size() == 0) {
     // A program of which no block could be computed has no part of its own to say why.
     warnings.insert(warnings.end(), forces.path->troubles.begin(), forces.path->troubles.end());
   }
-  return {{"facts", std::move(facts)},
+  return {{"facts", facts_json(forces.facts)},
           {"warnings", texts(warnings)},
           {"notes", texts(forces.notes)},
           {"revolution", forces.revolution ? revolution_json(*forces.revolution) : Json(nullptr)},

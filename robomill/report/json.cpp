@@ -44,6 +44,12 @@ Json texts(const std::vector<std::string>& raw) {
   return list;
 }
 
+Json facts_json(const std::vector<Fact>& facts) {
+  Json list = Json::array();
+  for (const Fact& fact : facts) list.push_back({{"label", text(fact.label)}, {"value", text(fact.value)}});
+  return list;
+}
+
 bool is_single(const Band& band) {
   return band.low == band.high;
 }

@@ -43,6 +43,7 @@ namespace robomill::report {
                                              double unit = 1.0);
 /// Bytes that are no UTF-8 become U+FFFD, so that a stray file name cannot break the page.
 [[nodiscard]] nlohmann::ordered_json text(const std::string& raw);
+[[nodiscard]] nlohmann::ordered_json facts_json(const std::vector<Fact>& facts);
 [[nodiscard]] nlohmann::ordered_json texts(const std::vector<std::string>& raw);
 
 }  // namespace robomill::report

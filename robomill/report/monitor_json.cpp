@@ -9,12 +9,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json facts_json(const std::vector<Fact>& facts) {
-  Json list = Json::array();
-  for (const Fact& fact : facts) list.push_back({{"label", text(fact.label)}, {"value", text(fact.value)}});
-  return list;
-}
-
 /// Whole decibels: finer ones no colour shows. A row a frequency.
 Json spectrogram_json(const MonitorRun& run) {
   const Spectrogram& spectrogram = run.spectrogram;

@@ -300,9 +300,7 @@ Json shop_units(const Report& report) {
   Json json = Json::object();
   json["title"] = text(report.title);
   json["created"] = text(report.created);
-  json["facts"] = list_of(report.facts, [](const Fact& fact) {
-    return Json{{"label", text(fact.label)}, {"value", text(fact.value)}};
-  });
+  json["facts"] = facts_json(report.facts);
   json["warnings"] = texts(report.warnings);
   json["notes"] = texts(report.notes);
   json["recommendation"] = report.recommendation ? recommendation_json(*report.recommendation) : Json(nullptr);

@@ -121,13 +121,9 @@ Json corners_json(const std::vector<CornerView>& corners) {
 }  // namespace
 
 Json smooth_json(const Smooth& smooth) {
-  Json facts = Json::array();
-  for (const Fact& fact : smooth.facts) {
-    facts.push_back({{"label", text(fact.label)}, {"value", text(fact.value)}});
-  }
   Json methods = Json::array();
   for (const SmoothMethod& method : smooth.methods) methods.push_back(method_json(method));
-  return {{"facts", std::move(facts)},
+  return {{"facts", facts_json(smooth.facts)},
           {"warnings", texts(smooth.warnings)},
           {"notes", texts(smooth.notes)},
           {"skipped", texts(smooth.skipped)},
