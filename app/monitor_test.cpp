@@ -32,7 +32,7 @@ using test::slurp;
 using test::wait_for;
 
 constexpr double rate_hz = 10240.0;
-constexpr std::size_t hop = 256, block_frames = 512;
+constexpr std::size_t block_frames = 512;
 constexpr double chatter_hz = 683.0, onset_s = 4.0;
 
 /// A cut at 3000 rpm with two teeth and noise; from onset_s on chatter grows, until it stands.

@@ -6,6 +6,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "robomill/base/test_support.hpp"
 #include "robomill/monitor/test_corpus.hpp"
@@ -33,6 +34,21 @@ double line(const CleanCut::Columns& x, double frequency_hz, double from_s, doub
   return 2.0 * std::sqrt(std::norm(a) + std::norm(b)) / weight;
 }
 
+/// Where the 0.3 s begin in which a cut chatters most.
+double loudest_s(const Truth& truth) {
+  const auto n = static_cast<std::ptrdiff_t>(0.3 * corpus_rate_hz);
+  const auto power = [](double sum, float a) { return sum + static_cast<double>(a) * static_cast<double>(a); };
+  const std::vector<float>& a = truth.amplitude_m_per_s2;
+  double most = 0.0, at_s = 0.0;
+  for (auto from = a.begin(); a.end() - from >= n; from += n / 10) {
+    const double here = std::accumulate(from, from + n, 0.0, power);
+    if (here <= most) continue;
+    most = here;
+    at_s = static_cast<double>(from - a.begin()) / corpus_rate_hz;
+  }
+  return at_s;
+}
+
 TEST(Corpus, HasTheClassesItPromises) {
   int drilling = 0, chatter = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -58,7 +74,7 @@ TEST(Corpus, ASeedIsACut) {
 }
 
 // By another way: at the chatter's frequency the whole signal, forced vibration included, has the line that the truth
-// tells after t10, and next to nothing of it before chatter starts.
+// tells where it chatters most (of several lines the strongest), and next to nothing of it before chatter starts.
 TEST(Corpus, TheChatterLineIsInTheSignalAndBeganWhenTold) {
   int checked = 0;
   const auto last = 1000 + static_cast<std::uint64_t>(test::seeds(200));
@@ -67,8 +83,9 @@ TEST(Corpus, TheChatterLineIsInTheSignalAndBeganWhenTold) {
     const DrawnCut d = draw(seed);
     const Truth& t = d.recorded.truth;
     ASSERT_TRUE(t.chatter);
-    const double late = line(d.clean.acceleration_m_per_s2, t.frequency_hz, t.end_s - 0.3, t.end_s);
-    EXPECT_GT(late, 0.3 * t.final_m_per_s2) << seed;
+    const double from_s = loudest_s(t);
+    const double late = line(d.clean.acceleration_m_per_s2, t.frequency_hz, from_s, from_s + 0.3);
+    EXPECT_GT(late, 0.2 * t.final_m_per_s2) << seed;  // several lines share it, and some chatter comes in bursts
     if (d.recorded.course == "abrupt" || t.start_s < 0.9) continue;
     const double early = line(d.clean.acceleration_m_per_s2, t.frequency_hz, t.start_s - 0.3, t.start_s);
     EXPECT_LT(early, 0.15 * late) << seed;
