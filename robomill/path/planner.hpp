@@ -102,6 +102,7 @@ class Planner {
   void take_polynomials() noexcept;
   Status lay_spans() noexcept;
   Status lay(Span::Kind kind, double length_m) noexcept;
+  void come_to_rest(double at_m, double dwell_s) noexcept;
   Status look(SpeedSpan& span, double length_m, bool& even) noexcept;
   void limit_speed(SpeedSpan& span) const noexcept;
   [[nodiscard]] double mended_speed(double begin_m, double end_m) const noexcept;
