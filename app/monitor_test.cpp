@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -19,16 +18,15 @@
 #include "monitor/mqtt.hpp"
 #include "monitor/test_processes.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/formats/sample_source.hpp"
 #include "robomill/formats/stream_block.hpp"
 #include "robomill/formats/units.hpp"
+#include "test_program.hpp"
 
 namespace robomill::app {
 namespace {
 
 using nlohmann::json;
-using test::slurp;
 using test::wait_for;
 
 constexpr double rate_hz = 10240.0;
@@ -52,22 +50,9 @@ std::vector<float> cut(double seconds, bool chatters) {
   return samples;
 }
 
-struct Ended {
-  int exit = -1;
-  std::string out, err;
-};
-
-class MonitorVerb : public testing::Test {
+class MonitorVerb : public ProgramTest {
  protected:
   void SetUp() override { folder_.file("monitor.toml", config_); }
-  Ended shell(const std::string& command) {
-    const std::string full = "cd '" + folder_.path().string() + "' && { " + command + " ; } >out.txt 2>err.txt";
-    const int status = std::system(full.c_str());  // NOLINT(cert-env33-c): a user's shell is what is tested
-    return {.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-            .out = slurp(folder_.at("out.txt")),
-            .err = slurp(folder_.at("err.txt"))};
-  }
-  Ended robomill(const std::string& arguments) { return shell("'" ROBOMILL_PROGRAM "' " + arguments); }
   void wav(const std::string& name, const std::vector<float>& samples) {
     formats::write_wav(folder_.at(name), samples, 1, rate_hz);
   }
@@ -95,7 +80,6 @@ class MonitorVerb : public testing::Test {
   const std::string config_ =
       "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n[process]\nspindle_speed_rpm = 3000\nteeth = "
       "2\n";
-  test::Folder folder_;
 };
 
 TEST_F(MonitorVerb, HearsChatterInARecording) {

@@ -1,47 +1,24 @@
 // robomill smooth as a user runs it.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "robomill/base/test_support.hpp"
+#include "test_program.hpp"
 
 namespace robomill::app {
 namespace {
 
-struct Ended {
-  int exit = -1;
-  std::string out, err;
-};
-
-std::string slurp(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-class SmoothVerb : public testing::Test {
+class SmoothVerb : public ProgramTest {
  protected:
   void SetUp() override {
     std::filesystem::copy_file(ROBOMILL_SOURCE_DIR "/examples/smooth-impeller-like/cell.toml", folder_.at("cell.toml"));
     folder_.file("part.ngc",
                  "G21 G90 G94\nM8\nG0 X0 Y0 Z40 A-20 C0\nG1 X4 F1800\nG1 X4 Y3 A-22\nG1 X0 Y3\nG1 X0 Y0 C2\nM30\n");
   }
-  Ended robomill(const std::string& arguments) {
-    const std::string full =
-        "cd '" + folder_.path().string() + "' && '" ROBOMILL_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
-    const int status = std::system(full.c_str());  // NOLINT(cert-env33-c): a user's shell is what is tested
-    return {.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
-            .out = slurp(folder_.at("out.txt")),
-            .err = slurp(folder_.at("err.txt"))};
-  }
   [[nodiscard]] bool there(const char* name) const { return std::filesystem::exists(folder_.at(name)); }
-  test::Folder folder_;
 };
 
 TEST_F(SmoothVerb, WritesATrajectoryAndTellsTheLimits) {
