@@ -11,6 +11,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
 #include "robomill/formats/frf_files.hpp"
+#include "robomill/formats/test_text.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -62,9 +63,7 @@ loss_factor = 0.02
 )";
 
 std::string with(const std::string& old_text, const std::string& new_text) {
-  std::string text = good;
-  text.replace(text.find(old_text), old_text.size(), new_text);
-  return text;
+  return test_support::replaced(good, old_text, new_text);
 }
 
 modal::Frf frf(const char* name, const Eigen::VectorXcd& values) {

@@ -7,6 +7,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
+#include "robomill/formats/test_text.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/test_arms.hpp"
 
@@ -52,9 +53,7 @@ tip_tolerance_mm = 0.02
 )";
 
 std::string with(const std::string& old_text, const std::string& new_text) {
-  std::string text = good;
-  EXPECT_NE(text.find(old_text), std::string::npos) << old_text;
-  return text.replace(text.find(old_text), old_text.size(), new_text);
+  return test_support::replaced(good, old_text, new_text);
 }
 
 TEST(CellToml, ReadsADhArmWithAllItsLists) {
@@ -227,9 +226,8 @@ TEST(CellToml, ReadsTheHybridMachine) {
 TEST(CellToml, SaysWhatIsWrongWithAHybridMachine) {
   const Folder folder;
   const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& message) {
-    std::string text = hybrid;
-    text.replace(text.find(old_text), old_text.size(), new_text);
-    const std::string said = refusal([&] { (void)read_cell(folder.file("cell.toml", text), Robots::any); });
+    const auto path = folder.file("cell.toml", test_support::replaced(hybrid, old_text, new_text));
+    const std::string said = refusal([&] { (void)read_cell(path, Robots::any); });
     EXPECT_EQ(said.substr(folder.path().string().size() + 1).substr(0, message.size()), message);
   };
   expect("platform_offset_mm = 130", "base_half_width_mm = 0",
@@ -265,14 +263,7 @@ TEST(CellToml, DamagedFilesAreReadOrRefused) {
   Random random(53);
   int read = 0;
   for (int k = 0; k < seeds(2000); ++k) {
-    std::string text = good;
-    const std::size_t at = random.index(text.size());
-    if (k % 2 == 0) {
-      text[at] = good[random.index(good.size())];
-    } else {
-      text.erase(at, 1 + random.index(10));
-    }
-    const auto path = folder.file("cell.toml", text);
+    const auto path = folder.file("cell.toml", test_support::damaged(good, k, random));
     try {
       read_cell(path).cell.validate();
       ++read;

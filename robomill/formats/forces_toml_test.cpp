@@ -8,6 +8,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
+#include "robomill/formats/test_text.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -54,9 +55,7 @@ dexel_mm = 0.5
 )";
 
 std::string with(const std::string& old_text, const std::string& new_text) {
-  std::string text = good;
-  EXPECT_NE(text.find(old_text), std::string::npos) << old_text;
-  return text.replace(text.find(old_text), old_text.size(), new_text);
+  return test_support::replaced(good, old_text, new_text);
 }
 
 TEST(ForcesToml, ReadsEveryKeyInSi) {

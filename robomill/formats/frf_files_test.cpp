@@ -11,6 +11,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
 #include "robomill/formats/file.hpp"
+#include "robomill/formats/test_text.hpp"
 #include "robomill/formats/uff.hpp"
 
 namespace robomill::formats {
@@ -343,14 +344,8 @@ TEST(FrfFiles, SurviveMutations) {
     const std::string good = read_file(folder.at(name));
     Random random(7);
     for (int i = 0; i < test::seeds(500); ++i) {
-      std::string text = good;
-      if (i % 2 == 0) {
-        text.resize(1 + random.index(good.size() - 1));
-      } else {
-        text[random.index(text.size())] = static_cast<char>(random.index(256));
-      }
       try {
-        read_frfs({folder.file(name, text)}).set.validate();
+        read_frfs({folder.file(name, test_support::mutated(good, i, random))}).set.validate();
       } catch (const InvalidInput&) {
         continue;
       }

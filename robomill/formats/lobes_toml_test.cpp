@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "robomill/base/test_support.hpp"
+#include "robomill/formats/test_text.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::formats {
@@ -38,9 +39,7 @@ method = "semi-discretization"
 )";
 
 std::string with(const std::string& old_text, const std::string& new_text) {
-  std::string text = good;
-  text.replace(text.find(old_text), old_text.size(), new_text);
-  return text;
+  return test_support::replaced(good, old_text, new_text);
 }
 
 TEST(LobesToml, ReadsEverythingInSi) {

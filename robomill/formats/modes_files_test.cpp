@@ -9,6 +9,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
 #include "robomill/formats/file.hpp"
+#include "robomill/formats/test_text.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -68,14 +69,8 @@ TEST(ModesFiles, SurvivesMutations) {
   const std::string good = modes_json(data::robot_modes());
   Random random(5);
   for (int i = 0; i < test::seeds(2000); ++i) {
-    std::string text = good;
-    if (i % 2 == 0) {
-      text.resize(1 + random.index(good.size() - 1));
-    } else {
-      text[random.index(text.size())] = static_cast<char>(random.index(256));
-    }
     try {
-      read_modes(folder.file("modes.json", text)).validate();
+      read_modes(folder.file("modes.json", test_support::mutated(good, i, random))).validate();
     } catch (const InvalidInput&) {
       continue;
     }

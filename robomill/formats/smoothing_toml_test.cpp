@@ -8,6 +8,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
 #include "robomill/formats/cell_toml.hpp"
+#include "robomill/formats/test_text.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -50,9 +51,7 @@ flexible_joint_damping_ratio = 0.02
 )";
 
 std::string with(const std::string& old_text, const std::string& new_text) {
-  std::string text = good;
-  EXPECT_NE(text.find(old_text), std::string::npos) << old_text;
-  return text.replace(text.find(old_text), old_text.size(), new_text);
+  return test_support::replaced(good, old_text, new_text);
 }
 
 SmoothingFile read(const Folder& folder, const std::string& text) {
@@ -158,15 +157,8 @@ TEST(SmoothingToml, DamagedFilesAreReadOrRefused) {
   Random random(54);
   int taken = 0;
   for (int k = 0; k < seeds(2000); ++k) {
-    std::string text = good;
-    const std::size_t at = random.index(text.size());
-    if (k % 2 == 0) {
-      text[at] = good[random.index(good.size())];
-    } else {
-      text.erase(at, 1 + random.index(10));
-    }
     try {
-      read(folder, text).options.validate();
+      read(folder, test_support::damaged(good, k, random)).options.validate();
       ++taken;
     } catch (const InvalidInput&) {
       continue;

@@ -9,6 +9,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
+#include "robomill/formats/test_text.hpp"
 #include "robomill/robot/test_arms.hpp"
 
 namespace robomill::formats {
@@ -41,9 +42,7 @@ const std::string good = R"(<?xml version="1.0"?>
 )";
 
 std::string with(const std::string& old_text, const std::string& new_text) {
-  std::string text = good;
-  EXPECT_NE(text.find(old_text), std::string::npos) << old_text;
-  return text.replace(text.find(old_text), old_text.size(), new_text);
+  return test_support::replaced(good, old_text, new_text);
 }
 
 UrdfArm parse_good() {

@@ -13,6 +13,7 @@
 #include "robomill/base/test_support.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/units.hpp"
+#include "robomill/plan/test_lobes.hpp"
 
 namespace robomill::plan {
 namespace {
@@ -22,23 +23,12 @@ const std::string data = ROBOMILL_SOURCE_DIR "/data/";
 class Plan : public testing::Test {
  protected:
   void SetUp() override {
-    write("lobes.toml", R"([tool]
-teeth = 3
-diameter_mm = 12
-[cut]
-direction = "up"
-radial_depth_mm = 1.8
-feed_per_tooth_mm = 0.01
-[coefficients]
-tangential_n_per_mm2 = 712
-radial_n_per_mm2 = 287
-[lobes]
-spindle_speed_rpm = [6000, 9000]
+    write("lobes.toml", test_support::lobes_file(R"(spindle_speed_rpm = [6000, 9000]
 axial_depth_mm = [0, 3]
 grid = [31, 20]
 method = "semi-discretization"
 intervals = 20
-)");
+)"));
   }
 
   std::filesystem::path write(const std::string& name, const std::string& text) { return folder_.file(name, text); }

@@ -16,6 +16,7 @@
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/plan/plan.hpp"
+#include "robomill/plan/test_lobes.hpp"
 #include "robomill/report/report.hpp"
 
 namespace robomill::plan {
@@ -247,22 +248,11 @@ class PlanPath : public Smoothing {
  protected:
   std::filesystem::path plan(const std::string& more) {
     static_cast<void>(job());
-    folder_.file("lobes.toml", R"([tool]
-teeth = 3
-diameter_mm = 12
-[cut]
-direction = "up"
-radial_depth_mm = 1.8
-feed_per_tooth_mm = 0.01
-[coefficients]
-tangential_n_per_mm2 = 712
-radial_n_per_mm2 = 287
-[lobes]
-spindle_speed_rpm = [7000, 7500]
+    folder_.file("lobes.toml", test_support::lobes_file(R"(spindle_speed_rpm = [7000, 7500]
 axial_depth_mm = [0, 3]
 grid = [5, 6]
 method = "zeroth-order"
-)");
+)"));
     return folder_.file("job.toml", "[job]\nmodes = \"" ROBOMILL_SOURCE_DIR
                                     "/data/robot-modes.toml\"\nlobes = \"lobes.toml\"\n" +
                                         more);
