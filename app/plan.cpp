@@ -33,7 +33,7 @@ void print_summary(const plan::PlanResult& result) {
   }
   if (result.path) {
     const path::Summary& smoothed = result.path->first().summary;
-    fmt::print("program      {:.3f} s for {} blocks; {} samples break a limit\n", smoothed.duration_s, smoothed.blocks,
+    fmt::print("program      {:.3f} s for {} blocks; {} breaches of limits\n", smoothed.duration_s, smoothed.blocks,
                smoothed.check.violations());
   }
   const report::Agreement count = report::agreement(result.cuts);

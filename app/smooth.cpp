@@ -66,7 +66,7 @@ void print_summary(const plan::SmoothResult& result) {
   fmt::print("\n\n");
   print_check(by);
   if (result.smoothed.methods.size() > 1) print_methods(result.smoothed);
-  fmt::print("\n{} samples break a limit\n", summary.check.violations());
+  fmt::print("\n{} breaches of limits\n", summary.check.violations());
   for (const program::Skipped& item : result.smoothed.skipped)
     fmt::print("skipped    line {}: {}\n", item.line, item.what);
   for (const std::string& note : result.smoothed.notes) fmt::print("note       {}\n", note);

@@ -216,7 +216,7 @@ void smooth(PlanResult& result, const std::filesystem::path& folder, Progress& p
   result.path = run_smooth(smooth, progress);
   if (!result.path->holds()) {
     result.warnings.push_back(fmt::format(
-        "The smoothed program breaks limits at {} samples: there is no trajectory{}. See the limits of each joint.",
+        "The smoothed program breaks limits {} times: there is no trajectory{}. See the limits of each joint.",
         result.path->first().summary.check.violations(),
         result.path->stale ? ", and the one of an earlier run was removed" : ""));
   }

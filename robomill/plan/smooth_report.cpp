@@ -99,7 +99,7 @@ report::Smooth smooth_report(const SmoothResult& result) {
   out.facts = facts_of(result);
   if (!result.holds()) {
     out.warnings.push_back(fmt::format(
-        "{} samples break a limit{}.", result.first().summary.check.violations(),
+        "{} breaches of limits{}.", result.first().summary.check.violations(),
         result.smoothed.written ? "; the trajectory was written all the same" : ": there is no trajectory"));
   }
   out.notes = result.smoothed.notes;

@@ -36,7 +36,7 @@ struct Column {
 constexpr Column columns[] = {
     {"#Duration (s)", [](const Json& m) { return significant(m["duration_s"]); }, nullptr},
     {"#Bound (s)", [](const Json& m) { return significant(m["lower_bound_s"]); }, "lower_bound_s"},
-    {"#Samples that break a limit", [](const Json& m) { return fixed(m["violations"], 0); }, nullptr},
+    {"#Breaches of limits", [](const Json& m) { return fixed(m["violations"], 0); }, nullptr},
     {"#Joint limits used", [](const Json& m) { return percent(m["joint_share"], 0); }, "joint_share"},
     {"#Tip error (µm)", [](const Json& m) { return significant(m["tip_error_um"]); }, nullptr},
     {"#Axis error (°)", [](const Json& m) { return significant(m["axis_error_deg"]); }, nullptr},
