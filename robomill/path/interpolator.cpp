@@ -14,17 +14,6 @@ namespace {
 
 using Pushed = PathInterpolator::Pushed;
 
-/// The plan leaves this for holding and for the override; below the shares of rate.hpp by what samples may show beyond
-/// the planner's derivatives.
-PlannerOptions planner_options() {
-  PlannerOptions out = PlannerOptions::real_time();
-  out.acceleration_share = 0.975 * rate::alpha;
-  out.jerk_share = 0.95 * rate::beta;
-  // Nothing is planned again here where a corner comes out wider than its nodes and middles say.
-  out.tolerance_share = 0.9;
-  return out;
-}
-
 bool sound(const program::Block& block) {
   if (!(block.duration_s >= 0.0) || !std::isfinite(block.duration_s)) return false;
   if (block.kind == program::Block::Kind::dwell) return true;
@@ -44,9 +33,10 @@ void InterpolatorOptions::validate() const {
 struct PathInterpolator::Parts {
   Parts(const robot::Kinematics& kinematics, const SmoothingOptions& smoothing, const program::Pose& start,
         double gamma, const robot::Position6& joints, const InterpolatorOptions& options)
-      : planner(kinematics, smoothing, planner_options()),
+      : planner(kinematics, smoothing, PlannerOptions::interpolated()),
         // The path is put out before the spans on it are planned: as far ahead as a window reaches.
-        ahead(Planner::max_pieces * planner_options().window + 2 * planner.path_capacity(), options.look_ahead_spans,
+        ahead(Planner::max_pieces * PlannerOptions::interpolated().window + 2 * planner.path_capacity(),
+              options.look_ahead_spans,
               static_cast<std::size_t>(options.look_ahead_s / (4.0 * smoothing.sample_period_s)) + 64),
         survey(ahead, kinematics, smoothing, joints),
         runner(ahead, kinematics, smoothing.sample_period_s,

@@ -71,9 +71,7 @@ TEST(PathInterpolator, RunsThePlannersPathToTheProgramsEnd) {
     ASSERT_EQ(rode.state, State::finished);
     EXPECT_LT((rode.samples.back().tip_m - program.blocks.back().end.tip_m).norm(), 1e-15);
     EXPECT_LT((rode.samples.back().axis - program.blocks.back().end.axis).norm(), 1e-15);
-    PlannerOptions planned = PlannerOptions::real_time();
-    planned.tolerance_share = 0.9;
-    Planner planner(*machine, options(), planned);
+    Planner planner(*machine, options(), PlannerOptions::interpolated());
     planner.begin(program.start, posture.gamma_rad[0], posture.start);
     std::vector<Polynomial> pieces;
     const auto take = [&] {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "robomill/path/rate.hpp"
+
 namespace robomill::path {
 namespace {
 
@@ -84,6 +86,16 @@ PlannerOptions PlannerOptions::optimal() {
 
 PlannerOptions PlannerOptions::real_time() {
   return {.window = 240, .commit = 60, .look_ahead = 128};
+}
+
+PlannerOptions PlannerOptions::interpolated() {
+  PlannerOptions out = real_time();
+  // Below the shares of rate.hpp by what samples may show beyond the planner's derivatives.
+  out.acceleration_share = 0.975 * rate::alpha;
+  out.jerk_share = 0.95 * rate::beta;
+  // Nothing is planned again where a corner comes out wider than its nodes and middles say.
+  out.tolerance_share = 0.9;
+  return out;
 }
 
 /// A row's, and where the tool rests.

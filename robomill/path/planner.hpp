@@ -28,6 +28,8 @@ struct PlannerOptions {
   [[nodiscard]] static PlannerOptions optimal();
   /// For a controller: short windows.
   [[nodiscard]] static PlannerOptions real_time();
+  /// real_time() less what a PathInterpolator needs for holding and for the override.
+  [[nodiscard]] static PlannerOptions interpolated();
 };
 
 /// What slows or narrows places where a trajectory broke a limit before.
