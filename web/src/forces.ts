@@ -1,4 +1,5 @@
 import type { Program, Revolution, Ring, SpindleRotation } from './data';
+import { limitMarks, reach, suffix } from './rows';
 import { axis, layout, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 const turnAxis = 'Rotation φ from +y (°)';
@@ -156,30 +157,6 @@ function programRows({ curves, torque_limit_n_m: torqueLimit, power_limit_w: pow
   return rows;
 }
 
-const reach = 3; // a limit further above the curve would flatten it
-
-/** The limit as a dashed line, named above its plot; words alone where the line would lie too high. */
-function limitMark(row: Row, most: number, name: string, theme: Theme): { shapes: Layout[]; annotation: Layout } {
-  const limit = row.limit!;
-  const shown = limit <= reach * most;
-  const text = `spindle's limit ${Number(limit.toPrecision(3))} ${row.unit}`;
-  const line = { color: theme.chatter, width: 1.5, dash: '6px,4px' };
-  return {
-    shapes: shown ? [{ type: 'line', xref: 'paper', yref: `y${name}`, x0: 0, x1: 1, y0: limit, y1: limit, line }] : [],
-    annotation: {
-      text: shown ? text : `${text}, above this plot`,
-      showarrow: false,
-      font: { size: 11, color: theme.chatter },
-      xref: 'paper',
-      x: 1,
-      xanchor: 'right',
-      yref: `y${name} domain`,
-      y: 1,
-      yanchor: 'bottom',
-    },
-  };
-}
-
 /** Peak force, torque, power and deflection over the length of the path, one above the other. */
 export function programFigure(program: Program, theme: Theme): Figure {
   const { curves } = program;
@@ -193,7 +170,6 @@ export function programFigure(program: Program, theme: Theme): Figure {
   const annotations: Layout[] = [];
   const axes: Layout = {};
   rows.forEach((row, index) => {
-    const name = index === 0 ? '' : `${index + 1}`;
     const most = Math.max(...row.lines.map((line) => highest(line.y))) || 1; // nothing cut: any range will do
     const inside = row.limit !== null && row.limit <= reach * most;
     for (const line of row.lines) {
@@ -204,19 +180,20 @@ export function programFigure(program: Program, theme: Theme): Figure {
         showlegend: row.lines.length > 1,
         x,
         y: [line.y[0] ?? null, ...line.y],
-        yaxis: `y${name}`,
+        yaxis: `y${suffix(index)}`,
         customdata: [first, ...places],
         line: { shape: 'vh', width: line.faint ? 1 : 1.5, color: line.faint ? theme.measured : theme.accent },
         hovertemplate: `%{y:.4g}${thinSpace}${row.unit} in block %{customdata[0]}, line %{customdata[1]}<extra>${line.name}</extra>`,
       });
     }
     if (row.limit !== null) {
-      const mark = limitMark(row, most, name, theme);
+      const text = `spindle's limit ${Number(row.limit.toPrecision(3))} ${row.unit}${inside ? '' : ', above this plot'}`;
+      const mark = limitMarks(index, inside ? [row.limit] : [], text, theme);
       shapes.push(...mark.shapes);
       annotations.push(mark.annotation);
     }
     const top = 1 - index * share;
-    axes[`yaxis${name}`] = axis(theme, row.title, {
+    axes[`yaxis${suffix(index)}`] = axis(theme, row.title, {
       domain: [Math.max(0, top - share + 0.045), top],
       range: [0, 1.12 * Math.max(most, inside ? row.limit! * 1.06 : 0)],
       nticks: 4,

@@ -1,4 +1,5 @@
 import type { Calibration, Monitor, Num } from './data';
+import { curve, suffix } from './rows';
 import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 /** Where the monitor said chatter, as shaded stretches over the whole height. */
@@ -113,22 +114,12 @@ export function scoreFigure(monitor: Monitor, theme: Theme): Figure {
   const data: Trace[] = [];
   const axes: Layout = {};
   rows.forEach((row, index) => {
-    const name = index === 0 ? '' : `${index + 1}`;
-    const line = (label: string, y: number[], style: object): Trace => ({
-      type: 'scatter',
-      mode: 'lines',
-      name: label,
-      x: decisions.time_s,
-      y,
-      yaxis: `y${name}`,
-      showlegend: index === 0,
-      line: style,
-      hovertemplate: `%{y:.4g}${row.unit === '' ? '' : thinSpace}${row.unit}<extra>${label}</extra>`,
-    });
+    const line = (label: string, y: number[], style: object): Trace =>
+      curve(index, label, row.unit, decisions.time_s, y, style, { showlegend: index === 0 });
     data.push(line(row.title.toLowerCase(), row.y, { color: theme.accent, width: 1.4 }));
     if (row.against) data.push(line('threshold', row.against, { color: theme.chatter, width: 1.4, dash: '6px,4px' }));
     const top = 1 - index / rows.length;
-    axes[`yaxis${name}`] = axis(theme, row.unit === '' ? row.title : `${row.title} (${row.unit})`, {
+    axes[`yaxis${suffix(index)}`] = axis(theme, row.unit === '' ? row.title : `${row.title} (${row.unit})`, {
       domain: [index === rows.length - 1 ? 0 : top - 1 / rows.length + 0.05, top],
       nticks: 5,
       rangemode: 'tozero',
@@ -140,7 +131,7 @@ export function scoreFigure(monitor: Monitor, theme: Theme): Figure {
     layout: layout(theme, 150 * rows.length + 110, {
       hovermode: 'x',
       margin: { l: 72, r: 36, t: 40, b: 48 },
-      xaxis: timeAxis(monitor, theme, { anchor: `y${rows.length === 1 ? '' : rows.length}` }),
+      xaxis: timeAxis(monitor, theme, { anchor: `y${suffix(rows.length - 1)}` }),
       ...axes,
       shapes: alarms(monitor, theme),
     }),

@@ -1,5 +1,6 @@
 import type { JointMotion, Num, Smooth, SmoothMethod } from './data';
-import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { curve, limitMarks, reach, suffix } from './rows';
+import { axis, layout, plain, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 export const dashes = ['solid', '7px,3px', '2px,2px', '9px,3px,2px,3px', '4px,4px'];
 
@@ -19,32 +20,9 @@ interface Row {
   both: boolean; // signs
 }
 
-const reach = 3; // a limit further above the curve would flatten it
-
 /** Largest magnitude of the numbers. */
 export function magnitude(values: number[]): number {
   return values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
-}
-
-/** The limit as dashed lines, named above its plot; words alone where the lines would lie too high. */
-function limitMarks(row: Row, limit: number, shown: boolean, name: string, theme: Theme): { shapes: Layout[]; annotation: Layout } {
-  const text = `limit ${Number(limit.toPrecision(4))} ${row.unit}`;
-  const line = { color: theme.chatter, width: 1.5, dash: '6px,4px' };
-  const heights = row.both ? [limit, -limit] : [limit];
-  return {
-    shapes: shown ? heights.map((y) => ({ type: 'line', xref: 'paper', yref: `y${name}`, x0: 0, x1: 1, y0: y, y1: y, line })) : [],
-    annotation: {
-      text: shown ? text : `${text}, beyond this plot`,
-      showarrow: false,
-      font: { size: 11, color: theme.chatter },
-      xref: 'paper',
-      x: 1,
-      xanchor: 'right',
-      yref: `y${name} domain`,
-      y: 1,
-      yanchor: 'bottom',
-    },
-  };
 }
 
 /** Rows of curves over time, one above the other, each with its limit. */
@@ -55,31 +33,22 @@ function overTime(rows: Row[], duration: number, legend: boolean, theme: Theme):
   const axes: Layout = {};
   const share = 1 / rows.length;
   rows.forEach((row, index) => {
-    const name = index === 0 ? '' : `${index + 1}`;
     const most = Math.max(...row.lines.map((line) => magnitude(line.y)), 0);
     const inside = row.limit !== null && (most === 0 || row.limit <= reach * most);
     for (const line of row.lines) {
-      data.push({
-        type: 'scatter',
-        mode: 'lines',
-        name: line.name,
-        legendgroup: line.name,
-        showlegend: legend && index === 0,
-        x: line.x,
-        y: line.y,
-        yaxis: `y${name}`,
-        line: { color: line.color, width: 1.4, dash: line.dash },
-        hovertemplate: `%{y:.4g}${thinSpace}${row.unit}<extra>${line.name}</extra>`,
-      });
+      const style = { color: line.color, width: 1.4, dash: line.dash };
+      data.push(curve(index, line.name, row.unit, line.x, line.y, style, { legendgroup: line.name, showlegend: legend && index === 0 }));
     }
     if (row.limit !== null) {
-      const marks = limitMarks(row, row.limit, inside, name, theme);
+      const text = `limit ${Number(row.limit.toPrecision(4))} ${row.unit}${inside ? '' : ', beyond this plot'}`;
+      const heights = row.both ? [row.limit, -row.limit] : [row.limit];
+      const marks = limitMarks(index, inside ? heights : [], text, theme);
       shapes.push(...marks.shapes);
       annotations.push(marks.annotation);
     }
     const top = 1 - index * share;
     const high = 1.1 * Math.max(most, inside ? row.limit! : 0) || 1;
-    axes[`yaxis${name}`] = axis(theme, row.title, {
+    axes[`yaxis${suffix(index)}`] = axis(theme, row.title, {
       domain: [Math.max(0, top - share + 0.05), top],
       range: [row.both ? -high : 0, high],
       nticks: 5,
