@@ -129,6 +129,46 @@ TEST_F(MonitorVerb, NamesTheModeAndABetterSpeed) {
   EXPECT_NE(robomill("monitor toothless.toml --input rec.wav").err.find("process.teeth"), std::string::npos);
 }
 
+// The chart that robomill lobes writes of the same file: its deepest limit, of which a fifth is kept as a margin.
+TEST_F(MonitorVerb, AdvisesTheBestSpeedAndDepthOfTheLobes) {
+  wav("rec.wav", cut(6.0, true));
+  folder_.file("lobes.toml",
+               "[tool]\nteeth = 3\ndiameter_mm = 12\n[cut]\ndirection = \"up\"\nradial_depth_mm = 1.8\n"
+               "feed_per_tooth_mm = 0.01\n[coefficients]\ntangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n"
+               "[dynamics]\nmodes = \"" ROBOMILL_SOURCE_DIR
+               "/data/robot-modes.toml\"\n[lobes]\nspindle_speed_rpm = [6600, 7500]\naxial_depth_mm = [0, 3]\n"
+               "grid = [20, 10]\n");
+  const Ended chart = robomill("lobes lobes.toml -o -");
+  ASSERT_EQ(chart.exit, 0) << chart.err;
+  const json lobes = json::parse(chart.out);
+  double best_rpm = 0.0, best_mm = 0.0, least_mm = 1e9;
+  for (const json& limit : lobes["limit"]) {
+    ASSERT_FALSE(limit["axial_depth_mm"].is_null());
+    const auto depth_mm = limit["axial_depth_mm"].get<double>();
+    least_mm = std::min(least_mm, depth_mm);
+    if (depth_mm <= best_mm) continue;
+    best_mm = depth_mm;
+    best_rpm = limit["spindle_speed_rpm"].get<double>();
+  }
+  ASSERT_GT(best_mm, 1.2 * least_mm);  // otherwise any speed would do, or else the first or the last
+  ASSERT_NE(best_rpm, lobes["limit"].front()["spindle_speed_rpm"].get<double>());
+  ASSERT_NE(best_rpm, lobes["limit"].back()["spindle_speed_rpm"].get<double>());
+  folder_.file("lobed.toml", config_ + "lobes = \"lobes.toml\"\n");
+  const Ended run = robomill("monitor lobed.toml --input rec.wav -o events.jsonl");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const std::vector<json> states = events_of("state");
+  const auto alarm =
+      std::find_if(states.begin(), states.end(), [](const json& event) { return event["state"] == "chatter"; });
+  ASSERT_NE(alarm, states.end());
+  EXPECT_NEAR((*alarm)["suggested_spindle_speed_rpm"].get<double>(), best_rpm, 1e-6 * best_rpm);
+  EXPECT_NEAR((*alarm)["suggested_axial_depth_mm"].get<double>(), 0.8 * best_mm, 1e-6 * best_mm);
+  folder_.file("unlobed.toml", config_ + "lobes = \"none.toml\"\n");
+  const Ended refused = robomill("monitor unlobed.toml --input rec.wav -o unlobed.jsonl");
+  EXPECT_EQ(refused.exit, 1);
+  EXPECT_NE(refused.err.find("none.toml"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_.at("unlobed.jsonl")));
+}
+
 TEST_F(MonitorVerb, LeavesAnEmptyFileWhereNothingHappens) {
   wav("rec.wav", cut(5.0, false));
   const Ended run = robomill("monitor monitor.toml --input rec.wav -o events.jsonl");
@@ -269,10 +309,31 @@ TEST_F(MonitorVerb, Calibrates) {
   EXPECT_GE(report["setting"]["roc"].size(), 2U);
   EXPECT_NE(slurp(folder_.at("calibrated.toml")).find("threshold = "), std::string::npos);
   EXPECT_EQ(robomill("monitor calibrated.toml --input rec1.wav --quiet").exit, 0);
-  folder_.file("quiet.toml", "[signal]\nchannels = [1]\n[[recordings]]\nfile = \"rec0.wav\"\nlabel = \"stable\"\n");
-  const Ended refused = robomill("calibrate quiet.toml -o calibrated.toml");
-  EXPECT_EQ(refused.exit, 1);
-  EXPECT_NE(refused.err.find("label = \"chatter\""), std::string::npos) << refused.err;
+}
+
+// One message, exit code 1, and none of the files that were wanted.
+TEST_F(MonitorVerb, RefusesToCalibrateWithoutBothKinds) {
+  const std::vector<float> samples = cut(1.0, false);
+  for (const char* name : {"rec0.wav", "rec1.wav", "rec2.wav"}) wav(name, samples);
+  const auto refused = [&](const std::vector<std::string>& labels, const std::string& part) {
+    std::string text = "[signal]\nchannels = [1]\n";
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      text += "[[recordings]]\nfile = \"rec" + std::to_string(i) + ".wav\"\nlabel = \"" + labels[i] + "\"\n";
+    }
+    folder_.file("recordings.toml", text);
+    const Ended run = robomill("calibrate recordings.toml -o out.toml --report report.json");
+    EXPECT_EQ(run.exit, 1);
+    EXPECT_EQ(run.out, "");
+    EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_.at("out.toml")));
+    EXPECT_FALSE(std::filesystem::exists(folder_.at("report.json")));
+  };
+  refused({"stable", "stable", "stable"}, "label = \"chatter\"");
+  refused({"chatter", "chatter", "chatter"}, "label = \"stable\"");
+  refused({"stable", "stable", "chatter"}, "label = \"chatter\"");  // one sets nothing and verifies nothing
+  refused({}, "recordings");
+  refused({"stable", "noisy"}, "noisy");
 }
 
 TEST_F(MonitorVerb, ShowsALine) {
