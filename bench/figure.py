@@ -53,13 +53,12 @@ class Figure:
         self.out.append(f'<circle cx="{self.x(x):.1f}" cy="{self.y(y):.1f}" r="5" fill="{fill}" stroke="{colour}" stroke-width="2"/>')
 
     def limit(self, x, text):
-        """A line across the plot, named at its top."""
+        """A line across the plot, named above it."""
         at = self.x(x)
-        self.out.append(f'<line x1="{at:.1f}" y1="{TOP}" x2="{at:.1f}" y2="{HEIGHT - BOTTOM}" stroke="#555" stroke-dasharray="2 3"/>')
-        self.out.append(f'<text x="{at - 5:.1f}" y="{TOP + 8}" text-anchor="end" fill="#555" '
-                        f'transform="rotate(-90 {at - 5:.1f} {TOP + 8})">{text}</text>')
+        self.out.append(f'<line x1="{at:.1f}" y1="{TOP - 3}" x2="{at:.1f}" y2="{HEIGHT - BOTTOM}" stroke="#333" stroke-dasharray="2 3"/>')
+        self.out.append(f'<text x="{at:.1f}" y="{TOP - 6}" text-anchor="middle" font-size="11">{text}</text>')
 
-    def legend(self, text, colour=None, dashed=False, hollow=None):
+    def legend(self, text, colour=None, dashed=False, hollow=None, indented=False):
         """A line of the legend; without a colour only its text, with `hollow` the sign of a mark."""
         at, left = self.legend_y, self.right + 16
         if colour and hollow is not None:
@@ -68,7 +67,7 @@ class Figure:
         elif colour:
             dash = ' stroke-dasharray="5 4"' if dashed else ""
             self.out.append(f'<line x1="{left}" y1="{at - 4}" x2="{left + 24}" y2="{at - 4}" stroke="{colour}" stroke-width="2"{dash}/>')
-        self.out.append(f'<text x="{left + (32 if colour else 0)}" y="{at}">{text}</text>')
+        self.out.append(f'<text x="{left + (32 if colour or indented else 0)}" y="{at}">{text}</text>')
         self.legend_y += 20
 
     def gap(self):
