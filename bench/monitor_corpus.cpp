@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "robomill/monitor/monitor.hpp"
 #include "robomill/monitor/test_corpus.hpp"
 #include "robomill/monitor/test_score.hpp"
 
@@ -16,31 +15,6 @@ namespace {
 
 using namespace robomill;
 using namespace robomill::monitor::testing;
-
-std::vector<Heard> with_monitor(const RecordedCut& cut) {
-  monitor::MonitorOptions options;
-  options.sample_rate_hz = cut.sample_rate_hz;
-  options.channels = cut.channels;
-  options.spindle_speed_rad_per_s = cut.hint_rad_per_s;
-  options.teeth = cut.teeth;
-  monitor::ChatterMonitor monitor(options);
-  std::vector<Heard> out;
-  std::span<const float> rest = cut.samples;
-  const auto channels = static_cast<std::size_t>(cut.channels);
-  std::uint64_t hop = 0;
-  while (!rest.empty()) {
-    const std::size_t take = std::min(rest.size(), monitor.frames_to_next_decision() * channels);
-    const monitor::Decision d = monitor.push(rest.first(take));
-    rest = rest.subspan(take);
-    if (d.hop == hop) continue;
-    hop = d.hop;
-    out.push_back({.time_s = d.time_s,
-                   .chatter = d.state == monitor::State::chatter,
-                   .stable = d.state == monitor::State::stable,
-                   .frequency_hz = d.chatter_frequency_hz});
-  }
-  return out;
-}
 
 void print(const std::string& name, const Summary& s) {
   fmt::print("| {} | {} | {}/{} | {} | {:.0f} / {:.0f} | {:.2f} / {:.2f} | {:.0f} / {:.0f} |\n", name, s.cuts, s.found,
@@ -54,7 +28,7 @@ int main(int argc, char** argv) {
   const std::uint64_t first = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
   const std::uint64_t count = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : corpus_size;
   const std::vector<std::pair<std::string, Detector>> detectors = {
-      {"monitor", with_monitor}, {"comb, RMS ratio", comb_rms_ratio}, {"RMS 5 sigma", rms_five_sigma}};
+      {"monitor", heard_by_monitor}, {"comb, RMS ratio", comb_rms_ratio}, {"RMS 5 sigma", rms_five_sigma}};
   std::vector<std::map<std::string, std::vector<CutScore>>> scores(detectors.size());
   double drawing_s = 0.0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {

@@ -88,10 +88,9 @@ RocPoint rates(const Courses& half, double threshold, bool below, const MonitorO
 }
 
 /// The value of each course that is furthest on the side of the alarm, the furthest first.
-std::vector<double> extremes(const Courses& half, bool below, std::optional<bool> chatter) {
+std::vector<double> extremes(const Courses& half, bool below) {
   std::vector<double> out;
   for (const Course* course : half) {
-    if (chatter && course->chatter != *chatter) continue;
     const auto [least, most] = std::minmax_element(course->entropy.begin(), course->entropy.end());
     out.push_back(below ? *least : *most);
   }
@@ -99,15 +98,9 @@ std::vector<double> extremes(const Courses& half, bool below, std::optional<bool
   return out;
 }
 
-/// The nearest threshold at which no more than the wanted share of the stable courses goes beyond.
-double nearest_threshold(const Courses& half, bool below, double false_alarm_rate) {
-  const std::vector<double> stable = extremes(half, below, false);
-  return stable[static_cast<std::size_t>(false_alarm_rate * static_cast<double>(stable.size()))];
-}
-
 std::vector<RocPoint> roc_of(const Courses& half, bool below, const MonitorOptions& o) {
   std::vector<RocPoint> roc;
-  std::vector<double> thresholds = extremes(half, below, std::nullopt);
+  std::vector<double> thresholds = extremes(half, below);
   thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());
   roc.reserve(thresholds.size() + 1);
   for (const double threshold : thresholds) roc.push_back(rates(half, threshold, below, o));
@@ -161,16 +154,23 @@ std::vector<bool> drawn_to_verify(std::span<const Recording> recordings, std::ui
   return verifies;
 }
 
+/// Whether one threshold finds more than another, or as much and earlier.
+bool better(const RocPoint& one, const RocPoint& other) {
+  if (one.detection_rate != other.detection_rate) return one.detection_rate > other.detection_rate;
+  return one.median_delay_s < other.median_delay_s;
+}
+
 /// Threshold and direction.
 void set_threshold(const Courses& setting, double false_alarm_rate, MonitorOptions& o) {
-  RocPoint best[2];
+  RocPoint best = {.detection_rate = -1.0};
   for (const bool below : {false, true}) {
-    best[below ? 1 : 0] = rates(setting, nearest_threshold(setting, below, false_alarm_rate), below, o);
+    for (const RocPoint& point : roc_of(setting, below, o)) {
+      if (point.false_alarm_rate > false_alarm_rate || !better(point, best)) continue;
+      best = point;
+      o.alarm_below = below;
+    }
   }
-  const RocPoint &above = best[0], &under = best[1];
-  o.alarm_below = under.detection_rate != above.detection_rate ? under.detection_rate > above.detection_rate
-                                                               : under.median_delay_s < above.median_delay_s;
-  o.threshold = best[o.alarm_below ? 1 : 0].threshold;
+  o.threshold = best.threshold;
 }
 
 }  // namespace

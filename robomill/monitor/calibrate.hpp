@@ -65,9 +65,9 @@ struct Calibration {
 /// chatter, drawn by the seed, set it, the others verify it.
 ///
 /// A recording raises an alarm at its first hop with entropy above (or below) the threshold; the first two windows,
-/// which reach before its start, do not count. Of all thresholds at which no more than the wanted share of the stable
-/// recordings raises one, the one nearest to them is taken: it detects earliest. Both directions are tried; the one
-/// that detects more wins, then the faster one.
+/// which reach before its start, do not count. Of all thresholds, above and below, at which no more than the wanted
+/// share of the stable recordings raises one, the one that detects most is taken, of several the earliest: the nearest
+/// one detects less where it fires before chatter's onset, too.
 ///
 /// Chatter's line is visible from the last sample of the third spectrogram column (Hann window, columns as the
 /// detector's hops) in a row in which it is 6 dB above the median of the 16 lines on either side and 6 dB above its own

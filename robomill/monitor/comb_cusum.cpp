@@ -3,17 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace robomill::monitor {
 namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
-constexpr double drift_hz = 3.0;        // corner of the high-pass
-constexpr double comb_s = 0.25;         // memory of the comb
+constexpr double drift_hz = 3.0;  // corner of the high-pass
+constexpr double comb_s = 0.25;   // memory of the comb
+constexpr double first_doubt_s = 1.0;
 constexpr double jump = 4.0;            // of the power: the tool enters or leaves
+constexpr std::size_t entry_lasts = 8;  // hops
 constexpr std::size_t coherent = 3;     // hops in which a part of the residual stays in phase with the spindle
 constexpr double longest_look_s = 0.3;  // for the frequency
+constexpr double falling = 0.85;        // of the power to that of the hop before
+constexpr double falling_fast = 0.75;   // of half a hop's power to that of the halves before
 constexpr double least_share = 0.0025;  // of the whole power, below which no line counts
 
 signal::SynchrosqueezeOptions transform_of(const MonitorOptions& o, std::size_t columns_a_hop) {
@@ -49,9 +54,12 @@ CombCusum::CombCusum(const MonitorOptions& options)
       energy_(lines_ * channels_),
       taken_(lines_ * channels_),
       power_(channels_),
-      certain_(std::make_unique<bool[]>(lines_)),
-      history_(kept * lines_, -1e9) {
-  const auto most = std::min<std::size_t>(320, static_cast<std::size_t>(0.5 * options.sample_rate_hz / lowest_hz));
+      left_power_(channels_),
+      late_half_(channels_),
+      falls_(std::make_unique<bool[]>(channels_)),
+      history_(kept * lines_, -1e9),
+      hidden_harmonics_(most_harmonics, options.teeth) {
+  const auto most = std::min(most_harmonics, static_cast<std::size_t>(0.5 * options.sample_rate_hz / lowest_hz));
   for (std::size_t c = 0; c < channels_; ++c) {
     combs_.emplace_back(most);
     streams_.emplace_back(transform_of(options, columns_a_hop),
@@ -59,14 +67,14 @@ CombCusum::CombCusum(const MonitorOptions& options)
     rings_.emplace_back(options.sample_rate_hz, longest_look_s);
   }
   innovation_.resize(channels_ * coherent * most);
-  harmonic_.resize(most);
-  harmonic_before_.resize(most);
   band_power_.resize(channels_ * static_cast<std::size_t>(options.bands));
+  reset();
   set_spindle_speed(options.spindle_speed_rad_per_s);
 }
 
 void CombCusum::set_spindle_speed(double rad_per_s) noexcept {
   hint_hz_ = rad_per_s / turn;
+  known_hz_ = 0.0;
 }
 
 void CombCusum::reset() noexcept {
@@ -76,14 +84,18 @@ void CombCusum::reset() noexcept {
   for (auto& stream : streams_) stream.reset();
   for (FrequencyRing& ring : rings_) ring.reset();
   lines_test_.relearn();
-  for (auto* store : {&mean_, &rms_, &harmonic_before_}) std::fill(store->begin(), store->end(), 0.0);
+  for (auto* store : {&mean_, &rms_, &left_power_, &late_half_}) std::fill(store->begin(), store->end(), 0.0);
   std::fill(history_.begin(), history_.end(), -1e9);
   std::fill(innovation_.begin(), innovation_.end(), 0.0);
-  rotation_hz_ = angle_ = revolutions_ = since_s_ = since_look_s_ = since_lock_s_ = slow_power_ = suggested_rate_hz_ =
-      0.0;
-  window_ = jumps_ = broad_ = calm_ = steady_ = hidden_hops_ = hidden_harmonic_ = still_bad_ = 0;
+  rotation_hz_ = known_hz_ = angle_ = revolutions_ = since_s_ = since_look_s_ = since_lock_s_ = slow_power_ =
+      power_before_ = suggested_rate_hz_ = 0.0;
+  window_ = misfits_ = entry_hops_ = moving_ = jumps_ = broad_ = calm_ = steady_ = still_bad_ = 0;
   hops_ = bad_ = 0;
+  tone_.reset();
+  spill_.reset();
+  hidden_harmonics_.reset();
   everywhere_ = false;
+  doubt_s_ = first_doubt_s;
   state_ = State::stable;
   hidden_ = Hidden::none;
   found_ = {};
@@ -123,6 +135,7 @@ void CombCusum::take_in(const Hop& hop) noexcept {
   // Without a comb, what comes with the tool's entry cannot be told from chatter until the speed is found.
   const double change = slow_power_ > 0.0 ? total / slow_power_ : 1.0;
   jumps_ = change > jump || change < 1.0 / jump ? jumps_ + 1 : 0;
+  entry_hops_ = change > jump ? entry_lasts : entry_hops_ > 0 ? entry_hops_ - 1 : 0;
   if (jumps_ == 0) slow_power_ += 0.1 * (total - slow_power_);
   if (hops_ == 1) slow_power_ = total;
   if (jumps_ == 1 && rotation_hz_ == 0.0) {
@@ -217,7 +230,7 @@ void CombCusum::comb() noexcept {
     before += static_cast<double>(input_[i] * input_[i]);
     after += static_cast<double>(residual_[i] * residual_[i]);
   }
-  if (after > 1.2 * before && state_ != State::chatter) {
+  if (after > 1.2 * before && state_ != State::chatter && jumps_ > 0) {
     // The tool has left the cut.
     std::copy(input_.begin(), input_.end(), residual_.begin());
     learn_anew();
@@ -252,6 +265,23 @@ void CombCusum::squeeze() noexcept {
   }
 }
 
+void CombCusum::leave_power() noexcept {
+  const double n = static_cast<double>(frames_);
+  for (std::size_t c = 0; c < channels_; ++c) {
+    const std::span<const float> left = std::span(residual_).subspan(c * frames_, frames_);
+    rings_[c].push(left);
+    const auto squares = [](std::span<const float> of) {
+      return std::accumulate(of.begin(), of.end(), 0.0,
+                             [](double sum, float x) { return sum + static_cast<double>(x * x); });
+    };
+    const double early = squares(left.first(frames_ / 2)) / n;
+    const double late = squares(left.subspan(frames_ / 2)) / n;
+    falls_[c] = early + late < falling * left_power_[c] || late < falling_fast * std::max(early, late_half_[c]);
+    left_power_[c] = early + late;
+    late_half_[c] = late;
+  }
+}
+
 void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {
   ++hops_;
   take_in(hop);
@@ -266,7 +296,7 @@ void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {
     std::copy(input_.begin(), input_.end(), residual_.begin());
     decision.faults |= speed_unknown;
   }
-  for (std::size_t c = 0; c < channels_; ++c) rings_[c].push(std::span(residual_).subspan(c * frames_, frames_));
+  leave_power();
   squeeze();
   // What is so small beside the whole marks no part.
   const double n = static_cast<double>(2 * (lines_ - 1));

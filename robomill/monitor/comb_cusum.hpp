@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <complex>
 #include <memory>
 #include <vector>
@@ -8,8 +9,11 @@
 #include "robomill/monitor/detector.hpp"
 #include "robomill/monitor/entropy.hpp"
 #include "robomill/monitor/frequency.hpp"
+#include "robomill/monitor/hidden.hpp"
 #include "robomill/monitor/speed.hpp"
+#include "robomill/monitor/spill.hpp"
 #include "robomill/monitor/tachometer.hpp"
+#include "robomill/monitor/tone.hpp"
 #include "robomill/signal/synchrosqueeze.hpp"
 
 namespace robomill::monitor {
@@ -26,7 +30,9 @@ class CombCusum final : public Detector {
   static constexpr std::size_t columns_a_hop = 4;  // of the transform
   static constexpr std::size_t kept = 8;           // hops of log energies
   static constexpr double lowest_hz = 5.0;         // of rotation
-  static constexpr double settle_turns = 4.0;      // of the comb
+  static constexpr std::size_t most_harmonics = 320;
+  static constexpr double hint_share = 0.07;   // how far a hint may be off
+  static constexpr double settle_turns = 4.0;  // of the comb
 
   void take_in(const Hop& hop) noexcept;
   // Speed
@@ -34,26 +40,37 @@ class CombCusum final : public Detector {
   void follow_tachometer(const Hop& hop) noexcept;
   void seek_everywhere() noexcept;
   void look(std::size_t window, double centre_hz, double share) noexcept;
+  [[nodiscard]] bool hears_the_mains(double rotation_hz) const noexcept;
+  [[nodiscard]] bool convincing() const noexcept;
   bool speed_holds() noexcept;
   void lock(double rotation_hz) noexcept;
   void replay() noexcept;
   void lose() noexcept;
   void learn_anew() noexcept;
   [[nodiscard]] bool trusted() const noexcept;
-  bool look_for_hidden() noexcept;
+  [[nodiscard]] bool comb_known() const noexcept { return rotation_hz_ > 0.0 && trusted(); }
+  bool hear_hidden() noexcept;
   // Comb
   void comb() noexcept;
   void comb_block(std::size_t first, std::size_t count) noexcept;
   void follow_speed() noexcept;
   void leftover() noexcept;
   // Lines
+  void leave_power() noexcept;
   void squeeze() noexcept;
   void judge(Decision& decision) noexcept;
-  void in_cut(const Cusum::Verdict& verdict) noexcept;
+  [[nodiscard]] bool near_a_harmonic(double frequency_hz) const noexcept;
+  [[nodiscard]] bool hear_tone() noexcept;
+  [[nodiscard]] bool hear_spill() noexcept;
+  [[nodiscard]] bool may_be_the_cut(double frequency_hz) const noexcept;
+  void in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept;
+  void begin_chatter(bool above_baseline) noexcept;
   void in_chatter() noexcept;
   void follow_line() noexcept;
   void tell_frequency(Decision& decision) noexcept;
   void tell_bands(Decision& decision) const noexcept;
+  [[nodiscard]] double power() const noexcept;            // of all channels in the hop
+  [[nodiscard]] double energy_of_power() const noexcept;  // that it has in the lines
   [[nodiscard]] double level(std::size_t line) const noexcept;
   [[nodiscard]] double line_hz(std::size_t line) const noexcept;
 
@@ -71,8 +88,10 @@ class CombCusum final : public Detector {
   std::vector<double> mean_;             // of each channel, slow
   std::vector<double> rms_;              // of the residual, slow
   std::vector<std::complex<double>> column_, innovation_;
-  std::vector<double> energy_, taken_, power_, harmonic_, harmonic_before_;
-  std::unique_ptr<bool[]> certain_;
+  std::vector<double> energy_, taken_, power_;
+  std::vector<double> left_power_;  // of the residual in the hop, each channel
+  std::vector<double> late_half_;   // in its second half
+  std::unique_ptr<bool[]> falls_;   // it is on its way down
   std::vector<double> history_;     // of the lines' log energies, loudest channel; `kept` hops
   std::vector<double> band_power_;  // of the hop, each channel's bands
   std::uint64_t bad_ = 0;           // channels that are not listened to
@@ -83,20 +102,28 @@ class CombCusum final : public Detector {
   double revolutions_ = 0.0;  // since the comb began to learn
   double since_s_ = 0.0;      // what is looked at for the speed has begun
   double since_look_s_ = 0.0, since_lock_s_ = 0.0;
-  std::size_t window_ = 0;  // of the next look
+  double doubt_s_ = 0.0;                // until a weak comb near the hint makes the sample rate doubtful
+  std::size_t window_ = 0;              // of the next look
+  std::size_t misfits_ = 0;             // looks in which the speed found explained nothing
+  double known_hz_ = 0.0;               // the last rotation that was followed
+  std::array<double, 4> seen_hz_ = {};  // rotations that the last looks found
+  std::size_t moving_ = 0;              // hops until a speed that changed is taken for settled
   double slow_power_ = 0.0;
   std::size_t jumps_ = 0;
+  std::size_t entry_hops_ = 0;  // for which the tool still enters
   std::uint64_t hops_ = 0;
 
   State state_ = State::stable;
   std::size_t line_ = 0, channel_ = 0;  // of chatter
   bool above_baseline_ = true;
   double highest_ = 0.0;  // log energy of chatter's line, at most so far
+  Tone tone_;
+  Spill spill_;
+  HiddenHarmonics hidden_harmonics_;
+  double power_before_ = 0.0;  // of all channels, a hop ago
   std::size_t broad_ = 0, calm_ = 0, steady_ = 0;
   FrequencyEstimate found_;
   Hidden hidden_ = Hidden::none;
-  std::size_t hidden_hops_ = 0, hidden_harmonic_ = 0;
-  double hidden_power_ = 0.0;
 };
 
 }  // namespace robomill::monitor

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace robomill::monitor {
 namespace {
@@ -10,56 +11,25 @@ namespace {
 constexpr double dying = 0.3;         // fall of a log energy that no growing chatter shows
 constexpr double died = 4.0;          // fall of a log energy at which chatter is over
 constexpr double faint = 1.5;         // height over the baseline at which it is over, too
+constexpr double fainter = 1.0;       // and fall from its highest
 constexpr double broad_height = 1.2;  // of the median line: entry, exit
 constexpr std::size_t broad_hops = 3;
 constexpr std::size_t calm_hops = 2;
-constexpr std::size_t hidden_hops = 6;   // for which a harmonic must stand out
-constexpr double hidden_growth = 8.0;    // of its power against what was learnt, beyond that of tooth passing
-constexpr double hidden_share = 0.25;    // of the whole power
-constexpr double hidden_learnt_s = 0.5;  // before that it is not known what is usual
-constexpr double dominant = 0.15;        // of the whole power
-
+constexpr double hidden_learnt_s = 0.5;  // before that it is not known which harmonics are usual
+constexpr double lowest_tone_hz = 90.0;  // below hums the mains
+constexpr double entry_width_hz = 6.0;   // by which a line misses its harmonic while the tool enters
+constexpr double highest_of_rotation = 3.5, highest_of_teeth = 6.0;  // orders that a hint can tell
 }  // namespace
 
-bool CombCusum::look_for_hidden() noexcept {
-  const auto teeth = static_cast<std::size_t>(options_.teeth);
-  if (rotation_hz_ == 0.0 || teeth < 2 || !trusted()) return false;
-  double cutting = 0.0;
-  double cutting_before = 0.0;
-  double total = 1e-300;
-  for (const double power : power_) total += power;
-  const std::size_t count = combs_[0].harmonics();
-  for (std::size_t k = 1; k <= count; ++k) {
-    harmonic_[k - 1] = 0.0;
-    for (const Comb& comb : combs_) harmonic_[k - 1] += 0.5 * std::norm(comb.amplitude(k));
-    if (k % teeth != 0) continue;
-    cutting += harmonic_[k - 1];
-    cutting_before += harmonic_before_[k - 1];
-  }
-  double most = 0.0;
-  std::size_t at = 0;
-  const double grown = hidden_growth * std::max(1.0, cutting / std::max(1e-300, cutting_before));
-  for (std::size_t k = 2; k <= count; ++k) {
-    if (k % teeth != 0 && harmonic_[k - 1] > grown * harmonic_before_[k - 1] && harmonic_[k - 1] > most) {
-      most = harmonic_[k - 1];
-      at = k;
-    }
-  }
-  const bool known = since_lock_s_ > hidden_learnt_s;
-  hidden_hops_ = known && most > hidden_share * total && at == hidden_harmonic_ ? hidden_hops_ + 1 : 0;
-  hidden_harmonic_ = at;
-  const double slow = known ? 0.02 : 0.2;
-  for (std::size_t k = 1; k <= count && hidden_hops_ == 0; ++k)
-    harmonic_before_[k - 1] += slow * (harmonic_[k - 1] - harmonic_before_[k - 1]);
-  if (hidden_hops_ < hidden_hops) return false;
-  if (cutting < 0.3 * cutting_before || !speed_holds()) {
-    hidden_hops_ = 0;
+bool CombCusum::hear_hidden() noexcept {
+  if (!comb_known() || !hidden_harmonics_.step(combs_, power(), since_lock_s_ > hidden_learnt_s)) return false;
+  if (!speed_holds()) {
+    hidden_harmonics_.doubt();
     return false;
   }
-  hidden_ = 2 * (at % teeth) == teeth ? Hidden::period_doubling : Hidden::locked;
-  hidden_power_ = most;
-  found_ = {.frequency_hz = static_cast<double>(at) * rotation_hz_,
-            .std_hz = 1.0 / (hidden_hops * options_.hop_s) / std::sqrt(12.0)};
+  hidden_ = hidden_harmonics_.kind();
+  found_ = {.frequency_hz = static_cast<double>(hidden_harmonics_.harmonic()) * rotation_hz_,
+            .std_hz = 1.0 / (HiddenHarmonics::hops * options_.hop_s) / std::sqrt(12.0)};
   return true;
 }
 
@@ -67,52 +37,115 @@ double CombCusum::line_hz(std::size_t line) const noexcept {
   return static_cast<double>(line) * options_.sample_rate_hz / static_cast<double>(2 * (lines_ - 1));
 }
 
+double CombCusum::power() const noexcept {
+  return std::accumulate(power_.begin(), power_.end(), 0.0);
+}
+
+double CombCusum::energy_of_power() const noexcept {
+  const double n = static_cast<double>(2 * (lines_ - 1));
+  return 2.0 * columns_a_hop * n * n;
+}
+
 double CombCusum::level(std::size_t line) const noexcept {
   return history_[hops_ % kept * lines_ + line];
 }
 
 void CombCusum::judge(Decision& decision) noexcept {
-  double total = 1e-300;
-  for (const double power : power_) total += power;
-  const double n = static_cast<double>(2 * (lines_ - 1));
-  for (std::size_t k = 0; k < lines_; ++k) {
-    double energy = 0.0;
-    for (std::size_t c = 0; c < channels_; ++c)
-      energy += std::max(0.0, energy_[c * lines_ + k] - taken_[c * lines_ + k]);
-    const double share = energy / (2.0 * columns_a_hop * n * n) / total;
-    certain_[k] = rotation_hz_ > 0.0 && trusted() && share > dominant;
-  }
-  const Cusum::Verdict verdict = lines_test_.step(energy_, taken_, {certain_.get(), lines_});
+  const Cusum::Verdict verdict = lines_test_.step(energy_, taken_, {falls_.get(), channels_});
   double* now = history_.data() + hops_ % kept * lines_;
   for (std::size_t k = 0; k < lines_; ++k) {
     now[k] = -1e9;
     for (std::size_t c = 0; c < channels_; ++c) now[k] = std::max(now[k], lines_test_.log_energy(c, k));
   }
+  const bool alone = hear_tone();
+  const bool spills = hear_spill();
   if (state_ == State::chatter) {
     in_chatter();
   } else {
-    in_cut(verdict);
+    in_cut(verdict, alone || spills);
   }
   if (state_ != State::chatter && trusted()) lines_test_.learn();
   decision.state = state_;
-  decision.score = verdict.score;
+  decision.score = alone || spills ? std::max(verdict.score, 1.001 * lines_test_.threshold()) : verdict.score;
   decision.threshold = lines_test_.threshold();
   decision.channel = static_cast<int>(channel_);
   decision.hidden = hidden_;
   if (state_ != State::stable) tell_frequency(decision);
 }
 
-void CombCusum::in_cut(const Cusum::Verdict& verdict) noexcept {
+// A multiple of rotation or of tooth passing, at a speed near the one that is told; high ones lie too close to say.
+bool CombCusum::may_be_the_cut(double frequency_hz) const noexcept {
+  const double near_hz = known_hz_ > 0.0 ? known_hz_ : hint_hz_;
+  if (near_hz <= 0.0) return true;
+  const auto multiple = [&](double of_hz, double highest) {
+    const double order = frequency_hz / of_hz;
+    return order < highest && std::abs(order - std::round(order)) < hint_share * order + 0.5 * line_hz(1) / of_hz;
+  };
+  return multiple(near_hz, highest_of_rotation) || multiple(near_hz * std::max(1, options_.teeth), highest_of_teeth);
+}
+
+bool CombCusum::near_a_harmonic(double frequency_hz) const noexcept {
+  return std::abs(std::remainder(frequency_hz, rotation_hz_ * std::max(1, options_.teeth))) < entry_width_hz;
+}
+
+bool CombCusum::hear_tone() noexcept {
+  std::size_t line = 0;
+  double most = 0.0;
+  for (std::size_t k = 2; k + 1 < lines_; ++k) {
+    if (line_hz(k) < lowest_tone_hz) continue;
+    double energy = 0.0;
+    for (std::size_t c = 0; c < channels_; ++c)
+      energy += std::max(0.0, energy_[c * lines_ + k] - taken_[c * lines_ + k]);
+    if (energy > most) {
+      most = energy;
+      line = k;
+    }
+  }
+  // The transform looks at two hops.
+  const double now = power() + 1e-300;
+  const double whole = 0.5 * (now + power_before_);
+  power_before_ = now;
+  // Without a comb the residual is the whole; each line is summed thrice.
+  const double energy =
+      comb_known() ? whole * energy_of_power() : std::accumulate(energy_.begin(), energy_.end(), 1e-300) / 3.0;
+  return tone_.step({.line = line,
+                     .share = most / energy,
+                     .power = whole,
+                     .comb_known = comb_known(),
+                     .falls = std::all_of(falls_.get(), falls_.get() + channels_, [](bool each) { return each; }),
+                     .may_be_the_cut = may_be_the_cut(line_hz(line))});
+}
+
+bool CombCusum::hear_spill() noexcept {
+  const bool spills = spill_.step(std::accumulate(left_power_.begin(), left_power_.end(), 0.0), power());
+  if (comb_known() && state_ != State::chatter) return spills;
+  spill_.relearn();
+  return false;
+}
+
+void CombCusum::begin_chatter(bool above_baseline) noexcept {
+  state_ = State::chatter;
+  above_baseline_ = above_baseline;
+  highest_ = level(line_);
+  calm_ = 0;
+}
+
+void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
   const double threshold = lines_test_.threshold();
+  if (at_once && speed_holds()) {
+    line_ = tone_.line();
+    begin_chatter(false);
+    return;
+  }
   if (!trusted()) {
     lines_test_.relearn();
     state_ = State::stable;
-    broad_ = hidden_hops_ = 0;
+    broad_ = 0;
+    hidden_harmonics_.doubt();
     return;
   }
-  if (look_for_hidden()) {
-    state_ = State::chatter;
-    above_baseline_ = false;
+  if (hear_hidden()) {
+    begin_chatter(false);
     return;
   }
   broad_ = std::abs(verdict.common) > broad_height ? broad_ + 1 : 0;
@@ -135,11 +168,11 @@ void CombCusum::in_cut(const Cusum::Verdict& verdict) noexcept {
   } else {
     steady_ = 0;
   }
-  if (verdict.score > threshold && !dies && steady_ > 0 && speed_holds()) {
-    state_ = State::chatter;
-    above_baseline_ = verdict.height > 2.0 * faint;
-    highest_ = level(line_);
-    calm_ = 0;
+  const bool cut = rotation_hz_ == 0.0 ? (hint_hz_ > 0.0 || known_hz_ > 0.0) && may_be_the_cut(found_.frequency_hz)
+                                       : entry_hops_ > 0 && near_a_harmonic(found_.frequency_hz);
+  if (cut && verdict.score > threshold) lines_test_.accept(verdict.line);
+  if (verdict.score > threshold && !dies && !cut && steady_ > 0 && speed_holds()) {
+    begin_chatter(verdict.height > 2.0 * faint);
   } else {
     state_ = verdict.score > 0.5 * threshold ? State::transition : State::stable;
   }
@@ -173,13 +206,11 @@ void CombCusum::follow_line() noexcept {
 void CombCusum::in_chatter() noexcept {
   if (hidden_ != Hidden::none) {
     // The comb follows on: it is what sees this one.
-    double power = 0.0;
-    for (const Comb& comb : combs_) power += 0.5 * std::norm(comb.amplitude(hidden_harmonic_));
-    hidden_power_ = std::max(hidden_power_, power);
-    calm_ = power < 0.1 * hidden_power_ ? calm_ + 1 : 0;
+    calm_ = hidden_harmonics_.falls(combs_) ? calm_ + 1 : 0;
     if (calm_ < calm_hops) return;
     hidden_ = Hidden::none;
-    hidden_hops_ = calm_ = 0;
+    hidden_harmonics_.doubt();
+    calm_ = 0;
     state_ = State::transition;
     lines_test_.relearn();
     return;
@@ -188,10 +219,13 @@ void CombCusum::in_chatter() noexcept {
   double height = -1e9;
   for (std::size_t c = 0; c < channels_; ++c) height = std::max(height, lines_test_.height(c, line_));
   highest_ = std::max(highest_, level(line_));
-  calm_ = (above_baseline_ && height < faint) || level(line_) < highest_ - died ? calm_ + 1 : 0;
+  const double fallen = highest_ - level(line_);
+  calm_ = (above_baseline_ && height < faint && fallen > fainter) || fallen > died ? calm_ + 1 : 0;
   if (calm_ < calm_hops) return;
   state_ = State::transition;
-  lines_test_.relearn();
+  // The comb stood still, and the tool may have left.
+  learn_anew();
+  lose();
 }
 
 void CombCusum::tell_frequency(Decision& decision) noexcept {

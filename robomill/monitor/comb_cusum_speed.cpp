@@ -9,23 +9,36 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
-constexpr double hint_share = 0.07;  // how far a hint may be off
 constexpr double highest_hz = 500.0;
-constexpr double found_score = 5.0;    // of SpeedSearch
-constexpr double certain_score = 9.0;  // beyond the hint
+constexpr double found_score = 1.5;    // of SpeedSearch
+constexpr double wide_score = 8.0;     // without a hint
+constexpr double mains_share = 5e-3;   // by which the mains, as seen, are off
+constexpr double mains_hint = 0.015;   // by which a hint near them may be off
+constexpr double certain_score = 8.0;  // beyond the hint
 constexpr std::size_t candidates_a_hop = 800;
+constexpr double again_s = 60.0;  // of a doubt of the sample rate
 constexpr double look_again_s = 0.25;
 constexpr double no_comb_s = 0.45;  // after which the test runs without
 constexpr double settle_s = 0.06;
-constexpr double little = 3e-3;         // change of speed that leaves the baselines as they are
-constexpr std::size_t steady_hops = 4;  // of a tone where there is no comb
+constexpr double little = 3e-3;  // change of speed that leaves the baselines as they are
+constexpr std::size_t most_misfits = 6;
+constexpr std::size_t moving_hops = 4;
+constexpr std::size_t steady_hops = 2;  // of a tone where there is no comb
 constexpr double angle_unrest = 0.01;   // of the angle in a block [rad]
+
+/// A multiple or a whole part of 50 or 60 Hz, as closely as the mains keep it.
+bool of_the_mains(double rotation_hz) {
+  return std::ranges::any_of(std::array{50.0, 60.0}, [&](double mains_hz) {
+    const double order = std::max(mains_hz / rotation_hz, rotation_hz / mains_hz);
+    return std::abs(order - std::round(order)) < mains_share * order;
+  });
+}
 
 }  // namespace
 
 bool CombCusum::trusted() const noexcept {
   if (rotation_hz_ == 0.0) return since_s_ >= no_comb_s;
-  return revolutions_ >= settle_turns && since_lock_s_ >= settle_s;
+  return moving_ == 0 && revolutions_ >= settle_turns && since_lock_s_ >= settle_s;
 }
 
 void CombCusum::lose() noexcept {
@@ -37,7 +50,9 @@ void CombCusum::lose() noexcept {
 
 void CombCusum::lock(double rotation_hz) noexcept {
   const double change = rotation_hz_ > 0.0 ? std::abs(rotation_hz / rotation_hz_ - 1.0) : 1.0;
-  rotation_hz_ = rotation_hz;
+  rotation_hz_ = known_hz_ = rotation_hz;
+  if (std::abs(rotation_hz / hint_hz_ - 1.0) < hint_share) suggested_rate_hz_ = 0.0;
+  misfits_ = 0;
   if (change < 2e-4) return;
   for (Comb& comb : combs_) {
     comb.reset();
@@ -89,6 +104,15 @@ void CombCusum::look(std::size_t window, double centre_hz, double share) noexcep
   search_.advance(std::numeric_limits<std::size_t>::max());
 }
 
+// A comb at the mains' frequency that the hint does not tell of.
+bool CombCusum::hears_the_mains(double rotation_hz) const noexcept {
+  return of_the_mains(rotation_hz) && (hint_hz_ <= 0.0 || std::abs(rotation_hz / hint_hz_ - 1.0) > mains_hint);
+}
+
+bool CombCusum::convincing() const noexcept {
+  return search_.best_score() > found_score && !hears_the_mains(search_.best_hz());
+}
+
 bool CombCusum::speed_holds() noexcept {
   if (tachometer_ < channels_) return true;
   if (rotation_hz_ == 0.0) {
@@ -96,20 +120,27 @@ bool CombCusum::speed_holds() noexcept {
     if (hint_hz_ > 0.0) {
       look(2, hint_hz_, hint_share);
       if (search_.best_score() < found_score) look(0, hint_hz_, hint_share);
-      if (search_.best_score() > found_score) {
+      if (convincing()) {
         lock(search_.best_hz());
         return false;
       }
     }
-    return steady_ >= steady_hops;
+    return tone_.begun() || steady_ >= steady_hops;
   }
-  // Eight turns at least.
+  // Six turns at least.
   std::size_t window = 0;
-  while (window < 2 && search_.window_s(window) * rotation_hz_ < 8.0) ++window;
+  while (window < 2 && search_.window_s(window) * rotation_hz_ < 6.0) ++window;
   look(window, rotation_hz_, 0.1);
   const double now = search_.score(rotation_hz_);
-  const bool moved = search_.best_score() > found_score && search_.best_score() > 1.25 * now + 0.5;
+  misfits_ = now < 0.0 ? misfits_ + 1 : 0;
+  if (convincing()) {
+    seen_hz_[hops_ % seen_hz_.size()] = search_.best_hz();
+    const auto [low, high] = std::minmax_element(seen_hz_.begin(), seen_hz_.end());
+    if (*high > (1.0 + little) * *low && *high < 1.2 * *low) moving_ = moving_hops;
+  }
+  const bool moved = convincing() && search_.best_score() > std::max(0.0, now) + 3.0;
   if (moved) {
+    if (std::abs(search_.best_hz() / rotation_hz_ - 1.0) > little) moving_ = moving_hops;
     lock(search_.best_hz());
     window_ = window + 1;
     since_s_ = search_.window_s(window);
@@ -120,7 +151,7 @@ bool CombCusum::speed_holds() noexcept {
 // Far from the hint there may be a comb if the sample rate is not what it is said to be.
 void CombCusum::seek_everywhere() noexcept {
   everywhere_ = true;
-  search_.begin(SpeedSearch::windows - 1, 0.4 * hint_hz_, 2.5 * hint_hz_, options_.teeth);
+  search_.begin(2, 0.4 * hint_hz_, 2.5 * hint_hz_, options_.teeth);
 }
 
 void CombCusum::follow_tachometer(const Hop& hop) noexcept {
@@ -145,13 +176,16 @@ void CombCusum::find_speed() noexcept {
   since_s_ += options_.hop_s;
   since_look_s_ += options_.hop_s;
   since_lock_s_ += options_.hop_s;
+  if (moving_ > 0) --moving_;
   if (state_ == State::chatter) return;
   if (search_.searching()) {
     // All speeds, some a hop.
     const double now_score = rotation_hz_ > 0.0 ? search_.score(rotation_hz_) : 0.0;
-    const double enough = everywhere_ ? std::max(certain_score, 1.5 * now_score) : found_score;
+    const double enough = everywhere_ ? std::max(2.0 * certain_score, 2.0 * now_score) : wide_score;
     if (!search_.advance(candidates_a_hop) || search_.best_score() < enough) return;
-    if (everywhere_) suggested_rate_hz_ = options_.sample_rate_hz * hint_hz_ / search_.best_hz();
+    if (hears_the_mains(search_.best_hz())) return;
+    if (everywhere_ && std::abs(search_.best_hz() / hint_hz_ - 1.0) > hint_share)
+      suggested_rate_hz_ = options_.sample_rate_hz * hint_hz_ / search_.best_hz();
     lock(search_.best_hz());
     return;
   }
@@ -161,23 +195,32 @@ void CombCusum::find_speed() noexcept {
       look(window_, rotation_hz_, 0.03 / static_cast<double>(std::size_t{1} << window_));
     } else if (hint_hz_ > 0.0) {
       look(window_, hint_hz_, hint_share);
+      if (known_hz_ > 0.0 && search_.best_score() < found_score) look(window_, known_hz_, hint_share);
     } else if (window_ >= 1) {
       search_.begin(window_, lowest_hz, highest_hz, options_.teeth);
     }
     ++window_;
     since_look_s_ = 0.0;
-    if (!search_.searching() && search_.best_score() > found_score) {
+    if (!search_.searching() && convincing()) {
       const double now = found ? search_.score(rotation_hz_) : -1e9;
       if (search_.best_score() > now + 1.0) lock(search_.best_hz());
-      if (window_ == SpeedSearch::windows && hint_hz_ > 0.0 && search_.best_score() < certain_score) seek_everywhere();
+    }
+    return;
+  }
+  if (found) {
+    if (since_s_ >= search_.window_s(0) && !speed_holds()) lines_test_.relearn();
+    if (misfits_ >= most_misfits) lose();
+    // A weak comb near the hint may be what a strong one elsewhere shows there.
+    if (hint_hz_ > 0.0 && since_look_s_ > doubt_s_ && search_.best_score() < certain_score) {
+      since_look_s_ = 0.0;
+      doubt_s_ = again_s;
+      seek_everywhere();
     }
     return;
   }
   if (since_look_s_ < look_again_s || window_ < SpeedSearch::windows) return;
   since_look_s_ = 0.0;
-  if (found) {
-    if (!speed_holds()) lines_test_.relearn();
-  } else if (hint_hz_ > 0.0 && !everywhere_) {
+  if (hint_hz_ > 0.0 && !everywhere_) {
     seek_everywhere();
   } else {
     everywhere_ = false;

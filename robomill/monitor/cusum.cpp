@@ -8,7 +8,8 @@ namespace {
 
 constexpr double ratio = 6.0;            // q
 constexpr double temper = 1.0;           // of the likelihood
-constexpr double hops_to_alarm = 3.0;    // no hop adds more than this part of h
+constexpr double hops_to_alarm = 2.0;    // no hop adds more than this part of h
+constexpr double slower_down = 4.0;      // a baseline is given up in no less than so many times the hops of an alarm
 constexpr double euler = 0.5772;         // γ
 constexpr double spread_of_noise = 0.9;  // s0: mean deviation of a log energy in steady noise, times 1.25
 constexpr double unsure = 1.5;           // u
@@ -29,12 +30,14 @@ Cusum::Cusum(const Setup& setup)
       spread_(lines_ * channels_),
       z_(lines_ * channels_),
       up_(lines_),
+      down_(lines_),
       sorted_(lines_) {
   relearn();
 }
 
 void Cusum::clear() noexcept {
   std::fill(up_.begin(), up_.end(), 0.0);
+  std::fill(down_.begin(), down_.end(), 0.0);
 }
 
 void Cusum::relearn() noexcept {
@@ -42,6 +45,16 @@ void Cusum::relearn() noexcept {
   std::fill(mean_.begin(), mean_.end(), 0.0);
   std::fill(spread_.begin(), spread_.end(), spread_of_noise);
   clear();
+}
+
+void Cusum::accept(std::size_t line) noexcept {
+  for (std::size_t k = line > 2 ? line - 2 : 0; k <= std::min(line + 2, lines_ - 1); ++k) {
+    up_[k] = down_[k] = 0.0;
+    for (std::size_t i = k; i < log_.size(); i += lines_) {
+      base_[i] = log_[i];
+      mean_[i] = energy_[i];
+    }
+  }
 }
 
 double Cusum::measure(std::span<const double> energy, std::span<const double> taken) noexcept {
@@ -72,7 +85,7 @@ double Cusum::measure(std::span<const double> energy, std::span<const double> ta
 }
 
 Cusum::Verdict Cusum::step(std::span<const double> energy, std::span<const double> taken,
-                           std::span<const bool> certain) noexcept {
+                           std::span<const bool> falls) noexcept {
   Verdict out;
   out.common = measure(energy, taken);
   out.ready = learnt_ >= first_hops;
@@ -81,11 +94,16 @@ Cusum::Verdict Cusum::step(std::span<const double> energy, std::span<const doubl
   const double most = 1.001 * threshold_ / hops_to_alarm;  // so that so many hops are enough
   for (std::size_t k = 1; k + 1 < lines_; ++k) {
     double sum = 0.0;
+    double less = 0.0;
     for (std::size_t c = 0; out.ready && c < channels_; ++c) {
+      const std::size_t i = c * lines_ + k;
+      less += std::log(ratio) - (ratio - 1.0) * std::exp(std::min(log_[i] - base_[i] - euler, 8.0));
       const double rho = std::exp(std::min(z_[c * lines_ + k] - euler, 8.0));
-      sum += std::min(temper * ((1.0 - 1.0 / ratio) * rho - std::log(ratio)), most);
+      const double more = temper * ((1.0 - 1.0 / ratio) * rho - std::log(ratio));
+      sum += std::min(more, falls[c] ? 0.0 : most);
     }
-    up_[k] = std::clamp(up_[k] + (certain[k] ? most : std::min(sum, most)), 0.0, 2.0 * threshold_);
+    up_[k] = std::clamp(up_[k] + std::min(sum, most), 0.0, 2.0 * threshold_);
+    down_[k] = std::max(0.0, down_[k] + std::min(less, most / slower_down));
     if (up_[k] > out.score) {
       out.score = up_[k];
       out.line = k;
@@ -102,6 +120,14 @@ Cusum::Verdict Cusum::step(std::span<const double> energy, std::span<const doubl
 }
 
 void Cusum::learn() noexcept {
+  for (std::size_t k = 1; k + 1 < lines_; ++k) {
+    if (down_[k] <= threshold_) continue;
+    down_[k] = 0.0;
+    for (std::size_t i = k; i < log_.size(); i += lines_) {
+      base_[i] -= std::log(ratio);
+      mean_[i] /= ratio;
+    }
+  }
   for (std::size_t i = 0; i < log_.size(); ++i) {
     if (energy_[i] <= 0.0) continue;
     if (learnt_ < freely) {

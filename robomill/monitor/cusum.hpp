@@ -13,8 +13,10 @@ namespace robomill::monitor {
 /// log). If stationary noise has the mean energy 1, its energy in a line is exponential, and the log likelihood of
 /// chatter that multiplies it by q is (1 - 1/q) ρ - log q. Of that a half is summed, because hops overlap by half:
 ///   S = max(0, S + Σ_channels min(½((1 - 1/q) ρ - log q), h/3)) [Page1954].
-/// The probability that S of one line passes h at one look is below e^-h (Wald), so that
-/// h = log(lines × looks an hour / false alarms an hour).
+/// Where a channel's power falls nothing is added, however high a line stands: what was struck rings off.
+/// The other side is summed alike, S- for energies divided by q, with log q - (q - 1) ρ: where it passes h, the line
+/// has fallen for good, and its baseline by q. The probability that S of one line passes h at one look is below e^-h
+/// (Wald), so that h = log(lines × looks an hour / false alarms an hour).
 class Cusum {
  public:
   struct Setup {
@@ -36,12 +38,14 @@ class Cusum {
   /// Measures; the baselines stay until learn().
   /// @param energy   lines × channels, channel after channel
   /// @param taken    as long: the part of it that is known not to be chatter
-  /// @param certain  lines that count as much as one hop can, whatever their baselines are
-  Verdict step(std::span<const double> energy, std::span<const double> taken, std::span<const bool> certain) noexcept;
+  /// @param falls    a channel each: its power falls, so that what stands high may be ringing off
+  Verdict step(std::span<const double> energy, std::span<const double> taken, std::span<const bool> falls) noexcept;
   /// Lets the baselines follow what step() has measured.
   void learn() noexcept;
   /// Forget the baselines, learn them fast.
   void relearn() noexcept;
+  /// What a line and its neighbours have now is their baseline: the cut's own.
+  void accept(std::size_t line) noexcept;
   /// Sums begin anew.
   void clear() noexcept;
   [[nodiscard]] double threshold() const noexcept { return threshold_; }
@@ -59,7 +63,7 @@ class Cusum {
 
   std::size_t lines_, channels_;
   double threshold_, slow_;
-  std::vector<double> energy_, mean_, log_, base_, spread_, z_, up_, sorted_;
+  std::vector<double> energy_, mean_, log_, base_, spread_, z_, up_, down_, sorted_;
   double learnt_ = 0.0;  // hops since the baselines began
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -124,12 +125,12 @@ TEST(Cusum, KeepsTheFalseAlarmsThatWereAskedFor) {
   Random random(7);
   std::vector<double> energy(lines);
   const std::vector<double> nothing(lines, 0.0);
-  const std::unique_ptr<bool[]> none = std::make_unique<bool[]>(lines);
+  const std::array<bool, 1> steady = {false};
   const int hops = 10 * test::seeds(14400);
   int alarms = 0;
   for (int hop = 0; hop < hops; ++hop) {
     for (double& e : energy) e = -std::log(1.0 - random.uniform());
-    if (test.step(energy, nothing, {none.get(), lines}).score > test.threshold()) {
+    if (test.step(energy, nothing, steady).score > test.threshold()) {
       ++alarms;
       test.clear();
     }
@@ -141,11 +142,39 @@ TEST(Cusum, KeepsTheFalseAlarmsThatWereAskedFor) {
   while (verdict.score <= test.threshold() && needed < 20) {
     for (double& e : energy) e = -std::log(1.0 - random.uniform());
     energy[17] *= 20.0;
-    verdict = test.step(energy, nothing, {none.get(), lines});
+    verdict = test.step(energy, nothing, steady);
     ++needed;
   }
   EXPECT_EQ(verdict.line, 17U);
   EXPECT_LE(needed, 12);
+}
+
+// The other side of the test: where a line has fallen for good, so has its baseline in half a second and not in two.
+TEST(Cusum, GivesUpABaselineThatIsTooHigh) {
+  constexpr std::size_t lines = 60;
+  Cusum test({.lines = lines});
+  Random random(8);
+  std::vector<double> energy(lines);
+  const std::vector<double> nothing(lines, 0.0);
+  const std::array<bool, 1> steady = {false};
+  const auto hops = [&](int count, double level) {
+    for (int hop = 0; hop < count; ++hop) {
+      for (double& e : energy) e = -std::log(1.0 - random.uniform());
+      energy[17] *= level;
+      test.step(energy, nothing, steady);
+      test.learn();
+    }
+  };
+  hops(200, 1.0);
+  hops(20, 0.01);
+  double before = 0.0;
+  for (int hop = 0; hop < 20; ++hop) {
+    hops(1, 0.01);
+    before += test.height(0, 17) / 20.0;
+  }
+  EXPECT_GT(before, -1.5);  // at the lower level it is no longer far below: ln 100 = 4.6
+  hops(20, 1.0);
+  EXPECT_GT(test.sum(17), test.threshold());
 }
 
 // The standard deviation covers the error: at least 90 % within two of them, and it is no more than three times too

@@ -8,13 +8,13 @@ namespace robomill::monitor {
 namespace {
 
 constexpr std::array<double, SpeedSearch::windows> lengths_s = {0.1, 0.2, 0.4, 0.8};
-constexpr double line_step = 0.25;  // of the spectrum's lines, at the highest harmonic
-constexpr double around_hz = 30.0;  // to each side, that whitens; four lines at least
-constexpr double highest = 5.0;     // of w
-
-int highest_harmonic(int teeth) {
-  return teeth > 0 ? 10 * teeth : 12;
-}
+constexpr double line_step = 0.3;     // of the spectrum's lines, at the highest peak
+constexpr double around_hz = 50.0;    // to each side, that a peak is held against; six lines at least
+constexpr double least_excess = 2.0;  // of a peak's log power
+constexpr double least_share = 1e-5;  // of the greatest peak's power: below is the skirt of its window
+constexpr double highest_peak_hz = 2500.0;
+constexpr double tolerance = 0.6;  // lines
+constexpr double other = 0.5;      // worth of a harmonic that is no multiple of the teeth
 
 }  // namespace
 
@@ -77,60 +77,79 @@ void SpeedSearch::begin(std::size_t window, double low_hz, double high_hz, int t
     w.fft.transform(in_.data(), out_.data());
     for (std::size_t k = 1; k < lines; ++k) power_[k] += 0.5 * (std::norm(out_[k]) + std::norm(out_[length_ - k]));
   }
-  whiten(lines);
   teeth_ = teeth;
+  find_peaks(lines);
   high_hz_ = high_hz;
   next_hz_ = low_hz;
-  step_hz_ = line_step * rate_hz_ / static_cast<double>(length_) / highest_harmonic(teeth);
+  double highest = low_hz;
+  for (std::size_t i = 0; i < found_; ++i) highest = std::max(highest, peaks_[i].frequency_hz);
+  const double line_hz = rate_hz_ / static_cast<double>(length_);
+  // A low speed has more harmonics.
+  step_ = line_step * line_hz / highest;
+  freedom_ = std::log(std::max(2.0, std::log(high_hz / low_hz) / step_ * line_step / tolerance));
   best_hz_ = 0.0;
   best_ = -1e9;
 }
 
-void SpeedSearch::whiten(std::size_t lines) noexcept {
+void SpeedSearch::find_peaks(std::size_t lines) noexcept {
   sums_[0] = 0.0;
+  const double greatest = *std::max_element(power_.begin() + 1, power_.begin() + static_cast<std::ptrdiff_t>(lines));
+  const double least = std::log(least_share * greatest);
   for (std::size_t k = 0; k < lines; ++k) {
     power_[k] = std::log(power_[k]);
     sums_[k + 1] = sums_[k] + power_[k];
   }
-  const auto around =
-      std::max<std::size_t>(4, static_cast<std::size_t>(around_hz / rate_hz_ * static_cast<double>(length_)));
-  double total = 0.0;
-  double squares = 0.0;
-  for (std::size_t k = 0; k < lines; ++k) {
-    const std::size_t from = k > around ? k - around : 0;
+  const double line_hz = rate_hz_ / static_cast<double>(length_);
+  const auto around = std::max<std::size_t>(6, static_cast<std::size_t>(around_hz / line_hz));
+  const std::size_t last = std::min(lines - 1, static_cast<std::size_t>(highest_peak_hz / line_hz));
+  found_ = 0;
+  for (std::size_t k = 2; k < last; ++k) {
+    if (power_[k] < least || power_[k] < power_[k - 1] || power_[k] <= power_[k + 1]) continue;
+    const std::size_t from = k > around ? k - around : 1;
     const std::size_t to = std::min(lines, k + around + 1);
-    const double mean = (sums_[to] - sums_[from]) / static_cast<double>(to - from);
-    power_[k] = std::clamp(power_[k] - mean, 0.0, highest);
-    total += power_[k];
-    squares += power_[k] * power_[k];
+    const double excess = power_[k] - (sums_[to] - sums_[from]) / static_cast<double>(to - from);
+    if (excess < least_excess) continue;
+    const double bend = power_[k - 1] - 2.0 * power_[k] + power_[k + 1];
+    const double off = bend < 0.0 ? 0.5 * (power_[k - 1] - power_[k + 1]) / bend : 0.0;
+    const Peak peak = {(static_cast<double>(k) + off) * line_hz, std::min(excess - 1.5, 4.0)};
+    if (found_ < most_peaks) {
+      peaks_[found_++] = peak;
+    } else {
+      Peak& lowest = *std::min_element(peaks_.begin(), peaks_.end(),
+                                       [](const Peak& a, const Peak& b) { return a.weight < b.weight; });
+      if (lowest.weight < peak.weight) lowest = peak;
+    }
   }
-  mean_ = total / static_cast<double>(lines);
-  deviation_ = std::sqrt(std::max(1e-6, squares / static_cast<double>(lines) - mean_ * mean_));
-}
-
-double SpeedSearch::whitened(double frequency_hz) const noexcept {
-  const double at = frequency_hz / rate_hz_ * static_cast<double>(length_);
-  const auto k = static_cast<std::size_t>(at);
-  if (k + 1 > length_ / 2) return mean_;
-  return std::lerp(power_[k], power_[k + 1], at - static_cast<double>(k));
+  weight_ = 0.0;
+  double squares = 1e-300;
+  for (std::size_t i = 0; i < found_; ++i) {
+    weight_ += peaks_[i].weight;
+    squares += peaks_[i].weight * peaks_[i].weight;
+  }
+  count_ = weight_ * weight_ / squares;
 }
 
 double SpeedSearch::score(double rotation_hz) const noexcept {
-  double sum = 0.0;
-  double squares = 0.0;
-  const int most = highest_harmonic(teeth_);
-  for (int k = 1; k <= most && k * rotation_hz < 0.45 * rate_hz_; ++k) {
-    const bool tooth = teeth_ == 0 || k % teeth_ == 0;
-    if (!tooth && k > 4 * teeth_) continue;
-    const double weight = tooth ? 1.0 : 0.35;
-    sum += weight * (whitened(k * rotation_hz) - mean_);
-    squares += weight * weight;
+  if (found_ == 0 || rotation_hz <= 0.0) return -1e9;
+  const double reach_hz = tolerance * rate_hz_ / static_cast<double>(length_);
+  const double teeth = std::max(1, teeth_);
+  const double least = teeth > 1.0 ? other : 1.0;
+  double explained = 0.0;
+  for (std::size_t i = 0; i < found_; ++i) {
+    const double order = peaks_[i].frequency_hz / rotation_hz;
+    const double multiple = std::max(1.0, std::round(order));
+    const double near = 1.0 - std::abs(order - multiple) * rotation_hz / reach_hz;
+    if (near > 0.0) explained += peaks_[i].weight * near * (std::fmod(multiple, teeth) == 0.0 ? 1.0 : least);
   }
-  return squares > 0.0 ? sum / (deviation_ * std::sqrt(squares)) : 0.0;
+  const double share = std::clamp(explained / weight_, 1e-6, 1.0 - 1e-6);
+  const double chance = std::min(0.9, reach_hz / rotation_hz * (1.0 / teeth + least * (1.0 - 1.0 / teeth)));
+  if (share <= chance) return -freedom_;
+  return count_ * (share * std::log(share / chance) + (1.0 - share) * std::log((1.0 - share) / (1.0 - chance))) -
+         freedom_;
 }
 
 bool SpeedSearch::advance(std::size_t candidates) noexcept {
-  for (std::size_t i = 0; i < candidates && searching(); ++i, next_hz_ += step_hz_) {
+  for (std::size_t i = 0; i < candidates && searching(); ++i, next_hz_ *= 1.0 + step_) {
     const double value = score(next_hz_);
     if (value > best_) {
       best_ = value;

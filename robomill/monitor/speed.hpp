@@ -9,11 +9,15 @@
 
 namespace robomill::monitor {
 
-/// Finds the spindle's speed in the last 0.1 to 0.8 s of a signal: the comb of harmonics k f of rotation that stands
-/// best above its surroundings. With the powers P of a Hann window's lines, whitened by the geometric mean of what lies
-/// around, w = min(max(log P - mean log P, 0), 5),
-///   score(f) = Σ_k c_k (w(k f) - mean w) / (σ_w √Σ c_k²),
-/// c_k = 1 for multiples of the teeth and 0.35 for others. Nothing is allocated after construction.
+/// Finds the spindle's speed in the last 0.1 to 0.8 s of a signal: the comb of harmonics k f of rotation that explains
+/// its peaks better than chance would. Peaks i are the local maxima that stand e_i > 2 (natural log) above the
+/// geometric mean of what lies around and are no less than 1e-5 of the greatest, w_i = min(e_i - 1.5, 4), at most 40 of
+/// them, below 2.5 kHz. A peak is explained by f as far as g_i = 1 - |p_i - k f| / τ, at least 0, τ = 0.6 lines;
+/// multiples of the teeth count whole, others half. Of n = (Σ w)²/Σ w² peaks a share a = Σ w g/Σ w is explained, by
+/// chance c = E g; the probability of as much by chance at one of N candidates is below N exp(-n KL(a, c)) (Chernoff),
+/// so that
+///   score(f) = n (a ln(a/c) + (1 - a) ln((1 - a)/(1 - c))) - ln N  for a > c.
+/// Nothing is allocated after construction.
 class SpeedSearch {
  public:
   static constexpr std::size_t windows = 4;  ///< 0.1, 0.2, 0.4 and 0.8 s, rounded to powers of two
@@ -43,8 +47,11 @@ class SpeedSearch {
     kissfft<double> fft;
     std::vector<double> shape;
   };
-  [[nodiscard]] double whitened(double frequency_hz) const noexcept;
-  void whiten(std::size_t lines) noexcept;
+  struct Peak {
+    double frequency_hz = 0.0, weight = 0.0;
+  };
+  static constexpr std::size_t most_peaks = 40;
+  void find_peaks(std::size_t lines) noexcept;
 
   double rate_hz_;
   std::size_t channels_, size_;
@@ -53,8 +60,11 @@ class SpeedSearch {
   std::size_t at_ = 0;
   std::vector<double> power_, sums_;
   std::vector<std::complex<double>> in_, out_;
+  std::array<Peak, most_peaks> peaks_;
+  std::size_t found_ = 0;  // peaks
   std::size_t length_ = 0;
-  double high_hz_ = 0.0, next_hz_ = 1.0, step_hz_ = 1.0, best_hz_ = 0.0, best_ = 0.0, mean_ = 0.0, deviation_ = 1.0;
+  double high_hz_ = 0.0, next_hz_ = 1.0, step_ = 1.0, best_hz_ = 0.0, best_ = 0.0;
+  double weight_ = 0.0, count_ = 0.0, freedom_ = 0.0;  // Σ w, n, ln N
   int teeth_ = 0;
 };
 

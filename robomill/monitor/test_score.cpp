@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "robomill/monitor/monitor.hpp"
+
 namespace robomill::monitor::testing {
 namespace {
 
@@ -113,6 +115,31 @@ Summary summarise(std::span<const CutScore> scores) {
   out.frequency_95_hz = quantile(frequency, 0.95);
   out.recovery_median_s = quantile(recovery, 0.5);
   out.recovery_95_s = quantile(recovery, 0.95);
+  return out;
+}
+
+std::vector<Heard> heard_by_monitor(const RecordedCut& cut) {
+  MonitorOptions options;
+  options.sample_rate_hz = cut.sample_rate_hz;
+  options.channels = cut.channels;
+  options.spindle_speed_rad_per_s = cut.hint_rad_per_s;
+  options.teeth = cut.teeth;
+  ChatterMonitor monitor(options);
+  std::vector<Heard> out;
+  std::span<const float> rest = cut.samples;
+  const auto channels = static_cast<std::size_t>(cut.channels);
+  std::uint64_t hop = 0;
+  while (!rest.empty()) {
+    const std::size_t take = std::min(rest.size(), monitor.frames_to_next_decision() * channels);
+    const Decision d = monitor.push(rest.first(take));
+    rest = rest.subspan(take);
+    if (d.hop == hop) continue;
+    hop = d.hop;
+    out.push_back({.time_s = d.time_s,
+                   .chatter = d.state == State::chatter,
+                   .stable = d.state == State::stable,
+                   .frequency_hz = d.chatter_frequency_hz});
+  }
   return out;
 }
 

@@ -44,6 +44,8 @@ struct Summary {
 /// The share-th of sorted values, by straight lines; NaN of none. Values that are NaN do not count.
 [[nodiscard]] double quantile(std::vector<double> values, double share);
 
+/// ChatterMonitor as it stands, told the recording's hint and teeth.
+[[nodiscard]] std::vector<Heard> heard_by_monitor(const RecordedCut& cut);
 /// Root mean square of 50 ms, each 25 ms, against mean plus five standard deviations of the second before.
 [[nodiscard]] std::vector<Heard> rms_five_sigma(const RecordedCut& cut);
 /// Each sample less the mean of the four revolutions before (at the true speed, which no monitor is told); where the

@@ -1,0 +1,144 @@
+// The listeners beside the sequential test, each on powers that are known, and the whole detector on the corpus.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/monitor/hidden.hpp"
+#include "robomill/monitor/spill.hpp"
+#include "robomill/monitor/test_corpus.hpp"
+#include "robomill/monitor/test_score.hpp"
+#include "robomill/monitor/tone.hpp"
+
+namespace robomill::monitor {
+namespace {
+
+/// Hops until it is chatter, of powers that a function gives; -1: never within 60.
+template <typename Power>
+int hops_to(Tone::Hop hop, Power power) {
+  Tone tone;
+  for (int k = 0; k < 60; ++k) {
+    hop.power = power(k);
+    if (tone.step(hop)) return k + 1;
+  }
+  return -1;
+}
+
+TEST(Tone, NeedsNoBaselineWhereTheCombIsKnown) {
+  const Tone::Hop tone = {.line = 27, .share = 0.3, .comb_known = true};
+  EXPECT_EQ(hops_to(tone, [](int) { return 2.0; }), 3);
+  Tone::Hop faint = tone;
+  faint.share = 0.14;
+  EXPECT_EQ(hops_to(faint, [](int) { return 2.0; }), -1);
+}
+
+TEST(Tone, WhatWasStruckRingsOff) {
+  Tone tone;
+  double power = 1.0;
+  for (int k = 0; k < 40; ++k, power *= 0.8) {
+    EXPECT_FALSE(tone.step({.line = 27, .share = 0.9, .power = power, .comb_known = true, .falls = k > 1})) << k;
+  }
+}
+
+// Without a comb an entry, linear in time over 0.15 s and steady then, is none; exponential growth of 30/s is.
+TEST(Tone, TellsGrowthFromAnEntry) {
+  for (const bool may_be : {false, true}) {
+    const Tone::Hop hop = {.line = 27, .share = 0.9, .may_be_the_cut = may_be};
+    const auto entry = [](int k) { return std::pow(std::min(6, k + 1), 2); };
+    const auto growth = [](int k) { return std::exp(2.0 * 30.0 * 0.025 * k); };
+    EXPECT_EQ(hops_to(hop, growth), may_be ? 6 : 5);
+    if (may_be) {
+      EXPECT_EQ(hops_to(hop, entry), -1);
+    }
+  }
+}
+
+TEST(Spill, TellsGrowthFromDepthAndExit) {
+  Random random(3);
+  const auto hears = [&](auto left, auto whole) {
+    Spill spill;
+    for (int k = 0; k < 120; ++k) {
+      const double unrest = std::exp(0.15 * random.normal());
+      if (spill.step(left(k) * unrest, whole(k) + left(k) * unrest)) return k;
+    }
+    return -1;
+  };
+  const auto steady = [](int) { return 1.0; };
+  const auto deeper = [](int k) { return k < 60 ? 1.0 : 8.0; };
+  const auto away = [](int k) { return k < 60 ? 1.0 : 1e-6; };
+  const auto knocks = [](int k) { return k % 20 == 19 ? 50.0 : 0.2; };
+  const auto chatter = [](int k) { return 0.05 * std::exp(k < 60 ? 0.0 : std::min(4.0, 0.5 * (k - 60))); };
+  EXPECT_EQ(hears([&](int k) { return 0.2 * steady(k); }, steady), -1);
+  EXPECT_EQ(hears([&](int k) { return 0.2 * deeper(k); }, deeper), -1);
+  EXPECT_EQ(hears([&](int k) { return 0.05 * steady(k); }, away), -1);
+  EXPECT_EQ(hears(knocks, steady), -1);
+  const int heard = hears(chatter, steady);
+  EXPECT_GT(heard, 60);
+  EXPECT_LT(heard, 80);
+}
+
+TEST(HiddenHarmonics, SeesWhatOutgrowsToothPassing) {
+  const auto kind = [](int teeth, std::size_t harmonic, double tooth_growth) {
+    std::vector<Comb> combs(1, Comb(20));
+    combs[0].set_harmonics(20);
+    HiddenHarmonics hidden(20, teeth);
+    for (std::size_t k = 1; k <= 20; ++k) combs[0].correct(k, k % static_cast<std::size_t>(teeth) == 0 ? 1.0 : 0.1);
+    const auto power = [&] {
+      double sum = 0.0;
+      for (std::size_t k = 1; k <= 20; ++k) sum += 0.5 * std::norm(combs[0].amplitude(k));
+      return sum;
+    };
+    for (int hop = 0; hop < 100; ++hop) EXPECT_FALSE(hidden.step(combs, power(), hop > 20));
+    for (std::size_t k = 1; k <= 20; ++k) combs[0].correct(k, (tooth_growth - 1.0) * combs[0].amplitude(k));
+    combs[0].correct(harmonic, 4.0);
+    for (int hop = 0; hop < 20; ++hop) {
+      if (hidden.step(combs, power(), true)) return hidden.harmonic() == harmonic ? hidden.kind() : Hidden::none;
+    }
+    return Hidden::none;
+  };
+  EXPECT_EQ(kind(3, 7, 1.0), Hidden::locked);
+  EXPECT_EQ(kind(2, 7, 1.0), Hidden::period_doubling);
+  EXPECT_EQ(kind(4, 6, 1.0), Hidden::period_doubling);
+  EXPECT_EQ(kind(4, 5, 1.0), Hidden::locked);
+  EXPECT_EQ(kind(3, 7, 20.0), Hidden::none);  // a deeper cut, in which all have grown
+}
+
+// Chatter that a comb swallows once it has stood for long: locked to rotation, and period doubling.
+TEST(CombCusum, HearsRecordingsThatHideFromAComb) {
+  using namespace testing;
+  const int cuts = test::seeds(30);
+  std::vector<CutScore> locked, doubling;
+  for (int k = 1; k <= cuts; ++k) {
+    const RecordedCut one = locked_chatter(static_cast<std::uint64_t>(k));
+    const RecordedCut other = period_doubling(static_cast<std::uint64_t>(k));
+    locked.push_back(score(one, heard_by_monitor(one)));
+    doubling.push_back(score(other, heard_by_monitor(other)));
+  }
+  EXPECT_GE(summarise(locked).found, 0.6 * cuts);
+  EXPECT_GE(summarise(doubling).found, 0.8 * cuts);
+  EXPECT_LE(summarise(locked).false_alarms + summarise(doubling).false_alarms, 1 + cuts / 15);
+}
+
+// The seeds that were tuned on; those of the README are in bench/monitor_corpus.
+TEST(CombCusum, HearsTheCorpus) {
+  using namespace testing;
+  const int cuts = test::seeds(200);
+  std::vector<CutScore> scores;
+  for (int k = 0; k < cuts; ++k) {
+    const RecordedCut recorded = cut(1001 + static_cast<std::uint64_t>(k));
+    scores.push_back(score(recorded, heard_by_monitor(recorded)));
+  }
+  const Summary heard = summarise(scores);
+  EXPECT_EQ(heard.chatter, cuts / 2);
+  EXPECT_GE(heard.found, 0.92 * heard.chatter - 1.5);
+  EXPECT_LE(heard.false_alarms, 1 + cuts / 20);
+  EXPECT_LT(heard.delay_median_s, 0.15);
+  EXPECT_LT(heard.frequency_median_hz, 1.5);
+}
+
+}  // namespace
+}  // namespace robomill::monitor
