@@ -179,19 +179,22 @@ void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
 }
 
 void CombCusum::follow_line() noexcept {
-  const auto height = [&](std::size_t line) {
+  // Where baselines are known, only what stands above them: the mains hum on.
+  const auto excess = [&](std::size_t line) {
     double most = 0.0;
     for (std::size_t c = 0; c < channels_; ++c) {
-      most = std::max(most, energy_[c * lines_ + line] - taken_[c * lines_ + line]);
+      const double own = energy_[c * lines_ + line] - taken_[c * lines_ + line];
+      const double usual = above_baseline_ ? std::exp(-std::max(0.0, lines_test_.height(c, line))) : 0.0;
+      most = std::max(most, own * (1.0 - usual));
     }
     return most;
   };
   std::size_t best = line_;
-  double most = height(line_);
+  double most = excess(line_);
   // Not to the lines that a drifting offset reaches.
   for (std::size_t k = 3; k + 1 < lines_; ++k) {
     const bool near = k + 2 >= line_ && k <= line_ + 2;
-    const double here = (near ? 1.0 : 0.5) * height(k);
+    const double here = (near ? 1.0 : 0.5) * excess(k);
     if (here > most) {
       most = here;
       best = k;
