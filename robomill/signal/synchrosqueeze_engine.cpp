@@ -56,7 +56,8 @@ SynchrosqueezeEngine::SynchrosqueezeEngine(const SynchrosqueezeOptions& options,
       fft_(n, false) {
   slides_ = !options.window.cosines().empty() && options.hop <= longest_sliding_hop;
   groups_ = (lines + lane_count - 1) / lane_count;
-  slide_groups_ = (pad + lines + max_cosines - 1 + lane_count - 1) / lane_count;
+  // Whole groups read their neighbours, also where only their first lines count.
+  slide_groups_ = (pad + groups_ * lane_count + max_cosines - 1 + lane_count - 1) / lane_count;
   ring_.resize(2 * n);
   set_tables(options);
   if (edges_hz.size() > 0) set_bands(options, edges_hz);
