@@ -94,6 +94,8 @@ void CombCusum::reset() noexcept {
   tone_.reset();
   spill_.reset();
   hidden_harmonics_.reset();
+  seen_hz_.fill(0.0);
+  line_ = channel_ = 0;
   everywhere_ = false;
   doubt_s_ = first_doubt_s;
   state_ = State::stable;

@@ -19,6 +19,7 @@ constexpr double hidden_learnt_s = 0.5;  // before that it is not known which ha
 constexpr double lowest_tone_hz = 90.0;  // below hums the mains
 constexpr double entry_width_hz = 6.0;   // by which a line misses its harmonic while the tool enters
 constexpr double highest_of_rotation = 3.5, highest_of_teeth = 6.0;  // orders that a hint can tell
+
 }  // namespace
 
 bool CombCusum::hear_hidden() noexcept {

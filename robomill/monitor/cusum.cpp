@@ -7,7 +7,6 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double ratio = 6.0;            // q
-constexpr double temper = 1.0;           // of the likelihood
 constexpr double hops_to_alarm = 2.0;    // no hop adds more than this part of h
 constexpr double slower_down = 4.0;      // a baseline is given up in no less than so many times the hops of an alarm
 constexpr double euler = 0.5772;         // γ
@@ -99,7 +98,7 @@ Cusum::Verdict Cusum::step(std::span<const double> energy, std::span<const doubl
       const std::size_t i = c * lines_ + k;
       less += std::log(ratio) - (ratio - 1.0) * std::exp(std::min(log_[i] - base_[i] - euler, 8.0));
       const double rho = std::exp(std::min(z_[c * lines_ + k] - euler, 8.0));
-      const double more = temper * ((1.0 - 1.0 / ratio) * rho - std::log(ratio));
+      const double more = (1.0 - 1.0 / ratio) * rho - std::log(ratio);
       sum += std::min(more, falls[c] ? 0.0 : most);
     }
     up_[k] = std::clamp(up_[k] + std::min(sum, most), 0.0, 2.0 * threshold_);

@@ -11,8 +11,9 @@ namespace robomill::monitor {
 /// where the median over the lines takes off what rises everywhere at once (a knock, the tool that enters), n is the
 /// number of hops that b was learnt from and γ is Euler's constant (an exponential variable's log of mean less mean of
 /// log). If stationary noise has the mean energy 1, its energy in a line is exponential, and the log likelihood of
-/// chatter that multiplies it by q is (1 - 1/q) ρ - log q. Of that a half is summed, because hops overlap by half:
-///   S = max(0, S + Σ_channels min(½((1 - 1/q) ρ - log q), h/3)) [Page1954].
+/// chatter that multiplies it by q is (1 - 1/q) ρ - log q. That is summed, no hop adding more than half of what an
+/// alarm takes:
+///   S = max(0, S + min(Σ_channels (1 - 1/q) ρ - log q, h/2)) [Page1954].
 /// Where a channel's power falls nothing is added, however high a line stands: what was struck rings off.
 /// The other side is summed alike, S- for energies divided by q, with log q - (q - 1) ρ: where it passes h, the line
 /// has fallen for good, and its baseline by q. The probability that S of one line passes h at one look is below e^-h
