@@ -20,6 +20,8 @@ constexpr double longest_look_s = 0.3;  // for the frequency
 constexpr double falling = 0.85;        // of the power to that of the hop before
 constexpr double falling_fast = 0.75;   // of half a hop's power to that of the halves before
 constexpr double least_share = 0.0025;  // of the whole power, below which no line counts
+constexpr double comb_share = 0.1;      // of the whole power, above which the comb is asked whether it follows
+constexpr double follows = 0.6;         // of the comb, in the signal
 
 signal::SynchrosqueezeOptions transform_of(const MonitorOptions& o, std::size_t columns_a_hop) {
   signal::SynchrosqueezeOptions out;
@@ -89,12 +91,11 @@ void CombCusum::reset() noexcept {
   std::fill(innovation_.begin(), innovation_.end(), 0.0);
   rotation_hz_ = known_hz_ = angle_ = revolutions_ = since_s_ = since_look_s_ = since_lock_s_ = slow_power_ =
       power_before_ = suggested_rate_hz_ = 0.0;
-  window_ = misfits_ = entry_hops_ = moving_ = jumps_ = broad_ = calm_ = steady_ = still_bad_ = 0;
+  window_ = misfits_ = entry_hops_ = moving_ = jumps_ = broad_ = calm_ = steady_ = still_bad_ = seen_ = 0;
   hops_ = bad_ = 0;
   tone_.reset();
   spill_.reset();
   hidden_harmonics_.reset();
-  seen_hz_.fill(0.0);
   line_ = channel_ = 0;
   everywhere_ = false;
   doubt_s_ = first_doubt_s;
@@ -269,6 +270,7 @@ void CombCusum::squeeze() noexcept {
 
 void CombCusum::leave_power() noexcept {
   const double n = static_cast<double>(frames_);
+  away_ = 0;
   for (std::size_t c = 0; c < channels_; ++c) {
     const std::span<const float> left = std::span(residual_).subspan(c * frames_, frames_);
     rings_[c].push(left);
@@ -278,10 +280,25 @@ void CombCusum::leave_power() noexcept {
     };
     const double early = squares(left.first(frames_ / 2)) / n;
     const double late = squares(left.subspan(frames_ / 2)) / n;
-    falls_[c] = early + late < falling * left_power_[c] || late < falling_fast * std::max(early, late_half_[c]);
+    const bool away = comb_known() && !comb_follows(c);
+    if (away) ++away_;
+    falls_[c] = early + late < falling * left_power_[c] || late < falling_fast * std::max(early, late_half_[c]) || away;
     left_power_[c] = early + late;
     late_half_[c] = late;
   }
+}
+
+// Where the tool leaves or the speed runs away, the signal holds less of the comb than the comb foretells: what is left
+// is the comb's own. Chatter comes on top of it.
+bool CombCusum::comb_follows(std::size_t channel) const noexcept {
+  double own = 0.0;
+  double found = 0.0;
+  for (std::size_t i = channel * frames_; i < (channel + 1) * frames_; ++i) {
+    const double periodic = static_cast<double>(input_[i] - residual_[i]);
+    own += periodic * periodic;
+    found += periodic * static_cast<double>(input_[i]);
+  }
+  return own < comb_share * static_cast<double>(frames_) * power_[channel] || found > follows * own;
 }
 
 void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {

@@ -43,6 +43,7 @@ class CombCusum final : public Detector {
   [[nodiscard]] bool hears_the_mains(double rotation_hz) const noexcept;
   [[nodiscard]] bool convincing() const noexcept;
   bool speed_holds() noexcept;
+  [[nodiscard]] bool speed_drifts() const noexcept;
   void lock(double rotation_hz) noexcept;
   void replay() noexcept;
   void lose() noexcept;
@@ -57,6 +58,7 @@ class CombCusum final : public Detector {
   void leftover() noexcept;
   // Lines
   void leave_power() noexcept;
+  [[nodiscard]] bool comb_follows(std::size_t channel) const noexcept;
   void squeeze() noexcept;
   void judge(Decision& decision) noexcept;
   [[nodiscard]] bool near_a_harmonic(double frequency_hz) const noexcept;
@@ -92,6 +94,7 @@ class CombCusum final : public Detector {
   std::vector<double> left_power_;  // of the residual in the hop, each channel
   std::vector<double> late_half_;   // in its second half
   std::unique_ptr<bool[]> falls_;   // it is on its way down
+  std::size_t away_ = 0;            // channels in which the comb foretells what no longer comes
   std::vector<double> history_;     // of the lines' log energies, loudest channel; `kept` hops
   std::vector<double> band_power_;  // of the hop, each channel's bands
   std::uint64_t bad_ = 0;           // channels that are not listened to
@@ -106,7 +109,8 @@ class CombCusum final : public Detector {
   std::size_t window_ = 0;              // of the next look
   std::size_t misfits_ = 0;             // looks in which the speed found explained nothing
   double known_hz_ = 0.0;               // the last rotation that was followed
-  std::array<double, 4> seen_hz_ = {};  // rotations that the last looks found
+  std::array<double, 6> seen_hz_ = {};  // rotations that the last looks found, hop after hop; a ring
+  std::size_t seen_ = 0;                // so many
   std::size_t moving_ = 0;              // hops until a speed that changed is taken for settled
   double slow_power_ = 0.0;
   std::size_t jumps_ = 0;

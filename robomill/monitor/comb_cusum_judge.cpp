@@ -18,7 +18,8 @@ constexpr std::size_t calm_hops = 2;
 constexpr double hidden_learnt_s = 0.5;  // before that it is not known which harmonics are usual
 constexpr double lowest_tone_hz = 90.0;  // below hums the mains
 constexpr double entry_width_hz = 6.0;   // by which a line misses its harmonic while the tool enters
-constexpr double highest_of_rotation = 3.5, highest_of_teeth = 6.0;  // orders that a hint can tell
+constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0;  // orders that a hint can tell
+constexpr double highest_of_unknown_teeth = 12.0;                    // three of four teeth
 
 }  // namespace
 
@@ -82,7 +83,8 @@ bool CombCusum::may_be_the_cut(double frequency_hz) const noexcept {
     const double order = frequency_hz / of_hz;
     return order < highest && std::abs(order - std::round(order)) < hint_share * order + 0.5 * line_hz(1) / of_hz;
   };
-  return multiple(near_hz, highest_of_rotation) || multiple(near_hz * std::max(1, options_.teeth), highest_of_teeth);
+  if (options_.teeth == 0) return multiple(near_hz, highest_of_unknown_teeth);
+  return multiple(near_hz, highest_of_rotation) || multiple(near_hz * options_.teeth, highest_of_teeth);
 }
 
 bool CombCusum::near_a_harmonic(double frequency_hz) const noexcept {
@@ -133,7 +135,7 @@ void CombCusum::begin_chatter(bool above_baseline) noexcept {
 
 void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
   const double threshold = lines_test_.threshold();
-  if (at_once && speed_holds()) {
+  if (at_once && away_ == 0 && speed_holds()) {
     line_ = tone_.line();
     begin_chatter(false);
     return;
@@ -172,7 +174,7 @@ void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
   const bool cut = rotation_hz_ == 0.0 ? (hint_hz_ > 0.0 || known_hz_ > 0.0) && may_be_the_cut(found_.frequency_hz)
                                        : entry_hops_ > 0 && near_a_harmonic(found_.frequency_hz);
   if (cut && verdict.score > threshold) lines_test_.accept(verdict.line);
-  if (verdict.score > threshold && !dies && !cut && steady_ > 0 && speed_holds()) {
+  if (verdict.score > threshold && !dies && !cut && steady_ > 0 && misfits_ == 0 && speed_holds()) {
     begin_chatter(verdict.height > 2.0 * faint);
   } else {
     state_ = verdict.score > 0.5 * threshold ? State::transition : State::stable;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 namespace robomill::monitor {
 namespace {
@@ -24,13 +25,15 @@ constexpr double little = 3e-3;  // change of speed that leaves the baselines as
 constexpr std::size_t most_misfits = 6;
 constexpr std::size_t moving_hops = 4;
 constexpr std::size_t steady_hops = 2;  // of a tone where there is no comb
+constexpr double drift_doubts = 4.0;    // standard deviations of a slope that is one
+constexpr double least_drift = 3e-4;    // of the speed, a hop
 constexpr double angle_unrest = 0.01;   // of the angle in a block [rad]
 
-/// A multiple or a whole part of 50 or 60 Hz, as closely as the mains keep it.
+/// 50 or 60 Hz or a whole part of it, as closely as the mains keep it.
 bool of_the_mains(double rotation_hz) {
   return std::ranges::any_of(std::array{50.0, 60.0}, [&](double mains_hz) {
-    const double order = std::max(mains_hz / rotation_hz, rotation_hz / mains_hz);
-    return std::abs(order - std::round(order)) < mains_share * order;
+    const double order = mains_hz / rotation_hz;
+    return order > 0.5 && std::abs(order - std::round(order)) < mains_share * order;
   });
 }
 
@@ -53,6 +56,7 @@ void CombCusum::lock(double rotation_hz) noexcept {
   rotation_hz_ = known_hz_ = rotation_hz;
   if (std::abs(rotation_hz / hint_hz_ - 1.0) < hint_share) suggested_rate_hz_ = 0.0;
   misfits_ = 0;
+  if (change > hint_share) seen_ = 0;
   if (change < 2e-4) return;
   for (Comb& comb : combs_) {
     comb.reset();
@@ -134,9 +138,10 @@ bool CombCusum::speed_holds() noexcept {
   const double now = search_.score(rotation_hz_);
   misfits_ = now < 0.0 ? misfits_ + 1 : 0;
   if (convincing()) {
-    seen_hz_[hops_ % seen_hz_.size()] = search_.best_hz();
-    const auto [low, high] = std::minmax_element(seen_hz_.begin(), seen_hz_.end());
-    if (*high > (1.0 + little) * *low && *high < 1.2 * *low) moving_ = moving_hops;
+    seen_hz_[seen_++ % seen_hz_.size()] = search_.best_hz();
+    if (speed_drifts()) moving_ = moving_hops;
+  } else {
+    seen_ = 0;
   }
   const bool moved = convincing() && search_.best_score() > std::max(0.0, now) + 3.0;
   if (moved) {
@@ -146,6 +151,33 @@ bool CombCusum::speed_holds() noexcept {
     since_s_ = search_.window_s(window);
   }
   return !moved;
+}
+
+// Whether the last looks lie apart, or on a line that rises or falls beyond its doubt.
+bool CombCusum::speed_drifts() const noexcept {
+  const std::size_t n = std::min(seen_, seen_hz_.size());
+  const auto last = std::span(seen_hz_).first(n);
+  const auto [low, high] = std::minmax_element(last.begin(), last.end());
+  if (*high > (1.0 + little) * *low && *high < 1.2 * *low) return true;
+  if (n < seen_hz_.size()) return false;
+  const double middle = 0.5 * static_cast<double>(n - 1);
+  double mean = 0.0;
+  double slope = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double from_middle = static_cast<double>(i) - middle;
+    mean += last[i] / static_cast<double>(n);
+    slope += from_middle * last[(seen_ + i) % n];
+    squares += from_middle * from_middle;
+  }
+  slope /= squares;
+  double rest = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double d = last[(seen_ + i) % n] - mean - slope * (static_cast<double>(i) - middle);
+    rest += d * d;
+  }
+  const double doubt = std::sqrt(rest / static_cast<double>(n - 2) / squares);
+  return std::abs(slope) > std::max(drift_doubts * doubt, least_drift * mean);
 }
 
 // Far from the hint there may be a comb if the sample rate is not what it is said to be.

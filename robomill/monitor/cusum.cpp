@@ -14,6 +14,7 @@ constexpr double spread_of_noise = 0.9;  // s0: mean deviation of a log energy i
 constexpr double unsure = 1.5;           // u
 constexpr double first_hops = 4.0;       // that are learnt before any is judged
 constexpr double freely = 8.0;           // hops that a baseline follows wherever they are
+constexpr double falling_share = 0.25;   // of the evidence, from channels that fall: it rings off
 
 }  // namespace
 
@@ -94,13 +95,19 @@ Cusum::Verdict Cusum::step(std::span<const double> energy, std::span<const doubl
   for (std::size_t k = 1; k + 1 < lines_; ++k) {
     double sum = 0.0;
     double less = 0.0;
+    double all = 0.0;
+    double falling = 0.0;
     for (std::size_t c = 0; out.ready && c < channels_; ++c) {
       const std::size_t i = c * lines_ + k;
       less += std::log(ratio) - (ratio - 1.0) * std::exp(std::min(log_[i] - base_[i] - euler, 8.0));
       const double rho = std::exp(std::min(z_[c * lines_ + k] - euler, 8.0));
       const double more = (1.0 - 1.0 / ratio) * rho - std::log(ratio);
-      sum += std::min(more, falls[c] ? 0.0 : most);
+      sum += std::min(more, most);
+      const double evidence = std::clamp(more, 0.0, most);
+      all += evidence;
+      if (falls[c]) falling += evidence;
     }
+    if (falling > falling_share * all) sum = std::min(sum, 0.0);
     up_[k] = std::clamp(up_[k] + std::min(sum, most), 0.0, 2.0 * threshold_);
     down_[k] = std::max(0.0, down_[k] + std::min(less, most / slower_down));
     if (up_[k] > out.score) {

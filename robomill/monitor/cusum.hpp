@@ -14,7 +14,8 @@ namespace robomill::monitor {
 /// chatter that multiplies it by q is (1 - 1/q) ρ - log q. That is summed, no hop adding more than half of what an
 /// alarm takes:
 ///   S = max(0, S + min(Σ_channels (1 - 1/q) ρ - log q, h/2)) [Page1954].
-/// Where a channel's power falls nothing is added, however high a line stands: what was struck rings off.
+/// Where more than a quarter of a line's evidence comes from channels whose power falls, nothing is added, however high
+/// it stands: what was struck rings off, and beats from one channel into another.
 /// The other side is summed alike, S- for energies divided by q, with log q - (q - 1) ρ: where it passes h, the line
 /// has fallen for good, and its baseline by q. The probability that S of one line passes h at one look is below e^-h
 /// (Wald), so that h = log(lines × looks an hour / false alarms an hour).

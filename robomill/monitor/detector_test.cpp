@@ -149,6 +149,28 @@ TEST(Cusum, KeepsTheFalseAlarmsThatWereAskedFor) {
   EXPECT_LE(needed, 12);
 }
 
+// A knock rings off in one channel and beats into the other.
+TEST(Cusum, AddsNothingWhereTheChannelThatStandsHighestFalls) {
+  constexpr std::size_t lines = 60;
+  Random random(9);
+  Cusum test({.lines = lines, .channels = 2});
+  std::vector<double> energy(2 * lines);
+  const std::vector<double> nothing(2 * lines, 0.0);
+  const auto hop = [&](double first, double second, std::array<bool, 2> falls) {
+    for (double& e : energy) e = -std::log(1.0 - random.uniform());
+    energy[17] = first;
+    energy[lines + 17] = second;
+    return test.step(energy, nothing, falls).score;
+  };
+  for (int k = 0; k < 100; ++k) {
+    hop(0.5, 0.5, {});
+    test.learn();
+  }
+  test.clear();
+  EXPECT_LT(hop(1e3, 1e2, {true, false}), 0.2 * test.threshold());
+  EXPECT_GE(hop(1e3, 1e2, {false, false}), 0.5 * test.threshold());
+}
+
 // The other side of the test: where a line has fallen for good, so has its baseline in half a second and not in two.
 TEST(Cusum, GivesUpABaselineThatIsTooHigh) {
   constexpr std::size_t lines = 60;
@@ -235,6 +257,25 @@ TEST(CombCusum, StaysQuietInAStableCut) {
                            .seconds = 20.0,
                            .seed = seed};
     EXPECT_EQ(first_alarm_s(listen(options_for(cut, 0.01 * static_cast<double>(seed)), vibration(cut))), -1.0) << seed;
+  }
+}
+
+// The mains are heard as combs at 50 and 60 Hz and whole parts of them; a spindle may turn at their multiples.
+TEST(CombCusum, FollowsSpeedsAtMultiplesOfTheMains) {
+  for (const double rotation_hz : {100.0, 150.0, 239.7, 240.0}) {
+    const SyntheticCut cut{.rotation_hz = rotation_hz, .channels = 2, .seconds = 2.0};
+    const double last = listen(options_for(cut), vibration(cut)).back().spindle_speed_rad_per_s;
+    EXPECT_NEAR(last, turn * rotation_hz, 1e-3 * turn * rotation_hz);
+  }
+}
+
+TEST(CombCusum, StaysQuietWhileTheSpeedDrifts) {
+  for (const auto& [rotation, drift] : {std::pair{43.0, -1.2}, std::pair{80.0, 4.0}, std::pair{130.0, -13.0}}) {
+    const SyntheticCut cut{.rotation_hz = rotation, .drift_hz_per_s = drift, .channels = 2, .noise = 0.03};
+    const std::vector<Decision> decisions = listen(options_for(cut), vibration(cut));
+    EXPECT_EQ(first_alarm_s(decisions), -1.0) << rotation;
+    const double last = turn * (rotation + drift);
+    EXPECT_NEAR(decisions.back().spindle_speed_rad_per_s, last, 1e-3 * last);
   }
 }
 

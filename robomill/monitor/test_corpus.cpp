@@ -269,14 +269,17 @@ CutPlan stable_plan(bool drilling, double seconds, Random& random) {
 }
 
 bool settles(const CutPlan& plan, const CleanCut& clean) {
-  const Truth truth = truth_of(plan, clean, false);
-  std::vector<float> cutting;
-  for (std::size_t i = 0; i < clean.depth_share.size(); ++i) {
-    if (clean.depth_share[i] > 0.0F) cutting.push_back(truth.amplitude_m_per_s2[i]);
+  const std::vector<float> amplitude = truth_of(plan, clean, false).amplitude_m_per_s2;
+  const double most = 0.25 * reference_level(plan, clean);
+  const auto longest = static_cast<std::size_t>(0.1 * corpus_rate_hz);
+  std::size_t cutting = 0, loud = 0;
+  for (std::size_t i = 0; i < amplitude.size(); ++i) {
+    if (clean.depth_share[i] <= 0.0F) continue;
+    ++cutting;
+    loud = static_cast<double>(amplitude[i]) < most ? 0 : loud + 1;
+    if (loud > longest) return false;
   }
-  if (cutting.size() < 8192) return false;
-  const auto late = cutting.begin() + static_cast<std::ptrdiff_t>(2 * cutting.size() / 3);
-  return *std::max_element(late, cutting.end() - 1024) < 0.25 * reference_level(plan, clean);
+  return static_cast<double>(cutting) > 0.8 * corpus_rate_hz;
 }
 
 DrawnCut draw(std::uint64_t seed) {

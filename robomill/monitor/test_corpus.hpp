@@ -35,8 +35,9 @@ struct DrawnCut {
 
 /// A plan of stable cutting, without idle times: entry, steady cutting, a change of speed in half of them, exit.
 [[nodiscard]] CutPlan stable_plan(bool drilling, double seconds, Random& random);
-/// Whether what regeneration adds dies out: in the last third of the cut, its last tenth of a second apart, it stays
-/// below a quarter of the reference level.
+/// Whether the cut is what its plan calls stable: for no tenth of a second does what regeneration adds stay above a
+/// quarter of the reference level. Vibration that rings on for longer, or grows before it dies out, is neither stable
+/// cutting nor chatter.
 [[nodiscard]] bool settles(const CutPlan& plan, const CleanCut& clean);
 
 }  // namespace robomill::monitor::testing

@@ -1,5 +1,6 @@
 #pragma once
 // Vibration of a cut that never was, for tests.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -11,6 +12,7 @@ namespace robomill::monitor::testing {
 
 struct SyntheticCut {
   double sample_rate_hz = 10240.0, rotation_hz = 80.0;
+  double drift_hz_per_s = 0.0;  ///< of the rotation, from 2 s to 3 s
   int teeth = 3, channels = 1;
   double noise = 0.1;       ///< rms; tooth passing has the amplitude 1
   double chatter_hz = 0.0;  ///< 0: none
@@ -30,7 +32,9 @@ inline std::vector<float> vibration(const SyntheticCut& cut) {
   const auto frames = static_cast<std::size_t>(cut.seconds * cut.sample_rate_hz);
   for (std::size_t i = 0; i < frames; ++i) {
     const double t = static_cast<double>(i) / cut.sample_rate_hz;
-    const double angle = 2.0 * std::numbers::pi * cut.rotation_hz * t;
+    const double drifting = std::clamp(t - 2.0, 0.0, 1.0), drifted = std::max(t - 3.0, 0.0);
+    const double more = cut.drift_hz_per_s * (0.5 * drifting * drifting + drifted);
+    const double angle = 2.0 * std::numbers::pi * (cut.rotation_hz * t + more);
     for (int c = 0; c < cut.channels; ++c) {
       double x = 0.1 * std::cos(angle + 0.3 * c);
       for (int j = 1; j <= 6; ++j) x += std::cos(j * (cut.teeth * angle + 0.7) + c) / j;
