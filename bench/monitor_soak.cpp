@@ -1,6 +1,6 @@
 // A stream of stable cutting, 24 hours or as many as the argument says, fed to the monitor as fast as it goes: resident
 // memory each simulated quarter of an hour, alarms, and how exactly the streamed transform still gives the signal back.
-// Usage: monitor_soak [hours]
+// Usage: monitor_soak [hours] [teeth]; without teeth the cuts have two to four, and the monitor is not told how many.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -66,8 +66,9 @@ class Reconstruction {
 
 int main(int argc, char** argv) {
   const double hours = argc > 1 ? std::atof(argv[1]) : 24.0;
-  monitor::testing::StableHours stream(1, hours);
-  monitor::ChatterMonitor monitor({.sample_rate_hz = corpus_rate_hz, .channels = 2});
+  const int teeth = argc > 2 ? std::atoi(argv[2]) : 0;
+  monitor::testing::StableHours stream(21, hours, 48, teeth);
+  monitor::ChatterMonitor monitor({.sample_rate_hz = corpus_rate_hz, .channels = 2, .teeth = teeth});
   Reconstruction reconstruction;
   int alarms = 0;
   bool chatter = false;

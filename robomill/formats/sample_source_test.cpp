@@ -8,6 +8,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string>
 #include <thread>
 
 #include "robomill/base/random.hpp"
@@ -109,6 +112,9 @@ TEST(SampleSource, WavComesBackAsWritten) {
   const test::Folder folder;
   const std::vector<float> samples = {0.5F, -1.5F, 100.0F, 1e-20F, NAN, -3.0F};
   write_wav(folder.at("a.wav"), samples, 2, 10240.0);
+  std::ifstream file(folder.at("a.wav"), std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  EXPECT_EQ(bytes.find("PEAK"), std::string::npos);  // which would hold the time of writing
   const auto source = open_samples(folder.at("a.wav"), named({"ax", "ay"}));
   EXPECT_EQ(source->sample_rate_hz(), 10240.0);
   EXPECT_EQ(source->full_scale(), 0.0);

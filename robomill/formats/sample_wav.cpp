@@ -85,6 +85,8 @@ void write_wav(const std::filesystem::path& path, const std::vector<float>& samp
   {
     const Sound sound(sf_open(pending.temporary().c_str(), SFM_WRITE, &info), &sf_close);
     if (!sound) throw InvalidInput(path.string(), std::string("cannot be written: ") + sf_strerror(nullptr));
+    // Its peak chunk holds the time of writing: the same samples are to give the same bytes.
+    sf_command(sound.get(), SFC_SET_ADD_PEAK_CHUNK, nullptr, SF_FALSE);
     const auto frames = static_cast<sf_count_t>(samples.size() / static_cast<std::size_t>(channels));
     if (sf_writef_float(sound.get(), samples.data(), frames) != frames) {
       throw InvalidInput(path.string(), std::string("cannot be written: ") + sf_strerror(sound.get()));

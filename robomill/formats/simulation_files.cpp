@@ -1,11 +1,8 @@
 #include "robomill/formats/simulation_files.hpp"
 
 #include <fmt/format.h>
-#include <sndfile.h>
 
-#include <cmath>
 #include <iterator>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -13,6 +10,7 @@
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/json.hpp"
 #include "robomill/formats/mat.hpp"
+#include "robomill/formats/sample_source.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::formats {
@@ -57,31 +55,13 @@ std::string csv(const std::vector<Column>& columns) {
   return text;
 }
 
-void write_wav(const std::filesystem::path& path, const Simulation& result) {
-  const double rate = result.sample_rate_hz;
-  if (rate != std::round(rate)) {
-    throw InvalidInput("sample_rate_hz", rate, "Hz", "must be a whole number for .wav");
+void write_accelerations(const std::filesystem::path& path, const Simulation& result) {
+  std::vector<float> samples;
+  for (Eigen::Index i = 0; i < result.acceleration_m_per_s2.rows(); ++i) {
+    samples.push_back(static_cast<float>(result.acceleration_m_per_s2(i, 0)));
+    samples.push_back(static_cast<float>(result.acceleration_m_per_s2(i, 1)));
   }
-  PendingFile pending(path);
-  SF_INFO info{};
-  info.samplerate = static_cast<int>(rate);
-  info.channels = 2;
-  info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
-  {
-    const std::unique_ptr<SNDFILE, decltype(&sf_close)> sound(sf_open(pending.temporary().c_str(), SFM_WRITE, &info),
-                                                              &sf_close);
-    if (!sound) throw InvalidInput(path.string(), std::string("cannot be written: ") + sf_strerror(nullptr));
-    const Eigen::Index n = result.acceleration_m_per_s2.rows();
-    std::vector<double> frames(2 * static_cast<std::size_t>(n));
-    for (Eigen::Index i = 0; i < n; ++i) {
-      frames[2 * static_cast<std::size_t>(i)] = result.acceleration_m_per_s2(i, 0);
-      frames[2 * static_cast<std::size_t>(i) + 1] = result.acceleration_m_per_s2(i, 1);
-    }
-    if (sf_writef_double(sound.get(), frames.data(), n) != n) {
-      throw InvalidInput(path.string(), std::string("cannot be written: ") + sf_strerror(sound.get()));
-    }
-  }
-  pending.commit();
+  write_wav(path, samples, 2, result.sample_rate_hz);
 }
 
 const char* to_text(simulation::Verdict verdict) {
@@ -117,7 +97,7 @@ void write_simulation(const std::filesystem::path& path, const Simulation& resul
       return;
     }
     case Format::wav:
-      write_wav(path, result);
+      write_accelerations(path, result);
       return;
     default:
       throw InvalidInput(path.string(), "a simulation is written as .csv, .mat, .wav or .json");

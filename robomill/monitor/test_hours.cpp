@@ -14,12 +14,13 @@ constexpr std::size_t noise_size = std::size_t{1} << 21;
 
 }  // namespace
 
-StableHours::StableHours(std::uint64_t seed, double hours, int bank)
+StableHours::StableHours(std::uint64_t seed, double hours, int bank, int teeth)
     : random_(seed, 11), wanted_(static_cast<std::uint64_t>(hours * 3600.0 * corpus_rate_hz)) {
   for (std::uint64_t k = 0; bank_.size() < static_cast<std::size_t>(bank); ++k) {
     Random random(seed, 1000 + k);
     Entry entry;
     entry.plan = stable_plan(k % 5 == 4, random.uniform(3.0, 6.0), random);
+    if (teeth > 0 && entry.plan.teeth() != teeth) continue;
     entry.clean = simulate(entry.plan);
     if (entry.clean.diverged || !settles(entry.plan, entry.clean)) continue;
     entry.level = reference_level(entry.plan, entry.clean);

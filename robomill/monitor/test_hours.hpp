@@ -13,7 +13,9 @@ namespace robomill::monitor::testing {
 /// knocks. Truth: no chatter. x and y interleaved at corpus_rate_hz.
 class StableHours {
  public:
-  StableHours(std::uint64_t seed, double hours, int bank = 16);
+  /// @param bank   cuts in it
+  /// @param teeth  of all of them; 0: as they are drawn
+  StableHours(std::uint64_t seed, double hours, int bank = 16, int teeth = 0);
 
   /// The next cut with the idle time before it; empty when the hours are over. Valid until the next call.
   [[nodiscard]] std::span<const float> next();
