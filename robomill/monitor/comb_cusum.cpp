@@ -10,11 +10,11 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
-constexpr double drift_hz = 3.0;  // corner of the high-pass
-constexpr double comb_s = 0.25;   // memory of the comb
-constexpr double first_doubt_s = 1.0;
+constexpr double drift_hz = 3.0;        // corner of the high-pass
+constexpr double comb_s = 0.25;         // memory of the comb
 constexpr double jump = 4.0;            // of the power: the tool enters or leaves
 constexpr std::size_t entry_lasts = 8;  // hops
+constexpr std::size_t steady_hops = 2;  // of a tone where there is no comb
 constexpr std::size_t coherent = 3;     // hops in which a part of the residual stays in phase with the spindle
 constexpr double longest_look_s = 0.3;  // for the frequency
 constexpr double falling = 0.85;        // of the power to that of the hop before
@@ -22,6 +22,8 @@ constexpr double falling_fast = 0.75;   // of half a hop's power to that of the 
 constexpr double least_share = 0.0025;  // of the whole power, below which no line counts
 constexpr double comb_share = 0.1;      // of the whole power, above which the comb is asked whether it follows
 constexpr double follows = 0.6;         // of the comb, in the signal
+constexpr double settle_s = 0.06;       // of the comb, and settle_turns
+constexpr double angle_unrest = 0.01;   // of the angle in a block [rad]
 
 signal::SynchrosqueezeOptions transform_of(const MonitorOptions& o, std::size_t columns_a_hop) {
   signal::SynchrosqueezeOptions out;
@@ -40,13 +42,12 @@ CombCusum::CombCusum(const MonitorOptions& options)
       block_(std::max<std::size_t>(8, frames_ / 4)),
       lines_(static_cast<std::size_t>(transform_of(options, columns_a_hop).lines())),
       tachometer_(options.tachometer_channel < 0 ? channels_ : static_cast<std::size_t>(options.tachometer_channel)),
-      search_(options.sample_rate_hz, channels_),
-      pulses_(options.sample_rate_hz),
+      spindle_(options),
       lines_test_({.lines = lines_,
                    .channels = channels_,
                    .hop_s = options.hop_s,
                    .false_alarms_per_hour = options.false_alarms_per_hour}),
-      past_(search_.window_samples(2) + frames_),
+      past_(spindle_.longest_past() + frames_),
       past_residual_(past_.size()),
       input_(channels_ * frames_),
       residual_(channels_ * frames_),
@@ -61,7 +62,8 @@ CombCusum::CombCusum(const MonitorOptions& options)
       falls_(std::make_unique<bool[]>(channels_)),
       history_(kept * lines_, -1e9),
       hidden_harmonics_(most_harmonics, options.teeth) {
-  const auto most = std::min(most_harmonics, static_cast<std::size_t>(0.5 * options.sample_rate_hz / lowest_hz));
+  const auto most =
+      std::min(most_harmonics, static_cast<std::size_t>(0.5 * options.sample_rate_hz / SpindleTracker::lowest_hz));
   for (std::size_t c = 0; c < channels_; ++c) {
     combs_.emplace_back(most);
     streams_.emplace_back(transform_of(options, columns_a_hop),
@@ -71,17 +73,14 @@ CombCusum::CombCusum(const MonitorOptions& options)
   innovation_.resize(channels_ * coherent * most);
   band_power_.resize(channels_ * static_cast<std::size_t>(options.bands));
   reset();
-  set_spindle_speed(options.spindle_speed_rad_per_s);
 }
 
 void CombCusum::set_spindle_speed(double rad_per_s) noexcept {
-  hint_hz_ = rad_per_s / turn;
-  known_hz_ = 0.0;
+  spindle_.set_hint(rad_per_s / turn);
 }
 
 void CombCusum::reset() noexcept {
-  search_.reset();
-  pulses_.reset();
+  spindle_.reset();
   for (Comb& each : combs_) each.reset();
   for (auto& stream : streams_) stream.reset();
   for (FrequencyRing& ring : rings_) ring.reset();
@@ -89,16 +88,13 @@ void CombCusum::reset() noexcept {
   for (auto* store : {&mean_, &rms_, &left_power_, &late_half_}) std::fill(store->begin(), store->end(), 0.0);
   std::fill(history_.begin(), history_.end(), -1e9);
   std::fill(innovation_.begin(), innovation_.end(), 0.0);
-  rotation_hz_ = known_hz_ = angle_ = revolutions_ = since_s_ = since_look_s_ = since_lock_s_ = slow_power_ =
-      power_before_ = suggested_rate_hz_ = 0.0;
-  window_ = misfits_ = entry_hops_ = moving_ = jumps_ = broad_ = calm_ = steady_ = still_bad_ = seen_ = 0;
+  angle_ = revolutions_ = learnt_s_ = slow_power_ = power_before_ = 0.0;
+  entry_hops_ = jumps_ = broad_ = calm_ = steady_ = still_bad_ = 0;
   hops_ = bad_ = 0;
   tone_.reset();
   spill_.reset();
   hidden_harmonics_.reset();
   line_ = channel_ = 0;
-  everywhere_ = false;
-  doubt_s_ = first_doubt_s;
   state_ = State::stable;
   hidden_ = Hidden::none;
   found_ = {};
@@ -141,17 +137,75 @@ void CombCusum::take_in(const Hop& hop) noexcept {
   entry_hops_ = change > jump ? entry_lasts : entry_hops_ > 0 ? entry_hops_ - 1 : 0;
   if (jumps_ == 0) slow_power_ += 0.1 * (total - slow_power_);
   if (hops_ == 1) slow_power_ = total;
-  if (jumps_ == 1 && rotation_hz_ == 0.0) {
-    since_s_ = 0.0;
-    window_ = 0;
-  }
+  if (jumps_ == 1) spindle_.jumped();
   if (jumps_ >= 2) slow_power_ = total;
-  if (jumps_ == 2 && change < 1.0 && rotation_hz_ > 0.0 && state_ != State::chatter) lose();
+  if (jumps_ == 2 && change < 1.0 && spindle_.rotation_hz() > 0.0 && state_ != State::chatter) lose();
+}
+
+// Of the comb and of what it leaves.
+bool CombCusum::trusted() const noexcept {
+  if (!spindle_.settled()) return false;
+  return spindle_.rotation_hz() == 0.0 || (revolutions_ >= settle_turns && learnt_s_ >= settle_s);
+}
+
+void CombCusum::lose() noexcept {
+  spindle_.lose();
+  lines_test_.relearn();
+}
+
+void CombCusum::take_up(const SpindleTracker::Change& change) noexcept {
+  if (change.past > 0) replay(change.past);
+  if (change.relearn) lines_test_.relearn();
+}
+
+bool CombCusum::speed_holds() noexcept {
+  if (tachometer_ < channels_) return true;
+  const SpindleTracker::Change change = spindle_.check();
+  take_up(change);
+  if (change.locked) return false;
+  // Without a comb only a steady tone counts.
+  return spindle_.rotation_hz() > 0.0 || tone_.begun() || steady_ >= steady_hops;
+}
+
+// The comb, learnt anew from so many samples at the speed now followed.
+void CombCusum::replay(std::size_t samples) noexcept {
+  const std::size_t count = samples / block_ * block_;
+  const double step = turn * spindle_.rotation_hz() / options_.sample_rate_hz;
+  const double per_turn = options_.sample_rate_hz / spindle_.rotation_hz();
+  const double n = static_cast<double>(block_);
+  std::fill(innovation_.begin(), innovation_.end(), 0.0);
+  for (std::size_t c = 0; c < channels_; ++c) {
+    combs_[c].reset();
+    combs_[c].set_harmonics(static_cast<std::size_t>(0.49 * options_.sample_rate_hz / spindle_.rotation_hz()));
+    const std::span past = std::span(past_).subspan(0, count + frames_);
+    // What is in the ring ends with this hop, which comb() is still to do.
+    spindle_.last(c, past);
+    const std::span left = std::span(past_residual_).subspan(0, count);
+    // Twice, so that the beginning is foretold as well as the end.
+    for (int pass = 0; pass < 2; ++pass) {
+      double angle = 0.0;
+      double turns = pass == 0 ? 0.0 : static_cast<double>(count) / per_turn;
+      for (std::size_t at = 0; at < count; at += block_, angle += step * n, turns += n / per_turn) {
+        combs_[c].run(past.subspan(at, block_), left.subspan(at, block_), angle, step,
+                      std::min(1.0, n / per_turn / (1.0 + turns)), 1e30);
+      }
+      angle_ = std::fmod(angle, turn);
+      revolutions_ = static_cast<double>(count) / per_turn;
+    }
+    double sum = 0.0;
+    for (const float x : left) sum += static_cast<double>(x * x);
+    rms_[c] = std::sqrt(sum / static_cast<double>(count));
+    streams_[c].reset();
+    rings_[c].push(left);
+    const std::size_t window = std::min(count, 2 * (lines_ - 1));
+    for (const float x : left.subspan(count - window)) streams_[c].push(static_cast<double>(x));
+  }
+  learnt_s_ = static_cast<double>(count) / options_.sample_rate_hz;
 }
 
 void CombCusum::comb_block(std::size_t first, std::size_t count) noexcept {
-  const double step = turn * rotation_hz_ / options_.sample_rate_hz;
-  const double per_turn = options_.sample_rate_hz / rotation_hz_;
+  const double step = turn * spindle_.rotation_hz() / options_.sample_rate_hz;
+  const double per_turn = options_.sample_rate_hz / spindle_.rotation_hz();
   const double n = static_cast<double>(count);
   const double steady = 1.0 - std::exp(-n / (comb_s * options_.sample_rate_hz));
   const double fast = std::min(1.0, n / per_turn / (1.0 + revolutions_));
@@ -178,6 +232,31 @@ void CombCusum::comb_block(std::size_t first, std::size_t count) noexcept {
   }
   angle_ = std::fmod(angle_ + step * n, turn);
   revolutions_ += n / per_turn;
+}
+
+void CombCusum::follow_speed() noexcept {
+  if (revolutions_ < 3.0) return;
+  double moved = 0.0;
+  double weight = 0.0;
+  for (std::size_t c = 0; c < channels_; ++c) {
+    const double noise = rms_[c] * rms_[c] + 1e-300;
+    const double least = 4.0 * noise / static_cast<double>(block_);
+    for (std::size_t k = 1; k <= combs_[c].harmonics(); ++k) {
+      const std::complex<double> a = combs_[c].amplitude(k);
+      if (std::norm(a) < least) continue;
+      const double order = static_cast<double>(k);
+      // r is a exp(i k δ) - a: what runs ahead has conj(a) g with a positive imaginary part.
+      moved += order * (std::conj(a) * combs_[c].innovation(k)).imag() / noise;
+      weight += order * order * std::norm(a) / noise;
+    }
+  }
+  if (weight <= 0.0) return;
+  // The angle's own unrest against the variance of what is measured.
+  const double trust = 1.0 / (1.0 + 2.0 / (static_cast<double>(block_) * weight * angle_unrest * angle_unrest));
+  const double ahead = trust * std::clamp(moved / weight, -0.2, 0.2);
+  const double block_s = static_cast<double>(block_) / options_.sample_rate_hz;
+  angle_ += 0.1 * ahead;
+  if (state_ != State::chatter) spindle_.correct(0.005 * ahead / (turn * block_s));
 }
 
 void CombCusum::leftover() noexcept {
@@ -211,7 +290,8 @@ void CombCusum::leftover() noexcept {
       if (here <= 4.0 * noise) continue;
       const double own = std::norm(combs_[c].amplitude(k));
       const double likely = std::min(here, std::max(25.0 * lag / whole * own, 0.0003 * power_[c]));
-      const auto at = static_cast<std::size_t>(std::lround(static_cast<double>(k) * rotation_hz_ / line_hz(1)));
+      const auto at =
+          static_cast<std::size_t>(std::lround(static_cast<double>(k) * spindle_.rotation_hz() / line_hz(1)));
       const double energy = 2.5 * columns_a_hop * likely * n * n;
       for (std::size_t l = at > 3 ? at - 3 : 0; l <= std::min(at + 3, lines_ - 1); ++l)
         taken_[c * lines_ + l] += energy;
@@ -243,7 +323,7 @@ void CombCusum::comb() noexcept {
 void CombCusum::learn_anew() noexcept {
   for (Comb& each : combs_) each.reset();
   std::fill(innovation_.begin(), innovation_.end(), 0.0);
-  revolutions_ = since_lock_s_ = 0.0;
+  revolutions_ = learnt_s_ = 0.0;
   lines_test_.relearn();
 }
 
@@ -304,12 +384,10 @@ bool CombCusum::comb_follows(std::size_t channel) const noexcept {
 void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {
   ++hops_;
   take_in(hop);
-  if (tachometer_ < channels_) {
-    follow_tachometer(hop);
-  } else {
-    find_speed();
-  }
-  if (rotation_hz_ > 0.0) {
+  learnt_s_ += options_.hop_s;
+  const auto pulses = tachometer_ < channels_ ? hop.channel(tachometer_) : std::span<const double>();
+  take_up(spindle_.step(input_, pulses, state_ == State::chatter));
+  if (spindle_.rotation_hz() > 0.0) {
     comb();
   } else {
     std::copy(input_.begin(), input_.end(), residual_.begin());
@@ -323,14 +401,12 @@ void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {
     std::fill_n(taken_.begin() + static_cast<std::ptrdiff_t>(c * lines_), lines_,
                 2.0 * columns_a_hop * n * n * least_share * power_[c]);
   }
-  if (rotation_hz_ > 0.0) leftover();
+  if (spindle_.rotation_hz() > 0.0) leftover();
   judge(decision);
   tell_bands(decision);
-  if (suggested_rate_hz_ > 0.0) {
-    decision.faults |= wrong_sample_rate;
-    decision.suggested_sample_rate_hz = suggested_rate_hz_;
-  }
-  decision.spindle_speed_rad_per_s = turn * rotation_hz_;
+  decision.suggested_sample_rate_hz = spindle_.suggested_sample_rate_hz();
+  if (decision.suggested_sample_rate_hz > 0.0) decision.faults |= wrong_sample_rate;
+  decision.spindle_speed_rad_per_s = turn * spindle_.rotation_hz();
 }
 
 void CombCusum::tell_bands(Decision& decision) const noexcept {

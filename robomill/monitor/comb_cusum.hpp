@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <complex>
 #include <memory>
 #include <vector>
@@ -10,9 +9,8 @@
 #include "robomill/monitor/entropy.hpp"
 #include "robomill/monitor/frequency.hpp"
 #include "robomill/monitor/hidden.hpp"
-#include "robomill/monitor/speed.hpp"
 #include "robomill/monitor/spill.hpp"
-#include "robomill/monitor/tachometer.hpp"
+#include "robomill/monitor/spindle.hpp"
 #include "robomill/monitor/tone.hpp"
 #include "robomill/signal/synchrosqueeze.hpp"
 
@@ -29,27 +27,18 @@ class CombCusum final : public Detector {
  private:
   static constexpr std::size_t columns_a_hop = 4;  // of the transform
   static constexpr std::size_t kept = 8;           // hops of log energies
-  static constexpr double lowest_hz = 5.0;         // of rotation
   static constexpr std::size_t most_harmonics = 320;
-  static constexpr double hint_share = 0.07;   // how far a hint may be off
   static constexpr double settle_turns = 4.0;  // of the comb
 
   void take_in(const Hop& hop) noexcept;
   // Speed
-  void find_speed() noexcept;
-  void follow_tachometer(const Hop& hop) noexcept;
-  void seek_everywhere() noexcept;
-  void look(std::size_t window, double centre_hz, double share) noexcept;
-  [[nodiscard]] bool hears_the_mains(double rotation_hz) const noexcept;
-  [[nodiscard]] bool convincing() const noexcept;
+  void take_up(const SpindleTracker::Change& change) noexcept;
   bool speed_holds() noexcept;
-  [[nodiscard]] bool speed_drifts() const noexcept;
-  void lock(double rotation_hz) noexcept;
-  void replay() noexcept;
+  void replay(std::size_t samples) noexcept;
   void lose() noexcept;
   void learn_anew() noexcept;
   [[nodiscard]] bool trusted() const noexcept;
-  [[nodiscard]] bool comb_known() const noexcept { return rotation_hz_ > 0.0 && trusted(); }
+  [[nodiscard]] bool comb_known() const noexcept { return spindle_.rotation_hz() > 0.0 && trusted(); }
   bool hear_hidden() noexcept;
   // Comb
   void comb() noexcept;
@@ -79,8 +68,7 @@ class CombCusum final : public Detector {
   MonitorOptions options_;
   std::size_t channels_, frames_, block_, lines_;
   std::size_t tachometer_;  // channel; channels_: none
-  SpeedSearch search_;
-  Tachometer pulses_;
+  SpindleTracker spindle_;
   std::vector<Comb> combs_;
   std::vector<signal::SynchrosqueezeStream> streams_;
   std::vector<FrequencyRing> rings_;
@@ -99,19 +87,8 @@ class CombCusum final : public Detector {
   std::vector<double> band_power_;  // of the hop, each channel's bands
   std::uint64_t bad_ = 0;           // channels that are not listened to
   std::size_t still_bad_ = 0;       // hops until a channel that is well again counts
-  bool everywhere_ = false;         // the search goes beyond the hint
-  double suggested_rate_hz_ = 0.0;
-  double hint_hz_ = 0.0, rotation_hz_ = 0.0, angle_ = 0.0;
-  double revolutions_ = 0.0;  // since the comb began to learn
-  double since_s_ = 0.0;      // what is looked at for the speed has begun
-  double since_look_s_ = 0.0, since_lock_s_ = 0.0;
-  double doubt_s_ = 0.0;                // until a weak comb near the hint makes the sample rate doubtful
-  std::size_t window_ = 0;              // of the next look
-  std::size_t misfits_ = 0;             // looks in which the speed found explained nothing
-  double known_hz_ = 0.0;               // the last rotation that was followed
-  std::array<double, 6> seen_hz_ = {};  // rotations that the last looks found, hop after hop; a ring
-  std::size_t seen_ = 0;                // so many
-  std::size_t moving_ = 0;              // hops until a speed that changed is taken for settled
+  double angle_ = 0.0;
+  double revolutions_ = 0.0, learnt_s_ = 0.0;  // since the comb began to learn
   double slow_power_ = 0.0;
   std::size_t jumps_ = 0;
   std::size_t entry_hops_ = 0;  // for which the tool still enters

@@ -24,13 +24,13 @@ constexpr double highest_of_unknown_teeth = 12.0;                    // three of
 }  // namespace
 
 bool CombCusum::hear_hidden() noexcept {
-  if (!comb_known() || !hidden_harmonics_.step(combs_, power(), since_lock_s_ > hidden_learnt_s)) return false;
+  if (!comb_known() || !hidden_harmonics_.step(combs_, power(), learnt_s_ > hidden_learnt_s)) return false;
   if (!speed_holds()) {
     hidden_harmonics_.doubt();
     return false;
   }
   hidden_ = hidden_harmonics_.kind();
-  found_ = {.frequency_hz = static_cast<double>(hidden_harmonics_.harmonic()) * rotation_hz_,
+  found_ = {.frequency_hz = static_cast<double>(hidden_harmonics_.harmonic()) * spindle_.rotation_hz(),
             .std_hz = 1.0 / (HiddenHarmonics::hops * options_.hop_s) / std::sqrt(12.0)};
   return true;
 }
@@ -77,18 +77,19 @@ void CombCusum::judge(Decision& decision) noexcept {
 
 // A multiple of rotation or of tooth passing, at a speed near the one that is told; high ones lie too close to say.
 bool CombCusum::may_be_the_cut(double frequency_hz) const noexcept {
-  const double near_hz = known_hz_ > 0.0 ? known_hz_ : hint_hz_;
+  const double near_hz = spindle_.expected_hz();
   if (near_hz <= 0.0) return true;
   const auto multiple = [&](double of_hz, double highest) {
     const double order = frequency_hz / of_hz;
-    return order < highest && std::abs(order - std::round(order)) < hint_share * order + 0.5 * line_hz(1) / of_hz;
+    return order < highest &&
+           std::abs(order - std::round(order)) < SpindleTracker::hint_share * order + 0.5 * line_hz(1) / of_hz;
   };
   if (options_.teeth == 0) return multiple(near_hz, highest_of_unknown_teeth);
   return multiple(near_hz, highest_of_rotation) || multiple(near_hz * options_.teeth, highest_of_teeth);
 }
 
 bool CombCusum::near_a_harmonic(double frequency_hz) const noexcept {
-  return std::abs(std::remainder(frequency_hz, rotation_hz_ * std::max(1, options_.teeth))) < entry_width_hz;
+  return std::abs(std::remainder(frequency_hz, spindle_.rotation_hz() * std::max(1, options_.teeth))) < entry_width_hz;
 }
 
 bool CombCusum::hear_tone() noexcept {
@@ -166,15 +167,15 @@ void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
     channel_ = verdict.channel;
     const double before_hz = found_.frequency_hz;
     found_ = rings_[channel_].estimate(line_hz(line_), line_hz(1), 4.0 * options_.hop_s);
-    const double most = (rotation_hz_ > 0.0 ? 0.5 : 0.07) * line_hz(1);
+    const double most = (spindle_.rotation_hz() > 0.0 ? 0.5 : 0.07) * line_hz(1);
     steady_ = std::abs(found_.frequency_hz - before_hz) < most ? steady_ + 1 : 0;
   } else {
     steady_ = 0;
   }
-  const bool cut = rotation_hz_ == 0.0 ? (hint_hz_ > 0.0 || known_hz_ > 0.0) && may_be_the_cut(found_.frequency_hz)
-                                       : entry_hops_ > 0 && near_a_harmonic(found_.frequency_hz);
+  const bool cut = spindle_.rotation_hz() == 0.0 ? spindle_.expected_hz() > 0.0 && may_be_the_cut(found_.frequency_hz)
+                                                 : entry_hops_ > 0 && near_a_harmonic(found_.frequency_hz);
   if (cut && verdict.score > threshold) lines_test_.accept(verdict.line);
-  if (verdict.score > threshold && !dies && !cut && steady_ > 0 && misfits_ == 0 && speed_holds()) {
+  if (verdict.score > threshold && !dies && !cut && steady_ > 0 && spindle_.fits() && speed_holds()) {
     begin_chatter(verdict.height > 2.0 * faint);
   } else {
     state_ = verdict.score > 0.5 * threshold ? State::transition : State::stable;
