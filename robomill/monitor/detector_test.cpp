@@ -279,6 +279,31 @@ TEST(CombCusum, StaysQuietWhileTheSpeedDrifts) {
   }
 }
 
+// The speed creeps to 9 % below a hint that trembles from hop to hop; the tool leaves, and comes back at that speed.
+// A hint that says another speed makes it forgotten.
+TEST(CombCusum, KnowsTheSpeedFollowedLastWhileTheHintTrembles) {
+  const SyntheticCut cut{.rotation_hz = 80.0, .drift_hz_per_s = -6.0, .channels = 2, .noise = 0.03, .seconds = 6.0};
+  std::vector<float> x = vibration(cut);
+  Random random(3);
+  const auto frame = [&](double s) { return 2 * static_cast<std::size_t>(s * cut.sample_rate_hz); };
+  for (std::size_t i = frame(4.0); i < frame(5.0); ++i) x[i] = static_cast<float>(0.03 * random.normal());
+  const auto found_s = [&](double trembles, double told) {
+    const MonitorOptions options = options_for(cut);
+    ChatterMonitor monitor(options);
+    const std::size_t block = options.hop_samples() * 2;
+    for (std::size_t at = 0; at + block <= x.size(); at += block) {
+      const Decision d = monitor.push(std::span(x).subspan(at, block));
+      if (d.time_s > 5.0 && std::abs(d.spindle_speed_rad_per_s / (turn * 74.0) - 1.0) < 2e-3) return d.time_s - 5.0;
+      const double share = d.time_s > 4.5 ? told : 1.0;
+      monitor.set_spindle_speed(options.spindle_speed_rad_per_s * share * (1.0 + trembles * random.uniform(-1.0, 1.0)));
+    }
+    return 1e9;
+  };
+  EXPECT_LT(found_s(0.0, 1.0), 0.2);
+  EXPECT_LT(found_s(1e-3, 1.0), 0.2);
+  EXPECT_GT(found_s(1e-3, 1.1), 0.2);
+}
+
 TEST(CombCusum, FollowsATachometer) {
   SyntheticCut cut{.channels = 1, .chatter_hz = 683.0};
   const std::vector<float> x = vibration(cut);

@@ -13,6 +13,7 @@ constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double highest_hz = 500.0;
 constexpr double found_score = 1.5;    // of SpeedSearch
 constexpr double wide_score = 8.0;     // without a hint
+constexpr double same_hint = 0.01;     // change of a hint that is no other speed: a controller's reading trembles
 constexpr double mains_share = 5e-3;   // by which the mains, as seen, are off
 constexpr double mains_hint = 0.015;   // by which a hint near them may be off
 constexpr double certain_score = 8.0;  // beyond the hint
@@ -47,10 +48,14 @@ SpindleTracker::SpindleTracker(const MonitorOptions& options)
       search_(options.sample_rate_hz, static_cast<std::size_t>(options.channels)),
       pulses_(options.sample_rate_hz),
       hint_hz_(options.spindle_speed_rad_per_s / turn),
+      told_hz_(hint_hz_),
       doubt_s_(first_doubt_s) {}
 
 void SpindleTracker::set_hint(double rotation_hz) noexcept {
   hint_hz_ = rotation_hz;
+  // Step by step a hint that creeps is another one, too.
+  if (std::abs(rotation_hz - told_hz_) <= same_hint * told_hz_) return;
+  told_hz_ = rotation_hz;
   known_hz_ = 0.0;
 }
 

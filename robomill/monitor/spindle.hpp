@@ -34,7 +34,8 @@ class SpindleTracker {
   };
 
   explicit SpindleTracker(const MonitorOptions& options);
-  void set_hint(double rotation_hz) noexcept;  ///< 0: unknown
+  /// 0: unknown. By more than 1 % another than before, it makes the speed followed last forgotten.
+  void set_hint(double rotation_hz) noexcept;
 
   /// A hop.
   /// @param samples   all channels, channel after channel
@@ -85,6 +86,7 @@ class SpindleTracker {
   SpeedSearch search_;
   Tachometer pulses_;
   double hint_hz_ = 0.0, rotation_hz_ = 0.0;
+  double told_hz_ = 0.0;       // the hint that was another one last
   double known_hz_ = 0.0;      // the last rotation that was locked on
   double since_s_ = 0.0;       // what is looked at has begun
   double since_look_s_ = 0.0;  // of those that come at intervals
