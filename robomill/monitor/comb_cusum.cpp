@@ -11,19 +11,15 @@ namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double drift_hz = 3.0;        // corner of the high-pass
-constexpr double comb_s = 0.25;         // memory of the comb
 constexpr double jump = 4.0;            // of the power: the tool enters or leaves
 constexpr std::size_t entry_lasts = 8;  // hops
 constexpr std::size_t steady_hops = 2;  // of a tone where there is no comb
-constexpr std::size_t coherent = 3;     // hops in which a part of the residual stays in phase with the spindle
 constexpr double longest_look_s = 0.3;  // for the frequency
 constexpr double falling = 0.85;        // of the power to that of the hop before
 constexpr double falling_fast = 0.75;   // of half a hop's power to that of the halves before
 constexpr double least_share = 0.0025;  // of the whole power, below which no line counts
 constexpr double comb_share = 0.1;      // of the whole power, above which the comb is asked whether it follows
 constexpr double follows = 0.6;         // of the comb, in the signal
-constexpr double settle_s = 0.06;       // of the comb, and settle_turns
-constexpr double angle_unrest = 0.01;   // of the angle in a block [rad]
 
 signal::SynchrosqueezeOptions transform_of(const MonitorOptions& o, std::size_t columns_a_hop) {
   signal::SynchrosqueezeOptions out;
@@ -39,20 +35,19 @@ CombCusum::CombCusum(const MonitorOptions& options)
     : options_(options),
       channels_(static_cast<std::size_t>(options.channels)),
       frames_(options.hop_samples()),
-      block_(std::max<std::size_t>(8, frames_ / 4)),
       lines_(static_cast<std::size_t>(transform_of(options, columns_a_hop).lines())),
       tachometer_(options.tachometer_channel < 0 ? channels_ : static_cast<std::size_t>(options.tachometer_channel)),
       spindle_(options),
+      comb_(options, spindle_.longest_past()),
       lines_test_({.lines = lines_,
                    .channels = channels_,
                    .hop_s = options.hop_s,
                    .false_alarms_per_hour = options.false_alarms_per_hour}),
       past_(spindle_.longest_past() + frames_),
-      past_residual_(past_.size()),
       input_(channels_ * frames_),
       residual_(channels_ * frames_),
       mean_(channels_),
-      rms_(channels_),
+      lags_(comb_.max_harmonics()),
       column_(lines_),
       energy_(lines_ * channels_),
       taken_(lines_ * channels_),
@@ -61,16 +56,12 @@ CombCusum::CombCusum(const MonitorOptions& options)
       late_half_(channels_),
       falls_(std::make_unique<bool[]>(channels_)),
       history_(kept * lines_, -1e9),
-      hidden_harmonics_(most_harmonics, options.teeth) {
-  const auto most =
-      std::min(most_harmonics, static_cast<std::size_t>(0.5 * options.sample_rate_hz / SpindleTracker::lowest_hz));
+      hidden_harmonics_(comb_.max_harmonics(), options.teeth) {
   for (std::size_t c = 0; c < channels_; ++c) {
-    combs_.emplace_back(most);
     streams_.emplace_back(transform_of(options, columns_a_hop),
                           signal::equal_bands(options.sample_rate_hz, options.bands));
     rings_.emplace_back(options.sample_rate_hz, longest_look_s);
   }
-  innovation_.resize(channels_ * coherent * most);
   band_power_.resize(channels_ * static_cast<std::size_t>(options.bands));
   reset();
 }
@@ -81,14 +72,13 @@ void CombCusum::set_spindle_speed(double rad_per_s) noexcept {
 
 void CombCusum::reset() noexcept {
   spindle_.reset();
-  for (Comb& each : combs_) each.reset();
+  comb_.reset();
   for (auto& stream : streams_) stream.reset();
   for (FrequencyRing& ring : rings_) ring.reset();
   lines_test_.relearn();
-  for (auto* store : {&mean_, &rms_, &left_power_, &late_half_}) std::fill(store->begin(), store->end(), 0.0);
+  for (auto* store : {&mean_, &left_power_, &late_half_}) std::fill(store->begin(), store->end(), 0.0);
   std::fill(history_.begin(), history_.end(), -1e9);
-  std::fill(innovation_.begin(), innovation_.end(), 0.0);
-  angle_ = revolutions_ = learnt_s_ = slow_power_ = power_before_ = 0.0;
+  slow_power_ = power_before_ = 0.0;
   entry_hops_ = jumps_ = broad_ = calm_ = steady_ = still_bad_ = 0;
   hops_ = bad_ = 0;
   tone_.reset();
@@ -142,10 +132,9 @@ void CombCusum::take_in(const Hop& hop) noexcept {
   if (jumps_ == 2 && change < 1.0 && spindle_.rotation_hz() > 0.0 && state_ != State::chatter) lose();
 }
 
-// Of the comb and of what it leaves.
+// Whether what the comb leaves, or where there is none the signal itself, is what the baselines are of.
 bool CombCusum::trusted() const noexcept {
-  if (!spindle_.settled()) return false;
-  return spindle_.rotation_hz() == 0.0 || (revolutions_ >= settle_turns && learnt_s_ >= settle_s);
+  return spindle_.settled() && (spindle_.rotation_hz() == 0.0 || comb_.settled());
 }
 
 void CombCusum::lose() noexcept {
@@ -167,163 +156,58 @@ bool CombCusum::speed_holds() noexcept {
   return spindle_.rotation_hz() > 0.0 || tone_.begun() || steady_ >= steady_hops;
 }
 
-// The comb, learnt anew from so many samples at the speed now followed.
+// The comb, learnt anew at the speed now followed from so many samples.
 void CombCusum::replay(std::size_t samples) noexcept {
-  const std::size_t count = samples / block_ * block_;
-  const double step = turn * spindle_.rotation_hz() / options_.sample_rate_hz;
-  const double per_turn = options_.sample_rate_hz / spindle_.rotation_hz();
-  const double n = static_cast<double>(block_);
-  std::fill(innovation_.begin(), innovation_.end(), 0.0);
   for (std::size_t c = 0; c < channels_; ++c) {
-    combs_[c].reset();
-    combs_[c].set_harmonics(static_cast<std::size_t>(0.49 * options_.sample_rate_hz / spindle_.rotation_hz()));
-    const std::span past = std::span(past_).subspan(0, count + frames_);
     // What is in the ring ends with this hop, which comb() is still to do.
+    const std::span past = std::span(past_).first(samples + frames_);
     spindle_.last(c, past);
-    const std::span left = std::span(past_residual_).subspan(0, count);
-    // Twice, so that the beginning is foretold as well as the end.
-    for (int pass = 0; pass < 2; ++pass) {
-      double angle = 0.0;
-      double turns = pass == 0 ? 0.0 : static_cast<double>(count) / per_turn;
-      for (std::size_t at = 0; at < count; at += block_, angle += step * n, turns += n / per_turn) {
-        combs_[c].run(past.subspan(at, block_), left.subspan(at, block_), angle, step,
-                      std::min(1.0, n / per_turn / (1.0 + turns)), 1e30);
-      }
-      angle_ = std::fmod(angle, turn);
-      revolutions_ = static_cast<double>(count) / per_turn;
-    }
-    double sum = 0.0;
-    for (const float x : left) sum += static_cast<double>(x * x);
-    rms_[c] = std::sqrt(sum / static_cast<double>(count));
-    streams_[c].reset();
+    const std::span<const float> left = comb_.learn(c, past.first(samples), spindle_.rotation_hz());
     rings_[c].push(left);
-    const std::size_t window = std::min(count, 2 * (lines_ - 1));
-    for (const float x : left.subspan(count - window)) streams_[c].push(static_cast<double>(x));
-  }
-  learnt_s_ = static_cast<double>(count) / options_.sample_rate_hz;
-}
-
-void CombCusum::comb_block(std::size_t first, std::size_t count) noexcept {
-  const double step = turn * spindle_.rotation_hz() / options_.sample_rate_hz;
-  const double per_turn = options_.sample_rate_hz / spindle_.rotation_hz();
-  const double n = static_cast<double>(count);
-  const double steady = 1.0 - std::exp(-n / (comb_s * options_.sample_rate_hz));
-  const double fast = std::min(1.0, n / per_turn / (1.0 + revolutions_));
-  const double gain = state_ == State::chatter && hidden_ == Hidden::none ? 0.0 : std::max(steady, fast);
-  for (std::size_t c = 0; c < channels_; ++c) {
-    const std::size_t at = c * frames_ + first;
-    if ((bad_ >> c & 1U) != 0) {
-      std::fill_n(residual_.begin() + static_cast<std::ptrdiff_t>(at), count, 0.0F);
-      continue;
-    }
-    const bool young = revolutions_ < settle_turns;
-    combs_[c].run(std::span(input_).subspan(at, count), std::span(residual_).subspan(at, count), angle_, step, gain,
-                  young ? 1e30 : 4.0 * rms_[c]);
-    double sum = 0.0;
-    for (std::size_t i = at; i < at + count; ++i) sum += static_cast<double>(residual_[i] * residual_[i]);
-    const double now = std::sqrt(sum / n);
-    rms_[c] += young ? 0.5 * (now - rms_[c]) : 0.03 * (std::min(now, 3.0 * rms_[c]) - rms_[c]);
-    std::complex<double>* sums =
-        innovation_.data() + (c * coherent + hops_ % coherent) * (innovation_.size() / channels_ / coherent);
-    for (std::size_t k = 1; k <= combs_[c].harmonics(); ++k) {
-      if (first == 0) sums[k - 1] = 0.0;
-      sums[k - 1] += combs_[c].innovation(k) * (n / static_cast<double>(frames_));
-    }
-  }
-  angle_ = std::fmod(angle_ + step * n, turn);
-  revolutions_ += n / per_turn;
-}
-
-void CombCusum::follow_speed() noexcept {
-  if (revolutions_ < 3.0) return;
-  double moved = 0.0;
-  double weight = 0.0;
-  for (std::size_t c = 0; c < channels_; ++c) {
-    const double noise = rms_[c] * rms_[c] + 1e-300;
-    const double least = 4.0 * noise / static_cast<double>(block_);
-    for (std::size_t k = 1; k <= combs_[c].harmonics(); ++k) {
-      const std::complex<double> a = combs_[c].amplitude(k);
-      if (std::norm(a) < least) continue;
-      const double order = static_cast<double>(k);
-      // r is a exp(i k δ) - a: what runs ahead has conj(a) g with a positive imaginary part.
-      moved += order * (std::conj(a) * combs_[c].innovation(k)).imag() / noise;
-      weight += order * order * std::norm(a) / noise;
-    }
-  }
-  if (weight <= 0.0) return;
-  // The angle's own unrest against the variance of what is measured.
-  const double trust = 1.0 / (1.0 + 2.0 / (static_cast<double>(block_) * weight * angle_unrest * angle_unrest));
-  const double ahead = trust * std::clamp(moved / weight, -0.2, 0.2);
-  const double block_s = static_cast<double>(block_) / options_.sample_rate_hz;
-  angle_ += 0.1 * ahead;
-  if (state_ != State::chatter) spindle_.correct(0.005 * ahead / (turn * block_s));
-}
-
-void CombCusum::leftover() noexcept {
-  const std::size_t most = innovation_.size() / channels_ / coherent;
-  const double n = static_cast<double>(2 * (lines_ - 1));
-  for (std::size_t c = 0; c < channels_; ++c) {
-    const std::complex<double>* sums = innovation_.data() + c * coherent * most;
-    // The mean of the last two or three hops, where they agree.
-    const std::size_t now = hops_ % coherent;
-    const auto steady = [&](std::size_t k) {
-      const std::complex<double> last = sums[now * most + k - 1];
-      const std::complex<double> before = sums[(now + 2) % coherent * most + k - 1];
-      const std::complex<double> first = sums[(now + 1) % coherent * most + k - 1];
-      const std::complex<double> two = 0.5 * (last + before);
-      const std::complex<double> three = (last + before + first) / 3.0;
-      const bool pair = std::norm(two) > 0.7 * 0.5 * (std::norm(last) + std::norm(before));
-      const bool all = std::norm(three) > 0.5 * (std::norm(last) + std::norm(before) + std::norm(first)) / 3.0;
-      return pair && std::norm(two) > std::norm(three) ? two : all ? three : std::complex<double>(0.0);
-    };
-    double lag = 0.0;
-    double whole = 1e-300;
-    for (std::size_t k = 1; k <= combs_[c].harmonics(); ++k) {
-      const double own = std::norm(combs_[c].amplitude(k));
-      lag += own * std::norm(steady(k));
-      whole += own * own;
-    }
-    const double noise = 4.0 * rms_[c] * rms_[c] / static_cast<double>(frames_ * coherent);
-    for (std::size_t k = 1; k <= combs_[c].harmonics(); ++k) {
-      const std::complex<double> mean = steady(k);
-      const double here = std::norm(mean);
-      if (here <= 4.0 * noise) continue;
-      const double own = std::norm(combs_[c].amplitude(k));
-      const double likely = std::min(here, std::max(25.0 * lag / whole * own, 0.0003 * power_[c]));
-      const auto at =
-          static_cast<std::size_t>(std::lround(static_cast<double>(k) * spindle_.rotation_hz() / line_hz(1)));
-      const double energy = 2.5 * columns_a_hop * likely * n * n;
-      for (std::size_t l = at > 3 ? at - 3 : 0; l <= std::min(at + 3, lines_ - 1); ++l)
-        taken_[c * lines_ + l] += energy;
-      if (state_ == State::chatter) continue;
-      const bool cutting = options_.teeth == 0 || k % static_cast<std::size_t>(options_.teeth) == 0;
-      if (cutting || own > 0.5 * here) combs_[c].correct(k, 0.3 * std::sqrt(likely / here) * mean);
-    }
+    streams_[c].reset();
+    for (const float x : left.last(std::min(left.size(), 2 * (lines_ - 1)))) streams_[c].push(static_cast<double>(x));
   }
 }
 
 void CombCusum::comb() noexcept {
-  for (std::size_t first = 0; first < frames_; first += block_) {
-    comb_block(first, std::min(block_, frames_ - first));
-    follow_speed();
-  }
+  const bool chatters = state_ == State::chatter;
+  spindle_.correct(comb_.run({.samples = input_,
+                              .bad_channels = bad_,
+                              .rotation_hz = spindle_.rotation_hz(),
+                              .learns = !chatters || hidden_ != Hidden::none,
+                              .steers = !chatters},
+                             residual_));
   double before = 0.0;
   double after = 0.0;
   for (std::size_t i = 0; i < input_.size(); ++i) {
     before += static_cast<double>(input_[i] * input_[i]);
     after += static_cast<double>(residual_[i] * residual_[i]);
   }
-  if (after > 1.2 * before && state_ != State::chatter && jumps_ > 0) {
+  if (after > 1.2 * before && !chatters && jumps_ > 0) {
     // The tool has left the cut.
     std::copy(input_.begin(), input_.end(), residual_.begin());
     learn_anew();
   }
 }
 
+// What the comb lags behind by is no chatter.
+void CombCusum::take_lags() noexcept {
+  const double n = static_cast<double>(2 * (lines_ - 1));
+  for (std::size_t c = 0; c < channels_; ++c) {
+    comb_.lags(c, power_[c], state_ != State::chatter, lags_);
+    for (std::size_t k = 1; k <= comb_.harmonics(); ++k) {
+      if (lags_[k - 1] == 0.0) continue;
+      const auto at =
+          static_cast<std::size_t>(std::lround(static_cast<double>(k) * spindle_.rotation_hz() / line_hz(1)));
+      const double energy = 2.5 * columns_a_hop * lags_[k - 1] * n * n;
+      for (std::size_t l = at > 3 ? at - 3 : 0; l <= std::min(at + 3, lines_ - 1); ++l)
+        taken_[c * lines_ + l] += energy;
+    }
+  }
+}
+
 void CombCusum::learn_anew() noexcept {
-  for (Comb& each : combs_) each.reset();
-  std::fill(innovation_.begin(), innovation_.end(), 0.0);
-  revolutions_ = learnt_s_ = 0.0;
+  comb_.forget();
   lines_test_.relearn();
 }
 
@@ -384,7 +268,7 @@ bool CombCusum::comb_follows(std::size_t channel) const noexcept {
 void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {
   ++hops_;
   take_in(hop);
-  learnt_s_ += options_.hop_s;
+  comb_.begin_hop();
   const auto pulses = tachometer_ < channels_ ? hop.channel(tachometer_) : std::span<const double>();
   take_up(spindle_.step(input_, pulses, state_ == State::chatter));
   if (spindle_.rotation_hz() > 0.0) {
@@ -401,7 +285,7 @@ void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {
     std::fill_n(taken_.begin() + static_cast<std::ptrdiff_t>(c * lines_), lines_,
                 2.0 * columns_a_hop * n * n * least_share * power_[c]);
   }
-  if (spindle_.rotation_hz() > 0.0) leftover();
+  if (spindle_.rotation_hz() > 0.0) take_lags();
   judge(decision);
   tell_bands(decision);
   decision.suggested_sample_rate_hz = spindle_.suggested_sample_rate_hz();

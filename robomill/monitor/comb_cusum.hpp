@@ -3,7 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include "robomill/monitor/comb.hpp"
 #include "robomill/monitor/cusum.hpp"
 #include "robomill/monitor/detector.hpp"
 #include "robomill/monitor/entropy.hpp"
@@ -11,6 +10,7 @@
 #include "robomill/monitor/hidden.hpp"
 #include "robomill/monitor/spill.hpp"
 #include "robomill/monitor/spindle.hpp"
+#include "robomill/monitor/spindle_comb.hpp"
 #include "robomill/monitor/tone.hpp"
 #include "robomill/signal/synchrosqueeze.hpp"
 
@@ -27,8 +27,6 @@ class CombCusum final : public Detector {
  private:
   static constexpr std::size_t columns_a_hop = 4;  // of the transform
   static constexpr std::size_t kept = 8;           // hops of log energies
-  static constexpr std::size_t most_harmonics = 320;
-  static constexpr double settle_turns = 4.0;  // of the comb
 
   void take_in(const Hop& hop) noexcept;
   // Speed
@@ -42,9 +40,7 @@ class CombCusum final : public Detector {
   bool hear_hidden() noexcept;
   // Comb
   void comb() noexcept;
-  void comb_block(std::size_t first, std::size_t count) noexcept;
-  void follow_speed() noexcept;
-  void leftover() noexcept;
+  void take_lags() noexcept;
   // Lines
   void leave_power() noexcept;
   [[nodiscard]] bool comb_follows(std::size_t channel) const noexcept;
@@ -66,18 +62,18 @@ class CombCusum final : public Detector {
   [[nodiscard]] double line_hz(std::size_t line) const noexcept;
 
   MonitorOptions options_;
-  std::size_t channels_, frames_, block_, lines_;
+  std::size_t channels_, frames_, lines_;
   std::size_t tachometer_;  // channel; channels_: none
   SpindleTracker spindle_;
-  std::vector<Comb> combs_;
+  SpindleComb comb_;
   std::vector<signal::SynchrosqueezeStream> streams_;
   std::vector<FrequencyRing> rings_;
   Cusum lines_test_;
-  std::vector<float> past_, past_residual_;
+  std::vector<float> past_;              // of a channel, to learn the comb from
   std::vector<float> input_, residual_;  // of the hop, channel after channel
   std::vector<double> mean_;             // of each channel, slow
-  std::vector<double> rms_;              // of the residual, slow
-  std::vector<std::complex<double>> column_, innovation_;
+  std::vector<double> lags_;             // of a channel's harmonics, powers
+  std::vector<std::complex<double>> column_;
   std::vector<double> energy_, taken_, power_;
   std::vector<double> left_power_;  // of the residual in the hop, each channel
   std::vector<double> late_half_;   // in its second half
@@ -87,8 +83,6 @@ class CombCusum final : public Detector {
   std::vector<double> band_power_;  // of the hop, each channel's bands
   std::uint64_t bad_ = 0;           // channels that are not listened to
   std::size_t still_bad_ = 0;       // hops until a channel that is well again counts
-  double angle_ = 0.0;
-  double revolutions_ = 0.0, learnt_s_ = 0.0;  // since the comb began to learn
   double slow_power_ = 0.0;
   std::size_t jumps_ = 0;
   std::size_t entry_hops_ = 0;  // for which the tool still enters

@@ -24,7 +24,8 @@ constexpr double highest_of_unknown_teeth = 12.0;                    // three of
 }  // namespace
 
 bool CombCusum::hear_hidden() noexcept {
-  if (!comb_known() || !hidden_harmonics_.step(combs_, power(), learnt_s_ > hidden_learnt_s)) return false;
+  if (!comb_known() || !hidden_harmonics_.step(comb_.combs(), power(), comb_.learnt_s() > hidden_learnt_s))
+    return false;
   if (!speed_holds()) {
     hidden_harmonics_.doubt();
     return false;
@@ -213,7 +214,7 @@ void CombCusum::follow_line() noexcept {
 void CombCusum::in_chatter() noexcept {
   if (hidden_ != Hidden::none) {
     // The comb follows on: it is what sees this one.
-    calm_ = hidden_harmonics_.falls(combs_) ? calm_ + 1 : 0;
+    calm_ = hidden_harmonics_.falls(comb_.combs()) ? calm_ + 1 : 0;
     if (calm_ < calm_hops) return;
     hidden_ = Hidden::none;
     hidden_harmonics_.doubt();

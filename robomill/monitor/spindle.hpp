@@ -18,9 +18,9 @@ namespace robomill::monitor {
 /// Moving, for four hops: f changed by more than 0.3 %, or the x_i of the last six looks lie 0.3 to 20 % apart or on a
 /// line of slope b with
 ///   |b| > max(4 σ_b, 3e-4 mean x),   σ_b² = Σ e²/((n - 2) Σ (i - mean i)²), e what the line leaves.
-/// Far off: where no comb, or a weak one, is near the hint, a strong one at 0.4 to 2.5 times it, s(x) > max(16, 2
-/// s(f)), says that the sample rate is wrong and hint/x of it right. Pulses of a tachometer override all of this.
-/// Nothing is allocated after construction.
+/// Far off: where no comb, or a weak one, is near the hint, a strong one at 0.4 to 2.5 times it says that the sample
+/// rate is wrong, and hint/x of it right: s(x) > max(16, 2 s(f)).
+/// Pulses of a tachometer override all of this. Nothing is allocated after construction.
 class SpindleTracker {
  public:
   static constexpr double lowest_hz = 5.0;    ///< of rotation
@@ -29,7 +29,7 @@ class SpindleTracker {
   /// What follows for the comb and for what was learnt of the lines that it leaves.
   struct Change {
     bool locked = false;   ///< another speed is followed than before, however near
-    std::size_t past = 0;  ///< samples up to the end of the hop that the comb is to be learnt from anew; 0: it stays
+    std::size_t past = 0;  ///< samples before this hop that the comb is to be learnt from anew; 0: it stays
     bool relearn = false;  ///< the speed is lost, or so far from the last that baselines no longer hold
   };
 
@@ -48,8 +48,8 @@ class SpindleTracker {
   /// The power jumped: a speed that is not known is looked for in what comes from now on.
   void jumped() noexcept;
   void lose() noexcept;
-  /// Between looks, by what the comb's phases tell.
-  void correct(double by_hz) noexcept { rotation_hz_ += by_hz; }
+  /// Between looks, to what the comb's phases tell.
+  void correct(double rotation_hz) noexcept { rotation_hz_ = rotation_hz; }
 
   [[nodiscard]] double rotation_hz() const noexcept { return rotation_hz_; }  ///< as followed; 0: unknown
   /// The last one that was locked on, or else the hint; 0: neither.
