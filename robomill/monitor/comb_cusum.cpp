@@ -38,7 +38,7 @@ CombCusum::CombCusum(const MonitorOptions& options)
       lines_(static_cast<std::size_t>(transform_of(options, columns_a_hop).lines())),
       tachometer_(options.tachometer_channel < 0 ? channels_ : static_cast<std::size_t>(options.tachometer_channel)),
       spindle_(options),
-      comb_(options, spindle_.longest_past()),
+      comb_(options, spindle_.shortest_past(), spindle_.longest_past()),
       lines_test_({.lines = lines_,
                    .channels = channels_,
                    .hop_s = options.hop_s,

@@ -304,6 +304,16 @@ TEST(CombCusum, KnowsTheSpeedFollowedLastWhileTheHintTrembles) {
   EXPECT_GT(found_s(1e-3, 1.1), 0.2);
 }
 
+// A quarter of such a hop is longer than the look in which the speed is found.
+TEST(CombCusum, FollowsTheSpeedInLongHops) {
+  const SyntheticCut cut{.seconds = 8.0};
+  MonitorOptions options = options_for(cut);
+  options.hop_s = 0.6;
+  options.window_s = 0.6;
+  for (const Decision& d : listen(options, vibration(cut)))
+    EXPECT_NEAR(d.spindle_speed_rad_per_s, turn * 80.0, 2e-3 * turn * 80.0) << d.hop;
+}
+
 TEST(CombCusum, FollowsATachometer) {
   SyntheticCut cut{.channels = 1, .chatter_hz = 683.0};
   const std::vector<float> x = vibration(cut);

@@ -10,16 +10,21 @@
 namespace robomill::monitor {
 
 /// Finds the spindle's speed f and follows it, hop by hop. With s the score of SpeedSearch, x what scores highest:
+///
 /// Found: s(x) > 1.5 in the last 0.1, 0.2, 0.4 and 0.8 s since the power jumped, within 7 % of the hint or else of the
 /// speed followed last, nearer to f where it is refined; without a hint s(x) > 8 from 5 to 500 Hz, some candidates a
 /// hop. Not at the mains' frequency, unless the hint tells of it.
+///
 /// Held: where a look at the last six turns, within 10 % of f, has s(x) > max(0, s(f)) + 3, x is followed from there
 /// on; one with s(f) < 0 is a misfit, six in a row lose the speed. Between looks f is corrected by the comb's phases.
+///
 /// Moving, for four hops: f changed by more than 0.3 %, or the x_i of the last six looks lie 0.3 to 20 % apart or on a
 /// line of slope b with
 ///   |b| > max(4 σ_b, 3e-4 mean x),   σ_b² = Σ e²/((n - 2) Σ (i - mean i)²), e what the line leaves.
+///
 /// Far off: where no comb, or a weak one, is near the hint, a strong one at 0.4 to 2.5 times it says that the sample
 /// rate is wrong, and hint/x of it right: s(x) > max(16, 2 s(f)).
+///
 /// Pulses of a tachometer override all of this. Nothing is allocated after construction.
 class SpindleTracker {
  public:
@@ -59,6 +64,8 @@ class SpindleTracker {
   /// The last look explained something by it.
   [[nodiscard]] bool fits() const noexcept { return misfits_ == 0; }
   [[nodiscard]] double suggested_sample_rate_hz() const noexcept { return suggested_rate_hz_; }  ///< 0: none
+  /// Of Change::past.
+  [[nodiscard]] std::size_t shortest_past() const noexcept { return search_.window_samples(0); }
   [[nodiscard]] std::size_t longest_past() const noexcept { return search_.window_samples(longest_past_window); }
   /// The last samples of a channel; no more than the longest window of SpeedSearch.
   void last(std::size_t channel, std::span<float> out) const noexcept { search_.last(channel, out); }

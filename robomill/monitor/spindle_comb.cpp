@@ -23,12 +23,12 @@ constexpr double no_bound = 1e30;
 
 }  // namespace
 
-SpindleComb::SpindleComb(const MonitorOptions& options, std::size_t longest_past)
+SpindleComb::SpindleComb(const MonitorOptions& options, std::size_t shortest_past, std::size_t longest_past)
     : rate_hz_(options.sample_rate_hz),
       hop_s_(options.hop_s),
       channels_(static_cast<std::size_t>(options.channels)),
       frames_(options.hop_samples()),
-      block_(std::max<std::size_t>(8, frames_ / 4)),
+      block_(std::min(std::max<std::size_t>(8, frames_ / 4), shortest_past)),
       teeth_(static_cast<std::size_t>(std::max(options.teeth, 1))),
       most_(
           std::min(most_harmonics, static_cast<std::size_t>(0.5 * options.sample_rate_hz / SpindleTracker::lowest_hz))),

@@ -11,15 +11,20 @@
 namespace robomill::monitor {
 
 /// What repeats with the spindle in all channels: a Comb each, at one angle θ that advances by 2π f/rate a sample. With
-/// a_k the amplitudes of a channel, g_k a block's innovation (n samples, a quarter of a hop), σ the residual's slow
-/// rms: Gain, after v revolutions of T samples: max(1 - exp(-n/τ), min(1, n/(T (1 + v)))), τ = 0.25 s. The first turns
-/// are averaged; after four of them no sample counts for more than 4 σ. Phase, from the harmonics of all channels with
-/// |a_k|² > 4 σ²/n, where α = 0.01 rad is the angle's own unrest in a block:
+/// a_k the amplitudes of a channel, g_k the innovation of a block (n samples, a quarter of a hop, and no longer than
+/// the shortest past), σ the slow rms of the residual:
+///
+/// Gain, after v revolutions of T samples: max(1 - exp(-n/τ), min(1, n/(T (1 + v)))), τ = 0.25 s. The first turns are
+/// averaged; after four of them no sample counts for more than 4 σ.
+///
+/// Phase, from the harmonics of all channels with |a_k|² > 4 σ²/n; α = 0.01 rad is the angle's own unrest in a block:
 ///   W = Σ k² |a_k|²/σ²,   δ = Σ k Im(ā_k g_k)/σ² / W,   w = 1/(1 + 2/(n W α²)),
-///   θ += 0.1 w δ,   f += 0.005 w δ/(2π block's time).
+///   θ += 0.1 w δ,   f += 0.005 w δ/(2π n/rate),   |δ| no more than 0.2.
+///
 /// Lag, what follows the comb with delay: m_k the mean of g_k over the last two or three hops, 0 where they disagree.
 /// As far as it is likely, its power is
 ///   min(|m_k|², max(25 |a_k|² Σ |a|² |m|²/Σ |a|⁴, 3e-4 P)),   P the channel's.
+///
 /// Nothing is allocated after construction.
 class SpindleComb {
  public:
@@ -33,8 +38,8 @@ class SpindleComb {
     bool steers = true;              ///< f does
   };
 
-  /// @param longest_past  samples that learn() will be given at most
-  SpindleComb(const MonitorOptions& options, std::size_t longest_past);
+  /// @param shortest_past, longest_past  samples that learn() will be given at least and at most
+  SpindleComb(const MonitorOptions& options, std::size_t shortest_past, std::size_t longest_past);
 
   /// A hop begins, whether or not it is run.
   void begin_hop() noexcept;
