@@ -280,10 +280,9 @@ void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {
   leave_power();
   squeeze();
   // What is so small beside the whole marks no part.
-  const double n = static_cast<double>(2 * (lines_ - 1));
   for (std::size_t c = 0; c < channels_; ++c) {
     std::fill_n(taken_.begin() + static_cast<std::ptrdiff_t>(c * lines_), lines_,
-                2.0 * columns_a_hop * n * n * least_share * power_[c]);
+                energy_of_power() * least_share * power_[c]);
   }
   if (spindle_.rotation_hz() > 0.0) take_lags();
   judge(decision);

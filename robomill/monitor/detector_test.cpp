@@ -17,6 +17,7 @@
 #include "robomill/monitor/frequency.hpp"
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/monitor/speed.hpp"
+#include "robomill/monitor/spindle.hpp"
 #include "robomill/monitor/tachometer.hpp"
 #include "robomill/monitor/test_signal.hpp"
 
@@ -267,6 +268,23 @@ TEST(CombCusum, FollowsSpeedsAtMultiplesOfTheMains) {
     const double last = listen(options_for(cut), vibration(cut)).back().spindle_speed_rad_per_s;
     EXPECT_NEAR(last, turn * rotation_hz, 1e-3 * turn * rotation_hz);
   }
+}
+
+// By less than 0.3 % in the looks that are compared: the slope tells.
+TEST(SpindleTracker, MovesWhileTheSpeedDrifts) {
+  const SyntheticCut cut{.rotation_hz = 43.0, .drift_hz_per_s = -0.6, .noise = 0.03};
+  const MonitorOptions options = options_for(cut);
+  const std::vector<float> x = vibration(cut);
+  SpindleTracker tracker(options);
+  int moves = 0, still = 0;
+  for (std::size_t at = 0; at + options.hop_samples() <= x.size(); at += options.hop_samples()) {
+    tracker.step(std::span(x).subspan(at, options.hop_samples()), {}, false);
+    const double t = static_cast<double>(at) / cut.sample_rate_hz;
+    if (t > 2.4 && t < 2.9) moves += tracker.settled() ? 0 : 1;
+    if ((t > 1.5 && t < 2.0) || t > 3.5) still += tracker.settled() ? 1 : 0;
+  }
+  EXPECT_GE(moves, 16);
+  EXPECT_GE(still, 36);
 }
 
 TEST(CombCusum, StaysQuietWhileTheSpeedDrifts) {
