@@ -6,10 +6,11 @@
 #                TESTS frf_test.cpp ...         one test program: <name>_test
 #                BENCHES lobes_bench.cpp ...    one benchmark program: <name>_bench
 #                TEST_LIBRARIES ...             what only tests and benchmarks link: any stage, any library
+#                AT_SOURCE ...                  of these, those that read data/ and examples/ by ROBOMILL_SOURCE_DIR
 #                THREADED)                      its tests run under ThreadSanitizer too
 function(robomill_stage)
   cmake_parse_arguments(S "THREADED" "NAME;LAYER"
-    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;TESTS;BENCHES;TEST_LIBRARIES" ${ARGN})
+    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;TESTS;BENCHES;TEST_LIBRARIES;AT_SOURCE" ${ARGN})
   set(target robomill_${S_NAME})
   foreach(dependency IN LISTS S_DEPENDS)
     if(NOT TARGET robomill_${dependency})
@@ -55,7 +56,7 @@ function(robomill_stage)
     if(S_TESTS)
       add_executable(${S_NAME}_test ${S_TESTS})
       target_link_libraries(${S_NAME}_test PRIVATE robomill_flags ${target} GTest::gtest_main ${S_TEST_LIBRARIES})
-      target_compile_definitions(${S_NAME}_test PRIVATE ROBOMILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+      set_source_files_properties(${S_AT_SOURCE} PROPERTIES COMPILE_DEFINITIONS ROBOMILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
       # One word, which ctest -L finds by either half: gtest_discover_tests tears a list of labels apart.
       set(label ${S_NAME})
       if(S_THREADED)
@@ -69,6 +70,6 @@ function(robomill_stage)
   if(ROBOMILL_BENCHES AND S_BENCHES)
     add_executable(${S_NAME}_bench ${S_BENCHES})
     target_link_libraries(${S_NAME}_bench PRIVATE robomill_flags ${target} benchmark::benchmark_main ${S_TEST_LIBRARIES})
-    target_compile_definitions(${S_NAME}_bench PRIVATE ROBOMILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    set_source_files_properties(${S_AT_SOURCE} PROPERTIES COMPILE_DEFINITIONS ROBOMILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   endif()
 endfunction()
