@@ -3,6 +3,8 @@ add_library(robomill_flags INTERFACE)
 target_compile_options(robomill_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wold-style-cast -Werror
   -ffp-contract=off)
+# A macro of fmt's headers, which are precompiled for all.
+target_compile_definitions(robomill_flags INTERFACE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees an uninitialised read in Eigen's packet code where there is none (GCC bug 105562).
   target_compile_options(robomill_flags INTERFACE -Wno-maybe-uninitialized)

@@ -18,9 +18,12 @@ using Eigen::Index;
 
 constexpr Index reach = 6;  // lines on each side
 constexpr Index points = 2 * reach + 1;
+constexpr Index most_unknowns = 7;
 using Values = Eigen::Matrix<Complex, points, 1>;
-
 using Weights = Eigen::Matrix<double, points, 1>;
+// Sizes known while running alone: a decomposition unrolled for each of them takes a minute to compile.
+using Basis = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, 0, points, most_unknowns>;
+using Unknowns = Eigen::Matrix<Complex, Eigen::Dynamic, 1, 0, most_unknowns, 1>;
 
 struct Local {
   Complex value = 0.0;    // at the place asked for
@@ -44,49 +47,49 @@ bool poles_stay_away(const Eigen::Ref<const Eigen::VectorXcd>& a, double limit) 
 
 // Σ_p c_p x^p, p = 0 … 3.
 Local cubic(const Values& x, const Values& h, const Weights& weight, Complex at) {
-  Eigen::Matrix<Complex, points, 4> a;
+  Basis a(points, 4);
   a.col(0).setOnes();
   for (Index p = 1; p < 4; ++p) a.col(p) = a.col(p - 1).cwiseProduct(x);
-  const Eigen::Matrix<Complex, points, 4> aw = weight.asDiagonal() * a;
+  const Basis aw = weight.asDiagonal() * a;
   const Values hw = weight.asDiagonal() * h;
-  const Eigen::Matrix<Complex, 4, 1> c = aw.householderQr().solve(hw);
+  const Unknowns c = aw.householderQr().solve(hw);
   return {.value = c(0) + at * (c(1) + at * (c(2) + at * c(3))),
           .residual = (aw * c - hw).squaredNorm() / (weight.sum() - 4.0)};
 }
 
 // Σ_p b_p x^p / (1 + Σ_p a_p x^p), p up to `above` and `below` <= above, linearised and weighted by the denominator of
 // the round before [Sanathanan1963].
-template <int above, int below>
-Local rational(const Values& x, const Values& h, const Weights& weight, Complex at) {
-  constexpr int unknowns = above + below + 1;
-  Eigen::Matrix<Complex, points, above + 1> powers;
-  Eigen::Matrix<Complex, above + 1, 1> powers_at;
+Local rational(const Values& x, const Values& h, const Weights& weight, Complex at, Index above, Index below) {
+  const Index unknowns = above + below + 1;
+  Basis powers(points, above + 1);
+  Unknowns powers_at(above + 1);
   powers.col(0).setOnes();
   powers_at(0) = 1.0;
   for (Index p = 1; p <= above; ++p) {
     powers.col(p) = powers.col(p - 1).cwiseProduct(x);
     powers_at(p) = powers_at(p - 1) * at;
   }
-  Eigen::Matrix<Complex, points, unknowns> a;
-  a.template leftCols<above + 1>() = powers;
-  a.template rightCols<below>() = -(h.asDiagonal() * powers.template middleCols<below>(1));
+  Basis a(points, unknowns);
+  a.leftCols(above + 1) = powers;
+  a.rightCols(below) = -(h.asDiagonal() * powers.middleCols(1, below));
   Values denominator = Values::Ones();
-  Eigen::Matrix<Complex, unknowns, 1> c;
+  Unknowns c;
   for (int round = 0; round < 3; ++round) {
-    const Values scale = weight.template cast<Complex>().cwiseQuotient(denominator);
-    const Eigen::Matrix<Complex, points, unknowns> aw = scale.asDiagonal() * a;
+    const Values scale = weight.cast<Complex>().cwiseQuotient(denominator);
+    const Basis aw = scale.asDiagonal() * a;
     c = aw.colPivHouseholderQr().solve(scale.cwiseProduct(h).eval());
-    denominator = Values::Ones() + powers.template middleCols<below>(1) * c.template tail<below>();
+    denominator = Values::Ones() + powers.middleCols(1, below) * c.tail(below);
   }
   // A pole between the lines and the place asked for would belong to a mode that grows: noise.
-  if (!poles_stay_away(c.template tail<below>(), at.real())) {
+  if (!poles_stay_away(c.tail(below), at.real())) {
     return {.value = 0.0, .residual = std::numeric_limits<double>::infinity()};
   }
-  const Values fitted = (powers * c.template head<above + 1>()).cwiseQuotient(denominator);
-  const Complex top = (powers_at.transpose() * c.template head<above + 1>()).value();
-  const Complex bottom = 1.0 + (powers_at.template segment<below>(1).transpose() * c.template tail<below>()).value();
-  return {.value = top / bottom,
-          .residual = (weight.asDiagonal() * (fitted - h)).squaredNorm() / (weight.sum() - unknowns)};
+  const Values fitted = (powers * c.head(above + 1)).cwiseQuotient(denominator);
+  const Complex top = (powers_at.transpose() * c.head(above + 1)).value();
+  const Complex bottom = 1.0 + (powers_at.segment(1, below).transpose() * c.tail(below)).value();
+  return {
+      .value = top / bottom,
+      .residual = (weight.asDiagonal() * (fitted - h)).squaredNorm() / (weight.sum() - static_cast<double>(unknowns))};
 }
 
 Complex continued(const Eigen::VectorXcd& lines, Index k, double decay_in_reaches) {
@@ -109,9 +112,9 @@ Complex continued(const Eigen::VectorXcd& lines, Index k, double decay_in_reache
   const auto prefer = [&best](const Local& other, double factor) {
     if (factor * other.residual < best.residual) best = {.value = other.value, .residual = factor * other.residual};
   };
-  prefer(rational<2, 1>(x, h, weight, at), 1.0);
-  prefer(rational<2, 2>(x, h, weight, at), 3.0);
-  prefer(rational<3, 3>(x, h, weight, at), 30.0);
+  prefer(rational(x, h, weight, at, 2, 1), 1.0);
+  prefer(rational(x, h, weight, at, 2, 2), 3.0);
+  prefer(rational(x, h, weight, at, 3, 3), 30.0);
   return scale * best.value;
 }
 
