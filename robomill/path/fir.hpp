@@ -77,7 +77,7 @@ struct FirPlan {
 /// @param posture  start: the position to begin near
 /// @throws InvalidInput if an option is invalid, posture.gamma_rad has another length, a block cannot be reached
 ///         (block, line, joint, by how much), or an axis turns by half a circle
-/// Sources: [FirFiveAxis], [TajimaSencer2017], [Tajima2018]; docs/theory/fir-smoothing.md, docs/errata.md.
+/// Sources: [FirFiveAxis], [Tajima2018], [TajimaSencer2019]; docs/theory/fir-smoothing.md, docs/errata.md.
 [[nodiscard]] FirPlan plan_fir(const program::Program& program, const robot::Kinematics& kinematics,
                                const Posture& posture, const SmoothingOptions& options);
 
