@@ -132,8 +132,11 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
     become = "; it was not written";
     if (result.stale) become += fmt::format(", and the {} of an earlier run was removed", job.output.string());
   }
-  const char* what = result.trajectory_holds() ? "the robot program leaves its tolerances between points, see the notes"
-                                               : "the trajectory breaks limits";
+  const char* what = "the trajectory breaks limits";
+  if (result.trajectory_holds()) {
+    what = result.smoothed.robot_program->too_long() ? "the robot program is too long for its controller, see the notes"
+                                                     : "the robot program leaves its tolerances, see the notes";
+  }
   fmt::print(stderr, "robomill: {}{}\n", what, become);
   return not_reached;
 }

@@ -5,7 +5,6 @@
 #include <string_view>
 #include <utility>
 
-#include "robomill/base/error.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::formats {
@@ -28,6 +27,10 @@ void radians(fmt::memory_buffer& out, const robot::Position6& joints, const char
     fmt::format_to(fmt::appender(out), "{}{:.9f}", joint > 0 ? parted : "", joints[joint]);
   }
 }
+
+/// About 4 MB of text at 120 bytes a point: what is known to fit into the memory of a KR C4. A Universal Robots
+/// controller is known to fail at 18 MB; that it loads as much is an inference. docs/formats.md.
+constexpr std::size_t points_in_memory = 33'000;
 
 constexpr double degree_digits = 1e6, radian_digits = 1e9;
 
@@ -63,16 +66,6 @@ void add_missing_outputs(const EndEffector& end, const Outputs& wanted, std::vec
   }
 }
 
-/// KUKA and Universal Robots count their outputs, ABB names them.
-void require_kind(const EndEffector& end, bool named) {
-  const auto require = [named](const char* key, const DigitalOutput& output) {
-    if (!output.given() || named == !output.number) return;
-    throw InvalidInput(key, named ? "must be a signal's name for ABB, in quotes" : "must be an output's number here");
-  };
-  require("spindle.output", end.spindle);
-  require("spindle.coolant_output", end.coolant);
-}
-
 /// "1,2,3", in mm or m.
 std::string three(const Eigen::Vector3d& value, double unit, const char* form = "{:.6g},{:.6g},{:.6g}") {
   const Eigen::Vector3d v = value / unit + Eigen::Vector3d::Zero();  // no -0
@@ -82,11 +75,12 @@ std::string three(const Eigen::Vector3d& value, double unit, const char* form = 
 /// Spline blocks in joint space with a time for each segment.
 class Krl final : public JointDialect {
  public:
-  Krl(std::string name, const EndEffector& end) : name_(std::move(name)), end_(end) { require_kind(end, false); }
+  Krl(std::string name, const EndEffector& end) : name_(std::move(name)), end_(end) {}
   [[nodiscard]] const char* comment() const override { return "; "; }
   [[nodiscard]] std::span<const Joining> joinings() const override { return line_or_spline; }
   [[nodiscard]] JointPoints::Held held() const override { return held_degrees; }
   [[nodiscard]] bool fixed_cycle() const override { return false; }
+  [[nodiscard]] std::size_t most_points() const override { return points_in_memory; }
   void open(fmt::memory_buffer& out) override {
     fmt::format_to(fmt::appender(out), "&ACCESS RVP\n&REL 1\nDEF {}()\n", name_);
   }
@@ -171,13 +165,13 @@ class Krl final : public JointDialect {
 class Rapid final : public JointDialect {
  public:
   Rapid(std::string name, const EndEffector& end) : name_(std::move(name)), end_(end) {
-    require_kind(end, true);
     tool_ = !end.tool_name.empty() ? end.tool_name : (end.mass_kg ? "tool_of_cell" : "tool0");
   }
   [[nodiscard]] const char* comment() const override { return "! "; }
   [[nodiscard]] std::span<const Joining> joinings() const override { return line_or_zone; }
   [[nodiscard]] JointPoints::Held held() const override { return held_degrees; }
   [[nodiscard]] bool fixed_cycle() const override { return false; }
+  [[nodiscard]] std::size_t most_points() const override { return 0; }
   void open(fmt::memory_buffer& out) override { fmt::format_to(fmt::appender(out), "MODULE {}\n", name_); }
   [[nodiscard]] std::vector<std::string> not_set(const Outputs& wanted) const override {
     std::vector<std::string> lines;
@@ -263,13 +257,12 @@ class Rapid final : public JointDialect {
 class UrScript final : public JointDialect {
  public:
   UrScript(std::string name, const EndEffector& end, double period_s)
-      : name_(std::move(name)), end_(end), period_s_(period_s) {
-    require_kind(end, false);
-  }
+      : name_(std::move(name)), end_(end), period_s_(period_s) {}
   [[nodiscard]] const char* comment() const override { return "  # "; }
   [[nodiscard]] std::span<const Joining> joinings() const override { return line; }
   [[nodiscard]] JointPoints::Held held() const override { return held_radians; }
   [[nodiscard]] bool fixed_cycle() const override { return true; }
+  [[nodiscard]] std::size_t most_points() const override { return points_in_memory; }
   void open(fmt::memory_buffer& out) override { fmt::format_to(fmt::appender(out), "def {}():\n", name_); }
   [[nodiscard]] std::vector<std::string> not_set(const Outputs& wanted) const override {
     std::vector<std::string> lines;
@@ -337,6 +330,7 @@ class Servoj final : public JointDialect {
   [[nodiscard]] std::span<const Joining> joinings() const override { return line; }
   [[nodiscard]] JointPoints::Held held() const override { return held_radians; }
   [[nodiscard]] bool fixed_cycle() const override { return true; }
+  [[nodiscard]] std::size_t most_points() const override { return 0; }
   void open(fmt::memory_buffer&) override {}
   [[nodiscard]] std::vector<std::string> not_set(const Outputs& wanted) const override {
     std::vector<std::string> lines = {

@@ -2,6 +2,7 @@
 // The controllers' languages, one class each.
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
@@ -36,6 +37,8 @@ class JointDialect {
   [[nodiscard]] virtual JointPoints::Held held() const = 0;
   /// Whether it takes a point each cycle, no more and no fewer.
   [[nodiscard]] virtual bool fixed_cycle() const = 0;
+  /// That its controllers are known to load; 0: not known.
+  [[nodiscard]] virtual std::size_t most_points() const = 0;
   /// Before the header's comments.
   virtual void open(fmt::memory_buffer& out) = 0;
   /// What the program leaves to the user, since the cell does not tell it: tool and load first.
@@ -52,7 +55,6 @@ class JointDialect {
   [[nodiscard]] virtual std::string advice() const = 0;
 };
 
-/// @throws InvalidInput if an output of the cell is not of the kind that the language takes
 [[nodiscard]] std::unique_ptr<JointDialect> krl_dialect(const std::string& name, const EndEffector& end);
 [[nodiscard]] std::unique_ptr<JointDialect> rapid_dialect(const std::string& name, const EndEffector& end);
 /// @param period_s  from point to point

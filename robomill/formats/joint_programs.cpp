@@ -1,10 +1,13 @@
 #include "robomill/formats/joint_programs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,6 +33,23 @@ std::optional<std::size_t> longest_name(JointLanguage language) {
   return std::nullopt;
 }
 
+/// Words that are no names: keywords that a file may well be called, in capitals.
+std::span<const std::string_view> reserved(JointLanguage language) {
+  static constexpr std::array<std::string_view, 22> krl = {
+      "AXIS", "BOOL", "CASE", "CHAR", "CIRC", "CONST", "DECL", "DEF",  "DEFDAT", "ELSE",   "END",
+      "FOR",  "GOTO", "HALT", "LIN",  "LOOP", "POS",   "PTP",  "REAL", "REPEAT", "SWITCH", "WHILE"};
+  static constexpr std::array<std::string_view, 20> rapid = {
+      "ALIAS",  "CASE", "CONNECT", "DEFAULT", "ELSE",   "ERROR", "EXIT", "FUNC", "LOCAL", "MAIN",
+      "MODULE", "PROC", "RAISE",   "RECORD",  "RETURN", "STEP",  "TEST", "TRAP", "UNDO",  "WITH"};
+  static constexpr std::array<std::string_view, 16> urscript = {
+      "BREAK", "CONTINUE", "DEF",    "ELSE", "END", "GLOBAL", "HALT",   "JOIN",
+      "KILL",  "LOCAL",    "RETURN", "RUN",  "SEC", "SYNC",   "THREAD", "WHILE"};
+  if (language == JointLanguage::krl) return krl;
+  if (language == JointLanguage::rapid) return rapid;
+  if (language == JointLanguage::urscript) return urscript;
+  return {};
+}
+
 /// A name that all controllers take: letters, digits and underscores, a letter first. A longer one than the controller
 /// takes is not cut off: two programs would be one to it.
 std::string name_of(const std::filesystem::path& path, JointLanguage language) {
@@ -45,6 +65,12 @@ std::string name_of(const std::filesystem::path& path, JointLanguage language) {
                        fmt::format("names its program {}, {} characters; {} takes at most {}", name, name.size(),
                                    language == JointLanguage::krl ? "KRL" : "RAPID", *longest),
                        "Give the file a shorter name");
+  }
+  std::string capitals = name;
+  for (char& letter : capitals) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  if (std::ranges::count(reserved(language), capitals) > 0) {
+    throw InvalidInput(path.string(), fmt::format("names its program {}, a word of the controller's language", name),
+                       "Give the file another name");
   }
   return name;
 }
@@ -71,6 +97,23 @@ std::unique_ptr<JointDialect> dialect_of(JointLanguage language, const std::stri
   return servoj_dialect(period_s);
 }
 
+/// KUKA and Universal Robots count their outputs, ABB names them.
+void require_outputs(const TrajectoryInfo& info, JointLanguage language) {
+  if (language == JointLanguage::servoj) return;
+  const bool named = language == JointLanguage::rapid;
+  const auto require = [&](const char* key, const DigitalOutput& output) {
+    if (!output.given() || named != output.number.has_value()) return;
+    InvalidInput::Parts parts;
+    parts.field = key;
+    parts.where = info.cell;
+    parts.rule = named ? "must be a signal's name for ABB, in quotes"
+                       : "must be an output's number for KUKA and Universal Robots";
+    throw InvalidInput(std::move(parts));
+  };
+  require("spindle.output", info.end_effector.spindle);
+  require("spindle.coolant_output", info.end_effector.coolant);
+}
+
 /// Samples from point to point.
 std::size_t stride_of(const TrajectoryInfo& info, JointLanguage language) {
   const bool servo = language == JointLanguage::urscript || language == JointLanguage::servoj;
@@ -92,9 +135,10 @@ double up(double value, double unit) {
 
 /// What the controller makes of the program, for its header.
 std::vector<std::string> told(const std::optional<ProgramRun>& run, double period_s) {
-  if (!run)
+  if (!run) {
     return {fmt::format("a point every {:.6g} ms; what the controller makes of them was not checked",
                         period_s / units::ms)};
+  }
   std::vector<std::string> lines;
   const double shortest = run->shortest_step_s / units::ms, longest = run->longest_step_s / units::ms;
   if (run->shortest_step_s == run->longest_step_s) {
@@ -110,7 +154,7 @@ std::vector<std::string> told(const std::optional<ProgramRun>& run, double perio
   lines.push_back(fmt::format(
       "and the program by {:.6f} mm and {:.6f} degrees; tolerances {:.6g} mm and {:.6g} degrees{}",
       up(run->tip_error_m, units::mm), up(run->axis_error_rad, units::deg), run->tip_tolerance_m / units::mm,
-      run->axis_tolerance_rad / units::deg, run->holds() ? "" : ": BEYOND THE TOLERANCE"));
+      run->axis_tolerance_rad / units::deg, run->keeps_tolerances() ? "" : ": BEYOND THE TOLERANCE"));
   return lines;
 }
 
@@ -120,23 +164,61 @@ struct Operation {
   std::vector<std::string> told = {};
 };
 
+bool turns(program::Spindle spindle) {
+  return spindle == program::Spindle::clockwise || spindle == program::Spindle::counterclockwise;
+}
+
+bool runs(const program::Coolant& coolant) {
+  return coolant != program::Coolant{};
+}
+
+/// "M3, 8000 rpm"
+std::string spindle_text(const program::Block& block) {
+  if (!turns(block.spindle)) return "spindle off (M5)";
+  return fmt::format("spindle {}, {:.6g} rpm", block.spindle == program::Spindle::clockwise ? "M3" : "M4",
+                     block.spindle_speed_rad_per_s / units::rpm);
+}
+
+std::string coolant_text(const program::Coolant& coolant) {
+  if (!runs(coolant)) return "coolant off (M9)";
+  return fmt::format("coolant on ({})", coolant.flood ? "M8" : (coolant.mist ? "M7" : "M88"));
+}
+
+/// What the program commands beside motion. A spindle that it starts runs from before the first move to after the last
+/// one, as does coolant; what would change that on the way is told and not carried out.
 Operation operation_of(program::Source& program) {
   Operation out;
-  program.rewind();
-  double speed_rpm = 0.0;
   std::size_t others = 0;
-  for (program::Block block; program.next(block);) {
-    const double now_rpm = block.spindle_speed_rad_per_s / units::rpm;
-    if (now_rpm == speed_rpm) continue;
-    if (!out.outputs.spindle && now_rpm > 0.0) {
+  const auto leave_out = [&](std::size_t line, const std::string& what) {
+    if (++others <= listed) out.told.push_back(fmt::format("NOT CARRIED OUT: before line {}, {}", line, what));
+  };
+  program.rewind();
+  program::Block last;
+  for (program::Block block; program.next(block); last = block) {
+    const bool spindle_changes =
+        block.spindle != last.spindle ||
+        (turns(block.spindle) && block.spindle_speed_rad_per_s != last.spindle_speed_rad_per_s);
+    if (!out.outputs.spindle && turns(block.spindle)) {
       out.outputs.spindle = true;
-      out.told.push_back(fmt::format("spindle {:.6g} rpm, line {}: set the speed at its drive", now_rpm, block.line));
-    } else if (++others <= listed) {
-      out.told.push_back(fmt::format("NOT CARRIED OUT: line {}, spindle {:.6g} rpm", block.line, now_rpm));
+      out.told.push_back(
+          fmt::format("{}, before line {}: on before the first move, off after the last; speed and direction are the "
+                      "drive's",
+                      spindle_text(block), block.line));
+    } else if (out.outputs.spindle && spindle_changes) {
+      leave_out(block.line, spindle_text(block));
     }
-    speed_rpm = now_rpm;
+    if (!out.outputs.coolant && runs(block.coolant)) {
+      out.outputs.coolant = true;
+      out.told.push_back(fmt::format("{}, before line {}: on before the first move, off after the last",
+                                     coolant_text(block.coolant), block.line));
+    } else if (out.outputs.coolant && block.coolant != last.coolant) {
+      leave_out(block.line, coolant_text(block.coolant));
+    }
+    if (block.operator_stop == program::OperatorStop::always) leave_out(block.line, "stop for the operator (M0)");
+    if (block.operator_stop == program::OperatorStop::optional) leave_out(block.line, "optional stop (M1)");
   }
-  if (others > listed) out.told.push_back(fmt::format("NOT CARRIED OUT: {} more such changes", others - listed));
+  if (others > listed) out.told.push_back(fmt::format("NOT CARRIED OUT: {} more such codes", others - listed));
+  if (!out.outputs.spindle) out.told.emplace_back("NOT SET: the program starts no spindle (no M3 or M4).");
   return out;
 }
 
@@ -171,15 +253,15 @@ class JointProgram final : public SampleFile {
     for (;;) {
       std::vector<bool> beyond(points_.steps());
       set(run, follow(beyond));
-      if (run.holds() || !refine || dialect_->fixed_cycle() || !split(beyond)) break;
+      if (run.keeps_tolerances() || !refine || dialect_->fixed_cycle() || !split(beyond)) break;
     }
-    for (std::size_t stride = stride_; refine && dialect_->fixed_cycle() && !run.holds() && stride > 1;) {
+    for (std::size_t stride = stride_; refine && dialect_->fixed_cycle() && !run.keeps_tolerances() && stride > 1;) {
       stride /= 2;
       place_points(stride);
       std::vector<bool> beyond(points_.steps());
       ProgramRun nearer = run;
       set(nearer, follow(beyond));
-      if (!nearer.holds()) continue;
+      if (!nearer.keeps_tolerances()) continue;
       run.would_hold_s = period_s(stride);
       break;
     }
@@ -203,6 +285,7 @@ class JointProgram final : public SampleFile {
 
   /// A point each so many samples, and the last sample.
   void place_points(std::size_t stride) {
+    if (samples_.size() == 0) throw InvalidInput("samples", "must hold at least one");
     points_.held = dialect_->held();
     points_.at.clear();
     for (std::size_t sample = 0; sample + 1 < samples_.size(); sample += stride) points_.at.push_back(sample);
@@ -253,6 +336,7 @@ class JointProgram final : public SampleFile {
   void measure_steps(ProgramRun& run) const {
     run.points = points_.at.size();
     run.fixed_cycle = dialect_->fixed_cycle();
+    run.most_points = dialect_->most_points();
     std::size_t shortest = points_.steps() > 1 ? stride_ : points_.at.back(), longest = 0;
     for (std::size_t i = 0; i < points_.steps(); ++i) {
       const std::size_t length = points_.at[i + 1] - points_.at[i];
@@ -328,6 +412,7 @@ std::unique_ptr<SampleFile> open_joint_program(const std::filesystem::path& path
     throw InvalidInput(path.string(), "is a program of an arm with six joints that turn; this machine is none",
                        "Write .csv or .h5");
   }
+  require_outputs(info, language);
   return std::make_unique<JointProgram>(path, info, language);
 }
 

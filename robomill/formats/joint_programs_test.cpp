@@ -123,17 +123,23 @@ TEST_P(Program, RefusesMachinesThatAreNoSuchArm) {
   EXPECT_EQ(robomill::test::field_of([&] { static_cast<void>(open_sample_file(path, odd)); }), "program_period_s");
 }
 
-/// A file whose program commands 8,000 rpm, then 6,000.
-std::string with_spindle(const std::filesystem::path& path, const EndEffector& end) {
+/// A file whose program commands 8,000 rpm and coolant where that is asked for, then 6,000 rpm and a stop.
+std::string with_spindle(const std::filesystem::path& path, const EndEffector& end, bool coolant = false) {
   TrajectoryInfo info = test::arm_info();
   info.end_effector = end;
   const auto file = open_sample_file(path, info);
   file->add(test::sines(101));
   program::Program program;
-  program::Block block{.line = 4, .end = {}, .duration_s = 1.0, .spindle_speed_rad_per_s = 8000.0 * units::rpm};
+  program::Block block;
+  block.line = 4;
+  block.duration_s = 1.0;
+  block.spindle = program::Spindle::clockwise;
+  block.spindle_speed_rad_per_s = 8000.0 * units::rpm;
+  block.coolant.flood = coolant;
   program.blocks.push_back(block);
   block.line = 9;
   block.spindle_speed_rad_per_s = 6000.0 * units::rpm;
+  block.operator_stop = program::OperatorStop::always;
   program.blocks.push_back(block);
   robot::Cell cell;
   cell.arm = robot::testing::with_limits(robot::testing::kr210());
@@ -164,8 +170,9 @@ TEST(ProgramSetup, BeginsWithWhatTheCellDoesNotTell) {
     EXPECT_TRUE(first_comment(text, mark).starts_with("NOT SET: ")) << ending;
     EXPECT_NE(text.find("With a wrong load the arm sags"), std::string::npos) << ending;
     EXPECT_NE(text.find("NOT SET: the spindle"), std::string::npos) << ending;
-    EXPECT_NE(text.find("spindle 8000 rpm, line 4"), std::string::npos) << ending;
-    EXPECT_NE(text.find("NOT CARRIED OUT: line 9, spindle 6000 rpm"), std::string::npos) << ending;
+    EXPECT_NE(text.find("spindle M3, 8000 rpm, before line 4"), std::string::npos) << ending;
+    EXPECT_NE(text.find("NOT CARRIED OUT: before line 9, spindle M3, 6000 rpm"), std::string::npos) << ending;
+    EXPECT_NE(text.find("NOT CARRIED OUT: before line 9, stop for the operator (M0)"), std::string::npos) << ending;
     EXPECT_EQ(parse(ending, text, 0.02).trouble, "");
   }
 }
@@ -212,6 +219,9 @@ TEST(ProgramSetup, DeclaresTheToolOfAbb) {
   EXPECT_NE(text.find("SetDO doSpindle,0;\nENDPROC\nENDMODULE\n"), std::string::npos);
   EXPECT_EQ(text.find("tool0"), std::string::npos);
   EXPECT_EQ(text.find("doCoolant"), std::string::npos);  // this program asks for none
+  text = with_spindle(folder.at("c.mod"), end, true);
+  EXPECT_NE(text.find("SetDO doCoolant,1;\nSetDO doSpindle,1;\n"), std::string::npos);
+  EXPECT_NE(text.find("SetDO doSpindle,0;\nSetDO doCoolant,0;\nENDPROC\nENDMODULE\n"), std::string::npos);
   end.tool_name = "tSpindle";
   text = with_spindle(folder.at("b.mod"), end);
   EXPECT_EQ(text.find("tooldata"), std::string::npos);
@@ -242,12 +252,12 @@ TEST(ProgramSetup, RejectsOutputsOfTheOtherKind) {
   named.coolant.signal = "doCoolant";
   EXPECT_NE(robomill::test::refusal([&] {
               static_cast<void>(with_spindle(folder.at("a.mod"), numbered));
-            }).find("spindle.output must be a signal's name"),
+            }).find("cell.toml: spindle.output: must be a signal's name"),
             std::string::npos);
   for (const char* name : {"a.src", "a.script"}) {
     EXPECT_NE(robomill::test::refusal([&] {
                 static_cast<void>(with_spindle(folder.at(name), named));
-              }).find("spindle.coolant_output must be an output's number"),
+              }).find("cell.toml: spindle.coolant_output: must be an output's number"),
               std::string::npos);
   }
 }
@@ -274,6 +284,18 @@ TEST(ProgramNames, AreWholeOrRefused) {
               static_cast<void>(named(33, ".mod"));
             }).find("33 characters; RAPID takes at most 32"),
             std::string::npos);
+}
+
+TEST(ProgramNames, AreNoWordsOfTheLanguage) {
+  const Folder folder;
+  for (const char* name : {"test.mod", "main.mod", "Loop.src", "end.script"}) {
+    EXPECT_NE(robomill::test::refusal([&] {
+                static_cast<void>(open_sample_file(folder.at(name), test::arm_info()));
+              }).find("a word of the controller's language"),
+              std::string::npos)
+        << name;
+  }
+  EXPECT_NO_THROW(static_cast<void>(open_sample_file(folder.at("test.src"), test::arm_info())));
 }
 
 INSTANTIATE_TEST_SUITE_P(Joint, Program,

@@ -91,6 +91,7 @@ Json run_json(const ProgramRun& run) {
           {"max_axis_error_deg", number(run.axis_error_rad / units::deg)},
           {"limit_error_mm", number(run.tip_tolerance_m / units::mm)},
           {"limit_error_deg", number(run.axis_tolerance_rad / units::deg)},
+          {"most_points", run.most_points > 0 ? Json(run.most_points) : Json()},
           {"holds", run.holds()}};
 }
 

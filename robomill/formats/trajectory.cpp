@@ -23,7 +23,7 @@ void TrajectoryInfo::validate() const {
   require_non_negative("program_period_s", program_period_s, "s");
 }
 
-bool ProgramRun::holds() const {
+bool ProgramRun::keeps_tolerances() const {
   const auto within = [](double value, double tolerance) { return value <= tolerance * (1.0 + 1e-6); };
   return within(tip_deviation_m, tip_tolerance_m) && within(tip_error_m, tip_tolerance_m) &&
          within(axis_deviation_rad, axis_tolerance_rad) && within(axis_error_rad, axis_tolerance_rad);

@@ -39,10 +39,13 @@ struct ROBOMILL_API ProgramRun {
          axis_deviation_rad = 0.0;                 ///< from the trajectory at the same time
   double tip_error_m = 0.0, axis_error_rad = 0.0;  ///< from the program, as path::CheckResult tells them
   double tip_tolerance_m = 0.0, axis_tolerance_rad = 0.0;
-  double would_hold_s = 0.0;  ///< of a program with a fixed cycle that does not hold: the cycle that would; 0: none
-  bool fixed_cycle = false;   ///< a point a cycle: none can be added
+  double would_hold_s = 0.0;    ///< of a program with a fixed cycle that does not hold: the cycle that would; 0: none
+  bool fixed_cycle = false;     ///< a point a cycle: none can be added
+  std::size_t most_points = 0;  ///< that such a controller loads; 0: not known
   /// Whether deviations and errors are within the tolerances.
-  [[nodiscard]] bool holds() const;
+  [[nodiscard]] bool keeps_tolerances() const;
+  [[nodiscard]] bool too_long() const { return most_points > 0 && points > most_points; }
+  [[nodiscard]] bool holds() const { return keeps_tolerances() && !too_long(); }
 };
 
 /// Samples as a file, written as they come in memory that does not grow with them. The file appears by commit(), whole,

@@ -210,6 +210,15 @@ std::string program_note(const formats::ProgramRun& run) {
                     std::max(axis_rad, run.axis_tolerance_rad) / units::deg);
 }
 
+/// A joint program that its controller is not known to load, and what would help.
+std::string length_note(const formats::ProgramRun& run) {
+  return fmt::format(
+      "The robot program has {} points; such a controller is known to load about {}. {}", run.points, run.most_points,
+      run.fixed_cycle ? "Write .servoj, whose rows a client sends, give a longer --program-period-ms, or split the NC "
+                        "program where the tool is clear of the part."
+                      : "Split the NC program where the tool is clear of the part.");
+}
+
 void tell(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   formats::SmoothedProgram& smoothed = result.smoothed;
   smoothed.program = job.program.filename().string();
@@ -225,8 +234,9 @@ void tell(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
     notes.push_back(fmt::format("{} statements of the program were left out; the first {} are listed.", left_out,
                                 smoothed.skipped.size()));
   }
-  if (result.trajectory_holds() && !result.holds()) {
-    notes.push_back(program_note(*smoothed.robot_program));
+  if (result.trajectory_holds() && smoothed.robot_program) {
+    if (!smoothed.robot_program->keeps_tolerances()) notes.push_back(program_note(*smoothed.robot_program));
+    if (smoothed.robot_program->too_long()) notes.push_back(length_note(*smoothed.robot_program));
   }
   if (!bench.posture.whole) {
     notes.push_back(
