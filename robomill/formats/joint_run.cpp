@@ -89,16 +89,23 @@ class Follow {
     total_.axis_error_rad = result.axis_error_rad.max;
     for (const path::Breach& breach : result.breaches) {
       if (breach.order != 0) continue;
-      const double sample = std::floor(breach.time_s / options_.sample_period_s + 1e-6);
-      // A time on a point is of the step before it.
-      const auto next =
-          std::lower_bound(points_.at.begin() + 1, points_.at.end() - 1, static_cast<std::size_t>(sample));
-      beyond[static_cast<std::size_t>(next - points_.at.begin()) - 1] = true;
+      mark(beyond, breach.time_s);
     }
     return total_;
   }
 
  private:
+  /// Marks the steps of the samples around a time: a corner that is missed is told where the tool is nearest to it,
+  /// which may be at the end of the step before the one that cuts it.
+  void mark(std::vector<bool>& beyond, double time_s) const {
+    const double sample = std::round(time_s / options_.sample_period_s);
+    const auto from = static_cast<std::size_t>(std::max(0.0, sample - 1.0)), to = static_cast<std::size_t>(sample) + 1;
+    const auto step = std::upper_bound(points_.at.begin() + 1, points_.at.end() - 1, from) - 1;
+    for (auto i = static_cast<std::size_t>(step - points_.at.begin()); i < beyond.size() && points_.at[i] < to; ++i) {
+      beyond[i] = true;
+    }
+  }
+
   void check(std::size_t sample, const Position6& joints, std::size_t index) {
     const robot::ToolPose pose = machine_.forward(joints);
     path::Sample out;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <regex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +17,7 @@
 #include "robomill/formats/test_trajectories.hpp"
 #include "robomill/formats/trajectory.hpp"
 #include "robomill/formats/units.hpp"
+#include "robomill/path/smooth.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
 #include "robomill/robot/test_arms.hpp"
 
@@ -261,6 +262,55 @@ TEST(JointRun, PutsPointsNearerOnlyWhereTheToleranceAsksForIt) {
   }
 }
 
+// A smoothed zigzag: chords of 64 ms miss its corners, points nearer to each other do not.
+TEST(JointRun, KeepsTheCornersOfASmoothedProgram) {
+  const robomill::test::Folder folder;
+  robot::Cell cell;
+  cell.arm = robot::testing::with_limits(robot::testing::kr210());
+  cell.tool_length_m = 0.25;
+  for (robot::Joint& joint : cell.arm.joints) {
+    joint.max_velocity = 2.0;
+    joint.max_acceleration = 8.0;
+    joint.max_jerk = 200.0;
+  }
+  const robot::SerialKinematics machine(cell);
+  path::Posture posture;
+  posture.start = robot::testing::kr210_posture();
+  const robot::ToolPose first = machine.forward(posture.start);
+  posture.gamma_rad = {first.gamma_rad};
+  program::Program zigzag{.start = {.tip_m = first.tip_m, .axis = first.axis}, .blocks = {}};
+  for (int i = 0; i < 12; ++i) {
+    program::Block block;
+    block.end = i == 0 ? zigzag.start : zigzag.blocks.back().end;
+    block.end.tip_m += 0.006 * Eigen::Vector3d::Unit(i % 3);
+    block.end.axis = (block.end.axis + 0.01 * Eigen::Vector3d::Unit((i + 1) % 3)).normalized();
+    block.duration_s = 0.15;
+    zigzag.blocks.push_back(block);
+  }
+  path::SmoothingOptions options = tolerances(20e-6, 2e-3);
+  options.max_velocity_m_per_s = 0.05;
+  options.max_acceleration_m_per_s2 = 0.5;
+  options.max_jerk_m_per_s3 = 10.0;
+  options.max_angular_acceleration_rad_per_s2 = 10.0;
+  options.max_angular_jerk_rad_per_s3 = 200.0;
+  program::ProgramSource source(zigzag);
+  for (const char* ending : {".src", ".mod"}) {
+    TrajectoryInfo info = test::arm_info();
+    info.program_period_s = 0.064;
+    const auto file = open_sample_file(folder.at(std::string("zigzag") + ending), info);
+    const path::Summary summary = path::smooth(
+        source, machine, posture, options, [&](std::span<const path::Sample> samples) { file->add(samples); },
+        [&] { file->restart(); }, Progress::none());
+    ASSERT_EQ(summary.check.violations(), 0U);
+    const ProgramRun far = file->settle(source, machine, options, false, Progress::none()).value();
+    EXPECT_GT(far.tip_error_m, 2.0 * options.tip_tolerance_m) << ending;
+    const ProgramRun run = file->settle(source, machine, options, true, Progress::none()).value();
+    EXPECT_TRUE(run.holds()) << ending << " " << run.tip_error_m << " " << run.shortest_step_s;
+    EXPECT_GT(run.shortest_step_s, 2.0 * period_s) << ending;
+    EXPECT_LT(run.shortest_step_s, run.longest_step_s) << ending;
+  }
+}
+
 // A cycle is the controller's: no point can be added, but which cycle would do is told.
 TEST(JointRun, TellsTheCycleThatWouldHold) {
   const robomill::test::Folder folder;
@@ -289,8 +339,11 @@ TEST(JointRun, TellsWhichProgramsNoControllerIsKnownToLoad) {
   EXPECT_FALSE(script.run.holds());
   EXPECT_NEAR(static_cast<double>(script.text.size()), 4e6, 0.4e6);
   EXPECT_TRUE(written(folder, ".script", 0.008, samples, machine, loose).run.holds());
-  EXPECT_TRUE(written(folder, ".servoj", 0.002, samples, machine, loose).run.holds());
-  EXPECT_TRUE(written(folder, ".src", 0.020, samples, machine, loose).run.holds());
+  const auto few = samples_of(machine, 101, joints);
+  EXPECT_EQ(written(folder, ".src", 0.020, few, machine, loose).run.most_points, script.run.most_points);
+  for (const char* ending : {".mod", ".servoj"}) {
+    EXPECT_EQ(written(folder, ending, 0.020, few, machine, loose).run.most_points, 0U) << ending;
+  }
 }
 
 // Thirty-two bits hold 150° to 8 millionths of a degree: more than the printed digits leave out.
