@@ -131,7 +131,8 @@ TEST_F(App, ResultsDoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(lobes("1"), lobes("4"));
 }
 
-// The peaks that a study of this robot names at 6,500 rpm: the first is tooth passing, the others are its first mode.
+// The peaks that a study of this robot names at 6,500 rpm, read with three teeth: the first is tooth passing, the
+// others are its first mode.
 TEST_F(App, ExplainNamesMeasuredPeaks) {
   const std::string peaks =
       "explain --peaks 324.99,666.98,991.98,1966.95 --rpm 6500 --teeth 3 --modes " ROBOMILL_SOURCE_DIR

@@ -56,6 +56,15 @@ void print_methods(const formats::SmoothedProgram& smoothed) {
   }
 }
 
+/// What a controller makes of the points of a joint program.
+void print_run(const formats::ProgramRun& run) {
+  fmt::print(
+      "\nrobot program  {} points, {:.4g} to {:.4g} ms apart; joints interpolated between them: {:.4g} mm and "
+      "{:.4g}° from the program, {:.4g} mm and {:.4g}° from the trajectory\n",
+      run.points, run.shortest_step_s / units::ms, run.longest_step_s / units::ms, run.tip_error_m / units::mm,
+      run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm, run.axis_deviation_rad / units::deg);
+}
+
 void print_summary(const plan::SmoothResult& result) {
   const formats::SmoothedBy& by = result.first();
   const path::Summary& summary = by.summary;
@@ -66,6 +75,7 @@ void print_summary(const plan::SmoothResult& result) {
   fmt::print("\n\n");
   print_check(by);
   if (result.smoothed.methods.size() > 1) print_methods(result.smoothed);
+  if (result.smoothed.robot_program) print_run(*result.smoothed.robot_program);
   fmt::print("\n{} breaches of limits\n", summary.check.violations());
   for (const program::Skipped& item : result.smoothed.skipped)
     fmt::print("skipped    line {}: {}\n", item.line, item.what);
@@ -122,7 +132,12 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
     become = "; it was not written";
     if (result.stale) become += fmt::format(", and the {} of an earlier run was removed", job.output.string());
   }
-  fmt::print(stderr, "robomill: the trajectory breaks limits{}\n", become);
+  const char* what = "the trajectory breaks limits";
+  if (result.trajectory_holds()) {
+    what = result.smoothed.robot_program->too_long() ? "the robot program is too long for its controller, see the notes"
+                                                     : "the robot program leaves its tolerances, see the notes";
+  }
+  fmt::print(stderr, "robomill: {}{}\n", what, become);
   return not_reached;
 }
 

@@ -41,7 +41,50 @@ TEST_F(SmoothVerb, WritesProgramsAndPages) {
   EXPECT_NE(slurp(folder_.at("page.html")).find("<section id=\"smooth\""), std::string::npos);
   EXPECT_EQ(slurp(folder_.at("out.txt")), "");
   ASSERT_EQ(robomill("smooth part.ngc --cell cell.toml -o part.servoj --program-period-ms 4").exit, 0);
-  EXPECT_NE(slurp(folder_.at("part.servoj")).find("a point every 4 ms"), std::string::npos);
+  EXPECT_NE(slurp(folder_.at("part.servoj")).find(" points, one every 4 ms"), std::string::npos);
+}
+
+// A cycle so long that the joints cut the corners between its points: no file, and what would do.
+TEST_F(SmoothVerb, ARobotProgramBeyondItsTolerancesExitsWithThree) {
+  const Ended run =
+      robomill("smooth part.ngc --cell cell.toml -o part.servoj --program-period-ms 64 --report smooth.json");
+  EXPECT_EQ(run.exit, 3) << run.out << run.err;
+  EXPECT_FALSE(there("part.servoj"));
+  EXPECT_NE(run.err.find("the robot program leaves its tolerances"), std::string::npos) << run.err;
+  const auto json = nlohmann::json::parse(slurp(folder_.at("smooth.json")));
+  EXPECT_EQ(json["violations"], 0);
+  EXPECT_FALSE(json["robot_program"]["holds"].get<bool>());
+  EXPECT_GT(json["robot_program"]["max_tip_error_mm"].get<double>(), 0.02);
+  const std::size_t at = run.out.find("--program-period-ms ");
+  ASSERT_NE(at, std::string::npos) << run.out;
+  const std::string cycle = run.out.substr(at + 20, run.out.find(' ', at + 20) - at - 20);
+  EXPECT_EQ(robomill("smooth part.ngc --cell cell.toml -o part.servoj --program-period-ms " + cycle).exit, 0) << cycle;
+  EXPECT_TRUE(there("part.servoj"));
+  // Controllers that take points at any time get more of them instead.
+  const Ended kuka = robomill("smooth part.ngc --cell cell.toml -o part.src --program-period-ms 64 --report kuka.json");
+  EXPECT_EQ(kuka.exit, 0) << kuka.out << kuka.err;
+  const auto told = nlohmann::json::parse(slurp(folder_.at("kuka.json")))["robot_program"];
+  EXPECT_TRUE(told["holds"].get<bool>());
+  EXPECT_LE(told["max_tip_error_mm"].get<double>(), 0.02 * (1.0 + 1e-6));
+  EXPECT_LT(told["shortest_step_ms"].get<double>(), told["longest_step_ms"].get<double>());
+}
+
+TEST_F(SmoothVerb, RobotProgramsKnowToolLoadAndSpindle) {
+  folder_.file("spin.ngc", "G21 G90 G94\nS9000 M3\nG0 X0 Y0 Z40 A-20 C0\nG1 X4 F1800\nS7000\nG1 X0\nM5\nM30\n");
+  ASSERT_EQ(robomill("smooth spin.ngc --cell cell.toml -o bare.src").exit, 0);
+  const std::string bare = slurp(folder_.at("bare.src"));
+  EXPECT_NE(bare.find("\n; NOT SET: the tool"), std::string::npos);
+  EXPECT_NE(bare.find("NOT CARRIED OUT: before line 6, spindle M3, 7000 rpm"), std::string::npos)
+      << bare.substr(0, 2000);
+  std::string cell = slurp(folder_.at("cell.toml"));
+  cell.replace(cell.find("[tool]\n"), 7, "[spindle]\noutput = 7\n[tool]\nnumber = 3\n");
+  folder_.file("known.toml", cell);
+  ASSERT_EQ(robomill("smooth spin.ngc --cell known.toml -o known.src").exit, 0);
+  const std::string known = slurp(folder_.at("known.src"));
+  EXPECT_EQ(known.find("NOT SET"), std::string::npos);
+  EXPECT_NE(known.find("spindle M3, 9000 rpm"), std::string::npos);
+  EXPECT_NE(known.find("BAS(#TOOL,3)\n$LOAD=LOAD_DATA[3]\n"), std::string::npos);
+  EXPECT_NE(known.find("$OUT[7]=TRUE\n"), std::string::npos);
 }
 
 TEST_F(SmoothVerb, DashWritesJsonAndNothingElse) {

@@ -110,7 +110,8 @@ monitor::MonitorOptions options(Kind kind, int channels) {
           .sample_rate_hz = rate_hz,
           .channels = channels,
           .spindle_speed_rad_per_s = 2.0 * std::numbers::pi * 81.0,
-          .teeth = 3};
+          .teeth = 3,
+          .threshold = 1e9};
 }
 
 /// `monitors` of `channels` each.

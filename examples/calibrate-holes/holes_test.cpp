@@ -10,6 +10,7 @@
 
 #include "examples/calibrate-holes/holes.hpp"
 #include "robomill/base/test_support.hpp"
+#include "robomill/monitor/entropy.hpp"
 
 namespace robomill::examples {
 namespace {
@@ -26,6 +27,41 @@ TEST(SimulateHole, RepeatsWithItsSeed) {
   EXPECT_EQ(hole.record.acceleration_m_per_s2, again.record.acceleration_m_per_s2);
   EXPECT_EQ(hole.onset_s, again.onset_s);
   EXPECT_NE(hole.cut.spindle_speed_rad_per_s, other.cut.spindle_speed_rad_per_s);
+}
+
+/// When the energy entropy of the acceleration in x first passes a threshold [s]; -1: never.
+double passed_s(const Hole& hole, double threshold) {
+  const monitor::MonitorOptions options = {.sample_rate_hz = hole_rate_hz};
+  const auto hop = static_cast<Eigen::Index>(options.hop_samples());
+  const Eigen::VectorXd x = hole.record.acceleration_m_per_s2.col(0);
+  monitor::EnergyEntropy feature(options);
+  for (Eigen::Index end = hop; end <= x.size(); end += hop) {
+    const double entropy = feature.push({x.data() + end - hop, options.hop_samples()});
+    if (static_cast<std::size_t>(end) < feature.warm_up() || entropy <= threshold) continue;
+    return static_cast<double>(end - 1) / hole_rate_hz;
+  }
+  return -1.0;
+}
+
+// [EnergyEntropyChatter] prints a threshold of 105. In (m/s²)², of mean squares, every simulated hole with chatter
+// passes 105 before its chatter begins; about half do not pass 10⁵ before. No stable one passes either. So 10⁵ can tell
+// the onset on drills like the source's, and 105 cannot.
+TEST(PublishedThreshold, IsTenToTheFifthRatherThan105) {
+  int chatter = 0, early_105 = 0, found_1e5 = 0;
+  for (std::uint64_t k = 0; k < 12; ++k) {
+    const Hole hole = simulate_hole(1, k);
+    const double low_s = passed_s(hole, 105.0), high_s = passed_s(hole, 1e5);
+    if (!hole.chatter) {
+      EXPECT_EQ(low_s, -1.0) << k;
+      continue;
+    }
+    ++chatter;
+    early_105 += low_s >= 0.0 && low_s < hole.onset_s - 0.05 ? 1 : 0;
+    found_1e5 += high_s >= hole.onset_s - 0.05 ? 1 : 0;
+  }
+  EXPECT_EQ(chatter, 7);
+  EXPECT_EQ(early_105, 7);
+  EXPECT_EQ(found_1e5, 4);
 }
 
 class CalibrateHoles : public testing::Test {

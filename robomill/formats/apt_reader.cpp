@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "robomill/formats/text.hpp"
 #include "robomill/formats/units.hpp"
@@ -110,11 +111,12 @@ void AptReader::split(std::string_view statement) {
 
 const std::vector<AptReader::Statement>& AptReader::statements() {
   static const std::vector<Statement> known = {
-      {"GODLTA", &AptReader::take_godlta}, {"FROM", &AptReader::take_from},     {"RAPID", &AptReader::take_rapid},
-      {"FEDRAT", &AptReader::take_feed},   {"UNITS", &AptReader::take_units},   {"SPINDL", &AptReader::take_spindle},
-      {"DELAY", &AptReader::take_delay},   {"MSYS", &AptReader::take_system},   {"CUTCOM", &AptReader::take_switch},
-      {"CYCLE", &AptReader::take_switch},  {"TRACUT", &AptReader::take_switch}, {"FINI", &AptReader::take_end},
-      {"MULTAX", &AptReader::take_known}};
+      {"GODLTA", &AptReader::take_godlta}, {"FROM", &AptReader::take_from},      {"RAPID", &AptReader::take_rapid},
+      {"FEDRAT", &AptReader::take_feed},   {"UNITS", &AptReader::take_units},    {"SPINDL", &AptReader::take_spindle},
+      {"DELAY", &AptReader::take_delay},   {"MSYS", &AptReader::take_system},    {"CUTCOM", &AptReader::take_switch},
+      {"CYCLE", &AptReader::take_switch},  {"TRACUT", &AptReader::take_switch},  {"FINI", &AptReader::take_end},
+      {"MULTAX", &AptReader::take_known},  {"COOLNT", &AptReader::take_coolant}, {"STOP", &AptReader::take_stop},
+      {"OPSTOP", &AptReader::take_stop},   {"LOADTL", &AptReader::take_tool},    {"TURRET", &AptReader::take_tool}};
   return known;
 }
 
@@ -225,11 +227,18 @@ void AptReader::go(const program::Pose& end) {
     return;
   }
   if (!moves_to(end)) return;
+  if (cutting_ && tool_ != cutting_tool_) {
+    refuse("LOADTL", std::nullopt, "",
+           fmt::format("in line {} mounts another tool than the one that has cut, whose length is not known here",
+                       tool_line_),
+           "Write a program for each tool");
+  }
   const double turn_rad = turn_to(end.axis);
   if (rapid) {
     move(Block::Kind::rapid, end, 0.0);
     return;
   }
+  if (!std::exchange(cutting_, true)) cutting_tool_ = tool_;
   move(Block::Kind::feed, end, feed_duration_s((end.tip_m - pose_.tip_m).norm(), turn_rad));
 }
 
@@ -281,8 +290,14 @@ void AptReader::take_units() {
 }
 
 void AptReader::take_spindle() {
+  if (fields_.size() == 1 && fields_[0] == "OFF") {
+    spindle_ = program::Spindle::off;
+    return;
+  }
   std::optional<double> speed;
+  program::Spindle direction = program::Spindle::clockwise;  // where the statement says none
   for (const std::string_view field : fields_) {
+    if (field == "CCLW") direction = program::Spindle::counterclockwise;
     const bool known = field == "RPM" || field == "CLW" || field == "CCLW";
     if (known) continue;
     if (speed || field.empty() || (field.front() >= 'A' && field.front() <= 'Z')) {
@@ -297,6 +312,36 @@ void AptReader::take_spindle() {
   }
   check_feed("SPINDL", *speed);
   spindle_speed_rad_per_s_ = *speed * units::rpm;
+  spindle_ = direction;
+}
+
+void AptReader::take_coolant() {
+  const std::string_view field = fields_.size() == 1 ? fields_[0] : std::string_view();
+  if (field == "OFF") {
+    coolant_ = {};
+  } else if (field == "ON" || field == "FLOOD") {
+    coolant_.flood = true;
+  } else if (field == "MIST") {
+    coolant_.mist = true;
+  } else if (field == "THRU") {
+    coolant_.through_tool = true;
+  } else {
+    skip_statement();
+  }
+}
+
+void AptReader::take_tool() {
+  tool_ = fields_.empty() ? std::string() : std::string(fields_[0]);
+  tool_line_ = line_;
+  skip_statement();
+}
+
+void AptReader::take_stop() {
+  if (!start_) {
+    skip_statement();
+    return;
+  }
+  dwell(0.0, word_ == "STOP" ? program::OperatorStop::always : program::OperatorStop::optional);
 }
 
 void AptReader::take_delay() {

@@ -42,6 +42,9 @@ class AptReader final : public ProgramReader {
   void take_feed();
   void take_units();
   void take_spindle();
+  void take_coolant();
+  void take_stop();
+  void take_tool();
   void take_delay();
   void take_system();
   void take_switch();
@@ -57,7 +60,10 @@ class AptReader final : public ProgramReader {
   bool inches_ = false, rapid_ = false;
   double feed_ = 0.0;  ///< a minute or a revolution; 0: none yet
   bool feed_in_inches_ = false, feed_per_revolution_ = false;
-  std::string system_;  ///< the coordinate system's statement
+  std::string tool_, cutting_tool_;  ///< as LOADTL names it; the one of the moves at feed
+  std::size_t tool_line_ = 0;
+  bool cutting_ = false;  ///< a move at feed has come
+  std::string system_;    ///< the coordinate system's statement
 };
 
 }  // namespace robomill::formats

@@ -54,12 +54,39 @@ TEST(Apt, ReadsAProgram) {
   EXPECT_LT((program.blocks[5].end.tip_m - mm * Vector3d(13.9, -3.0, 5.6)).norm(), 1e-15) << "along the tool's axis";
   const double way = Vector3d(1.2, -3.0, 1.6).norm();
   EXPECT_NEAR(program.blocks[6].duration_s, way / (0.1 * 3000.0) * 60.0, 1e-12);
-  ASSERT_EQ(program.skipped.size(), 5U);
+  ASSERT_EQ(program.skipped.size(), 4U);
   EXPECT_EQ(program.skipped[0].line, 2U);
   EXPECT_EQ(program.skipped[0].what, "PARTNO  A PART / OF $5, NO MORE");
   EXPECT_EQ(program.skipped[1].what, "TOOL PATH/FINISH,TOOL,BALL6");
   EXPECT_EQ(program.skipped[2].what, "LOADTL / 1, LENGTH, 100.0");
-  EXPECT_EQ(program.skipped[4].line, 23U);
+  EXPECT_EQ(program.skipped[3].line, 23U);
+}
+
+TEST(Apt, KeepsSpindleCoolantAndStops) {
+  const Program program = read(
+      "FEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nSPINDL/3000,CCLW\nCOOLNT/MIST\nGOTO/2,0,0\nSPINDL/3000\nCOOLNT/ON\n"
+      "GOTO/3,0,0\nSTOP\nOPSTOP\nSPINDL/OFF\nCOOLNT/OFF\nGOTO/4,0,0\n");
+  using program::OperatorStop;
+  using program::Spindle;
+  ASSERT_EQ(program.blocks.size(), 6U);
+  const Spindle spindle[] = {Spindle::not_given, Spindle::counterclockwise, Spindle::clockwise,
+                             Spindle::clockwise, Spindle::clockwise,        Spindle::off};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(program.blocks[i].spindle, spindle[i]) << i;
+  EXPECT_EQ(program.blocks[1].coolant, (program::Coolant{.mist = true}));
+  EXPECT_EQ(program.blocks[2].coolant, (program::Coolant{.mist = true, .flood = true}));
+  EXPECT_EQ(program.blocks[5].coolant, program::Coolant{});
+  EXPECT_EQ(program.blocks[3].operator_stop, OperatorStop::always);
+  EXPECT_EQ(program.blocks[4].operator_stop, OperatorStop::optional);
+  EXPECT_EQ(program.blocks[4].end.tip_m, program.blocks[2].end.tip_m);
+}
+
+// The length of another tool is not known, so that a tool changes before it cuts or not at all.
+TEST(Apt, RefusesAnotherToolOnceOneHasCut) {
+  EXPECT_EQ(read("LOADTL/1\nGOTO/0,0,0\nLOADTL/2\nFEDRAT/60\nGOTO/1,0,0\nLOADTL/2\nGOTO/2,0,0\nLOADTL/3\nFINI\n")
+                .blocks.size(),
+            2U);
+  expect_refused("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/2,LENGTH,80\nRAPID\nGOTO/2,0,0\n",
+                 "part.apt:7: LOADTL: in line 5 mounts another tool");
 }
 
 TEST(Apt, FromIsTheStart) {
@@ -92,7 +119,7 @@ TEST(Apt, KnownSwitchesAreSkippedWhenOff) {
       "MSYS/0,0,0,1,0,0,0,1,0\nGOTO/0,0,0\nCYCLE/OFF\nCUTCOM/OFF\nTRACUT/NOMORE\nMSYS/0,0,0, 1,0,0,0,1,0\nSPINDL/OFF\n"
       "SPINDL/SFM,200\nDELAY/REV,3\nDELAY/0\nMULTAX/OFF\nEND\nTLON=1\nP1=CIRCLE/0,0,0,5\nFEDRAT/9\nGOTO/1,0,0\n");
   EXPECT_EQ(program.blocks.size(), 1U);
-  EXPECT_EQ(program.skipped.size(), 12U);
+  EXPECT_EQ(program.skipped.size(), 11U);
 }
 
 TEST(Apt, NotesAxesThatAreNearlyUnitVectors) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -173,7 +175,8 @@ void read_arm(TomlFile& file, CellFile& out) {
   read_links(file, rows, arm);
   robot::Joint& first = arm.joints.front();
   first.before = read_pose(file, "robot.base_origin_mm", "robot.base_rotation_deg") * first.before;
-  arm.flange = arm.flange * read_pose(file, "tool.mount_origin_mm", "tool.mount_rotation_deg");
+  out.end_effector.tip = read_pose(file, "tool.mount_origin_mm", "tool.mount_rotation_deg");
+  arm.flange = arm.flange * out.end_effector.tip;
   try {
     arm.validate();
   } catch (const InvalidInput& error) {
@@ -260,6 +263,57 @@ void read_serial(TomlFile& file, CellFile& out) {
   out.gamma_given = file.number("robot.gamma_deg", "redundant_gamma_rad", units::deg, out.redundant_gamma_rad);
 }
 
+/// A name that a controller takes.
+bool is_name(const std::string& text) {
+  const auto plain = [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '_'; };
+  return !text.empty() && text.size() <= 32 && std::isalpha(static_cast<unsigned char>(text.front())) != 0 &&
+         std::ranges::all_of(text, plain);
+}
+
+void read_output(TomlFile& file, const char* key, const char* member, DigitalOutput& out) {
+  if (!file.has(key)) return;
+  if (!file.is_number(key)) {
+    file.text(key, out.signal);
+    if (!is_name(out.signal)) {
+      throw file.refuse(key, "must be a signal's name: letters, digits and underscores, at most 32");
+    }
+    return;
+  }
+  int number = 0;
+  file.integer(key, member, number);
+  if (number < 0) throw file.refuse(key, "must be >= 0");
+  out.number = number;
+}
+
+/// Of exported programs: what the controller must know of the spindle, after the tool's length.
+void read_end_effector(TomlFile& file, CellFile& out) {
+  EndEffector& end = out.end_effector;
+  end.tip.translate(out.cell.tool_length_m * Eigen::Vector3d::UnitZ());
+  const auto number = [&](const char* key, const char* member, std::optional<int>& value) {
+    int read = 0;
+    if (!file.integer(key, member, read)) return;
+    if (read < 1) throw file.refuse(key, "must be at least 1");
+    value = read;
+  };
+  number("tool.number", "tool_number", end.tool_number);
+  number("tool.load_number", "load_number", end.load_number);
+  if (file.text("tool.name", end.tool_name) && !is_name(end.tool_name)) {
+    throw file.refuse("tool.name", "must be a tooldata's name: letters, digits and underscores, at most 32");
+  }
+  double mass_kg = 0.0;
+  if (file.number("tool.mass_kg", "mass_kg", 1.0, mass_kg)) {
+    if (!(mass_kg > 0.0)) throw file.refuse("tool.mass_kg", "must be > 0", "Of all that hangs on the flange");
+    end.mass_kg = mass_kg;
+  }
+  end.center_m = read_vector(file, "tool.center_mm", "center_m", units::mm);
+  if (end.center_m && !end.mass_kg) throw file.refuse("tool.center_mm", "goes with tool.mass_kg");
+  read_output(file, "spindle.output", "output", end.spindle);
+  read_output(file, "spindle.coolant_output", "coolant_output", end.coolant);
+  if (file.number("spindle.spin_up_s", "spin_up_s", 1.0, end.spin_up_s) && !(end.spin_up_s >= 0.0)) {
+    throw file.refuse("spindle.spin_up_s", "must be >= 0");
+  }
+}
+
 }  // namespace
 
 CellFile read_cell(const std::filesystem::path& path, Robots usable) {
@@ -272,6 +326,7 @@ CellFile read_cell(const std::filesystem::path& path, Robots usable) {
   if (kind == Kind::hybrid) read_hybrid(file, out);
   out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
   file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
+  read_end_effector(file, out);
   if (file.text("program.machine", out.machine)) {
     try {
       static_cast<void>(parse_machine(out.machine));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/formats/end_effector.hpp"
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/kinematics.hpp"
@@ -22,13 +23,14 @@ struct CellFile {
   double redundant_gamma_rad = 0.0;  ///< turn of the flange about the tool's axis, robot::ToolPose
   bool gamma_given = false;          ///< the file says so; else it is free to choose where a stage can
   std::vector<double> start_joints = {};  ///< where the arm stands first [rad]; empty where not said
+  EndEffector end_effector = {};          ///< for exported programs
   std::vector<std::string> notes = {};    ///< sentences for the user
 };
 
 /// What kinds of robots a reader of the cell can use.
 enum class Robots { serial, any };
 
-/// Reads [robot], [workpiece], [tool] and [program]; [smoothing] is another reader's.
+/// Reads [robot], [workpiece], [tool], [spindle] and [program]; [smoothing] is another reader's.
 /// @throws InvalidInput with file, line, key and value, or with the URDF, its link or joint
 [[nodiscard]] ROBOMILL_API CellFile read_cell(const std::filesystem::path& path, Robots usable = Robots::serial);
 

@@ -127,6 +127,40 @@ TEST(CellToml, BoltsTheSpindleToTheFlange) {
   EXPECT_LE((flange.linear().transpose() * spindle.linear().col(2) + Eigen::Vector3d::UnitX()).norm(), 1e-12);
 }
 
+TEST(CellToml, ReadsWhatAControllerMustKnowOfTheSpindle) {
+  const Folder folder;
+  const auto read = [&](const std::string& tool, const std::string& more = "") {
+    std::string text = good;
+    const std::size_t at = text.find("[tool]\n");
+    text.insert(at + 7, tool);
+    return read_cell(folder.file("cell.toml", text + more));
+  };
+  EXPECT_FALSE(read("").end_effector.mass_kg.has_value());
+  EXPECT_FALSE(read("").end_effector.spindle.given());
+  const EndEffector end =
+      read("number = 3\nload_number = 4\nname = \"tSpindle\"\nmass_kg = 12.5\ncenter_mm = [0, 10, 90]\n",
+           "[spindle]\noutput = 7\ncoolant_output = \"doCoolant\"\nspin_up_s = 2\n")
+          .end_effector;
+  EXPECT_EQ(end.tool_number, 3);
+  EXPECT_EQ(end.load_number, 4);
+  EXPECT_EQ(end.tool_name, "tSpindle");
+  EXPECT_EQ(end.mass_kg, 12.5);
+  EXPECT_NEAR(end.center().z(), 0.09, 1e-15);
+  EXPECT_EQ(end.spindle.number, 7);
+  EXPECT_EQ(end.coolant.signal, "doCoolant");
+  EXPECT_EQ(end.spin_up_s, 2.0);
+  const auto said = [&](const std::string& tool, const std::string& more = "") {
+    return refusal([&] { static_cast<void>(read(tool, more)); });
+  };
+  EXPECT_NE(said("mass_kg = 0\n").find("tool.mass_kg = 0 kg; must be > 0"), std::string::npos) << said("mass_kg = 0\n");
+  EXPECT_NE(said("number = 0\n").find("tool.number"), std::string::npos);
+  EXPECT_NE(said("name = \"1 tool\"\n").find("tool.name"), std::string::npos);
+  EXPECT_NE(said("center_mm = [0, 0, 1]\n").find("goes with tool.mass_kg"), std::string::npos);
+  EXPECT_NE(said("", "[spindle]\noutput = \"do;Spindle\"\n").find("spindle.output"), std::string::npos);
+  EXPECT_NE(said("", "[spindle]\nspin_up_s = -1\n").find("spindle.spin_up_s"), std::string::npos);
+  EXPECT_NE(said("", "[spindle]\noutputs = 1\n").find("spindle.outputs"), std::string::npos);
+}
+
 TEST(CellToml, ReadsAUrdfBesideItAndItsListsStandFirst) {
   const Folder folder;
   folder.file("one.urdf", urdf);

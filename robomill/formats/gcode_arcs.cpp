@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "robomill/formats/gcode_reader.hpp"
 #include "robomill/formats/text.hpp"
@@ -55,11 +56,16 @@ void GcodeReader::go_round(const Line& line) {
   }
   chords_.duration_s = feed_duration_s(line, chords_.arc.length_m(), turn_deg) / chords_.count;
   chords_.next = 0.0;
+  begin_cutting();
   ready_ = advance();
 }
 
 bool GcodeReader::advance() {
-  if (!(chords_.next < chords_.count)) return false;
+  if (!(chords_.next < chords_.count)) {
+    if (stop_after_ == program::OperatorStop::none) return false;
+    dwell(0.0, std::exchange(stop_after_, program::OperatorStop::none));
+    return true;
+  }
   const double share = (chords_.next += 1.0) / chords_.count;
   const bool last = chords_.next == chords_.count;
   program::Pose end = {.tip_m = last ? chords_.end_m : chords_.arc.at(share), .axis = pose_.axis};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "robomill/formats/text.hpp"
 #include "robomill/formats/units.hpp"
@@ -65,6 +66,8 @@ ProgramReader::Part GcodeReader::part_of(std::string_view line, char ahead, bool
 }
 
 void GcodeReader::read(std::string_view statement) {
+  if (spindle_after_) spindle_ = *std::exchange(spindle_after_, std::nullopt);
+  if (coolant_after_) coolant_ = *std::exchange(coolant_after_, std::nullopt);
   words_.scan(statement, file_, line_);
   if (words_.words().empty()) {
     if (words_.compact().empty()) return;
@@ -78,12 +81,15 @@ void GcodeReader::read(std::string_view statement) {
   begun_ = true;
   Line line;
   for (const GcodeWords::Word& word : words_.words()) take_word(word, line);
+  set_up(line);
   if (line.dwells) wait(line);
   const bool goes_round = motion_ == Motion::clockwise || motion_ == Motion::counterclockwise;
   if (line.p && !line.dwells && !(goes_round && line.moves())) line.leave_out(*line.p);
   if (!line.left_out.empty()) skip(line.left_out);
   take_feed(line);
   if (line.moves()) go(line);
+  if (start_) stop_after_ = line.stop;
+  if (!ready_) ready_ = advance();
 }
 
 void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
@@ -124,17 +130,19 @@ void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
       take_g(word, line);
       return;
     case 'm':
-      if (word.number == 98.0) {
-        refuse("M", word.number, "", "calls a subroutine, which is not read", "Let the CAM system write it out");
-      }
-      ended_ = ended_ || word.number == 2.0 || word.number == 30.0 || word.number == 99.0;
-      line.leave_out(word);
+      take_m(word, line);
       return;
     case 'n':
       return;
     case 't':
-    case 'd':
+      line.tool = word.number;
+      line.leave_out(word);
+      return;
     case 'h':
+      line.h = word.number;
+      line.leave_out(word);
+      return;
+    case 'd':
     case 'q':
     case 'l':
       line.leave_out(word);
@@ -178,6 +186,8 @@ void GcodeReader::take_g(const GcodeWords::Word& word, Line& line) {
       refuse("G", word.number, "", "is not read: it may move the tool or its frame", gcode_hint(code));
     }
     claim(*group, word, line);
+    if (*group == GcodeGroup::length) line.length = word;
+    line.scaling_off = line.scaling_off || code == 500;
   }
   line.leave_out(word);
 }
@@ -361,6 +371,7 @@ double GcodeReader::feed_duration_s(const Line& line, double length_m, double tu
 }
 
 void GcodeReader::go(const Line& line) {
+  check_setup(line);
   switch (motion_) {
     case Motion::none:
       refuse("G", std::nullopt, "", "is missing: none of G0 to G3 holds where this line gives a position");
@@ -401,6 +412,7 @@ void GcodeReader::go_straight(const Line& line) {
     move(Block::Kind::rapid, end, 0.0);
     return;
   }
+  begin_cutting();
   const double turn_deg = any(line.rotary) ? (rotary_deg_ - rotary_before).norm() : turn_rad / units::deg;
   move(Block::Kind::feed, end, feed_duration_s(line, (end.tip_m - pose_.tip_m).norm(), turn_deg));
 }

@@ -37,7 +37,11 @@ class GcodeReader final : public ProgramReader {
     std::optional<GcodeWords::Word> p = {};
     std::uint32_t groups = 0;   ///< modal groups that a G code has named
     std::uint32_t letters = 0;  ///< that have come
-    bool dwells = false;
+    std::optional<double> tool = {}, h = {};
+    std::optional<GcodeWords::Word> length = {};  ///< the code of the tool's length
+    std::optional<GcodeWords::Word> center_point = {};
+    program::OperatorStop stop = program::OperatorStop::none;
+    bool dwells = false, tool_change = false, begins_again = false, scaling_off = false;
     std::string left_out = {};
     [[nodiscard]] bool has(char letter) const;
     [[nodiscard]] bool moves() const;
@@ -67,6 +71,14 @@ class GcodeReader final : public ProgramReader {
   void go(const Line& line);
   void go_straight(const Line& line);
 
+  // gcode_machine.cpp
+  void take_m(const GcodeWords::Word& word, Line& line);
+  void set_up(const Line& line);
+  void set_length(const GcodeWords::Word& word, const Line& line);
+  /// @throws InvalidInput where the line's positions do not mean what those of the first move at feed meant
+  void check_setup(const Line& line) const;
+  void begin_cutting();
+
   void go_round(const Line& line);  // gcode_arcs.cpp
   [[nodiscard]] Eigen::Vector2d center_of_words(const Line& line, const Eigen::Vector2d& from) const;
   [[nodiscard]] Eigen::Vector2d center_of_radius(const Line& line, const Eigen::Vector2d& from,
@@ -89,6 +101,25 @@ class GcodeReader final : public ProgramReader {
   std::array<bool, 3> known_ = {};  ///< X, Y, Z
   Eigen::Vector3d rotary_deg_ = Eigen::Vector3d::Zero();
   bool by_rotary_ = false, by_vector_ = false;  ///< how this program gives its axis
+
+  /// What the positions rest on, and which line said so last; 0: none.
+  template <class T>
+  struct Said {
+    T value = {};
+    std::size_t line = 0;
+    std::string code = {};
+  };
+  enum class CenterPoint { not_said, on, on_by_length, off };
+  std::optional<double> prepared_tool_;
+  Said<std::optional<double>> tool_;    ///< that M6 has mounted; −1: without a T
+  Said<std::optional<double>> length_;  ///< H of G43; none: off. The tool's own counts as −1
+  Said<CenterPoint> center_point_;
+  bool cutting_ = false;  ///< a move at feed has come
+  std::optional<double> cutting_tool_, cutting_length_;
+
+  std::optional<program::Spindle> spindle_after_;  ///< of the line that was read last
+  std::optional<program::Coolant> coolant_after_;
+  program::OperatorStop stop_after_ = program::OperatorStop::none;
 
   /// The arc that is being given away chord by chord.
   struct Chords {

@@ -35,7 +35,7 @@ std::string long_program(std::size_t lines) {
         text += fmt::format("G91 G2 X0 Y0 I{:.3f} A1\n", random.uniform(0.1, 2.0));
         break;
       case 1:
-        text += "G4 P0.1 M8\n";
+        text += "G4 P0.1 M48\n";
         break;
       case 2:
         text += fmt::format("G90 G0 X{:.3f} ~\nY{:.3f}\n", random.uniform(-9.0, 9.0), random.uniform(-9.0, 9.0));

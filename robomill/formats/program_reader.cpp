@@ -44,6 +44,14 @@ void ProgramRemarks::long_dwell(std::size_t line, double seconds) {
   if (is_new(line)) long_dwells_.add(line, seconds);
 }
 
+void ProgramRemarks::operator_stop(std::size_t line) {
+  if (is_new(line)) operator_stops_.add(line, 0.0);
+}
+
+void ProgramRemarks::no_center_point(std::size_t line) {
+  if (is_new(line)) no_center_point_.add(line, 0.0);
+}
+
 std::vector<std::string> ProgramRemarks::notes() const {
   std::vector<std::string> out;
   if (normalised_.count > 0) {
@@ -55,6 +63,18 @@ std::vector<std::string> ProgramRemarks::notes() const {
     out.push_back(fmt::format(
         "{} dwell{} of up to {:g} s, the first in line {}: P counts in seconds here, on some controllers in ms.",
         long_dwells_.count, long_dwells_.count == 1 ? "" : "s", long_dwells_.most, long_dwells_.first_line));
+  }
+  if (operator_stops_.count > 0) {
+    out.push_back(fmt::format(
+        "{} stop{} for the operator (M0, M1), the first in line {}: the tool comes to rest there, and goes on at once "
+        "in a trajectory.",
+        operator_stops_.count, operator_stops_.count == 1 ? "" : "s", operator_stops_.first_line));
+  }
+  if (no_center_point_.count > 0) {
+    out.push_back(
+        fmt::format("Positions are taken as those of the tool's tip from line {} on, where rotary axes are turned; no "
+                    "G43.4, M128 or M428 says so.",
+                    no_center_point_.first_line));
   }
   return out;
 }
@@ -166,13 +186,17 @@ void ProgramReader::move(program::Block::Kind kind, const program::Pose& end, do
             .line = line_,
             .end = end,
             .duration_s = duration_s,
-            .spindle_speed_rad_per_s = spindle_speed_rad_per_s_};
+            .spindle_speed_rad_per_s = spindle_speed_rad_per_s_,
+            .spindle = spindle_,
+            .coolant = coolant_};
   pose_ = end;
   ready_ = true;
 }
 
-void ProgramReader::dwell(double duration_s) {
+void ProgramReader::dwell(double duration_s, program::OperatorStop operator_stop) {
   move(program::Block::Kind::dwell, pose_, duration_s);
+  block_.operator_stop = operator_stop;
+  if (operator_stop != program::OperatorStop::none) remarks_.operator_stop(line_);
 }
 
 }  // namespace robomill::formats

@@ -23,6 +23,9 @@ class ProgramRemarks {
   /// @param error  |length - 1| of the axis
   void normalised(std::size_t line, double error);
   void long_dwell(std::size_t line, double seconds);
+  void operator_stop(std::size_t line);
+  /// A move at feed with rotary axes turned, where nothing has said that positions are those of the tip.
+  void no_center_point(std::size_t line);
 
   [[nodiscard]] std::vector<program::Skipped>& skipped() { return skipped_; }
   [[nodiscard]] std::size_t skipped_count() const { return skipped_count_; }
@@ -40,7 +43,7 @@ class ProgramRemarks {
   std::size_t told_ = 0, last_ = 0;  ///< lines
   std::vector<program::Skipped> skipped_;
   std::size_t skipped_count_ = 0;
-  Counted normalised_, long_dwells_;
+  Counted normalised_, long_dwells_, operator_stops_, no_center_point_;
 };
 
 /// Letters of a file as a message may show them: the first `most`, those that are not plain as \x1b.
@@ -103,7 +106,7 @@ class ProgramReader {
   [[nodiscard]] bool moves_to(const program::Pose& end) const;
   /// Makes a block from where the tool stands to `end`.
   void move(program::Block::Kind kind, const program::Pose& end, double duration_s);
-  void dwell(double duration_s);
+  void dwell(double duration_s, program::OperatorStop operator_stop = program::OperatorStop::none);
   void skip(std::string_view what) const { remarks_.skip(line_, what); }
 
   const std::string file_;
@@ -114,6 +117,8 @@ class ProgramReader {
   program::Pose pose_;  ///< where the tool stands
   std::optional<program::Pose> start_;
   double spindle_speed_rad_per_s_ = 0.0;
+  program::Spindle spindle_ = program::Spindle::not_given;
+  program::Coolant coolant_;
   program::Block block_;
   bool ready_ = false;  ///< block_ is to be taken away
 

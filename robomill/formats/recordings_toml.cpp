@@ -36,7 +36,8 @@ RecordingsFile read_recordings(const std::filesystem::path& path) {
   TomlFile file(path);
   RecordingsFile out;
   out.monitor.path = path;
-  out.monitor.options.kind = monitor::Kind::energy_entropy;  // the one whose threshold is not known beforehand
+  out.monitor.options.kind = monitor::Kind::energy_entropy;
+  out.monitor.options.threshold = 0.0;  // calibration sets it
   read_signal(file, out.monitor);
   read_process(file, out.monitor);
   file.path("process.modes", out.monitor.modes);

@@ -80,6 +80,21 @@ Json method_json(const SmoothedBy& smoothed, const std::array<bool, 6>& slides) 
   return json;
 }
 
+Json run_json(const ProgramRun& run) {
+  return {{"points", run.points},
+          {"shortest_step_ms", number(run.shortest_step_s / units::ms)},
+          {"longest_step_ms", number(run.longest_step_s / units::ms)},
+          {"max_joint_deviation_deg", number(run.joint_deviation_rad / units::deg)},
+          {"max_tip_deviation_mm", number(run.tip_deviation_m / units::mm)},
+          {"max_axis_deviation_deg", number(run.axis_deviation_rad / units::deg)},
+          {"max_tip_error_mm", number(run.tip_error_m / units::mm)},
+          {"max_axis_error_deg", number(run.axis_error_rad / units::deg)},
+          {"limit_error_mm", number(run.tip_tolerance_m / units::mm)},
+          {"limit_error_deg", number(run.axis_tolerance_rad / units::deg)},
+          {"most_points", run.most_points > 0 ? Json(run.most_points) : Json()},
+          {"holds", run.holds()}};
+}
+
 }  // namespace
 
 const char* name_of(path::Method method) {
@@ -123,6 +138,7 @@ std::string smooth_json(const SmoothedProgram& smoothed) {
     json["skipped"].push_back({{"line", item.line}, {"what", item.what}});
   }
   json["notes"] = smoothed.notes;
+  json["robot_program"] = smoothed.robot_program ? run_json(*smoothed.robot_program) : Json();
   if (smoothed.methods.size() > 1) {
     json["methods"] = Json::array();
     for (const SmoothedBy& method : smoothed.methods) json["methods"].push_back(method_json(method, smoothed.slides));

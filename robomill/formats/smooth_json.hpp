@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/formats/trajectory.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/path/smooth.hpp"
 #include "robomill/program/program.hpp"
@@ -21,10 +22,11 @@ struct SmoothedBy {
 
 /// A smoothed program as smooth.json tells it.
 struct SmoothedProgram {
-  std::string program = {}, cell = {};   ///< names of the files
-  std::array<bool, 6> slides = {};       ///< joints that are lengths [m]
-  bool written = false;                  ///< whether there is a trajectory
-  std::vector<SmoothedBy> methods = {};  ///< the first is the one asked for; the others stand beside it
+  std::string program = {}, cell = {};           ///< names of the files
+  std::array<bool, 6> slides = {};               ///< joints that are lengths [m]
+  bool written = false;                          ///< whether there is a trajectory
+  std::vector<SmoothedBy> methods = {};          ///< the first is the one asked for; the others stand beside it
+  std::optional<ProgramRun> robot_program = {};  ///< of the first, where it is written as one
   std::vector<program::Skipped> skipped = {};
   std::vector<std::string> notes = {};
 };

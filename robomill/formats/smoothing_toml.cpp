@@ -80,7 +80,7 @@ bool has_smoothing(const std::filesystem::path& path) {
 SmoothingFile read_smoothing(const std::filesystem::path& path, const robot::JointLimits& limits, int joints,
                              std::optional<path::Method> method) {
   TomlFile file(path);
-  for (const char* other : {"workpiece", "tool", "program"}) file.skip(other);
+  for (const char* other : {"workpiece", "tool", "spindle", "program"}) file.skip(other);
   for (const std::string& name : file.keys("robot")) file.skip("robot." + name);
   file.require("smoothing", "Write [smoothing] with tip_tolerance_mm, axis_tolerance_deg and the limits of the tool");
   check_limits(file, limits, joints);

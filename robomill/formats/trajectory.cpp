@@ -23,6 +23,18 @@ void TrajectoryInfo::validate() const {
   require_non_negative("program_period_s", program_period_s, "s");
 }
 
+bool ProgramRun::keeps_tolerances() const {
+  const auto within = [](double value, double tolerance) { return value <= tolerance * (1.0 + 1e-6); };
+  return within(tip_deviation_m, tip_tolerance_m) && within(tip_error_m, tip_tolerance_m) &&
+         within(axis_deviation_rad, axis_tolerance_rad) && within(axis_error_rad, axis_tolerance_rad);
+}
+
+std::optional<ProgramRun> SampleFile::settle(program::Source& /*program*/, const robot::Kinematics& /*machine*/,
+                                             const path::SmoothingOptions& /*options*/, bool /*refine*/,
+                                             const Progress& /*progress*/) {
+  return std::nullopt;
+}
+
 void require_regular(const std::filesystem::path& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
@@ -41,7 +53,6 @@ void PendingText::require(bool good) const {
 
 void PendingText::restart() {
   buffer_.clear();
-  written_ = 0;
   file_.reset();
   errno = 0;
   file_.reset(std::fopen(pending_.temporary().c_str(), "wb"));
@@ -51,20 +62,11 @@ void PendingText::restart() {
 void PendingText::flush() {
   errno = 0;
   require(std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) == buffer_.size());
-  written_ += buffer_.size();
   buffer_.clear();
 }
 
 void PendingText::drain() {
   if (buffer_.size() >= large) flush();
-}
-
-void PendingText::patch(std::size_t at, std::string_view bytes) {
-  flush();
-  errno = 0;
-  require(std::fseek(file_.get(), static_cast<long>(at), SEEK_SET) == 0);
-  require(std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size());
-  require(std::fseek(file_.get(), 0, SEEK_END) == 0);
 }
 
 void PendingText::commit() {

@@ -2,11 +2,9 @@
 // What the writers of trajectories and joint programs share.
 #include <fmt/format.h>
 
-#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <string_view>
 
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/trajectory.hpp"
@@ -20,12 +18,8 @@ class PendingText {
   explicit PendingText(const std::filesystem::path& path);
   /// Append here; call drain() now and then.
   [[nodiscard]] fmt::memory_buffer& buffer() { return buffer_; }
-  /// Bytes from the beginning.
-  [[nodiscard]] std::size_t size() const { return written_ + buffer_.size(); }
   /// Writes the buffer out where it has grown large.
   void drain();
-  /// Puts other bytes in the place of some written before, as many.
-  void patch(std::size_t at, std::string_view bytes);
   void restart();
   void commit();
 
@@ -40,7 +34,6 @@ class PendingText {
   PendingFile pending_;
   std::unique_ptr<std::FILE, Close> file_;
   fmt::memory_buffer buffer_;
-  std::size_t written_ = 0;
 };
 
 /// @throws InvalidInput if the place holds something that is no regular file: a device or a pipe cannot appear whole

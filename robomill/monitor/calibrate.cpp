@@ -183,20 +183,21 @@ void CalibrationOptions::validate() const {
 
 Calibration calibrate(std::span<const Recording> recordings, const MonitorOptions& options,
                       const CalibrationOptions& calibration) {
-  options.validate();
+  Calibration out;
+  out.options = options;
+  out.options.kind = Kind::energy_entropy;
+  out.options.threshold = 0.0;  // set below
+  out.options.validate();
   calibration.validate();
-  require_recordings(recordings, options);
+  require_recordings(recordings, out.options);
   std::vector<Course> courses(recordings.size());
   parallel_for(recordings.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t r = begin; r < end; ++r) courses[r] = course_of(recordings[r], options);
+    for (std::size_t r = begin; r < end; ++r) courses[r] = course_of(recordings[r], out.options);
   });
   const std::vector<bool> verifies = drawn_to_verify(recordings, calibration.seed);
   Courses setting, verifying;
   for (std::size_t r = 0; r < courses.size(); ++r) (verifies[r] ? verifying : setting).push_back(&courses[r]);
 
-  Calibration out;
-  out.options = options;
-  out.options.kind = Kind::energy_entropy;
   set_threshold(setting, calibration.false_alarm_rate, out.options);
   out.setting = calibrated(setting, out.options);
   out.verifying = calibrated(verifying, out.options);

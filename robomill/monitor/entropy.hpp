@@ -18,7 +18,8 @@ namespace robomill::monitor {
 
 /// The published feature [EnergyEntropyChatter] of one channel: the signal synchrosqueezed with a column a sample (Hann
 /// window of options.window_s, made even), `bands` equal bands reconstructed as signals, and the entropy of their
-/// energies, the mean squares over the last window's worth of columns [input's unit squared].
+/// energies, the mean squares over the last window's worth of columns [input's unit squared]. The window, the mean
+/// square and the form of the entropy are ours: the text at hand of the source has lost its equations.
 ///
 /// The newest column stands half a window behind the newest sample. Nothing throws, and nothing is allocated, after
 /// construction.

@@ -7,7 +7,7 @@
 namespace robomill::monitor {
 
 /// The published detector: the energy entropy, summed over the channels, against its threshold; chatter from one hop
-/// beyond it, stable again after two on the other side, the first of them a transition.
+/// beyond it; stable again after two on the other side, the first of them a transition (the source has no way back).
 class EntropyDetector final : public Detector {
  public:
   explicit EntropyDetector(const MonitorOptions& options);

@@ -25,7 +25,7 @@ std::vector<double> tone(double frequency_hz, double amplitude, std::size_t n) {
   return x;
 }
 
-// With p of one over 16: ln 16 = 2.77, far below the published threshold of 105.
+// With p of one over 16: ln 16 = 2.77, far below a threshold of 105, and of 10⁵.
 TEST(EnergyEntropyFormula, NormalisedIsAtMostTheLogarithmOfTheBands) {
   std::vector<double> energies(16, 3.7);
   EXPECT_NEAR(energy_entropy(energies, Entropy::normalised), std::log(16.0), 1e-14);
@@ -36,6 +36,33 @@ TEST(EnergyEntropyFormula, NormalisedIsAtMostTheLogarithmOfTheBands) {
     EXPECT_GE(h, 0.0);
     EXPECT_LE(h, std::log(16.0) + 1e-14);
   }
+}
+
+// -x ln x is at most 1/e, whatever the unit of x: 16/e = 5.89 for 16 bands, below 105 and 10⁵ as well. So of the forms
+// that grow with chatter as the source's does, only one that carries the energy itself can pass either.
+TEST(EnergyEntropyFormula, WithoutNormalisationTheLogarithmBoundsIt) {
+  Random random(4);
+  double most = 0.0;
+  for (int trial = 0; trial < 100'000; ++trial) {
+    double sum = 0.0;
+    for (int b = 0; b < 16; ++b) {
+      const double e = std::exp(random.uniform(-20.0, 20.0));
+      sum -= e * std::log(e);
+    }
+    most = std::max(most, sum);
+  }
+  EXPECT_LE(most, 16.0 / std::numbers::e);
+  const std::vector<double> bands(16, 1e5);
+  EXPECT_GT(energy_entropy(bands, Entropy::energy), 1e5);
+}
+
+TEST(EntropyDetector, HasNoThresholdOfItsOwn) {
+  MonitorOptions options = published(Entropy::energy);
+  EXPECT_EQ(test::field_of([&] { options.validate(); }), "accepted");  // comb-cusum needs none
+  options.kind = Kind::energy_entropy;
+  EXPECT_EQ(test::field_of([&] { ChatterMonitor monitor(options); }), "threshold");
+  options.threshold = 1e5;
+  EXPECT_EQ(test::field_of([&] { ChatterMonitor monitor(options); }), "accepted");
 }
 
 TEST(EnergyEntropyFormula, OneBandHasNone) {

@@ -44,7 +44,10 @@ void MonitorOptions::validate() const {
                   "must be at least 32 samples long");
   if (window_s < hop_s) throw InvalidInput("window_s", window_s, "s", "must be at least hop_s");
   require_between("bands", bands, 2.0, 64.0, "", "must be in [2, 64]");
-  require_finite("threshold", threshold, "");
+  if (kind == Kind::energy_entropy && !std::isfinite(threshold)) {
+    throw InvalidInput("threshold", "is missing or not finite",
+                       "It holds for one form of the entropy, one unit and one sensor: robomill calibrate sets it");
+  }
   require_positive("false_alarms_per_hour", false_alarms_per_hour, "1/h");
   require_non_negative("full_scale", full_scale, "");
 }

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -42,10 +43,11 @@ struct ROBOMILL_API MonitorOptions {
   double hop_s = 0.025;                  ///< between decisions; at least 16 samples
   int bands = 16;                        ///< equal, from 0 to half the sample rate; in [2, 64]
   Entropy entropy = Entropy::energy;     ///< energy-entropy
-  double threshold = 105.0;              ///< energy-entropy
-  bool alarm_below = false;              ///< energy-entropy: which side of the threshold is chatter, from calibration
-  double false_alarms_per_hour = 0.1;    ///< comb-cusum, > 0
-  double full_scale = 0.0;               ///< |sample| at which the converter clips, >= 0; 0: unknown
+  /// energy-entropy: finite, required there; it holds for one form, unit and sensor, and calibrate() sets it
+  double threshold = std::numeric_limits<double>::quiet_NaN();
+  bool alarm_below = false;            ///< energy-entropy: which side of the threshold is chatter, from calibration
+  double false_alarms_per_hour = 0.1;  ///< comb-cusum, > 0
+  double full_scale = 0.0;             ///< |sample| at which the converter clips, >= 0; 0: unknown
   /// @throws InvalidInput naming the field
   void validate() const;
   /// Samples a hop and a window: the times, rounded.

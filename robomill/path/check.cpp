@@ -88,26 +88,27 @@ Checker::State::State(program::Source& source, const robot::Kinematics& machine,
 void Checker::State::watch_all(const CheckOptions& check) {
   const double slack = check.relative_tolerance;
   const robot::JointLimits& limits = machine_.limits();
+  const auto kept = [&](double limit) { return check.tolerances_alone ? 0.0 : limit; };  // 0: watched without a limit
   for (int j = 0; j < joints_; ++j) {
     CheckResult::Joint& joint = result_.joints[static_cast<std::size_t>(j)];
     joint.position.max = -std::numeric_limits<double>::max();
     joint_watch_[static_cast<std::size_t>(j)] = {
-        .velocity = Watch(joint.velocity, limits.max_velocity[j], slack, 1),
-        .acceleration = Watch(joint.acceleration, limits.max_acceleration[j], slack, 2),
-        .jerk = Watch(joint.jerk, limits.max_jerk[j], slack, 3)};
+        .velocity = Watch(joint.velocity, kept(limits.max_velocity[j]), slack, 1),
+        .acceleration = Watch(joint.acceleration, kept(limits.max_acceleration[j]), slack, 2),
+        .jerk = Watch(joint.jerk, kept(limits.max_jerk[j]), slack, 3)};
   }
-  tip_velocity_ = Watch(result_.tip_velocity, options_.max_velocity_m_per_s, slack, 1);
-  tip_acceleration_ = Watch(result_.tip_acceleration, options_.max_acceleration_m_per_s2, slack, 2);
-  tip_jerk_ = Watch(result_.tip_jerk, options_.max_jerk_m_per_s3, slack, 3);
-  axis_velocity_ = Watch(result_.axis_velocity, options_.max_angular_velocity_rad_per_s, slack, 1);
-  axis_acceleration_ = Watch(result_.axis_acceleration, options_.max_angular_acceleration_rad_per_s2, slack, 2);
-  axis_jerk_ = Watch(result_.axis_jerk, options_.max_angular_jerk_rad_per_s3, slack, 3);
-  feed_ = Watch(result_.feed, 1.0, slack, 1);
+  tip_velocity_ = Watch(result_.tip_velocity, kept(options_.max_velocity_m_per_s), slack, 1);
+  tip_acceleration_ = Watch(result_.tip_acceleration, kept(options_.max_acceleration_m_per_s2), slack, 2);
+  tip_jerk_ = Watch(result_.tip_jerk, kept(options_.max_jerk_m_per_s3), slack, 3);
+  axis_velocity_ = Watch(result_.axis_velocity, kept(options_.max_angular_velocity_rad_per_s), slack, 1);
+  axis_acceleration_ = Watch(result_.axis_acceleration, kept(options_.max_angular_acceleration_rad_per_s2), slack, 2);
+  axis_jerk_ = Watch(result_.axis_jerk, kept(options_.max_angular_jerk_rad_per_s3), slack, 3);
+  feed_ = Watch(result_.feed, kept(1.0), slack, 1);
   tip_error_ = Watch(result_.tip_error_m, options_.tip_tolerance_m, slack, 0);
   axis_error_ = Watch(result_.axis_error_rad, options_.axis_tolerance_rad, slack, 0);
   synchrony_ = Watch(result_.synchrony_rad, 0.0, slack, 0);
   pose_error_ = Watch(result_.pose_error, check.max_pose_error, slack, -1);
-  dwell_ = Watch(result_.dwell_s, 2.0 * options_.sample_period_s, slack, -1);
+  dwell_ = Watch(result_.dwell_s, kept(2.0 * options_.sample_period_s), slack, -1);
 }
 
 void Checker::State::begin(const Sample& sample) {

@@ -23,6 +23,9 @@ struct Usage {
   std::size_t block = 0;       ///< … and in which block
 };
 
+/// Of the path that one breach stands for.
+inline constexpr double breach_cells_per_m = 5000.0;
+
 /// Samples that break a limit, told so that a planner can mend them.
 struct Breach {
   std::size_t block = 0;
@@ -58,6 +61,7 @@ struct CheckResult {
 struct ROBOMILL_API CheckOptions {
   double relative_tolerance = 1e-6;  ///< >= 0; of a limit, which is not yet a breach: rounding of differences
   double max_pose_error = 1e-7;      ///< > 0; m and rad
+  bool tolerances_alone = false;     ///< the limits of joints, tip, axis and feed are not looked at
   /// @throws InvalidInput naming the member
   void validate() const;
 };

@@ -9,8 +9,7 @@ namespace robomill::path {
 
 void BreachBook::add(const Place& place, int order, double ratio) {
   const double told = std::isfinite(ratio) ? ratio : std::numeric_limits<double>::max();
-  constexpr double cells_per_m = 5000.0;
-  const auto cell = std::isfinite(path_m_) ? static_cast<std::int64_t>(std::floor(path_m_ * cells_per_m)) : 0;
+  const auto cell = std::isfinite(path_m_) ? static_cast<std::int64_t>(std::floor(path_m_ * breach_cells_per_m)) : 0;
   const std::uint64_t key = (static_cast<std::uint64_t>(cell) * 1'000'003U + std::uint64_t{place.block}) * 5U +
                             static_cast<std::uint64_t>(order + 1);
   const auto known = index_.find(key);

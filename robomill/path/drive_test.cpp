@@ -170,8 +170,8 @@ double largest_error(Method method, const Drive& drive) {
   return largest;
 }
 
-// The published comparison has the largest tracking error fall by 14.6 % with the joint jerk limit; its drives are not
-// stated. A servo alone hardly feels the jerk; a load of 8 Hz behind a servo of 20 Hz does.
+// The published comparison has the largest tracking error fall by 14.6 % with the joint jerk limit; of its drives it
+// says that they are linear motors. A servo alone hardly feels the jerk; a load of 8 Hz behind a servo of 20 Hz does.
 TEST(Drive, ShowsWhatTheJointJerkLimitIsFor) {
   Drive drive = {.natural_frequency_hz = 20.0, .damping_ratio = 0.707};
   const double rigid = largest_error(Method::paper, drive) / largest_error(Method::no_joint_jerk, drive);

@@ -70,13 +70,14 @@ struct FirPlan {
 /// where no T2 or T3 can do it, T1 or T2 are stretched first. Neighbours overlap by the largest T_c ≤ T2 + T3 with
 /// V P(T_c/2) ≤ tolerance for tip and axis, V the change of velocity at the corner and P the way that the shorter
 /// filters leave at unit speed. As printed: V² = v² + v'² − v v' cos, tip and axis with constants of their own and T1
-/// alone stretched to the same total, the joints' steps by the tip's constants, absolute values in their denominators,
-/// and the angle arccos |O·O'|. Neither tolerance nor limit is certain where more than two blocks overlap.
+/// alone stretched to the same total, the joints' steps by the tip's constants, signs in the jerk's step and absolute
+/// values in the denominators of acceleration's and jerk's, and the angle arccos |O·O'|. Neither tolerance nor limit
+/// is certain where more than two blocks overlap.
 ///
 /// @param posture  start: the position to begin near
 /// @throws InvalidInput if an option is invalid, posture.gamma_rad has another length, a block cannot be reached
 ///         (block, line, joint, by how much), or an axis turns by half a circle
-/// Sources: [FirFiveAxis], [TajimaSencer2017], [Tajima2018]; docs/theory/fir-smoothing.md, docs/errata.md.
+/// Sources: [FirFiveAxis], [Tajima2018], [TajimaSencer2019]; docs/theory/fir-smoothing.md, docs/errata.md.
 [[nodiscard]] FirPlan plan_fir(const program::Program& program, const robot::Kinematics& kinematics,
                                const Posture& posture, const SmoothingOptions& options);
 

@@ -41,6 +41,11 @@ struct JointStep {
   }
 };
 
+// The share of the way over which the pulse enters the filters.
+double reach_of(const FirConstants& c) {
+  return std::min(0.5, 0.5 * (c.t2_s + c.t3_s) / c.t1_s);
+}
+
 // T2 by |q''| all along.
 double t2_of_magnitudes(const JointStep& step, double limit, const FirConstants& c) {
   double t2 = 0.0;
@@ -52,10 +57,9 @@ double t2_of_magnitudes(const JointStep& step, double limit, const FirConstants&
 }
 
 // T2 by the sign of q̈: s̈ > 0 only until the pulse has entered the filters, s̈ < 0 only while it leaves them, and there
-// q'' counts where it adds to q' s̈. Longer filters reach further into the block, so that this is asked again.
+// q'' counts where it adds to q' s̈.
 double t2_of_signs(const JointStep& step, double limit, const FirConstants& c, bool as_printed) {
-  const double reach = std::min(0.5, 0.5 * (c.t2_s + c.t3_s) / c.t1_s);
-  const double last = static_cast<double>(step.joints.size() - 1);
+  const double reach = reach_of(c), last = static_cast<double>(step.joints.size() - 1);
   double t2 = 0.0;
   for (std::size_t i = 0; i < step.joints.size(); ++i) {
     const double share = static_cast<double>(i) / last, q1 = step.at(i, 1), q2 = step.at(i, 2);
@@ -69,14 +73,41 @@ double t2_of_signs(const JointStep& step, double limit, const FirConstants& c, b
   return t2;
 }
 
-double t3_of_half_the_limit(const JointStep& step, double limit, FirConstants& c, bool as_printed) {
-  const double q1 = step.most(1), q2 = step.most(2), q3 = step.most(3), half = 0.5 * limit;
-  if (!as_printed) {
-    c.t1_s = std::max(c.t1_s, std::cbrt(q3 / (most_of_jerk * half)));
-    c.t2_s = std::max(c.t2_s, 3.0 * q2 / (c.t1_s * c.t1_s * most_of_jerk * half));
+// Raises a constant to what is asked for. Longer filters reach further into the block, so that this is asked again.
+template <class Needed>
+void raise(double& constant, const Needed& needed) {
+  for (int round = 0; round < 4; ++round) {
+    const double value = needed();
+    if (value <= constant) break;
+    constant = value;
   }
+}
+
+// T3 for half the limit. At either end of a block s⃛ takes both signs, so both of the source's rows hold and the sign of
+// q⃛ drops out; the terms count by their magnitudes, since opposite ones cancel at full speed and not on the way to it.
+double t3_of_magnitudes(const JointStep& step, double limit, FirConstants& c) {
+  const double q1 = step.most(1), q2 = step.most(2), q3 = step.most(3), half = 0.5 * limit;
+  c.t1_s = std::max(c.t1_s, std::cbrt(q3 / (most_of_jerk * half)));
+  c.t2_s = std::max(c.t2_s, 3.0 * q2 / (c.t1_s * c.t1_s * most_of_jerk * half));
   const double left = half - q3 / (c.t1_s * c.t1_s * c.t1_s) - 3.0 * q2 / (c.t1_s * c.t1_s * c.t2_s);
-  return left == 0.0 ? 0.0 : q1 / (c.t1_s * c.t2_s * std::abs(left));
+  return q1 / (c.t1_s * c.t2_s * left);
+}
+
+// The same as printed: point by point at full speed, with signs, the sum's excess over the limit hidden by an absolute
+// value.
+double t3_of_signs(const JointStep& step, double limit, const FirConstants& c) {
+  const double reach = reach_of(c), last = static_cast<double>(step.joints.size() - 1), half = 0.5 * limit;
+  double t3 = 0.0;
+  for (std::size_t i = 0; i < step.joints.size(); ++i) {
+    const double share = static_cast<double>(i) / last;
+    for (const double sign : {1.0, -1.0}) {
+      if (sign > 0.0 ? share > reach : share < 1.0 - reach) continue;
+      const double bend = (step.at(i, 3) / c.t1_s + sign * 3.0 * step.at(i, 2) / c.t2_s) / (c.t1_s * c.t1_s);
+      const double left = std::abs(half - std::abs(bend));  // the worse row
+      if (left > 0.0) t3 = std::max(t3, std::abs(step.at(i, 1)) / (c.t1_s * c.t2_s * left));
+    }
+  }
+  return t3;
 }
 
 }  // namespace
@@ -118,16 +149,17 @@ void stretch_for_joints(const std::vector<robot::JointJet>& joints, const robot:
       c.t2_s = std::max(c.t2_s, t2_of_magnitudes(step, limit, c));
       continue;
     }
-    for (int round = 0; round < 4; ++round) {
-      const double t2 = t2_of_signs(step, limit, c, printed);
-      if (t2 <= c.t2_s) break;
-      c.t2_s = t2;
-    }
+    raise(c.t2_s, [&] { return t2_of_signs(step, limit, c, printed); });
   }
   if (options.method == Method::no_joint_jerk || options.filters < 2) return;
   for (int j = 0; j < count; ++j) {
     const JointStep step = {.joints = joints, .joint = j};
-    c.t3_s = std::max(c.t3_s, t3_of_half_the_limit(step, limits.max_jerk[j], c, printed));
+    const double limit = limits.max_jerk[j];
+    if (!printed) {
+      c.t3_s = std::max(c.t3_s, t3_of_magnitudes(step, limit, c));
+      continue;
+    }
+    raise(c.t3_s, [&] { return t3_of_signs(step, limit, c); });
   }
 }
 

@@ -154,8 +154,9 @@ TEST(Fir, TheTrajectoryIsExactlyDifferentiable) {
   EXPECT_NEAR(plan.trajectory.at(plan.duration_s - 1e-9).gamma_rad[0], posture.gamma_rad.back(), 1e-13);
 }
 
-// The published conditions. The source has 13.215 s with the joint jerk step against 13.169 s without, and ΣT2 of
-// 2.355 s against 2.370 s, with joint limits that it does not state; these are declared in test_s_path.hpp.
+// The published limits and tolerances on a path of our own, with joint limits of our own: test_s_path.hpp. On its path
+// the source has 13.215 s with the joint jerk step against 13.169 s without, and T2 (its sum, as we read it) of 2.355 s
+// against 2.370 s.
 TEST(Fir, ComparesMethodsOnTheSShapedPath) {
   const Smoothed earlier = run_s(Method::no_joint_jerk), paper = run_s(Method::paper),
                  printed = run_s(Method::paper_as_printed);

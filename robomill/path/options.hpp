@@ -9,7 +9,7 @@ namespace robomill::path {
 ///   optimal:          the same path, the speed optimised over long windows on a finer grid
 ///   paper:            FIR pulses per block as published, with tip and axis sharing their time constants
 ///   paper_as_printed: the published equations with their errors
-///   no_joint_jerk:    the earlier method: joint velocity and |acceleration| alone
+///   no_joint_jerk:    the method before it [Sun2021]: joint velocity and |acceleration| alone
 enum class Method { verified, optimal, paper, paper_as_printed, no_joint_jerk };
 
 /// Limits and tolerances of a smoothed path. Limits of tip and axis hold along their paths: speed, d(speed)/dt, and

@@ -6,6 +6,7 @@
 
 #include "robomill/path/blend.hpp"
 #include "robomill/path/bound.hpp"
+#include "robomill/path/check.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/path/span.hpp"
 #include "robomill/path/speed.hpp"
@@ -34,7 +35,7 @@ struct PlannerOptions {
 
 /// What slows or narrows places where a trajectory broke a limit before.
 struct Mends {
-  static constexpr double cells_per_m = 5000.0;
+  static constexpr double cells_per_m = breach_cells_per_m;
   std::map<std::size_t, double> tolerance = {};  ///< by block: the share of the tolerances that may be used
   std::map<std::int64_t, double> speed = {};     ///< by cell of the path: of all speeds; acceleration takes its square,
                                                  ///< jerk its cube

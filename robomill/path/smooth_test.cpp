@@ -104,7 +104,7 @@ TEST_P(RandomPrograms, BreakNoLimit) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomPrograms, ::testing::Range(0, 10));
 
-// Under the published conditions, joints of 0.4 m/s² and 12.8 m/s³ (the source states none).
+// Under the published limits and tolerances, joints of 0.4 m/s² and 12.8 m/s³ (test_s_path.hpp).
 TEST(SPath, PaperCostsLittleVerifiedLessAndNeitherBreaksTheJointsJerk) {
   const robot::HybridKinematics machine(test::s_machine(0.4, 12.8));
   const auto by = [&](Method method) {

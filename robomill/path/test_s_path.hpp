@@ -1,6 +1,6 @@
 #pragma once
-// The S-shaped path of the published comparison, as far as its source states it: 16 blocks, limits and tolerances. The
-// shape, the posture and the joints' limits are declared here.
+// An S-shaped path of our own under the tool's limits and the tolerances that [FirFiveAxis] states. Its path and its
+// joints' limits stand in a figure and a table of which the text at hand has the captions alone.
 #include <Eigen/Core>
 #include <cmath>
 #include <numbers>
@@ -14,7 +14,7 @@ namespace robomill::path::test {
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-/// Tip 50 mm/s, 500, 10,000; axis 10°/s, 100, 2,000; 0.02 mm, 0.02°.
+/// [FirFiveAxis] sec. 3.1: tip 50 mm/s, 500, 10,000; axis 10°/s, 100, 2,000; 0.02 mm, 0.02°.
 inline SmoothingOptions published_options(Method method) {
   SmoothingOptions o;
   o.method = method;

@@ -18,6 +18,7 @@
 #include "robomill/formats/program_files.hpp"
 #include "robomill/formats/smoothing_toml.hpp"
 #include "robomill/formats/trajectory.hpp"
+#include "robomill/formats/units.hpp"
 #include "robomill/path/drive.hpp"
 #include "robomill/path/smooth.hpp"
 #include "robomill/report/smooth_recorder.hpp"
@@ -103,6 +104,7 @@ std::unique_ptr<formats::SampleFile> open_output(const SmoothJob& job, const Ben
   info.program_period_s = job.program_period_s;
   info.cell = job.cell.filename().string();
   info.program = job.program.filename().string();
+  info.end_effector = bench.cell.end_effector;
   return formats::open_sample_file(job.output, info);
 }
 
@@ -188,6 +190,35 @@ std::vector<path::Method> methods_of(const SmoothJob& job, path::Method first) {
   return methods;
 }
 
+/// What a controller makes of a joint program that leaves its tolerances, and what would help.
+std::string program_note(const formats::ProgramRun& run) {
+  const double tip_m = std::max(run.tip_deviation_m, run.tip_error_m);
+  const double axis_rad = std::max(run.axis_deviation_rad, run.axis_error_rad);
+  std::string note = fmt::format(
+      "Joints interpolated between the program's points leave the programmed path by {:.4g} mm and {:.4g}° and the "
+      "trajectory by {:.4g} mm and {:.4g}°; the tolerances are {:.4g} mm and {:.4g}°.",
+      run.tip_error_m / units::mm, run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm,
+      run.axis_deviation_rad / units::deg, run.tip_tolerance_m / units::mm, run.axis_tolerance_rad / units::deg);
+  if (run.would_hold_s > 0.0) {
+    return note + fmt::format(" --program-period-ms {:.6g} would hold.", run.would_hold_s / units::ms);
+  }
+  note += run.fixed_cycle ? " No shorter cycle of whole samples holds." : " Points at every sample do not hold.";
+  return note + fmt::format(
+                    " Smooth with a shorter sample_period_ms or less acceleration, or allow tip_tolerance_mm = {:.4g} "
+                    "and axis_tolerance_deg = {:.4g}.",
+                    std::max(tip_m, run.tip_tolerance_m) / units::mm,
+                    std::max(axis_rad, run.axis_tolerance_rad) / units::deg);
+}
+
+/// A joint program that its controller is not known to load, and what would help.
+std::string length_note(const formats::ProgramRun& run) {
+  return fmt::format(
+      "The robot program has {} points; such a controller is known to load about {}. {}", run.points, run.most_points,
+      run.fixed_cycle ? "Write .servoj, whose rows a client sends, give a longer --program-period-ms, or split the NC "
+                        "program where the tool is clear of the part."
+                      : "Split the NC program where the tool is clear of the part.");
+}
+
 void tell(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   formats::SmoothedProgram& smoothed = result.smoothed;
   smoothed.program = job.program.filename().string();
@@ -202,6 +233,10 @@ void tell(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   if (left_out > smoothed.skipped.size()) {
     notes.push_back(fmt::format("{} statements of the program were left out; the first {} are listed.", left_out,
                                 smoothed.skipped.size()));
+  }
+  if (result.trajectory_holds() && smoothed.robot_program) {
+    if (!smoothed.robot_program->keeps_tolerances()) notes.push_back(program_note(*smoothed.robot_program));
+    if (smoothed.robot_program->too_long()) notes.push_back(length_note(*smoothed.robot_program));
   }
   if (!bench.posture.whole) {
     notes.push_back(
@@ -237,6 +272,11 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
       if (asked_for) throw;
       result.smoothed.notes.push_back(fmt::format("{} is left out: {}", formats::name_of(method), error.what()));
       continue;
+    }
+    if (asked_for && file != nullptr) {
+      result.smoothed.robot_program = told_of_program(job.program, [&] {
+        return file->settle(*bench.program, *bench.machine, result.options, result.trajectory_holds(), progress);
+      });
     }
     if (recorder) {
       result.motions.push_back(recorder->motion());

@@ -42,11 +42,15 @@ struct SmoothResult {
 
   [[nodiscard]] const formats::SmoothedBy& first() const { return smoothed.methods.front(); }
   /// Whether the trajectory asked for breaks no limit.
-  [[nodiscard]] bool holds() const { return first().summary.check.violations() == 0; }
+  [[nodiscard]] bool trajectory_holds() const { return first().summary.check.violations() == 0; }
+  /// … and the joint program made of it, where there is one, keeps the tolerances as its controller runs it.
+  [[nodiscard]] bool holds() const {
+    return trajectory_holds() && (!smoothed.robot_program || smoothed.robot_program->holds());
+  }
 };
 
-/// Smooths a program and writes its trajectory if it holds every limit; if not, a file that stands in its place from an
-/// earlier run is taken away.
+/// Smooths a program and writes its trajectory, or the joint program made of it, if it holds every limit; if not, a
+/// file that stands in its place from an earlier run is taken away.
 /// @throws InvalidInput with file, line, key and value, or with what cannot be reached; Interrupted
 [[nodiscard]] ROBOMILL_API SmoothResult run_smooth(const SmoothJob& job, Progress& progress = Progress::none());
 

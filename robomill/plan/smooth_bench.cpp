@@ -13,8 +13,8 @@ namespace {
 
 using namespace robomill;
 
-/// A program of the size of the published impeller's, 4,306 moves at feed: 22 passes of 195 moves and the steps between
-/// them are 4,312. Removed at the end.
+/// A program of the size of LinuxCNC's impeller sample, 4,306 moves at feed: 22 passes of 195 moves and the steps
+/// between them are 4,312. Removed at the end.
 class Blade {
  public:
   Blade() : path_(std::filesystem::temp_directory_path() / ("robomill-blade-" + std::to_string(::getpid()) + ".ngc")) {

@@ -97,7 +97,12 @@ std::vector<report::Fact> facts_of(const SmoothResult& result) {
 report::Smooth smooth_report(const SmoothResult& result) {
   report::Smooth out;
   out.facts = facts_of(result);
-  if (!result.holds()) {
+  if (result.trajectory_holds() && !result.holds()) {
+    out.warnings.push_back(
+        fmt::format("The robot program does not hold, see the notes{}",
+                    result.smoothed.written ? "; it was written all the same." : "; it was not written."));
+  }
+  if (!result.trajectory_holds()) {
     out.warnings.push_back(fmt::format(
         "{} breaches of limits{}.", result.first().summary.check.violations(),
         result.smoothed.written ? "; the trajectory was written all the same" : ": there is no trajectory"));

@@ -15,8 +15,25 @@ struct Pose {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit vector from the tip to the spindle
 };
 
+/// How the spindle turns: off, clockwise seen from the spindle (M3), or counter-clockwise (M4).
+enum class Spindle { not_given, off, clockwise, counterclockwise };
+
+/// Whether a machine waits for its operator where a dwell stands: always (M0), or where its switch says so (M1).
+enum class OperatorStop { none, always, optional };
+
+/// Coolants that are on.
+struct Coolant {
+  bool mist = false;          ///< M7
+  bool flood = false;         ///< M8
+  bool through_tool = false;  ///< M88
+  friend bool operator==(const Coolant&, const Coolant&) = default;
+};
+
 /// One straight move; the tip runs along a line, the axis along a great circle, both evenly in time. A dwell stands
 /// still where the block before it ends.
+///
+/// Spindle and coolant are the states that hold during the block. Where one differs from the block before it, the
+/// change is commanded before the block begins. The states before the first block are those of its members' defaults.
 struct Block {
   enum class Kind { rapid, feed, dwell };
   Kind kind = Kind::feed;
@@ -24,6 +41,9 @@ struct Block {
   Pose end;
   double duration_s = 0.0;               ///< of a feed move or a dwell; 0 for a rapid: as fast as the machine can
   double spindle_speed_rad_per_s = 0.0;  ///< as commanded; 0 where the program has not said
+  Spindle spindle = Spindle::not_given;  ///< not_given where the program has not said
+  Coolant coolant = {};
+  OperatorStop operator_stop = OperatorStop::none;  ///< of a dwell, which may last 0 s then
 };
 
 /// What a reader left out.

@@ -59,7 +59,7 @@ MonitorRun sample_monitor() {
 
 CalibrationRun sample_calibration() {
   CalibrationRun run;
-  run.facts = {{"Recordings", "480 holes, half to set, half to verify"}, {"Threshold", "105"}};
+  run.facts = {{"Recordings", "480 holes, half to set, half to verify"}, {"Threshold", "110"}};
   run.false_alarm_rate = 0.008;
   run.detection_rate = 0.93;
   RocCurve curve{.label = "set",

@@ -25,8 +25,8 @@ Fingerprint robot_peaks(std::vector<double> peaks_hz, double speed_rpm) {
   return explain({std::move(peaks_hz), speed_rpm * rpm, 3}, data::robot_modes());
 }
 
-// Source: [RobotMillingChatter] cuts at 6,500 rpm, 0.8 and 0.6 mm, and at 8,000 rpm; which peak is what:
-// docs/errata.md.
+// Source: [RobotMillingChatter] cuts at 6,500 rpm, 0.8 and 0.6 mm, and at 8,000 rpm, read with three teeth (it does not
+// print how many: docs/errata.md).
 TEST(Fingerprint, NamesTheDocumentedPeaks) {
   const Fingerprint found = robot_peaks({324.99, 666.98, 991.98, 1966.95}, 6500);
   ASSERT_EQ(found.peaks.size(), 4U);

@@ -44,7 +44,8 @@ inline LobesProblem benchmark(double ratio, int directions = 2) {
   return p;
 }
 
-/// The milling robot of data/robot-modes.toml: N = 3, D = 12 mm, 1.8 mm radial, up-milling, Kt = 712, Kr = 287 N/mm².
+/// The milling robot of data/robot-modes.toml: D = 12 mm, 1.8 mm radial, up-milling, Kt = 712, Kr = 287 N/mm². N = 3 is
+/// this problem's own: the source does not print it.
 inline LobesProblem robot() {
   LobesProblem p;
   p.milling.tool.teeth = 3;
