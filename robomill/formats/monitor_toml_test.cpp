@@ -96,7 +96,7 @@ TEST(MonitorToml, TellsWhatIsWrongWithLineAndKey) {
   expect("[detector]\nhop_ms = 1\n", "m.toml:5: detector.hop_ms = 1 ms; must be at least 16 samples long");
   expect("[detector]\nhop_ms = 60\n", "detector.window_ms");
   expect("[detector]\nbands = 1\n", "m.toml:5: detector.bands = 1; must be in [2, 64]");
-  expect("[detector]\nkind = \"energy-entropy\"\n", "detector.threshold: is missing or not finite");
+  expect("[detector]\nkind = \"energy-entropy\"\n", "detector.threshold: is missing; must be finite");
   expect("[detector]\nkind = \"magic\"\n", "must be one of \"comb-cusum\", \"energy-entropy\"");
   expect("[detector]\nfalse_alarms_per_hour = 0\n", "m.toml:5: detector.false_alarms_per_hour = 0");
   expect("[detector]\ntreshold = 5\n", "threshold");

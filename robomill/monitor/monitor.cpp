@@ -45,7 +45,7 @@ void MonitorOptions::validate() const {
   if (window_s < hop_s) throw InvalidInput("window_s", window_s, "s", "must be at least hop_s");
   require_between("bands", bands, 2.0, 64.0, "", "must be in [2, 64]");
   if (kind == Kind::energy_entropy && !std::isfinite(threshold)) {
-    throw InvalidInput("threshold", "is missing or not finite",
+    throw InvalidInput("threshold", "must be finite",
                        "It holds for one form of the entropy, one unit and one sensor: robomill calibrate sets it");
   }
   require_positive("false_alarms_per_hour", false_alarms_per_hour, "1/h");
