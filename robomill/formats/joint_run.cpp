@@ -176,6 +176,7 @@ void RunDistances::include(const RunDistances& other) {
 RunDistances follow_points(const JointPoints& points, Joining joining, SampleSpool& samples, program::Source& program,
                            const robot::Kinematics& machine, const path::SmoothingOptions& options,
                            std::vector<bool>& beyond, const Progress& progress) {
+  if (points.steps() == 0) return {};  // the trajectory is one sample: nothing moves
   program.rewind();
   Follow follow(points, joining, samples, program, machine, options);
   for (std::size_t index = 0; index < points.steps(); ++index) {
