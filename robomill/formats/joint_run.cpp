@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "robomill/path/check.hpp"
 
@@ -88,8 +89,7 @@ class Follow {
     total_.tip_error_m = result.tip_error_m.max;
     total_.axis_error_rad = result.axis_error_rad.max;
     for (const path::Breach& breach : result.breaches) {
-      if (breach.order != 0) continue;
-      mark(beyond, breach.time_s);
+      if (breach.order == 0) mark(beyond, breach.time_s);
     }
     return total_;
   }
