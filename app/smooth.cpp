@@ -58,11 +58,18 @@ void print_methods(const formats::SmoothedProgram& smoothed) {
 
 /// What a controller makes of the points of a joint program.
 void print_run(const formats::ProgramRun& run) {
+  const double shortest = run.shortest_step_s / units::ms, longest = run.longest_step_s / units::ms;
+  fmt::print("\nrobot program  {} points, ", run.points);
+  if (shortest == longest) {
+    fmt::print("one every {:.4g} ms", longest);
+  } else {
+    fmt::print("{:.4g} to {:.4g} ms apart", shortest, longest);
+  }
   fmt::print(
-      "\nrobot program  {} points, {:.4g} to {:.4g} ms apart; joints interpolated between them: {:.4g} mm and "
-      "{:.4g}° from the program, {:.4g} mm and {:.4g}° from the trajectory\n",
-      run.points, run.shortest_step_s / units::ms, run.longest_step_s / units::ms, run.tip_error_m / units::mm,
-      run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm, run.axis_deviation_rad / units::deg);
+      "; joints interpolated between them: {:.4g} mm and {:.4g}° from the program, {:.4g} mm and {:.4g}° from the "
+      "trajectory\n",
+      run.tip_error_m / units::mm, run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm,
+      run.axis_deviation_rad / units::deg);
 }
 
 void print_summary(const plan::SmoothResult& result) {

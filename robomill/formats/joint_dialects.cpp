@@ -66,6 +66,12 @@ void add_missing_outputs(const EndEffector& end, const Outputs& wanted, std::vec
   }
 }
 
+/// What the file tells the controller of the load and nobody measured.
+void add_assumed_load(const EndEffector& end, std::vector<std::string>& lines) {
+  lines.push_back(fmt::format("ASSUMED of the load of {:.6g} kg: {}no moments of inertia", *end.mass_kg,
+                              end.center_m ? "" : "its centre half-way to the tip (tool.center_mm), "));
+}
+
 /// "1,2,3", in mm or m.
 std::string three(const Eigen::Vector3d& value, double unit, const char* form = "{:.6g},{:.6g},{:.6g}") {
   const Eigen::Vector3d v = value / unit + Eigen::Vector3d::Zero();  // no -0
@@ -92,6 +98,7 @@ class Krl final : public JointDialect {
       lines.emplace_back("NOT SET: the load (tool.load_number or tool.mass_kg in the cell).");
       lines.emplace_back(wrong_load);
     }
+    if (end_.mass_kg && !end_.load_number) add_assumed_load(end_, lines);
     add_missing_outputs(end_, wanted, lines);
     return lines;
   }
@@ -180,6 +187,7 @@ class Rapid final : public JointDialect {
           "NOT SET: tool and load (tool.mass_kg, or tool.name of a tooldata, in the cell). tool0 has no load.");
       lines.emplace_back(wrong_load);
     }
+    if (tool_ == "tool_of_cell") add_assumed_load(end_, lines);
     add_missing_outputs(end_, wanted, lines);
     return lines;
   }
@@ -269,6 +277,8 @@ class UrScript final : public JointDialect {
     if (!end_.mass_kg) {
       lines.emplace_back("NOT SET: tool and load (tool.mass_kg in the cell). Those of the installation count.");
       lines.emplace_back(wrong_load);
+    } else {
+      add_assumed_load(end_, lines);
     }
     add_missing_outputs(end_, wanted, lines);
     return lines;

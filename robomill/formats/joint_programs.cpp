@@ -201,8 +201,8 @@ Operation operation_of(program::Source& program) {
     if (!out.outputs.spindle && turns(block.spindle)) {
       out.outputs.spindle = true;
       out.told.push_back(
-          fmt::format("{}, before line {}: on before the first move, off after the last; speed and direction are the "
-                      "drive's",
+          fmt::format("{}, before line {}: on before the first move, off after the last; set speed and direction at "
+                      "its drive",
                       spindle_text(block), block.line));
     } else if (out.outputs.spindle && spindle_changes) {
       leave_out(block.line, spindle_text(block));

@@ -218,6 +218,8 @@ TEST(ProgramSetup, DeclaresTheToolOfAbb) {
   EXPECT_NE(text.find(",fine,tool_of_cell;\nSetDO doSpindle,1;\nWaitTime 5.000000;\nENDPROC\n"), std::string::npos);
   EXPECT_NE(text.find("SetDO doSpindle,0;\nENDPROC\nENDMODULE\n"), std::string::npos);
   EXPECT_EQ(text.find("tool0"), std::string::npos);
+  EXPECT_NE(text.find("! ASSUMED of the load of 8 kg: its centre half-way to the tip (tool.center_mm), no moments"),
+            std::string::npos);
   EXPECT_EQ(text.find("doCoolant"), std::string::npos);  // this program asks for none
   text = with_spindle(folder.at("c.mod"), end, true);
   EXPECT_NE(text.find("SetDO doCoolant,1;\nSetDO doSpindle,1;\n"), std::string::npos);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "robomill/path/check.hpp"
 
@@ -88,8 +89,7 @@ class Follow {
     total_.tip_error_m = result.tip_error_m.max;
     total_.axis_error_rad = result.axis_error_rad.max;
     for (const path::Breach& breach : result.breaches) {
-      if (breach.order != 0) continue;
-      mark(beyond, breach.time_s);
+      if (breach.order == 0) mark(beyond, breach.time_s);
     }
     return total_;
   }
@@ -176,6 +176,7 @@ void RunDistances::include(const RunDistances& other) {
 RunDistances follow_points(const JointPoints& points, Joining joining, SampleSpool& samples, program::Source& program,
                            const robot::Kinematics& machine, const path::SmoothingOptions& options,
                            std::vector<bool>& beyond, const Progress& progress) {
+  if (points.steps() == 0) return {};  // the trajectory is one sample: nothing moves
   program.rewind();
   Follow follow(points, joining, samples, program, machine, options);
   for (std::size_t index = 0; index < points.steps(); ++index) {
