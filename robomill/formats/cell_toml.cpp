@@ -279,6 +279,13 @@ CellFile read_cell(const std::filesystem::path& path, Robots usable) {
       throw file.refuse("program.machine", error.parts().rule);
     }
   }
+  if (std::string rotary; file.text("program.rotary", rotary)) {
+    try {
+      out.rotary = parse_rotary(rotary);
+    } catch (const InvalidInput& error) {
+      throw file.refuse("program.rotary", error.parts().rule);
+    }
+  }
   file.done();
   if (out.hybrid) {
     out.hybrid->workpiece = out.cell.workpiece;
@@ -288,6 +295,12 @@ CellFile read_cell(const std::filesystem::path& path, Robots usable) {
     file.locate([&] { out.cell.validate(); });
   }
   return out;
+}
+
+ProgramReading program_reading(const CellFile& file) {
+  ProgramReading reading = {.rotary = file.rotary};
+  if (!file.machine.empty()) reading.machine = parse_machine(file.machine);
+  return reading;
 }
 
 std::unique_ptr<robot::Kinematics> kinematics(const CellFile& file) {
