@@ -260,6 +260,23 @@ void read_serial(TomlFile& file, CellFile& out) {
   out.gamma_given = file.number("robot.gamma_deg", "redundant_gamma_rad", units::deg, out.redundant_gamma_rad);
 }
 
+/// What the words A, B and C of programs mean.
+void read_program_words(TomlFile& file, CellFile& out) {
+  const auto of_key = [&](const char* key, const auto& parse) {
+    try {
+      parse();
+    } catch (const InvalidInput& error) {
+      throw file.refuse(key, error.parts().rule);
+    }
+  };
+  if (file.text("program.machine", out.machine)) {
+    of_key("program.machine", [&] { static_cast<void>(parse_machine(out.machine)); });
+  }
+  if (std::string rotary; file.text("program.rotary", rotary)) {
+    of_key("program.rotary", [&] { out.rotary = parse_rotary(rotary); });
+  }
+}
+
 }  // namespace
 
 CellFile read_cell(const std::filesystem::path& path, Robots usable) {
@@ -272,20 +289,7 @@ CellFile read_cell(const std::filesystem::path& path, Robots usable) {
   if (kind == Kind::hybrid) read_hybrid(file, out);
   out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
   file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
-  if (file.text("program.machine", out.machine)) {
-    try {
-      static_cast<void>(parse_machine(out.machine));
-    } catch (const InvalidInput& error) {
-      throw file.refuse("program.machine", error.parts().rule);
-    }
-  }
-  if (std::string rotary; file.text("program.rotary", rotary)) {
-    try {
-      out.rotary = parse_rotary(rotary);
-    } catch (const InvalidInput& error) {
-      throw file.refuse("program.rotary", error.parts().rule);
-    }
-  }
+  read_program_words(file, out);
   file.done();
   if (out.hybrid) {
     out.hybrid->workpiece = out.cell.workpiece;
