@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include "robomill/base/printable.hpp"
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/hits_toml.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/modal/hits.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -25,7 +27,7 @@ void print_summary(const modal::FrfResult& result, const std::vector<std::string
   for (const modal::HitVerdict& hit : result.hits) {
     std::string reasons;
     for (const std::string& reason : hit.reasons) reasons += (reasons.empty() ? "" : "; ") + reason;
-    fmt::print("{:<10} {} {}\n", hit.accepted ? "accepted" : "rejected", hit.file, reasons);
+    fmt::print("{:<10} {} {}\n", hit.accepted ? "accepted" : "rejected", printable(hit.file), reasons);
   }
   fmt::print("\nFRF    grade   coherence  excited band\n");
   for (const modal::FrfGrade& grade : result.grades) {
@@ -38,8 +40,8 @@ void print_summary(const modal::FrfResult& result, const std::vector<std::string
   }
   print_peaks(result.grades);
   fmt::print("\nTrustworthy from {:.4g} Hz.\n", result.lowest_trustworthy_frequency_hz);
-  for (const std::string& note : read_notes) fmt::print("{}\n", note);
-  for (const std::string& note : result.notes) fmt::print("{}\n", note);
+  print_notes(read_notes, "");
+  print_notes(result.notes, "");
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ double mean_sine(const Eigen::VectorXcd& h) {
 }
 
 std::optional<Doubt> doubt(const FrfPart& frf) {
-  constexpr double softest_m_per_n = 1e-4;  // 10 N/mm
+  constexpr double softest_m_per_n = 2e-5;  // 50 N/mm
   constexpr double wrong_way = 0.1;
   const Eigen::VectorXcd& h = frf.values;
   if (h.size() < fewest_lines || h.squaredNorm() == 0.0) return std::nullopt;

@@ -103,7 +103,7 @@ TEST_F(FrfCheck, AsksWhereTheGuessIsWrong) {
     expect(polar(unit, deg), "looks like magnitude and phase");
     expect(polar(unit, 1.0), "looks like magnitude and phase");
   }
-  expect(cartesian(receptance, 1e-6), "1 N would move the tool by");
+  for (const double unit : {1e-3, 1e-6}) expect(cartesian(receptance, unit), "1 N would move the tool by");
   expect(cartesian(accelerance), "an accelerance");
   expect(cartesian([](double f) { return 1e-6 * accelerance(f); }), "an accelerance");
   expect(cartesian([](double f) { return -receptance(f); }), "a sensor that points against the hit");
