@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
 #include <string>
 
+#include "robomill/base/printable.hpp"
 #include "test_program.hpp"
 
 namespace robomill::app {
@@ -95,11 +97,12 @@ TEST_F(App, SimulatesFromFrfs) {
   write_lobes();
   std::string text = slurp(folder_.at("lobes.toml"));
   const std::size_t from = text.find("modes = ");
-  text.replace(from, text.find('\n', from) - from, "frf = \"tip.csv\"");
+  text.replace(from, text.find('\n', from) - from, "frf = \"tip.csv\"\nrigid_directions = [\"y\"]");
   write("lobes.toml", text);
   const Ended told = robomill("simulate lobes.toml --at 6500,0.3 --seconds 0.5");
   EXPECT_EQ(told.exit, 0) << told.err;
-  EXPECT_EQ(told.out.rfind("tip.csv: 1 modes fitted", 0), 0U) << told.out;
+  EXPECT_NE(told.out.find("tip.csv: 1 modes fitted"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("Note: y was not measured and is taken as rigid."), std::string::npos) << told.out;
   const Ended lobes = robomill("lobes lobes.toml");
   EXPECT_EQ(lobes.exit, 1);
   EXPECT_NE(lobes.err.find("multi-frequency"), std::string::npos) << lobes.err;
@@ -192,6 +195,15 @@ TEST_F(App, GoesFromHitsToModes) {
   const auto json = nlohmann::json::parse(slurp(folder_.at("modes.json")));
   EXPECT_GE(json["modes"].size(), 6U);
   EXPECT_LT(json["fit"]["relative_error"].get<double>(), 0.1);
+  // One mode for eight: the report is there, and nobody may use it before it is accepted.
+  const Ended bad = robomill("modes tip.uff --band 10,700 --modes 1 -o bad.json");
+  EXPECT_EQ(bad.exit, 3) << bad.out;
+  EXPECT_NE(bad.out.find("Warning: The modes do not describe the FRFs"), std::string::npos) << bad.out;
+  EXPECT_NE(bad.err.find("--accept-fit"), std::string::npos) << bad.err;
+  const std::string peaks = "explain --peaks 300 --rpm 6500 --teeth 3 --modes bad.json";
+  EXPECT_EQ(robomill(peaks).exit, 1);
+  EXPECT_EQ(robomill("modes tip.uff --band 10,700 --modes 1 --accept-fit -o bad.json").exit, 0);
+  EXPECT_EQ(robomill(peaks).exit, 0);
 }
 
 TEST_F(App, LobesComparesMethodsAndTakesFrfs) {
@@ -292,6 +304,45 @@ TEST_F(App, TellsForcesOverARevolutionAndAlongAProgram) {
   EXPECT_FALSE(std::filesystem::exists(folder_.at("far.csv")));
   EXPECT_EQ(robomill("forces " + along + "forces.toml -o forces.wav").exit, 1);
   EXPECT_EQ(robomill("forces").exit, 2);
+}
+
+// Names and values of files reach the terminal as text: no byte of them moves its cursor or changes its colours.
+TEST_F(App, NoByteOfAFileControlsTheTerminal) {
+  const std::string escape = "\x1b[31m\xff\x07";
+  write_lobes();
+  write("head.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n,q" + escape + "\n1,2,3,4\n2,3," + escape + ",5\n");
+  write("cell.csv", "1,2," + escape + "\n2,3,4\n");
+  write("unit.csv", "f,xx_re_" + escape + ",xx_im_" + escape + "\n1,2,3\n");
+  write("tip.json", "{\"frequency_hz\":[1,2],\"receptance_m_per_n\":{\"" + std::string("\\u001b[31m") +
+                        "\":{\"re\":[1,2],\"im\":[1,2]}}}");
+  write("broken.json", "{\"frequency_hz\":[1,2" + escape + "]}");
+  write("tip.uff", "    -1\n" + escape + "\n    -1\n");
+  write("data.uff", "    -1\n    58\n" + escape + "\nNONE\nNONE\nNONE\nNONE\n" + escape + "\n    -1\n");
+  write("job.toml", "[job]\nmodes = \"" + escape + "\"\n");
+  write("key.toml", "[job]\nmodes = \"a\\u001b[31m.json\"\nlobes = \"lobes.toml\"\n\"b\\u001b[31m\" = 3\n");
+  write("file.toml", "[job]\nmodes = \"a\\u001b[31m.json\"\nlobes = \"lobes.toml\"\n");
+  write("hits.toml", "[acquisition]\nresponse = \"\\u001b[31m\"\n[[hits]]\nfile = \"a.csv\"\n");
+  write("part.ngc", "G21 G90 G94\nG1 X" + escape + "\n");
+  write("part.apt", "GOTO/1,2," + escape + "\n");
+  write("part.csv", "x_mm,y_mm,z_mm,i,j,k,feed_mm_per_min\n1,2,3,0,0,1," + escape + "\n");
+  write("monitor.toml",
+        "[signal]\nsample_rate_hz = 10240\nchannels = [\"a\\u001b[31m\"]\n[process]\n"
+        "spindle_speed_rpm = 3000\nteeth = 2\n[detector]\nkind = \"comb-cusum\"\n");
+  write("a.csv", "t" + escape + ",b\n1,2\n2,3\n");
+  const std::string cell = std::string(ROBOMILL_SOURCE_DIR) + "/examples/smooth-impeller-like/cell.toml";
+  for (const std::string& arguments :
+       {std::string("modes head.csv"), std::string("modes cell.csv"), std::string("modes unit.csv"),
+        std::string("modes tip.json"), std::string("modes broken.json"), std::string("modes tip.uff"),
+        std::string("modes data.uff"), std::string("modes 'no\x1b[31m.csv'"), std::string("modes tip.uff '--\x1b[31m'"),
+        std::string("plan job.toml"), std::string("plan key.toml"), std::string("plan file.toml"),
+        std::string("frf hits.toml"), "smooth part.ngc --cell " + cell, "smooth part.apt --cell " + cell,
+        "smooth part.csv --cell " + cell, std::string("monitor monitor.toml --input a.csv")}) {
+    const Ended ended = robomill(arguments);
+    EXPECT_NE(ended.exit, 0) << arguments;
+    EXPECT_FALSE(ended.err.empty()) << arguments;
+    std::istringstream rows(ended.err + ended.out);
+    for (std::string row; std::getline(rows, row);) EXPECT_EQ(printable(row), row) << arguments;
+  }
 }
 
 TEST_F(App, CtrlCStopsAndLeavesNoFile) {

@@ -8,6 +8,7 @@
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/slots_csv.hpp"
 #include "robomill/formats/units.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -47,7 +48,7 @@ void print_summary(const cutting::SlotFit& fit, const formats::SlotsFile& file) 
                                 group.radial.cutting_deviation_n_per_m2 / units::n_per_mm2));
     }
   }
-  for (const std::string& note : fit.notes) fmt::print("{}\n", note);
+  print_notes(fit.notes, "");
 }
 
 constexpr int usual_teeth = 4;

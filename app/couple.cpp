@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/printable.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/formats/assembly_toml.hpp"
 #include "robomill/formats/file.hpp"
@@ -16,6 +17,7 @@
 #include "robomill/formats/units.hpp"
 #include "robomill/plan/predict.hpp"
 #include "robomill/plan/tools.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -58,7 +60,7 @@ void print_lines(const char* what, const std::vector<double>& lines_hz) {
 void print_holder(const formats::AssemblyFile& file) {
   if (!file.holder) return;
   print_lines("Holder not reliable", file.holder->unreliable_hz);
-  for (const std::string& note : file.holder->notes) fmt::print("Note: {}\n", note);
+  print_notes(file.holder->notes, "Note: ");
 }
 
 void print_summary(const formats::AssemblyFile& file, const coupling::TipResult& tip) {
@@ -74,8 +76,8 @@ void print_summary(const formats::AssemblyFile& file, const coupling::TipResult&
   }
   print_lines("Suspect", tip.suspect_hz);
   print_holder(file);
-  for (const std::string& note : file.notes) fmt::print("Note: {}\n", note);
-  for (const std::string& note : tip.notes) fmt::print("Note: {}\n", note);
+  print_notes(file.notes, "Note: ");
+  print_notes(tip.notes, "Note: ");
 }
 
 /// tip.json with what the summary says of lines that are not to be trusted.
@@ -121,9 +123,9 @@ void print_tools(const std::vector<plan::ToolResult>& results) {
   fmt::print("{:<20} {:>5} {:>9} {:>9} {:>10} {:>5} {:>10} {:>9} {:>9}\n", "tool", "teeth", "overhang", "peak Hz",
              "µm/N", "modes", "lowest mm", "rpm", "depth mm");
   for (const plan::ToolResult& tool : results) {
-    fmt::print("{:<20} {:>5} {:>9.4g} ", tool.name, tool.teeth, tool.overhang_m / units::mm);
+    fmt::print("{:<20} {:>5} {:>9.4g} ", printable(tool.name), tool.teeth, tool.overhang_m / units::mm);
     if (!tool.failure.empty()) {
-      fmt::print("{}\n", tool.failure);
+      fmt::print("{}\n", printable(tool.failure));
       continue;
     }
     fmt::print("{:>9.5g} {:>9.4g} {:>5} ", tool.peak_hz, tool.peak_m_per_n / units::um, tool.modes.modes.size());
@@ -135,7 +137,7 @@ void print_tools(const std::vector<plan::ToolResult>& results) {
     } else if (tool.recommendation) {
       fmt::print("{}\n", tool.recommendation->reason);
     } else {
-      fmt::print("{}\n", tool.no_cut.empty() ? "-" : tool.no_cut);
+      fmt::print("{}\n", tool.no_cut.empty() ? "-" : printable(tool.no_cut));
     }
   }
 }
@@ -152,8 +154,7 @@ Exit try_tools(const CoupleCommand& command, const Common& common, Progress& pro
   if (!command.lobes.empty()) {
     cut = formats::read_lobes(command.lobes);
     // Each tool brings its own dynamics; those of a workpiece stay.
-    cut->modes.clear();
-    cut->frf.clear();
+    cut->drop_dynamics();
     formats::load_dynamics(*cut);
   }
   const std::vector<plan::ToolResult> results = plan::try_tools(assembly, tools, cut, common.seed, progress);
@@ -166,7 +167,7 @@ Exit try_tools(const CoupleCommand& command, const Common& common, Progress& pro
   if (common.wants_summary()) {
     print_tools(results);
     print_holder(assembly);
-    for (const std::string& note : assembly.notes) fmt::print("Note: {}\n", note);
+    print_notes(assembly.notes, "Note: ");
   }
   const bool all_done =
       std::all_of(results.begin(), results.end(), [](const auto& t) { return t.failure.empty() && t.no_cut.empty(); });

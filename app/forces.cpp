@@ -11,6 +11,7 @@
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/report/report.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -114,8 +115,8 @@ Exit run(const ForcesCommand& command, const Common& common, Progress& progress)
   if (common.wants_summary()) {
     if (result.revolution) print_revolution(*result.revolution, result.file.on_workpiece);
     if (result.program) print_program(*result.program);
-    for (const std::string& warning : result.warnings) fmt::print("warning      {}\n", warning);
-    for (const std::string& note : result.notes) fmt::print("note         {}\n", note);
+    print_notes(result.warnings, "warning      ");
+    print_notes(result.notes, "note         ");
   }
   return reached(result) ? done : not_reached;
 }

@@ -1,18 +1,33 @@
 #include <fmt/format.h>
 
+#include "robomill/base/printable.hpp"
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/hits_toml.hpp"
+#include "robomill/formats/units.hpp"
 #include "robomill/modal/hits.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
 namespace {
 
+void print_peaks(const std::vector<modal::FrfGrade>& grades) {
+  fmt::print("\nHighest peaks in the band that can be trusted (µm/N)\n");
+  for (const modal::FrfGrade& grade : grades) {
+    std::string peaks;
+    for (const modal::FrfPeak& peak : grade.peaks) {
+      peaks += fmt::format("{}{:.4g} Hz {:.3g}", peaks.empty() ? "" : ", ", peak.frequency_hz,
+                           peak.receptance_m_per_n / units::um);
+    }
+    fmt::print("{:<6} {}\n", to_string(grade.name), peaks.empty() ? "none stands out" : peaks);
+  }
+}
+
 void print_summary(const modal::FrfResult& result, const std::vector<std::string>& read_notes) {
   for (const modal::HitVerdict& hit : result.hits) {
     std::string reasons;
     for (const std::string& reason : hit.reasons) reasons += (reasons.empty() ? "" : "; ") + reason;
-    fmt::print("{:<10} {} {}\n", hit.accepted ? "accepted" : "rejected", hit.file, reasons);
+    fmt::print("{:<10} {} {}\n", hit.accepted ? "accepted" : "rejected", printable(hit.file), reasons);
   }
   fmt::print("\nFRF    grade   coherence  excited band\n");
   for (const modal::FrfGrade& grade : result.grades) {
@@ -23,9 +38,10 @@ void print_summary(const modal::FrfResult& result, const std::vector<std::string
       fmt::print("       {}: {}\n", grade.faults[i], i < grade.remedies.size() ? grade.remedies[i] : "");
     }
   }
+  print_peaks(result.grades);
   fmt::print("\nTrustworthy from {:.4g} Hz.\n", result.lowest_trustworthy_frequency_hz);
-  for (const std::string& note : read_notes) fmt::print("{}\n", note);
-  for (const std::string& note : result.notes) fmt::print("{}\n", note);
+  print_notes(read_notes, "");
+  print_notes(result.notes, "");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/joint_json.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -40,8 +41,8 @@ void print_summary(const coupling::JointFitResult& fit, const std::vector<std::s
   for (const coupling::JointKnowledge& knowledge : fit.knowledge) {
     if (!knowledge.note.empty()) fmt::print("{}\n", knowledge.note);
   }
-  for (const std::string& note : fit.notes) fmt::print("{}\n", note);
-  for (const std::string& note : read_notes) fmt::print("Note: {}\n", note);
+  print_notes(fit.notes, "");
+  print_notes(read_notes, "Note: ");
 }
 
 /// An error about the measured FRFs names their file, any other the assembly's.

@@ -11,12 +11,14 @@
 #include "robomill/formats/lobes_toml.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
 namespace {
 
-void print_summary(const stability::LobesResult& result, const stability::SurfaceMap& surface) {
+void print_summary(const stability::LobesResult& result, const stability::SurfaceMap& surface,
+                   const std::vector<std::string>& notes) {
   for (const stability::PointResult& point : result.points) {
     fmt::print("{:.6g} rpm, {:.4g} mm: ", point.spindle_speed_rad_per_s / units::rpm, point.axial_depth_m / units::mm);
     if (std::isfinite(point.spectral_radius)) {
@@ -57,6 +59,7 @@ void print_summary(const stability::LobesResult& result, const stability::Surfac
     fmt::print("{} points are less accurate than the tolerance; their error_estimate says how much.\n",
                result.uncertain);
   }
+  print_notes(notes, "Note: ");
 }
 
 std::string percent(double share) {
@@ -94,6 +97,7 @@ Exit compare(const formats::LobesFile& file, const Common& common, Progress& pro
   fmt::print(
       "Limits at {} speeds; errors are against the first row, differ counts speeds at which only one has a limit.\n",
       comparison.spindle_speed_rad_per_s.size());
+  print_notes(file.notes, "Note: ");
   return done;
 }
 
@@ -126,7 +130,7 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
   } else if (!common.output.empty()) {
     formats::write_file(common.output, formats::lobes_json(result, uncertain, surface));
   }
-  if (common.wants_summary()) print_summary(result, surface);
+  if (common.wants_summary()) print_summary(result, surface, file.notes);
   return done;
 }
 

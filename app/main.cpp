@@ -3,9 +3,12 @@
 #include <exception>
 #include <functional>
 #include <new>
+#include <sstream>
+#include <string>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/base/printable.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
@@ -63,6 +66,7 @@ CommandLine::CommandLine() {
   sub->add_option("--modes", modes.modes, "exactly this many modes")->check(CLI::PositiveNumber);
   sub->add_option("--method", modes.method, "hybrid, pso or lscf")->check(CLI::IsMember({"hybrid", "pso", "lscf"}));
   sub->add_option("--config", modes.config, "modes.toml: every option of the fit");
+  sub->add_flag("--accept-fit", modes.accept_fit, "take modes whose relative error is 20 % or more");
 
   sub = verb("couple", "a tool in a holder to the FRFs at its tip, without a tap test",
              [this](Progress& p) { return run(couple, common, p); });
@@ -178,11 +182,21 @@ CommandLine::CommandLine() {
   sub = verb("plan", "the whole job: hits to safe cutting conditions",
              [this](Progress& p) { return run(plan, common, p); });
   sub->add_option("job", plan.job, "job.toml")->required();
+  sub->add_flag("--accept-fit", plan.accept_fit, "go on with modes whose relative error is 20 % or more");
 }
 
 int report_error(const char* text, Exit exit) {
-  std::fprintf(stderr, "robomill: %s\n", text);
+  std::fprintf(stderr, "robomill: %s\n", printable(text).c_str());
   return exit;
+}
+
+/// Help to standard output, or what is wrong with the arguments, whose bytes may be anybody's.
+Exit report_usage(const CLI::App& parser, const CLI::ParseError& error) {
+  std::stringstream out, err;
+  const int code = parser.exit(error, out, err);
+  std::fputs(out.str().c_str(), stdout);
+  for (std::string row; std::getline(err, row);) std::fprintf(stderr, "%s\n", printable(row).c_str());
+  return code == 0 ? done : wrong_usage;
 }
 
 int run_chosen(int argc, char** argv) {
@@ -190,7 +204,7 @@ int run_chosen(int argc, char** argv) {
   try {
     line.parser.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return line.parser.exit(error) == 0 ? done : wrong_usage;
+    return report_usage(line.parser, error);
   }
   try {
     set_thread_count(line.common.threads);

@@ -8,6 +8,7 @@
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/modes_files.hpp"
 #include "robomill/modal/fit.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -35,12 +36,16 @@ void print_summary(const modal::FitResult& fit) {
   for (std::size_t k = 0; k < fit.model.modes.size(); ++k) {
     const modal::Mode& mode = fit.model.modes[k];
     const auto spread = [](double std) { return std::isfinite(std) ? fmt::format(" ± {:.2g}", std) : std::string(); };
-    fmt::print("{:>4}  {:.6g}{}  {:.4g}{}\n", k + 1, mode.frequency_hz, spread(mode.frequency_std_hz),
-               100.0 * mode.damping_ratio, spread(100.0 * mode.damping_ratio_std));
+    std::string bounds;
+    for (const modal::FitBound bound : fit.bounds_of(static_cast<int>(k) + 1)) {
+      bounds += fmt::format("  at {}", to_string(bound));
+    }
+    fmt::print("{:>4}  {:.6g}{}  {:.4g}{}{}\n", k + 1, mode.frequency_hz, spread(mode.frequency_std_hz),
+               100.0 * mode.damping_ratio, spread(100.0 * mode.damping_ratio_std), bounds);
   }
   fmt::print("\n{:.4g} to {:.4g} Hz: relative error {:.4g}, mean relative error {:.4g}\n", fit.band_low_hz,
              fit.band_high_hz, fit.relative_error, fit.mean_relative_error);
-  for (const std::string& warning : fit.warnings) fmt::print("Warning: {}\n", warning);
+  print_notes(fit.warnings, "Warning: ");
 }
 
 }  // namespace
@@ -52,18 +57,23 @@ Exit run(const ModesCommand& command, const Common& common, Progress& progress) 
   const formats::FrfFile file = formats::read_frfs(command.inputs, command.as);
   modal::FitOptions options = options_of(command, common);
   if (file.added_decay_per_s > 0.0) options.exponential_decay_per_s = file.added_decay_per_s;
-  const modal::FitResult fit = modal::fit_modes(file.set, options, progress);
+  modal::FitResult fit = modal::fit_modes(file.set, options, progress);
+  fit.accepted = command.accept_fit;
   if (common.to_stdout()) {
     fmt::print("{}", formats::modes_json(fit));
   } else if (!common.output.empty()) {
     formats::write_file(common.output, formats::modes_json(fit));
   }
   if (common.wants_summary()) {
-    for (const std::string& note : file.notes) fmt::print("Note: {}\n", note);
+    print_notes(file.notes, "Note: ");
     print_summary(fit);
   }
-  if (fit.status == modal::FitResult::Status::converged) return done;
-  fmt::print(stderr, "robomill: the fit did not converge\n");
+  if (fit.status != modal::FitResult::Status::converged) {
+    fmt::print(stderr, "robomill: the fit did not converge\n");
+    return not_reached;
+  }
+  if (fit.usable()) return done;
+  fmt::print(stderr, "robomill: the modes do not describe the FRFs; --accept-fit takes them all the same\n");
   return not_reached;
 }
 

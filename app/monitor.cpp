@@ -1,4 +1,5 @@
 #include "robomill/monitor/monitor.hpp"
+#include "robomill/base/printable.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -154,10 +155,11 @@ void print_event(std::FILE* to, const MonitorEvent& event) {
       break;
     }
     case MonitorEvent::Kind::recording:
-      fmt::print(to, "recorded {}", event.file);
+      fmt::print(to, "recorded {}", printable(event.file));
       break;
     default:
-      fmt::print(to, "{}{}: {}", event.what, event.count > 1 ? fmt::format(" ({})", event.count) : "", event.message);
+      fmt::print(to, "{}{}: {}", event.what, event.count > 1 ? fmt::format(" ({})", event.count) : "",
+                 printable(event.message));
   }
   fmt::print(to, "\n");
   std::fflush(to);
@@ -251,8 +253,8 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   if (recorder) write_report(command.report, monitor_page(recorder->run(), file, input.name));
   if (common.wants_summary()) {
     const MetricValues& m = session.metrics();
-    fmt::print("{:.3f} s of {} heard in {} decisions, {} alarm{}.\n", session.time_s(), input.name, m.decisions.load(),
-               m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
+    fmt::print("{:.3f} s of {} heard in {} decisions, {} alarm{}.\n", session.time_s(), printable(input.name),
+               m.decisions.load(), m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
   }
   return stop ? interrupted : done;
 }

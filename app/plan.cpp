@@ -1,8 +1,10 @@
 #include "robomill/plan/plan.hpp"
+#include "robomill/base/printable.hpp"
 
 #include <fmt/format.h>
 
 #include "robomill/formats/units.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -17,7 +19,8 @@ void print_operation(const char* label, const plan::Operation& op) {
 void print_summary(const plan::PlanResult& result) {
   if (result.hits) {
     for (const modal::HitVerdict& hit : result.hits->hits) {
-      if (!hit.accepted) fmt::print("rejected     {}: {}\n", hit.file, hit.reasons.empty() ? "" : hit.reasons.front());
+      if (!hit.accepted)
+        fmt::print("rejected     {}: {}\n", printable(hit.file), hit.reasons.empty() ? "" : hit.reasons.front());
     }
   }
   if (result.prediction && !result.prediction->peaks.empty()) {
@@ -29,7 +32,7 @@ void print_summary(const plan::PlanResult& result) {
     print_operation("recommended", *result.recommendation.recommended);
     for (const plan::Operation& op : result.recommendation.alternatives) print_operation("alternative", op);
   } else {
-    fmt::print("no safe depth: {}\n", result.recommendation.reason);
+    fmt::print("{}: {}\n", result.has_lobes() ? "no safe depth" : "no answer", result.recommendation.reason);
   }
   if (result.path) {
     const path::Summary& smoothed = result.path->first().summary;
@@ -41,14 +44,15 @@ void print_summary(const plan::PlanResult& result) {
     fmt::print("test cuts    {} agree, {} disagree, {} without a result\n", count.agree, count.disagree,
                count.not_compared);
   }
-  for (const std::string& warning : result.warnings) fmt::print("warning      {}\n", warning);
+  print_notes(result.warnings, "warning      ");
+  print_notes(result.notes, "note         ");
 }
 
 }  // namespace
 
 Exit run(const PlanCommand& command, const Common& common, Progress& progress) {
   const std::filesystem::path folder = common.to_stdout() ? std::string() : common.output;
-  const plan::PlanResult result = plan::run_job(command.job, common.seed, progress, folder);
+  const plan::PlanResult result = plan::run_job(command.job, common.seed, progress, folder, command.accept_fit);
   if (common.to_stdout()) {
     fmt::print("{}", plan::plan_json(result));
   } else if (!common.output.empty()) {

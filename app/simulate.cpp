@@ -4,6 +4,7 @@
 
 #include "point.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/base/printable.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/lobes_toml.hpp"
 #include "robomill/formats/simulation_files.hpp"
@@ -11,6 +12,7 @@
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/simulation/drilling.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -39,11 +41,16 @@ void fit_where_measured(const std::filesystem::path& path, modal::FrfSet& measur
                         Progress& progress) {
   if (measured.frfs.empty()) return;
   const modal::FitResult fit = modal::fit_modes(measured, {}, progress);
+  if (!fit.usable()) {
+    throw InvalidInput(
+        path.string(), fmt::format("the modes fitted to it differ from it by {:.3g} %", 100.0 * fit.relative_error),
+        "Fit the band in which it can be trusted with robomill modes, and name the result as dynamics.modes");
+  }
   model = fit.model;
   measured = {};
   if (told) {
-    fmt::print("{}: {} modes fitted, {:.2g} % of the FRFs left over.\n", path.filename().string(), model.modes.size(),
-               100.0 * fit.relative_error);
+    fmt::print("{}: {} modes fitted, {:.2g} % of the FRFs left over.\n", printable(path.filename().string()),
+               model.modes.size(), 100.0 * fit.relative_error);
   }
 }
 
@@ -51,6 +58,9 @@ formats::LobesFile read_cut(const std::filesystem::path& path, bool told, Progre
   formats::LobesFile file = formats::read_lobes(path);
   formats::load_dynamics(file);
   stability::LobesProblem& problem = file.problem;
+  if (told) {
+    print_notes(file.notes, "Note: ");
+  }
   fit_where_measured(file.frf, problem.measured, problem.dynamics, told, progress);
   fit_where_measured(file.workpiece_frf, problem.workpiece_measured, problem.workpiece_dynamics, told, progress);
   file.validate();

@@ -1,4 +1,5 @@
 #include "robomill/plan/smooth.hpp"
+#include "robomill/base/printable.hpp"
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include "robomill/formats/text.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/report/report.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -85,8 +87,8 @@ void print_summary(const plan::SmoothResult& result) {
   if (result.smoothed.robot_program) print_run(*result.smoothed.robot_program);
   fmt::print("\n{} breaches of limits\n", summary.check.violations());
   for (const program::Skipped& item : result.smoothed.skipped)
-    fmt::print("skipped    line {}: {}\n", item.line, item.what);
-  for (const std::string& note : result.smoothed.notes) fmt::print("note       {}\n", note);
+    fmt::print("skipped    line {}: {}\n", item.line, printable(item.what));
+  print_notes(result.smoothed.notes, "note       ");
 }
 
 void write_report(const std::filesystem::path& path, const plan::SmoothResult& result) {

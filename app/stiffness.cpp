@@ -9,6 +9,7 @@
 #include "robomill/formats/stiffness_files.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/robot/pose.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -26,7 +27,7 @@ void print_summary(const robot::IdentifiedStiffness& found, const formats::CellF
   }
   fmt::print("\n{} loads, residual {:.3g} mm (root mean square), R² = {:.6f}, {} iterations\n", found.residual_m.cols(),
              found.rms_m / units::mm, found.r_squared, found.iterations);
-  for (const std::string& note : cell.notes) fmt::print("Note: {}\n", note);
+  print_notes(cell.notes, "Note: ");
 }
 
 Eigen::Vector3d point_of(const StiffnessCommand& command, const robot::Cell& cell) {

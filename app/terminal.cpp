@@ -7,6 +7,8 @@
 #include <csignal>
 #include <cstdio>
 
+#include "robomill/base/printable.hpp"
+
 namespace robomill::app {
 namespace {
 
@@ -28,6 +30,10 @@ const std::atomic<bool>& stop_on_signal() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   return stop;
+}
+
+void print_notes(const std::vector<std::string>& notes, std::string_view label) {
+  for (const std::string& note : notes) fmt::print("{}{}\n", label, printable(note));
 }
 
 ProgressBar::ProgressBar(bool quiet)

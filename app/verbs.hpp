@@ -35,6 +35,7 @@ struct ModesCommand {
   int modes = 0;                ///< 0: chosen by the fit
   std::optional<std::string> method;
   std::filesystem::path config;
+  bool accept_fit = false;  ///< modes that do not describe the FRFs will do
 };
 struct CoupleCommand {
   std::filesystem::path input;
@@ -111,6 +112,7 @@ struct CalibrateCommand {
 };
 struct PlanCommand {
   std::filesystem::path job;
+  bool accept_fit = false;  ///< go on with modes that do not describe the FRFs
 };
 
 Exit run(const FrfCommand& command, const Common& common, Progress& progress);

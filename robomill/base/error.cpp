@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "robomill/base/printable.hpp"
+
 namespace robomill {
 namespace {
 
@@ -21,7 +23,7 @@ std::string compose(const InvalidInput::Parts& p) {
   text += subject;
   if (!p.rule.empty()) text += (subject.empty() ? "" : value.empty() ? ": " : "; ") + p.rule;
   if (!p.hint.empty()) text += ". " + p.hint;
-  return text;
+  return printable(text);  // names and values come from files
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/gcode.hpp"
+#include "robomill/formats/joint_limits.hpp"
 #include "robomill/formats/text.hpp"
 #include "robomill/formats/toml_file.hpp"
 #include "robomill/formats/units.hpp"
@@ -20,22 +21,25 @@
 namespace robomill::formats {
 namespace {
 
-/// Lists with one value a joint, SI in the file too.
+/// Other lists with one value a joint, SI in the file too.
 struct JointList {
   const char* key;
   const char* member;
   double robot::Joint::*value;
 };
-constexpr std::array<JointList, 8> joint_lists = {{
-    {"robot.joint_min_position", "min_position", &robot::Joint::min_position},
-    {"robot.joint_max_position", "max_position", &robot::Joint::max_position},
-    {"robot.joint_max_velocity", "max_velocity", &robot::Joint::max_velocity},
-    {"robot.joint_max_acceleration", "max_acceleration", &robot::Joint::max_acceleration},
-    {"robot.joint_max_jerk", "max_jerk", &robot::Joint::max_jerk},
+constexpr std::array<JointList, 3> joint_lists = {{
     {"robot.joint_stiffness_n_m_per_rad", "stiffness", &robot::Joint::stiffness},
     {"robot.joint_damping_n_m_s_per_rad", "damping", &robot::Joint::damping},
     {"robot.joint_rotor_inertia_kg_m2", "rotor_inertia", &robot::Joint::rotor_inertia},
 }};
+
+/// Where each of joint_limits goes, of an arm and of the hybrid machine.
+constexpr std::array<double robot::Joint::*, joint_limits.size()> of_joint = {
+    &robot::Joint::min_position, &robot::Joint::max_position, &robot::Joint::max_velocity,
+    &robot::Joint::max_acceleration, &robot::Joint::max_jerk};
+constexpr std::array<robot::Position6 robot::JointLimits::*, joint_limits.size()> of_hybrid = {
+    &robot::JointLimits::min_position, &robot::JointLimits::max_position, &robot::JointLimits::max_velocity,
+    &robot::JointLimits::max_acceleration, &robot::JointLimits::max_jerk};
 
 std::optional<Eigen::Vector3d> read_vector(TomlFile& file, const char* key, const char* member, double factor) {
   std::vector<double> values;
@@ -117,7 +121,18 @@ void read_links(TomlFile& file, const std::vector<robot::DhRow>& rows, robot::Ar
   }
 }
 
-void read_joint_lists(TomlFile& file, robot::Arm& arm) {
+std::vector<bool> sliding(const robot::Arm& arm) {
+  std::vector<bool> slides;
+  for (const robot::Joint& joint : arm.joints) slides.push_back(joint.prismatic);
+  return slides;
+}
+
+void read_joint_lists(TomlFile& file, robot::Arm& arm, std::vector<std::string>& notes) {
+  for (std::size_t k = 0; k < joint_limits.size(); ++k) {
+    const auto values = read_joint_limit(file, joint_limits[k], sliding(arm), notes);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      arm.joints[i].*of_joint[k] = values[i].value_or(arm.joints[i].*of_joint[k]);
+  }
   for (const JointList& list : joint_lists) {
     std::vector<double> values;
     if (!file.numbers(list.key, list.member, 1.0, values)) continue;
@@ -130,11 +145,17 @@ void read_joint_lists(TomlFile& file, robot::Arm& arm) {
 }
 
 /// An error about a joint's member, told with the list's key and the joint's place in it.
-InvalidInput located(const TomlFile& file, const InvalidInput& error) {
+InvalidInput located(const TomlFile& file, const robot::Arm& arm, const InvalidInput& error) {
   const InvalidInput::Parts& parts = error.parts();
+  const auto is_of = [&](const char* member) {
+    return parts.field.starts_with("joints[") && parts.field.ends_with(std::string("].") + member);
+  };
+  for (const JointLimit& limit : joint_limits) {
+    if (!is_of(limit.name)) continue;
+    return located_limit(file, limit, sliding(arm), std::stoul(parts.field.substr(7)) - 1, error);
+  }
   for (const JointList& list : joint_lists) {
-    if (!parts.field.starts_with("joints[") || !parts.field.ends_with(std::string("].") + list.member)) continue;
-    if (!file.has(list.key)) continue;
+    if (!is_of(list.member) || !file.has(list.key)) continue;
     InvalidInput::Parts told = file.refuse(list.key, parts.rule, parts.hint).parts();
     told.field += parts.field.substr(6, parts.field.find(']') - 5);
     told.number = parts.number;
@@ -171,7 +192,7 @@ void read_arm(TomlFile& file, CellFile& out) {
     rows = read_dh(file);
     arm = file.locate([&] { return robot::arm_from_dh(rows); });
   }
-  read_joint_lists(file, arm);
+  read_joint_lists(file, arm, out.notes);
   read_links(file, rows, arm);
   robot::Joint& first = arm.joints.front();
   first.before = read_pose(file, "robot.base_origin_mm", "robot.base_rotation_deg") * first.before;
@@ -180,7 +201,7 @@ void read_arm(TomlFile& file, CellFile& out) {
   try {
     arm.validate();
   } catch (const InvalidInput& error) {
-    throw located(file, error);
+    throw located(file, arm, error);
   }
 }
 
@@ -202,7 +223,7 @@ void read_start(TomlFile& file, CellFile& out) {
   }
 }
 
-constexpr Eigen::Index hybrid_joints = 5;
+constexpr std::size_t hybrid_joints = 5;  // q1, q2, q3 the legs, q4, q5 the slides
 
 /// Sizes of the hybrid machine.
 struct Size {
@@ -218,20 +239,6 @@ constexpr std::array<Size, 5> hybrid_sizes = {{
     {"robot.platform_to_flange_mm", "platform_to_flange_m", &robot::HybridMachine::platform_to_flange_m},
 }};
 
-/// Limits of its five joints, SI in the file too.
-struct LimitList {
-  const char* key;
-  const char* member;
-  robot::Position6 robot::JointLimits::*values;
-};
-constexpr std::array<LimitList, 5> limit_lists = {{
-    {"robot.joint_min_position", "min_position", &robot::JointLimits::min_position},
-    {"robot.joint_max_position", "max_position", &robot::JointLimits::max_position},
-    {"robot.joint_max_velocity", "max_velocity", &robot::JointLimits::max_velocity},
-    {"robot.joint_max_acceleration", "max_acceleration", &robot::JointLimits::max_acceleration},
-    {"robot.joint_max_jerk", "max_jerk", &robot::JointLimits::max_jerk},
-}};
-
 void read_hybrid(TomlFile& file, CellFile& out) {
   for (const char* key : {"robot.dh", "robot.urdf", "robot.links", "robot.start_joints_deg", "robot.gamma_deg",
                           "tool.mount_origin_mm", "tool.mount_rotation_deg"}) {
@@ -239,17 +246,12 @@ void read_hybrid(TomlFile& file, CellFile& out) {
   }
   robot::HybridMachine& machine = out.hybrid.emplace();
   for (const Size& size : hybrid_sizes) file.number(size.key, size.member, units::mm, machine.*size.value);
-  for (const LimitList& list : limit_lists) {
-    std::vector<double> values;
-    if (!file.numbers(list.key, list.member, 1.0, values)) continue;
-    if (static_cast<Eigen::Index>(values.size()) != hybrid_joints) {
-      throw file.refuse(
-          list.key, fmt::format("must hold one number a joint, {}: q1, q2, q3 the legs, q4, q5 the slides, in m; it "
-                                "holds {}",
-                                hybrid_joints, values.size()));
-    }
-    for (Eigen::Index i = 0; i < hybrid_joints; ++i) {
-      (machine.limits.*list.values)(i) = values[static_cast<std::size_t>(i)];
+  const std::vector<bool> slides(hybrid_joints, true);
+  for (std::size_t k = 0; k < joint_limits.size(); ++k) {
+    const auto values = read_joint_limit(file, joint_limits[k], slides, out.notes);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      double& value = (machine.limits.*of_hybrid[k])(static_cast<Eigen::Index>(i));
+      value = values[i].value_or(value);
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "robomill/formats/cell_toml.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -234,6 +235,96 @@ TEST(CellToml, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(said("[robot]\nurdf = \"two.urdf\"\nurdf_tip = \"tool0\"\n").find("two.urdf"), std::string::npos);
 }
 
+// The same limits with their unit in the key.
+TEST(CellToml, TakesJointLimitsWithTheirUnit) {
+  const Folder folder;
+  const auto joints = [&](const std::string& text) {
+    return read_cell(folder.file("cell.toml", text)).cell.arm.joints;
+  };
+  const std::vector<robot::Joint> plain = joints(good);
+  std::string degrees = good;
+  const auto in_degrees = [&](const char* bare, const char* key, double robot::Joint::*value) {
+    const std::size_t from = degrees.find(bare);
+    std::string list = std::string(key) + " = [";
+    for (const robot::Joint& joint : plain) list += fmt::format("{}, ", joint.*value / (arms::pi / 180.0));
+    degrees.replace(from, degrees.find('\n', from) - from, list + "]");
+  };
+  in_degrees("joint_min_position", "joint_min_position_deg", &robot::Joint::min_position);
+  in_degrees("joint_max_position", "joint_max_position_deg", &robot::Joint::max_position);
+  in_degrees("joint_max_velocity", "joint_max_velocity_deg_per_s", &robot::Joint::max_velocity);
+  in_degrees("joint_max_acceleration", "joint_max_acceleration_deg_per_s2", &robot::Joint::max_acceleration);
+  in_degrees("joint_max_jerk", "joint_max_jerk_deg_per_s3", &robot::Joint::max_jerk);
+  for (const std::string& text : {degrees, with("joint_max_velocity", "joint_max_velocity_rad_per_s")}) {
+    const std::vector<robot::Joint> read = joints(text);
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      EXPECT_NEAR(read[i].min_position, plain[i].min_position, 1e-14);
+      EXPECT_NEAR(read[i].max_position, plain[i].max_position, 1e-14);
+      EXPECT_NEAR(read[i].max_velocity, plain[i].max_velocity, 1e-14);
+      EXPECT_NEAR(read[i].max_acceleration, plain[i].max_acceleration, 1e-14);
+      EXPECT_NEAR(read[i].max_jerk, plain[i].max_jerk, 1e-12);
+    }
+  }
+  const auto said = [&](const std::string& row) {
+    return refusal([&] { (void)joints(with("joint_max_velocity = [2, 2, 2, 3, 3, 4]", row)); });
+  };
+  EXPECT_NE(said("joint_max_velocity_deg_per_s = [120, 115, 112, 179, -172, 219]")
+                .find("cell.toml:13: robot.joint_max_velocity_deg_per_s[5] = -172 deg/s; must be >= 0"),
+            std::string::npos);
+  EXPECT_NE(said("joint_max_velocity_deg_per_s = [120]").find("one number for each joint that turns, 6; it holds 1"),
+            std::string::npos);
+  EXPECT_NE(said("joint_max_velocity_mm_per_s = [120]").find("one number for each joint that slides, 0; it holds 1"),
+            std::string::npos);
+  EXPECT_NE(said("joint_max_velocity = [2, 2, 2, 3, 3, 4]\njoint_max_velocity_deg_per_s = [1, 2, 3, 4, 5, 6]")
+                .find("robot.joint_max_velocity_deg_per_s: must not stand beside robot.joint_max_velocity"),
+            std::string::npos);
+}
+
+// A slide, a turn, a slide: each list holds the joints of its kind.
+TEST(CellToml, MixedMachinesGiveAListForEachKindOfJoint) {
+  const Folder folder;
+  folder.file("mixed.urdf", R"(<robot name="mixed"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+<joint name="1" type="prismatic"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/>
+<limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
+<joint name="2" type="revolute"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
+<joint name="3" type="prismatic"><parent link="c"/><child link="d"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>)");
+  const auto read = [&](const std::string& rows) {
+    return read_cell(folder.file("cell.toml", "[robot]\nurdf = \"mixed.urdf\"\nurdf_tip = \"d\"\n" + rows))
+        .cell.arm.joints;
+  };
+  const std::vector<robot::Joint> joints = read(
+      "joint_max_velocity_mm_per_s = [500, 250]\njoint_max_velocity_deg_per_s = [180]\n"
+      "joint_max_position_mm = [400, 300]\n");
+  EXPECT_DOUBLE_EQ(joints[0].max_velocity, 0.5);
+  EXPECT_DOUBLE_EQ(joints[1].max_velocity, arms::pi);
+  EXPECT_DOUBLE_EQ(joints[2].max_velocity, 0.25);
+  EXPECT_DOUBLE_EQ(joints[2].max_position, 0.3);
+  EXPECT_EQ(joints[1].max_position, 1.0) << "of the URDF";
+  EXPECT_EQ(read("joint_max_velocity = [0.5, 3, 0.25]\n")[1].max_velocity, 3.0);
+  const std::string said = refusal([&] { (void)read("joint_max_velocity_mm_per_s = [500, -250]\n"); });
+  EXPECT_NE(said.find("cell.toml:4: robot.joint_max_velocity_mm_per_s[2] = -250 mm/s"), std::string::npos) << said;
+}
+
+// 120 °/s are no 120 rad/s: nineteen turns a second.
+TEST(CellToml, DoubtsBareNumbersThatAreLikelyInDegreesOrMillimetres) {
+  const Folder folder;
+  EXPECT_TRUE(read_cell(folder.file("cell.toml", good)).notes.empty());
+  const CellFile fast = read_cell(folder.file("cell.toml", with("[2, 2, 2, 3, 3, 4]", "[2, 115, 112, 179, 172, 219]")));
+  ASSERT_EQ(fast.notes.size(), 1U);
+  EXPECT_NE(fast.notes[0].find("robot.joint_max_velocity holds 115 rad/s for joint 2: if it is in °/s, write "
+                               "robot.joint_max_velocity_deg_per_s"),
+            std::string::npos)
+      << fast.notes[0];
+  const CellFile wide = read_cell(folder.file("cell.toml", with("[3, 1, 3, 6, 2, 6]", "[185, 1, 3, 6, 2, 6]")));
+  ASSERT_EQ(wide.notes.size(), 1U);
+  EXPECT_NE(wide.notes[0].find("write robot.joint_max_position_deg"), std::string::npos) << wide.notes[0];
+  const CellFile sure =
+      read_cell(folder.file("cell.toml", with("joint_max_velocity = [2, 2, 2, 3, 3, 4]",
+                                              "joint_max_velocity_rad_per_s = [30, 30, 30, 30, 30, 30]")));
+  EXPECT_TRUE(sure.notes.empty()) << "the unit is said";
+}
+
 const std::string hybrid = R"([robot]
 kind = "hybrid-2upr-rpu"
 platform_offset_mm = 130
@@ -280,12 +371,16 @@ TEST(CellToml, SaysWhatIsWrongWithAHybridMachine) {
   expect("platform_offset_mm = 130", "base_half_width_mm = 0",
          "cell.toml:3: robot.base_half_width_mm = 0 mm; must be > 0");
   expect("[0.4, 0.4, 0.4, -1, -1]", "[0.4, 0.4, 0.4]",
-         "cell.toml:4: robot.joint_min_position: must hold one number a joint, 5: q1, q2, q3 the legs");
+         "cell.toml:4: robot.joint_min_position: must hold one number a joint, 5; it holds 3");
   expect("[0.4, 0.4, 0.4, -1, -1]", "[0.4, 0.4, 1.4, -1, -1]",
          "cell.toml:4: robot.joint_min_position[3] = 1.4 m; must be below max_position");
   expect("platform_offset_mm = 130", "dh = [{}]", "cell.toml:3: robot.dh: goes with kind = \"serial\"");
   expect("platform_offset_mm = 130", "gamma_deg = 3", "cell.toml:3: robot.gamma_deg = 3 deg; goes with kind");
   expect("length_mm = 100", "length_mm = -1", "cell.toml:11: tool.length_mm = -1 mm; must be >= 0");
+  expect("joint_min_position = [0.4, 0.4, 0.4, -1, -1]", "joint_min_position_mm = [400, 400, 1400, -1000, -1000]",
+         "cell.toml:4: robot.joint_min_position_mm[3] = 1400 mm; must be below max_position");
+  expect("joint_max_velocity = ", "joint_max_velocity_deg_per_s = ",
+         "cell.toml:6: robot.joint_max_velocity_deg_per_s: must hold one number for each joint that turns, 0");
   EXPECT_NE(refusal([&] {
               (void)read_cell(folder.file("cell.toml", with("gamma_deg = 30", "base_offset_mm = 30")), Robots::any);
             }).find("cell.toml:21: robot.base_offset_mm = 30 mm; goes with kind = \"hybrid-2upr-rpu\""),

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/units.hpp"
@@ -30,6 +32,22 @@ modal::Mode read_inline_mode(TomlFile& file, const std::string& row, const std::
   mode.left = Eigen::VectorXcd::Unit(3, axis) * size;
   mode.right = Eigen::VectorXcd::Unit(3, axis) * std::complex<double>(0.0, -size);
   return mode;
+}
+
+/// Of its own modes a table gives x, y and z; those of which it says nothing, not even [], are none of the structure's.
+void keep_named_directions(const TomlFile& file, const std::string& table, modal::ModalModel& model) {
+  std::vector<Eigen::Index> named;
+  std::vector<modal::Dof> dofs;
+  for (std::size_t i = 0; i < model.responses.size(); ++i) {
+    if (!file.has(table + "." + modal::to_string(model.responses[i]))) continue;
+    named.push_back(static_cast<Eigen::Index>(i));
+    dofs.push_back(model.responses[i]);
+  }
+  model.excitations = model.responses = dofs;
+  for (modal::Mode& mode : model.modes) {
+    mode.left = mode.left(named).eval();
+    mode.right = mode.right(named).eval();
+  }
 }
 
 }  // namespace
@@ -62,6 +80,37 @@ bool read_radial_depth(TomlFile& file, double& radial_depth_m) {
   }
   return file.number("cut.radial_depth_mm", "radial_depth_m", units::mm, radial_depth_m) ||
          file.number("cut.stepover_mm", "radial_depth_m", units::mm, radial_depth_m);
+}
+
+modal::MissingDirections read_missing_directions(TomlFile& file, const std::string& table, modal::ModalModel& own) {
+  modal::MissingDirections out;
+  file.boolean(table + ".equal_directions", out.equal);
+  std::vector<std::string> names;
+  file.texts(table + ".rigid_directions", names);
+  for (const std::string& name : names) {
+    if (name != "x" && name != "y") throw file.refuse(table + ".rigid_directions", "must be a list of \"x\" and \"y\"");
+    out.rigid.push_back(name == "x" ? modal::Axis::x : modal::Axis::y);
+  }
+  if (!own.modes.empty()) keep_named_directions(file, table, own);
+  return out;
+}
+
+std::optional<std::string> complete_directions(modal::ModalModel& modes, modal::FrfSet& measured,
+                                               const modal::MissingDirections& said, const std::string& where,
+                                               const std::string& table) {
+  if (modes.modes.empty() && measured.frfs.empty()) return std::nullopt;
+  const bool fitted = !modes.modes.empty();
+  try {
+    require_said(fitted ? unknown_directions(modes) : unknown_directions(measured), said);
+    if (said.equal && fitted) modes = with_equal_directions(modes);
+    if (said.equal && !fitted) measured = with_equal_directions(measured);
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    parts.where = where;
+    parts.field = parts.field.empty() ? table : table + "." + parts.field;
+    throw InvalidInput(std::move(parts));
+  }
+  return in_words(said);
 }
 
 void read_structure(TomlFile& file, const std::string& table, std::filesystem::path& modes, std::filesystem::path& frf,

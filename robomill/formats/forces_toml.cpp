@@ -190,13 +190,17 @@ ForcesFile read(TomlFile& file, const std::filesystem::path& path, ForcesJob job
     });
   }
   read_robot(file, job, out);
-  const auto structure = [&](const char* table, modal::ModalModel& model) {
+  modal::MissingDirections said;
+  const auto structure = [&](const std::string& table, modal::ModalModel& model) {
     std::filesystem::path modes, frf;
     read_structure(file, table, modes, frf, model);
-    if (!frf.empty()) throw file.refuse(std::string(table) + ".frf", "must be modes here", "Fit them: robomill modes");
+    if (table == "dynamics") said = read_missing_directions(file, table, model);
+    if (!frf.empty()) throw file.refuse(table + ".frf", "must be modes here", "Fit them: robomill modes");
     if (!modes.empty()) model = read_modes(modes);
   };
   structure("dynamics", out.dynamics);
+  modal::FrfSet none;
+  static_cast<void>(complete_directions(out.dynamics, none, said, path.string(), "dynamics"));
   structure("workpiece_dynamics", out.workpiece_dynamics);
   file.done();
   return out;

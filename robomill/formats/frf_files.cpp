@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/file.hpp"
+#include "robomill/formats/frf_check.hpp"
 #include "robomill/formats/frf_parts.hpp"
 
 namespace robomill::formats {
@@ -163,7 +164,9 @@ FrfFile read_frfs(const std::vector<std::filesystem::path>& paths, const std::ve
   for (const std::filesystem::path& path : paths) {
     all.push_back(read_parts(path));
     if (all.back().frequency_hz.size() == 0) throw InvalidInput(path.string(), "holds no line");
+    require_frequencies(all.back().frequency_hz, path.string());
     integrate(all.back());
+    check_content(all.back());
   }
   agree_on_zero(all);
   FrfFile out;

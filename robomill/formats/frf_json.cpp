@@ -23,6 +23,15 @@ Json set_json(const modal::FrfSet& set) {
   return json;
 }
 
+Json peaks_json(const std::vector<modal::FrfPeak>& peaks) {
+  Json rows = Json::array();
+  for (const modal::FrfPeak& peak : peaks) {
+    rows.push_back(
+        {{"frequency_hz", number(peak.frequency_hz)}, {"receptance_m_per_n", number(peak.receptance_m_per_n)}});
+  }
+  return rows;
+}
+
 Json grade_json(const modal::FrfGrade& grade) {
   return {{"grade", modal::to_string(grade.grade)},
           {"hits", grade.hits},
@@ -31,6 +40,7 @@ Json grade_json(const modal::FrfGrade& grade) {
           {"reciprocity_error", number(grade.reciprocity_error)},
           {"excited_band_hz", Json::array({number(grade.excited_low_hz), number(grade.excited_high_hz)})},
           {"lowest_trustworthy_frequency_hz", number(grade.lowest_trustworthy_frequency_hz)},
+          {"peaks", peaks_json(grade.peaks)},
           {"faults", grade.faults},
           {"remedies", grade.remedies}};
 }

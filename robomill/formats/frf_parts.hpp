@@ -16,6 +16,7 @@ struct FrfPart {
   Eigen::VectorXcd values = {};                    ///< receptance, mobility or accelerance in SI
   Eigen::VectorXd coherence = {}, deviation = {};  ///< empty where the file has none; deviation as values
   int derivatives = 0;                             ///< 0 receptance, 1 mobility, 2 accelerance
+  bool stated = true;                              ///< the file says what the values are; else they are guessed
 };
 
 /// The FRFs of one file over their common axis.
@@ -28,7 +29,8 @@ struct FrfParts {
 };
 
 /// Columns frequency_hz, xx_re_m_per_n, xx_im_m_per_n, …, xx_coherence, xx_deviation_m_per_n, in these units or those
-/// of a mobility or accelerance; or no names and a frequency, then pairs of real and imaginary parts.
+/// of a mobility or accelerance, or xx_magnitude_m_per_n and xx_phase_deg or _rad; or three columns with a header in
+/// words ("Magnitude (m/N)"); or no names and a frequency, then pairs of real and imaginary parts.
 [[nodiscard]] FrfParts read_frf_table(const std::filesystem::path& path);
 /// Functions of type 4 with coherences of type 6, in the units that the file says.
 [[nodiscard]] FrfParts read_frf_uff(const std::filesystem::path& path);

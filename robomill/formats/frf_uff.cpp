@@ -121,6 +121,7 @@ class UffFrfs {
     }
     if (response.quantity == Quantity::unknown) {
       note(function, "does not say what it holds; taken as a receptance in m/N");
+      part.stated = false;
     } else {
       part.derivatives = static_cast<int>(response.quantity);
     }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/cut_fields.hpp"
 #include "robomill/formats/toml_file.hpp"
 #include "robomill/formats/units.hpp"
 
@@ -32,7 +33,8 @@ void read_sources(TomlFile& file, Job& job) {
     job.band_low_hz = band[0];
     job.band_high_hz = band[1];
   }
-  file.boolean("job.equal_directions", job.equal_directions);
+  modal::ModalModel none;
+  job.directions = read_missing_directions(file, "job", none);
   file.integer("job.fit_modes", "fit_modes", job.fit_modes);
   const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1) +
                       (job.assembly.empty() ? 0 : 1);
@@ -43,9 +45,10 @@ void read_sources(TomlFile& file, Job& job) {
   if (measured && job.assembly.empty()) {
     throw file.refuse("job.measured", "goes with job.assembly", "FRFs to start from are job.frf");
   }
-  if (job.equal_directions && !job.assembly.empty()) {
-    throw file.refuse("job.equal_directions", "must not stand beside job.assembly",
-                      "Both directions of an assembly are predicted");
+  for (const char* key : {"job.equal_directions", "job.rigid_directions"}) {
+    if (!job.assembly.empty() && file.has(key)) {
+      throw file.refuse(key, "must not stand beside job.assembly", "Both directions of an assembly are predicted");
+    }
   }
   file.require("job.lobes", "It names the cut: lobes.toml");
 }
@@ -129,7 +132,7 @@ void Job::validate() const {
 
 Job read_job(const std::filesystem::path& path) {
   TomlFile file(path);
-  Job job;
+  Job job{.file = path};
   read_sources(file, job);
   read_limits(file, job);
   read_cuts(file, job);

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "robomill/modal/directions.hpp"
+
 namespace robomill::formats {
 
 /// What a machinist saw and measured at one test cut.
@@ -28,6 +30,7 @@ struct SpindlePoint {
 /// job.toml. Paths are resolved; an empty one is absent. Exactly one of hits, frf, modes and assembly
 /// is given.
 struct Job {
+  std::filesystem::path file = {};  ///< this one
   std::string title = {};
   std::filesystem::path hits = {}, modes = {}, lobes = {};
   std::filesystem::path assembly = {};  ///< whose tip is predicted …
@@ -38,7 +41,7 @@ struct Job {
   std::vector<std::filesystem::path> frf = {};
   std::vector<std::string> frf_as = {};
   double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data
-  bool equal_directions = false;                 ///< one direction was measured, the other is taken equal to it
+  modal::MissingDirections directions = {};      ///< what an unmeasured direction is taken for
   int fit_modes = 0;                             ///< 0: chosen by the fit
   double max_axial_depth_m = 0.0;                ///< the cutter's flute length; 0: the lobes' range alone
   double max_spindle_speed_rad_per_s = 0.0;      ///< 0: the lobes' range alone

@@ -65,6 +65,16 @@ TEST_F(JobToml, TakesAProgramWithItsCell) {
             folder_.at("cell.toml"));
 }
 
+TEST_F(JobToml, TakesWhatAMissingDirectionIsTakenFor) {
+  const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
+  EXPECT_FALSE(read_job(write("job.toml", source)).directions.equal);
+  EXPECT_TRUE(read_job(write("job.toml", source + "equal_directions = true\n")).directions.equal);
+  EXPECT_EQ(read_job(write("job.toml", source + "rigid_directions = [\"y\"]\n")).directions.rigid,
+            std::vector<modal::Axis>{modal::Axis::y});
+  EXPECT_NE(refusal(source + "rigid_directions = [\"up\"]\n").find("job.toml:4: job.rigid_directions"),
+            std::string::npos);
+}
+
 TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
   const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
   EXPECT_NE(refusal("[job]\nlobes = \"l.toml\"\n").find("exactly one of hits, frf, modes and assembly"),

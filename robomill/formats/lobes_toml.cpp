@@ -3,6 +3,7 @@
 #include <array>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/cut_fields.hpp"
@@ -138,6 +139,7 @@ LobesFile read(TomlFile& file, const std::filesystem::path& path) {
   read_cut(file, out);
   read_forces(file, out.problem.milling);
   read_structure(file, "dynamics", out.modes, out.frf, out.problem.dynamics);
+  if (!out.drilling) out.directions = read_missing_directions(file, "dynamics", out.problem.dynamics);
   file.integers("dynamics.keep_modes", "keep_modes", out.problem.keep_modes);
   read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf, out.problem.workpiece_dynamics);
   read_chart(file, out.options);
@@ -157,6 +159,14 @@ LobesFile read(TomlFile& file, const std::filesystem::path& path) {
 
 }  // namespace
 
+void LobesFile::drop_dynamics() {
+  modes.clear();
+  frf.clear();
+  directions = {};
+  problem.dynamics = {};
+  problem.measured = {};
+}
+
 void LobesFile::validate() const {
   TomlFile file(path);
   static_cast<void>(read(file, path));
@@ -174,8 +184,9 @@ LobesFile read_lobes(const std::filesystem::path& path) {
 void load_dynamics(LobesFile& file) {
   if (!file.modes.empty()) file.problem.dynamics = read_modes(file.modes);
   if (!file.workpiece_modes.empty()) file.problem.workpiece_dynamics = read_modes(file.workpiece_modes);
-  const auto measured = [](const std::filesystem::path& path) {
+  const auto measured = [&file](const std::filesystem::path& path) {
     FrfFile frfs = read_frfs({path});
+    file.notes.insert(file.notes.end(), frfs.notes.begin(), frfs.notes.end());
     if (frfs.added_decay_per_s > 0.0) {
       throw InvalidInput(path.string(), "still holds the damping of an exponential window",
                          "Fit modes, which can do without it, or estimate the FRFs with remove_added_damping");
@@ -184,6 +195,10 @@ void load_dynamics(LobesFile& file) {
   };
   if (!file.frf.empty()) file.problem.measured = measured(file.frf);
   if (!file.workpiece_frf.empty()) file.problem.workpiece_measured = measured(file.workpiece_frf);
+  if (file.drilling) return;
+  const auto words = complete_directions(file.problem.dynamics, file.problem.measured, file.directions,
+                                         file.path.string(), "dynamics");
+  if (words) file.notes.push_back(*words);
 }
 
 }  // namespace robomill::formats

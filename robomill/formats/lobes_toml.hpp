@@ -2,8 +2,11 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/modal/directions.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
@@ -16,6 +19,7 @@ struct LobesFile {
   stability::LobesOptions options;                          ///< without points
   std::filesystem::path modes = {};                         ///< dynamics.modes, resolved; empty where absent
   std::filesystem::path frf = {};                           ///< dynamics.frf, resolved; empty where absent
+  modal::MissingDirections directions = {};                 ///< of the tool's structure
   std::filesystem::path workpiece_modes = {};               ///< workpiece_dynamics.modes, the same
   std::filesystem::path workpiece_frf = {};                 ///< workpiece_dynamics.frf, the same
   std::array<int, 2> surface_grid = {0, 0};                 ///< speeds and depths of the map of surface errors; 0: none
@@ -25,6 +29,10 @@ struct LobesFile {
   bool drilling = false;               ///< cut.kind: the next two count, and of the cut neither angles nor radial depth
   double point_angle_rad = 0.0;        ///< of the drill [rad]; 0: not given
   double feed_per_revolution_m = 0.0;  ///< of the drill [m]
+  std::vector<std::string> notes = {};  ///< sentences for the user, of the files that load_dynamics() read
+
+  /// Forgets the tool's structure: another stands in its place.
+  void drop_dynamics();
   /// What the problem still needs is checked here, with errors in the file's words: call it when dynamics is there.
   /// @throws InvalidInput
   void validate() const;
@@ -34,7 +42,9 @@ struct LobesFile {
 [[nodiscard]] ROBOMILL_API LobesFile read_lobes(const std::filesystem::path& path);
 
 /// Reads the files of modes and of FRFs that it names, of the tool and of the workpiece, into its problem.
-/// @throws InvalidInput, also where an exponential window's damping is still in FRFs: without modes it stays there
+/// @throws InvalidInput, also where an exponential window's damping is still in FRFs (without modes it stays there),
+/// and
+///     where milling needs a direction that was not measured and the file does not say what it is taken for
 ROBOMILL_API void load_dynamics(LobesFile& file);
 
 }  // namespace robomill::formats

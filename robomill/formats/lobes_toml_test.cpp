@@ -77,6 +77,42 @@ TEST(LobesToml, InlineModesHaveTheirModalMass) {
   }
 }
 
+// A direction of the plane that nobody measured is rigid, or like the other, only where the file says so.
+TEST(LobesToml, ADirectionThatIsMissingHasToBeSaid) {
+  const test::Folder folder;
+  const std::string mode = "[{ frequency_hz = 922, damping_ratio = 0.011, modal_mass_kg = 0.03993 }]\n";
+  const std::string cut = good.substr(0, good.find("x = "));
+  const std::string chart = good.substr(good.find("[lobes]"));
+  const auto loaded = [&](const std::string& dynamics) {
+    LobesFile file = read_lobes(folder.file("lobes.toml", cut + dynamics + chart));
+    load_dynamics(file);
+    return file;
+  };
+  const auto said = [&](const std::string& dynamics) {
+    return test::refusal([&] { static_cast<void>(loaded(dynamics)); });
+  };
+  folder.file("x.toml",
+              "[[modes]]\nfrequency_hz = 922\ndamping_ratio = 0.011\nleft = { x = [1, 0] }\n"
+              "right = { x = [0, -1e-4] }\n");
+  folder.file("x.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n100,1e-6,-1e-8\n200,2e-6,-3e-8\n");
+  for (const std::string& source :
+       {"x = " + mode, std::string("modes = \"x.toml\"\n"), std::string("frf = \"x.csv\"\n")}) {
+    const std::string open = said(source);
+    EXPECT_NE(open.find("lobes.toml: dynamics: nothing is known of y"), std::string::npos) << open;
+    EXPECT_TRUE(loaded(source + "rigid_directions = [\"y\"]\n").notes.back().starts_with("y was not measured"));
+    const LobesFile equal = loaded(source + "equal_directions = true\n");
+    EXPECT_EQ(equal.problem.dynamics.modes.size() + equal.problem.measured.frfs.size(), 2U);
+    EXPECT_TRUE(equal.notes.back().starts_with("One direction was measured"));
+    const std::string wrong = said(source + "rigid_directions = [\"x\"]\n");
+    EXPECT_NE(wrong.find("dynamics.rigid_directions: names x, which was measured"), std::string::npos) << wrong;
+  }
+  EXPECT_TRUE(loaded("x = " + mode + "y = []\n").notes.empty()) << "an empty list says it";
+  EXPECT_TRUE(loaded("x = " + mode + "y = " + mode).notes.empty());
+  EXPECT_NE(said("x = " + mode + "y = " + mode + "equal_directions = true\n").find("dynamics.equal_directions"),
+            std::string::npos);
+  EXPECT_NE(said("x = " + mode + "rigid_directions = [\"z\"]\n").find("dynamics.rigid_directions"), std::string::npos);
+}
+
 TEST(LobesToml, AnglesStandInForTheDirection) {
   const test::Folder folder;
   const LobesFile file = read_lobes(

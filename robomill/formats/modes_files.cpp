@@ -1,5 +1,7 @@
 #include "robomill/formats/modes_files.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <set>
@@ -107,9 +109,21 @@ double number_or_nan(const JsonNode& node, const char* key) {
   return node.at(key).number();
 }
 
+/// modes.json is written of a bad fit too, as its report; its modes are for nobody who has not accepted them.
+void require_usable(const JsonNode& root) {
+  if (!root.has("fit") || !root.at("fit").has("usable")) return;
+  const JsonNode fit = root.at("fit");
+  if (fit.at("usable").json() != false) return;
+  throw fit.at("relative_error")
+      .refuse(fmt::format("must be below {}: these modes do not describe the FRFs that they were fitted to",
+                          modal::unusable_fit_error),
+              "Fit them better, or take them as they are with robomill modes --accept-fit");
+}
+
 modal::ModalModel read_modes_json(const std::filesystem::path& path) {
   const Json json = read_json(path);
   const JsonNode root(json, path.string());
+  require_usable(root);
   const JsonNode list = root.at("modes");
   std::vector<NamedMode> named(list.size());
   for (std::size_t k = 0; k < named.size(); ++k) {
@@ -200,6 +214,11 @@ std::string modes_json(const modal::ModalModel& model) {
 
 std::string modes_json(const modal::FitResult& fit) {
   Json json = model_json(fit.model);
+  for (std::size_t k = 0; k < fit.model.modes.size(); ++k) {
+    Json bounds = Json::array();
+    for (const modal::FitBound bound : fit.bounds_of(static_cast<int>(k) + 1)) bounds.push_back(to_string(bound));
+    json["modes"][k]["at_bounds"] = std::move(bounds);
+  }
   Json by_frf = Json::object();
   for (const modal::FrfFitError& error : fit.by_frf)
     by_frf[modal::to_string(error.name)] = number(error.error.relative);
@@ -207,6 +226,7 @@ std::string modes_json(const modal::FitResult& fit) {
                  {"relative_error_by_frf", by_frf},
                  {"mean_relative_error", number(fit.mean_relative_error)},
                  {"converged", fit.status == modal::FitResult::Status::converged},
+                 {"usable", fit.usable()},
                  {"band_hz", Json::array({number(fit.band_low_hz), number(fit.band_high_hz)})},
                  {"lines", fit.lines}};
   json["convergence"] = {{"iterations", fit.iterations}, {"best", fit.best}};

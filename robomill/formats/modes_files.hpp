@@ -13,7 +13,8 @@ namespace robomill::formats {
 ///
 /// A mode needs no more than these four; .json may have residuals and standard deviations, and all else in it is left
 /// alone. A direction that one mode names and another does not is 0 in the other.
-/// @throws InvalidInput with the file and "modes[2].damping_ratio" (counted from 1) or the line if a value is missing,
+/// @throws InvalidInput if .json says of its fit that it is not usable, and
+///     with the file and "modes[2].damping_ratio" (counted from 1) or the line if a value is missing,
 ///     no finite number or outside its range, or the ending is neither .json nor .toml
 [[nodiscard]] ROBOMILL_API modal::ModalModel read_modes(const std::filesystem::path& path);
 

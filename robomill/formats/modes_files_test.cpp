@@ -9,6 +9,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
 #include "robomill/formats/file.hpp"
+#include "robomill/formats/json.hpp"
 #include "robomill/formats/test_text.hpp"
 
 namespace robomill::formats {
@@ -61,6 +62,25 @@ TEST(ModesFiles, RefusesWithTheJsonPath) {
   const std::string wrong_ending =
       test::refusal([&] { static_cast<void>(read_modes(folder.file("tip.uff", "    -1\n"))); });
   EXPECT_NE(wrong_ending.find("robomill modes"), std::string::npos);
+}
+
+// modes.json of a bad fit is its report, and no input until somebody accepts it.
+TEST(ModesFiles, AFitThatDoesNotDescribeItsFrfsIsNoInput) {
+  const test::Folder folder;
+  modal::FitResult fit;
+  fit.model = data::robot_modes();
+  fit.relative_error = 1.094;
+  fit.at_bounds = {{2, modal::FitBound::damping}, {2, modal::FitBound::band_high}};
+  const auto path = folder.file("modes.json", modes_json(fit));
+  const Json json = read_json(path);
+  EXPECT_EQ(json["fit"]["usable"], false);
+  EXPECT_TRUE(json["modes"][0]["at_bounds"].empty());
+  EXPECT_EQ(json["modes"][1]["at_bounds"], Json::array({"max_damping_ratio", "band_high_hz"}));
+  const std::string said = test::refusal([&] { static_cast<void>(read_modes(path)); });
+  EXPECT_NE(said.find("modes.json: fit.relative_error = 1.094; must be below 0.2"), std::string::npos) << said;
+  EXPECT_NE(said.find("--accept-fit"), std::string::npos) << said;
+  fit.accepted = true;
+  expect_same(read_modes(folder.file("accepted.json", modes_json(fit))), fit.model, 1e-14);
 }
 
 // Cut off or changed at any place, a file is refused or read, and never anything worse.

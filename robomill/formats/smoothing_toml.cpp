@@ -7,6 +7,7 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/joint_limits.hpp"
 #include "robomill/formats/toml_file.hpp"
 #include "robomill/formats/units.hpp"
 
@@ -49,15 +50,10 @@ void read_per_joint(TomlFile& file, const char* key, const char* member, int joi
 
 /// The limits come from the cell's reader; here they are only told in the file's words.
 void check_limits(TomlFile& file, const robot::JointLimits& limits, int joints) {
-  std::vector<double> values;
-  file.numbers("robot.joint_max_position", "max_position", 1.0, values);
-  file.numbers("robot.joint_min_position", "min_position", 1.0, values);
-  values.clear();
-  file.numbers("robot.joint_max_velocity", "max_velocity", 1.0, values);
-  values.clear();
-  file.numbers("robot.joint_max_acceleration", "max_acceleration", 1.0, values);
-  values.clear();
-  file.numbers("robot.joint_max_jerk", "max_jerk", 1.0, values);
+  for (const JointLimit& limit : joint_limits) {
+    std::vector<double> values;
+    file.numbers(std::string("robot.joint_") + limit.name, limit.name, 1.0, values);
+  }
   try {
     limits.validate(joints);
   } catch (const InvalidInput& error) {

@@ -184,13 +184,17 @@ void fit_by_poles(FitResult& result, const FrfSet& set, const FitOptions& option
   }
 }
 
+/// As published the swarm's damping ratios go up to 1, unless another bound is asked for.
+double damping_bound(const FitOptions& options) {
+  const bool asked = options.max_damping_ratio != FitOptions{}.max_damping_ratio;
+  return options.method == FitMethod::pso && !asked ? 1.0 : options.max_damping_ratio;
+}
+
 void fit_by_swarm(FitResult& result, const FrfSet& set, const FitOptions& options, Progress& progress) {
-  // As published the swarm's damping ratios go up to 1, unless another bound is asked for.
-  const bool bound = options.max_damping_ratio != FitOptions{}.max_damping_ratio;
   const PsoResult swarm = fit_pso(set,
                                   {.modes = options.modes,
                                    .frequency_half_width = options.pso_frequency_half_width,
-                                   .max_damping_ratio = bound ? options.max_damping_ratio : 1.0,
+                                   .max_damping_ratio = damping_bound(options),
                                    .particles = options.pso_particles,
                                    .max_iterations = options.pso_max_iterations,
                                    .seed = options.seed},
@@ -206,14 +210,13 @@ void fit_by_swarm(FitResult& result, const FrfSet& set, const FitOptions& option
 // λ -> λ + decay.
 void take_out_decay(FitResult& result, double decay_per_s) {
   if (decay_per_s == 0.0) return;
-  for (std::size_t k = 0; k < result.model.modes.size(); ++k) {
-    Mode& mode = result.model.modes[k];
+  for (Mode& mode : result.model.modes) {
     const std::complex<double> lambda = pole(mode);
     const double left_over = -lambda.real() - decay_per_s;
     const double smallest = 1e-6 * std::abs(lambda);
     if (left_over < smallest) {
       result.warnings.push_back(fmt::format(
-          "Mode {} ({:.1f} Hz) decays no faster than the window: its damping is not known.", k + 1, mode.frequency_hz));
+          "The mode at {:.1f} Hz decays no faster than the window: its damping is not known.", mode.frequency_hz));
     }
     const double omega = std::hypot(std::max(left_over, smallest), lambda.imag());
     mode.damping_ratio_std *= std::abs(lambda) / omega;
@@ -223,6 +226,26 @@ void take_out_decay(FitResult& result, double decay_per_s) {
 }
 
 }  // namespace
+
+const char* to_string(FitBound bound) {
+  switch (bound) {
+    case FitBound::band_low:
+      return "band_low_hz";
+    case FitBound::band_high:
+      return "band_high_hz";
+    case FitBound::damping:
+      break;
+  }
+  return "max_damping_ratio";
+}
+
+std::vector<FitBound> FitResult::bounds_of(int mode) const {
+  std::vector<FitBound> bounds;
+  for (const ModeAtBound& at : at_bounds) {
+    if (at.mode == mode) bounds.push_back(at.bound);
+  }
+  return bounds;
+}
 
 void FitOptions::validate() const {
   require_non_negative("band_low_hz", band_low_hz, "Hz");
@@ -271,6 +294,7 @@ FitResult fit_modes(const FrfSet& set, const FitOptions& options, Progress& prog
     result.warnings.emplace_back("No mode stands out of the noise in the band.");
   }
   detail::set_errors(result, band);
+  detail::find_bounds(result, damping_bound(options));
   detail::add_warnings(result, band);
   take_out_decay(result, options.exponential_decay_per_s);
   return result;

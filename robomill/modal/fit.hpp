@@ -63,6 +63,23 @@ struct StabilisationPoint {
   bool frequency_stable = false, damping_stable = false, vector_stable = false;
 };
 
+/// From this relative error on a fit has a warning …
+constexpr double doubtful_fit_error = 0.05;
+/// … and from this one on its modes do not describe the FRFs: only who accepts that may use them.
+constexpr double unusable_fit_error = 0.2;
+
+/// A bound that the search for a mode ended at: what stands there is no mode that the data shows.
+enum class FitBound {
+  damping,   ///< FitOptions::max_damping_ratio (1 for the swarm unless another is asked for)
+  band_low,  ///< the first line of the band
+  band_high  ///< the last line of the band
+};
+[[nodiscard]] ROBOMILL_API const char* to_string(FitBound bound);
+struct ModeAtBound {
+  int mode = 0;  ///< from 1
+  FitBound bound = FitBound::damping;
+};
+
 /// How far fit and data are apart on one FRF, or on all.
 struct FitError {
   double relative = 0.0;       ///< ‖H_fit - H‖ / ‖H‖ over the band
@@ -81,6 +98,8 @@ struct FitResult {
   double relative_error = 0.0;       ///< ‖H_fit - H‖ / ‖H‖ over the band and all FRFs, residuals included
   double mean_relative_error = 0.0;  ///< mean over lines and FRFs of |H_fit - H| / |H|, residuals included
   std::vector<FrfFitError> by_frf;   ///< in the order of the input
+  std::vector<ModeAtBound> at_bounds;
+  bool accepted = false;  ///< somebody takes the modes whatever their error
   int iterations = 0;
   /// The objective after each iteration. pso: mean relative error; hybrid: the relative error with lines weighted,
   /// which jumps where the weights are estimated anew or a mode comes or goes, part after part.
@@ -90,6 +109,12 @@ struct FitResult {
   Eigen::Index lines = 0;                         ///< number of lines used
   Weighting weighting = Weighting::none;          ///< the one used, never `automatic`
   std::vector<std::string> warnings;              ///< sentences for the user
+
+  /// Whether the modes describe the FRFs, or somebody takes them as they are.
+  [[nodiscard]] bool usable() const { return accepted || relative_error < unusable_fit_error; }
+  /// The bounds that a mode stands at.
+  /// @param mode  from 1
+  [[nodiscard]] ROBOMILL_API std::vector<FitBound> bounds_of(int mode) const;
 };
 
 /// Finds the modes of FRFs: H_ij(ω) = Σ_k R_ik L_jk / (iω - λ_k) + conjugate + mass_ij / (-ω²) + stiffness_ij.

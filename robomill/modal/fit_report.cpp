@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -84,13 +85,39 @@ void warn_of_jump(FitResult& result) {
 }
 
 void warn_of_vague_modes(FitResult& result) {
-  for (std::size_t k = 0; k < result.model.modes.size(); ++k) {
-    const Mode& mode = result.model.modes[k];
+  for (const Mode& mode : result.model.modes) {
     const double share = mode.damping_ratio_std / mode.damping_ratio;
     if (!(share > 0.5)) continue;
     result.warnings.push_back(
-        fmt::format("Mode {} ({:.1f} Hz) is vague: the standard deviation of its damping ratio is {:.0f} % of it.",
-                    k + 1, mode.frequency_hz, 100.0 * share));
+        fmt::format("The mode at {:.1f} Hz is vague: the standard deviation of its damping ratio is {:.0f} % of it.",
+                    mode.frequency_hz, 100.0 * share));
+  }
+}
+
+void warn_of_error(FitResult& result) {
+  const double error = result.relative_error;
+  if (error < doubtful_fit_error) return;
+  result.warnings.push_back(
+      error < unusable_fit_error
+          ? fmt::format("The fit differs from the FRFs by {:.3g} %: look at both before you use a number.",
+                        100.0 * error)
+          : fmt::format("The modes do not describe the FRFs: the fit differs from them by {:.3g} %. Fit the band "
+                        "in which the FRFs can be trusted, or ask for more modes.",
+                        100.0 * error));
+}
+
+void warn_of_bounds(FitResult& result) {
+  for (const ModeAtBound& at : result.at_bounds) {
+    const Mode& mode = result.model.modes[static_cast<std::size_t>(at.mode - 1)];
+    result.warnings.push_back(
+        at.bound == FitBound::damping
+            ? fmt::format("The mode at {:.1f} Hz stands at the bound of the damping ratio, {:.4g}: it is no mode that "
+                          "the FRFs show, but fills what the others leave.",
+                          mode.frequency_hz, mode.damping_ratio)
+            : fmt::format(
+                  "The mode at {:.1f} Hz stands at the {} end of the band: it is no mode that the FRFs show, but "
+                  "stands for something outside. Widen the band, or fit fewer modes.",
+                  mode.frequency_hz, at.bound == FitBound::band_low ? "lower" : "upper"));
   }
 }
 
@@ -127,7 +154,25 @@ void set_errors(FitResult& result, const FrfSet& set) {
   result.mean_relative_error = lines > 0.0 ? sum / lines : 0.0;
 }
 
+void find_bounds(FitResult& result, double max_damping_ratio) {
+  constexpr double same_damping = 1e-3;  // as a share of the bound
+  constexpr double same_line = 0.5;      // of the lines' distance
+  const double near_hz = same_line * (result.band_high_hz - result.band_low_hz) /
+                         static_cast<double>(std::max<Index>(result.lines - 1, 1));
+  for (std::size_t k = 0; k < result.model.modes.size(); ++k) {
+    const Mode& mode = result.model.modes[k];
+    const int number = static_cast<int>(k) + 1;
+    if (mode.damping_ratio >= (1.0 - same_damping) * max_damping_ratio) {
+      result.at_bounds.push_back({number, FitBound::damping});
+    }
+    if (mode.frequency_hz <= result.band_low_hz + near_hz) result.at_bounds.push_back({number, FitBound::band_low});
+    if (mode.frequency_hz >= result.band_high_hz - near_hz) result.at_bounds.push_back({number, FitBound::band_high});
+  }
+}
+
 void add_warnings(FitResult& result, const FrfSet& set) {
+  warn_of_error(result);
+  warn_of_bounds(result);
   const FrfSet model = synthesize(result.model, set.frequency_hz);
   warn_of_gaps(result, set, model);
   warn_of_activity(result, model);

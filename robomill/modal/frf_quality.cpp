@@ -6,7 +6,10 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <functional>
 #include <limits>
+
+#include "robomill/modal/pso.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -109,6 +112,20 @@ void judge_sign(Judge& judge, const Frf& frf, const Lines& lines) {
   }
 }
 
+/// The resonances that stand out of the noise, on their lines.
+std::vector<FrfPeak> highest_peaks(const FrfSet& set, const Frf& frf, const Lines& lines) {
+  constexpr std::size_t most = 6;
+  const Frf part{.name = frf.name, .receptance = frf.receptance.segment(lines.first, lines.count)};
+  std::vector<FrfPeak> peaks;
+  for (const Peak& peak : pick_peaks(set.frequency_hz.segment(lines.first, lines.count), {&part})) {
+    peaks.push_back({.frequency_hz = peak.frequency_hz, .receptance_m_per_n = peak.receptance});
+  }
+  std::ranges::stable_sort(peaks, std::greater<>(), &FrfPeak::receptance_m_per_n);
+  if (peaks.size() > most) peaks.resize(most);
+  std::ranges::stable_sort(peaks, {}, &FrfPeak::frequency_hz);
+  return peaks;
+}
+
 FrfGrade grade_one(const FrfSet& set, const Frf& frf, const FrfEvidence& evidence, const HitOptions& options) {
   FrfGrade grade;
   grade.name = frf.name;
@@ -129,6 +146,7 @@ FrfGrade grade_one(const FrfSet& set, const Frf& frf, const FrfEvidence& evidenc
   grade.relative_noise = median(evidence.relative_noise.segment(lines.first, lines.count));
   if (frf.coherence.size() > 0) grade.mean_coherence = frf.coherence.segment(lines.first, lines.count).mean();
   grade.reciprocity_error = reciprocity_error(set, frf, lines);
+  grade.peaks = highest_peaks(set, frf, lines);
 
   judge_noise(judge, grade, evidence, lines);
   judge_band(judge, grade, options);

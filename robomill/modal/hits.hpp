@@ -73,6 +73,12 @@ enum class Grade { good, usable, poor };
 /// "good", "usable", "poor"
 [[nodiscard]] ROBOMILL_API std::string to_string(Grade grade);
 
+/// A resonance in the magnitude of an FRF.
+struct FrfPeak {
+  double frequency_hz = 0.0;
+  double receptance_m_per_n = 0.0;
+};
+
 /// How far one FRF is to be trusted before any fit, and what to do about it. Unknown numbers are NaN.
 struct FrfGrade {
   FrfName name;
@@ -84,6 +90,7 @@ struct FrfGrade {
   double excited_low_hz = 0.0;                                          ///< band that the hammer excites:
   double excited_high_hz = 0.0;                                         ///< force spectrum within 20 dB of its highest
   double lowest_trustworthy_frequency_hz = 0.0;
+  std::vector<FrfPeak> peaks;         ///< the highest six within the band that can be trusted, by frequency
   std::vector<std::string> faults;    ///< "the hammer excites nothing above 800 Hz"
   std::vector<std::string> remedies;  ///< as long as faults: "use a harder tip"
 };

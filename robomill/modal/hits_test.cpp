@@ -383,6 +383,17 @@ TEST(EstimateFrfs, StatesTheLowestTrustworthyFrequency) {
   EXPECT_LT(error(result, model, result.lowest_trustworthy_frequency_hz, 120.0), 0.1);
 }
 
+// One mode has its peak at f √(1 - 2ζ²), 1 / (2 k ζ √(1 - ζ²)) high; lines lie 2 Hz apart.
+TEST(EstimateFrfs, NamesTheHighestPeaks) {
+  const FrfGrade grade = estimate_frfs(brief_hits(), {}).grades.at(0);
+  ASSERT_EQ(grade.peaks.size(), 1U);
+  const double zeta = 0.05;
+  const double stiffness = 2.0 * std::pow(2.0 * std::numbers::pi * 100.0, 2);
+  EXPECT_NEAR(grade.peaks[0].frequency_hz, 100.0 * std::sqrt(1.0 - 2.0 * zeta * zeta), 2.0);
+  const double highest = 1.0 / (2.0 * stiffness * zeta * std::sqrt(1.0 - zeta * zeta));
+  EXPECT_NEAR(grade.peaks[0].receptance_m_per_n, highest, 0.02 * highest);
+}
+
 TEST(EstimateFrfs, KeepsToTheFrequenciesAskedFor) {
   HitOptions options = up_to(400.0);
   options.min_frequency_hz = 20.0;

@@ -212,6 +212,7 @@ ForcesResult run_forces(const std::filesystem::path& forces, const std::filesyst
   result.file = formats::read_forces(forces, job);
   if (const std::filesystem::path path = cell_path(result.file, cell); !path.empty()) {
     result.cell = formats::read_cell(path);
+    result.notes = result.cell->notes;
   }
   if (job == formats::ForcesJob::program) {
     result.program = run_program(result.file, result.cell, program, result.warnings, result.notes, progress);

@@ -7,12 +7,14 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/cut_fields.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/hits_toml.hpp"
 #include "robomill/formats/modes_files.hpp"
 #include "robomill/formats/smoothing_toml.hpp"
 #include "robomill/formats/units.hpp"
+#include "robomill/modal/directions.hpp"
 #include "robomill/plan/choose.hpp"
 #include "robomill/plan/test_cuts.hpp"
 
@@ -96,10 +98,13 @@ void measure(PlanResult& result, Progress& progress) {
 }
 
 void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
-  if (!result.frfs) {
-    result.model = formats::read_modes(result.job.modes);
-    return;
-  }
+  // Of FRFs the modes are doubled, where the directions are equal, and not what they are fitted to.
+  modal::FrfSet measured = result.frfs.value_or(modal::FrfSet{});
+  if (!result.frfs) result.model = formats::read_modes(result.job.modes);
+  const modal::MissingDirections& directions = result.job.directions;
+  const auto words = formats::complete_directions(result.model, measured, directions, result.job.file.string(), "job");
+  if (words) result.warnings.push_back(*words);
+  if (!result.frfs) return;
   modal::FitOptions options;
   options.seed = seed;
   options.modes = result.job.fit_modes;
@@ -116,6 +121,7 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   options.exponential_decay_per_s = result.added_decay_per_s;
   result.fit =
       result.prediction ? fit_tip(*result.frfs, options, progress) : modal::fit_modes(*result.frfs, options, progress);
+  if (directions.equal) result.fit = modal::with_equal_directions(*std::move(result.fit));
   result.model = result.fit->model;
   append(result.warnings, result.fit->warnings);
   if (result.fit->status == modal::FitResult::Status::not_converged) {
@@ -199,15 +205,18 @@ void warn_of_spindle(PlanResult& result) {
                   place, worst.torque_n_m, worst.power_w / units::kw, worst.spindle_speed_rad_per_s / units::rpm, has));
 }
 
+/// Whether the job's program is to be smoothed.
+bool wants_path(const formats::Job& job) {
+  if (job.program.empty() || job.cell.empty()) return false;
+  if (formats::has_smoothing(job.cell)) return true;
+  if (!job.forces.empty()) return false;
+  throw InvalidInput(job.cell.string(), "has no [smoothing]",
+                     "job.program without job.forces is smoothed: write the tolerances and limits there");
+}
+
 /// The program as the robot will run it.
 void smooth(PlanResult& result, const std::filesystem::path& folder, Progress& progress) {
   const formats::Job& job = result.job;
-  if (job.program.empty() || job.cell.empty()) return;
-  if (!formats::has_smoothing(job.cell)) {
-    if (!job.forces.empty()) return;
-    throw InvalidInput(job.cell.string(), "has no [smoothing]",
-                       "job.program without job.forces is smoothed: write the tolerances and limits there");
-  }
   SmoothJob smooth = {.program = job.program, .cell = job.cell, .place = false};
   if (!folder.empty()) {
     formats::make_folder(folder);
@@ -326,38 +335,8 @@ void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
 
 }  // namespace
 
-modal::ModalModel with_equal_directions(const modal::ModalModel& model) {
-  const bool one = model.excitations.size() == 1 && model.responses.size() == 1 && model.excitations == model.responses;
-  const bool planar =
-      one && (model.excitations[0].axis == modal::Axis::x || model.excitations[0].axis == modal::Axis::y);
-  if (!planar) {
-    throw InvalidInput("equal_directions", "needs FRFs of one direction alone, xx or yy",
-                       "Leave it out where both were measured");
-  }
-  modal::ModalModel out;
-  for (const modal::Axis axis : {modal::Axis::x, modal::Axis::y}) {
-    const modal::Dof dof{.point = model.excitations[0].point, .axis = axis};
-    out.excitations.push_back(dof);
-    out.responses.push_back(dof);
-    for (const modal::Residual& residual : model.residuals) {
-      modal::Residual copy = residual;
-      copy.name = {.response = dof, .excitation = dof};
-      out.residuals.push_back(copy);
-    }
-  }
-  for (const modal::Mode& mode : model.modes) {
-    for (Eigen::Index axis = 0; axis < 2; ++axis) {
-      modal::Mode copy = mode;
-      copy.left = Eigen::VectorXcd::Unit(2, axis) * mode.left(0);
-      copy.right = Eigen::VectorXcd::Unit(2, axis) * mode.right(0);
-      out.modes.push_back(copy);
-    }
-  }
-  return out;
-}
-
 PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress,
-                   const std::filesystem::path& folder) {
+                   const std::filesystem::path& folder, bool accept_fit) {
   PlanResult result;
   result.job = formats::read_job(job);
   // Everything that is quick to refuse is read before the long work starts.
@@ -366,19 +345,23 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
     throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
                        "plan needs it for the removal rate");
   }
+  const bool with_path = wants_path(result.job);
   measure(result, progress);
   if (!result.job.forces.empty()) {
     result.forces = run_forces(result.job.forces, result.job.program, result.job.cell, progress);
     warn_of_spindle(result);
   }
-  smooth(result, folder, progress);
   fit(result, seed, progress);
-  if (result.job.equal_directions) {
-    result.model = with_equal_directions(result.model);
-    result.warnings.push_back("One direction was measured; the other is taken equal to it, without cross terms.");
+  if (result.fit && accept_fit) result.fit->accepted = true;
+  if (result.fit && !result.fit->usable()) {
+    result.recommendation.reason = fmt::format(
+        "The modes do not describe the FRFs: the fit differs from them by {:.3g} %, and from {:.3g} % on nothing is "
+        "computed from it. Fit a better band (job.band_hz), or accept it with --accept-fit.",
+        100.0 * result.fit->relative_error, 100.0 * modal::unusable_fit_error);
+    return result;
   }
-  result.cut.modes.clear();  // the job's stand in their place
-  result.cut.frf.clear();
+  if (with_path) smooth(result, folder, progress);
+  result.cut.drop_dynamics();  // the job's stand in their place
   formats::load_dynamics(result.cut);
   result.cut.problem.dynamics = result.model;
   result.cut.validate();

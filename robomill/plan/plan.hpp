@@ -32,7 +32,7 @@ struct PlanResult {
   double added_decay_per_s = 0.0;           ///< of an exponential window, still in frfs
   std::optional<modal::FitResult> fit;      ///< unless the job starts from modes
   modal::ModalModel model;
-  stability::LobesResult lobes;          ///< of all modes
+  stability::LobesResult lobes;          ///< of all modes; empty where these do not describe the FRFs
   stability::UncertainLimits uncertain;  ///< samples: 0 where nothing is known to be uncertain
   std::vector<report::Lobes> pairs;      ///< limits of modes 1–2, 3–4, …
   std::optional<report::FeedDirections> feed_directions;
@@ -42,6 +42,8 @@ struct PlanResult {
   std::vector<report::TestCut> cuts;
   std::vector<report::Recording> recordings;
   std::vector<std::string> warnings, notes;
+
+  [[nodiscard]] bool has_lobes() const { return !lobes.limit.empty(); }
 };
 
 /// Runs a job: hits, or tool and holder, ─▶ FRFs ─▶ modes ─▶ lobes ─▶ a recommended speed and depth, and its comparison
@@ -49,9 +51,12 @@ struct PlanResult {
 /// @param seed    of every random number
 /// @param folder  for the trajectory of a program, made where it is missing; write_plan() puts it there in its place.
 ///     Empty: none is written
+/// @param accept_fit  go on with modes that do not describe the FRFs (modal::FitResult::usable); else the result ends
+///     with the fit, and the recommendation says why
 /// @throws InvalidInput with file, line, key and value; Interrupted
 [[nodiscard]] PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
-                                 Progress& progress = Progress::none(), const std::filesystem::path& folder = {});
+                                 Progress& progress = Progress::none(), const std::filesystem::path& folder = {},
+                                 bool accept_fit = false);
 
 /// The report of a job.
 /// @param files  that stand beside it
@@ -69,10 +74,5 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result);
 
 /// Each mode's share of the speeds at which some mode limits the depth, in [0, 1]; empty where none does.
 [[nodiscard]] Eigen::VectorXd limit_share(const PlanResult& result);
-
-/// A structure of one measured direction with the other taken equal: every mode twice, in x and in y, without cross
-/// terms.
-/// @throws InvalidInput unless the model has one excitation and one response, both x or both y
-[[nodiscard]] modal::ModalModel with_equal_directions(const modal::ModalModel& model);
 
 }  // namespace robomill::plan

@@ -82,6 +82,11 @@ std::string lobes_json(const PlanResult& result) {
   return formats::lobes_json(result.lobes, result.uncertain);
 }
 
+/// What an earlier run computed from modes that this one has not.
+void remove_later_stages(const std::filesystem::path& folder) {
+  for (const char* name : {"lobes.json", "smooth.json", "trajectory.csv"}) formats::remove_file(folder / name);
+}
+
 }  // namespace
 
 std::string plan_json(const PlanResult& result) {
@@ -99,7 +104,7 @@ std::string plan_json(const PlanResult& result) {
   if (result.prediction) json["assembly"] = Json::parse(prediction_json(*result.prediction));
   if (result.hits) json["frf"] = Json::parse(formats::hits_json(*result.hits));
   json["modes"] = Json::parse(modes_json(result));
-  json["lobes"] = Json::parse(lobes_json(result));
+  if (result.has_lobes()) json["lobes"] = Json::parse(lobes_json(result));
   if (result.forces) json["forces"] = forces_object(*result.forces);
   if (result.path) json["path"] = Json::parse(formats::smooth_json(result.path->smoothed));
   return json.dump(1) + "\n";
@@ -117,8 +122,12 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   }
   formats::write_file(folder / "modes.json", modes_json(result));
   files.push_back({.stage = "modes", .file = "modes.json", .description = "modal parameters"});
-  formats::write_file(folder / "lobes.json", lobes_json(result));
-  files.push_back({.stage = "lobes", .file = "lobes.json", .description = "stability lobes"});
+  if (result.has_lobes()) {
+    formats::write_file(folder / "lobes.json", lobes_json(result));
+    files.push_back({.stage = "lobes", .file = "lobes.json", .description = "stability lobes"});
+  } else {
+    remove_later_stages(folder);
+  }
   if (result.forces) {
     formats::write_file(folder / "forces.csv", forces_csv(*result.forces));
     files.push_back({.stage = "forces",

@@ -260,7 +260,7 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   if (result.prediction) add_prediction(report, *result.prediction);
   add_hits(report, result);
   add_fit(report, result);
-  add_lobes(report, result);
+  if (result.has_lobes()) add_lobes(report, result);
   add_other_limits(report, result);
   report.cuts = result.cuts;
   report.feed_directions = result.feed_directions;

@@ -36,6 +36,18 @@ intervals = 20
     return write("job.toml", "[job]\nmodes = \"" + data + "robot-modes.toml\"\nlobes = \"lobes.toml\"\n" + more);
   }
 
+  /// Writes H_xx of the robot from 0 Hz on, without a header.
+  modal::Frf write_xx() {
+    const modal::FrfSet set = modal::synthesize(data::robot_modes(), Eigen::VectorXd::LinSpaced(2801, 0.0, 700.0));
+    const modal::Frf& xx = *set.find(modal::parse_frf_name("xx"));
+    std::ofstream file(folder_.at("xx.txt"));
+    file.precision(15);
+    for (Eigen::Index i = 0; i < set.frequency_hz.size(); ++i) {
+      file << set.frequency_hz(i) << ' ' << xx.receptance(i).real() << ' ' << xx.receptance(i).imag() << '\n';
+    }
+    return xx;
+  }
+
   test::Folder folder_;
 };
 
@@ -96,16 +108,57 @@ TEST_F(Plan, WritesEveryFileAndTheyAgree) {
   EXPECT_EQ(files, 4U);
 }
 
+// Nothing is computed from a structure of which one direction is not known, before somebody says what it is.
+TEST_F(Plan, ADirectionThatWasNotMeasuredHasToBeSaid) {
+  write_xx();
+  const std::string source = "[job]\nfrf = \"xx.txt\"\nlobes = \"lobes.toml\"\nband_hz = [400, 650]\nfit_modes = 2\n";
+  const auto plan = [&](const std::string& more) { return run_job(write("job.toml", source + more), 1); };
+  const std::string said = test::refusal([&] { static_cast<void>(plan("")); });
+  EXPECT_NE(said.find("job.toml: job: nothing is known of y"), std::string::npos) << said;
+  EXPECT_NE(said.find("rigid_directions = [\"y\"]"), std::string::npos) << said;
+  const PlanResult rigid = plan("rigid_directions = [\"y\"]\n");
+  EXPECT_EQ(rigid.model.modes.size(), 2U);
+  EXPECT_NE(std::ranges::find(rigid.warnings, "y was not measured and is taken as rigid."), rigid.warnings.end());
+  EXPECT_NE(test::refusal([&] {
+              static_cast<void>(plan("rigid_directions = [\"x\"]\n"));
+            }).find("job.rigid_directions: names x, which was measured"),
+            std::string::npos);
+  const std::string both = test::refusal([&] { static_cast<void>(run_job(job("equal_directions = true\n"), 1)); });
+  EXPECT_NE(both.find("job.toml: job.equal_directions: needs FRFs or modes of one direction"), std::string::npos)
+      << both;
+}
+
+// One mode for a band full of them: the plan ends with the fit, and what an earlier run made of better modes goes.
+TEST_F(Plan, ComputesNothingFromModesThatDoNotDescribeTheFrfs) {
+  write_xx();
+  const std::filesystem::path out = folder_.at("out");
+  const auto file = write("job.toml",
+                          "[job]\nfrf = \"xx.txt\"\nlobes = \"lobes.toml\"\nband_hz = [5, 700]\nfit_modes = 1\n"
+                          "equal_directions = true\n");
+  const PlanResult accepted = run_job(file, 1, Progress::none(), out, true);
+  EXPECT_GT(accepted.fit->relative_error, modal::unusable_fit_error);
+  EXPECT_TRUE(accepted.has_lobes());
+  write_plan(out, accepted);
+  EXPECT_TRUE(std::filesystem::exists(out / "lobes.json"));
+
+  const PlanResult ended = run_job(file, 1, Progress::none(), out);
+  EXPECT_FALSE(ended.has_lobes());
+  EXPECT_EQ(ended.recommendation.status, Recommendation::Status::no_safe_depth);
+  EXPECT_NE(ended.recommendation.reason.find("--accept-fit"), std::string::npos) << ended.recommendation.reason;
+  write_plan(out, ended);
+  EXPECT_FALSE(std::filesystem::exists(out / "lobes.json"));
+  for (const char* name : {"tip.uff", "modes.json", "plan.json", "report.html"}) {
+    EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
+  }
+  const auto json = nlohmann::json::parse(formats::read_file(out / "plan.json"));
+  EXPECT_TRUE(json["recommended"].is_null());
+  EXPECT_EQ(json["modes"]["fit"]["usable"], false);
+  EXPECT_FALSE(json.contains("lobes"));
+}
+
 // Headerless FRFs that start at 0 Hz, one direction: the fit leaves that line out, and so does the fitted curve.
 TEST_F(Plan, StartsFromFrfsWithALineAtZero) {
-  const modal::FrfSet set = modal::synthesize(data::robot_modes(), Eigen::VectorXd::LinSpaced(2801, 0.0, 700.0));
-  const modal::Frf& xx = *set.find(modal::parse_frf_name("xx"));
-  std::ofstream file(folder_.at("xx.txt"));
-  file.precision(15);
-  for (Eigen::Index i = 0; i < set.frequency_hz.size(); ++i) {
-    file << set.frequency_hz(i) << ' ' << xx.receptance(i).real() << ' ' << xx.receptance(i).imag() << '\n';
-  }
-  file.close();
+  const modal::Frf xx = write_xx();
   const PlanResult result = run_job(write("job.toml",
                                           "[job]\nfrf = \"xx.txt\"\nlobes = \"lobes.toml\"\nband_hz = [400, "
                                           "650]\nfit_modes = 2\nequal_directions = true\n"),
@@ -160,26 +213,6 @@ TEST_F(Plan, SaysWhatIsMissing) {
   without_feed.erase(without_feed.find("feed_per_tooth_mm"), std::string("feed_per_tooth_mm = 0.01").size());
   write("lobes.toml", without_feed);
   EXPECT_NE(refusal(job()).find("feed_per_tooth_mm"), std::string::npos);
-}
-
-TEST(EqualDirections, DoublesTheMeasuredOne) {
-  modal::ModalModel one;
-  one.excitations = one.responses = {{.axis = modal::Axis::x}};
-  one.modes = {{.frequency_hz = 500.0,
-                .damping_ratio = 0.02,
-                .left = Eigen::VectorXcd::Constant(1, 0.01),
-                .right = Eigen::VectorXcd::Constant(1, std::complex<double>(0.0, -0.01))}};
-  const modal::ModalModel both = with_equal_directions(one);
-  const Eigen::Vector2d frequency_hz(100.0, 499.0);
-  const modal::FrfSet measured = modal::synthesize(one, frequency_hz);
-  const modal::FrfSet planar = modal::synthesize(both, frequency_hz);
-  for (const char* name : {"xx", "yy"}) {
-    EXPECT_LT((planar.find(modal::parse_frf_name(name))->receptance - measured.frfs[0].receptance).norm(), 1e-18);
-  }
-  for (const char* name : {"xy", "yx"}) {
-    EXPECT_EQ(planar.find(modal::parse_frf_name(name))->receptance.norm(), 0.0);
-  }
-  EXPECT_THROW(static_cast<void>(with_equal_directions(both)), InvalidInput);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/frf_files.hpp"
+#include "robomill/modal/directions.hpp"
 #include "robomill/plan/plan.hpp"
 
 namespace robomill::plan {
@@ -179,10 +180,7 @@ modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& opti
   const bool round = is_round(tip);
   const modal::FrfSet x{.frequency_hz = tip.frequency_hz, .frfs = {*tip.find(modal::parse_frf_name("xx"))}};
   modal::FitResult out = modal::fit_modes(round ? x : tip, options, progress);
-  if (round) {
-    out.model = with_equal_directions(out.model);
-    out.by_frf.push_back({.name = modal::parse_frf_name("yy"), .error = out.by_frf.front().error});
-  }
+  if (round) out = modal::with_equal_directions(std::move(out));
   if (out.relative_error > poor_fit) {
     out.warnings.push_back(fmt::format(
         "The modes differ from the predicted FRFs by {:.0f} %. A mode close beyond the last line is the usual "

@@ -313,7 +313,8 @@ TEST_F(PlanPath, LeavesNoTrajectoryThatIsNotItsOwn) {
   EXPECT_NE(formats::read_file(out / "report.html").find(listed), std::string::npos);
   // A later stage that cannot go on leaves all as it was.
   const std::string before = formats::read_file(out / "trajectory.csv");
-  const std::filesystem::path bad = plan("program = \"part.ngc\"\ncell = \"cell.toml\"\nequal_directions = true\n");
+  const std::filesystem::path bad = plan("program = \"part.ngc\"\ncell = \"cell.toml\"\n");
+  folder_.file("lobes.toml", formats::read_file(folder_.at("lobes.toml")) + "[dynamics]\nkeep_modes = [99]\n");
   folder_.file("part.ngc", "G21 G90 G94\nG0 X0 Y0 Z0 A0 C0\nG1 X5 F2400\n");
   EXPECT_NE(refusal([&] { static_cast<void>(run_job(bad, 1, Progress::none(), out)); }), "accepted");
   EXPECT_EQ(formats::read_file(out / "trajectory.csv"), before);

@@ -61,6 +61,7 @@ void fit(ToolResult& out, std::uint64_t seed) {
   if (found.status == modal::FitResult::Status::not_converged) {
     out.notes.emplace_back("The fit of the modes did not converge");
   }
+  if (!found.usable()) out.no_cut = "Its modes do not describe its FRFs: no cut is computed from them";
 }
 
 void find_best(formats::LobesFile cut, ToolResult& out) {
@@ -88,7 +89,7 @@ void try_tool(const formats::AssemblyFile& assembly, const formats::ListedTool& 
   out.suspect_lines = tip.suspect_hz.size();
   find_peak(out);
   fit(out, seed);
-  if (!cut) return;
+  if (!cut || !out.no_cut.empty()) return;
   if (out.teeth == 0) out.teeth = cut->problem.milling.tool.teeth;
   try {
     find_best(*cut, out);

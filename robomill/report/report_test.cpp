@@ -229,8 +229,10 @@ TEST(ReportHtml, SaysWhyThereIsNoSafeDepth) {
   Report report;
   report.no_recommendation = "every speed chatters below 0.05 mm";
   const std::string html = report_html(report);
-  EXPECT_NE(html.find("No safe depth."), std::string::npos);
+  EXPECT_NE(html.find("No answer."), std::string::npos);
   EXPECT_NE(html.find("every speed chatters below 0.05 mm"), std::string::npos);
+  report.lobes.emplace_back();
+  EXPECT_NE(report_html(report).find("No safe depth."), std::string::npos);
 }
 
 template <class Change>

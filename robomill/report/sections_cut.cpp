@@ -82,7 +82,8 @@ std::string recommendation_section(const Json& report) {
   if (r.is_null()) {
     const std::string& why = text_of(report["no_recommendation"]);
     if (why.empty() && report["alternatives"].empty()) return {};
-    body = fmt::format("<p class=\"why none\"><strong>No safe depth.</strong> {}</p>\n", escape(why));
+    const char* const none = report["lobes"].empty() ? "No answer." : "No safe depth.";
+    body = fmt::format("<p class=\"why none\"><strong>{}</strong> {}</p>\n", none, escape(why));
   } else {
     body = "<dl class=\"figures\">" + figure_of_merit("Spindle speed", fixed(r["spindle_speed_rpm"], 0), "rpm") +
            figure_of_merit("Axial depth", fixed(r["axial_depth_mm"], 2), "mm") +
