@@ -158,6 +158,12 @@ TEST_F(App, ExplainNamesMeasuredPeaks) {
   EXPECT_EQ(verdict["kind"],
             verdict["spectral_radius_without_delay"].get<double>() < 1.0 ? "regenerative" : "mode coupling");
 
+  const Ended open = robomill("explain --peaks 540.9,539.5 --rpm 6500 --teeth 3 --modes " ROBOMILL_SOURCE_DIR
+                              "/data/robot-modes.toml");
+  EXPECT_NE(open.out.find("540.90 Hz  cannot be told: the cut, or chatter"), std::string::npos) << open.out;
+  EXPECT_NE(open.out.find("539.50 Hz  chatter, of which mode cannot be told"), std::string::npos) << open.out;
+  EXPECT_NE(open.out.find("Which mode chatters, if any, cannot be told from these peaks."), std::string::npos);
+
   EXPECT_EQ(robomill("explain --peaks 300 --rpm 6500 --teeth 3").exit, 2);
   EXPECT_EQ(robomill(peaks + "--lobes lobes.toml").exit, 1);
   EXPECT_EQ(robomill(peaks + "--tolerance-hz 40").exit, 1);

@@ -42,7 +42,8 @@ void check(const ExplainCommand& command) {
   }
 }
 
-std::optional<stability::DelayVerdict> verdict_of(const ExplainCommand& command) {
+/// The cut that --lobes names.
+std::optional<stability::LobesProblem> cut_of(const ExplainCommand& command) {
   if (command.lobes.empty()) return std::nullopt;
   formats::LobesFile file = formats::read_lobes(command.lobes);
   formats::load_dynamics(file);
@@ -52,18 +53,17 @@ std::optional<stability::DelayVerdict> verdict_of(const ExplainCommand& command)
   }
   file.validate();
   if (!(command.at[0] > 0.0 && command.at[1] >= 0.0)) throw InvalidInput("--at", "must read RPM,MM, RPM > 0, MM >= 0");
-  return stability::needs_delay(file.problem, {command.at[0] * units::rpm, command.at[1] * units::mm});
+  return file.problem;
 }
 
-std::string words(const stability::Explanation& e, const modal::ModalModel& modes, int teeth) {
+std::string words(const stability::Explanation& e, int teeth) {
   switch (e.kind) {
     case Kind::tooth_passing:
       return fmt::format("tooth passing x {} ({:+.2f} Hz)", e.harmonic / teeth, e.difference_hz);
     case Kind::rotation:
       return fmt::format("rotation x {} ({:+.2f} Hz)", e.harmonic, e.difference_hz);
     case Kind::chatter: {
-      const double mode_hz = modes.modes[static_cast<std::size_t>(e.mode - 1)].frequency_hz;
-      const std::string name = fmt::format("mode {} at {:.2f} Hz", e.mode, mode_hz);
+      const std::string name = fmt::format("{} at {:.2f} Hz", to_string(e.mode), e.mode_frequency_hz);
       const std::string turns = e.of_tooth_passing ? fmt::format("tooth passing x {}", std::abs(e.harmonic) / teeth)
                                                    : fmt::format("rotation x {}", std::abs(e.harmonic));
       const std::string tail = fmt::format(" ({:+.2f} Hz, within {:.2f})", e.difference_hz, e.tolerance_hz);
@@ -72,25 +72,44 @@ std::string words(const stability::Explanation& e, const modal::ModalModel& mode
       return fmt::format("chatter: {}{}",
                          e.mirrored ? fmt::format("{} - {}", turns, name) : fmt::format("{} - {}", name, turns), tail);
     }
-    default:
-      return "unexplained";
+    case Kind::cut_or_chatter:
+    case Kind::unexplained:
+      break;
+  }
+  return "unexplained";
+}
+
+/// What is known of a peak whose best readings are about as good as each other.
+const char* undecided(Kind kind) {
+  return kind == Kind::chatter ? "chatter, of which mode cannot be told" : "cannot be told: the cut, or chatter";
+}
+
+void print_peak(const stability::ExplainedPeak& peak, int teeth) {
+  const bool named = peak.state != stability::ExplainedPeak::State::cannot_be_told;
+  fmt::print("{:>10.2f} Hz  {}\n", peak.frequency_hz, named ? words(peak.best, teeth) : undecided(peak.best.kind));
+  for (const stability::Explanation& other : peak.others) {
+    const double odds = other.likelihood_per_hz / (named ? peak.best : peak.others.front()).likelihood_per_hz;
+    fmt::print("               or {}, {:.2g} times as likely\n", words(other, teeth), odds);
   }
 }
 
-void print_summary(const stability::Fingerprint& found, const modal::ModalModel& modes, int teeth,
+void print_summary(const stability::Fingerprint& found, int teeth,
                    const std::optional<stability::DelayVerdict>& verdict) {
   fmt::print("spindle {:.1f} rpm{}\n", found.spindle_speed_rad_per_s / units::rpm,
              found.speed_from_peaks ? ", from the peaks that are multiples of rotation" : ", as given");
   for (const stability::ExplainedPeak& peak : found.peaks) {
-    fmt::print("{:>10.2f} Hz  {}\n", peak.frequency_hz, words(peak.best, modes, teeth));
-    for (const stability::Explanation& other : peak.others) {
-      fmt::print("               or {}\n", words(other, modes, teeth));
-    }
+    print_peak(peak, teeth);
   }
-  if (found.mode == 0) {
-    fmt::print("No peak is chatter of a known mode.\n");
-  } else {
-    fmt::print("Chatter of mode {} at {:.2f} Hz.\n", found.mode, found.chatter_frequency_hz);
+  switch (found.state) {
+    case stability::Fingerprint::State::named:
+      fmt::print("Chatter of {} at {:.2f} Hz.\n", to_string(found.mode), found.chatter_frequency_hz);
+      break;
+    case stability::Fingerprint::State::cannot_be_told:
+      fmt::print("Which mode chatters, if any, cannot be told from these peaks.\n");
+      break;
+    case stability::Fingerprint::State::no_chatter:
+      fmt::print("No peak is chatter of a known mode.\n");
+      break;
   }
   if (!verdict) {
     fmt::print("Whether it is regenerative cannot be told without the cut: give --lobes and --at.\n");
@@ -110,15 +129,18 @@ Exit run(const ExplainCommand& command, const Common& common, Progress&) {
   const modal::ModalModel modes = formats::read_modes(command.modes);
   const stability::MeasuredPeaks peaks = {command.peaks_hz, command.rpm * units::rpm, command.teeth};
   const stability::FingerprintOptions options = {command.tolerance_hz, command.speed_tolerance_percent / 100.0};
-  const stability::Fingerprint found = stability::explain(peaks, modes, options);
-  const std::optional<stability::DelayVerdict> verdict = verdict_of(command);
-  const std::string json = formats::fingerprint_json(found, modes, verdict ? &*verdict : nullptr);
+  const std::optional<stability::LobesProblem> cut = cut_of(command);
+  const modal::ModalModel workpiece = cut ? cut->workpiece_dynamics : modal::ModalModel{};
+  const stability::Fingerprint found = stability::explain(peaks, modes, options, workpiece);
+  std::optional<stability::DelayVerdict> verdict;
+  if (cut) verdict = stability::needs_delay(*cut, {command.at[0] * units::rpm, command.at[1] * units::mm});
+  const std::string json = formats::fingerprint_json(found, verdict ? &*verdict : nullptr);
   if (common.to_stdout()) {
     fmt::print("{}", json);
   } else if (!common.output.empty()) {
     formats::write_file(common.output, json);
   }
-  if (common.wants_summary()) print_summary(found, modes, command.teeth, verdict);
+  if (common.wants_summary()) print_summary(found, command.teeth, verdict);
   return done;
 }
 

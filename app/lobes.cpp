@@ -26,7 +26,7 @@ void print_summary(const stability::LobesResult& result, const stability::Surfac
     }
     fmt::print("{}", point.stable ? "stable" : "chatter");
     if (!point.stable) {
-      fmt::print(" at {:.1f} Hz (mode {}, {})", point.chatter_frequency_hz, point.mode, to_string(point.kind));
+      fmt::print(" at {:.1f} Hz ({}, {})", point.chatter_frequency_hz, to_string(point.mode), to_string(point.kind));
     }
     fmt::print("\n");
   }
@@ -38,9 +38,9 @@ void print_summary(const stability::LobesResult& result, const stability::Surfac
   if (lowest == nullptr) {
     fmt::print("No chatter in the whole range.\n");
   } else {
-    fmt::print("Stable at every speed up to {:.4g} mm; above that chatter at {:.6g} rpm and {:.1f} Hz (mode {}).\n",
+    fmt::print("Stable at every speed up to {:.4g} mm; above that chatter at {:.6g} rpm and {:.1f} Hz ({}).\n",
                lowest->axial_depth_m / units::mm, lowest->spindle_speed_rad_per_s / units::rpm,
-               lowest->chatter_frequency_hz, lowest->mode);
+               lowest->chatter_frequency_hz, to_string(lowest->mode));
   }
   fmt::print("{} points of the chart in {:.2f} s, {}.\n", result.evaluations, result.seconds, to_string(result.method));
   const auto known = [](double error) { return std::isfinite(error); };

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <string>
+
 #include "robomill/formats/units.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -16,7 +19,29 @@ void print_operation(const char* label, const plan::Operation& op) {
              op.removal_rate_m3_per_s / units::mm3, plan::limited_by_text(op));
 }
 
+/// What else to know of the recommended one.
+void print_details(const plan::Operation& op) {
+  fmt::print(
+      "             cutting speed {:.4g} m/min, feed {:.4g} mm/min, mean torque {:.3g} N·m, mean power {:.3g} W\n",
+      op.cutting_speed_m_per_s * units::minute, op.feed_m_per_s / units::mm * units::minute, op.torque_n_m, op.power_w);
+  if (!std::isfinite(op.peak_deflection_m)) return;
+  const std::string error = std::isfinite(op.surface_error_m)
+                                ? fmt::format("surface error {:+.3g} µm, ", op.surface_error_m / units::um)
+                                : std::string();
+  fmt::print("             {}peak deflection {:.3g} µm, from forced vibration\n", error,
+             op.peak_deflection_m / units::um);
+}
+
+/// On top: nothing that follows is worth more than the model.
+void print_disagreement(const report::Agreement& count) {
+  if (count.disagree == 0) return;
+  fmt::print("test cuts    {} of {} disagree with the prediction: find out why before you use these numbers\n",
+             count.disagree, count.agree + count.disagree);
+}
+
 void print_summary(const plan::PlanResult& result) {
+  const report::Agreement count = report::agreement(result.cuts);
+  print_disagreement(count);
   if (result.hits) {
     for (const modal::HitVerdict& hit : result.hits->hits) {
       if (!hit.accepted)
@@ -30,6 +55,7 @@ void print_summary(const plan::PlanResult& result) {
   }
   if (result.recommendation.recommended) {
     print_operation("recommended", *result.recommendation.recommended);
+    print_details(*result.recommendation.recommended);
     for (const plan::Operation& op : result.recommendation.alternatives) print_operation("alternative", op);
   } else {
     fmt::print("{}: {}\n", result.has_lobes() ? "no safe depth" : "no answer", result.recommendation.reason);
@@ -39,7 +65,6 @@ void print_summary(const plan::PlanResult& result) {
     fmt::print("program      {:.3f} s for {} blocks; {} breaches of limits\n", smoothed.duration_s, smoothed.blocks,
                smoothed.check.violations());
   }
-  const report::Agreement count = report::agreement(result.cuts);
   if (!result.cuts.empty()) {
     fmt::print("test cuts    {} agree, {} disagree, {} without a result\n", count.agree, count.disagree,
                count.not_compared);

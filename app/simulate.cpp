@@ -76,7 +76,8 @@ formats::LobesFile read_cut(const std::filesystem::path& path, bool told, Progre
 modal::TipModes structure_of(const stability::LobesProblem& problem) {
   modal::TipModes tool = modal::tip_modes(problem.dynamics, problem.keep_modes, problem.feed_direction_rad);
   if (problem.workpiece_dynamics.modes.empty()) return tool;
-  return modal::joined(tool, modal::tip_modes(problem.workpiece_dynamics, {}, problem.feed_direction_rad));
+  return modal::joined(
+      tool, modal::tip_modes(problem.workpiece_dynamics, {}, problem.feed_direction_rad, modal::ModeOwner::workpiece));
 }
 
 void print_small(const SmallVibration& small) {

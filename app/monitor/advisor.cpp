@@ -22,6 +22,7 @@ Advisor::Advisor(const formats::MonitorFile& file, Progress& progress)
     lobes.validate();
     if (teeth_ == 0) teeth_ = lobes.problem.milling.tool.teeth;
     if (!lobes.problem.dynamics.modes.empty()) modes_ = lobes.problem.dynamics;
+    workpiece_ = lobes.problem.workpiece_dynamics;
     lobes_ = stability::compute_lobes(lobes.problem, lobes.options, progress);
   }
   if (!file.modes.empty()) modes_ = formats::read_modes(file.modes);
@@ -37,8 +38,9 @@ void Advisor::advise(formats::MonitorEvent& event) const {
   const monitor::Decision& d = event.decision;
   const double speed_rad_per_s = d.spindle_speed_rad_per_s > 0.0 ? d.spindle_speed_rad_per_s : hint_rad_per_s_;
   if (!(d.chatter_frequency_hz > 0.0) || teeth_ < 1 || !(speed_rad_per_s > 0.0)) return;
-  const monitor::Advice advice = monitor::advise(d.chatter_frequency_hz, d.chatter_frequency_std_hz, speed_rad_per_s,
-                                                 teeth_, modes_ ? &*modes_ : nullptr, lobes_ ? &*lobes_ : nullptr);
+  const monitor::Advice advice =
+      monitor::advise(d.chatter_frequency_hz, d.chatter_frequency_std_hz, speed_rad_per_s, teeth_,
+                      modes_ ? &*modes_ : nullptr, lobes_ ? &*lobes_ : nullptr, {}, workpiece_);
   event.mode = advice.mode;
   for (const monitor::StableSpeed& stable : advice.speeds) {
     event.stable_speeds_rad_per_s.push_back(stable.spindle_speed_rad_per_s);

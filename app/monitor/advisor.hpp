@@ -22,6 +22,7 @@ class Advisor {
   int teeth_ = 0;
   double hint_rad_per_s_ = 0.0;
   std::optional<modal::ModalModel> modes_;
+  modal::ModalModel workpiece_;  ///< no modes: it stands still
   std::optional<stability::LobesResult> lobes_;
 };
 

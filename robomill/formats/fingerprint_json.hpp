@@ -8,9 +8,7 @@ namespace robomill::formats {
 
 /// What `robomill explain` writes: spindle speed, every peak with what it is and what else it could be, the mode that
 /// chatters; the verdict on the delay, or null where no cut was given.
-/// @param modes  whose frequencies are told beside their numbers
 [[nodiscard]] ROBOMILL_API std::string fingerprint_json(const stability::Fingerprint& fingerprint,
-                                                        const modal::ModalModel& modes,
                                                         const stability::DelayVerdict* verdict);
 
 }  // namespace robomill::formats

@@ -59,6 +59,8 @@ void read_limits(TomlFile& file, Job& job) {
   file.number("spindle.min_speed_rpm", "min_spindle_speed_rad_per_s", units::rpm, job.min_spindle_speed_rad_per_s);
   file.number("safety.depth_margin", "depth_margin", 1.0, job.depth_margin);
   file.number("safety.speed_window", "speed_window", 1.0, job.speed_window);
+  file.number("finishing.max_surface_error_um", "max_surface_error_m", units::um, job.max_surface_error_m);
+  file.number("finishing.max_deflection_um", "max_deflection_m", units::um, job.max_deflection_m);
   for (std::size_t i = 0; i < file.tables("spindle.curve"); ++i) {
     const std::string row = "spindle.curve[" + std::to_string(i) + "].";
     SpindlePoint point;
@@ -98,6 +100,8 @@ void read_cuts(TomlFile& file, Job& job) {
 
 void Job::validate() const {
   require_non_negative("max_axial_depth_m", max_axial_depth_m, "m");
+  require_non_negative("max_surface_error_m", max_surface_error_m, "m");
+  require_non_negative("max_deflection_m", max_deflection_m, "m");
   require_non_negative("min_spindle_speed_rad_per_s", min_spindle_speed_rad_per_s, "rad/s");
   require_non_negative("max_spindle_speed_rad_per_s", max_spindle_speed_rad_per_s, "rad/s");
   if (max_spindle_speed_rad_per_s > 0.0 && max_spindle_speed_rad_per_s <= min_spindle_speed_rad_per_s) {
@@ -127,6 +131,7 @@ void Job::validate() const {
     require_positive((path + "spindle_speed_rad_per_s").c_str(), cuts[i].spindle_speed_rad_per_s, "rad/s");
     require_positive((path + "axial_depth_m").c_str(), cuts[i].axial_depth_m, "m");
     require_non_negative((path + "sample_rate_hz").c_str(), cuts[i].sample_rate_hz, "Hz");
+    for (const double peak_hz : cuts[i].peaks_hz) require_positive((path + "peaks_hz").c_str(), peak_hz, "Hz");
   }
 }
 

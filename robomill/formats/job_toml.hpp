@@ -46,8 +46,10 @@ struct Job {
   double max_axial_depth_m = 0.0;                ///< the cutter's flute length; 0: the lobes' range alone
   double max_spindle_speed_rad_per_s = 0.0;      ///< 0: the lobes' range alone
   double min_spindle_speed_rad_per_s = 0.0;
-  double depth_margin = 0.2;   ///< the recommended depth stays this fraction below the limit
-  double speed_window = 0.02;  ///< … over ± this fraction of speed
+  double depth_margin = 0.2;         ///< the recommended depth stays this fraction below the limit
+  double speed_window = 0.02;        ///< … over ± this fraction of speed
+  double max_surface_error_m = 0.0;  ///< of a finishing cut; 0: no limit
+  double max_deflection_m = 0.0;     ///< of a finishing cut; 0: no limit
   std::vector<SpindlePoint> spindle_curve = {};
   std::vector<TestCut> cuts = {};
 

@@ -31,6 +31,9 @@ cuts = "cuts.toml"
 [spindle]
 max_speed_rpm = 18000
 curve = [{ speed_rpm = 6000, torque_n_m = 12, power_kw = 7.5 }]
+[finishing]
+max_surface_error_um = 12
+max_deflection_um = 30
 [[cuts]]
 spindle_speed_rpm = 6500
 axial_depth_mm = 0.8
@@ -42,6 +45,8 @@ result = "chatter"
   EXPECT_DOUBLE_EQ(job.max_spindle_speed_rad_per_s, 18000 * units::rpm);
   ASSERT_EQ(job.spindle_curve.size(), 1U);
   EXPECT_DOUBLE_EQ(job.spindle_curve[0].power_w, 7500.0);
+  EXPECT_DOUBLE_EQ(job.max_surface_error_m, 12e-6);
+  EXPECT_DOUBLE_EQ(job.max_deflection_m, 30e-6);
   ASSERT_EQ(job.cuts.size(), 2U);
   EXPECT_EQ(job.cuts[0].result, TestCut::Result::chatter);
   EXPECT_DOUBLE_EQ(job.cuts[1].axial_depth_m, 1.2e-3);
@@ -94,6 +99,11 @@ TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
       refusal(source + "[[cuts]]\nspindle_speed_rpm = 10\naxial_depth_mm = 1\nresult = \"loud\"\n").find("\"stable\""),
       std::string::npos);
   EXPECT_NE(refusal(source + "[safety]\ndepth_margin = 20\n").find("0.2 stays 20 % below"), std::string::npos);
+  EXPECT_NE(refusal(source + "[finishing]\nmax_surface_error_um = -1\n").find("finishing.max_surface_error_um = -1"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(source + "[[cuts]]\nspindle_speed_rpm = 10\naxial_depth_mm = 1\npeaks_hz = [300, -5]\n").find("peaks_hz"),
+      std::string::npos);
   EXPECT_NE(refusal(source + "[spindel]\nmax_speed_rpm = 5\n").find("spindel"), std::string::npos);
 }
 

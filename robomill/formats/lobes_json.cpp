@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "robomill/formats/json.hpp"
+#include "robomill/formats/mode_json.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::formats {
@@ -23,7 +23,7 @@ template <class Point>
 void add_chatter(Json& json, const Point& point) {
   json["chatter_frequency_hz"] = number(point.chatter_frequency_hz);
   json["kind"] = stability::to_string(point.kind);
-  json["mode"] = point.mode;
+  set_mode(json, point.mode);
 }
 
 Json map_json(const Eigen::MatrixXd& spectral_radius) {

@@ -17,18 +17,18 @@ stability::LobesResult small_result() {
   r.axial_depth_m = Eigen::Vector3d(0.0, 1.5e-3, 3e-3);
   r.spectral_radius = Eigen::MatrixXd::Constant(3, 2, 0.5);
   r.spectral_radius(2, 1) = 1.25;
-  r.boundary = {{8000.0 * units::rpm, 1.2e-3, 563.5, stability::Kind::hopf, 8, 2e-7, 1},
-                {9000.0 * units::rpm, 2.1e-3, 225.0, stability::Kind::flip, 7, 0.0, 2}};
+  r.boundary = {{8000.0 * units::rpm, 1.2e-3, 563.5, stability::Kind::hopf, {8, modal::ModeOwner::workpiece}, 2e-7, 1},
+                {9000.0 * units::rpm, 2.1e-3, 225.0, stability::Kind::flip, {7}, 0.0, 2}};
   r.limit.resize(2);
   r.limit[0].spindle_speed_rad_per_s = 4000.0 * units::rpm;
-  r.limit[1] = {16000.0 * units::rpm, stability::Limit::Status::found, 2.5e-3, 540.0, stability::Kind::hopf, 8, 3e-7};
+  r.limit[1] = {16000.0 * units::rpm, stability::Limit::Status::found, 2.5e-3, 540.0, stability::Kind::hopf, {8}, 3e-7};
   stability::PointResult point;
   point.spindle_speed_rad_per_s = 6500.0 * units::rpm;
   point.axial_depth_m = 0.6e-3;
   point.spectral_radius = 1.104;
   point.multiplier = {0.0, 1.104};
   point.error_estimate = 1.8e-3;
-  point.mode = 8;
+  point.mode = {8};
   r.points = {point};
   r.evaluations = 8;
   r.unsettled = 2;
@@ -49,6 +49,7 @@ TEST(LobesJson, SaysEverythingInShopUnits) {
   EXPECT_EQ(json["boundary"][0]["chatter_frequency_hz"], 563.5);
   EXPECT_EQ(json["boundary"][0]["kind"], "hopf");
   EXPECT_EQ(json["boundary"][0]["mode"], 8);
+  EXPECT_EQ(json["boundary"][0]["mode_of"], "workpiece");
   EXPECT_EQ(json["boundary"][0]["curve"], 1);
   EXPECT_EQ(json["boundary"][0]["error_estimate"], 2e-7);
   EXPECT_EQ(json["boundary"][1]["kind"], "flip");

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "robomill/formats/json.hpp"
+#include "robomill/formats/mode_json.hpp"
 #include "robomill/formats/units.hpp"
 
 namespace robomill::formats {
@@ -60,7 +60,7 @@ std::string event_line(const MonitorEvent& event) {
   json["chatter_frequency_std_hz"] = chatters ? number(d.chatter_frequency_std_hz) : Json(nullptr);
   json["channel"] = chatters ? Json(d.channel + 1) : Json(nullptr);
   json["hidden"] = d.hidden == monitor::Hidden::none ? Json(nullptr) : Json(monitor::to_string(d.hidden));
-  json["mode"] = event.mode > 0 ? Json(event.mode) : Json(nullptr);
+  set_mode(json, event.mode);
   json["spindle_speed_rpm"] = positive(d.spindle_speed_rad_per_s, units::rpm);
   json["suggested_spindle_speed_rpm"] = positive(event.suggested_spindle_speed_rad_per_s, units::rpm);
   json["suggested_axial_depth_mm"] = positive(event.suggested_axial_depth_m, units::mm);

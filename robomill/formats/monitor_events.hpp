@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/modal/mode_id.hpp"
 #include "robomill/monitor/monitor.hpp"
 
 namespace robomill::formats {
@@ -17,7 +18,7 @@ struct MonitorEvent {
   Kind kind = Kind::state;
   double time_s = 0.0;                             ///< of the stream [s]
   monitor::Decision decision = {};                 ///< the last one
-  int mode = 0;                                    ///< that chatters, from 1; 0: unknown
+  modal::ModeId mode = {};                         ///< that chatters
   double suggested_spindle_speed_rad_per_s = 0.0;  ///< 0: none
   double suggested_axial_depth_m = 0.0;            ///< 0: none
   std::vector<double> stable_speeds_rad_per_s = {};

@@ -21,7 +21,7 @@ TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   event.decision.channel = 1;
   event.decision.faults = monitor::clipped | monitor::not_finite;
   event.decision.hidden = monitor::Hidden::locked;
-  event.mode = 2;
+  event.mode = {2};
   event.suggested_spindle_speed_rad_per_s = 6500.0 * units::rpm;
   event.stable_speeds_rad_per_s = {6500.0 * units::rpm, 3250.0 * units::rpm};
   event.compute_s = 123e-6;
@@ -38,6 +38,7 @@ TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   EXPECT_EQ(json["channel"], 2);
   EXPECT_EQ(json["hidden"], "locked");
   EXPECT_EQ(json["mode"], 2);
+  EXPECT_EQ(json["mode_of"], "tool");
   EXPECT_EQ(json["suggested_spindle_speed_rpm"], 6500);
   EXPECT_EQ(json["stable_spindle_speeds_rpm"][1], 3250);
   EXPECT_EQ(json["faults"], (std::vector<std::string>{"not-finite", "clipped"}));

@@ -1,6 +1,5 @@
 #include "robomill/modal/tip.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -70,7 +69,8 @@ std::vector<int> kept(const ModalModel& model, const std::vector<int>& keep_mode
 
 }  // namespace
 
-TipModes tip_modes(const ModalModel& model, const std::vector<int>& keep_modes, double feed_direction_rad) {
+TipModes tip_modes(const ModalModel& model, const std::vector<int>& keep_modes, double feed_direction_rad,
+                   ModeOwner owner) {
   const int point = tip_point(model);
   const double c = std::cos(feed_direction_rad);
   const double s = std::sin(feed_direction_rad);
@@ -78,13 +78,13 @@ TipModes tip_modes(const ModalModel& model, const std::vector<int>& keep_modes, 
   to_feed << c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0;
 
   TipModes tip;
-  tip.number = kept(model, keep_modes);
-  const Eigen::Index n = static_cast<Eigen::Index>(tip.number.size());
+  for (const int number : kept(model, keep_modes)) tip.id.push_back({number, owner});
+  const Eigen::Index n = static_cast<Eigen::Index>(tip.id.size());
   tip.pole.resize(n);
   tip.right.resize(3, n);
   tip.left.resize(3, n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    const Mode& mode = model.modes[static_cast<std::size_t>(tip.number[static_cast<std::size_t>(k)] - 1)];
+    const Mode& mode = model.modes[static_cast<std::size_t>(tip.id[static_cast<std::size_t>(k)].number - 1)];
     const Eigen::Vector3cd right = to_feed * at_point(mode.right, model.responses, point);
     const Eigen::Vector3cd left = to_feed * at_point(mode.left, model.excitations, point);
     const double size = 2.0 * right.norm();
@@ -113,20 +113,18 @@ TipModes turned(const TipModes& modes, const Eigen::Matrix3d& turn) {
   return other;
 }
 
-TipModes joined(const TipModes& tool, const TipModes& workpiece) {
-  TipModes both = tool;
-  const Eigen::Index n = tool.pole.size();
-  const Eigen::Index m = workpiece.pole.size();
+TipModes joined(const TipModes& one, const TipModes& other) {
+  TipModes both = one;
+  const Eigen::Index n = one.pole.size();
+  const Eigen::Index m = other.pole.size();
   both.pole.conservativeResize(n + m);
   both.right.conservativeResize(3, n + m);
   both.left.conservativeResize(3, n + m);
-  both.pole.tail(m) = workpiece.pole;
-  both.right.rightCols(m) = workpiece.right;
-  both.left.rightCols(m) = workpiece.left;
-  both.compliance += workpiece.compliance;
-  int last = 0;
-  for (const int number : tool.number) last = std::max(last, number);
-  for (const int number : workpiece.number) both.number.push_back(last + number);
+  both.pole.tail(m) = other.pole;
+  both.right.rightCols(m) = other.right;
+  both.left.rightCols(m) = other.left;
+  both.compliance += other.compliance;
+  both.id.insert(both.id.end(), other.id.begin(), other.id.end());
   return both;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
 
 namespace robomill::modal {
@@ -15,22 +16,23 @@ struct TipModes {
   Eigen::Matrix3Xcd right;     ///< 3 x n; a row that the model does not know is zero
   Eigen::Matrix3Xcd left;      ///< 3 x n [m/(N s)]
   Eigen::Matrix3d compliance;  ///< real part of the stiffness residuals [m/N]
-  std::vector<int> number;     ///< length n: which mode of the model it is, from 1
+  std::vector<ModeId> id;      ///< length n
 };
 
 /// @param keep_modes  numbers of the modes that take part, from 1; empty: all
 /// @param feed_direction_rad  of the feed in the model's x-y plane, counter-clockwise from x
+/// @param owner  of the model
 /// @throws InvalidInput if the model knows neither x nor y at a tip, has several points that could be the tip, or a
 /// number is wrong
 [[nodiscard]] ROBOMILL_API TipModes tip_modes(const ModalModel& model, const std::vector<int>& keep_modes,
-                                              double feed_direction_rad);
+                                              double feed_direction_rad, ModeOwner owner = ModeOwner::tool);
 
 /// The same structure in another frame: q' = T q, F' = T F.
 /// @param turn  T, orthogonal
 [[nodiscard]] ROBOMILL_API TipModes turned(const TipModes& modes, const Eigen::Matrix3d& turn);
 
-/// The tool's modes and then the workpiece's: what counts in a cut is the displacement of one against the other, and
-/// the force that pushes one pushes the other back, so that receptances add. The workpiece's modes are numbered on.
-[[nodiscard]] ROBOMILL_API TipModes joined(const TipModes& tool, const TipModes& workpiece);
+/// The modes of one structure and then of the other, tool and workpiece: what counts in a cut is the displacement of
+/// one against the other, and the force that pushes one pushes the other back, so that receptances add.
+[[nodiscard]] ROBOMILL_API TipModes joined(const TipModes& one, const TipModes& other);
 
 }  // namespace robomill::modal

@@ -13,27 +13,24 @@ namespace {
 constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double deviations = 3.0;  // within which a line is a mode's
 
-void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const modal::ModalModel& modes) {
+// The comb has taken out what rotates with the spindle: what is left is chatter.
+void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const modal::ModalModel& modes,
+               const modal::ModalModel& workpiece) {
   // The tolerance of explain() must stay below a quarter of rotation.
   const double most = 0.24 * spindle_speed_rad_per_s / turn;
   const double tolerance = std::clamp(deviations * advice.std_hz, std::min(1.0, most), most);
-  const stability::Fingerprint named = stability::explain(
-      {.frequency_hz = {advice.frequency_hz}, .spindle_speed_rad_per_s = spindle_speed_rad_per_s, .teeth = teeth},
-      modes, {.tolerance_hz = tolerance});
-  const stability::ExplainedPeak& peak = named.peaks.front();
-  // The comb has taken out what rotates with the spindle: what is left is chatter where a mode explains it.
-  const auto is_chatter = [](const stability::Explanation& e) {
-    return e.kind == stability::Explanation::Kind::chatter;
-  };
-  const auto* found = is_chatter(peak.best) ? &peak.best : nullptr;
-  for (const stability::Explanation& other : peak.others) {
-    if (found == nullptr && is_chatter(other)) found = &other;
+  const stability::ExplainedPeak peak =
+      stability::explain(
+          {.frequency_hz = {advice.frequency_hz}, .spindle_speed_rad_per_s = spindle_speed_rad_per_s, .teeth = teeth},
+          modes, {.tolerance_hz = tolerance, .multiples_removed = true}, workpiece)
+          .peaks.front();
+  advice.mode = peak.best.mode;
+  advice.expected_hz = peak.best.mode_frequency_hz;
+  if (std::isfinite(peak.chatter_frequency_hz)) {
+    advice.frequency_hz = peak.chatter_frequency_hz;
+  } else if (peak.state == stability::ExplainedPeak::State::cannot_be_told) {
+    advice.frequency_hz = 0.0;
   }
-  if (found == nullptr) return;
-  advice.mode = found->mode;
-  const double multiple = found->harmonic * named.spindle_speed_rad_per_s / turn;
-  advice.frequency_hz = std::abs((found->mirrored ? -1.0 : 1.0) * advice.frequency_hz - multiple);
-  advice.expected_hz = modes.modes[static_cast<std::size_t>(found->mode - 1)].frequency_hz;
 }
 
 void choose(Advice& advice, const stability::LobesResult& lobes, const AdviceOptions& options) {
@@ -60,7 +57,8 @@ void AdviceOptions::validate() const {
 }
 
 Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s, int teeth,
-              const modal::ModalModel* modes, const stability::LobesResult* lobes, const AdviceOptions& options) {
+              const modal::ModalModel* modes, const stability::LobesResult* lobes, const AdviceOptions& options,
+              const modal::ModalModel& workpiece) {
   options.validate();
   require_positive("frequency_hz", frequency_hz, "Hz");
   require_non_negative("std_hz", std_hz, "Hz");
@@ -71,7 +69,7 @@ Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s
   out.std_hz = std_hz;
   if (modes != nullptr) {
     require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", "Modes are told apart by it");
-    name_mode(out, spindle_speed_rad_per_s, teeth, *modes);
+    name_mode(out, spindle_speed_rad_per_s, teeth, *modes, workpiece);
   }
   // Lobes far down lie close together: no more of them than can be told apart from their neighbours.
   const double first = turn * out.frequency_hz / teeth;

@@ -25,8 +25,10 @@ struct AdviceOptions {
 
 /// What to do about chatter.
 struct Advice {
-  int mode = 0;               ///< that chatters, from 1; 0: none explains it, or no modes were given
-  double frequency_hz = 0.0;  ///< of the mode's motion: the one measured less its multiple of tooth passing or rotation
+  modal::ModeId mode = {};  ///< that chatters; unknown: none explains it, several do about as well, or none were given
+  /// Of the mode's motion: the one measured less its multiple of tooth passing or rotation. 0 where the modes that
+  /// explain it about as well disagree on that: then there are no speeds.
+  double frequency_hz = 0.0;
   double std_hz = 0.0;
   double expected_hz = 0.0;         ///< of that mode; 0 without one
   std::vector<StableSpeed> speeds;  ///< nearest to the present speed first
@@ -42,10 +44,11 @@ struct Advice {
 /// @param spindle_speed_rad_per_s > 0 where modes are given
 /// @param teeth                   >= 1
 /// @param modes, lobes            may be null; of the lobes the limits count
+/// @param workpiece               its modes count beside those of the tool, where both are known
 /// @throws InvalidInput naming what is out of range
 [[nodiscard]] ROBOMILL_API Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s, int teeth,
                                          const modal::ModalModel* modes = nullptr,
                                          const stability::LobesResult* lobes = nullptr,
-                                         const AdviceOptions& options = {});
+                                         const AdviceOptions& options = {}, const modal::ModalModel& workpiece = {});
 
 }  // namespace robomill::monitor

@@ -108,7 +108,7 @@ std::optional<modal::TipModes> structure_of(const formats::ForcesFile& file, con
   const auto join = [&all](const modal::TipModes& part) { all = all ? modal::joined(*all, part) : part; };
   if (!file.dynamics.modes.empty()) join(modal::tip_modes(file.dynamics, {}, file.feed_direction_rad));
   if (!file.workpiece_dynamics.modes.empty()) {
-    join(modal::tip_modes(file.workpiece_dynamics, {}, file.feed_direction_rad));
+    join(modal::tip_modes(file.workpiece_dynamics, {}, file.feed_direction_rad, modal::ModeOwner::workpiece));
   }
   if (cell != nullptr && posture != nullptr && file.robot_vibrates) {
     join(robot_modes(file, *cell, joints, posture->base_from_feed));

@@ -150,6 +150,7 @@ void pairs(PlanResult& result, Progress& progress) {
     const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
     report::Lobes lobes;
     lobes.label = k < modes ? fmt::format("modes {}–{}", k, k + 1) : fmt::format("mode {}", k);
+    if (!problem.workpiece_dynamics.modes.empty()) lobes.label += " and the workpiece's";
     lobes.modes = problem.keep_modes;
     lobes.spindle_speed_rad_per_s = axis;
     lobes.searched_depth_m = options.axial_depth_m[1];
@@ -174,6 +175,10 @@ RecommendOptions recommend_options(const formats::Job& job) {
         {.spindle_speed_rad_per_s = p.spindle_speed_rad_per_s, .torque_n_m = p.torque_n_m, .power_w = p.power_w});
   }
   return options;
+}
+
+FinishLimits finish_limits(const formats::Job& job) {
+  return {.max_surface_error_m = job.max_surface_error_m, .max_deflection_m = job.max_deflection_m};
 }
 
 /// Whether the spindle can turn the cutter through the cut whose forces were asked for.
@@ -231,29 +236,50 @@ void smooth(PlanResult& result, const std::filesystem::path& folder, Progress& p
   }
 }
 
-/// The deepest pockets of the lobes stand where tooth passing meets a mode: no chatter there, but resonance.
-void warn_of_resonance(PlanResult& result) {
+/// A mode that a multiple of tooth passing excites within its half-power width.
+struct Resonance {
+  modal::ModeId mode = {};
+  double frequency_hz = 0.0;
+  double harmonic = 0.0;
+  double distance = 1.0;  ///< in half-power half-widths ζ f
+};
+
+Resonance nearest_resonance(const PlanResult& result, double tooth_passing_hz) {
+  Resonance nearest;
+  const auto look = [&](const modal::ModalModel& model, modal::ModeOwner owner) {
+    int number = 0;
+    for (const modal::Mode& mode : model.modes) {
+      ++number;
+      const double harmonic = std::max(1.0, std::round(mode.frequency_hz / tooth_passing_hz));
+      const double distance =
+          std::abs(harmonic * tooth_passing_hz - mode.frequency_hz) / (mode.damping_ratio * mode.frequency_hz);
+      if (distance < nearest.distance) nearest = {{number, owner}, mode.frequency_hz, harmonic, distance};
+    }
+  };
+  look(result.model, modal::ModeOwner::tool);
+  look(result.cut.problem.workpiece_dynamics, modal::ModeOwner::workpiece);
+  return nearest;
+}
+
+/// The deepest pockets of the lobes stand where tooth passing meets a mode: no chatter there, but forced vibration.
+void tell_resonance(PlanResult& result) {
   if (!result.recommendation.recommended) return;
-  const double tooth_passing_hz = result.recommendation.recommended->spindle_speed_rad_per_s /
-                                  (2.0 * std::numbers::pi) * result.cut.problem.milling.tool.teeth;
-  const modal::Mode* nearest = nullptr;
-  double nearest_harmonic = 0.0;
-  double nearest_distance = 1.0;  // in half-power half-widths ζ f
-  for (const modal::Mode& mode : result.model.modes) {
-    const double harmonic = std::max(1.0, std::round(mode.frequency_hz / tooth_passing_hz));
-    const double distance =
-        std::abs(harmonic * tooth_passing_hz - mode.frequency_hz) / (mode.damping_ratio * mode.frequency_hz);
-    if (distance >= nearest_distance) continue;
-    nearest = &mode;
-    nearest_harmonic = harmonic;
-    nearest_distance = distance;
+  const Operation& op = *result.recommendation.recommended;
+  const double tooth_passing_hz =
+      op.spindle_speed_rad_per_s / (2.0 * std::numbers::pi) * result.cut.problem.milling.tool.teeth;
+  const Resonance nearest = nearest_resonance(result, tooth_passing_hz);
+  if (!nearest.mode.known()) return;
+  std::string text = fmt::format(
+      "At the recommended speed {:.0f} × tooth passing ({:.1f} Hz) excites {} ({:.1f} Hz): no chatter, but forced "
+      "vibration is greatest there.",
+      nearest.harmonic, nearest.harmonic * tooth_passing_hz, to_string(nearest.mode), nearest.frequency_hz);
+  if (finish_limits(result.job).any()) {
+    result.notes.push_back(text + " It keeps the limits of [finishing].");
+  } else {
+    result.warnings.push_back(text +
+                              " Its surface error and deflection stand beside the recommendation; [finishing] "
+                              "in the job limits them.");
   }
-  if (nearest == nullptr) return;
-  result.warnings.push_back(fmt::format(
-      "At the recommended speed {:.0f} × tooth passing ({:.1f} Hz) excites mode {} ({:.1f} Hz): no chatter, but forced "
-      "vibration is greatest there. Check the surface, or take an alternative.",
-      nearest_harmonic, nearest_harmonic * tooth_passing_hz, nearest - result.model.modes.data() + 1,
-      nearest->frequency_hz));
 }
 
 /// The limit as the feed turns through the plane: a robot is not the same in every direction.
@@ -301,17 +327,16 @@ void turn_feed(PlanResult& result, Progress& progress) {
 
 void compare(PlanResult& result, Progress& progress) {
   result.cuts = compare_cuts(result.job.cuts, result.cut.problem, result.cut.options, progress);
-  std::vector<double> modes_hz;
-  for (const modal::Mode& mode : result.model.modes) modes_hz.push_back(mode.frequency_hz);
   for (std::size_t i = 0; i < result.job.cuts.size(); ++i) {
     const formats::TestCut& cut = result.job.cuts[i];
     if (cut.file.empty()) continue;
-    result.recordings.push_back(read_recording(cut, result.cut.problem.milling.tool.teeth, modes_hz));
+    result.recordings.push_back(read_recording(cut, result.cut.problem));
     const report::Recording& heard = result.recordings.back();
     report::TestCut& row = result.cuts[i];
     if (row.result == report::Verdict::unknown) {
       row.result = heard.verdict;
-      if (row.result != report::Verdict::borderline) row.agrees = row.result == row.predicted;
+      const bool clear = row.result == report::Verdict::stable || row.result == report::Verdict::chatter;
+      if (clear) row.agrees = row.result == row.predicted;
     }
     row.note += "; " + heard.file + ": " + heard.reason;
   }
@@ -346,6 +371,11 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
                        "plan needs it for the removal rate");
   }
   const bool with_path = wants_path(result.job);
+  try {
+    require_finishable(result.cut.problem, finish_limits(result.job));
+  } catch (const InvalidInput& error) {
+    throw within(job.string() + ": ", error);
+  }
   measure(result, progress);
   if (!result.job.forces.empty()) {
     result.forces = run_forces(result.job.forces, result.job.program, result.job.cell, progress);
@@ -369,8 +399,9 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
   result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
   spread(result, seed, progress);
-  result.recommendation = choose(result.cut, result.lobes.limit, recommend_options(result.job));
-  warn_of_resonance(result);
+  result.recommendation =
+      choose(result.cut, result.lobes.limit, recommend_options(result.job), finish_limits(result.job), progress);
+  tell_resonance(result);
   pairs(result, progress);
   turn_feed(result, progress);
   compare(result, progress);

@@ -73,6 +73,9 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result);
 [[nodiscard]] std::string limited_by_text(const Operation& operation);
 
 /// Each mode's share of the speeds at which some mode limits the depth, in [0, 1]; empty where none does.
-[[nodiscard]] Eigen::VectorXd limit_share(const PlanResult& result);
+struct LimitShare {
+  Eigen::VectorXd tool, workpiece;  ///< one a mode of each
+};
+[[nodiscard]] LimitShare limit_share(const PlanResult& result);
 
 }  // namespace robomill::plan

@@ -5,6 +5,7 @@
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/json.hpp"
 #include "robomill/formats/lobes_json.hpp"
+#include "robomill/formats/mode_json.hpp"
 #include "robomill/formats/modes_files.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/plan/forces_json.hpp"
@@ -17,17 +18,22 @@ using formats::Json;
 using formats::number;
 
 Json to_json(const Operation& op) {
-  return {{"spindle_speed_rpm", number(op.spindle_speed_rad_per_s / units::rpm)},
-          {"axial_depth_mm", number(op.axial_depth_m / units::mm)},
-          {"feed_per_tooth_mm", number(op.feed_per_tooth_m / units::mm)},
-          {"margin", number(op.margin)},
-          {"removal_rate_mm3_per_s", number(op.removal_rate_m3_per_s / units::mm3)},
-          {"limited_by", limited_by_text(op)},
-          {"limit_depth_mm", number(op.limit_depth_m / units::mm)},
-          {"chatter_frequency_hz", op.mode > 0 ? number(op.chatter_frequency_hz) : Json()},
-          {"mode", op.mode > 0 ? Json(op.mode) : Json()},
-          {"torque_n_m", number(op.torque_n_m)},
-          {"power_w", number(op.power_w)}};
+  Json json = {{"spindle_speed_rpm", number(op.spindle_speed_rad_per_s / units::rpm)},
+               {"axial_depth_mm", number(op.axial_depth_m / units::mm)},
+               {"feed_per_tooth_mm", number(op.feed_per_tooth_m / units::mm)},
+               {"margin", number(op.margin)},
+               {"cutting_speed_m_per_min", number(op.cutting_speed_m_per_s * units::minute)},
+               {"feed_mm_per_min", number(op.feed_m_per_s / units::mm * units::minute)},
+               {"removal_rate_mm3_per_s", number(op.removal_rate_m3_per_s / units::mm3)},
+               {"limited_by", limited_by_text(op)},
+               {"limit_depth_mm", number(op.limit_depth_m / units::mm)},
+               {"chatter_frequency_hz", op.chatter_frequency_hz > 0.0 ? number(op.chatter_frequency_hz) : Json()},
+               {"torque_n_m", number(op.torque_n_m)},
+               {"power_w", number(op.power_w)},
+               {"surface_error_um", number(op.surface_error_m / units::um)},
+               {"peak_deflection_um", number(op.peak_deflection_m / units::um)}};
+  formats::set_mode(json, op.mode);
+  return json;
 }
 
 const char* to_text(report::Verdict verdict) {
@@ -91,13 +97,13 @@ void remove_later_stages(const std::filesystem::path& folder) {
 
 std::string plan_json(const PlanResult& result) {
   Json json;
+  const report::Agreement count = report::agreement(result.cuts);
+  json["agreement"] = {{"agree", count.agree}, {"disagree", count.disagree}, {"not_compared", count.not_compared}};
   json["recommended"] = result.recommendation.recommended ? to_json(*result.recommendation.recommended) : Json();
   json["alternatives"] = Json::array();
   for (const Operation& op : result.recommendation.alternatives) json["alternatives"].push_back(to_json(op));
   if (!result.recommendation.recommended) json["reason"] = result.recommendation.reason;
   json["cuts"] = cuts_json(result);
-  const report::Agreement count = report::agreement(result.cuts);
-  json["agreement"] = {{"agree", count.agree}, {"disagree", count.disagree}, {"not_compared", count.not_compared}};
   if (result.feed_directions) json["feed_directions"] = feed_directions_json(*result.feed_directions);
   json["warnings"] = result.warnings;
   json["notes"] = result.notes;

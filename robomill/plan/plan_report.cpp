@@ -19,11 +19,15 @@ report::Recommendation to_report(const Operation& op) {
   out.feed_per_tooth_m = op.feed_per_tooth_m;
   out.margin = op.margin;
   out.removal_rate_m3_per_s = op.removal_rate_m3_per_s;
+  out.feed_m_per_s = op.feed_m_per_s;
+  out.cutting_speed_m_per_s = op.cutting_speed_m_per_s;
+  out.torque_n_m = op.torque_n_m;
+  out.power_w = op.power_w;
+  out.surface_error_m = op.surface_error_m;
+  out.peak_deflection_m = op.peak_deflection_m;
   out.limited_by = limited_by_text(op);
-  if (op.mode > 0) {
-    out.chatter_frequency_hz = op.chatter_frequency_hz;
-    out.mode = op.mode;
-  }
+  if (op.chatter_frequency_hz > 0.0) out.chatter_frequency_hz = op.chatter_frequency_hz;
+  out.mode = op.mode;
   return out;
 }
 
@@ -102,7 +106,12 @@ void add_hits(report::Report& report, const PlanResult& result) {
 
 void add_fit(report::Report& report, const PlanResult& result) {
   report.model = result.model;
-  report.limit_share = limit_share(result);
+  LimitShare share = limit_share(result);
+  report.limit_share = std::move(share.tool);
+  if (!result.cut.problem.workpiece_dynamics.modes.empty()) {
+    report.workpiece_model = result.cut.problem.workpiece_dynamics;
+    report.workpiece_limit_share = std::move(share.workpiece);
+  }
   if (!result.fit) return;
   const modal::FitResult& fit = *result.fit;
   report::FitSummary summary;
@@ -224,7 +233,7 @@ report::Forces with_limits(report::Forces forces, const PlanResult& result) {
 std::string limited_by_text(const Operation& operation) {
   switch (operation.limited_by) {
     case LimitedBy::chatter:
-      return fmt::format("chatter of mode {} at {:.1f} Hz", operation.mode, operation.chatter_frequency_hz);
+      return fmt::format("chatter of {} at {:.1f} Hz", to_string(operation.mode), operation.chatter_frequency_hz);
     case LimitedBy::depth_range:
       return "the depth range of the lobes: no chatter found up to its end";
     case LimitedBy::cutter:
@@ -233,17 +242,29 @@ std::string limited_by_text(const Operation& operation) {
       return "the spindle's torque";
     case LimitedBy::spindle_power:
       return "the spindle's power";
+    case LimitedBy::surface_error:
+      return "the permitted surface error";
+    case LimitedBy::deflection:
+      return "the permitted deflection";
   }
   return {};
 }
 
-Eigen::VectorXd limit_share(const PlanResult& result) {
-  Eigen::VectorXd share = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(result.model.modes.size()));
+LimitShare limit_share(const PlanResult& result) {
+  const auto zeros = [](const modal::ModalModel& model) {
+    return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.modes.size())).eval();
+  };
+  LimitShare share = {zeros(result.model), zeros(result.cut.problem.workpiece_dynamics)};
   for (const stability::Limit& limit : result.lobes.limit) {
-    if (limit.status == stability::Limit::Status::found && limit.mode > 0) share(limit.mode - 1) += 1.0;
+    if (limit.status != stability::Limit::Status::found || !limit.mode.known()) continue;
+    Eigen::VectorXd& owner = limit.mode.of == modal::ModeOwner::tool ? share.tool : share.workpiece;
+    owner(limit.mode.number - 1) += 1.0;
   }
-  const double total = share.sum();
-  return total > 0.0 ? Eigen::VectorXd(share / total) : Eigen::VectorXd();
+  const double total = share.tool.sum() + share.workpiece.sum();
+  if (total == 0.0) return {};
+  share.tool /= total;
+  share.workpiece /= total;
+  return share;
 }
 
 report::Report make_report(const PlanResult& result, const std::vector<report::StageFile>& files) {
@@ -255,6 +276,8 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   report.notes = result.notes;
   if (result.recommendation.recommended) report.recommendation = to_report(*result.recommendation.recommended);
   for (const Operation& op : result.recommendation.alternatives) report.alternatives.push_back(to_report(op));
+  if (result.job.max_surface_error_m > 0.0) report.max_surface_error_m = result.job.max_surface_error_m;
+  if (result.job.max_deflection_m > 0.0) report.max_deflection_m = result.job.max_deflection_m;
   report.no_recommendation = result.recommendation.reason;
   add_frfs(report, result);
   if (result.prediction) add_prediction(report, *result.prediction);

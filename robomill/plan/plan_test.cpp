@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
 #include "data/robot_modes.hpp"
@@ -14,6 +15,7 @@
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/plan/test_lobes.hpp"
+#include "robomill/stability/surface_error.hpp"
 
 namespace robomill::plan {
 namespace {
@@ -66,7 +68,72 @@ TEST_F(Plan, RecommendsADepthBelowTheLimitOfTheWholeWindow) {
     EXPECT_TRUE(point.stable) << part;
   }
   EXPECT_EQ(result.pairs.size(), 4U);
-  EXPECT_NEAR(limit_share(result).sum(), 1.0, 1e-12);
+}
+
+// Three modes of the part, softer than any of the tool's: with keep_modes its numbers are those of tool modes that take
+// no part. What limits is named by structure and number, and each limit counts for the mode that it names.
+TEST_F(Plan, ModesOfTheWorkpieceAreNotThoseOfTheTool) {
+  const std::string part =
+      "[workpiece_dynamics]\ny = [{ frequency_hz = 400, damping_ratio = 0.005, modal_mass_kg = 0.01 }, "
+      "{ frequency_hz = 460, damping_ratio = 0.005, modal_mass_kg = 0.01 }, "
+      "{ frequency_hz = 520, damping_ratio = 0.005, modal_mass_kg = 0.001 }]\n";
+  const std::string lobes = formats::read_file(folder_.at("lobes.toml"));
+  for (const std::string& kept : {std::string(), std::string("[dynamics]\nkeep_modes = [1, 7]\n")}) {
+    write("lobes.toml", lobes + kept + part);
+    const PlanResult result = run_job(job(), 1);
+    const LimitShare share = limit_share(result);
+    ASSERT_EQ(share.tool.size(), 8);
+    ASSERT_EQ(share.workpiece.size(), 3);
+    LimitShare counted = {Eigen::VectorXd::Zero(8), Eigen::VectorXd::Zero(3)};
+    double found = 0.0;
+    for (const stability::Limit& limit : result.lobes.limit) {
+      if (limit.status != stability::Limit::Status::found) continue;
+      const bool of_tool = limit.mode.of == modal::ModeOwner::tool;
+      ASSERT_GE(limit.mode.number, 1);
+      ASSERT_LE(limit.mode.number, of_tool ? 8 : 3);
+      EXPECT_TRUE(!of_tool || kept.empty() || limit.mode.number == 1 || limit.mode.number == 7);
+      (of_tool ? counted.tool : counted.workpiece)(limit.mode.number - 1) += 1.0;
+      found += 1.0;
+    }
+    EXPECT_GT(counted.workpiece.sum(), 0.0);
+    EXPECT_LT((share.tool - counted.tool / found).norm(), 1e-12);
+    EXPECT_LT((share.workpiece - counted.workpiece / found).norm(), 1e-12);
+
+    const auto json = nlohmann::json::parse(plan_json(result));
+    for (std::size_t i = 0; i < result.lobes.limit.size(); ++i) {
+      const stability::Limit& limit = result.lobes.limit[i];
+      if (!limit.mode.known()) continue;
+      EXPECT_EQ(json["lobes"]["limit"][i]["mode"], limit.mode.number);
+      EXPECT_EQ(json["lobes"]["limit"][i]["mode_of"], to_string(limit.mode.of));
+    }
+    const auto page = nlohmann::json::parse(report::report_json(make_report(result, {})));
+    ASSERT_EQ(page["modes"].size(), 11U);
+    EXPECT_EQ(page["modes"][9]["mode"], 2);
+    EXPECT_EQ(page["modes"][9]["mode_of"], "workpiece");
+    EXPECT_EQ(page["modes"][9]["frequency_hz"], 460);
+  }
+}
+
+// A mode's share is that of the speeds whose limit it sets: two modes far apart in stiffness, each in its own
+// direction.
+TEST(LimitShare, CountsTheSpeedsOfEachMode) {
+  PlanResult result;
+  result.model.modes.resize(3);
+  result.cut.problem.workpiece_dynamics.modes.resize(2);
+  EXPECT_EQ(limit_share(result).tool.size(), 0);  // no limit, no share
+  const auto add = [&result](modal::ModeId mode, int speeds) {
+    for (int i = 0; i < speeds; ++i) {
+      result.lobes.limit.push_back({.status = stability::Limit::Status::found, .mode = mode});
+    }
+  };
+  add({2}, 3);
+  add({3}, 1);
+  add({2, modal::ModeOwner::workpiece}, 4);
+  result.lobes.limit.push_back({});  // stable in range
+  add({}, 5);                        // of measured FRFs: no mode is known
+  const LimitShare share = limit_share(result);
+  EXPECT_EQ(share.tool, Eigen::Vector3d(0.0, 0.375, 0.125));
+  EXPECT_EQ(share.workpiece, Eigen::Vector2d(0.0, 0.5));
 }
 
 // The plan computes half a turn and mirrors it; the other half computed gives the same.
@@ -154,6 +221,52 @@ TEST_F(Plan, ComputesNothingFromModesThatDoNotDescribeTheFrfs) {
   EXPECT_TRUE(json["recommended"].is_null());
   EXPECT_EQ(json["modes"]["fit"]["usable"], false);
   EXPECT_FALSE(json.contains("lobes"));
+}
+
+// The best pocket of the lobes is a resonance: roughing takes it and says what it leaves, finishing keeps its limit at
+// every speed of the window.
+TEST_F(Plan, FinishingKeepsTheSurfaceErrorThatRoughingReports) {
+  const PlanResult rough = run_job(job(), 1);
+  const Operation& free = *rough.recommendation.recommended;
+  ASSERT_TRUE(std::isfinite(free.surface_error_m));
+  ASSERT_GT(free.peak_deflection_m, 0.0);
+  const stability::SurfacePoint there =
+      stability::surface_point(rough.cut.problem, {free.spindle_speed_rad_per_s, free.axial_depth_m});
+  EXPECT_EQ(free.surface_error_m, there.surface_location_error_m);
+  EXPECT_EQ(free.peak_deflection_m, there.peak_deflection_m);
+  const auto told = nlohmann::json::parse(plan_json(rough))["recommended"];
+  EXPECT_NEAR(told["surface_error_um"].get<double>(), free.surface_error_m / units::um, 1e-9);
+  EXPECT_NEAR(told["peak_deflection_um"].get<double>(), free.peak_deflection_m / units::um, 1e-9);
+  const double turns_per_min = told["spindle_speed_rpm"].get<double>();
+  EXPECT_NEAR(told["cutting_speed_m_per_min"].get<double>(), std::numbers::pi * 12e-3 * turns_per_min, 1e-6);
+  EXPECT_NEAR(told["feed_mm_per_min"].get<double>(), 3 * 0.01 * turns_per_min, 1e-6);
+
+  const double most_um = 0.3 * std::abs(free.surface_error_m) / units::um;
+  const PlanResult fine = run_job(job("[finishing]\nmax_surface_error_um = " + std::to_string(most_um) + "\n"), 1);
+  ASSERT_EQ(fine.recommendation.status, Recommendation::Status::found);
+  std::vector<Operation> all = fine.recommendation.alternatives;
+  all.push_back(*fine.recommendation.recommended);
+  bool bound = false;
+  for (const Operation& op : all) {
+    bound = bound || op.limited_by == LimitedBy::surface_error;
+    for (const double part : {-0.02, 0.0, 0.02}) {
+      const stability::SurfacePoint surface =
+          stability::surface_point(fine.cut.problem, {op.spindle_speed_rad_per_s * (1.0 + part), op.axial_depth_m});
+      EXPECT_LE(std::abs(surface.surface_location_error_m), most_um * units::um * (1.0 + 1e-9));
+    }
+  }
+  EXPECT_TRUE(bound);
+  EXPECT_LE(fine.recommendation.recommended->removal_rate_m3_per_s, free.removal_rate_m3_per_s);
+}
+
+TEST_F(Plan, FinishingNeedsAWall) {
+  std::string lobes = formats::read_file(folder_.at("lobes.toml"));
+  const std::string direction = "direction = \"up\"\nradial_depth_mm = 1.8";
+  lobes.replace(lobes.find(direction), direction.size(), "entry_deg = 30\nexit_deg = 150");
+  write("lobes.toml", lobes);
+  const std::string text =
+      test::refusal([&] { static_cast<void>(run_job(job("[finishing]\nmax_surface_error_um = 5\n"), 1)); });
+  EXPECT_NE(text.find("job.toml: max_surface_error_m"), std::string::npos) << text;
 }
 
 // Headerless FRFs that start at 0 Hz, one direction: the fit leaves that line out, and so does the fitted curve.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "robomill/base/error.hpp"
 
@@ -13,11 +14,30 @@ double depth_or_all(const DepthLimit& limit, const RecommendOptions& options) {
   return std::min(limit.axial_depth_m.value_or(options.searched_depth_m), options.searched_depth_m);
 }
 
-/// The operation at `speed`, given the lowest limit in its window.
-Operation operation_at(double speed, const DepthLimit& lowest, const RecommendOptions& options) {
+/// What binds at the speeds of a window.
+struct Window {
+  std::optional<DepthLimit> lowest = {};  ///< with the lowest limit
+  FinishDepth finish = {};
+
+  void add(const DepthLimit& limit, const RecommendOptions& options) {
+    if (!lowest || depth_or_all(limit, options) < depth_or_all(*lowest, options)) lowest = limit;
+    if (limit.finish.axial_depth_m < finish.axial_depth_m) finish = limit.finish;
+  }
+};
+
+struct Candidate {
+  Operation operation;
+  Window window;
+};
+
+/// The operation at `speed`, given what binds in its window.
+Operation operation_at(double speed, const Window& window, const RecommendOptions& options) {
+  const DepthLimit& lowest = *window.lowest;
   Operation op;
   op.spindle_speed_rad_per_s = speed;
   op.feed_per_tooth_m = options.feed_per_tooth_m;
+  op.feed_m_per_s = options.feed_per_tooth_m * options.teeth * speed / (2.0 * std::numbers::pi);
+  op.cutting_speed_m_per_s = 0.5 * options.diameter_m * speed;
   op.limit_depth_m = depth_or_all(lowest, options);
   op.axial_depth_m = op.limit_depth_m * (1.0 - options.depth_margin);
   op.limited_by = lowest.axial_depth_m ? LimitedBy::chatter : LimitedBy::depth_range;
@@ -37,17 +57,17 @@ Operation operation_at(double speed, const DepthLimit& lowest, const RecommendOp
     cap(capacity.torque_n_m / options.torque_per_depth_n, LimitedBy::spindle_torque);
     cap(capacity.power_w / (options.torque_per_depth_n * speed), LimitedBy::spindle_power);
   }
+  cap(window.finish.axial_depth_m, window.finish.reason);
   op.margin = op.limit_depth_m > 0.0 ? 1.0 - op.axial_depth_m / op.limit_depth_m : 0.0;
   op.torque_n_m = options.torque_per_depth_n * op.axial_depth_m;
   op.power_w = op.torque_n_m * speed;
-  op.removal_rate_m3_per_s = op.axial_depth_m * options.radial_depth_m * options.feed_per_tooth_m * options.teeth *
-                             speed / (2.0 * std::numbers::pi);
+  op.removal_rate_m3_per_s = op.axial_depth_m * options.radial_depth_m * op.feed_m_per_s;
   return op;
 }
 
 /// One operation for each given speed whose whole window lies within the limits and the spindle's range.
-std::vector<Operation> candidates(const std::vector<DepthLimit>& limits, const RecommendOptions& options) {
-  std::vector<Operation> out;
+std::vector<Candidate> candidates(const std::vector<DepthLimit>& limits, const RecommendOptions& options) {
+  std::vector<Candidate> out;
   const double highest = options.max_spindle_speed_rad_per_s > 0.0 ? options.max_spindle_speed_rad_per_s
                                                                    : limits.back().spindle_speed_rad_per_s;
   for (const DepthLimit& centre : limits) {
@@ -56,12 +76,13 @@ std::vector<Operation> candidates(const std::vector<DepthLimit>& limits, const R
     const double to = speed * (1.0 + options.speed_window);
     if (speed < options.min_spindle_speed_rad_per_s || speed > highest) continue;
     if (from < limits.front().spindle_speed_rad_per_s || to > limits.back().spindle_speed_rad_per_s) continue;
-    DepthLimit lowest = centre;
+    Window window;
+    window.add(centre, options);
     for (const DepthLimit& other : limits) {
       const bool inside = other.spindle_speed_rad_per_s >= from && other.spindle_speed_rad_per_s <= to;
-      if (inside && depth_or_all(other, options) < depth_or_all(lowest, options)) lowest = other;
+      if (inside) window.add(other, options);
     }
-    out.push_back(operation_at(speed, lowest, options));
+    out.push_back({operation_at(speed, window, options), window});
   }
   return out;
 }
@@ -79,32 +100,33 @@ bool better(const Operation& a, const Operation& b) {
 }
 
 /// Candidates in the order in which they are tried: peaks of the removal rate first, the best first.
-std::vector<Operation> ranked(const std::vector<Operation>& all) {
-  std::vector<Operation> peaks;
-  std::vector<Operation> others;
+std::vector<Candidate> ranked(const std::vector<Candidate>& all) {
+  const auto rate = [&all](std::size_t i) { return all[i].operation.removal_rate_m3_per_s; };
+  const auto first = [](const Candidate& a, const Candidate& b) { return better(a.operation, b.operation); };
+  std::vector<Candidate> peaks;
+  std::vector<Candidate> others;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool rises = i == 0 || all[i].removal_rate_m3_per_s > all[i - 1].removal_rate_m3_per_s;
-    const bool falls = i + 1 == all.size() || all[i].removal_rate_m3_per_s >= all[i + 1].removal_rate_m3_per_s;
+    const bool rises = i == 0 || rate(i) > rate(i - 1);
+    const bool falls = i + 1 == all.size() || rate(i) >= rate(i + 1);
     (rises && falls ? peaks : others).push_back(all[i]);
   }
-  std::sort(peaks.begin(), peaks.end(), better);
-  std::sort(others.begin(), others.end(), better);
+  std::sort(peaks.begin(), peaks.end(), first);
+  std::sort(others.begin(), others.end(), first);
   peaks.insert(peaks.end(), others.begin(), others.end());
   return peaks;
 }
 
-/// The operation again, with the limit looked up at nine speeds over its window.
-Operation verified(const Operation& op, const RecommendOptions& options,
+/// The operation again, with the limits looked up at nine speeds over its window.
+Operation verified(const Candidate& candidate, const RecommendOptions& options,
                    const std::function<DepthLimit(double)>& limit_at) {
   constexpr int looks = 9;
-  DepthLimit lowest;
+  const double speed = candidate.operation.spindle_speed_rad_per_s;
+  Window window = candidate.window;
   for (int i = 0; i < looks; ++i) {
     const double part = 2.0 * i / (looks - 1) - 1.0;
-    const DepthLimit limit = limit_at(op.spindle_speed_rad_per_s * (1.0 + options.speed_window * part));
-    if (i == 0 || depth_or_all(limit, options) < depth_or_all(lowest, options)) lowest = limit;
+    window.add(limit_at(speed * (1.0 + options.speed_window * part)), options);
   }
-  if (depth_or_all(lowest, options) >= op.limit_depth_m) return op;
-  return operation_at(op.spindle_speed_rad_per_s, lowest, options);
+  return operation_at(speed, window, options);
 }
 
 void validate_limits(const std::vector<DepthLimit>& limits) {
@@ -138,6 +160,7 @@ SpindleCapacity capacity_at(const std::vector<SpindleCapacity>& curve, double sp
 void RecommendOptions::validate() const {
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be >= 1");
   require_positive("radial_depth_m", radial_depth_m, "m");
+  require_non_negative("diameter_m", diameter_m, "m");
   require_positive("feed_per_tooth_m", feed_per_tooth_m, "m");
   require_positive("searched_depth_m", searched_depth_m, "m");
   require_non_negative("max_axial_depth_m", max_axial_depth_m, "m");
@@ -155,21 +178,22 @@ Recommendation recommend(const std::vector<DepthLimit>& limits, const RecommendO
   options.validate();
   validate_limits(limits);
   Recommendation result;
-  const std::vector<Operation> all = candidates(limits, options);
+  const std::vector<Candidate> all = candidates(limits, options);
   if (all.empty()) {
     result.reason = "no spindle speed of the lobes lies within the spindle's range with its speed window";
     return result;
   }
   std::vector<Operation> chosen;
   const std::size_t wanted = 1 + static_cast<std::size_t>(options.alternatives);
-  for (const Operation& op : ranked(all)) {
+  for (const Candidate& candidate : ranked(all)) {
     if (chosen.size() == wanted) break;
+    const Operation& op = candidate.operation;
     if (op.axial_depth_m <= 0.0 || !distinct(op, chosen, options.distinct_speed)) continue;
-    const Operation checked = verified(op, options, limit_at);
+    const Operation checked = verified(candidate, options, limit_at);
     if (checked.axial_depth_m > 0.0) chosen.push_back(checked);
   }
   if (chosen.empty()) {
-    result.reason = "every spindle speed chatters at any depth, or the spindle gives no torque";
+    result.reason = "every spindle speed chatters at any depth, the spindle gives no torque, or no depth finishes";
     return result;
   }
   std::sort(chosen.begin(), chosen.end(), better);

@@ -1,19 +1,30 @@
 #pragma once
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/modal/mode_id.hpp"
 
 namespace robomill::plan {
 
-/// The lowest unstable depth at one speed.
+enum class LimitedBy { chatter, depth_range, cutter, spindle_torque, spindle_power, surface_error, deflection };
+
+/// How deep a finishing cut may go at one speed.
+struct FinishDepth {
+  double axial_depth_m = std::numeric_limits<double>::infinity();  ///< infinite: nothing limits it
+  LimitedBy reason = LimitedBy::surface_error;
+};
+
+/// The lowest unstable depth at one speed, and the greatest that finishes.
 struct DepthLimit {
   double spindle_speed_rad_per_s = 0.0;
   std::optional<double> axial_depth_m = {};  ///< none: stable up to RecommendOptions::searched_depth_m
   double chatter_frequency_hz = 0.0;
-  int mode = 0;  ///< that chatters, from 1; 0: unknown
+  modal::ModeId mode = {};  ///< that chatters
+  FinishDepth finish = {};
 };
 
 /// What the spindle gives at one speed; linear in between.
@@ -30,6 +41,7 @@ struct SpindleCapacity {
 struct RecommendOptions {
   int teeth = 0;                    ///< >= 1; required
   double radial_depth_m = 0.0;      ///< > 0; required
+  double diameter_m = 0.0;          ///< of the cutter, for the cutting speed; 0: unknown
   double feed_per_tooth_m = 0.0;    ///< > 0; required
   double searched_depth_m = 0.0;    ///< largest depth that the limits were looked for at, > 0; required
   double max_axial_depth_m = 0.0;   ///< the cutter's; 0: searched_depth_m
@@ -43,23 +55,26 @@ struct RecommendOptions {
   int alternatives = 3;          ///< >= 0
   double distinct_speed = 0.05;  ///< alternatives differ by at least this fraction of speed
 
-  void validate() const;  ///< throws InvalidInput naming the field
+  ROBOMILL_API void validate() const;  ///< throws InvalidInput naming the field
 };
-
-enum class LimitedBy { chatter, depth_range, cutter, spindle_torque, spindle_power };
 
 /// A speed and depth to cut at.
 struct Operation {
   double spindle_speed_rad_per_s = 0.0;
   double axial_depth_m = 0.0;
   double feed_per_tooth_m = 0.0;
+  double feed_m_per_s = 0.0;           ///< f_z N n
+  double cutting_speed_m_per_s = 0.0;  ///< of the tooth; 0 where the diameter is unknown
   double removal_rate_m3_per_s = 0.0;  ///< a_p a_e f_z N n
   double limit_depth_m = 0.0;          ///< lowest limit over the speed window (searched_depth_m where there is none)
   double margin = 0.0;                 ///< 1 - depth / limit
-  double torque_n_m = 0.0, power_w = 0.0;
+  double torque_n_m = 0.0, power_w = 0.0;  ///< means over a revolution
   LimitedBy limited_by = LimitedBy::chatter;
   double chatter_frequency_hz = 0.0;  ///< what chatters at the window's lowest limit; 0: nothing
-  int mode = 0;
+  modal::ModeId mode = {};
+  /// Of the forced vibration, where it was computed; else NaN. See stability::SurfacePoint.
+  double surface_error_m = std::numeric_limits<double>::quiet_NaN();
+  double peak_deflection_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct Recommendation {
@@ -71,8 +86,8 @@ struct Recommendation {
 };
 
 /// The speed and depth with the highest removal rate such that the depth is at most (1 - depth_margin) times the limit
-/// at every speed of the window, within the spindle's range, torque and power and the cutter's depth; and the next
-/// best, each at another lobe where there is one.
+/// and at most the finishing depth at every speed of the window, within the spindle's range, torque and power and the
+/// cutter's depth; and the next best, each at another lobe where there is one.
 ///
 /// @param limits  by increasing speed, at least two
 /// @param limit_at  the limit at any speed: looks between the given ones before an operation is offered

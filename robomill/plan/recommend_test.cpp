@@ -17,7 +17,8 @@ constexpr double pi = std::numbers::pi;
 DepthLimit lobe(double speed) {
   const double phase = 3000.0 / speed;
   const double depth = 0.5e-3 + 5e-3 * std::pow(std::sin(pi * phase), 8);
-  DepthLimit limit{.spindle_speed_rad_per_s = speed, .axial_depth_m = depth, .chatter_frequency_hz = 540.0, .mode = 7};
+  DepthLimit limit{
+      .spindle_speed_rad_per_s = speed, .axial_depth_m = depth, .chatter_frequency_hz = 540.0, .mode = {7}};
   if (depth > 4e-3) limit.axial_depth_m.reset();
   return limit;
 }
@@ -109,6 +110,46 @@ TEST(Recommend, ObeysCutterAndSpindle) {
   EXPECT_LE(op.spindle_speed_rad_per_s, 800.0);
 }
 
+// A finishing depth binds like any other limit: over the whole window, between the given speeds too.
+TEST(Recommend, KeepsTheFinishingDepthOverTheWindow) {
+  // Fine away from 900 rad/s, where tooth passing meets a mode.
+  const auto finishing = [](double speed) {
+    DepthLimit limit = lobe(speed);
+    limit.finish = {.axial_depth_m = 1e-4 + 2e-3 * std::abs(speed / 900.0 - 1.0), .reason = LimitedBy::surface_error};
+    return limit;
+  };
+  std::vector<DepthLimit> limits;
+  for (const DepthLimit& limit : lobes()) limits.push_back(finishing(limit.spindle_speed_rad_per_s));
+  const Recommendation r = recommend(limits, options(), finishing);
+  ASSERT_EQ(r.status, Recommendation::Status::found);
+  std::vector<Operation> all = r.alternatives;
+  all.push_back(*r.recommended);
+  int bound = 0;
+  for (const Operation& op : all) {
+    for (int i = -4; i <= 4; ++i) {
+      const DepthLimit limit = finishing(op.spindle_speed_rad_per_s * (1.0 + 0.005 * i));
+      EXPECT_LE(op.axial_depth_m, limit.finish.axial_depth_m * (1 + 1e-12));
+      EXPECT_LE(op.axial_depth_m, 0.8 * limit.axial_depth_m.value_or(4e-3) * (1 + 1e-12));
+    }
+    if (op.limited_by == LimitedBy::surface_error) ++bound;
+    EXPECT_GE(op.margin, 0.2 - 1e-12);
+  }
+  EXPECT_GT(bound, 0);
+  EXPECT_LT(r.recommended->removal_rate_m3_per_s,
+            recommend(lobes(), options(), lobe).recommended->removal_rate_m3_per_s);
+}
+
+TEST(Recommend, SaysFeedAndCuttingSpeed) {
+  RecommendOptions o = options();
+  EXPECT_EQ(recommend(lobes(), o, lobe).recommended->cutting_speed_m_per_s, 0.0);
+  o.diameter_m = 12e-3;
+  const Operation op = *recommend(lobes(), o, lobe).recommended;
+  const double per_s = op.spindle_speed_rad_per_s / (2 * pi);
+  EXPECT_NEAR(op.cutting_speed_m_per_s, pi * 12e-3 * per_s, 1e-12);
+  EXPECT_NEAR(op.feed_m_per_s, 1e-5 * 3 * per_s, 1e-15);
+  EXPECT_TRUE(std::isnan(op.surface_error_m));
+}
+
 // A dip between two grid speeds, narrower than their distance, is found by looking closer.
 TEST(Recommend, LooksBetweenTheGivenSpeeds) {
   std::vector<DepthLimit> limits;
@@ -116,11 +157,11 @@ TEST(Recommend, LooksBetweenTheGivenSpeeds) {
     limits.push_back({.spindle_speed_rad_per_s = 1000.0 + 100.0 * i, .axial_depth_m = 2e-3});
   const auto with_dip = [](double speed) {
     const bool dip = std::abs(speed / 100.0 - std::round(speed / 100.0)) > 1e-6;
-    return DepthLimit{.spindle_speed_rad_per_s = speed, .axial_depth_m = dip ? 1e-3 : 2e-3, .mode = 2};
+    return DepthLimit{.spindle_speed_rad_per_s = speed, .axial_depth_m = dip ? 1e-3 : 2e-3, .mode = {2}};
   };
   const Operation op = *recommend(limits, options(), with_dip).recommended;
   EXPECT_DOUBLE_EQ(op.axial_depth_m, 0.8e-3);
-  EXPECT_EQ(op.mode, 2);
+  EXPECT_EQ(op.mode.number, 2);
 }
 
 TEST(Recommend, SaysWhenNothingIsSafe) {

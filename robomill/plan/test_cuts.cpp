@@ -5,47 +5,64 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/formats/records.hpp"
 #include "robomill/signal/spectrum.hpp"
+#include "robomill/stability/fingerprint.hpp"
 
 namespace robomill::plan {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-/// Real spindles stray from their set speed by less than this.
-constexpr double speed_error = 2e-4;
+/// A reading in words: "2 × tooth passing", "9 × rotation + mode 1", "mode 7 − 1 × rotation".
+std::string words(const stability::Explanation& e, int teeth) {
+  using Kind = stability::Explanation::Kind;
+  const int turns = std::abs(e.harmonic);
+  if (e.kind == Kind::tooth_passing) return fmt::format("{} × tooth passing", turns / teeth);
+  const std::string multiple = fmt::format("{} × rotation", turns);
+  if (e.kind == Kind::rotation) return multiple;
+  const std::string mode = to_string(e.mode);
+  if (turns == 0) return mode;
+  if (e.harmonic > 0) return multiple + " + " + mode;
+  return e.mirrored ? multiple + " − " + mode : mode + " − " + multiple;
+}
 
-struct Offset {
-  int mode = 0;  ///< 0: none near enough
-  double multiple = 0.0;
-  bool above = true;
-  double error_hz = 0.0;
-};
-
-/// The mode k and multiple n with |n f_rotation ± f_k| nearest to the peak; multiples of tooth passing win ties within
-/// the tolerance, then the smallest error.
-Offset nearest_mode(double frequency_hz, double rotation_hz, int teeth, const std::vector<double>& modes_hz,
-                    double tolerance_hz) {
-  Offset best;
-  bool best_is_tooth = false;
-  for (std::size_t k = 0; k < modes_hz.size(); ++k) {
-    for (const bool above : {true, false}) {
-      const double shift = above ? modes_hz[k] : -modes_hz[k];
-      const double multiple = std::round((frequency_hz - shift) / rotation_hz);
-      const double error = std::abs(multiple * rotation_hz + shift - frequency_hz);
-      if (multiple < 0.0 || error > tolerance_hz) continue;
-      const bool is_tooth = std::fmod(multiple, teeth) == 0.0;
-      if (best.mode == 0 || (is_tooth && !best_is_tooth) || (is_tooth == best_is_tooth && error < best.error_hz)) {
-        best = {.mode = static_cast<int>(k) + 1, .multiple = multiple, .above = above, .error_hz = error};
-        best_is_tooth = is_tooth;
-      }
-    }
+report::PeakKind kind_of(stability::Explanation::Kind kind) {
+  switch (kind) {
+    case stability::Explanation::Kind::tooth_passing:
+      return report::PeakKind::tooth_passing;
+    case stability::Explanation::Kind::rotation:
+      return report::PeakKind::rotation;
+    case stability::Explanation::Kind::chatter:
+      return report::PeakKind::chatter;
+    case stability::Explanation::Kind::cut_or_chatter:
+      return report::PeakKind::cut_or_chatter;
+    case stability::Explanation::Kind::unexplained:
+      break;
   }
-  return best;
+  return report::PeakKind::other;
+}
+
+std::string words(const stability::ExplainedPeak& peak, int teeth) {
+  switch (peak.state) {
+    case stability::ExplainedPeak::State::named:
+      return words(peak.best, teeth);
+    case stability::ExplainedPeak::State::cannot_be_told: {
+      std::string out;
+      const double least = peak.others.front().likelihood_per_hz / stability::FingerprintOptions{}.clear_odds;
+      for (const stability::Explanation& reading : peak.others) {
+        if (reading.likelihood_per_hz >= least) out += (out.empty() ? "" : " or ") + words(reading, teeth);
+      }
+      return out + ": cannot be told";
+    }
+    case stability::ExplainedPeak::State::unexplained:
+      break;
+  }
+  return "no multiple of rotation";
 }
 
 report::Verdict verdict_of(formats::TestCut::Result result) {
@@ -62,12 +79,6 @@ report::Verdict verdict_of(formats::TestCut::Result result) {
   return report::Verdict::unknown;
 }
 
-std::vector<double> frequencies_of(const modal::ModalModel& model) {
-  std::vector<double> out;
-  for (const modal::Mode& mode : model.modes) out.push_back(mode.frequency_hz);
-  return out;
-}
-
 /// Whether a measured peak is the predicted chatter frequency or its image about a multiple of tooth passing.
 bool is_image(double peak_hz, double chatter_hz, double tooth_passing_hz) {
   const double tolerance_hz = 0.005 * peak_hz;
@@ -78,19 +89,19 @@ bool is_image(double peak_hz, double chatter_hz, double tooth_passing_hz) {
   return false;
 }
 
-std::string note_on(const formats::TestCut& cut, const stability::PointResult& point, int teeth,
-                    const std::vector<double>& modes_hz) {
+std::string note_on(const formats::TestCut& cut, const stability::PointResult& point,
+                    const stability::LobesProblem& problem) {
   std::string note = std::isfinite(point.spectral_radius) ? fmt::format("predicted |μ| = {:.3f}", point.spectral_radius)
                                                           : std::string("predicted by the limit");
-  if (!point.stable) note += fmt::format(", {:.1f} Hz (mode {})", point.chatter_frequency_hz, point.mode);
+  if (!point.stable) note += fmt::format(", {:.1f} Hz ({})", point.chatter_frequency_hz, to_string(point.mode));
   if (cut.peaks_hz.empty()) return note;
-  note += "; measured";
+  note += "; measured ";
   bool any_chatter = false;
   bool frequency_agrees = false;
-  const double tooth_passing_hz = cut.spindle_speed_rad_per_s / two_pi * teeth;
-  for (std::size_t i = 0; i < cut.peaks_hz.size(); ++i) {
-    const report::Peak peak = explain_peak(cut.peaks_hz[i], 0.0, cut.spindle_speed_rad_per_s, teeth, modes_hz, 1.0);
-    note += fmt::format("{} {:.1f} Hz = {}", i == 0 ? "" : ",", peak.frequency_hz, peak.text);
+  const double tooth_passing_hz = cut.spindle_speed_rad_per_s / two_pi * problem.milling.tool.teeth;
+  std::string separator;
+  for (const report::Peak& peak : name_peaks(cut.peaks_hz, cut.spindle_speed_rad_per_s, problem, 1.0)) {
+    note += fmt::format("{}{:.1f} Hz = {}", std::exchange(separator, ", "), peak.frequency_hz, peak.text);
     if (peak.kind == report::PeakKind::chatter || peak.kind == report::PeakKind::other) {
       any_chatter = true;
       frequency_agrees = frequency_agrees || is_image(peak.frequency_hz, point.chatter_frequency_hz, tooth_passing_hz);
@@ -102,39 +113,74 @@ std::string note_on(const formats::TestCut& cut, const stability::PointResult& p
   return note;
 }
 
+/// The highest multiple of the rotation beside the highest other peak.
+struct Heights {
+  double multiple = 0.0, other = 0.0, other_hz = 0.0;
+  [[nodiscard]] double ratio() const { return multiple > 0.0 ? other / multiple : 0.0; }
+  [[nodiscard]] report::Verdict verdict() const {
+    const bool only_other = multiple == 0.0 && other > 0.0;
+    if (only_other || ratio() >= 0.5) return report::Verdict::chatter;
+    return ratio() >= 0.25 ? report::Verdict::borderline : report::Verdict::stable;
+  }
+};
+
+/// @param as_cut  whether peaks that may be the cut or chatter count as the cut
+Heights heights_of(const std::vector<report::Peak>& peaks, bool as_cut) {
+  Heights heights;
+  for (const report::Peak& peak : peaks) {
+    const bool multiple = peak.kind == report::PeakKind::rotation || peak.kind == report::PeakKind::tooth_passing ||
+                          (as_cut && peak.kind == report::PeakKind::cut_or_chatter);
+    if (multiple) {
+      heights.multiple = std::max(heights.multiple, peak.amplitude);
+    } else if (peak.amplitude > heights.other) {
+      heights.other = peak.amplitude;
+      heights.other_hz = peak.frequency_hz;
+    }
+  }
+  return heights;
+}
+
+/// What the spectrum says, and why. No verdict where it hangs on peaks that may be the cut or chatter.
+void judge(report::Recording& recording) {
+  const Heights as_cut = heights_of(recording.peaks, true);
+  const Heights as_chatter = heights_of(recording.peaks, false);
+  if (as_cut.verdict() != as_chatter.verdict()) {
+    recording.reason =
+        fmt::format("{:.1f} Hz may be the cut or chatter: the recording says neither", as_chatter.other_hz);
+    return;
+  }
+  recording.verdict = as_cut.verdict();
+  if (as_cut.other == 0.0) {
+    recording.reason = "every peak is a multiple of the rotation";
+  } else if (as_cut.multiple == 0.0) {
+    recording.reason = fmt::format("{:.1f} Hz, and no multiple of the rotation", as_cut.other_hz);
+  } else {
+    recording.reason = fmt::format("{:.1f} Hz is {:.2f} times as high as the highest multiple of the rotation",
+                                   as_cut.other_hz, as_cut.ratio());
+  }
+}
+
 }  // namespace
 
-report::Peak explain_peak(double frequency_hz, double amplitude, double spindle_speed_rad_per_s, int teeth,
-                          const std::vector<double>& modes_hz, double tolerance_hz) {
-  report::Peak peak{.frequency_hz = frequency_hz,
-                    .amplitude = amplitude,
-                    .kind = report::PeakKind::other,
-                    .text = "no multiple of rotation"};
-  const double rotation_hz = spindle_speed_rad_per_s / two_pi;
-  const double multiple = std::round(frequency_hz / rotation_hz);
-  const double tolerance = std::max(tolerance_hz, speed_error * frequency_hz);
-  if (multiple >= 1.0 && std::abs(frequency_hz - multiple * rotation_hz) <= tolerance) {
-    const bool tooth_passing = std::fmod(multiple, teeth) == 0.0;
-    peak.kind = tooth_passing ? report::PeakKind::tooth_passing : report::PeakKind::rotation;
-    peak.text = tooth_passing ? fmt::format("{:.0f} × tooth passing", multiple / teeth)
-                              : fmt::format("{:.0f} × rotation", multiple);
-    return peak;
+std::vector<report::Peak> name_peaks(const std::vector<double>& frequency_hz, double spindle_speed_rad_per_s,
+                                     const stability::LobesProblem& problem, double tolerance_hz) {
+  const int teeth = problem.milling.tool.teeth;
+  // explain() wants it below a quarter of the rotation.
+  const double tolerance = std::min(tolerance_hz, 0.24 * spindle_speed_rad_per_s / two_pi);
+  std::vector<report::Peak> out;
+  if (frequency_hz.empty()) return out;
+  const stability::Fingerprint found =
+      stability::explain({frequency_hz, spindle_speed_rad_per_s, teeth}, problem.dynamics, {.tolerance_hz = tolerance},
+                         problem.workpiece_dynamics);
+  for (const stability::ExplainedPeak& peak : found.peaks) {
+    out.push_back({.frequency_hz = peak.frequency_hz, .kind = kind_of(peak.best.kind), .text = words(peak, teeth)});
   }
-  const Offset offset = nearest_mode(frequency_hz, rotation_hz, teeth, modes_hz, tolerance);
-  if (offset.mode > 0) {
-    peak.kind = report::PeakKind::chatter;
-    peak.text = offset.multiple == 0.0 ? fmt::format("mode {}", offset.mode)
-                                       : fmt::format("{:.0f} × rotation {} mode {}", offset.multiple,
-                                                     offset.above ? "+" : "−", offset.mode);
-  }
-  return peak;
+  return out;
 }
 
 std::vector<report::TestCut> compare_cuts(const std::vector<formats::TestCut>& cuts,
                                           const stability::LobesProblem& problem,
                                           const stability::LobesOptions& options, Progress& progress) {
-  const std::vector<double> modes_hz = frequencies_of(problem.dynamics);
-  const int teeth = problem.milling.tool.teeth;
   std::vector<report::TestCut> out(cuts.size());
   progress.start("test cuts", cuts.size());
   parallel_for(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -155,14 +201,14 @@ std::vector<report::TestCut> compare_cuts(const std::vector<formats::TestCut>& c
       } else if (row.result != report::Verdict::unknown) {
         row.agrees = row.result == row.predicted;
       }
-      row.note = note_on(cut, point, teeth, modes_hz);
+      row.note = note_on(cut, point, problem);
       progress.advance();
     }
   });
   return out;
 }
 
-report::Recording read_recording(const formats::TestCut& cut, int teeth, const std::vector<double>& modes_hz) {
+report::Recording read_recording(const formats::TestCut& cut, const stability::LobesProblem& problem) {
   const formats::Record record = formats::read_record(cut.file, {.scale = cut.scale});
   const Eigen::VectorXd signal = record.column(cut.column);
   const double rate_hz = record.sample_rate_hz > 0.0 ? record.sample_rate_hz : cut.sample_rate_hz;
@@ -175,7 +221,7 @@ report::Recording read_recording(const formats::TestCut& cut, int teeth, const s
   report::Recording out;
   out.file = cut.file.filename().string();
   out.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s;
-  out.teeth = teeth;
+  out.teeth = problem.milling.tool.teeth;
   out.axial_depth_m = cut.axial_depth_m;
   const signal::Spectrum spectrum = signal::amplitude_spectrum(signal, rate_hz);
   out.frequency_hz = spectrum.frequency_hz;
@@ -184,27 +230,12 @@ report::Recording read_recording(const formats::TestCut& cut, int teeth, const s
   wanted.count = 20;
   wanted.min_frequency_hz = 0.5 * cut.spindle_speed_rad_per_s / two_pi;
   wanted.min_separation_hz = 4.0 / length_s;
-  double highest_multiple = 0.0;
-  double highest_other = 0.0;
-  double chatter_hz = 0.0;
-  for (const signal::SpectralPeak& found : signal::find_peaks(spectrum, wanted)) {
-    out.peaks.push_back(explain_peak(found.frequency_hz, found.amplitude, cut.spindle_speed_rad_per_s, teeth, modes_hz,
-                                     2.0 / length_s));
-    const report::Peak& peak = out.peaks.back();
-    const bool multiple = peak.kind == report::PeakKind::rotation || peak.kind == report::PeakKind::tooth_passing;
-    double& highest = multiple ? highest_multiple : highest_other;
-    if (!multiple && peak.amplitude > highest) chatter_hz = peak.frequency_hz;
-    highest = std::max(highest, peak.amplitude);
-  }
-  const double ratio = highest_multiple > 0.0 ? highest_other / highest_multiple : 0.0;
-  const bool only_other = highest_multiple == 0.0 && highest_other > 0.0;
-  out.verdict = only_other || ratio >= 0.5 ? report::Verdict::chatter
-                : ratio >= 0.25            ? report::Verdict::borderline
-                                           : report::Verdict::stable;
-  out.reason = highest_other == 0.0 ? "every peak is a multiple of the rotation"
-               : only_other         ? fmt::format("{:.1f} Hz, and no multiple of the rotation", chatter_hz)
-                            : fmt::format("{:.1f} Hz is {:.2f} times as high as the highest multiple of the rotation",
-                                          chatter_hz, ratio);
+  std::vector<double> frequency_hz;
+  const std::vector<signal::SpectralPeak> found = signal::find_peaks(spectrum, wanted);
+  for (const signal::SpectralPeak& peak : found) frequency_hz.push_back(peak.frequency_hz);
+  out.peaks = name_peaks(frequency_hz, cut.spindle_speed_rad_per_s, problem, 2.0 / length_s);
+  for (std::size_t i = 0; i < found.size(); ++i) out.peaks[i].amplitude = found[i].amplitude;
+  judge(out);
   return out;
 }
 

@@ -10,11 +10,11 @@
 
 namespace robomill::plan {
 
-/// What a peak in the spectrum of a cut is: a multiple of tooth passing, of rotation, or neither. Neither is told as a
-/// multiple of rotation above or below a mode where it lies within `tolerance_hz` of one.
-/// @param modes  their natural frequencies [Hz], in the order of their numbers
-[[nodiscard]] report::Peak explain_peak(double frequency_hz, double amplitude, double spindle_speed_rad_per_s,
-                                        int teeth, const std::vector<double>& modes_hz, double tolerance_hz);
+/// What the peaks in the spectrum of a cut are, as stability::explain reads them, without their amplitudes.
+/// @throws InvalidInput as stability::explain
+[[nodiscard]] std::vector<report::Peak> name_peaks(const std::vector<double>& frequency_hz,
+                                                   double spindle_speed_rad_per_s,
+                                                   const stability::LobesProblem& problem, double tolerance_hz);
 
 /// Test cuts beside their predictions. A borderline cut agrees where the predicted limit at its speed lies within 20 %
 /// of its depth; a cut without a result is predicted but not compared.
@@ -23,9 +23,9 @@ namespace robomill::plan {
                                                         const stability::LobesOptions& options, Progress& progress);
 
 /// The spectrum of a cut's recording with its peaks named. It says chatter where a peak that is no multiple of the
-/// rotation is at least half as high as the highest multiple; borderline from a quarter.
+/// rotation is at least half as high as the highest multiple; borderline from a quarter; nothing where that hangs on a
+/// peak that may be either.
 /// @throws InvalidInput if the recording cannot be read or is shorter than 0.2 s
-[[nodiscard]] report::Recording read_recording(const formats::TestCut& cut, int teeth,
-                                               const std::vector<double>& modes_hz);
+[[nodiscard]] report::Recording read_recording(const formats::TestCut& cut, const stability::LobesProblem& problem);
 
 }  // namespace robomill::plan

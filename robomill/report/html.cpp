@@ -156,6 +156,12 @@ std::string Table::html() const {
       caption, quiet ? " class=\"quiet\"" : "", head, rows_);
 }
 
+std::string mode_name(const nlohmann::ordered_json& object) {
+  if (!object["mode"].is_number()) return {};
+  const bool of_workpiece = text_of(object["mode_of"]) == "workpiece";
+  return fmt::format("mode {}{}", object["mode"].get<int>(), of_workpiece ? " of the workpiece" : "");
+}
+
 const std::string& text_of(const nlohmann::ordered_json& value) {
   return value.get_ref<const std::string&>();
 }

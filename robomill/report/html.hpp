@@ -41,6 +41,8 @@ class Table {
 
 /// A text that JSON holds.
 [[nodiscard]] const std::string& text_of(const nlohmann::ordered_json& value);
+/// "mode 3", "mode 3 of the workpiece", of an object with mode and mode_of; empty for null.
+[[nodiscard]] std::string mode_name(const nlohmann::ordered_json& object);
 /// <dl> of labels and values; empty where there are none.
 [[nodiscard]] std::string facts_list(const nlohmann::ordered_json& facts);
 /// What to know first, under a heading; empty where there is nothing.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/modal/mode_id.hpp"
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/report/band.hpp"
 #include "robomill/report/fact.hpp"
@@ -37,7 +38,7 @@ struct MonitorEvent {
   monitor::State state = monitor::State::stable;
   double score = missing, threshold = missing;
   double chatter_frequency_hz = missing, chatter_frequency_std_hz = missing;
-  int mode = 0;                                        ///< from 1; 0: unknown
+  modal::ModeId mode = {};
   double suggested_spindle_speed_rad_per_s = missing;  ///< the nearest quiet one
   std::string note = {};                               ///< "a channel is dead"
 };

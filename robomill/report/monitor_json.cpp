@@ -1,6 +1,7 @@
 #include <cmath>
 #include <utility>
 
+#include "robomill/formats/mode_json.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/report/json.hpp"
 
@@ -60,15 +61,16 @@ Json monitor_json(const MonitorRun& run) {
   }
   Json events = Json::array();
   for (const MonitorEvent& event : run.events) {
-    events.push_back({{"time_s", number(event.time_s)},
-                      {"state", monitor::to_string(event.state)},
-                      {"score", number(event.score)},
-                      {"threshold", number(event.threshold)},
-                      {"chatter_frequency_hz", number(event.chatter_frequency_hz)},
-                      {"chatter_frequency_std_hz", number(event.chatter_frequency_std_hz)},
-                      {"mode", event.mode > 0 ? Json(event.mode) : Json(nullptr)},
-                      {"suggested_spindle_speed_rpm", number(event.suggested_spindle_speed_rad_per_s, units::rpm)},
-                      {"note", text(event.note)}});
+    Json row = {{"time_s", number(event.time_s)},
+                {"state", monitor::to_string(event.state)},
+                {"score", number(event.score)},
+                {"threshold", number(event.threshold)},
+                {"chatter_frequency_hz", number(event.chatter_frequency_hz)},
+                {"chatter_frequency_std_hz", number(event.chatter_frequency_std_hz)},
+                {"suggested_spindle_speed_rpm", number(event.suggested_spindle_speed_rad_per_s, units::rpm)},
+                {"note", text(event.note)}};
+    formats::set_mode(row, event.mode);
+    events.push_back(std::move(row));
   }
   return {{"facts", facts_json(run.facts)},
           {"warnings", texts(run.warnings)},

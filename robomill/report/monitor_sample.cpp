@@ -48,7 +48,7 @@ MonitorRun sample_monitor() {
                 .threshold = 12.0,
                 .chatter_frequency_hz = 683.2,
                 .chatter_frequency_std_hz = 0.6,
-                .mode = 8,
+                .mode = {8},
                 .suggested_spindle_speed_rad_per_s = 3416.0 * std::numbers::pi / 30.0});
   recorder.add({.time_s = 3.05, .state = monitor::State::stable, .score = 3.0, .threshold = 12.0});
   MonitorRun run = recorder.run();

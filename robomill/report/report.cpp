@@ -126,6 +126,11 @@ void Report::validate() const {
     model->validate();
     require_length("limit_share", limit_share.size(), static_cast<Eigen::Index>(model->modes.size()), true);
   }
+  if (workpiece_model) {
+    workpiece_model->validate();
+    require_length("workpiece_limit_share", workpiece_limit_share.size(),
+                   static_cast<Eigen::Index>(workpiece_model->modes.size()), true);
+  }
   validate_lobes(*this);
   validate_cuts(*this);
   validate_part("forces.", forces);

@@ -8,6 +8,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/modal/frf.hpp"
+#include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
 #include "robomill/report/fact.hpp"
 #include "robomill/report/forces.hpp"
@@ -27,11 +28,17 @@ struct Recommendation {
   double spindle_speed_rad_per_s = missing;  ///< [rad/s], > 0
   double axial_depth_m = missing;            ///< [m], > 0
   double feed_per_tooth_m = missing;         ///< [m]
-  double margin = missing;  ///< 1 - axial depth / lowest limit near this speed (the searched depth where mode = 0)
-  double removal_rate_m3_per_s = missing;  ///< [m^3/s]
-  std::string limited_by = {};             ///< plain words: "mode 8, chatter at 566 Hz", "the spindle's torque"
-  double chatter_frequency_hz = missing;   ///< of the limit, where chatter is what limits [Hz]
-  int mode = 0;                            ///< of the limit, from 1; 0 where none
+  double margin = missing;                   ///< 1 - axial depth / lowest limit near this speed (or the searched depth)
+  double removal_rate_m3_per_s = missing;    ///< [m^3/s]
+  double feed_m_per_s = missing;             ///< [m/s]
+  double cutting_speed_m_per_s = missing;    ///< of the tooth [m/s]
+  double torque_n_m = missing;               ///< mean over a revolution [N m]
+  double power_w = missing;                  ///< the same [W]
+  double surface_error_m = missing;          ///< of forced vibration; positive: material is left standing [m]
+  double peak_deflection_m = missing;        ///< of the tip, of forced vibration [m]
+  std::string limited_by = {};               ///< plain words: "mode 8, chatter at 566 Hz", "the spindle's torque"
+  double chatter_frequency_hz = missing;     ///< of the limit, where chatter is what limits [Hz]
+  modal::ModeId mode = {};                   ///< of the limit
 };
 
 /// How well a measurement serves, before any fit.
@@ -107,7 +114,7 @@ struct BoundaryPoint {
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = missing;
   BoundaryKind kind = BoundaryKind::hopf;
-  int mode = 0;  ///< from 1; 0 where unknown
+  modal::ModeId mode = {};
 };
 
 /// Depth over spindle speed.
@@ -154,7 +161,8 @@ struct Agreement {
   std::size_t agree = 0, disagree = 0, not_compared = 0;
 };
 
-enum class PeakKind { rotation, tooth_passing, chatter, other };
+/// cut_or_chatter: which of them cannot be told.
+enum class PeakKind { rotation, tooth_passing, chatter, cut_or_chatter, other };
 
 /// A peak in the spectrum of a recorded cut.
 struct Peak {
@@ -202,7 +210,8 @@ struct Report {
 
   std::optional<Recommendation> recommendation = {};
   std::vector<Recommendation> alternatives = {};
-  std::string no_recommendation = {};  ///< why there is none, where there is none
+  double max_surface_error_m = missing, max_deflection_m = missing;  ///< of a finishing cut; NaN: no limit
+  std::string no_recommendation = {};                                ///< why there is none, where there is none
 
   std::optional<Prediction> prediction = {};
   Eigen::VectorXd frf_frequency_hz = {};  ///< length n, increasing
@@ -211,6 +220,8 @@ struct Report {
 
   std::optional<modal::ModalModel> model = {};
   Eigen::VectorXd limit_share = {};  ///< one a mode, in [0, 1]: its share in the limit; empty where unknown
+  std::optional<modal::ModalModel> workpiece_model = {};  ///< of a part that vibrates too
+  Eigen::VectorXd workpiece_limit_share = {};
   std::optional<FitSummary> fit = {};
 
   std::vector<Lobes> lobes = {};              ///< the first is the one that counts: all modes

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <utility>
 
+#include "robomill/formats/mode_json.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/report/json.hpp"
 #include "robomill/report/thin.hpp"
@@ -14,10 +15,6 @@ using Json = nlohmann::ordered_json;
 
 Json complex_number(std::complex<double> value) {
   return Json::array({number(value.real()), number(value.imag())});
-}
-
-Json mode_number(int mode) {
-  return mode > 0 ? Json(mode) : Json(nullptr);
 }
 
 Json name_of(Verdict verdict) {
@@ -68,6 +65,8 @@ const char* name_of(PeakKind kind) {
       return "tooth_passing";
     case PeakKind::chatter:
       return "chatter";
+    case PeakKind::cut_or_chatter:
+      return "cut_or_chatter";
     case PeakKind::other:
       break;
   }
@@ -75,14 +74,21 @@ const char* name_of(PeakKind kind) {
 }
 
 Json recommendation_json(const Recommendation& r) {
-  return {{"spindle_speed_rpm", number(r.spindle_speed_rad_per_s, units::rpm)},
-          {"axial_depth_mm", number(r.axial_depth_m, units::mm)},
-          {"feed_per_tooth_mm", number(r.feed_per_tooth_m, units::mm)},
-          {"margin", number(r.margin)},
-          {"removal_rate_mm3_per_s", number(r.removal_rate_m3_per_s, units::mm3)},
-          {"limited_by", text(r.limited_by)},
-          {"chatter_frequency_hz", number(r.chatter_frequency_hz)},
-          {"mode", mode_number(r.mode)}};
+  Json json = {{"spindle_speed_rpm", number(r.spindle_speed_rad_per_s, units::rpm)},
+               {"axial_depth_mm", number(r.axial_depth_m, units::mm)},
+               {"feed_per_tooth_mm", number(r.feed_per_tooth_m, units::mm)},
+               {"margin", number(r.margin)},
+               {"removal_rate_mm3_per_s", number(r.removal_rate_m3_per_s, units::mm3)},
+               {"feed_mm_per_min", number(r.feed_m_per_s, units::mm / units::minute)},
+               {"cutting_speed_m_per_min", number(r.cutting_speed_m_per_s, 1.0 / units::minute)},
+               {"torque_n_m", number(r.torque_n_m)},
+               {"power_w", number(r.power_w)},
+               {"surface_error_um", number(r.surface_error_m, units::um)},
+               {"peak_deflection_um", number(r.peak_deflection_m, units::um)},
+               {"limited_by", text(r.limited_by)},
+               {"chatter_frequency_hz", number(r.chatter_frequency_hz)}};
+  formats::set_mode(json, r.mode);
+  return json;
 }
 
 bool is_rotation(modal::Axis axis) {
@@ -146,19 +152,28 @@ Json vector_json(const std::vector<modal::Dof>& dofs, const Eigen::VectorXcd& va
   return by_dof;
 }
 
-Json modes_json(const modal::ModalModel& model, const Eigen::VectorXd& limit_share) {
-  Json list = Json::array();
+void add_modes(Json& list, const modal::ModalModel& model, modal::ModeOwner owner, const Eigen::VectorXd& limit_share) {
   for (std::size_t k = 0; k < model.modes.size(); ++k) {
     const modal::Mode& mode = model.modes[k];
     const auto index = static_cast<Eigen::Index>(k);
     list.push_back(
         {{"mode", k + 1},
+         {"mode_of", modal::to_string(owner)},
          {"frequency_hz", number(mode.frequency_hz)},
          {"damping_ratio", number(mode.damping_ratio)},
          {"std", {{"frequency_hz", number(mode.frequency_std_hz)}, {"damping_ratio", number(mode.damping_ratio_std)}}},
          {"left", vector_json(model.excitations, mode.left, true)},
          {"right", vector_json(model.responses, mode.right, false)},
          {"limit_share", index < limit_share.size() ? number(limit_share[index]) : Json(nullptr)}});
+  }
+}
+
+/// The tool's, then the workpiece's.
+Json modes_json(const Report& report) {
+  Json list = Json::array();
+  if (report.model) add_modes(list, *report.model, modal::ModeOwner::tool, report.limit_share);
+  if (report.workpiece_model) {
+    add_modes(list, *report.workpiece_model, modal::ModeOwner::workpiece, report.workpiece_limit_share);
   }
   return list;
 }
@@ -191,18 +206,23 @@ Json boundary_json(const std::vector<BoundaryPoint>& boundary) {
   Json frequency = Json::array();
   Json kind = Json::array();
   Json mode = Json::array();
+  Json mode_of = Json::array();
   for (const BoundaryPoint& point : boundary) {
     speed.push_back(number(point.spindle_speed_rad_per_s, units::rpm));
     depth.push_back(number(point.axial_depth_m, units::mm));
     frequency.push_back(number(point.chatter_frequency_hz));
     kind.push_back(name_of(point.kind));
-    mode.push_back(mode_number(point.mode));
+    Json named;
+    formats::set_mode(named, point.mode);
+    mode.push_back(named["mode"]);
+    mode_of.push_back(named["mode_of"]);
   }
   return {{"spindle_speed_rpm", std::move(speed)},
           {"axial_depth_mm", std::move(depth)},
           {"chatter_frequency_hz", std::move(frequency)},
           {"kind", std::move(kind)},
-          {"mode", std::move(mode)}};
+          {"mode", std::move(mode)},
+          {"mode_of", std::move(mode_of)}};
 }
 
 Json map_json(const Lobes& lobes) {
@@ -305,6 +325,8 @@ Json shop_units(const Report& report) {
   json["notes"] = texts(report.notes);
   json["recommendation"] = report.recommendation ? recommendation_json(*report.recommendation) : Json(nullptr);
   json["alternatives"] = list_of(report.alternatives, recommendation_json);
+  json["finishing"] = {{"max_surface_error_um", number(report.max_surface_error_m, units::um)},
+                       {"max_deflection_um", number(report.max_deflection_m, units::um)}};
   json["no_recommendation"] = text(report.no_recommendation);
   json["assembly"] = report.prediction ? assembly_json(*report.prediction) : Json(nullptr);
   json["frfs"] = list_of(report.frfs, [&](const FrfPlot& frf) { return frf_json(report, frf); });
@@ -314,7 +336,7 @@ Json shop_units(const Report& report) {
                 {"accepted", hit.accepted},
                 {"reasons", texts(hit.reasons)}};
   });
-  json["modes"] = report.model ? modes_json(*report.model, report.limit_share) : Json::array();
+  json["modes"] = modes_json(report);
   json["fit"] = report.fit ? fit_json(*report.fit) : Json(nullptr);
   json["lobes"] = list_of(report.lobes, lobes_json);
   json["other_limits"] = list_of(report.other_limits, [](const DepthCurve& curve) { return curve_json(curve); });

@@ -123,11 +123,11 @@ void add_lobes(Report& report, const std::string& label, const std::vector<int>&
       lobes.limit_depth_m[index] = depth;
       const int mode = f > 541.5 ? 8 : f > 300.0 ? 7 : f > 40.0 ? 4 : 1;
       const BoundaryKind kind = index % 40 == 0 ? BoundaryKind::flip : BoundaryKind::hopf;
-      lowest[static_cast<std::size_t>(index)] = {speed_rad_per_s, depth, f, kind, mode};
+      lowest[static_cast<std::size_t>(index)] = {speed_rad_per_s, depth, f, kind, {mode}};
     }
   }
   for (const BoundaryPoint& point : lowest) {
-    if (point.mode > 0) lobes.boundary.push_back(point);
+    if (point.mode.known()) lobes.boundary.push_back(point);
   }
   if (keep.empty()) {
     lobes.band.label = "5 to 95 % of 200 samples";
@@ -302,9 +302,15 @@ void add_recommendations(Report& report) {
     r.margin = 0.2;
     r.removal_rate_m3_per_s = r.axial_depth_m * 1.8 * units::mm * r.feed_per_tooth_m * teeth *
                               r.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
+    r.feed_m_per_s = r.feed_per_tooth_m * teeth * r.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
+    r.cutting_speed_m_per_s = 6.0 * units::mm * r.spindle_speed_rad_per_s;
+    r.torque_n_m = 0.08;
+    r.power_w = r.torque_n_m * r.spindle_speed_rad_per_s;
+    r.surface_error_m = 12.5 * units::um;
+    r.peak_deflection_m = 31.0 * units::um;
     r.limited_by = "mode 8, chatter";
     r.chatter_frequency_hz = 566.4;
-    r.mode = 8;
+    r.mode = {8};
     found.push_back(r);
   }
   std::ranges::sort(found,

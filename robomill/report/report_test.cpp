@@ -219,6 +219,72 @@ TEST(ReportHtml, SaysTheChatterFrequencyOnce) {
   EXPECT_EQ(report_html(report).find("Chatter would sound"), std::string::npos);
 }
 
+// What contradicts the recommendation stands above it.
+TEST(ReportHtml, DisagreeingTestCutsStandOnTop) {
+  Report report = sample_report();
+  const std::string html = report_html(report);
+  const std::size_t banner = html.find("<strong>3 of 6 test cuts disagree</strong>");
+  ASSERT_NE(banner, std::string::npos);
+  EXPECT_LT(banner, html.find("<dl class=\"figures\">"));
+  EXPECT_LT(banner, html.find("id=\"lobes\""));
+  for (TestCut& cut : report.cuts) {
+    if (cut.agrees) cut.agrees = true;
+  }
+  EXPECT_EQ(report_html(report).find("disagree"), std::string::npos);
+}
+
+// The card: every figure beside its unit; the surface is limited in finishing and only told in roughing.
+TEST(ReportHtml, TheCardHoldsWhatAMachinistSets) {
+  Report report = sample_report();
+  Recommendation& r = *report.recommendation;
+  r.feed_m_per_s = 4.0 / 60.0;
+  r.cutting_speed_m_per_s = 188.4 / 60.0;
+  r.torque_n_m = 0.321;
+  r.power_w = 456.0;
+  r.surface_error_m = -7.5e-6;
+  r.peak_deflection_m = 23e-6;
+  const json data = json::parse(report_json(report))["recommendation"];
+  EXPECT_EQ(data["feed_mm_per_min"].get<double>(), 4000.0);
+  EXPECT_EQ(data["cutting_speed_m_per_min"].get<double>(), 188.4);
+  EXPECT_EQ(data["torque_n_m"].get<double>(), 0.321);
+  EXPECT_EQ(data["power_w"].get<double>(), 456.0);
+  EXPECT_EQ(data["surface_error_um"].get<double>(), -7.5);
+  EXPECT_EQ(data["peak_deflection_um"].get<double>(), 23.0);
+  const std::string rough = report_html(report);
+  for (const char* part : {"4000 <small>mm/min</small>", "188 <small>m/min</small>", "0.321 <small>N·m</small>",
+                           "456 <small>W</small>", "7.5 µm of overcut", "up to 23 µm", "this is a roughing cut"}) {
+    EXPECT_NE(rough.find(part), std::string::npos) << part;
+  }
+  report.max_surface_error_m = 8e-6;
+  const std::string fine = report_html(report);
+  EXPECT_EQ(fine.find("roughing"), std::string::npos);
+  EXPECT_NE(fine.find("Permitted: surface error 8 µm."), std::string::npos);
+}
+
+// Two structures may have a mode 8 each.
+TEST(ReportJson, SaysWhoseModeItIs) {
+  Report report = sample_report();
+  report.workpiece_model = report.model;
+  report.workpiece_limit_share = Eigen::VectorXd::Zero(8);
+  report.recommendation->mode = {8, modal::ModeOwner::workpiece};
+  report.recommendation->limited_by.clear();
+  report.lobes[0].boundary[0].mode = {3, modal::ModeOwner::workpiece};
+  const json data = json::parse(report_json(report));
+  EXPECT_EQ(data["recommendation"]["mode"], 8);
+  EXPECT_EQ(data["recommendation"]["mode_of"], "workpiece");
+  EXPECT_EQ(data["alternatives"][0]["mode_of"], "tool");
+  EXPECT_EQ(data["lobes"][0]["boundary"]["mode"][0], 3);
+  EXPECT_EQ(data["lobes"][0]["boundary"]["mode_of"][0], "workpiece");
+  ASSERT_EQ(data["modes"].size(), 16u);
+  EXPECT_EQ(data["modes"][8]["mode"], 1);
+  EXPECT_EQ(data["modes"][8]["mode_of"], "workpiece");
+  const std::string html = report_html(report);
+  EXPECT_NE(html.find("Limited by <strong>mode 8 of the workpiece"), std::string::npos);
+  EXPECT_NE(html.find(">8 (workpiece)<"), std::string::npos);
+  report.workpiece_limit_share.resize(3);
+  EXPECT_EQ(test::field_of([&] { report.validate(); }), "workpiece_limit_share");
+}
+
 TEST(ReportHtml, AnEmptyReportIsAPage) {
   const std::string html = report_html(Report{});
   EXPECT_TRUE(html.starts_with("<!doctype html>"));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "robomill/report/html.hpp"
 #include "robomill/report/sections.hpp"
@@ -19,19 +20,20 @@ std::string figure_of_merit(const char* label, const std::string& value, const c
 
 std::string limited_by(const Json& r) {
   std::string why = escape(text_of(r["limited_by"]));
-  if (why.empty() && r["mode"].is_number()) why = fmt::format("mode {}", r["mode"].get<int>());
+  if (why.empty() && r["mode"].is_number()) why = mode_name(r);
   return why;
 }
 
 std::string alternatives_table(const Json& report) {
   if (report["alternatives"].empty()) return {};
-  Table table("Alternatives", {"", "#Spindle speed (rpm)", "#Axial depth (mm)", "#Feed per tooth (mm)",
-                               "#Removal rate (mm³/s)", "#Margin", "Limited by"});
+  Table table("Alternatives", {"", "#Spindle speed (rpm)", "#Axial depth (mm)", "#Feed (mm/min)",
+                               "#Removal rate (mm³/s)", "#Surface error (µm)", "#Margin", "Limited by"});
   int count = 0;
   for (const Json& r : report["alternatives"]) {
     table.row({fmt::format("<span class=\"tag\">{}</span>", ++count), fixed(r["spindle_speed_rpm"], 0),
-               fixed(r["axial_depth_mm"], 2), significant(r["feed_per_tooth_mm"]),
-               significant(r["removal_rate_mm3_per_s"]), percent(r["margin"], 0), limited_by(r)});
+               fixed(r["axial_depth_mm"], 2), significant(r["feed_mm_per_min"]),
+               significant(r["removal_rate_mm3_per_s"]), significant(r["surface_error_um"]), percent(r["margin"], 0),
+               limited_by(r)});
   }
   return table.html();
 }
@@ -60,6 +62,57 @@ std::string cuts_table(const Json& cuts) {
   return table.html();
 }
 
+/// The cuts that were made say that the model is wrong: nothing below is worth more than that.
+std::string disagreement(const Json& counts) {
+  const auto disagree = counts["disagree"].get<int>();
+  if (disagree == 0) return {};
+  return fmt::format(
+      "<p class=\"why none\"><strong>{} of {} test cuts disagree</strong> with the prediction. Find out why before you "
+      "use these numbers: measure again, or check cutter, cut and coefficients.</p>\n",
+      disagree, disagree + counts["agree"].get<int>());
+}
+
+std::string figures(const Json& r) {
+  std::string out = "<dl class=\"figures\">" +
+                    figure_of_merit("Spindle speed", fixed(r["spindle_speed_rpm"], 0), "rpm") +
+                    figure_of_merit("Axial depth", fixed(r["axial_depth_mm"], 2), "mm") +
+                    figure_of_merit("Feed", significant(r["feed_mm_per_min"]), "mm/min") +
+                    figure_of_merit("Feed per tooth", significant(r["feed_per_tooth_mm"]), "mm") +
+                    figure_of_merit("Cutting speed", significant(r["cutting_speed_m_per_min"]), "m/min") +
+                    figure_of_merit("Removal rate", significant(r["removal_rate_mm3_per_s"]), "mm³/s") +
+                    figure_of_merit("Mean torque", significant(r["torque_n_m"]), "N·m") +
+                    figure_of_merit("Mean power", significant(r["power_w"]), "W") +
+                    figure_of_merit("Surface error", significant(r["surface_error_um"]), "µm") +
+                    figure_of_merit("Peak deflection", significant(r["peak_deflection_um"]), "µm");
+  return out + "</dl>\n";
+}
+
+/// What forced vibration leaves, and whether anything limits it.
+std::string surface_sentence(const Json& r, const Json& finishing) {
+  const Json& error = r["surface_error_um"];
+  const Json& deflection = r["peak_deflection_um"];
+  if (!deflection.is_number()) return "The surface that forced vibration leaves is not known. ";
+  std::string out;
+  if (error.is_number()) {
+    out = fmt::format("Forced vibration leaves {} µm of {} at the wall", significant(std::abs(error.get<double>())),
+                      error.get<double>() < 0.0 ? "overcut" : "material");
+  } else {
+    out = "No tooth finishes a wall";
+  }
+  out += fmt::format("; the tip moves by up to {} µm. ", significant(deflection));
+  const bool limited = finishing["max_surface_error_um"].is_number() || finishing["max_deflection_um"].is_number();
+  if (!limited) return out + "Neither is limited: this is a roughing cut. ";
+  out += "Permitted:";
+  if (finishing["max_surface_error_um"].is_number()) {
+    out += fmt::format(" surface error {} µm", significant(finishing["max_surface_error_um"]));
+  }
+  if (finishing["max_deflection_um"].is_number()) {
+    out += fmt::format("{} deflection {} µm", finishing["max_surface_error_um"].is_number() ? "," : "",
+                       significant(finishing["max_deflection_um"]));
+  }
+  return out + ". ";
+}
+
 /// The limit at some 24 of its speeds, for who has no plots or cannot see them.
 std::string limit_table(const Json& lobes) {
   const Json& speed = lobes["spindle_speed_rpm"];
@@ -78,18 +131,18 @@ std::string limit_table(const Json& lobes) {
 
 std::string recommendation_section(const Json& report) {
   const Json& r = report["recommendation"];
-  std::string body;
+  std::string body = disagreement(report["agreement"]);
   if (r.is_null()) {
     const std::string& why = text_of(report["no_recommendation"]);
-    if (why.empty() && report["alternatives"].empty()) return {};
+    if (why.empty() && report["alternatives"].empty()) {
+      return body.empty()
+                 ? body
+                 : "<section id=\"recommendation\" class=\"hero\"><h2>Test cuts</h2>\n" + body + "</section>\n";
+    }
     const char* const none = report["lobes"].empty() ? "No answer." : "No safe depth.";
-    body = fmt::format("<p class=\"why none\"><strong>{}</strong> {}</p>\n", none, escape(why));
+    body += fmt::format("<p class=\"why none\"><strong>{}</strong> {}</p>\n", none, escape(why));
   } else {
-    body = "<dl class=\"figures\">" + figure_of_merit("Spindle speed", fixed(r["spindle_speed_rpm"], 0), "rpm") +
-           figure_of_merit("Axial depth", fixed(r["axial_depth_mm"], 2), "mm") +
-           figure_of_merit("Feed per tooth", significant(r["feed_per_tooth_mm"]), "mm") +
-           figure_of_merit("Removal rate", significant(r["removal_rate_mm3_per_s"]), "mm³/s") +
-           "</dl>\n<p class=\"why\">";
+    body += figures(r) + "<p class=\"why\">";
     const std::string why = limited_by(r);
     if (!why.empty()) body += "Limited by <strong>" + why + "</strong>. ";
     if (r["chatter_frequency_hz"].is_number() && why.find(" Hz") == std::string::npos) {
@@ -103,7 +156,7 @@ std::string recommendation_section(const Json& report) {
                 "that was looked at.";
       body += fmt::format(fmt::runtime(sentence), percent(r["margin"], 0));
     }
-    body += "</p>\n";
+    body += "</p>\n<p class=\"why\">" + surface_sentence(r, report["finishing"]) + "</p>\n";
   }
   body += alternatives_table(report);
   return "<section id=\"recommendation\" class=\"hero\"><h2>Recommended cut</h2>\n" + body + "</section>\n";

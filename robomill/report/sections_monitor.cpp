@@ -32,7 +32,7 @@ std::string verdict(const Json& run) {
       const Json& event = *told;
       out += fmt::format(" at {} Hz",
                          with_deviation(event["chatter_frequency_hz"], event["chatter_frequency_std_hz"], 1.0, 1));
-      if (event["mode"].is_number()) out += fmt::format(", mode {}", event["mode"].get<int>());
+      if (event["mode"].is_number()) out += ", " + mode_name(event);
       if (event["suggested_spindle_speed_rpm"].is_number()) {
         out += fmt::format("; quiet near {} rpm", fixed(event["suggested_spindle_speed_rpm"], 0));
       }
@@ -45,12 +45,12 @@ std::string verdict(const Json& run) {
 std::string events_table(const Json& events) {
   if (events.empty()) return {};
   Table table("What the monitor said",
-              {"#At (s)", "State", "#Score", "#Threshold", "#Frequency (Hz)", "#Mode", "#Quiet speed (rpm)", "Note"});
+              {"#At (s)", "State", "#Score", "#Threshold", "#Frequency (Hz)", "Mode", "#Quiet speed (rpm)", "Note"});
   for (const Json& event : events) {
     const std::string& state = text_of(event["state"]);
     table.row({fixed(event["time_s"], 3), escape(state), significant(event["score"]), significant(event["threshold"]),
                with_deviation(event["chatter_frequency_hz"], event["chatter_frequency_std_hz"], 1.0, 1),
-               fixed(event["mode"], 0), fixed(event["suggested_spindle_speed_rpm"], 0), escape(text_of(event["note"]))},
+               mode_name(event), fixed(event["suggested_spindle_speed_rpm"], 0), escape(text_of(event["note"]))},
               state == "chatter" ? "chatter" : "");
   }
   return table.html();

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "robomill/report/html.hpp"
@@ -43,18 +44,30 @@ std::string complex_text(const Json& value) {
                      std::abs(imaginary));
 }
 
-std::string vectors_table(const Json& modes) {
+/// "3", "3 (workpiece)".
+std::string mode_cell(const Json& mode) {
+  const std::string number = std::to_string(mode["mode"].get<int>());
+  return text_of(mode["mode_of"]) == "tool" ? number : number + " (workpiece)";
+}
+
+/// Of one structure: another's vectors may have other directions.
+std::string vectors_table(const Json& modes, const char* owner) {
+  const auto first =
+      std::find_if(modes.begin(), modes.end(), [&](const Json& mode) { return text_of(mode["mode_of"]) == owner; });
+  if (first == modes.end()) return {};
   std::vector<std::string> headings = {"#Mode"};
-  for (const auto& [dof, value] : modes[0]["left"].items()) headings.push_back("#Left " + escape(dof));
-  for (const auto& [dof, value] : modes[0]["right"].items()) headings.push_back("#Right " + escape(dof));
-  Table table("Mode vectors (10⁻⁴ √(s/kg))", headings);
+  for (const auto& [dof, value] : (*first)["left"].items()) headings.push_back("#Left " + escape(dof));
+  for (const auto& [dof, value] : (*first)["right"].items()) headings.push_back("#Right " + escape(dof));
+  const std::string heading = fmt::format("Mode vectors of the {}", owner);
+  Table table(heading + " (10⁻⁴ √(s/kg))", headings);
   for (const Json& mode : modes) {
-    std::vector<std::string> cells = {std::to_string(mode["mode"].get<int>())};
+    if (text_of(mode["mode_of"]) != owner) continue;
+    std::vector<std::string> cells = {mode_cell(mode)};
     for (const auto& [dof, value] : mode["left"].items()) cells.push_back(complex_text(value));
     for (const auto& [dof, value] : mode["right"].items()) cells.push_back(complex_text(value));
     table.row(cells);
   }
-  return details("Mode vectors", table.html());
+  return details(heading, table.html());
 }
 
 std::string fit_sentence(const Json& fit) {
@@ -137,12 +150,11 @@ std::string modes_section(const Json& report, bool plots) {
     Table table("~Modes",
                 {"#Mode", "#Frequency (Hz)", "#Damping (%)", "Force that drives it", "Motion", "Share in the limit"});
     for (const Json& mode : modes) {
-      table.row({std::to_string(mode["mode"].get<int>()),
-                 with_deviation(mode["frequency_hz"], mode["std"]["frequency_hz"], 1.0, 2),
+      table.row({mode_cell(mode), with_deviation(mode["frequency_hz"], mode["std"]["frequency_hz"], 1.0, 2),
                  with_deviation(mode["damping_ratio"], mode["std"]["damping_ratio"], 100.0, 2),
                  directions(mode["left"]), directions(mode["right"]), share_bar(mode["limit_share"])});
     }
-    body += table.html() + vectors_table(modes);
+    body += table.html() + vectors_table(modes, "tool") + vectors_table(modes, "workpiece");
   }
   if (plots && !fit.is_null() && !fit["convergence"].empty()) {
     body += details("Convergence of the fit", plot("convergence", "Best objective over iterations",

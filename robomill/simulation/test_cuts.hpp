@@ -25,7 +25,8 @@ inline modal::TipModes no_modes() {
 inline modal::TipModes tip_of(const stability::LobesProblem& problem) {
   modal::TipModes modes = modal::tip_modes(problem.dynamics, problem.keep_modes, problem.feed_direction_rad);
   if (problem.workpiece_dynamics.modes.empty()) return modes;
-  return modal::joined(modes, modal::tip_modes(problem.workpiece_dynamics, {}, problem.feed_direction_rad));
+  return modal::joined(
+      modes, modal::tip_modes(problem.workpiece_dynamics, {}, problem.feed_direction_rad, modal::ModeOwner::workpiece));
 }
 
 inline MillingCut cut_of(const stability::LobesProblem& problem, double speed_rpm, double depth_m,
@@ -62,7 +63,7 @@ inline modal::TipModes one_mode(Eigen::Index axis, double frequency_hz, double d
   modes.left = Eigen::Matrix3Xcd::Zero(3, 1);
   modes.right(axis, 0) = 0.5;
   modes.left(axis, 0) = std::complex<double>(0.0, -1.0 / (mass_kg * damped));
-  modes.number = {1};
+  modes.id = {{1}};
   return modes;
 }
 

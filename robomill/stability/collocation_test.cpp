@@ -275,7 +275,7 @@ TEST(Collocation, WorkpieceThatMovesAddsToTheTool) {
   LobesProblem moved = benchmark(0.3);
   moved.workpiece_dynamics = testing::plane_model({testing::mass_mode(1, 300.0, 0.02, 0.05)});
   const PointResult part = at(moved, 3000, 0.4e-3);
-  EXPECT_EQ(part.mode, 3);  // the workpiece's
+  EXPECT_EQ(part.mode, (modal::ModeId{1, modal::ModeOwner::workpiece}));
 }
 
 // A cutter whose teeth stand true cuts as one without the wish for it; a very small runout changes nothing.

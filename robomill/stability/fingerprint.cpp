@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <string>
@@ -15,24 +16,40 @@ namespace {
 using std::numbers::pi;
 using Named = Explanation::Kind;
 
-std::vector<Explanation> explanations(double peak_hz, double rotation_hz, int teeth, const modal::ModalModel& modes,
-                                      double tolerance_hz) {
+struct NaturalMode {
+  modal::ModeId id;
+  double frequency_hz = 0.0;
+  double half_width_hz = 0.0;
+};
+
+void add_modes(const modal::ModalModel& model, modal::ModeOwner owner, std::vector<NaturalMode>& out) {
+  int number = 0;
+  for (const modal::Mode& mode : model.modes) {
+    out.push_back({{++number, owner}, mode.frequency_hz, mode.damping_ratio * mode.frequency_hz});
+  }
+}
+
+/// All readings of a peak, the most likely first.
+std::vector<Explanation> explanations(double peak_hz, double rotation_hz, int teeth,
+                                      const std::vector<NaturalMode>& modes, const FingerprintOptions& options) {
   std::vector<Explanation> found;
   const auto consider = [&](Explanation e) {
     e.difference_hz = peak_hz - e.expected_hz;
     e.of_tooth_passing = e.harmonic % teeth == 0;
-    if (std::abs(e.difference_hz) <= e.tolerance_hz) found.push_back(e);
+    const double misfit = std::abs(e.difference_hz) / e.tolerance_hz;
+    e.likelihood_per_hz = std::exp(-2.0 * misfit * misfit) / e.tolerance_hz;
+    if (misfit <= 1.0) found.push_back(e);
   };
   const int nearest = static_cast<int>(std::lround(peak_hz / rotation_hz));
-  if (nearest >= 1) {
+  if (nearest >= 1 && !options.multiples_removed) {
     consider({.kind = nearest % teeth == 0 ? Named::tooth_passing : Named::rotation,
               .harmonic = nearest,
               .expected_hz = nearest * rotation_hz,
-              .tolerance_hz = tolerance_hz});
+              .tolerance_hz = options.tolerance_hz});
   }
-  for (std::size_t k = 0; k < modes.modes.size(); ++k) {
-    const double mode_hz = modes.modes[k].frequency_hz;
-    const double allowed_hz = std::max(tolerance_hz, modes.modes[k].damping_ratio * mode_hz);
+  for (const NaturalMode& mode : modes) {
+    const double mode_hz = mode.frequency_hz;
+    const double allowed_hz = std::max(options.tolerance_hz, mode.half_width_hz);
     for (const double sign : {1.0, -1.0}) {
       // f = |f_k + n f_rotation| from above (f_k + n f) or from below (-n f - f_k).
       const double turns = (sign * peak_hz - mode_hz) / rotation_hz;
@@ -43,14 +60,16 @@ std::vector<Explanation> explanations(double peak_hz, double rotation_hz, int te
         consider({.kind = Named::chatter,
                   .harmonic = static_cast<int>(n),
                   .mirrored = sign < 0.0,
-                  .mode = static_cast<int>(k) + 1,
+                  .mode = mode.id,
+                  .mode_frequency_hz = mode_hz,
                   .expected_hz = std::abs(signed_hz),
                   .tolerance_hz = allowed_hz});
       }
     }
   }
+  // Likelihoods that differ by rounding alone are equal.
   const auto rank = [](const Explanation& e) {
-    return std::tuple(e.kind, !e.of_tooth_passing, std::abs(e.difference_hz) / e.tolerance_hz);
+    return std::tuple(std::llround(-1e6 * std::log(e.likelihood_per_hz)), !e.of_tooth_passing, e.kind);
   };
   std::ranges::stable_sort(found, [&](const Explanation& a, const Explanation& b) { return rank(a) < rank(b); });
   return found;
@@ -59,68 +78,114 @@ std::vector<Explanation> explanations(double peak_hz, double rotation_hz, int te
 /// What a rotation frequency makes of the peaks.
 struct Reading {
   double rotation_hz = 0.0;
-  int explained = 0, multiples = 0;      ///< as anything; as multiples of rotation
-  double products = 0.0, squares = 0.0;  ///< sums over the multiples of n f and n²
+  int explained = 0, multiples = 0;  ///< as anything; as multiples of rotation
 };
 
-Reading read(const MeasuredPeaks& peaks, double rotation_hz, const modal::ModalModel& modes, double tolerance_hz) {
+bool is_chatter(const Explanation& e) {
+  return e.kind == Named::chatter;
+}
+
+Reading read(const MeasuredPeaks& peaks, double rotation_hz, const std::vector<NaturalMode>& modes,
+             const FingerprintOptions& options) {
   Reading reading{.rotation_hz = rotation_hz};
   for (const double f : peaks.frequency_hz) {
-    const std::vector<Explanation> found = explanations(f, rotation_hz, peaks.teeth, modes, tolerance_hz);
+    const std::vector<Explanation> found = explanations(f, rotation_hz, peaks.teeth, modes, options);
     if (found.empty()) continue;
     ++reading.explained;
-    if (found.front().kind == Named::chatter) continue;
-    const double n = found.front().harmonic;
-    ++reading.multiples;
-    reading.products += n * f;
-    reading.squares += n * n;
+    if (!std::ranges::all_of(found, is_chatter)) ++reading.multiples;
   }
   return reading;
 }
 
-double rotation_of(const MeasuredPeaks& peaks, const modal::ModalModel& modes, const FingerprintOptions& options,
+/// The frequency of the vibration that a reading supposes.
+double own_frequency(double peak_hz, const Explanation& e, double rotation_hz) {
+  return (e.mirrored ? -peak_hz : peak_hz) - e.harmonic * rotation_hz;
+}
+
+/// What the readings, the most likely first, come to.
+ExplainedPeak judged(double peak_hz, std::vector<Explanation> readings, double rotation_hz,
+                     const FingerprintOptions& options) {
+  ExplainedPeak peak{.frequency_hz = peak_hz, .best = {}};
+  if (readings.empty()) return peak;
+  const double least = readings.front().likelihood_per_hz / options.clear_odds;
+  const auto end = std::ranges::find_if(readings, [&](const Explanation& e) { return e.likelihood_per_hz < least; });
+  const std::vector<Explanation> likely(readings.begin(), end);
+  // Readings of one mode mean the same, and so do those of the cut, whose mode is unknown.
+  const bool clear = std::ranges::all_of(likely, [&](const Explanation& e) { return e.mode == readings.front().mode; });
+  if (clear && is_chatter(readings.front())) {
+    peak.chatter_frequency_hz = own_frequency(peak_hz, readings.front(), rotation_hz);
+  } else if (std::ranges::all_of(likely, is_chatter)) {
+    double low_hz = std::numeric_limits<double>::infinity(), high_hz = 0.0;
+    for (const Explanation& e : likely) {
+      low_hz = std::min(low_hz, own_frequency(peak_hz, e, rotation_hz));
+      high_hz = std::max(high_hz, own_frequency(peak_hz, e, rotation_hz));
+    }
+    if (high_hz - low_hz <= options.tolerance_hz) {
+      peak.chatter_frequency_hz = own_frequency(peak_hz, readings.front(), rotation_hz);
+    }
+  }
+  if (clear) {
+    peak.state = ExplainedPeak::State::named;
+    peak.best = readings.front();
+    readings.erase(readings.begin());
+  } else {
+    peak.state = ExplainedPeak::State::cannot_be_told;
+    peak.best.kind = std::ranges::all_of(likely, is_chatter) ? Named::chatter : Named::cut_or_chatter;
+  }
+  peak.others = std::move(readings);
+  return peak;
+}
+
+double rotation_of(const MeasuredPeaks& peaks, const std::vector<NaturalMode>& modes, const FingerprintOptions& options,
                    bool& from_peaks) {
   const double commanded_hz = peaks.spindle_speed_rad_per_s / (2.0 * pi);
-  Reading best = read(peaks, commanded_hz, modes, options.tolerance_hz);
+  Reading best = read(peaks, commanded_hz, modes, options);
   const auto away = [&](const Reading& r) { return std::abs(r.rotation_hz - commanded_hz); };
   for (const double f : peaks.frequency_hz) {
     const double low = std::max(1.0, std::ceil(f / (commanded_hz * (1.0 + options.speed_tolerance))));
     const double high = std::floor(f / (commanded_hz * (1.0 - options.speed_tolerance)));
     for (double n = low; n <= high && n < low + 100.0; ++n) {
-      const Reading other = read(peaks, f / n, modes, options.tolerance_hz);
+      const Reading other = read(peaks, f / n, modes, options);
       // Far multiples fit many speeds: another speed must explain more peaks than the commanded one, whatever they are.
       if (other.multiples < 2 || other.explained < best.explained) continue;
       if (other.explained == best.explained && away(other) >= away(best)) continue;
       best = other;
     }
   }
-  from_peaks = best.multiples > 0;
-  if (!from_peaks) return commanded_hz;
+  double products = 0.0, squares = 0.0;  // a peak that may be chatter says nothing of the speed
+  for (const double f : peaks.frequency_hz) {
+    const ExplainedPeak peak =
+        judged(f, explanations(f, best.rotation_hz, peaks.teeth, modes, options), best.rotation_hz, options);
+    if (peak.state != ExplainedPeak::State::named || is_chatter(peak.best)) continue;
+    products += peak.best.harmonic * f;
+    squares += static_cast<double>(peak.best.harmonic) * peak.best.harmonic;
+  }
+  from_peaks = squares > 0.0;
+  if (!from_peaks) return best.rotation_hz;
   const double most_hz = options.speed_tolerance * commanded_hz;
-  return std::clamp(best.products / best.squares, commanded_hz - most_hz, commanded_hz + most_hz);
+  return std::clamp(products / squares, commanded_hz - most_hz, commanded_hz + most_hz);
 }
 
-/// The mode that explains most chatter peaks; of equals the one whose peaks fit better.
+/// The mode that most peaks name.
 void name_mode(Fingerprint& out) {
-  struct Share {
-    int peaks = 0;
-    double misfit = 0.0, frequency_hz = 0.0;
-  };
-  std::map<int, Share> shares;
+  std::map<modal::ModeId, int> named;
+  int most = 0;
   for (const ExplainedPeak& peak : out.peaks) {
-    if (peak.best.kind != Named::chatter) continue;
-    Share& share = shares[peak.best.mode];
-    ++share.peaks;
-    share.misfit += std::abs(peak.best.difference_hz) / peak.best.tolerance_hz;
-    const double moved_hz = peak.best.harmonic * out.spindle_speed_rad_per_s / (2.0 * pi);
-    share.frequency_hz += (peak.best.mirrored ? -peak.frequency_hz : peak.frequency_hz) - moved_hz;
+    if (peak.state == ExplainedPeak::State::cannot_be_told) out.state = Fingerprint::State::cannot_be_told;
+    if (peak.best.mode.known()) most = std::max(most, ++named[peak.best.mode]);
   }
-  for (const auto& [mode, share] : shares) {
-    const Share best = out.mode == 0 ? Share{} : shares[out.mode];
-    if (share.peaks < best.peaks || (share.peaks == best.peaks && share.misfit >= best.misfit)) continue;
-    out.mode = mode;
-    out.chatter_frequency_hz = share.frequency_hz / share.peaks;
+  if (most == 0) return;
+  const auto has_most = [&](const auto& entry) { return entry.second == most; };
+  out.state = Fingerprint::State::cannot_be_told;
+  if (std::ranges::count_if(named, has_most) > 1) return;
+  out.state = Fingerprint::State::named;
+  out.mode = std::ranges::find_if(named, has_most)->first;
+  double sum_hz = 0.0;
+  for (const ExplainedPeak& peak : out.peaks) {
+    if (peak.best.mode != out.mode) continue;
+    sum_hz += own_frequency(peak.frequency_hz, peak.best, out.spindle_speed_rad_per_s / (2.0 * pi));
   }
+  out.chatter_frequency_hz = sum_hz / most;
 }
 
 }  // namespace
@@ -140,6 +205,16 @@ void MeasuredPeaks::validate() const {
   if (teeth > 100) throw InvalidInput("teeth", teeth, "", "must be at most 100");
 }
 
+void FingerprintOptions::validate() const {
+  require_positive("tolerance_hz", tolerance_hz, "Hz");
+  if (!(speed_tolerance >= 0.0 && speed_tolerance <= 0.05)) {
+    throw InvalidInput("speed_tolerance", speed_tolerance, "", "must lie between 0 and 0.05");
+  }
+  if (!(clear_odds >= 1.0 && clear_odds <= 1e6)) {
+    throw InvalidInput("clear_odds", clear_odds, "", "must lie between 1 and 1e6", "3: three times as likely");
+  }
+}
+
 std::string_view to_string(Explanation::Kind kind) {
   switch (kind) {
     case Named::tooth_passing:
@@ -148,35 +223,58 @@ std::string_view to_string(Explanation::Kind kind) {
       return "rotation";
     case Named::chatter:
       return "chatter";
-    default:
-      return "unexplained";
+    case Named::cut_or_chatter:
+      return "cut or chatter";
+    case Named::unexplained:
+      break;
   }
+  return "unexplained";
 }
 
-Fingerprint explain(const MeasuredPeaks& peaks, const modal::ModalModel& modes, const FingerprintOptions& options) {
-  peaks.validate();
-  modes.validate();
-  require_positive("tolerance_hz", options.tolerance_hz, "Hz");
-  if (!(options.speed_tolerance >= 0.0 && options.speed_tolerance <= 0.05)) {
-    throw InvalidInput("speed_tolerance", options.speed_tolerance, "", "must lie between 0 and 0.05");
+std::string_view to_string(ExplainedPeak::State state) {
+  switch (state) {
+    case ExplainedPeak::State::named:
+      return "named";
+    case ExplainedPeak::State::cannot_be_told:
+      return "cannot be told";
+    case ExplainedPeak::State::unexplained:
+      break;
   }
+  return "unexplained";
+}
+
+std::string_view to_string(Fingerprint::State state) {
+  switch (state) {
+    case Fingerprint::State::named:
+      return "named";
+    case Fingerprint::State::cannot_be_told:
+      return "cannot be told";
+    case Fingerprint::State::no_chatter:
+      break;
+  }
+  return "no chatter";
+}
+
+Fingerprint explain(const MeasuredPeaks& peaks, const modal::ModalModel& tool, const FingerprintOptions& options,
+                    const modal::ModalModel& workpiece) {
+  peaks.validate();
+  tool.validate();
+  if (!workpiece.modes.empty()) workpiece.validate();
+  options.validate();
   const double commanded_hz = peaks.spindle_speed_rad_per_s / (2.0 * pi);
   if (!(options.tolerance_hz < 0.25 * commanded_hz)) {
     throw InvalidInput("tolerance_hz", options.tolerance_hz, "Hz",
                        "must be below a quarter of the rotation frequency, or every peak is a multiple of it",
                        "Is the spindle speed in rpm?");
   }
+  std::vector<NaturalMode> modes;
+  add_modes(tool, modal::ModeOwner::tool, modes);
+  add_modes(workpiece, modal::ModeOwner::workpiece, modes);
   Fingerprint out;
   const double rotation_hz = rotation_of(peaks, modes, options, out.speed_from_peaks);
   out.spindle_speed_rad_per_s = 2.0 * pi * rotation_hz;
   for (const double f : peaks.frequency_hz) {
-    ExplainedPeak peak{.frequency_hz = f, .best = {}};
-    peak.others = explanations(f, rotation_hz, peaks.teeth, modes, options.tolerance_hz);
-    if (!peak.others.empty()) {
-      peak.best = peak.others.front();
-      peak.others.erase(peak.others.begin());
-    }
-    out.peaks.push_back(std::move(peak));
+    out.peaks.push_back(judged(f, explanations(f, rotation_hz, peaks.teeth, modes, options), rotation_hz, options));
   }
   name_mode(out);
   return out;

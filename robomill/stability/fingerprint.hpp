@@ -1,8 +1,10 @@
 #pragma once
+#include <limits>
 #include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
 #include "robomill/stability/lobes.hpp"
 
@@ -19,48 +21,71 @@ struct ROBOMILL_API MeasuredPeaks {
 
 struct ROBOMILL_API FingerprintOptions {
   double tolerance_hz = 1.0;  ///< how far a peak may lie from what explains it [Hz], > 0, below a quarter of rotation
-  double speed_tolerance = 2e-3;  ///< share by which the true speed may differ from the commanded one, in [0, 0.05]
+  double speed_tolerance = 2e-3;   ///< share by which the true speed may differ from the commanded one, in [0, 0.05]
+  double clear_odds = 3.0;         ///< a reading is named where it is that many times as likely as any other one, >= 1
+  bool multiples_removed = false;  ///< the peaks are no multiples of rotation: those were taken out before
+  /// @throws InvalidInput naming the member
+  void validate() const;
 };
 
-/// One way to explain a peak.
+/// One way to read a peak.
 struct Explanation {
   /// tooth_passing: n rotations, n a multiple of the teeth. rotation: n rotations. chatter: |f_k + n rotations|.
-  enum class Kind { tooth_passing, rotation, chatter, unexplained };
+  /// cut_or_chatter: some readings are the first or second, some the third.
+  enum class Kind { tooth_passing, rotation, chatter, cut_or_chatter, unexplained };
   Kind kind = Kind::unexplained;
-  int harmonic = 0;               ///< n
-  bool mirrored = false;          ///< f_k + n rotations is negative: the peak is -n rotations less the mode's frequency
-  int mode = 0;                   ///< k, from 1; 0 but for chatter
+  int harmonic = 0;         ///< n
+  bool mirrored = false;    ///< f_k + n rotations is negative: the peak is -n rotations less the mode's frequency
+  modal::ModeId mode = {};  ///< k; unknown but for chatter
+  double mode_frequency_hz = 0.0;
   bool of_tooth_passing = false;  ///< whether n is a multiple of the teeth
   double expected_hz = 0.0;       ///< what n, the speed and the mode give
   double difference_hz = 0.0;     ///< peak less that
   double tolerance_hz = 0.0;      ///< that was allowed: the option's, or the mode's half width ζ f where that is more
+  /// exp(-2 (difference/tolerance)²)/tolerance: the density of a peak that scatters by half the tolerance [1/Hz]. What
+  /// allows more explains less.
+  double likelihood_per_hz = 0.0;
 };
 
 struct ExplainedPeak {
+  /// cannot_be_told: another reading, of another mode or of the cut in place of chatter, is about as likely as the
+  /// best; `best` holds the kind alone and the readings are `others`.
+  enum class State { named, cannot_be_told, unexplained };
   double frequency_hz = 0.0;
-  Explanation best;                      ///< tooth passing before rotation before chatter; see `explain`
-  std::vector<Explanation> others = {};  ///< that are within their tolerance too, best first
+  State state = State::unexplained;
+  Explanation best;
+  std::vector<Explanation> others = {};  ///< the other readings within their tolerance, the most likely first
+  /// The vibration's own frequency, the peak less its multiple of rotation: of chatter whose mode is named, or where
+  /// all readings that are about as likely are chatter and agree on it within the tolerance; else NaN.
+  double chatter_frequency_hz = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct Fingerprint {
+  /// cannot_be_told: there may be chatter, but no peak names its mode, or as many name one as another.
+  enum class State { named, cannot_be_told, no_chatter };
   double spindle_speed_rad_per_s = 0.0;  ///< that the peaks which are multiples of rotation agree on, or as commanded
   bool speed_from_peaks = false;
   std::vector<ExplainedPeak> peaks;
-  int mode = 0;                       ///< that explains most of the chatter peaks; 0: there are none
-  double chatter_frequency_hz = 0.0;  ///< mean of that mode's peaks less their multiples of rotation
+  State state = State::no_chatter;
+  modal::ModeId mode = {};  ///< that most chatter peaks name; unknown unless named
+  double chatter_frequency_hz = std::numeric_limits<double>::quiet_NaN();  ///< mean of the peaks that name it; or NaN
 };
 
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Explanation::Kind kind);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(ExplainedPeak::State state);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Fingerprint::State state);
 
-/// Names each peak. Chatter appears at f = |f_k + n f_rotation|: with equal teeth at multiples of tooth passing from
-/// the mode alone, with runout at the others too. Of several modes the one counts whose multiple is one of tooth
-/// passing, then the one that is nearest in its tolerance.
+/// Reads each peak. Chatter appears at f = |f_k + n f_rotation|: with equal teeth at multiples of tooth passing from
+/// the mode alone, with runout at the others too. Of several readings the most likely is named, unless one that means
+/// something else is about as likely; of equally likely ones a multiple of tooth passing comes first.
 ///
 /// The speed is the commanded one, or another within speed_tolerance at which two peaks at least are multiples of
-/// rotation and more peaks are explained; refined by least squares over the multiples of rotation.
+/// rotation and more peaks are explained; refined by least squares over the peaks that are named as multiples.
+/// @param tool, workpiece  whose modes may chatter; a workpiece without modes stands still
 /// @throws InvalidInput if an input is out of range
-[[nodiscard]] ROBOMILL_API Fingerprint explain(const MeasuredPeaks& peaks, const modal::ModalModel& modes,
-                                               const FingerprintOptions& options = {});
+[[nodiscard]] ROBOMILL_API Fingerprint explain(const MeasuredPeaks& peaks, const modal::ModalModel& tool,
+                                               const FingerprintOptions& options = {},
+                                               const modal::ModalModel& workpiece = {});
 
 /// Whether a cut's chatter needs the wave that the tooth before left.
 struct DelayVerdict {
@@ -69,7 +94,7 @@ struct DelayVerdict {
   double spectral_radius = 0.0;       ///< of one period, as evaluate_point has it
   double without_delay = 0.0;         ///< of the same period with F = Σ_j K_j(t) q(t)
   double chatter_frequency_hz = 0.0;  ///< of the cut with the delay
-  int mode = 0;                       ///< the same
+  modal::ModeId mode = {};            ///< the same
 };
 [[nodiscard]] ROBOMILL_API std::string_view to_string(DelayVerdict::Kind kind);
 

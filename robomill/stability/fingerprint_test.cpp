@@ -36,12 +36,12 @@ TEST(Fingerprint, NamesTheDocumentedPeaks) {
   for (std::size_t i = 1; i < 4; ++i) {
     const Explanation& e = found.peaks[i].best;
     EXPECT_EQ(e.kind, Named::chatter);
-    EXPECT_EQ(e.mode, 1);
+    EXPECT_EQ(e.mode.number, 1);
     EXPECT_EQ(e.harmonic, harmonic[i]);
     EXPECT_TRUE(e.of_tooth_passing);
     EXPECT_NEAR(e.difference_hz, -0.42, 0.1);
   }
-  EXPECT_EQ(found.mode, 1);
+  EXPECT_EQ(found.mode.number, 1);
   EXPECT_NEAR(found.chatter_frequency_hz, 17.0, 0.05);
   EXPECT_TRUE(found.speed_from_peaks);
   EXPECT_NEAR(found.spindle_speed_rad_per_s / rpm, 6499.8, 0.05);
@@ -50,12 +50,12 @@ TEST(Fingerprint, NamesTheDocumentedPeaks) {
   EXPECT_FALSE(milder.speed_from_peaks);
   EXPECT_EQ(milder.peaks[2].best.harmonic, 19);
   EXPECT_FALSE(milder.peaks[2].best.of_tooth_passing);
-  for (const ExplainedPeak& peak : milder.peaks) EXPECT_EQ(peak.best.mode, 1);
+  for (const ExplainedPeak& peak : milder.peaks) EXPECT_EQ(peak.best.mode.number, 1);
 
   const Fingerprint faster = robot_peaks({3866.9}, 8000);
   EXPECT_EQ(faster.peaks[0].best.kind, Named::rotation);
   EXPECT_EQ(faster.peaks[0].best.harmonic, 29);
-  EXPECT_EQ(faster.mode, 0);
+  EXPECT_EQ(faster.mode.number, 0);
 }
 
 // The spindle runs 0.15 % slow under load: the 30th multiple is 5 Hz off, and still one.
@@ -65,7 +65,7 @@ TEST(Fingerprint, FindsTheTrueSpeedInThePeaks) {
       robot_peaks({3 * rotation_hz, 18 * rotation_hz, 30 * rotation_hz, 9 * rotation_hz + 17.2}, 6500);
   EXPECT_NEAR(found.spindle_speed_rad_per_s / (2.0 * pi), rotation_hz, 1e-9);
   for (const std::size_t i : {0U, 1U, 2U}) EXPECT_EQ(found.peaks[i].best.kind, Named::tooth_passing);
-  EXPECT_EQ(found.peaks[3].best.mode, 1);
+  EXPECT_EQ(found.peaks[3].best.mode.number, 1);
   // With one peak alone nothing says that the speed is another.
   EXPECT_FALSE(robot_peaks({30 * rotation_hz}, 6500).speed_from_peaks);
 }
@@ -76,24 +76,71 @@ TEST(Fingerprint, PeaksBelowAMultipleAreItsMirrorImage) {
   EXPECT_EQ(found.peaks[0].best.kind, Named::chatter);
   EXPECT_EQ(found.peaks[0].best.harmonic, -6);
   EXPECT_TRUE(found.peaks[0].best.mirrored);
-  EXPECT_EQ(found.peaks[0].best.mode, 1);
+  EXPECT_EQ(found.peaks[0].best.mode.number, 1);
   EXPECT_NEAR(found.peaks[0].best.difference_hz, 0.0, 1e-9);
   EXPECT_NEAR(found.peaks[1].best.difference_hz, 0.4, 1e-9);
   EXPECT_NEAR(found.chatter_frequency_hz, 17.2, 1e-9);
 }
 
 // 540.9 Hz lies within the widths of modes 7 and 8 both; 541.67 Hz is a multiple of rotation as well.
-TEST(Fingerprint, TellsWhatElseItCouldBe) {
-  const ExplainedPeak peak = robot_peaks({540.9}, 6500).peaks[0];
-  EXPECT_EQ(peak.best.kind, Named::rotation);
-  ASSERT_EQ(peak.others.size(), 4U);  // both modes, and the mirror images at 10 rotations less each
-  EXPECT_EQ(peak.others[0].mode, 7);
-  EXPECT_EQ(peak.others[1].mode, 8);
-  EXPECT_NEAR(peak.others[1].tolerance_hz, 0.021 * 543.67, 1e-9);
-  const ExplainedPeak free = robot_peaks({539.5}, 6500).peaks[0];
-  EXPECT_EQ(free.best.mode, 7);
-  EXPECT_EQ(free.best.harmonic, 0);
-  EXPECT_EQ(free.others.front().mode, 8);
+TEST(Fingerprint, NamesNoReadingWhereAnotherIsAboutAsGood) {
+  using State = ExplainedPeak::State;
+  const Fingerprint found = robot_peaks({540.9, 539.5}, 6500);
+  const ExplainedPeak& peak = found.peaks[0];
+  EXPECT_EQ(peak.state, State::cannot_be_told);
+  EXPECT_EQ(peak.best.kind, Named::cut_or_chatter);
+  EXPECT_FALSE(peak.best.mode.known());
+  EXPECT_TRUE(std::isnan(peak.chatter_frequency_hz));
+  ASSERT_EQ(peak.others.size(), 5U);  // the cut, both modes, and the mirror images at 10 rotations less each
+  EXPECT_EQ(peak.others[0].kind, Named::rotation);
+  EXPECT_EQ(peak.others[1].mode.number, 7);
+  for (const Explanation& e : peak.others) {
+    EXPECT_NEAR(e.likelihood_per_hz, std::exp(-2.0 * std::pow(e.difference_hz / e.tolerance_hz, 2)) / e.tolerance_hz,
+                1e-15);
+    EXPECT_NEAR(e.tolerance_hz, e.mode.number == 8 ? 0.021 * 543.67 : e.mode.number == 7 ? 0.0068 * 540.08 : 1.0, 1e-9);
+  }
+  // Of 539.5 Hz both modes are readings, and no multiple: it is chatter, of either.
+  EXPECT_EQ(found.peaks[1].state, State::cannot_be_told);
+  EXPECT_EQ(found.peaks[1].best.kind, Named::chatter);
+  EXPECT_EQ(found.peaks[1].others[0].mode.number, 7);
+  EXPECT_EQ(found.peaks[1].others[1].mode.number, 8);
+  EXPECT_EQ(found.state, Fingerprint::State::cannot_be_told);
+  EXPECT_FALSE(found.mode.known());
+  EXPECT_TRUE(std::isnan(found.chatter_frequency_hz));
+  // Another peak that mode 8 alone explains names it, for the whole.
+  const Fingerprint clear = robot_peaks({539.5, 552.0}, 6500);
+  EXPECT_EQ(clear.peaks[1].best.mode.number, 8);
+  EXPECT_EQ(clear.state, Fingerprint::State::named);
+  EXPECT_EQ(clear.mode.number, 8);
+  EXPECT_NEAR(clear.chatter_frequency_hz, 552.0, 1e-9);
+}
+
+// Equal directions: the frequency says nothing about which of two equal modes chatters, but it is chatter.
+TEST(Fingerprint, EqualModesCannotBeToldApart) {
+  const modal::ModalModel modes =
+      testing::plane_model({testing::mass_mode(0, 700.0, 0.01, 1.0), testing::mass_mode(1, 700.0, 0.01, 1.0)});
+  const Fingerprint found = explain({{702.0}, 5000 * rpm, 3}, modes);
+  EXPECT_EQ(found.peaks[0].state, ExplainedPeak::State::cannot_be_told);
+  EXPECT_EQ(found.peaks[0].best.kind, Named::chatter);
+  EXPECT_NEAR(found.peaks[0].chatter_frequency_hz, 702.0, 1e-9);
+  EXPECT_EQ(found.state, Fingerprint::State::cannot_be_told);
+  // As many peaks for one mode as for another: neither is named.
+  const modal::ModalModel apart =
+      testing::plane_model({testing::mass_mode(0, 700.0, 0.001, 1.0), testing::mass_mode(1, 730.0, 0.001, 1.0)});
+  const Fingerprint both = explain({{700.1, 730.1}, 5000 * rpm, 3}, apart);
+  EXPECT_EQ(both.peaks[0].best.mode.number, 1);
+  EXPECT_EQ(both.peaks[1].best.mode.number, 2);
+  EXPECT_EQ(both.state, Fingerprint::State::cannot_be_told);
+  EXPECT_EQ(explain({{700.1, 730.1, 1200.0}, 5000 * rpm, 3}, apart, {.clear_odds = 1.0}).peaks.size(), 3U);
+}
+
+TEST(Fingerprint, NamesTheWorkpiecesMode) {
+  const modal::ModalModel tool = testing::plane_model({testing::mass_mode(0, 700.0, 0.001, 1.0)});
+  const modal::ModalModel part = testing::plane_model({testing::mass_mode(1, 430.0, 0.001, 1.0)});
+  const Fingerprint found = explain({{430.3}, 5000 * rpm, 3}, tool, {}, part);
+  EXPECT_EQ(found.mode, (modal::ModeId{1, modal::ModeOwner::workpiece}));
+  EXPECT_NEAR(found.peaks[0].best.mode_frequency_hz, 430.0, 1e-12);
+  EXPECT_EQ(explain({{430.3}, 5000 * rpm, 3}, tool).state, Fingerprint::State::no_chatter);
 }
 
 // Peaks made from one mode and the speed are named so, whatever the mode, the speed and the teeth.
@@ -138,6 +185,7 @@ TEST(Fingerprint, RefusesWhatCannotBe) {
   EXPECT_EQ(refused({{100.0}, 680.0, 3}, {.tolerance_hz = 60.0}), "tolerance_hz");
   EXPECT_EQ(refused({{1e6}, 1e-3, 3}), "tolerance_hz");
   EXPECT_EQ(refused({{100.0}, 680.0, 3}, {.speed_tolerance = 0.3}), "speed_tolerance");
+  EXPECT_EQ(refused({{100.0}, 680.0, 3}, {.clear_odds = 0.5}), "clear_odds");
   EXPECT_EQ(robot_peaks({1e6}, 6500).peaks.size(), 1U);
 }
 

@@ -36,7 +36,7 @@ struct FrequencyLimit {
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = 0.0;
   Kind kind = Kind::hopf;
-  int mode = 0;                   ///< that moves most in it, from 1; 0 for measured FRFs
+  modal::ModeId mode = {};        ///< that moves most in it; unknown for measured FRFs
   int harmonics = 0;              ///< N: of Fourier's series, |n| <= N
   int polynomials = 0;            ///< with which the force is followed through the cut
   double error_estimate_m = 0.0;  ///< by how much the last refinement moved the limit

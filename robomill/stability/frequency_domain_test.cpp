@@ -86,7 +86,7 @@ TEST(MultiFrequency, ReachesThemFromSampledFrfs) {
   for (std::size_t i = 0; i < known.size(); ++i) {
     EXPECT_NEAR(limits[i].axial_depth_m / mm, known[i].limit_mm, 2e-6);
     EXPECT_LT(limits[i].uncovered_ratio, 1e-3);
-    EXPECT_EQ(limits[i].mode, 0);
+    EXPECT_EQ(limits[i].mode.number, 0);
   }
   EXPECT_NO_THROW(require_coverage(response, limits));
 }
@@ -100,7 +100,7 @@ TEST(MultiFrequency, AgreesWithSemiDiscretizationOfTheRobot) {
   for (std::size_t i = 0; i < at.size(); ++i) {
     EXPECT_NEAR(exact[i].axial_depth_m / discretized(robot(), 3e-3, at[i], 640), 1.0, 1e-4) << at[i];
     EXPECT_NEAR(from_lines[i].axial_depth_m / exact[i].axial_depth_m, 1.0, 1e-6) << at[i];
-    EXPECT_EQ(exact[i].mode, 8);
+    EXPECT_EQ(exact[i].mode.number, 8);
   }
 }
 
@@ -401,6 +401,18 @@ TEST(FrequencyResponse, AddsTheWorkpiece) {
   const auto found = multi_frequency_limits(both.milling, sum, at, options);
   for (std::size_t i = 0; i < at.size(); ++i) {
     EXPECT_NEAR(found[i].axial_depth_m / expected[i].axial_depth_m, 1.0, 1e-5);
+  }
+  // A measured tool has no modes: those that are named are the workpiece's.
+  LobesProblem measured = both;
+  measured.measured = sampled(benchmark(0.3), 0.0, 4000.0, 0.5);
+  measured.dynamics = {};
+  LobesOptions chart;
+  chart.axial_depth_m = {0.0, 5e-3};
+  chart.spindle_speed_rad_per_s = {at[0], at[1]};
+  chart.method = Method::multi_frequency;
+  for (const Limit& limit : limit_depths(measured, chart, at)) {
+    ASSERT_EQ(limit.status, Limit::Status::found);
+    EXPECT_EQ(limit.mode, (modal::ModeId{1, modal::ModeOwner::workpiece}));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "robomill/base/error.hpp"
+#include "robomill/modal/tip.hpp"
 #include "robomill/stability/chart.hpp"
 #include "robomill/stability/frequency_domain.hpp"
 
@@ -12,20 +13,15 @@ namespace {
 
 /// Tool and workpiece, each from its modes or as measured.
 FrequencyResponse response_of(const LobesProblem& problem) {
-  LobesProblem modes = problem;
   FrequencyResponse response;
-  if (!problem.measured.frfs.empty()) {
+  if (problem.measured.frfs.empty()) {
+    response = FrequencyResponse::of_modes(problem);
+  } else {
     response = FrequencyResponse::of_frfs(problem.measured, problem.feed_direction_rad);
     if (!problem.workpiece_dynamics.modes.empty()) {
-      modes.measured = {};
-      modes.workpiece_measured = {};
-      modes.dynamics = problem.workpiece_dynamics;
-      modes.workpiece_dynamics = {};
-      modes.keep_modes.clear();
-      response += FrequencyResponse::of_modes(modes);
+      response += FrequencyResponse::of_modes(
+          modal::tip_modes(problem.workpiece_dynamics, {}, problem.feed_direction_rad, modal::ModeOwner::workpiece));
     }
-  } else {
-    response = FrequencyResponse::of_modes(modes);
   }
   if (!problem.workpiece_measured.frfs.empty()) {
     response += FrequencyResponse::of_frfs(problem.workpiece_measured, problem.feed_direction_rad);
@@ -126,9 +122,9 @@ LobesResult frequency_lobes(const LobesProblem& problem, const LobesOptions& opt
     if (limit.status == FrequencyLimit::Status::not_converged) ++result.uncertain;
     for (const DepthCrossing& crossing : limit.crossings) {
       if (crossing.axial_depth_m < options.axial_depth_m[0]) continue;
-      result.boundary.push_back({limit.spindle_speed_rad_per_s, crossing.axial_depth_m, crossing.chatter_frequency_hz,
-                                 crossing.kind, crossing.axial_depth_m == limit.axial_depth_m ? limit.mode : 0,
-                                 error_share(limit), 0});
+      result.boundary.push_back(
+          {limit.spindle_speed_rad_per_s, crossing.axial_depth_m, crossing.chatter_frequency_hz, crossing.kind,
+           crossing.axial_depth_m == limit.axial_depth_m ? limit.mode : modal::ModeId{}, error_share(limit), 0});
     }
   }
   for (const OperatingPoint& point : options.points) result.points.push_back(frequency_point(problem, options, point));

@@ -96,8 +96,12 @@ void FrequencyResponse::add(std::shared_ptr<const Part> part) {
 
 FrequencyResponse FrequencyResponse::of_modes(const LobesProblem& problem) {
   problem.validate();
+  return of_modes(detail::tip_modes(problem));
+}
+
+FrequencyResponse FrequencyResponse::of_modes(const modal::TipModes& modes) {
   auto part = std::make_shared<Part>();
-  part->modes = detail::tip_dynamics(problem);
+  part->modes = detail::tip_dynamics(modes);
   FrequencyResponse response;
   response.add(std::move(part));
   return response;
@@ -170,9 +174,9 @@ double FrequencyResponse::highest_peak() const {
   return largest;
 }
 
-int FrequencyResponse::mode_of(double frequency_rad_per_s, const Eigen::Vector2cd& force,
-                               double& displacement_m) const {
-  int mode = 0;
+modal::ModeId FrequencyResponse::mode_of(double frequency_rad_per_s, const Eigen::Vector2cd& force,
+                                         double& displacement_m) const {
+  modal::ModeId mode;
   displacement_m = 0.0;
   for (const auto& part : parts_) {
     if (!part->modes) continue;
@@ -186,7 +190,7 @@ int FrequencyResponse::mode_of(double frequency_rad_per_s, const Eigen::Vector2c
                                .norm();
       if (share > displacement_m) {
         displacement_m = share;
-        mode = tip.number[static_cast<std::size_t>(k)];
+        mode = tip.id[static_cast<std::size_t>(k)];
       }
     }
   }

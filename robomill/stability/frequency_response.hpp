@@ -7,6 +7,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/modal/frf.hpp"
+#include "robomill/modal/tip.hpp"
 
 namespace robomill::stability {
 
@@ -29,6 +30,8 @@ class ROBOMILL_API FrequencyResponse {
   /// The modes of tool and workpiece, with the real parts of the stiffness residuals.
   /// @throws InvalidInput if the problem is not valid
   [[nodiscard]] static FrequencyResponse of_modes(const LobesProblem& problem);
+  /// The same of one structure, in the feed's frame.
+  [[nodiscard]] static FrequencyResponse of_modes(const modal::TipModes& modes);
   /// xx, yx, xy, yy at the tool tip in fixed axes; a direct FRF that is missing belongs to a rigid direction, a cross
   /// FRF that is missing is 0.
   /// @param feed_direction_rad  of the feed in the x-y plane, counter-clockwise from x [rad]
@@ -54,9 +57,10 @@ class ROBOMILL_API FrequencyResponse {
   [[nodiscard]] double smooth_from_rad_per_s() const { return smooth_from_; }
   /// Greatest ‖G‖ (Frobenius) at a resonance [m/N].
   [[nodiscard]] double highest_peak() const;
-  /// Of a displacement q e^{iωt} that a force F e^{iωt} makes: which mode's share is greatest, and how great [m]. 0
-  /// where no modes are known.
-  [[nodiscard]] int mode_of(double frequency_rad_per_s, const Eigen::Vector2cd& force, double& displacement_m) const;
+  /// Of a displacement q e^{iωt} that a force F e^{iωt} makes: which mode's share is greatest, and how great [m].
+  /// Unknown where there are no modes.
+  [[nodiscard]] modal::ModeId mode_of(double frequency_rad_per_s, const Eigen::Vector2cd& force,
+                                      double& displacement_m) const;
 
  private:
   struct Part;

@@ -8,6 +8,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/cutting/milling.hpp"
+#include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
 
 namespace robomill::stability {
@@ -20,8 +21,8 @@ struct ROBOMILL_API LobesProblem {
   modal::ModalModel dynamics;
   std::vector<int> keep_modes = {};  ///< numbers of the modes that take part, from 1; empty: all
   double feed_direction_rad = 0.0;   ///< of the feed in the x-y plane, counter-clockwise from x [rad]
-  /// Of the part and its fixture where the tool cuts, in the same axes; no modes: it stands still. Its modes are
-  /// numbered on from the tool's.
+  /// Of the part and its fixture where the tool cuts, in the same axes; no modes: it stands still.
+  /// keep_modes does not count for it.
   modal::ModalModel workpiece_dynamics = {};
   /// Measured FRFs of tool and workpiece in place of their modes: for the frequency-domain methods, without a fit.
   modal::FrfSet measured = {}, workpiece_measured = {};
@@ -83,7 +84,7 @@ struct PointResult {
   double error_estimate = 0.0;            ///< of the spectral radius: from a second, finer run; or NaN as it
   double chatter_frequency_hz = 0.0;      ///< at which this multiplier's motion is greatest [Hz]; 0 where it overflows
   Kind kind = Kind::hopf;
-  int mode = 0;  ///< the mode that moves most in it, numbered as in dynamics from 1; 0 where it overflows
+  modal::ModeId mode = {};  ///< that moves most in it; unknown where it overflows
 };
 
 /// A point where the spectral radius is 1.
@@ -92,7 +93,7 @@ struct BoundaryPoint {
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = 0.0;
   Kind kind = Kind::hopf;
-  int mode = 0;  ///< from 1
+  modal::ModeId mode = {};
   double error_estimate =
       0.0;        ///< of the spectral radius there; in the frequency domain of the depth, as a share of it
   int curve = 0;  ///< which curve of the boundary it is on, from 1; 0: points of each speed alone
@@ -107,7 +108,7 @@ struct Limit {
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = 0.0;
   Kind kind = Kind::hopf;
-  int mode = 0;                 ///< 0 for measured FRFs
+  modal::ModeId mode = {};      ///< unknown for measured FRFs
   double error_estimate = 0.0;  ///< as of a boundary point
 };
 

@@ -49,7 +49,7 @@ TEST(Lobes, WithoutDepthTheSlowestModeDecides) {
     const PointResult p = at(robot(), speed_rpm, 0.0);
     const double period_s = 60.0 / speed_rpm / 3.0;
     EXPECT_NEAR(p.spectral_radius, std::exp(-0.0127 * 2.0 * pi * 17.40 * period_s), 1e-12);
-    EXPECT_EQ(p.mode, 1);
+    EXPECT_EQ(p.mode.number, 1);
     EXPECT_NEAR(p.chatter_frequency_hz, 17.40 * std::sqrt(1.0 - 0.0127 * 0.0127), 1e-9);
     EXPECT_TRUE(p.stable);
   }
@@ -99,7 +99,7 @@ TEST(Lobes, OrderAndScaleOfTheModesDoNotMatter) {
     mode.right /= c;
   }
   EXPECT_NEAR(radius(other, 6500, 1e-3), expected, 1e-10);
-  EXPECT_EQ(at(other, 6500, 1e-3).mode, 9 - at(robot(), 6500, 1e-3).mode);
+  EXPECT_EQ(at(other, 6500, 1e-3).mode.number, 9 - at(robot(), 6500, 1e-3).mode.number);
 }
 
 TEST(Lobes, KeptModesAreTheOnlyModes) {
@@ -107,8 +107,8 @@ TEST(Lobes, KeptModesAreTheOnlyModes) {
   kept.keep_modes = {8, 7};
   only.dynamics.modes.erase(only.dynamics.modes.begin(), only.dynamics.modes.begin() + 6);
   EXPECT_NEAR(radius(kept, 6500, 1e-3), radius(only, 6500, 1e-3), 1e-12);
-  EXPECT_EQ(at(kept, 6500, 1e-3).mode, 8);
-  EXPECT_EQ(at(only, 6500, 1e-3).mode, 2);
+  EXPECT_EQ(at(kept, 6500, 1e-3).mode.number, 8);
+  EXPECT_EQ(at(only, 6500, 1e-3).mode.number, 2);
   kept.keep_modes = {1, 2, 3, 4, 5, 6, 7, 8};
   EXPECT_NEAR(radius(kept, 6500, 1e-3), radius(robot(), 6500, 1e-3), 1e-12);
 }
@@ -184,7 +184,7 @@ TEST(Lobes, RobotChattersInItsHighestModes) {
     const PointResult p = at(robot(), speed_rpm, depth_m);
     EXPECT_FALSE(p.stable);
     EXPECT_EQ(p.kind, Kind::hopf);
-    EXPECT_EQ(p.mode, 8);
+    EXPECT_EQ(p.mode.number, 8);
     EXPECT_GT(p.chatter_frequency_hz, 542.0);
     EXPECT_LT(p.chatter_frequency_hz, 569.0);
     // The frequency is the multiplier's, and harmonics of tooth passing away from it.
@@ -230,7 +230,7 @@ TEST(Lobes, BoundaryAndLimitLieWhereTheRadiusIsOne) {
       EXPECT_NEAR(b.spindle_speed_rad_per_s, before.spindle_speed_rad_per_s, 12000.0 / 29.0 * rpm * 1.0001);
       EXPECT_NEAR(b.axial_depth_m, before.axial_depth_m, 3e-3 / 23.0 * 1.0001);
     }
-    EXPECT_GT(b.mode, 0);
+    EXPECT_GT(b.mode.number, 0);
   }
   ASSERT_EQ(result.limit.size(), 30U);
   for (Eigen::Index i = 0; i < 30; ++i) {
@@ -277,7 +277,7 @@ TEST(Lobes, LimitIsTheLeastDepthWhereThatIsUnstableAlready) {
     for (const Limit& limit : result.limit) {
       EXPECT_EQ(limit.status, Limit::Status::found);
       EXPECT_EQ(limit.axial_depth_m, 1e-3);
-      EXPECT_EQ(limit.mode, 8);
+      EXPECT_EQ(limit.mode.number, 8);
     }
   }
 }

@@ -26,7 +26,7 @@ Motion find_motion(const TipDynamics& tip, Complex multiplier, double period_s, 
   const auto offer = [&](double amplitude, Eigen::Index k, double frequency) {
     if (amplitude <= greatest) return;
     greatest = amplitude;
-    best.mode = tip.number[static_cast<std::size_t>(k)];
+    best.mode = tip.id[static_cast<std::size_t>(k)];
     best.frequency_hz = std::abs(frequency) / two_pi;
   };
 

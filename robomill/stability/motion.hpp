@@ -10,7 +10,7 @@ namespace robomill::stability::detail {
 /// How the motion that belongs to a multiplier looks.
 struct Motion {
   double frequency_hz = 0.0;
-  int mode = 0;  ///< from 1, numbered as in the problem
+  modal::ModeId mode = {};
 };
 
 /// Hopf unless the multiplier is real.

@@ -214,7 +214,7 @@ class Solver {
 
   struct Motion {
     double frequency_hz = 0.0;
-    int mode = 0;
+    modal::ModeId mode;
   };
   [[nodiscard]] Motion motion_of(const Found& found) const {
     Eigen::MatrixXcd work;
@@ -232,7 +232,7 @@ class Solver {
         motion.frequency_hz = std::abs(omega) / (2.0 * pi);
       }
       double share = 0.0;
-      const int mode = response_.mode_of(omega, harmonic, share);
+      const modal::ModeId mode = response_.mode_of(omega, harmonic, share);
       if (share > largest_share) {
         largest_share = share;
         motion.mode = mode;

@@ -22,7 +22,7 @@ struct Outcome {
   double error_estimate = std::numeric_limits<double>::quiet_NaN();  ///< of the spectral radius
   Kind kind = Kind::hopf;
   double chatter_frequency_hz = 0.0;
-  int mode = 0;
+  modal::ModeId mode = {};
 };
 
 /// One thread's means to find multipliers, eight points at a time. What it says of a point does not depend on the

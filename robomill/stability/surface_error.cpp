@@ -87,6 +87,21 @@ double y_at(const CollocationModel& model, const CollocationCase& at, const Node
   return missing;
 }
 
+/// Of every tooth and wall the error that is greatest in magnitude; NaN where no tooth finishes a wall.
+double wall_error(const CollocationModel& model, const CollocationCase& at, const NodeForces& orbit) {
+  double worst = missing;
+  const auto look = [&](double wall_rad, double sign) {
+    for (int tooth = 0; tooth < model.milling.tool.teeth; ++tooth) {
+      const double error = sign * y_at(model, at, orbit, wall_rad - model.milling.tool.standing_angle(tooth));
+      if (!(std::abs(error) <= std::abs(worst))) worst = error;
+    }
+  };
+  // A tooth at φ = 0 stands at the wall on the left, at φ = π at that on the right.
+  if (model.milling.immersion.entry_rad <= 1e-9) look(0.0, -1.0);
+  if (model.milling.immersion.exit_rad >= std::numbers::pi - 1e-9) look(std::numbers::pi, 1.0);
+  return worst;
+}
+
 SurfacePoint orbit_at(const CollocationModel& model, const OperatingPoint& point, int level) {
   CollocationCase at;
   prepare_case(model, point.spindle_speed_rad_per_s, point.axial_depth_m, mesh_level(level), at);
@@ -115,13 +130,11 @@ SurfacePoint orbit_at(const CollocationModel& model, const OperatingPoint& point
   for (const Eigen::Vector2cd& q : orbit.displacement_m) {
     low = low.cwiseMin(q.real());
     high = high.cwiseMax(q.real());
+    result.peak_deflection_m = std::max(result.peak_deflection_m, q.real().norm());
   }
   result.peak_to_peak_x_m = high(0) - low(0);
   result.peak_to_peak_y_m = high(1) - low(1);
-  const bool up = model.milling.immersion.entry_rad <= 1e-9;
-  // A tooth at φ = 0 stands at the wall on the left, at φ = π at that on the right.
-  const double y = y_at(model, at, orbit, up ? 0.0 : std::numbers::pi);
-  result.surface_location_error_m = up ? -y : y;
+  result.surface_location_error_m = wall_error(model, at, orbit);
   return result;
 }
 
@@ -132,7 +145,7 @@ void require_feed(const LobesProblem& problem) {
 }
 
 SurfacePoint unstable_point() {
-  return {false, missing, missing, missing};
+  return {false, missing, missing, missing, missing};
 }
 
 }  // namespace

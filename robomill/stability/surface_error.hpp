@@ -11,10 +11,11 @@ namespace robomill::stability {
 struct SurfacePoint {
   bool stable = false;  ///< where not, the rest is NaN
   /// Where the tooth's tip stands as it finishes the wall, against where a stiff tool's would [m]; positive: material
-  /// is left standing. Up-milling finishes at φ = 0, down-milling at φ = π, a slot has both walls and that at φ = 0 is
-  /// told.
+  /// is left standing. Up-milling finishes at φ = 0, down-milling at φ = π, a slot at both. Of unequal teeth and of
+  /// both walls that of greatest magnitude. NaN where no tooth finishes a wall.
   double surface_location_error_m = 0.0;
   double peak_to_peak_x_m = 0.0, peak_to_peak_y_m = 0.0;  ///< of the tool's tip, at the nodes of the cut
+  double peak_deflection_m = 0.0;                         ///< greatest distance of the tip from rest, at the same nodes
 };
 
 struct SurfaceMap {

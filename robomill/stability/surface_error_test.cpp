@@ -108,6 +108,41 @@ TEST(SurfaceError, MapHoldsTheStablePointsAlone) {
   EXPECT_GT(unstable, 5);
 }
 
+// A slot has two walls: that with the greater error counts. A cut between two depths of stock has none.
+TEST(SurfaceError, TakesTheWorseWallOfASlotAndNoneWithoutAWall) {
+  LobesProblem slot = fed(1.0);
+  slot.milling.tool.teeth = 3;  // of two teeth one stands at either wall at once: equal and opposite errors
+  const OperatingPoint point{9000 * rpm, 0.05e-3};
+  const SurfacePoint found = surface_point(slot, point);
+  ASSERT_TRUE(found.stable);
+  const double left = -y_of_harmonics(slot, point, 0.0);
+  const double right = y_of_harmonics(slot, point, pi);
+  EXPECT_NEAR(found.surface_location_error_m, std::abs(left) > std::abs(right) ? left : right,
+              1e-3 * found.peak_to_peak_y_m);
+  EXPECT_GT(std::abs(std::abs(left) - std::abs(right)), 0.01 * found.peak_to_peak_y_m);  // they can be told apart
+
+  LobesProblem between = fed(0.1);
+  between.milling.immersion = {.entry_rad = 0.5, .exit_rad = 1.0};
+  const SurfacePoint none = surface_point(between, point);
+  ASSERT_TRUE(none.stable);
+  EXPECT_TRUE(std::isnan(none.surface_location_error_m));
+  EXPECT_GT(none.peak_deflection_m, 0.0);
+}
+
+// An eccentric cutter's teeth finish the wall differently; which tooth is called the first does not matter.
+TEST(SurfaceError, CountsEveryTooth) {
+  LobesProblem problem = fed(0.1);
+  problem.milling.tool.runout_m = 20e-6;
+  const OperatingPoint point{9000 * rpm, 0.2e-3};
+  const SurfacePoint one = surface_point(problem, point);
+  problem.milling.tool.runout_angle_rad += pi;  // the other of the two teeth
+  const SurfacePoint other = surface_point(problem, point);
+  ASSERT_TRUE(one.stable && other.stable);
+  EXPECT_NEAR(one.surface_location_error_m, other.surface_location_error_m, 1e-6 * one.peak_to_peak_y_m);
+  EXPECT_NEAR(one.peak_deflection_m, other.peak_deflection_m, 1e-6 * one.peak_deflection_m);
+  EXPECT_GE(one.peak_deflection_m, 0.5 * std::max(one.peak_to_peak_x_m, one.peak_to_peak_y_m));
+}
+
 TEST(SurfaceError, NeedsAFeed) {
   EXPECT_THROW(static_cast<void>(surface_point(benchmark(0.1), {8000 * rpm, 1e-4})), InvalidInput);
 }

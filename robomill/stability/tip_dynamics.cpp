@@ -1,20 +1,21 @@
 #include "robomill/stability/tip_dynamics.hpp"
 
-#include "robomill/modal/tip.hpp"
-
 namespace robomill::stability::detail {
 
-TipDynamics tip_dynamics(const LobesProblem& problem) {
-  modal::TipModes modes = modal::tip_modes(problem.dynamics, problem.keep_modes, problem.feed_direction_rad);
-  if (!problem.workpiece_dynamics.modes.empty()) {
-    modes = modal::joined(modes, modal::tip_modes(problem.workpiece_dynamics, {}, problem.feed_direction_rad));
-  }
+modal::TipModes tip_modes(const LobesProblem& problem) {
+  const double feed_rad = problem.feed_direction_rad;
+  modal::TipModes tool = modal::tip_modes(problem.dynamics, problem.keep_modes, feed_rad);
+  if (problem.workpiece_dynamics.modes.empty()) return tool;
+  return modal::joined(tool, modal::tip_modes(problem.workpiece_dynamics, {}, feed_rad, modal::ModeOwner::workpiece));
+}
+
+TipDynamics tip_dynamics(const modal::TipModes& modes) {
   TipDynamics tip;
   tip.pole = modes.pole;
   tip.right = modes.right.topRows<2>();
   tip.left = modes.left.topRows<2>();
   tip.compliance = modes.compliance.topLeftCorner<2, 2>();
-  tip.number = modes.number;
+  tip.id = modes.id;
   for (Eigen::Index k = 0; k < tip.pole.size(); ++k) {
     const double size = 2.0 * tip.right.col(k).norm();
     if (size == 0.0) continue;
@@ -22,6 +23,10 @@ TipDynamics tip_dynamics(const LobesProblem& problem) {
     tip.left.col(k) *= size;
   }
   return tip;
+}
+
+TipDynamics tip_dynamics(const LobesProblem& problem) {
+  return tip_dynamics(tip_modes(problem));
 }
 
 }  // namespace robomill::stability::detail

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "robomill/modal/tip.hpp"
 #include "robomill/stability/lobes.hpp"
 
 namespace robomill::stability::detail {
@@ -11,14 +12,20 @@ namespace robomill::stability::detail {
 ///
 /// Scaled so that ‖2 right_k‖ = 1: every z_k is then a displacement in m, whatever scale the mode came with.
 struct TipDynamics {
-  Eigen::VectorXcd pole;       ///< length n [rad/s]
-  Eigen::Matrix2Xcd right;     ///< 2 x n, in x and y of the feed
-  Eigen::Matrix2Xcd left;      ///< 2 x n [m/(N s)]
-  Eigen::Matrix2d compliance;  ///< S, real part of the stiffness residuals [m/N]
-  std::vector<int> number;     ///< length n: which mode it is, from 1; the workpiece's follow the tool's
+  Eigen::VectorXcd pole;          ///< length n [rad/s]
+  Eigen::Matrix2Xcd right;        ///< 2 x n, in x and y of the feed
+  Eigen::Matrix2Xcd left;         ///< 2 x n [m/(N s)]
+  Eigen::Matrix2d compliance;     ///< S, real part of the stiffness residuals [m/N]
+  std::vector<modal::ModeId> id;  ///< length n: the workpiece's follow the tool's
 };
 
-/// @throws InvalidInput if the model has no x or y at a tip, or several points that could be the tip
+/// The tool's modes that take part, and the workpiece's.
+/// @throws InvalidInput if a model has no x or y at a tip, or several points that could be the tip
+modal::TipModes tip_modes(const LobesProblem& problem);
+
+/// Of these modes in the plane, or of the problem's.
+/// @throws InvalidInput as tip_modes
+TipDynamics tip_dynamics(const modal::TipModes& modes);
 TipDynamics tip_dynamics(const LobesProblem& problem);
 
 }  // namespace robomill::stability::detail

@@ -2,6 +2,8 @@
 export type Num = number | null;
 export type Verdict = 'stable' | 'borderline' | 'chatter';
 export type Kind = 'hopf' | 'flip' | 'fold';
+/** The structure that a mode belongs to. */
+export type Owner = 'tool' | 'workpiece';
 
 export interface Recommendation {
   spindle_speed_rpm: number;
@@ -12,6 +14,7 @@ export interface Recommendation {
   limited_by: string;
   chatter_frequency_hz: Num;
   mode: Num;
+  mode_of: Owner | null;
 }
 
 export interface Curve {
@@ -36,6 +39,7 @@ export interface Frf {
 
 export interface Mode {
   mode: number;
+  mode_of: Owner;
   frequency_hz: number;
 }
 
@@ -57,6 +61,7 @@ export interface Lobes {
     chatter_frequency_hz: Num[];
     kind: Kind[];
     mode: Num[];
+    mode_of: (Owner | null)[];
   };
   map: { spindle_speed_rpm: number[]; axial_depth_mm: number[]; spectral_radius: Num[][] } | null;
 }
@@ -89,7 +94,7 @@ export interface FeedDirections {
 export interface Peak {
   frequency_hz: number;
   amplitude: number;
-  kind: 'rotation' | 'tooth_passing' | 'chatter' | 'other';
+  kind: 'rotation' | 'tooth_passing' | 'chatter' | 'cut_or_chatter' | 'other';
   text: string;
 }
 

@@ -50,7 +50,7 @@ describe('FRF', () => {
     expect(prefersLogFrequency({ ...frf, frequency_hz: [0, 500, 3500] })).toBe(false);
   });
   it('shows measured, fitted and coherence, and shades what is not trusted', () => {
-    const figure = frfFigure(frf, [{ mode: 1, frequency_hz: 10 }, { mode: 2, frequency_hz: 9000 }], true, light);
+    const figure = frfFigure(frf, [{ mode: 1, mode_of: 'tool', frequency_hz: 10 }, { mode: 2, mode_of: 'tool', frequency_hz: 9000 }, { mode: 1, mode_of: 'workpiece', frequency_hz: 20 }], true, light);
     expect(figure.data).toHaveLength(5);
     const shapes = figure.layout['shapes'] as { type: string; x0: number; x1: number }[];
     expect(shapes.filter((shape) => shape.type === 'rect')).toMatchObject([{ x0: 5, x1: 8 }]);

@@ -74,7 +74,8 @@ function marked(frf: Frf, theme: Theme): { shapes: Layout[]; keys: Trace[] } {
 function modeMarks(frf: Frf, modes: Mode[], logarithmic: boolean, theme: Theme): { shapes: Layout[]; annotations: Layout[] } {
   const from = frf.frequency_hz[0] ?? 0;
   const to = frf.frequency_hz[frf.frequency_hz.length - 1] ?? 0;
-  const inside = modes.filter((mode) => mode.frequency_hz >= from && mode.frequency_hz <= to);
+  // The FRFs are those of the tool.
+  const inside = modes.filter((mode) => mode.mode_of === 'tool' && mode.frequency_hz >= from && mode.frequency_hz <= to);
   const place = (f: number) => (logarithmic ? Math.log10(f) : f);
   const width = Math.max(place(to) - place(Math.max(from, logarithmic ? 0.1 : 0)), 1e-9);
   let level = 0;

@@ -16,6 +16,7 @@ const lobes: Lobes = {
     chatter_frequency_hz: [545, 546, null, 18.5],
     kind: ['hopf', 'flip', 'hopf', 'fold'],
     mode: [8, 8, 7, null],
+    mode_of: ['tool', 'tool', 'tool', null],
   },
   map: null,
 };
@@ -66,9 +67,13 @@ describe('chatter frequency', () => {
     expect((traces[1]!['marker'] as { symbol: string[] }).symbol).toEqual(['circle', 'diamond']);
     expect(traces.every((trace) => trace['xaxis'] === 'x2' && trace['yaxis'] === 'y2')).toBe(true);
   });
+  it('keeps a mode of the workpiece apart from the mode of the tool with its number', () => {
+    const both = { ...lobes, boundary: { ...lobes.boundary, mode_of: ['workpiece' as const, 'tool' as const, null, null] } };
+    expect(frequencyTraces(both, light).map((trace) => trace['name'])).toEqual(['mode unknown', 'mode 8', 'mode 8 of the workpiece']);
+  });
   it('has a second plot only where there is something to show', () => {
     expect(lobesFigure(input, light, false).layout).toHaveProperty('yaxis2');
-    const none = { ...lobes, boundary: { spindle_speed_rpm: [], axial_depth_mm: [], chatter_frequency_hz: [], kind: [], mode: [] } };
+    const none = { ...lobes, boundary: { spindle_speed_rpm: [], axial_depth_mm: [], chatter_frequency_hz: [], kind: [], mode: [], mode_of: [] } };
     expect(lobesFigure({ ...input, lobes: none }, light, false).layout).not.toHaveProperty('yaxis2');
   });
 });
@@ -84,6 +89,7 @@ describe('lobes', () => {
       limited_by: 'a < b',
       chatter_frequency_hz: null,
       mode: null,
+      mode_of: null,
     };
     const figure = lobesFigure({ ...input, recommendation, alternatives: [recommendation] }, dark, true);
     const star = figure.data.find((trace) => trace['name'] === 'recommended')!;

@@ -182,18 +182,22 @@ const kinds = [
 /** Chatter frequency along the boundary, coloured by mode; only the points that are the limit at their speed say what one hears first. */
 export function frequencyTraces(lobes: Lobes, theme: Theme): Trace[] {
   const { boundary } = lobes;
-  const groups = new Map<number, number[]>();
+  const groups = new Map<string, { mode: number; ofWorkpiece: boolean; indices: number[] }>();
   boundary.chatter_frequency_hz.forEach((frequency, i) => {
     if (frequency === null) return;
     const mode = boundary.mode[i] ?? 0;
-    groups.set(mode, [...(groups.get(mode) ?? []), i]);
+    const ofWorkpiece = boundary.mode_of[i] === 'workpiece';
+    const name = mode === 0 ? 'mode unknown' : `mode ${mode}${ofWorkpiece ? ' of the workpiece' : ''}`;
+    const group = groups.get(name) ?? { mode, ofWorkpiece, indices: [] };
+    group.indices.push(i);
+    groups.set(name, group);
   });
   return [...groups.entries()]
-    .sort(([a], [b]) => a - b)
-    .map(([mode, indices]) => ({
+    .sort(([, a], [, b]) => Number(a.ofWorkpiece) - Number(b.ofWorkpiece) || a.mode - b.mode)
+    .map(([name, { mode, ofWorkpiece, indices }]) => ({
       type: 'scatter',
       mode: 'markers',
-      name: mode > 0 ? `mode ${mode}` : 'mode unknown',
+      name,
       legend: 'legend2',
       xaxis: 'x2',
       yaxis: 'y2',
@@ -202,11 +206,11 @@ export function frequencyTraces(lobes: Lobes, theme: Theme): Trace[] {
       customdata: indices.map((i) => [boundary.kind[i], boundary.axial_depth_mm[i]]),
       hovertemplate:
         `chatter at %{y:.1f}${thinSpace}Hz (%{customdata[0]})<br>%{x:.0f}${thinSpace}rpm, ` +
-        `%{customdata[1]:.3f}${thinSpace}mm<extra>${mode > 0 ? `mode ${mode}` : ''}</extra>`,
+        `%{customdata[1]:.3f}${thinSpace}mm<extra>${mode > 0 ? name : ''}</extra>`,
       marker: {
         size: 4,
         color: mode > 0 ? theme.series[(mode - 1) % theme.series.length] : theme.unknown,
-        symbol: indices.map((i) => kinds.find((k) => k.kind === boundary.kind[i])?.symbol ?? 'circle'),
+        symbol: indices.map((i) => (kinds.find((k) => k.kind === boundary.kind[i])?.symbol ?? 'circle') + (ofWorkpiece ? '-open' : '')),
       },
     }));
 }
