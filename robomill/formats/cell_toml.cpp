@@ -314,6 +314,23 @@ void read_end_effector(TomlFile& file, CellFile& out) {
   }
 }
 
+/// What the words A, B and C of programs mean.
+void read_program_words(TomlFile& file, CellFile& out) {
+  const auto of_key = [&](const char* key, const auto& parse) {
+    try {
+      parse();
+    } catch (const InvalidInput& error) {
+      throw file.refuse(key, error.parts().rule);
+    }
+  };
+  if (file.text("program.machine", out.machine)) {
+    of_key("program.machine", [&] { static_cast<void>(parse_machine(out.machine)); });
+  }
+  if (std::string rotary; file.text("program.rotary", rotary)) {
+    of_key("program.rotary", [&] { out.rotary = parse_rotary(rotary); });
+  }
+}
+
 }  // namespace
 
 CellFile read_cell(const std::filesystem::path& path, Robots usable) {
@@ -327,13 +344,7 @@ CellFile read_cell(const std::filesystem::path& path, Robots usable) {
   out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
   file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
   read_end_effector(file, out);
-  if (file.text("program.machine", out.machine)) {
-    try {
-      static_cast<void>(parse_machine(out.machine));
-    } catch (const InvalidInput& error) {
-      throw file.refuse("program.machine", error.parts().rule);
-    }
-  }
+  read_program_words(file, out);
   file.done();
   if (out.hybrid) {
     out.hybrid->workpiece = out.cell.workpiece;
@@ -343,6 +354,12 @@ CellFile read_cell(const std::filesystem::path& path, Robots usable) {
     file.locate([&] { out.cell.validate(); });
   }
   return out;
+}
+
+ProgramReading program_reading(const CellFile& file) {
+  ProgramReading reading = {.rotary = file.rotary};
+  if (!file.machine.empty()) reading.machine = parse_machine(file.machine);
+  return reading;
 }
 
 std::unique_ptr<robot::Kinematics> kinematics(const CellFile& file) {

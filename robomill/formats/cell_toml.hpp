@@ -7,6 +7,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/formats/end_effector.hpp"
+#include "robomill/formats/program_files.hpp"
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/kinematics.hpp"
@@ -20,6 +21,7 @@ struct CellFile {
   std::optional<robot::HybridMachine> hybrid = {};  ///< kind = "hybrid-2upr-rpu"
   std::string machine = {};          ///< what A, B, C words of a program mean: "xyzac-trt", "xyzbc-trt", "xyzac-head",
                                      ///< "xyzbc-head"; empty where not said
+  Rotary rotary = Rotary::machine;   ///< how the axis goes where those words turn
   double redundant_gamma_rad = 0.0;  ///< turn of the flange about the tool's axis, robot::ToolPose
   bool gamma_given = false;          ///< the file says so; else it is free to choose where a stage can
   std::vector<double> start_joints = {};  ///< where the arm stands first [rad]; empty where not said
@@ -37,5 +39,8 @@ enum class Robots { serial, any };
 /// The cell's machine with its derivatives.
 /// @throws InvalidInput with the file, if a serial arm has not six joints, all revolute
 [[nodiscard]] ROBOMILL_API std::unique_ptr<robot::Kinematics> kinematics(const CellFile& file);
+
+/// How programs of the cell are read.
+[[nodiscard]] ROBOMILL_API ProgramReading program_reading(const CellFile& file);
 
 }  // namespace robomill::formats

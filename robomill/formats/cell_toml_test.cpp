@@ -178,6 +178,17 @@ TEST(CellToml, ReadsAUrdfBesideItAndItsListsStandFirst) {
   EXPECT_TRUE(file.cell.workpiece.isApprox(Eigen::Isometry3d::Identity()));
 }
 
+TEST(CellToml, SaysHowProgramsAreRead) {
+  const Folder folder;
+  const ProgramReading given = program_reading(read_cell(folder.file("cell.toml", good)));
+  EXPECT_EQ(given.machine, program::Machine::xyzac_trt);
+  EXPECT_EQ(given.rotary, Rotary::machine);
+  const std::string chosen = with("machine = \"xyzac-trt\"", "rotary = \"great-circle\"");
+  const ProgramReading shortest = program_reading(read_cell(folder.file("cell.toml", chosen)));
+  EXPECT_FALSE(shortest.machine.has_value());
+  EXPECT_EQ(shortest.rotary, Rotary::great_circle);
+}
+
 TEST(CellToml, SaysWhatIsWrongAndWhere) {
   const Folder folder;
   folder.file("one.urdf", urdf);
@@ -209,6 +220,8 @@ TEST(CellToml, SaysWhatIsWrongAndWhere) {
          "cell.toml:19: robot.links[1].inertia_kg_m2: must be positive");
   expect("length_mm = 100", "length_mm = -100", "cell.toml:27: tool.length_mm = -100 mm; must be >= 0");
   expect("[1270, 0, 776]", "[1270, 0]", "cell.toml:24: workpiece.origin_mm: must hold three numbers");
+  expect("machine = \"xyzac-trt\"", "rotary = \"straight\"",
+         "cell.toml:29: program.rotary = \"straight\"; must be one of \"machine\", \"great-circle\"");
   expect("xyzac-trt", "xyzac", "cell.toml:29: program.machine = \"xyzac\"; must be one of \"xyzac-trt\"");
   expect("[-10.09, 9.36", "[-1000, 9.36",
          "cell.toml:22: robot.start_joints_deg: must lie within the limits; joint 1 has");

@@ -1,4 +1,4 @@
-// The arcs of a GcodeReader.
+// The arcs of a GcodeReader, and the moves that it gives away in parts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,8 +17,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double same_place_m = 1e-10;
-constexpr double rotary_step_deg = 2.0;  ///< of a chord; its great circle leaves the machine's way by 0.01 deg
-constexpr double most_chords = 1e6;
 
 }  // namespace
 
@@ -35,45 +33,55 @@ void GcodeReader::go_round(const Line& line) {
              "Turns are given by P");
     }
   }
-  chords_.rotary_begin_deg = rotary_deg_;
-  chords_.end_m = position_after(line);
-  chords_.arc = arc_to(line, chords_.end_m);
-  chords_.turns = line.rotary[0] || line.rotary[1] || line.rotary[2];
-  if (chords_.turns) {
+  const Vector3d rotary_before_deg = rotary_deg_;
+  Parts parts = {.begin_m = pose_.tip_m, .end_m = position_after(line)};
+  parts.arc = arc_to(line, parts.end_m);
+  if (line.rotary[0] || line.rotary[1] || line.rotary[2]) {
     by_rotary_ = true;
     if (by_vector_) {
       refuse("A, B, C", std::nullopt, "", "stand in a program that gives its axis the other way as well",
              "Use A, B and C or I, J and K");
     }
     turn_rotary(line);
+    parts.turn = turn_from(rotary_before_deg);
   }
-  chords_.rotary_end_deg = rotary_deg_;
-  const double turn_deg = (chords_.rotary_end_deg - chords_.rotary_begin_deg).cwiseAbs().maxCoeff();
-  chords_.count = std::max(chords_.arc.chords(reading_.chord_tolerance_m), std::ceil(turn_deg / rotary_step_deg));
-  if (!(chords_.count <= most_chords)) {
-    refuse(plane_.centers, std::nullopt, "", fmt::format("would make an arc of {:.3g} chords", chords_.count),
-           "Allow a larger chord tolerance");
-  }
-  chords_.duration_s = feed_duration_s(line, chords_.arc.length_m(), turn_deg) / chords_.count;
-  chords_.next = 0.0;
   begin_cutting();
+  const double turn_deg = (rotary_deg_ - rotary_before_deg).norm();
+  const double duration_s = feed_duration_s(line, parts.arc->length_m(), turn_deg);
+  give(std::move(parts), duration_s, plane_.centers);
+}
+
+Vector3d GcodeReader::Parts::tip_at(double share) const {
+  if (share == 1.0) return end_m;
+  return arc ? arc->at(share) : Vector3d(begin_m + share * (end_m - begin_m));
+}
+
+void GcodeReader::give(Parts parts, double duration_s, const char* field) {
+  parts.count = 1.0;
+  if (parts.arc) parts.count = parts.arc->chords(reading_.chord_tolerance_m);
+  if (parts.turn) parts.count = std::max(parts.count, parts.turn->parts(reading_.axis_tolerance_rad));
+  constexpr double most_parts = 1e6;
+  if (!(parts.count <= most_parts)) {
+    refuse(field, std::nullopt, "", fmt::format("would make a move of {:.3g} parts", parts.count),
+           "Allow larger tolerances");
+  }
+  if (parts.arc) parts.deviation.tip_m = parts.arc->deviation_m(parts.count);
+  if (parts.turn) parts.deviation.axis_rad = parts.turn->deviation_rad(parts.count);
+  parts.duration_s = duration_s / parts.count;
+  parts_ = std::move(parts);
   ready_ = advance();
 }
 
 bool GcodeReader::advance() {
-  if (!(chords_.next < chords_.count)) {
+  if (!(parts_.next < parts_.count)) {
     if (stop_after_ == program::OperatorStop::none) return false;
     dwell(0.0, std::exchange(stop_after_, program::OperatorStop::none));
     return true;
   }
-  const double share = (chords_.next += 1.0) / chords_.count;
-  const bool last = chords_.next == chords_.count;
-  program::Pose end = {.tip_m = last ? chords_.end_m : chords_.arc.at(share), .axis = pose_.axis};
-  if (chords_.turns) {
-    const Vector3d turned = chords_.rotary_end_deg - chords_.rotary_begin_deg;
-    end.axis = axis_at(last ? chords_.rotary_end_deg : Vector3d(chords_.rotary_begin_deg + share * turned));
-  }
-  move(program::Block::Kind::feed, end, chords_.duration_s);
+  const double share = (parts_.next += 1.0) / parts_.count;
+  const program::Pose end = {.tip_m = parts_.tip_at(share),
+                             .axis = parts_.turn ? parts_.turn->axis_at(share) : pose_.axis};
+  move(parts_.kind, end, parts_.duration_s, parts_.deviation);
   return true;
 }
 

@@ -337,9 +337,9 @@ void GcodeReader::turn_rotary(const Line& line) {
   }
 }
 
-Eigen::Vector3d GcodeReader::axis_at(const Eigen::Vector3d& rotary_deg) const {
-  const Eigen::Vector3d angles = rotary_deg * units::deg;
-  return program::tool_axis(*reading_.machine, angles.x(), angles.y(), angles.z());
+program::RotaryMove GcodeReader::turn_from(const Eigen::Vector3d& rotary_before_deg) const {
+  return {
+      .machine = *reading_.machine, .begin_rad = rotary_before_deg * units::deg, .end_rad = rotary_deg_ * units::deg};
 }
 
 Eigen::Vector3d GcodeReader::axis_after(const Line& line) {
@@ -352,7 +352,7 @@ Eigen::Vector3d GcodeReader::axis_after(const Line& line) {
   if (any(line.vector)) return axis_of_vector(line);
   if (!any(line.rotary)) return pose_.axis;
   turn_rotary(line);
-  return axis_at(rotary_deg_);
+  return turn_from(rotary_deg_).axis_at(1.0);
 }
 
 double GcodeReader::feed_duration_s(const Line& line, double length_m, double turn_deg) const {
@@ -389,7 +389,7 @@ void GcodeReader::go_straight(const Line& line) {
   if (line.radius) {
     refuse("R", *line.radius, unit_name(), "stands on a line that is no arc", "Is a G2 or G3 missing before it?");
   }
-  const Eigen::Vector3d rotary_before = rotary_deg_;
+  const Eigen::Vector3d rotary_before_deg = rotary_deg_;
   const program::Pose end = {.tip_m = position_after(line), .axis = axis_after(line)};
   const bool complete = known_[0] && known_[1] && known_[2];
   if (!complete && motion_ == Motion::feed) {
@@ -406,15 +406,35 @@ void GcodeReader::go_straight(const Line& line) {
     begin_at(end);
     return;
   }
-  if (!moves_to(end)) return;
-  const double turn_rad = turn_to(end.axis);
-  if (motion_ == Motion::rapid) {
-    move(Block::Kind::rapid, end, 0.0);
-    return;
+  Parts parts = {.kind = motion_ == Motion::rapid ? Block::Kind::rapid : Block::Kind::feed,
+                 .begin_m = pose_.tip_m,
+                 .end_m = end.tip_m};
+  if (any(line.rotary)) parts.turn = turn_from(rotary_before_deg);
+  const bool evenly = parts.turn && reading_.rotary == Rotary::machine;
+  // A turn may end where it began.
+  if (!moves_to(end) && !(evenly && parts.turn->parts(reading_.axis_tolerance_rad) > 1.0)) return;
+  const double turn_rad = evenly ? 0.0 : turn_to(end.axis);
+  if (parts.turn && !evenly) check_shortest(*parts.turn);
+  double duration_s = 0.0;
+  if (motion_ == Motion::feed) {
+    begin_cutting();
+    const double turn_deg = parts.turn ? (rotary_deg_ - rotary_before_deg).norm() : turn_rad / units::deg;
+    duration_s = feed_duration_s(line, (end.tip_m - pose_.tip_m).norm(), turn_deg);
   }
-  begin_cutting();
-  const double turn_deg = any(line.rotary) ? (rotary_deg_ - rotary_before).norm() : turn_rad / units::deg;
-  move(Block::Kind::feed, end, feed_duration_s(line, (end.tip_m - pose_.tip_m).norm(), turn_deg));
+  if (evenly) {
+    give(std::move(parts), duration_s, "A, B, C");
+  } else {
+    move(parts.kind, end, duration_s);
+  }
+}
+
+void GcodeReader::check_shortest(const program::RotaryMove& turn) const {
+  constexpr double half_deg = 180.0;
+  const double turn_deg = (turn.end_rad.z() - turn.begin_rad.z()) / units::deg;
+  const bool leaves = turn.parts(reading_.axis_tolerance_rad) > 1.0;
+  if (motion_ != Motion::feed || std::abs(turn_deg) < half_deg || !leaves) return;
+  refuse("C", round_15(turn_deg), "deg", "turns by half a circle or more, which no shortest way does",
+         "program.rotary = \"machine\" turns the axes as far as the words say");
 }
 
 }  // namespace robomill::formats

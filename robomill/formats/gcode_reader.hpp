@@ -48,6 +48,18 @@ class GcodeReader final : public ProgramReader {
     void leave_out(const GcodeWords::Word& word);
   };
 
+  /// A move that is being given away in parts of equal time: an arc, a straight move of turning axes, or both.
+  struct Parts {
+    program::Block::Kind kind = program::Block::Kind::feed;
+    std::optional<Arc> arc = {};  ///< none: a line
+    Eigen::Vector3d begin_m = Eigen::Vector3d::Zero(), end_m = Eigen::Vector3d::Zero();
+    std::optional<program::RotaryMove> turn = {};  ///< none: the axis stays
+    Deviation deviation = {.tip_m = 0.0, .axis_rad = 0.0};
+    double duration_s = 0.0;  ///< of one
+    double count = 0.0, next = 0.0;
+    [[nodiscard]] Eigen::Vector3d tip_at(double share) const;
+  };
+
   [[nodiscard]] Part part_of(std::string_view line, char ahead, bool continued) const override;
   void read(std::string_view statement) override;
   bool advance() override;
@@ -64,12 +76,18 @@ class GcodeReader final : public ProgramReader {
   [[nodiscard]] Eigen::Vector3d axis_after(const Line& line);
   [[nodiscard]] Eigen::Vector3d axis_of_vector(const Line& line) const;
   void turn_rotary(const Line& line);
-  [[nodiscard]] Eigen::Vector3d axis_at(const Eigen::Vector3d& rotary_deg) const;
+  /// The turn of A, B and C from where they stood to where they stand now.
+  [[nodiscard]] program::RotaryMove turn_from(const Eigen::Vector3d& rotary_before_deg) const;
+  /// @throws InvalidInput where the shortest way is not the one that the words say
+  void check_shortest(const program::RotaryMove& turn) const;
   [[nodiscard]] double feed_duration_s(const Line& line, double length_m, double turn_deg) const;
   [[nodiscard]] double unit_m() const;
   [[nodiscard]] const char* unit_name() const { return inches_ ? "in" : "mm"; }
   void go(const Line& line);
   void go_straight(const Line& line);
+  /// Gives away `parts`, whose kind, ends, arc and turn are set.
+  /// @param field  named where they would be too many
+  void give(Parts parts, double duration_s, const char* field);
 
   // gcode_machine.cpp
   void take_m(const GcodeWords::Word& word, Line& line);
@@ -121,16 +139,7 @@ class GcodeReader final : public ProgramReader {
   std::optional<program::Coolant> coolant_after_;
   program::OperatorStop stop_after_ = program::OperatorStop::none;
 
-  /// The arc that is being given away chord by chord.
-  struct Chords {
-    Arc arc = {};
-    Eigen::Vector3d end_m = Eigen::Vector3d::Zero();
-    bool turns = false;  ///< A, B or C come with it
-    Eigen::Vector3d rotary_begin_deg = Eigen::Vector3d::Zero(), rotary_end_deg = Eigen::Vector3d::Zero();
-    double duration_s = 0.0;  ///< of one
-    double count = 0.0, next = 0.0;
-  };
-  Chords chords_;
+  Parts parts_;
 };
 
 }  // namespace robomill::formats

@@ -19,6 +19,12 @@ struct Arc {
   /// Number of equal chords that leave the arc by no more than the tolerance, and no chord above a quarter of a turn.
   /// Linear interpolation errs by at most Δφ²/8 max |p''|, and |p''| <= r + 2 |dr/dφ|.
   [[nodiscard]] double chords(double tolerance_m) const;
+  /// By how much so many equal chords leave the arc, at most.
+  [[nodiscard]] double deviation_m(double chords) const;
+
+ private:
+  /// The largest |p''| by the angle.
+  [[nodiscard]] double bend_m() const;
 };
 
 }  // namespace robomill::formats

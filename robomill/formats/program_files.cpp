@@ -108,10 +108,22 @@ ProgramFormat program_format_of(const std::filesystem::path& path) {
   return ending == ".csv" ? ProgramFormat::csv : ProgramFormat::gcode;
 }
 
+Rotary parse_rotary(std::string_view name) {
+  if (name == "machine") return Rotary::machine;
+  if (name == "great-circle") return Rotary::great_circle;
+  throw InvalidInput(InvalidInput::Parts{.field = "program.rotary",
+                                         .value = "\"" + std::string(name) + "\"",
+                                         .rule = "must be one of \"machine\", \"great-circle\""});
+}
+
 void ProgramReading::validate() const {
   constexpr double least_m = 1e-9;
   if (!(chord_tolerance_m >= least_m && chord_tolerance_m < 1.0)) {
     throw InvalidInput("chord_tolerance_m", chord_tolerance_m, "m", "must be >= 1e-9 and < 1");
+  }
+  constexpr double least_rad = 1e-9;
+  if (!(axis_tolerance_rad >= least_rad && axis_tolerance_rad < 1.0)) {
+    throw InvalidInput("axis_tolerance_rad", axis_tolerance_rad, "rad", "must be >= 1e-9 and < 1");
   }
 }
 

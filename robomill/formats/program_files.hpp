@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -18,11 +19,23 @@ enum class ProgramFormat { gcode, apt, csv };
 /// .apt .cls .cl, .csv; anything else is G-code. Case does not matter.
 [[nodiscard]] ROBOMILL_API ProgramFormat program_format_of(const std::filesystem::path& path);
 
+/// How the tool's axis goes where the words A, B and C turn.
+enum class Rotary {
+  machine,      ///< as a machine goes: each of them evenly in time, as far and in the direction that the words say
+  great_circle  ///< the shortest way between the ends of a straight move
+};
+
+/// "machine" or "great-circle". @throws InvalidInput naming the field program.rotary
+[[nodiscard]] ROBOMILL_API Rotary parse_rotary(std::string_view name);
+
 /// How to read a program.
 struct ROBOMILL_API ProgramReading {
   std::optional<program::Machine> machine = {};  ///< what A, B and C mean; a program without them needs none
-  double chord_tolerance_m = 1e-6;               ///< >= 1 nm; by how much a chord may leave the arc that it stands for
-  std::optional<ProgramFormat> format = {};      ///< none: by the file's ending
+  Rotary rotary = Rotary::machine;
+  double chord_tolerance_m = 1e-6;  ///< >= 1 nm; by how much a chord may leave the arc that it stands for
+  /// >= 1e-9 rad (default 0.001°); by how much the great circle of a part may leave the axis of a machine's move
+  double axis_tolerance_rad = 1.7453292519943296e-5;
+  std::optional<ProgramFormat> format = {};  ///< none: by the file's ending
   /// @throws InvalidInput naming the member
   void validate() const;
 };

@@ -181,14 +181,16 @@ bool ProgramReader::moves_to(const program::Pose& end) const {
   return end.tip_m != pose_.tip_m || end.axis != pose_.axis;
 }
 
-void ProgramReader::move(program::Block::Kind kind, const program::Pose& end, double duration_s) {
+void ProgramReader::move(program::Block::Kind kind, const program::Pose& end, double duration_s, Deviation deviation) {
   block_ = {.kind = kind,
             .line = line_,
             .end = end,
             .duration_s = duration_s,
             .spindle_speed_rad_per_s = spindle_speed_rad_per_s_,
             .spindle = spindle_,
-            .coolant = coolant_};
+            .coolant = coolant_,
+            .tip_deviation_m = deviation.tip_m,
+            .axis_deviation_rad = deviation.axis_rad};
   pose_ = end;
   ready_ = true;
 }

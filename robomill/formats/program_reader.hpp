@@ -104,8 +104,13 @@ class ProgramReader {
   [[nodiscard]] double turn_to(const Eigen::Vector3d& axis) const;
   void begin_at(const program::Pose& pose);
   [[nodiscard]] bool moves_to(const program::Pose& end) const;
+  /// Of a straight move from the curve that it stands for.
+  struct Deviation {
+    double tip_m, axis_rad;
+  };
   /// Makes a block from where the tool stands to `end`.
-  void move(program::Block::Kind kind, const program::Pose& end, double duration_s);
+  void move(program::Block::Kind kind, const program::Pose& end, double duration_s,
+            Deviation deviation = {.tip_m = 0.0, .axis_rad = 0.0});
   void dwell(double duration_s, program::OperatorStop operator_stop = program::OperatorStop::none);
   void skip(std::string_view what) const { remarks_.skip(line_, what); }
 

@@ -16,6 +16,8 @@ constexpr double max_chord_rad = 0.1;
 constexpr double share_of_tolerance = 0.93;
 /// How far tip and axis may run ahead of each other along the programmed path, in tolerances.
 constexpr double lag_tolerances = 5.0;
+/// Of the tolerances, where a block leaves more of its curve than they allow: the check says so.
+constexpr double least_share = 0.05;
 
 /// The filtered ramp less the ramp, h − |x| = y in [0, h]: two filters of width h, or three of width 2 h / 3.
 double ramp_error(double y, double h, int filters) {
@@ -51,6 +53,10 @@ Blend::Added Blend::add(const program::Block& block, std::size_t index, double g
   double length_m = std::max(way_m, per_angle_m_ * angle);
   if (length_m < 1e-9) length_m = per_angle_m_ * std::abs(gamma_rad - from[6]);
   if (length_m < 1e-9) return Added::nothing;
+  // What the block leaves of the curve that it stands for comes off the tolerances.
+  const double left = 1.0 - std::max(block.tip_deviation_m / options_.tip_tolerance_m,
+                                     block.axis_deviation_rad / options_.axis_tolerance_rad);
+  tolerance *= std::max(left, least_share);
   const auto pieces = static_cast<std::size_t>(std::ceil(angle / max_chord_rad + 1e-12));
   const std::size_t count = std::max<std::size_t>(pieces, 1);
   if (nodes_.size() + count > capacity_) return Added::full;

@@ -48,7 +48,8 @@ class Blend {
   /// Where the path begins; forgets all.
   void begin(const program::Pose& pose, double gamma_rad) noexcept;
   /// Adds a block; `nothing` where it does not move. Widths of corners near the end are not yet known.
-  /// @param tolerance  in (0, 1]: the share of the tolerances that corners at the block may use
+  /// @param tolerance  in (0, 1]: the share of the tolerances that corners at the block may use, its own deviation
+  /// included
   Added add(const program::Block& block, std::size_t index, double gamma_rad, double tolerance = 1.0) noexcept;
   /// The tool stops at the end of what was added, for dwell_s [s].
   void stop(double dwell_s) noexcept;

@@ -213,6 +213,25 @@ TEST_F(CheckerLimit, OfTheFeedIsWatched) {
   EXPECT_EQ(f.check(samples).violations(), 0U);
 }
 
+// A block that stands for a curve counts as far from it as it may leave it; the corners lie on the curve.
+TEST(Checker, CountsWhatABlockLeavesOfItsCurve) {
+  Fixture f;
+  f.move({0.01, 0.002, 0.0}, {0.02, 0.0, 1.0}, 0.45);
+  const std::vector<Sample> samples = f.stop_and_go({1.0});
+  Block& block = f.program.blocks[0];
+  block.tip_deviation_m = 0.6 * options().tip_tolerance_m;
+  block.axis_deviation_rad = 0.7 * options().axis_tolerance_rad;
+  const CheckResult good = f.check(samples);
+  EXPECT_EQ(good.violations(), 0U);
+  EXPECT_NEAR(good.tip_error_m.max, block.tip_deviation_m, 1e-12);
+  EXPECT_NEAR(good.axis_error_rad.max, block.axis_deviation_rad, 1e-12);
+  block.tip_deviation_m = 1.2 * options().tip_tolerance_m;
+  EXPECT_GT(f.check(samples).tip_error_m.violations, 0U);
+  block.tip_deviation_m = 0.0;
+  block.axis_deviation_rad = 1.2 * options().axis_tolerance_rad;
+  EXPECT_GT(f.check(samples).axis_error_rad.violations, 0U);
+}
+
 // Where the axis alone moves its programmed angular speed is the feed.
 TEST(Checker, HoldsAPureRotationToItsAngularFeed) {
   Fixture f;

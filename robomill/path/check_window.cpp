@@ -24,6 +24,8 @@ Segment segment_of(const program::Pose& from, const Block& block) {
   }
   s.tip_end_m = block.end.tip_m;
   s.axis_end = block.end.axis;
+  s.tip_deviation_m = block.tip_deviation_m;
+  s.axis_deviation_rad = block.axis_deviation_rad;
   const Vector3d way = s.tip_end_m - s.tip_begin_m;
   if (const double length = way.norm(); length > stands_m) {
     s.length_m = length;
@@ -62,14 +64,15 @@ double chord_distance(const Vector3d& point, const Vector3d& from, const Vector3
 double Segment::tip_distance_m(const Vector3d& tip_m) const {
   const Vector3d offset = tip_m - tip_begin_m;
   const double along = std::clamp(offset.dot(tip_direction), 0.0, length_m);
-  return (offset - along * tip_direction).norm();
+  return (offset - along * tip_direction).norm() + tip_deviation_m;
 }
 
 double Segment::axis_distance_rad(const Vector3d& axis) const {
   // The nearest point of the great circle lies on the arc if it is past the beginning and before the end.
   if (angle_rad > 0.0 && axis.dot(across) >= 0.0 && axis.dot(end_tangent) <= 0.0) {
-    return std::asin(std::min(1.0, std::abs(axis.dot(normal))));
+    return std::asin(std::min(1.0, std::abs(axis.dot(normal)))) + axis_deviation_rad;
   }
+  // Its ends lie on the curve.
   return angle_of_chord(std::sqrt(std::min((axis - axis_begin).squaredNorm(), (axis - axis_end).squaredNorm())));
 }
 

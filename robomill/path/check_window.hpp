@@ -22,11 +22,12 @@ struct Segment {
   double angle_rad = 0.0;                                    ///< 0 where the axis stands
   double tip_feed_m_per_s = 0.0, axis_feed_rad_per_s = 0.0;  ///< infinite for a rapid, 0 where it stands
   double dwell_s = 0.0;
+  double tip_deviation_m = 0.0, axis_deviation_rad = 0.0;  ///< of the block from the programmed curve
 
   [[nodiscard]] bool moves() const { return length_m > 0.0 || angle_rad > 0.0; }
-  /// Of a point from the line.
+  /// Of a point from the curve that the line stands for, at most.
   [[nodiscard]] double tip_distance_m(const Eigen::Vector3d& tip_m) const;
-  /// Of a unit vector from the arc.
+  /// Of a unit vector from the curve that the arc stands for, at most.
   [[nodiscard]] double axis_distance_rad(const Eigen::Vector3d& axis) const;
   /// The axis programmed for the point of the line that is nearest to a tip; length_m > 0.
   [[nodiscard]] Eigen::Vector3d axis_beside(const Eigen::Vector3d& tip_m) const;

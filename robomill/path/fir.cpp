@@ -150,10 +150,14 @@ double Planner::overlap(std::size_t before, std::size_t after) const {
   const Boxes &axis = blocks[before].axis, &next_axis = blocks[after].axis;
   const Vector3d v = (corner.tip_m - from.tip_m) / tip.width_s[0];
   const Vector3d next_v = (to.tip_m - corner.tip_m) / next_tip.width_s[0];
-  const double tip_s = largest_overlap_s_of(tip, next_tip, corner_speed(v, next_v, printed), tip_tolerance_m);
+  const Block &block = program.blocks[before], &next = program.blocks[after];
+  const double tip_left_m = std::max(0.0, tip_tolerance_m - std::max(block.tip_deviation_m, next.tip_deviation_m));
+  const double axis_left_rad =
+      std::max(0.0, axis_tolerance_rad - std::max(block.axis_deviation_rad, next.axis_deviation_rad));
+  const double tip_s = largest_overlap_s_of(tip, next_tip, corner_speed(v, next_v, printed), tip_left_m);
   const Vector3d w = end_tangent(from.axis, corner.axis) / axis.width_s[0];
   const Vector3d next_w = -end_tangent(to.axis, corner.axis) / next_axis.width_s[0];
-  const double axis_s = largest_overlap_s_of(axis, next_axis, corner_speed(w, next_w, printed), axis_tolerance_rad);
+  const double axis_s = largest_overlap_s_of(axis, next_axis, corner_speed(w, next_w, printed), axis_left_rad);
   return std::min(tip_s, axis_s);
 }
 

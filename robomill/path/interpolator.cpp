@@ -17,6 +17,7 @@ using Pushed = PathInterpolator::Pushed;
 bool sound(const program::Block& block) {
   if (!(block.duration_s >= 0.0) || !std::isfinite(block.duration_s)) return false;
   if (block.kind == program::Block::Kind::dwell) return true;
+  if (!(block.tip_deviation_m >= 0.0 && block.axis_deviation_rad >= 0.0)) return false;
   return block.end.tip_m.allFinite() && block.end.axis.allFinite() &&
          std::abs(block.end.axis.squaredNorm() - 1.0) < 1e-9;
 }

@@ -17,7 +17,7 @@ enum class Method { verified, optimal, paper, paper_as_printed, no_joint_jerk };
 struct ROBOMILL_API SmoothingOptions {
   Method method = Method::verified;
   double tip_tolerance_m = 0.0;     ///< > 0; distance of the tip to the programmed path; required
-  double axis_tolerance_rad = 0.0;  ///< > 0; angle of the axis to the programmed great circles; required
+  double axis_tolerance_rad = 0.0;  ///< > 0; angle of the axis to the programmed curve; required
   double max_velocity_m_per_s = 0.0, max_acceleration_m_per_s2 = 0.0, max_jerk_m_per_s3 = 0.0;  ///< > 0; of the tip
   double max_angular_velocity_rad_per_s = 0.0, max_angular_acceleration_rad_per_s2 = 0.0,
          max_angular_jerk_rad_per_s3 = 0.0;  ///< > 0; of the axis

@@ -123,6 +123,58 @@ TEST(SPath, PaperCostsLittleVerifiedLessAndNeitherBreaksTheJointsJerk) {
   EXPECT_LT(optimal.duration_s, 1.10 * optimal.lower_bound_s);
 }
 
+// What a block leaves of the curve that it stands for is not used a second time: the samples stay nearer to the blocks.
+TEST(SPath, LeavesRoomForWhatBlocksLeaveOfTheirCurves) {
+  const robot::HybridKinematics machine(test::s_machine(0.4, 12.8));
+  const program::Program plain = test::s_path();
+  program::Program curved = plain;
+  const SmoothingOptions any = test::published_options(Method::verified);
+  for (program::Block& block : curved.blocks) {
+    block.tip_deviation_m = 0.4 * any.tip_tolerance_m;
+    block.axis_deviation_rad = 0.3 * any.axis_tolerance_rad;
+  }
+  for (const Method method : {Method::verified, Method::paper}) {
+    const SmoothingOptions options = test::published_options(method);
+    const Smoothed run = smoothed(curved, machine, options);
+    EXPECT_EQ(run.summary.check.tip_error_m.violations + run.summary.check.axis_error_rad.violations, 0U);
+    EXPECT_GT(run.summary.duration_s, smoothed(plain, machine, options).summary.duration_s);
+    program::ProgramSource source(plain);
+    Checker checker(source, machine, options);
+    checker.add(run.samples);
+    const CheckResult check = checker.finish();
+    EXPECT_LE(check.tip_error_m.max, 0.6001 * options.tip_tolerance_m);
+    EXPECT_LE(check.axis_error_rad.max, 0.7001 * options.axis_tolerance_rad);
+  }
+}
+
+// A stop for the operator is a dwell of no time: the tool is at rest there, where it would have run through.
+TEST(Smooth, ComesToRestAtADwellOfNoTime) {
+  const robot::HybridKinematics machine(test::s_machine(0.4, 12.8));
+  const auto slowest_at_the_middle = [&](bool stop) {
+    program::Program program = test::s_path();
+    program.start = {.tip_m = Eigen::Vector3d::Zero(), .axis = program.start.axis};
+    program.blocks.clear();
+    for (const double x_m : {0.02, 0.04}) {
+      if (stop && x_m > 0.03) {
+        program.blocks.push_back({.kind = program::Block::Kind::dwell, .line = 2, .end = program.blocks.back().end});
+      }
+      program.blocks.push_back(
+          {.line = 1, .end = {.tip_m = Eigen::Vector3d(x_m, 0.0, 0.0), .axis = program.start.axis}, .duration_s = 0.5});
+    }
+    const Smoothed run = smoothed(program, machine, test::published_options(Method::verified));
+    EXPECT_EQ(run.summary.check.violations(), 0U);
+    double step_m = 1.0;
+    for (std::size_t i = 1; i < run.samples.size(); ++i) {
+      const double middle_m = 0.5 * (run.samples[i].tip_m.x() + run.samples[i - 1].tip_m.x());
+      if (std::abs(middle_m - 0.02) > 1e-4) continue;
+      step_m = std::min(step_m, (run.samples[i].tip_m - run.samples[i - 1].tip_m).norm());
+    }
+    return step_m / test::published_options(Method::verified).sample_period_s;
+  };
+  EXPECT_GT(slowest_at_the_middle(false), 0.02);
+  EXPECT_LT(slowest_at_the_middle(true), 1e-3);
+}
+
 TEST(SPath, OptimalIsNearTheBoundWhereJointJerkIsLoose) {
   const robot::HybridKinematics machine(test::s_machine(0.4, 20.0));
   const Summary optimal = smoothed(test::s_path(), machine, test::published_options(Method::optimal)).summary;

@@ -7,7 +7,6 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/formats/gcode.hpp"
 #include "robomill/formats/program_files.hpp"
 #include "robomill/formats/units.hpp"
 #include "robomill/robot/choose.hpp"
@@ -165,9 +164,7 @@ ProgramForces run_program(const formats::ForcesFile& file, const std::optional<f
                           std::vector<std::string>& notes, Progress& progress) {
   const auto begun = std::chrono::steady_clock::now();
   ProgramForces out;
-  std::optional<program::Machine> machine;
-  if (cell && !cell->machine.empty()) machine = formats::parse_machine(cell->machine);
-  out.program = formats::read_program(path, {.machine = machine});
+  out.program = formats::read_program(path, cell ? formats::program_reading(*cell) : formats::ProgramReading{});
   if (out.program.blocks.empty()) {
     throw InvalidInput(InvalidInput::Parts{.where = path.string(), .rule = "has no move"});
   }

@@ -14,7 +14,6 @@
 #include "robomill/base/error.hpp"
 #include "robomill/formats/cell_toml.hpp"
 #include "robomill/formats/file.hpp"
-#include "robomill/formats/gcode.hpp"
 #include "robomill/formats/program_files.hpp"
 #include "robomill/formats/smoothing_toml.hpp"
 #include "robomill/formats/trajectory.hpp"
@@ -26,10 +25,10 @@
 namespace robomill::plan {
 namespace {
 
-/// Of an arc's chords: within a tenth of the tolerance.
-constexpr double chord_share = 0.1;
-/// … but not less, in m: what a reader takes.
-constexpr double least_chord_m = 1e-9;
+/// Of the tolerances, what arcs' chords and the great circles of turning axes may use.
+constexpr double chord_share = 0.1, turn_share = 0.05;
+/// … but not less: what a reader takes.
+constexpr double least_chord_m = 1e-9, least_turn_rad = 1e-9;
 
 /// A machine with a program before it.
 struct Bench {
@@ -86,9 +85,9 @@ Bench prepare(const SmoothJob& job) {
   bench.machine = formats::kinematics(bench.cell);
   bench.smoothing = formats::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), job.method);
   bench.slides = slides_of(bench.cell);
-  formats::ProgramReading reading;
-  if (!bench.cell.machine.empty()) reading.machine = formats::parse_machine(bench.cell.machine);
+  formats::ProgramReading reading = formats::program_reading(bench.cell);
   reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
+  reading.axis_tolerance_rad = std::max(turn_share * bench.smoothing.options.axis_tolerance_rad, least_turn_rad);
   bench.program = formats::open_program(job.program, reading);
   bench.posture = told_of_program(job.program, [&] { return posture_of(bench); });
   return bench;

@@ -57,7 +57,8 @@ max_angular_jerk_deg_per_s3 = 12000
 }
 
 const std::string zigzag =
-    "G21 G90 G94\nM8\nG0 X0 Y0 Z0 A0 C0\nG1 X10 Y0 Z0 A-5 C10 F2400\nG1 X10 Y3 A-8\nG1 X0 Y3 A-4 C20\nG1 X0 Y6\nG2 X6 "
+    "G21 G90 G94\nM8 T1\nG0 X0 Y0 Z0 A0 C0\nG1 X10 Y0 Z0 A-5 C10 F2400\nG1 X10 Y3 A-8\nG1 X0 Y3 A-4 C20\nG1 X0 Y6\nG2 "
+    "X6 "
     "Y12 I6 J0\nG4 P0.1\nG1 X6 Y6 Z2\nM30\n";
 
 class Smoothing : public testing::Test {
@@ -129,6 +130,35 @@ TEST_F(Smoothing, TheFileKeepsTheLimitsOfEveryJoint) {
   EXPECT_NEAR(file.rows.back()[7], 6.0, 1e-6);
   EXPECT_NEAR(file.rows.back()[8], 2.0, 1e-6);
   EXPECT_EQ(file.rows.back()[12], static_cast<double>(result.first().summary.blocks));
+}
+
+// Of the file's own numbers: the axis runs round the cone that C turns at constant A, as far as the program says and no
+// further from it than the tolerance; the shortest way would stand still, or turn by 41 deg the other way.
+TEST_F(Smoothing, TurningAxesFollowTheMachineOfTheProgram) {
+  constexpr double tilt_deg = 30.0, tolerance_deg = 0.1;
+  for (const double turn_deg : {360.0, 270.0, -270.0}) {
+    const std::string program =
+        "G21 G94 M428\nG0 X0 Y0 Z0 A30 C0\nG1 X20 C" + std::to_string(turn_deg) + " F300\nM30\n";
+    SmoothJob turning = job(hybrid(), program);
+    turning.record = false;
+    const SmoothResult result = run_smooth(turning);
+    ASSERT_TRUE(result.holds()) << turn_deg;
+    const Rows file = read(folder_.at("t.csv"));
+    const double deg = units::deg;
+    double turned = 0.0;
+    for (std::size_t i = 0; i < file.rows.size(); ++i) {
+      const auto axis = [&](std::size_t row) { return &file.rows[row][9]; };
+      ASSERT_NEAR(std::acos(axis(i)[2]) / deg, tilt_deg, tolerance_deg);
+      if (i == 0) continue;
+      const double *a = axis(i - 1), *b = axis(i);
+      turned += std::atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+    }
+    EXPECT_NEAR(turned / deg, -turn_deg, tolerance_deg / std::sin(tilt_deg * deg));
+    EXPECT_NEAR(file.rows.back()[6], 20.0, 0.02);
+    const path::CheckResult& check = result.first().summary.check;
+    EXPECT_LE(check.axis_error_rad.max, tolerance_deg * deg);
+    EXPECT_GT(check.axis_error_rad.max, 0.0);
+  }
 }
 
 TEST_F(Smoothing, TellsWhatWasLeftOutAndWhatWasFound) {

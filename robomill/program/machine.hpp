@@ -23,4 +23,28 @@ enum class Machine {
 /// The angle that the machine does not have is not looked at.
 [[nodiscard]] ROBOMILL_API Eigen::Vector3d tool_axis(Machine machine, double a_rad, double b_rad, double c_rad);
 
+/// A move of the rotary axes, each evenly in time: at the share s of the time, in [0, 1], the axis is tool_axis at
+/// begin + s (end − begin).
+struct ROBOMILL_API RotaryMove {
+  Machine machine = Machine::xyzac_trt;
+  Eigen::Vector3d begin_rad = Eigen::Vector3d::Zero();  ///< A, B, C; any number of turns
+  Eigen::Vector3d end_rad = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] Eigen::Vector3d axis_at(double share) const;
+  /// Number of parts of equal time, >= 1, whose great circles leave the move by no more than a tolerance. No part turns
+  /// the axis by more than 0.5 rad.
+  [[nodiscard]] double parts(double tolerance_rad) const;
+  /// By how much the great circles through so many parts leave the move at the same time, at most. With the tilt t (A
+  /// or B), c (C) and derivatives by s, the curve's acceleration along the sphere is
+  ///     |D| = |c'| |cos t| √(sin² t c'² + 4 t'²) <= M,
+  /// and great circles of n parts below 0.5 rad each leave it by at most M / (7.5 n²); on a plane it would be 8.
+  [[nodiscard]] double deviation_rad(double parts) const;
+
+ private:
+  struct Bounds {
+    double speed = 0.0, acceleration = 0.0;  ///< of the axis by s, at most
+  };
+  [[nodiscard]] Bounds bounds() const;
+};
+
 }  // namespace robomill::program

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/program/program.hpp"
 
 namespace robomill::program {
 namespace {
@@ -38,6 +42,60 @@ TEST(Machine, LeansTheToolAsTheTableTips) {
   EXPECT_LT((tool_axis(Machine::xyzac_head, quarter, 0.0, 0.0) + Vector3d::UnitY()).norm(), 1e-15);
   EXPECT_LT((tool_axis(Machine::xyzbc_trt, 0.0, quarter, 0.0) + Vector3d::UnitX()).norm(), 1e-15);
   EXPECT_LT((tool_axis(Machine::xyzbc_head, 0.0, quarter, 0.0) - Vector3d::UnitX()).norm(), 1e-15);
+}
+
+RotaryMove random_move(Random& random) {
+  static constexpr Machine machines[] = {Machine::xyzac_trt, Machine::xyzbc_trt, Machine::xyzac_head,
+                                         Machine::xyzbc_head};
+  const double size = std::exp(random.uniform(std::log(1e-3), std::log(10.0)));
+  RotaryMove move = {.machine = machines[random.index(4)]};
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    move.begin_rad[i] = random.uniform(-4.0, 4.0);
+    move.end_rad[i] = move.begin_rad[i] + (random.index(4) == 0 ? 0.0 : random.uniform(-size, size));
+  }
+  if (random.index(4) == 0) move.begin_rad.x() = move.begin_rad.y() = 0.0;  // out of the pole
+  return move;
+}
+
+// Great circles through the parts' ends, compared with the curve at the same share of time.
+TEST(RotaryMove, PartsLeaveTheCurveByNoMoreThanTheirBound) {
+  Random random(6);
+  double closest = 0.0;
+  for (int i = 0; i < test::seeds(4000); ++i) {
+    const RotaryMove move = random_move(random);
+    const double tolerance = std::exp(random.uniform(std::log(1e-6), std::log(1e-2)));
+    const double parts = move.parts(tolerance);
+    const double bound = move.deviation_rad(parts);
+    ASSERT_LE(bound, tolerance * (1.0 + 1e-9));
+    for (int k = 0; k < 20; ++k) {
+      const double part = std::floor(random.uniform(0.0, parts));
+      const Pose from = {.axis = move.axis_at(part / parts)}, to = {.axis = move.axis_at((part + 1.0) / parts)};
+      const double within = random.uniform();
+      const double off = angle_between(between(from, to, within).axis, move.axis_at((part + within) / parts));
+      ASSERT_LE(off, bound + 1e-12) << i;
+      ASSERT_LE(angle_between(from.axis, to.axis), 0.5 + 1e-9);
+      if (bound > 1e-9) closest = std::max(closest, off / bound);
+    }
+  }
+  EXPECT_GT(closest, 0.9) << "the bound is met";
+}
+
+// At constant tilt the axis runs round a small circle: M = sin A cos A C², and the great circle of a part misses its
+// middle by the sagitta of that circle.
+TEST(RotaryMove, ConesNeedAsManyPartsAsTheirSagittaSays) {
+  constexpr double deg = std::numbers::pi / 180.0;
+  const RotaryMove cone = {.begin_rad = {30.0 * deg, 0.0, 0.0}, .end_rad = {30.0 * deg, 0.0, 360.0 * deg}};
+  const double parts = cone.parts(1e-3 * deg);
+  EXPECT_NEAR(parts, 2.0 * std::numbers::pi * std::sqrt(0.5 * std::sqrt(0.75) / (7.5 * 1e-3 * deg)), 1.0);
+  const Pose from = {.axis = cone.axis_at(0.0)}, to = {.axis = cone.axis_at(1.0 / parts)};
+  const double sagitta = angle_between(between(from, to, 0.5).axis, cone.axis_at(0.5 / parts));
+  EXPECT_NEAR(sagitta / cone.deviation_rad(parts), 7.5 / 8.0, 1e-4);
+  // A meridian is a great circle, and about the pole nothing moves.
+  const RotaryMove meridian = {.begin_rad = {-1.2, 0.0, 0.3}, .end_rad = {1.3, 0.0, 0.3}};
+  EXPECT_EQ(meridian.parts(1e-9), 5.0);
+  EXPECT_EQ(meridian.deviation_rad(5.0), 0.0);
+  const RotaryMove still = {.begin_rad = {0.0, 0.0, 0.0}, .end_rad = {0.0, 0.0, 30.0}};
+  EXPECT_EQ(still.parts(1e-9), 1.0);
 }
 
 }  // namespace

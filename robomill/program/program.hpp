@@ -44,6 +44,9 @@ struct Block {
   Spindle spindle = Spindle::not_given;  ///< not_given where the program has not said
   Coolant coolant = {};
   OperatorStop operator_stop = OperatorStop::none;  ///< of a dwell, which may last 0 s then
+  /// By how much tip and axis of this straight move may leave the curve that it stands for, at the same time: of an
+  /// arc, or of rotary axes that turn evenly. >= 0, 0 where the program says a straight move.
+  double tip_deviation_m = 0.0, axis_deviation_rad = 0.0;
 };
 
 /// What a reader left out.
