@@ -153,8 +153,9 @@ CommandLine::CommandLine() {
       ->check(CLI::IsMember({"verified", "optimal", "paper", "paper-as-printed", "no-joint-jerk"}));
   sub->add_flag("--compare", smooth.compare, "all other methods beside it, in the summary and the report");
   sub->add_flag("--keep-breaches", smooth.keep_breaches, "write the trajectory even where it breaks a limit");
-  sub->add_option("--program-period-ms", smooth.program_period_ms,
-                  "time between the points of a joint program (default: 20; 2 for .script and .servoj)");
+  sub->add_option(
+      "--program-period-ms", smooth.program_period_ms,
+      "longest time between the points of a joint program (default: 20; 2 for .script and .servoj, always)");
 
   sub = verb("monitor", "a running accelerometer to an alarm, the mode that chatters and a better speed",
              [this](Progress& p) { return run(monitor, common, p); });
