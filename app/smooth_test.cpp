@@ -16,7 +16,7 @@ class SmoothVerb : public ProgramTest {
   void SetUp() override {
     std::filesystem::copy_file(ROBOMILL_SOURCE_DIR "/examples/smooth-impeller-like/cell.toml", folder_.at("cell.toml"));
     folder_.file("part.ngc",
-                 "G21 G90 G94\nM8\nG0 X0 Y0 Z40 A-20 C0\nG1 X4 F1800\nG1 X4 Y3 A-22\nG1 X0 Y3\nG1 X0 Y0 C2\nM30\n");
+                 "G21 G90 G94\nM8 T1\nG0 X0 Y0 Z40 A-20 C0\nG1 X4 F1800\nG1 X4 Y3 A-22\nG1 X0 Y3\nG1 X0 Y0 C2\nM30\n");
   }
   [[nodiscard]] bool there(const char* name) const { return std::filesystem::exists(folder_.at(name)); }
 };
