@@ -67,7 +67,7 @@ Pose away(Pose pose) {
 std::string blade_program(int passes, int moves_a_pass) {
   Writer out;
   out.line("(one blade of an invented impeller, finished along its rulings; xyzac-trt, tip positions)");
-  out.line("G21 G90 G94");
+  out.line("G21 G90 G94 M428");
   out.line("M8");
   out.line("S12000 M3");
   const std::string feed = fmt::format(" F{:.0f}", feed_mm_per_min);

@@ -1,4 +1,4 @@
-// The arcs of a GcodeReader, and the moves that it gives away in parts.
+// The arcs of a GcodeReader, and the moves that it makes into several blocks.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,8 +34,8 @@ void GcodeReader::go_round(const Line& line) {
     }
   }
   const Vector3d rotary_before_deg = rotary_deg_;
-  Parts parts = {.begin_m = pose_.tip_m, .end_m = position_after(line)};
-  parts.arc = arc_to(line, parts.end_m);
+  PartedMove parted = {.begin_m = pose_.tip_m, .end_m = position_after(line)};
+  parted.arc = arc_to(line, parted.end_m);
   if (line.rotary[0] || line.rotary[1] || line.rotary[2]) {
     by_rotary_ = true;
     if (by_vector_) {
@@ -43,45 +43,45 @@ void GcodeReader::go_round(const Line& line) {
              "Use A, B and C or I, J and K");
     }
     turn_rotary(line);
-    parts.turn = turn_from(rotary_before_deg);
+    parted.turn = turn_from(rotary_before_deg);
   }
   begin_cutting();
   const double turn_deg = (rotary_deg_ - rotary_before_deg).norm();
-  const double duration_s = feed_duration_s(line, parts.arc->length_m(), turn_deg);
-  give(std::move(parts), duration_s, plane_.centers);
+  const double duration_s = feed_duration_s(line, parted.arc->length_m(), turn_deg);
+  split(std::move(parted), duration_s, plane_.centers);
 }
 
-Vector3d GcodeReader::Parts::tip_at(double share) const {
+Vector3d GcodeReader::PartedMove::tip_at(double share) const {
   if (share == 1.0) return end_m;
   return arc ? arc->at(share) : Vector3d(begin_m + share * (end_m - begin_m));
 }
 
-void GcodeReader::give(Parts parts, double duration_s, const char* field) {
-  parts.count = 1.0;
-  if (parts.arc) parts.count = parts.arc->chords(reading_.chord_tolerance_m);
-  if (parts.turn) parts.count = std::max(parts.count, parts.turn->parts(reading_.axis_tolerance_rad));
+void GcodeReader::split(PartedMove parted, double duration_s, const char* field) {
+  parted.count = 1.0;
+  if (parted.arc) parted.count = parted.arc->chords(reading_.chord_tolerance_m);
+  if (parted.turn) parted.count = std::max(parted.count, parted.turn->parts(reading_.axis_tolerance_rad));
   constexpr double most_parts = 1e6;
-  if (!(parts.count <= most_parts)) {
-    refuse(field, std::nullopt, "", fmt::format("would make a move of {:.3g} parts", parts.count),
+  if (!(parted.count <= most_parts)) {
+    refuse(field, std::nullopt, "", fmt::format("would make a move of {:.3g} parts", parted.count),
            "Allow larger tolerances");
   }
-  if (parts.arc) parts.deviation.tip_m = parts.arc->deviation_m(parts.count);
-  if (parts.turn) parts.deviation.axis_rad = parts.turn->deviation_rad(parts.count);
-  parts.duration_s = duration_s / parts.count;
-  parts_ = std::move(parts);
+  if (parted.arc) parted.deviation.tip_m = parted.arc->deviation_m(parted.count);
+  if (parted.turn) parted.deviation.axis_rad = parted.turn->deviation_rad(parted.count);
+  parted.duration_s = duration_s / parted.count;
+  parted_ = std::move(parted);
   ready_ = advance();
 }
 
 bool GcodeReader::advance() {
-  if (!(parts_.next < parts_.count)) {
+  if (!(parted_.next < parted_.count)) {
     if (stop_after_ == program::OperatorStop::none) return false;
     dwell(0.0, std::exchange(stop_after_, program::OperatorStop::none));
     return true;
   }
-  const double share = (parts_.next += 1.0) / parts_.count;
-  const program::Pose end = {.tip_m = parts_.tip_at(share),
-                             .axis = parts_.turn ? parts_.turn->axis_at(share) : pose_.axis};
-  move(parts_.kind, end, parts_.duration_s, parts_.deviation);
+  const double share = (parted_.next += 1.0) / parted_.count;
+  const program::Pose end = {.tip_m = parted_.tip_at(share),
+                             .axis = parted_.turn ? parted_.turn->axis_at(share) : pose_.axis};
+  move(parted_.kind, end, parted_.duration_s, parted_.deviation);
   return true;
 }
 

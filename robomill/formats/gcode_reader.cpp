@@ -406,25 +406,25 @@ void GcodeReader::go_straight(const Line& line) {
     begin_at(end);
     return;
   }
-  Parts parts = {.kind = motion_ == Motion::rapid ? Block::Kind::rapid : Block::Kind::feed,
-                 .begin_m = pose_.tip_m,
-                 .end_m = end.tip_m};
-  if (any(line.rotary)) parts.turn = turn_from(rotary_before_deg);
-  const bool evenly = parts.turn && reading_.rotary == Rotary::machine;
+  PartedMove parted = {.kind = motion_ == Motion::rapid ? Block::Kind::rapid : Block::Kind::feed,
+                       .begin_m = pose_.tip_m,
+                       .end_m = end.tip_m};
+  if (any(line.rotary)) parted.turn = turn_from(rotary_before_deg);
+  const bool evenly = parted.turn && reading_.rotary == Rotary::machine;
   // A turn may end where it began.
-  if (!moves_to(end) && !(evenly && parts.turn->parts(reading_.axis_tolerance_rad) > 1.0)) return;
+  if (!moves_to(end) && !(evenly && parted.turn->parts(reading_.axis_tolerance_rad) > 1.0)) return;
   const double turn_rad = evenly ? 0.0 : turn_to(end.axis);
-  if (parts.turn && !evenly) check_shortest(*parts.turn);
+  if (parted.turn && !evenly) check_shortest(*parted.turn);
   double duration_s = 0.0;
   if (motion_ == Motion::feed) {
     begin_cutting();
-    const double turn_deg = parts.turn ? (rotary_deg_ - rotary_before_deg).norm() : turn_rad / units::deg;
+    const double turn_deg = parted.turn ? (rotary_deg_ - rotary_before_deg).norm() : turn_rad / units::deg;
     duration_s = feed_duration_s(line, (end.tip_m - pose_.tip_m).norm(), turn_deg);
   }
   if (evenly) {
-    give(std::move(parts), duration_s, "A, B, C");
+    split(std::move(parted), duration_s, "A, B, C");
   } else {
-    move(parts.kind, end, duration_s);
+    move(parted.kind, end, duration_s);
   }
 }
 

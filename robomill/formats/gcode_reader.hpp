@@ -48,14 +48,14 @@ class GcodeReader final : public ProgramReader {
     void leave_out(const GcodeWords::Word& word);
   };
 
-  /// A move that is being given away in parts of equal time: an arc, a straight move of turning axes, or both.
-  struct Parts {
+  /// A move that is made into blocks of equal time: an arc, a straight move of turning axes, or both.
+  struct PartedMove {
     program::Block::Kind kind = program::Block::Kind::feed;
     std::optional<Arc> arc = {};  ///< none: a line
     Eigen::Vector3d begin_m = Eigen::Vector3d::Zero(), end_m = Eigen::Vector3d::Zero();
     std::optional<program::RotaryMove> turn = {};  ///< none: the axis stays
     Deviation deviation = {.tip_m = 0.0, .axis_rad = 0.0};
-    double duration_s = 0.0;  ///< of one
+    double duration_s = 0.0;  ///< of one block
     double count = 0.0, next = 0.0;
     [[nodiscard]] Eigen::Vector3d tip_at(double share) const;
   };
@@ -85,9 +85,9 @@ class GcodeReader final : public ProgramReader {
   [[nodiscard]] const char* unit_name() const { return inches_ ? "in" : "mm"; }
   void go(const Line& line);
   void go_straight(const Line& line);
-  /// Gives away `parts`, whose kind, ends, arc and turn are set.
+  /// Begins to make blocks of a move whose kind, ends, arc and turn are set.
   /// @param field  named where they would be too many
-  void give(Parts parts, double duration_s, const char* field);
+  void split(PartedMove parted, double duration_s, const char* field);
 
   // gcode_machine.cpp
   void take_m(const GcodeWords::Word& word, Line& line);
@@ -139,7 +139,7 @@ class GcodeReader final : public ProgramReader {
   std::optional<program::Coolant> coolant_after_;
   program::OperatorStop stop_after_ = program::OperatorStop::none;
 
-  Parts parts_;
+  PartedMove parted_;
 };
 
 }  // namespace robomill::formats
