@@ -180,7 +180,7 @@ CommandLine::CommandLine() {
   sub->add_option("job", plan.job, "job.toml")->required();
 }
 
-int report_error(const char* text, Exit exit) {
+int report_error(const char* text, int exit) {
   std::fprintf(stderr, "robomill: %s\n", text);
   return exit;
 }
@@ -199,7 +199,7 @@ int run_chosen(int argc, char** argv) {
   } catch (const InvalidInput& error) {
     return report_error(error.what(), bad_input);
   } catch (const Interrupted&) {
-    return report_error("interrupted", interrupted);
+    return report_error("interrupted", exit_of_signal());
   } catch (const std::bad_alloc&) {
     return report_error("not enough memory for this input", bad_input);
   } catch (const std::exception& error) {
