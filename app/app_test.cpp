@@ -353,7 +353,7 @@ TEST_F(App, NoByteOfAFileControlsTheTerminal) {
 
 TEST_F(App, CtrlCStopsAndLeavesNoFile) {
   write_lobes("tangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n", "[4000, 4000]\noutput = \"map\"");
-  const Ended run = shell("timeout --foreground --signal=INT 1 '" ROBOMILL_PROGRAM
+  const Ended run = shell("env --default-signal=INT timeout --foreground --signal=INT 1 '" ROBOMILL_PROGRAM
                           "' lobes lobes.toml -o lobes.json; echo $? >code.txt");
   EXPECT_NE(run.err.find("interrupted"), std::string::npos) << run.err;
   EXPECT_FALSE(std::filesystem::exists(folder_.at("lobes.json")));

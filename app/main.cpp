@@ -186,7 +186,7 @@ CommandLine::CommandLine() {
   sub->add_flag("--accept-fit", plan.accept_fit, "go on with modes whose relative error is 20 % or more");
 }
 
-int report_error(const char* text, Exit exit) {
+int report_error(const char* text, int exit) {
   std::fprintf(stderr, "robomill: %s\n", printable(text).c_str());
   return exit;
 }
@@ -214,7 +214,7 @@ int run_chosen(int argc, char** argv) {
   } catch (const InvalidInput& error) {
     return report_error(error.what(), bad_input);
   } catch (const Interrupted&) {
-    return report_error("interrupted", interrupted);
+    return report_error("interrupted", exit_of_signal());
   } catch (const std::bad_alloc&) {
     return report_error("not enough memory for this input", bad_input);
   } catch (const std::exception& error) {

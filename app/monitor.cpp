@@ -34,6 +34,9 @@
 namespace robomill::app {
 namespace {
 
+/// What events and report may take after Ctrl-C.
+constexpr double saving_s = 10.0;
+
 using formats::MonitorEvent;
 using formats::RawFormat;
 
@@ -247,6 +250,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     }
     const Ending ending(session.queue(), ended);
     session.run(stop);
+    take_time_to_end(saving_s);
   }
   watch.reset();
   events.close(common.output);
@@ -256,7 +260,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     fmt::print("{:.3f} s of {} heard in {} decisions, {} alarm{}.\n", session.time_s(), printable(input.name),
                m.decisions.load(), m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
   }
-  return stop ? interrupted : done;
+  return stop ? static_cast<Exit>(exit_of_signal()) : done;
 }
 
 }  // namespace robomill::app

@@ -3,21 +3,70 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
+#include <string_view>
+
+#include "robomill/formats/pending_names.hpp"
 
 #include "robomill/base/printable.hpp"
 
 namespace robomill::app {
 namespace {
 
+/// How long a verb may take to end by itself: within a second all is over.
+constexpr double patience_s = 0.8;
+constexpr std::string_view bar_away = "\r\033[K";
+
 std::atomic<bool> stop{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+std::atomic<int> stop_signal{0};
+timer_t patience = {};
+std::atomic<bool> has_patience{false}, to_terminal{false};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+              "a signal handler may only touch lock-free atomics");
+
+// What follows, up to set_handler, runs in signal handlers: nothing in it may allocate, lock or throw.
+
+void end_after(double seconds) noexcept {
+  if (!has_patience) return;
+  itimerspec when = {};
+  when.it_value.tv_sec = static_cast<time_t>(seconds);
+  when.it_value.tv_nsec = static_cast<long>(1e9 * (seconds - static_cast<double>(when.it_value.tv_sec)));
+  ::timer_settime(patience, 0, &when, nullptr);
+}
+
+extern "C" [[noreturn]] void end_now(int number) {
+  int none = 0;
+  stop_signal.compare_exchange_strong(none, number);
+  constexpr std::string_view after_bar = "\r\033[Krobomill: interrupted\n";
+  const std::string_view text = to_terminal ? after_bar : after_bar.substr(bar_away.size());
+  formats::remove_pending_files();
+  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) {
+    // Nobody reads it.
+  }
+  ::_exit(exit_of_signal());
+}
 
 extern "C" void on_signal(int number) {
+  const int error = errno;
+  int none = 0;
+  if (!stop_signal.compare_exchange_strong(none, number)) end_now(number);
   stop = true;
-  std::signal(number, SIG_DFL);
+  end_after(patience_s);
+  errno = error;
+}
+
+void set_handler(int number, void (*handler)(int)) {
+  struct sigaction old = {};
+  // What the caller ignores stays ignored: nohup, a shell's background.
+  if (number != SIGALRM && ::sigaction(number, nullptr, &old) == 0 && old.sa_handler == SIG_IGN) return;
+  struct sigaction action = {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  ::sigaction(number, &action, nullptr);
 }
 
 double now_s() {
@@ -27,13 +76,34 @@ double now_s() {
 }  // namespace
 
 const std::atomic<bool>& stop_on_signal() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  static const bool set = [] {
+    sigevent event = {};
+    event.sigev_notify = SIGEV_SIGNAL;
+    event.sigev_signo = SIGALRM;
+    to_terminal = isatty(STDERR_FILENO) != 0;
+    set_handler(SIGALRM, end_now);
+    sigset_t alarm;
+    ::sigemptyset(&alarm);
+    ::sigaddset(&alarm, SIGALRM);
+    ::pthread_sigmask(SIG_UNBLOCK, &alarm, nullptr);
+    has_patience = ::timer_create(CLOCK_MONOTONIC, &event, &patience) == 0;
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) set_handler(number, on_signal);
+    return true;
+  }();
+  static_cast<void>(set);
   return stop;
 }
 
 void print_notes(const std::vector<std::string>& notes, std::string_view label) {
   for (const std::string& note : notes) fmt::print("{}{}\n", label, printable(note));
+}
+
+int exit_of_signal() noexcept {
+  return 128 + stop_signal;
+}
+
+void take_time_to_end(double seconds) noexcept {
+  if (stop) end_after(seconds);
 }
 
 ProgressBar::ProgressBar(bool quiet)

@@ -10,8 +10,9 @@
 
 namespace robomill::app {
 
-/// Exit codes of a verb that ended by itself; bad input, wrong usage and Ctrl-C are main's.
-enum Exit : int { done = 0, bad_input = 1, wrong_usage = 2, not_reached = 3, interrupted = 130 };
+/// Exit codes of a verb that ended by itself; bad input and wrong usage are main's, what a signal ended is
+/// exit_of_signal().
+enum Exit : int { done = 0, bad_input = 1, wrong_usage = 2, not_reached = 3 };
 
 /// What every verb takes.
 struct Common {

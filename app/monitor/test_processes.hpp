@@ -47,11 +47,20 @@ class Process {
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    // What whoever runs the tests ignores is not ignored here.
+    sigset_t heard;
+    sigemptyset(&heard);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&heard, number);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setsigdefault(&attributes, &heard);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
     std::vector<char*> words;
     for (std::string& argument : arguments) words.push_back(argument.data());
     words.push_back(nullptr);
-    if (posix_spawnp(&pid_, words.front(), &actions, nullptr, words.data(), environ) != 0) pid_ = -1;
+    if (posix_spawnp(&pid_, words.front(), &actions, &attributes, words.data(), environ) != 0) pid_ = -1;
     posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
   }
   ~Process() {
     if (pid_ <= 0) return;

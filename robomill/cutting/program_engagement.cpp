@@ -18,6 +18,7 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 
 constexpr std::size_t ring_grain = 8;
+constexpr double most_looks = 1e12;    ///< along a program: hours
 constexpr double worth_sharing = 3e4;  ///< looks; fewer are done before another thread has woken
 constexpr double sliding = 1e-9;       ///< n·v of a face that slides along, from rounding, per speed
 
@@ -236,9 +237,8 @@ EngagementFinder::EngagementFinder(const Cutter& cutter, double dexel_m, const W
                          .edge_length_per_width = edge_length_per_width(cutter.mill, 0, at)});
     }
   }
-  double looks = 0.0;
-  for (const EdgeSlice& slice : slices_) looks += 2.0 * pi / step_rad(slice);
-  ring_grain_ = looks > worth_sharing ? ring_grain : slices_.size();
+  for (const EdgeSlice& slice : slices_) looks_ += 2.0 * pi / step_rad(slice);
+  ring_grain_ = looks_ > worth_sharing ? ring_grain : slices_.size();
 }
 
 double EngagementFinder::step_rad(const EdgeSlice& slice) const {
@@ -320,7 +320,15 @@ class Walker {
         progress_(progress),
         finder_(cutter, workpiece.dexel_m(), options),
         profile_(cutter),
-        max_step_m_(options.max_step_m > 0.0 ? options.max_step_m : 0.5 * profile_.max_radius_m()) {}
+        max_step_m_(options.max_step_m > 0.0 ? options.max_step_m : 0.5 * profile_.max_radius_m()) {
+    double poses = 0.0;
+    for (std::size_t i = 0; i < program.blocks.size(); ++i) poses += parts_of(i);
+    if (!(poses * finder_.looks() <= most_looks)) {
+      throw InvalidInput("dexel_m", workpiece.dexel_m(), "m",
+                         "asks for more than 1e12 looks at the material along this program",
+                         "Give a larger one, or a shorter program");
+    }
+  }
 
   /// Up to a batch of further parts; none at the end.
   void fill(std::vector<BlockEngagement>& batch) {
@@ -338,18 +346,26 @@ class Walker {
   }
 
  private:
+  /// Into how many parts a block is cut.
+  [[nodiscard]] double parts_of(std::size_t index) const {
+    const program::Block& block = program_.blocks[index];
+    if (block.kind != program::Block::Kind::feed) return 1.0;
+    const program::Pose& begin = program_.begin_of(index);
+    const double way_m = (block.end.tip_m - begin.tip_m).norm();
+    const double turn = program::angle_between(begin.axis, block.end.axis);
+    return std::max({std::ceil(way_m / max_step_m_), std::ceil(turn / options_.max_turn_rad), 1.0});
+  }
+
   void begin_block() {
     const program::Block& block = program_.blocks[block_];
     const program::Pose& begin = program_.begin_of(block_);
     at_ = begin;
     motion_ = {};
-    parts_ = 1;
+    parts_ = static_cast<std::size_t>(parts_of(block_));
     way_m_ = (block.end.tip_m - begin.tip_m).norm();
     if (block.kind != program::Block::Kind::feed) return;
     require_positive("duration_s", block.duration_s, "s", "A feed move takes time");
     const double turn = program::angle_between(begin.axis, block.end.axis);
-    parts_ = static_cast<std::size_t>(
-        std::max({std::ceil(way_m_ / max_step_m_), std::ceil(turn / options_.max_turn_rad), 1.0}));
     motion_.tip_m_per_s = (block.end.tip_m - begin.tip_m) / block.duration_s;
     if (turn > 0.0) {
       motion_.turn_rad_per_s = begin.axis.cross(block.end.axis).normalized() * (turn / block.duration_s);

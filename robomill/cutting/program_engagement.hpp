@@ -54,11 +54,13 @@ class ROBOMILL_API EngagementFinder {
                                   double ahead_m) const;
   /// All rings that it looks at.
   [[nodiscard]] const std::vector<EdgeSlice>& slices() const { return slices_; }
+  /// Points that it looks at, a pose.
+  [[nodiscard]] double looks() const { return looks_; }
 
  private:
   std::vector<EdgeSlice> slices_;
   double angle_step_rad_ = 0.0;  ///< largest
-  double dexel_m_ = 0.0, step_m_ = 0.0;
+  double dexel_m_ = 0.0, step_m_ = 0.0, looks_ = 0.0;
   std::size_t ring_grain_ = 0;
   [[nodiscard]] double step_rad(const EdgeSlice& slice) const;
 };
@@ -81,7 +83,8 @@ using Deliver = std::function<void(std::span<const BlockEngagement>)>;
 
 /// Runs the program through the workpiece, part by part, and hands out what it finds in order, a batch at a time;
 /// memory does not grow with the program.
-/// @throws InvalidInput for a bad cutter, bad options or a feed move without duration, Interrupted when asked to stop
+/// @throws InvalidInput for a bad cutter, bad options, a feed move without duration or more than 1e12 looks at the
+/// material, Interrupted when asked to stop
 ROBOMILL_API void walk(const program::Program& program, const Cutter& cutter, Workpiece& workpiece,
                        const WalkOptions& options, const Deliver& deliver, Progress& progress = Progress::none());
 

@@ -345,6 +345,19 @@ TEST(Walk, StopsWhenAsked) {
                Interrupted);
 }
 
+// Counted before the first of them: a program as long as that would run for days.
+TEST(Walk, RejectsWhatWouldNotEnd) {
+  Program program = zigzag();
+  Workpiece part(box({0.0, -0.002, 0.0}, {0.02, 0.02, 0.01}), 1e-3);
+  program.blocks.back().kind = Block::Kind::feed;
+  program.blocks.back().duration_s = 1.0;
+  program.blocks.back().end.tip_m.x() = 1e9;
+  EXPECT_EQ(test::field_of([&] {
+              walk(program, end_mill(CutterKind::ball_end, 3e-3), part, {}, [](auto) { FAIL() << "has begun"; });
+            }),
+            "dexel_m");
+}
+
 TEST(Walk, RefusesFeedMovesWithoutDuration) {
   Program program = zigzag();
   program.blocks[3].duration_s = 0.0;

@@ -176,7 +176,7 @@ Workpiece::Workpiece(const Stock& stock, double dexel_m) : grid_(std::make_uniqu
   const Eigen::Array3d counts = (size.array() / dexel_m - 1e-9).ceil().max(1.0);
   const double needed = counts[0] * counts[1] + counts[1] * counts[2] + counts[2] * counts[0];
   if (!(needed <= most_rays)) {
-    throw InvalidInput("dexel_m", dexel_m, "m", "asks for more than 2e8 rays", "Give a larger one, or less stock");
+    throw InvalidInput("dexel_m", dexel_m, "m", "asks for more than 4e7 rays", "Give a larger one, or less stock");
   }
   grid.spacing = (size.array() / counts).matrix();
   grid.dexel = grid.spacing.maxCoeff();

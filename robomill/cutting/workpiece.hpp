@@ -47,7 +47,7 @@ struct ROBOMILL_API Removal {
 class ROBOMILL_API Workpiece {
  public:
   /// @param dexel_m  > 0; the grid fits the stock's box, so spacings are the nearest that divide its sides
-  /// @throws InvalidInput for bad stock, or a dexel that asks for more than 2e8 rays
+  /// @throws InvalidInput for bad stock, or a dexel that asks for more than 4e7 rays
   Workpiece(const Stock& stock, double dexel_m);
   ~Workpiece();
   Workpiece(Workpiece&&) noexcept;

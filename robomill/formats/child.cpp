@@ -1,6 +1,7 @@
 #include "robomill/formats/child.hpp"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -43,6 +44,9 @@ void limit_memory(std::size_t more_bytes) {
 
 [[noreturn]] void be_child(int to, std::size_t more_memory_bytes, const std::function<std::string()>& body) {
   int status = 1;
+  // Whatever ends the parent ends the child; the parent's handlers would remove the parent's files.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGALRM}) ::signal(signal, SIG_DFL);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   try {
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/formats/pending_names.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -133,11 +134,14 @@ PendingFile::PendingFile(fs::path path) : path_(std::move(path)) {
   }
   temporary_ = folder / fmt::format(".{}.{}-{}{}", path_.stem().string(), ::getpid(), counter.fetch_add(1),
                                     path_.extension().string());
+  register_pending(temporary_);
 }
 
 PendingFile::~PendingFile() {
   std::error_code ignored;
-  if (!temporary_.empty()) fs::remove(temporary_, ignored);
+  if (temporary_.empty()) return;
+  fs::remove(temporary_, ignored);
+  forget_pending(temporary_);
 }
 
 void PendingFile::commit() {
@@ -146,6 +150,7 @@ void PendingFile::commit() {
   if (fs::is_regular_file(old)) fs::permissions(temporary_, old.permissions(), error);
   fs::rename(temporary_, path_, error);
   if (error) refuse(path_, "cannot be written", error.message());
+  forget_pending(temporary_);
   temporary_.clear();
 }
 

@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "robomill/base/test_support.hpp"
+#include "robomill/formats/pending_names.hpp"
 
 namespace robomill::formats {
 namespace {
@@ -52,6 +56,34 @@ TEST(File, LeavesNothingHalfWritten) {
   }
   EXPECT_EQ(read_file(path), "old");
   EXPECT_EQ(count(folder.path()), 1u);
+}
+
+TEST(File, PendingFilesCanAllBeRemovedAtOnce) {
+  const Folder folder;
+  const auto written = [&](const PendingFile& pending) {
+    return folder.file(pending.temporary().filename().string(), "half");
+  };
+  PendingFile first(folder.at("first.csv")), second(folder.at("second.csv"));
+  const fs::path first_temporary = written(first), second_temporary = written(second);
+  second.commit();
+  // One whose name was given back is not another's.
+  { const PendingFile gone(folder.at("gone.csv")); }
+  const fs::path other = folder.file("other.csv", "kept");
+  remove_pending_files();
+  EXPECT_FALSE(fs::exists(first_temporary));
+  EXPECT_EQ(read_file(folder.at("second.csv")), "half");
+  EXPECT_EQ(read_file(other), "kept");
+  EXPECT_EQ(count(folder.path()), 2u);
+  // More than are kept in view are still written as ever.
+  std::vector<std::unique_ptr<PendingFile>> many;
+  for (int i = 0; i < 200; ++i) {
+    many.push_back(std::make_unique<PendingFile>(folder.at(std::to_string(i) + ".csv")));
+    (void)written(*many.back());
+  }
+  remove_pending_files();
+  EXPECT_LT(count(folder.path()), 2u + 200u);
+  many.clear();
+  EXPECT_EQ(count(folder.path()), 2u);
 }
 
 TEST(File, TakesRegularFilesAwayAlone) {

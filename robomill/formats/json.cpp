@@ -12,6 +12,8 @@
 namespace robomill::formats {
 namespace {
 
+constexpr int deepest_nesting = 256;
+
 bool is_plain(const Json& json) {
   return !json.is_structured();
 }
@@ -54,6 +56,28 @@ void append(std::string& out, const Json& json, std::size_t depth) {
 std::size_t line_of(std::string_view content, std::size_t byte) {
   const std::string_view before = content.substr(0, byte);
   return static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
+}
+
+/// What copies, compares or writes JSON calls itself once a level.
+void require_shallow(std::string_view content, const std::filesystem::path& path) {
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    const char letter = content[i];
+    if (letter == '"') {
+      quoted = !quoted;
+    } else if (quoted) {
+      if (letter == '\\') ++i;
+    } else if (letter == '[' || letter == '{') {
+      ++depth;
+    } else if (letter == ']' || letter == '}') {
+      --depth;
+    }
+    if (depth <= deepest_nesting) continue;
+    throw InvalidInput(InvalidInput::Parts{
+        .where = fmt::format("{}:{}", path.string(), line_of(content, i)),
+        .rule = fmt::format("is no JSON that is read here: it nests its values more than {} deep", deepest_nesting)});
+  }
 }
 
 }  // namespace
@@ -153,6 +177,7 @@ std::string JsonNode::text() const {
 
 Json read_json(const std::filesystem::path& path) {
   const std::string content = read_file(path);
+  require_shallow(content, path);
   try {
     return Json::parse(content);
   } catch (const nlohmann::json::exception& error) {

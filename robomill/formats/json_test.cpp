@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
@@ -66,7 +67,22 @@ TEST(JsonFile, SaysWhereItIsBroken) {
   EXPECT_NE(refusal([&] { (void)read_json(folder.file("b.json", "{\"a\": 1e999}")); }).find("is no JSON"),
             std::string::npos);
   EXPECT_NE(refusal([&] { (void)read_json(folder.file("c.json", "")); }).find("is empty"), std::string::npos);
-  // Depth alone must not end the program.
+  // Depth alone must not end the program, well-formed or not.
+  const auto nested = [](const std::string& open, int depth, const std::string& close) {
+    std::string text;
+    for (int i = 0; i < depth; ++i) text += open;
+    text += "1";
+    for (int i = 0; i < depth; ++i) text += close;
+    return text;
+  };
+  for (const auto& [open, close] : {std::pair{"[", "]"}, {"{\"a\":", "}"}, {"[{\"a\\\"\":", "}]"}}) {
+    EXPECT_NE(refusal([&] {
+                (void)read_json(folder.file("d.json", "\n" + nested(open, 1000000, close)));
+              }).find("d.json:2: is no JSON that is read here: it nests its values more than 256 deep"),
+              std::string::npos);
+  }
+  EXPECT_TRUE(read_json(folder.file("d.json", nested("[", 256, "]"))).is_array());
+  EXPECT_TRUE(read_json(folder.file("d.json", "\"" + nested("[", 1000, "]") + "\"")).is_string());
   EXPECT_NE(refusal([&] { (void)read_json(folder.file("d.json", std::string(1000000, '['))); }).find("is no JSON"),
             std::string::npos);
 }

@@ -21,7 +21,7 @@ struct Key {
   double path::SmoothingOptions::*value;
 };
 using Options = path::SmoothingOptions;
-constexpr std::array<Key, 9> keys = {{
+constexpr std::array<Key, 10> keys = {{
     {"tip_tolerance_mm", "tip_tolerance_m", units::mm, &Options::tip_tolerance_m},
     {"axis_tolerance_deg", "axis_tolerance_rad", units::deg, &Options::axis_tolerance_rad},
     {"max_velocity_mm_per_s", "max_velocity_m_per_s", units::mm, &Options::max_velocity_m_per_s},
@@ -33,6 +33,7 @@ constexpr std::array<Key, 9> keys = {{
      &Options::max_angular_acceleration_rad_per_s2},
     {"max_angular_jerk_deg_per_s3", "max_angular_jerk_rad_per_s3", units::deg, &Options::max_angular_jerk_rad_per_s3},
     {"sample_period_ms", "sample_period_s", units::ms, &Options::sample_period_s},
+    {"max_duration_h", "max_duration_s", 60.0 * units::minute, &Options::max_duration_s},
 }};
 
 /// A list with one number > 0 a joint, or one for all.
@@ -67,6 +68,12 @@ void check_limits(TomlFile& file, const robot::JointLimits& limits, int joints) 
   }
 }
 
+void read_options(TomlFile& file, Options& options) {
+  for (const Key& row : keys) {
+    file.number(std::string("smoothing.") + row.key, row.member, row.factor, options.*row.value);
+  }
+}
+
 }  // namespace
 
 bool has_smoothing(const std::filesystem::path& path) {
@@ -81,9 +88,7 @@ SmoothingFile read_smoothing(const std::filesystem::path& path, const robot::Joi
   file.require("smoothing", "Write [smoothing] with tip_tolerance_mm, axis_tolerance_deg and the limits of the tool");
   check_limits(file, limits, joints);
   SmoothingFile out;
-  for (const Key& row : keys) {
-    file.number(std::string("smoothing.") + row.key, row.member, row.factor, out.options.*row.value);
-  }
+  read_options(file, out.options);
   file.choice<path::Method>("smoothing.method",
                             {{"verified", path::Method::verified},
                              {"optimal", path::Method::optimal},
@@ -106,6 +111,13 @@ SmoothingFile read_smoothing(const std::filesystem::path& path, const robot::Joi
     require_non_negative("flexible_joint_damping_ratio", out.flexible_joint_damping_ratio, "", "0.05 is usual");
   });
   return out;
+}
+
+InvalidInput located_in_smoothing(const std::filesystem::path& path, const InvalidInput& error) {
+  TomlFile file(path);
+  Options options;
+  read_options(file, options);
+  return file.located(error);
 }
 
 }  // namespace robomill::formats

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "robomill/base/error.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/robot/kinematics.hpp"
@@ -33,5 +34,9 @@ struct SmoothingFile {
 [[nodiscard]] ROBOMILL_API SmoothingFile read_smoothing(const std::filesystem::path& path,
                                                         const robot::JointLimits& limits, int joints,
                                                         std::optional<path::Method> method = {});
+
+/// An error about one of SmoothingOptions' members with the file's line, key and unit.
+[[nodiscard]] ROBOMILL_API InvalidInput located_in_smoothing(const std::filesystem::path& path,
+                                                             const InvalidInput& error);
 
 }  // namespace robomill::formats

@@ -96,6 +96,8 @@ TEST(SmoothingToml, KnowsEveryMethod) {
   EXPECT_EQ(read(folder, with("method = \"optimal\"\n", "")).options.method, Method::verified);
   EXPECT_TRUE(read(folder, with("drive_bandwidth_hz = 20\n", "")).drive_bandwidth_hz.empty());
   EXPECT_EQ(read(folder, with("sample_period_ms = 2\n", "")).options.sample_period_s, 0.001);
+  EXPECT_EQ(read(folder, good).options.max_duration_s, 86400.0);
+  EXPECT_DOUBLE_EQ(read(folder, with("filters = 3\n", "max_duration_h = 0.5\n")).options.max_duration_s, 1800.0);
 }
 
 TEST(SmoothingToml, SaysWhatIsWrongAndWhere) {
@@ -113,6 +115,7 @@ TEST(SmoothingToml, SaysWhatIsWrongAndWhere) {
          "cell.toml:21: smoothing.max_angular_jerk_deg_per_s3 = \"fast\"; must be a finite number");
   expect("sample_period_ms = 2", "sample_period_ms = 0",
          "cell.toml:22: smoothing.sample_period_ms = 0 ms; must be > 0");
+  expect("filters = 3", "max_duration_h = 0", "cell.toml:24: smoothing.max_duration_h = 0 h; must be > 0");
   expect("\"optimal\"", "\"fast\"", "cell.toml:23: smoothing.method = \"fast\"; must be one of \"verified\"");
   expect("filters = 3", "filters = 4", "cell.toml:24: smoothing.filters = 4; must be 1, 2 or 3");
   expect("filters = 3", "filters = 1", "cell.toml:24: smoothing.filters = 1; must be at least 2");

@@ -38,12 +38,12 @@ std::optional<double> from_chars(std::string_view text) {
 
 /// The symbol of one token of a key, or an empty one.
 std::string_view symbol(std::string_view token) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 30> symbols = {
-      {{"m", "m"},      {"mm", "mm"},   {"um", "um"}, {"m2", "m^2"},  {"mm2", "mm^2"}, {"m3", "m^3"},
-       {"mm3", "mm^3"}, {"s", "s"},     {"ms", "ms"}, {"us", "us"},   {"s2", "s^2"},   {"s3", "s^3"},
-       {"min", "min"},  {"hour", "h"},  {"hz", "Hz"}, {"khz", "kHz"}, {"rpm", "rpm"},  {"rad", "rad"},
-       {"deg", "deg"},  {"n", "N"},     {"kn", "kN"}, {"kg", "kg"},   {"g", "g"},      {"pa", "Pa"},
-       {"mpa", "MPa"},  {"gpa", "GPa"}, {"w", "W"},   {"kw", "kW"},   {"mv", "mV"},    {"v", "V"}}};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 31> symbols = {
+      {{"m", "m"},   {"mm", "mm"}, {"um", "um"},   {"m2", "m^2"},  {"mm2", "mm^2"}, {"m3", "m^3"},  {"mm3", "mm^3"},
+       {"s", "s"},   {"ms", "ms"}, {"us", "us"},   {"s2", "s^2"},  {"s3", "s^3"},   {"min", "min"}, {"hour", "h"},
+       {"h", "h"},   {"hz", "Hz"}, {"khz", "kHz"}, {"rpm", "rpm"}, {"rad", "rad"},  {"deg", "deg"}, {"n", "N"},
+       {"kn", "kN"}, {"kg", "kg"}, {"g", "g"},     {"pa", "Pa"},   {"mpa", "MPa"},  {"gpa", "GPa"}, {"w", "W"},
+       {"kw", "kW"}, {"mv", "mV"}, {"v", "V"}}};
   for (const auto& [name, text] : symbols) {
     if (token == name) return text;
   }

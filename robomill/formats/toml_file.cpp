@@ -8,6 +8,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -19,6 +20,8 @@
 
 namespace robomill::formats {
 namespace {
+
+constexpr int most_key_parts = 32;
 
 /// One reading call: what stands in the file and what it became.
 struct Row {
@@ -121,6 +124,51 @@ bool is_list_of_tables(const toml::array& array) {
   return !array.empty() && std::all_of(array.begin(), array.end(), [](const toml::node& n) { return n.is_table(); });
 }
 
+/// One past the end of the text or comment that begins at `at`; `at` where neither does.
+std::size_t skip_text(std::string_view content, std::size_t at) {
+  const auto after = [&](std::string_view closing, std::size_t from, bool escapes) {
+    for (std::size_t i = from; i < content.size(); ++i) {
+      if (content.substr(i).starts_with(closing)) return i + closing.size();
+      if (closing.size() == 1 && content[i] == '\n') return i;  // unclosed
+      if (escapes && content[i] == '\\') ++i;
+    }
+    return content.size();
+  };
+  const char quote = content[at];
+  if (quote == '#') return std::min(content.find('\n', at), content.size());
+  if (quote != '"' && quote != '\'') return at;
+  const std::string three(3, quote);
+  if (!content.substr(at).starts_with(three)) return after(three.substr(2), at + 1, quote == '"');
+  std::size_t end = after(three, at + 3, quote == '"');
+  // Up to two quotes of the text itself may stand before the three that close it.
+  for (int own = 0; own < 2 && end < content.size() && content[end] == quote; ++own) ++end;
+  return end;
+}
+
+/// toml++ bounds how deeply values nest, but not the parts of a dotted key; what takes a table apart calls itself once
+/// a level.
+void require_short_keys(std::string_view content, const std::string& file) {
+  int parts = 1;
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    const std::size_t end = skip_text(content, i);
+    if (end > i) {
+      i = end - 1;
+      continue;
+    }
+    const char letter = content[i];
+    if (letter == '.') {
+      ++parts;
+    } else if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '-' && letter != '_' &&
+               letter != ' ' && letter != '\t') {
+      parts = 1;
+    }
+    if (parts <= most_key_parts) continue;
+    const auto line = std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(i), '\n') + 1;
+    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file, line),
+                                           .rule = fmt::format("has a key of more than {} parts", most_key_parts)});
+  }
+}
+
 }  // namespace
 
 struct TomlFile::State {
@@ -145,6 +193,7 @@ struct TomlFile::State {
 TomlFile::TomlFile(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
   state_->path = path;
   const std::string content = read_file(path, std::uintmax_t{64} << 20);
+  require_short_keys(content, path.string());
   try {
     state_->root = toml::parse(content);
   } catch (const toml::parse_error& error) {

@@ -211,6 +211,37 @@ TEST(TomlFiles, RefusesWhatIsNoTomlWithItsLine) {
   EXPECT_NE(refusal([&] { odd.done(); }).find(":5: e: is not known here"), std::string::npos);
 }
 
+TEST(TomlFiles, RefusesWhatNestsTooDeeply) {
+  const Folder folder;
+  const auto repeated = [](const std::string& text, int count) {
+    std::string out;
+    for (int i = 0; i < count; ++i) out += text;
+    return out;
+  };
+  const auto said = [&](const std::string& text) {
+    return refusal([&] { TomlFile file(folder.file("deep.toml", text)); });
+  };
+  const int deep = 1000000;
+  // Dotted keys, also where quotes, blanks, comments and texts stand between; an error behind them must not matter.
+  for (const std::string& text :
+       {"a" + repeated(".a", deep) + " = 1\n", "[a" + repeated(".a", deep) + "]\n",
+        "[[a" + repeated(".a", deep) + "]]\n", "a" + repeated(" . \"=\\\"#\"", deep) + " = 1\n",
+        "b = { a" + repeated(".'#'", deep) + " = 1 }\n",
+        "b = [\"\"\"\"\n# \"\"\"\"\", { a" + repeated(".a", deep) + " = 1 }]\n",
+        "a" + repeated(".a", deep) + " = 1\n]\n"}) {
+    EXPECT_NE(said(text).find(": has a key of more than 32 parts"), std::string::npos) << text.substr(0, 40);
+  }
+  EXPECT_NE(said("a = " + repeated("[", deep) + repeated("]", deep) + "\n").find("is no TOML"), std::string::npos);
+  EXPECT_NE(said("a = " + repeated("{a=", deep) + "1" + repeated("}", deep) + "\n").find("is no TOML"),
+            std::string::npos);
+  // Neither long texts nor lists of numbers are keys.
+  TomlFile file(folder.file("flat.toml", "a = [" + repeated("1.5, ", 1000) + "]\nb = \"" + repeated("a. ", 1000) +
+                                             "\" # " + repeated("a.b ", 1000) + "\nc = '''" + repeated("x.y\n", 1000) +
+                                             "'''\n"));
+  for (const char* key : {"a", "b", "c"}) file.skip(key);
+  file.done();
+}
+
 TEST(TomlFiles, SurvivesMutations) {
   const Folder folder;
   for (int seed = 0; seed < test::seeds(2000); ++seed) {

@@ -2,13 +2,18 @@
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
+#include <tinyxml.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <exception>
+#include <functional>
+#include <map>
 #include <mutex>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/formats/file.hpp"
@@ -19,6 +24,7 @@ namespace {
 
 constexpr std::uintmax_t most_bytes = std::uintmax_t{16} << 20;
 constexpr int deepest_nesting = 256;
+constexpr std::size_t most_joints = 2000;  // a chain of them is walked, and taken apart, by recursion
 
 /// Keeps what urdfdom says in place of writing it to standard error. The place for it is one for the whole process.
 class Listener final : public console_bridge::OutputHandler {
@@ -42,19 +48,106 @@ class Listener final : public console_bridge::OutputHandler {
   std::string said_;
 };
 
+/// Where the markup that begins at `at` ends, and by how much it nests what follows.
+struct Markup {
+  std::size_t end = 0;
+  int deeper = 0;
+};
+
+Markup markup_at(std::string_view content, std::size_t at) {
+  const std::string_view here = content.substr(at);
+  const auto after = [&](std::string_view closing, int deeper) -> Markup {
+    const std::size_t found = content.find(closing, at);
+    return {found == std::string_view::npos ? content.size() : found + closing.size(), deeper};
+  };
+  if (here.starts_with("<!--")) return after("-->", 0);
+  if (here.starts_with("<![CDATA[")) return after("]]>", 0);
+  if (here.starts_with("<?") || here.starts_with("<!")) return after(">", 0);
+  if (here.starts_with("</")) return after(">", -1);
+  char quote = '\0';
+  for (std::size_t i = at + 1; i < content.size(); ++i) {
+    const char letter = content[i];
+    if (quote != '\0') {
+      quote = letter == quote ? '\0' : quote;
+    } else if (letter == '"' || letter == '\'') {
+      quote = letter;
+    } else if (letter == '>') {
+      return {i + 1, content[i - 1] == '/' ? 0 : 1};
+    }
+  }
+  return {content.size(), 1};
+}
+
 /// tinyxml calls itself once a level: text made to nest without end would take the stack.
 void require_shallow(std::string_view content, const std::string& where) {
   int depth = 0;
-  for (std::size_t i = 0; i + 1 < content.size(); ++i) {
-    if (content[i] == '<' && content[i + 1] == '/') --depth;
-    if (content[i] == '/' && content[i + 1] == '>') --depth;
-    if (content[i] == '<' && content[i + 1] != '/' && content[i + 1] != '!' && content[i + 1] != '?') ++depth;
+  for (std::size_t at = content.find('<'); at < content.size(); at = content.find('<', at)) {
+    const Markup markup = markup_at(content, at);
+    depth = std::max(0, depth + markup.deeper);
     if (depth > deepest_nesting) throw InvalidInput(where, "nests its elements too deeply for a URDF");
+    at = markup.end;
+  }
+}
+
+std::string attribute(const TiXmlElement& element, const char* name) {
+  const char* value = element.Attribute(name);
+  return value != nullptr ? value : "";
+}
+
+/// The joint that carries each link: its name and the link that it stands on.
+struct Carrier {
+  std::string joint, parent;
+};
+using Carriers = std::map<std::string, Carrier, std::less<>>;
+
+Carriers carriers_of(const TiXmlElement& robot, const std::string& where) {
+  Carriers carriers;
+  for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    const TiXmlElement *parent = joint->FirstChildElement("parent"), *child = joint->FirstChildElement("child");
+    if (parent == nullptr || child == nullptr) continue;  // urdfdom says so
+    const auto [at, first] =
+        carriers.try_emplace(attribute(*child, "link"), Carrier{attribute(*joint, "name"), attribute(*parent, "link")});
+    if (!first) {
+      throw InvalidInput(where,
+                         fmt::format("lets two joints carry link \"{}\": \"{}\" and \"{}\"", at->first,
+                                     at->second.joint, attribute(*joint, "name")),
+                         "The links of a URDF are a tree; leave out the joint that closes a linkage");
+    }
+    if (carriers.size() > most_joints) {
+      throw InvalidInput(where, fmt::format("has more than {} joints", most_joints));
+    }
+  }
+  return carriers;
+}
+
+/// urdfdom takes links that form a ring, and a walk along it would not end.
+void require_tree(const std::string& content, const std::string& where) {
+  TiXmlDocument document;
+  document.Parse(content.c_str());
+  const TiXmlElement* robot = document.FirstChildElement("robot");
+  if (robot == nullptr) return;  // urdfdom says so
+  const Carriers carriers = carriers_of(*robot, where);
+  std::set<std::string, std::less<>> rooted;  // links known to lead down to a root
+  for (const auto& [start, unused] : carriers) {
+    std::vector<std::string_view> way;
+    for (auto at = carriers.find(start); at != carriers.end() && !rooted.contains(at->first);
+         at = carriers.find(at->second.parent)) {
+      way.push_back(at->first);
+      if (way.size() > carriers.size()) {
+        throw InvalidInput(
+            where,
+            fmt::format("has links that form a ring, through joint \"{}\" of link \"{}\"", at->second.joint, at->first),
+            "The links of a URDF are a tree; leave out the joint that closes a linkage");
+      }
+    }
+    rooted.insert(way.begin(), way.end());
   }
 }
 
 urdf::ModelInterfaceSharedPtr parse(std::string_view content, const std::string& where) {
   require_shallow(content, where);
+  require_tree(std::string(content), where);
   const Listener listener;
   std::string said;
   try {

@@ -168,6 +168,62 @@ TEST(Urdf, SaysWhatIsWrong) {
   EXPECT_EQ(read_urdf(folder.file("two.urdf", good), reading).arm.joints.size(), 2U);
 }
 
+std::string fixed(const std::string& name, const std::string& parent, const std::string& child) {
+  return fmt::format(R"(<joint name="{}" type="fixed"><parent link="{}"/><child link="{}"/></joint>)", name, parent,
+                     child);
+}
+
+TEST(Urdf, LinksThatAreNoTreeAreRejected) {
+  const auto said = [](const std::string& text) {
+    return refusal([&] { (void)parse_urdf(text, "two.urdf", {.tip = "flange"}); });
+  };
+  // A ring beside a sound root, which the way up from the flange would never leave.
+  const std::string ring = said(with("link=\"base\"/><child", "link=\"flange\"/><child"));
+  EXPECT_NE(ring.find("two.urdf: has links that form a ring, through joint"), std::string::npos) << ring;
+  // One that the links bolted to the arm would be collected along.
+  const std::string bolted = said(with(
+      "</robot>", "<link name=\"p\"/><link name=\"q\"/>" + fixed("pq", "p", "q") + fixed("qp", "q", "p") + "</robot>"));
+  EXPECT_NE(bolted.find("form a ring"), std::string::npos) << bolted;
+  const std::string self = said(with("</robot>", "<link name=\"p\"/>" + fixed("pp", "p", "p") + "</robot>"));
+  EXPECT_NE(self.find("form a ring, through joint \"pp\" of link \"p\""), std::string::npos) << self;
+  const std::string twice = said(with("</robot>", fixed("second", "plate", "flange") + "</robot>"));
+  EXPECT_NE(twice.find("lets two joints carry link \"flange\": \"tip\" and \"second\""), std::string::npos) << twice;
+}
+
+/// Links in a row that fixed joints carry; taking the model apart in the order of their names goes down all of it.
+std::string chain(int joints) {
+  const auto link = [joints](int i) { return fmt::format("{:05}", joints - i); };
+  std::string text = "<robot name=\"long\"><link name=\"" + link(0) + "\"/>";
+  for (int i = 0; i < joints; ++i) {
+    text += "<link name=\"" + link(i + 1) + "\"/>" + fixed(fmt::format("j{}", i), link(i), link(i + 1));
+  }
+  return text + "</robot>";
+}
+
+TEST(Urdf, LongChainsAreReadOrRejected) {
+  const UrdfReading tip{.tip = "00000"};
+  EXPECT_NE(refusal([&] { (void)parse_urdf(chain(2000), "long.urdf", tip); }).find("no moving joint"),
+            std::string::npos);
+  for (const int joints : {2001, 50000}) {
+    EXPECT_NE(refusal([&] { (void)parse_urdf(chain(joints), "long.urdf", tip); }).find("has more than 2000 joints"),
+              std::string::npos);
+  }
+}
+
+TEST(Urdf, NestingCannotHideBehindCommentsAndQuotes) {
+  std::string commented = "<robot>", quoted = commented;
+  for (int i = 0; i < 300000; ++i) {
+    commented += "<a><!--</></>-->";
+    quoted += "<a b=\"/></>\">";
+  }
+  for (const std::string& text : {commented, quoted}) {
+    EXPECT_NE(refusal([&] { (void)parse_urdf(text, "deep.urdf", {.tip = "a"}); }).find("too deeply"),
+              std::string::npos);
+  }
+  const UrdfArm read = parse_urdf(with("</robot>", "<!-- <a><a> --></robot>"), "two.urdf", {.tip = "flange"});
+  EXPECT_EQ(read.arm.joints.size(), 2U);
+}
+
 TEST(Urdf, DamagedFilesAreReadOrRefused) {
   Random random(52);
   int read = 0, refused = 0;

@@ -123,21 +123,22 @@ TEST(CombCusum, HearsRecordingsThatHideFromAComb) {
   EXPECT_LE(summarise(locked).false_alarms + summarise(doubling).false_alarms, 1 + cuts / 15);
 }
 
-// The seeds that were tuned on; those of the README are in bench/monitor_corpus.
+// Seeds that nothing was tuned on, those of the README's table. Measured: in all 200 cuts 94 of 100 found, 7 false
+// alarms, 107 ms, 0.18 Hz; in the first 20 all 10, none, 87 ms, 0.10 Hz.
 TEST(CombCusum, HearsTheCorpus) {
   using namespace testing;
-  const int cuts = test::seeds(200);
+  const int cuts = test::seeds(static_cast<int>(corpus_size));
   std::vector<CutScore> scores;
-  for (int k = 0; k < cuts; ++k) {
-    const RecordedCut recorded = cut(1001 + static_cast<std::uint64_t>(k));
+  for (int seed = 1; seed <= cuts; ++seed) {
+    const RecordedCut recorded = cut(static_cast<std::uint64_t>(seed));
     scores.push_back(score(recorded, heard_by_monitor(recorded)));
   }
   const Summary heard = summarise(scores);
   EXPECT_EQ(heard.chatter, cuts / 2);
-  EXPECT_GE(heard.found, 0.92 * heard.chatter - 1.5);
-  EXPECT_LE(heard.false_alarms, 1 + cuts / 20);
-  EXPECT_LT(heard.delay_median_s, 0.15);
-  EXPECT_LT(heard.frequency_median_hz, 1.5);
+  EXPECT_GE(heard.found, 0.93 * heard.chatter - 1.0);
+  EXPECT_LE(heard.false_alarms, cuts / 20);
+  EXPECT_LT(heard.delay_median_s, 0.13);
+  EXPECT_LT(heard.frequency_median_hz, 0.3);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ void SmoothingOptions::validate() const {
     throw InvalidInput("sample_period_s", sample_period_s, "s", "must lie within 10 µs and 100 ms",
                        "A check of fewer samples proves nothing; robots take one every 1 to 12 ms");
   }
+  require_positive("max_duration_s", max_duration_s, "s");
   if (filters < 1 || filters > 3) throw InvalidInput("filters", filters, "", "must be 1, 2 or 3");
   if (filters < 2 && (method == Method::verified || method == Method::optimal)) {
     throw InvalidInput("filters", filters, "", "must be at least 2 where jerk is limited",

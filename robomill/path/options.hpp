@@ -22,6 +22,7 @@ struct ROBOMILL_API SmoothingOptions {
   double max_angular_velocity_rad_per_s = 0.0, max_angular_acceleration_rad_per_s2 = 0.0,
          max_angular_jerk_rad_per_s3 = 0.0;  ///< > 0; of the axis
   double sample_period_s = 0.001;            ///< > 0; of what is sent out
+  double max_duration_s = 86400.0;           ///< > 0; a program that lasts longer is rejected before it is sampled
   int filters = 2;  ///< 1 to 3; moving averages in series: 1 a trapezoid of speed, 2 the S curve, 3 smoother. verified
                     ///< and optimal need at least 2
   /// @throws InvalidInput naming the member

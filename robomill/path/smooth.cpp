@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/path/duration.hpp"
 #include "robomill/path/emitter.hpp"
 #include "robomill/path/fir.hpp"
 #include "robomill/path/planner.hpp"
@@ -177,6 +178,16 @@ void plan_once(program::Source& source, const robot::Kinematics& kinematics, con
     out.samples += samples.size();
     samples.clear();
   };
+  // Before a row is sampled, and slower again: how long it takes.
+  const auto require_end = [&] {
+    const std::span<const Span> kept = std::span<const Span>(planner.motion()).first(planner.kept());
+    if (kept.empty()) return;
+    double planned_s = emitter.duration_s();
+    for (const Span& span : kept) planned_s += duration_s(span);
+    if (!(planned_s <= options.max_duration_s)) {
+      throw lasts_too_long(options, planned_s, emitter.at().block, emitter.at().line);
+    }
+  };
   // A row that would break limits is planned again before it is taken over.
   const auto revise = [&] {
     std::vector<Breach> breaches;
@@ -196,7 +207,9 @@ void plan_once(program::Source& source, const robot::Kinematics& kinematics, con
   run(to_plan, posture, kinematics, planner, progress, out.blocks, [&] {
     static_cast<void>(emitter.add(planner.path(), {}, samples));
     planner.path().clear();
+    require_end();
     revise();
+    require_end();
     const double from_s = processor_s();
     double sent_s = 0.0;
     const std::span<const Span> kept = std::span<const Span>(planner.motion()).first(planner.kept());
@@ -228,6 +241,7 @@ void plan_published(program::Source& source, const robot::Kinematics& kinematics
   progress.check();
   double begin_s = processor_s();
   const FirPlan plan = plan_fir(program, kinematics, posture, options);
+  if (!(plan.duration_s <= options.max_duration_s)) throw lasts_too_long(options, plan.duration_s, 0, 0);
   out.plan_s = processor_s() - begin_s;
   out.blocks = program.blocks.size();
   out.duration_s = plan.duration_s;
@@ -256,6 +270,8 @@ Summary smooth(program::Source& source, const robot::Kinematics& kinematics, con
                Progress& progress) {
   options.validate();
   Summary out;
+  source.rewind();
+  require_duration(source, options, progress);
   source.rewind();
   restart();
   if (options.method != Method::verified && options.method != Method::optimal) {

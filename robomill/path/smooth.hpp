@@ -35,7 +35,8 @@ struct Posture {
 
 /// Smooths a program. Samples of the last round go to `sink` in order; a round that breaks a limit is thrown away and
 /// planned again, slower where it broke (`restart` is called before each round so that a file can begin anew).
-/// @throws InvalidInput if an option is invalid, or a block cannot be reached: block and line, joint, by how much
+/// @throws InvalidInput if an option is invalid, a block cannot be reached (block and line, joint, by how much), or the
+/// program lasts longer than options.max_duration_s (block and line, or the limit)
 [[nodiscard]] ROBOMILL_API Summary smooth(program::Source& source, const robot::Kinematics& kinematics,
                                           const Posture& posture, const SmoothingOptions& options,
                                           const SampleSink& sink, const std::function<void()>& restart,

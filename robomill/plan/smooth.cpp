@@ -176,7 +176,11 @@ formats::SmoothedBy smooth_by(path::Method method, const Bench& bench, formats::
     recorder->restart(follower ? report::Tracking([&](const path::Sample& sample) { return follower->follow(sample); })
                                : report::Tracking());
   };
-  out.summary = path::smooth(*bench.program, *bench.machine, bench.posture.posture, options, take, restart, progress);
+  try {
+    out.summary = path::smooth(*bench.program, *bench.machine, bench.posture.posture, options, take, restart, progress);
+  } catch (const InvalidInput& error) {
+    throw formats::located_in_smoothing(bench.cell.path, error);
+  }
   if (follower) out.tracking_error = follower->worst();
   return out;
 }

@@ -261,6 +261,17 @@ TEST_F(Smoothing, RefusesInTheUsersWords) {
   EXPECT_NE(said(bare, zigzag).find("smoothing"), std::string::npos);
   EXPECT_NE(said(hybrid("method = \"fast\"\n"), zigzag).find("smoothing.method"), std::string::npos);
   EXPECT_NE(said(hybrid(), "G21 G90\nG0 X0 Y0 Z0\nG1 X10\n").find("part.ngc:3"), std::string::npos);
+  std::string still = hybrid();
+  still.replace(still.find("= 10000"), 7, "= 1e-13");
+  EXPECT_NE(
+      said(still, zigzag).find("cell.toml:20: smoothing.max_jerk_mm_per_s3 = 1e-13 mm/s^3; makes the program last"),
+      std::string::npos)
+      << said(still, zigzag);
+  const std::string slow = said(hybrid(), "G21 G90 G94\nG0 X0 Y0 Z0\nG1 X10 F600\nG1 X20 F0.000001\nG1 X0 F600\n");
+  EXPECT_NE(slow.find("(line 4): takes 1.667e+05 h at 1e-06 mm/min"), std::string::npos) << slow;
+  EXPECT_NE(slow.find("part.ngc: block"), std::string::npos) << slow;
+  const std::string day = "G21 G90 G94\nG0 X0 Y0 Z0\nG1 X10 F600\nG4 P4000\nG1 X0\n";
+  EXPECT_NE(said(hybrid("max_duration_h = 1\n"), day).find("line 4): dwells for 1.111 h"), std::string::npos);
   SmoothJob program = job();
   program.output = folder_.at("t.src");
   EXPECT_NE(refusal([&] { static_cast<void>(run_smooth(program)); }).find("six joints"), std::string::npos);

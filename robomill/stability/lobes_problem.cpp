@@ -7,6 +7,8 @@
 namespace robomill::stability {
 namespace {
 
+constexpr double most_points = 2.5e7;  ///< of a grid: a map of them takes an hour and 200 MB
+
 void require_range(const char* field, const std::array<double, 2>& range, const char* unit, bool zero_allowed) {
   for (const double end : range) {
     if (!std::isfinite(end)) throw InvalidInput(field, end, unit, "must be a finite number");
@@ -66,6 +68,11 @@ void LobesOptions::validate() const {
   for (const int count : grid) {
     if (count < 2) throw InvalidInput("grid", count, "", "must have at least 2 points in each direction");
     if (count > 20000) throw InvalidInput("grid", count, "", "must have at most 20000 points in each direction");
+  }
+  const double points_asked = static_cast<double>(grid[0]) * static_cast<double>(grid[1]);
+  if (points_asked > most_points) {
+    throw InvalidInput("grid", points_asked, "points", "must have at most 25 million in all",
+                       "Limits are refined to the tolerance: the grid only says where to look");
   }
   if (intervals < 4) throw InvalidInput("intervals", intervals, "", "must be at least 4", "40 is usual");
   if (intervals > 10000) throw InvalidInput("intervals", intervals, "", "must be at most 10000", "40 is usual");

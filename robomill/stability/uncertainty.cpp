@@ -16,6 +16,8 @@ namespace {
 
 using namespace detail;
 
+constexpr double most_points = 1e9;  ///< of all samples' grids
+
 void require_ratio(const char* field, double ratio, double most) {
   if (!(ratio >= 0.0 && ratio <= most)) {
     throw InvalidInput(field, ratio, "", most < 1.0 ? "must lie between 0 and 0.5" : "must lie between 0 and 1",
@@ -67,6 +69,11 @@ void Uncertainty::validate() const {
   if (samples > 1'000'000) throw InvalidInput("samples", samples, "", "must be at most 1000000");
   for (const int points : grid) {
     if (points < 2 || points > 20000) throw InvalidInput("grid", points, "", "must lie between 2 and 20000");
+  }
+  const double points_asked =
+      static_cast<double>(samples) * static_cast<double>(grid[0]) * static_cast<double>(grid[1]);
+  if (points_asked > most_points) {
+    throw InvalidInput("samples", samples, "", "must give at most 1e9 points: samples times grid", "200 is usual");
   }
   require_non_negative("tangential_std_n_per_m2", tangential_std_n_per_m2, "N/m^2");
   require_non_negative("radial_std_n_per_m2", radial_std_n_per_m2, "N/m^2");

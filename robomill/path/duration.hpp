@@ -1,0 +1,19 @@
+#pragma once
+#include "robomill/base/error.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/path/options.hpp"
+#include "robomill/program/program.hpp"
+
+namespace robomill::path {
+
+/// Whether a program can end within options.max_duration_s, by its length, feeds and dwells, before anything of it is
+/// planned. Of a length S from rest to rest a velocity limit v takes S/v, an acceleration limit a 2 √(S/a), a jerk
+/// limit j (32 S/j)^(1/3); corners cut by the tolerances are not taken off.
+/// @throws InvalidInput naming the limit, or the block and line that takes longest
+void require_duration(program::Source& source, const SmoothingOptions& options, Progress& progress);
+
+/// That motion planned within every limit, up to a block, takes too long. Of the last two 0 where it is the whole.
+[[nodiscard]] InvalidInput lasts_too_long(const SmoothingOptions& options, double planned_s, std::size_t block,
+                                          std::size_t line);
+
+}  // namespace robomill::path
