@@ -89,7 +89,7 @@ void print_peak(const stability::ExplainedPeak& peak, int teeth) {
   fmt::print("{:>10.2f} Hz  {}\n", peak.frequency_hz, named ? words(peak.best, teeth) : undecided(peak.best.kind));
   for (const stability::Explanation& other : peak.others) {
     const double odds = other.likelihood_per_hz / (named ? peak.best : peak.others.front()).likelihood_per_hz;
-    fmt::print("               or {}, {:.2g} times as likely\n", words(other, teeth), odds);
+    fmt::print("               or {}, relative likelihood {:.2g}\n", words(other, teeth), odds);
   }
 }
 

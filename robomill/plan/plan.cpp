@@ -374,7 +374,8 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   try {
     require_finishable(result.cut.problem, finish_limits(result.job));
   } catch (const InvalidInput& error) {
-    throw within(job.string() + ": ", error);
+    throw InvalidInput(InvalidInput::Parts{
+        .where = job.string(), .field = "finishing", .rule = error.parts().rule, .hint = error.parts().hint});
   }
   measure(result, progress);
   if (!result.job.forces.empty()) {

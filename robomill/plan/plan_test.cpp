@@ -266,7 +266,8 @@ TEST_F(Plan, FinishingNeedsAWall) {
   write("lobes.toml", lobes);
   const std::string text =
       test::refusal([&] { static_cast<void>(run_job(job("[finishing]\nmax_surface_error_um = 5\n"), 1)); });
-  EXPECT_NE(text.find("job.toml: max_surface_error_m"), std::string::npos) << text;
+  EXPECT_NE(text.find("job.toml: finishing"), std::string::npos) << text;
+  EXPECT_NE(text.find("goes with a cut that finishes a wall"), std::string::npos) << text;
 }
 
 // Headerless FRFs that start at 0 Hz, one direction: the fit leaves that line out, and so does the fitted curve.

@@ -124,26 +124,37 @@ struct Heights {
   }
 };
 
-/// @param as_cut  whether peaks that may be the cut or chatter count as the cut
-Heights heights_of(const std::vector<report::Peak>& peaks, bool as_cut) {
+/// What a peak counts as in the verdict. Of a peak that may be the cut or chatter the more likely reading counts where
+/// that is the cut: multiples of the rotation are in every spectrum. Else it is open.
+enum class Counted { cut, chatter, open };
+
+Counted counted(const stability::ExplainedPeak& peak) {
+  const bool either = peak.best.kind == stability::Explanation::Kind::cut_or_chatter;
+  const stability::Explanation::Kind kind = either ? peak.others.front().kind : peak.best.kind;
+  const bool multiple =
+      kind == stability::Explanation::Kind::rotation || kind == stability::Explanation::Kind::tooth_passing;
+  if (multiple) return Counted::cut;
+  return either ? Counted::open : Counted::chatter;
+}
+
+/// @param open_as  what open peaks count as
+Heights heights_of(const std::vector<report::Peak>& peaks, const std::vector<Counted>& counts, Counted open_as) {
   Heights heights;
-  for (const report::Peak& peak : peaks) {
-    const bool multiple = peak.kind == report::PeakKind::rotation || peak.kind == report::PeakKind::tooth_passing ||
-                          (as_cut && peak.kind == report::PeakKind::cut_or_chatter);
-    if (multiple) {
-      heights.multiple = std::max(heights.multiple, peak.amplitude);
-    } else if (peak.amplitude > heights.other) {
-      heights.other = peak.amplitude;
-      heights.other_hz = peak.frequency_hz;
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    if ((counts[i] == Counted::open ? open_as : counts[i]) == Counted::cut) {
+      heights.multiple = std::max(heights.multiple, peaks[i].amplitude);
+    } else if (peaks[i].amplitude > heights.other) {
+      heights.other = peaks[i].amplitude;
+      heights.other_hz = peaks[i].frequency_hz;
     }
   }
   return heights;
 }
 
-/// What the spectrum says, and why. No verdict where it hangs on peaks that may be the cut or chatter.
-void judge(report::Recording& recording) {
-  const Heights as_cut = heights_of(recording.peaks, true);
-  const Heights as_chatter = heights_of(recording.peaks, false);
+/// What the spectrum says, and why. No verdict where it hangs on open peaks.
+void judge(report::Recording& recording, const std::vector<Counted>& counts) {
+  const Heights as_cut = heights_of(recording.peaks, counts, Counted::cut);
+  const Heights as_chatter = heights_of(recording.peaks, counts, Counted::chatter);
   if (as_cut.verdict() != as_chatter.verdict()) {
     recording.reason =
         fmt::format("{:.1f} Hz may be the cut or chatter: the recording says neither", as_chatter.other_hz);
@@ -160,20 +171,27 @@ void judge(report::Recording& recording) {
   }
 }
 
+std::vector<stability::ExplainedPeak> explained(const std::vector<double>& frequency_hz, double spindle_speed_rad_per_s,
+                                                const stability::LobesProblem& problem, double tolerance_hz) {
+  if (frequency_hz.empty()) return {};
+  // explain() wants it below a quarter of the rotation.
+  const double tolerance = std::min(tolerance_hz, 0.24 * spindle_speed_rad_per_s / two_pi);
+  return stability::explain({frequency_hz, spindle_speed_rad_per_s, problem.milling.tool.teeth}, problem.dynamics,
+                            {.tolerance_hz = tolerance}, problem.workpiece_dynamics)
+      .peaks;
+}
+
+report::Peak to_report(const stability::ExplainedPeak& peak, int teeth) {
+  return {.frequency_hz = peak.frequency_hz, .kind = kind_of(peak.best.kind), .text = words(peak, teeth)};
+}
+
 }  // namespace
 
 std::vector<report::Peak> name_peaks(const std::vector<double>& frequency_hz, double spindle_speed_rad_per_s,
                                      const stability::LobesProblem& problem, double tolerance_hz) {
-  const int teeth = problem.milling.tool.teeth;
-  // explain() wants it below a quarter of the rotation.
-  const double tolerance = std::min(tolerance_hz, 0.24 * spindle_speed_rad_per_s / two_pi);
   std::vector<report::Peak> out;
-  if (frequency_hz.empty()) return out;
-  const stability::Fingerprint found =
-      stability::explain({frequency_hz, spindle_speed_rad_per_s, teeth}, problem.dynamics, {.tolerance_hz = tolerance},
-                         problem.workpiece_dynamics);
-  for (const stability::ExplainedPeak& peak : found.peaks) {
-    out.push_back({.frequency_hz = peak.frequency_hz, .kind = kind_of(peak.best.kind), .text = words(peak, teeth)});
+  for (const stability::ExplainedPeak& peak : explained(frequency_hz, spindle_speed_rad_per_s, problem, tolerance_hz)) {
+    out.push_back(to_report(peak, problem.milling.tool.teeth));
   }
   return out;
 }
@@ -233,9 +251,14 @@ report::Recording read_recording(const formats::TestCut& cut, const stability::L
   std::vector<double> frequency_hz;
   const std::vector<signal::SpectralPeak> found = signal::find_peaks(spectrum, wanted);
   for (const signal::SpectralPeak& peak : found) frequency_hz.push_back(peak.frequency_hz);
-  out.peaks = name_peaks(frequency_hz, cut.spindle_speed_rad_per_s, problem, 2.0 / length_s);
-  for (std::size_t i = 0; i < found.size(); ++i) out.peaks[i].amplitude = found[i].amplitude;
-  judge(out);
+  std::vector<Counted> counts;
+  for (const stability::ExplainedPeak& peak :
+       explained(frequency_hz, cut.spindle_speed_rad_per_s, problem, 2.0 / length_s)) {
+    out.peaks.push_back(to_report(peak, out.teeth));
+    out.peaks.back().amplitude = found[counts.size()].amplitude;
+    counts.push_back(counted(peak));
+  }
+  judge(out, counts);
   return out;
 }
 

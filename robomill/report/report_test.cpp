@@ -230,7 +230,7 @@ TEST(ReportHtml, DisagreeingTestCutsStandOnTop) {
   for (TestCut& cut : report.cuts) {
     if (cut.agrees) cut.agrees = true;
   }
-  EXPECT_EQ(report_html(report).find("disagree"), std::string::npos);
+  EXPECT_EQ(report_html(report).find("test cuts disagree"), std::string::npos);
 }
 
 // The card: every figure beside its unit; the surface is limited in finishing and only told in roughing.

@@ -160,8 +160,8 @@ double rotation_of(const MeasuredPeaks& peaks, const std::vector<NaturalMode>& m
     products += peak.best.harmonic * f;
     squares += static_cast<double>(peak.best.harmonic) * peak.best.harmonic;
   }
-  from_peaks = squares > 0.0;
-  if (!from_peaks) return best.rotation_hz;
+  from_peaks = squares > 0.0 || best.rotation_hz != commanded_hz;
+  if (squares == 0.0) return best.rotation_hz;
   const double most_hz = options.speed_tolerance * commanded_hz;
   return std::clamp(products / squares, commanded_hz - most_hz, commanded_hz + most_hz);
 }
