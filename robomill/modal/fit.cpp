@@ -185,12 +185,10 @@ void fit_by_poles(FitResult& result, const FrfSet& set, const FitOptions& option
 }
 
 void fit_by_swarm(FitResult& result, const FrfSet& set, const FitOptions& options, Progress& progress) {
-  // As published the swarm's damping ratios go up to 1, unless another bound is asked for.
-  const bool bound = options.max_damping_ratio != FitOptions{}.max_damping_ratio;
   const PsoResult swarm = fit_pso(set,
                                   {.modes = options.modes,
                                    .frequency_half_width = options.pso_frequency_half_width,
-                                   .max_damping_ratio = bound ? options.max_damping_ratio : 1.0,
+                                   .max_damping_ratio = options.pso_max_damping_ratio,
                                    .particles = options.pso_particles,
                                    .max_iterations = options.pso_max_iterations,
                                    .seed = options.seed},
@@ -245,6 +243,10 @@ void FitOptions::validate() const {
   require_between("pso_max_iterations", pso_max_iterations, 1, 1e9, "must be at least 1");
   if (!(pso_frequency_half_width > 0.0 && pso_frequency_half_width < 1.0)) {
     throw InvalidInput("pso_frequency_half_width", pso_frequency_half_width, "", "must lie between 0 and 1");
+  }
+  if (!(pso_max_damping_ratio > 0.0 && pso_max_damping_ratio <= 1.0)) {
+    throw InvalidInput("pso_max_damping_ratio", pso_max_damping_ratio, "", "must be above 0 and at most 1",
+                       "It is a ratio, not a percentage");
   }
 }
 
