@@ -97,8 +97,9 @@ Poles fewest(const Part& part, const Kernel& kernel, const Poles& start, double 
              PartFit& fit, Progress& progress) {
   for (options.modes = 1; options.modes < start.size(); ++options.modes) {
     const Found found = search(kernel, start, options, progress);
-    if (error2(part, found.fit.at) > tolerated2) continue;
+    if (error2(part, found.fit.at) > tolerated2 || !all_inside(found.fit.poles, options)) continue;
     keep(fit, part.data, found.cost, found.iterations);
+    fit.held_back = true;
     return found.fit.poles;
   }
   return start;
