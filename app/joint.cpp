@@ -57,9 +57,11 @@ InvalidInput located(const InvalidInput& error, const JointCommand& command) {
 
 coupling::JointFitResult find_joint(const formats::AssemblyFile& file, const modal::FrfSet& measured,
                                     const JointCommand& command, const Common& common, Progress& progress) {
-  coupling::JointFitOptions options;
+  coupling::JointFitOptions options = file.search;
   options.method = command.method == "ga" ? coupling::JointMethod::ga : coupling::JointMethod::hybrid;
-  options.mutation = command.mutation == "adaptive" ? coupling::Mutation::adaptive : coupling::Mutation::uniform;
+  if (!command.mutation.empty()) {
+    options.mutation = command.mutation == "adaptive" ? coupling::Mutation::adaptive : coupling::Mutation::uniform;
+  }
   options.axis = command.axis == "y" ? modal::Axis::y : modal::Axis::x;
   options.seed = common.seed;
   try {

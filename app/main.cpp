@@ -90,7 +90,7 @@ CommandLine::CommandLine() {
       ->allow_extra_args(false);
   sub->add_option("--as", joint.as, "names of headerless FRFs, one a file: xx,yy")->delimiter(',');
   sub->add_option("--method", joint.method, "hybrid or ga (default: hybrid)")->check(CLI::IsMember({"hybrid", "ga"}));
-  sub->add_option("--mutation", joint.mutation, "of ga: uniform or adaptive (default: uniform)")
+  sub->add_option("--mutation", joint.mutation, "of ga: uniform or adaptive (default: search.mutation, else uniform)")
       ->check(CLI::IsMember({"uniform", "adaptive"}));
   sub->add_option("--axis", joint.axis, "which FRF is fitted: x (xx) or y (yy) (default: x)")
       ->check(CLI::IsMember({"x", "y"}));

@@ -50,7 +50,7 @@ struct JointCommand {
   std::filesystem::path input;
   std::vector<std::filesystem::path> measured;
   std::vector<std::string> as;
-  std::string method = "hybrid", mutation = "uniform", axis = "x";
+  std::string method = "hybrid", mutation = {}, axis = "x";  // mutation empty: the assembly's
 };
 struct LobesCommand {
   std::filesystem::path input;

@@ -218,6 +218,21 @@ TEST(JointFit, AdaptiveMutationReachesTheBestOfTheBounds) {
   }
 }
 
+// Section 2.2 of the source has stiffnesses to 1e9, section 3, whose result is printed, to 1e8.
+TEST(JointFit, GenesStayInTheBoundsGivenAndUseThem) {
+  const JointFitOptions options{.method = JointMethod::ga,
+                                .mutation = Mutation::adaptive,
+                                .lower = {1e6, 0.0, 1e6, 0.0},
+                                .upper = {1e9, 100.0, 1e9, 100.0},
+                                .population = 30,
+                                .generations = 70};
+  const JointFitResult result = fit_joint(test::published_pair(), whole_bar(), options);
+  EXPECT_EQ(result.iterations, 70);
+  EXPECT_LT(result.objective_m_per_n, 0.5 * best_within_bounds);
+  EXPECT_GT(result.joint.translational_stiffness_n_per_m, 1e8);
+  EXPECT_LE(result.joint.translational_stiffness_n_per_m, 1e9);
+}
+
 TEST(JointFit, HybridFindsTheRigidJointAndSaysWhereTheFrfEnds) {
   const JointFitResult result = fit_joint(test::published_pair(), whole_bar(), {});
   EXPECT_EQ(result.status, JointFitResult::Status::converged);

@@ -128,6 +128,56 @@ TEST(Span, ClampedBeamIsBishopsFromLambdaL1em3To100) {
   }
 }
 
+/// The functions of [JointIdentification] with the right names: c1, c2, c5 of the text's own length, c3, c4, c6 of the
+/// tool's; c7 and c8 carry the complex E I.
+struct PublishedFunctions {
+  std::complex<double> c1, c2, c3, c4, c5, c6, c7, c8;
+};
+PublishedFunctions published(std::complex<double> x, std::complex<double> ei) {
+  const std::complex<double> s = std::sin(x), c = std::cos(x), sh = std::sinh(x), ch = std::cosh(x);
+  return {c * sh - s * ch, s * sh, s - sh, c - ch, c * sh + s * ch, s + sh, ei * (c * ch - 1.0), ei * (c * ch + 1.0)};
+}
+
+// Its slopes count from the spindle to the tip: they and the moments turn their signs. As printed equation 8 has c1 for
+// c2, the text gives c5 as c3, c8 as c4, c3 with the holder's length, and c4 = cos cosh for cos - cosh.
+TEST(Span, PublishedClosedFormsHoldWithTheirFunctionsPutRight) {
+  const Segment tool = bar(0.11892), holder = bar(0.05090);
+  const detail::Section section = detail::section(tool);
+  const std::complex<double> ei = section.bending_stiffness_n_m2 * section.loss;
+  const Eigen::Vector4d turned(1.0, -1.0, 1.0, -1.0);
+  for (const double frequency_hz : {1000.0, 2000.0, 3281.0, 3825.0, 5000.0}) {
+    const Eigen::VectorXd line = Eigen::VectorXd::Constant(1, frequency_hz);
+    const double lossless = 2.0 * std::pow(section.bending * std::pow(2.0 * std::numbers::pi * frequency_hz, 2), 0.25);
+    const std::complex<double> lambda = lossless / std::pow(section.loss, 0.25) / tool.length_m;
+    const std::complex<double> l2 = lambda * lambda, l3 = l2 * lambda;
+
+    const PublishedFunctions a = published(lambda * tool.length_m, ei);
+    const auto table = [&](std::complex<double> c3, std::complex<double> c4) {
+      Eigen::Matrix4cd r;
+      r << -a.c1 / l3, a.c2 / l2, c3 / l3, -c4 / l2,         //
+          a.c2 / l2, a.c5 / lambda, c4 / l2, a.c6 / lambda,  //
+          c3 / l3, c4 / l2, -a.c1 / l3, -a.c2 / l2,          //
+          -c4 / l2, a.c6 / lambda, -a.c2 / l2, a.c5 / lambda;
+      return Eigen::Matrix4cd(turned.asDiagonal() * (r / a.c7) * turned.asDiagonal());
+    };
+    const Eigen::Matrix4cd free = free_matrix(detail::spans({tool}, line).front());
+    EXPECT_LT(misfit(table(a.c3, a.c4), free, tool.length_m), 1e-9) << frequency_hz;
+    const std::complex<double> printed_c4 = std::cos(lambda * tool.length_m) * std::cosh(lambda * tool.length_m);
+    EXPECT_GT(misfit(table(a.c3, printed_c4), free, tool.length_m), 0.01) << frequency_hz;
+    EXPECT_GT(misfit(table(published(lambda * holder.length_m, ei).c3, a.c4), free, tool.length_m), 0.01);
+
+    const PublishedFunctions b = published(lambda * holder.length_m, ei);
+    const auto tip = [&](std::complex<double> coupling, std::complex<double> rotation) {
+      Eigen::Matrix2cd r;
+      r << -b.c1 / l3, -coupling / l2, -coupling / l2, rotation / lambda;
+      return Eigen::Matrix2cd(r / b.c8);
+    };
+    const Eigen::Matrix2cd clamped = detail::spans({holder}, line).front().clamped;
+    EXPECT_LT(misfit(tip(b.c2, b.c5), clamped, holder.length_m), 1e-9) << frequency_hz;
+    EXPECT_GT(misfit(tip(b.c1, b.c5), clamped, holder.length_m), 0.01) << frequency_hz;
+  }
+}
+
 TEST(Span, NothingOverflowsFarBeyondCosh) {
   for (const Beam beam : {Beam::euler_bernoulli, Beam::timoshenko}) {
     const Segment wire{.length_m = 3.0,

@@ -75,6 +75,34 @@ void read_joint(TomlFile& file, const AssemblyReading& reading, std::optional<co
   out = joint;
 }
 
+/// How a joint is searched for; the keys of the ranges are those of [joint].
+void read_search(TomlFile& file, coupling::JointFitOptions& out) {
+  constexpr std::array<const char*, coupling::joint_unknowns> unknowns = {
+      "translational_stiffness_n_per_m", "translational_damping_n_s_per_m", "rotational_stiffness_n_m_per_rad",
+      "rotational_damping_n_m_s_per_rad"};
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const std::string key = fmt::format("search.{}", unknowns[i]);
+    std::vector<double> range;
+    if (!file.numbers(key, unknowns[i], 1.0, range)) continue;
+    const bool stiffness = i % 2 == 0;
+    if (range.size() != 2 || !(range[0] <= range[1]) || !(stiffness ? range[0] > 0.0 : range[0] >= 0.0)) {
+      throw file.refuse(key, fmt::format("must be [from, to] with {} <= to", stiffness ? "0 < from" : "0 <= from"));
+    }
+    // (0, 0) stands for a range that is left open.
+    if (range[1] == 0.0) throw file.refuse(key, "must not end at 0", "For no damping write a small upper bound: 1e-9");
+    out.lower[i] = range[0];
+    out.upper[i] = range[1];
+  }
+  file.integer("search.population", "population", out.population);
+  file.integer("search.generations", "generations", out.generations);
+  file.number("search.crossover", "crossover", 1.0, out.crossover);
+  file.number("search.mutation_rate", "mutation_rate", 1.0, out.mutation_rate);
+  file.choice<coupling::Mutation>(
+      "search.mutation", {{"uniform", coupling::Mutation::uniform}, {"adaptive", coupling::Mutation::adaptive}},
+      out.mutation);
+  file.locate([&] { out.validate(); });
+}
+
 void read_range(TomlFile& file, AssemblyFile& out) {
   if (!file.has("frequency")) return;
   std::vector<double> range;
@@ -252,6 +280,7 @@ AssemblyFile read_assembly(const std::filesystem::path& path, const AssemblyRead
   if (out.assembly.tool.empty()) throw file.refuse("tool", "must have at least one segment");
   read_joint(file, reading, out.assembly.joint);
   read_holder(file, out);
+  read_search(file, out.search);
   file.done();
   if (!reading.joint_sought) choose_lines(file, lines, out);
   about(file, out.receptances.empty() ? path : out.receptances, [&] { out.assembly.validate(); });

@@ -9,6 +9,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/holder.hpp"
+#include "robomill/coupling/joint_fit.hpp"
 
 namespace robomill::formats {
 
@@ -21,6 +22,7 @@ struct AssemblyFile {
   Eigen::VectorXd frequency_hz = {};
   double low_hz = 0.0;  ///< frequency.range_hz; all where absent
   double high_hz = std::numeric_limits<double>::infinity();
+  coupling::JointFitOptions search = {};              ///< bounds and sizes of [search]; the defaults where absent
   std::filesystem::path receptances = {};             ///< holder.receptances, resolved; empty where absent
   std::optional<coupling::HolderResult> holder = {};  ///< where rotations were completed or an artefact taken off
   std::vector<std::string> notes = {};                ///< sentences for the user

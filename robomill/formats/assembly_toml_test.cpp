@@ -124,6 +124,43 @@ TEST(AssemblyToml, ReadsEverythingInSi) {
   EXPECT_TRUE(file.notes.empty());
 }
 
+TEST(AssemblyToml, ReadsHowTheJointIsSearchedFor) {
+  const test::Folder folder;
+  const auto search = [&](const std::string& text) {
+    return read_assembly(folder.file("assembly.toml", good + "[search]\n" + text)).search;
+  };
+  const coupling::JointFitOptions options = search(
+      "translational_stiffness_n_per_m = [1e6, 1e9]\nrotational_damping_n_m_s_per_rad = [0, 50]\n"
+      "population = 40\ngenerations = 80\ncrossover = 0.7\nmutation_rate = 0.02\nmutation = \"adaptive\"\n");
+  EXPECT_EQ(options.lower, (std::array<double, 4>{1e6, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(options.upper, (std::array<double, 4>{1e9, 0.0, 0.0, 50.0}));
+  EXPECT_EQ(options.population, 40);
+  EXPECT_EQ(options.generations, 80);
+  EXPECT_DOUBLE_EQ(options.crossover, 0.7);
+  EXPECT_DOUBLE_EQ(options.mutation_rate, 0.02);
+  EXPECT_EQ(options.mutation, coupling::Mutation::adaptive);
+  // Absent: as published.
+  const coupling::JointFitOptions none = search("");
+  EXPECT_EQ(none.upper, (std::array<double, 4>{}));
+  EXPECT_EQ(none.population, 20);
+  EXPECT_EQ(none.generations, 50);
+
+  const auto expect = [&](const std::string& text, const std::string& words) {
+    const std::string said = test::refusal([&] { static_cast<void>(search(text)); });
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  expect("population = 2\n", "assembly.toml:38: search.population = 2");
+  expect("generations = 0\n", "search.generations = 0");
+  expect("crossover = 1.5\n", "search.crossover = 1.5");
+  expect("mutation = \"other\"\n", "must be one of \"uniform\", \"adaptive\"");
+  expect("translational_stiffness_n_per_m = [0, 1e9]\n", "must be [from, to] with 0 < from <= to");
+  expect("translational_stiffness_n_per_m = [1e9, 1e6]\n", "must be [from, to] with 0 < from <= to");
+  expect("rotational_damping_n_m_s_per_rad = [-1, 5]\n", "must be [from, to] with 0 <= from <= to");
+  expect("rotational_damping_n_m_s_per_rad = 5\n", "must be [from, to]");
+  expect("rotational_damping_n_m_s_per_rad = [0, 0]\n", "must not end at 0");
+  expect("populaton = 20\n", "populaton");
+}
+
 TEST(AssemblyToml, LinesEndWhereTheRangeDoes) {
   const test::Folder folder;
   const auto lines = [&](const std::string& frequency) {

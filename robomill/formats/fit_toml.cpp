@@ -42,6 +42,7 @@ modal::FitOptions read_fit_options(const std::filesystem::path& path) {
   number("stable_damping", o.stable_damping);
   number("stable_mac", o.stable_mac);
   number("pso_frequency_half_width", o.pso_frequency_half_width);
+  number("pso_max_damping_ratio", o.pso_max_damping_ratio);
   file.done();
   file.locate([&] { o.validate(); });
   return o;

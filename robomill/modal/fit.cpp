@@ -180,14 +180,19 @@ void fit_by_poles(FitResult& result, const FrfSet& set, const FitOptions& option
     result.iterations += done.fit.iterations;
     result.best.insert(result.best.end(), done.fit.cost.begin(), done.fit.cost.end());
     if (!done.fit.converged) result.status = FitResult::Status::not_converged;
+    if (done.fit.held_back) {
+      result.warnings.push_back(fmt::format(
+          "Nothing but their scatter tells how true the lines are, as with a single hit: {} modes come near "
+          "enough. Hit several times, or ask for a number of modes.",
+          done.fit.poles.size()));
+    }
     progress.advance();
   }
 }
 
-/// As published the swarm's damping ratios go up to 1, unless another bound is asked for.
+/// The swarm has a bound of its own.
 double damping_bound(const FitOptions& options) {
-  const bool asked = options.max_damping_ratio != FitOptions{}.max_damping_ratio;
-  return options.method == FitMethod::pso && !asked ? 1.0 : options.max_damping_ratio;
+  return options.method == FitMethod::pso ? options.pso_max_damping_ratio : options.max_damping_ratio;
 }
 
 void fit_by_swarm(FitResult& result, const FrfSet& set, const FitOptions& options, Progress& progress) {
@@ -268,6 +273,10 @@ void FitOptions::validate() const {
   require_between("pso_max_iterations", pso_max_iterations, 1, 1e9, "must be at least 1");
   if (!(pso_frequency_half_width > 0.0 && pso_frequency_half_width < 1.0)) {
     throw InvalidInput("pso_frequency_half_width", pso_frequency_half_width, "", "must lie between 0 and 1");
+  }
+  if (!(pso_max_damping_ratio > 0.0 && pso_max_damping_ratio <= 1.0)) {
+    throw InvalidInput("pso_max_damping_ratio", pso_max_damping_ratio, "", "must be above 0 and at most 1",
+                       "It is a ratio, not a percentage");
   }
 }
 

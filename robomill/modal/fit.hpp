@@ -37,7 +37,7 @@ struct FitOptions {
   Weighting weighting = Weighting::automatic;
   bool residuals =
       true;  ///< allow mass and stiffness residuals for modes outside the band; hybrid drops them if not needed
-  double max_damping_ratio = 0.4;  ///< no mode above it, in (0, 1); the swarm goes up to 1 where it is left as it is
+  double max_damping_ratio = 0.4;  ///< no mode of hybrid or lscf above it, in (0, 1)
   /// Subtracted from every pole's decay after the fit [1/s], >= 0: 1/τ where the hits had the window exp(-t/τ): λ -> λ
   /// + 1/τ.
   double exponential_decay_per_s = 0.0;
@@ -51,6 +51,7 @@ struct FitOptions {
   int pso_particles = 400;                ///< >= 2
   int pso_max_iterations = 8000;          ///< >= 1
   double pso_frequency_half_width = 0.1;  ///< a mode stays within (1 ± this) of its peak, in (0, 1)
+  double pso_max_damping_ratio = 0.1;     ///< no mode of the swarm above it, in (0, 1]
 
   /// @throws InvalidInput naming the field
   ROBOMILL_API void validate() const;

@@ -12,6 +12,11 @@ namespace {
 
 using Eigen::Index;
 
+// Residuals alike over so many lines are no noise …
+constexpr double not_noise = 3.0;
+// … and an error that neighbouring lines share may well be so many times as large as what they differ by.
+constexpr double shared_to_scatter = 10.0;
+
 LscfOptions lscf_options(const FitOptions& options, const FitData& data) {
   // A quarter of the equations at most go into the fraction's coefficients.
   const auto most = static_cast<int>(data.omega.size() / 4);
@@ -56,6 +61,50 @@ void update_weights(Part& part, const FrfSet& set, const Evaluation& at, Weighti
   }
 }
 
+// Costs become weighted relative errors.
+void keep(PartFit& fit, const FitData& data, const std::vector<double>& cost, int iterations) {
+  double size = 0.0;
+  for (const FitEntry& entry : data.entries) size += entry.receptance.cwiseProduct(entry.weight).squaredNorm();
+  for (const double c : cost) fit.cost.push_back(std::sqrt(c / size));
+  fit.iterations += iterations;
+}
+
+// The error ‖H_fit - H‖² that fewer modes may leave. Without deviation or coherence nothing tells how true the lines
+// are, but for their scatter. Where residuals are smooth they are what no mode stands for, such as the error of a
+// single hit; modes that follow the lines closer than that error describe the hit and not the structure.
+double tolerated_error2(const Part& part, const Evaluation& at) {
+  if (correlation_length(part.data, at.residual) < not_noise) return 0.0;
+  double error2 = 0.0;
+  for (std::size_t f = 0; f < part.data.entries.size(); ++f) {
+    const FitEntry& entry = part.data.entries[f];
+    const double share =
+        shared_to_scatter * relative_scatter(part.data.omega, at.residual.col(static_cast<Index>(f)), entry.receptance);
+    error2 += (share * part.unit(entry) * entry.receptance).squaredNorm();
+  }
+  return error2;
+}
+
+double error2(const Part& part, const Evaluation& at) {
+  double sum = 0.0;
+  for (std::size_t f = 0; f < part.data.entries.size(); ++f) {
+    sum += (part.unit(part.data.entries[f]) * at.residual.col(static_cast<Index>(f))).squaredNorm();
+  }
+  return sum;
+}
+
+// The fewest modes that come as near as that; `start` where none do.
+Poles fewest(const Part& part, const Kernel& kernel, const Poles& start, double tolerated2, SearchOptions options,
+             PartFit& fit, Progress& progress) {
+  for (options.modes = 1; options.modes < start.size(); ++options.modes) {
+    const Found found = search(kernel, start, options, progress);
+    if (error2(part, found.fit.at) > tolerated2 || !all_inside(found.fit.poles, options)) continue;
+    keep(fit, part.data, found.cost, found.iterations);
+    fit.held_back = true;
+    return found.fit.poles;
+  }
+  return start;
+}
+
 void set_deviations(PartFit& fit, const FitData& data) {
   const Index modes = fit.poles.size();
   if (modes == 0) return;
@@ -72,14 +121,6 @@ void set_deviations(PartFit& fit, const FitData& data) {
     fit.omega_std(k) = std::sqrt(std::max(0.0, covariance(stride * k, stride * k)));
     fit.zeta_std(k) = std::sqrt(std::max(0.0, covariance(stride * k + 1, stride * k + 1)));
   }
-}
-
-// Costs become weighted relative errors.
-void keep(PartFit& fit, const FitData& data, const std::vector<double>& cost, int iterations) {
-  double size = 0.0;
-  for (const FitEntry& entry : data.entries) size += entry.receptance.cwiseProduct(entry.weight).squaredNorm();
-  for (const double c : cost) fit.cost.push_back(std::sqrt(c / size));
-  fit.iterations += iterations;
 }
 
 Poles as_poles(const std::vector<LscfPole>& physical, const FitData& data) {
@@ -169,6 +210,11 @@ PartFit fit_hybrid(Part& part, const FrfSet& set, const FitOptions& options, int
     keep(fit, part.data, found.cost, found.iterations);
     start = found.fit.poles;
     if (adaptive && round < 2) update_weights(part, set, found.fit.at, weighting);
+    if (round < 2 || modes > 0 || weighting != Weighting::estimated) continue;
+    const double tolerated2 = tolerated_error2(part, found.fit.at);
+    if (error2(part, found.fit.at) < tolerated2) {
+      start = fewest(part, kernel, start, tolerated2, search_for, fit, progress);
+    }
   }
   const Kernel kernel(part.data);
   Refined last = refine(kernel, start, fine_options(search_for), progress);

@@ -253,6 +253,7 @@ TEST(FitInput, RefusesBadOptions) {
       [](FitOptions& o) { o.pso_particles = 1; },
       [](FitOptions& o) { o.pso_max_iterations = 0; },
       [](FitOptions& o) { o.pso_frequency_half_width = 1.0; },
+      [](FitOptions& o) { o.pso_max_damping_ratio = 10.0; },
   };
   for (std::size_t i = 0; i < faults.size(); ++i) {
     FitOptions options;

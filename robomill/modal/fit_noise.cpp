@@ -12,6 +12,8 @@ using Eigen::Index;
 // Below this share of the largest, a variance says nothing: it is rounding.
 constexpr double smallest_variance = 1e-20;
 
+constexpr double median_of_exponential = 0.6931471805599453;  // of |e|² where E|e|² = 1
+
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -55,6 +57,16 @@ Eigen::VectorXd scatter(const Eigen::VectorXd& omega, const Eigen::VectorXcd& va
   return squares;
 }
 
+double relative_scatter(const Eigen::VectorXd& omega, const Eigen::VectorXcd& residual,
+                        const Eigen::VectorXcd& receptance) {
+  const Eigen::VectorXd squares = scatter(omega, residual);
+  std::vector<double> shares;
+  for (Index i = 0; i < squares.size(); ++i) {
+    if (receptance(i) != 0.0) shares.push_back(squares(i) / std::norm(receptance(i)));
+  }
+  return std::sqrt(median(shares) / median_of_exponential);
+}
+
 Eigen::VectorXd variance_of_size(const Eigen::VectorXd& squares, const Eigen::VectorXd& size2) {
   const double floor = smallest_variance * std::max(size2.maxCoeff(), 1e-300);
   double constant = 0.5 * squares.mean() + floor;
@@ -72,7 +84,6 @@ Eigen::VectorXd variance_of_size(const Eigen::VectorXd& squares, const Eigen::Ve
 }
 
 Eigen::VectorXd first_variance(const Eigen::VectorXd& omega, const Eigen::VectorXcd& receptance) {
-  constexpr double median_of_exponential = 0.6931471805599453;  // of |e|² where E|e|² = 1
   const Eigen::VectorXd squares = scatter(omega, receptance);
   const Eigen::VectorXd size2 = receptance.cwiseAbs2();
   std::vector<double> sizes(size2.begin(), size2.end());

@@ -15,6 +15,9 @@ namespace robomill::modal::detail {
 /// Variance from the scatter between neighbouring lines: |value - line through its neighbours|², scaled to the variance
 /// of white noise; length n.
 [[nodiscard]] Eigen::VectorXd scatter(const Eigen::VectorXd& omega, const Eigen::VectorXcd& values);
+/// Standard deviation of noise as a share of |H|, on the median line.
+[[nodiscard]] double relative_scatter(const Eigen::VectorXd& omega, const Eigen::VectorXcd& residual,
+                                      const Eigen::VectorXcd& receptance);
 
 /// a² + b² |H|² by the likelihood of `squares`, complex Gaussian errors' absolute squares.
 [[nodiscard]] Eigen::VectorXd variance_of_size(const Eigen::VectorXd& squares, const Eigen::VectorXd& size2);

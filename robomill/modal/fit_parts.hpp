@@ -32,6 +32,7 @@ struct PartFit {
   Evaluation at;
   Eigen::VectorXd omega_std, zeta_std;  // empty where unknown
   bool converged = false;
+  bool held_back = false;  // fewer modes than the criterion asks for: see fit_hybrid.cpp
   int iterations = 0;
   std::vector<double> cost;  // weighted relative error after each iteration
   std::vector<LscfPole> diagram;

@@ -153,14 +153,7 @@ class Search {
     state_ = std::move(next);
     grown_.reset();
   }
-  // A mode at a bound of damping or at the edge of the band stands for something that is no mode in the band.
-  [[nodiscard]] bool all_inside(const Poles& poles) const {
-    for (Index k = 0; k < poles.size(); ++k) {
-      if (poles.zeta(k) >= 0.999 * options_.zeta_high || poles.zeta(k) <= 1.001 * options_.zeta_low) return false;
-      if (poles.omega(k) >= options_.omega_high || poles.omega(k) <= options_.omega_low) return false;
-    }
-    return true;
-  }
+  [[nodiscard]] bool all_inside(const Poles& poles) const { return detail::all_inside(poles, options_); }
 
   // The state with one mode more.
   const Refined& grown() {
@@ -274,6 +267,14 @@ Evidence evidence(const FitData& data, const Evaluation& larger, const Evaluatio
   const double floor = smallest_cost(data);
   return {.gain = independent * std::log(std::max(smaller.cost, floor) / std::max(larger.cost, floor)),
           .equations = independent};
+}
+
+bool all_inside(const Poles& poles, const SearchOptions& options) {
+  for (Index k = 0; k < poles.size(); ++k) {
+    if (poles.zeta(k) >= 0.999 * options.zeta_high || poles.zeta(k) <= 1.001 * options.zeta_low) return false;
+    if (poles.omega(k) >= options.omega_high || poles.omega(k) <= options.omega_low) return false;
+  }
+  return true;
 }
 
 RefineOptions fine_options(const SearchOptions& options) {

@@ -37,6 +37,9 @@ struct Evidence {
 /// criterion (or, at a given number of modes, the cost) falls. Deterministic.
 [[nodiscard]] Found search(const Kernel& kernel, const Poles& start, const SearchOptions& options, Progress& progress);
 
+/// Whether no mode stands at a bound of damping or at the edge of the band, for something that is no mode in the band.
+[[nodiscard]] bool all_inside(const Poles& poles, const SearchOptions& options);
+
 /// Bounds and tolerance of refine() for a search's last fit.
 [[nodiscard]] RefineOptions fine_options(const SearchOptions& options);
 

@@ -156,5 +156,37 @@ TEST(HybridFit, RandomStructuresWithModesOutsideTheBand) {
   EXPECT_LT(share, 0.99);
 }
 
+/// Noise of 0.3 % of every value, and an error of 1 % that neighbouring lines share, as a single hit has it.
+void add_error_of_one_hit(FrfSet& set, std::uint64_t seed) {
+  constexpr Index half = 10;
+  Random random(seed, 6);
+  for (Frf& frf : set.frfs) {
+    const Index n = frf.receptance.size();
+    Eigen::VectorXcd white(n + 2 * half);
+    for (Complex& value : white) {
+      const double re = random.normal();
+      value = Complex(re, random.normal()) / std::sqrt(2.0 * (2 * half + 1));
+    }
+    for (Index i = 0; i < n; ++i) frf.receptance(i) *= 1.0 + 0.01 * white.segment(i, 2 * half + 1).sum();
+  }
+  cases::add_noise(set, 0.003, seed);
+}
+
+// Modes that follow the hit closer than it is true are not the structure's.
+TEST(HybridFit, DoesNotFitTheErrorOfASingleHitWithModes) {
+  const auto seeds = static_cast<std::uint64_t>(test::seeds(100));
+  int held_back = 0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    RandomCase c = random_case(seed);
+    FrfSet set = synthesize(c.inside, c.set.frequency_hz);
+    add_error_of_one_hit(set, seed);
+    const FitResult result = fit_modes(set, {});
+    EXPECT_EQ(result.model.modes.size(), c.inside.modes.size()) << "seed " << seed;
+    EXPECT_LT(result.relative_error, 0.02) << "seed " << seed;
+    held_back += warns_of(result, "Nothing but their scatter") ? 1 : 0;
+  }
+  EXPECT_GT(held_back, 0);  // else the criterion alone would do
+}
+
 }  // namespace
 }  // namespace robomill::modal

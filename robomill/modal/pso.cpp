@@ -31,19 +31,27 @@ constexpr double residue_margin =
     4.0;  // of the largest residue over that which a lone mode with the peak's height would have
 constexpr double min_frequency_half_width = 0.01;
 constexpr std::size_t max_picked_peaks = 20;
-constexpr double poor_misfit = 0.2;  // a swarm that ends above it missed a mode
+constexpr double poor_misfit = 0.2;   // a swarm that ends above it missed a mode
+constexpr double good_misfit = 0.01;  // no mode more is looked for below it, …
+constexpr double worthwhile = 0.8;    // … or where it does not bring the misfit below this share
+constexpr int lines_of_a_peak = 15;
+constexpr double half_widths_of_a_peak = 3.0;
 constexpr std::size_t particles_per_block = 4;
 
 /// One excitation's search: what is fitted, and what a particle's numbers mean. A mode has frequency [Hz], damping
 /// ratio, and real and imaginary parts of left and of right's components in units of vector_scale.
 struct Search {
-  std::vector<const Frf*> frfs;
+  FrfSet frfs;  // at the lines that the swarm sees
   std::unique_ptr<detail::Misfit> misfit;
   std::vector<Peak> peaks;  // one a mode
   Positions lower, upper;
   std::vector<double> vector_scale;  // by mode [sqrt(s/kg)]
 
-  [[nodiscard]] std::size_t unknowns_per_mode() const { return 4 + 2 * frfs.size(); }
+  [[nodiscard]] std::size_t unknowns_per_mode() const { return 4 + 2 * frfs.frfs.size(); }
+  /// Whether the data has as many numbers as unknowns, with so many modes more.
+  [[nodiscard]] bool determined(std::size_t more = 0) const {
+    return (peaks.size() + more) * unknowns_per_mode() <= 2 * misfit->terms();
+  }
   [[nodiscard]] static Complex component(const double* mode, std::size_t index) {
     return {mode[2 + 2 * index], mode[3 + 2 * index]};
   }
@@ -51,15 +59,16 @@ struct Search {
 };
 
 double Search::evaluate(const double* position) const {
-  std::vector<Complex> residues(peaks.size() * frfs.size());
+  const std::size_t count = frfs.frfs.size();
+  std::vector<Complex> residues(peaks.size() * count);
   std::vector<detail::MisfitMode> modes(peaks.size());
   for (std::size_t k = 0; k < peaks.size(); ++k) {
     const double* mode = position + k * unknowns_per_mode();
     const Complex left = vector_scale[k] * vector_scale[k] * component(mode, 0);
-    for (std::size_t i = 0; i < frfs.size(); ++i) residues[k * frfs.size() + i] = left * component(mode, i + 1);
+    for (std::size_t i = 0; i < count; ++i) residues[k * count + i] = left * component(mode, i + 1);
     modes[k] = {.frequency_hz = mode[0],
                 .damping_ratio = mode[1],
-                .residues = std::span<const Complex>(residues).subspan(k * frfs.size(), frfs.size())};
+                .residues = std::span<const Complex>(residues).subspan(k * count, count)};
   }
   return (*misfit)(modes);
 }
@@ -214,17 +223,39 @@ double frequency_half_width(const Peak& peak, const PsoOptions& options) {
                     options.frequency_half_width);
 }
 
-Search plan_search(const FrfSet& frfs, const Dof& excitation, std::size_t count, const PsoOptions& options) {
-  Search search;
-  for (const Frf& frf : frfs.frfs) {
-    if (frf.name.excitation == excitation) search.frfs.push_back(&frf);
+/// The lines that the swarm sees, by rising frequency.
+std::vector<Eigen::Index> choose_lines(const Eigen::VectorXd& frequency_hz, const std::vector<Peak>& peaks, int count) {
+  std::vector<Eigen::Index> lines;
+  if (count == 0 || frequency_hz.size() <= count) {
+    for (Eigen::Index i = 0; i < frequency_hz.size(); ++i) lines.push_back(i);
+    return lines;
   }
-  search.misfit = std::make_unique<detail::Misfit>(frfs.frequency_hz, search.frfs);
+  const auto add = [&](double wanted_hz) {
+    const auto at = std::lower_bound(frequency_hz.begin(), frequency_hz.end(), wanted_hz);
+    if (at != frequency_hz.end()) lines.push_back(at - frequency_hz.begin());
+  };
+  const auto lowest = std::ranges::find_if(frequency_hz, [](double f) { return f > 0.0; });
+  const double ratio = frequency_hz(frequency_hz.size() - 1) / *lowest;
+  for (int i = 0; i < count; ++i) add(*lowest * std::pow(ratio, static_cast<double>(i) / count));
+  for (const Peak& peak : peaks) {
+    const double reach = half_widths_of_a_peak * peak.damping_ratio * peak.frequency_hz;
+    for (int i = 0; i < lines_of_a_peak; ++i) {
+      add(peak.frequency_hz + reach * (2.0 * i / (lines_of_a_peak - 1) - 1.0));
+    }
+  }
+  std::ranges::sort(lines);
+  const auto doubled = std::ranges::unique(lines);
+  lines.erase(doubled.begin(), doubled.end());
+  return lines;
+}
+
+std::vector<Peak> find_peaks(const FrfSet& frfs, const std::vector<const Frf*>& measured, const Dof& excitation,
+                             const PsoOptions& options) {
   std::vector<Peak> peaks;
   for (const double frequency_hz : options.peaks_hz)
-    peaks.push_back(peak_at(frequency_hz, frfs.frequency_hz, search.frfs));
+    peaks.push_back(peak_at(frequency_hz, frfs.frequency_hz, measured));
   if (options.peaks_hz.empty()) {
-    peaks = pick_peaks(frfs.frequency_hz, search.frfs);
+    peaks = pick_peaks(frfs.frequency_hz, measured);
     if (peaks.size() > max_picked_peaks) peaks = share_peaks(std::move(peaks), max_picked_peaks);
   }
   if (peaks.empty()) {
@@ -232,15 +263,10 @@ Search plan_search(const FrfSet& frfs, const Dof& excitation, std::size_t count,
                        "show no peak for a force in " + to_string(excitation, true) + " that stands out of the noise",
                        "Widen the band, or name the frequencies to look at");
   }
-  const std::size_t wanted = options.modes == 0 ? peaks.size() : count;
-  search.peaks = share_peaks(std::move(peaks), wanted);
-  const std::size_t unknowns = search.peaks.size() * search.unknowns_per_mode();
-  if (unknowns > 2 * search.misfit->terms()) {
-    throw InvalidInput("modes", static_cast<double>(search.peaks.size()), "modes",
-                       "have more unknowns (" + std::to_string(unknowns) +
-                           ") than the FRFs of one excitation have numbers (" +
-                           std::to_string(2 * search.misfit->terms()) + ")");
-  }
+  return peaks;
+}
+
+void set_bounds(Search& search, const PsoOptions& options) {
   for (const Peak& peak : search.peaks) {
     const double omega = 2.0 * std::numbers::pi * peak.frequency_hz;
     // |H| = |residue| / (ζ ω) at the resonance of a lone mode.
@@ -252,13 +278,46 @@ Search plan_search(const FrfSet& frfs, const Dof& excitation, std::size_t count,
     search.lower.insert(search.lower.end(), search.unknowns_per_mode() - 2, -1.0);
     search.upper.insert(search.upper.end(), search.unknowns_per_mode() - 2, 1.0);
   }
+}
+
+/// @param modes  0: one a peak
+Search plan_search(const FrfSet& frfs, const Dof& excitation, std::size_t modes, const PsoOptions& options) {
+  std::vector<const Frf*> measured;
+  for (const Frf& frf : frfs.frfs) {
+    if (frf.name.excitation == excitation) measured.push_back(&frf);
+  }
+  std::vector<Peak> peaks = find_peaks(frfs, measured, excitation, options);
+  Search search;
+  const std::vector<Eigen::Index> lines = choose_lines(frfs.frequency_hz, peaks, options.lines);
+  search.frfs.frequency_hz = frfs.frequency_hz(lines);
+  for (const Frf* frf : measured) search.frfs.frfs.push_back({.name = frf->name, .receptance = frf->receptance(lines)});
+  std::vector<const Frf*> seen;
+  for (const Frf& frf : search.frfs.frfs) seen.push_back(&frf);
+  search.misfit = std::make_unique<detail::Misfit>(search.frfs.frequency_hz, seen);
+  const std::size_t wanted = modes == 0 ? peaks.size() : modes;
+  search.peaks = share_peaks(std::move(peaks), wanted);
+  if (!search.determined()) {
+    throw InvalidInput("modes", static_cast<double>(search.peaks.size()), "modes",
+                       "have more unknowns (" + std::to_string(search.peaks.size() * search.unknowns_per_mode()) +
+                           ") than the FRFs of one excitation have numbers (" +
+                           std::to_string(2 * search.misfit->terms()) + ")");
+  }
+  set_bounds(search, options);
   return search;
 }
 
-PsoRun search_modes(const Search& search, const PsoOptions& options, std::uint64_t first_stream, Progress& progress,
-                    Positions& best) {
+/// What one excitation's swarm found.
+struct Found {
+  Search search;
   PsoRun run;
-  for (const Peak& peak : search.peaks) run.peaks_hz.push_back(peak.frequency_hz);
+  Positions best;
+};
+
+Found search_modes(Search planned, const PsoOptions& options, std::uint64_t first_stream, Progress& progress) {
+  Found found{.search = std::move(planned), .run = {}, .best = {}};
+  const Search& search = found.search;
+  for (const Peak& peak : search.peaks) found.run.peaks_hz.push_back(peak.frequency_hz);
+  found.run.terms = search.misfit->terms();
   std::vector<Random> streams;
   Positions positions;
   for (std::uint64_t particle = 0; particle < static_cast<std::uint64_t>(options.particles); ++particle) {
@@ -275,22 +334,41 @@ PsoRun search_modes(const Search& search, const PsoOptions& options, std::uint64
     population.push_back(Positions(begin, begin + static_cast<std::ptrdiff_t>(search.lower.size())),
                          {misfits[particle]});
   }
-  const pagmo::algorithm swarm{FallingInertiaSwarm(options, streams, run, progress)};
-  best = swarm.evolve(population).champion_x();
-  return run;
+  const pagmo::algorithm swarm{FallingInertiaSwarm(options, streams, found.run, progress)};
+  found.best = swarm.evolve(population).champion_x();
+  return found;
 }
 
-void add_modes(const Search& search, const Positions& best, std::size_t excitation, ModalModel& model) {
+/// With the number of modes left to the data: one more as long as that pays.
+Found search_excitation(const FrfSet& frfs, const Dof& excitation, std::size_t modes, const PsoOptions& options,
+                        std::uint64_t first_stream, Progress& progress) {
+  const auto swarm = [&](std::size_t count) {
+    Found found = search_modes(plan_search(frfs, excitation, count, options), options, first_stream, progress);
+    found.run.excitation = excitation;
+    return found;
+  };
+  Found found = swarm(modes);
+  if (modes > 0 || !options.peaks_hz.empty()) return found;
+  while (found.run.best.back() > good_misfit && found.search.determined(1)) {
+    Found larger = swarm(found.search.peaks.size() + 1);
+    if (larger.run.best.back() > worthwhile * found.run.best.back()) break;
+    found = std::move(larger);
+  }
+  return found;
+}
+
+void add_modes(const Found& found, std::size_t excitation, ModalModel& model) {
+  const Search& search = found.search;
   for (std::size_t k = 0; k < search.peaks.size(); ++k) {
-    const double* values = best.data() + k * search.unknowns_per_mode();
+    const double* values = found.best.data() + k * search.unknowns_per_mode();
     Mode mode;
     mode.frequency_hz = values[0];
     mode.damping_ratio = values[1];
     mode.left = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(model.excitations.size()));
     mode.right = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(model.responses.size()));
     mode.left(static_cast<Eigen::Index>(excitation)) = search.vector_scale[k] * Search::component(values, 0);
-    for (std::size_t i = 0; i < search.frfs.size(); ++i) {
-      const auto response = std::ranges::find(model.responses, search.frfs[i]->name.response);
+    for (std::size_t i = 0; i < search.frfs.frfs.size(); ++i) {
+      const auto response = std::ranges::find(model.responses, search.frfs.frfs[i].name.response);
       mode.right(response - model.responses.begin()) = search.vector_scale[k] * Search::component(values, i + 1);
     }
     normalise(mode);
@@ -298,24 +376,23 @@ void add_modes(const Search& search, const Positions& best, std::size_t excitati
   }
 }
 
-void join_curves(PsoResult& result, const std::vector<std::size_t>& terms) {
+void join_curves(PsoResult& result) {
   double all = 0.0;
   result.converged = true;
-  for (std::size_t i = 0; i < result.runs.size(); ++i) {
-    all += static_cast<double>(terms[i]);
-    result.iterations = std::max(result.iterations, result.runs[i].iterations);
-    result.converged = result.converged && result.runs[i].stop == PsoRun::Stop::converged;
+  for (const PsoRun& run : result.runs) {
+    all += static_cast<double>(run.terms);
+    result.iterations = std::max(result.iterations, run.iterations);
+    result.converged = result.converged && run.stop == PsoRun::Stop::converged;
   }
   result.best.assign(static_cast<std::size_t>(result.iterations) + 1, 0.0);
-  for (std::size_t i = 0; i < result.runs.size(); ++i) {
-    const std::vector<double>& best = result.runs[i].best;
+  for (const PsoRun& run : result.runs) {
     for (std::size_t t = 0; t < result.best.size(); ++t) {
-      result.best[t] += static_cast<double>(terms[i]) / all * best[std::min(t, best.size() - 1)];
+      result.best[t] += static_cast<double>(run.terms) / all * run.best[std::min(t, run.best.size() - 1)];
     }
   }
 }
 
-void add_notes(const FrfSet& frfs, const std::vector<std::size_t>& terms, PsoResult& result) {
+void add_notes(const FrfSet& frfs, PsoResult& result) {
   if (result.runs.size() > 1) {
     result.notes.push_back(
         "Each excitation was fitted on its own: a mode that several excite stands in the list once for each of them.");
@@ -327,12 +404,11 @@ void add_notes(const FrfSet& frfs, const std::vector<std::size_t>& terms, PsoRes
         "hybrid method.",
         to_string(run.excitation, true), 100.0 * run.best.back()));
   }
-  std::size_t used = 0;
-  for (const std::size_t count : terms) used += count;
-  const std::size_t all = frfs.frfs.size() * static_cast<std::size_t>(frfs.frequency_hz.size());
-  if (used < all) {
+  Eigen::Index zeros = 0;
+  for (const Frf& frf : frfs.frfs) zeros += (frf.receptance.array() == 0.0).count();
+  if (zeros > 0) {
     result.notes.push_back(
-        std::to_string(all - used) +
+        std::to_string(zeros) +
         " lines where the receptance is zero were left out: the relative misfit has no value there.");
   }
 }
@@ -366,6 +442,7 @@ void PsoOptions::validate() const {
     throw InvalidInput("max_damping_ratio", max_damping_ratio, "", "must be above 0 and at most 1",
                        "It is a ratio, not a percentage");
   }
+  if (lines != 0) require_at_least("lines", lines, 20);
   require_at_least("particles", particles, 2);
   require_at_least("max_iterations", max_iterations, 1);
   require_between("inertia_start", inertia_start, 0.0, 1.0);
@@ -404,24 +481,17 @@ PsoResult fit_pso(const FrfSet& frfs, const PsoOptions& options, Progress& progr
       throw InvalidInput("peaks_hz", peak_hz, "Hz", "must lie in the band of the FRFs");
     }
   }
-  std::vector<Search> searches;
-  std::vector<std::size_t> terms;
-  for (std::size_t i = 0; i < runs; ++i) {
-    searches.push_back(
-        plan_search(frfs, result.model.excitations[i], modes / runs + (i < modes % runs ? 1 : 0), options));
-    terms.push_back(searches.back().misfit->terms());
-  }
   progress.start("particle swarm", runs * static_cast<std::size_t>(options.max_iterations));
   for (std::size_t i = 0; i < runs; ++i) {
-    Positions best;
     const std::uint64_t first_stream = static_cast<std::uint64_t>(i) * static_cast<std::uint64_t>(options.particles);
-    result.runs.push_back(search_modes(searches[i], options, first_stream, progress, best));
-    result.runs.back().excitation = result.model.excitations[i];
-    add_modes(searches[i], best, i, result.model);
+    const Found found = search_excitation(frfs, result.model.excitations[i], modes / runs + (i < modes % runs ? 1 : 0),
+                                          options, first_stream, progress);
+    result.runs.push_back(found.run);
+    add_modes(found, i, result.model);
   }
   std::ranges::stable_sort(result.model.modes, {}, &Mode::frequency_hz);
-  join_curves(result, terms);
-  add_notes(frfs, terms, result);
+  join_curves(result);
+  add_notes(frfs, result);
   return result;
 }
 

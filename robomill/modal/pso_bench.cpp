@@ -27,6 +27,7 @@ void thousand_iterations(benchmark::State& state) {
   const FrfSet frfs = x_hits();
   PsoOptions options;
   options.modes = 8;
+  options.lines = 0;
   options.max_iterations = 1000;
   options.inertia_iterations = 1000;
   options.stall_iterations = 1000;  // run to the end

@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "data/robot_modes.hpp"
+#include "examples/first-lobes/hammer.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
+#include "robomill/modal/fit.hpp"
 #include "robomill/modal/fit_cases.hpp"
 #include "robomill/modal/pso_misfit.hpp"
 
@@ -187,6 +189,42 @@ TEST(Pso, RecoversTwoModesInTwoDirections) {
   EXPECT_LT(frequency_distance(result.model.modes[1], 110.0), 1e-3);
 }
 
+/// Hits simulated on the published robot as in examples/first-lobes, 5 to 1,000 Hz.
+const FrfSet& simulated_hits() {
+  static const FrfSet set = [] {
+    const std::vector<Hit> hits = examples::simulate_hits(data::robot_modes(), 5, 0.05, examples::Hammer{}, 1);
+    HitOptions options;
+    options.min_frequency_hz = 5.0;
+    options.max_frequency_hz = 1000.0;
+    return estimate_frfs(hits, options).set;
+  }();
+  return set;
+}
+
+FitResult fit_simulated_hits(int modes, int seed) {
+  FitOptions options;
+  options.method = FitMethod::pso;
+  options.modes = modes;
+  options.seed = static_cast<std::uint64_t>(seed);
+  return fit_modes(simulated_hits(), options);
+}
+
+// As published: four modes an excitation. No frequency is given.
+TEST(Pso, FitsTheHitsOnThePublishedRobotWithEverySeed) {
+  for (int seed = 1; seed <= test::seeds(20); ++seed) {
+    const FitResult fit = fit_simulated_hits(8, seed);
+    EXPECT_LT(fit.mean_relative_error, 0.03) << seed;
+    EXPECT_EQ(fit.status, FitResult::Status::converged) << seed;
+  }
+}
+
+// Nothing is given but the hits.
+TEST(Pso, CountsTheModesOfTheHits) {
+  const FitResult fit = fit_simulated_hits(0, 1);
+  EXPECT_LT(fit.mean_relative_error, 0.03);
+  EXPECT_EQ(fit.model.modes.size(), 8u);
+}
+
 // What the swarm says of its best is what the model it gives back is worth.
 TEST(Pso, BestFallsAndIsTheMisfitOfTheModel) {
   const FrfSet frfs = synthesize(two_modes(), lines());
@@ -293,7 +331,7 @@ TEST(Pso, HoldsVelocitiesToTheirShareOfTheRange) {
   for (std::uint64_t particle = 0; particle < 3; ++particle) {
     Random random(options.seed, particle);
     const double frequency_hz = random.uniform(72.0, 88.0);
-    const double damping_ratio = random.uniform(0.0, 1.0);
+    const double damping_ratio = random.uniform(0.0, options.max_damping_ratio);
     reachable = reachable || (std::abs(mode.frequency_hz - frequency_hz) <= reach * 16.0 &&
                               std::abs(mode.damping_ratio - damping_ratio) <= reach + 1e-5);
   }
@@ -351,6 +389,7 @@ TEST(Pso, RefusesEveryFaultOfTheOptions) {
   refuses("frequency_half_width", [nan](PsoOptions& o) { o.frequency_half_width = nan; });
   refuses("max_damping_ratio", [](PsoOptions& o) { o.max_damping_ratio = 0.0; });
   refuses("max_damping_ratio", [](PsoOptions& o) { o.max_damping_ratio = 5.0; });
+  refuses("lines", [](PsoOptions& o) { o.lines = 5; });
   refuses("particles", [](PsoOptions& o) { o.particles = 1; });
   refuses("max_iterations", [](PsoOptions& o) { o.max_iterations = 0; });
   refuses("inertia_start", [](PsoOptions& o) { o.inertia_start = 1.1; });

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "robomill/base/parallel.hpp"
 
@@ -223,26 +224,69 @@ Limit limit_at_start(PointEvaluator& evaluator, const OperatingPoint& point) {
   return limit_at(boundary_point(point, outcome));
 }
 
-/// Radii of one speed from the lowest depth up to the first that is unstable and a little beyond.
-std::vector<double> climb(PointEvaluator& evaluator, const Axes& axes, std::size_t speed, const Progress& progress) {
-  std::vector<double> radii;
-  const std::size_t depths = axes.axial_depth_m.size();
-  for (std::size_t first = 0; first < depths; first += lane_count) {
-    progress.check();
-    const std::size_t size = std::min(lane_count, depths - first);
+/// One speed's radii, looked at from the lowest depth up to the first that is unstable: every fourth depth, and those
+/// between two of them where stability changes, or where ln |μ| changes as much from one to the other as it is away
+/// from 0, so that an island could hide. The others stay NaN.
+class Climb {
+ public:
+  Climb(PointEvaluator& evaluator, const Axes& axes, std::size_t speed, const Progress& progress)
+      : evaluator_(evaluator),
+        axes_(axes),
+        speed_(speed),
+        progress_(progress),
+        radii_(axes.axial_depth_m.size(), std::numeric_limits<double>::quiet_NaN()) {}
+
+  std::vector<double> run() {
+    // As many marks as are evaluated at once, but none further apart than the corners of a coarse cell.
+    const std::size_t steps = radii_.size() - 1;
+    const std::size_t stride = std::clamp<std::size_t>((steps + lane_count - 2) / (lane_count - 1), 1, widest);
+    std::vector<std::size_t> marks;
+    for (std::size_t d = 0; d < steps; d += stride) marks.push_back(d);
+    marks.push_back(steps);
+    for (std::size_t first = 0; first < marks.size(); first += lane_count) {
+      const std::size_t size = std::min(lane_count, marks.size() - first);
+      look(std::span(marks).subspan(first, size));
+      for (std::size_t i = std::max<std::size_t>(first, 1); i < first + size; ++i) {
+        if (between(marks[i - 1], marks[i])) return radii_;
+      }
+    }
+    return radii_;
+  }
+
+ private:
+  static constexpr std::size_t widest = 4;
+  static_assert(widest - 1 <= lane_count);
+
+  void look(std::span<const std::size_t> depths) {
+    progress_.check();
     std::array<OperatingPoint, lane_count> points;
     std::array<Outcome, lane_count> outcomes;
-    for (std::size_t i = 0; i < size; ++i) points[i] = axes.at(speed, first + i);
-    evaluator.evaluate(std::span(points).first(size), {}, std::span(outcomes).first(size));
-    bool unstable = false;
-    for (std::size_t i = 0; i < size; ++i) {
-      radii.push_back(outcomes[i].spectral_radius);
-      unstable = unstable || radii.back() >= 1.0;
-    }
-    if (unstable) break;
+    for (std::size_t i = 0; i < depths.size(); ++i) points[i] = axes_.at(speed_, depths[i]);
+    evaluator_.evaluate(std::span(points).first(depths.size()), {}, std::span(outcomes).first(depths.size()));
+    for (std::size_t i = 0; i < depths.size(); ++i) radii_[depths[i]] = outcomes[i].spectral_radius;
   }
-  return radii;
-}
+
+  /// Whether an unstable depth was found from `low` to `high`.
+  bool between(std::size_t low, std::size_t high) {
+    if (radii_[low] >= 1.0) return true;
+    const double a = std::log(radii_[low]);
+    const double b = std::log(radii_[high]);
+    const bool unstable = radii_[high] >= 1.0;
+    if (!unstable && std::min(std::abs(a), std::abs(b)) > 2.0 * std::abs(a - b)) return false;
+    std::array<std::size_t, widest> depths{};
+    std::size_t size = 0;
+    for (std::size_t d = low + 1; d < high; ++d) depths[size++] = d;
+    if (size > 0) look(std::span<const std::size_t>(depths).first(size));
+    return unstable || std::any_of(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(size),
+                                   [&](std::size_t d) { return radii_[d] >= 1.0; });
+  }
+
+  PointEvaluator& evaluator_;
+  const Axes& axes_;
+  std::size_t speed_;
+  const Progress& progress_;
+  std::vector<double> radii_;
+};
 
 }  // namespace
 
@@ -322,7 +366,7 @@ std::vector<Limit> limits_between(PointEvaluator& evaluator, const Axes& axes, s
   std::vector<Edge> edges;
   std::vector<std::size_t> owner;
   for (std::size_t s = first; s < last; ++s) {
-    const std::vector<double> radii = climb(evaluator, axes, s, progress);
+    const std::vector<double> radii = Climb(evaluator, axes, s, progress).run();
     limits[s - first].spindle_speed_rad_per_s = axes.spindle_speed_rad_per_s[s];
     const auto unstable = std::ranges::find_if(radii, [](double radius) { return radius >= 1.0; });
     if (unstable == radii.begin()) {

@@ -64,7 +64,7 @@ std::vector<Limit> grid_limits(const Scheme& scheme, const Axes& axes, const Gri
                                Progress& progress);
 
 /// The same without a grid, of the speeds first to last - 1: depths are looked at from the lowest up to the first that
-/// is unstable.
+/// is unstable, those between two that are alike and far from unstable left out.
 std::vector<Limit> limits_between(PointEvaluator& evaluator, const Axes& axes, std::size_t first, std::size_t last,
                                   double tolerance, const Progress& progress);
 /// Of all speeds, on all threads:

@@ -47,6 +47,23 @@ TEST(Chart, LosesNoIslandOfTheGrid) {
   }
 }
 
+// Speeds looked at one by one skip depths that look alike; every depth of the grid tells whether that loses a limit.
+TEST(Chart, LimitsOfSpeedsAreThoseOfEveryDepth) {
+  for (const double helix : {0.0, 30.0, 40.0}) {
+    for (const int depths : {2, 30, 100}) {
+      LobesOptions options = traced(8000, 24000, 0.03, 80, depths);
+      options.output = Output::both;
+      const LobesResult all = compute_lobes(with_helix(helix), options);
+      const std::vector<double> speeds(all.spindle_speed_rad_per_s.begin(), all.spindle_speed_rad_per_s.end());
+      const std::vector<Limit> limits = limit_depths(with_helix(helix), options, speeds);
+      for (std::size_t i = 0; i < speeds.size(); ++i) {
+        ASSERT_EQ(limits[i].status, all.limit[i].status) << helix << ' ' << depths << ' ' << speeds[i] / rpm;
+        EXPECT_NEAR(limits[i].axial_depth_m, all.limit[i].axial_depth_m, 1e-5) << helix << ' ' << depths;
+      }
+    }
+  }
+}
+
 TEST(Chart, CurvesRunFromCellToCell) {
   const LobesResult result = compute_lobes(robot(), traced(4000, 16000, 3e-3, 60, 50));
   ASSERT_GT(result.boundary.size(), 100U);
