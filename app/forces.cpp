@@ -43,8 +43,9 @@ void print_revolution(const plan::RevolutionForces& revolution, bool on_workpiec
   print_vector("mean", sign * force.mean_n);
   print_vector("peak", sign * force.peak_n);
   print_vector("rms", force.rms_n);
-  fmt::print("torque       {:.4g} N·m, at most {:.4g}; power {:.4g} W; {:.4g} mm³/s\n", force.mean_torque_n_m,
-             force.peak_torque_n_m, force.power_w, force.removal_rate_m3_per_s / units::mm3);
+  fmt::print("torque       mean {:.4g}, peak {:.4g} N·m\n", force.mean_torque_n_m, force.peak_torque_n_m);
+  fmt::print("power        mean {:.4g} W; removal {:.4g} mm³/s\n", force.power_w,
+             force.removal_rate_m3_per_s / units::mm3);
   if (revolution.posture) {
     const Eigen::Vector3d q = revolution.settled.deflection_m / units::um;
     fmt::print("deflection   {:.4g}, {:.4g}, {:.4g} µm under the mean force; depth left {:.6g} mm\n", q.x(), q.y(),
@@ -57,24 +58,32 @@ void print_revolution(const plan::RevolutionForces& revolution, bool on_workpiec
   if (revolution.vibration) print_vibration(*revolution.vibration);
 }
 
+/// One block with its largest values.
 void print_row(const plan::ProgramForces& program, const char* label, const plan::BlockResult& row) {
-  const program::Block& block = program.program.blocks[row.force.block];
-  fmt::print("{:<12} line {}: {:.4g} N, {:.3g} N·m, {:.4g} W, {:.4g} µm, depth {:.3g} mm\n", label, block.line,
-             row.force.peak_force_n, row.force.peak_torque_n_m, row.force.power_w, row.deflection_m.norm() / units::um,
+  const bool bends = row.joints.size() > 0;
+  fmt::print("{:<12} {:>6} {:>10.4g} {:>10.3g} {:>10.4g} {:>10.4g} {:>10} {:>10.3g}\n", label,
+             program.program.blocks[row.force.block].line, row.force.peak_force_n, row.force.revolution_torque_n_m,
+             row.force.peak_power_w, row.force.sustained_power_w,
+             bends ? fmt::format("{:.4g}", row.peak_deflection_m.norm() / units::um) : "–",
              row.force.axial_depth_m / units::mm);
 }
 
-void print_program(const plan::ProgramForces& program) {
+void print_program(const plan::ProgramForces& program, double power_time_s) {
   const auto highest = [&](auto value) {
     return *std::ranges::max_element(program.blocks, {}, [&](const plan::BlockResult& row) { return value(row); });
   };
-  const auto cutting = std::ranges::count_if(
-      program.blocks, [](const plan::BlockResult& row) { return row.force.removed_volume_m3 > 0.0; });
-  fmt::print("{} blocks, {} of them cut; {:.4g} mm³ removed; {:.2f} s\n", program.blocks.size(), cutting,
-             program.removed_volume_m3 / units::mm3, program.seconds);
+  fmt::print("{} blocks, {} of them cut; {:.4g} mm³ removed; {:.2f} s\n", program.blocks.size(),
+             program.cutting_blocks(), program.removed_volume_m3 / units::mm3, program.seconds);
+  if (program.stock) fmt::print("stock        {}\n", plan::stock_text(program));
+  fmt::print("{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "the block of", "line", "force N", "torque Nm",
+             "power W", "power W", "bends µm", "depth mm");
+  fmt::print("{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "", "peak", "1 turn", "1 turn",
+             fmt::format("{:.4g} s", power_time_s), "1 turn", "");
   print_row(program, "most force", highest([](const plan::BlockResult& r) { return r.force.peak_force_n; }));
-  print_row(program, "most power", highest([](const plan::BlockResult& r) { return r.force.power_w; }));
-  print_row(program, "bends most", highest([](const plan::BlockResult& r) { return r.deflection_m.norm(); }));
+  print_row(program, "most torque", highest([](const plan::BlockResult& r) { return r.force.revolution_torque_n_m; }));
+  print_row(program, "most power", highest([](const plan::BlockResult& r) { return r.force.sustained_power_w; }));
+  if (program.blocks.front().joints.size() == 0) return;
+  print_row(program, "most bend", highest([](const plan::BlockResult& r) { return r.peak_deflection_m.norm(); }));
 }
 
 void write_report(const std::filesystem::path& path, const plan::ForcesResult& result) {
@@ -114,7 +123,7 @@ Exit run(const ForcesCommand& command, const Common& common, Progress& progress)
   if (!command.report.empty()) write_report(command.report, result);
   if (common.wants_summary()) {
     if (result.revolution) print_revolution(*result.revolution, result.file.on_workpiece);
-    if (result.program) print_program(*result.program);
+    if (result.program) print_program(*result.program, result.file.power_time_s);
     print_notes(result.warnings, "warning      ");
     print_notes(result.notes, "note         ");
   }

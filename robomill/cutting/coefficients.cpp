@@ -27,20 +27,26 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 /// Feeds that differ by less, to their mean, are one: the edge part would be the noise a thousandfold.
 constexpr double least_spread_of_feeds = 1e-3;
+/// R² from which rows are said to follow the model, and below which they hardly do; the share of the largest force
+/// below which scatter is noise.
+constexpr double good_fit = 0.9;
+constexpr double poor_fit = 0.5;
+constexpr double noise_share = 0.05;
 /// Speeds that differ by less, to the slower, are one.
 constexpr double speed_tolerance = 0.01;
 
 /// One direction: the component of force that its two coefficients make, each per N a c and N a.
 struct Direction {
+  const char* name;
   int component;
   double cutting, edge;
   CoefficientPair SlotFit::*pair;
   CoefficientPair SpeedGroup::*of_group;
 };
 constexpr std::array<Direction, 3> directions = {{
-    {1, 0.25, 1.0 / pi, &SlotFit::tangential, &SpeedGroup::tangential},
-    {0, -0.25, -1.0 / pi, &SlotFit::radial, &SpeedGroup::radial},
-    {2, 1.0 / pi, 0.5, &SlotFit::axial, &SpeedGroup::axial},
+    {"fy", 1, 0.25, 1.0 / pi, &SlotFit::tangential, &SpeedGroup::tangential},
+    {"fx", 0, -0.25, -1.0 / pi, &SlotFit::radial, &SpeedGroup::radial},
+    {"fz", 2, 1.0 / pi, 0.5, &SlotFit::axial, &SpeedGroup::axial},
 }};
 
 using Slots = std::vector<SlotForce>;
@@ -159,6 +165,48 @@ void compare_speeds(const Slots& slots, const SlotOptions& options, SlotFit& fit
   }
 }
 
+/// The row without which the others follow the model, in words; empty where there is none. It need not be the one that
+/// fits worst: a row far from the others draws the fit to itself.
+std::string odd_row(const Slots& slots, const Direction& direction, const SlotOptions& options) {
+  double best = good_fit;
+  std::string text;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    Slots others = slots;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    if (others.size() < 3 || one_feed(others)) continue;
+    const double r_squared = fit_pair(others, direction, options, true).pair.r_squared;
+    if (!(r_squared > best)) continue;
+    best = r_squared;
+    text = "Row " + std::to_string(i + 1) + " is the odd one: the others follow the model without it. ";
+  }
+  return text;
+}
+
+/// Forces that scatter more about the model than about their mean are no slots' forces, or not in these units.
+/// @throws InvalidInput
+void check_model(const Slots& slots, const SlotOptions& options, SlotFit& fit) {
+  double most_n = 0.0;
+  for (const SlotForce& slot : slots) most_n = std::max(most_n, slot.mean_force_n.norm());
+  for (const Direction& direction : directions) {
+    const double r_squared = (fit.*direction.pair).r_squared;
+    const Eigen::VectorXd residual_n = fit.residual_n.row(direction.component).transpose();
+    // A force that is small beside the others may be noise alone.
+    if (!(r_squared < poor_fit) || residual_n.cwiseAbs().maxCoeff() < noise_share * most_n) continue;
+    const std::string force = std::string("R² of ") + direction.name + " is ";
+    if (r_squared >= 0.0) {
+      fit.notes.push_back(force + std::to_string(r_squared).substr(0, 4) +
+                          ": feed and depth explain little of that force; look at the rows.");
+      continue;
+    }
+    throw InvalidInput(
+        "slots",
+        "do not follow a slot's forces, which grow with feed and depth: " + force +
+            std::to_string(std::lround(r_squared)) + ", where their mean alone has 0",
+        odd_row(slots, direction, options) +
+            "Are feed, depth and forces in their columns and units, and the forces means of full slots?");
+  }
+}
+
 void judge(std::size_t rows, SlotFit& fit) {
   const bool signs = fit.tangential.cutting_n_per_m2 < 0.0 || fit.radial.cutting_n_per_m2 < 0.0;
   if (fit.tangential.cutting_n_per_m2 < 0.0 && fit.radial.cutting_n_per_m2 < 0.0) {
@@ -237,6 +285,7 @@ SlotFit identify_from_slots(const std::vector<SlotForce>& slots, const SlotOptio
         "edge force too; slots at a second feed would tell.");
   }
   if (with_edge) compare_speeds(slots, options, fit);
+  if (with_edge) check_model(slots, options, fit);
   judge(slots.size(), fit);
   return fit;
 }

@@ -67,7 +67,8 @@ struct SlotFit {
 /// the means over φ of the tangential force against the motion, the radial one inwards, and h = c sin φ. They hold for
 /// any helix, with edge forces per axial depth (EdgeMeasure::width), for any pitch and with runout as long as every
 /// tooth cuts.
-/// @throws InvalidInput if a row is out of range ("slots[2].axial_depth_m"), or there are fewer than two rows
+/// @throws InvalidInput if a row is out of range ("slots[2].axial_depth_m"), there are fewer than two rows, or a force
+/// does not follow the model at all: R² < 0
 /// Source: [BudakAltintasArmarego1996]
 [[nodiscard]] ROBOMILL_API SlotFit identify_from_slots(const std::vector<SlotForce>& slots, const SlotOptions& options);
 

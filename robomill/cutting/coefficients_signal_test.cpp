@@ -22,11 +22,11 @@ using test::ball_end;
 using test::flat_end;
 using test::mm;
 
-/// [BallEndRobot]'s polynomials, with the axial one turned to our sign.
+/// [BallEndRobot] eq. 26: -15881 in Krc read as -1588.1, Kac and Kae in our sign (docs/errata.md).
 MillingCoefficients planted() {
   return {.tangential_n_per_m2 = {325.4e6, 435.8e6, -65.25e6, 1772e6},
-          .radial_n_per_m2 = {610e6, -1588e6, 500e6, 820e6},
-          .axial_n_per_m2 = {300e6, -200e6, 100e6, -150e6},
+          .radial_n_per_m2 = {1169e6, -1588.1e6, 741.1e6, 1221e6},
+          .axial_n_per_m2 = {-312.8e6, 871.6e6, -858.1e6, -100.1e6},
           .tangential_edge_n_per_m = {13.15e3},
           .radial_edge_n_per_m = {15.43e3},
           .axial_edge_n_per_m = {11.52e3}};

@@ -79,6 +79,50 @@ TEST(Slots, GiveBackThePublishedConstants) {
   EXPECT_EQ(found.radial_edge_n_per_m, std::vector<double>{fit.radial.edge_n_per_m});
 }
 
+/// Nine slots at three feeds and three depths.
+std::vector<SlotForce> slots_of_three_depths() {
+  std::vector<SlotForce> slots;
+  for (const double depth_mm : {1.0, 2.0, 3.0}) {
+    for (const double feed_mm : {0.05, 0.1, 0.2}) slots.push_back(slot({}, 4, depth_mm * mm, feed_mm * mm));
+  }
+  return slots;
+}
+
+// Each fault leaves forces that scatter more about the model than about their mean.
+TEST(Slots, RejectForcesThatAreNoSlots) {
+  const auto told = [](const auto& spoil) {
+    std::vector<SlotForce> slots = slots_of_three_depths();
+    spoil(slots);
+    return test::refusal([&] { static_cast<void>(identify_from_slots(slots, {.teeth = 4})); });
+  };
+  const std::string unit = told([](auto& slots) { slots[4].axial_depth_m *= 1000.0; });
+  EXPECT_NE(unit.find("R² of fy is -"), std::string::npos) << unit;
+  EXPECT_NE(unit.find("Row 5 is the odd one"), std::string::npos) << unit;
+  const std::string still = told([](auto& slots) {
+    for (SlotForce& row : slots) row.mean_force_n = {-500.0 + 0.01 * row.axial_depth_m, 600.0, 0.0};
+    slots[0].mean_force_n.y() = 601.0;
+  });
+  EXPECT_NE(still.find("R² of fy is -"), std::string::npos) << still;
+  const std::string columns = told([](auto& slots) {
+    for (SlotForce& row : slots) row.mean_force_n = {row.mean_force_n.y(), 1e3 - row.mean_force_n.z(), 5.0};
+  });
+  EXPECT_NE(columns.find("slots"), std::string::npos) << columns;
+}
+
+// Scatter about the model lowers R² without making it nonsense: that is told, and the numbers stand.
+TEST(Slots, TellAPoorFit) {
+  Random random(11);
+  std::vector<SlotForce> slots = slots_of_three_depths();
+  for (SlotForce& row : slots) row.mean_force_n.y() = 400.0 * random.normal();
+  try {
+    const SlotFit fit = identify_from_slots(slots, {.teeth = 4});
+    EXPECT_LT(fit.tangential.r_squared, 0.5);
+    EXPECT_TRUE(notes_say(fit.notes, "R² of fy is 0."));
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << error.what();
+  }
+}
+
 TEST(Slots, RandomConstantsAndDepths) {
   Random random(1);
   for (int seed = 0; seed < seeds(200); ++seed) {

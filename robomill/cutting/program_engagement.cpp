@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/cutting/ring_look.hpp"
 
 namespace robomill::cutting {
 namespace {
@@ -20,111 +20,10 @@ using std::numbers::pi;
 constexpr std::size_t ring_grain = 8;
 constexpr double most_looks = 1e12;    ///< along a program: hours
 constexpr double worth_sharing = 3e4;  ///< looks; fewer are done before another thread has woken
-constexpr double sliding = 1e-9;       ///< n·v of a face that slides along, from rounding, per speed
 
-/// a sin φ + b cos φ + c > 0 on at most one range of φ.
-std::optional<Arc> positive_arc(double a, double b, double c) {
-  const double size = std::hypot(a, b);
-  if (c >= size) return c > 0.0 ? std::optional(Arc{.entry_rad = 0.0, .exit_rad = 2.0 * pi}) : std::nullopt;
-  if (c <= -size) return std::nullopt;
-  const double middle = std::atan2(a, b);
-  const double half = std::acos(-c / size);
-  return Arc{.entry_rad = middle - half, .exit_rad = middle + half};
-}
-
-/// A pose with directions across its axis.
-struct Stand {
-  Vector3d tip, x, y, z;
-  Vector3d velocity, turn;
-  /// At most that of a ring's points.
-  [[nodiscard]] double speed(const EdgeSlice& slice) const {
-    return velocity.norm() + turn.norm() * (slice.radius_m + slice.height_m);
-  }
-};
-
-struct Ring {
-  const EdgeSlice& slice;
-  const Stand& stand;
-  const Workpiece& part;
-  double ahead = 0.0;
-
-  [[nodiscard]] Vector3d point(double phi) const {
-    return stand.tip + slice.radius_m * (std::sin(phi) * stand.x + std::cos(phi) * stand.y) + slice.height_m * stand.z;
-  }
-  [[nodiscard]] double depth(double phi) const {
-    Vector3d p = point(phi);
-    if (ahead > 0.0) {
-      const Vector3d v = stand.velocity + stand.turn.cross(p - stand.tip);
-      if (const double speed = v.norm(); speed > 0.0) p += ahead / speed * v;
-    }
-    return part.depth_m(p);
-  }
-  /// Where depth changes sign between two angles of unlike sign.
-  [[nodiscard]] double edge(double a, double depth_a, double b, double depth_b, double close) const {
-    double weight_a = depth_a;
-    double weight_b = depth_b;
-    for (int i = 0; i < 40 && b - a > close; ++i) {
-      const double share = std::clamp(weight_a / (weight_a - weight_b), 0.1, 0.9);
-      const double middle = a + share * (b - a);
-      const double at = depth(middle);
-      if ((at > 0.0) == (depth_a > 0.0)) {  // Illinois: a side that stays is halved
-        a = middle;
-        weight_a = at;
-        weight_b *= 0.5;
-      } else {
-        b = middle;
-        weight_b = at;
-        weight_a *= 0.5;
-      }
-    }
-    return 0.5 * (a + b);
-  }
-};
-
-Arc normalised(double entry, double exit) {
-  const double turn = 2.0 * pi;
-  double start = entry - turn * std::floor(entry / turn);
-  if (start >= turn) start = 0.0;  // what lies a rounding below 0
-  return {.entry_rad = start, .exit_rad = start + std::min(exit - entry, turn)};
-}
-
-/// Front of the ring by its normals and velocities, then material on it.
-void look(const Ring& ring, double angle_step, double close_m, std::vector<Arc>& arcs) {
-  arcs.clear();
-  const EdgeSlice& s = ring.slice;
-  const Stand& stand = ring.stand;
-  const double sine = std::sin(s.position_rad);
-  const double cosine = std::cos(s.position_rad);
-  // n·v = n·v_tip + ω·(p × n), p × n = (r cos κ + z sin κ) e_z × e_r
-  const double lever = s.radius_m * cosine + s.height_m * sine;
-  const std::optional<Arc> front =
-      positive_arc(sine * stand.velocity.dot(stand.x) + lever * stand.turn.dot(stand.z.cross(stand.x)),
-                   sine * stand.velocity.dot(stand.y) + lever * stand.turn.dot(stand.z.cross(stand.y)),
-                   -cosine * stand.velocity.dot(stand.z) - sliding * stand.speed(s));
-  if (!front) return;
-  const double length = front->exit_rad - front->entry_rad;
-  const double step = std::max(angle_step, 1e-3);
-  const int cells = std::max(static_cast<int>(std::ceil(length / step)), 2);
-  const double close = close_m / std::max(s.radius_m, close_m);
-  double before = front->entry_rad;
-  double depth_before = ring.depth(before);
-  double entry = before;
-  for (int i = 1; i <= cells; ++i) {
-    const double phi = front->entry_rad + length * i / cells;
-    const double depth = ring.depth(phi);
-    if ((depth > 0.0) != (depth_before > 0.0)) {
-      const double edge = ring.edge(before, depth_before, phi, depth, close);
-      if (depth > 0.0) {
-        entry = edge;
-      } else {
-        arcs.push_back(normalised(entry, edge));
-      }
-    }
-    before = phi;
-    depth_before = depth;
-  }
-  if (depth_before > 0.0) arcs.push_back(normalised(entry, before));
-}
+using detail::RingLook;
+using detail::Seen;
+using detail::Stand;
 
 /// What cuts: its middle, and how far it reaches.
 struct Patch {
@@ -132,11 +31,11 @@ struct Patch {
   double area = 0.0;
 };
 
-Patch patch_of(const std::vector<EdgeSlice>& slices, const std::vector<std::vector<Arc>>& arcs, const Stand& stand) {
+Patch patch_of(const Engagement& e, const Stand& stand) {
   Patch out;
-  for (std::size_t i = 0; i < slices.size(); ++i) {
-    const EdgeSlice& s = slices[i];
-    for (const Arc& arc : arcs[i]) {
+  for (std::size_t i = 0; i < e.slices.size(); ++i) {
+    const EdgeSlice& s = e.slices[i];
+    for (const Arc& arc : e.of(i)) {
       const double length = arc.exit_rad - arc.entry_rad;
       const double area = s.radius_m * s.width_m * length;
       const Vector3d across = (std::cos(arc.entry_rad) - std::cos(arc.exit_rad)) * stand.x +
@@ -203,7 +102,7 @@ void measure(const Stand& stand, PoseEngagement& out) {
 
 /// Turns arcs about the axis: φ' = φ - by.
 void turn_arcs(Engagement& e, double by) {
-  for (Arc& arc : e.arcs) arc = normalised(arc.entry_rad - by, arc.exit_rad - by);
+  for (Arc& arc : e.arcs) arc = detail::normalised(arc.entry_rad - by, arc.exit_rad - by);
 }
 
 }  // namespace
@@ -216,29 +115,123 @@ void WalkOptions::validate() const {
   if (batch < 1) throw InvalidInput("batch", static_cast<double>(batch), "", "must be at least 1");
 }
 
+/// Goes along the meridian piece by piece, whose rings were looked at in their middles, and adds those parts of it that
+/// cut. Where the cut begins or ends between two looks the border is found, so that no ring is in it by halves.
+class EngagementFinder::Gather {
+ public:
+  Gather(const EngagementFinder& finder, const RingLook& look, Engagement& out)
+      : finder_(finder), look_(look), out_(out) {}
+
+  void piece(const Cells& cells, std::span<const Seen> middles) {
+    const Seen first = seen_first(cells, middles.front());
+    const Seen last = middles.back().arcs.empty() ? middles.back() : seen_end(cells.last);
+    const double end = cells.start_m + static_cast<double>(cells.count) * cells.width_m;
+    double from = cells.start_m;
+    double at = from;
+    const Seen* before = &first;
+    for (std::size_t i = 0; i <= cells.count; ++i) {
+      const Seen& seen = i < cells.count ? middles[i] : last;
+      const double place = i < cells.count ? cells.middle(i) : end;
+      if (seen.arcs.empty() != before->arcs.empty()) {
+        const double border = border_between(at, *before, place, seen);
+        if (seen.arcs.empty()) {
+          add(cells, middles, from, border);
+        } else {
+          from = border;
+        }
+      }
+      before = &seen;
+      at = place;
+    }
+    if (!before->arcs.empty()) add(cells, middles, from, end);
+  }
+
+ private:
+  [[nodiscard]] Seen seen_end(const EdgeSlice& slice) {
+    Seen seen;
+    look_.at(slice, finder_.step_rad(slice), seen);
+    if (seen.depth_m < close_m()) seen.arcs.clear();  // it may just touch what it has left before
+    return seen;
+  }
+  /// A cut may end below the middle of the first ring. On the axis there is nothing to see.
+  [[nodiscard]] Seen seen_first(const Cells& cells, const Seen& middle) {
+    return cells.first.radius_m > 0.0 ? seen_end(cells.first) : middle;
+  }
+  [[nodiscard]] double border_between(double a, const Seen& seen_a, double b, const Seen& seen_b) {
+    // The depth of a ring without arcs may be 0, where it only touches.
+    const auto signed_depth = [](const Seen& seen) {
+      constexpr double least = 1e-12;
+      return seen.arcs.empty() ? std::min(seen.depth_m, -least) : std::max(seen.depth_m, least);
+    };
+    const auto depth_at = [&](double place) {
+      const EdgeSlice slice = finder_.slice_at(place, 0.0);
+      look_.at(slice, finder_.step_rad(slice), seen_);
+      return signed_depth(seen_);
+    };
+    return detail::crossing(depth_at, a, signed_depth(seen_a), b, signed_depth(seen_b), close_m(), 0.25 * close_m());
+  }
+  /// How well a border is found.
+  [[nodiscard]] double close_m() const { return 0.02 * finder_.dexel_m_; }
+
+  /// Rings of the piece between two places, the first and the last cut off there.
+  void add(const Cells& cells, std::span<const Seen> middles, double from, double to) {
+    for (std::size_t i = 0; i < cells.count; ++i) {
+      const double low = std::max(from, cells.start_m + static_cast<double>(i) * cells.width_m);
+      const double high = std::min(to, cells.start_m + static_cast<double>(i + 1) * cells.width_m);
+      if (!(high - low > sliver * cells.width_m)) continue;
+      if (high - low > (1.0 - sliver) * cells.width_m) {
+        push(finder_.slices_[cells.begin + i], middles[i].arcs);
+        continue;
+      }
+      const EdgeSlice slice = finder_.slice_at(0.5 * (low + high), high - low);
+      look_.at(slice, finder_.step_rad(slice), seen_);
+      if (!seen_.arcs.empty()) push(slice, seen_.arcs);
+    }
+  }
+
+  void push(const EdgeSlice& slice, const std::vector<Arc>& arcs) {
+    out_.slices.push_back(slice);
+    out_.first_arc.push_back(out_.arcs.size());
+    out_.arcs.insert(out_.arcs.end(), arcs.begin(), arcs.end());
+  }
+
+  static constexpr double sliver = 1e-6;  ///< of a ring's width
+  const EngagementFinder& finder_;
+  const RingLook& look_;
+  Engagement& out_;
+  Seen seen_;
+};
+
 EngagementFinder::EngagementFinder(const Cutter& cutter, double dexel_m, const WalkOptions& options)
-    : dexel_m_(dexel_m) {
+    : profile_(cutter), mill_(cutter.mill), dexel_m_(dexel_m) {
   options.validate();
   require_positive("dexel_m", dexel_m, "m");
-  const Profile profile(cutter);
   angle_step_rad_ = options.angle_step_rad > 0.0 ? options.angle_step_rad : pi / 18.0;
   step_m_ = options.angle_step_rad > 0.0 ? 0.0 : 2.0 * dexel_m;
-  for (const Profile::Piece& piece : profile.pieces()) {
+  for (const Profile::Piece& piece : profile_.pieces()) {
     const bool side = piece.arc_radius_m == 0.0 && piece.first.position_rad > 0.25 * pi;
     const double width = options.ring_width_m > 0.0 ? options.ring_width_m : dexel_m;
     const double least = options.ring_width_m > 0.0 || side ? 1.0 : 12.0;
     const double count = std::clamp(std::ceil(piece.length_m / width - 1e-9), least, 1e5);
-    for (double i = 0.0; i < count; i += 1.0) {
-      const Profile::Point at = profile.at(piece.start_m + piece.length_m * (i + 0.5) / count);
-      slices_.push_back({.radius_m = at.radius_m,
-                         .height_m = at.height_m,
-                         .position_rad = at.position_rad,
+    const Cells cells = {.start_m = piece.start_m,
                          .width_m = piece.length_m / count,
-                         .edge_length_per_width = edge_length_per_width(cutter.mill, 0, at)});
-    }
+                         .begin = slices_.size(),
+                         .count = static_cast<std::size_t>(count),
+                         .first = slice_at(piece.first, 0.0),
+                         .last = slice_at(piece.last, 0.0)};
+    for (std::size_t i = 0; i < cells.count; ++i) slices_.push_back(slice_at(cells.middle(i), cells.width_m));
+    cells_.push_back(cells);
   }
   for (const EdgeSlice& slice : slices_) looks_ += 2.0 * pi / step_rad(slice);
   ring_grain_ = looks_ > worth_sharing ? ring_grain : slices_.size();
+}
+
+EdgeSlice EngagementFinder::slice_at(const Profile::Point& at, double width_m) const {
+  return {.radius_m = at.radius_m,
+          .height_m = at.height_m,
+          .position_rad = at.position_rad,
+          .width_m = width_m,
+          .edge_length_per_width = edge_length_per_width(mill_, 0, at)};
 }
 
 double EngagementFinder::step_rad(const EdgeSlice& slice) const {
@@ -250,28 +243,22 @@ PoseEngagement EngagementFinder::at(const Workpiece& workpiece, const program::P
   PoseEngagement out;
   Matrix3d frame = feed_frame(
       motion.tip_m_per_s.squaredNorm() > 0.0 ? motion.tip_m_per_s : Vector3d(pose.axis.unitOrthogonal()), pose.axis);
-  Stand stand = {.tip = pose.tip_m,
-                 .x = frame.col(1).cross(pose.axis),
-                 .y = frame.col(1),
-                 .z = pose.axis,
-                 .velocity = motion.tip_m_per_s,
-                 .turn = motion.turn_rad_per_s};
-  std::vector<std::vector<Arc>> arcs(slices_.size());
+  const Stand stand = {.tip = pose.tip_m,
+                       .x = frame.col(1).cross(pose.axis),
+                       .y = frame.col(1),
+                       .z = pose.axis,
+                       .velocity = motion.tip_m_per_s,
+                       .turn = motion.turn_rad_per_s};
+  const RingLook look = {.stand = stand, .part = workpiece, .ahead_m = ahead_m, .close_m = 0.01 * dexel_m_};
+  std::vector<Seen> seen(slices_.size());
   parallel_for(slices_.size(), ring_grain_, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Ring ring = {.slice = slices_[i], .stand = stand, .part = workpiece, .ahead = ahead_m};
-      look(ring, step_rad(slices_[i]), 0.01 * dexel_m_, arcs[i]);
-    }
+    for (std::size_t i = begin; i < end; ++i) look.at(slices_[i], step_rad(slices_[i]), seen[i]);
   });
   Engagement& e = out.engagement;
-  for (std::size_t i = 0; i < slices_.size(); ++i) {
-    if (arcs[i].empty()) continue;
-    e.slices.push_back(slices_[i]);
-    e.first_arc.push_back(e.arcs.size());
-    e.arcs.insert(e.arcs.end(), arcs[i].begin(), arcs[i].end());
-  }
+  Gather gather(*this, look, e);
+  for (const Cells& cells : cells_) gather.piece(cells, std::span(seen).subspan(cells.begin, cells.count));
   e.first_arc.push_back(e.arcs.size());
-  const Patch patch = patch_of(slices_, arcs, stand);
+  const Patch patch = patch_of(e, stand);
   const Vector3d velocity = motion.tip_m_per_s + motion.turn_rad_per_s.cross(patch.middle);
   out.feed_speed_m_per_s = velocity.norm();
   if (out.feed_speed_m_per_s > 0.0) frame = feed_frame(velocity, pose.axis);
@@ -285,26 +272,6 @@ PoseEngagement EngagementFinder::at(const Workpiece& workpiece, const program::P
   tool << y_across.cross(pose.axis), y_across, pose.axis;
   e.feed_from_tool = frame.transpose() * tool;
   return out;
-}
-
-Stock stock_about(const program::Program& program, const Cutter& cutter, double dexel_m, double axial_depth_m) {
-  require_positive("dexel_m", dexel_m, "m");
-  require_positive("axial_depth_m", axial_depth_m, "m");
-  const double radius = Profile(cutter).max_radius_m();
-  Stock stock;
-  stock.min_m.setConstant(1e300);
-  stock.max_m.setConstant(-1e300);
-  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
-    if (program.blocks[i].kind != program::Block::Kind::feed) continue;
-    for (const Vector3d& tip : {program.begin_of(i).tip_m, program.blocks[i].end.tip_m}) {
-      stock.min_m = stock.min_m.cwiseMin(tip);
-      stock.max_m = stock.max_m.cwiseMax(tip);
-    }
-  }
-  if (stock.min_m.x() > stock.max_m.x()) throw InvalidInput("program", "has no feed move", "It would cut nothing");
-  stock.min_m -= Vector3d(radius, radius, dexel_m);
-  stock.max_m += Vector3d(radius, radius, axial_depth_m);
-  return stock;
 }
 
 namespace {

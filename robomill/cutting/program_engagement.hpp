@@ -58,10 +58,25 @@ class ROBOMILL_API EngagementFinder {
   [[nodiscard]] double looks() const { return looks_; }
 
  private:
+  class Gather;
+  /// Even rings of one piece of the meridian.
+  struct Cells {
+    double start_m = 0.0, width_m = 0.0;
+    std::size_t begin = 0, count = 0;  ///< of slices_
+    EdgeSlice first, last;             ///< at the ends, without width
+    [[nodiscard]] double middle(std::size_t i) const { return start_m + (static_cast<double>(i) + 0.5) * width_m; }
+  };
+  Profile profile_;
+  FlatEndMill mill_;
+  std::vector<Cells> cells_;
   std::vector<EdgeSlice> slices_;
   double angle_step_rad_ = 0.0;  ///< largest
   double dexel_m_ = 0.0, step_m_ = 0.0, looks_ = 0.0;
   std::size_t ring_grain_ = 0;
+  [[nodiscard]] EdgeSlice slice_at(const Profile::Point& at, double width_m) const;
+  [[nodiscard]] EdgeSlice slice_at(double length_m, double width_m) const {
+    return slice_at(profile_.at(length_m), width_m);
+  }
   [[nodiscard]] double step_rad(const EdgeSlice& slice) const;
 };
 
@@ -87,11 +102,5 @@ using Deliver = std::function<void(std::span<const BlockEngagement>)>;
 /// material, Interrupted when asked to stop
 ROBOMILL_API void walk(const program::Program& program, const Cutter& cutter, Workpiece& workpiece,
                        const WalkOptions& options, const Deliver& deliver, Progress& progress = Progress::none());
-
-/// Stock where a job gives none: the box of the tips of all feed moves, larger by the cutter's radius in x and y, from
-/// a dexel below the lowest tip to `axial_depth_m` above the highest.
-/// @throws InvalidInput if the program has no feed move or a length is not > 0
-[[nodiscard]] ROBOMILL_API Stock stock_about(const program::Program& program, const Cutter& cutter, double dexel_m,
-                                             double axial_depth_m);
 
 }  // namespace robomill::cutting

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "robomill/base/parallel.hpp"
+#include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
+#include "robomill/cutting/analytic_engagement.hpp"
 
 namespace robomill::cutting {
 namespace {
@@ -49,12 +51,7 @@ Pose pose_of(const Pass& pass, double x, double y) {
   return {.tip_m = Vector3d(x, y, pass.radius_m) - pass.radius_m * axis_of(pass), .axis = axis_of(pass)};
 }
 
-struct Look {
-  EngagementFinder finder;
-  PoseEngagement cut;
-};
-
-Look look_at(const Pass& pass, double dexel, const WalkOptions& options) {
+PoseEngagement look_at(const Pass& pass, double dexel, const WalkOptions& options) {
   const double reach = std::sqrt(pass.depth_m * (2.0 * pass.radius_m - pass.depth_m));
   Workpiece part(
       box({-0.7 * reach, -reach - pass.stepover_m - 0.3e-3, -0.3e-3}, {reach + 1e-3, reach + 0.3e-3, pass.depth_m}),
@@ -64,8 +61,8 @@ Look look_at(const Pass& pass, double dexel, const WalkOptions& options) {
   const double far = 3.0 * pass.radius_m;
   part.remove(profile, pose_of(pass, -far, -pass.stepover_m), pose_of(pass, far, -pass.stepover_m));
   part.remove(profile, pose_of(pass, -far, 0.0), pose_of(pass, -0.3e-3, 0.0));
-  const EngagementFinder finder(cutter, part.dexel_m(), options);
-  return {finder, finder.at(part, pose_of(pass, 0.0, 0.0), {.tip_m_per_s = {0.02, 0.0, 0.0}}, 0.0)};
+  return EngagementFinder(cutter, part.dexel_m(), options)
+      .at(part, pose_of(pass, 0.0, 0.0), {.tip_m_per_s = {0.02, 0.0, 0.0}}, 0.0);
 }
 
 /// Whether the point of ring and angle cuts, by the conditions about the ball's centre, whose directions are those of
@@ -76,26 +73,28 @@ bool cuts(const Pass& pass, const Vector3d& normal) {
   return p.z() <= pass.depth_m - r && std::pow(p.y() + pass.stepover_m, 2) + p.z() * p.z() >= r * r && normal.x() > 0.0;
 }
 
-/// Area where arcs and conditions differ.
-double mismatch_m2(const Pass& pass, const EngagementFinder& finder, const PoseEngagement& cut) {
+/// Area where arcs and conditions differ, over rings much thinner than those of the finder.
+double mismatch_m2(const Pass& pass, const PoseEngagement& cut) {
+  const Engagement& e = cut.engagement;
   double area = 0.0;
-  constexpr int angles = 3000;
-  for (const EdgeSlice& slice : finder.slices()) {
+  constexpr int rings = 400;
+  constexpr int angles = 2000;
+  for (int ring = 0; ring < rings; ++ring) {
+    // The lowest 2 R of the envelope are the ball, whatever leans; above its equator nothing of these passes cuts.
+    const double position = 0.5 * pi * (ring + 0.5) / rings;
     std::span<const Arc> arcs;
-    for (std::size_t i = 0; i < cut.engagement.slices.size(); ++i) {
-      if (cut.engagement.slices[i].height_m == slice.height_m) arcs = cut.engagement.of(i);
+    for (std::size_t i = 0; i < e.slices.size(); ++i) {
+      if (std::abs(position - e.slices[i].position_rad) * pass.radius_m < 0.5 * e.slices[i].width_m) arcs = e.of(i);
     }
+    const double sine = std::sin(position);
     for (int k = 0; k < angles; ++k) {
       const double phi = 2.0 * pi * (k + 0.5) / angles;
-      const Vector3d normal_t(std::sin(slice.position_rad) * std::sin(phi),
-                              std::sin(slice.position_rad) * std::cos(phi), -std::cos(slice.position_rad));
+      const Vector3d normal_t(sine * std::sin(phi), sine * std::cos(phi), -std::cos(position));
       const bool in = std::ranges::any_of(arcs, [&](const Arc& arc) {
         return (phi > arc.entry_rad && phi < arc.exit_rad) || phi + 2.0 * pi < arc.exit_rad;
       });
-      // The lowest 2 R of the envelope are the ball, whatever leans; above its equator nothing of these passes cuts.
-      const bool should =
-          slice.position_rad < 0.5 * pi && cuts(pass, cut.work_from_feed * (cut.engagement.feed_from_tool * normal_t));
-      if (in != should) area += slice.radius_m * slice.width_m * 2.0 * pi / angles;
+      if (in == cuts(pass, cut.work_from_feed * (e.feed_from_tool * normal_t))) continue;
+      area += pass.radius_m * sine * pass.radius_m * (0.5 * pi / rings) * (2.0 * pi / angles);
     }
   }
   return area;
@@ -107,12 +106,12 @@ constexpr std::array<Pass, 5> passes = {{{3e-3, 1e-3, 0.5e-3, 0.0, 0.0},
                                          {3e-3, 1e-3, 0.5e-3, 0.3, 0.0},
                                          {3e-3, 1e-3, 0.5e-3, -0.25, 0.35}}};
 
-// Published areas of patch and chip; the dexel is a twentieth of the depth.
-TEST(EngagementFinder, BallPassHasThePublishedAreas) {
+// Areas of patch and chip from an independent numerical integration; the dexel is a twentieth of the depth.
+TEST(EngagementFinder, BallPassHasTheIntegratedAreas) {
   constexpr std::array<double, 3> patch_mm2 = {2.7333, 4.6101, 5.6260};
   constexpr std::array<double, 3> chip_mm2 = {0.49826, 1.18605, 1.18956};
   for (std::size_t i = 0; i < 3; ++i) {
-    const PoseEngagement cut = look_at(passes[i], 0.05e-3, {.ring_width_m = 0.01e-3, .angle_step_rad = 0.01}).cut;
+    const PoseEngagement cut = look_at(passes[i], 0.05e-3, {.ring_width_m = 0.01e-3, .angle_step_rad = 0.01});
     EXPECT_NEAR(patch_area_m2(cut.engagement), patch_mm2[i] * 1e-6, 4e-3 * patch_mm2[i] * 1e-6);
     EXPECT_NEAR(chip_area_m2(cut.engagement), chip_mm2[i] * 1e-6, 4e-3 * chip_mm2[i] * 1e-6);
     EXPECT_NEAR(cut.axial_depth_m,
@@ -123,17 +122,18 @@ TEST(EngagementFinder, BallPassHasThePublishedAreas) {
 
 // Against the conditions themselves, tilted too: what differs is a seam narrower than the dexel along the patch's edge.
 TEST(EngagementFinder, BallPassAgreesWithItsConditionsWithinTheDexel) {
+  constexpr double seam = 0.2;
   for (const Pass& pass : passes) {
     for (const double dexel : {0.25e-3, 0.1e-3}) {
-      const Look look = look_at(pass, dexel, {});
+      const PoseEngagement cut = look_at(pass, dexel, {});
       const double perimeter =
           2.0 * (pass.stepover_m + std::sqrt(pass.depth_m * (2.0 * pass.radius_m - pass.depth_m)) + pass.depth_m);
-      EXPECT_LT(mismatch_m2(pass, look.finder, look.cut), 0.3 * dexel * perimeter) << pass.lead_rad << " " << dexel;
-      const Vector3d x = look.cut.work_from_feed.col(0);
+      EXPECT_LT(mismatch_m2(pass, cut), seam * dexel * perimeter) << pass.lead_rad << " " << dexel;
+      const Vector3d x = cut.work_from_feed.col(0);
       EXPECT_LT((x - Vector3d::UnitX()).norm(), 1e-12);
       // T maps through F to the axis in W.
-      EXPECT_LT((look.cut.work_from_feed * look.cut.engagement.feed_from_tool.col(2) - axis_of(pass)).norm(), 1e-12);
-      EXPECT_LT(std::abs(look.cut.engagement.feed_from_tool(1, 2)), 1e-12) << "T leads but does not tilt in F";
+      EXPECT_LT((cut.work_from_feed * cut.engagement.feed_from_tool.col(2) - axis_of(pass)).norm(), 1e-12);
+      EXPECT_LT(std::abs(cut.engagement.feed_from_tool(1, 2)), 1e-12) << "T leads but does not tilt in F";
     }
   }
 }
@@ -171,6 +171,71 @@ TEST(EngagementFinder, FlatEndMillEntersAndLeavesAtTheImmersion) {
       EXPECT_NEAR(cut.radial_depth_m, across, 0.02e-3) << radial;
     }
   }
+}
+
+/// An upright ball of 3 mm in a slab whose top is z = 0, along any direction, its rays standing anywhere.
+struct Straight {
+  Cut cut;
+  double most_bias, most_scatter;  ///< of the chip's area, relative
+};
+
+PoseEngagement look_at(const Straight& pass, double dexel, Random& random) {
+  const double depth = pass.cut.axial_depth_m;
+  Stock stock = box({-8e-3, -8e-3, -depth - 1e-3}, {8e-3, 8e-3, 0.0});
+  for (double& low : stock.min_m) low -= random.uniform(0.0, 1e-3);
+  Workpiece part(stock, dexel);
+  const double heading = random.uniform(0.0, 2.0 * pi);
+  const Vector3d x(std::cos(heading), std::sin(heading), 0.0);
+  const Vector3d y(-x.y(), x.x(), 0.0);
+  const Vector3d tip(0.0, 0.0, -depth);
+  const Cutter cutter = end_mill(CutterKind::ball_end, 3e-3);
+  const Profile profile(cutter);
+  if (pass.cut.direction != MillingDirection::slot) {
+    const double side = pass.cut.direction == MillingDirection::down ? 1.0 : -1.0;
+    const Vector3d beside = tip + side * pass.cut.radial_depth_m * y;
+    part.remove(profile, {.tip_m = beside - 0.03 * x}, {.tip_m = beside + 0.03 * x});
+  }
+  part.remove(profile, {.tip_m = tip - 0.03 * x}, {.tip_m = tip - 1.5e-3 * x});
+  return EngagementFinder(cutter, part.dexel_m(), {}).at(part, {.tip_m = tip}, {.tip_m_per_s = 0.02 * x}, 0.0);
+}
+
+// Two ways: rays of the default spacing, and the analytic engagement. Rings end where the cut ends, so that a depth
+// between two of them is no deeper.
+TEST(EngagementFinder, DefaultDexelsAreNoDeeperThanTheAnalyticCut) {
+  const Straight cases[] = {
+      {{.axial_depth_m = 0.5e-3, .direction = MillingDirection::slot}, 0.008, 0.003},
+      {{.axial_depth_m = 1e-3, .direction = MillingDirection::slot}, 0.004, 0.001},
+      {{.axial_depth_m = 2e-3, .direction = MillingDirection::slot}, 0.002, 0.001},
+      {{.axial_depth_m = 1e-3, .radial_depth_m = 0.5e-3, .direction = MillingDirection::down}, 0.01, 0.015},
+      {{.axial_depth_m = 1e-3, .radial_depth_m = 0.5e-3, .direction = MillingDirection::up}, 0.01, 0.015},
+      {{.axial_depth_m = 1.2e-3, .radial_depth_m = 1e-3, .direction = MillingDirection::up}, 0.005, 0.01},
+      {{.axial_depth_m = 2e-3, .radial_depth_m = 1e-3, .direction = MillingDirection::down}, 0.005, 0.005}};
+  constexpr int places = 20;
+  for (const Straight& pass : cases) {
+    Random random(7);
+    const double expected = chip_area_m2(engage(end_mill(CutterKind::ball_end, 3e-3), pass.cut));
+    Eigen::ArrayXd error(places);
+    for (int i = 0; i < places; ++i) {
+      const PoseEngagement cut = look_at(pass, 0.25e-3, random);
+      error[i] = chip_area_m2(cut.engagement) / expected - 1.0;
+      EXPECT_NEAR(cut.axial_depth_m, pass.cut.axial_depth_m, 0.01e-3);
+    }
+    const double bias = error.mean();
+    EXPECT_LT(std::abs(bias), pass.most_bias) << pass.cut.axial_depth_m;
+    EXPECT_LT(std::sqrt((error - bias).square().mean()), pass.most_scatter) << pass.cut.axial_depth_m;
+  }
+}
+
+// Less deep than half a ring.
+TEST(EngagementFinder, SeesACutThinnerThanItsRings) {
+  const Cutter cutter = end_mill(CutterKind::flat_end, 5e-3);
+  Workpiece part(box({0.0, -0.01, 0.0}, {0.02, 0.01, 0.004}), 0.25e-3);
+  const Pose now = {.tip_m = {0.006, 0.0, 0.0039}};
+  part.remove(Profile(cutter), {.tip_m = {-0.02, 0.0, 0.0039}}, {.tip_m = {0.003, 0.0, 0.0039}});
+  const PoseEngagement cut =
+      EngagementFinder(cutter, part.dexel_m(), {}).at(part, now, {.tip_m_per_s = {1.0, 0.0, 0.0}}, 0.0);
+  EXPECT_NEAR(cut.axial_depth_m, 0.1e-3, 0.005e-3);
+  EXPECT_NEAR(chip_area_m2(cut.engagement), 1e-6, 0.05e-6);
 }
 
 // A drill's bottom cuts all around.
@@ -364,17 +429,6 @@ TEST(Walk, RefusesFeedMovesWithoutDuration) {
   Workpiece part(box({0.0, 0.0, 0.0}, {0.02, 0.02, 0.01}), 0.5e-3);
   EXPECT_EQ(test::field_of([&] { walk(program, end_mill(CutterKind::ball_end, 3e-3), part, {}, [](auto) {}); }),
             "duration_s");
-}
-
-TEST(StockAbout, HoldsTheFeedMoves) {
-  const Stock stock = stock_about(zigzag(), end_mill(CutterKind::ball_end, 3e-3), 0.25e-3, 2e-3);
-  EXPECT_LT((stock.min_m - Vector3d(-0.009, -0.003, 0.00775)).norm(), 1e-15);
-  EXPECT_LT((stock.max_m - Vector3d(0.029, 0.011, 0.0105)).norm(), 1e-15);
-  Program rapids = zigzag();
-  std::erase_if(rapids.blocks, [](const Block& block) { return block.kind == Block::Kind::feed; });
-  EXPECT_EQ(
-      test::field_of([&] { static_cast<void>(stock_about(rapids, end_mill(CutterKind::ball_end, 3e-3), 1e-4, 1e-3)); }),
-      "program");
 }
 
 TEST(WalkOptions, RefusesNamingTheMember) {

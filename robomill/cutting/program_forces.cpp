@@ -9,31 +9,63 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/cutting/analytic_engagement.hpp"
+#include "robomill/cutting/moving_mean.hpp"
 #include "robomill/cutting/program_engagement_local.hpp"
 
 namespace robomill::cutting {
 namespace {
 
-/// One part of a block, and what it weighs in the block's means.
+/// What one part of a block asks for.
 struct PartForce {
   ForceSummary summary;
   Eigen::Vector3d mean_force_n = Eigen::Vector3d::Zero();  ///< in W
   double feed_per_tooth_m = 0.0;
 };
 
-void add(const BlockEngagement& part, const PartForce& force, double share, BlockForce& block) {
-  block.axial_depth_m = std::max(block.axial_depth_m, part.cut.axial_depth_m);
-  block.radial_depth_m = std::max(block.radial_depth_m, part.cut.radial_depth_m);
-  block.feed_per_tooth_m = std::max(block.feed_per_tooth_m, force.feed_per_tooth_m);
-  block.mean_force_n += share * force.mean_force_n;
-  block.peak_force_n = std::max(block.peak_force_n, force.summary.peak_force_n);
-  block.mean_torque_n_m += share * force.summary.mean_torque_n_m;
-  block.peak_torque_n_m = std::max(block.peak_torque_n_m, force.summary.peak_torque_n_m);
-  block.power_w += share * force.summary.power_w;
-  block.removed_volume_m3 += part.removed_volume_m3;
-  if (part.shank) block.shank_depth_m = std::max(block.shank_depth_m, part.shank_depth_m);
-  block.rapid_in_material = block.rapid_in_material || part.rapid_in_material;
-}
+/// Adds up parts of blocks, in their order.
+class Account {
+ public:
+  Account(const ProgramForceOptions& options, std::vector<BlockForce>& blocks)
+      : options_(options), blocks_(blocks), power_(options.power_time_s), heaviest_(blocks.size(), 0.0) {}
+
+  void add(std::size_t at, double duration_s, const PartForce& part) {
+    BlockForce& block = blocks_[at];
+    const ForceSummary& force = part.summary;
+    const double sustained_w = power_.add(force.power_w, duration_s);
+    if (!(force.peak_force_n > 0.0)) return;
+    block.sustained_power_w = std::max(block.sustained_power_w, sustained_w);
+    block.cutting_time_s += duration_s;
+    block.feed_per_tooth_m = std::max(block.feed_per_tooth_m, part.feed_per_tooth_m);
+    block.mean_force_n += duration_s * part.mean_force_n;
+    block.peak_force_n = std::max(block.peak_force_n, force.peak_force_n);
+    block.mean_torque_n_m += duration_s * force.mean_torque_n_m;
+    block.revolution_torque_n_m = std::max(block.revolution_torque_n_m, force.mean_torque_n_m);
+    block.peak_torque_n_m = std::max(block.peak_torque_n_m, force.peak_torque_n_m);
+    block.power_w += duration_s * force.power_w;
+    block.peak_power_w = std::max(block.peak_power_w, force.power_w);
+    const double weight = options_.weight ? options_.weight(at, part.mean_force_n) : part.mean_force_n.norm();
+    if (weight > heaviest_[at]) {
+      heaviest_[at] = weight;
+      block.heaviest_force_n = part.mean_force_n;
+    }
+  }
+
+  /// Sums become means.
+  void close() {
+    for (BlockForce& block : blocks_) {
+      if (!block.cuts()) continue;
+      block.mean_force_n /= block.cutting_time_s;
+      block.mean_torque_n_m /= block.cutting_time_s;
+      block.power_w /= block.cutting_time_s;
+    }
+  }
+
+ private:
+  const ProgramForceOptions& options_;
+  std::vector<BlockForce>& blocks_;
+  detail::MovingMean power_;
+  std::vector<double> heaviest_;
+};
 
 double speed_of(const program::Block& block, const ProgramForceOptions& options) {
   return options.spindle_speed_rad_per_s > 0.0 ? options.spindle_speed_rad_per_s : block.spindle_speed_rad_per_s;
@@ -96,6 +128,7 @@ SurfaceCut surface_cut(const LocalCut& local, const Eigen::Vector3d& axis, doubl
 
 void ProgramForceOptions::validate() const {
   require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  require_positive("power_time_s", power_time_s, "s");
   force.validate();
   walk.validate();
 }
@@ -105,6 +138,7 @@ std::vector<BlockForce> program_forces(const program::Program& program, const Cu
                                        const ProgramForceOptions& options, Progress& progress) {
   std::vector<BlockForce> blocks = turning_blocks(program, options);
   std::vector<PartForce> forces;
+  Account account(options, blocks);
   const auto deliver = [&](std::span<const BlockEngagement> parts) {
     forces.assign(parts.size(), {});
     parallel_for(parts.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -124,10 +158,17 @@ std::vector<BlockForce> program_forces(const program::Program& program, const Cu
     });
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const BlockEngagement& part = parts[i];
-      add(part, forces[i], part.share_to - part.share_from, blocks[part.block]);
+      account.add(part.block, part.duration_s, forces[i]);
+      BlockForce& block = blocks[part.block];
+      block.axial_depth_m = std::max(block.axial_depth_m, part.cut.axial_depth_m);
+      block.radial_depth_m = std::max(block.radial_depth_m, part.cut.radial_depth_m);
+      block.removed_volume_m3 += part.removed_volume_m3;
+      if (part.shank) block.shank_depth_m = std::max(block.shank_depth_m, part.shank_depth_m);
+      block.rapid_in_material = block.rapid_in_material || part.rapid_in_material;
     }
   };
   walk(program, cutter, workpiece, options.walk, deliver, progress);
+  account.close();
   return blocks;
 }
 
@@ -140,6 +181,7 @@ std::vector<BlockForce> local_program_forces(const program::Program& program, co
   const double radius = 0.5 * cutter.mill.diameter_m;
   std::vector<BlockForce> blocks = turning_blocks(program, options);
   const LocalCuts cuts(program, cutter.mill.diameter_m);
+  std::vector<PartForce> forces(blocks.size());
   progress.start("forces", blocks.size());
   parallel_for(blocks.size(), grain, [&](std::size_t begin, std::size_t end) {
     ForceKernel kernel(cutter, coefficients, options.force);
@@ -160,22 +202,22 @@ std::vector<BlockForce> local_program_forces(const program::Program& program, co
                            "Give the stock");
       }
       BlockForce& out = blocks[i];
+      PartForce& force = forces[i];
       const double teeth_per_s = out.spindle_speed_rad_per_s * cutter.mill.teeth / (2.0 * std::numbers::pi);
-      out.feed_per_tooth_m = way / block.duration_s / teeth_per_s;
-      check_feed(out.feed_per_tooth_m, block);
+      force.feed_per_tooth_m = way / block.duration_s / teeth_per_s;
+      check_feed(force.feed_per_tooth_m, block);
       out.axial_depth_m = axial_depth_m;
       out.radial_depth_m = surface.cut.radial_depth_m;
-      const ForceSummary force = kernel.summary(
+      force.summary = kernel.summary(
           engage(cutter, surface.cut),
-          {.feed_per_tooth_m = out.feed_per_tooth_m, .spindle_speed_rad_per_s = out.spindle_speed_rad_per_s});
-      out.mean_force_n = surface.work_from_feed * force.mean_n;
-      out.peak_force_n = force.peak_force_n;
-      out.mean_torque_n_m = force.mean_torque_n_m;
-      out.peak_torque_n_m = force.peak_torque_n_m;
-      out.power_w = force.power_w;
-      out.removed_volume_m3 = force.removal_rate_m3_per_s * block.duration_s;
+          {.feed_per_tooth_m = force.feed_per_tooth_m, .spindle_speed_rad_per_s = out.spindle_speed_rad_per_s});
+      force.mean_force_n = surface.work_from_feed * force.summary.mean_n;
+      out.removed_volume_m3 = force.summary.removal_rate_m3_per_s * block.duration_s;
     }
   });
+  Account account(options, blocks);
+  for (std::size_t i = 0; i < blocks.size(); ++i) account.add(i, program.blocks[i].duration_s, forces[i]);
+  account.close();
   return blocks;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -11,24 +12,37 @@
 
 namespace robomill::cutting {
 
-/// What one block of a program asks of tool, spindle and part. Forces on the tool, in W; means over the block's time.
+/// What one block of a program asks of tool, spindle and part. Forces on the tool, in W. Means are over the time in
+/// which it cuts, so that a way through air makes them no smaller.
 struct BlockForce {
   std::size_t block = 0;        ///< of the program, from 0
+  double cutting_time_s = 0.0;  ///< in which teeth are in the material; 0: the block does not cut
   double axial_depth_m = 0.0;   ///< greatest extent of the engaged part along the tool's axis
   double radial_depth_m = 0.0;  ///< … across the feed
   double feed_per_tooth_m = 0.0;
   double spindle_speed_rad_per_s = 0.0;
   Eigen::Vector3d mean_force_n = Eigen::Vector3d::Zero();
-  double peak_force_n = 0.0;  ///< largest magnitude
-  double mean_torque_n_m = 0.0, peak_torque_n_m = 0.0;
+  double peak_force_n = 0.0;  ///< largest magnitude at any rotation
+  double mean_torque_n_m = 0.0;
+  double revolution_torque_n_m = 0.0;  ///< largest mean over one revolution
+  double peak_torque_n_m = 0.0;        ///< largest at any rotation
   double power_w = 0.0;
+  double peak_power_w = 0.0;  ///< largest mean over one revolution
+  /// Largest mean over options.power_time_s that ends while this block cuts; air and what was cut before it count.
+  double sustained_power_w = 0.0;
+  /// Of the means over one revolution the one that options.weight finds heaviest.
+  Eigen::Vector3d heaviest_force_n = Eigen::Vector3d::Zero();
   double removed_volume_m3 = 0.0;
   double shank_depth_m = 0.0;      ///< how deep the shank ran into material, where more than a dexel
   bool rapid_in_material = false;  ///< a rapid move went through material
+  [[nodiscard]] bool cuts() const { return cutting_time_s > 0.0; }
 };
 
 struct ROBOMILL_API ProgramForceOptions {
   double spindle_speed_rad_per_s = 0.0;  ///< Ω [rad/s]; 0: what the program says
+  double power_time_s = 0.1;             ///< > 0: over which sustained_power_w is a mean
+  /// How heavy a force is in a block, say the deflection that it makes there. Empty: its magnitude.
+  std::function<double(std::size_t block, const Eigen::Vector3d& force_n)> weight = {};
   ForceOptions force = {.steps = 180};
   WalkOptions walk = {};
   /// @throws InvalidInput naming the member

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
@@ -95,10 +96,84 @@ TEST(ProgramForces, EnergyIsThatOfTheVolume) {
     double energy = 0.0;
     double volume = 0.0;
     for (const BlockForce& block : {blocks[4], blocks[5]}) {  // the others begin inside the material, or in the air
-      energy += block.power_w * program.blocks[block.block].duration_s;
+      energy += block.power_w * block.cutting_time_s;
       volume += block.removed_volume_m3;
     }
     EXPECT_NEAR(energy, 900e6 * volume, 0.03 * energy) << axis.transpose();
+  }
+}
+
+/// A flat end mill along x through air, 40 mm of material and air again, in one block of 600 mm.
+struct LongBlock {
+  Cutter cutter;
+  Program program;
+  Stock stock;
+  CuttingForce slot;  ///< of the steady cut
+};
+
+LongBlock slot_in_a_long_block() {
+  LongBlock out;
+  out.cutter.mill = {.teeth = 3, .diameter_m = 12e-3};
+  out.program.start = {.tip_m = {-300e-3, 0.0, -3e-3}};
+  out.program.blocks.push_back(move(out.program.start, {300e-3, 0.0, -3e-3}, 7));
+  out.stock.min_m = {-20e-3, -30e-3, -10e-3};
+  out.stock.max_m = {20e-3, 30e-3, 0.0};
+  out.slot = cutting_force(
+      out.cutter, engage(out.cutter, {.axial_depth_m = 3e-3, .direction = MillingDirection::slot}), tangential_only(),
+      {.feed_per_tooth_m = feed_m_per_s * 2.0 * std::numbers::pi / speed / 3.0, .spindle_speed_rad_per_s = speed});
+  return out;
+}
+
+// What the cut takes, not what is left of it over the way through air.
+TEST(ProgramForces, AWayThroughAirMakesNoForceSmaller) {
+  const LongBlock job = slot_in_a_long_block();
+  Workpiece workpiece(job.stock, 0.5e-3);
+  const BlockForce block = program_forces(job.program, job.cutter, tangential_only(), workpiece,
+                                          {.spindle_speed_rad_per_s = speed, .force = {}})
+                               .front();
+  EXPECT_NEAR(block.peak_power_w, job.slot.power_w, 0.005 * job.slot.power_w);
+  EXPECT_NEAR(block.sustained_power_w, job.slot.power_w, 0.005 * job.slot.power_w);
+  EXPECT_NEAR(block.revolution_torque_n_m, job.slot.mean_torque_n_m, 0.005 * job.slot.mean_torque_n_m);
+  EXPECT_NEAR(block.peak_torque_n_m, job.slot.peak_torque_n_m, 0.01 * job.slot.peak_torque_n_m);
+  // The cutter comes in over its radius: there it cuts, but less.
+  EXPECT_GT(block.power_w, 0.85 * job.slot.power_w);
+  EXPECT_LT(block.power_w, job.slot.power_w);
+  EXPECT_NEAR(block.power_w, block.mean_torque_n_m * speed, 1e-9 * block.power_w);
+  EXPECT_NEAR(block.cutting_time_s, 46e-3 / feed_m_per_s, 3e-3 / feed_m_per_s);
+  EXPECT_NEAR(block.heaviest_force_n.norm(), job.slot.mean_n.norm(), 0.01 * job.slot.mean_n.norm());
+}
+
+// Over a second, the 1.5 s of the cut are as heavy; over ten they are what remains of them.
+TEST(ProgramForces, SustainedPowerIsOverTheTimeThatIsAskedFor) {
+  const LongBlock job = slot_in_a_long_block();
+  const auto sustained = [&](double time_s) {
+    Workpiece workpiece(job.stock, 0.5e-3);
+    const BlockForce block = program_forces(job.program, job.cutter, tangential_only(), workpiece,
+                                            {.spindle_speed_rad_per_s = speed, .power_time_s = time_s})
+                                 .front();
+    return std::pair(block.sustained_power_w, block.power_w * block.cutting_time_s);
+  };
+  EXPECT_NEAR(sustained(1.0).first, job.slot.power_w, 0.005 * job.slot.power_w);
+  const auto [power_w, energy_j] = sustained(10.0);
+  EXPECT_NEAR(power_w, energy_j / 10.0, 1e-9 * power_w);
+}
+
+// The heaviest force is that of the direction that weighs.
+TEST(ProgramForces, WeighsForcesAsItIsTold) {
+  MillingCoefficients coefficients = tangential_only();
+  coefficients.axial_n_per_m2 = {150e6};
+  Workpiece workpiece(slab(), 0.1e-3);
+  ProgramForceOptions options = {.spindle_speed_rad_per_s = speed};
+  std::vector<double> heaviest(6, 0.0);
+  options.weight = [&](std::size_t block, const Eigen::Vector3d& force_n) {
+    heaviest[block] = std::max(heaviest[block], std::abs(force_n.z()));
+    return std::abs(force_n.z());
+  };
+  const Program program = two_passes(Eigen::Vector3d::UnitZ());
+  const std::vector<BlockForce> blocks = program_forces(program, ball(), coefficients, workpiece, options);
+  for (const BlockForce& block : blocks) {
+    EXPECT_EQ(std::abs(block.heaviest_force_n.z()), heaviest[block.block]);
+    EXPECT_GE(heaviest[block.block], std::abs(block.mean_force_n.z()) * (1.0 - 1e-12));
   }
 }
 

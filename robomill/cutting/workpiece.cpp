@@ -277,14 +277,18 @@ double Workpiece::depth_m(const Vector3d& point_m) const {
       std::min((point_m - grid.lowest).minCoeff(), (grid.highest - point_m).minCoeff());  // of the stock's box
   if (within < -limit) return -limit;
   double best = 1e300;
+  constexpr double bend_matters = 0.1;  // of a dexel; further off it changes no sign
   double depth = -limit;
+  const Rays* clearest = nullptr;
   for (const Rays& rays : grid.rays) {
     double spread = 0.0;
     const double along = rays.depth(point_m, limit, spread);
     if (spread + std::abs(along) >= best) continue;
     best = spread + std::abs(along);
     depth = along;
+    clearest = &rays;
   }
+  if (clearest != nullptr && std::abs(depth) < bend_matters * grid.dexel) depth += clearest->bend(point_m, limit);
   return std::min(depth, within);
 }
 

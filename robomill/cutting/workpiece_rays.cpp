@@ -9,6 +9,19 @@ namespace {
 
 constexpr double sliver_m = 1e-9;  ///< a thinner rest is rounding, not material
 
+/// Between two rays, the parabola less the chord; of the parabolas through the ray before them and through the one
+/// behind, the flatter: where they bend apart, at a corner of the material, there is none.
+template <class Depth>
+double bend_between(double share, std::ptrdiff_t first, std::ptrdiff_t count, Depth&& depth_of) {
+  if (first < 1 || first + 2 >= count) return 0.0;
+  const std::array<double, 4> d = {depth_of(first - 1), depth_of(first), depth_of(first + 1), depth_of(first + 2)};
+  const double before = d[0] - 2.0 * d[1] + d[2];
+  const double behind = d[1] - 2.0 * d[2] + d[3];
+  if (before * behind <= 0.0) return 0.0;
+  const double least = std::abs(before) < std::abs(behind) ? before : behind;
+  return -0.5 * share * (1.0 - share) * least;
+}
+
 }  // namespace
 
 Rays::Rays(int axis, const Eigen::Vector3d& lowest, const Eigen::Vector3d& spacing,
@@ -130,13 +143,21 @@ double Rays::depth(std::ptrdiff_t row, std::ptrdiff_t column, double at, double 
   }
 }
 
-double Rays::depth(const Eigen::Vector3d& point, double limit, double& spread) const {
+Rays::Place Rays::place_of(const Eigen::Vector3d& point) const {
   const int c = column_axis();
   const int r = row_axis();
   const double u = std::clamp((point[c] - lowest_[c]) / spacing_[c] - 0.5, 0.0, static_cast<double>(columns_ - 1));
   const double v = std::clamp((point[r] - lowest_[r]) / spacing_[r] - 0.5, 0.0, static_cast<double>(rows_ - 1));
   const auto column = static_cast<std::ptrdiff_t>(u);
   const auto row = static_cast<std::ptrdiff_t>(v);
+  return {.column = column,
+          .row = row,
+          .across_columns = u - static_cast<double>(column),
+          .across_rows = v - static_cast<double>(row)};
+}
+
+double Rays::depth(const Eigen::Vector3d& point, double limit, double& spread) const {
+  const auto [column, row, cu, rv] = place_of(point);
   const std::ptrdiff_t next_column = std::min(column + 1, columns_ - 1);
   const std::ptrdiff_t next_row = std::min(row + 1, rows_ - 1);
   const double at = point[axis_];
@@ -144,9 +165,20 @@ double Rays::depth(const Eigen::Vector3d& point, double limit, double& spread) c
                                       depth(next_row, column, at, limit), depth(next_row, next_column, at, limit)};
   const auto [least, most] = std::ranges::minmax(near);
   spread = most - least;
-  const double cu = u - static_cast<double>(column);
-  const double rv = v - static_cast<double>(row);
   return (1.0 - rv) * ((1.0 - cu) * near[0] + cu * near[1]) + rv * ((1.0 - cu) * near[2] + cu * near[3]);
+}
+
+double Rays::bend(const Eigen::Vector3d& point, double limit) const {
+  const Place place = place_of(point);
+  const double at = point[axis_];
+  const bool by_rows = place.across_rows > 0.5;
+  const bool by_columns = place.across_columns > 0.5;
+  const std::ptrdiff_t nearest_row = std::min(place.row + (by_rows ? 1 : 0), rows_ - 1);
+  const std::ptrdiff_t nearest_column = std::min(place.column + (by_columns ? 1 : 0), columns_ - 1);
+  return bend_between(place.across_columns, place.column, columns_,
+                      [&](std::ptrdiff_t column) { return depth(nearest_row, column, at, limit); }) +
+         bend_between(place.across_rows, place.row, rows_,
+                      [&](std::ptrdiff_t row) { return depth(row, nearest_column, at, limit); });
 }
 
 double Rays::volume() const {

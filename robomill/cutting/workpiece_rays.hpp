@@ -40,6 +40,8 @@ class Rays {
   [[nodiscard]] double depth(std::ptrdiff_t row, std::ptrdiff_t column, double at, double limit) const;
   /// The same between the four rays about a point; `spread` is how much they differ.
   [[nodiscard]] double depth(const Eigen::Vector3d& point, double limit, double& spread) const;
+  /// What that lacks where the surface is curved: straight lines between rays cut off its bends.
+  [[nodiscard]] double bend(const Eigen::Vector3d& point, double limit) const;
   [[nodiscard]] double volume() const;
   [[nodiscard]] std::size_t memory_bytes() const;
 
@@ -58,6 +60,12 @@ class Rays {
     return static_cast<std::size_t>(row * columns_ + column);
   }
   static std::uint32_t take(Pool& pool, const Ray& node);
+  /// A point among the rays: the ray below it and the shares of the way to the next ones.
+  struct Place {
+    std::ptrdiff_t column = 0, row = 0;
+    double across_columns = 0.0, across_rows = 0.0;
+  };
+  [[nodiscard]] Place place_of(const Eigen::Vector3d& point) const;
 
   int axis_;
   Eigen::Vector3d lowest_, spacing_;

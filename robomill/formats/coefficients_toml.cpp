@@ -18,6 +18,7 @@ struct Field {
   const char* member;
   double factor;
   std::vector<double> cutting::MillingCoefficients::*values;
+  bool edge = false;
 };
 
 constexpr std::array<Field, 6> fields = {{
@@ -26,10 +27,11 @@ constexpr std::array<Field, 6> fields = {{
     {"radial_n_per_mm2", "radial_n_per_m2", units::n_per_mm2, &cutting::MillingCoefficients::radial_n_per_m2},
     {"axial_n_per_mm2", "axial_n_per_m2", units::n_per_mm2, &cutting::MillingCoefficients::axial_n_per_m2},
     {"tangential_edge_n_per_mm", "tangential_edge_n_per_m", units::n_per_mm,
-     &cutting::MillingCoefficients::tangential_edge_n_per_m},
-    {"radial_edge_n_per_mm", "radial_edge_n_per_m", units::n_per_mm,
-     &cutting::MillingCoefficients::radial_edge_n_per_m},
-    {"axial_edge_n_per_mm", "axial_edge_n_per_m", units::n_per_mm, &cutting::MillingCoefficients::axial_edge_n_per_m},
+     &cutting::MillingCoefficients::tangential_edge_n_per_m, true},
+    {"radial_edge_n_per_mm", "radial_edge_n_per_m", units::n_per_mm, &cutting::MillingCoefficients::radial_edge_n_per_m,
+     true},
+    {"axial_edge_n_per_mm", "axial_edge_n_per_m", units::n_per_mm, &cutting::MillingCoefficients::axial_edge_n_per_m,
+     true},
 }};
 
 bool read_edge_measure(TomlFile& file, cutting::MillingCoefficients& out) {
@@ -67,28 +69,46 @@ cutting::MillingCoefficients read_material(TomlFile& file, const std::string& na
   }
 }
 
+/// A material's coefficients with those of the edge that the table gives in place of its own.
+cutting::MillingCoefficients with_own_edge(cutting::MillingCoefficients material,
+                                           const cutting::MillingCoefficients& own) {
+  for (const Field& field : fields) {
+    if (!(own.*field.values).empty()) material.*field.values = own.*field.values;
+  }
+  if (own.edge_measure != cutting::EdgeMeasure::by_kind) material.edge_measure = own.edge_measure;
+  return material;
+}
+
 }  // namespace
 
 cutting::MillingCoefficients read_coefficient_table(TomlFile& file) {
   cutting::MillingCoefficients out;
   std::filesystem::path other;
   std::string material;
-  bool own = false;
+  const char* cutting = nullptr;  // a coefficient that the table itself gives
+  const char* edge = nullptr;
   for (const Field& field : fields) {
-    own = file.numbers(std::string("coefficients.") + field.key, field.member, field.factor, out.*field.values) || own;
+    if (!file.numbers(std::string("coefficients.") + field.key, field.member, field.factor, out.*field.values))
+      continue;
+    (field.edge ? edge : cutting) = field.key;
   }
-  own = read_edge_measure(file, out) || own;
+  const bool measured = read_edge_measure(file, out);
   if (file.text("coefficients.material", material)) {
-    if (own) throw file.refuse("coefficients.material", "must not stand beside coefficients of its own");
+    if (cutting != nullptr) {
+      throw file.refuse("coefficients.material", fmt::format("must not stand beside {}", cutting),
+                        "Edge coefficients may; they replace the material's");
+    }
     if (file.has("coefficients.file")) throw file.refuse("coefficients.material", "must not stand beside a file");
-    return read_material(file, material);
+    return with_own_edge(read_material(file, material), out);
   }
   if (!file.path("coefficients.file", other)) {
     file.require("coefficients.tangential_n_per_mm2",
                  "A number, or a polynomial in the axial position angle (rad); or name a file or a material");
     return out;
   }
-  if (own) throw file.refuse("coefficients.file", "must not stand beside coefficients of its own");
+  if (cutting != nullptr || edge != nullptr || measured) {
+    throw file.refuse("coefficients.file", "must not stand beside coefficients of its own");
+  }
   return read_coefficients(other);
 }
 

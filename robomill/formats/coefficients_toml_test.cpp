@@ -66,6 +66,23 @@ TEST(CoefficientsToml, AMaterialTakesTheToolsHelix) {
   expect_helix(table_of(folder, "[tool]\nhelix_deg = 30\n[coefficients]\nfile = \"k.toml\"\n"), 40.0);
 }
 
+// Orthogonal tests tell little of a cutter's edge: what was measured replaces it, one direction at a time.
+TEST(CoefficientsToml, AMaterialTakesEdgeCoefficientsOfItsOwn) {
+  const test::Folder folder;
+  const std::string named =
+      "[coefficients]\nmaterial = \"Ti6Al4V\"\nrake_deg = 5\nchip_thickness_mm = 0.03\nhelix_deg = 30\n";
+  const cutting::MillingCoefficients plain = table_of(folder, named);
+  const cutting::MillingCoefficients own =
+      table_of(folder, named + "tangential_edge_n_per_mm = 19\naxial_edge_n_per_mm = 2\nedge_per = \"width\"\n");
+  EXPECT_EQ(own.tangential_n_per_m2, plain.tangential_n_per_m2);
+  EXPECT_EQ(own.axial_n_per_m2, plain.axial_n_per_m2);
+  EXPECT_EQ(own.tangential_edge_n_per_m, std::vector<double>{19e3});
+  EXPECT_EQ(own.radial_edge_n_per_m, plain.radial_edge_n_per_m);
+  EXPECT_EQ(own.axial_edge_n_per_m, std::vector<double>{2e3});
+  EXPECT_EQ(own.edge_measure, cutting::EdgeMeasure::width);
+  EXPECT_NE(plain.edge_measure, cutting::EdgeMeasure::width);
+}
+
 TEST(CoefficientsToml, RefusesInTheFilesWords) {
   const test::Folder folder;
   const auto expect = [&](const std::string& text, const std::string& words) {
@@ -82,7 +99,7 @@ TEST(CoefficientsToml, RefusesInTheFilesWords) {
          "forces.toml:4: coefficients.chip_thickness_mm = 0 mm; must be > 0");
   expect("material = \"Ti6Al4V\"\nrake_deg = 95\nchip_thickness_mm = 0.1\nhelix_deg = 30\n",
          "forces.toml:3: coefficients.rake_deg = 95 deg");
-  expect("material = \"Ti6Al4V\"\ntangential_n_per_mm2 = 5\n", "must not stand beside coefficients");
+  expect("material = \"Ti6Al4V\"\ntangential_n_per_mm2 = 5\n", "must not stand beside tangential_n_per_mm2");
   expect("material = \"Ti6Al4V\"\nfile = \"k.toml\"\n", "must not stand beside a file");
   expect("file = \"k.toml\"\ntangential_n_per_mm2 = 5\n", "must not stand beside coefficients");
   folder.file("loop.toml", "[coefficients]\nfile = \"loop.toml\"\n");

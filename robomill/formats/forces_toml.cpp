@@ -170,6 +170,8 @@ ForcesFile read(TomlFile& file, const std::filesystem::path& path, ForcesJob job
   read_stock(file, out);
   file.integer("forces.steps", "steps", out.force.steps);
   file.integer("forces.slices", "slices", out.slices);
+  file.number("forces.power_time_s", "power_time_s", 1.0, out.power_time_s);
+  if (!(out.power_time_s > 0.0)) throw file.refuse("forces.power_time_s", "must be > 0");
   file.locate([&] {
     out.force.validate();
     if (job == ForcesJob::program) {

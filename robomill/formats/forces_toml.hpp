@@ -36,6 +36,7 @@ struct ForcesFile {
   std::optional<cutting::Stock> stock = {};                  ///< none: a box around the program
   bool neighbours = false;  ///< stock.kind: no stock, but the neighbouring pass of each block
   double dexel_m = 0.25e-3;
+  double power_time_s = 0.1;  ///< forces.power_time_s: over which a program's power is a mean for the spindle
   /// Calls f; an InvalidInput about a member that this file gave comes out in its words.
   template <class F>
   auto located(F&& f) const {

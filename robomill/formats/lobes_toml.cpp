@@ -1,11 +1,15 @@
 #include "robomill/formats/lobes_toml.hpp"
 
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cutting/polynomial.hpp"
+#include "robomill/formats/coefficients_toml.hpp"
 #include "robomill/formats/cut_fields.hpp"
 #include "robomill/formats/frf_files.hpp"
 #include "robomill/formats/modes_files.hpp"
@@ -62,15 +66,41 @@ void read_cut(TomlFile& file, LobesFile& out) {
   file.locate([&] { milling.immersion = cutting::immersion(direction, out.radial_depth_m, diameter_m); });
 }
 
-/// What pushes on the teeth: coefficients, process damping; and how the spindle turns.
-void read_forces(TomlFile& file, cutting::Milling& milling) {
-  cutting::ForceCoefficients& k = milling.coefficients;
+/// What a file or a material says of the side of a cutter, κ = 90°, each per width.
+cutting::ForceCoefficients of_the_side(const cutting::MillingCoefficients& k, double helix_rad) {
+  const bool per_length = cutting::counts_edge_length(k.edge_measure, cutting::CutterKind::flat_end);
+  const double stretch = per_length ? 1.0 / std::cos(helix_rad) : 1.0;
+  const auto value = [](const std::vector<double>& entries) {
+    return cutting::detail::polynomial(entries, 0.5 * std::numbers::pi);
+  };
+  return {.tangential_n_per_m2 = value(k.tangential_n_per_m2),
+          .radial_n_per_m2 = value(k.radial_n_per_m2),
+          .tangential_edge_n_per_m = stretch * value(k.tangential_edge_n_per_m),
+          .radial_edge_n_per_m = stretch * value(k.radial_edge_n_per_m)};
+}
+
+void read_coefficients_of(TomlFile& file, const cutting::FlatEndMill& tool, cutting::ForceCoefficients& k) {
+  const char* const named = file.has("coefficients.file") ? "coefficients.file" : "coefficients.material";
+  if (file.has(named)) {
+    k = of_the_side(read_coefficient_table(file), tool.helix_rad);
+    try {
+      k.validate();
+    } catch (const InvalidInput& error) {
+      throw file.refuse(named, "gives a coefficient that cannot be used: " + std::string(error.what()));
+    }
+    return;
+  }
   file.number("coefficients.tangential_n_per_mm2", "tangential_n_per_m2", units::n_per_mm2, k.tangential_n_per_m2);
   file.number("coefficients.radial_n_per_mm2", "radial_n_per_m2", units::n_per_mm2, k.radial_n_per_m2);
   file.number("coefficients.tangential_edge_n_per_mm", "tangential_edge_n_per_m", units::n_per_mm,
               k.tangential_edge_n_per_m);
   file.number("coefficients.radial_edge_n_per_mm", "radial_edge_n_per_m", units::n_per_mm, k.radial_edge_n_per_m);
   file.locate([&] { k.validate(); });
+}
+
+/// What pushes on the teeth: coefficients, process damping; and how the spindle turns.
+void read_forces(TomlFile& file, cutting::Milling& milling) {
+  read_coefficients_of(file, milling.tool, milling.coefficients);
   cutting::ProcessDamping& damping = milling.process_damping;
   file.number("process_damping.indentation_n_per_mm3", "indentation_n_per_m3", units::n_per_mm3,
               damping.indentation_n_per_m3);

@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "robomill/base/test_support.hpp"
+#include "robomill/cutting/coefficients.hpp"
+#include "robomill/cutting/material.hpp"
+#include "robomill/formats/slots_csv.hpp"
 #include "robomill/formats/test_text.hpp"
 #include "robomill/formats/units.hpp"
 
@@ -57,6 +60,43 @@ TEST(LobesToml, ReadsEverythingInSi) {
   EXPECT_DOUBLE_EQ(file.options.axial_depth_m[1], 5e-3);
   EXPECT_DOUBLE_EQ(file.options.spindle_speed_rad_per_s[0], 5000 * units::rpm);
   EXPECT_EQ(file.options.grid[0], 30);
+}
+
+// The file that robomill coefficients writes, and a material, in place of numbers: a cylinder has κ = 90 degrees.
+TEST(LobesToml, TakesCoefficientsFromAFileOrAMaterial) {
+  const test::Folder folder;
+  const std::string numbers = "tangential_n_per_mm2 = 600\nradial_n_per_mm2 = 200\n";
+  const auto read = [&](const std::string& table) {
+    return read_lobes(folder.file("lobes.toml", with(numbers, table))).problem.milling.coefficients;
+  };
+  SlotsFile slots;
+  for (const double feed_m : {0.05e-3, 0.1e-3, 0.2e-3}) {
+    const double a = 4.0 * 2e-3;  // teeth and depth
+    slots.slots.push_back({.feed_per_tooth_m = feed_m,
+                           .axial_depth_m = 2e-3,
+                           .mean_force_n = {-a / 4 * 250e6 * feed_m - a / std::numbers::pi * 30e3,
+                                            a / 4 * 700e6 * feed_m + a / std::numbers::pi * 20e3, 0.0}});
+    slots.lines.push_back(slots.lines.size() + 2);
+  }
+  folder.file("k.toml", slot_fit_toml(cutting::identify_from_slots(slots.slots, {.teeth = 4}), slots));
+  const cutting::ForceCoefficients found = read("file = \"k.toml\"\n");
+  EXPECT_NEAR(found.tangential_n_per_m2, 700e6, 1.0);
+  EXPECT_NEAR(found.radial_n_per_m2, 250e6, 1.0);
+  EXPECT_NEAR(found.tangential_edge_n_per_m, 20e3, 1e-3);
+  EXPECT_NEAR(found.radial_edge_n_per_m, 30e3, 1e-3);
+  folder.file("length.toml",
+              "[coefficients]\ntangential_n_per_mm2 = [100, 600]\ntangential_edge_n_per_mm = 20\n"
+              "edge_per = \"edge-length\"\n");
+  EXPECT_NEAR(read("file = \"length.toml\"\n").tangential_n_per_m2, (600 + 50 * std::numbers::pi) * 1e6, 1.0);
+  EXPECT_NEAR(read("file = \"length.toml\"\n").tangential_edge_n_per_m, 20e3 / std::cos(30 * units::deg), 1e-6);
+  const std::string ti = "material = \"Ti6Al4V\"\nrake_deg = 5\nchip_thickness_mm = 0.03\n";
+  EXPECT_DOUBLE_EQ(read(ti).tangential_n_per_m2,
+                   cutting::milling_coefficients(cutting::material("Ti6Al4V"), 5 * units::deg, 30 * units::deg, 0.03e-3)
+                       .tangential_n_per_m2.front());
+  folder.file("low.toml", "[coefficients]\ntangential_n_per_mm2 = 0.6\n");
+  const std::string told = test::refusal([&] { static_cast<void>(read("file = \"low.toml\"\n")); });
+  EXPECT_NE(told.find("lobes.toml:11: coefficients.file"), std::string::npos) << told;
+  EXPECT_NE(told.find("tangential_n_per_m2 = 600000"), std::string::npos) << told;
 }
 
 // The modes given by modal mass have the receptance 1 / (m (ω_n² - ω² + 2iζω_nω)).

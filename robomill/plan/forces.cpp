@@ -222,20 +222,25 @@ ForcesResult run_forces(const std::filesystem::path& forces, const std::filesyst
   return result;
 }
 
+std::size_t ProgramForces::cutting_blocks() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(blocks, [](const BlockResult& row) { return row.force.cuts(); }));
+}
+
 std::vector<SpindleLoad> spindle_loads(const ForcesResult& result) {
   if (result.revolution) {
     const cutting::CuttingForce& force = result.revolution->settled.force;
     return {{.spindle_speed_rad_per_s = result.file.motion.spindle_speed_rad_per_s,
-             .torque_n_m = force.peak_torque_n_m,
+             .torque_n_m = force.mean_torque_n_m,
              .power_w = force.power_w}};
   }
   std::vector<SpindleLoad> loads;
   for (const BlockResult& row : result.program->blocks) {
-    if (!(row.force.power_w > 0.0)) continue;
+    if (!row.force.cuts()) continue;
     loads.push_back({.line = result.program->program.blocks[row.force.block].line,
                      .spindle_speed_rad_per_s = row.force.spindle_speed_rad_per_s,
-                     .torque_n_m = row.force.peak_torque_n_m,
-                     .power_w = row.force.power_w});
+                     .torque_n_m = row.force.revolution_torque_n_m,
+                     .power_w = row.force.sustained_power_w});
   }
   return loads;
 }

@@ -7,6 +7,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
+#include "robomill/cutting/default_stock.hpp"
 #include "robomill/cutting/program_forces.hpp"
 #include "robomill/cutting/settle.hpp"
 #include "robomill/formats/cell_toml.hpp"
@@ -40,15 +41,26 @@ struct RevolutionForces {
 struct BlockResult {
   cutting::BlockForce force;
   Eigen::VectorXd joints = {};                             ///< at the block's end; empty without a robot
-  Eigen::Vector3d deflection_m = Eigen::Vector3d::Zero();  ///< of the tip under the mean force, in W
+  Eigen::Vector3d deflection_m = Eigen::Vector3d::Zero();  ///< of the tip under the mean force while cutting, in W
+  /// Under that mean force of a revolution which bends the robot most.
+  Eigen::Vector3d peak_deflection_m = Eigen::Vector3d::Zero();
   double condition_number = 0.0;
+};
+
+/// What a program starts from.
+struct ProgramStock {
+  cutting::Stock stock;
+  std::optional<cutting::DefaultStock> assumed = {};  ///< where the job gives none
 };
 
 struct ProgramForces {
   program::Program program;
   std::vector<BlockResult> blocks = {};
+  std::optional<ProgramStock> stock = {};  ///< none: each block beside its neighbouring pass
   double seconds = 0.0;
   double removed_volume_m3 = 0.0;
+  /// Blocks in which teeth were found in the material: the one meaning of "cuts" in summary, documents and page.
+  [[nodiscard]] ROBOMILL_API std::size_t cutting_blocks() const;
 };
 
 struct ForcesResult {
@@ -72,11 +84,14 @@ struct ForcesResult {
 struct SpindleLoad {
   std::size_t line = 0;  ///< of the program; 0 for one revolution
   double spindle_speed_rad_per_s = 0.0;
-  double torque_n_m = 0.0;  ///< greatest
-  double power_w = 0.0;     ///< mean
+  double torque_n_m = 0.0;  ///< largest mean over one revolution
+  double power_w = 0.0;     ///< largest mean over forces.power_time_s
 };
 /// Of one revolution, or of every block that cuts.
-[[nodiscard]] std::vector<SpindleLoad> spindle_loads(const ForcesResult& result);
+[[nodiscard]] ROBOMILL_API std::vector<SpindleLoad> spindle_loads(const ForcesResult& result);
+
+/// The stock in words, with what was assumed; empty for one beside neighbouring passes.
+[[nodiscard]] ROBOMILL_API std::string stock_text(const ProgramForces& program);
 
 /// A row a step of rotation, or a row a block.
 [[nodiscard]] ROBOMILL_API std::string forces_csv(const ForcesResult& result);

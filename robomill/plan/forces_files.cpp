@@ -64,12 +64,18 @@ constexpr Column columns[] = {
     {"mean_fz_n", [](const ProgramForces&, const BlockResult& r) { return r.force.mean_force_n.z(); }},
     {"peak_f_n", [](const ProgramForces&, const BlockResult& r) { return r.force.peak_force_n; }},
     {"torque_n_m", [](const ProgramForces&, const BlockResult& r) { return r.force.mean_torque_n_m; }},
+    {"revolution_torque_n_m", [](const ProgramForces&, const BlockResult& r) { return r.force.revolution_torque_n_m; }},
     {"peak_torque_n_m", [](const ProgramForces&, const BlockResult& r) { return r.force.peak_torque_n_m; }},
     {"power_w", [](const ProgramForces&, const BlockResult& r) { return r.force.power_w; }},
+    {"peak_power_w", [](const ProgramForces&, const BlockResult& r) { return r.force.peak_power_w; }},
+    {"sustained_power_w", [](const ProgramForces&, const BlockResult& r) { return r.force.sustained_power_w; }},
     {"deflection_um", [](const ProgramForces&, const BlockResult& r) { return r.deflection_m.norm() / units::um; }},
     {"deflection_x_um", [](const ProgramForces&, const BlockResult& r) { return r.deflection_m.x() / units::um; }},
     {"deflection_y_um", [](const ProgramForces&, const BlockResult& r) { return r.deflection_m.y() / units::um; }},
     {"deflection_z_um", [](const ProgramForces&, const BlockResult& r) { return r.deflection_m.z() / units::um; }},
+    {"peak_deflection_um",
+     [](const ProgramForces&, const BlockResult& r) { return r.peak_deflection_m.norm() / units::um; }},
+    {"cutting_time_s", [](const ProgramForces&, const BlockResult& r) { return r.force.cutting_time_s; }},
     {"feed_per_tooth_mm",
      [](const ProgramForces&, const BlockResult& r) { return r.force.feed_per_tooth_m / units::mm; }},
     {"removed_mm3", [](const ProgramForces&, const BlockResult& r) { return r.force.removed_volume_m3 / units::mm3; }},
@@ -83,7 +89,7 @@ bool turns(std::string_view name) {
 
 /// Columns of the robot, empty where there is none.
 bool of_robot(std::string_view name) {
-  return name.starts_with("deflection") || name == "condition_number";
+  return name.find("deflection") != std::string_view::npos || name == "condition_number";
 }
 
 std::string program_csv(const ForcesResult& result) {
@@ -204,6 +210,19 @@ Json revolution_json(const RevolutionForces& revolution, double sign) {
   return out;
 }
 
+Json stock_json(const ProgramForces& program) {
+  if (!program.stock) return {};
+  const ProgramStock& stock = *program.stock;
+  Json top;
+  if (stock.assumed) {
+    top = stock.assumed->top == cutting::DefaultStock::Top::program_zero ? "program zero" : "axial depth";
+  }
+  return {{"assumed", stock.assumed.has_value()},
+          {"top_from", std::move(top)},
+          {"min_mm", vector(stock.stock.lowest_m(), units::mm)},
+          {"max_mm", vector(stock.stock.highest_m(), units::mm)}};
+}
+
 Json program_json(const ForcesResult& result) {
   const ProgramForces& program = *result.program;
   const double sign = sign_of(result);
@@ -224,6 +243,9 @@ Json program_json(const ForcesResult& result) {
   }
   return {{"removed_mm3", number(program.removed_volume_m3 / units::mm3)},
           {"seconds", number(program.seconds)},
+          {"cutting_blocks", program.cutting_blocks()},
+          {"power_time_s", number(result.file.power_time_s)},
+          {"stock", stock_json(program)},
           {"blocks", std::move(blocks)},
           {"skipped", std::move(skipped)}};
 }

@@ -113,11 +113,11 @@ report::ForcePath path_report(const ProgramForces& program) {
     out.radial_depth_m(i) = row.force.radial_depth_m;
     out.peak_force_n(i) = row.force.peak_force_n;
     out.mean_force_n.col(i) = row.force.mean_force_n;
-    out.torque_n_m(i) = row.force.mean_torque_n_m;
+    out.torque_n_m(i) = row.force.revolution_torque_n_m;
     out.peak_torque_n_m(i) = row.force.peak_torque_n_m;
-    out.power_w(i) = row.force.power_w;
-    if (bends) out.deflection_m(i) = row.deflection_m.norm();
-    out.cuts.push_back(row.force.peak_force_n > 0.0);
+    out.power_w(i) = row.force.sustained_power_w;
+    if (bends) out.deflection_m(i) = row.peak_deflection_m.norm();
+    out.cuts.push_back(row.force.cuts());
   }
   return out;
 }
@@ -163,7 +163,11 @@ report::Forces forces_report(const ForcesResult& result) {
   }
   if (result.program) {
     out.facts.push_back({"Program", fmt::format("{} blocks", result.program->blocks.size())});
+    if (result.program->stock) {
+      out.facts.push_back({"Stock", stock_text(*result.program)});
+    }
     out.path = path_report(*result.program);
+    out.path->power_time_s = result.file.power_time_s;
   }
   return out;
 }

@@ -204,10 +204,11 @@ void warn_of_spindle(PlanResult& result) {
   const std::string has = std::isinf(most) ? std::string("that speed is outside the spindle's curve")
                                            : fmt::format("the spindle has {:.3g} N·m and {:.3g} kW", able.torque_n_m,
                                                          able.power_w / units::kw);
-  result.warnings.push_back(
-      fmt::format("The cut asks for more than the spindle has, {}{:.3g} N·m and {:.3g} kW at "
-                  "{:.0f} rpm; {}.",
-                  place, worst.torque_n_m, worst.power_w / units::kw, worst.spindle_speed_rad_per_s / units::rpm, has));
+  result.warnings.push_back(fmt::format(
+      "The cut asks for more than the spindle has, {}{:.3g} N·m over a revolution and {:.3g} kW over {:.3g} s at "
+      "{:.0f} rpm; {}.",
+      place, worst.torque_n_m, worst.power_w / units::kw, result.forces->file.power_time_s,
+      worst.spindle_speed_rad_per_s / units::rpm, has));
 }
 
 /// Whether the job's program is to be smoothed.

@@ -1,5 +1,6 @@
 #include "robomill/plan/plan.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -315,6 +316,36 @@ radial_n_per_mm2 = 287
   const auto json = nlohmann::json::parse(formats::read_file(out / "plan.json"));
   EXPECT_NEAR(json["forces"]["power_w"].get<double>(), 712e6 * 2e-3 * 6e-3 * 0.1e-3 * 3.0 * 8000.0 / 60.0, 1.0);
   EXPECT_NE(formats::read_file(out / "report.html").find("id=\"forces\""), std::string::npos);
+}
+
+// A slot of 40 mm in a block of 600 mm: the spindle feels the slot, Kt a b v = 1,620 W, not the mean over the block.
+TEST_F(Plan, HoldsTheSpindleAgainstASlotInALongBlock) {
+  write("forces.toml", R"([tool]
+kind = "flat-end"
+teeth = 3
+diameter_mm = 12
+[coefficients]
+tangential_n_per_mm2 = 900
+[stock]
+kind = "box"
+min_mm = [-20, -30, -10]
+max_mm = [20, 30, 0]
+dexel_mm = 0.5
+)");
+  write("slot.ngc", "G21 G90 G94\nS10000 M3\nG0 X-300 Y0 Z5\nG0 Z-3\nG1 X300 F3000\nM2\n");
+  const std::string curve =
+      "forces = \"forces.toml\"\nprogram = \"slot.ngc\"\n[spindle]\ncurve = [{{ speed_rpm = 6000, torque_n_m = {0}, "
+      "power_kw = {1} }}, {{ speed_rpm = 12000, torque_n_m = {0}, power_kw = {1} }}]\n";
+  const auto warning = [&](double torque_n_m, double power_kw) {
+    const PlanResult result = run_job(job(fmt::format(fmt::runtime(curve), torque_n_m, power_kw)), 1);
+    const auto found = std::ranges::find_if(
+        result.warnings, [](const std::string& text) { return text.find("more than the spindle has") != text.npos; });
+    return found == result.warnings.end() ? std::string() : *found;
+  };
+  const std::string weak = warning(2.0, 0.5);
+  EXPECT_NE(weak.find("in line 5: 1.55 N·m over a revolution and 1.62 kW over 0.1 s"), std::string::npos) << weak;
+  EXPECT_EQ(warning(2.0, 2.0), "");
+  EXPECT_NE(warning(1.0, 2.0), "");
 }
 
 TEST_F(Plan, SaysWhatIsMissing) {

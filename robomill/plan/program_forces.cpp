@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
@@ -114,33 +115,60 @@ std::vector<robot::Position6> joints_along(const formats::CellFile& file, const 
   return way.position_rad;
 }
 
-/// The tip gives way under the mean force of every block.
-void bend(const formats::CellFile& file, const std::vector<robot::Position6>& joints, const program::Program& program,
-          const std::filesystem::path& path, std::vector<BlockResult>& rows) {
+/// Compliance of the tip in W at the end of each block, without load: what forces are weighed by.
+std::vector<Eigen::Matrix3d> compliances(const formats::CellFile& file, const std::vector<robot::Position6>& joints) {
   const robot::Cell& cell = file.cell;
   const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
+  std::vector<Eigen::Matrix3d> out(joints.size(), Eigen::Matrix3d::Identity());
+  parallel_for(joints.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const robot::Stiffness stiffness = robot::stiffness(cell.arm, joints[i], robot::tip_point(cell), {});
+      if (stiffness.status == robot::Stiffness::Status::singular) continue;
+      out[i] = base_from_work.transpose() * stiffness.compliance.topLeftCorner<3, 3>() * base_from_work;
+    }
+  });
+  return out;
+}
+
+/// How the tip is displaced by a force in W, at the end of a block.
+Eigen::Vector3d deflection(const formats::CellFile& file, const program::Block& block,
+                           const std::filesystem::path& path, const Eigen::Vector3d& force_n, BlockResult& row) {
+  const robot::Cell& cell = file.cell;
+  const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
+  const Eigen::Vector3d force = base_from_work * force_n;
+  const robot::Stiffness stiffness = robot::stiffness(cell.arm, row.joints, robot::tip_point(cell), {.force_n = force});
+  if (stiffness.status == robot::Stiffness::Status::singular) {
+    throw out_of_the_way(
+        path, block, fmt::format("is singular for the robot (condition number {:.3g})", stiffness.condition_number));
+  }
+  if (stiffness.status == robot::Stiffness::Status::buckled) {
+    throw InvalidInput(InvalidInput::Parts{.where = where(path, block),
+                                           .field = "this block",
+                                           .rule = "bends the robot beyond what its joints hold",
+                                           .hint = "Is joint_stiffness_n_m_per_rad right?"});
+  }
+  row.condition_number = stiffness.condition_number;
+  return base_from_work.transpose() * (stiffness.compliance.topLeftCorner<3, 3>() * force);
+}
+
+/// The tip's deflection under the forces of every block.
+void bend(const formats::CellFile& file, const std::vector<robot::Position6>& joints, const program::Program& program,
+          const std::filesystem::path& path, std::vector<BlockResult>& rows) {
   parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       BlockResult& row = rows[i];
       row.joints = joints[i];
-      const Eigen::Vector3d force = base_from_work * row.force.mean_force_n;
-      const robot::Stiffness stiffness =
-          robot::stiffness(cell.arm, row.joints, robot::tip_point(cell), {.force_n = force});
-      if (stiffness.status == robot::Stiffness::Status::singular) {
-        throw out_of_the_way(
-            path, program.blocks[i],
-            fmt::format("is singular for the robot (condition number {:.3g})", stiffness.condition_number));
-      }
-      if (stiffness.status == robot::Stiffness::Status::buckled) {
-        throw InvalidInput(InvalidInput::Parts{.where = where(path, program.blocks[i]),
-                                               .field = "this block",
-                                               .rule = "bends the robot beyond what its joints hold",
-                                               .hint = "Is joint_stiffness_n_m_per_rad right?"});
-      }
-      row.condition_number = stiffness.condition_number;
-      row.deflection_m = base_from_work.transpose() * (stiffness.compliance.topLeftCorner<3, 3>() * force);
+      row.peak_deflection_m = deflection(file, program.blocks[i], path, row.force.heaviest_force_n, row);
+      row.deflection_m = deflection(file, program.blocks[i], path, row.force.mean_force_n, row);
     }
   });
+}
+
+ProgramStock stock_of(const formats::ForcesFile& file, const program::Program& program) {
+  if (file.stock) return {.stock = *file.stock};
+  const cutting::DefaultStock assumed =
+      cutting::default_stock(program, file.cutter, file.dexel_m, file.cut.axial_depth_m);
+  return {.stock = assumed.stock, .assumed = assumed};
 }
 
 /// The first of the blocks for which something is so, and how many they are.
@@ -159,6 +187,24 @@ void warn_of(const ProgramForces& program, std::vector<std::string>& warnings, I
 
 }  // namespace
 
+std::string stock_text(const ProgramForces& program) {
+  if (!program.stock) return {};
+  const Eigen::Vector3d low = program.stock->stock.lowest_m() / units::mm;
+  const Eigen::Vector3d high = program.stock->stock.highest_m() / units::mm;
+  const std::string box = fmt::format("from ({:.5g}, {:.5g}, {:.5g}) to ({:.5g}, {:.5g}, {:.5g}) mm", low.x(), low.y(),
+                                      low.z(), high.x(), high.y(), high.z());
+  if (!program.stock->assumed) return box;
+  const cutting::DefaultStock& assumed = *program.stock->assumed;
+  const std::size_t line = program.program.blocks[assumed.highest_pass_block].line;
+  const std::string top =
+      assumed.top == cutting::DefaultStock::Top::program_zero
+          ? fmt::format("its top at z = 0, below which every pass lies (the highest at {:.5g} mm, line {})",
+                        assumed.highest_pass_m / units::mm, line)
+          : fmt::format("its top cut.axial_depth_mm above the highest pass (z = {:.5g} mm, line {})",
+                        assumed.highest_pass_m / units::mm, line);
+  return fmt::format("assumed, since none is given: a box {}, {}", box, top);
+}
+
 ProgramForces run_program(const formats::ForcesFile& file, const std::optional<formats::CellFile>& cell,
                           const std::filesystem::path& path, std::vector<std::string>& warnings,
                           std::vector<std::string>& notes, Progress& progress) {
@@ -170,19 +216,23 @@ ProgramForces run_program(const formats::ForcesFile& file, const std::optional<f
   }
   std::vector<robot::Position6> joints;
   if (cell) told_of_cell(*cell, [&] { joints = joints_along(*cell, out.program, path); });
-  if (!file.stock && !file.neighbours)
-    notes.emplace_back("No stock is given: a box around the program's feed moves is taken for it.");
-  const cutting::ProgramForceOptions options = {.spindle_speed_rad_per_s = file.motion.spindle_speed_rad_per_s,
-                                                .force = file.force};
+  if (!file.neighbours) {
+    out.stock = file.located([&] { return stock_of(file, out.program); });
+  }
+  cutting::ProgramForceOptions options = {.spindle_speed_rad_per_s = file.motion.spindle_speed_rad_per_s,
+                                          .power_time_s = file.power_time_s,
+                                          .force = file.force};
+  if (cell) {
+    options.weight = [compliance = compliances(*cell, joints)](std::size_t block, const Eigen::Vector3d& force_n) {
+      return (compliance[block] * force_n).norm();
+    };
+  }
   const std::vector<BlockForce> forces = file.located([&] {
     if (file.neighbours) {
       return cutting::local_program_forces(out.program, file.cutter, file.coefficients, file.cut.axial_depth_m, options,
                                            progress);
     }
-    const cutting::Stock stock = file.stock ? *file.stock
-                                            : cutting::stock_about(out.program, file.cutter, file.dexel_m,
-                                                                   std::max(file.cut.axial_depth_m, file.dexel_m));
-    cutting::Workpiece workpiece(stock, file.dexel_m);
+    cutting::Workpiece workpiece(out.stock->stock, file.dexel_m);
     return cutting::program_forces(out.program, file.cutter, file.coefficients, workpiece, options, progress);
   });
   out.blocks.reserve(forces.size());
@@ -195,6 +245,11 @@ ProgramForces run_program(const formats::ForcesFile& file, const std::optional<f
       out, warnings, [](const BlockForce& f) { return f.shank_depth_m > 0.0; }, "run the shank into material");
   warn_of(
       out, warnings, [](const BlockForce& f) { return f.rapid_in_material; }, "move through material in rapid");
+  const double least_m3 = std::pow(file.dexel_m, 3);  // less is what rays see of a cutter that slides along
+  warn_of(
+      out, warnings,
+      [&](const BlockForce& f) { return !f.cuts() && !f.rapid_in_material && f.removed_volume_m3 > least_m3; },
+      "remove material where no tooth was found in it, and have no force");
   if (!out.program.skipped.empty()) {
     notes.push_back(fmt::format("{} words of the program were not read, the first in line {}: {}.",
                                 out.program.skipped.size(), out.program.skipped.front().line,

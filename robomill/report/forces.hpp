@@ -54,10 +54,12 @@ struct ForcePath {
   Eigen::VectorXd time_s = {};            ///< time run to the block's end, never decreasing; may be empty
   Eigen::VectorXd axial_depth_m = {}, radial_depth_m = {};
   Eigen::VectorXd peak_force_n = {};                           ///< magnitude
-  Eigen::Matrix3Xd mean_force_n = {};                          ///< 3 x n
-  Eigen::VectorXd torque_n_m = {}, peak_torque_n_m = {};       ///< mean over a revolution, and peak
-  Eigen::VectorXd power_w = {};                                ///< mean
-  Eigen::VectorXd deflection_m = {};                           ///< magnitude; empty where nothing bends
+  Eigen::Matrix3Xd mean_force_n = {};                          ///< 3 x n, while cutting
+  Eigen::VectorXd torque_n_m = {};                             ///< largest mean over one revolution
+  Eigen::VectorXd peak_torque_n_m = {};                        ///< largest at any rotation
+  Eigen::VectorXd power_w = {};                                ///< largest mean over power_time_s
+  double power_time_s = 0.1;                                   ///< > 0
+  Eigen::VectorXd deflection_m = {};                           ///< largest magnitude; empty where nothing bends
   std::vector<bool> cuts = {};                                 ///< false: a rapid move or a move in air
   std::vector<std::string> troubles = {};                      ///< "part.ngc:212: out of reach"
   double torque_limit_n_m = missing, power_limit_w = missing;  ///< of the spindle, > 0

@@ -171,6 +171,7 @@ Json path_json(const ForcePath& path) {
           {"time_s", value_at(path.time_s, n - 1)},
           {"torque_limit_n_m", number(path.torque_limit_n_m)},
           {"power_limit_w", number(path.power_limit_w)},
+          {"power_time_s", number(path.power_time_s)},
           {"highest",
            {{"peak_force_n", highest_json(path, path.peak_force_n)},
             {"torque_n_m", highest_json(path, path.torque_n_m)},

@@ -107,7 +107,7 @@ std::string revolution_part(const Json& turn, bool plots) {
 std::string highest_table(const Json& program) {
   Table table("Highest values", {"", "#Value", "Unit", "#Block", "#Line", "#Spindle's limit", "Verdict"});
   const Json& highest = program["highest"];
-  const auto row = [&](const char* name, const Json& entry, const char* unit, const Json& limit) {
+  const auto row = [&](const std::string& name, const Json& entry, const char* unit, const Json& limit) {
     if (entry.is_null()) return;
     const bool limited = limit.is_number();
     const bool above = limited && entry["value"].get<double>() > limit.get<double>();
@@ -117,10 +117,11 @@ std::string highest_table(const Json& program) {
               above ? "chatter" : "");
   };
   row("Force, peak", highest["peak_force_n"], "N", nullptr);
-  row("Torque, mean over a revolution", highest["torque_n_m"], "N·m", program["torque_limit_n_m"]);
+  row("Torque over a revolution", highest["torque_n_m"], "N·m", program["torque_limit_n_m"]);
   row("Torque, peak", highest["peak_torque_n_m"], "N·m", nullptr);
-  row("Power", highest["power_w"], "W", program["power_limit_w"]);
-  row("Deflection", highest["deflection_um"], "µm", nullptr);
+  const std::string power = fmt::format("Power over {} s", significant(program["power_time_s"]));
+  row(power, highest["power_w"], "W", program["power_limit_w"]);
+  row("Deflection over a revolution", highest["deflection_um"], "µm", nullptr);
   return table.html();
 }
 
@@ -133,9 +134,9 @@ std::string worst_table(const Json& program) {
                                        "#Axial depth (mm)",
                                        "#Radial depth (mm)",
                                        "#Peak force (N)",
-                                       "#Mean force x, y, z (N)",
-                                       "#Torque (N·m)",
-                                       "#Power (W)"};
+                                       "#Mean force while cutting x, y, z (N)",
+                                       "#Torque over a revolution (N·m)",
+                                       fmt::format("#Power over {} s (W)", significant(program["power_time_s"]))};
   if (bends) headings.emplace_back("#Deflection (µm)");
   Table table("The blocks with the highest peak force", headings);
   for (const Json& row : program["worst"]) {

@@ -17,8 +17,8 @@ namespace {
 
 using robomill::test::field_of;
 
-// Source: the KR210-like arm's published posture, flange printed to 0.01 mm.
-TEST(Arm, PutsTheFlangeOfTheKr210WhereItIsPublished) {
+// Source: the flange that [GbtAdl2023] (Robot_Model.m) gives in that posture, to 0.01 mm.
+TEST(Arm, PutsTheFlangeOfTheKr210WhereItsModelDoes) {
   const Eigen::Isometry3d flange = forward(testing::kr210(), testing::kr210_posture());
   EXPECT_NEAR(flange.translation().x(), 1.98137, 0.6e-5);
   EXPECT_NEAR(flange.translation().y(), -0.27781, 0.6e-5);

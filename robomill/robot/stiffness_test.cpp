@@ -56,8 +56,8 @@ double difference(const Matrix6& a, const Matrix6& b) {
   return out;
 }
 
-// Source: the KR210-like arm's published stiffness, eigenvalues printed to 0.001 N/um.
-TEST(Stiffness, HasTheKr210sPublishedEigenvalues) {
+// Source: kinematics and joint stiffness of [GbtAdl2023]; eigenvalues of that model, to 0.001 N/um.
+TEST(Stiffness, HasTheEigenvaluesOfTheKr210sModel) {
   const Stiffness s = stiffness(testing::kr210(), testing::kr210_posture(), Eigen::Vector3d::Zero());
   EXPECT_EQ(s.status, Stiffness::Status::regular);
   const PrincipalStiffness principal = principal_stiffness(s.compliance);
@@ -95,7 +95,7 @@ TEST(Stiffness, IsThatOfTheLoadedEquilibriumUnderAMomentToo) {
   EXPECT_GT(difference(measured.transpose(), measured), 1e-4);
 }
 
-// The source prints Kc = (∂J⁻ᵀ/∂θ) F: not only is its unit another one, it also fails the check that Jᵀ passes.
+// [BallEndRobot] eq. 17 prints Kc = (∂J⁻ᵀ/∂θ) F: not only is its unit another one, it also fails the check that Jᵀ passes.
 TEST(Stiffness, IsNotWhatTheMisprintGives) {
   const Arm arm = testing::kr210();
   for (const double force_n : {374.0, 37e3}) {

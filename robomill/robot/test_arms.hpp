@@ -11,7 +11,7 @@ namespace robomill::robot::testing {
 
 inline constexpr double pi = std::numbers::pi;
 
-/// A KUKA KR210-like arm in standard DH with joint stiffness and the flange's published pose.
+/// The KUKA KR210 of [GbtAdl2023] in standard DH, with its joint stiffness.
 inline Arm kr210() {
   Arm arm = arm_from_dh({{.a_m = 0.350, .alpha_rad = -pi / 2, .d_m = 0.4494},
                          {.a_m = 1.150, .theta_offset_rad = -pi / 2},
@@ -25,7 +25,7 @@ inline Arm kr210() {
   return arm;
 }
 
-/// Where that arm's stiffness is published.
+/// A posture that the same model gives.
 inline Eigen::VectorXd kr210_posture() {
   Eigen::VectorXd degrees(6);
   degrees << -10.09, 9.36, 17.81, 21.30, -28.85, -18.86;

@@ -146,6 +146,7 @@ export interface Track extends Places {
 export interface Program {
   torque_limit_n_m: Num;
   power_limit_w: Num;
+  power_time_s: number;
   curves: ForceCurves;
   track: Track;
 }

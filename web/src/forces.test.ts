@@ -72,6 +72,7 @@ const track: Track = {
 
 const program: Program = {
   torque_limit_n_m: 0.25,
+  power_time_s: 0.1,
   power_limit_w: 4000,
   curves: {
     path_mm: [5, 10, 30],

@@ -137,7 +137,7 @@ export function highest(values: (number | null)[]): number {
   return values.reduce<number>((most, value) => Math.max(most, value ?? 0), 0);
 }
 
-function programRows({ curves, torque_limit_n_m: torqueLimit, power_limit_w: powerLimit }: Program): Row[] {
+function programRows({ curves, torque_limit_n_m: torqueLimit, power_limit_w: powerLimit, power_time_s: powerTime }: Program): Row[] {
   const rows: Row[] = [
     { title: 'Peak force (N)', unit: 'N', lines: [{ name: 'peak force', y: curves.peak_force_n }], limit: null },
     {
@@ -145,11 +145,11 @@ function programRows({ curves, torque_limit_n_m: torqueLimit, power_limit_w: pow
       unit: 'N·m',
       lines: [
         { name: 'peak torque', y: curves.peak_torque_n_m, faint: true },
-        { name: 'mean torque', y: curves.torque_n_m },
+        { name: 'torque over a revolution', y: curves.torque_n_m },
       ],
       limit: torqueLimit,
     },
-    { title: 'Power (W)', unit: 'W', lines: [{ name: 'power', y: curves.power_w }], limit: powerLimit },
+    { title: 'Power (W)', unit: 'W', lines: [{ name: `power over ${powerTime} s`, y: curves.power_w }], limit: powerLimit },
   ];
   if (curves.deflection_um !== null) {
     rows.push({ title: 'Deflection (µm)', unit: 'µm', lines: [{ name: 'deflection', y: curves.deflection_um }], limit: null });
