@@ -67,6 +67,34 @@ std::vector<Eigen::Vector2d> steady_forces(const CollocationModel& model, const 
   return forces;
 }
 
+/// The tip a time after the start of a piece without force.
+Eigen::Vector2d coasting(const CollocationModel& model, const Eigen::VectorXcd& start, double time_s) {
+  Eigen::Vector2d tip = Eigen::Vector2d::Zero();
+  for (Eigen::Index k = 0; k < model.tip.pole.size(); ++k) {
+    const std::complex<double> here(start(2 * k).real(), start(2 * k + 1).real());
+    tip += 2.0 * (model.tip.right.col(k) * (here * std::exp(model.tip.pole(k) * time_s))).real();
+  }
+  return tip;
+}
+
+/// Greatest distance from rest: at the nodes of the cut, and between cuts sixteen times in the fastest mode's period.
+double peak_deflection(const CollocationModel& model, const CollocationCase& at, const NodeForces& orbit) {
+  double peak = 0.0;
+  for (const Eigen::Vector2cd& q : orbit.displacement_m) peak = std::max(peak, q.real().norm());
+  const Rotation turning(at.spindle_speed_rad_per_s, model.variation);
+  const double samples_per_s = 16.0 * model.tip.pole.cwiseAbs().maxCoeff() / revolution;
+  for (std::size_t e = 0; e < at.mesh.pieces.size(); ++e) {
+    if (at.mesh.topology.pieces[e].records) continue;
+    const CutMesh::Piece& piece = at.mesh.pieces[e];
+    const double length_s = turning.time_s(piece.from_rad + piece.length_rad) - turning.time_s(piece.from_rad);
+    const int samples = static_cast<int>(std::min(length_s * samples_per_s, 10000.0)) + 1;
+    for (int i = 0; i <= samples; ++i) {
+      peak = std::max(peak, coasting(model, orbit.starts[e], length_s * i / samples).norm());
+    }
+  }
+  return peak;
+}
+
 /// Tip in y as the first tooth's tip stands at an angle, from the modes at the start of the piece before.
 double y_at(const CollocationModel& model, const CollocationCase& at, const NodeForces& orbit, double angle_rad) {
   const double wanted =
@@ -76,13 +104,7 @@ double y_at(const CollocationModel& model, const CollocationCase& at, const Node
     if (wanted > piece.from_rad + piece.length_rad - 1e-9) continue;
     const Rotation turning(at.spindle_speed_rad_per_s, model.variation);
     const double time_s = turning.time_s(wanted) - turning.time_s(piece.from_rad);
-    const Eigen::VectorXcd& z = orbit.starts[e];
-    double y = 0.0;
-    for (Eigen::Index k = 0; k < model.tip.pole.size(); ++k) {
-      const std::complex<double> here(z(2 * k).real(), z(2 * k + 1).real());
-      y += 2.0 * (model.tip.right(1, k) * here * std::exp(model.tip.pole(k) * time_s)).real();
-    }
-    return y;
+    return coasting(model, orbit.starts[e], time_s).y();
   }
   return missing;
 }
@@ -130,10 +152,10 @@ SurfacePoint orbit_at(const CollocationModel& model, const OperatingPoint& point
   for (const Eigen::Vector2cd& q : orbit.displacement_m) {
     low = low.cwiseMin(q.real());
     high = high.cwiseMax(q.real());
-    result.peak_deflection_m = std::max(result.peak_deflection_m, q.real().norm());
   }
   result.peak_to_peak_x_m = high(0) - low(0);
   result.peak_to_peak_y_m = high(1) - low(1);
+  result.peak_deflection_m = peak_deflection(model, at, orbit);
   result.surface_location_error_m = wall_error(model, at, orbit);
   return result;
 }

@@ -15,7 +15,7 @@ struct SurfacePoint {
   /// both walls that of greatest magnitude. NaN where no tooth finishes a wall.
   double surface_location_error_m = 0.0;
   double peak_to_peak_x_m = 0.0, peak_to_peak_y_m = 0.0;  ///< of the tool's tip, at the nodes of the cut
-  double peak_deflection_m = 0.0;                         ///< greatest distance of the tip from rest, at the same nodes
+  double peak_deflection_m = 0.0;  ///< greatest distance of the tip from rest, in the cut and between cuts
 };
 
 struct SurfaceMap {

@@ -127,6 +127,10 @@ TEST(SurfaceError, TakesTheWorseWallOfASlotAndNoneWithoutAWall) {
   ASSERT_TRUE(none.stable);
   EXPECT_TRUE(std::isnan(none.surface_location_error_m));
   EXPECT_GT(none.peak_deflection_m, 0.0);
+  // Between cuts the tip may be further out than in them.
+  const SurfacePoint light = surface_point(fed(0.1), {9000 * rpm, 0.2e-3});
+  EXPECT_GE(light.peak_deflection_m, std::abs(light.surface_location_error_m));
+  EXPECT_LT(light.peak_deflection_m, 2.0 * std::hypot(light.peak_to_peak_x_m, light.peak_to_peak_y_m));
 }
 
 // An eccentric cutter's teeth finish the wall differently; which tooth is called the first does not matter.
