@@ -95,7 +95,8 @@ TEST(Stiffness, IsThatOfTheLoadedEquilibriumUnderAMomentToo) {
   EXPECT_GT(difference(measured.transpose(), measured), 1e-4);
 }
 
-// [BallEndRobot] eq. 17 prints Kc = (∂J⁻ᵀ/∂θ) F: not only is its unit another one, it also fails the check that Jᵀ passes.
+// [BallEndRobot] eq. 17 prints Kc = (∂J⁻ᵀ/∂θ) F: not only is its unit another one, it also fails the check that Jᵀ
+// passes.
 TEST(Stiffness, IsNotWhatTheMisprintGives) {
   const Arm arm = testing::kr210();
   for (const double force_n : {374.0, 37e3}) {
