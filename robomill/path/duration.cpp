@@ -109,10 +109,12 @@ void require_duration(program::Source& source, const SmoothingOptions& options, 
 InvalidInput lasts_too_long(const SmoothingOptions& options, double planned_s, std::size_t block, std::size_t line) {
   InvalidInput::Parts parts{.field = "program"};
   parts.rule = "lasts " + text(planned_s / hour_s, "h");
-  if (line > 0)
+  if (line > 0) {
     parts.rule += " up to block " + std::to_string(block + 1) + " (line " + std::to_string(line) + ") alone";
+  }
   parts.rule += " within the limits of the tool and the joints; " + allowed(options);
-  parts.hint = std::string("Is a joint's limit in another unit? ") + settable;
+  parts.hint = "Is a joint's limit in another unit? ";
+  parts.hint += settable;
   return InvalidInput(std::move(parts));
 }
 
