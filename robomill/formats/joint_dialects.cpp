@@ -34,10 +34,16 @@ constexpr std::size_t points_in_memory = 33'000;
 
 constexpr double degree_digits = 1e6, radian_digits = 1e9;
 
+/// The nearest 32-bit number. Volatile: where it vectorises, g++ 12 drops the conversion there and back.
+double as_real(double value) {
+  const volatile float real = static_cast<float>(value);
+  return static_cast<double>(real);
+}
+
 /// Written by degrees(), read as a 32-bit number.
 robot::Position6 held_degrees(const robot::Position6& joints) {
   const robot::Position6 written = (joints / units::deg * degree_digits).array().round() / degree_digits;
-  return written.cast<float>().cast<double>() * units::deg;
+  return written.unaryExpr(&as_real) * units::deg;
 }
 
 /// Written by radians().

@@ -86,7 +86,11 @@ class Recording : public testing::Test {
     return read_recording(cut, problem_);
   }
 
-  stability::LobesProblem problem_ = robot_cut();
+  stability::LobesProblem problem_ = [] {
+    stability::LobesProblem problem = robot_cut();
+    problem.milling.tool.teeth = 3;
+    return problem;
+  }();
   test::Folder folder_;
   std::filesystem::path path_ = folder_.at("cut.csv");
 };
