@@ -7,7 +7,8 @@ target_compile_options(robomill_flags INTERFACE
 target_compile_definitions(robomill_flags INTERFACE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees an uninitialised read in Eigen's packet code where there is none (GCC bug 105562).
-  target_compile_options(robomill_flags INTERFACE -Wno-maybe-uninitialized)
+  # With precompiled headers it also sees moved strings copied beyond their bounds (GCC bugs 105329, 105651).
+  target_compile_options(robomill_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-restrict)
 endif()
 if(ROBOMILL_SANITIZE)
   target_compile_options(robomill_flags INTERFACE -fsanitize=${ROBOMILL_SANITIZE} -fno-omit-frame-pointer
