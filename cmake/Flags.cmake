@@ -1,14 +1,17 @@
 # One interface target carries the flags of every target of ours; third-party headers come as SYSTEM and stay silent.
 add_library(robomill_flags INTERFACE)
 target_compile_options(robomill_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wold-style-cast -Werror
-  -ffp-contract=off)
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wold-style-cast -ffp-contract=off)
+if(ROBOMILL_WERROR)
+  target_compile_options(robomill_flags INTERFACE -Werror)
+endif()
 # A macro of fmt's headers, which are precompiled for all.
 target_compile_definitions(robomill_flags INTERFACE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees an uninitialised read in Eigen's packet code where there is none (GCC bug 105562).
-  # With precompiled headers it also sees moved strings copied beyond their bounds (GCC bugs 105329, 105651).
-  target_compile_options(robomill_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-restrict)
+  # With precompiled headers it also sees strings copied beyond their bounds (like GCC bugs 105329 and 105651).
+  target_compile_options(robomill_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-restrict
+    -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 if(ROBOMILL_SANITIZE)
   target_compile_options(robomill_flags INTERFACE -fsanitize=${ROBOMILL_SANITIZE} -fno-omit-frame-pointer
