@@ -1,5 +1,4 @@
 #include "robomill/monitor/monitor.hpp"
-#include "robomill/base/printable.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -24,6 +23,7 @@
 #include "monitor/session_input.hpp"
 #include "monitor/watch.hpp"
 #include "robomill/base/error.hpp"
+#include "robomill/base/printable.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/monitor_toml.hpp"
 #include "robomill/formats/units.hpp"

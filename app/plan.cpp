@@ -1,11 +1,11 @@
 #include "robomill/plan/plan.hpp"
-#include "robomill/base/printable.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <string>
 
+#include "robomill/base/printable.hpp"
 #include "robomill/formats/units.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -44,8 +44,8 @@ void print_summary(const plan::PlanResult& result) {
   print_disagreement(count);
   if (result.hits) {
     for (const modal::HitVerdict& hit : result.hits->hits) {
-      if (!hit.accepted)
-        fmt::print("rejected     {}: {}\n", printable(hit.file), hit.reasons.empty() ? "" : hit.reasons.front());
+      if (hit.accepted) continue;
+      fmt::print("rejected     {}: {}\n", printable(hit.file), hit.reasons.empty() ? "" : hit.reasons.front());
     }
   }
   if (result.prediction && !result.prediction->peaks.empty()) {

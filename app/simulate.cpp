@@ -58,9 +58,7 @@ formats::LobesFile read_cut(const std::filesystem::path& path, bool told, Progre
   formats::LobesFile file = formats::read_lobes(path);
   formats::load_dynamics(file);
   stability::LobesProblem& problem = file.problem;
-  if (told) {
-    print_notes(file.notes, "Note: ");
-  }
+  if (told) print_notes(file.notes, "Note: ");
   fit_where_measured(file.frf, problem.measured, problem.dynamics, told, progress);
   fit_where_measured(file.workpiece_frf, problem.workpiece_measured, problem.workpiece_dynamics, told, progress);
   file.validate();

@@ -1,5 +1,4 @@
 #include "robomill/plan/smooth.hpp"
-#include "robomill/base/printable.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/printable.hpp"
 #include "robomill/formats/file.hpp"
 #include "robomill/formats/text.hpp"
 #include "robomill/formats/units.hpp"

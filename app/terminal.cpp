@@ -10,9 +10,8 @@
 #include <ctime>
 #include <string_view>
 
-#include "robomill/formats/pending_names.hpp"
-
 #include "robomill/base/printable.hpp"
+#include "robomill/formats/pending_names.hpp"
 
 namespace robomill::app {
 namespace {

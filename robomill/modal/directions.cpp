@@ -22,6 +22,19 @@ bool has(const std::vector<Axis>& axes, Axis axis) {
   return std::find(axes.begin(), axes.end(), axis) != axes.end();
 }
 
+struct Ends {
+  std::vector<Dof> responses = {}, excitations = {};  ///< one an FRF
+};
+
+Ends ends_of(const FrfSet& set) {
+  Ends ends;
+  for (const Frf& frf : set.frfs) {
+    ends.responses.push_back(frf.name.response);
+    ends.excitations.push_back(frf.name.excitation);
+  }
+  return ends;
+}
+
 /// Those of the plane that are not among both.
 std::vector<Axis> not_in_both(const std::vector<Dof>& responses, const std::vector<Dof>& excitations) {
   std::vector<Axis> unknown;
@@ -57,12 +70,8 @@ std::vector<Axis> unknown_directions(const ModalModel& model) {
 }
 
 std::vector<Axis> unknown_directions(const FrfSet& set) {
-  std::vector<Dof> responses, excitations;
-  for (const Frf& frf : set.frfs) {
-    responses.push_back(frf.name.response);
-    excitations.push_back(frf.name.excitation);
-  }
-  return not_in_both(responses, excitations);
+  const Ends ends = ends_of(set);
+  return not_in_both(ends.responses, ends.excitations);
 }
 
 void require_said(const std::vector<Axis>& unknown, const MissingDirections& said) {
@@ -128,12 +137,8 @@ FitResult with_equal_directions(FitResult fit) {
 }
 
 FrfSet with_equal_directions(const FrfSet& set) {
-  std::vector<Dof> responses, excitations;
-  for (const Frf& frf : set.frfs) {
-    responses.push_back(frf.name.response);
-    excitations.push_back(frf.name.excitation);
-  }
-  const Dof measured = single(responses, excitations);
+  const Ends ends = ends_of(set);
+  const Dof measured = single(ends.responses, ends.excitations);
   FrfSet out{.frequency_hz = set.frequency_hz, .frfs = {}};
   for (const Axis axis : plane) {
     out.frfs.push_back(set.frfs.front());

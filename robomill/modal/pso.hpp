@@ -30,7 +30,7 @@ struct PsoOptions {
   int max_iterations = 8000;   ///< >= 1
   double inertia_start = 0.9;  ///< falls linearly from here at the first iteration, in [0, 1]
   double inertia_end = 0.4;    ///< to here at inertia_iterations, where it stays, in [0, inertia_start]
-  /// Iterations over which the inertia falls, >= 1, at most max_iterations; not stated. Falling over all 8,000 it would
+  /// Iterations over which the inertia falls, >= 1, at most max_iterations. Stated are all 8,000 (eq. 4-25): it would
   /// stand at 0.88 where the published fits stop (281 and 284 iterations), and a swarm with pulls of 2 contracts only
   /// below 0.5 ([Poli2009]).
   int inertia_iterations = 300;
