@@ -94,7 +94,7 @@ void GcodeReader::take_m(const GcodeWords::Word& word, Line& line) {
     case McodeAct::tcp_on:
     case McodeAct::tcp_off:
       line.center_point = word;
-      break;
+      return;
   }
   line.leave_out(word);
 }

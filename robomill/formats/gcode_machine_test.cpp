@@ -208,6 +208,9 @@ TEST(GcodeMachine, WithoutTheToolCentrePointTurnedAxesAreRefused) {
     const Program program = read(turned + "M30\n");
     EXPECT_EQ(program.blocks.size(), 1U);
     EXPECT_TRUE(program.notes.empty());
+    for (const program::Skipped& skipped : program.skipped) {
+      EXPECT_TRUE(skipped.what == "H1" || skipped.what == "G49") << skipped.what << ": what is obeyed is not skipped";
+    }
     EXPECT_NE(said_of(turned + "G0 Z50\n").find("part:4: "), std::string::npos) << said_of(turned + "G0 Z50\n");
   }
   expect_refused("M128\nG0 X0 Y0 Z0 A-30 C5\nM129\nG0 Z50\n",

@@ -186,7 +186,10 @@ void GcodeReader::take_g(const GcodeWords::Word& word, Line& line) {
       refuse("G", word.number, "", "is not read: it may move the tool or its frame", gcode_hint(code));
     }
     claim(*group, word, line);
-    if (*group == GcodeGroup::length) line.length = word;
+    if (*group == GcodeGroup::length) {
+      line.length = word;
+      if (code != 430 && code != 490) return;  // those that turn the tool centre point on are obeyed
+    }
     line.scaling_off = line.scaling_off || code == 500;
   }
   line.leave_out(word);

@@ -52,9 +52,7 @@ TEST(Gcode, ReadsAFiveAxisProgram) {
   EXPECT_LT((last.end.axis - program::tool_axis(Machine::xyzac_trt, -71.266 * deg, 0.0, -32.919 * deg)).norm(), 1e-15);
   EXPECT_LT((program.begin_of(2).tip_m - Vector3d(0.006302, -0.011560, 0.027743)).norm(), 1e-15);
   EXPECT_EQ(last.spindle, program::Spindle::clockwise);
-  ASSERT_EQ(program.skipped.size(), 1U);
-  EXPECT_EQ(program.skipped[0].line, 3U);
-  EXPECT_EQ(program.skipped[0].what, "M428");
+  EXPECT_TRUE(program.skipped.empty()) << "M428 is obeyed";
 }
 
 TEST(Gcode, FeedPerMinuteIsModalAndTimesTheWay) {

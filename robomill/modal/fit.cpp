@@ -190,16 +190,11 @@ void fit_by_poles(FitResult& result, const FrfSet& set, const FitOptions& option
   }
 }
 
-/// The swarm has a bound of its own.
-double damping_bound(const FitOptions& options) {
-  return options.method == FitMethod::pso ? options.pso_max_damping_ratio : options.max_damping_ratio;
-}
-
 void fit_by_swarm(FitResult& result, const FrfSet& set, const FitOptions& options, Progress& progress) {
   const PsoResult swarm = fit_pso(set,
                                   {.modes = options.modes,
                                    .frequency_half_width = options.pso_frequency_half_width,
-                                   .max_damping_ratio = damping_bound(options),
+                                   .max_damping_ratio = options.pso_max_damping_ratio,
                                    .particles = options.pso_particles,
                                    .max_iterations = options.pso_max_iterations,
                                    .seed = options.seed},
@@ -238,6 +233,8 @@ const char* to_string(FitBound bound) {
       return "band_low_hz";
     case FitBound::band_high:
       return "band_high_hz";
+    case FitBound::swarm_damping:
+      return "pso_max_damping_ratio";
     case FitBound::damping:
       break;
   }
@@ -303,7 +300,7 @@ FitResult fit_modes(const FrfSet& set, const FitOptions& options, Progress& prog
     result.warnings.emplace_back("No mode stands out of the noise in the band.");
   }
   detail::set_errors(result, band);
-  detail::find_bounds(result, damping_bound(options));
+  detail::find_bounds(result, options);
   detail::add_warnings(result, band);
   take_out_decay(result, options.exponential_decay_per_s);
   return result;

@@ -71,10 +71,12 @@ constexpr double unusable_fit_error = 0.2;
 
 /// A bound that the search for a mode ended at: what stands there is no mode that the data shows.
 enum class FitBound {
-  damping,   ///< FitOptions::max_damping_ratio (1 for the swarm unless another is asked for)
-  band_low,  ///< the first line of the band
-  band_high  ///< the last line of the band
+  damping,        ///< FitOptions::max_damping_ratio
+  swarm_damping,  ///< FitOptions::pso_max_damping_ratio, where the swarm fitted
+  band_low,       ///< the first line of the band
+  band_high       ///< the last line of the band
 };
+/// The name of the option: "max_damping_ratio", "pso_max_damping_ratio", "band_low_hz" or "band_high_hz".
 [[nodiscard]] ROBOMILL_API const char* to_string(FitBound bound);
 struct ModeAtBound {
   int mode = 0;  ///< from 1

@@ -110,7 +110,7 @@ void warn_of_bounds(FitResult& result) {
   for (const ModeAtBound& at : result.at_bounds) {
     const Mode& mode = result.model.modes[static_cast<std::size_t>(at.mode - 1)];
     result.warnings.push_back(
-        at.bound == FitBound::damping
+        at.bound == FitBound::damping || at.bound == FitBound::swarm_damping
             ? fmt::format("The mode at {:.1f} Hz stands at the bound of the damping ratio, {:.4g}: it is no mode that "
                           "the FRFs show, but fills what the others leave.",
                           mode.frequency_hz, mode.damping_ratio)
@@ -154,7 +154,9 @@ void set_errors(FitResult& result, const FrfSet& set) {
   result.mean_relative_error = lines > 0.0 ? sum / lines : 0.0;
 }
 
-void find_bounds(FitResult& result, double max_damping_ratio) {
+void find_bounds(FitResult& result, const FitOptions& options) {
+  const bool swarm = options.method == FitMethod::pso;
+  const double max_damping_ratio = swarm ? options.pso_max_damping_ratio : options.max_damping_ratio;
   constexpr double same_damping = 1e-3;  // as a share of the bound
   constexpr double same_line = 0.5;      // of the lines' distance
   const double near_hz = same_line * (result.band_high_hz - result.band_low_hz) /
@@ -163,7 +165,7 @@ void find_bounds(FitResult& result, double max_damping_ratio) {
     const Mode& mode = result.model.modes[k];
     const int number = static_cast<int>(k) + 1;
     if (mode.damping_ratio >= (1.0 - same_damping) * max_damping_ratio) {
-      result.at_bounds.push_back({number, FitBound::damping});
+      result.at_bounds.push_back({number, swarm ? FitBound::swarm_damping : FitBound::damping});
     }
     if (mode.frequency_hz <= result.band_low_hz + near_hz) result.at_bounds.push_back({number, FitBound::band_low});
     if (mode.frequency_hz >= result.band_high_hz - near_hz) result.at_bounds.push_back({number, FitBound::band_high});

@@ -62,6 +62,14 @@ TEST(FitBounds, ModesThatStandThereAreNamed) {
   }
   EXPECT_NE(all_of(damped.warnings).find("bound of the damping ratio, 0.01"), std::string::npos);
 
+  // The swarm has a bound of its own, which is the one to loosen.
+  FitOptions swarm{.method = FitMethod::pso, .modes = 2};
+  swarm.pso_max_damping_ratio = 0.01;
+  swarm.pso_max_iterations = 50;
+  const FitResult by_swarm = fit_modes(two_modes(0.02), swarm);
+  ASSERT_FALSE(by_swarm.at_bounds.empty());
+  EXPECT_EQ(std::string(to_string(by_swarm.at_bounds[0].bound)), "pso_max_damping_ratio");
+
   // The second mode lies outside: what is asked for beyond the first ends at the edge.
   const FitResult cut = fit_modes(two_modes(0.0), {.band_high_hz = 105.0, .modes = 2, .residuals = false});
   ASSERT_EQ(cut.at_bounds.size(), 1U);
