@@ -12,10 +12,10 @@
 
 #include "monitor/report.hpp"
 #include "robomill/base/error.hpp"
-#include "robomill/formats/calibration_json.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/recordings_toml.hpp"
-#include "robomill/formats/text.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/text.hpp"
+#include "robomill/monitor/files/calibration_json.hpp"
+#include "robomill/monitor/files/recordings_toml.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/formats/sample_source.hpp"
+#include "robomill/io/sample_source.hpp"
 #include "test_program.hpp"
 
 namespace robomill::app {

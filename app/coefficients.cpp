@@ -4,10 +4,10 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/cutting/coefficients.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/slots_csv.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/cutting/files/slots_csv.hpp"
+#include "robomill/io/file.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 

@@ -8,15 +8,15 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/coupling/assembly.hpp"
-#include "robomill/formats/assembly_toml.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/frf_files.hpp"
-#include "robomill/formats/lobes_toml.hpp"
-#include "robomill/formats/tools_csv.hpp"
-#include "robomill/formats/units.hpp"
-#include "robomill/plan/predict.hpp"
-#include "robomill/plan/tools.hpp"
+#include "robomill/coupling/files/assembly_toml.hpp"
+#include "robomill/coupling/files/tools_csv.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/jobs/predict.hpp"
+#include "robomill/jobs/tools.hpp"
+#include "robomill/modal/files/frf_files.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
@@ -29,10 +29,10 @@ constexpr double measurement_error = 0.01;
 
 void print_peaks(const modal::FrfSet& set, const modal::Frf& frf) {
   const std::string name = modal::to_string(frf.name);
-  std::vector<plan::PeakFound> peaks = plan::find_peaks(set.frequency_hz, frf.receptance);
+  std::vector<jobs::PeakFound> peaks = jobs::find_peaks(set.frequency_hz, frf.receptance);
   if (peaks.empty()) fmt::print("{}: no peak between the first line and the last\n", name);
   peaks.resize(std::min(peaks.size(), peaks_shown));
-  for (const plan::PeakFound& peak : peaks) {
+  for (const jobs::PeakFound& peak : peaks) {
     fmt::print("{}: peak at {:.6g} Hz, {:.4g} µm/N\n", name, peak.frequency_hz, peak.magnitude / units::um);
   }
 }
@@ -119,10 +119,10 @@ coupling::TipResult couple(const formats::AssemblyFile& file, const coupling::Ti
   }
 }
 
-void print_tools(const std::vector<plan::ToolResult>& results) {
+void print_tools(const std::vector<jobs::ToolResult>& results) {
   fmt::print("{:<20} {:>5} {:>9} {:>9} {:>10} {:>5} {:>10} {:>9} {:>9}\n", "tool", "teeth", "overhang", "peak Hz",
              "µm/N", "modes", "lowest mm", "rpm", "depth mm");
-  for (const plan::ToolResult& tool : results) {
+  for (const jobs::ToolResult& tool : results) {
     fmt::print("{:<20} {:>5} {:>9.4g} ", printable(tool.name), tool.teeth, tool.overhang_m / units::mm);
     if (!tool.failure.empty()) {
       fmt::print("{}\n", printable(tool.failure));
@@ -132,7 +132,7 @@ void print_tools(const std::vector<plan::ToolResult>& results) {
     const bool limited = tool.lowest_limit_m.has_value();
     fmt::print("{:>10} ", limited ? fmt::format("{:.4g}", *tool.lowest_limit_m / units::mm) : "-");
     if (tool.recommendation && tool.recommendation->recommended) {
-      const plan::Operation& best = *tool.recommendation->recommended;
+      const decision::Operation& best = *tool.recommendation->recommended;
       fmt::print("{:>9.0f} {:>9.4g}\n", best.spindle_speed_rad_per_s / units::rpm, best.axial_depth_m / units::mm);
     } else if (tool.recommendation) {
       fmt::print("{}\n", tool.recommendation->reason);
@@ -157,13 +157,13 @@ Exit try_tools(const CoupleCommand& command, const Common& common, Progress& pro
     cut->drop_dynamics();
     formats::load_dynamics(*cut);
   }
-  const std::vector<plan::ToolResult> results = plan::try_tools(assembly, tools, cut, common.seed, progress);
+  const std::vector<jobs::ToolResult> results = jobs::try_tools(assembly, tools, cut, common.seed, progress);
   if (common.to_stdout()) {
-    fmt::print("{}", plan::tools_json(results, assembly.holder));
+    fmt::print("{}", jobs::tools_json(results, assembly.holder));
   } else if (!common.output.empty()) {
-    formats::write_file(common.output, as_json ? plan::tools_json(results, assembly.holder) : plan::tools_csv(results));
+    formats::write_file(common.output, as_json ? jobs::tools_json(results, assembly.holder) : jobs::tools_csv(results));
   }
-  if (!command.frfs.empty()) plan::write_tips(command.frfs, results);
+  if (!command.frfs.empty()) jobs::write_tips(command.frfs, results);
   if (common.wants_summary()) {
     print_tools(results);
     print_holder(assembly);

@@ -5,11 +5,11 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/fingerprint_json.hpp"
-#include "robomill/formats/lobes_toml.hpp"
-#include "robomill/formats/modes_files.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/modal/files/modes_files.hpp"
+#include "robomill/stability/files/fingerprint_json.hpp"
 #include "robomill/stability/fingerprint.hpp"
 #include "verbs.hpp"
 

@@ -1,4 +1,4 @@
-#include "robomill/plan/forces.hpp"
+#include "robomill/jobs/forces.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/report/report.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -35,7 +35,7 @@ void print_vibration(const simulation::Simulation& vibration) {
   fmt::print("\n");
 }
 
-void print_revolution(const plan::RevolutionForces& revolution, bool on_workpiece) {
+void print_revolution(const jobs::RevolutionForces& revolution, bool on_workpiece) {
   const double sign = on_workpiece ? -1.0 : 1.0;
   const cutting::CuttingForce& force = revolution.settled.force;
   fmt::print("{:<12} {:>10} {:>10} {:>10}   on the {}, feed frame\n", "", "x", "y", "z",
@@ -59,7 +59,7 @@ void print_revolution(const plan::RevolutionForces& revolution, bool on_workpiec
 }
 
 /// One block with its largest values.
-void print_row(const plan::ProgramForces& program, const char* label, const plan::BlockResult& row) {
+void print_row(const jobs::ProgramForces& program, const char* label, const jobs::BlockResult& row) {
   const bool bends = row.joints.size() > 0;
   fmt::print("{:<12} {:>6} {:>10.4g} {:>10.3g} {:>10.4g} {:>10.4g} {:>10} {:>10.3g}\n", label,
              program.program.blocks[row.force.block].line, row.force.peak_force_n, row.force.revolution_torque_n_m,
@@ -68,35 +68,35 @@ void print_row(const plan::ProgramForces& program, const char* label, const plan
              row.force.axial_depth_m / units::mm);
 }
 
-void print_program(const plan::ProgramForces& program, double power_time_s) {
+void print_program(const jobs::ProgramForces& program, double power_time_s) {
   const auto highest = [&](auto value) {
-    return *std::ranges::max_element(program.blocks, {}, [&](const plan::BlockResult& row) { return value(row); });
+    return *std::ranges::max_element(program.blocks, {}, [&](const jobs::BlockResult& row) { return value(row); });
   };
   fmt::print("{} blocks, {} of them cut; {:.4g} mm³ removed; {:.2f} s\n", program.blocks.size(),
              program.cutting_blocks(), program.removed_volume_m3 / units::mm3, program.seconds);
-  if (program.stock) fmt::print("stock        {}\n", plan::stock_text(program));
+  if (program.stock) fmt::print("stock        {}\n", jobs::stock_text(program));
   fmt::print("{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "the block of", "line", "force N", "torque Nm",
              "power W", "power W", "bends µm", "depth mm");
   fmt::print("{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "", "peak", "1 turn", "1 turn",
              fmt::format("{:.4g} s", power_time_s), "1 turn", "");
-  print_row(program, "most force", highest([](const plan::BlockResult& r) { return r.force.peak_force_n; }));
-  print_row(program, "most torque", highest([](const plan::BlockResult& r) { return r.force.revolution_torque_n_m; }));
-  print_row(program, "most power", highest([](const plan::BlockResult& r) { return r.force.sustained_power_w; }));
+  print_row(program, "most force", highest([](const jobs::BlockResult& r) { return r.force.peak_force_n; }));
+  print_row(program, "most torque", highest([](const jobs::BlockResult& r) { return r.force.revolution_torque_n_m; }));
+  print_row(program, "most power", highest([](const jobs::BlockResult& r) { return r.force.sustained_power_w; }));
   if (program.blocks.front().joints.size() == 0) return;
-  print_row(program, "most bend", highest([](const plan::BlockResult& r) { return r.peak_deflection_m.norm(); }));
+  print_row(program, "most bend", highest([](const jobs::BlockResult& r) { return r.peak_deflection_m.norm(); }));
 }
 
-void write_report(const std::filesystem::path& path, const plan::ForcesResult& result) {
+void write_report(const std::filesystem::path& path, const jobs::ForcesResult& result) {
   report::Report page;
   page.title = "Cutting forces";
-  page.forces = plan::forces_report(result);
+  page.forces = jobs::forces_report(result);
   const bool html = path.extension() == ".html";
   formats::write_file(path, html ? report::report_html(page) : report::report_json(page));
 }
 
-bool reached(const plan::ForcesResult& result) {
+bool reached(const jobs::ForcesResult& result) {
   if (!result.revolution) return true;
-  const plan::RevolutionForces& revolution = *result.revolution;
+  const jobs::RevolutionForces& revolution = *result.revolution;
   if (revolution.settled.status != cutting::SettledCut::Status::found) return false;
   return !revolution.vibration || revolution.vibration->verdict != simulation::Verdict::undecided;
 }
@@ -113,12 +113,12 @@ Exit run(const ForcesCommand& command, const Common& common, Progress& progress)
   if (!command.report.empty() && command.report.extension() != ".html" && command.report.extension() != ".json") {
     throw InvalidInput(command.report.string(), "a report is written as .html or .json");
   }
-  const plan::ForcesResult result = plan::run_forces(command.input, command.program, command.cell, progress);
+  const jobs::ForcesResult result = jobs::run_forces(command.input, command.program, command.cell, progress);
   if (common.to_stdout()) {
-    fmt::print("{}", plan::forces_json(result));
+    fmt::print("{}", jobs::forces_json(result));
   } else if (!common.output.empty()) {
     const bool csv = formats::format_of(common.output) == formats::Format::csv;
-    formats::write_file(common.output, csv ? plan::forces_csv(result) : plan::forces_json(result));
+    formats::write_file(common.output, csv ? jobs::forces_csv(result) : jobs::forces_json(result));
   }
   if (!command.report.empty()) write_report(command.report, result);
   if (common.wants_summary()) {

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "robomill/base/printable.hpp"
-#include "robomill/formats/frf_files.hpp"
-#include "robomill/formats/hits_toml.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/modal/files/frf_files.hpp"
+#include "robomill/modal/files/hits_toml.hpp"
 #include "robomill/modal/hits.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"

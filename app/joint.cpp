@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/coupling/files/assembly_toml.hpp"
+#include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/coupling/joint_fit.hpp"
-#include "robomill/formats/assembly_toml.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/frf_files.hpp"
-#include "robomill/formats/joint_json.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/modal/files/frf_files.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/fit_toml.hpp"
-#include "robomill/formats/frf_files.hpp"
-#include "robomill/formats/modes_files.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/modal/files/fit_toml.hpp"
+#include "robomill/modal/files/frf_files.hpp"
+#include "robomill/modal/files/modes_files.hpp"
 #include "robomill/modal/fit.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"

@@ -18,9 +18,9 @@
 #include "monitor/mqtt.hpp"
 #include "monitor/test_processes.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/formats/sample_source.hpp"
-#include "robomill/formats/stream_block.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/sample_source.hpp"
+#include "robomill/monitor/files/stream_block.hpp"
 #include "test_program.hpp"
 
 namespace robomill::app {

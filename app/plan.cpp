@@ -1,4 +1,4 @@
-#include "robomill/plan/plan.hpp"
+#include "robomill/jobs/plan.hpp"
 
 #include <fmt/format.h>
 
@@ -6,21 +6,21 @@
 #include <string>
 
 #include "robomill/base/printable.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
 namespace {
 
-void print_operation(const char* label, const plan::Operation& op) {
+void print_operation(const char* label, const decision::Operation& op) {
   fmt::print("{:<12} {:>7.0f} rpm  {:.3f} mm  {:.3g} mm/tooth  {:.4g} mm³/s  limited by {}\n", label,
              op.spindle_speed_rad_per_s / units::rpm, op.axial_depth_m / units::mm, op.feed_per_tooth_m / units::mm,
-             op.removal_rate_m3_per_s / units::mm3, plan::limited_by_text(op));
+             op.removal_rate_m3_per_s / units::mm3, jobs::limited_by_text(op));
 }
 
 /// What else to know of the recommended one.
-void print_details(const plan::Operation& op) {
+void print_details(const decision::Operation& op) {
   fmt::print(
       "             cutting speed {:.4g} m/min, feed {:.4g} mm/min, mean torque {:.3g} N·m, mean power {:.3g} W\n",
       op.cutting_speed_m_per_s * units::minute, op.feed_m_per_s / units::mm * units::minute, op.torque_n_m, op.power_w);
@@ -39,7 +39,7 @@ void print_disagreement(const report::Agreement& count) {
              count.disagree, count.agree + count.disagree);
 }
 
-void print_summary(const plan::PlanResult& result) {
+void print_summary(const jobs::PlanResult& result) {
   const report::Agreement count = report::agreement(result.cuts);
   print_disagreement(count);
   if (result.hits) {
@@ -56,7 +56,7 @@ void print_summary(const plan::PlanResult& result) {
   if (result.recommendation.recommended) {
     print_operation("recommended", *result.recommendation.recommended);
     print_details(*result.recommendation.recommended);
-    for (const plan::Operation& op : result.recommendation.alternatives) print_operation("alternative", op);
+    for (const decision::Operation& op : result.recommendation.alternatives) print_operation("alternative", op);
   } else {
     fmt::print("{}: {}\n", result.has_lobes() ? "no safe depth" : "no answer", result.recommendation.reason);
   }
@@ -77,15 +77,15 @@ void print_summary(const plan::PlanResult& result) {
 
 Exit run(const PlanCommand& command, const Common& common, Progress& progress) {
   const std::filesystem::path folder = common.to_stdout() ? std::string() : common.output;
-  const plan::PlanResult result = plan::run_job(command.job, common.seed, progress, folder, command.accept_fit);
+  const jobs::PlanResult result = jobs::run_job(command.job, common.seed, progress, folder, command.accept_fit);
   if (common.to_stdout()) {
-    fmt::print("{}", plan::plan_json(result));
+    fmt::print("{}", jobs::plan_json(result));
   } else if (!common.output.empty()) {
-    plan::write_plan(common.output, result);
+    jobs::write_plan(common.output, result);
   }
   if (common.wants_summary()) print_summary(result);
   if (result.path && !result.path->holds()) return not_reached;
-  return result.recommendation.status == plan::Recommendation::Status::found ? done : not_reached;
+  return result.recommendation.status == decision::Recommendation::Status::found ? done : not_reached;
 }
 
 }  // namespace robomill::app

@@ -3,7 +3,7 @@
 #include <charconv>
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
 
 namespace robomill::app {
 

@@ -1,4 +1,4 @@
-#include "robomill/plan/smooth.hpp"
+#include "robomill/jobs/smooth.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/text.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/text.hpp"
 #include "robomill/report/report.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -53,7 +53,7 @@ void print_methods(const formats::SmoothedProgram& smoothed) {
              "planned in");
   for (const formats::SmoothedBy& by : smoothed.methods) {
     fmt::print("{:<18}{:>10.3f} s{:>12}{:>12.1f} %{:>11.4g} mm{:>10.3f} s\n", formats::name_of(by.method),
-               by.summary.duration_s, by.summary.check.violations(), 100.0 * plan::joint_share(by.summary.check),
+               by.summary.duration_s, by.summary.check.violations(), 100.0 * jobs::joint_share(by.summary.check),
                by.summary.check.tip_error_m.max / units::mm, by.summary.plan_s);
   }
 }
@@ -74,7 +74,7 @@ void print_run(const formats::ProgramRun& run) {
       run.axis_deviation_rad / units::deg);
 }
 
-void print_summary(const plan::SmoothResult& result) {
+void print_summary(const jobs::SmoothResult& result) {
   const formats::SmoothedBy& by = result.first();
   const path::Summary& summary = by.summary;
   fmt::print("{}  {:.3f} s", formats::name_of(by.method), summary.duration_s);
@@ -91,21 +91,21 @@ void print_summary(const plan::SmoothResult& result) {
   print_notes(result.smoothed.notes, "note       ");
 }
 
-void write_report(const std::filesystem::path& path, const plan::SmoothResult& result) {
+void write_report(const std::filesystem::path& path, const jobs::SmoothResult& result) {
   if (formats::lowered(path.extension().string()) == ".json") {
     formats::write_file(path, formats::smooth_json(result.smoothed));
     return;
   }
   report::Report page;
   page.title = "Smoothed program";
-  page.smooth = plan::smooth_report(result);
+  page.smooth = jobs::smooth_report(result);
   formats::write_file(path, report::report_html(page));
 }
 
 /// Runs the job; what it refuses of the command line is told in the command line's words.
-plan::SmoothResult run_job(const plan::SmoothJob& job, Progress& progress) {
+jobs::SmoothResult run_job(const jobs::SmoothJob& job, Progress& progress) {
   try {
-    return plan::run_smooth(job, progress);
+    return jobs::run_smooth(job, progress);
   } catch (const InvalidInput& error) {
     if (error.parts().field != "program_period_s" || !error.parts().number) throw;
     throw InvalidInput("--program-period-ms", *error.parts().number / units::ms, "ms", error.parts().rule);
@@ -119,7 +119,7 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
   if (!command.report.empty() && ending != ".html" && ending != ".json") {
     throw InvalidInput(command.report.string(), "a report is written as .html or .json");
   }
-  plan::SmoothJob job;
+  jobs::SmoothJob job;
   job.program = command.program;
   job.cell = command.cell;
   if (!common.to_stdout()) job.output = common.output;
@@ -131,7 +131,7 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
     require_positive("--program-period-ms", *command.program_period_ms, "ms");
     job.program_period_s = *command.program_period_ms * units::ms;
   }
-  const plan::SmoothResult result = run_job(job, progress);
+  const jobs::SmoothResult result = run_job(job, progress);
   if (common.to_stdout()) fmt::print("{}", formats::smooth_json(result.smoothed));
   if (!command.report.empty()) write_report(command.report, result);
   if (common.wants_summary()) print_summary(result);

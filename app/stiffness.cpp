@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/cell_toml.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/loads_csv.hpp"
-#include "robomill/formats/stiffness_files.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/jobs/files/cell_toml.hpp"
+#include "robomill/robot/files/loads_csv.hpp"
+#include "robomill/robot/files/stiffness_files.hpp"
 #include "robomill/robot/pose.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "robomill/base/printable.hpp"
-#include "robomill/formats/pending_names.hpp"
+#include "robomill/io/pending_names.hpp"
 
 namespace robomill::app {
 namespace {

@@ -1,8 +1,8 @@
 #include "advisor.hpp"
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/lobes_toml.hpp"
-#include "robomill/formats/modes_files.hpp"
+#include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/modal/files/modes_files.hpp"
 #include "robomill/monitor/advice.hpp"
 
 namespace robomill::app {

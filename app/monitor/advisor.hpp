@@ -2,9 +2,9 @@
 #include <optional>
 
 #include "robomill/base/progress.hpp"
-#include "robomill/formats/monitor_events.hpp"
-#include "robomill/formats/monitor_toml.hpp"
 #include "robomill/modal/modes.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
+#include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/stability/lobes.hpp"
 
 namespace robomill::app {

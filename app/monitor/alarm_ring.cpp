@@ -7,8 +7,8 @@
 #include <exception>
 #include <utility>
 
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/sample_source.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/sample_source.hpp"
 
 namespace robomill::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <map>
 #include <vector>
 
-#include "robomill/formats/stream_block.hpp"
+#include "robomill/monitor/files/stream_block.hpp"
 
 namespace robomill::app {
 

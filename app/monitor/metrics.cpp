@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
 
 namespace robomill::app {
 namespace {

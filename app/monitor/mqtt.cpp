@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/text.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/text.hpp"
 
 namespace robomill::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "robomill/formats/monitor_toml.hpp"
+#include "robomill/monitor/files/monitor_toml.hpp"
 
 namespace robomill::app {
 

@@ -13,7 +13,7 @@
 #include "metrics.hpp"
 #include "notices.hpp"
 #include "robomill/base/test_support.hpp"
-#include "robomill/formats/sample_source.hpp"
+#include "robomill/io/sample_source.hpp"
 #include "watch.hpp"
 
 namespace robomill::app {

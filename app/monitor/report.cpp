@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/file.hpp"
-#include "robomill/formats/text.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/text.hpp"
 
 namespace robomill::app {
 namespace {

@@ -2,9 +2,9 @@
 #include <filesystem>
 #include <string>
 
-#include "robomill/formats/monitor_events.hpp"
-#include "robomill/formats/monitor_toml.hpp"
 #include "robomill/monitor/calibrate.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
+#include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/report/report.hpp"
 
 namespace robomill::app {

@@ -10,8 +10,8 @@
 #include "hop_queue.hpp"
 #include "metrics.hpp"
 #include "notices.hpp"
-#include "robomill/formats/monitor_events.hpp"
-#include "robomill/formats/monitor_toml.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
+#include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/report/monitor_recorder.hpp"
 

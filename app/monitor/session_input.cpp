@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/formats/stream_block.hpp"
+#include "robomill/monitor/files/stream_block.hpp"
 
 namespace robomill::app {
 namespace {

@@ -14,9 +14,9 @@
 #include "metrics.hpp"
 #include "mqtt.hpp"
 #include "notices.hpp"
-#include "robomill/formats/monitor_events.hpp"
-#include "robomill/formats/monitor_toml.hpp"
-#include "robomill/formats/sample_source.hpp"
+#include "robomill/io/sample_source.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
+#include "robomill/monitor/files/monitor_toml.hpp"
 
 namespace robomill::app {
 

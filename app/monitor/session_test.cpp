@@ -10,7 +10,7 @@
 #include "report.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/base/test_support.hpp"
-#include "robomill/formats/stream_block.hpp"
+#include "robomill/monitor/files/stream_block.hpp"
 #include "session_input.hpp"
 
 namespace robomill::app {

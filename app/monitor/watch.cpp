@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
 
 namespace robomill::app {
 namespace {

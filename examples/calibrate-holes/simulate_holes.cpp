@@ -14,7 +14,7 @@
 
 #include "examples/calibrate-holes/holes.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/formats/simulation_files.hpp"
+#include "robomill/simulation/files/simulation_files.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "examples/first-lobes/hammer.hpp"
-#include "robomill/formats/modes_files.hpp"
+#include "robomill/modal/files/modes_files.hpp"
 
 namespace {
 

@@ -14,9 +14,9 @@
 
 #include "app/monitor/mqtt.hpp"
 #include "robomill/base/error.hpp"
-#include "robomill/formats/sample_source.hpp"
-#include "robomill/formats/stream_block.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/sample_source.hpp"
+#include "robomill/monitor/files/stream_block.hpp"
 
 namespace {
 

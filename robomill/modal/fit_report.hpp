@@ -7,8 +7,8 @@ namespace robomill::modal::detail {
 /// Fills in relative_error, mean_relative_error and by_frf from result.model against the set.
 void set_errors(FitResult& result, const FrfSet& set);
 
-/// Fills in at_bounds: modes whose damping ratio is the bound of the method that fitted, or whose frequency is an end of
-/// the band.
+/// Fills in at_bounds: modes whose damping ratio is the bound of the method that fitted, or whose frequency is an end
+/// of the band.
 void find_bounds(FitResult& result, const FitOptions& options);
 
 /// Adds warnings about what the fit leaves, modes at bounds, and what is physically odd in the model or badly known:

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/report/json.hpp"
 
 namespace robomill::report {

@@ -8,7 +8,7 @@
 #include <regex>
 
 #include "robomill/base/random.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/report/json.hpp"
 
 namespace robomill::report {

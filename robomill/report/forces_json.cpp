@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/report/json.hpp"
 #include "robomill/report/thin.hpp"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
 
 namespace robomill::report {
 namespace {

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <utility>
 
-#include "robomill/formats/mode_json.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/modal/files/mode_json.hpp"
 #include "robomill/report/json.hpp"
 
 namespace robomill::report {

@@ -3,8 +3,8 @@
 #include <numbers>
 #include <utility>
 
-#include "robomill/formats/mode_json.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/modal/files/mode_json.hpp"
 #include "robomill/report/json.hpp"
 #include "robomill/report/thin.hpp"
 

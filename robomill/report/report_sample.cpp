@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/report/forces_sample.hpp"
 #include "robomill/report/monitor_sample.hpp"
 #include "robomill/report/smooth_sample.hpp"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "robomill/formats/units.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/report/json.hpp"
 
 namespace robomill::report {

@@ -1,0 +1,160 @@
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <Eigen/Core>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "robomill/base/random.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/records.hpp"
+#include "robomill/modal/files/frf_files.hpp"
+#include "robomill/program/files/gcode.hpp"
+#include "robomill/program/files/program_files.hpp"
+
+namespace robomill::formats {
+namespace {
+
+std::filesystem::path place(const std::string& name) {
+  return std::filesystem::temp_directory_path() / fmt::format("robomill_bench_{}_{}", ::getpid(), name);
+}
+
+/// One second at 51.2 kHz as recorders write it: 51,200 lines of time, force and acceleration with three-digit
+/// exponents, 2.2 MB.
+std::string hit_text() {
+  Random random(1);
+  std::string text;
+  const auto append = [&text](double value, char after) {
+    const std::string number = fmt::format("{:.6e}", value);
+    const std::size_t exponent = number.size() - 2;
+    text += fmt::format("{}0{}{}", number.substr(0, exponent), number.substr(exponent), after);
+  };
+  for (int i = 0; i < 51200; ++i) {
+    append(i / 51200.0, '\t');
+    append(random.normal(), '\t');
+    append(random.normal(), '\n');
+  }
+  return text;
+}
+
+void read_hit_text(benchmark::State& state) {
+  const std::filesystem::path path = place("hit.txt");
+  write_file(path, hit_text());
+  for (auto _ : state) benchmark::DoNotOptimize(read_record(path, {.time = "1"}));
+  std::filesystem::remove(path);
+}
+BENCHMARK(read_hit_text)->Unit(benchmark::kMillisecond);
+
+std::string five_axis_moves(int lines) {
+  Random random(2);
+  std::string text = "G93\nG0 X0 Y0 Z0 A0 C0\n";
+  for (int i = 0; i < lines; ++i) {
+    text += fmt::format("G1  X {:7.3f}  Y {:7.3f}  Z {:7.3f}  A {:7.3f}  C {:7.3f}  F 159\n",
+                        random.uniform(-50.0, 50.0), random.uniform(-50.0, 50.0), random.uniform(0.0, 40.0),
+                        random.uniform(-80.0, 0.0), random.uniform(-90.0, 90.0));
+  }
+  return text;
+}
+
+/// The same moves by vectors, as APT or as columns.
+std::string vector_moves(int lines, const char* head, const char* line) {
+  Random random(2);
+  std::string text = head;
+  for (int i = 0; i < lines; ++i) {
+    const Eigen::Vector3d axis = Eigen::Vector3d(random.normal(), random.normal(), 5.0).normalized();
+    text += fmt::format(fmt::runtime(line), random.uniform(-50.0, 50.0), random.uniform(-50.0, 50.0),
+                        random.uniform(0.0, 40.0), axis.x(), axis.y(), axis.z());
+  }
+  return text;
+}
+
+/// Arcs of a quarter turn, 2 mm in radius: 36 chords each.
+std::string arcs(int lines) {
+  std::string text = "G0 X2 Y0 Z0\nF600\n";
+  for (int i = 0; i < lines; ++i) text += i % 2 == 0 ? "G3 X0 Y2 I-2\n" : "G2 X2 Y0 J-2\n";
+  return text;
+}
+
+/// A program of 200,000 five-axis moves, 12 MB, into memory.
+void read_program(benchmark::State& state) {
+  constexpr int lines = 200000;
+  const std::filesystem::path path = place("part.ngc");
+  write_file(path, five_axis_moves(lines));
+  for (auto _ : state) benchmark::DoNotOptimize(read_gcode(path, program::Machine::xyzac_trt));
+  state.SetItemsProcessed(state.iterations() * lines);
+  std::filesystem::remove(path);
+}
+BENCHMARK(read_program)->Unit(benchmark::kMillisecond);
+
+double memory_bytes(const char* key) {
+  std::ifstream status("/proc/self/status");
+  std::string line;
+  while (std::getline(status, line)) {
+    if (line.starts_with(key)) return 1024.0 * std::strtod(line.c_str() + std::strlen(key) + 1, nullptr);
+  }
+  return 0.0;
+}
+
+/// A program's blocks one after another; the most memory held on the way.
+void stream(benchmark::State& state, const std::string& name, std::string (*text)(int), int lines) {
+  const std::filesystem::path path = place(name);
+  write_file(path, text(lines));
+  std::ofstream("/proc/self/clear_refs") << "5";
+  const double before = memory_bytes("VmRSS");
+  std::size_t blocks = 0;
+  for (auto _ : state) {
+    const auto file = open_program(path, {.machine = program::Machine::xyzac_trt});
+    program::Block block;
+    while (file->next(block)) ++blocks;
+  }
+  state.counters["peak_bytes"] = memory_bytes("VmHWM") - before;
+  state.counters["blocks"] = static_cast<double>(blocks) / static_cast<double>(state.iterations());
+  state.SetItemsProcessed(state.iterations() * lines);
+  std::filesystem::remove(path);
+}
+std::string apt_moves(int lines) {
+  return vector_moves(lines, "FEDRAT/600,MMPM\n", "GOTO/{:.4f},{:.4f},{:.4f},{:.7f},{:.7f},{:.7f}\n");
+}
+std::string csv_moves(int lines) {
+  return vector_moves(lines, "x_mm,y_mm,z_mm,i,j,k,feed_mm_per_min\n",
+                      "{:.4f},{:.4f},{:.4f},{:.7f},{:.7f},{:.7f},600\n");
+}
+BENCHMARK_CAPTURE(stream, gcode, "part.ngc", five_axis_moves, 1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(stream, apt, "part.apt", apt_moves, 1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(stream, csv, "part.csv", csv_moves, 1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(stream, arcs, "arcs.ngc", arcs, 100000)->Unit(benchmark::kMillisecond);
+
+/// Four FRFs of 3,500 lines, written and read.
+void frfs(benchmark::State& state, const std::string& ending, bool write) {
+  modal::FrfSet set;
+  set.frequency_hz = Eigen::VectorXd::LinSpaced(3500, 1.0, 3500.0);
+  for (const char* name : {"xx", "xy", "yx", "yy"}) {
+    set.frfs.push_back({.name = modal::parse_frf_name(name), .receptance = 1e-6 * Eigen::VectorXcd::Random(3500)});
+  }
+  const std::filesystem::path path = place("tip" + ending);
+  write_frfs(path, set);
+  for (auto _ : state) {
+    if (write) {
+      write_frfs(path, set);
+    } else {
+      benchmark::DoNotOptimize(read_frfs({path}));
+    }
+  }
+  state.counters["bytes"] = static_cast<double>(std::filesystem::file_size(path));
+  std::filesystem::remove(path);
+}
+BENCHMARK_CAPTURE(frfs, write_uff, ".uff", true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frfs, read_uff, ".uff", false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frfs, write_csv, ".csv", true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frfs, read_csv, ".csv", false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frfs, write_mat, ".mat", true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frfs, read_mat, ".mat", false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frfs, write_json, ".json", true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frfs, read_json, ".json", false)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace robomill::formats

@@ -1,0 +1,309 @@
+#include "robomill/coupling/files/assembly_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/coupling/files/segment_fields.hpp"
+#include "robomill/io/toml_file.hpp"
+#include "robomill/modal/files/frf_files.hpp"
+
+namespace robomill::formats {
+namespace {
+
+constexpr double most_lines = 2e6;
+
+/// @param key  of the table: "tool[0]."; @param member  the same as stages count: "tool[1]."
+coupling::Segment read_segment(TomlFile& file, const std::string& key, const std::string& member) {
+  coupling::Segment segment;
+  for (const SegmentField& field : segment_fields) {
+    file.number(key + field.key, member + field.member, field.factor, segment.*field.value);
+  }
+  file.integer(key + "flutes", member + "flutes", segment.flutes);
+  file.choice<coupling::Beam>(
+      key + "beam", {{"timoshenko", coupling::Beam::timoshenko}, {"euler-bernoulli", coupling::Beam::euler_bernoulli}},
+      segment.beam);
+  try {
+    segment.validate();
+  } catch (const InvalidInput& error) {
+    throw file.located(within(member, error));
+  }
+  return segment;
+}
+
+std::vector<coupling::Segment> read_segments(TomlFile& file, const std::string& table) {
+  std::vector<coupling::Segment> out;
+  const std::size_t count = file.tables(table);
+  out.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    out.push_back(read_segment(file, fmt::format("{}[{}].", table, i), fmt::format("{}[{}].", table, i + 1)));
+  }
+  return out;
+}
+
+void read_joint(TomlFile& file, const AssemblyReading& reading, std::optional<coupling::Joint>& out) {
+  if (!file.has("joint")) return;
+  coupling::Joint joint;
+  const auto number = [&](const std::string& name, double factor, const std::string& member, double& value) {
+    file.number("joint." + name, "joint." + member, factor, value);
+  };
+  const auto plain = [&](const std::string& name, double& value) { number(name, 1.0, name, value); };
+  plain("cross_stiffness_n_per_rad", joint.cross_stiffness_n_per_rad);
+  plain("translational_stiffness_n_per_m", joint.translational_stiffness_n_per_m);
+  plain("translational_damping_n_s_per_m", joint.translational_damping_n_s_per_m);
+  plain("rotational_stiffness_n_m_per_rad", joint.rotational_stiffness_n_m_per_rad);
+  plain("rotational_damping_n_m_s_per_rad", joint.rotational_damping_n_m_s_per_rad);
+  if (reading.joint_sought) {
+    // The search uses none of the four; what stands for them must only be valid.
+    joint.translational_stiffness_n_per_m = joint.rotational_stiffness_n_m_per_rad =
+        std::max(1e6, 2.0 * std::abs(joint.cross_stiffness_n_per_rad));
+    joint.translational_damping_n_s_per_m = joint.rotational_damping_n_m_s_per_rad = 0.0;
+  }
+  number("insertion_length_mm", units::mm, "insertion_length_m", joint.insertion_length_m);
+  file.integer("joint.points", "joint.points", joint.points);
+  joint.shank = read_segments(file, "joint.shank");
+  try {
+    joint.validate();
+  } catch (const InvalidInput& error) {
+    throw file.located(within("joint.", error));
+  }
+  out = joint;
+}
+
+/// How a joint is searched for; the keys of the ranges are those of [joint].
+void read_search(TomlFile& file, coupling::JointFitOptions& out) {
+  constexpr std::array<const char*, coupling::joint_unknowns> unknowns = {
+      "translational_stiffness_n_per_m", "translational_damping_n_s_per_m", "rotational_stiffness_n_m_per_rad",
+      "rotational_damping_n_m_s_per_rad"};
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const std::string key = fmt::format("search.{}", unknowns[i]);
+    std::vector<double> range;
+    if (!file.numbers(key, unknowns[i], 1.0, range)) continue;
+    const bool stiffness = i % 2 == 0;
+    if (range.size() != 2 || !(range[0] <= range[1]) || !(stiffness ? range[0] > 0.0 : range[0] >= 0.0)) {
+      throw file.refuse(key, fmt::format("must be [from, to] with {} <= to", stiffness ? "0 < from" : "0 <= from"));
+    }
+    // (0, 0) stands for a range that is left open.
+    if (range[1] == 0.0) throw file.refuse(key, "must not end at 0", "For no damping write a small upper bound: 1e-9");
+    out.lower[i] = range[0];
+    out.upper[i] = range[1];
+  }
+  file.integer("search.population", "population", out.population);
+  file.integer("search.generations", "generations", out.generations);
+  file.number("search.crossover", "crossover", 1.0, out.crossover);
+  file.number("search.mutation_rate", "mutation_rate", 1.0, out.mutation_rate);
+  file.choice<coupling::Mutation>(
+      "search.mutation", {{"uniform", coupling::Mutation::uniform}, {"adaptive", coupling::Mutation::adaptive}},
+      out.mutation);
+  file.locate([&] { out.validate(); });
+}
+
+void read_range(TomlFile& file, AssemblyFile& out) {
+  if (!file.has("frequency")) return;
+  std::vector<double> range;
+  file.require("frequency.range_hz", "[from, to]");
+  file.numbers("frequency.range_hz", "range_hz", 1.0, range);
+  if (range.size() != 2) throw file.refuse("frequency.range_hz", "must be [from, to]");
+  if (!(range[0] >= 0.0)) throw file.refuse("frequency.range_hz", "must begin at 0 Hz or above");
+  if (!(range[1] > range[0])) throw file.refuse("frequency.range_hz", "must be [from, to] with from below to");
+  out.low_hz = range[0];
+  out.high_hz = range[1];
+}
+
+/// Evenly from low to high, without 0 Hz; empty where no step is given.
+Eigen::VectorXd read_step(TomlFile& file, const AssemblyFile& out) {
+  double step_hz = 0.0;
+  if (!file.number("frequency.step_hz", "step_hz", 1.0, step_hz)) return {};
+  if (!(step_hz > 0.0)) throw file.refuse("frequency.step_hz", "must be > 0");
+  if (!file.has("frequency.range_hz")) file.require("frequency.range_hz", "[from, to]");
+  // A step such as 0.1 must not lose the last line to rounding.
+  const double steps = std::floor((out.high_hz - out.low_hz) / step_hz * (1.0 + 1e-12) + 1e-9);
+  if (!(steps < most_lines)) {
+    throw file.refuse("frequency.step_hz", fmt::format("would give {:.3g} lines; at most {:.0f}", steps, most_lines),
+                      "Take a larger step or a shorter range");
+  }
+  // A structure has no receptance where it would fly away: a range from 0 begins with its first step.
+  const double first = out.low_hz > 0.0 ? 0.0 : 1.0;
+  const auto count = static_cast<Eigen::Index>(steps - first) + 1;
+  if (count < 1) throw file.refuse("frequency.step_hz", "must not be longer than the range");
+  return out.low_hz + step_hz * Eigen::ArrayXd::LinSpaced(count, first, steps);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  }
+  return text;
+}
+
+/// What one plane of a 2 x 2 receptance lacks; nothing where it is whole.
+std::vector<std::string> lacking(const modal::FrfSet& set, const char* driving, const char* force_to_angle,
+                                 const char* moment_to_shift, const char* angle) {
+  const auto has = [&](const char* name) { return set.find(modal::parse_frf_name(name)) != nullptr; };
+  std::vector<std::string> out;
+  if (!has(driving)) out.emplace_back(driving);
+  if (!has(force_to_angle) && !has(moment_to_shift)) {
+    out.push_back(fmt::format("{} (or {})", force_to_angle, moment_to_shift));
+  }
+  if (!has(angle)) out.emplace_back(angle);
+  return out;
+}
+
+void require_rotations(const modal::FrfSet& set, const std::filesystem::path& path) {
+  const std::vector<std::string> x = lacking(set, "xx", "ry:x", "x:my", "ry:my");
+  const std::vector<std::string> y = lacking(set, "yy", "rx:y", "y:mx", "rx:mx");
+  if (x.empty() || y.empty()) return;
+  const std::vector<std::string>& less = y.size() < x.size() ? y : x;
+  throw InvalidInput(path.string(),
+                     fmt::format("lacks {}: a tool couples to rotations too, so the holder's 2 x 2 receptance must be "
+                                 "whole in a plane",
+                                 joined(less)),
+                     "Where only translations were measured, hit two or three points (1x:1x, 2x:1x, 2x:2x, …) and say "
+                     "where they lie: holder.points_mm = [0, 15, 30]");
+}
+
+/// Errors about the receptances name their file, the others the line of assembly.toml.
+template <class F>
+auto about(const TomlFile& file, const std::filesystem::path& receptances, F&& f) {
+  try {
+    return f();
+  } catch (const InvalidInput& error) {
+    InvalidInput located = file.located(error);
+    if (!located.parts().where.empty()) throw located;
+    InvalidInput::Parts parts = error.parts();
+    parts.where = receptances.string();
+    throw InvalidInput(std::move(parts));
+  }
+}
+
+/// A file whose FRFs all stand at one point was taken as one of the tip; on an artefact that point has its position.
+void number_one_point(FrfFile& measured) {
+  for (modal::Frf& frf : measured.set.frfs) {
+    for (modal::Dof* dof : {&frf.name.response, &frf.name.excitation}) dof->point = std::max(dof->point, 1);
+  }
+  std::erase_if(measured.notes, [](const std::string& note) { return note.ends_with(taken_as_tip); });
+}
+
+void read_measured(TomlFile& file, AssemblyFile& out) {
+  std::vector<double> position_m;
+  coupling::HolderOptions options;
+  const bool points = file.numbers("holder.points_mm", "position_m", units::mm, position_m);
+  file.number("holder.regularisation", "regularisation", 1.0, options.regularisation);
+  file.number("holder.max_amplification", "max_amplification", 1.0, options.max_amplification);
+  const std::vector<coupling::Segment> artefact = read_segments(file, "holder.artefact");
+  if (!points) {
+    for (const char* key : {"holder.artefact", "holder.regularisation", "holder.max_amplification"}) {
+      if (file.has(key)) file.require("holder.points_mm", fmt::format("{} needs to know where was measured", key));
+    }
+  }
+  if (file.has("holder.artefact") && artefact.empty()) {
+    throw file.refuse("holder.artefact", "must have at least one segment");
+  }
+  FrfFile measured = read_frfs({out.receptances});
+  if (measured.added_decay_per_s > 0.0) {
+    throw InvalidInput(out.receptances.string(), "still holds the damping of an exponential window",
+                       "Estimate the FRFs with remove_added_damping");
+  }
+  if (points && position_m.size() == 1 && !artefact.empty()) number_one_point(measured);
+  out.notes.insert(out.notes.end(), measured.notes.begin(), measured.notes.end());
+  coupling::Holder& holder = out.assembly.holder;
+  if (!points) {
+    require_rotations(measured.set, out.receptances);
+    holder.receptances = std::move(measured.set);
+    return;
+  }
+  out.holder = about(file, out.receptances, [&] {
+    return artefact.empty() ? coupling::complete_rotations(measured.set, position_m, options)
+                            : coupling::remove_artefact(measured.set, position_m, artefact, options);
+  });
+  holder.receptances = out.holder->receptances;
+}
+
+void read_holder(TomlFile& file, AssemblyFile& out) {
+  if (!file.has("holder")) {
+    out.notes.emplace_back("No [holder]: the tool stands on a rigid wall");
+    return;
+  }
+  const bool measured = file.path("holder.receptances", out.receptances);
+  if (measured && file.has("holder.segments")) {
+    throw file.refuse("holder.receptances", "must not stand beside segments", "Measured or built of beams, not both");
+  }
+  if (measured) {
+    read_measured(file, out);
+    return;
+  }
+  for (const char* key : {"holder.points_mm", "holder.artefact", "holder.regularisation", "holder.max_amplification"}) {
+    if (file.has(key)) throw file.refuse(key, "goes with holder.receptances");
+  }
+  if (!file.has("holder.segments")) {
+    throw file.refuse("holder", "must give segments or receptances", "For a rigid wall leave [holder] out");
+  }
+  out.assembly.holder.segments = read_segments(file, "holder.segments");
+  if (out.assembly.holder.segments.empty()) out.notes.emplace_back("No segments: the tool stands on a rigid wall");
+}
+
+/// Where the file gives no lines of its own, the measured holder's within the range.
+void choose_lines(const TomlFile& file, const Eigen::VectorXd& own, AssemblyFile& out) {
+  const modal::FrfSet& measured = out.assembly.holder.receptances;
+  if (own.size() > 0) {
+    out.frequency_hz = own;
+  } else if (!measured.frfs.empty()) {
+    try {
+      out.frequency_hz = lines_between(measured, out.low_hz, out.high_hz).frequency_hz;
+    } catch (const InvalidInput&) {
+      throw file.refuse("frequency.range_hz",
+                        fmt::format("holds none of the measured holder's lines, {:.6g} to {:.6g} Hz",
+                                    measured.frequency_hz(0), measured.frequency_hz(measured.frequency_hz.size() - 1)));
+    }
+  } else if (file.has("frequency")) {
+    file.require("frequency.step_hz", "A holder that was not measured has no lines of its own");
+  } else {
+    file.require("frequency", "Write [frequency] with range_hz = [1, 5000] and step_hz = 1");
+  }
+}
+
+}  // namespace
+
+AssemblyFile read_assembly(const std::filesystem::path& path, const AssemblyReading& reading) {
+  TomlFile file(path);
+  AssemblyFile out{.path = path};
+  read_range(file, out);
+  const Eigen::VectorXd lines = read_step(file, out);
+  file.require("tool", "Write [[tool]] above each segment, from the tip to the joint");
+  out.assembly.tool = read_segments(file, "tool");
+  if (out.assembly.tool.empty()) throw file.refuse("tool", "must have at least one segment");
+  read_joint(file, reading, out.assembly.joint);
+  read_holder(file, out);
+  read_search(file, out.search);
+  file.done();
+  if (!reading.joint_sought) choose_lines(file, lines, out);
+  about(file, out.receptances.empty() ? path : out.receptances, [&] { out.assembly.validate(); });
+  return out;
+}
+
+modal::FrfSet lines_between(const modal::FrfSet& set, double low_hz, double high_hz) {
+  std::vector<Eigen::Index> lines;
+  for (Eigen::Index i = 0; i < set.frequency_hz.size(); ++i) {
+    const double f = set.frequency_hz(i);
+    if (f > 0.0 && f >= low_hz * (1.0 - 1e-9) && f <= high_hz * (1.0 + 1e-9)) lines.push_back(i);
+  }
+  if (lines.empty()) {
+    throw InvalidInput("frequency_hz", fmt::format("has no line from {:.6g} to {:.6g} Hz", low_hz, high_hz));
+  }
+  modal::FrfSet out{.frequency_hz = set.frequency_hz(lines), .frfs = {}};
+  for (const modal::Frf& frf : set.frfs) {
+    modal::Frf part{.name = frf.name, .receptance = frf.receptance(lines)};
+    if (frf.coherence.size() > 0) part.coherence = frf.coherence(lines);
+    if (frf.deviation.size() > 0) part.deviation = frf.deviation(lines);
+    out.frfs.push_back(std::move(part));
+  }
+  return out;
+}
+
+}  // namespace robomill::formats

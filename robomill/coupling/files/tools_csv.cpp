@@ -1,0 +1,160 @@
+#include "robomill/coupling/files/tools_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/coupling/files/segment_fields.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/table.hpp"
+#include "robomill/io/text.hpp"
+
+namespace robomill::formats {
+namespace {
+
+constexpr std::array<std::string_view, 4> other_columns = {"tool", "flutes", "beam", "teeth"};
+
+/// One row of the table while it is read.
+class Row {
+ public:
+  Row(const std::string& file, const TextTable& table, const TextTable::Row& row)
+      : where_(fmt::format("{}:{}", file, row.line)), table_(table), row_(row) {}
+
+  [[nodiscard]] std::string_view text(std::string_view key) const {
+    const auto found = std::find(table_.names.begin(), table_.names.end(), key);
+    return found == table_.names.end()
+               ? std::string_view()
+               : std::string_view(row_.fields[static_cast<std::size_t>(found - table_.names.begin())]);
+  }
+  bool number(std::string_view key, double factor, double& out) const {
+    const std::string_view field = text(key);
+    if (field.empty()) return false;
+    const std::optional<double> number = parse_cell(field);
+    if (!number || !std::isfinite(*number)) throw refuse(key, "must be a finite number");
+    out = *number * factor;
+    return true;
+  }
+  bool integer(std::string_view key, int& out) const {
+    double number = 0.0;
+    if (!this->number(key, 1.0, number)) return false;
+    if (number != std::floor(number) || number < 0.0 || number > 1000.0) {
+      throw refuse(key, "must be a whole number from 0 to 1000");
+    }
+    out = static_cast<int>(number);
+    return true;
+  }
+  [[nodiscard]] InvalidInput refuse(std::string_view key, std::string rule, std::string hint = {}) const {
+    InvalidInput::Parts parts{
+        .where = where_, .field = std::string(key), .rule = std::move(rule), .hint = std::move(hint)};
+    const std::string_view field = text(key);
+    parts.number = field.empty() ? std::nullopt : parse_cell(field);
+    if (parts.number) {
+      parts.unit = unit_of_key(key);
+    } else if (!field.empty()) {
+      parts.value = fmt::format("\"{}\"", field);
+    }
+    return InvalidInput(std::move(parts));
+  }
+  /// An error about a member of the segment, told in the column's name and unit.
+  [[nodiscard]] InvalidInput located(const InvalidInput& error) const {
+    InvalidInput::Parts parts = error.parts();
+    parts.where = where_;
+    for (const SegmentField& column : segment_fields) {
+      if (parts.field != column.member) continue;
+      parts.field = column.key;
+      if (text(column.key).empty()) {
+        parts.rule = "is missing; " + parts.rule;
+        parts.number.reset();
+        parts.unit.clear();
+      } else if (parts.number) {
+        parts.number = round_15(*parts.number / column.factor);
+        parts.unit = unit_of_key(column.key);
+      }
+    }
+    return InvalidInput(std::move(parts));
+  }
+
+ private:
+  std::string where_;
+  const TextTable& table_;
+  const TextTable::Row& row_;
+};
+
+void check_columns(const TextTable& table, const std::string& file) {
+  std::vector<std::string> known(other_columns.begin(), other_columns.end());
+  for (const SegmentField& column : segment_fields) known.emplace_back(column.key);
+  for (const std::string& name : table.names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string near = nearest_word(name, known);
+    throw InvalidInput(file, fmt::format("has a column {} that is not known here", name),
+                       near.empty() ? "" : fmt::format("Did you mean {}?", near));
+  }
+  for (const char* needed : {"tool", "length_mm", "diameter_mm"}) {
+    if (std::find(table.names.begin(), table.names.end(), needed) == table.names.end()) {
+      throw InvalidInput(file, fmt::format("has no column {}", needed));
+    }
+  }
+}
+
+coupling::Segment read_segment(const Row& row, const coupling::Segment& like) {
+  coupling::Segment segment = like;
+  segment.length_m = segment.diameter_m = segment.inner_diameter_m = segment.mass_kg = 0.0;
+  segment.flutes = 0;
+  for (const SegmentField& column : segment_fields) row.number(column.key, column.factor, segment.*column.value);
+  row.integer("flutes", segment.flutes);
+  const std::string_view beam = row.text("beam");
+  if (beam == "timoshenko") {
+    segment.beam = coupling::Beam::timoshenko;
+  } else if (beam == "euler-bernoulli") {
+    segment.beam = coupling::Beam::euler_bernoulli;
+  } else if (!beam.empty()) {
+    throw row.refuse("beam", "must be one of \"timoshenko\", \"euler-bernoulli\"");
+  }
+  try {
+    segment.validate();
+  } catch (const InvalidInput& error) {
+    throw row.located(error);
+  }
+  return segment;
+}
+
+}  // namespace
+
+std::vector<ListedTool> read_tools(const std::filesystem::path& path, const coupling::Segment& like) {
+  const std::string file = path.string();
+  const TextTable table = parse_text_table(read_file(path), file);
+  check_columns(table, file);
+  std::vector<ListedTool> out;
+  std::set<std::string, std::less<>> seen;
+  for (const TextTable::Row& fields : table.rows) {
+    const Row row(file, table, fields);
+    const std::string name(row.text("tool"));
+    if (name.empty()) throw row.refuse("tool", "is empty", "Every row names its tool");
+    const bool next = out.empty() || out.back().name != name;
+    if (next && !seen.insert(name).second) {
+      throw row.refuse("tool", "comes a second time",
+                       "The rows of one tool follow each other, from the tip to the joint");
+    }
+    if (next) out.push_back({.name = name, .segments = {}, .line = fields.line});
+    ListedTool& tool = out.back();
+    tool.segments.push_back(read_segment(row, like));
+    int teeth = 0;
+    if (row.integer("teeth", teeth)) {
+      if (teeth < 1) throw row.refuse("teeth", "must be at least 1");
+      if (tool.teeth != 0 && tool.teeth != teeth) throw row.refuse("teeth", "differs from the rows of this tool above");
+      tool.teeth = teeth;
+    }
+  }
+  for (ListedTool& tool : out) {
+    if (tool.teeth == 0) tool.teeth = tool.segments.front().flutes;
+  }
+  return out;
+}
+
+}  // namespace robomill::formats

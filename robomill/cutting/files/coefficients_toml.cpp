@@ -1,0 +1,138 @@
+#include "robomill/cutting/files/coefficients_toml.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/cutting/material.hpp"
+
+namespace robomill::formats {
+namespace {
+
+struct Field {
+  const char* key;
+  const char* member;
+  double factor;
+  std::vector<double> cutting::MillingCoefficients::*values;
+  bool edge = false;
+};
+
+constexpr std::array<Field, 6> fields = {{
+    {"tangential_n_per_mm2", "tangential_n_per_m2", units::n_per_mm2,
+     &cutting::MillingCoefficients::tangential_n_per_m2},
+    {"radial_n_per_mm2", "radial_n_per_m2", units::n_per_mm2, &cutting::MillingCoefficients::radial_n_per_m2},
+    {"axial_n_per_mm2", "axial_n_per_m2", units::n_per_mm2, &cutting::MillingCoefficients::axial_n_per_m2},
+    {"tangential_edge_n_per_mm", "tangential_edge_n_per_m", units::n_per_mm,
+     &cutting::MillingCoefficients::tangential_edge_n_per_m, true},
+    {"radial_edge_n_per_mm", "radial_edge_n_per_m", units::n_per_mm, &cutting::MillingCoefficients::radial_edge_n_per_m,
+     true},
+    {"axial_edge_n_per_mm", "axial_edge_n_per_m", units::n_per_mm, &cutting::MillingCoefficients::axial_edge_n_per_m,
+     true},
+}};
+
+bool read_edge_measure(TomlFile& file, cutting::MillingCoefficients& out) {
+  return file.choice<cutting::EdgeMeasure>(
+      "coefficients.edge_per",
+      {{"width", cutting::EdgeMeasure::width}, {"edge-length", cutting::EdgeMeasure::edge_length}}, out.edge_measure);
+}
+
+/// The helix that inclines the edge: coefficients.helix_deg, else the tool's; a tool without one has straight edges.
+double read_helix(TomlFile& file) {
+  double helix_rad = 0.0;
+  const char* const key = file.has("coefficients.helix_deg") ? "coefficients.helix_deg" : "tool.helix_deg";
+  if (file.has(key) && !file.is_number(key)) {
+    throw file.refuse(key, "must be one angle where a material is named", "Give coefficients.helix_deg");
+  }
+  if (!file.number(key, "helix_rad", units::deg, helix_rad) && !file.has("tool")) {
+    file.require("coefficients.helix_deg", "The cutter's, which inclines its edges");
+  }
+  return helix_rad;
+}
+
+cutting::MillingCoefficients read_material(TomlFile& file, const std::string& name) {
+  double rake_rad = 0.0, chip_thickness_m = 0.0;
+  file.require("coefficients.rake_deg", "Of the cutter's edges");
+  file.require("coefficients.chip_thickness_mm", "The mean of the cut; in a slot 0.64 of the feed per tooth");
+  file.number("coefficients.rake_deg", "rake_rad", units::deg, rake_rad);
+  file.number("coefficients.chip_thickness_mm", "chip_thickness_m", units::mm, chip_thickness_m);
+  const double helix_rad = read_helix(file);
+  try {
+    return cutting::milling_coefficients(cutting::material(name), rake_rad, helix_rad, chip_thickness_m);
+  } catch (const InvalidInput& error) {
+    const InvalidInput told = file.located(error);
+    if (!told.parts().where.empty()) throw told;
+    throw file.refuse("coefficients.material", error.parts().rule, error.parts().hint);
+  }
+}
+
+/// A material's coefficients with those of the edge that the table gives in place of its own.
+cutting::MillingCoefficients with_own_edge(cutting::MillingCoefficients material,
+                                           const cutting::MillingCoefficients& own) {
+  for (const Field& field : fields) {
+    if (!(own.*field.values).empty()) material.*field.values = own.*field.values;
+  }
+  if (own.edge_measure != cutting::EdgeMeasure::by_kind) material.edge_measure = own.edge_measure;
+  return material;
+}
+
+}  // namespace
+
+cutting::MillingCoefficients read_coefficient_table(TomlFile& file) {
+  cutting::MillingCoefficients out;
+  std::filesystem::path other;
+  std::string material;
+  const char* cutting = nullptr;  // a coefficient that the table itself gives
+  const char* edge = nullptr;
+  for (const Field& field : fields) {
+    if (!file.numbers(std::string("coefficients.") + field.key, field.member, field.factor, out.*field.values))
+      continue;
+    (field.edge ? edge : cutting) = field.key;
+  }
+  const bool measured = read_edge_measure(file, out);
+  if (file.text("coefficients.material", material)) {
+    if (cutting != nullptr) {
+      throw file.refuse("coefficients.material", fmt::format("must not stand beside {}", cutting),
+                        "Edge coefficients may; they replace the material's");
+    }
+    if (file.has("coefficients.file")) throw file.refuse("coefficients.material", "must not stand beside a file");
+    return with_own_edge(read_material(file, material), out);
+  }
+  if (!file.path("coefficients.file", other)) {
+    file.require("coefficients.tangential_n_per_mm2",
+                 "A number, or a polynomial in the axial position angle (rad); or name a file or a material");
+    return out;
+  }
+  if (cutting != nullptr || edge != nullptr || measured) {
+    throw file.refuse("coefficients.file", "must not stand beside coefficients of its own");
+  }
+  return read_coefficients(other);
+}
+
+cutting::MillingCoefficients read_coefficients(const std::filesystem::path& path) {
+  TomlFile file(path);
+  if (file.has("coefficients.file")) throw file.refuse("coefficients.file", "must not name a further file");
+  cutting::MillingCoefficients out = read_coefficient_table(file);
+  for (const char* told : {"identification", "source"}) file.skip(told);
+  file.done();
+  return out;
+}
+
+std::string coefficients_toml(const cutting::MillingCoefficients& coefficients) {
+  std::string text = "[coefficients]\n";
+  for (const Field& field : fields) {
+    std::vector<double> values = coefficients.*field.values;
+    if (values.empty()) continue;
+    for (double& value : values) value /= field.factor;
+    text += values.size() == 1 ? fmt::format("{} = {:.10g}\n", field.key, values.front())
+                               : fmt::format("{} = [{:.10g}]\n", field.key, fmt::join(values, ", "));
+  }
+  if (coefficients.edge_measure == cutting::EdgeMeasure::width) text += "edge_per = \"width\"\n";
+  if (coefficients.edge_measure == cutting::EdgeMeasure::edge_length) text += "edge_per = \"edge-length\"\n";
+  return text;
+}
+
+}  // namespace robomill::formats

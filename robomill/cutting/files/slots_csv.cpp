@@ -1,0 +1,216 @@
+#include "robomill/cutting/files/slots_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/cutting/files/coefficients_toml.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/json.hpp"
+#include "robomill/io/table.hpp"
+#include "robomill/io/text.hpp"
+
+namespace robomill::formats {
+namespace {
+
+struct Column {
+  const char* key;
+  const char* member;
+  double factor;
+  double& (*value)(cutting::SlotForce&);
+};
+constexpr std::array<Column, 6> columns = {{
+    {"feed_per_tooth_mm", "feed_per_tooth_m", units::mm,
+     [](cutting::SlotForce& s) -> double& { return s.feed_per_tooth_m; }},
+    {"axial_depth_mm", "axial_depth_m", units::mm, [](cutting::SlotForce& s) -> double& { return s.axial_depth_m; }},
+    {"spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm,
+     [](cutting::SlotForce& s) -> double& { return s.spindle_speed_rad_per_s; }},
+    {"fx_n", "", 1.0, [](cutting::SlotForce& s) -> double& { return s.mean_force_n.x(); }},
+    {"fy_n", "", 1.0, [](cutting::SlotForce& s) -> double& { return s.mean_force_n.y(); }},
+    {"fz_n", "", 1.0, [](cutting::SlotForce& s) -> double& { return s.mean_force_n.z(); }},
+}};
+constexpr std::string_view may_be_missing = "spindle_speed_rpm";
+
+/// Where each known column stands in the table.
+using Places = std::array<std::optional<std::size_t>, columns.size()>;
+
+Places find_columns(const TextTable& table, const std::string& file) {
+  Places places;
+  std::vector<std::string> known;
+  known.reserve(columns.size());
+  for (const Column& column : columns) known.emplace_back(column.key);
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const auto found = std::ranges::find(known, table.names[i]);
+    if (found == known.end()) {
+      const std::string near = nearest_word(table.names[i], known);
+      throw InvalidInput(file, fmt::format("has a column {} that is not known here", table.names[i]),
+                         near.empty() ? "" : fmt::format("Did you mean {}?", near));
+    }
+    places[static_cast<std::size_t>(found - known.begin())] = i;
+  }
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (!places[i] && columns[i].key != may_be_missing) {
+      throw InvalidInput(file, fmt::format("has no column {}", columns[i].key));
+    }
+  }
+  return places;
+}
+
+/// The error for one field of a row.
+InvalidInput refuse(const std::string& where, const Column& column, const std::string& field, std::string rule,
+                    std::string hint = {}) {
+  InvalidInput::Parts parts{.where = where, .field = column.key, .rule = std::move(rule), .hint = std::move(hint)};
+  if (field.empty()) return InvalidInput(std::move(parts));
+  parts.number = parse_cell(field);
+  if (parts.number) {
+    parts.unit = unit_of_key(column.key);
+  } else {
+    parts.value = fmt::format("\"{}\"", field);
+  }
+  return InvalidInput(std::move(parts));
+}
+
+cutting::SlotForce read_row(const TextTable::Row& row, const Places& places, const std::string& where) {
+  cutting::SlotForce slot;
+  const auto field = [&](std::size_t i) { return places[i] ? row.fields[*places[i]] : std::string(); };
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string text = field(i);
+    if (text.empty() && columns[i].key == may_be_missing) continue;
+    const std::optional<double> number = parse_cell(text);
+    if (!number || !std::isfinite(*number)) {
+      throw refuse(where, columns[i], text, text.empty() ? "is empty" : "must be a finite number");
+    }
+    columns[i].value(slot) = *number * columns[i].factor;
+  }
+  try {
+    slot.validate();
+  } catch (const InvalidInput& error) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (error.parts().field == columns[i].member) {
+        throw refuse(where, columns[i], field(i), error.parts().rule, error.parts().hint);
+      }
+    }
+    throw;
+  }
+  return slot;
+}
+
+struct Named {
+  const char* name;
+  const cutting::CoefficientPair* pair;
+};
+template <class Fit>
+std::array<Named, 3> pairs_of(const Fit& fit) {
+  return {{{"tangential", &fit.tangential}, {"radial", &fit.radial}, {"axial", &fit.axial}}};
+}
+
+/// Each pair's numbers under the keys of coefficients.toml.
+template <class Fit>
+Json values_of(const Fit& fit, double cutting::CoefficientPair::*cutting, double cutting::CoefficientPair::*edge) {
+  Json out = Json::object();
+  for (const auto& [name, pair] : pairs_of(fit))
+    out[fmt::format("{}_n_per_mm2", name)] = number(pair->*cutting / units::n_per_mm2);
+  for (const auto& [name, pair] : pairs_of(fit))
+    out[fmt::format("{}_edge_n_per_mm", name)] = number(pair->*edge / units::n_per_mm);
+  return out;
+}
+template <class Fit>
+Json deviations_of(const Fit& fit) {
+  return values_of(fit, &cutting::CoefficientPair::cutting_deviation_n_per_m2,
+                   &cutting::CoefficientPair::edge_deviation_n_per_m);
+}
+template <class Fit>
+Json coefficients_of(const Fit& fit) {
+  return values_of(fit, &cutting::CoefficientPair::cutting_n_per_m2, &cutting::CoefficientPair::edge_n_per_m);
+}
+
+template <class Fit>
+Json of_each(const Fit& fit, double cutting::CoefficientPair::*value) {
+  Json out = Json::object();
+  for (const auto& [name, pair] : pairs_of(fit)) out[name] = number(pair->*value);
+  return out;
+}
+
+Json identification(const cutting::SlotFit& fit, const SlotsFile& file) {
+  Json json;
+  const bool identified = fit.status == cutting::SlotFit::Status::identified;
+  json["status"] = identified ? "identified" : "edge unknown";
+  json["rows"] = file.slots.size();
+  json["std"] = deviations_of(fit);
+  json["r_squared"] = of_each(fit, &cutting::CoefficientPair::r_squared);
+  json["noise_n"] = of_each(fit, &cutting::CoefficientPair::noise_n);
+  json["correlation"] = of_each(fit, &cutting::CoefficientPair::correlation);
+  json["depends_on_speed"] = fit.depends_on_speed;
+  json["speed_probability"] = number(fit.speed_probability);
+  json["notes"] = fit.notes;
+  Json residuals = Json::array();
+  for (std::size_t i = 0; i < file.lines.size(); ++i) {
+    const Eigen::Vector3d r = fit.residual_n.col(static_cast<Eigen::Index>(i));
+    residuals.push_back({{"line", file.lines[i]}, {"residual_n", {number(r.x()), number(r.y()), number(r.z())}}});
+  }
+  json["residuals"] = residuals;
+  Json speeds = Json::array();
+  for (const cutting::SpeedGroup& group : fit.by_speed) {
+    speeds.push_back({{"spindle_speed_rpm", number(group.spindle_speed_rad_per_s / units::rpm)},
+                      {"rows", group.rows},
+                      {"coefficients", coefficients_of(group)},
+                      {"std", deviations_of(group)}});
+  }
+  json["by_speed"] = speeds;
+  return json;
+}
+
+/// JSON values as TOML has them too: inline tables in place of objects; what is null is left out.
+std::string inline_toml(const Json& json) {
+  if (!json.is_structured()) return json.dump();
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_null()) continue;
+    if (!text.empty()) text += ", ";
+    if (json.is_object()) text += key + " = ";
+    text += inline_toml(value);
+  }
+  return json.is_array() ? "[" + text + "]" : "{ " + text + " }";
+}
+
+}  // namespace
+
+SlotsFile read_slots(const std::filesystem::path& path) {
+  const std::string file = path.string();
+  const TextTable table = parse_text_table(read_file(path), file);
+  const Places places = find_columns(table, file);
+  SlotsFile out;
+  out.slots.reserve(table.rows.size());
+  out.lines.reserve(table.rows.size());
+  for (const TextTable::Row& row : table.rows) {
+    out.slots.push_back(read_row(row, places, fmt::format("{}:{}", file, row.line)));
+    out.lines.push_back(row.line);
+  }
+  return out;
+}
+
+std::string slot_fit_toml(const cutting::SlotFit& fit, const SlotsFile& file) {
+  std::string text = coefficients_toml(fit.coefficients()) + "\n[identification]\n";
+  const Json told = identification(fit, file);
+  for (const auto& [key, value] : told.items()) {
+    if (!value.is_null()) text += fmt::format("{} = {}\n", key, inline_toml(value));
+  }
+  return text;
+}
+
+std::string slot_fit_json(const cutting::SlotFit& fit, const SlotsFile& file) {
+  Json json;
+  json["coefficients"] = coefficients_of(fit);
+  json["identification"] = identification(fit, file);
+  return dump(json);
+}
+
+}  // namespace robomill::formats

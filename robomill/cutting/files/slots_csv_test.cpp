@@ -1,0 +1,120 @@
+#include "robomill/cutting/files/slots_csv.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/cutting/files/coefficients_toml.hpp"
+
+namespace robomill::formats {
+namespace {
+
+const std::string head = "feed_per_tooth_mm,axial_depth_mm,spindle_speed_rpm,fx_n,fy_n,fz_n\n";
+
+TEST(SlotsCsv, ReadsRowsInShopUnits) {
+  const test::Folder folder;
+  const SlotsFile file = read_slots(folder.file("slots.csv", "# titanium\n" + head +
+                                                                 "0.05,5.08,3000,-555.8508,655.6513,255.9891\n\n"
+                                                                 "0.1,5.08,,-751.4,887.4,446\n"));
+  ASSERT_EQ(file.slots.size(), 2U);
+  EXPECT_DOUBLE_EQ(file.slots[0].feed_per_tooth_m, 5e-5);
+  EXPECT_DOUBLE_EQ(file.slots[0].axial_depth_m, 5.08e-3);
+  EXPECT_DOUBLE_EQ(file.slots[0].spindle_speed_rad_per_s, 100.0 * std::numbers::pi);
+  EXPECT_EQ(file.slots[0].mean_force_n, Eigen::Vector3d(-555.8508, 655.6513, 255.9891));
+  EXPECT_EQ(file.slots[1].spindle_speed_rad_per_s, 0.0);
+  EXPECT_EQ(file.lines, (std::vector<std::size_t>{3, 5}));
+  // In any order, and without a speed.
+  const SlotsFile other =
+      read_slots(folder.file("slots.csv", "fz_n;fx_n;fy_n;axial_depth_mm;feed_per_tooth_mm\n3;1;2;4,5;0,1\n"));
+  EXPECT_EQ(other.slots[0].mean_force_n, Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_DOUBLE_EQ(other.slots[0].axial_depth_m, 4.5e-3);
+}
+
+TEST(SlotsCsv, RefusesInTheFilesWords) {
+  const test::Folder folder;
+  const auto expect = [&](const std::string& text, const std::string& words) {
+    const std::string said = test::refusal([&] { static_cast<void>(read_slots(folder.file("slots.csv", text))); });
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  expect(head + "0.05,5,3000,1,2,3\n0.05,0,3000,1,2,3\n", "slots.csv:3: axial_depth_mm = 0 mm; must be > 0");
+  expect(head + "-0.05,5,3000,1,2,3\n", "slots.csv:2: feed_per_tooth_mm = -0.05 mm; must be > 0");
+  expect(head + "0.05,5,-1,1,2,3\n", "slots.csv:2: spindle_speed_rpm = -1 rpm");
+  expect(head + "0.05,5,3000,1,two,3\n", "slots.csv:2: fy_n = \"two\"; must be a finite number");
+  expect(head + "0.05,5,3000,1,2\n", "slots.csv:2: fz_n: is empty");
+  expect(head + "0.05,5,3000,1,2,inf\n", "slots.csv:2: fz_n");
+  expect("feed_per_tooth_mm,axial_depth_mm,fx_n,fy_n\n1,2,3,4\n", "has no column fz_n");
+  expect("feed_per_tooth,axial_depth_mm,fx_n,fy_n,fz_n\n1,2,3,4,5\n", "Did you mean feed_per_tooth_mm?");
+}
+
+TEST(SlotsCsv, SurvivesMutations) {
+  const test::Folder folder;
+  const std::string good = head + "0.05,5.08,3000,-555.8,655.6,255.9\n0.1,5.08,3000,-751.4,887.4,446.0\n";
+  Random random(3);
+  for (int i = 0; i < test::seeds(1000); ++i) {
+    std::string text = good;
+    text[random.index(text.size())] = static_cast<char>(random.index(256));
+    if (i % 2 == 0) text.resize(1 + random.index(good.size() - 1));
+    try {
+      for (const cutting::SlotForce& slot : read_slots(folder.file("slots.csv", text)).slots) slot.validate();
+    } catch (const InvalidInput&) {
+      continue;
+    }
+  }
+}
+
+SlotsFile two_speeds(double noise_n) {
+  SlotsFile file;
+  Random random(5);
+  for (int i = 0; i < 12; ++i) {
+    const double feed_m = (0.02 + 0.02 * (i / 2)) * 1e-3, depth_m = 5e-3;
+    cutting::SlotForce slot{feed_m, depth_m, i % 2 == 0 ? 100.0 : 300.0, {}};
+    slot.mean_force_n = {-depth_m * 770e6 * feed_m - 4.0 * depth_m / std::numbers::pi * 55.7e3,
+                         depth_m * (i % 2 == 0 ? 1825e6 : 1500e6) * feed_m + 4.0 * depth_m / std::numbers::pi * 29.7e3,
+                         4.0 * depth_m / std::numbers::pi * 735e6 * feed_m + 2.0 * depth_m * 1.8e3};
+    for (double& force : slot.mean_force_n) force += noise_n * random.normal();
+    file.slots.push_back(slot);
+    file.lines.push_back(static_cast<std::size_t>(i) + 2);
+  }
+  return file;
+}
+
+// What is written is read again as the same coefficients, whatever stands beside them.
+TEST(SlotsCsv, WritesCoefficientsThatAreReadAgain) {
+  const test::Folder folder;
+  const SlotsFile file = two_speeds(3.0);
+  const cutting::SlotFit fit = cutting::identify_from_slots(file.slots, {.teeth = 4});
+  ASSERT_TRUE(fit.depends_on_speed);
+  const cutting::MillingCoefficients read =
+      read_coefficients(folder.file("coefficients.toml", slot_fit_toml(fit, file)));
+  EXPECT_NEAR(read.tangential_n_per_m2.front(), fit.tangential.cutting_n_per_m2, 1.0);
+  EXPECT_NEAR(read.axial_edge_n_per_m.front(), fit.axial.edge_n_per_m, 1e-5);
+  const auto json = nlohmann::json::parse(slot_fit_json(fit, file));
+  EXPECT_NEAR(json["coefficients"]["radial_n_per_mm2"].get<double>(), fit.radial.cutting_n_per_m2 * 1e-6, 1e-9);
+  EXPECT_NEAR(json["identification"]["std"]["radial_edge_n_per_mm"].get<double>(),
+              fit.radial.edge_deviation_n_per_m * 1e-3, 1e-9);
+  EXPECT_EQ(json["identification"]["by_speed"].size(), 2U);
+  EXPECT_EQ(json["identification"]["residuals"][11]["line"], 13);
+  EXPECT_TRUE(json["identification"]["depends_on_speed"].get<bool>());
+}
+
+TEST(SlotsCsv, WhatCannotBeToldIsLeftOut) {
+  const test::Folder folder;
+  SlotsFile file = two_speeds(0.0);
+  file.slots.resize(2);
+  file.lines.resize(2);
+  const cutting::SlotFit fit = cutting::identify_from_slots(file.slots, {.teeth = 4});
+  const std::string toml = slot_fit_toml(fit, file);
+  EXPECT_NE(toml.find("status = \"edge unknown\""), std::string::npos) << toml;
+  EXPECT_EQ(toml.find("inf"), std::string::npos) << toml;
+  static_cast<void>(read_coefficients(folder.file("coefficients.toml", toml)));
+  const auto json = nlohmann::json::parse(slot_fit_json(fit, file));
+  EXPECT_TRUE(json["identification"]["std"]["axial_n_per_mm2"].is_null());
+}
+
+}  // namespace
+}  // namespace robomill::formats

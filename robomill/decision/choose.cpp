@@ -1,0 +1,67 @@
+#include "robomill/decision/choose.hpp"
+
+#include <algorithm>
+
+#include "robomill/base/parallel.hpp"
+#include "robomill/cutting/milling.hpp"
+#include "robomill/stability/surface_error.hpp"
+
+namespace robomill::decision {
+namespace {
+
+/// A limit of the chart, with the depth that finishes.
+DepthLimit to_depth_limit(const stability::Limit& limit, const stability::LobesProblem& problem,
+                          const RecommendOptions& options, const FinishLimits& finish) {
+  DepthLimit out{.spindle_speed_rad_per_s = limit.spindle_speed_rad_per_s};
+  if (limit.status == stability::Limit::Status::found) {
+    out.axial_depth_m = limit.axial_depth_m;
+    out.chatter_frequency_hz = limit.chatter_frequency_hz;
+    out.mode = limit.mode;
+  }
+  if (!finish.any()) return out;
+  double deepest_m = out.axial_depth_m.value_or(options.searched_depth_m) * (1.0 - options.depth_margin);
+  if (options.max_axial_depth_m > 0.0) deepest_m = std::min(deepest_m, options.max_axial_depth_m);
+  out.finish = finish_depth(problem, limit.spindle_speed_rad_per_s, deepest_m, finish);
+  return out;
+}
+
+void add_surface(Operation& op, const stability::LobesProblem& problem) {
+  if (problem.has_measured()) return;  // without modes
+  const stability::SurfacePoint surface =
+      stability::surface_point(problem, {op.spindle_speed_rad_per_s, op.axial_depth_m});
+  op.surface_error_m = surface.surface_location_error_m;
+  op.peak_deflection_m = surface.peak_deflection_m;
+}
+
+}  // namespace
+
+Recommendation choose(const stability::LobesProblem& problem, const stability::LobesOptions& lobes,
+                      const std::vector<stability::Limit>& limits, RecommendOptions options, const FinishLimits& finish,
+                      Progress& progress) {
+  const cutting::Milling& milling = problem.milling;
+  options.teeth = milling.tool.teeth;
+  options.diameter_m = milling.tool.diameter_m;
+  options.feed_per_tooth_m = milling.feed_per_tooth_m;
+  options.searched_depth_m = lobes.axial_depth_m[1];
+  // The mean torque is proportional to depth, so one metre of depth gives the factor.
+  options.torque_per_depth_n = cutting::mean_load(milling, 1.0, milling.feed_per_tooth_m, 1.0).torque_n_m;
+  require_finishable(problem, finish);
+  std::vector<DepthLimit> depths(limits.size());
+  if (finish.any()) progress.start("finishing depths", limits.size());
+  parallel_for(limits.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      progress.check();
+      depths[i] = to_depth_limit(limits[i], problem, options, finish);
+      if (finish.any()) progress.advance();
+    }
+  });
+  Recommendation result = recommend(depths, options, [&](double speed) {
+    progress.check();
+    return to_depth_limit(stability::limit_depths(problem, lobes, {speed}).front(), problem, options, finish);
+  });
+  if (result.recommended) add_surface(*result.recommended, problem);
+  for (Operation& op : result.alternatives) add_surface(op, problem);
+  return result;
+}
+
+}  // namespace robomill::decision

@@ -1,0 +1,79 @@
+#include "robomill/decision/finish.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "robomill/base/error.hpp"
+#include "robomill/stability/surface_error.hpp"
+
+namespace robomill::decision {
+namespace {
+
+/// Which limit a cut breaks; none where it keeps both.
+std::optional<LimitedBy> broken(const stability::SurfacePoint& surface, const FinishLimits& limits) {
+  if (!surface.stable) return LimitedBy::chatter;
+  const bool rough =
+      limits.max_surface_error_m > 0.0 && !(std::abs(surface.surface_location_error_m) <= limits.max_surface_error_m);
+  if (rough) return LimitedBy::surface_error;
+  if (limits.max_deflection_m > 0.0 && surface.peak_deflection_m > limits.max_deflection_m) {
+    return LimitedBy::deflection;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void FinishLimits::validate() const {
+  require_non_negative("max_surface_error_m", max_surface_error_m, "m");
+  require_non_negative("max_deflection_m", max_deflection_m, "m");
+}
+
+void require_finishable(const stability::LobesProblem& problem, const FinishLimits& limits) {
+  limits.validate();
+  if (!limits.any()) return;
+  if (problem.has_measured()) {
+    throw InvalidInput("finishing", "needs modes of tool and workpiece",
+                       "The surface that measured FRFs leave cannot be computed: run robomill modes on them");
+  }
+  const cutting::Immersion& immersion = problem.milling.immersion;
+  const bool wall = immersion.entry_rad <= 1e-9 || immersion.exit_rad >= std::numbers::pi - 1e-9;
+  if (limits.max_surface_error_m > 0.0 && !wall) {
+    throw InvalidInput("max_surface_error_m", limits.max_surface_error_m, "m", "goes with a cut that finishes a wall",
+                       "These teeth enter after 0 and leave before 180 degrees");
+  }
+}
+
+FinishDepth finish_depth(const stability::LobesProblem& problem, double spindle_speed_rad_per_s, double deepest_m,
+                         const FinishLimits& limits) {
+  constexpr int looks = 6;
+  constexpr int halvings = 12;
+  constexpr double tolerance = 0.02;
+  FinishDepth found;
+  if (!limits.any() || !(deepest_m > 0.0)) return found;
+  const auto look = [&](double depth_m) {
+    return broken(stability::surface_point(problem, {spindle_speed_rad_per_s, depth_m}), limits);
+  };
+  double kept_m = 0.0;
+  for (int i = 1; i <= looks; ++i) {
+    double broken_m = deepest_m * i / looks;
+    std::optional<LimitedBy> reason = look(broken_m);
+    if (!reason) {
+      kept_m = broken_m;
+      continue;
+    }
+    for (int k = 0; k < halvings && broken_m - kept_m > tolerance * broken_m; ++k) {
+      const double middle_m = 0.5 * (kept_m + broken_m);
+      if (const std::optional<LimitedBy> here = look(middle_m)) {
+        broken_m = middle_m;
+        reason = here;
+      } else {
+        kept_m = middle_m;
+      }
+    }
+    return {.axial_depth_m = kept_m, .reason = *reason};
+  }
+  return found;
+}
+
+}  // namespace robomill::decision

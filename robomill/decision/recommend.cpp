@@ -1,0 +1,206 @@
+#include "robomill/decision/recommend.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::decision {
+namespace {
+
+double depth_or_all(const DepthLimit& limit, const RecommendOptions& options) {
+  return std::min(limit.axial_depth_m.value_or(options.searched_depth_m), options.searched_depth_m);
+}
+
+/// What binds at the speeds of a window.
+struct Window {
+  std::optional<DepthLimit> lowest = {};  ///< with the lowest limit
+  FinishDepth finish = {};
+
+  void add(const DepthLimit& limit, const RecommendOptions& options) {
+    if (!lowest || depth_or_all(limit, options) < depth_or_all(*lowest, options)) lowest = limit;
+    if (limit.finish.axial_depth_m < finish.axial_depth_m) finish = limit.finish;
+  }
+};
+
+struct Candidate {
+  Operation operation;
+  Window window;
+};
+
+/// The operation at `speed`, given what binds in its window.
+Operation operation_at(double speed, const Window& window, const RecommendOptions& options) {
+  const DepthLimit& lowest = *window.lowest;
+  Operation op;
+  op.spindle_speed_rad_per_s = speed;
+  op.feed_per_tooth_m = options.feed_per_tooth_m;
+  op.feed_m_per_s = options.feed_per_tooth_m * options.teeth * speed / (2.0 * std::numbers::pi);
+  op.cutting_speed_m_per_s = 0.5 * options.diameter_m * speed;
+  op.limit_depth_m = depth_or_all(lowest, options);
+  op.axial_depth_m = op.limit_depth_m * (1.0 - options.depth_margin);
+  op.limited_by = lowest.axial_depth_m ? LimitedBy::chatter : LimitedBy::depth_range;
+  if (lowest.axial_depth_m) {
+    op.chatter_frequency_hz = lowest.chatter_frequency_hz;
+    op.mode = lowest.mode;
+  }
+  const auto cap = [&op](double depth, LimitedBy reason) {
+    if (depth < op.axial_depth_m) {
+      op.axial_depth_m = std::max(depth, 0.0);
+      op.limited_by = reason;
+    }
+  };
+  if (options.max_axial_depth_m > 0.0) cap(options.max_axial_depth_m, LimitedBy::cutter);
+  if (!options.spindle.empty() && options.torque_per_depth_n > 0.0) {
+    const SpindleCapacity capacity = capacity_at(options.spindle, speed);
+    cap(capacity.torque_n_m / options.torque_per_depth_n, LimitedBy::spindle_torque);
+    cap(capacity.power_w / (options.torque_per_depth_n * speed), LimitedBy::spindle_power);
+  }
+  cap(window.finish.axial_depth_m, window.finish.reason);
+  op.margin = op.limit_depth_m > 0.0 ? 1.0 - op.axial_depth_m / op.limit_depth_m : 0.0;
+  op.torque_n_m = options.torque_per_depth_n * op.axial_depth_m;
+  op.power_w = op.torque_n_m * speed;
+  op.removal_rate_m3_per_s = op.axial_depth_m * options.radial_depth_m * op.feed_m_per_s;
+  return op;
+}
+
+/// One operation for each given speed whose whole window lies within the limits and the spindle's range.
+std::vector<Candidate> candidates(const std::vector<DepthLimit>& limits, const RecommendOptions& options) {
+  std::vector<Candidate> out;
+  const double highest = options.max_spindle_speed_rad_per_s > 0.0 ? options.max_spindle_speed_rad_per_s
+                                                                   : limits.back().spindle_speed_rad_per_s;
+  for (const DepthLimit& centre : limits) {
+    const double speed = centre.spindle_speed_rad_per_s;
+    const double from = speed * (1.0 - options.speed_window);
+    const double to = speed * (1.0 + options.speed_window);
+    if (speed < options.min_spindle_speed_rad_per_s || speed > highest) continue;
+    if (from < limits.front().spindle_speed_rad_per_s || to > limits.back().spindle_speed_rad_per_s) continue;
+    Window window;
+    window.add(centre, options);
+    for (const DepthLimit& other : limits) {
+      const bool inside = other.spindle_speed_rad_per_s >= from && other.spindle_speed_rad_per_s <= to;
+      if (inside) window.add(other, options);
+    }
+    out.push_back({operation_at(speed, window, options), window});
+  }
+  return out;
+}
+
+bool distinct(const Operation& op, const std::vector<Operation>& chosen, double fraction) {
+  return std::all_of(chosen.begin(), chosen.end(), [&](const Operation& other) {
+    return std::abs(op.spindle_speed_rad_per_s - other.spindle_speed_rad_per_s) >=
+           fraction * other.spindle_speed_rad_per_s;
+  });
+}
+
+bool better(const Operation& a, const Operation& b) {
+  if (a.removal_rate_m3_per_s != b.removal_rate_m3_per_s) return a.removal_rate_m3_per_s > b.removal_rate_m3_per_s;
+  return a.spindle_speed_rad_per_s < b.spindle_speed_rad_per_s;
+}
+
+/// Candidates in the order in which they are tried: peaks of the removal rate first, the best first.
+std::vector<Candidate> ranked(const std::vector<Candidate>& all) {
+  const auto rate = [&all](std::size_t i) { return all[i].operation.removal_rate_m3_per_s; };
+  const auto first = [](const Candidate& a, const Candidate& b) { return better(a.operation, b.operation); };
+  std::vector<Candidate> peaks;
+  std::vector<Candidate> others;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool rises = i == 0 || rate(i) > rate(i - 1);
+    const bool falls = i + 1 == all.size() || rate(i) >= rate(i + 1);
+    (rises && falls ? peaks : others).push_back(all[i]);
+  }
+  std::sort(peaks.begin(), peaks.end(), first);
+  std::sort(others.begin(), others.end(), first);
+  peaks.insert(peaks.end(), others.begin(), others.end());
+  return peaks;
+}
+
+/// The operation again, with the limits looked up at nine speeds over its window.
+Operation verified(const Candidate& candidate, const RecommendOptions& options,
+                   const std::function<DepthLimit(double)>& limit_at) {
+  constexpr int looks = 9;
+  const double speed = candidate.operation.spindle_speed_rad_per_s;
+  Window window = candidate.window;
+  for (int i = 0; i < looks; ++i) {
+    const double part = 2.0 * i / (looks - 1) - 1.0;
+    window.add(limit_at(speed * (1.0 + options.speed_window * part)), options);
+  }
+  return operation_at(speed, window, options);
+}
+
+void validate_limits(const std::vector<DepthLimit>& limits) {
+  if (limits.size() < 2) throw InvalidInput("limits", "need at least two spindle speeds");
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    require_positive("spindle_speed_rad_per_s", limits[i].spindle_speed_rad_per_s, "rad/s");
+    if (i > 0 && limits[i].spindle_speed_rad_per_s <= limits[i - 1].spindle_speed_rad_per_s) {
+      throw InvalidInput("spindle_speed_rad_per_s", limits[i].spindle_speed_rad_per_s, "rad/s", "must increase");
+    }
+  }
+}
+
+}  // namespace
+
+SpindleCapacity capacity_at(const std::vector<SpindleCapacity>& curve, double spindle_speed_rad_per_s) {
+  const double speed = spindle_speed_rad_per_s;
+  const auto above = std::find_if(curve.begin(), curve.end(),
+                                  [&](const SpindleCapacity& p) { return p.spindle_speed_rad_per_s >= speed; });
+  if (above == curve.end()) return {.spindle_speed_rad_per_s = speed};
+  if (above == curve.begin()) {
+    return above->spindle_speed_rad_per_s == speed ? *above : SpindleCapacity{.spindle_speed_rad_per_s = speed};
+  }
+  const SpindleCapacity& low = *(above - 1);
+  const double t =
+      (speed - low.spindle_speed_rad_per_s) / (above->spindle_speed_rad_per_s - low.spindle_speed_rad_per_s);
+  return {.spindle_speed_rad_per_s = speed,
+          .torque_n_m = std::lerp(low.torque_n_m, above->torque_n_m, t),
+          .power_w = std::lerp(low.power_w, above->power_w, t)};
+}
+
+void RecommendOptions::validate() const {
+  if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be >= 1");
+  require_positive("radial_depth_m", radial_depth_m, "m");
+  require_non_negative("diameter_m", diameter_m, "m");
+  require_positive("feed_per_tooth_m", feed_per_tooth_m, "m");
+  require_positive("searched_depth_m", searched_depth_m, "m");
+  require_non_negative("max_axial_depth_m", max_axial_depth_m, "m");
+  require_non_negative("torque_per_depth_n", torque_per_depth_n, "N");
+  if (!(depth_margin >= 0.0 && depth_margin < 1.0))
+    throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)");
+  if (!(speed_window >= 0.0 && speed_window < 0.5)) {
+    throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)");
+  }
+  if (alternatives < 0) throw InvalidInput("alternatives", alternatives, "", "must be >= 0");
+}
+
+Recommendation recommend(const std::vector<DepthLimit>& limits, const RecommendOptions& options,
+                         const std::function<DepthLimit(double)>& limit_at) {
+  options.validate();
+  validate_limits(limits);
+  Recommendation result;
+  const std::vector<Candidate> all = candidates(limits, options);
+  if (all.empty()) {
+    result.reason = "no spindle speed of the lobes lies within the spindle's range with its speed window";
+    return result;
+  }
+  std::vector<Operation> chosen;
+  const std::size_t wanted = 1 + static_cast<std::size_t>(options.alternatives);
+  for (const Candidate& candidate : ranked(all)) {
+    if (chosen.size() == wanted) break;
+    const Operation& op = candidate.operation;
+    if (op.axial_depth_m <= 0.0 || !distinct(op, chosen, options.distinct_speed)) continue;
+    const Operation checked = verified(candidate, options, limit_at);
+    if (checked.axial_depth_m > 0.0) chosen.push_back(checked);
+  }
+  if (chosen.empty()) {
+    result.reason = "every spindle speed chatters at any depth, the spindle gives no torque, or no depth finishes";
+    return result;
+  }
+  std::sort(chosen.begin(), chosen.end(), better);
+  result.status = Recommendation::Status::found;
+  result.recommended = chosen.front();
+  result.alternatives.assign(chosen.begin() + 1, chosen.end());
+  return result;
+}
+
+}  // namespace robomill::decision

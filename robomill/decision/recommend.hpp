@@ -1,0 +1,99 @@
+#pragma once
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/modal/mode_id.hpp"
+
+namespace robomill::decision {
+
+enum class LimitedBy { chatter, depth_range, cutter, spindle_torque, spindle_power, surface_error, deflection };
+
+/// How deep a finishing cut may go at one speed.
+struct FinishDepth {
+  double axial_depth_m = std::numeric_limits<double>::infinity();  ///< infinite: nothing limits it
+  LimitedBy reason = LimitedBy::surface_error;
+};
+
+/// The lowest unstable depth at one speed, and the greatest that finishes.
+struct DepthLimit {
+  double spindle_speed_rad_per_s = 0.0;
+  std::optional<double> axial_depth_m = {};  ///< none: stable up to RecommendOptions::searched_depth_m
+  double chatter_frequency_hz = 0.0;
+  modal::ModeId mode = {};  ///< that chatters
+  FinishDepth finish = {};
+};
+
+/// What the spindle gives at one speed; linear in between.
+struct SpindleCapacity {
+  double spindle_speed_rad_per_s = 0.0;
+  double torque_n_m = 0.0;
+  double power_w = 0.0;
+};
+/// Linear in speed between the points of a curve; no torque and no power outside it.
+[[nodiscard]] ROBOMILL_API SpindleCapacity capacity_at(const std::vector<SpindleCapacity>& curve,
+                                                       double spindle_speed_rad_per_s);
+
+/// What recommend needs to know of the cut and how careful it is.
+struct RecommendOptions {
+  int teeth = 0;                    ///< >= 1; required
+  double radial_depth_m = 0.0;      ///< > 0; required
+  double diameter_m = 0.0;          ///< of the cutter, for the cutting speed; 0: unknown
+  double feed_per_tooth_m = 0.0;    ///< > 0; required
+  double searched_depth_m = 0.0;    ///< largest depth that the limits were looked for at, > 0; required
+  double max_axial_depth_m = 0.0;   ///< the cutter's; 0: searched_depth_m
+  double torque_per_depth_n = 0.0;  ///< mean cutting torque per axial depth [N m/m], >= 0
+  double min_spindle_speed_rad_per_s = 0.0;
+  double max_spindle_speed_rad_per_s = 0.0;  ///< 0: as far as the limits go
+  std::vector<SpindleCapacity> spindle =
+      {};                        ///< by increasing speed; empty: no limit. Outside it the spindle gives nothing.
+  double depth_margin = 0.2;     ///< stay this fraction below the limit, in [0, 1)
+  double speed_window = 0.02;    ///< over ± this fraction of speed, in [0, 0.5)
+  int alternatives = 3;          ///< >= 0
+  double distinct_speed = 0.05;  ///< alternatives differ by at least this fraction of speed
+
+  ROBOMILL_API void validate() const;  ///< throws InvalidInput naming the field
+};
+
+/// A speed and depth to cut at.
+struct Operation {
+  double spindle_speed_rad_per_s = 0.0;
+  double axial_depth_m = 0.0;
+  double feed_per_tooth_m = 0.0;
+  double feed_m_per_s = 0.0;           ///< f_z N n
+  double cutting_speed_m_per_s = 0.0;  ///< of the tooth; 0 where the diameter is unknown
+  double removal_rate_m3_per_s = 0.0;  ///< a_p a_e f_z N n
+  double limit_depth_m = 0.0;          ///< lowest limit over the speed window (searched_depth_m where there is none)
+  double margin = 0.0;                 ///< 1 - depth / limit
+  double torque_n_m = 0.0, power_w = 0.0;  ///< means over a revolution
+  LimitedBy limited_by = LimitedBy::chatter;
+  double chatter_frequency_hz = 0.0;  ///< what chatters at the window's lowest limit; 0: nothing
+  modal::ModeId mode = {};
+  /// Of the forced vibration, where it was computed; else NaN. See stability::SurfacePoint.
+  double surface_error_m = std::numeric_limits<double>::quiet_NaN();
+  double peak_deflection_m = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct Recommendation {
+  enum class Status { found, no_safe_depth };
+  Status status = Status::no_safe_depth;
+  std::string reason = {};  ///< why there is no safe depth
+  std::optional<Operation> recommended = {};
+  std::vector<Operation> alternatives = {};  ///< by falling removal rate
+};
+
+/// The speed and depth with the highest removal rate such that the depth is at most (1 - depth_margin) times the limit
+/// and at most the finishing depth at every speed of the window, within the spindle's range, torque and power and the
+/// cutter's depth; and the next best, each at another lobe where there is one.
+///
+/// @param limits  by increasing speed, at least two
+/// @param limit_at  the limit at any speed: looks between the given ones before an operation is offered
+/// @throws InvalidInput if options or limits break their rules
+[[nodiscard]] ROBOMILL_API Recommendation recommend(const std::vector<DepthLimit>& limits,
+                                                    const RecommendOptions& options,
+                                                    const std::function<DepthLimit(double speed_rad_per_s)>& limit_at);
+
+}  // namespace robomill::decision

@@ -1,0 +1,194 @@
+#include "robomill/decision/recommend.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/random.hpp"
+
+namespace robomill::decision {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// A lobe-like curve: cusps where the phase is a whole number of turns, none above 4 mm.
+DepthLimit lobe(double speed) {
+  const double phase = 3000.0 / speed;
+  const double depth = 0.5e-3 + 5e-3 * std::pow(std::sin(pi * phase), 8);
+  DepthLimit limit{
+      .spindle_speed_rad_per_s = speed, .axial_depth_m = depth, .chatter_frequency_hz = 540.0, .mode = {7}};
+  if (depth > 4e-3) limit.axial_depth_m.reset();
+  return limit;
+}
+
+std::vector<DepthLimit> lobes() {
+  std::vector<DepthLimit> limits;
+  for (int i = 0; i <= 400; ++i) limits.push_back(lobe(400.0 + 3.0 * i));
+  return limits;
+}
+
+RecommendOptions options() {
+  RecommendOptions o;
+  o.teeth = 3;
+  o.radial_depth_m = 1.8e-3;
+  o.feed_per_tooth_m = 1e-5;
+  o.searched_depth_m = 4e-3;
+  return o;
+}
+
+// The property that is promised: nowhere in the window does the depth come nearer than the margin to the limit.
+TEST(Recommend, KeepsTheMarginOverTheSpeedWindow) {
+  const Recommendation r = recommend(lobes(), options(), lobe);
+  ASSERT_EQ(r.status, Recommendation::Status::found);
+  ASSERT_EQ(r.alternatives.size(), 3U);
+  std::vector<Operation> all = r.alternatives;
+  all.push_back(*r.recommended);
+  for (const Operation& op : all) {
+    for (int i = -4; i <= 4; ++i) {
+      const DepthLimit limit = lobe(op.spindle_speed_rad_per_s * (1.0 + 0.005 * i));
+      EXPECT_LE(op.axial_depth_m, 0.8 * limit.axial_depth_m.value_or(4e-3) * (1 + 1e-12));
+    }
+    EXPECT_NEAR(op.removal_rate_m3_per_s, op.axial_depth_m * 1.8e-3 * 1e-5 * 3 * op.spindle_speed_rad_per_s / (2 * pi),
+                1e-18);
+  }
+}
+
+TEST(Recommend, NoOtherSpeedRemovesMore) {
+  const std::vector<DepthLimit> limits = lobes();
+  const Operation best = *recommend(limits, options(), lobe).recommended;
+  for (const DepthLimit& centre : limits) {
+    const double speed = centre.spindle_speed_rad_per_s;
+    if (speed * 0.98 < 400.0 || speed * 1.02 > 1600.0) continue;
+    double lowest = 4e-3;
+    for (const DepthLimit& other : limits) {
+      if (std::abs(other.spindle_speed_rad_per_s / speed - 1.0) <= 0.02) {
+        lowest = std::min(lowest, other.axial_depth_m.value_or(4e-3));
+      }
+    }
+    EXPECT_LE(0.8 * lowest * 1.8e-3 * 1e-5 * 3 * speed / (2 * pi), best.removal_rate_m3_per_s * 1.001);
+  }
+}
+
+TEST(Recommend, AlternativesAreOtherSpeeds) {
+  const Recommendation r = recommend(lobes(), options(), lobe);
+  std::vector<double> speeds = {r.recommended->spindle_speed_rad_per_s};
+  for (const Operation& op : r.alternatives) {
+    EXPECT_LE(op.removal_rate_m3_per_s, r.recommended->removal_rate_m3_per_s);
+    for (const double speed : speeds) EXPECT_GE(std::abs(op.spindle_speed_rad_per_s / speed - 1.0), 0.047);
+    speeds.push_back(op.spindle_speed_rad_per_s);
+  }
+}
+
+TEST(Recommend, ObeysCutterAndSpindle) {
+  RecommendOptions o = options();
+  o.max_axial_depth_m = 0.1e-3;
+  Operation op = *recommend(lobes(), o, lobe).recommended;
+  EXPECT_EQ(op.limited_by, LimitedBy::cutter);
+  EXPECT_DOUBLE_EQ(op.axial_depth_m, 0.1e-3);
+
+  o = options();
+  o.torque_per_depth_n = 1000.0;
+  o.spindle = {{.spindle_speed_rad_per_s = 300.0, .torque_n_m = 0.2, .power_w = 1e6},
+               {.spindle_speed_rad_per_s = 2000.0, .torque_n_m = 0.2, .power_w = 1e6}};
+  op = *recommend(lobes(), o, lobe).recommended;
+  EXPECT_EQ(op.limited_by, LimitedBy::spindle_torque);
+  EXPECT_NEAR(op.torque_n_m, 0.2, 1e-12);
+
+  o.spindle[0].torque_n_m = o.spindle[1].torque_n_m = 1e6;
+  o.spindle[0].power_w = o.spindle[1].power_w = 50.0;
+  op = *recommend(lobes(), o, lobe).recommended;
+  EXPECT_EQ(op.limited_by, LimitedBy::spindle_power);
+  EXPECT_NEAR(op.power_w, 50.0, 1e-9);
+
+  o = options();
+  o.min_spindle_speed_rad_per_s = 700.0;
+  o.max_spindle_speed_rad_per_s = 800.0;
+  op = *recommend(lobes(), o, lobe).recommended;
+  EXPECT_GE(op.spindle_speed_rad_per_s, 700.0);
+  EXPECT_LE(op.spindle_speed_rad_per_s, 800.0);
+}
+
+// A finishing depth binds like any other limit: over the whole window, between the given speeds too.
+TEST(Recommend, KeepsTheFinishingDepthOverTheWindow) {
+  // Fine away from 900 rad/s, where tooth passing meets a mode.
+  const auto finishing = [](double speed) {
+    DepthLimit limit = lobe(speed);
+    limit.finish = {.axial_depth_m = 1e-4 + 2e-3 * std::abs(speed / 900.0 - 1.0), .reason = LimitedBy::surface_error};
+    return limit;
+  };
+  std::vector<DepthLimit> limits;
+  for (const DepthLimit& limit : lobes()) limits.push_back(finishing(limit.spindle_speed_rad_per_s));
+  const Recommendation r = recommend(limits, options(), finishing);
+  ASSERT_EQ(r.status, Recommendation::Status::found);
+  std::vector<Operation> all = r.alternatives;
+  all.push_back(*r.recommended);
+  int bound = 0;
+  for (const Operation& op : all) {
+    for (int i = -4; i <= 4; ++i) {
+      const DepthLimit limit = finishing(op.spindle_speed_rad_per_s * (1.0 + 0.005 * i));
+      EXPECT_LE(op.axial_depth_m, limit.finish.axial_depth_m * (1 + 1e-12));
+      EXPECT_LE(op.axial_depth_m, 0.8 * limit.axial_depth_m.value_or(4e-3) * (1 + 1e-12));
+    }
+    if (op.limited_by == LimitedBy::surface_error) ++bound;
+    EXPECT_GE(op.margin, 0.2 - 1e-12);
+  }
+  EXPECT_GT(bound, 0);
+  EXPECT_LT(r.recommended->removal_rate_m3_per_s,
+            recommend(lobes(), options(), lobe).recommended->removal_rate_m3_per_s);
+}
+
+TEST(Recommend, SaysFeedAndCuttingSpeed) {
+  RecommendOptions o = options();
+  EXPECT_EQ(recommend(lobes(), o, lobe).recommended->cutting_speed_m_per_s, 0.0);
+  o.diameter_m = 12e-3;
+  const Operation op = *recommend(lobes(), o, lobe).recommended;
+  const double per_s = op.spindle_speed_rad_per_s / (2 * pi);
+  EXPECT_NEAR(op.cutting_speed_m_per_s, pi * 12e-3 * per_s, 1e-12);
+  EXPECT_NEAR(op.feed_m_per_s, 1e-5 * 3 * per_s, 1e-15);
+  EXPECT_TRUE(std::isnan(op.surface_error_m));
+}
+
+// A dip between two grid speeds, narrower than their distance, is found by looking closer.
+TEST(Recommend, LooksBetweenTheGivenSpeeds) {
+  std::vector<DepthLimit> limits;
+  for (int i = 0; i <= 10; ++i)
+    limits.push_back({.spindle_speed_rad_per_s = 1000.0 + 100.0 * i, .axial_depth_m = 2e-3});
+  const auto with_dip = [](double speed) {
+    const bool dip = std::abs(speed / 100.0 - std::round(speed / 100.0)) > 1e-6;
+    return DepthLimit{.spindle_speed_rad_per_s = speed, .axial_depth_m = dip ? 1e-3 : 2e-3, .mode = {2}};
+  };
+  const Operation op = *recommend(limits, options(), with_dip).recommended;
+  EXPECT_DOUBLE_EQ(op.axial_depth_m, 0.8e-3);
+  EXPECT_EQ(op.mode.number, 2);
+}
+
+TEST(Recommend, SaysWhenNothingIsSafe) {
+  std::vector<DepthLimit> limits = {{.spindle_speed_rad_per_s = 100.0, .axial_depth_m = 0.0},
+                                    {.spindle_speed_rad_per_s = 101.0, .axial_depth_m = 0.0},
+                                    {.spindle_speed_rad_per_s = 200.0, .axial_depth_m = 0.0}};
+  const auto none = [](double speed) { return DepthLimit{.spindle_speed_rad_per_s = speed, .axial_depth_m = 0.0}; };
+  RecommendOptions o = options();
+  o.speed_window = 0.005;
+  Recommendation r = recommend(limits, o, none);
+  EXPECT_EQ(r.status, Recommendation::Status::no_safe_depth);
+  EXPECT_FALSE(r.reason.empty());
+  EXPECT_FALSE(r.recommended.has_value());
+  o.min_spindle_speed_rad_per_s = 1000.0;
+  r = recommend(limits, o, none);
+  EXPECT_NE(r.reason.find("spindle's range"), std::string::npos);
+}
+
+TEST(Recommend, RefusesBadInput) {
+  EXPECT_THROW(static_cast<void>(recommend({}, options(), lobe)), InvalidInput);
+  RecommendOptions o = options();
+  o.teeth = 0;
+  EXPECT_THROW(static_cast<void>(recommend(lobes(), o, lobe)), InvalidInput);
+  o = options();
+  o.depth_margin = 1.0;
+  EXPECT_THROW(static_cast<void>(recommend(lobes(), o, lobe)), InvalidInput);
+}
+
+}  // namespace
+}  // namespace robomill::decision

@@ -1,0 +1,122 @@
+#include "robomill/io/file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robomill/base/test_support.hpp"
+#include "robomill/io/pending_names.hpp"
+
+namespace robomill::formats {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Folder;
+using test::refusal;
+
+std::size_t count(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(File, KeepsEveryByte) {
+  const Folder folder;
+  std::string content;
+  for (int i = 0; i < 200000; ++i) content += static_cast<char>(i * 31 % 256);
+  write_file(folder.at("bytes.bin"), content);
+  EXPECT_EQ(read_file(folder.at("bytes.bin")), content);
+  write_file(folder.at("bytes.bin"), "short");
+  EXPECT_EQ(read_file(folder.at("bytes.bin")), "short");
+  EXPECT_EQ(count(folder.path()), 1u);
+}
+
+TEST(File, SaysWhatIsWrong) {
+  const Folder folder;
+  EXPECT_EQ(refusal([&] { (void)read_file(folder.at("none")); }),
+            folder.at("none").string() + ": there is no such file");
+  EXPECT_EQ(refusal([&] { (void)read_file(folder.path()); }), folder.path().string() + ": is a folder, not a file");
+  EXPECT_EQ(refusal([&] { (void)read_file(folder.file("empty", "")); }), folder.at("empty").string() + ": is empty");
+  EXPECT_NE(refusal([&] { (void)read_file(folder.file("long", "12345"), 4); }).find("more than 4 bytes"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { (void)read_file("/dev/zero", 1000); }).find("more than 1000 bytes"), std::string::npos);
+  EXPECT_NE(refusal([&] { write_file(folder.at("no/where.csv"), "x"); }).find("There is no folder"), std::string::npos);
+  EXPECT_NE(refusal([&] { write_file(folder.path(), "x"); }).find("is a folder"), std::string::npos);
+}
+
+TEST(File, LeavesNothingHalfWritten) {
+  const Folder folder;
+  const fs::path path = folder.file("kept.csv", "old");
+  {
+    const PendingFile pending(path);
+    (void)folder.file(pending.temporary().filename().string(), "half");
+    EXPECT_EQ(pending.temporary().extension(), ".csv");
+    EXPECT_EQ(count(folder.path()), 2u);
+  }
+  EXPECT_EQ(read_file(path), "old");
+  EXPECT_EQ(count(folder.path()), 1u);
+}
+
+TEST(File, PendingFilesCanAllBeRemovedAtOnce) {
+  const Folder folder;
+  const auto written = [&](const PendingFile& pending) {
+    return folder.file(pending.temporary().filename().string(), "half");
+  };
+  PendingFile first(folder.at("first.csv")), second(folder.at("second.csv"));
+  const fs::path first_temporary = written(first), second_temporary = written(second);
+  second.commit();
+  // One whose name was given back is not another's.
+  { const PendingFile gone(folder.at("gone.csv")); }
+  const fs::path other = folder.file("other.csv", "kept");
+  remove_pending_files();
+  EXPECT_FALSE(fs::exists(first_temporary));
+  EXPECT_EQ(read_file(folder.at("second.csv")), "half");
+  EXPECT_EQ(read_file(other), "kept");
+  EXPECT_EQ(count(folder.path()), 2u);
+  // More than are kept in view are still written as ever.
+  std::vector<std::unique_ptr<PendingFile>> many;
+  for (int i = 0; i < 200; ++i) {
+    many.push_back(std::make_unique<PendingFile>(folder.at(std::to_string(i) + ".csv")));
+    (void)written(*many.back());
+  }
+  remove_pending_files();
+  EXPECT_LT(count(folder.path()), 2u + 200u);
+  many.clear();
+  EXPECT_EQ(count(folder.path()), 2u);
+}
+
+TEST(File, TakesRegularFilesAwayAlone) {
+  const Folder folder;
+  const fs::path target = folder.file("target.csv", "old");
+  fs::create_symlink(target, folder.at("link.csv"));
+  EXPECT_FALSE(remove_file(folder.at("none")));
+  EXPECT_FALSE(remove_file(folder.path()));
+  EXPECT_FALSE(remove_file("/dev/null"));
+  EXPECT_TRUE(remove_file(folder.at("link.csv")));
+  EXPECT_FALSE(fs::exists(target));
+  EXPECT_TRUE(fs::is_symlink(folder.at("link.csv")));
+}
+
+TEST(File, WritesThroughLinksAndIntoDevices) {
+  const Folder folder;
+  const fs::path target = folder.file("target.csv", "old");
+  fs::create_symlink(target, folder.at("link.csv"));
+  write_file(folder.at("link.csv"), "new");
+  EXPECT_TRUE(fs::is_symlink(folder.at("link.csv")));
+  EXPECT_EQ(read_file(target), "new");
+  write_file("/dev/null", "gone");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST(File, KnowsFormatsByTheirEnding) {
+  EXPECT_EQ(format_of("a/b.UFF"), Format::uff);
+  EXPECT_EQ(format_of("b.unv"), Format::uff);
+  EXPECT_EQ(format_of("b.tar.csv"), Format::csv);
+  EXPECT_EQ(format_of("b.mat"), Format::mat);
+  EXPECT_EQ(format_of("b"), Format::unknown);
+  EXPECT_EQ(format_of("b.xlsx"), Format::unknown);
+}
+
+}  // namespace
+}  // namespace robomill::formats

@@ -1,0 +1,224 @@
+#include "robomill/io/mat.hpp"
+
+#include <fmt/format.h>
+#include <matio.h>
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/child.hpp"
+#include "robomill/io/file.hpp"
+
+namespace robomill::formats {
+namespace {
+
+using MatFile = std::unique_ptr<mat_t, decltype(&Mat_Close)>;
+using Variable = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
+
+/// HDF5, which version 7.3 is, keeps state of its own.
+std::mutex& library() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// zlib packs at most some thousand to one: a variable that claims more is a broken one, and must not be allocated.
+constexpr double most_packed = 1100.0;
+
+/// Beyond what is in use already and what the file's size asks for [bytes].
+constexpr std::size_t most_memory = std::size_t{64} << 20;
+
+/// How the child's answer begins.
+constexpr char answered = '+', refused = '-';
+
+std::size_t bytes_of(matio_classes type) {
+  switch (type) {
+    case MAT_C_DOUBLE:
+    case MAT_C_INT64:
+    case MAT_C_UINT64:
+      return 8;
+    case MAT_C_SINGLE:
+    case MAT_C_INT32:
+    case MAT_C_UINT32:
+      return 4;
+    case MAT_C_INT16:
+    case MAT_C_UINT16:
+      return 2;
+    case MAT_C_INT8:
+    case MAT_C_UINT8:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
+template <class T>
+Eigen::MatrixXd matrix(const void* data, Eigen::Index rows, Eigen::Index columns) {
+  const auto* values = static_cast<const T*>(data);
+  Eigen::MatrixXd out(rows, columns);
+  for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] = static_cast<double>(values[i]);
+  return out;
+}
+
+Eigen::MatrixXd matrix(matio_classes type, const void* data, Eigen::Index rows, Eigen::Index columns) {
+  switch (type) {
+    case MAT_C_DOUBLE:
+      return matrix<double>(data, rows, columns);
+    case MAT_C_SINGLE:
+      return matrix<float>(data, rows, columns);
+    case MAT_C_INT64:
+      return matrix<std::int64_t>(data, rows, columns);
+    case MAT_C_UINT64:
+      return matrix<std::uint64_t>(data, rows, columns);
+    case MAT_C_INT32:
+      return matrix<std::int32_t>(data, rows, columns);
+    case MAT_C_UINT32:
+      return matrix<std::uint32_t>(data, rows, columns);
+    case MAT_C_INT16:
+      return matrix<std::int16_t>(data, rows, columns);
+    case MAT_C_UINT16:
+      return matrix<std::uint16_t>(data, rows, columns);
+    case MAT_C_INT8:
+      return matrix<std::int8_t>(data, rows, columns);
+    default:
+      return matrix<std::uint8_t>(data, rows, columns);
+  }
+}
+
+/// Whether a variable is a matrix of numbers; one that claims more than its file can hold is refused.
+bool is_matrix(const matvar_t& variable, const std::string& file, double file_bytes) {
+  const std::size_t width = bytes_of(variable.class_type);
+  if (width == 0 || variable.name == nullptr || variable.rank != 2 || variable.isLogical != 0) return false;
+  const double bytes = static_cast<double>(variable.dims[0]) * static_cast<double>(variable.dims[1]) *
+                       static_cast<double>(width) * (variable.isComplex != 0 ? 2.0 : 1.0);
+  if (bytes > most_packed * file_bytes) {
+    throw InvalidInput(file, fmt::format("variable {} says that it holds {} x {} values, more than the file can",
+                                         variable.name, variable.dims[0], variable.dims[1]));
+  }
+  return bytes > 0.0;
+}
+
+MatVariable converted(const matvar_t& variable, const std::string& file) {
+  const auto rows = static_cast<Eigen::Index>(variable.dims[0]);
+  const auto columns = static_cast<Eigen::Index>(variable.dims[1]);
+  MatVariable out{.name = variable.name, .re = {}};
+  const auto* split = static_cast<const mat_complex_split_t*>(variable.data);
+  const bool whole =
+      variable.data != nullptr && (variable.isComplex == 0 || (split->Re != nullptr && split->Im != nullptr));
+  if (!whole) throw InvalidInput(file, "variable " + out.name + " cannot be read");
+  if (variable.isComplex != 0) {
+    out.re = matrix(variable.class_type, split->Re, rows, columns);
+    out.im = matrix(variable.class_type, split->Im, rows, columns);
+  } else {
+    out.re = matrix(variable.class_type, variable.data, rows, columns);
+  }
+  return out;
+}
+
+std::vector<MatVariable> read_variables(const std::filesystem::path& path, double file_bytes) {
+  const std::string file = path.string();
+  const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY), &Mat_Close);
+  if (!mat) throw InvalidInput(file, "is no MAT file");
+  std::vector<MatVariable> out;
+  while (true) {
+    const Variable variable(Mat_VarReadNextInfo(mat.get()), &Mat_VarFree);
+    if (!variable) break;
+    if (!is_matrix(*variable, file, file_bytes)) continue;
+    if (Mat_VarReadDataAll(mat.get(), variable.get()) != 0) {
+      throw InvalidInput(file, fmt::format("variable {} cannot be read", variable->name));
+    }
+    out.push_back(converted(*variable, file));
+  }
+  return out;
+}
+
+void append(std::string& out, const void* data, std::size_t bytes) {
+  out.append(static_cast<const char*>(data), bytes);
+}
+
+/// For the way from one process to another: sizes, name, values.
+std::string pack(const std::vector<MatVariable>& variables) {
+  std::string out;
+  for (const MatVariable& variable : variables) {
+    const std::array<Eigen::Index, 4> sizes = {static_cast<Eigen::Index>(variable.name.size()), variable.re.rows(),
+                                               variable.re.cols(), variable.im.size()};
+    append(out, sizes.data(), sizeof(sizes));
+    out += variable.name;
+    for (const Eigen::MatrixXd* part : {&variable.re, &variable.im}) {
+      append(out, part->data(), static_cast<std::size_t>(part->size()) * sizeof(double));
+    }
+  }
+  return out;
+}
+
+std::vector<MatVariable> unpack(std::string_view bytes) {
+  std::vector<MatVariable> out;
+  const auto take = [&bytes](void* to, std::size_t count) {
+    if (count > 0) std::memcpy(to, bytes.data(), count);
+    bytes.remove_prefix(count);
+  };
+  while (!bytes.empty()) {
+    std::array<Eigen::Index, 4> sizes{};
+    take(sizes.data(), sizeof(sizes));
+    MatVariable variable{.name = std::string(static_cast<std::size_t>(sizes[0]), ' '), .re = {}};
+    take(variable.name.data(), variable.name.size());
+    variable.re.resize(sizes[1], sizes[2]);
+    if (sizes[3] > 0) variable.im.resize(sizes[1], sizes[2]);
+    for (Eigen::MatrixXd* part : {&variable.re, &variable.im}) {
+      take(part->data(), static_cast<std::size_t>(part->size()) * sizeof(double));
+    }
+    out.push_back(std::move(variable));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
+  const std::size_t file_bytes = read_file(path).size();
+  const std::lock_guard lock(library());
+  // The libraries trust what a file says of its types and lengths: a damaged one brings HDF5 down, and makes matio ask
+  // for gigabytes.
+  const auto packed = run_in_child(most_memory + 64 * file_bytes, [&]() -> std::string {
+    try {
+      return answered + pack(read_variables(path, static_cast<double>(file_bytes)));
+    } catch (const InvalidInput& error) {
+      return refused + error.parts().rule;
+    }
+  });
+  if (!packed || packed->empty()) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
+  if (packed->front() == refused) throw InvalidInput(path.string(), packed->substr(1));
+  return unpack(std::string_view(*packed).substr(1));
+}
+
+void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>& variables) {
+  const std::lock_guard lock(library());
+  PendingFile pending(path);
+  const std::string place = pending.temporary().string();
+  // A header of our own, since the library's carries the date.
+  MatFile mat(Mat_CreateVer(place.c_str(), "MATLAB 5.0 MAT-file, robomill", MAT_FT_MAT5), &Mat_Close);
+  if (!mat) throw InvalidInput(path.string(), "cannot be written");
+  for (const MatVariable& variable : variables) {
+    std::array<std::size_t, 2> dims = {static_cast<std::size_t>(variable.re.rows()),
+                                       static_cast<std::size_t>(variable.re.cols())};
+    Eigen::MatrixXd re = variable.re, im = variable.im;
+    mat_complex_split_t split{re.data(), im.data()};
+    const bool is_complex = im.size() > 0;
+    void* data = is_complex ? static_cast<void*>(&split) : static_cast<void*>(re.data());
+    const int flags = MAT_F_DONT_COPY_DATA | (is_complex ? static_cast<int>(MAT_F_COMPLEX) : 0);
+    const Variable written(
+        Mat_VarCreate(variable.name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dims.data(), data, flags), &Mat_VarFree);
+    if (!written || Mat_VarWrite(mat.get(), written.get(), MAT_COMPRESSION_ZLIB) != 0) {
+      throw InvalidInput(path.string(), "cannot be written", "variable " + variable.name);
+    }
+  }
+  if (Mat_Close(mat.release()) != 0) throw InvalidInput(path.string(), "cannot be written");
+  pending.commit();
+}
+
+}  // namespace robomill::formats

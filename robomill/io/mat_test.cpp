@@ -1,0 +1,146 @@
+#include "robomill/io/mat.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <matio.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdint>
+#include <stdexcept>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/io/child.hpp"
+#include "robomill/io/file.hpp"
+
+namespace robomill::formats {
+namespace {
+
+using test::Folder;
+using test::refusal;
+
+/// What others write: single precision and integers, a complex vector, text and a struct among them.
+void write_foreign(const std::filesystem::path& path, mat_ft version, matio_compression compression) {
+  mat_t* mat = Mat_CreateVer(path.c_str(), nullptr, version);
+  ASSERT_NE(mat, nullptr);
+  std::array<std::size_t, 2> dims = {4, 1};
+  std::array<double, 4> re = {1.0, 2.0, 3.0, 4.0}, im = {-1.0, -2.0, -3.0, -4.0};
+  std::array<float, 4> single = {0.5F, 1.5F, 2.5F, 3.5F};
+  std::array<std::int16_t, 4> whole = {-1, 0, 1, 32767};
+  std::string text = "note";
+  mat_complex_split_t split{re.data(), im.data()};
+  const auto add = [&](const char* name, matio_classes type, matio_types data_type, void* data, int flags) {
+    matvar_t* variable = Mat_VarCreate(name, type, data_type, 2, dims.data(), data, flags);
+    EXPECT_EQ(Mat_VarWrite(mat, variable, compression), 0);
+    Mat_VarFree(variable);
+  };
+  add("frequency_hz", MAT_C_DOUBLE, MAT_T_DOUBLE, re.data(), 0);
+  add("H_xx", MAT_C_DOUBLE, MAT_T_DOUBLE, &split, MAT_F_COMPLEX);
+  add("single_one", MAT_C_SINGLE, MAT_T_SINGLE, single.data(), 0);
+  if (version != MAT_FT_MAT4) {
+    add("whole", MAT_C_INT16, MAT_T_INT16, whole.data(), 0);
+    std::swap(dims[0], dims[1]);
+    add("text", MAT_C_CHAR, MAT_T_UINT8, text.data(), 0);
+  }
+  Mat_Close(mat);
+}
+
+TEST(Mat, GivesBackWhatItWrote) {
+  const Folder folder;
+  Random random(1);
+  std::vector<MatVariable> written(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    written[i].name = fmt::format("v{}", i);
+    written[i].re.resize(static_cast<Eigen::Index>(7 + i), static_cast<Eigen::Index>(1 + i));
+    for (double& value : written[i].re.reshaped()) value = random.normal();
+  }
+  written[1].im = -2.0 * written[1].re;
+  write_mat(folder.at("a.mat"), written);
+  const std::vector<MatVariable> read = read_mat(folder.at("a.mat"));
+  ASSERT_EQ(read.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(read[i].name, written[i].name);
+    EXPECT_EQ(read[i].re, written[i].re);
+    EXPECT_EQ(read[i].im, written[i].im);
+  }
+  const std::string once = read_file(folder.at("a.mat"));
+  write_mat(folder.at("b.mat"), written);
+  EXPECT_EQ(read_file(folder.at("b.mat")), once);
+}
+
+TEST(Mat, ReadsEveryVersion) {
+  const Folder folder;
+  for (const mat_ft version : {MAT_FT_MAT4, MAT_FT_MAT5, MAT_FT_MAT73}) {
+    write_foreign(folder.at("a.mat"), version, MAT_COMPRESSION_NONE);
+    std::vector<MatVariable> read = read_mat(folder.at("a.mat"));
+    std::sort(read.begin(), read.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+    ASSERT_EQ(read.size(), version == MAT_FT_MAT4 ? 3u : 4u) << version;
+    EXPECT_EQ(read[0].name, "H_xx");
+    EXPECT_EQ(read[0].re, Eigen::Vector4d(1, 2, 3, 4));
+    EXPECT_EQ(read[0].im, Eigen::Vector4d(-1, -2, -3, -4));
+    EXPECT_EQ(read[2].re, Eigen::Vector4d(0.5, 1.5, 2.5, 3.5));
+    if (version != MAT_FT_MAT4) {
+      EXPECT_EQ(read[3].re, Eigen::Vector4d(-1, 0, 1, 32767));
+    }
+  }
+}
+
+TEST(Mat, RefusesWhatItCannotRead) {
+  const Folder folder;
+  const auto says = [&](const std::string& content) {
+    return refusal([&] { (void)read_mat(folder.file("a.mat", content)); });
+  };
+  EXPECT_NE(says("frequency_hz,xx\n1,2\n").find("is no MAT file"), std::string::npos);
+  EXPECT_NE(says("").find("is empty"), std::string::npos);
+  EXPECT_NE(refusal([&] { write_mat(folder.at("no/a.mat"), {}); }).find("no folder"), std::string::npos);
+  // A variable that says it holds 2^31 - 1 values is refused before memory is asked for.
+  write_foreign(folder.at("b.mat"), MAT_FT_MAT5, MAT_COMPRESSION_NONE);
+  std::string content = read_file(folder.at("b.mat"));
+  const std::size_t rows = content.find(std::string("\4\0\0\0\1\0\0\0", 8));
+  ASSERT_NE(rows, std::string::npos);
+  content.replace(rows, 4, "\xFF\xFF\xFF\x7F");
+  EXPECT_NE(says(content).find("more than the file can"), std::string::npos);
+}
+
+TEST(Mat, SurvivesMutations) {
+  const Folder folder;
+  for (const auto& [version, count] : {std::pair{MAT_FT_MAT5, 4000}, {MAT_FT_MAT73, 500}, {MAT_FT_MAT4, 200}}) {
+    write_foreign(folder.at("a.mat"), version, MAT_COMPRESSION_NONE);
+    const std::string original = read_file(folder.at("a.mat"));
+    const std::size_t from = version == MAT_FT_MAT4 ? 0 : 116;
+    for (int seed = 0; seed < test::seeds(count); ++seed) {
+      Random random(static_cast<std::uint64_t>(seed));
+      std::string content = original;
+      for (std::uint64_t i = random.index(6); i > 0; --i) {
+        content[from + random.index(content.size() - from)] =
+            static_cast<char>(random.index(4) == 0 ? 255 : random.index(256));
+      }
+      if (random.index(4) == 0) content.resize(random.index(content.size()) + 1);
+      try {
+        for (const MatVariable& variable : read_mat(folder.file("b.mat", content))) {
+          EXPECT_TRUE(variable.im.size() == 0 || variable.im.size() == variable.re.size());
+        }
+      } catch (const InvalidInput& error) {
+        EXPECT_NE(std::string(error.what()).find("b.mat"), std::string::npos);
+      }
+    }
+  }
+}
+
+TEST(Child, HandsBackWhatWasSaidAndSurvivesItsDeath) {
+  constexpr std::size_t memory = std::size_t{1} << 26;
+  EXPECT_EQ(run_in_child(memory, [] { return std::string(1 << 20, 'a'); }), std::string(1 << 20, 'a'));
+  EXPECT_EQ(run_in_child(memory, [] { return std::string(); }), "");
+  EXPECT_EQ(run_in_child(memory, []() -> std::string { throw std::runtime_error("no"); }), std::nullopt);
+  EXPECT_EQ(run_in_child(memory,
+                         []() -> std::string {
+                           std::raise(SIGKILL);
+                           return "alive";
+                         }),
+            std::nullopt);
+}
+
+}  // namespace
+}  // namespace robomill::formats

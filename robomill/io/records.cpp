@@ -1,0 +1,215 @@
+#include "robomill/io/records.hpp"
+
+#include <fmt/format.h>
+#include <sndfile.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/mat.hpp"
+#include "robomill/io/si.hpp"
+#include "robomill/io/table.hpp"
+#include "robomill/io/text.hpp"
+#include "robomill/io/uff.hpp"
+
+namespace robomill::formats {
+namespace {
+
+using Path = std::filesystem::path;
+
+Eigen::VectorXd vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+Record read_text_record(const Path& path) {
+  const Table table = parse_table(read_file(path), path.string());
+  Record record{.file = path, .names = table.names, .columns = {}};
+  record.names.resize(table.columns.size());
+  for (const std::vector<double>& column : table.columns) record.columns.push_back(vector(column));
+  return record;
+}
+
+Record read_mat_record(const Path& path) {
+  Record record{.file = path, .names = {}, .columns = {}};
+  for (const MatVariable& variable : read_mat(path)) {
+    if (variable.im.size() > 0) {
+      record.notes.push_back(fmt::format("{}: variable {} is complex and left out", path.string(), variable.name));
+      continue;
+    }
+    const std::string name = lowered(variable.name);
+    if (variable.re.size() == 1) {
+      if (name == "sample_rate_hz" || name == "fs") record.sample_rate_hz = variable.re(0, 0);
+      continue;
+    }
+    const bool is_vector = variable.re.rows() == 1 || variable.re.cols() == 1;
+    const Eigen::Index columns = is_vector ? 1 : variable.re.cols();
+    for (Eigen::Index column = 0; column < columns; ++column) {
+      record.names.push_back(is_vector ? variable.name : fmt::format("{}(:,{})", variable.name, column + 1));
+      if (is_vector) {
+        record.columns.emplace_back(variable.re.reshaped());
+      } else {
+        record.columns.emplace_back(variable.re.col(column));
+      }
+    }
+  }
+  return record;
+}
+
+/// The name of a time response: its axis' label where it has one, else its own description.
+std::string name_of(const UffFunction& function) {
+  const std::string& label = function.numerator.label;
+  return label.empty() || label == "NONE" ? function.id[0] : label;
+}
+
+Record read_uff_record(const Path& path) {
+  const UffFile file = parse_uff(read_file(path), path.string());
+  Record record{.file = path, .names = {}, .columns = {}, .notes = file.notes};
+  for (const UffFunction& function : file.functions) {
+    const std::string where = fmt::format("{}:{}", path.string(), function.line);
+    if (function.type != 1 && function.type != 0) {
+      record.notes.push_back(
+          fmt::format("{}: function type {} is no time response and left out", where, function.type));
+      continue;
+    }
+    if (function.is_complex) throw InvalidInput(where, "the time response has complex values");
+    const double rate_hz = sample_rate_of(function.abscissa, where);
+    if (record.sample_rate_hz != 0.0 && std::abs(rate_hz - record.sample_rate_hz) > 1e-6 * rate_hz) {
+      throw InvalidInput(where, fmt::format("the sample rate {:.6g} Hz differs from {:.6g} Hz before it", rate_hz,
+                                            record.sample_rate_hz));
+    }
+    record.sample_rate_hz = rate_hz;
+    const SiFactor si = si_factor(function.numerator, function.length_factor, function.force_factor);
+    if (!si.note.empty()) record.notes.push_back(fmt::format("{}: {}", where, si.note));
+    record.names.push_back(name_of(function));
+    record.columns.emplace_back(function.values.real() * si.factor);
+  }
+  return record;
+}
+
+Record read_wav_record(const Path& path, double scale) {
+  (void)read_file(path);  // says what is wrong with a missing or empty one
+  SF_INFO info{};
+  const std::unique_ptr<SNDFILE, decltype(&sf_close)> sound(sf_open(path.c_str(), SFM_READ, &info), &sf_close);
+  if (!sound) throw InvalidInput(path.string(), std::string("is no sound file: ") + sf_strerror(nullptr));
+  if (info.channels < 1 || info.samplerate < 1) throw InvalidInput(path.string(), "has no channel or no sample rate");
+  const auto channels = static_cast<std::size_t>(info.channels);
+  Record record{.file = path, .sample_rate_hz = static_cast<double>(info.samplerate), .names = {}, .columns = {}};
+  record.names.resize(channels);
+  std::vector<std::vector<double>> columns(channels);
+  // In blocks: what the header says of the length may be wrong.
+  const std::size_t block_frames = std::max<std::size_t>(1, 8192 / channels);
+  std::vector<double> block(block_frames * channels);
+  sf_count_t frames = 0;
+  while ((frames = sf_readf_double(sound.get(), block.data(), static_cast<sf_count_t>(block_frames))) > 0) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(frames) * channels; ++i) {
+      columns[i % channels].push_back(scale * block[i]);
+    }
+  }
+  if (columns.front().empty()) throw InvalidInput(path.string(), "holds no samples");
+  for (const std::vector<double>& column : columns) record.columns.push_back(vector(column));
+  return record;
+}
+
+bool is_time(const std::string& name) {
+  const std::string word = lowered(name);
+  for (const char* known : {"time_s", "time", "t", "time (s)", "time [s]", "t_s", "t (s)", "t [s]"}) {
+    if (word == known) return true;
+  }
+  return false;
+}
+
+void find_sample_rate(Record& record, const RecordOptions& options) {
+  std::string time = options.time;
+  if (time.empty()) {
+    const auto known = std::find_if(record.names.begin(), record.names.end(), is_time);
+    if (known == record.names.end()) return;
+    time = *known;
+  }
+  record.sample_rate_hz = sample_rate_of(record.column(time), record.file.string());
+}
+
+}  // namespace
+
+void RecordOptions::validate() const {
+  if (!std::isfinite(scale) || scale == 0.0) throw InvalidInput("scale", scale, "", "must be a finite number, not 0");
+}
+
+const Eigen::VectorXd& Record::column(const std::string& name_or_number) const {
+  const auto found = std::find(names.begin(), names.end(), name_or_number);
+  if (found != names.end()) {
+    if (std::find(found + 1, names.end(), name_or_number) != names.end()) {
+      throw InvalidInput(file.string(), "has several columns " + name_or_number, "Name them by number, from 1");
+    }
+    return columns[static_cast<std::size_t>(found - names.begin())];
+  }
+  std::size_t number = 0;
+  const char* const end = name_or_number.data() + name_or_number.size();
+  const std::from_chars_result read = std::from_chars(name_or_number.data(), end, number);
+  if (read.ec == std::errc() && read.ptr == end && number >= 1 && number <= columns.size()) return columns[number - 1];
+  std::string known;
+  for (const std::string& name : names) {
+    if (!name.empty()) known += (known.empty() ? "" : ", ") + name;
+  }
+  throw InvalidInput(file.string(), "has no column " + name_or_number,
+                     fmt::format("It has {} column{}{}{}", columns.size(), columns.size() == 1 ? "" : "s",
+                                 known.empty() ? "" : ": ", known));
+}
+
+double sample_rate_of(const Eigen::VectorXd& time_s, const std::string& where) {
+  const Eigen::Index n = time_s.size();
+  if (n < 2) throw InvalidInput(where, "has fewer than two samples");
+  const double step_s = (time_s(n - 1) - time_s(0)) / static_cast<double>(n - 1);
+  if (!std::isfinite(step_s) || step_s <= 0.0) {
+    throw InvalidInput(where, "the time does not rise", "Is the column of the time the right one?");
+  }
+  for (Eigen::Index i = 1; i < n; ++i) {
+    const double off = time_s(i) - time_s(i - 1) - step_s;
+    if (!(std::abs(off) <= 0.5 * step_s)) {
+      throw InvalidInput(
+          where,
+          fmt::format("the time does not run evenly: from {:.9g} s to {:.9g} s where {:.6g} s are a step (sample {})",
+                      time_s(i - 1), time_s(i), step_s, i + 1),
+          "Are samples missing, or has the time too few digits? Then give sample_rate_hz instead of the column");
+    }
+  }
+  return 1.0 / step_s;
+}
+
+Record read_record(const Path& path, const RecordOptions& options) {
+  options.validate();
+  Record record;
+  switch (format_of(path)) {
+    case Format::csv:
+    case Format::text:
+      record = read_text_record(path);
+      break;
+    case Format::mat:
+      record = read_mat_record(path);
+      break;
+    case Format::uff:
+      record = read_uff_record(path);
+      break;
+    case Format::wav:
+      record = read_wav_record(path, options.scale);
+      break;
+    default:
+      (void)read_file(path);
+      throw InvalidInput(path.string(), "is no record by its ending", "Records are .csv, .txt, .mat, .uff and .wav");
+  }
+  if (record.columns.empty()) throw InvalidInput(path.string(), "holds no column of samples");
+  for (std::size_t i = 0; i < record.columns.size(); ++i) {
+    if (!record.columns[i].allFinite()) {
+      throw InvalidInput(path.string(), fmt::format("column {} holds a value that is no finite number", i + 1));
+    }
+  }
+  find_sample_rate(record, options);
+  return record;
+}
+
+}  // namespace robomill::formats

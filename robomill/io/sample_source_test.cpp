@@ -1,0 +1,259 @@
+#include "robomill/io/sample_source.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sndfile.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/mat.hpp"
+
+namespace robomill::formats {
+namespace {
+
+std::vector<float> all(SampleSource& source, std::size_t frames = 7) {
+  std::vector<float> samples;
+  SampleBlock block;
+  while (source.next(frames, block)) samples.insert(samples.end(), block.samples.begin(), block.samples.end());
+  return samples;
+}
+
+std::vector<float> read(const std::filesystem::path& path, const SampleColumns& columns,
+                        RawFormat format = RawFormat::automatic) {
+  return all(*open_samples(path, columns, format));
+}
+
+std::string refusal(const std::filesystem::path& path, const SampleColumns& columns) {
+  return test::refusal([&] { (void)open_samples(path, columns); });
+}
+
+SampleColumns named(std::vector<std::string> channels) {
+  return {.channels = std::move(channels)};
+}
+
+TEST(SampleSource, ReadsColumnsByNameOrNumber) {
+  const test::Folder folder;
+  const auto csv = folder.file("r.csv", "time_s,ax,ay,pulse\n0,1,10,0\n0.1,2,20,1\n0.2,3,30,0\n");
+  EXPECT_EQ(read(csv, named({"ay", "ax"})), (std::vector<float>{10, 1, 20, 2, 30, 3}));
+  EXPECT_EQ(read(csv, named({"3", "2"})), (std::vector<float>{10, 1, 20, 2, 30, 3}));
+  SampleColumns with_pulse = named({"ax"});
+  with_pulse.tachometer = "pulse";
+  EXPECT_EQ(read(csv, with_pulse), (std::vector<float>{1, 0, 2, 1, 3, 0}));
+  EXPECT_DOUBLE_EQ(open_samples(csv, named({"ax"}))->sample_rate_hz(), 10.0);
+}
+
+TEST(SampleSource, ReadsTextOfManyKinds) {
+  const test::Folder folder;
+  EXPECT_EQ(read(folder.file("a.csv", "1\n2\n3\n"), named({"ax_m_per_s2"})), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(read(folder.file("b.csv", "1\r\n2\r\n3"), named({"1"})), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(read(folder.file("c.csv", "x;y\n1,5;2\n-2,5;3\n"), named({"x"})), (std::vector<float>{1.5F, -2.5F}));
+  EXPECT_EQ(read(folder.file("d.txt", "# made by a tester\nx y\nm m\n 1  2\n\n 3\t4 \n"), named({"y"})),
+            (std::vector<float>{2, 4}));
+  EXPECT_EQ(read(folder.file("e.csv", "\xEF\xBB\xBF\"a x\",\"b\"\n\"1\",\"2\"\n"), named({"a x"})),
+            (std::vector<float>{1}));
+}
+
+// What a table refuses, a monitor lives through.
+TEST(SampleSource, RowsThatCannotBeReadAreNaN) {
+  const test::Folder folder;
+  const auto csv = folder.file("r.csv", "a,b\n1,2\nnan,3\n,4\n5\nx,6\n7,y\n8,9\n");
+  const auto source = open_samples(csv, named({"a"}));
+  const std::vector<float> samples = all(*source);
+  ASSERT_EQ(samples.size(), 7U);
+  const std::vector<bool> is_nan = {false, true, true, true, true, false, false};
+  for (std::size_t i = 0; i < samples.size(); ++i) EXPECT_EQ(std::isnan(samples[i]), is_nan[i]) << i;
+  EXPECT_EQ(samples.back(), 8.0F);
+  EXPECT_EQ(source->unreadable_rows(), 2U);
+  EXPECT_EQ(source->first_unreadable_line(), 5U);
+}
+
+TEST(SampleSource, FollowsTheSpindleSpeed) {
+  const test::Folder folder;
+  const auto csv = folder.file("r.csv", "a,spindle_speed_rpm\n1,3000\n2,3001\n3,\n4,4500\n");
+  const auto source = open_samples(csv, named({"a"}));
+  SampleBlock block;
+  std::vector<double> rpm;
+  while (source->next(1, block)) rpm.push_back(std::round(block.spindle_speed_rad_per_s / units::rpm));
+  EXPECT_EQ(rpm, (std::vector<double>{3000, 3001, 3001, 4500}));
+}
+
+TEST(SampleSource, TellsWhatIsWrong) {
+  const test::Folder folder;
+  const auto csv = folder.file("r.csv", "time_s,ax,ay\n0,1,10\n0.1,2,20\n0.2,3,30\n");
+  EXPECT_NE(refusal(csv, named({"az"})).find("has no column az. It has 3 columns: time_s, ax, ay"), std::string::npos)
+      << refusal(csv, named({"az"}));
+  EXPECT_NE(refusal(csv, named({"4"})).find("has no column 4"), std::string::npos);
+  EXPECT_NE(refusal(csv, named({"ax", "2"})).find("would be two channels"), std::string::npos);
+  SampleColumns fast = named({"ax"});
+  fast.sample_rate_hz = 20.0;
+  EXPECT_NE(refusal(csv, fast).find("was sampled at 10 Hz, not at signal.sample_rate_hz = 20 Hz"), std::string::npos);
+  EXPECT_NE(refusal(folder.file("two.csv", "1,2\n3,4\n"), named({"ax"})).find("has no column ax"), std::string::npos);
+  EXPECT_NE(refusal(folder.file("words.csv", "no\nnumbers\n"), named({"1"})).find("holds no line of numbers"),
+            std::string::npos);
+  EXPECT_NE(refusal(folder.at("none.wav"), named({"1"})).find("none.wav"), std::string::npos);
+  EXPECT_NE(refusal(folder.file("r.step", "1\n"), named({"1"})).find("is no recording by its ending"),
+            std::string::npos);
+  EXPECT_NE(refusal(folder.file("bad.wav", "RIFF, or not"), named({"1"})).find("is no sound file"), std::string::npos);
+  EXPECT_NE(refusal(folder.path(), named({"1"})).find("folder"), std::string::npos)
+      << refusal(folder.path(), named({"1"}));
+}
+
+TEST(SampleSource, WavComesBackAsWritten) {
+  const test::Folder folder;
+  const std::vector<float> samples = {0.5F, -1.5F, 100.0F, 1e-20F, NAN, -3.0F};
+  write_wav(folder.at("a.wav"), samples, 2, 10240.0);
+  std::ifstream file(folder.at("a.wav"), std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  EXPECT_EQ(bytes.find("PEAK"), std::string::npos);  // which would hold the time of writing
+  const auto source = open_samples(folder.at("a.wav"), named({"ax", "ay"}));
+  EXPECT_EQ(source->sample_rate_hz(), 10240.0);
+  EXPECT_EQ(source->full_scale(), 0.0);
+  const std::vector<float> back = all(*source, 2);
+  ASSERT_EQ(back.size(), samples.size());
+  EXPECT_EQ(std::memcmp(back.data(), samples.data(), 4 * samples.size()), 0);
+  EXPECT_EQ(read(folder.at("a.wav"), named({"1"})).at(1), 100.0F);
+  SampleColumns other = named({"1"});
+  other.sample_rate_hz = 5000.0;
+  EXPECT_NE(refusal(folder.at("a.wav"), other).find("was sampled at 10240 Hz"), std::string::npos);
+  EXPECT_NE(refusal(folder.at("a.wav"), named({"ax"})).find("It has 2 columns"), std::string::npos);
+  EXPECT_THROW(write_wav(folder.at("b.wav"), samples, 2, 10240.5), InvalidInput);
+}
+
+TEST(SampleSource, IntegersAreScaledAndClipAtTheirFullScale) {
+  const test::Folder folder;
+  SF_INFO info{};
+  info.samplerate = 5000;
+  info.channels = 1;
+  info.format = SF_FORMAT_WAV | SF_FORMAT_PCM_16;
+  const std::vector<short> shorts = {0, 16384, -32768, 32767};
+  SNDFILE* sound = sf_open(folder.at("i.wav").c_str(), SFM_WRITE, &info);
+  ASSERT_NE(sound, nullptr);
+  sf_write_short(sound, shorts.data(), 4);
+  sf_close(sound);
+  SampleColumns scaled = named({"1"});
+  scaled.scale = 50.0;
+  const auto wav = open_samples(folder.at("i.wav"), scaled);
+  const double full = 50.0 * 32767.0 / 32768.0;
+  EXPECT_DOUBLE_EQ(wav->full_scale(), full);
+  EXPECT_EQ(all(*wav), (std::vector<float>{0.0F, 25.0F, -50.0F, static_cast<float>(full)}));
+  const auto raw = folder.file("i.raw", std::string(reinterpret_cast<const char*>(shorts.data()), 8));
+  const auto source = open_samples(raw, scaled, RawFormat::int16);
+  EXPECT_DOUBLE_EQ(source->full_scale(), full);
+  EXPECT_EQ(all(*source), (std::vector<float>{0.0F, 25.0F, -50.0F, static_cast<float>(full)}));
+}
+
+TEST(SampleSource, ReadsMat) {
+  const test::Folder folder;
+  write_mat(folder.at("m.mat"), {{"ax", Eigen::Vector3d(1, 2, 3)},
+                                 {"ay", Eigen::Vector3d(4, 5, 6)},
+                                 {"sample_rate_hz", Eigen::MatrixXd::Constant(1, 1, 5000.0)}});
+  EXPECT_EQ(read(folder.at("m.mat"), named({"ay", "ax"})), (std::vector<float>{4, 1, 5, 2, 6, 3}));
+  EXPECT_EQ(open_samples(folder.at("m.mat"), named({"ay"}))->sample_rate_hz(), 5000.0);
+}
+
+/// A pipe whose other end is written by a thread, some bytes at a time.
+class Pipe {
+ public:
+  explicit Pipe(std::string bytes, std::size_t step = 3) {
+    EXPECT_EQ(::pipe(ends_), 0);
+    thread_ = std::jthread([this, bytes = std::move(bytes), step] {
+      for (std::size_t at = 0; at < bytes.size(); at += step) {
+        const std::size_t count = std::min(step, bytes.size() - at);
+        if (::write(ends_[1], bytes.data() + at, count) != static_cast<ssize_t>(count)) break;
+      }
+      ::close(ends_[1]);
+    });
+  }
+  ~Pipe() {
+    thread_.join();
+    ::close(ends_[0]);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  [[nodiscard]] int end() const { return ends_[0]; }
+
+ private:
+  int ends_[2] = {-1, -1};
+  std::jthread thread_;
+};
+
+TEST(SampleSource, TakesBytesAsTheyCome) {
+  Random random(3);
+  std::vector<float> samples;
+  for (int i = 0; i < 600; ++i) samples.push_back(static_cast<float>(random.normal()));
+  const std::string bytes(reinterpret_cast<const char*>(samples.data()), 4 * samples.size());
+  for (const std::size_t step : {std::size_t{1}, std::size_t{5}, std::size_t{4096}}) {
+    const Pipe pipe(bytes, step);
+    EXPECT_EQ(all(*open_sample_stream(pipe.end(), "standard input", named({"a", "b"}), RawFormat::automatic), 64),
+              samples);
+  }
+  {
+    const Pipe cut(bytes.substr(0, 4 * 10 + 3));  // ends within a sample
+    EXPECT_EQ(all(*open_sample_stream(cut.end(), "standard input", named({"a"}), RawFormat::float32)).size(), 10U);
+  }
+  const Pipe text("ax,ay\n1,2\n3,4\n", 1);
+  EXPECT_EQ(all(*open_sample_stream(text.end(), "standard input", named({"ay"}), RawFormat::automatic)),
+            (std::vector<float>{2, 4}));
+}
+
+TEST(SampleSource, NumbersPickAmongRawColumns) {
+  const std::vector<float> samples = {1, 2, 3, 4, 5, 6};
+  const std::string bytes(reinterpret_cast<const char*>(samples.data()), 24);
+  {
+    const Pipe pipe(bytes);
+    EXPECT_EQ(all(*open_sample_stream(pipe.end(), "-", named({"3"}), RawFormat::float32)), (std::vector<float>{3, 6}));
+  }
+  SampleColumns of_two = named({"1"});
+  of_two.raw_columns = 2;
+  const Pipe pipe(bytes);
+  EXPECT_EQ(all(*open_sample_stream(pipe.end(), "-", of_two, RawFormat::float32)), (std::vector<float>{1, 3, 5}));
+}
+
+// A pipe that stays open gives its reader back when asked to stop.
+TEST(SampleSource, StopsWhileItWaits) {
+  int ends[2] = {-1, -1};
+  ASSERT_EQ(::pipe(ends), 0);
+  std::atomic<bool> stop{false};
+  bool more = true;
+  {
+    const std::jthread reader([&] {
+      SampleBlock block;
+      more = open_sample_stream(ends[0], "-", named({"1"}), RawFormat::float32, &stop)->next(16, block);
+    });
+    stop = true;
+  }
+  EXPECT_FALSE(more);
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST(SampleSource, SurvivesAnyText) {
+  const test::Folder folder;
+  Random random(5);
+  const std::string good = "time_s;ax;spindle_speed_rpm\n0;1,5;3000\n0,1;2;3000\n0,2;-3e-2;3000\n";
+  const std::string letters = "0123456789.,;\t\n\r\"#eE+-nax \xC3\x00";
+  int rows = 0;
+  for (int round = 0; round < test::seeds(4000); ++round) {
+    std::string text = good;
+    const int changes = 1 + static_cast<int>(random.index(6));
+    for (int i = 0; i < changes; ++i) text[random.index(text.size())] = letters[random.index(letters.size())];
+    try {
+      rows += static_cast<int>(read(folder.file("f.csv", text), named({"ax"})).size());
+    } catch (const InvalidInput&) {
+    }
+  }
+  EXPECT_GT(rows, 0);
+}
+
+}  // namespace
+}  // namespace robomill::formats

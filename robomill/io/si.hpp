@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "robomill/io/uff.hpp"
+
+namespace robomill::formats {
+
+/// What a physical axis holds; for displacement, velocity and acceleration the value is the number of time derivatives.
+enum class Quantity : int { displacement = 0, velocity = 1, acceleration = 2, force = 3, unknown = 4 };
+
+/// How values become SI: SI value = factor * value.
+struct SiFactor {
+  Quantity quantity = Quantity::unknown;
+  double factor = 1.0;
+  bool is_ratio = false;  ///< the unit is one per force: "m/s²/N"
+  std::string note = {};  ///< what was converted or assumed, where that is worth saying
+};
+
+/// What a unit's text says: "m/s^2", "mm/s²", "g", "N", "(1/N)*(m/s²)" (then the quantity and factor of the numerator).
+/// Unknown where the text is no unit known here.
+[[nodiscard]] SiFactor parse_unit(std::string_view text);
+
+/// An axis of a universal file: by its unit's text, else by data set 164, else taken as SI. The quantity is that of its
+/// data type, or of its unit's text where the type says nothing.
+[[nodiscard]] SiFactor si_factor(const UffAxis& axis, double length_factor, double force_factor);
+
+}  // namespace robomill::formats

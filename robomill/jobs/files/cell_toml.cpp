@@ -1,0 +1,379 @@
+#include "robomill/jobs/files/cell_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/text.hpp"
+#include "robomill/io/toml_file.hpp"
+#include "robomill/program/files/gcode.hpp"
+#include "robomill/robot/files/joint_limits.hpp"
+#include "robomill/robot/files/urdf.hpp"
+#include "robomill/robot/serial_kinematics.hpp"
+
+namespace robomill::formats {
+namespace {
+
+/// Other lists with one value a joint, SI in the file too.
+struct JointList {
+  const char* key;
+  const char* member;
+  double robot::Joint::*value;
+};
+constexpr std::array<JointList, 3> joint_lists = {{
+    {"robot.joint_stiffness_n_m_per_rad", "stiffness", &robot::Joint::stiffness},
+    {"robot.joint_damping_n_m_s_per_rad", "damping", &robot::Joint::damping},
+    {"robot.joint_rotor_inertia_kg_m2", "rotor_inertia", &robot::Joint::rotor_inertia},
+}};
+
+/// Where each of joint_limits goes, of an arm and of the hybrid machine.
+constexpr std::array<double robot::Joint::*, joint_limits.size()> of_joint = {
+    &robot::Joint::min_position, &robot::Joint::max_position, &robot::Joint::max_velocity,
+    &robot::Joint::max_acceleration, &robot::Joint::max_jerk};
+constexpr std::array<robot::Position6 robot::JointLimits::*, joint_limits.size()> of_hybrid = {
+    &robot::JointLimits::min_position, &robot::JointLimits::max_position, &robot::JointLimits::max_velocity,
+    &robot::JointLimits::max_acceleration, &robot::JointLimits::max_jerk};
+
+std::optional<Eigen::Vector3d> read_vector(TomlFile& file, const char* key, const char* member, double factor) {
+  std::vector<double> values;
+  if (!file.numbers(key, member, factor, values)) return std::nullopt;
+  if (values.size() != 3) throw file.refuse(key, "must hold three numbers");
+  return Eigen::Vector3d(values[0], values[1], values[2]);
+}
+
+/// R = Rz Ry Rx, as the file says it.
+Eigen::Isometry3d read_pose(TomlFile& file, const char* origin_key, const char* rotation_key) {
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  if (const auto origin_m = read_vector(file, origin_key, "origin_m", units::mm)) out.translation() = *origin_m;
+  if (const auto angle_rad = read_vector(file, rotation_key, "rotation_rad", units::deg)) {
+    out.linear() = (Eigen::AngleAxisd(angle_rad->z(), Eigen::Vector3d::UnitZ()) *
+                    Eigen::AngleAxisd(angle_rad->y(), Eigen::Vector3d::UnitY()) *
+                    Eigen::AngleAxisd(angle_rad->x(), Eigen::Vector3d::UnitX()))
+                       .toRotationMatrix();
+  }
+  return out;
+}
+
+enum class Kind { serial, hybrid };
+
+Kind read_kind(TomlFile& file, Robots usable) {
+  Kind kind = Kind::serial;
+  file.choice<Kind>("robot.kind", {{"serial", Kind::serial}, {"hybrid-2upr-rpu", Kind::hybrid}}, kind);
+  if (kind == Kind::hybrid && usable == Robots::serial) {
+    throw file.refuse("robot.kind", "is a hybrid machine; this needs a serial arm",
+                      "Forces and stiffness at the joints are known of serial arms alone; robomill smooth takes both");
+  }
+  return kind;
+}
+
+std::vector<robot::DhRow> read_dh(TomlFile& file) {
+  std::vector<robot::DhRow> rows(file.tables("robot.dh"));
+  if (rows.empty())
+    throw file.refuse("robot.dh", "must hold a row a joint", "dh = [{ a_mm = 350, alpha_deg = -90, … }, …]");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto number = [&](const char* name, const char* member, double factor, double& value) {
+      file.number(fmt::format("robot.dh[{}].{}", i, name), fmt::format("dh[{}].{}", i + 1, member), factor, value);
+    };
+    number("a_mm", "a_m", units::mm, rows[i].a_m);
+    number("alpha_deg", "alpha_rad", units::deg, rows[i].alpha_rad);
+    number("d_mm", "d_m", units::mm, rows[i].d_m);
+    number("theta_offset_deg", "theta_offset_rad", units::deg, rows[i].theta_offset_rad);
+  }
+  return rows;
+}
+
+/// Bodies of the links; with DH they are given in the row's own frame.
+void read_links(TomlFile& file, const std::vector<robot::DhRow>& rows, robot::Arm& arm) {
+  if (!file.has("robot.links")) return;
+  const std::size_t count = file.tables("robot.links");
+  if (count != arm.joints.size()) {
+    throw file.refuse("robot.links",
+                      fmt::format("must hold one table a joint, {}; it holds {}", arm.joints.size(), count));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string key = fmt::format("robot.links[{}].", i), member = fmt::format("joints[{}].link.", i + 1);
+    robot::Link link;
+    file.require(key + "mass_kg");
+    file.number(key + "mass_kg", member + "mass_kg", 1.0, link.mass_kg);
+    if (const auto center_m =
+            read_vector(file, (key + "center_mm").c_str(), (member + "center_m").c_str(), units::mm)) {
+      link.center_m = *center_m;
+    }
+    std::vector<double> tensor;
+    if (file.numbers(key + "inertia_kg_m2", member + "inertia_kg_m2", 1.0, tensor)) {
+      if (tensor.size() != 6) throw file.refuse(key + "inertia_kg_m2", "must be [xx, yy, zz, xy, xz, yz]");
+      link.inertia_kg_m2 << tensor[0], tensor[3], tensor[4], tensor[3], tensor[1], tensor[5], tensor[4], tensor[5],
+          tensor[2];
+    }
+    if (!rows.empty()) {
+      const Eigen::Isometry3d frame = robot::dh_link(rows[i]);
+      link.center_m = frame * link.center_m;
+      link.inertia_kg_m2 = (frame.linear() * link.inertia_kg_m2 * frame.linear().transpose()).eval();
+    }
+    arm.joints[i].link = link;
+  }
+}
+
+std::vector<bool> sliding(const robot::Arm& arm) {
+  std::vector<bool> slides;
+  for (const robot::Joint& joint : arm.joints) slides.push_back(joint.prismatic);
+  return slides;
+}
+
+void read_joint_lists(TomlFile& file, robot::Arm& arm, std::vector<std::string>& notes) {
+  for (std::size_t k = 0; k < joint_limits.size(); ++k) {
+    const auto values = read_joint_limit(file, joint_limits[k], sliding(arm), notes);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      arm.joints[i].*of_joint[k] = values[i].value_or(arm.joints[i].*of_joint[k]);
+  }
+  for (const JointList& list : joint_lists) {
+    std::vector<double> values;
+    if (!file.numbers(list.key, list.member, 1.0, values)) continue;
+    if (values.size() != arm.joints.size()) {
+      throw file.refuse(list.key,
+                        fmt::format("must hold one number a joint, {}; it holds {}", arm.joints.size(), values.size()));
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) arm.joints[i].*list.value = values[i];
+  }
+}
+
+/// An error about a joint's member, told with the list's key and the joint's place in it.
+InvalidInput located(const TomlFile& file, const robot::Arm& arm, const InvalidInput& error) {
+  const InvalidInput::Parts& parts = error.parts();
+  const auto is_of = [&](const char* member) {
+    return parts.field.starts_with("joints[") && parts.field.ends_with(std::string("].") + member);
+  };
+  for (const JointLimit& limit : joint_limits) {
+    if (!is_of(limit.name)) continue;
+    return located_limit(file, limit, sliding(arm), std::stoul(parts.field.substr(7)) - 1, error);
+  }
+  for (const JointList& list : joint_lists) {
+    if (!is_of(list.member) || !file.has(list.key)) continue;
+    InvalidInput::Parts told = file.refuse(list.key, parts.rule, parts.hint).parts();
+    told.field += parts.field.substr(6, parts.field.find(']') - 5);
+    told.number = parts.number;
+    told.unit = parts.unit;
+    told.value.clear();
+    return InvalidInput(std::move(told));
+  }
+  return file.located(error);
+}
+
+void read_arm(TomlFile& file, CellFile& out) {
+  std::filesystem::path urdf;
+  const bool from_urdf = file.path("robot.urdf", urdf);
+  if (from_urdf == file.has("robot.dh")) {
+    if (!from_urdf)
+      file.require("robot.dh",
+                   "Give the arm as dh = [{ a_mm = …, alpha_deg = …, d_mm = … }, …] or as urdf = \"arm.urdf\"");
+    throw file.refuse("robot.urdf", "must not stand beside dh");
+  }
+  robot::Arm& arm = out.cell.arm;
+  std::vector<robot::DhRow> rows;
+  UrdfReading reading;
+  file.text("robot.urdf_tip", reading.tip);
+  file.text("robot.urdf_base", reading.base);
+  if (from_urdf) {
+    file.require("robot.urdf_tip", "The link that is the flange");
+    UrdfArm read = read_urdf(urdf, reading);
+    arm = std::move(read.arm);
+    out.notes = std::move(read.notes);
+  } else {
+    for (const char* key : {"robot.urdf_tip", "robot.urdf_base"}) {
+      if (file.has(key)) throw file.refuse(key, "goes with robot.urdf");
+    }
+    rows = read_dh(file);
+    arm = file.locate([&] { return robot::arm_from_dh(rows); });
+  }
+  read_joint_lists(file, arm, out.notes);
+  read_links(file, rows, arm);
+  robot::Joint& first = arm.joints.front();
+  first.before = read_pose(file, "robot.base_origin_mm", "robot.base_rotation_deg") * first.before;
+  out.end_effector.tip = read_pose(file, "tool.mount_origin_mm", "tool.mount_rotation_deg");
+  arm.flange = arm.flange * out.end_effector.tip;
+  try {
+    arm.validate();
+  } catch (const InvalidInput& error) {
+    throw located(file, arm, error);
+  }
+}
+
+void read_start(TomlFile& file, CellFile& out) {
+  const robot::Arm& arm = out.cell.arm;
+  if (!file.numbers("robot.start_joints_deg", "start_joints", units::deg, out.start_joints)) return;
+  if (out.start_joints.size() != arm.joints.size()) {
+    throw file.refuse("robot.start_joints_deg", fmt::format("must hold one angle a joint, {}", arm.joints.size()));
+  }
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    const robot::Joint& joint = arm.joints[i];
+    if (joint.prismatic)
+      throw file.refuse("robot.start_joints_deg", fmt::format("must be angles; joint {} slides", i + 1));
+    if (out.start_joints[i] < joint.min_position || out.start_joints[i] > joint.max_position) {
+      throw file.refuse("robot.start_joints_deg",
+                        fmt::format("must lie within the limits; joint {} has {:.6g} to {:.6g} deg", i + 1,
+                                    joint.min_position / units::deg, joint.max_position / units::deg));
+    }
+  }
+}
+
+constexpr std::size_t hybrid_joints = 5;  // q1, q2, q3 the legs, q4, q5 the slides
+
+/// Sizes of the hybrid machine.
+struct Size {
+  const char* key;
+  const char* member;
+  double robot::HybridMachine::*value;
+};
+constexpr std::array<Size, 5> hybrid_sizes = {{
+    {"robot.base_half_width_mm", "base_half_width_m", &robot::HybridMachine::base_half_width_m},
+    {"robot.platform_half_width_mm", "platform_half_width_m", &robot::HybridMachine::platform_half_width_m},
+    {"robot.platform_offset_mm", "platform_offset_m", &robot::HybridMachine::platform_offset_m},
+    {"robot.base_offset_mm", "base_offset_m", &robot::HybridMachine::base_offset_m},
+    {"robot.platform_to_flange_mm", "platform_to_flange_m", &robot::HybridMachine::platform_to_flange_m},
+}};
+
+void read_hybrid(TomlFile& file, CellFile& out) {
+  for (const char* key : {"robot.dh", "robot.urdf", "robot.links", "robot.start_joints_deg", "robot.gamma_deg",
+                          "tool.mount_origin_mm", "tool.mount_rotation_deg"}) {
+    if (file.has(key)) throw file.refuse(key, "goes with kind = \"serial\"");
+  }
+  robot::HybridMachine& machine = out.hybrid.emplace();
+  for (const Size& size : hybrid_sizes) file.number(size.key, size.member, units::mm, machine.*size.value);
+  const std::vector<bool> slides(hybrid_joints, true);
+  for (std::size_t k = 0; k < joint_limits.size(); ++k) {
+    const auto values = read_joint_limit(file, joint_limits[k], slides, out.notes);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      double& value = (machine.limits.*of_hybrid[k])(static_cast<Eigen::Index>(i));
+      value = values[i].value_or(value);
+    }
+  }
+}
+
+void read_serial(TomlFile& file, CellFile& out) {
+  for (const Size& size : hybrid_sizes) {
+    if (file.has(size.key)) throw file.refuse(size.key, "goes with kind = \"hybrid-2upr-rpu\"");
+  }
+  read_arm(file, out);
+  read_start(file, out);
+  out.gamma_given = file.number("robot.gamma_deg", "redundant_gamma_rad", units::deg, out.redundant_gamma_rad);
+}
+
+/// A name that a controller takes.
+bool is_name(const std::string& text) {
+  const auto plain = [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '_'; };
+  return !text.empty() && text.size() <= 32 && std::isalpha(static_cast<unsigned char>(text.front())) != 0 &&
+         std::ranges::all_of(text, plain);
+}
+
+void read_output(TomlFile& file, const char* key, const char* member, DigitalOutput& out) {
+  if (!file.has(key)) return;
+  if (!file.is_number(key)) {
+    file.text(key, out.signal);
+    if (!is_name(out.signal)) {
+      throw file.refuse(key, "must be a signal's name: letters, digits and underscores, at most 32");
+    }
+    return;
+  }
+  int number = 0;
+  file.integer(key, member, number);
+  if (number < 0) throw file.refuse(key, "must be >= 0");
+  out.number = number;
+}
+
+/// Of exported programs: what the controller must know of the spindle, after the tool's length.
+void read_end_effector(TomlFile& file, CellFile& out) {
+  EndEffector& end = out.end_effector;
+  end.tip.translate(out.cell.tool_length_m * Eigen::Vector3d::UnitZ());
+  const auto number = [&](const char* key, const char* member, std::optional<int>& value) {
+    int read = 0;
+    if (!file.integer(key, member, read)) return;
+    if (read < 1) throw file.refuse(key, "must be at least 1");
+    value = read;
+  };
+  number("tool.number", "tool_number", end.tool_number);
+  number("tool.load_number", "load_number", end.load_number);
+  if (file.text("tool.name", end.tool_name) && !is_name(end.tool_name)) {
+    throw file.refuse("tool.name", "must be a tooldata's name: letters, digits and underscores, at most 32");
+  }
+  double mass_kg = 0.0;
+  if (file.number("tool.mass_kg", "mass_kg", 1.0, mass_kg)) {
+    if (!(mass_kg > 0.0)) throw file.refuse("tool.mass_kg", "must be > 0", "Of all that hangs on the flange");
+    end.mass_kg = mass_kg;
+  }
+  end.center_m = read_vector(file, "tool.center_mm", "center_m", units::mm);
+  if (end.center_m && !end.mass_kg) throw file.refuse("tool.center_mm", "goes with tool.mass_kg");
+  read_output(file, "spindle.output", "output", end.spindle);
+  read_output(file, "spindle.coolant_output", "coolant_output", end.coolant);
+  if (file.number("spindle.spin_up_s", "spin_up_s", 1.0, end.spin_up_s) && !(end.spin_up_s >= 0.0)) {
+    throw file.refuse("spindle.spin_up_s", "must be >= 0");
+  }
+}
+
+/// What the words A, B and C of programs mean.
+void read_program_words(TomlFile& file, CellFile& out) {
+  const auto of_key = [&](const char* key, const auto& parse) {
+    try {
+      parse();
+    } catch (const InvalidInput& error) {
+      throw file.refuse(key, error.parts().rule);
+    }
+  };
+  if (file.text("program.machine", out.machine)) {
+    of_key("program.machine", [&] { static_cast<void>(parse_machine(out.machine)); });
+  }
+  if (std::string rotary; file.text("program.rotary", rotary)) {
+    of_key("program.rotary", [&] { out.rotary = parse_rotary(rotary); });
+  }
+}
+
+}  // namespace
+
+CellFile read_cell(const std::filesystem::path& path, Robots usable) {
+  TomlFile file(path);
+  CellFile out{.path = path};
+  file.skip("smoothing");
+  file.require("robot", "Write [robot] with the arm, kind = \"serial\" and dh or urdf");
+  const Kind kind = read_kind(file, usable);
+  if (kind == Kind::serial) read_serial(file, out);
+  if (kind == Kind::hybrid) read_hybrid(file, out);
+  out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
+  file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
+  read_end_effector(file, out);
+  read_program_words(file, out);
+  file.done();
+  if (out.hybrid) {
+    out.hybrid->workpiece = out.cell.workpiece;
+    out.hybrid->tool_length_m = out.cell.tool_length_m;
+    file.locate([&] { out.hybrid->validate(); });
+  } else {
+    file.locate([&] { out.cell.validate(); });
+  }
+  return out;
+}
+
+ProgramReading program_reading(const CellFile& file) {
+  ProgramReading reading = {.rotary = file.rotary};
+  if (!file.machine.empty()) reading.machine = parse_machine(file.machine);
+  return reading;
+}
+
+std::unique_ptr<robot::Kinematics> kinematics(const CellFile& file) {
+  if (file.hybrid) return std::make_unique<robot::HybridKinematics>(*file.hybrid);
+  try {
+    return std::make_unique<robot::SerialKinematics>(file.cell);
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    parts.where = file.path.string();
+    parts.field = "robot";
+    throw InvalidInput(std::move(parts));
+  }
+}
+
+}  // namespace robomill::formats

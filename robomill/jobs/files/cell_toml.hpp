@@ -1,0 +1,46 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/path/files/end_effector.hpp"
+#include "robomill/program/files/program_files.hpp"
+#include "robomill/robot/arm.hpp"
+#include "robomill/robot/hybrid.hpp"
+#include "robomill/robot/kinematics.hpp"
+
+namespace robomill::formats {
+
+/// cell.toml: a robot with its tool before a workpiece.
+struct CellFile {
+  std::filesystem::path path = {};
+  robot::Cell cell = {};  ///< a hybrid machine's has no joints, but workpiece and tool all the same
+  std::optional<robot::HybridMachine> hybrid = {};  ///< kind = "hybrid-2upr-rpu"
+  std::string machine = {};          ///< what A, B, C words of a program mean: "xyzac-trt", "xyzbc-trt", "xyzac-head",
+                                     ///< "xyzbc-head"; empty where not said
+  Rotary rotary = Rotary::machine;   ///< how the axis goes where those words turn
+  double redundant_gamma_rad = 0.0;  ///< turn of the flange about the tool's axis, robot::ToolPose
+  bool gamma_given = false;          ///< the file says so; else it is free to choose where a stage can
+  std::vector<double> start_joints = {};  ///< where the arm stands first [rad]; empty where not said
+  EndEffector end_effector = {};          ///< for exported programs
+  std::vector<std::string> notes = {};    ///< sentences for the user
+};
+
+/// What kinds of robots a reader of the cell can use.
+enum class Robots { serial, any };
+
+/// Reads [robot], [workpiece], [tool], [spindle] and [program]; [smoothing] is another reader's.
+/// @throws InvalidInput with file, line, key and value, or with the URDF, its link or joint
+[[nodiscard]] ROBOMILL_API CellFile read_cell(const std::filesystem::path& path, Robots usable = Robots::serial);
+
+/// The cell's machine with its derivatives.
+/// @throws InvalidInput with the file, if a serial arm has not six joints, all revolute
+[[nodiscard]] ROBOMILL_API std::unique_ptr<robot::Kinematics> kinematics(const CellFile& file);
+
+/// How programs of the cell are read.
+[[nodiscard]] ROBOMILL_API ProgramReading program_reading(const CellFile& file);
+
+}  // namespace robomill::formats

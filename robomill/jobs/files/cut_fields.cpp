@@ -1,0 +1,136 @@
+#include "robomill/jobs/files/cut_fields.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <utility>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+
+namespace robomill::formats {
+namespace {
+
+/// One direction's mode of its own, x = F / (m (ω_n² - ω² + 2iζω_nω)): residue 1 / (2 i m ω_d), shared evenly by both
+/// vectors.
+modal::Mode read_inline_mode(TomlFile& file, const std::string& row, const std::string& member, Eigen::Index axis) {
+  double modal_mass_kg = 0.0;
+  modal::Mode mode;
+  for (const char* key : {"frequency_hz", "damping_ratio", "modal_mass_kg"}) file.require(row + key);
+  file.number(row + "frequency_hz", member + "frequency_hz", 1.0, mode.frequency_hz);
+  file.number(row + "damping_ratio", member + "damping_ratio", 1.0, mode.damping_ratio);
+  file.number(row + "modal_mass_kg", member + "modal_mass_kg", 1.0, modal_mass_kg);
+  if (!(modal_mass_kg > 0.0)) throw file.refuse(row + "modal_mass_kg", "must be > 0");
+  if (!(mode.frequency_hz > 0.0)) throw file.refuse(row + "frequency_hz", "must be > 0");
+  if (!(mode.damping_ratio > 0.0 && mode.damping_ratio < 1.0)) {
+    throw file.refuse(row + "damping_ratio", "must lie between 0 and 1", "It is a ratio, not a percentage");
+  }
+  const double size = 1.0 / std::sqrt(2.0 * modal_mass_kg * modal::pole(mode).imag());
+  mode.left = Eigen::VectorXcd::Unit(3, axis) * size;
+  mode.right = Eigen::VectorXcd::Unit(3, axis) * std::complex<double>(0.0, -size);
+  return mode;
+}
+
+/// Of its own modes a table gives x, y and z; those of which it says nothing, not even [], are none of the structure's.
+void keep_named_directions(const TomlFile& file, const std::string& table, modal::ModalModel& model) {
+  std::vector<Eigen::Index> named;
+  std::vector<modal::Dof> dofs;
+  for (std::size_t i = 0; i < model.responses.size(); ++i) {
+    if (!file.has(table + "." + modal::to_string(model.responses[i]))) continue;
+    named.push_back(static_cast<Eigen::Index>(i));
+    dofs.push_back(model.responses[i]);
+  }
+  model.excitations = model.responses = dofs;
+  for (modal::Mode& mode : model.modes) {
+    mode.left = mode.left(named).eval();
+    mode.right = mode.right(named).eval();
+  }
+}
+
+}  // namespace
+
+void read_mill(TomlFile& file, cutting::FlatEndMill& tool) {
+  file.integer("tool.teeth", "teeth", tool.teeth);
+  file.number("tool.diameter_mm", "diameter_m", units::mm, tool.diameter_m);
+  if (file.is_number("tool.helix_deg")) {
+    file.number("tool.helix_deg", "helix_rad", units::deg, tool.helix_rad);
+  } else {
+    file.numbers("tool.helix_deg", "tooth_helix_rad", units::deg, tool.tooth_helix_rad);
+  }
+  file.numbers("tool.pitch_deg", "pitch_rad", units::deg, tool.pitch_rad);
+  file.number("tool.runout_um", "runout_m", units::um, tool.runout_m);
+  file.number("tool.runout_angle_deg", "runout_angle_rad", units::deg, tool.runout_angle_rad);
+  file.locate([&] { tool.validate(); });
+}
+
+bool read_direction(TomlFile& file, cutting::MillingDirection& direction) {
+  return file.choice<cutting::MillingDirection>("cut.direction",
+                                                {{"up", cutting::MillingDirection::up},
+                                                 {"down", cutting::MillingDirection::down},
+                                                 {"slot", cutting::MillingDirection::slot}},
+                                                direction);
+}
+
+bool read_radial_depth(TomlFile& file, double& radial_depth_m) {
+  if (file.has("cut.radial_depth_mm") && file.has("cut.stepover_mm")) {
+    throw file.refuse("cut.stepover_mm", "must not stand beside radial_depth_mm", "They are two names of one thing");
+  }
+  return file.number("cut.radial_depth_mm", "radial_depth_m", units::mm, radial_depth_m) ||
+         file.number("cut.stepover_mm", "radial_depth_m", units::mm, radial_depth_m);
+}
+
+modal::MissingDirections read_missing_directions(TomlFile& file, const std::string& table, modal::ModalModel& own) {
+  modal::MissingDirections out;
+  file.boolean(table + ".equal_directions", out.equal);
+  std::vector<std::string> names;
+  file.texts(table + ".rigid_directions", names);
+  for (const std::string& name : names) {
+    if (name != "x" && name != "y") throw file.refuse(table + ".rigid_directions", "must be a list of \"x\" and \"y\"");
+    out.rigid.push_back(name == "x" ? modal::Axis::x : modal::Axis::y);
+  }
+  if (!own.modes.empty()) keep_named_directions(file, table, own);
+  return out;
+}
+
+std::optional<std::string> complete_directions(modal::ModalModel& modes, modal::FrfSet& measured,
+                                               const modal::MissingDirections& said, const std::string& where,
+                                               const std::string& table) {
+  if (modes.modes.empty() && measured.frfs.empty()) return std::nullopt;
+  const bool fitted = !modes.modes.empty();
+  try {
+    require_said(fitted ? unknown_directions(modes) : unknown_directions(measured), said);
+    if (said.equal && fitted) modes = with_equal_directions(modes);
+    if (said.equal && !fitted) measured = with_equal_directions(measured);
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    parts.where = where;
+    parts.field = parts.field.empty() ? table : table + "." + parts.field;
+    throw InvalidInput(std::move(parts));
+  }
+  return in_words(said);
+}
+
+void read_structure(TomlFile& file, const std::string& table, std::filesystem::path& modes, std::filesystem::path& frf,
+                    modal::ModalModel& out) {
+  file.path(table + ".modes", modes);
+  file.path(table + ".frf", frf);
+  modal::ModalModel own;
+  own.excitations = own.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
+  const std::array<const char*, 3> axes = {"x", "y", "z"};
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    const std::string key = fmt::format("{}.{}", table, axes[axis]);
+    for (std::size_t i = 0; i < file.tables(key); ++i) {
+      const std::string member = fmt::format("modes[{}].", own.modes.size() + 1);
+      own.modes.push_back(
+          read_inline_mode(file, fmt::format("{}[{}].", key, i), member, static_cast<Eigen::Index>(axis)));
+    }
+  }
+  const int sources = (modes.empty() ? 0 : 1) + (frf.empty() ? 0 : 1) + (own.modes.empty() ? 0 : 1);
+  if (sources > 1) throw file.refuse(table, "must give only one of modes, frf, and x, y and z");
+  if (!own.modes.empty()) out = own;
+}
+
+}  // namespace robomill::formats

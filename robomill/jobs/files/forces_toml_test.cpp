@@ -1,0 +1,142 @@
+#include "robomill/jobs/files/forces_toml.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <string>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "testing/text.hpp"
+
+namespace robomill::formats {
+namespace {
+
+using robomill::test::Folder;
+using robomill::test::refusal;
+using robomill::test::seeds;
+
+const std::string good = R"(force_on = "workpiece"
+[tool]
+kind = "bull-nose"
+diameter_mm = 10
+corner_radius_mm = 2
+cutting_height_mm = 15
+teeth = 3
+helix_deg = 30
+pitch_deg = [110, 120, 130]
+runout_um = 5
+runout_angle_deg = 20
+[cut]
+axial_depth_mm = 1.5
+stepover_mm = 4
+feed_per_tooth_mm = 0.05
+direction = "down"
+spindle_speed_rpm = 12000
+lead_deg = 10
+tilt_deg = -5
+feed_direction_deg = 30
+[coefficients]
+tangential_n_per_mm2 = [100, 900]
+radial_n_per_mm2 = 350
+axial_edge_n_per_mm = -3
+[forces]
+steps = 180
+slices = 40
+[workpiece_dynamics]
+z = [{ frequency_hz = 200, damping_ratio = 0.02, modal_mass_kg = 3 }]
+[stock]
+kind = "turned"
+center_mm = [1, 2]
+outline_radius_mm = [40, 40, 20]
+outline_z_mm = [0, 10, 30]
+dexel_mm = 0.5
+)";
+
+std::string with(const std::string& old_text, const std::string& new_text) {
+  return test_support::replaced(good, old_text, new_text);
+}
+
+TEST(ForcesToml, ReadsEveryKeyInSi) {
+  const Folder folder;
+  const ForcesFile file = read_forces(folder.file("forces.toml", good));
+  EXPECT_EQ(file.cutter.kind, cutting::CutterKind::bull_nose);
+  EXPECT_DOUBLE_EQ(file.cutter.corner_radius_m, 2e-3);
+  EXPECT_DOUBLE_EQ(file.cutter.cutting_height_m, 15e-3);
+  EXPECT_EQ(file.cutter.mill.pitch_rad.size(), 3U);
+  EXPECT_DOUBLE_EQ(file.cutter.mill.runout_m, 5e-6);
+  EXPECT_DOUBLE_EQ(file.cut.axial_depth_m, 1.5e-3);
+  EXPECT_DOUBLE_EQ(file.cut.radial_depth_m, 4e-3);
+  EXPECT_EQ(file.cut.direction, cutting::MillingDirection::down);
+  EXPECT_DOUBLE_EQ(file.cut.lead_rad, std::numbers::pi / 18.0);
+  EXPECT_DOUBLE_EQ(file.motion.spindle_speed_rad_per_s, 400.0 * std::numbers::pi);
+  EXPECT_EQ(file.coefficients.tangential_n_per_m2, (std::vector<double>{100e6, 900e6}));
+  EXPECT_EQ(file.coefficients.axial_edge_n_per_m, std::vector<double>{-3e3});
+  EXPECT_TRUE(file.on_workpiece);
+  EXPECT_EQ(file.force.steps, 180);
+  EXPECT_EQ(file.slices, 40);
+  EXPECT_EQ(file.workpiece_dynamics.modes.size(), 1U);
+  ASSERT_TRUE(file.stock.has_value());
+  EXPECT_EQ(file.stock->outline_m.size(), 3U);
+  EXPECT_DOUBLE_EQ(file.stock->outline_m[2].x(), 20e-3);
+  EXPECT_DOUBLE_EQ(file.dexel_m, 0.5e-3);
+}
+
+TEST(ForcesToml, AProgramNeedsNoCut) {
+  const Folder folder;
+  const auto path = folder.file("forces.toml",
+                                "[tool]\nkind = \"ball-end\"\ndiameter_mm = 6\nteeth = 2\n[coefficients]\n"
+                                "tangential_n_per_mm2 = 900\n");
+  const ForcesFile file = read_forces(path, ForcesJob::program);
+  EXPECT_EQ(file.motion.spindle_speed_rad_per_s, 0.0);
+  EXPECT_FALSE(file.stock.has_value());
+  EXPECT_NE(refusal([&] { static_cast<void>(read_forces(path)); }).find("cut.axial_depth_mm: is missing"),
+            std::string::npos);
+}
+
+TEST(ForcesToml, SaysWhatIsWrongAndWhere) {
+  const Folder folder;
+  const auto told = [&](const std::string& text) {
+    return refusal([&] { static_cast<void>(read_forces(folder.file("forces.toml", text))); });
+  };
+  const auto expect = [&](const std::string& from, const std::string& to, const std::string& part) {
+    const std::string message = told(with(from, to));
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  expect("axial_depth_mm = 1.5", "axial_depth_mm = 40", "forces.toml:13: cut.axial_depth_mm = 40 mm");
+  expect("stepover_mm = 4", "stepover_mm = 0", "cut.stepover_mm = 0 mm");
+  expect("stepover_mm = 4", "stepover_mm = 10.5", "cut.stepover_mm = 10.5 mm");
+  expect("kind = \"bull-nose\"", "kind = \"bull\"", "tool.kind = \"bull\"");
+  expect("tangential_n_per_mm2 = [100, 900]", "tangential_n_per_mm2 = [-900, 300]", "position angle of");
+  expect("corner_radius_mm = 2", "corner_radius_mm = 5", "tool.corner_radius_mm = 5 mm");
+  expect("lead_deg = 10", "lead_dg = 10", "cut.lead_dg");
+  expect("\"workpiece\"", "\"part\"", "force_on");
+  expect("steps = 180", "steps = 2", "forces.steps = 2");
+  expect("outline_z_mm = [0, 10, 30]", "outline_z_mm = [0, 10]", "stock.outline_z_mm");
+  expect("dexel_mm = 0.5", "dexel_mm = 0", "stock.dexel_mm = 0");
+  expect("tangential_n_per_mm2 = [100, 900]\n", "", "coefficients.tangential_n_per_mm2: is missing");
+  expect("kind = \"turned\"", "kind = \"neighbours\"", "tool.kind = \"bull-nose\"; must be \"ball-end\"");
+  expect("lead_deg = 10", "surface_radius_along_feed_mm = 0", "surface_radius_along_feed_mm = 0");
+  expect("[workpiece_dynamics]\nz = [{ frequency_hz = 200, damping_ratio = 0.02, modal_mass_kg = 3 }]",
+         "[robot]\njoints_deg = [0, 0, 0]", "robot.cell: is missing");
+}
+
+TEST(ForcesToml, DamagedFilesAreReadOrRefused) {
+  const Folder folder;
+  Random random(5);
+  for (int k = 0; k < seeds(500); ++k) {
+    std::string text = good;
+    for (int i = 0; i < 3; ++i) {
+      text[static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(text.size()) - 0.01))] =
+          static_cast<char>(random.uniform(1.0, 127.0));
+    }
+    try {
+      static_cast<void>(read_forces(folder.file("forces.toml", text)));
+    } catch (const InvalidInput&) {
+    }
+  }
+}
+
+}  // namespace
+}  // namespace robomill::formats

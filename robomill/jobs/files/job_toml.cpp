@@ -1,0 +1,160 @@
+#include "robomill/jobs/files/job_toml.hpp"
+
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/toml_file.hpp"
+#include "robomill/jobs/files/cut_fields.hpp"
+
+namespace robomill::formats {
+namespace {
+
+void read_sources(TomlFile& file, Job& job) {
+  file.text("job.title", job.title);
+  file.path("job.hits", job.hits);
+  file.path("job.modes", job.modes);
+  file.path("job.lobes", job.lobes);
+  file.path("job.assembly", job.assembly);
+  file.path("job.forces", job.forces);
+  for (const auto& [key, path] : {std::pair{"job.cell", &job.cell}, std::pair{"job.program", &job.program}}) {
+    file.path(key, *path);
+  }
+  if (job.forces.empty() && job.cell.empty() != job.program.empty()) {
+    throw file.refuse(job.cell.empty() ? "job.program" : "job.cell", "goes with job.forces, or cell with program",
+                      "A program and a cell with [smoothing] make a trajectory");
+  }
+  const bool measured = file.path("job.measured", job.measured);
+  file.paths("job.frf", job.frf);
+  file.texts("job.frf_as", job.frf_as);
+  std::vector<double> band;
+  if (file.numbers("job.band_hz", "band_hz", 1.0, band)) {
+    if (band.size() != 2) throw file.refuse("job.band_hz", "must be [low, high]");
+    job.band_low_hz = band[0];
+    job.band_high_hz = band[1];
+  }
+  modal::ModalModel none;
+  job.directions = read_missing_directions(file, "job", none);
+  file.integer("job.fit_modes", "fit_modes", job.fit_modes);
+  const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1) +
+                      (job.assembly.empty() ? 0 : 1);
+  if (sources != 1) {
+    throw file.refuse("job", "must name exactly one of hits, frf, modes and assembly",
+                      sources == 0 ? "None is given" : "Several are given");
+  }
+  if (measured && job.assembly.empty()) {
+    throw file.refuse("job.measured", "goes with job.assembly", "FRFs to start from are job.frf");
+  }
+  for (const char* key : {"job.equal_directions", "job.rigid_directions"}) {
+    if (!job.assembly.empty() && file.has(key)) {
+      throw file.refuse(key, "must not stand beside job.assembly", "Both directions of an assembly are predicted");
+    }
+  }
+  file.require("job.lobes", "It names the cut: lobes.toml");
+}
+
+void read_limits(TomlFile& file, Job& job) {
+  file.number("tool.max_axial_depth_mm", "max_axial_depth_m", units::mm, job.max_axial_depth_m);
+  file.number("spindle.max_speed_rpm", "max_spindle_speed_rad_per_s", units::rpm, job.max_spindle_speed_rad_per_s);
+  file.number("spindle.min_speed_rpm", "min_spindle_speed_rad_per_s", units::rpm, job.min_spindle_speed_rad_per_s);
+  file.number("safety.depth_margin", "depth_margin", 1.0, job.depth_margin);
+  file.number("safety.speed_window", "speed_window", 1.0, job.speed_window);
+  file.number("finishing.max_surface_error_um", "max_surface_error_m", units::um, job.max_surface_error_m);
+  file.number("finishing.max_deflection_um", "max_deflection_m", units::um, job.max_deflection_m);
+  for (std::size_t i = 0; i < file.tables("spindle.curve"); ++i) {
+    const std::string row = "spindle.curve[" + std::to_string(i) + "].";
+    SpindlePoint point;
+    for (const char* key : {"speed_rpm", "torque_n_m", "power_kw"}) file.require(row + key);
+    const std::string member = "spindle_curve[" + std::to_string(i + 1) + "].";
+    file.number(row + "speed_rpm", member + "spindle_speed_rad_per_s", units::rpm, point.spindle_speed_rad_per_s);
+    file.number(row + "torque_n_m", member + "torque_n_m", 1.0, point.torque_n_m);
+    file.number(row + "power_kw", member + "power_w", units::kw, point.power_w);
+    job.spindle_curve.push_back(point);
+  }
+}
+
+void read_cuts(TomlFile& file, Job& job) {
+  for (std::size_t i = 0; i < file.tables("cuts"); ++i) {
+    const std::string row = "cuts[" + std::to_string(i) + "].";
+    const std::string member = "cuts[" + std::to_string(i + 1) + "].";
+    TestCut cut;
+    file.require(row + "spindle_speed_rpm");
+    file.require(row + "axial_depth_mm");
+    file.number(row + "spindle_speed_rpm", member + "spindle_speed_rad_per_s", units::rpm, cut.spindle_speed_rad_per_s);
+    file.number(row + "axial_depth_mm", member + "axial_depth_m", units::mm, cut.axial_depth_m);
+    file.choice<TestCut::Result>(row + "result",
+                                 {{"stable", TestCut::Result::stable},
+                                  {"borderline", TestCut::Result::borderline},
+                                  {"chatter", TestCut::Result::chatter}},
+                                 cut.result);
+    file.numbers(row + "peaks_hz", member + "peaks_hz", 1.0, cut.peaks_hz);
+    file.path(row + "file", cut.file);
+    file.text(row + "column", cut.column);
+    file.number(row + "scale", member + "scale", 1.0, cut.scale);
+    file.number(row + "sample_rate_hz", member + "sample_rate_hz", 1.0, cut.sample_rate_hz);
+    job.cuts.push_back(cut);
+  }
+}
+
+}  // namespace
+
+void Job::validate() const {
+  require_non_negative("max_axial_depth_m", max_axial_depth_m, "m");
+  require_non_negative("max_surface_error_m", max_surface_error_m, "m");
+  require_non_negative("max_deflection_m", max_deflection_m, "m");
+  require_non_negative("min_spindle_speed_rad_per_s", min_spindle_speed_rad_per_s, "rad/s");
+  require_non_negative("max_spindle_speed_rad_per_s", max_spindle_speed_rad_per_s, "rad/s");
+  if (max_spindle_speed_rad_per_s > 0.0 && max_spindle_speed_rad_per_s <= min_spindle_speed_rad_per_s) {
+    throw InvalidInput("max_spindle_speed_rad_per_s", max_spindle_speed_rad_per_s, "rad/s",
+                       "must be above the spindle's lowest speed");
+  }
+  if (!(depth_margin >= 0.0 && depth_margin < 1.0)) {
+    throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)", "0.2 stays 20 % below the limit");
+  }
+  if (!(speed_window >= 0.0 && speed_window < 0.5)) {
+    throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)",
+                       "0.02 looks at 2 % of speed to each side");
+  }
+  for (std::size_t i = 0; i < spindle_curve.size(); ++i) {
+    const std::string path = "spindle_curve[" + std::to_string(i + 1) + "].";
+    const SpindlePoint& p = spindle_curve[i];
+    require_positive((path + "spindle_speed_rad_per_s").c_str(), p.spindle_speed_rad_per_s, "rad/s");
+    require_non_negative((path + "torque_n_m").c_str(), p.torque_n_m, "N m");
+    require_non_negative((path + "power_w").c_str(), p.power_w, "W");
+    if (i > 0 && p.spindle_speed_rad_per_s <= spindle_curve[i - 1].spindle_speed_rad_per_s) {
+      throw InvalidInput(path + "spindle_speed_rad_per_s", p.spindle_speed_rad_per_s, "rad/s",
+                         "must be above the speed of the point before it");
+    }
+  }
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    const std::string path = "cuts[" + std::to_string(i + 1) + "].";
+    require_positive((path + "spindle_speed_rad_per_s").c_str(), cuts[i].spindle_speed_rad_per_s, "rad/s");
+    require_positive((path + "axial_depth_m").c_str(), cuts[i].axial_depth_m, "m");
+    require_non_negative((path + "sample_rate_hz").c_str(), cuts[i].sample_rate_hz, "Hz");
+    for (const double peak_hz : cuts[i].peaks_hz) require_positive((path + "peaks_hz").c_str(), peak_hz, "Hz");
+  }
+}
+
+Job read_job(const std::filesystem::path& path) {
+  TomlFile file(path);
+  Job job{.file = path};
+  read_sources(file, job);
+  read_limits(file, job);
+  read_cuts(file, job);
+  std::filesystem::path more_cuts;
+  if (file.path("job.cuts", more_cuts)) {
+    TomlFile cuts(more_cuts);
+    cuts.locate([&] {
+      Job only_cuts;
+      read_cuts(cuts, only_cuts);
+      only_cuts.validate();
+      job.cuts.insert(job.cuts.end(), only_cuts.cuts.begin(), only_cuts.cuts.end());
+    });
+    cuts.done();
+  }
+  file.done();
+  file.locate([&] { job.validate(); });
+  return job;
+}
+
+}  // namespace robomill::formats

@@ -1,0 +1,111 @@
+#include "robomill/jobs/files/job_toml.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "robomill/base/test_support.hpp"
+#include "robomill/base/units.hpp"
+
+namespace robomill::formats {
+namespace {
+
+class JobToml : public testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& name, const std::string& text) { return folder_.file(name, text); }
+  std::string refusal(const std::string& text) {
+    return test::refusal([&] { static_cast<void>(read_job(write("job.toml", text))); });
+  }
+
+  test::Folder folder_;
+};
+
+TEST_F(JobToml, ReadsEveryPartInSi) {
+  write("cuts.toml", "[[cuts]]\nspindle_speed_rpm = 8000\naxial_depth_mm = 1.2\nresult = \"stable\"\n");
+  const Job job = read_job(write("job.toml", R"([job]
+frf = ["xx.txt", "yy.txt"]
+frf_as = ["xx", "yy"]
+lobes = "lobes.toml"
+cuts = "cuts.toml"
+[spindle]
+max_speed_rpm = 18000
+curve = [{ speed_rpm = 6000, torque_n_m = 12, power_kw = 7.5 }]
+[finishing]
+max_surface_error_um = 12
+max_deflection_um = 30
+[[cuts]]
+spindle_speed_rpm = 6500
+axial_depth_mm = 0.8
+result = "chatter"
+)"));
+  ASSERT_EQ(job.frf.size(), 2U);
+  EXPECT_EQ(job.frf[1], folder_.at("yy.txt"));
+  EXPECT_EQ(job.lobes, folder_.at("lobes.toml"));
+  EXPECT_DOUBLE_EQ(job.max_spindle_speed_rad_per_s, 18000 * units::rpm);
+  ASSERT_EQ(job.spindle_curve.size(), 1U);
+  EXPECT_DOUBLE_EQ(job.spindle_curve[0].power_w, 7500.0);
+  EXPECT_DOUBLE_EQ(job.max_surface_error_m, 12e-6);
+  EXPECT_DOUBLE_EQ(job.max_deflection_m, 30e-6);
+  ASSERT_EQ(job.cuts.size(), 2U);
+  EXPECT_EQ(job.cuts[0].result, TestCut::Result::chatter);
+  EXPECT_DOUBLE_EQ(job.cuts[1].axial_depth_m, 1.2e-3);
+}
+
+TEST_F(JobToml, TakesAnAssemblyAndAMeasurementOfItsTip) {
+  const Job job =
+      read_job(write("job.toml", "[job]\nassembly = \"a.toml\"\nmeasured = \"tip.uff\"\nlobes = \"l.toml\"\n"));
+  EXPECT_EQ(job.assembly, folder_.at("a.toml"));
+  EXPECT_EQ(job.measured, folder_.at("tip.uff"));
+}
+
+TEST_F(JobToml, TakesAProgramWithItsCell) {
+  const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
+  const Job job = read_job(write("job.toml", source + "program = \"part.ngc\"\ncell = \"cell.toml\"\n"));
+  EXPECT_EQ(job.program, folder_.at("part.ngc"));
+  EXPECT_TRUE(job.forces.empty());
+  EXPECT_NE(refusal(source + "program = \"part.ngc\"\n").find("job.toml:4: job.program"), std::string::npos);
+  EXPECT_NE(refusal(source + "cell = \"cell.toml\"\n").find("job.toml:4: job.cell"), std::string::npos);
+  EXPECT_EQ(read_job(write("job.toml", source + "forces = \"f.toml\"\ncell = \"cell.toml\"\n")).cell,
+            folder_.at("cell.toml"));
+}
+
+TEST_F(JobToml, TakesWhatAMissingDirectionIsTakenFor) {
+  const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
+  EXPECT_FALSE(read_job(write("job.toml", source)).directions.equal);
+  EXPECT_TRUE(read_job(write("job.toml", source + "equal_directions = true\n")).directions.equal);
+  EXPECT_EQ(read_job(write("job.toml", source + "rigid_directions = [\"y\"]\n")).directions.rigid,
+            std::vector<modal::Axis>{modal::Axis::y});
+  EXPECT_NE(refusal(source + "rigid_directions = [\"up\"]\n").find("job.toml:4: job.rigid_directions"),
+            std::string::npos);
+}
+
+TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
+  const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
+  EXPECT_NE(refusal("[job]\nlobes = \"l.toml\"\n").find("exactly one of hits, frf, modes and assembly"),
+            std::string::npos);
+  EXPECT_NE(refusal(source + "assembly = \"a.toml\"\n").find("Several are given"), std::string::npos);
+  EXPECT_NE(refusal(source + "measured = \"tip.uff\"\n").find("goes with job.assembly"), std::string::npos)
+      << refusal(source + "measured = \"tip.uff\"\n");
+  EXPECT_NE(refusal("[job]\nassembly = \"a.toml\"\nlobes = \"l.toml\"\nequal_directions = true\n")
+                .find("Both directions of an assembly are predicted"),
+            std::string::npos);
+  EXPECT_NE(refusal(source + "[spindle]\nmax_speed_rpm = -5\n").find("job.toml:5: spindle.max_speed_rpm = -5 rpm"),
+            std::string::npos)
+      << refusal(source + "[spindle]\nmax_speed_rpm = -5\n");
+  EXPECT_NE(refusal(source + "[[cuts]]\nspindle_speed_rpm = 0\naxial_depth_mm = 1\n").find("spindle_speed_rpm = 0 rpm"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(source + "[[cuts]]\nspindle_speed_rpm = 10\naxial_depth_mm = 1\nresult = \"loud\"\n").find("\"stable\""),
+      std::string::npos);
+  EXPECT_NE(refusal(source + "[safety]\ndepth_margin = 20\n").find("0.2 stays 20 % below"), std::string::npos);
+  EXPECT_NE(refusal(source + "[finishing]\nmax_surface_error_um = -1\n").find("finishing.max_surface_error_um = -1"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(source + "[[cuts]]\nspindle_speed_rpm = 10\naxial_depth_mm = 1\npeaks_hz = [300, -5]\n").find("peaks_hz"),
+      std::string::npos);
+  EXPECT_NE(refusal(source + "[spindel]\nmax_speed_rpm = 5\n").find("spindel"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace robomill::formats

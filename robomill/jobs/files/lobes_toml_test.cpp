@@ -1,0 +1,251 @@
+#include "robomill/jobs/files/lobes_toml.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "robomill/base/test_support.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/cutting/coefficients.hpp"
+#include "robomill/cutting/files/slots_csv.hpp"
+#include "robomill/cutting/material.hpp"
+#include "testing/text.hpp"
+
+namespace robomill::formats {
+namespace {
+
+const std::string good = R"([tool]
+teeth = 2
+diameter_mm = 12
+helix_deg = 30
+[cut]
+direction = "down"
+radial_depth_mm = 1.2
+feed_per_tooth_mm = 0.1
+feed_direction_deg = 90
+[coefficients]
+tangential_n_per_mm2 = 600
+radial_n_per_mm2 = 200
+[dynamics]
+x = [{ frequency_hz = 922, damping_ratio = 0.011, modal_mass_kg = 0.03993 }]
+y = [{ frequency_hz = 922, damping_ratio = 0.011, modal_mass_kg = 0.03993 }]
+[lobes]
+spindle_speed_rpm = [5000, 25000]
+axial_depth_mm = [0, 5]
+grid = [30, 20]
+method = "semi-discretization"
+)";
+
+std::string with(const std::string& old_text, const std::string& new_text) {
+  return test_support::replaced(good, old_text, new_text);
+}
+
+TEST(LobesToml, ReadsEverythingInSi) {
+  const test::Folder folder;
+  const LobesFile file = read_lobes(folder.file("lobes.toml", good));
+  EXPECT_NO_THROW(file.validate());
+  const cutting::Milling& milling = file.problem.milling;
+  EXPECT_DOUBLE_EQ(milling.tool.diameter_m, 0.012);
+  EXPECT_DOUBLE_EQ(milling.tool.helix_rad, 30 * units::deg);
+  EXPECT_NEAR(milling.immersion.entry_rad, std::acos(2 * 1.2 / 12 - 1), 1e-14);
+  EXPECT_NEAR(milling.immersion.exit_rad, std::numbers::pi, 1e-14);
+  EXPECT_DOUBLE_EQ(milling.coefficients.tangential_n_per_m2, 6e8);
+  EXPECT_DOUBLE_EQ(file.problem.feed_direction_rad, std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(file.radial_depth_m, 1.2e-3);
+  EXPECT_DOUBLE_EQ(file.options.axial_depth_m[1], 5e-3);
+  EXPECT_DOUBLE_EQ(file.options.spindle_speed_rad_per_s[0], 5000 * units::rpm);
+  EXPECT_EQ(file.options.grid[0], 30);
+}
+
+// The file that robomill coefficients writes, and a material, in place of numbers: a cylinder has κ = 90 degrees.
+TEST(LobesToml, TakesCoefficientsFromAFileOrAMaterial) {
+  const test::Folder folder;
+  const std::string numbers = "tangential_n_per_mm2 = 600\nradial_n_per_mm2 = 200\n";
+  const auto read = [&](const std::string& table) {
+    return read_lobes(folder.file("lobes.toml", with(numbers, table))).problem.milling.coefficients;
+  };
+  SlotsFile slots;
+  for (const double feed_m : {0.05e-3, 0.1e-3, 0.2e-3}) {
+    const double a = 4.0 * 2e-3;  // teeth and depth
+    slots.slots.push_back({.feed_per_tooth_m = feed_m,
+                           .axial_depth_m = 2e-3,
+                           .mean_force_n = {-a / 4 * 250e6 * feed_m - a / std::numbers::pi * 30e3,
+                                            a / 4 * 700e6 * feed_m + a / std::numbers::pi * 20e3, 0.0}});
+    slots.lines.push_back(slots.lines.size() + 2);
+  }
+  folder.file("k.toml", slot_fit_toml(cutting::identify_from_slots(slots.slots, {.teeth = 4}), slots));
+  const cutting::ForceCoefficients found = read("file = \"k.toml\"\n");
+  EXPECT_NEAR(found.tangential_n_per_m2, 700e6, 1.0);
+  EXPECT_NEAR(found.radial_n_per_m2, 250e6, 1.0);
+  EXPECT_NEAR(found.tangential_edge_n_per_m, 20e3, 1e-3);
+  EXPECT_NEAR(found.radial_edge_n_per_m, 30e3, 1e-3);
+  folder.file("length.toml",
+              "[coefficients]\ntangential_n_per_mm2 = [100, 600]\ntangential_edge_n_per_mm = 20\n"
+              "edge_per = \"edge-length\"\n");
+  EXPECT_NEAR(read("file = \"length.toml\"\n").tangential_n_per_m2, (600 + 50 * std::numbers::pi) * 1e6, 1.0);
+  EXPECT_NEAR(read("file = \"length.toml\"\n").tangential_edge_n_per_m, 20e3 / std::cos(30 * units::deg), 1e-6);
+  const std::string ti = "material = \"Ti6Al4V\"\nrake_deg = 5\nchip_thickness_mm = 0.03\n";
+  EXPECT_DOUBLE_EQ(read(ti).tangential_n_per_m2,
+                   cutting::milling_coefficients(cutting::material("Ti6Al4V"), 5 * units::deg, 30 * units::deg, 0.03e-3)
+                       .tangential_n_per_m2.front());
+  folder.file("low.toml", "[coefficients]\ntangential_n_per_mm2 = 0.6\n");
+  const std::string told = test::refusal([&] { static_cast<void>(read("file = \"low.toml\"\n")); });
+  EXPECT_NE(told.find("lobes.toml:11: coefficients.file"), std::string::npos) << told;
+  EXPECT_NE(told.find("tangential_n_per_m2 = 600000"), std::string::npos) << told;
+}
+
+// The modes given by modal mass have the receptance 1 / (m (ω_n² - ω² + 2iζω_nω)).
+TEST(LobesToml, InlineModesHaveTheirModalMass) {
+  const test::Folder folder;
+  const modal::ModalModel model = read_lobes(folder.file("lobes.toml", good)).problem.dynamics;
+  const Eigen::Vector3d frequency_hz(100.0, 922.0, 3000.0);
+  const modal::FrfSet frfs = modal::synthesize(model, frequency_hz);
+  const double natural = 2 * std::numbers::pi * 922;
+  for (const char* name : {"xx", "yy"}) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double omega = 2 * std::numbers::pi * frequency_hz(i);
+      const std::complex<double> expected =
+          1.0 / (0.03993 * std::complex<double>(natural * natural - omega * omega, 2 * 0.011 * natural * omega));
+      const std::complex<double> found = frfs.find(modal::parse_frf_name(name))->receptance(i);
+      EXPECT_LT(std::abs(found - expected), 1e-12 * std::abs(expected));
+    }
+  }
+}
+
+// A direction of the plane that nobody measured is rigid, or like the other, only where the file says so.
+TEST(LobesToml, ADirectionThatIsMissingHasToBeSaid) {
+  const test::Folder folder;
+  const std::string mode = "[{ frequency_hz = 922, damping_ratio = 0.011, modal_mass_kg = 0.03993 }]\n";
+  const std::string cut = good.substr(0, good.find("x = "));
+  const std::string chart = good.substr(good.find("[lobes]"));
+  const auto loaded = [&](const std::string& dynamics) {
+    LobesFile file = read_lobes(folder.file("lobes.toml", cut + dynamics + chart));
+    load_dynamics(file);
+    return file;
+  };
+  const auto said = [&](const std::string& dynamics) {
+    return test::refusal([&] { static_cast<void>(loaded(dynamics)); });
+  };
+  folder.file("x.toml",
+              "[[modes]]\nfrequency_hz = 922\ndamping_ratio = 0.011\nleft = { x = [1, 0] }\n"
+              "right = { x = [0, -1e-4] }\n");
+  folder.file("x.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n100,1e-6,-1e-8\n200,2e-6,-3e-8\n");
+  for (const std::string& source :
+       {"x = " + mode, std::string("modes = \"x.toml\"\n"), std::string("frf = \"x.csv\"\n")}) {
+    const std::string open = said(source);
+    EXPECT_NE(open.find("lobes.toml: dynamics: nothing is known of y"), std::string::npos) << open;
+    EXPECT_TRUE(loaded(source + "rigid_directions = [\"y\"]\n").notes.back().starts_with("y was not measured"));
+    const LobesFile equal = loaded(source + "equal_directions = true\n");
+    EXPECT_EQ(equal.problem.dynamics.modes.size() + equal.problem.measured.frfs.size(), 2U);
+    EXPECT_TRUE(equal.notes.back().starts_with("One direction was measured"));
+    const std::string wrong = said(source + "rigid_directions = [\"x\"]\n");
+    EXPECT_NE(wrong.find("dynamics.rigid_directions: names x, which was measured"), std::string::npos) << wrong;
+  }
+  EXPECT_TRUE(loaded("x = " + mode + "y = []\n").notes.empty()) << "an empty list says it";
+  EXPECT_TRUE(loaded("x = " + mode + "y = " + mode).notes.empty());
+  EXPECT_NE(said("x = " + mode + "y = " + mode + "equal_directions = true\n").find("dynamics.equal_directions"),
+            std::string::npos);
+  EXPECT_NE(said("x = " + mode + "rigid_directions = [\"z\"]\n").find("dynamics.rigid_directions"), std::string::npos);
+}
+
+TEST(LobesToml, AnglesStandInForTheDirection) {
+  const test::Folder folder;
+  const LobesFile file = read_lobes(
+      folder.file("lobes.toml", with("direction = \"down\"\nradial_depth_mm = 1.2", "entry_deg = 0\nexit_deg = 90")));
+  EXPECT_NEAR(file.radial_depth_m, 6e-3, 1e-15);
+  EXPECT_FALSE(file.direction);
+  const LobesFile slot = read_lobes(
+      folder.file("lobes.toml", with("direction = \"down\"\nradial_depth_mm = 1.2", "direction = \"slot\"")));
+  EXPECT_NEAR(slot.radial_depth_m, 12e-3, 1e-15);
+  EXPECT_EQ(slot.direction, cutting::MillingDirection::slot);
+}
+
+TEST(LobesToml, ReadsWhatElseActsInTheCut) {
+  const test::Folder folder;
+  const std::string text = with("helix_deg = 30", "helix_deg = [30, 35]\nrunout_um = 5\nrunout_angle_deg = 90") + R"(
+[process_damping]
+indentation_n_per_mm3 = 40000
+wear_land_mm = 0.08
+friction = 0.25
+[speed_variation]
+amplitude_ratio = 0.1
+frequency_ratio = 0.25
+[workpiece_dynamics]
+y = [{ frequency_hz = 300, damping_ratio = 0.02, modal_mass_kg = 2 }]
+[uncertainty]
+tangential_std_n_per_mm2 = 30
+frequency_std_ratio = 0.01
+grid = [20, 10]
+[surface_error]
+)";
+  const LobesFile file = read_lobes(folder.file("lobes.toml", text));
+  EXPECT_NO_THROW(file.validate());
+  const cutting::Milling& milling = file.problem.milling;
+  EXPECT_EQ(milling.tool.tooth_helix_rad, (std::vector<double>{30 * units::deg, 35 * units::deg}));
+  EXPECT_DOUBLE_EQ(milling.tool.runout_m, 5e-6);
+  EXPECT_DOUBLE_EQ(milling.tool.runout_angle_rad, std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(milling.process_damping.indentation_n_per_m3, 4e13);
+  EXPECT_DOUBLE_EQ(milling.process_damping.wear_land_m, 8e-5);
+  EXPECT_DOUBLE_EQ(milling.process_damping.friction, 0.25);
+  EXPECT_DOUBLE_EQ(milling.speed_variation.amplitude_ratio, 0.1);
+  EXPECT_DOUBLE_EQ(milling.speed_variation.frequency_ratio, 0.25);
+  EXPECT_EQ(file.problem.workpiece_dynamics.modes.size(), 1U);
+  EXPECT_EQ(file.uncertainty.samples, 200);
+  EXPECT_DOUBLE_EQ(file.uncertainty.tangential_std_n_per_m2, 3e7);
+  EXPECT_EQ(file.uncertainty.grid, (std::array<int, 2>{20, 10}));
+  EXPECT_EQ(file.surface_grid, (std::array<int, 2>{60, 60}));
+  const auto refused = [&](const std::string& row, const std::string& words) {
+    const std::string said = test::refusal([&] { static_cast<void>(read_lobes(folder.file("bad.toml", good + row))); });
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  refused("[process_damping]\nwear_land_mm = 5\n", "bad.toml:22: process_damping.wear_land_mm = 5 mm; is longer");
+  refused("[speed_variation]\namplitude_ratio = 10\n", "speed_variation.amplitude_ratio = 10; must lie between");
+  refused("[speed_variation]\namplitude_ratio = 0.1\n", "frequency_ratio");
+  refused("[uncertainty]\nsamples = 3\n", "uncertainty.samples = 3; must be at least 20");
+  refused("[uncertainty]\ndamping_std_ratio = 10\n", "It is a share of the value, not a percentage");
+  refused("[surface_error]\ngrid = [1, 2]\n", "must have at least 2 points");
+  refused("[workpiece_dynamics]\nmass_kg = 2\n", "workpiece_dynamics.mass_kg");
+}
+
+TEST(LobesToml, RefusesInTheFilesWords) {
+  const test::Folder folder;
+  const auto say = [&](const std::string& text) {
+    return test::refusal([&] { read_lobes(folder.file("lobes.toml", text)).validate(); });
+  };
+  const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& words) {
+    const std::string said = say(with(old_text, new_text));
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  expect("teeth = 2", "teeth = 0", "lobes.toml:2: tool.teeth = 0");
+  expect("radial_depth_mm = 1.2", "radial_depth_mm = 13", "lobes.toml:7: cut.radial_depth_mm = 13 mm");
+  expect("tangential_n_per_mm2 = 600", "tangential_n_per_mm2 = 0.6",
+         "lobes.toml:11: coefficients.tangential_n_per_mm2 = 0.6 N/mm^2");
+  expect("tangential_n_per_mm2 = 600", "tangential_n_per_mm2 = 6e8",
+         "coefficients.tangential_n_per_mm2 = 6e+08 N/mm^2");
+  expect("axial_depth_mm = [0, 5]", "axial_depth_mm = [0, 1000]", "lobes.axial_depth_mm = 1000 mm");
+  expect("spindle_speed_rpm = [5000, 25000]", "spindle_speed_rpm = [5000, 5000]", "lobes.spindle_speed_rpm = 5000 rpm");
+  expect("damping_ratio = 0.011", "damping_ratio = -0.011", "damping_ratio = -0.011");
+  expect("method = \"semi-discretization\"", "method = \"guess\"", "must be one of \"collocation\"");
+  expect("helix_deg = 30", "pitch_deg = [170, 180]", "lobes.toml:4: tool.pitch_deg: must sum to one revolution");
+  expect("helix_deg = 30", "pitch_deg = [120, 120, 120]", "must have one entry for each tooth (2)");
+  expect("helix_deg = 30", "pitch_deg = [-10, 370]", "lobes.toml:4: tool.pitch_deg[1] = -10 deg; must be > 0");
+  expect("helix_deg = 30", "helix_deg = 100", "lobes.toml:4: tool.helix_deg = 100 deg");
+  expect("diameter_mm = 12", "diameter_mm = 0", "lobes.toml:3: tool.diameter_mm = 0 mm; must be > 0");
+  expect("grid = [30, 20]", "grid = [30, 1]", "lobes.toml:19: lobes.grid = 1");
+  expect("grid = [30, 20]", "intervals = 2", "lobes.intervals = 2; must be at least 4");
+  expect("grid = [30, 20]", "tolerance = 0", "lobes.tolerance = 0");
+  expect("direction = \"down\"\nradial_depth_mm = 1.2", "entry_deg = 10\nexit_deg = 190", "cut.exit_deg = 190 deg");
+  expect("direction = \"down\"\nradial_depth_mm = 1.2", "entry_deg = 10", "cut.exit_deg: is missing");
+  expect("radial_depth_mm = 1.2\n", "", "cut.radial_depth_mm");
+  expect("teeth = 2", "teth = 2", "tool.teeth");
+  expect("[dynamics]", "[dynamics]\nmodes = \"m.json\"", "only one of modes, frf");
+  expect("[dynamics]", "[dynamics]\nkeep_modes = [3]", "lobes.toml:14: dynamics.keep_modes");
+}
+
+}  // namespace
+}  // namespace robomill::formats

@@ -1,0 +1,248 @@
+#include "robomill/jobs/forces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/jobs/program_forces.hpp"
+#include "robomill/modal/tip.hpp"
+#include "robomill/robot/dynamics.hpp"
+#include "robomill/robot/inverse.hpp"
+#include "robomill/robot/pose.hpp"
+#include "robomill/robot/stiffness.hpp"
+#include "robomill/simulation/posture.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+/// An error of what forces.toml says, told with the file.
+InvalidInput refuse(const formats::ForcesFile& file, const char* key, std::string rule, std::string hint = {}) {
+  return InvalidInput(
+      InvalidInput::Parts{.where = file.path.string(), .field = key, .rule = std::move(rule), .hint = std::move(hint)});
+}
+
+/// F in B, from where the arm holds the tool: T's x axis is the feed's direction across the tool's axis.
+Eigen::Matrix3d base_from_feed(const formats::ForcesFile& file, const robot::Cell& cell,
+                               const Eigen::Isometry3d& flange) {
+  const Eigen::Vector3d axis = -flange.linear().col(2);
+  const Eigen::Vector3d feed = cell.workpiece.linear() * file.feed_direction;
+  const Eigen::Vector3d across = feed - axis * axis.dot(feed);
+  if (!(across.norm() > 1e-6)) {
+    throw refuse(file, "robot.feed_direction", "must not run along the tool's axis in this posture");
+  }
+  Eigen::Matrix3d base_from_tool;
+  base_from_tool.col(0) = across.normalized();
+  base_from_tool.col(1) = axis.cross(base_from_tool.col(0));
+  base_from_tool.col(2) = axis;
+  return base_from_tool * cutting::feed_from_tool(file.cut.lead_rad, file.cut.tilt_rad).transpose();
+}
+
+Eigen::VectorXd joints_of(const formats::ForcesFile& file, const robot::Cell& cell) {
+  Eigen::VectorXd q =
+      Eigen::Map<const Eigen::VectorXd>(file.joints_rad.data(), static_cast<Eigen::Index>(file.joints_rad.size()));
+  if (q.size() != cell.arm.size()) {
+    throw refuse(file, "robot.joints_deg", fmt::format("must have one angle for each of {} joints", cell.arm.size()));
+  }
+  const robot::LimitCheck limits = robot::within_limits(cell.arm, q);
+  if (!limits.inside) {
+    throw refuse(file, "robot.joints_deg", fmt::format("must lie within the limits of joint {}", limits.joint + 1),
+                 fmt::format("It is {:.4g} degrees beyond", -limits.distance / units::deg));
+  }
+  return q;
+}
+
+/// @param force_n  on the tool, in F
+CutPosture posture_of(const formats::ForcesFile& file, const robot::Cell& cell, const Eigen::VectorXd& joints,
+                      const Eigen::Vector3d& force_n) {
+  const Eigen::Isometry3d flange = robot::forward(cell.arm, joints);
+  const Eigen::Vector3d tip = robot::tip_point(cell);
+  const Eigen::Matrix3d frame = base_from_feed(file, cell, flange);
+  const robot::Stiffness stiffness = robot::stiffness(cell.arm, joints, tip, {.force_n = frame * force_n});
+  if (stiffness.status == robot::Stiffness::Status::singular) {
+    throw refuse(file, "robot.joints_deg",
+                 fmt::format("must not be a singular posture (condition number {:.3g})", stiffness.condition_number));
+  }
+  if (stiffness.status == robot::Stiffness::Status::buckled) {
+    throw refuse(file, "robot.joints_deg", "must hold the cutting force: the joints give way under it");
+  }
+  CutPosture out;
+  out.compliance_m_per_n = frame.transpose() * stiffness.compliance.topLeftCorner<3, 3>() * frame;
+  out.base_from_feed = frame;
+  out.condition_number = stiffness.condition_number;
+  out.pose = robot::tool_pose(cell, flange);
+  return out;
+}
+
+/// The robot's own modes as the cut sees them.
+modal::TipModes robot_modes(const formats::ForcesFile& file, const robot::Cell& cell, const Eigen::VectorXd& joints,
+                            const Eigen::Matrix3d& base_from_feed) {
+  const bool weighs = std::ranges::any_of(cell.arm.joints, [](const robot::Joint& j) { return j.link.mass_kg > 0.0; });
+  const bool damped = std::ranges::all_of(cell.arm.joints, [](const robot::Joint& j) { return j.damping > 0.0; });
+  if (!weighs || !damped) {
+    throw refuse(file, "robot.vibration", "needs the masses of the links and the damping of the joints",
+                 "The cell says them as links and joint_damping_n_m_s_per_rad");
+  }
+  const robot::ToolModes found = robot::tool_modes(cell.arm, joints, robot::tip_point(cell));
+  modal::ModalModel model;
+  model.excitations = model.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
+  model.modes.reserve(found.modes.size());
+  for (const robot::ToolMode& swing : found.modes) {
+    modal::Mode mode;
+    mode.frequency_hz = swing.frequency_hz;
+    mode.damping_ratio = swing.damping_ratio;
+    mode.right = base_from_feed.transpose() * swing.right.head<3>();
+    mode.left = base_from_feed.transpose() * swing.left.head<3>();
+    model.modes.push_back(std::move(mode));
+  }
+  return modal::tip_modes(model, {}, 0.0);
+}
+
+/// What vibrates, in F: tool, robot, and the part with its fixture. Each moves against the next, so receptances add.
+std::optional<modal::TipModes> structure_of(const formats::ForcesFile& file, const robot::Cell* cell,
+                                            const Eigen::VectorXd& joints, const CutPosture* posture) {
+  std::optional<modal::TipModes> all;
+  const auto join = [&all](const modal::TipModes& part) { all = all ? modal::joined(*all, part) : part; };
+  if (!file.dynamics.modes.empty()) join(modal::tip_modes(file.dynamics, {}, file.feed_direction_rad));
+  if (!file.workpiece_dynamics.modes.empty()) {
+    join(modal::tip_modes(file.workpiece_dynamics, {}, file.feed_direction_rad, modal::ModeOwner::workpiece));
+  }
+  if (cell != nullptr && posture != nullptr && file.robot_vibrates) {
+    join(robot_modes(file, *cell, joints, posture->base_from_feed));
+  }
+  return all;
+}
+
+constexpr double most_samples_per_s = 1e6;
+constexpr double least_revolutions = 5.0;
+
+/// The last whole revolution of a simulation at the steps of a static one.
+Eigen::Matrix3Xd last_revolution(const simulation::Simulation& s, double spindle_speed_rad_per_s, Eigen::Index steps) {
+  const double turns_per_sample = spindle_speed_rad_per_s / (2.0 * std::numbers::pi * s.sample_rate_hz);
+  const Eigen::Index samples = s.force_n.rows();
+  const double whole = std::floor(static_cast<double>(samples - 1) * turns_per_sample) - 1.0;
+  Eigen::Matrix3Xd out(3, steps);
+  if (whole < 0.0) return Eigen::Matrix3Xd(3, 0);
+  for (Eigen::Index i = 0; i < steps; ++i) {
+    const double at = (whole + static_cast<double>(i) / static_cast<double>(steps)) / turns_per_sample;
+    const Eigen::Index low = std::min(static_cast<Eigen::Index>(at), samples - 2);
+    const double share = at - static_cast<double>(low);
+    out.col(i) = ((1.0 - share) * s.force_n.row(low) + share * s.force_n.row(low + 1)).transpose();
+  }
+  return out;
+}
+
+void vibrate(const ForcesResult& result, const modal::TipModes& structure, RevolutionForces& out, Progress& progress) {
+  const formats::ForcesFile& file = result.file;
+  const simulation::PostureCut cut = {.cutter = file.cutter,
+                                      .engagement = out.settled.engagement,
+                                      .coefficients = file.coefficients,
+                                      .motion = file.motion,
+                                      .structure = structure};
+  const double revolutions_per_s = file.motion.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
+  simulation::SimulationOptions options;
+  options.sample_rate_hz = std::min(std::ceil(revolutions_per_s * file.force.steps), most_samples_per_s);
+  options.seconds = std::max(options.seconds, least_revolutions / revolutions_per_s);
+  out.vibration = simulation::simulate(cut, options, progress);
+  out.vibrating_force_n = last_revolution(*out.vibration, file.motion.spindle_speed_rad_per_s, file.force.steps);
+}
+
+/// What turning the robot about the tool would do to the deflection under the mean force; none for an arm without a
+/// spherical wrist, of which only the given posture is known.
+std::optional<robot::Redundancy> turn_about_tool(const robot::Cell& cell, const CutPosture& posture,
+                                                 const Eigen::Vector3d& force_n, const Eigen::VectorXd& joints) {
+  const std::optional<robot::SphericalWristInverse> inverse = spherical_wrist(cell.arm);
+  if (!inverse) return std::nullopt;
+  const Eigen::Matrix3d work_from_feed = cell.workpiece.linear().transpose() * posture.base_from_feed;
+  return robot::redundancy(
+      cell, *inverse, posture.pose,
+      {.force_n = work_from_feed * force_n, .normal = work_from_feed.col(2), .previous = robot::Position6(joints)});
+}
+
+void run_revolution(ForcesResult& result, Progress& progress) {
+  const formats::ForcesFile& file = result.file;
+  RevolutionForces out;
+  const auto settled = [&](const Eigen::Matrix3d& compliance) {
+    return cutting::settle(file.cutter, file.cut, file.coefficients, file.motion, compliance, file.force, file.slices);
+  };
+  Eigen::VectorXd joints;
+  const robot::Cell* cell = result.cell && !file.joints_rad.empty() ? &result.cell->cell : nullptr;
+  out.settled = settled(Eigen::Matrix3d::Zero());
+  if (cell != nullptr) {
+    joints = joints_of(file, *cell);
+    // The load changes the stiffness a little: once more with what the first pass gave.
+    for (int pass = 0; pass < 2; ++pass) {
+      out.posture = posture_of(file, *cell, joints, out.settled.force.mean_n);
+      out.settled = settled(out.posture->compliance_m_per_n);
+    }
+    out.spindle_rotation = turn_about_tool(*cell, *out.posture, out.settled.force.mean_n, joints);
+  }
+  if (out.settled.status == cutting::SettledCut::Status::digs_in) {
+    result.warnings.emplace_back("The force pulls the tool in faster than the robot holds it: no depth settles.");
+  } else if (out.settled.status == cutting::SettledCut::Status::lifts_off) {
+    result.warnings.emplace_back("The force pushes the tool out of the cut altogether: the robot is too soft for it.");
+  }
+  if (const auto structure = structure_of(file, cell, joints, out.posture ? &*out.posture : nullptr)) {
+    vibrate(result, *structure, out, progress);
+  }
+  result.revolution = std::move(out);
+}
+
+std::filesystem::path cell_path(const formats::ForcesFile& file, const std::filesystem::path& given) {
+  return given.empty() ? file.cell : given;
+}
+
+}  // namespace
+
+std::optional<robot::SphericalWristInverse> spherical_wrist(const robot::Arm& arm) {
+  try {
+    return robot::SphericalWristInverse(arm);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
+ForcesResult run_forces(const std::filesystem::path& forces, const std::filesystem::path& program,
+                        const std::filesystem::path& cell, Progress& progress) {
+  ForcesResult result;
+  const formats::ForcesJob job = program.empty() ? formats::ForcesJob::revolution : formats::ForcesJob::program;
+  result.file = formats::read_forces(forces, job);
+  if (const std::filesystem::path path = cell_path(result.file, cell); !path.empty()) {
+    result.cell = formats::read_cell(path);
+    result.notes = result.cell->notes;
+  }
+  if (job == formats::ForcesJob::program) {
+    result.program = run_program(result.file, result.cell, program, result.warnings, result.notes, progress);
+  } else {
+    run_revolution(result, progress);
+  }
+  return result;
+}
+
+std::size_t ProgramForces::cutting_blocks() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(blocks, [](const BlockResult& row) { return row.force.cuts(); }));
+}
+
+std::vector<SpindleLoad> spindle_loads(const ForcesResult& result) {
+  if (result.revolution) {
+    const cutting::CuttingForce& force = result.revolution->settled.force;
+    return {{.spindle_speed_rad_per_s = result.file.motion.spindle_speed_rad_per_s,
+             .torque_n_m = force.mean_torque_n_m,
+             .power_w = force.power_w}};
+  }
+  std::vector<SpindleLoad> loads;
+  for (const BlockResult& row : result.program->blocks) {
+    if (!row.force.cuts()) continue;
+    loads.push_back({.line = result.program->program.blocks[row.force.block].line,
+                     .spindle_speed_rad_per_s = row.force.spindle_speed_rad_per_s,
+                     .torque_n_m = row.force.revolution_torque_n_m,
+                     .power_w = row.force.sustained_power_w});
+  }
+  return loads;
+}
+
+}  // namespace robomill::jobs

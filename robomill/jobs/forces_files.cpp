@@ -1,0 +1,272 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <string_view>
+
+#include "robomill/base/units.hpp"
+#include "robomill/io/json.hpp"
+#include "robomill/jobs/forces.hpp"
+#include "robomill/jobs/forces_json.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+using formats::Json;
+using formats::number;
+
+Json vector(const Eigen::Vector3d& v, double unit = 1.0) {
+  return Json::array({number(v.x() / unit), number(v.y() / unit), number(v.z() / unit)});
+}
+
+double sign_of(const ForcesResult& result) {
+  return result.file.on_workpiece ? -1.0 : 1.0;
+}
+
+std::string revolution_csv(const RevolutionForces& revolution, double sign) {
+  const cutting::CuttingForce& force = revolution.settled.force;
+  const bool vibrating = revolution.vibrating_force_n.cols() > 0;
+  std::string text = "rotation_deg,fx_n,fy_n,fz_n,torque_n_m";
+  text += vibrating ? ",vibrating_fx_n,vibrating_fy_n,vibrating_fz_n\n" : "\n";
+  for (Eigen::Index i = 0; i < force.rotation_rad.size(); ++i) {
+    const Eigen::Vector3d f = sign * force.force_n.col(i);
+    fmt::format_to(std::back_inserter(text), "{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", force.rotation_rad(i) / units::deg,
+                   f.x(), f.y(), f.z(), force.torque_n_m(i));
+    if (vibrating) {
+      const Eigen::Vector3d v = sign * revolution.vibrating_force_n.col(i);
+      fmt::format_to(std::back_inserter(text), ",{:.9g},{:.9g},{:.9g}", v.x(), v.y(), v.z());
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+/// A program's columns: what a row of the table and of the JSON hold alike.
+struct Column {
+  const char* name;
+  double (*value)(const ProgramForces& program, const BlockResult& row);
+};
+
+const program::Block& block_of(const ProgramForces& program, const BlockResult& row) {
+  return program.program.blocks[row.force.block];
+}
+
+constexpr Column columns[] = {
+    {"block", [](const ProgramForces&, const BlockResult& r) { return static_cast<double>(r.force.block + 1); }},
+    {"line", [](const ProgramForces& p, const BlockResult& r) { return static_cast<double>(block_of(p, r).line); }},
+    {"x_mm", [](const ProgramForces& p, const BlockResult& r) { return block_of(p, r).end.tip_m.x() / units::mm; }},
+    {"y_mm", [](const ProgramForces& p, const BlockResult& r) { return block_of(p, r).end.tip_m.y() / units::mm; }},
+    {"z_mm", [](const ProgramForces& p, const BlockResult& r) { return block_of(p, r).end.tip_m.z() / units::mm; }},
+    {"axial_depth_mm", [](const ProgramForces&, const BlockResult& r) { return r.force.axial_depth_m / units::mm; }},
+    {"radial_depth_mm", [](const ProgramForces&, const BlockResult& r) { return r.force.radial_depth_m / units::mm; }},
+    {"mean_fx_n", [](const ProgramForces&, const BlockResult& r) { return r.force.mean_force_n.x(); }},
+    {"mean_fy_n", [](const ProgramForces&, const BlockResult& r) { return r.force.mean_force_n.y(); }},
+    {"mean_fz_n", [](const ProgramForces&, const BlockResult& r) { return r.force.mean_force_n.z(); }},
+    {"peak_f_n", [](const ProgramForces&, const BlockResult& r) { return r.force.peak_force_n; }},
+    {"torque_n_m", [](const ProgramForces&, const BlockResult& r) { return r.force.mean_torque_n_m; }},
+    {"revolution_torque_n_m", [](const ProgramForces&, const BlockResult& r) { return r.force.revolution_torque_n_m; }},
+    {"peak_torque_n_m", [](const ProgramForces&, const BlockResult& r) { return r.force.peak_torque_n_m; }},
+    {"power_w", [](const ProgramForces&, const BlockResult& r) { return r.force.power_w; }},
+    {"peak_power_w", [](const ProgramForces&, const BlockResult& r) { return r.force.peak_power_w; }},
+    {"sustained_power_w", [](const ProgramForces&, const BlockResult& r) { return r.force.sustained_power_w; }},
+    {"deflection_um", [](const ProgramForces&, const BlockResult& r) { return r.deflection_m.norm() / units::um; }},
+    {"deflection_x_um", [](const ProgramForces&, const BlockResult& r) { return r.deflection_m.x() / units::um; }},
+    {"deflection_y_um", [](const ProgramForces&, const BlockResult& r) { return r.deflection_m.y() / units::um; }},
+    {"deflection_z_um", [](const ProgramForces&, const BlockResult& r) { return r.deflection_m.z() / units::um; }},
+    {"peak_deflection_um",
+     [](const ProgramForces&, const BlockResult& r) { return r.peak_deflection_m.norm() / units::um; }},
+    {"cutting_time_s", [](const ProgramForces&, const BlockResult& r) { return r.force.cutting_time_s; }},
+    {"feed_per_tooth_mm",
+     [](const ProgramForces&, const BlockResult& r) { return r.force.feed_per_tooth_m / units::mm; }},
+    {"removed_mm3", [](const ProgramForces&, const BlockResult& r) { return r.force.removed_volume_m3 / units::mm3; }},
+    {"condition_number", [](const ProgramForces&, const BlockResult& r) { return r.condition_number; }},
+};
+
+/// A column of a program whose sign turns with the side that the force is told of.
+bool turns(std::string_view name) {
+  return name.starts_with("mean_f");
+}
+
+/// Columns of the robot, empty where there is none.
+bool of_robot(std::string_view name) {
+  return name.find("deflection") != std::string_view::npos || name == "condition_number";
+}
+
+std::string program_csv(const ForcesResult& result) {
+  const ProgramForces& program = *result.program;
+  const double sign = sign_of(result);
+  std::string text;
+  for (const Column& column : columns) text += std::string(text.empty() ? "" : ",") + column.name;
+  text += '\n';
+  for (const BlockResult& row : program.blocks) {
+    bool first = true;
+    for (const Column& column : columns) {
+      if (!first) text += ',';
+      first = false;
+      if (of_robot(column.name) && row.joints.size() == 0) continue;
+      const double value = column.value(program, row) * (turns(column.name) ? sign : 1.0);
+      fmt::format_to(std::back_inserter(text), "{:.9g}", value);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+Json arcs_json(const cutting::Engagement& engagement) {
+  Json rings = Json::array();
+  for (std::size_t i = 0; i < engagement.slices.size(); ++i) {
+    const cutting::EdgeSlice& slice = engagement.slices[i];
+    Json arcs = Json::array();
+    for (const cutting::Arc& arc : engagement.of(i)) {
+      arcs.push_back({number(arc.entry_rad / units::deg), number(arc.exit_rad / units::deg)});
+    }
+    rings.push_back({{"height_mm", number(slice.height_m / units::mm)},
+                     {"radius_mm", number(slice.radius_m / units::mm)},
+                     {"position_deg", number(slice.position_rad / units::deg)},
+                     {"arcs_deg", std::move(arcs)}});
+  }
+  return rings;
+}
+
+const char* name_of(cutting::SettledCut::Status status) {
+  switch (status) {
+    case cutting::SettledCut::Status::digs_in:
+      return "digs in";
+    case cutting::SettledCut::Status::lifts_off:
+      return "lifts off";
+    case cutting::SettledCut::Status::found:
+      break;
+  }
+  return "found";
+}
+
+Json sweep_json(const robot::Redundancy& sweep) {
+  Json gamma = Json::array();
+  Json deflection = Json::array();
+  Json along = Json::array();
+  Json condition = Json::array();
+  Json limit = Json::array();
+  for (const robot::RedundancySample& sample : sweep.samples) {
+    const bool stands = sample.status == robot::Choice::Status::found;
+    const auto known = [&](double value) { return stands ? number(value) : Json(); };
+    gamma.push_back(number(sample.gamma_rad / units::deg));
+    deflection.push_back(known(sample.error_m.norm() / units::um));
+    along.push_back(known(sample.error_along_normal_m / units::um));
+    condition.push_back(known(sample.condition_number));
+    limit.push_back(known(sample.limit_distance_rad / units::deg));
+  }
+  const bool found = sweep.status == robot::Redundancy::Status::found;
+  return {{"rotation_deg", std::move(gamma)},
+          {"deflection_um", std::move(deflection)},
+          {"along_normal_um", std::move(along)},
+          {"condition_number", std::move(condition)},
+          {"limit_distance_deg", std::move(limit)},
+          {"best_deg", found ? number(sweep.best.gamma_rad / units::deg) : Json()},
+          {"best_deflection_um", found ? number(sweep.best.error_m.norm() / units::um) : Json()}};
+}
+
+Json vibration_json(const simulation::Simulation& s) {
+  const char* const verdict = s.verdict == simulation::Verdict::stable    ? "stable"
+                              : s.verdict == simulation::Verdict::chatter ? "chatter"
+                                                                          : "undecided";
+  const bool found = s.small.status == simulation::SmallVibration::Status::found;
+  return {{"verdict", verdict},
+          {"chatter_frequency_hz", s.chatter_frequency_hz > 0.0 ? number(s.chatter_frequency_hz) : Json()},
+          {"chatter_amplitude_um", number(s.chatter_amplitude_m / units::um)},
+          {"spectral_radius", found ? number(s.small.spectral_radius) : Json()},
+          {"missed_share", number(s.missed_share)},
+          {"error_estimate", number(s.error_estimate)}};
+}
+
+Json revolution_json(const RevolutionForces& revolution, double sign) {
+  const cutting::SettledCut& settled = revolution.settled;
+  const cutting::CuttingForce& force = settled.force;
+  const bool robot = revolution.posture.has_value();
+  Json out = {{"mean_n", vector(sign * force.mean_n)},
+              {"peak_n", vector(sign * force.peak_n)},
+              {"rms_n", vector(force.rms_n)},
+              {"peak_force_n", number(force.peak_force_n)},
+              {"torque_n_m", number(force.mean_torque_n_m)},
+              {"peak_torque_n_m", number(force.peak_torque_n_m)},
+              {"power_w", number(force.power_w)},
+              {"chip_area_mm2", number(force.chip_area_m2 / (units::mm * units::mm))},
+              {"patch_area_mm2", number(cutting::patch_area_m2(settled.engagement) / (units::mm * units::mm))},
+              {"removal_rate_mm3_per_s", number(force.removal_rate_m3_per_s / units::mm3)},
+              {"missed_share", number(force.missed_share)},
+              {"deflection_um", robot ? vector(settled.deflection_m, units::um) : Json()},
+              {"peak_deflection_um", robot ? number(settled.peak_deflection_m / units::um) : Json()},
+              {"axial_depth_left_mm", number(settled.cut.axial_depth_m / units::mm)},
+              {"settled", name_of(settled.status)},
+              {"condition_number", robot ? number(revolution.posture->condition_number) : Json()}};
+  out["spindle_rotation"] = revolution.spindle_rotation ? sweep_json(*revolution.spindle_rotation) : Json();
+  out["vibration"] = revolution.vibration ? vibration_json(*revolution.vibration) : Json();
+  out["engagement"] = arcs_json(settled.engagement);
+  out["rotation_deg"] = formats::numbers(force.rotation_rad / units::deg);
+  constexpr const char* names[] = {"fx_n", "fy_n", "fz_n"};
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    out[names[axis]] = formats::numbers(sign * force.force_n.row(axis).transpose());
+  }
+  out["torque_by_rotation_n_m"] = formats::numbers(force.torque_n_m);
+  return out;
+}
+
+Json stock_json(const ProgramForces& program) {
+  if (!program.stock) return {};
+  const ProgramStock& stock = *program.stock;
+  Json top;
+  if (stock.assumed) {
+    top = stock.assumed->top == cutting::DefaultStock::Top::program_zero ? "program zero" : "axial depth";
+  }
+  return {{"assumed", stock.assumed.has_value()},
+          {"top_from", std::move(top)},
+          {"min_mm", vector(stock.stock.lowest_m(), units::mm)},
+          {"max_mm", vector(stock.stock.highest_m(), units::mm)}};
+}
+
+Json program_json(const ForcesResult& result) {
+  const ProgramForces& program = *result.program;
+  const double sign = sign_of(result);
+  Json blocks = Json::array();
+  for (const BlockResult& row : program.blocks) {
+    Json entry = Json::object();
+    for (const Column& column : columns) {
+      const bool known = !of_robot(column.name) || row.joints.size() > 0;
+      const double value = column.value(program, row) * (turns(column.name) ? sign : 1.0);
+      const bool whole = std::string_view(column.name) == "block" || std::string_view(column.name) == "line";
+      entry[column.name] = !known ? Json() : whole ? Json(static_cast<std::size_t>(value)) : number(value);
+    }
+    blocks.push_back(std::move(entry));
+  }
+  Json skipped = Json::array();
+  for (const program::Skipped& item : program.program.skipped) {
+    skipped.push_back({{"line", item.line}, {"what", item.what}});
+  }
+  return {{"removed_mm3", number(program.removed_volume_m3 / units::mm3)},
+          {"seconds", number(program.seconds)},
+          {"cutting_blocks", program.cutting_blocks()},
+          {"power_time_s", number(result.file.power_time_s)},
+          {"stock", stock_json(program)},
+          {"blocks", std::move(blocks)},
+          {"skipped", std::move(skipped)}};
+}
+
+}  // namespace
+
+std::string forces_csv(const ForcesResult& result) {
+  return result.program ? program_csv(result) : revolution_csv(*result.revolution, sign_of(result));
+}
+
+Json forces_object(const ForcesResult& result) {
+  Json out = {{"force_on", result.file.on_workpiece ? "workpiece" : "tool"}};
+  if (result.revolution) out.update(revolution_json(*result.revolution, sign_of(result)));
+  if (result.program) out.update(program_json(result));
+  out["warnings"] = result.warnings;
+  out["notes"] = result.notes;
+  return out;
+}
+
+std::string forces_json(const ForcesResult& result) {
+  return formats::dump(forces_object(result));
+}
+
+}  // namespace robomill::jobs

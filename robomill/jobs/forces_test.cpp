@@ -1,0 +1,249 @@
+#include "robomill/jobs/forces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/report/report.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+using robomill::test::Folder;
+using robomill::test::refusal;
+
+const std::filesystem::path examples = std::filesystem::path(ROBOMILL_SOURCE_DIR) / "examples";
+const std::filesystem::path along = examples / "force-along-program";
+
+std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) out.push_back(line);
+  return out;
+}
+
+// Compliance, posture and force agree: the deflection told is C F with C of the posture, and turning the feed turns it.
+TEST(RunForces, BendsTheRobotUnderTheMeanForce) {
+  const ForcesResult result = run_forces(examples / "ball-end-ur5e" / "cut-1.toml", {}, {});
+  ASSERT_TRUE(result.revolution && result.revolution->posture);
+  const RevolutionForces& r = *result.revolution;
+  const Eigen::Vector3d expected = r.posture->compliance_m_per_n * r.settled.force.mean_n;
+  EXPECT_LE((r.settled.deflection_m - expected).norm(), 1e-3 * expected.norm());
+  EXPECT_NEAR(r.settled.cut.axial_depth_m, 1e-3 - r.settled.deflection_m.z(), 1e-10);
+  EXPECT_LT(r.settled.cut.axial_depth_m, 1e-3);
+  EXPECT_TRUE(r.posture->compliance_m_per_n.isApprox(r.posture->compliance_m_per_n.transpose(), 1e-2));
+  EXPECT_FALSE(r.spindle_rotation) << "a UR5e has no spherical wrist";
+}
+
+// The numbers of examples/ball-end-ur5e/README.md.
+TEST(RunForces, RunsThePublishedCuts) {
+  const double mean_z[] = {15.341, 15.423, 21.986};
+  const double left_mm[] = {0.60395, 0.60086, 0.65104};
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = "cut-" + std::to_string(i + 1) + ".toml";
+    const ForcesResult result = run_forces(examples / "ball-end-ur5e" / name, {}, {});
+    EXPECT_EQ(result.revolution->settled.status, cutting::SettledCut::Status::found);
+    EXPECT_NEAR(result.revolution->settled.force.mean_n.z(), mean_z[i], 1e-3 * mean_z[i]) << name;
+    EXPECT_NEAR(1e3 * result.revolution->settled.cut.axial_depth_m, left_mm[i], 1e-3 * left_mm[i]) << name;
+  }
+}
+
+TEST(RunForces, WritesARevolution) {
+  const ForcesResult result = run_forces(examples / "ball-end-ur5e" / "cut-1.toml", {}, {});
+  const std::vector<std::string> rows = lines(forces_csv(result));
+  ASSERT_EQ(rows.size(), 361U);
+  EXPECT_EQ(rows.front(), "rotation_deg,fx_n,fy_n,fz_n,torque_n_m");
+  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  for (const char* key : {"mean_n", "peak_n", "rms_n", "deflection_um"}) EXPECT_EQ(json[key].size(), 3U) << key;
+  for (const char* key : {"power_w", "chip_area_mm2", "torque_n_m", "axial_depth_left_mm"}) {
+    EXPECT_TRUE(json[key].is_number()) << key;
+  }
+  EXPECT_FALSE(json["engagement"].empty());
+  EXPECT_EQ(json["fx_n"].size(), 360U);
+  report::Report page;
+  page.forces = forces_report(result);
+  EXPECT_NE(report::report_html(page).find("id=\"forces\""), std::string::npos);
+}
+
+TEST(RunForces, TellsTheForceOnTheWorkpieceWithTheOtherSign) {
+  const Folder folder;
+  const std::string text = formats::read_file(along / "forces.toml");
+  const std::string cut =
+      "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm";
+  std::string one = text;
+  one.replace(one.find("spindle_speed_rpm"), 17, cut);
+  const auto on_tool = nlohmann::json::parse(forces_json(run_forces(folder.file("tool.toml", one), {}, {})));
+  const auto on_part = nlohmann::json::parse(
+      forces_json(run_forces(folder.file("part.toml", "force_on = \"workpiece\"\n" + one), {}, {})));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(on_tool["mean_n"][axis].get<double>(), -on_part["mean_n"][axis].get<double>());
+  }
+  EXPECT_EQ(on_tool["power_w"], on_part["power_w"]);
+  EXPECT_TRUE(on_tool["deflection_um"].is_null());
+}
+
+// A mode of the part makes the cut vibrate; far too stiff to move, it leaves the force alone.
+TEST(RunForces, VibratesWithThePart) {
+  const Folder folder;
+  std::string text = formats::read_file(along / "forces.toml");
+  text.replace(
+      text.find("spindle_speed_rpm"), 17,
+      "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm");
+  text += "[workpiece_dynamics]\nz = [{ frequency_hz = 300, damping_ratio = 0.05, modal_mass_kg = 3e4 }]\n";
+  const ForcesResult result = run_forces(folder.file("forces.toml", text), {}, {});
+  ASSERT_TRUE(result.revolution->vibration.has_value());
+  EXPECT_EQ(result.revolution->vibration->verdict, simulation::Verdict::stable);
+  const Eigen::Matrix3Xd& vibrating = result.revolution->vibrating_force_n;
+  const cutting::CuttingForce& still = result.revolution->settled.force;
+  ASSERT_EQ(vibrating.cols(), still.force_n.cols());
+  EXPECT_LE((vibrating.rowwise().mean() - still.mean_n).norm(), 0.03 * still.mean_n.norm());
+  EXPECT_EQ(lines(forces_csv(result)).front(),
+            "rotation_deg,fx_n,fy_n,fz_n,torque_n_m,vibrating_fx_n,vibrating_fy_n,vibrating_fz_n");
+}
+
+TEST(RunForces, RunsAlongAProgramWithTheRobot) {
+  const ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", along / "cell.toml");
+  ASSERT_TRUE(result.program.has_value());
+  const ProgramForces& program = *result.program;
+  ASSERT_EQ(program.blocks.size(), program.program.blocks.size());
+  double most = 0.0;
+  for (const BlockResult& row : program.blocks) {
+    ASSERT_EQ(row.joints.size(), 6);
+    most = std::max(most, row.force.peak_force_n);
+    // The softest direction of this arm is near 0.5 N/um, the stiffest near 5.
+    const double force = row.force.mean_force_n.norm();
+    EXPECT_LE(row.deflection_m.norm(), force / 0.3e6);
+    EXPECT_GE(row.deflection_m.norm(), force / 9e6);
+    EXPECT_GE(row.peak_deflection_m.norm(), row.deflection_m.norm() * (1.0 - 1e-3));
+  }
+  EXPECT_GT(most, 50.0);
+  EXPECT_LT(most, 500.0);
+  const std::vector<std::string> rows = lines(forces_csv(result));
+  EXPECT_EQ(rows.size(), program.blocks.size() + 1);
+  EXPECT_EQ(rows.front().rfind("block,line,x_mm,y_mm,z_mm,axial_depth_mm,radial_depth_mm,mean_fx_n", 0), 0U);
+  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  EXPECT_EQ(json["blocks"].size(), program.blocks.size());
+  const std::vector<SpindleLoad> loads = spindle_loads(result);
+  ASSERT_GT(loads.size(), 200U);
+  EXPECT_GT(loads[0].torque_n_m, 0.0);
+}
+
+const std::string pocket_program =
+    "G21 G90 G94\nS10000 M3\nG0 X10 Y10 Z5\nG1 Z-2 F300\nG1 X40 F1200\nG1 Y30\nG0 Z50\nM2\n";
+const std::string pocket_tool =
+    "[tool]\nkind = \"flat-end\"\nteeth = 3\ndiameter_mm = 12\n[coefficients]\ntangential_n_per_mm2 = 900\n";
+
+// The tool plunges at feed from 5 mm above the part: no material stands there.
+TEST(RunForces, APocketWithoutStockIsNoDeeperThanItIs) {
+  const Folder folder;
+  const std::filesystem::path program = folder.file("pocket.ngc", pocket_program);
+  const ForcesResult result = run_forces(folder.file("forces.toml", pocket_tool), program, {});
+  double deepest_m = 0.0;
+  for (const BlockResult& row : result.program->blocks) deepest_m = std::max(deepest_m, row.force.axial_depth_m);
+  EXPECT_NEAR(deepest_m, 2e-3, 0.01e-3);
+  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  EXPECT_EQ(json["stock"]["assumed"], true);
+  EXPECT_EQ(json["stock"]["top_from"], "program zero");
+  EXPECT_EQ(json["stock"]["max_mm"][2], 0.0);
+  EXPECT_NE(stock_text(*result.program).find("assumed, since none is given"), std::string::npos);
+  const ForcesResult told =
+      run_forces(folder.file("forces.toml", "cut = { axial_depth_mm = 1.5 }\n" + pocket_tool), program, {});
+  EXPECT_EQ(nlohmann::json::parse(forces_json(told))["stock"]["max_mm"][2], -0.5);
+}
+
+TEST(RunForces, AProgramThatDoesNotTellItsStocksHeightNeedsOne) {
+  const Folder folder;
+  const std::filesystem::path program =
+      folder.file("high.ngc", "G21 G90 G94\nS10000 M3\nG0 X0 Y0 Z30\nG1 Z18 F300\nG1 X40 F1200\nM2\n");
+  const std::string told =
+      refusal([&] { static_cast<void>(run_forces(folder.file("forces.toml", pocket_tool), program, {})); });
+  EXPECT_NE(told.find("forces.toml"), std::string::npos) << told;
+  EXPECT_NE(told.find("how high the material stands"), std::string::npos) << told;
+}
+
+// One meaning of "cuts" in summary, document and page; and a way through air lowers no figure of a block.
+TEST(RunForces, CountsTheSameBlocksEverywhere) {
+  const Folder folder;
+  const std::filesystem::path program =
+      folder.file("slot.ngc", "G21 G90 G94\nS10000 M3\nG0 X-300 Y0 Z5\nG0 Z-3\nG1 X300 F3000\nG1 Y200\nG1 Z40\nM2\n");
+  const std::string stock = "[stock]\nkind = \"box\"\nmin_mm = [-20, -30, -10]\nmax_mm = [20, 30, 0]\n";
+  const ForcesResult result = run_forces(folder.file("forces.toml", pocket_tool + stock), program, {});
+  EXPECT_EQ(result.program->cutting_blocks(), 1U);
+  EXPECT_EQ(spindle_loads(result).size(), 1U);
+  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  EXPECT_EQ(json["cutting_blocks"], 1);
+  EXPECT_EQ(json["stock"]["assumed"], false);
+  report::Report page;
+  page.forces = forces_report(result);
+  const nlohmann::json shown = nlohmann::json::parse(report::report_json(page));
+  EXPECT_EQ(shown["forces"]["program"]["cutting_blocks"], 1);
+  EXPECT_NEAR(shown["forces"]["program"]["highest"]["power_w"]["value"].get<double>(), 1620.0, 10.0);
+  const nlohmann::json& row =
+      *std::ranges::find_if(json["blocks"], [](const nlohmann::json& block) { return block["line"] == 5; });
+  EXPECT_NEAR(row["peak_power_w"].get<double>(), 1620.0, 10.0);
+  EXPECT_NEAR(row["revolution_torque_n_m"].get<double>(), 1620.0 / 1047.2, 0.01);
+  EXPECT_GT(row["power_w"].get<double>(), 1300.0);
+  EXPECT_NEAR(row["cutting_time_s"].get<double>(), 46.0 / 50.0, 0.07);
+}
+
+// An arm without a spherical wrist is followed from where it stands.
+TEST(RunForces, FollowsAProgramWithAUr5e) {
+  const Folder folder;
+  std::string cell = formats::read_file(examples / "ball-end-ur5e" / "cell.toml");
+  cell.replace(cell.find("origin_mm"), 9, "rotation_deg = [0, 0, 0]\norigin_mm");
+  cell += "[program]\nmachine = \"xyzac-trt\"\n";
+  const std::string start = "start_joints_deg = [0, -90, 90, -90, -90, 0]\n";
+  const std::string with_start = std::string(cell).insert(cell.find("dh = ["), start);
+  const auto path = folder.file("cell.toml", with_start);
+  const ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", path);
+  ASSERT_EQ(result.program->blocks.front().joints.size(), 6);
+  const formats::CellFile file = formats::read_cell(path);
+  for (const BlockResult& row : result.program->blocks) {
+    const program::Block& block = result.program->program.blocks[row.force.block];
+    const robot::ToolPose pose = robot::tool_pose(file.cell, robot::forward(file.cell.arm, row.joints));
+    EXPECT_LE((pose.tip_m - block.end.tip_m).norm(), 1e-9);
+    EXPECT_LE((pose.axis - block.end.axis).norm(), 1e-9);
+  }
+  EXPECT_NE(
+      refusal([&] {
+        static_cast<void>(run_forces(along / "forces.toml", along / "hollow.ngc", folder.file("plain.toml", cell)));
+      }).find("start_joints_deg"),
+      std::string::npos);
+}
+
+TEST(RunForces, SaysWhichBlockTheRobotCannotReach) {
+  const Folder folder;
+  std::string cell = formats::read_file(along / "cell.toml");
+  cell.replace(cell.find("[1700, 0, 700]"), 14, "[3300, 0, 700]");
+  const auto message = [&](const std::filesystem::path& path) {
+    return refusal([&] { static_cast<void>(run_forces(along / "forces.toml", along / "hollow.ngc", path)); });
+  };
+  const std::string told = message(folder.file("cell.toml", cell));
+  EXPECT_NE(told.find("hollow.ngc:5"), std::string::npos) << told;
+  EXPECT_NE(told.find("out of the robot's reach by"), std::string::npos) << told;
+}
+
+TEST(RunForces, RefusesAPostureBeyondTheLimitsOrSingular) {
+  const Folder folder;
+  static_cast<void>(folder.file("cell.toml", formats::read_file(along / "cell.toml")));
+  std::string text = formats::read_file(along / "forces.toml");
+  text.replace(
+      text.find("spindle_speed_rpm"), 17,
+      "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm");
+  const auto message = [&](const std::string& joints) {
+    const auto path = folder.file("forces.toml", text + "[robot]\ncell = \"cell.toml\"\njoints_deg = " + joints + "\n");
+    return refusal([&] { static_cast<void>(run_forces(path, {}, {})); });
+  };
+  EXPECT_NE(message("[0, -30, 80, 0, 150, 0]").find("limits of joint 5"), std::string::npos);
+  EXPECT_NE(message("[0, -30, 80, 0, 0, 0]").find("singular"), std::string::npos);
+  EXPECT_NE(message("[0, 0, 0]").find("one angle for each of 6 joints"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace robomill::jobs

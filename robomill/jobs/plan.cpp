@@ -1,0 +1,421 @@
+#include "robomill/jobs/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/decision/choose.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/jobs/files/cut_fields.hpp"
+#include "robomill/jobs/test_cuts.hpp"
+#include "robomill/modal/directions.hpp"
+#include "robomill/modal/files/frf_files.hpp"
+#include "robomill/modal/files/hits_toml.hpp"
+#include "robomill/modal/files/modes_files.hpp"
+#include "robomill/path/files/smoothing_toml.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+constexpr Eigen::Index feed_directions = 36;
+constexpr int speeds_a_direction = 40;
+/// Depths at which the comparisons beside the main lobes look for the limit, before they refine it.
+constexpr int comparison_depths = 30;
+constexpr int comparison_speeds = 100;
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+/// Where prediction and measurement are further apart than this, the lobes are those of another tip.
+constexpr double far_apart = 0.2;
+
+void warn_of_distance(const TipPrediction& prediction, std::vector<std::string>& warnings) {
+  for (const modal::FrfFitError& error : prediction.error) {
+    if (!(error.error.relative > far_apart)) continue;
+    std::string text = fmt::format("The predicted {} differs from the measured one by {:.0f} %",
+                                   modal::to_string(error.name), 100.0 * error.error.relative);
+    // Of a round tool the peaks stand in x alone, for both.
+    const auto peak = std::ranges::find_if(
+        prediction.peaks, [&](const report::TipPeak& p) { return prediction.round || p.name == error.name; });
+    if (peak != prediction.peaks.end()) {
+      text += fmt::format(": its first peak is predicted at {:.6g} Hz, ", peak->frequency_hz);
+      text += std::isfinite(peak->measured_frequency_hz)
+                  ? fmt::format("the measured one next to it stands at {:.6g} Hz", peak->measured_frequency_hz)
+                  : std::string("where no measured one is near");
+    }
+    warnings.push_back(text + ". Plan from the measurement, or find the joint with robomill joint.");
+  }
+}
+
+void warn_of_prediction(PlanResult& result) {
+  const TipPrediction& prediction = *result.prediction;
+  result.notes.push_back(
+      prediction.measured ? "The FRFs are predicted from the assembly; the measured ones are only compared with them."
+                          : "The FRFs are predicted from the assembly, not measured.");
+  warn_of_distance(prediction, result.warnings);
+  if (!prediction.tip.suspect_hz.empty()) {
+    result.warnings.push_back(fmt::format(
+        "At {} lines, from {:.6g} Hz on, the measured holder would create energy: what is predicted there is suspect.",
+        prediction.tip.suspect_hz.size(), prediction.tip.suspect_hz.front()));
+  }
+  if (prediction.file.holder && !prediction.file.holder->unreliable_hz.empty()) {
+    const std::vector<double>& lines = prediction.file.holder->unreliable_hz;
+    result.warnings.push_back(
+        fmt::format("At {} lines, from {:.6g} Hz on, a small error of the holder's measurement became a large one of "
+                    "its receptances: they are unreliable there.",
+                    lines.size(), lines.front()));
+  }
+}
+
+void measure(PlanResult& result, Progress& progress) {
+  if (!result.job.hits.empty()) {
+    const formats::HitsFile hits = formats::read_hits(result.job.hits);
+    append(result.notes, hits.notes);
+    for (const modal::Hit& hit : hits.hits) {
+      result.hit_directions.push_back(
+          fmt::format("{}{}", hit.against_axis ? "-" : "", modal::to_string(hit.excitation)));
+    }
+    result.hits = modal::estimate_frfs(hits.hits, hits.options, progress);
+    append(result.notes, result.hits->notes);
+    result.frfs = result.hits->set;
+    if (!result.hits->added_decay_removed) result.added_decay_per_s = result.hits->added_decay_per_s;
+  } else if (!result.job.frf.empty()) {
+    const formats::FrfFile file = formats::read_frfs(result.job.frf, result.job.frf_as);
+    append(result.notes, file.notes);
+    result.frfs = file.set;
+    result.added_decay_per_s = file.added_decay_per_s;
+  } else if (!result.job.assembly.empty()) {
+    result.prediction = predict_tip(result.job.assembly, result.job.measured);
+    result.frfs = result.prediction->tip.frfs;
+    warn_of_prediction(result);
+  }
+}
+
+void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
+  // Of FRFs the modes are doubled, where the directions are equal, and not what they are fitted to.
+  modal::FrfSet measured = result.frfs.value_or(modal::FrfSet{});
+  if (!result.frfs) result.model = formats::read_modes(result.job.modes);
+  const modal::MissingDirections& directions = result.job.directions;
+  const auto words = formats::complete_directions(result.model, measured, directions, result.job.file.string(), "job");
+  if (words) result.warnings.push_back(*words);
+  if (!result.frfs) return;
+  modal::FitOptions options;
+  options.seed = seed;
+  options.modes = result.job.fit_modes;
+  if (result.job.band_high_hz > 0.0) {
+    options.band_low_hz = result.job.band_low_hz;
+    options.band_high_hz = result.job.band_high_hz;
+  } else if (result.hits) {
+    // Without a band from the user: where the sensors can be trusted and the hammer excites.
+    options.band_low_hz = result.hits->lowest_trustworthy_frequency_hz;
+    double highest = 0.0;
+    for (const modal::FrfGrade& grade : result.hits->grades) highest = std::max(highest, grade.excited_high_hz);
+    if (highest > options.band_low_hz) options.band_high_hz = highest;
+  }
+  options.exponential_decay_per_s = result.added_decay_per_s;
+  result.fit =
+      result.prediction ? fit_tip(*result.frfs, options, progress) : modal::fit_modes(*result.frfs, options, progress);
+  if (directions.equal) result.fit = modal::with_equal_directions(*std::move(result.fit));
+  result.model = result.fit->model;
+  append(result.warnings, result.fit->warnings);
+  if (result.fit->status == modal::FitResult::Status::not_converged) {
+    result.warnings.push_back("The fit of the modes did not converge: look at the FRFs before using a number.");
+  }
+}
+
+stability::LobesOptions comparison_options(const PlanResult& result) {
+  stability::LobesOptions options = result.cut.options;
+  options.grid[1] = std::min(options.grid[1], comparison_depths);
+  return options;
+}
+
+/// The limit of each pair of neighbouring modes alone.
+void pairs(PlanResult& result, Progress& progress) {
+  const int modes = static_cast<int>(result.model.modes.size());
+  if (modes < 3 || !result.cut.problem.keep_modes.empty()) return;
+  const stability::LobesOptions options = comparison_options(result);
+  const Eigen::Index count = std::min<Eigen::Index>(options.grid[0], comparison_speeds);
+  const Eigen::VectorXd axis =
+      Eigen::VectorXd::LinSpaced(count, options.spindle_speed_rad_per_s[0], options.spindle_speed_rad_per_s[1]);
+  const std::vector<double> speeds(axis.begin(), axis.end());
+  for (int k = 1; k <= modes; k += 2) {
+    stability::LobesProblem problem = result.cut.problem;
+    problem.keep_modes = k < modes ? std::vector<int>{k, k + 1} : std::vector<int>{k};
+    const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
+    report::Lobes lobes;
+    lobes.label = k < modes ? fmt::format("modes {}–{}", k, k + 1) : fmt::format("mode {}", k);
+    if (!problem.workpiece_dynamics.modes.empty()) lobes.label += " and the workpiece's";
+    lobes.modes = problem.keep_modes;
+    lobes.spindle_speed_rad_per_s = axis;
+    lobes.searched_depth_m = options.axial_depth_m[1];
+    lobes.limit_depth_m.resize(static_cast<Eigen::Index>(limits.size()));
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      const bool found = limits[i].status == stability::Limit::Status::found;
+      lobes.limit_depth_m(static_cast<Eigen::Index>(i)) = found ? limits[i].axial_depth_m : report::missing;
+    }
+    result.pairs.push_back(lobes);
+  }
+}
+
+std::vector<decision::SpindleCapacity> spindle_curve(const formats::Job& job) {
+  std::vector<decision::SpindleCapacity> curve;
+  for (const formats::SpindlePoint& p : job.spindle_curve) {
+    curve.push_back(
+        {.spindle_speed_rad_per_s = p.spindle_speed_rad_per_s, .torque_n_m = p.torque_n_m, .power_w = p.power_w});
+  }
+  return curve;
+}
+
+decision::RecommendOptions recommend_options(const formats::Job& job, const formats::LobesFile& cut) {
+  decision::RecommendOptions options;
+  options.radial_depth_m = cut.radial_depth_m;
+  options.max_axial_depth_m = job.max_axial_depth_m;
+  options.min_spindle_speed_rad_per_s = job.min_spindle_speed_rad_per_s;
+  options.max_spindle_speed_rad_per_s = job.max_spindle_speed_rad_per_s;
+  options.depth_margin = job.depth_margin;
+  options.speed_window = job.speed_window;
+  options.spindle = spindle_curve(job);
+  return options;
+}
+
+decision::FinishLimits finish_limits(const formats::Job& job) {
+  return {.max_surface_error_m = job.max_surface_error_m, .max_deflection_m = job.max_deflection_m};
+}
+
+/// Whether the spindle can turn the cutter through the cut whose forces were asked for.
+void warn_of_spindle(PlanResult& result) {
+  const std::vector<decision::SpindleCapacity> curve = spindle_curve(result.job);
+  if (curve.empty()) return;
+  std::size_t weak = 0;
+  SpindleLoad worst;
+  double most = 0.0;
+  for (const SpindleLoad& load : spindle_loads(*result.forces)) {
+    const decision::SpindleCapacity able = decision::capacity_at(curve, load.spindle_speed_rad_per_s);
+    const bool inside = able.torque_n_m > 0.0 && able.power_w > 0.0;
+    const double share = inside ? std::max(load.torque_n_m / able.torque_n_m, load.power_w / able.power_w) : HUGE_VAL;
+    if (!(share > 1.0)) continue;
+    if (++weak == 1 || share > most) {
+      most = share;
+      worst = load;
+    }
+  }
+  if (weak == 0) return;
+  const std::string place = worst.line > 0 ? fmt::format("in {} blocks, most in line {}: ", weak, worst.line) : "";
+  const decision::SpindleCapacity able = decision::capacity_at(curve, worst.spindle_speed_rad_per_s);
+  const std::string has = std::isinf(most) ? std::string("that speed is outside the spindle's curve")
+                                           : fmt::format("the spindle has {:.3g} N·m and {:.3g} kW", able.torque_n_m,
+                                                         able.power_w / units::kw);
+  result.warnings.push_back(fmt::format(
+      "The cut asks for more than the spindle has, {}{:.3g} N·m over a revolution and {:.3g} kW over {:.3g} s at "
+      "{:.0f} rpm; {}.",
+      place, worst.torque_n_m, worst.power_w / units::kw, result.forces->file.power_time_s,
+      worst.spindle_speed_rad_per_s / units::rpm, has));
+}
+
+/// Whether the job's program is to be smoothed.
+bool wants_path(const formats::Job& job) {
+  if (job.program.empty() || job.cell.empty()) return false;
+  if (formats::has_smoothing(job.cell)) return true;
+  if (!job.forces.empty()) return false;
+  throw InvalidInput(job.cell.string(), "has no [smoothing]",
+                     "job.program without job.forces is smoothed: write the tolerances and limits there");
+}
+
+/// The program as the robot will run it.
+void smooth(PlanResult& result, const std::filesystem::path& folder, Progress& progress) {
+  const formats::Job& job = result.job;
+  SmoothJob smooth = {.program = job.program, .cell = job.cell, .place = false};
+  if (!folder.empty()) {
+    formats::make_folder(folder);
+    smooth.output = folder / "trajectory.csv";
+  }
+  result.path = run_smooth(smooth, progress);
+  if (!result.path->holds()) {
+    result.warnings.push_back(fmt::format(
+        "The smoothed program breaks limits {} times: there is no trajectory{}. See the limits of each joint.",
+        result.path->first().summary.check.violations(),
+        result.path->stale ? ", and the one of an earlier run was removed" : ""));
+  }
+}
+
+/// A mode that a multiple of tooth passing excites within its half-power width.
+struct Resonance {
+  modal::ModeId mode = {};
+  double frequency_hz = 0.0;
+  double harmonic = 0.0;
+  double distance = 1.0;  ///< in half-power half-widths ζ f
+};
+
+Resonance nearest_resonance(const PlanResult& result, double tooth_passing_hz) {
+  Resonance nearest;
+  const auto look = [&](const modal::ModalModel& model, modal::ModeOwner owner) {
+    int number = 0;
+    for (const modal::Mode& mode : model.modes) {
+      ++number;
+      const double harmonic = std::max(1.0, std::round(mode.frequency_hz / tooth_passing_hz));
+      const double distance =
+          std::abs(harmonic * tooth_passing_hz - mode.frequency_hz) / (mode.damping_ratio * mode.frequency_hz);
+      if (distance < nearest.distance) nearest = {{number, owner}, mode.frequency_hz, harmonic, distance};
+    }
+  };
+  look(result.model, modal::ModeOwner::tool);
+  look(result.cut.problem.workpiece_dynamics, modal::ModeOwner::workpiece);
+  return nearest;
+}
+
+/// The deepest pockets of the lobes stand where tooth passing meets a mode: no chatter there, but forced vibration.
+void tell_resonance(PlanResult& result) {
+  if (!result.recommendation.recommended) return;
+  const decision::Operation& op = *result.recommendation.recommended;
+  const double tooth_passing_hz =
+      op.spindle_speed_rad_per_s / (2.0 * std::numbers::pi) * result.cut.problem.milling.tool.teeth;
+  const Resonance nearest = nearest_resonance(result, tooth_passing_hz);
+  if (!nearest.mode.known()) return;
+  std::string text = fmt::format(
+      "At the recommended speed {:.0f} × tooth passing ({:.1f} Hz) excites {} ({:.1f} Hz): no chatter, but forced "
+      "vibration is greatest there.",
+      nearest.harmonic, nearest.harmonic * tooth_passing_hz, to_string(nearest.mode), nearest.frequency_hz);
+  if (finish_limits(result.job).any()) {
+    result.notes.push_back(text + " It keeps the limits of [finishing].");
+  } else {
+    result.warnings.push_back(text +
+                              " Its surface error and deflection stand beside the recommendation; [finishing] "
+                              "in the job limits them.");
+  }
+}
+
+/// The limit as the feed turns through the plane: a robot is not the same in every direction.
+void turn_feed(PlanResult& result, Progress& progress) {
+  report::FeedDirections out;
+  const stability::LobesOptions options = comparison_options(result);
+  const double low = options.spindle_speed_rad_per_s[0];
+  const double high = options.spindle_speed_rad_per_s[1];
+  std::vector<double> speeds;
+  speeds.reserve(speeds_a_direction + 1);
+  for (int i = 0; i < speeds_a_direction; ++i)
+    speeds.push_back(std::lerp(low, high, static_cast<double>(i) / (speeds_a_direction - 1)));
+  const bool recommended = result.recommendation.recommended.has_value();
+  if (recommended) {
+    out.spindle_speed_rad_per_s = result.recommendation.recommended->spindle_speed_rad_per_s;
+    speeds.push_back(out.spindle_speed_rad_per_s);
+    out.limit_at_speed_m.resize(feed_directions);
+  }
+  out.direction_rad.resize(feed_directions);
+  out.lowest_limit_m.setConstant(feed_directions, report::missing);
+  out.used_direction_rad = result.cut.problem.feed_direction_rad;
+  out.searched_depth_m = options.axial_depth_m[1];
+  stability::LobesProblem problem = result.cut.problem;
+  // Turning the feed by half a turn turns forces and displacements alike: the limit is the same.
+  constexpr Eigen::Index half = feed_directions / 2;
+  for (Eigen::Index i = 0; i < half; ++i) {
+    problem.feed_direction_rad = std::numbers::pi * static_cast<double>(i) / half;
+    out.direction_rad(i) = problem.feed_direction_rad;
+    out.direction_rad(i + half) = problem.feed_direction_rad + std::numbers::pi;
+    const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+      const double depth =
+          limits[k].status == stability::Limit::Status::found ? limits[k].axial_depth_m : report::missing;
+      if (k < speeds_a_direction) {
+        out.lowest_limit_m(i) = std::fmin(out.lowest_limit_m(i), depth);
+      } else {
+        out.limit_at_speed_m(i) = depth;
+      }
+    }
+  }
+  out.lowest_limit_m.tail(half) = out.lowest_limit_m.head(half);
+  if (recommended) out.limit_at_speed_m.tail(half) = out.limit_at_speed_m.head(half);
+  result.feed_directions = out;
+}
+
+void compare(PlanResult& result, Progress& progress) {
+  result.cuts = compare_cuts(result.job.cuts, result.cut.problem, result.cut.options, progress);
+  for (std::size_t i = 0; i < result.job.cuts.size(); ++i) {
+    const formats::TestCut& cut = result.job.cuts[i];
+    if (cut.file.empty()) continue;
+    result.recordings.push_back(read_recording(cut, result.cut.problem));
+    const report::Recording& heard = result.recordings.back();
+    report::TestCut& row = result.cuts[i];
+    if (row.result == report::Verdict::unknown) {
+      row.result = heard.verdict;
+      const bool clear = row.result == report::Verdict::stable || row.result == report::Verdict::chatter;
+      if (clear) row.agrees = row.result == row.predicted;
+    }
+    row.note += "; " + heard.file + ": " + heard.reason;
+  }
+}
+
+/// How far the limit moves with what the fit, and the file of the cut, leave uncertain.
+void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
+  const auto known = [](const modal::Mode& mode) { return std::isfinite(mode.frequency_std_hz); };
+  stability::Uncertainty& uncertainty = result.cut.uncertainty;
+  if (uncertainty.samples == 0 && std::ranges::any_of(result.model.modes, known)) {
+    uncertainty.samples = 100;
+    uncertainty.grid = {40, 30};
+  }
+  if (uncertainty.samples == 0) return;
+  uncertainty.seed = seed;
+  // A band needs no more than three digits of each limit.
+  stability::LobesOptions options = result.cut.options;
+  options.tolerance = std::max(options.tolerance, 1e-4);
+  result.uncertain = stability::uncertain_limits(result.cut.problem, options, uncertainty, progress);
+}
+
+}  // namespace
+
+PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress,
+                   const std::filesystem::path& folder, bool accept_fit) {
+  PlanResult result;
+  result.job = formats::read_job(job);
+  // Everything that is quick to refuse is read before the long work starts.
+  result.cut = formats::read_lobes(result.job.lobes);
+  if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
+    throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
+                       "plan needs it for the removal rate");
+  }
+  const bool with_path = wants_path(result.job);
+  try {
+    decision::require_finishable(result.cut.problem, finish_limits(result.job));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(InvalidInput::Parts{
+        .where = job.string(), .field = "finishing", .rule = error.parts().rule, .hint = error.parts().hint});
+  }
+  measure(result, progress);
+  if (!result.job.forces.empty()) {
+    result.forces = run_forces(result.job.forces, result.job.program, result.job.cell, progress);
+    warn_of_spindle(result);
+  }
+  fit(result, seed, progress);
+  if (result.fit && accept_fit) result.fit->accepted = true;
+  if (result.fit && !result.fit->usable()) {
+    result.recommendation.reason = fmt::format(
+        "The modes do not describe the FRFs: the fit differs from them by {:.3g} %, and from {:.3g} % on nothing is "
+        "computed from it. Fit a better band (job.band_hz), or accept it with --accept-fit.",
+        100.0 * result.fit->relative_error, 100.0 * modal::unusable_fit_error);
+    return result;
+  }
+  if (with_path) smooth(result, folder, progress);
+  result.cut.drop_dynamics();  // the job's stand in their place
+  formats::load_dynamics(result.cut);
+  result.cut.problem.dynamics = result.model;
+  result.cut.validate();
+  // The report draws the boundary in any case.
+  if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
+  result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
+  spread(result, seed, progress);
+  result.recommendation =
+      decision::choose(result.cut.problem, result.cut.options, result.lobes.limit,
+                       recommend_options(result.job, result.cut), finish_limits(result.job), progress);
+  tell_resonance(result);
+  pairs(result, progress);
+  turn_feed(result, progress);
+  compare(result, progress);
+  return result;
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,81 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/decision/recommend.hpp"
+#include "robomill/jobs/files/job_toml.hpp"
+#include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/jobs/forces.hpp"
+#include "robomill/jobs/predict.hpp"
+#include "robomill/jobs/smooth.hpp"
+#include "robomill/modal/fit.hpp"
+#include "robomill/modal/hits.hpp"
+#include "robomill/report/report.hpp"
+#include "robomill/stability/lobes.hpp"
+#include "robomill/stability/uncertainty.hpp"
+
+namespace robomill::jobs {
+
+/// Everything a job came to, stage by stage. What the job did not ask for is empty.
+struct PlanResult {
+  formats::Job job;
+  formats::LobesFile cut;                   ///< with the dynamics that the job gave
+  std::optional<modal::FrfResult> hits;     ///< of a job that starts from hits
+  std::vector<std::string> hit_directions;  ///< one a hit: "x", "-y"
+  std::optional<TipPrediction> prediction;  ///< of a job that starts from an assembly
+  std::optional<modal::FrfSet> frfs;        ///< measured, from hits or files, or predicted
+  double added_decay_per_s = 0.0;           ///< of an exponential window, still in frfs
+  std::optional<modal::FitResult> fit;      ///< unless the job starts from modes
+  modal::ModalModel model;
+  stability::LobesResult lobes;          ///< of all modes; empty where these do not describe the FRFs
+  stability::UncertainLimits uncertain;  ///< samples: 0 where nothing is known to be uncertain
+  std::vector<report::Lobes> pairs;      ///< limits of modes 1–2, 3–4, …
+  std::optional<report::FeedDirections> feed_directions;
+  decision::Recommendation recommendation;
+  std::optional<ForcesResult> forces;  ///< of a job that asks for them
+  std::optional<SmoothResult> path;    ///< of a job with a program and a cell with [smoothing]
+  std::vector<report::TestCut> cuts;
+  std::vector<report::Recording> recordings;
+  std::vector<std::string> warnings, notes;
+
+  [[nodiscard]] bool has_lobes() const { return !lobes.limit.empty(); }
+};
+
+/// Runs a job: hits, or tool and holder, ─▶ FRFs ─▶ modes ─▶ lobes ─▶ a recommended speed and depth, and its comparison
+/// with test cuts.
+/// @param seed    of every random number
+/// @param folder  for the trajectory of a program, made where it is missing; write_plan() puts it there in its place.
+///     Empty: none is written
+/// @param accept_fit  go on with modes that do not describe the FRFs (modal::FitResult::usable); else the result ends
+///     with the fit, and the recommendation says why
+/// @throws InvalidInput with file, line, key and value; Interrupted
+[[nodiscard]] PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
+                                 Progress& progress = Progress::none(), const std::filesystem::path& folder = {},
+                                 bool accept_fit = false);
+
+/// The report of a job.
+/// @param files  that stand beside it
+[[nodiscard]] report::Report make_report(const PlanResult& result, const std::vector<report::StageFile>& files);
+
+/// plan.json as text: the recommendation, its alternatives, the test cuts, and every stage's result.
+[[nodiscard]] std::string plan_json(const PlanResult& result);
+
+/// Writes report.html, plan.json and each stage's own files (tip.uff, modes.json, lobes.json) into a folder, which is
+/// made where it is missing. Each file appears whole or not at all; the trajectory where run_job() was told to.
+void write_plan(const std::filesystem::path& folder, const PlanResult& result);
+
+/// One line for people: what limits an operation.
+[[nodiscard]] std::string limited_by_text(const decision::Operation& operation);
+
+/// Each mode's share of the speeds at which some mode limits the depth, in [0, 1]; empty where none does.
+struct LimitShare {
+  Eigen::VectorXd tool, workpiece;  ///< one a mode of each
+};
+[[nodiscard]] LimitShare limit_share(const PlanResult& result);
+
+}  // namespace robomill::jobs

@@ -1,0 +1,54 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/coupling/assembly.hpp"
+#include "robomill/coupling/files/assembly_toml.hpp"
+#include "robomill/modal/fit.hpp"
+#include "robomill/modal/frf.hpp"
+#include "robomill/report/report.hpp"
+
+namespace robomill::jobs {
+
+/// The tip of an assembly as predicted, and how far a measurement of it is away.
+struct TipPrediction {
+  formats::AssemblyFile file;
+  coupling::TipResult tip;
+  bool round = false;                     ///< yy is xx, and there is nothing between x and y
+  std::optional<modal::FrfSet> measured;  ///< of what was measured the FRFs that were predicted too, within the range
+  /// Of each measured FRF, ‖predicted - measured‖ / ‖measured‖ over its lines.
+  std::vector<modal::FrfFitError> error;
+  std::vector<report::TipPeak> peaks;  ///< the first ones of each FRF on the diagonal; of a round tool of xx alone
+  std::vector<std::string> notes;
+};
+
+/// @param measured  FRFs to compare with; empty: none
+/// @throws InvalidInput as read_assembly, tip_frfs and read_frfs, or if nothing measured can be compared
+[[nodiscard]] TipPrediction predict_tip(const std::filesystem::path& assembly, const std::filesystem::path& measured);
+
+/// The modes of predicted FRFs, without standard deviations. A round tool is fitted in x, and the same modes stand in
+/// y.
+/// @throws InvalidInput as fit_modes
+[[nodiscard]] modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& options, Progress& progress);
+
+/// Draws it.
+void add_prediction(report::Report& report, const TipPrediction& prediction);
+
+/// The member `assembly` of plan.json, as text.
+[[nodiscard]] std::string prediction_json(const TipPrediction& prediction);
+
+/// A frequency at which a receptance is greatest.
+struct PeakFound {
+  double frequency_hz = 0.0;
+  double magnitude = 0.0;
+};
+
+/// Local maxima of |H| that stand by half above the higher of the dips to either side, between the lines by a parabola
+/// through log |H|.
+[[nodiscard]] ROBOMILL_API std::vector<PeakFound> find_peaks(const Eigen::VectorXd& frequency_hz,
+                                                             const Eigen::VectorXcd& receptance);
+
+}  // namespace robomill::jobs

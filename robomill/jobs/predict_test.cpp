@@ -1,0 +1,208 @@
+#include "robomill/jobs/predict.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/jobs/plan.hpp"
+#include "robomill/modal/files/frf_files.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+const std::filesystem::path examples = ROBOMILL_SOURCE_DIR "/examples";
+
+double first_peak_hz(const std::string& file) {
+  return predict_tip(examples / "joint-bar" / file, {}).peaks.at(0).frequency_hz;
+}
+
+// The README's figures. A clamped Euler-Bernoulli beam of 169.82 mm: (1.8751)^2 / (2π L²) sqrt(EI/(ρA)) = 294.75 Hz;
+// with the loss factor 0.02 the peak of |H| lies within 0.02 % of it.
+TEST(JointBar, PeaksAreThoseOfTheReadme) {
+  const double area_radius = 0.012 / 4.0;  // sqrt(I / A) of a round
+  const double clamped_hz =
+      std::pow(1.8751040687 / 0.16982, 2) * area_radius * std::sqrt(200e9 / 7800.0) / (2.0 * std::numbers::pi);
+  EXPECT_NEAR(first_peak_hz("rigid.toml"), clamped_hz, 2e-4 * clamped_hz);
+  EXPECT_NEAR(first_peak_hz("assembly.toml"), 294.32, 0.02);
+  EXPECT_NEAR(first_peak_hz("soft.toml"), 275.0, 0.1);
+}
+
+TEST(FindPeaks, LieBetweenTheLinesAndNotInTheNoise) {
+  Random random(4);
+  const Eigen::VectorXd axis = Eigen::VectorXd::LinSpaced(400, 101.0, 899.0);  // every 2 Hz
+  Eigen::VectorXcd values(axis.size());
+  const auto mode = [](double f, double f0, double zeta) {
+    return 1.0 / std::complex<double>(1.0 - f * f / (f0 * f0), 2.0 * zeta * f / f0);
+  };
+  for (Eigen::Index i = 0; i < axis.size(); ++i) {
+    const std::complex<double> noise(random.normal(), random.normal());
+    const std::complex<double> exact = mode(axis(i), 300.4, 0.02) - 0.3 * mode(axis(i), 650.9, 0.015);
+    values(i) = exact + 0.002 * noise * std::abs(exact);
+  }
+  const std::vector<PeakFound> found = find_peaks(axis, values);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(found[0].frequency_hz, 300.4, 0.3);
+  EXPECT_NEAR(found[0].magnitude, 25.0, 0.3);
+  EXPECT_NEAR(found[1].frequency_hz, 650.9, 0.5);
+}
+
+// The second mode of the bar, 1,847 Hz, lies 10 Hz behind the last line: its flank is no mode of the fit.
+TEST(FitTip, WarnsWhereAModeStandsCloseBehindTheLastLine) {
+  TipPrediction prediction = predict_tip(examples / "joint-bar/rigid.toml", {});
+  EXPECT_TRUE(fit_tip(prediction.tip.frfs, {}, Progress::none()).warnings.empty());
+  prediction.tip = coupling::tip_frfs(prediction.file.assembly, Eigen::VectorXd::LinSpaced(919, 1.0, 1837.0));
+  const modal::FitResult fit = fit_tip(prediction.tip.frfs, {}, Progress::none());
+  ASSERT_FALSE(fit.warnings.empty()) << fit.relative_error;
+  EXPECT_NE(fit.warnings.back().find("close beyond the last line"), std::string::npos) << fit.relative_error;
+}
+
+class Predicted : public testing::Test {
+ protected:
+  Predicted() {
+    folder_.file("lobes.toml", R"([tool]
+teeth = 4
+diameter_mm = 12
+[cut]
+direction = "down"
+radial_depth_mm = 6
+feed_per_tooth_mm = 0.06
+[coefficients]
+tangential_n_per_mm2 = 712
+radial_n_per_mm2 = 287
+[lobes]
+spindle_speed_rpm = [9000, 14000]
+axial_depth_mm = [0, 10]
+grid = [11, 10]
+method = "zeroth-order"
+)");
+  }
+  std::filesystem::path job(const std::string& source) {
+    return folder_.file("job.toml", "[job]\n" + source + "\nlobes = \"lobes.toml\"\nband_hz = [1500, 4000]\n");
+  }
+  static std::string assembly() { return "assembly = \"" + (examples / "new-tool/assembly.toml").string() + "\""; }
+
+  test::Folder folder_;
+};
+
+// A measurement that is the prediction itself, on other lines, is no distance away; one of another joint is as far as
+// both predictions are.
+TEST_F(Predicted, IsComparedAtTheLinesOfTheMeasurement) {
+  const TipPrediction rigid = predict_tip(examples / "joint-bar/rigid.toml", {});
+  modal::FrfSet measured = coupling::tip_frfs(rigid.file.assembly, Eigen::VectorXd::LinSpaced(571, 30.3, 600.3)).frfs;
+  formats::write_frfs(folder_.at("tip.json"), measured);
+  const TipPrediction same = predict_tip(examples / "joint-bar/rigid.toml", folder_.at("tip.json"));
+  ASSERT_EQ(same.error.size(), 2U);
+  EXPECT_LT(same.error[0].error.relative, 1e-12);
+  EXPECT_NEAR(same.peaks.at(0).measured_frequency_hz, same.peaks.at(0).frequency_hz, 0.05);
+  const TipPrediction other = predict_tip(examples / "joint-bar/soft.toml", folder_.at("tip.json"));
+  const modal::FrfSet soft = coupling::tip_frfs(other.file.assembly, measured.frequency_hz).frfs;
+  EXPECT_NEAR(other.error[0].error.relative,
+              (soft.frfs[0].receptance - measured.frfs[0].receptance).norm() / measured.frfs[0].receptance.norm(),
+              1e-12);
+  EXPECT_GT(other.error[0].error.relative, 0.5);
+}
+
+TEST_F(Predicted, PlanWarnsOfAMeasurementFarAway) {
+  const auto measure = [&](const char* file) {
+    const TipPrediction whole = predict_tip(examples / "joint-bar" / file, {});
+    formats::write_frfs(folder_.at("tip.json"), whole.tip.frfs);
+  };
+  folder_.file("job.toml", "[job]\nassembly = \"" + (examples / "joint-bar/soft.toml").string() +
+                               "\"\nmeasured = \"tip.json\"\nlobes = \"lobes.toml\"\nband_hz = [200, 600]\n");
+  const auto warnings = [&] {
+    std::string all;
+    for (const std::string& text : run_job(folder_.at("job.toml"), 1).warnings) all += text + "\n";
+    return all;
+  };
+  measure("rigid.toml");
+  const std::string far = warnings();
+  EXPECT_NE(far.find("The predicted xx differs from the measured one by "), std::string::npos) << far;
+  EXPECT_NE(far.find("predicted at 275"), std::string::npos) << far;
+  EXPECT_NE(far.find("stands at 294.7"), std::string::npos) << far;
+  measure("soft.toml");
+  EXPECT_EQ(warnings().find("differs from the measured one"), std::string::npos);
+}
+
+// With a measured holder the prediction stands on the holder's lines and is compared between them.
+TEST_F(Predicted, OfAMeasuredHolderIsComparedBetweenItsLines) {
+  const Eigen::VectorXd lines = Eigen::VectorXd::LinSpaced(601, 50.0, 650.0);
+  coupling::Assembly whole = predict_tip(examples / "joint-bar/soft.toml", {}).file.assembly;
+  coupling::Assembly holder = whole;
+  holder.tool = whole.holder.segments;
+  holder.joint.reset();
+  holder.holder = {};
+  formats::write_frfs(folder_.at("holder.uff"), coupling::tip_frfs(holder, lines, {.rotations = true}).frfs);
+  std::string text = formats::read_file(examples / "joint-bar/soft.toml");
+  text.erase(text.find("[frequency]"), text.find("[[tool]]") - text.find("[frequency]"));
+  text.erase(text.find("[holder]"));
+  const std::filesystem::path file = folder_.file("assembly.toml", text + "[holder]\nreceptances = \"holder.uff\"\n");
+  formats::write_frfs(folder_.at("tip.uff"),
+                      coupling::tip_frfs(whole, Eigen::VectorXd::LinSpaced(500, 60.25, 559.25)).frfs);
+  const TipPrediction prediction = predict_tip(file, folder_.at("tip.uff"));
+  EXPECT_EQ(prediction.tip.frfs.frequency_hz.size(), 601);
+  EXPECT_LT(prediction.error.at(0).error.relative, 0.01) << "a straight line between the lines would be 0.02 away";
+  EXPECT_NEAR(prediction.peaks.at(0).frequency_hz, 275.0, 0.2);
+}
+
+TEST_F(Predicted, SaysWhatCannotBeCompared) {
+  const auto refusal = [&](const modal::FrfSet& set) {
+    formats::write_frfs(folder_.at("tip.json"), set);
+    return test::refusal(
+        [&] { static_cast<void>(predict_tip(examples / "joint-bar/rigid.toml", folder_.at("tip.json"))); });
+  };
+  modal::FrfSet set{.frequency_hz = Eigen::Vector2d(2000.0, 3000.0), .frfs = {}};
+  set.frfs.push_back({.name = modal::parse_frf_name("xx"), .receptance = Eigen::Vector2cd(1e-6, 2e-6)});
+  EXPECT_NE(refusal(set).find("no line in the predicted range, 1 to 1000 Hz"), std::string::npos) << refusal(set);
+  set.frequency_hz *= 0.1;
+  set.frfs[0].name = modal::parse_frf_name("1z:1z");
+  EXPECT_NE(refusal(set).find("none of the FRFs that are predicted"), std::string::npos) << refusal(set);
+  EXPECT_NE(refusal(set).find("without a number"), std::string::npos) << refusal(set);
+  set.frfs[0].name = modal::parse_frf_name("1x:1x");
+  formats::write_frfs(folder_.at("tip.json"), set);
+  EXPECT_EQ(predict_tip(examples / "joint-bar/rigid.toml", folder_.at("tip.json")).error.size(), 1U);
+}
+
+// A round tool is fitted in x alone; fitted in both directions, the FRFs of the plan's own file give the same modes.
+TEST_F(Predicted, PlanStandsOnTheModesOfItsTipFrfs) {
+  const PlanResult predicted = run_job(job(assembly()), 1);
+  ASSERT_TRUE(predicted.prediction->round);
+  EXPECT_LT(predicted.fit->relative_error, 0.02) << "hysteretic damping, viscous modes";
+  ASSERT_EQ(predicted.recommendation.status, decision::Recommendation::Status::found);
+  write_plan(folder_.at("out"), predicted);
+  const modal::FrfSet tip = formats::read_frfs({folder_.at("out") / "tip.uff"}).set;
+  const modal::ModalModel both = modal::fit_modes(tip, {.band_low_hz = 1500.0, .band_high_hz = 4000.0}).model;
+  ASSERT_EQ(both.modes.size(), predicted.model.modes.size());
+  const Eigen::Vector2d near_hz(2600.0, 2900.0);
+  const modal::FrfSet expected = modal::synthesize(both, near_hz);
+  const modal::FrfSet found = modal::synthesize(predicted.model, near_hz);
+  for (const char* name : {"xx", "yy"}) {
+    const Eigen::VectorXcd& exact = expected.find(modal::parse_frf_name(name))->receptance;
+    EXPECT_LT((found.find(modal::parse_frf_name(name))->receptance - exact).norm(), 5e-3 * exact.norm());
+  }
+  EXPECT_EQ(predicted.uncertain.samples, 0) << "a fit without noise knows nothing of the prediction's error";
+  const auto json = nlohmann::json::parse(formats::read_file(folder_.at("out") / "plan.json"))["assembly"];
+  EXPECT_EQ(json["tool"].size(), 2U);
+  EXPECT_NEAR(json["tool"][0]["length_mm"].get<double>(), 26.0, 1e-9);
+  EXPECT_NEAR(json["joint"]["rotational_stiffness_n_m_per_rad"].get<double>(), 2.5e4, 1e-6);
+  EXPECT_EQ(json["holder"]["segments"].size(), 3U);
+  EXPECT_TRUE(json["relative_error"].is_null());
+  EXPECT_NEAR(json["peaks"][0]["frequency_hz"].get<double>(), 2734.0, 2.0);
+  const report::Report report = make_report(predicted, {});
+  ASSERT_EQ(report.frfs.size(), 2U);
+  EXPECT_EQ(report.frfs[1].measured.size(), 0);
+  EXPECT_EQ(report.frfs[1].predicted.size(), report.frf_frequency_hz.size());
+  EXPECT_EQ(report.frfs[1].fitted.size(), report.frf_frequency_hz.size());
+  EXPECT_NE(report::report_html(report).find("class=\"assembly\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace robomill::jobs

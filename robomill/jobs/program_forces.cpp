@@ -1,0 +1,263 @@
+#include "robomill/jobs/program_forces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/program/files/program_files.hpp"
+#include "robomill/robot/choose.hpp"
+#include "robomill/robot/inverse.hpp"
+#include "robomill/robot/stiffness.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+using cutting::BlockForce;
+
+std::string where(const std::filesystem::path& program, const program::Block& block) {
+  return fmt::format("{}:{}", program.string(), block.line);
+}
+
+/// Why the robot cannot stand where a block ends.
+std::string reason(const robot::Choice& choice) {
+  switch (choice.status) {
+    case robot::Choice::Status::out_of_reach:
+      return choice.out_of_reach_m > 0.0
+                 ? fmt::format("is out of the robot's reach by {:.4g} mm", choice.out_of_reach_m / units::mm)
+                 : fmt::format("asks the wrist to bend {:.3g}° too far", choice.out_of_reach_rad / units::deg);
+    case robot::Choice::Status::outside_limits:
+      return fmt::format("takes joint {} {:.3g}° beyond its limit", choice.joint + 1, choice.beyond_rad / units::deg);
+    case robot::Choice::Status::singular:
+      return fmt::format("is singular for the robot (condition number {:.3g})", choice.condition_number);
+    case robot::Choice::Status::jump:
+      return fmt::format("makes a joint jump by {:.3g}°", choice.travel_rad / units::deg);
+    case robot::Choice::Status::found:
+      break;
+  }
+  return "can be reached";
+}
+
+/// An error that names no place is one of the cell.
+template <class F>
+void told_of_cell(const formats::CellFile& cell, F&& f) {
+  try {
+    f();
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    if (!parts.where.empty()) throw;
+    parts.where = cell.path.string();
+    throw InvalidInput(std::move(parts));
+  }
+}
+
+InvalidInput out_of_the_way(const std::filesystem::path& path, const program::Block& block, std::string rule) {
+  return InvalidInput(
+      InvalidInput::Parts{.where = where(path, block),
+                          .field = "this block",
+                          .rule = std::move(rule),
+                          .hint = "Move [workpiece] origin_mm, or turn the flange with robot.gamma_deg"});
+}
+
+/// Joints at the end of every block of an arm without a spherical wrist: by Newton's method from one block to the next.
+std::vector<robot::Position6> joints_near(const formats::CellFile& file, const program::Program& program,
+                                          const std::vector<Eigen::Isometry3d>& flanges,
+                                          const std::filesystem::path& path) {
+  const robot::Arm& arm = file.cell.arm;
+  if (arm.size() != 6 || file.start_joints.size() != 6) {
+    throw InvalidInput("robot.start_joints_deg", "must be given for an arm without a spherical wrist, of six joints",
+                       "It is followed from there, near the program's first position");
+  }
+  std::vector<robot::Position6> out;
+  out.reserve(flanges.size());
+  robot::Position6 at(file.start_joints.data());
+  for (std::size_t i = 0; i < flanges.size(); ++i) {
+    const robot::NearResult near = robot::solve_near(arm, flanges[i], at);
+    if (near.status != robot::NearResult::Status::converged) {
+      throw out_of_the_way(path, program.blocks[i],
+                           fmt::format("was not reached: {:.3g} mm and {:.3g}° are left", near.error_m / units::mm,
+                                       near.error_rad / units::deg));
+    }
+    at = near.position;
+    const robot::LimitCheck limits = robot::within_limits(arm, at);
+    if (!limits.inside) {
+      throw out_of_the_way(
+          path, program.blocks[i],
+          fmt::format("takes joint {} {:.3g}° beyond its limit", limits.joint + 1, -limits.distance / units::deg));
+    }
+    out.push_back(at);
+  }
+  return out;
+}
+
+/// Joints at the end of every block.
+std::vector<robot::Position6> joints_along(const formats::CellFile& file, const program::Program& program,
+                                           const std::filesystem::path& path) {
+  const robot::Cell& cell = file.cell;
+  std::vector<Eigen::Isometry3d> flanges;
+  flanges.reserve(program.blocks.size());
+  for (const program::Block& block : program.blocks) {
+    flanges.push_back(robot::flange_pose(
+        cell, {.tip_m = block.end.tip_m, .axis = block.end.axis, .gamma_rad = file.redundant_gamma_rad}));
+  }
+  const std::optional<robot::SphericalWristInverse> inverse = spherical_wrist(cell.arm);
+  if (!inverse) return joints_near(file, program, flanges, path);
+  std::optional<robot::Position6> start;
+  if (file.start_joints.size() == 6) start = robot::Position6(file.start_joints.data());
+  const robot::Followed way = robot::follow(cell.arm, *inverse, flanges, start, {.point_m = robot::tip_point(cell)});
+  if (way.status != robot::Choice::Status::found) {
+    throw out_of_the_way(path, program.blocks[way.reached], reason(way.last));
+  }
+  return way.position_rad;
+}
+
+/// Compliance of the tip in W at the end of each block, without load: what forces are weighed by.
+std::vector<Eigen::Matrix3d> compliances(const formats::CellFile& file, const std::vector<robot::Position6>& joints) {
+  const robot::Cell& cell = file.cell;
+  const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
+  std::vector<Eigen::Matrix3d> out(joints.size(), Eigen::Matrix3d::Identity());
+  parallel_for(joints.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const robot::Stiffness stiffness = robot::stiffness(cell.arm, joints[i], robot::tip_point(cell), {});
+      if (stiffness.status == robot::Stiffness::Status::singular) continue;
+      out[i] = base_from_work.transpose() * stiffness.compliance.topLeftCorner<3, 3>() * base_from_work;
+    }
+  });
+  return out;
+}
+
+/// How the tip is displaced by a force in W, at the end of a block.
+Eigen::Vector3d deflection(const formats::CellFile& file, const program::Block& block,
+                           const std::filesystem::path& path, const Eigen::Vector3d& force_n, BlockResult& row) {
+  const robot::Cell& cell = file.cell;
+  const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
+  const Eigen::Vector3d force = base_from_work * force_n;
+  const robot::Stiffness stiffness = robot::stiffness(cell.arm, row.joints, robot::tip_point(cell), {.force_n = force});
+  if (stiffness.status == robot::Stiffness::Status::singular) {
+    throw out_of_the_way(
+        path, block, fmt::format("is singular for the robot (condition number {:.3g})", stiffness.condition_number));
+  }
+  if (stiffness.status == robot::Stiffness::Status::buckled) {
+    throw InvalidInput(InvalidInput::Parts{.where = where(path, block),
+                                           .field = "this block",
+                                           .rule = "bends the robot beyond what its joints hold",
+                                           .hint = "Is joint_stiffness_n_m_per_rad right?"});
+  }
+  row.condition_number = stiffness.condition_number;
+  return base_from_work.transpose() * (stiffness.compliance.topLeftCorner<3, 3>() * force);
+}
+
+/// The tip's deflection under the forces of every block.
+void bend(const formats::CellFile& file, const std::vector<robot::Position6>& joints, const program::Program& program,
+          const std::filesystem::path& path, std::vector<BlockResult>& rows) {
+  parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      BlockResult& row = rows[i];
+      row.joints = joints[i];
+      row.peak_deflection_m = deflection(file, program.blocks[i], path, row.force.heaviest_force_n, row);
+      row.deflection_m = deflection(file, program.blocks[i], path, row.force.mean_force_n, row);
+    }
+  });
+}
+
+ProgramStock stock_of(const formats::ForcesFile& file, const program::Program& program) {
+  if (file.stock) return {.stock = *file.stock};
+  const cutting::DefaultStock assumed =
+      cutting::default_stock(program, file.cutter, file.dexel_m, file.cut.axial_depth_m);
+  return {.stock = assumed.stock, .assumed = assumed};
+}
+
+/// The first of the blocks for which something is so, and how many they are.
+template <class Is>
+void warn_of(const ProgramForces& program, std::vector<std::string>& warnings, Is is, const char* text) {
+  std::size_t count = 0;
+  std::size_t first = 0;
+  for (const BlockResult& row : program.blocks) {
+    if (!is(row.force)) continue;
+    if (count == 0) first = program.program.blocks[row.force.block].line;
+    ++count;
+  }
+  if (count > 0)
+    warnings.push_back(fmt::format("{} block{} {}, the first in line {}.", count, count == 1 ? "" : "s", text, first));
+}
+
+}  // namespace
+
+std::string stock_text(const ProgramForces& program) {
+  if (!program.stock) return {};
+  const Eigen::Vector3d low = program.stock->stock.lowest_m() / units::mm;
+  const Eigen::Vector3d high = program.stock->stock.highest_m() / units::mm;
+  const std::string box = fmt::format("from ({:.5g}, {:.5g}, {:.5g}) to ({:.5g}, {:.5g}, {:.5g}) mm", low.x(), low.y(),
+                                      low.z(), high.x(), high.y(), high.z());
+  if (!program.stock->assumed) return box;
+  const cutting::DefaultStock& assumed = *program.stock->assumed;
+  const std::size_t line = program.program.blocks[assumed.highest_pass_block].line;
+  const std::string top =
+      assumed.top == cutting::DefaultStock::Top::program_zero
+          ? fmt::format("its top at z = 0, below which every pass lies (the highest at {:.5g} mm, line {})",
+                        assumed.highest_pass_m / units::mm, line)
+          : fmt::format("its top cut.axial_depth_mm above the highest pass (z = {:.5g} mm, line {})",
+                        assumed.highest_pass_m / units::mm, line);
+  return fmt::format("assumed, since none is given: a box {}, {}", box, top);
+}
+
+ProgramForces run_program(const formats::ForcesFile& file, const std::optional<formats::CellFile>& cell,
+                          const std::filesystem::path& path, std::vector<std::string>& warnings,
+                          std::vector<std::string>& notes, Progress& progress) {
+  const auto begun = std::chrono::steady_clock::now();
+  ProgramForces out;
+  out.program = formats::read_program(path, cell ? formats::program_reading(*cell) : formats::ProgramReading{});
+  if (out.program.blocks.empty()) {
+    throw InvalidInput(InvalidInput::Parts{.where = path.string(), .rule = "has no move"});
+  }
+  std::vector<robot::Position6> joints;
+  if (cell) told_of_cell(*cell, [&] { joints = joints_along(*cell, out.program, path); });
+  if (!file.neighbours) {
+    out.stock = file.located([&] { return stock_of(file, out.program); });
+  }
+  cutting::ProgramForceOptions options = {.spindle_speed_rad_per_s = file.motion.spindle_speed_rad_per_s,
+                                          .power_time_s = file.power_time_s,
+                                          .force = file.force};
+  if (cell) {
+    options.weight = [compliance = compliances(*cell, joints)](std::size_t block, const Eigen::Vector3d& force_n) {
+      return (compliance[block] * force_n).norm();
+    };
+  }
+  const std::vector<BlockForce> forces = file.located([&] {
+    if (file.neighbours) {
+      return cutting::local_program_forces(out.program, file.cutter, file.coefficients, file.cut.axial_depth_m, options,
+                                           progress);
+    }
+    cutting::Workpiece workpiece(out.stock->stock, file.dexel_m);
+    return cutting::program_forces(out.program, file.cutter, file.coefficients, workpiece, options, progress);
+  });
+  out.blocks.reserve(forces.size());
+  for (const BlockForce& force : forces) {
+    out.blocks.push_back({.force = force});
+    out.removed_volume_m3 += force.removed_volume_m3;
+  }
+  if (cell) told_of_cell(*cell, [&] { bend(*cell, joints, out.program, path, out.blocks); });
+  warn_of(
+      out, warnings, [](const BlockForce& f) { return f.shank_depth_m > 0.0; }, "run the shank into material");
+  warn_of(
+      out, warnings, [](const BlockForce& f) { return f.rapid_in_material; }, "move through material in rapid");
+  const double least_m3 = std::pow(file.dexel_m, 3);  // less is what rays see of a cutter that slides along
+  warn_of(
+      out, warnings,
+      [&](const BlockForce& f) { return !f.cuts() && !f.rapid_in_material && f.removed_volume_m3 > least_m3; },
+      "remove material where no tooth was found in it, and have no force");
+  if (!out.program.skipped.empty()) {
+    notes.push_back(fmt::format("{} words of the program were not read, the first in line {}: {}.",
+                                out.program.skipped.size(), out.program.skipped.front().line,
+                                out.program.skipped.front().what));
+  }
+  notes.insert(notes.end(), out.program.notes.begin(), out.program.notes.end());
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return out;
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,322 @@
+#include "robomill/jobs/smooth.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/jobs/files/cell_toml.hpp"
+#include "robomill/path/drive.hpp"
+#include "robomill/path/files/smoothing_toml.hpp"
+#include "robomill/path/files/trajectory.hpp"
+#include "robomill/path/smooth.hpp"
+#include "robomill/program/files/program_files.hpp"
+#include "robomill/report/smooth_recorder.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+/// Of the tolerances, what arcs' chords and the great circles of turning axes may use.
+constexpr double chord_share = 0.1, turn_share = 0.05;
+/// … but not less: what a reader takes.
+constexpr double least_chord_m = 1e-9, least_turn_rad = 1e-9;
+
+/// A machine with a program before it.
+struct Bench {
+  formats::CellFile cell;
+  std::unique_ptr<robot::Kinematics> machine;
+  formats::SmoothingFile smoothing;
+  std::array<bool, 6> slides = {};
+  std::unique_ptr<formats::ProgramFile> program;
+  path::PostureChoice posture;
+};
+
+std::array<bool, 6> slides_of(const formats::CellFile& cell) {
+  std::array<bool, 6> slides = {};
+  if (cell.hybrid) {
+    slides.fill(true);
+    return slides;
+  }
+  const std::vector<robot::Joint>& joints = cell.cell.arm.joints;
+  for (std::size_t i = 0; i < std::min(joints.size(), slides.size()); ++i) slides.at(i) = joints[i].prismatic;
+  return slides;
+}
+
+path::PostureChoice posture_of(const Bench& bench) {
+  path::PostureOptions options;
+  if (bench.cell.gamma_given) options.gamma_rad = bench.cell.redundant_gamma_rad;
+  options.free_gamma = bench.smoothing.free_gamma;
+  const std::vector<double>& start = bench.cell.start_joints;
+  if (!start.empty()) {
+    robot::Position6 joints = robot::Position6::Zero();
+    for (std::size_t i = 0; i < std::min<std::size_t>(start.size(), 6); ++i) {
+      joints[static_cast<Eigen::Index>(i)] = start[i];
+    }
+    options.start = joints;
+  }
+  return path::choose_posture(*bench.program, *bench.machine, options);
+}
+
+/// Calls f; what it refuses without a place is of the program.
+template <class F>
+auto told_of_program(const std::filesystem::path& program, F&& f) {
+  try {
+    return f();
+  } catch (const InvalidInput& error) {
+    if (!error.parts().where.empty()) throw;
+    InvalidInput::Parts parts = error.parts();
+    parts.where = program.string();
+    throw InvalidInput(std::move(parts));
+  }
+}
+
+Bench prepare(const SmoothJob& job) {
+  Bench bench;
+  bench.cell = formats::read_cell(job.cell, formats::Robots::any);
+  bench.machine = formats::kinematics(bench.cell);
+  bench.smoothing = formats::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), job.method);
+  bench.slides = slides_of(bench.cell);
+  formats::ProgramReading reading = formats::program_reading(bench.cell);
+  reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
+  reading.axis_tolerance_rad = std::max(turn_share * bench.smoothing.options.axis_tolerance_rad, least_turn_rad);
+  bench.program = formats::open_program(job.program, reading);
+  bench.posture = told_of_program(job.program, [&] { return posture_of(bench); });
+  return bench;
+}
+
+std::unique_ptr<formats::SampleFile> open_output(const SmoothJob& job, const Bench& bench) {
+  if (job.output.empty()) return nullptr;
+  formats::TrajectoryInfo info;
+  info.joints = bench.machine->joints();
+  info.slides = bench.slides;
+  info.limits = bench.machine->limits();
+  info.sample_period_s = bench.smoothing.options.sample_period_s;
+  info.program_period_s = job.program_period_s;
+  info.cell = job.cell.filename().string();
+  info.program = job.program.filename().string();
+  info.end_effector = bench.cell.end_effector;
+  return formats::open_sample_file(job.output, info);
+}
+
+/// The drives that [smoothing] tells of; none where it does not.
+std::vector<path::Drive> drives_of(const formats::SmoothingFile& smoothing) {
+  std::vector<path::Drive> drives(smoothing.drive_bandwidth_hz.size());
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    path::Drive& drive = drives[i];
+    drive.natural_frequency_hz = smoothing.drive_bandwidth_hz[i];
+    drive.damping_ratio = smoothing.drive_damping_ratio;
+    if (i >= smoothing.flexible_joint_hz.size()) continue;
+    // Of the load's equation only the ratios count.
+    const double omega = 2.0 * std::numbers::pi * smoothing.flexible_joint_hz[i];
+    drive.load_inertia = 1.0;
+    drive.joint_stiffness = omega * omega;
+    drive.joint_damping = 2.0 * smoothing.flexible_joint_damping_ratio * omega;
+  }
+  return drives;
+}
+
+/// Drives that follow a trajectory sample by sample.
+class Follower {
+ public:
+  Follower(const std::vector<path::Drive>& drives, double sample_period_s)
+      : model_(drives, sample_period_s,
+               [this](double, std::span<const double> error) { std::ranges::copy(error, behind_.begin()); }) {}
+  Follower(const Follower&) = delete;
+  Follower& operator=(const Follower&) = delete;
+  Follower(Follower&&) = delete;
+  Follower& operator=(Follower&&) = delete;
+  ~Follower() = default;
+
+  const robot::Position6& follow(const path::Sample& sample) {
+    model_.add(std::span(&sample, 1));
+    return behind_;
+  }
+  [[nodiscard]] std::vector<double> worst() const {
+    std::vector<double> out;
+    for (const path::TrackingError::Joint& joint : model_.result().joints) out.push_back(joint.max);
+    return out;
+  }
+
+ private:
+  robot::Position6 behind_ = robot::Position6::Zero();
+  path::DriveModel model_;
+};
+
+/// One method over the whole program.
+/// @param file      takes the samples; may be null
+/// @param recorder  as well
+formats::SmoothedBy smooth_by(path::Method method, const Bench& bench, formats::SampleFile* file,
+                              report::MotionRecorder* recorder, Progress& progress) {
+  path::SmoothingOptions options = bench.smoothing.options;
+  options.method = method;
+  formats::SmoothedBy out{.method = method};
+  const std::vector<path::Drive> drives = drives_of(bench.smoothing);
+  std::optional<Follower> follower;
+  const auto take = [&](std::span<const path::Sample> samples) {
+    if (file != nullptr) file->add(samples);
+    if (recorder != nullptr) {
+      recorder->add(samples);
+    } else if (follower) {
+      for (const path::Sample& sample : samples) follower->follow(sample);
+    }
+  };
+  const auto restart = [&] {
+    if (file != nullptr) file->restart();
+    if (!drives.empty()) follower.emplace(drives, options.sample_period_s);
+    if (recorder == nullptr) return;
+    recorder->restart(follower ? report::Tracking([&](const path::Sample& sample) { return follower->follow(sample); })
+                               : report::Tracking());
+  };
+  try {
+    out.summary = path::smooth(*bench.program, *bench.machine, bench.posture.posture, options, take, restart, progress);
+  } catch (const InvalidInput& error) {
+    throw formats::located_in_smoothing(bench.cell.path, error);
+  }
+  if (follower) out.tracking_error = follower->worst();
+  return out;
+}
+
+std::vector<path::Method> methods_of(const SmoothJob& job, path::Method first) {
+  std::vector<path::Method> methods = {first};
+  if (!job.compare) return methods;
+  std::ranges::copy_if(formats::smoothing_methods(), std::back_inserter(methods),
+                       [&](path::Method method) { return method != first; });
+  return methods;
+}
+
+/// What a controller makes of a joint program that leaves its tolerances, and what would help.
+std::string program_note(const formats::ProgramRun& run) {
+  const double tip_m = std::max(run.tip_deviation_m, run.tip_error_m);
+  const double axis_rad = std::max(run.axis_deviation_rad, run.axis_error_rad);
+  std::string note = fmt::format(
+      "Joints interpolated between the program's points leave the programmed path by {:.4g} mm and {:.4g}° and the "
+      "trajectory by {:.4g} mm and {:.4g}°; the tolerances are {:.4g} mm and {:.4g}°.",
+      run.tip_error_m / units::mm, run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm,
+      run.axis_deviation_rad / units::deg, run.tip_tolerance_m / units::mm, run.axis_tolerance_rad / units::deg);
+  if (run.would_hold_s > 0.0) {
+    return note + fmt::format(" --program-period-ms {:.6g} would hold.", run.would_hold_s / units::ms);
+  }
+  note += run.fixed_cycle ? " No shorter cycle of whole samples holds." : " Points at every sample do not hold.";
+  return note + fmt::format(
+                    " Smooth with a shorter sample_period_ms or less acceleration, or allow tip_tolerance_mm = {:.4g} "
+                    "and axis_tolerance_deg = {:.4g}.",
+                    std::max(tip_m, run.tip_tolerance_m) / units::mm,
+                    std::max(axis_rad, run.axis_tolerance_rad) / units::deg);
+}
+
+/// A joint program that its controller is not known to load, and what would help.
+std::string length_note(const formats::ProgramRun& run) {
+  return fmt::format(
+      "The robot program has {} points; such a controller is known to load about {}. {}", run.points, run.most_points,
+      run.fixed_cycle ? "Write .servoj, whose rows a client sends, give a longer --program-period-ms, or split the NC "
+                        "program where the tool is clear of the part."
+                      : "Split the NC program where the tool is clear of the part.");
+}
+
+void tell(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
+  formats::SmoothedProgram& smoothed = result.smoothed;
+  smoothed.program = job.program.filename().string();
+  smoothed.cell = job.cell.filename().string();
+  smoothed.slides = bench.slides;
+  smoothed.skipped = bench.program->skipped();
+  std::vector<std::string>& notes = smoothed.notes;
+  notes.insert(notes.end(), bench.cell.notes.begin(), bench.cell.notes.end());
+  const std::vector<std::string> mended = bench.program->notes();
+  notes.insert(notes.end(), mended.begin(), mended.end());
+  const std::size_t left_out = bench.program->skipped_count();
+  if (left_out > smoothed.skipped.size()) {
+    notes.push_back(fmt::format("{} statements of the program were left out; the first {} are listed.", left_out,
+                                smoothed.skipped.size()));
+  }
+  if (result.trajectory_holds() && smoothed.robot_program) {
+    if (!smoothed.robot_program->keeps_tolerances()) notes.push_back(program_note(*smoothed.robot_program));
+    if (smoothed.robot_program->too_long()) notes.push_back(length_note(*smoothed.robot_program));
+  }
+  if (!bench.posture.whole) {
+    notes.push_back(
+        fmt::format("The machine's posture was chosen by the program's first {} blocks.", bench.posture.blocks));
+  }
+}
+
+}  // namespace
+
+SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
+  const Bench bench = prepare(job);
+  SmoothResult result;
+  result.options = bench.smoothing.options;
+  result.posture = bench.posture;
+  result.turns_about_axis = bench.machine->turns_about_axis();
+  std::unique_ptr<formats::SampleFile> file = open_output(job, bench);
+  std::optional<report::MotionRecorder> recorder;
+  if (job.record) {
+    result.outline = report::outline(*bench.program, result.options.tip_tolerance_m);
+    recorder.emplace(*bench.machine, bench.slides, result.options.sample_period_s, result.outline.corners);
+  }
+  for (const path::Method method : methods_of(job, result.options.method)) {
+    const bool asked_for = result.smoothed.methods.empty();
+    try {
+      // What the cell says may suit one method and not another.
+      if (!asked_for) {
+        static_cast<void>(formats::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), method));
+      }
+      result.smoothed.methods.push_back(told_of_program(job.program, [&] {
+        return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr, progress);
+      }));
+    } catch (const InvalidInput& error) {
+      if (asked_for) throw;
+      result.smoothed.notes.push_back(fmt::format("{} is left out: {}", formats::name_of(method), error.what()));
+      continue;
+    }
+    if (asked_for && file != nullptr) {
+      result.smoothed.robot_program = told_of_program(job.program, [&] {
+        return file->settle(*bench.program, *bench.machine, result.options, result.trajectory_holds(), progress);
+      });
+    }
+    if (recorder) {
+      result.motions.push_back(recorder->motion());
+      result.ways.push_back(recorder->ways());
+    }
+  }
+  tell(result, job, bench);
+  if (file == nullptr) return result;
+  result.output = job.output;
+  result.smoothed.written = result.holds() || job.keep_breaches;
+  if (result.smoothed.written) {
+    result.trajectory = std::move(file);
+  } else {
+    std::error_code ignored;
+    result.stale = std::filesystem::is_regular_file(job.output, ignored);
+  }
+  if (result.stale) {
+    result.smoothed.notes.push_back(
+        fmt::format("The {} of an earlier run was removed: this one has none.", job.output.filename().string()));
+  }
+  if (job.place) place(result);
+  return result;
+}
+
+void place(const SmoothResult& result) {
+  if (result.trajectory) result.trajectory->commit();
+  if (result.stale) formats::remove_file(result.output);
+}
+
+double joint_share(const path::CheckResult& check) {
+  double share = 0.0;
+  for (const path::CheckResult::Joint& joint : check.joints) {
+    for (const path::Usage* usage : {&joint.velocity, &joint.acceleration, &joint.jerk}) {
+      if (usage->limit > 0.0) share = std::max(share, usage->max / usage->limit);
+    }
+  }
+  return share;
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,67 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/path/files/smooth_json.hpp"
+#include "robomill/path/files/trajectory.hpp"
+#include "robomill/path/options.hpp"
+#include "robomill/path/posture.hpp"
+#include "robomill/report/smooth.hpp"
+#include "robomill/report/smooth_outline.hpp"
+
+namespace robomill::jobs {
+
+/// A program to smooth and what to make of it.
+struct SmoothJob {
+  std::filesystem::path program, cell;
+  std::filesystem::path output = {};        ///< of the trajectory, by its ending; empty: none
+  std::optional<path::Method> method = {};  ///< not given: the cell's
+  bool compare = false;                     ///< all other methods too
+  bool keep_breaches = false;               ///< write a trajectory that breaks limits all the same
+  bool record = true;                       ///< curves for a report
+  double program_period_s = 0.0;            ///< of joint programs; 0: formats::TrajectoryInfo's
+  bool place = true;                        ///< at the end; else place() is the caller's to call
+};
+
+struct SmoothResult {
+  formats::SmoothedProgram smoothed = {};
+  std::filesystem::path output = {};                     ///< of the trajectory, as the job says
+  bool stale = false;                                    ///< a file of an earlier run stood there and goes
+  std::shared_ptr<formats::SampleFile> trajectory = {};  ///< whole, beside its place
+  path::SmoothingOptions options = {};
+  path::PostureChoice posture = {};
+  bool turns_about_axis = false;
+  report::ProgramOutline outline = {};                   ///< the rest only of a job that records
+  std::vector<report::Motion> motions = {};              ///< one a method
+  std::vector<std::vector<Eigen::Matrix2Xd>> ways = {};  ///< one a method and corner
+
+  [[nodiscard]] const formats::SmoothedBy& first() const { return smoothed.methods.front(); }
+  /// Whether the trajectory asked for breaks no limit.
+  [[nodiscard]] bool trajectory_holds() const { return first().summary.check.violations() == 0; }
+  /// … and the joint program made of it, where there is one, keeps the tolerances as its controller runs it.
+  [[nodiscard]] bool holds() const {
+    return trajectory_holds() && (!smoothed.robot_program || smoothed.robot_program->holds());
+  }
+};
+
+/// Smooths a program and writes its trajectory, or the joint program made of it, if it holds every limit; if not, a
+/// file that stands in its place from an earlier run is taken away.
+/// @throws InvalidInput with file, line, key and value, or with what cannot be reached; Interrupted
+[[nodiscard]] ROBOMILL_API SmoothResult run_smooth(const SmoothJob& job, Progress& progress = Progress::none());
+
+/// Moves the trajectory of a job that does not place it to its place, or takes away what stands there from an earlier
+/// run. Once. @throws InvalidInput if that fails
+ROBOMILL_API void place(const SmoothResult& result);
+
+/// The part of the report on it. @param result  of a job that recorded
+[[nodiscard]] ROBOMILL_API report::Smooth smooth_report(const SmoothResult& result);
+
+/// The most of a joint's velocity, acceleration or jerk limit that a trajectory uses.
+[[nodiscard]] ROBOMILL_API double joint_share(const path::CheckResult& check);
+
+}  // namespace robomill::jobs

@@ -1,0 +1,35 @@
+#include "robomill/modal/files/fit_toml.hpp"
+
+#include <gtest/gtest.h>
+
+#include "robomill/base/test_support.hpp"
+
+namespace robomill::formats {
+namespace {
+
+TEST(FitToml, ReadsMethodBandAndNumbers) {
+  const test::Folder folder;
+  const modal::FitOptions o = read_fit_options(folder.file(
+      "modes.toml",
+      "[fit]\nmethod = \"lscf\"\nweighting = \"relative\"\nband_hz = [500, 3500]\nmodes = 6\nstable_mac = 0.9\n"));
+  EXPECT_EQ(o.method, modal::FitMethod::lscf);
+  EXPECT_EQ(o.weighting, modal::Weighting::relative);
+  EXPECT_EQ(o.band_low_hz, 500.0);
+  EXPECT_EQ(o.band_high_hz, 3500.0);
+  EXPECT_EQ(o.modes, 6);
+  EXPECT_EQ(o.stable_mac, 0.9);
+}
+
+TEST(FitToml, RefusesInTheFilesWords) {
+  const test::Folder folder;
+  const auto say = [&](const char* text) {
+    return test::refusal([&] { static_cast<void>(read_fit_options(folder.file("modes.toml", text))); });
+  };
+  EXPECT_NE(say("[fit]\nmax_damping_ratio = -1\n").find("modes.toml:2: fit.max_damping_ratio = -1"), std::string::npos);
+  EXPECT_NE(say("[fit]\nband_hz = [3, 2]\n").find("low < high"), std::string::npos);
+  EXPECT_NE(say("[fit]\nmethod = \"magic\"\n").find("\"hybrid\""), std::string::npos);
+  EXPECT_NE(say("[fit]\nmods = 3\n").find("modes"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace robomill::formats

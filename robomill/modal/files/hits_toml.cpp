@@ -1,0 +1,179 @@
+#include "robomill/modal/files/hits_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/records.hpp"
+#include "robomill/io/toml_file.hpp"
+
+namespace robomill::formats {
+namespace {
+
+/// How a record's numbers become N and the SI unit of the response.
+struct Sensors {
+  double force_factor = 1.0;
+  double response_factor = 1.0;
+  double scale = 1.0;  ///< full scale of a WAV
+  bool has_scale = false;
+  double sample_rate_hz = 0.0;
+};
+
+constexpr double millivolts_per_volt = 1e3;
+
+const char* unit_of(modal::ResponseKind kind) {
+  switch (kind) {
+    case modal::ResponseKind::acceleration:
+      return "m_per_s2";
+    case modal::ResponseKind::velocity:
+      return "m_per_s";
+    case modal::ResponseKind::displacement:
+      break;
+  }
+  return "m";
+}
+
+void read_options(TomlFile& file, modal::HitOptions& o) {
+  file.choice<modal::ResponseKind>("acquisition.response",
+                                   {{"acceleration", modal::ResponseKind::acceleration},
+                                    {"velocity", modal::ResponseKind::velocity},
+                                    {"displacement", modal::ResponseKind::displacement}},
+                                   o.response);
+  file.choice<modal::Estimator>(
+      "acquisition.estimator",
+      {{"H1", modal::Estimator::h1}, {"H2", modal::Estimator::h2}, {"Hv", modal::Estimator::hv}}, o.estimator);
+  file.choice<modal::ExponentialWindow>("acquisition.exponential_window",
+                                        {{"automatic", modal::ExponentialWindow::automatic},
+                                         {"off", modal::ExponentialWindow::off},
+                                         {"on", modal::ExponentialWindow::on}},
+                                        o.exponential_window);
+  file.boolean("acquisition.force_window", o.force_window);
+  file.boolean("acquisition.remove_added_damping", o.remove_added_damping);
+  const auto number = [&file](const std::string& key, const char* member, double& out) {
+    file.number("acquisition." + key, member, 1.0, out);
+  };
+  number("accelerometer_mass_kg", "accelerometer_mass_kg", o.accelerometer_mass_kg);
+  number("min_frequency_hz", "min_frequency_hz", o.min_frequency_hz);
+  number("max_frequency_hz", "max_frequency_hz", o.max_frequency_hz);
+  number("frequency_resolution_hz", "frequency_resolution_hz", o.frequency_resolution_hz);
+  number("force_overload_n", "force_overload_n", o.force_overload_n);
+  number(fmt::format("response_overload_{}", unit_of(o.response)), "response_overload", o.response_overload);
+  number("double_hit_limit", "double_hit_limit", o.double_hit_limit);
+  number("force_window_s", "force_window_s", o.force_window_s);
+  number("exponential_time_constant_s", "exponential_time_constant_s", o.exponential_time_constant_s);
+}
+
+/// mV per unit, where the records hold volts; a sensor mounted the other way round may be negative.
+void sensitivity(TomlFile& file, const std::string& key, double& factor) {
+  double mv_per_unit = 0.0;
+  if (!file.number(key, key, 1.0, mv_per_unit)) return;
+  if (mv_per_unit == 0.0) throw file.refuse(key, "must not be 0", "It stands on the sensor's calibration sheet");
+  factor = millivolts_per_volt / mv_per_unit;
+}
+
+Sensors read_sensors(TomlFile& file, modal::ResponseKind kind) {
+  Sensors sensors;
+  sensitivity(file, "acquisition.force_mv_per_n", sensors.force_factor);
+  sensitivity(file, fmt::format("acquisition.response_mv_per_{}", unit_of(kind)), sensors.response_factor);
+  sensors.has_scale = file.number("acquisition.scale", "scale", 1.0, sensors.scale);
+  if (file.number("acquisition.sample_rate_hz", "sample_rate_hz", 1.0, sensors.sample_rate_hz) &&
+      !(sensors.sample_rate_hz > 0.0)) {
+    throw file.refuse("acquisition.sample_rate_hz", "must be > 0");
+  }
+  return sensors;
+}
+
+struct Direction {
+  modal::Dof dof;
+  bool against_axis = false;
+};
+
+/// "x", or "-x" against the axis.
+Direction direction(const TomlFile& file, const std::string& key, std::string_view text) {
+  const bool against = !text.empty() && text.front() == '-';
+  if (against) text.remove_prefix(1);
+  try {
+    return {.dof = modal::parse_dof(text), .against_axis = against};
+  } catch (const InvalidInput&) {
+    throw file.refuse(key, "must be a direction", "x, y or z; -x for a hit against the axis; 3x at point 3");
+  }
+}
+
+/// A column's name, or its number from 1 (as a number or as text).
+std::string column(TomlFile& file, const std::string& key) {
+  std::string name;
+  int number = 0;
+  if (file.is_number(key)) {
+    file.integer(key, key, number);
+    if (number < 1) throw file.refuse(key, "must be a column's name or its number from 1");
+    return std::to_string(number);
+  }
+  file.text(key, name);
+  return name;
+}
+
+double rate_of(const TomlFile& file, const std::string& key, const Record& record, double given_hz) {
+  if (record.sample_rate_hz <= 0.0 && given_hz <= 0.0) {
+    throw file.refuse(key, "has no time column, and acquisition.sample_rate_hz is missing");
+  }
+  if (record.sample_rate_hz > 0.0 && given_hz > 0.0 && std::abs(record.sample_rate_hz / given_hz - 1.0) > 1e-3) {
+    throw file.refuse(key, fmt::format("was sampled at {:.6g} Hz, not at acquisition.sample_rate_hz = {:.6g} Hz",
+                                       record.sample_rate_hz, given_hz));
+  }
+  return record.sample_rate_hz > 0.0 ? record.sample_rate_hz : given_hz;
+}
+
+modal::Hit read_hit(TomlFile& file, std::size_t index, const Sensors& sensors, std::vector<std::string>& notes) {
+  const std::string row = fmt::format("hits[{}].", index);
+  for (const char* key : {"file", "force", "force_direction", "responses"}) file.require(row + key);
+  std::filesystem::path path;
+  file.path(row + "file", path);
+  if (format_of(path) == Format::wav && !sensors.has_scale) {
+    throw file.refuse(row + "file", "is a WAV, and acquisition.scale is missing",
+                      "scale says what full scale means: volts where the sensors' mV per unit are given");
+  }
+  RecordOptions reading{.scale = sensors.scale};
+  if (file.has(row + "time")) reading.time = column(file, row + "time");
+  const Record record = file.locate([&] { return read_record(path, reading); });
+  notes.insert(notes.end(), record.notes.begin(), record.notes.end());
+
+  modal::Hit hit;
+  hit.file = path.string();
+  std::string text;
+  file.text(row + "force_direction", text);
+  const Direction push = direction(file, row + "force_direction", text);
+  hit.excitation = push.dof;
+  hit.against_axis = push.against_axis;
+  hit.sample_rate_hz = rate_of(file, row + "file", record, sensors.sample_rate_hz);
+  hit.force_n = record.column(column(file, row + "force")) * sensors.force_factor;
+  const std::vector<std::string> responses = file.keys(row + "responses");
+  if (responses.empty()) throw file.refuse(row + "responses", "must name a column for one direction at least");
+  for (const std::string& name : responses) {
+    const std::string key = row + "responses." + name;
+    const Direction sensed = direction(file, key, name);
+    hit.responses.push_back({.dof = sensed.dof,
+                             .samples = record.column(column(file, key)) * sensors.response_factor,
+                             .against_axis = sensed.against_axis});
+  }
+  return hit;
+}
+
+}  // namespace
+
+HitsFile read_hits(const std::filesystem::path& path) {
+  TomlFile file(path);
+  HitsFile out;
+  read_options(file, out.options);
+  const Sensors sensors = read_sensors(file, out.options.response);
+  file.locate([&] { out.options.validate(); });
+  if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] above each record");
+  for (std::size_t i = 0; i < file.tables("hits"); ++i) out.hits.push_back(read_hit(file, i, sensors, out.notes));
+  file.done();
+  return out;
+}
+
+}  // namespace robomill::formats

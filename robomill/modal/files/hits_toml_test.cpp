@@ -1,0 +1,140 @@
+#include "robomill/modal/files/hits_toml.hpp"
+
+#include <gtest/gtest.h>
+#include <sndfile.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+
+namespace robomill::formats {
+namespace {
+
+const std::string record = "time_s,force_v,ax,ay\n0,0,1,2\n0.001,0.5,3,4\n0.002,0,5,6\n";
+
+TEST(HitsToml, TurnsVoltsIntoUnitsAndNamesDirections) {
+  const test::Folder folder;
+  static_cast<void>(folder.file("a.csv", record));
+  const HitsFile file = read_hits(folder.file("hits.toml", R"([acquisition]
+response = "acceleration"
+estimator = "Hv"
+accelerometer_mass_kg = 0.004
+force_mv_per_n = 2.5
+response_mv_per_m_per_s2 = 10
+[[hits]]
+file = "a.csv"
+time = "time_s"
+force = "force_v"
+force_direction = "-x"
+responses = { x = "ax", -y = 4 }
+)"));
+  ASSERT_EQ(file.hits.size(), 1U);
+  const modal::Hit& hit = file.hits[0];
+  EXPECT_EQ(hit.excitation.axis, modal::Axis::x);
+  EXPECT_TRUE(hit.against_axis);
+  EXPECT_NEAR(hit.sample_rate_hz, 1000.0, 1e-6);
+  EXPECT_DOUBLE_EQ(hit.force_n(1), 0.5 * 1000.0 / 2.5);
+  ASSERT_EQ(hit.responses.size(), 2U);
+  for (const modal::HitChannel& channel : hit.responses) {
+    const bool y = channel.dof.axis == modal::Axis::y;
+    EXPECT_EQ(channel.against_axis, y);
+    EXPECT_DOUBLE_EQ(channel.samples(1), (y ? 4.0 : 3.0) * 100.0);
+  }
+  EXPECT_EQ(file.options.estimator, modal::Estimator::hv);
+  EXPECT_EQ(file.options.accelerometer_mass_kg, 0.004);
+}
+
+TEST(HitsToml, TakesTheRateFromTheFileWhereThereIsNoTime) {
+  const test::Folder folder;
+  static_cast<void>(folder.file("b.txt", "0 1\n2 3\n0 5\n"));
+  const std::string row = "[[hits]]\nfile = \"b.txt\"\nforce = 1\nforce_direction = \"y\"\nresponses = { y = 2 }\n";
+  const HitsFile file = read_hits(folder.file("hits.toml", "[acquisition]\nsample_rate_hz = 51200\n" + row));
+  EXPECT_EQ(file.hits[0].sample_rate_hz, 51200.0);
+  EXPECT_EQ(file.hits[0].responses[0].samples(2), 5.0);
+  const std::string said =
+      test::refusal([&] { static_cast<void>(read_hits(folder.file("none.toml", "[acquisition]\n" + row))); });
+  EXPECT_NE(said.find("sample_rate_hz is missing"), std::string::npos) << said;
+}
+
+TEST(HitsToml, RefusesInTheFilesWords) {
+  const test::Folder folder;
+  static_cast<void>(folder.file("a.csv", record));
+  const std::string row =
+      "[[hits]]\nfile = \"a.csv\"\nforce = \"force_v\"\nforce_direction = \"x\"\nresponses = { x = \"ax\" }\n";
+  const auto say = [&](const std::string& text) {
+    return test::refusal([&] { static_cast<void>(read_hits(folder.file("hits.toml", text))); });
+  };
+  EXPECT_NE(say("[acquisition]\naccelerometer_mass_kg = -1\n" + row)
+                .find("hits.toml:2: acquisition.accelerometer_mass_kg = -1 kg"),
+            std::string::npos);
+  EXPECT_NE(say("[acquisition]\n").find("[[hits]]"), std::string::npos);
+  EXPECT_NE(say("[acquisition]\nforce_mv_per_n = 0\n" + row).find("calibration"), std::string::npos);
+  EXPECT_NE(say("[acquisition]\nsample_rate_hz = 2000\n" + row).find("1000 Hz"), std::string::npos);
+  EXPECT_NE(say("[[hits]]\nfile = \"a.csv\"\nforce = \"f\"\nforce_direction = \"x\"\nresponses = { x = \"ax\" }\n")
+                .find("force_v"),
+            std::string::npos);
+  EXPECT_NE(say("[[hits]]\nfile = \"a.csv\"\nforce = 2\nforce_direction = \"q\"\nresponses = { x = \"ax\" }\n")
+                .find("direction"),
+            std::string::npos);
+  EXPECT_NE(say("[[hits]]\nfile = \"none.csv\"\nforce = 2\nforce_direction = \"x\"\nresponses = { x = \"ax\" }\n")
+                .find("none.csv"),
+            std::string::npos);
+  EXPECT_NE(say("[acquisition]\nfilter = 3\n" + row).find("filter"), std::string::npos);
+}
+
+TEST(HitsToml, ReadsSoundWithItsScale) {
+  const test::Folder folder;
+  {
+    SF_INFO info{.frames = 0,
+                 .samplerate = 10240,
+                 .channels = 2,
+                 .format = SF_FORMAT_WAV | SF_FORMAT_DOUBLE,
+                 .sections = 0,
+                 .seekable = 0};
+    const std::unique_ptr<SNDFILE, decltype(&sf_close)> sound(sf_open(folder.at("a.wav").c_str(), SFM_WRITE, &info),
+                                                              &sf_close);
+    const std::vector<double> frames = {0.0, 0.0, 0.5, -0.25, 0.0, 0.0};
+    sf_write_double(sound.get(), frames.data(), 6);
+  }
+  const std::string row = "[[hits]]\nfile = \"a.wav\"\nforce = 1\nforce_direction = \"x\"\nresponses = { x = 2 }\n";
+  // Full scale is 5 V: 2.5 V at 2.5 mV/N are 1000 N.
+  const HitsFile file = read_hits(folder.file(
+      "hits.toml", "[acquisition]\nscale = 5\nforce_mv_per_n = 2.5\nresponse_mv_per_m_per_s2 = 10\n" + row));
+  EXPECT_EQ(file.hits[0].sample_rate_hz, 10240.0);
+  EXPECT_DOUBLE_EQ(file.hits[0].force_n(1), 1000.0);
+  EXPECT_DOUBLE_EQ(file.hits[0].responses[0].samples(1), -125.0);
+  const auto say = [&](const std::string& text) {
+    return test::refusal([&] { static_cast<void>(read_hits(folder.file("bad.toml", text))); });
+  };
+  EXPECT_NE(say(row).find("acquisition.scale is missing"), std::string::npos);
+  EXPECT_NE(say("[acquisition]\nscale = 0\n" + row).find("bad.toml:2: acquisition.scale = 0"), std::string::npos);
+}
+
+// Cut off or changed at any place, a file is refused or read, and never anything worse.
+TEST(HitsToml, SurvivesMutations) {
+  const test::Folder folder;
+  static_cast<void>(folder.file("a.csv", record));
+  const std::string good =
+      "[acquisition]\nresponse = \"acceleration\"\nforce_mv_per_n = 2.5\nsample_rate_hz = 1000\nforce_window_s = 0.1\n"
+      "[[hits]]\nfile = \"a.csv\"\ntime = 1\nforce = \"force_v\"\nforce_direction = \"-x\"\n"
+      "responses = { x = \"ax\", -y = 4 }\n";
+  for (int seed = 0; seed < test::seeds(2000); ++seed) {
+    Random random(static_cast<std::uint64_t>(seed));
+    std::string text = good;
+    for (std::uint64_t i = random.index(4); i > 0; --i)
+      text[random.index(text.size())] = static_cast<char>(random.index(128));
+    if (random.index(4) == 0) text.resize(1 + random.index(text.size()));
+    try {
+      const HitsFile file = read_hits(folder.file("hits.toml", text));
+      EXPECT_FALSE(file.hits.empty());
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(folder.path().string()), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace robomill::formats

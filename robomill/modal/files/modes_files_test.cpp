@@ -1,0 +1,101 @@
+#include "robomill/modal/files/modes_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "data/robot_modes.hpp"
+#include "robomill/base/random.hpp"
+#include "robomill/base/test_support.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/json.hpp"
+#include "testing/text.hpp"
+
+namespace robomill::formats {
+namespace {
+
+void expect_same(const modal::ModalModel& a, const modal::ModalModel& b, double tolerance) {
+  ASSERT_EQ(a.modes.size(), b.modes.size());
+  EXPECT_EQ(a.excitations, b.excitations);
+  EXPECT_EQ(a.responses, b.responses);
+  for (std::size_t k = 0; k < a.modes.size(); ++k) {
+    EXPECT_NEAR(a.modes[k].frequency_hz, b.modes[k].frequency_hz, tolerance * b.modes[k].frequency_hz);
+    EXPECT_NEAR(a.modes[k].damping_ratio, b.modes[k].damping_ratio, tolerance);
+    EXPECT_LT((a.modes[k].left - b.modes[k].left).norm(), tolerance * b.modes[k].left.norm());
+    EXPECT_LT((a.modes[k].right - b.modes[k].right).norm(), tolerance * b.modes[k].right.norm());
+  }
+}
+
+TEST(ModesFiles, TheDataFileHoldsTheTypedTable) {
+  expect_same(read_modes(ROBOMILL_SOURCE_DIR "/data/robot-modes.toml"), data::robot_modes(), 1e-14);
+}
+
+TEST(ModesFiles, JsonGivesTheModelBack) {
+  const test::Folder folder;
+  modal::ModalModel model = data::robot_modes();
+  model.modes[2].frequency_std_hz = 0.01;
+  model.residuals.push_back({.name = modal::parse_frf_name("xy"), .mass = {1.0, -2.0}, .stiffness = {3e-9, 4e-9}});
+  const modal::ModalModel read = read_modes(folder.file("modes.json", modes_json(model)));
+  expect_same(read, model, 1e-14);
+  EXPECT_DOUBLE_EQ(read.modes[2].frequency_std_hz, 0.01);
+  EXPECT_TRUE(std::isnan(read.modes[3].frequency_std_hz));
+  ASSERT_EQ(read.residuals.size(), 1U);
+  EXPECT_EQ(read.residuals[0].stiffness, std::complex<double>(3e-9, 4e-9));
+}
+
+TEST(ModesFiles, RefusesWithTheJsonPath) {
+  const test::Folder folder;
+  const auto say = [&](const std::string& text) {
+    return test::refusal([&] { static_cast<void>(read_modes(folder.file("modes.json", text))); });
+  };
+  const auto mode = [](const std::string& damping, const std::string& left) {
+    return R"({"modes":[{"frequency_hz":500,"damping_ratio":)" + damping + R"(,"left":)" + left +
+           R"(,"right":{"x":[1,0]}}]})";
+  };
+  EXPECT_NE(say(mode("-0.01", R"({"x":[1,0]})")).find("modes.json: modes[1].damping_ratio = -0.01"), std::string::npos);
+  EXPECT_NE(say(mode("\"big\"", R"({"x":[1,0]})")).find("modes[1].damping_ratio"), std::string::npos);
+  EXPECT_NE(say(mode("0.01", R"({"x":[1]})")).find("modes[1].left.x"), std::string::npos);
+  EXPECT_NE(say(mode("0.01", R"({"up":[1,0]})")).find("modes[1].left.up"), std::string::npos);
+  EXPECT_NE(say("{\"modes\":[{}]}").find("modes[1].frequency_hz: is missing"), std::string::npos);
+  EXPECT_NE(say("{\"modes\":\n[}").find("modes.json:2"), std::string::npos);
+  const std::string wrong_ending =
+      test::refusal([&] { static_cast<void>(read_modes(folder.file("tip.uff", "    -1\n"))); });
+  EXPECT_NE(wrong_ending.find("robomill modes"), std::string::npos);
+}
+
+// modes.json of a bad fit is its report, and no input until somebody accepts it.
+TEST(ModesFiles, AFitThatDoesNotDescribeItsFrfsIsNoInput) {
+  const test::Folder folder;
+  modal::FitResult fit;
+  fit.model = data::robot_modes();
+  fit.relative_error = 1.094;
+  fit.at_bounds = {{2, modal::FitBound::damping}, {2, modal::FitBound::band_high}};
+  const auto path = folder.file("modes.json", modes_json(fit));
+  const Json json = read_json(path);
+  EXPECT_EQ(json["fit"]["usable"], false);
+  EXPECT_TRUE(json["modes"][0]["at_bounds"].empty());
+  EXPECT_EQ(json["modes"][1]["at_bounds"], Json::array({"max_damping_ratio", "band_high_hz"}));
+  const std::string said = test::refusal([&] { static_cast<void>(read_modes(path)); });
+  EXPECT_NE(said.find("modes.json: fit.relative_error = 1.094; must be below 0.2"), std::string::npos) << said;
+  EXPECT_NE(said.find("--accept-fit"), std::string::npos) << said;
+  fit.accepted = true;
+  expect_same(read_modes(folder.file("accepted.json", modes_json(fit))), fit.model, 1e-14);
+}
+
+// Cut off or changed at any place, a file is refused or read, and never anything worse.
+TEST(ModesFiles, SurvivesMutations) {
+  const test::Folder folder;
+  const std::string good = modes_json(data::robot_modes());
+  Random random(5);
+  for (int i = 0; i < test::seeds(2000); ++i) {
+    try {
+      read_modes(folder.file("modes.json", test_support::mutated(good, i, random))).validate();
+    } catch (const InvalidInput&) {
+      continue;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace robomill::formats

@@ -1,0 +1,74 @@
+#include "robomill/monitor/files/monitor_events.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "robomill/base/units.hpp"
+
+namespace robomill::formats {
+namespace {
+
+TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
+  MonitorEvent event;
+  event.time_s = 3.7125;
+  event.decision.state = monitor::State::chatter;
+  event.decision.score = 12.5;
+  event.decision.threshold = 9.0;
+  event.decision.chatter_frequency_hz = 683.6;
+  event.decision.chatter_frequency_std_hz = 0.4;
+  event.decision.channel = 1;
+  event.decision.faults = monitor::clipped | monitor::not_finite;
+  event.decision.hidden = monitor::Hidden::locked;
+  event.mode = {2};
+  event.suggested_spindle_speed_rad_per_s = 6500.0 * units::rpm;
+  event.stable_speeds_rad_per_s = {6500.0 * units::rpm, 3250.0 * units::rpm};
+  event.compute_s = 123e-6;
+  const std::string line = event_line(event);
+  EXPECT_EQ(line.find('\n'), line.size() - 1);
+  const auto json = nlohmann::json::parse(line);
+  EXPECT_EQ(json["time_s"], 3.7125);
+  EXPECT_EQ(json["event"], "state");
+  EXPECT_EQ(json["state"], "chatter");
+  EXPECT_EQ(json["score"], 12.5);
+  EXPECT_EQ(json["threshold"], 9.0);
+  EXPECT_TRUE(json.contains("energy_entropy"));
+  EXPECT_EQ(json["chatter_frequency_hz"], 683.6);
+  EXPECT_EQ(json["channel"], 2);
+  EXPECT_EQ(json["hidden"], "locked");
+  EXPECT_EQ(json["mode"], 2);
+  EXPECT_EQ(json["mode_of"], "tool");
+  EXPECT_EQ(json["suggested_spindle_speed_rpm"], 6500);
+  EXPECT_EQ(json["stable_spindle_speeds_rpm"][1], 3250);
+  EXPECT_EQ(json["faults"], (std::vector<std::string>{"not-finite", "clipped"}));
+  EXPECT_EQ(json["compute_us"], 123);
+  EXPECT_FALSE(json.contains("what"));
+}
+
+TEST(MonitorEvents, TellWhatIsUnknownAsNull) {
+  MonitorEvent event;
+  event.decision.score = std::numeric_limits<double>::quiet_NaN();
+  event.decision.energy_entropy = std::numeric_limits<double>::infinity();
+  const auto json = nlohmann::json::parse(event_line(event));
+  for (const char* key : {"score", "energy_entropy", "chatter_frequency_hz", "chatter_frequency_std_hz", "mode",
+                          "suggested_spindle_speed_rpm", "suggested_axial_depth_mm", "spindle_speed_rpm", "hidden"}) {
+    EXPECT_TRUE(json[key].is_null()) << key;
+  }
+  EXPECT_TRUE(json["faults"].empty());
+}
+
+TEST(MonitorEvents, TellOfTheStream) {
+  MonitorEvent event;
+  event.kind = MonitorEvent::Kind::stream;
+  event.what = "lost-blocks";
+  event.count = 3;
+  event.message = "not UTF-8: \xFF";
+  const auto json = nlohmann::json::parse(event_line(event));
+  EXPECT_EQ(json["event"], "stream");
+  EXPECT_EQ(json["what"], "lost-blocks");
+  EXPECT_EQ(json["count"], 3);
+}
+
+}  // namespace
+}  // namespace robomill::formats

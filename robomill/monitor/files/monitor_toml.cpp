@@ -1,0 +1,265 @@
+#include "robomill/monitor/files/monitor_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/monitor/files/monitor_tables.hpp"
+
+namespace robomill::formats {
+namespace {
+
+/// Stands in for a rate that only the recording knows, so that all else can be checked.
+constexpr double some_rate_hz = 10'240.0;
+
+void read_mqtt(TomlFile& file, MqttSettings& mqtt) {
+  file.text("mqtt.host", mqtt.host);
+  if (file.integer("mqtt.port", "port", mqtt.port) && (mqtt.port < 1 || mqtt.port > 65'535)) {
+    throw file.refuse("mqtt.port", "must lie between 1 and 65535");
+  }
+  file.text("mqtt.topic", mqtt.topic);
+  if (file.text("mqtt.events_topic", mqtt.events_topic) && mqtt.events_topic.find_first_of("+#") != std::string::npos) {
+    throw file.refuse("mqtt.events_topic", "must be one topic, without + and #");
+  }
+  if (!mqtt.topic.empty() && mqtt.topic == mqtt.events_topic) {
+    throw file.refuse("mqtt.events_topic", "must differ from mqtt.topic");
+  }
+  file.text("mqtt.client_id", mqtt.client_id);
+  file.text("mqtt.user", mqtt.user);
+  if (file.path("mqtt.password_file", mqtt.password_file) && mqtt.user.empty()) {
+    throw file.refuse("mqtt.password_file", "needs mqtt.user");
+  }
+  file.boolean("mqtt.tls", mqtt.tls);
+  file.path("mqtt.ca_file", mqtt.ca_file);
+  file.path("mqtt.certificate_file", mqtt.certificate_file);
+  file.path("mqtt.key_file", mqtt.key_file);
+  for (const char* key : {"mqtt.ca_file", "mqtt.certificate_file", "mqtt.key_file"}) {
+    if (file.has(key) && !mqtt.tls) throw file.refuse(key, "needs mqtt.tls = true");
+  }
+  if (mqtt.certificate_file.empty() != mqtt.key_file.empty()) {
+    throw file.refuse(mqtt.key_file.empty() ? "mqtt.certificate_file" : "mqtt.key_file",
+                      "certificate_file and key_file go together");
+  }
+  if (file.integer("mqtt.qos", "qos", mqtt.qos) && (mqtt.qos < 0 || mqtt.qos > 2)) {
+    throw file.refuse("mqtt.qos", "must be 0, 1 or 2");
+  }
+}
+
+void read_outputs(TomlFile& file, MonitorFile& out) {
+  if (file.integer("metrics.port", "metrics_port", out.metrics_port) &&
+      (out.metrics_port < 0 || out.metrics_port > 65'535)) {
+    throw file.refuse("metrics.port", "must lie between 0 and 65535", "0 takes any port that is free");
+  }
+  file.text("metrics.host", out.metrics_host);
+  file.path("recording.folder", out.recording_folder);
+  if (file.number("recording.seconds", "recording_s", 1.0, out.recording_s) &&
+      !(out.recording_s > 0.0 && out.recording_s <= 3600.0)) {
+    throw file.refuse("recording.seconds", "must lie between 0 and 3600");
+  }
+}
+
+/// Text in quotes as TOML has it.
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') {
+      out += '\\';
+      out += letter;
+    } else if (static_cast<unsigned char>(letter) < 32 || letter == 127) {
+      out += fmt::format("\\u{:04X}", static_cast<unsigned>(static_cast<unsigned char>(letter)));
+    } else {
+      out += letter;
+    }
+  }
+  return out + '"';
+}
+
+std::string number_text(double value) {
+  return fmt::format("{:.15g}", value);
+}
+
+}  // namespace
+
+bool read_column(TomlFile& file, const std::string& key, std::string& out) {
+  if (!file.is_number(key)) return file.text(key, out);
+  int number = 0;
+  file.integer(key, key, number);
+  if (number < 1) throw file.refuse(key, "must be a column's name or its number from 1");
+  out = std::to_string(number);
+  return true;
+}
+
+void read_signal(TomlFile& file, MonitorFile& out) {
+  file.number("signal.sample_rate_hz", "sample_rate_hz", 1.0, out.options.sample_rate_hz);
+  out.columns.sample_rate_hz = out.options.sample_rate_hz;
+  file.require("signal.channels", "Write channels = [\"ax_m_per_s2\"]: names of columns, or numbers from 1");
+  if (file.is_number("signal.channels")) {
+    out.columns.channels.resize(1);
+    (void)read_column(file, "signal.channels", out.columns.channels.front());
+  } else if (file.is_number("signal.channels[0]")) {
+    std::vector<int> numbers;
+    file.integers("signal.channels", "columns", numbers);
+    for (const int number : numbers) {
+      if (number < 1) throw file.refuse("signal.channels", "must hold names of columns or numbers from 1");
+      out.columns.channels.push_back(std::to_string(number));
+    }
+  } else {
+    file.texts("signal.channels", out.columns.channels);
+  }
+  (void)read_column(file, "signal.tachometer", out.columns.tachometer);
+  file.integer("signal.columns", "columns", out.columns.raw_columns);
+  file.number("signal.scale", "scale", 1.0, out.columns.scale);
+  file.number("signal.full_scale", "full_scale", 1.0, out.options.full_scale);
+  file.locate([&] { out.columns.validate(); });
+  out.options.channels = static_cast<int>(out.columns.count());
+  if (!out.columns.tachometer.empty()) out.options.tachometer_channel = out.options.channels - 1;
+}
+
+void read_process(TomlFile& file, MonitorFile& out) {
+  file.number("process.spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm, out.options.spindle_speed_rad_per_s);
+  file.integer("process.teeth", "teeth", out.options.teeth);
+}
+
+void read_detector(TomlFile& file, MonitorFile& out) {
+  monitor::MonitorOptions& options = out.options;
+  file.choice<monitor::Kind>(
+      "detector.kind", {{"comb-cusum", monitor::Kind::comb_cusum}, {"energy-entropy", monitor::Kind::energy_entropy}},
+      options.kind);
+  file.number("detector.window_ms", "window_s", units::ms, options.window_s);
+  file.number("detector.hop_ms", "hop_s", units::ms, options.hop_s);
+  file.integer("detector.bands", "bands", options.bands);
+  file.choice<monitor::Entropy>("detector.entropy",
+                                {{"normalised", monitor::Entropy::normalised}, {"energy", monitor::Entropy::energy}},
+                                options.entropy);
+  file.number("detector.threshold", "threshold", 1.0, options.threshold);
+  bool below = options.alarm_below;
+  file.choice<bool>("detector.alarm", {{"above", false}, {"below", true}}, below);
+  options.alarm_below = below;
+  file.number("detector.false_alarms_per_hour", "false_alarms_per_hour", 1.0, options.false_alarms_per_hour);
+}
+
+void check_options(const TomlFile& file, const MonitorFile& monitor) {
+  file.locate([&] {
+    monitor::MonitorOptions options = monitor.options;
+    if (!file.has("signal.sample_rate_hz")) options.sample_rate_hz = some_rate_hz;
+    try {
+      options.validate();
+    } catch (const InvalidInput& error) {
+      // A number of samples, where the file has a time.
+      if (error.parts().unit != "samples") throw;
+      throw file.refuse(error.parts().field == "hop_s" ? "detector.hop_ms" : "detector.window_ms", error.parts().rule);
+    }
+  });
+}
+
+MonitorFile read_monitor(const std::filesystem::path& path) {
+  TomlFile file(path);
+  MonitorFile out;
+  out.path = path;
+  read_signal(file, out);
+  read_process(file, out);
+  file.path("process.modes", out.modes);
+  file.path("process.lobes", out.lobes);
+  read_detector(file, out);
+  read_mqtt(file, out.mqtt);
+  read_outputs(file, out);
+  file.done();
+  check_options(file, out);
+  return out;
+}
+
+void validate(const MonitorFile& file) {
+  try {
+    file.options.validate();
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    parts.where = file.path.string();
+    if (parts.field == "sample_rate_hz") {
+      parts.field = "signal.sample_rate_hz";
+      if (file.options.sample_rate_hz == 0.0) parts.hint = "The recording does not say what it was sampled at";
+    }
+    throw InvalidInput(std::move(parts));
+  }
+}
+
+std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
+  const monitor::MonitorOptions& o = file.options;
+  std::string out;
+  const auto line = [&out](std::string_view key, const std::string& value) {
+    fmt::format_to(std::back_inserter(out), "{} = {}\n", key, value);
+  };
+  std::string_view rest = remarks;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    fmt::format_to(std::back_inserter(out), "# {}\n", rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  out += "[signal]\n";
+  if (o.sample_rate_hz > 0.0) line("sample_rate_hz", number_text(o.sample_rate_hz));
+  std::string names;
+  for (const std::string& name : file.columns.channels) names += (names.empty() ? "" : ", ") + in_quotes(name);
+  line("channels", "[" + names + "]");
+  if (!file.columns.tachometer.empty()) line("tachometer", in_quotes(file.columns.tachometer));
+  if (file.columns.raw_columns > 0) line("columns", std::to_string(file.columns.raw_columns));
+  if (file.columns.scale != 1.0) line("scale", number_text(file.columns.scale));
+  if (o.full_scale > 0.0) line("full_scale", number_text(o.full_scale));
+  out += "\n[process]\n";
+  if (o.spindle_speed_rad_per_s > 0.0) line("spindle_speed_rpm", number_text(o.spindle_speed_rad_per_s / units::rpm));
+  if (o.teeth > 0) line("teeth", std::to_string(o.teeth));
+  if (!file.modes.empty()) line("modes", in_quotes(file.modes.string()));
+  if (!file.lobes.empty()) line("lobes", in_quotes(file.lobes.string()));
+  out += "\n[detector]\n";
+  line("kind", in_quotes(monitor::to_string(o.kind)));
+  line("window_ms", number_text(o.window_s / units::ms));
+  line("hop_ms", number_text(o.hop_s / units::ms));
+  line("bands", std::to_string(o.bands));
+  if (o.kind == monitor::Kind::energy_entropy) {
+    line("entropy", in_quotes(monitor::to_string(o.entropy)));
+    line("threshold", number_text(o.threshold));
+    line("alarm", in_quotes(o.alarm_below ? "below" : "above"));
+  } else {
+    line("false_alarms_per_hour", number_text(o.false_alarms_per_hour));
+  }
+  return out;
+}
+
+bool parse_mqtt_address(const std::string& text, MqttSettings& settings) {
+  std::string_view rest = text;
+  if (rest.starts_with("mqtts://")) {
+    settings.tls = true;
+    rest.remove_prefix(8);
+  } else if (rest.starts_with("mqtt://")) {
+    rest.remove_prefix(7);
+  } else {
+    return false;
+  }
+  const auto refuse = [&text](const char* rule) { return InvalidInput(text, rule, "Write mqtt://HOST:PORT/TOPIC"); };
+  const std::size_t slash = rest.find('/');
+  if (slash == std::string_view::npos || slash + 1 == rest.size()) throw refuse("names no topic");
+  std::string_view host = rest.substr(0, slash);
+  settings.topic = rest.substr(slash + 1);
+  const std::size_t colon = host.rfind(':');
+  if (colon != std::string_view::npos && host.find(']', colon) == std::string_view::npos) {
+    const std::string_view digits = host.substr(colon + 1);
+    const char* const end = digits.data() + digits.size();
+    const std::from_chars_result read = std::from_chars(digits.data(), end, settings.port);
+    if (read.ec != std::errc() || read.ptr != end || settings.port < 1 || settings.port > 65'535) {
+      throw refuse("has no port between 1 and 65535");
+    }
+    host = host.substr(0, colon);
+  } else {
+    settings.port = 0;
+  }
+  if (host.empty()) throw refuse("names no host");
+  settings.host = host;
+  return true;
+}
+
+}  // namespace robomill::formats

@@ -1,0 +1,57 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "robomill/base/export.hpp"
+#include "robomill/io/sample_source.hpp"
+#include "robomill/monitor/monitor.hpp"
+
+namespace robomill::formats {
+
+/// [mqtt]: where samples come from and events go to.
+struct MqttSettings {
+  std::string host = "127.0.0.1";
+  int port = 0;                   ///< 0: 1883, with TLS 8883
+  std::string topic = {};         ///< of the samples; empty: none
+  std::string events_topic = {};  ///< of the events; empty: they are not published
+  std::string client_id = {};     ///< empty: one of its own
+  std::string user = {};
+  std::filesystem::path password_file = {};  ///< its first line
+  bool tls = false;
+  std::filesystem::path ca_file = {};  ///< who signed the broker's certificate; empty: the system's list
+  std::filesystem::path certificate_file = {}, key_file = {};  ///< the monitor's own, where the broker asks for one
+  int qos = 1;                                                 ///< 0, 1 or 2
+
+  [[nodiscard]] int port_or_default() const { return port != 0 ? port : (tls ? 8883 : 1883); }
+};
+
+/// monitor.toml.
+struct MonitorFile {
+  std::filesystem::path path = {};
+  SampleColumns columns = {};            ///< [signal], without the rate
+  monitor::MonitorOptions options = {};  ///< sample_rate_hz is 0 where the file leaves it to the recording
+  std::filesystem::path modes = {};      ///< process.modes; empty: none
+  std::filesystem::path lobes = {};      ///< process.lobes; empty: none
+  MqttSettings mqtt = {};
+  int metrics_port = -1;  ///< -1: none; 0: any that is free
+  std::string metrics_host = "127.0.0.1";
+  std::filesystem::path recording_folder = {};  ///< empty: alarms are not recorded
+  double recording_s = 60.0;                    ///< before each alarm
+};
+
+/// Everything but the sample rate, where it is missing, is checked.
+/// @throws InvalidInput with file, line, key and value
+[[nodiscard]] ROBOMILL_API MonitorFile read_monitor(const std::filesystem::path& path);
+
+/// Checks the options once the sample rate is known. @throws InvalidInput in the words of the file
+ROBOMILL_API void validate(const MonitorFile& file);
+
+/// monitor.toml as text, with the tables [signal], [process] and [detector]; `remarks` stand above as comments. Paths
+/// are written as they are.
+[[nodiscard]] ROBOMILL_API std::string monitor_toml(const MonitorFile& file, const std::string& remarks = {});
+
+/// "mqtt://HOST[:PORT]/TOPIC", or mqtts:// for TLS, put into settings. False where the text is no such address.
+/// @throws InvalidInput if it is one without a host or topic, or its port is none
+ROBOMILL_API bool parse_mqtt_address(const std::string& text, MqttSettings& settings);
+
+}  // namespace robomill::formats

@@ -1,0 +1,208 @@
+#include "robomill/monitor/files/monitor_toml.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "robomill/base/test_support.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/monitor/files/recordings_toml.hpp"
+
+namespace robomill::formats {
+namespace {
+
+using monitor::Kind;
+
+constexpr const char* least = "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n";
+
+TEST(MonitorToml, ReadsEveryKey) {
+  const test::Folder folder;
+  const MonitorFile file =
+      read_monitor(folder.file("monitor.toml",
+                               "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax\", \"ay\"]\n"
+                               "tachometer = \"pulse\"\ncolumns = 5\nscale = 50\nfull_scale = 49.9\n"
+                               "[process]\nspindle_speed_rpm = 3000\nteeth = 2\n"
+                               "modes = \"modes.json\"\nlobes = \"lobes.toml\"\n"
+                               "[detector]\nkind = \"energy-entropy\"\nwindow_ms = 50\nhop_ms = 25\n"
+                               "bands = 8\nentropy = \"normalised\"\nthreshold = 1.5\n"
+                               "alarm = \"below\"\nfalse_alarms_per_hour = 0.5\n"
+                               "[mqtt]\nhost = \"broker\"\nport = 8884\ntopic = \"cell/ax\"\n"
+                               "events_topic = \"cell/events\"\nclient_id = \"me\"\nuser = \"u\"\n"
+                               "password_file = \"secret\"\ntls = true\nca_file = \"ca.pem\"\n"
+                               "certificate_file = \"c.pem\"\nkey_file = \"k.pem\"\nqos = 0\n"
+                               "[metrics]\nport = 9110\nhost = \"0.0.0.0\"\n"
+                               "[recording]\nfolder = \"alarms\"\nseconds = 30\n"));
+  EXPECT_EQ(file.options.sample_rate_hz, 10240.0);
+  EXPECT_EQ(file.columns.channels, (std::vector<std::string>{"ax", "ay"}));
+  EXPECT_EQ(file.columns.tachometer, "pulse");
+  EXPECT_EQ(file.columns.raw_columns, 5);
+  EXPECT_EQ(file.columns.scale, 50.0);
+  EXPECT_EQ(file.options.channels, 3);
+  EXPECT_EQ(file.options.tachometer_channel, 2);
+  EXPECT_EQ(file.options.full_scale, 49.9);
+  EXPECT_NEAR(file.options.spindle_speed_rad_per_s, 100.0 * std::numbers::pi, 1e-9);
+  EXPECT_EQ(file.options.teeth, 2);
+  EXPECT_EQ(file.modes, folder.at("modes.json"));
+  EXPECT_EQ(file.lobes, folder.at("lobes.toml"));
+  EXPECT_EQ(file.options.kind, Kind::energy_entropy);
+  EXPECT_DOUBLE_EQ(file.options.window_s, 0.05);
+  EXPECT_DOUBLE_EQ(file.options.hop_s, 0.025);
+  EXPECT_EQ(file.options.bands, 8);
+  EXPECT_EQ(file.options.entropy, monitor::Entropy::normalised);
+  EXPECT_EQ(file.options.threshold, 1.5);
+  EXPECT_TRUE(file.options.alarm_below);
+  EXPECT_EQ(file.options.false_alarms_per_hour, 0.5);
+  EXPECT_EQ(file.mqtt.host, "broker");
+  EXPECT_EQ(file.mqtt.port_or_default(), 8884);
+  EXPECT_EQ(file.mqtt.topic, "cell/ax");
+  EXPECT_EQ(file.mqtt.events_topic, "cell/events");
+  EXPECT_EQ(file.mqtt.password_file, folder.at("secret"));
+  EXPECT_TRUE(file.mqtt.tls);
+  EXPECT_EQ(file.mqtt.key_file, folder.at("k.pem"));
+  EXPECT_EQ(file.mqtt.qos, 0);
+  EXPECT_EQ(file.metrics_port, 9110);
+  EXPECT_EQ(file.metrics_host, "0.0.0.0");
+  EXPECT_EQ(file.recording_folder, folder.at("alarms"));
+  EXPECT_EQ(file.recording_s, 30.0);
+}
+
+TEST(MonitorToml, HasDefaults) {
+  const test::Folder folder;
+  const MonitorFile file = read_monitor(folder.file("monitor.toml", least));
+  EXPECT_EQ(file.options.kind, Kind::comb_cusum);
+  EXPECT_EQ(file.options.tachometer_channel, -1);
+  EXPECT_EQ(file.metrics_port, -1);
+  EXPECT_EQ(file.recording_s, 60.0);
+  EXPECT_EQ(file.mqtt.port_or_default(), 1883);
+  EXPECT_NO_THROW(validate(file));
+  const MonitorFile numbered = read_monitor(folder.file("n.toml", "[signal]\nchannels = [2, 1]\ntachometer = 3\n"));
+  EXPECT_EQ(numbered.columns.channels, (std::vector<std::string>{"2", "1"}));
+  EXPECT_EQ(numbered.columns.tachometer, "3");
+  EXPECT_EQ(read_monitor(folder.file("o.toml", "[signal]\nchannels = 1\n")).columns.channels.front(), "1");
+  // Its rate comes from the recording; where that says nothing either, the file is told.
+  EXPECT_NE(test::refusal([&] { validate(numbered); }).find("signal.sample_rate_hz"), std::string::npos);
+}
+
+TEST(MonitorToml, TellsWhatIsWrongWithLineAndKey) {
+  const test::Folder folder;
+  const auto refusal = [&](const std::string& more) {
+    return test::refusal([&] { (void)read_monitor(folder.file("m.toml", least + more)); });
+  };
+  const auto expect = [&](const std::string& more, const char* part) {
+    EXPECT_NE(refusal(more).find(part), std::string::npos) << refusal(more);
+  };
+  expect("[detector]\nhop_ms = 0\n", "m.toml:5: detector.hop_ms = 0");
+  expect("[detector]\nhop_ms = 1\n", "m.toml:5: detector.hop_ms = 1 ms; must be at least 16 samples long");
+  expect("[detector]\nhop_ms = 60\n", "detector.window_ms");
+  expect("[detector]\nbands = 1\n", "m.toml:5: detector.bands = 1; must be in [2, 64]");
+  expect("[detector]\nkind = \"energy-entropy\"\n", "detector.threshold: is missing; must be finite");
+  expect("[detector]\nkind = \"magic\"\n", "must be one of \"comb-cusum\", \"energy-entropy\"");
+  expect("[detector]\nfalse_alarms_per_hour = 0\n", "m.toml:5: detector.false_alarms_per_hour = 0");
+  expect("[detector]\ntreshold = 5\n", "threshold");
+  expect("[process]\nteeth = -1\n", "m.toml:5: process.teeth = -1");
+  expect("[process]\nspindle_speed_rpm = -100\n", "m.toml:5: process.spindle_speed_rpm = -100 rpm");
+  expect("[mqtt]\nport = 70000\n", "m.toml:5: mqtt.port = 70000");
+  expect("[mqtt]\nca_file = \"ca.pem\"\n", "needs mqtt.tls = true");
+  expect("[mqtt]\ntls = true\nkey_file = \"k\"\n", "go together");
+  expect("[mqtt]\npassword_file = \"k\"\n", "needs mqtt.user");
+  expect("[mqtt]\nqos = 3\n", "must be 0, 1 or 2");
+  expect("[mqtt]\nevents_topic = \"a/#\"\n", "without + and #");
+  expect("[metrics]\nport = -2\n", "metrics.port = -2");
+  expect("[recording]\nseconds = 0\n", "recording.seconds = 0");
+  const auto signal = [&](const char* text) {
+    return test::refusal([&] { (void)read_monitor(folder.file("s.toml", std::string("[signal]\n") + text)); });
+  };
+  EXPECT_NE(signal("sample_rate_hz = 10240\n").find("signal.channels: is missing"), std::string::npos)
+      << signal("sample_rate_hz = 10240\n");
+  EXPECT_NE(signal("channels = []\n").find("must name one column"), std::string::npos) << signal("channels = []\n");
+  EXPECT_NE(signal("channels = [0]\n").find("numbers from 1"), std::string::npos);
+  EXPECT_NE(signal("channels = [1, 1]\n").find("twice"), std::string::npos);
+  EXPECT_NE(signal("sample_rate_hz = 10\nchannels = [1]\n").find("s.toml:2: signal.sample_rate_hz = 10 Hz"),
+            std::string::npos);
+  EXPECT_NE(signal("channels = [1]\ntachometer = 1\n").find("another column"), std::string::npos);
+  EXPECT_NE(signal("channels = [1]\nscale = 0\n").find("signal.scale = 0"), std::string::npos);
+}
+
+TEST(MonitorToml, IsReadAsItWasWritten) {
+  const test::Folder folder;
+  MonitorFile file;
+  file.columns.channels = {"a \"quoted\" \\ name", "2"};
+  file.columns.tachometer = "pulse";
+  file.options.sample_rate_hz = 5000.0;
+  file.options.channels = 3;
+  file.options.tachometer_channel = 2;
+  file.options.kind = Kind::energy_entropy;
+  file.options.threshold = 0.1234567890123;
+  file.options.alarm_below = true;
+  file.options.spindle_speed_rad_per_s = 4000.0 * units::rpm;
+  const std::string text = monitor_toml(file, "calibrated on\ntwo lines");
+  EXPECT_EQ(text.rfind("# calibrated on\n# two lines\n[signal]\n", 0), 0U);
+  EXPECT_NE(text.find("spindle_speed_rpm = 4000\n"), std::string::npos);
+  const MonitorFile back = read_monitor(folder.file("m.toml", text));
+  EXPECT_EQ(back.columns.channels, file.columns.channels);
+  EXPECT_EQ(back.options.kind, file.options.kind);
+  EXPECT_EQ(back.options.threshold, file.options.threshold);
+  EXPECT_EQ(back.options.alarm_below, true);
+  EXPECT_EQ(back.options.tachometer_channel, 2);
+  EXPECT_EQ(monitor_toml(back), monitor_toml(file));
+}
+
+TEST(MqttAddress, IsHostPortAndTopic) {
+  MqttSettings settings;
+  EXPECT_FALSE(parse_mqtt_address("recording.wav", settings));
+  ASSERT_TRUE(parse_mqtt_address("mqtt://broker/cell/1/ax", settings));
+  EXPECT_EQ(settings.host, "broker");
+  EXPECT_EQ(settings.topic, "cell/1/ax");
+  EXPECT_EQ(settings.port_or_default(), 1883);
+  ASSERT_TRUE(parse_mqtt_address("mqtts://[::1]:2000/t", settings));
+  EXPECT_EQ(settings.host, "[::1]");
+  EXPECT_EQ(settings.port_or_default(), 2000);
+  EXPECT_TRUE(settings.tls);
+  for (const char* wrong : {"mqtt://broker", "mqtt://broker/", "mqtt:///t", "mqtt://broker:0/t", "mqtt://broker:x/t",
+                            "mqtt://broker:70000/t"}) {
+    EXPECT_THROW(parse_mqtt_address(wrong, settings), InvalidInput) << wrong;
+  }
+}
+
+constexpr const char* four =
+    "[[recordings]]\nfile = \"a.wav\"\nlabel = \"stable\"\n[[recordings]]\nfile = \"b.wav\"\nlabel = \"stable\"\n"
+    "[[recordings]]\nfile = \"c.wav\"\nlabel = \"chatter\"\nonset_s = 1.5\nspindle_speed_rpm = 4500\n"
+    "[[recordings]]\nfile = \"d.wav\"\nlabel = \"chatter\"\n";
+
+TEST(RecordingsToml, ReadsLabelsAndOnsets) {
+  const test::Folder folder;
+  const RecordingsFile file = read_recordings(folder.file(
+      "r.toml",
+      std::string(least) + "[process]\nspindle_speed_rpm = 3000\n[calibration]\nfalse_alarm_rate = 0.1\n" + four));
+  ASSERT_EQ(file.recordings.size(), 4U);
+  EXPECT_EQ(file.monitor.options.kind, Kind::energy_entropy);
+  EXPECT_EQ(file.false_alarm_rate, 0.1);
+  EXPECT_FALSE(file.recordings[0].chatter);
+  EXPECT_TRUE(std::isnan(file.recordings[0].onset_s));
+  EXPECT_EQ(file.recordings[2].onset_s, 1.5);
+  EXPECT_TRUE(file.recordings[2].chatter);
+  EXPECT_NEAR(file.recordings[2].spindle_speed_rad_per_s, 4500.0 * units::rpm, 1e-9);
+  EXPECT_NEAR(file.recordings[3].spindle_speed_rad_per_s, 3000.0 * units::rpm, 1e-9);
+  EXPECT_EQ(file.recordings[3].file, folder.at("d.wav"));
+}
+
+TEST(RecordingsToml, RefusesWhatCannotCalibrate) {
+  const test::Folder folder;
+  const auto expect = [&](const std::string& text, const char* part) {
+    const std::string said = test::refusal([&] { (void)read_recordings(folder.file("r.toml", least + text)); });
+    EXPECT_NE(said.find(part), std::string::npos) << said;
+  };
+  const std::string stable = "[[recordings]]\nfile = \"a.wav\"\nlabel = \"stable\"\n";
+  expect("", "recordings: is missing");
+  expect(stable + stable, "label = \"chatter\"");
+  const std::string chatter = "[[recordings]]\nfile = \"c.wav\"\nlabel = \"chatter\"\n";
+  expect(chatter + chatter, "label = \"stable\"");
+  expect("[[recordings]]\nfile = \"c.wav\"\nlabel = \"loud\"\n", "r.toml:6: recordings[1].label = \"loud\"");
+  expect(stable + "onset_s = 1\n", "is of chatter");
+  expect(std::string(four) + "spindle_speed_rpm = 0\n", "must be > 0");
+  expect(std::string("[calibration]\nfalse_alarm_rate = 1\n") + four, "must be at least 0 and below 1");
+}
+
+}  // namespace
+}  // namespace robomill::formats

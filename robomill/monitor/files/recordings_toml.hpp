@@ -1,0 +1,29 @@
+#pragma once
+#include <filesystem>
+#include <limits>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/monitor/files/monitor_toml.hpp"
+
+namespace robomill::formats {
+
+/// A recording and what was heard in it.
+struct LabelledRecording {
+  std::filesystem::path file;
+  bool chatter = false;
+  double onset_s = std::numeric_limits<double>::quiet_NaN();  ///< of chatter [s]; NaN: unknown
+  double spindle_speed_rad_per_s = 0.0;                       ///< [rad/s]; 0: unknown
+};
+
+/// recordings.toml: what to calibrate a detector with.
+struct RecordingsFile {
+  MonitorFile monitor;             ///< its [signal], [process] and [detector]
+  double false_alarm_rate = 0.05;  ///< share of the stable recordings that may raise an alarm, in [0, 1)
+  std::vector<LabelledRecording> recordings = {};
+};
+
+/// @throws InvalidInput with file, line, key and value, also where no recording chatters or none is stable
+[[nodiscard]] ROBOMILL_API RecordingsFile read_recordings(const std::filesystem::path& path);
+
+}  // namespace robomill::formats

@@ -1,0 +1,45 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/path/files/trajectory.hpp"
+#include "robomill/path/options.hpp"
+#include "robomill/path/smooth.hpp"
+#include "robomill/program/program.hpp"
+
+namespace robomill::formats {
+
+/// One method's trajectory.
+struct SmoothedBy {
+  path::Method method = path::Method::verified;
+  path::Summary summary = {};
+  std::vector<double> tracking_error = {};  ///< one a joint: the largest [rad or m]; empty where not asked for
+};
+
+/// A smoothed program as smooth.json tells it.
+struct SmoothedProgram {
+  std::string program = {}, cell = {};           ///< names of the files
+  std::array<bool, 6> slides = {};               ///< joints that are lengths [m]
+  bool written = false;                          ///< whether there is a trajectory
+  std::vector<SmoothedBy> methods = {};          ///< the first is the one asked for; the others stand beside it
+  std::optional<ProgramRun> robot_program = {};  ///< of the first, where it is written as one
+  std::vector<program::Skipped> skipped = {};
+  std::vector<std::string> notes = {};
+};
+
+/// "verified", "paper-as-printed": as in a cell's [smoothing].
+[[nodiscard]] ROBOMILL_API const char* name_of(path::Method method);
+/// All of them, the fastest to plan first.
+[[nodiscard]] ROBOMILL_API const std::array<path::Method, 5>& smoothing_methods();
+/// None where there is no such method.
+[[nodiscard]] ROBOMILL_API std::optional<path::Method> method_of(std::string_view name);
+
+/// smooth.json: of the first method, and under "methods" of each where there are several. docs/formats.md.
+/// @throws InvalidInput if there is no method
+[[nodiscard]] ROBOMILL_API std::string smooth_json(const SmoothedProgram& smoothed);
+
+}  // namespace robomill::formats

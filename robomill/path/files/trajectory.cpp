@@ -1,0 +1,98 @@
+#include "robomill/path/files/trajectory.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/text.hpp"
+#include "robomill/path/files/joint_programs.hpp"
+#include "robomill/path/files/trajectory_parts.hpp"
+
+namespace robomill::formats {
+namespace {
+
+constexpr std::size_t large = std::size_t{1} << 20;
+
+}  // namespace
+
+void TrajectoryInfo::validate() const {
+  if (joints < 1 || joints > 6) throw InvalidInput("joints", joints, "", "must be 1 to 6");
+  require_positive("sample_period_s", sample_period_s, "s");
+  require_non_negative("program_period_s", program_period_s, "s");
+}
+
+bool ProgramRun::keeps_tolerances() const {
+  const auto within = [](double value, double tolerance) { return value <= tolerance * (1.0 + 1e-6); };
+  return within(tip_deviation_m, tip_tolerance_m) && within(tip_error_m, tip_tolerance_m) &&
+         within(axis_deviation_rad, axis_tolerance_rad) && within(axis_error_rad, axis_tolerance_rad);
+}
+
+std::optional<ProgramRun> SampleFile::settle(program::Source& /*program*/, const robot::Kinematics& /*machine*/,
+                                             const path::SmoothingOptions& /*options*/, bool /*refine*/,
+                                             const Progress& /*progress*/) {
+  return std::nullopt;
+}
+
+void require_regular(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw InvalidInput(path.string(), "must be a regular file", "A trajectory appears whole, by renaming");
+  }
+}
+
+PendingText::PendingText(const std::filesystem::path& path) : path_(path), pending_((require_regular(path), path)) {
+  restart();
+}
+
+void PendingText::require(bool good) const {
+  if (!good) throw InvalidInput(path_.string(), "cannot be written", errno != 0 ? std::strerror(errno) : "");
+}
+
+void PendingText::restart() {
+  buffer_.clear();
+  file_.reset();
+  errno = 0;
+  file_.reset(std::fopen(pending_.temporary().c_str(), "wb"));
+  require(file_ != nullptr);
+}
+
+void PendingText::flush() {
+  errno = 0;
+  require(std::fwrite(buffer_.data(), 1, buffer_.size(), file_.get()) == buffer_.size());
+  buffer_.clear();
+}
+
+void PendingText::drain() {
+  if (buffer_.size() >= large) flush();
+}
+
+void PendingText::commit() {
+  flush();
+  errno = 0;
+  require(std::fclose(file_.release()) == 0);
+  pending_.commit();
+}
+
+std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path, const TrajectoryInfo& info) {
+  info.validate();
+  const std::string ending = lowered(path.extension().string());
+  const bool csv = ending == ".csv";
+  if (csv || ending == ".h5" || ending == ".hdf5") {
+    if (info.program_period_s > 0.0) {
+      throw InvalidInput("program_period_s", info.program_period_s, "s", "is of joint programs, not of trajectories");
+    }
+    return csv ? open_trajectory_csv(path, info) : open_trajectory_hdf5(path, info);
+  }
+  if (ending == ".src") return open_joint_program(path, info, JointLanguage::krl);
+  if (ending == ".mod") return open_joint_program(path, info, JointLanguage::rapid);
+  if (ending == ".script") return open_joint_program(path, info, JointLanguage::urscript);
+  if (ending == ".servoj") return open_joint_program(path, info, JointLanguage::servoj);
+  throw InvalidInput(path.string(),
+                     "a trajectory is written as .csv or .h5, a joint program as .src (KUKA), .mod (ABB), .script or "
+                     ".servoj (Universal Robots)");
+}
+
+}  // namespace robomill::formats

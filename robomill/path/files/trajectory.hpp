@@ -1,0 +1,85 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/path/files/end_effector.hpp"
+#include "robomill/path/options.hpp"
+#include "robomill/path/sample.hpp"
+#include "robomill/program/program.hpp"
+#include "robomill/robot/kinematics.hpp"
+
+namespace robomill::formats {
+
+/// What a trajectory's file tells beside its samples.
+struct ROBOMILL_API TrajectoryInfo {
+  int joints = 0;                       ///< n, 1 to 6
+  std::array<bool, 6> slides = {};      ///< joints that are lengths [m]; the others are angles [rad]
+  robot::JointLimits limits = {};       ///< told in .h5
+  double sample_period_s = 0.001;       ///< > 0
+  double program_period_s = 0.0;        ///< of joint programs: longest time from point to point; 0: 20 ms, servoj 2 ms,
+                                        ///< or the sample period where that is longer
+  std::string cell = {}, program = {};  ///< names of the files it comes from
+  EndEffector end_effector = {};        ///< of joint programs
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// What a joint program's file holds and what its controller makes of it: the joints between its points as the
+/// controller joins them, with the numbers that it holds, by forward kinematics.
+struct ROBOMILL_API ProgramRun {
+  std::size_t points = 0;
+  double shortest_step_s = 0.0, longest_step_s = 0.0;  ///< from point to point
+  double joint_deviation_rad = 0.0, tip_deviation_m = 0.0,
+         axis_deviation_rad = 0.0;                 ///< from the trajectory at the same time
+  double tip_error_m = 0.0, axis_error_rad = 0.0;  ///< from the program, as path::CheckResult tells them
+  double tip_tolerance_m = 0.0, axis_tolerance_rad = 0.0;
+  double would_hold_s = 0.0;    ///< of a program with a fixed cycle that does not hold: the cycle that would; 0: none
+  bool fixed_cycle = false;     ///< a point a cycle: none can be added
+  std::size_t most_points = 0;  ///< that such a controller loads; 0: not known
+  /// Whether deviations and errors are within the tolerances.
+  [[nodiscard]] bool keeps_tolerances() const;
+  [[nodiscard]] bool too_long() const { return most_points > 0 && points > most_points; }
+  [[nodiscard]] bool holds() const { return keeps_tolerances() && !too_long(); }
+};
+
+/// Samples as a file, written as they come in memory that does not grow with them. The file appears by commit(), whole,
+/// or not at all.
+class ROBOMILL_API SampleFile {
+ public:
+  SampleFile() = default;
+  SampleFile(const SampleFile&) = delete;
+  SampleFile& operator=(const SampleFile&) = delete;
+  SampleFile(SampleFile&&) = delete;
+  SampleFile& operator=(SampleFile&&) = delete;
+  virtual ~SampleFile() = default;
+  /// Begins anew: what was added is forgotten.
+  virtual void restart() = 0;
+  /// @throws InvalidInput if the place cannot be written
+  virtual void add(std::span<const path::Sample> samples) = 0;
+  /// Of a joint program, after the last sample: chooses its points so that the controller's motion keeps the tolerances
+  /// of trajectory and program, and checks it. Others: nothing.
+  /// @param program  that was smoothed; read anew
+  /// @param refine   put points nearer to each other where that is needed, down to every sample
+  /// @throws InvalidInput what the program's reader throws; Interrupted
+  virtual std::optional<ProgramRun> settle(program::Source& program, const robot::Kinematics& machine,
+                                           const path::SmoothingOptions& options, bool refine,
+                                           const Progress& progress);
+  /// Ends the file and moves it to its place. @throws InvalidInput if that fails
+  virtual void commit() = 0;
+};
+
+/// A file for samples by its ending: the trajectory as .csv or as .h5 .hdf5 (columns time_s, q1 … qn, x_mm, y_mm, z_mm,
+/// i, j, k, block, which counts from 1), or a joint program: .src (KUKA KRL), .mod (ABB RAPID), .script (Universal
+/// Robots URScript), .servoj (rows of joints, one a cycle). docs/formats.md.
+/// @throws InvalidInput if the ending is another one, the info is invalid, the place cannot be written or is no regular
+///     file, or the machine is none that such a program can drive: six joints that all turn
+[[nodiscard]] ROBOMILL_API std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path,
+                                                                        const TrajectoryInfo& info);
+
+}  // namespace robomill::formats

@@ -1,0 +1,47 @@
+#pragma once
+// What the writers of trajectories and joint programs share.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "robomill/io/file.hpp"
+#include "robomill/path/files/trajectory.hpp"
+
+namespace robomill::formats {
+
+/// A long text that appears whole or not at all, written through a buffer.
+class PendingText {
+ public:
+  /// @throws InvalidInput if the place cannot be written or is no regular file
+  explicit PendingText(const std::filesystem::path& path);
+  /// Append here; call drain() now and then.
+  [[nodiscard]] fmt::memory_buffer& buffer() { return buffer_; }
+  /// Writes the buffer out where it has grown large.
+  void drain();
+  void restart();
+  void commit();
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+  };
+  void flush();
+  void require(bool good) const;
+
+  std::filesystem::path path_;
+  PendingFile pending_;
+  std::unique_ptr<std::FILE, Close> file_;
+  fmt::memory_buffer buffer_;
+};
+
+/// @throws InvalidInput if the place holds something that is no regular file: a device or a pipe cannot appear whole
+void require_regular(const std::filesystem::path& path);
+
+[[nodiscard]] std::unique_ptr<SampleFile> open_trajectory_csv(const std::filesystem::path& path,
+                                                              const TrajectoryInfo& info);
+[[nodiscard]] std::unique_ptr<SampleFile> open_trajectory_hdf5(const std::filesystem::path& path,
+                                                               const TrajectoryInfo& info);
+
+}  // namespace robomill::formats

@@ -1,0 +1,82 @@
+#include "robomill/program/files/gcode_words.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <system_error>
+
+#include "robomill/base/error.hpp"
+#include "robomill/program/files/program_reader.hpp"
+
+namespace robomill::formats {
+namespace {
+
+struct Place {
+  const std::string& file;
+  std::size_t line;
+};
+
+[[noreturn]] void refuse(const Place& place, std::string_view text, const char* rule, const char* hint = "") {
+  throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", place.file, place.line),
+                                         .field = fmt::format("\"{}\"", printable(text, 24)),
+                                         .rule = rule,
+                                         .hint = hint});
+}
+
+bool is_letter(char c) {
+  return c >= 'a' && c <= 'z';
+}
+
+/// Lower case, without blanks and comments.
+void compact_line(std::string_view line, const Place& place, std::string& out) {
+  out.clear();
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == ';') return;
+    if (c == '(') {
+      const std::size_t end = line.find(')', i);
+      if (end == std::string_view::npos) refuse(place, line.substr(i), "is a comment that does not end");
+      i = end;
+    } else if (c >= 'A' && c <= 'Z') {
+      out += static_cast<char>(c - 'A' + 'a');
+    } else if (c != ' ' && c != '\t' && c != '\r' && c != '\f' && c != '\v') {
+      out += c;
+    }
+  }
+}
+
+}  // namespace
+
+void GcodeWords::scan(std::string_view line, const std::string& file, std::size_t number) {
+  const Place place = {.file = file, .line = number};
+  words_.clear();
+  compact_line(line, place, compact_);
+  if (compact_.empty() || compact_.front() == '%' || compact_.front() == '$' || compact_.front() == '/') return;
+  const char* at = compact_.data();
+  const char* const end = at + compact_.size();
+  while (at != end) {
+    const std::string_view rest(at, static_cast<std::size_t>(end - at));
+    if (*at == '#' || *at == '[' || *at == '=') {
+      refuse(place, rest, "is a parameter or an expression, which are not read here",
+             "Let the CAM system write numbers");
+    }
+    if (!is_letter(*at)) refuse(place, rest, "must begin with a letter: words are a letter and a number");
+    const char* digits = at + 1;
+    if (digits != end && *digits == '+') ++digits;
+    // from_chars would take "inf", "nan" and a second sign.
+    const char* const first = digits != end && *digits == '-' && *(digits - 1) != '+' ? digits + 1 : digits;
+    if (first == end || !((*first >= '0' && *first <= '9') || *first == '.')) {
+      refuse(place, rest,
+             *at == 'o' ? "is a subroutine or its control, which are not read here" : "must be a letter and a number",
+             *at == 'o' ? "Let the CAM system write the program out" : "Parameters and expressions are not read here");
+    }
+    Word word = {.letter = *at, .number = 0.0, .text = {}};
+    const std::from_chars_result read = std::from_chars(digits, end, word.number, std::chars_format::fixed);
+    if (read.ec != std::errc{}) refuse(place, rest, "must be a letter and a number that a double can hold");
+    word.text = std::string_view(at, static_cast<std::size_t>(read.ptr - at));
+    words_.push_back(word);
+    at = read.ptr;
+  }
+}
+
+}  // namespace robomill::formats

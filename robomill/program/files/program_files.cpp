@@ -1,0 +1,177 @@
+#include "robomill/program/files/program_files.hpp"
+
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/text.hpp"
+#include "robomill/program/files/apt_reader.hpp"
+#include "robomill/program/files/gcode_reader.hpp"
+#include "robomill/program/files/program_csv.hpp"
+#include "robomill/program/files/program_lines.hpp"
+#include "robomill/program/files/program_reader.hpp"
+
+namespace robomill::formats {
+namespace {
+
+constexpr std::size_t kept_remarks = 500;
+
+std::unique_ptr<ProgramReader> make_reader(ProgramFormat format, const std::string& file, const ProgramReading& reading,
+                                           ProgramRemarks& remarks) {
+  switch (format) {
+    case ProgramFormat::apt:
+      return std::make_unique<AptReader>(file, reading, remarks);
+    case ProgramFormat::csv:
+      return std::make_unique<CsvReader>(file, reading, remarks);
+    case ProgramFormat::gcode:
+      break;
+  }
+  return std::make_unique<GcodeReader>(file, reading, remarks);
+}
+
+/// A file and what reads it.
+class Walk {
+ public:
+  Walk(const std::filesystem::path& path, const ProgramReading& reading, std::size_t kept)
+      : lines_((reading.validate(), path)),
+        file_(path.string()),
+        reading_(reading),
+        format_(reading.format.value_or(program_format_of(path))),
+        remarks_(kept) {
+    begin();
+    if (!reader_->start()) {
+      throw InvalidInput(file_, "holds no complete position",
+                         format_ == ProgramFormat::gcode ? "A program gives X, Y and Z by G0 before it cuts" : "");
+    }
+    start_ = *reader_->start();
+  }
+  ~Walk() = default;
+  Walk(const Walk&) = delete;
+  Walk& operator=(const Walk&) = delete;
+  Walk(Walk&&) = delete;
+  Walk& operator=(Walk&&) = delete;
+
+  [[nodiscard]] const program::Pose& start() const { return start_; }
+
+  bool next(program::Block& out) {
+    while (!reader_->pop(out)) {
+      if (!take_line()) return false;
+    }
+    return true;
+  }
+
+  void rewind() {
+    lines_.rewind();
+    remarks_.again();
+    begin();
+  }
+
+  [[nodiscard]] ProgramRemarks& remarks() { return remarks_; }
+
+ private:
+  /// On to the first position.
+  void begin() {
+    finished_ = false;
+    reader_ = make_reader(format_, file_, reading_, remarks_);
+    while (!reader_->start() && take_line()) {
+    }
+  }
+
+  bool take_line() {
+    if (finished_) return false;
+    std::string_view line;
+    if (!reader_->ended() && lines_.next(line)) {
+      reader_->take(line, lines_.ahead());
+    } else {
+      reader_->finish();
+      finished_ = true;
+    }
+    return true;
+  }
+
+  ProgramLines lines_;
+  std::string file_;
+  ProgramReading reading_;
+  ProgramFormat format_;
+  ProgramRemarks remarks_;
+  std::unique_ptr<ProgramReader> reader_;
+  bool finished_ = false;
+  program::Pose start_;
+};
+
+}  // namespace
+
+ProgramFormat program_format_of(const std::filesystem::path& path) {
+  const std::string ending = lowered(path.extension().string());
+  if (ending == ".apt" || ending == ".cls" || ending == ".cl") return ProgramFormat::apt;
+  return ending == ".csv" ? ProgramFormat::csv : ProgramFormat::gcode;
+}
+
+Rotary parse_rotary(std::string_view name) {
+  if (name == "machine") return Rotary::machine;
+  if (name == "great-circle") return Rotary::great_circle;
+  throw InvalidInput(InvalidInput::Parts{.field = "program.rotary",
+                                         .value = "\"" + std::string(name) + "\"",
+                                         .rule = "must be one of \"machine\", \"great-circle\""});
+}
+
+void ProgramReading::validate() const {
+  constexpr double least_m = 1e-9;
+  if (!(chord_tolerance_m >= least_m && chord_tolerance_m < 1.0)) {
+    throw InvalidInput("chord_tolerance_m", chord_tolerance_m, "m", "must be >= 1e-9 and < 1");
+  }
+  constexpr double least_rad = 1e-9;
+  if (!(axis_tolerance_rad >= least_rad && axis_tolerance_rad < 1.0)) {
+    throw InvalidInput("axis_tolerance_rad", axis_tolerance_rad, "rad", "must be >= 1e-9 and < 1");
+  }
+}
+
+struct ProgramFile::State {
+  Walk walk;
+};
+
+ProgramFile::ProgramFile(const std::filesystem::path& path, const ProgramReading& reading)
+    : state_(new State{Walk(path, reading, kept_remarks)}) {}
+ProgramFile::~ProgramFile() = default;
+
+const program::Pose& ProgramFile::start() const {
+  return state_->walk.start();
+}
+
+bool ProgramFile::next(program::Block& out) {
+  return state_->walk.next(out);
+}
+
+void ProgramFile::rewind() {
+  state_->walk.rewind();
+}
+
+const std::vector<program::Skipped>& ProgramFile::skipped() const {
+  return state_->walk.remarks().skipped();
+}
+
+std::size_t ProgramFile::skipped_count() const {
+  return state_->walk.remarks().skipped_count();
+}
+
+std::vector<std::string> ProgramFile::notes() const {
+  return state_->walk.remarks().notes();
+}
+
+std::unique_ptr<ProgramFile> open_program(const std::filesystem::path& path, const ProgramReading& reading) {
+  return std::make_unique<ProgramFile>(path, reading);
+}
+
+program::Program read_program(const std::filesystem::path& path, const ProgramReading& reading) {
+  Walk walk(path, reading, std::numeric_limits<std::size_t>::max());
+  program::Program out;
+  out.start = walk.start();
+  program::Block block;
+  while (walk.next(block)) out.blocks.push_back(block);
+  out.skipped = std::move(walk.remarks().skipped());
+  out.notes = walk.remarks().notes();
+  return out;
+}
+
+}  // namespace robomill::formats

@@ -1,0 +1,80 @@
+#include "robomill/program/files/program_lines.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/file.hpp"
+
+namespace robomill::formats {
+namespace {
+
+constexpr std::size_t buffer_bytes = std::size_t{1} << 18;
+/// So much lies in the buffer before a line is taken: that line, and what follows it.
+constexpr std::size_t least_bytes = 2 * (ProgramLines::longest + 2);
+
+}  // namespace
+
+ProgramLines::ProgramLines(std::filesystem::path path)
+    : path_(std::move(path)), in_(open_file(path_)), buffer_(buffer_bytes) {
+  fill();
+  if (end_ == 0) throw InvalidInput(path_.string(), "is empty");
+  const std::string_view head(buffer_.data(), std::min<std::size_t>(end_, 4096));
+  if (head.find('\0') == std::string_view::npos) return;
+  const bool utf16 = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
+  throw InvalidInput(path_.string(), "is no plain text",
+                     utf16 ? "It is UTF-16: save it as UTF-8" : "Is it a binary file?");
+}
+
+void ProgramLines::fill() {
+  const bool first = line_ == 0;
+  std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+  end_ -= begin_;
+  begin_ = 0;
+  in_.read(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
+  end_ += static_cast<std::size_t>(in_.gcount());
+  if (in_.bad()) throw InvalidInput(path_.string(), "cannot be read to its end");
+  whole_ = !in_;
+  if (first && std::string_view(buffer_.data(), end_).starts_with("\xEF\xBB\xBF")) begin_ = 3;
+}
+
+bool ProgramLines::next(std::string_view& line) {
+  if (!whole_ && end_ - begin_ < least_bytes) fill();
+  if (begin_ == end_) return false;
+  ++line_;
+  const char* const first = buffer_.data() + begin_;
+  const std::size_t count = end_ - begin_;
+  const void* const ending = std::memchr(first, '\n', std::min(count, longest + 2));
+  std::size_t length = ending != nullptr ? static_cast<std::size_t>(static_cast<const char*>(ending) - first) : count;
+  begin_ += ending != nullptr ? length + 1 : count;
+  if (length > 0 && first[length - 1] == '\r') --length;
+  if (length > longest) {
+    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", path_.string(), line_),
+                                           .rule = fmt::format("is a line of more than {} bytes", longest),
+                                           .hint = "Is it a text file with line ends?"});
+  }
+  line = {first, length};
+  return true;
+}
+
+char ProgramLines::ahead() const {
+  for (std::size_t at = begin_; at < end_; ++at) {
+    if (buffer_[at] != ' ' && buffer_[at] != '\t') return buffer_[at];
+  }
+  return '\n';
+}
+
+void ProgramLines::rewind() {
+  in_.clear();
+  if (!in_.seekg(0)) {
+    throw InvalidInput(path_.string(), "cannot be read a second time", "It is read twice; is it a pipe? Give a file");
+  }
+  begin_ = end_ = line_ = 0;
+  whole_ = false;
+  fill();
+}
+
+}  // namespace robomill::formats

@@ -1,0 +1,204 @@
+#include "robomill/program/files/program_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/text.hpp"
+#include "robomill/program/files/program_lines.hpp"
+
+namespace robomill::formats {
+namespace {
+
+constexpr double fastest = 1e9;  ///< beyond any machine in any unit
+constexpr double largest_length_error = 1e-3;
+constexpr double silent_length_error = 1e-6;  ///< of six printed decimals
+constexpr double largest_turn_rad = 179.9 * units::deg;
+
+}  // namespace
+
+void ProgramRemarks::Counted::add(std::size_t line, double value) {
+  if (count++ == 0) first_line = line;
+  most = std::max(most, value);
+}
+
+bool ProgramRemarks::is_new(std::size_t line) {
+  last_ = std::max(last_, line);
+  return line > told_;
+}
+
+void ProgramRemarks::skip(std::size_t line, std::string_view what) {
+  if (!is_new(line)) return;
+  if (skipped_count_++ < most_) skipped_.push_back({.line = line, .what = std::string(what)});
+}
+
+void ProgramRemarks::normalised(std::size_t line, double error) {
+  if (is_new(line)) normalised_.add(line, error);
+}
+
+void ProgramRemarks::long_dwell(std::size_t line, double seconds) {
+  if (is_new(line)) long_dwells_.add(line, seconds);
+}
+
+void ProgramRemarks::operator_stop(std::size_t line) {
+  if (is_new(line)) operator_stops_.add(line, 0.0);
+}
+
+void ProgramRemarks::no_center_point(std::size_t line) {
+  if (is_new(line)) no_center_point_.add(line, 0.0);
+}
+
+std::vector<std::string> ProgramRemarks::notes() const {
+  std::vector<std::string> out;
+  if (normalised_.count > 0) {
+    out.push_back(fmt::format("{} ax{} made a unit vector, off by up to {:.2g}, the first in line {}.",
+                              normalised_.count, normalised_.count == 1 ? "is" : "es", normalised_.most,
+                              normalised_.first_line));
+  }
+  if (long_dwells_.count > 0) {
+    out.push_back(fmt::format(
+        "{} dwell{} of up to {:g} s, the first in line {}: P counts in seconds here, on some controllers in ms.",
+        long_dwells_.count, long_dwells_.count == 1 ? "" : "s", long_dwells_.most, long_dwells_.first_line));
+  }
+  if (operator_stops_.count > 0) {
+    out.push_back(fmt::format(
+        "{} stop{} for the operator (M0, M1), the first in line {}: the tool comes to rest there, and goes on at once "
+        "in a trajectory.",
+        operator_stops_.count, operator_stops_.count == 1 ? "" : "s", operator_stops_.first_line));
+  }
+  if (no_center_point_.count > 0) {
+    out.push_back(
+        fmt::format("Positions are taken as those of the tool's tip from line {} on, where rotary axes are turned; no "
+                    "G43.4, M128 or M428 says so.",
+                    no_center_point_.first_line));
+  }
+  return out;
+}
+
+std::string printable(std::string_view text, std::size_t most) {
+  std::string shown;
+  for (const char letter : text.substr(0, most)) {
+    const bool plain = letter >= 0x20 && letter < 0x7f;
+    shown += plain ? std::string(1, letter) : fmt::format("\\x{:02x}", static_cast<unsigned char>(letter));
+  }
+  return shown;
+}
+
+ProgramReader::ProgramReader(std::string file, const ProgramReading& reading, ProgramRemarks& remarks)
+    : file_(std::move(file)), reading_(reading), remarks_(remarks) {}
+
+void ProgramReader::take(std::string_view line, char ahead) {
+  ++count_;
+  const Part part = part_of(line, ahead, continued_);
+  if (!continued_) line_ = count_;
+  if (!part.continues && !continued_) {
+    read(part.text);
+    return;
+  }
+  joined_.append(part.text).push_back(' ');
+  if (joined_.size() > ProgramLines::longest) {
+    refuse({}, std::nullopt, "", fmt::format("begins a statement of more than {} bytes", ProgramLines::longest));
+  }
+  continued_ = part.continues;
+  if (!continued_) finish();
+}
+
+void ProgramReader::finish() {
+  continued_ = false;
+  if (joined_.empty()) return;
+  read(joined_);
+  joined_.clear();
+}
+
+bool ProgramReader::pop(program::Block& out) {
+  if (!ready_) return false;
+  out = block_;
+  ready_ = advance();
+  return true;
+}
+
+void ProgramReader::refuse(std::string field, std::optional<double> number, const char* unit, std::string rule,
+                           std::string hint) const {
+  throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file_, line_),
+                                         .field = std::move(field),
+                                         .number = number,
+                                         .unit = unit,
+                                         .rule = std::move(rule),
+                                         .hint = std::move(hint)});
+}
+
+void ProgramReader::refuse_text(std::string field, std::string_view value, std::string rule, std::string hint) const {
+  throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file_, line_),
+                                         .field = std::move(field),
+                                         .value = fmt::format("\"{}\"", printable(value, 40)),
+                                         .rule = std::move(rule),
+                                         .hint = std::move(hint)});
+}
+
+void ProgramReader::check_coordinate(const char* name, double coordinate_m, double written, const char* unit) const {
+  if (!(std::abs(coordinate_m) <= farthest_m)) refuse(name, written, unit, "must lie within 1 km");
+}
+
+void ProgramReader::check_dwell(const char* name, double time_s, const char* hint) const {
+  constexpr double day_s = 86400.0;
+  if (!(time_s >= 0.0 && time_s <= day_s)) refuse(name, time_s, "s", "must lie between 0 and a day", hint);
+}
+
+void ProgramReader::check_feed(const char* name, double feed) const {
+  if (!(feed >= 0.0)) refuse(name, feed, "", "must be > 0");
+  if (!(feed <= fastest)) refuse(name, feed, "", "is too large for any machine");
+}
+
+Eigen::Vector3d ProgramReader::unit_axis(const char* names, const Eigen::Vector3d& written) const {
+  const double length = written.norm();
+  const double error = std::abs(length - 1.0);
+  if (!(error <= largest_length_error)) {
+    refuse(names, round_15(length), "", "must be a vector of length 1, within 1e-3", "It is the axis of the tool");
+  }
+  if (error > silent_length_error) remarks_.normalised(line_, error);
+  return written / length;
+}
+
+double ProgramReader::turn_to(const Eigen::Vector3d& axis) const {
+  const double turn = axis == pose_.axis ? 0.0 : program::angle_between(pose_.axis, axis);
+  if (turn > largest_turn_rad) {
+    refuse("axis", round_15(turn / units::deg), "deg",
+           "turns by half a circle in one move, which could go any way round", "Split the move");
+  }
+  return turn;
+}
+
+void ProgramReader::begin_at(const program::Pose& pose) {
+  pose_ = pose;
+  start_ = pose;
+}
+
+bool ProgramReader::moves_to(const program::Pose& end) const {
+  return end.tip_m != pose_.tip_m || end.axis != pose_.axis;
+}
+
+void ProgramReader::move(program::Block::Kind kind, const program::Pose& end, double duration_s, Deviation deviation) {
+  block_ = {.kind = kind,
+            .line = line_,
+            .end = end,
+            .duration_s = duration_s,
+            .spindle_speed_rad_per_s = spindle_speed_rad_per_s_,
+            .spindle = spindle_,
+            .coolant = coolant_,
+            .tip_deviation_m = deviation.tip_m,
+            .axis_deviation_rad = deviation.axis_rad};
+  pose_ = end;
+  ready_ = true;
+}
+
+void ProgramReader::dwell(double duration_s, program::OperatorStop operator_stop) {
+  move(program::Block::Kind::dwell, pose_, duration_s);
+  block_.operator_stop = operator_stop;
+  if (operator_stop != program::OperatorStop::none) remarks_.operator_stop(line_);
+}
+
+}  // namespace robomill::formats

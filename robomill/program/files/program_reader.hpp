@@ -1,0 +1,136 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "robomill/program/files/program_files.hpp"
+#include "robomill/program/program.hpp"
+
+namespace robomill::formats {
+
+/// What a reader left out, mended or took for granted: told once, however often the program is read again.
+class ProgramRemarks {
+ public:
+  /// @param most  that are kept; the others are counted
+  explicit ProgramRemarks(std::size_t most) : most_(most) {}
+
+  /// The program begins anew: what its lines have said is known.
+  void again() { told_ = last_; }
+  void skip(std::size_t line, std::string_view what);
+  /// @param error  |length - 1| of the axis
+  void normalised(std::size_t line, double error);
+  void long_dwell(std::size_t line, double seconds);
+  void operator_stop(std::size_t line);
+  /// A move at feed with rotary axes turned, where nothing has said that positions are those of the tip.
+  void no_center_point(std::size_t line);
+
+  [[nodiscard]] std::vector<program::Skipped>& skipped() { return skipped_; }
+  [[nodiscard]] std::size_t skipped_count() const { return skipped_count_; }
+  [[nodiscard]] std::vector<std::string> notes() const;
+
+ private:
+  struct Counted {
+    std::size_t count = 0, first_line = 0;
+    double most = 0.0;
+    void add(std::size_t line, double value);
+  };
+  bool is_new(std::size_t line);
+
+  std::size_t most_;
+  std::size_t told_ = 0, last_ = 0;  ///< lines
+  std::vector<program::Skipped> skipped_;
+  std::size_t skipped_count_ = 0;
+  Counted normalised_, long_dwells_, operator_stops_, no_center_point_;
+};
+
+/// Letters of a file as a message may show them: the first `most`, those that are not plain as \x1b.
+[[nodiscard]] std::string printable(std::string_view text, std::size_t most);
+
+/// Turns lines of a program into blocks, one after another; holds no more than the machine's state.
+class ProgramReader {
+ public:
+  /// @param file     its name, for errors
+  /// @param remarks  outlive the reader
+  ProgramReader(std::string file, const ProgramReading& reading, ProgramRemarks& remarks);
+  virtual ~ProgramReader() = default;
+  ProgramReader(const ProgramReader&) = delete;
+  ProgramReader& operator=(const ProgramReader&) = delete;
+  ProgramReader(ProgramReader&&) = delete;
+  ProgramReader& operator=(ProgramReader&&) = delete;
+
+  /// Takes the next line, when the blocks of those before have been taken away.
+  /// @param ahead  first letter of the line after it
+  /// @throws InvalidInput as ProgramFile::next
+  void take(std::string_view line, char ahead = '\n');
+  /// The file has ended.
+  void finish();
+  /// The next block of the lines taken; false where they have no more.
+  bool pop(program::Block& out);
+  /// What follows is not carried out.
+  [[nodiscard]] bool ended() const { return ended_; }
+  /// Where the first block begins; empty until that is known.
+  [[nodiscard]] const std::optional<program::Pose>& start() const { return start_; }
+
+ protected:
+  static constexpr double farthest_m = 1e3;  ///< of a coordinate or a radius
+  struct Part {
+    std::string_view text;   ///< what of a line counts
+    bool continues = false;  ///< the statement goes on in the next line
+  };
+  /// @param continued  the line before it goes on in this one
+  [[nodiscard]] virtual Part part_of(std::string_view line, char ahead, bool continued) const = 0;
+  /// Carries out a statement; calls begin_at, move or dwell at most once.
+  virtual void read(std::string_view statement) = 0;
+  /// Turns `block_` into the statement's next block; false where it has none.
+  virtual bool advance() { return false; }
+
+  [[noreturn]] void refuse(std::string field, std::optional<double> number, const char* unit, std::string rule,
+                           std::string hint = {}) const;
+  /// The same with a value that is no number.
+  [[noreturn]] void refuse_text(std::string field, std::string_view value, std::string rule,
+                                std::string hint = {}) const;
+  /// @throws InvalidInput unless a coordinate lies within 1 km
+  void check_coordinate(const char* name, double coordinate_m, double written, const char* unit) const;
+  /// @throws InvalidInput unless a dwell lasts from 0 to a day
+  void check_dwell(const char* name, double time_s, const char* hint = "") const;
+  /// @throws InvalidInput unless a feed of any unit lies in [0, 1e9]
+  void check_feed(const char* name, double feed) const;
+  /// The direction that a program writes as a unit vector. @throws InvalidInput unless its length is about 1
+  [[nodiscard]] Eigen::Vector3d unit_axis(const char* names, const Eigen::Vector3d& written) const;
+  /// Angle by which the axis turns on the way to `end` [rad]. @throws InvalidInput if that is half a circle
+  [[nodiscard]] double turn_to(const Eigen::Vector3d& axis) const;
+  void begin_at(const program::Pose& pose);
+  [[nodiscard]] bool moves_to(const program::Pose& end) const;
+  /// Of a straight move from the curve that it stands for.
+  struct Deviation {
+    double tip_m, axis_rad;
+  };
+  /// Makes a block from where the tool stands to `end`.
+  void move(program::Block::Kind kind, const program::Pose& end, double duration_s,
+            Deviation deviation = {.tip_m = 0.0, .axis_rad = 0.0});
+  void dwell(double duration_s, program::OperatorStop operator_stop = program::OperatorStop::none);
+  void skip(std::string_view what) const { remarks_.skip(line_, what); }
+
+  const std::string file_;
+  const ProgramReading reading_;
+  ProgramRemarks& remarks_;
+  std::size_t line_ = 0;  ///< where the statement begins
+  bool ended_ = false;
+  program::Pose pose_;  ///< where the tool stands
+  std::optional<program::Pose> start_;
+  double spindle_speed_rad_per_s_ = 0.0;
+  program::Spindle spindle_ = program::Spindle::not_given;
+  program::Coolant coolant_;
+  program::Block block_;
+  bool ready_ = false;  ///< block_ is to be taken away
+
+ private:
+  std::size_t count_ = 0;  ///< of lines
+  bool continued_ = false;
+  std::string joined_;  ///< of a statement over several lines
+};
+
+}  // namespace robomill::formats

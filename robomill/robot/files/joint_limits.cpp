@@ -1,0 +1,103 @@
+#include "robomill/robot/files/joint_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "robomill/base/units.hpp"
+#include "robomill/io/text.hpp"
+
+namespace robomill::formats {
+namespace {
+
+/// One way to write a limit.
+struct Key {
+  std::string key;
+  double factor = 1.0;
+  bool turning = true, sliding = true;  ///< which joints it is for
+  [[nodiscard]] bool takes(bool slides) const { return slides ? sliding : turning; }
+  [[nodiscard]] bool bare() const { return turning && sliding; }
+};
+
+std::array<Key, 4> keys_of(const JointLimit& limit) {
+  constexpr std::array<const char*, 4> per = {"", "_per_s", "_per_s2", "_per_s3"};
+  const char* const time = per[static_cast<std::size_t>(limit.derivatives)];
+  const std::string name = fmt::format("robot.joint_{}", limit.name);
+  return {{{.key = name},
+           {.key = fmt::format("{}_deg{}", name, time), .factor = units::deg, .sliding = false},
+           {.key = fmt::format("{}_rad{}", name, time), .sliding = false},
+           {.key = fmt::format("{}_mm{}", name, time), .factor = units::mm, .turning = false}}};
+}
+
+std::vector<std::size_t> joints_of(const Key& key, const std::vector<bool>& slides) {
+  std::vector<std::size_t> joints;
+  for (std::size_t i = 0; i < slides.size(); ++i) {
+    if (key.takes(slides[i])) joints.push_back(i);
+  }
+  return joints;
+}
+
+void require_length(const TomlFile& file, const Key& key, std::size_t wanted, std::size_t held) {
+  if (wanted == held) return;
+  const char* const kind = key.bare()    ? "a joint"
+                           : key.turning ? "for each joint that turns"
+                                         : "for each joint that slides";
+  throw file.refuse(key.key, fmt::format("must hold one number {}, {}; it holds {}", kind, wanted, held));
+}
+
+/// More than three turns, or three turns a second, or as many metres: degrees or millimetres, most likely.
+void doubt_unit(const Key& key, const JointLimit& limit, const std::vector<bool>& slides,
+                const std::vector<double>& values, std::vector<std::string>& notes) {
+  constexpr double likely = 20.0;
+  if (!key.bare() || limit.derivatives > 1) return;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(std::abs(values[i]) > likely)) continue;
+    const char* const time = limit.derivatives == 0 ? "" : "/s";
+    notes.push_back(fmt::format("{} holds {:.6g} {}{} for joint {}: if it is in {}{}, write {}", key.key, values[i],
+                                slides[i] ? "m" : "rad", time, i + 1, slides[i] ? "mm" : "°", time,
+                                keys_of(limit)[slides[i] ? 3 : 1].key));
+    return;
+  }
+}
+
+}  // namespace
+
+std::vector<std::optional<double>> read_joint_limit(TomlFile& file, const JointLimit& limit,
+                                                    const std::vector<bool>& slides, std::vector<std::string>& notes) {
+  std::vector<std::optional<double>> out(slides.size());
+  std::vector<std::string> from(slides.size());
+  for (const Key& key : keys_of(limit)) {
+    std::vector<double> values;
+    if (!file.numbers(key.key, limit.name, key.factor, values)) continue;
+    const std::vector<std::size_t> joints = joints_of(key, slides);
+    require_length(file, key, joints.size(), values.size());
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      if (out[joints[k]]) throw file.refuse(key.key, "must not stand beside " + from[joints[k]]);
+      out[joints[k]] = values[k];
+      from[joints[k]] = key.key;
+    }
+    doubt_unit(key, limit, slides, values, notes);
+  }
+  return out;
+}
+
+InvalidInput located_limit(const TomlFile& file, const JointLimit& limit, const std::vector<bool>& slides,
+                           std::size_t joint, const InvalidInput& error) {
+  for (const Key& key : keys_of(limit)) {
+    if (!key.takes(slides[joint]) || !file.has(key.key)) continue;
+    std::size_t place = 1;
+    for (std::size_t i = 0; i < joint; ++i) place += key.takes(slides[i]) ? 1U : 0U;
+    InvalidInput::Parts told = file.refuse(key.key, error.parts().rule, error.parts().hint).parts();
+    told.field += fmt::format("[{}]", place);
+    told.number = error.parts().number;
+    if (told.number) told.number = round_15(*told.number / key.factor);
+    told.unit = key.bare() ? error.parts().unit : unit_of_key(key.key);
+    told.value.clear();
+    return InvalidInput(std::move(told));
+  }
+  return file.located(error);
+}
+
+}  // namespace robomill::formats

@@ -1,0 +1,149 @@
+#include "robomill/robot/files/loads_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/table.hpp"
+#include "robomill/io/text.hpp"
+
+namespace robomill::formats {
+namespace {
+
+/// A column that is not a joint's.
+struct Column {
+  const char* key;
+  double factor;
+  double& (*value)(robot::Load& load);
+  bool needed;
+};
+constexpr std::array<Column, 10> columns = {{
+    {"fx_n", 1.0, [](robot::Load& load) -> double& { return load.wrench.force_n.x(); }, true},
+    {"fy_n", 1.0, [](robot::Load& load) -> double& { return load.wrench.force_n.y(); }, true},
+    {"fz_n", 1.0, [](robot::Load& load) -> double& { return load.wrench.force_n.z(); }, true},
+    {"dx_mm", units::mm, [](robot::Load& load) -> double& { return load.displacement_m.x(); }, true},
+    {"dy_mm", units::mm, [](robot::Load& load) -> double& { return load.displacement_m.y(); }, true},
+    {"dz_mm", units::mm, [](robot::Load& load) -> double& { return load.displacement_m.z(); }, true},
+    {"mx_n_m", 1.0, [](robot::Load& load) -> double& { return load.wrench.moment_n_m.x(); }, false},
+    {"my_n_m", 1.0, [](robot::Load& load) -> double& { return load.wrench.moment_n_m.y(); }, false},
+    {"mz_n_m", 1.0, [](robot::Load& load) -> double& { return load.wrench.moment_n_m.z(); }, false},
+    {"deviation_mm", units::mm, [](robot::Load& load) -> double& { return load.deviation_m; }, false},
+}};
+
+std::string joint_column(const robot::Arm& arm, std::size_t joint) {
+  return fmt::format("q{}_{}", joint + 1, arm.joints[joint].prismatic ? "mm" : "deg");
+}
+
+/// Where each column stands; nothing where an optional one is missing.
+struct Places {
+  std::vector<std::size_t> joints = {};
+  std::array<std::optional<std::size_t>, columns.size()> others = {};
+};
+
+Places find_columns(const TextTable& table, const robot::Arm& arm, const std::string& file) {
+  std::vector<std::string> known;
+  known.reserve(arm.joints.size() + columns.size());
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) known.push_back(joint_column(arm, i));
+  for (const Column& column : columns) known.emplace_back(column.key);
+  for (const std::string& name : table.names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string near = nearest_word(name, known);
+    throw InvalidInput(file, fmt::format("has a column {} that is not known here", name),
+                       near.empty() ? "" : fmt::format("Did you mean {}?", near));
+  }
+  const auto place = [&](const std::string& name) -> std::optional<std::size_t> {
+    const auto found = std::find(table.names.begin(), table.names.end(), name);
+    if (found == table.names.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - table.names.begin());
+  };
+  const auto needed = [&](const std::string& name) {
+    const std::optional<std::size_t> found = place(name);
+    if (!found) {
+      throw InvalidInput(file, fmt::format("has no column {}", name),
+                         fmt::format("The arm has {} joints: {} to {}, fx_n, fy_n, fz_n, dx_mm, dy_mm, dz_mm",
+                                     arm.joints.size(), known.front(), known[arm.joints.size() - 1]));
+    }
+    return *found;
+  };
+  Places out;
+  out.joints.reserve(arm.joints.size());
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) out.joints.push_back(needed(known[i]));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    out.others[i] = columns[i].needed ? needed(columns[i].key) : place(columns[i].key);
+  }
+  return out;
+}
+
+double read_field(const TextTable& table, const TextTable::Row& row, std::size_t place, double factor,
+                  const std::string& file) {
+  const std::string& field = row.fields[place];
+  const std::optional<double> number = parse_cell(field);
+  if (number && std::isfinite(*number)) return *number * factor;
+  InvalidInput::Parts parts{.where = fmt::format("{}:{}", file, row.line), .field = table.names[place]};
+  parts.rule = field.empty() ? "is missing" : "must be a finite number";
+  if (!field.empty()) parts.value = fmt::format("\"{}\"", field);
+  throw InvalidInput(std::move(parts));
+}
+
+}  // namespace
+
+LoadsFile read_loads(const std::filesystem::path& path, const robot::Arm& arm) {
+  const std::string file = path.string();
+  const TextTable table = parse_text_table(read_file(path), file);
+  const Places places = find_columns(table, arm, file);
+  LoadsFile out{.path = path};
+  out.loads.reserve(table.rows.size());
+  out.line.reserve(table.rows.size());
+  for (const TextTable::Row& row : table.rows) {
+    robot::Load load{.position = Eigen::VectorXd(arm.size())};
+    for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+      const double factor = arm.joints[i].prismatic ? units::mm : units::deg;
+      load.position(static_cast<Eigen::Index>(i)) = read_field(table, row, places.joints[i], factor, file);
+    }
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (!places.others[i]) continue;
+      columns[i].value(load) = read_field(table, row, *places.others[i], columns[i].factor, file);
+    }
+    out.loads.push_back(std::move(load));
+    out.line.push_back(row.line);
+  }
+  return out;
+}
+
+robot::IdentifiedStiffness identify_joint_stiffness(const robot::Arm& arm, const Eigen::Vector3d& point_m,
+                                                    const LoadsFile& file, const robot::IdentifyOptions& options) {
+  try {
+    return robot::identify_joint_stiffness(arm, point_m, file.loads, options);
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    constexpr std::string_view prefix = "loads[";
+    std::size_t load = 0;
+    if (parts.field.starts_with(prefix)) {
+      std::from_chars(parts.field.data() + prefix.size(), parts.field.data() + parts.field.size(), load);
+    }
+    if (load == 0 || load > file.line.size()) {
+      if (parts.field == "loads") parts.where = file.path.string();
+      throw InvalidInput(std::move(parts));
+    }
+    parts.where = fmt::format("{}:{}", file.path.string(), file.line[load - 1]);
+    parts.field = parts.field.substr(parts.field.find("].") + 2);
+    if (parts.field == "deviation_m" && parts.number) {
+      parts.field = "deviation_mm";
+      parts.number = round_15(*parts.number / units::mm);
+      parts.unit = "mm";
+    }
+    throw InvalidInput(std::move(parts));
+  }
+}
+
+}  // namespace robomill::formats

@@ -1,0 +1,57 @@
+#include "robomill/stability/files/fingerprint_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "data/robot_modes.hpp"
+#include "robomill/base/units.hpp"
+
+namespace robomill::formats {
+namespace {
+
+TEST(FingerprintJson, HoldsEveryPeakInShopUnits) {
+  const modal::ModalModel modes = data::robot_modes();
+  const stability::Fingerprint found = stability::explain({{324.99, 666.98, 250.0}, 6500.0 * units::rpm, 3}, modes);
+  const stability::DelayVerdict verdict = {stability::DelayVerdict::Kind::regenerative, 1.1, 0.9, 563.5, {8}};
+  const auto json = nlohmann::json::parse(fingerprint_json(found, &verdict));
+  EXPECT_NEAR(json["spindle_speed_rpm"].get<double>(), 6499.8, 1e-6);
+  ASSERT_EQ(json["peaks"].size(), 3U);
+  EXPECT_EQ(json["peaks"][0]["kind"], "tooth passing");
+  EXPECT_TRUE(json["peaks"][0]["mode"].is_null());
+  EXPECT_EQ(json["peaks"][1]["kind"], "chatter");
+  EXPECT_EQ(json["peaks"][1]["mode"], 1);
+  EXPECT_EQ(json["peaks"][1]["mode_frequency_hz"], 17.40);
+  EXPECT_EQ(json["peaks"][1]["rotations"], 6);
+  EXPECT_EQ(json["peaks"][2]["kind"], "unexplained");
+  EXPECT_EQ(json["mode"], 1);
+  EXPECT_EQ(json["chatter"]["kind"], "regenerative");
+  EXPECT_EQ(json["chatter"]["spectral_radius_without_delay"], 0.9);
+  const auto bare =
+      nlohmann::json::parse(fingerprint_json(stability::explain({{324.99}, 6500.0 * units::rpm, 3}, modes), nullptr));
+  EXPECT_TRUE(bare["mode"].is_null());
+  EXPECT_TRUE(bare["chatter_frequency_hz"].is_null());
+  EXPECT_TRUE(bare["chatter"].is_null());
+  EXPECT_EQ(bare["state"], "no chatter");
+}
+
+// Two modes explain 539.5 Hz about as well: no mode is named, and both are listed.
+TEST(FingerprintJson, NamesNothingThatCannotBeTold) {
+  const auto json = nlohmann::json::parse(
+      fingerprint_json(stability::explain({{539.5}, 6500.0 * units::rpm, 3}, data::robot_modes()), nullptr));
+  EXPECT_EQ(json["state"], "cannot be told");
+  EXPECT_TRUE(json["mode"].is_null());
+  EXPECT_TRUE(json["mode_of"].is_null());
+  const auto& peak = json["peaks"][0];
+  EXPECT_EQ(peak["state"], "cannot be told");
+  EXPECT_EQ(peak["kind"], "chatter");
+  EXPECT_TRUE(peak["mode"].is_null());
+  EXPECT_EQ(peak["others"][0]["mode"], 7);
+  EXPECT_EQ(peak["others"][1]["mode"], 8);
+  EXPECT_EQ(peak["others"][1]["mode_of"], "tool");
+  EXPECT_LT(peak["others"][0]["likelihood_per_hz"], 3.0 * peak["others"][1]["likelihood_per_hz"].get<double>());
+}
+
+}  // namespace
+}  // namespace robomill::formats

@@ -1,0 +1,81 @@
+#include "robomill/stability/files/lobes_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "robomill/base/units.hpp"
+
+namespace robomill::formats {
+namespace {
+
+stability::LobesResult small_result() {
+  stability::LobesResult r;
+  r.spindle_speed_rad_per_s = Eigen::Vector2d(4000.0, 16000.0) * units::rpm;
+  r.axial_depth_m = Eigen::Vector3d(0.0, 1.5e-3, 3e-3);
+  r.spectral_radius = Eigen::MatrixXd::Constant(3, 2, 0.5);
+  r.spectral_radius(2, 1) = 1.25;
+  r.boundary = {{8000.0 * units::rpm, 1.2e-3, 563.5, stability::Kind::hopf, {8, modal::ModeOwner::workpiece}, 2e-7, 1},
+                {9000.0 * units::rpm, 2.1e-3, 225.0, stability::Kind::flip, {7}, 0.0, 2}};
+  r.limit.resize(2);
+  r.limit[0].spindle_speed_rad_per_s = 4000.0 * units::rpm;
+  r.limit[1] = {16000.0 * units::rpm, stability::Limit::Status::found, 2.5e-3, 540.0, stability::Kind::hopf, {8}, 3e-7};
+  stability::PointResult point;
+  point.spindle_speed_rad_per_s = 6500.0 * units::rpm;
+  point.axial_depth_m = 0.6e-3;
+  point.spectral_radius = 1.104;
+  point.multiplier = {0.0, 1.104};
+  point.error_estimate = 1.8e-3;
+  point.mode = {8};
+  r.points = {point};
+  r.evaluations = 8;
+  r.unsettled = 2;
+  r.uncertain = 1;
+  r.seconds = 0.25;
+  return r;
+}
+
+TEST(LobesJson, SaysEverythingInShopUnits) {
+  const nlohmann::json json = nlohmann::json::parse(lobes_json(small_result()));
+  EXPECT_EQ(json["spindle_speed_rpm"], (std::vector<double>{4000.0, 16000.0}));
+  EXPECT_EQ(json["axial_depth_mm"], (std::vector<double>{0.0, 1.5, 3.0}));
+  ASSERT_EQ(json["spectral_radius"].size(), 3U);
+  EXPECT_EQ(json["spectral_radius"][2], (std::vector<double>{0.5, 1.25}));
+  ASSERT_EQ(json["boundary"].size(), 2U);
+  EXPECT_EQ(json["boundary"][0]["spindle_speed_rpm"], 8000.0);
+  EXPECT_EQ(json["boundary"][0]["axial_depth_mm"], 1.2);
+  EXPECT_EQ(json["boundary"][0]["chatter_frequency_hz"], 563.5);
+  EXPECT_EQ(json["boundary"][0]["kind"], "hopf");
+  EXPECT_EQ(json["boundary"][0]["mode"], 8);
+  EXPECT_EQ(json["boundary"][0]["mode_of"], "workpiece");
+  EXPECT_EQ(json["boundary"][0]["curve"], 1);
+  EXPECT_EQ(json["boundary"][0]["error_estimate"], 2e-7);
+  EXPECT_EQ(json["boundary"][1]["kind"], "flip");
+  EXPECT_TRUE(json["limit"][0]["axial_depth_mm"].is_null());
+  EXPECT_EQ(json["limit"][1]["axial_depth_mm"], 2.5);
+  ASSERT_EQ(json["points"].size(), 1U);
+  EXPECT_EQ(json["points"][0]["spindle_speed_rpm"], 6500.0);
+  EXPECT_EQ(json["points"][0]["spectral_radius"], 1.104);
+  EXPECT_EQ(json["points"][0]["stable"], false);
+  EXPECT_EQ(json["points"][0]["error_estimate"], 1.8e-3);
+  EXPECT_EQ(json["method"], "collocation");
+  EXPECT_EQ(json["period"], "tooth");
+  EXPECT_EQ(json["evaluations"], 8);
+  EXPECT_EQ(json["limit"][1]["error_estimate"], 3e-7);
+  EXPECT_EQ(json["unsettled"], 2);
+  EXPECT_EQ(json["uncertain"], 1);
+  EXPECT_EQ(json["seconds"], 0.25);
+}
+
+TEST(LobesJson, LeavesOutTheMapWhereNobodyAskedForIt) {
+  stability::LobesResult result = small_result();
+  result.spectral_radius.resize(0, 0);
+  const nlohmann::json json = nlohmann::json::parse(lobes_json(result));
+  EXPECT_FALSE(json.contains("spectral_radius"));
+  EXPECT_TRUE(json.contains("limit"));
+}
+
+}  // namespace
+}  // namespace robomill::formats
