@@ -1,4 +1,4 @@
-#include "robomill/monitor/calibrate.hpp"
+#include "robomill/monitor/published/calibrate.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "monitor/test_processes.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::app {
 

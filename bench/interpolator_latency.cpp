@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "robomill/path/test_ride.hpp"
-#include "robomill/path/test_winding.hpp"
+#include "testing/path/ride.hpp"
+#include "testing/path/winding.hpp"
 
 namespace {
 

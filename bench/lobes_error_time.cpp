@@ -9,7 +9,7 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/stability/lobes.hpp"
-#include "robomill/stability/test_problems.hpp"
+#include "testing/stability/problems.hpp"
 
 namespace {
 

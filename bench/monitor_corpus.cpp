@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "robomill/monitor/test_corpus.hpp"
-#include "robomill/monitor/test_score.hpp"
+#include "testing/monitor/corpus.hpp"
+#include "testing/monitor/score.hpp"
 
 namespace {
 

@@ -20,8 +20,8 @@
 
 #include "robomill/monitor/entropy.hpp"
 #include "robomill/monitor/monitor.hpp"
-#include "robomill/monitor/test_signal.hpp"
 #include "robomill/signal/synchrosqueeze.hpp"
+#include "testing/monitor/signal.hpp"
 
 namespace {
 

@@ -14,8 +14,8 @@
 #include <utility>
 
 #include "robomill/monitor/monitor.hpp"
-#include "robomill/monitor/test_hours.hpp"
 #include "robomill/signal/synchrosqueeze.hpp"
+#include "testing/monitor/hours.hpp"
 
 namespace {
 

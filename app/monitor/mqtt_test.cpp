@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
 #include "test_processes.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::app {
 namespace {

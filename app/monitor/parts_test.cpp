@@ -12,8 +12,8 @@
 #include "http_get.hpp"
 #include "metrics.hpp"
 #include "notices.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/io/sample_source.hpp"
+#include "testing/support.hpp"
 #include "watch.hpp"
 
 namespace robomill::app {

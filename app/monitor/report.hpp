@@ -2,9 +2,9 @@
 #include <filesystem>
 #include <string>
 
-#include "robomill/monitor/calibrate.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
+#include "robomill/monitor/published/calibrate.hpp"
 #include "robomill/report/report.hpp"
 
 namespace robomill::app {

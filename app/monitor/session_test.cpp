@@ -9,9 +9,9 @@
 
 #include "report.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
 #include "session_input.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::app {
 namespace {

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <vector>
 
-#include "data/robot_modes.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/modal/tip.hpp"
+#include "testing/robot_modes.hpp"
 
 namespace robomill::examples {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "examples/calibrate-holes/holes.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/monitor/entropy.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::examples {
 namespace {

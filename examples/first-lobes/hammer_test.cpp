@@ -6,9 +6,9 @@
 #include <complex>
 #include <numbers>
 
-#include "data/robot_modes.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/signal/fft.hpp"
+#include "testing/robot_modes.hpp"
 
 namespace robomill::examples {
 namespace {

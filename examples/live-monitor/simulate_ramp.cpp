@@ -13,11 +13,11 @@
 #include <thread>
 #include <vector>
 
-#include "data/robot_modes.hpp"
 #include "robomill/base/random.hpp"
 #include "robomill/cutting/milling.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/simulation/simulation.hpp"
+#include "testing/robot_modes.hpp"
 
 namespace {
 

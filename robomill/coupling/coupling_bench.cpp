@@ -2,7 +2,7 @@
 
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/holder.hpp"
-#include "robomill/coupling/test_beams.hpp"
+#include "testing/coupling/beams.hpp"
 
 namespace robomill::coupling {
 namespace {

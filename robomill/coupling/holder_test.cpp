@@ -9,11 +9,11 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/coupling/base.hpp"
 #include "robomill/coupling/section.hpp"
 #include "robomill/coupling/span.hpp"
-#include "robomill/coupling/test_beams.hpp"
+#include "testing/coupling/beams.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::coupling {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/coupling/test_beams.hpp"
+#include "testing/coupling/beams.hpp"
 
 namespace robomill::coupling {
 namespace {

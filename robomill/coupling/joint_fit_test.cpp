@@ -14,13 +14,13 @@
 #include "robomill/base/lanes.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/coupling/base.hpp"
-#include "robomill/coupling/joint_ga.hpp"
 #include "robomill/coupling/joint_hybrid.hpp"
 #include "robomill/coupling/joint_model.hpp"
+#include "robomill/coupling/published/joint_ga.hpp"
 #include "robomill/coupling/span.hpp"
-#include "robomill/coupling/test_beams.hpp"
+#include "testing/coupling/beams.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::coupling {
 namespace {

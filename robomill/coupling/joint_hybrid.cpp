@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "robomill/base/random.hpp"
-#include "robomill/modal/least_squares.hpp"
+#include "robomill/modal/fitting/least_squares.hpp"
 
 namespace robomill::coupling::detail {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "robomill/base/parallel.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/base.hpp"
 #include "robomill/coupling/span.hpp"
-#include "robomill/coupling/test_beams.hpp"
+#include "testing/coupling/beams.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::coupling {
 namespace {

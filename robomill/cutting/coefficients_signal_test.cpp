@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/cutting/analytic_engagement.hpp"
 #include "robomill/cutting/coefficients.hpp"
-#include "robomill/cutting/test_cutters.hpp"
+#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "testing/cutting/cutters.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting {
 namespace {

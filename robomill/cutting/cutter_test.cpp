@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "robomill/base/test_support.hpp"
-#include "robomill/cutting/test_cutters.hpp"
+#include "testing/cutting/cutters.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -1,9 +1,9 @@
 #include <benchmark/benchmark.h>
 
-#include "robomill/cutting/analytic_engagement.hpp"
 #include "robomill/cutting/coefficients.hpp"
 #include "robomill/cutting/force.hpp"
-#include "robomill/cutting/test_cutters.hpp"
+#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "testing/cutting/cutters.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
-#include "robomill/cutting/test_cutters.hpp"
+#include "testing/cutting/cutters.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -1,9 +1,60 @@
 #include "robomill/cutting/engagement.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
 
 namespace robomill::cutting {
+
+void Cut::validate(const Cutter& cutter) const {
+  cutter.validate();
+  require_positive("axial_depth_m", axial_depth_m, "m");
+  if (direction != MillingDirection::slot) {
+    require_positive("radial_depth_m", radial_depth_m, "m");
+    const double widest = 2.0 * Profile(cutter).max_radius_m();
+    if (radial_depth_m > widest * (1.0 + 1e-12)) {
+      throw InvalidInput("radial_depth_m", radial_depth_m, "m", "must be at most the cutter's diameter",
+                         "A wider step leaves a ridge; a cut without a neighbouring pass is a slot");
+    }
+  }
+  const auto check_angle = [](const char* field, double angle) {
+    if (!(std::abs(angle) < 0.48 * std::numbers::pi)) {
+      throw InvalidInput(field, angle, "rad", "must lie between -86 and 86 degrees");
+    }
+  };
+  check_angle("lead_rad", lead_rad);
+  check_angle("tilt_rad", tilt_rad);
+  require_finite("curvature_along_feed_per_m", curvature_along_feed_per_m, "1/m");
+  require_finite("curvature_across_feed_per_m", curvature_across_feed_per_m, "1/m");
+  if (curvature_along_feed_per_m == 0.0 && curvature_across_feed_per_m == 0.0) return;
+  const bool along = curvature_along_feed_per_m != 0.0;
+  const char* field = along ? "curvature_along_feed_per_m" : "curvature_across_feed_per_m";
+  const double curvature = along ? curvature_along_feed_per_m : curvature_across_feed_per_m;
+  if (along && curvature_across_feed_per_m != 0.0) {
+    throw InvalidInput(field, curvature, "1/m", "must be 0 where the surface is curved across the feed",
+                       "The surface is taken for a cylinder nearby");
+  }
+  if (along && cutter.kind != CutterKind::ball_end) {
+    throw InvalidInput(field, curvature, "1/m", "must be 0 except for a ball end",
+                       "What another cutter sweeps along a circle has no closed form; let it cut a dexel workpiece");
+  }
+  const double reach =
+      std::max(axial_depth_m, cutter.kind == CutterKind::ball_end ? 0.5 * cutter.mill.diameter_m : 0.0);
+  if (!(curvature * reach > -0.999)) {
+    throw InvalidInput(field, curvature, "1/m", "must leave the surface a hollow that the cutter fits into",
+                       "Its radius must be greater than the cutter's and than the depth");
+  }
+  if (direction != MillingDirection::slot && !(std::abs(curvature) * radial_depth_m < 1.0)) {
+    throw InvalidInput(field, curvature, "1/m", "must be less than one in a step-over");
+  }
+}
+
+void EngagementOptions::validate() const {
+  if (slices < 0 || slices > 10000) throw InvalidInput("slices", slices, "", "must lie between 0 and 10,000");
+}
 
 Eigen::Matrix3d feed_from_tool(double lead_rad, double tilt_rad) {
   return (Eigen::AngleAxisd(tilt_rad, Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(lead_rad, Eigen::Vector3d::UnitY()))

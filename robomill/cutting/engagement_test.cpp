@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "robomill/cutting/test_cutters.hpp"
+#include "testing/cutting/cutters.hpp"
 
 namespace robomill::cutting {
 namespace {

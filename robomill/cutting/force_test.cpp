@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "robomill/base/test_support.hpp"
-#include "robomill/cutting/analytic_engagement.hpp"
-#include "robomill/cutting/test_cutters.hpp"
+#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "testing/cutting/cutters.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting {
 namespace {

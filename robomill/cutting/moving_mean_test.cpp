@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting::detail {
 namespace {

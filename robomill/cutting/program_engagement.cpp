@@ -8,7 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/cutting/ring_look.hpp"
+#include "robomill/cutting/dexels/ring_look.hpp"
 
 namespace robomill::cutting {
 namespace {

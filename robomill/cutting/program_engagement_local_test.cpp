@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/cutting/analytic_engagement.hpp"
+#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -8,9 +8,10 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/cutting/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/moving_mean.hpp"
 #include "robomill/cutting/program_engagement_local.hpp"
+#include "robomill/cutting/published/analytic_engagement.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/cutting/analytic_engagement.hpp"
+#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 
 #include "robomill/base/export.hpp"
-#include "robomill/cutting/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/force.hpp"
 
 namespace robomill::cutting {

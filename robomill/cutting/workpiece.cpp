@@ -5,8 +5,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/cutting/workpiece_rays.hpp"
-#include "robomill/cutting/workpiece_sweep.hpp"
+#include "robomill/cutting/dexels/workpiece_rays.hpp"
+#include "robomill/cutting/dexels/workpiece_sweep.hpp"
 
 namespace robomill::cutting {
 namespace {

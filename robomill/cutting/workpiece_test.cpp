@@ -8,8 +8,8 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/cutting/workpiece_sweep.hpp"
+#include "robomill/cutting/dexels/workpiece_sweep.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::cutting {
 namespace {

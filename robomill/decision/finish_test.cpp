@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/stability/surface_error.hpp"
-#include "robomill/stability/test_problems.hpp"
+#include "testing/stability/problems.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::decision {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/io/pending_names.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

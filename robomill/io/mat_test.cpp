@@ -11,9 +11,9 @@
 #include <stdexcept>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/io/child.hpp"
 #include "robomill/io/file.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -8,10 +8,10 @@
 #include <memory>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/mat.hpp"
 #include "robomill/io/uff.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

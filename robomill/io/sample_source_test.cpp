@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/mat.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

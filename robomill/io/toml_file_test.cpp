@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

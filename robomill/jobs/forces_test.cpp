@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/report/report.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::jobs {
 namespace {

@@ -11,12 +11,12 @@
 #include <numbers>
 #include <string>
 
-#include "data/robot_modes.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/stability/surface_error.hpp"
-#include "testing/lobes_file.hpp"
+#include "testing/jobs/lobes_file.hpp"
+#include "testing/robot_modes.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::jobs {
 namespace {

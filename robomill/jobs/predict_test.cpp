@@ -10,11 +10,11 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/modal/files/frf_files.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::jobs {
 namespace {

@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/report/report.hpp"
-#include "testing/lobes_file.hpp"
+#include "testing/jobs/lobes_file.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::jobs {
 namespace {

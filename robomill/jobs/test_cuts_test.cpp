@@ -7,10 +7,10 @@
 #include <fstream>
 #include <numbers>
 
-#include "data/robot_modes.hpp"
 #include "robomill/base/error.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
+#include "testing/robot_modes.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::jobs {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "robomill/base/parallel.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::jobs {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "data/robot_modes.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/robot_modes.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::modal {
 namespace {

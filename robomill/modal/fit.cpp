@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/modal/fit_hybrid.hpp"
-#include "robomill/modal/fit_parts.hpp"
-#include "robomill/modal/fit_report.hpp"
-#include "robomill/modal/pso.hpp"
+#include "robomill/modal/fitting/fit_hybrid.hpp"
+#include "robomill/modal/fitting/fit_parts.hpp"
+#include "robomill/modal/fitting/fit_report.hpp"
+#include "robomill/modal/published/pso.hpp"
 
 namespace robomill::modal {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "data/robot_modes.hpp"
-#include "robomill/modal/fit_cases.hpp"
+#include "testing/modal/fit_cases.hpp"
+#include "testing/robot_modes.hpp"
 
 namespace robomill::modal {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string>
 
-#include "data/robot_modes.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/modal/fit_cases.hpp"
+#include "testing/modal/fit_cases.hpp"
+#include "testing/robot_modes.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::modal {
 namespace {

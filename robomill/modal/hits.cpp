@@ -10,11 +10,11 @@
 #include <set>
 
 #include "robomill/base/error.hpp"
-#include "robomill/modal/frf_quality.hpp"
-#include "robomill/modal/hits_average.hpp"
-#include "robomill/modal/hits_axis.hpp"
-#include "robomill/modal/hits_check.hpp"
-#include "robomill/modal/hits_mass.hpp"
+#include "robomill/modal/impact/frf_quality.hpp"
+#include "robomill/modal/impact/hits_average.hpp"
+#include "robomill/modal/impact/hits_axis.hpp"
+#include "robomill/modal/impact/hits_check.hpp"
+#include "robomill/modal/impact/hits_mass.hpp"
 
 namespace robomill::modal {
 namespace {

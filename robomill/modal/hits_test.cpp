@@ -10,11 +10,11 @@
 #include <numbers>
 #include <string>
 
-#include "data/robot_modes.hpp"
 #include "examples/first-lobes/hammer.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/robot_modes.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::modal {
 namespace {

@@ -6,9 +6,9 @@
 #include <complex>
 #include <limits>
 
-#include "data/robot_modes.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
+#include "testing/robot_modes.hpp"
 
 namespace robomill::modal {
 namespace {

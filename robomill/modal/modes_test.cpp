@@ -5,9 +5,9 @@
 #include <limits>
 #include <numbers>
 
-#include "data/robot_modes.hpp"
 #include "robomill/base/error.hpp"
-#include "robomill/modal/fit_cases.hpp"
+#include "testing/modal/fit_cases.hpp"
+#include "testing/robot_modes.hpp"
 
 namespace robomill::modal {
 namespace {

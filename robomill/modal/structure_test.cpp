@@ -10,8 +10,8 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/modal/fit_cases.hpp"
+#include "testing/modal/fit_cases.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::modal {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "data/robot_modes.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/robot_modes.hpp"
+#include "testing/support.hpp"
 
 namespace {
 

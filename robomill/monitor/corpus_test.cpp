@@ -8,10 +8,10 @@
 #include <numbers>
 #include <numeric>
 
-#include "robomill/base/test_support.hpp"
-#include "robomill/monitor/test_corpus.hpp"
-#include "robomill/monitor/test_hours.hpp"
-#include "robomill/monitor/test_score.hpp"
+#include "testing/monitor/corpus.hpp"
+#include "testing/monitor/hours.hpp"
+#include "testing/monitor/score.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::monitor::testing {
 namespace {

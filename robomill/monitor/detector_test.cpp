@@ -10,16 +10,16 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_allocations.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/monitor/comb.hpp"
-#include "robomill/monitor/cusum.hpp"
-#include "robomill/monitor/frequency.hpp"
+#include "robomill/monitor/comb_cusum/comb.hpp"
+#include "robomill/monitor/comb_cusum/cusum.hpp"
+#include "robomill/monitor/comb_cusum/frequency.hpp"
 #include "robomill/monitor/monitor.hpp"
-#include "robomill/monitor/speed.hpp"
-#include "robomill/monitor/spindle.hpp"
-#include "robomill/monitor/tachometer.hpp"
-#include "robomill/monitor/test_signal.hpp"
+#include "robomill/monitor/spindle/speed.hpp"
+#include "robomill/monitor/spindle/spindle.hpp"
+#include "robomill/monitor/spindle/tachometer.hpp"
+#include "testing/allocations.hpp"
+#include "testing/monitor/signal.hpp"
+#include "testing/support.hpp"
 
 namespace {
 

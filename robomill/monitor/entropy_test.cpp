@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_allocations.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/allocations.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::monitor {
 namespace {

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/monitor/hidden.hpp"
-#include "robomill/monitor/spill.hpp"
-#include "robomill/monitor/test_corpus.hpp"
-#include "robomill/monitor/test_score.hpp"
-#include "robomill/monitor/tone.hpp"
+#include "robomill/monitor/comb_cusum/hidden.hpp"
+#include "robomill/monitor/comb_cusum/spill.hpp"
+#include "robomill/monitor/comb_cusum/tone.hpp"
+#include "testing/monitor/corpus.hpp"
+#include "testing/monitor/score.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::monitor {
 namespace {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/monitor/comb_cusum.hpp"
+#include "robomill/monitor/comb_cusum/comb_cusum.hpp"
 #include "robomill/monitor/detector.hpp"
-#include "robomill/monitor/entropy_detector.hpp"
 #include "robomill/monitor/guard.hpp"
+#include "robomill/monitor/published/entropy_detector.hpp"
 
 namespace robomill::monitor {
 namespace {

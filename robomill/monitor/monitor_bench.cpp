@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "robomill/monitor/monitor.hpp"
-#include "robomill/monitor/test_signal.hpp"
+#include "testing/monitor/signal.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace {
 

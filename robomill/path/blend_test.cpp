@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/path/test_random_program.hpp"
-#include "robomill/path/test_s_path.hpp"
+#include "testing/path/random_program.hpp"
+#include "testing/path/s_path.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::path {
 namespace {

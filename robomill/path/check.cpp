@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "robomill/base/error.hpp"
-#include "robomill/path/check_state.hpp"
+#include "robomill/path/check/check_state.hpp"
 
 namespace robomill::path {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "robomill/path/check.hpp"
-#include "robomill/path/test_machine.hpp"
+#include "testing/path/machine.hpp"
 
 namespace {
 

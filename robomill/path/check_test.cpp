@@ -8,9 +8,9 @@
 #include <numbers>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
-#include "robomill/path/test_machine.hpp"
-#include "robomill/path/test_trajectory.hpp"
+#include "testing/path/machine.hpp"
+#include "testing/path/trajectory.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::path {
 namespace {

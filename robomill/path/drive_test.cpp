@@ -10,10 +10,10 @@
 #include <numbers>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
-#include "robomill/path/fir.hpp"
-#include "robomill/path/test_s_path.hpp"
+#include "robomill/path/published/fir.hpp"
 #include "robomill/robot/hybrid.hpp"
+#include "testing/path/s_path.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::path {
 namespace {

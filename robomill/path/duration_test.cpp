@@ -8,11 +8,11 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/path/smooth.hpp"
-#include "robomill/path/test_machine.hpp"
-#include "robomill/path/test_random_program.hpp"
-#include "robomill/path/test_s_path.hpp"
+#include "testing/path/machine.hpp"
+#include "testing/path/random_program.hpp"
+#include "testing/path/s_path.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::path {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "robomill/base/error.hpp"
-#include "robomill/path/planner.hpp"
-#include "robomill/path/runner.hpp"
-#include "robomill/path/survey.hpp"
+#include "robomill/path/realtime/runner.hpp"
+#include "robomill/path/speed/planner.hpp"
+#include "robomill/path/speed/survey.hpp"
 
 namespace robomill::path {
 namespace {

@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
-#include "robomill/path/test_ride.hpp"
-#include "robomill/path/test_winding.hpp"
+#include "testing/path/ride.hpp"
+#include "testing/path/winding.hpp"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <thread>
 #include <tuple>
 
-#include "robomill/base/test_support.hpp"
-#include "robomill/path/test_mixed_program.hpp"
-#include "robomill/path/test_ride.hpp"
+#include "testing/path/mixed_program.hpp"
+#include "testing/path/ride.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::path {
 namespace {

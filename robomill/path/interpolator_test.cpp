@@ -6,11 +6,11 @@
 #include <limits>
 #include <utility>
 
-#include "robomill/base/test_allocations.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/path/planner.hpp"
-#include "robomill/path/test_mixed_program.hpp"
-#include "robomill/path/test_ride.hpp"
+#include "robomill/path/speed/planner.hpp"
+#include "testing/allocations.hpp"
+#include "testing/path/mixed_program.hpp"
+#include "testing/path/ride.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::path {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "robomill/base/parallel.hpp"
-#include "robomill/path/posture_walk.hpp"
+#include "robomill/path/postures/posture_walk.hpp"
 
 namespace robomill::path {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "robomill/path/posture.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
-#include "robomill/robot/test_arms.hpp"
+#include "testing/robot/arms.hpp"
 
 namespace {
 

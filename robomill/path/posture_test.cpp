@@ -7,10 +7,10 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
-#include "robomill/robot/test_arms.hpp"
+#include "testing/robot/arms.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::path {
 namespace {

@@ -11,11 +11,11 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/path/duration.hpp"
-#include "robomill/path/emitter.hpp"
-#include "robomill/path/fir.hpp"
-#include "robomill/path/planner.hpp"
 #include "robomill/path/posture.hpp"
-#include "robomill/path/preview.hpp"
+#include "robomill/path/published/fir.hpp"
+#include "robomill/path/realtime/emitter.hpp"
+#include "robomill/path/speed/planner.hpp"
+#include "robomill/path/speed/preview.hpp"
 
 namespace robomill::path {
 namespace {

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/path/planner.hpp"
 #include "robomill/path/posture.hpp"
-#include "robomill/path/test_random_program.hpp"
-#include "robomill/path/test_s_path.hpp"
+#include "robomill/path/speed/planner.hpp"
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
-#include "robomill/robot/test_arms.hpp"
+#include "testing/path/random_program.hpp"
+#include "testing/path/s_path.hpp"
+#include "testing/robot/arms.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::path {
 namespace {

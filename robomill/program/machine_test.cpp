@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/program/program.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::program {
 namespace {

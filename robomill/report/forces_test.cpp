@@ -13,11 +13,11 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/report/forces_sample.hpp"
 #include "robomill/report/json.hpp"
 #include "robomill/report/report.hpp"
 #include "robomill/report/thin.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::report {
 namespace {

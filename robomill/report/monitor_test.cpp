@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/report/json.hpp"
 #include "robomill/report/monitor_recorder.hpp"
 #include "robomill/report/monitor_sample.hpp"
 #include "robomill/report/report.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::report {
 namespace {

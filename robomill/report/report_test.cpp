@@ -8,11 +8,11 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/report/html.hpp"
 #include "robomill/report/page.hpp"
 #include "robomill/report/report_sample.hpp"
 #include "robomill/report/thin.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::report {
 namespace {

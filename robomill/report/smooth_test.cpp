@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/report/json.hpp"
 #include "robomill/report/report.hpp"
 #include "robomill/report/smooth_sample.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::report {
 namespace {

@@ -8,9 +8,9 @@
 #include <kdl/chainjnttojacsolver.hpp>
 #include <limits>
 
-#include "robomill/base/test_support.hpp"
-#include "robomill/robot/test_arms.hpp"
-#include "robomill/robot/test_kdl.hpp"
+#include "testing/robot/arms.hpp"
+#include "testing/robot/kdl.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::robot {
 namespace {

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/robot/test_kinematics.hpp"
+#include "testing/robot/kinematics.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::robot {
 namespace {

@@ -7,9 +7,9 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/robot/test_arms.hpp"
-#include "robomill/robot/test_kdl.hpp"
+#include "testing/robot/arms.hpp"
+#include "testing/robot/kdl.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::robot {
 namespace {

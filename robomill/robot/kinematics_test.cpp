@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::robot {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "robomill/base/random.hpp"
-#include "robomill/robot/test_arms.hpp"
+#include "testing/robot/arms.hpp"
 
 namespace robomill::robot {
 namespace {

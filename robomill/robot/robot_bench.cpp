@@ -10,8 +10,8 @@
 #include "robomill/robot/redundancy.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
 #include "robomill/robot/stiffness.hpp"
-#include "robomill/robot/test_arms.hpp"
-#include "robomill/robot/test_kinematics.hpp"
+#include "testing/robot/arms.hpp"
+#include "testing/robot/kinematics.hpp"
 
 namespace {
 

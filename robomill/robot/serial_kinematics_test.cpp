@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_allocations.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/robot/choose.hpp"
 #include "robomill/robot/hybrid.hpp"
-#include "robomill/robot/test_arms.hpp"
-#include "robomill/robot/test_kinematics.hpp"
+#include "testing/allocations.hpp"
+#include "testing/robot/arms.hpp"
+#include "testing/robot/kinematics.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::robot {
 namespace {

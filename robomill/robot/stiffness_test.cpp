@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/robot/test_arms.hpp"
+#include "testing/robot/arms.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::robot {
 namespace {

@@ -10,8 +10,8 @@
 #include "robomill/base/lanes.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_allocations.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/allocations.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::signal {
 namespace {

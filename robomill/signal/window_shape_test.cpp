@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/signal/window.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::signal {
 namespace {

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/simulation/test_cuts.hpp"
+#include "testing/simulation/cuts.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::simulation {
 namespace {

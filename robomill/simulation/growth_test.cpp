@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "robomill/simulation/test_cuts.hpp"
 #include "robomill/simulation/verdict.hpp"
 #include "robomill/stability/surface_error.hpp"
+#include "testing/simulation/cuts.hpp"
 
 namespace robomill::simulation {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/simulation/test_cuts.hpp"
+#include "testing/simulation/cuts.hpp"
 
 namespace robomill::simulation::detail {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/cutting/test_cutters.hpp"
 #include "robomill/simulation/drilling.hpp"
-#include "robomill/simulation/posture_cases.hpp"
+#include "testing/cutting/cutters.hpp"
+#include "testing/simulation/posture_cases.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::simulation {
 namespace {

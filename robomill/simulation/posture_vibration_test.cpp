@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "robomill/simulation/posture_cases.hpp"
+#include "testing/simulation/posture_cases.hpp"
 
 namespace robomill::simulation {
 namespace {

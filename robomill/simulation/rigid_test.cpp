@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "robomill/simulation/engine.hpp"
-#include "robomill/simulation/test_cuts.hpp"
 #include "robomill/simulation/wall.hpp"
+#include "testing/simulation/cuts.hpp"
 
 namespace robomill::simulation::detail {
 namespace {

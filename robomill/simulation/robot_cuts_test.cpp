@@ -11,8 +11,8 @@
 #include <numeric>
 #include <vector>
 
-#include "robomill/simulation/test_cuts.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "testing/simulation/cuts.hpp"
 
 namespace robomill::simulation {
 namespace {

@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/simulation/drilling.hpp"
 #include "robomill/simulation/engine.hpp"
-#include "robomill/simulation/test_cuts.hpp"
+#include "testing/simulation/cuts.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::simulation {
 namespace {

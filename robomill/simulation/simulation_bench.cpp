@@ -3,8 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include "robomill/simulation/drilling.hpp"
-#include "robomill/simulation/posture_cases.hpp"
-#include "robomill/simulation/test_cuts.hpp"
+#include "testing/simulation/cuts.hpp"
+#include "testing/simulation/posture_cases.hpp"
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/simulation/engine.hpp"
-#include "robomill/simulation/test_cuts.hpp"
+#include "testing/simulation/cuts.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::simulation {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "robomill/base/error.hpp"
-#include "robomill/stability/chart.hpp"
+#include "robomill/stability/chart/chart.hpp"
 
 namespace robomill::stability {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "robomill/stability/contact_basis.hpp"
 #include "robomill/stability/fingerprint.hpp"
+#include "robomill/stability/frequency_domain/contact_basis.hpp"
 #include "robomill/stability/tip_dynamics.hpp"
 
 namespace robomill::stability {

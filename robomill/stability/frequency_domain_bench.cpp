@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "robomill/stability/fingerprint.hpp"
-#include "robomill/stability/test_problems.hpp"
+#include "testing/stability/problems.hpp"
 
 namespace {
 

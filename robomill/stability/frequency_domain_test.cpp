@@ -13,10 +13,10 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/stability/contact_basis.hpp"
-#include "robomill/stability/crossings.hpp"
-#include "robomill/stability/test_problems.hpp"
+#include "robomill/stability/frequency_domain/contact_basis.hpp"
+#include "robomill/stability/frequency_domain/crossings.hpp"
+#include "testing/stability/problems.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::stability {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/stability/frf_interpolation.hpp"
+#include "robomill/stability/frequency_domain/frf_interpolation.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/tip_dynamics.hpp"
 

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "robomill/base/error.hpp"
-#include "robomill/stability/chart.hpp"
-#include "robomill/stability/frequency_lobes.hpp"
+#include "robomill/stability/chart/chart.hpp"
+#include "robomill/stability/frequency_domain/frequency_lobes.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 
 namespace robomill::stability {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "robomill/stability/lobes.hpp"
-#include "robomill/stability/test_problems.hpp"
-#include "robomill/stability/time_domain_reference.hpp"
+#include "testing/stability/problems.hpp"
+#include "testing/stability/time_domain_reference.hpp"
 
 namespace robomill::stability {
 namespace {

@@ -3,8 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include "robomill/base/parallel.hpp"
-#include "robomill/stability/test_problems.hpp"
 #include "robomill/stability/uncertainty.hpp"
+#include "testing/stability/problems.hpp"
 
 namespace {
 

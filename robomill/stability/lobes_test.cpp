@@ -14,8 +14,8 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
-#include "robomill/stability/test_problems.hpp"
+#include "testing/stability/problems.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::stability {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/stability/chart.hpp"
-#include "robomill/stability/collocation.hpp"
+#include "robomill/stability/chart/chart.hpp"
+#include "robomill/stability/collocation/collocation.hpp"
 #include "robomill/stability/gauss.hpp"
 
 namespace robomill::stability {

@@ -9,7 +9,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/stability/chart.hpp"
+#include "robomill/stability/chart/chart.hpp"
 
 namespace robomill::stability {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/stability/test_problems.hpp"
+#include "testing/stability/problems.hpp"
 
 namespace robomill::stability {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/modal/files/frf_files.hpp"
+#include "testing/support.hpp"
 #include "testing/text.hpp"
 
 namespace robomill::formats {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/coupling/files/assembly_toml.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/cutting/material.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
+#include "testing/support.hpp"
 #include "testing/text.hpp"
 
 namespace robomill::formats {

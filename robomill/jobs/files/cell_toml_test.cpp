@@ -7,10 +7,10 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/robot/files/stiffness_files.hpp"
 #include "robomill/robot/pose.hpp"
-#include "robomill/robot/test_arms.hpp"
+#include "testing/robot/arms.hpp"
+#include "testing/support.hpp"
 #include "testing/text.hpp"
 
 namespace robomill::formats {

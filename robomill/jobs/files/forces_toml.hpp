@@ -6,8 +6,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/export.hpp"
-#include "robomill/cutting/analytic_engagement.hpp"
 #include "robomill/cutting/cutter.hpp"
+#include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/force.hpp"
 #include "robomill/cutting/workpiece.hpp"
 #include "robomill/modal/modes.hpp"

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/coefficients.hpp"
 #include "robomill/cutting/files/slots_csv.hpp"
 #include "robomill/cutting/material.hpp"
+#include "testing/support.hpp"
 #include "testing/text.hpp"
 
 namespace robomill::formats {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <string>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/modal/files/frf_files.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

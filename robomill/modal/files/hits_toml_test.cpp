@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

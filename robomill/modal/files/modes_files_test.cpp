@@ -5,11 +5,11 @@
 #include <cmath>
 #include <string>
 
-#include "data/robot_modes.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
+#include "testing/robot_modes.hpp"
+#include "testing/support.hpp"
 #include "testing/text.hpp"
 
 namespace robomill::formats {

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "robomill/base/export.hpp"
-#include "robomill/monitor/calibrate.hpp"
+#include "robomill/monitor/published/calibrate.hpp"
 
 namespace robomill::formats {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/monitor/files/recordings_toml.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -11,15 +11,15 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/path/files/trajectory.hpp"
 #include "robomill/path/smooth.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
-#include "robomill/robot/test_arms.hpp"
-#include "testing/joint_parsers.hpp"
-#include "testing/trajectories.hpp"
+#include "testing/path/joint_parsers.hpp"
+#include "testing/path/trajectories.hpp"
+#include "testing/robot/arms.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

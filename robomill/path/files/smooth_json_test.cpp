@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "robomill/path/files/trajectory.hpp"
-#include "testing/trajectories.hpp"
+#include "testing/path/trajectories.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/table.hpp"
-#include "testing/trajectories.hpp"
+#include "testing/path/trajectories.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

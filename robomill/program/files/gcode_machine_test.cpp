@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "robomill/base/test_support.hpp"
 #include "robomill/program/files/gcode_reader.hpp"
-#include "robomill/program/files/program_test_support.hpp"
+#include "testing/program/reading.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/program/files/gcode_reader.hpp"
-#include "robomill/program/files/program_test_support.hpp"
+#include "testing/program/reading.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/program/files/program_lines.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

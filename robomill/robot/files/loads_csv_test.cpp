@@ -8,10 +8,10 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/robot/files/stiffness_files.hpp"
-#include "robomill/robot/test_arms.hpp"
+#include "testing/robot/arms.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

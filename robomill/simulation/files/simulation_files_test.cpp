@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/test_support.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/records.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::formats {
 namespace {

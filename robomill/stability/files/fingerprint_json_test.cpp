@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "data/robot_modes.hpp"
 #include "robomill/base/units.hpp"
+#include "testing/robot_modes.hpp"
 
 namespace robomill::formats {
 namespace {

@@ -1,0 +1,57 @@
+#include "robomill/path/check/check_account.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace robomill::path {
+
+void BreachBook::add(const Place& place, int order, double ratio) {
+  const double told = std::isfinite(ratio) ? ratio : std::numeric_limits<double>::max();
+  const auto cell = std::isfinite(path_m_) ? static_cast<std::int64_t>(std::floor(path_m_ * breach_cells_per_m)) : 0;
+  const std::uint64_t key = (static_cast<std::uint64_t>(cell) * 1'000'003U + std::uint64_t{place.block}) * 5U +
+                            static_cast<std::uint64_t>(order + 1);
+  const auto known = index_.find(key);
+  if (known != index_.end()) {
+    Breach& breach = breaches_[known->second];
+    if (told > breach.ratio) {
+      breach.ratio = told;
+      breach.time_s = place.time_s;
+      breach.path_m = path_m_;
+    }
+    return;
+  }
+  if (breaches_.size() == room) return;
+  index_.emplace(key, breaches_.size());
+  breaches_.push_back({.block = place.block, .time_s = place.time_s, .path_m = path_m_, .ratio = told, .order = order});
+}
+
+std::vector<Breach> BreachBook::take() {
+  std::stable_sort(breaches_.begin(), breaches_.end(),
+                   [](const Breach& a, const Breach& b) { return a.time_s < b.time_s; });
+  index_.clear();
+  return std::exchange(breaches_, {});
+}
+
+Watch::Watch(Usage& usage, double limit, double relative_tolerance, int order)
+    : usage_(&usage),
+      bound_(limit > 0.0 ? limit * (1.0 + relative_tolerance) : std::numeric_limits<double>::infinity()),
+      order_(order) {
+  usage.limit = limit;
+}
+
+void Watch::raise(double value, const Place& place, BreachBook& book) {
+  if (value > usage_->max) {
+    usage_->max = value;
+    usage_->at_s = place.time_s;
+    usage_->block = place.block;
+    quiet_ = std::min(value, bound_);
+  }
+  if (value > bound_) {
+    ++usage_->violations;
+    book.add(place, order_, value / usage_->limit);
+  }
+}
+
+}  // namespace robomill::path

@@ -1,0 +1,73 @@
+#include "robomill/path/speed/span.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robomill::path {
+namespace {
+
+/// b = begin + slope x + curve x²; its motion obeys x'' = slope / 2 + curve x.
+struct Quadratic {
+  double slope, curve;
+};
+Quadratic quadratic(const Span& span) {
+  return {2.0 * (span.middle_b - span.begin_b) / span.length_m,
+          (span.begin_b - 2.0 * span.middle_b + span.end_b) / (span.length_m * span.length_m)};
+}
+
+}  // namespace
+
+double duration_s(const Span& span) noexcept {
+  switch (span.kind) {
+    case Span::Kind::dwell:
+      return span.dwell_s;
+    case Span::Kind::from_rest:
+      return 3.0 * span.length_m / std::sqrt(span.end_b);
+    case Span::Kind::to_rest:
+      return 3.0 * span.length_m / std::sqrt(span.begin_b);
+    case Span::Kind::cruise:
+      break;
+  }
+  // tanh(k T / 2) = k d / (v0 + v1), from x'' = a + k² x; k imaginary gives the tangent.
+  const double z = span.length_m / (std::sqrt(span.begin_b) + std::sqrt(span.end_b));
+  const double w = quadratic(span).curve * z * z;
+  if (std::abs(w) < 1e-4) return 2.0 * z * (1.0 + w * (1.0 / 3.0 + w * (1.0 / 5.0 + w * (1.0 / 7.0 + w / 9.0))));
+  const double k = std::sqrt(std::abs(w));
+  return 2.0 * z * (w > 0.0 ? std::atanh(k) : std::atan(k)) / k;
+}
+
+double way_m(const Span& span, double t_s, double total_s) noexcept {
+  switch (span.kind) {
+    case Span::Kind::dwell:
+      return 0.0;
+    case Span::Kind::from_rest: {
+      const double share = t_s / total_s;
+      return span.length_m * share * share * share;
+    }
+    case Span::Kind::to_rest: {
+      const double share = 1.0 - t_s / total_s;
+      return span.length_m * (1.0 - share * share * share);
+    }
+    case Span::Kind::cruise:
+      break;
+  }
+  const auto [slope, curve] = quadratic(span);
+  const double w = curve * t_s * t_s;
+  double s = 1.0, c = 0.5;  // sinh(k t)/(k t) and (cosh(k t) − 1)/(k t)²
+  if (std::abs(w) < 1e-2) {
+    s = 1.0 + w / 6.0 * (1.0 + w / 20.0 * (1.0 + w / 42.0 * (1.0 + w / 72.0)));
+    c = 0.5 * (1.0 + w / 12.0 * (1.0 + w / 30.0 * (1.0 + w / 56.0 * (1.0 + w / 90.0))));
+  } else if (w > 0.0) {
+    const double k = std::sqrt(w);
+    s = std::sinh(k) / k;
+    c = (std::cosh(k) - 1.0) / w;
+  } else {
+    const double k = std::sqrt(-w);
+    s = std::sin(k) / k;
+    c = (1.0 - std::cos(k)) / -w;
+  }
+  const double x = t_s * (std::sqrt(span.begin_b) * s + 0.5 * slope * t_s * c);
+  return std::min(std::max(x, 0.0), span.length_m);
+}
+
+}  // namespace robomill::path

@@ -1,0 +1,51 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "robomill/stability/collocation/collocation_map.hpp"
+#include "robomill/stability/eigen/arnoldi.hpp"
+#include "robomill/stability/motion.hpp"
+#include "robomill/stability/point_evaluator.hpp"
+
+namespace robomill::stability::detail {
+
+inline constexpr int last_level = 11;
+/// Ever finer meshes: 4, 6, … 16 nodes in a piece, then 14 in halves, quarters, … of it.
+MeshLevel mesh_level(int number);
+/// Where the search for an accuracy starts.
+int first_level(const CollocationModel& model, const OperatingPoint& point, double tolerance);
+
+/// Multipliers by collocation. With an estimate, levels rise until two of them agree within the tolerance; the estimate
+/// is by how much they differ, which is the error of the coarser.
+class CollocationEvaluator final : public PointEvaluator {
+ public:
+  /// model must outlive this.
+  CollocationEvaluator(const CollocationModel& model, double tolerance, const ArnoldiOptions& options = {})
+      : model_(model), tolerance_(tolerance), arnoldi_(options) {}
+  void evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) override;
+
+  /// Without any search, all at one level.
+  void evaluate_at(std::span<const OperatingPoint> points, int level, std::span<Dominant> out);
+
+ private:
+  struct Lane {
+    int level = 0;
+    double coarse = 0.0;  ///< spectral radius one level below
+    bool compared = false, done = false;
+  };
+  const CollocationCase& find_case(std::size_t lane, const OperatingPoint& point, int level);
+  void run(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out);
+  void settle(std::size_t lane, std::size_t column, const Dominant& dominant, const OperatingPoint& point, Ask ask,
+              Outcome& out);
+
+  const CollocationModel& model_;
+  double tolerance_;
+  static constexpr std::size_t largest_state = 12000;
+  CollocationMap map_;
+  Arnoldi arnoldi_;
+  std::array<Lane, lane_count> lanes_;
+  std::array<std::array<CollocationCase, lane_count>, 2> cases_;  ///< by parity of the level
+  std::array<const CollocationCase*, lane_count> at_ = {};
+};
+
+}  // namespace robomill::stability::detail

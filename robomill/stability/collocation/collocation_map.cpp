@@ -1,0 +1,168 @@
+#include "robomill/stability/collocation/collocation_map.hpp"
+
+#include <algorithm>
+
+namespace robomill::stability::detail {
+namespace {
+
+using Form = MeshTopology::Form;
+
+/// Row by row into one lane, from entry `from` on.
+void put(std::vector<Lanes>& to, std::size_t from, std::size_t lane, const Eigen::MatrixXd& matrix) {
+  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) to[from++].v[lane] = matrix(r, c);
+  }
+}
+
+}  // namespace
+
+void CollocationMap::prepare(const CollocationModel& model, std::span<const Point> points) {
+  const MeshTopology& topology = points.front().at->mesh.topology;
+  if (pieces_.empty() || !(topology == topology_)) {
+    topology_ = topology;
+    layout_ = NodeLayout(topology, static_cast<std::size_t>(model.tip.pole.size()));
+    lay_out(topology);
+  }
+  fill(points);
+  build_blocks();
+}
+
+void CollocationMap::lay_out(const MeshTopology& topology) {
+  const std::size_t m = layout_.nodes;
+  const std::size_t modal = layout_.modal;
+  const std::size_t p = static_cast<std::size_t>(topology.nodes);
+  const std::size_t channels = static_cast<std::size_t>(topology.channels());
+  const bool several = topology.form == Form::several;
+  pieces_.clear();
+  looks_.clear();
+  std::size_t contacts = 0;
+  std::size_t weights = 0;
+  for (std::size_t e = 0; e < topology.pieces.size(); ++e) {
+    NodePiece piece;
+    piece.coasts = !topology.pieces[e].records;
+    piece.factor = e * modal;
+    piece.first_look = looks_.size();
+    if (!piece.coasts) {
+      piece.block = contacts++ * node_block_size(modal, m);
+      piece.record = layout_.record[e];
+    }
+    for (std::size_t s = 0; s < topology.pieces[e].sources.size(); ++s) {
+      const Source& source = topology.pieces[e].sources[s];
+      const std::size_t node = s % p;
+      NodeLook look;
+      look.from = (source.before ? layout_.before : layout_.record)[static_cast<std::size_t>(source.piece)];
+      look.exact = source.exact;
+      if (source.exact) {
+        look.from += node * channels;
+      } else {
+        look.weights = weights;
+        weights += p;
+      }
+      look.through_stiffness = several;
+      look.matrix = 4 * looks_.size();
+      look.to = node * channels;
+      looks_.push_back(look);
+    }
+    piece.last_look = looks_.size();
+    pieces_.push_back(piece);
+  }
+  coupling_.resize(contacts * m * m);
+  observation_.resize(contacts * m * modal);
+  influence_.resize(contacts * m * modal);
+  displacement_.resize(several ? contacts * m * modal : 0);
+  node_response_.resize(several ? contacts * m * m : 0);
+  factors_.resize(topology.pieces.size() * modal);
+  weights_.resize(weights);
+  matrices_.resize(several ? 4 * looks_.size() : 0);
+  blocks_.resize(contacts * node_block_size(modal, m));
+  work_.resize(node_block_work(modal, m));
+  memory_.resize(layout_.memory);
+  state_.resize(2 * ((modal + m + 3) / 4 * 4));
+}
+
+void CollocationMap::fill(std::span<const Point> points) {
+  const std::size_t m = layout_.nodes;
+  const std::size_t modal = layout_.modal;
+  const std::size_t p = static_cast<std::size_t>(topology_.nodes);
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
+    const Point& point = points[std::min(lane, points.size() - 1)];
+    depth_.v[lane] = point.axial_depth_m;
+    std::size_t contact = 0;
+    for (std::size_t e = 0; e < pieces_.size(); ++e) {
+      const CollocationCase::Piece& piece = point.at->pieces[e];
+      const PiecePlan& plan = point.at->plans[piece.plan];
+      for (std::size_t k = 0; k < modal / 2; ++k) {
+        factors_[pieces_[e].factor + 2 * k].v[lane] = plan.factor(static_cast<Eigen::Index>(k)).real();
+        factors_[pieces_[e].factor + 2 * k + 1].v[lane] = plan.factor(static_cast<Eigen::Index>(k)).imag();
+      }
+      if (pieces_[e].coasts) continue;
+      put(coupling_, contact * m * m, lane, piece.coupling);
+      put(observation_, contact * m * modal, lane, piece.observation);
+      put(influence_, contact * m * modal, lane, piece.influence);
+      if (topology_.form == Form::several) {
+        put(displacement_, contact * m * modal, lane, piece.displacement);
+        put(node_response_, contact * m * m, lane, piece.node_response);
+      }
+      ++contact;
+      const CutMesh::Piece& mesh = point.at->mesh.pieces[e];
+      for (std::size_t i = pieces_[e].first_look; i < pieces_[e].last_look; ++i) {
+        const std::size_t s = i - pieces_[e].first_look;
+        for (std::size_t l = 0; l < p && !looks_[i].exact; ++l) {
+          weights_[looks_[i].weights + l].v[lane] = mesh.weights[s * p + l];
+        }
+        if (!looks_[i].through_stiffness) continue;
+        const Eigen::Matrix2d& k = mesh.delayed_stiffness[s];
+        for (std::size_t j = 0; j < 4; ++j) {
+          matrices_[looks_[i].matrix + j].v[lane] =
+              k(static_cast<Eigen::Index>(j / 2), static_cast<Eigen::Index>(j % 2));
+        }
+      }
+    }
+  }
+}
+
+void CollocationMap::build_blocks() {
+  NodeBlockArguments a;
+  a.modal = layout_.modal;
+  a.nodes = layout_.nodes;
+  a.depth = &depth_;
+  a.work = work_.data();
+  std::size_t contact = 0;
+  for (const NodePiece& piece : pieces_) {
+    if (piece.coasts) continue;
+    a.coupling = coupling_.data() + contact * a.nodes * a.nodes;
+    a.observation = observation_.data() + contact * a.nodes * a.modal;
+    a.influence = influence_.data() + contact * a.nodes * a.modal;
+    a.factor = factors_.data() + piece.factor;
+    if (topology_.form == Form::several) {
+      a.displacement = displacement_.data() + contact * a.nodes * a.modal;
+      a.node_response = node_response_.data() + contact * a.nodes * a.nodes;
+    }
+    a.block = blocks_.data() + piece.block;
+    build_node_block(a);
+    ++contact;
+  }
+}
+
+void CollocationMap::apply(const Lanes* in, Lanes* out) {
+  PeriodOfNodes a;
+  a.modal = layout_.modal;
+  a.nodes = layout_.nodes;
+  a.channels = static_cast<std::size_t>(topology_.channels());
+  a.pieces = pieces_.data();
+  a.piece_count = pieces_.size();
+  a.looks = looks_.data();
+  a.weights = weights_.data();
+  a.matrices = matrices_.data();
+  a.factors = factors_.data();
+  a.blocks = blocks_.data();
+  a.memory = memory_.data();
+  a.carried = layout_.handed.size();
+  a.handed = layout_.handed.data();
+  a.state = state_.data();
+  a.in = in;
+  a.out = out;
+  run_period_of_nodes(a);
+}
+
+}  // namespace robomill::stability::detail

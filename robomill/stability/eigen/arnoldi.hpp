@@ -1,0 +1,56 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "robomill/stability/eigen/hessenberg.hpp"
+#include "robomill/stability/eigen/period_map.hpp"
+
+namespace robomill::stability::detail {
+
+/// The multiplier of greatest modulus.
+struct Dominant {
+  std::complex<double> multiplier = 0.0;  ///< imaginary part >= 0; infinite where the motion overflows within a period
+  double residual = 0.0;                  ///< ‖Φ x - μ x‖ with ‖x‖ = 1
+  int iterations = 0;                     ///< passes over the period
+  enum class By { arnoldi, full_matrix, unsettled } by = By::unsettled;
+};
+
+/// |multiplier|; where the motion overflows in a single period, 1e100.
+double spectral_radius(const Dominant& dominant);
+
+struct ArnoldiOptions {
+  double tolerance = 1e-12;           ///< settled where the residual is at most this times (|μ| + 0.1 ‖H‖)
+  std::size_t extra = 72;             ///< vectors beyond 2n before the matrix is formed
+  std::size_t largest_matrix = 1200;  ///< beyond this the matrix is not formed
+  bool full_matrix_only = false;      ///< for tests
+};
+
+/// Arnoldi's iteration from one start vector for the eight lanes of a PeriodMap at once. A lane is done when the
+/// residual of its dominant Ritz pair is small enough, and then keeps what it has while others go on. Where that does
+/// not happen the matrix is formed and solved whole.
+class Arnoldi {
+ public:
+  explicit Arnoldi(const ArnoldiOptions& options = {}) : options_(options) {}
+  /// Of the first out.size() lanes.
+  void find(PeriodMap& map, std::span<Dominant> out);
+  /// Eigenvector of a lane of the last find, ‖x‖ = 1; length size().
+  [[nodiscard]] Eigen::VectorXcd vector(std::size_t lane);
+
+ private:
+  void start(std::size_t size);
+  bool settle(std::size_t lane, std::size_t columns, bool whole_space, Dominant& out);
+  void full_matrix(PeriodMap& map, std::span<Dominant> out);
+
+  ArnoldiOptions options_;
+  std::size_t size_ = 0, most_ = 0;
+  std::vector<double> start_;
+  std::vector<Lanes> basis_, hessenberg_;
+  Hessenberg small_;
+  std::array<std::vector<std::complex<double>>, lane_count> ritz_;  ///< in the basis
+  std::array<Eigen::VectorXcd, lane_count> full_;                   ///< of the matrix, where that was needed
+};
+
+}  // namespace robomill::stability::detail

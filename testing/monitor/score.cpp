@@ -1,0 +1,179 @@
+#include "testing/monitor/score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <numbers>
+
+#include "robomill/monitor/monitor.hpp"
+
+namespace robomill::monitor::testing {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double hop_s = 0.025, window_s = 0.05;
+
+/// Mean square of both channels over [from, to) frames.
+double mean_square(const std::vector<float>& samples, std::size_t from, std::size_t to) {
+  double sum = 0.0;
+  for (std::size_t i = 2 * from; i < 2 * to; ++i) sum += static_cast<double>(samples[i]) * samples[i];
+  return sum / static_cast<double>(2 * (to - from));
+}
+
+/// Ends of windows, in frames.
+std::vector<std::size_t> window_ends(const RecordedCut& cut) {
+  std::vector<std::size_t> ends;
+  const auto window = static_cast<std::size_t>(window_s * cut.sample_rate_hz);
+  const auto hop = static_cast<std::size_t>(hop_s * cut.sample_rate_hz);
+  for (std::size_t end = window; end <= cut.samples.size() / 2; end += hop) ends.push_back(end);
+  return ends;
+}
+
+/// What the comb leaves: each frame less the mean of the same angle in four earlier revolutions.
+std::vector<float> combed(const RecordedCut& cut) {
+  std::vector<float> out = cut.samples;
+  const auto at = [&](double frame, std::size_t channel) {
+    if (frame < 0.0) return 0.0;
+    const auto k = static_cast<std::size_t>(frame);
+    const double f = frame - static_cast<double>(k);
+    const double a = cut.samples[2 * k + channel], b = cut.samples[2 * k + 2 + channel];
+    return a + f * (b - a);
+  };
+  for (std::size_t i = 0; i < out.size() / 2; ++i) {
+    const double turn = 2.0 * std::numbers::pi / cut.truth.speed_rad_per_s[i] * cut.sample_rate_hz;
+    for (std::size_t c = 0; c < 2; ++c) {
+      double mean = 0.0;
+      for (int k = 1; k <= 4; ++k) mean += 0.25 * at(static_cast<double>(i) - k * turn, c);
+      out[2 * i + c] -= static_cast<float>(mean);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+double quantile(std::vector<double> values, double share) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  if (values.empty()) return unknown;
+  std::ranges::sort(values);
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto k = static_cast<std::size_t>(place);
+  const double next = values[std::min(k + 1, values.size() - 1)];
+  return values[k] + (place - static_cast<double>(k)) * (next - values[k]);
+}
+
+CutScore score(const RecordedCut& cut, std::span<const Heard> heard) {
+  const Truth& truth = cut.truth;
+  CutScore out = {.kind = cut.kind, .course = cut.course, .noise = cut.noise, .chatter = truth.chatter};
+  out.delay_s = out.recovery_s = unknown;
+  std::vector<double> nearest, strongest;
+  bool before = false;
+  for (const Heard& h : heard) {
+    const bool in_chatter = truth.chatter && h.time_s >= truth.start_s && h.time_s < truth.end_s;
+    const bool ringing = truth.chatter && h.time_s >= truth.end_s && h.time_s < truth.end_s + 0.1;
+    if (h.chatter && !before && !in_chatter && !ringing) ++out.false_alarms;
+    if (h.chatter && in_chatter && !out.found) {
+      out.found = true;
+      out.delay_s = h.time_s - truth.t10_s;
+    }
+    before = h.chatter;
+    const auto frame =
+        std::min(static_cast<std::size_t>(h.time_s * cut.sample_rate_hz), truth.amplitude_m_per_s2.size() - 1);
+    if (h.chatter && in_chatter && h.frequency_hz > 0.0 &&
+        truth.amplitude_m_per_s2[frame] > 0.5 * truth.final_m_per_s2) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const double line : truth.lines_hz) least = std::min(least, std::abs(line - h.frequency_hz));
+      nearest.push_back(least);
+      strongest.push_back(std::abs(truth.frequency_hz - h.frequency_hz));
+    }
+    const bool may_recover = truth.chatter && truth.ends && cut.seconds() - truth.end_s > 0.5;
+    if (may_recover && out.found && std::isnan(out.recovery_s) && h.time_s >= truth.end_s && h.stable) {
+      out.recovery_s = h.time_s - truth.end_s;
+    }
+  }
+  out.frequency_error_hz = quantile(nearest, 0.5);
+  out.strongest_error_hz = quantile(strongest, 0.5);
+  return out;
+}
+
+Summary summarise(std::span<const CutScore> scores) {
+  Summary out;
+  std::vector<double> delay, frequency, recovery;
+  for (const CutScore& s : scores) {
+    ++out.cuts;
+    out.chatter += s.chatter ? 1 : 0;
+    out.found += s.found ? 1 : 0;
+    out.false_alarms += s.false_alarms;
+    delay.push_back(s.delay_s);
+    if (s.found) frequency.push_back(s.frequency_error_hz);
+    recovery.push_back(s.recovery_s);
+  }
+  out.delay_median_s = quantile(delay, 0.5);
+  out.delay_95_s = quantile(delay, 0.95);
+  out.frequency_median_hz = quantile(frequency, 0.5);
+  out.frequency_95_hz = quantile(frequency, 0.95);
+  out.recovery_median_s = quantile(recovery, 0.5);
+  out.recovery_95_s = quantile(recovery, 0.95);
+  return out;
+}
+
+std::vector<Heard> heard_by_monitor(const RecordedCut& cut) {
+  MonitorOptions options;
+  options.sample_rate_hz = cut.sample_rate_hz;
+  options.channels = cut.channels;
+  options.spindle_speed_rad_per_s = cut.hint_rad_per_s;
+  options.teeth = cut.teeth;
+  ChatterMonitor monitor(options);
+  std::vector<Heard> out;
+  std::span<const float> rest = cut.samples;
+  const auto channels = static_cast<std::size_t>(cut.channels);
+  std::uint64_t hop = 0;
+  while (!rest.empty()) {
+    const std::size_t take = std::min(rest.size(), monitor.frames_to_next_decision() * channels);
+    const Decision d = monitor.push(rest.first(take));
+    rest = rest.subspan(take);
+    if (d.hop == hop) continue;
+    hop = d.hop;
+    out.push_back({.time_s = d.time_s,
+                   .chatter = d.state == State::chatter,
+                   .stable = d.state == State::stable,
+                   .frequency_hz = d.chatter_frequency_hz});
+  }
+  return out;
+}
+
+std::vector<Heard> rms_five_sigma(const RecordedCut& cut) {
+  constexpr std::size_t learnt = 40;  // hops: a second
+  std::vector<Heard> out;
+  std::deque<double> past;
+  for (const std::size_t end : window_ends(cut)) {
+    const auto window = static_cast<std::size_t>(window_s * cut.sample_rate_hz);
+    const double rms = std::sqrt(mean_square(cut.samples, end - window, end));
+    double mean = 0.0, square = 0.0;
+    for (const double v : past) mean += v / static_cast<double>(past.size());
+    for (const double v : past) square += (v - mean) * (v - mean) / static_cast<double>(past.size());
+    const bool chatter = past.size() >= 8 && rms > mean + 5.0 * std::sqrt(square);
+    out.push_back({.time_s = static_cast<double>(end) / cut.sample_rate_hz, .chatter = chatter, .stable = !chatter});
+    if (!chatter) past.push_back(rms);
+    if (past.size() > learnt) past.pop_front();
+  }
+  return out;
+}
+
+std::vector<Heard> comb_rms_ratio(const RecordedCut& cut) {
+  const std::vector<float> left = combed(cut);
+  std::vector<Heard> out;
+  int above = 0;
+  for (const std::size_t end : window_ends(cut)) {
+    const auto window = static_cast<std::size_t>(window_s * cut.sample_rate_hz);
+    const double ratio =
+        std::sqrt(mean_square(left, end - window, end) / std::max(1e-30, mean_square(cut.samples, end - window, end)));
+    above = ratio > 0.6 ? above + 1 : 0;
+    const bool chatter = above >= 2;
+    out.push_back({.time_s = static_cast<double>(end) / cut.sample_rate_hz, .chatter = chatter, .stable = !chatter});
+  }
+  return out;
+}
+
+}  // namespace robomill::monitor::testing

@@ -1,0 +1,55 @@
+#pragma once
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "testing/monitor/recording.hpp"
+
+/// How well a detector hears the corpus.
+namespace robomill::monitor::testing {
+
+/// One decision of any detector.
+struct Heard {
+  double time_s = 0.0;  ///< of the last sample it used
+  bool chatter = false, stable = true;
+  double frequency_hz = 0.0;  ///< 0: none
+};
+using Detector = std::function<std::vector<Heard>(const RecordedCut&)>;
+
+struct CutScore {
+  std::string kind = {}, course = {};
+  int noise = 0;
+  bool chatter = false;
+  bool found = false;  ///< chatter was reported between truth.start_s and truth.end_s
+  int false_alarms =
+      0;  ///< changes to chatter before truth.start_s, 0.1 s and more after truth.end_s, or in a stable cut
+  double delay_s = 0.0;  ///< first report since truth.start_s, less truth.t10_s; only where found
+  /// Of the frequencies reported while chatter's amplitude was above half the final one: median distance to the nearest
+  /// line within 10 dB of the strongest, and to the strongest; NaN: none reported.
+  double frequency_error_hz = 0.0, strongest_error_hz = 0.0;
+  /// From truth.end_s to the first report of stable; NaN where chatter does not end 0.5 s before the recording.
+  double recovery_s = 0.0;
+};
+[[nodiscard]] CutScore score(const RecordedCut& cut, std::span<const Heard> heard);
+
+/// Over many cuts; median and 95 % of what is known.
+struct Summary {
+  int cuts = 0, chatter = 0, found = 0, false_alarms = 0;
+  double delay_median_s = 0.0, delay_95_s = 0.0;
+  double frequency_median_hz = 0.0, frequency_95_hz = 0.0;
+  double recovery_median_s = 0.0, recovery_95_s = 0.0;
+};
+[[nodiscard]] Summary summarise(std::span<const CutScore> scores);
+/// The share-th of sorted values, by straight lines; NaN of none. Values that are NaN do not count.
+[[nodiscard]] double quantile(std::vector<double> values, double share);
+
+/// ChatterMonitor as it stands, told the recording's hint and teeth.
+[[nodiscard]] std::vector<Heard> heard_by_monitor(const RecordedCut& cut);
+/// Root mean square of 50 ms, each 25 ms, against mean plus five standard deviations of the second before.
+[[nodiscard]] std::vector<Heard> rms_five_sigma(const RecordedCut& cut);
+/// Each sample less the mean of the four revolutions before (at the true speed, which no monitor is told); where the
+/// rms of 50 ms of that exceeds 0.6 of the signal's twice running, chatter.
+[[nodiscard]] std::vector<Heard> comb_rms_ratio(const RecordedCut& cut);
+
+}  // namespace robomill::monitor::testing
