@@ -28,29 +28,29 @@ using monitor::Recording;
 constexpr std::size_t block_frames = 1 << 16;
 
 void check_places(const CalibrateCommand& command, const Common& common) {
-  if (!common.output.empty() && !common.to_stdout() && formats::format_of(common.output) != formats::Format::toml) {
+  if (!common.output.empty() && !common.to_stdout() && io::format_of(common.output) != io::Format::toml) {
     throw InvalidInput(common.output, "a calibrated detector is written as .toml");
   }
   check_report_place(command.report);
 }
 
 /// All recordings run at one rate: that of recordings.toml, or of the first.
-std::vector<Recording> read_all(formats::RecordingsFile& file, Progress& progress) {
+std::vector<Recording> read_all(monitor::RecordingsFile& file, Progress& progress) {
   monitor::MonitorOptions& options = file.monitor.options;
   std::vector<Recording> out;
   progress.start("recordings", file.recordings.size());
-  for (const formats::LabelledRecording& labelled : file.recordings) {
-    const auto source = formats::open_samples(labelled.file, file.monitor.columns);
+  for (const monitor::LabelledRecording& labelled : file.recordings) {
+    const auto source = io::open_samples(labelled.file, file.monitor.columns);
     if (options.sample_rate_hz <= 0.0) {
       options.sample_rate_hz = source->sample_rate_hz();
-      formats::validate(file.monitor);
+      monitor::validate(file.monitor);
       file.monitor.columns.sample_rate_hz = options.sample_rate_hz;
     }
     Recording recording;
     recording.name = labelled.file.string();
     recording.chatter = labelled.chatter;
     recording.onset_s = labelled.onset_s;
-    formats::SampleBlock block;
+    io::SampleBlock block;
     while (source->next(block_frames, block)) {
       recording.samples.insert(recording.samples.end(), block.samples.begin(), block.samples.end());
     }
@@ -93,22 +93,22 @@ void print_summary(const Calibration& calibration) {
 
 Exit run(const CalibrateCommand& command, const Common& common, Progress& progress) {
   check_places(command, common);
-  formats::RecordingsFile file = formats::read_recordings(command.recordings);
+  monitor::RecordingsFile file = monitor::read_recordings(command.recordings);
   const std::vector<Recording> recordings = read_all(file, progress);
   const Calibration calibration = monitor::calibrate(recordings, file.monitor.options,
                                                      {.false_alarm_rate = file.false_alarm_rate, .seed = common.seed});
-  const std::string json = formats::calibration_json(calibration);
+  const std::string json = monitor::calibration_json(calibration);
   if (common.to_stdout()) {
     fmt::print("{}", json);
   } else if (!common.output.empty()) {
-    formats::MonitorFile monitor = file.monitor;
+    monitor::MonitorFile monitor = file.monitor;
     monitor.options = calibration.options;
     monitor.modes = from_folder_of(common.output, monitor.modes);
     monitor.lobes = from_folder_of(common.output, monitor.lobes);
     const monitor::RocPoint& verified = calibration.verifying.chosen;
-    formats::write_file(
+    io::write_file(
         common.output,
-        formats::monitor_toml(
+        monitor::monitor_toml(
             monitor,
             fmt::format("robomill calibrate {}: {} recordings, half of them to verify.\n"
                         "Verified: {:.1f} % of the cuts with chatter found, {:.1f} % of the stable ones raise a "
@@ -116,10 +116,10 @@ Exit run(const CalibrateCommand& command, const Common& common, Progress& progre
                         command.recordings.filename().string(), recordings.size(), 100.0 * verified.detection_rate,
                         100.0 * verified.false_alarm_rate)));
   }
-  if (formats::lowered(command.report.extension().string()) == ".html") {
+  if (io::lowered(command.report.extension().string()) == ".html") {
     write_report(command.report, calibration_page(calibration));
   } else if (!command.report.empty()) {
-    formats::write_file(command.report, json);
+    io::write_file(command.report, json);
   }
   if (common.wants_summary()) print_summary(calibration);
   return calibration.verifying.chosen.detection_rate > 0.0 ? done : not_reached;

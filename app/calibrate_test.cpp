@@ -19,7 +19,7 @@ using nlohmann::json;
 class CalibrateVerb : public ProgramTest {
  protected:
   void wav(const std::string& name, const std::vector<float>& samples) {
-    formats::write_wav(folder_.at(name), samples, 1, 10240.0);
+    io::write_wav(folder_.at(name), samples, 1, 10240.0);
   }
 };
 

@@ -29,7 +29,7 @@ void print_pair(const char* name, const cutting::CoefficientPair& pair, bool edg
   fmt::print("\n");
 }
 
-void print_summary(const cutting::SlotFit& fit, const formats::SlotsFile& file) {
+void print_summary(const cutting::SlotFit& fit, const cutting::SlotsFile& file) {
   const bool edge_known = fit.status == cutting::SlotFit::Status::identified;
   fmt::print("{:<12} {:>22} {:>22}\n", fmt::format("{} slots", file.slots.size()), "cutting, N/mm²", "edge, N/mm");
   print_pair("tangential", fit.tangential, edge_known);
@@ -53,7 +53,7 @@ void print_summary(const cutting::SlotFit& fit, const formats::SlotsFile& file) 
 
 constexpr int usual_teeth = 4;
 
-cutting::SlotFit identify(const formats::SlotsFile& file, const CoefficientsCommand& command) {
+cutting::SlotFit identify(const cutting::SlotsFile& file, const CoefficientsCommand& command) {
   try {
     const bool told = command.teeth > 0;
     cutting::SlotFit fit = cutting::identify_from_slots(file.slots, {.teeth = told ? command.teeth : usual_teeth});
@@ -74,18 +74,17 @@ cutting::SlotFit identify(const formats::SlotsFile& file, const CoefficientsComm
 }  // namespace
 
 Exit run(const CoefficientsCommand& command, const Common& common, Progress&) {
-  const formats::Format format = formats::format_of(common.output);
-  if (!common.output.empty() && !common.to_stdout() && format != formats::Format::toml &&
-      format != formats::Format::json) {
+  const io::Format format = io::format_of(common.output);
+  if (!common.output.empty() && !common.to_stdout() && format != io::Format::toml && format != io::Format::json) {
     throw InvalidInput(common.output, "coefficients are written as .toml or .json");
   }
-  const formats::SlotsFile file = formats::read_slots(command.slots);
+  const cutting::SlotsFile file = cutting::read_slots(command.slots);
   const cutting::SlotFit fit = identify(file, command);
   if (common.to_stdout()) {
-    fmt::print("{}", formats::slot_fit_json(fit, file));
+    fmt::print("{}", cutting::slot_fit_json(fit, file));
   } else if (!common.output.empty()) {
-    const bool toml = format == formats::Format::toml;
-    formats::write_file(common.output, toml ? formats::slot_fit_toml(fit, file) : formats::slot_fit_json(fit, file));
+    const bool toml = format == io::Format::toml;
+    io::write_file(common.output, toml ? cutting::slot_fit_toml(fit, file) : cutting::slot_fit_json(fit, file));
   }
   if (common.wants_summary()) print_summary(fit, file);
   if (!(fit.tangential.cutting_n_per_m2 > 0.0)) {

@@ -38,7 +38,7 @@ void print_peaks(const modal::FrfSet& set, const modal::Frf& frf) {
 }
 
 /// Of an assembly of beams far below its lines; of a measured holder, which has no such lines, at the first.
-void print_compliance(const formats::AssemblyFile& file, const modal::FrfSet& tip, const modal::FrfName& name) {
+void print_compliance(const coupling::AssemblyFile& file, const modal::FrfSet& tip, const modal::FrfName& name) {
   const std::string text = modal::to_string(name);
   if (!file.assembly.holder.receptances.frfs.empty()) {
     const double compliance = std::abs(tip.find(name)->receptance(0));
@@ -57,13 +57,13 @@ void print_lines(const char* what, const std::vector<double>& lines_hz) {
 }
 
 /// What to know of a holder that was found from a measurement.
-void print_holder(const formats::AssemblyFile& file) {
+void print_holder(const coupling::AssemblyFile& file) {
   if (!file.holder) return;
   print_lines("Holder not reliable", file.holder->unreliable_hz);
   print_notes(file.holder->notes, "Note: ");
 }
 
-void print_summary(const formats::AssemblyFile& file, const coupling::TipResult& tip) {
+void print_summary(const coupling::AssemblyFile& file, const coupling::TipResult& tip) {
   const modal::Frf& x = *tip.frfs.find(modal::parse_frf_name("xx"));
   const modal::Frf& y = *tip.frfs.find(modal::parse_frf_name("yy"));
   print_peaks(tip.frfs, x);
@@ -81,8 +81,8 @@ void print_summary(const formats::AssemblyFile& file, const coupling::TipResult&
 }
 
 /// tip.json with what the summary says of lines that are not to be trusted.
-std::string tip_json(const formats::AssemblyFile& file, const coupling::TipResult& tip) {
-  formats::FrfDoubts doubts{.suspect_hz = tip.suspect_hz};
+std::string tip_json(const coupling::AssemblyFile& file, const coupling::TipResult& tip) {
+  modal::FrfDoubts doubts{.suspect_hz = tip.suspect_hz};
   const auto note = [&](const std::vector<std::string>& notes) {
     doubts.notes.insert(doubts.notes.end(), notes.begin(), notes.end());
   };
@@ -92,11 +92,11 @@ std::string tip_json(const formats::AssemblyFile& file, const coupling::TipResul
   }
   note(file.notes);
   note(tip.notes);
-  return formats::frf_json(tip.frfs, doubts);
+  return modal::frf_json(tip.frfs, doubts);
 }
 
 /// The holder's receptances with their uncertainty, so that whoever couples to the file sees which lines are bad.
-modal::FrfSet holder_with_deviation(const formats::AssemblyFile& file) {
+modal::FrfSet holder_with_deviation(const coupling::AssemblyFile& file) {
   modal::FrfSet out = file.assembly.holder.receptances;
   if (!file.holder) return out;  // as it was measured
   // Where the receptance itself vanishes the amplification has no bound.
@@ -109,7 +109,7 @@ modal::FrfSet holder_with_deviation(const formats::AssemblyFile& file) {
 }
 
 /// The tip's FRFs; an error about the assembly names its file.
-coupling::TipResult couple(const formats::AssemblyFile& file, const coupling::TipOptions& options) {
+coupling::TipResult couple(const coupling::AssemblyFile& file, const coupling::TipOptions& options) {
   try {
     return coupling::tip_frfs(file.assembly, file.frequency_hz, options);
   } catch (const InvalidInput& error) {
@@ -144,24 +144,24 @@ void print_tools(const std::vector<jobs::ToolResult>& results) {
 
 /// A table of many tools in the assembly's holder.
 Exit try_tools(const CoupleCommand& command, const Common& common, Progress& progress) {
-  const bool as_json = common.to_stdout() || formats::format_of(common.output) == formats::Format::json;
-  if (!common.output.empty() && !as_json && formats::format_of(common.output) != formats::Format::csv) {
+  const bool as_json = common.to_stdout() || io::format_of(common.output) == io::Format::json;
+  if (!common.output.empty() && !as_json && io::format_of(common.output) != io::Format::csv) {
     throw InvalidInput(common.output, "a table of tools is written as .csv or .json");
   }
-  const formats::AssemblyFile assembly = formats::read_assembly(command.input);
-  const auto tools = formats::read_tools(command.tools, assembly.assembly.tool.front());
-  std::optional<formats::LobesFile> cut;
+  const coupling::AssemblyFile assembly = coupling::read_assembly(command.input);
+  const auto tools = coupling::read_tools(command.tools, assembly.assembly.tool.front());
+  std::optional<jobs::LobesFile> cut;
   if (!command.lobes.empty()) {
-    cut = formats::read_lobes(command.lobes);
+    cut = jobs::read_lobes(command.lobes);
     // Each tool brings its own dynamics; those of a workpiece stay.
     cut->drop_dynamics();
-    formats::load_dynamics(*cut);
+    jobs::load_dynamics(*cut);
   }
   const std::vector<jobs::ToolResult> results = jobs::try_tools(assembly, tools, cut, common.seed, progress);
   if (common.to_stdout()) {
     fmt::print("{}", jobs::tools_json(results, assembly.holder));
   } else if (!common.output.empty()) {
-    formats::write_file(common.output, as_json ? jobs::tools_json(results, assembly.holder) : jobs::tools_csv(results));
+    io::write_file(common.output, as_json ? jobs::tools_json(results, assembly.holder) : jobs::tools_csv(results));
   }
   if (!command.frfs.empty()) jobs::write_tips(command.frfs, results);
   if (common.wants_summary()) {
@@ -180,7 +180,7 @@ Exit try_tools(const CoupleCommand& command, const Common& common, Progress& pro
 
 Exit run(const CoupleCommand& command, const Common& common, Progress& progress) {
   if (!command.tools.empty()) return try_tools(command, common, progress);
-  const formats::AssemblyFile file = formats::read_assembly(command.input);
+  const coupling::AssemblyFile file = coupling::read_assembly(command.input);
   const modal::FrfSet& holder = file.assembly.holder.receptances;
   if (!command.holder_out.empty() && holder.frfs.empty()) {
     throw InvalidInput("--holder-out", "needs a measured holder",
@@ -190,12 +190,12 @@ Exit run(const CoupleCommand& command, const Common& common, Progress& progress)
   const coupling::TipResult tip = couple(file, {.rotations = command.rotations});
   if (common.to_stdout()) {
     fmt::print("{}", tip_json(file, tip));
-  } else if (!common.output.empty() && formats::format_of(common.output) == formats::Format::json) {
-    formats::write_file(common.output, tip_json(file, tip));
+  } else if (!common.output.empty() && io::format_of(common.output) == io::Format::json) {
+    io::write_file(common.output, tip_json(file, tip));
   } else if (!common.output.empty()) {
-    formats::write_frfs(common.output, tip.frfs);
+    modal::write_frfs(common.output, tip.frfs);
   }
-  if (!command.holder_out.empty()) formats::write_frfs(command.holder_out, holder_with_deviation(file));
+  if (!command.holder_out.empty()) modal::write_frfs(command.holder_out, holder_with_deviation(file));
   if (common.wants_summary()) print_summary(file, tip);
   return done;
 }

@@ -45,8 +45,8 @@ void check(const ExplainCommand& command) {
 /// The cut that --lobes names.
 std::optional<stability::LobesProblem> cut_of(const ExplainCommand& command) {
   if (command.lobes.empty()) return std::nullopt;
-  formats::LobesFile file = formats::read_lobes(command.lobes);
-  formats::load_dynamics(file);
+  jobs::LobesFile file = jobs::read_lobes(command.lobes);
+  jobs::load_dynamics(file);
   if (!file.frf.empty() || !file.workpiece_frf.empty()) {
     throw InvalidInput(command.lobes.string(), "must name modes: without them the equation has no time",
                        "Run robomill modes on the FRFs and name the result as dynamics.modes");
@@ -122,11 +122,11 @@ void print_summary(const stability::Fingerprint& found, int teeth,
 }  // namespace
 
 Exit run(const ExplainCommand& command, const Common& common, Progress&) {
-  if (!common.output.empty() && !common.to_stdout() && formats::format_of(common.output) != formats::Format::json) {
+  if (!common.output.empty() && !common.to_stdout() && io::format_of(common.output) != io::Format::json) {
     throw InvalidInput(common.output, "explanations are written as .json");
   }
   check(command);
-  const modal::ModalModel modes = formats::read_modes(command.modes);
+  const modal::ModalModel modes = modal::read_modes(command.modes);
   const stability::MeasuredPeaks peaks = {command.peaks_hz, command.rpm * units::rpm, command.teeth};
   const stability::FingerprintOptions options = {command.tolerance_hz, command.speed_tolerance_percent / 100.0};
   const std::optional<stability::LobesProblem> cut = cut_of(command);
@@ -134,11 +134,11 @@ Exit run(const ExplainCommand& command, const Common& common, Progress&) {
   const stability::Fingerprint found = stability::explain(peaks, modes, options, workpiece);
   std::optional<stability::DelayVerdict> verdict;
   if (cut) verdict = stability::needs_delay(*cut, {command.at[0] * units::rpm, command.at[1] * units::mm});
-  const std::string json = formats::fingerprint_json(found, verdict ? &*verdict : nullptr);
+  const std::string json = stability::fingerprint_json(found, verdict ? &*verdict : nullptr);
   if (common.to_stdout()) {
     fmt::print("{}", json);
   } else if (!common.output.empty()) {
-    formats::write_file(common.output, json);
+    io::write_file(common.output, json);
   }
   if (common.wants_summary()) print_summary(found, command.teeth, verdict);
   return done;

@@ -91,7 +91,7 @@ void write_report(const std::filesystem::path& path, const jobs::ForcesResult& r
   page.title = "Cutting forces";
   page.forces = jobs::forces_report(result);
   const bool html = path.extension() == ".html";
-  formats::write_file(path, html ? report::report_html(page) : report::report_json(page));
+  io::write_file(path, html ? report::report_html(page) : report::report_json(page));
 }
 
 bool reached(const jobs::ForcesResult& result) {
@@ -105,8 +105,8 @@ bool reached(const jobs::ForcesResult& result) {
 
 Exit run(const ForcesCommand& command, const Common& common, Progress& progress) {
   if (!common.output.empty() && !common.to_stdout()) {
-    const formats::Format format = formats::format_of(common.output);
-    if (format != formats::Format::csv && format != formats::Format::json) {
+    const io::Format format = io::format_of(common.output);
+    if (format != io::Format::csv && format != io::Format::json) {
       throw InvalidInput(common.output, "forces are written as .csv or .json");
     }
   }
@@ -117,8 +117,8 @@ Exit run(const ForcesCommand& command, const Common& common, Progress& progress)
   if (common.to_stdout()) {
     fmt::print("{}", jobs::forces_json(result));
   } else if (!common.output.empty()) {
-    const bool csv = formats::format_of(common.output) == formats::Format::csv;
-    formats::write_file(common.output, csv ? jobs::forces_csv(result) : jobs::forces_json(result));
+    const bool csv = io::format_of(common.output) == io::Format::csv;
+    io::write_file(common.output, csv ? jobs::forces_csv(result) : jobs::forces_json(result));
   }
   if (!command.report.empty()) write_report(command.report, result);
   if (common.wants_summary()) {

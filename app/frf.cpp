@@ -47,12 +47,12 @@ void print_summary(const modal::FrfResult& result, const std::vector<std::string
 }  // namespace
 
 Exit run(const FrfCommand& command, const Common& common, Progress& progress) {
-  const formats::HitsFile hits = formats::read_hits(command.hits);
+  const modal::HitsFile hits = modal::read_hits(command.hits);
   const modal::FrfResult result = modal::estimate_frfs(hits.hits, hits.options, progress);
   if (common.to_stdout()) {
-    fmt::print("{}", formats::frf_json(result));
+    fmt::print("{}", modal::frf_json(result));
   } else if (!common.output.empty()) {
-    formats::write_frfs(common.output, result, {.binary_uff = command.binary});
+    modal::write_frfs(common.output, result, {.binary_uff = command.binary});
   }
   if (common.wants_summary()) print_summary(result, hits.notes);
   return done;

@@ -55,7 +55,7 @@ InvalidInput located(const InvalidInput& error, const JointCommand& command) {
   return InvalidInput(std::move(parts));
 }
 
-coupling::JointFitResult find_joint(const formats::AssemblyFile& file, const modal::FrfSet& measured,
+coupling::JointFitResult find_joint(const coupling::AssemblyFile& file, const modal::FrfSet& measured,
                                     const JointCommand& command, const Common& common, Progress& progress) {
   coupling::JointFitOptions options = file.search;
   options.method = command.method == "ga" ? coupling::JointMethod::ga : coupling::JointMethod::hybrid;
@@ -65,7 +65,7 @@ coupling::JointFitResult find_joint(const formats::AssemblyFile& file, const mod
   options.axis = command.axis == "y" ? modal::Axis::y : modal::Axis::x;
   options.seed = common.seed;
   try {
-    return coupling::fit_joint(file.assembly, formats::lines_between(measured, file.low_hz, file.high_hz), options,
+    return coupling::fit_joint(file.assembly, coupling::lines_between(measured, file.low_hz, file.high_hz), options,
                                progress);
   } catch (const InvalidInput& error) {
     throw located(error, command);
@@ -75,20 +75,20 @@ coupling::JointFitResult find_joint(const formats::AssemblyFile& file, const mod
 }  // namespace
 
 Exit run(const JointCommand& command, const Common& common, Progress& progress) {
-  if (!common.output.empty() && !common.to_stdout() && formats::format_of(common.output) != formats::Format::json) {
+  if (!common.output.empty() && !common.to_stdout() && io::format_of(common.output) != io::Format::json) {
     throw InvalidInput(common.output, "joints are written as .json");
   }
-  const formats::AssemblyFile file = formats::read_assembly(command.input, {.joint_sought = true});
-  const formats::FrfFile measured = formats::read_frfs(command.measured, command.as);
+  const coupling::AssemblyFile file = coupling::read_assembly(command.input, {.joint_sought = true});
+  const modal::FrfFile measured = modal::read_frfs(command.measured, command.as);
   if (measured.added_decay_per_s > 0.0) {
     throw InvalidInput(command.measured.front().string(), "still holds the damping of an exponential window",
                        "It would be taken for the joint's: estimate the FRFs with remove_added_damping");
   }
   const coupling::JointFitResult fit = find_joint(file, measured.set, command, common, progress);
   if (common.to_stdout()) {
-    fmt::print("{}", formats::joint_json(fit));
+    fmt::print("{}", coupling::joint_json(fit));
   } else if (!common.output.empty()) {
-    formats::write_file(common.output, formats::joint_json(fit));
+    io::write_file(common.output, coupling::joint_json(fit));
   }
   if (common.wants_summary()) {
     std::vector<std::string> notes = file.notes;

@@ -67,15 +67,15 @@ std::string percent(double share) {
 }
 
 /// Every method beside the first: a row each.
-Exit compare(const formats::LobesFile& file, const Common& common, Progress& progress) {
+Exit compare(const jobs::LobesFile& file, const Common& common, Progress& progress) {
   constexpr int most_speeds = 60;
   const int speeds = std::min(file.options.grid[0], most_speeds);
   const stability::MethodComparison comparison =
       stability::compare_methods(file.problem, file.options, speeds, progress);
   if (common.to_stdout()) {
-    fmt::print("{}", formats::comparison_json(comparison));
+    fmt::print("{}", stability::comparison_json(comparison));
   } else if (!common.output.empty()) {
-    formats::write_file(common.output, formats::comparison_json(comparison));
+    io::write_file(common.output, stability::comparison_json(comparison));
   }
   if (!common.wants_summary()) return done;
   fmt::print("{:<34}{:>14}{:>14}{:>14}{:>8}{:>10}\n", "method", "lowest limit", "median error", "worst error", "differ",
@@ -104,11 +104,11 @@ Exit compare(const formats::LobesFile& file, const Common& common, Progress& pro
 }  // namespace
 
 Exit run(const LobesCommand& command, const Common& common, Progress& progress) {
-  if (!common.output.empty() && !common.to_stdout() && formats::format_of(common.output) != formats::Format::json) {
+  if (!common.output.empty() && !common.to_stdout() && io::format_of(common.output) != io::Format::json) {
     throw InvalidInput(common.output, "lobes are written as .json");
   }
-  formats::LobesFile file = formats::read_lobes(command.input);
-  formats::load_dynamics(file);
+  jobs::LobesFile file = jobs::read_lobes(command.input);
+  jobs::load_dynamics(file);
   if (file.drilling) {
     throw InvalidInput(command.input.string(), "lobes are those of milling", "robomill simulate takes drilling");
   }
@@ -126,9 +126,9 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
     surface = stability::surface_map(file.problem, file.options, file.surface_grid, progress);
   }
   if (common.to_stdout()) {
-    fmt::print("{}", formats::lobes_json(result, uncertain, surface));
+    fmt::print("{}", stability::lobes_json(result, uncertain, surface));
   } else if (!common.output.empty()) {
-    formats::write_file(common.output, formats::lobes_json(result, uncertain, surface));
+    io::write_file(common.output, stability::lobes_json(result, uncertain, surface));
   }
   if (common.wants_summary()) print_summary(result, surface, file.notes);
   return done;

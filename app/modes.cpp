@@ -16,7 +16,7 @@ namespace {
 
 modal::FitOptions options_of(const ModesCommand& command, const Common& common) {
   modal::FitOptions options;
-  if (!command.config.empty()) options = formats::read_fit_options(command.config);
+  if (!command.config.empty()) options = modal::read_fit_options(command.config);
   options.seed = common.seed;
   if (command.method) {
     options.method = *command.method == "pso"    ? modal::FitMethod::pso
@@ -51,18 +51,18 @@ void print_summary(const modal::FitResult& fit) {
 }  // namespace
 
 Exit run(const ModesCommand& command, const Common& common, Progress& progress) {
-  if (!common.output.empty() && !common.to_stdout() && formats::format_of(common.output) != formats::Format::json) {
+  if (!common.output.empty() && !common.to_stdout() && io::format_of(common.output) != io::Format::json) {
     throw InvalidInput(common.output, "modes are written as .json");
   }
-  const formats::FrfFile file = formats::read_frfs(command.inputs, command.as);
+  const modal::FrfFile file = modal::read_frfs(command.inputs, command.as);
   modal::FitOptions options = options_of(command, common);
   if (file.added_decay_per_s > 0.0) options.exponential_decay_per_s = file.added_decay_per_s;
   modal::FitResult fit = modal::fit_modes(file.set, options, progress);
   fit.accepted = command.accept_fit;
   if (common.to_stdout()) {
-    fmt::print("{}", formats::modes_json(fit));
+    fmt::print("{}", modal::modes_json(fit));
   } else if (!common.output.empty()) {
-    formats::write_file(common.output, formats::modes_json(fit));
+    io::write_file(common.output, modal::modes_json(fit));
   }
   if (common.wants_summary()) {
     print_notes(file.notes, "Note: ");

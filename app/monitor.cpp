@@ -37,8 +37,8 @@ namespace {
 /// What events and report may take after Ctrl-C.
 constexpr double saving_s = 10.0;
 
-using formats::MonitorEvent;
-using formats::RawFormat;
+using io::RawFormat;
+using monitor::MonitorEvent;
 
 /// Lines of events: of a recording the file appears whole at the end, of a stream line by line as they come.
 class EventFile {
@@ -49,7 +49,7 @@ class EventFile {
     std::error_code ignored;
     const auto kind = std::filesystem::status(path, ignored).type();
     const bool is_pipe = kind == std::filesystem::file_type::fifo || kind == std::filesystem::file_type::character;
-    if (!is_pipe) pending_ = std::make_unique<formats::PendingFile>(path);
+    if (!is_pipe) pending_ = std::make_unique<io::PendingFile>(path);
     if (is_pipe || live) pending_.reset();  // it has checked the place
     file_.open(pending_ ? pending_->temporary() : path, std::ios::binary | std::ios::trunc);
     if (!file_) throw InvalidInput(path.string(), "cannot be written");
@@ -78,7 +78,7 @@ class EventFile {
 
  private:
   bool to_stdout_, live_, failed_ = false;
-  std::unique_ptr<formats::PendingFile> pending_;
+  std::unique_ptr<io::PendingFile> pending_;
   std::ofstream file_;
 };
 
@@ -94,13 +94,13 @@ struct Input {
   bool is_live = false;    ///< events are wanted as they come
   bool can_wait = true;
   std::string name;
-  std::unique_ptr<formats::SampleSource> source;
+  std::unique_ptr<io::SampleSource> source;
 };
 
-Input open_input(const MonitorCommand& command, formats::MonitorFile& file, const std::atomic<bool>& ended) {
+Input open_input(const MonitorCommand& command, monitor::MonitorFile& file, const std::atomic<bool>& ended) {
   Input input;
   input.is_stream =
-      command.input.empty() ? !file.mqtt.topic.empty() : formats::parse_mqtt_address(command.input, file.mqtt);
+      command.input.empty() ? !file.mqtt.topic.empty() : monitor::parse_mqtt_address(command.input, file.mqtt);
   if (input.is_stream) {
     input.is_live = true;
     input.name = fmt::format("mqtt://{}:{}/{}", file.mqtt.host, file.mqtt.port_or_default(), file.mqtt.topic);
@@ -119,10 +119,10 @@ Input open_input(const MonitorCommand& command, formats::MonitorFile& file, cons
     input.name = "standard input";
     input.is_live = true;
     input.can_wait = !command.live;
-    input.source = formats::open_sample_stream(STDIN_FILENO, input.name, file.columns, format, &ended);
+    input.source = io::open_sample_stream(STDIN_FILENO, input.name, file.columns, format, &ended);
   } else {
     input.name = command.input;
-    input.source = formats::open_samples(command.input, file.columns, format, &ended);
+    input.source = io::open_samples(command.input, file.columns, format, &ended);
   }
   if (file.options.sample_rate_hz <= 0.0) file.options.sample_rate_hz = input.source->sample_rate_hz();
   if (file.options.full_scale <= 0.0) file.options.full_scale = input.source->full_scale();
@@ -150,7 +150,7 @@ void print_event(std::FILE* to, const MonitorEvent& event) {
       break;
     case MonitorEvent::Kind::fault: {
       std::string names;
-      for (const std::string& name : formats::fault_names(d.faults)) names += (names.empty() ? "" : ", ") + name;
+      for (const std::string& name : monitor::fault_names(d.faults)) names += (names.empty() ? "" : ", ") + name;
       fmt::print(to, "input: {}", names.empty() ? "all well" : names);
       if ((d.faults & monitor::wrong_sample_rate) != 0 && d.suggested_sample_rate_hz > 0.0) {
         fmt::print(to, " (the comb suggests {:.6g} Hz)", d.suggested_sample_rate_hz);
@@ -185,15 +185,15 @@ class Ending {
 };
 
 /// The file with what the command line says in its place.
-formats::MonitorFile read_config(const MonitorCommand& command) {
-  formats::MonitorFile file = formats::read_monitor(command.config);
+monitor::MonitorFile read_config(const MonitorCommand& command) {
+  monitor::MonitorFile file = monitor::read_monitor(command.config);
   if (!command.record.empty()) file.recording_folder = command.record;
   if (command.metrics_port) file.metrics_port = *command.metrics_port;
   return file;
 }
 
 /// As they lie in a frame.
-std::vector<std::string> channel_names(const formats::MonitorFile& file) {
+std::vector<std::string> channel_names(const monitor::MonitorFile& file) {
   std::vector<std::string> names = file.columns.channels;
   if (!file.columns.tachometer.empty()) names.push_back(file.columns.tachometer);
   return names;
@@ -203,10 +203,10 @@ std::vector<std::string> channel_names(const formats::MonitorFile& file) {
 
 Exit run(const MonitorCommand& command, const Common& common, Progress& progress) {
   check_report_place(command.report);
-  formats::MonitorFile file = read_config(command);
+  monitor::MonitorFile file = read_config(command);
   std::atomic<bool> ended{false};
   Input input = open_input(command, file, ended);
-  formats::validate(file);
+  monitor::validate(file);
   const Advisor advisor(file, progress);
   EventFile events(common, input.is_live);
 

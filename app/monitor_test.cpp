@@ -54,7 +54,7 @@ class MonitorVerb : public ProgramTest {
  protected:
   void SetUp() override { folder_.file("monitor.toml", config_); }
   void wav(const std::string& name, const std::vector<float>& samples) {
-    formats::write_wav(folder_.at(name), samples, 1, rate_hz);
+    io::write_wav(folder_.at(name), samples, 1, rate_hz);
   }
   [[nodiscard]] std::vector<json> events(const std::string& name = "events.jsonl") const {
     std::vector<json> out;
@@ -99,8 +99,8 @@ TEST_F(MonitorVerb, HearsChatterInARecording) {
   // The seconds before the alarm, as they were.
   ASSERT_EQ(events_of("recording").size(), 1U);
   const auto recorded =
-      formats::open_samples(folder_.path() / events_of("recording")[0]["file"].get<std::string>(), {.channels = {"1"}});
-  formats::SampleBlock block;
+      io::open_samples(folder_.path() / events_of("recording")[0]["file"].get<std::string>(), {.channels = {"1"}});
+  io::SampleBlock block;
   ASSERT_TRUE(recorded->next(100'000, block));
   EXPECT_NEAR(static_cast<double>(block.samples.size()) / rate_hz, (*alarm)["time_s"].get<double>(), 0.026);
   EXPECT_EQ(block.samples[1000], cut(1.0, false)[1000]);
@@ -298,7 +298,7 @@ class MonitorStream : public MonitorVerb {
     MonitorVerb::SetUp();
     folder_.file("monitor.toml", config_ + "[mqtt]\nport = " + std::to_string(broker_.port()) +
                                      "\ntopic = \"cell/ax\"\nevents_topic = \"cell/events\"\n");
-    formats::MqttSettings settings;
+    monitor::MqttSettings settings;
     settings.port = broker_.port();
     client_ = std::make_unique<MqttClient>(
         settings, "cell/events", MqttClient::Calls{.message = [this](std::span<const std::byte> payload) {
@@ -322,7 +322,7 @@ class MonitorStream : public MonitorVerb {
     ASSERT_TRUE(wait_for([&] { return client_->publish("cell/ax", payload); }));
   }
   [[nodiscard]] std::string message(std::uint64_t number, double seconds_from = 0.0) const {
-    formats::StreamBlock block;
+    monitor::StreamBlock block;
     block.sequence = number;
     block.sample_rate_hz = rate_hz;
     block.spindle_speed_rad_per_s = 3000.0 * units::rpm;
@@ -330,7 +330,7 @@ class MonitorStream : public MonitorVerb {
     const std::size_t first = static_cast<std::size_t>(seconds_from * rate_hz) + number * block_frames;
     block.samples.assign(samples_.begin() + static_cast<std::ptrdiff_t>(first),
                          samples_.begin() + static_cast<std::ptrdiff_t>(first + block_frames));
-    return formats::encode_stream_block(block);
+    return monitor::encode_stream_block(block);
   }
   /// Nothing that was sent before the subscription stood comes: sends the first block until a decision was made.
   void begin() {

@@ -25,11 +25,11 @@ using simulation::Verdict;
 /// @throws InvalidInput if the ending is none that a simulation has
 void check_output(const Common& common) {
   if (common.output.empty() || common.to_stdout()) return;
-  switch (formats::format_of(common.output)) {
-    case formats::Format::csv:
-    case formats::Format::mat:
-    case formats::Format::wav:
-    case formats::Format::json:
+  switch (io::format_of(common.output)) {
+    case io::Format::csv:
+    case io::Format::mat:
+    case io::Format::wav:
+    case io::Format::json:
       return;
     default:
       throw InvalidInput(common.output, "a simulation is written as .csv, .mat, .wav or .json");
@@ -54,9 +54,9 @@ void fit_where_measured(const std::filesystem::path& path, modal::FrfSet& measur
   }
 }
 
-formats::LobesFile read_cut(const std::filesystem::path& path, bool told, Progress& progress) {
-  formats::LobesFile file = formats::read_lobes(path);
-  formats::load_dynamics(file);
+jobs::LobesFile read_cut(const std::filesystem::path& path, bool told, Progress& progress) {
+  jobs::LobesFile file = jobs::read_lobes(path);
+  jobs::load_dynamics(file);
   stability::LobesProblem& problem = file.problem;
   if (told) print_notes(file.notes, "Note: ");
   fit_where_measured(file.frf, problem.measured, problem.dynamics, told, progress);
@@ -127,7 +127,7 @@ void print_summary(const Simulation& s, const stability::OperatingPoint& point) 
              s.resolved ? "" : " (above tolerance)", s.seconds);
 }
 
-simulation::MillingCut milling_of(const formats::LobesFile& file, const stability::OperatingPoint& point) {
+simulation::MillingCut milling_of(const jobs::LobesFile& file, const stability::OperatingPoint& point) {
   return {.milling = file.problem.milling,
           .structure = structure_of(file.problem),
           .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
@@ -135,7 +135,7 @@ simulation::MillingCut milling_of(const formats::LobesFile& file, const stabilit
 }
 
 /// The point's depth is the lips' radial width: from the pilot hole to the rim.
-simulation::DrillingCut drilling_of(const formats::LobesFile& file, const stability::OperatingPoint& point) {
+simulation::DrillingCut drilling_of(const jobs::LobesFile& file, const stability::OperatingPoint& point) {
   simulation::DrillingCut cut;
   cut.lips = file.problem.milling.tool.teeth;
   cut.diameter_m = file.problem.milling.tool.diameter_m;
@@ -153,7 +153,7 @@ simulation::DrillingCut drilling_of(const formats::LobesFile& file, const stabil
 Exit run(const SimulateCommand& command, const Common& common, Progress& progress) {
   check_output(common);
   const stability::OperatingPoint point = parse_point(command.at);
-  const formats::LobesFile file = read_cut(command.input, common.wants_summary(), progress);
+  const jobs::LobesFile file = read_cut(command.input, common.wants_summary(), progress);
   const simulation::SimulationOptions options = {.seconds = command.seconds,
                                                  .sample_rate_hz = command.sample_rate_hz,
                                                  .loss_of_contact = !command.linear,
@@ -161,13 +161,13 @@ Exit run(const SimulateCommand& command, const Common& common, Progress& progres
   const Simulation result = file.drilling ? simulation::simulate(drilling_of(file, point), options, progress)
                                           : simulation::simulate(milling_of(file, point), options, progress);
   if (common.to_stdout()) {
-    fmt::print("{}", formats::simulation_json(result, point.spindle_speed_rad_per_s, point.axial_depth_m));
+    fmt::print("{}", simulation::simulation_json(result, point.spindle_speed_rad_per_s, point.axial_depth_m));
   } else if (!common.output.empty()) {
-    if (formats::format_of(common.output) == formats::Format::json) {
-      formats::write_file(common.output,
-                          formats::simulation_json(result, point.spindle_speed_rad_per_s, point.axial_depth_m));
+    if (io::format_of(common.output) == io::Format::json) {
+      io::write_file(common.output,
+                     simulation::simulation_json(result, point.spindle_speed_rad_per_s, point.axial_depth_m));
     } else {
-      formats::write_simulation(common.output, result);
+      simulation::write_simulation(common.output, result);
     }
   }
   if (common.wants_summary()) print_summary(result, point);

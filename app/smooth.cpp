@@ -28,7 +28,7 @@ void print_row(const char* name, const std::array<std::string, 4>& cells, const 
   fmt::print("{:<10}{:>12}{:>14}{:>12}{:>12}  {}\n", name, cells[0], cells[1], cells[2], cells[3], more);
 }
 
-void print_check(const formats::SmoothedBy& by) {
+void print_check(const path::SmoothedBy& by) {
   const path::CheckResult& check = by.summary.check;
   print_row("", {"velocity", "acceleration", "jerk", "tolerance"}, "of the limits");
   print_row("tip",
@@ -48,18 +48,18 @@ void print_check(const formats::SmoothedBy& by) {
   }
 }
 
-void print_methods(const formats::SmoothedProgram& smoothed) {
+void print_methods(const path::SmoothedProgram& smoothed) {
   fmt::print("\n{:<18}{:>12}{:>12}{:>14}{:>14}{:>12}\n", "", "duration", "violations", "joint limits", "tip error",
              "planned in");
-  for (const formats::SmoothedBy& by : smoothed.methods) {
-    fmt::print("{:<18}{:>10.3f} s{:>12}{:>12.1f} %{:>11.4g} mm{:>10.3f} s\n", formats::name_of(by.method),
+  for (const path::SmoothedBy& by : smoothed.methods) {
+    fmt::print("{:<18}{:>10.3f} s{:>12}{:>12.1f} %{:>11.4g} mm{:>10.3f} s\n", path::name_of(by.method),
                by.summary.duration_s, by.summary.check.violations(), 100.0 * jobs::joint_share(by.summary.check),
                by.summary.check.tip_error_m.max / units::mm, by.summary.plan_s);
   }
 }
 
 /// What a controller makes of the points of a joint program.
-void print_run(const formats::ProgramRun& run) {
+void print_run(const path::ProgramRun& run) {
   const double shortest = run.shortest_step_s / units::ms, longest = run.longest_step_s / units::ms;
   fmt::print("\nrobot program  {} points, ", run.points);
   if (shortest == longest) {
@@ -75,9 +75,9 @@ void print_run(const formats::ProgramRun& run) {
 }
 
 void print_summary(const jobs::SmoothResult& result) {
-  const formats::SmoothedBy& by = result.first();
+  const path::SmoothedBy& by = result.first();
   const path::Summary& summary = by.summary;
-  fmt::print("{}  {:.3f} s", formats::name_of(by.method), summary.duration_s);
+  fmt::print("{}  {:.3f} s", path::name_of(by.method), summary.duration_s);
   if (summary.lower_bound_s > 0.0) fmt::print(" (bound {:.3f} s)", summary.lower_bound_s);
   fmt::print(" for {} blocks; {} samples; planned in {:.3g} s", summary.blocks, summary.samples, summary.plan_s);
   if (summary.rounds > 1) fmt::print(", {} rounds", summary.rounds);
@@ -92,14 +92,14 @@ void print_summary(const jobs::SmoothResult& result) {
 }
 
 void write_report(const std::filesystem::path& path, const jobs::SmoothResult& result) {
-  if (formats::lowered(path.extension().string()) == ".json") {
-    formats::write_file(path, formats::smooth_json(result.smoothed));
+  if (io::lowered(path.extension().string()) == ".json") {
+    io::write_file(path, path::smooth_json(result.smoothed));
     return;
   }
   report::Report page;
   page.title = "Smoothed program";
   page.smooth = jobs::smooth_report(result);
-  formats::write_file(path, report::report_html(page));
+  io::write_file(path, report::report_html(page));
 }
 
 /// Runs the job; what it refuses of the command line is told in the command line's words.
@@ -115,7 +115,7 @@ jobs::SmoothResult run_job(const jobs::SmoothJob& job, Progress& progress) {
 }  // namespace
 
 Exit run(const SmoothCommand& command, const Common& common, Progress& progress) {
-  const std::string ending = formats::lowered(command.report.extension().string());
+  const std::string ending = io::lowered(command.report.extension().string());
   if (!command.report.empty() && ending != ".html" && ending != ".json") {
     throw InvalidInput(command.report.string(), "a report is written as .html or .json");
   }
@@ -123,7 +123,7 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
   job.program = command.program;
   job.cell = command.cell;
   if (!common.to_stdout()) job.output = common.output;
-  if (command.method) job.method = formats::method_of(*command.method);
+  if (command.method) job.method = path::method_of(*command.method);
   job.compare = command.compare;
   job.keep_breaches = command.keep_breaches;
   job.record = ending == ".html";
@@ -132,7 +132,7 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
     job.program_period_s = *command.program_period_ms * units::ms;
   }
   const jobs::SmoothResult result = run_job(job, progress);
-  if (common.to_stdout()) fmt::print("{}", formats::smooth_json(result.smoothed));
+  if (common.to_stdout()) fmt::print("{}", path::smooth_json(result.smoothed));
   if (!command.report.empty()) write_report(command.report, result);
   if (common.wants_summary()) print_summary(result);
   if (result.holds()) return done;

@@ -15,7 +15,7 @@
 namespace robomill::app {
 namespace {
 
-void print_summary(const robot::IdentifiedStiffness& found, const formats::CellFile& cell) {
+void print_summary(const robot::IdentifiedStiffness& found, const jobs::CellFile& cell) {
   for (std::size_t i = 0; i < found.joints.size(); ++i) {
     const robot::IdentifiedJoint& joint = found.joints[i];
     const char* unit = cell.cell.arm.joints[i].prismatic ? "N/m" : "N m/rad";
@@ -38,22 +38,22 @@ Eigen::Vector3d point_of(const StiffnessCommand& command, const robot::Cell& cel
 }  // namespace
 
 Exit run(const StiffnessCommand& command, const Common& common, Progress&) {
-  const formats::Format format = formats::format_of(common.output);
+  const io::Format format = io::format_of(common.output);
   const bool to_file = !common.output.empty() && !common.to_stdout();
-  if (to_file && format != formats::Format::json && format != formats::Format::toml) {
+  if (to_file && format != io::Format::json && format != io::Format::toml) {
     throw InvalidInput(common.output, "joint stiffness is written as .json or as .toml, a line for cell.toml");
   }
-  const formats::CellFile cell = formats::read_cell(command.cell);
-  const formats::LoadsFile loads = formats::read_loads(command.loads, cell.cell.arm);
+  const jobs::CellFile cell = jobs::read_cell(command.cell);
+  const robot::LoadsFile loads = robot::read_loads(command.loads, cell.cell.arm);
   const robot::IdentifiedStiffness found =
-      formats::identify_joint_stiffness(cell.cell.arm, point_of(command, cell.cell), loads);
+      robot::identify_joint_stiffness(cell.cell.arm, point_of(command, cell.cell), loads);
   const bool converged = found.status == robot::IdentifiedStiffness::Status::converged;
   if (common.to_stdout()) {
-    fmt::print("{}", formats::stiffness_json(found));
-  } else if (to_file && format == formats::Format::json) {
-    formats::write_file(common.output, formats::stiffness_json(found));
+    fmt::print("{}", robot::stiffness_json(found));
+  } else if (to_file && format == io::Format::json) {
+    io::write_file(common.output, robot::stiffness_json(found));
   } else if (to_file && converged) {
-    formats::write_file(common.output, formats::stiffness_toml(found, cell.cell.arm));
+    io::write_file(common.output, robot::stiffness_toml(found, cell.cell.arm));
   }
   if (common.wants_summary()) print_summary(found, cell);
   const bool seen = std::ranges::any_of(found.joints, [](const auto& joint) { return joint.identifiable; });

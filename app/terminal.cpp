@@ -42,7 +42,7 @@ extern "C" [[noreturn]] void end_now(int number) {
   stop_signal.compare_exchange_strong(none, number);
   constexpr std::string_view after_bar = "\r\033[Krobomill: interrupted\n";
   const std::string_view text = to_terminal ? after_bar : after_bar.substr(bar_away.size());
-  formats::remove_pending_files();
+  io::remove_pending_files();
   if (::write(STDERR_FILENO, text.data(), text.size()) < 0) {
     // Nobody reads it.
   }

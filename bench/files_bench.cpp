@@ -16,7 +16,7 @@
 #include "robomill/program/files/gcode.hpp"
 #include "robomill/program/files/program_files.hpp"
 
-namespace robomill::formats {
+namespace robomill {
 namespace {
 
 std::filesystem::path place(const std::string& name) {
@@ -43,8 +43,8 @@ std::string hit_text() {
 
 void read_hit_text(benchmark::State& state) {
   const std::filesystem::path path = place("hit.txt");
-  write_file(path, hit_text());
-  for (auto _ : state) benchmark::DoNotOptimize(read_record(path, {.time = "1"}));
+  io::write_file(path, hit_text());
+  for (auto _ : state) benchmark::DoNotOptimize(io::read_record(path, {.time = "1"}));
   std::filesystem::remove(path);
 }
 BENCHMARK(read_hit_text)->Unit(benchmark::kMillisecond);
@@ -83,8 +83,8 @@ std::string arcs(int lines) {
 void read_program(benchmark::State& state) {
   constexpr int lines = 200000;
   const std::filesystem::path path = place("part.ngc");
-  write_file(path, five_axis_moves(lines));
-  for (auto _ : state) benchmark::DoNotOptimize(read_gcode(path, program::Machine::xyzac_trt));
+  io::write_file(path, five_axis_moves(lines));
+  for (auto _ : state) benchmark::DoNotOptimize(program::read_gcode(path, program::Machine::xyzac_trt));
   state.SetItemsProcessed(state.iterations() * lines);
   std::filesystem::remove(path);
 }
@@ -102,12 +102,12 @@ double memory_bytes(const char* key) {
 /// A program's blocks one after another; the most memory held on the way.
 void stream(benchmark::State& state, const std::string& name, std::string (*text)(int), int lines) {
   const std::filesystem::path path = place(name);
-  write_file(path, text(lines));
+  io::write_file(path, text(lines));
   std::ofstream("/proc/self/clear_refs") << "5";
   const double before = memory_bytes("VmRSS");
   std::size_t blocks = 0;
   for (auto _ : state) {
-    const auto file = open_program(path, {.machine = program::Machine::xyzac_trt});
+    const auto file = program::open_program(path, {.machine = program::Machine::xyzac_trt});
     program::Block block;
     while (file->next(block)) ++blocks;
   }
@@ -136,12 +136,12 @@ void frfs(benchmark::State& state, const std::string& ending, bool write) {
     set.frfs.push_back({.name = modal::parse_frf_name(name), .receptance = 1e-6 * Eigen::VectorXcd::Random(3500)});
   }
   const std::filesystem::path path = place("tip" + ending);
-  write_frfs(path, set);
+  modal::write_frfs(path, set);
   for (auto _ : state) {
     if (write) {
-      write_frfs(path, set);
+      modal::write_frfs(path, set);
     } else {
-      benchmark::DoNotOptimize(read_frfs({path}));
+      benchmark::DoNotOptimize(modal::read_frfs({path}));
     }
   }
   state.counters["bytes"] = static_cast<double>(std::filesystem::file_size(path));
@@ -157,4 +157,4 @@ BENCHMARK_CAPTURE(frfs, write_json, ".json", true)->Unit(benchmark::kMillisecond
 BENCHMARK_CAPTURE(frfs, read_json, ".json", false)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill

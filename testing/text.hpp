@@ -6,7 +6,7 @@
 
 #include "robomill/base/random.hpp"
 
-namespace robomill::formats::test_support {
+namespace robomill::test_support {
 
 /// One part put for another; fails the test where that part is not there.
 inline std::string replaced(std::string text, const std::string& part, const std::string& other) {
@@ -35,4 +35,4 @@ inline std::string mutated(std::string text, int turn, Random& random) {
   return text;
 }
 
-}  // namespace robomill::formats::test_support
+}  // namespace robomill::test_support

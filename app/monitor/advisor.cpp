@@ -13,11 +13,11 @@ constexpr double depth_margin = 0.2;
 
 }  // namespace
 
-Advisor::Advisor(const formats::MonitorFile& file, Progress& progress)
+Advisor::Advisor(const monitor::MonitorFile& file, Progress& progress)
     : teeth_(file.options.teeth), hint_rad_per_s_(file.options.spindle_speed_rad_per_s) {
   if (!file.lobes.empty()) {
-    formats::LobesFile lobes = formats::read_lobes(file.lobes);
-    formats::load_dynamics(lobes);
+    jobs::LobesFile lobes = jobs::read_lobes(file.lobes);
+    jobs::load_dynamics(lobes);
     if (lobes.drilling) throw InvalidInput(file.lobes.string(), "lobes are those of milling");
     lobes.validate();
     if (teeth_ == 0) teeth_ = lobes.problem.milling.tool.teeth;
@@ -25,7 +25,7 @@ Advisor::Advisor(const formats::MonitorFile& file, Progress& progress)
     workpiece_ = lobes.problem.workpiece_dynamics;
     lobes_ = stability::compute_lobes(lobes.problem, lobes.options, progress);
   }
-  if (!file.modes.empty()) modes_ = formats::read_modes(file.modes);
+  if (!file.modes.empty()) modes_ = modal::read_modes(file.modes);
   if (modes_ && teeth_ == 0) {
     throw InvalidInput(InvalidInput::Parts{.where = file.path.string(),
                                            .field = "process.teeth",
@@ -34,7 +34,7 @@ Advisor::Advisor(const formats::MonitorFile& file, Progress& progress)
   }
 }
 
-void Advisor::advise(formats::MonitorEvent& event) const {
+void Advisor::advise(monitor::MonitorEvent& event) const {
   const monitor::Decision& d = event.decision;
   const double speed_rad_per_s = d.spindle_speed_rad_per_s > 0.0 ? d.spindle_speed_rad_per_s : hint_rad_per_s_;
   if (!(d.chatter_frequency_hz > 0.0) || teeth_ < 1 || !(speed_rad_per_s > 0.0)) return;

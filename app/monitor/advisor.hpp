@@ -14,9 +14,9 @@ class Advisor {
  public:
   /// Reads modes and lobes, and computes the lobes' chart.
   /// @throws InvalidInput if a file is missing or wrong, or modes come without teeth
-  Advisor(const formats::MonitorFile& file, Progress& progress);
+  Advisor(const monitor::MonitorFile& file, Progress& progress);
   /// Fills in mode, speeds and depth; leaves an event alone whose frequency or teeth are not known.
-  void advise(formats::MonitorEvent& event) const;
+  void advise(monitor::MonitorEvent& event) const;
 
  private:
   int teeth_ = 0;

@@ -30,7 +30,7 @@ std::filesystem::path free_name(const std::filesystem::path& folder, double time
 
 AlarmRing::AlarmRing(Options options, std::function<void(const std::filesystem::path&, const std::string&)> told)
     : options_(std::move(options)), told_(std::move(told)) {
-  formats::make_folder(options_.folder);
+  io::make_folder(options_.folder);
   room_ = static_cast<std::size_t>(std::ceil(options_.seconds * options_.sample_rate_hz)) *
           static_cast<std::size_t>(options_.channels);
   thread_ = std::jthread([this] { write_jobs(); });
@@ -86,7 +86,7 @@ void AlarmRing::write(const Job& job) const {
     std::vector<float> samples;
     for (const Piece& piece : job.pieces) samples.insert(samples.end(), piece->begin(), piece->end());
     if (samples.size() > room_) samples.erase(samples.begin(), samples.end() - static_cast<std::ptrdiff_t>(room_));
-    formats::write_wav(job.file, samples, options_.channels, std::max(1.0, std::round(options_.sample_rate_hz)));
+    io::write_wav(job.file, samples, options_.channels, std::max(1.0, std::round(options_.sample_rate_hz)));
     told_(job.file, {});
   } catch (const std::exception& error) {
     told_({}, error.what());

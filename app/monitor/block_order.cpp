@@ -11,7 +11,7 @@ constexpr std::uint64_t run_far_back = 2, run_near = 32;
 
 }  // namespace
 
-void BlockOrder::take(formats::StreamBlock&& block, std::vector<Given>& out) {
+void BlockOrder::take(monitor::StreamBlock&& block, std::vector<Given>& out) {
   const std::uint64_t number = block.sequence;
   if (!started_) {
     give(std::move(block), 0, false, out);
@@ -49,7 +49,7 @@ void BlockOrder::give_waiting(std::size_t keep, std::vector<Given>& out) {
   }
 }
 
-void BlockOrder::give(formats::StreamBlock&& block, std::uint64_t lost, bool restarted, std::vector<Given>& out) {
+void BlockOrder::give(monitor::StreamBlock&& block, std::uint64_t lost, bool restarted, std::vector<Given>& out) {
   const std::uint64_t step = lost + 1;
   recent_ = (step < recent_blocks ? recent_ << step : 0) | 1U;
   next_ = block.sequence + 1;
@@ -57,7 +57,7 @@ void BlockOrder::give(formats::StreamBlock&& block, std::uint64_t lost, bool res
   out.push_back({.block = std::move(block), .lost_before = lost, .restarted = restarted});
 }
 
-void BlockOrder::restart(formats::StreamBlock&& block, std::vector<Given>& out) {
+void BlockOrder::restart(monitor::StreamBlock&& block, std::vector<Given>& out) {
   give_waiting(0, out);
   ++counts_.restarts;
   recent_ = 0;
@@ -65,7 +65,7 @@ void BlockOrder::restart(formats::StreamBlock&& block, std::vector<Given>& out) 
   give(std::move(block), 0, true, out);
 }
 
-void BlockOrder::take_old(formats::StreamBlock&& block, std::vector<Given>& out) {
+void BlockOrder::take_old(monitor::StreamBlock&& block, std::vector<Given>& out) {
   const std::uint64_t back = next_ - 1 - block.sequence;
   const bool near = back < recent_blocks;
   old_run_ = old_run_ > 0 && block.sequence == old_ + 1 ? old_run_ + 1 : 1;

@@ -24,13 +24,13 @@ struct OrderCounts {
 class BlockOrder {
  public:
   struct Given {
-    formats::StreamBlock block;
+    monitor::StreamBlock block;
     std::uint64_t lost_before = 0;  ///< blocks missing between the last one given and this
     bool restarted = false;         ///< what was before this has nothing to do with it
   };
 
   /// Appends to `out` what is in order by now.
-  void take(formats::StreamBlock&& block, std::vector<Given>& out);
+  void take(monitor::StreamBlock&& block, std::vector<Given>& out);
   /// Waits no longer for what is missing.
   void give_up(std::vector<Given>& out);
   [[nodiscard]] const OrderCounts& counts() const { return counts_; }
@@ -38,16 +38,16 @@ class BlockOrder {
   static constexpr std::size_t wait_blocks = 4;
 
  private:
-  void give(formats::StreamBlock&& block, std::uint64_t lost, bool restarted, std::vector<Given>& out);
+  void give(monitor::StreamBlock&& block, std::uint64_t lost, bool restarted, std::vector<Given>& out);
   void give_waiting(std::size_t keep, std::vector<Given>& out);
-  void restart(formats::StreamBlock&& block, std::vector<Given>& out);
-  void take_old(formats::StreamBlock&& block, std::vector<Given>& out);
+  void restart(monitor::StreamBlock&& block, std::vector<Given>& out);
+  void take_old(monitor::StreamBlock&& block, std::vector<Given>& out);
 
   bool started_ = false;
   std::uint64_t next_ = 0;    ///< number of the block to give
   std::uint64_t recent_ = 0;  ///< bit i: block next_ - 1 - i was given
   std::uint64_t old_ = 0, old_run_ = 0;
-  std::map<std::uint64_t, formats::StreamBlock> waiting_;
+  std::map<std::uint64_t, monitor::StreamBlock> waiting_;
   OrderCounts counts_;
 };
 

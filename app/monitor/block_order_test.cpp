@@ -13,8 +13,8 @@
 namespace robomill::app {
 namespace {
 
-formats::StreamBlock block(std::uint64_t number) {
-  formats::StreamBlock out;
+monitor::StreamBlock block(std::uint64_t number) {
+  monitor::StreamBlock out;
   out.sequence = number;
   out.sample_rate_hz = 1.0;
   out.channels = 1;

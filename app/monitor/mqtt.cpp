@@ -27,7 +27,7 @@ constexpr int keep_alive_s = 20, connect_timeout_s = 10, disconnect_timeout_ms =
 constexpr int max_on_their_way = 1000;
 
 /// Of one process, however many clients it has.
-std::string client_id(const formats::MqttSettings& settings) {
+std::string client_id(const monitor::MqttSettings& settings) {
   static std::atomic<int> counter{0};
   if (!settings.client_id.empty()) return settings.client_id;
   return fmt::format("robomill-{}-{}", ::getpid(), counter.fetch_add(1));
@@ -36,12 +36,12 @@ std::string client_id(const formats::MqttSettings& settings) {
 /// The first line of a file that others cannot read in a listing of processes.
 std::string read_password(const std::filesystem::path& path) {
   if (path.empty()) return {};
-  const std::string content = formats::read_file(path, 4096);
-  return std::string(formats::trimmed(std::string_view(content).substr(0, content.find('\n'))));
+  const std::string content = io::read_file(path, 4096);
+  return std::string(io::trimmed(std::string_view(content).substr(0, content.find('\n'))));
 }
 
 void check_readable(const std::filesystem::path& path) {
-  if (!path.empty()) (void)formats::open_file(path);
+  if (!path.empty()) (void)io::open_file(path);
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ void check_readable(const std::filesystem::path& path) {
 struct MqttClient::Parts {
   enum class State { wanted, connecting, connected, ended };
 
-  formats::MqttSettings settings;
+  monitor::MqttSettings settings;
   std::string subscription, password, ca, certificate, key;
   Calls calls;
   MQTTAsync handle = nullptr;
@@ -214,7 +214,7 @@ MqttClient::Parts::~Parts() {
   MQTTAsync_destroy(&handle);
 }
 
-MqttClient::MqttClient(const formats::MqttSettings& settings, std::string subscription, Calls calls)
+MqttClient::MqttClient(const monitor::MqttSettings& settings, std::string subscription, Calls calls)
     : parts_(std::make_unique<Parts>()) {
   Parts& parts = *parts_;
   parts.settings = settings;

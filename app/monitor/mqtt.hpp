@@ -23,7 +23,7 @@ class MqttClient {
   };
   /// Subscribes to `subscription` at each connection, unless it is empty.
   /// @throws InvalidInput if a certificate, key or password cannot be read, or the address is none
-  MqttClient(const formats::MqttSettings& settings, std::string subscription, Calls calls);
+  MqttClient(const monitor::MqttSettings& settings, std::string subscription, Calls calls);
   ~MqttClient();
   MqttClient(const MqttClient&) = delete;
   MqttClient& operator=(const MqttClient&) = delete;

@@ -16,8 +16,8 @@ namespace {
 
 using std::chrono::seconds;
 
-formats::MqttSettings settings_of(const test::Mosquitto& broker) {
-  formats::MqttSettings settings;
+monitor::MqttSettings settings_of(const test::Mosquitto& broker) {
+  monitor::MqttSettings settings;
   settings.port = broker.port();
   return settings;
 }
@@ -119,7 +119,7 @@ TEST(Mqtt, LogsIn) {
   ASSERT_EQ(std::system(("mosquitto_passwd -c -b '" + passwords + "' anna geheim").c_str()),
             0);  // NOLINT(cert-env33-c)
   const test::Mosquitto broker(folder.path(), "allow_anonymous false\npassword_file " + passwords + "\n");
-  formats::MqttSettings settings = settings_of(broker);
+  monitor::MqttSettings settings = settings_of(broker);
   settings.user = "anna";
   settings.password_file = folder.file("password", "geheim\nsecond line\n");
   Heard heard;
@@ -148,7 +148,7 @@ TEST(Mqtt, SpeaksTls) {
   ASSERT_EQ(std::system((cd + certificate).c_str()), 0);  // NOLINT(cert-env33-c)
   const test::Mosquitto broker(folder.path(), "allow_anonymous true\ncertfile " + folder.at("cert.pem").string() +
                                                   "\nkeyfile " + folder.at("key.pem").string() + "\n");
-  formats::MqttSettings settings = settings_of(broker);
+  monitor::MqttSettings settings = settings_of(broker);
   settings.host = "localhost";
   settings.tls = true;
   settings.ca_file = folder.at("cert.pem");

@@ -60,8 +60,8 @@ TEST(AlarmRing, WritesTheLastSeconds) {
   ring.finish();
   ASSERT_EQ(told, (std::vector<std::string>{folder.at("alarms") / "alarm_7.000s.wav",
                                             folder.at("alarms") / "alarm_7.000s_2.wav"}));
-  const auto wav = formats::open_samples(told.front(), {.channels = {"1", "2"}, .sample_rate_hz = 100.0});
-  formats::SampleBlock block;
+  const auto wav = io::open_samples(told.front(), {.channels = {"1", "2"}, .sample_rate_hz = 100.0});
+  io::SampleBlock block;
   ASSERT_TRUE(wav->next(1000, block));
   EXPECT_EQ(block.samples, ramp(1400 - 400, 400));
 }

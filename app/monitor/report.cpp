@@ -14,7 +14,7 @@
 namespace robomill::app {
 namespace {
 
-using formats::MonitorEvent;
+using monitor::MonitorEvent;
 
 double known(double value) {
   return value > 0.0 ? value : report::missing;
@@ -24,7 +24,7 @@ std::string note_of(const MonitorEvent& event) {
   switch (event.kind) {
     case MonitorEvent::Kind::fault: {
       std::string names;
-      for (const std::string& name : formats::fault_names(event.decision.faults)) {
+      for (const std::string& name : monitor::fault_names(event.decision.faults)) {
         names += (names.empty() ? "" : ", ") + name;
       }
       return names.empty() ? "the input is well again" : "the input: " + names;
@@ -99,7 +99,7 @@ report::MonitorEvent report_event(const MonitorEvent& event) {
   return out;
 }
 
-report::Report monitor_page(report::MonitorRun run, const formats::MonitorFile& file, const std::string& source) {
+report::Report monitor_page(report::MonitorRun run, const monitor::MonitorFile& file, const std::string& source) {
   const monitor::MonitorOptions& options = file.options;
   run.facts = {{"Heard", fmt::format("{}, {:.6g} Hz", source, options.sample_rate_hz)},
                {"Detector", detector_fact(options)},
@@ -139,14 +139,14 @@ report::Report calibration_page(const monitor::Calibration& calibration) {
 }
 
 void check_report_place(const std::filesystem::path& path) {
-  const std::string ending = formats::lowered(path.extension().string());
+  const std::string ending = io::lowered(path.extension().string());
   if (path.empty() || ending == ".json" || ending == ".html") return;
   throw InvalidInput(path.string(), "a report is written as .json or .html");
 }
 
 void write_report(const std::filesystem::path& path, const report::Report& page) {
-  const bool html = formats::lowered(path.extension().string()) == ".html";
-  formats::write_file(path, html ? report::report_html(page) : report::report_json(page));
+  const bool html = io::lowered(path.extension().string()) == ".html";
+  io::write_file(path, html ? report::report_html(page) : report::report_json(page));
 }
 
 }  // namespace robomill::app

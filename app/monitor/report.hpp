@@ -10,10 +10,10 @@
 namespace robomill::app {
 
 /// An event as a row of the report's table. States and input troubles alike.
-[[nodiscard]] report::MonitorEvent report_event(const formats::MonitorEvent& event);
+[[nodiscard]] report::MonitorEvent report_event(const monitor::MonitorEvent& event);
 
 /// The page of a recorded session. @param source  a file or an address
-[[nodiscard]] report::Report monitor_page(report::MonitorRun run, const formats::MonitorFile& file,
+[[nodiscard]] report::Report monitor_page(report::MonitorRun run, const monitor::MonitorFile& file,
                                           const std::string& source);
 [[nodiscard]] report::Report calibration_page(const monitor::Calibration& calibration);
 

@@ -14,7 +14,7 @@ namespace robomill::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using formats::MonitorEvent;
+using monitor::MonitorEvent;
 
 /// Hops between input and detector: 1.6 s at 25 ms.
 constexpr std::size_t queued_hops = 64;
@@ -27,11 +27,11 @@ constexpr double speed_patience_s = 3.0;
 
 }  // namespace
 
-Session::Session(const formats::MonitorFile& file, SessionOptions options, SessionOutputs outputs)
+Session::Session(const monitor::MonitorFile& file, SessionOptions options, SessionOutputs outputs)
     : file_(file),
       options_(options),
       outputs_(std::move(outputs)),
-      monitor_((formats::validate(file), file.options)),
+      monitor_((monitor::validate(file), file.options)),
       queue_(queued_hops) {
   if (!file_.recording_folder.empty()) {
     ring_.emplace(AlarmRing::Options{.folder = file_.recording_folder,
@@ -181,7 +181,7 @@ void Session::tell(MonitorEvent event) {
   if (outputs_.recorder != nullptr && event.kind != MonitorEvent::Kind::window) {
     outputs_.recorder->add(report_event(event));
   }
-  if (outputs_.event && !outputs_.event(event, formats::event_line(event))) ended_ = true;
+  if (outputs_.event && !outputs_.event(event, monitor::event_line(event))) ended_ = true;
 }
 
 }  // namespace robomill::app

@@ -20,9 +20,9 @@ namespace robomill::app {
 /// Who learns what a session hears. All are called by the thread that runs it; those left empty are not.
 struct SessionOutputs {
   /// The event, and its line for a file or a topic. False ends the session: nobody reads any more.
-  std::function<bool(const formats::MonitorEvent& event, const std::string& line)> event = {};
+  std::function<bool(const monitor::MonitorEvent& event, const std::string& line)> event = {};
   std::function<void(const monitor::Decision& decision, double time_s)> decision = {};
-  std::function<void(formats::MonitorEvent& event)> advise = {};  ///< fills in mode and better speeds of chatter
+  std::function<void(monitor::MonitorEvent& event)> advise = {};  ///< fills in mode and better speeds of chatter
   report::MonitorRecorder* recorder = nullptr;                    ///< gathers what a report shows
 };
 
@@ -35,7 +35,7 @@ struct SessionOptions {
 class Session {
  public:
   /// @throws InvalidInput if the options of the file are out of range or the recording's folder cannot be made
-  Session(const formats::MonitorFile& file, SessionOptions options, SessionOutputs outputs);
+  Session(const monitor::MonitorFile& file, SessionOptions options, SessionOutputs outputs);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -57,11 +57,11 @@ class Session {
 
  private:
   void decide(monitor::Decision decision, double compute_s);
-  void tell(formats::MonitorEvent event);
+  void tell(monitor::MonitorEvent event);
   [[nodiscard]] bool fault_is_news(const monitor::Decision& decision);
   [[nodiscard]] bool frequency_is_news(const monitor::Decision& decision);
 
-  formats::MonitorFile file_;
+  monitor::MonitorFile file_;
   SessionOptions options_;
   SessionOutputs outputs_;
   monitor::ChatterMonitor monitor_;

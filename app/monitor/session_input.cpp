@@ -29,8 +29,8 @@ std::function<void(std::uint64_t)> tell_dropped(Notices& notices, MetricValues& 
   };
 }
 
-SourceInput::SourceInput(std::unique_ptr<formats::SampleSource> source, const formats::MonitorFile& file,
-                         HopQueue& queue, Notices& notices, MetricValues& metrics, bool can_wait)
+SourceInput::SourceInput(std::unique_ptr<io::SampleSource> source, const monitor::MonitorFile& file, HopQueue& queue,
+                         Notices& notices, MetricValues& metrics, bool can_wait)
     : source_(std::move(source)),
       queue_(&queue),
       notices_(&notices),
@@ -41,7 +41,7 @@ SourceInput::SourceInput(std::unique_ptr<formats::SampleSource> source, const fo
 
 void SourceInput::read() {
   try {
-    formats::SampleBlock block;
+    io::SampleBlock block;
     std::uint64_t told_rows = 0;
     while (source_->next(hop_frames_, block)) {
       intake_.speed(block.spindle_speed_rad_per_s);
@@ -59,7 +59,7 @@ void SourceInput::read() {
   queue_->close();
 }
 
-StreamIntake::StreamIntake(const formats::MonitorFile& file, HopQueue& queue, Notices& notices, MetricValues& metrics)
+StreamIntake::StreamIntake(const monitor::MonitorFile& file, HopQueue& queue, Notices& notices, MetricValues& metrics)
     : columns_(file.columns),
       sample_rate_hz_(file.options.sample_rate_hz),
       notices_(&notices),
@@ -75,7 +75,7 @@ void StreamIntake::refuse(const std::string& why) {
 bool StreamIntake::pick(int channels) {
   if (channels == picked_channels_) return true;
   try {
-    pick_ = formats::pick_channels(columns_, static_cast<std::size_t>(channels), "a message");
+    pick_ = io::pick_channels(columns_, static_cast<std::size_t>(channels), "a message");
     picked_channels_ = channels;
     return true;
   } catch (const InvalidInput& error) {
@@ -85,7 +85,7 @@ bool StreamIntake::pick(int channels) {
 }
 
 void StreamIntake::message(std::span<const std::byte> payload) {
-  formats::DecodedBlock decoded = formats::decode_stream_block(payload);
+  monitor::DecodedBlock decoded = monitor::decode_stream_block(payload);
   if (!decoded.block) {
     refuse(fmt::format("a message {}", decoded.refusal));
     return;
@@ -108,7 +108,7 @@ void StreamIntake::give_up() {
 void StreamIntake::give() {
   const auto most_filled = static_cast<std::uint64_t>(longest_filled_s * sample_rate_hz_);
   for (const BlockOrder::Given& given : given_) {
-    const formats::StreamBlock& block = given.block;
+    const monitor::StreamBlock& block = given.block;
     if (!pick(block.channels)) continue;
     if (given.restarted) intake_.restart();
     // Lost blocks are taken to have been as long as this one.
@@ -140,7 +140,7 @@ void StreamIntake::tell_counts() {
   tell("stream-restarted", "the sender counts its blocks anew", now.restarts, told_.restarts);
 }
 
-Broker::Broker(const formats::MonitorFile& file, bool stream, HopQueue& queue, Notices& notices, MetricValues& metrics)
+Broker::Broker(const monitor::MonitorFile& file, bool stream, HopQueue& queue, Notices& notices, MetricValues& metrics)
     : address_(fmt::format("{}:{}", file.mqtt.host, file.mqtt.port_or_default())),
       events_topic_(file.mqtt.events_topic),
       notices_(&notices),
@@ -180,7 +180,7 @@ void Broker::connection(bool connected, const std::string& why) {
   if (stream_) stream_->give_up();
 }
 
-void Broker::publish(const formats::MonitorEvent& event, const std::string& line) {
+void Broker::publish(const monitor::MonitorEvent& event, const std::string& line) {
   if (events_topic_.empty()) return;
   const std::string_view text = std::string_view(line).substr(0, line.size() - 1);
   // Of its own trouble it tells once.

@@ -27,7 +27,7 @@ namespace robomill::app {
 class SourceInput {
  public:
   /// @param can_wait  whether the source may be kept waiting; else hops are left out
-  SourceInput(std::unique_ptr<formats::SampleSource> source, const formats::MonitorFile& file, HopQueue& queue,
+  SourceInput(std::unique_ptr<io::SampleSource> source, const monitor::MonitorFile& file, HopQueue& queue,
               Notices& notices, MetricValues& metrics, bool can_wait);
   /// Needs a closed queue, or a source that has been asked to stop.
   ~SourceInput() = default;
@@ -35,7 +35,7 @@ class SourceInput {
  private:
   void read();
 
-  std::unique_ptr<formats::SampleSource> source_;
+  std::unique_ptr<io::SampleSource> source_;
   HopQueue* queue_;
   Notices* notices_;
   Intake intake_;
@@ -47,7 +47,7 @@ class SourceInput {
 /// this rate, put in order, gaps filled. Used by one thread.
 class StreamIntake {
  public:
-  StreamIntake(const formats::MonitorFile& file, HopQueue& queue, Notices& notices, MetricValues& metrics);
+  StreamIntake(const monitor::MonitorFile& file, HopQueue& queue, Notices& notices, MetricValues& metrics);
   void message(std::span<const std::byte> payload);
   /// What waits for missing blocks goes on its way.
   void give_up();
@@ -59,7 +59,7 @@ class StreamIntake {
   void give();
   void tell_counts();
 
-  formats::SampleColumns columns_;
+  io::SampleColumns columns_;
   double sample_rate_hz_;
   Notices* notices_;
   MetricValues* metrics_;
@@ -77,7 +77,7 @@ class Broker {
  public:
   /// @param stream  whether samples come from mqtt.topic
   /// @throws InvalidInput as MqttClient does
-  Broker(const formats::MonitorFile& file, bool stream, HopQueue& queue, Notices& notices, MetricValues& metrics);
+  Broker(const monitor::MonitorFile& file, bool stream, HopQueue& queue, Notices& notices, MetricValues& metrics);
   /// Gives up what waits to be published after two seconds.
   ~Broker();
   Broker(const Broker&) = delete;
@@ -88,7 +88,7 @@ class Broker {
   /// For inputs that do not come from it: their first events should not be lost.
   void wait_a_little() const;
   /// To the topic of the events, where there is one; tells where it cannot.
-  void publish(const formats::MonitorEvent& event, const std::string& line);
+  void publish(const monitor::MonitorEvent& event, const std::string& line);
 
  private:
   void connection(bool connected, const std::string& why);

@@ -16,10 +16,10 @@
 namespace robomill::app {
 namespace {
 
-using formats::MonitorEvent;
+using monitor::MonitorEvent;
 
-formats::MonitorFile some_file() {
-  formats::MonitorFile file;
+monitor::MonitorFile some_file() {
+  monitor::MonitorFile file;
   file.columns.channels = {"ax"};
   file.options.sample_rate_hz = 10'240.0;
   return file;
@@ -110,7 +110,7 @@ TEST(Session, EndsWhereItIsToldTo) {
 }
 
 TEST(Session, GathersWhatAReportNeeds) {
-  const formats::MonitorFile file = some_file();
+  const monitor::MonitorFile file = some_file();
   report::MonitorRecorder recorder(file.options, file.columns.channels, "");
   SessionOutputs outputs;
   outputs.recorder = &recorder;
@@ -135,12 +135,12 @@ TEST(Session, GathersWhatAReportNeeds) {
 }
 
 std::string message(std::uint64_t number, double rate_hz = 10'240.0, int channels = 1) {
-  formats::StreamBlock block;
+  monitor::StreamBlock block;
   block.sequence = number;
   block.sample_rate_hz = rate_hz;
   block.channels = channels;
   block.samples.assign(256 * static_cast<std::size_t>(channels), static_cast<float>(number));
-  return formats::encode_stream_block(block);
+  return monitor::encode_stream_block(block);
 }
 
 TEST(StreamIntake, RefusesWhatIsNotWanted) {

@@ -42,7 +42,7 @@ void write_holes(const std::filesystem::path& folder, std::uint64_t count, std::
     for (std::size_t k = begin; k < end; ++k) {
       const Hole hole = examples::simulate_hole(seed, k);
       const std::string file = fmt::format("hole-{:03}.wav", k + 1);
-      formats::write_simulation(folder / file, hole.record);
+      simulation::write_simulation(folder / file, hole.record);
       tables[k] = table_of(hole, file);
       draws[k] = hole.draws;
       chatter[k] = hole.chatter ? 1 : 0;

@@ -72,7 +72,7 @@ std::string toml_of(const std::vector<modal::Hit>& hits, std::uint64_t seed) {
 }
 
 void run(const std::filesystem::path& directory, const std::filesystem::path& modes, std::uint64_t seed) {
-  const modal::ModalModel model = formats::read_modes(modes);
+  const modal::ModalModel model = modal::read_modes(modes);
   const std::vector<modal::Hit> hits = examples::simulate_hits(model, 5, 0.05, examples::Hammer{}, seed);
   std::filesystem::create_directories(directory);
   for (const modal::Hit& hit : hits) write_text(directory / hit.file, csv_of(hit));

@@ -26,20 +26,19 @@ constexpr double rate_hz = 10240.0, block_s = 0.025;
 constexpr int channels = 2;
 constexpr std::chrono::seconds patience{20};
 
-void publish(const std::string& file, const robomill::formats::MqttSettings& settings, double rpm) {
-  const auto source =
-      robomill::formats::open_samples(file, {.channels = {"1", "2"}}, robomill::formats::RawFormat::float32);
+void publish(const std::string& file, const robomill::monitor::MqttSettings& settings, double rpm) {
+  const auto source = robomill::io::open_samples(file, {.channels = {"1", "2"}}, robomill::io::RawFormat::float32);
   robomill::app::MqttClient client(settings, {}, {});
   client.start();
   if (!client.wait_until_connected(patience)) throw InvalidInput(settings.host, "answers nobody");
 
-  robomill::formats::StreamBlock block;
+  robomill::monitor::StreamBlock block;
   block.sample_rate_hz = rate_hz;
   block.channels = channels;
   if (rpm > 0.0) block.spindle_speed_rad_per_s = rpm * robomill::units::rpm;
   const auto frames = static_cast<std::size_t>(std::lround(block_s * block.sample_rate_hz));
   const auto begin = std::chrono::steady_clock::now();
-  robomill::formats::SampleBlock samples;
+  robomill::io::SampleBlock samples;
   std::size_t sent = 0;
   while (source->next(frames, samples)) {
     block.samples = samples.samples;
@@ -47,7 +46,7 @@ void publish(const std::string& file, const robomill::formats::MqttSettings& set
     // When the last of its samples was taken.
     std::this_thread::sleep_until(begin +
                                   std::chrono::duration<double>(static_cast<double>(sent) / block.sample_rate_hz));
-    client.publish(settings.topic, robomill::formats::encode_stream_block(block));
+    client.publish(settings.topic, robomill::monitor::encode_stream_block(block));
     ++block.sequence;  // also of a block that could not be sent: the monitor is to notice
   }
   client.flush(patience);
@@ -62,7 +61,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    robomill::formats::MqttSettings settings;
+    robomill::monitor::MqttSettings settings;
     settings.host = argv[2];
     settings.port = std::atoi(argv[3]);
     settings.topic = argv[4];

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <string_view>
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 bool write_whole(int to, std::string_view bytes) {
@@ -90,4 +90,4 @@ std::optional<std::string> run_in_child(std::size_t more_memory_bytes, const std
   return bytes;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -15,7 +15,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/pending_names.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -154,4 +154,4 @@ void PendingFile::commit() {
   temporary_.clear();
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

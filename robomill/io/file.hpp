@@ -7,7 +7,7 @@
 
 #include "robomill/base/export.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 
 /// What a file's ending says about its content.
 enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
@@ -56,4 +56,4 @@ class PendingFile {
   std::filesystem::path path_, temporary_;
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -10,7 +10,7 @@
 #include "robomill/io/pending_names.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ TEST(File, KnowsFormatsByTheirEnding) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::io

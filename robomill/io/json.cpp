@@ -9,7 +9,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 constexpr int deepest_nesting = 256;
@@ -190,4 +190,4 @@ Json read_json(const std::filesystem::path& path) {
   }
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

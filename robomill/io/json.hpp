@@ -9,7 +9,7 @@
 
 #include "robomill/base/error.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 
 using Json = nlohmann::ordered_json;
 
@@ -56,4 +56,4 @@ class JsonNode {
 /// @throws InvalidInput with file and line if the file is missing, empty or no JSON
 [[nodiscard]] Json read_json(const std::filesystem::path& path);
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -10,7 +10,7 @@
 #include "robomill/base/units.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 using test::Folder;
@@ -88,4 +88,4 @@ TEST(JsonFile, SaysWhereItIsBroken) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::io

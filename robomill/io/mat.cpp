@@ -15,7 +15,7 @@
 #include "robomill/io/child.hpp"
 #include "robomill/io/file.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 using MatFile = std::unique_ptr<mat_t, decltype(&Mat_Close)>;
@@ -221,4 +221,4 @@ void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>
   pending.commit();
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace robomill::formats {
+namespace robomill::io {
 
 /// A numeric matrix of a MAT file.
 struct MatVariable {
@@ -21,4 +21,4 @@ struct MatVariable {
 /// Writes version 5, compressed, whole or not at all. @throws InvalidInput if the place cannot be written
 void write_mat(const std::filesystem::path& path, const std::vector<MatVariable>& variables);
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -15,7 +15,7 @@
 #include "robomill/io/file.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 using test::Folder;
@@ -143,4 +143,4 @@ TEST(Child, HandsBackWhatWasSaidAndSurvivesItsDeath) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <string>
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 /// One name: a fixed place, no pointers, so that it can be read whatever the threads are at.
@@ -49,4 +49,4 @@ void remove_pending_files() noexcept {
   }
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -18,7 +18,7 @@
 #include "robomill/io/text.hpp"
 #include "robomill/io/uff.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 using Path = std::filesystem::path;
@@ -212,4 +212,4 @@ Record read_record(const Path& path, const RecordOptions& options) {
   return record;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -6,7 +6,7 @@
 
 #include "robomill/base/export.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 
 /// Columns over time, as recorded.
 struct Record {
@@ -38,4 +38,4 @@ struct RecordOptions {
 /// The rate of evenly rising times. @throws InvalidInput naming `where` if a step is more than half a step off
 [[nodiscard]] ROBOMILL_API double sample_rate_of(const Eigen::VectorXd& time_s, const std::string& where);
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

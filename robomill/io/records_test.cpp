@@ -13,7 +13,7 @@
 #include "robomill/io/uff.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 using test::Folder;
@@ -166,4 +166,4 @@ TEST(Records, SurvivesMutatedMatFiles) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::io

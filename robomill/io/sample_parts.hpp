@@ -11,7 +11,7 @@
 
 #include "robomill/io/sample_source.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 
 /// Bytes of a descriptor as they come. A second thread may ask it to stop while it waits.
 class ByteReader {
@@ -58,4 +58,4 @@ void check_rate(double own_hz, double wanted_hz, double tolerance, const std::st
 [[nodiscard]] std::unique_ptr<SampleSource> record_source(const std::filesystem::path& path,
                                                           const SampleColumns& columns);
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -18,7 +18,7 @@
 #include "robomill/io/records.hpp"
 #include "robomill/io/sample_parts.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 constexpr std::size_t max_line_bytes = std::size_t{1} << 20;
@@ -299,4 +299,4 @@ std::unique_ptr<SampleSource> open_sample_stream(int descriptor, const std::stri
   return open_bytes(std::make_unique<ByteReader>(descriptor, false, stop), where, columns, format, false);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -10,7 +10,7 @@
 
 #include "robomill/base/export.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 
 /// Which columns of a recording are wanted, and what its numbers mean.
 struct SampleColumns {
@@ -92,4 +92,4 @@ class ROBOMILL_API SampleSource {
 ROBOMILL_API void write_wav(const std::filesystem::path& path, const std::vector<float>& samples, int channels,
                             double sample_rate_hz);
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -18,7 +18,7 @@
 #include "robomill/io/mat.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 std::vector<float> all(SampleSource& source, std::size_t frames = 7) {
@@ -256,4 +256,4 @@ TEST(SampleSource, SurvivesAnyText) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::io

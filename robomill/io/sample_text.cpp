@@ -13,7 +13,7 @@
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -193,4 +193,4 @@ std::unique_ptr<SampleSource> text_source(std::unique_ptr<ByteReader> bytes, con
   return std::make_unique<TextSource>(std::move(bytes), columns, where, is_file);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

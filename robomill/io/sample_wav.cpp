@@ -9,7 +9,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/sample_parts.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 using Sound = std::unique_ptr<SNDFILE, decltype(&sf_close)>;
@@ -95,4 +95,4 @@ void write_wav(const std::filesystem::path& path, const std::vector<float>& samp
   pending.commit();
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cmath>
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 struct Unit {
@@ -148,4 +148,4 @@ SiFactor si_factor(const UffAxis& axis, double length_factor, double force_facto
   return result;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

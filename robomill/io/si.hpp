@@ -4,7 +4,7 @@
 
 #include "robomill/io/uff.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 
 /// What a physical axis holds; for displacement, velocity and acceleration the value is the number of time derivatives.
 enum class Quantity : int { displacement = 0, velocity = 1, acceleration = 2, force = 3, unknown = 4 };
@@ -25,4 +25,4 @@ struct SiFactor {
 /// data type, or of its unit's text where the type says nothing.
 [[nodiscard]] SiFactor si_factor(const UffAxis& axis, double length_factor, double force_factor);
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

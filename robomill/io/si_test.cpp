@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 TEST(Si, KnowsUnitsInEverySpelling) {
@@ -46,4 +46,4 @@ TEST(Si, TakesTheUnitBeforeTheFactorsOfTheFile) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::io

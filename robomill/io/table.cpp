@@ -11,7 +11,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 constexpr char blanks = ' ';  ///< separator: any run of blanks and tabs
@@ -278,4 +278,4 @@ TextTable parse_text_table(std::string_view content, const std::string& where) {
   return out;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

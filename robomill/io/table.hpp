@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace robomill::formats {
+namespace robomill::io {
 
 /// Columns of numbers in a text file.
 struct Table {
@@ -55,4 +55,4 @@ struct TextTable {
 /// The number in a field of such a table, with a point or a comma.
 [[nodiscard]] std::optional<double> parse_cell(std::string_view field);
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -8,7 +8,7 @@
 #include "robomill/base/random.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 using test::refusal;
@@ -109,4 +109,4 @@ TEST(Table, SurvivesMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::io

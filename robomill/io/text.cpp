@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 /// What from_chars calls out of range: too large or too small, as the exponent's sign tells (or, without one, the
@@ -137,4 +137,4 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return above[b.size()];
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace robomill::formats {
+namespace robomill::io {
 
 /// The number that the whole of text spells, without regard to the locale: also "+1", "1.0D-03", "1e-020", "nan" and
 /// "inf". Too large a magnitude is ±inf, too small a one 0.
@@ -40,4 +40,4 @@ std::string nearest_word(std::string_view word, const Words& known) {
   return best;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -10,7 +10,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 TEST(Text, ReadsNumbersInEverySpelling) {
@@ -78,4 +78,4 @@ TEST(Text, FindsTheNearestWord) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -18,7 +18,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 constexpr int most_key_parts = 32;
@@ -450,4 +450,4 @@ void TomlFile::done() const {
   state_->check_known(state_->root, "");
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

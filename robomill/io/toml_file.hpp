@@ -9,7 +9,7 @@
 
 #include "robomill/base/error.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 
 /// One TOML file while it is read. Every reading call is one row of the file's table: its key, the SI member that it
 /// fills and the factor between them; the rows it has seen serve to tell errors in the file's own words and to refuse
@@ -89,4 +89,4 @@ class TomlFile {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

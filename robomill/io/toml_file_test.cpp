@@ -6,7 +6,7 @@
 #include "robomill/base/units.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 using test::Folder;
@@ -268,4 +268,4 @@ TEST(TomlFiles, SurvivesMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::io

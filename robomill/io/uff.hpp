@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace robomill::formats {
+namespace robomill::io {
 
 /// What one axis of a function holds (records 8 to 10 of data set 58).
 struct UffAxis {
@@ -51,4 +51,4 @@ struct UffFile {
 /// step (58b: a billionth).
 [[nodiscard]] std::string format_uff(const std::vector<UffFunction>& functions, bool binary);
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

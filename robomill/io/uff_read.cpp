@@ -14,7 +14,7 @@
 #include "robomill/io/text.hpp"
 #include "robomill/io/uff.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 /// Walks over lines that end with \n, \r\n, \r or \r\r\n, mixed as they come.
@@ -473,4 +473,4 @@ UffFile parse_uff(std::string_view content, const std::string& where) {
   return Reader(content, where).read();
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -10,7 +10,7 @@
 #include "robomill/base/random.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 using test::refusal;
@@ -338,4 +338,4 @@ TEST(Uff, SurvivesMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::io

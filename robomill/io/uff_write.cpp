@@ -7,7 +7,7 @@
 #include "robomill/io/text.hpp"
 #include "robomill/io/uff.hpp"
 
-namespace robomill::formats {
+namespace robomill::io {
 namespace {
 
 /// Data set 164: metre, newton, kelvin.
@@ -109,4 +109,4 @@ std::string format_uff(const std::vector<UffFunction>& functions, bool binary) {
   return out;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::io

@@ -64,8 +64,8 @@ struct ProgramForces {
 };
 
 struct ForcesResult {
-  formats::ForcesFile file;
-  std::optional<formats::CellFile> cell = {};
+  jobs::ForcesFile file;
+  std::optional<jobs::CellFile> cell = {};
   std::optional<RevolutionForces> revolution = {};
   std::optional<ProgramForces> program = {};
   std::vector<std::string> warnings = {}, notes = {};

@@ -12,8 +12,8 @@
 namespace robomill::jobs {
 namespace {
 
-using formats::Json;
-using formats::number;
+using io::Json;
+using io::number;
 
 Json vector(const Eigen::Vector3d& v, double unit = 1.0) {
   return Json::array({number(v.x() / unit), number(v.y() / unit), number(v.z() / unit)});
@@ -201,12 +201,12 @@ Json revolution_json(const RevolutionForces& revolution, double sign) {
   out["spindle_rotation"] = revolution.spindle_rotation ? sweep_json(*revolution.spindle_rotation) : Json();
   out["vibration"] = revolution.vibration ? vibration_json(*revolution.vibration) : Json();
   out["engagement"] = arcs_json(settled.engagement);
-  out["rotation_deg"] = formats::numbers(force.rotation_rad / units::deg);
+  out["rotation_deg"] = io::numbers(force.rotation_rad / units::deg);
   constexpr const char* names[] = {"fx_n", "fy_n", "fz_n"};
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    out[names[axis]] = formats::numbers(sign * force.force_n.row(axis).transpose());
+    out[names[axis]] = io::numbers(sign * force.force_n.row(axis).transpose());
   }
-  out["torque_by_rotation_n_m"] = formats::numbers(force.torque_n_m);
+  out["torque_by_rotation_n_m"] = io::numbers(force.torque_n_m);
   return out;
 }
 
@@ -266,7 +266,7 @@ Json forces_object(const ForcesResult& result) {
 }
 
 std::string forces_json(const ForcesResult& result) {
-  return formats::dump(forces_object(result));
+  return io::dump(forces_object(result));
 }
 
 }  // namespace robomill::jobs

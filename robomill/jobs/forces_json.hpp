@@ -5,6 +5,6 @@
 namespace robomill::jobs {
 
 /// forces.json as an object, for a file of its own and for plan.json.
-[[nodiscard]] formats::Json forces_object(const ForcesResult& result);
+[[nodiscard]] io::Json forces_object(const ForcesResult& result);
 
 }  // namespace robomill::jobs

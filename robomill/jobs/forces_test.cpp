@@ -73,7 +73,7 @@ TEST(RunForces, WritesARevolution) {
 
 TEST(RunForces, TellsTheForceOnTheWorkpieceWithTheOtherSign) {
   const Folder folder;
-  const std::string text = formats::read_file(along / "forces.toml");
+  const std::string text = io::read_file(along / "forces.toml");
   const std::string cut =
       "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm";
   std::string one = text;
@@ -91,7 +91,7 @@ TEST(RunForces, TellsTheForceOnTheWorkpieceWithTheOtherSign) {
 // A mode of the part makes the cut vibrate; far too stiff to move, it leaves the force alone.
 TEST(RunForces, VibratesWithThePart) {
   const Folder folder;
-  std::string text = formats::read_file(along / "forces.toml");
+  std::string text = io::read_file(along / "forces.toml");
   text.replace(
       text.find("spindle_speed_rpm"), 17,
       "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm");
@@ -195,7 +195,7 @@ TEST(RunForces, CountsTheSameBlocksEverywhere) {
 // An arm without a spherical wrist is followed from where it stands.
 TEST(RunForces, FollowsAProgramWithAUr5e) {
   const Folder folder;
-  std::string cell = formats::read_file(examples / "ball-end-ur5e" / "cell.toml");
+  std::string cell = io::read_file(examples / "ball-end-ur5e" / "cell.toml");
   cell.replace(cell.find("origin_mm"), 9, "rotation_deg = [0, 0, 0]\norigin_mm");
   cell += "[program]\nmachine = \"xyzac-trt\"\n";
   const std::string start = "start_joints_deg = [0, -90, 90, -90, -90, 0]\n";
@@ -203,7 +203,7 @@ TEST(RunForces, FollowsAProgramWithAUr5e) {
   const auto path = folder.file("cell.toml", with_start);
   const ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", path);
   ASSERT_EQ(result.program->blocks.front().joints.size(), 6);
-  const formats::CellFile file = formats::read_cell(path);
+  const jobs::CellFile file = jobs::read_cell(path);
   for (const BlockResult& row : result.program->blocks) {
     const program::Block& block = result.program->program.blocks[row.force.block];
     const robot::ToolPose pose = robot::tool_pose(file.cell, robot::forward(file.cell.arm, row.joints));
@@ -219,7 +219,7 @@ TEST(RunForces, FollowsAProgramWithAUr5e) {
 
 TEST(RunForces, SaysWhichBlockTheRobotCannotReach) {
   const Folder folder;
-  std::string cell = formats::read_file(along / "cell.toml");
+  std::string cell = io::read_file(along / "cell.toml");
   cell.replace(cell.find("[1700, 0, 700]"), 14, "[3300, 0, 700]");
   const auto message = [&](const std::filesystem::path& path) {
     return refusal([&] { static_cast<void>(run_forces(along / "forces.toml", along / "hollow.ngc", path)); });
@@ -231,8 +231,8 @@ TEST(RunForces, SaysWhichBlockTheRobotCannotReach) {
 
 TEST(RunForces, RefusesAPostureBeyondTheLimitsOrSingular) {
   const Folder folder;
-  static_cast<void>(folder.file("cell.toml", formats::read_file(along / "cell.toml")));
-  std::string text = formats::read_file(along / "forces.toml");
+  static_cast<void>(folder.file("cell.toml", io::read_file(along / "cell.toml")));
+  std::string text = io::read_file(along / "forces.toml");
   text.replace(
       text.find("spindle_speed_rpm"), 17,
       "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm");

@@ -75,7 +75,7 @@ void warn_of_prediction(PlanResult& result) {
 
 void measure(PlanResult& result, Progress& progress) {
   if (!result.job.hits.empty()) {
-    const formats::HitsFile hits = formats::read_hits(result.job.hits);
+    const modal::HitsFile hits = modal::read_hits(result.job.hits);
     append(result.notes, hits.notes);
     for (const modal::Hit& hit : hits.hits) {
       result.hit_directions.push_back(
@@ -86,7 +86,7 @@ void measure(PlanResult& result, Progress& progress) {
     result.frfs = result.hits->set;
     if (!result.hits->added_decay_removed) result.added_decay_per_s = result.hits->added_decay_per_s;
   } else if (!result.job.frf.empty()) {
-    const formats::FrfFile file = formats::read_frfs(result.job.frf, result.job.frf_as);
+    const modal::FrfFile file = modal::read_frfs(result.job.frf, result.job.frf_as);
     append(result.notes, file.notes);
     result.frfs = file.set;
     result.added_decay_per_s = file.added_decay_per_s;
@@ -100,9 +100,9 @@ void measure(PlanResult& result, Progress& progress) {
 void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   // Of FRFs the modes are doubled, where the directions are equal, and not what they are fitted to.
   modal::FrfSet measured = result.frfs.value_or(modal::FrfSet{});
-  if (!result.frfs) result.model = formats::read_modes(result.job.modes);
+  if (!result.frfs) result.model = modal::read_modes(result.job.modes);
   const modal::MissingDirections& directions = result.job.directions;
-  const auto words = formats::complete_directions(result.model, measured, directions, result.job.file.string(), "job");
+  const auto words = jobs::complete_directions(result.model, measured, directions, result.job.file.string(), "job");
   if (words) result.warnings.push_back(*words);
   if (!result.frfs) return;
   modal::FitOptions options;
@@ -163,16 +163,16 @@ void pairs(PlanResult& result, Progress& progress) {
   }
 }
 
-std::vector<decision::SpindleCapacity> spindle_curve(const formats::Job& job) {
+std::vector<decision::SpindleCapacity> spindle_curve(const jobs::Job& job) {
   std::vector<decision::SpindleCapacity> curve;
-  for (const formats::SpindlePoint& p : job.spindle_curve) {
+  for (const jobs::SpindlePoint& p : job.spindle_curve) {
     curve.push_back(
         {.spindle_speed_rad_per_s = p.spindle_speed_rad_per_s, .torque_n_m = p.torque_n_m, .power_w = p.power_w});
   }
   return curve;
 }
 
-decision::RecommendOptions recommend_options(const formats::Job& job, const formats::LobesFile& cut) {
+decision::RecommendOptions recommend_options(const jobs::Job& job, const jobs::LobesFile& cut) {
   decision::RecommendOptions options;
   options.radial_depth_m = cut.radial_depth_m;
   options.max_axial_depth_m = job.max_axial_depth_m;
@@ -184,7 +184,7 @@ decision::RecommendOptions recommend_options(const formats::Job& job, const form
   return options;
 }
 
-decision::FinishLimits finish_limits(const formats::Job& job) {
+decision::FinishLimits finish_limits(const jobs::Job& job) {
   return {.max_surface_error_m = job.max_surface_error_m, .max_deflection_m = job.max_deflection_m};
 }
 
@@ -219,9 +219,9 @@ void warn_of_spindle(PlanResult& result) {
 }
 
 /// Whether the job's program is to be smoothed.
-bool wants_path(const formats::Job& job) {
+bool wants_path(const jobs::Job& job) {
   if (job.program.empty() || job.cell.empty()) return false;
-  if (formats::has_smoothing(job.cell)) return true;
+  if (path::has_smoothing(job.cell)) return true;
   if (!job.forces.empty()) return false;
   throw InvalidInput(job.cell.string(), "has no [smoothing]",
                      "job.program without job.forces is smoothed: write the tolerances and limits there");
@@ -229,10 +229,10 @@ bool wants_path(const formats::Job& job) {
 
 /// The program as the robot will run it.
 void smooth(PlanResult& result, const std::filesystem::path& folder, Progress& progress) {
-  const formats::Job& job = result.job;
+  const jobs::Job& job = result.job;
   SmoothJob smooth = {.program = job.program, .cell = job.cell, .place = false};
   if (!folder.empty()) {
-    formats::make_folder(folder);
+    io::make_folder(folder);
     smooth.output = folder / "trajectory.csv";
   }
   result.path = run_smooth(smooth, progress);
@@ -336,7 +336,7 @@ void turn_feed(PlanResult& result, Progress& progress) {
 void compare(PlanResult& result, Progress& progress) {
   result.cuts = compare_cuts(result.job.cuts, result.cut.problem, result.cut.options, progress);
   for (std::size_t i = 0; i < result.job.cuts.size(); ++i) {
-    const formats::TestCut& cut = result.job.cuts[i];
+    const jobs::TestCut& cut = result.job.cuts[i];
     if (cut.file.empty()) continue;
     result.recordings.push_back(read_recording(cut, result.cut.problem));
     const report::Recording& heard = result.recordings.back();
@@ -371,9 +371,9 @@ void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
 PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress,
                    const std::filesystem::path& folder, bool accept_fit) {
   PlanResult result;
-  result.job = formats::read_job(job);
+  result.job = jobs::read_job(job);
   // Everything that is quick to refuse is read before the long work starts.
-  result.cut = formats::read_lobes(result.job.lobes);
+  result.cut = jobs::read_lobes(result.job.lobes);
   if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
                        "plan needs it for the removal rate");
@@ -401,7 +401,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   }
   if (with_path) smooth(result, folder, progress);
   result.cut.drop_dynamics();  // the job's stand in their place
-  formats::load_dynamics(result.cut);
+  jobs::load_dynamics(result.cut);
   result.cut.problem.dynamics = result.model;
   result.cut.validate();
   // The report draws the boundary in any case.

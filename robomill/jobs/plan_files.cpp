@@ -14,8 +14,8 @@
 namespace robomill::jobs {
 namespace {
 
-using formats::Json;
-using formats::number;
+using io::Json;
+using io::number;
 
 Json to_json(const decision::Operation& op) {
   Json json = {{"spindle_speed_rpm", number(op.spindle_speed_rad_per_s / units::rpm)},
@@ -32,7 +32,7 @@ Json to_json(const decision::Operation& op) {
                {"power_w", number(op.power_w)},
                {"surface_error_um", number(op.surface_error_m / units::um)},
                {"peak_deflection_um", number(op.peak_deflection_m / units::um)}};
-  formats::set_mode(json, op.mode);
+  modal::set_mode(json, op.mode);
   return json;
 }
 
@@ -81,16 +81,16 @@ Json feed_directions_json(const report::FeedDirections& directions) {
 }
 
 std::string modes_json(const PlanResult& result) {
-  return result.fit ? formats::modes_json(*result.fit) : formats::modes_json(result.model);
+  return result.fit ? modal::modes_json(*result.fit) : modal::modes_json(result.model);
 }
 
 std::string lobes_json(const PlanResult& result) {
-  return formats::lobes_json(result.lobes, result.uncertain);
+  return stability::lobes_json(result.lobes, result.uncertain);
 }
 
 /// What an earlier run computed from modes that this one has not.
 void remove_later_stages(const std::filesystem::path& folder) {
-  for (const char* name : {"lobes.json", "smooth.json", "trajectory.csv"}) formats::remove_file(folder / name);
+  for (const char* name : {"lobes.json", "smooth.json", "trajectory.csv"}) io::remove_file(folder / name);
 }
 
 }  // namespace
@@ -108,34 +108,34 @@ std::string plan_json(const PlanResult& result) {
   json["warnings"] = result.warnings;
   json["notes"] = result.notes;
   if (result.prediction) json["assembly"] = Json::parse(prediction_json(*result.prediction));
-  if (result.hits) json["frf"] = Json::parse(formats::hits_json(*result.hits));
+  if (result.hits) json["frf"] = Json::parse(modal::hits_json(*result.hits));
   json["modes"] = Json::parse(modes_json(result));
   if (result.has_lobes()) json["lobes"] = Json::parse(lobes_json(result));
   if (result.forces) json["forces"] = forces_object(*result.forces);
-  if (result.path) json["path"] = Json::parse(formats::smooth_json(result.path->smoothed));
+  if (result.path) json["path"] = Json::parse(path::smooth_json(result.path->smoothed));
   return json.dump(1) + "\n";
 }
 
 void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
-  formats::make_folder(folder);
+  io::make_folder(folder);
   std::vector<report::StageFile> files;
   if (result.frfs) {
-    formats::write_frfs(folder / "tip.uff", *result.frfs);
+    modal::write_frfs(folder / "tip.uff", *result.frfs);
     files.push_back(
         {.stage = "frf",
          .file = "tip.uff",
          .description = result.prediction ? "predicted FRFs, universal file 58" : "measured FRFs, universal file 58"});
   }
-  formats::write_file(folder / "modes.json", modes_json(result));
+  io::write_file(folder / "modes.json", modes_json(result));
   files.push_back({.stage = "modes", .file = "modes.json", .description = "modal parameters"});
   if (result.has_lobes()) {
-    formats::write_file(folder / "lobes.json", lobes_json(result));
+    io::write_file(folder / "lobes.json", lobes_json(result));
     files.push_back({.stage = "lobes", .file = "lobes.json", .description = "stability lobes"});
   } else {
     remove_later_stages(folder);
   }
   if (result.forces) {
-    formats::write_file(folder / "forces.csv", forces_csv(*result.forces));
+    io::write_file(folder / "forces.csv", forces_csv(*result.forces));
     files.push_back({.stage = "forces",
                      .file = "forces.csv",
                      .description = result.forces->program ? "cutting forces, a row a block of the program"
@@ -153,10 +153,10 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   const std::string page = report::report_html(make_report(result, files));
   if (result.path) {
     place(*result.path);
-    formats::write_file(folder / "smooth.json", formats::smooth_json(result.path->smoothed));
+    io::write_file(folder / "smooth.json", path::smooth_json(result.path->smoothed));
   }
-  formats::write_file(folder / "plan.json", plan_json(result));
-  formats::write_file(folder / "report.html", page);
+  io::write_file(folder / "plan.json", plan_json(result));
+  io::write_file(folder / "report.html", page);
 }
 
 }  // namespace robomill::jobs

@@ -78,7 +78,7 @@ TEST_F(Plan, ModesOfTheWorkpieceAreNotThoseOfTheTool) {
       "[workpiece_dynamics]\ny = [{ frequency_hz = 400, damping_ratio = 0.005, modal_mass_kg = 0.01 }, "
       "{ frequency_hz = 460, damping_ratio = 0.005, modal_mass_kg = 0.01 }, "
       "{ frequency_hz = 520, damping_ratio = 0.005, modal_mass_kg = 0.001 }]\n";
-  const std::string lobes = formats::read_file(folder_.at("lobes.toml"));
+  const std::string lobes = io::read_file(folder_.at("lobes.toml"));
   for (const std::string& kept : {std::string(), std::string("[dynamics]\nkeep_modes = [1, 7]\n")}) {
     write("lobes.toml", lobes + kept + part);
     const PlanResult result = run_job(job(), 1);
@@ -160,7 +160,7 @@ TEST_F(Plan, WritesEveryFileAndTheyAgree) {
   const PlanResult result =
       run_job(job("[[cuts]]\nspindle_speed_rpm = 8000\naxial_depth_mm = 2.9\nresult = \"chatter\"\n"), 1);
   write_plan(folder_.at("out"), result);
-  const auto json = nlohmann::json::parse(formats::read_file(folder_.at("out") / "plan.json"));
+  const auto json = nlohmann::json::parse(io::read_file(folder_.at("out") / "plan.json"));
   EXPECT_NEAR(json["recommended"]["spindle_speed_rpm"].get<double>(),
               result.recommendation.recommended->spindle_speed_rad_per_s / units::rpm, 1e-6);
   EXPECT_GE(json["recommended"]["margin"].get<double>(), 0.2 - 1e-12);
@@ -218,7 +218,7 @@ TEST_F(Plan, ComputesNothingFromModesThatDoNotDescribeTheFrfs) {
   for (const char* name : {"tip.uff", "modes.json", "plan.json", "report.html"}) {
     EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
   }
-  const auto json = nlohmann::json::parse(formats::read_file(out / "plan.json"));
+  const auto json = nlohmann::json::parse(io::read_file(out / "plan.json"));
   EXPECT_TRUE(json["recommended"].is_null());
   EXPECT_EQ(json["modes"]["fit"]["usable"], false);
   EXPECT_FALSE(json.contains("lobes"));
@@ -261,7 +261,7 @@ TEST_F(Plan, FinishingKeepsTheSurfaceErrorThatRoughingReports) {
 }
 
 TEST_F(Plan, FinishingNeedsAWall) {
-  std::string lobes = formats::read_file(folder_.at("lobes.toml"));
+  std::string lobes = io::read_file(folder_.at("lobes.toml"));
   const std::string direction = "direction = \"up\"\nradial_depth_mm = 1.8";
   lobes.replace(lobes.find(direction), direction.size(), "entry_deg = 30\nexit_deg = 150");
   write("lobes.toml", lobes);
@@ -313,9 +313,9 @@ radial_n_per_mm2 = 287
   const std::filesystem::path out = folder_.at("out");
   write_plan(out, result);
   EXPECT_TRUE(std::filesystem::exists(out / "forces.csv"));
-  const auto json = nlohmann::json::parse(formats::read_file(out / "plan.json"));
+  const auto json = nlohmann::json::parse(io::read_file(out / "plan.json"));
   EXPECT_NEAR(json["forces"]["power_w"].get<double>(), 712e6 * 2e-3 * 6e-3 * 0.1e-3 * 3.0 * 8000.0 / 60.0, 1.0);
-  EXPECT_NE(formats::read_file(out / "report.html").find("id=\"forces\""), std::string::npos);
+  EXPECT_NE(io::read_file(out / "report.html").find("id=\"forces\""), std::string::npos);
 }
 
 // A slot of 40 mm in a block of 600 mm: the spindle feels the slot, Kt a b v = 1,620 W, not the mean over the block.
@@ -353,7 +353,7 @@ TEST_F(Plan, SaysWhatIsMissing) {
     return test::refusal([&] { static_cast<void>(run_job(path, 1)); });
   };
   EXPECT_NE(refusal(folder_.at("none.toml")).find("none.toml"), std::string::npos);
-  const std::string lobes = formats::read_file(folder_.at("lobes.toml"));
+  const std::string lobes = io::read_file(folder_.at("lobes.toml"));
   std::string without_feed = lobes;
   without_feed.erase(without_feed.find("feed_per_tooth_mm"), std::string("feed_per_tooth_mm = 0.01").size());
   write("lobes.toml", without_feed);

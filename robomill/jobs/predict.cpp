@@ -71,7 +71,7 @@ modal::FrfSet predict_at(const TipPrediction& prediction, const Eigen::VectorXd&
 }
 
 void compare(TipPrediction& prediction, const std::filesystem::path& path) {
-  formats::FrfFile file = formats::read_frfs({path});
+  modal::FrfFile file = modal::read_frfs({path});
   prediction.notes.insert(prediction.notes.end(), file.notes.begin(), file.notes.end());
   if (file.added_decay_per_s > 0.0) {
     prediction.notes.emplace_back(
@@ -79,7 +79,7 @@ void compare(TipPrediction& prediction, const std::filesystem::path& path) {
   }
   const Eigen::VectorXd& axis = prediction.tip.frfs.frequency_hz;
   try {
-    file.set = formats::lines_between(file.set, axis(0), axis(axis.size() - 1));
+    file.set = coupling::lines_between(file.set, axis(0), axis(axis.size() - 1));
   } catch (const InvalidInput&) {
     throw InvalidInput(path.string(), fmt::format("has no line in the predicted range, {:.6g} to {:.6g} Hz", axis(0),
                                                   axis(axis.size() - 1)));
@@ -165,7 +165,7 @@ std::vector<PeakFound> find_peaks(const Eigen::VectorXd& frequency_hz, const Eig
 
 TipPrediction predict_tip(const std::filesystem::path& assembly, const std::filesystem::path& measured) {
   TipPrediction out;
-  out.file = formats::read_assembly(assembly);
+  out.file = coupling::read_assembly(assembly);
   out.tip = coupling::tip_frfs(out.file.assembly, out.file.frequency_hz);
   out.round = is_round(out.tip.frfs);
   for (const auto* notes : {&out.file.notes, &out.tip.notes})

@@ -15,7 +15,7 @@ namespace robomill::jobs {
 
 /// The tip of an assembly as predicted, and how far a measurement of it is away.
 struct TipPrediction {
-  formats::AssemblyFile file;
+  coupling::AssemblyFile file;
   coupling::TipResult tip;
   bool round = false;                     ///< yy is xx, and there is nothing between x and y
   std::optional<modal::FrfSet> measured;  ///< of what was measured the FRFs that were predicted too, within the range

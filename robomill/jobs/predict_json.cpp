@@ -7,8 +7,8 @@
 namespace robomill::jobs {
 namespace {
 
-using formats::Json;
-using formats::number;
+using io::Json;
+using io::number;
 
 /// In the keys of assembly.toml.
 Json segments_json(const std::vector<coupling::Segment>& segments) {

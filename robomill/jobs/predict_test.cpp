@@ -98,7 +98,7 @@ method = "zeroth-order"
 TEST_F(Predicted, IsComparedAtTheLinesOfTheMeasurement) {
   const TipPrediction rigid = predict_tip(examples / "joint-bar/rigid.toml", {});
   modal::FrfSet measured = coupling::tip_frfs(rigid.file.assembly, Eigen::VectorXd::LinSpaced(571, 30.3, 600.3)).frfs;
-  formats::write_frfs(folder_.at("tip.json"), measured);
+  modal::write_frfs(folder_.at("tip.json"), measured);
   const TipPrediction same = predict_tip(examples / "joint-bar/rigid.toml", folder_.at("tip.json"));
   ASSERT_EQ(same.error.size(), 2U);
   EXPECT_LT(same.error[0].error.relative, 1e-12);
@@ -114,7 +114,7 @@ TEST_F(Predicted, IsComparedAtTheLinesOfTheMeasurement) {
 TEST_F(Predicted, PlanWarnsOfAMeasurementFarAway) {
   const auto measure = [&](const char* file) {
     const TipPrediction whole = predict_tip(examples / "joint-bar" / file, {});
-    formats::write_frfs(folder_.at("tip.json"), whole.tip.frfs);
+    modal::write_frfs(folder_.at("tip.json"), whole.tip.frfs);
   };
   folder_.file("job.toml", "[job]\nassembly = \"" + (examples / "joint-bar/soft.toml").string() +
                                "\"\nmeasured = \"tip.json\"\nlobes = \"lobes.toml\"\nband_hz = [200, 600]\n");
@@ -140,13 +140,13 @@ TEST_F(Predicted, OfAMeasuredHolderIsComparedBetweenItsLines) {
   holder.tool = whole.holder.segments;
   holder.joint.reset();
   holder.holder = {};
-  formats::write_frfs(folder_.at("holder.uff"), coupling::tip_frfs(holder, lines, {.rotations = true}).frfs);
-  std::string text = formats::read_file(examples / "joint-bar/soft.toml");
+  modal::write_frfs(folder_.at("holder.uff"), coupling::tip_frfs(holder, lines, {.rotations = true}).frfs);
+  std::string text = io::read_file(examples / "joint-bar/soft.toml");
   text.erase(text.find("[frequency]"), text.find("[[tool]]") - text.find("[frequency]"));
   text.erase(text.find("[holder]"));
   const std::filesystem::path file = folder_.file("assembly.toml", text + "[holder]\nreceptances = \"holder.uff\"\n");
-  formats::write_frfs(folder_.at("tip.uff"),
-                      coupling::tip_frfs(whole, Eigen::VectorXd::LinSpaced(500, 60.25, 559.25)).frfs);
+  modal::write_frfs(folder_.at("tip.uff"),
+                    coupling::tip_frfs(whole, Eigen::VectorXd::LinSpaced(500, 60.25, 559.25)).frfs);
   const TipPrediction prediction = predict_tip(file, folder_.at("tip.uff"));
   EXPECT_EQ(prediction.tip.frfs.frequency_hz.size(), 601);
   EXPECT_LT(prediction.error.at(0).error.relative, 0.01) << "a straight line between the lines would be 0.02 away";
@@ -155,7 +155,7 @@ TEST_F(Predicted, OfAMeasuredHolderIsComparedBetweenItsLines) {
 
 TEST_F(Predicted, SaysWhatCannotBeCompared) {
   const auto refusal = [&](const modal::FrfSet& set) {
-    formats::write_frfs(folder_.at("tip.json"), set);
+    modal::write_frfs(folder_.at("tip.json"), set);
     return test::refusal(
         [&] { static_cast<void>(predict_tip(examples / "joint-bar/rigid.toml", folder_.at("tip.json"))); });
   };
@@ -167,7 +167,7 @@ TEST_F(Predicted, SaysWhatCannotBeCompared) {
   EXPECT_NE(refusal(set).find("none of the FRFs that are predicted"), std::string::npos) << refusal(set);
   EXPECT_NE(refusal(set).find("without a number"), std::string::npos) << refusal(set);
   set.frfs[0].name = modal::parse_frf_name("1x:1x");
-  formats::write_frfs(folder_.at("tip.json"), set);
+  modal::write_frfs(folder_.at("tip.json"), set);
   EXPECT_EQ(predict_tip(examples / "joint-bar/rigid.toml", folder_.at("tip.json")).error.size(), 1U);
 }
 
@@ -178,7 +178,7 @@ TEST_F(Predicted, PlanStandsOnTheModesOfItsTipFrfs) {
   EXPECT_LT(predicted.fit->relative_error, 0.02) << "hysteretic damping, viscous modes";
   ASSERT_EQ(predicted.recommendation.status, decision::Recommendation::Status::found);
   write_plan(folder_.at("out"), predicted);
-  const modal::FrfSet tip = formats::read_frfs({folder_.at("out") / "tip.uff"}).set;
+  const modal::FrfSet tip = modal::read_frfs({folder_.at("out") / "tip.uff"}).set;
   const modal::ModalModel both = modal::fit_modes(tip, {.band_low_hz = 1500.0, .band_high_hz = 4000.0}).model;
   ASSERT_EQ(both.modes.size(), predicted.model.modes.size());
   const Eigen::Vector2d near_hz(2600.0, 2900.0);
@@ -189,7 +189,7 @@ TEST_F(Predicted, PlanStandsOnTheModesOfItsTipFrfs) {
     EXPECT_LT((found.find(modal::parse_frf_name(name))->receptance - exact).norm(), 5e-3 * exact.norm());
   }
   EXPECT_EQ(predicted.uncertain.samples, 0) << "a fit without noise knows nothing of the prediction's error";
-  const auto json = nlohmann::json::parse(formats::read_file(folder_.at("out") / "plan.json"))["assembly"];
+  const auto json = nlohmann::json::parse(io::read_file(folder_.at("out") / "plan.json"))["assembly"];
   EXPECT_EQ(json["tool"].size(), 2U);
   EXPECT_NEAR(json["tool"][0]["length_mm"].get<double>(), 26.0, 1e-9);
   EXPECT_NEAR(json["joint"]["rotational_stiffness_n_m_per_rad"].get<double>(), 2.5e4, 1e-6);

@@ -32,15 +32,15 @@ constexpr double least_chord_m = 1e-9, least_turn_rad = 1e-9;
 
 /// A machine with a program before it.
 struct Bench {
-  formats::CellFile cell;
+  jobs::CellFile cell;
   std::unique_ptr<robot::Kinematics> machine;
-  formats::SmoothingFile smoothing;
+  path::SmoothingFile smoothing;
   std::array<bool, 6> slides = {};
-  std::unique_ptr<formats::ProgramFile> program;
+  std::unique_ptr<program::ProgramFile> program;
   path::PostureChoice posture;
 };
 
-std::array<bool, 6> slides_of(const formats::CellFile& cell) {
+std::array<bool, 6> slides_of(const jobs::CellFile& cell) {
   std::array<bool, 6> slides = {};
   if (cell.hybrid) {
     slides.fill(true);
@@ -81,21 +81,21 @@ auto told_of_program(const std::filesystem::path& program, F&& f) {
 
 Bench prepare(const SmoothJob& job) {
   Bench bench;
-  bench.cell = formats::read_cell(job.cell, formats::Robots::any);
-  bench.machine = formats::kinematics(bench.cell);
-  bench.smoothing = formats::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), job.method);
+  bench.cell = jobs::read_cell(job.cell, jobs::Robots::any);
+  bench.machine = jobs::kinematics(bench.cell);
+  bench.smoothing = path::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), job.method);
   bench.slides = slides_of(bench.cell);
-  formats::ProgramReading reading = formats::program_reading(bench.cell);
+  program::ProgramReading reading = jobs::program_reading(bench.cell);
   reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
   reading.axis_tolerance_rad = std::max(turn_share * bench.smoothing.options.axis_tolerance_rad, least_turn_rad);
-  bench.program = formats::open_program(job.program, reading);
+  bench.program = program::open_program(job.program, reading);
   bench.posture = told_of_program(job.program, [&] { return posture_of(bench); });
   return bench;
 }
 
-std::unique_ptr<formats::SampleFile> open_output(const SmoothJob& job, const Bench& bench) {
+std::unique_ptr<path::SampleFile> open_output(const SmoothJob& job, const Bench& bench) {
   if (job.output.empty()) return nullptr;
-  formats::TrajectoryInfo info;
+  path::TrajectoryInfo info;
   info.joints = bench.machine->joints();
   info.slides = bench.slides;
   info.limits = bench.machine->limits();
@@ -104,11 +104,11 @@ std::unique_ptr<formats::SampleFile> open_output(const SmoothJob& job, const Ben
   info.cell = job.cell.filename().string();
   info.program = job.program.filename().string();
   info.end_effector = bench.cell.end_effector;
-  return formats::open_sample_file(job.output, info);
+  return path::open_sample_file(job.output, info);
 }
 
 /// The drives that [smoothing] tells of; none where it does not.
-std::vector<path::Drive> drives_of(const formats::SmoothingFile& smoothing) {
+std::vector<path::Drive> drives_of(const path::SmoothingFile& smoothing) {
   std::vector<path::Drive> drives(smoothing.drive_bandwidth_hz.size());
   for (std::size_t i = 0; i < drives.size(); ++i) {
     path::Drive& drive = drives[i];
@@ -154,11 +154,11 @@ class Follower {
 /// One method over the whole program.
 /// @param file      takes the samples; may be null
 /// @param recorder  as well
-formats::SmoothedBy smooth_by(path::Method method, const Bench& bench, formats::SampleFile* file,
-                              report::MotionRecorder* recorder, Progress& progress) {
+path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::SampleFile* file,
+                           report::MotionRecorder* recorder, Progress& progress) {
   path::SmoothingOptions options = bench.smoothing.options;
   options.method = method;
-  formats::SmoothedBy out{.method = method};
+  path::SmoothedBy out{.method = method};
   const std::vector<path::Drive> drives = drives_of(bench.smoothing);
   std::optional<Follower> follower;
   const auto take = [&](std::span<const path::Sample> samples) {
@@ -179,7 +179,7 @@ formats::SmoothedBy smooth_by(path::Method method, const Bench& bench, formats::
   try {
     out.summary = path::smooth(*bench.program, *bench.machine, bench.posture.posture, options, take, restart, progress);
   } catch (const InvalidInput& error) {
-    throw formats::located_in_smoothing(bench.cell.path, error);
+    throw path::located_in_smoothing(bench.cell.path, error);
   }
   if (follower) out.tracking_error = follower->worst();
   return out;
@@ -188,13 +188,13 @@ formats::SmoothedBy smooth_by(path::Method method, const Bench& bench, formats::
 std::vector<path::Method> methods_of(const SmoothJob& job, path::Method first) {
   std::vector<path::Method> methods = {first};
   if (!job.compare) return methods;
-  std::ranges::copy_if(formats::smoothing_methods(), std::back_inserter(methods),
+  std::ranges::copy_if(path::smoothing_methods(), std::back_inserter(methods),
                        [&](path::Method method) { return method != first; });
   return methods;
 }
 
 /// What a controller makes of a joint program that leaves its tolerances, and what would help.
-std::string program_note(const formats::ProgramRun& run) {
+std::string program_note(const path::ProgramRun& run) {
   const double tip_m = std::max(run.tip_deviation_m, run.tip_error_m);
   const double axis_rad = std::max(run.axis_deviation_rad, run.axis_error_rad);
   std::string note = fmt::format(
@@ -214,7 +214,7 @@ std::string program_note(const formats::ProgramRun& run) {
 }
 
 /// A joint program that its controller is not known to load, and what would help.
-std::string length_note(const formats::ProgramRun& run) {
+std::string length_note(const path::ProgramRun& run) {
   return fmt::format(
       "The robot program has {} points; such a controller is known to load about {}. {}", run.points, run.most_points,
       run.fixed_cycle ? "Write .servoj, whose rows a client sends, give a longer --program-period-ms, or split the NC "
@@ -223,7 +223,7 @@ std::string length_note(const formats::ProgramRun& run) {
 }
 
 void tell(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
-  formats::SmoothedProgram& smoothed = result.smoothed;
+  path::SmoothedProgram& smoothed = result.smoothed;
   smoothed.program = job.program.filename().string();
   smoothed.cell = job.cell.filename().string();
   smoothed.slides = bench.slides;
@@ -255,7 +255,7 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
   result.options = bench.smoothing.options;
   result.posture = bench.posture;
   result.turns_about_axis = bench.machine->turns_about_axis();
-  std::unique_ptr<formats::SampleFile> file = open_output(job, bench);
+  std::unique_ptr<path::SampleFile> file = open_output(job, bench);
   std::optional<report::MotionRecorder> recorder;
   if (job.record) {
     result.outline = report::outline(*bench.program, result.options.tip_tolerance_m);
@@ -266,14 +266,14 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
     try {
       // What the cell says may suit one method and not another.
       if (!asked_for) {
-        static_cast<void>(formats::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), method));
+        static_cast<void>(path::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), method));
       }
       result.smoothed.methods.push_back(told_of_program(job.program, [&] {
         return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr, progress);
       }));
     } catch (const InvalidInput& error) {
       if (asked_for) throw;
-      result.smoothed.notes.push_back(fmt::format("{} is left out: {}", formats::name_of(method), error.what()));
+      result.smoothed.notes.push_back(fmt::format("{} is left out: {}", path::name_of(method), error.what()));
       continue;
     }
     if (asked_for && file != nullptr) {
@@ -306,7 +306,7 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
 
 void place(const SmoothResult& result) {
   if (result.trajectory) result.trajectory->commit();
-  if (result.stale) formats::remove_file(result.output);
+  if (result.stale) io::remove_file(result.output);
 }
 
 double joint_share(const path::CheckResult& check) {

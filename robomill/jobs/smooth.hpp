@@ -24,15 +24,15 @@ struct SmoothJob {
   bool compare = false;                     ///< all other methods too
   bool keep_breaches = false;               ///< write a trajectory that breaks limits all the same
   bool record = true;                       ///< curves for a report
-  double program_period_s = 0.0;            ///< of joint programs; 0: formats::TrajectoryInfo's
+  double program_period_s = 0.0;            ///< of joint programs; 0: path::TrajectoryInfo's
   bool place = true;                        ///< at the end; else place() is the caller's to call
 };
 
 struct SmoothResult {
-  formats::SmoothedProgram smoothed = {};
-  std::filesystem::path output = {};                     ///< of the trajectory, as the job says
-  bool stale = false;                                    ///< a file of an earlier run stood there and goes
-  std::shared_ptr<formats::SampleFile> trajectory = {};  ///< whole, beside its place
+  path::SmoothedProgram smoothed = {};
+  std::filesystem::path output = {};                  ///< of the trajectory, as the job says
+  bool stale = false;                                 ///< a file of an earlier run stood there and goes
+  std::shared_ptr<path::SampleFile> trajectory = {};  ///< whole, beside its place
   path::SmoothingOptions options = {};
   path::PostureChoice posture = {};
   bool turns_about_axis = false;
@@ -40,7 +40,7 @@ struct SmoothResult {
   std::vector<report::Motion> motions = {};              ///< one a method
   std::vector<std::vector<Eigen::Matrix2Xd>> ways = {};  ///< one a method and corner
 
-  [[nodiscard]] const formats::SmoothedBy& first() const { return smoothed.methods.front(); }
+  [[nodiscard]] const path::SmoothedBy& first() const { return smoothed.methods.front(); }
   /// Whether the trajectory asked for breaks no limit.
   [[nodiscard]] bool trajectory_holds() const { return first().summary.check.violations() == 0; }
   /// … and the joint program made of it, where there is one, keeps the tolerances as its controller runs it.

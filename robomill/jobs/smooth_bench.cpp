@@ -18,7 +18,7 @@ using namespace robomill;
 class Blade {
  public:
   Blade() : path_(std::filesystem::temp_directory_path() / ("robomill-blade-" + std::to_string(::getpid()) + ".ngc")) {
-    formats::write_file(path_, examples::blade_program(22, 195));
+    io::write_file(path_, examples::blade_program(22, 195));
   }
   ~Blade() {
     std::error_code ignored;

@@ -55,10 +55,10 @@ double known(double value) {
   return value > 0.0 ? value : report::missing;
 }
 
-report::SmoothMethod method_report(const formats::SmoothedBy& by, const std::array<bool, 6>& slides) {
+report::SmoothMethod method_report(const path::SmoothedBy& by, const std::array<bool, 6>& slides) {
   const path::Summary& summary = by.summary;
   report::SmoothMethod out;
-  out.name = formats::name_of(by.method);
+  out.name = path::name_of(by.method);
   out.duration_s = summary.duration_s;
   out.lower_bound_s = known(summary.lower_bound_s);
   out.sum_t2_s = known(summary.sum_t2_s);

@@ -76,7 +76,7 @@ class Smoothing : public testing::Test {
   };
   [[nodiscard]] Rows read(const std::filesystem::path& path) const {
     Rows out;
-    std::istringstream text(formats::read_file(path));
+    std::istringstream text(io::read_file(path));
     std::string line;
     const auto cells = [](const std::string& from) {
       std::vector<std::string> parts;
@@ -165,7 +165,7 @@ TEST_F(Smoothing, TellsWhatWasLeftOutAndWhatWasFound) {
   const SmoothResult result = run_smooth(job());
   ASSERT_FALSE(result.smoothed.skipped.empty());
   EXPECT_EQ(result.smoothed.skipped.front().line, 2U);
-  const auto json = nlohmann::json::parse(formats::smooth_json(result.smoothed));
+  const auto json = nlohmann::json::parse(path::smooth_json(result.smoothed));
   EXPECT_EQ(json["program"], "part.ngc");
   EXPECT_EQ(json["joints"].size(), 5U);
   EXPECT_EQ(json["joints"][0]["unit"], "m");
@@ -236,7 +236,7 @@ TEST_F(Smoothing, SetsMethodsSideBySide) {
   const report::Smooth page = smooth_report(result);
   ASSERT_EQ(page.methods.size(), 5U);
   for (std::size_t i = 0; i < 5; ++i) {
-    const formats::SmoothedBy& by = result.smoothed.methods[i];
+    const path::SmoothedBy& by = result.smoothed.methods[i];
     EXPECT_GT(by.summary.duration_s, 0.5);
     ASSERT_EQ(by.tracking_error.size(), 5U);
     EXPECT_GT(by.tracking_error[3], 1e-6);
@@ -305,11 +305,11 @@ TEST_F(PlanPath, AddsTheTrajectoryToTheJob) {
       run_job(plan("program = \"part.ngc\"\ncell = \"cell.toml\"\n"), 1, Progress::none(), folder_.at("out"));
   ASSERT_TRUE(result.path && result.path->holds());
   write_plan(folder_.at("out"), result);
-  const auto json = nlohmann::json::parse(formats::read_file(folder_.at("out") / "plan.json"));
+  const auto json = nlohmann::json::parse(io::read_file(folder_.at("out") / "plan.json"));
   EXPECT_EQ(json["path"]["samples"], result.path->first().summary.samples);
   EXPECT_EQ(read(folder_.at("out") / "trajectory.csv").rows.size(), result.path->first().summary.samples);
-  EXPECT_EQ(nlohmann::json::parse(formats::read_file(folder_.at("out") / "smooth.json")), json["path"]);
-  EXPECT_NE(formats::read_file(folder_.at("out") / "report.html").find("<section id=\"smooth\""), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(io::read_file(folder_.at("out") / "smooth.json")), json["path"]);
+  EXPECT_NE(io::read_file(folder_.at("out") / "report.html").find("<section id=\"smooth\""), std::string::npos);
 }
 
 // The trajectory is there with the rest or not at all, and none of an earlier run is taken for this one's.
@@ -321,14 +321,14 @@ TEST_F(PlanPath, LeavesNoTrajectoryThatIsNotItsOwn) {
   write_plan(out, whole);
   EXPECT_TRUE(std::filesystem::exists(out / "trajectory.csv"));
   const std::string listed = "\"file\":\"trajectory.csv\"";
-  EXPECT_NE(formats::read_file(out / "report.html").find(listed), std::string::npos);
+  EXPECT_NE(io::read_file(out / "report.html").find(listed), std::string::npos);
   // A later stage that cannot go on leaves all as it was.
-  const std::string before = formats::read_file(out / "trajectory.csv");
+  const std::string before = io::read_file(out / "trajectory.csv");
   const std::filesystem::path bad = plan("program = \"part.ngc\"\ncell = \"cell.toml\"\n");
-  folder_.file("lobes.toml", formats::read_file(folder_.at("lobes.toml")) + "[dynamics]\nkeep_modes = [99]\n");
+  folder_.file("lobes.toml", io::read_file(folder_.at("lobes.toml")) + "[dynamics]\nkeep_modes = [99]\n");
   folder_.file("part.ngc", "G21 G90 G94\nG0 X0 Y0 Z0 A0 C0\nG1 X5 F2400\n");
   EXPECT_NE(refusal([&] { static_cast<void>(run_job(bad, 1, Progress::none(), out)); }), "accepted");
-  EXPECT_EQ(formats::read_file(out / "trajectory.csv"), before);
+  EXPECT_EQ(io::read_file(out / "trajectory.csv"), before);
   const auto files = std::filesystem::directory_iterator(out);
   EXPECT_EQ(std::distance(begin(files), end(files)), 6) << "nothing half-written is left";
   // One that breaks limits takes the older one away.
@@ -339,8 +339,8 @@ TEST_F(PlanPath, LeavesNoTrajectoryThatIsNotItsOwn) {
   EXPECT_NE(broken.warnings.front().find("the one of an earlier run was removed"), std::string::npos);
   write_plan(out, broken);
   EXPECT_FALSE(std::filesystem::exists(out / "trajectory.csv"));
-  EXPECT_EQ(formats::read_file(out / "report.html").find(listed), std::string::npos);
-  EXPECT_FALSE(nlohmann::json::parse(formats::read_file(out / "smooth.json"))["written"].get<bool>());
+  EXPECT_EQ(io::read_file(out / "report.html").find(listed), std::string::npos);
+  EXPECT_FALSE(nlohmann::json::parse(io::read_file(out / "smooth.json"))["written"].get<bool>());
 }
 
 TEST_F(PlanPath, NeedsTheCellToSaySo) {

@@ -43,9 +43,9 @@ struct ToolResult {
 /// @param cut  without dynamics: those of each tool are put in
 /// @throws InvalidInput  if the list is empty or the cut cannot be used for any tool
 /// @throws Interrupted  when progress asks to stop
-[[nodiscard]] ROBOMILL_API std::vector<ToolResult> try_tools(const formats::AssemblyFile& assembly,
-                                                             const std::vector<formats::ListedTool>& tools,
-                                                             const std::optional<formats::LobesFile>& cut,
+[[nodiscard]] ROBOMILL_API std::vector<ToolResult> try_tools(const coupling::AssemblyFile& assembly,
+                                                             const std::vector<coupling::ListedTool>& tools,
+                                                             const std::optional<jobs::LobesFile>& cut,
                                                              std::uint64_t seed, Progress& progress);
 
 /// A row a tool. Columns that hold nothing for any tool are empty.

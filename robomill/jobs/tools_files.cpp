@@ -14,8 +14,8 @@
 namespace robomill::jobs {
 namespace {
 
-using formats::Json;
-using formats::number;
+using io::Json;
+using io::number;
 
 const decision::Operation* best_of(const ToolResult& tool) {
   return tool.recommendation && tool.recommendation->recommended ? &*tool.recommendation->recommended : nullptr;
@@ -115,18 +115,18 @@ std::string tools_json(const std::vector<ToolResult>& results, const std::option
   Json json;
   json["tools"] = tools;
   json["holder"] = holder ? Json{{"unreliable_hz", holder->unreliable_hz}, {"notes", holder->notes}} : Json();
-  return formats::dump(json);
+  return io::dump(json);
 }
 
 void write_tips(const std::filesystem::path& folder, const std::vector<ToolResult>& results) {
-  formats::make_folder(folder);
+  io::make_folder(folder);
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (!results[i].failure.empty()) continue;
     std::string name = results[i].name;
     for (char& letter : name) {
       if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '-' && letter != '.') letter = '_';
     }
-    formats::write_frfs(folder / fmt::format("{}_{}.uff", i + 1, name), results[i].tip);
+    modal::write_frfs(folder / fmt::format("{}_{}.uff", i + 1, name), results[i].tip);
   }
 }
 

@@ -15,22 +15,22 @@ namespace {
 
 const std::string material = "youngs_modulus_gpa = 580\ndensity_kg_per_m3 = 14450\nloss_factor = 0.03\n";
 
-formats::AssemblyFile assembly(const test::Folder& folder) {
-  return formats::read_assembly(
+coupling::AssemblyFile assembly(const test::Folder& folder) {
+  return coupling::read_assembly(
       folder.file("assembly.toml",
                   "[frequency]\nrange_hz = [100, 5000]\nstep_hz = 5\n[[tool]]\nlength_mm = 60\ndiameter_mm = 12\n" +
                       material + "[holder]\n[[holder.segments]]\nlength_mm = 60\ndiameter_mm = 32\n" + material));
 }
 
-std::vector<formats::ListedTool> tools(const test::Folder& folder, const formats::AssemblyFile& file) {
-  return formats::read_tools(folder.file("tools.csv",
-                                         "tool,length_mm,diameter_mm,flutes,teeth\nshort,60,12,,4\nlong,30,12,3,\n"
-                                         "long,60,12\nthin,60,1,2\nplain,80,12\n"),
-                             file.assembly.tool.front());
+std::vector<coupling::ListedTool> tools(const test::Folder& folder, const coupling::AssemblyFile& file) {
+  return coupling::read_tools(folder.file("tools.csv",
+                                          "tool,length_mm,diameter_mm,flutes,teeth\nshort,60,12,,4\nlong,30,12,3,\n"
+                                          "long,60,12\nthin,60,1,2\nplain,80,12\n"),
+                              file.assembly.tool.front());
 }
 
-formats::LobesFile cut(const test::Folder& folder, const std::string& more = "") {
-  return formats::read_lobes(
+jobs::LobesFile cut(const test::Folder& folder, const std::string& more = "") {
+  return jobs::read_lobes(
       folder.file("lobes.toml",
                   "[tool]\nteeth = 2\ndiameter_mm = 12\n" + more +
                       "[cut]\ndirection = \"down\"\nradial_depth_mm = 1.2\nfeed_per_tooth_mm = 0.05\n[coefficients]\n"
@@ -40,7 +40,7 @@ formats::LobesFile cut(const test::Folder& folder, const std::string& more = "")
 
 TEST(Tools, EachRowIsWhatTheToolComesToAlone) {
   const test::Folder folder;
-  const formats::AssemblyFile file = assembly(folder);
+  const coupling::AssemblyFile file = assembly(folder);
   const auto listed = tools(folder, file);
   const std::vector<ToolResult> rows = try_tools(file, listed, cut(folder), 1, Progress::none());
   ASSERT_EQ(rows.size(), 4U);
@@ -55,7 +55,7 @@ TEST(Tools, EachRowIsWhatTheToolComesToAlone) {
   EXPECT_GT(rows[0].peak_hz, rows[3].peak_hz);
   ASSERT_TRUE(rows[0].recommendation && rows[0].recommendation->recommended) << rows[0].failure;
   // What it recommends is stable by the lobes of that tool's modes.
-  formats::LobesFile mine = cut(folder);
+  jobs::LobesFile mine = cut(folder);
   mine.problem.milling.tool.teeth = 4;
   mine.problem.dynamics = rows[0].modes;
   const decision::Operation& best = *rows[0].recommendation->recommended;
@@ -82,7 +82,7 @@ TEST(Tools, EachRowIsWhatTheToolComesToAlone) {
 
 TEST(Tools, AreTheSameAtAnyNumberOfThreads) {
   const test::Folder folder;
-  const formats::AssemblyFile file = assembly(folder);
+  const coupling::AssemblyFile file = assembly(folder);
   const auto listed = tools(folder, file);
   set_thread_count(1);
   const std::string one = tools_json(try_tools(file, listed, cut(folder), 1, Progress::none()));
@@ -94,7 +94,7 @@ TEST(Tools, AreTheSameAtAnyNumberOfThreads) {
 
 TEST(Tools, WithoutACutThereAreModesAlone) {
   const test::Folder folder;
-  const formats::AssemblyFile file = assembly(folder);
+  const coupling::AssemblyFile file = assembly(folder);
   const auto rows = try_tools(file, tools(folder, file), std::nullopt, 1, Progress::none());
   for (const ToolResult& row : rows) {
     EXPECT_TRUE(row.failure.empty()) << row.failure;
@@ -115,13 +115,13 @@ TEST(Tools, WithoutACutThereAreModesAlone) {
 
 TEST(Tools, RefuseACutOfOneCutter) {
   const test::Folder folder;
-  const formats::AssemblyFile file = assembly(folder);
+  const coupling::AssemblyFile file = assembly(folder);
   const auto listed = tools(folder, file);
-  const auto say = [&](const formats::LobesFile& lobes) {
+  const auto say = [&](const jobs::LobesFile& lobes) {
     return test::refusal([&] { static_cast<void>(try_tools(file, listed, lobes, 1, Progress::none())); });
   };
   EXPECT_NE(say(cut(folder, "pitch_deg = [170, 190]\n")).find("lobes.toml"), std::string::npos);
-  formats::LobesFile no_feed = cut(folder);
+  jobs::LobesFile no_feed = cut(folder);
   no_feed.problem.milling.feed_per_tooth_m = 0.0;
   EXPECT_NE(say(no_feed).find("cut.feed_per_tooth_mm is missing"), std::string::npos);
   EXPECT_NE(

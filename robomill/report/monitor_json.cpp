@@ -69,7 +69,7 @@ Json monitor_json(const MonitorRun& run) {
                 {"chatter_frequency_std_hz", number(event.chatter_frequency_std_hz)},
                 {"suggested_spindle_speed_rpm", number(event.suggested_spindle_speed_rad_per_s, units::rpm)},
                 {"note", text(event.note)}};
-    formats::set_mode(row, event.mode);
+    modal::set_mode(row, event.mode);
     events.push_back(std::move(row));
   }
   return {{"facts", facts_json(run.facts)},

@@ -87,7 +87,7 @@ Json recommendation_json(const Recommendation& r) {
                {"peak_deflection_um", number(r.peak_deflection_m, units::um)},
                {"limited_by", text(r.limited_by)},
                {"chatter_frequency_hz", number(r.chatter_frequency_hz)}};
-  formats::set_mode(json, r.mode);
+  modal::set_mode(json, r.mode);
   return json;
 }
 
@@ -213,7 +213,7 @@ Json boundary_json(const std::vector<BoundaryPoint>& boundary) {
     frequency.push_back(number(point.chatter_frequency_hz));
     kind.push_back(name_of(point.kind));
     Json named;
-    formats::set_mode(named, point.mode);
+    modal::set_mode(named, point.mode);
     mode.push_back(named["mode"]);
     mode_of.push_back(named["mode_of"]);
   }

@@ -2,7 +2,7 @@
 // A lobes file that tests of whole jobs share.
 #include <string>
 
-namespace robomill::jobs::test_support {
+namespace robomill::test_support {
 
 /// A cut with three teeth, without dynamics, which the job gives.
 /// @param table  the lines of [lobes]
@@ -21,4 +21,4 @@ radial_n_per_mm2 = 287
 )" + table;
 }
 
-}  // namespace robomill::jobs::test_support
+}  // namespace robomill::test_support

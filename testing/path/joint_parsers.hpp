@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace robomill::formats::test {
+namespace robomill::path::test {
 
 /// A point of a program and when it is reached.
 struct Point {
@@ -205,4 +205,4 @@ inline Parsed parse(const std::string& ending, const std::string& text, double c
   return parse_servoj(text, cycle_s);
 }
 
-}  // namespace robomill::formats::test
+}  // namespace robomill::path::test

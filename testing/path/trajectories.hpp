@@ -7,18 +7,18 @@
 #include "robomill/path/files/trajectory.hpp"
 #include "robomill/path/sample.hpp"
 
-namespace robomill::formats::test {
+namespace robomill::path::test {
 
 inline constexpr double period_s = 0.001;
 
 /// @param pause  samples that stand still from the middle on
-inline std::vector<path::Sample> sines(std::size_t count, std::size_t pause = 0) {
-  std::vector<path::Sample> samples(count);
+inline std::vector<Sample> sines(std::size_t count, std::size_t pause = 0) {
+  std::vector<Sample> samples(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t middle = count / 2;
     const std::size_t moved = i <= middle ? i : (i <= middle + pause ? middle : i - pause);
     const double t = static_cast<double>(moved) * period_s;
-    path::Sample& sample = samples[i];
+    Sample& sample = samples[i];
     sample.time_s = static_cast<double>(i) * period_s;
     for (int joint = 0; joint < 6; ++joint) {
       sample.joints[joint] =
@@ -44,4 +44,4 @@ inline TrajectoryInfo arm_info() {
   return info;
 }
 
-}  // namespace robomill::formats::test
+}  // namespace robomill::path::test

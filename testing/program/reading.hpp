@@ -7,12 +7,12 @@
 
 #include "robomill/program/files/program_reader.hpp"
 
-namespace robomill::formats::test_support {
+namespace robomill::test_support {
 
 /// A program in memory, read without a file.
 template <class Reader>
-program::Program read_text(std::string_view text, const ProgramReading& reading = {}) {
-  ProgramRemarks remarks(std::numeric_limits<std::size_t>::max());
+program::Program read_text(std::string_view text, const program::ProgramReading& reading = {}) {
+  program::ProgramRemarks remarks(std::numeric_limits<std::size_t>::max());
   Reader reader("part", reading, remarks);
   program::Program out;
   program::Block block;
@@ -35,4 +35,4 @@ program::Program read_text(std::string_view text, const ProgramReading& reading 
   return out;
 }
 
-}  // namespace robomill::formats::test_support
+}  // namespace robomill::test_support

@@ -13,21 +13,20 @@
 #include "robomill/io/toml_file.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
-namespace robomill::formats {
+namespace robomill::coupling {
 namespace {
 
 constexpr double most_lines = 2e6;
 
 /// @param key  of the table: "tool[0]."; @param member  the same as stages count: "tool[1]."
-coupling::Segment read_segment(TomlFile& file, const std::string& key, const std::string& member) {
-  coupling::Segment segment;
+Segment read_segment(io::TomlFile& file, const std::string& key, const std::string& member) {
+  Segment segment;
   for (const SegmentField& field : segment_fields) {
     file.number(key + field.key, member + field.member, field.factor, segment.*field.value);
   }
   file.integer(key + "flutes", member + "flutes", segment.flutes);
-  file.choice<coupling::Beam>(
-      key + "beam", {{"timoshenko", coupling::Beam::timoshenko}, {"euler-bernoulli", coupling::Beam::euler_bernoulli}},
-      segment.beam);
+  file.choice<Beam>(key + "beam", {{"timoshenko", Beam::timoshenko}, {"euler-bernoulli", Beam::euler_bernoulli}},
+                    segment.beam);
   try {
     segment.validate();
   } catch (const InvalidInput& error) {
@@ -36,8 +35,8 @@ coupling::Segment read_segment(TomlFile& file, const std::string& key, const std
   return segment;
 }
 
-std::vector<coupling::Segment> read_segments(TomlFile& file, const std::string& table) {
-  std::vector<coupling::Segment> out;
+std::vector<Segment> read_segments(io::TomlFile& file, const std::string& table) {
+  std::vector<Segment> out;
   const std::size_t count = file.tables(table);
   out.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -46,9 +45,9 @@ std::vector<coupling::Segment> read_segments(TomlFile& file, const std::string& 
   return out;
 }
 
-void read_joint(TomlFile& file, const AssemblyReading& reading, std::optional<coupling::Joint>& out) {
+void read_joint(io::TomlFile& file, const AssemblyReading& reading, std::optional<Joint>& out) {
   if (!file.has("joint")) return;
-  coupling::Joint joint;
+  Joint joint;
   const auto number = [&](const std::string& name, double factor, const std::string& member, double& value) {
     file.number("joint." + name, "joint." + member, factor, value);
   };
@@ -76,8 +75,8 @@ void read_joint(TomlFile& file, const AssemblyReading& reading, std::optional<co
 }
 
 /// How a joint is searched for; the keys of the ranges are those of [joint].
-void read_search(TomlFile& file, coupling::JointFitOptions& out) {
-  constexpr std::array<const char*, coupling::joint_unknowns> unknowns = {
+void read_search(io::TomlFile& file, JointFitOptions& out) {
+  constexpr std::array<const char*, joint_unknowns> unknowns = {
       "translational_stiffness_n_per_m", "translational_damping_n_s_per_m", "rotational_stiffness_n_m_per_rad",
       "rotational_damping_n_m_s_per_rad"};
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
@@ -97,13 +96,12 @@ void read_search(TomlFile& file, coupling::JointFitOptions& out) {
   file.integer("search.generations", "generations", out.generations);
   file.number("search.crossover", "crossover", 1.0, out.crossover);
   file.number("search.mutation_rate", "mutation_rate", 1.0, out.mutation_rate);
-  file.choice<coupling::Mutation>(
-      "search.mutation", {{"uniform", coupling::Mutation::uniform}, {"adaptive", coupling::Mutation::adaptive}},
-      out.mutation);
+  file.choice<Mutation>("search.mutation", {{"uniform", Mutation::uniform}, {"adaptive", Mutation::adaptive}},
+                        out.mutation);
   file.locate([&] { out.validate(); });
 }
 
-void read_range(TomlFile& file, AssemblyFile& out) {
+void read_range(io::TomlFile& file, AssemblyFile& out) {
   if (!file.has("frequency")) return;
   std::vector<double> range;
   file.require("frequency.range_hz", "[from, to]");
@@ -116,7 +114,7 @@ void read_range(TomlFile& file, AssemblyFile& out) {
 }
 
 /// Evenly from low to high, without 0 Hz; empty where no step is given.
-Eigen::VectorXd read_step(TomlFile& file, const AssemblyFile& out) {
+Eigen::VectorXd read_step(io::TomlFile& file, const AssemblyFile& out) {
   double step_hz = 0.0;
   if (!file.number("frequency.step_hz", "step_hz", 1.0, step_hz)) return {};
   if (!(step_hz > 0.0)) throw file.refuse("frequency.step_hz", "must be > 0");
@@ -170,7 +168,7 @@ void require_rotations(const modal::FrfSet& set, const std::filesystem::path& pa
 
 /// Errors about the receptances name their file, the others the line of assembly.toml.
 template <class F>
-auto about(const TomlFile& file, const std::filesystem::path& receptances, F&& f) {
+auto about(const io::TomlFile& file, const std::filesystem::path& receptances, F&& f) {
   try {
     return f();
   } catch (const InvalidInput& error) {
@@ -183,20 +181,20 @@ auto about(const TomlFile& file, const std::filesystem::path& receptances, F&& f
 }
 
 /// A file whose FRFs all stand at one point was taken as one of the tip; on an artefact that point has its position.
-void number_one_point(FrfFile& measured) {
+void number_one_point(modal::FrfFile& measured) {
   for (modal::Frf& frf : measured.set.frfs) {
     for (modal::Dof* dof : {&frf.name.response, &frf.name.excitation}) dof->point = std::max(dof->point, 1);
   }
-  std::erase_if(measured.notes, [](const std::string& note) { return note.ends_with(taken_as_tip); });
+  std::erase_if(measured.notes, [](const std::string& note) { return note.ends_with(modal::taken_as_tip); });
 }
 
-void read_measured(TomlFile& file, AssemblyFile& out) {
+void read_measured(io::TomlFile& file, AssemblyFile& out) {
   std::vector<double> position_m;
-  coupling::HolderOptions options;
+  HolderOptions options;
   const bool points = file.numbers("holder.points_mm", "position_m", units::mm, position_m);
   file.number("holder.regularisation", "regularisation", 1.0, options.regularisation);
   file.number("holder.max_amplification", "max_amplification", 1.0, options.max_amplification);
-  const std::vector<coupling::Segment> artefact = read_segments(file, "holder.artefact");
+  const std::vector<Segment> artefact = read_segments(file, "holder.artefact");
   if (!points) {
     for (const char* key : {"holder.artefact", "holder.regularisation", "holder.max_amplification"}) {
       if (file.has(key)) file.require("holder.points_mm", fmt::format("{} needs to know where was measured", key));
@@ -205,27 +203,27 @@ void read_measured(TomlFile& file, AssemblyFile& out) {
   if (file.has("holder.artefact") && artefact.empty()) {
     throw file.refuse("holder.artefact", "must have at least one segment");
   }
-  FrfFile measured = read_frfs({out.receptances});
+  modal::FrfFile measured = modal::read_frfs({out.receptances});
   if (measured.added_decay_per_s > 0.0) {
     throw InvalidInput(out.receptances.string(), "still holds the damping of an exponential window",
                        "Estimate the FRFs with remove_added_damping");
   }
   if (points && position_m.size() == 1 && !artefact.empty()) number_one_point(measured);
   out.notes.insert(out.notes.end(), measured.notes.begin(), measured.notes.end());
-  coupling::Holder& holder = out.assembly.holder;
+  Holder& holder = out.assembly.holder;
   if (!points) {
     require_rotations(measured.set, out.receptances);
     holder.receptances = std::move(measured.set);
     return;
   }
   out.holder = about(file, out.receptances, [&] {
-    return artefact.empty() ? coupling::complete_rotations(measured.set, position_m, options)
-                            : coupling::remove_artefact(measured.set, position_m, artefact, options);
+    return artefact.empty() ? complete_rotations(measured.set, position_m, options)
+                            : remove_artefact(measured.set, position_m, artefact, options);
   });
   holder.receptances = out.holder->receptances;
 }
 
-void read_holder(TomlFile& file, AssemblyFile& out) {
+void read_holder(io::TomlFile& file, AssemblyFile& out) {
   if (!file.has("holder")) {
     out.notes.emplace_back("No [holder]: the tool stands on a rigid wall");
     return;
@@ -249,7 +247,7 @@ void read_holder(TomlFile& file, AssemblyFile& out) {
 }
 
 /// Where the file gives no lines of its own, the measured holder's within the range.
-void choose_lines(const TomlFile& file, const Eigen::VectorXd& own, AssemblyFile& out) {
+void choose_lines(const io::TomlFile& file, const Eigen::VectorXd& own, AssemblyFile& out) {
   const modal::FrfSet& measured = out.assembly.holder.receptances;
   if (own.size() > 0) {
     out.frequency_hz = own;
@@ -271,7 +269,7 @@ void choose_lines(const TomlFile& file, const Eigen::VectorXd& own, AssemblyFile
 }  // namespace
 
 AssemblyFile read_assembly(const std::filesystem::path& path, const AssemblyReading& reading) {
-  TomlFile file(path);
+  io::TomlFile file(path);
   AssemblyFile out{.path = path};
   read_range(file, out);
   const Eigen::VectorXd lines = read_step(file, out);
@@ -306,4 +304,4 @@ modal::FrfSet lines_between(const modal::FrfSet& set, double low_hz, double high
   return out;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::coupling

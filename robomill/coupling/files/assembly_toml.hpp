@@ -11,21 +11,21 @@
 #include "robomill/coupling/holder.hpp"
 #include "robomill/coupling/joint_fit.hpp"
 
-namespace robomill::formats {
+namespace robomill::coupling {
 
 /// assembly.toml, with the measured holder that it names.
 struct AssemblyFile {
   std::filesystem::path path = {};
-  coupling::Assembly assembly = {};
+  Assembly assembly = {};
   /// Lines to give: those of [frequency]; with a measured holder those of its axis within frequency.range_hz. Empty
   /// where the joint is sought, whose FRF brings its own.
   Eigen::VectorXd frequency_hz = {};
   double low_hz = 0.0;  ///< frequency.range_hz; all where absent
   double high_hz = std::numeric_limits<double>::infinity();
-  coupling::JointFitOptions search = {};              ///< bounds and sizes of [search]; the defaults where absent
-  std::filesystem::path receptances = {};             ///< holder.receptances, resolved; empty where absent
-  std::optional<coupling::HolderResult> holder = {};  ///< where rotations were completed or an artefact taken off
-  std::vector<std::string> notes = {};                ///< sentences for the user
+  JointFitOptions search = {};              ///< bounds and sizes of [search]; the defaults where absent
+  std::filesystem::path receptances = {};   ///< holder.receptances, resolved; empty where absent
+  std::optional<HolderResult> holder = {};  ///< where rotations were completed or an artefact taken off
+  std::vector<std::string> notes = {};      ///< sentences for the user
 };
 
 struct AssemblyReading {
@@ -45,4 +45,4 @@ struct AssemblyReading {
 /// @throws InvalidInput if there is none
 [[nodiscard]] ROBOMILL_API modal::FrfSet lines_between(const modal::FrfSet& set, double low_hz, double high_hz);
 
-}  // namespace robomill::formats
+}  // namespace robomill::coupling

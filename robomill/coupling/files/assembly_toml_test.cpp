@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::coupling {
 namespace {
 
 const std::string good = R"([frequency]
@@ -70,7 +70,7 @@ modal::Frf frf(const char* name, const Eigen::VectorXcd& values) {
   return {.name = modal::parse_frf_name(name), .receptance = values};
 }
 
-coupling::Segment steel(double length_m, double diameter_m) {
+Segment steel(double length_m, double diameter_m) {
   return {.length_m = length_m,
           .diameter_m = diameter_m,
           .youngs_modulus_pa = 200e9,
@@ -80,15 +80,15 @@ coupling::Segment steel(double length_m, double diameter_m) {
 
 /// Receptances at a holder's mouth, rotations included, from 50 to 3,000 Hz.
 modal::FrfSet holder_frfs() {
-  const coupling::Assembly bare{.tool = {steel(0.05, 0.03)}, .joint = {}, .holder = {}};
-  return coupling::tip_frfs(bare, Eigen::VectorXd::LinSpaced(60, 50.0, 3000.0), {.rotations = true}).frfs;
+  const Assembly bare{.tool = {steel(0.05, 0.03)}, .joint = {}, .holder = {}};
+  return tip_frfs(bare, Eigen::VectorXd::LinSpaced(60, 50.0, 3000.0), {.rotations = true}).frfs;
 }
 
 TEST(AssemblyToml, ReadsEverythingInSi) {
   const test::Folder folder;
   const AssemblyFile file = read_assembly(folder.file("assembly.toml", good));
   ASSERT_EQ(file.assembly.tool.size(), 2U);
-  const coupling::Segment& tip = file.assembly.tool[0];
+  const Segment& tip = file.assembly.tool[0];
   EXPECT_DOUBLE_EQ(tip.length_m, 0.02);
   EXPECT_DOUBLE_EQ(tip.diameter_m, 0.012);
   EXPECT_EQ(tip.flutes, 3);
@@ -97,15 +97,15 @@ TEST(AssemblyToml, ReadsEverythingInSi) {
   EXPECT_DOUBLE_EQ(tip.density_kg_per_m3, 14450.0);
   EXPECT_DOUBLE_EQ(tip.poissons_ratio, 0.22);
   EXPECT_DOUBLE_EQ(tip.loss_factor, 0.002);
-  EXPECT_EQ(tip.beam, coupling::Beam::timoshenko);
+  EXPECT_EQ(tip.beam, Beam::timoshenko);
   EXPECT_EQ(tip.mass_kg, 0.0);
-  const coupling::Segment& shank = file.assembly.tool[1];
+  const Segment& shank = file.assembly.tool[1];
   EXPECT_DOUBLE_EQ(shank.inner_diameter_m, 0.002);
   EXPECT_DOUBLE_EQ(shank.mass_kg, 0.08);
   EXPECT_EQ(shank.flutes, 0);
-  EXPECT_EQ(shank.beam, coupling::Beam::euler_bernoulli);
+  EXPECT_EQ(shank.beam, Beam::euler_bernoulli);
   ASSERT_TRUE(file.assembly.joint);
-  const coupling::Joint& joint = *file.assembly.joint;
+  const Joint& joint = *file.assembly.joint;
   EXPECT_DOUBLE_EQ(joint.translational_stiffness_n_per_m, 9.7e7);
   EXPECT_DOUBLE_EQ(joint.translational_damping_n_s_per_m, 18.6);
   EXPECT_DOUBLE_EQ(joint.rotational_stiffness_n_m_per_rad, 9.6e5);
@@ -129,7 +129,7 @@ TEST(AssemblyToml, ReadsHowTheJointIsSearchedFor) {
   const auto search = [&](const std::string& text) {
     return read_assembly(folder.file("assembly.toml", good + "[search]\n" + text)).search;
   };
-  const coupling::JointFitOptions options = search(
+  const JointFitOptions options = search(
       "translational_stiffness_n_per_m = [1e6, 1e9]\nrotational_damping_n_m_s_per_rad = [0, 50]\n"
       "population = 40\ngenerations = 80\ncrossover = 0.7\nmutation_rate = 0.02\nmutation = \"adaptive\"\n");
   EXPECT_EQ(options.lower, (std::array<double, 4>{1e6, 0.0, 0.0, 0.0}));
@@ -138,9 +138,9 @@ TEST(AssemblyToml, ReadsHowTheJointIsSearchedFor) {
   EXPECT_EQ(options.generations, 80);
   EXPECT_DOUBLE_EQ(options.crossover, 0.7);
   EXPECT_DOUBLE_EQ(options.mutation_rate, 0.02);
-  EXPECT_EQ(options.mutation, coupling::Mutation::adaptive);
+  EXPECT_EQ(options.mutation, Mutation::adaptive);
   // Absent: as published.
-  const coupling::JointFitOptions none = search("");
+  const JointFitOptions none = search("");
   EXPECT_EQ(none.upper, (std::array<double, 4>{}));
   EXPECT_EQ(none.population, 20);
   EXPECT_EQ(none.generations, 50);
@@ -268,15 +268,15 @@ TEST(AssemblyToml, ASoughtJointNeedsNoStiffness) {
 TEST(AssemblyToml, AMeasuredHolderStandsForItsSegments) {
   const test::Folder folder;
   const modal::FrfSet holder = holder_frfs();
-  coupling::Assembly whole{.tool = {steel(0.06, 0.012)}, .joint = {}, .holder = {.segments = {steel(0.05, 0.03)}}};
+  Assembly whole{.tool = {steel(0.06, 0.012)}, .joint = {}, .holder = {.segments = {steel(0.05, 0.03)}}};
   for (const char* name : {"holder.uff", "holder.json", "holder.mat", "holder.csv"}) {
-    write_frfs(folder.at(name), holder);
+    modal::write_frfs(folder.at(name), holder);
     const AssemblyFile file =
         read_assembly(folder.file("assembly.toml", bar + "[holder]\nreceptances = \"" + name + "\"\n"));
     EXPECT_EQ(file.receptances, folder.at(name));
     EXPECT_FALSE(file.holder);
-    const modal::FrfSet measured = coupling::tip_frfs(file.assembly, file.frequency_hz).frfs;
-    const modal::FrfSet built = coupling::tip_frfs(whole, file.frequency_hz).frfs;
+    const modal::FrfSet measured = tip_frfs(file.assembly, file.frequency_hz).frfs;
+    const modal::FrfSet built = tip_frfs(whole, file.frequency_hz).frfs;
     for (const char* frf_name : {"xx", "yy"}) {
       const Eigen::VectorXcd& expected = built.find(modal::parse_frf_name(frf_name))->receptance;
       const Eigen::VectorXcd& found = measured.find(modal::parse_frf_name(frf_name))->receptance;
@@ -288,7 +288,7 @@ TEST(AssemblyToml, AMeasuredHolderStandsForItsSegments) {
 TEST(AssemblyToml, AMeasuredHolderGivesTheLines) {
   const test::Folder folder;
   const modal::FrfSet holder = holder_frfs();
-  write_frfs(folder.at("holder.json"), holder);
+  modal::write_frfs(folder.at("holder.json"), holder);
   const std::string measured = "[holder]\nreceptances = \"holder.json\"\n";
   const auto lines = [&](const std::string& frequency) {
     return read_assembly(folder.file("assembly.toml", frequency + bar + measured)).frequency_hz;
@@ -306,7 +306,7 @@ TEST(AssemblyToml, SaysWhichRotationsAreLacking) {
   const auto say = [&](const std::vector<const char*>& names, const std::string& more = "") {
     modal::FrfSet some{.frequency_hz = holder.frequency_hz, .frfs = {}};
     for (const char* name : names) some.frfs.push_back(frf(name, holder.frfs.front().receptance));
-    write_frfs(folder.at("holder.uff"), some);
+    modal::write_frfs(folder.at("holder.uff"), some);
     return test::refusal([&] {
       static_cast<void>(
           read_assembly(folder.file("assembly.toml", bar + "[holder]\nreceptances = \"holder.uff\"\n" + more)));
@@ -337,7 +337,7 @@ TEST(AssemblyToml, CompletesRotationsFromPoints) {
           frf(name.c_str(), plane("xx") + z[l] * plane("x:my") + z[k] * plane("ry:x") + z[k] * z[l] * plane("ry:my")));
     }
   }
-  write_frfs(folder.at("points.mat"), points);
+  modal::write_frfs(folder.at("points.mat"), points);
   const AssemblyFile file = read_assembly(
       folder.file("assembly.toml",
                   bar + "[holder]\nreceptances = \"points.mat\"\npoints_mm = [0, 15, 30]\nmax_amplification = 1e9\n"));
@@ -361,7 +361,7 @@ TEST(AssemblyToml, CompletesRotationsFromPoints) {
       say("points_mm = [0, 15]\nmax_amplification = -1\n").find("assembly.toml:10: holder.max_amplification = -1"),
       std::string::npos);
   points.frfs.erase(points.frfs.begin());
-  write_frfs(folder.at("points.mat"), points);
+  modal::write_frfs(folder.at("points.mat"), points);
   const std::string missing = say("points_mm = [0, 15, 30]\n");
   EXPECT_NE(missing.find("points.mat"), std::string::npos) << missing;
   EXPECT_NE(missing.find("1x:1x"), std::string::npos) << missing;
@@ -372,10 +372,9 @@ TEST(AssemblyToml, TakesAnArtefactOff) {
   const test::Folder folder;
   const modal::FrfSet holder = holder_frfs();
   const Eigen::VectorXd& f = holder.frequency_hz;
-  const modal::FrfSet end = coupling::free_frfs({steel(0.02, 0.012)}, f);
+  const modal::FrfSet end = free_frfs({steel(0.02, 0.012)}, f);
   const modal::FrfSet rest =
-      coupling::tip_frfs({.tool = {steel(0.04, 0.012)}, .joint = {}, .holder = {.receptances = holder}}, f,
-                         {.rotations = true})
+      tip_frfs({.tool = {steel(0.04, 0.012)}, .joint = {}, .holder = {.receptances = holder}}, f, {.rotations = true})
           .frfs;
   const auto matrix = [](const modal::FrfSet& set, const std::string& to, const std::string& from, Eigen::Index line) {
     const auto at = [&](const std::string& name) { return set.find(modal::parse_frf_name(name))->receptance(line); };
@@ -394,7 +393,7 @@ TEST(AssemblyToml, TakesAnArtefactOff) {
     measured.frfs[1].receptance(i) = (base * sum * matrix(end, "2", "1", i))(0, 0);
     measured.frfs[2].receptance(i) = (base * sum * r22)(0, 0);
   }
-  write_frfs(folder.at("rod.mat"), measured);
+  modal::write_frfs(folder.at("rod.mat"), measured);
   const std::string material =
       "diameter_mm = 12\nyoungs_modulus_gpa = 200\ndensity_kg_per_m3 = 7800\nloss_factor = 0.02\n";
   const AssemblyFile file = read_assembly(
@@ -415,10 +414,9 @@ TEST(AssemblyToml, TakesAnArtefactOff) {
 TEST(AssemblyToml, TakesAnArtefactOffFromOnePoint) {
   const test::Folder folder;
   const modal::FrfSet holder = holder_frfs();
-  const modal::FrfSet tip =
-      coupling::tip_frfs({.tool = {steel(0.06, 0.012)}, .joint = {}, .holder = {.receptances = holder}},
-                         holder.frequency_hz, {.rotations = true})
-          .frfs;
+  const modal::FrfSet tip = tip_frfs({.tool = {steel(0.06, 0.012)}, .joint = {}, .holder = {.receptances = holder}},
+                                     holder.frequency_hz, {.rotations = true})
+                                .frfs;
   for (const std::string point : {"1", ""}) {
     modal::FrfSet measured{.frequency_hz = holder.frequency_hz, .frfs = {}};
     for (const auto& [to, from] : {std::pair("x", "x"), std::pair("ry", "x"), std::pair("ry", "my")}) {
@@ -426,7 +424,7 @@ TEST(AssemblyToml, TakesAnArtefactOffFromOnePoint) {
           frf((point + to + ":" + point + from).c_str(),
               tip.find(modal::parse_frf_name(std::string(to) + ":" + std::string(from)))->receptance));
     }
-    write_frfs(folder.at("rod.mat"), measured);
+    modal::write_frfs(folder.at("rod.mat"), measured);
     const AssemblyFile file = read_assembly(folder.file(
         "assembly.toml", bar + "[holder]\nreceptances = \"rod.mat\"\npoints_mm = [0]\nregularisation = 0\n"
                                "[[holder.artefact]]\nlength_mm = 60\ndiameter_mm = 12\nyoungs_modulus_gpa = 200\n"
@@ -470,4 +468,4 @@ TEST(AssemblyToml, SurvivesMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::coupling

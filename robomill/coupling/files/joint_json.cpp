@@ -4,45 +4,46 @@
 
 #include "robomill/io/json.hpp"
 
-namespace robomill::formats {
+namespace robomill::coupling {
 namespace {
 
 /// The unknowns' keys, as in assembly.toml; SI in the file too.
 struct Row {
   const char* key;
-  double coupling::Joint::*value;
+  double Joint::*value;
   bool is_stiffness;
 };
-constexpr std::array<Row, coupling::joint_unknowns> rows = {{
-    {"translational_stiffness_n_per_m", &coupling::Joint::translational_stiffness_n_per_m, true},
-    {"translational_damping_n_s_per_m", &coupling::Joint::translational_damping_n_s_per_m, false},
-    {"rotational_stiffness_n_m_per_rad", &coupling::Joint::rotational_stiffness_n_m_per_rad, true},
-    {"rotational_damping_n_m_s_per_rad", &coupling::Joint::rotational_damping_n_m_s_per_rad, false},
+constexpr std::array<Row, joint_unknowns> rows = {{
+    {"translational_stiffness_n_per_m", &Joint::translational_stiffness_n_per_m, true},
+    {"translational_damping_n_s_per_m", &Joint::translational_damping_n_s_per_m, false},
+    {"rotational_stiffness_n_m_per_rad", &Joint::rotational_stiffness_n_m_per_rad, true},
+    {"rotational_damping_n_m_s_per_rad", &Joint::rotational_damping_n_m_s_per_rad, false},
 }};
 
 }  // namespace
 
-std::string joint_json(const coupling::JointFitResult& result) {
-  Json joint = Json::object(), deviation = Json::object(), identifiable = Json::object(), visible = Json::object();
-  Json notes = Json::array();
+std::string joint_json(const JointFitResult& result) {
+  io::Json joint = io::Json::object(), deviation = io::Json::object(), identifiable = io::Json::object(),
+           visible = io::Json::object();
+  io::Json notes = io::Json::array();
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const coupling::JointKnowledge& knowledge = result.knowledge[i];
-    joint[rows[i].key] = number(result.joint.*rows[i].value);
-    deviation[rows[i].key] = number(knowledge.deviation);
+    const JointKnowledge& knowledge = result.knowledge[i];
+    joint[rows[i].key] = io::number(result.joint.*rows[i].value);
+    deviation[rows[i].key] = io::number(knowledge.deviation);
     identifiable[rows[i].key] = knowledge.identifiable;
-    if (rows[i].is_stiffness) visible[rows[i].key] = number(knowledge.visible_up_to);
+    if (rows[i].is_stiffness) visible[rows[i].key] = io::number(knowledge.visible_up_to);
     if (!knowledge.note.empty()) notes.push_back(knowledge.note);
   }
   for (const std::string& note : result.notes) notes.push_back(note);
-  Json best = Json::array();
-  for (const double value : result.best) best.push_back(number(value));
-  Json suspect = Json::array();
-  for (const double line_hz : result.suspect_hz) suspect.push_back(number(line_hz));
-  const bool converged = result.status == coupling::JointFitResult::Status::converged;
-  Json json;
+  io::Json best = io::Json::array();
+  for (const double value : result.best) best.push_back(io::number(value));
+  io::Json suspect = io::Json::array();
+  for (const double line_hz : result.suspect_hz) suspect.push_back(io::number(line_hz));
+  const bool converged = result.status == JointFitResult::Status::converged;
+  io::Json json;
   json["joint"] = joint;
-  json["objective"] = number(result.objective_m_per_n);
-  json["relative_error"] = number(result.relative_error);
+  json["objective"] = io::number(result.objective_m_per_n);
+  json["relative_error"] = io::number(result.relative_error);
   json["std"] = deviation;
   json["identifiable"] = identifiable;
   json["visible_up_to"] = visible;
@@ -50,7 +51,7 @@ std::string joint_json(const coupling::JointFitResult& result) {
       {"status", converged ? "converged" : "not converged"}, {"iterations", result.iterations}, {"best", best}};
   json["suspect_hz"] = suspect;
   json["notes"] = notes;
-  return dump(json);
+  return io::dump(json);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::coupling

@@ -4,10 +4,10 @@
 #include "robomill/base/export.hpp"
 #include "robomill/coupling/joint_fit.hpp"
 
-namespace robomill::formats {
+namespace robomill::coupling {
 
 /// joint.json as text: the joint in the keys of assembly.toml, how well it fits and what the FRF tells of it. A
 /// deviation that is infinite is null.
-[[nodiscard]] ROBOMILL_API std::string joint_json(const coupling::JointFitResult& result);
+[[nodiscard]] ROBOMILL_API std::string joint_json(const JointFitResult& result);
 
-}  // namespace robomill::formats
+}  // namespace robomill::coupling

@@ -9,12 +9,12 @@
 #include "robomill/coupling/files/assembly_toml.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::coupling {
 namespace {
 
-coupling::JointFitResult found() {
-  coupling::JointFitResult out;
-  out.status = coupling::JointFitResult::Status::converged;
+JointFitResult found() {
+  JointFitResult out;
+  out.status = JointFitResult::Status::converged;
   out.joint.translational_stiffness_n_per_m = 2e7;
   out.joint.translational_damping_n_s_per_m = 40.0;
   out.joint.rotational_stiffness_n_m_per_rad = 5e4;
@@ -68,4 +68,4 @@ TEST(JointJson, ItsKeysAreThoseOfTheAssembly) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::coupling

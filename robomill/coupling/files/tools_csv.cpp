@@ -15,7 +15,7 @@
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::coupling {
 namespace {
 
 constexpr std::array<std::string_view, 4> other_columns = {"tool", "flutes", "beam", "teeth"};
@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 4> other_columns = {"tool", "flutes", "be
 /// One row of the table while it is read.
 class Row {
  public:
-  Row(const std::string& file, const TextTable& table, const TextTable::Row& row)
+  Row(const std::string& file, const io::TextTable& table, const io::TextTable::Row& row)
       : where_(fmt::format("{}:{}", file, row.line)), table_(table), row_(row) {}
 
   [[nodiscard]] std::string_view text(std::string_view key) const {
@@ -35,7 +35,7 @@ class Row {
   bool number(std::string_view key, double factor, double& out) const {
     const std::string_view field = text(key);
     if (field.empty()) return false;
-    const std::optional<double> number = parse_cell(field);
+    const std::optional<double> number = io::parse_cell(field);
     if (!number || !std::isfinite(*number)) throw refuse(key, "must be a finite number");
     out = *number * factor;
     return true;
@@ -53,9 +53,9 @@ class Row {
     InvalidInput::Parts parts{
         .where = where_, .field = std::string(key), .rule = std::move(rule), .hint = std::move(hint)};
     const std::string_view field = text(key);
-    parts.number = field.empty() ? std::nullopt : parse_cell(field);
+    parts.number = field.empty() ? std::nullopt : io::parse_cell(field);
     if (parts.number) {
-      parts.unit = unit_of_key(key);
+      parts.unit = io::unit_of_key(key);
     } else if (!field.empty()) {
       parts.value = fmt::format("\"{}\"", field);
     }
@@ -73,8 +73,8 @@ class Row {
         parts.number.reset();
         parts.unit.clear();
       } else if (parts.number) {
-        parts.number = round_15(*parts.number / column.factor);
-        parts.unit = unit_of_key(column.key);
+        parts.number = io::round_15(*parts.number / column.factor);
+        parts.unit = io::unit_of_key(column.key);
       }
     }
     return InvalidInput(std::move(parts));
@@ -82,16 +82,16 @@ class Row {
 
  private:
   std::string where_;
-  const TextTable& table_;
-  const TextTable::Row& row_;
+  const io::TextTable& table_;
+  const io::TextTable::Row& row_;
 };
 
-void check_columns(const TextTable& table, const std::string& file) {
+void check_columns(const io::TextTable& table, const std::string& file) {
   std::vector<std::string> known(other_columns.begin(), other_columns.end());
   for (const SegmentField& column : segment_fields) known.emplace_back(column.key);
   for (const std::string& name : table.names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string near = nearest_word(name, known);
+    const std::string near = io::nearest_word(name, known);
     throw InvalidInput(file, fmt::format("has a column {} that is not known here", name),
                        near.empty() ? "" : fmt::format("Did you mean {}?", near));
   }
@@ -102,17 +102,17 @@ void check_columns(const TextTable& table, const std::string& file) {
   }
 }
 
-coupling::Segment read_segment(const Row& row, const coupling::Segment& like) {
-  coupling::Segment segment = like;
+Segment read_segment(const Row& row, const Segment& like) {
+  Segment segment = like;
   segment.length_m = segment.diameter_m = segment.inner_diameter_m = segment.mass_kg = 0.0;
   segment.flutes = 0;
   for (const SegmentField& column : segment_fields) row.number(column.key, column.factor, segment.*column.value);
   row.integer("flutes", segment.flutes);
   const std::string_view beam = row.text("beam");
   if (beam == "timoshenko") {
-    segment.beam = coupling::Beam::timoshenko;
+    segment.beam = Beam::timoshenko;
   } else if (beam == "euler-bernoulli") {
-    segment.beam = coupling::Beam::euler_bernoulli;
+    segment.beam = Beam::euler_bernoulli;
   } else if (!beam.empty()) {
     throw row.refuse("beam", "must be one of \"timoshenko\", \"euler-bernoulli\"");
   }
@@ -126,13 +126,13 @@ coupling::Segment read_segment(const Row& row, const coupling::Segment& like) {
 
 }  // namespace
 
-std::vector<ListedTool> read_tools(const std::filesystem::path& path, const coupling::Segment& like) {
+std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segment& like) {
   const std::string file = path.string();
-  const TextTable table = parse_text_table(read_file(path), file);
+  const io::TextTable table = io::parse_text_table(io::read_file(path), file);
   check_columns(table, file);
   std::vector<ListedTool> out;
   std::set<std::string, std::less<>> seen;
-  for (const TextTable::Row& fields : table.rows) {
+  for (const io::TextTable::Row& fields : table.rows) {
     const Row row(file, table, fields);
     const std::string name(row.text("tool"));
     if (name.empty()) throw row.refuse("tool", "is empty", "Every row names its tool");
@@ -157,4 +157,4 @@ std::vector<ListedTool> read_tools(const std::filesystem::path& path, const coup
   return out;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::coupling

@@ -7,14 +7,14 @@
 #include "robomill/base/export.hpp"
 #include "robomill/coupling/assembly.hpp"
 
-namespace robomill::formats {
+namespace robomill::coupling {
 
 /// A tool of a shop's list.
 struct ListedTool {
   std::string name;
-  std::vector<coupling::Segment> segments;  ///< from the tip to the joint
-  int teeth = 0;                            ///< of the column teeth, else the flutes of the first segment; 0: not said
-  std::size_t line = 0;                     ///< of its first row, from 1
+  std::vector<Segment> segments;  ///< from the tip to the joint
+  int teeth = 0;                  ///< of the column teeth, else the flutes of the first segment; 0: not said
+  std::size_t line = 0;           ///< of its first row, from 1
 };
 
 /// Reads tools.csv: a row a segment; rows of one name that follow each other are one tool from the tip to the joint.
@@ -23,7 +23,6 @@ struct ListedTool {
 /// @param like  what says the material, beam and flute ratio where their column is missing or empty; bore, flutes and
 ///     mass belong to one segment alone and are then 0
 /// @throws InvalidInput with file, line, column and value
-[[nodiscard]] ROBOMILL_API std::vector<ListedTool> read_tools(const std::filesystem::path& path,
-                                                              const coupling::Segment& like);
+[[nodiscard]] ROBOMILL_API std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segment& like);
 
-}  // namespace robomill::formats
+}  // namespace robomill::coupling

@@ -7,10 +7,10 @@
 #include "robomill/base/random.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::coupling {
 namespace {
 
-coupling::Segment carbide() {
+Segment carbide() {
   return {.length_m = 0.03,
           .diameter_m = 0.01,
           .inner_diameter_m = 0.001,
@@ -21,7 +21,7 @@ coupling::Segment carbide() {
           .loss_factor = 0.002,
           .flutes = 4,
           .flute_diameter_ratio = 0.75,
-          .beam = coupling::Beam::euler_bernoulli};
+          .beam = Beam::euler_bernoulli};
 }
 
 TEST(ToolsCsv, ReadsARowASegment) {
@@ -39,12 +39,12 @@ TEST(ToolsCsv, ReadsARowASegment) {
   EXPECT_EQ(tools[0].line, 3U);
   EXPECT_EQ(tools[0].teeth, 3);
   ASSERT_EQ(tools[0].segments.size(), 2U);
-  const coupling::Segment& tip = tools[0].segments[0];
+  const Segment& tip = tools[0].segments[0];
   EXPECT_DOUBLE_EQ(tip.length_m, 0.02);
   EXPECT_DOUBLE_EQ(tip.diameter_m, 0.01);
   EXPECT_EQ(tip.flutes, 3);
   EXPECT_DOUBLE_EQ(tip.youngs_modulus_pa, 600e9);
-  EXPECT_EQ(tip.beam, coupling::Beam::euler_bernoulli);
+  EXPECT_EQ(tip.beam, Beam::euler_bernoulli);
   // The material is the assembly's where the row says none; bore, mass and flutes are the segment's own.
   EXPECT_DOUBLE_EQ(tip.density_kg_per_m3, 14450.0);
   EXPECT_DOUBLE_EQ(tip.poissons_ratio, 0.22);
@@ -52,11 +52,11 @@ TEST(ToolsCsv, ReadsARowASegment) {
   EXPECT_DOUBLE_EQ(tip.flute_diameter_ratio, 0.75);
   EXPECT_EQ(tip.inner_diameter_m, 0.0);
   EXPECT_EQ(tip.mass_kg, 0.0);
-  const coupling::Segment& shank = tools[0].segments[1];
+  const Segment& shank = tools[0].segments[1];
   EXPECT_DOUBLE_EQ(shank.length_m, 0.0605);
   EXPECT_EQ(shank.flutes, 0);
   EXPECT_DOUBLE_EQ(shank.youngs_modulus_pa, 580e9);
-  EXPECT_EQ(shank.beam, coupling::Beam::timoshenko);
+  EXPECT_EQ(shank.beam, Beam::timoshenko);
   EXPECT_EQ(tools[1].name, "drill");
   EXPECT_EQ(tools[1].teeth, 2);
 }
@@ -122,7 +122,7 @@ TEST(ToolsCsv, SurvivesMutations) {
     if (i % 2 == 0) text.resize(1 + random.index(good.size() - 1));
     try {
       for (const ListedTool& tool : read_tools(folder.file("tools.csv", text), carbide())) {
-        for (const coupling::Segment& segment : tool.segments) segment.validate();
+        for (const Segment& segment : tool.segments) segment.validate();
       }
     } catch (const InvalidInput&) {
       continue;
@@ -131,4 +131,4 @@ TEST(ToolsCsv, SurvivesMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::coupling

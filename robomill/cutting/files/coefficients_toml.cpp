@@ -10,38 +10,35 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/material.hpp"
 
-namespace robomill::formats {
+namespace robomill::cutting {
 namespace {
 
 struct Field {
   const char* key;
   const char* member;
   double factor;
-  std::vector<double> cutting::MillingCoefficients::*values;
+  std::vector<double> MillingCoefficients::*values;
   bool edge = false;
 };
 
 constexpr std::array<Field, 6> fields = {{
-    {"tangential_n_per_mm2", "tangential_n_per_m2", units::n_per_mm2,
-     &cutting::MillingCoefficients::tangential_n_per_m2},
-    {"radial_n_per_mm2", "radial_n_per_m2", units::n_per_mm2, &cutting::MillingCoefficients::radial_n_per_m2},
-    {"axial_n_per_mm2", "axial_n_per_m2", units::n_per_mm2, &cutting::MillingCoefficients::axial_n_per_m2},
+    {"tangential_n_per_mm2", "tangential_n_per_m2", units::n_per_mm2, &MillingCoefficients::tangential_n_per_m2},
+    {"radial_n_per_mm2", "radial_n_per_m2", units::n_per_mm2, &MillingCoefficients::radial_n_per_m2},
+    {"axial_n_per_mm2", "axial_n_per_m2", units::n_per_mm2, &MillingCoefficients::axial_n_per_m2},
     {"tangential_edge_n_per_mm", "tangential_edge_n_per_m", units::n_per_mm,
-     &cutting::MillingCoefficients::tangential_edge_n_per_m, true},
-    {"radial_edge_n_per_mm", "radial_edge_n_per_m", units::n_per_mm, &cutting::MillingCoefficients::radial_edge_n_per_m,
-     true},
-    {"axial_edge_n_per_mm", "axial_edge_n_per_m", units::n_per_mm, &cutting::MillingCoefficients::axial_edge_n_per_m,
-     true},
+     &MillingCoefficients::tangential_edge_n_per_m, true},
+    {"radial_edge_n_per_mm", "radial_edge_n_per_m", units::n_per_mm, &MillingCoefficients::radial_edge_n_per_m, true},
+    {"axial_edge_n_per_mm", "axial_edge_n_per_m", units::n_per_mm, &MillingCoefficients::axial_edge_n_per_m, true},
 }};
 
-bool read_edge_measure(TomlFile& file, cutting::MillingCoefficients& out) {
-  return file.choice<cutting::EdgeMeasure>(
-      "coefficients.edge_per",
-      {{"width", cutting::EdgeMeasure::width}, {"edge-length", cutting::EdgeMeasure::edge_length}}, out.edge_measure);
+bool read_edge_measure(io::TomlFile& file, MillingCoefficients& out) {
+  return file.choice<EdgeMeasure>("coefficients.edge_per",
+                                  {{"width", EdgeMeasure::width}, {"edge-length", EdgeMeasure::edge_length}},
+                                  out.edge_measure);
 }
 
 /// The helix that inclines the edge: coefficients.helix_deg, else the tool's; a tool without one has straight edges.
-double read_helix(TomlFile& file) {
+double read_helix(io::TomlFile& file) {
   double helix_rad = 0.0;
   const char* const key = file.has("coefficients.helix_deg") ? "coefficients.helix_deg" : "tool.helix_deg";
   if (file.has(key) && !file.is_number(key)) {
@@ -53,7 +50,7 @@ double read_helix(TomlFile& file) {
   return helix_rad;
 }
 
-cutting::MillingCoefficients read_material(TomlFile& file, const std::string& name) {
+MillingCoefficients read_material(io::TomlFile& file, const std::string& name) {
   double rake_rad = 0.0, chip_thickness_m = 0.0;
   file.require("coefficients.rake_deg", "Of the cutter's edges");
   file.require("coefficients.chip_thickness_mm", "The mean of the cut; in a slot 0.64 of the feed per tooth");
@@ -61,7 +58,7 @@ cutting::MillingCoefficients read_material(TomlFile& file, const std::string& na
   file.number("coefficients.chip_thickness_mm", "chip_thickness_m", units::mm, chip_thickness_m);
   const double helix_rad = read_helix(file);
   try {
-    return cutting::milling_coefficients(cutting::material(name), rake_rad, helix_rad, chip_thickness_m);
+    return milling_coefficients(material(name), rake_rad, helix_rad, chip_thickness_m);
   } catch (const InvalidInput& error) {
     const InvalidInput told = file.located(error);
     if (!told.parts().where.empty()) throw told;
@@ -70,19 +67,18 @@ cutting::MillingCoefficients read_material(TomlFile& file, const std::string& na
 }
 
 /// A material's coefficients with those of the edge that the table gives in place of its own.
-cutting::MillingCoefficients with_own_edge(cutting::MillingCoefficients material,
-                                           const cutting::MillingCoefficients& own) {
+MillingCoefficients with_own_edge(MillingCoefficients material, const MillingCoefficients& own) {
   for (const Field& field : fields) {
     if (!(own.*field.values).empty()) material.*field.values = own.*field.values;
   }
-  if (own.edge_measure != cutting::EdgeMeasure::by_kind) material.edge_measure = own.edge_measure;
+  if (own.edge_measure != EdgeMeasure::by_kind) material.edge_measure = own.edge_measure;
   return material;
 }
 
 }  // namespace
 
-cutting::MillingCoefficients read_coefficient_table(TomlFile& file) {
-  cutting::MillingCoefficients out;
+MillingCoefficients read_coefficient_table(io::TomlFile& file) {
+  MillingCoefficients out;
   std::filesystem::path other;
   std::string material;
   const char* cutting = nullptr;  // a coefficient that the table itself gives
@@ -112,16 +108,16 @@ cutting::MillingCoefficients read_coefficient_table(TomlFile& file) {
   return read_coefficients(other);
 }
 
-cutting::MillingCoefficients read_coefficients(const std::filesystem::path& path) {
-  TomlFile file(path);
+MillingCoefficients read_coefficients(const std::filesystem::path& path) {
+  io::TomlFile file(path);
   if (file.has("coefficients.file")) throw file.refuse("coefficients.file", "must not name a further file");
-  cutting::MillingCoefficients out = read_coefficient_table(file);
+  MillingCoefficients out = read_coefficient_table(file);
   for (const char* told : {"identification", "source"}) file.skip(told);
   file.done();
   return out;
 }
 
-std::string coefficients_toml(const cutting::MillingCoefficients& coefficients) {
+std::string coefficients_toml(const MillingCoefficients& coefficients) {
   std::string text = "[coefficients]\n";
   for (const Field& field : fields) {
     std::vector<double> values = coefficients.*field.values;
@@ -130,9 +126,9 @@ std::string coefficients_toml(const cutting::MillingCoefficients& coefficients) 
     text += values.size() == 1 ? fmt::format("{} = {:.10g}\n", field.key, values.front())
                                : fmt::format("{} = [{:.10g}]\n", field.key, fmt::join(values, ", "));
   }
-  if (coefficients.edge_measure == cutting::EdgeMeasure::width) text += "edge_per = \"width\"\n";
-  if (coefficients.edge_measure == cutting::EdgeMeasure::edge_length) text += "edge_per = \"edge-length\"\n";
+  if (coefficients.edge_measure == EdgeMeasure::width) text += "edge_per = \"width\"\n";
+  if (coefficients.edge_measure == EdgeMeasure::edge_length) text += "edge_per = \"edge-length\"\n";
   return text;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::cutting

@@ -6,19 +6,19 @@
 #include "robomill/cutting/force.hpp"
 #include "robomill/io/toml_file.hpp"
 
-namespace robomill::formats {
+namespace robomill::cutting {
 
 /// The table [coefficients] of a TOML file: each a number or a polynomial in κ [rad], highest power first; or
 /// coefficients.file, a file with such a table; or coefficients.material with rake_deg, chip_thickness_mm and the
 /// helix, which is coefficients.helix_deg or the tool's. edge_per says what edge forces are per: "width" or
 /// "edge-length".
 /// @throws InvalidInput with file, line, key and value
-[[nodiscard]] cutting::MillingCoefficients read_coefficient_table(TomlFile& file);
+[[nodiscard]] MillingCoefficients read_coefficient_table(io::TomlFile& file);
 
 /// coefficients.toml. @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API cutting::MillingCoefficients read_coefficients(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API MillingCoefficients read_coefficients(const std::filesystem::path& path);
 
 /// The table as text, for coefficients.toml.
-[[nodiscard]] ROBOMILL_API std::string coefficients_toml(const cutting::MillingCoefficients& coefficients);
+[[nodiscard]] ROBOMILL_API std::string coefficients_toml(const MillingCoefficients& coefficients);
 
-}  // namespace robomill::formats
+}  // namespace robomill::cutting

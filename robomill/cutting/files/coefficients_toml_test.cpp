@@ -9,19 +9,19 @@
 #include "robomill/cutting/material.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::cutting {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-cutting::MillingCoefficients table_of(const test::Folder& folder, const std::string& text) {
-  TomlFile file(folder.file("forces.toml", text));
+MillingCoefficients table_of(const test::Folder& folder, const std::string& text) {
+  io::TomlFile file(folder.file("forces.toml", text));
   return read_coefficient_table(file);
 }
 
 TEST(CoefficientsToml, NumbersAndPolynomials) {
   const test::Folder folder;
-  const cutting::MillingCoefficients k =
+  const MillingCoefficients k =
       table_of(folder,
                "[coefficients]\ntangential_n_per_mm2 = [325.4, 435.8, -65.25, 1772]\nradial_n_per_mm2 = 287\n"
                "axial_edge_n_per_mm = -11.52\n");
@@ -33,17 +33,17 @@ TEST(CoefficientsToml, NumbersAndPolynomials) {
 
 TEST(CoefficientsToml, WhatIsWrittenIsReadAgain) {
   const test::Folder folder;
-  cutting::MillingCoefficients k;
+  MillingCoefficients k;
   k.tangential_n_per_m2 = {325.4e6, 435.8e6, -65.25e6, 1772e6};
   k.radial_edge_n_per_m = {15.43e3};
   folder.file("k.toml", coefficients_toml(k) + "[identification]\nrows = 5\n");
-  const cutting::MillingCoefficients read = table_of(folder, "[coefficients]\nfile = \"k.toml\"\n");
+  const MillingCoefficients read = table_of(folder, "[coefficients]\nfile = \"k.toml\"\n");
   ASSERT_EQ(read.tangential_n_per_m2.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(read.tangential_n_per_m2[i], k.tangential_n_per_m2[i]);
   EXPECT_DOUBLE_EQ(read.radial_edge_n_per_m.front(), 15.43e3);
   EXPECT_TRUE(read.axial_edge_n_per_m.empty());
-  EXPECT_EQ(read.edge_measure, cutting::EdgeMeasure::by_kind);
-  for (const cutting::EdgeMeasure measure : {cutting::EdgeMeasure::width, cutting::EdgeMeasure::edge_length}) {
+  EXPECT_EQ(read.edge_measure, EdgeMeasure::by_kind);
+  for (const EdgeMeasure measure : {EdgeMeasure::width, EdgeMeasure::edge_length}) {
     k.edge_measure = measure;
     EXPECT_EQ(table_of(folder, coefficients_toml(k)).edge_measure, measure);
   }
@@ -52,9 +52,8 @@ TEST(CoefficientsToml, WhatIsWrittenIsReadAgain) {
 TEST(CoefficientsToml, AMaterialTakesTheToolsHelix) {
   const test::Folder folder;
   const std::string named = "[coefficients]\nmaterial = \"Ti6Al4V\"\nrake_deg = 5\nchip_thickness_mm = 0.03\n";
-  const auto expect_helix = [&](const cutting::MillingCoefficients& found, double helix_deg) {
-    const cutting::MillingCoefficients k =
-        cutting::milling_coefficients(cutting::material("Ti6Al4V"), 5.0 * degree, helix_deg * degree, 0.03e-3);
+  const auto expect_helix = [&](const MillingCoefficients& found, double helix_deg) {
+    const MillingCoefficients k = milling_coefficients(material("Ti6Al4V"), 5.0 * degree, helix_deg * degree, 0.03e-3);
     EXPECT_DOUBLE_EQ(found.tangential_n_per_m2.front(), k.tangential_n_per_m2.front());
     EXPECT_DOUBLE_EQ(found.axial_n_per_m2.front(), k.axial_n_per_m2.front());
     EXPECT_EQ(found.radial_edge_n_per_m, k.radial_edge_n_per_m);
@@ -71,16 +70,16 @@ TEST(CoefficientsToml, AMaterialTakesEdgeCoefficientsOfItsOwn) {
   const test::Folder folder;
   const std::string named =
       "[coefficients]\nmaterial = \"Ti6Al4V\"\nrake_deg = 5\nchip_thickness_mm = 0.03\nhelix_deg = 30\n";
-  const cutting::MillingCoefficients plain = table_of(folder, named);
-  const cutting::MillingCoefficients own =
+  const MillingCoefficients plain = table_of(folder, named);
+  const MillingCoefficients own =
       table_of(folder, named + "tangential_edge_n_per_mm = 19\naxial_edge_n_per_mm = 2\nedge_per = \"width\"\n");
   EXPECT_EQ(own.tangential_n_per_m2, plain.tangential_n_per_m2);
   EXPECT_EQ(own.axial_n_per_m2, plain.axial_n_per_m2);
   EXPECT_EQ(own.tangential_edge_n_per_m, std::vector<double>{19e3});
   EXPECT_EQ(own.radial_edge_n_per_m, plain.radial_edge_n_per_m);
   EXPECT_EQ(own.axial_edge_n_per_m, std::vector<double>{2e3});
-  EXPECT_EQ(own.edge_measure, cutting::EdgeMeasure::width);
-  EXPECT_NE(plain.edge_measure, cutting::EdgeMeasure::width);
+  EXPECT_EQ(own.edge_measure, EdgeMeasure::width);
+  EXPECT_NE(plain.edge_measure, EdgeMeasure::width);
 }
 
 TEST(CoefficientsToml, RefusesInTheFilesWords) {
@@ -110,4 +109,4 @@ TEST(CoefficientsToml, RefusesInTheFilesWords) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::cutting

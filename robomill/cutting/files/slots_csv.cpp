@@ -18,31 +18,30 @@
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::cutting {
 namespace {
 
 struct Column {
   const char* key;
   const char* member;
   double factor;
-  double& (*value)(cutting::SlotForce&);
+  double& (*value)(SlotForce&);
 };
 constexpr std::array<Column, 6> columns = {{
-    {"feed_per_tooth_mm", "feed_per_tooth_m", units::mm,
-     [](cutting::SlotForce& s) -> double& { return s.feed_per_tooth_m; }},
-    {"axial_depth_mm", "axial_depth_m", units::mm, [](cutting::SlotForce& s) -> double& { return s.axial_depth_m; }},
+    {"feed_per_tooth_mm", "feed_per_tooth_m", units::mm, [](SlotForce& s) -> double& { return s.feed_per_tooth_m; }},
+    {"axial_depth_mm", "axial_depth_m", units::mm, [](SlotForce& s) -> double& { return s.axial_depth_m; }},
     {"spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm,
-     [](cutting::SlotForce& s) -> double& { return s.spindle_speed_rad_per_s; }},
-    {"fx_n", "", 1.0, [](cutting::SlotForce& s) -> double& { return s.mean_force_n.x(); }},
-    {"fy_n", "", 1.0, [](cutting::SlotForce& s) -> double& { return s.mean_force_n.y(); }},
-    {"fz_n", "", 1.0, [](cutting::SlotForce& s) -> double& { return s.mean_force_n.z(); }},
+     [](SlotForce& s) -> double& { return s.spindle_speed_rad_per_s; }},
+    {"fx_n", "", 1.0, [](SlotForce& s) -> double& { return s.mean_force_n.x(); }},
+    {"fy_n", "", 1.0, [](SlotForce& s) -> double& { return s.mean_force_n.y(); }},
+    {"fz_n", "", 1.0, [](SlotForce& s) -> double& { return s.mean_force_n.z(); }},
 }};
 constexpr std::string_view may_be_missing = "spindle_speed_rpm";
 
 /// Where each known column stands in the table.
 using Places = std::array<std::optional<std::size_t>, columns.size()>;
 
-Places find_columns(const TextTable& table, const std::string& file) {
+Places find_columns(const io::TextTable& table, const std::string& file) {
   Places places;
   std::vector<std::string> known;
   known.reserve(columns.size());
@@ -50,7 +49,7 @@ Places find_columns(const TextTable& table, const std::string& file) {
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const auto found = std::ranges::find(known, table.names[i]);
     if (found == known.end()) {
-      const std::string near = nearest_word(table.names[i], known);
+      const std::string near = io::nearest_word(table.names[i], known);
       throw InvalidInput(file, fmt::format("has a column {} that is not known here", table.names[i]),
                          near.empty() ? "" : fmt::format("Did you mean {}?", near));
     }
@@ -69,22 +68,22 @@ InvalidInput refuse(const std::string& where, const Column& column, const std::s
                     std::string hint = {}) {
   InvalidInput::Parts parts{.where = where, .field = column.key, .rule = std::move(rule), .hint = std::move(hint)};
   if (field.empty()) return InvalidInput(std::move(parts));
-  parts.number = parse_cell(field);
+  parts.number = io::parse_cell(field);
   if (parts.number) {
-    parts.unit = unit_of_key(column.key);
+    parts.unit = io::unit_of_key(column.key);
   } else {
     parts.value = fmt::format("\"{}\"", field);
   }
   return InvalidInput(std::move(parts));
 }
 
-cutting::SlotForce read_row(const TextTable::Row& row, const Places& places, const std::string& where) {
-  cutting::SlotForce slot;
+SlotForce read_row(const io::TextTable::Row& row, const Places& places, const std::string& where) {
+  SlotForce slot;
   const auto field = [&](std::size_t i) { return places[i] ? row.fields[*places[i]] : std::string(); };
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::string text = field(i);
     if (text.empty() && columns[i].key == may_be_missing) continue;
-    const std::optional<double> number = parse_cell(text);
+    const std::optional<double> number = io::parse_cell(text);
     if (!number || !std::isfinite(*number)) {
       throw refuse(where, columns[i], text, text.empty() ? "is empty" : "must be a finite number");
     }
@@ -105,7 +104,7 @@ cutting::SlotForce read_row(const TextTable::Row& row, const Places& places, con
 
 struct Named {
   const char* name;
-  const cutting::CoefficientPair* pair;
+  const CoefficientPair* pair;
 };
 template <class Fit>
 std::array<Named, 3> pairs_of(const Fit& fit) {
@@ -114,8 +113,8 @@ std::array<Named, 3> pairs_of(const Fit& fit) {
 
 /// Each pair's numbers under the keys of coefficients.toml.
 template <class Fit>
-Json values_of(const Fit& fit, double cutting::CoefficientPair::*cutting, double cutting::CoefficientPair::*edge) {
-  Json out = Json::object();
+io::Json values_of(const Fit& fit, double CoefficientPair::*cutting, double CoefficientPair::*edge) {
+  io::Json out = io::Json::object();
   for (const auto& [name, pair] : pairs_of(fit))
     out[fmt::format("{}_n_per_mm2", name)] = number(pair->*cutting / units::n_per_mm2);
   for (const auto& [name, pair] : pairs_of(fit))
@@ -123,42 +122,41 @@ Json values_of(const Fit& fit, double cutting::CoefficientPair::*cutting, double
   return out;
 }
 template <class Fit>
-Json deviations_of(const Fit& fit) {
-  return values_of(fit, &cutting::CoefficientPair::cutting_deviation_n_per_m2,
-                   &cutting::CoefficientPair::edge_deviation_n_per_m);
+io::Json deviations_of(const Fit& fit) {
+  return values_of(fit, &CoefficientPair::cutting_deviation_n_per_m2, &CoefficientPair::edge_deviation_n_per_m);
 }
 template <class Fit>
-Json coefficients_of(const Fit& fit) {
-  return values_of(fit, &cutting::CoefficientPair::cutting_n_per_m2, &cutting::CoefficientPair::edge_n_per_m);
+io::Json coefficients_of(const Fit& fit) {
+  return values_of(fit, &CoefficientPair::cutting_n_per_m2, &CoefficientPair::edge_n_per_m);
 }
 
 template <class Fit>
-Json of_each(const Fit& fit, double cutting::CoefficientPair::*value) {
-  Json out = Json::object();
+io::Json of_each(const Fit& fit, double CoefficientPair::*value) {
+  io::Json out = io::Json::object();
   for (const auto& [name, pair] : pairs_of(fit)) out[name] = number(pair->*value);
   return out;
 }
 
-Json identification(const cutting::SlotFit& fit, const SlotsFile& file) {
-  Json json;
-  const bool identified = fit.status == cutting::SlotFit::Status::identified;
+io::Json identification(const SlotFit& fit, const SlotsFile& file) {
+  io::Json json;
+  const bool identified = fit.status == SlotFit::Status::identified;
   json["status"] = identified ? "identified" : "edge unknown";
   json["rows"] = file.slots.size();
   json["std"] = deviations_of(fit);
-  json["r_squared"] = of_each(fit, &cutting::CoefficientPair::r_squared);
-  json["noise_n"] = of_each(fit, &cutting::CoefficientPair::noise_n);
-  json["correlation"] = of_each(fit, &cutting::CoefficientPair::correlation);
+  json["r_squared"] = of_each(fit, &CoefficientPair::r_squared);
+  json["noise_n"] = of_each(fit, &CoefficientPair::noise_n);
+  json["correlation"] = of_each(fit, &CoefficientPair::correlation);
   json["depends_on_speed"] = fit.depends_on_speed;
   json["speed_probability"] = number(fit.speed_probability);
   json["notes"] = fit.notes;
-  Json residuals = Json::array();
+  io::Json residuals = io::Json::array();
   for (std::size_t i = 0; i < file.lines.size(); ++i) {
     const Eigen::Vector3d r = fit.residual_n.col(static_cast<Eigen::Index>(i));
     residuals.push_back({{"line", file.lines[i]}, {"residual_n", {number(r.x()), number(r.y()), number(r.z())}}});
   }
   json["residuals"] = residuals;
-  Json speeds = Json::array();
-  for (const cutting::SpeedGroup& group : fit.by_speed) {
+  io::Json speeds = io::Json::array();
+  for (const SpeedGroup& group : fit.by_speed) {
     speeds.push_back({{"spindle_speed_rpm", number(group.spindle_speed_rad_per_s / units::rpm)},
                       {"rows", group.rows},
                       {"coefficients", coefficients_of(group)},
@@ -169,7 +167,7 @@ Json identification(const cutting::SlotFit& fit, const SlotsFile& file) {
 }
 
 /// JSON values as TOML has them too: inline tables in place of objects; what is null is left out.
-std::string inline_toml(const Json& json) {
+std::string inline_toml(const io::Json& json) {
   if (!json.is_structured()) return json.dump();
   std::string text;
   for (const auto& [key, value] : json.items()) {
@@ -185,32 +183,32 @@ std::string inline_toml(const Json& json) {
 
 SlotsFile read_slots(const std::filesystem::path& path) {
   const std::string file = path.string();
-  const TextTable table = parse_text_table(read_file(path), file);
+  const io::TextTable table = io::parse_text_table(io::read_file(path), file);
   const Places places = find_columns(table, file);
   SlotsFile out;
   out.slots.reserve(table.rows.size());
   out.lines.reserve(table.rows.size());
-  for (const TextTable::Row& row : table.rows) {
+  for (const io::TextTable::Row& row : table.rows) {
     out.slots.push_back(read_row(row, places, fmt::format("{}:{}", file, row.line)));
     out.lines.push_back(row.line);
   }
   return out;
 }
 
-std::string slot_fit_toml(const cutting::SlotFit& fit, const SlotsFile& file) {
+std::string slot_fit_toml(const SlotFit& fit, const SlotsFile& file) {
   std::string text = coefficients_toml(fit.coefficients()) + "\n[identification]\n";
-  const Json told = identification(fit, file);
+  const io::Json told = identification(fit, file);
   for (const auto& [key, value] : told.items()) {
     if (!value.is_null()) text += fmt::format("{} = {}\n", key, inline_toml(value));
   }
   return text;
 }
 
-std::string slot_fit_json(const cutting::SlotFit& fit, const SlotsFile& file) {
-  Json json;
+std::string slot_fit_json(const SlotFit& fit, const SlotsFile& file) {
+  io::Json json;
   json["coefficients"] = coefficients_of(fit);
   json["identification"] = identification(fit, file);
-  return dump(json);
+  return io::dump(json);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::cutting

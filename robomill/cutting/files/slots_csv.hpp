@@ -7,11 +7,11 @@
 #include "robomill/base/export.hpp"
 #include "robomill/cutting/coefficients.hpp"
 
-namespace robomill::formats {
+namespace robomill::cutting {
 
 /// slots.csv: mean forces of slots, on the tool.
 struct SlotsFile {
-  std::vector<cutting::SlotForce> slots;
+  std::vector<SlotForce> slots;
   std::vector<std::size_t> lines;  ///< of each in the file, from 1
 };
 
@@ -21,8 +21,8 @@ struct SlotsFile {
 
 /// coefficients.toml: the coefficients, and a table [identification] that says how well they are known. What is
 /// infinite or not known is left out.
-[[nodiscard]] ROBOMILL_API std::string slot_fit_toml(const cutting::SlotFit& fit, const SlotsFile& file);
+[[nodiscard]] ROBOMILL_API std::string slot_fit_toml(const SlotFit& fit, const SlotsFile& file);
 /// The same as JSON, with null for it.
-[[nodiscard]] ROBOMILL_API std::string slot_fit_json(const cutting::SlotFit& fit, const SlotsFile& file);
+[[nodiscard]] ROBOMILL_API std::string slot_fit_json(const SlotFit& fit, const SlotsFile& file);
 
-}  // namespace robomill::formats
+}  // namespace robomill::cutting

@@ -11,7 +11,7 @@
 #include "robomill/cutting/files/coefficients_toml.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::cutting {
 namespace {
 
 const std::string head = "feed_per_tooth_mm,axial_depth_mm,spindle_speed_rpm,fx_n,fy_n,fz_n\n";
@@ -60,7 +60,7 @@ TEST(SlotsCsv, SurvivesMutations) {
     text[random.index(text.size())] = static_cast<char>(random.index(256));
     if (i % 2 == 0) text.resize(1 + random.index(good.size() - 1));
     try {
-      for (const cutting::SlotForce& slot : read_slots(folder.file("slots.csv", text)).slots) slot.validate();
+      for (const SlotForce& slot : read_slots(folder.file("slots.csv", text)).slots) slot.validate();
     } catch (const InvalidInput&) {
       continue;
     }
@@ -72,7 +72,7 @@ SlotsFile two_speeds(double noise_n) {
   Random random(5);
   for (int i = 0; i < 12; ++i) {
     const double feed_m = (0.02 + 0.02 * (i / 2)) * 1e-3, depth_m = 5e-3;
-    cutting::SlotForce slot{feed_m, depth_m, i % 2 == 0 ? 100.0 : 300.0, {}};
+    SlotForce slot{feed_m, depth_m, i % 2 == 0 ? 100.0 : 300.0, {}};
     slot.mean_force_n = {-depth_m * 770e6 * feed_m - 4.0 * depth_m / std::numbers::pi * 55.7e3,
                          depth_m * (i % 2 == 0 ? 1825e6 : 1500e6) * feed_m + 4.0 * depth_m / std::numbers::pi * 29.7e3,
                          4.0 * depth_m / std::numbers::pi * 735e6 * feed_m + 2.0 * depth_m * 1.8e3};
@@ -87,10 +87,9 @@ SlotsFile two_speeds(double noise_n) {
 TEST(SlotsCsv, WritesCoefficientsThatAreReadAgain) {
   const test::Folder folder;
   const SlotsFile file = two_speeds(3.0);
-  const cutting::SlotFit fit = cutting::identify_from_slots(file.slots, {.teeth = 4});
+  const SlotFit fit = identify_from_slots(file.slots, {.teeth = 4});
   ASSERT_TRUE(fit.depends_on_speed);
-  const cutting::MillingCoefficients read =
-      read_coefficients(folder.file("coefficients.toml", slot_fit_toml(fit, file)));
+  const MillingCoefficients read = read_coefficients(folder.file("coefficients.toml", slot_fit_toml(fit, file)));
   EXPECT_NEAR(read.tangential_n_per_m2.front(), fit.tangential.cutting_n_per_m2, 1.0);
   EXPECT_NEAR(read.axial_edge_n_per_m.front(), fit.axial.edge_n_per_m, 1e-5);
   const auto json = nlohmann::json::parse(slot_fit_json(fit, file));
@@ -107,7 +106,7 @@ TEST(SlotsCsv, WhatCannotBeToldIsLeftOut) {
   SlotsFile file = two_speeds(0.0);
   file.slots.resize(2);
   file.lines.resize(2);
-  const cutting::SlotFit fit = cutting::identify_from_slots(file.slots, {.teeth = 4});
+  const SlotFit fit = identify_from_slots(file.slots, {.teeth = 4});
   const std::string toml = slot_fit_toml(fit, file);
   EXPECT_NE(toml.find("status = \"edge unknown\""), std::string::npos) << toml;
   EXPECT_EQ(toml.find("inf"), std::string::npos) << toml;
@@ -117,4 +116,4 @@ TEST(SlotsCsv, WhatCannotBeToldIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::cutting

@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 namespace {
 
 using robomill::test::Folder;
@@ -54,15 +54,15 @@ std::string with(const std::string& old_text, const std::string& new_text) {
   return test_support::replaced(good, old_text, new_text);
 }
 
-SmoothingFile read(const Folder& folder, const std::string& text) {
+path::SmoothingFile read(const Folder& folder, const std::string& text) {
   const auto path = folder.file("cell.toml", text);
   const auto machine = kinematics(read_cell(path, Robots::any));
-  return read_smoothing(path, machine->limits(), machine->joints());
+  return path::read_smoothing(path, machine->limits(), machine->joints());
 }
 
 TEST(SmoothingToml, ReadsEveryKeyInItsUnit) {
   const Folder folder;
-  const SmoothingFile file = read(folder, good);
+  const path::SmoothingFile file = read(folder, good);
   const path::SmoothingOptions& o = file.options;
   EXPECT_DOUBLE_EQ(o.tip_tolerance_m, 2e-5);
   EXPECT_DOUBLE_EQ(o.axis_tolerance_rad, 0.03 * deg);
@@ -143,7 +143,7 @@ TEST(SmoothingToml, AMethodBeforeTheFilesIsTheOneThatIsChecked) {
   const auto read_by = [&](const std::string& text, path::Method method) {
     const auto path = folder.file("cell.toml", text);
     const auto machine = kinematics(read_cell(path, Robots::any));
-    return read_smoothing(path, machine->limits(), machine->joints(), method);
+    return path::read_smoothing(path, machine->limits(), machine->joints(), method);
   };
   std::string one = with("filters = 3", "filters = 1");
   EXPECT_EQ(read_by(one, path::Method::paper).options.method, path::Method::paper);
@@ -171,4 +171,4 @@ TEST(SmoothingToml, DamagedFilesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

@@ -18,7 +18,7 @@
 #include "robomill/robot/files/urdf.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 namespace {
 
 /// Other lists with one value a joint, SI in the file too.
@@ -34,14 +34,14 @@ constexpr std::array<JointList, 3> joint_lists = {{
 }};
 
 /// Where each of joint_limits goes, of an arm and of the hybrid machine.
-constexpr std::array<double robot::Joint::*, joint_limits.size()> of_joint = {
+constexpr std::array<double robot::Joint::*, robot::joint_limits.size()> of_joint = {
     &robot::Joint::min_position, &robot::Joint::max_position, &robot::Joint::max_velocity,
     &robot::Joint::max_acceleration, &robot::Joint::max_jerk};
-constexpr std::array<robot::Position6 robot::JointLimits::*, joint_limits.size()> of_hybrid = {
+constexpr std::array<robot::Position6 robot::JointLimits::*, robot::joint_limits.size()> of_hybrid = {
     &robot::JointLimits::min_position, &robot::JointLimits::max_position, &robot::JointLimits::max_velocity,
     &robot::JointLimits::max_acceleration, &robot::JointLimits::max_jerk};
 
-std::optional<Eigen::Vector3d> read_vector(TomlFile& file, const char* key, const char* member, double factor) {
+std::optional<Eigen::Vector3d> read_vector(io::TomlFile& file, const char* key, const char* member, double factor) {
   std::vector<double> values;
   if (!file.numbers(key, member, factor, values)) return std::nullopt;
   if (values.size() != 3) throw file.refuse(key, "must hold three numbers");
@@ -49,7 +49,7 @@ std::optional<Eigen::Vector3d> read_vector(TomlFile& file, const char* key, cons
 }
 
 /// R = Rz Ry Rx, as the file says it.
-Eigen::Isometry3d read_pose(TomlFile& file, const char* origin_key, const char* rotation_key) {
+Eigen::Isometry3d read_pose(io::TomlFile& file, const char* origin_key, const char* rotation_key) {
   Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
   if (const auto origin_m = read_vector(file, origin_key, "origin_m", units::mm)) out.translation() = *origin_m;
   if (const auto angle_rad = read_vector(file, rotation_key, "rotation_rad", units::deg)) {
@@ -63,7 +63,7 @@ Eigen::Isometry3d read_pose(TomlFile& file, const char* origin_key, const char* 
 
 enum class Kind { serial, hybrid };
 
-Kind read_kind(TomlFile& file, Robots usable) {
+Kind read_kind(io::TomlFile& file, Robots usable) {
   Kind kind = Kind::serial;
   file.choice<Kind>("robot.kind", {{"serial", Kind::serial}, {"hybrid-2upr-rpu", Kind::hybrid}}, kind);
   if (kind == Kind::hybrid && usable == Robots::serial) {
@@ -73,7 +73,7 @@ Kind read_kind(TomlFile& file, Robots usable) {
   return kind;
 }
 
-std::vector<robot::DhRow> read_dh(TomlFile& file) {
+std::vector<robot::DhRow> read_dh(io::TomlFile& file) {
   std::vector<robot::DhRow> rows(file.tables("robot.dh"));
   if (rows.empty())
     throw file.refuse("robot.dh", "must hold a row a joint", "dh = [{ a_mm = 350, alpha_deg = -90, … }, …]");
@@ -90,7 +90,7 @@ std::vector<robot::DhRow> read_dh(TomlFile& file) {
 }
 
 /// Bodies of the links; with DH they are given in the row's own frame.
-void read_links(TomlFile& file, const std::vector<robot::DhRow>& rows, robot::Arm& arm) {
+void read_links(io::TomlFile& file, const std::vector<robot::DhRow>& rows, robot::Arm& arm) {
   if (!file.has("robot.links")) return;
   const std::size_t count = file.tables("robot.links");
   if (count != arm.joints.size()) {
@@ -127,9 +127,9 @@ std::vector<bool> sliding(const robot::Arm& arm) {
   return slides;
 }
 
-void read_joint_lists(TomlFile& file, robot::Arm& arm, std::vector<std::string>& notes) {
-  for (std::size_t k = 0; k < joint_limits.size(); ++k) {
-    const auto values = read_joint_limit(file, joint_limits[k], sliding(arm), notes);
+void read_joint_lists(io::TomlFile& file, robot::Arm& arm, std::vector<std::string>& notes) {
+  for (std::size_t k = 0; k < robot::joint_limits.size(); ++k) {
+    const auto values = robot::read_joint_limit(file, robot::joint_limits[k], sliding(arm), notes);
     for (std::size_t i = 0; i < values.size(); ++i)
       arm.joints[i].*of_joint[k] = values[i].value_or(arm.joints[i].*of_joint[k]);
   }
@@ -145,14 +145,14 @@ void read_joint_lists(TomlFile& file, robot::Arm& arm, std::vector<std::string>&
 }
 
 /// An error about a joint's member, told with the list's key and the joint's place in it.
-InvalidInput located(const TomlFile& file, const robot::Arm& arm, const InvalidInput& error) {
+InvalidInput located(const io::TomlFile& file, const robot::Arm& arm, const InvalidInput& error) {
   const InvalidInput::Parts& parts = error.parts();
   const auto is_of = [&](const char* member) {
     return parts.field.starts_with("joints[") && parts.field.ends_with(std::string("].") + member);
   };
-  for (const JointLimit& limit : joint_limits) {
+  for (const robot::JointLimit& limit : robot::joint_limits) {
     if (!is_of(limit.name)) continue;
-    return located_limit(file, limit, sliding(arm), std::stoul(parts.field.substr(7)) - 1, error);
+    return robot::located_limit(file, limit, sliding(arm), std::stoul(parts.field.substr(7)) - 1, error);
   }
   for (const JointList& list : joint_lists) {
     if (!is_of(list.member) || !file.has(list.key)) continue;
@@ -166,7 +166,7 @@ InvalidInput located(const TomlFile& file, const robot::Arm& arm, const InvalidI
   return file.located(error);
 }
 
-void read_arm(TomlFile& file, CellFile& out) {
+void read_arm(io::TomlFile& file, CellFile& out) {
   std::filesystem::path urdf;
   const bool from_urdf = file.path("robot.urdf", urdf);
   if (from_urdf == file.has("robot.dh")) {
@@ -177,12 +177,12 @@ void read_arm(TomlFile& file, CellFile& out) {
   }
   robot::Arm& arm = out.cell.arm;
   std::vector<robot::DhRow> rows;
-  UrdfReading reading;
+  robot::UrdfReading reading;
   file.text("robot.urdf_tip", reading.tip);
   file.text("robot.urdf_base", reading.base);
   if (from_urdf) {
     file.require("robot.urdf_tip", "The link that is the flange");
-    UrdfArm read = read_urdf(urdf, reading);
+    robot::UrdfArm read = robot::read_urdf(urdf, reading);
     arm = std::move(read.arm);
     out.notes = std::move(read.notes);
   } else {
@@ -205,7 +205,7 @@ void read_arm(TomlFile& file, CellFile& out) {
   }
 }
 
-void read_start(TomlFile& file, CellFile& out) {
+void read_start(io::TomlFile& file, CellFile& out) {
   const robot::Arm& arm = out.cell.arm;
   if (!file.numbers("robot.start_joints_deg", "start_joints", units::deg, out.start_joints)) return;
   if (out.start_joints.size() != arm.joints.size()) {
@@ -239,7 +239,7 @@ constexpr std::array<Size, 5> hybrid_sizes = {{
     {"robot.platform_to_flange_mm", "platform_to_flange_m", &robot::HybridMachine::platform_to_flange_m},
 }};
 
-void read_hybrid(TomlFile& file, CellFile& out) {
+void read_hybrid(io::TomlFile& file, CellFile& out) {
   for (const char* key : {"robot.dh", "robot.urdf", "robot.links", "robot.start_joints_deg", "robot.gamma_deg",
                           "tool.mount_origin_mm", "tool.mount_rotation_deg"}) {
     if (file.has(key)) throw file.refuse(key, "goes with kind = \"serial\"");
@@ -247,8 +247,8 @@ void read_hybrid(TomlFile& file, CellFile& out) {
   robot::HybridMachine& machine = out.hybrid.emplace();
   for (const Size& size : hybrid_sizes) file.number(size.key, size.member, units::mm, machine.*size.value);
   const std::vector<bool> slides(hybrid_joints, true);
-  for (std::size_t k = 0; k < joint_limits.size(); ++k) {
-    const auto values = read_joint_limit(file, joint_limits[k], slides, out.notes);
+  for (std::size_t k = 0; k < robot::joint_limits.size(); ++k) {
+    const auto values = robot::read_joint_limit(file, robot::joint_limits[k], slides, out.notes);
     for (std::size_t i = 0; i < values.size(); ++i) {
       double& value = (machine.limits.*of_hybrid[k])(static_cast<Eigen::Index>(i));
       value = values[i].value_or(value);
@@ -256,7 +256,7 @@ void read_hybrid(TomlFile& file, CellFile& out) {
   }
 }
 
-void read_serial(TomlFile& file, CellFile& out) {
+void read_serial(io::TomlFile& file, CellFile& out) {
   for (const Size& size : hybrid_sizes) {
     if (file.has(size.key)) throw file.refuse(size.key, "goes with kind = \"hybrid-2upr-rpu\"");
   }
@@ -272,7 +272,7 @@ bool is_name(const std::string& text) {
          std::ranges::all_of(text, plain);
 }
 
-void read_output(TomlFile& file, const char* key, const char* member, DigitalOutput& out) {
+void read_output(io::TomlFile& file, const char* key, const char* member, path::DigitalOutput& out) {
   if (!file.has(key)) return;
   if (!file.is_number(key)) {
     file.text(key, out.signal);
@@ -288,8 +288,8 @@ void read_output(TomlFile& file, const char* key, const char* member, DigitalOut
 }
 
 /// Of exported programs: what the controller must know of the spindle, after the tool's length.
-void read_end_effector(TomlFile& file, CellFile& out) {
-  EndEffector& end = out.end_effector;
+void read_end_effector(io::TomlFile& file, CellFile& out) {
+  path::EndEffector& end = out.end_effector;
   end.tip.translate(out.cell.tool_length_m * Eigen::Vector3d::UnitZ());
   const auto number = [&](const char* key, const char* member, std::optional<int>& value) {
     int read = 0;
@@ -317,7 +317,7 @@ void read_end_effector(TomlFile& file, CellFile& out) {
 }
 
 /// What the words A, B and C of programs mean.
-void read_program_words(TomlFile& file, CellFile& out) {
+void read_program_words(io::TomlFile& file, CellFile& out) {
   const auto of_key = [&](const char* key, const auto& parse) {
     try {
       parse();
@@ -326,17 +326,17 @@ void read_program_words(TomlFile& file, CellFile& out) {
     }
   };
   if (file.text("program.machine", out.machine)) {
-    of_key("program.machine", [&] { static_cast<void>(parse_machine(out.machine)); });
+    of_key("program.machine", [&] { static_cast<void>(program::parse_machine(out.machine)); });
   }
   if (std::string rotary; file.text("program.rotary", rotary)) {
-    of_key("program.rotary", [&] { out.rotary = parse_rotary(rotary); });
+    of_key("program.rotary", [&] { out.rotary = program::parse_rotary(rotary); });
   }
 }
 
 }  // namespace
 
 CellFile read_cell(const std::filesystem::path& path, Robots usable) {
-  TomlFile file(path);
+  io::TomlFile file(path);
   CellFile out{.path = path};
   file.skip("smoothing");
   file.require("robot", "Write [robot] with the arm, kind = \"serial\" and dh or urdf");
@@ -358,9 +358,9 @@ CellFile read_cell(const std::filesystem::path& path, Robots usable) {
   return out;
 }
 
-ProgramReading program_reading(const CellFile& file) {
-  ProgramReading reading = {.rotary = file.rotary};
-  if (!file.machine.empty()) reading.machine = parse_machine(file.machine);
+program::ProgramReading program_reading(const CellFile& file) {
+  program::ProgramReading reading = {.rotary = file.rotary};
+  if (!file.machine.empty()) reading.machine = program::parse_machine(file.machine);
   return reading;
 }
 
@@ -376,4 +376,4 @@ std::unique_ptr<robot::Kinematics> kinematics(const CellFile& file) {
   }
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

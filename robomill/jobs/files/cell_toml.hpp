@@ -12,21 +12,21 @@
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/kinematics.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 
 /// cell.toml: a robot with its tool before a workpiece.
 struct CellFile {
   std::filesystem::path path = {};
   robot::Cell cell = {};  ///< a hybrid machine's has no joints, but workpiece and tool all the same
   std::optional<robot::HybridMachine> hybrid = {};  ///< kind = "hybrid-2upr-rpu"
-  std::string machine = {};          ///< what A, B, C words of a program mean: "xyzac-trt", "xyzbc-trt", "xyzac-head",
-                                     ///< "xyzbc-head"; empty where not said
-  Rotary rotary = Rotary::machine;   ///< how the axis goes where those words turn
-  double redundant_gamma_rad = 0.0;  ///< turn of the flange about the tool's axis, robot::ToolPose
-  bool gamma_given = false;          ///< the file says so; else it is free to choose where a stage can
-  std::vector<double> start_joints = {};  ///< where the arm stands first [rad]; empty where not said
-  EndEffector end_effector = {};          ///< for exported programs
-  std::vector<std::string> notes = {};    ///< sentences for the user
+  std::string machine = {};  ///< what A, B, C words of a program mean: "xyzac-trt", "xyzbc-trt", "xyzac-head",
+                             ///< "xyzbc-head"; empty where not said
+  program::Rotary rotary = program::Rotary::machine;  ///< how the axis goes where those words turn
+  double redundant_gamma_rad = 0.0;                   ///< turn of the flange about the tool's axis, robot::ToolPose
+  bool gamma_given = false;                           ///< the file says so; else it is free to choose where a stage can
+  std::vector<double> start_joints = {};              ///< where the arm stands first [rad]; empty where not said
+  path::EndEffector end_effector = {};                ///< for exported programs
+  std::vector<std::string> notes = {};                ///< sentences for the user
 };
 
 /// What kinds of robots a reader of the cell can use.
@@ -41,6 +41,6 @@ enum class Robots { serial, any };
 [[nodiscard]] ROBOMILL_API std::unique_ptr<robot::Kinematics> kinematics(const CellFile& file);
 
 /// How programs of the cell are read.
-[[nodiscard]] ROBOMILL_API ProgramReading program_reading(const CellFile& file);
+[[nodiscard]] ROBOMILL_API program::ProgramReading program_reading(const CellFile& file);
 
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

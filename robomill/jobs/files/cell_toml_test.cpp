@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 namespace {
 
 using robomill::test::Folder;
@@ -65,8 +65,8 @@ TEST(CellToml, TakesIdentifiedStiffness) {
   robot::IdentifiedStiffness found;
   for (const robot::Joint& joint : arm.joints)
     found.joints.push_back({.stiffness = joint.stiffness, .identifiable = true});
-  const CellFile cell =
-      read_cell(folder.file("cell.toml", stiffness_toml(found, arm) + "dh = [{ a_mm = 1 }, {}, {}, {}, {}, {}]\n"));
+  const CellFile cell = read_cell(
+      folder.file("cell.toml", robot::stiffness_toml(found, arm) + "dh = [{ a_mm = 1 }, {}, {}, {}, {}, {}]\n"));
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(cell.cell.arm.joints[i].stiffness, arm.joints[i].stiffness, 1e-5 * arm.joints[i].stiffness);
   }
@@ -153,7 +153,7 @@ TEST(CellToml, ReadsWhatAControllerMustKnowOfTheSpindle) {
   };
   EXPECT_FALSE(read("").end_effector.mass_kg.has_value());
   EXPECT_FALSE(read("").end_effector.spindle.given());
-  const EndEffector end =
+  const path::EndEffector end =
       read("number = 3\nload_number = 4\nname = \"tSpindle\"\nmass_kg = 12.5\ncenter_mm = [0, 10, 90]\n",
            "[spindle]\noutput = 7\ncoolant_output = \"doCoolant\"\nspin_up_s = 2\n")
           .end_effector;
@@ -196,13 +196,13 @@ TEST(CellToml, ReadsAUrdfBesideItAndItsListsStandFirst) {
 
 TEST(CellToml, SaysHowProgramsAreRead) {
   const Folder folder;
-  const ProgramReading given = program_reading(read_cell(folder.file("cell.toml", good)));
+  const program::ProgramReading given = program_reading(read_cell(folder.file("cell.toml", good)));
   EXPECT_EQ(given.machine, program::Machine::xyzac_trt);
-  EXPECT_EQ(given.rotary, Rotary::machine);
+  EXPECT_EQ(given.rotary, program::Rotary::machine);
   const std::string chosen = with("machine = \"xyzac-trt\"", "rotary = \"great-circle\"");
-  const ProgramReading shortest = program_reading(read_cell(folder.file("cell.toml", chosen)));
+  const program::ProgramReading shortest = program_reading(read_cell(folder.file("cell.toml", chosen)));
   EXPECT_FALSE(shortest.machine.has_value());
-  EXPECT_EQ(shortest.rotary, Rotary::great_circle);
+  EXPECT_EQ(shortest.rotary, program::Rotary::great_circle);
 }
 
 TEST(CellToml, SaysWhatIsWrongAndWhere) {
@@ -432,4 +432,4 @@ TEST(CellToml, DamagedFilesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

@@ -11,12 +11,12 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 namespace {
 
 /// One direction's mode of its own, x = F / (m (ω_n² - ω² + 2iζω_nω)): residue 1 / (2 i m ω_d), shared evenly by both
 /// vectors.
-modal::Mode read_inline_mode(TomlFile& file, const std::string& row, const std::string& member, Eigen::Index axis) {
+modal::Mode read_inline_mode(io::TomlFile& file, const std::string& row, const std::string& member, Eigen::Index axis) {
   double modal_mass_kg = 0.0;
   modal::Mode mode;
   for (const char* key : {"frequency_hz", "damping_ratio", "modal_mass_kg"}) file.require(row + key);
@@ -35,7 +35,7 @@ modal::Mode read_inline_mode(TomlFile& file, const std::string& row, const std::
 }
 
 /// Of its own modes a table gives x, y and z; those of which it says nothing, not even [], are none of the structure's.
-void keep_named_directions(const TomlFile& file, const std::string& table, modal::ModalModel& model) {
+void keep_named_directions(const io::TomlFile& file, const std::string& table, modal::ModalModel& model) {
   std::vector<Eigen::Index> named;
   std::vector<modal::Dof> dofs;
   for (std::size_t i = 0; i < model.responses.size(); ++i) {
@@ -52,7 +52,7 @@ void keep_named_directions(const TomlFile& file, const std::string& table, modal
 
 }  // namespace
 
-void read_mill(TomlFile& file, cutting::FlatEndMill& tool) {
+void read_mill(io::TomlFile& file, cutting::FlatEndMill& tool) {
   file.integer("tool.teeth", "teeth", tool.teeth);
   file.number("tool.diameter_mm", "diameter_m", units::mm, tool.diameter_m);
   if (file.is_number("tool.helix_deg")) {
@@ -66,7 +66,7 @@ void read_mill(TomlFile& file, cutting::FlatEndMill& tool) {
   file.locate([&] { tool.validate(); });
 }
 
-bool read_direction(TomlFile& file, cutting::MillingDirection& direction) {
+bool read_direction(io::TomlFile& file, cutting::MillingDirection& direction) {
   return file.choice<cutting::MillingDirection>("cut.direction",
                                                 {{"up", cutting::MillingDirection::up},
                                                  {"down", cutting::MillingDirection::down},
@@ -74,7 +74,7 @@ bool read_direction(TomlFile& file, cutting::MillingDirection& direction) {
                                                 direction);
 }
 
-bool read_radial_depth(TomlFile& file, double& radial_depth_m) {
+bool read_radial_depth(io::TomlFile& file, double& radial_depth_m) {
   if (file.has("cut.radial_depth_mm") && file.has("cut.stepover_mm")) {
     throw file.refuse("cut.stepover_mm", "must not stand beside radial_depth_mm", "They are two names of one thing");
   }
@@ -82,7 +82,7 @@ bool read_radial_depth(TomlFile& file, double& radial_depth_m) {
          file.number("cut.stepover_mm", "radial_depth_m", units::mm, radial_depth_m);
 }
 
-modal::MissingDirections read_missing_directions(TomlFile& file, const std::string& table, modal::ModalModel& own) {
+modal::MissingDirections read_missing_directions(io::TomlFile& file, const std::string& table, modal::ModalModel& own) {
   modal::MissingDirections out;
   file.boolean(table + ".equal_directions", out.equal);
   std::vector<std::string> names;
@@ -113,8 +113,8 @@ std::optional<std::string> complete_directions(modal::ModalModel& modes, modal::
   return in_words(said);
 }
 
-void read_structure(TomlFile& file, const std::string& table, std::filesystem::path& modes, std::filesystem::path& frf,
-                    modal::ModalModel& out) {
+void read_structure(io::TomlFile& file, const std::string& table, std::filesystem::path& modes,
+                    std::filesystem::path& frf, modal::ModalModel& out) {
   file.path(table + ".modes", modes);
   file.path(table + ".frf", frf);
   modal::ModalModel own;
@@ -133,4 +133,4 @@ void read_structure(TomlFile& file, const std::string& table, std::filesystem::p
   if (!own.modes.empty()) out = own;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

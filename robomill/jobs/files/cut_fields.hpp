@@ -9,21 +9,21 @@
 #include "robomill/modal/modes.hpp"
 
 /// What lobes.toml and forces.toml say alike.
-namespace robomill::formats {
+namespace robomill::jobs {
 
 /// [tool]: teeth, diameter, helix, pitch, runout; checked.
-void read_mill(TomlFile& file, cutting::FlatEndMill& tool);
+void read_mill(io::TomlFile& file, cutting::FlatEndMill& tool);
 
 /// cut.direction; false where it is absent.
-bool read_direction(TomlFile& file, cutting::MillingDirection& direction);
+bool read_direction(io::TomlFile& file, cutting::MillingDirection& direction);
 
 /// cut.radial_depth_mm, or stepover_mm; false where both are absent.
-bool read_radial_depth(TomlFile& file, double& radial_depth_m);
+bool read_radial_depth(io::TomlFile& file, double& radial_depth_m);
 
 /// equal_directions and rigid_directions of a table that holds the structure of a milling tool.
 /// @param own  modes of the table's own, which then know only the directions that it names; an empty list, y = [], says
 ///     that this one is rigid
-[[nodiscard]] modal::MissingDirections read_missing_directions(TomlFile& file, const std::string& table,
+[[nodiscard]] modal::MissingDirections read_missing_directions(io::TomlFile& file, const std::string& table,
                                                                modal::ModalModel& own);
 
 /// Takes the directions that modes, or else FRFs, do not know for what the file says.
@@ -34,7 +34,7 @@ bool read_radial_depth(TomlFile& file, double& radial_depth_m);
                                                              const std::string& where, const std::string& table);
 
 /// A table that holds a structure: a file of modes, a file of FRFs, or modes of its own in x, y and z.
-void read_structure(TomlFile& file, const std::string& table, std::filesystem::path& modes, std::filesystem::path& frf,
-                    modal::ModalModel& out);
+void read_structure(io::TomlFile& file, const std::string& table, std::filesystem::path& modes,
+                    std::filesystem::path& frf, modal::ModalModel& out);
 
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

@@ -11,10 +11,10 @@
 #include "robomill/jobs/files/cut_fields.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 namespace {
 
-void read_cutter(TomlFile& file, cutting::Cutter& cutter) {
+void read_cutter(io::TomlFile& file, cutting::Cutter& cutter) {
   file.require("tool.kind", "\"flat-end\", \"ball-end\", \"bull-nose\" or \"general\"");
   file.choice<cutting::CutterKind>("tool.kind",
                                    {{"flat-end", cutting::CutterKind::flat_end},
@@ -36,14 +36,14 @@ void read_cutter(TomlFile& file, cutting::Cutter& cutter) {
 }
 
 /// The radius of a curved surface, > 0 where it is convex, to its curvature.
-void read_radius(TomlFile& file, const char* key, double& curvature_per_m) {
+void read_radius(io::TomlFile& file, const char* key, double& curvature_per_m) {
   double radius_m = 0.0;
   if (!file.number(key, "surface_radius_m", units::mm, radius_m)) return;
   if (radius_m == 0.0) throw file.refuse(key, "must not be 0", "> 0 is convex, < 0 concave; a plane has none");
   curvature_per_m = 1.0 / radius_m;
 }
 
-void read_cut(TomlFile& file, ForcesJob job, ForcesFile& out) {
+void read_cut(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
   const bool alone = job == ForcesJob::revolution;
   file.number("cut.axial_depth_mm", "axial_depth_m", units::mm, out.cut.axial_depth_m);
   const bool radial = read_radial_depth(file, out.cut.radial_depth_m);
@@ -84,7 +84,7 @@ void read_cut(TomlFile& file, ForcesJob job, ForcesFile& out) {
   }
 }
 
-void read_robot(TomlFile& file, ForcesJob job, ForcesFile& out) {
+void read_robot(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
   if (!file.has("robot")) return;
   file.path("robot.cell", out.cell);
   file.numbers("robot.joints_deg", "joints_rad", units::deg, out.joints_rad);
@@ -102,7 +102,7 @@ void read_robot(TomlFile& file, ForcesJob job, ForcesFile& out) {
 }
 
 template <class Vector>
-void read_point(TomlFile& file, const std::string& key, const std::string& member, Vector& out) {
+void read_point(io::TomlFile& file, const std::string& key, const std::string& member, Vector& out) {
   std::vector<double> values;
   file.require(key);
   file.numbers(key, member, units::mm, values);
@@ -113,7 +113,7 @@ void read_point(TomlFile& file, const std::string& key, const std::string& membe
 }
 
 /// The axis of a round stock, x and y; 0, 0 where it is absent.
-void read_round(TomlFile& file, cutting::Stock& stock) {
+void read_round(io::TomlFile& file, cutting::Stock& stock) {
   if (file.has("stock.center_mm")) read_point(file, "stock.center_mm", "center_m", stock.center_m);
   if (stock.shape == cutting::Stock::Shape::cylinder) {
     for (const char* key : {"stock.radius_mm", "stock.bottom_mm", "stock.top_mm"}) file.require(key);
@@ -132,7 +132,7 @@ void read_round(TomlFile& file, cutting::Stock& stock) {
   for (std::size_t i = 0; i < radius.size(); ++i) stock.outline_m.emplace_back(radius[i], height[i]);
 }
 
-void read_stock(TomlFile& file, ForcesFile& out) {
+void read_stock(io::TomlFile& file, ForcesFile& out) {
   using Shape = cutting::Stock::Shape;
   file.number("stock.dexel_mm", "dexel_m", units::mm, out.dexel_m);
   if (!(out.dexel_m > 0.0)) throw file.refuse("stock.dexel_mm", "must be > 0");
@@ -161,13 +161,13 @@ void read_stock(TomlFile& file, ForcesFile& out) {
   out.stock = stock;
 }
 
-ForcesFile read(TomlFile& file, const std::filesystem::path& path, ForcesJob job) {
+ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob job) {
   ForcesFile out;
   out.path = path;
   out.job = job;
   read_cutter(file, out.cutter);
   read_cut(file, job, out);
-  out.coefficients = read_coefficient_table(file);
+  out.coefficients = cutting::read_coefficient_table(file);
   read_stock(file, out);
   file.integer("forces.steps", "steps", out.force.steps);
   file.integer("forces.slices", "slices", out.slices);
@@ -199,7 +199,7 @@ ForcesFile read(TomlFile& file, const std::filesystem::path& path, ForcesJob job
     read_structure(file, table, modes, frf, model);
     if (table == "dynamics") said = read_missing_directions(file, table, model);
     if (!frf.empty()) throw file.refuse(table + ".frf", "must be modes here", "Fit them: robomill modes");
-    if (!modes.empty()) model = read_modes(modes);
+    if (!modes.empty()) model = modal::read_modes(modes);
   };
   structure("dynamics", out.dynamics);
   modal::FrfSet none;
@@ -213,7 +213,7 @@ ForcesFile read(TomlFile& file, const std::filesystem::path& path, ForcesJob job
 
 InvalidInput ForcesFile::in_its_words(const InvalidInput& error) const {
   if (!error.parts().where.empty()) return error;
-  TomlFile file(path);
+  io::TomlFile file(path);
   static_cast<void>(read(file, path, job));
   InvalidInput told = file.located(error);
   if (!told.parts().where.empty()) return told;
@@ -223,8 +223,8 @@ InvalidInput ForcesFile::in_its_words(const InvalidInput& error) const {
 }
 
 ForcesFile read_forces(const std::filesystem::path& path, ForcesJob job) {
-  TomlFile file(path);
+  io::TomlFile file(path);
   return read(file, path, job);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

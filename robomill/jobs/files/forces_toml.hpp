@@ -12,7 +12,7 @@
 #include "robomill/cutting/workpiece.hpp"
 #include "robomill/modal/modes.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 
 /// For which of the verb's two jobs the file is read: what the other one needs may be missing.
 enum class ForcesJob { revolution, program };
@@ -55,4 +55,4 @@ struct ForcesFile {
 [[nodiscard]] ROBOMILL_API ForcesFile read_forces(const std::filesystem::path& path,
                                                   ForcesJob job = ForcesJob::revolution);
 
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

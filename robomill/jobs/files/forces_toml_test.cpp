@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 namespace {
 
 using robomill::test::Folder;
@@ -139,4 +139,4 @@ TEST(ForcesToml, DamagedFilesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

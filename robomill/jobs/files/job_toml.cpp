@@ -7,10 +7,10 @@
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 namespace {
 
-void read_sources(TomlFile& file, Job& job) {
+void read_sources(io::TomlFile& file, Job& job) {
   file.text("job.title", job.title);
   file.path("job.hits", job.hits);
   file.path("job.modes", job.modes);
@@ -53,7 +53,7 @@ void read_sources(TomlFile& file, Job& job) {
   file.require("job.lobes", "It names the cut: lobes.toml");
 }
 
-void read_limits(TomlFile& file, Job& job) {
+void read_limits(io::TomlFile& file, Job& job) {
   file.number("tool.max_axial_depth_mm", "max_axial_depth_m", units::mm, job.max_axial_depth_m);
   file.number("spindle.max_speed_rpm", "max_spindle_speed_rad_per_s", units::rpm, job.max_spindle_speed_rad_per_s);
   file.number("spindle.min_speed_rpm", "min_spindle_speed_rad_per_s", units::rpm, job.min_spindle_speed_rad_per_s);
@@ -73,7 +73,7 @@ void read_limits(TomlFile& file, Job& job) {
   }
 }
 
-void read_cuts(TomlFile& file, Job& job) {
+void read_cuts(io::TomlFile& file, Job& job) {
   for (std::size_t i = 0; i < file.tables("cuts"); ++i) {
     const std::string row = "cuts[" + std::to_string(i) + "].";
     const std::string member = "cuts[" + std::to_string(i + 1) + "].";
@@ -136,14 +136,14 @@ void Job::validate() const {
 }
 
 Job read_job(const std::filesystem::path& path) {
-  TomlFile file(path);
+  io::TomlFile file(path);
   Job job{.file = path};
   read_sources(file, job);
   read_limits(file, job);
   read_cuts(file, job);
   std::filesystem::path more_cuts;
   if (file.path("job.cuts", more_cuts)) {
-    TomlFile cuts(more_cuts);
+    io::TomlFile cuts(more_cuts);
     cuts.locate([&] {
       Job only_cuts;
       read_cuts(cuts, only_cuts);
@@ -157,4 +157,4 @@ Job read_job(const std::filesystem::path& path) {
   return job;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

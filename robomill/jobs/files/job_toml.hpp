@@ -5,7 +5,7 @@
 
 #include "robomill/modal/directions.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 
 /// What a machinist saw and measured at one test cut.
 struct TestCut {
@@ -59,4 +59,4 @@ struct Job {
 /// @throws InvalidInput with file, line, key and value
 [[nodiscard]] Job read_job(const std::filesystem::path& path);
 
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

@@ -8,7 +8,7 @@
 #include "robomill/base/units.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 namespace {
 
 class JobToml : public testing::Test {
@@ -108,4 +108,4 @@ TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

@@ -16,11 +16,11 @@
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 namespace {
 
 /// What a drill needs; its lips are the tool's teeth, and in the cut all round.
-void read_drilling(TomlFile& file, LobesFile& out) {
+void read_drilling(io::TomlFile& file, LobesFile& out) {
   for (const char* key : {"tool.pitch_deg", "tool.runout_um", "process_damping", "speed_variation"}) {
     if (file.has(key)) throw file.refuse(key, "is no part of drilling");
   }
@@ -33,7 +33,7 @@ void read_drilling(TomlFile& file, LobesFile& out) {
   out.problem.milling.immersion = {.entry_rad = 0.0, .exit_rad = std::numbers::pi};
 }
 
-void read_cut(TomlFile& file, LobesFile& out) {
+void read_cut(io::TomlFile& file, LobesFile& out) {
   cutting::Milling& milling = out.problem.milling;
   file.choice<bool>("cut.kind", {{"milling", false}, {"drilling", true}}, out.drilling);
   if (out.drilling) {
@@ -79,10 +79,10 @@ cutting::ForceCoefficients of_the_side(const cutting::MillingCoefficients& k, do
           .radial_edge_n_per_m = stretch * value(k.radial_edge_n_per_m)};
 }
 
-void read_coefficients_of(TomlFile& file, const cutting::FlatEndMill& tool, cutting::ForceCoefficients& k) {
+void read_coefficients_of(io::TomlFile& file, const cutting::FlatEndMill& tool, cutting::ForceCoefficients& k) {
   const char* const named = file.has("coefficients.file") ? "coefficients.file" : "coefficients.material";
   if (file.has(named)) {
-    k = of_the_side(read_coefficient_table(file), tool.helix_rad);
+    k = of_the_side(cutting::read_coefficient_table(file), tool.helix_rad);
     try {
       k.validate();
     } catch (const InvalidInput& error) {
@@ -99,7 +99,7 @@ void read_coefficients_of(TomlFile& file, const cutting::FlatEndMill& tool, cutt
 }
 
 /// What pushes on the teeth: coefficients, process damping; and how the spindle turns.
-void read_forces(TomlFile& file, cutting::Milling& milling) {
+void read_forces(io::TomlFile& file, cutting::Milling& milling) {
   read_coefficients_of(file, milling.tool, milling.coefficients);
   cutting::ProcessDamping& damping = milling.process_damping;
   file.number("process_damping.indentation_n_per_mm3", "indentation_n_per_m3", units::n_per_mm3,
@@ -111,14 +111,14 @@ void read_forces(TomlFile& file, cutting::Milling& milling) {
   file.locate([&] { milling.validate(); });
 }
 
-void read_pair(TomlFile& file, const char* key, const char* member, double factor, std::array<double, 2>& out) {
+void read_pair(io::TomlFile& file, const char* key, const char* member, double factor, std::array<double, 2>& out) {
   std::vector<double> values;
   if (!file.numbers(key, member, factor, values)) return;
   if (values.size() != 2) throw file.refuse(key, "must be [from, to]");
   out = {values[0], values[1]};
 }
 
-void read_chart(TomlFile& file, stability::LobesOptions& options) {
+void read_chart(io::TomlFile& file, stability::LobesOptions& options) {
   file.require("lobes.spindle_speed_rpm", "[from, to]");
   file.require("lobes.axial_depth_mm", "[from, to]");
   read_pair(file, "lobes.spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm, options.spindle_speed_rad_per_s);
@@ -144,7 +144,7 @@ void read_chart(TomlFile& file, stability::LobesOptions& options) {
   file.locate([&] { options.validate(); });
 }
 
-void read_uncertainty(TomlFile& file, stability::Uncertainty& u) {
+void read_uncertainty(io::TomlFile& file, stability::Uncertainty& u) {
   if (!file.has("uncertainty")) return;
   u.samples = 200;
   file.integer("uncertainty.samples", "samples", u.samples);
@@ -162,7 +162,7 @@ void read_uncertainty(TomlFile& file, stability::Uncertainty& u) {
   file.locate([&] { u.validate(); });
 }
 
-LobesFile read(TomlFile& file, const std::filesystem::path& path) {
+LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   LobesFile out;
   out.path = path;
   read_mill(file, out.problem.milling.tool);
@@ -198,7 +198,7 @@ void LobesFile::drop_dynamics() {
 }
 
 void LobesFile::validate() const {
-  TomlFile file(path);
+  io::TomlFile file(path);
   static_cast<void>(read(file, path));
   if (problem.dynamics.modes.empty() && problem.measured.frfs.empty()) {
     throw file.refuse("dynamics", "must name the structure: modes, frf, or x and y");
@@ -207,15 +207,15 @@ void LobesFile::validate() const {
 }
 
 LobesFile read_lobes(const std::filesystem::path& path) {
-  TomlFile file(path);
+  io::TomlFile file(path);
   return read(file, path);
 }
 
 void load_dynamics(LobesFile& file) {
-  if (!file.modes.empty()) file.problem.dynamics = read_modes(file.modes);
-  if (!file.workpiece_modes.empty()) file.problem.workpiece_dynamics = read_modes(file.workpiece_modes);
+  if (!file.modes.empty()) file.problem.dynamics = modal::read_modes(file.modes);
+  if (!file.workpiece_modes.empty()) file.problem.workpiece_dynamics = modal::read_modes(file.workpiece_modes);
   const auto measured = [&file](const std::filesystem::path& path) {
-    FrfFile frfs = read_frfs({path});
+    modal::FrfFile frfs = modal::read_frfs({path});
     file.notes.insert(file.notes.end(), frfs.notes.begin(), frfs.notes.end());
     if (frfs.added_decay_per_s > 0.0) {
       throw InvalidInput(path.string(), "still holds the damping of an exponential window",
@@ -231,4 +231,4 @@ void load_dynamics(LobesFile& file) {
   if (words) file.notes.push_back(*words);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

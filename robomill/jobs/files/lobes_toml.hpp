@@ -10,7 +10,7 @@
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 
 /// lobes.toml. What it says of the structure is one of: nothing, a file of modes, a file of FRFs, or modes of its own.
 struct LobesFile {
@@ -47,4 +47,4 @@ struct LobesFile {
 ///     where milling needs a direction that was not measured and the file does not say what it is taken for
 ROBOMILL_API void load_dynamics(LobesFile& file);
 
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

@@ -16,7 +16,7 @@
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::jobs {
 namespace {
 
 const std::string good = R"([tool]
@@ -69,7 +69,7 @@ TEST(LobesToml, TakesCoefficientsFromAFileOrAMaterial) {
   const auto read = [&](const std::string& table) {
     return read_lobes(folder.file("lobes.toml", with(numbers, table))).problem.milling.coefficients;
   };
-  SlotsFile slots;
+  cutting::SlotsFile slots;
   for (const double feed_m : {0.05e-3, 0.1e-3, 0.2e-3}) {
     const double a = 4.0 * 2e-3;  // teeth and depth
     slots.slots.push_back({.feed_per_tooth_m = feed_m,
@@ -78,7 +78,7 @@ TEST(LobesToml, TakesCoefficientsFromAFileOrAMaterial) {
                                             a / 4 * 700e6 * feed_m + a / std::numbers::pi * 20e3, 0.0}});
     slots.lines.push_back(slots.lines.size() + 2);
   }
-  folder.file("k.toml", slot_fit_toml(cutting::identify_from_slots(slots.slots, {.teeth = 4}), slots));
+  folder.file("k.toml", cutting::slot_fit_toml(cutting::identify_from_slots(slots.slots, {.teeth = 4}), slots));
   const cutting::ForceCoefficients found = read("file = \"k.toml\"\n");
   EXPECT_NEAR(found.tangential_n_per_m2, 700e6, 1.0);
   EXPECT_NEAR(found.radial_n_per_m2, 250e6, 1.0);
@@ -248,4 +248,4 @@ TEST(LobesToml, RefusesInTheFilesWords) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::jobs

@@ -3,23 +3,21 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/toml_file.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 
-modal::FitOptions read_fit_options(const std::filesystem::path& path) {
-  TomlFile file(path);
-  modal::FitOptions o;
-  file.choice<modal::FitMethod>(
-      "fit.method",
-      {{"hybrid", modal::FitMethod::hybrid}, {"pso", modal::FitMethod::pso}, {"lscf", modal::FitMethod::lscf}},
-      o.method);
-  file.choice<modal::Weighting>("fit.weighting",
-                                {{"automatic", modal::Weighting::automatic},
-                                 {"none", modal::Weighting::none},
-                                 {"relative", modal::Weighting::relative},
-                                 {"coherence", modal::Weighting::coherence},
-                                 {"deviation", modal::Weighting::deviation},
-                                 {"estimated", modal::Weighting::estimated}},
-                                o.weighting);
+FitOptions read_fit_options(const std::filesystem::path& path) {
+  io::TomlFile file(path);
+  FitOptions o;
+  file.choice<FitMethod>("fit.method",
+                         {{"hybrid", FitMethod::hybrid}, {"pso", FitMethod::pso}, {"lscf", FitMethod::lscf}}, o.method);
+  file.choice<Weighting>("fit.weighting",
+                         {{"automatic", Weighting::automatic},
+                          {"none", Weighting::none},
+                          {"relative", Weighting::relative},
+                          {"coherence", Weighting::coherence},
+                          {"deviation", Weighting::deviation},
+                          {"estimated", Weighting::estimated}},
+                         o.weighting);
   std::vector<double> band;
   if (file.numbers("fit.band_hz", "band_hz", 1.0, band)) {
     if (band.size() != 2 || !(band[0] < band[1]))
@@ -48,4 +46,4 @@ modal::FitOptions read_fit_options(const std::filesystem::path& path) {
   return o;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

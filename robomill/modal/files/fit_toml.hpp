@@ -4,10 +4,10 @@
 #include "robomill/base/export.hpp"
 #include "robomill/modal/fit.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 
 /// Reads how modes are to be fitted: the table [fit], whose keys are the members of FitOptions; band_hz = [low, high].
 /// @throws InvalidInput with file, line and key
-[[nodiscard]] ROBOMILL_API modal::FitOptions read_fit_options(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API FitOptions read_fit_options(const std::filesystem::path& path);
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

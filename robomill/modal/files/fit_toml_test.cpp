@@ -4,16 +4,16 @@
 
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
 TEST(FitToml, ReadsMethodBandAndNumbers) {
   const test::Folder folder;
-  const modal::FitOptions o = read_fit_options(folder.file(
+  const FitOptions o = read_fit_options(folder.file(
       "modes.toml",
       "[fit]\nmethod = \"lscf\"\nweighting = \"relative\"\nband_hz = [500, 3500]\nmodes = 6\nstable_mac = 0.9\n"));
-  EXPECT_EQ(o.method, modal::FitMethod::lscf);
-  EXPECT_EQ(o.weighting, modal::Weighting::relative);
+  EXPECT_EQ(o.method, FitMethod::lscf);
+  EXPECT_EQ(o.weighting, Weighting::relative);
   EXPECT_EQ(o.band_low_hz, 500.0);
   EXPECT_EQ(o.band_high_hz, 3500.0);
   EXPECT_EQ(o.modes, 6);
@@ -32,4 +32,4 @@ TEST(FitToml, RefusesInTheFilesWords) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::modal

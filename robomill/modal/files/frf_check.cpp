@@ -10,7 +10,7 @@
 
 #include "robomill/base/error.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
 constexpr Eigen::Index fewest_lines = 16;  // that say something
@@ -96,9 +96,9 @@ void check_content(FrfParts& parts) {
     const std::optional<Doubt> odd = doubt(frf);
     if (!odd) continue;
     if (!frf.stated) throw InvalidInput(file, odd->what, odd->why + name_the_columns);
-    const std::string name = frf.name ? " (" + modal::to_string(*frf.name) + ")" : "";
+    const std::string name = frf.name ? " (" + to_string(*frf.name) + ")" : "";
     parts.notes.push_back(fmt::format("{}{} {}. {}Check it before you use it", file, name, odd->what, odd->why));
   }
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -5,7 +5,7 @@
 #include "robomill/modal/files/frf_parts.hpp"
 
 /// Whether what was read as an FRF can be one.
-namespace robomill::formats {
+namespace robomill::modal {
 
 /// @throws InvalidInput with where, if these steps are those of a time record: an FRF with lines so near would need a
 ///     record of minutes
@@ -16,4 +16,4 @@ void require_frequencies(const Eigen::VectorXd& axis, const std::string& where);
 /// @throws InvalidInput with the likely content and what to write
 void check_content(FrfParts& parts);
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

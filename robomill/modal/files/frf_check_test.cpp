@@ -10,7 +10,7 @@
 #include "robomill/modal/files/frf_files.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
 /// One mode of 300 Hz, 3 % and 1e7 N/m.
@@ -51,7 +51,7 @@ class FrfCheck : public testing::Test {
   }
   /// Whether the text is that mode, whatever its columns.
   void expect_receptance(const std::string& text) {
-    const modal::FrfSet set = read(text).set;
+    const FrfSet set = read(text).set;
     for (Eigen::Index i = 0; i < set.frequency_hz.size(); ++i) {
       const std::complex<double> expected = receptance(set.frequency_hz(i));
       ASSERT_LT(std::abs(set.frfs[0].receptance(i) - expected), 1e-12 * std::abs(expected)) << text.substr(0, 60);
@@ -149,4 +149,4 @@ TEST_F(FrfCheck, ATimeRecordIsNoFrf) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -12,21 +12,21 @@
 #include "robomill/modal/files/frf_check.hpp"
 #include "robomill/modal/files/frf_parts.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
 constexpr double same_frequency = 1e-5;
 
 FrfParts read_parts(const std::filesystem::path& path) {
-  switch (format_of(path)) {
-    case Format::uff:
+  switch (io::format_of(path)) {
+    case io::Format::uff:
       return read_frf_uff(path);
-    case Format::csv:
-    case Format::text:
+    case io::Format::csv:
+    case io::Format::text:
       return read_frf_table(path);
-    case Format::mat:
+    case io::Format::mat:
       return read_frf_mat(path);
-    case Format::json:
+    case io::Format::json:
       return read_frf_json(path);
     default:
       break;
@@ -58,7 +58,7 @@ void integrate(FrfParts& parts) {
   const Eigen::VectorXd omega = 2.0 * std::numbers::pi * parts.frequency_hz;
   for (FrfPart& frf : parts.frfs) {
     if (!derived(frf) || frf.values.size() != omega.size()) continue;
-    const std::string name = frf.name ? " (" + modal::to_string(*frf.name) + ")" : "";
+    const std::string name = frf.name ? " (" + to_string(*frf.name) + ")" : "";
     parts.notes.push_back(parts.file.string() + name +
                           (frf.derivatives == 2 ? ": accelerance, divided by (iω)²" : ": mobility, divided by iω"));
     for (int i = 0; i < frf.derivatives; ++i) {
@@ -99,7 +99,7 @@ void give_names(std::vector<FrfPart*>& frfs, const std::vector<std::string>& as)
   std::copy_if(frfs.begin(), frfs.end(), std::back_inserter(unnamed), [](const FrfPart* f) { return !f->name; });
   if (as.empty()) {
     if (unnamed.size() == 1 && frfs.size() == 1)
-      unnamed.front()->name = modal::parse_frf_name("xx");
+      unnamed.front()->name = parse_frf_name("xx");
     else if (!unnamed.empty()) {
       throw InvalidInput("--as",
                          "must name the FRFs that the files leave unnamed (" + std::to_string(unnamed.size()) + ")",
@@ -113,7 +113,7 @@ void give_names(std::vector<FrfPart*>& frfs, const std::vector<std::string>& as)
                        "must be one for each FRF (" + std::to_string(frfs.size()) + ") or for each unnamed one (" +
                            std::to_string(unnamed.size()) + ")");
   }
-  for (std::size_t i = 0; i < as.size(); ++i) named[i]->name = modal::parse_frf_name(as[i]);
+  for (std::size_t i = 0; i < as.size(); ++i) named[i]->name = parse_frf_name(as[i]);
 }
 
 /// FRFs that all stand at one numbered point are those of the tip.
@@ -125,20 +125,20 @@ void number_less(std::vector<FrfPart*>& frfs, std::vector<std::string>& notes) {
   for (FrfPart* frf : frfs) frf->name->response.point = frf->name->excitation.point = 0;
 }
 
-void write_as(const std::filesystem::path& path, const modal::FrfSet& set, const FrfWriteOptions& options,
+void write_as(const std::filesystem::path& path, const FrfSet& set, const FrfWriteOptions& options,
               const std::string& json) {
   set.validate();
-  switch (format_of(path)) {
-    case Format::uff:
-      return write_file(path, frf_uff(set, options.binary_uff));
-    case Format::csv:
-      return write_file(path, frf_table(set, ','));
-    case Format::text:
-      return write_file(path, frf_table(set, '\t'));
-    case Format::mat:
+  switch (io::format_of(path)) {
+    case io::Format::uff:
+      return io::write_file(path, frf_uff(set, options.binary_uff));
+    case io::Format::csv:
+      return io::write_file(path, frf_table(set, ','));
+    case io::Format::text:
+      return io::write_file(path, frf_table(set, '\t'));
+    case io::Format::mat:
       return write_frf_mat(path, set);
-    case Format::json:
-      return write_file(path, json);
+    case io::Format::json:
+      return io::write_file(path, json);
     default:
       break;
   }
@@ -147,9 +147,9 @@ void write_as(const std::filesystem::path& path, const modal::FrfSet& set, const
 
 }  // namespace
 
-modal::FrfName frf_name_at(const std::string& where, std::string_view text) {
+FrfName frf_name_at(const std::string& where, std::string_view text) {
   try {
-    return modal::parse_frf_name(text);
+    return parse_frf_name(text);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
     parts.where = where;
@@ -196,12 +196,12 @@ FrfFile read_frfs(const std::vector<std::filesystem::path>& paths, const std::ve
   return out;
 }
 
-void write_frfs(const std::filesystem::path& path, const modal::FrfSet& set, const FrfWriteOptions& options) {
-  write_as(path, set, options, format_of(path) == Format::json ? frf_json(set) : "");
+void write_frfs(const std::filesystem::path& path, const FrfSet& set, const FrfWriteOptions& options) {
+  write_as(path, set, options, io::format_of(path) == io::Format::json ? frf_json(set) : "");
 }
 
-void write_frfs(const std::filesystem::path& path, const modal::FrfResult& result, const FrfWriteOptions& options) {
-  write_as(path, result.set, options, format_of(path) == Format::json ? frf_json(result) : "");
+void write_frfs(const std::filesystem::path& path, const FrfResult& result, const FrfWriteOptions& options) {
+  write_as(path, result.set, options, io::format_of(path) == io::Format::json ? frf_json(result) : "");
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -8,7 +8,7 @@
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/hits.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 
 /// How the note ends that tells of a file whose FRFs all stand at one numbered point: they have lost the number.
 constexpr std::string_view taken_as_tip = ": taken as the tip";
@@ -16,7 +16,7 @@ constexpr std::string_view taken_as_tip = ": taken as the tip";
 /// FRFs as files hold them, and what a reader of the result must know: data sets skipped, lines left out, units
 /// converted.
 struct FrfFile {
-  modal::FrfSet set;
+  FrfSet set;
   std::vector<std::string> notes = {};
   /// 1/τ of an exponential window whose damping is still in the FRFs (.json only); 0 where there is none.
   double added_decay_per_s = 0.0;
@@ -43,16 +43,15 @@ struct FrfWriteOptions {
 /// Writes FRFs with coherence and deviation, where known, as the ending says: .uff (.unv .uf), .csv, .txt, .mat, .json.
 /// The file appears whole or not at all.
 /// @throws InvalidInput if the set is not valid, the ending is unknown or the place cannot be written
-ROBOMILL_API void write_frfs(const std::filesystem::path& path, const modal::FrfSet& set,
-                             const FrfWriteOptions& options = {});
+ROBOMILL_API void write_frfs(const std::filesystem::path& path, const FrfSet& set, const FrfWriteOptions& options = {});
 /// The same of FRFs from hits: .json carries verdicts and grades too.
-ROBOMILL_API void write_frfs(const std::filesystem::path& path, const modal::FrfResult& result,
+ROBOMILL_API void write_frfs(const std::filesystem::path& path, const FrfResult& result,
                              const FrfWriteOptions& options = {});
 
 /// tip.json as text. @throws InvalidInput if the set is not valid
-[[nodiscard]] ROBOMILL_API std::string frf_json(const modal::FrfSet& set);
+[[nodiscard]] ROBOMILL_API std::string frf_json(const FrfSet& set);
 /// tip.json with verdicts, grades and notes.
-[[nodiscard]] ROBOMILL_API std::string frf_json(const modal::FrfResult& result);
+[[nodiscard]] ROBOMILL_API std::string frf_json(const FrfResult& result);
 /// What to know of FRFs that were predicted.
 struct FrfDoubts {
   std::vector<double> suspect_hz = {};     ///< lines where the measured holder would create energy
@@ -60,8 +59,8 @@ struct FrfDoubts {
   std::vector<std::string> notes = {};     ///< sentences for the user
 };
 /// tip.json with these.
-[[nodiscard]] ROBOMILL_API std::string frf_json(const modal::FrfSet& set, const FrfDoubts& doubts);
+[[nodiscard]] ROBOMILL_API std::string frf_json(const FrfSet& set, const FrfDoubts& doubts);
 /// Verdicts, grades and notes alone, as JSON text.
-[[nodiscard]] ROBOMILL_API std::string hits_json(const modal::FrfResult& result);
+[[nodiscard]] ROBOMILL_API std::string hits_json(const FrfResult& result);
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -14,24 +14,24 @@
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
-modal::FrfSet robot_frfs() {
-  modal::FrfSet set = modal::synthesize(data::robot_modes(), Eigen::VectorXd::LinSpaced(97, 5.0, 600.0));
-  for (modal::Frf& frf : set.frfs) {
+FrfSet robot_frfs() {
+  FrfSet set = synthesize(data::robot_modes(), Eigen::VectorXd::LinSpaced(97, 5.0, 600.0));
+  for (Frf& frf : set.frfs) {
     frf.coherence = Eigen::VectorXd::LinSpaced(97, 0.5, 1.0);
     frf.deviation = 1e-3 * frf.receptance.cwiseAbs();
   }
   return set;
 }
 
-void expect_same(const modal::FrfSet& read, const modal::FrfSet& written, double tolerance) {
+void expect_same(const FrfSet& read, const FrfSet& written, double tolerance) {
   ASSERT_EQ(read.frfs.size(), written.frfs.size());
   EXPECT_LT((read.frequency_hz - written.frequency_hz).norm(), 1e-6 * written.frequency_hz.norm());
-  for (const modal::Frf& frf : written.frfs) {
-    const modal::Frf* other = read.find(frf.name);
-    ASSERT_NE(other, nullptr) << modal::to_string(frf.name);
+  for (const Frf& frf : written.frfs) {
+    const Frf* other = read.find(frf.name);
+    ASSERT_NE(other, nullptr) << to_string(frf.name);
     EXPECT_LE((other->receptance - frf.receptance).norm(), tolerance * frf.receptance.norm());
     ASSERT_EQ(other->coherence.size(), frf.coherence.size());
     EXPECT_LE((other->coherence - frf.coherence).norm(), tolerance * frf.coherence.norm());
@@ -42,7 +42,7 @@ void expect_same(const modal::FrfSet& read, const modal::FrfSet& written, double
 
 TEST(FrfFiles, EveryFormatGivesTheSetBack) {
   const test::Folder folder;
-  const modal::FrfSet set = robot_frfs();
+  const FrfSet set = robot_frfs();
   for (const char* name : {"tip.csv", "tip.txt", "tip.mat", "tip.json"}) {
     write_frfs(folder.at(name), set);
     expect_same(read_frfs({folder.at(name)}).set, set, 0.0);
@@ -62,10 +62,10 @@ TEST(FrfFiles, EveryFormatGivesTheSetBack) {
 TEST(FrfFiles, PointsAndRotationsKeepTheirNames) {
   const test::Folder folder;
   const auto gives_back = [&](const std::vector<const char*>& names) {
-    modal::FrfSet set;
+    FrfSet set;
     set.frequency_hz = Eigen::Vector3d(1.0, 2.0, 3.0);
     for (const char* name : names) {
-      set.frfs.push_back({.name = modal::parse_frf_name(name), .receptance = Eigen::Vector3cd::Random()});
+      set.frfs.push_back({.name = parse_frf_name(name), .receptance = Eigen::Vector3cd::Random()});
       set.frfs.back().deviation = Eigen::Vector3d(1e-3, 2e-3, 3e-3);
     }
     for (const char* name : {"p.csv", "p.txt", "p.mat", "p.json", "p.uff"}) {
@@ -84,13 +84,13 @@ TEST(FrfFiles, PointsAndRotationsKeepTheirNames) {
 // Record 6 of data set 58 names directions 1 to 3 for translations and 4 to 6 for rotations; records 9 and 10 hold the
 // exponents of length, force and temperature.
 TEST(FrfFiles, UniversalFilesHoldRotationsAsTheFormatHasThem) {
-  modal::FrfSet set;
+  FrfSet set;
   set.frequency_hz = Eigen::Vector2d(1.0, 2.0);
   const auto text = [&](const char* name) {
-    set.frfs = {{.name = modal::parse_frf_name(name), .receptance = Eigen::Vector2cd(1.0, 2.0)}};
+    set.frfs = {{.name = parse_frf_name(name), .receptance = Eigen::Vector2cd(1.0, 2.0)}};
     const test::Folder folder;
     write_frfs(folder.at("a.uff"), set);
-    return read_file(folder.at("a.uff"));
+    return io::read_file(folder.at("a.uff"));
   };
   EXPECT_NE(text("ry:3mx").find(" NONE               0   5 NONE               3   4\n"), std::string::npos)
       << text("ry:3mx");
@@ -104,9 +104,9 @@ TEST(FrfFiles, HeaderlessColumnsTakeTheirNamesFromTheUser) {
   const test::Folder folder;
   const auto a = folder.file("a.txt", "0 7e-001 0\n1 1e-6 -2e-6\n2 3e-6 4e-6\n");
   const auto b = folder.file("b.txt", "0\t1\t0\n1\t5e-6\t6e-6\n2\t7e-6\t8e-6\n");
-  EXPECT_EQ(modal::to_string(read_frfs({a}).set.frfs[0].name), "xx");
-  const modal::FrfSet both = read_frfs({a, b}, {"xx", "yy"}).set;
-  EXPECT_EQ(both.find(modal::parse_frf_name("yy"))->receptance(2), std::complex<double>(7e-6, 8e-6));
+  EXPECT_EQ(to_string(read_frfs({a}).set.frfs[0].name), "xx");
+  const FrfSet both = read_frfs({a, b}, {"xx", "yy"}).set;
+  EXPECT_EQ(both.find(parse_frf_name("yy"))->receptance(2), std::complex<double>(7e-6, 8e-6));
   EXPECT_NE(test::refusal([&] { static_cast<void>(read_frfs({a, b})); }).find("--as"), std::string::npos);
   EXPECT_NE(test::refusal([&] {
               static_cast<void>(read_frfs({a, b}, {"xx", "xx"}));
@@ -126,7 +126,7 @@ TEST(FrfFiles, RefusesAxesThatDiffer) {
 // A sine of displacement X has the acceleration -ω² X.
 TEST(FrfFiles, AccelerancesBecomeReceptances) {
   const test::Folder folder;
-  UffFunction function;
+  io::UffFunction function;
   function.type = 4;
   function.is_complex = true;
   function.response_direction = -1;
@@ -136,7 +136,7 @@ TEST(FrfFiles, AccelerancesBecomeReceptances) {
   function.abscissa_axis = {.type = 18, .unit = "Hz"};
   function.numerator = {.type = 12, .unit = "m/s^2"};
   function.denominator = {.type = 13, .unit = "N"};
-  const FrfFile file = read_frfs({folder.file("a.uff", format_uff({function}, false))});
+  const FrfFile file = read_frfs({folder.file("a.uff", io::format_uff({function}, false))});
   ASSERT_EQ(file.set.frequency_hz.size(), 2);
   const double omega = 2 * std::numbers::pi * 10.0;
   const std::complex<double> expected = std::complex<double>(2.0, 1.0) / (omega * omega);
@@ -144,8 +144,8 @@ TEST(FrfFiles, AccelerancesBecomeReceptances) {
   EXPECT_FALSE(file.notes.empty());
 }
 
-UffFunction one_function() {
-  UffFunction function;
+io::UffFunction one_function() {
+  io::UffFunction function;
   function.type = 4;
   function.is_complex = true;
   function.response_direction = 1;
@@ -157,11 +157,11 @@ UffFunction one_function() {
 
 TEST(FrfFiles, UniversalFilesKeepTheirUnits) {
   const test::Folder folder;
-  const auto read = [&](const std::vector<UffFunction>& functions) {
-    return read_frfs({folder.file("a.uff", format_uff(functions, true))});
+  const auto read = [&](const std::vector<io::UffFunction>& functions) {
+    return read_frfs({folder.file("a.uff", io::format_uff(functions, true))});
   };
-  const auto first = [&](const UffFunction& function) { return read({function}).set.frfs[0].receptance(0); };
-  UffFunction function = one_function();
+  const auto first = [&](const io::UffFunction& function) { return read({function}).set.frfs[0].receptance(0); };
+  io::UffFunction function = one_function();
   // Nothing said: m/N, and a note.
   EXPECT_EQ(first(function), std::complex<double>(1.0));
   EXPECT_EQ(read({function}).notes.size(), 1U);
@@ -191,13 +191,13 @@ TEST(FrfFiles, UniversalFilesKeepTheirUnits) {
 TEST(FrfFiles, UniversalFilesKeepTheUnitsOfRotations) {
   const test::Folder folder;
   const auto first = [&](int response, int reference, bool say_exponents) {
-    UffFunction function = one_function();
+    io::UffFunction function = one_function();
     function.response_direction = response;
     function.reference_direction = reference;
     function.numerator = {.type = 8, .length_exponent = say_exponents && response < 4 ? 1 : 0};
     function.denominator = {.type = 13, .force_exponent = say_exponents ? 1 : 0};
     if (say_exponents && reference > 3) function.denominator.length_exponent = 1;
-    std::string text = format_uff({function}, false);
+    std::string text = io::format_uff({function}, false);
     const std::string metre = "  1.00000000000000000D+00";
     text.replace(text.find(metre), metre.size(), "  1.00000000000000000D+03");
     return read_frfs({folder.file("a.uff", text)}).set.frfs[0].receptance(0).real();
@@ -208,13 +208,13 @@ TEST(FrfFiles, UniversalFilesKeepTheUnitsOfRotations) {
     EXPECT_DOUBLE_EQ(first(5, 1, say_exponents), 1.0);
     EXPECT_DOUBLE_EQ(first(5, 5, say_exponents), 1e3);
   }
-  UffFunction function = one_function();
+  io::UffFunction function = one_function();
   function.response_direction = -5;
   function.reference_direction = 5;
   function.numerator = {.type = 8, .unit = "mrad"};
   function.denominator = {.type = 13, .unit = "N*mm"};
-  const FrfFile file = read_frfs({folder.file("a.uff", format_uff({function}, true))});
-  EXPECT_EQ(modal::to_string(file.set.frfs[0].name), "ry:my");
+  const FrfFile file = read_frfs({folder.file("a.uff", io::format_uff({function}, true))});
+  EXPECT_EQ(to_string(file.set.frfs[0].name), "ry:my");
   EXPECT_DOUBLE_EQ(file.set.frfs[0].receptance(0).real(), -1.0);
 }
 
@@ -243,8 +243,8 @@ TEST(FrfFiles, ColumnsOfRotationsKeepTheirUnits) {
 
 TEST(FrfFiles, UniversalFilesMixWhatTheyHold) {
   const test::Folder folder;
-  UffFunction receptance = one_function(), accelerance = one_function(), time = one_function(),
-              coherence = one_function();
+  io::UffFunction receptance = one_function(), accelerance = one_function(), time = one_function(),
+                  coherence = one_function();
   receptance.abscissa(0) = accelerance.abscissa(0) = coherence.abscissa(0) = 0.0;
   receptance.numerator = {.type = 8};
   accelerance.numerator = {.type = 12};
@@ -256,27 +256,28 @@ TEST(FrfFiles, UniversalFilesMixWhatTheyHold) {
   coherence.is_complex = false;
   coherence.response_direction = -2;
   coherence.values = Eigen::Vector3cd(0.25, 0.5, 1.0);
-  const FrfFile file = read_frfs({folder.file("a.uff", format_uff({coherence, receptance, time, accelerance}, false))});
+  const FrfFile file =
+      read_frfs({folder.file("a.uff", io::format_uff({coherence, receptance, time, accelerance}, false))});
   // The line at 0 Hz goes for all.
   ASSERT_EQ(file.set.frequency_hz.size(), 2);
-  EXPECT_EQ(file.set.find(modal::parse_frf_name("xx"))->receptance(0), std::complex<double>(2.0, 1.0));
-  EXPECT_EQ(file.set.find(modal::parse_frf_name("yx"))->coherence, Eigen::Vector2d(0.5, 1.0));
+  EXPECT_EQ(file.set.find(parse_frf_name("xx"))->receptance(0), std::complex<double>(2.0, 1.0));
+  EXPECT_EQ(file.set.find(parse_frf_name("yx"))->coherence, Eigen::Vector2d(0.5, 1.0));
   EXPECT_EQ(file.notes.size(), 3U);
   accelerance.abscissa *= 1.01;
   EXPECT_NE(test::refusal([&] {
-              static_cast<void>(read_frfs({folder.file("a.uff", format_uff({receptance, accelerance}, false))}));
+              static_cast<void>(read_frfs({folder.file("a.uff", io::format_uff({receptance, accelerance}, false))}));
             }).find("has other frequencies than the FRF before it"),
             std::string::npos);
 }
 
 TEST(FrfFiles, UniversalFilesWithoutDirectionsTakeNamesFromTheUser) {
   const test::Folder folder;
-  UffFunction function = one_function();
+  io::UffFunction function = one_function();
   function.response_direction = function.reference_direction = 0;
-  const auto path = folder.file("a.uff", format_uff({function, function}, false));
+  const auto path = folder.file("a.uff", io::format_uff({function, function}, false));
   EXPECT_NE(test::refusal([&] { static_cast<void>(read_frfs({path})); }).find("--as"), std::string::npos);
-  EXPECT_NE(read_frfs({path}, {"xx", "yy"}).set.find(modal::parse_frf_name("yy")), nullptr);
-  EXPECT_EQ(modal::to_string(read_frfs({folder.file("b.uff", format_uff({function}, false))}).set.frfs[0].name), "xx");
+  EXPECT_NE(read_frfs({path}, {"xx", "yy"}).set.find(parse_frf_name("yy")), nullptr);
+  EXPECT_EQ(to_string(read_frfs({folder.file("b.uff", io::format_uff({function}, false))}).set.frfs[0].name), "xx");
 }
 
 TEST(FrfFiles, ColumnsKeepTheirUnits) {
@@ -306,16 +307,16 @@ TEST(FrfFiles, ColumnsKeepTheirUnits) {
 
 TEST(FrfFiles, OneNumberedPointIsTheTip) {
   const test::Folder folder;
-  modal::FrfSet set;
+  FrfSet set;
   set.frequency_hz = Eigen::Vector2d(1.0, 2.0);
-  set.frfs.push_back({.name = modal::parse_frf_name("4x:4x"), .receptance = Eigen::Vector2cd(1.0, 2.0)});
+  set.frfs.push_back({.name = parse_frf_name("4x:4x"), .receptance = Eigen::Vector2cd(1.0, 2.0)});
   write_frfs(folder.at("p.json"), set);
   const FrfFile file = read_frfs({folder.at("p.json")});
-  EXPECT_EQ(modal::to_string(file.set.frfs[0].name), "xx");
+  EXPECT_EQ(to_string(file.set.frfs[0].name), "xx");
   EXPECT_NE(file.notes.back().find("point 4"), std::string::npos);
-  set.frfs.push_back({.name = modal::parse_frf_name("4ry:4x"), .receptance = Eigen::Vector2cd(1.0, 2.0)});
+  set.frfs.push_back({.name = parse_frf_name("4ry:4x"), .receptance = Eigen::Vector2cd(1.0, 2.0)});
   write_frfs(folder.at("p.uff"), set);
-  EXPECT_NE(read_frfs({folder.at("p.uff")}).set.find(modal::parse_frf_name("ry:x")), nullptr);
+  EXPECT_NE(read_frfs({folder.at("p.uff")}).set.find(parse_frf_name("ry:x")), nullptr);
 }
 
 TEST(FrfFiles, RefusesWhatCannotBeAnFrf) {
@@ -338,10 +339,10 @@ TEST(FrfFiles, RefusesWhatCannotBeAnFrf) {
 // Cut off or changed at any place, a file is refused or read, and never anything worse.
 TEST(FrfFiles, SurviveMutations) {
   const test::Folder folder;
-  const modal::FrfSet set = robot_frfs();
+  const FrfSet set = robot_frfs();
   for (const char* name : {"m.csv", "m.json", "m.uff", "m.mat"}) {
     write_frfs(folder.at(name), set);
-    const std::string good = read_file(folder.at(name));
+    const std::string good = io::read_file(folder.at(name));
     Random random(7);
     for (int i = 0; i < test::seeds(500); ++i) {
       try {
@@ -354,4 +355,4 @@ TEST(FrfFiles, SurviveMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::modal

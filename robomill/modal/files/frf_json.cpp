@@ -4,81 +4,81 @@
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/frf_parts.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
-Json set_json(const modal::FrfSet& set) {
+io::Json set_json(const FrfSet& set) {
   set.validate();
-  Json json;
-  json["frequency_hz"] = numbers(set.frequency_hz);
-  json["receptance_m_per_n"] = Json::object();
-  json["coherence"] = Json::object();
-  json["deviation_m_per_n"] = Json::object();
-  for (const modal::Frf& frf : set.frfs) {
-    const std::string name = modal::to_string(frf.name);
-    json["receptance_m_per_n"][name] = complex_numbers(frf.receptance);
-    if (frf.coherence.size() > 0) json["coherence"][name] = numbers(frf.coherence);
-    if (frf.deviation.size() > 0) json["deviation_m_per_n"][name] = numbers(frf.deviation);
+  io::Json json;
+  json["frequency_hz"] = io::numbers(set.frequency_hz);
+  json["receptance_m_per_n"] = io::Json::object();
+  json["coherence"] = io::Json::object();
+  json["deviation_m_per_n"] = io::Json::object();
+  for (const Frf& frf : set.frfs) {
+    const std::string name = to_string(frf.name);
+    json["receptance_m_per_n"][name] = io::complex_numbers(frf.receptance);
+    if (frf.coherence.size() > 0) json["coherence"][name] = io::numbers(frf.coherence);
+    if (frf.deviation.size() > 0) json["deviation_m_per_n"][name] = io::numbers(frf.deviation);
   }
   return json;
 }
 
-Json peaks_json(const std::vector<modal::FrfPeak>& peaks) {
-  Json rows = Json::array();
-  for (const modal::FrfPeak& peak : peaks) {
+io::Json peaks_json(const std::vector<FrfPeak>& peaks) {
+  io::Json rows = io::Json::array();
+  for (const FrfPeak& peak : peaks) {
     rows.push_back(
-        {{"frequency_hz", number(peak.frequency_hz)}, {"receptance_m_per_n", number(peak.receptance_m_per_n)}});
+        {{"frequency_hz", io::number(peak.frequency_hz)}, {"receptance_m_per_n", io::number(peak.receptance_m_per_n)}});
   }
   return rows;
 }
 
-Json grade_json(const modal::FrfGrade& grade) {
-  return {{"grade", modal::to_string(grade.grade)},
+io::Json grade_json(const FrfGrade& grade) {
+  return {{"grade", to_string(grade.grade)},
           {"hits", grade.hits},
-          {"mean_coherence", number(grade.mean_coherence)},
-          {"relative_noise", number(grade.relative_noise)},
-          {"reciprocity_error", number(grade.reciprocity_error)},
-          {"excited_band_hz", Json::array({number(grade.excited_low_hz), number(grade.excited_high_hz)})},
-          {"lowest_trustworthy_frequency_hz", number(grade.lowest_trustworthy_frequency_hz)},
+          {"mean_coherence", io::number(grade.mean_coherence)},
+          {"relative_noise", io::number(grade.relative_noise)},
+          {"reciprocity_error", io::number(grade.reciprocity_error)},
+          {"excited_band_hz", io::Json::array({io::number(grade.excited_low_hz), io::number(grade.excited_high_hz)})},
+          {"lowest_trustworthy_frequency_hz", io::number(grade.lowest_trustworthy_frequency_hz)},
           {"peaks", peaks_json(grade.peaks)},
           {"faults", grade.faults},
           {"remedies", grade.remedies}};
 }
 
-void add_hits(Json& json, const modal::FrfResult& result) {
-  json["hits"] = Json::array();
-  for (const modal::HitVerdict& hit : result.hits) {
+void add_hits(io::Json& json, const FrfResult& result) {
+  json["hits"] = io::Json::array();
+  for (const HitVerdict& hit : result.hits) {
     json["hits"].push_back({{"file", hit.file},
                             {"accepted", hit.accepted},
                             {"reasons", hit.reasons},
-                            {"peak_force_n", number(hit.peak_force_n)},
-                            {"pulse_width_s", number(hit.pulse_width_s)},
-                            {"second_pulse_ratio", number(hit.second_pulse_ratio)}});
+                            {"peak_force_n", io::number(hit.peak_force_n)},
+                            {"pulse_width_s", io::number(hit.pulse_width_s)},
+                            {"second_pulse_ratio", io::number(hit.second_pulse_ratio)}});
   }
-  json["grades"] = Json::object();
-  for (const modal::FrfGrade& grade : result.grades) json["grades"][modal::to_string(grade.name)] = grade_json(grade);
-  json["lowest_trustworthy_frequency_hz"] = number(result.lowest_trustworthy_frequency_hz);
-  json["added_decay_per_s"] = number(result.added_decay_removed ? 0.0 : result.added_decay_per_s);
+  json["grades"] = io::Json::object();
+  for (const FrfGrade& grade : result.grades) json["grades"][to_string(grade.name)] = grade_json(grade);
+  json["lowest_trustworthy_frequency_hz"] = io::number(result.lowest_trustworthy_frequency_hz);
+  json["added_decay_per_s"] = io::number(result.added_decay_removed ? 0.0 : result.added_decay_per_s);
   json["notes"] = result.notes;
 }
 
 /// root[key][name], where there is one.
-Eigen::VectorXd optional_numbers(const JsonNode& root, const char* key, const std::string& name) {
+Eigen::VectorXd optional_numbers(const io::JsonNode& root, const char* key, const std::string& name) {
   if (!root.has(key) || !root.at(key).has(name.c_str())) return {};
-  const JsonNode node = root.at(key).at(name);
+  const io::JsonNode node = root.at(key).at(name);
   return node.json().is_null() ? Eigen::VectorXd() : node.numbers();
 }
 
 }  // namespace
 
 FrfParts read_frf_json(const std::filesystem::path& path) {
-  const Json json = read_json(path);
-  const JsonNode root(json, path.string());
+  const io::Json json = io::read_json(path);
+  const io::JsonNode root(json, path.string());
   FrfParts out{.file = path, .frequency_hz = root.at("frequency_hz").numbers()};
-  const JsonNode receptances = root.at("receptance_m_per_n");
+  const io::JsonNode receptances = root.at("receptance_m_per_n");
   receptances.require_object();
   for (const auto& item : receptances.json().items()) {
-    const JsonNode node = receptances.at(item.key());
+    const io::JsonNode node = receptances.at(item.key());
     const Eigen::VectorXd re = node.at("re").numbers();
     const Eigen::VectorXd im = node.at("im").numbers();
     if (re.size() != im.size()) throw node.refuse("must have as many real as imaginary parts");
@@ -96,28 +96,28 @@ FrfParts read_frf_json(const std::filesystem::path& path) {
   return out;
 }
 
-std::string frf_json(const modal::FrfSet& set) {
-  return dump(set_json(set));
+std::string frf_json(const FrfSet& set) {
+  return io::dump(set_json(set));
 }
 
-std::string frf_json(const modal::FrfResult& result) {
-  Json json = set_json(result.set);
+std::string frf_json(const FrfResult& result) {
+  io::Json json = set_json(result.set);
   add_hits(json, result);
-  return dump(json);
+  return io::dump(json);
 }
 
-std::string frf_json(const modal::FrfSet& set, const FrfDoubts& doubts) {
-  Json json = set_json(set);
+std::string frf_json(const FrfSet& set, const FrfDoubts& doubts) {
+  io::Json json = set_json(set);
   json["suspect_hz"] = doubts.suspect_hz;
   json["unreliable_hz"] = doubts.unreliable_hz;
   json["notes"] = doubts.notes;
-  return dump(json);
+  return io::dump(json);
 }
 
-std::string hits_json(const modal::FrfResult& result) {
-  Json json = Json::object();
+std::string hits_json(const FrfResult& result) {
+  io::Json json = io::Json::object();
   add_hits(json, result);
-  return dump(json);
+  return io::dump(json);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -8,11 +8,11 @@
 
 #include "robomill/modal/frf.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 
 /// One FRF of a file, which may leave it unnamed.
 struct FrfPart {
-  std::optional<modal::FrfName> name = {};
+  std::optional<FrfName> name = {};
   Eigen::VectorXcd values = {};                    ///< receptance, mobility or accelerance in SI
   Eigen::VectorXd coherence = {}, deviation = {};  ///< empty where the file has none; deviation as values
   int derivatives = 0;                             ///< 0 receptance, 1 mobility, 2 accelerance
@@ -39,11 +39,11 @@ struct FrfParts {
 /// tip.json
 [[nodiscard]] FrfParts read_frf_json(const std::filesystem::path& path);
 
-[[nodiscard]] std::string frf_table(const modal::FrfSet& set, char separator);
-[[nodiscard]] std::string frf_uff(const modal::FrfSet& set, bool binary);
-void write_frf_mat(const std::filesystem::path& path, const modal::FrfSet& set);
+[[nodiscard]] std::string frf_table(const FrfSet& set, char separator);
+[[nodiscard]] std::string frf_uff(const FrfSet& set, bool binary);
+void write_frf_mat(const std::filesystem::path& path, const FrfSet& set);
 
 /// The FRF that text names. @throws InvalidInput with where
-[[nodiscard]] modal::FrfName frf_name_at(const std::string& where, std::string_view text);
+[[nodiscard]] FrfName frf_name_at(const std::string& where, std::string_view text);
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

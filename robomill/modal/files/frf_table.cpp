@@ -17,7 +17,7 @@
 #include "robomill/modal/files/frf_check.hpp"
 #include "robomill/modal/files/frf_parts.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
 Eigen::VectorXd to_vector(const std::vector<double>& column) {
@@ -39,12 +39,12 @@ Eigen::VectorXcd from_polar(const std::vector<double>& size, const std::vector<d
   return out;
 }
 
-bool is_angular(const modal::Dof& dof) {
+bool is_angular(const Dof& dof) {
   return static_cast<int>(dof.axis) > 3;
 }
 
 /// "m_per_n" of xx, "rad_per_n_m" of rx:my.
-std::string unit_of(const modal::FrfName& name) {
+std::string unit_of(const FrfName& name) {
   return fmt::format("{}_per_n{}", is_angular(name.response) ? "rad" : "m", is_angular(name.excitation) ? "_m" : "");
 }
 
@@ -65,8 +65,8 @@ std::optional<Column> take_apart(std::string_view text) {
 }
 
 /// "m_per_s2_per_n" as parse_unit knows it; nothing said is SI.
-SiFactor factor_of(const Column& column, const modal::FrfName& name, const std::string& where) {
-  if (column.unit.empty()) return {.quantity = Quantity::displacement};
+io::SiFactor factor_of(const Column& column, const FrfName& name, const std::string& where) {
+  if (column.unit.empty()) return {.quantity = io::Quantity::displacement};
   struct Excitation {
     std::string_view suffix;
     bool moment;
@@ -76,16 +76,16 @@ SiFactor factor_of(const Column& column, const modal::FrfName& name, const std::
       {{"_per_n", false, 1.0}, {"_per_n_m", true, 1.0}, {"_per_n_mm", true, 1e-3}}};
   const auto below = std::find_if(excitations.begin(), excitations.end(),
                                   [&](const Excitation& e) { return column.unit.ends_with(e.suffix); });
-  SiFactor factor;
+  io::SiFactor factor;
   std::string numerator;
   if (below != excitations.end()) {
     numerator = column.unit.substr(0, column.unit.size() - below->suffix.size());
     if (const std::size_t per = numerator.find("_per_"); per != std::string::npos) {
       numerator = fmt::format("{}/{}", numerator.substr(0, per), numerator.substr(per + 5));
     }
-    factor = parse_unit(numerator);
+    factor = io::parse_unit(numerator);
   }
-  if (factor.quantity == Quantity::unknown || factor.quantity == Quantity::force) {
+  if (factor.quantity == io::Quantity::unknown || factor.quantity == io::Quantity::force) {
     throw InvalidInput(
         where, fmt::format("column {}_{}_{} has a unit that is not known here", column.name, column.part, column.unit),
         "Receptances are m_per_n, rad_per_n, m_per_n_m or rad_per_n_m; accelerances m_per_s2_per_n");
@@ -102,7 +102,7 @@ SiFactor factor_of(const Column& column, const modal::FrfName& name, const std::
 }
 
 bool is_frequency(std::string_view name) {
-  const std::string word = lowered(name);
+  const std::string word = io::lowered(name);
   for (const char* known : {"frequency_hz", "frequency", "freq_hz", "freq", "f_hz", "f", "hz", "frequency (hz)",
                             "frequency [hz]", "freq (hz)", "freq [hz]", "f (hz)", "f [hz]"}) {
     if (word == known) return true;
@@ -111,14 +111,14 @@ bool is_frequency(std::string_view name) {
 }
 
 bool is_time(std::string_view name) {
-  const std::string word = lowered(name);
+  const std::string word = io::lowered(name);
   return word.starts_with("time") || word == "t" || word == "t_s" || word == "t (s)" || word == "t [s]" ||
          word == "seconds";
 }
 
 class NamedColumns {
  public:
-  NamedColumns(const Table& table, FrfParts& out) : table_(table), out_(out), where_(out.file.string()) {}
+  NamedColumns(const io::Table& table, FrfParts& out) : table_(table), out_(out), where_(out.file.string()) {}
 
   void read() {
     const auto frequency = std::find_if(table_.names.begin(), table_.names.end(), is_frequency);
@@ -170,7 +170,7 @@ class NamedColumns {
     FrfPart part{.name = frf_name_at(where_, first.name)};
     Column extra;
     const std::vector<double>& values = *find(first, first.part, extra);
-    const SiFactor factor = factor_of(first, *part.name, where_);
+    const io::SiFactor factor = factor_of(first, *part.name, where_);
     part.derivatives = static_cast<int>(factor.quantity);
     part.stated = !first.unit.empty();
     part.values = factor.factor * (first.part == "re" ? cartesian(first, values) : polar(first, values));
@@ -183,7 +183,7 @@ class NamedColumns {
     return part;
   }
 
-  const Table& table_;
+  const io::Table& table_;
   FrfParts& out_;
   std::string where_;
 };
@@ -213,7 +213,7 @@ Words::Content content_of(std::string_view word) {
 }
 
 Words in_words(std::string_view name) {
-  const std::string text = lowered(trimmed(name));
+  const std::string text = io::lowered(io::trimmed(name));
   Words out;
   const std::size_t open = text.find_first_of("([");
   for (std::size_t at = 0; at < std::min(open, text.size()) && out.content == Words::Content::nothing;) {
@@ -242,7 +242,7 @@ double phase_unit(const Words& phase, const std::string& where) {
 }
 
 /// Three columns under a header in words, "Frequency (Hz), Magnitude (m/N), Phase (deg)"; it names no FRF.
-FrfPart read_in_words(const Table& table, const std::string& where) {
+FrfPart read_in_words(const io::Table& table, const std::string& where) {
   using Content = Words::Content;
   Words first = in_words(table.names[1]), second = in_words(table.names[2]);
   const std::vector<double>*a = &table.columns[1], *b = &table.columns[2];
@@ -259,8 +259,8 @@ FrfPart read_in_words(const Table& table, const std::string& where) {
   FrfPart part{.values = polar ? from_polar(*a, *b, phase_unit(second, where)) : to_complex(*a, *b)};
   part.stated = known && !first.unit.empty();
   if (!part.stated) return part;
-  const SiFactor factor = parse_unit(first.unit);
-  if (!factor.is_ratio || factor.quantity == Quantity::force) {
+  const io::SiFactor factor = io::parse_unit(first.unit);
+  if (!factor.is_ratio || factor.quantity == io::Quantity::force) {
     throw InvalidInput(where, fmt::format("has values in \"{}\", a unit that is not known here", first.unit),
                        "Receptances are in m/N, mm/N or um/N, accelerances in m/s^2/N; no dB");
   }
@@ -269,7 +269,7 @@ FrfPart read_in_words(const Table& table, const std::string& where) {
   return part;
 }
 
-std::vector<FrfPart> read_unnamed(const Table& table, const std::string& where) {
+std::vector<FrfPart> read_unnamed(const io::Table& table, const std::string& where) {
   if (table.columns.size() < 3 || table.columns.size() % 2 == 0) {
     throw InvalidInput(where, static_cast<double>(table.columns.size()), "columns",
                        "must be a frequency and pairs of real and imaginary parts",
@@ -285,7 +285,7 @@ std::vector<FrfPart> read_unnamed(const Table& table, const std::string& where) 
 }  // namespace
 
 FrfParts read_frf_table(const std::filesystem::path& path) {
-  const Table table = parse_table(read_file(path), path.string());
+  const io::Table table = io::parse_table(io::read_file(path), path.string());
   FrfParts out{.file = path};
   const std::string where = path.string();
   if (std::any_of(table.names.begin(), table.names.end(), is_time) &&
@@ -318,10 +318,10 @@ FrfParts read_frf_table(const std::filesystem::path& path) {
   return out;
 }
 
-std::string frf_table(const modal::FrfSet& set, char separator) {
+std::string frf_table(const FrfSet& set, char separator) {
   std::string out = "frequency_hz";
-  for (const modal::Frf& frf : set.frfs) {
-    const std::string name = modal::to_string(frf.name);
+  for (const Frf& frf : set.frfs) {
+    const std::string name = to_string(frf.name);
     const std::string unit = unit_of(frf.name);
     out += fmt::format("{0}{1}_re_{2}{0}{1}_im_{2}", separator, name, unit);
     if (frf.coherence.size() > 0) out += fmt::format("{}{}_coherence", separator, name);
@@ -330,7 +330,7 @@ std::string frf_table(const modal::FrfSet& set, char separator) {
   out += '\n';
   for (Eigen::Index i = 0; i < set.frequency_hz.size(); ++i) {
     fmt::format_to(std::back_inserter(out), "{:.15g}", set.frequency_hz(i));
-    for (const modal::Frf& frf : set.frfs) {
+    for (const Frf& frf : set.frfs) {
       fmt::format_to(std::back_inserter(out), "{0}{1}{0}{2}", separator, frf.receptance(i).real(),
                      frf.receptance(i).imag());
       if (frf.coherence.size() > 0) fmt::format_to(std::back_inserter(out), "{}{}", separator, frf.coherence(i));
@@ -341,4 +341,4 @@ std::string frf_table(const modal::FrfSet& set, char separator) {
   return out;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -11,7 +11,7 @@
 #include "robomill/io/uff.hpp"
 #include "robomill/modal/files/frf_parts.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
 constexpr int type_general = 0;
@@ -28,35 +28,35 @@ bool is_angular(int direction) {
   return std::abs(direction) > 3;
 }
 
-std::optional<modal::FrfName> name_of(const UffFunction& function) {
+std::optional<FrfName> name_of(const io::UffFunction& function) {
   const auto known = [](int direction) { return direction != 0 && std::abs(direction) <= 6; };
   if (!known(function.response_direction) || !known(function.reference_direction)) return std::nullopt;
   const auto dof = [](int node, int direction) {
-    return modal::Dof{.point = std::max(node, 0), .axis = static_cast<modal::Axis>(std::abs(direction))};
+    return Dof{.point = std::max(node, 0), .axis = static_cast<Axis>(std::abs(direction))};
   };
-  return modal::FrfName{.response = dof(function.response_node, function.response_direction),
-                        .excitation = dof(function.reference_node, function.reference_direction)};
+  return FrfName{.response = dof(function.response_node, function.response_direction),
+                 .excitation = dof(function.reference_node, function.reference_direction)};
 }
 
-bool same_place(const UffFunction& a, const UffFunction& b) {
+bool same_place(const io::UffFunction& a, const io::UffFunction& b) {
   return a.response_node == b.response_node && a.reference_node == b.reference_node &&
          std::abs(a.response_direction) == std::abs(b.response_direction) &&
          std::abs(a.reference_direction) == std::abs(b.reference_direction);
 }
 
-bool is_deviation(const UffFunction& function) {
+bool is_deviation(const io::UffFunction& function) {
   return function.type == type_general && function.id[3] == standard_deviation;
 }
 
 class UffFrfs {
  public:
-  explicit UffFrfs(const std::filesystem::path& path) : file_(parse_uff(read_file(path), path.string())) {
+  explicit UffFrfs(const std::filesystem::path& path) : file_(io::parse_uff(io::read_file(path), path.string())) {
     out_.file = path;
     out_.notes = file_.notes;
   }
 
   FrfParts read() {
-    for (const UffFunction& function : file_.functions) {
+    for (const io::UffFunction& function : file_.functions) {
       if (function.type == type_frf) {
         check_axis(function);
         out_.frfs.push_back(read_frf(function));
@@ -69,28 +69,28 @@ class UffFrfs {
       throw InvalidInput(out_.file.string(), "holds no frequency response function (data set 58, function type 4)",
                          "Time responses become FRFs with robomill frf");
     }
-    for (const UffFunction& function : file_.functions) {
+    for (const io::UffFunction& function : file_.functions) {
       if (function.type == type_coherence || is_deviation(function)) attach(function);
     }
     return std::move(out_);
   }
 
  private:
-  [[nodiscard]] std::string where(const UffFunction& function) const {
-    const std::optional<modal::FrfName> name = name_of(function);
-    const std::string title = name ? fmt::format(" ({})", modal::to_string(*name)) : "";
+  [[nodiscard]] std::string where(const io::UffFunction& function) const {
+    const std::optional<FrfName> name = name_of(function);
+    const std::string title = name ? fmt::format(" ({})", to_string(*name)) : "";
     return fmt::format("{}:{}{}", out_.file.string(), function.line, title);
   }
-  void note(const UffFunction& function, const std::string& text) {
+  void note(const io::UffFunction& function, const std::string& text) {
     out_.notes.push_back(fmt::format("{}: {}", where(function), text));
   }
 
-  static Eigen::VectorXd frequencies(const UffFunction& function) {
-    const bool angular = lowered(function.abscissa_axis.unit) == "rad/s";
+  static Eigen::VectorXd frequencies(const io::UffFunction& function) {
+    const bool angular = io::lowered(function.abscissa_axis.unit) == "rad/s";
     return angular ? Eigen::VectorXd(function.abscissa / (2.0 * std::numbers::pi)) : function.abscissa;
   }
 
-  void check_axis(const UffFunction& function) {
+  void check_axis(const io::UffFunction& function) {
     const Eigen::VectorXd frequency_hz = frequencies(function);
     if (out_.frfs.empty()) out_.frequency_hz = frequency_hz;
     const Eigen::VectorXd& first = out_.frequency_hz;
@@ -101,25 +101,25 @@ class UffFrfs {
     }
   }
 
-  FrfPart read_frf(const UffFunction& function) {
+  FrfPart read_frf(const io::UffFunction& function) {
     FrfPart part{.name = name_of(function), .values = function.values};
     const double length = is_angular(function.response_direction) ? 1.0 : function.length_factor;
-    SiFactor response = si_factor(function.numerator, length, function.force_factor);
-    UffAxis force_axis = function.denominator;
+    io::SiFactor response = io::si_factor(function.numerator, length, function.force_factor);
+    io::UffAxis force_axis = function.denominator;
     if (is_angular(function.reference_direction) && force_axis.length_exponent == 0 && force_axis.force_exponent == 0) {
       force_axis.length_exponent = force_axis.force_exponent = 1;
     }
-    SiFactor force = si_factor(force_axis, function.length_factor, function.force_factor);
-    if (response.is_ratio) force = SiFactor{};
-    for (const SiFactor* factor : {&response, &force}) {
+    io::SiFactor force = io::si_factor(force_axis, function.length_factor, function.force_factor);
+    if (response.is_ratio) force = io::SiFactor{};
+    for (const io::SiFactor* factor : {&response, &force}) {
       if (!factor->note.empty()) note(function, factor->note);
     }
-    if (response.quantity == Quantity::force ||
-        (force.quantity != Quantity::force && force.quantity != Quantity::unknown)) {
+    if (response.quantity == io::Quantity::force ||
+        (force.quantity != io::Quantity::force && force.quantity != io::Quantity::unknown)) {
       throw InvalidInput(where(function), "is no displacement, velocity or acceleration per force",
                          "Dynamic stiffnesses and transmissibilities are not read");
     }
-    if (response.quantity == Quantity::unknown) {
+    if (response.quantity == io::Quantity::unknown) {
       note(function, "does not say what it holds; taken as a receptance in m/N");
       part.stated = false;
     } else {
@@ -129,13 +129,13 @@ class UffFrfs {
     return part;
   }
 
-  static double sign(const UffFunction& function) {
+  static double sign(const io::UffFunction& function) {
     return (function.response_direction < 0 ? -1.0 : 1.0) * (function.reference_direction < 0 ? -1.0 : 1.0);
   }
 
-  void attach(const UffFunction& function) {
+  void attach(const io::UffFunction& function) {
     const auto owner =
-        std::find_if(from_.begin(), from_.end(), [&](const UffFunction* f) { return same_place(*f, function); });
+        std::find_if(from_.begin(), from_.end(), [&](const io::UffFunction* f) { return same_place(*f, function); });
     const bool fits = function.values.size() == out_.frequency_hz.size();
     if (owner == from_.end() || !fits) {
       note(function, fmt::format("function type {} belongs to no FRF here and is left out", function.type));
@@ -145,15 +145,15 @@ class UffFrfs {
     (is_deviation(function) ? part.deviation : part.coherence) = function.values.real();
   }
 
-  UffFile file_;
+  io::UffFile file_;
   FrfParts out_;
-  std::vector<const UffFunction*> from_;  ///< what each FRF was read from
+  std::vector<const io::UffFunction*> from_;  ///< what each FRF was read from
 };
 
-UffFunction describe(const modal::FrfName& name, int type, const modal::FrfSet& set) {
-  UffFunction out;
+io::UffFunction describe(const FrfName& name, int type, const FrfSet& set) {
+  io::UffFunction out;
   out.type = type;
-  out.id[0] = modal::to_string(name);
+  out.id[0] = to_string(name);
   out.response_node = name.response.point;
   out.response_direction = static_cast<int>(name.response.axis);
   out.reference_node = name.excitation.point;
@@ -163,7 +163,7 @@ UffFunction describe(const modal::FrfName& name, int type, const modal::FrfSet& 
   return out;
 }
 
-void name_receptance_axes(UffFunction& function) {
+void name_receptance_axes(io::UffFunction& function) {
   const bool rotation = is_angular(function.response_direction), moment = is_angular(function.reference_direction);
   function.numerator = {.type = axis_displacement,
                         .length_exponent = rotation ? 0 : 1,
@@ -182,28 +182,28 @@ FrfParts read_frf_uff(const std::filesystem::path& path) {
   return UffFrfs(path).read();
 }
 
-std::string frf_uff(const modal::FrfSet& set, bool binary) {
-  std::vector<UffFunction> functions;
-  for (const modal::Frf& frf : set.frfs) {
-    UffFunction function = describe(frf.name, type_frf, set);
+std::string frf_uff(const FrfSet& set, bool binary) {
+  std::vector<io::UffFunction> functions;
+  for (const Frf& frf : set.frfs) {
+    io::UffFunction function = describe(frf.name, type_frf, set);
     name_receptance_axes(function);
     function.is_complex = true;
     function.values = frf.receptance;
     functions.push_back(std::move(function));
     if (frf.coherence.size() > 0) {
-      UffFunction coherence = describe(frf.name, type_coherence, set);
+      io::UffFunction coherence = describe(frf.name, type_coherence, set);
       coherence.values = frf.coherence.cast<std::complex<double>>();
       functions.push_back(std::move(coherence));
     }
     if (frf.deviation.size() > 0) {
-      UffFunction deviation = describe(frf.name, type_general, set);
+      io::UffFunction deviation = describe(frf.name, type_general, set);
       name_receptance_axes(deviation);
       deviation.id[3] = standard_deviation;
       deviation.values = frf.deviation.cast<std::complex<double>>();
       functions.push_back(std::move(deviation));
     }
   }
-  return format_uff(functions, binary);
+  return io::format_uff(functions, binary);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -11,7 +11,7 @@
 #include "robomill/io/records.hpp"
 #include "robomill/io/toml_file.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
 /// How a record's numbers become N and the SI unit of the response.
@@ -25,32 +25,30 @@ struct Sensors {
 
 constexpr double millivolts_per_volt = 1e3;
 
-const char* unit_of(modal::ResponseKind kind) {
+const char* unit_of(ResponseKind kind) {
   switch (kind) {
-    case modal::ResponseKind::acceleration:
+    case ResponseKind::acceleration:
       return "m_per_s2";
-    case modal::ResponseKind::velocity:
+    case ResponseKind::velocity:
       return "m_per_s";
-    case modal::ResponseKind::displacement:
+    case ResponseKind::displacement:
       break;
   }
   return "m";
 }
 
-void read_options(TomlFile& file, modal::HitOptions& o) {
-  file.choice<modal::ResponseKind>("acquisition.response",
-                                   {{"acceleration", modal::ResponseKind::acceleration},
-                                    {"velocity", modal::ResponseKind::velocity},
-                                    {"displacement", modal::ResponseKind::displacement}},
-                                   o.response);
-  file.choice<modal::Estimator>(
-      "acquisition.estimator",
-      {{"H1", modal::Estimator::h1}, {"H2", modal::Estimator::h2}, {"Hv", modal::Estimator::hv}}, o.estimator);
-  file.choice<modal::ExponentialWindow>("acquisition.exponential_window",
-                                        {{"automatic", modal::ExponentialWindow::automatic},
-                                         {"off", modal::ExponentialWindow::off},
-                                         {"on", modal::ExponentialWindow::on}},
-                                        o.exponential_window);
+void read_options(io::TomlFile& file, HitOptions& o) {
+  file.choice<ResponseKind>("acquisition.response",
+                            {{"acceleration", ResponseKind::acceleration},
+                             {"velocity", ResponseKind::velocity},
+                             {"displacement", ResponseKind::displacement}},
+                            o.response);
+  file.choice<Estimator>("acquisition.estimator", {{"H1", Estimator::h1}, {"H2", Estimator::h2}, {"Hv", Estimator::hv}},
+                         o.estimator);
+  file.choice<ExponentialWindow>(
+      "acquisition.exponential_window",
+      {{"automatic", ExponentialWindow::automatic}, {"off", ExponentialWindow::off}, {"on", ExponentialWindow::on}},
+      o.exponential_window);
   file.boolean("acquisition.force_window", o.force_window);
   file.boolean("acquisition.remove_added_damping", o.remove_added_damping);
   const auto number = [&file](const std::string& key, const char* member, double& out) {
@@ -68,14 +66,14 @@ void read_options(TomlFile& file, modal::HitOptions& o) {
 }
 
 /// mV per unit, where the records hold volts; a sensor mounted the other way round may be negative.
-void sensitivity(TomlFile& file, const std::string& key, double& factor) {
+void sensitivity(io::TomlFile& file, const std::string& key, double& factor) {
   double mv_per_unit = 0.0;
   if (!file.number(key, key, 1.0, mv_per_unit)) return;
   if (mv_per_unit == 0.0) throw file.refuse(key, "must not be 0", "It stands on the sensor's calibration sheet");
   factor = millivolts_per_volt / mv_per_unit;
 }
 
-Sensors read_sensors(TomlFile& file, modal::ResponseKind kind) {
+Sensors read_sensors(io::TomlFile& file, ResponseKind kind) {
   Sensors sensors;
   sensitivity(file, "acquisition.force_mv_per_n", sensors.force_factor);
   sensitivity(file, fmt::format("acquisition.response_mv_per_{}", unit_of(kind)), sensors.response_factor);
@@ -88,23 +86,23 @@ Sensors read_sensors(TomlFile& file, modal::ResponseKind kind) {
 }
 
 struct Direction {
-  modal::Dof dof;
+  Dof dof;
   bool against_axis = false;
 };
 
 /// "x", or "-x" against the axis.
-Direction direction(const TomlFile& file, const std::string& key, std::string_view text) {
+Direction direction(const io::TomlFile& file, const std::string& key, std::string_view text) {
   const bool against = !text.empty() && text.front() == '-';
   if (against) text.remove_prefix(1);
   try {
-    return {.dof = modal::parse_dof(text), .against_axis = against};
+    return {.dof = parse_dof(text), .against_axis = against};
   } catch (const InvalidInput&) {
     throw file.refuse(key, "must be a direction", "x, y or z; -x for a hit against the axis; 3x at point 3");
   }
 }
 
 /// A column's name, or its number from 1 (as a number or as text).
-std::string column(TomlFile& file, const std::string& key) {
+std::string column(io::TomlFile& file, const std::string& key) {
   std::string name;
   int number = 0;
   if (file.is_number(key)) {
@@ -116,7 +114,7 @@ std::string column(TomlFile& file, const std::string& key) {
   return name;
 }
 
-double rate_of(const TomlFile& file, const std::string& key, const Record& record, double given_hz) {
+double rate_of(const io::TomlFile& file, const std::string& key, const io::Record& record, double given_hz) {
   if (record.sample_rate_hz <= 0.0 && given_hz <= 0.0) {
     throw file.refuse(key, "has no time column, and acquisition.sample_rate_hz is missing");
   }
@@ -127,21 +125,21 @@ double rate_of(const TomlFile& file, const std::string& key, const Record& recor
   return record.sample_rate_hz > 0.0 ? record.sample_rate_hz : given_hz;
 }
 
-modal::Hit read_hit(TomlFile& file, std::size_t index, const Sensors& sensors, std::vector<std::string>& notes) {
+Hit read_hit(io::TomlFile& file, std::size_t index, const Sensors& sensors, std::vector<std::string>& notes) {
   const std::string row = fmt::format("hits[{}].", index);
   for (const char* key : {"file", "force", "force_direction", "responses"}) file.require(row + key);
   std::filesystem::path path;
   file.path(row + "file", path);
-  if (format_of(path) == Format::wav && !sensors.has_scale) {
+  if (io::format_of(path) == io::Format::wav && !sensors.has_scale) {
     throw file.refuse(row + "file", "is a WAV, and acquisition.scale is missing",
                       "scale says what full scale means: volts where the sensors' mV per unit are given");
   }
-  RecordOptions reading{.scale = sensors.scale};
+  io::RecordOptions reading{.scale = sensors.scale};
   if (file.has(row + "time")) reading.time = column(file, row + "time");
-  const Record record = file.locate([&] { return read_record(path, reading); });
+  const io::Record record = file.locate([&] { return io::read_record(path, reading); });
   notes.insert(notes.end(), record.notes.begin(), record.notes.end());
 
-  modal::Hit hit;
+  Hit hit;
   hit.file = path.string();
   std::string text;
   file.text(row + "force_direction", text);
@@ -165,7 +163,7 @@ modal::Hit read_hit(TomlFile& file, std::size_t index, const Sensors& sensors, s
 }  // namespace
 
 HitsFile read_hits(const std::filesystem::path& path) {
-  TomlFile file(path);
+  io::TomlFile file(path);
   HitsFile out;
   read_options(file, out.options);
   const Sensors sensors = read_sensors(file, out.options.response);
@@ -176,4 +174,4 @@ HitsFile read_hits(const std::filesystem::path& path) {
   return out;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -6,12 +6,12 @@
 #include "robomill/base/export.hpp"
 #include "robomill/modal/hits.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 
 /// hits.toml with the records that it names, in SI units.
 struct HitsFile {
-  std::vector<modal::Hit> hits;
-  modal::HitOptions options;
+  std::vector<Hit> hits;
+  HitOptions options;
   std::vector<std::string> notes = {};  ///< what the readers of the records had to say
 };
 
@@ -20,4 +20,4 @@ struct HitsFile {
 ///     record cannot be read, a column is not there, or no sample rate is known
 [[nodiscard]] ROBOMILL_API HitsFile read_hits(const std::filesystem::path& path);
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -10,7 +10,7 @@
 #include "robomill/base/random.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
 const std::string record = "time_s,force_v,ax,ay\n0,0,1,2\n0.001,0.5,3,4\n0.002,0,5,6\n";
@@ -32,18 +32,18 @@ force_direction = "-x"
 responses = { x = "ax", -y = 4 }
 )"));
   ASSERT_EQ(file.hits.size(), 1U);
-  const modal::Hit& hit = file.hits[0];
-  EXPECT_EQ(hit.excitation.axis, modal::Axis::x);
+  const Hit& hit = file.hits[0];
+  EXPECT_EQ(hit.excitation.axis, Axis::x);
   EXPECT_TRUE(hit.against_axis);
   EXPECT_NEAR(hit.sample_rate_hz, 1000.0, 1e-6);
   EXPECT_DOUBLE_EQ(hit.force_n(1), 0.5 * 1000.0 / 2.5);
   ASSERT_EQ(hit.responses.size(), 2U);
-  for (const modal::HitChannel& channel : hit.responses) {
-    const bool y = channel.dof.axis == modal::Axis::y;
+  for (const HitChannel& channel : hit.responses) {
+    const bool y = channel.dof.axis == Axis::y;
     EXPECT_EQ(channel.against_axis, y);
     EXPECT_DOUBLE_EQ(channel.samples(1), (y ? 4.0 : 3.0) * 100.0);
   }
-  EXPECT_EQ(file.options.estimator, modal::Estimator::hv);
+  EXPECT_EQ(file.options.estimator, Estimator::hv);
   EXPECT_EQ(file.options.accelerometer_mass_kg, 0.004);
 }
 
@@ -137,4 +137,4 @@ TEST(HitsToml, SurvivesMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::modal

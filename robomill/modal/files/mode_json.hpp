@@ -2,12 +2,12 @@
 #include "robomill/io/json.hpp"
 #include "robomill/modal/mode_id.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 
 /// Sets "mode", its number, and "mode_of", "tool" or "workpiece"; both null where it is unknown.
-inline void set_mode(Json& object, const modal::ModeId& mode) {
-  object["mode"] = mode.known() ? Json(mode.number) : Json(nullptr);
-  object["mode_of"] = mode.known() ? Json(modal::to_string(mode.of)) : Json(nullptr);
+inline void set_mode(io::Json& object, const ModeId& mode) {
+  object["mode"] = mode.known() ? io::Json(mode.number) : io::Json(nullptr);
+  object["mode_of"] = mode.known() ? io::Json(to_string(mode.of)) : io::Json(nullptr);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -11,66 +11,66 @@
 #include "robomill/io/json.hpp"
 #include "robomill/io/toml_file.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
-Json vector_json(const Eigen::VectorXcd& vector, const std::vector<modal::Dof>& dofs, bool as_excitation) {
-  Json out = Json::object();
+io::Json vector_json(const Eigen::VectorXcd& vector, const std::vector<Dof>& dofs, bool as_excitation) {
+  io::Json out = io::Json::object();
   for (std::size_t i = 0; i < dofs.size(); ++i) {
-    out[modal::to_string(dofs[i], as_excitation)] = complex_number(vector(static_cast<Eigen::Index>(i)));
+    out[to_string(dofs[i], as_excitation)] = io::complex_number(vector(static_cast<Eigen::Index>(i)));
   }
   return out;
 }
 
-Json model_json(const modal::ModalModel& model) {
+io::Json model_json(const ModalModel& model) {
   model.validate();
-  Json json;
-  json["modes"] = Json::array();
-  for (const modal::Mode& mode : model.modes) {
-    json["modes"].push_back(
-        {{"frequency_hz", number(mode.frequency_hz)},
-         {"damping_ratio", number(mode.damping_ratio)},
-         {"left", vector_json(mode.left, model.excitations, true)},
-         {"right", vector_json(mode.right, model.responses, false)},
-         {"std",
-          {{"frequency_hz", number(mode.frequency_std_hz)}, {"damping_ratio", number(mode.damping_ratio_std)}}}});
+  io::Json json;
+  json["modes"] = io::Json::array();
+  for (const Mode& mode : model.modes) {
+    json["modes"].push_back({{"frequency_hz", io::number(mode.frequency_hz)},
+                             {"damping_ratio", io::number(mode.damping_ratio)},
+                             {"left", vector_json(mode.left, model.excitations, true)},
+                             {"right", vector_json(mode.right, model.responses, false)},
+                             {"std",
+                              {{"frequency_hz", io::number(mode.frequency_std_hz)},
+                               {"damping_ratio", io::number(mode.damping_ratio_std)}}}});
   }
-  json["residuals"] = Json::object();
-  for (const modal::Residual& residual : model.residuals) {
-    json["residuals"][modal::to_string(residual.name)] = {{"mass", complex_number(residual.mass)},
-                                                          {"stiffness", complex_number(residual.stiffness)}};
+  json["residuals"] = io::Json::object();
+  for (const Residual& residual : model.residuals) {
+    json["residuals"][to_string(residual.name)] = {{"mass", io::complex_number(residual.mass)},
+                                                   {"stiffness", io::complex_number(residual.stiffness)}};
   }
   return json;
 }
 
 /// A mode as a file tells it: entries by the name of their degree of freedom.
 struct NamedMode {
-  modal::Mode mode;
-  std::vector<std::pair<modal::Dof, std::complex<double>>> left, right;
+  Mode mode;
+  std::vector<std::pair<Dof, std::complex<double>>> left, right;
 };
 
-std::vector<modal::Dof> all_dofs(const std::vector<NamedMode>& modes,
-                                 std::vector<std::pair<modal::Dof, std::complex<double>>> NamedMode::*vector) {
-  std::set<modal::Dof> dofs;
+std::vector<Dof> all_dofs(const std::vector<NamedMode>& modes,
+                          std::vector<std::pair<Dof, std::complex<double>>> NamedMode::*vector) {
+  std::set<Dof> dofs;
   for (const NamedMode& mode : modes) {
     for (const auto& [dof, value] : mode.*vector) dofs.insert(dof);
   }
   return {dofs.begin(), dofs.end()};
 }
 
-Eigen::VectorXcd to_vector(const std::vector<std::pair<modal::Dof, std::complex<double>>>& named,
-                           const std::vector<modal::Dof>& dofs) {
+Eigen::VectorXcd to_vector(const std::vector<std::pair<Dof, std::complex<double>>>& named,
+                           const std::vector<Dof>& dofs) {
   Eigen::VectorXcd out = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(dofs.size()));
   for (const auto& [dof, value] : named) out(std::find(dofs.begin(), dofs.end(), dof) - dofs.begin()) = value;
   return out;
 }
 
-modal::ModalModel to_model(const std::vector<NamedMode>& named) {
-  modal::ModalModel model;
+ModalModel to_model(const std::vector<NamedMode>& named) {
+  ModalModel model;
   model.excitations = all_dofs(named, &NamedMode::left);
   model.responses = all_dofs(named, &NamedMode::right);
   for (const NamedMode& entry : named) {
-    modal::Mode mode = entry.mode;
+    Mode mode = entry.mode;
     mode.left = to_vector(entry.left, model.excitations);
     mode.right = to_vector(entry.right, model.responses);
     model.modes.push_back(mode);
@@ -79,7 +79,7 @@ modal::ModalModel to_model(const std::vector<NamedMode>& named) {
 }
 
 /// Tells an error of the model with the file's name in front.
-void validate(const modal::ModalModel& model, const std::string& file) {
+void validate(const ModalModel& model, const std::string& file) {
   try {
     model.validate();
   } catch (const InvalidInput& error) {
@@ -89,13 +89,13 @@ void validate(const modal::ModalModel& model, const std::string& file) {
   }
 }
 
-std::vector<std::pair<modal::Dof, std::complex<double>>> read_vector(const JsonNode& node) {
+std::vector<std::pair<Dof, std::complex<double>>> read_vector(const io::JsonNode& node) {
   node.require_object();
-  std::vector<std::pair<modal::Dof, std::complex<double>>> out;
+  std::vector<std::pair<Dof, std::complex<double>>> out;
   for (const auto& item : node.json().items()) {
-    const JsonNode entry = node.at(item.key());
+    const io::JsonNode entry = node.at(item.key());
     try {
-      out.emplace_back(modal::parse_dof(item.key()), entry.complex_number());
+      out.emplace_back(parse_dof(item.key()), entry.complex_number());
     } catch (const InvalidInput& error) {
       if (!error.parts().where.empty()) throw;
       throw entry.refuse("must be named by a direction", "x, y, z, 1x, ry");
@@ -104,30 +104,30 @@ std::vector<std::pair<modal::Dof, std::complex<double>>> read_vector(const JsonN
   return out;
 }
 
-double number_or_nan(const JsonNode& node, const char* key) {
+double number_or_nan(const io::JsonNode& node, const char* key) {
   if (!node.has(key) || node.at(key).json().is_null()) return std::numeric_limits<double>::quiet_NaN();
   return node.at(key).number();
 }
 
 /// modes.json is written of a bad fit too, as its report; its modes are for nobody who has not accepted them.
-void require_usable(const JsonNode& root) {
+void require_usable(const io::JsonNode& root) {
   if (!root.has("fit") || !root.at("fit").has("usable")) return;
-  const JsonNode fit = root.at("fit");
+  const io::JsonNode fit = root.at("fit");
   if (fit.at("usable").json() != false) return;
   throw fit.at("relative_error")
       .refuse(fmt::format("must be below {}: these modes do not describe the FRFs that they were fitted to",
-                          modal::unusable_fit_error),
+                          unusable_fit_error),
               "Fit them better, or take them as they are with robomill modes --accept-fit");
 }
 
-modal::ModalModel read_modes_json(const std::filesystem::path& path) {
-  const Json json = read_json(path);
-  const JsonNode root(json, path.string());
+ModalModel read_modes_json(const std::filesystem::path& path) {
+  const io::Json json = io::read_json(path);
+  const io::JsonNode root(json, path.string());
   require_usable(root);
-  const JsonNode list = root.at("modes");
+  const io::JsonNode list = root.at("modes");
   std::vector<NamedMode> named(list.size());
   for (std::size_t k = 0; k < named.size(); ++k) {
-    const JsonNode node = list.at(k);
+    const io::JsonNode node = list.at(k);
     named[k].mode.frequency_hz = node.at("frequency_hz").number();
     named[k].mode.damping_ratio = node.at("damping_ratio").number();
     named[k].left = read_vector(node.at("left"));
@@ -137,14 +137,14 @@ modal::ModalModel read_modes_json(const std::filesystem::path& path) {
       named[k].mode.damping_ratio_std = number_or_nan(node.at("std"), "damping_ratio");
     }
   }
-  modal::ModalModel model = to_model(named);
+  ModalModel model = to_model(named);
   if (root.has("residuals") && !root.at("residuals").json().is_null()) {
-    const JsonNode residuals = root.at("residuals");
+    const io::JsonNode residuals = root.at("residuals");
     residuals.require_object();
     for (const auto& item : residuals.json().items()) {
-      const JsonNode entry = residuals.at(item.key());
+      const io::JsonNode entry = residuals.at(item.key());
       try {
-        model.residuals.push_back({.name = modal::parse_frf_name(item.key()),
+        model.residuals.push_back({.name = parse_frf_name(item.key()),
                                    .mass = entry.at("mass").complex_number(),
                                    .stiffness = entry.at("stiffness").complex_number()});
       } catch (const InvalidInput& error) {
@@ -157,15 +157,15 @@ modal::ModalModel read_modes_json(const std::filesystem::path& path) {
   return model;
 }
 
-std::vector<std::pair<modal::Dof, std::complex<double>>> read_vector(TomlFile& file, const std::string& key) {
+std::vector<std::pair<Dof, std::complex<double>>> read_vector(io::TomlFile& file, const std::string& key) {
   file.require(key);
-  std::vector<std::pair<modal::Dof, std::complex<double>>> out;
+  std::vector<std::pair<Dof, std::complex<double>>> out;
   for (const std::string& name : file.keys(key)) {
     std::vector<double> parts;
     file.numbers(key + "." + name, name, 1.0, parts);
     if (parts.size() != 2) throw file.refuse(key + "." + name, "must be [re, im]");
     try {
-      out.emplace_back(modal::parse_dof(name), std::complex<double>(parts[0], parts[1]));
+      out.emplace_back(parse_dof(name), std::complex<double>(parts[0], parts[1]));
     } catch (const InvalidInput&) {
       throw file.refuse(key + "." + name, "must be named by a direction", "x, y, z, 1x, ry");
     }
@@ -173,8 +173,8 @@ std::vector<std::pair<modal::Dof, std::complex<double>>> read_vector(TomlFile& f
   return out;
 }
 
-modal::ModalModel read_modes_toml(const std::filesystem::path& path) {
-  TomlFile file(path);
+ModalModel read_modes_toml(const std::filesystem::path& path) {
+  io::TomlFile file(path);
   if (file.tables("modes") == 0) file.require("modes", "Write [[modes]] above each");
   std::vector<NamedMode> named(file.tables("modes"));
   for (std::size_t k = 0; k < named.size(); ++k) {
@@ -188,18 +188,18 @@ modal::ModalModel read_modes_toml(const std::filesystem::path& path) {
     named[k].right = read_vector(file, row + "right");
   }
   file.done();
-  modal::ModalModel model = to_model(named);
+  ModalModel model = to_model(named);
   file.locate([&] { model.validate(); });
   return model;
 }
 
 }  // namespace
 
-modal::ModalModel read_modes(const std::filesystem::path& path) {
-  switch (format_of(path)) {
-    case Format::json:
+ModalModel read_modes(const std::filesystem::path& path) {
+  switch (io::format_of(path)) {
+    case io::Format::json:
       return read_modes_json(path);
-    case Format::toml:
+    case io::Format::toml:
       return read_modes_toml(path);
     default:
       break;
@@ -208,38 +208,37 @@ modal::ModalModel read_modes(const std::filesystem::path& path) {
                      "FRFs become modes with robomill modes FILE -o modes.json");
 }
 
-std::string modes_json(const modal::ModalModel& model) {
-  return dump(model_json(model));
+std::string modes_json(const ModalModel& model) {
+  return io::dump(model_json(model));
 }
 
-std::string modes_json(const modal::FitResult& fit) {
-  Json json = model_json(fit.model);
+std::string modes_json(const FitResult& fit) {
+  io::Json json = model_json(fit.model);
   for (std::size_t k = 0; k < fit.model.modes.size(); ++k) {
-    Json bounds = Json::array();
-    for (const modal::FitBound bound : fit.bounds_of(static_cast<int>(k) + 1)) bounds.push_back(to_string(bound));
+    io::Json bounds = io::Json::array();
+    for (const FitBound bound : fit.bounds_of(static_cast<int>(k) + 1)) bounds.push_back(monitor::to_string(bound));
     json["modes"][k]["at_bounds"] = std::move(bounds);
   }
-  Json by_frf = Json::object();
-  for (const modal::FrfFitError& error : fit.by_frf)
-    by_frf[modal::to_string(error.name)] = number(error.error.relative);
-  json["fit"] = {{"relative_error", number(fit.relative_error)},
+  io::Json by_frf = io::Json::object();
+  for (const FrfFitError& error : fit.by_frf) by_frf[to_string(error.name)] = io::number(error.error.relative);
+  json["fit"] = {{"relative_error", io::number(fit.relative_error)},
                  {"relative_error_by_frf", by_frf},
-                 {"mean_relative_error", number(fit.mean_relative_error)},
-                 {"converged", fit.status == modal::FitResult::Status::converged},
+                 {"mean_relative_error", io::number(fit.mean_relative_error)},
+                 {"converged", fit.status == FitResult::Status::converged},
                  {"usable", fit.usable()},
-                 {"band_hz", Json::array({number(fit.band_low_hz), number(fit.band_high_hz)})},
+                 {"band_hz", io::Json::array({io::number(fit.band_low_hz), io::number(fit.band_high_hz)})},
                  {"lines", fit.lines}};
   json["convergence"] = {{"iterations", fit.iterations}, {"best", fit.best}};
-  json["stabilisation"] = Json::array();
-  for (const modal::StabilisationPoint& point : fit.stabilisation) {
+  json["stabilisation"] = io::Json::array();
+  for (const StabilisationPoint& point : fit.stabilisation) {
     json["stabilisation"].push_back(
         {{"order", point.order},
-         {"frequency_hz", number(point.frequency_hz)},
-         {"damping_ratio", number(point.damping_ratio)},
+         {"frequency_hz", io::number(point.frequency_hz)},
+         {"damping_ratio", io::number(point.damping_ratio)},
          {"stable", point.frequency_stable && point.damping_stable && point.vector_stable}});
   }
   json["warnings"] = fit.warnings;
-  return dump(json);
+  return io::dump(json);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

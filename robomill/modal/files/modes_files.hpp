@@ -6,7 +6,7 @@
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/modes.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 
 /// Reads modes.json, or the same as TOML: [[modes]] with frequency_hz, damping_ratio, left = { x = [re, im], … },
 /// right.
@@ -16,11 +16,11 @@ namespace robomill::formats {
 /// @throws InvalidInput if .json says of its fit that it is not usable, and
 ///     with the file and "modes[2].damping_ratio" (counted from 1) or the line if a value is missing,
 ///     no finite number or outside its range, or the ending is neither .json nor .toml
-[[nodiscard]] ROBOMILL_API modal::ModalModel read_modes(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API ModalModel read_modes(const std::filesystem::path& path);
 
 /// modes.json as text: modes, standard deviations, residuals. @throws InvalidInput if the model is not valid
-[[nodiscard]] ROBOMILL_API std::string modes_json(const modal::ModalModel& model);
+[[nodiscard]] ROBOMILL_API std::string modes_json(const ModalModel& model);
 /// With how well they fit, the convergence, the band and the warnings.
-[[nodiscard]] ROBOMILL_API std::string modes_json(const modal::FitResult& fit);
+[[nodiscard]] ROBOMILL_API std::string modes_json(const FitResult& fit);
 
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -12,10 +12,10 @@
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::modal {
 namespace {
 
-void expect_same(const modal::ModalModel& a, const modal::ModalModel& b, double tolerance) {
+void expect_same(const ModalModel& a, const ModalModel& b, double tolerance) {
   ASSERT_EQ(a.modes.size(), b.modes.size());
   EXPECT_EQ(a.excitations, b.excitations);
   EXPECT_EQ(a.responses, b.responses);
@@ -33,10 +33,10 @@ TEST(ModesFiles, TheDataFileHoldsTheTypedTable) {
 
 TEST(ModesFiles, JsonGivesTheModelBack) {
   const test::Folder folder;
-  modal::ModalModel model = data::robot_modes();
+  ModalModel model = data::robot_modes();
   model.modes[2].frequency_std_hz = 0.01;
-  model.residuals.push_back({.name = modal::parse_frf_name("xy"), .mass = {1.0, -2.0}, .stiffness = {3e-9, 4e-9}});
-  const modal::ModalModel read = read_modes(folder.file("modes.json", modes_json(model)));
+  model.residuals.push_back({.name = parse_frf_name("xy"), .mass = {1.0, -2.0}, .stiffness = {3e-9, 4e-9}});
+  const ModalModel read = read_modes(folder.file("modes.json", modes_json(model)));
   expect_same(read, model, 1e-14);
   EXPECT_DOUBLE_EQ(read.modes[2].frequency_std_hz, 0.01);
   EXPECT_TRUE(std::isnan(read.modes[3].frequency_std_hz));
@@ -67,15 +67,15 @@ TEST(ModesFiles, RefusesWithTheJsonPath) {
 // modes.json of a bad fit is its report, and no input until somebody accepts it.
 TEST(ModesFiles, AFitThatDoesNotDescribeItsFrfsIsNoInput) {
   const test::Folder folder;
-  modal::FitResult fit;
+  FitResult fit;
   fit.model = data::robot_modes();
   fit.relative_error = 1.094;
-  fit.at_bounds = {{2, modal::FitBound::damping}, {2, modal::FitBound::band_high}};
+  fit.at_bounds = {{2, FitBound::damping}, {2, FitBound::band_high}};
   const auto path = folder.file("modes.json", modes_json(fit));
-  const Json json = read_json(path);
+  const io::Json json = io::read_json(path);
   EXPECT_EQ(json["fit"]["usable"], false);
   EXPECT_TRUE(json["modes"][0]["at_bounds"].empty());
-  EXPECT_EQ(json["modes"][1]["at_bounds"], Json::array({"max_damping_ratio", "band_high_hz"}));
+  EXPECT_EQ(json["modes"][1]["at_bounds"], io::Json::array({"max_damping_ratio", "band_high_hz"}));
   const std::string said = test::refusal([&] { static_cast<void>(read_modes(path)); });
   EXPECT_NE(said.find("modes.json: fit.relative_error = 1.094; must be below 0.2"), std::string::npos) << said;
   EXPECT_NE(said.find("--accept-fit"), std::string::npos) << said;
@@ -98,4 +98,4 @@ TEST(ModesFiles, SurvivesMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::modal

@@ -5,19 +5,18 @@
 #include "robomill/base/units.hpp"
 #include "robomill/modal/files/mode_json.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 namespace {
 
-constexpr std::array<monitor::Fault, 6> all_faults = {monitor::not_finite,        monitor::stuck,
-                                                      monitor::clipped,           monitor::dead_channel,
-                                                      monitor::wrong_sample_rate, monitor::speed_unknown};
+constexpr std::array<Fault, 6> all_faults = {not_finite,        stuck,        clipped, dead_channel,
+                                             wrong_sample_rate, speed_unknown};
 
-Json positive(double value, double unit = 1.0) {
-  return value > 0.0 ? number(value / unit) : Json(nullptr);
+io::Json positive(double value, double unit = 1.0) {
+  return value > 0.0 ? io::number(value / unit) : io::Json(nullptr);
 }
 
-Json text_or_null(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
+io::Json text_or_null(const std::string& text) {
+  return text.empty() ? io::Json(nullptr) : io::Json(text);
 }
 
 }  // namespace
@@ -39,46 +38,46 @@ const char* to_string(MonitorEvent::Kind kind) {
 
 std::vector<std::string> fault_names(std::uint32_t faults) {
   std::vector<std::string> names;
-  for (const monitor::Fault fault : all_faults) {
-    if ((faults & fault) != 0) names.emplace_back(monitor::to_string(fault));
+  for (const Fault fault : all_faults) {
+    if ((faults & fault) != 0) names.emplace_back(to_string(fault));
   }
   return names;
 }
 
 std::string event_line(const MonitorEvent& event) {
-  const monitor::Decision& d = event.decision;
+  const Decision& d = event.decision;
   const bool chatters = d.chatter_frequency_hz > 0.0;
-  Json json;
-  json["time_s"] = number(event.time_s);
+  io::Json json;
+  json["time_s"] = io::number(event.time_s);
   json["event"] = to_string(event.kind);
-  json["state"] = monitor::to_string(d.state);
-  json["score"] = number(d.score);
-  json["threshold"] = number(d.threshold);
-  json["energy_entropy"] = number(d.energy_entropy);
-  json["level"] = number(d.level);
+  json["state"] = to_string(d.state);
+  json["score"] = io::number(d.score);
+  json["threshold"] = io::number(d.threshold);
+  json["energy_entropy"] = io::number(d.energy_entropy);
+  json["level"] = io::number(d.level);
   json["chatter_frequency_hz"] = positive(d.chatter_frequency_hz);
-  json["chatter_frequency_std_hz"] = chatters ? number(d.chatter_frequency_std_hz) : Json(nullptr);
-  json["channel"] = chatters ? Json(d.channel + 1) : Json(nullptr);
-  json["hidden"] = d.hidden == monitor::Hidden::none ? Json(nullptr) : Json(monitor::to_string(d.hidden));
-  set_mode(json, event.mode);
+  json["chatter_frequency_std_hz"] = chatters ? io::number(d.chatter_frequency_std_hz) : io::Json(nullptr);
+  json["channel"] = chatters ? io::Json(d.channel + 1) : io::Json(nullptr);
+  json["hidden"] = d.hidden == Hidden::none ? io::Json(nullptr) : io::Json(to_string(d.hidden));
+  modal::set_mode(json, event.mode);
   json["spindle_speed_rpm"] = positive(d.spindle_speed_rad_per_s, units::rpm);
   json["suggested_spindle_speed_rpm"] = positive(event.suggested_spindle_speed_rad_per_s, units::rpm);
   json["suggested_axial_depth_mm"] = positive(event.suggested_axial_depth_m, units::mm);
-  json["stable_spindle_speeds_rpm"] = Json::array();
+  json["stable_spindle_speeds_rpm"] = io::Json::array();
   for (const double speed : event.stable_speeds_rad_per_s) {
-    json["stable_spindle_speeds_rpm"].push_back(number(speed / units::rpm));
+    json["stable_spindle_speeds_rpm"].push_back(io::number(speed / units::rpm));
   }
   json["faults"] = fault_names(d.faults);
   json["suggested_sample_rate_hz"] =
-      (d.faults & monitor::wrong_sample_rate) != 0 ? positive(d.suggested_sample_rate_hz) : Json(nullptr);
-  json["compute_us"] = number(event.compute_s / units::us);
+      (d.faults & wrong_sample_rate) != 0 ? positive(d.suggested_sample_rate_hz) : io::Json(nullptr);
+  json["compute_us"] = io::number(event.compute_s / units::us);
   if (event.kind == MonitorEvent::Kind::stream) {
     json["what"] = text_or_null(event.what);
     json["count"] = event.count;
   }
   if (event.kind == MonitorEvent::Kind::recording) json["file"] = text_or_null(event.file);
   if (!event.message.empty()) json["message"] = event.message;
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json.dump(-1, ' ', false, io::Json::error_handler_t::replace) + '\n';
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

@@ -8,7 +8,7 @@
 #include "robomill/modal/mode_id.hpp"
 #include "robomill/monitor/monitor.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 
 /// What a monitor has to tell.
 struct MonitorEvent {
@@ -17,7 +17,7 @@ struct MonitorEvent {
   enum class Kind { state, window, fault, stream, recording };
   Kind kind = Kind::state;
   double time_s = 0.0;                             ///< of the stream [s]
-  monitor::Decision decision = {};                 ///< the last one
+  Decision decision = {};                          ///< the last one
   modal::ModeId mode = {};                         ///< that chatters
   double suggested_spindle_speed_rad_per_s = 0.0;  ///< 0: none
   double suggested_axial_depth_m = 0.0;            ///< 0: none
@@ -37,4 +37,4 @@ struct MonitorEvent {
 /// "not-finite", … of a mask.
 [[nodiscard]] ROBOMILL_API std::vector<std::string> fault_names(std::uint32_t faults);
 
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

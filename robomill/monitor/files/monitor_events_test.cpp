@@ -7,20 +7,20 @@
 
 #include "robomill/base/units.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 namespace {
 
 TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   MonitorEvent event;
   event.time_s = 3.7125;
-  event.decision.state = monitor::State::chatter;
+  event.decision.state = State::chatter;
   event.decision.score = 12.5;
   event.decision.threshold = 9.0;
   event.decision.chatter_frequency_hz = 683.6;
   event.decision.chatter_frequency_std_hz = 0.4;
   event.decision.channel = 1;
-  event.decision.faults = monitor::clipped | monitor::not_finite;
-  event.decision.hidden = monitor::Hidden::locked;
+  event.decision.faults = clipped | not_finite;
+  event.decision.hidden = Hidden::locked;
   event.mode = {2};
   event.suggested_spindle_speed_rad_per_s = 6500.0 * units::rpm;
   event.stable_speeds_rad_per_s = {6500.0 * units::rpm, 3250.0 * units::rpm};
@@ -71,4 +71,4 @@ TEST(MonitorEvents, TellOfTheStream) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

@@ -5,15 +5,15 @@
 #include "robomill/io/toml_file.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 
 /// A column's name, or its number from 1.
-[[nodiscard]] bool read_column(TomlFile& file, const std::string& key, std::string& out);
+[[nodiscard]] bool read_column(io::TomlFile& file, const std::string& key, std::string& out);
 /// [signal], [process] and [detector].
-void read_signal(TomlFile& file, MonitorFile& out);
-void read_process(TomlFile& file, MonitorFile& out);
-void read_detector(TomlFile& file, MonitorFile& out);
+void read_signal(io::TomlFile& file, MonitorFile& out);
+void read_process(io::TomlFile& file, MonitorFile& out);
+void read_detector(io::TomlFile& file, MonitorFile& out);
 /// @throws InvalidInput in the words of the file
-void check_options(const TomlFile& file, const MonitorFile& monitor);
+void check_options(const io::TomlFile& file, const MonitorFile& monitor);
 
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

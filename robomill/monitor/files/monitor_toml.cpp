@@ -13,13 +13,13 @@
 #include "robomill/base/units.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 namespace {
 
 /// Stands in for a rate that only the recording knows, so that all else can be checked.
 constexpr double some_rate_hz = 10'240.0;
 
-void read_mqtt(TomlFile& file, MqttSettings& mqtt) {
+void read_mqtt(io::TomlFile& file, MqttSettings& mqtt) {
   file.text("mqtt.host", mqtt.host);
   if (file.integer("mqtt.port", "port", mqtt.port) && (mqtt.port < 1 || mqtt.port > 65'535)) {
     throw file.refuse("mqtt.port", "must lie between 1 and 65535");
@@ -52,7 +52,7 @@ void read_mqtt(TomlFile& file, MqttSettings& mqtt) {
   }
 }
 
-void read_outputs(TomlFile& file, MonitorFile& out) {
+void read_outputs(io::TomlFile& file, MonitorFile& out) {
   if (file.integer("metrics.port", "metrics_port", out.metrics_port) &&
       (out.metrics_port < 0 || out.metrics_port > 65'535)) {
     throw file.refuse("metrics.port", "must lie between 0 and 65535", "0 takes any port that is free");
@@ -87,7 +87,7 @@ std::string number_text(double value) {
 
 }  // namespace
 
-bool read_column(TomlFile& file, const std::string& key, std::string& out) {
+bool read_column(io::TomlFile& file, const std::string& key, std::string& out) {
   if (!file.is_number(key)) return file.text(key, out);
   int number = 0;
   file.integer(key, key, number);
@@ -96,7 +96,7 @@ bool read_column(TomlFile& file, const std::string& key, std::string& out) {
   return true;
 }
 
-void read_signal(TomlFile& file, MonitorFile& out) {
+void read_signal(io::TomlFile& file, MonitorFile& out) {
   file.number("signal.sample_rate_hz", "sample_rate_hz", 1.0, out.options.sample_rate_hz);
   out.columns.sample_rate_hz = out.options.sample_rate_hz;
   file.require("signal.channels", "Write channels = [\"ax_m_per_s2\"]: names of columns, or numbers from 1");
@@ -122,22 +122,20 @@ void read_signal(TomlFile& file, MonitorFile& out) {
   if (!out.columns.tachometer.empty()) out.options.tachometer_channel = out.options.channels - 1;
 }
 
-void read_process(TomlFile& file, MonitorFile& out) {
+void read_process(io::TomlFile& file, MonitorFile& out) {
   file.number("process.spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm, out.options.spindle_speed_rad_per_s);
   file.integer("process.teeth", "teeth", out.options.teeth);
 }
 
-void read_detector(TomlFile& file, MonitorFile& out) {
-  monitor::MonitorOptions& options = out.options;
-  file.choice<monitor::Kind>(
-      "detector.kind", {{"comb-cusum", monitor::Kind::comb_cusum}, {"energy-entropy", monitor::Kind::energy_entropy}},
-      options.kind);
+void read_detector(io::TomlFile& file, MonitorFile& out) {
+  MonitorOptions& options = out.options;
+  file.choice<Kind>("detector.kind", {{"comb-cusum", Kind::comb_cusum}, {"energy-entropy", Kind::energy_entropy}},
+                    options.kind);
   file.number("detector.window_ms", "window_s", units::ms, options.window_s);
   file.number("detector.hop_ms", "hop_s", units::ms, options.hop_s);
   file.integer("detector.bands", "bands", options.bands);
-  file.choice<monitor::Entropy>("detector.entropy",
-                                {{"normalised", monitor::Entropy::normalised}, {"energy", monitor::Entropy::energy}},
-                                options.entropy);
+  file.choice<Entropy>("detector.entropy", {{"normalised", Entropy::normalised}, {"energy", Entropy::energy}},
+                       options.entropy);
   file.number("detector.threshold", "threshold", 1.0, options.threshold);
   bool below = options.alarm_below;
   file.choice<bool>("detector.alarm", {{"above", false}, {"below", true}}, below);
@@ -145,9 +143,9 @@ void read_detector(TomlFile& file, MonitorFile& out) {
   file.number("detector.false_alarms_per_hour", "false_alarms_per_hour", 1.0, options.false_alarms_per_hour);
 }
 
-void check_options(const TomlFile& file, const MonitorFile& monitor) {
+void check_options(const io::TomlFile& file, const MonitorFile& monitor) {
   file.locate([&] {
-    monitor::MonitorOptions options = monitor.options;
+    MonitorOptions options = monitor.options;
     if (!file.has("signal.sample_rate_hz")) options.sample_rate_hz = some_rate_hz;
     try {
       options.validate();
@@ -160,7 +158,7 @@ void check_options(const TomlFile& file, const MonitorFile& monitor) {
 }
 
 MonitorFile read_monitor(const std::filesystem::path& path) {
-  TomlFile file(path);
+  io::TomlFile file(path);
   MonitorFile out;
   out.path = path;
   read_signal(file, out);
@@ -190,7 +188,7 @@ void validate(const MonitorFile& file) {
 }
 
 std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
-  const monitor::MonitorOptions& o = file.options;
+  const MonitorOptions& o = file.options;
   std::string out;
   const auto line = [&out](std::string_view key, const std::string& value) {
     fmt::format_to(std::back_inserter(out), "{} = {}\n", key, value);
@@ -216,12 +214,12 @@ std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
   if (!file.modes.empty()) line("modes", in_quotes(file.modes.string()));
   if (!file.lobes.empty()) line("lobes", in_quotes(file.lobes.string()));
   out += "\n[detector]\n";
-  line("kind", in_quotes(monitor::to_string(o.kind)));
+  line("kind", in_quotes(to_string(o.kind)));
   line("window_ms", number_text(o.window_s / units::ms));
   line("hop_ms", number_text(o.hop_s / units::ms));
   line("bands", std::to_string(o.bands));
-  if (o.kind == monitor::Kind::energy_entropy) {
-    line("entropy", in_quotes(monitor::to_string(o.entropy)));
+  if (o.kind == Kind::energy_entropy) {
+    line("entropy", in_quotes(to_string(o.entropy)));
     line("threshold", number_text(o.threshold));
     line("alarm", in_quotes(o.alarm_below ? "below" : "above"));
   } else {
@@ -262,4 +260,4 @@ bool parse_mqtt_address(const std::string& text, MqttSettings& settings) {
   return true;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

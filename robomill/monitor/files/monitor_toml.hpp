@@ -6,7 +6,7 @@
 #include "robomill/io/sample_source.hpp"
 #include "robomill/monitor/monitor.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 
 /// [mqtt]: where samples come from and events go to.
 struct MqttSettings {
@@ -28,10 +28,10 @@ struct MqttSettings {
 /// monitor.toml.
 struct MonitorFile {
   std::filesystem::path path = {};
-  SampleColumns columns = {};            ///< [signal], without the rate
-  monitor::MonitorOptions options = {};  ///< sample_rate_hz is 0 where the file leaves it to the recording
-  std::filesystem::path modes = {};      ///< process.modes; empty: none
-  std::filesystem::path lobes = {};      ///< process.lobes; empty: none
+  io::SampleColumns columns = {};    ///< [signal], without the rate
+  MonitorOptions options = {};       ///< sample_rate_hz is 0 where the file leaves it to the recording
+  std::filesystem::path modes = {};  ///< process.modes; empty: none
+  std::filesystem::path lobes = {};  ///< process.lobes; empty: none
   MqttSettings mqtt = {};
   int metrics_port = -1;  ///< -1: none; 0: any that is free
   std::string metrics_host = "127.0.0.1";
@@ -54,4 +54,4 @@ ROBOMILL_API void validate(const MonitorFile& file);
 /// @throws InvalidInput if it is one without a host or topic, or its port is none
 ROBOMILL_API bool parse_mqtt_address(const std::string& text, MqttSettings& settings);
 
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

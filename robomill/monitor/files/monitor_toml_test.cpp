@@ -9,10 +9,10 @@
 #include "robomill/monitor/files/recordings_toml.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 namespace {
 
-using monitor::Kind;
+using Kind;
 
 constexpr const char* least = "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n";
 
@@ -49,7 +49,7 @@ TEST(MonitorToml, ReadsEveryKey) {
   EXPECT_DOUBLE_EQ(file.options.window_s, 0.05);
   EXPECT_DOUBLE_EQ(file.options.hop_s, 0.025);
   EXPECT_EQ(file.options.bands, 8);
-  EXPECT_EQ(file.options.entropy, monitor::Entropy::normalised);
+  EXPECT_EQ(file.options.entropy, Entropy::normalised);
   EXPECT_EQ(file.options.threshold, 1.5);
   EXPECT_TRUE(file.options.alarm_below);
   EXPECT_EQ(file.options.false_alarms_per_hour, 0.5);
@@ -205,4 +205,4 @@ TEST(RecordingsToml, RefusesWhatCannotCalibrate) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

@@ -9,10 +9,10 @@
 #include "robomill/base/units.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 namespace {
 
-LabelledRecording read_recording(TomlFile& file, std::size_t index, double spindle_speed_rad_per_s) {
+LabelledRecording read_recording(io::TomlFile& file, std::size_t index, double spindle_speed_rad_per_s) {
   const std::string row = fmt::format("recordings[{}].", index);
   LabelledRecording out;
   out.spindle_speed_rad_per_s = spindle_speed_rad_per_s;
@@ -33,10 +33,10 @@ LabelledRecording read_recording(TomlFile& file, std::size_t index, double spind
 }  // namespace
 
 RecordingsFile read_recordings(const std::filesystem::path& path) {
-  TomlFile file(path);
+  io::TomlFile file(path);
   RecordingsFile out;
   out.monitor.path = path;
-  out.monitor.options.kind = monitor::Kind::energy_entropy;
+  out.monitor.options.kind = Kind::energy_entropy;
   out.monitor.options.threshold = 0.0;  // calibration sets it
   read_signal(file, out.monitor);
   read_process(file, out.monitor);
@@ -66,4 +66,4 @@ RecordingsFile read_recordings(const std::filesystem::path& path) {
   return out;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

@@ -6,7 +6,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 
 /// A recording and what was heard in it.
 struct LabelledRecording {
@@ -26,4 +26,4 @@ struct RecordingsFile {
 /// @throws InvalidInput with file, line, key and value, also where no recording chatters or none is stable
 [[nodiscard]] ROBOMILL_API RecordingsFile read_recordings(const std::filesystem::path& path);
 
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

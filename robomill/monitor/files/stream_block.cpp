@@ -8,7 +8,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 namespace {
 
 constexpr std::string_view magic = "RMSB";
@@ -57,7 +57,7 @@ std::string encode_stream_block(const StreamBlock& block) {
   put(out, static_cast<std::uint16_t>(block.channels));
   put(out, block.sequence);
   put(out, std::bit_cast<std::uint64_t>(block.sample_rate_hz));
-  put(out, std::bit_cast<std::uint64_t>(round_15(block.spindle_speed_rad_per_s / units::rpm)));
+  put(out, std::bit_cast<std::uint64_t>(io::round_15(block.spindle_speed_rad_per_s / units::rpm)));
   put(out, static_cast<std::uint32_t>(block.frames()));
   put(out, std::uint32_t{0});
   for (const float sample : block.samples) put(out, std::bit_cast<std::uint32_t>(sample));
@@ -98,4 +98,4 @@ DecodedBlock decode_stream_block(std::span<const std::byte> message) {
   return {.block = std::move(block), .refusal = ""};
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

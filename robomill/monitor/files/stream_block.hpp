@@ -9,7 +9,7 @@
 
 #include "robomill/base/export.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 
 /// Samples as a sensor's gateway publishes them: one MQTT message.
 struct StreamBlock {
@@ -41,4 +41,4 @@ struct DecodedBlock {
 };
 [[nodiscard]] ROBOMILL_API DecodedBlock decode_stream_block(std::span<const std::byte> message);
 
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

@@ -11,7 +11,7 @@
 #include "robomill/base/units.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::monitor {
 namespace {
 
 std::span<const std::byte> bytes(const std::string& text) {
@@ -148,4 +148,4 @@ TEST(StreamBlock, SurvivesAnyBytes) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::monitor

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-namespace robomill::formats {
+namespace robomill::path {
 
 /// A digital output of a controller: a number (KUKA, Universal Robots) or the name of a signal (ABB).
 struct DigitalOutput {
@@ -28,4 +28,4 @@ struct EndEffector {
   [[nodiscard]] Eigen::Vector3d center() const { return center_m.value_or(0.5 * tip.translation()); }
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

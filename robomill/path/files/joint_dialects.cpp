@@ -7,7 +7,7 @@
 
 #include "robomill/base/units.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 constexpr const char* same_angles =
@@ -390,4 +390,4 @@ std::unique_ptr<JointDialect> servoj_dialect(double period_s) {
   return std::make_unique<Servoj>(period_s);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -13,7 +13,7 @@
 #include "robomill/path/files/joint_run.hpp"
 #include "robomill/robot/inverse.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 
 /// What a program switches on before its first move and off after its last.
 struct Outputs {
@@ -63,4 +63,4 @@ class JointDialect {
                                                              double period_s);
 [[nodiscard]] std::unique_ptr<JointDialect> servoj_dialect(double period_s);
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -18,7 +18,7 @@
 #include "robomill/path/files/sample_spool.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 constexpr double usual_period_s = 0.020;
@@ -233,13 +233,12 @@ class JointProgram final : public SampleFile {
 
   void restart() override { samples_.clear(); }
 
-  void add(std::span<const path::Sample> samples) override {
-    for (const path::Sample& sample : samples) samples_.add(sample);
+  void add(std::span<const Sample> samples) override {
+    for (const Sample& sample : samples) samples_.add(sample);
   }
 
   std::optional<ProgramRun> settle(program::Source& program, const robot::Kinematics& machine,
-                                   const path::SmoothingOptions& options, bool refine,
-                                   const Progress& progress) override {
+                                   const SmoothingOptions& options, bool refine, const Progress& progress) override {
     const auto follow = [&](std::vector<bool>& beyond) {
       RunDistances worst;
       for (const Joining joining : dialect_->joinings()) {
@@ -318,7 +317,7 @@ class JointProgram final : public SampleFile {
     }
   }
 
-  static ProgramRun run_of(const path::SmoothingOptions& options) {
+  static ProgramRun run_of(const SmoothingOptions& options) {
     ProgramRun run;
     run.tip_tolerance_m = options.tip_tolerance_m;
     run.axis_tolerance_rad = options.axis_tolerance_rad;
@@ -416,4 +415,4 @@ std::unique_ptr<SampleFile> open_joint_program(const std::filesystem::path& path
   return std::make_unique<JointProgram>(path, info, language);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -4,7 +4,7 @@
 
 #include "robomill/path/files/trajectory.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 
 /// What a robot's controller reads: KUKA KRL (.src), ABB RAPID (.mod), Universal Robots URScript (.script), or the
 /// joints alone, a row a cycle (.servoj).
@@ -22,4 +22,4 @@ enum class JointLanguage { krl, rapid, urscript, servoj };
 [[nodiscard]] std::unique_ptr<SampleFile> open_joint_program(const std::filesystem::path& path,
                                                              const TrajectoryInfo& info, JointLanguage language);
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -17,7 +17,7 @@
 #include "testing/robot/arms.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 using robomill::test::Folder;
@@ -34,12 +34,12 @@ struct Case {
 
 class Program : public testing::TestWithParam<Case> {
  protected:
-  std::string written(const std::vector<path::Sample>& samples, TrajectoryInfo info = test::arm_info()) {
+  std::string written(const std::vector<Sample>& samples, TrajectoryInfo info = test::arm_info()) {
     const auto path = folder_.at(std::string("1 – part") + GetParam().ending);
     const auto file = open_sample_file(path, info);
     file->add(samples);
     file->commit();
-    return read_file(path);
+    return io::read_file(path);
   }
   Folder folder_;
 };
@@ -143,7 +143,7 @@ std::string with_spindle(const std::filesystem::path& path, const EndEffector& e
   program.blocks.push_back(block);
   robot::Cell cell;
   cell.arm = robot::testing::with_limits(robot::testing::kr210());
-  path::SmoothingOptions options;
+  SmoothingOptions options;
   options.tip_tolerance_m = options.axis_tolerance_rad = 1.0;
   options.max_velocity_m_per_s = options.max_acceleration_m_per_s2 = options.max_jerk_m_per_s3 = 1.0;
   options.max_angular_velocity_rad_per_s = options.max_angular_acceleration_rad_per_s2 = 1.0;
@@ -151,7 +151,7 @@ std::string with_spindle(const std::filesystem::path& path, const EndEffector& e
   program::ProgramSource source(program);
   static_cast<void>(file->settle(source, robot::SerialKinematics(cell), options, false, robomill::Progress::none()));
   file->commit();
-  return read_file(path);
+  return io::read_file(path);
 }
 
 /// The first comment of a program.
@@ -272,7 +272,7 @@ TEST(ProgramNames, AreWholeOrRefused) {
     const auto file = open_sample_file(path, test::arm_info());
     file->add(test::sines(101));
     file->commit();
-    return read_file(path);
+    return io::read_file(path);
   };
   const auto written = [](std::size_t letters) { return std::string(letters - 1, 'a') + "_"; };
   EXPECT_NE(named(24, ".src").find("\nDEF " + written(24) + "()\n"), std::string::npos);
@@ -315,4 +315,4 @@ TEST(ProgramParsers, RefuseWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::path

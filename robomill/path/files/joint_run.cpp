@@ -6,7 +6,7 @@
 
 #include "robomill/path/check.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 using robot::Position6;
@@ -49,7 +49,7 @@ Position6 between(SampleSpool& samples, std::size_t sample, double share) {
 class Follow {
  public:
   Follow(const JointPoints& points, Joining joining, SampleSpool& samples, program::Source& program,
-         const robot::Kinematics& machine, const path::SmoothingOptions& options)
+         const robot::Kinematics& machine, const SmoothingOptions& options)
       : points_(points),
         joining_(joining),
         samples_(samples),
@@ -85,10 +85,10 @@ class Follow {
 
   /// Marks steps that leave the program.
   RunDistances finish(std::vector<bool>& beyond) {
-    const path::CheckResult result = checker_.finish();
+    const CheckResult result = checker_.finish();
     total_.tip_error_m = result.tip_error_m.max;
     total_.axis_error_rad = result.axis_error_rad.max;
-    for (const path::Breach& breach : result.breaches) {
+    for (const Breach& breach : result.breaches) {
       if (breach.order == 0) mark(beyond, breach.time_s);
     }
     return total_;
@@ -108,13 +108,13 @@ class Follow {
 
   void check(std::size_t sample, const Position6& joints, std::size_t index) {
     const robot::ToolPose pose = machine_.forward(joints);
-    path::Sample out;
+    Sample out;
     out.time_s = static_cast<double>(sample) * options_.sample_period_s;
     out.joints = joints;
     out.tip_m = pose.tip_m;
     out.axis = pose.axis;
     out.block = samples_.row(sample).block;
-    out.path_m = (static_cast<double>(index) + 0.5) / path::breach_cells_per_m;  // breaches apart, step by step
+    out.path_m = (static_cast<double>(index) + 0.5) / breach_cells_per_m;  // breaches apart, step by step
     checker_.add(std::span(&out, 1));
   }
 
@@ -122,8 +122,8 @@ class Follow {
   Joining joining_;
   SampleSpool& samples_;
   const robot::Kinematics& machine_;
-  const path::SmoothingOptions& options_;
-  path::Checker checker_;
+  const SmoothingOptions& options_;
+  Checker checker_;
   RunDistances total_;
 };
 
@@ -174,8 +174,8 @@ void RunDistances::include(const RunDistances& other) {
 }
 
 RunDistances follow_points(const JointPoints& points, Joining joining, SampleSpool& samples, program::Source& program,
-                           const robot::Kinematics& machine, const path::SmoothingOptions& options,
-                           std::vector<bool>& beyond, const Progress& progress) {
+                           const robot::Kinematics& machine, const SmoothingOptions& options, std::vector<bool>& beyond,
+                           const Progress& progress) {
   if (points.steps() == 0) return {};  // the trajectory is one sample: nothing moves
   program.rewind();
   Follow follow(points, joining, samples, program, machine, options);
@@ -186,4 +186,4 @@ RunDistances follow_points(const JointPoints& points, Joining joining, SampleSpo
   return follow.finish(beyond);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

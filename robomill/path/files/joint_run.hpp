@@ -10,7 +10,7 @@
 #include "robomill/program/program.hpp"
 #include "robomill/robot/kinematics.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 
 /// How a controller may join points in joint space.
 ///   line:    all joints linearly in time
@@ -55,7 +55,7 @@ struct RunDistances {
 /// @throws InvalidInput what the program's reader throws; Interrupted
 [[nodiscard]] RunDistances follow_points(const JointPoints& points, Joining joining, SampleSpool& samples,
                                          program::Source& program, const robot::Kinematics& machine,
-                                         const path::SmoothingOptions& options, std::vector<bool>& beyond,
+                                         const SmoothingOptions& options, std::vector<bool>& beyond,
                                          const Progress& progress);
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

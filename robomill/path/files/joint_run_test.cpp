@@ -21,7 +21,7 @@
 #include "testing/robot/arms.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 using robot::Position6;
@@ -57,8 +57,8 @@ Sines random_sines(Random& random) {
 }
 
 template <class Joints>
-std::vector<path::Sample> samples_of(const robot::Kinematics& machine, std::size_t count, Joints&& joints) {
-  std::vector<path::Sample> out(count);
+std::vector<Sample> samples_of(const robot::Kinematics& machine, std::size_t count, Joints&& joints) {
+  std::vector<Sample> out(count);
   for (std::size_t i = 0; i < count; ++i) {
     out[i].time_s = static_cast<double>(i) * period_s;
     out[i].joints = joints(out[i].time_s);
@@ -71,10 +71,8 @@ std::vector<path::Sample> samples_of(const robot::Kinematics& machine, std::size
 }
 
 /// The program that these samples follow: a block every two of them.
-program::Program program_of(const std::vector<path::Sample>& samples) {
-  const auto pose = [](const path::Sample& sample) {
-    return program::Pose{.tip_m = sample.tip_m, .axis = sample.axis};
-  };
+program::Program program_of(const std::vector<Sample>& samples) {
+  const auto pose = [](const Sample& sample) { return program::Pose{.tip_m = sample.tip_m, .axis = sample.axis}; };
   program::Program out{.start = pose(samples.front()), .blocks = {}};
   for (std::size_t i = 2; i < samples.size() + 1; i += 2) {
     program::Block block;
@@ -85,8 +83,8 @@ program::Program program_of(const std::vector<path::Sample>& samples) {
   return out;
 }
 
-path::SmoothingOptions tolerances(double tip_m, double axis_rad) {
-  path::SmoothingOptions out;
+SmoothingOptions tolerances(double tip_m, double axis_rad) {
+  SmoothingOptions out;
   out.tip_tolerance_m = tip_m;
   out.axis_tolerance_rad = axis_rad;
   out.max_velocity_m_per_s = out.max_acceleration_m_per_s2 = out.max_jerk_m_per_s3 = 1.0;
@@ -102,8 +100,7 @@ struct Written {
 };
 
 Written written(const robomill::test::Folder& folder, const std::string& ending, double point_period_s,
-                const std::vector<path::Sample>& samples, const robot::Kinematics& machine,
-                const path::SmoothingOptions& options) {
+                const std::vector<Sample>& samples, const robot::Kinematics& machine, const SmoothingOptions& options) {
   TrajectoryInfo info = test::arm_info();
   info.program_period_s = point_period_s;
   const auto path = folder.at("part" + ending);
@@ -115,7 +112,7 @@ Written written(const robomill::test::Folder& folder, const std::string& ending,
   Written out;
   out.run = file->settle(source, machine, options, true, Progress::none()).value();
   file->commit();
-  out.text = read_file(path);
+  out.text = io::read_file(path);
   if (out.run.points < 10'000) out.parsed = test::parse(ending, out.text, point_period_s);
   return out;
 }
@@ -169,7 +166,7 @@ constexpr std::array<Language, 4> languages = {
 TEST(JointRun, TellsAtLeastWhatTheFilesPointsDoAtRandomPostures) {
   const robomill::test::Folder folder;
   const robot::SerialKinematics machine = arm();
-  const path::SmoothingOptions loose = tolerances(0.1, 1.0);
+  const SmoothingOptions loose = tolerances(0.1, 1.0);
   Random random(20);
   for (int round = 0; round < 12; ++round) {
     const Sines sines = random_sines(random);
@@ -216,7 +213,7 @@ TEST(JointRun, SeesTheTipSwingInAPureRotation) {
   const robot::SerialKinematics machine = arm();
   const Turn turn(machine, 1.5, 401);
   const auto samples = samples_of(machine, 401, turn);
-  for (const path::Sample& sample : samples) ASSERT_LT((sample.tip_m - samples.front().tip_m).norm(), 1e-9);
+  for (const Sample& sample : samples) ASSERT_LT((sample.tip_m - samples.front().tip_m).norm(), 1e-9);
   const Written loose = written(folder, ".src", 0.020, samples, machine, tolerances(1e-3, 0.1));
   EXPECT_EQ(loose.run.longest_step_s, loose.run.shortest_step_s);
   EXPECT_GT(loose.run.tip_deviation_m, 50e-6);
@@ -274,7 +271,7 @@ TEST(JointRun, KeepsTheCornersOfASmoothedProgram) {
     joint.max_jerk = 200.0;
   }
   const robot::SerialKinematics machine(cell);
-  path::Posture posture;
+  Posture posture;
   posture.start = robot::testing::kr210_posture();
   const robot::ToolPose first = machine.forward(posture.start);
   posture.gamma_rad = {first.gamma_rad};
@@ -287,7 +284,7 @@ TEST(JointRun, KeepsTheCornersOfASmoothedProgram) {
     block.duration_s = 0.15;
     zigzag.blocks.push_back(block);
   }
-  path::SmoothingOptions options = tolerances(20e-6, 2e-3);
+  SmoothingOptions options = tolerances(20e-6, 2e-3);
   options.max_velocity_m_per_s = 0.05;
   options.max_acceleration_m_per_s2 = 0.5;
   options.max_jerk_m_per_s3 = 10.0;
@@ -298,8 +295,8 @@ TEST(JointRun, KeepsTheCornersOfASmoothedProgram) {
     TrajectoryInfo info = test::arm_info();
     info.program_period_s = 0.064;
     const auto file = open_sample_file(folder.at(std::string("zigzag") + ending), info);
-    const path::Summary summary = path::smooth(
-        source, machine, posture, options, [&](std::span<const path::Sample> samples) { file->add(samples); },
+    const Summary summary = smooth(
+        source, machine, posture, options, [&](std::span<const Sample> samples) { file->add(samples); },
         [&] { file->restart(); }, Progress::none());
     ASSERT_EQ(summary.check.violations(), 0U);
     const ProgramRun far = file->settle(source, machine, options, false, Progress::none()).value();
@@ -331,7 +328,7 @@ TEST(JointRun, TellsWhichProgramsNoControllerIsKnownToLoad) {
   const robot::SerialKinematics machine = arm();
   const auto joints = [](double time_s) { return Position6::Constant(0.3 + 0.001 * time_s).eval(); };
   const auto samples = samples_of(machine, 66'003, joints);
-  const path::SmoothingOptions loose = tolerances(1e-3, 0.1);
+  const SmoothingOptions loose = tolerances(1e-3, 0.1);
   const Written script = written(folder, ".script", 0.002, samples, machine, loose);
   EXPECT_TRUE(script.run.keeps_tolerances());
   EXPECT_EQ(script.run.points, 33'002U);
@@ -397,4 +394,4 @@ TEST(JointStep, JoinsPointsAsItSays) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::path

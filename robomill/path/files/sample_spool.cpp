@@ -10,7 +10,7 @@
 
 #include "robomill/base/error.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 constexpr std::size_t chunk_rows = 4096;
@@ -41,7 +41,7 @@ void SampleSpool::clear() {
   std::rewind(file_.get());
 }
 
-void SampleSpool::add(const path::Sample& sample) {
+void SampleSpool::add(const Sample& sample) {
   Row row;
   Eigen::Map<robot::Position6>(row.joints.data()) = sample.joints;
   row.block = sample.block;
@@ -67,4 +67,4 @@ SampleSpool::Row SampleSpool::row(std::size_t index) {
   return chunk.rows[index % chunk_rows];
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -11,7 +11,7 @@
 #include "robomill/path/sample.hpp"
 #include "robomill/robot/inverse.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 
 /// Joints and blocks of samples that are evenly spaced in time, in a file without a name.
 class SampleSpool {
@@ -26,7 +26,7 @@ class SampleSpool {
   explicit SampleSpool(const std::filesystem::path& beside);
   void clear();
   /// @throws InvalidInput if the disk is full
-  void add(const path::Sample& sample);
+  void add(const Sample& sample);
   [[nodiscard]] std::size_t size() const { return size_; }
   /// Fast where the rows asked for are near each other. @throws InvalidInput if it cannot be read
   [[nodiscard]] Row row(std::size_t index);
@@ -48,4 +48,4 @@ class SampleSpool {
   std::array<Chunk, 16> chunks_ = {};
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -6,31 +6,31 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
-using path::Usage;
+using Usage;
 
 /// Under "max_velocity_mm_per_s", "limit_velocity_mm_per_s".
-void add_usage(Json& json, const std::string& name, const Usage& usage, double unit = 1.0) {
-  json["max_" + name] = number(usage.max / unit);
-  json["limit_" + name] = usage.limit > 0.0 ? number(usage.limit / unit) : Json();
+void add_usage(io::Json& json, const std::string& name, const Usage& usage, double unit = 1.0) {
+  json["max_" + name] = io::number(usage.max / unit);
+  json["limit_" + name] = usage.limit > 0.0 ? io::number(usage.limit / unit) : io::Json();
 }
 
-Json joint_json(const path::CheckResult::Joint& joint, bool slides, const double* tracking_error) {
-  Json json = {{"unit", slides ? "m" : "rad"}};
+io::Json joint_json(const CheckResult::Joint& joint, bool slides, const double* tracking_error) {
+  io::Json json = {{"unit", slides ? "m" : "rad"}};
   add_usage(json, "velocity", joint.velocity);
   add_usage(json, "acceleration", joint.acceleration);
   add_usage(json, "jerk", joint.jerk);
-  json["beyond_position"] = number(std::max(0.0, joint.position.max));
+  json["beyond_position"] = io::number(std::max(0.0, joint.position.max));
   json["violations"] =
       joint.position.violations + joint.velocity.violations + joint.acceleration.violations + joint.jerk.violations;
-  if (tracking_error != nullptr) json["max_tracking_error"] = number(*tracking_error);
+  if (tracking_error != nullptr) json["max_tracking_error"] = io::number(*tracking_error);
   return json;
 }
 
-Json tip_json(const path::CheckResult& check) {
-  Json json = Json::object();
+io::Json tip_json(const CheckResult& check) {
+  io::Json json = io::Json::object();
   add_usage(json, "velocity_mm_per_s", check.tip_velocity, units::mm);
   add_usage(json, "acceleration_mm_per_s2", check.tip_acceleration, units::mm);
   add_usage(json, "jerk_mm_per_s3", check.tip_jerk, units::mm);
@@ -41,8 +41,8 @@ Json tip_json(const path::CheckResult& check) {
   return json;
 }
 
-Json axis_json(const path::CheckResult& check) {
-  Json json = Json::object();
+io::Json axis_json(const CheckResult& check) {
+  io::Json json = io::Json::object();
   add_usage(json, "velocity_deg_per_s", check.axis_velocity, units::deg);
   add_usage(json, "acceleration_deg_per_s2", check.axis_acceleration, units::deg);
   add_usage(json, "jerk_deg_per_s3", check.axis_jerk, units::deg);
@@ -52,76 +52,75 @@ Json axis_json(const path::CheckResult& check) {
   return json;
 }
 
-Json method_json(const SmoothedBy& smoothed, const std::array<bool, 6>& slides) {
-  const path::Summary& summary = smoothed.summary;
-  const path::CheckResult& check = summary.check;
+io::Json method_json(const SmoothedBy& smoothed, const std::array<bool, 6>& slides) {
+  const Summary& summary = smoothed.summary;
+  const CheckResult& check = summary.check;
   const double samples = static_cast<double>(std::max<std::size_t>(summary.samples, 1));
-  Json json = {{"method", name_of(smoothed.method)}, {"duration_s", number(summary.duration_s)}};
-  json["lower_bound_s"] = summary.lower_bound_s > 0.0 ? number(summary.lower_bound_s) : Json();
-  json["max_tip_error_mm"] = number(check.tip_error_m.max / units::mm);
-  json["max_axis_error_deg"] = number(check.axis_error_rad.max / units::deg);
+  io::Json json = {{"method", name_of(smoothed.method)}, {"duration_s", io::number(summary.duration_s)}};
+  json["lower_bound_s"] = summary.lower_bound_s > 0.0 ? io::number(summary.lower_bound_s) : io::Json();
+  json["max_tip_error_mm"] = io::number(check.tip_error_m.max / units::mm);
+  json["max_axis_error_deg"] = io::number(check.axis_error_rad.max / units::deg);
   json["violations"] = check.violations();
   json["tip"] = tip_json(check);
   json["axis"] = axis_json(check);
-  json["joints"] = Json::array();
+  json["joints"] = io::Json::array();
   for (std::size_t i = 0; i < check.joints.size(); ++i) {
     const bool tracked = i < smoothed.tracking_error.size();
     json["joints"].push_back(
         joint_json(check.joints[i], slides.at(i), tracked ? &smoothed.tracking_error[i] : nullptr));
   }
-  json["max_pose_error_mm"] = number(check.pose_error.max / units::mm);
+  json["max_pose_error_mm"] = io::number(check.pose_error.max / units::mm);
   json["blocks"] = summary.blocks;
   json["samples"] = summary.samples;
   json["rounds"] = summary.rounds;
-  json["plan_seconds"] = number(summary.plan_s);
-  json["microseconds_per_sample"] = number(summary.emit_s / samples / units::us);
-  json["sum_t2_s"] = summary.sum_t2_s > 0.0 ? number(summary.sum_t2_s) : Json();
-  json["largest_overlap_s"] = summary.largest_overlap_s > 0.0 ? number(summary.largest_overlap_s) : Json();
+  json["plan_seconds"] = io::number(summary.plan_s);
+  json["microseconds_per_sample"] = io::number(summary.emit_s / samples / units::us);
+  json["sum_t2_s"] = summary.sum_t2_s > 0.0 ? io::number(summary.sum_t2_s) : io::Json();
+  json["largest_overlap_s"] = summary.largest_overlap_s > 0.0 ? io::number(summary.largest_overlap_s) : io::Json();
   return json;
 }
 
-Json run_json(const ProgramRun& run) {
+io::Json run_json(const ProgramRun& run) {
   return {{"points", run.points},
-          {"shortest_step_ms", number(run.shortest_step_s / units::ms)},
-          {"longest_step_ms", number(run.longest_step_s / units::ms)},
-          {"max_joint_deviation_deg", number(run.joint_deviation_rad / units::deg)},
-          {"max_tip_deviation_mm", number(run.tip_deviation_m / units::mm)},
-          {"max_axis_deviation_deg", number(run.axis_deviation_rad / units::deg)},
-          {"max_tip_error_mm", number(run.tip_error_m / units::mm)},
-          {"max_axis_error_deg", number(run.axis_error_rad / units::deg)},
-          {"limit_error_mm", number(run.tip_tolerance_m / units::mm)},
-          {"limit_error_deg", number(run.axis_tolerance_rad / units::deg)},
-          {"most_points", run.most_points > 0 ? Json(run.most_points) : Json()},
+          {"shortest_step_ms", io::number(run.shortest_step_s / units::ms)},
+          {"longest_step_ms", io::number(run.longest_step_s / units::ms)},
+          {"max_joint_deviation_deg", io::number(run.joint_deviation_rad / units::deg)},
+          {"max_tip_deviation_mm", io::number(run.tip_deviation_m / units::mm)},
+          {"max_axis_deviation_deg", io::number(run.axis_deviation_rad / units::deg)},
+          {"max_tip_error_mm", io::number(run.tip_error_m / units::mm)},
+          {"max_axis_error_deg", io::number(run.axis_error_rad / units::deg)},
+          {"limit_error_mm", io::number(run.tip_tolerance_m / units::mm)},
+          {"limit_error_deg", io::number(run.axis_tolerance_rad / units::deg)},
+          {"most_points", run.most_points > 0 ? io::Json(run.most_points) : io::Json()},
           {"holds", run.holds()}};
 }
 
 }  // namespace
 
-const char* name_of(path::Method method) {
+const char* name_of(Method method) {
   switch (method) {
-    case path::Method::verified:
+    case Method::verified:
       return "verified";
-    case path::Method::optimal:
+    case Method::optimal:
       return "optimal";
-    case path::Method::paper:
+    case Method::paper:
       return "paper";
-    case path::Method::paper_as_printed:
+    case Method::paper_as_printed:
       return "paper-as-printed";
-    case path::Method::no_joint_jerk:
+    case Method::no_joint_jerk:
       break;
   }
   return "no-joint-jerk";
 }
 
-const std::array<path::Method, 5>& smoothing_methods() {
-  static constexpr std::array<path::Method, 5> methods = {path::Method::verified, path::Method::optimal,
-                                                          path::Method::paper, path::Method::paper_as_printed,
-                                                          path::Method::no_joint_jerk};
+const std::array<Method, 5>& smoothing_methods() {
+  static constexpr std::array<Method, 5> methods = {Method::verified, Method::optimal, Method::paper,
+                                                    Method::paper_as_printed, Method::no_joint_jerk};
   return methods;
 }
 
-std::optional<path::Method> method_of(std::string_view name) {
-  for (const path::Method method : smoothing_methods()) {
+std::optional<Method> method_of(std::string_view name) {
+  for (const Method method : smoothing_methods()) {
     if (name == name_of(method)) return method;
   }
   return std::nullopt;
@@ -129,21 +128,21 @@ std::optional<path::Method> method_of(std::string_view name) {
 
 std::string smooth_json(const SmoothedProgram& smoothed) {
   if (smoothed.methods.empty()) throw InvalidInput("methods", "must hold at least one");
-  Json json = method_json(smoothed.methods.front(), smoothed.slides);
+  io::Json json = method_json(smoothed.methods.front(), smoothed.slides);
   json["written"] = smoothed.written;
   json["program"] = smoothed.program;
   json["cell"] = smoothed.cell;
-  json["skipped"] = Json::array();
+  json["skipped"] = io::Json::array();
   for (const program::Skipped& item : smoothed.skipped) {
     json["skipped"].push_back({{"line", item.line}, {"what", item.what}});
   }
   json["notes"] = smoothed.notes;
-  json["robot_program"] = smoothed.robot_program ? run_json(*smoothed.robot_program) : Json();
+  json["robot_program"] = smoothed.robot_program ? run_json(*smoothed.robot_program) : io::Json();
   if (smoothed.methods.size() > 1) {
-    json["methods"] = Json::array();
+    json["methods"] = io::Json::array();
     for (const SmoothedBy& method : smoothed.methods) json["methods"].push_back(method_json(method, smoothed.slides));
   }
-  return dump(json);
+  return io::dump(json);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -11,12 +11,12 @@
 #include "robomill/path/smooth.hpp"
 #include "robomill/program/program.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 
 /// One method's trajectory.
 struct SmoothedBy {
-  path::Method method = path::Method::verified;
-  path::Summary summary = {};
+  Method method = Method::verified;
+  Summary summary = {};
   std::vector<double> tracking_error = {};  ///< one a joint: the largest [rad or m]; empty where not asked for
 };
 
@@ -32,14 +32,14 @@ struct SmoothedProgram {
 };
 
 /// "verified", "paper-as-printed": as in a cell's [smoothing].
-[[nodiscard]] ROBOMILL_API const char* name_of(path::Method method);
+[[nodiscard]] ROBOMILL_API const char* name_of(Method method);
 /// All of them, the fastest to plan first.
-[[nodiscard]] ROBOMILL_API const std::array<path::Method, 5>& smoothing_methods();
+[[nodiscard]] ROBOMILL_API const std::array<Method, 5>& smoothing_methods();
 /// None where there is no such method.
-[[nodiscard]] ROBOMILL_API std::optional<path::Method> method_of(std::string_view name);
+[[nodiscard]] ROBOMILL_API std::optional<Method> method_of(std::string_view name);
 
 /// smooth.json: of the first method, and under "methods" of each where there are several. docs/formats.md.
 /// @throws InvalidInput if there is no method
 [[nodiscard]] ROBOMILL_API std::string smooth_json(const SmoothedProgram& smoothed);
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -7,7 +7,7 @@
 #include "robomill/base/units.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 SmoothedProgram smoothed() {
@@ -63,7 +63,7 @@ TEST(SmoothJson, HasTheNamedFieldsInTheirUnits) {
 
 TEST(SmoothJson, TellsMethodsSideBySideAndNothingAsNull) {
   SmoothedProgram two = smoothed();
-  two.methods.push_back({.method = path::Method::paper_as_printed});
+  two.methods.push_back({.method = Method::paper_as_printed});
   two.methods.back().summary.duration_s = 13.0;
   const auto json = nlohmann::json::parse(smooth_json(two));
   ASSERT_EQ(json["methods"].size(), 2U);
@@ -74,9 +74,9 @@ TEST(SmoothJson, TellsMethodsSideBySideAndNothingAsNull) {
 }
 
 TEST(SmoothJson, KnowsEachMethodByItsName) {
-  for (const path::Method method : smoothing_methods()) EXPECT_EQ(method_of(name_of(method)), method);
+  for (const Method method : smoothing_methods()) EXPECT_EQ(method_of(name_of(method)), method);
   EXPECT_FALSE(method_of("fastest"));
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -11,16 +11,16 @@
 #include "robomill/io/toml_file.hpp"
 #include "robomill/robot/files/joint_limits.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 struct Key {
   const char* key;
   const char* member;
   double factor;
-  double path::SmoothingOptions::*value;
+  double SmoothingOptions::*value;
 };
-using Options = path::SmoothingOptions;
+using Options = SmoothingOptions;
 constexpr std::array<Key, 10> keys = {{
     {"tip_tolerance_mm", "tip_tolerance_m", units::mm, &Options::tip_tolerance_m},
     {"axis_tolerance_deg", "axis_tolerance_rad", units::deg, &Options::axis_tolerance_rad},
@@ -37,7 +37,7 @@ constexpr std::array<Key, 10> keys = {{
 }};
 
 /// A list with one number > 0 a joint, or one for all.
-void read_per_joint(TomlFile& file, const char* key, const char* member, int joints, std::vector<double>& out) {
+void read_per_joint(io::TomlFile& file, const char* key, const char* member, int joints, std::vector<double>& out) {
   if (!file.numbers(key, member, 1.0, out)) return;
   if (out.size() == 1) out.assign(static_cast<std::size_t>(joints), out.front());
   if (static_cast<int>(out.size()) != joints) {
@@ -50,8 +50,8 @@ void read_per_joint(TomlFile& file, const char* key, const char* member, int joi
 }
 
 /// The limits come from the cell's reader; here they are only told in the file's words.
-void check_limits(TomlFile& file, const robot::JointLimits& limits, int joints) {
-  for (const JointLimit& limit : joint_limits) {
+void check_limits(io::TomlFile& file, const robot::JointLimits& limits, int joints) {
+  for (const robot::JointLimit& limit : robot::joint_limits) {
     std::vector<double> values;
     file.numbers(std::string("robot.joint_") + limit.name, limit.name, 1.0, values);
   }
@@ -68,7 +68,7 @@ void check_limits(TomlFile& file, const robot::JointLimits& limits, int joints) 
   }
 }
 
-void read_options(TomlFile& file, Options& options) {
+void read_options(io::TomlFile& file, Options& options) {
   for (const Key& row : keys) {
     file.number(std::string("smoothing.") + row.key, row.member, row.factor, options.*row.value);
   }
@@ -77,25 +77,25 @@ void read_options(TomlFile& file, Options& options) {
 }  // namespace
 
 bool has_smoothing(const std::filesystem::path& path) {
-  return TomlFile(path).has("smoothing");
+  return io::TomlFile(path).has("smoothing");
 }
 
 SmoothingFile read_smoothing(const std::filesystem::path& path, const robot::JointLimits& limits, int joints,
-                             std::optional<path::Method> method) {
-  TomlFile file(path);
+                             std::optional<Method> method) {
+  io::TomlFile file(path);
   for (const char* other : {"workpiece", "tool", "spindle", "program"}) file.skip(other);
   for (const std::string& name : file.keys("robot")) file.skip("robot." + name);
   file.require("smoothing", "Write [smoothing] with tip_tolerance_mm, axis_tolerance_deg and the limits of the tool");
   check_limits(file, limits, joints);
   SmoothingFile out;
   read_options(file, out.options);
-  file.choice<path::Method>("smoothing.method",
-                            {{"verified", path::Method::verified},
-                             {"optimal", path::Method::optimal},
-                             {"paper", path::Method::paper},
-                             {"paper-as-printed", path::Method::paper_as_printed},
-                             {"no-joint-jerk", path::Method::no_joint_jerk}},
-                            out.options.method);
+  file.choice<Method>("smoothing.method",
+                      {{"verified", Method::verified},
+                       {"optimal", Method::optimal},
+                       {"paper", Method::paper},
+                       {"paper-as-printed", Method::paper_as_printed},
+                       {"no-joint-jerk", Method::no_joint_jerk}},
+                      out.options.method);
   if (method) out.options.method = *method;
   file.integer("smoothing.filters", "filters", out.options.filters);
   file.boolean("smoothing.free_gamma", out.free_gamma);
@@ -114,10 +114,10 @@ SmoothingFile read_smoothing(const std::filesystem::path& path, const robot::Joi
 }
 
 InvalidInput located_in_smoothing(const std::filesystem::path& path, const InvalidInput& error) {
-  TomlFile file(path);
+  io::TomlFile file(path);
   Options options;
   read_options(file, options);
   return file.located(error);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -8,11 +8,11 @@
 #include "robomill/path/options.hpp"
 #include "robomill/robot/kinematics.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 
 /// [smoothing] of cell.toml.
 struct SmoothingFile {
-  path::SmoothingOptions options = {};
+  SmoothingOptions options = {};
   bool free_gamma = false;  ///< the flange may turn about the tool's axis along the way
   /// Of each joint's position servo; empty where not given, then no tracking error can be told.
   std::vector<double> drive_bandwidth_hz = {};
@@ -33,10 +33,10 @@ struct SmoothingFile {
 /// @throws InvalidInput with file, line, key, value and rule
 [[nodiscard]] ROBOMILL_API SmoothingFile read_smoothing(const std::filesystem::path& path,
                                                         const robot::JointLimits& limits, int joints,
-                                                        std::optional<path::Method> method = {});
+                                                        std::optional<Method> method = {});
 
 /// An error about one of SmoothingOptions' members with the file's line, key and unit.
 [[nodiscard]] ROBOMILL_API InvalidInput located_in_smoothing(const std::filesystem::path& path,
                                                              const InvalidInput& error);
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

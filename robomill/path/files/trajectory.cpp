@@ -10,7 +10,7 @@
 #include "robomill/path/files/joint_programs.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 constexpr std::size_t large = std::size_t{1} << 20;
@@ -30,7 +30,7 @@ bool ProgramRun::keeps_tolerances() const {
 }
 
 std::optional<ProgramRun> SampleFile::settle(program::Source& /*program*/, const robot::Kinematics& /*machine*/,
-                                             const path::SmoothingOptions& /*options*/, bool /*refine*/,
+                                             const SmoothingOptions& /*options*/, bool /*refine*/,
                                              const Progress& /*progress*/) {
   return std::nullopt;
 }
@@ -78,7 +78,7 @@ void PendingText::commit() {
 
 std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path, const TrajectoryInfo& info) {
   info.validate();
-  const std::string ending = lowered(path.extension().string());
+  const std::string ending = io::lowered(path.extension().string());
   const bool csv = ending == ".csv";
   if (csv || ending == ".h5" || ending == ".hdf5") {
     if (info.program_period_s > 0.0) {
@@ -95,4 +95,4 @@ std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path, 
                      ".servoj (Universal Robots)");
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

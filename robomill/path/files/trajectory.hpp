@@ -14,7 +14,7 @@
 #include "robomill/program/program.hpp"
 #include "robomill/robot/kinematics.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 
 /// What a trajectory's file tells beside its samples.
 struct ROBOMILL_API TrajectoryInfo {
@@ -61,15 +61,14 @@ class ROBOMILL_API SampleFile {
   /// Begins anew: what was added is forgotten.
   virtual void restart() = 0;
   /// @throws InvalidInput if the place cannot be written
-  virtual void add(std::span<const path::Sample> samples) = 0;
+  virtual void add(std::span<const Sample> samples) = 0;
   /// Of a joint program, after the last sample: chooses its points so that the controller's motion keeps the tolerances
   /// of trajectory and program, and checks it. Others: nothing.
   /// @param program  that was smoothed; read anew
   /// @param refine   put points nearer to each other where that is needed, down to every sample
   /// @throws InvalidInput what the program's reader throws; Interrupted
   virtual std::optional<ProgramRun> settle(program::Source& program, const robot::Kinematics& machine,
-                                           const path::SmoothingOptions& options, bool refine,
-                                           const Progress& progress);
+                                           const SmoothingOptions& options, bool refine, const Progress& progress);
   /// Ends the file and moves it to its place. @throws InvalidInput if that fails
   virtual void commit() = 0;
 };
@@ -82,4 +81,4 @@ class ROBOMILL_API SampleFile {
 [[nodiscard]] ROBOMILL_API std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path,
                                                                         const TrajectoryInfo& info);
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -8,7 +8,7 @@
 #include "robomill/path/files/trajectory.hpp"
 #include "testing/path/trajectories.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 /// 100 s of six joints at 1 ms.
@@ -31,4 +31,4 @@ BENCHMARK_CAPTURE(trajectory, krl, ".src")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(trajectory, servoj, ".servoj")->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -5,7 +5,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 class Csv final : public SampleFile {
@@ -17,8 +17,8 @@ class Csv final : public SampleFile {
     begin();
   }
 
-  void add(std::span<const path::Sample> samples) override {
-    for (const path::Sample& sample : samples) row(sample);
+  void add(std::span<const Sample> samples) override {
+    for (const Sample& sample : samples) row(sample);
   }
 
   void commit() override { text_.commit(); }
@@ -32,7 +32,7 @@ class Csv final : public SampleFile {
   }
 
   /// The shortest digits that read back as the same number: what was checked is what is in the file.
-  void row(const path::Sample& sample) {
+  void row(const Sample& sample) {
     put(sample.time_s, ',');
     for (int joint = 0; joint < joints_; ++joint) put(sample.joints[joint], ',');
     for (int axis = 0; axis < 3; ++axis) put(sample.tip_m[axis] / units::mm, ',');
@@ -59,4 +59,4 @@ std::unique_ptr<SampleFile> open_trajectory_csv(const std::filesystem::path& pat
   return std::make_unique<Csv>(path, info);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -8,7 +8,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 constexpr hsize_t chunk = 16384;
@@ -58,8 +58,8 @@ class Hdf5 final : public SampleFile {
 
   void restart() override { begin(); }
 
-  void add(std::span<const path::Sample> samples) override {
-    for (const path::Sample& sample : samples) {
+  void add(std::span<const Sample> samples) override {
+    for (const Sample& sample : samples) {
       std::size_t c = 0;
       columns_[c++].waiting.push_back(sample.time_s);
       for (int joint = 0; joint < info_.joints; ++joint) columns_[c++].waiting.push_back(sample.joints[joint]);
@@ -163,7 +163,7 @@ class Hdf5 final : public SampleFile {
 
   std::filesystem::path path_;
   TrajectoryInfo info_;
-  PendingFile pending_;
+  io::PendingFile pending_;
   Id file_;
   std::vector<Column> columns_;
   hsize_t rows_ = 0;
@@ -175,4 +175,4 @@ std::unique_ptr<SampleFile> open_trajectory_hdf5(const std::filesystem::path& pa
   return std::make_unique<Hdf5>(path, info);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

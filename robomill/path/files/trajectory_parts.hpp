@@ -9,7 +9,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/path/files/trajectory.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 
 /// A long text that appears whole or not at all, written through a buffer.
 class PendingText {
@@ -31,7 +31,7 @@ class PendingText {
   void require(bool good) const;
 
   std::filesystem::path path_;
-  PendingFile pending_;
+  io::PendingFile pending_;
   std::unique_ptr<std::FILE, Close> file_;
   fmt::memory_buffer buffer_;
 };
@@ -44,4 +44,4 @@ void require_regular(const std::filesystem::path& path);
 [[nodiscard]] std::unique_ptr<SampleFile> open_trajectory_hdf5(const std::filesystem::path& path,
                                                                const TrajectoryInfo& info);
 
-}  // namespace robomill::formats
+}  // namespace robomill::path

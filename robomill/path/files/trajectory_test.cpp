@@ -15,7 +15,7 @@
 #include "testing/path/trajectories.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::path {
 namespace {
 
 using robomill::test::Folder;
@@ -26,7 +26,7 @@ std::size_t files_in(const std::filesystem::path& folder) {
   return count;
 }
 
-void write(const std::filesystem::path& path, const TrajectoryInfo& info, const std::vector<path::Sample>& samples) {
+void write(const std::filesystem::path& path, const TrajectoryInfo& info, const std::vector<Sample>& samples) {
   const auto file = open_sample_file(path, info);
   file->add(samples);
   file->commit();
@@ -37,7 +37,7 @@ TEST(TrajectoryCsv, HoldsEveryBitOfTheJoints) {
   const Folder folder;
   const auto samples = test::sines(3000);
   write(folder.at("t.csv"), test::arm_info(), samples);
-  const Table table = parse_table(read_file(folder.at("t.csv")), "t.csv");
+  const io::Table table = io::parse_table(io::read_file(folder.at("t.csv")), "t.csv");
   const std::vector<std::string> names = {"time_s", "q1",   "q2",   "q3", "q4", "q5", "q6",
                                           "x_mm",   "y_mm", "z_mm", "i",  "j",  "k",  "block"};
   ASSERT_EQ(table.names, names);
@@ -61,7 +61,7 @@ TEST(TrajectoryCsv, HasAColumnForEachJointOfTheMachine) {
   info.joints = 5;
   info.slides.fill(true);
   write(folder.at("t.csv"), info, test::sines(3));
-  EXPECT_EQ(parse_table(read_file(folder.at("t.csv")), "t.csv").names.size(), 13U);
+  EXPECT_EQ(io::parse_table(io::read_file(folder.at("t.csv")), "t.csv").names.size(), 13U);
 }
 
 class AnyEnding : public testing::TestWithParam<const char*> {};
@@ -91,7 +91,7 @@ TEST_P(AnyEnding, BegunAnewIsAsIfForTheFirstTime) {
     }
     file->add(test::sines(777, 60));
     file->commit();
-    return read_file(folder.at("t" + ending));
+    return io::read_file(folder.at("t" + ending));
   };
   EXPECT_EQ(content(true), content(false));
 }
@@ -101,13 +101,13 @@ TEST_P(AnyEnding, ComesOutTheSameInAnyPortions) {
   const std::string ending = GetParam();
   const auto samples = test::sines(2345, 200);
   write(folder.at("t" + ending), test::arm_info(), samples);
-  const std::string whole = read_file(folder.at("t" + ending));
+  const std::string whole = io::read_file(folder.at("t" + ending));
   const auto file = open_sample_file(folder.at("t" + ending), test::arm_info());
   for (std::size_t i = 0; i < samples.size(); i += 13) {
     file->add(std::span(samples).subspan(i, std::min<std::size_t>(13, samples.size() - i)));
   }
   file->commit();
-  EXPECT_EQ(read_file(folder.at("t" + ending)), whole);
+  EXPECT_EQ(io::read_file(folder.at("t" + ending)), whole);
 }
 
 INSTANTIATE_TEST_SUITE_P(Trajectory, AnyEnding, testing::Values(".csv", ".h5", ".src", ".mod", ".script", ".servoj"),
@@ -204,4 +204,4 @@ TEST(Trajectory, RefusesWhatItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::path

@@ -13,10 +13,10 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
-using program::Block;
+using Block;
 
 constexpr std::size_t shown_letters = 60;
 
@@ -127,7 +127,7 @@ void AptReader::read(std::string_view statement) {
     take_goto();
     return;
   }
-  shown_ = printable(trimmed(statement), shown_letters);
+  shown_ = printable(io::trimmed(statement), shown_letters);
   for (const Statement& known : statements()) {
     if (word_ == known.word) {
       (this->*known.take)();
@@ -156,7 +156,7 @@ double AptReader::number_of(std::string_view field) const {
   double number = 0.0;
   const std::from_chars_result read = std::from_chars(field.data(), field.data() + field.size(), number);
   if (read.ec == std::errc() && read.ptr == field.data() + field.size() && std::isfinite(number)) return number;
-  const std::optional<double> slow = parse_number(field);
+  const std::optional<double> slow = io::parse_number(field);
   if (field.empty()) refuse(std::string(word_), std::nullopt, "", "has an empty field");
   if (!slow || !std::isfinite(*slow)) refuse_text(std::string(word_), field, "must be a finite number");
   return *slow;
@@ -187,7 +187,7 @@ Eigen::Vector3d AptReader::position_of_numbers() const {
 
 void AptReader::take_goto() {
   take_numbers(3, 6);
-  program::Pose end = {.tip_m = position_of_numbers(), .axis = pose_.axis};
+  Pose end = {.tip_m = position_of_numbers(), .axis = pose_.axis};
   if (numbers_.size() == 6) end.axis = unit_axis("i, j, k", {numbers_[3], numbers_[4], numbers_[5]});
   go(end);
 }
@@ -197,7 +197,7 @@ void AptReader::take_godlta() {
   if (!start_) {
     refuse("GODLTA", std::nullopt, "", "is a step from a position that no line has given", "Begin with FROM/ or GOTO/");
   }
-  program::Pose end = pose_;
+  Pose end = pose_;
   if (numbers_.size() == 3) {
     end.tip_m += position_of_numbers();
   } else {
@@ -209,7 +209,7 @@ void AptReader::take_godlta() {
 
 void AptReader::take_from() {
   take_numbers(3, 6);
-  program::Pose at = {.tip_m = position_of_numbers(), .axis = pose_.axis};
+  Pose at = {.tip_m = position_of_numbers(), .axis = pose_.axis};
   if (numbers_.size() == 6) at.axis = unit_axis("i, j, k", {numbers_[3], numbers_[4], numbers_[5]});
   if (!start_) {
     begin_at(at);
@@ -219,7 +219,7 @@ void AptReader::take_from() {
   }
 }
 
-void AptReader::go(const program::Pose& end) {
+void AptReader::go(const Pose& end) {
   const bool rapid = rapid_;
   rapid_ = false;
   if (!start_) {
@@ -291,13 +291,13 @@ void AptReader::take_units() {
 
 void AptReader::take_spindle() {
   if (fields_.size() == 1 && fields_[0] == "OFF") {
-    spindle_ = program::Spindle::off;
+    spindle_ = Spindle::off;
     return;
   }
   std::optional<double> speed;
-  program::Spindle direction = program::Spindle::clockwise;  // where the statement says none
+  Spindle direction = Spindle::clockwise;  // where the statement says none
   for (const std::string_view field : fields_) {
-    if (field == "CCLW") direction = program::Spindle::counterclockwise;
+    if (field == "CCLW") direction = Spindle::counterclockwise;
     const bool known = field == "RPM" || field == "CLW" || field == "CCLW";
     if (known) continue;
     if (speed || field.empty() || (field.front() >= 'A' && field.front() <= 'Z')) {
@@ -341,7 +341,7 @@ void AptReader::take_stop() {
     skip_statement();
     return;
   }
-  dwell(0.0, word_ == "STOP" ? program::OperatorStop::always : program::OperatorStop::optional);
+  dwell(0.0, word_ == "STOP" ? OperatorStop::always : OperatorStop::optional);
 }
 
 void AptReader::take_delay() {
@@ -381,4 +381,4 @@ void AptReader::take_switch() {
   skip_statement();
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

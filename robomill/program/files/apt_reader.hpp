@@ -6,7 +6,7 @@
 
 #include "robomill/program/files/program_reader.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 
 /// Reads cutter location files in APT; program_files.hpp says what of them.
 class AptReader final : public ProgramReader {
@@ -29,7 +29,7 @@ class AptReader final : public ProgramReader {
   /// The statement's fields as numbers, so many as one of the counts.
   void take_numbers(std::size_t few, std::size_t many);
   [[nodiscard]] Eigen::Vector3d position_of_numbers() const;
-  void go(const program::Pose& end);
+  void go(const Pose& end);
   [[nodiscard]] double feed_duration_s(double length_m, double turn_rad) const;
   void skip_statement() { skip(shown_); }
   [[noreturn]] void refuse_motion() const;
@@ -66,4 +66,4 @@ class AptReader final : public ProgramReader {
   std::string system_;    ///< the coordinate system's statement
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

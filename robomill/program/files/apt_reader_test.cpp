@@ -10,12 +10,12 @@
 #include "testing/program/reading.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
+using Block;
+using Program;
 using Eigen::Vector3d;
-using program::Block;
-using program::Program;
 
 constexpr double mm = 1e-3;
 
@@ -66,15 +66,15 @@ TEST(Apt, KeepsSpindleCoolantAndStops) {
   const Program program = read(
       "FEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nSPINDL/3000,CCLW\nCOOLNT/MIST\nGOTO/2,0,0\nSPINDL/3000\nCOOLNT/ON\n"
       "GOTO/3,0,0\nSTOP\nOPSTOP\nSPINDL/OFF\nCOOLNT/OFF\nGOTO/4,0,0\n");
-  using program::OperatorStop;
-  using program::Spindle;
+  using OperatorStop;
+  using Spindle;
   ASSERT_EQ(program.blocks.size(), 6U);
   const Spindle spindle[] = {Spindle::not_given, Spindle::counterclockwise, Spindle::clockwise,
                              Spindle::clockwise, Spindle::clockwise,        Spindle::off};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(program.blocks[i].spindle, spindle[i]) << i;
-  EXPECT_EQ(program.blocks[1].coolant, (program::Coolant{.mist = true}));
-  EXPECT_EQ(program.blocks[2].coolant, (program::Coolant{.mist = true, .flood = true}));
-  EXPECT_EQ(program.blocks[5].coolant, program::Coolant{});
+  EXPECT_EQ(program.blocks[1].coolant, (Coolant{.mist = true}));
+  EXPECT_EQ(program.blocks[2].coolant, (Coolant{.mist = true, .flood = true}));
+  EXPECT_EQ(program.blocks[5].coolant, Coolant{});
   EXPECT_EQ(program.blocks[3].operator_stop, OperatorStop::always);
   EXPECT_EQ(program.blocks[4].operator_stop, OperatorStop::optional);
   EXPECT_EQ(program.blocks[4].end.tip_m, program.blocks[2].end.tip_m);
@@ -210,4 +210,4 @@ TEST(Apt, SurvivesMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::program

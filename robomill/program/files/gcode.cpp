@@ -8,10 +8,10 @@
 #include "robomill/base/error.hpp"
 #include "robomill/program/files/program_files.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
-using program::Machine;
+using Machine;
 
 constexpr std::array<std::pair<std::string_view, Machine>, 4> machines = {{{"xyzac-trt", Machine::xyzac_trt},
                                                                            {"xyzbc-trt", Machine::xyzbc_trt},
@@ -31,8 +31,8 @@ Machine parse_machine(std::string_view name) {
   });
 }
 
-program::Program read_gcode(const std::filesystem::path& path, std::optional<Machine> machine) {
+Program read_gcode(const std::filesystem::path& path, std::optional<Machine> machine) {
   return read_program(path, {.machine = machine, .format = ProgramFormat::gcode});
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

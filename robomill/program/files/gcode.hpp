@@ -7,11 +7,11 @@
 #include "robomill/program/machine.hpp"
 #include "robomill/program/program.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 
 /// "xyzac-trt", "xyzbc-trt", "xyzac-head", "xyzbc-head".
 /// @throws InvalidInput naming the field program.machine
-[[nodiscard]] ROBOMILL_API program::Machine parse_machine(std::string_view name);
+[[nodiscard]] ROBOMILL_API Machine parse_machine(std::string_view name);
 
 /// Reads a whole program of G-code (.ngc .nc .gcode), whatever its ending, with the default ProgramReading: moves G0
 /// and G1, arcs G2 and G3, and dwells G4, in mm or inches (G21, G20), absolute or incremental (G90, G91), with F in
@@ -35,7 +35,6 @@ namespace robomill::formats {
 ///     codes that would move the tool or its frame in ways that are not read (cycles, splines, offsets G10 and G92,
 ///     other coordinate systems, G28), M codes not known to be harmless, and moves after another tool, another length
 ///     or the end of the tool centre point
-[[nodiscard]] ROBOMILL_API program::Program read_gcode(const std::filesystem::path& path,
-                                                       std::optional<program::Machine> machine = {});
+[[nodiscard]] ROBOMILL_API Program read_gcode(const std::filesystem::path& path, std::optional<Machine> machine = {});
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -10,7 +10,7 @@
 #include "robomill/io/text.hpp"
 #include "robomill/program/files/gcode_reader.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
 using Eigen::Vector2d;
@@ -74,13 +74,12 @@ void GcodeReader::split(PartedMove parted, double duration_s, const char* field)
 
 bool GcodeReader::advance() {
   if (!(parted_.next < parted_.count)) {
-    if (stop_after_ == program::OperatorStop::none) return false;
-    dwell(0.0, std::exchange(stop_after_, program::OperatorStop::none));
+    if (stop_after_ == OperatorStop::none) return false;
+    dwell(0.0, std::exchange(stop_after_, OperatorStop::none));
     return true;
   }
   const double share = (parted_.next += 1.0) / parted_.count;
-  const program::Pose end = {.tip_m = parted_.tip_at(share),
-                             .axis = parted_.turn ? parted_.turn->axis_at(share) : pose_.axis};
+  const Pose end = {.tip_m = parted_.tip_at(share), .axis = parted_.turn ? parted_.turn->axis_at(share) : pose_.axis};
   move(parted_.kind, end, parted_.duration_s, parted_.deviation);
   return true;
 }
@@ -160,7 +159,7 @@ Arc GcodeReader::arc_to(const Line& line, const Vector3d& end_m) const {
   const double allowed_m = allowed_radius_error_m(arc.begin_radius_m);
   if (!(error_m <= allowed_m)) {
     refuse(
-        plane_.centers, round_15(error_m / unit_m()), unit_name(),
+        plane_.centers, io::round_15(error_m / unit_m()), unit_name(),
         fmt::format("is by how much the arc's radius at its end ({:.9g}) differs from that at its begin ({:.9g}); must "
                     "be <= {:.3g}",
                     arc.end_radius_m / unit_m(), arc.begin_radius_m / unit_m(), allowed_m / unit_m()),
@@ -192,4 +191,4 @@ Arc GcodeReader::arc_to(const Line& line, const Vector3d& end_m) const {
   return arc;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

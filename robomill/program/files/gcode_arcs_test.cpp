@@ -15,13 +15,13 @@
 #include "testing/program/reading.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
+using Block;
+using Machine;
+using Program;
 using Eigen::Vector3d;
-using program::Block;
-using program::Machine;
-using program::Program;
 
 constexpr double pi = std::numbers::pi;
 constexpr double mm = 1e-3;
@@ -175,7 +175,7 @@ TEST(GcodeArcs, RotaryAxesTurnEvenly) {
   constexpr double deg = pi / 180.0;
   for (std::size_t k = 0; k < program.blocks.size(); ++k) {
     const double share = static_cast<double>(k + 1) / count;
-    const Vector3d axis = program::tool_axis(Machine::xyzac_trt, (20.0 + 30.0 * share) * deg, 0.0, 360.0 * share * deg);
+    const Vector3d axis = tool_axis(Machine::xyzac_trt, (20.0 + 30.0 * share) * deg, 0.0, 360.0 * share * deg);
     ASSERT_LT((program.blocks[k].end.axis - axis).norm(), 1e-12);
   }
   // Without such words the axis stays, also one given as a vector: I and J are the centre here.
@@ -258,4 +258,4 @@ TEST(GcodeArcs, RefusesWithLineAndByHowMuch) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
 struct Still {
@@ -170,4 +170,4 @@ const char* gcode_hint(int code) {
   }
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

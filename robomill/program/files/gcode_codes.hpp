@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-namespace robomill::formats {
+namespace robomill::program {
 
 /// Modal groups of G codes: of each, a line may name one.
 enum class GcodeGroup : std::uint32_t {
@@ -59,4 +59,4 @@ struct Mcode {
 /// All of them, in order.
 [[nodiscard]] std::span<const Mcode> mcodes();
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

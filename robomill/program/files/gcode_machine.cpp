@@ -7,12 +7,12 @@
 #include "robomill/base/error.hpp"
 #include "robomill/program/files/gcode_reader.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
-using program::Coolant;
-using program::OperatorStop;
-using program::Spindle;
+using Coolant;
+using OperatorStop;
+using Spindle;
 
 /// What a code does and where: "calls a subprogram (LinuxCNC, Fanuc and Haas)".
 std::string meaning_of(const Mcode& code) {
@@ -161,4 +161,4 @@ void GcodeReader::check_setup(const Line& line) const {
   }
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -13,17 +13,17 @@
 #include "testing/program/reading.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
-using program::Block;
-using program::Coolant;
-using program::OperatorStop;
-using program::Program;
-using program::Spindle;
+using Block;
+using Coolant;
+using OperatorStop;
+using Program;
+using Spindle;
 
 Program read(const std::string& text) {
-  return test_support::read_text<GcodeReader>(text, {.machine = program::Machine::xyzac_trt});
+  return test_support::read_text<GcodeReader>(text, {.machine = Machine::xyzac_trt});
 }
 
 std::string said_of(const std::string& text) {
@@ -208,7 +208,7 @@ TEST(GcodeMachine, WithoutTheToolCentrePointTurnedAxesAreRefused) {
     const Program program = read(turned + "M30\n");
     EXPECT_EQ(program.blocks.size(), 1U);
     EXPECT_TRUE(program.notes.empty());
-    for (const program::Skipped& skipped : program.skipped) {
+    for (const Skipped& skipped : program.skipped) {
       EXPECT_TRUE(skipped.what == "H1" || skipped.what == "G49") << skipped.what << ": what is obeyed is not skipped";
     }
     EXPECT_NE(said_of(turned + "G0 Z50\n").find("part:4: "), std::string::npos) << said_of(turned + "G0 Z50\n");
@@ -226,4 +226,4 @@ TEST(GcodeMachine, WithoutTheToolCentrePointTurnedAxesAreRefused) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::program

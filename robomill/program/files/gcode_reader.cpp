@@ -9,11 +9,11 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
-using program::Block;
-using program::Machine;
+using Block;
+using Machine;
 
 constexpr std::size_t letter_index(char letter) {
   return static_cast<std::size_t>(letter - 'a');
@@ -340,7 +340,7 @@ void GcodeReader::turn_rotary(const Line& line) {
   }
 }
 
-program::RotaryMove GcodeReader::turn_from(const Eigen::Vector3d& rotary_before_deg) const {
+RotaryMove GcodeReader::turn_from(const Eigen::Vector3d& rotary_before_deg) const {
   return {
       .machine = *reading_.machine, .begin_rad = rotary_before_deg * units::deg, .end_rad = rotary_deg_ * units::deg};
 }
@@ -393,7 +393,7 @@ void GcodeReader::go_straight(const Line& line) {
     refuse("R", *line.radius, unit_name(), "stands on a line that is no arc", "Is a G2 or G3 missing before it?");
   }
   const Eigen::Vector3d rotary_before_deg = rotary_deg_;
-  const program::Pose end = {.tip_m = position_after(line), .axis = axis_after(line)};
+  const Pose end = {.tip_m = position_after(line), .axis = axis_after(line)};
   const bool complete = known_[0] && known_[1] && known_[2];
   if (!complete && motion_ == Motion::feed) {
     refuse(!known_[0]   ? "X"
@@ -431,13 +431,13 @@ void GcodeReader::go_straight(const Line& line) {
   }
 }
 
-void GcodeReader::check_shortest(const program::RotaryMove& turn) const {
+void GcodeReader::check_shortest(const RotaryMove& turn) const {
   constexpr double half_deg = 180.0;
   const double turn_deg = (turn.end_rad.z() - turn.begin_rad.z()) / units::deg;
   const bool leaves = turn.parts(reading_.axis_tolerance_rad) > 1.0;
   if (motion_ != Motion::feed || std::abs(turn_deg) < half_deg || !leaves) return;
-  refuse("C", round_15(turn_deg), "deg", "turns by half a circle or more, which no shortest way does",
+  refuse("C", io::round_15(turn_deg), "deg", "turns by half a circle or more, which no shortest way does",
          "program.rotary = \"machine\" turns the axes as far as the words say");
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -11,7 +11,7 @@
 #include "robomill/program/files/program_arc.hpp"
 #include "robomill/program/files/program_reader.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 
 /// Reads G-code; gcode.hpp says what of it.
 class GcodeReader final : public ProgramReader {
@@ -40,7 +40,7 @@ class GcodeReader final : public ProgramReader {
     std::optional<double> tool = {}, h = {};
     std::optional<GcodeWords::Word> length = {};  ///< the code of the tool's length
     std::optional<GcodeWords::Word> center_point = {};
-    program::OperatorStop stop = program::OperatorStop::none;
+    OperatorStop stop = OperatorStop::none;
     bool dwells = false, tool_change = false, begins_again = false, scaling_off = false;
     std::string left_out = {};
     [[nodiscard]] bool has(char letter) const;
@@ -50,10 +50,10 @@ class GcodeReader final : public ProgramReader {
 
   /// A move that is made into blocks of equal time: an arc, a straight move of turning axes, or both.
   struct PartedMove {
-    program::Block::Kind kind = program::Block::Kind::feed;
+    Block::Kind kind = Block::Kind::feed;
     std::optional<Arc> arc = {};  ///< none: a line
     Eigen::Vector3d begin_m = Eigen::Vector3d::Zero(), end_m = Eigen::Vector3d::Zero();
-    std::optional<program::RotaryMove> turn = {};  ///< none: the axis stays
+    std::optional<RotaryMove> turn = {};  ///< none: the axis stays
     Deviation deviation = {.tip_m = 0.0, .axis_rad = 0.0};
     double duration_s = 0.0;  ///< of one block
     double count = 0.0, next = 0.0;
@@ -77,9 +77,9 @@ class GcodeReader final : public ProgramReader {
   [[nodiscard]] Eigen::Vector3d axis_of_vector(const Line& line) const;
   void turn_rotary(const Line& line);
   /// The turn of A, B and C from where they stood to where they stand now.
-  [[nodiscard]] program::RotaryMove turn_from(const Eigen::Vector3d& rotary_before_deg) const;
+  [[nodiscard]] RotaryMove turn_from(const Eigen::Vector3d& rotary_before_deg) const;
   /// @throws InvalidInput where the shortest way is not the one that the words say
-  void check_shortest(const program::RotaryMove& turn) const;
+  void check_shortest(const RotaryMove& turn) const;
   [[nodiscard]] double feed_duration_s(const Line& line, double length_m, double turn_deg) const;
   [[nodiscard]] double unit_m() const;
   [[nodiscard]] const char* unit_name() const { return inches_ ? "in" : "mm"; }
@@ -135,11 +135,11 @@ class GcodeReader final : public ProgramReader {
   bool cutting_ = false;  ///< a move at feed has come
   std::optional<double> cutting_tool_, cutting_length_;
 
-  std::optional<program::Spindle> spindle_after_;  ///< of the line that was read last
-  std::optional<program::Coolant> coolant_after_;
-  program::OperatorStop stop_after_ = program::OperatorStop::none;
+  std::optional<Spindle> spindle_after_;  ///< of the line that was read last
+  std::optional<Coolant> coolant_after_;
+  OperatorStop stop_after_ = OperatorStop::none;
 
   PartedMove parted_;
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

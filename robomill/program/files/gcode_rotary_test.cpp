@@ -12,13 +12,13 @@
 #include "testing/program/reading.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
+using Block;
+using Machine;
+using Program;
 using Eigen::Vector3d;
-using program::Block;
-using program::Machine;
-using program::Program;
 
 constexpr double deg = std::numbers::pi / 180.0;
 
@@ -49,7 +49,7 @@ TEST(GcodeRotary, FullAndLongTurnsGoAsFarAsTheWordsSay) {
   for (const Block& block : full.blocks) {
     EXPECT_EQ(block.line, 3U);
     EXPECT_EQ(block.kind, Block::Kind::feed);
-    EXPECT_NEAR(program::angle_between(block.end.axis, Vector3d::UnitZ()), 30.0 * deg, 1e-12);
+    EXPECT_NEAR(angle_between(block.end.axis, Vector3d::UnitZ()), 30.0 * deg, 1e-12);
   }
   for (const Block& block : read(head + "G0 X20 C360\n").blocks) {
     EXPECT_EQ(block.kind, Block::Kind::rapid);
@@ -84,14 +84,14 @@ TEST(GcodeRotary, TipsGoStraightWhileTheAxisFollowsTheMachine) {
       ASSERT_NEAR(block.duration_s, (inverse ? 2.0 : 26.0) / count, 1e-9) << text;
       const auto axis_at = [&](double share) {
         const double tilt = (tilt_deg + share * (to_tilt_deg - tilt_deg)) * deg;
-        return program::tool_axis(machine, tilt, tilt, (turn_deg + share * (to_turn_deg - turn_deg)) * deg);
+        return tool_axis(machine, tilt, tilt, (turn_deg + share * (to_turn_deg - turn_deg)) * deg);
       };
       const double end = static_cast<double>(k + 1) / count;
       ASSERT_LT((block.end.tip_m - 1e-3 * end * Vector3d(3.0, -4.0, 12.0)).norm(), 1e-14) << text;
       ASSERT_LT((block.end.axis - axis_at(end)).norm(), 1e-9) << text;
       const double within = random.uniform();
-      const program::Pose pose = program::between(program.begin_of(k), block.end, within);
-      const double off = program::angle_between(pose.axis, axis_at((static_cast<double>(k) + within) / count));
+      const Pose pose = between(program.begin_of(k), block.end, within);
+      const double off = angle_between(pose.axis, axis_at((static_cast<double>(k) + within) / count));
       ASSERT_LE(off, block.axis_deviation_rad + 1e-9) << text;
       ASSERT_LE(block.axis_deviation_rad, 1e-3 * deg * (1.0 + 1e-9)) << text;
       ASSERT_EQ(block.tip_deviation_m, 0.0);
@@ -139,11 +139,11 @@ TEST(GcodeRotary, PartsOfArcsSayByHowMuchTheyLeaveThem) {
     EXPECT_NEAR(0.01 - middle.norm(), block.tip_deviation_m, 1e-3 * block.tip_deviation_m);
     EXPECT_LE(block.tip_deviation_m, 1e-6);
     const double share = (static_cast<double>(k) + 0.5) / count;
-    const program::Pose pose = program::between(arc.begin_of(k), block.end, 0.5);
-    const Vector3d axis = program::tool_axis(Machine::xyzac_trt, 30.0 * deg, 0.0, share * 90.0 * deg);
-    EXPECT_LE(program::angle_between(pose.axis, axis), block.axis_deviation_rad + 1e-12);
+    const Pose pose = between(arc.begin_of(k), block.end, 0.5);
+    const Vector3d axis = tool_axis(Machine::xyzac_trt, 30.0 * deg, 0.0, share * 90.0 * deg);
+    EXPECT_LE(angle_between(pose.axis, axis), block.axis_deviation_rad + 1e-12);
   }
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -12,13 +12,13 @@
 #include "testing/program/reading.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
+using Block;
+using Machine;
+using Program;
 using Eigen::Vector3d;
-using program::Block;
-using program::Machine;
-using program::Program;
 
 Program read(const std::string& text, std::optional<Machine> machine = {}) {
   const test::Folder folder;
@@ -49,9 +49,9 @@ TEST(Gcode, ReadsAFiveAxisProgram) {
   EXPECT_DOUBLE_EQ(last.duration_s, 60.0 / 159.0 / 3.0);
   EXPECT_DOUBLE_EQ(last.spindle_speed_rad_per_s, 600.0 * std::numbers::pi / 30.0);
   constexpr double deg = std::numbers::pi / 180.0;
-  EXPECT_LT((last.end.axis - program::tool_axis(Machine::xyzac_trt, -71.266 * deg, 0.0, -32.919 * deg)).norm(), 1e-15);
+  EXPECT_LT((last.end.axis - tool_axis(Machine::xyzac_trt, -71.266 * deg, 0.0, -32.919 * deg)).norm(), 1e-15);
   EXPECT_LT((program.begin_of(2).tip_m - Vector3d(0.006302, -0.011560, 0.027743)).norm(), 1e-15);
-  EXPECT_EQ(last.spindle, program::Spindle::clockwise);
+  EXPECT_EQ(last.spindle, Spindle::clockwise);
   EXPECT_TRUE(program.skipped.empty()) << "M428 is obeyed";
 }
 
@@ -312,4 +312,4 @@ TEST(Gcode, SurvivesMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::program

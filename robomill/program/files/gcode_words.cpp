@@ -8,7 +8,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/program/files/program_reader.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
 struct Place {
@@ -79,4 +79,4 @@ void GcodeWords::scan(std::string_view line, const std::string& file, std::size_
   }
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace robomill::formats {
+namespace robomill::program {
 
 /// One line of G-code taken apart into words; keeps its memory from line to line.
 class GcodeWords {
@@ -33,4 +33,4 @@ class GcodeWords {
   std::vector<Word> words_;
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

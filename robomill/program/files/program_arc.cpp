@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace robomill::formats {
+namespace robomill::program {
 
 Eigen::Vector3d Arc::at(double share) const {
   const double angle = share * sweep_rad;
@@ -30,4 +30,4 @@ double Arc::deviation_m(double chords) const {
   return bend_m() * each_rad * each_rad / 8.0;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

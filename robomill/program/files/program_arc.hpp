@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 
-namespace robomill::formats {
+namespace robomill::program {
 
 /// A circular arc, or a helix about its axis, in W. Its radius runs evenly from the begin's to the end's, which differ
 /// by what the program has rounded.
@@ -27,4 +27,4 @@ struct Arc {
   [[nodiscard]] double bend_m() const;
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -12,10 +12,10 @@
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
-using program::Block;
+using Block;
 
 constexpr std::array<const char*, 7> names = {"x_mm", "y_mm", "z_mm", "i", "j", "k", "feed_mm_per_min"};
 constexpr std::size_t feed_column = 6;
@@ -23,12 +23,12 @@ constexpr std::size_t feed_column = 6;
 }  // namespace
 
 void CsvReader::take_header(std::string_view line) {
-  separator_ = separator_of(line) == ' ' ? ',' : separator_of(line);
+  separator_ = io::separator_of(line) == ' ' ? ',' : io::separator_of(line);
   std::array<bool, known_columns> found = {};
-  for (const std::string& name : split_texts(line, separator_)) {
+  for (const std::string& name : io::split_texts(line, separator_)) {
     const auto* const known = std::ranges::find(names, std::string_view(name));
     if (known == names.end()) {
-      const std::string near = nearest_word(name, names);
+      const std::string near = io::nearest_word(name, names);
       refuse_text("header", name, "is no column known here",
                   near.empty() ? "The columns are x_mm, y_mm, z_mm, i, j, k, feed_mm_per_min"
                                : fmt::format("Did you mean {}?", near));
@@ -61,7 +61,7 @@ bool CsvReader::take_plain_numbers(std::string_view line) {
 
 void CsvReader::take_numbers(std::string_view line) {
   if (take_plain_numbers(line)) return;
-  const std::vector<std::string> fields = split_texts(line, separator_);
+  const std::vector<std::string> fields = io::split_texts(line, separator_);
   if (fields.size() > known_columns) {
     refuse({}, std::nullopt, "", fmt::format("has {} fields where there are {} columns", fields.size(), known_columns),
            separator_ == ',' ? "Decimal commas need semicolons between the columns" : "");
@@ -73,7 +73,7 @@ void CsvReader::take_numbers(std::string_view line) {
       row_[column] = 0.0;
       continue;
     }
-    const std::optional<double> number = parse_cell(field);
+    const std::optional<double> number = io::parse_cell(field);
     if (field.empty()) refuse(names[column], std::nullopt, "", "is empty");
     if (!number || !std::isfinite(*number)) refuse_text(names[column], field, "must be a finite number");
     row_[column] = *number;
@@ -81,13 +81,13 @@ void CsvReader::take_numbers(std::string_view line) {
 }
 
 void CsvReader::read(std::string_view statement) {
-  if (is_table_comment(statement)) return;
+  if (io::is_table_comment(statement)) return;
   if (separator_ == 0) {
     take_header(statement);
     return;
   }
   take_numbers(statement);
-  program::Pose end;
+  Pose end;
   for (std::size_t i = 0; i < 3; ++i) {
     end.tip_m[static_cast<Eigen::Index>(i)] = row_[i] * units::mm;
     check_coordinate(names[i], row_[i] * units::mm, row_[i], "mm");
@@ -106,4 +106,4 @@ void CsvReader::read(std::string_view statement) {
   move(Block::Kind::feed, end, units::minute * (way > 0.0 ? way : turn_rad / units::deg) / feed);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -6,7 +6,7 @@
 
 #include "robomill/program/files/program_reader.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 
 /// Reads programs of columns; program_files.hpp says which.
 class CsvReader final : public ProgramReader {
@@ -29,4 +29,4 @@ class CsvReader final : public ProgramReader {
   std::array<double, known_columns> row_ = {};  ///< x, y, z, i, j, k, feed as written
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -11,12 +11,12 @@
 #include "testing/program/reading.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
+using Block;
+using Program;
 using Eigen::Vector3d;
-using program::Block;
-using program::Program;
 
 const std::string header = "x_mm,y_mm,z_mm,i,j,k,feed_mm_per_min\n";
 
@@ -107,4 +107,4 @@ TEST(ProgramCsv, SurvivesMutations) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -12,7 +12,7 @@
 #include "robomill/program/files/program_lines.hpp"
 #include "robomill/program/files/program_reader.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
 constexpr std::size_t kept_remarks = 500;
@@ -52,9 +52,9 @@ class Walk {
   Walk(Walk&&) = delete;
   Walk& operator=(Walk&&) = delete;
 
-  [[nodiscard]] const program::Pose& start() const { return start_; }
+  [[nodiscard]] const Pose& start() const { return start_; }
 
-  bool next(program::Block& out) {
+  bool next(Block& out) {
     while (!reader_->pop(out)) {
       if (!take_line()) return false;
     }
@@ -97,13 +97,13 @@ class Walk {
   ProgramRemarks remarks_;
   std::unique_ptr<ProgramReader> reader_;
   bool finished_ = false;
-  program::Pose start_;
+  Pose start_;
 };
 
 }  // namespace
 
 ProgramFormat program_format_of(const std::filesystem::path& path) {
-  const std::string ending = lowered(path.extension().string());
+  const std::string ending = io::lowered(path.extension().string());
   if (ending == ".apt" || ending == ".cls" || ending == ".cl") return ProgramFormat::apt;
   return ending == ".csv" ? ProgramFormat::csv : ProgramFormat::gcode;
 }
@@ -135,11 +135,11 @@ ProgramFile::ProgramFile(const std::filesystem::path& path, const ProgramReading
     : state_(new State{Walk(path, reading, kept_remarks)}) {}
 ProgramFile::~ProgramFile() = default;
 
-const program::Pose& ProgramFile::start() const {
+const Pose& ProgramFile::start() const {
   return state_->walk.start();
 }
 
-bool ProgramFile::next(program::Block& out) {
+bool ProgramFile::next(Block& out) {
   return state_->walk.next(out);
 }
 
@@ -147,7 +147,7 @@ void ProgramFile::rewind() {
   state_->walk.rewind();
 }
 
-const std::vector<program::Skipped>& ProgramFile::skipped() const {
+const std::vector<Skipped>& ProgramFile::skipped() const {
   return state_->walk.remarks().skipped();
 }
 
@@ -163,15 +163,15 @@ std::unique_ptr<ProgramFile> open_program(const std::filesystem::path& path, con
   return std::make_unique<ProgramFile>(path, reading);
 }
 
-program::Program read_program(const std::filesystem::path& path, const ProgramReading& reading) {
+Program read_program(const std::filesystem::path& path, const ProgramReading& reading) {
   Walk walk(path, reading, std::numeric_limits<std::size_t>::max());
-  program::Program out;
+  Program out;
   out.start = walk.start();
-  program::Block block;
+  Block block;
   while (walk.next(block)) out.blocks.push_back(block);
   out.skipped = std::move(walk.remarks().skipped());
   out.notes = walk.remarks().notes();
   return out;
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -11,7 +11,7 @@
 #include "robomill/program/machine.hpp"
 #include "robomill/program/program.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 
 /// How a program's file is written.
 enum class ProgramFormat { gcode, apt, csv };
@@ -30,7 +30,7 @@ enum class Rotary {
 
 /// How to read a program.
 struct ROBOMILL_API ProgramReading {
-  std::optional<program::Machine> machine = {};  ///< what A, B and C mean; a program without them needs none
+  std::optional<Machine> machine = {};  ///< what A, B and C mean; a program without them needs none
   Rotary rotary = Rotary::machine;
   double chord_tolerance_m = 1e-6;  ///< >= 1 nm; by how much a chord may leave the arc that it stands for
   /// >= 1e-9 rad (default 0.001°); by how much the great circle of a part may leave the axis of a machine's move
@@ -51,7 +51,7 @@ struct ROBOMILL_API ProgramReading {
 /// of
 ///     a row that of the move to it.
 /// A feed counts the tip's way, and degrees where the axis alone turns.
-class ROBOMILL_API ProgramFile final : public program::Source {
+class ROBOMILL_API ProgramFile final : public Source {
  public:
   /// @throws InvalidInput if the options are invalid, the file cannot be read, or as next() up to the start
   explicit ProgramFile(const std::filesystem::path& path, const ProgramReading& reading = {});
@@ -61,16 +61,16 @@ class ROBOMILL_API ProgramFile final : public program::Source {
   ProgramFile(ProgramFile&&) = delete;
   ProgramFile& operator=(ProgramFile&&) = delete;
 
-  [[nodiscard]] const program::Pose& start() const override;
+  [[nodiscard]] const Pose& start() const override;
   /// @throws InvalidInput with file, line, word and value: what cannot be read, feeds that are missing or not above 0,
   ///     axes that are no unit vectors or turn by half a circle in one move, and what would move the tool or its frame
   ///     in ways that are not read
-  bool next(program::Block& out) override;
+  bool next(Block& out) override;
   /// @throws InvalidInput if the file is a pipe
   void rewind() override;
 
   /// What was left out up to the last block read, in whichever pass came farthest: the first 500.
-  [[nodiscard]] const std::vector<program::Skipped>& skipped() const;
+  [[nodiscard]] const std::vector<Skipped>& skipped() const;
   /// … and how many they are.
   [[nodiscard]] std::size_t skipped_count() const;
   /// What was mended or taken for granted so far, in sentences.
@@ -85,7 +85,6 @@ class ROBOMILL_API ProgramFile final : public program::Source {
                                                                      const ProgramReading& reading = {});
 
 /// The whole program, with all that was left out. @throws InvalidInput as ProgramFile
-[[nodiscard]] ROBOMILL_API program::Program read_program(const std::filesystem::path& path,
-                                                         const ProgramReading& reading = {});
+[[nodiscard]] ROBOMILL_API Program read_program(const std::filesystem::path& path, const ProgramReading& reading = {});
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -13,12 +13,12 @@
 #include "robomill/program/files/program_lines.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
-using program::Block;
-using program::Machine;
-using program::Program;
+using Block;
+using Machine;
+using Program;
 
 bool same(const Block& a, const Block& b) {
   return a.kind == b.kind && a.line == b.line && a.end.tip_m == b.end.tip_m && a.end.axis == b.end.axis &&
@@ -201,4 +201,4 @@ TEST(ProgramFiles, ReadsAPipeButNotTwice) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -9,7 +9,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 18;
@@ -19,7 +19,7 @@ constexpr std::size_t least_bytes = 2 * (ProgramLines::longest + 2);
 }  // namespace
 
 ProgramLines::ProgramLines(std::filesystem::path path)
-    : path_(std::move(path)), in_(open_file(path_)), buffer_(buffer_bytes) {
+    : path_(std::move(path)), in_(io::open_file(path_)), buffer_(buffer_bytes) {
   fill();
   if (end_ == 0) throw InvalidInput(path_.string(), "is empty");
   const std::string_view head(buffer_.data(), std::min<std::size_t>(end_, 4096));
@@ -77,4 +77,4 @@ void ProgramLines::rewind() {
   fill();
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace robomill::formats {
+namespace robomill::program {
 
 /// The lines of a text file one after another, in memory that does not grow with it.
 class ProgramLines {
@@ -34,4 +34,4 @@ class ProgramLines {
   bool whole_ = false;  ///< the file's end is in the buffer
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

@@ -11,7 +11,7 @@
 #include "robomill/io/text.hpp"
 #include "robomill/program/files/program_lines.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 namespace {
 
 constexpr double fastest = 1e9;  ///< beyond any machine in any unit
@@ -114,7 +114,7 @@ void ProgramReader::finish() {
   joined_.clear();
 }
 
-bool ProgramReader::pop(program::Block& out) {
+bool ProgramReader::pop(Block& out) {
   if (!ready_) return false;
   out = block_;
   ready_ = advance();
@@ -157,31 +157,31 @@ Eigen::Vector3d ProgramReader::unit_axis(const char* names, const Eigen::Vector3
   const double length = written.norm();
   const double error = std::abs(length - 1.0);
   if (!(error <= largest_length_error)) {
-    refuse(names, round_15(length), "", "must be a vector of length 1, within 1e-3", "It is the axis of the tool");
+    refuse(names, io::round_15(length), "", "must be a vector of length 1, within 1e-3", "It is the axis of the tool");
   }
   if (error > silent_length_error) remarks_.normalised(line_, error);
   return written / length;
 }
 
 double ProgramReader::turn_to(const Eigen::Vector3d& axis) const {
-  const double turn = axis == pose_.axis ? 0.0 : program::angle_between(pose_.axis, axis);
+  const double turn = axis == pose_.axis ? 0.0 : angle_between(pose_.axis, axis);
   if (turn > largest_turn_rad) {
-    refuse("axis", round_15(turn / units::deg), "deg",
+    refuse("axis", io::round_15(turn / units::deg), "deg",
            "turns by half a circle in one move, which could go any way round", "Split the move");
   }
   return turn;
 }
 
-void ProgramReader::begin_at(const program::Pose& pose) {
+void ProgramReader::begin_at(const Pose& pose) {
   pose_ = pose;
   start_ = pose;
 }
 
-bool ProgramReader::moves_to(const program::Pose& end) const {
+bool ProgramReader::moves_to(const Pose& end) const {
   return end.tip_m != pose_.tip_m || end.axis != pose_.axis;
 }
 
-void ProgramReader::move(program::Block::Kind kind, const program::Pose& end, double duration_s, Deviation deviation) {
+void ProgramReader::move(Block::Kind kind, const Pose& end, double duration_s, Deviation deviation) {
   block_ = {.kind = kind,
             .line = line_,
             .end = end,
@@ -195,10 +195,10 @@ void ProgramReader::move(program::Block::Kind kind, const program::Pose& end, do
   ready_ = true;
 }
 
-void ProgramReader::dwell(double duration_s, program::OperatorStop operator_stop) {
-  move(program::Block::Kind::dwell, pose_, duration_s);
+void ProgramReader::dwell(double duration_s, OperatorStop operator_stop) {
+  move(Block::Kind::dwell, pose_, duration_s);
   block_.operator_stop = operator_stop;
-  if (operator_stop != program::OperatorStop::none) remarks_.operator_stop(line_);
+  if (operator_stop != OperatorStop::none) remarks_.operator_stop(line_);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

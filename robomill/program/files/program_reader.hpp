@@ -9,7 +9,7 @@
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/program/program.hpp"
 
-namespace robomill::formats {
+namespace robomill::program {
 
 /// What a reader left out, mended or took for granted: told once, however often the program is read again.
 class ProgramRemarks {
@@ -27,7 +27,7 @@ class ProgramRemarks {
   /// A move at feed with rotary axes turned, where nothing has said that positions are those of the tip.
   void no_center_point(std::size_t line);
 
-  [[nodiscard]] std::vector<program::Skipped>& skipped() { return skipped_; }
+  [[nodiscard]] std::vector<Skipped>& skipped() { return skipped_; }
   [[nodiscard]] std::size_t skipped_count() const { return skipped_count_; }
   [[nodiscard]] std::vector<std::string> notes() const;
 
@@ -41,7 +41,7 @@ class ProgramRemarks {
 
   std::size_t most_;
   std::size_t told_ = 0, last_ = 0;  ///< lines
-  std::vector<program::Skipped> skipped_;
+  std::vector<Skipped> skipped_;
   std::size_t skipped_count_ = 0;
   Counted normalised_, long_dwells_, operator_stops_, no_center_point_;
 };
@@ -68,11 +68,11 @@ class ProgramReader {
   /// The file has ended.
   void finish();
   /// The next block of the lines taken; false where they have no more.
-  bool pop(program::Block& out);
+  bool pop(Block& out);
   /// What follows is not carried out.
   [[nodiscard]] bool ended() const { return ended_; }
   /// Where the first block begins; empty until that is known.
-  [[nodiscard]] const std::optional<program::Pose>& start() const { return start_; }
+  [[nodiscard]] const std::optional<Pose>& start() const { return start_; }
 
  protected:
   static constexpr double farthest_m = 1e3;  ///< of a coordinate or a radius
@@ -102,16 +102,16 @@ class ProgramReader {
   [[nodiscard]] Eigen::Vector3d unit_axis(const char* names, const Eigen::Vector3d& written) const;
   /// Angle by which the axis turns on the way to `end` [rad]. @throws InvalidInput if that is half a circle
   [[nodiscard]] double turn_to(const Eigen::Vector3d& axis) const;
-  void begin_at(const program::Pose& pose);
-  [[nodiscard]] bool moves_to(const program::Pose& end) const;
+  void begin_at(const Pose& pose);
+  [[nodiscard]] bool moves_to(const Pose& end) const;
   /// Of a straight move from the curve that it stands for.
   struct Deviation {
     double tip_m, axis_rad;
   };
   /// Makes a block from where the tool stands to `end`.
-  void move(program::Block::Kind kind, const program::Pose& end, double duration_s,
+  void move(Block::Kind kind, const Pose& end, double duration_s,
             Deviation deviation = {.tip_m = 0.0, .axis_rad = 0.0});
-  void dwell(double duration_s, program::OperatorStop operator_stop = program::OperatorStop::none);
+  void dwell(double duration_s, OperatorStop operator_stop = OperatorStop::none);
   void skip(std::string_view what) const { remarks_.skip(line_, what); }
 
   const std::string file_;
@@ -119,12 +119,12 @@ class ProgramReader {
   ProgramRemarks& remarks_;
   std::size_t line_ = 0;  ///< where the statement begins
   bool ended_ = false;
-  program::Pose pose_;  ///< where the tool stands
-  std::optional<program::Pose> start_;
+  Pose pose_;  ///< where the tool stands
+  std::optional<Pose> start_;
   double spindle_speed_rad_per_s_ = 0.0;
-  program::Spindle spindle_ = program::Spindle::not_given;
-  program::Coolant coolant_;
-  program::Block block_;
+  Spindle spindle_ = Spindle::not_given;
+  Coolant coolant_;
+  Block block_;
   bool ready_ = false;  ///< block_ is to be taken away
 
  private:
@@ -133,4 +133,4 @@ class ProgramReader {
   std::string joined_;  ///< of a statement over several lines
 };
 
-}  // namespace robomill::formats
+}  // namespace robomill::program

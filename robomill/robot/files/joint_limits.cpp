@@ -9,7 +9,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::robot {
 namespace {
 
 /// One way to write a limit.
@@ -39,7 +39,7 @@ std::vector<std::size_t> joints_of(const Key& key, const std::vector<bool>& slid
   return joints;
 }
 
-void require_length(const TomlFile& file, const Key& key, std::size_t wanted, std::size_t held) {
+void require_length(const io::TomlFile& file, const Key& key, std::size_t wanted, std::size_t held) {
   if (wanted == held) return;
   const char* const kind = key.bare()    ? "a joint"
                            : key.turning ? "for each joint that turns"
@@ -64,7 +64,7 @@ void doubt_unit(const Key& key, const JointLimit& limit, const std::vector<bool>
 
 }  // namespace
 
-std::vector<std::optional<double>> read_joint_limit(TomlFile& file, const JointLimit& limit,
+std::vector<std::optional<double>> read_joint_limit(io::TomlFile& file, const JointLimit& limit,
                                                     const std::vector<bool>& slides, std::vector<std::string>& notes) {
   std::vector<std::optional<double>> out(slides.size());
   std::vector<std::string> from(slides.size());
@@ -83,7 +83,7 @@ std::vector<std::optional<double>> read_joint_limit(TomlFile& file, const JointL
   return out;
 }
 
-InvalidInput located_limit(const TomlFile& file, const JointLimit& limit, const std::vector<bool>& slides,
+InvalidInput located_limit(const io::TomlFile& file, const JointLimit& limit, const std::vector<bool>& slides,
                            std::size_t joint, const InvalidInput& error) {
   for (const Key& key : keys_of(limit)) {
     if (!key.takes(slides[joint]) || !file.has(key.key)) continue;
@@ -92,12 +92,12 @@ InvalidInput located_limit(const TomlFile& file, const JointLimit& limit, const 
     InvalidInput::Parts told = file.refuse(key.key, error.parts().rule, error.parts().hint).parts();
     told.field += fmt::format("[{}]", place);
     told.number = error.parts().number;
-    if (told.number) told.number = round_15(*told.number / key.factor);
-    told.unit = key.bare() ? error.parts().unit : unit_of_key(key.key);
+    if (told.number) told.number = io::round_15(*told.number / key.factor);
+    told.unit = key.bare() ? error.parts().unit : io::unit_of_key(key.key);
     told.value.clear();
     return InvalidInput(std::move(told));
   }
   return file.located(error);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::robot

@@ -9,7 +9,7 @@
 /// The limits of a cell's joints, as cell.toml gives them: robot.joint_max_velocity in rad/s or m/s, by joint, with a
 /// number for every joint; or with the unit in the key, _deg_per_s, _rad_per_s and _mm_per_s, with a number for every
 /// joint of that kind, in their order. A machine with both kinds has two such lists.
-namespace robomill::formats {
+namespace robomill::robot {
 
 struct JointLimit {
   const char* name;  ///< of the SI member; behind "robot.joint_" the key
@@ -22,13 +22,13 @@ inline constexpr std::array<JointLimit, 5> joint_limits = {
 /// @param notes   gets a sentence where a number without unit is not likely to be in rad or m
 /// @return of every joint its value in SI, none where the file gives none
 /// @throws InvalidInput if a list has another length, or two give the same joint's limit
-[[nodiscard]] std::vector<std::optional<double>> read_joint_limit(TomlFile& file, const JointLimit& limit,
+[[nodiscard]] std::vector<std::optional<double>> read_joint_limit(io::TomlFile& file, const JointLimit& limit,
                                                                   const std::vector<bool>& slides,
                                                                   std::vector<std::string>& notes);
 
 /// An error about one joint's limit, with the key, the place in its list and the number as the file has them.
 /// @param joint  from 0
-[[nodiscard]] InvalidInput located_limit(const TomlFile& file, const JointLimit& limit, const std::vector<bool>& slides,
-                                         std::size_t joint, const InvalidInput& error);
+[[nodiscard]] InvalidInput located_limit(const io::TomlFile& file, const JointLimit& limit,
+                                         const std::vector<bool>& slides, std::size_t joint, const InvalidInput& error);
 
-}  // namespace robomill::formats
+}  // namespace robomill::robot

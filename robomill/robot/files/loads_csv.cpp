@@ -17,30 +17,30 @@
 #include "robomill/io/table.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::robot {
 namespace {
 
 /// A column that is not a joint's.
 struct Column {
   const char* key;
   double factor;
-  double& (*value)(robot::Load& load);
+  double& (*value)(Load& load);
   bool needed;
 };
 constexpr std::array<Column, 10> columns = {{
-    {"fx_n", 1.0, [](robot::Load& load) -> double& { return load.wrench.force_n.x(); }, true},
-    {"fy_n", 1.0, [](robot::Load& load) -> double& { return load.wrench.force_n.y(); }, true},
-    {"fz_n", 1.0, [](robot::Load& load) -> double& { return load.wrench.force_n.z(); }, true},
-    {"dx_mm", units::mm, [](robot::Load& load) -> double& { return load.displacement_m.x(); }, true},
-    {"dy_mm", units::mm, [](robot::Load& load) -> double& { return load.displacement_m.y(); }, true},
-    {"dz_mm", units::mm, [](robot::Load& load) -> double& { return load.displacement_m.z(); }, true},
-    {"mx_n_m", 1.0, [](robot::Load& load) -> double& { return load.wrench.moment_n_m.x(); }, false},
-    {"my_n_m", 1.0, [](robot::Load& load) -> double& { return load.wrench.moment_n_m.y(); }, false},
-    {"mz_n_m", 1.0, [](robot::Load& load) -> double& { return load.wrench.moment_n_m.z(); }, false},
-    {"deviation_mm", units::mm, [](robot::Load& load) -> double& { return load.deviation_m; }, false},
+    {"fx_n", 1.0, [](Load& load) -> double& { return load.wrench.force_n.x(); }, true},
+    {"fy_n", 1.0, [](Load& load) -> double& { return load.wrench.force_n.y(); }, true},
+    {"fz_n", 1.0, [](Load& load) -> double& { return load.wrench.force_n.z(); }, true},
+    {"dx_mm", units::mm, [](Load& load) -> double& { return load.displacement_m.x(); }, true},
+    {"dy_mm", units::mm, [](Load& load) -> double& { return load.displacement_m.y(); }, true},
+    {"dz_mm", units::mm, [](Load& load) -> double& { return load.displacement_m.z(); }, true},
+    {"mx_n_m", 1.0, [](Load& load) -> double& { return load.wrench.moment_n_m.x(); }, false},
+    {"my_n_m", 1.0, [](Load& load) -> double& { return load.wrench.moment_n_m.y(); }, false},
+    {"mz_n_m", 1.0, [](Load& load) -> double& { return load.wrench.moment_n_m.z(); }, false},
+    {"deviation_mm", units::mm, [](Load& load) -> double& { return load.deviation_m; }, false},
 }};
 
-std::string joint_column(const robot::Arm& arm, std::size_t joint) {
+std::string joint_column(const Arm& arm, std::size_t joint) {
   return fmt::format("q{}_{}", joint + 1, arm.joints[joint].prismatic ? "mm" : "deg");
 }
 
@@ -50,14 +50,14 @@ struct Places {
   std::array<std::optional<std::size_t>, columns.size()> others = {};
 };
 
-Places find_columns(const TextTable& table, const robot::Arm& arm, const std::string& file) {
+Places find_columns(const io::TextTable& table, const Arm& arm, const std::string& file) {
   std::vector<std::string> known;
   known.reserve(arm.joints.size() + columns.size());
   for (std::size_t i = 0; i < arm.joints.size(); ++i) known.push_back(joint_column(arm, i));
   for (const Column& column : columns) known.emplace_back(column.key);
   for (const std::string& name : table.names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string near = nearest_word(name, known);
+    const std::string near = io::nearest_word(name, known);
     throw InvalidInput(file, fmt::format("has a column {} that is not known here", name),
                        near.empty() ? "" : fmt::format("Did you mean {}?", near));
   }
@@ -84,10 +84,10 @@ Places find_columns(const TextTable& table, const robot::Arm& arm, const std::st
   return out;
 }
 
-double read_field(const TextTable& table, const TextTable::Row& row, std::size_t place, double factor,
+double read_field(const io::TextTable& table, const io::TextTable::Row& row, std::size_t place, double factor,
                   const std::string& file) {
   const std::string& field = row.fields[place];
-  const std::optional<double> number = parse_cell(field);
+  const std::optional<double> number = io::parse_cell(field);
   if (number && std::isfinite(*number)) return *number * factor;
   InvalidInput::Parts parts{.where = fmt::format("{}:{}", file, row.line), .field = table.names[place]};
   parts.rule = field.empty() ? "is missing" : "must be a finite number";
@@ -97,15 +97,15 @@ double read_field(const TextTable& table, const TextTable::Row& row, std::size_t
 
 }  // namespace
 
-LoadsFile read_loads(const std::filesystem::path& path, const robot::Arm& arm) {
+LoadsFile read_loads(const std::filesystem::path& path, const Arm& arm) {
   const std::string file = path.string();
-  const TextTable table = parse_text_table(read_file(path), file);
+  const io::TextTable table = io::parse_text_table(io::read_file(path), file);
   const Places places = find_columns(table, arm, file);
   LoadsFile out{.path = path};
   out.loads.reserve(table.rows.size());
   out.line.reserve(table.rows.size());
-  for (const TextTable::Row& row : table.rows) {
-    robot::Load load{.position = Eigen::VectorXd(arm.size())};
+  for (const io::TextTable::Row& row : table.rows) {
+    Load load{.position = Eigen::VectorXd(arm.size())};
     for (std::size_t i = 0; i < arm.joints.size(); ++i) {
       const double factor = arm.joints[i].prismatic ? units::mm : units::deg;
       load.position(static_cast<Eigen::Index>(i)) = read_field(table, row, places.joints[i], factor, file);
@@ -120,10 +120,10 @@ LoadsFile read_loads(const std::filesystem::path& path, const robot::Arm& arm) {
   return out;
 }
 
-robot::IdentifiedStiffness identify_joint_stiffness(const robot::Arm& arm, const Eigen::Vector3d& point_m,
-                                                    const LoadsFile& file, const robot::IdentifyOptions& options) {
+IdentifiedStiffness identify_joint_stiffness(const Arm& arm, const Eigen::Vector3d& point_m, const LoadsFile& file,
+                                             const IdentifyOptions& options) {
   try {
-    return robot::identify_joint_stiffness(arm, point_m, file.loads, options);
+    return identify_joint_stiffness(arm, point_m, file.loads, options);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
     constexpr std::string_view prefix = "loads[";
@@ -139,11 +139,11 @@ robot::IdentifiedStiffness identify_joint_stiffness(const robot::Arm& arm, const
     parts.field = parts.field.substr(parts.field.find("].") + 2);
     if (parts.field == "deviation_m" && parts.number) {
       parts.field = "deviation_mm";
-      parts.number = round_15(*parts.number / units::mm);
+      parts.number = io::round_15(*parts.number / units::mm);
       parts.unit = "mm";
     }
     throw InvalidInput(std::move(parts));
   }
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::robot

@@ -13,7 +13,7 @@
 #include "testing/robot/arms.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::robot {
 namespace {
 
 using robomill::test::Folder;
@@ -32,14 +32,14 @@ TEST(LoadsCsv, ReadsALoadARow) {
   ASSERT_EQ(file.loads.size(), 2U);
   EXPECT_EQ(file.line[0], 3U);
   EXPECT_EQ(file.line[1], 5U);
-  const robot::Load& load = file.loads[0];
+  const Load& load = file.loads[0];
   EXPECT_DOUBLE_EQ(load.position(5), 6.0 * units::deg);
   EXPECT_EQ(load.wrench.force_n, Eigen::Vector3d(100.0, -200.0, 300.0));
   EXPECT_EQ(load.wrench.moment_n_m, Eigen::Vector3d(0.0, 0.0, 7.0));
   EXPECT_LT((load.displacement_m - Eigen::Vector3d(1e-4, -2e-4, 3e-4)).norm(), 1e-19);
   EXPECT_DOUBLE_EQ(load.deviation_m, 1e-5);
   // A sliding joint is told in millimetres.
-  robot::Arm sliding = arms::kr210();
+  Arm sliding = arms::kr210();
   sliding.joints[1].prismatic = true;
   std::string columns = header;
   columns.replace(columns.find("q2_deg"), 6, "q2_mm");
@@ -72,12 +72,12 @@ TEST(LoadsCsv, SaysWhatIsWrongAndWhere) {
 }
 
 /// A file of loads on an arm whose stiffness is known.
-std::string measured(const robot::Arm& arm, const Eigen::Vector3d& point_m, int count) {
+std::string measured(const Arm& arm, const Eigen::Vector3d& point_m, int count) {
   Random random(61);
   std::string text = header + "\n";
   for (int k = 0; k < count; ++k) {
     const Eigen::VectorXd position = 0.4 * arms::random_position(random, 6);
-    const robot::Wrench wrench{.force_n = 500.0 * arms::random_vector(random)};
+    const Wrench wrench{.force_n = 500.0 * arms::random_vector(random)};
     const Eigen::Vector3d moved = loaded_posture(arm, position, point_m, wrench).displacement_m;
     for (const double angle : position) text += fmt::format("{},", angle / units::deg);
     text += fmt::format("{},{},{},{},{},{}\n", wrench.force_n.x(), wrench.force_n.y(), wrench.force_n.z(),
@@ -88,10 +88,10 @@ std::string measured(const robot::Arm& arm, const Eigen::Vector3d& point_m, int 
 
 TEST(LoadsCsv, GivesTheStiffnessBackThroughFiles) {
   const Folder folder;
-  const robot::Arm arm = arms::kr210();
+  const Arm arm = arms::kr210();
   const Eigen::Vector3d point_m(0.1, 0.0, 0.2);
   const LoadsFile file = read_loads(folder.file("loads.csv", measured(arm, point_m, 12)), arm);
-  const robot::IdentifiedStiffness found = identify_joint_stiffness(arm, point_m, file);
+  const IdentifiedStiffness found = identify_joint_stiffness(arm, point_m, file);
   const auto json = nlohmann::json::parse(stiffness_json(found));
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(json["joint_stiffness_n_m_per_rad"][i].get<double>(), arm.joints[i].stiffness,
@@ -107,10 +107,10 @@ TEST(LoadsCsv, GivesTheStiffnessBackThroughFiles) {
 
 TEST(LoadsCsv, AJointThatIsNotSeenKeepsItsStiffness) {
   const Folder folder;
-  const robot::Arm arm = arms::kr210();
+  const Arm arm = arms::kr210();
   const Eigen::Vector3d on_axis_6(0.0, 0.0, 0.2);
   const LoadsFile file = read_loads(folder.file("loads.csv", measured(arm, on_axis_6, 12)), arm);
-  const robot::IdentifiedStiffness found = identify_joint_stiffness(arm, on_axis_6, file);
+  const IdentifiedStiffness found = identify_joint_stiffness(arm, on_axis_6, file);
   const auto json = nlohmann::json::parse(stiffness_json(found));
   EXPECT_TRUE(json["joint_stiffness_n_m_per_rad"][5].is_null());
   EXPECT_TRUE(json["std"][5].is_null());
@@ -118,7 +118,7 @@ TEST(LoadsCsv, AJointThatIsNotSeenKeepsItsStiffness) {
   EXPECT_FALSE(json["reason"][5].get<std::string>().empty());
   EXPECT_NE(stiffness_toml(found, arm).find("467056]"), std::string::npos);
   EXPECT_NE(stiffness_toml(found, arm).find("# Joint 6, as before: "), std::string::npos);
-  robot::Arm bare = arm;
+  Arm bare = arm;
   bare.joints[5].stiffness = 0.0;
   EXPECT_NE(refusal([&] { (void)stiffness_toml(found, bare); }).find("is not known of joint 6"), std::string::npos);
 }
@@ -142,4 +142,4 @@ TEST(LoadsCsv, DamagedFilesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::robot

@@ -5,14 +5,14 @@
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/identify.hpp"
 
-namespace robomill::formats {
+namespace robomill::robot {
 
 /// stiffness.json: what was found of every joint, its deviation, residuals; docs/formats.md.
-[[nodiscard]] ROBOMILL_API std::string stiffness_json(const robot::IdentifiedStiffness& result);
+[[nodiscard]] ROBOMILL_API std::string stiffness_json(const IdentifiedStiffness& result);
 
 /// The line joint_stiffness_n_m_per_rad of a cell.toml. A joint that the loads say nothing of keeps the arm's own
 /// stiffness, and a comment says so.
 /// @throws InvalidInput naming the joints that neither the loads nor the arm know
-[[nodiscard]] ROBOMILL_API std::string stiffness_toml(const robot::IdentifiedStiffness& result, const robot::Arm& arm);
+[[nodiscard]] ROBOMILL_API std::string stiffness_toml(const IdentifiedStiffness& result, const Arm& arm);
 
-}  // namespace robomill::formats
+}  // namespace robomill::robot

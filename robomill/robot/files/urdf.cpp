@@ -19,7 +19,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::robot {
 namespace {
 
 constexpr std::uintmax_t most_bytes = std::uintmax_t{16} << 20;
@@ -167,11 +167,11 @@ Eigen::Isometry3d pose_of(const urdf::Pose& pose) {
 }
 
 /// Adds a rigid body, both in one frame.
-void add(robot::Link& sum, const robot::Link& body) {
+void add(Link& sum, const Link& body) {
   const double mass_kg = sum.mass_kg + body.mass_kg;
   if (mass_kg > 0.0) {
     const Eigen::Vector3d center_m = (sum.mass_kg * sum.center_m + body.mass_kg * body.center_m) / mass_kg;
-    for (const robot::Link* part : {&std::as_const(sum), &body}) {
+    for (const Link* part : {&std::as_const(sum), &body}) {
       const Eigen::Vector3d arm_m = part->center_m - center_m;
       const Eigen::Matrix3d about =
           part->mass_kg * (arm_m.squaredNorm() * Eigen::Matrix3d::Identity() - arm_m * arm_m.transpose());
@@ -186,8 +186,8 @@ void add(robot::Link& sum, const robot::Link& body) {
   sum.mass_kg = mass_kg;
 }
 
-robot::Link body_of(const urdf::Link& link, const Eigen::Isometry3d& frame) {
-  robot::Link out;
+Link body_of(const urdf::Link& link, const Eigen::Isometry3d& frame) {
+  Link out;
   if (!link.inertial) return out;
   const urdf::Inertial& inertial = *link.inertial;
   const Eigen::Isometry3d at = frame * pose_of(inertial.origin);
@@ -250,7 +250,7 @@ class Chain {
     std::vector<std::string> names;
     names.reserve(model_.links_.size());
     for (const auto& entry : model_.links_) names.push_back(entry.first);
-    const std::string near = nearest_word(name, names);
+    const std::string near = io::nearest_word(name, names);
     throw refuse(fmt::format("has no link \"{}\"", name), near.empty() ? "" : fmt::format("Did you mean {}?", near));
   }
 
@@ -287,7 +287,7 @@ class Chain {
       throw refuse(fmt::format("joint \"{}\" mimics {}: such arms are not read", joint.name, joint.mimic->joint_name),
                    "Linkages that keep axes parallel are left out of a serial arm's URDF");
     }
-    robot::Joint next{.name = joint.name, .prismatic = prismatic};
+    Joint next{.name = joint.name, .prismatic = prismatic};
     next.before = since_ * origin;
     const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
     if (!(axis.norm() > 0.0)) throw refuse(fmt::format("joint \"{}\" must have an axis", joint.name));
@@ -334,7 +334,7 @@ UrdfArm parse_urdf(std::string_view content, const std::string& where, const Urd
 }
 
 UrdfArm read_urdf(const std::filesystem::path& path, const UrdfReading& reading) {
-  return parse_urdf(read_file(path, most_bytes), path.string(), reading);
+  return parse_urdf(io::read_file(path, most_bytes), path.string(), reading);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::robot

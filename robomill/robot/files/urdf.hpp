@@ -7,7 +7,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/robot/arm.hpp"
 
-namespace robomill::formats {
+namespace robomill::robot {
 
 /// Which chain of a URDF's tree is the arm.
 struct UrdfReading {
@@ -16,7 +16,7 @@ struct UrdfReading {
 };
 
 struct UrdfArm {
-  robot::Arm arm = {};
+  Arm arm = {};
   std::vector<std::string> notes = {};  ///< sentences for the user
 };
 
@@ -32,4 +32,4 @@ struct UrdfArm {
                                               const UrdfReading& reading);
 [[nodiscard]] ROBOMILL_API UrdfArm read_urdf(const std::filesystem::path& path, const UrdfReading& reading);
 
-}  // namespace robomill::formats
+}  // namespace robomill::robot

@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
-namespace robomill::formats {
+namespace robomill::robot {
 namespace {
 
 using robomill::test::refusal;
@@ -52,7 +52,7 @@ UrdfArm parse_good() {
 TEST(Urdf, ReadsJointsLimitsAndLinks) {
   const UrdfArm read = parse_good();
   ASSERT_EQ(read.arm.joints.size(), 2U);
-  const robot::Joint& first = read.arm.joints[0];
+  const Joint& first = read.arm.joints[0];
   EXPECT_EQ(first.name, "j1");
   EXPECT_FALSE(first.prismatic);
   EXPECT_EQ(first.axis, Eigen::Vector3d(0.0, 0.0, -1.0));
@@ -74,7 +74,7 @@ TEST(Urdf, ReadsJointsLimitsAndLinks) {
 
 TEST(Urdf, AddsWhatIsBoltedToALinkAndLeavesOutWhatMoves) {
   const UrdfArm read = parse_good();
-  const robot::Link& link = read.arm.joints[1].link;
+  const Link& link = read.arm.joints[1].link;
   // 4 kg at 0.5 m and 4 kg at 0.7 m; each 0.1 m from the centre.
   EXPECT_DOUBLE_EQ(link.mass_kg, 8.0);
   EXPECT_LT((link.center_m - Eigen::Vector3d(0.6, 0.0, 0.0)).norm(), 1e-15);
@@ -98,10 +98,10 @@ std::string origin_text(const Eigen::Isometry3d& pose) {
 }
 
 /// An arm as a URDF, each joint behind a fixed one.
-std::string urdf_of(const robot::Arm& arm, Random& random) {
+std::string urdf_of(const Arm& arm, Random& random) {
   std::string text = "<robot name=\"r\"><link name=\"link_0\"/>";
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    const robot::Joint& joint = arm.joints[i];
+    const Joint& joint = arm.joints[i];
     const Eigen::Isometry3d part = arms::random_pose(random, 0.3);
     text += fmt::format(
         "<link name=\"mid_{}\"/><joint name=\"fix_{}\" type=\"fixed\"><parent link=\"link_{}\"/>"
@@ -124,8 +124,8 @@ std::string urdf_of(const robot::Arm& arm, Random& random) {
 TEST(Urdf, GivesBackAnyArmThatWasWritten) {
   Random random(51);
   for (int k = 0; k < seeds(300); ++k) {
-    const robot::Arm arm = arms::random_chain(random, 1 + k % 8);
-    const robot::Arm back = parse_urdf(urdf_of(arm, random), "r.urdf", {.tip = "tip"}).arm;
+    const Arm arm = arms::random_chain(random, 1 + k % 8);
+    const Arm back = parse_urdf(urdf_of(arm, random), "r.urdf", {.tip = "tip"}).arm;
     ASSERT_EQ(back.joints.size(), arm.joints.size());
     const Eigen::VectorXd position = arms::random_position(random, arm.size());
     EXPECT_LT((forward(arm, position).matrix() - forward(back, position).matrix()).cwiseAbs().maxCoeff(), 1e-12);
@@ -255,4 +255,4 @@ TEST(Urdf, DamagedFilesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::robot

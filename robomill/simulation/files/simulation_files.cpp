@@ -13,10 +13,10 @@
 #include "robomill/io/mat.hpp"
 #include "robomill/io/sample_source.hpp"
 
-namespace robomill::formats {
+namespace robomill::simulation {
 namespace {
 
-using simulation::Simulation;
+using Simulation;
 
 struct Column {
   const char* name;
@@ -61,42 +61,42 @@ void write_accelerations(const std::filesystem::path& path, const Simulation& re
     samples.push_back(static_cast<float>(result.acceleration_m_per_s2(i, 0)));
     samples.push_back(static_cast<float>(result.acceleration_m_per_s2(i, 1)));
   }
-  write_wav(path, samples, 2, result.sample_rate_hz);
+  io::write_wav(path, samples, 2, result.sample_rate_hz);
 }
 
-const char* to_text(simulation::Verdict verdict) {
+const char* to_text(Verdict verdict) {
   switch (verdict) {
-    case simulation::Verdict::stable:
+    case Verdict::stable:
       return "stable";
-    case simulation::Verdict::chatter:
+    case Verdict::chatter:
       return "chatter";
     default:
       return "undecided";
   }
 }
 
-Json small_json(const simulation::SmallVibration& small) {
-  if (small.status != simulation::SmallVibration::Status::found) return nullptr;
-  return {{"spectral_radius", number(small.spectral_radius)},
-          {"error_estimate", number(small.error_estimate)},
-          {"multiplier", complex_number(small.multiplier)},
-          {"period_s", number(small.period_s)}};
+io::Json small_json(const SmallVibration& small) {
+  if (small.status != SmallVibration::Status::found) return nullptr;
+  return {{"spectral_radius", io::number(small.spectral_radius)},
+          {"error_estimate", io::number(small.error_estimate)},
+          {"multiplier", io::complex_number(small.multiplier)},
+          {"period_s", io::number(small.period_s)}};
 }
 
 }  // namespace
 
 void write_simulation(const std::filesystem::path& path, const Simulation& result) {
-  switch (format_of(path)) {
-    case Format::csv:
-      write_file(path, csv(columns_of(result)));
+  switch (io::format_of(path)) {
+    case io::Format::csv:
+      io::write_file(path, csv(columns_of(result)));
       return;
-    case Format::mat: {
-      std::vector<MatVariable> variables;
+    case io::Format::mat: {
+      std::vector<io::MatVariable> variables;
       for (const Column& column : columns_of(result)) variables.push_back({column.name, column.values});
-      write_mat(path, variables);
+      io::write_mat(path, variables);
       return;
     }
-    case Format::wav:
+    case io::Format::wav:
       write_accelerations(path, result);
       return;
     default:
@@ -106,42 +106,42 @@ void write_simulation(const std::filesystem::path& path, const Simulation& resul
 
 std::string simulation_json(const Simulation& result, double spindle_speed_rad_per_s, double axial_depth_m) {
   const bool chatters = result.chatter_frequency_hz > 0.0;
-  Json json;
-  json["spindle_speed_rpm"] = number(spindle_speed_rad_per_s / units::rpm);
-  json["axial_depth_mm"] = number(axial_depth_m / units::mm);
+  io::Json json;
+  json["spindle_speed_rpm"] = io::number(spindle_speed_rad_per_s / units::rpm);
+  json["axial_depth_mm"] = io::number(axial_depth_m / units::mm);
   json["verdict"] = to_text(result.verdict);
-  json["chatter_frequency_hz"] = chatters ? number(result.chatter_frequency_hz) : Json(nullptr);
-  json["chatter_amplitude_um"] = chatters ? number(result.chatter_amplitude_m / units::um) : Json(nullptr);
-  json["growth_per_period"] = number(result.growth_per_period);
-  json["period_s"] = number(result.period_s);
+  json["chatter_frequency_hz"] = chatters ? io::number(result.chatter_frequency_hz) : io::Json(nullptr);
+  json["chatter_amplitude_um"] = chatters ? io::number(result.chatter_amplitude_m / units::um) : io::Json(nullptr);
+  json["growth_per_period"] = io::number(result.growth_per_period);
+  json["period_s"] = io::number(result.period_s);
   json["small_vibration"] = small_json(result.small);
-  json["missed_share"] = number(result.missed_share);
-  json["walls"] = Json::array();
-  for (const simulation::Wall& wall : result.walls) {
-    json["walls"].push_back({{"angle_deg", number(wall.angle_rad / units::deg)},
-                             {"location_error_um", number(wall.location_error_m / units::um)},
-                             {"least_location_error_um", number(wall.least_location_error_m / units::um)},
-                             {"greatest_location_error_um", number(wall.greatest_location_error_m / units::um)},
-                             {"ra_um", number(wall.ra_m / units::um)},
-                             {"rz_um", number(wall.rz_m / units::um)}});
+  json["missed_share"] = io::number(result.missed_share);
+  json["walls"] = io::Json::array();
+  for (const Wall& wall : result.walls) {
+    json["walls"].push_back({{"angle_deg", io::number(wall.angle_rad / units::deg)},
+                             {"location_error_um", io::number(wall.location_error_m / units::um)},
+                             {"least_location_error_um", io::number(wall.least_location_error_m / units::um)},
+                             {"greatest_location_error_um", io::number(wall.greatest_location_error_m / units::um)},
+                             {"ra_um", io::number(wall.ra_m / units::um)},
+                             {"rz_um", io::number(wall.rz_m / units::um)}});
   }
-  Json peak = Json::array(), mean = Json::array();
+  io::Json peak = io::Json::array(), mean = io::Json::array();
   const bool any = result.force_n.rows() > 0;
   for (Eigen::Index c = 0; c < 3; ++c) {
-    peak.push_back(number(any ? result.force_n.col(c).cwiseAbs().maxCoeff() : 0.0));
-    mean.push_back(number(any ? result.force_n.col(c).mean() : 0.0));
+    peak.push_back(io::number(any ? result.force_n.col(c).cwiseAbs().maxCoeff() : 0.0));
+    mean.push_back(io::number(any ? result.force_n.col(c).mean() : 0.0));
   }
   json["peak_force_n"] = peak;
   json["mean_force_n"] = mean;
   json["samples"] = result.force_n.rows();
-  json["sample_rate_hz"] = number(result.sample_rate_hz);
+  json["sample_rate_hz"] = io::number(result.sample_rate_hz);
   json["steps_per_revolution"] = result.steps_per_revolution;
   json["slices"] = result.slices;
-  json["error_estimate"] = number(result.error_estimate);
+  json["error_estimate"] = io::number(result.error_estimate);
   json["resolved"] = result.resolved;
   json["diverged"] = result.diverged;
-  json["seconds"] = number(result.seconds);
-  return dump(json);
+  json["seconds"] = io::number(result.seconds);
+  return io::dump(json);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::simulation

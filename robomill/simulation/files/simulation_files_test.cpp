@@ -9,11 +9,11 @@
 #include "robomill/io/records.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::formats {
+namespace robomill::simulation {
 namespace {
 
-simulation::Simulation sample(bool with_z) {
-  simulation::Simulation s;
+Simulation sample(bool with_z) {
+  Simulation s;
   s.sample_rate_hz = 10240.0;
   s.displacement_m.setZero(50, 3);
   s.acceleration_m_per_s2.setZero(50, 3);
@@ -31,11 +31,11 @@ simulation::Simulation sample(bool with_z) {
 TEST(SimulationFiles, ComeBackAsRecords) {
   const test::Folder folder;
   for (const bool with_z : {false, true}) {
-    const simulation::Simulation s = sample(with_z);
+    const Simulation s = sample(with_z);
     for (const char* name : {"simulation_files.csv", "simulation_files.mat"}) {
       const auto path = folder.at(name);
       write_simulation(path, s);
-      const Record record = read_record(path);
+      const io::Record record = io::read_record(path);
       EXPECT_NEAR(record.sample_rate_hz, 10240.0, 1e-3);
       EXPECT_EQ(record.columns.size(), with_z ? 10U : 8U);
       EXPECT_LT((record.column("x_m") - s.displacement_m.col(0)).cwiseAbs().maxCoeff(), 1e-13);
@@ -45,7 +45,7 @@ TEST(SimulationFiles, ComeBackAsRecords) {
   }
   const auto path = folder.at("simulation_files.wav");
   write_simulation(path, sample(false));
-  const Record record = read_record(path);
+  const io::Record record = io::read_record(path);
   EXPECT_EQ(record.sample_rate_hz, 10240.0);
   ASSERT_EQ(record.columns.size(), 2U);
   EXPECT_LT((record.columns[1] - sample(false).acceleration_m_per_s2.col(1)).cwiseAbs().maxCoeff(), 1e-3);
@@ -53,7 +53,7 @@ TEST(SimulationFiles, ComeBackAsRecords) {
 
 TEST(SimulationFiles, RefusesWhatItCannotWrite) {
   const test::Folder folder;
-  simulation::Simulation s = sample(false);
+  Simulation s = sample(false);
   EXPECT_THROW(write_simulation(folder.at("simulation_files.uff"), s), InvalidInput);
   EXPECT_THROW(write_simulation("/nowhere/at/all.csv", s), InvalidInput);
   s.sample_rate_hz = 1000.5;
@@ -62,20 +62,20 @@ TEST(SimulationFiles, RefusesWhatItCannotWrite) {
 }
 
 TEST(SimulationFiles, JsonSaysNullForNone) {
-  simulation::Simulation s = sample(false);
-  s.verdict = simulation::Verdict::stable;
-  Json json = Json::parse(simulation_json(s, 680.0, 1e-3));
+  Simulation s = sample(false);
+  s.verdict = Verdict::stable;
+  io::Json json = io::Json::parse(simulation_json(s, 680.0, 1e-3));
   EXPECT_EQ(json["verdict"], "stable");
   EXPECT_TRUE(json["chatter_frequency_hz"].is_null());
   EXPECT_TRUE(json["small_vibration"].is_null());
   EXPECT_EQ(json["peak_force_n"][0], 490.0);
-  s.verdict = simulation::Verdict::chatter;
+  s.verdict = Verdict::chatter;
   s.chatter_frequency_hz = 933.9;
   s.walls.push_back({.angle_rad = 0.0, .location_error_m = 2e-6, .ra_m = 1e-7});
-  json = Json::parse(simulation_json(s, 680.0, 1e-3));
+  json = io::Json::parse(simulation_json(s, 680.0, 1e-3));
   EXPECT_EQ(json["chatter_frequency_hz"], 933.9);
   EXPECT_EQ(json["walls"][0]["location_error_um"], 2.0);
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::simulation

@@ -3,59 +3,59 @@
 #include "robomill/base/units.hpp"
 #include "robomill/modal/files/mode_json.hpp"
 
-namespace robomill::formats {
+namespace robomill::stability {
 namespace {
 
 /// One reading.
-Json explanation_json(const stability::Explanation& e) {
-  Json json;
-  json["kind"] = stability::to_string(e.kind);
+io::Json explanation_json(const Explanation& e) {
+  io::Json json;
+  json["kind"] = to_string(e.kind);
   json["rotations"] = e.harmonic;
   json["mirrored"] = e.mirrored;
   json["of_tooth_passing"] = e.of_tooth_passing;
-  set_mode(json, e.mode);
-  if (e.mode.known()) json["mode_frequency_hz"] = number(e.mode_frequency_hz);
-  json["expected_hz"] = number(e.expected_hz);
-  json["difference_hz"] = number(e.difference_hz);
-  json["tolerance_hz"] = number(e.tolerance_hz);
-  json["likelihood_per_hz"] = number(e.likelihood_per_hz);
+  modal::set_mode(json, e.mode);
+  if (e.mode.known()) json["mode_frequency_hz"] = io::number(e.mode_frequency_hz);
+  json["expected_hz"] = io::number(e.expected_hz);
+  json["difference_hz"] = io::number(e.difference_hz);
+  json["tolerance_hz"] = io::number(e.tolerance_hz);
+  json["likelihood_per_hz"] = io::number(e.likelihood_per_hz);
   return json;
 }
 
-Json peak_json(const stability::ExplainedPeak& peak) {
-  Json json = {{"frequency_hz", number(peak.frequency_hz)}, {"state", stability::to_string(peak.state)}};
-  if (peak.state == stability::ExplainedPeak::State::named) {
+io::Json peak_json(const ExplainedPeak& peak) {
+  io::Json json = {{"frequency_hz", io::number(peak.frequency_hz)}, {"state", to_string(peak.state)}};
+  if (peak.state == ExplainedPeak::State::named) {
     json.update(explanation_json(peak.best));
   } else {
-    json["kind"] = stability::to_string(peak.best.kind);
-    set_mode(json, {});
+    json["kind"] = to_string(peak.best.kind);
+    modal::set_mode(json, {});
   }
-  json["chatter_frequency_hz"] = number(peak.chatter_frequency_hz);
-  json["others"] = Json::array();
-  for (const stability::Explanation& other : peak.others) json["others"].push_back(explanation_json(other));
+  json["chatter_frequency_hz"] = io::number(peak.chatter_frequency_hz);
+  json["others"] = io::Json::array();
+  for (const Explanation& other : peak.others) json["others"].push_back(explanation_json(other));
   return json;
 }
 
 }  // namespace
 
-std::string fingerprint_json(const stability::Fingerprint& fingerprint, const stability::DelayVerdict* verdict) {
-  Json json;
-  json["spindle_speed_rpm"] = number(fingerprint.spindle_speed_rad_per_s / units::rpm);
+std::string fingerprint_json(const Fingerprint& fingerprint, const DelayVerdict* verdict) {
+  io::Json json;
+  json["spindle_speed_rpm"] = io::number(fingerprint.spindle_speed_rad_per_s / units::rpm);
   json["speed_from_peaks"] = fingerprint.speed_from_peaks;
-  json["peaks"] = Json::array();
-  for (const stability::ExplainedPeak& peak : fingerprint.peaks) json["peaks"].push_back(peak_json(peak));
-  json["state"] = stability::to_string(fingerprint.state);
-  set_mode(json, fingerprint.mode);
-  json["chatter_frequency_hz"] = number(fingerprint.chatter_frequency_hz);
+  json["peaks"] = io::Json::array();
+  for (const ExplainedPeak& peak : fingerprint.peaks) json["peaks"].push_back(peak_json(peak));
+  json["state"] = to_string(fingerprint.state);
+  modal::set_mode(json, fingerprint.mode);
+  json["chatter_frequency_hz"] = io::number(fingerprint.chatter_frequency_hz);
   json["chatter"] = nullptr;
   if (verdict != nullptr) {
-    json["chatter"] = {{"kind", stability::to_string(verdict->kind)},
-                       {"spectral_radius", number(verdict->spectral_radius)},
-                       {"spectral_radius_without_delay", number(verdict->without_delay)},
-                       {"chatter_frequency_hz", number(verdict->chatter_frequency_hz)}};
-    set_mode(json["chatter"], verdict->mode);
+    json["chatter"] = {{"kind", to_string(verdict->kind)},
+                       {"spectral_radius", io::number(verdict->spectral_radius)},
+                       {"spectral_radius_without_delay", io::number(verdict->without_delay)},
+                       {"chatter_frequency_hz", io::number(verdict->chatter_frequency_hz)}};
+    modal::set_mode(json["chatter"], verdict->mode);
   }
-  return dump(json);
+  return io::dump(json);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::stability

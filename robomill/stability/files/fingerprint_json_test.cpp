@@ -8,13 +8,13 @@
 #include "robomill/base/units.hpp"
 #include "testing/robot_modes.hpp"
 
-namespace robomill::formats {
+namespace robomill::stability {
 namespace {
 
 TEST(FingerprintJson, HoldsEveryPeakInShopUnits) {
   const modal::ModalModel modes = data::robot_modes();
-  const stability::Fingerprint found = stability::explain({{324.99, 666.98, 250.0}, 6500.0 * units::rpm, 3}, modes);
-  const stability::DelayVerdict verdict = {stability::DelayVerdict::Kind::regenerative, 1.1, 0.9, 563.5, {8}};
+  const Fingerprint found = explain({{324.99, 666.98, 250.0}, 6500.0 * units::rpm, 3}, modes);
+  const DelayVerdict verdict = {DelayVerdict::Kind::regenerative, 1.1, 0.9, 563.5, {8}};
   const auto json = nlohmann::json::parse(fingerprint_json(found, &verdict));
   EXPECT_NEAR(json["spindle_speed_rpm"].get<double>(), 6499.8, 1e-6);
   ASSERT_EQ(json["peaks"].size(), 3U);
@@ -29,7 +29,7 @@ TEST(FingerprintJson, HoldsEveryPeakInShopUnits) {
   EXPECT_EQ(json["chatter"]["kind"], "regenerative");
   EXPECT_EQ(json["chatter"]["spectral_radius_without_delay"], 0.9);
   const auto bare =
-      nlohmann::json::parse(fingerprint_json(stability::explain({{324.99}, 6500.0 * units::rpm, 3}, modes), nullptr));
+      nlohmann::json::parse(fingerprint_json(explain({{324.99}, 6500.0 * units::rpm, 3}, modes), nullptr));
   EXPECT_TRUE(bare["mode"].is_null());
   EXPECT_TRUE(bare["chatter_frequency_hz"].is_null());
   EXPECT_TRUE(bare["chatter"].is_null());
@@ -38,8 +38,8 @@ TEST(FingerprintJson, HoldsEveryPeakInShopUnits) {
 
 // Two modes explain 539.5 Hz about as well: no mode is named, and both are listed.
 TEST(FingerprintJson, NamesNothingThatCannotBeTold) {
-  const auto json = nlohmann::json::parse(
-      fingerprint_json(stability::explain({{539.5}, 6500.0 * units::rpm, 3}, data::robot_modes()), nullptr));
+  const auto json =
+      nlohmann::json::parse(fingerprint_json(explain({{539.5}, 6500.0 * units::rpm, 3}, data::robot_modes()), nullptr));
   EXPECT_EQ(json["state"], "cannot be told");
   EXPECT_TRUE(json["mode"].is_null());
   EXPECT_TRUE(json["mode_of"].is_null());
@@ -54,4 +54,4 @@ TEST(FingerprintJson, NamesNothingThatCannotBeTold) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::stability

@@ -5,39 +5,40 @@
 #include "robomill/base/units.hpp"
 #include "robomill/modal/files/mode_json.hpp"
 
-namespace robomill::formats {
+namespace robomill::stability {
 namespace {
 
-Json grid_json(const Eigen::VectorXd& values, double unit) {
-  Json out = Json::array();
-  for (const double value : values) out.push_back(number(value / unit));
+io::Json grid_json(const Eigen::VectorXd& values, double unit) {
+  io::Json out = io::Json::array();
+  for (const double value : values) out.push_back(io::number(value / unit));
   return out;
 }
 
-Json point_json(double spindle_speed_rad_per_s, double axial_depth_m) {
-  return {{"spindle_speed_rpm", number(spindle_speed_rad_per_s / units::rpm)},
-          {"axial_depth_mm", number(axial_depth_m / units::mm)}};
+io::Json point_json(double spindle_speed_rad_per_s, double axial_depth_m) {
+  return {{"spindle_speed_rpm", io::number(spindle_speed_rad_per_s / units::rpm)},
+          {"axial_depth_mm", io::number(axial_depth_m / units::mm)}};
 }
 
 template <class Point>
-void add_chatter(Json& json, const Point& point) {
-  json["chatter_frequency_hz"] = number(point.chatter_frequency_hz);
-  json["kind"] = stability::to_string(point.kind);
-  set_mode(json, point.mode);
+void add_chatter(io::Json& json, const Point& point) {
+  json["chatter_frequency_hz"] = io::number(point.chatter_frequency_hz);
+  json["kind"] = to_string(point.kind);
+  modal::set_mode(json, point.mode);
 }
 
-Json map_json(const Eigen::MatrixXd& spectral_radius) {
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < spectral_radius.rows(); ++i) rows.push_back(numbers(spectral_radius.row(i).transpose()));
+io::Json map_json(const Eigen::MatrixXd& spectral_radius) {
+  io::Json rows = io::Json::array();
+  for (Eigen::Index i = 0; i < spectral_radius.rows(); ++i)
+    rows.push_back(io::numbers(spectral_radius.row(i).transpose()));
   return rows;
 }
 
 /// A limit beyond the range is null.
-Json depths_json(const Eigen::VectorXd& depths_m) {
-  Json out = Json::array();
+io::Json depths_json(const Eigen::VectorXd& depths_m) {
+  io::Json out = io::Json::array();
   for (const double depth : depths_m) {
     if (std::isfinite(depth)) {
-      out.push_back(number(depth / units::mm));
+      out.push_back(io::number(depth / units::mm));
     } else {
       out.push_back(nullptr);
     }
@@ -45,7 +46,7 @@ Json depths_json(const Eigen::VectorXd& depths_m) {
   return out;
 }
 
-Json uncertainty_json(const stability::UncertainLimits& limits) {
+io::Json uncertainty_json(const UncertainLimits& limits) {
   return {{"samples", limits.samples},
           {"spindle_speed_rpm", grid_json(limits.spindle_speed_rad_per_s, units::rpm)},
           {"axial_depth_mm", grid_json(limits.axial_depth_m, units::mm)},
@@ -53,51 +54,50 @@ Json uncertainty_json(const stability::UncertainLimits& limits) {
           {"limit_50_percent_mm", depths_json(limits.limit_50_percent_m)},
           {"limit_95_percent_mm", depths_json(limits.limit_95_percent_m)},
           {"chatter_probability", map_json(limits.chatter_probability)},
-          {"seconds", number(limits.seconds)}};
+          {"seconds", io::number(limits.seconds)}};
 }
 
 }  // namespace
 
-std::string lobes_json(const stability::LobesResult& result, const stability::UncertainLimits& uncertain,
-                       const stability::SurfaceMap& surface) {
-  Json json;
+std::string lobes_json(const LobesResult& result, const UncertainLimits& uncertain, const SurfaceMap& surface) {
+  io::Json json;
   json["spindle_speed_rpm"] = grid_json(result.spindle_speed_rad_per_s, units::rpm);
   json["axial_depth_mm"] = grid_json(result.axial_depth_m, units::mm);
   if (result.spectral_radius.size() > 0) json["spectral_radius"] = map_json(result.spectral_radius);
-  json["boundary"] = Json::array();
-  for (const stability::BoundaryPoint& point : result.boundary) {
+  json["boundary"] = io::Json::array();
+  for (const BoundaryPoint& point : result.boundary) {
     json["boundary"].push_back(point_json(point.spindle_speed_rad_per_s, point.axial_depth_m));
     add_chatter(json["boundary"].back(), point);
     json["boundary"].back()["curve"] = point.curve;
-    json["boundary"].back()["error_estimate"] = number(point.error_estimate);
+    json["boundary"].back()["error_estimate"] = io::number(point.error_estimate);
   }
-  json["limit"] = Json::array();
-  for (const stability::Limit& limit : result.limit) {
-    Json row = point_json(limit.spindle_speed_rad_per_s, limit.axial_depth_m);
-    if (limit.status == stability::Limit::Status::found) {
+  json["limit"] = io::Json::array();
+  for (const Limit& limit : result.limit) {
+    io::Json row = point_json(limit.spindle_speed_rad_per_s, limit.axial_depth_m);
+    if (limit.status == Limit::Status::found) {
       add_chatter(row, limit);
-      row["error_estimate"] = number(limit.error_estimate);
+      row["error_estimate"] = io::number(limit.error_estimate);
     } else {
       row["axial_depth_mm"] = nullptr;
     }
     json["limit"].push_back(row);
   }
-  json["points"] = Json::array();
-  for (const stability::PointResult& point : result.points) {
-    Json row = point_json(point.spindle_speed_rad_per_s, point.axial_depth_m);
-    row["spectral_radius"] = number(point.spectral_radius);
+  json["points"] = io::Json::array();
+  for (const PointResult& point : result.points) {
+    io::Json row = point_json(point.spindle_speed_rad_per_s, point.axial_depth_m);
+    row["spectral_radius"] = io::number(point.spectral_radius);
     row["stable"] = point.stable;
-    row["error_estimate"] = number(point.error_estimate);
-    row["multiplier"] = complex_number(point.multiplier);
+    row["error_estimate"] = io::number(point.error_estimate);
+    row["multiplier"] = io::complex_number(point.multiplier);
     add_chatter(row, point);
     json["points"].push_back(row);
   }
-  json["method"] = stability::to_string(result.method);
-  json["period"] = stability::to_string(result.period);
+  json["method"] = to_string(result.method);
+  json["period"] = to_string(result.period);
   json["evaluations"] = result.evaluations;
   json["unsettled"] = result.unsettled;
   json["uncertain"] = result.uncertain;
-  json["seconds"] = number(result.seconds);
+  json["seconds"] = io::number(result.seconds);
   if (uncertain.samples > 0) json["uncertainty"] = uncertainty_json(uncertain);
   if (surface.axial_depth_m.size() > 0) {
     json["surface"] = {{"spindle_speed_rpm", grid_json(surface.spindle_speed_rad_per_s, units::rpm)},
@@ -105,31 +105,31 @@ std::string lobes_json(const stability::LobesResult& result, const stability::Un
                        {"surface_location_error_um", map_json(surface.surface_location_error_m / units::um)},
                        {"peak_to_peak_um", map_json(surface.peak_to_peak_m / units::um)}};
   }
-  return dump(json);
+  return io::dump(json);
 }
 
-std::string comparison_json(const stability::MethodComparison& comparison) {
-  Json json;
-  json["spindle_speed_rpm"] = Json::array();
+std::string comparison_json(const MethodComparison& comparison) {
+  io::Json json;
+  json["spindle_speed_rpm"] = io::Json::array();
   for (const double speed : comparison.spindle_speed_rad_per_s) {
-    json["spindle_speed_rpm"].push_back(number(speed / units::rpm));
+    json["spindle_speed_rpm"].push_back(io::number(speed / units::rpm));
   }
-  json["methods"] = Json::array();
-  for (const stability::MethodRow& row : comparison.rows) {
-    Json limits = Json::array();
-    for (const stability::Limit& limit : row.limits) {
-      const bool found = limit.status == stability::Limit::Status::found;
-      limits.push_back(found ? number(limit.axial_depth_m / units::mm) : Json(nullptr));
+  json["methods"] = io::Json::array();
+  for (const MethodRow& row : comparison.rows) {
+    io::Json limits = io::Json::array();
+    for (const Limit& limit : row.limits) {
+      const bool found = limit.status == Limit::Status::found;
+      limits.push_back(found ? io::number(limit.axial_depth_m / units::mm) : io::Json(nullptr));
     }
-    json["methods"].push_back({{"method", stability::to_string(row.method)},
+    json["methods"].push_back({{"method", to_string(row.method)},
                                {"limit_mm", std::move(limits)},
-                               {"median_error", number(row.median_error)},
-                               {"worst_error", number(row.worst_error)},
+                               {"median_error", io::number(row.median_error)},
+                               {"worst_error", io::number(row.worst_error)},
                                {"differ", row.differ},
                                {"refusal", row.refusal},
-                               {"seconds", number(row.seconds)}});
+                               {"seconds", io::number(row.seconds)}});
   }
-  return dump(json);
+  return io::dump(json);
 }
 
-}  // namespace robomill::formats
+}  // namespace robomill::stability

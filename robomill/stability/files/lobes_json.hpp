@@ -7,14 +7,13 @@
 #include "robomill/stability/surface_error.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
-namespace robomill::formats {
+namespace robomill::stability {
 
 /// lobes.json as text; with the map, the uncertain limits and the surface where there are some.
-[[nodiscard]] ROBOMILL_API std::string lobes_json(const stability::LobesResult& result,
-                                                  const stability::UncertainLimits& uncertain = {},
-                                                  const stability::SurfaceMap& surface = {});
+[[nodiscard]] ROBOMILL_API std::string lobes_json(const LobesResult& result, const UncertainLimits& uncertain = {},
+                                                  const SurfaceMap& surface = {});
 
 /// `robomill lobes --compare` as JSON text.
-[[nodiscard]] ROBOMILL_API std::string comparison_json(const stability::MethodComparison& comparison);
+[[nodiscard]] ROBOMILL_API std::string comparison_json(const MethodComparison& comparison);
 
-}  // namespace robomill::formats
+}  // namespace robomill::stability

@@ -8,21 +8,21 @@
 
 #include "robomill/base/units.hpp"
 
-namespace robomill::formats {
+namespace robomill::stability {
 namespace {
 
-stability::LobesResult small_result() {
-  stability::LobesResult r;
+LobesResult small_result() {
+  LobesResult r;
   r.spindle_speed_rad_per_s = Eigen::Vector2d(4000.0, 16000.0) * units::rpm;
   r.axial_depth_m = Eigen::Vector3d(0.0, 1.5e-3, 3e-3);
   r.spectral_radius = Eigen::MatrixXd::Constant(3, 2, 0.5);
   r.spectral_radius(2, 1) = 1.25;
-  r.boundary = {{8000.0 * units::rpm, 1.2e-3, 563.5, stability::Kind::hopf, {8, modal::ModeOwner::workpiece}, 2e-7, 1},
-                {9000.0 * units::rpm, 2.1e-3, 225.0, stability::Kind::flip, {7}, 0.0, 2}};
+  r.boundary = {{8000.0 * units::rpm, 1.2e-3, 563.5, Kind::hopf, {8, modal::ModeOwner::workpiece}, 2e-7, 1},
+                {9000.0 * units::rpm, 2.1e-3, 225.0, Kind::flip, {7}, 0.0, 2}};
   r.limit.resize(2);
   r.limit[0].spindle_speed_rad_per_s = 4000.0 * units::rpm;
-  r.limit[1] = {16000.0 * units::rpm, stability::Limit::Status::found, 2.5e-3, 540.0, stability::Kind::hopf, {8}, 3e-7};
-  stability::PointResult point;
+  r.limit[1] = {16000.0 * units::rpm, Limit::Status::found, 2.5e-3, 540.0, Kind::hopf, {8}, 3e-7};
+  PointResult point;
   point.spindle_speed_rad_per_s = 6500.0 * units::rpm;
   point.axial_depth_m = 0.6e-3;
   point.spectral_radius = 1.104;
@@ -70,7 +70,7 @@ TEST(LobesJson, SaysEverythingInShopUnits) {
 }
 
 TEST(LobesJson, LeavesOutTheMapWhereNobodyAskedForIt) {
-  stability::LobesResult result = small_result();
+  LobesResult result = small_result();
   result.spectral_radius.resize(0, 0);
   const nlohmann::json json = nlohmann::json::parse(lobes_json(result));
   EXPECT_FALSE(json.contains("spectral_radius"));
@@ -78,4 +78,4 @@ TEST(LobesJson, LeavesOutTheMapWhereNobodyAskedForIt) {
 }
 
 }  // namespace
-}  // namespace robomill::formats
+}  // namespace robomill::stability
