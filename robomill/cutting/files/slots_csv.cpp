@@ -116,9 +116,9 @@ template <class Fit>
 io::Json values_of(const Fit& fit, double CoefficientPair::*cutting, double CoefficientPair::*edge) {
   io::Json out = io::Json::object();
   for (const auto& [name, pair] : pairs_of(fit))
-    out[fmt::format("{}_n_per_mm2", name)] = number(pair->*cutting / units::n_per_mm2);
+    out[fmt::format("{}_n_per_mm2", name)] = io::number(pair->*cutting / units::n_per_mm2);
   for (const auto& [name, pair] : pairs_of(fit))
-    out[fmt::format("{}_edge_n_per_mm", name)] = number(pair->*edge / units::n_per_mm);
+    out[fmt::format("{}_edge_n_per_mm", name)] = io::number(pair->*edge / units::n_per_mm);
   return out;
 }
 template <class Fit>
@@ -133,7 +133,7 @@ io::Json coefficients_of(const Fit& fit) {
 template <class Fit>
 io::Json of_each(const Fit& fit, double CoefficientPair::*value) {
   io::Json out = io::Json::object();
-  for (const auto& [name, pair] : pairs_of(fit)) out[name] = number(pair->*value);
+  for (const auto& [name, pair] : pairs_of(fit)) out[name] = io::number(pair->*value);
   return out;
 }
 
@@ -147,17 +147,18 @@ io::Json identification(const SlotFit& fit, const SlotsFile& file) {
   json["noise_n"] = of_each(fit, &CoefficientPair::noise_n);
   json["correlation"] = of_each(fit, &CoefficientPair::correlation);
   json["depends_on_speed"] = fit.depends_on_speed;
-  json["speed_probability"] = number(fit.speed_probability);
+  json["speed_probability"] = io::number(fit.speed_probability);
   json["notes"] = fit.notes;
   io::Json residuals = io::Json::array();
   for (std::size_t i = 0; i < file.lines.size(); ++i) {
     const Eigen::Vector3d r = fit.residual_n.col(static_cast<Eigen::Index>(i));
-    residuals.push_back({{"line", file.lines[i]}, {"residual_n", {number(r.x()), number(r.y()), number(r.z())}}});
+    residuals.push_back(
+        {{"line", file.lines[i]}, {"residual_n", {io::number(r.x()), io::number(r.y()), io::number(r.z())}}});
   }
   json["residuals"] = residuals;
   io::Json speeds = io::Json::array();
   for (const SpeedGroup& group : fit.by_speed) {
-    speeds.push_back({{"spindle_speed_rpm", number(group.spindle_speed_rad_per_s / units::rpm)},
+    speeds.push_back({{"spindle_speed_rpm", io::number(group.spindle_speed_rad_per_s / units::rpm)},
                       {"rows", group.rows},
                       {"coefficients", coefficients_of(group)},
                       {"std", deviations_of(group)}});

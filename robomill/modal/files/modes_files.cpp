@@ -216,7 +216,7 @@ std::string modes_json(const FitResult& fit) {
   io::Json json = model_json(fit.model);
   for (std::size_t k = 0; k < fit.model.modes.size(); ++k) {
     io::Json bounds = io::Json::array();
-    for (const FitBound bound : fit.bounds_of(static_cast<int>(k) + 1)) bounds.push_back(monitor::to_string(bound));
+    for (const FitBound bound : fit.bounds_of(static_cast<int>(k) + 1)) bounds.push_back(to_string(bound));
     json["modes"][k]["at_bounds"] = std::move(bounds);
   }
   io::Json by_frf = io::Json::object();

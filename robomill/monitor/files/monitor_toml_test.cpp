@@ -12,8 +12,6 @@
 namespace robomill::monitor {
 namespace {
 
-using Kind;
-
 constexpr const char* least = "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n";
 
 TEST(MonitorToml, ReadsEveryKey) {

@@ -9,8 +9,6 @@
 namespace robomill::path {
 namespace {
 
-using Usage;
-
 /// Under "max_velocity_mm_per_s", "limit_velocity_mm_per_s".
 void add_usage(io::Json& json, const std::string& name, const Usage& usage, double unit = 1.0) {
   json["max_" + name] = io::number(usage.max / unit);

@@ -16,8 +16,6 @@
 namespace robomill::program {
 namespace {
 
-using Block;
-
 constexpr std::size_t shown_letters = 60;
 
 /// Statements whose rest is text for people, dollars and all.

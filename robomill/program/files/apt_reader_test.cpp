@@ -13,8 +13,6 @@
 namespace robomill::program {
 namespace {
 
-using Block;
-using Program;
 using Eigen::Vector3d;
 
 constexpr double mm = 1e-3;
@@ -66,8 +64,6 @@ TEST(Apt, KeepsSpindleCoolantAndStops) {
   const Program program = read(
       "FEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nSPINDL/3000,CCLW\nCOOLNT/MIST\nGOTO/2,0,0\nSPINDL/3000\nCOOLNT/ON\n"
       "GOTO/3,0,0\nSTOP\nOPSTOP\nSPINDL/OFF\nCOOLNT/OFF\nGOTO/4,0,0\n");
-  using OperatorStop;
-  using Spindle;
   ASSERT_EQ(program.blocks.size(), 6U);
   const Spindle spindle[] = {Spindle::not_given, Spindle::counterclockwise, Spindle::clockwise,
                              Spindle::clockwise, Spindle::clockwise,        Spindle::off};

@@ -11,8 +11,6 @@
 namespace robomill::program {
 namespace {
 
-using Machine;
-
 constexpr std::array<std::pair<std::string_view, Machine>, 4> machines = {{{"xyzac-trt", Machine::xyzac_trt},
                                                                            {"xyzbc-trt", Machine::xyzbc_trt},
                                                                            {"xyzac-head", Machine::xyzac_head},

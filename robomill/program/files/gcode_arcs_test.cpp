@@ -18,9 +18,6 @@
 namespace robomill::program {
 namespace {
 
-using Block;
-using Machine;
-using Program;
 using Eigen::Vector3d;
 
 constexpr double pi = std::numbers::pi;

@@ -10,10 +10,6 @@
 namespace robomill::program {
 namespace {
 
-using Coolant;
-using OperatorStop;
-using Spindle;
-
 /// What a code does and where: "calls a subprogram (LinuxCNC, Fanuc and Haas)".
 std::string meaning_of(const Mcode& code) {
   struct Meaning {

@@ -16,12 +16,6 @@
 namespace robomill::program {
 namespace {
 
-using Block;
-using Coolant;
-using OperatorStop;
-using Program;
-using Spindle;
-
 Program read(const std::string& text) {
   return test_support::read_text<GcodeReader>(text, {.machine = Machine::xyzac_trt});
 }

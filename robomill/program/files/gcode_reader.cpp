@@ -12,9 +12,6 @@
 namespace robomill::program {
 namespace {
 
-using Block;
-using Machine;
-
 constexpr std::size_t letter_index(char letter) {
   return static_cast<std::size_t>(letter - 'a');
 }

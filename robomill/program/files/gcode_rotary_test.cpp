@@ -15,9 +15,6 @@
 namespace robomill::program {
 namespace {
 
-using Block;
-using Machine;
-using Program;
 using Eigen::Vector3d;
 
 constexpr double deg = std::numbers::pi / 180.0;

@@ -15,9 +15,6 @@
 namespace robomill::program {
 namespace {
 
-using Block;
-using Machine;
-using Program;
 using Eigen::Vector3d;
 
 Program read(const std::string& text, std::optional<Machine> machine = {}) {

@@ -15,8 +15,6 @@
 namespace robomill::program {
 namespace {
 
-using Block;
-
 constexpr std::array<const char*, 7> names = {"x_mm", "y_mm", "z_mm", "i", "j", "k", "feed_mm_per_min"};
 constexpr std::size_t feed_column = 6;
 

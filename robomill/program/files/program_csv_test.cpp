@@ -14,8 +14,6 @@
 namespace robomill::program {
 namespace {
 
-using Block;
-using Program;
 using Eigen::Vector3d;
 
 const std::string header = "x_mm,y_mm,z_mm,i,j,k,feed_mm_per_min\n";

@@ -16,10 +16,6 @@
 namespace robomill::program {
 namespace {
 
-using Block;
-using Machine;
-using Program;
-
 bool same(const Block& a, const Block& b) {
   return a.kind == b.kind && a.line == b.line && a.end.tip_m == b.end.tip_m && a.end.axis == b.end.axis &&
          a.duration_s == b.duration_s && a.spindle_speed_rad_per_s == b.spindle_speed_rad_per_s;

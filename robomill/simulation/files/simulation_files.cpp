@@ -16,8 +16,6 @@
 namespace robomill::simulation {
 namespace {
 
-using Simulation;
-
 struct Column {
   const char* name;
   Eigen::VectorXd values;
