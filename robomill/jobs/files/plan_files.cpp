@@ -4,7 +4,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/jobs/forces_json.hpp"
+#include "robomill/jobs/files/forces_json.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/mode_json.hpp"
