@@ -11,21 +11,23 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "monitor/advisor.hpp"
-#include "monitor/metrics.hpp"
+#include "monitor/broker.hpp"
+#include "monitor/metrics_server.hpp"
 #include "monitor/report.hpp"
-#include "monitor/session.hpp"
-#include "monitor/session_input.hpp"
 #include "monitor/watch.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/jobs/monitor.hpp"
+#include "robomill/live/inputs.hpp"
+#include "robomill/live/session.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/report/monitor_recorder.hpp"
 #include "terminal.hpp"
@@ -171,7 +173,7 @@ void print_event(std::FILE* to, const MonitorEvent& event) {
 /// Lets go whoever waits for the queue or for input, before it is waited for.
 class Ending {
  public:
-  Ending(HopQueue& queue, std::atomic<bool>& ended) : queue_(&queue), ended_(&ended) {}
+  Ending(live::HopQueue& queue, std::atomic<bool>& ended) : queue_(&queue), ended_(&ended) {}
   ~Ending() {
     *ended_ = true;
     queue_->close();
@@ -180,7 +182,7 @@ class Ending {
   Ending& operator=(const Ending&) = delete;
 
  private:
-  HopQueue* queue_;
+  live::HopQueue* queue_;
   std::atomic<bool>* ended_;
 };
 
@@ -207,7 +209,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   std::atomic<bool> ended{false};
   Input input = open_input(command, file, ended);
   monitor::validate(file);
-  const Advisor advisor(file, progress);
+  const live::Advisor advisor(jobs::read_advice_basis(file, progress));
   EventFile events(common, input.is_live);
 
   std::optional<report::MonitorRecorder> recorder;
@@ -216,20 +218,29 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   if (command.watch) watch.emplace();
   std::FILE* const people = common.wants_summary() ? stdout : stderr;
   Broker* broker = nullptr;
-  SessionOutputs outputs;
+  live::SessionOutputs outputs;
   outputs.event = [&](const MonitorEvent& event, const std::string& line) {
+    if (recorder && event.kind != MonitorEvent::Kind::window) recorder->add(report_event(event));
     if (broker) broker->publish(event, line);
     const bool news = common.wants_summary() || (!common.quiet && event.kind == MonitorEvent::Kind::stream);
     if (news && !watch) print_event(people, event);
     return events.write(line);
   };
-  outputs.decision = [&](const monitor::Decision& decision, double time_s) {
+  outputs.decision = [&](const monitor::Decision& decision, double time_s, double compute_s) {
+    if (recorder) {
+      monitor::Decision placed = decision;
+      placed.time_s = time_s;
+      recorder->add(placed, compute_s);
+    }
     if (watch) watch->show(decision, time_s);
   };
   outputs.advise = [&](MonitorEvent& event) { advisor.advise(event); };
-  if (recorder) outputs.recorder = &*recorder;
+  if (recorder) {
+    outputs.samples = [&](std::span<const float> samples) { recorder->add(samples); };
+    outputs.skipped = [&](std::uint64_t frames) { recorder->skip(frames); };
+  }
 
-  Session session(file, {.every_window = command.every_window, .seconds = command.seconds}, std::move(outputs));
+  live::Session session(file, {.every_window = command.every_window, .seconds = command.seconds}, std::move(outputs));
   std::optional<MetricsServer> metrics;
   if (file.metrics_port >= 0) {
     metrics.emplace(session.metrics(), file.metrics_host, file.metrics_port);
@@ -243,7 +254,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
       broker = &*connection;
       if (!input.is_stream) broker->wait_a_little();
     }
-    std::optional<SourceInput> reader;
+    std::optional<live::SourceInput> reader;
     if (input.source) {
       reader.emplace(std::move(input.source), file, session.queue(), session.notices(), session.metrics(),
                      input.can_wait);
@@ -256,7 +267,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   events.close(common.output);
   if (recorder) write_report(command.report, monitor_page(recorder->run(), file, input.name));
   if (common.wants_summary()) {
-    const MetricValues& m = session.metrics();
+    const live::MetricValues& m = session.metrics();
     fmt::print("{:.3f} s of {} heard in {} decisions, {} alarm{}.\n", session.time_s(), printable(input.name),
                m.decisions.load(), m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
   }

@@ -7,10 +7,11 @@
 #                BENCHES lobes_bench.cpp ...    one benchmark program: <name>_bench
 #                TEST_LIBRARIES ...             what only tests and benchmarks link: any stage, any library
 #                AT_SOURCE ...                  of these, those that read data/ and examples/ by ROBOMILL_SOURCE_DIR
-#                THREADED)                      its tests run under ThreadSanitizer too
+#                THREADED                       its tests run under ThreadSanitizer too …
+#                ONE_THREAD Fit* ...)           … but for these suites, which run on one thread
 function(robomill_stage)
   cmake_parse_arguments(S "THREADED" "NAME;LAYER"
-    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;TESTS;BENCHES;TEST_LIBRARIES;AT_SOURCE" ${ARGN})
+    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;TESTS;BENCHES;TEST_LIBRARIES;AT_SOURCE;ONE_THREAD" ${ARGN})
   set(target robomill_${S_NAME})
   foreach(dependency IN LISTS S_DEPENDS)
     if(NOT TARGET robomill_${dependency})
@@ -61,11 +62,18 @@ function(robomill_stage)
       set_source_files_properties(${S_AT_SOURCE} PROPERTIES COMPILE_DEFINITIONS ROBOMILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
       # One word, which ctest -L finds by either half: gtest_discover_tests tears a list of labels apart.
       set(label ${S_NAME})
+      set(filter "")
       if(S_THREADED)
         string(APPEND label "-threaded")
         add_dependencies(threaded_tests ${S_NAME}_test)
       endif()
-      gtest_discover_tests(${S_NAME}_test DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+      if(S_ONE_THREAD)
+        string(REPLACE ";" ":" one_thread "${S_ONE_THREAD}")
+        gtest_discover_tests(${S_NAME}_test TEST_FILTER "${one_thread}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+          PROPERTIES LABELS ${S_NAME} TIMEOUT 1200)
+        set(filter TEST_FILTER "-${one_thread}")
+      endif()
+      gtest_discover_tests(${S_NAME}_test ${filter} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
         PROPERTIES LABELS ${label} TIMEOUT 1200)
     endif()
   endif()

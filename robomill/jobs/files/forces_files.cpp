@@ -6,8 +6,8 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/files/forces_json.hpp"
+#include "robomill/jobs/forces.hpp"
 
 namespace robomill::jobs {
 namespace {

@@ -3,9 +3,10 @@
 #include <map>
 #include <vector>
 
+#include "robomill/base/export.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
 
-namespace robomill::app {
+namespace robomill::live {
 
 /// What happened to the blocks of a stream on their way.
 struct OrderCounts {
@@ -21,7 +22,7 @@ struct OrderCounts {
 /// A missing block is waited for until `wait_blocks` later ones are there. A number far ahead (65,536 and more) is a
 /// restart of the sender, and so are numbers that run on from each other behind what was given: two of them further
 /// back than 64, or 32 within these, which copies sent again after a reconnection might be.
-class BlockOrder {
+class ROBOMILL_API BlockOrder {
  public:
   struct Given {
     monitor::StreamBlock block;
@@ -51,4 +52,4 @@ class BlockOrder {
   OrderCounts counts_;
 };
 
-}  // namespace robomill::app
+}  // namespace robomill::live

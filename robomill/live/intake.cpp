@@ -1,9 +1,9 @@
-#include "intake.hpp"
+#include "robomill/live/intake.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace robomill::app {
+namespace robomill::live {
 
 Intake::Intake(HopQueue& queue, std::size_t channels, std::size_t hop_frames, bool can_wait,
                std::function<void(std::uint64_t hops)> dropped)
@@ -70,4 +70,4 @@ bool Intake::hand_over() {
   return true;
 }
 
-}  // namespace robomill::app
+}  // namespace robomill::live

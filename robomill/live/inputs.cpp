@@ -1,24 +1,21 @@
-#include "session_input.hpp"
+#include "robomill/live/inputs.hpp"
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <exception>
-#include <string_view>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
 
-namespace robomill::app {
+namespace robomill::live {
 namespace {
 
 /// A block's rate may be a measured one.
 constexpr double rate_tolerance = 0.01;
 /// Of lost samples: longer gaps are left out.
 constexpr double longest_filled_s = 1.0;
-constexpr std::chrono::milliseconds publish_wait{2000};
 
 }  // namespace
 
@@ -140,53 +137,4 @@ void StreamIntake::tell_counts() {
   tell("stream-restarted", "the sender counts its blocks anew", now.restarts, told_.restarts);
 }
 
-Broker::Broker(const monitor::MonitorFile& file, bool stream, HopQueue& queue, Notices& notices, MetricValues& metrics)
-    : address_(fmt::format("{}:{}", file.mqtt.host, file.mqtt.port_or_default())),
-      events_topic_(file.mqtt.events_topic),
-      notices_(&notices),
-      metrics_(&metrics) {
-  if (stream) stream_.emplace(file, queue, notices, metrics);
-  client_ = std::make_unique<MqttClient>(
-      file.mqtt, stream ? file.mqtt.topic : std::string(),
-      MqttClient::Calls{.message =
-                            [this](std::span<const std::byte> payload) {
-                              const std::scoped_lock lock(mutex_);
-                              if (stream_) stream_->message(payload);
-                            },
-                        .connection = [this](bool connected, const std::string& why) { connection(connected, why); }});
-  client_->start();
-}
-
-Broker::~Broker() {
-  if (!events_topic_.empty()) client_->flush(publish_wait);
-}
-
-void Broker::wait_a_little() const {
-  client_->wait_until_connected(publish_wait);
-}
-
-void Broker::connection(bool connected, const std::string& why) {
-  if (connected && !why.empty()) {
-    notices_->add("subscription-refused", fmt::format("{}: {}", address_, why));
-    return;
-  }
-  const bool was = metrics_->connected.exchange(connected);
-  if (connected) {
-    notices_->add("broker-connected", address_);
-    return;
-  }
-  notices_->add(was ? "broker-lost" : "broker-unreachable", fmt::format("{}: {}; trying again", address_, why));
-  const std::scoped_lock lock(mutex_);
-  if (stream_) stream_->give_up();
-}
-
-void Broker::publish(const monitor::MonitorEvent& event, const std::string& line) {
-  if (events_topic_.empty()) return;
-  const std::string_view text = std::string_view(line).substr(0, line.size() - 1);
-  // Of its own trouble it tells once.
-  if (!client_->publish(events_topic_, text) && event.what != "events-not-published") {
-    notices_->add("events-not-published", fmt::format("{} has no connection or does not take them", address_));
-  }
-}
-
-}  // namespace robomill::app
+}  // namespace robomill::live

@@ -1,15 +1,15 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
-#include <memory>
 #include <string>
 
+#include "robomill/base/export.hpp"
 #include "robomill/monitor/monitor.hpp"
 
-namespace robomill::app {
+namespace robomill::live {
 
 /// What /metrics tells; written by the monitor, read by the server.
-struct MetricValues {
+struct ROBOMILL_API MetricValues {
   std::atomic<int> state{0};  ///< 0 stable, 1 transition, 2 chatter
   std::atomic<double> score{0.0}, threshold{0.0}, energy_entropy{0.0}, level{0.0};
   std::atomic<double> chatter_frequency_hz{0.0}, spindle_speed_rpm{0.0}, stream_s{0.0}, compute_s{0.0};
@@ -22,22 +22,4 @@ struct MetricValues {
   [[nodiscard]] std::string text() const;
 };
 
-/// Answers GET /metrics, two requests at a time.
-class MetricsServer {
- public:
-  /// @param host  address to listen at; loopback unless others are to see it
-  /// @param port  0: any that is free
-  /// @throws InvalidInput if it cannot listen there
-  MetricsServer(const MetricValues& values, const std::string& host, int port);
-  ~MetricsServer();
-  MetricsServer(const MetricsServer&) = delete;
-  MetricsServer& operator=(const MetricsServer&) = delete;
-  [[nodiscard]] int port() const { return port_; }
-
- private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
-  int port_ = 0;
-};
-
-}  // namespace robomill::app
+}  // namespace robomill::live

@@ -1,4 +1,4 @@
-#include "intake.hpp"
+#include "robomill/live/intake.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "robomill/base/random.hpp"
 
-namespace robomill::app {
+namespace robomill::live {
 namespace {
 
 using std::chrono::milliseconds;
@@ -142,4 +142,4 @@ TEST(Intake, FillsShortGapsAndLeavesLongOnesOut) {
 }
 
 }  // namespace
-}  // namespace robomill::app
+}  // namespace robomill::live

@@ -1,8 +1,8 @@
-#include "hop_queue.hpp"
+#include "robomill/live/hop_queue.hpp"
 
 #include <utility>
 
-namespace robomill::app {
+namespace robomill::live {
 
 bool HopQueue::push(Hop&& hop) {
   std::unique_lock lock(mutex_);
@@ -49,4 +49,4 @@ std::size_t HopQueue::size() const {
   return hops_.size();
 }
 
-}  // namespace robomill::app
+}  // namespace robomill::live

@@ -1,4 +1,4 @@
-#include "alarm_ring.hpp"
+#include "robomill/live/alarm_ring.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/sample_source.hpp"
 
-namespace robomill::app {
+namespace robomill::live {
 namespace {
 
 constexpr std::size_t max_jobs = 2;
@@ -93,4 +93,4 @@ void AlarmRing::write(const Job& job) const {
   }
 }
 
-}  // namespace robomill::app
+}  // namespace robomill::live

@@ -1,4 +1,4 @@
-#include "block_order.hpp"
+#include "robomill/live/block_order.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "robomill/base/random.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::app {
+namespace robomill::live {
 namespace {
 
 monitor::StreamBlock block(std::uint64_t number) {
@@ -155,4 +155,4 @@ TEST(BlockOrder, LivesThroughAnyNumbers) {
 }
 
 }  // namespace
-}  // namespace robomill::app
+}  // namespace robomill::live

@@ -1,30 +1,27 @@
 #pragma once
-#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "block_order.hpp"
-#include "intake.hpp"
-#include "metrics.hpp"
-#include "mqtt.hpp"
-#include "notices.hpp"
+#include "robomill/base/export.hpp"
 #include "robomill/io/sample_source.hpp"
-#include "robomill/monitor/files/monitor_events.hpp"
+#include "robomill/live/block_order.hpp"
+#include "robomill/live/intake.hpp"
+#include "robomill/live/metrics.hpp"
+#include "robomill/live/notices.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
-namespace robomill::app {
+namespace robomill::live {
 
 /// Tells the notices and the metrics of each hop that is left out.
-[[nodiscard]] std::function<void(std::uint64_t)> tell_dropped(Notices& notices, MetricValues& metrics);
+[[nodiscard]] ROBOMILL_API std::function<void(std::uint64_t)> tell_dropped(Notices& notices, MetricValues& metrics);
 
 /// Reads a recording or a pipe on a thread of its own; closes the queue at the end.
-class SourceInput {
+class ROBOMILL_API SourceInput {
  public:
   /// @param can_wait  whether the source may be kept waiting; else hops are left out
   SourceInput(std::unique_ptr<io::SampleSource> source, const monitor::MonitorFile& file, HopQueue& queue,
@@ -45,7 +42,7 @@ class SourceInput {
 
 /// What a stream's messages go through on their way to the queue: refused where they are no blocks of these channels at
 /// this rate, put in order, gaps filled. Used by one thread.
-class StreamIntake {
+class ROBOMILL_API StreamIntake {
  public:
   StreamIntake(const monitor::MonitorFile& file, HopQueue& queue, Notices& notices, MetricValues& metrics);
   void message(std::span<const std::byte> payload);
@@ -72,33 +69,4 @@ class StreamIntake {
   std::vector<float> picked_;
 };
 
-/// A broker: samples from it where a topic is named, and events to it.
-class Broker {
- public:
-  /// @param stream  whether samples come from mqtt.topic
-  /// @throws InvalidInput as MqttClient does
-  Broker(const monitor::MonitorFile& file, bool stream, HopQueue& queue, Notices& notices, MetricValues& metrics);
-  /// Gives up what waits to be published after two seconds.
-  ~Broker();
-  Broker(const Broker&) = delete;
-  Broker& operator=(const Broker&) = delete;
-
-  /// Where it stands, for messages.
-  [[nodiscard]] const std::string& address() const { return address_; }
-  /// For inputs that do not come from it: their first events should not be lost.
-  void wait_a_little() const;
-  /// To the topic of the events, where there is one; tells where it cannot.
-  void publish(const monitor::MonitorEvent& event, const std::string& line);
-
- private:
-  void connection(bool connected, const std::string& why);
-
-  std::string address_, events_topic_;
-  Notices* notices_;
-  MetricValues* metrics_;
-  std::mutex mutex_;  ///< messages and lost connections come from several threads
-  std::optional<StreamIntake> stream_;
-  std::unique_ptr<MqttClient> client_;
-};
-
-}  // namespace robomill::app
+}  // namespace robomill::live

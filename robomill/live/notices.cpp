@@ -1,8 +1,8 @@
-#include "notices.hpp"
+#include "robomill/live/notices.hpp"
 
 #include <utility>
 
-namespace robomill::app {
+namespace robomill::live {
 
 void Notices::add(const std::string& what, std::string message, std::uint64_t count) {
   const std::scoped_lock lock(mutex_);
@@ -24,4 +24,4 @@ std::vector<Notice> Notices::take(Clock::time_point now, bool all) {
   return due;
 }
 
-}  // namespace robomill::app
+}  // namespace robomill::live

@@ -1,19 +1,19 @@
-#include "session.hpp"
+#include "robomill/live/session.hpp"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "report.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/live/inputs.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
-#include "session_input.hpp"
 #include "testing/support.hpp"
 
-namespace robomill::app {
+namespace robomill::live {
 namespace {
 
 using monitor::MonitorEvent;
@@ -49,14 +49,14 @@ TEST(Session, TimeRunsOnOverWhatIsMissing) {
   Kept kept;
   Session session(some_file(), {.every_window = true}, kept.outputs());
   Random random(1);
-  session.hear(noise(random));
+  session.process(noise(random));
   Hop after_gap = noise(random);
   after_gap.frames_before = 1024;
-  session.hear(std::move(after_gap));
+  session.process(std::move(after_gap));
   Hop anew = noise(random);
   anew.restarted = true;
-  session.hear(std::move(anew));
-  session.hear(noise(random, 100));  // no hop of the detector's yet
+  session.process(std::move(anew));
+  session.process(noise(random, 100));  // no hop of the detector's yet
   ASSERT_EQ(kept.events.size(), 3U);
   EXPECT_NEAR(kept.events[0].time_s, 256 / 10'240.0, 1.1e-4);
   EXPECT_NEAR(kept.events[1].time_s, (512 + 1024) / 10'240.0, 1.1e-4);
@@ -65,13 +65,13 @@ TEST(Session, TimeRunsOnOverWhatIsMissing) {
   EXPECT_NEAR(session.time_s(), (868 + 1024) / 10'240.0, 1e-9);
 }
 
-TEST(Session, TellsNoticesAsEvents) {
+TEST(Session, EmitsNoticesAsEvents) {
   Kept kept;
   Session session(some_file(), {}, kept.outputs());
   session.notices().add("lost-blocks", "gone", 3);
-  session.tell_notices();
+  session.emit_notices();
   session.notices().add("alarm-recorded", "alarms/a.wav");
-  session.tell_notices();
+  session.emit_notices();
   ASSERT_EQ(kept.events.size(), 2U);
   EXPECT_EQ(kept.events[0].kind, MonitorEvent::Kind::stream);
   EXPECT_EQ(kept.events[0].count, 3U);
@@ -109,29 +109,26 @@ TEST(Session, EndsWhereItIsToldTo) {
   EXPECT_EQ(heard({.every_window = true}, nobody, false), 1U);
 }
 
-TEST(Session, GathersWhatAReportNeeds) {
-  const monitor::MonitorFile file = some_file();
-  report::MonitorRecorder recorder(file.options, file.columns.channels, "");
+// In the order of the stream, so that a recording of them has its length.
+TEST(Session, DeliversSamplesAndGapsInOrder) {
+  std::vector<std::uint64_t> frames;
+  std::vector<double> times_s;
   SessionOutputs outputs;
-  outputs.recorder = &recorder;
-  Session session(file, {}, std::move(outputs));
+  outputs.samples = [&](std::span<const float> samples) { frames.push_back(samples.size()); };
+  outputs.skipped = [&](std::uint64_t count) { frames.push_back(count); };
+  outputs.decision = [&](const monitor::Decision&, double time_s, double compute_s) {
+    EXPECT_GT(compute_s, 0.0);
+    times_s.push_back(time_s);
+  };
+  Session session(some_file(), {}, std::move(outputs));
   Random random(1);
-  session.hear(noise(random));
+  session.process(noise(random));
   Hop after_gap = noise(random);
   after_gap.frames_before = 100;
-  session.hear(std::move(after_gap));
-  session.notices().add("lost-blocks", "gone");
-  session.tell_notices();
-  const report::Report page = monitor_page(recorder.run(), file, "cut.wav");
-  const report::MonitorRun& run = *page.monitor;
-  EXPECT_EQ(run.decisions, 2U);
-  ASSERT_EQ(run.channels[0].wave.low.size(), 612);
-  EXPECT_EQ(run.channels[0].wave.low[300], 0.0);
-  EXPECT_NE(run.channels[0].wave.low[356], 0.0);
-  ASSERT_EQ(run.events.size(), 1U);
-  EXPECT_EQ(run.events[0].note, "gone");
-  EXPECT_NEAR(run.stays.back().to_s, session.time_s(), 1e-3);
-  EXPECT_NO_THROW(page.validate());
+  session.process(std::move(after_gap));
+  EXPECT_EQ(frames, (std::vector<std::uint64_t>{256, 100, 256}));
+  ASSERT_EQ(times_s.size(), 2U);
+  EXPECT_NEAR(times_s[1] - times_s[0], 356 / 10'240.0, 1.1e-4);
 }
 
 std::string message(std::uint64_t number, double rate_hz = 10'240.0, int channels = 1) {
@@ -200,4 +197,4 @@ TEST(StreamIntake, FillsWhatWasLost) {
 }
 
 }  // namespace
-}  // namespace robomill::app
+}  // namespace robomill::live

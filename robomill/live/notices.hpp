@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace robomill::app {
+#include "robomill/base/export.hpp"
+
+namespace robomill::live {
 
 /// Something that befell the stream: "lost-blocks", "broker-lost", …
 struct Notice {
@@ -17,7 +19,7 @@ struct Notice {
 
 /// Gathers notices from any thread. Of each kind one is given at once and then at most one a second, with how many it
 /// stands for: a flood of bad messages must not become a flood of events.
-class Notices {
+class ROBOMILL_API Notices {
  public:
   using Clock = std::chrono::steady_clock;
 
@@ -36,4 +38,4 @@ class Notices {
   std::map<std::string, Kind> kinds_;
 };
 
-}  // namespace robomill::app
+}  // namespace robomill::live

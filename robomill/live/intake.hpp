@@ -6,15 +6,16 @@
 #include <span>
 #include <vector>
 
-#include "hop_queue.hpp"
+#include "robomill/base/export.hpp"
+#include "robomill/live/hop_queue.hpp"
 
-namespace robomill::app {
+namespace robomill::live {
 
 /// Cuts samples into hops and puts them into a queue. Used by one thread.
 ///
 /// A source that can wait (a file) does so where the queue is full. From one that cannot, whole hops are left out then:
 /// `dropped` is told, and the next hop says how many frames are missing before it.
-class Intake {
+class ROBOMILL_API Intake {
  public:
   /// @param dropped  called with 1 for every hop that is left out
   Intake(HopQueue& queue, std::size_t channels, std::size_t hop_frames, bool can_wait,
@@ -41,4 +42,4 @@ class Intake {
   Hop filling_;
 };
 
-}  // namespace robomill::app
+}  // namespace robomill::live

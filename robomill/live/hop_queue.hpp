@@ -8,7 +8,9 @@
 #include <mutex>
 #include <vector>
 
-namespace robomill::app {
+#include "robomill/base/export.hpp"
+
+namespace robomill::live {
 
 /// Samples of one hop on their way from the input to the detector.
 struct Hop {
@@ -19,7 +21,7 @@ struct Hop {
 };
 
 /// A queue of bounded length between the thread that reads the input and the one that hears.
-class HopQueue {
+class ROBOMILL_API HopQueue {
  public:
   explicit HopQueue(std::size_t capacity) : capacity_(capacity) {}
 
@@ -44,4 +46,4 @@ class HopQueue {
   bool closed_ = false;
 };
 
-}  // namespace robomill::app
+}  // namespace robomill::live

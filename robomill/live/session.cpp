@@ -1,4 +1,4 @@
-#include "session.hpp"
+#include "robomill/live/session.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "report.hpp"
-
-namespace robomill::app {
+namespace robomill::live {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -19,9 +17,9 @@ using monitor::MonitorEvent;
 /// Hops between input and detector: 1.6 s at 25 ms.
 constexpr std::size_t queued_hops = 64;
 constexpr std::chrono::milliseconds longest_wait{100};
-/// Faults that come and go are told at most so often.
+/// Faults that come and go are emitted at most so often.
 constexpr double fault_pause_s = 1.0;
-/// Chatter is told again when its frequency has moved by so much, and at most so often.
+/// Chatter is emitted again when its frequency has moved by so much, and at most so often.
 constexpr double frequency_step_hz = 2.0, frequency_pause_s = 0.25;
 constexpr double speed_patience_s = 3.0;
 
@@ -57,20 +55,20 @@ void Session::run(const std::atomic<bool>& stop) {
   while (!stop && !ended_) {
     const HopQueue::Taken taken = queue_.pop(hop, longest_wait);
     if (taken == HopQueue::Taken::closed) break;
-    if (taken == HopQueue::Taken::hop) hear(std::move(hop));
+    if (taken == HopQueue::Taken::hop) process(std::move(hop));
     metrics_.queued_hops = queue_.size();
-    tell_notices();
+    emit_notices();
     if (options_.seconds > 0.0 && time_s() >= options_.seconds) break;
   }
   queue_.close();
   if (ring_) ring_->finish();
-  tell_notices(true);
+  emit_notices(true);
 }
 
-void Session::hear(Hop&& hop) {
+void Session::process(Hop&& hop) {
   frames_ += hop.frames_before;
   base_s_ += static_cast<double>(hop.frames_before) / file_.options.sample_rate_hz;
-  if (outputs_.recorder != nullptr) outputs_.recorder->skip(hop.frames_before);
+  if (outputs_.skipped && hop.frames_before > 0) outputs_.skipped(hop.frames_before);
   if (hop.restarted) {
     monitor_.reset();
     base_s_ = time_s();
@@ -91,7 +89,7 @@ void Session::hear(Hop&& hop) {
     frames_ += count / channels;
     if (decision.hop != last_.hop) decide(decision, std::exchange(compute_s_, 0.0));
   }
-  if (outputs_.recorder != nullptr) outputs_.recorder->add(hop.samples);
+  if (outputs_.samples) outputs_.samples(hop.samples);
   if (!ring_) return;
   ring_->add(std::move(hop.samples));
   if (std::exchange(alarm_, false) && !ring_->alarm(base_s_ + last_.time_s)) {
@@ -100,7 +98,7 @@ void Session::hear(Hop&& hop) {
 }
 
 void Session::decide(monitor::Decision decision, double compute_s) {
-  // Against what was told: a detector that begins anew is stable and calls it no change.
+  // Against what was emitted: a detector that begins anew is stable and calls it no change.
   decision.changed = decision.state != last_.state;
   last_ = decision;
   const double time_s = base_s_ + decision.time_s;
@@ -111,12 +109,7 @@ void Session::decide(monitor::Decision decision, double compute_s) {
     ++metrics_.alarms;
     alarm_ = true;
   }
-  if (outputs_.recorder != nullptr) {
-    monitor::Decision placed = decision;
-    placed.time_s = time_s;
-    outputs_.recorder->add(placed, compute_s);
-  }
-  if (outputs_.decision) outputs_.decision(decision, time_s);
+  if (outputs_.decision) outputs_.decision(decision, time_s, compute_s);
   const bool fault_news = fault_is_news(decision);
   const bool frequency_news = frequency_is_news(decision);
   if (!decision.changed && !fault_news && !frequency_news && !options_.every_window) return;
@@ -127,7 +120,7 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   event.time_s = time_s;
   event.decision = decision;
   event.compute_s = compute_s;
-  tell(std::move(event));
+  emit(std::move(event));
 }
 
 bool Session::fault_is_news(const monitor::Decision& decision) {
@@ -139,9 +132,9 @@ bool Session::fault_is_news(const monitor::Decision& decision) {
   } else if (time_s - speed_known_s_ < speed_patience_s) {
     faults &= ~static_cast<std::uint32_t>(monitor::speed_unknown);
   }
-  if (faults == told_faults_ || time_s - faults_told_s_ < fault_pause_s) return false;
-  told_faults_ = faults;
-  faults_told_s_ = time_s;
+  if (faults == emitted_faults_ || time_s - faults_emitted_s_ < fault_pause_s) return false;
+  emitted_faults_ = faults;
+  faults_emitted_s_ = time_s;
   return true;
 }
 
@@ -149,14 +142,14 @@ bool Session::frequency_is_news(const monitor::Decision& decision) {
   if (decision.state != monitor::State::chatter || decision.chatter_frequency_hz <= 0.0) return false;
   const double time_s = base_s_ + decision.time_s;
   const double step_hz = std::max(frequency_step_hz, 3.0 * decision.chatter_frequency_std_hz);
-  const bool moved = std::abs(decision.chatter_frequency_hz - told_frequency_hz_) > step_hz;
-  if (!decision.changed && (!moved || time_s - frequency_told_s_ < frequency_pause_s)) return false;
-  told_frequency_hz_ = decision.chatter_frequency_hz;
-  frequency_told_s_ = time_s;
+  const bool moved = std::abs(decision.chatter_frequency_hz - emitted_frequency_hz_) > step_hz;
+  if (!decision.changed && (!moved || time_s - frequency_emitted_s_ < frequency_pause_s)) return false;
+  emitted_frequency_hz_ = decision.chatter_frequency_hz;
+  frequency_emitted_s_ = time_s;
   return true;
 }
 
-void Session::tell_notices(bool all) {
+void Session::emit_notices(bool all) {
   for (Notice& notice : notices_.take(Notices::Clock::now(), all)) {
     MonitorEvent event;
     event.kind = MonitorEvent::Kind::stream;
@@ -169,19 +162,16 @@ void Session::tell_notices(bool all) {
       event.kind = MonitorEvent::Kind::recording;
       event.file = std::exchange(event.message, {});
     }
-    tell(std::move(event));
+    emit(std::move(event));
   }
 }
 
-void Session::tell(MonitorEvent event) {
+void Session::emit(MonitorEvent event) {
   if (event.decision.state == monitor::State::chatter && event.decision.chatter_frequency_hz > 0.0 && outputs_.advise) {
     outputs_.advise(event);
   }
   ++metrics_.events;
-  if (outputs_.recorder != nullptr && event.kind != MonitorEvent::Kind::window) {
-    outputs_.recorder->add(report_event(event));
-  }
   if (outputs_.event && !outputs_.event(event, monitor::event_line(event))) ended_ = true;
 }
 
-}  // namespace robomill::app
+}  // namespace robomill::live

@@ -1,8 +1,8 @@
-#include "block_order.hpp"
+#include "robomill/live/block_order.hpp"
 
 #include <utility>
 
-namespace robomill::app {
+namespace robomill::live {
 namespace {
 
 constexpr std::uint64_t far_ahead = 65'536;
@@ -81,4 +81,4 @@ void BlockOrder::take_old(monitor::StreamBlock&& block, std::vector<Given>& out)
   ++counts_.late;
 }
 
-}  // namespace robomill::app
+}  // namespace robomill::live

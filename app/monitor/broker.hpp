@@ -1,0 +1,43 @@
+#pragma once
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "mqtt.hpp"
+#include "robomill/live/inputs.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
+
+namespace robomill::app {
+
+/// A broker: samples from it where a topic is named, and events to it.
+class Broker {
+ public:
+  /// @param stream  whether samples come from mqtt.topic
+  /// @throws InvalidInput as MqttClient does
+  Broker(const monitor::MonitorFile& file, bool stream, live::HopQueue& queue, live::Notices& notices,
+         live::MetricValues& metrics);
+  /// Gives up what waits to be published after two seconds.
+  ~Broker();
+  Broker(const Broker&) = delete;
+  Broker& operator=(const Broker&) = delete;
+
+  /// Where it stands, for messages.
+  [[nodiscard]] const std::string& address() const { return address_; }
+  /// For inputs that do not come from it: their first events should not be lost.
+  void wait_a_little() const;
+  /// To the topic of the events, where there is one; tells where it cannot.
+  void publish(const monitor::MonitorEvent& event, const std::string& line);
+
+ private:
+  void connection(bool connected, const std::string& why);
+
+  std::string address_, events_topic_;
+  live::Notices* notices_;
+  live::MetricValues* metrics_;
+  std::mutex mutex_;  ///< messages and lost connections come from several threads
+  std::optional<live::StreamIntake> stream_;
+  std::unique_ptr<MqttClient> client_;
+};
+
+}  // namespace robomill::app

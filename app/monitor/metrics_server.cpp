@@ -1,0 +1,53 @@
+#include "metrics_server.hpp"
+
+// Plain HTTP on loopback needs neither TLS nor compression.
+#define CPPHTTPLIB_KEEPALIVE_MAX_COUNT 100
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <thread>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::app {
+namespace {
+
+constexpr std::size_t max_request_bytes = 4096;
+
+}  // namespace
+
+struct MetricsServer::Parts {
+  httplib::Server server;
+  std::jthread thread;
+};
+
+MetricsServer::MetricsServer(const live::MetricValues& values, const std::string& host, int port)
+    : parts_(std::make_unique<Parts>()) {
+  httplib::Server& server = parts_->server;
+  server.new_task_queue = [] { return new httplib::ThreadPool(2); };  // NOLINT: httplib takes it over
+  // Not shared with another server, as httplib would have it.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  });
+  server.set_payload_max_length(max_request_bytes);
+  server.set_read_timeout(2);
+  server.set_write_timeout(2);
+  server.set_keep_alive_timeout(2);
+  server.Get("/metrics", [&values](const httplib::Request&, httplib::Response& response) {
+    response.set_content(values.text(), "text/plain; version=0.0.4");
+  });
+  port_ = port == 0 ? server.bind_to_any_port(host) : (server.bind_to_port(host, port) ? port : -1);
+  if (port_ <= 0) {
+    throw InvalidInput("metrics", fmt::format("cannot listen at {}:{}", host, port), "Is the port taken?");
+  }
+  parts_->thread = std::jthread([&server] { server.listen_after_bind(); });
+  // stop() before listen_after_bind has begun would be forgotten.
+  while (!server.is_running()) std::this_thread::yield();
+}
+
+MetricsServer::~MetricsServer() {
+  parts_->server.stop();
+}
+
+}  // namespace robomill::app

@@ -1,0 +1,59 @@
+#include "report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "robomill/base/random.hpp"
+#include "robomill/live/session.hpp"
+#include "robomill/report/monitor_recorder.hpp"
+
+namespace robomill::app {
+namespace {
+
+live::Hop noise(Random& random) {
+  live::Hop hop;
+  for (std::size_t i = 0; i < 256; ++i) hop.samples.push_back(static_cast<float>(random.normal()));
+  return hop;
+}
+
+TEST(MonitorPage, ShowsWhatASessionDelivers) {
+  monitor::MonitorFile file;
+  file.columns.channels = {"ax"};
+  file.options.sample_rate_hz = 10'240.0;
+  report::MonitorRecorder recorder(file.options, file.columns.channels, "");
+  live::SessionOutputs outputs;
+  outputs.samples = [&](std::span<const float> samples) { recorder.add(samples); };
+  outputs.skipped = [&](std::uint64_t frames) { recorder.skip(frames); };
+  outputs.decision = [&](monitor::Decision decision, double time_s, double compute_s) {
+    decision.time_s = time_s;
+    recorder.add(decision, compute_s);
+  };
+  outputs.event = [&](const monitor::MonitorEvent& event, const std::string&) {
+    recorder.add(report_event(event));
+    return true;
+  };
+  live::Session session(file, {}, std::move(outputs));
+  Random random(1);
+  session.process(noise(random));
+  live::Hop after_gap = noise(random);
+  after_gap.frames_before = 100;
+  session.process(std::move(after_gap));
+  session.notices().add("lost-blocks", "gone");
+  session.emit_notices();
+  const report::Report page = monitor_page(recorder.run(), file, "cut.wav");
+  const report::MonitorRun& run = *page.monitor;
+  EXPECT_EQ(run.decisions, 2U);
+  ASSERT_EQ(run.channels[0].wave.low.size(), 612);
+  EXPECT_EQ(run.channels[0].wave.low[300], 0.0);
+  EXPECT_NE(run.channels[0].wave.low[356], 0.0);
+  ASSERT_EQ(run.events.size(), 1U);
+  EXPECT_EQ(run.events[0].note, "gone");
+  EXPECT_NEAR(run.stays.back().to_s, session.time_s(), 1e-3);
+  EXPECT_NO_THROW(page.validate());
+}
+
+}  // namespace
+}  // namespace robomill::app

@@ -1,0 +1,31 @@
+#include "robomill/jobs/monitor.hpp"
+
+#include "robomill/base/error.hpp"
+#include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/modal/files/modes_files.hpp"
+
+namespace robomill::jobs {
+
+live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& progress) {
+  live::AdviceBasis basis{.teeth = file.options.teeth, .spindle_speed_rad_per_s = file.options.spindle_speed_rad_per_s};
+  if (!file.lobes.empty()) {
+    LobesFile lobes = read_lobes(file.lobes);
+    load_dynamics(lobes);
+    if (lobes.drilling) throw InvalidInput(file.lobes.string(), "lobes are those of milling");
+    lobes.validate();
+    if (basis.teeth == 0) basis.teeth = lobes.problem.milling.tool.teeth;
+    if (!lobes.problem.dynamics.modes.empty()) basis.modes = lobes.problem.dynamics;
+    basis.workpiece = lobes.problem.workpiece_dynamics;
+    basis.lobes = stability::compute_lobes(lobes.problem, lobes.options, progress);
+  }
+  if (!file.modes.empty()) basis.modes = modal::read_modes(file.modes);
+  if (basis.modes && basis.teeth == 0) {
+    throw InvalidInput(InvalidInput::Parts{.where = file.path.string(),
+                                           .field = "process.teeth",
+                                           .rule = "must be given beside process.modes",
+                                           .hint = "Chatter is told from multiples of tooth passing by it"});
+  }
+  return basis;
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,32 @@
+#pragma once
+#include <optional>
+#include <utility>
+
+#include "robomill/base/export.hpp"
+#include "robomill/modal/modes.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
+#include "robomill/stability/lobes.hpp"
+
+namespace robomill::live {
+
+/// What is known of the cut that is monitored.
+struct AdviceBasis {
+  int teeth = 0;                         ///< of the cutter; 0: unknown, and there is no advice
+  double spindle_speed_rad_per_s = 0.0;  ///< where the detector knows none; 0: unknown
+  std::optional<modal::ModalModel> modes = {};
+  modal::ModalModel workpiece = {};  ///< no modes: it stands still
+  std::optional<stability::LobesResult> lobes = {};
+};
+
+/// Names the mode that chatters, and speeds and a depth that are stable.
+class ROBOMILL_API Advisor {
+ public:
+  explicit Advisor(AdviceBasis basis) : basis_(std::move(basis)) {}
+  /// Fills in mode, speeds and depth; leaves an event alone whose frequency or teeth are not known.
+  void advise(monitor::MonitorEvent& event) const;
+
+ private:
+  AdviceBasis basis_;
+};
+
+}  // namespace robomill::live
