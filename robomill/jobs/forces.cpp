@@ -20,13 +20,13 @@ namespace robomill::jobs {
 namespace {
 
 /// An error of what forces.toml says, told with the file.
-InvalidInput refuse(const jobs::ForcesFile& file, const char* key, std::string rule, std::string hint = {}) {
+InvalidInput refuse(const ForcesFile& file, const char* key, std::string rule, std::string hint = {}) {
   return InvalidInput(
       InvalidInput::Parts{.where = file.path.string(), .field = key, .rule = std::move(rule), .hint = std::move(hint)});
 }
 
 /// F in B, from where the arm holds the tool: T's x axis is the feed's direction across the tool's axis.
-Eigen::Matrix3d base_from_feed(const jobs::ForcesFile& file, const robot::Cell& cell, const Eigen::Isometry3d& flange) {
+Eigen::Matrix3d base_from_feed(const ForcesFile& file, const robot::Cell& cell, const Eigen::Isometry3d& flange) {
   const Eigen::Vector3d axis = -flange.linear().col(2);
   const Eigen::Vector3d feed = cell.workpiece.linear() * file.feed_direction;
   const Eigen::Vector3d across = feed - axis * axis.dot(feed);
@@ -40,7 +40,7 @@ Eigen::Matrix3d base_from_feed(const jobs::ForcesFile& file, const robot::Cell& 
   return base_from_tool * cutting::feed_from_tool(file.cut.lead_rad, file.cut.tilt_rad).transpose();
 }
 
-Eigen::VectorXd joints_of(const jobs::ForcesFile& file, const robot::Cell& cell) {
+Eigen::VectorXd joints_of(const ForcesFile& file, const robot::Cell& cell) {
   Eigen::VectorXd q =
       Eigen::Map<const Eigen::VectorXd>(file.joints_rad.data(), static_cast<Eigen::Index>(file.joints_rad.size()));
   if (q.size() != cell.arm.size()) {
@@ -55,7 +55,7 @@ Eigen::VectorXd joints_of(const jobs::ForcesFile& file, const robot::Cell& cell)
 }
 
 /// @param force_n  on the tool, in F
-CutPosture posture_of(const jobs::ForcesFile& file, const robot::Cell& cell, const Eigen::VectorXd& joints,
+CutPosture posture_of(const ForcesFile& file, const robot::Cell& cell, const Eigen::VectorXd& joints,
                       const Eigen::Vector3d& force_n) {
   const Eigen::Isometry3d flange = robot::forward(cell.arm, joints);
   const Eigen::Vector3d tip = robot::tip_point(cell);
@@ -77,7 +77,7 @@ CutPosture posture_of(const jobs::ForcesFile& file, const robot::Cell& cell, con
 }
 
 /// The robot's own modes as the cut sees them.
-modal::TipModes robot_modes(const jobs::ForcesFile& file, const robot::Cell& cell, const Eigen::VectorXd& joints,
+modal::TipModes robot_modes(const ForcesFile& file, const robot::Cell& cell, const Eigen::VectorXd& joints,
                             const Eigen::Matrix3d& base_from_feed) {
   const bool weighs = std::ranges::any_of(cell.arm.joints, [](const robot::Joint& j) { return j.link.mass_kg > 0.0; });
   const bool damped = std::ranges::all_of(cell.arm.joints, [](const robot::Joint& j) { return j.damping > 0.0; });
@@ -101,7 +101,7 @@ modal::TipModes robot_modes(const jobs::ForcesFile& file, const robot::Cell& cel
 }
 
 /// What vibrates, in F: tool, robot, and the part with its fixture. Each moves against the next, so receptances add.
-std::optional<modal::TipModes> structure_of(const jobs::ForcesFile& file, const robot::Cell* cell,
+std::optional<modal::TipModes> structure_of(const ForcesFile& file, const robot::Cell* cell,
                                             const Eigen::VectorXd& joints, const CutPosture* posture) {
   std::optional<modal::TipModes> all;
   const auto join = [&all](const modal::TipModes& part) { all = all ? modal::joined(*all, part) : part; };
@@ -135,7 +135,7 @@ Eigen::Matrix3Xd last_revolution(const simulation::Simulation& s, double spindle
 }
 
 void vibrate(const ForcesResult& result, const modal::TipModes& structure, RevolutionForces& out, Progress& progress) {
-  const jobs::ForcesFile& file = result.file;
+  const ForcesFile& file = result.file;
   const simulation::PostureCut cut = {.cutter = file.cutter,
                                       .engagement = out.settled.engagement,
                                       .coefficients = file.coefficients,
@@ -162,7 +162,7 @@ std::optional<robot::Redundancy> turn_about_tool(const robot::Cell& cell, const 
 }
 
 void run_revolution(ForcesResult& result, Progress& progress) {
-  const jobs::ForcesFile& file = result.file;
+  const ForcesFile& file = result.file;
   RevolutionForces out;
   const auto settled = [&](const Eigen::Matrix3d& compliance) {
     return cutting::settle(file.cutter, file.cut, file.coefficients, file.motion, compliance, file.force, file.slices);
@@ -190,7 +190,7 @@ void run_revolution(ForcesResult& result, Progress& progress) {
   result.revolution = std::move(out);
 }
 
-std::filesystem::path cell_path(const jobs::ForcesFile& file, const std::filesystem::path& given) {
+std::filesystem::path cell_path(const ForcesFile& file, const std::filesystem::path& given) {
   return given.empty() ? file.cell : given;
 }
 
@@ -207,13 +207,13 @@ std::optional<robot::SphericalWristInverse> spherical_wrist(const robot::Arm& ar
 ForcesResult run_forces(const std::filesystem::path& forces, const std::filesystem::path& program,
                         const std::filesystem::path& cell, Progress& progress) {
   ForcesResult result;
-  const jobs::ForcesJob job = program.empty() ? jobs::ForcesJob::revolution : jobs::ForcesJob::program;
-  result.file = jobs::read_forces(forces, job);
+  const ForcesJob job = program.empty() ? ForcesJob::revolution : ForcesJob::program;
+  result.file = read_forces(forces, job);
   if (const std::filesystem::path path = cell_path(result.file, cell); !path.empty()) {
-    result.cell = jobs::read_cell(path);
+    result.cell = read_cell(path);
     result.notes = result.cell->notes;
   }
-  if (job == jobs::ForcesJob::program) {
+  if (job == ForcesJob::program) {
     result.program = run_program(result.file, result.cell, program, result.warnings, result.notes, progress);
   } else {
     run_revolution(result, progress);

@@ -64,8 +64,8 @@ struct ProgramForces {
 };
 
 struct ForcesResult {
-  jobs::ForcesFile file;
-  std::optional<jobs::CellFile> cell = {};
+  ForcesFile file;
+  std::optional<CellFile> cell = {};
   std::optional<RevolutionForces> revolution = {};
   std::optional<ProgramForces> program = {};
   std::vector<std::string> warnings = {}, notes = {};

@@ -203,7 +203,7 @@ TEST(RunForces, FollowsAProgramWithAUr5e) {
   const auto path = folder.file("cell.toml", with_start);
   const ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", path);
   ASSERT_EQ(result.program->blocks.front().joints.size(), 6);
-  const jobs::CellFile file = jobs::read_cell(path);
+  const CellFile file = read_cell(path);
   for (const BlockResult& row : result.program->blocks) {
     const program::Block& block = result.program->program.blocks[row.force.block];
     const robot::ToolPose pose = robot::tool_pose(file.cell, robot::forward(file.cell.arm, row.joints));

@@ -102,7 +102,7 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   modal::FrfSet measured = result.frfs.value_or(modal::FrfSet{});
   if (!result.frfs) result.model = modal::read_modes(result.job.modes);
   const modal::MissingDirections& directions = result.job.directions;
-  const auto words = jobs::complete_directions(result.model, measured, directions, result.job.file.string(), "job");
+  const auto words = complete_directions(result.model, measured, directions, result.job.file.string(), "job");
   if (words) result.warnings.push_back(*words);
   if (!result.frfs) return;
   modal::FitOptions options;
@@ -163,16 +163,16 @@ void pairs(PlanResult& result, Progress& progress) {
   }
 }
 
-std::vector<decision::SpindleCapacity> spindle_curve(const jobs::Job& job) {
+std::vector<decision::SpindleCapacity> spindle_curve(const Job& job) {
   std::vector<decision::SpindleCapacity> curve;
-  for (const jobs::SpindlePoint& p : job.spindle_curve) {
+  for (const SpindlePoint& p : job.spindle_curve) {
     curve.push_back(
         {.spindle_speed_rad_per_s = p.spindle_speed_rad_per_s, .torque_n_m = p.torque_n_m, .power_w = p.power_w});
   }
   return curve;
 }
 
-decision::RecommendOptions recommend_options(const jobs::Job& job, const jobs::LobesFile& cut) {
+decision::RecommendOptions recommend_options(const Job& job, const LobesFile& cut) {
   decision::RecommendOptions options;
   options.radial_depth_m = cut.radial_depth_m;
   options.max_axial_depth_m = job.max_axial_depth_m;
@@ -184,7 +184,7 @@ decision::RecommendOptions recommend_options(const jobs::Job& job, const jobs::L
   return options;
 }
 
-decision::FinishLimits finish_limits(const jobs::Job& job) {
+decision::FinishLimits finish_limits(const Job& job) {
   return {.max_surface_error_m = job.max_surface_error_m, .max_deflection_m = job.max_deflection_m};
 }
 
@@ -219,7 +219,7 @@ void warn_of_spindle(PlanResult& result) {
 }
 
 /// Whether the job's program is to be smoothed.
-bool wants_path(const jobs::Job& job) {
+bool wants_path(const Job& job) {
   if (job.program.empty() || job.cell.empty()) return false;
   if (path::has_smoothing(job.cell)) return true;
   if (!job.forces.empty()) return false;
@@ -229,7 +229,7 @@ bool wants_path(const jobs::Job& job) {
 
 /// The program as the robot will run it.
 void smooth(PlanResult& result, const std::filesystem::path& folder, Progress& progress) {
-  const jobs::Job& job = result.job;
+  const Job& job = result.job;
   SmoothJob smooth = {.program = job.program, .cell = job.cell, .place = false};
   if (!folder.empty()) {
     io::make_folder(folder);
@@ -336,7 +336,7 @@ void turn_feed(PlanResult& result, Progress& progress) {
 void compare(PlanResult& result, Progress& progress) {
   result.cuts = compare_cuts(result.job.cuts, result.cut.problem, result.cut.options, progress);
   for (std::size_t i = 0; i < result.job.cuts.size(); ++i) {
-    const jobs::TestCut& cut = result.job.cuts[i];
+    const TestCut& cut = result.job.cuts[i];
     if (cut.file.empty()) continue;
     result.recordings.push_back(read_recording(cut, result.cut.problem));
     const report::Recording& heard = result.recordings.back();
@@ -371,9 +371,9 @@ void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
 PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress,
                    const std::filesystem::path& folder, bool accept_fit) {
   PlanResult result;
-  result.job = jobs::read_job(job);
+  result.job = read_job(job);
   // Everything that is quick to refuse is read before the long work starts.
-  result.cut = jobs::read_lobes(result.job.lobes);
+  result.cut = read_lobes(result.job.lobes);
   if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
                        "plan needs it for the removal rate");
@@ -401,7 +401,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   }
   if (with_path) smooth(result, folder, progress);
   result.cut.drop_dynamics();  // the job's stand in their place
-  jobs::load_dynamics(result.cut);
+  load_dynamics(result.cut);
   result.cut.problem.dynamics = result.model;
   result.cut.validate();
   // The report draws the boundary in any case.

@@ -23,8 +23,8 @@ namespace robomill::jobs {
 
 /// Everything a job came to, stage by stage. What the job did not ask for is empty.
 struct PlanResult {
-  jobs::Job job;
-  jobs::LobesFile cut;                      ///< with the dynamics that the job gave
+  Job job;
+  LobesFile cut;                            ///< with the dynamics that the job gave
   std::optional<modal::FrfResult> hits;     ///< of a job that starts from hits
   std::vector<std::string> hit_directions;  ///< one a hit: "x", "-y"
   std::optional<TipPrediction> prediction;  ///< of a job that starts from an assembly

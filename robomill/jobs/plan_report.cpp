@@ -187,7 +187,7 @@ report::DepthCurve spindle_curve(const PlanResult& result, const std::string& la
   curve.spindle_speed_rad_per_s.resize(n);
   curve.axial_depth_m.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const jobs::SpindlePoint& p = result.job.spindle_curve[static_cast<std::size_t>(i)];
+    const SpindlePoint& p = result.job.spindle_curve[static_cast<std::size_t>(i)];
     curve.spindle_speed_rad_per_s(i) = p.spindle_speed_rad_per_s;
     curve.axial_depth_m(i) = (torque ? p.torque_n_m : p.power_w / p.spindle_speed_rad_per_s) / per_depth;
   }
@@ -219,7 +219,7 @@ report::Forces with_limits(report::Forces forces, const PlanResult& result) {
   }
   std::vector<decision::SpindleCapacity> curve;
   curve.reserve(result.job.spindle_curve.size());
-  for (const jobs::SpindlePoint& p : result.job.spindle_curve) {
+  for (const SpindlePoint& p : result.job.spindle_curve) {
     curve.push_back({p.spindle_speed_rad_per_s, p.torque_n_m, p.power_w});
   }
   const decision::SpindleCapacity able = decision::capacity_at(curve, speed);

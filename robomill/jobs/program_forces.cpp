@@ -44,7 +44,7 @@ std::string reason(const robot::Choice& choice) {
 
 /// An error that names no place is one of the cell.
 template <class F>
-void told_of_cell(const jobs::CellFile& cell, F&& f) {
+void told_of_cell(const CellFile& cell, F&& f) {
   try {
     f();
   } catch (const InvalidInput& error) {
@@ -64,7 +64,7 @@ InvalidInput out_of_the_way(const std::filesystem::path& path, const program::Bl
 }
 
 /// Joints at the end of every block of an arm without a spherical wrist: by Newton's method from one block to the next.
-std::vector<robot::Position6> joints_near(const jobs::CellFile& file, const program::Program& program,
+std::vector<robot::Position6> joints_near(const CellFile& file, const program::Program& program,
                                           const std::vector<Eigen::Isometry3d>& flanges,
                                           const std::filesystem::path& path) {
   const robot::Arm& arm = file.cell.arm;
@@ -95,7 +95,7 @@ std::vector<robot::Position6> joints_near(const jobs::CellFile& file, const prog
 }
 
 /// Joints at the end of every block.
-std::vector<robot::Position6> joints_along(const jobs::CellFile& file, const program::Program& program,
+std::vector<robot::Position6> joints_along(const CellFile& file, const program::Program& program,
                                            const std::filesystem::path& path) {
   const robot::Cell& cell = file.cell;
   std::vector<Eigen::Isometry3d> flanges;
@@ -116,7 +116,7 @@ std::vector<robot::Position6> joints_along(const jobs::CellFile& file, const pro
 }
 
 /// Compliance of the tip in W at the end of each block, without load: what forces are weighed by.
-std::vector<Eigen::Matrix3d> compliances(const jobs::CellFile& file, const std::vector<robot::Position6>& joints) {
+std::vector<Eigen::Matrix3d> compliances(const CellFile& file, const std::vector<robot::Position6>& joints) {
   const robot::Cell& cell = file.cell;
   const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
   std::vector<Eigen::Matrix3d> out(joints.size(), Eigen::Matrix3d::Identity());
@@ -131,7 +131,7 @@ std::vector<Eigen::Matrix3d> compliances(const jobs::CellFile& file, const std::
 }
 
 /// How the tip is displaced by a force in W, at the end of a block.
-Eigen::Vector3d deflection(const jobs::CellFile& file, const program::Block& block, const std::filesystem::path& path,
+Eigen::Vector3d deflection(const CellFile& file, const program::Block& block, const std::filesystem::path& path,
                            const Eigen::Vector3d& force_n, BlockResult& row) {
   const robot::Cell& cell = file.cell;
   const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
@@ -152,7 +152,7 @@ Eigen::Vector3d deflection(const jobs::CellFile& file, const program::Block& blo
 }
 
 /// The tip's deflection under the forces of every block.
-void bend(const jobs::CellFile& file, const std::vector<robot::Position6>& joints, const program::Program& program,
+void bend(const CellFile& file, const std::vector<robot::Position6>& joints, const program::Program& program,
           const std::filesystem::path& path, std::vector<BlockResult>& rows) {
   parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -164,7 +164,7 @@ void bend(const jobs::CellFile& file, const std::vector<robot::Position6>& joint
   });
 }
 
-ProgramStock stock_of(const jobs::ForcesFile& file, const program::Program& program) {
+ProgramStock stock_of(const ForcesFile& file, const program::Program& program) {
   if (file.stock) return {.stock = *file.stock};
   const cutting::DefaultStock assumed =
       cutting::default_stock(program, file.cutter, file.dexel_m, file.cut.axial_depth_m);
@@ -205,12 +205,12 @@ std::string stock_text(const ProgramForces& program) {
   return fmt::format("assumed, since none is given: a box {}, {}", box, top);
 }
 
-ProgramForces run_program(const jobs::ForcesFile& file, const std::optional<jobs::CellFile>& cell,
+ProgramForces run_program(const ForcesFile& file, const std::optional<CellFile>& cell,
                           const std::filesystem::path& path, std::vector<std::string>& warnings,
                           std::vector<std::string>& notes, Progress& progress) {
   const auto begun = std::chrono::steady_clock::now();
   ProgramForces out;
-  out.program = program::read_program(path, cell ? jobs::program_reading(*cell) : program::ProgramReading{});
+  out.program = program::read_program(path, cell ? program_reading(*cell) : program::ProgramReading{});
   if (out.program.blocks.empty()) {
     throw InvalidInput(InvalidInput::Parts{.where = path.string(), .rule = "has no move"});
   }

@@ -14,7 +14,7 @@ namespace robomill::jobs {
 
 /// Forces along a program, and the robot under them where there is a cell.
 /// @throws InvalidInput with file and line, also where a block is out of the robot's reach; Interrupted
-[[nodiscard]] ProgramForces run_program(const jobs::ForcesFile& file, const std::optional<jobs::CellFile>& cell,
+[[nodiscard]] ProgramForces run_program(const ForcesFile& file, const std::optional<CellFile>& cell,
                                         const std::filesystem::path& program, std::vector<std::string>& warnings,
                                         std::vector<std::string>& notes, Progress& progress);
 

@@ -14,6 +14,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
 #include "robomill/path/drive.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
@@ -32,7 +33,7 @@ constexpr double least_chord_m = 1e-9, least_turn_rad = 1e-9;
 
 /// A machine with a program before it.
 struct Bench {
-  jobs::CellFile cell;
+  CellFile cell;
   std::unique_ptr<robot::Kinematics> machine;
   path::SmoothingFile smoothing;
   std::array<bool, 6> slides = {};
@@ -40,7 +41,7 @@ struct Bench {
   path::PostureChoice posture;
 };
 
-std::array<bool, 6> slides_of(const jobs::CellFile& cell) {
+std::array<bool, 6> slides_of(const CellFile& cell) {
   std::array<bool, 6> slides = {};
   if (cell.hybrid) {
     slides.fill(true);
@@ -81,11 +82,12 @@ auto told_of_program(const std::filesystem::path& program, F&& f) {
 
 Bench prepare(const SmoothJob& job) {
   Bench bench;
-  bench.cell = jobs::read_cell(job.cell, jobs::Robots::any);
-  bench.machine = jobs::kinematics(bench.cell);
-  bench.smoothing = path::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), job.method);
+  bench.cell = read_cell(job.cell, Robots::any);
+  bench.machine = kinematics(bench.cell);
+  bench.smoothing =
+      path::read_smoothing(*bench.cell.document, bench.machine->limits(), bench.machine->joints(), job.method);
   bench.slides = slides_of(bench.cell);
-  program::ProgramReading reading = jobs::program_reading(bench.cell);
+  program::ProgramReading reading = program_reading(bench.cell);
   reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
   reading.axis_tolerance_rad = std::max(turn_share * bench.smoothing.options.axis_tolerance_rad, least_turn_rad);
   bench.program = program::open_program(job.program, reading);
@@ -179,7 +181,7 @@ path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::Sample
   try {
     out.summary = path::smooth(*bench.program, *bench.machine, bench.posture.posture, options, take, restart, progress);
   } catch (const InvalidInput& error) {
-    throw path::located_in_smoothing(bench.cell.path, error);
+    throw bench.cell.document->located(error);
   }
   if (follower) out.tracking_error = follower->worst();
   return out;
@@ -266,7 +268,8 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
     try {
       // What the cell says may suit one method and not another.
       if (!asked_for) {
-        static_cast<void>(path::read_smoothing(job.cell, bench.machine->limits(), bench.machine->joints(), method));
+        static_cast<void>(
+            path::read_smoothing(*bench.cell.document, bench.machine->limits(), bench.machine->joints(), method));
       }
       result.smoothed.methods.push_back(told_of_program(job.program, [&] {
         return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr, progress);

@@ -65,15 +65,15 @@ std::string words(const stability::ExplainedPeak& peak, int teeth) {
   return "no multiple of rotation";
 }
 
-report::Verdict verdict_of(jobs::TestCut::Result result) {
+report::Verdict verdict_of(TestCut::Result result) {
   switch (result) {
-    case jobs::TestCut::Result::stable:
+    case TestCut::Result::stable:
       return report::Verdict::stable;
-    case jobs::TestCut::Result::borderline:
+    case TestCut::Result::borderline:
       return report::Verdict::borderline;
-    case jobs::TestCut::Result::chatter:
+    case TestCut::Result::chatter:
       return report::Verdict::chatter;
-    case jobs::TestCut::Result::unknown:
+    case TestCut::Result::unknown:
       break;
   }
   return report::Verdict::unknown;
@@ -89,8 +89,7 @@ bool is_image(double peak_hz, double chatter_hz, double tooth_passing_hz) {
   return false;
 }
 
-std::string note_on(const jobs::TestCut& cut, const stability::PointResult& point,
-                    const stability::LobesProblem& problem) {
+std::string note_on(const TestCut& cut, const stability::PointResult& point, const stability::LobesProblem& problem) {
   std::string note = std::isfinite(point.spectral_radius) ? fmt::format("predicted |μ| = {:.3f}", point.spectral_radius)
                                                           : std::string("predicted by the limit");
   if (!point.stable) note += fmt::format(", {:.1f} Hz ({})", point.chatter_frequency_hz, to_string(point.mode));
@@ -196,14 +195,13 @@ std::vector<report::Peak> name_peaks(const std::vector<double>& frequency_hz, do
   return out;
 }
 
-std::vector<report::TestCut> compare_cuts(const std::vector<jobs::TestCut>& cuts,
-                                          const stability::LobesProblem& problem,
+std::vector<report::TestCut> compare_cuts(const std::vector<TestCut>& cuts, const stability::LobesProblem& problem,
                                           const stability::LobesOptions& options, Progress& progress) {
   std::vector<report::TestCut> out(cuts.size());
   progress.start("test cuts", cuts.size());
   parallel_for(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const jobs::TestCut& cut = cuts[i];
+      const TestCut& cut = cuts[i];
       const stability::PointResult point = stability::evaluate_point(
           problem, options,
           {.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s, .axial_depth_m = cut.axial_depth_m});
@@ -226,7 +224,7 @@ std::vector<report::TestCut> compare_cuts(const std::vector<jobs::TestCut>& cuts
   return out;
 }
 
-report::Recording read_recording(const jobs::TestCut& cut, const stability::LobesProblem& problem) {
+report::Recording read_recording(const TestCut& cut, const stability::LobesProblem& problem) {
   const io::Record record = io::read_record(cut.file, {.scale = cut.scale});
   const Eigen::VectorXd signal = record.column(cut.column);
   const double rate_hz = record.sample_rate_hz > 0.0 ? record.sample_rate_hz : cut.sample_rate_hz;

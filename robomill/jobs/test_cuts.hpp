@@ -18,7 +18,7 @@ namespace robomill::jobs {
 
 /// Test cuts beside their predictions. A borderline cut agrees where the predicted limit at its speed lies within 20 %
 /// of its depth; a cut without a result is predicted but not compared.
-[[nodiscard]] std::vector<report::TestCut> compare_cuts(const std::vector<jobs::TestCut>& cuts,
+[[nodiscard]] std::vector<report::TestCut> compare_cuts(const std::vector<TestCut>& cuts,
                                                         const stability::LobesProblem& problem,
                                                         const stability::LobesOptions& options, Progress& progress);
 
@@ -26,6 +26,6 @@ namespace robomill::jobs {
 /// rotation is at least half as high as the highest multiple; borderline from a quarter; nothing where that hangs on a
 /// peak that may be either.
 /// @throws InvalidInput if the recording cannot be read or is shorter than 0.2 s
-[[nodiscard]] report::Recording read_recording(const jobs::TestCut& cut, const stability::LobesProblem& problem);
+[[nodiscard]] report::Recording read_recording(const TestCut& cut, const stability::LobesProblem& problem);
 
 }  // namespace robomill::jobs

@@ -78,7 +78,7 @@ class Recording : public testing::Test {
            << "\n";
     }
     file.close();
-    jobs::TestCut cut;
+    TestCut cut;
     cut.spindle_speed_rad_per_s = 6000 * units::rpm;
     cut.axial_depth_m = 1e-3;
     cut.file = path_;
@@ -149,12 +149,12 @@ TEST(CompareCuts, ComparesWithThePrediction) {
   stability::LobesOptions options;
   options.spindle_speed_rad_per_s = {4000 * units::rpm, 16000 * units::rpm};
   options.axial_depth_m = {0.0, 3e-3};
-  std::vector<jobs::TestCut> cuts(3);
-  for (jobs::TestCut& cut : cuts) cut.spindle_speed_rad_per_s = 5000 * units::rpm;
+  std::vector<TestCut> cuts(3);
+  for (TestCut& cut : cuts) cut.spindle_speed_rad_per_s = 5000 * units::rpm;
   cuts[0].axial_depth_m = 0.01e-3;
-  cuts[0].result = jobs::TestCut::Result::stable;
+  cuts[0].result = TestCut::Result::stable;
   cuts[1].axial_depth_m = 2e-3;
-  cuts[1].result = jobs::TestCut::Result::stable;
+  cuts[1].result = TestCut::Result::stable;
   cuts[2].axial_depth_m = 2e-3;
   const std::vector<report::TestCut> rows = compare_cuts(cuts, problem, options, Progress::none());
   EXPECT_EQ(rows[0].predicted, report::Verdict::stable);

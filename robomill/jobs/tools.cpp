@@ -17,7 +17,7 @@ namespace robomill::jobs {
 namespace {
 
 /// A cut that suits any cutter.
-void check_cut(const jobs::LobesFile& cut) {
+void check_cut(const LobesFile& cut) {
   const std::string where = cut.path.string();
   if (cut.drilling) throw InvalidInput(where, "lobes are those of milling", "A list of tools needs a milling cut");
   const cutting::FlatEndMill& tool = cut.problem.milling.tool;
@@ -31,7 +31,7 @@ void check_cut(const jobs::LobesFile& cut) {
 }
 
 /// The cut with this tool.
-jobs::LobesFile with_tool(jobs::LobesFile cut, const ToolResult& tool) {
+LobesFile with_tool(LobesFile cut, const ToolResult& tool) {
   cutting::Milling& milling = cut.problem.milling;
   milling.tool.teeth = tool.teeth;
   milling.tool.diameter_m = tool.diameter_m;
@@ -64,7 +64,7 @@ void fit(ToolResult& out, std::uint64_t seed) {
   if (!found.usable()) out.no_cut = "Its modes do not describe its FRFs: no cut is computed from them";
 }
 
-void find_best(jobs::LobesFile cut, ToolResult& out) {
+void find_best(LobesFile cut, ToolResult& out) {
   cut = with_tool(std::move(cut), out);
   cut.problem.dynamics = out.modes;
   cut.problem.keep_modes.clear();
@@ -80,7 +80,7 @@ void find_best(jobs::LobesFile cut, ToolResult& out) {
 }
 
 void try_tool(const coupling::AssemblyFile& assembly, const coupling::ListedTool& tool,
-              const std::optional<jobs::LobesFile>& cut, std::uint64_t seed, ToolResult& out) {
+              const std::optional<LobesFile>& cut, std::uint64_t seed, ToolResult& out) {
   coupling::Assembly whole = assembly.assembly;
   whole.tool = tool.segments;
   coupling::TipResult tip = coupling::tip_frfs(whole, assembly.frequency_hz);
@@ -102,8 +102,8 @@ void try_tool(const coupling::AssemblyFile& assembly, const coupling::ListedTool
 }  // namespace
 
 std::vector<ToolResult> try_tools(const coupling::AssemblyFile& assembly,
-                                  const std::vector<coupling::ListedTool>& tools,
-                                  const std::optional<jobs::LobesFile>& cut, std::uint64_t seed, Progress& progress) {
+                                  const std::vector<coupling::ListedTool>& tools, const std::optional<LobesFile>& cut,
+                                  std::uint64_t seed, Progress& progress) {
   if (tools.empty()) throw InvalidInput("tools", "holds no tool");
   if (cut) check_cut(*cut);
   std::vector<ToolResult> out(tools.size());

@@ -45,8 +45,8 @@ struct ToolResult {
 /// @throws Interrupted  when progress asks to stop
 [[nodiscard]] ROBOMILL_API std::vector<ToolResult> try_tools(const coupling::AssemblyFile& assembly,
                                                              const std::vector<coupling::ListedTool>& tools,
-                                                             const std::optional<jobs::LobesFile>& cut,
-                                                             std::uint64_t seed, Progress& progress);
+                                                             const std::optional<LobesFile>& cut, std::uint64_t seed,
+                                                             Progress& progress);
 
 /// A row a tool. Columns that hold nothing for any tool are empty.
 [[nodiscard]] ROBOMILL_API std::string tools_csv(const std::vector<ToolResult>& results);

@@ -29,8 +29,8 @@ std::vector<coupling::ListedTool> tools(const test::Folder& folder, const coupli
                               file.assembly.tool.front());
 }
 
-jobs::LobesFile cut(const test::Folder& folder, const std::string& more = "") {
-  return jobs::read_lobes(
+LobesFile cut(const test::Folder& folder, const std::string& more = "") {
+  return read_lobes(
       folder.file("lobes.toml",
                   "[tool]\nteeth = 2\ndiameter_mm = 12\n" + more +
                       "[cut]\ndirection = \"down\"\nradial_depth_mm = 1.2\nfeed_per_tooth_mm = 0.05\n[coefficients]\n"
@@ -55,7 +55,7 @@ TEST(Tools, EachRowIsWhatTheToolComesToAlone) {
   EXPECT_GT(rows[0].peak_hz, rows[3].peak_hz);
   ASSERT_TRUE(rows[0].recommendation && rows[0].recommendation->recommended) << rows[0].failure;
   // What it recommends is stable by the lobes of that tool's modes.
-  jobs::LobesFile mine = cut(folder);
+  LobesFile mine = cut(folder);
   mine.problem.milling.tool.teeth = 4;
   mine.problem.dynamics = rows[0].modes;
   const decision::Operation& best = *rows[0].recommendation->recommended;
@@ -117,11 +117,11 @@ TEST(Tools, RefuseACutOfOneCutter) {
   const test::Folder folder;
   const coupling::AssemblyFile file = assembly(folder);
   const auto listed = tools(folder, file);
-  const auto say = [&](const jobs::LobesFile& lobes) {
+  const auto say = [&](const LobesFile& lobes) {
     return test::refusal([&] { static_cast<void>(try_tools(file, listed, lobes, 1, Progress::none())); });
   };
   EXPECT_NE(say(cut(folder, "pitch_deg = [170, 190]\n")).find("lobes.toml"), std::string::npos);
-  jobs::LobesFile no_feed = cut(folder);
+  LobesFile no_feed = cut(folder);
   no_feed.problem.milling.feed_per_tooth_m = 0.0;
   EXPECT_NE(say(no_feed).find("cut.feed_per_tooth_mm is missing"), std::string::npos);
   EXPECT_NE(

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "robomill/base/random.hpp"
+#include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"
@@ -56,8 +57,9 @@ std::string with(const std::string& old_text, const std::string& new_text) {
 
 path::SmoothingFile read(const Folder& folder, const std::string& text) {
   const auto path = folder.file("cell.toml", text);
-  const auto machine = kinematics(read_cell(path, Robots::any));
-  return path::read_smoothing(path, machine->limits(), machine->joints());
+  const CellFile cell = read_cell(path, Robots::any);
+  const auto machine = kinematics(cell);
+  return path::read_smoothing(*cell.document, machine->limits(), machine->joints());
 }
 
 TEST(SmoothingToml, ReadsEveryKeyInItsUnit) {
@@ -142,8 +144,9 @@ TEST(SmoothingToml, AMethodBeforeTheFilesIsTheOneThatIsChecked) {
   const Folder folder;
   const auto read_by = [&](const std::string& text, path::Method method) {
     const auto path = folder.file("cell.toml", text);
-    const auto machine = kinematics(read_cell(path, Robots::any));
-    return path::read_smoothing(path, machine->limits(), machine->joints(), method);
+    const CellFile cell = read_cell(path, Robots::any);
+    const auto machine = kinematics(cell);
+    return path::read_smoothing(*cell.document, machine->limits(), machine->joints(), method);
   };
   std::string one = with("filters = 3", "filters = 1");
   EXPECT_EQ(read_by(one, path::Method::paper).options.method, path::Method::paper);

@@ -336,8 +336,9 @@ void read_program_words(io::TomlFile& file, CellFile& out) {
 }  // namespace
 
 CellFile read_cell(const std::filesystem::path& path, Robots usable) {
-  io::TomlFile file(path);
   CellFile out{.path = path};
+  out.document = std::make_shared<io::TomlFile>(path);
+  io::TomlFile& file = *out.document;
   file.skip("smoothing");
   file.require("robot", "Write [robot] with the arm, kind = \"serial\" and dh or urdf");
   const Kind kind = read_kind(file, usable);

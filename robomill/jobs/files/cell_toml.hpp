@@ -12,6 +12,10 @@
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/kinematics.hpp"
 
+namespace robomill::io {
+class TomlFile;
+}
+
 namespace robomill::jobs {
 
 /// cell.toml: a robot with its tool before a workpiece.
@@ -27,6 +31,7 @@ struct CellFile {
   std::vector<double> start_joints = {};              ///< where the arm stands first [rad]; empty where not said
   path::EndEffector end_effector = {};                ///< for exported programs
   std::vector<std::string> notes = {};                ///< sentences for the user
+  std::shared_ptr<io::TomlFile> document = {};        ///< that [smoothing] is read from; empty where built in memory
 };
 
 /// What kinds of robots a reader of the cell can use.

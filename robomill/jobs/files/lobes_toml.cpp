@@ -198,17 +198,21 @@ void LobesFile::drop_dynamics() {
 }
 
 void LobesFile::validate() const {
-  io::TomlFile file(path);
-  static_cast<void>(read(file, path));
-  if (problem.dynamics.modes.empty() && problem.measured.frfs.empty()) {
-    throw file.refuse("dynamics", "must name the structure: modes, frf, or x and y");
+  const bool nothing = problem.dynamics.modes.empty() && problem.measured.frfs.empty();
+  const char* const rule = "must name the structure: modes, frf, or x and y";
+  if (!document) {
+    if (nothing) throw InvalidInput("dynamics", rule);
+    return problem.validate();
   }
-  file.locate([&] { problem.validate(); });
+  if (nothing) throw document->refuse("dynamics", rule);
+  document->locate([&] { problem.validate(); });
 }
 
 LobesFile read_lobes(const std::filesystem::path& path) {
-  io::TomlFile file(path);
-  return read(file, path);
+  const auto document = std::make_shared<io::TomlFile>(path);
+  LobesFile out = read(*document, path);
+  out.document = document;
+  return out;
 }
 
 void load_dynamics(LobesFile& file) {

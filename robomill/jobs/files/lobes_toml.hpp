@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,10 @@
 #include "robomill/modal/directions.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/uncertainty.hpp"
+
+namespace robomill::io {
+class TomlFile;
+}
 
 namespace robomill::jobs {
 
@@ -30,10 +35,12 @@ struct LobesFile {
   double point_angle_rad = 0.0;        ///< of the drill [rad]; 0: not given
   double feed_per_revolution_m = 0.0;  ///< of the drill [m]
   std::vector<std::string> notes = {};  ///< sentences for the user, of the files that load_dynamics() read
+  std::shared_ptr<const io::TomlFile> document = {};  ///< for errors in its words; empty where built in memory
 
   /// Forgets the tool's structure: another stands in its place.
   void drop_dynamics();
-  /// What the problem still needs is checked here, with errors in the file's words: call it when dynamics is there.
+  /// Checks what the problem still needs, with errors in the file's words where there is one: call it when dynamics is
+  /// there.
   /// @throws InvalidInput
   void validate() const;
 };

@@ -68,27 +68,20 @@ void check_limits(io::TomlFile& file, const robot::JointLimits& limits, int join
   }
 }
 
-void read_options(io::TomlFile& file, Options& options) {
-  for (const Key& row : keys) {
-    file.number(std::string("smoothing.") + row.key, row.member, row.factor, options.*row.value);
-  }
-}
-
 }  // namespace
 
 bool has_smoothing(const std::filesystem::path& path) {
   return io::TomlFile(path).has("smoothing");
 }
 
-SmoothingFile read_smoothing(const std::filesystem::path& path, const robot::JointLimits& limits, int joints,
+SmoothingFile read_smoothing(io::TomlFile& file, const robot::JointLimits& limits, int joints,
                              std::optional<Method> method) {
-  io::TomlFile file(path);
-  for (const char* other : {"workpiece", "tool", "spindle", "program"}) file.skip(other);
-  for (const std::string& name : file.keys("robot")) file.skip("robot." + name);
   file.require("smoothing", "Write [smoothing] with tip_tolerance_mm, axis_tolerance_deg and the limits of the tool");
   check_limits(file, limits, joints);
   SmoothingFile out;
-  read_options(file, out.options);
+  for (const Key& row : keys) {
+    file.number(std::string("smoothing.") + row.key, row.member, row.factor, out.options.*row.value);
+  }
   file.choice<Method>("smoothing.method",
                       {{"verified", Method::verified},
                        {"optimal", Method::optimal},
@@ -111,13 +104,6 @@ SmoothingFile read_smoothing(const std::filesystem::path& path, const robot::Joi
     require_non_negative("flexible_joint_damping_ratio", out.flexible_joint_damping_ratio, "", "0.05 is usual");
   });
   return out;
-}
-
-InvalidInput located_in_smoothing(const std::filesystem::path& path, const InvalidInput& error) {
-  io::TomlFile file(path);
-  Options options;
-  read_options(file, options);
-  return file.located(error);
 }
 
 }  // namespace robomill::path

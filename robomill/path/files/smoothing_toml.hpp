@@ -3,10 +3,13 @@
 #include <optional>
 #include <vector>
 
-#include "robomill/base/error.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/robot/kinematics.hpp"
+
+namespace robomill::io {
+class TomlFile;
+}
 
 namespace robomill::path {
 
@@ -25,18 +28,14 @@ struct SmoothingFile {
 /// Whether a cell.toml has [smoothing]. @throws InvalidInput if the file is missing, empty or no TOML
 [[nodiscard]] ROBOMILL_API bool has_smoothing(const std::filesystem::path& path);
 
-/// Reads [smoothing] and checks the joints' limits, which smoothing needs all of.
-/// @param path    the cell.toml
+/// Reads [smoothing] and checks the joints' limits, which smoothing needs all of. Errors of what smooths by the options
+/// can be located in the document afterwards.
+/// @param cell    whose other tables have been read
 /// @param limits  of the machine that it describes (a URDF gives some of them)
 /// @param joints  how many
 /// @param method  stands before the file's
 /// @throws InvalidInput with file, line, key, value and rule
-[[nodiscard]] ROBOMILL_API SmoothingFile read_smoothing(const std::filesystem::path& path,
-                                                        const robot::JointLimits& limits, int joints,
-                                                        std::optional<Method> method = {});
-
-/// An error about one of SmoothingOptions' members with the file's line, key and unit.
-[[nodiscard]] ROBOMILL_API InvalidInput located_in_smoothing(const std::filesystem::path& path,
-                                                             const InvalidInput& error);
+[[nodiscard]] ROBOMILL_API SmoothingFile read_smoothing(io::TomlFile& cell, const robot::JointLimits& limits,
+                                                        int joints, std::optional<Method> method = {});
 
 }  // namespace robomill::path
