@@ -9,6 +9,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/printable.hpp"
+#include "robomill/version.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 

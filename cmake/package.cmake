@@ -9,13 +9,27 @@ target_link_libraries(robomill PRIVATE robomill_flags ${libraries} INTERFACE Eig
 target_include_directories(robomill INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
 target_compile_features(robomill INTERFACE cxx_std_20)
-set_target_properties(robomill PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+set_target_properties(robomill PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
 install(TARGETS robomill EXPORT robomill LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 foreach(header IN LISTS headers)
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
 endforeach()
+install(FILES ${PROJECT_SOURCE_DIR}/robomill/robomill.hpp ${PROJECT_SOURCE_DIR}/robomill/version.hpp
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/robomill)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/robomill.pc @ONLY CONTENT
+"prefix=\${pcfiledir}/@to_prefix@
+Name: robomill
+Description: @PROJECT_DESCRIPTION@
+Version: @PROJECT_VERSION@
+Requires: eigen3
+Libs: -L\${prefix}/@CMAKE_INSTALL_LIBDIR@ -lrobomill
+Cflags: -I\${prefix}/@CMAKE_INSTALL_INCLUDEDIR@
+")
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/robomill.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(EXPORT robomill NAMESPACE robomill:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/robomill FILE robomillTargets.cmake)
 if(TARGET robomill_app)
   install(TARGETS robomill_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/decision/finish.hpp"
 #include "robomill/decision/recommend.hpp"
@@ -15,8 +16,10 @@ namespace robomill::decision {
 /// @param finish   what the surface may be; the limits of depth in between follow at every speed
 /// @throws InvalidInput as recommend; where finish limits something that cannot be computed
 /// @throws Interrupted  when progress asks to stop
-[[nodiscard]] Recommendation choose(const stability::LobesProblem& problem, const stability::LobesOptions& lobes,
-                                    const std::vector<stability::Limit>& limits, RecommendOptions options,
-                                    const FinishLimits& finish = {}, Progress& progress = Progress::none());
+[[nodiscard]] ROBOMILL_API Recommendation choose(const stability::LobesProblem& problem,
+                                                 const stability::LobesOptions& lobes,
+                                                 const std::vector<stability::Limit>& limits, RecommendOptions options,
+                                                 const FinishLimits& finish = {},
+                                                 Progress& progress = Progress::none());
 
 }  // namespace robomill::decision

@@ -1,4 +1,5 @@
 #pragma once
+#include "robomill/base/export.hpp"
 #include "robomill/decision/recommend.hpp"
 #include "robomill/stability/lobes.hpp"
 
@@ -9,17 +10,18 @@ struct FinishLimits {
   double max_surface_error_m = 0.0;  ///< magnitude of stability::SurfacePoint::surface_location_error_m, >= 0
   double max_deflection_m = 0.0;     ///< of stability::SurfacePoint::peak_deflection_m, >= 0
   [[nodiscard]] bool any() const { return max_surface_error_m > 0.0 || max_deflection_m > 0.0; }
-  void validate() const;  ///< throws InvalidInput naming the field
+  ROBOMILL_API void validate() const;  ///< throws InvalidInput naming the field
 };
 
 /// @throws InvalidInput if a limit is out of range, or the cut finishes no wall, or what it leaves cannot be computed:
 /// of measured FRFs without modes
-void require_finishable(const stability::LobesProblem& problem, const FinishLimits& limits);
+ROBOMILL_API void require_finishable(const stability::LobesProblem& problem, const FinishLimits& limits);
 
 /// The greatest depth, up to `deepest_m`, at which a cut keeps the limits: six depths are looked at from the shallowest
 /// on, and the first that does not keep them is narrowed down to 2 %.
 /// @throws InvalidInput as stability::surface_point
-[[nodiscard]] FinishDepth finish_depth(const stability::LobesProblem& problem, double spindle_speed_rad_per_s,
-                                       double deepest_m, const FinishLimits& limits);
+[[nodiscard]] ROBOMILL_API FinishDepth finish_depth(const stability::LobesProblem& problem,
+                                                    double spindle_speed_rad_per_s, double deepest_m,
+                                                    const FinishLimits& limits);
 
 }  // namespace robomill::decision

@@ -97,6 +97,6 @@ struct SpindleLoad {
 [[nodiscard]] ROBOMILL_API std::string forces_csv(const ForcesResult& result);
 [[nodiscard]] ROBOMILL_API std::string forces_json(const ForcesResult& result);
 /// The part of the report on forces.
-[[nodiscard]] report::Forces forces_report(const ForcesResult& result);
+[[nodiscard]] ROBOMILL_API report::Forces forces_report(const ForcesResult& result);
 
 }  // namespace robomill::jobs

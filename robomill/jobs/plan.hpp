@@ -54,28 +54,29 @@ struct PlanResult {
 /// @param accept_fit  go on with modes that do not describe the FRFs (modal::FitResult::usable); else the result ends
 ///     with the fit, and the recommendation says why
 /// @throws InvalidInput with file, line, key and value; Interrupted
-[[nodiscard]] PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
-                                 Progress& progress = Progress::none(), const std::filesystem::path& folder = {},
-                                 bool accept_fit = false);
+[[nodiscard]] ROBOMILL_API PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
+                                              Progress& progress = Progress::none(),
+                                              const std::filesystem::path& folder = {}, bool accept_fit = false);
 
 /// The report of a job.
 /// @param files  that stand beside it
-[[nodiscard]] report::Report make_report(const PlanResult& result, const std::vector<report::StageFile>& files);
+[[nodiscard]] ROBOMILL_API report::Report make_report(const PlanResult& result,
+                                                      const std::vector<report::StageFile>& files);
 
 /// plan.json as text: the recommendation, its alternatives, the test cuts, and every stage's result.
-[[nodiscard]] std::string plan_json(const PlanResult& result);
+[[nodiscard]] ROBOMILL_API std::string plan_json(const PlanResult& result);
 
 /// Writes report.html, plan.json and each stage's own files (tip.uff, modes.json, lobes.json) into a folder, which is
 /// made where it is missing. Each file appears whole or not at all; the trajectory where run_job() was told to.
-void write_plan(const std::filesystem::path& folder, const PlanResult& result);
+ROBOMILL_API void write_plan(const std::filesystem::path& folder, const PlanResult& result);
 
 /// One line for people: what limits an operation.
-[[nodiscard]] std::string limited_by_text(const decision::Operation& operation);
+[[nodiscard]] ROBOMILL_API std::string limited_by_text(const decision::Operation& operation);
 
 /// Each mode's share of the speeds at which some mode limits the depth, in [0, 1]; empty where none does.
 struct LimitShare {
   Eigen::VectorXd tool, workpiece;  ///< one a mode of each
 };
-[[nodiscard]] LimitShare limit_share(const PlanResult& result);
+[[nodiscard]] ROBOMILL_API LimitShare limit_share(const PlanResult& result);
 
 }  // namespace robomill::jobs

@@ -8,6 +8,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/milling.hpp"
 #include "robomill/jobs/plan.hpp"
+#include "robomill/version.hpp"
 
 namespace robomill::jobs {
 namespace {

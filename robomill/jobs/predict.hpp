@@ -27,18 +27,20 @@ struct TipPrediction {
 
 /// @param measured  FRFs to compare with; empty: none
 /// @throws InvalidInput as read_assembly, tip_frfs and read_frfs, or if nothing measured can be compared
-[[nodiscard]] TipPrediction predict_tip(const std::filesystem::path& assembly, const std::filesystem::path& measured);
+[[nodiscard]] ROBOMILL_API TipPrediction predict_tip(const std::filesystem::path& assembly,
+                                                     const std::filesystem::path& measured);
 
 /// The modes of predicted FRFs, without standard deviations. A round tool is fitted in x, and the same modes stand in
 /// y.
 /// @throws InvalidInput as fit_modes
-[[nodiscard]] modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& options, Progress& progress);
+[[nodiscard]] ROBOMILL_API modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& options,
+                                                    Progress& progress);
 
 /// Draws it.
-void add_prediction(report::Report& report, const TipPrediction& prediction);
+ROBOMILL_API void add_prediction(report::Report& report, const TipPrediction& prediction);
 
 /// The member `assembly` of plan.json, as text.
-[[nodiscard]] std::string prediction_json(const TipPrediction& prediction);
+[[nodiscard]] ROBOMILL_API std::string prediction_json(const TipPrediction& prediction);
 
 /// A frequency at which a receptance is greatest.
 struct PeakFound {

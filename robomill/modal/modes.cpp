@@ -1,5 +1,6 @@
 #include "robomill/modal/modes.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -33,6 +34,38 @@ void validate_mode(const ModalModel& model, std::size_t k) {
 std::complex<double> pole(const Mode& mode) {
   const double omega = 2.0 * std::numbers::pi * mode.frequency_hz;
   return {-mode.damping_ratio * omega, omega * std::sqrt(1.0 - mode.damping_ratio * mode.damping_ratio)};
+}
+
+Mode mode_from_mass(const MassMode& mode, Eigen::Index axis, Eigen::Index axes) {
+  Mode out{.frequency_hz = mode.frequency_hz, .damping_ratio = mode.damping_ratio, .left = {}, .right = {}};
+  const double size = 1.0 / std::sqrt(2.0 * mode.modal_mass_kg * pole(out).imag());
+  out.left = Eigen::VectorXcd::Unit(axes, axis) * size;
+  out.right = Eigen::VectorXcd::Unit(axes, axis) * std::complex<double>(0.0, -size);
+  return out;
+}
+
+ModalModel modes_from_mass(const std::vector<MassMode>& x, const std::vector<MassMode>& y,
+                           const std::vector<MassMode>& z) {
+  ModalModel model;
+  model.excitations = {{.axis = Axis::x}, {.axis = Axis::y}};
+  if (!z.empty()) model.excitations.push_back({.axis = Axis::z});
+  model.responses = model.excitations;
+  const std::array<const std::vector<MassMode>*, 3> given = {&x, &y, &z};
+  for (std::size_t axis = 0; axis < given.size(); ++axis) {
+    for (std::size_t k = 0; k < given[axis]->size(); ++k) {
+      const MassMode& mode = (*given[axis])[k];
+      const std::string path = std::string(1, "xyz"[axis]) + "[" + std::to_string(k + 1) + "].";
+      require_positive((path + "frequency_hz").c_str(), mode.frequency_hz, "Hz");
+      require_positive((path + "modal_mass_kg").c_str(), mode.modal_mass_kg, "kg");
+      if (!(mode.damping_ratio > 0.0 && mode.damping_ratio < 1.0)) {
+        throw InvalidInput(path + "damping_ratio", mode.damping_ratio, "", "must lie between 0 and 1",
+                           "It is a ratio, not a percentage");
+      }
+      model.modes.push_back(
+          mode_from_mass(mode, static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(model.excitations.size())));
+    }
+  }
+  return model;
 }
 
 void ModalModel::validate() const {

@@ -40,6 +40,22 @@ struct ModalModel {
   ROBOMILL_API void validate() const;
 };
 
+/// A mode of one direction by its modal mass: x / F = 1 / (m (ω_n² - ω² + 2iζω_nω)).
+struct MassMode {
+  double frequency_hz = 0.0;   ///< ω_n / 2π [Hz], > 0; required
+  double damping_ratio = 0.0;  ///< ζ, in (0, 1); required
+  double modal_mass_kg = 0.0;  ///< m [kg], > 0; required
+};
+
+/// As entry `axis` of vectors with `axes` entries; its residue 1 / (2i m ω_n sqrt(1 - ζ²)) is shared evenly by both.
+[[nodiscard]] ROBOMILL_API Mode mode_from_mass(const MassMode& mode, Eigen::Index axis, Eigen::Index axes);
+
+/// Modes that each move in one direction of the tip. A direction x or y without modes is rigid; the model has z only
+/// where that has modes.
+/// @throws InvalidInput naming "x[k].member" (k from 1) if a number is out of its range
+[[nodiscard]] ROBOMILL_API ModalModel modes_from_mass(const std::vector<MassMode>& x, const std::vector<MassMode>& y,
+                                                      const std::vector<MassMode>& z = {});
+
 /// λ = -ζ ω + iω sqrt(1 - ζ²) [rad/s].
 [[nodiscard]] ROBOMILL_API std::complex<double> pole(const Mode& mode);
 

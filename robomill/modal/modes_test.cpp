@@ -61,6 +61,36 @@ TEST(Synthesize, OneDegreeOfFreedomSolvesItsEquationOfMotion) {
   }
 }
 
+TEST(ModesFromMass, SolveTheirEquationsOfMotionByDirection) {
+  const MassMode x{.frequency_hz = 922.0, .damping_ratio = 0.011, .modal_mass_kg = 0.03993};
+  const MassMode y{.frequency_hz = 950.0, .damping_ratio = 0.02, .modal_mass_kg = 0.05};
+  const FrfSet set = synthesize(modes_from_mass({x}, {y}), Eigen::VectorXd::LinSpaced(50, 700.0, 1200.0));
+  for (const Frf& frf : set.frfs) {
+    const bool direct = frf.name.response == frf.name.excitation;
+    const MassMode& mode = frf.name.response.axis == Axis::x ? x : y;
+    const double natural = 2.0 * std::numbers::pi * mode.frequency_hz;
+    for (Eigen::Index i = 0; i < set.frequency_hz.size(); ++i) {
+      const double omega = 2.0 * std::numbers::pi * set.frequency_hz(i);
+      const std::complex<double> stiffness =
+          mode.modal_mass_kg *
+          std::complex<double>(natural * natural - omega * omega, 2.0 * mode.damping_ratio * natural * omega);
+      if (direct) {
+        EXPECT_LT(std::abs(frf.receptance(i) * stiffness - 1.0), 1e-12);
+      } else {
+        EXPECT_EQ(frf.receptance(i), 0.0);
+      }
+    }
+  }
+  EXPECT_EQ(modes_from_mass({x}, {}).responses.size(), 2U);
+  EXPECT_EQ(modes_from_mass({x}, {}, {y}).modes[1].left.size(), 3);
+  try {
+    (void)modes_from_mass({x}, {y, {.frequency_hz = 100.0, .damping_ratio = 1.1, .modal_mass_kg = 1.0}});
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(error.parts().field, "y[2].damping_ratio");
+  }
+}
+
 TEST(Synthesize, OrderNamesResidualsAndInvariance) {
   ModalModel model = data::robot_modes();
   const Eigen::VectorXd lines = Eigen::VectorXd::LinSpaced(50, 5.0, 1000.0);

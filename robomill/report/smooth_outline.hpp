@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "robomill/base/export.hpp"
 #include "robomill/program/program.hpp"
 
 namespace robomill::report {
@@ -28,7 +29,8 @@ struct ProgramOutline {
 /// Reads a program once, in memory that does not grow with it. Corners are weighed by (1 − cos turn) × the shorter of
 /// their moves; of each sixth of the turns the heaviest come first.
 /// @param corners  at most so many
-[[nodiscard]] ProgramOutline outline(program::Source& source, double tip_tolerance_m, std::size_t corners = 6);
+[[nodiscard]] ROBOMILL_API ProgramOutline outline(program::Source& source, double tip_tolerance_m,
+                                                  std::size_t corners = 6);
 
 /// Some of a long row of things in their order: all of them up to twice `most`, then every second, fourth, … one.
 template <class T>

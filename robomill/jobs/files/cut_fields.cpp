@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
-#include <complex>
 #include <utility>
 #include <vector>
 
@@ -14,24 +12,18 @@
 namespace robomill::jobs {
 namespace {
 
-/// One direction's mode of its own, x = F / (m (ω_n² - ω² + 2iζω_nω)): residue 1 / (2 i m ω_d), shared evenly by both
-/// vectors.
 modal::Mode read_inline_mode(io::TomlFile& file, const std::string& row, const std::string& member, Eigen::Index axis) {
-  double modal_mass_kg = 0.0;
-  modal::Mode mode;
+  modal::MassMode mode;
   for (const char* key : {"frequency_hz", "damping_ratio", "modal_mass_kg"}) file.require(row + key);
   file.number(row + "frequency_hz", member + "frequency_hz", 1.0, mode.frequency_hz);
   file.number(row + "damping_ratio", member + "damping_ratio", 1.0, mode.damping_ratio);
-  file.number(row + "modal_mass_kg", member + "modal_mass_kg", 1.0, modal_mass_kg);
-  if (!(modal_mass_kg > 0.0)) throw file.refuse(row + "modal_mass_kg", "must be > 0");
+  file.number(row + "modal_mass_kg", member + "modal_mass_kg", 1.0, mode.modal_mass_kg);
+  if (!(mode.modal_mass_kg > 0.0)) throw file.refuse(row + "modal_mass_kg", "must be > 0");
   if (!(mode.frequency_hz > 0.0)) throw file.refuse(row + "frequency_hz", "must be > 0");
   if (!(mode.damping_ratio > 0.0 && mode.damping_ratio < 1.0)) {
     throw file.refuse(row + "damping_ratio", "must lie between 0 and 1", "It is a ratio, not a percentage");
   }
-  const double size = 1.0 / std::sqrt(2.0 * modal_mass_kg * modal::pole(mode).imag());
-  mode.left = Eigen::VectorXcd::Unit(3, axis) * size;
-  mode.right = Eigen::VectorXcd::Unit(3, axis) * std::complex<double>(0.0, -size);
-  return mode;
+  return modal::mode_from_mass(mode, axis, 3);
 }
 
 /// Of its own modes a table gives x, y and z; those of which it says nothing, not even [], are none of the structure's.

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/export.hpp"
 #include "robomill/modal/directions.hpp"
 
 namespace robomill::jobs {
@@ -53,10 +54,10 @@ struct Job {
   std::vector<SpindlePoint> spindle_curve = {};
   std::vector<TestCut> cuts = {};
 
-  void validate() const;
+  ROBOMILL_API void validate() const;
 };
 
 /// @throws InvalidInput with file, line, key and value
-[[nodiscard]] Job read_job(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API Job read_job(const std::filesystem::path& path);
 
 }  // namespace robomill::jobs

@@ -38,11 +38,11 @@ struct LobesFile {
   std::shared_ptr<const io::TomlFile> document = {};  ///< for errors in its words; empty where built in memory
 
   /// Forgets the tool's structure: another stands in its place.
-  void drop_dynamics();
+  ROBOMILL_API void drop_dynamics();
   /// Checks what the problem still needs, with errors in the file's words where there is one: call it when dynamics is
   /// there.
   /// @throws InvalidInput
-  void validate() const;
+  ROBOMILL_API void validate() const;
 };
 
 /// Everything but the structure is checked. @throws InvalidInput with file, line, key and value
