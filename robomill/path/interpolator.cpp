@@ -6,8 +6,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/path/realtime/runner.hpp"
+#include "robomill/path/realtime/survey.hpp"
 #include "robomill/path/speed/planner.hpp"
-#include "robomill/path/speed/survey.hpp"
 
 namespace robomill::path {
 namespace {

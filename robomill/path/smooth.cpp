@@ -11,9 +11,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/path/duration.hpp"
+#include "robomill/path/emitter.hpp"
 #include "robomill/path/posture.hpp"
 #include "robomill/path/published/fir.hpp"
-#include "robomill/path/realtime/emitter.hpp"
 #include "robomill/path/speed/planner.hpp"
 #include "robomill/path/speed/preview.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "robomill/base/ring.hpp"
 #include "robomill/path/blend.hpp"
-#include "robomill/path/realtime/rate.hpp"
+#include "robomill/path/speed/rate.hpp"
 #include "robomill/path/speed/span.hpp"
 
 namespace robomill::path {

@@ -4,7 +4,7 @@
 
 #include "robomill/path/interpolator.hpp"
 #include "robomill/path/realtime/look_ahead.hpp"
-#include "robomill/path/realtime/rate.hpp"
+#include "robomill/path/speed/rate.hpp"
 
 namespace robomill::path {
 

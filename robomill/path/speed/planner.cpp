@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "robomill/path/realtime/rate.hpp"
+#include "robomill/path/speed/rate.hpp"
 
 namespace robomill::path {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
+#include "robomill/path/emitter.hpp"
 #include "robomill/path/posture.hpp"
-#include "robomill/path/realtime/emitter.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
 #include "testing/path/s_path.hpp"
 #include "testing/robot/arms.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/path/realtime/emitter.hpp"
+#include "robomill/path/emitter.hpp"
 #include "robomill/robot/hybrid.hpp"
 #include "testing/allocations.hpp"
 #include "testing/path/machine.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "robomill/path/check.hpp"
-#include "robomill/path/realtime/emitter.hpp"
+#include "robomill/path/emitter.hpp"
 
 namespace robomill::path {
 

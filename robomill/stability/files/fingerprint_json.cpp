@@ -1,6 +1,7 @@
 #include "robomill/stability/files/fingerprint_json.hpp"
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/json.hpp"
 #include "robomill/modal/files/mode_json.hpp"
 
 namespace robomill::stability {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/json.hpp"
 #include "robomill/modal/files/mode_json.hpp"
 
 namespace robomill::stability {

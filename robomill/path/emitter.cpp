@@ -1,4 +1,4 @@
-#include "robomill/path/realtime/emitter.hpp"
+#include "robomill/path/emitter.hpp"
 
 namespace robomill::path {
 

@@ -1,4 +1,4 @@
-#include "robomill/path/speed/survey.hpp"
+#include "robomill/path/realtime/survey.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "robomill/path/realtime/rate.hpp"
+#include "robomill/path/speed/rate.hpp"
 
 #include <algorithm>
 #include <array>
