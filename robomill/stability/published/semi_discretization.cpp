@@ -2,9 +2,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <string>
 
-#include "robomill/base/error.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 #include "robomill/stability/time_steps/discretizations.hpp"
 #include "robomill/stability/time_steps/evaluator.hpp"
