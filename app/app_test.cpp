@@ -160,9 +160,9 @@ TEST_F(App, ExplainNamesMeasuredPeaks) {
 
   const Ended open = robomill("explain --peaks 540.9,539.5 --rpm 6500 --teeth 3 --modes " ROBOMILL_SOURCE_DIR
                               "/data/robot-modes.toml");
-  EXPECT_NE(open.out.find("540.90 Hz  cannot be told: the cut, or chatter"), std::string::npos) << open.out;
-  EXPECT_NE(open.out.find("539.50 Hz  chatter, of which mode cannot be told"), std::string::npos) << open.out;
-  EXPECT_NE(open.out.find("Which mode chatters, if any, cannot be told from these peaks."), std::string::npos);
+  EXPECT_NE(open.out.find("540.90 Hz  ambiguous: the cut, or chatter"), std::string::npos) << open.out;
+  EXPECT_NE(open.out.find("539.50 Hz  chatter of an unidentified mode"), std::string::npos) << open.out;
+  EXPECT_NE(open.out.find("These peaks do not determine which mode chatters, if any."), std::string::npos);
 
   EXPECT_EQ(robomill("explain --peaks 300 --rpm 6500 --teeth 3").exit, 2);
   EXPECT_EQ(robomill(peaks + "--lobes lobes.toml").exit, 1);
@@ -277,7 +277,7 @@ TEST_F(App, FindsCoefficientsFromSlots) {
   const Ended one = robomill("coefficients one.csv --teeth 4 -o one.json");
   EXPECT_EQ(one.exit, 3);
   EXPECT_EQ(nlohmann::json::parse(slurp(folder_.at("one.json")))["identification"]["status"], "edge unknown");
-  EXPECT_NE(one.out.find("not told"), std::string::npos) << one.out;
+  EXPECT_NE(one.out.find("not stated"), std::string::npos) << one.out;
   write("bad.csv", head + first + "0.1,0,3000,-751,887,493\n");
   const Ended bad = robomill("coefficients bad.csv --teeth 4 -o bad.toml");
   EXPECT_EQ(bad.exit, 1);

@@ -23,7 +23,7 @@ void print_pair(const char* name, const cutting::CoefficientPair& pair, bool edg
       with_deviation(pair.cutting_n_per_m2 / units::n_per_mm2, pair.cutting_deviation_n_per_m2 / units::n_per_mm2);
   const std::string edge =
       edge_known ? with_deviation(pair.edge_n_per_m / units::n_per_mm, pair.edge_deviation_n_per_m / units::n_per_mm)
-                 : "not told";
+                 : "not stated";
   fmt::print("{:<12} {:>22} {:>22}", name, cutting, edge);
   if (std::isfinite(pair.r_squared)) fmt::print("   R² {:.6f}", pair.r_squared);
   fmt::print("\n");
@@ -59,7 +59,7 @@ cutting::SlotFit identify(const cutting::SlotsFile& file, const CoefficientsComm
     cutting::SlotFit fit = cutting::identify_from_slots(file.slots, {.teeth = told ? command.teeth : usual_teeth});
     if (!told) {
       fit.notes.push_back(
-          fmt::format("The cutter's teeth were not told (--teeth): {} are taken; with N teeth every "
+          fmt::format("The number of teeth was not given (--teeth): {} are assumed; with N teeth every "
                       "coefficient is {}/N of these.",
                       usual_teeth, usual_teeth));
     }
@@ -92,7 +92,7 @@ Exit run(const CoefficientsCommand& command, const Common& common, Progress&) {
     return not_reached;
   }
   if (fit.status == cutting::SlotFit::Status::identified) return done;
-  fmt::print(stderr, "robomill: one feed cannot tell the edge's part of the force\n");
+  fmt::print(stderr, "robomill: one feed does not determine the edge force\n");
   return not_reached;
 }
 

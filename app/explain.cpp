@@ -81,7 +81,7 @@ std::string words(const stability::Explanation& e, int teeth) {
 
 /// What is known of a peak whose best readings are about as good as each other.
 const char* undecided(Kind kind) {
-  return kind == Kind::chatter ? "chatter, of which mode cannot be told" : "cannot be told: the cut, or chatter";
+  return kind == Kind::chatter ? "chatter of an unidentified mode" : "ambiguous: the cut, or chatter";
 }
 
 void print_peak(const stability::ExplainedPeak& peak, int teeth) {
@@ -105,14 +105,14 @@ void print_summary(const stability::Fingerprint& found, int teeth,
       fmt::print("Chatter of {} at {:.2f} Hz.\n", to_string(found.mode), found.chatter_frequency_hz);
       break;
     case stability::Fingerprint::State::cannot_be_told:
-      fmt::print("Which mode chatters, if any, cannot be told from these peaks.\n");
+      fmt::print("These peaks do not determine which mode chatters, if any.\n");
       break;
     case stability::Fingerprint::State::no_chatter:
       fmt::print("No peak is chatter of a known mode.\n");
       break;
   }
   if (!verdict) {
-    fmt::print("Whether it is regenerative cannot be told without the cut: give --lobes and --at.\n");
+    fmt::print("Whether it is regenerative depends on the cut: give --lobes and --at.\n");
     return;
   }
   fmt::print("The cut: {} (|μ| = {:.5g}, without the delay {:.5g}).\n", to_string(verdict->kind),

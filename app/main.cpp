@@ -112,7 +112,7 @@ CommandLine::CommandLine() {
       "how far a peak may lie from what explains it, or half a mode's width where that is more (default: 1)");
   sub->add_option("--speed-tolerance-percent", explain.speed_tolerance_percent,
                   "by how much the true speed may differ from --rpm (default: 0.2)");
-  sub->add_option("--lobes", explain.lobes, "lobes.toml of the cut: tells whether its chatter needs the delay");
+  sub->add_option("--lobes", explain.lobes, "lobes.toml of the cut: decides whether its chatter is regenerative");
   sub->add_option("--at", explain.at, "RPM,MM of the cut, with --lobes")->delimiter(',')->expected(2);
 
   sub = verb("simulate", "a cut in the time domain: vibration, forces, the wall, stable or chatter",
@@ -133,7 +133,7 @@ CommandLine::CommandLine() {
   sub = verb("coefficients", "average forces of slots to cutting force coefficients",
              [this](Progress& p) { return run(coefficients, common, p); });
   sub->add_option("slots", coefficients.slots, "slots.csv")->required();
-  sub->add_option("--teeth", coefficients.teeth, "teeth of the cutter (default: 4, told in the notes)")
+  sub->add_option("--teeth", coefficients.teeth, "teeth of the cutter (default: 4, stated in the notes)")
       ->check(CLI::Range(1, 100));
 
   sub = verb("stiffness", "loads on a robot's tool and the displacements measured to joint stiffness",
@@ -153,7 +153,7 @@ CommandLine::CommandLine() {
   sub->add_option("--method", smooth.method, "verified, optimal, paper, paper-as-printed or no-joint-jerk")
       ->check(CLI::IsMember({"verified", "optimal", "paper", "paper-as-printed", "no-joint-jerk"}));
   sub->add_flag("--compare", smooth.compare, "all other methods beside it, in the summary and the report");
-  sub->add_flag("--keep-breaches", smooth.keep_breaches, "write the trajectory even where it breaks a limit");
+  sub->add_flag("--keep-breaches", smooth.keep_breaches, "write the trajectory even where it violates a limit");
   sub->add_option(
       "--program-period-ms", smooth.program_period_ms,
       "longest time between the points of a joint program (default: 20; 2 for .script and .servoj, always)");
@@ -174,7 +174,7 @@ CommandLine::CommandLine() {
   sub->add_option("--record", monitor.record, "a folder for the seconds before each alarm, as WAV");
   sub->add_option("--metrics-port", monitor.metrics_port, "answer GET /metrics on loopback; 0: any port that is free")
       ->check(CLI::Range(0, 65535));
-  sub->add_option("--seconds", monitor.seconds, "hear so much of the stream, then end")->check(CLI::PositiveNumber);
+  sub->add_option("--seconds", monitor.seconds, "process so much of the stream, then end")->check(CLI::PositiveNumber);
 
   sub = verb("calibrate", "labelled recordings to the published detector's threshold",
              [this](Progress& p) { return run(calibrate, common, p); });

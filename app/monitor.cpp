@@ -108,7 +108,7 @@ Input open_input(const MonitorCommand& command, monitor::MonitorFile& file, cons
     input.name = fmt::format("mqtt://{}:{}/{}", file.mqtt.host, file.mqtt.port_or_default(), file.mqtt.topic);
     if (file.options.sample_rate_hz <= 0.0) {
       throw InvalidInput(InvalidInput::Parts{
-          .where = file.path.string(), .field = "signal.sample_rate_hz", .rule = "must be given to hear a stream"});
+          .where = file.path.string(), .field = "signal.sample_rate_hz", .rule = "must be given for a stream"});
     }
     return input;
   }
@@ -268,7 +268,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   if (recorder) write_report(command.report, monitor_page(recorder->run(), file, input.name));
   if (common.wants_summary()) {
     const live::MetricValues& m = session.metrics();
-    fmt::print("{:.3f} s of {} heard in {} decisions, {} alarm{}.\n", session.time_s(), printable(input.name),
+    fmt::print("{:.3f} s of {} processed in {} decisions, {} alarm{}.\n", session.time_s(), printable(input.name),
                m.decisions.load(), m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
   }
   return stop ? static_cast<Exit>(exit_of_signal()) : done;

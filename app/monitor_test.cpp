@@ -278,7 +278,7 @@ TEST_F(MonitorVerb, RefusesBadInputWithOneMessage) {
   EXPECT_FALSE(std::filesystem::exists(folder_.at("five.jsonl")));
   folder_.file("two.toml", "[signal]\nchannels = [1, 2]\n");
   refused("two.toml --input rec.wav", "has no column 2");
-  refused("two.toml --input mqtt://127.0.0.1/t", "must be given to hear a stream");
+  refused("two.toml --input mqtt://127.0.0.1/t", "must be given for a stream");
   folder_.file("x.csv", "ay\n1\n");
   refused("monitor.toml --input x.csv", "has no column ax_m_per_s2. It has 1 column: ay");
 }

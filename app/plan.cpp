@@ -62,7 +62,7 @@ void print_summary(const jobs::PlanResult& result) {
   }
   if (result.path) {
     const path::Summary& smoothed = result.path->first().summary;
-    fmt::print("program      {:.3f} s for {} blocks; {} breaches of limits\n", smoothed.duration_s, smoothed.blocks,
+    fmt::print("program      {:.3f} s for {} blocks; {} violations of limits\n", smoothed.duration_s, smoothed.blocks,
                smoothed.check.violations());
   }
   if (!result.cuts.empty()) {

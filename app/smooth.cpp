@@ -85,7 +85,7 @@ void print_summary(const jobs::SmoothResult& result) {
   print_check(by);
   if (result.smoothed.methods.size() > 1) print_methods(result.smoothed);
   if (result.smoothed.robot_program) print_run(*result.smoothed.robot_program);
-  fmt::print("\n{} breaches of limits\n", summary.check.violations());
+  fmt::print("\n{} violations of limits\n", summary.check.violations());
   for (const program::Skipped& item : result.smoothed.skipped)
     fmt::print("skipped    line {}: {}\n", item.line, printable(item.what));
   print_notes(result.smoothed.notes, "note       ");

@@ -58,7 +58,7 @@ Exit run(const StiffnessCommand& command, const Common& common, Progress&) {
   if (common.wants_summary()) print_summary(found, cell);
   const bool seen = std::ranges::any_of(found.joints, [](const auto& joint) { return joint.identifiable; });
   if (converged && !seen) {
-    fmt::print(stderr, "robomill: these loads tell the stiffness of no joint\n");
+    fmt::print(stderr, "robomill: these loads determine the stiffness of no joint\n");
     return not_reached;
   }
   if (converged) return done;

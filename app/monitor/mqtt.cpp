@@ -106,8 +106,8 @@ void MqttClient::Parts::on_refused(void* context, MQTTAsync_failureData* data) {
     why = data->message;
   } else if (data != nullptr) {
     // 1 to 5 are the broker's own answers, by MQTT 3.1.1.
-    static constexpr const char* answers[] = {"protocol not spoken", "client's name refused", "broker not available",
-                                              "user or password refused", "not authorised"};
+    static constexpr const char* answers[] = {"protocol not spoken", "client's name rejected", "broker not available",
+                                              "user or password rejected", "not authorised"};
     why = data->code >= 1 && data->code <= 5 ? answers[data->code - 1] : fmt::format("no connection ({})", data->code);
   }
   of(context).retry(why);
@@ -145,7 +145,7 @@ void MqttClient::Parts::subscribe() {
   MQTTAsync_responseOptions response = MQTTAsync_responseOptions_initializer;
   response.context = this;
   response.onFailure = [](void* context, MQTTAsync_failureData*) {
-    of(context).told(true, "the subscription was refused");
+    of(context).told(true, "the subscription was rejected");
   };
   if (MQTTAsync_subscribe(handle, subscription.c_str(), settings.qos, &response) != MQTTASYNC_SUCCESS) {
     told(true, "the subscription could not be sent");

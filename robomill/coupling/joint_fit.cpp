@@ -129,7 +129,7 @@ Joint joint_frame(const Assembly& assembly, const JointFitOptions& options) {
   if (joint.points != 1) {
     throw InvalidInput("joint.points", joint.points, "",
                        "must be 1 where a joint is looked for: a distributed joint is only predicted, not found",
-                       "Find the joint at the mouth, which one FRF can tell");
+                       "Find the joint at the mouth, which one FRF determines");
   }
   const double cross = joint.cross_stiffness_n_per_rad;
   require_finite("joint.cross_stiffness_n_per_rad", cross, "N/rad");

@@ -98,13 +98,13 @@ bool at_bound(double value, double bound) {
 std::string note_of_stiffness(std::size_t i, double value, const JointKnowledge& known, double bound) {
   const std::string name = to_string(static_cast<JointUnknown>(i));
   if (std::isinf(known.deviation)) {
-    return fmt::format("Above {:.3g} {} this FRF cannot tell the {} from a rigid one.", known.visible_up_to, units[i],
-                       name);
+    return fmt::format("Above {:.3g} {} this FRF does not separate the {} from a rigid one.", known.visible_up_to,
+                       units[i], name);
   }
   if (bound > 0.0) {
     return fmt::format("The {} ends at its bound of {:.4g} {}: the joint may lie beyond it.", name, bound, units[i]);
   }
-  return fmt::format("The {} is below {:.3g} {}; more this FRF does not tell.", name, value + 2.0 * known.deviation,
+  return fmt::format("The {} is below {:.3g} {}; more this FRF does not show.", name, value + 2.0 * known.deviation,
                      units[i]);
 }
 
@@ -132,7 +132,7 @@ void tell_nothing(const Flags& free, std::array<JointKnowledge, joint_unknowns>&
     if (!free[i]) continue;
     knowledge[i].deviation = infinite;
     if (i % 2 == 0) knowledge[i].visible_up_to = infinite;
-    knowledge[i].note = to_string(static_cast<JointUnknown>(i)) + ": not told by this search";
+    knowledge[i].note = to_string(static_cast<JointUnknown>(i)) + ": not determined by this search";
   }
 }
 
@@ -178,7 +178,7 @@ std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& mod
     if (!stiffness) {
       const double most = joint[i] + 2.0 * known.deviation;
       if (most < options.upper[i]) {
-        notes.push_back(fmt::format("The {} is below {:.3g} {}; more this FRF does not tell.", name, most, units[i]));
+        notes.push_back(fmt::format("The {} is below {:.3g} {}; more this FRF does not show.", name, most, units[i]));
       }
       continue;
     }

@@ -282,7 +282,7 @@ SlotFit identify_from_slots(const std::vector<SlotForce>& slots, const SlotOptio
   if (!told) {
     fit.notes.emplace_back(
         "All slots have one feed: cutting and edge parts cannot be parted. The cutting coefficients hold this feed's "
-        "edge force too; slots at a second feed would tell.");
+        "edge force too; slots at a second feed would show it.");
   }
   if (with_edge) compare_speeds(slots, options, fit);
   if (with_edge) check_model(slots, options, fit);

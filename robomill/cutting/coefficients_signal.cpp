@@ -230,7 +230,7 @@ void tell(const std::vector<Term>& terms, const Solution& solution, SignalFit& f
       const bool term = i < static_cast<Eigen::Index>(terms.size());
       names += (names.empty() ? "" : ", ") + (term ? terms[static_cast<std::size_t>(i)].name() : std::string("offset"));
     }
-    fit.notes.push_back("The signal cannot tell apart: " + names + ".");
+    fit.notes.push_back("The signal does not separate: " + names + ".");
   }
   const auto mean = [](const std::vector<double>& polynomial) {
     // At the κ of a cylinder's side.

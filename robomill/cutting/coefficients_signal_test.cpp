@@ -139,7 +139,7 @@ TEST(SignalFit, TellsWhatACylinderCannot) {
       {.degrees = {.tangential = 1, .tangential_edge = -1, .axial_edge = -1}, .find_offset = false, .steps = 360});
   EXPECT_FALSE(fit.identifiable);
   ASSERT_EQ(fit.notes.size(), 1U);
-  EXPECT_EQ(fit.notes.front(), "The signal cannot tell apart: tangential κ, tangential.");
+  EXPECT_EQ(fit.notes.front(), "The signal does not separate: tangential κ, tangential.");
   EXPECT_TRUE(std::isinf(fit.deviations.tangential_n_per_m2[0]) && std::isinf(fit.deviations.tangential_n_per_m2[1]));
   EXPECT_TRUE(std::isfinite(fit.deviations.radial_n_per_m2.front()));
   const std::vector<double>& line = fit.coefficients.tangential_n_per_m2;

@@ -117,7 +117,7 @@ DefaultStock default_stock(const program::Program& program, const Cutter& cutter
   }
   const std::string where =
       highest ? "its highest pass is in line " + std::to_string(program.blocks[highest->block].line) : "it has no pass";
-  throw InvalidInput("stock", "must be given: the program does not tell how high the material stands; " + where,
+  throw InvalidInput("stock", "must be given: the program does not state how high the material stands; " + where,
                      "Give [stock], or cut.axial_depth_mm, the depth of the highest pass");
 }
 

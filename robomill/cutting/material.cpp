@@ -105,7 +105,7 @@ const Material& material(std::string_view name) {
     if (same_word(known.name, name)) return known;
     names += (names.empty() ? "" : ", ") + known.name;
   }
-  throw InvalidInput("material", "must be one of " + names, "Others are told by their coefficients");
+  throw InvalidInput("material", "must be one of " + names, "Give the coefficients of others");
 }
 
 MillingCoefficients milling_coefficients(const Material& material, double rake_rad, double helix_rad,

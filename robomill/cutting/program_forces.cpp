@@ -199,7 +199,7 @@ std::vector<BlockForce> local_program_forces(const program::Program& program, co
         throw InvalidInput("program",
                            "line " + std::to_string(block.line) +
                                " plunges along the tool's axis; neighbouring passes "
-                               "cannot tell such a cut",
+                               "does not resolve such a cut",
                            "Give the stock");
       }
       BlockForce& out = blocks[i];

@@ -66,7 +66,7 @@ CutPosture posture_of(const ForcesFile& file, const robot::Cell& cell, const Eig
                  fmt::format("must not be a singular posture (condition number {:.3g})", stiffness.condition_number));
   }
   if (stiffness.status == robot::Stiffness::Status::buckled) {
-    throw refuse(file, "robot.joints_deg", "must hold the cutting force: the joints give way under it");
+    throw refuse(file, "robot.joints_deg", "must hold the cutting force: the joints deflect without equilibrium");
   }
   CutPosture out;
   out.compliance_m_per_n = frame.transpose() * stiffness.compliance.topLeftCorner<3, 3>() * frame;

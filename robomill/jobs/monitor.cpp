@@ -23,7 +23,7 @@ live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& 
     throw InvalidInput(InvalidInput::Parts{.where = file.path.string(),
                                            .field = "process.teeth",
                                            .rule = "must be given beside process.modes",
-                                           .hint = "Chatter is told from multiples of tooth passing by it"});
+                                           .hint = "It separates chatter from multiples of tooth passing"});
   }
   return basis;
 }

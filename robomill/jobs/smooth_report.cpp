@@ -104,7 +104,7 @@ report::Smooth smooth_report(const SmoothResult& result) {
   }
   if (!result.trajectory_holds()) {
     out.warnings.push_back(fmt::format(
-        "{} breaches of limits{}.", result.first().summary.check.violations(),
+        "{} violations of limits{}.", result.first().summary.check.violations(),
         result.smoothed.written ? "; the trajectory was written all the same" : ": there is no trajectory"));
   }
   out.notes = result.smoothed.notes;

@@ -22,7 +22,7 @@ constexpr double longest_filled_s = 1.0;
 std::function<void(std::uint64_t)> tell_dropped(Notices& notices, MetricValues& metrics) {
   return [&notices, &metrics](std::uint64_t hops) {
     metrics.dropped_hops += hops;
-    notices.add("dropped-hops", "samples come faster than they can be heard; whole hops are left out", hops);
+    notices.add("dropped-hops", "samples come faster than they can be processed; whole hops are left out", hops);
   };
 }
 

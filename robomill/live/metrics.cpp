@@ -47,7 +47,7 @@ std::string MetricValues::text() const {
   gauge("chatter_frequency_hz", "0 where there is none", chatter_frequency_hz);
   gauge("spindle_speed_rpm", "as tracked, 0 where it is unknown", spindle_speed_rpm);
   gauge("faults", "bits of what is wrong with the input", static_cast<double>(faults.load()));
-  gauge("stream_seconds", "time of the stream heard so far", stream_s);
+  gauge("stream_seconds", "time of the stream processed so far", stream_s);
   gauge("compute_seconds", "that the last decision took", compute_s);
   gauge("queued_hops", "waiting for the detector", static_cast<double>(queued_hops.load()));
   gauge("connected", "1 while a broker is", connected ? 1.0 : 0.0);

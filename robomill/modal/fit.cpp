@@ -181,10 +181,10 @@ void fit_by_poles(FitResult& result, const FrfSet& set, const FitOptions& option
     result.best.insert(result.best.end(), done.fit.cost.begin(), done.fit.cost.end());
     if (!done.fit.converged) result.status = FitResult::Status::not_converged;
     if (done.fit.held_back) {
-      result.warnings.push_back(fmt::format(
-          "Nothing but their scatter tells how true the lines are, as with a single hit: {} modes come near "
-          "enough. Hit several times, or ask for a number of modes.",
-          done.fit.poles.size()));
+      result.warnings.push_back(
+          fmt::format("Only their scatter shows how accurate the lines are, as with a single hit: {} modes come near "
+                      "enough. Hit several times, or ask for a number of modes.",
+                      done.fit.poles.size()));
     }
     progress.advance();
   }

@@ -68,7 +68,7 @@ Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s
   out.frequency_hz = frequency_hz;
   out.std_hz = std_hz;
   if (modes != nullptr) {
-    require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", "Modes are told apart by it");
+    require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", "It separates the modes");
     name_mode(out, spindle_speed_rad_per_s, teeth, *modes, workpiece);
   }
   // Lobes far down lie close together: no more of them than can be told apart from their neighbours.

@@ -39,7 +39,7 @@ std::string verdict(const Json& run) {
     }
     out += ".</p>\n";
   }
-  return out.empty() ? "<p class=\"why\"><strong>No chatter</strong> was heard.</p>\n" : out;
+  return out.empty() ? "<p class=\"why\"><strong>No chatter</strong> was detected.</p>\n" : out;
 }
 
 std::string events_table(const Json& events) {
@@ -58,7 +58,7 @@ std::string events_table(const Json& events) {
 
 std::string plots_of(const Json& run) {
   std::string body = plot("monitor-wave", "The samples over time, chatter shaded",
-                          "What was recorded; shaded where chatter was told.");
+                          "What was recorded; shaded where chatter was reported.");
   if (!run["spectrogram"].is_null()) {
     body += plot("monitor-spectrogram", "Synchrosqueezed spectrogram of the recording over time",
                  "Synchrosqueezed spectrogram; the marks are what the monitor took for chatter.");
@@ -95,7 +95,7 @@ std::string monitor_section(const Json& report, bool plots) {
                         run["decision_count"].get<std::size_t>(), significant(run["compute_mean_us"]),
                         significant(run["compute_max_us"]));
   }
-  return section("monitor", "Chatter monitor", "What the monitor heard in the recording, and when it said so.",
+  return section("monitor", "Chatter monitor", "What the monitor detected in the recording, and when.",
                  body + bullet_list(run["notes"]));
 }
 
@@ -111,7 +111,7 @@ std::string calibration_section(const Json& report, bool plots) {
   const Json& rows = run["rows"];
   const auto wrong = std::ranges::count_if(
       rows, [](const Json& row) { return row["chatter"].get<bool>() != row["alarmed"].get<bool>(); });
-  body += details(fmt::format("{} recordings, {} told wrongly", rows.size(), wrong), rows_table(rows));
+  body += details(fmt::format("{} recordings, {} classified wrongly", rows.size(), wrong), rows_table(rows));
   return section("calibration", "Calibration", "How the threshold was set, and how it did on the other half.",
                  body + bullet_list(run["notes"]));
 }

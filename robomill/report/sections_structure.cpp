@@ -126,11 +126,10 @@ std::string frf_section(const Json& report, bool plots) {
   if (plots && predicted) {
     body +=
         plot("frf", "Frequency response functions, predicted, measured where known, and fitted: magnitude and phase",
-             "A peak is a frequency at which the tool tip gives way easily.");
+             "A peak is a frequency at which the tool tip is compliant.");
   } else if (plots) {
-    body +=
-        plot("frf", "Frequency response functions, measured and fitted: magnitude, phase and coherence",
-             "A peak is a frequency at which the tool tip gives way easily; coherence near 1 means the hits agree.");
+    body += plot("frf", "Frequency response functions, measured and fitted: magnitude, phase and coherence",
+                 "A peak is a frequency at which the tool tip is compliant; coherence near 1 means the hits agree.");
   }
   const char* lead =
       predicted

@@ -245,7 +245,7 @@ std::string partner(const Eigen::MatrixXd& inverse, Eigen::Index i) {
     most = std::abs(inverse(i, j)) / size;
     found = j;
   }
-  return found < 0 ? "" : "; the loads hardly tell it from joint " + std::to_string(found + 1);
+  return found < 0 ? "" : "; the loads hardly separate it from joint " + std::to_string(found + 1);
 }
 
 void judge(const Eigen::VectorXd& compliance, const Solved& solved, double variance, const IdentifyOptions& options,
@@ -259,12 +259,12 @@ void judge(const Eigen::VectorXd& compliance, const Solved& solved, double varia
     constexpr double share = 1e-6;
     if (solved.unknown(i) > share) {
       joint.compliance_deviation = std::numeric_limits<double>::infinity();
-      joint.reason = "the loads cannot tell it from";
+      joint.reason = "the loads do not separate it from";
       for (Eigen::Index j = 0; j < solved.unknown.size(); ++j) {
         if (j != i && solved.unknown(j) > share) joint.reason += " joint " + std::to_string(j + 1);
       }
     } else if (!std::isfinite(variance)) {
-      joint.reason = "as many numbers were measured as are sought: nothing tells how well";
+      joint.reason = "as many numbers were measured as are sought: their accuracy is unknown";
     } else if (joint.compliance_deviation > options.max_relative_deviation * joint.compliance) {
       joint.reason = "its compliance is " + number(joint.compliance) + " with a deviation of " +
                      number(joint.compliance_deviation) + partner(solved.inverse, i);

@@ -181,7 +181,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
       out.coefficients.validate(side, side);
       if (out.dexel_m > 0.5 * out.cutter.mill.diameter_m) {
         throw InvalidInput("dexel_m", out.dexel_m, "m", "must be at most the cutter's radius",
-                           "A tenth of it tells depths");
+                           "A tenth of it resolves depths");
       }
     }
   });

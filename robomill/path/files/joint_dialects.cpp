@@ -60,7 +60,8 @@ void put(fmt::memory_buffer& out, std::string_view text) {
 }
 
 constexpr const char* wrong_load =
-    "With a wrong load the arm sags, its dynamics are wrong, and it may leave its path by far more than is told here.";
+    "With a wrong load the arm sags, its dynamics are wrong, and it may leave its path by far more than is stated "
+    "here.";
 
 /// Lines about outputs that the cell does not name.
 void add_missing_outputs(const EndEffector& end, const Outputs& wanted, std::vector<std::string>& lines) {

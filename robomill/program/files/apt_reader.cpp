@@ -213,7 +213,7 @@ void AptReader::take_from() {
     begin_at(at);
   } else if (moves_to(at)) {
     refuse_text("FROM", shown_, "is another position than the one that the tool has come to",
-                "FROM/ tells where the first move begins; GOTO/ moves");
+                "FROM/ states where the first move begins; GOTO/ moves");
   }
 }
 

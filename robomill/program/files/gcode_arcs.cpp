@@ -131,7 +131,7 @@ Vector2d GcodeReader::center_of_radius(const Line& line, const Vector2d& from, c
   const double radius_m = std::abs(*line.radius) * unit_m();
   if (!(radius_m > 0.0)) refuse("R", *line.radius, unit_name(), "must not be 0");
   if (2.0 * half_m <= same_place_m) {
-    refuse("R", *line.radius, unit_name(), "cannot tell where an arc lies that ends where it begins",
+    refuse("R", *line.radius, unit_name(), "does not define an arc that ends where it begins",
            fmt::format("Give its centre by {}", plane_.centers));
   }
   if (half_m - radius_m > allowed_radius_error_m(radius_m)) {

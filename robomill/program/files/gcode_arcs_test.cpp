@@ -229,7 +229,7 @@ TEST(GcodeArcs, RefusesWithLineAndByHowMuch) {
   expect_refused(head + "G2 X10 R4.9\n",
                  "part:2: R = 4.9 mm; is too small by 0.1 mm: half the distance of the arc's ends is 5 mm");
   expect_refused(head + "G2 R5\n",
-                 "part:2: R = 5 mm; cannot tell where an arc lies that ends where it begins. Give its centre by I, J");
+                 "part:2: R = 5 mm; does not define an arc that ends where it begins. Give its centre by I, J");
   expect_refused(head + "G2 X1 R0\n", "R = 0 mm; must not be 0");
   expect_refused(head + "G2 X1 R1 I1\n", "R = 1 mm; stands beside I, J or K");
   expect_refused(head + "G2 X1 R2000000\n", "R: gives an arc a radius above 1 km");

@@ -255,7 +255,7 @@ class Chain {
   }
 
   [[nodiscard]] std::vector<urdf::JointSharedPtr> way_to_tip() const {
-    if (reading_.tip.empty()) throw refuse("must be told which link is the flange", "urdf_tip = \"tool0\", say");
+    if (reading_.tip.empty()) throw refuse("needs the link of the flange", "urdf_tip = \"tool0\", say");
     if (!reading_.base.empty()) (void)link(reading_.base);
     std::vector<urdf::JointSharedPtr> way;
     urdf::LinkConstSharedPtr at = link(reading_.tip);

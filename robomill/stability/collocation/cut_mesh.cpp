@@ -250,8 +250,7 @@ class Builder {
       }
     }
     if (!mesh.topology.pieces[at].records) {
-      throw InvalidInput("runout_m", milling_.tool.runout_m, "m",
-                         "leaves stretches of the cut too short to tell apart");
+      throw InvalidInput("runout_m", milling_.tool.runout_m, "m", "leaves stretches of the cut too short to resolve");
     }
     source.piece = static_cast<int>(at);
     inside = (position - mesh.pieces[at].from_rad) / mesh.pieces[at].length_rad;
