@@ -26,7 +26,7 @@ TEST_F(SmoothVerb, WritesATrajectoryAndTellsTheLimits) {
   ASSERT_EQ(run.exit, 0) << run.out << run.err;
   EXPECT_TRUE(run.out.starts_with("verified  "));
   EXPECT_NE(run.out.find("joint 6"), std::string::npos);
-  EXPECT_NE(run.out.find("0 breaches of limits"), std::string::npos);
+  EXPECT_NE(run.out.find("0 violations of limits"), std::string::npos);
   EXPECT_NE(run.out.find("skipped    line 2"), std::string::npos);
   const auto json = nlohmann::json::parse(slurp(folder_.at("smooth.json")));
   const std::string rows = slurp(folder_.at("t.csv"));

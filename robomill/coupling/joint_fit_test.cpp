@@ -352,7 +352,7 @@ TEST(JointFit, SaysNothingOfDeviationsAwayFromTheMinimum) {
       for (const JointKnowledge& known : genes.knowledge) {
         EXPECT_FALSE(known.identifiable);
         EXPECT_TRUE(std::isinf(known.deviation));
-        EXPECT_NE(known.note.find("not told by this search"), std::string::npos);
+        EXPECT_NE(known.note.find("not determined by this search"), std::string::npos);
       }
       EXPECT_FALSE(genes.notes.empty());
     }
