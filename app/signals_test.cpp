@@ -106,7 +106,7 @@ TEST_F(Signals, EndEveryVerbWhereItCounts) {
   cut.replace(cut.find("dexel_mm = 0.25"), 15, "dexel_mm = 0.015");
   write("forces.toml", cut);
   write("frf.csv", five_modes());
-  write("modes.toml", "[fit]\nmethod = \"pso\"\nmodes = 5\npso_particles = 1000\npso_max_iterations = 100000\n");
+  write("modes.toml", "[fit]\nmethod = \"pso\"\nmodes = 5\npso_particles = 30000\npso_max_iterations = 100000\n");
   const std::vector<std::string> verbs = {
       "lobes lobes.toml -o result.json",
       "simulate lobes.toml --at 7000,1 --seconds 3600 -o result.csv",
