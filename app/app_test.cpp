@@ -271,7 +271,7 @@ TEST_F(App, FindsCoefficientsFromSlots) {
   expect("tangential_edge_n_per_mm", 29.7);
   expect("radial_edge_n_per_mm", 55.7);
   expect("axial_edge_n_per_mm", 1.8);
-  EXPECT_NE(robomill("coefficients slots.csv").out.find("4 are taken"), std::string::npos);
+  EXPECT_NE(robomill("coefficients slots.csv").out.find("4 are assumed"), std::string::npos);
   // One feed: finished, but not told.
   write("one.csv", head + first + "0.05,2.54,3000,-277.9254,327.82565,127.99455\n");
   const Ended one = robomill("coefficients one.csv --teeth 4 -o one.json");

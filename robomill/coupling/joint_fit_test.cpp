@@ -247,7 +247,7 @@ TEST(JointFit, HybridFindsTheRigidJointAndSaysWhereTheFrfEnds) {
   }
   EXPECT_TRUE(std::ranges::any_of(result.notes, [](const std::string& note) {
     return note.starts_with("Above ") &&
-           note.ends_with("N/m this FRF cannot tell the translational stiffness from a rigid one.");
+           note.ends_with("N/m this FRF does not separate the translational stiffness from a rigid one.");
   }));
 }
 

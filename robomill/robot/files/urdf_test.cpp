@@ -137,7 +137,7 @@ TEST(Urdf, SaysWhatIsWrong) {
     return refusal([&] { (void)parse_urdf(text, "two.urdf", reading); });
   };
   const UrdfReading reading{.tip = "flange"};
-  EXPECT_NE(said(good, {}).find("which link is the flange"), std::string::npos);
+  EXPECT_NE(said(good, {}).find("needs the link of the flange"), std::string::npos);
   EXPECT_NE(said(good, {.tip = "flnge"}).find("has no link \"flnge\". Did you mean flange?"), std::string::npos);
   EXPECT_NE(said(good, {.tip = "flange", .base = "bas"}).find("has no link \"bas\""), std::string::npos);
   EXPECT_NE(said(good, {.tip = "plate", .base = "flange"}).find("does not lead from flange to plate"),
