@@ -10,14 +10,14 @@ namespace robomill {
 /// Bad input, told so that its giver can mend it: where, which field, its value and unit, the rule it breaks, the
 /// likely cause.
 ///
-/// A stage throws it with the SI member's name ("tangential_n_per_m2"); formats/ rethrows it with the file, the line
+/// A stage throws it with the SI member's name ("tangential_n_per_m2"); files/ rethrows it with the file, the line
 /// and the file's own key, value and unit. what() reads "where: field = value unit; rule. hint", empty parts left out.
 class ROBOMILL_API InvalidInput : public std::runtime_error {
  public:
   struct Parts {
     std::string where = {};             ///< "lobes.toml:14", a JSON path, empty while unknown
     std::string field = {};             ///< "axial_depth_m"
-    std::optional<double> number = {};  ///< the value, where it is a number; formats/ converts it
+    std::optional<double> number = {};  ///< the value, where it is a number; files/ converts it
     std::string value = {};             ///< the value as text, where it is none
     std::string unit = {};              ///< "m"
     std::string rule = {};              ///< "must be > 0"

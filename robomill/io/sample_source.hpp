@@ -23,7 +23,7 @@ struct SampleColumns {
   /// Channels that come out.
   [[nodiscard]] std::size_t count() const { return channels.size() + (tachometer.empty() ? 0 : 1); }
   /// @throws InvalidInput
-  void validate() const;
+  ROBOMILL_API void validate() const;
 };
 
 /// How bytes without an ending are to be read. automatic: text is CSV, all else float32.
