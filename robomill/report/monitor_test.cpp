@@ -118,9 +118,9 @@ TEST(MonitorReport, TablesStandWithoutTheScript) {
   report.monitor = sample_monitor();
   report.calibration = sample_calibration();
   const std::string html = report_html(report);
-  for (const char* part :
-       {"<section id=\"monitor\"", "href=\"#monitor\"", "<strong>Chatter</strong> from", "683.20\u202f±\u202f0.60",
-        "What the monitor said", "<section id=\"calibration\"", "3 recordings, 2 classified wrongly", "missed", "false"}) {
+  for (const char* part : {"<section id=\"monitor\"", "href=\"#monitor\"", "<strong>Chatter</strong> from",
+                           "683.20\u202f±\u202f0.60", "What the monitor said", "<section id=\"calibration\"",
+                           "3 recordings, 2 classified wrongly", "missed", "false"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   report.monitor->stays.clear();
