@@ -37,13 +37,13 @@ class Blade {
 /// robomill smooth from the file to the last sample's check, in all rounds, without a trajectory's file.
 void smooth_impeller(benchmark::State& state, const char* cell, path::Method method) {
   const Blade blade;
-  SmoothJob job;
+  jobs::SmoothJob job;
   job.program = blade.path();
   job.cell = std::string(ROBOMILL_SOURCE_DIR "/examples/smooth-impeller-like/") + cell;
   job.method = method;
   job.record = false;
   path::Summary summary;
-  for (auto _ : state) summary = run_smooth(job).first().summary;
+  for (auto _ : state) summary = jobs::run_smooth(job).first().summary;
   state.counters["blocks"] = static_cast<double>(summary.blocks);
   state.counters["duration_s"] = summary.duration_s;
   state.counters["lower_bound_s"] = summary.lower_bound_s;
