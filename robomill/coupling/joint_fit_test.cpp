@@ -11,15 +11,12 @@
 #include <numbers>
 #include <vector>
 
-#include "robomill/base/lanes.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/coupling/base.hpp"
 #include "robomill/coupling/joint_hybrid.hpp"
 #include "robomill/coupling/joint_model.hpp"
 #include "robomill/coupling/published/joint_ga.hpp"
-#include "robomill/coupling/span.hpp"
-#include "testing/coupling/beams.hpp"
+#include "testing/coupling/joints.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::coupling {
@@ -32,34 +29,14 @@ using robomill::test::field_of;
 using robomill::test::refusal;
 using robomill::test::seeds;
 
+using test::joint_of;
+using test::model_of;
+using test::planted;
+using test::tip_with;
+using test::values_of;
+
 constexpr double best_within_bounds = 6.62e-5;
 
-JointModel model_of(const Assembly& assembly, const Eigen::VectorXd& frequency_hz, double cross = 0.0) {
-  return JointModel(detail::spans(assembly.tool, frequency_hz),
-                    detail::base_receptances(assembly.holder, frequency_hz).x, frequency_hz, cross);
-}
-
-Joint joint_of(const JointValues& values) {
-  return {.translational_stiffness_n_per_m = values[0],
-          .translational_damping_n_s_per_m = values[1],
-          .rotational_stiffness_n_m_per_rad = values[2],
-          .rotational_damping_n_m_s_per_rad = values[3]};
-}
-
-JointValues values_of(const Joint& joint) {
-  return {joint.translational_stiffness_n_per_m, joint.translational_damping_n_s_per_m,
-          joint.rotational_stiffness_n_m_per_rad, joint.rotational_damping_n_m_s_per_rad};
-}
-
-/// The tip's xx with a joint.
-modal::FrfSet tip_with(Assembly assembly, const Joint& joint, const Eigen::VectorXd& frequency_hz) {
-  assembly.joint = joint;
-  modal::FrfSet set = tip_frfs(assembly, frequency_hz).frfs;
-  set.frfs.resize(1);
-  return set;
-}
-
-/// The published case: the whole bar at the wall stands for the measured tip, so that the joint is rigid in truth.
 modal::FrfSet whole_bar() {
   const Assembly bar{.tool = {test::bar(0.16982)}, .joint = {}, .holder = {}};
   modal::FrfSet set = tip_frfs(bar, test::hertz(5000)).frfs;
@@ -78,86 +55,10 @@ void add_noise(modal::FrfSet& set, double share, std::uint64_t seed) {
   }
 }
 
-const JointValues planted = {2e7, 40.0, 5e4, 0.5};
-
 double median(std::vector<double> values) {
   std::ranges::sort(values);
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
-// The short form against the coupling itself, from a joint that hardly holds to one that is nearly rigid.
-TEST(JointModel, EqualsTheCoupling) {
-  const Eigen::VectorXd frequency_hz = test::hertz(501);
-  Random random(1);
-  for (int i = 0; i < 20; ++i) {
-    Joint joint = joint_of({std::pow(10.0, random.uniform(3.0, 12.0)), std::pow(10.0, random.uniform(-2.0, 4.0)),
-                            std::pow(10.0, random.uniform(2.0, 12.0)), std::pow(10.0, random.uniform(-2.0, 4.0))});
-    joint.cross_stiffness_n_per_rad =
-        i % 2 == 0 ? 0.0
-                   : random.uniform(-0.9, 0.9) *
-                         std::sqrt(joint.translational_stiffness_n_per_m * joint.rotational_stiffness_n_m_per_rad);
-    const modal::FrfSet expected = tip_with(test::published_pair(), joint, frequency_hz);
-    const JointModel model = model_of(test::published_pair(), frequency_hz, joint.cross_stiffness_n_per_rad);
-    JointModel::Response response;
-    model.receptance(values_of(joint), response);
-    for (Index line = 0; line < model.lines(); ++line) {
-      const std::complex<double> found(response.real(line), response.imag(line));
-      const std::complex<double> wanted = expected.frfs[0].receptance(line);
-      ASSERT_LT(std::abs(found - wanted), 1e-9 * std::abs(wanted)) << i << " at " << frequency_hz(line) << " Hz";
-    }
-  }
-}
-
-TEST(JointModel, DerivativesAreThoseOfDifferences) {
-  const JointModel model = model_of(test::published_pair(), test::hertz(5000));
-  JointModel::Response at;
-  JointModel::Response above;
-  JointModel::Response below;
-  model.sensitivity(planted, at);
-  for (std::size_t i = 0; i < planted.size(); ++i) {
-    const double step = 1e-5 * planted[i];
-    JointValues moved = planted;
-    moved[i] += step;
-    model.receptance(moved, above);
-    moved[i] -= 2.0 * step;
-    model.receptance(moved, below);
-    for (Index line = 0; line < model.lines(); line += 7) {
-      const std::complex<double> slope((above.real(line) - below.real(line)) / (2.0 * step),
-                                       (above.imag(line) - below.imag(line)) / (2.0 * step));
-      const std::complex<double> along(at.along_real[i / 2](line), at.along_imag[i / 2](line));
-      const std::complex<double> to_stiffness = i % 2 == 0 ? 1.0 : std::complex<double>(0.0, model.omega()(line));
-      const double size = std::abs(std::complex<double>(at.real(line), at.imag(line)));
-      ASSERT_NEAR(std::abs(slope + along * to_stiffness), 0.0, 1e-6 * std::abs(slope) + 1e-10 * size / planted[i])
-          << i << " at line " << line;
-    }
-  }
-}
-
-TEST(JointModel, HasTheSameBitsWithoutWideVectors) {
-  const JointModel model = model_of(test::published_pair(), test::hertz(1003));
-  JointModel::Response wide;
-  JointModel::Response narrow;
-  model.sensitivity(planted, wide);
-  const Kernels before = kernels();
-  kernels() = Kernels::baseline;
-  model.sensitivity(planted, narrow);
-  kernels() = before;
-  EXPECT_TRUE((wide.real == narrow.real).all());
-  EXPECT_TRUE((wide.imag == narrow.imag).all());
-  for (std::size_t j = 0; j < 2; ++j) EXPECT_TRUE((wide.along_imag[j] == narrow.along_imag[j]).all());
-}
-
-TEST(JointModel, ThinnedLinesStandDenseAtResonances) {
-  const modal::FrfSet set = tip_with(test::published_pair(), joint_of(planted), test::hertz(5000));
-  const Eigen::ArrayXd omega = set.frequency_hz.array();
-  const std::vector<Index> lines = detail::thinned_lines(omega, set.frfs[0].receptance, 256);
-  EXPECT_LE(lines.size(), 260U);
-  EXPECT_GE(lines.size(), 200U);
-  EXPECT_TRUE(std::ranges::is_sorted(lines));
-  const double peak = test::peak_hz(set.frequency_hz, set.frfs[0].receptance);
-  const auto near = std::ranges::count_if(lines, [&](Index i) { return std::abs(set.frequency_hz(i) - peak) < 10.0; });
-  EXPECT_GE(near, 10);
 }
 
 // Source: [JointIdentification], its joint; the objective it prints is 5.53e-5, which its own numbers do not give.
