@@ -12,7 +12,7 @@ inline constexpr detail::JointValues planted = {2e7, 40.0, 5e4, 0.5};
 
 inline detail::JointModel model_of(const Assembly& assembly, const Eigen::VectorXd& frequency_hz, double cross = 0.0) {
   return detail::JointModel(detail::spans(assembly.tool, frequency_hz),
-                    detail::base_receptances(assembly.holder, frequency_hz).x, frequency_hz, cross);
+                            detail::base_receptances(assembly.holder, frequency_hz).x, frequency_hz, cross);
 }
 
 inline Joint joint_of(const detail::JointValues& values) {
@@ -34,6 +34,4 @@ inline modal::FrfSet tip_with(Assembly assembly, const Joint& joint, const Eigen
   set.frfs.resize(1);
   return set;
 }
-
-/// The published case: the whole bar at the wall stands for the measured tip, so that the joint is rigid in truth.
 }  // namespace robomill::coupling::test
