@@ -191,8 +191,8 @@ std::string stock_text(const ProgramForces& program) {
   if (!program.stock) return {};
   const Eigen::Vector3d low = program.stock->stock.lowest_m() / units::mm;
   const Eigen::Vector3d high = program.stock->stock.highest_m() / units::mm;
-  const std::string box = fmt::format("from ({:.5g}, {:.5g}, {:.5g}) to ({:.5g}, {:.5g}, {:.5g}) mm", low.x(), low.y(),
-                                      low.z(), high.x(), high.y(), high.z());
+  std::string box = fmt::format("from ({:.5g}, {:.5g}, {:.5g}) to ({:.5g}, {:.5g}, {:.5g}) mm", low.x(), low.y(),
+                                low.z(), high.x(), high.y(), high.z());
   if (!program.stock->assumed) return box;
   const cutting::DefaultStock& assumed = *program.stock->assumed;
   const std::size_t line = program.program.blocks[assumed.highest_pass_block].line;

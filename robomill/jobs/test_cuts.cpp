@@ -23,9 +23,9 @@ std::string words(const stability::Explanation& e, int teeth) {
   using Kind = stability::Explanation::Kind;
   const int turns = std::abs(e.harmonic);
   if (e.kind == Kind::tooth_passing) return fmt::format("{} × tooth passing", turns / teeth);
-  const std::string multiple = fmt::format("{} × rotation", turns);
+  std::string multiple = fmt::format("{} × rotation", turns);
   if (e.kind == Kind::rotation) return multiple;
-  const std::string mode = to_string(e.mode);
+  std::string mode = to_string(e.mode);
   if (turns == 0) return mode;
   if (e.harmonic > 0) return multiple + " + " + mode;
   return e.mirrored ? multiple + " − " + mode : mode + " − " + multiple;
@@ -248,6 +248,7 @@ report::Recording read_recording(const TestCut& cut, const stability::LobesProbl
   wanted.min_separation_hz = 4.0 / length_s;
   std::vector<double> frequency_hz;
   const std::vector<signal::SpectralPeak> found = signal::find_peaks(spectrum, wanted);
+  frequency_hz.reserve(found.size());
   for (const signal::SpectralPeak& peak : found) frequency_hz.push_back(peak.frequency_hz);
   std::vector<Counted> counts;
   for (const stability::ExplainedPeak& peak :
