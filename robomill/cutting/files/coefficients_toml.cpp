@@ -14,10 +14,10 @@ namespace robomill::cutting {
 namespace {
 
 struct Field {
-  const char* key;
-  const char* member;
-  double factor;
-  std::vector<double> MillingCoefficients::*values;
+  const char* key = nullptr;
+  const char* member = nullptr;
+  double factor = 0.0;
+  std::vector<double> MillingCoefficients::*values = nullptr;
   bool edge = false;
 };
 

@@ -245,8 +245,8 @@ std::vector<Eigen::Index> choose_lines(const Eigen::VectorXd& frequency_hz, cons
     }
   }
   std::ranges::sort(lines);
-  const auto doubled = std::ranges::unique(lines);
-  lines.erase(doubled.begin(), doubled.end());
+  // std::ranges::unique does not compile with clang 14 and libstdc++ 12.
+  lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
   return lines;
 }
 
