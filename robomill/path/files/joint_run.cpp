@@ -37,7 +37,7 @@ Position6 rounded(const Position6& before, const Position6& at, const Position6&
 
 /// The trajectory's joints between samples.
 Position6 between(SampleSpool& samples, std::size_t sample, double share) {
-  const Position6 from = samples.row(sample).position();
+  Position6 from = samples.row(sample).position();
   if (share == 0.0) return from;
   const Position6 to = samples.row(sample + 1).position();
   const Position6 before = sample > 0 ? samples.row(sample - 1).position() : from;
