@@ -20,7 +20,7 @@ struct Hop {
   bool restarted = false;           ///< what was before this has nothing to do with it
 };
 
-/// A queue of bounded length between the thread that reads the input and the one that hears.
+/// A queue of bounded length between the thread that reads the input and the one that processes it.
 class ROBOMILL_API HopQueue {
  public:
   explicit HopQueue(std::size_t capacity) : capacity_(capacity) {}
