@@ -66,12 +66,14 @@ fs::path from_folder_of(const fs::path& file, const fs::path& named) {
   return fs::proximate(fs::absolute(named), fs::absolute(file).parent_path());
 }
 
-void print_half(const char* name, const monitor::CalibratedHalf& half) {
+std::string half_text(const char* name, const monitor::CalibratedHalf& half) {
   const monitor::RocPoint& p = half.chosen;
-  fmt::print("{:<10}{:>4} stable, {:.1f} % raise a false alarm; {:>4} with chatter, {:.1f} % found", name, half.stable,
-             100.0 * p.false_alarm_rate, half.chatter, 100.0 * p.detection_rate);
-  if (std::isfinite(p.median_delay_s)) fmt::print(", {:.0f} ms after their onset (median)", 1e3 * p.median_delay_s);
-  fmt::print("\n");
+  std::string out = fmt::format("{:<10}{:>4} stable, {:.1f} % raise a false alarm; {:>4} with chatter, {:.1f} % found",
+                                name, half.stable, 100.0 * p.false_alarm_rate, half.chatter, 100.0 * p.detection_rate);
+  if (std::isfinite(p.median_delay_s)) {
+    out += fmt::format(", {:.0f} ms after their onset (median)", 1e3 * p.median_delay_s);
+  }
+  return out + "\n";
 }
 
 std::string direction(const Calibration& calibration) {
@@ -79,14 +81,15 @@ std::string direction(const Calibration& calibration) {
                      calibration.options.alarm_below ? "below" : "above", calibration.options.threshold);
 }
 
-void print_summary(const Calibration& calibration) {
-  fmt::print("Chatter is {}.\n", direction(calibration));
-  print_half("setting", calibration.setting);
-  print_half("verifying", calibration.verifying);
+std::string summary_of(const Calibration& calibration) {
+  std::string out = fmt::format("Chatter is {}.\n", direction(calibration));
+  out += half_text("setting", calibration.setting) + half_text("verifying", calibration.verifying);
   if (std::isfinite(calibration.median_lead_s)) {
-    fmt::print("The alarm comes {:.0f} ms before the line is seen in the spectrogram (median of the verifying half).\n",
-               1e3 * calibration.median_lead_s);
+    out += fmt::format(
+        "The alarm comes {:.0f} ms before the line is seen in the spectrogram (median of the verifying half).\n",
+        1e3 * calibration.median_lead_s);
   }
+  return out;
 }
 
 }  // namespace
@@ -117,11 +120,13 @@ Exit run(const CalibrateCommand& command, const Common& common, Progress& progre
                         100.0 * verified.false_alarm_rate)));
   }
   if (io::lowered(command.report.extension().string()) == ".html") {
-    write_report(command.report, calibration_page(calibration));
+    report::Report page = calibration_page(calibration);
+    page.summary = summary_of(calibration);
+    write_report(command.report, page);
   } else if (!command.report.empty()) {
     io::write_file(command.report, json);
   }
-  if (common.wants_summary()) print_summary(calibration);
+  if (common.wants_summary()) fmt::print("{}", summary_of(calibration));
   return calibration.verifying.chosen.detection_rate > 0.0 ? done : not_reached;
 }
 

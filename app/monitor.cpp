@@ -201,6 +201,12 @@ std::vector<std::string> channel_names(const monitor::MonitorFile& file) {
   return names;
 }
 
+std::string summary_of(live::Session& session, const std::string& input) {
+  const live::MetricValues& m = session.metrics();
+  return fmt::format("{:.3f} s of {} processed in {} decisions, {} alarm{}.\n", session.time_s(), printable(input),
+                     m.decisions.load(), m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
+}
+
 }  // namespace
 
 Exit run(const MonitorCommand& command, const Common& common, Progress& progress) {
@@ -265,12 +271,13 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   }
   watch.reset();
   events.close(common.output);
-  if (recorder) write_report(command.report, monitor_page(recorder->run(), file, input.name));
-  if (common.wants_summary()) {
-    const live::MetricValues& m = session.metrics();
-    fmt::print("{:.3f} s of {} processed in {} decisions, {} alarm{}.\n", session.time_s(), printable(input.name),
-               m.decisions.load(), m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
+  const std::string summary = summary_of(session, input.name);
+  if (recorder) {
+    report::Report page = monitor_page(recorder->run(), file, input.name);
+    page.summary = summary;
+    write_report(command.report, page);
   }
+  if (common.wants_summary()) fmt::print("{}", summary);
   return stop ? static_cast<Exit>(exit_of_signal()) : done;
 }
 

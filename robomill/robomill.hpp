@@ -37,6 +37,7 @@
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/smooth.hpp"
+#include "robomill/jobs/summary.hpp"
 #include "robomill/jobs/tools.hpp"
 #include "robomill/live/advisor.hpp"
 #include "robomill/live/alarm_ring.hpp"

@@ -14,12 +14,13 @@ function safeInScriptElement(): Plugin {
 }
 
 export default defineConfig({
+  esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
   build: {
     target: 'es2020',
     outDir: 'dist',
     chunkSizeWarningLimit: 4000,
-    lib: { entry: 'src/main.ts', formats: ['iife'], name: 'robomillReport', fileName: () => 'page.js' },
+    lib: { entry: 'src/main.tsx', formats: ['iife'], name: 'robomillReport', fileName: () => 'page.js' },
   },
   plugins: [safeInScriptElement()],
-  test: { include: ['src/**/*.test.ts'] },
+  test: { include: ['src/**/*.test.{ts,tsx}'] },
 });

@@ -101,7 +101,7 @@ report::MonitorEvent report_event(const MonitorEvent& event) {
 
 report::Report monitor_page(report::MonitorRun run, const monitor::MonitorFile& file, const std::string& source) {
   const monitor::MonitorOptions& options = file.options;
-  run.facts = {{"Heard", fmt::format("{}, {:.6g} Hz", source, options.sample_rate_hz)},
+  run.facts = {{"Recording", fmt::format("{}, {:.6g} Hz", source, options.sample_rate_hz)},
                {"Detector", detector_fact(options)},
                {"Spindle speed", speed_fact(options)}};
   report::Report page;

@@ -75,9 +75,9 @@ TEST(JsonFile, SaysWhereItIsBroken) {
     for (int i = 0; i < depth; ++i) text += close;
     return text;
   };
-  for (const auto& [open, close] : {std::pair{"[", "]"}, {"{\"a\":", "}"}, {"[{\"a\\\"\":", "}]"}}) {
+  for (const auto& brackets : {std::pair{"[", "]"}, {"{\"a\":", "}"}, {"[{\"a\\\"\":", "}]"}}) {
     EXPECT_NE(refusal([&] {
-                (void)read_json(folder.file("d.json", "\n" + nested(open, 1000000, close)));
+                (void)read_json(folder.file("d.json", "\n" + nested(brackets.first, 1000000, brackets.second)));
               }).find("d.json:2: is no JSON that is read here: it nests its values more than 256 deep"),
               std::string::npos);
   }

@@ -8,6 +8,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/milling.hpp"
 #include "robomill/jobs/plan.hpp"
+#include "robomill/jobs/summary.hpp"
 #include "robomill/version.hpp"
 
 namespace robomill::jobs {
@@ -275,6 +276,7 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   report.facts = facts(result);
   report.warnings = result.warnings;
   report.notes = result.notes;
+  report.summary = summary(result);
   if (result.recommendation.recommended) report.recommendation = to_report(*result.recommendation.recommended);
   for (const decision::Operation& op : result.recommendation.alternatives) report.alternatives.push_back(to_report(op));
   if (result.job.max_surface_error_m > 0.0) report.max_surface_error_m = result.job.max_surface_error_m;

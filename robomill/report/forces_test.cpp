@@ -24,12 +24,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string page_of(const Forces& forces) {
-  Report report;
-  report.forces = forces;
-  return report_html(report);
-}
-
 TEST(ForcesJson, NumbersAreTheStructsInShopUnits) {
   const Forces forces = sample_forces();
   const json data = json::parse(forces_json(forces).dump());
@@ -159,43 +153,6 @@ TEST(ForcesJson, DeflectionAtAMarkLiesOnTheCurve) {
     sweep.used_rad = beyond;
     EXPECT_TRUE(json::parse(forces_json(forces).dump())["spindle_rotation"]["used_um"].is_null()) << beyond;
   }
-}
-
-TEST(ForcesHtml, TablesStandWithoutTheScript) {
-  const std::string html = page_of(sample_forces());
-  for (const char* part :
-       {"<section id=\"forces\"", "href=\"#forces\"", "Force on the tool", "The blocks with the highest peak force",
-        "Deflection by the mean force (µm)", "<td>N·m</td>", "above the limit", "within the limit",
-        "Stiffest at <strong>γ = ", "out of reach", "783 of 800 blocks cut", "Trouble along the program",
-        "Engagement as a table", "Before you use these forces"}) {
-    EXPECT_NE(html.find(part), std::string::npos) << part;
-  }
-}
-
-TEST(ForcesHtml, LeavesOutWhatIsNotThere) {
-  Forces forces = sample_forces();
-  forces.path.reset();
-  forces.spindle_rotation.reset();
-  forces.revolution->engagement.clear();
-  forces.revolution->deflection_m.setConstant(missing);
-  forces.revolution->on_workpiece = true;
-  const std::string html = page_of(forces);
-  EXPECT_NE(html.find("Force on the workpiece"), std::string::npos);
-  for (const char* part : {"Along the program", "γ", "Engagement", "Deflection by"}) {
-    EXPECT_EQ(html.substr(0, html.find("<script")).find(part), std::string::npos) << part;
-  }
-  EngagementRing idle;
-  idle.height_m = 1e-3;
-  forces.revolution->engagement = {idle};
-  const std::string air = page_of(forces);
-  EXPECT_NE(air.find("No tooth is in the material here."), std::string::npos);
-  EXPECT_EQ(air.find("data-plot=\"engagement\""), std::string::npos);
-  EXPECT_EQ(page_of(Forces{}).find("<section"), std::string::npos);
-  forces.path = ForcePath{};
-  forces.path->troubles = {"part.ngc:3: no block could be read"};
-  const std::string none = page_of(forces);
-  EXPECT_EQ(none.find("Along the program</h3>"), std::string::npos);
-  EXPECT_NE(none.find("part.ngc:3: no block could be read"), std::string::npos);
 }
 
 template <class Change>

@@ -113,20 +113,6 @@ TEST(MonitorReport, NumbersAreTheStructsInShopUnits) {
   EXPECT_NEAR(data["events"][1]["suggested_spindle_speed_rpm"].get<double>(), 3416.0, 0.01);
 }
 
-TEST(MonitorReport, TablesStandWithoutTheScript) {
-  Report report;
-  report.monitor = sample_monitor();
-  report.calibration = sample_calibration();
-  const std::string html = report_html(report);
-  for (const char* part : {"<section id=\"monitor\"", "href=\"#monitor\"", "<strong>Chatter</strong> from",
-                           "683.20\u202f±\u202f0.60", "What the monitor said", "<section id=\"calibration\"",
-                           "3 recordings, 2 classified wrongly", "missed", "false"}) {
-    EXPECT_NE(html.find(part), std::string::npos) << part;
-  }
-  report.monitor->stays.clear();
-  EXPECT_NE(report_html(report).find("No chatter"), std::string::npos);
-}
-
 TEST(MonitorReport, RefusesWhatDoesNotFit) {
   const auto refused = [](auto&& spoil) {
     MonitorRun run = sample_monitor();

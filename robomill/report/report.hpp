@@ -207,6 +207,7 @@ struct Report {
   std::vector<Fact> facts = {};            ///< the job in short: cutter, cut, material
   std::vector<std::string> warnings = {};  ///< what the reader must know before using a number
   std::vector<std::string> notes = {};     ///< what the reader may want to know
+  std::string summary = {};                ///< in lines of text, for where no script runs
 
   std::optional<Recommendation> recommendation = {};
   std::vector<Recommendation> alternatives = {};
@@ -248,8 +249,8 @@ struct Report {
 /// @throws InvalidInput as Report::validate
 [[nodiscard]] ROBOMILL_API std::string report_json(const Report& report);
 
-/// One file that opens without a network: the tables as HTML, the plots drawn by the script inside from the data
-/// inside. A build without the page's script (ROBOMILL_WEB=OFF) has the tables and says that the plots are missing.
+/// One file that opens without a network: the page's script (web/), which makes tables and plots of the data inside.
+/// Where no script runs, and in a build without it (ROBOMILL_WEB=OFF), the page is the summary.
 /// @throws InvalidInput as Report::validate
 [[nodiscard]] ROBOMILL_API std::string report_html(const Report& report);
 

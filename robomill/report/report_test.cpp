@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "robomill/base/random.hpp"
-#include "robomill/report/html.hpp"
+#include "robomill/report/json.hpp"
 #include "robomill/report/page.hpp"
 #include "robomill/report/report_sample.hpp"
 #include "robomill/report/thin.hpp"
@@ -117,6 +117,7 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   const std::size_t scripts = count(report_html(report), "<script");
   report.title = evil;
   report.created = evil;
+  report.summary = evil;
   report.facts = {{evil, evil}};
   report.warnings = {evil};
   report.notes = {evil};
@@ -157,35 +158,7 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   EXPECT_EQ(count(html, "<script"), scripts);
   EXPECT_EQ(html.find("<img"), std::string::npos);
   EXPECT_EQ(html.find("\"'&\""), std::string::npos);
-  if (!page_script().empty()) {
-    EXPECT_EQ(json::parse(embedded(html))["title"], evil);
-  }
-}
-
-TEST(ReportHtml, CarriesTheSameDataAsTheJson) {
-  const Report report = sample_report();
-  const std::string html = report_html(report);
-  if (page_script().empty()) {
-    EXPECT_EQ(embedded(html), "");
-    EXPECT_NE(html.find("Plots were left out of this build"), std::string::npos);
-    EXPECT_EQ(html.find("data-plot"), std::string::npos);
-  } else {
-    EXPECT_EQ(json::parse(embedded(html)), json::parse(report_json(report)));
-    EXPECT_NE(html.find("data-plot=\"lobes\""), std::string::npos);
-  }
-}
-
-TEST(ReportHtml, TablesStandWithoutTheScript) {
-  const std::string html = report_html(sample_report());
-  for (const char* part :
-       {"<td class=\"number\">540.08\u202f±\u202f0.11</td>", "hit_x_4.csv", "double hit",
-        "4 flutes, counted as a solid round of 9.6 mm", "2·10⁷", "class=\"assembly\"",
-        "<strong>3 of 6</strong> test cuts with a result", "Limited by <strong>mode 8", "id=\"recordings\""}) {
-    EXPECT_NE(html.find(part), std::string::npos) << part;
-  }
-  EXPECT_EQ(count(html, "<section"), count(html, "</section>"));
-  EXPECT_EQ(count(html, "<table"), count(html, "</table>"));
-  EXPECT_EQ(html.find("http://"), html.find("http://www.w3.org")) << "only names of namespaces";
+  EXPECT_EQ(json::parse(embedded(html))["title"], evil);
 }
 
 TEST(ReportJson, SegmentsAndJointAreTheAssembly) {
@@ -212,29 +185,8 @@ TEST(ReportJson, SegmentsAndJointAreTheAssembly) {
   EXPECT_EQ(own["frequency_hz"].size(), own["predicted"]["magnitude"].size());
 }
 
-TEST(ReportHtml, SaysTheChatterFrequencyOnce) {
-  Report report = sample_report();
-  EXPECT_NE(report_html(report).find("Chatter would sound at 566"), std::string::npos);
-  report.recommendation->limited_by = "chatter of mode 8 at 566.4 Hz";
-  EXPECT_EQ(report_html(report).find("Chatter would sound"), std::string::npos);
-}
-
-// What contradicts the recommendation stands above it.
-TEST(ReportHtml, DisagreeingTestCutsStandOnTop) {
-  Report report = sample_report();
-  const std::string html = report_html(report);
-  const std::size_t banner = html.find("<strong>3 of 6 test cuts disagree</strong>");
-  ASSERT_NE(banner, std::string::npos);
-  EXPECT_LT(banner, html.find("<dl class=\"figures\">"));
-  EXPECT_LT(banner, html.find("id=\"lobes\""));
-  for (TestCut& cut : report.cuts) {
-    if (cut.agrees) cut.agrees = true;
-  }
-  EXPECT_EQ(report_html(report).find("test cuts disagree"), std::string::npos);
-}
-
-// The card: every figure beside its unit; the surface is limited in finishing and only told in roughing.
-TEST(ReportHtml, TheCardHoldsWhatAMachinistSets) {
+// The card: every figure beside its unit.
+TEST(ReportJson, TheCardHoldsWhatAMachinistSets) {
   Report report = sample_report();
   Recommendation& r = *report.recommendation;
   r.feed_m_per_s = 4.0 / 60.0;
@@ -250,15 +202,6 @@ TEST(ReportHtml, TheCardHoldsWhatAMachinistSets) {
   EXPECT_EQ(data["power_w"].get<double>(), 456.0);
   EXPECT_EQ(data["surface_error_um"].get<double>(), -7.5);
   EXPECT_EQ(data["peak_deflection_um"].get<double>(), 23.0);
-  const std::string rough = report_html(report);
-  for (const char* part : {"4000 <small>mm/min</small>", "188 <small>m/min</small>", "0.321 <small>N·m</small>",
-                           "456 <small>W</small>", "7.5 µm of overcut", "up to 23 µm", "this is a roughing cut"}) {
-    EXPECT_NE(rough.find(part), std::string::npos) << part;
-  }
-  report.max_surface_error_m = 8e-6;
-  const std::string fine = report_html(report);
-  EXPECT_EQ(fine.find("roughing"), std::string::npos);
-  EXPECT_NE(fine.find("Permitted: surface error 8 µm."), std::string::npos);
 }
 
 // Two structures may have a mode 8 each.
@@ -278,27 +221,22 @@ TEST(ReportJson, SaysWhoseModeItIs) {
   ASSERT_EQ(data["modes"].size(), 16u);
   EXPECT_EQ(data["modes"][8]["mode"], 1);
   EXPECT_EQ(data["modes"][8]["mode_of"], "workpiece");
-  const std::string html = report_html(report);
-  EXPECT_NE(html.find("Limited by <strong>mode 8 of the workpiece"), std::string::npos);
-  EXPECT_NE(html.find(">8 (workpiece)<"), std::string::npos);
   report.workpiece_limit_share.resize(3);
   EXPECT_EQ(test::field_of([&] { report.validate(); }), "workpiece_limit_share");
 }
 
-TEST(ReportHtml, AnEmptyReportIsAPage) {
-  const std::string html = report_html(Report{});
-  EXPECT_TRUE(html.starts_with("<!doctype html>"));
-  EXPECT_EQ(html.find("<section"), std::string::npos);
-}
-
-TEST(ReportHtml, SaysWhyThereIsNoSafeDepth) {
-  Report report;
-  report.no_recommendation = "every speed chatters below 0.05 mm";
+// The page's script makes tables and plots of the report's own data; the summary is for where no script runs.
+TEST(ReportHtml, CarriesTheDataAndTheSummary) {
+  Report report = sample_report();
+  report.summary = "recommended  15 000 rpm\nlimited by mode 8 & more";
   const std::string html = report_html(report);
-  EXPECT_NE(html.find("No answer."), std::string::npos);
-  EXPECT_NE(html.find("every speed chatters below 0.05 mm"), std::string::npos);
-  report.lobes.emplace_back();
-  EXPECT_NE(report_html(report).find("No safe depth."), std::string::npos);
+  EXPECT_TRUE(html.starts_with("<!doctype html>"));
+  EXPECT_EQ(count(html, "<pre>recommended  15 000 rpm\nlimited by mode 8 &amp; more</pre>"), 1U);
+  EXPECT_EQ(count(html, "<h1>" + report.title + "</h1>"), 1U);
+  EXPECT_EQ(json::parse(embedded(html)), json::parse(report_json(report)));
+  const bool plain = page_script().empty();
+  EXPECT_EQ(html.find("left out of this build") != std::string::npos, plain);
+  EXPECT_EQ(count(html, "<noscript>"), plain ? 0U : 1U);
 }
 
 template <class Change>
@@ -330,6 +268,16 @@ TEST(ReportValidate, NamesTheMember) {
             "feed_directions.limit_at_speed_m");
   EXPECT_EQ(refused([](Report& r) { r.forces->path->cuts.pop_back(); }), "forces.path.cuts");
   EXPECT_EQ(refused([](Report& r) { r.smooth->methods.clear(); }), "smooth.methods");
+}
+
+TEST(Bands, JoinNeighbouringLines) {
+  const Eigen::VectorXd axis = Eigen::VectorXd::LinSpaced(10, 10.0, 100.0);
+  EXPECT_EQ(bands_json(axis, {}).size(), 0U);
+  const nlohmann::ordered_json bands = bands_json(axis, {10.0, 40.0, 50.0, 55.0, 100.0});
+  ASSERT_EQ(bands.size(), 3U);
+  EXPECT_EQ(bands[0], (nlohmann::ordered_json{10.0, 15.0}));
+  EXPECT_EQ(bands[1], (nlohmann::ordered_json{35.0, 55.0}));
+  EXPECT_EQ(bands[2], (nlohmann::ordered_json{95.0, 100.0}));
 }
 
 TEST(Agreement, CountsEveryCutOnce) {
@@ -370,25 +318,6 @@ TEST(Thin, KeepsPeaksAndDips) {
     EXPECT_EQ(low, lowest);
     EXPECT_EQ(high, highest);
   }
-}
-
-TEST(Html, NumbersReadWell) {
-  EXPECT_EQ(fixed(14850.2, 0), "14\u202f850");
-  EXPECT_EQ(fixed(1234567.5, 1), "1\u202f234\u202f567.5");
-  EXPECT_EQ(fixed(-12345, 0), "-12\u202f345");
-  EXPECT_EQ(fixed(8000, 0), "8000");
-  EXPECT_EQ(fixed(nullptr, 2), "–");
-  EXPECT_EQ(significant(0.01), "0.01");
-  EXPECT_EQ(significant(0.0), "0");
-  EXPECT_EQ(significant(1.5e-7), "1.50e-07");
-  EXPECT_EQ(with_power(97062227.0), "9.706·10⁷");
-  EXPECT_EQ(with_power(2e-5), "2·10⁻⁵");
-  EXPECT_EQ(with_power(18.633), "18.63");
-  EXPECT_EQ(with_power(nullptr), "–");
-  EXPECT_EQ(percent(0.0127, 2), "1.27\u202f%");
-  EXPECT_EQ(with_deviation(17.4123, 0.0352, 1.0, 2), "17.412\u202f±\u202f0.035");
-  EXPECT_EQ(with_deviation(17.4123, nullptr, 1.0, 2), "17.41");
-  EXPECT_EQ(with_deviation(0.021, 0.0012, 100.0, 2), "2.10\u202f±\u202f0.12");
 }
 
 }  // namespace

@@ -16,12 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string page_of(const Smooth& smooth) {
-  Report report;
-  report.smooth = smooth;
-  return report_html(report);
-}
-
 TEST(SmoothReport, NumbersAreTheStructsInShopUnits) {
   const Smooth smooth = sample_smooth();
   const json data = json::parse(smooth_json(smooth).dump());
@@ -63,27 +57,6 @@ TEST(SmoothReport, AMotionOfFewSamplesIsDrawnSampleBySample) {
   ASSERT_EQ(data["time_s"].size(), 50U);
   EXPECT_EQ(data["time_s"][7], 0.007);
   EXPECT_EQ(data["joints"][2]["jerk"].size(), 50U);
-}
-
-TEST(SmoothReport, TablesStandWithoutTheScript) {
-  Smooth smooth = sample_smooth();
-  std::string html = page_of(smooth);
-  for (const char* part :
-       {"<section id=\"smooth\"", "href=\"#smooth\"", "Methods side by side", "no-joint-jerk", "Limits used by paper",
-        "joint 3, jerk", "Drives behind", "1 statements of the program", "line 4: M8", "breaks a limit"}) {
-    EXPECT_NE(html.find(part), std::string::npos) << part;
-  }
-  smooth.methods.resize(1);
-  for (CornerView& corner : smooth.corners) corner.tip_m.resize(1);
-  for (LimitUse& use : smooth.methods[0].uses) use.violations = 0;
-  smooth.methods[0].tracking_error_m = smooth.methods[0].tracking_error_rad = missing;
-  html = page_of(smooth);
-  html = html.substr(0, html.find("<script"));
-  EXPECT_NE(html.find("samples breaks a limit."), std::string::npos);
-  EXPECT_NE(html.find("None of"), std::string::npos);
-  for (const char* part : {"side by side", "Drives behind", "ΣT2", "<tr class=\"chatter\""}) {
-    EXPECT_EQ(html.find(part), std::string::npos) << part;
-  }
 }
 
 template <class Change>

@@ -1,0 +1,476 @@
+// What robomill writes into the page: shop units, null for "none".
+export type Num = number | null;
+
+export interface Fact {
+  label: string;
+  value: string;
+}
+
+export type Verdict = 'stable' | 'borderline' | 'chatter';
+export type Kind = 'hopf' | 'flip' | 'fold';
+/** The structure that a mode belongs to. */
+export type Owner = 'tool' | 'workpiece';
+
+export interface Recommendation {
+  spindle_speed_rpm: number;
+  axial_depth_mm: number;
+  feed_per_tooth_mm: Num;
+  margin: Num;
+  removal_rate_mm3_per_s: Num;
+  feed_mm_per_min: Num;
+  cutting_speed_m_per_min: Num;
+  torque_n_m: Num;
+  power_w: Num;
+  surface_error_um: Num;
+  peak_deflection_um: Num;
+  limited_by: string;
+  chatter_frequency_hz: Num;
+  mode: Num;
+  mode_of: Owner | null;
+}
+
+/** What a finishing cut permits. */
+export interface Finishing {
+  max_surface_error_um: Num;
+  max_deflection_um: Num;
+}
+
+export interface Curve {
+  magnitude: Num[];
+  phase_deg: Num[];
+}
+
+export interface Frf {
+  name: string;
+  unit: string;
+  frequency_hz: number[];
+  measured_frequency_hz: number[] | null; // where measured has an axis of its own
+  measured: Curve | null;
+  predicted: Curve | null;
+  fitted: Curve | null;
+  coherence: Num[] | null;
+  trusted_from_hz: Num;
+  trusted_to_hz: Num;
+  suspect_bands_hz: [number, number][];
+  unreliable_bands_hz: [number, number][];
+  grade: 'good' | 'fair' | 'poor' | null;
+  findings: string[];
+  remedies: string[];
+  relative_error: Num;
+  prediction_error: Num;
+}
+
+/** A complex number by degree of freedom. */
+export type ModeVector = Record<string, [number, number]>;
+
+export interface Mode {
+  mode: number;
+  mode_of: Owner;
+  frequency_hz: number;
+  damping_ratio: number;
+  std: { frequency_hz: Num; damping_ratio: Num };
+  left: ModeVector;
+  right: ModeVector;
+  limit_share: Num;
+}
+
+export interface Hit {
+  file: string;
+  direction: string;
+  accepted: boolean;
+  reasons: string[];
+}
+
+export interface Segment {
+  part: 'tool' | 'holder' | 'shank';
+  count: number;
+  length_mm: number;
+  diameter_mm: number;
+  inner_diameter_mm: Num;
+  flutes: number;
+  equivalent_diameter_mm: Num;
+  youngs_modulus_gpa: Num;
+  density_kg_per_m3: Num;
+  mass_kg: Num;
+  loss_factor: Num;
+  beam: string;
+}
+
+export interface Joint {
+  translational_stiffness_n_per_m: Num;
+  translational_damping_n_s_per_m: Num;
+  rotational_stiffness_n_m_per_rad: Num;
+  rotational_damping_n_m_s_per_rad: Num;
+  cross_stiffness_n_per_rad: Num;
+  points: number;
+  insertion_length_mm: Num;
+  shank: Segment[]; // of a joint of several points
+}
+
+export interface TipPeak {
+  name: string;
+  frequency_hz: number;
+  receptance_um_per_n: Num;
+  measured_frequency_hz: Num;
+}
+
+export interface Assembly {
+  tool: Segment[];
+  joint: Joint | null; // null: rigid
+  holder: { kind: 'measured' | 'wall' | 'segments'; segments: Segment[]; file: string };
+  peaks: TipPeak[];
+  suspect_lines: number;
+  unreliable_lines: number;
+  notes: string[];
+}
+
+export interface Fit {
+  method: string;
+  relative_error: Num;
+  mean_relative_error: Num;
+  band_from_hz: Num;
+  band_to_hz: Num;
+  converged: boolean;
+  convergence: Num[];
+  stabilisation: { order: number[]; frequency_hz: number[]; stable: boolean[] } | null;
+}
+
+export interface Lobes {
+  label: string;
+  modes: number[];
+  spindle_speed_rpm: number[];
+  limit_mm: Num[];
+  searched_depth_mm: Num;
+  band: { label: string; spindle_speed_rpm: number[]; low_mm: Num[]; high_mm: Num[] } | null;
+  boundary: {
+    spindle_speed_rpm: number[];
+    axial_depth_mm: number[];
+    chatter_frequency_hz: Num[];
+    kind: Kind[];
+    mode: Num[];
+    mode_of: (Owner | null)[];
+  };
+  map: { spindle_speed_rpm: number[]; axial_depth_mm: number[]; spectral_radius: Num[][] } | null;
+}
+
+export interface DepthCurve {
+  label: string;
+  spindle_speed_rpm: number[];
+  axial_depth_mm: Num[];
+}
+
+export interface Cut {
+  spindle_speed_rpm: number;
+  axial_depth_mm: number;
+  result: Verdict | null;
+  predicted: Verdict | null;
+  limit_mm: Num;
+  agrees: boolean | null;
+  note: string;
+}
+
+export interface Agreement {
+  agree: number;
+  disagree: number;
+  not_compared: number;
+}
+
+export interface FeedDirections {
+  direction_deg: number[];
+  lowest_limit_mm: Num[];
+  limit_at_speed_mm: Num[] | null;
+  spindle_speed_rpm: Num;
+  used_direction_deg: Num;
+  searched_depth_mm: Num;
+}
+
+export interface Peak {
+  frequency_hz: number;
+  amplitude: number;
+  kind: 'rotation' | 'tooth_passing' | 'chatter' | 'cut_or_chatter' | 'other';
+  text: string;
+}
+
+export interface Recording {
+  file: string;
+  spindle_speed_rpm: number;
+  axial_depth_mm: Num;
+  verdict: Verdict | null;
+  reason: string;
+  rotation_hz: number;
+  tooth_passing_hz: number;
+  teeth: number;
+  amplitude_unit: string;
+  frequency_hz: number[];
+  amplitude: Num[];
+  peaks: Peak[];
+}
+
+export interface Ring {
+  height_mm: number;
+  position_deg: Num;
+  arcs: { entry_deg: number; exit_deg: number }[];
+}
+
+/** A number for each of x, y and z. */
+export type Triple = [Num, Num, Num];
+
+export interface Revolution {
+  on: 'tool' | 'workpiece';
+  rotation_deg: number[];
+  fx_n: number[];
+  fy_n: number[];
+  fz_n: number[];
+  torque_n_m: number[];
+  mean_n: Triple;
+  peak_n: Triple;
+  rms_n: Triple;
+  mean_torque_n_m: Num;
+  peak_torque_n_m: Num;
+  power_w: Num;
+  chip_area_mm2: Num;
+  removal_rate_mm3_per_s: Num;
+  engagement: Ring[];
+  deflection_um: Triple; // by the mean force
+  peak_deflection_um: Num;
+  vibrating: boolean; // from the time-domain simulation
+  verdict: string;
+  chatter_frequency_hz: Num;
+}
+
+export interface ForceCurves {
+  path_mm: number[];
+  block: number[];
+  line: number[];
+  peak_force_n: Num[];
+  torque_n_m: Num[];
+  peak_torque_n_m: Num[];
+  power_w: Num[];
+  deflection_um: Num[] | null;
+}
+
+export interface Track extends Places {
+  block: number[];
+  line: number[];
+  peak_force_n: Num[];
+  cuts: boolean[];
+}
+
+/** The highest value along a program, and where. */
+export interface Highest {
+  value: number;
+  block: number;
+  line: number;
+}
+
+export interface WorstBlock {
+  block: number;
+  line: number;
+  tip_mm: Triple;
+  axial_depth_mm: Num;
+  radial_depth_mm: Num;
+  peak_force_n: Num;
+  mean_force_n: Triple;
+  torque_n_m: Num;
+  power_w: Num;
+  deflection_um: Num;
+}
+
+export interface Program {
+  blocks: number;
+  cutting_blocks: number;
+  length_mm: Num;
+  time_s: Num;
+  torque_limit_n_m: Num;
+  power_limit_w: Num;
+  power_time_s: number;
+  highest: Record<'peak_force_n' | 'torque_n_m' | 'peak_torque_n_m' | 'power_w' | 'deflection_um', Highest | null>;
+  worst: WorstBlock[];
+  troubles: string[];
+  curves: ForceCurves;
+  track: Track;
+}
+
+export interface SpindleRotation {
+  rotation_deg: number[];
+  deflection_um: Num[];
+  condition_number: Num[] | null;
+  best_deg: Num;
+  best_um: Num;
+  used_deg: Num;
+  used_um: Num;
+}
+
+/** What a document says in words. */
+export interface Remarks {
+  facts: Fact[];
+  warnings: string[];
+  notes: string[];
+}
+
+export interface Forces extends Remarks {
+  revolution: Revolution | null;
+  program: Program | null;
+  spindle_rotation: SpindleRotation | null;
+}
+
+/** One point after another in the work frame. */
+export interface Places {
+  x_mm: number[];
+  y_mm: number[];
+  z_mm: number[];
+}
+
+export interface JointMotion {
+  unit: '°' | 'mm';
+  velocity: number[];
+  acceleration: number[];
+  jerk: number[];
+  tracking_error: number[] | null;
+  max_velocity: Num;
+  max_acceleration: Num;
+  max_jerk: Num;
+}
+
+export interface Motion {
+  time_s: number[];
+  tip_speed_mm_per_s: number[];
+  axis_speed_deg_per_s: number[];
+  joints: JointMotion[];
+  track: Places & { speed_mm_per_s: number[] };
+}
+
+/** One limit and how near a method came to it. */
+export interface LimitUse {
+  what: string;
+  unit: string;
+  max: Num;
+  limit: Num;
+  share: Num;
+  violations: number;
+  at_s: Num;
+  block: Num;
+}
+
+export interface SmoothMethod {
+  name: string;
+  duration_s: number;
+  lower_bound_s: Num;
+  violations: number;
+  tip_error_um: Num;
+  axis_error_deg: Num;
+  joint_share: Num;
+  tracking_error_deg: Num;
+  tracking_error_um: Num;
+  sum_t2_s: Num;
+  plan_s: Num;
+  samples: number;
+  uses: LimitUse[];
+  motion: Motion;
+}
+
+export interface Corner {
+  block: number;
+  line: number;
+  turn_deg: number;
+  radius_mm: number;
+  program: { x_mm: number[]; y_mm: number[] };
+  ways: { x_mm: number[]; y_mm: number[] }[]; // one a method
+}
+
+export interface Smooth extends Remarks {
+  skipped: string[];
+  blocks: number;
+  tip_tolerance_mm: number;
+  max_tip_speed_mm_per_s: Num;
+  max_axis_speed_deg_per_s: Num;
+  program: Places;
+  methods: SmoothMethod[];
+  corners: Corner[];
+}
+
+export type MonitorState = 'stable' | 'transition' | 'chatter';
+
+export interface MonitorStay {
+  state: MonitorState;
+  from_s: number;
+  to_s: number;
+}
+
+export interface MonitorEvent {
+  time_s: number;
+  state: MonitorState;
+  score: Num;
+  threshold: Num;
+  chatter_frequency_hz: Num;
+  chatter_frequency_std_hz: Num;
+  suggested_spindle_speed_rpm: Num;
+  note: string;
+  mode: Num;
+  mode_of: Owner | null;
+}
+
+export interface Monitor extends Remarks {
+  unit: string;
+  entropy_unit: string;
+  wave_time_s: number[];
+  channels: { name: string; wave: number[] }[];
+  spectrogram: { channel: string; begin_s: number; step_s: number; frequency_hz: number[]; level_db: number[][] } | null; // a row a frequency
+  decisions: { time_s: number[]; score: number[]; threshold: number[]; energy_entropy: number[] | null; spindle_speed_rpm: number[] | null };
+  decision_count: number;
+  compute_mean_us: Num; // of one decision
+  compute_max_us: Num;
+  stays: MonitorStay[];
+  events: MonitorEvent[];
+}
+
+/** A recording that the threshold was set or verified with. */
+export interface CalibrationRow {
+  name: string;
+  chatter: boolean;
+  verifies: boolean;
+  alarmed: boolean;
+  delay_ms: Num;
+  lead_ms: Num;
+}
+
+export interface Calibration extends Remarks {
+  false_alarm_rate: Num;
+  detection_rate: Num;
+  curves: { label: string; false_alarm_rate: number[]; detection_rate: number[]; threshold: Num[] }[];
+  rows: CalibrationRow[];
+}
+
+export interface StageFile {
+  stage: string;
+  file: string;
+  description: string;
+}
+
+export interface Report {
+  title: string;
+  created: string;
+  facts: Fact[];
+  warnings: string[];
+  notes: string[];
+  recommendation: Recommendation | null;
+  alternatives: Recommendation[];
+  finishing: Finishing;
+  no_recommendation: string;
+  assembly: Assembly | null;
+  hits: Hit[];
+  agreement: Agreement;
+  frfs: Frf[];
+  modes: Mode[];
+  fit: Fit | null;
+  lobes: Lobes[];
+  other_limits: DepthCurve[];
+  cuts: Cut[];
+  feed_directions: FeedDirections | null;
+  forces: Forces | null;
+  smooth: Smooth | null;
+  recordings: Recording[];
+  monitor: Monitor | null;
+  calibration: Calibration | null;
+  files: StageFile[];
+}

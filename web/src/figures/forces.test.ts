@@ -1,0 +1,201 @@
+import { describe, expect, it } from 'vitest';
+import type { Program, Revolution, SpindleRotation, Track } from '../documents';
+import { engagementFigure, gammaFigure, highest, programFigure, revolutionFigure, ringEdges, withinTurn } from './forces';
+import { dark, light } from './theme';
+import { frame, marks, moves, trackFigure } from './track';
+
+const revolution = {
+  on: 'workpiece',
+  rotation_deg: [0, 180, 360],
+  fx_n: [1, 2, 1],
+  fy_n: [3, 4, 3],
+  fz_n: [5, 6, 5],
+  torque_n_m: [0.1, 0.2, 0.1],
+  engagement: [
+    { height_mm: 0.1, position_deg: 20, arcs: [{ entry_deg: 0, exit_deg: 120 }] },
+    { height_mm: 0.3, position_deg: null, arcs: [{ entry_deg: 300, exit_deg: 400 }] },
+    { height_mm: 0.7, position_deg: 40, arcs: [] },
+  ],
+} as Revolution;
+
+describe('forces over a revolution', () => {
+  it('have the three components above, each with a dash of its own, and the torque below', () => {
+    const { data, layout } = revolutionFigure(revolution, light);
+    expect(data.map((trace) => [trace['name'], trace['y']])).toEqual([['Fx', [1, 2, 1]], ['Fy', [3, 4, 3]], ['Fz', [5, 6, 5]], ['torque', [0.1, 0.2, 0.1]]]);
+    expect(new Set(data.slice(0, 3).map((trace) => (trace['line'] as { dash: string }).dash)).size).toBe(3);
+    expect(layout['yaxis']).toMatchObject({ title: { text: 'Force on the workpiece (N)' } });
+    expect(layout['xaxis']).toMatchObject({ range: [0, 360], dtick: 45, anchor: 'y2' });
+    expect(revolutionFigure({ ...revolution, rotation_deg: [0, 180, 1080] }, light).layout['xaxis']).toMatchObject({ dtick: 135 });
+    expect(revolutionFigure(revolution, light, true).layout['xaxis']).toMatchObject({ dtick: 90 });
+  });
+});
+
+describe('engagement map', () => {
+  it('splits an arc that runs over +y', () => {
+    expect(withinTurn(300, 400)).toEqual([[300, 360], [0, 40]]);
+    expect(withinTurn(-30, 60)).toEqual([[330, 360], [0, 60]]);
+    expect(withinTurn(10, 370)).toEqual([[0, 360]]);
+    expect(withinTurn(0, 180)).toEqual([[0, 180]]);
+    expect(withinTurn(270, 360)).toEqual([[270, 360]]);
+  });
+  it('stands each ring half-way to its neighbours, the lowest not below the tip', () => {
+    const edges = ringEdges([0.1, 0.3, 0.7]);
+    [0, 0.2, 0.2, 0.5, 0.5, 0.9].forEach((edge, i) => expect(edges.flat()[i]).toBeCloseTo(edge));
+    const even = ringEdges([0.5, 1.5, 2.5]);
+    expect(even).toEqual([[0, 1], [1, 2], [2, 3]]);
+    expect(ringEdges([0.02, 0.3])[0]![0]).toBe(0);
+    expect(ringEdges([2])).toEqual([[1, 3]]);
+    expect(ringEdges([])).toEqual([]);
+  });
+  it('draws one bar an arc, and says what it is', () => {
+    const [bars, middles] = engagementFigure(revolution.engagement, light).data;
+    expect((bars!['x'] as unknown[]).filter((value) => value === null)).toHaveLength(3);
+    expect((bars!['x'] as unknown[]).slice(0, 6)).toEqual([0, 120, 120, 0, 0, null]);
+    expect(middles!['x']).toEqual([60, 330, 20]);
+    expect((middles!['text'] as string[])[0]).toContain('κ 20.0°<br>from 0.0° to 120.0°');
+    expect((middles!['text'] as string[])[1]).not.toContain('κ');
+    const axis = engagementFigure(revolution.engagement, light, true).layout['xaxis'] as { tickvals: number[]; ticktext: string[] };
+    expect(axis.tickvals).toEqual([0, 90, 180, 270, 360]);
+    expect(axis.ticktext[1]).toBe('90<br>feed');
+  });
+});
+
+const track: Track = {
+  x_mm: [0, 0, 10, 10.001, 50],
+  y_mm: [0, 0, 0, 0, 0],
+  z_mm: [20, 0, 0, 0, 5],
+  block: [1, 2, 3, 4, 5],
+  line: [11, 12, 13, 14, 15],
+  peak_force_n: [0, 0, 100, 300, null],
+  cuts: [false, false, true, true, false],
+};
+
+const program = {
+  torque_limit_n_m: 0.25,
+  power_time_s: 0.1,
+  power_limit_w: 4000,
+  curves: {
+    path_mm: [5, 10, 30],
+    block: [1, 2, 3],
+    line: [11, 12, 13],
+    peak_force_n: [10, null, 30],
+    torque_n_m: [0.1, 0.2, 0.3],
+    peak_torque_n_m: [0.2, 0.3, 0.6],
+    power_w: [100, 200, 300],
+    deflection_um: [1, 2, 3],
+  },
+  track,
+} as Program;
+
+describe('forces along a program', () => {
+  const rows = (figure: { layout: Record<string, unknown> }) => Object.keys(figure.layout).filter((key) => key.startsWith('yaxis'));
+  it('stack over one axis, without the deflection where nothing bends', () => {
+    const figure = programFigure(program, light);
+    expect(rows(figure)).toHaveLength(4);
+    expect(figure.layout['xaxis']).toMatchObject({ anchor: 'y4', range: [0, 30] });
+    const rigid = programFigure({ ...program, curves: { ...program.curves, deflection_um: null } }, light);
+    expect(rows(rigid)).toHaveLength(3);
+    expect(rigid.layout['xaxis']).toMatchObject({ anchor: 'y3' });
+  });
+  it('never overlap', () => {
+    const figure = programFigure(program, light);
+    const domains = rows(figure).map((key) => (figure.layout[key] as { domain: [number, number] }).domain);
+    domains.forEach(([low, high], i) => {
+      expect(low).toBeLessThan(high);
+      if (i > 0) expect(high).toBeLessThanOrEqual(domains[i - 1]![0]);
+    });
+  });
+  it('hold a block’s value over its length, from the start of the path', () => {
+    const [force] = programFigure(program, light).data;
+    expect(force).toMatchObject({ x: [0, 5, 10, 30], y: [10, 10, null, 30], line: { shape: 'vh' } });
+    expect(force!['customdata']).toEqual([[1, 11], [1, 11], [2, 12], [3, 13]]);
+  });
+  it('show a limit as a line, or in words where the line would flatten the curve', () => {
+    const { layout } = programFigure(program, light);
+    expect(layout['shapes']).toMatchObject([{ yref: 'y2', y0: 0.25, line: { dash: '6px,4px' } }]);
+    expect((layout['annotations'] as { text: string }[]).map((a) => a.text)).toEqual(['spindle\'s limit 0.25 N·m', 'spindle\'s limit 4000 W, above this plot']);
+    expect((layout['yaxis3'] as { range: number[] }).range[1]).toBeCloseTo(336);
+    expect(programFigure({ ...program, torque_limit_n_m: null, power_limit_w: null }, light).layout['shapes']).toEqual([]);
+  });
+  it('have a finite range where nothing is known', () => {
+    expect(highest([null, null])).toBe(0);
+    const none = programFigure({ ...program, curves: { ...program.curves, peak_force_n: [null, null, null] } }, light);
+    expect((none.layout['yaxis'] as { range: number[] }).range).toEqual([0, 1.12]);
+  });
+});
+
+describe('track', () => {
+  it('keeps moves in air apart from those in the cut', () => {
+    expect(moves(track, false)).toEqual({ x: [0, 0, null, 10.001, 50], y: [0, 0, null, 0, 0], z: [20, 0, null, 0, 5] });
+    expect(moves(track, true).x).toEqual([0, 10, 10.001]);
+  });
+  it('marks a long block along its way, a short one once, the highest force last', () => {
+    const points = marks(track, 10);
+    expect(points.force[points.force.length - 1]).toBe(300);
+    expect(points.force.filter((force) => force === 100).length).toBe(9);
+    expect(points.x[8]).toBe(10);
+    expect(points.place[9]).toEqual([4, 14]);
+    expect(points.force.length).toBeLessThanOrEqual(10 + 2);
+  });
+  it('gives a millimetre the same length in all views', () => {
+    for (const width of [300, 680, 1100]) {
+      const place = frame(track, width);
+      const across = width - 64 - 24;
+      const down = place.height - 30 - 104;
+      const scale = (range: [number, number], domain: [number, number], room: number) => ((domain[1] - domain[0]) * room) / (range[1] - range[0]);
+      const scales = [
+        scale(place.x, place.top[0]!, across),
+        scale(place.y, place.top[1]!, down),
+        scale(place.x, place.side[0]!, across),
+        scale(place.z, place.side[1]!, down),
+      ];
+      for (const each of scales) expect(each).toBeCloseTo(scales[0]!, 6);
+      expect(place.stacked).toBe(width < 640);
+    }
+  });
+  it('holds all of the path within its ranges', () => {
+    const place = frame({ ...track, y_mm: [0, 200, 0, -300, 0] }, 900);
+    expect(place.y[0]).toBeLessThan(-300);
+    expect(place.y[1]).toBeGreaterThan(200);
+    expect(place.x[0]).toBeLessThan(0);
+    expect(place.x[1]).toBeGreaterThan(50);
+  });
+  it('survives a program that stays where it is', () => {
+    const still = { ...track, x_mm: [1, 1, 1, 1, 1], y_mm: [2, 2, 2, 2, 2], z_mm: [3, 3, 3, 3, 3] };
+    const place = frame(still, 900);
+    for (const [low, high] of [place.x, place.y, place.z]) expect(high - low).toBeGreaterThanOrEqual(1 - 1e-9);
+    expect(marks(still).force).toEqual([100, 300]);
+  });
+  it('colours by force on one scale', () => {
+    for (const theme of [light, dark]) {
+      const { data, layout } = trackFigure(track, theme, 900);
+      expect(data).toHaveLength(6);
+      expect(data[2]).toMatchObject({ marker: { coloraxis: 'coloraxis' } });
+      expect(data[5]).toMatchObject({ marker: { coloraxis: 'coloraxis' }, yaxis: 'y2' });
+      expect(layout['coloraxis']).toMatchObject({ colorscale: theme.scale });
+    }
+  });
+});
+
+describe('deflection over γ', () => {
+  const sweep: SpindleRotation = {
+    rotation_deg: [-180, 0, 180],
+    deflection_um: [null, 20, 40],
+    condition_number: [null, 5, 9],
+    best_deg: 0,
+    best_um: 20,
+    used_deg: 90,
+    used_um: 30,
+  };
+  it('marks the best and the used', () => {
+    const { data, layout } = gammaFigure(sweep, light);
+    expect(data.map((trace) => trace['name'])).toEqual(['deflection', 'used', 'best', 'condition number']);
+    expect(data[2]).toMatchObject({ x: [0], y: [20], marker: { symbol: 'diamond' } });
+    expect(layout['xaxis']).toMatchObject({ anchor: 'y2', dtick: 45 });
+  });
+  it('does without marks and condition number', () => {
+    const { data, layout } = gammaFigure({ ...sweep, best_um: null, used_deg: null, condition_number: null }, light);
+    expect(data.map((trace) => trace['name'])).toEqual(['deflection']);
+    expect(layout).not.toHaveProperty('yaxis2');
+  });
+});

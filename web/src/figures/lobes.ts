@@ -1,0 +1,338 @@
+import type { Cut, DepthCurve, Lobes, Num, Recommendation, Verdict } from '../documents';
+import { axis, layout, plain, rpm, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+
+export interface LobesInput {
+  lobes: Lobes;
+  otherLimits: DepthCurve[];
+  cuts: Cut[];
+  recommendation: Recommendation | null;
+  alternatives: Recommendation[];
+}
+
+const dashes = ['dash', 'dot', 'dashdot', 'longdash'];
+const speedAxis = 'Spindle speed (rpm)';
+const depthAxis = 'Axial depth (mm)';
+
+/** The depth up to which a cut is stable at each speed: the limit, or all that was searched where there is none. */
+export function stableDepth(lobes: Lobes): number[] {
+  const top = searchedDepth(lobes);
+  return lobes.limit_mm.map((depth) => depth ?? top);
+}
+
+export function searchedDepth(lobes: Lobes): number {
+  if (lobes.searched_depth_mm !== null) return lobes.searched_depth_mm;
+  return lobes.limit_mm.reduce<number>((most, depth) => Math.max(most, depth ?? 0), 0);
+}
+
+/** Where the limit lies with all that is uncertain; up to the top where none was found. */
+export function bandTraces(lobes: Lobes, theme: Theme): Trace[] {
+  const { band } = lobes;
+  if (band === null) return [];
+  const top = searchedDepth(lobes);
+  const side = { type: 'scatter', mode: 'lines', x: band.spindle_speed_rpm, line: { width: 0 }, hoverinfo: 'skip' };
+  return [
+    { ...side, y: band.low_mm.map((depth) => depth ?? top), showlegend: false },
+    { ...side, y: band.high_mm.map((depth) => depth ?? top), fill: 'tonexty', fillcolor: theme.bandFill, name: plain(band.label) },
+  ];
+}
+
+export function limitTraces(lobes: Lobes, theme: Theme, name = 'limit', colour = theme.text): Trace[] {
+  return [
+    {
+      type: 'scatter',
+      mode: 'lines',
+      x: lobes.spindle_speed_rpm,
+      y: stableDepth(lobes),
+      fill: 'tozeroy',
+      fillcolor: theme.stableFill,
+      line: { width: 0 },
+      hoverinfo: 'skip',
+      showlegend: false,
+    },
+    {
+      type: 'scatter',
+      mode: 'lines+markers', // a limit at one speed between two without is a point
+      name,
+      x: lobes.spindle_speed_rpm,
+      y: lobes.limit_mm,
+      connectgaps: false,
+      line: { color: colour, width: 2 },
+      marker: { color: colour, size: 2 },
+      hovertemplate: `limit %{y:.3f}${thinSpace}mm at %{x:.0f}${thinSpace}rpm<extra></extra>`,
+    },
+  ];
+}
+
+const looks: { result: Verdict | null; name: string; symbol: string }[] = [
+  { result: 'stable', name: 'cut, stable', symbol: 'circle' },
+  { result: 'borderline', name: 'cut, borderline', symbol: 'triangle-up' },
+  { result: 'chatter', name: 'cut, chatter', symbol: 'x' },
+  { result: null, name: 'cut, no result', symbol: 'circle-open' },
+];
+
+function verdictColour(theme: Theme, verdict: Verdict | null): string {
+  return verdict === null ? theme.unknown : theme[verdict];
+}
+
+function cutText(cut: Cut): string {
+  const lines = [
+    `<b>${rpm(cut.spindle_speed_rpm)}, ${cut.axial_depth_mm} mm</b>`,
+    `made: ${cut.result ?? 'not stated'}`,
+    `predicted: ${cut.predicted ?? 'not known'}`,
+  ];
+  if (cut.limit_mm !== null) lines.push(`limit here: ${cut.limit_mm.toFixed(3)} mm`);
+  if (cut.agrees !== null) lines.push(cut.agrees ? 'as predicted' : '<b>not as predicted</b>');
+  if (cut.note !== '') lines.push(plain(cut.note));
+  return lines.join('<br>');
+}
+
+/** One trace a result, and rings around the cuts that came out otherwise than predicted. */
+export function cutTraces(cuts: Cut[], theme: Theme): Trace[] {
+  const traces: Trace[] = [];
+  const points = (chosen: Cut[]) => ({
+    type: 'scatter',
+    mode: 'markers',
+    x: chosen.map((cut) => cut.spindle_speed_rpm),
+    y: chosen.map((cut) => cut.axial_depth_mm),
+  });
+  for (const look of looks) {
+    const chosen = cuts.filter((cut) => cut.result === look.result);
+    if (chosen.length === 0) continue;
+    traces.push({
+      ...points(chosen),
+      name: `${look.name} (${chosen.length})`,
+      text: chosen.map(cutText),
+      hovertemplate: '%{text}<extra></extra>',
+      marker: {
+        symbol: look.symbol,
+        size: 10,
+        color: verdictColour(theme, look.result),
+        line: { width: look.result === null ? 1.5 : 1, color: look.result === null ? theme.unknown : theme.panel },
+      },
+    });
+  }
+  const wrong = cuts.filter((cut) => cut.agrees === false);
+  if (wrong.length > 0) {
+    traces.push({
+      ...points(wrong),
+      name: `not as predicted (${wrong.length})`,
+      hoverinfo: 'skip',
+      marker: { symbol: 'circle-open', size: 19, color: theme.text, line: { width: 1.5 } },
+    });
+  }
+  return traces;
+}
+
+function recommendationText(r: Recommendation): string {
+  const lines = [`<b>${rpm(r.spindle_speed_rpm)}, ${r.axial_depth_mm.toFixed(2)} mm</b>`];
+  if (r.removal_rate_mm3_per_s !== null) lines.push(`${r.removal_rate_mm3_per_s.toPrecision(3)} mm³/s`);
+  if (r.limited_by !== '') lines.push(`limited by ${plain(r.limited_by)}`);
+  return lines.join('<br>');
+}
+
+function recommendationTraces(input: LobesInput, theme: Theme): Trace[] {
+  const traces: Trace[] = [];
+  if (input.alternatives.length > 0) {
+    traces.push({
+      type: 'scatter',
+      mode: 'markers+text',
+      name: 'alternatives',
+      x: input.alternatives.map((r) => r.spindle_speed_rpm),
+      y: input.alternatives.map((r) => r.axial_depth_mm),
+      text: input.alternatives.map((_, i) => `${i + 1}`),
+      textfont: { size: 10, color: theme.accent },
+      hovertext: input.alternatives.map(recommendationText),
+      hovertemplate: '%{hovertext}<extra>alternative %{text}</extra>',
+      marker: { symbol: 'circle', size: 17, color: theme.panel, line: { width: 1.5, color: theme.accent } },
+    });
+  }
+  const best = input.recommendation;
+  if (best !== null) {
+    traces.push({
+      type: 'scatter',
+      mode: 'markers',
+      name: 'recommended',
+      x: [best.spindle_speed_rpm],
+      y: [best.axial_depth_mm],
+      hovertext: [recommendationText(best)],
+      hovertemplate: '%{hovertext}<extra>recommended</extra>',
+      marker: { symbol: 'star', size: 18, color: theme.accent, line: { width: 1, color: theme.panel } },
+    });
+  }
+  return traces;
+}
+
+/** From the recommended point to both axes. */
+function guides(best: Recommendation | null, left: number, theme: Theme): Layout[] {
+  if (best === null) return [];
+  const line = { color: theme.accent, width: 1, dash: 'dot' };
+  const { spindle_speed_rpm: x, axial_depth_mm: y } = best;
+  return [
+    { type: 'line', xref: 'x', yref: 'y', x0: x, x1: x, y0: 0, y1: y, line, layer: 'below' },
+    { type: 'line', xref: 'x', yref: 'y', x0: left, x1: x, y0: y, y1: y, line, layer: 'below' },
+  ];
+}
+
+const kinds = [
+  { kind: 'hopf', symbol: 'circle' },
+  { kind: 'flip', symbol: 'diamond' },
+  { kind: 'fold', symbol: 'square' },
+] as const;
+
+/** Chatter frequency along the boundary, coloured by mode; only the points that are the limit at their speed are what occurs first. */
+export function frequencyTraces(lobes: Lobes, theme: Theme): Trace[] {
+  const { boundary } = lobes;
+  const groups = new Map<string, { mode: number; ofWorkpiece: boolean; indices: number[] }>();
+  boundary.chatter_frequency_hz.forEach((frequency, i) => {
+    if (frequency === null) return;
+    const mode = boundary.mode[i] ?? 0;
+    const ofWorkpiece = boundary.mode_of[i] === 'workpiece';
+    const name = mode === 0 ? 'mode unknown' : `mode ${mode}${ofWorkpiece ? ' of the workpiece' : ''}`;
+    const group = groups.get(name) ?? { mode, ofWorkpiece, indices: [] };
+    group.indices.push(i);
+    groups.set(name, group);
+  });
+  return [...groups.entries()]
+    .sort(([, a], [, b]) => Number(a.ofWorkpiece) - Number(b.ofWorkpiece) || a.mode - b.mode)
+    .map(([name, { mode, ofWorkpiece, indices }]) => ({
+      type: 'scatter',
+      mode: 'markers',
+      name,
+      legend: 'legend2',
+      xaxis: 'x2',
+      yaxis: 'y2',
+      x: indices.map((i) => boundary.spindle_speed_rpm[i]),
+      y: indices.map((i) => boundary.chatter_frequency_hz[i]),
+      customdata: indices.map((i) => [boundary.kind[i], boundary.axial_depth_mm[i]]),
+      hovertemplate:
+        `chatter at %{y:.1f}${thinSpace}Hz (%{customdata[0]})<br>%{x:.0f}${thinSpace}rpm, ` +
+        `%{customdata[1]:.3f}${thinSpace}mm<extra>${mode > 0 ? name : ''}</extra>`,
+      marker: {
+        size: 4,
+        color: mode > 0 ? theme.series[(mode - 1) % theme.series.length] : theme.unknown,
+        symbol: indices.map((i) => (kinds.find((k) => k.kind === boundary.kind[i])?.symbol ?? 'circle') + (ofWorkpiece ? '-open' : '')),
+      },
+    }));
+}
+
+function speedRange(lobes: Lobes): [number, number] {
+  return [lobes.spindle_speed_rpm[0] ?? 0, lobes.spindle_speed_rpm[lobes.spindle_speed_rpm.length - 1] ?? 1];
+}
+
+/** Top of the depth axis: what was searched, or the highest point that must be seen. */
+export function depthTop(input: LobesInput): number {
+  const shown: Num[] = [searchedDepth(input.lobes), input.recommendation?.axial_depth_mm ?? 0];
+  for (const cut of input.cuts) shown.push(cut.axial_depth_mm);
+  return 1.04 * shown.reduce<number>((most, depth) => Math.max(most, depth ?? 0), 0);
+}
+
+/** The other limits that come into view at all. */
+export function visibleLimits(input: LobesInput): DepthCurve[] {
+  const top = depthTop(input);
+  return input.otherLimits.filter((curve) => curve.axial_depth_mm.some((depth) => depth !== null && depth <= top));
+}
+
+export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): Figure {
+  const { lobes } = input;
+  const frequencies = frequencyTraces(lobes, theme);
+  const two = frequencies.length > 0;
+  const data: Trace[] = [
+    ...bandTraces(lobes, theme),
+    ...limitTraces(lobes, theme),
+    ...visibleLimits(input).map((curve, i) => ({
+      type: 'scatter',
+      mode: 'lines',
+      name: plain(curve.label),
+      x: curve.spindle_speed_rpm,
+      y: curve.axial_depth_mm,
+      line: { color: theme.muted, width: 1.5, dash: dashes[i % dashes.length] },
+      hovertemplate: `${plain(curve.label)}: %{y:.3f}${thinSpace}mm<extra></extra>`,
+    })),
+    ...cutTraces(input.cuts, theme),
+    ...recommendationTraces(input, theme),
+    ...frequencies,
+  ];
+  const [left, right] = speedRange(lobes);
+  const speeds = { range: [left, right], hoverformat: '.0f', tickformat: ',d' };
+  return {
+    data,
+    layout: layout(theme, two ? (narrow ? 700 : 720) : 480, {
+      hovermode: 'closest',
+      xaxis: axis(theme, two ? '' : speedAxis, { ...speeds, showticklabels: !two, anchor: 'y' }),
+      yaxis: axis(theme, depthAxis, { range: [0, depthTop(input)], domain: two ? [0.42, 1] : [0, 1] }),
+      ...(two
+        ? {
+            xaxis2: axis(theme, speedAxis, { ...speeds, anchor: 'y2', matches: 'x' }),
+            yaxis2: axis(theme, 'Chatter frequency (Hz)', { domain: [0, 0.3], anchor: 'x2' }),
+            legend2: { orientation: 'h', yanchor: 'bottom', y: 0.31, xanchor: 'left', x: 0, font: { size: 12 } },
+          }
+        : {}),
+      shapes: guides(input.recommendation, left, theme),
+    }),
+  };
+}
+
+/** Some modes alone, over the limit of all in grey. */
+export function pairFigure(part: Lobes, all: Lobes, cuts: Cut[], theme: Theme): Figure {
+  return {
+    data: [
+      {
+        type: 'scatter',
+        mode: 'lines',
+        name: 'all modes',
+        x: all.spindle_speed_rpm,
+        y: all.limit_mm,
+        line: { color: theme.unknown, width: 1.2 },
+        hoverinfo: 'skip',
+      },
+      ...limitTraces(part, theme, plain(part.label), theme.accent),
+      ...cutTraces(cuts, theme).map((trace) => ({ ...trace, showlegend: false })),
+    ],
+    layout: layout(theme, 320, {
+      title: { text: plain(part.label), font: { size: 14 }, x: 0.02, xanchor: 'left', y: 0.97 },
+      margin: { l: 52, r: 32, t: 34, b: 44 },
+      showlegend: false,
+      hovermode: 'closest',
+      xaxis: axis(theme, speedAxis, { range: speedRange(all), tickformat: ',d' }),
+      yaxis: axis(theme, depthAxis, { range: [0, 1.04 * Math.max(searchedDepth(part), searchedDepth(all))] }),
+    }),
+  };
+}
+
+/** The spectral radius on the whole grid, with the line where it is 1. */
+export function mapFigure(lobes: Lobes, theme: Theme): Figure {
+  const map = lobes.map;
+  if (map === null) return { data: [], layout: layout(theme, 200) };
+  const z = map.spectral_radius;
+  const points = { x: map.spindle_speed_rpm, y: map.axial_depth_mm, z };
+  return {
+    data: [
+      {
+        type: 'heatmap',
+        ...points,
+        zmid: 1,
+        zmin: 0,
+        zmax: 2,
+        colorscale: [
+          [0, theme.accent],
+          [0.5, theme.panel],
+          [1, theme.chatter],
+        ],
+        colorbar: { title: { text: 'Spectral radius', side: 'right' }, thickness: 12, outlinewidth: 0 },
+        hovertemplate: `%{x:.0f}${thinSpace}rpm, %{y:.3f}${thinSpace}mm: %{z:.3f}<extra></extra>`,
+      },
+      {
+        type: 'contour',
+        ...points,
+        contours: { start: 1, end: 1, size: 1, coloring: 'none' },
+        line: { color: theme.text, width: 2 },
+        showscale: false,
+        hoverinfo: 'skip',
+      },
+    ],
+    layout: layout(theme, 460, {
+      xaxis: axis(theme, speedAxis, { tickformat: ',d' }),
+      yaxis: axis(theme, depthAxis),
+    }),
+  };
+}

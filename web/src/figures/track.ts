@@ -1,0 +1,190 @@
+import type { Num, Places, Track } from '../documents';
+import { axis, layout, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+
+interface Line {
+  x: Num[];
+  y: Num[];
+  z: Num[];
+}
+
+export interface Marks {
+  x: number[];
+  y: number[];
+  z: number[];
+  force: number[];
+  place: [number, number][]; // block, line
+}
+
+/** Moves in air or in the cut, each from where the one before ended; a gap between two that do not follow each other. */
+export function moves(track: Track, cutting: boolean): Line {
+  const line: Line = { x: [], y: [], z: [] };
+  for (let i = 1; i < track.cuts.length; ++i) {
+    if (track.cuts[i] !== cutting) continue;
+    if (i === 1 || track.cuts[i - 1] !== cutting) {
+      if (line.x.length > 0) for (const values of [line.x, line.y, line.z]) values.push(null);
+      push(line, track, i - 1);
+    }
+    push(line, track, i);
+  }
+  return line;
+}
+
+function push(line: Line, track: Track, i: number): void {
+  line.x.push(track.x_mm[i]!);
+  line.y.push(track.y_mm[i]!);
+  line.z.push(track.z_mm[i]!);
+}
+
+const step = (track: Track, i: number) =>
+  Math.hypot(track.x_mm[i]! - track.x_mm[i - 1]!, track.y_mm[i]! - track.y_mm[i - 1]!, track.z_mm[i]! - track.z_mm[i - 1]!);
+
+/** Marks of the blocks that cut, the highest force last and so on top. A long block has several along its way, up to `more` in all. */
+export function marks(track: Track, more = 1500): Marks {
+  const cutting = track.cuts.map((_, i) => i).filter((i) => track.cuts[i] && track.peak_force_n[i] !== null);
+  const length = cutting.reduce((sum, i) => sum + (i > 0 ? step(track, i) : 0), 0);
+  const spacing = length > 0 ? length / more : Infinity;
+  const out: Marks = { x: [], y: [], z: [], force: [], place: [] };
+  for (const i of cutting.sort((a, b) => track.peak_force_n[a]! - track.peak_force_n[b]!)) {
+    const count = i > 0 ? Math.max(1, Math.floor(step(track, i) / spacing)) : 1;
+    for (let k = 1; k <= count; ++k) {
+      const along = (values: number[]) => (i > 0 ? values[i - 1]! + ((values[i]! - values[i - 1]!) * k) / count : values[i]!);
+      out.x.push(along(track.x_mm));
+      out.y.push(along(track.y_mm));
+      out.z.push(along(track.z_mm));
+      out.force.push(track.peak_force_n[i]!);
+      out.place.push([track.block[i]!, track.line[i]!]);
+    }
+  }
+  return out;
+}
+
+export interface Frame {
+  stacked: boolean;
+  height: number;
+  x: [number, number];
+  y: [number, number];
+  z: [number, number];
+  top: [number, number][]; // domains of the view from above: x, y
+  side: [number, number][]; // of the view from the side: x, z
+}
+
+function extent(values: number[]): [number, number] {
+  return values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+}
+
+/** The two views: their vertical axis, and where they are drawn. */
+export const views = [
+  { name: 'from above', up: 'y' as const, axes: {} },
+  { name: 'from the side', up: 'z' as const, axes: { xaxis: 'x2', yaxis: 'y2' } },
+];
+
+const margin = { l: 64, r: 24, t: 30, b: 104 };
+const between = 78;
+const highestView = 460;
+
+/** Ranges and places of the two views, so that a millimetre is as long in all four axes. Side by side, or stacked where narrow. */
+export function frame(track: Places, width: number): Frame {
+  const stacked = width < 640;
+  const sides = { x: extent(track.x_mm), y: extent(track.y_mm), z: extent(track.z_mm) };
+  const room = Math.max(120, width - margin.l - margin.r);
+  const across = stacked ? room : (room - between) / 2;
+  const largest = Math.max(...[sides.x, sides.y, sides.z].map(([low, high]) => high - low));
+  const size = ([low, high]: [number, number]) => Math.max(1.08 * (high - low), 0.1 * largest, 1);
+  const tallest = Math.max(size(sides.y), size(sides.z));
+  const pixels = Math.min(across / size(sides.x), highestView / tallest); // a millimetre
+  const range = ([low, high]: [number, number], length: number): [number, number] => {
+    const half = length / pixels / 2;
+    return [(low + high) / 2 - half, (low + high) / 2 + half];
+  };
+  const least = 110;
+  if (stacked) {
+    const [over, under] = [Math.max(least, size(sides.y) * pixels), Math.max(least, size(sides.z) * pixels)];
+    const gap = 56;
+    const inner = over + gap + under;
+    return {
+      stacked,
+      height: inner + margin.t + margin.b,
+      x: range(sides.x, across),
+      y: range(sides.y, over),
+      z: range(sides.z, under),
+      top: [[0, 1], [(under + gap) / inner, 1]],
+      side: [[0, 1], [0, under / inner]],
+    };
+  }
+  const tall = Math.max(least, tallest * pixels);
+  const part = across / room;
+  return {
+    stacked,
+    height: tall + margin.t + margin.b,
+    x: range(sides.x, across),
+    y: range(sides.y, tall),
+    z: range(sides.z, tall),
+    top: [[0, part], [0, 1]],
+    side: [[1 - part, 1], [0, 1]],
+  };
+}
+
+/** What the two views of a path share; a colour scale below where something has a colour. */
+export function viewsLayout(place: Frame, theme: Theme, scale: string | null): Layout {
+  const title = (text: string, [from, to]: [number, number], y: number): Layout => ({
+    text,
+    showarrow: false,
+    font: { size: 13, color: theme.muted },
+    xref: 'paper',
+    yref: 'paper',
+    x: (from + to) / 2,
+    xanchor: 'center',
+    y,
+    yanchor: 'bottom',
+    yshift: 4,
+  });
+  const equal = { scaleanchor: 'x', scaleratio: 1, automargin: false, zeroline: false };
+  return layout(theme, place.height, {
+    hovermode: 'closest',
+    margin,
+    annotations: [title('From above', place.top[0]!, place.top[1]![1]), title('From the side', place.side[0]!, place.side[1]![1])],
+    xaxis: axis(theme, place.stacked ? '' : 'x (mm)', { range: place.x, domain: place.top[0], anchor: 'y', automargin: false, zeroline: false }),
+    yaxis: axis(theme, 'y (mm)', { ...equal, range: place.y, domain: place.top[1], anchor: 'x' }),
+    xaxis2: axis(theme, 'x (mm)', { matches: 'x', range: place.x, domain: place.side[0], anchor: 'y2', automargin: false, zeroline: false }),
+    yaxis2: axis(theme, 'z (mm)', { ...equal, range: place.z, domain: place.side[1], anchor: 'x2' }),
+    coloraxis: {
+      colorscale: theme.scale,
+      showscale: scale !== null,
+      colorbar: {
+        orientation: 'h',
+        title: { text: scale ?? '', side: 'top' },
+        thickness: 10,
+        outlinewidth: 0,
+        y: -52 / (place.height - margin.t - margin.b),
+        yanchor: 'top',
+        len: place.stacked ? 1 : 0.5,
+      },
+    },
+  });
+}
+
+/** The path from above and from the side, each block that cuts in the colour of its peak force. */
+export function trackFigure(track: Track, theme: Theme, width: number): Figure {
+  const place = frame(track, width);
+  const air = moves(track, false);
+  const cut = moves(track, true);
+  const points = marks(track);
+  const line = { type: 'scatter', mode: 'lines', hoverinfo: 'skip', showlegend: false };
+  const data: Trace[] = views.flatMap((view) => [
+    { ...line, ...view.axes, name: 'air', x: air.x, y: air[view.up], line: { color: theme.unknown, width: 0.8 } },
+    { ...line, ...view.axes, name: 'cut', x: cut.x, y: cut[view.up], line: { color: theme.grid, width: 1.5 } },
+    {
+      type: 'scatter',
+      mode: 'markers',
+      ...view.axes,
+      name: view.name,
+      showlegend: false,
+      x: points.x,
+      y: points[view.up],
+      customdata: points.place,
+      marker: { size: 4, color: points.force, coloraxis: 'coloraxis' },
+      hovertemplate: `%{marker.color:.4g}${thinSpace}N in block %{customdata[0]}, line %{customdata[1]}<br>at x %{x:.2f}, ${view.up} %{y:.2f}${thinSpace}mm<extra></extra>`,
+    },
+  ]);
+  return { data, layout: viewsLayout(place, theme, points.force.length > 0 ? 'Peak force (N)' : null) };
+}

@@ -1,0 +1,179 @@
+// The page of the sample report, which the C++ side writes (web.page_sample): its words, without its plots.
+import { readFileSync } from 'node:fs';
+import { renderToString } from 'preact-render-to-string';
+import { beforeEach, expect, it, vi } from 'vitest';
+import type { Report } from './documents';
+import { Page } from './page';
+
+vi.mock('plotly.js-cartesian-dist-min', () => ({}));
+
+const data = /<script type="application\/json" id="report-data">(.*?)<\/script>/s.exec(readFileSync('sample.html', 'utf8'))![1]!;
+let report: Report;
+beforeEach(() => void (report = JSON.parse(data) as Report));
+
+function page(): string {
+  return renderToString(<Page report={report} />);
+}
+
+/** What a report has where no stage ran. */
+function empty(): Report {
+  return {
+    ...report,
+    facts: [],
+    warnings: [],
+    notes: [],
+    recommendation: null,
+    alternatives: [],
+    no_recommendation: '',
+    assembly: null,
+    frfs: [],
+    hits: [],
+    modes: [],
+    fit: null,
+    lobes: [],
+    other_limits: [],
+    cuts: [],
+    agreement: { agree: 0, disagree: 0, not_compared: 0 },
+    feed_directions: null,
+    forces: null,
+    smooth: null,
+    monitor: null,
+    calibration: null,
+    recordings: [],
+    files: [],
+  };
+}
+
+it('shows every part of a report', () => {
+  const html = page();
+  for (const part of [
+    '540.08\u202f±\u202f0.11',
+    'hit_x_4.csv',
+    'double hit',
+    '4 flutes, counted as a solid round of 9.6 mm',
+    '2·10⁷',
+    'class="assembly"',
+    '<strong>3 of 6</strong> test cuts with a result',
+    'Limited by <strong>mode 8',
+    'id="recordings"',
+  ]) {
+    expect(html).toContain(part);
+  }
+  for (const id of ['lobes', 'feed', 'forces', 'smooth', 'assembly', 'frf', 'modes', 'pairs', 'monitor', 'calibration']) {
+    expect(html).toContain(`<section id="${id}"`);
+    expect(html).toContain(`href="#${id}"`);
+  }
+});
+
+it('names the chatter frequency once', () => {
+  expect(page()).toContain('Chatter would be at 566');
+  report.recommendation!.limited_by = 'chatter of mode 8 at 566.4 Hz';
+  expect(page()).not.toContain('Chatter would be');
+});
+
+it('shows test cuts that disagree before the recommendation they contradict', () => {
+  const banner = page().indexOf('<strong>3 of 6 test cuts disagree</strong>');
+  expect(banner).toBeGreaterThan(0);
+  expect(banner).toBeLessThan(page().indexOf('<dl class="figures">'));
+  expect(banner).toBeLessThan(page().indexOf('id="lobes"'));
+  report.agreement = { agree: 6, disagree: 0, not_compared: 0 };
+  expect(page()).not.toContain('test cuts disagree');
+});
+
+it('shows on the card what a machinist sets; the surface is limited in finishing and reported in roughing', () => {
+  Object.assign(report.recommendation!, {
+    feed_mm_per_min: 4000,
+    cutting_speed_m_per_min: 188.4,
+    torque_n_m: 0.321,
+    power_w: 456,
+    surface_error_um: -7.5,
+    peak_deflection_um: 23,
+  });
+  for (const part of ['4000 <small>mm/min', '188 <small>m/min', '0.321 <small>N·m', '456 <small>W', '7.5 µm of overcut', 'up to 23 µm', 'this is a roughing cut']) {
+    expect(page()).toContain(part);
+  }
+  report.finishing.max_surface_error_um = 8;
+  expect(page()).not.toContain('roughing');
+  expect(page()).toContain('Permitted: surface error 8 µm.');
+});
+
+it('says whose mode it is', () => {
+  report.modes.push({ ...report.modes[7]!, mode_of: 'workpiece' });
+  Object.assign(report.recommendation!, { mode: 8, mode_of: 'workpiece', limited_by: '' });
+  expect(page()).toContain('Limited by <strong>mode 8 of the workpiece');
+  expect(page()).toContain('>8 (workpiece)<');
+});
+
+it('says why there is no safe depth', () => {
+  report = { ...empty(), no_recommendation: 'every speed chatters below 0.05 mm', lobes: [] };
+  expect(page()).toContain('No answer.');
+  expect(page()).toContain('every speed chatters below 0.05 mm');
+  report.lobes = (JSON.parse(data) as Report).lobes;
+  expect(page()).toContain('No safe depth.');
+});
+
+it('has no section for what is not there', () => {
+  report = empty();
+  expect(page()).not.toContain('<section');
+  expect(page()).not.toContain('<nav');
+});
+
+it('shows forces beside the limits of the spindle', () => {
+  for (const part of [
+    'Force on the tool',
+    'The blocks with the highest peak force',
+    'Deflection by the mean force (µm)',
+    '<td>N·m</td>',
+    'above the limit',
+    'within the limit',
+    'Stiffest at <strong>γ = ',
+    'out of reach',
+    '783 of 800 blocks cut',
+    'Trouble along the program',
+    'Engagement as a table',
+    'Before you use these forces',
+  ]) {
+    expect(page()).toContain(part);
+  }
+});
+
+it('leaves out of the forces what is not there', () => {
+  const { forces } = report;
+  report = { ...empty(), forces };
+  const turn = forces!.revolution!;
+  Object.assign(forces!, { program: null, spindle_rotation: null });
+  Object.assign(turn, { engagement: [], deflection_um: [null, null, null], on: 'workpiece' });
+  expect(page()).toContain('Force on the workpiece');
+  for (const part of ['Along the program', 'γ', 'Engagement', 'Deflection by']) expect(page()).not.toContain(part);
+  turn.engagement = [{ height_mm: 1, position_deg: null, arcs: [] }];
+  expect(page()).toContain('No tooth is in the material here.');
+  expect(page()).not.toContain('data-plot="engagement"');
+});
+
+it('shows a smoothed program, its methods and its limits', () => {
+  for (const part of ['Methods side by side', 'no-joint-jerk', 'Limits used by paper', 'joint 3, jerk', 'Tracking error', '1 statement of the program', 'line 4: M8', 'violates a limit']) {
+    expect(page()).toContain(part);
+  }
+  const method = report.smooth!.methods[0]!;
+  report = { ...empty(), smooth: { ...report.smooth!, methods: [method] } };
+  Object.assign(method, { violations: 0, tracking_error_um: null, tracking_error_deg: null });
+  for (const use of method.uses) use.violations = 0;
+  expect(page()).toContain('None of');
+  expect(page()).toContain('samples violates a limit.');
+  for (const part of ['side by side', 'Tracking error', '<tr class="chatter"']) expect(page()).not.toContain(part);
+});
+
+it('shows what the monitor detected', () => {
+  for (const part of ['<strong>Chatter</strong> from', '683.20\u202f±\u202f0.60', 'Events', '3 recordings, 2 classified wrongly', 'missed', 'false']) {
+    expect(page()).toContain(part);
+  }
+  report.monitor!.stays = [];
+  expect(page()).toContain('No chatter');
+});
+
+it('keeps markup in texts as text', () => {
+  const evil = '</script><img src=x onerror=alert(1)>';
+  report = JSON.parse(data, (_, value: unknown) => (typeof value === 'string' && /^[A-Za-z .]{12,}$/.test(value) ? evil : value)) as Report;
+  expect(page()).not.toContain('<img');
+  expect(page()).toContain('&lt;img');
+});

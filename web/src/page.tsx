@@ -1,0 +1,82 @@
+// The page: what to cut first, then what it rests on.
+import type { ComponentChildren } from 'preact';
+import type { Report } from './documents';
+import { Bullets, Facts } from './parts';
+import { AssemblySection } from './sections/assembly';
+import { ForcesSection } from './sections/forces';
+import { FeedSection, LobesSection, PairsSection } from './sections/lobes';
+import { CalibrationSection, MonitorSection } from './sections/monitor';
+import { RecommendationSection } from './sections/recommendation';
+import { RecordingsSection } from './sections/recordings';
+import { SmoothSection } from './sections/smooth';
+import { FrfSection, HitsSection, ModesSection, NotesSection } from './sections/structure';
+
+interface Entry {
+  id: string; // of the section's element
+  name: string; // in the navigation
+  content: ComponentChildren; // nothing where the report has nothing for it
+}
+
+function entries(report: Report): Entry[] {
+  const { monitor, calibration, lobes, cuts, feed_directions: feed, forces, smooth, assembly, frfs, modes, fit, recordings, hits, notes, files } = report;
+  const all: Entry[] = [
+    { id: 'monitor', name: 'Monitor', content: monitor && <MonitorSection monitor={monitor} /> },
+    { id: 'calibration', name: 'Calibration', content: calibration && <CalibrationSection calibration={calibration} /> },
+    { id: 'lobes', name: 'Lobes', content: lobes.length + cuts.length > 0 && <LobesSection report={report} /> },
+    { id: 'feed', name: 'Feed direction', content: feed && feed.direction_deg.length > 0 && <FeedSection feed={feed} /> },
+    { id: 'forces', name: 'Forces', content: forces && <ForcesSection forces={forces} /> },
+    { id: 'smooth', name: 'Smoothed program', content: smooth && <SmoothSection smooth={smooth} /> },
+    { id: 'assembly', name: 'Tool and holder', content: assembly && <AssemblySection assembly={assembly} /> },
+    { id: 'frf', name: 'Frequency response', content: frfs.length > 0 && <FrfSection report={report} /> },
+    { id: 'modes', name: 'Modes', content: (modes.length > 0 || fit) && <ModesSection modes={modes} fit={fit} /> },
+    { id: 'pairs', name: 'Which modes matter', content: lobes.length > 1 && <PairsSection lobes={lobes} cuts={cuts} /> },
+    { id: 'recordings', name: 'Recorded cuts', content: recordings.length > 0 && <RecordingsSection recordings={recordings} /> },
+    { id: 'hits', name: 'Hits', content: hits.length > 0 && <HitsSection hits={hits} /> },
+    { id: 'notes', name: 'Notes', content: notes.length + files.length > 0 && <NotesSection notes={notes} files={files} /> },
+  ];
+  return all.filter(({ content }) => content);
+}
+
+function Header({ title, created, facts }: Report) {
+  return (
+    <header>
+      <h1>{title}</h1>
+      {created !== '' && <p class="created">{created}</p>}
+      <Facts facts={facts} />
+    </header>
+  );
+}
+
+function Warnings({ warnings }: Report) {
+  if (warnings.length === 0) return null;
+  return (
+    <aside class="warnings" aria-label="Warnings">
+      <h2>Before you use these numbers</h2>
+      <Bullets texts={warnings} />
+    </aside>
+  );
+}
+
+export function Page({ report }: { report: Report }) {
+  const shown = entries(report);
+  return (
+    <>
+      <a class="skip" href="#main">
+        Skip to the recommendation
+      </a>
+      <Header {...report} />
+      {shown.length > 0 && (
+        <nav aria-label="Sections">
+          {shown.map(({ id, name }) => (
+            <a href={`#${id}`}>{name}</a>
+          ))}
+        </nav>
+      )}
+      <main id="main">
+        <RecommendationSection report={report} />
+        <Warnings {...report} />
+        {shown.map(({ content }) => content)}
+      </main>
+    </>
+  );
+}

@@ -1,0 +1,140 @@
+// A plot's place in the page, and when it is drawn.
+import * as Plotly from 'plotly.js-cartesian-dist-min';
+import type { ComponentChildren } from 'preact';
+import { useLayoutEffect, useRef } from 'preact/hooks';
+import { dark, light, type Figure, type Theme } from './figures/theme';
+
+export type Draw = (theme: Theme, width: number) => Figure;
+/** Below this width a plot is arranged for a telephone. */
+export const narrow = 600;
+
+interface Place {
+  root: HTMLElement;
+  draw: Draw;
+}
+
+const config = {
+  displaylogo: false,
+  responsive: true,
+  modeBarButtonsToRemove: ['lasso2d', 'select2d', 'autoScale2d'],
+  toImageButtonOptions: { format: 'svg', filename: 'robomill' },
+};
+
+const places = new Set<Place>();
+const darkScheme = () => window.matchMedia('(prefers-color-scheme: dark)');
+let printing = false;
+
+/** Draws, unless the place is inside a closed part of the page: it has no width yet and is drawn when it opens. */
+async function draw({ root, draw: make }: Place, width?: number): Promise<void> {
+  if (root.offsetParent === null) return;
+  try {
+    const room = width ?? root.clientWidth;
+    const figure = make(darkScheme().matches && !printing ? dark : light, room);
+    if (width !== undefined) Object.assign(figure.layout, { width, autosize: false });
+    const bar = room > 300 && window.innerWidth > narrow;
+    if (!bar) Object.assign(figure.layout['margin'] as object, { r: 12 });
+    await Plotly.react(root, figure.data, figure.layout, { ...config, displayModeBar: bar ? 'hover' : false });
+  } catch (error) {
+    root.textContent = 'This plot could not be drawn.';
+    console.error(error);
+  }
+}
+
+/** Draws every plot that can be seen, anew. */
+export function drawAll(): Promise<void[]> {
+  return Promise.all([...places].map((place) => draw(place)));
+}
+
+/** A4 between its margins, at 96 pixels an inch. */
+const paperWidth = 680;
+
+/** Draws anew when the colours change, a part of the page opens, or the page is printed. */
+export function drawOnEvents(): void {
+  darkScheme().addEventListener('change', () => void drawAll());
+  document.addEventListener(
+    'toggle',
+    ({ target }) => {
+      if (!(target instanceof HTMLDetailsElement) || !target.open) return;
+      for (const place of places) if (target.contains(place.root)) void draw(place);
+    },
+    true, // a toggle event does not bubble
+  );
+  window.addEventListener('beforeprint', () => {
+    printing = true;
+    for (const place of places) void draw(place, place.root.classList.contains('panel') ? paperWidth / 2 - 10 : paperWidth);
+  });
+  window.addEventListener('afterprint', () => {
+    printing = false;
+    void drawAll();
+  });
+}
+
+/** Draws when its drawing changes; the first time drawAll does. */
+function Canvas({ make, name, shows }: { make: Draw; name: string; shows?: string }) {
+  const root = useRef<HTMLDivElement>(null);
+  const place = useRef<Place | null>(null);
+  useLayoutEffect(() => {
+    const own = { root: root.current!, draw: make };
+    place.current = own;
+    places.add(own);
+    return () => void places.delete(own);
+  }, []);
+  useLayoutEffect(() => {
+    if (place.current === null || place.current.draw === make) return;
+    place.current.draw = make;
+    void draw(place.current);
+  });
+  return <div ref={root} class={name} {...(shows === undefined ? {} : { role: 'img', 'aria-label': shows })} />;
+}
+
+interface PlotProps {
+  which: string;
+  shows: string; // to someone who cannot see it
+  caption: string;
+  draw: Draw | Draw[]; // several: side by side
+  children?: ComponentChildren; // what chooses above the plot
+}
+
+export function Plot({ which, shows, caption, draw: make, children }: PlotProps) {
+  return (
+    <figure data-plot={which}>
+      {children && <div class="controls">{children}</div>}
+      {Array.isArray(make) ? (
+        <div class="canvas several" role="img" aria-label={shows}>
+          {make.map((each) => (
+            <Canvas make={each} name="panel" />
+          ))}
+        </div>
+      ) : (
+        <Canvas make={make} name="canvas" shows={shows} />
+      )}
+      <figcaption>{caption}</figcaption>
+    </figure>
+  );
+}
+
+interface ChoiceProps {
+  legend: string;
+  names: string[];
+  chosen: number;
+  choose: (index: number) => void;
+}
+
+let groups = 0;
+
+/** A group of radio buttons above a plot. */
+export function Choice({ legend, names, chosen, choose }: ChoiceProps) {
+  const group = useRef(0);
+  if (group.current === 0) group.current = ++groups;
+  return (
+    <fieldset class="choice">
+      <legend>{legend}</legend>
+      {names.map((name, index) => (
+        <label>
+          <input type="radio" name={`choice-${group.current}`} checked={index === chosen} onChange={() => choose(index)} />
+          <span>{name}</span>
+        </label>
+      ))}
+    </fieldset>
+  );
+}

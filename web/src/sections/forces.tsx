@@ -1,0 +1,295 @@
+// Forces: over a revolution, along a program, over the spindle's rotation.
+import type { Forces, Highest, Num, Program, Revolution, Ring, SpindleRotation, Triple, WorstBlock } from '../documents';
+import { engagementFigure, gammaFigure, programFigure, revolutionFigure } from '../figures/forces';
+import { trackFigure } from '../figures/track';
+import { Bullets, Details, Facts, Section, someOf, Table, WarningBox, type Column } from '../parts';
+import { narrow, Plot } from '../plot';
+import { dash, fixed, significant } from '../text';
+
+/** "12.1, −3, 40": three numbers in one cell. */
+function coordinates(triple: Triple): string {
+  return triple.map(significant).join(', ');
+}
+
+function Components({ turn }: { turn: Revolution }) {
+  const rows: [string, Triple][] = [
+    ['Mean (N)', turn.mean_n],
+    ['Peak (N)', turn.peak_n],
+    ['Root mean square (N)', turn.rms_n],
+  ];
+  const bends = turn.deflection_um.some((value) => value !== null);
+  if (bends) rows.push(['Deflection by the mean force (µm)', turn.deflection_um]);
+  return (
+    <Table
+      caption={`Force on the ${turn.on}: x along the feed, y to its left, z to the spindle`}
+      columns={[
+        { heading: '', cell: ([name]) => name },
+        { heading: 'x', number: true, cell: ([, [x]]) => significant(x) },
+        { heading: 'y', number: true, cell: ([, [, y]]) => significant(y) },
+        { heading: 'z', number: true, cell: ([, [, , z]]) => significant(z) },
+      ]}
+      rows={rows}
+    />
+  );
+}
+
+function Totals({ turn }: { turn: Revolution }) {
+  const rows: [string, Num, string][] = [
+    ['Torque, mean', turn.mean_torque_n_m, 'N·m'],
+    ['Torque, peak', turn.peak_torque_n_m, 'N·m'],
+    ['Power, mean', turn.power_w, 'W'],
+    ['Removal rate', turn.removal_rate_mm3_per_s, 'mm³/s'],
+    ['Chip area across the feed', turn.chip_area_mm2, 'mm²'],
+    ['Deflection, peak', turn.peak_deflection_um, 'µm'],
+  ];
+  return (
+    <Table
+      caption="Over one revolution"
+      columns={[
+        { heading: '', cell: ([name]) => name },
+        { heading: 'Value', number: true, cell: ([, value]) => significant(value) },
+        { heading: 'Unit', cell: ([, , unit]) => unit },
+      ]}
+      rows={rows.filter(([, value]) => value !== null)}
+    />
+  );
+}
+
+function Verdict({ turn }: { turn: Revolution }) {
+  const { verdict, vibrating, chatter_frequency_hz: frequency } = turn;
+  const chatters = frequency !== null && !verdict.includes(' Hz'); // else the verdict names it
+  if (verdict === '' && !chatters && !vibrating) return null;
+  return (
+    <p class="why">
+      {verdict !== '' && <strong>{verdict}</strong>} {chatters && `Chatter at ${fixed(frequency, 0)} Hz. `}
+      {vibrating && 'Simulated in the time domain: the vibration is in the forces.'}
+    </p>
+  );
+}
+
+function OverRotation({ turn }: { turn: Revolution }) {
+  const { rotation_deg: rotation } = turn;
+  if (rotation.length === 0) return null;
+  const forces = (heading: string, values: number[]): Column<number> => ({ heading, number: true, cell: (i) => significant(values[i]!) });
+  return (
+    <>
+      <Plot
+        which="revolution"
+        shows="Forces in x, y and z and torque over the cutter's rotation"
+        caption="Rotation counts clockwise from +y, seen from the spindle: at 90° the first tooth points along the feed."
+        draw={(theme, width) => revolutionFigure(turn, theme, width < narrow)}
+      />
+      <Details summary="Force and torque over rotation as a table">
+        <Table
+          caption="Force and torque over rotation"
+          quiet
+          columns={[
+            { heading: 'Rotation (°)', number: true, cell: (i) => fixed(rotation[i]!, 0) },
+            forces('Fx (N)', turn.fx_n),
+            forces('Fy (N)', turn.fy_n),
+            forces('Fz (N)', turn.fz_n),
+            forces('Torque (N·m)', turn.torque_n_m),
+          ]}
+          rows={someOf(rotation.length)}
+        />
+      </Details>
+    </>
+  );
+}
+
+function arcsOf(ring: Ring): string {
+  const arcs = ring.arcs.map((arc) => `${fixed(arc.entry_deg, 1)} – ${fixed(arc.exit_deg, 1)}`);
+  return arcs.length > 0 ? arcs.join('; ') : dash;
+}
+
+function Engagement({ rings }: { rings: Ring[] }) {
+  if (rings.length === 0) return null;
+  if (rings.every((ring) => ring.arcs.length === 0)) return <p>No tooth is in the material here.</p>;
+  return (
+    <>
+      <Plot
+        which="engagement"
+        shows="Engagement map: where around the axis and how high above the tip teeth are in the material"
+        caption="Between the ends of a bar a tooth at that height is in the material."
+        draw={(theme, width) => engagementFigure(rings, theme, width < narrow)}
+      />
+      <Details summary="Engagement as a table">
+        <Table
+          caption="Engagement"
+          quiet
+          columns={[
+            { heading: 'Height (mm)', number: true, cell: (ring) => significant(ring.height_mm) },
+            { heading: 'Position angle κ (°)', number: true, cell: (ring) => fixed(ring.position_deg, 1) },
+            { heading: 'In the material from – to (°)', cell: arcsOf },
+          ]}
+          rows={someOf(rings.length).map((i) => rings[i]!)}
+        />
+      </Details>
+    </>
+  );
+}
+
+function RevolutionPart({ turn }: { turn: Revolution }) {
+  return (
+    <>
+      <h3>Over a revolution</h3>
+      <Verdict turn={turn} />
+      <Components turn={turn} />
+      <Totals turn={turn} />
+      <OverRotation turn={turn} />
+      <Engagement rings={turn.engagement} />
+    </>
+  );
+}
+
+function powerName(program: Program): string {
+  return `Power over ${significant(program.power_time_s)} s`;
+}
+
+interface HighestRow extends Highest {
+  name: string;
+  unit: string;
+  limit: Num;
+}
+
+function highestRows(program: Program): HighestRow[] {
+  const { highest } = program;
+  const row = (name: string, entry: Highest | null, unit: string, limit: Num = null) => (entry === null ? [] : [{ ...entry, name, unit, limit }]);
+  return [
+    ...row('Force, peak', highest.peak_force_n, 'N'),
+    ...row('Torque over a revolution', highest.torque_n_m, 'N·m', program.torque_limit_n_m),
+    ...row('Torque, peak', highest.peak_torque_n_m, 'N·m'),
+    ...row(powerName(program), highest.power_w, 'W', program.power_limit_w),
+    ...row('Deflection over a revolution', highest.deflection_um, 'µm'),
+  ];
+}
+
+function isAbove({ value, limit }: HighestRow): boolean {
+  return limit !== null && value > limit;
+}
+
+function besideLimit(row: HighestRow) {
+  if (isAbove(row)) return <strong>above the limit</strong>;
+  return row.limit === null ? dash : 'within the limit';
+}
+
+/** The highest values of a program, beside what the spindle can give. */
+function HighestTable({ program }: { program: Program }) {
+  return (
+    <Table
+      caption="Highest values"
+      columns={[
+        { heading: '', cell: (row) => row.name },
+        { heading: 'Value', number: true, cell: (row) => significant(row.value) },
+        { heading: 'Unit', cell: (row) => row.unit },
+        { heading: 'Block', number: true, cell: (row) => fixed(row.block, 0) },
+        { heading: 'Line', number: true, cell: (row) => fixed(row.line, 0) },
+        { heading: "Spindle's limit", number: true, cell: (row) => significant(row.limit) },
+        { heading: 'Verdict', cell: besideLimit },
+      ]}
+      rows={highestRows(program)}
+      rowClass={(row) => (isAbove(row) ? 'chatter' : '')}
+    />
+  );
+}
+
+function WorstTable({ program }: { program: Program }) {
+  const { worst, highest } = program;
+  if (worst.length === 0) return null;
+  const columns: Column<WorstBlock>[] = [
+    { heading: 'Block', number: true, cell: (row) => fixed(row.block, 0) },
+    { heading: 'Line', number: true, cell: (row) => fixed(row.line, 0) },
+    { heading: 'Tip at x, y, z (mm)', number: true, cell: (row) => coordinates(row.tip_mm) },
+    { heading: 'Axial depth (mm)', number: true, cell: (row) => significant(row.axial_depth_mm) },
+    { heading: 'Radial depth (mm)', number: true, cell: (row) => significant(row.radial_depth_mm) },
+    { heading: 'Peak force (N)', number: true, cell: (row) => significant(row.peak_force_n) },
+    { heading: 'Mean force while cutting x, y, z (N)', number: true, cell: (row) => coordinates(row.mean_force_n) },
+    { heading: 'Torque over a revolution (N·m)', number: true, cell: (row) => significant(row.torque_n_m) },
+    { heading: `${powerName(program)} (W)`, number: true, cell: (row) => significant(row.power_w) },
+  ];
+  if (highest.deflection_um !== null) {
+    columns.push({ heading: 'Deflection (µm)', number: true, cell: (row) => significant(row.deflection_um) });
+  }
+  return <Table caption="The blocks with the highest peak force" columns={columns} rows={worst} />;
+}
+
+function ProgramPart({ program }: { program: Program }) {
+  const time = program.time_s === null ? '' : ` in ${fixed(program.time_s, 1)} s`;
+  return (
+    <>
+      <h3>Along the program</h3>
+      <p>{`${program.cutting_blocks} of ${program.blocks} blocks cut; ${fixed(program.length_mm, 0)} mm${time}.`}</p>
+      <WarningBox heading="Trouble along the program" texts={program.troubles} />
+      <HighestTable program={program} />
+      <Plot
+        which="program"
+        shows="Peak force, torque, power and deflection over the length of the path"
+        caption="Each step is a block of the program."
+        draw={(theme) => programFigure(program, theme)}
+      />
+      <Plot
+        which="track"
+        shows="The tool's path seen from above and from the side, coloured by peak force"
+        caption="Coloured by the peak force of each block; grey where nothing is cut."
+        draw={(theme, width) => trackFigure(program.track, theme, width)}
+      />
+      <WorstTable program={program} />
+    </>
+  );
+}
+
+function Stiffest({ sweep }: { sweep: SpindleRotation }) {
+  if (sweep.best_deg === null) return null;
+  const bending = (deflection: Num) => (deflection === null ? '' : ` with ${significant(deflection)} µm`);
+  const used = sweep.used_deg === null ? '' : `; this job uses ${significant(sweep.used_deg)}°${bending(sweep.used_um)}`;
+  return (
+    <p class="why">
+      Stiffest at <strong>{`γ = ${significant(sweep.best_deg)}°`}</strong>
+      {`${bending(sweep.best_um)}${used}.`}
+    </p>
+  );
+}
+
+function SweepTable({ sweep }: { sweep: SpindleRotation }) {
+  const { rotation_deg: rotation, deflection_um: deflection, condition_number: condition } = sweep;
+  const columns: Column<number>[] = [
+    { heading: 'Rotation γ (°)', number: true, cell: (i) => fixed(rotation[i]!, 0) },
+    { heading: 'Deflection (µm)', number: true, cell: (i) => (deflection[i] === null ? 'out of reach' : significant(deflection[i]!)) },
+  ];
+  if (condition !== null) columns.push({ heading: 'Condition number', number: true, cell: (i) => significant(condition[i]!) });
+  return (
+    <Details summary="Deflection over rotation as a table">
+      <Table caption="Deflection over rotation" quiet columns={columns} rows={someOf(rotation.length)} />
+    </Details>
+  );
+}
+
+function RotationPart({ sweep }: { sweep: SpindleRotation }) {
+  return (
+    <>
+      <h3>Rotation about the spindle's axis</h3>
+      <Stiffest sweep={sweep} />
+      <Plot
+        which="gamma"
+        shows="Deflection over the redundant rotation about the spindle's axis"
+        caption="The tool does the same in every rotation γ; the robot stands differently, and bends differently."
+        draw={(theme, width) => gammaFigure(sweep, theme, width < narrow)}
+      />
+      <SweepTable sweep={sweep} />
+    </>
+  );
+}
+
+export function ForcesSection({ forces }: { forces: Forces }) {
+  const { facts, warnings, notes, revolution, program, spindle_rotation: sweep } = forces;
+  return (
+    <Section id="forces" heading="Forces" lead="What the cut asks of cutter, spindle and robot.">
+      <Facts facts={facts} />
+      <WarningBox heading="Before you use these forces" texts={warnings} />
+      {revolution && <RevolutionPart turn={revolution} />}
+      {program && <ProgramPart program={program} />}
+      {sweep && <RotationPart sweep={sweep} />}
+      <Bullets texts={notes} />
+    </Section>
+  );
+}

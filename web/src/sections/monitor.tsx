@@ -1,0 +1,164 @@
+// What the chatter monitor detected, and how it was calibrated.
+import type { Calibration, CalibrationRow, Monitor, MonitorEvent, MonitorStay } from '../documents';
+import { rocFigure, scoreFigure, spectrogramFigure, waveFigure } from '../figures/monitor';
+import { Bullets, Details, Facts, Section, Table, WarningBox } from '../parts';
+import { narrow, Plot } from '../plot';
+import { fixed, modeName, significant, withDeviation } from '../text';
+
+function frequencyOf(event: MonitorEvent): string {
+  return withDeviation(event.chatter_frequency_hz, event.chatter_frequency_std_hz, 1, 1);
+}
+
+/** The surest of a stay's frequencies: it settles, and is lost when chatter ends. */
+function surest(events: MonitorEvent[], { from_s: from, to_s: to }: MonitorStay): MonitorEvent | null {
+  const deviation = (event: MonitorEvent) => event.chatter_frequency_std_hz ?? Infinity;
+  return events
+    .filter((event) => event.state === 'chatter' && event.chatter_frequency_hz !== null && event.time_s >= from && event.time_s <= to)
+    .reduce<MonitorEvent | null>((best, event) => (best === null || deviation(event) < deviation(best) ? event : best), null);
+}
+
+/** " at 683.6 ± 0.3 Hz, mode 8; quiet near 3416 rpm" */
+function frequencyTold(event: MonitorEvent): string {
+  const mode = modeName(event);
+  const quiet = event.suggested_spindle_speed_rpm;
+  return ` at ${frequencyOf(event)} Hz${mode && `, ${mode}`}${quiet === null ? '' : `; quiet near ${fixed(quiet, 0)} rpm`}`;
+}
+
+function Verdict({ monitor: { stays, events } }: { monitor: Monitor }) {
+  const alarms = stays.filter((stay) => stay.state === 'chatter');
+  if (alarms.length === 0) {
+    return (
+      <p class="why">
+        <strong>No chatter</strong> was detected.
+      </p>
+    );
+  }
+  return (
+    <>
+      {alarms.map((stay) => {
+        const event = surest(events, stay);
+        return (
+          <p class="why">
+            <strong>Chatter</strong>
+            {` from ${fixed(stay.from_s, 2)} s to ${fixed(stay.to_s, 2)} s${event === null ? '' : frequencyTold(event)}.`}
+          </p>
+        );
+      })}
+    </>
+  );
+}
+
+function Plots({ monitor }: { monitor: Monitor }) {
+  return (
+    <>
+      <Plot
+        which="monitor-wave"
+        shows="The samples over time, chatter shaded"
+        caption="What was recorded; shaded where chatter was reported."
+        draw={(theme) => waveFigure(monitor, theme)}
+      />
+      {monitor.spectrogram && (
+        <Plot
+          which="monitor-spectrogram"
+          shows="Synchrosqueezed spectrogram of the recording over time"
+          caption="Synchrosqueezed spectrogram; the marks are what the monitor took for chatter."
+          draw={(theme) => spectrogramFigure(monitor, theme)}
+        />
+      )}
+      <Plot
+        which="monitor-score"
+        shows="Score against its threshold, energy entropy and spindle speed over time"
+        caption="The score against its threshold, and what else was followed."
+        draw={(theme) => scoreFigure(monitor, theme)}
+      />
+    </>
+  );
+}
+
+function EventsTable({ events }: { events: MonitorEvent[] }) {
+  if (events.length === 0) return null;
+  return (
+    <Table
+      caption="Events"
+      columns={[
+        { heading: 'At (s)', number: true, cell: (event) => fixed(event.time_s, 3) },
+        { heading: 'State', cell: (event) => event.state },
+        { heading: 'Score', number: true, cell: (event) => significant(event.score) },
+        { heading: 'Threshold', number: true, cell: (event) => significant(event.threshold) },
+        { heading: 'Frequency (Hz)', number: true, cell: frequencyOf },
+        { heading: 'Mode', cell: modeName },
+        { heading: 'Quiet speed (rpm)', number: true, cell: (event) => fixed(event.suggested_spindle_speed_rpm, 0) },
+        { heading: 'Note', cell: (event) => event.note },
+      ]}
+      rows={events}
+      rowClass={(event) => (event.state === 'chatter' ? 'chatter' : '')}
+    />
+  );
+}
+
+function ComputeTime({ monitor }: { monitor: Monitor }) {
+  const { decision_count: count, compute_mean_us: mean, compute_max_us: most } = monitor;
+  if (mean === null) return null;
+  return <p>{`${count} decisions, each in ${significant(mean)} µs on average and ${significant(most)} µs at most.`}</p>;
+}
+
+export function MonitorSection({ monitor }: { monitor: Monitor }) {
+  return (
+    <Section id="monitor" heading="Chatter monitor" lead="What the monitor detected in the recording, and when.">
+      <Facts facts={monitor.facts} />
+      <WarningBox heading="Before you trust it" texts={monitor.warnings} />
+      <Verdict monitor={monitor} />
+      {monitor.decisions.time_s.length > 0 && <Plots monitor={monitor} />}
+      <EventsTable events={monitor.events} />
+      <ComputeTime monitor={monitor} />
+      <Bullets texts={monitor.notes} />
+    </Section>
+  );
+}
+
+function isWrong({ chatter, alarmed }: CalibrationRow): boolean {
+  return chatter !== alarmed;
+}
+
+function alarmOf(row: CalibrationRow) {
+  if (isWrong(row)) return <strong>{row.alarmed ? 'false' : 'missed'}</strong>;
+  return row.alarmed ? 'yes' : 'no';
+}
+
+function RecordingsTable({ rows }: { rows: CalibrationRow[] }) {
+  return (
+    <Details summary={`${rows.length} recordings, ${rows.filter(isWrong).length} classified wrongly`}>
+      <Table
+        caption="Recordings and what became of them"
+        quiet
+        columns={[
+          { heading: 'Recording', cell: (row) => row.name },
+          { heading: 'Label', cell: (row) => (row.chatter ? 'chatter' : 'stable') },
+          { heading: 'Used to', cell: (row) => (row.verifies ? 'verify' : 'set') },
+          { heading: 'Alarm', cell: alarmOf },
+          { heading: "After chatter's begin (ms)", number: true, cell: (row) => fixed(row.delay_ms, 0) },
+          { heading: 'Before it is visible (ms)', number: true, cell: (row) => fixed(row.lead_ms, 0) },
+        ]}
+        rows={rows}
+        rowClass={(row) => (isWrong(row) ? 'chatter' : '')}
+      />
+    </Details>
+  );
+}
+
+export function CalibrationSection({ calibration }: { calibration: Calibration }) {
+  return (
+    <Section id="calibration" heading="Calibration" lead="How the threshold was set, and how it did on the other half.">
+      <Facts facts={calibration.facts} />
+      <WarningBox heading="Before you trust it" texts={calibration.warnings} />
+      <Plot
+        which="calibration-roc"
+        shows="Share of chatter found against share of false alarms"
+        caption="Share of chatter found against share of false alarms, threshold by threshold; the mark is the chosen one, on the recordings that verify it."
+        draw={(theme, width) => rocFigure(calibration, theme, width < narrow)}
+      />
+      <RecordingsTable rows={calibration.rows} />
+      <Bullets texts={calibration.notes} />
+    </Section>
+  );
+}
