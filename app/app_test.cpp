@@ -17,7 +17,7 @@ namespace {
 
 using App = ProgramTest;
 
-TEST_F(App, TellsVersionAndHelp) {
+TEST_F(App, ReportsVersionAndHelp) {
   EXPECT_EQ(robomill("--version").out.rfind("robomill ", 0), 0U);
   EXPECT_EQ(robomill("--help").exit, 0);
   EXPECT_NE(robomill("lobes --help").out.find("--at"), std::string::npos);
@@ -67,9 +67,9 @@ TEST_F(App, SimulatesACut) {
   const std::string csv = slurp(folder_.at("vibration.csv"));
   EXPECT_EQ(csv.rfind("time_s,x_m,y_m,ax_m_per_s2,ay_m_per_s2,fx_n,fy_n,fz_n\n0,", 0), 0U);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5121);
-  const Ended told = robomill("simulate lobes.toml --at 6500,0.6 --seconds 0.5 -o -");
-  ASSERT_EQ(told.exit, 0) << told.err;
-  const auto json = nlohmann::json::parse(told.out);
+  const Ended reported = robomill("simulate lobes.toml --at 6500,0.6 --seconds 0.5 -o -");
+  ASSERT_EQ(reported.exit, 0) << reported.err;
+  const auto json = nlohmann::json::parse(reported.out);
   EXPECT_EQ(json["verdict"], "chatter");
   // Converged value of this point: 1.10584684.
   EXPECT_NEAR(json["small_vibration"]["spectral_radius"].get<double>(), 1.10584684, 1e-4);
@@ -99,10 +99,10 @@ TEST_F(App, SimulatesFromFrfs) {
   const std::size_t from = text.find("modes = ");
   text.replace(from, text.find('\n', from) - from, "frf = \"tip.csv\"\nrigid_directions = [\"y\"]");
   write("lobes.toml", text);
-  const Ended told = robomill("simulate lobes.toml --at 6500,0.3 --seconds 0.5");
-  EXPECT_EQ(told.exit, 0) << told.err;
-  EXPECT_NE(told.out.find("tip.csv: 1 modes fitted"), std::string::npos) << told.out;
-  EXPECT_NE(told.out.find("Note: y was not measured and is taken as rigid."), std::string::npos) << told.out;
+  const Ended reported = robomill("simulate lobes.toml --at 6500,0.3 --seconds 0.5");
+  EXPECT_EQ(reported.exit, 0) << reported.err;
+  EXPECT_NE(reported.out.find("tip.csv: 1 modes fitted"), std::string::npos) << reported.out;
+  EXPECT_NE(reported.out.find("Note: y was not measured and is taken as rigid."), std::string::npos) << reported.out;
   const Ended lobes = robomill("lobes lobes.toml");
   EXPECT_EQ(lobes.exit, 1);
   EXPECT_NE(lobes.err.find("multi-frequency"), std::string::npos) << lobes.err;
@@ -115,9 +115,9 @@ TEST_F(App, SimulatesDrilling) {
         "[dynamics]\nx = [{ frequency_hz = 400, damping_ratio = 0.03, modal_mass_kg = 0.3 }]\n"
         "z = [{ frequency_hz = 900, damping_ratio = 0.03, modal_mass_kg = 0.5 }]\n"
         "[lobes]\nspindle_speed_rpm = [1000, 5000]\naxial_depth_mm = [0, 5]\n");
-  const Ended told = robomill("simulate drill.toml --at 3000,1 --seconds 0.2 -o -");
-  ASSERT_EQ(told.exit, 0) << told.err;
-  const auto json = nlohmann::json::parse(told.out);
+  const Ended reported = robomill("simulate drill.toml --at 3000,1 --seconds 0.2 -o -");
+  ASSERT_EQ(reported.exit, 0) << reported.err;
+  const auto json = nlohmann::json::parse(reported.out);
   // Two lips: n (b / sin p) (Kr f/n sin p) sin p = 500 * 1 * 0.1 * sin 59 degrees.
   EXPECT_NEAR(json["peak_force_n"][2].get<double>(), 42.9, 4.0);
   EXPECT_EQ(robomill("simulate drill.toml --at 3000,6 --seconds 0.2").exit, 1);
@@ -140,11 +140,12 @@ TEST_F(App, ExplainNamesMeasuredPeaks) {
   const std::string peaks =
       "explain --peaks 324.99,666.98,991.98,1966.95 --rpm 6500 --teeth 3 --modes " ROBOMILL_SOURCE_DIR
       "/data/robot-modes.toml ";
-  const Ended told = robomill(peaks + "-o explain.json");
-  ASSERT_EQ(told.exit, 0) << told.err;
-  EXPECT_NE(told.out.find("324.99 Hz  tooth passing x 1"), std::string::npos) << told.out;
-  EXPECT_NE(told.out.find("666.98 Hz  chatter: mode 1 at 17.40 Hz + tooth passing x 2"), std::string::npos) << told.out;
-  EXPECT_NE(told.out.find("depends on the cut"), std::string::npos);
+  const Ended reported = robomill(peaks + "-o explain.json");
+  ASSERT_EQ(reported.exit, 0) << reported.err;
+  EXPECT_NE(reported.out.find("324.99 Hz  tooth passing x 1"), std::string::npos) << reported.out;
+  EXPECT_NE(reported.out.find("666.98 Hz  chatter: mode 1 at 17.40 Hz + tooth passing x 2"), std::string::npos)
+      << reported.out;
+  EXPECT_NE(reported.out.find("depends on the cut"), std::string::npos);
   const auto json = nlohmann::json::parse(slurp(folder_.at("explain.json")));
   EXPECT_EQ(json["peaks"][3]["mode"], 1);
   EXPECT_EQ(json["peaks"][3]["rotations"], 18);
@@ -230,9 +231,9 @@ TEST_F(App, StiffnessComesBackFromLoads) {
   write("loads.csv",
         "q1_deg,q2_deg,fx_n,fy_n,fz_n,dx_mm,dy_mm,dz_mm\n0,90,100,0,0,0.044,-0.016,0\n0,0,0,100,0,0,0.14,0\n"
         "0,90,0,100,0,-0.016,0.064,0\n");
-  const Ended told = robomill("stiffness loads.csv --cell cell.toml -o stiffness.json");
-  EXPECT_EQ(told.exit, 0) << told.err;
-  EXPECT_NE(told.out.find("joint 1  "), std::string::npos) << told.out;
+  const Ended reported = robomill("stiffness loads.csv --cell cell.toml -o stiffness.json");
+  EXPECT_EQ(reported.exit, 0) << reported.err;
+  EXPECT_NE(reported.out.find("joint 1  "), std::string::npos) << reported.out;
   const auto json = nlohmann::json::parse(slurp(folder_.at("stiffness.json")));
   EXPECT_NEAR(json["joint_stiffness_n_m_per_rad"][0].get<double>(), 1e6, 1e3);
   EXPECT_NEAR(json["joint_stiffness_n_m_per_rad"][1].get<double>(), 1e5, 1e2);
@@ -244,10 +245,10 @@ TEST_F(App, StiffnessComesBackFromLoads) {
   EXPECT_EQ(robomill("stiffness loads.csv --cell cell.toml -o stiffness.csv").exit, 1);
   EXPECT_EQ(robomill("stiffness loads.csv").exit, 2);
   write("loads.csv", "q1_deg,q2_deg,fx_n,fy_n,fz_n,dx_mm,dy_mm,dz_mm\n0,90,100,zero,0,0,0,0\n");
-  const Ended refused = robomill("stiffness loads.csv --cell cell.toml");
-  EXPECT_EQ(refused.exit, 1);
-  EXPECT_NE(refused.err.find("loads.csv:2: fy_n = \"zero\"; must be a finite number"), std::string::npos)
-      << refused.err;
+  const Ended rejected = robomill("stiffness loads.csv --cell cell.toml");
+  EXPECT_EQ(rejected.exit, 1);
+  EXPECT_NE(rejected.err.find("loads.csv:2: fy_n = \"zero\"; must be a finite number"), std::string::npos)
+      << rejected.err;
 }
 
 // Source: [BudakAltintasArmarego1996], Ti6Al4V; the first row's means are those of its constants, the others' too.
@@ -256,10 +257,10 @@ TEST_F(App, FindsCoefficientsFromSlots) {
   const std::string first = "0.05,5.08,3000,-555.8508,655.6513,255.9891\n";
   write("slots.csv",
         head + first + "0.1,5.08,3000,-751.4308,1119.2013,493.6902\n0.025,5.08,3000,-458.0608,423.8763,137.1385\n");
-  const Ended told = robomill("coefficients slots.csv --teeth 4 -o coefficients.toml");
-  ASSERT_EQ(told.exit, 0) << told.err;
-  EXPECT_NE(told.out.find("1825"), std::string::npos) << told.out;
-  EXPECT_NE(told.out.find("R² 1.000000"), std::string::npos) << told.out;
+  const Ended reported = robomill("coefficients slots.csv --teeth 4 -o coefficients.toml");
+  ASSERT_EQ(reported.exit, 0) << reported.err;
+  EXPECT_NE(reported.out.find("1825"), std::string::npos) << reported.out;
+  EXPECT_NE(reported.out.find("R² 1.000000"), std::string::npos) << reported.out;
   EXPECT_NE(slurp(folder_.at("coefficients.toml")).find("[identification]"), std::string::npos);
   const auto json = nlohmann::json::parse(robomill("coefficients slots.csv --teeth 4 -o -").out);
   const auto expect = [&](const char* key, double value) {
@@ -272,7 +273,7 @@ TEST_F(App, FindsCoefficientsFromSlots) {
   expect("radial_edge_n_per_mm", 55.7);
   expect("axial_edge_n_per_mm", 1.8);
   EXPECT_NE(robomill("coefficients slots.csv").out.find("4 are assumed"), std::string::npos);
-  // One feed: finished, but not told.
+  // One feed: finished, but not reported.
   write("one.csv", head + first + "0.05,2.54,3000,-277.9254,327.82565,127.99455\n");
   const Ended one = robomill("coefficients one.csv --teeth 4 -o one.json");
   EXPECT_EQ(one.exit, 3);
@@ -288,7 +289,7 @@ TEST_F(App, FindsCoefficientsFromSlots) {
   EXPECT_EQ(robomill("coefficients slots.csv --teeth 4 -o k.csv").exit, 1);
 }
 
-TEST_F(App, TellsForcesOverARevolutionAndAlongAProgram) {
+TEST_F(App, ReportsForcesOverARevolutionAndAlongAProgram) {
   const std::string along = std::string(ROBOMILL_SOURCE_DIR) + "/examples/force-along-program/";
   const Ended cut = robomill("forces " + std::string(ROBOMILL_SOURCE_DIR) +
                              "/examples/ball-end-ur5e/cut-1.toml -o forces.csv --report forces.json");

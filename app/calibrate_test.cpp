@@ -23,7 +23,7 @@ class CalibrateVerb : public ProgramTest {
   }
 };
 
-// Noise that doubles where chatter begins: the un-normalised entropy tells them apart.
+// Noise that doubles where chatter begins: the un-normalised entropy reports them apart.
 TEST_F(CalibrateVerb, Calibrates) {
   std::string text = "[signal]\nchannels = [1]\n[calibration]\nfalse_alarm_rate = 0.1\n";
   Random random(3);
@@ -52,12 +52,12 @@ TEST_F(CalibrateVerb, Calibrates) {
 }
 
 // One message, exit code 1, and none of the files that were wanted.
-TEST_F(CalibrateVerb, RefusesToCalibrateWithoutBothKinds) {
+TEST_F(CalibrateVerb, RejectsToCalibrateWithoutBothKinds) {
   Random random(42);
   std::vector<float> samples(10240);
   for (float& sample : samples) sample = static_cast<float>(random.normal());
   for (const char* name : {"rec0.wav", "rec1.wav", "rec2.wav"}) wav(name, samples);
-  const auto refused = [&](const std::vector<std::string>& labels, const std::string& part) {
+  const auto rejected = [&](const std::vector<std::string>& labels, const std::string& part) {
     std::string text = "[signal]\nchannels = [1]\n";
     for (std::size_t i = 0; i < labels.size(); ++i) {
       text += "[[recordings]]\nfile = \"rec" + std::to_string(i) + ".wav\"\nlabel = \"" + labels[i] + "\"\n";
@@ -71,11 +71,11 @@ TEST_F(CalibrateVerb, RefusesToCalibrateWithoutBothKinds) {
     EXPECT_FALSE(std::filesystem::exists(folder_.at("out.toml")));
     EXPECT_FALSE(std::filesystem::exists(folder_.at("report.json")));
   };
-  refused({"stable", "stable", "stable"}, "label = \"chatter\"");
-  refused({"chatter", "chatter", "chatter"}, "label = \"stable\"");
-  refused({"stable", "stable", "chatter"}, "label = \"chatter\"");  // one sets nothing and verifies nothing
-  refused({}, "recordings");
-  refused({"stable", "noisy"}, "noisy");
+  rejected({"stable", "stable", "stable"}, "label = \"chatter\"");
+  rejected({"chatter", "chatter", "chatter"}, "label = \"stable\"");
+  rejected({"stable", "stable", "chatter"}, "label = \"chatter\"");  // one sets nothing and verifies nothing
+  rejected({}, "recordings");
+  rejected({"stable", "noisy"}, "noisy");
 }
 
 }  // namespace

@@ -55,9 +55,9 @@ constexpr int usual_teeth = 4;
 
 cutting::SlotFit identify(const cutting::SlotsFile& file, const CoefficientsCommand& command) {
   try {
-    const bool told = command.teeth > 0;
-    cutting::SlotFit fit = cutting::identify_from_slots(file.slots, {.teeth = told ? command.teeth : usual_teeth});
-    if (!told) {
+    const bool reported = command.teeth > 0;
+    cutting::SlotFit fit = cutting::identify_from_slots(file.slots, {.teeth = reported ? command.teeth : usual_teeth});
+    if (!reported) {
       fit.notes.push_back(
           fmt::format("The number of teeth was not given (--teeth): {} are assumed; with N teeth every "
                       "coefficient is {}/N of these.",

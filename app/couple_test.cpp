@@ -29,12 +29,13 @@ class CoupleVerb : public ProgramTest {
 
 TEST_F(CoupleVerb, CouplesAToolToItsHolder) {
   write_assembly("assembly.toml");
-  const Ended told = robomill("couple assembly.toml -o tip.uff");
-  ASSERT_EQ(told.exit, 0) << told.err;
-  EXPECT_NE(told.out.find("xx: peak at 294.77"), std::string::npos) << told.out;
+  const Ended reported = robomill("couple assembly.toml -o tip.uff");
+  ASSERT_EQ(reported.exit, 0) << reported.err;
+  EXPECT_NE(reported.out.find("xx: peak at 294.77"), std::string::npos) << reported.out;
   // L³ / (3 E I) / (1 + η²) = 8.016 µm/N.
-  EXPECT_NE(told.out.find("static compliance 8.016 µm/N (stiffness 0.1248 N/µm)"), std::string::npos) << told.out;
-  EXPECT_NE(told.out.find("yy: the same as xx"), std::string::npos);
+  EXPECT_NE(reported.out.find("static compliance 8.016 µm/N (stiffness 0.1248 N/µm)"), std::string::npos)
+      << reported.out;
+  EXPECT_NE(reported.out.find("yy: the same as xx"), std::string::npos);
   const Ended json = robomill("couple assembly.toml --rotations -o -");
   ASSERT_EQ(json.exit, 0) << json.err;
   const auto tip = nlohmann::json::parse(json.out);
@@ -56,15 +57,15 @@ TEST_F(CoupleVerb, CouplesAToolToAMeasuredHolder) {
   ASSERT_EQ(bare.exit, 0) << bare.err;
   EXPECT_NE(bare.out.find("rigid wall"), std::string::npos);
   write_assembly("assembly.toml", "", "receptances = \"holder.uff\"\n", "");
-  const Ended told = robomill("couple assembly.toml -o tip.json --holder-out kept.mat");
-  ASSERT_EQ(told.exit, 0) << told.err;
-  EXPECT_NE(told.out.find("xx: peak at 294.77"), std::string::npos) << told.out;
-  EXPECT_NE(told.out.find("µm/N at the first line, 1 Hz"), std::string::npos);
+  const Ended reported = robomill("couple assembly.toml -o tip.json --holder-out kept.mat");
+  ASSERT_EQ(reported.exit, 0) << reported.err;
+  EXPECT_NE(reported.out.find("xx: peak at 294.77"), std::string::npos) << reported.out;
+  EXPECT_NE(reported.out.find("µm/N at the first line, 1 Hz"), std::string::npos);
   write_assembly("next.toml", "", "receptances = \"kept.mat\"\n", "");
   EXPECT_NE(robomill("couple next.toml").out.find("xx: peak at 294.77"), std::string::npos);
 }
 
-// What a finite difference makes unreliable is told in every file that comes of it.
+// What a finite difference makes unreliable is reported in every file that comes of it.
 TEST_F(CoupleVerb, CoupleWritesWhichLinesAreNotReliable) {
   const std::string head =
       "frequency_hz,1x:1x_re_m_per_n,1x:1x_im_m_per_n,2x:1x_re_m_per_n,2x:1x_im_m_per_n,2x:2x_re_m_per_n,"
@@ -75,8 +76,8 @@ TEST_F(CoupleVerb, CoupleWritesWhichLinesAreNotReliable) {
   }
   write("points.csv", head + rows);
   write_assembly("a.toml", "", "receptances = \"points.csv\"\npoints_mm = [0, 10]\nmax_amplification = 20\n", "");
-  const Ended told = robomill("couple a.toml -o tip.json --holder-out kept.uff");
-  ASSERT_EQ(told.exit, 0) << told.err;
+  const Ended reported = robomill("couple a.toml -o tip.json --holder-out kept.uff");
+  ASSERT_EQ(reported.exit, 0) << reported.err;
   const auto tip = nlohmann::json::parse(slurp(folder_.at("tip.json")));
   EXPECT_EQ(tip["unreliable_hz"].size(), 40U);
   EXPECT_EQ(tip["unreliable_hz"][1], 20.0);
@@ -108,8 +109,8 @@ TEST_F(CoupleVerb, CoupleWritesWhichLinesAreNotReliable) {
   EXPECT_NE(holder["notes"].dump().find("do not rely on them"), std::string::npos);
 }
 
-TEST_F(CoupleVerb, CoupleRefusesInTheFilesWords) {
-  const auto refused = [&](const std::string& arguments, const std::string& words) {
+TEST_F(CoupleVerb, CoupleRejectsInTheFilesWords) {
+  const auto rejected = [&](const std::string& arguments, const std::string& words) {
     const Ended run = robomill("couple " + arguments + " -o tip.uff");
     EXPECT_EQ(run.exit, 1);
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
@@ -117,21 +118,21 @@ TEST_F(CoupleVerb, CoupleRefusesInTheFilesWords) {
     EXPECT_FALSE(std::filesystem::exists(folder_.at("tip.uff")));
   };
   write_assembly("a.toml", "[joint]\ntranslational_stiffness_n_per_m = -1\nrotational_stiffness_n_m_per_rad = 1\n");
-  refused("a.toml", "a.toml:12: joint.translational_stiffness_n_per_m = -1 N/m; must be > 0");
+  rejected("a.toml", "a.toml:12: joint.translational_stiffness_n_per_m = -1 N/m; must be > 0");
   write_assembly("a.toml", "", "[[holder.segments]]\n" + bar(-3));
-  refused("a.toml", "holder.segments[1].length_mm = -3 mm; must be > 0");
+  rejected("a.toml", "holder.segments[1].length_mm = -3 mm; must be > 0");
   write_assembly("a.toml", "", "[[holder.segments]]\n" + bar(50.90), "");
-  refused("a.toml", "a.toml: frequency: is missing");
+  rejected("a.toml", "a.toml: frequency: is missing");
   write_assembly("a.toml");
-  refused("a.toml --holder-out holder.uff", "--holder-out: needs a measured holder");
+  rejected("a.toml --holder-out holder.uff", "--holder-out: needs a measured holder");
   write("half.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n1,1e-6,0\n2,1e-6,0\n");
   write_assembly("a.toml", "", "receptances = \"half.csv\"\n", "");
-  refused("a.toml", "half.csv: lacks ry:x (or x:my) and ry:my");
+  rejected("a.toml", "half.csv: lacks ry:x (or x:my) and ry:my");
   write("bare.toml", "[frequency]\nrange_hz = [10, 1000]\nstep_hz = 10\n[[tool]]\n" + bar(50.90));
   ASSERT_EQ(robomill("couple bare.toml --rotations -o holder.mat").exit, 0);
   write_assembly("a.toml", "", "receptances = \"holder.mat\"\n");
-  refused("a.toml", "a.toml: frequency_hz = 1 Hz; must lie in the range of the measured holder, 10 to 1000 Hz");
-  refused("missing.toml", "missing.toml");
+  rejected("a.toml", "a.toml: frequency_hz = 1 Hz; must lie in the range of the measured holder, 10 to 1000 Hz");
+  rejected("missing.toml", "missing.toml");
   EXPECT_EQ(robomill("couple").exit, 2);
   EXPECT_EQ(robomill("couple a.toml --sideways").exit, 2);
 }
@@ -141,10 +142,10 @@ TEST_F(CoupleVerb, CouplesAListOfTools) {
                  "[frequency]\nrange_hz = [20, 1000]\nstep_hz = 2\n");
   write("tools.csv", "tool,length_mm,diameter_mm,teeth\nbar,118.92,12,2\nthin,118.92,1,2\nshort,80,12,3\n");
   write_lobes();
-  const Ended told = robomill("couple assembly.toml --tools tools.csv --lobes lobes.toml -o table.csv");
-  EXPECT_EQ(told.exit, 3) << told.err;  // 1.8 mm are more than the thin one has
-  EXPECT_NE(told.out.find("must be at most the cutter's diameter"), std::string::npos) << told.out;
-  EXPECT_NE(told.err.find("not every tool has a result; its row says why"), std::string::npos) << told.err;
+  const Ended reported = robomill("couple assembly.toml --tools tools.csv --lobes lobes.toml -o table.csv");
+  EXPECT_EQ(reported.exit, 3) << reported.err;  // 1.8 mm are more than the thin one has
+  EXPECT_NE(reported.out.find("must be at most the cutter's diameter"), std::string::npos) << reported.out;
+  EXPECT_NE(reported.err.find("not every tool has a result; its row says why"), std::string::npos) << reported.err;
   const std::string csv = slurp(folder_.at("table.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4) << csv;
   EXPECT_NE(csv.find("\"bar\",2,12,118.92,294,"), std::string::npos) << csv;
@@ -175,9 +176,9 @@ TEST_F(CoupleVerb, FindsAJoint) {
   ASSERT_EQ(robomill("couple true.toml -o tip.uff").exit, 0);
   write_assembly("assembly.toml", "", "[[holder.segments]]\n" + bar(50.90), "[frequency]\nrange_hz = [5, 900]\n");
   for (const char* axis : {"x", "y"}) {
-    const Ended told = robomill(std::string("joint assembly.toml --measured tip.uff -o joint.json --axis ") + axis);
-    ASSERT_EQ(told.exit, 0) << told.err;
-    EXPECT_NE(told.out.find("rotational stiffness"), std::string::npos) << told.out;
+    const Ended reported = robomill(std::string("joint assembly.toml --measured tip.uff -o joint.json --axis ") + axis);
+    ASSERT_EQ(reported.exit, 0) << reported.err;
+    EXPECT_NE(reported.out.find("rotational stiffness"), std::string::npos) << reported.out;
     const auto json = nlohmann::json::parse(slurp(folder_.at("joint.json")));
     EXPECT_NEAR(json["joint"]["translational_stiffness_n_per_m"].get<double>(), 2e7, 2e4);
     EXPECT_NEAR(json["joint"]["rotational_stiffness_n_m_per_rad"].get<double>(), 5e4, 50.0);
@@ -194,25 +195,25 @@ TEST_F(CoupleVerb, FindsAJoint) {
   EXPECT_EQ(nlohmann::json::parse(first)["joint"].size(), 4U);
 }
 
-TEST_F(CoupleVerb, JointRefusesWhatDoesNotFit) {
+TEST_F(CoupleVerb, JointRejectsWhatDoesNotFit) {
   write_assembly("assembly.toml");
   ASSERT_EQ(robomill("couple assembly.toml -o tip.csv").exit, 0);
-  const auto refused = [&](const std::string& arguments, const std::string& words) {
+  const auto rejected = [&](const std::string& arguments, const std::string& words) {
     const Ended run = robomill("joint " + arguments);
     EXPECT_EQ(run.exit, 1) << run.out;
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
   };
-  refused("assembly.toml --measured tip.csv -o joint.uff", "joints are written as .json");
-  refused("assembly.toml --measured missing.csv", "missing.csv");
+  rejected("assembly.toml --measured tip.csv -o joint.uff", "joints are written as .json");
+  rejected("assembly.toml --measured missing.csv", "missing.csv");
   write("lone.txt", "10 1e-6 0\n20 1e-6 0\n");
-  refused("assembly.toml --measured lone.txt --axis y", "lone.txt: lacks yy");
-  refused("assembly.toml --measured lone.txt", "lone.txt: has 2 lines above 0 Hz");
+  rejected("assembly.toml --measured lone.txt --axis y", "lone.txt: lacks yy");
+  rejected("assembly.toml --measured lone.txt", "lone.txt: has 2 lines above 0 Hz");
   write_assembly("far.toml", "", "[[holder.segments]]\n" + bar(50.90), "[frequency]\nrange_hz = [4000, 5000]\n");
-  refused("far.toml --measured tip.csv", "has no line from 4000 to 5000 Hz");
+  rejected("far.toml --measured tip.csv", "has no line from 4000 to 5000 Hz");
   write("bare.toml", "[frequency]\nrange_hz = [10, 1000]\nstep_hz = 10\n[[tool]]\n" + bar(50.90));
   ASSERT_EQ(robomill("couple bare.toml --rotations -o holder.mat").exit, 0);
   write_assembly("coarse.toml", "", "receptances = \"holder.mat\"\n", "");
-  refused("coarse.toml --measured tip.csv", "coarse.toml: frequency_hz = 1 Hz; must lie in the range");
+  rejected("coarse.toml --measured tip.csv", "coarse.toml: frequency_hz = 1 Hz; must lie in the range");
   EXPECT_EQ(robomill("joint assembly.toml").exit, 2);
   EXPECT_EQ(robomill("joint assembly.toml --measured tip.csv --method magic").exit, 2);
   EXPECT_EQ(robomill("joint assembly.toml --measured tip.csv --axis z").exit, 2);

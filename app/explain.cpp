@@ -9,8 +9,8 @@
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/modal/files/modes_files.hpp"
-#include "robomill/stability/files/fingerprint_json.hpp"
-#include "robomill/stability/fingerprint.hpp"
+#include "robomill/stability/files/peak_classification_json.hpp"
+#include "robomill/stability/peak_classification.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -18,23 +18,23 @@ namespace {
 
 using Kind = stability::Explanation::Kind;
 
-InvalidInput refuse(const char* option, double value, const char* unit, const char* rule, const char* hint = "") {
+InvalidInput reject(const char* option, double value, const char* unit, const char* rule, const char* hint = "") {
   return {option, value, unit, rule, hint};
 }
 
 /// In the user's words and units.
 void check(const ExplainCommand& command) {
   for (const double f : command.peaks_hz) {
-    if (!(f > 0.0 && f <= 1e6)) throw refuse("--peaks", f, "Hz", "must lie between 0 and 1 MHz");
+    if (!(f > 0.0 && f <= 1e6)) throw reject("--peaks", f, "Hz", "must lie between 0 and 1 MHz");
   }
-  if (!(command.rpm > 0.0 && command.rpm <= 1e6)) throw refuse("--rpm", command.rpm, "rpm", "must be > 0");
+  if (!(command.rpm > 0.0 && command.rpm <= 1e6)) throw reject("--rpm", command.rpm, "rpm", "must be > 0");
   if (!(command.tolerance_hz > 0.0 && command.tolerance_hz < 0.25 * command.rpm / 60.0)) {
-    throw refuse("--tolerance-hz", command.tolerance_hz, "Hz",
+    throw reject("--tolerance-hz", command.tolerance_hz, "Hz",
                  "must be > 0 and below a quarter of the rotation frequency",
                  "Otherwise every peak is a multiple of it");
   }
   if (!(command.speed_tolerance_percent >= 0.0 && command.speed_tolerance_percent <= 5.0)) {
-    throw refuse("--speed-tolerance-percent", command.speed_tolerance_percent, "%", "must lie between 0 and 5");
+    throw reject("--speed-tolerance-percent", command.speed_tolerance_percent, "%", "must lie between 0 and 5");
   }
   if (command.lobes.empty() != command.at.empty()) {
     throw InvalidInput(command.at.empty() ? "--at" : "--lobes", "--lobes and --at go together",
@@ -93,21 +93,21 @@ void print_peak(const stability::ExplainedPeak& peak, int teeth) {
   }
 }
 
-void print_summary(const stability::Fingerprint& found, int teeth,
-                   const std::optional<stability::DelayVerdict>& verdict) {
+void print_summary(const stability::PeakClassification& found, int teeth,
+                   const std::optional<stability::ChatterMechanism>& verdict) {
   fmt::print("spindle {:.1f} rpm{}\n", found.spindle_speed_rad_per_s / units::rpm,
              found.speed_from_peaks ? ", from the peaks that are multiples of rotation" : ", as given");
   for (const stability::ExplainedPeak& peak : found.peaks) {
     print_peak(peak, teeth);
   }
   switch (found.state) {
-    case stability::Fingerprint::State::named:
+    case stability::PeakClassification::State::named:
       fmt::print("Chatter of {} at {:.2f} Hz.\n", to_string(found.mode), found.chatter_frequency_hz);
       break;
-    case stability::Fingerprint::State::cannot_be_told:
+    case stability::PeakClassification::State::cannot_be_told:
       fmt::print("These peaks do not determine which mode chatters, if any.\n");
       break;
-    case stability::Fingerprint::State::no_chatter:
+    case stability::PeakClassification::State::no_chatter:
       fmt::print("No peak is chatter of a known mode.\n");
       break;
   }
@@ -128,13 +128,13 @@ Exit run(const ExplainCommand& command, const Common& common, Progress&) {
   check(command);
   const modal::ModalModel modes = modal::read_modes(command.modes);
   const stability::MeasuredPeaks peaks = {command.peaks_hz, command.rpm * units::rpm, command.teeth};
-  const stability::FingerprintOptions options = {command.tolerance_hz, command.speed_tolerance_percent / 100.0};
+  const stability::PeakClassificationOptions options = {command.tolerance_hz, command.speed_tolerance_percent / 100.0};
   const std::optional<stability::LobesProblem> cut = cut_of(command);
   const modal::ModalModel workpiece = cut ? cut->workpiece_dynamics : modal::ModalModel{};
-  const stability::Fingerprint found = stability::explain(peaks, modes, options, workpiece);
-  std::optional<stability::DelayVerdict> verdict;
-  if (cut) verdict = stability::needs_delay(*cut, {command.at[0] * units::rpm, command.at[1] * units::mm});
-  const std::string json = stability::fingerprint_json(found, verdict ? &*verdict : nullptr);
+  const stability::PeakClassification found = stability::explain(peaks, modes, options, workpiece);
+  std::optional<stability::ChatterMechanism> verdict;
+  if (cut) verdict = stability::chatter_mechanism(*cut, {command.at[0] * units::rpm, command.at[1] * units::mm});
+  const std::string json = stability::peak_classification_json(found, verdict ? &*verdict : nullptr);
   if (common.to_stdout()) {
     fmt::print("{}", json);
   } else if (!common.output.empty()) {

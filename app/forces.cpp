@@ -23,7 +23,7 @@ void write_report(const std::filesystem::path& path, const jobs::ForcesResult& r
 bool reached(const jobs::ForcesResult& result) {
   if (!result.revolution) return true;
   const jobs::RevolutionForces& revolution = *result.revolution;
-  if (revolution.settled.status != cutting::SettledCut::Status::found) return false;
+  if (revolution.deflected.status != cutting::StaticDeflection::Status::found) return false;
   return !revolution.vibration || revolution.vibration->verdict != simulation::Verdict::undecided;
 }
 

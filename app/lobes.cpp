@@ -81,8 +81,8 @@ Exit compare(const jobs::LobesFile& file, const Common& common, Progress& progre
   fmt::print("{:<34}{:>14}{:>14}{:>14}{:>8}{:>10}\n", "method", "lowest limit", "median error", "worst error", "differ",
              "seconds");
   for (const stability::MethodRow& row : comparison.rows) {
-    if (!row.refusal.empty()) {
-      fmt::print("{:<34}{}\n", to_string(row.method), row.refusal);
+    if (!row.rejection.empty()) {
+      fmt::print("{:<34}{}\n", to_string(row.method), row.rejection);
       continue;
     }
     std::string lowest = "none";

@@ -163,9 +163,9 @@ TEST_F(MonitorVerb, AdvisesTheBestSpeedAndDepthOfTheLobes) {
   EXPECT_NEAR((*alarm)["suggested_spindle_speed_rpm"].get<double>(), best_rpm, 1e-6 * best_rpm);
   EXPECT_NEAR((*alarm)["suggested_axial_depth_mm"].get<double>(), 0.8 * best_mm, 1e-6 * best_mm);
   folder_.file("unlobed.toml", config_ + "lobes = \"none.toml\"\n");
-  const Ended refused = robomill("monitor unlobed.toml --input rec.wav -o unlobed.jsonl");
-  EXPECT_EQ(refused.exit, 1);
-  EXPECT_NE(refused.err.find("none.toml"), std::string::npos) << refused.err;
+  const Ended rejected = robomill("monitor unlobed.toml --input rec.wav -o unlobed.jsonl");
+  EXPECT_EQ(rejected.exit, 1);
+  EXPECT_NE(rejected.err.find("none.toml"), std::string::npos) << rejected.err;
   EXPECT_FALSE(std::filesystem::exists(folder_.at("unlobed.jsonl")));
 }
 
@@ -179,7 +179,7 @@ TEST_F(MonitorVerb, LeavesAnEmptyFileWhereNothingHappens) {
   EXPECT_EQ(robomill("monitor monitor.toml --input rec.wav --quiet").out, "");
 }
 
-TEST_F(MonitorVerb, TellsEveryWindow) {
+TEST_F(MonitorVerb, ReportsEveryWindow) {
   wav("rec.wav", cut(2.0, false));
   const Ended run = robomill("monitor monitor.toml --input rec.wav --every-window -o -");
   ASSERT_EQ(run.exit, 0) << run.err;
@@ -211,7 +211,7 @@ TEST_F(MonitorVerb, HearsTheSameByEveryWayIn) {
   }
   folder_.file("rec.csv", csv);
   folder_.file("bare.csv", bare);
-  const auto heard = [&](const std::string& input) {
+  const auto processed = [&](const std::string& input) {
     const Ended run = robomill("monitor monitor.toml --every-window -o - " + input);
     EXPECT_EQ(run.exit, 0) << run.err;
     std::string out;
@@ -223,13 +223,13 @@ TEST_F(MonitorVerb, HearsTheSameByEveryWayIn) {
     }
     return out;
   };
-  const std::string wanted = heard("--input rec.wav");
+  const std::string wanted = processed("--input rec.wav");
   EXPECT_EQ(std::count(wanted.begin(), wanted.end(), '\n'), 240);
-  EXPECT_EQ(heard("--input rec.csv"), wanted);
-  EXPECT_EQ(heard("--input bare.csv"), wanted);
-  EXPECT_EQ(heard("--input - <rec.raw"), wanted);
-  EXPECT_EQ(heard("--input - --format f32 <rec.raw"), wanted);
-  EXPECT_EQ(heard("--input rec.raw --format f32"), wanted);
+  EXPECT_EQ(processed("--input rec.csv"), wanted);
+  EXPECT_EQ(processed("--input bare.csv"), wanted);
+  EXPECT_EQ(processed("--input - <rec.raw"), wanted);
+  EXPECT_EQ(processed("--input - --format f32 <rec.raw"), wanted);
+  EXPECT_EQ(processed("--input rec.raw --format f32"), wanted);
   const Ended piped = shell("cat rec.csv | '" ROBOMILL_PROGRAM "' monitor monitor.toml --input - -o events.jsonl");
   EXPECT_EQ(piped.exit, 0) << piped.err;
   EXPECT_FALSE(events_of("state").empty());
@@ -256,9 +256,9 @@ TEST_F(MonitorVerb, LivesThroughBadSamples) {
   EXPECT_EQ(rows, 30U);
 }
 
-TEST_F(MonitorVerb, RefusesBadInputWithOneMessage) {
+TEST_F(MonitorVerb, RejectsBadInputWithOneMessage) {
   wav("rec.wav", cut(0.5, false));
-  const auto refused = [&](const std::string& arguments, const char* part) {
+  const auto rejected = [&](const std::string& arguments, const char* part) {
     const Ended run = robomill("monitor " + arguments);
     EXPECT_EQ(run.exit, 1) << arguments;
     EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
@@ -266,21 +266,21 @@ TEST_F(MonitorVerb, RefusesBadInputWithOneMessage) {
   };
   EXPECT_EQ(robomill("monitor").exit, 2);
   EXPECT_EQ(robomill("monitor monitor.toml --input rec.wav --format magic").exit, 2);
-  refused("monitor.toml", "--input");
-  refused("none.toml --input rec.wav", "none.toml");
-  refused("monitor.toml --input none.wav", "none.wav");
-  refused("monitor.toml --input rec.wav -o no/such/folder.jsonl", "cannot be written");
-  refused("monitor.toml --input rec.wav --every-window -o - >/dev/full", "could not be written");
-  refused("monitor.toml --input rec.wav --report r.pdf", "r.pdf");
-  refused("monitor.toml --input mqtt://127.0.0.1", "names no topic");
+  rejected("monitor.toml", "--input");
+  rejected("none.toml --input rec.wav", "none.toml");
+  rejected("monitor.toml --input none.wav", "none.wav");
+  rejected("monitor.toml --input rec.wav -o no/such/folder.jsonl", "cannot be written");
+  rejected("monitor.toml --input rec.wav --every-window -o - >/dev/full", "could not be written");
+  rejected("monitor.toml --input rec.wav --report r.pdf", "r.pdf");
+  rejected("monitor.toml --input mqtt://127.0.0.1", "names no topic");
   folder_.file("five.toml", "[signal]\nsample_rate_hz = 5000\nchannels = [1]\n");
-  refused("five.toml --input rec.wav -o five.jsonl", "was sampled at 10240 Hz");
+  rejected("five.toml --input rec.wav -o five.jsonl", "was sampled at 10240 Hz");
   EXPECT_FALSE(std::filesystem::exists(folder_.at("five.jsonl")));
   folder_.file("two.toml", "[signal]\nchannels = [1, 2]\n");
-  refused("two.toml --input rec.wav", "has no column 2");
-  refused("two.toml --input mqtt://127.0.0.1/t", "must be given for a stream");
+  rejected("two.toml --input rec.wav", "has no column 2");
+  rejected("two.toml --input mqtt://127.0.0.1/t", "must be given for a stream");
   folder_.file("x.csv", "ay\n1\n");
-  refused("monitor.toml --input x.csv", "has no column ax_m_per_s2. It has 1 column: ay");
+  rejected("monitor.toml --input x.csv", "has no column ax_m_per_s2. It has 1 column: ay");
 }
 
 TEST_F(MonitorVerb, ShowsALine) {
@@ -375,7 +375,7 @@ TEST_F(MonitorStream, HearsChatterThroughABroker) {
   begin();
   for (std::uint64_t i = 1; i < 150; ++i) {
     send(message(i));
-    // As slowly as the monitor hears: nothing may be left out here.
+    // As slowly as the monitor processes: nothing may be left out here.
     ASSERT_TRUE(wait_for([&] { return i % 20 != 0 || metric("decisions_total") >= 2.0 * static_cast<double>(i); }));
   }
   ASSERT_TRUE(wait_for([&] { return metric("decisions_total") >= 300.0; }));
@@ -393,7 +393,7 @@ TEST_F(MonitorStream, HearsChatterThroughABroker) {
   EXPECT_NE(slurp(folder_.at("out.txt")).find("1 alarm"), std::string::npos);
 }
 
-TEST_F(MonitorStream, TellsOfEveryTrouble) {
+TEST_F(MonitorStream, ReportsOfEveryTrouble) {
   listen("mqtt://127.0.0.1:" + std::to_string(broker_.port()) + "/cell/ax");
   begin();
   send("garbage");

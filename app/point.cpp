@@ -8,7 +8,7 @@
 namespace robomill::app {
 
 stability::OperatingPoint parse_point(const std::string& text) {
-  const auto refuse = [&text] {
+  const auto reject = [&text] {
     return InvalidInput(InvalidInput::Parts{
         .field = "--at", .value = "\"" + text + "\"", .rule = "must read RPM,MM", .hint = "For example --at 6500,0.8"});
   };
@@ -16,9 +16,9 @@ stability::OperatingPoint parse_point(const std::string& text) {
   double mm = 0.0;
   const char* const end = text.data() + text.size();
   const std::from_chars_result first = std::from_chars(text.data(), end, rpm);
-  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ',') throw refuse();
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ',') throw reject();
   const std::from_chars_result second = std::from_chars(first.ptr + 1, end, mm);
-  if (second.ec != std::errc() || second.ptr != end || !(rpm > 0.0) || !(mm >= 0.0)) throw refuse();
+  if (second.ec != std::errc() || second.ptr != end || !(rpm > 0.0) || !(mm >= 0.0)) throw reject();
   return {.spindle_speed_rad_per_s = rpm * units::rpm, .axial_depth_m = mm * units::mm};
 }
 

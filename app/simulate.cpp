@@ -37,8 +37,8 @@ void check_output(const Common& common) {
 }
 
 /// A simulation steps modes: where FRFs are given, those of the hybrid fit over all their lines.
-void fit_where_measured(const std::filesystem::path& path, modal::FrfSet& measured, modal::ModalModel& model, bool told,
-                        Progress& progress) {
+void fit_where_measured(const std::filesystem::path& path, modal::FrfSet& measured, modal::ModalModel& model,
+                        bool reported, Progress& progress) {
   if (measured.frfs.empty()) return;
   const modal::FitResult fit = modal::fit_modes(measured, {}, progress);
   if (!fit.usable()) {
@@ -48,19 +48,19 @@ void fit_where_measured(const std::filesystem::path& path, modal::FrfSet& measur
   }
   model = fit.model;
   measured = {};
-  if (told) {
+  if (reported) {
     fmt::print("{}: {} modes fitted, {:.2g} % of the FRFs left over.\n", printable(path.filename().string()),
                model.modes.size(), 100.0 * fit.relative_error);
   }
 }
 
-jobs::LobesFile read_cut(const std::filesystem::path& path, bool told, Progress& progress) {
+jobs::LobesFile read_cut(const std::filesystem::path& path, bool reported, Progress& progress) {
   jobs::LobesFile file = jobs::read_lobes(path);
   jobs::load_dynamics(file);
   stability::LobesProblem& problem = file.problem;
-  if (told) print_notes(file.notes, "Note: ");
-  fit_where_measured(file.frf, problem.measured, problem.dynamics, told, progress);
-  fit_where_measured(file.workpiece_frf, problem.workpiece_measured, problem.workpiece_dynamics, told, progress);
+  if (reported) print_notes(file.notes, "Note: ");
+  fit_where_measured(file.frf, problem.measured, problem.dynamics, reported, progress);
+  fit_where_measured(file.workpiece_frf, problem.workpiece_measured, problem.workpiece_dynamics, reported, progress);
   file.validate();
   if (!file.drilling && !(file.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(InvalidInput::Parts{.where = path.string(),

@@ -51,7 +51,7 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
   if (!common.to_stdout()) job.output = common.output;
   if (command.method) job.method = path::method_of(*command.method);
   job.compare = command.compare;
-  job.keep_breaches = command.keep_breaches;
+  job.keep_violations = command.keep_violations;
   job.record = ending == ".html";
   if (command.program_period_ms) {
     require_positive("--program-period-ms", *command.program_period_ms, "ms");

@@ -21,7 +21,7 @@ class SmoothVerb : public ProgramTest {
   [[nodiscard]] bool there(const char* name) const { return std::filesystem::exists(folder_.at(name)); }
 };
 
-TEST_F(SmoothVerb, WritesATrajectoryAndTellsTheLimits) {
+TEST_F(SmoothVerb, WritesATrajectoryAndReportsTheLimits) {
   const Ended run = robomill("smooth part.ngc --cell cell.toml -o t.csv --report smooth.json");
   ASSERT_EQ(run.exit, 0) << run.out << run.err;
   EXPECT_TRUE(run.out.starts_with("verified  "));
@@ -63,10 +63,10 @@ TEST_F(SmoothVerb, ARobotProgramBeyondItsTolerancesExitsWithThree) {
   // Controllers that take points at any time get more of them instead.
   const Ended kuka = robomill("smooth part.ngc --cell cell.toml -o part.src --program-period-ms 64 --report kuka.json");
   EXPECT_EQ(kuka.exit, 0) << kuka.out << kuka.err;
-  const auto told = nlohmann::json::parse(slurp(folder_.at("kuka.json")))["robot_program"];
-  EXPECT_TRUE(told["holds"].get<bool>());
-  EXPECT_LE(told["max_tip_error_mm"].get<double>(), 0.02 * (1.0 + 1e-6));
-  EXPECT_LT(told["shortest_step_ms"].get<double>(), told["longest_step_ms"].get<double>());
+  const auto reported = nlohmann::json::parse(slurp(folder_.at("kuka.json")))["robot_program"];
+  EXPECT_TRUE(reported["holds"].get<bool>());
+  EXPECT_LE(reported["max_tip_error_mm"].get<double>(), 0.02 * (1.0 + 1e-6));
+  EXPECT_LT(reported["shortest_step_ms"].get<double>(), reported["longest_step_ms"].get<double>());
 }
 
 TEST_F(SmoothVerb, RobotProgramsKnowToolLoadAndSpindle) {
@@ -94,7 +94,7 @@ TEST_F(SmoothVerb, DashWritesJsonAndNothingElse) {
   EXPECT_EQ(run.exit, json["violations"] == 0 ? 0 : 3);
 }
 
-// Where a limit is broken, the report tells it and there is no trajectory.
+// Where a limit is broken, the report reports it and there is no trajectory.
 TEST_F(SmoothVerb, ABreachExitsWithThreeAndLeavesOnlyTheReport) {
   std::string cell = slurp(folder_.at("cell.toml"));
   const std::string jerk = "joint_max_jerk = [60, 60, 60, 200, 200, 250]";
@@ -130,37 +130,37 @@ TEST_F(SmoothVerb, SetsMethodsSideBySide) {
   }
 }
 
-TEST_F(SmoothVerb, RefusesBadInput) {
+TEST_F(SmoothVerb, RejectsBadInput) {
   EXPECT_EQ(robomill("smooth part.ngc").exit, 2);
   EXPECT_EQ(robomill("smooth part.ngc --cell cell.toml --method fast").exit, 2);
-  const auto refused = [&](const std::string& arguments, const char* part) {
+  const auto rejected = [&](const std::string& arguments, const char* part) {
     const Ended run = robomill("smooth " + arguments);
     EXPECT_EQ(run.exit, 1) << arguments;
     EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
   };
-  refused("none.ngc --cell cell.toml", "none.ngc");
-  refused("part.ngc --cell none.toml", "none.toml");
-  refused("part.ngc --cell cell.toml -o t.step", "t.step");
-  refused("part.ngc --cell cell.toml --report t.pdf", "t.pdf");
-  refused("part.ngc --cell cell.toml -o t.src --program-period-ms 12.5",
-          "--program-period-ms = 12.5 ms; must be a multiple");
-  refused("part.ngc --cell cell.toml -o t.csv --program-period-ms 20",
-          "--program-period-ms = 20 ms; is of joint programs");
-  refused("part.ngc --cell cell.toml -o t.src --program-period-ms 20000",
-          "--program-period-ms = 20000 ms; must be at most 10 s");
-  refused("part.ngc --cell cell.toml -o t.src --program-period-ms 0", "--program-period-ms = 0 ms; must be > 0");
-  refused("part.ngc --cell cell.toml -o t.src --program-period-ms=-4", "--program-period-ms = -4 ms; must be > 0");
+  rejected("none.ngc --cell cell.toml", "none.ngc");
+  rejected("part.ngc --cell none.toml", "none.toml");
+  rejected("part.ngc --cell cell.toml -o t.step", "t.step");
+  rejected("part.ngc --cell cell.toml --report t.pdf", "t.pdf");
+  rejected("part.ngc --cell cell.toml -o t.src --program-period-ms 12.5",
+           "--program-period-ms = 12.5 ms; must be a multiple");
+  rejected("part.ngc --cell cell.toml -o t.csv --program-period-ms 20",
+           "--program-period-ms = 20 ms; is of joint programs");
+  rejected("part.ngc --cell cell.toml -o t.src --program-period-ms 20000",
+           "--program-period-ms = 20000 ms; must be at most 10 s");
+  rejected("part.ngc --cell cell.toml -o t.src --program-period-ms 0", "--program-period-ms = 0 ms; must be > 0");
+  rejected("part.ngc --cell cell.toml -o t.src --program-period-ms=-4", "--program-period-ms = -4 ms; must be > 0");
   std::string one = slurp(folder_.at("cell.toml"));
   one.replace(one.find("[smoothing]"), 11, "[smoothing]\nmethod = \"paper\"\nfilters = 1");
   folder_.file("one.toml", one);
-  refused("part.ngc --cell one.toml --method verified", "smoothing.filters = 1; must be at least 2");
+  rejected("part.ngc --cell one.toml --method verified", "smoothing.filters = 1; must be at least 2");
   folder_.file("far.ngc", "G21 G90 G94\nG0 X0 Y0 Z40\nG1 X9000 F1800\n");
-  refused("far.ngc --cell cell.toml -o t.csv", "line 3");
+  rejected("far.ngc --cell cell.toml -o t.csv", "line 3");
   EXPECT_FALSE(there("t.csv"));
   // What was never smoothed takes nothing away.
   folder_.file("t.csv", "older");
-  refused("far.ngc --cell cell.toml -o t.csv", "line 3");
+  rejected("far.ngc --cell cell.toml -o t.csv", "line 3");
   EXPECT_TRUE(there("t.csv"));
 }
 

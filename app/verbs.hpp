@@ -93,7 +93,7 @@ struct SmoothCommand {
   std::filesystem::path report;             ///< .html or .json; empty: none
   std::optional<std::string> method;        ///< the cell's unless given
   bool compare = false;                     ///< the other methods beside it
-  bool keep_breaches = false;               ///< write a trajectory that breaks limits
+  bool keep_violations = false;             ///< write a trajectory that breaks limits
   std::optional<double> program_period_ms;  ///< of joint programs; not given: the language's
 };
 struct MonitorCommand {

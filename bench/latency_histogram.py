@@ -12,14 +12,14 @@ CLOCKS = {"processor": "processor time", "wall": "wall clock"}
 def main():
     lines = sys.stdin.read().splitlines()
     start = next(i for i, line in enumerate(lines) if line.startswith("what,clock,"))
-    bins, told = {}, {}
+    bins, labels = {}, {}
     for row in csv.DictReader(lines[start:]):
         bins.setdefault((row["what"], row["clock"]), []).append(
             (float(row["from_us"]), float(row["to_us"]), int(row["hops"])))
     for line in lines[2:start]:  # the table: mean, median, 99 %, 99.9 %
         cells = [cell.strip() for cell in line.strip("|").split("|")]
         if len(cells) > 5:
-            told[cells[0], cells[1]] = f"{float(cells[3]) / 1e3:.2f}, 99.9 % {float(cells[5]) / 1e3:.2f} ms"
+            labels[cells[0], cells[1]] = f"{float(cells[3]) / 1e3:.2f}, 99.9 % {float(cells[5]) / 1e3:.2f} ms"
     decades = [(10.0 ** (p + 3), f"{10.0 ** p:g}") for p in range(-2, 3)]
     shares = [(10.0 ** -p, f"{10.0 ** (2 - p):g}") for p in range(6)]
     figure = Figure(Axis(10, 1e5, "a hop of 256 samples (ms)", log=True, ticks=decades),
@@ -36,7 +36,7 @@ def main():
             steps.append((of[-1][1], 1e-5))
             figure.curve(steps, colour, dashed=clock == "wall")
             figure.legend(name, colour, dashed=clock == "wall")
-            figure.legend(f"median {told[what, clock]}", indented=True)
+            figure.legend(f"median {labels[what, clock]}", indented=True)
         figure.gap()
     figure.limit(300, "0.3 ms")
     figure.limit(1000, "1 ms")

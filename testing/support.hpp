@@ -46,7 +46,7 @@ class Folder {
 
 /// What the InvalidInput that f throws says; fails the test where it throws none.
 template <class F>
-std::string refusal(F&& f) {
+std::string rejection(F&& f) {
   try {
     f();
   } catch (const InvalidInput& error) {

@@ -66,7 +66,7 @@ struct MqttClient::Parts {
   void connect();
   void retry(const std::string& why);
   void subscribe();
-  void told(bool is_connected, const std::string& why) const {
+  void reported(bool is_connected, const std::string& why) const {
     if (calls.connection) calls.connection(is_connected, why);
   }
   void arrived() {
@@ -82,7 +82,7 @@ struct MqttClient::Parts {
 
   static Parts& of(void* context) { return *static_cast<Parts*>(context); }
   static void on_connected(void* context, MQTTAsync_successData* /*data*/);
-  static void on_refused(void* context, MQTTAsync_failureData* data);
+  static void on_rejected(void* context, MQTTAsync_failureData* data);
   static void on_lost(void* context, char* cause);
   static int on_message(void* context, char* topic, int topic_length, MQTTAsync_message* message);
 };
@@ -97,10 +97,10 @@ void MqttClient::Parts::on_connected(void* context, MQTTAsync_successData* /*dat
     parts.changed.notify_all();
   }
   parts.subscribe();
-  parts.told(true, {});
+  parts.reported(true, {});
 }
 
-void MqttClient::Parts::on_refused(void* context, MQTTAsync_failureData* data) {
+void MqttClient::Parts::on_rejected(void* context, MQTTAsync_failureData* data) {
   std::string why = "no answer";
   if (data != nullptr && data->message != nullptr) {
     why = data->message;
@@ -137,7 +137,7 @@ void MqttClient::Parts::retry(const std::string& why) {
     wait = wait == milliseconds{0} ? first_wait : std::min(2 * wait, longest_wait);
     changed.notify_all();
   }
-  told(false, why);
+  reported(false, why);
 }
 
 void MqttClient::Parts::subscribe() {
@@ -145,10 +145,10 @@ void MqttClient::Parts::subscribe() {
   MQTTAsync_responseOptions response = MQTTAsync_responseOptions_initializer;
   response.context = this;
   response.onFailure = [](void* context, MQTTAsync_failureData*) {
-    of(context).told(true, "the subscription was rejected");
+    of(context).reported(true, "the subscription was rejected");
   };
   if (MQTTAsync_subscribe(handle, subscription.c_str(), settings.qos, &response) != MQTTASYNC_SUCCESS) {
-    told(true, "the subscription could not be sent");
+    reported(true, "the subscription could not be sent");
   }
 }
 
@@ -160,7 +160,7 @@ void MqttClient::Parts::connect() {
   options.MQTTVersion = MQTTVERSION_3_1_1;
   options.context = this;
   options.onSuccess = &Parts::on_connected;
-  options.onFailure = &Parts::on_refused;
+  options.onFailure = &Parts::on_rejected;
   if (!settings.user.empty()) {
     options.username = settings.user.c_str();
     options.password = password.c_str();

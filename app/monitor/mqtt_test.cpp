@@ -22,7 +22,7 @@ monitor::MqttSettings settings_of(const test::Mosquitto& broker) {
   return settings;
 }
 
-/// Keeps what a client is told.
+/// Keeps what a client is reported.
 class Heard {
  public:
   MqttClient::Calls calls() {
@@ -59,10 +59,10 @@ class Heard {
 };
 
 /// A subscription counts some time after the connection: sends until something comes back.
-bool comes_through(MqttClient& client, const Heard& heard, const std::string& topic, const std::string& text) {
+bool comes_through(MqttClient& client, const Heard& processed, const std::string& topic, const std::string& text) {
   return test::wait_for([&] {
     client.publish(topic, text);
-    const std::vector<std::string> messages = heard.messages();
+    const std::vector<std::string> messages = processed.messages();
     return !messages.empty() && messages.back() == text;
   });
 }
@@ -70,45 +70,45 @@ bool comes_through(MqttClient& client, const Heard& heard, const std::string& to
 TEST(Mqtt, CarriesAnyBytes) {
   const test::Folder folder;
   const test::Mosquitto broker(folder.path());
-  Heard heard;
-  MqttClient client(settings_of(broker), "cell/+/ax", heard.calls());
+  Heard processed;
+  MqttClient client(settings_of(broker), "cell/+/ax", processed.calls());
   EXPECT_FALSE(client.publish("cell/1/ax", "too early"));
   client.start();
   ASSERT_TRUE(client.wait_until_connected(seconds(60)));
-  ASSERT_TRUE(comes_through(client, heard, "cell/1/ax", std::string("\0\xFF bytes", 8)));
+  ASSERT_TRUE(comes_through(client, processed, "cell/1/ax", std::string("\0\xFF bytes", 8)));
   ASSERT_TRUE(client.flush(seconds(60)));
   EXPECT_TRUE(client.publish("cell/2/other", "not subscribed"));
-  EXPECT_TRUE(comes_through(client, heard, "cell/7/ax", "last"));
-  for (const std::string& message : heard.messages()) EXPECT_NE(message, "not subscribed");
+  EXPECT_TRUE(comes_through(client, processed, "cell/7/ax", "last"));
+  for (const std::string& message : processed.messages()) EXPECT_NE(message, "not subscribed");
 }
 
 TEST(Mqtt, ComesBackWhenTheBrokerDoes) {
   const test::Folder folder;
   test::Mosquitto broker(folder.path());
-  Heard heard;
-  MqttClient client(settings_of(broker), "t", heard.calls());
+  Heard processed;
+  MqttClient client(settings_of(broker), "t", processed.calls());
   client.start();
   ASSERT_TRUE(client.wait_until_connected(seconds(60)));
   for (int round = 0; round < 2; ++round) {
     broker.stop();
     ASSERT_TRUE(test::wait_for([&] { return !client.connected(); }));
     EXPECT_FALSE(client.publish("t", "nobody"));
-    EXPECT_FALSE(heard.why().empty());
+    EXPECT_FALSE(processed.why().empty());
     broker.start();
     ASSERT_TRUE(client.wait_until_connected(seconds(60)));
-    EXPECT_TRUE(comes_through(client, heard, "t", "round " + std::to_string(round)));
+    EXPECT_TRUE(comes_through(client, processed, "t", "round " + std::to_string(round)));
   }
-  EXPECT_GE(heard.connections(), 3);  // a broker that has just begun may let one go again
+  EXPECT_GE(processed.connections(), 3);  // a broker that has just begun may let one go again
 }
 
 TEST(Mqtt, WaitsForABrokerThatIsNotThereYet) {
   const test::Folder folder;
   test::Mosquitto broker(folder.path());
   broker.stop();
-  Heard heard;
-  MqttClient client(settings_of(broker), "t", heard.calls());
+  Heard processed;
+  MqttClient client(settings_of(broker), "t", processed.calls());
   client.start();
-  ASSERT_TRUE(test::wait_for([&] { return !heard.why().empty(); }));
+  ASSERT_TRUE(test::wait_for([&] { return !processed.why().empty(); }));
   broker.start();
   EXPECT_TRUE(client.wait_until_connected(seconds(60)));
 }
@@ -122,19 +122,19 @@ TEST(Mqtt, LogsIn) {
   monitor::MqttSettings settings = settings_of(broker);
   settings.user = "anna";
   settings.password_file = folder.file("password", "geheim\nsecond line\n");
-  Heard heard;
+  Heard processed;
   {
-    MqttClient client(settings, "t", heard.calls());
+    MqttClient client(settings, "t", processed.calls());
     client.start();
     ASSERT_TRUE(client.wait_until_connected(seconds(60)));
-    EXPECT_TRUE(comes_through(client, heard, "t", "hello"));
+    EXPECT_TRUE(comes_through(client, processed, "t", "hello"));
   }
   settings.password_file = folder.file("wrong", "falsch");
-  Heard refused;
-  MqttClient client(settings, "t", refused.calls());
+  Heard rejected;
+  MqttClient client(settings, "t", rejected.calls());
   client.start();
-  ASSERT_TRUE(test::wait_for([&] { return !refused.why().empty(); }));
-  EXPECT_EQ(refused.connections(), 0);
+  ASSERT_TRUE(test::wait_for([&] { return !rejected.why().empty(); }));
+  EXPECT_EQ(rejected.connections(), 0);
   settings.password_file = folder.at("missing");
   EXPECT_THROW(MqttClient(settings, "t", {}), InvalidInput);
 }
@@ -152,20 +152,20 @@ TEST(Mqtt, SpeaksTls) {
   settings.host = "localhost";
   settings.tls = true;
   settings.ca_file = folder.at("cert.pem");
-  Heard heard;
+  Heard processed;
   {
-    MqttClient client(settings, "t", heard.calls());
+    MqttClient client(settings, "t", processed.calls());
     client.start();
-    ASSERT_TRUE(client.wait_until_connected(seconds(60))) << heard.why();
-    EXPECT_TRUE(comes_through(client, heard, "t", "hello"));
+    ASSERT_TRUE(client.wait_until_connected(seconds(60))) << processed.why();
+    EXPECT_TRUE(comes_through(client, processed, "t", "hello"));
   }
   // Signed by nobody that the system knows.
   settings.ca_file.clear();
-  Heard refused;
-  MqttClient client(settings, "t", refused.calls());
+  Heard rejected;
+  MqttClient client(settings, "t", rejected.calls());
   client.start();
-  ASSERT_TRUE(test::wait_for([&] { return !refused.why().empty(); }));
-  EXPECT_EQ(refused.connections(), 0);
+  ASSERT_TRUE(test::wait_for([&] { return !rejected.why().empty(); }));
+  EXPECT_EQ(rejected.connections(), 0);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ TEST(Metrics, AnswerInTheTextFormat) {
   EXPECT_EQ(test::http_get(server.port(), "/other").rfind("HTTP/1.1 404", 0), 0U);
   EXPECT_EQ(test::http_get(server.port(), "/" + std::string(20'000, 'x')).rfind("HTTP/1.1 414", 0), 0U);
   EXPECT_NE(
-      test::refusal([&] { const MetricsServer second(values, "127.0.0.1", server.port()); }).find("cannot listen"),
+      test::rejection([&] { const MetricsServer second(values, "127.0.0.1", server.port()); }).find("cannot listen"),
       std::string::npos);
 }
 

@@ -48,12 +48,12 @@ class Process {
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     // What whoever runs the tests ignores is not ignored here.
-    sigset_t heard;
-    sigemptyset(&heard);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&heard, number);
+    sigset_t defaulted;
+    sigemptyset(&defaulted);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&defaulted, number);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
-    posix_spawnattr_setsigdefault(&attributes, &heard);
+    posix_spawnattr_setsigdefault(&attributes, &defaulted);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
     std::vector<char*> words;
     for (std::string& argument : arguments) words.push_back(argument.data());

@@ -1,4 +1,4 @@
-// Chatter heard while it grows: three teeth at 6000 rpm, and from 3 s on a vibration that is no multiple of them.
+// Chatter processed while it grows: three teeth at 6000 rpm, and from 3 s on a vibration that is no multiple of them.
 #include <robomill/base/random.hpp>
 #include <robomill/base/units.hpp>
 #include <robomill/monitor/monitor.hpp>
@@ -29,7 +29,7 @@ int main() {
                                    .teeth = 3});
   Random random(1);
   std::vector<float> samples;
-  double alarm_s = 0.0, heard_hz = 0.0, speed_rad_per_s = 0.0;
+  double alarm_s = 0.0, detected_hz = 0.0, speed_rad_per_s = 0.0;
   std::uint64_t frame = 0;
   while (frame < static_cast<std::uint64_t>(5.0 * rate_hz)) {
     samples.resize(monitor.frames_to_next_decision());
@@ -40,10 +40,10 @@ int main() {
                   decision.level);
     if (decision.state != monitor::State::chatter) continue;
     if (alarm_s == 0.0) alarm_s = decision.time_s;
-    heard_hz = decision.chatter_frequency_hz;
+    detected_hz = decision.chatter_frequency_hz;
     speed_rad_per_s = decision.spindle_speed_rad_per_s;
   }
   std::printf("chatter began at %.3f s, was detected %.0f ms later at %.1f Hz (is %.1f Hz); spindle at %.0f rpm\n",
-              onset_s, (alarm_s - onset_s) / units::ms, heard_hz, chatter_hz, speed_rad_per_s / units::rpm);
-  return alarm_s > onset_s && alarm_s < onset_s + 0.5 && std::abs(heard_hz - chatter_hz) < 1.0 ? 0 : 1;
+              onset_s, (alarm_s - onset_s) / units::ms, detected_hz, chatter_hz, speed_rad_per_s / units::rpm);
+  return alarm_s > onset_s && alarm_s < onset_s + 0.5 && std::abs(detected_hz - chatter_hz) < 1.0 ? 0 : 1;
 }

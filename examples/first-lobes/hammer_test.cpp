@@ -108,7 +108,7 @@ TEST(SimulateHits, RepeatsWithItsSeedAndScatters) {
   EXPECT_EQ(hits[9].excitation, model.excitations[1]);
 }
 
-TEST(SimulateHit, RefusesAForceTheModelDoesNotKnow) {
+TEST(SimulateHit, RejectsAForceTheModelDoesNotKnow) {
   Random random(1);
   const modal::Dof z{.point = 0, .axis = modal::Axis::z};
   EXPECT_THROW(static_cast<void>(simulate_hit(data::robot_modes(), z, Hammer{}, random)), InvalidInput);

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "robomill/base/error.hpp"
-#include "robomill/coupling/span.hpp"
+#include "robomill/coupling/beam_element.hpp"
 
 namespace robomill::coupling::detail {
 namespace {
@@ -193,7 +193,7 @@ Base base_receptances(const Holder& holder, const Eigen::VectorXd& frequency_hz)
   if (holder.segments.empty()) {
     base.x.assign(static_cast<std::size_t>(frequency_hz.size()), Eigen::Matrix2cd::Zero());
   } else {
-    for (const Span& span : spans(holder.segments, frequency_hz)) base.x.push_back(span.clamped);
+    for (const BeamElement& span : spans(holder.segments, frequency_hz)) base.x.push_back(span.clamped);
   }
   base.y = base.x;
   return base;

@@ -3,8 +3,8 @@
 #include <Eigen/LU>
 
 #include "robomill/base/parallel.hpp"
+#include "robomill/coupling/beam_element.hpp"
 #include "robomill/coupling/section.hpp"
-#include "robomill/coupling/span.hpp"
 
 namespace robomill::coupling::detail {
 namespace {
@@ -12,15 +12,15 @@ namespace {
 constexpr std::size_t lines_per_block = 64;
 
 /// A rigid body without mass; the mouth's side is end 1.
-Span rigid_link(double length_m) {
-  Span link{.clamped = Eigen::Matrix2cd::Zero(), .carry = {}, .stiffness = Eigen::Matrix2cd::Zero()};
+BeamElement rigid_link(double length_m) {
+  BeamElement link{.clamped = Eigen::Matrix2cd::Zero(), .carry = {}, .stiffness = Eigen::Matrix2cd::Zero()};
   link.carry << 1.0, -length_m, 0.0, 1.0;
   return link;
 }
 
 /// One gap between neighbouring points, from the mouth inwards.
 struct Gap {
-  std::vector<Span> shank, holder;  // one a frequency
+  std::vector<BeamElement> shank, holder;  // one a frequency
 };
 
 std::vector<Gap> gaps_of(const Joint& joint, const Holder& holder, const Eigen::VectorXd& frequency_hz) {
@@ -50,7 +50,7 @@ std::vector<Square<N>> deep_base(const Joint& joint, const Holder& holder, const
     return out;
   }
   const std::vector<Segment> rest = piece(holder.segments, joint.insertion_length_m, total_length(holder.segments));
-  const std::vector<Span> deep = rest.empty() ? std::vector<Span>() : spans(rest, frequency_hz);
+  const std::vector<BeamElement> deep = rest.empty() ? std::vector<BeamElement>() : spans(rest, frequency_hz);
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = rest.empty() ? Square<N>(Square<N>::Zero()) : planes<N>(deep[i].clamped);
   }
@@ -74,8 +74,8 @@ Square<N> climb(const std::vector<Gap>& gaps, std::size_t line, const Square<N>&
   Eigen::Matrix<std::complex<double>, 2 * N, N> apart;  // displacement of the shank against the holder
   apart << Square<N>::Identity(), -Square<N>::Identity();
   for (std::size_t i = gaps.size(); i-- > 0;) {
-    const Span& shank = gaps[i].shank[line];
-    const Span& holder = gaps[i].holder[line];
+    const BeamElement& shank = gaps[i].shank[line];
+    const BeamElement& holder = gaps[i].holder[line];
     b = on_base<Both>(both<N>(shank.clamped, holder.clamped), both<N>(shank.carry, holder.carry),
                       both<N>(shank.stiffness, holder.stiffness), b);
     const Eigen::Matrix<std::complex<double>, 2 * N, N> pulled = b * apart;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "robomill/coupling/assembly.hpp"
-#include "robomill/coupling/span.hpp"
+#include "robomill/coupling/beam_element.hpp"
 
 namespace robomill::coupling::detail {
 

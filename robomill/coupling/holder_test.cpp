@@ -10,8 +10,8 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/coupling/base.hpp"
+#include "robomill/coupling/beam_element.hpp"
 #include "robomill/coupling/section.hpp"
-#include "robomill/coupling/span.hpp"
 #include "testing/coupling/beams.hpp"
 #include "testing/support.hpp"
 
@@ -19,7 +19,7 @@ namespace robomill::coupling {
 namespace {
 
 using modal::FrfSet;
-using robomill::test::refusal;
+using robomill::test::rejection;
 using test::bar;
 using test::hertz;
 using test::receptance;
@@ -36,8 +36,8 @@ std::vector<Segment> nose(Beam beam = Beam::timoshenko) {
 /// Translations at the free end and at a distance from it of segments that stand on a base, by the span of each part.
 FrfSet two_points(const std::vector<Segment>& front, const std::vector<Segment>& back,
                   const std::vector<Eigen::Matrix2cd>& base, const Eigen::VectorXd& f) {
-  const std::vector<detail::Span> a = detail::spans(front, f);
-  const std::vector<detail::Span> b = detail::spans(back, f);
+  const std::vector<detail::BeamElement> a = detail::spans(front, f);
+  const std::vector<detail::BeamElement> b = detail::spans(back, f);
   FrfSet set{.frequency_hz = f, .frfs = {}};
   for (const char* name : {"1x:1x", "2x:1x", "2x:2x"}) {
     set.frfs.push_back({.name = modal::parse_frf_name(name), .receptance = Eigen::VectorXcd(f.size())});
@@ -190,13 +190,13 @@ FrfSet nose_translations(const Eigen::VectorXd& f, double spacing_m, Beam beam =
   // 3x:2x: the piece between carries point 3's motion to point 2.
   Segment first = nose(beam)[0], second = nose(beam)[0];
   first.length_m = second.length_m = spacing_m;
-  const std::vector<detail::Span> hanging = detail::spans({first}, f);
-  const std::vector<detail::Span> between = detail::spans({second}, f);
+  const std::vector<detail::BeamElement> hanging = detail::spans({first}, f);
+  const std::vector<detail::BeamElement> between = detail::spans({second}, f);
   std::vector<Segment> rest = nose(beam);
   rest[0].length_m -= 2.0 * spacing_m;
   if (rest[0].length_m < 1e-9) rest.erase(rest.begin());
-  const std::vector<detail::Span> under = detail::spans(rest, f);
-  const std::vector<detail::Span> whole = detail::spans({first, second}, f);
+  const std::vector<detail::BeamElement> under = detail::spans(rest, f);
+  const std::vector<detail::BeamElement> whole = detail::spans({first, second}, f);
   modal::Frf frf{.name = modal::parse_frf_name("3x:2x"), .receptance = Eigen::VectorXcd(f.size())};
   for (Eigen::Index i = 0; i < f.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
@@ -271,7 +271,7 @@ TEST(CompleteRotations, TakesHitsAtTheMouthAlone) {
   const Eigen::VectorXcd rank_one = l.cwiseProduct(l).cwiseQuotient(receptance(found.receptances, "xx"));
   EXPECT_LT(relative(receptance(found.receptances, "ry:my"), rank_one), 1e-12);
   EXPECT_NE(found.notes.front().find("l n / h"), std::string::npos);
-  EXPECT_NE(refusal([&] {
+  EXPECT_NE(rejection([&] {
               static_cast<void>(complete_rotations(hits, {0.005, 0.015, 0.025}));
             }).find("lack 2x:2x"),
             std::string::npos);
@@ -297,17 +297,17 @@ TEST(Holder, MarksLinesThatAreZero) {
   for (const Eigen::Index line : {10, 30}) EXPECT_TRUE(std::isinf(column.amplification(line))) << line;
   EXPECT_NO_THROW(column.receptances.validate());
   measured.frfs[0].receptance.setZero();
-  EXPECT_NE(refusal([&] {
+  EXPECT_NE(rejection([&] {
               static_cast<void>(complete_rotations(measured, {0.0, 0.03}));
             }).find("1x:1x is zero"),
             std::string::npos);
 }
 
-TEST(Holder, RefusesWhatItCannotRead) {
+TEST(Holder, RejectsWhatItCannotRead) {
   const Eigen::VectorXd f = hertz(100, 50);
   const FrfSet measured = two_points({bar(0.03)}, {bar(0.05)}, true_base(f), f);
   const auto removed = [&](const FrfSet& set, const std::vector<double>& positions) {
-    return refusal([&] { static_cast<void>(remove_artefact(set, positions, {bar(0.08)})); });
+    return rejection([&] { static_cast<void>(remove_artefact(set, positions, {bar(0.08)})); });
   };
   EXPECT_NE(removed(measured, {0.0, 0.09}).find("must lie on the artefact"), std::string::npos);
   EXPECT_NE(removed(measured, {0.0, 0.0}).find("must not be given twice"), std::string::npos);
@@ -318,7 +318,7 @@ TEST(Holder, RefusesWhatItCannotRead) {
   FrfSet none = measured;
   for (modal::Frf& frf : none.frfs) frf.name.response.axis = frf.name.excitation.axis = modal::Axis::z;
   EXPECT_NE(removed(none, {0.0, 0.03}).find("no translation in x or y"), std::string::npos);
-  EXPECT_NE(refusal([&] {
+  EXPECT_NE(rejection([&] {
               static_cast<void>(complete_rotations(measured, {0.0}));
             }).find("has 1 positions; must be two or three"),
             std::string::npos);

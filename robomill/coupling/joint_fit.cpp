@@ -8,11 +8,11 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/coupling/base.hpp"
+#include "robomill/coupling/beam_element.hpp"
 #include "robomill/coupling/joint_hybrid.hpp"
 #include "robomill/coupling/joint_knowledge.hpp"
 #include "robomill/coupling/joint_model.hpp"
 #include "robomill/coupling/published/joint_ga.hpp"
-#include "robomill/coupling/span.hpp"
 
 namespace robomill::coupling {
 namespace {

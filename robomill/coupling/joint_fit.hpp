@@ -45,12 +45,12 @@ struct JointFitOptions {
   ROBOMILL_API void validate() const;
 };
 
-/// What the FRF tells of one unknown.
+/// What the FRF shows of one unknown.
 struct JointKnowledge {
   double deviation = 0.0;  ///< standard deviation, in the unknown's unit; infinite where the FRF sets no upper bound,
                            ///< or the search did not end at a minimum or misses the FRF
   bool identifiable = false;  ///< whether the FRF bounds it from both sides
-  /// Of a stiffness: beyond it the FRF cannot tell the joint from a rigid one. 0 for damping.
+  /// Of a stiffness: beyond it the FRF cannot distinguish the joint from a rigid one. 0 for damping.
   double visible_up_to = 0.0;
   std::string note =
       {};  ///< a sentence where it is not identifiable: "rotational damping: not identifiable from this FRF"

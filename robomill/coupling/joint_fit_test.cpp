@@ -26,7 +26,7 @@ using detail::JointModel;
 using detail::JointValues;
 using Eigen::Index;
 using robomill::test::field_of;
-using robomill::test::refusal;
+using robomill::test::rejection;
 using robomill::test::seeds;
 
 using test::joint_of;
@@ -243,7 +243,8 @@ TEST(JointFit, SaysWhatCannotBeSeen) {
   EXPECT_GT(squares_with(measured, 2, 0.1 * visible, options) - rigid, 20.0) << "and steep below";
 }
 
-// Genes end beside the minimum, or far from it where the joint lies outside their bounds: no deviation is told then.
+// Genes end beside the minimum, or far from it where the joint lies outside their bounds: no deviation is reported
+// then.
 TEST(JointFit, SaysNothingOfDeviationsAwayFromTheMinimum) {
   for (const double rotation : {3e5, 5e4}) {
     modal::FrfSet measured = tip_with(test::published_pair(), joint_of({2e7, 40.0, rotation, 5.0}), test::hertz(2000));
@@ -272,8 +273,9 @@ TEST(JointFit, SaysWhenNoJointGivesTheFrf) {
   EXPECT_NE(result.notes.back().find("cannot give this FRF"), std::string::npos);
   for (const JointKnowledge& known : result.knowledge) EXPECT_FALSE(known.identifiable);
   measured.frfs[0].receptance *= 1e160;
-  EXPECT_NE(refusal([&] { static_cast<void>(fit_joint(test::published_pair(), measured, {})); }).find("no machine has"),
-            std::string::npos);
+  EXPECT_NE(
+      rejection([&] { static_cast<void>(fit_joint(test::published_pair(), measured, {})); }).find("no machine has"),
+      std::string::npos);
 }
 
 // Weights are the FRF's own where it has them: a band of rubbish that says so does no harm.
@@ -345,7 +347,7 @@ TEST(JointFit, StopsWhenAsked) {
   }
 }
 
-TEST(JointFit, RefusesBadInput) {
+TEST(JointFit, RejectsBadInput) {
   const modal::FrfSet good = tip_with(test::published_pair(), joint_of(planted), test::hertz(50));
   const Assembly pair = test::published_pair();
   const auto of_options = [&](const JointFitOptions& options) {
@@ -370,7 +372,7 @@ TEST(JointFit, RefusesBadInput) {
   modal::FrfSet bad = good;
   bad.frfs[0].name = modal::parse_frf_name("yx");
   EXPECT_EQ(of(pair, bad), "measured");
-  EXPECT_NE(refusal([&] { static_cast<void>(fit_joint(pair, bad, {})); }).find("lacks xx"), std::string::npos);
+  EXPECT_NE(rejection([&] { static_cast<void>(fit_joint(pair, bad, {})); }).find("lacks xx"), std::string::npos);
   bad = good;
   bad.frfs[0].receptance(3) = nan;
   EXPECT_NE(of(pair, bad), "accepted");
@@ -379,7 +381,7 @@ TEST(JointFit, RefusesBadInput) {
   EXPECT_EQ(of(pair, bad), "measured");
   bad = good;
   bad.frfs[0].receptance = bad.frfs[0].receptance.conjugate().eval();
-  EXPECT_NE(refusal([&] { static_cast<void>(fit_joint(pair, bad, {})); }).find("create energy"), std::string::npos);
+  EXPECT_NE(rejection([&] { static_cast<void>(fit_joint(pair, bad, {})); }).find("create energy"), std::string::npos);
   EXPECT_EQ(of(pair, tip_with(pair, joint_of(planted), test::hertz(4))), "measured");
 
   Assembly assembly = pair;
@@ -393,7 +395,7 @@ TEST(JointFit, RefusesBadInput) {
 }
 
 // A measured holder must have the lines of the measured tip; the message names both steps.
-TEST(JointFit, RefusesAnotherAxisThanTheHolders) {
+TEST(JointFit, RejectsAnotherAxisThanTheHolders) {
   const Eigen::VectorXd frequency_hz = test::hertz(200);
   Assembly assembly{.tool = {test::bar(0.11892)}, .joint = {}, .holder = {}};
   const Assembly stub{.tool = {test::bar(0.0509)}, .joint = {}, .holder = {}};
@@ -404,7 +406,7 @@ TEST(JointFit, RefusesAnotherAxisThanTheHolders) {
   const modal::FrfSet measured = tip_with(test::published_pair(), joint_of(planted), frequency_hz);
   EXPECT_LT(fit_joint(assembly, measured, {}).relative_error, 1e-6);
   const modal::FrfSet halved = tip_with(test::published_pair(), joint_of(planted), 0.5 * frequency_hz);
-  const std::string said = refusal([&] { static_cast<void>(fit_joint(assembly, halved, {})); });
+  const std::string said = rejection([&] { static_cast<void>(fit_joint(assembly, halved, {})); });
   EXPECT_NE(said.find("0.5"), std::string::npos) << said;
 }
 

@@ -38,7 +38,7 @@ Jacobian jacobian(const JointModel& model, const JointValues& joint, const Joint
   return out;
 }
 
-/// How many neighbouring lines tell the same: 1 + 2 Σ ρ over the lags until ρ is lost in the noise.
+/// How many neighbouring lines report the same: 1 + 2 Σ ρ over the lags until ρ is lost in the noise.
 double correlation_length(const Eigen::VectorXd& residual) {
   const Index n = residual.size() / 2;
   const double square = residual.squaredNorm();
@@ -111,8 +111,8 @@ std::string note_of_stiffness(std::size_t i, double value, const JointKnowledge&
 using Flags = std::array<bool, joint_unknowns>;
 
 /// Why nothing can be said of deviations; empty where it can.
-std::string why_untold(const Jacobian& columns, const Flags& moves, const Eigen::VectorXd& residual, double variance,
-                       const JointData& data) {
+std::string why_unreported(const Jacobian& columns, const Flags& moves, const Eigen::VectorXd& residual,
+                           double variance, const JointData& data) {
   const double misfit = (residual.array() * data.deviation.replicate(2, 1)).matrix().norm() / data.measured.norm();
   if (misfit > no_fit) {
     return fmt::format(
@@ -127,7 +127,7 @@ std::string why_untold(const Jacobian& columns, const Flags& moves, const Eigen:
   return {};
 }
 
-void tell_nothing(const Flags& free, std::array<JointKnowledge, joint_unknowns>& knowledge) {
+void report_nothing(const Flags& free, std::array<JointKnowledge, joint_unknowns>& knowledge) {
   for (std::size_t i = 0; i < knowledge.size(); ++i) {
     if (!free[i]) continue;
     knowledge[i].deviation = infinite;
@@ -155,10 +155,10 @@ std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& mod
   const double variance = std::max(random, shared);
   const Jacobian columns = jacobian(model, joint, data);
   std::array<JointKnowledge, joint_unknowns> knowledge;
-  const std::string untold = why_untold(columns, moves, residual, variance, data);
-  if (!untold.empty()) {
-    notes.push_back(untold);
-    tell_nothing(free, knowledge);
+  const std::string unreported = why_unreported(columns, moves, residual, variance, data);
+  if (!unreported.empty()) {
+    notes.push_back(unreported);
+    report_nothing(free, knowledge);
     return knowledge;
   }
   const std::array<double, joint_unknowns> deviation = deviations(columns, free, variance);

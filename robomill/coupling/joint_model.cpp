@@ -137,14 +137,14 @@ void JointModel::resize(Index lines) {
   for (std::vector<double>& values : imag_) values.assign(padded, 0.0);
 }
 
-JointModel::JointModel(const std::vector<Span>& tool, const std::vector<Eigen::Matrix2cd>& base,
+JointModel::JointModel(const std::vector<BeamElement>& tool, const std::vector<Eigen::Matrix2cd>& base,
                        const Eigen::VectorXd& frequency_hz, double cross_stiffness_n_per_rad)
     : cross_(cross_stiffness_n_per_rad) {
   resize(frequency_hz.size());
   for (std::size_t i = 0; i < tool.size(); ++i) {
     const double line_hz = frequency_hz(static_cast<Index>(i));
     omega_[i] = 2.0 * std::numbers::pi * line_hz;
-    const Span& span = tool[i];
+    const BeamElement& span = tool[i];
     const Eigen::Matrix2cd one = Eigen::Matrix2cd::Identity();
     const Eigen::Matrix2cd held = (one + base[i] * span.stiffness).inverse();
     const Eigen::Matrix2cd z = span.stiffness * held;

@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "robomill/coupling/beam_element.hpp"
 #include "robomill/coupling/joint_fit.hpp"
-#include "robomill/coupling/span.hpp"
 
 namespace robomill::coupling::detail {
 
@@ -30,7 +30,7 @@ class JointModel {
   /// @param tool, base  by line
   /// @param frequency_hz  of the lines, > 0
   /// @throws InvalidInput at a resonance without damping
-  JointModel(const std::vector<Span>& tool, const std::vector<Eigen::Matrix2cd>& base,
+  JointModel(const std::vector<BeamElement>& tool, const std::vector<Eigen::Matrix2cd>& base,
              const Eigen::VectorXd& frequency_hz, double cross_stiffness_n_per_rad);
   /// Of some lines alone, by their numbers.
   [[nodiscard]] JointModel part(const std::vector<Eigen::Index>& lines) const;

@@ -9,7 +9,7 @@ struct ComplexLanes {
   Lanes re = {}, im = {};
 };
 
-/// A Span; matrices row by row.
+/// A BeamElement; matrices row by row.
 struct SpanLanes {
   ComplexLanes clamped[4], carry[4], stiffness[4];
 };

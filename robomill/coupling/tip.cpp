@@ -9,15 +9,15 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/base.hpp"
+#include "robomill/coupling/beam_element.hpp"
 #include "robomill/coupling/distributed.hpp"
 #include "robomill/coupling/section.hpp"
-#include "robomill/coupling/span.hpp"
 
 namespace robomill::coupling {
 namespace {
 
 using detail::Base;
-using detail::Span;
+using detail::BeamElement;
 using Eigen::Index;
 using modal::Axis;
 
@@ -49,7 +49,7 @@ std::vector<detail::Square<N>> under_tool(const Assembly& assembly, const std::v
 }
 
 template <int N>
-std::vector<detail::Square<N>> tips(const Assembly& assembly, const std::vector<Span>& tool,
+std::vector<detail::Square<N>> tips(const Assembly& assembly, const std::vector<BeamElement>& tool,
                                     const std::vector<detail::Square<N>>& base, const Eigen::VectorXd& frequency_hz) {
   const std::vector<detail::Square<N>> under = under_tool<N>(assembly, base, frequency_hz);
   std::vector<detail::Square<N>> out(under.size());
@@ -96,7 +96,7 @@ TipResult tip_frfs(const Assembly& assembly, const Eigen::VectorXd& frequency_hz
   assembly.validate();
   require_frequencies(frequency_hz);
   Base base = detail::base_receptances(assembly.holder, frequency_hz);
-  const std::vector<Span> tool = detail::spans(assembly.tool, frequency_hz);
+  const std::vector<BeamElement> tool = detail::spans(assembly.tool, frequency_hz);
   TipResult result;
   result.frfs.frequency_hz = frequency_hz;
   const bool rotations = options.rotations;
@@ -129,7 +129,7 @@ modal::FrfSet free_frfs(const std::vector<Segment>& segments, const Eigen::Vecto
   detail::validate_segments("segments", segments);
   require_frequencies(frequency_hz);
   std::vector<Eigen::Matrix4cd> receptance;
-  for (const Span& span : detail::spans(segments, frequency_hz)) {
+  for (const BeamElement& span : detail::spans(segments, frequency_hz)) {
     const Eigen::Matrix2cd r22 = span.stiffness.inverse();
     const Eigen::Matrix2cd r12 = span.carry * r22;
     receptance.emplace_back();

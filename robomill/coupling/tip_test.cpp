@@ -9,7 +9,7 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/base.hpp"
-#include "robomill/coupling/span.hpp"
+#include "robomill/coupling/beam_element.hpp"
 #include "testing/coupling/beams.hpp"
 #include "testing/support.hpp"
 
@@ -130,8 +130,8 @@ TEST(Tip, OfARoundToolIsTheSameInBothPlanesWithTheSignsOfTheFrame) {
 
 /// A holder of its own in each of two directions, turned by an angle about z: sixteen FRFs.
 FrfSet turned_holder(double angle, const Eigen::VectorXd& f) {
-  const std::vector<detail::Span> soft = detail::spans({bar(0.3)}, f);
-  const std::vector<detail::Span> stiff = detail::spans({bar(0.05)}, f);
+  const std::vector<detail::BeamElement> soft = detail::spans({bar(0.3)}, f);
+  const std::vector<detail::BeamElement> stiff = detail::spans({bar(0.05)}, f);
   Eigen::Matrix4d turn = Eigen::Matrix4d::Zero();  // (u_x, θ_x, u_y, θ_y): slopes turn as displacements do
   turn.topLeftCorner<2, 2>() = turn.bottomRightCorner<2, 2>() = std::cos(angle) * Eigen::Matrix2d::Identity();
   turn.topRightCorner<2, 2>() = -std::sin(angle) * Eigen::Matrix2d::Identity();
@@ -211,8 +211,8 @@ TEST(Tip, ADistributedJointOfTwoPointsIsTheirCoupling) {
                          .insertion_length_m = 0.03,
                          .shank = {bar(0.03)}};
   const Eigen::VectorXcd found = tip_xx(assembly, f);
-  const std::vector<detail::Span> tool = detail::spans(assembly.tool, f);
-  const std::vector<detail::Span> shank = detail::spans({bar(0.03)}, f);
+  const std::vector<detail::BeamElement> tool = detail::spans(assembly.tool, f);
+  const std::vector<detail::BeamElement> shank = detail::spans({bar(0.03)}, f);
   for (Eigen::Index i = 0; i < f.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
     const Eigen::Matrix2cd point = 2.0 * detail::flexibility(*assembly.joint, f(i));
@@ -313,15 +313,15 @@ TEST(Tip, SuspectsReceptancesThatCreateEnergy) {
   EXPECT_EQ(result.suspect_hz[0], f(300));
   EXPECT_EQ(result.notes.size(), 1U);
   for (modal::Frf& frf : assembly.holder.receptances.frfs) frf.receptance = -frf.receptance;
-  EXPECT_NE(robomill::test::refusal([&] { static_cast<void>(tip_frfs(assembly, f)); }).find("create energy"),
+  EXPECT_NE(robomill::test::rejection([&] { static_cast<void>(tip_frfs(assembly, f)); }).find("create energy"),
             std::string::npos);
 }
 
-TEST(Tip, RefusesWhatItCannotCouple) {
-  using robomill::test::refusal;
+TEST(Tip, RejectsWhatItCannotCouple) {
+  using robomill::test::rejection;
   const Eigen::VectorXd f = hertz(100);
   const auto message = [&](const Assembly& assembly, const Eigen::VectorXd& lines) {
-    return refusal([&] { static_cast<void>(tip_frfs(assembly, lines)); });
+    return rejection([&] { static_cast<void>(tip_frfs(assembly, lines)); });
   };
   Assembly assembly = published_pair();
   assembly.tool.push_back(bar(-0.1));

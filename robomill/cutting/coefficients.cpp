@@ -269,17 +269,17 @@ SlotFit identify_from_slots(const std::vector<SlotForce>& slots, const SlotOptio
     }
   }
   SlotFit fit;
-  const bool told = !options.edge_forces || !one_feed(slots);
-  const bool with_edge = options.edge_forces && told;
-  fit.status = told ? SlotFit::Status::identified : SlotFit::Status::edge_unknown;
+  const bool reported = !options.edge_forces || !one_feed(slots);
+  const bool with_edge = options.edge_forces && reported;
+  fit.status = reported ? SlotFit::Status::identified : SlotFit::Status::edge_unknown;
   fit.residual_n.resize(3, static_cast<Eigen::Index>(slots.size()));
   for (const Direction& direction : directions) {
     PairFit own = fit_pair(slots, direction, options, with_edge);
-    if (!told) own.pair.cutting_deviation_n_per_m2 = own.pair.edge_deviation_n_per_m = infinity;
+    if (!reported) own.pair.cutting_deviation_n_per_m2 = own.pair.edge_deviation_n_per_m = infinity;
     fit.*direction.pair = own.pair;
     fit.residual_n.row(direction.component) = own.residual_n.transpose();
   }
-  if (!told) {
+  if (!reported) {
     fit.notes.emplace_back(
         "All slots have one feed: cutting and edge parts cannot be parted. The cutting coefficients hold this feed's "
         "edge force too; slots at a second feed would show it.");

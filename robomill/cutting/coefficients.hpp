@@ -33,7 +33,7 @@ struct ROBOMILL_API SlotOptions {
 /// Cutting and edge coefficient of one direction, from the one component of force that they alone make.
 struct CoefficientPair {
   double cutting_n_per_m2 = 0.0, edge_n_per_m = 0.0;
-  /// Standard deviations, from the residuals; infinite where the data cannot tell.
+  /// Standard deviations, from the residuals; infinite where the data cannot report.
   double cutting_deviation_n_per_m2 = 0.0, edge_deviation_n_per_m = 0.0;
   double correlation = 0.0;  ///< of the two estimates, in [-1, 1]
   double r_squared = 0.0;    ///< share of the force's variance that is explained; NaN where the force does not vary
@@ -81,9 +81,10 @@ struct CoefficientDegrees {
 /// What is sought in a signal.
 struct ROBOMILL_API SignalOptions {
   CoefficientDegrees degrees = {};
-  bool find_offset = true;       ///< the signal's zero of rotation is not known
-  int steps = 1440;              ///< of the modelled revolution
-  double rank_tolerance = 1e-8;  ///< in (0, 1): singular values, to the largest, below which a direction is not told
+  bool find_offset = true;  ///< the signal's zero of rotation is not known
+  int steps = 1440;         ///< of the modelled revolution
+  double rank_tolerance =
+      1e-8;  ///< in (0, 1): singular values, to the largest, below which a direction is not reported
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -91,14 +92,14 @@ struct ROBOMILL_API SignalOptions {
 struct SignalFit {
   MillingCoefficients coefficients;
   /// Of the same shape: standard deviations from the residuals, taken as independent from sample to sample; infinite
-  /// where the signal cannot tell.
+  /// where the signal cannot report.
   MillingCoefficients deviations;
   bool identifiable = true;  ///< every one of them
   double offset_rad = 0.0;   ///< tooth 0 stood at rotation + offset, in [0, a period of the cutter)
   double offset_deviation_rad = 0.0;
   Eigen::Vector3d r_squared = Eigen::Vector3d::Zero();  ///< by component; NaN where it does not vary
   double noise_n = 0.0;                                 ///< standard deviation of the signal about the fit
-  double condition = 0.0;                               ///< of the scaled design, over the directions that are told
+  double condition = 0.0;                               ///< of the scaled design, over the directions that are reported
   Eigen::Matrix3Xd residual_n;                          ///< measured less fitted, 3 x n
   std::vector<std::string> notes;                       ///< what cannot be told, and signs that cannot be
 };

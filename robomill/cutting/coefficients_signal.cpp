@@ -179,10 +179,10 @@ double find_offset(const Model& model, const Signal& signal, double period_rad) 
 
 /// Least squares through the singular values of the scaled design.
 struct Solution {
-  Eigen::VectorXd values, deviations;  ///< per unknown; deviations for a noise of 1, infinite where not told
+  Eigen::VectorXd values, deviations;  ///< per unknown; deviations for a noise of 1, infinite where not reported
   Eigen::Index rank = 0;
   double condition = 0.0;
-  std::vector<std::vector<Eigen::Index>> mixed;  ///< unknowns that only a sum tells apart, one list a lost direction
+  std::vector<std::vector<Eigen::Index>> mixed;  ///< unknowns that only a sum distinguishes, one list a lost direction
 };
 
 Solution solve(const Eigen::MatrixXd& design, const Eigen::VectorXd& force_n, double tolerance) {
@@ -223,7 +223,7 @@ void put(const std::vector<Term>& terms, const Eigen::VectorXd& values, MillingC
   }
 }
 
-void tell(const std::vector<Term>& terms, const Solution& solution, SignalFit& fit) {
+void report(const std::vector<Term>& terms, const Solution& solution, SignalFit& fit) {
   for (const std::vector<Eigen::Index>& mixed : solution.mixed) {
     std::string names;
     for (const Eigen::Index i : mixed) {
@@ -316,14 +316,14 @@ SignalFit identify_from_signal(const Cutter& cutter, const Engagement& engagemen
   fit.noise_n = left > 0 ? std::sqrt(residual.squaredNorm() / static_cast<double>(left)) : infinity;
   fit.r_squared = r_squared(force_n, fit.residual_n);
   fit.condition = solution.condition;
-  const Eigen::VectorXd& told = solution.deviations;
-  Eigen::VectorXd deviations = told;
+  const Eigen::VectorXd& reported = solution.deviations;
+  Eigen::VectorXd deviations = reported;
   for (double& deviation : deviations) deviation = std::isfinite(deviation) ? deviation * fit.noise_n : infinity;
   put(terms, values, fit.coefficients);
   put(terms, deviations.head(unknowns), fit.deviations);
-  fit.identifiable = told.head(unknowns).allFinite();
+  fit.identifiable = reported.head(unknowns).allFinite();
   if (options.find_offset) fit.offset_deviation_rad = deviations(unknowns);
-  tell(terms, solution, fit);
+  report(terms, solution, fit);
   return fit;
 }
 

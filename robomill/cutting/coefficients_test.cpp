@@ -90,27 +90,27 @@ std::vector<SlotForce> slots_of_three_depths() {
 
 // Each fault leaves forces that scatter more about the model than about their mean.
 TEST(Slots, RejectForcesThatAreNoSlots) {
-  const auto told = [](const auto& spoil) {
+  const auto reported = [](const auto& spoil) {
     std::vector<SlotForce> slots = slots_of_three_depths();
     spoil(slots);
-    return test::refusal([&] { static_cast<void>(identify_from_slots(slots, {.teeth = 4})); });
+    return test::rejection([&] { static_cast<void>(identify_from_slots(slots, {.teeth = 4})); });
   };
-  const std::string unit = told([](auto& slots) { slots[4].axial_depth_m *= 1000.0; });
+  const std::string unit = reported([](auto& slots) { slots[4].axial_depth_m *= 1000.0; });
   EXPECT_NE(unit.find("R² of fy is -"), std::string::npos) << unit;
   EXPECT_NE(unit.find("Row 5 is the odd one"), std::string::npos) << unit;
-  const std::string still = told([](auto& slots) {
+  const std::string still = reported([](auto& slots) {
     for (SlotForce& row : slots) row.mean_force_n = {-500.0 + 0.01 * row.axial_depth_m, 600.0, 0.0};
     slots[0].mean_force_n.y() = 601.0;
   });
   EXPECT_NE(still.find("R² of fy is -"), std::string::npos) << still;
-  const std::string columns = told([](auto& slots) {
+  const std::string columns = reported([](auto& slots) {
     for (SlotForce& row : slots) row.mean_force_n = {row.mean_force_n.y(), 1e3 - row.mean_force_n.z(), 5.0};
   });
   EXPECT_NE(columns.find("slots"), std::string::npos) << columns;
 }
 
-// Scatter about the model lowers R² without making it nonsense: that is told, and the numbers stand.
-TEST(Slots, TellAPoorFit) {
+// Scatter about the model lowers R² without making it nonsense: that is reported, and the numbers stand.
+TEST(Slots, ReportAPoorFit) {
   Random random(11);
   std::vector<SlotForce> slots = slots_of_three_depths();
   for (SlotForce& row : slots) row.mean_force_n.y() = 400.0 * random.normal();
@@ -195,7 +195,7 @@ TEST(Slots, TwoRowsLeaveNoDeviation) {
   EXPECT_TRUE(notes_say(fit.notes, "third"));
 }
 
-TEST(Slots, TellsForcesOnTheWorkpieceAndWrongUnits) {
+TEST(Slots, ReportsForcesOnTheWorkpieceAndWrongUnits) {
   const Constants k;
   std::vector<SlotForce> slots;
   for (const double feed_mm : {0.05, 0.1, 0.15}) slots.push_back(slot(k, 4, 2.0 * mm, feed_mm * mm));
@@ -241,7 +241,7 @@ TEST(Slots, SaysWhetherTheSpeedMatters) {
   EXPECT_LE(false_alarms, std::max(3.0, 0.025 * cases));
 }
 
-TEST(Slots, RefusesWhatCannotBe) {
+TEST(Slots, RejectsWhatCannotBe) {
   const Constants k;
   const auto with = [&](auto&& change) {
     std::vector<SlotForce> slots = {slot(k, 4, 2.0 * mm, 0.05 * mm), slot(k, 4, 2.0 * mm, 0.1 * mm)};

@@ -69,7 +69,7 @@ void add(std::vector<Piece>& pieces, const Point& first, const Point& last, doub
   pieces.push_back({.start_m = start, .length_m = length, .first = first, .last = last, .arc_radius_m = arc_radius});
 }
 
-[[noreturn]] void refuse_corner(const char* what) {
+[[noreturn]] void reject_corner(const char* what) {
   throw InvalidInput("corner_radius_m", std::string("must leave a convex outline: ") + what,
                      "Its centre stands at corner_center_radius_m from the axis, corner_center_height_m above the tip");
 }
@@ -84,15 +84,15 @@ std::vector<Piece> pieces_of(const Outline& o) {
     const std::optional<Point> bottom = meet(o, 0.0, 0.0, std::cos(o.bottom_angle), std::sin(o.bottom_angle), true);
     const double foot = o.half_diameter * (1.0 - tan_bottom * tan_side);  // the side, produced, at the tip's height
     const std::optional<Point> side = meet(o, foot, 0.0, std::sin(o.side_angle), std::cos(o.side_angle), false);
-    if (!bottom) refuse_corner("it does not reach the bottom");
-    if (!side) refuse_corner("it does not reach the side");
+    if (!bottom) reject_corner("it does not reach the bottom");
+    if (!side) reject_corner("it does not reach the side");
     leave = *bottom;
     arrive = *side;
     constexpr double slack = 1e-4;  // of an angle where a line only touches: the square root of what rounds
-    if (leave.radius_m < -1e-9 * o.half_diameter) refuse_corner("it crosses the axis");
-    if (leave.position_rad < o.bottom_angle - slack) refuse_corner("the bottom meets it from within");
-    if (arrive.position_rad > side_position + slack) refuse_corner("the side meets it from within");
-    if (arrive.position_rad < leave.position_rad - slack) refuse_corner("it ends before it begins");
+    if (leave.radius_m < -1e-9 * o.half_diameter) reject_corner("it crosses the axis");
+    if (leave.position_rad < o.bottom_angle - slack) reject_corner("the bottom meets it from within");
+    if (arrive.position_rad > side_position + slack) reject_corner("the side meets it from within");
+    if (arrive.position_rad < leave.position_rad - slack) reject_corner("it ends before it begins");
     leave.radius_m = std::max(leave.radius_m, 0.0);
     arrive.position_rad = std::max(arrive.position_rad, leave.position_rad);
   }

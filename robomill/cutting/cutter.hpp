@@ -28,7 +28,7 @@ struct ROBOMILL_API Cutter {
   void validate() const;
 };
 
-/// The convex meridian of a cutter by its length s from the tip: bottom, corner, side.
+/// The convex profile of a cutter by its length s from the tip: bottom, corner, side.
 class ROBOMILL_API Profile {
  public:
   /// @throws InvalidInput as Cutter::validate
@@ -59,7 +59,7 @@ class ROBOMILL_API Profile {
   std::vector<Piece> pieces_;
 };
 
-/// ds / db of tooth j: its helical edge against the meridian, sqrt(1 + (r sin κ dφ/dz)²) with the lag dφ/dz = 2
+/// ds / db of tooth j: its helical edge against the profile, sqrt(1 + (r sin κ dφ/dz)²) with the lag dφ/dz = 2
 /// tan(β_j) / D; on a ball sqrt(1 + sin⁴κ tan²β).
 [[nodiscard]] ROBOMILL_API double edge_length_per_width(const FlatEndMill& mill, int tooth,
                                                         const Profile::Point& point);

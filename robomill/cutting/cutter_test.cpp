@@ -13,7 +13,7 @@ namespace robomill::cutting {
 namespace {
 
 using robomill::test::field_of;
-using robomill::test::refusal;
+using robomill::test::rejection;
 using std::numbers::pi;
 using test::ball_end;
 using test::bull_nose;
@@ -119,7 +119,7 @@ TEST(Profile, EndsWhereTheEdgesEndInTheCorner) {
   EXPECT_NEAR(profile.radius_m(5.0 * mm), 3.0 * mm * std::sin(std::acos(0.6)), 1e-14);
 }
 
-// A ball told in the seven parameters is the same ball.
+// A ball reported in the seven parameters is the same ball.
 TEST(Profile, GeneralOutlineMakesTheOtherKinds) {
   Cutter general = ball_end(4.0 * mm);
   general.kind = CutterKind::general;
@@ -144,7 +144,7 @@ TEST(Profile, GeneralOutlineMakesTheOtherKinds) {
   }
 }
 
-// Seeded property: the meridian is continuous, convex, as long as its s says, and radius_m is its inverse.
+// Seeded property: the profile is continuous, convex, as long as its s says, and radius_m is its inverse.
 TEST(Profile, IsAConvexCurveByItsLength) {
   for (int seed = 0; seed < robomill::test::seeds(2000); ++seed) {
     Random random(601, static_cast<std::uint64_t>(seed));
@@ -213,7 +213,7 @@ TEST(Edge, OfABallStretchesWithTheFourthPowerOfTheSine) {
   EXPECT_EQ(edge_length_per_width(mill.mill, 0, Profile(mill).at(3.0 * mm)), 1.0);  // of the bottom
 }
 
-TEST(Cutter, RefusesWhatIsNoCutter) {
+TEST(Cutter, RejectsWhatIsNoCutter) {
   const auto field = [](auto change) {
     Cutter cutter = bull_nose(10.0 * mm, 2.0 * mm);
     cutter.kind = CutterKind::general;
@@ -242,11 +242,11 @@ TEST(Cutter, RefusesWhatIsNoCutter) {
   cone.kind = CutterKind::general;
   cone.side_angle_rad = -30.0 * degree;
   cone.cutting_height_m = 20.0 * mm;
-  EXPECT_NE(refusal([&] { cone.validate(); }).find("thicker than nothing"), std::string::npos);
+  EXPECT_NE(rejection([&] { cone.validate(); }).find("thicker than nothing"), std::string::npos);
   cone.side_angle_rad = 0.0;
   cone.bottom_angle_rad = 60.0 * degree;
   cone.cutting_height_m = 5.0 * mm;
-  EXPECT_NE(refusal([&] { cone.validate(); }).find("above the bottom"), std::string::npos);
+  EXPECT_NE(rejection([&] { cone.validate(); }).find("above the bottom"), std::string::npos);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace robomill::cutting {
 
-/// The stock where a job gives none, and what tells how high it stands.
+/// The stock where a job gives none, and where its height comes from.
 struct ROBOMILL_API DefaultStock {
   enum class Top {
     axial_depth,  ///< the given depth above the highest pass

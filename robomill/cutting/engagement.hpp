@@ -42,7 +42,7 @@ struct EdgeSlice {
   double radius_m = 0.0;               ///< r
   double height_m = 0.0;               ///< above the tip
   double position_rad = 0.0;           ///< κ: outward normal n = (sin κ sin φ, sin κ cos φ, -cos κ) in T
-  double width_m = 0.0;                ///< db, along the meridian: width of cut
+  double width_m = 0.0;                ///< db, along the profile: width of cut
   double edge_length_per_width = 1.0;  ///< ds / db of the helical edge, of the first tooth
 };
 

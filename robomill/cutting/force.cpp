@@ -18,7 +18,7 @@ namespace {
 using detail::polynomial;
 using std::numbers::pi;
 
-[[noreturn]] void refuse_negative(const char* field, double value, double position) {
+[[noreturn]] void reject_negative(const char* field, double value, double position) {
   throw InvalidInput(field, value, "N/m^2",
                      "must not be negative; it is at a position angle of " + detail::degrees(position) + " degrees",
                      "The polynomial's powers run from the highest down, its angle is in rad from the tip's pole");
@@ -54,7 +54,7 @@ void check_cutting(const char* field, const std::vector<double>& entries, double
   constexpr const char* hint = "Aluminium is near 700 N/mm^2 = 7e8 N/m^2; are the units mixed up?";
   check_polynomial(field, entries, "N/m^2");
   const Range range = range_of(entries, from, to);
-  if (!may_be_negative && range.least < 0.0) refuse_negative(field, range.least, range.least_at);
+  if (!may_be_negative && range.least < 0.0) reject_negative(field, range.least, range.least_at);
   const double size = std::max(range.most, -range.least);
   if (size == 0.0) return;
   if (size < 1e6) throw InvalidInput(field, size, "N/m^2", "is too small for any material", hint);
@@ -96,7 +96,7 @@ void turn_pair(double& re, double& im, const Turn& t) {
   im = old * t.sine + im * t.cosine;
 }
 
-/// Of the angle φ = θ + α, told as harmonics of θ.
+/// Of the angle φ = θ + α, reported as harmonics of θ.
 void turn(Harmonics& h, const Turn& alpha) {
   using H = Harmonics;
   turn_pair(h.c[H::y1], h.c[H::x1], alpha);
@@ -226,8 +226,8 @@ void ForceOptions::validate() const {
 }
 
 /// A revolution is cut into even steps. An edge element's force is a sum of harmonics while it is in the cut: whole
-/// steps are told by adding its harmonics where it enters and taking them away where it leaves, the steps in which it
-/// enters or leaves by their integral. So a ring costs the same whatever its arc and however many steps there are.
+/// steps are reported by adding its harmonics where it enters and taking them away where it leaves, the steps in which
+/// it enters or leaves by their integral. So a ring costs the same whatever its arc and however many steps there are.
 struct ForceKernel::Memory {
   FlatEndMill mill;
   MillingCoefficients coefficients;
@@ -291,8 +291,8 @@ RingCoefficients ForceKernel::Memory::at_ring(double position) const {
                               .tangential_edge = polynomial(coefficients.tangential_edge_n_per_m, position),
                               .radial_edge = polynomial(coefficients.radial_edge_n_per_m, position),
                               .axial_edge = polynomial(coefficients.axial_edge_n_per_m, position)};
-  if (k.tangential < 0.0) refuse_negative("tangential_n_per_m2", k.tangential, position);
-  if (k.radial < 0.0) refuse_negative("radial_n_per_m2", k.radial, position);
+  if (k.tangential < 0.0) reject_negative("tangential_n_per_m2", k.tangential, position);
+  if (k.radial < 0.0) reject_negative("radial_n_per_m2", k.radial, position);
   return k;
 }
 

@@ -10,8 +10,9 @@
 /// Forces are those on the tool, in F: x along the feed, y to its left, z towards the spindle; docs/frames.md.
 namespace robomill::cutting {
 
-/// What edge forces are told per: the length ds of the helical edge, or the width db of cut. by_kind: the width on a
-/// flat end, where mean slotting forces tell them per axial depth whatever the helix; the edge's length on every other.
+/// What edge forces are reported per: the length ds of the helical edge, or the width db of cut. by_kind: the width on
+/// a flat end, where mean slotting forces report them per axial depth whatever the helix; the edge's length on every
+/// other.
 enum class EdgeMeasure { by_kind, edge_length, width };
 /// Whether the edge's length counts on a cutter of that kind, and not its width.
 [[nodiscard]] ROBOMILL_API bool counts_edge_length(EdgeMeasure measure, CutterKind kind);

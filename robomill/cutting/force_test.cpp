@@ -14,7 +14,7 @@ namespace robomill::cutting {
 namespace {
 
 using robomill::test::field_of;
-using robomill::test::refusal;
+using robomill::test::rejection;
 using robomill::test::seeds;
 using std::numbers::pi;
 using test::ball_end;
@@ -357,7 +357,7 @@ TEST(MillingCoefficients, SayWhereTheyAreNegative) {
   c.radial_n_per_m2 = {1169e6, -1588.1e6, 741.1e6, 1221e6};
   EXPECT_NO_THROW(c.validate(0.0, 0.5 * pi));
   c.radial_n_per_m2[1] = -15881e6;
-  const std::string said = refusal([&] { c.validate(0.0, 0.8); });
+  const std::string said = rejection([&] { c.validate(0.0, 0.8); });
   EXPECT_NE(said.find("radial_n_per_m2"), std::string::npos) << said;
   EXPECT_NE(said.find("45.84 degrees"), std::string::npos) << said;
   const Cutter cutter = ball_end(3.0 * mm);
@@ -367,7 +367,7 @@ TEST(MillingCoefficients, SayWhereTheyAreNegative) {
   EXPECT_EQ(field_of([&] { static_cast<void>(kernel.summary(engagement, {})); }), "radial_n_per_m2");
 }
 
-TEST(MillingCoefficients, RefusesMixedUpUnits) {
+TEST(MillingCoefficients, RejectsMixedUpUnits) {
   const auto field = [](auto change) {
     MillingCoefficients c = published();
     change(c);
@@ -384,7 +384,7 @@ TEST(MillingCoefficients, RefusesMixedUpUnits) {
   EXPECT_EQ(field([](MillingCoefficients& c) { c.radial_n_per_m2 = {std::nan(""), 1e9}; }), "radial_n_per_m2[1]");
 }
 
-TEST(CutMotion, RefusesWhatIsNoMotion) {
+TEST(CutMotion, RejectsWhatIsNoMotion) {
   EXPECT_EQ(field_of([] { CutMotion{.feed_per_tooth_m = -1.0}.validate(); }), "feed_per_tooth_m");
   EXPECT_EQ(field_of([] { CutMotion{.feed_per_tooth_m = 0.1}.validate(); }), "feed_per_tooth_m");
   EXPECT_EQ(field_of([] { CutMotion{.spindle_speed_rad_per_s = std::nan("")}.validate(); }), "spindle_speed_rad_per_s");
@@ -392,9 +392,9 @@ TEST(CutMotion, RefusesWhatIsNoMotion) {
 }
 
 // An engagement that was put together wrongly must not reach memory that is not the kernel's.
-TEST(CuttingForce, RefusesArcsThatAreNone) {
+TEST(CuttingForce, RejectsArcsThatAreNone) {
   const Cutter cutter = flat_end(10e-3);
-  const auto told = [&](auto spoil) {
+  const auto reported = [&](auto spoil) {
     Engagement engagement = engage(cutter, {.axial_depth_m = 2e-3, .radial_depth_m = 5e-3});
     spoil(engagement);
     return field_of([&] {
@@ -402,11 +402,11 @@ TEST(CuttingForce, RefusesArcsThatAreNone) {
                                       {.feed_per_tooth_m = 1e-4, .spindle_speed_rad_per_s = 100.0}));
     });
   };
-  EXPECT_EQ(told([](Engagement& e) { e.arcs.front().exit_rad = e.arcs.front().entry_rad + 12.6; }), "arcs");
-  EXPECT_EQ(told([](Engagement& e) { e.arcs.front().exit_rad = e.arcs.front().entry_rad - 0.1; }), "arcs");
-  EXPECT_EQ(told([](Engagement& e) { e.arcs.front().entry_rad = std::nan(""); }), "arcs");
-  EXPECT_EQ(told([](Engagement& e) { e.first_arc.pop_back(); }), "first_arc");
-  EXPECT_EQ(told([](Engagement& e) { e.feed_from_tool(0, 0) = std::nan(""); }), "feed_from_tool");
+  EXPECT_EQ(reported([](Engagement& e) { e.arcs.front().exit_rad = e.arcs.front().entry_rad + 12.6; }), "arcs");
+  EXPECT_EQ(reported([](Engagement& e) { e.arcs.front().exit_rad = e.arcs.front().entry_rad - 0.1; }), "arcs");
+  EXPECT_EQ(reported([](Engagement& e) { e.arcs.front().entry_rad = std::nan(""); }), "arcs");
+  EXPECT_EQ(reported([](Engagement& e) { e.first_arc.pop_back(); }), "first_arc");
+  EXPECT_EQ(reported([](Engagement& e) { e.feed_from_tool(0, 0) = std::nan(""); }), "feed_from_tool");
 }
 
 }  // namespace

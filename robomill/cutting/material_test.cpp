@@ -118,9 +118,9 @@ TEST(Material, TitaniumByItsPublishedFormulas) {
   EXPECT_TRUE(k.axial_edge_n_per_m.empty());
 }
 
-TEST(Material, RefusesWhatCannotBe) {
+TEST(Material, RejectsWhatCannotBe) {
   const Material& titanium = materials().front();
-  EXPECT_NE(test::refusal([] { static_cast<void>(material("cheese")); }).find("Ti6Al4V"), std::string::npos);
+  EXPECT_NE(test::rejection([] { static_cast<void>(material("cheese")); }).find("Ti6Al4V"), std::string::npos);
   const auto field = [&](double rake, double helix, double thickness) {
     return field_of([&] { static_cast<void>(milling_coefficients(titanium, rake, helix, thickness)); });
   };

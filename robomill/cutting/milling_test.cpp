@@ -189,29 +189,29 @@ TEST(MeanLoad, AgreesWithTheForceOverARevolution) {
   EXPECT_NEAR(load.peak_tooth_force_n, std::hypot(712e6, 287e6) * depth * feed * std::sin(m.immersion.exit_rad), 1e-9);
 }
 
-TEST(Milling, RefusesWhatCannotBe) {
+TEST(Milling, RejectsWhatCannotBe) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto refused = [](auto change) {
+  const auto rejected = [](auto change) {
     Milling m = robot_cut();
     change(m);
     return field_of([&] { m.validate(); });
   };
-  EXPECT_EQ(refused([](Milling&) {}), "accepted");
-  EXPECT_EQ(refused([](Milling& m) { m.tool.teeth = 0; }), "teeth");
-  EXPECT_EQ(refused([](Milling& m) { m.tool.diameter_m = 12.0; }), "diameter_m");
-  EXPECT_EQ(refused([&](Milling& m) { m.tool.diameter_m = nan; }), "diameter_m");
-  EXPECT_EQ(refused([](Milling& m) { m.tool.helix_rad = 30.0; }), "helix_rad");
-  EXPECT_EQ(refused([](Milling& m) { m.tool.pitch_rad = {2.0, 2.0}; }), "pitch_rad");
-  EXPECT_EQ(refused([](Milling& m) { m.tool.pitch_rad = {2.0, 2.0, 2.0}; }), "pitch_rad");
-  EXPECT_EQ(refused([](Milling& m) { m.tool.pitch_rad = {5.0, 2.0, 2.0 * pi - 7.0}; }), "pitch_rad[3]");
-  EXPECT_EQ(refused([](Milling& m) { m.immersion = {.entry_rad = -0.1, .exit_rad = 1.0}; }), "entry_rad");
-  EXPECT_EQ(refused([](Milling& m) { m.immersion = {.entry_rad = 1.0, .exit_rad = 1.0}; }), "exit_rad");
-  EXPECT_EQ(refused([](Milling& m) { m.immersion = {.entry_rad = 1.0, .exit_rad = 3.2}; }), "exit_rad");
-  EXPECT_EQ(refused([](Milling& m) { m.coefficients.tangential_n_per_m2 = 712.0; }), "tangential_n_per_m2");
-  EXPECT_EQ(refused([](Milling& m) { m.coefficients.tangential_n_per_m2 = 712e12; }), "tangential_n_per_m2");
-  EXPECT_EQ(refused([&](Milling& m) { m.coefficients.radial_n_per_m2 = nan; }), "radial_n_per_m2");
-  EXPECT_EQ(refused([](Milling& m) { m.coefficients.radial_n_per_m2 = 287.0; }), "radial_n_per_m2");
-  EXPECT_EQ(refused([](Milling& m) { m.coefficients.radial_n_per_m2 = 0.0; }), "accepted");
+  EXPECT_EQ(rejected([](Milling&) {}), "accepted");
+  EXPECT_EQ(rejected([](Milling& m) { m.tool.teeth = 0; }), "teeth");
+  EXPECT_EQ(rejected([](Milling& m) { m.tool.diameter_m = 12.0; }), "diameter_m");
+  EXPECT_EQ(rejected([&](Milling& m) { m.tool.diameter_m = nan; }), "diameter_m");
+  EXPECT_EQ(rejected([](Milling& m) { m.tool.helix_rad = 30.0; }), "helix_rad");
+  EXPECT_EQ(rejected([](Milling& m) { m.tool.pitch_rad = {2.0, 2.0}; }), "pitch_rad");
+  EXPECT_EQ(rejected([](Milling& m) { m.tool.pitch_rad = {2.0, 2.0, 2.0}; }), "pitch_rad");
+  EXPECT_EQ(rejected([](Milling& m) { m.tool.pitch_rad = {5.0, 2.0, 2.0 * pi - 7.0}; }), "pitch_rad[3]");
+  EXPECT_EQ(rejected([](Milling& m) { m.immersion = {.entry_rad = -0.1, .exit_rad = 1.0}; }), "entry_rad");
+  EXPECT_EQ(rejected([](Milling& m) { m.immersion = {.entry_rad = 1.0, .exit_rad = 1.0}; }), "exit_rad");
+  EXPECT_EQ(rejected([](Milling& m) { m.immersion = {.entry_rad = 1.0, .exit_rad = 3.2}; }), "exit_rad");
+  EXPECT_EQ(rejected([](Milling& m) { m.coefficients.tangential_n_per_m2 = 712.0; }), "tangential_n_per_m2");
+  EXPECT_EQ(rejected([](Milling& m) { m.coefficients.tangential_n_per_m2 = 712e12; }), "tangential_n_per_m2");
+  EXPECT_EQ(rejected([&](Milling& m) { m.coefficients.radial_n_per_m2 = nan; }), "radial_n_per_m2");
+  EXPECT_EQ(rejected([](Milling& m) { m.coefficients.radial_n_per_m2 = 287.0; }), "radial_n_per_m2");
+  EXPECT_EQ(rejected([](Milling& m) { m.coefficients.radial_n_per_m2 = 0.0; }), "accepted");
   const auto deep = [] { return immersion(MillingDirection::up, 0.013, 0.012); };
   EXPECT_EQ(field_of(deep), "radial_depth_m");
   EXPECT_EQ(field_of([] { return immersion(MillingDirection::down, 0.0, 0.012); }), "radial_depth_m");

@@ -115,7 +115,7 @@ void WalkOptions::validate() const {
   if (batch < 1) throw InvalidInput("batch", static_cast<double>(batch), "", "must be at least 1");
 }
 
-/// Goes along the meridian piece by piece, whose rings were looked at in their middles, and adds those parts of it that
+/// Goes along the profile piece by piece, whose rings were looked at in their middles, and adds those parts of it that
 /// cut. Where the cut begins or ends between two looks the border is found, so that no ring is in it by halves.
 class EngagementFinder::Gather {
  public:

@@ -31,7 +31,7 @@ struct ROBOMILL_API PoseEngagement {
 };
 
 struct ROBOMILL_API WalkOptions {
-  double ring_width_m = 0.0;    ///< along the meridian; 0: a dexel, at least twelve over the corner and the bottom
+  double ring_width_m = 0.0;    ///< along the profile; 0: a dexel, at least twelve over the corner and the bottom
   double angle_step_rad = 0.0;  ///< first look around a ring; 0: two dexels, at most 10 degrees
   double max_step_m = 0.0;      ///< longest way of the tip between two looks; 0: half the cutter's radius
   double max_turn_rad = 0.05;   ///< largest turn of the axis between two looks, > 0
@@ -59,7 +59,7 @@ class ROBOMILL_API EngagementFinder {
 
  private:
   class Gather;
-  /// Even rings of one piece of the meridian.
+  /// Even rings of one piece of the profile.
   struct Cells {
     double start_m = 0.0, width_m = 0.0;
     std::size_t begin = 0, count = 0;  ///< of slices_

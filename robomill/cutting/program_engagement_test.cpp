@@ -423,7 +423,7 @@ TEST(Walk, RejectsWhatWouldNotEnd) {
             "dexel_m");
 }
 
-TEST(Walk, RefusesFeedMovesWithoutDuration) {
+TEST(Walk, RejectsFeedMovesWithoutDuration) {
   Program program = zigzag();
   program.blocks[3].duration_s = 0.0;
   Workpiece part(box({0.0, 0.0, 0.0}, {0.02, 0.02, 0.01}), 0.5e-3);
@@ -431,7 +431,7 @@ TEST(Walk, RefusesFeedMovesWithoutDuration) {
             "duration_s");
 }
 
-TEST(WalkOptions, RefusesNamingTheMember) {
+TEST(WalkOptions, RejectsNamingTheMember) {
   EXPECT_EQ(test::field_of([] { WalkOptions{.ring_width_m = -1.0}.validate(); }), "ring_width_m");
   EXPECT_EQ(test::field_of([] { WalkOptions{.max_turn_rad = 0.0}.validate(); }), "max_turn_rad");
   EXPECT_EQ(test::field_of([] { WalkOptions{.batch = 0}.validate(); }), "batch");

@@ -50,7 +50,7 @@ struct ROBOMILL_API ProgramForceOptions {
 };
 
 /// Runs the program through the workpiece and gives a force for each of its blocks, in their order. The feed per tooth
-/// is that of the middle of what cuts. A feed move without a spindle speed is refused.
+/// is that of the middle of what cuts. A feed move without a spindle speed is rejected.
 /// @throws InvalidInput for a bad cutter, coefficients or options; Interrupted when asked to stop
 [[nodiscard]] ROBOMILL_API std::vector<BlockForce> program_forces(const program::Program& program, const Cutter& cutter,
                                                                   const MillingCoefficients& coefficients,

@@ -138,19 +138,19 @@ void cut_row(Rays& rays, std::ptrdiff_t row, const SweptSolid& solid, bool shank
 
 namespace {
 
-double mean_by_shadow(const Vector3d& volumes, const Vector3d& shadow) {
-  const double weight = shadow.squaredNorm();
-  return weight > 0.0 ? shadow.cwiseAbs2().dot(volumes) / weight : 0.0;
+double mean_by_silhouette(const Vector3d& volumes, const Vector3d& silhouette) {
+  const double weight = silhouette.squaredNorm();
+  return weight > 0.0 ? silhouette.cwiseAbs2().dot(volumes) / weight : 0.0;
 }
 
 }  // namespace
 
 double Removal::volume_m3() const {
-  return mean_by_shadow(edges_m3 + shank_m3, shadow_m2);
+  return mean_by_silhouette(edges_m3 + shank_m3, silhouette_m2);
 }
 
 double Removal::shank_volume_m3() const {
-  return mean_by_shadow(shank_m3, shadow_m2);
+  return mean_by_silhouette(shank_m3, silhouette_m2);
 }
 
 struct Workpiece::Grid {
@@ -214,7 +214,7 @@ void Workpiece::Grid::sweep(const Profile& cutter, const program::Pose& pose, co
     for (std::vector<SweptSolid>* part : {&aim.cutter.edges, &aim.cutter.shank}) {
       for (SweptSolid& solid : *part) {
         solid.aim(static_cast<int>(i));
-        expected_rays += solid.shadow_m2() / rays[i].cell_area();
+        expected_rays += solid.silhouette_m2() / rays[i].cell_area();
         const Span span = solid.extent(rays[i].row_axis());
         across = {.from = std::min(across.from, span.from), .to = std::max(across.to, span.to)};
       }
@@ -239,7 +239,7 @@ void Workpiece::Grid::sweep(const Profile& cutter, const program::Pose& pose, co
     for (std::size_t task = first[i]; task < first[i + 1]; ++task) {
       total.edges_m3[axis] += area * rows[task].edges;
       total.shank_m3[axis] += area * rows[task].shank;
-      total.shadow_m2[axis] += area * rows[task].cut_rays;
+      total.silhouette_m2[axis] += area * rows[task].cut_rays;
       total.shank_depth_m = std::max(total.shank_depth_m, rows[task].shank_depth);
     }
   }

@@ -33,11 +33,11 @@ struct ROBOMILL_API Stock {
 
 /// What one move took away.
 struct ROBOMILL_API Removal {
-  Eigen::Vector3d edges_m3 = Eigen::Vector3d::Zero();   ///< by the part with edges, as the rays along x, y, z see it
-  Eigen::Vector3d shank_m3 = Eigen::Vector3d::Zero();   ///< by the shank, of what the edges have left
-  Eigen::Vector3d shadow_m2 = Eigen::Vector3d::Zero();  ///< area of the rays that it cut, by direction
-  double shank_depth_m = 0.0;                           ///< how deep material stood in the shank
-  /// Edges and shank together, mean of the directions weighed by the squares of their shadows: rays that meet the
+  Eigen::Vector3d edges_m3 = Eigen::Vector3d::Zero();  ///< by the part with edges, as the rays along x, y, z see it
+  Eigen::Vector3d shank_m3 = Eigen::Vector3d::Zero();  ///< by the shank, of what the edges have left
+  Eigen::Vector3d silhouette_m2 = Eigen::Vector3d::Zero();  ///< area of the rays that it cut, by direction
+  double shank_depth_m = 0.0;                               ///< how deep material stood in the shank
+  /// Edges and shank together, mean of the directions weighed by the squares of their silhouettes: rays that meet the
   /// chip's faces at small angles are few and see its volume worst.
   [[nodiscard]] double volume_m3() const;
   [[nodiscard]] double shank_volume_m3() const;  ///< the shank's part of it

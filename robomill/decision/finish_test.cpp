@@ -59,20 +59,20 @@ TEST(FinishDepth, NothingLimitsARoughingCut) {
   EXPECT_TRUE(std::isinf(finish_depth(fed(), 8000.0 * rpm, 0.5e-3, {.max_surface_error_m = 1.0}).axial_depth_m));
 }
 
-TEST(FinishDepth, RefusesWhatItCannotJudge) {
-  const auto refused = [](const stability::LobesProblem& problem, const FinishLimits& limits) {
+TEST(FinishDepth, RejectsWhatItCannotJudge) {
+  const auto rejected = [](const stability::LobesProblem& problem, const FinishLimits& limits) {
     return test::field_of([&] { require_finishable(problem, limits); });
   };
-  EXPECT_EQ(refused(fed(), {.max_surface_error_m = 1e-5}), "accepted");
-  EXPECT_EQ(refused(fed(), {.max_surface_error_m = -1e-5}), "max_surface_error_m");
-  EXPECT_EQ(refused(fed(), {.max_deflection_m = NAN}), "max_deflection_m");
+  EXPECT_EQ(rejected(fed(), {.max_surface_error_m = 1e-5}), "accepted");
+  EXPECT_EQ(rejected(fed(), {.max_surface_error_m = -1e-5}), "max_surface_error_m");
+  EXPECT_EQ(rejected(fed(), {.max_deflection_m = NAN}), "max_deflection_m");
   stability::LobesProblem middle = fed();
   middle.milling.immersion = {.entry_rad = 0.5, .exit_rad = 2.5};
-  EXPECT_EQ(refused(middle, {.max_surface_error_m = 1e-5}), "max_surface_error_m");
-  EXPECT_EQ(refused(middle, {.max_deflection_m = 1e-5}), "accepted");
+  EXPECT_EQ(rejected(middle, {.max_surface_error_m = 1e-5}), "max_surface_error_m");
+  EXPECT_EQ(rejected(middle, {.max_deflection_m = 1e-5}), "accepted");
   stability::LobesProblem measured = fed();
   measured.measured.frfs.resize(1);
-  EXPECT_EQ(refused(measured, {.max_deflection_m = 1e-5}), "finishing");
+  EXPECT_EQ(rejected(measured, {.max_deflection_m = 1e-5}), "finishing");
 }
 
 }  // namespace

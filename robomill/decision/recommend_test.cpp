@@ -180,7 +180,7 @@ TEST(Recommend, SaysWhenNothingIsSafe) {
   EXPECT_NE(r.reason.find("spindle's range"), std::string::npos);
 }
 
-TEST(Recommend, RefusesBadInput) {
+TEST(Recommend, RejectsBadInput) {
   EXPECT_THROW(static_cast<void>(recommend({}, options(), lobe)), InvalidInput);
   RecommendOptions o = options();
   o.teeth = 0;

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const fs::path& path, std::string rule, std::string hint = {}) {
+[[noreturn]] void reject(const fs::path& path, std::string rule, std::string hint = {}) {
   throw InvalidInput(path.string(), std::move(rule), std::move(hint));
 }
 
@@ -29,7 +29,7 @@ void write_all(const fs::path& place, const fs::path& named, std::string_view co
   std::ofstream out(place, std::ios::binary | std::ios::trunc);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();
-  if (!out) refuse(named, "cannot be written", errno != 0 ? std::strerror(errno) : "");
+  if (!out) reject(named, "cannot be written", errno != 0 ? std::strerror(errno) : "");
 }
 
 /// A link stays a link: what it points to is replaced, or taken away.
@@ -73,10 +73,10 @@ Format format_of(const fs::path& path) {
 std::ifstream open_file(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  if (!fs::exists(status)) refuse(path, "there is no such file");
-  if (fs::is_directory(status)) refuse(path, "is a folder, not a file");
+  if (!fs::exists(status)) reject(path, "there is no such file");
+  if (fs::is_directory(status)) reject(path, "is a folder, not a file");
   std::ifstream in(path, std::ios::binary);
-  if (!in) refuse(path, "cannot be read", "Are its permissions right?");
+  if (!in) reject(path, "cannot be read", "Are its permissions right?");
   return in;
 }
 
@@ -86,16 +86,16 @@ std::string read_file(const fs::path& path, std::uintmax_t max_bytes) {
   std::string content;
   if (fs::is_regular_file(path, error)) {
     const std::uintmax_t size = fs::file_size(path, error);
-    if (!error && size > max_bytes) refuse(path, "holds more than " + std::to_string(max_bytes) + " bytes");
+    if (!error && size > max_bytes) reject(path, "holds more than " + std::to_string(max_bytes) + " bytes");
     if (!error) content.reserve(static_cast<std::size_t>(size));
   }
   std::array<char, 1 << 16> block = {};
   while (in.read(block.data(), block.size()) || in.gcount() > 0) {
     content.append(block.data(), static_cast<std::size_t>(in.gcount()));
-    if (content.size() > max_bytes) refuse(path, "holds more than " + std::to_string(max_bytes) + " bytes");
+    if (content.size() > max_bytes) reject(path, "holds more than " + std::to_string(max_bytes) + " bytes");
   }
-  if (in.bad()) refuse(path, "cannot be read to its end");
-  if (content.empty()) refuse(path, "is empty");
+  if (in.bad()) reject(path, "cannot be read to its end");
+  if (content.empty()) reject(path, "is empty");
   return content;
 }
 
@@ -112,25 +112,25 @@ void write_file(const fs::path& path, std::string_view content) {
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) refuse(folder, "cannot be made: " + error.message(), "Give a folder that you may write to");
+  if (error) reject(folder, "cannot be made: " + error.message(), "Give a folder that you may write to");
 }
 
 bool remove_file(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return false;
   const bool removed = fs::remove(behind_link(path), error);
-  if (error) refuse(path, "cannot be removed: " + error.message());
+  if (error) reject(path, "cannot be removed: " + error.message());
   return removed;
 }
 
 PendingFile::PendingFile(fs::path path) : path_(std::move(path)) {
   static std::atomic<unsigned> counter{0};
   std::error_code ignored;
-  if (fs::is_directory(path_, ignored)) refuse(path_, "is a folder, not a file");
+  if (fs::is_directory(path_, ignored)) reject(path_, "is a folder, not a file");
   path_ = behind_link(path_);
   const fs::path folder = path_.parent_path();
   if (path_.filename().empty() || (!folder.empty() && !fs::is_directory(folder, ignored))) {
-    refuse(path_, "cannot be written", "There is no folder " + (folder.empty() ? "." : folder.string()));
+    reject(path_, "cannot be written", "There is no folder " + (folder.empty() ? "." : folder.string()));
   }
   temporary_ = folder / fmt::format(".{}.{}-{}{}", path_.stem().string(), ::getpid(), counter.fetch_add(1),
                                     path_.extension().string());
@@ -149,7 +149,7 @@ void PendingFile::commit() {
   const fs::file_status old = fs::status(path_, error);
   if (fs::is_regular_file(old)) fs::permissions(temporary_, old.permissions(), error);
   fs::rename(temporary_, path_, error);
-  if (error) refuse(path_, "cannot be written", error.message());
+  if (error) reject(path_, "cannot be written", error.message());
   forget_pending(temporary_);
   temporary_.clear();
 }

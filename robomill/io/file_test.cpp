@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::Folder;
-using test::refusal;
+using test::rejection;
 
 std::size_t count(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
@@ -34,15 +34,16 @@ TEST(File, KeepsEveryByte) {
 
 TEST(File, SaysWhatIsWrong) {
   const Folder folder;
-  EXPECT_EQ(refusal([&] { (void)read_file(folder.at("none")); }),
+  EXPECT_EQ(rejection([&] { (void)read_file(folder.at("none")); }),
             folder.at("none").string() + ": there is no such file");
-  EXPECT_EQ(refusal([&] { (void)read_file(folder.path()); }), folder.path().string() + ": is a folder, not a file");
-  EXPECT_EQ(refusal([&] { (void)read_file(folder.file("empty", "")); }), folder.at("empty").string() + ": is empty");
-  EXPECT_NE(refusal([&] { (void)read_file(folder.file("long", "12345"), 4); }).find("more than 4 bytes"),
+  EXPECT_EQ(rejection([&] { (void)read_file(folder.path()); }), folder.path().string() + ": is a folder, not a file");
+  EXPECT_EQ(rejection([&] { (void)read_file(folder.file("empty", "")); }), folder.at("empty").string() + ": is empty");
+  EXPECT_NE(rejection([&] { (void)read_file(folder.file("long", "12345"), 4); }).find("more than 4 bytes"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { (void)read_file("/dev/zero", 1000); }).find("more than 1000 bytes"), std::string::npos);
-  EXPECT_NE(refusal([&] { write_file(folder.at("no/where.csv"), "x"); }).find("There is no folder"), std::string::npos);
-  EXPECT_NE(refusal([&] { write_file(folder.path(), "x"); }).find("is a folder"), std::string::npos);
+  EXPECT_NE(rejection([&] { (void)read_file("/dev/zero", 1000); }).find("more than 1000 bytes"), std::string::npos);
+  EXPECT_NE(rejection([&] { write_file(folder.at("no/where.csv"), "x"); }).find("There is no folder"),
+            std::string::npos);
+  EXPECT_NE(rejection([&] { write_file(folder.path(), "x"); }).find("is a folder"), std::string::npos);
 }
 
 TEST(File, LeavesNothingHalfWritten) {

@@ -110,7 +110,7 @@ std::string dump(const Json& json) {
 JsonNode::JsonNode(const Json& json, std::string file, std::string path)
     : json_(&json), file_(std::move(file)), path_(std::move(path)) {}
 
-InvalidInput JsonNode::refuse(std::string rule, std::string hint) const {
+InvalidInput JsonNode::reject(std::string rule, std::string hint) const {
   InvalidInput::Parts parts{.where = file_, .field = path_, .rule = std::move(rule), .hint = std::move(hint)};
   if (json_->is_number()) {
     parts.number = json_->get<double>();
@@ -125,7 +125,7 @@ bool JsonNode::has(const char* key) const {
 }
 
 void JsonNode::require_object() const {
-  if (!json_->is_object()) throw refuse("must be an object {…}");
+  if (!json_->is_object()) throw reject("must be an object {…}");
 }
 
 JsonNode JsonNode::at(const std::string& key) const {
@@ -139,7 +139,7 @@ JsonNode JsonNode::at(const std::string& key) const {
 }
 
 std::size_t JsonNode::size() const {
-  if (!json_->is_array()) throw refuse("must be a list […]");
+  if (!json_->is_array()) throw reject("must be a list […]");
   return json_->size();
 }
 
@@ -148,13 +148,13 @@ JsonNode JsonNode::at(std::size_t index) const {
 }
 
 double JsonNode::number() const {
-  if (!json_->is_number() || !std::isfinite(json_->get<double>())) throw refuse("must be a finite number");
+  if (!json_->is_number() || !std::isfinite(json_->get<double>())) throw reject("must be a finite number");
   return json_->get<double>();
 }
 
 std::complex<double> JsonNode::complex_number() const {
   if (json_->is_number()) return number();
-  if (!json_->is_array() || size() != 2) throw refuse("must be [re, im]");
+  if (!json_->is_array() || size() != 2) throw reject("must be [re, im]");
   return {at(std::size_t{0}).number(), at(std::size_t{1}).number()};
 }
 
@@ -163,7 +163,7 @@ Eigen::VectorXd JsonNode::numbers() const {
   Eigen::Index i = 0;
   for (const Json& entry : *json_) {
     if (!entry.is_number() || !std::isfinite(entry.get<double>())) {
-      throw at(static_cast<std::size_t>(i)).refuse("must be a finite number");
+      throw at(static_cast<std::size_t>(i)).reject("must be a finite number");
     }
     values(i++) = entry.get<double>();
   }
@@ -171,7 +171,7 @@ Eigen::VectorXd JsonNode::numbers() const {
 }
 
 std::string JsonNode::text() const {
-  if (!json_->is_string()) throw refuse("must be text");
+  if (!json_->is_string()) throw reject("must be text");
   return json_->get<std::string>();
 }
 

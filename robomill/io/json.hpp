@@ -46,7 +46,7 @@ class JsonNode {
   [[nodiscard]] std::complex<double> complex_number() const;
   [[nodiscard]] Eigen::VectorXd numbers() const;
   [[nodiscard]] std::string text() const;
-  [[nodiscard]] InvalidInput refuse(std::string rule, std::string hint = {}) const;
+  [[nodiscard]] InvalidInput reject(std::string rule, std::string hint = {}) const;
 
  private:
   const Json* json_;

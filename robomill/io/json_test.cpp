@@ -14,7 +14,7 @@ namespace robomill::io {
 namespace {
 
 using test::Folder;
-using test::refusal;
+using test::rejection;
 
 TEST(JsonText, WritesForPeopleToo) {
   Json json;
@@ -42,31 +42,31 @@ TEST(JsonText, GivesBackEveryBit) {
   EXPECT_EQ(JsonNode(read, "f.json").at("values").numbers(), values);
 }
 
-TEST(JsonNode, TellsErrorsWithTheirPath) {
+TEST(JsonNode, ReportsErrorsWithTheirPath) {
   const Json json = Json::parse(R"({"modes": [{"f": 1}, {"f": "two", "left": {"x": [1, null]}}], "n": 5})");
   const JsonNode root(json, "f.json");
   EXPECT_EQ(root.at("modes").at(0).at("f").number(), 1.0);
-  EXPECT_EQ(refusal([&] { (void)root.at("modes").at(1).at("f").number(); }),
+  EXPECT_EQ(rejection([&] { (void)root.at("modes").at(1).at("f").number(); }),
             "f.json: modes[2].f = \"two\"; must be a finite number");
-  EXPECT_EQ(refusal([&] { (void)root.at("modes").at(1).at("left").at("x").complex_number(); }),
+  EXPECT_EQ(rejection([&] { (void)root.at("modes").at(1).at("left").at("x").complex_number(); }),
             "f.json: modes[2].left.x[2] = null; must be a finite number");
-  EXPECT_EQ(refusal([&] { (void)root.at("modes").at(0).at("g"); }), "f.json: modes[1].g: is missing");
-  EXPECT_EQ(refusal([&] { (void)root.at("n").at("g"); }), "f.json: n = 5; must be an object {…}");
-  EXPECT_EQ(refusal([&] { (void)root.at("n").size(); }), "f.json: n = 5; must be a list […]");
-  EXPECT_EQ(refusal([&] { (void)root.at("modes").numbers(); }), "f.json: modes[1]: must be a finite number");
-  EXPECT_EQ(refusal([&] { (void)root.at("n").text(); }), "f.json: n = 5; must be text");
+  EXPECT_EQ(rejection([&] { (void)root.at("modes").at(0).at("g"); }), "f.json: modes[1].g: is missing");
+  EXPECT_EQ(rejection([&] { (void)root.at("n").at("g"); }), "f.json: n = 5; must be an object {…}");
+  EXPECT_EQ(rejection([&] { (void)root.at("n").size(); }), "f.json: n = 5; must be a list […]");
+  EXPECT_EQ(rejection([&] { (void)root.at("modes").numbers(); }), "f.json: modes[1]: must be a finite number");
+  EXPECT_EQ(rejection([&] { (void)root.at("n").text(); }), "f.json: n = 5; must be text");
   EXPECT_FALSE(root.at("n").has("g"));
 }
 
 TEST(JsonFile, SaysWhereItIsBroken) {
   const Folder folder;
-  EXPECT_EQ(refusal([&] {
+  EXPECT_EQ(rejection([&] {
               (void)read_json(folder.file("a.json", "{\n\"a\": 1,\n}"));
             }).find(folder.at("a.json").string() + ":3: is no JSON: "),
             0u);
-  EXPECT_NE(refusal([&] { (void)read_json(folder.file("b.json", "{\"a\": 1e999}")); }).find("is no JSON"),
+  EXPECT_NE(rejection([&] { (void)read_json(folder.file("b.json", "{\"a\": 1e999}")); }).find("is no JSON"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { (void)read_json(folder.file("c.json", "")); }).find("is empty"), std::string::npos);
+  EXPECT_NE(rejection([&] { (void)read_json(folder.file("c.json", "")); }).find("is empty"), std::string::npos);
   // Depth alone must not end the program, well-formed or not.
   const auto nested = [](const std::string& open, int depth, const std::string& close) {
     std::string text;
@@ -76,14 +76,14 @@ TEST(JsonFile, SaysWhereItIsBroken) {
     return text;
   };
   for (const auto& brackets : {std::pair{"[", "]"}, {"{\"a\":", "}"}, {"[{\"a\\\"\":", "}]"}}) {
-    EXPECT_NE(refusal([&] {
+    EXPECT_NE(rejection([&] {
                 (void)read_json(folder.file("d.json", "\n" + nested(brackets.first, 1000000, brackets.second)));
               }).find("d.json:2: is no JSON that is read here: it nests its values more than 256 deep"),
               std::string::npos);
   }
   EXPECT_TRUE(read_json(folder.file("d.json", nested("[", 256, "]"))).is_array());
   EXPECT_TRUE(read_json(folder.file("d.json", "\"" + nested("[", 1000, "]") + "\"")).is_string());
-  EXPECT_NE(refusal([&] { (void)read_json(folder.file("d.json", std::string(1000000, '['))); }).find("is no JSON"),
+  EXPECT_NE(rejection([&] { (void)read_json(folder.file("d.json", std::string(1000000, '['))); }).find("is no JSON"),
             std::string::npos);
 }
 

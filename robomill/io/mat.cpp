@@ -34,7 +34,7 @@ constexpr double most_packed = 1100.0;
 constexpr std::size_t most_memory = std::size_t{64} << 20;
 
 /// How the child's answer begins.
-constexpr char answered = '+', refused = '-';
+constexpr char answered = '+', rejected = '-';
 
 std::size_t bytes_of(matio_classes type) {
   switch (type) {
@@ -90,7 +90,7 @@ Eigen::MatrixXd matrix(matio_classes type, const void* data, Eigen::Index rows, 
   }
 }
 
-/// Whether a variable is a matrix of numbers; one that claims more than its file can hold is refused.
+/// Whether a variable is a matrix of numbers; one that claims more than its file can hold is rejected.
 bool is_matrix(const matvar_t& variable, const std::string& file, double file_bytes) {
   const std::size_t width = bytes_of(variable.class_type);
   if (width == 0 || variable.name == nullptr || variable.rank != 2 || variable.isLogical != 0) return false;
@@ -188,11 +188,11 @@ std::vector<MatVariable> read_mat(const std::filesystem::path& path) {
     try {
       return answered + pack(read_variables(path, static_cast<double>(file_bytes)));
     } catch (const InvalidInput& error) {
-      return refused + error.parts().rule;
+      return rejected + error.parts().rule;
     }
   });
   if (!packed || packed->empty()) throw InvalidInput(path.string(), "is no MAT file, or a damaged one");
-  if (packed->front() == refused) throw InvalidInput(path.string(), packed->substr(1));
+  if (packed->front() == rejected) throw InvalidInput(path.string(), packed->substr(1));
   return unpack(std::string_view(*packed).substr(1));
 }
 

@@ -19,7 +19,7 @@ namespace robomill::io {
 namespace {
 
 using test::Folder;
-using test::refusal;
+using test::rejection;
 
 /// What others write: single precision and integers, a complex vector, text and a struct among them.
 void write_foreign(const std::filesystem::path& path, mat_ft version, matio_compression compression) {
@@ -87,15 +87,15 @@ TEST(Mat, ReadsEveryVersion) {
   }
 }
 
-TEST(Mat, RefusesWhatItCannotRead) {
+TEST(Mat, RejectsWhatItCannotRead) {
   const Folder folder;
   const auto says = [&](const std::string& content) {
-    return refusal([&] { (void)read_mat(folder.file("a.mat", content)); });
+    return rejection([&] { (void)read_mat(folder.file("a.mat", content)); });
   };
   EXPECT_NE(says("frequency_hz,xx\n1,2\n").find("is no MAT file"), std::string::npos);
   EXPECT_NE(says("").find("is empty"), std::string::npos);
-  EXPECT_NE(refusal([&] { write_mat(folder.at("no/a.mat"), {}); }).find("no folder"), std::string::npos);
-  // A variable that says it holds 2^31 - 1 values is refused before memory is asked for.
+  EXPECT_NE(rejection([&] { write_mat(folder.at("no/a.mat"), {}); }).find("no folder"), std::string::npos);
+  // A variable that says it holds 2^31 - 1 values is rejected before memory is asked for.
   write_foreign(folder.at("b.mat"), MAT_FT_MAT5, MAT_COMPRESSION_NONE);
   std::string content = read_file(folder.at("b.mat"));
   const std::size_t rows = content.find(std::string("\4\0\0\0\1\0\0\0", 8));

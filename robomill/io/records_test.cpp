@@ -17,7 +17,7 @@ namespace robomill::io {
 namespace {
 
 using test::Folder;
-using test::refusal;
+using test::rejection;
 
 TEST(Records, ReadsColumnsByNameAndNumber) {
   const Folder folder;
@@ -28,11 +28,11 @@ TEST(Records, ReadsColumnsByNameAndNumber) {
   // A column named "2" goes before the second column.
   EXPECT_EQ(record.column("2"), Eigen::Vector3d(7.0, 8.0, 9.0));
   for (const std::string none : {"4", "0", "-1", "x", "", "1.0", "99999999999999999999"}) {
-    EXPECT_EQ(refusal([&] { (void)record.column(none); }),
+    EXPECT_EQ(rejection([&] { (void)record.column(none); }),
               folder.at("a.csv").string() + ": has no column " + none + ". It has 3 columns: time_s, force_n, 2");
   }
   const Record twice = read_record(folder.file("b.csv", "a, a\n0,1\n"));
-  EXPECT_NE(refusal([&] { (void)twice.column("a"); }).find("has several columns a"), std::string::npos);
+  EXPECT_NE(rejection([&] { (void)twice.column("a"); }).find("has several columns a"), std::string::npos);
 }
 
 TEST(Records, FindsTheSampleRate) {
@@ -46,10 +46,10 @@ TEST(Records, FindsTheSampleRate) {
   EXPECT_EQ(rate("clock;x\n0;5\n0,25;6\n0,5;7\n", "clock"), 4.0);
   // Rounding of the time to a fifth of a step is no jitter; a lost sample is.
   EXPECT_NEAR(rate("0.0 1\n0.1 1\n0.3 1\n0.4 1\n0.6 1\n0.7 1\n0.9 1\n1.0 1\n", "1"), 7.0, 1e-12);
-  EXPECT_NE(refusal([&] { rate("0 5\n1 6\n2 7\n4 8\n5 9\n", "1"); }).find("does not run evenly: from 2 s to 4 s"),
+  EXPECT_NE(rejection([&] { rate("0 5\n1 6\n2 7\n4 8\n5 9\n", "1"); }).find("does not run evenly: from 2 s to 4 s"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { rate("0 5\n-1 6\n", "1"); }).find("the time does not rise"), std::string::npos);
-  EXPECT_NE(refusal([&] { rate("0 5\n", "1"); }).find("fewer than two samples"), std::string::npos);
+  EXPECT_NE(rejection([&] { rate("0 5\n-1 6\n", "1"); }).find("the time does not rise"), std::string::npos);
+  EXPECT_NE(rejection([&] { rate("0 5\n", "1"); }).find("fewer than two samples"), std::string::npos);
 }
 
 TEST(Records, ReadsMatFiles) {
@@ -86,7 +86,7 @@ TEST(Records, ReadsUniversalFiles) {
   EXPECT_EQ(record.column("force_n")(100), 1.0);
   force.abscissa *= 2.0;
   write_file(folder.at("a.uff"), format_uff({function, force}, false));
-  EXPECT_NE(refusal([&] { (void)read_record(folder.at("a.uff")); }).find("differs from 51200 Hz before it"),
+  EXPECT_NE(rejection([&] { (void)read_record(folder.at("a.uff")); }).find("differs from 51200 Hz before it"),
             std::string::npos);
 }
 
@@ -114,14 +114,14 @@ TEST(Records, ReadsWavWithItsScale) {
     EXPECT_NEAR((record.column("2") - 100.0 * Eigen::Vector3d(-0.25, 0.75, 0.0)).cwiseAbs().maxCoeff(), 0.0,
                 100.0 * tolerance);
   }
-  EXPECT_NE(refusal([&] { (void)read_record(folder.at("a.wav"), {.scale = 0.0}); }).find("scale = 0"),
+  EXPECT_NE(rejection([&] { (void)read_record(folder.at("a.wav"), {.scale = 0.0}); }).find("scale = 0"),
             std::string::npos);
 }
 
 TEST(Records, SaysWhatIsWrong) {
   const Folder folder;
   const auto says = [&](const std::string& name, const std::string& content) {
-    return refusal([&] { (void)read_record(folder.file(name, content)); });
+    return rejection([&] { (void)read_record(folder.file(name, content)); });
   };
   EXPECT_NE(says("a.csv", "t,x\n0,1\n1,nan\n").find("a.csv:3: x = \"nan\"; must be a finite number"),
             std::string::npos);
@@ -129,11 +129,11 @@ TEST(Records, SaysWhatIsWrong) {
   EXPECT_NE(says("a.wav", "RIFF").find("is no sound file"), std::string::npos);
   EXPECT_NE(says("a.mat", "hello, this is no MAT file").find("is no MAT file"), std::string::npos);
   EXPECT_NE(says("a.mat", "").find("is empty"), std::string::npos);
-  EXPECT_NE(refusal([&] { (void)read_record(folder.at("none.wav")); }).find("there is no such file"),
+  EXPECT_NE(rejection([&] { (void)read_record(folder.at("none.wav")); }).find("there is no such file"),
             std::string::npos);
 }
 
-/// Mutated copies of a valid file are read or refused, never more.
+/// Mutated copies of a valid file are read or rejected, never more.
 void survive(const std::string& name, const std::string& original, int count, std::size_t from = 0) {
   const Folder folder;
   for (int seed = 0; seed < test::seeds(count); ++seed) {

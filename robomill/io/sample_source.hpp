@@ -32,7 +32,7 @@ enum class RawFormat { automatic, float32, int16, csv };
 /// Frames in a row.
 struct SampleBlock {
   std::vector<float> samples;  ///< all channels interleaved; NaN where a row could not be read
-  /// The last that the recording tells [rad/s]; NaN: none
+  /// The last that the recording reports [rad/s]; NaN: none
   double spindle_speed_rad_per_s = std::numeric_limits<double>::quiet_NaN();
 };
 

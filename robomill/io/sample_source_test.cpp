@@ -33,8 +33,8 @@ std::vector<float> read(const std::filesystem::path& path, const SampleColumns& 
   return all(*open_samples(path, columns, format));
 }
 
-std::string refusal(const std::filesystem::path& path, const SampleColumns& columns) {
-  return test::refusal([&] { (void)open_samples(path, columns); });
+std::string rejection(const std::filesystem::path& path, const SampleColumns& columns) {
+  return test::rejection([&] { (void)open_samples(path, columns); });
 }
 
 SampleColumns named(std::vector<std::string> channels) {
@@ -63,7 +63,7 @@ TEST(SampleSource, ReadsTextOfManyKinds) {
             (std::vector<float>{1}));
 }
 
-// What a table refuses, a monitor lives through.
+// What a table rejects, a monitor lives through.
 TEST(SampleSource, RowsThatCannotBeReadAreNaN) {
   const test::Folder folder;
   const auto csv = folder.file("r.csv", "a,b\n1,2\nnan,3\n,4\n5\nx,6\n7,y\n8,9\n");
@@ -87,25 +87,26 @@ TEST(SampleSource, FollowsTheSpindleSpeed) {
   EXPECT_EQ(rpm, (std::vector<double>{3000, 3001, 3001, 4500}));
 }
 
-TEST(SampleSource, TellsWhatIsWrong) {
+TEST(SampleSource, ReportsWhatIsWrong) {
   const test::Folder folder;
   const auto csv = folder.file("r.csv", "time_s,ax,ay\n0,1,10\n0.1,2,20\n0.2,3,30\n");
-  EXPECT_NE(refusal(csv, named({"az"})).find("has no column az. It has 3 columns: time_s, ax, ay"), std::string::npos)
-      << refusal(csv, named({"az"}));
-  EXPECT_NE(refusal(csv, named({"4"})).find("has no column 4"), std::string::npos);
-  EXPECT_NE(refusal(csv, named({"ax", "2"})).find("would be two channels"), std::string::npos);
+  EXPECT_NE(rejection(csv, named({"az"})).find("has no column az. It has 3 columns: time_s, ax, ay"), std::string::npos)
+      << rejection(csv, named({"az"}));
+  EXPECT_NE(rejection(csv, named({"4"})).find("has no column 4"), std::string::npos);
+  EXPECT_NE(rejection(csv, named({"ax", "2"})).find("would be two channels"), std::string::npos);
   SampleColumns fast = named({"ax"});
   fast.sample_rate_hz = 20.0;
-  EXPECT_NE(refusal(csv, fast).find("was sampled at 10 Hz, not at signal.sample_rate_hz = 20 Hz"), std::string::npos);
-  EXPECT_NE(refusal(folder.file("two.csv", "1,2\n3,4\n"), named({"ax"})).find("has no column ax"), std::string::npos);
-  EXPECT_NE(refusal(folder.file("words.csv", "no\nnumbers\n"), named({"1"})).find("holds no line of numbers"),
+  EXPECT_NE(rejection(csv, fast).find("was sampled at 10 Hz, not at signal.sample_rate_hz = 20 Hz"), std::string::npos);
+  EXPECT_NE(rejection(folder.file("two.csv", "1,2\n3,4\n"), named({"ax"})).find("has no column ax"), std::string::npos);
+  EXPECT_NE(rejection(folder.file("words.csv", "no\nnumbers\n"), named({"1"})).find("holds no line of numbers"),
             std::string::npos);
-  EXPECT_NE(refusal(folder.at("none.wav"), named({"1"})).find("none.wav"), std::string::npos);
-  EXPECT_NE(refusal(folder.file("r.step", "1\n"), named({"1"})).find("is no recording by its ending"),
+  EXPECT_NE(rejection(folder.at("none.wav"), named({"1"})).find("none.wav"), std::string::npos);
+  EXPECT_NE(rejection(folder.file("r.step", "1\n"), named({"1"})).find("is no recording by its ending"),
             std::string::npos);
-  EXPECT_NE(refusal(folder.file("bad.wav", "RIFF, or not"), named({"1"})).find("is no sound file"), std::string::npos);
-  EXPECT_NE(refusal(folder.path(), named({"1"})).find("folder"), std::string::npos)
-      << refusal(folder.path(), named({"1"}));
+  EXPECT_NE(rejection(folder.file("bad.wav", "RIFF, or not"), named({"1"})).find("is no sound file"),
+            std::string::npos);
+  EXPECT_NE(rejection(folder.path(), named({"1"})).find("folder"), std::string::npos)
+      << rejection(folder.path(), named({"1"}));
 }
 
 TEST(SampleSource, WavComesBackAsWritten) {
@@ -124,8 +125,8 @@ TEST(SampleSource, WavComesBackAsWritten) {
   EXPECT_EQ(read(folder.at("a.wav"), named({"1"})).at(1), 100.0F);
   SampleColumns other = named({"1"});
   other.sample_rate_hz = 5000.0;
-  EXPECT_NE(refusal(folder.at("a.wav"), other).find("was sampled at 10240 Hz"), std::string::npos);
-  EXPECT_NE(refusal(folder.at("a.wav"), named({"ax"})).find("It has 2 columns"), std::string::npos);
+  EXPECT_NE(rejection(folder.at("a.wav"), other).find("was sampled at 10240 Hz"), std::string::npos);
+  EXPECT_NE(rejection(folder.at("a.wav"), named({"ax"})).find("It has 2 columns"), std::string::npos);
   EXPECT_THROW(write_wav(folder.at("b.wav"), samples, 2, 10240.5), InvalidInput);
 }
 

@@ -118,7 +118,7 @@ class TableReader {
     return take_line(rest_);
   }
 
-  /// On to the first line of numbers, which tells the separator and the number of columns.
+  /// On to the first line of numbers, which reports the separator and the number of columns.
   void read_header() {
     std::vector<std::pair<std::size_t, std::string_view>> header;
     while (!rest_.empty()) {
@@ -250,16 +250,16 @@ TextTable parse_text_table(std::string_view content, const std::string& where) {
   for (std::size_t line_number = 1; !content.empty(); ++line_number) {
     const std::string_view line = take_line(content);
     if (is_table_comment(line)) continue;
-    const auto refuse = [&](std::string rule, std::string hint = {}) {
+    const auto reject = [&](std::string rule, std::string hint = {}) {
       return InvalidInput(InvalidInput::Parts{
           .where = fmt::format("{}:{}", where, line_number), .rule = std::move(rule), .hint = std::move(hint)});
     };
     if (out.names.empty()) {
       if (separator_of(line) != blanks) separator = separator_of(line);
       for (std::string& name : split_texts(line, separator)) {
-        if (name.empty()) throw refuse("has a column without a name");
+        if (name.empty()) throw reject("has a column without a name");
         if (std::find(out.names.begin(), out.names.end(), name) != out.names.end()) {
-          throw refuse(fmt::format("names the column {} twice", name));
+          throw reject(fmt::format("names the column {} twice", name));
         }
         out.names.push_back(std::move(name));
       }
@@ -267,7 +267,7 @@ TextTable parse_text_table(std::string_view content, const std::string& where) {
     }
     std::vector<std::string> fields = split_texts(line, separator);
     if (fields.size() > out.names.size()) {
-      throw refuse(fmt::format("has {} fields where there are {} columns", fields.size(), out.names.size()),
+      throw reject(fmt::format("has {} fields where there are {} columns", fields.size(), out.names.size()),
                    separator == ',' ? "Decimal commas need semicolons between the columns" : "");
     }
     TextTable::Row row{.line = line_number, .fields = std::move(fields)};

@@ -11,7 +11,7 @@
 namespace robomill::io {
 namespace {
 
-using test::refusal;
+using test::rejection;
 using Columns = std::vector<std::vector<double>>;
 using Names = std::vector<std::string>;
 
@@ -50,8 +50,8 @@ TEST(Table, ReadsNames) {
   EXPECT_TRUE(parse("some words above\n1,2,3\n").names.empty());
 }
 
-TEST(Table, RefusesWhatIsNoTable) {
-  const auto says = [](const std::string& content) { return refusal([&] { (void)parse(content); }); };
+TEST(Table, RejectsWhatIsNoTable) {
+  const auto says = [](const std::string& content) { return rejection([&] { (void)parse(content); }); };
   EXPECT_EQ(says("t,x\n1,2\n\n3,4,5\n"), "t.csv:4: has 3 values where the lines before it have 2");
   EXPECT_EQ(says("t,x\n1,2\n3\n"), "t.csv:3: has 1 values where the lines before it have 2");
   EXPECT_EQ(says("t,x\n1,2\n3,abc\n"), "t.csv:3: x = \"abc\"; is no number");
@@ -73,7 +73,7 @@ TEST(Table, RefusesWhatIsNoTable) {
   EXPECT_EQ(says(prose), "t.csv:201: \"words\"; is no number");
 }
 
-// Shortest digits that tell a double come back as that double.
+// Shortest digits that report a double come back as that double.
 TEST(Table, GivesBackEveryBit) {
   Random random(3);
   std::string content = "a b c\n";

@@ -208,7 +208,7 @@ bool TomlFile::number(std::string_view key, std::string_view member, double fact
   const toml::node* node = state_->ask(key);
   if (node != nullptr) {
     const std::optional<double> number = finite_number(*node);
-    if (!number) throw refuse(key, "must be a finite number");
+    if (!number) throw reject(key, "must be a finite number");
     out = *number * factor;
   }
   state_->rows.push_back({std::string(key), std::string(member), factor, node != nullptr, {out}});
@@ -221,7 +221,7 @@ bool TomlFile::numbers(std::string_view key, std::string_view member, double fac
     std::vector<double> values;
     const auto take = [&](const toml::node& entry) {
       const std::optional<double> number = finite_number(entry);
-      if (!number) throw refuse(key, "must be a list of finite numbers");
+      if (!number) throw reject(key, "must be a list of finite numbers");
       values.push_back(*number * factor);
     };
     if (const toml::array* array = node->as_array()) {
@@ -239,7 +239,7 @@ bool TomlFile::integer(std::string_view key, std::string_view member, int& out) 
   const toml::node* node = state_->ask(key);
   if (node != nullptr) {
     const std::optional<int> number = whole_number(*node);
-    if (!number) throw refuse(key, "must be a whole number");
+    if (!number) throw reject(key, "must be a whole number");
     out = *number;
   }
   state_->rows.push_back({std::string(key), std::string(member), 1.0, node != nullptr, {static_cast<double>(out)}});
@@ -251,10 +251,10 @@ bool TomlFile::integers(std::string_view key, std::string_view member, std::vect
   if (node != nullptr) {
     std::vector<int> values;
     const toml::array* array = node->as_array();
-    if (array == nullptr) throw refuse(key, "must be a list of whole numbers");
+    if (array == nullptr) throw reject(key, "must be a list of whole numbers");
     for (const toml::node& entry : *array) {
       const std::optional<int> number = whole_number(entry);
-      if (!number) throw refuse(key, "must be a list of whole numbers");
+      if (!number) throw reject(key, "must be a list of whole numbers");
       values.push_back(*number);
     }
     out = std::move(values);
@@ -268,7 +268,7 @@ bool TomlFile::boolean(std::string_view key, bool& out) {
   const toml::node* node = state_->ask(key);
   if (node == nullptr) return false;
   const auto* flag = node->as_boolean();
-  if (flag == nullptr) throw refuse(key, "must be true or false");
+  if (flag == nullptr) throw reject(key, "must be true or false");
   out = flag->get();
   return true;
 }
@@ -277,7 +277,7 @@ bool TomlFile::text(std::string_view key, std::string& out) {
   const toml::node* node = state_->ask(key);
   if (node == nullptr) return false;
   const auto* value = node->as_string();
-  if (value == nullptr) throw refuse(key, "must be text in quotes");
+  if (value == nullptr) throw reject(key, "must be text in quotes");
   out = value->get();
   return true;
 }
@@ -288,7 +288,7 @@ bool TomlFile::texts(std::string_view key, std::vector<std::string>& out) {
   std::vector<std::string> values;
   const auto take = [&](const toml::node& entry) {
     const auto* value = entry.as_string();
-    if (value == nullptr) throw refuse(key, "must be a list of texts in quotes");
+    if (value == nullptr) throw reject(key, "must be a list of texts in quotes");
     values.push_back(value->get());
   };
   if (const toml::array* array = node->as_array()) {
@@ -311,7 +311,7 @@ bool TomlFile::paths(std::string_view key, std::vector<std::filesystem::path>& o
 bool TomlFile::path(std::string_view key, std::filesystem::path& out) {
   std::string name;
   if (!text(key, name)) return false;
-  if (name.empty()) throw refuse(key, "must name a file");
+  if (name.empty()) throw reject(key, "must name a file");
   out = state_->path.parent_path() / name;
   return true;
 }
@@ -334,7 +334,7 @@ std::size_t TomlFile::tables(std::string_view key) const {
   if (node == nullptr) return 0;
   const toml::array* array = node->as_array();
   if (array == nullptr || (!array->empty() && !is_list_of_tables(*array))) {
-    throw refuse(key, "must be a list of tables", fmt::format("Write [[{}]] above each", key));
+    throw reject(key, "must be a list of tables", fmt::format("Write [[{}]] above each", key));
   }
   return array->size();
 }
@@ -342,7 +342,7 @@ std::size_t TomlFile::tables(std::string_view key) const {
 std::vector<std::string> TomlFile::keys(std::string_view table) const {
   const toml::node* node = table.empty() ? &state_->root : state_->ask(table);
   if (node == nullptr) return {};
-  if (!node->is_table()) throw refuse(table, "must be a table");
+  if (!node->is_table()) throw reject(table, "must be a table");
   std::vector<std::pair<toml::source_position, std::string>> found;
   for (const auto& [name, value] : *node->as_table()) found.emplace_back(name.source().begin, name.str());
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -360,7 +360,7 @@ void TomlFile::require(std::string_view key, std::string_view hint) const {
                                          .hint = std::string(hint)});
 }
 
-InvalidInput TomlFile::refuse(std::string_view key, std::string rule, std::string hint) const {
+InvalidInput TomlFile::reject(std::string_view key, std::string rule, std::string hint) const {
   const toml::node* node = find(state_->root, key);
   InvalidInput::Parts parts{.where = state_->where(nearest(state_->root, key)),
                             .field = shown(key),

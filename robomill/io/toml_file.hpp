@@ -12,7 +12,7 @@
 namespace robomill::io {
 
 /// One TOML file while it is read. Every reading call is one row of the file's table: its key, the SI member that it
-/// fills and the factor between them; the rows it has seen serve to tell errors in the file's own words and to refuse
+/// fills and the factor between them; the rows it has seen serve to report errors in the file's own words and to reject
 /// unknown keys.
 ///
 /// Keys are full paths: "tool.teeth", "hits[0].file" (tables of an array count from 0 here, from 1 in messages). The
@@ -52,7 +52,7 @@ class TomlFile {
       }
       known += (known.empty() ? "\"" : ", \"") + std::string(text_value) + "\"";
     }
-    throw refuse(key, "must be one of " + known);
+    throw reject(key, "must be one of " + known);
   }
 
   /// Accepts a key or a whole table unread: it is for another reader of the same file.
@@ -68,9 +68,9 @@ class TomlFile {
   void require(std::string_view key, std::string_view hint = {}) const;
 
   /// The error for a key of this file: file:line: key = value unit; rule. hint
-  [[nodiscard]] InvalidInput refuse(std::string_view key, std::string rule, std::string hint = {}) const;
-  /// An error about an SI member told in the words of this file (key, value in the file's unit, line; of a key that is
-  /// missing the line of its table); unchanged where the member did not come from here.
+  [[nodiscard]] InvalidInput reject(std::string_view key, std::string rule, std::string hint = {}) const;
+  /// An error about an SI member reported in the words of this file (key, value in the file's unit, line; of a key that
+  /// is missing the line of its table); unchanged where the member did not come from here.
   [[nodiscard]] InvalidInput located(const InvalidInput& error) const;
   /// Calls f; an InvalidInput that it throws comes out located.
   template <class F>

@@ -10,7 +10,7 @@ namespace robomill::io {
 namespace {
 
 using test::Folder;
-using test::refusal;
+using test::rejection;
 
 constexpr const char* example = R"(# a cut
 [tool]
@@ -93,30 +93,30 @@ TEST_F(Toml, NamesFileLineKeyAndValueOfAWrongType) {
   double number = 0.0;
   int whole = 0;
   std::string text;
-  EXPECT_EQ(refusal([&] { file.number("lobes.method", "m", 1.0, number); }),
+  EXPECT_EQ(rejection([&] { file.number("lobes.method", "m", 1.0, number); }),
             name + ":10: lobes.method = \"collocation\"; must be a finite number");
-  EXPECT_EQ(refusal([&] { file.integer("tool.pitch_deg", "m", whole); }),
+  EXPECT_EQ(rejection([&] { file.integer("tool.pitch_deg", "m", whole); }),
             name + ":5: tool.pitch_deg: must be a whole number");
-  EXPECT_EQ(refusal([&] { file.text("hits[1].window_s", text); }),
+  EXPECT_EQ(rejection([&] { file.text("hits[1].window_s", text); }),
             name + ":19: hits[2].window_s = -0.25 s; must be text in quotes");
-  EXPECT_EQ(refusal([&] { (void)file.tables("tool"); }),
+  EXPECT_EQ(rejection([&] { (void)file.tables("tool"); }),
             name + ":2: tool: must be a list of tables. Write [[tool]] above each");
   Method method = Method::other;
-  EXPECT_EQ(refusal([&] {
+  EXPECT_EQ(rejection([&] {
               file.choice<Method>("lobes.method", {{"zeroth", Method::other}}, method);
             }),
             name + ":10: lobes.method = \"collocation\"; must be one of \"zeroth\"");
-  EXPECT_EQ(refusal([&] { file.require("tool.helix_deg", "The angle of the flutes"); }),
+  EXPECT_EQ(rejection([&] { file.require("tool.helix_deg", "The angle of the flutes"); }),
             name + ":2: tool.helix_deg: is missing. The angle of the flutes");
 }
 
 // The message that a user of the library is promised: file, line, key, value and unit of the file, the rule and the
 // hint.
-TEST_F(Toml, TellsTheErrorOfAMemberInItsOwnWords) {
+TEST_F(Toml, ReportsTheErrorOfAMemberInItsOwnWords) {
   double tangential_n_per_m2 = 0.0;
   file.number("coefficients.tangential_n_per_mm2", "tangential_n_per_m2", units::n_per_mm2, tangential_n_per_m2);
   const char* hint = "Aluminium is near 700; did you pass N/m^2?";
-  EXPECT_EQ(refusal([&] {
+  EXPECT_EQ(rejection([&] {
               file.locate([&] {
                 require_positive("cut.coefficients.tangential_n_per_m2", tangential_n_per_m2, "N/m^2", hint);
               });
@@ -140,7 +140,7 @@ TEST_F(Toml, SaysWhichOfSeveralTablesAnErrorComesFrom) {
   double window_s = 0.0;
   file.number("hits[0].window_s", "window_s", 1.0, window_s);
   file.number("hits[1].window_s", "window_s", 1.0, window_s);
-  EXPECT_EQ(refusal([&] { file.locate([&] { require_positive("window_s", window_s, "s"); }); }),
+  EXPECT_EQ(rejection([&] { file.locate([&] { require_positive("window_s", window_s, "s"); }); }),
             name + ":19: hits[2].window_s = -0.25 s; must be > 0");
 }
 
@@ -163,15 +163,16 @@ TEST_F(Toml, LeavesErrorsAloneThatAreNotItsOwn) {
   EXPECT_EQ(std::string(file.located(InvalidInput("", "no")).what()), "no");
 }
 
-TEST_F(Toml, RefusesKeysThatNobodyRead) {
+TEST_F(Toml, RejectsKeysThatNobodyRead) {
   double number = 0.0;
   std::vector<double> list;
   std::string text;
-  EXPECT_EQ(refusal([&] { file.done(); }), name + ":7: coefficients.tangential_n_per_mm2: is not known here");
+  EXPECT_EQ(rejection([&] { file.done(); }), name + ":7: coefficients.tangential_n_per_mm2: is not known here");
   file.number("coefficients.tangential_n_per_mm", "", 1.0, number);
-  EXPECT_EQ(refusal([&] { file.done(); }), name +
-                                               ":7: coefficients.tangential_n_per_mm2: is not known here. Did you mean "
-                                               "coefficients.tangential_n_per_mm?");
+  EXPECT_EQ(rejection([&] { file.done(); }),
+            name +
+                ":7: coefficients.tangential_n_per_mm2: is not known here. Did you mean "
+                "coefficients.tangential_n_per_mm?");
   file.skip("coefficients.tangential_n_per_mm2");
   file.skip("lobes");
   file.numbers("tool.pitch_deg", "", 1.0, list);
@@ -182,36 +183,36 @@ TEST_F(Toml, RefusesKeysThatNobodyRead) {
     file.text(hit + ".file", text);
     file.number(hit + ".window_s", "", 1.0, number);
   }
-  EXPECT_EQ(refusal([&] { file.done(); }), name + ":16: hits[1].responses.x: is not known here");
+  EXPECT_EQ(rejection([&] { file.done(); }), name + ":16: hits[1].responses.x: is not known here");
   (void)file.keys("hits[0].responses");
-  EXPECT_EQ(refusal([&] { file.done(); }), name + ":3: tool.teeth: is not known here. It belongs in [cut]");
+  EXPECT_EQ(rejection([&] { file.done(); }), name + ":3: tool.teeth: is not known here. It belongs in [cut]");
   file.number("tool.teeth", "", 1.0, number);
   EXPECT_NO_THROW(file.done());
 }
 
-TEST(TomlFiles, RefusesWhatIsNoTomlWithItsLine) {
+TEST(TomlFiles, RejectsWhatIsNoTomlWithItsLine) {
   const Folder folder;
   const std::filesystem::path twice = folder.file("twice.toml", "a = 1\n\na = 2\n");
-  EXPECT_EQ(refusal([&] { TomlFile file(twice); }).find(twice.string() + ":3: is no TOML: "), 0u);
+  EXPECT_EQ(rejection([&] { TomlFile file(twice); }).find(twice.string() + ":3: is no TOML: "), 0u);
   const std::filesystem::path star = folder.file("star.toml", "a = 1\n[*]\n");
-  EXPECT_EQ(refusal([&] { TomlFile file(star); }).find(star.string() + ":2: is no TOML: "), 0u);
-  EXPECT_NE(refusal([&] { TomlFile file(folder.at("none.toml")); }).find("there is no such file"), std::string::npos);
-  EXPECT_NE(refusal([&] { TomlFile file(folder.file("empty.toml", "")); }).find("is empty"), std::string::npos);
-  EXPECT_NE(refusal([&] { TomlFile file(folder.path()); }).find("is a folder"), std::string::npos);
+  EXPECT_EQ(rejection([&] { TomlFile file(star); }).find(star.string() + ":2: is no TOML: "), 0u);
+  EXPECT_NE(rejection([&] { TomlFile file(folder.at("none.toml")); }).find("there is no such file"), std::string::npos);
+  EXPECT_NE(rejection([&] { TomlFile file(folder.file("empty.toml", "")); }).find("is empty"), std::string::npos);
+  EXPECT_NE(rejection([&] { TomlFile file(folder.path()); }).find("is a folder"), std::string::npos);
   TomlFile odd(folder.file("odd.toml", "a = nan\nb = inf\nc = 3e9\nd = [1, \"2\"]\n[e]\n"));
   double number = 0.0;
   int whole = 0;
   std::vector<double> list;
-  EXPECT_NE(refusal([&] { odd.number("a", "a", 1.0, number); }).find(":1: a = nan; must be a finite"),
+  EXPECT_NE(rejection([&] { odd.number("a", "a", 1.0, number); }).find(":1: a = nan; must be a finite"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { odd.number("b", "b", 1.0, number); }).find(":2: b = inf"), std::string::npos);
-  EXPECT_NE(refusal([&] { odd.integer("c", "c", whole); }).find(":3: c = 3e+09"), std::string::npos);
-  EXPECT_NE(refusal([&] { odd.numbers("d", "d", 1.0, list); }).find(":4: d: must be a list"), std::string::npos);
+  EXPECT_NE(rejection([&] { odd.number("b", "b", 1.0, number); }).find(":2: b = inf"), std::string::npos);
+  EXPECT_NE(rejection([&] { odd.integer("c", "c", whole); }).find(":3: c = 3e+09"), std::string::npos);
+  EXPECT_NE(rejection([&] { odd.numbers("d", "d", 1.0, list); }).find(":4: d: must be a list"), std::string::npos);
   for (const char* key : {"a", "b", "c", "d"}) odd.skip(key);
-  EXPECT_NE(refusal([&] { odd.done(); }).find(":5: e: is not known here"), std::string::npos);
+  EXPECT_NE(rejection([&] { odd.done(); }).find(":5: e: is not known here"), std::string::npos);
 }
 
-TEST(TomlFiles, RefusesWhatNestsTooDeeply) {
+TEST(TomlFiles, RejectsWhatNestsTooDeeply) {
   const Folder folder;
   const auto repeated = [](const std::string& text, int count) {
     std::string out;
@@ -219,7 +220,7 @@ TEST(TomlFiles, RefusesWhatNestsTooDeeply) {
     return out;
   };
   const auto said = [&](const std::string& text) {
-    return refusal([&] { TomlFile file(folder.file("deep.toml", text)); });
+    return rejection([&] { TomlFile file(folder.file("deep.toml", text)); });
   };
   const int deep = 1000000;
   // Dotted keys, also where quotes, blanks, comments and texts stand between; an error behind them must not matter.

@@ -13,7 +13,7 @@
 namespace robomill::io {
 namespace {
 
-using test::refusal;
+using test::rejection;
 using Complex = std::complex<double>;
 
 UffFunction sample(Eigen::Index n, double step, bool is_complex) {
@@ -121,10 +121,10 @@ TEST(Uff, ReadsGluedNumbers) {
            " 1.00000E-10-1.50000E-101\n    -1\n");
   EXPECT_EQ(glued.values(5).real(), -6.0);
   EXPECT_EQ(glued.values(7).real(), -1.5e-101);
-  // No sign and no blank between them: only the columns tell.
+  // No sign and no blank between them: only the columns report.
   const UffFunction packed = only(header(2, 3, 1) + "12345.678901229876.543210935555.5555555\n    -1\n");
   EXPECT_EQ(packed.values(1).real(), 29876.5432109);
-  // Columns of another width: only the signs tell.
+  // Columns of another width: only the signs report.
   const UffFunction odd = only(header(4, 3, 1) + "-1.25E+00-2.5D-03+3.75e+10\n    -1\n");
   EXPECT_EQ(odd.values(1).real(), -2.5e-3);
   EXPECT_EQ(odd.values(2).real(), 3.75e10);
@@ -277,8 +277,8 @@ TEST(Uff, SkipsFloatingPointOfOtherMachines) {
   EXPECT_EQ(file.notes.size(), 1u);
 }
 
-TEST(Uff, RefusesWhatItCannotRead) {
-  const auto says = [](const std::string& content) { return refusal([&] { (void)parse_uff(content, "f.uff"); }); };
+TEST(Uff, RejectsWhatItCannotRead) {
+  const auto says = [](const std::string& content) { return rejection([&] { (void)parse_uff(content, "f.uff"); }); };
   EXPECT_NE(says("frequency_hz,xx\n1,2\n").find("f.uff:1: does not begin a universal data set"), std::string::npos);
   EXPECT_EQ(says("    -1\n"), "f.uff: holds no universal data set");
   EXPECT_NE(says("    -1\nhello\n").find("f.uff:2: \"hello\"; is no number of a universal data set"),

@@ -19,8 +19,8 @@
 namespace robomill::jobs {
 namespace {
 
-/// An error of what forces.toml says, told with the file.
-InvalidInput refuse(const ForcesFile& file, const char* key, std::string rule, std::string hint = {}) {
+/// An error of what forces.toml says, reported with the file.
+InvalidInput reject(const ForcesFile& file, const char* key, std::string rule, std::string hint = {}) {
   return InvalidInput(
       InvalidInput::Parts{.where = file.path.string(), .field = key, .rule = std::move(rule), .hint = std::move(hint)});
 }
@@ -31,7 +31,7 @@ Eigen::Matrix3d base_from_feed(const ForcesFile& file, const robot::Cell& cell, 
   const Eigen::Vector3d feed = cell.workpiece.linear() * file.feed_direction;
   const Eigen::Vector3d across = feed - axis * axis.dot(feed);
   if (!(across.norm() > 1e-6)) {
-    throw refuse(file, "robot.feed_direction", "must not run along the tool's axis in this posture");
+    throw reject(file, "robot.feed_direction", "must not run along the tool's axis in this posture");
   }
   Eigen::Matrix3d base_from_tool;
   base_from_tool.col(0) = across.normalized();
@@ -44,11 +44,11 @@ Eigen::VectorXd joints_of(const ForcesFile& file, const robot::Cell& cell) {
   Eigen::VectorXd q =
       Eigen::Map<const Eigen::VectorXd>(file.joints_rad.data(), static_cast<Eigen::Index>(file.joints_rad.size()));
   if (q.size() != cell.arm.size()) {
-    throw refuse(file, "robot.joints_deg", fmt::format("must have one angle for each of {} joints", cell.arm.size()));
+    throw reject(file, "robot.joints_deg", fmt::format("must have one angle for each of {} joints", cell.arm.size()));
   }
   const robot::LimitCheck limits = robot::within_limits(cell.arm, q);
   if (!limits.inside) {
-    throw refuse(file, "robot.joints_deg", fmt::format("must lie within the limits of joint {}", limits.joint + 1),
+    throw reject(file, "robot.joints_deg", fmt::format("must lie within the limits of joint {}", limits.joint + 1),
                  fmt::format("It is {:.4g} degrees beyond", -limits.distance / units::deg));
   }
   return q;
@@ -62,11 +62,11 @@ CutPosture posture_of(const ForcesFile& file, const robot::Cell& cell, const Eig
   const Eigen::Matrix3d frame = base_from_feed(file, cell, flange);
   const robot::Stiffness stiffness = robot::stiffness(cell.arm, joints, tip, {.force_n = frame * force_n});
   if (stiffness.status == robot::Stiffness::Status::singular) {
-    throw refuse(file, "robot.joints_deg",
+    throw reject(file, "robot.joints_deg",
                  fmt::format("must not be a singular posture (condition number {:.3g})", stiffness.condition_number));
   }
   if (stiffness.status == robot::Stiffness::Status::buckled) {
-    throw refuse(file, "robot.joints_deg", "must hold the cutting force: the joints deflect without equilibrium");
+    throw reject(file, "robot.joints_deg", "must hold the cutting force: the joints deflect without equilibrium");
   }
   CutPosture out;
   out.compliance_m_per_n = frame.transpose() * stiffness.compliance.topLeftCorner<3, 3>() * frame;
@@ -82,7 +82,7 @@ modal::TipModes robot_modes(const ForcesFile& file, const robot::Cell& cell, con
   const bool weighs = std::ranges::any_of(cell.arm.joints, [](const robot::Joint& j) { return j.link.mass_kg > 0.0; });
   const bool damped = std::ranges::all_of(cell.arm.joints, [](const robot::Joint& j) { return j.damping > 0.0; });
   if (!weighs || !damped) {
-    throw refuse(file, "robot.vibration", "needs the masses of the links and the damping of the joints",
+    throw reject(file, "robot.vibration", "needs the masses of the links and the damping of the joints",
                  "The cell says them as links and joint_damping_n_m_s_per_rad");
   }
   const robot::ToolModes found = robot::tool_modes(cell.arm, joints, robot::tip_point(cell));
@@ -137,7 +137,7 @@ Eigen::Matrix3Xd last_revolution(const simulation::Simulation& s, double spindle
 void vibrate(const ForcesResult& result, const modal::TipModes& structure, RevolutionForces& out, Progress& progress) {
   const ForcesFile& file = result.file;
   const simulation::PostureCut cut = {.cutter = file.cutter,
-                                      .engagement = out.settled.engagement,
+                                      .engagement = out.deflected.engagement,
                                       .coefficients = file.coefficients,
                                       .motion = file.motion,
                                       .structure = structure};
@@ -165,23 +165,24 @@ void run_revolution(ForcesResult& result, Progress& progress) {
   const ForcesFile& file = result.file;
   RevolutionForces out;
   const auto settled = [&](const Eigen::Matrix3d& compliance) {
-    return cutting::settle(file.cutter, file.cut, file.coefficients, file.motion, compliance, file.force, file.slices);
+    return cutting::static_deflection(file.cutter, file.cut, file.coefficients, file.motion, compliance, file.force,
+                                      file.slices);
   };
   Eigen::VectorXd joints;
   const robot::Cell* cell = result.cell && !file.joints_rad.empty() ? &result.cell->cell : nullptr;
-  out.settled = settled(Eigen::Matrix3d::Zero());
+  out.deflected = settled(Eigen::Matrix3d::Zero());
   if (cell != nullptr) {
     joints = joints_of(file, *cell);
     // The load changes the stiffness a little: once more with what the first pass gave.
     for (int pass = 0; pass < 2; ++pass) {
-      out.posture = posture_of(file, *cell, joints, out.settled.force.mean_n);
-      out.settled = settled(out.posture->compliance_m_per_n);
+      out.posture = posture_of(file, *cell, joints, out.deflected.force.mean_n);
+      out.deflected = settled(out.posture->compliance_m_per_n);
     }
-    out.spindle_rotation = turn_about_tool(*cell, *out.posture, out.settled.force.mean_n, joints);
+    out.spindle_rotation = turn_about_tool(*cell, *out.posture, out.deflected.force.mean_n, joints);
   }
-  if (out.settled.status == cutting::SettledCut::Status::digs_in) {
+  if (out.deflected.status == cutting::StaticDeflection::Status::diverged) {
     result.warnings.emplace_back("The force pulls the tool in faster than the robot holds it: no depth settles.");
-  } else if (out.settled.status == cutting::SettledCut::Status::lifts_off) {
+  } else if (out.deflected.status == cutting::StaticDeflection::Status::lifts_off) {
     result.warnings.emplace_back("The force pushes the tool out of the cut altogether: the robot is too soft for it.");
   }
   if (const auto structure = structure_of(file, cell, joints, out.posture ? &*out.posture : nullptr)) {

@@ -9,7 +9,7 @@
 #include "robomill/base/progress.hpp"
 #include "robomill/cutting/default_stock.hpp"
 #include "robomill/cutting/program_forces.hpp"
-#include "robomill/cutting/settle.hpp"
+#include "robomill/cutting/static_deflection.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
 #include "robomill/jobs/files/forces_toml.hpp"
 #include "robomill/program/program.hpp"
@@ -30,7 +30,7 @@ struct CutPosture {
 
 /// forces.toml for one revolution.
 struct RevolutionForces {
-  cutting::SettledCut settled;
+  cutting::StaticDeflection deflected;
   std::optional<CutPosture> posture = {};
   std::optional<robot::Redundancy> spindle_rotation = {};  ///< with a robot: what turning it about the tool does
   std::optional<simulation::Simulation> vibration = {};    ///< with dynamics

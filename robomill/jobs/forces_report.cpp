@@ -55,7 +55,7 @@ std::vector<report::EngagementRing> rings(const cutting::Engagement& engagement)
 }
 
 report::ForceRevolution revolution_report(const RevolutionForces& revolution, bool on_workpiece) {
-  const cutting::CuttingForce& force = revolution.settled.force;
+  const cutting::CuttingForce& force = revolution.deflected.force;
   const double sign = on_workpiece ? -1.0 : 1.0;
   report::ForceRevolution out;
   out.rotation_rad = force.rotation_rad;
@@ -71,10 +71,10 @@ report::ForceRevolution revolution_report(const RevolutionForces& revolution, bo
   out.power_w = force.power_w;
   out.chip_area_m2 = force.chip_area_m2;
   out.removal_rate_m3_per_s = force.removal_rate_m3_per_s;
-  out.engagement = rings(revolution.settled.engagement);
+  out.engagement = rings(revolution.deflected.engagement);
   if (revolution.posture) {
-    out.deflection_m = revolution.settled.deflection_m;
-    out.peak_deflection_m = revolution.settled.peak_deflection_m;
+    out.deflection_m = revolution.deflected.deflection_m;
+    out.peak_deflection_m = revolution.deflected.peak_deflection_m;
   }
   if (revolution.vibration) {
     out.verdict = verdict_text(*revolution.vibration);

@@ -16,7 +16,7 @@ namespace robomill::jobs {
 namespace {
 
 using robomill::test::Folder;
-using robomill::test::refusal;
+using robomill::test::rejection;
 
 const std::filesystem::path examples = std::filesystem::path(ROBOMILL_SOURCE_DIR) / "examples";
 const std::filesystem::path along = examples / "force-along-program";
@@ -28,15 +28,16 @@ std::vector<std::string> lines(const std::string& text) {
   return out;
 }
 
-// Compliance, posture and force agree: the deflection told is C F with C of the posture, and turning the feed turns it.
+// Compliance, posture and force agree: the deflection reported is C F with C of the posture, and turning the feed turns
+// it.
 TEST(RunForces, BendsTheRobotUnderTheMeanForce) {
   const ForcesResult result = run_forces(examples / "ball-end-ur5e" / "cut-1.toml", {}, {});
   ASSERT_TRUE(result.revolution && result.revolution->posture);
   const RevolutionForces& r = *result.revolution;
-  const Eigen::Vector3d expected = r.posture->compliance_m_per_n * r.settled.force.mean_n;
-  EXPECT_LE((r.settled.deflection_m - expected).norm(), 1e-3 * expected.norm());
-  EXPECT_NEAR(r.settled.cut.axial_depth_m, 1e-3 - r.settled.deflection_m.z(), 1e-10);
-  EXPECT_LT(r.settled.cut.axial_depth_m, 1e-3);
+  const Eigen::Vector3d expected = r.posture->compliance_m_per_n * r.deflected.force.mean_n;
+  EXPECT_LE((r.deflected.deflection_m - expected).norm(), 1e-3 * expected.norm());
+  EXPECT_NEAR(r.deflected.cut.axial_depth_m, 1e-3 - r.deflected.deflection_m.z(), 1e-10);
+  EXPECT_LT(r.deflected.cut.axial_depth_m, 1e-3);
   EXPECT_TRUE(r.posture->compliance_m_per_n.isApprox(r.posture->compliance_m_per_n.transpose(), 1e-2));
   EXPECT_FALSE(r.spindle_rotation) << "a UR5e has no spherical wrist";
 }
@@ -48,7 +49,7 @@ TEST(RunForces, RunsThePublishedCuts) {
   for (int i = 0; i < 3; ++i) {
     const std::string name = "cut-" + std::to_string(i + 1) + ".toml";
     const ForcesResult result = run_forces(examples / "ball-end-ur5e" / name, {}, {});
-    EXPECT_EQ(result.revolution->settled.status, cutting::SettledCut::Status::found);
+    EXPECT_EQ(result.revolution->settled.status, cutting::StaticDeflection::Status::found);
     EXPECT_NEAR(result.revolution->settled.force.mean_n.z(), mean_z[i], 1e-3 * mean_z[i]) << name;
     EXPECT_NEAR(1e3 * result.revolution->settled.cut.axial_depth_m, left_mm[i], 1e-3 * left_mm[i]) << name;
   }
@@ -71,7 +72,7 @@ TEST(RunForces, WritesARevolution) {
   EXPECT_NE(report::report_html(page).find("\"forces\":{"), std::string::npos);
 }
 
-TEST(RunForces, TellsTheForceOnTheWorkpieceWithTheOtherSign) {
+TEST(RunForces, ReportsTheForceOnTheWorkpieceWithTheOtherSign) {
   const Folder folder;
   const std::string text = io::read_file(along / "forces.toml");
   const std::string cut =
@@ -152,19 +153,19 @@ TEST(RunForces, APocketWithoutStockIsNoDeeperThanItIs) {
   EXPECT_EQ(json["stock"]["top_from"], "program zero");
   EXPECT_EQ(json["stock"]["max_mm"][2], 0.0);
   EXPECT_NE(stock_text(*result.program).find("assumed, since none is given"), std::string::npos);
-  const ForcesResult told =
+  const ForcesResult reported =
       run_forces(folder.file("forces.toml", "cut = { axial_depth_mm = 1.5 }\n" + pocket_tool), program, {});
-  EXPECT_EQ(nlohmann::json::parse(forces_json(told))["stock"]["max_mm"][2], -0.5);
+  EXPECT_EQ(nlohmann::json::parse(forces_json(reported))["stock"]["max_mm"][2], -0.5);
 }
 
-TEST(RunForces, AProgramThatDoesNotTellItsStocksHeightNeedsOne) {
+TEST(RunForces, AProgramThatDoesNotReportItsStocksHeightNeedsOne) {
   const Folder folder;
   const std::filesystem::path program =
       folder.file("high.ngc", "G21 G90 G94\nS10000 M3\nG0 X0 Y0 Z30\nG1 Z18 F300\nG1 X40 F1200\nM2\n");
-  const std::string told =
-      refusal([&] { static_cast<void>(run_forces(folder.file("forces.toml", pocket_tool), program, {})); });
-  EXPECT_NE(told.find("forces.toml"), std::string::npos) << told;
-  EXPECT_NE(told.find("how high the material stands"), std::string::npos) << told;
+  const std::string reported =
+      rejection([&] { static_cast<void>(run_forces(folder.file("forces.toml", pocket_tool), program, {})); });
+  EXPECT_NE(reported.find("forces.toml"), std::string::npos) << reported;
+  EXPECT_NE(reported.find("how high the material stands"), std::string::npos) << reported;
 }
 
 // One meaning of "cuts" in summary, document and page; and a way through air lowers no figure of a block.
@@ -211,7 +212,7 @@ TEST(RunForces, FollowsAProgramWithAUr5e) {
     EXPECT_LE((pose.axis - block.end.axis).norm(), 1e-9);
   }
   EXPECT_NE(
-      refusal([&] {
+      rejection([&] {
         static_cast<void>(run_forces(along / "forces.toml", along / "hollow.ngc", folder.file("plain.toml", cell)));
       }).find("start_joints_deg"),
       std::string::npos);
@@ -222,14 +223,14 @@ TEST(RunForces, SaysWhichBlockTheRobotCannotReach) {
   std::string cell = io::read_file(along / "cell.toml");
   cell.replace(cell.find("[1700, 0, 700]"), 14, "[3300, 0, 700]");
   const auto message = [&](const std::filesystem::path& path) {
-    return refusal([&] { static_cast<void>(run_forces(along / "forces.toml", along / "hollow.ngc", path)); });
+    return rejection([&] { static_cast<void>(run_forces(along / "forces.toml", along / "hollow.ngc", path)); });
   };
-  const std::string told = message(folder.file("cell.toml", cell));
-  EXPECT_NE(told.find("hollow.ngc:5"), std::string::npos) << told;
-  EXPECT_NE(told.find("out of the robot's reach by"), std::string::npos) << told;
+  const std::string reported = message(folder.file("cell.toml", cell));
+  EXPECT_NE(reported.find("hollow.ngc:5"), std::string::npos) << reported;
+  EXPECT_NE(reported.find("out of the robot's reach by"), std::string::npos) << reported;
 }
 
-TEST(RunForces, RefusesAPostureBeyondTheLimitsOrSingular) {
+TEST(RunForces, RejectsAPostureBeyondTheLimitsOrSingular) {
   const Folder folder;
   static_cast<void>(folder.file("cell.toml", io::read_file(along / "cell.toml")));
   std::string text = io::read_file(along / "forces.toml");
@@ -238,7 +239,7 @@ TEST(RunForces, RefusesAPostureBeyondTheLimitsOrSingular) {
       "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm");
   const auto message = [&](const std::string& joints) {
     const auto path = folder.file("forces.toml", text + "[robot]\ncell = \"cell.toml\"\njoints_deg = " + joints + "\n");
-    return refusal([&] { static_cast<void>(run_forces(path, {}, {})); });
+    return rejection([&] { static_cast<void>(run_forces(path, {}, {})); });
   };
   EXPECT_NE(message("[0, -30, 80, 0, 150, 0]").find("limits of joint 5"), std::string::npos);
   EXPECT_NE(message("[0, -30, 80, 0, 0, 0]").find("singular"), std::string::npos);

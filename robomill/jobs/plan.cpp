@@ -270,7 +270,7 @@ Resonance nearest_resonance(const PlanResult& result, double tooth_passing_hz) {
 }
 
 /// The deepest pockets of the lobes stand where tooth passing meets a mode: no chatter there, but forced vibration.
-void tell_resonance(PlanResult& result) {
+void report_resonance(PlanResult& result) {
   if (!result.recommendation.recommended) return;
   const decision::Operation& op = *result.recommendation.recommended;
   const double tooth_passing_hz =
@@ -339,14 +339,14 @@ void compare(PlanResult& result, Progress& progress) {
     const TestCut& cut = result.job.cuts[i];
     if (cut.file.empty()) continue;
     result.recordings.push_back(read_recording(cut, result.cut.problem));
-    const report::Recording& heard = result.recordings.back();
+    const report::Recording& processed = result.recordings.back();
     report::TestCut& row = result.cuts[i];
     if (row.result == report::Verdict::unknown) {
-      row.result = heard.verdict;
+      row.result = processed.verdict;
       const bool clear = row.result == report::Verdict::stable || row.result == report::Verdict::chatter;
       if (clear) row.agrees = row.result == row.predicted;
     }
-    row.note += "; " + heard.file + ": " + heard.reason;
+    row.note += "; " + processed.file + ": " + processed.reason;
   }
 }
 
@@ -372,7 +372,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
                    const std::filesystem::path& folder, bool accept_fit) {
   PlanResult result;
   result.job = read_job(job);
-  // Everything that is quick to refuse is read before the long work starts.
+  // Everything that is quick to reject is read before the long work starts.
   result.cut = read_lobes(result.job.lobes);
   if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
@@ -411,7 +411,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   result.recommendation =
       decision::choose(result.cut.problem, result.cut.options, result.lobes.limit,
                        recommend_options(result.job, result.cut), finish_limits(result.job), progress);
-  tell_resonance(result);
+  report_resonance(result);
   pairs(result, progress);
   turn_feed(result, progress);
   compare(result, progress);

@@ -67,7 +67,7 @@ struct PlanResult {
 [[nodiscard]] ROBOMILL_API std::string plan_json(const PlanResult& result);
 
 /// Writes report.html, plan.json and each stage's own files (tip.uff, modes.json, lobes.json) into a folder, which is
-/// made where it is missing. Each file appears whole or not at all; the trajectory where run_job() was told to.
+/// made where it is missing. Each file appears whole or not at all; the trajectory where run_job() was asked to.
 ROBOMILL_API void write_plan(const std::filesystem::path& folder, const PlanResult& result);
 
 /// One line for people: what limits an operation.

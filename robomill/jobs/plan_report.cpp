@@ -132,13 +132,13 @@ void add_fit(report::Report& report, const PlanResult& result) {
   report.fit = std::move(summary);
 }
 
-report::BoundaryKind to_report(stability::Kind kind) {
+report::BoundaryKind to_report(stability::BifurcationType kind) {
   switch (kind) {
-    case stability::Kind::flip:
+    case stability::BifurcationType::flip:
       return report::BoundaryKind::flip;
-    case stability::Kind::fold:
+    case stability::BifurcationType::fold:
       return report::BoundaryKind::fold;
-    case stability::Kind::hopf:
+    case stability::BifurcationType::hopf:
       break;
   }
   return report::BoundaryKind::hopf;

@@ -181,17 +181,17 @@ TEST_F(Plan, ADirectionThatWasNotMeasuredHasToBeSaid) {
   write_xx();
   const std::string source = "[job]\nfrf = \"xx.txt\"\nlobes = \"lobes.toml\"\nband_hz = [400, 650]\nfit_modes = 2\n";
   const auto plan = [&](const std::string& more) { return run_job(write("job.toml", source + more), 1); };
-  const std::string said = test::refusal([&] { static_cast<void>(plan("")); });
+  const std::string said = test::rejection([&] { static_cast<void>(plan("")); });
   EXPECT_NE(said.find("job.toml: job: nothing is known of y"), std::string::npos) << said;
   EXPECT_NE(said.find("rigid_directions = [\"y\"]"), std::string::npos) << said;
   const PlanResult rigid = plan("rigid_directions = [\"y\"]\n");
   EXPECT_EQ(rigid.model.modes.size(), 2U);
   EXPECT_NE(std::ranges::find(rigid.warnings, "y was not measured and is taken as rigid."), rigid.warnings.end());
-  EXPECT_NE(test::refusal([&] {
+  EXPECT_NE(test::rejection([&] {
               static_cast<void>(plan("rigid_directions = [\"x\"]\n"));
             }).find("job.rigid_directions: names x, which was measured"),
             std::string::npos);
-  const std::string both = test::refusal([&] { static_cast<void>(run_job(job("equal_directions = true\n"), 1)); });
+  const std::string both = test::rejection([&] { static_cast<void>(run_job(job("equal_directions = true\n"), 1)); });
   EXPECT_NE(both.find("job.toml: job.equal_directions: needs FRFs or modes of one direction"), std::string::npos)
       << both;
 }
@@ -235,12 +235,12 @@ TEST_F(Plan, FinishingKeepsTheSurfaceErrorThatRoughingReports) {
       stability::surface_point(rough.cut.problem, {free.spindle_speed_rad_per_s, free.axial_depth_m});
   EXPECT_EQ(free.surface_error_m, there.surface_location_error_m);
   EXPECT_EQ(free.peak_deflection_m, there.peak_deflection_m);
-  const auto told = nlohmann::json::parse(plan_json(rough))["recommended"];
-  EXPECT_NEAR(told["surface_error_um"].get<double>(), free.surface_error_m / units::um, 1e-9);
-  EXPECT_NEAR(told["peak_deflection_um"].get<double>(), free.peak_deflection_m / units::um, 1e-9);
-  const double turns_per_min = told["spindle_speed_rpm"].get<double>();
-  EXPECT_NEAR(told["cutting_speed_m_per_min"].get<double>(), std::numbers::pi * 12e-3 * turns_per_min, 1e-6);
-  EXPECT_NEAR(told["feed_mm_per_min"].get<double>(), 3 * 0.01 * turns_per_min, 1e-6);
+  const auto reported = nlohmann::json::parse(plan_json(rough))["recommended"];
+  EXPECT_NEAR(reported["surface_error_um"].get<double>(), free.surface_error_m / units::um, 1e-9);
+  EXPECT_NEAR(reported["peak_deflection_um"].get<double>(), free.peak_deflection_m / units::um, 1e-9);
+  const double turns_per_min = reported["spindle_speed_rpm"].get<double>();
+  EXPECT_NEAR(reported["cutting_speed_m_per_min"].get<double>(), std::numbers::pi * 12e-3 * turns_per_min, 1e-6);
+  EXPECT_NEAR(reported["feed_mm_per_min"].get<double>(), 3 * 0.01 * turns_per_min, 1e-6);
 
   const double most_um = 0.3 * std::abs(free.surface_error_m) / units::um;
   const PlanResult fine = run_job(job("[finishing]\nmax_surface_error_um = " + std::to_string(most_um) + "\n"), 1);
@@ -266,7 +266,7 @@ TEST_F(Plan, FinishingNeedsAWall) {
   lobes.replace(lobes.find(direction), direction.size(), "entry_deg = 30\nexit_deg = 150");
   write("lobes.toml", lobes);
   const std::string text =
-      test::refusal([&] { static_cast<void>(run_job(job("[finishing]\nmax_surface_error_um = 5\n"), 1)); });
+      test::rejection([&] { static_cast<void>(run_job(job("[finishing]\nmax_surface_error_um = 5\n"), 1)); });
   EXPECT_NE(text.find("job.toml: finishing"), std::string::npos) << text;
   EXPECT_NE(text.find("goes with a cut that finishes a wall"), std::string::npos) << text;
 }
@@ -349,15 +349,15 @@ dexel_mm = 0.5
 }
 
 TEST_F(Plan, SaysWhatIsMissing) {
-  const auto refusal = [](const std::filesystem::path& path) {
-    return test::refusal([&] { static_cast<void>(run_job(path, 1)); });
+  const auto rejection = [](const std::filesystem::path& path) {
+    return test::rejection([&] { static_cast<void>(run_job(path, 1)); });
   };
-  EXPECT_NE(refusal(folder_.at("none.toml")).find("none.toml"), std::string::npos);
+  EXPECT_NE(rejection(folder_.at("none.toml")).find("none.toml"), std::string::npos);
   const std::string lobes = io::read_file(folder_.at("lobes.toml"));
   std::string without_feed = lobes;
   without_feed.erase(without_feed.find("feed_per_tooth_mm"), std::string("feed_per_tooth_mm = 0.01").size());
   write("lobes.toml", without_feed);
-  EXPECT_NE(refusal(job()).find("feed_per_tooth_mm"), std::string::npos);
+  EXPECT_NE(rejection(job()).find("feed_per_tooth_mm"), std::string::npos);
 }
 
 }  // namespace

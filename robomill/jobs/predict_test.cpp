@@ -154,18 +154,18 @@ TEST_F(Predicted, OfAMeasuredHolderIsComparedBetweenItsLines) {
 }
 
 TEST_F(Predicted, SaysWhatCannotBeCompared) {
-  const auto refusal = [&](const modal::FrfSet& set) {
+  const auto rejection = [&](const modal::FrfSet& set) {
     modal::write_frfs(folder_.at("tip.json"), set);
-    return test::refusal(
+    return test::rejection(
         [&] { static_cast<void>(predict_tip(examples / "joint-bar/rigid.toml", folder_.at("tip.json"))); });
   };
   modal::FrfSet set{.frequency_hz = Eigen::Vector2d(2000.0, 3000.0), .frfs = {}};
   set.frfs.push_back({.name = modal::parse_frf_name("xx"), .receptance = Eigen::Vector2cd(1e-6, 2e-6)});
-  EXPECT_NE(refusal(set).find("no line in the predicted range, 1 to 1000 Hz"), std::string::npos) << refusal(set);
+  EXPECT_NE(rejection(set).find("no line in the predicted range, 1 to 1000 Hz"), std::string::npos) << rejection(set);
   set.frequency_hz *= 0.1;
   set.frfs[0].name = modal::parse_frf_name("1z:1z");
-  EXPECT_NE(refusal(set).find("none of the FRFs that are predicted"), std::string::npos) << refusal(set);
-  EXPECT_NE(refusal(set).find("without a number"), std::string::npos) << refusal(set);
+  EXPECT_NE(rejection(set).find("none of the FRFs that are predicted"), std::string::npos) << rejection(set);
+  EXPECT_NE(rejection(set).find("without a number"), std::string::npos) << rejection(set);
   set.frfs[0].name = modal::parse_frf_name("1x:1x");
   modal::write_frfs(folder_.at("tip.json"), set);
   EXPECT_EQ(predict_tip(examples / "joint-bar/rigid.toml", folder_.at("tip.json")).error.size(), 1U);

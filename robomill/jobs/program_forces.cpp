@@ -44,7 +44,7 @@ std::string reason(const robot::Choice& choice) {
 
 /// An error that names no place is one of the cell.
 template <class F>
-void told_of_cell(const CellFile& cell, F&& f) {
+void reported_of_cell(const CellFile& cell, F&& f) {
   try {
     f();
   } catch (const InvalidInput& error) {
@@ -215,7 +215,7 @@ ProgramForces run_program(const ForcesFile& file, const std::optional<CellFile>&
     throw InvalidInput(InvalidInput::Parts{.where = path.string(), .rule = "has no move"});
   }
   std::vector<robot::Position6> joints;
-  if (cell) told_of_cell(*cell, [&] { joints = joints_along(*cell, out.program, path); });
+  if (cell) reported_of_cell(*cell, [&] { joints = joints_along(*cell, out.program, path); });
   if (!file.neighbours) {
     out.stock = file.located([&] { return stock_of(file, out.program); });
   }
@@ -240,7 +240,7 @@ ProgramForces run_program(const ForcesFile& file, const std::optional<CellFile>&
     out.blocks.push_back({.force = force});
     out.removed_volume_m3 += force.removed_volume_m3;
   }
-  if (cell) told_of_cell(*cell, [&] { bend(*cell, joints, out.program, path, out.blocks); });
+  if (cell) reported_of_cell(*cell, [&] { bend(*cell, joints, out.program, path, out.blocks); });
   warn_of(
       out, warnings, [](const BlockForce& f) { return f.shank_depth_m > 0.0; }, "run the shank into material");
   warn_of(

@@ -36,19 +36,19 @@ struct Bench {
   CellFile cell;
   std::unique_ptr<robot::Kinematics> machine;
   path::SmoothingFile smoothing;
-  std::array<bool, 6> slides = {};
+  std::array<bool, 6> prismatic = {};
   std::unique_ptr<program::ProgramFile> program;
   path::PostureChoice posture;
 };
 
 std::array<bool, 6> slides_of(const CellFile& cell) {
-  std::array<bool, 6> slides = {};
+  std::array<bool, 6> prismatic = {};
   if (cell.hybrid) {
-    slides.fill(true);
+    prismatic.fill(true);
     return slides;
   }
   const std::vector<robot::Joint>& joints = cell.cell.arm.joints;
-  for (std::size_t i = 0; i < std::min(joints.size(), slides.size()); ++i) slides.at(i) = joints[i].prismatic;
+  for (std::size_t i = 0; i < std::min(joints.size(), prismatic.size()); ++i) prismatic.at(i) = joints[i].prismatic;
   return slides;
 }
 
@@ -67,9 +67,9 @@ path::PostureChoice posture_of(const Bench& bench) {
   return path::choose_posture(*bench.program, *bench.machine, options);
 }
 
-/// Calls f; what it refuses without a place is of the program.
+/// Calls f; what it rejects without a place is of the program.
 template <class F>
-auto told_of_program(const std::filesystem::path& program, F&& f) {
+auto reported_of_program(const std::filesystem::path& program, F&& f) {
   try {
     return f();
   } catch (const InvalidInput& error) {
@@ -86,12 +86,12 @@ Bench prepare(const SmoothJob& job) {
   bench.machine = kinematics(bench.cell);
   bench.smoothing =
       path::read_smoothing(*bench.cell.document, bench.machine->limits(), bench.machine->joints(), job.method);
-  bench.slides = slides_of(bench.cell);
+  bench.prismatic = slides_of(bench.cell);
   program::ProgramReading reading = program_reading(bench.cell);
   reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
   reading.axis_tolerance_rad = std::max(turn_share * bench.smoothing.options.axis_tolerance_rad, least_turn_rad);
   bench.program = program::open_program(job.program, reading);
-  bench.posture = told_of_program(job.program, [&] { return posture_of(bench); });
+  bench.posture = reported_of_program(job.program, [&] { return posture_of(bench); });
   return bench;
 }
 
@@ -99,7 +99,7 @@ std::unique_ptr<path::SampleFile> open_output(const SmoothJob& job, const Bench&
   if (job.output.empty()) return nullptr;
   path::TrajectoryInfo info;
   info.joints = bench.machine->joints();
-  info.slides = bench.slides;
+  info.prismatic = bench.prismatic;
   info.limits = bench.machine->limits();
   info.sample_period_s = bench.smoothing.options.sample_period_s;
   info.program_period_s = job.program_period_s;
@@ -109,7 +109,7 @@ std::unique_ptr<path::SampleFile> open_output(const SmoothJob& job, const Bench&
   return path::open_sample_file(job.output, info);
 }
 
-/// The drives that [smoothing] tells of; none where it does not.
+/// The drives that [smoothing] reports of; none where it does not.
 std::vector<path::Drive> drives_of(const path::SmoothingFile& smoothing) {
   std::vector<path::Drive> drives(smoothing.drive_bandwidth_hz.size());
   for (std::size_t i = 0; i < drives.size(); ++i) {
@@ -127,20 +127,20 @@ std::vector<path::Drive> drives_of(const path::SmoothingFile& smoothing) {
 }
 
 /// Drives that follow a trajectory sample by sample.
-class Follower {
+class DriveModel {
  public:
-  Follower(const std::vector<path::Drive>& drives, double sample_period_s)
+  DriveModel(const std::vector<path::Drive>& drives, double sample_period_s)
       : model_(drives, sample_period_s,
-               [this](double, std::span<const double> error) { std::ranges::copy(error, behind_.begin()); }) {}
-  Follower(const Follower&) = delete;
-  Follower& operator=(const Follower&) = delete;
-  Follower(Follower&&) = delete;
-  Follower& operator=(Follower&&) = delete;
-  ~Follower() = default;
+               [this](double, std::span<const double> error) { std::ranges::copy(error, tracking_error_.begin()); }) {}
+  DriveModel(const DriveModel&) = delete;
+  DriveModel& operator=(const DriveModel&) = delete;
+  DriveModel(DriveModel&&) = delete;
+  DriveModel& operator=(DriveModel&&) = delete;
+  ~DriveModel() = default;
 
   const robot::Position6& follow(const path::Sample& sample) {
     model_.add(std::span(&sample, 1));
-    return behind_;
+    return tracking_error_;
   }
   [[nodiscard]] std::vector<double> worst() const {
     std::vector<double> out;
@@ -149,7 +149,7 @@ class Follower {
   }
 
  private:
-  robot::Position6 behind_ = robot::Position6::Zero();
+  robot::Position6 tracking_error_ = robot::Position6::Zero();
   path::DriveModel model_;
 };
 
@@ -162,7 +162,7 @@ path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::Sample
   options.method = method;
   path::SmoothedBy out{.method = method};
   const std::vector<path::Drive> drives = drives_of(bench.smoothing);
-  std::optional<Follower> follower;
+  std::optional<DriveModel> follower;
   const auto take = [&](std::span<const path::Sample> samples) {
     if (file != nullptr) file->add(samples);
     if (recorder != nullptr) {
@@ -224,16 +224,16 @@ std::string length_note(const path::ProgramRun& run) {
                       : "Split the NC program where the tool is clear of the part.");
 }
 
-void tell(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
+void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   path::SmoothedProgram& smoothed = result.smoothed;
   smoothed.program = job.program.filename().string();
   smoothed.cell = job.cell.filename().string();
-  smoothed.slides = bench.slides;
+  smoothed.prismatic = bench.prismatic;
   smoothed.skipped = bench.program->skipped();
   std::vector<std::string>& notes = smoothed.notes;
   notes.insert(notes.end(), bench.cell.notes.begin(), bench.cell.notes.end());
-  const std::vector<std::string> mended = bench.program->notes();
-  notes.insert(notes.end(), mended.begin(), mended.end());
+  const std::vector<std::string> corrected = bench.program->notes();
+  notes.insert(notes.end(), corrected.begin(), corrected.end());
   const std::size_t left_out = bench.program->skipped_count();
   if (left_out > smoothed.skipped.size()) {
     notes.push_back(fmt::format("{} statements of the program were left out; the first {} are listed.", left_out,
@@ -261,7 +261,7 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
   std::optional<report::MotionRecorder> recorder;
   if (job.record) {
     result.outline = report::outline(*bench.program, result.options.tip_tolerance_m);
-    recorder.emplace(*bench.machine, bench.slides, result.options.sample_period_s, result.outline.corners);
+    recorder.emplace(*bench.machine, bench.prismatic, result.options.sample_period_s, result.outline.corners);
   }
   for (const path::Method method : methods_of(job, result.options.method)) {
     const bool asked_for = result.smoothed.methods.empty();
@@ -271,7 +271,7 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
         static_cast<void>(
             path::read_smoothing(*bench.cell.document, bench.machine->limits(), bench.machine->joints(), method));
       }
-      result.smoothed.methods.push_back(told_of_program(job.program, [&] {
+      result.smoothed.methods.push_back(reported_of_program(job.program, [&] {
         return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr, progress);
       }));
     } catch (const InvalidInput& error) {
@@ -280,19 +280,19 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
       continue;
     }
     if (asked_for && file != nullptr) {
-      result.smoothed.robot_program = told_of_program(job.program, [&] {
+      result.smoothed.robot_program = reported_of_program(job.program, [&] {
         return file->settle(*bench.program, *bench.machine, result.options, result.trajectory_holds(), progress);
       });
     }
     if (recorder) {
       result.motions.push_back(recorder->motion());
-      result.ways.push_back(recorder->ways());
+      result.corner_paths.push_back(recorder->corner_paths());
     }
   }
-  tell(result, job, bench);
+  report(result, job, bench);
   if (file == nullptr) return result;
   result.output = job.output;
-  result.smoothed.written = result.holds() || job.keep_breaches;
+  result.smoothed.written = result.holds() || job.keep_violations;
   if (result.smoothed.written) {
     result.trajectory = std::move(file);
   } else {

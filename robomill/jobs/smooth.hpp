@@ -22,7 +22,7 @@ struct SmoothJob {
   std::filesystem::path output = {};        ///< of the trajectory, by its ending; empty: none
   std::optional<path::Method> method = {};  ///< not given: the cell's
   bool compare = false;                     ///< all other methods too
-  bool keep_breaches = false;               ///< write a trajectory that breaks limits all the same
+  bool keep_violations = false;             ///< write a trajectory that breaks limits all the same
   bool record = true;                       ///< curves for a report
   double program_period_s = 0.0;            ///< of joint programs; 0: path::TrajectoryInfo's
   bool place = true;                        ///< at the end; else place() is the caller's to call
@@ -36,9 +36,9 @@ struct SmoothResult {
   path::SmoothingOptions options = {};
   path::PostureChoice posture = {};
   bool turns_about_axis = false;
-  report::ProgramOutline outline = {};                   ///< the rest only of a job that records
-  std::vector<report::Motion> motions = {};              ///< one a method
-  std::vector<std::vector<Eigen::Matrix2Xd>> ways = {};  ///< one a method and corner
+  report::ProgramOutline outline = {};                           ///< the rest only of a job that records
+  std::vector<report::Motion> motions = {};                      ///< one a method
+  std::vector<std::vector<Eigen::Matrix2Xd>> corner_paths = {};  ///< one a method and corner
 
   [[nodiscard]] const path::SmoothedBy& first() const { return smoothed.methods.front(); }
   /// Whether the trajectory asked for breaks no limit.

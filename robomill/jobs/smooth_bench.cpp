@@ -47,7 +47,7 @@ void smooth_impeller(benchmark::State& state, const char* cell, path::Method met
   state.counters["blocks"] = static_cast<double>(summary.blocks);
   state.counters["duration_s"] = summary.duration_s;
   state.counters["lower_bound_s"] = summary.lower_bound_s;
-  state.counters["breaches"] = static_cast<double>(summary.check.violations());
+  state.counters["violations"] = static_cast<double>(summary.check.violations());
   state.counters["rounds"] = summary.rounds;
   state.counters["plan_s"] = summary.plan_s;
   state.counters["emit_s"] = summary.emit_s;

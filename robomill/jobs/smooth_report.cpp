@@ -26,7 +26,7 @@ void add_use(std::vector<LimitUse>& uses, std::string what, LimitUse::Quantity q
                   .block = usage.block + 1});
 }
 
-std::vector<LimitUse> uses_of(const path::CheckResult& check, const std::array<bool, 6>& slides) {
+std::vector<LimitUse> uses_of(const path::CheckResult& check, const std::array<bool, 6>& prismatic) {
   using enum LimitUse::Quantity;
   std::vector<LimitUse> uses;
   add_use(uses, "tip, distance to the program", length, 0, check.tip_error_m);
@@ -40,7 +40,7 @@ std::vector<LimitUse> uses_of(const path::CheckResult& check, const std::array<b
   add_use(uses, "axis, jerk", angle, 3, check.axis_jerk);
   for (std::size_t i = 0; i < check.joints.size(); ++i) {
     const path::CheckResult::Joint& joint = check.joints[i];
-    const LimitUse::Quantity quantity = slides.at(i) ? length : angle;
+    const LimitUse::Quantity quantity = prismatic.at(i) ? length : angle;
     if (joint.position.violations > 0) {
       add_use(uses, fmt::format("joint {}, beyond its range", i + 1), quantity, 0, joint.position);
     }
@@ -55,7 +55,7 @@ double known(double value) {
   return value > 0.0 ? value : report::missing;
 }
 
-report::SmoothMethod method_report(const path::SmoothedBy& by, const std::array<bool, 6>& slides) {
+report::SmoothMethod method_report(const path::SmoothedBy& by, const std::array<bool, 6>& prismatic) {
   const path::Summary& summary = by.summary;
   report::SmoothMethod out;
   out.name = path::name_of(by.method);
@@ -70,10 +70,10 @@ report::SmoothMethod method_report(const path::SmoothedBy& by, const std::array<
   out.axis_error_rad = summary.check.axis_error_rad.max;
   out.joint_share = joint_share(summary.check);
   for (std::size_t i = 0; i < by.tracking_error.size(); ++i) {
-    double& worst = slides.at(i) ? out.tracking_error_m : out.tracking_error_rad;
+    double& worst = prismatic.at(i) ? out.tracking_error_m : out.tracking_error_rad;
     worst = std::fmax(worst, by.tracking_error[i]);
   }
-  out.uses = uses_of(summary.check, slides);
+  out.uses = uses_of(summary.check, prismatic);
   return out;
 }
 
@@ -117,7 +117,7 @@ report::Smooth smooth_report(const SmoothResult& result) {
   out.blocks = result.first().summary.blocks;
   out.program_m = result.outline.path_m;
   for (std::size_t i = 0; i < result.smoothed.methods.size(); ++i) {
-    out.methods.push_back(method_report(result.smoothed.methods[i], result.smoothed.slides));
+    out.methods.push_back(method_report(result.smoothed.methods[i], result.smoothed.prismatic));
     if (i < result.motions.size()) out.methods.back().motion = result.motions[i];
   }
   for (std::size_t k = 0; k < result.outline.corners.size(); ++k) {
@@ -127,7 +127,7 @@ report::Smooth smooth_report(const SmoothResult& result) {
                                .turn_rad = corner.turn_rad,
                                .radius_m = corner.radius_m,
                                .program_m = corner.vertices_m};
-    for (const std::vector<Eigen::Matrix2Xd>& ways : result.ways) view.tip_m.push_back(ways[k]);
+    for (const std::vector<Eigen::Matrix2Xd>& paths : result.corner_paths) view.tip_m.push_back(paths[k]);
     out.corners.push_back(std::move(view));
   }
   return out;

@@ -22,7 +22,7 @@
 namespace robomill::jobs {
 namespace {
 
-using robomill::test::refusal;
+using robomill::test::rejection;
 
 constexpr double jerk_limit = 100.0;
 
@@ -121,9 +121,9 @@ TEST_F(Smoothing, TheFileKeepsTheLimitsOfEveryJoint) {
     }
   }
   const auto& joints = result.first().summary.check.joints;
-  double told = 0.0;
-  for (const auto& joint : joints) told = std::max(told, joint.jerk.max);
-  EXPECT_NEAR(told, most, 1e-6 * most);
+  double reported = 0.0;
+  for (const auto& joint : joints) reported = std::max(reported, joint.jerk.max);
+  EXPECT_NEAR(reported, most, 1e-6 * most);
   // It begins and ends where the program does.
   EXPECT_NEAR(file.rows.front()[6], 0.0, 1e-6);
   EXPECT_NEAR(file.rows.back()[6], 6.0, 1e-6);
@@ -161,7 +161,7 @@ TEST_F(Smoothing, TurningAxesFollowTheMachineOfTheProgram) {
   }
 }
 
-TEST_F(Smoothing, TellsWhatWasLeftOutAndWhatWasFound) {
+TEST_F(Smoothing, ReportsWhatWasLeftOutAndWhatWasFound) {
   const SmoothResult result = run_smooth(job());
   ASSERT_FALSE(result.smoothed.skipped.empty());
   EXPECT_EQ(result.smoothed.skipped.front().line, 2U);
@@ -193,11 +193,11 @@ TEST_F(Smoothing, WritesNothingThatBreaksALimit) {
   EXPECT_FALSE(result.smoothed.written);
   EXPECT_FALSE(std::filesystem::exists(broken.output));
   EXPECT_EQ(smooth_report(result).warnings.size(), 1U);
-  broken.keep_breaches = true;
+  broken.keep_violations = true;
   EXPECT_TRUE(run_smooth(broken).smoothed.written);
   EXPECT_TRUE(std::filesystem::exists(broken.output));
   // The one that is there now is taken for a result no longer.
-  broken.keep_breaches = false;
+  broken.keep_violations = false;
   const SmoothResult again = run_smooth(broken);
   EXPECT_FALSE(std::filesystem::exists(broken.output));
   ASSERT_FALSE(again.smoothed.notes.empty());
@@ -207,7 +207,7 @@ TEST_F(Smoothing, WritesNothingThatBreaksALimit) {
 TEST_F(Smoothing, ChecksTheMethodThatRuns) {
   SmoothJob trapezoid = job(hybrid("filters = 1\nmethod = \"paper\"\n"));
   trapezoid.record = false;
-  trapezoid.keep_breaches = true;
+  trapezoid.keep_violations = true;
   trapezoid.compare = true;
   const SmoothResult result = run_smooth(trapezoid);
   EXPECT_EQ(result.first().method, path::Method::paper);
@@ -216,19 +216,19 @@ TEST_F(Smoothing, ChecksTheMethodThatRuns) {
   EXPECT_TRUE(note.starts_with("verified is left out: ")) << note;
   EXPECT_NE(note.find("cell.toml:24: smoothing.filters = 1; must be at least 2"), std::string::npos) << note;
   trapezoid.method = path::Method::verified;
-  const std::string said = refusal([&] { static_cast<void>(run_smooth(trapezoid)); });
+  const std::string said = rejection([&] { static_cast<void>(run_smooth(trapezoid)); });
   EXPECT_NE(said.find("cell.toml:24: smoothing.filters = 1; must be at least 2"), std::string::npos) << said;
   // … and a file whose own method could not.
   SmoothJob other = job(hybrid("filters = 1\n"));
   other.method = path::Method::paper;
-  other.keep_breaches = true;
+  other.keep_violations = true;
   EXPECT_EQ(run_smooth(other).first().method, path::Method::paper);
 }
 
 TEST_F(Smoothing, SetsMethodsSideBySide) {
   SmoothJob both = job(hybrid("method = \"paper\"\ndrive_bandwidth_hz = 8\n"));
   both.compare = true;
-  both.keep_breaches = true;
+  both.keep_violations = true;
   const SmoothResult result = run_smooth(both);
   ASSERT_EQ(result.smoothed.methods.size(), 5U);
   EXPECT_EQ(result.first().method, path::Method::paper);
@@ -249,9 +249,9 @@ TEST_F(Smoothing, SetsMethodsSideBySide) {
   EXPECT_EQ(run_smooth(both).first().tracking_error, result.first().tracking_error);
 }
 
-TEST_F(Smoothing, RefusesInTheUsersWords) {
+TEST_F(Smoothing, RejectsInTheUsersWords) {
   const auto said = [&](const std::string& cell, const std::string& program) {
-    return refusal([&] { static_cast<void>(run_smooth(job(cell, program))); });
+    return rejection([&] { static_cast<void>(run_smooth(job(cell, program))); });
   };
   const std::string far = said(hybrid(), "G21 G90 G94\nG0 X0 Y0 Z0\nG1 X10 F600\nG1 X3000\n");
   EXPECT_NE(far.find("part.ngc"), std::string::npos) << far;
@@ -274,7 +274,7 @@ TEST_F(Smoothing, RefusesInTheUsersWords) {
   EXPECT_NE(said(hybrid("max_duration_h = 1\n"), day).find("line 4): dwells for 1.111 h"), std::string::npos);
   SmoothJob program = job();
   program.output = folder_.at("t.src");
-  EXPECT_NE(refusal([&] { static_cast<void>(run_smooth(program)); }).find("six joints"), std::string::npos);
+  EXPECT_NE(rejection([&] { static_cast<void>(run_smooth(program)); }).find("six joints"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder_.at("t.csv")));
 }
 
@@ -327,7 +327,7 @@ TEST_F(PlanPath, LeavesNoTrajectoryThatIsNotItsOwn) {
   const std::filesystem::path bad = plan("program = \"part.ngc\"\ncell = \"cell.toml\"\n");
   folder_.file("lobes.toml", io::read_file(folder_.at("lobes.toml")) + "[dynamics]\nkeep_modes = [99]\n");
   folder_.file("part.ngc", "G21 G90 G94\nG0 X0 Y0 Z0 A0 C0\nG1 X5 F2400\n");
-  EXPECT_NE(refusal([&] { static_cast<void>(run_job(bad, 1, Progress::none(), out)); }), "accepted");
+  EXPECT_NE(rejection([&] { static_cast<void>(run_job(bad, 1, Progress::none(), out)); }), "accepted");
   EXPECT_EQ(io::read_file(out / "trajectory.csv"), before);
   const auto files = std::filesystem::directory_iterator(out);
   EXPECT_EQ(std::distance(begin(files), end(files)), 6) << "nothing half-written is left";
@@ -344,13 +344,13 @@ TEST_F(PlanPath, LeavesNoTrajectoryThatIsNotItsOwn) {
 }
 
 TEST_F(PlanPath, NeedsTheCellToSaySo) {
-  EXPECT_NE(refusal([&] { static_cast<void>(run_job(plan("program = \"part.ngc\"\n"), 1)); }).find("job.program"),
+  EXPECT_NE(rejection([&] { static_cast<void>(run_job(plan("program = \"part.ngc\"\n"), 1)); }).find("job.program"),
             std::string::npos);
   const std::filesystem::path file = plan("program = \"part.ngc\"\ncell = \"bare.toml\"\n");
   std::string bare = hybrid();
   bare.resize(bare.find("[smoothing]"));
   folder_.file("bare.toml", bare);
-  EXPECT_NE(refusal([&] { static_cast<void>(run_job(file, 1)); }).find("has no [smoothing]"), std::string::npos);
+  EXPECT_NE(rejection([&] { static_cast<void>(run_job(file, 1)); }).find("has no [smoothing]"), std::string::npos);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ void add_vibration(std::string& out, const simulation::Simulation& vibration) {
 
 void add_revolution(std::string& out, const RevolutionForces& revolution, bool on_workpiece) {
   const double sign = on_workpiece ? -1.0 : 1.0;
-  const cutting::CuttingForce& force = revolution.settled.force;
+  const cutting::CuttingForce& force = revolution.deflected.force;
   add(out, "{:<12} {:>10} {:>10} {:>10}   on the {}, feed frame\n", "", "x", "y", "z",
       on_workpiece ? "workpiece" : "tool");
   add_vector(out, "mean", sign * force.mean_n);
@@ -56,9 +56,9 @@ void add_revolution(std::string& out, const RevolutionForces& revolution, bool o
   add(out, "power        mean {:.4g} W; removal {:.4g} mm³/s\n", force.power_w,
       force.removal_rate_m3_per_s / units::mm3);
   if (revolution.posture) {
-    const Eigen::Vector3d q = revolution.settled.deflection_m / units::um;
+    const Eigen::Vector3d q = revolution.deflected.deflection_m / units::um;
     add(out, "deflection   {:.4g}, {:.4g}, {:.4g} µm under the mean force; depth left {:.6g} mm\n", q.x(), q.y(), q.z(),
-        revolution.settled.cut.axial_depth_m / units::mm);
+        revolution.deflected.cut.axial_depth_m / units::mm);
   }
   if (revolution.spindle_rotation && revolution.spindle_rotation->status == robot::Redundancy::Status::found) {
     add(out, "best γ       {:.1f}°: {:.4g} µm\n", revolution.spindle_rotation->best.gamma_rad / units::deg,

@@ -11,7 +11,7 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/signal/spectrum.hpp"
-#include "robomill/stability/fingerprint.hpp"
+#include "robomill/stability/peak_classification.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -53,7 +53,7 @@ std::string words(const stability::ExplainedPeak& peak, int teeth) {
       return words(peak.best, teeth);
     case stability::ExplainedPeak::State::cannot_be_told: {
       std::string out;
-      const double least = peak.others.front().likelihood_per_hz / stability::FingerprintOptions{}.clear_odds;
+      const double least = peak.others.front().likelihood_per_hz / stability::PeakClassificationOptions{}.clear_odds;
       for (const stability::Explanation& reading : peak.others) {
         if (reading.likelihood_per_hz >= least) out += (out.empty() ? "" : " or ") + words(reading, teeth);
       }

@@ -95,7 +95,7 @@ class Recording : public testing::Test {
   std::filesystem::path path_ = folder_.at("cut.csv");
 };
 
-TEST_F(Recording, TellsStableFromChatter) {
+TEST_F(Recording, ReportsStableFromChatter) {
   EXPECT_EQ(record(0.0).verdict, report::Verdict::stable);
   EXPECT_EQ(record(0.35).verdict, report::Verdict::borderline);
   const report::Recording loud = record(0.8);
@@ -118,7 +118,7 @@ TEST_F(Recording, GivesNoVerdictOnAPeakThatMayBeEither) {
   EXPECT_EQ(record(0.1, 1.0, 1201.0).verdict, report::Verdict::stable);  // too low to matter
 }
 
-TEST_F(Recording, RefusesTooLittle) {
+TEST_F(Recording, RejectsTooLittle) {
   EXPECT_THROW(static_cast<void>(record(0.0, 0.1)), InvalidInput);
 }
 

@@ -113,20 +113,21 @@ TEST(Tools, WithoutACutThereAreModesAlone) {
   EXPECT_NE(csv.find("\n\"1/2\"\" mill\","), std::string::npos) << csv;
 }
 
-TEST(Tools, RefuseACutOfOneCutter) {
+TEST(Tools, RejectACutOfOneCutter) {
   const test::Folder folder;
   const coupling::AssemblyFile file = assembly(folder);
   const auto listed = tools(folder, file);
   const auto say = [&](const LobesFile& lobes) {
-    return test::refusal([&] { static_cast<void>(try_tools(file, listed, lobes, 1, Progress::none())); });
+    return test::rejection([&] { static_cast<void>(try_tools(file, listed, lobes, 1, Progress::none())); });
   };
   EXPECT_NE(say(cut(folder, "pitch_deg = [170, 190]\n")).find("lobes.toml"), std::string::npos);
   LobesFile no_feed = cut(folder);
   no_feed.problem.milling.feed_per_tooth_m = 0.0;
   EXPECT_NE(say(no_feed).find("cut.feed_per_tooth_mm is missing"), std::string::npos);
-  EXPECT_NE(
-      test::refusal([&] { static_cast<void>(try_tools(file, {}, std::nullopt, 1, Progress::none())); }).find("no tool"),
-      std::string::npos);
+  EXPECT_NE(test::rejection([&] {
+              static_cast<void>(try_tools(file, {}, std::nullopt, 1, Progress::none()));
+            }).find("no tool"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ std::filesystem::path free_name(const std::filesystem::path& folder, double time
 
 }  // namespace
 
-AlarmRing::AlarmRing(Options options, std::function<void(const std::filesystem::path&, const std::string&)> told)
-    : options_(std::move(options)), told_(std::move(told)) {
+AlarmRing::AlarmRing(Options options, std::function<void(const std::filesystem::path&, const std::string&)> reported)
+    : options_(std::move(options)), reported_(std::move(reported)) {
   io::make_folder(options_.folder);
   room_ = static_cast<std::size_t>(std::ceil(options_.seconds * options_.sample_rate_hz)) *
           static_cast<std::size_t>(options_.channels);
@@ -87,9 +87,9 @@ void AlarmRing::write(const Job& job) const {
     for (const Piece& piece : job.pieces) samples.insert(samples.end(), piece->begin(), piece->end());
     if (samples.size() > room_) samples.erase(samples.begin(), samples.end() - static_cast<std::ptrdiff_t>(room_));
     io::write_wav(job.file, samples, options_.channels, std::max(1.0, std::round(options_.sample_rate_hz)));
-    told_(job.file, {});
+    reported_(job.file, {});
   } catch (const std::exception& error) {
-    told_({}, error.what());
+    reported_({}, error.what());
   }
 }
 

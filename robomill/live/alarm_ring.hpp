@@ -25,9 +25,9 @@ class ROBOMILL_API AlarmRing {
     int channels = 1;
     double sample_rate_hz = 0.0;  ///< WAV has whole numbers of Hz: rounded
   };
-  /// @param told  called by the writing thread: the file written, or an empty path and what went wrong
+  /// @param reported  called by the writing thread: the file written, or an empty path and what went wrong
   /// @throws InvalidInput if the folder cannot be made
-  AlarmRing(Options options, std::function<void(const std::filesystem::path& file, const std::string& error)> told);
+  AlarmRing(Options options, std::function<void(const std::filesystem::path& file, const std::string& error)> reported);
   /// What was asked for is still written.
   ~AlarmRing();
   AlarmRing(const AlarmRing&) = delete;
@@ -49,7 +49,7 @@ class ROBOMILL_API AlarmRing {
   void write(const Job& job) const;
 
   Options options_;
-  std::function<void(const std::filesystem::path&, const std::string&)> told_;
+  std::function<void(const std::filesystem::path&, const std::string&)> reported_;
   std::deque<Piece> kept_;
   std::size_t kept_samples_ = 0, room_ = 0;
 

@@ -19,7 +19,7 @@ constexpr double longest_filled_s = 1.0;
 
 }  // namespace
 
-std::function<void(std::uint64_t)> tell_dropped(Notices& notices, MetricValues& metrics) {
+std::function<void(std::uint64_t)> report_dropped(Notices& notices, MetricValues& metrics) {
   return [&notices, &metrics](std::uint64_t hops) {
     metrics.dropped_hops += hops;
     notices.add("dropped-hops", "samples come faster than they can be processed; whole hops are left out", hops);
@@ -32,22 +32,22 @@ SourceInput::SourceInput(std::unique_ptr<io::SampleSource> source, const monitor
       queue_(&queue),
       notices_(&notices),
       intake_(queue, static_cast<std::size_t>(file.options.channels), file.options.hop_samples(), can_wait,
-              tell_dropped(notices, metrics)),
+              report_dropped(notices, metrics)),
       hop_frames_(file.options.hop_samples()),
       thread_([this] { read(); }) {}
 
 void SourceInput::read() {
   try {
     io::SampleBlock block;
-    std::uint64_t told_rows = 0;
+    std::uint64_t reported_rows = 0;
     while (source_->next(hop_frames_, block)) {
       intake_.speed(block.spindle_speed_rad_per_s);
       if (!intake_.add(block.samples)) return;
-      if (source_->unreadable_rows() == told_rows) continue;
+      if (source_->unreadable_rows() == reported_rows) continue;
       notices_->add("unreadable-rows",
                     fmt::format("rows that cannot be read, from line {} on", source_->first_unreadable_line()),
-                    source_->unreadable_rows() - told_rows);
-      told_rows = source_->unreadable_rows();
+                    source_->unreadable_rows() - reported_rows);
+      reported_rows = source_->unreadable_rows();
     }
     intake_.finish();
   } catch (const std::exception& error) {
@@ -62,10 +62,10 @@ StreamIntake::StreamIntake(const monitor::MonitorFile& file, HopQueue& queue, No
       notices_(&notices),
       metrics_(&metrics),
       intake_(queue, static_cast<std::size_t>(file.options.channels), file.options.hop_samples(), false,
-              tell_dropped(notices, metrics)) {}
+              report_dropped(notices, metrics)) {}
 
-void StreamIntake::refuse(const std::string& why) {
-  ++metrics_->refused_messages;
+void StreamIntake::reject(const std::string& why) {
+  ++metrics_->rejected_messages;
   notices_->add("refused-messages", why);
 }
 
@@ -76,7 +76,7 @@ bool StreamIntake::pick(int channels) {
     picked_channels_ = channels;
     return true;
   } catch (const InvalidInput& error) {
-    refuse(error.what());
+    reject(error.what());
     return false;
   }
 }
@@ -84,11 +84,11 @@ bool StreamIntake::pick(int channels) {
 void StreamIntake::message(std::span<const std::byte> payload) {
   monitor::DecodedBlock decoded = monitor::decode_stream_block(payload);
   if (!decoded.block) {
-    refuse(fmt::format("a message {}", decoded.refusal));
+    reject(fmt::format("a message {}", decoded.rejection));
     return;
   }
   if (std::abs(decoded.block->sample_rate_hz / sample_rate_hz_ - 1.0) > rate_tolerance) {
-    refuse(fmt::format("a message was sampled at {:.6g} Hz, not at signal.sample_rate_hz = {:.6g} Hz",
+    reject(fmt::format("a message was sampled at {:.6g} Hz, not at signal.sample_rate_hz = {:.6g} Hz",
                        decoded.block->sample_rate_hz, sample_rate_hz_));
     return;
   }
@@ -119,22 +119,22 @@ void StreamIntake::give() {
     intake_.add(picked_);
   }
   given_.clear();
-  tell_counts();
+  report_counts();
 }
 
-void StreamIntake::tell_counts() {
+void StreamIntake::report_counts() {
   const OrderCounts& now = order_.counts();
-  const auto tell = [this](const char* what, const char* message, std::uint64_t count, std::uint64_t& told) {
-    if (count == told) return;
-    notices_->add(what, message, count - told);
-    told = count;
+  const auto report = [this](const char* what, const char* message, std::uint64_t count, std::uint64_t& reported) {
+    if (count == reported) return;
+    notices_->add(what, message, count - reported);
+    reported = count;
   };
   metrics_->lost_blocks = now.lost;
-  tell("lost-blocks", "blocks of the stream never came", now.lost, told_.lost);
-  tell("doubled-blocks", "blocks came twice", now.doubled, told_.doubled);
-  tell("late-blocks", "blocks came after they had been given up", now.late, told_.late);
-  tell("reordered-blocks", "blocks came in another order and were put back", now.reordered, told_.reordered);
-  tell("stream-restarted", "the sender counts its blocks anew", now.restarts, told_.restarts);
+  report("lost-blocks", "blocks of the stream never came", now.lost, reported_.lost);
+  report("doubled-blocks", "blocks came twice", now.doubled, reported_.doubled);
+  report("late-blocks", "blocks came after they had been given up", now.late, reported_.late);
+  report("reordered-blocks", "blocks came in another order and were put back", now.reordered, reported_.reordered);
+  report("stream-restarted", "the sender counts its blocks anew", now.restarts, reported_.restarts);
 }
 
 }  // namespace robomill::live

@@ -17,8 +17,8 @@
 
 namespace robomill::live {
 
-/// Tells the notices and the metrics of each hop that is left out.
-[[nodiscard]] ROBOMILL_API std::function<void(std::uint64_t)> tell_dropped(Notices& notices, MetricValues& metrics);
+/// Reports the notices and the metrics of each hop that is left out.
+[[nodiscard]] ROBOMILL_API std::function<void(std::uint64_t)> report_dropped(Notices& notices, MetricValues& metrics);
 
 /// Reads a recording or a pipe on a thread of its own; closes the queue at the end.
 class ROBOMILL_API SourceInput {
@@ -40,8 +40,8 @@ class ROBOMILL_API SourceInput {
   std::jthread thread_;
 };
 
-/// What a stream's messages go through on their way to the queue: refused where they are no blocks of these channels at
-/// this rate, put in order, gaps filled. Used by one thread.
+/// What a stream's messages go through on their way to the queue: rejected where they are no blocks of these channels
+/// at this rate, put in order, gaps filled. Used by one thread.
 class ROBOMILL_API StreamIntake {
  public:
   StreamIntake(const monitor::MonitorFile& file, HopQueue& queue, Notices& notices, MetricValues& metrics);
@@ -50,11 +50,11 @@ class ROBOMILL_API StreamIntake {
   void give_up();
 
  private:
-  void refuse(const std::string& why);
+  void reject(const std::string& why);
   /// Where the wanted channels stand in blocks of so many.
   bool pick(int channels);
   void give();
-  void tell_counts();
+  void report_counts();
 
   io::SampleColumns columns_;
   double sample_rate_hz_;
@@ -62,7 +62,7 @@ class ROBOMILL_API StreamIntake {
   MetricValues* metrics_;
   Intake intake_;
   BlockOrder order_;
-  OrderCounts told_;
+  OrderCounts reported_;
   std::vector<BlockOrder::Given> given_;
   int picked_channels_ = 0;
   std::vector<std::size_t> pick_;

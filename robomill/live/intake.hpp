@@ -14,7 +14,7 @@ namespace robomill::live {
 /// Cuts samples into hops and puts them into a queue. Used by one thread.
 ///
 /// A source that can wait (a file) does so where the queue is full. From one that cannot, whole hops are left out then:
-/// `dropped` is told, and the next hop says how many frames are missing before it.
+/// `dropped` is reported, and the next hop says how many frames are missing before it.
 class ROBOMILL_API Intake {
  public:
   /// @param dropped  called with 1 for every hop that is left out

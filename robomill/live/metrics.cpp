@@ -56,7 +56,7 @@ std::string MetricValues::text() const {
   counter("events_total", "written", events);
   counter("dropped_hops_total", "left out since input was faster than the detector", dropped_hops);
   counter("lost_blocks_total", "that never came", lost_blocks);
-  counter("refused_messages_total", "that were no blocks of samples", refused_messages);
+  counter("refused_messages_total", "that were no blocks of samples", rejected_messages);
   return out;
 }
 

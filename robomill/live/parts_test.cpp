@@ -45,33 +45,34 @@ std::vector<float> ramp(std::size_t from, std::size_t count) {
 
 TEST(AlarmRing, WritesTheLastSeconds) {
   const test::Folder folder;
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   AlarmRing ring(
       {.folder = folder.at("alarms"), .seconds = 2.0, .channels = 2, .sample_rate_hz = 100.0},
-      [&](const std::filesystem::path& file, const std::string& error) { told.push_back(file.string() + error); });
+      [&](const std::filesystem::path& file, const std::string& error) { reported.push_back(file.string() + error); });
   for (std::size_t i = 0; i < 100; ++i) ring.add(ramp(14 * i, 14));
   EXPECT_TRUE(ring.alarm(7.0));
   ring.finish();
   EXPECT_TRUE(ring.alarm(7.0));
   ring.finish();
-  ASSERT_EQ(told, (std::vector<std::string>{folder.at("alarms") / "alarm_7.000s.wav",
-                                            folder.at("alarms") / "alarm_7.000s_2.wav"}));
-  const auto wav = io::open_samples(told.front(), {.channels = {"1", "2"}, .sample_rate_hz = 100.0});
+  ASSERT_EQ(reported, (std::vector<std::string>{folder.at("alarms") / "alarm_7.000s.wav",
+                                                folder.at("alarms") / "alarm_7.000s_2.wav"}));
+  const auto wav = io::open_samples(reported.front(), {.channels = {"1", "2"}, .sample_rate_hz = 100.0});
   io::SampleBlock block;
   ASSERT_TRUE(wav->next(1000, block));
   EXPECT_EQ(block.samples, ramp(1400 - 400, 400));
 }
 
-TEST(AlarmRing, TellsWhatItCannotWrite) {
+TEST(AlarmRing, ReportsWhatItCannotWrite) {
   const test::Folder folder;
-  std::string told;
-  AlarmRing ring({.folder = folder.at("alarms"), .seconds = 1.0, .channels = 1, .sample_rate_hz = 100.0},
-                 [&](const std::filesystem::path& file, const std::string& error) { told = file.string() + error; });
+  std::string reported;
+  AlarmRing ring(
+      {.folder = folder.at("alarms"), .seconds = 1.0, .channels = 1, .sample_rate_hz = 100.0},
+      [&](const std::filesystem::path& file, const std::string& error) { reported = file.string() + error; });
   ring.add(ramp(0, 10));
   std::filesystem::remove_all(folder.at("alarms"));
   EXPECT_TRUE(ring.alarm(0.1));
   ring.finish();
-  EXPECT_NE(told.find("cannot be written"), std::string::npos) << told;
+  EXPECT_NE(reported.find("cannot be written"), std::string::npos) << reported;
   const auto file = folder.file("taken", "x");
   EXPECT_THROW(AlarmRing({.folder = file, .sample_rate_hz = 100.0}, {}), InvalidInput);
 }

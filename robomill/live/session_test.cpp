@@ -91,9 +91,9 @@ TEST(Session, RunsToTheEndOfItsQueue) {
   EXPECT_EQ(session.metrics().decisions, 20U);
 }
 
-TEST(Session, EndsWhereItIsToldTo) {
+TEST(Session, EndsWhereItIsReportedTo) {
   Random random(1);
-  const auto heard = [&](SessionOptions options, SessionOutputs outputs, bool stopped) {
+  const auto processed = [&](SessionOptions options, SessionOutputs outputs, bool stopped) {
     const std::atomic<bool> stop{stopped};
     Session session(some_file(), options, std::move(outputs));
     for (int i = 0; i < 20; ++i) EXPECT_TRUE(session.queue().push(noise(random)));
@@ -102,11 +102,11 @@ TEST(Session, EndsWhereItIsToldTo) {
     EXPECT_FALSE(session.queue().offer(more));  // whoever still reads is let go
     return session.metrics().decisions.load();
   };
-  EXPECT_EQ(heard({.seconds = 0.1}, {}, false), 4U);
-  EXPECT_EQ(heard({}, {}, true), 0U);
+  EXPECT_EQ(processed({.seconds = 0.1}, {}, false), 4U);
+  EXPECT_EQ(processed({}, {}, true), 0U);
   SessionOutputs nobody;
   nobody.event = [](const MonitorEvent&, const std::string&) { return false; };
-  EXPECT_EQ(heard({.every_window = true}, nobody, false), 1U);
+  EXPECT_EQ(processed({.every_window = true}, nobody, false), 1U);
 }
 
 // In the order of the stream, so that a recording of them has its length.
@@ -140,7 +140,7 @@ std::string message(std::uint64_t number, double rate_hz = 10'240.0, int channel
   return monitor::encode_stream_block(block);
 }
 
-TEST(StreamIntake, RefusesWhatIsNotWanted) {
+TEST(StreamIntake, RejectsWhatIsNotWanted) {
   HopQueue queue(100);
   Notices notices;
   MetricValues metrics;
@@ -148,20 +148,20 @@ TEST(StreamIntake, RefusesWhatIsNotWanted) {
   const auto take = [&](const std::string& payload) {
     intake.message(std::as_bytes(std::span(payload.data(), payload.size())));
   };
-  const auto told = [&] {
+  const auto reported = [&] {
     const std::vector<Notice> all = notices.take(Notices::Clock::now(), true);
     return all.empty() ? std::string() : all.front().message;
   };
   take("x");
-  EXPECT_EQ(told(), "a message is shorter than its header");
+  EXPECT_EQ(reported(), "a message is shorter than its header");
   take(message(0, 5000.0));
-  EXPECT_NE(told().find("was sampled at 5000 Hz"), std::string::npos);
+  EXPECT_NE(reported().find("was sampled at 5000 Hz"), std::string::npos);
   take(message(0, 10'240.0, 3));
-  EXPECT_NE(told().find("has no column ax"), std::string::npos);
+  EXPECT_NE(reported().find("has no column ax"), std::string::npos);
   EXPECT_EQ(queue.size(), 0U);
-  EXPECT_EQ(metrics.refused_messages, 3U);
+  EXPECT_EQ(metrics.rejected_messages, 3U);
   take(message(0, 10'245.0));
-  EXPECT_EQ(told(), "");
+  EXPECT_EQ(reported(), "");
   EXPECT_EQ(queue.size(), 1U);
 }
 
@@ -189,11 +189,11 @@ TEST(StreamIntake, FillsWhatWasLost) {
     }
   }
   EXPECT_EQ(metrics.lost_blocks, 2U);
-  const std::vector<Notice> told = notices.take(Notices::Clock::now(), true);
-  ASSERT_EQ(told.size(), 2U);
-  EXPECT_EQ(told[0].what, "lost-blocks");
-  EXPECT_EQ(told[0].count, 2U);
-  EXPECT_EQ(told[1].what, "reordered-blocks");
+  const std::vector<Notice> reported = notices.take(Notices::Clock::now(), true);
+  ASSERT_EQ(reported.size(), 2U);
+  EXPECT_EQ(reported[0].what, "lost-blocks");
+  EXPECT_EQ(reported[0].count, 2U);
+  EXPECT_EQ(reported[1].what, "reordered-blocks");
 }
 
 }  // namespace

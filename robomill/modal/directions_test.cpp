@@ -86,7 +86,7 @@ TEST(MissingDirections, HaveToBeSaid) {
   EXPECT_EQ(field({Axis::x}, {.rigid = y}), "rigid_directions");
   EXPECT_EQ(field(y, {.equal = true, .rigid = y}), "equal_directions");
   EXPECT_EQ(field({Axis::x, Axis::y}, {.rigid = y}), "");
-  const std::string said = test::refusal([&] { require_said(y, {}); });
+  const std::string said = test::rejection([&] { require_said(y, {}); });
   EXPECT_NE(said.find("rigid_directions = [\"y\"]"), std::string::npos) << said;
   EXPECT_NE(said.find("equal_directions = true"), std::string::npos) << said;
 }

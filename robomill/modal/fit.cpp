@@ -57,7 +57,8 @@ Weighting settle(Weighting asked, const FrfSet& set) {
   return asked;
 }
 
-// FRFs that are zero on every line tell nothing about a mode; left out, they are zero in the model too if they can be.
+// FRFs that are zero on every line report nothing about a mode; left out, they are zero in the model too if they can
+// be.
 FrfSet without_zeros(const FrfSet& set, std::vector<std::string>& warnings) {
   FrfSet rest{.frequency_hz = set.frequency_hz, .frfs = {}};
   for (const Frf& frf : set.frfs) {

@@ -84,7 +84,7 @@ TEST(FitParts, ExactlySoManyModesOverAllParts) {
 }
 
 TEST(FitParts, AMissingFrfFollowsFromTheOthers) {
-  // Left vectors that both excitations feel, so that three FRFs tell the fourth.
+  // Left vectors that both excitations feel, so that three FRFs report the fourth.
   ModalModel truth = data::robot_modes();
   Random random(2);
   for (Mode& mode : truth.modes)
@@ -227,7 +227,7 @@ TEST(FitResultIs, StoppedByItsCaller) {
   EXPECT_THROW(static_cast<void>(fit_modes(two_mode_frf(), {}, progress)), Interrupted);
 }
 
-TEST(FitInput, RefusesBadOptions) {
+TEST(FitInput, RejectsBadOptions) {
   const FrfSet set = two_mode_frf();
   const std::vector<std::function<void(FitOptions&)>> faults = {
       [](FitOptions& o) { o.band_low_hz = -1.0; },
@@ -262,14 +262,14 @@ TEST(FitInput, RefusesBadOptions) {
   }
 }
 
-TEST(FitInput, RefusesBadFrfs) {
+TEST(FitInput, RejectsBadFrfs) {
   EXPECT_THROW(static_cast<void>(fit_modes({}, {})), InvalidInput);
   EXPECT_THROW(static_cast<void>(fit_modes(two_mode_frf(0.01, 10), {})), InvalidInput);
   FrfSet set = two_mode_frf();
   set.frfs.front().receptance(7) = nan;
   EXPECT_THROW(static_cast<void>(fit_modes(set, {})), InvalidInput);
   const auto too_few = [] { static_cast<void>(fit_modes(two_mode_frf(0.01, 30), {.modes = 14})); };
-  EXPECT_NE(test::refusal(too_few).find("needs at least 32 lines; the band holds 30"), std::string::npos);
+  EXPECT_NE(test::rejection(too_few).find("needs at least 32 lines; the band holds 30"), std::string::npos);
 }
 
 TEST(FitInput, SurvivesOddFrfs) {

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<std::string_view, 6> response_axes = {"x", "y", "z", "rx", "ry", "rz"};
 constexpr std::array<std::string_view, 6> excitation_axes = {"x", "y", "z", "mx", "my", "mz"};
 
-[[noreturn]] void refuse(std::string_view text) {
+[[noreturn]] void reject(std::string_view text) {
   throw InvalidInput(InvalidInput::Parts{.field = "FRF name",
                                          .value = "\"" + std::string(text) + "\"",
                                          .rule = "is no FRF",
@@ -54,14 +54,14 @@ Dof parse_dof(std::string_view text) {
   const std::from_chars_result number = std::from_chars(text.data(), end, dof.point);
   const char* const rest = number.ec == std::errc() ? number.ptr : text.data();
   const std::string_view axis(rest, static_cast<std::size_t>(end - rest));
-  if (dof.point < 0 || number.ec == std::errc::result_out_of_range) refuse(text);
+  if (dof.point < 0 || number.ec == std::errc::result_out_of_range) reject(text);
   for (std::size_t i = 0; i < response_axes.size(); ++i) {
     if (axis == response_axes.at(i) || axis == excitation_axes.at(i)) {
       dof.axis = static_cast<Axis>(i + 1);
       return dof;
     }
   }
-  refuse(text);
+  reject(text);
 }
 
 FrfName parse_frf_name(std::string_view text) {
@@ -69,7 +69,7 @@ FrfName parse_frf_name(std::string_view text) {
   if (colon != std::string_view::npos) {
     return {.response = parse_dof(text.substr(0, colon)), .excitation = parse_dof(text.substr(colon + 1))};
   }
-  if (text.size() != 2) refuse(text);
+  if (text.size() != 2) reject(text);
   return {.response = parse_dof(text.substr(0, 1)), .excitation = parse_dof(text.substr(1, 1))};
 }
 

@@ -18,7 +18,7 @@ TEST(FrfName, ReadsAndWritesEveryForm) {
   EXPECT_EQ(xy.excitation.axis, Axis::y);
 }
 
-TEST(FrfName, RefusesWhatNamesNoFrf) {
+TEST(FrfName, RejectsWhatNamesNoFrf) {
   for (const char* text : {"", "x", "xq", "xyz", "x:", ":x", "-1x:x", "99999999999x:x", "1:2"}) {
     EXPECT_THROW(static_cast<void>(parse_frf_name(text)), InvalidInput) << text;
   }
@@ -35,7 +35,7 @@ TEST(FrfSet, AcceptsAGoodSet) {
   EXPECT_NO_THROW(two_lines().validate());
 }
 
-TEST(FrfSet, RefusesEveryFault) {
+TEST(FrfSet, RejectsEveryFault) {
   FrfSet set = two_lines();
   set.frequency_hz(1) = 1.0;
   EXPECT_THROW(set.validate(), InvalidInput);

@@ -84,8 +84,8 @@ double error(const FrfResult& result, const ModalModel& truth, double low_hz, do
   return error(result.set, truth, FrfName{}, low_hz, high_hz);
 }
 
-void expect_refusal(const std::vector<Hit>& hits, const HitOptions& options, const std::string& part) {
-  const std::string message = test::refusal([&] { static_cast<void>(estimate_frfs(hits, options)); });
+void expect_rejection(const std::vector<Hit>& hits, const HitOptions& options, const std::string& part) {
+  const std::string message = test::rejection([&] { static_cast<void>(estimate_frfs(hits, options)); });
   EXPECT_NE(message.find(part), std::string::npos) << "message: " << message;
 }
 
@@ -237,7 +237,7 @@ TEST(EstimateFrfs, TakesOutTheDampingOfTheExponentialWindow) {
 }
 
 // Left in, it is exactly what without_added_decay takes off the modes: H(iω + σ) has the poles λ - σ.
-TEST(EstimateFrfs, LeavesTheAddedDampingInWhenTold) {
+TEST(EstimateFrfs, LeavesTheAddedDampingInWhenReported) {
   const ModalModel model = data::robot_modes();
   Hammer hammer = quiet();
   hammer.record_s = 2.0;
@@ -264,7 +264,7 @@ TEST(EstimateFrfs, LeavesTheAddedDampingInWhenTold) {
   }
 }
 
-TEST(WithoutAddedDecay, RefusesAModeThatWouldGrow) {
+TEST(WithoutAddedDecay, RejectsAModeThatWouldGrow) {
   EXPECT_THROW(static_cast<void>(without_added_decay(one_mass(10.0, 0.01), 1.0)), InvalidInput);
   EXPECT_THROW(static_cast<void>(without_added_decay(one_mass(10.0, 0.01), -1.0)), InvalidInput);
 }
@@ -285,7 +285,7 @@ TEST(EstimateFrfs, RejectsADoubleHitAndSaysWhy) {
   EXPECT_NEAR(result.hits[1].second_pulse_ratio, 0.05, 0.005);
   EXPECT_EQ(result.hits[1].file, "hit_x_2.csv");
   EXPECT_EQ(result.grades[0].hits, 2);
-  expect_refusal({hits[1]}, up_to(600.0), "hit_x_2.csv: double hit");
+  expect_rejection({hits[1]}, up_to(600.0), "hit_x_2.csv: double hit");
 }
 
 TEST(EstimateFrfs, RejectsOverloads) {
@@ -302,10 +302,10 @@ TEST(EstimateFrfs, RejectsOverloads) {
 
   HitOptions options = up_to(600.0);
   options.force_overload_n = 100.0;
-  expect_refusal(brief_hits(), options, "overload: the force reaches");
+  expect_rejection(brief_hits(), options, "overload: the force reaches");
   options.force_overload_n = 0.0;
   options.response_overload = 1.0;
-  expect_refusal(brief_hits(), options, "overload: the response in x reaches");
+  expect_rejection(brief_hits(), options, "overload: the response in x reaches");
 }
 
 TEST(EstimateFrfs, RejectsWhatIsNoHit) {
@@ -317,20 +317,20 @@ TEST(EstimateFrfs, RejectsWhatIsNoHit) {
   hits = brief_hits(brief(), 1);
   Random random(1);
   for (Index j = 0; j < hits[0].force_n.size(); ++j) hits[0].force_n(j) = random.normal();
-  expect_refusal(hits, up_to(600.0), "no hit stands out of the noise");
+  expect_rejection(hits, up_to(600.0), "no hit stands out of the noise");
 
   hits = brief_hits(brief(), 1);
   hits[0].responses[0].samples.setZero();
-  expect_refusal(hits, up_to(600.0), "was its sensor connected");
+  expect_rejection(hits, up_to(600.0), "was its sensor connected");
 
   hits = brief_hits(brief(), 1);
   hits[0].force_n = hits[0].force_n.tail(960).eval();
   hits[0].responses[0].samples = hits[0].responses[0].samples.tail(960).eval();
-  expect_refusal(hits, up_to(600.0), "begins inside the pulse");
+  expect_rejection(hits, up_to(600.0), "begins inside the pulse");
 
   Hammer late = brief();
   late.pretrigger_s = 0.45;
-  expect_refusal(brief_hits(late, 1), up_to(600.0), "so late");
+  expect_rejection(brief_hits(late, 1), up_to(600.0), "so late");
 }
 
 // 60 g on 2 kg: 1.5 % of frequency, far more than the tolerance.
@@ -423,59 +423,59 @@ TEST(EstimateFrfs, IsTheSameOnAnyNumberOfThreads) {
   }
 }
 
-TEST(EstimateFrfs, RefusesUnsoundRecords) {
+TEST(EstimateFrfs, RejectsUnsoundRecords) {
   const std::vector<Hit> good = brief_hits();
   const HitOptions options = up_to(600.0);
-  expect_refusal({}, options, "hits: are none");
+  expect_rejection({}, options, "hits: are none");
   std::vector<Hit> hits = good;
   hits[1].sample_rate_hz = 1024.0;
-  expect_refusal(hits, options, "hit_x_2.csv: sample_rate_hz: is 1024 Hz, but 2048 Hz in hit_x_1.csv");
+  expect_rejection(hits, options, "hit_x_2.csv: sample_rate_hz: is 1024 Hz, but 2048 Hz in hit_x_1.csv");
   hits = good;
   hits[0].sample_rate_hz = 0.0;
-  expect_refusal(hits, options, "must be > 0");
+  expect_rejection(hits, options, "must be > 0");
   hits = good;
   hits[2].force_n(7) = std::numeric_limits<double>::quiet_NaN();
-  expect_refusal(hits, options, "hit_x_3.csv: force_n: sample 8 is not a finite number");
+  expect_rejection(hits, options, "hit_x_3.csv: force_n: sample 8 is not a finite number");
   hits = good;
   hits[2].responses[0].samples(9) = std::numeric_limits<double>::infinity();
-  expect_refusal(hits, options, "responses.x: sample 10");
+  expect_rejection(hits, options, "responses.x: sample 10");
   hits = good;
   hits[0].force_n.setZero();
-  expect_refusal(hits, options, "is the same throughout");
+  expect_rejection(hits, options, "is the same throughout");
   hits = good;
   hits[0].force_n = hits[0].force_n.head(100).eval();
-  expect_refusal(hits, options, "a hit needs at least");
+  expect_rejection(hits, options, "a hit needs at least");
   hits = good;
   hits[0].responses[0].samples = hits[0].responses[0].samples.head(1000).eval();
-  expect_refusal(hits, options, "has 1000 samples, the force 1024");
+  expect_rejection(hits, options, "has 1000 samples, the force 1024");
   hits = good;
   hits[0].responses.clear();
-  expect_refusal(hits, options, "responses: are none");
+  expect_rejection(hits, options, "responses: are none");
   hits = good;
   hits[0].responses.push_back(hits[0].responses[0]);
-  expect_refusal(hits, options, "comes twice");
+  expect_rejection(hits, options, "comes twice");
   hits[0].responses[1].dof.axis = Axis::y;
-  expect_refusal(hits, options, "differ from those of hit_x_1.csv");
+  expect_rejection(hits, options, "differ from those of hit_x_1.csv");
   hits = good;
   hits[0].excitation.axis = Axis::rx;
-  expect_refusal(hits, options, "must be x, y or z");
+  expect_rejection(hits, options, "must be x, y or z");
 }
 
-TEST(EstimateFrfs, RefusesUnsoundOptions) {
+TEST(EstimateFrfs, RejectsUnsoundOptions) {
   const std::vector<Hit> hits = brief_hits();
-  const auto refuses = [&](const char* part, const std::function<void(HitOptions&)>& spoil) {
+  const auto rejects = [&](const char* part, const std::function<void(HitOptions&)>& spoil) {
     HitOptions options;
     spoil(options);
-    expect_refusal(hits, options, part);
+    expect_rejection(hits, options, part);
   };
-  refuses("is the value in kg?", [](HitOptions& o) { o.accelerometer_mass_kg = 5.0; });
-  refuses("accelerometer_mass_kg", [](HitOptions& o) { o.accelerometer_mass_kg = -1.0; });
-  refuses("max_frequency_hz", [](HitOptions& o) { o.min_frequency_hz = 50.0, o.max_frequency_hz = 20.0; });
-  refuses("double_hit_limit", [](HitOptions& o) { o.double_hit_limit = 3.0; });
-  refuses("at least 17 lines", [](HitOptions& o) { o.min_frequency_hz = 5000.0; });
-  refuses("frequency_resolution_hz", [](HitOptions& o) { o.frequency_resolution_hz = 1e-9; });
-  refuses("exponential_time_constant_s", [](HitOptions& o) { o.exponential_time_constant_s = -1.0; });
-  refuses("force_window_s", [](HitOptions& o) { o.force_window_s = std::numeric_limits<double>::infinity(); });
+  rejects("is the value in kg?", [](HitOptions& o) { o.accelerometer_mass_kg = 5.0; });
+  rejects("accelerometer_mass_kg", [](HitOptions& o) { o.accelerometer_mass_kg = -1.0; });
+  rejects("max_frequency_hz", [](HitOptions& o) { o.min_frequency_hz = 50.0, o.max_frequency_hz = 20.0; });
+  rejects("double_hit_limit", [](HitOptions& o) { o.double_hit_limit = 3.0; });
+  rejects("at least 17 lines", [](HitOptions& o) { o.min_frequency_hz = 5000.0; });
+  rejects("frequency_resolution_hz", [](HitOptions& o) { o.frequency_resolution_hz = 1e-9; });
+  rejects("exponential_time_constant_s", [](HitOptions& o) { o.exponential_time_constant_s = -1.0; });
+  rejects("force_window_s", [](HitOptions& o) { o.force_window_s = std::numeric_limits<double>::infinity(); });
 }
 
 TEST(EstimateFrfs, StopsWhenAsked) {

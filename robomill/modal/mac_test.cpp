@@ -76,7 +76,7 @@ TEST(Frac, SeesShapeAndNotScale) {
   EXPECT_LT(frac(measured, synthesize(shifted, lines)).maxCoeff(), 0.95);
 }
 
-TEST(Mac, RefusesWhatCannotBeCompared) {
+TEST(Mac, RejectsWhatCannotBeCompared) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(static_cast<void>(mac(Eigen::Vector2cd::Ones(), Eigen::Vector3cd::Ones())), InvalidInput);
   EXPECT_THROW(static_cast<void>(mac(Eigen::VectorXcd(), Eigen::VectorXcd())), InvalidInput);

@@ -113,7 +113,7 @@ TEST(Synthesize, OrderNamesResidualsAndInvariance) {
   }
 }
 
-TEST(Synthesize, RefusesFaults) {
+TEST(Synthesize, RejectsFaults) {
   ModalModel model = data::robot_modes();
   const Eigen::Vector2d lines(0.0, 10.0);
   EXPECT_NO_THROW(static_cast<void>(synthesize(model, lines)));

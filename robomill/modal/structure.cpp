@@ -36,7 +36,7 @@ void check_matrix(const char* member, const Eigen::MatrixXd& matrix, std::size_t
 }
 
 /// A pole that a list of modes cannot hold; λ in rad/s.
-void refuse_pole(const Complex& lambda) {
+void reject_pole(const Complex& lambda) {
   if (lambda.imag() == 0.0) {
     throw InvalidInput(
         "damping_n_s_per_m", lambda.real(), "1/s",
@@ -62,7 +62,7 @@ void Structure::validate() const {
   check_matrix("mass_kg", mass_kg, dofs.size());
   check_matrix("damping_n_s_per_m", damping_n_s_per_m, dofs.size());
   check_matrix("stiffness_n_per_m", stiffness_n_per_m, dofs.size());
-  // A zero matrix has condition 0/0; the negated comparison refuses it too.
+  // A zero matrix has condition 0/0; the negated comparison rejects it too.
   if (!(condition(mass_kg) < max_mass_condition)) throw InvalidInput("mass_kg", "must not be singular");
   if (stiffness_n_per_m.isZero(0.0)) throw InvalidInput("stiffness_n_per_m", "must not be zero");
 }
@@ -86,7 +86,7 @@ ModalModel modes_of(const Structure& structure) {
                        "Are the units mixed?");
   }
   const Eigen::VectorXcd lambda = scale * eigen.eigenvalues();
-  for (const Complex& value : lambda) refuse_pole(value);
+  for (const Complex& value : lambda) reject_pole(value);
   const Eigen::MatrixXcd vectors = eigen.eigenvectors();
   if (!(condition(vectors) < max_vector_condition)) {
     throw InvalidInput("damping_n_s_per_m", "makes poles coincide without eigenvectors of their own",

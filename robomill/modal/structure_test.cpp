@@ -180,18 +180,18 @@ TEST(Structure, RepeatedPolesKeepIndependentVectors) {
   }
 }
 
-void expect_refusal(const Structure& structure, const std::string& field, const std::string& word) {
+void expect_rejection(const Structure& structure, const std::string& field, const std::string& word) {
   const auto solve = [&] { static_cast<void>(modes_of(structure)); };
   EXPECT_EQ(test::field_of(solve), field);
-  const std::string message = test::refusal(solve);
+  const std::string message = test::rejection(solve);
   EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
-TEST(Structure, RefusesPolesThatNoModeCanHold) {
-  expect_refusal(one_mass(1.0, 300.0, 1e4), "damping_n_s_per_m", "real pole");  // ζ = 1.5
-  expect_refusal(one_mass(1.0, 0.0, 1e4), "damping_n_s_per_m", "decay");        // undamped
-  expect_refusal(one_mass(1.0, -2.0, 1e4), "damping_n_s_per_m", "decay");       // driven
-  expect_refusal(one_mass(1.0, 2.0, -1e4), "damping_n_s_per_m", "real pole");   // buckled
+TEST(Structure, RejectsPolesThatNoModeCanHold) {
+  expect_rejection(one_mass(1.0, 300.0, 1e4), "damping_n_s_per_m", "real pole");  // ζ = 1.5
+  expect_rejection(one_mass(1.0, 0.0, 1e4), "damping_n_s_per_m", "decay");        // undamped
+  expect_rejection(one_mass(1.0, -2.0, 1e4), "damping_n_s_per_m", "decay");       // driven
+  expect_rejection(one_mass(1.0, 2.0, -1e4), "damping_n_s_per_m", "real pole");   // buckled
   // Symmetric in damping, but stiffness that couples x and y one way each: flutter.
   Structure flutter{.dofs = {{.axis = Axis::x}, {.axis = Axis::y}},
                     .mass_kg = Eigen::Matrix2d::Identity(),
@@ -199,29 +199,29 @@ TEST(Structure, RefusesPolesThatNoModeCanHold) {
                     .stiffness_n_per_m = 1e4 * Eigen::Matrix2d::Identity()};
   flutter.stiffness_n_per_m(0, 1) = 1e3;
   flutter.stiffness_n_per_m(1, 0) = -1e3;
-  expect_refusal(flutter, "damping_n_s_per_m", "decay");
+  expect_rejection(flutter, "damping_n_s_per_m", "decay");
 }
 
-TEST(Structure, RefusesEveryFaultOfTheMatrices) {
+TEST(Structure, RejectsEveryFaultOfTheMatrices) {
   Structure structure = random_structure(1);
   structure.mass_kg.conservativeResize(Eigen::NoChange, 1);
-  expect_refusal(structure, "mass_kg", "square");
+  expect_rejection(structure, "mass_kg", "square");
   structure = random_structure(1);
   structure.mass_kg.row(1) = structure.mass_kg.row(0);
-  expect_refusal(structure, "mass_kg", "singular");
+  expect_rejection(structure, "mass_kg", "singular");
   structure = random_structure(1);
   structure.mass_kg.setZero();
-  expect_refusal(structure, "mass_kg", "singular");
+  expect_rejection(structure, "mass_kg", "singular");
   structure = random_structure(1);
   structure.damping_n_s_per_m(0, 0) = std::nan("");
-  expect_refusal(structure, "damping_n_s_per_m", "finite");
+  expect_rejection(structure, "damping_n_s_per_m", "finite");
   structure = random_structure(1);
   structure.stiffness_n_per_m.setZero();
-  expect_refusal(structure, "stiffness_n_per_m", "zero");
+  expect_rejection(structure, "stiffness_n_per_m", "zero");
   structure = random_structure(1);
   structure.dofs[1] = structure.dofs[0];
-  expect_refusal(structure, "dofs", "twice");
-  expect_refusal(Structure(), "dofs", "no degree");
+  expect_rejection(structure, "dofs", "twice");
+  expect_rejection(Structure(), "dofs", "no degree");
   EXPECT_THROW(static_cast<void>(receptance(one_mass(1.0, 1.0, 1e4), Eigen::Vector2d(2.0, 1.0))), InvalidInput);
   EXPECT_THROW(static_cast<void>(receptance(Structure(), Eigen::Vector2d(1.0, 2.0))), InvalidInput);
 }

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
-#include "robomill/stability/fingerprint.hpp"
+#include "robomill/stability/peak_classification.hpp"
 
 namespace robomill::monitor {
 namespace {
@@ -71,7 +71,7 @@ Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s
     require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", "It separates the modes");
     name_mode(out, spindle_speed_rad_per_s, teeth, *modes, workpiece);
   }
-  // Lobes far down lie close together: no more of them than can be told apart from their neighbours.
+  // Lobes far down lie close together: no more of them than can be distinguished from their neighbours.
   const double first = turn * out.frequency_hz / teeth;
   const auto last = static_cast<int>(std::min(200.0, first / std::max(1.0, options.lowest_rad_per_s)));
   for (int k = 1; k <= last; ++k) {

@@ -118,7 +118,7 @@ TEST(Tachometer, CountsPulsesBetweenSamples) {
 }
 
 // Wald: of exponential energies, independent from hop to hop, no more sums pass h than the threshold was set for; and a
-// line that stands out is told at once.
+// line that stands out is reported at once.
 TEST(Cusum, KeepsTheFalseAlarmsThatWereAskedFor) {
   constexpr std::size_t lines = 60;
   constexpr double an_hour = 3600.0;
@@ -261,7 +261,7 @@ TEST(CombCusum, StaysQuietInAStableCut) {
   }
 }
 
-// The mains are heard as combs at 50 and 60 Hz and whole parts of them; a spindle may turn at their multiples.
+// The mains are processed as combs at 50 and 60 Hz and whole parts of them; a spindle may turn at their multiples.
 TEST(CombCusum, FollowsSpeedsAtMultiplesOfTheMains) {
   for (const double rotation_hz : {100.0, 150.0, 239.7, 240.0}) {
     const SyntheticCut cut{.rotation_hz = rotation_hz, .channels = 2, .seconds = 2.0};
@@ -270,7 +270,7 @@ TEST(CombCusum, FollowsSpeedsAtMultiplesOfTheMains) {
   }
 }
 
-// By less than 0.3 % in the looks that are compared: the slope tells.
+// By less than 0.3 % in the looks that are compared: the slope reports.
 TEST(SpindleTracker, MovesWhileTheSpeedDrifts) {
   const SyntheticCut cut{.rotation_hz = 43.0, .drift_hz_per_s = -0.6, .noise = 0.03};
   const MonitorOptions options = options_for(cut);
@@ -305,14 +305,14 @@ TEST(CombCusum, KnowsTheSpeedFollowedLastWhileTheHintTrembles) {
   Random random(3);
   const auto frame = [&](double s) { return 2 * static_cast<std::size_t>(s * cut.sample_rate_hz); };
   for (std::size_t i = frame(4.0); i < frame(5.0); ++i) x[i] = static_cast<float>(0.03 * random.normal());
-  const auto found_s = [&](double trembles, double told) {
+  const auto found_s = [&](double trembles, double reported) {
     const MonitorOptions options = options_for(cut);
     ChatterMonitor monitor(options);
     const std::size_t block = options.hop_samples() * 2;
     for (std::size_t at = 0; at + block <= x.size(); at += block) {
       const Decision d = monitor.push(std::span(x).subspan(at, block));
       if (d.time_s > 5.0 && std::abs(d.spindle_speed_rad_per_s / (turn * 74.0) - 1.0) < 2e-3) return d.time_s - 5.0;
-      const double share = d.time_s > 4.5 ? told : 1.0;
+      const double share = d.time_s > 4.5 ? reported : 1.0;
       monitor.set_spindle_speed(options.spindle_speed_rad_per_s * share * (1.0 + trembles * random.uniform(-1.0, 1.0)));
     }
     return 1e9;
@@ -362,7 +362,7 @@ TEST(CombCusum, SuggestsTheSampleRateThatFitsTheComb) {
   for (const Decision& d : listen(options_for(cut), vibration(cut))) EXPECT_FALSE(d.faults & wrong_sample_rate);
 }
 
-// Growth so slow that the comb swallows it: the harmonic's amplitude against what was learnt of it tells.
+// Growth so slow that the comb swallows it: the harmonic's amplitude against what was learnt of it reports.
 TEST(CombCusum, SeesWhatHidesAtMultiplesOfRotation) {
   for (const auto& [teeth, harmonic, hidden] :
        {std::tuple{3, 7, Hidden::locked}, std::tuple{2, 7, Hidden::period_doubling},
@@ -451,16 +451,16 @@ TEST(ChatterMonitor, AllocatesNothing) {
     options.kind = kind;
     options.threshold = 1e9;
     ChatterMonitor monitor(options);
-    bool heard = false;
+    bool processed = false;
     const std::size_t taken = test::allocations([&] {
       for (std::size_t at = 0; at + 512 <= x.size(); at += 512) {
-        heard = monitor.push(std::span(x).subspan(at, 512)).state == State::chatter || heard;
+        processed = monitor.push(std::span(x).subspan(at, 512)).state == State::chatter || processed;
       }
       monitor.set_spindle_speed(300.0);
       monitor.reset();
     });
     EXPECT_EQ(taken, 0U);
-    EXPECT_TRUE(heard || kind == Kind::energy_entropy);
+    EXPECT_TRUE(processed || kind == Kind::energy_entropy);
   }
 }
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/monitor/comb_cusum/hidden.hpp"
-#include "robomill/monitor/comb_cusum/spill.hpp"
-#include "robomill/monitor/comb_cusum/tone.hpp"
+#include "robomill/monitor/comb_cusum/broadband_growth.hpp"
+#include "robomill/monitor/comb_cusum/narrowband_detector.hpp"
+#include "robomill/monitor/comb_cusum/synchronous_chatter.hpp"
 #include "testing/monitor/corpus.hpp"
 #include "testing/monitor/score.hpp"
 #include "testing/support.hpp"
@@ -19,8 +19,8 @@ namespace {
 
 /// Hops until it is chatter, of powers that a function gives; -1: never within 60.
 template <typename Power>
-int hops_to(Tone::Hop hop, Power power) {
-  Tone tone;
+int hops_to(NarrowbandDetector::Hop hop, Power power) {
+  NarrowbandDetector tone;
   for (int k = 0; k < 60; ++k) {
     hop.power = power(k);
     if (tone.step(hop)) return k + 1;
@@ -28,16 +28,16 @@ int hops_to(Tone::Hop hop, Power power) {
   return -1;
 }
 
-TEST(Tone, NeedsNoBaselineWhereTheCombIsKnown) {
-  const Tone::Hop tone = {.line = 27, .share = 0.3, .comb_known = true};
+TEST(NarrowbandDetector, NeedsNoBaselineWhereTheCombIsKnown) {
+  const NarrowbandDetector::Hop tone = {.line = 27, .share = 0.3, .comb_known = true};
   EXPECT_EQ(hops_to(tone, [](int) { return 2.0; }), 3);
-  Tone::Hop faint = tone;
+  NarrowbandDetector::Hop faint = tone;
   faint.share = 0.14;
   EXPECT_EQ(hops_to(faint, [](int) { return 2.0; }), -1);
 }
 
-TEST(Tone, WhatWasStruckRingsOff) {
-  Tone tone;
+TEST(NarrowbandDetector, WhatWasStruckRingsOff) {
+  NarrowbandDetector tone;
   double power = 1.0;
   for (int k = 0; k < 40; ++k, power *= 0.8) {
     EXPECT_FALSE(tone.step({.line = 27, .share = 0.9, .power = power, .comb_known = true, .falls = k > 1})) << k;
@@ -45,9 +45,9 @@ TEST(Tone, WhatWasStruckRingsOff) {
 }
 
 // Without a comb an entry, linear in time over 0.15 s and steady then, is none; exponential growth of 30/s is.
-TEST(Tone, TellsGrowthFromAnEntry) {
+TEST(NarrowbandDetector, ReportsGrowthFromAnEntry) {
   for (const bool may_be : {false, true}) {
-    const Tone::Hop hop = {.line = 27, .share = 0.9, .may_be_the_cut = may_be};
+    const NarrowbandDetector::Hop hop = {.line = 27, .share = 0.9, .may_be_the_cut = may_be};
     const auto entry = [](int k) { return std::pow(std::min(6, k + 1), 2); };
     const auto growth = [](int k) { return std::exp(2.0 * 30.0 * 0.025 * k); };
     EXPECT_EQ(hops_to(hop, growth), may_be ? 6 : 5);
@@ -57,13 +57,13 @@ TEST(Tone, TellsGrowthFromAnEntry) {
   }
 }
 
-TEST(Spill, TellsGrowthFromDepthAndExit) {
+TEST(BroadbandGrowth, ReportsGrowthFromDepthAndExit) {
   Random random(3);
-  const auto hears = [&](auto left, auto whole) {
-    Spill spill;
+  const auto processes = [&](auto left, auto whole) {
+    BroadbandGrowth broadband growth;
     for (int k = 0; k < 120; ++k) {
       const double unrest = std::exp(0.15 * random.normal());
-      if (spill.step(left(k) * unrest, whole(k) + left(k) * unrest)) return k;
+      if (broadband growth.step(left(k) * unrest, whole(k) + left(k) * unrest)) return k;
     }
     return -1;
   };
@@ -72,20 +72,20 @@ TEST(Spill, TellsGrowthFromDepthAndExit) {
   const auto away = [](int k) { return k < 60 ? 1.0 : 1e-6; };
   const auto knocks = [](int k) { return k % 20 == 19 ? 50.0 : 0.2; };
   const auto chatter = [](int k) { return 0.05 * std::exp(k < 60 ? 0.0 : std::min(4.0, 0.5 * (k - 60))); };
-  EXPECT_EQ(hears([&](int k) { return 0.2 * steady(k); }, steady), -1);
-  EXPECT_EQ(hears([&](int k) { return 0.2 * deeper(k); }, deeper), -1);
-  EXPECT_EQ(hears([&](int k) { return 0.05 * steady(k); }, away), -1);
-  EXPECT_EQ(hears(knocks, steady), -1);
-  const int heard = hears(chatter, steady);
-  EXPECT_GT(heard, 60);
-  EXPECT_LT(heard, 80);
+  EXPECT_EQ(processes([&](int k) { return 0.2 * steady(k); }, steady), -1);
+  EXPECT_EQ(processes([&](int k) { return 0.2 * deeper(k); }, deeper), -1);
+  EXPECT_EQ(processes([&](int k) { return 0.05 * steady(k); }, away), -1);
+  EXPECT_EQ(processes(knocks, steady), -1);
+  const int processed = processes(chatter, steady);
+  EXPECT_GT(processed, 60);
+  EXPECT_LT(processed, 80);
 }
 
-TEST(HiddenHarmonics, SeesWhatOutgrowsToothPassing) {
+TEST(SynchronousChatter, SeesWhatOutgrowsToothPassing) {
   const auto kind = [](int teeth, std::size_t harmonic, double tooth_growth) {
     std::vector<Comb> combs(1, Comb(20));
     combs[0].set_harmonics(20);
-    HiddenHarmonics hidden(20, teeth);
+    SynchronousChatter hidden(20, teeth);
     for (std::size_t k = 1; k <= 20; ++k) combs[0].correct(k, k % static_cast<std::size_t>(teeth) == 0 ? 1.0 : 0.1);
     const auto power = [&] {
       double sum = 0.0;
@@ -115,8 +115,8 @@ TEST(CombCusum, HearsRecordingsThatHideFromAComb) {
   for (int k = 1; k <= cuts; ++k) {
     const RecordedCut one = locked_chatter(static_cast<std::uint64_t>(k));
     const RecordedCut other = period_doubling(static_cast<std::uint64_t>(k));
-    locked.push_back(score(one, heard_by_monitor(one)));
-    doubling.push_back(score(other, heard_by_monitor(other)));
+    locked.push_back(score(one, processed_by_monitor(one)));
+    doubling.push_back(score(other, processed_by_monitor(other)));
   }
   EXPECT_GE(summarise(locked).found, 0.6 * cuts);
   EXPECT_GE(summarise(doubling).found, 0.8 * cuts);
@@ -131,14 +131,14 @@ TEST(CombCusum, HearsTheCorpus) {
   std::vector<CutScore> scores;
   for (int seed = 1; seed <= cuts; ++seed) {
     const RecordedCut recorded = cut(static_cast<std::uint64_t>(seed));
-    scores.push_back(score(recorded, heard_by_monitor(recorded)));
+    scores.push_back(score(recorded, processed_by_monitor(recorded)));
   }
-  const Summary heard = summarise(scores);
-  EXPECT_EQ(heard.chatter, cuts / 2);
-  EXPECT_GE(heard.found, 0.93 * heard.chatter - 1.0);
-  EXPECT_LE(heard.false_alarms, cuts / 20);
-  EXPECT_LT(heard.delay_median_s, 0.13);
-  EXPECT_LT(heard.frequency_median_hz, 0.3);
+  const Summary processed = summarise(scores);
+  EXPECT_EQ(processed.chatter, cuts / 2);
+  EXPECT_GE(processed.found, 0.93 * processed.chatter - 1.0);
+  EXPECT_LE(processed.false_alarms, cuts / 20);
+  EXPECT_LT(processed.delay_median_s, 0.13);
+  EXPECT_LT(processed.frequency_median_hz, 0.3);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include "robomill/base/error.hpp"
 #include "robomill/monitor/comb_cusum/comb_cusum.hpp"
 #include "robomill/monitor/detector.hpp"
-#include "robomill/monitor/guard.hpp"
 #include "robomill/monitor/published/entropy_detector.hpp"
+#include "robomill/monitor/signal_validation.hpp"
 
 namespace robomill::monitor {
 namespace {
@@ -66,7 +66,7 @@ struct ChatterMonitor::Parts {
         channels(static_cast<std::size_t>(o.channels)),
         hop_frames(o.hop_samples()),
         samples(channels * hop_frames),
-        guards(channels, Guard(o)),
+        guards(channels, SignalValidation(o)),
         detector(make_detector(o)) {}
 
   void take(float sample) noexcept {
@@ -85,7 +85,7 @@ struct ChatterMonitor::Parts {
     Hop of{.samples = samples, .frames = hop_frames, .first_frame = (hop - 1) * hop_frames};
     double power = 0.0;
     double loudest = 0.0;
-    for (Guard& guard : guards) {
+    for (SignalValidation& guard : guards) {
       last.faults |= guard.hop_faults();
       power += guard.variance();
       loudest = std::max(loudest, guard.variance());
@@ -105,7 +105,7 @@ struct ChatterMonitor::Parts {
   std::size_t channels = 1, hop_frames = 1;
   std::vector<double> samples;  // of this hop, channel after channel
   std::size_t frame = 0, channel = 0;
-  std::vector<Guard> guards;
+  std::vector<SignalValidation> guards;
   std::unique_ptr<Detector> detector;
   Decision last;
 };
@@ -136,7 +136,7 @@ void ChatterMonitor::reset() noexcept {
   parts_->frame = 0;
   parts_->channel = 0;
   parts_->last = {};
-  for (Guard& guard : parts_->guards) guard.reset();
+  for (SignalValidation& guard : parts_->guards) guard.reset();
   parts_->detector->reset();
 }
 

@@ -26,7 +26,7 @@ TEST(ChatterMonitor, DecidesOnceAHopWhateverTheBlocks) {
   EXPECT_DOUBLE_EQ(decision.time_s, (10.0 * 256.0 - 1.0) / 10240.0);
 }
 
-TEST(MonitorOptions, RefuseWhatMakesNoSense) {
+TEST(MonitorOptions, RejectWhatMakesNoSense) {
   const auto field = [](const MonitorOptions& options) { return test::field_of([&] { options.validate(); }); };
   EXPECT_EQ(field({}), "sample_rate_hz");
   EXPECT_EQ(field({.sample_rate_hz = 1e4}), "accepted");

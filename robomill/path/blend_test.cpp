@@ -156,7 +156,7 @@ TEST_P(BlendFilters, JoinsWithContinuousDerivatives) {
 }
 
 // Found at nodes and between them at quarters: a rare place is missed by a few per cent, which the check of the samples
-// finds and the next plan mends.
+// finds and the next plan corrections.
 TEST_P(BlendFilters, KeepsTolerances) {
   const SmoothingOptions o = options(GetParam());
   double largest = 0.0;
@@ -287,7 +287,7 @@ TEST(Blend, ForgetsWhatIsDone) {
   }
 }
 
-TEST(Blend, RefusesOppositeAxesAndSkipsWhatDoesNotMove) {
+TEST(Blend, RejectsOppositeAxesAndSkipsWhatDoesNotMove) {
   Blend blend(options(), 10);
   blend.begin({.axis = Eigen::Vector3d::UnitZ()}, 0.0);
   EXPECT_EQ(blend.add({.end = {.axis = -Eigen::Vector3d::UnitZ()}}, 0, 0.0), Blend::Added::antipodal);

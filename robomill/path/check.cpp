@@ -120,8 +120,8 @@ void Checker::State::begin(const Sample& sample) {
                    book_);
 }
 
-// As if the tool stood still, so that what follows can be told.
-void Checker::State::mend(Sample& sample, double due_s) const {
+// As if the tool stood still, so that what follows can be reported.
+void Checker::State::correct(Sample& sample, double due_s) const {
   const bool first = result_.samples == 1;
   sample.time_s = first ? 0.0 : due_s;
   sample.joints = row_.head<6>();
@@ -136,7 +136,7 @@ void Checker::State::add(const Sample& given) {
   const double due = time_s_ + options_.sample_period_s;
   const bool sound = sane(row_of(sample)) && std::isfinite(sample.time_s);
   bool faulty = !sound;
-  if (!sound) mend(sample, due);
+  if (!sound) correct(sample, due);
   if (first) {
     begin(sample);
   } else if (!(std::abs(sample.time_s - due) <= 1e-6 * options_.sample_period_s + 1e-12 * std::abs(due))) {
@@ -249,7 +249,7 @@ CheckResult Checker::State::finish() {
   tip_error_.note((tip - window_.end().tip_m).norm(), end, book_);
   axis_error_.note(angle_of_chord((axis - window_.end().axis).norm()), end, book_);
   result_.duration_s = last_time_s_ - first_time_s_;
-  result_.breaches = book_.take();
+  result_.worst_violations = book_.take();
   return std::move(result_);
 }
 

@@ -23,17 +23,17 @@ struct Usage {
   std::size_t block = 0;       ///< … and in which block
 };
 
-/// Of the path that one breach stands for.
-inline constexpr double breach_cells_per_m = 5000.0;
+/// Of the path that one violation stands for.
+inline constexpr double violation_cells_per_m = 5000.0;
 
-/// Samples that break a limit, told so that a planner can mend them.
-struct Breach {
+/// Samples that break a limit, reported so that a planner can correct them.
+struct Violation {
   std::size_t block = 0;
   double time_s = 0.0;
   double path_m = 0.0;  ///< Sample::path_m
   double ratio = 1.0;   ///< of what was met to the limit
   int order = 1;  ///< 0: tolerance; 1, 2, 3: velocity, acceleration, jerk; −1: what neither a narrower nor a slower
-                  ///< path mends (faulty samples, positions beyond joint limits, poses, dwells)
+                  ///< path corrections (faulty samples, positions beyond joint limits, poses, dwells)
 };
 
 /// What a trajectory does, found from its samples alone.
@@ -53,13 +53,13 @@ struct CheckResult {
   std::size_t faulty = 0;  ///< samples that are not finite, name no block of the program, or are off the sample grid
   std::size_t samples = 0;
   double duration_s = 0.0;
-  std::vector<Breach> breaches =
+  std::vector<Violation> worst_violations =
       {};  ///< the worst of each order, block and 0.2 mm of its path, in order of time; at most 100,000
   [[nodiscard]] ROBOMILL_API std::size_t violations() const;  ///< of all, faulty samples too
 };
 
 struct ROBOMILL_API CheckOptions {
-  double relative_tolerance = 1e-6;  ///< >= 0; of a limit, which is not yet a breach: rounding of differences
+  double relative_tolerance = 1e-6;  ///< >= 0; of a limit, which is not yet a violation: rounding of differences
   double max_pose_error = 1e-7;      ///< > 0; m and rad
   bool tolerances_alone = false;     ///< the limits of joints, tip, axis and feed are not looked at
   /// @throws InvalidInput naming the member
@@ -77,8 +77,8 @@ struct ROBOMILL_API CheckOptions {
 /// programmed to move, the feed is that of the moving neighbours, and the axis is held to its programmed angular speed
 /// or theirs. Tip and axis error: from each sample to the nearest of the blocks around the one it names (8 to each
 /// side; 64 where that is beyond the tolerance), and from each programmed corner, start and end to the nearest chord
-/// between samples around it. Errors below a thousandth of their tolerance may be told too large, misses of a corner by
-/// over four tolerances up to twice too large. A sample that is not finite is taken as standing still.
+/// between samples around it. Errors below a thousandth of their tolerance may be reported too large, misses of a
+/// corner by over four tolerances up to twice too large. A sample that is not finite is taken as standing still.
 ///
 /// Memory is bounded by the program's blocks near the tool (1,024).
 class ROBOMILL_API Checker {

@@ -22,7 +22,7 @@ using test::Fixture;
 using test::options;
 
 // v(T/2) = j T²/16, a = j T/4: closed form of the four quarters.
-TEST(Checker, TellsTheClosedFormOfAStraightMove) {
+TEST(Checker, ReportsTheClosedFormOfAStraightMove) {
   Fixture f;
   const double length = 0.01, seconds = 0.4, jerk = 32.0 * length / std::pow(seconds, 3);
   f.move({0.0, length, 0.0}, {0.0, 0.0, 1.0}, length / 0.06);
@@ -41,7 +41,7 @@ TEST(Checker, TellsTheClosedFormOfAStraightMove) {
   EXPECT_EQ(r.axis_velocity.max, 0.0);
   EXPECT_NEAR(r.joints[1].position.max, length - 1.0, 1e-15);
   EXPECT_LT(r.pose_error.max, 1e-15);
-  EXPECT_TRUE(r.breaches.empty());
+  EXPECT_TRUE(r.worst_violations.empty());
 }
 
 // What stands before the first and after the last sample: a trajectory cut out of a motion jumps from and to rest.
@@ -56,8 +56,8 @@ TEST(Checker, CountsDifferencesAcrossTheEnds) {
   EXPECT_EQ(r.tip_acceleration.violations, 2U);
   EXPECT_NEAR(r.tip_jerk.max, 0.05 / 1e-6, 1.0);
   EXPECT_EQ(r.tip_velocity.violations, 0U);
-  ASSERT_EQ(r.breaches.size(), 2U);  // orders 2 and 3 of block 0
-  EXPECT_NEAR(std::max(r.breaches[0].ratio, r.breaches[1].ratio), 0.05 / 1e-6 / 20.0, 5.0);
+  ASSERT_EQ(r.worst_violations.size(), 2U);  // orders 2 and 3 of block 0
+  EXPECT_NEAR(std::max(r.worst_violations[0].ratio, r.worst_violations[1].ratio), 0.05 / 1e-6 / 20.0, 5.0);
 }
 
 // Around a circle of radius R at speed v: no rate of the speed but that of running in and out, the jerk's projection is
@@ -124,12 +124,12 @@ class CheckerLimit : public ::testing::Test {
     EXPECT_GT((r.*usage).violations, 0U);
     EXPECT_EQ(r.violations(), (r.*usage).violations);
     EXPECT_EQ((r.*usage).block, 1U);
-    ASSERT_EQ(r.breaches.size(), 1U);
-    EXPECT_EQ(r.breaches[0].block, 1U);
-    EXPECT_EQ(r.breaches[0].order, order);
-    EXPECT_NEAR(r.breaches[0].ratio, 1.25, 1e-9);
-    EXPECT_EQ(r.breaches[0].time_s, (r.*usage).at_s);
-    EXPECT_GT(r.breaches[0].time_s, 0.999);
+    ASSERT_EQ(r.worst_violations.size(), 1U);
+    EXPECT_EQ(r.worst_violations[0].block, 1U);
+    EXPECT_EQ(r.worst_violations[0].order, order);
+    EXPECT_NEAR(r.worst_violations[0].ratio, 1.25, 1e-9);
+    EXPECT_EQ(r.worst_violations[0].time_s, (r.*usage).at_s);
+    EXPECT_GT(r.worst_violations[0].time_s, 0.999);
   }
   Fixture f;
   std::vector<Sample> samples;
@@ -172,9 +172,9 @@ TEST_F(CheckerLimit, OfEachJointIsWatched) {
       const Usage broken = usage(r.joints[static_cast<std::size_t>(j)]);
       EXPECT_GT(broken.violations, 0U);
       EXPECT_EQ(r.violations(), broken.violations);
-      const auto worst = std::max_element(r.breaches.begin(), r.breaches.end(),
-                                          [](const Breach& a, const Breach& b) { return a.ratio < b.ratio; });
-      ASSERT_NE(worst, r.breaches.end());
+      const auto worst = std::max_element(r.worst_violations.begin(), r.worst_violations.end(),
+                                          [](const Violation& a, const Violation& b) { return a.ratio < b.ratio; });
+      ASSERT_NE(worst, r.worst_violations.end());
       EXPECT_EQ(worst->order, order);
       EXPECT_EQ(worst->block, broken.block);
       EXPECT_EQ(worst->time_s, broken.at_s);
@@ -195,8 +195,8 @@ TEST_F(CheckerLimit, OfAJointsPositionIsWatched) {
   for (const Sample& sample : samples) most = std::max(most, sample.joints[0]);
   EXPECT_NEAR(r.joints[0].position.max, most - 0.008, 1e-15);
   EXPECT_EQ(r.violations(), r.joints[0].position.violations);
-  ASSERT_FALSE(r.breaches.empty());
-  EXPECT_EQ(r.breaches[0].order, -1);
+  ASSERT_FALSE(r.worst_violations.empty());
+  EXPECT_EQ(r.worst_violations[0].order, -1);
 }
 
 TEST_F(CheckerLimit, OfTheFeedIsWatched) {
@@ -204,10 +204,10 @@ TEST_F(CheckerLimit, OfTheFeedIsWatched) {
   const CheckResult r = f.check(samples);
   EXPECT_NEAR(r.feed.max, 1.25, 1e-9);
   EXPECT_EQ(r.violations(), r.feed.violations);
-  ASSERT_EQ(r.breaches.size(), 1U);
-  EXPECT_EQ(r.breaches[0].block, 1U);
-  EXPECT_EQ(r.breaches[0].order, 1);
-  EXPECT_NEAR(r.breaches[0].ratio, 1.25, 1e-9);
+  ASSERT_EQ(r.worst_violations.size(), 1U);
+  EXPECT_EQ(r.worst_violations[0].block, 1U);
+  EXPECT_EQ(r.worst_violations[0].order, 1);
+  EXPECT_NEAR(r.worst_violations[0].ratio, 1.25, 1e-9);
   f.program.blocks[1].kind = Block::Kind::rapid;  // has no feed
   f.program.blocks[1].duration_s = 0.0;
   EXPECT_EQ(f.check(samples).violations(), 0U);
@@ -245,7 +245,7 @@ TEST(Checker, HoldsAPureRotationToItsAngularFeed) {
   EXPECT_NEAR(f.check(samples).feed.max, 1.2 * good.feed.max, 1e-9);
 }
 
-TEST(Checker, RefusesOptionsThatMakeNoSense) {
+TEST(Checker, RejectsOptionsThatMakeNoSense) {
   Fixture f;
   program::ProgramSource source(f.program);
   const auto field = [&](const SmoothingOptions& o, const CheckOptions& c) {

@@ -102,11 +102,11 @@ void DriveModel::add(const Sample& sample) {
     const double error = command - joint.state[2];
     errors[j] = error;
     joint.squares += error * error;
-    TrackingError::Joint& told = error_.joints[j];
-    if (std::abs(error) > told.max) {
-      told.max = std::abs(error);
-      told.at_s = sample.time_s;
-      told.block = sample.block;
+    TrackingError::Joint& reported = error_.joints[j];
+    if (std::abs(error) > reported.max) {
+      reported.max = std::abs(error);
+      reported.at_s = sample.time_s;
+      reported.block = sample.block;
     }
   }
   ++error_.samples;

@@ -26,7 +26,7 @@ struct ROBOMILL_API Drive {
   void validate() const;
 };
 
-/// How far the drives are from where they are told to be.
+/// How far the drives are from where they are commanded to be.
 struct TrackingError {
   struct Joint {
     double max = 0.0;  ///< largest |r − z| (|r − y| of a rigid joint) at the samples [rad or m]

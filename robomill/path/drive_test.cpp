@@ -130,17 +130,17 @@ TEST(Drive, SumsUpItsSeries) {
     }
   });
   model.add(samples);
-  const TrackingError told = model.result();
-  EXPECT_EQ(told.samples, 500U);
+  const TrackingError reported = model.result();
+  EXPECT_EQ(reported.samples, 500U);
   for (std::size_t j = 0; j < 3; ++j) {
-    EXPECT_EQ(told.joints[j].max, largest[j]);
-    EXPECT_NEAR(told.joints[j].rms, std::sqrt(squares[j] / 500.0), 1e-15);
-    EXPECT_EQ(told.joints[j].block, static_cast<std::size_t>(std::lround(told.joints[j].at_s / 1e-3)) / 100);
+    EXPECT_EQ(reported.joints[j].max, largest[j]);
+    EXPECT_NEAR(reported.joints[j].rms, std::sqrt(squares[j] / 500.0), 1e-15);
+    EXPECT_EQ(reported.joints[j].block, static_cast<std::size_t>(std::lround(reported.joints[j].at_s / 1e-3)) / 100);
   }
   EXPECT_EQ(DriveModel({servo()}, 1e-3).result().joints[0].rms, 0.0);
 }
 
-TEST(Drive, RefusesWhatIsNoDrive) {
+TEST(Drive, RejectsWhatIsNoDrive) {
   using robomill::test::field_of;
   const auto field = [](Drive drive) { return field_of([&] { const DriveModel model({servo(), drive}, 1e-3); }); };
   EXPECT_EQ(field({}), "drives[2].natural_frequency_hz");

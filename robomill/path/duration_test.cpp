@@ -18,7 +18,7 @@ namespace robomill::path {
 namespace {
 
 using robomill::test::field_of;
-using robomill::test::refusal;
+using robomill::test::rejection;
 
 program::Program straight(double length_m, double feed_m_per_s) {
   program::Program out;
@@ -48,7 +48,7 @@ void smooth_into(Outcome& out, const program::Program& program, const SmoothingO
 std::string rejected(const program::Program& program, const SmoothingOptions& options,
                      const robot::JointLimits& limits = test::tilt_head_limits()) {
   Outcome run;
-  std::string said = refusal([&] { smooth_into(run, program, options, limits); });
+  std::string said = rejection([&] { smooth_into(run, program, options, limits); });
   EXPECT_EQ(run.samples, 0U);
   return said;
 }

@@ -23,12 +23,12 @@ bool Emitter::emit(double u_m, std::vector<Sample>& out) {
   return true;
 }
 
-bool Emitter::add(std::span<const Polynomial> path, std::span<const Span> motion, std::vector<Sample>& out,
+bool Emitter::add(std::span<const Polynomial> path, std::span<const Segment> motion, std::vector<Sample>& out,
                   const std::function<void()>& take, std::size_t chunk) {
   path_.erase(path_.begin(), path_.begin() + static_cast<std::ptrdiff_t>(path_at_));
   path_at_ = 0;
   path_.insert(path_.end(), path.begin(), path.end());
-  for (const Span& span : motion) {
+  for (const Segment& span : motion) {
     const double total_s = path::duration_s(span);
     for (; next_s_ < total_s; next_s_ += period_s_) {
       if (!emit(span.begin_m + way_m(span, next_s_, total_s), out)) return false;

@@ -6,7 +6,7 @@
 
 #include "robomill/path/blend.hpp"
 #include "robomill/path/sample.hpp"
-#include "robomill/path/speed/span.hpp"
+#include "robomill/path/speed/segment.hpp"
 #include "robomill/robot/kinematics.hpp"
 
 namespace robomill::path {
@@ -18,7 +18,7 @@ class Emitter {
   Emitter(const robot::Kinematics& kinematics, double period_s, const robot::Position6& start);
   /// Takes motion over; samples that it reaches go to `out`, whose taker is called whenever it holds `chunk` of them.
   /// @return false where a pose cannot be reached; reach() says why
-  bool add(std::span<const Polynomial> path, std::span<const Span> motion, std::vector<Sample>& out,
+  bool add(std::span<const Polynomial> path, std::span<const Segment> motion, std::vector<Sample>& out,
            const std::function<void()>& take = {}, std::size_t chunk = 4096);
   /// The last sample.
   bool finish(std::vector<Sample>& out);

@@ -81,7 +81,7 @@ void PathInterpolator::Parts::take(const Planner::Status& status) noexcept {
 /// What the planner has put out into the look-ahead; false where that is full.
 bool PathInterpolator::Parts::lay() noexcept {
   std::vector<Polynomial>& path = planner.path();
-  std::vector<Span>& motion = planner.motion();
+  std::vector<Segment>& motion = planner.motion();
   for (; path_at < path.size(); ++path_at) {
     if (ahead.path.room() == 0) break;
     ahead.path.put(path[path_at]);
@@ -89,9 +89,9 @@ bool PathInterpolator::Parts::lay() noexcept {
   ahead.path.publish();
   if (path_at < path.size()) return false;
   for (; motion_at < motion.size(); ++motion_at) {
-    const Survey::Went went = survey.take(motion[motion_at]);
-    if (went == Survey::Went::full) return false;
-    if (went == Survey::Went::unreachable) {
+    const Survey::ScanStatus went = survey.take(motion[motion_at]);
+    if (went == Survey::ScanStatus::full) return false;
+    if (went == Survey::ScanStatus::unreachable) {
       fail({.status = Pushed::Status::unreachable,
             .block = survey.at().block,
             .line = survey.at().line,

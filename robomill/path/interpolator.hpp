@@ -24,7 +24,7 @@ struct ROBOMILL_API InterpolatorOptions {
 /// thread runs it, at a rate between 0 and 1.5 that it changes within those bounds; it never takes a step from which it
 /// could not still come to rest before the plan ends, or slow down to what lies ahead. So feed hold, override and a
 /// look-ahead that runs dry all end in the same way: along the path, within every limit, without a jump; and it goes on
-/// when told, or when blocks come. Where limits hold the plan back an override above 100 % changes nothing.
+/// when asked, or when blocks come. Where limits hold the plan back an override above 100 % changes nothing.
 ///
 /// Threads: push() and finish() from one, next() from one other, the rest from any. Nothing allocates or throws after
 /// construction; next(), hold(), resume() and set_override() are wait-free. Memory is that of the look-ahead.
@@ -42,7 +42,7 @@ class ROBOMILL_API PathInterpolator {
     [[nodiscard]] bool accepted() const noexcept { return status == Status::accepted; }
   };
   /// running: moves. waiting: at rest, for blocks. holding: at rest, by hold() or an override of 0. finished: at rest
-  /// at the program's end. stopped: at rest, and nothing follows, push() has told why.
+  /// at the program's end. stopped: at rest, and nothing follows, push() has reported why.
   enum class State { running, waiting, holding, finished, stopped };
 
   /// @param kinematics  outlives the interpolator

@@ -52,10 +52,10 @@ SmoothingOptions options_of(const Case& given) {
 void expect_within(const CheckResult& result, double largest_override) {
   EXPECT_LE(result.feed.max, largest_override);
   EXPECT_EQ(result.violations() - result.feed.violations, 0U);
-  for (const Breach& breach : result.breaches) {
-    if (largest_override > 1.0 && breach.order == 1) continue;
-    ADD_FAILURE() << "order " << breach.order << " ratio " << breach.ratio << " at " << breach.time_s << " s, block "
-                  << breach.block;
+  for (const Violation& violation : result.worst_violations) {
+    if (largest_override > 1.0 && violation.order == 1) continue;
+    ADD_FAILURE() << "order " << violation.order << " ratio " << violation.ratio << " at " << violation.time_s
+                  << " s, block " << violation.block;
   }
 }
 
@@ -121,8 +121,9 @@ TEST(InterpolatorLimits, HoldWhereverTheProgramBreaksOff) {
     EXPECT_GE(path.ready_s(), 0.0);
     // The rest of the program is missing, so that only motion is looked at.
     const CheckResult result = test::check(program, *machine, options, samples);
-    for (const Breach& breach : result.breaches) {
-      if (breach.order > 1 || (breach.order == 1 && share <= 1.0)) ADD_FAILURE() << seed << ' ' << breach.ratio;
+    for (const Violation& violation : result.worst_violations) {
+      if (violation.order > 1 || (violation.order == 1 && share <= 1.0))
+        ADD_FAILURE() << seed << ' ' << violation.ratio;
     }
   }
 }

@@ -311,7 +311,7 @@ TEST(PathInterpolator, StopsWithinLimitsBeforeWhatCannotBeReached) {
   EXPECT_EQ(result.tip_velocity.violations + result.tip_acceleration.violations + result.tip_jerk.violations, 0U);
 }
 
-TEST(PathInterpolator, RefusesBadBlocksAndGoesOn) {
+TEST(PathInterpolator, RejectsBadBlocksAndGoesOn) {
   Straight s;
   program::Block bad = move_to(std::numeric_limits<double>::quiet_NaN(), 1.0);
   EXPECT_EQ(s.path.push(bad).status, Status::invalid);
@@ -338,7 +338,7 @@ TEST(PathInterpolator, RefusesBadBlocksAndGoesOn) {
   EXPECT_EQ(none.x_m, 0.0);
 }
 
-TEST(PathInterpolator, RefusesBadOptions) {
+TEST(PathInterpolator, RejectsBadOptions) {
   const test::TiltHead machine(test::tilt_head_limits());
   const auto make = [&](const SmoothingOptions& smoothing, const InterpolatorOptions& ahead, double x_m) {
     PathInterpolator path(machine, smoothing, {.tip_m = {x_m, 0.0, 0.0}}, 0.0, robot::Position6::Zero(), ahead);

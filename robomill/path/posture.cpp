@@ -105,7 +105,7 @@ std::size_t block_at(const Head& head, double t) {
 }
 
 /// Why a walk ended. On the way to where the machine cannot reach it is stretched, and singular, first: then what is
-/// missing at the block's end tells more.
+/// missing at the block's end reports more.
 struct End {
   robot::Reach reach = {};
   std::size_t block = 0;
@@ -196,7 +196,7 @@ PostureChoice choose_posture(program::Source& source, const robot::Kinematics& k
   PostureChoice out{.blocks = head.line.size(), .whole = head.whole};
   const std::vector<double> along = stations(head, options);
   std::vector<Candidate> all = candidates(kinematics, head, options);
-  const auto refuse = [&](const robot::Reach& reach, std::size_t block) {
+  const auto reject = [&](const robot::Reach& reach, std::size_t block) {
     return cannot_take(reach, kinematics, block, head.line[block]);
   };
   if (all.empty()) {
@@ -218,9 +218,9 @@ PostureChoice choose_posture(program::Source& source, const robot::Kinematics& k
     }
   }
   const End end = end_of(kinematics, head, all.front(), options);
-  if (!may_turn || (!found(all.front().walk) && end.for_all)) throw refuse(end.reach, end.block);
+  if (!may_turn || (!found(all.front().walk) && end.for_all)) throw reject(end.reach, end.block);
   Posture turning = turning_posture(kinematics, head, along, options);
-  if (turning.gamma_rad.empty()) throw refuse(end.reach, end.block);
+  if (turning.gamma_rad.empty()) throw reject(end.reach, end.block);
   out.margin = walk(kinematics, head, along, turning.gamma_rad, turning.start, exactly).margin;
   out.posture = std::move(turning);
   return out;

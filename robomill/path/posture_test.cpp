@@ -16,7 +16,7 @@ namespace robomill::path {
 namespace {
 
 using robomill::test::field_of;
-using robomill::test::refusal;
+using robomill::test::rejection;
 namespace arms = robot::testing;
 
 program::Program program_of(const program::Pose& start, const std::vector<program::Pose>& ends) {
@@ -148,10 +148,10 @@ TEST(Posture, NamesTheBlockThatCannotBeReached) {
   program::Program program = cone_of_axes();
   program.blocks[5].end.tip_m.z() = -3.0;
   program::ProgramSource source(program);
-  const std::string said = refusal([&] { (void)choose_posture(source, machine); });
+  const std::string said = rejection([&] { (void)choose_posture(source, machine); });
   EXPECT_EQ(said.substr(0, 54), "block 6 (line 60): is out of the machine's reach by 1.") << said;
   program.start.tip_m.x() = 30.0;
-  EXPECT_EQ(refusal([&] { (void)choose_posture(source, machine); }).substr(0, 51),
+  EXPECT_EQ(rejection([&] { (void)choose_posture(source, machine); }).substr(0, 51),
             "the program's start: is out of the machine's reach ");
 }
 
@@ -165,7 +165,7 @@ TEST(Posture, NamesTheJointAtItsLimit) {
   cell.arm.joints[1].min_position = choice.posture.start(1) - 0.005;
   cell.arm.joints[1].max_position = choice.posture.start(1) + 0.005;
   const robot::SerialKinematics machine(cell);
-  const std::string said = refusal([&] {
+  const std::string said = rejection([&] {
     (void)choose_posture(source, machine, {.gamma_rad = choice.posture.gamma_rad[0], .start = choice.posture.start});
   });
   EXPECT_NE(said.find("takes joint 2 "), std::string::npos) << said;
@@ -188,7 +188,7 @@ program::Program past_the_wrist(const robot::SerialKinematics& machine, double b
   return program_of(pose(beside_rad, -0.3), {pose(beside_rad, -0.2), pose(-beside_rad, 0.2)});
 }
 
-TEST(Posture, RefusesTheWayThroughASingularityAndTakesTheOneBesideIt) {
+TEST(Posture, RejectsTheWayThroughASingularityAndTakesTheOneBesideIt) {
   const robot::SerialKinematics machine(facing_cell());
   const auto choose = [&](double beside_rad) {
     const program::Program program = past_the_wrist(machine, beside_rad);
@@ -196,7 +196,7 @@ TEST(Posture, RefusesTheWayThroughASingularityAndTakesTheOneBesideIt) {
     const robot::Position6 start = with_wrist(beside_rad, -0.3);
     return choose_posture(source, machine, {.gamma_rad = machine.forward(start).gamma_rad, .start = start});
   };
-  const std::string said = refusal([&] { (void)choose(0.0); });
+  const std::string said = rejection([&] { (void)choose(0.0); });
   EXPECT_EQ(said.substr(0, 52), "block 2 (line 20): leads through a singularity, wher") << said;
   const PostureChoice beside = choose(0.2);
   EXPECT_EQ(beside.margin.joint, -1);
@@ -217,7 +217,7 @@ TEST(Posture, TakesTheHybridMachineAsItStands) {
   EXPECT_EQ(choice.posture.gamma_rad, std::vector<double>{0.0});
   expect_followed(machine, program, choice.posture, 0.01);
   program.blocks[11].end.axis = Eigen::Vector3d(1.0, 0.0, -0.2).normalized();
-  const std::string said = refusal([&] { (void)choose_posture(source, machine); });
+  const std::string said = rejection([&] { (void)choose_posture(source, machine); });
   EXPECT_EQ(said.substr(0, 20), "block 12 (line 120):") << said;
 }
 
@@ -230,23 +230,23 @@ TEST(Posture, LooksAtTheHeadOfALongProgram) {
   EXPECT_FALSE(choice.whole);
 }
 
-TEST(Posture, RefusesWhatMakesNoSense) {
+TEST(Posture, RejectsWhatMakesNoSense) {
   const robot::SerialKinematics machine(facing_cell());
   program::Program program = cone_of_axes();
   program::ProgramSource source(program);
-  const auto refused = [&](const PostureOptions& options) {
+  const auto rejected = [&](const PostureOptions& options) {
     return field_of([&] { (void)choose_posture(source, machine, options); });
   };
-  EXPECT_EQ(refused({.gamma_rad = std::nan("")}), "gamma_rad");
-  EXPECT_EQ(refused({.start = robot::Position6::Constant(HUGE_VAL)}), "start");
-  EXPECT_EQ(refused({.gammas = 3}), "gammas");
-  EXPECT_EQ(refused({.max_axis_step_rad = 0.0}), "max_axis_step_rad");
-  EXPECT_EQ(refused({.max_tip_step_m = -1.0}), "max_tip_step_m");
-  EXPECT_EQ(refused({.max_blocks = 0}), "max_blocks");
+  EXPECT_EQ(rejected({.gamma_rad = std::nan("")}), "gamma_rad");
+  EXPECT_EQ(rejected({.start = robot::Position6::Constant(HUGE_VAL)}), "start");
+  EXPECT_EQ(rejected({.gammas = 3}), "gammas");
+  EXPECT_EQ(rejected({.max_axis_step_rad = 0.0}), "max_axis_step_rad");
+  EXPECT_EQ(rejected({.max_tip_step_m = -1.0}), "max_tip_step_m");
+  EXPECT_EQ(rejected({.max_blocks = 0}), "max_blocks");
   program.blocks[3].end.axis = -program.blocks[2].end.axis;
-  EXPECT_EQ(refused({}), "block 4 (line 40)");
+  EXPECT_EQ(rejected({}), "block 4 (line 40)");
   program.blocks.clear();
-  EXPECT_EQ(refused({}), "program");
+  EXPECT_EQ(rejected({}), "program");
 }
 
 }  // namespace

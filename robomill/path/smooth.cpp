@@ -74,7 +74,7 @@ double gamma_after(const Posture& posture, std::size_t blocks_done) {
   return gamma[std::min(blocks_done, gamma.size() - 1)];
 }
 
-[[noreturn]] void refuse(const Planner::Status& status, const robot::Kinematics& kinematics) {
+[[noreturn]] void reject(const Planner::Status& status, const robot::Kinematics& kinematics) {
   using Kind = Planner::Status::Kind;
   if (status.kind == Kind::antipodal) {
     throw InvalidInput(
@@ -90,11 +90,11 @@ template <class Take>
 void run(program::Source& source, const Posture& posture, const robot::Kinematics& kinematics, Planner& planner,
          Progress& progress, std::size_t& blocks, Take&& take) {
   const auto hold = [&](const Planner::Status& status) {
-    if (!status.ok()) refuse(status, kinematics);
+    if (!status.ok()) reject(status, kinematics);
     take();
     while (planner.busy()) {
       const Planner::Status more = planner.resume();
-      if (!more.ok()) refuse(more, kinematics);
+      if (!more.ok()) reject(more, kinematics);
       take();
     }
   };
@@ -109,43 +109,43 @@ void run(program::Source& source, const Posture& posture, const robot::Kinematic
 
 /// Slower, or nearer to the programmed path, where limits were broken.
 /// @return false where nothing of it helps
-bool mend(const std::vector<Breach>& breaches, Mends& mends) {
-  Mends more;
+bool correct(const std::vector<Violation>& violations, SpeedCorrections& corrections) {
+  SpeedCorrections more;
   const auto least = [](auto& map, auto key, double factor) {
     const auto [at, fresh] = map.emplace(key, factor);
     if (!fresh) at->second = std::min(at->second, factor);
   };
-  for (const Breach& breach : breaches) {
-    if (breach.order < 0) continue;
-    if (breach.order == 0) {
-      const double factor = std::clamp(0.97 / breach.ratio, 0.5, 0.97);
-      for (std::size_t block = breach.block == 0 ? 0 : breach.block - 1; block <= breach.block + 1; ++block) {
+  for (const Violation& violation : violations) {
+    if (violation.order < 0) continue;
+    if (violation.order == 0) {
+      const double factor = std::clamp(0.97 / violation.ratio, 0.5, 0.97);
+      for (std::size_t block = violation.block == 0 ? 0 : violation.block - 1; block <= violation.block + 1; ++block) {
         least(more.tolerance, block, factor);
       }
     } else {
       // Differences reach over three samples.
-      const double factor = std::clamp(0.97 * std::pow(breach.ratio, -1.0 / breach.order), 0.5, 0.97);
-      const auto cell = static_cast<std::int64_t>(std::floor(breach.path_m * Mends::cells_per_m));
+      const double factor = std::clamp(0.97 * std::pow(violation.ratio, -1.0 / violation.order), 0.5, 0.97);
+      const auto cell = static_cast<std::int64_t>(std::floor(violation.path_m * SpeedCorrections::cells_per_m));
       for (std::int64_t at = cell - 1; at <= cell + 1; ++at) least(more.speed, at, factor);
     }
   }
-  for (const auto& [block, factor] : more.tolerance) mends.tolerance.emplace(block, 1.0).first->second *= factor;
-  for (const auto& [cell, factor] : more.speed) mends.speed.emplace(cell, 1.0).first->second *= factor;
+  for (const auto& [block, factor] : more.tolerance) corrections.tolerance.emplace(block, 1.0).first->second *= factor;
+  for (const auto& [cell, factor] : more.speed) corrections.speed.emplace(cell, 1.0).first->second *= factor;
   return !more.tolerance.empty() || !more.speed.empty();
 }
 
 double lower_bound_s(program::Source& source, const Posture& posture, const robot::Kinematics& kinematics,
-                     const SmoothingOptions& options, const Mends& mends, Progress& progress) {
+                     const SmoothingOptions& options, const SpeedCorrections& corrections, Progress& progress) {
   PlannerOptions to_the_limit;
   to_the_limit.share = 1.0;
-  const Mends shape{.tolerance = mends.tolerance, .speed = {}};  // the same path, at any speed
+  const SpeedCorrections shape{.tolerance = corrections.tolerance, .speed = {}};  // the same path, at any speed
   std::vector<BoundPoint> points;
   Planner planner(kinematics, options, to_the_limit, &shape, Planner::Task::points);
   source.rewind();
   double dwells_s = 0.0;
   std::size_t blocks = 0;
   run(source, posture, kinematics, planner, progress, blocks, [&] {
-    for (const Span& span : planner.motion()) dwells_s += span.dwell_s;
+    for (const Segment& span : planner.motion()) dwells_s += span.dwell_s;
     points.insert(points.end(), planner.points().begin(), planner.points().end());
     planner.motion().clear();
     planner.points().clear();
@@ -156,12 +156,12 @@ double lower_bound_s(program::Source& source, const Posture& posture, const robo
 
 /// A plan of the windowed planner, its samples and their check; once.
 void plan_once(program::Source& source, const robot::Kinematics& kinematics, const Posture& posture,
-               const SmoothingOptions& options, Mends& mends, const SampleSink& sink, Progress& progress,
-               Summary& out) {
+               const SmoothingOptions& options, SpeedCorrections& corrections, const SampleSink& sink,
+               Progress& progress, Summary& out) {
   Shared shared(source);
   Reader to_plan(shared, 0), to_check(shared, 1);
   Planner planner(kinematics, options, options.method == Method::optimal ? PlannerOptions::optimal() : PlannerOptions{},
-                  &mends, Planner::Task::proposals);
+                  &corrections, Planner::Task::proposals);
   Emitter emitter(kinematics, options.sample_period_s, posture.start);
   Checker checker(to_check, kinematics, options);
   Preview preview(kinematics, options);
@@ -180,28 +180,28 @@ void plan_once(program::Source& source, const robot::Kinematics& kinematics, con
   };
   // Before a row is sampled, and slower again: how long it takes.
   const auto require_end = [&] {
-    const std::span<const Span> kept = std::span<const Span>(planner.motion()).first(planner.kept());
+    const std::span<const Segment> kept = std::span<const Segment>(planner.motion()).first(planner.kept());
     if (kept.empty()) return;
     double planned_s = emitter.duration_s();
-    for (const Span& span : kept) planned_s += duration_s(span);
+    for (const Segment& span : kept) planned_s += duration_s(span);
     if (!(planned_s <= options.max_duration_s)) {
       throw lasts_too_long(options, planned_s, emitter.at().block, emitter.at().line);
     }
   };
   // A row that would break limits is planned again before it is taken over.
   const auto revise = [&] {
-    std::vector<Breach> breaches;
+    std::vector<Violation> violations;
     for (int i = 0; planner.proposes() && i < max_revisions; ++i) {
-      breaches.clear();
-      const std::span<const Span> motion = planner.motion();
+      violations.clear();
+      const std::span<const Segment> motion = planner.motion();
       Emitter ahead = emitter;
       for (std::size_t from = 0, to = 0; from < motion.size(); from = to + 1) {
         for (to = from; to < motion.size() && planner.suspect(to); ++to) {
         }
-        if (to > from) preview.look(ahead, motion.subspan(from, to - from), from == 0, breaches);
+        if (to > from) preview.look(ahead, motion.subspan(from, to - from), from == 0, violations);
       }
       progress.check();
-      if (!mend(breaches, mends) || !planner.revise()) return;
+      if (!correct(violations, corrections) || !planner.revise()) return;
     }
   };
   run(to_plan, posture, kinematics, planner, progress, out.blocks, [&] {
@@ -212,7 +212,7 @@ void plan_once(program::Source& source, const robot::Kinematics& kinematics, con
     require_end();
     const double from_s = processor_s();
     double sent_s = 0.0;
-    const std::span<const Span> kept = std::span<const Span>(planner.motion()).first(planner.kept());
+    const std::span<const Segment> kept = std::span<const Segment>(planner.motion()).first(planner.kept());
     const bool whole = emitter.add({}, kept, samples, [&] {
       const double at_s = processor_s();
       progress.check();
@@ -279,19 +279,19 @@ Summary smooth(program::Source& source, const robot::Kinematics& kinematics, con
     plan_published(source, kinematics, posture, options, sink, progress, out);
     return out;
   }
-  Mends mends;
+  SpeedCorrections corrections;
   for (out.rounds = 1;; ++out.rounds) {
-    plan_once(source, kinematics, posture, options, mends, sink, progress, out);
+    plan_once(source, kinematics, posture, options, corrections, sink, progress, out);
     if (out.samples == 0) {
       throw InvalidInput("program", "moves nothing", "A program of dwells alone has no path to plan");
     }
     if (out.check.violations() == 0 || out.rounds == max_rounds) break;
-    if (!mend(out.check.breaches, mends)) break;
+    if (!correct(out.check.worst_violations, corrections)) break;
     source.rewind();
     restart();
   }
   if (out.blocks <= lower_bound_blocks) {
-    out.lower_bound_s = lower_bound_s(source, posture, kinematics, options, mends, progress);
+    out.lower_bound_s = lower_bound_s(source, posture, kinematics, options, corrections, progress);
   }
   return out;
 }

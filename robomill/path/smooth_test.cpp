@@ -231,7 +231,7 @@ double planned_s(const program::Program& program, const robot::Kinematics& kinem
   double sum_s = 0.0;
   const auto take = [&](const Planner::Status& status) {
     EXPECT_TRUE(status.ok());
-    for (const Span& span : planner.motion()) sum_s += duration_s(span);
+    for (const Segment& span : planner.motion()) sum_s += duration_s(span);
     planner.motion().clear();
     planner.path().clear();
   };
@@ -249,7 +249,7 @@ double bound_s(const program::Program& program, const robot::Kinematics& kinemat
   double dwells_s = 0.0;
   const auto take = [&](const Planner::Status& status) {
     EXPECT_TRUE(status.ok());
-    for (const Span& span : planner.motion()) dwells_s += span.dwell_s;
+    for (const Segment& span : planner.motion()) dwells_s += span.dwell_s;
     points.insert(points.end(), planner.points().begin(), planner.points().end());
     planner.motion().clear();
     planner.points().clear();
@@ -365,23 +365,23 @@ TEST(Smooth, StopsWhereNoSlowerAndNoNarrowerPathHelps) {
   EXPECT_EQ(summary.check.violations(), summary.samples);
 }
 
-TEST(Smooth, RefusesWhatCannotBeReachedByBlockAndLine) {
+TEST(Smooth, RejectsWhatCannotBeReachedByBlockAndLine) {
   const robot::HybridKinematics machine(test::s_machine(0.4, 8.0));
   program::Program program = test::s_path();
   program.blocks[5].end.tip_m.x() += 5.0;
   const std::string far =
-      robomill::test::refusal([&] { smoothed(program, machine, test::published_options(Method::verified)); });
+      robomill::test::rejection([&] { smoothed(program, machine, test::published_options(Method::verified)); });
   EXPECT_NE(far.find("block 6 (line 6)"), std::string::npos) << far;
   program = test::s_path();
   program.blocks[2].end.axis = -program.blocks[1].end.axis;
   const std::string turned =
-      robomill::test::refusal([&] { smoothed(program, machine, test::published_options(Method::verified)); });
+      robomill::test::rejection([&] { smoothed(program, machine, test::published_options(Method::verified)); });
   EXPECT_NE(turned.find("half a circle (line 3)"), std::string::npos) << turned;
   // A posture that cannot be the start's is not of block 1.
   program = test::s_path();
   program.start.tip_m.x() += 5.0;
   const std::string start =
-      robomill::test::refusal([&] { smoothed(program, machine, test::published_options(Method::verified)); });
+      robomill::test::rejection([&] { smoothed(program, machine, test::published_options(Method::verified)); });
   EXPECT_TRUE(start.starts_with("the program's start: takes joint 4 ")) << start;
 }
 

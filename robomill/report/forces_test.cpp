@@ -156,7 +156,7 @@ TEST(ForcesJson, DeflectionAtAMarkLiesOnTheCurve) {
 }
 
 template <class Change>
-std::string refused(Change&& change) {
+std::string rejected(Change&& change) {
   Forces forces = sample_forces();
   change(forces);
   return test::field_of([&] { forces.validate(); });
@@ -164,35 +164,35 @@ std::string refused(Change&& change) {
 
 TEST(ForcesValidate, NamesTheMember) {
   const double infinite = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(refused([](Forces&) {}), "accepted");
-  EXPECT_EQ(refused([](Forces& f) { f.revolution->rotation_rad[3] = 0.0; }), "revolution.rotation_rad");
-  EXPECT_EQ(refused([](Forces& f) { f.revolution->force_n.resize(3, 7); }), "revolution.force_n");
-  EXPECT_EQ(refused([](Forces& f) { f.revolution->force_n(1, 5) = missing; }), "revolution.force_n");
-  EXPECT_EQ(refused([](Forces& f) { f.revolution->torque_n_m.resize(2); }), "revolution.torque_n_m");
-  EXPECT_EQ(refused([](Forces& f) { f.revolution->rms_n.y() = missing; }), "revolution.rms_n");
-  EXPECT_EQ(refused([](Forces& f) { f.revolution->power_w = missing; }), "accepted");
-  EXPECT_EQ(refused([&](Forces& f) { f.revolution->power_w = infinite; }), "revolution.power_w");
-  EXPECT_EQ(refused([](Forces& f) { f.revolution->engagement[2].height_m = 0.0; }),
+  EXPECT_EQ(rejected([](Forces&) {}), "accepted");
+  EXPECT_EQ(rejected([](Forces& f) { f.revolution->rotation_rad[3] = 0.0; }), "revolution.rotation_rad");
+  EXPECT_EQ(rejected([](Forces& f) { f.revolution->force_n.resize(3, 7); }), "revolution.force_n");
+  EXPECT_EQ(rejected([](Forces& f) { f.revolution->force_n(1, 5) = missing; }), "revolution.force_n");
+  EXPECT_EQ(rejected([](Forces& f) { f.revolution->torque_n_m.resize(2); }), "revolution.torque_n_m");
+  EXPECT_EQ(rejected([](Forces& f) { f.revolution->rms_n.y() = missing; }), "revolution.rms_n");
+  EXPECT_EQ(rejected([](Forces& f) { f.revolution->power_w = missing; }), "accepted");
+  EXPECT_EQ(rejected([&](Forces& f) { f.revolution->power_w = infinite; }), "revolution.power_w");
+  EXPECT_EQ(rejected([](Forces& f) { f.revolution->engagement[2].height_m = 0.0; }),
             "revolution.engagement[2].height_m");
-  EXPECT_EQ(refused([](Forces& f) { f.revolution->engagement[1].arcs[0].exit_rad = -1.0; }),
+  EXPECT_EQ(rejected([](Forces& f) { f.revolution->engagement[1].arcs[0].exit_rad = -1.0; }),
             "revolution.engagement[1].arcs.exit_rad");
-  EXPECT_EQ(refused([](Forces& f) { f.path->line.resize(1); }), "path.line");
-  EXPECT_EQ(refused([](Forces& f) { f.path->line[5] = 1.5; }), "path.line");
-  EXPECT_EQ(refused([](Forces& f) { f.path->block[5] = missing; }), "path.block");
-  EXPECT_EQ(refused([](Forces& f) { f.path->tip_m(2, 9) = missing; }), "path.tip_m");
-  EXPECT_EQ(refused([](Forces& f) { f.path->path_m[9] = 0.0; }), "path.path_m");
-  EXPECT_EQ(refused([](Forces& f) { f.path->time_s.resize(0); }), "accepted");
-  EXPECT_EQ(refused([](Forces& f) { f.path->deflection_m.resize(0); }), "accepted");
-  EXPECT_EQ(refused([](Forces& f) { f.path->deflection_m.resize(4); }), "path.deflection_m");
-  EXPECT_EQ(refused([](Forces& f) { f.path->peak_force_n[3] = missing; }), "accepted");
-  EXPECT_EQ(refused([&](Forces& f) { f.path->peak_force_n[3] = infinite; }), "path.peak_force_n");
-  EXPECT_EQ(refused([](Forces& f) { f.path->power_w.resize(0); }), "path.power_w");
-  EXPECT_EQ(refused([](Forces& f) { f.path->cuts.pop_back(); }), "path.cuts");
-  EXPECT_EQ(refused([](Forces& f) { f.path->torque_limit_n_m = 0.0; }), "path.torque_limit_n_m");
-  EXPECT_EQ(refused([](Forces& f) { f.path->power_limit_w = missing; }), "accepted");
-  EXPECT_EQ(refused([](Forces& f) { f.spindle_rotation->deflection_m.resize(2); }), "spindle_rotation.deflection_m");
-  EXPECT_EQ(refused([](Forces& f) { f.spindle_rotation->condition_number.resize(0); }), "accepted");
-  EXPECT_EQ(refused([&](Forces& f) { f.spindle_rotation->best_rad = infinite; }), "spindle_rotation.best_rad");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->line.resize(1); }), "path.line");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->line[5] = 1.5; }), "path.line");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->block[5] = missing; }), "path.block");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->tip_m(2, 9) = missing; }), "path.tip_m");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->path_m[9] = 0.0; }), "path.path_m");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->time_s.resize(0); }), "accepted");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->deflection_m.resize(0); }), "accepted");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->deflection_m.resize(4); }), "path.deflection_m");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->peak_force_n[3] = missing; }), "accepted");
+  EXPECT_EQ(rejected([&](Forces& f) { f.path->peak_force_n[3] = infinite; }), "path.peak_force_n");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->power_w.resize(0); }), "path.power_w");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->cuts.pop_back(); }), "path.cuts");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->torque_limit_n_m = 0.0; }), "path.torque_limit_n_m");
+  EXPECT_EQ(rejected([](Forces& f) { f.path->power_limit_w = missing; }), "accepted");
+  EXPECT_EQ(rejected([](Forces& f) { f.spindle_rotation->deflection_m.resize(2); }), "spindle_rotation.deflection_m");
+  EXPECT_EQ(rejected([](Forces& f) { f.spindle_rotation->condition_number.resize(0); }), "accepted");
+  EXPECT_EQ(rejected([&](Forces& f) { f.spindle_rotation->best_rad = infinite; }), "spindle_rotation.best_rad");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "robomill/report/band.hpp"
 #include "robomill/report/fact.hpp"
 
-/// A recording as the chatter monitor heard it, and how a monitor was calibrated, as parts of the report.
+/// A recording as the chatter monitor processed it, and how a monitor was calibrated, as parts of the report.
 namespace robomill::report {
 
 /// The samples of one channel over time.

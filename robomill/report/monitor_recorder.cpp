@@ -101,7 +101,7 @@ struct MonitorRecorder::Parts {
   Bands waves, decisions;
   std::vector<double> frame;
   std::vector<Columns> spectrograms;
-  std::size_t count = 0, untold = 0;
+  std::size_t count = 0, unreported = 0;
   double compute_s = 0.0, compute_max_s = 0.0;
   int loudest = 0;  ///< channel of the last chatter
   std::vector<MonitorStay> stays;
@@ -161,7 +161,7 @@ void MonitorRecorder::add(MonitorEvent event) {
   if (parts_->events.size() < most_events) {
     parts_->events.push_back(std::move(event));
   } else {
-    ++parts_->untold;
+    ++parts_->unreported;
   }
 }
 
@@ -187,7 +187,7 @@ MonitorRun MonitorRecorder::run() const {
     out.compute_mean_s = parts.compute_s / static_cast<double>(parts.count);
     out.compute_max_s = parts.compute_max_s;
   }
-  if (parts.untold > 0) out.notes.push_back(std::to_string(parts.untold) + " more events are not listed.");
+  if (parts.unreported > 0) out.notes.push_back(std::to_string(parts.unreported) + " more events are not listed.");
 
   const auto shown = std::min(static_cast<std::size_t>(std::max(parts.loudest, 0)), parts.spectrograms.size() - 1);
   const Columns& columns = parts.spectrograms[shown];

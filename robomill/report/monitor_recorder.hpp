@@ -32,7 +32,7 @@ class ROBOMILL_API MonitorRecorder {
   /// The decision that followed.
   /// @param compute_s  it took so long
   void add(const monitor::Decision& decision, double compute_s);
-  /// What the reader was told; beyond some hundreds they are counted only.
+  /// What the reader noted; beyond some hundreds they are counted only.
   void add(MonitorEvent event);
 
   /// What was recorded so far; facts and warnings are left to the caller.

@@ -94,7 +94,7 @@ TEST(MonitorRecorder, StatesFollowEachOtherWithoutGaps) {
   }
 }
 
-TEST(MonitorRecorder, RefusesNamesThatDoNotFit) {
+TEST(MonitorRecorder, RejectsNamesThatDoNotFit) {
   EXPECT_THROW(MonitorRecorder(one_channel(), {"a", "b"}, ""), InvalidInput);
   EXPECT_THROW(MonitorRecorder(one_channel(), {}, ""), InvalidInput);
 }
@@ -113,17 +113,17 @@ TEST(MonitorReport, NumbersAreTheStructsInShopUnits) {
   EXPECT_NEAR(data["events"][1]["suggested_spindle_speed_rpm"].get<double>(), 3416.0, 0.01);
 }
 
-TEST(MonitorReport, RefusesWhatDoesNotFit) {
-  const auto refused = [](auto&& spoil) {
+TEST(MonitorReport, RejectsWhatDoesNotFit) {
+  const auto rejected = [](auto&& spoil) {
     MonitorRun run = sample_monitor();
     spoil(run);
-    return test::refusal([&] { run.validate(); });
+    return test::rejection([&] { run.validate(); });
   };
-  EXPECT_NE(refused([](MonitorRun& r) { r.channels.clear(); }).find("channels"), std::string::npos);
-  EXPECT_NE(refused([](MonitorRun& r) { r.channels[1].wave.low.resize(3); }).find("channels[1].wave"),
+  EXPECT_NE(rejected([](MonitorRun& r) { r.channels.clear(); }).find("channels"), std::string::npos);
+  EXPECT_NE(rejected([](MonitorRun& r) { r.channels[1].wave.low.resize(3); }).find("channels[1].wave"),
             std::string::npos);
-  EXPECT_NE(refused([](MonitorRun& r) { r.threshold.low[0] = missing; }).find("threshold.low"), std::string::npos);
-  EXPECT_NE(refused([](MonitorRun& r) { r.spectrogram.frequency_hz[3] = 0.0; }).find("spectrogram.frequency_hz"),
+  EXPECT_NE(rejected([](MonitorRun& r) { r.threshold.low[0] = missing; }).find("threshold.low"), std::string::npos);
+  EXPECT_NE(rejected([](MonitorRun& r) { r.spectrogram.frequency_hz[3] = 0.0; }).find("spectrogram.frequency_hz"),
             std::string::npos);
   CalibrationRun run = sample_calibration();
   run.curves[0].detection_rate[3] = 1.5;

@@ -240,34 +240,34 @@ TEST(ReportHtml, CarriesTheDataAndTheSummary) {
 }
 
 template <class Change>
-std::string refused(Change&& change) {
+std::string rejected(Change&& change) {
   Report report = sample_report();
   change(report);
   return test::field_of([&] { report.validate(); });
 }
 
 TEST(ReportValidate, NamesTheMember) {
-  EXPECT_EQ(refused([](Report&) {}), "accepted");
-  EXPECT_EQ(refused([](Report& r) { r.frfs[1].fitted.resize(3); }), "frfs[1].fitted");
-  EXPECT_EQ(refused([](Report& r) { r.frf_frequency_hz[4] = r.frf_frequency_hz[3]; }), "frf_frequency_hz");
-  EXPECT_EQ(refused([](Report& r) { r.frfs[1].predicted.resize(3); }), "frfs[1].predicted");
-  EXPECT_EQ(refused([](Report& r) { r.prediction->assembly.tool.clear(); }), "prediction.assembly.tool");
-  EXPECT_EQ(refused([](Report& r) { r.prediction->assembly.tool[1].length_m = missing; }),
+  EXPECT_EQ(rejected([](Report&) {}), "accepted");
+  EXPECT_EQ(rejected([](Report& r) { r.frfs[1].fitted.resize(3); }), "frfs[1].fitted");
+  EXPECT_EQ(rejected([](Report& r) { r.frf_frequency_hz[4] = r.frf_frequency_hz[3]; }), "frf_frequency_hz");
+  EXPECT_EQ(rejected([](Report& r) { r.frfs[1].predicted.resize(3); }), "frfs[1].predicted");
+  EXPECT_EQ(rejected([](Report& r) { r.prediction->assembly.tool.clear(); }), "prediction.assembly.tool");
+  EXPECT_EQ(rejected([](Report& r) { r.prediction->assembly.tool[1].length_m = missing; }),
             "prediction.assembly.tool[1].length_m");
-  EXPECT_EQ(refused([](Report& r) { r.prediction->assembly.holder.segments[0].inner_diameter_m = 1.0; }),
+  EXPECT_EQ(rejected([](Report& r) { r.prediction->assembly.holder.segments[0].inner_diameter_m = 1.0; }),
             "prediction.assembly.holder.segments[0].inner_diameter_m");
-  EXPECT_EQ(refused([](Report& r) { r.prediction->assembly.joint->points = 3; }),
+  EXPECT_EQ(rejected([](Report& r) { r.prediction->assembly.joint->points = 3; }),
             "prediction.assembly.joint.insertion_length_m");
-  EXPECT_EQ(refused([](Report& r) { r.lobes[2].limit_depth_m.resize(1); }), "lobes[2].limit_depth_m");
-  EXPECT_EQ(refused([](Report& r) { r.lobes[0].spectral_radius.resize(2, 2); }), "lobes[0].spectral_radius columns");
-  EXPECT_EQ(refused([](Report& r) { r.limit_share.resize(3); }), "limit_share");
-  EXPECT_EQ(refused([](Report& r) { r.cuts[0].axial_depth_m = missing; }), "cuts[0].axial_depth_m");
-  EXPECT_EQ(refused([](Report& r) { r.recordings[0].teeth = 0; }), "recordings[0].teeth");
-  EXPECT_EQ(refused([](Report& r) { r.recommendation = Recommendation{}; }), "recommendation.spindle_speed_rad_per_s");
-  EXPECT_EQ(refused([](Report& r) { r.feed_directions->limit_at_speed_m.resize(5); }),
+  EXPECT_EQ(rejected([](Report& r) { r.lobes[2].limit_depth_m.resize(1); }), "lobes[2].limit_depth_m");
+  EXPECT_EQ(rejected([](Report& r) { r.lobes[0].spectral_radius.resize(2, 2); }), "lobes[0].spectral_radius columns");
+  EXPECT_EQ(rejected([](Report& r) { r.limit_share.resize(3); }), "limit_share");
+  EXPECT_EQ(rejected([](Report& r) { r.cuts[0].axial_depth_m = missing; }), "cuts[0].axial_depth_m");
+  EXPECT_EQ(rejected([](Report& r) { r.recordings[0].teeth = 0; }), "recordings[0].teeth");
+  EXPECT_EQ(rejected([](Report& r) { r.recommendation = Recommendation{}; }), "recommendation.spindle_speed_rad_per_s");
+  EXPECT_EQ(rejected([](Report& r) { r.feed_directions->limit_at_speed_m.resize(5); }),
             "feed_directions.limit_at_speed_m");
-  EXPECT_EQ(refused([](Report& r) { r.forces->path->cuts.pop_back(); }), "forces.path.cuts");
-  EXPECT_EQ(refused([](Report& r) { r.smooth->methods.clear(); }), "smooth.methods");
+  EXPECT_EQ(rejected([](Report& r) { r.forces->path->cuts.pop_back(); }), "forces.path.cuts");
+  EXPECT_EQ(rejected([](Report& r) { r.smooth->methods.clear(); }), "smooth.methods");
 }
 
 TEST(Bands, JoinNeighbouringLines) {

@@ -13,7 +13,7 @@ namespace robomill::report {
 
 /// What one joint does; rad or m.
 struct JointMotion {
-  bool slides = false;  ///< m; else rad
+  bool prismatic = false;  ///< m; else rad
   Band velocity = {}, acceleration = {}, jerk = {};
   Band tracking_error = {};  ///< of its drive; empty where none was modelled
   double max_velocity = missing, max_acceleration = missing, max_jerk = missing;  ///< limits, > 0

@@ -47,9 +47,9 @@ Json uses_json(const SmoothMethod& method) {
 }
 
 Json joint_json(const JointMotion& joint, bool points) {
-  const double unit = joint.slides ? units::mm : units::deg;
+  const double unit = joint.prismatic ? units::mm : units::deg;
   const bool tracked = joint.tracking_error.low.size() > 0;
-  return {{"unit", joint.slides ? "mm" : "°"},
+  return {{"unit", joint.prismatic ? "mm" : "°"},
           {"velocity", band_json(joint.velocity, points, unit)},
           {"acceleration", band_json(joint.acceleration, points, unit)},
           {"jerk", band_json(joint.jerk, points, unit)},
@@ -113,7 +113,7 @@ Json corners_json(const std::vector<CornerView>& corners) {
                     {"turn_deg", number(corner.turn_rad, units::deg)},
                     {"radius_mm", number(corner.radius_m, units::mm)},
                     {"program", flat_json(corner.program_m)},
-                    {"ways", std::move(ways)}});
+                    {"corner_paths", std::move(ways)}});
   }
   return list;
 }

@@ -13,10 +13,10 @@ constexpr std::size_t of_joint = 4;       // curves: velocity, acceleration, jer
 
 }  // namespace
 
-MotionRecorder::MotionRecorder(const robot::Kinematics& kinematics, const std::array<bool, 6>& slides,
+MotionRecorder::MotionRecorder(const robot::Kinematics& kinematics, const std::array<bool, 6>& prismatic,
                                double sample_period_s, const std::vector<ProgramCorner>& corners)
     : joints_(kinematics.joints()),
-      slides_(slides),
+      prismatic_(prismatic),
       limits_(kinematics.limits()),
       period_s_(sample_period_s),
       corners_(corners),
@@ -83,7 +83,7 @@ Motion MotionRecorder::motion() const {
   out.axis_speed_rad_per_s = bands_.band(1);
   for (int joint = 0; joint < joints_; ++joint) {
     const std::size_t at = 2 + of_joint * static_cast<std::size_t>(joint);
-    JointMotion motion{.slides = slides_[static_cast<std::size_t>(joint)],
+    JointMotion motion{.prismatic = prismatic_[static_cast<std::size_t>(joint)],
                        .velocity = bands_.band(at),
                        .acceleration = bands_.band(at + 1),
                        .jerk = bands_.band(at + 2)};
@@ -104,7 +104,7 @@ Motion MotionRecorder::motion() const {
   return out;
 }
 
-std::vector<Eigen::Matrix2Xd> MotionRecorder::ways() const {
+std::vector<Eigen::Matrix2Xd> MotionRecorder::corner_paths() const {
   std::vector<Eigen::Matrix2Xd> out(passes_.size());
   for (std::size_t i = 0; i < passes_.size(); ++i) {
     out[i].resize(2, static_cast<Eigen::Index>(passes_[i].size()));

@@ -22,14 +22,14 @@ using Tracking = std::function<robot::Position6(const path::Sample& sample)>;
 class MotionRecorder {
  public:
   /// @param corners  outlive the recorder
-  MotionRecorder(const robot::Kinematics& kinematics, const std::array<bool, 6>& slides, double sample_period_s,
+  MotionRecorder(const robot::Kinematics& kinematics, const std::array<bool, 6>& prismatic, double sample_period_s,
                  const std::vector<ProgramCorner>& corners);
   /// Begins anew. @param tracking  of the drives from here on
   void restart(Tracking tracking);
   void add(std::span<const path::Sample> samples);
   [[nodiscard]] Motion motion() const;
   /// The way round each corner, 2 x any, in its plane.
-  [[nodiscard]] std::vector<Eigen::Matrix2Xd> ways() const;
+  [[nodiscard]] std::vector<Eigen::Matrix2Xd> corner_paths() const;
 
  private:
   struct Point {
@@ -40,7 +40,7 @@ class MotionRecorder {
   void pass_corners(const path::Sample& sample);
 
   int joints_;
-  std::array<bool, 6> slides_;
+  std::array<bool, 6> prismatic_;
   robot::JointLimits limits_;
   double period_s_;
   const std::vector<ProgramCorner>& corners_;

@@ -70,7 +70,7 @@ TEST(MotionRecorder, DifferencesAreTheDerivatives) {
   EXPECT_NEAR(largest(motion.axis_speed_rad_per_s), 0.2, 1e-9);
   EXPECT_EQ(largest(motion.joints[0].velocity), 0.0);
   EXPECT_EQ(motion.joints[1].max_jerk, 40.0);
-  EXPECT_TRUE(motion.joints[1].slides);
+  EXPECT_TRUE(motion.joints[1].prismatic);
   EXPECT_EQ(motion.joints[1].tracking_error.low.size(), 0);
   EXPECT_NEAR(motion.run_s * static_cast<double>(motion.tip_speed_m_per_s.low.size()), 5.0, motion.run_s);
 }
@@ -91,7 +91,7 @@ TEST(MotionRecorder, BegunAnewForgets) {
   fresh.add(slow);
   EXPECT_EQ(recorder.motion().joints[0].jerk.high, fresh.motion().joints[0].jerk.high);
   EXPECT_EQ(recorder.motion().tip_m, fresh.motion().tip_m);
-  EXPECT_EQ(recorder.ways(), fresh.ways());
+  EXPECT_EQ(recorder.corner_paths(), fresh.corner_paths());
   EXPECT_EQ(recorder.motion().joints[0].tracking_error.low.size(), 0);
 }
 
@@ -106,7 +106,7 @@ TEST(MotionRecorder, SeesTheWayRoundACorner) {
   MotionRecorder recorder(machine, {}, 0.001, outlined.corners);
   recorder.restart({});
   recorder.add(sample_motion(program, machine, 0.01, {0.02, 0.02}));
-  const std::vector<Eigen::Matrix2Xd> ways = recorder.ways();
+  const std::vector<Eigen::Matrix2Xd> ways = recorder.corner_paths();
   for (std::size_t i = 0; i < ways.size(); ++i) {
     ASSERT_GT(ways[i].cols(), 20);
     const double nearest = ways[i].colwise().norm().minCoeff();

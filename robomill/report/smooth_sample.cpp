@@ -65,7 +65,7 @@ std::vector<LimitUse> uses_of(const Motion& motion) {
                                 use("tip, speed over the programmed", share, 0, 0.98, 1.0)};
   for (std::size_t i = 0; i < motion.joints.size(); ++i) {
     const JointMotion& joint = motion.joints[i];
-    const LimitUse::Quantity kind = joint.slides ? length : angle;
+    const LimitUse::Quantity kind = joint.prismatic ? length : angle;
     const std::string name = "joint " + std::to_string(i + 1);
     uses.push_back(use((name + ", velocity").c_str(), kind, 1, largest(joint.velocity), joint.max_velocity));
     uses.push_back(
@@ -205,7 +205,7 @@ Smooth sample_smooth() {
     if (smooth.methods.empty()) method.lower_bound_s = 0.9 * method.duration_s;
     if (!smooth.methods.empty()) method.sum_t2_s = 2.355;
     smooth.methods.push_back(std::move(method));
-    const std::vector<Eigen::Matrix2Xd> ways = recorder.ways();
+    const std::vector<Eigen::Matrix2Xd> ways = recorder.corner_paths();
     for (std::size_t i = 0; i < ways.size(); ++i) smooth.corners[i].tip_m.push_back(ways[i]);
   }
   return smooth;

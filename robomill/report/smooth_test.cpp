@@ -36,7 +36,7 @@ TEST(SmoothReport, NumbersAreTheStructsInShopUnits) {
   EXPECT_EQ(method["uses"][1]["unit"], "mm");
   EXPECT_EQ(method["uses"][2]["unit"], "°/s");
   EXPECT_NEAR(method["uses"][1]["share"].get<double>(), 0.42, 1e-5);
-  EXPECT_EQ(data["corners"][0]["ways"].size(), 3U);
+  EXPECT_EQ(data["corners"][0]["corner_paths"].size(), 3U);
   EXPECT_EQ(data["corners"][0]["radius_mm"], 0.6);
 }
 
@@ -60,7 +60,7 @@ TEST(SmoothReport, AMotionOfFewSamplesIsDrawnSampleBySample) {
 }
 
 template <class Change>
-std::string refused(Change&& change) {
+std::string rejected(Change&& change) {
   static const Smooth sample = sample_smooth();
   Smooth smooth = sample;
   change(smooth);
@@ -68,20 +68,20 @@ std::string refused(Change&& change) {
 }
 
 TEST(SmoothReport, ValidateNamesTheMember) {
-  EXPECT_EQ(refused([](Smooth&) {}), "accepted");
-  EXPECT_EQ(refused([](Smooth& s) { s.methods.clear(); }), "methods");
-  EXPECT_EQ(refused([](Smooth& s) { s.tip_tolerance_m = 0.0; }), "tip_tolerance_m");
-  EXPECT_EQ(refused([](Smooth& s) { s.program_m(1, 2) = missing; }), "program_m");
-  EXPECT_EQ(refused([](Smooth& s) { s.methods[1].motion.run_s = 0.0; }), "methods[1].motion.run_s");
-  EXPECT_EQ(refused([](Smooth& s) { s.methods[0].motion.joints[2].jerk.low.resize(3); }),
+  EXPECT_EQ(rejected([](Smooth&) {}), "accepted");
+  EXPECT_EQ(rejected([](Smooth& s) { s.methods.clear(); }), "methods");
+  EXPECT_EQ(rejected([](Smooth& s) { s.tip_tolerance_m = 0.0; }), "tip_tolerance_m");
+  EXPECT_EQ(rejected([](Smooth& s) { s.program_m(1, 2) = missing; }), "program_m");
+  EXPECT_EQ(rejected([](Smooth& s) { s.methods[1].motion.run_s = 0.0; }), "methods[1].motion.run_s");
+  EXPECT_EQ(rejected([](Smooth& s) { s.methods[0].motion.joints[2].jerk.low.resize(3); }),
             "methods[0].motion.joints[2].jerk.low");
-  EXPECT_EQ(refused([](Smooth& s) { s.methods[0].motion.joints[2].tracking_error = {}; }), "accepted");
-  EXPECT_EQ(refused([](Smooth& s) { s.methods[0].motion.tip_speed_at_m_per_s.resize(1); }),
+  EXPECT_EQ(rejected([](Smooth& s) { s.methods[0].motion.joints[2].tracking_error = {}; }), "accepted");
+  EXPECT_EQ(rejected([](Smooth& s) { s.methods[0].motion.tip_speed_at_m_per_s.resize(1); }),
             "methods[0].motion.tip_speed_at_m_per_s");
-  EXPECT_EQ(refused([](Smooth& s) { s.methods[0].uses[0].order = 4; }), "uses.order");
-  EXPECT_EQ(refused([](Smooth& s) { s.corners[1].tip_m.pop_back(); }), "corners[1].tip_m");
-  EXPECT_EQ(refused([](Smooth& s) { s.corners[1].radius_m = missing; }), "corners[1].radius_m");
-  EXPECT_EQ(refused([](Smooth& s) { s.corners[0].program_m(0, 0) = std::numeric_limits<double>::infinity(); }),
+  EXPECT_EQ(rejected([](Smooth& s) { s.methods[0].uses[0].order = 4; }), "uses.order");
+  EXPECT_EQ(rejected([](Smooth& s) { s.corners[1].tip_m.pop_back(); }), "corners[1].tip_m");
+  EXPECT_EQ(rejected([](Smooth& s) { s.corners[1].radius_m = missing; }), "corners[1].radius_m");
+  EXPECT_EQ(rejected([](Smooth& s) { s.corners[0].program_m(0, 0) = std::numeric_limits<double>::infinity(); }),
             "corners[0].program_m");
 }
 

@@ -94,7 +94,7 @@ TEST(Arm, HasTheJacobianAndItsDerivativeOfFiniteDifferences) {
   }
 }
 
-TEST(Arm, TellsTheJointNearestToItsLimit) {
+TEST(Arm, ReportsTheJointNearestToItsLimit) {
   Arm arm = testing::with_limits(testing::kr210());
   Eigen::VectorXd position = Eigen::VectorXd::Zero(6);
   position(2) = 2.5;
@@ -113,7 +113,7 @@ TEST(Arm, TellsTheJointNearestToItsLimit) {
   EXPECT_EQ(within_limits(testing::kr210(), Eigen::VectorXd::Zero(6)).joint, -1);
 }
 
-TEST(Arm, RefusesWhatIsNoArm) {
+TEST(Arm, RejectsWhatIsNoArm) {
   const auto field = [](auto&& spoil) {
     Arm arm = testing::with_limits(testing::kr210());
     spoil(arm);
@@ -150,7 +150,7 @@ TEST(Arm, RefusesWhatIsNoArm) {
   EXPECT_EQ(field_of([&] { cell.validate(); }), "arm.joints");
 }
 
-TEST(Arm, RefusesPositionsOfAnotherLength) {
+TEST(Arm, RejectsPositionsOfAnotherLength) {
   const Arm arm = testing::kr210();
   const Eigen::VectorXd five = Eigen::VectorXd::Zero(5);
   EXPECT_EQ(field_of([&] { (void)forward(arm, five); }), "position");

@@ -70,7 +70,7 @@ TEST(Choose, TakesTheNearestWithinLimits) {
   EXPECT_GT(outside, 10);
 }
 
-TEST(Choose, TellsWhyThereIsNone) {
+TEST(Choose, ReportsWhyThereIsNone) {
   const Arm arm = testing::with_limits(testing::kr210());
   const SphericalWristInverse inverse(arm);
   Eigen::Isometry3d flange = forward(arm, testing::kr210_posture());
@@ -177,7 +177,7 @@ TEST(Choose, SaysThatANearSolutionDidNotConverge) {
   EXPECT_TRUE(near.position.allFinite());
 }
 
-TEST(Choose, RefusesOptionsThatMakeNoSense) {
+TEST(Choose, RejectsOptionsThatMakeNoSense) {
   const Arm arm = testing::kr210();
   const SphericalWristInverse inverse(arm);
   const std::vector<Eigen::Isometry3d> one = {forward(arm, testing::kr210_posture())};

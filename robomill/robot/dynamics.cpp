@@ -144,7 +144,7 @@ void ToolModesOptions::validate() const {
 
 Eigen::MatrixXd mass_matrix(const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position) {
   arm.validate();
-  (void)forward(arm, position);  // refuses a position of another length
+  (void)forward(arm, position);  // rejects a position of another length
   const auto n = static_cast<unsigned>(arm.size());
   KDL::JntArray at(n);
   at.data = position;

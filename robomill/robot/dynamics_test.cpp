@@ -150,7 +150,7 @@ TEST(Dynamics, GivesEveryModeTheRatioAskedFor) {
   for (const ToolMode& mode : modes.modes) EXPECT_NEAR(mode.damping_ratio, 0.03, 1e-10);
 }
 
-TEST(Dynamics, TellsWhatBucklesAndRefusesAnArmWithoutMass) {
+TEST(Dynamics, ReportsWhatBucklesAndRejectsAnArmWithoutMass) {
   Random random(75);
   Arm arm = testing::kr210();
   const Eigen::VectorXd position = testing::kr210_posture();

@@ -181,7 +181,7 @@ TEST(Hybrid, RatesAreThoseOfItsRegularity) {
   }
 }
 
-TEST(Hybrid, TellsWhyAPoseCannotBeTaken) {
+TEST(Hybrid, ReportsWhyAPoseCannotBeTaken) {
   HybridMachine machine = machine_of();
   machine.limits.min_position.head<3>().setConstant(0.5);
   machine.limits.max_position.head<3>().setConstant(1.0);
@@ -254,20 +254,20 @@ TEST(Hybrid, FollowsUpToTheConditionNumberAllowed) {
   }
 }
 
-TEST(Hybrid, RefusesMachinesThatCannotBe) {
-  const auto refused = [](auto&& change) {
+TEST(Hybrid, RejectsMachinesThatCannotBe) {
+  const auto rejected = [](auto&& change) {
     HybridMachine machine = machine_of();
     change(machine);
     return field_of([&] { (void)HybridKinematics(machine); });
   };
-  EXPECT_EQ(refused([](HybridMachine& m) { m.base_half_width_m = 0.0; }), "base_half_width_m");
-  EXPECT_EQ(refused([](HybridMachine& m) { m.platform_half_width_m = -1.0; }), "platform_half_width_m");
-  EXPECT_EQ(refused([](HybridMachine& m) { m.platform_offset_m = NAN; }), "platform_offset_m");
-  EXPECT_EQ(refused([](HybridMachine& m) { m.base_offset_m = 0.0; }), "base_offset_m");
-  EXPECT_EQ(refused([](HybridMachine& m) { m.platform_to_flange_m = -0.1; }), "platform_to_flange_m");
-  EXPECT_EQ(refused([](HybridMachine& m) { m.tool_length_m = -0.1; }), "tool_length_m");
-  EXPECT_EQ(refused([](HybridMachine& m) { m.workpiece.linear() *= 2.0; }), "workpiece");
-  EXPECT_EQ(refused([](HybridMachine& m) { m.limits.min_position(4) = 1e301; }), "limits.min_position[5]");
+  EXPECT_EQ(rejected([](HybridMachine& m) { m.base_half_width_m = 0.0; }), "base_half_width_m");
+  EXPECT_EQ(rejected([](HybridMachine& m) { m.platform_half_width_m = -1.0; }), "platform_half_width_m");
+  EXPECT_EQ(rejected([](HybridMachine& m) { m.platform_offset_m = NAN; }), "platform_offset_m");
+  EXPECT_EQ(rejected([](HybridMachine& m) { m.base_offset_m = 0.0; }), "base_offset_m");
+  EXPECT_EQ(rejected([](HybridMachine& m) { m.platform_to_flange_m = -0.1; }), "platform_to_flange_m");
+  EXPECT_EQ(rejected([](HybridMachine& m) { m.tool_length_m = -0.1; }), "tool_length_m");
+  EXPECT_EQ(rejected([](HybridMachine& m) { m.workpiece.linear() *= 2.0; }), "workpiece");
+  EXPECT_EQ(rejected([](HybridMachine& m) { m.limits.min_position(4) = 1e301; }), "limits.min_position[5]");
   EXPECT_EQ(field_of([&] { (void)HybridKinematics(machine_of(), {.max_travel_m = 0.0}); }), "max_travel_m");
 }
 

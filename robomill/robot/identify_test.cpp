@@ -99,7 +99,7 @@ TEST(Identify, WeighsLoadsByTheirDeviation) {
   EXPECT_LT(weighted, 1e-2 * plain);
 }
 
-TEST(Identify, TellsAJointThatNoLoadTurns) {
+TEST(Identify, ReportsAJointThatNoLoadTurns) {
   // Forces along axis 1, which stands upright, and through the flange: neither moment nor motion about it.
   Random random(44);
   const Arm arm = testing::kr210();
@@ -118,7 +118,7 @@ TEST(Identify, TellsAJointThatNoLoadTurns) {
   }
 }
 
-TEST(Identify, TellsAJointWhoseTurningDoesNotMoveThePoint) {
+TEST(Identify, ReportsAJointWhoseTurningDoesNotMoveThePoint) {
   Random random(45);
   const Arm arm = testing::kr210();
   std::vector<Load> loads = planted_loads(arm, random, 15, 500.0, 0.0);
@@ -131,7 +131,7 @@ TEST(Identify, TellsAJointWhoseTurningDoesNotMoveThePoint) {
   EXPECT_NEAR(found.joints[2].stiffness, arm.joints[2].stiffness, 1e-6 * arm.joints[2].stiffness);
 }
 
-TEST(Identify, TellsJointsThatStandInOneLine) {
+TEST(Identify, ReportsJointsThatStandInOneLine) {
   Random random(46);
   const Arm arm = testing::kr210();
   std::vector<Load> loads = planted_loads(arm, random, 15, 500.0, 0.0);
@@ -139,7 +139,7 @@ TEST(Identify, TellsJointsThatStandInOneLine) {
     load.position(4) = 0.0;
     load.displacement_m = loaded_posture(arm, load.position, tip, load.wrench).displacement_m;
   }
-  // Under a load the wrist bends a little, so that only the linear part cannot tell them apart: their deviation does.
+  // Under a load the wrist bends a little, so that only the linear part cannot report them apart: their deviation does.
   const IdentifiedStiffness found = identify_joint_stiffness(arm, tip, loads);
   for (Load& load : loads) load.displacement_m += 1e-6 * testing::random_vector(random);
   const IdentifiedStiffness noisy = identify_joint_stiffness(arm, tip, loads);
@@ -151,25 +151,25 @@ TEST(Identify, TellsJointsThatStandInOneLine) {
   EXPECT_GT(found.condition_number, 1e3);
 }
 
-TEST(Identify, TellsAJointThatComesOutSofterThanNothing) {
+TEST(Identify, ReportsAJointThatComesOutSofterThanNothing) {
   Random random(47);
   Arm arm = testing::kr210();
   arm.joints[5].stiffness = 1e12;
-  int told = 0;
+  int reported = 0;
   for (int k = 0; k < 20; ++k) {
     const IdentifiedStiffness found = identify_joint_stiffness(arm, tip, planted_loads(arm, random, 20, 500.0, 20e-6));
     EXPECT_FALSE(found.joints[5].identifiable);
     EXPECT_TRUE(found.joints[1].identifiable);
     if (found.joints[5].reason.find("taken as rigid") != std::string::npos) {
-      ++told;
+      ++reported;
       EXPECT_LE(found.joints[5].compliance, 0.0);
     }
   }
-  EXPECT_GT(told, 4);
-  EXPECT_LT(told, 16);
+  EXPECT_GT(reported, 4);
+  EXPECT_LT(reported, 16);
 }
 
-TEST(Identify, RefusesLoadsThatSayNothing) {
+TEST(Identify, RejectsLoadsThatSayNothing) {
   Random random(48);
   const Arm arm = testing::kr210();
   const std::vector<Load> good = planted_loads(arm, random, 5, 500.0, 0.0);

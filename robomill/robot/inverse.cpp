@@ -28,14 +28,14 @@ double wrapped(double angle) noexcept {
   return angle;
 }
 
-[[noreturn]] void refuse(const std::string& rule, double miss, const char* unit) {
+[[noreturn]] void reject(const std::string& rule, double miss, const char* unit) {
   char number[32];
   std::snprintf(number, sizeof number, "%.3g", miss);
   throw InvalidInput("arm", rule + " (" + number + " " + unit + ")",
                      "Closed forms need a spherical wrist; solve_near takes any arm of six joints");
 }
 
-/// Across `along`, towards `target`; refused by the caller where they are parallel.
+/// Across `along`, towards `target`; rejected by the caller where they are parallel.
 Eigen::Vector3d across(const Eigen::Vector3d& along, const Eigen::Vector3d& target) {
   return (target - along.dot(target) * along).normalized();
 }
@@ -75,14 +75,14 @@ struct SphericalWristInverse::Elbow {
 SphericalWristInverse::SphericalWristInverse(const Arm& arm, double tolerance) {
   arm.validate();
   require_positive("tolerance", tolerance, "rad");
-  if (arm.joints.size() != 6) refuse("must have six joints", static_cast<double>(arm.joints.size()), "joints");
+  if (arm.joints.size() != 6) reject("must have six joints", static_cast<double>(arm.joints.size()), "joints");
   for (std::size_t i = 0; i < 6; ++i) {
-    if (arm.joints[i].prismatic) refuse("must have revolute joints alone", static_cast<double>(i + 1), "is prismatic");
+    if (arm.joints[i].prismatic) reject("must have revolute joints alone", static_cast<double>(i + 1), "is prismatic");
   }
   Posture zero;
   zero.update(arm, Position6::Zero());
   const Eigen::Vector3d centre = meeting_point(zero.axis, zero.origin_m);
-  // Where the last three axes do not meet there is no centre to speak of: that is told first.
+  // Where the last three axes do not meet there is no centre to speak of: that is reported first.
   detect_wrist(zero, tolerance);
   detect_shoulder(zero, centre, tolerance);
   const Eigen::Matrix3d to_frame_2 = frame_2_.transpose() * frame_1_.transpose();
@@ -95,15 +95,15 @@ void SphericalWristInverse::detect_wrist(const Posture& zero, double tolerance) 
   cos_45_ = w4.dot(w5);
   sin_56_ = w5.cross(w6).norm();
   cos_56_ = w5.dot(w6);
-  if (sin_45_ < 1e-3) refuse("must have axes 4 and 5 that are not parallel", sin_45_, "rad");
-  if (sin_56_ < 1e-3) refuse("must have axes 5 and 6 that are not parallel", sin_56_, "rad");
+  if (sin_45_ < 1e-3) reject("must have axes 4 and 5 that are not parallel", sin_45_, "rad");
+  if (sin_56_ < 1e-3) reject("must have axes 5 and 6 that are not parallel", sin_56_, "rad");
   const Eigen::Vector3d centre = meeting_point(zero.axis, zero.origin_m);
   double miss = 0.0;
   for (int i = 3; i < 6; ++i) {
     miss = std::max(miss, zero.axis.col(i).cross(centre - zero.origin_m.col(i)).norm());
   }
   if (!(miss <= tolerance))
-    refuse("must have axes 4, 5 and 6 that meet in one point: they pass it at a distance", miss, "m");
+    reject("must have axes 4, 5 and 6 that meet in one point: they pass it at a distance", miss, "m");
   const double beta = std::atan2(sin_45_, cos_45_), gamma = std::atan2(sin_56_, cos_56_);
   least_ = 2.0 * std::pow(std::sin(0.5 * (beta - gamma)), 2);
   most_ = 2.0 * std::pow(std::cos(0.5 * (beta + gamma)), 2);
@@ -120,11 +120,11 @@ void SphericalWristInverse::detect_shoulder(const Posture& zero, const Eigen::Ve
   const Posture::Axes& origin_m = zero.origin_m;
   const Eigen::Vector3d w1 = zero.axis.col(0), w2 = zero.axis.col(1), w3 = zero.axis.col(2);
   const double skew = w2.cross(w3).norm();
-  if (!(skew <= tolerance)) refuse("must have axes 2 and 3 that are parallel: they are off", skew, "rad");
+  if (!(skew <= tolerance)) reject("must have axes 2 and 3 that are parallel: they are off", skew, "rad");
   sign_3_ = w2.dot(w3) > 0.0 ? 1.0 : -1.0;
   sin_12_ = w1.cross(w2).norm();
   cos_12_ = w1.dot(w2);
-  if (sin_12_ < 1e-3) refuse("must have axes 1 and 2 that are not parallel", sin_12_, "rad");
+  if (sin_12_ < 1e-3) reject("must have axes 1 and 2 that are not parallel", sin_12_, "rad");
   origin_1_m_ = origin_m.col(0);
   frame_1_ = frame_along(w1, w2);
   along_2_m_ = w2.dot(centre - origin_1_m_);
@@ -135,8 +135,8 @@ void SphericalWristInverse::detect_shoulder(const Posture& zero, const Eigen::Ve
   const Eigen::Vector3d fore = frame_2.transpose() * (centre - origin_m.col(2));
   upper_m_ = upper.head<2>().norm();
   fore_m_ = fore.head<2>().norm();
-  if (!(upper_m_ > 1e-6)) refuse("must have axes 2 and 3 apart", upper_m_, "m");
-  if (!(fore_m_ > 1e-6)) refuse("must have its wrist's centre apart from axis 3", fore_m_, "m");
+  if (!(upper_m_ > 1e-6)) reject("must have axes 2 and 3 apart", upper_m_, "m");
+  if (!(fore_m_ > 1e-6)) reject("must have its wrist's centre apart from axis 3", fore_m_, "m");
   upper_angle_ = std::atan2(upper.y(), upper.x());
   fore_angle_ = std::atan2(fore.y(), fore.x());
   fore_cos_ = fore.x() / fore_m_;

@@ -14,7 +14,7 @@
 namespace robomill::robot {
 namespace {
 
-using robomill::test::refusal;
+using robomill::test::rejection;
 using robomill::test::seeds;
 
 double pose_error(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
@@ -147,7 +147,7 @@ TEST(Inverse, KeepsThePoseNearEverySingularity) {
   }
 }
 
-TEST(Inverse, TellsTheShoulderSingularityAndTakesTheHint) {
+TEST(Inverse, ReportsTheShoulderSingularityAndTakesTheHint) {
   // An arm whose wrist can stand on axis 1.
   const Arm arm = testing::irb();
   const SphericalWristInverse inverse(arm);
@@ -171,7 +171,7 @@ TEST(Inverse, TellsTheShoulderSingularityAndTakesTheHint) {
   EXPECT_NEAR(beside.shoulder_m, 0.01, 1e-12);
 }
 
-TEST(Inverse, TellsByHowMuchAPoseIsOutOfReach) {
+TEST(Inverse, ReportsByHowMuchAPoseIsOutOfReach) {
   const Arm arm = testing::irb();
   const SphericalWristInverse inverse(arm);
   const double reach = 1.075 + std::hypot(0.2, 1.142);
@@ -188,7 +188,7 @@ TEST(Inverse, TellsByHowMuchAPoseIsOutOfReach) {
   EXPECT_EQ(solutions.out_of_reach_m, 0.0);
 }
 
-TEST(Inverse, TellsByHowMuchAPoseIsTooNear) {
+TEST(Inverse, ReportsByHowMuchAPoseIsTooNear) {
   const Arm arm = arm_from_dh({{.alpha_rad = -testing::pi / 2, .d_m = 0.8},
                                {.a_m = 1.0},
                                {.alpha_rad = -testing::pi / 2},
@@ -202,7 +202,7 @@ TEST(Inverse, TellsByHowMuchAPoseIsTooNear) {
   EXPECT_NEAR(solutions.out_of_reach_m, 1.0 - 0.7 - 0.05, 1e-12);
 }
 
-TEST(Inverse, TellsHowFarAWristThatIsNotPerpendicularFallsShort) {
+TEST(Inverse, ReportsHowFarAWristThatIsNotPerpendicularFallsShort) {
   const Arm arm = arm_from_dh({{.a_m = 0.3, .alpha_rad = -testing::pi / 2, .d_m = 0.5},
                                {.a_m = 1.0},
                                {.a_m = 0.1, .alpha_rad = -testing::pi / 2},
@@ -234,7 +234,7 @@ TEST(Inverse, TellsHowFarAWristThatIsNotPerpendicularFallsShort) {
 }
 
 TEST(Inverse, SaysWhyAnArmIsNotOfItsKind) {
-  const auto said = [](const Arm& arm) { return refusal([&] { (void)SphericalWristInverse(arm); }); };
+  const auto said = [](const Arm& arm) { return rejection([&] { (void)SphericalWristInverse(arm); }); };
   EXPECT_NE(said(testing::ur5e()).find("axes 4, 5 and 6 that meet in one point"), std::string::npos)
       << said(testing::ur5e());
   Arm arm = testing::kr210();

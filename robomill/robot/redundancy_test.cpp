@@ -98,7 +98,7 @@ TEST(Redundancy, KeepsToTheBranchOfThePreviousPosture) {
   EXPECT_LT((over.samples[36].position_rad - first.position_rad).norm(), 1e-9);
 }
 
-TEST(Redundancy, TellsThatThereIsNone) {
+TEST(Redundancy, ReportsThatThereIsNone) {
   const Cell cell = table_cell();
   const SphericalWristInverse inverse(cell.arm);
   ToolPose far = tilted();
@@ -108,7 +108,7 @@ TEST(Redundancy, TellsThatThereIsNone) {
   for (const RedundancySample& sample : over.samples) EXPECT_EQ(sample.status, Choice::Status::out_of_reach);
 }
 
-TEST(Redundancy, RefusesWhatMakesNoSense) {
+TEST(Redundancy, RejectsWhatMakesNoSense) {
   const Cell cell = table_cell();
   const SphericalWristInverse inverse(cell.arm);
   const auto field = [&](auto&& spoil) {

@@ -201,7 +201,7 @@ TEST(SerialKinematics, SearchFindsThePlantedWay) {
   EXPECT_EQ(most, 8);
 }
 
-TEST(SerialKinematics, TellsASingularPostureWithTheJointAtFault) {
+TEST(SerialKinematics, ReportsASingularPostureWithTheJointAtFault) {
   const SerialKinematics kinematics({.arm = testing::with_limits(testing::kr210()), .tool_length_m = 0.25});
   Position6 straight = testing::kr210_posture(), position;
   straight(4) = 1e-4;
@@ -283,7 +283,7 @@ TEST(SerialKinematics, TakesNothingFromTheHeap) {
   }
 }
 
-TEST(SerialKinematics, RefusesWhatItCannotFollow) {
+TEST(SerialKinematics, RejectsWhatItCannotFollow) {
   Cell cell{.arm = testing::kr210()};
   EXPECT_EQ(field_of([&] { (void)SerialKinematics(cell, {.max_travel_rad = -1.0}); }), "max_travel_rad");
   EXPECT_EQ(field_of([&] { (void)SerialKinematics(cell, {.singularity = {.max_condition_number = 0.5}}); }),

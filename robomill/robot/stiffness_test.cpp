@@ -135,7 +135,7 @@ TEST(Stiffness, LoadStiffnessIsTheDerivativeOfTheTorque) {
   }
 }
 
-TEST(Stiffness, TellsSingularPosturesAndWhatBuckles) {
+TEST(Stiffness, ReportsSingularPosturesAndWhatBuckles) {
   const Arm arm = testing::kr210();
   Eigen::VectorXd straight = testing::kr210_posture();
   straight(4) = 0.0;
@@ -149,10 +149,10 @@ TEST(Stiffness, TellsSingularPosturesAndWhatBuckles) {
   Random random(6);
   const Arm eight = testing::random_chain(random, 8);
   Jacobian wide = jacobian(eight, testing::random_position(random, 8), tip);
-  const double told = condition_number(wide, 0.4);
+  const double reported = condition_number(wide, 0.4);
   wide.topRows<3>() /= 0.4;
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(wide);
-  EXPECT_NEAR(told, svd.singularValues()(0) / svd.singularValues()(5), 1e-12 * told);
+  EXPECT_NEAR(reported, svd.singularValues()(0) / svd.singularValues()(5), 1e-12 * reported);
 
   const Wrench huge = milling(5e7);
   EXPECT_EQ(stiffness(arm, testing::kr210_posture(), tip, huge).status, Stiffness::Status::buckled);
@@ -179,7 +179,7 @@ TEST(Stiffness, AnInvertedPendulumBucklesAtItsLoad) {
   EXPECT_NEAR(bent.displacement_m.y(), 2.0 * std::sin(bent.position(0)), 1e-12);
 }
 
-TEST(Stiffness, RefusesAnArmWithoutStiffnessAndNumbersThatAreNone) {
+TEST(Stiffness, RejectsAnArmWithoutStiffnessAndNumbersThatAreNone) {
   Arm arm = testing::kr210();
   const Eigen::VectorXd position = testing::kr210_posture();
   arm.joints[3].stiffness = 0.0;

@@ -44,7 +44,7 @@ TEST_P(Fft, InverseGivesTheSignalBack) {
 // 2 · 53 and the primes go through Bluestein's method, the others through the mixed radix.
 INSTANTIATE_TEST_SUITE_P(Lengths, Fft, testing::Values(1, 2, 3, 4, 5, 7, 16, 47, 53, 106, 360, 997, 1024, 4099));
 
-TEST(FftInput, RefusesEmptyAndMisfit) {
+TEST(FftInput, RejectsEmptyAndMisfit) {
   EXPECT_THROW(static_cast<void>(fft(Eigen::VectorXcd())), InvalidInput);
   EXPECT_THROW(static_cast<void>(inverse_real_fft(Eigen::VectorXcd::Zero(3), 6)), InvalidInput);
 }

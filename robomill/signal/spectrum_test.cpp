@@ -73,7 +73,7 @@ TEST(FindPeaks, FindsNothingInSilence) {
   EXPECT_TRUE(find_peaks(amplitude_spectrum(Eigen::VectorXd::Zero(100), 10.0)).empty());
 }
 
-TEST(Spectrum, RefusesWhatMakesNoSense) {
+TEST(Spectrum, RejectsWhatMakesNoSense) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(100);
   EXPECT_THROW(static_cast<void>(amplitude_spectrum(x, 0.0)), InvalidInput);
   EXPECT_THROW(static_cast<void>(amplitude_spectrum(x.head(3), 1.0)), InvalidInput);

@@ -340,7 +340,7 @@ TEST(SynchrosqueezeStream, AllocatesNothing) {
   }
 }
 
-TEST(Synchrosqueeze, RefusesWhatMakesNoSense) {
+TEST(Synchrosqueeze, RejectsWhatMakesNoSense) {
   const Eigen::VectorXd x = noise(100, 9);
   const auto field = [&](SynchrosqueezeOptions o) {
     return test::field_of([&] { static_cast<void>(synchrosqueeze(x, o)); });

@@ -64,7 +64,7 @@ TEST(WindowShape, IsEvenAboutItsCentreAndItsDerivativeOdd) {
   }
 }
 
-TEST(WindowShape, RefusesWhatMakesNoSense) {
+TEST(WindowShape, RejectsWhatMakesNoSense) {
   EXPECT_EQ(test::field_of([] { static_cast<void>(window_samples({}, 7)); }), "n");
   EXPECT_EQ(test::field_of([] { static_cast<void>(window_derivative({}, 8, 0.0)); }), "sample_rate_hz");
   EXPECT_EQ(test::field_of([] {

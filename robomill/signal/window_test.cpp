@@ -45,7 +45,7 @@ TEST(ForceWindow, MayTouchTheEndsOfTheRecord) {
   EXPECT_DOUBLE_EQ(force_window(1, 0, 0, 0)(0), 1.0);
 }
 
-TEST(Windows, RefuseWhatMakesNoSense) {
+TEST(Windows, RejectWhatMakesNoSense) {
   EXPECT_THROW(static_cast<void>(hann_window(0)), InvalidInput);
   EXPECT_THROW(static_cast<void>(exponential_window(10, 0.0, 1.0)), InvalidInput);
   EXPECT_THROW(static_cast<void>(exponential_window(10, 1.0, -1.0)), InvalidInput);

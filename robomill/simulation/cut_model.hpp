@@ -47,11 +47,11 @@ struct Ring {
   double entry_rad = 0.0, exit_rad = 0.0;  ///< entry in [0, 2π), exit less than a revolution after it
   bool whole_circle = false;               ///< in the cut at every angle
   double lateral = 1.0, axial = 0.0;       ///< sin κ, cos κ
-  /// Half the envelope's curvatures, along t and along the meridian.
+  /// Half the envelope's curvatures, along t and along the profile.
   double bend_around_per_m = 0.0, bend_along_per_m = 0.0;
 };
 
-/// Of coefficients that act against t, against the chip's direction n, and, axial, on the tool along the meridian
+/// Of coefficients that act against t, against the chip's direction n, and, axial, on the tool along the profile
 /// (cos κ sin φ, cos κ cos φ, sin κ).
 [[nodiscard]] Resistance resistance(const Ring& ring, double tangential, double radial, double axial);
 

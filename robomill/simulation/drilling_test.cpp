@@ -103,19 +103,19 @@ TEST(Drilling, LateralAndAxialModesTogetherGiveAVerdict) {
   }
 }
 
-TEST(Drilling, RefusesBadInput) {
-  const auto refused = [](auto change) {
+TEST(Drilling, RejectsBadInput) {
+  const auto rejected = [](auto change) {
     DrillingCut cut = drill();
     change(cut);
     return test::field_of([&] { static_cast<void>(simulate(cut, {.seconds = 0.05})); });
   };
-  EXPECT_EQ(refused([](DrillingCut& c) { c.lips = 0; }), "lips");
-  EXPECT_EQ(refused([](DrillingCut& c) { c.diameter_m = 0.0; }), "diameter_m");
-  EXPECT_EQ(refused([](DrillingCut& c) { c.point_angle_rad = 4.0; }), "point_angle_rad");
-  EXPECT_EQ(refused([](DrillingCut& c) { c.radial_width_m = 0.006; }), "radial_width_m");
-  EXPECT_EQ(refused([](DrillingCut& c) { c.feed_per_revolution_m = 0.0; }), "feed_per_revolution_m");
-  EXPECT_EQ(refused([](DrillingCut& c) { c.coefficients.tangential_n_per_m2 = 0.0; }), "tangential_n_per_m2");
-  EXPECT_EQ(refused([](DrillingCut&) {}), "accepted");
+  EXPECT_EQ(rejected([](DrillingCut& c) { c.lips = 0; }), "lips");
+  EXPECT_EQ(rejected([](DrillingCut& c) { c.diameter_m = 0.0; }), "diameter_m");
+  EXPECT_EQ(rejected([](DrillingCut& c) { c.point_angle_rad = 4.0; }), "point_angle_rad");
+  EXPECT_EQ(rejected([](DrillingCut& c) { c.radial_width_m = 0.006; }), "radial_width_m");
+  EXPECT_EQ(rejected([](DrillingCut& c) { c.feed_per_revolution_m = 0.0; }), "feed_per_revolution_m");
+  EXPECT_EQ(rejected([](DrillingCut& c) { c.coefficients.tangential_n_per_m2 = 0.0; }), "tangential_n_per_m2");
+  EXPECT_EQ(rejected([](DrillingCut&) {}), "accepted");
 }
 
 }  // namespace

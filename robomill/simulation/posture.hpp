@@ -4,7 +4,7 @@
 
 namespace robomill::simulation {
 
-/// Milling with any cutter in any posture: what of it cuts is told by an engagement, which stays as it is whatever
+/// Milling with any cutter in any posture: what of it cuts is reported by an engagement, which stays as it is whatever
 /// vibrates. Force and displacement are in the feed's frame F.
 struct ROBOMILL_API PostureCut {
   cutting::Cutter cutter;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double revolution = 2.0 * std::numbers::pi;
 
-/// Half the meridian's curvature at a height.
+/// Half the profile's curvature at a height.
 double bend_along(const cutting::Profile& profile, double height_m) {
   for (const cutting::Profile::Piece& piece : profile.pieces()) {
     const bool within = height_m > piece.first.height_m && height_m < piece.last.height_m;
@@ -40,7 +40,7 @@ void add_rings(std::vector<Ring>& rings, Ring ring, const cutting::Arc& arc, dou
   rings.push_back(ring);
 }
 
-/// Of tooth j, what its edge forces are told per, a width of cut.
+/// Of tooth j, what its edge forces are reported per, a width of cut.
 double edge_per_width(const PostureCut& cut, int tooth, const cutting::EdgeSlice& slice) {
   const cutting::FlatEndMill& mill = cut.cutter.mill;
   if (!cutting::counts_edge_length(cut.coefficients.edge_measure, cut.cutter.kind)) return 1.0;

@@ -250,26 +250,26 @@ TEST(Posture, AnglesMayNearlyCloseTheCircle) {
   }
 }
 
-TEST(Posture, RefusesBadInput) {
-  const auto refused = [](auto change) {
+TEST(Posture, RejectsBadInput) {
+  const auto rejected = [](auto change) {
     PostureCut cut = testing::ball_cut(0.2, 0.1, 6);
     change(cut);
     return test::field_of([&] { static_cast<void>(simulate(cut, {.seconds = 0.02})); });
   };
   using C = PostureCut;
-  EXPECT_EQ(refused([](C&) {}), "accepted");
-  EXPECT_EQ(refused([](C& c) { c.cutter.mill.teeth = 0; }), "teeth");
-  EXPECT_EQ(refused([](C& c) { c.engagement.first_arc.pop_back(); }), "engagement.first_arc");
-  EXPECT_EQ(refused([](C& c) { c.engagement.first_arc[1] = 99; }), "engagement.first_arc");
-  EXPECT_EQ(refused([](C& c) { c.engagement.slices[0].width_m = -1.0; }), "engagement.slices");
-  EXPECT_EQ(refused([](C& c) { c.engagement.arcs[0].exit_rad = c.engagement.arcs[0].entry_rad; }), "engagement.arcs");
-  EXPECT_EQ(refused([](C& c) { c.engagement.arcs[0].exit_rad += 7.0; }), "engagement.arcs");
-  EXPECT_EQ(refused([](C& c) { c.engagement.feed_from_tool *= 2.0; }), "engagement.feed_from_tool");
-  EXPECT_EQ(refused([](C& c) { c.engagement.feed_from_tool.row(0) *= -1.0; }), "engagement.feed_from_tool");
-  EXPECT_EQ(refused([](C& c) { c.motion.feed_per_tooth_m = 0.0; }), "motion.feed_per_tooth_m");
-  EXPECT_EQ(refused([](C& c) { c.motion.spindle_speed_rad_per_s = 0.0; }), "spindle_speed_rad_per_s");
-  EXPECT_EQ(refused([](C& c) { c.coefficients.tangential_n_per_m2.clear(); }), "tangential_n_per_m2");
-  EXPECT_EQ(refused([](C& c) { c.structure.compliance(2, 2) = std::nan(""); }), "structure");
+  EXPECT_EQ(rejected([](C&) {}), "accepted");
+  EXPECT_EQ(rejected([](C& c) { c.cutter.mill.teeth = 0; }), "teeth");
+  EXPECT_EQ(rejected([](C& c) { c.engagement.first_arc.pop_back(); }), "engagement.first_arc");
+  EXPECT_EQ(rejected([](C& c) { c.engagement.first_arc[1] = 99; }), "engagement.first_arc");
+  EXPECT_EQ(rejected([](C& c) { c.engagement.slices[0].width_m = -1.0; }), "engagement.slices");
+  EXPECT_EQ(rejected([](C& c) { c.engagement.arcs[0].exit_rad = c.engagement.arcs[0].entry_rad; }), "engagement.arcs");
+  EXPECT_EQ(rejected([](C& c) { c.engagement.arcs[0].exit_rad += 7.0; }), "engagement.arcs");
+  EXPECT_EQ(rejected([](C& c) { c.engagement.feed_from_tool *= 2.0; }), "engagement.feed_from_tool");
+  EXPECT_EQ(rejected([](C& c) { c.engagement.feed_from_tool.row(0) *= -1.0; }), "engagement.feed_from_tool");
+  EXPECT_EQ(rejected([](C& c) { c.motion.feed_per_tooth_m = 0.0; }), "motion.feed_per_tooth_m");
+  EXPECT_EQ(rejected([](C& c) { c.motion.spindle_speed_rad_per_s = 0.0; }), "spindle_speed_rad_per_s");
+  EXPECT_EQ(rejected([](C& c) { c.coefficients.tangential_n_per_m2.clear(); }), "tangential_n_per_m2");
+  EXPECT_EQ(rejected([](C& c) { c.structure.compliance(2, 2) = std::nan(""); }), "structure");
 }
 
 }  // namespace

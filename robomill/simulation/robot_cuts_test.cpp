@@ -98,10 +98,10 @@ TEST(RobotCuts, DepthsThatWereCutFollowThePocketsOfTwoTeeth) {
 // chattering.
 TEST(RobotCuts, TwoTeethDoubleTheirPeriodBeside6500Rpm) {
   const std::vector<Limit> limits = limits_of(2, {6500.0, 6510.0, 6550.0});
-  EXPECT_EQ(limits[0].kind, stability::Kind::hopf);
+  EXPECT_EQ(limits[0].kind, stability::BifurcationType::hopf);
   EXPECT_NEAR(depth_mm(limits[0]), 0.85, 0.01);
   for (const std::size_t i : {1U, 2U}) {
-    EXPECT_EQ(limits[i].kind, stability::Kind::flip);
+    EXPECT_EQ(limits[i].kind, stability::BifurcationType::flip);
     EXPECT_LT(depth_mm(limits[i]), 0.6);
     const double tooth_passing_hz = limits[i].spindle_speed_rad_per_s / (2.0 * std::numbers::pi) * 2.0;
     EXPECT_NEAR(limits[i].chatter_frequency_hz / tooth_passing_hz, 2.5, 1e-6);
@@ -126,7 +126,7 @@ double amplitude(const Simulation& cut, double rotation_hz, int multiple) {
 }
 
 // Three rotations are no multiple of two teeth's passing. Period doubling puts a line there, and so does runout in a
-// cut that does not chatter: the peak alone does not tell the two apart.
+// cut that does not chatter: the peak alone does not report the two apart.
 TEST(RobotCuts, PeriodDoublingAndRunoutBothPutALineAtThreeRotations) {
   const double speed_rpm = 6550.0, rotation_hz = speed_rpm / 60.0;
   const SimulationOptions options = {.seconds = 3.0, .sample_rate_hz = 240.0 * rotation_hz / 4.0};

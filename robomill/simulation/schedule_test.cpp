@@ -230,21 +230,21 @@ TEST(Schedule, ADrillGoesIn) {
   EXPECT_NEAR(s.force_n(3900, 2), 0.25 * 3900.0 / 1024.0 / 0.8 * thrust, 2e-3 * thrust);
 }
 
-TEST(Schedule, RefusesWhatIsNone) {
+TEST(Schedule, RejectsWhatIsNone) {
   MillingCut cut = robot_cut(6500.0, 0.6e-3);
-  const auto refused = [&](const Schedule& schedule) {
+  const auto rejected = [&](const Schedule& schedule) {
     cut.schedule = schedule;
     EXPECT_THROW(cut.validate(), InvalidInput);
   };
-  refused({.depth = {{0.0, 1.1}}});
-  refused({.depth = {{0.0, -0.1}}});
-  refused({.depth = {{-1.0, 0.5}}});
-  refused({.depth = {{1.0, 0.5}, {0.5, 1.0}}});
-  refused({.depth = {{std::nan(""), 0.5}}});
-  refused({.depth = {{0.0, std::nan("")}}});
-  refused({.speed = {{0.0, 0.0}}});
+  rejected({.depth = {{0.0, 1.1}}});
+  rejected({.depth = {{0.0, -0.1}}});
+  rejected({.depth = {{-1.0, 0.5}}});
+  rejected({.depth = {{1.0, 0.5}, {0.5, 1.0}}});
+  rejected({.depth = {{std::nan(""), 0.5}}});
+  rejected({.depth = {{0.0, std::nan("")}}});
+  rejected({.speed = {{0.0, 0.0}}});
   cut.milling.speed_variation = {.amplitude_ratio = 0.1, .frequency_ratio = 0.5};
-  refused({.speed = {{0.0, 0.5}}});
+  rejected({.speed = {{0.0, 0.5}}});
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ TEST(Simulation, ProcessDampingIsADashpotWhereTheCutIsContinuous) {
   EXPECT_NEAR(engine.displacement()(1), expected, 1e-4 * std::exp(-decay * t));
 }
 
-TEST(Simulation, ChatterStaysFiniteAndTellsItsFrequency) {
+TEST(Simulation, ChatterStaysFiniteAndReportsItsFrequency) {
   const stability::LobesProblem problem = stability::testing::robot();
   const MillingCut cut = testing::cut_of(problem, 6500.0, 0.9e-3, 1e-5);
   const Simulation s = simulate(cut, {.seconds = 1.0});
@@ -244,39 +244,39 @@ TEST(Simulation, ALinearCutThatGrowsEndsWhereItLeavesTheWorld) {
 }
 
 template <class Break>
-std::string refused(const Break& change) {
+std::string rejected(const Break& change) {
   MillingCut cut = benchmark_cut(0.1, 5000.0, 1e-3);
   SimulationOptions options;
   change(cut, options);
   return test::field_of([&] { static_cast<void>(simulate(cut, options)); });
 }
 
-TEST(Simulation, RefusesBadInput) {
+TEST(Simulation, RejectsBadInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   using C = MillingCut;
   using O = SimulationOptions;
-  EXPECT_EQ(refused([](C& c, O&) { c.spindle_speed_rad_per_s = 0.0; }), "spindle_speed_rad_per_s");
-  EXPECT_EQ(refused([](C& c, O&) { c.spindle_speed_rad_per_s = 1e9; }), "spindle_speed_rad_per_s");
-  EXPECT_EQ(refused([](C& c, O&) { c.axial_depth_m = -1e-3; }), "axial_depth_m");
-  EXPECT_EQ(refused([](C& c, O&) { c.axial_depth_m = 2.0; }), "axial_depth_m");
-  EXPECT_EQ(refused([&](C& c, O&) { c.axial_depth_m = nan; }), "axial_depth_m");
-  EXPECT_EQ(refused([](C& c, O&) { c.milling.tool.teeth = 0; }), "teeth");
-  EXPECT_EQ(refused([](C& c, O&) { c.structure.pole(0) = {3.0, 5000.0}; }), "structure.pole");
-  EXPECT_EQ(refused([&](C& c, O&) { c.structure.left(0, 0) = nan; }), "structure");
-  EXPECT_EQ(refused([](C& c, O&) { c.structure.right.resize(3, 1); }), "structure");
-  EXPECT_EQ(refused([](C&, O& o) { o.seconds = 0.0; }), "seconds");
-  EXPECT_EQ(refused([](C&, O& o) { o.seconds = 1e5; }), "seconds");
-  EXPECT_EQ(refused([&](C&, O& o) { o.sample_rate_hz = nan; }), "sample_rate_hz");
-  EXPECT_EQ(refused([](C&, O& o) { o.sample_rate_hz = 0.1; }), "sample_rate_hz");
-  EXPECT_EQ(refused([](C&, O& o) { o.steps_per_revolution = 3; }), "steps_per_revolution");
-  EXPECT_EQ(refused([](C&, O& o) { o.slices = -1; }), "slices");
-  EXPECT_EQ(refused([](C&, O& o) { o.tolerance = 0.0; }), "tolerance");
-  EXPECT_EQ(refused([](C& c, O& o) {
+  EXPECT_EQ(rejected([](C& c, O&) { c.spindle_speed_rad_per_s = 0.0; }), "spindle_speed_rad_per_s");
+  EXPECT_EQ(rejected([](C& c, O&) { c.spindle_speed_rad_per_s = 1e9; }), "spindle_speed_rad_per_s");
+  EXPECT_EQ(rejected([](C& c, O&) { c.axial_depth_m = -1e-3; }), "axial_depth_m");
+  EXPECT_EQ(rejected([](C& c, O&) { c.axial_depth_m = 2.0; }), "axial_depth_m");
+  EXPECT_EQ(rejected([&](C& c, O&) { c.axial_depth_m = nan; }), "axial_depth_m");
+  EXPECT_EQ(rejected([](C& c, O&) { c.milling.tool.teeth = 0; }), "teeth");
+  EXPECT_EQ(rejected([](C& c, O&) { c.structure.pole(0) = {3.0, 5000.0}; }), "structure.pole");
+  EXPECT_EQ(rejected([&](C& c, O&) { c.structure.left(0, 0) = nan; }), "structure");
+  EXPECT_EQ(rejected([](C& c, O&) { c.structure.right.resize(3, 1); }), "structure");
+  EXPECT_EQ(rejected([](C&, O& o) { o.seconds = 0.0; }), "seconds");
+  EXPECT_EQ(rejected([](C&, O& o) { o.seconds = 1e5; }), "seconds");
+  EXPECT_EQ(rejected([&](C&, O& o) { o.sample_rate_hz = nan; }), "sample_rate_hz");
+  EXPECT_EQ(rejected([](C&, O& o) { o.sample_rate_hz = 0.1; }), "sample_rate_hz");
+  EXPECT_EQ(rejected([](C&, O& o) { o.steps_per_revolution = 3; }), "steps_per_revolution");
+  EXPECT_EQ(rejected([](C&, O& o) { o.slices = -1; }), "slices");
+  EXPECT_EQ(rejected([](C&, O& o) { o.tolerance = 0.0; }), "tolerance");
+  EXPECT_EQ(rejected([](C& c, O& o) {
               c.axial_depth_m = 0.0;
               o.seconds = 0.05;
             }),
             "accepted");
-  EXPECT_EQ(refused([](C& c, O&) { c.milling.feed_per_tooth_m = 0.0; }), "feed_per_tooth_m");
+  EXPECT_EQ(rejected([](C& c, O&) { c.milling.feed_per_tooth_m = 0.0; }), "feed_per_tooth_m");
 }
 
 TEST(Simulation, StopsWhenAsked) {

@@ -32,7 +32,7 @@ struct Strip {
 ///
 /// An edge that now stands out_m beyond the nominal ring with the feed at feed_m has before it
 ///   h = out - node.out + d (n·u) + d² ((t·u)² / 2r_t + (m·u)² / 2r_m),  d = feed - node.feed,
-/// u the feed's direction, r_t and r_m the envelope's radii of curvature along the cut t and the meridian m (the last
+/// u the feed's direction, r_t and r_m the envelope's radii of curvature along the cut t and the profile m (the last
 /// term is what an earlier surface falls back beside its own direction). Of a cylinder fed along x that is
 /// d sin φ + (d cos φ)² / 2R, and of a drill d times the axial part of n.
 template <int D>

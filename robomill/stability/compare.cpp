@@ -51,7 +51,7 @@ MethodComparison compare_methods(const LobesProblem& problem, const LobesOptions
       row.limits = limit_depths(problem, own, result.spindle_speed_rad_per_s, progress);
     } catch (const InvalidInput& error) {
       if (result.rows.empty()) throw;  // the reference must stand
-      row.refusal = error.what();
+      row.rejection = error.what();
     }
     row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     judge(result.rows.empty() ? row.limits : result.rows.front().limits, row);

@@ -11,8 +11,8 @@ namespace robomill::stability {
 /// What one method makes of the limits, beside the reference.
 struct MethodRow {
   Method method = Method::collocation;
-  std::vector<Limit> limits;  ///< one a speed; empty where the method refuses the problem
-  std::string refusal;        ///< why, where it does
+  std::vector<Limit> limits;  ///< one a speed; empty where the method rejects the problem
+  std::string rejection;      ///< why, where it does
   /// Over the speeds at which this method and the reference both find a limit: |limit / reference - 1|. NaN where there
   /// are none.
   double median_error = 0.0, worst_error = 0.0;

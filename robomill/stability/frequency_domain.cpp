@@ -23,7 +23,7 @@ std::string band(double low_rad_per_s, double high_rad_per_s) {
   return text;
 }
 
-[[noreturn]] void refuse(const std::string& missing, const std::string& rule, const std::string& hint) {
+[[noreturn]] void reject(const std::string& missing, const std::string& rule, const std::string& hint) {
   throw InvalidInput(
       InvalidInput::Parts{.field = "frf", .value = "band " + missing + " missing", .rule = rule, .hint = hint});
 }
@@ -59,11 +59,11 @@ void require_coverage(const FrequencyResponse& response, const std::vector<Frequ
   const char* const again = "Measure that band too";
   const double at_high = mean_size(response, 0.975 * high, high);
   if (at_high > 0.02 * largest && at_high > 1.02 * mean_size(response, 0.9 * high, 0.925 * high)) {
-    refuse(band(high, std::numeric_limits<double>::infinity()), "FRFs must reach beyond the last peak", again);
+    reject(band(high, std::numeric_limits<double>::infinity()), "FRFs must reach beyond the last peak", again);
   }
   const double at_low = mean_size(response, low, 1.05 * low);
   if (low > 0.0 && at_low > 0.2 * largest && at_low > 1.15 * mean_size(response, 1.15 * low, 1.2 * low)) {
-    refuse(band(0.0, low), "FRFs must begin below the first peak", again);
+    reject(band(0.0, low), "FRFs must begin below the first peak", again);
   }
   const FrequencyLimit* worst = nullptr;
   for (const FrequencyLimit& limit : limits) {
@@ -76,7 +76,7 @@ void require_coverage(const FrequencyResponse& response, const std::vector<Frequ
   std::snprintf(rule, sizeof rule, "what is not measured moves the limit at %.6g rpm, chatter at %.5g Hz, by %.2g %%",
                 worst->spindle_speed_rad_per_s * 30.0 / pi, worst->chatter_frequency_hz,
                 100.0 * worst->uncovered_ratio);
-  refuse(below && low > 0.0 ? band(0.0, low) : band(high, std::numeric_limits<double>::infinity()), rule, again);
+  reject(below && low > 0.0 ? band(0.0, low) : band(high, std::numeric_limits<double>::infinity()), rule, again);
 }
 
 }  // namespace robomill::stability

@@ -23,19 +23,19 @@ struct ROBOMILL_API FrequencyOptions {
 struct DepthCrossing {
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = 0.0;  ///< of the harmonic with the greatest displacement
-  Kind kind = Kind::hopf;
+  BifurcationType kind = BifurcationType::hopf;
   bool opens = false;  ///< more is unstable above than below
 };
 
 /// What a frequency-domain method says of one spindle speed.
 struct FrequencyLimit {
-  /// not_converged: the limit still moves by more than the tolerance; error_estimate_m tells by how much.
+  /// not_converged: the limit still moves by more than the tolerance; error_estimate_m reports by how much.
   enum class Status { found, stable_in_range, not_converged };
   Status status = Status::stable_in_range;
   double spindle_speed_rad_per_s = 0.0;
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = 0.0;
-  Kind kind = Kind::hopf;
+  BifurcationType kind = BifurcationType::hopf;
   modal::ModeId mode = {};        ///< that moves most in it; unknown for measured FRFs
   int harmonics = 0;              ///< N: of Fourier's series, |n| <= N
   int polynomials = 0;            ///< with which the force is followed through the cut

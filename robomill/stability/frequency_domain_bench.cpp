@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "robomill/stability/fingerprint.hpp"
+#include "robomill/stability/peak_classification.hpp"
 #include "testing/stability/problems.hpp"
 
 namespace {
@@ -74,10 +74,10 @@ void frfs_to_interpolation(benchmark::State& state) {
     benchmark::DoNotOptimize(response);
   }
 }
-void delay_verdict_robot(benchmark::State& state) {
+void chatter_mechanism_robot(benchmark::State& state) {
   const LobesProblem p = stability::testing::robot();
   for (auto _ : state) {
-    DelayVerdict verdict = needs_delay(p, {6500 * rpm, 0.8e-3});
+    ChatterMechanism verdict = chatter_mechanism(p, {6500 * rpm, 0.8e-3});
     benchmark::DoNotOptimize(verdict);
   }
 }
@@ -92,4 +92,4 @@ BENCHMARK(multi_frequency_robot_helix)->Unit(benchmark::kSecond)->UseRealTime()-
 BENCHMARK(multi_frequency_robot_unequal_pitch)->Unit(benchmark::kSecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(zeroth_order_robot)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(frfs_to_interpolation)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
-BENCHMARK(delay_verdict_robot)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+BENCHMARK(chatter_mechanism_robot)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();

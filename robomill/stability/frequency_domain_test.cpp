@@ -59,12 +59,12 @@ double collocated(const LobesProblem& problem, double speed_rpm, double depth_m)
 // Source: limits of the two-degree benchmark of [Insperger2004], converged to 1e-6 mm; the last is a flip.
 struct Known {
   double speed_rpm, limit_mm;
-  Kind kind;
+  BifurcationType kind;
 };
-const std::vector<Known> known = {{5000, 1.843802, Kind::hopf},
-                                  {10000, 1.486950, Kind::hopf},
-                                  {15000, 1.651214, Kind::hopf},
-                                  {20000, 3.250386, Kind::flip}};
+const std::vector<Known> known = {{5000, 1.843802, BifurcationType::hopf},
+                                  {10000, 1.486950, BifurcationType::hopf},
+                                  {15000, 1.651214, BifurcationType::hopf},
+                                  {20000, 3.250386, BifurcationType::flip}};
 
 TEST(MultiFrequency, ReachesTheConvergedLimits) {
   const auto limits = multi(benchmark(0.05), 0.01, {5000, 10000, 15000, 20000});
@@ -159,7 +159,7 @@ TEST(MultiFrequency, HasProcessDamping) {
   EXPECT_GT(multi(damped, 8e-3, {4000}).front().axial_depth_m, 1.2 * multi(bare, 8e-3, {4000}).front().axial_depth_m);
 }
 
-// Stable just below the limit and unstable just above it, or stable at every depth: told by another method.
+// Stable just below the limit and unstable just above it, or stable at every depth: reported by another method.
 TEST(MultiFrequency, PropertyLimitsOfRandomCuts) {
   int found = 0;
   for (int seed = 0; seed < seeds(200); ++seed) {
@@ -441,9 +441,9 @@ TEST(FrequencyResponse, SaysWhichBandIsMissing) {
   EXPECT_NE(said(930.0, 4000.0).find("band 0 to 930 Hz missing"), std::string::npos) << said(930.0, 4000.0);
 }
 
-TEST(FrequencyDomain, RefusesWhatCannotBe) {
+TEST(FrequencyDomain, RejectsWhatCannotBe) {
   const FrequencyResponse g = FrequencyResponse::of_modes(benchmark(0.05));
-  const auto refused = [&](auto change, double speed = 500.0, double depth_m = 0.01) {
+  const auto rejected = [&](auto change, double speed = 500.0, double depth_m = 0.01) {
     LobesProblem p = benchmark(0.05);
     change(p.milling);
     const std::string multi = message_of(
@@ -453,16 +453,16 @@ TEST(FrequencyDomain, RefusesWhatCannotBe) {
     EXPECT_EQ(multi, zeroth);
     return multi;
   };
-  EXPECT_EQ(refused([](cutting::Milling&) {}), "accepted");
-  EXPECT_EQ(refused([](cutting::Milling&) {}, -1.0).rfind("spindle_speed_rad_per_s", 0), 0U);
-  EXPECT_EQ(refused([](cutting::Milling&) {}, 500.0, 0.0).rfind("largest_depth_m", 0), 0U);
-  EXPECT_EQ(refused([](cutting::Milling& m) { m.tool.tooth_helix_rad = {0.5, 0.6}; }).rfind("tooth_helix_rad", 0), 0U);
-  EXPECT_EQ(refused([](cutting::Milling& m) {
+  EXPECT_EQ(rejected([](cutting::Milling&) {}), "accepted");
+  EXPECT_EQ(rejected([](cutting::Milling&) {}, -1.0).rfind("spindle_speed_rad_per_s", 0), 0U);
+  EXPECT_EQ(rejected([](cutting::Milling&) {}, 500.0, 0.0).rfind("largest_depth_m", 0), 0U);
+  EXPECT_EQ(rejected([](cutting::Milling& m) { m.tool.tooth_helix_rad = {0.5, 0.6}; }).rfind("tooth_helix_rad", 0), 0U);
+  EXPECT_EQ(rejected([](cutting::Milling& m) {
               m.tool.runout_m = 1e-5;
               m.feed_per_tooth_m = 1e-4;
             }).rfind("runout_m", 0),
             0U);
-  EXPECT_EQ(refused([](cutting::Milling& m) { m.speed_variation = {0.1, 0.2}; }).rfind("amplitude_ratio", 0), 0U);
+  EXPECT_EQ(rejected([](cutting::Milling& m) { m.speed_variation = {0.1, 0.2}; }).rfind("amplitude_ratio", 0), 0U);
   modal::FrfSet set = sampled(robot(), 5.0, 6.0, 0.25);
   EXPECT_EQ(message_of([&] { static_cast<void>(FrequencyResponse::of_frfs(set, 0.0)); }).rfind("frequency_hz", 0), 0U);
   set = sampled(robot(), 5.0, 100.0, 0.25);

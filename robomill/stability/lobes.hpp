@@ -45,12 +45,12 @@ enum class Method {
 enum class Output { boundary, map, both };
 enum class Period { tooth, revolution };
 /// How stability is lost: a pair of multipliers, -1, or +1.
-enum class Kind { hopf, flip, fold };
+enum class BifurcationType { hopf, flip, fold };
 
 /// "semi-discretization", "tooth", "hopf", …: as the files write them.
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Method method);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Period period);
-[[nodiscard]] ROBOMILL_API std::string_view to_string(Kind kind);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(BifurcationType kind);
 
 /// One point of the stability chart.
 struct OperatingPoint {
@@ -83,7 +83,7 @@ struct PointResult {
   bool stable = false;                    ///< spectral radius < 1
   double error_estimate = 0.0;            ///< of the spectral radius: from a second, finer run; or NaN as it
   double chatter_frequency_hz = 0.0;      ///< at which this multiplier's motion is greatest [Hz]; 0 where it overflows
-  Kind kind = Kind::hopf;
+  BifurcationType kind = BifurcationType::hopf;
   modal::ModeId mode = {};  ///< that moves most in it; unknown where it overflows
 };
 
@@ -92,7 +92,7 @@ struct BoundaryPoint {
   double spindle_speed_rad_per_s = 0.0;
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = 0.0;
-  Kind kind = Kind::hopf;
+  BifurcationType kind = BifurcationType::hopf;
   modal::ModeId mode = {};
   double error_estimate =
       0.0;        ///< of the spectral radius there; in the frequency domain of the depth, as a share of it
@@ -107,7 +107,7 @@ struct Limit {
   Status status = Status::stable_in_range;
   double axial_depth_m = 0.0;
   double chatter_frequency_hz = 0.0;
-  Kind kind = Kind::hopf;
+  BifurcationType kind = BifurcationType::hopf;
   modal::ModeId mode = {};      ///< unknown for measured FRFs
   double error_estimate = 0.0;  ///< as of a boundary point
 };

@@ -50,11 +50,11 @@ std::string_view to_string(Period period) {
   return period == Period::tooth ? "tooth" : "revolution";
 }
 
-std::string_view to_string(Kind kind) {
+std::string_view to_string(BifurcationType kind) {
   switch (kind) {
-    case Kind::flip:
+    case BifurcationType::flip:
       return "flip";
-    case Kind::fold:
+    case BifurcationType::fold:
       return "fold";
     default:
       return "hopf";

@@ -183,7 +183,7 @@ TEST(Lobes, RobotChattersInItsHighestModes) {
        {std::pair{6500.0, 0.6e-3}, {8000.0, 1.2e-3}, {15000.0, 1.1e-3}, {6500.0, 0.8e-3}, {8000.0, 1.5e-3}}) {
     const PointResult p = at(robot(), speed_rpm, depth_m);
     EXPECT_FALSE(p.stable);
-    EXPECT_EQ(p.kind, Kind::hopf);
+    EXPECT_EQ(p.kind, BifurcationType::hopf);
     EXPECT_EQ(p.mode.number, 8);
     EXPECT_GT(p.chatter_frequency_hz, 542.0);
     EXPECT_LT(p.chatter_frequency_hz, 569.0);
@@ -202,7 +202,7 @@ TEST(Lobes, FlipChattersAtHalfTheToothPassing) {
   const LobesResult result = compute_lobes(benchmark(0.05), chart(15000, 25000, 8e-3, 60, 40));
   int flips = 0;
   for (const BoundaryPoint& b : result.boundary) {
-    if (b.kind != Kind::flip) continue;
+    if (b.kind != BifurcationType::flip) continue;
     ++flips;
     const double passing_hz = 2.0 * b.spindle_speed_rad_per_s / (2.0 * pi);
     const double halves = b.chatter_frequency_hz / (0.5 * passing_hz);
@@ -340,51 +340,51 @@ TEST(Lobes, AbsurdCutsGiveNumbersAndNoNan) {
   for (const Limit& limit : result.limit) EXPECT_EQ(limit.status, Limit::Status::found);
 }
 
-TEST(LobesOptions, RefusesWhatCannotBe) {
+TEST(LobesOptions, RejectsWhatCannotBe) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto refused = [](auto change) {
+  const auto rejected = [](auto change) {
     LobesOptions o = chart(4000, 16000, 3e-3, 20, 20);
     change(o);
     return field_of([&] { o.validate(); });
   };
-  EXPECT_EQ(refused([](LobesOptions&) {}), "accepted");
+  EXPECT_EQ(rejected([](LobesOptions&) {}), "accepted");
   EXPECT_EQ(field_of([] { LobesOptions{}.validate(); }), "spindle_speed_rad_per_s");
-  EXPECT_EQ(refused([](LobesOptions& o) { o.spindle_speed_rad_per_s = {500.0, 400.0}; }), "spindle_speed_rad_per_s");
-  EXPECT_EQ(refused([&](LobesOptions& o) { o.spindle_speed_rad_per_s[1] = nan; }), "spindle_speed_rad_per_s");
-  EXPECT_EQ(refused([](LobesOptions& o) { o.axial_depth_m = {0.0, 1.0}; }), "axial_depth_m");
-  EXPECT_EQ(refused([](LobesOptions& o) { o.axial_depth_m = {-1e-3, 1e-3}; }), "axial_depth_m");
-  EXPECT_EQ(refused([](LobesOptions& o) { o.grid = {1, 20}; }), "grid");
-  EXPECT_EQ(refused([](LobesOptions& o) { o.grid = {5001, 5000}; }), "grid");
-  EXPECT_EQ(refused([](LobesOptions& o) { o.intervals = 3; }), "intervals");
-  EXPECT_EQ(refused([](LobesOptions& o) { o.intervals = 1 << 20; }), "intervals");
-  EXPECT_EQ(refused([](LobesOptions& o) { o.tolerance = 0.0; }), "tolerance");
-  EXPECT_EQ(refused([&](LobesOptions& o) { o.tolerance = nan; }), "tolerance");
-  EXPECT_EQ(refused([](LobesOptions& o) { o.points = {{0.0, 1e-3}}; }), "points.spindle_speed_rad_per_s");
-  EXPECT_EQ(refused([](LobesOptions& o) { o.points = {{400.0, 1.0}}; }), "points.axial_depth_m");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.spindle_speed_rad_per_s = {500.0, 400.0}; }), "spindle_speed_rad_per_s");
+  EXPECT_EQ(rejected([&](LobesOptions& o) { o.spindle_speed_rad_per_s[1] = nan; }), "spindle_speed_rad_per_s");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.axial_depth_m = {0.0, 1.0}; }), "axial_depth_m");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.axial_depth_m = {-1e-3, 1e-3}; }), "axial_depth_m");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.grid = {1, 20}; }), "grid");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.grid = {5001, 5000}; }), "grid");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.intervals = 3; }), "intervals");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.intervals = 1 << 20; }), "intervals");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.tolerance = 0.0; }), "tolerance");
+  EXPECT_EQ(rejected([&](LobesOptions& o) { o.tolerance = nan; }), "tolerance");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.points = {{0.0, 1e-3}}; }), "points.spindle_speed_rad_per_s");
+  EXPECT_EQ(rejected([](LobesOptions& o) { o.points = {{400.0, 1.0}}; }), "points.axial_depth_m");
 }
 
-TEST(LobesProblem, RefusesWhatCannotBe) {
-  const auto refused = [](auto change) {
+TEST(LobesProblem, RejectsWhatCannotBe) {
+  const auto rejected = [](auto change) {
     LobesProblem p = robot();
     change(p);
     return field_of([&] { p.validate(); });
   };
-  EXPECT_EQ(refused([](LobesProblem&) {}), "accepted");
-  EXPECT_EQ(refused([](LobesProblem& p) { p.milling.tool.teeth = 0; }), "teeth");
-  EXPECT_EQ(refused([](LobesProblem& p) { p.keep_modes = {0}; }), "keep_modes");
-  EXPECT_EQ(refused([](LobesProblem& p) { p.keep_modes = {9}; }), "keep_modes");
-  EXPECT_EQ(refused([](LobesProblem& p) { p.keep_modes = {2, 2}; }), "keep_modes");
-  EXPECT_EQ(refused([](LobesProblem& p) { p.dynamics.modes.clear(); }), "modes");
-  EXPECT_EQ(refused([](LobesProblem& p) { p.dynamics.modes[3].damping_ratio = -0.1; }), "modes[4].damping_ratio");
-  EXPECT_EQ(refused([](LobesProblem& p) { p.feed_direction_rad = std::nan(""); }), "feed_direction_rad");
+  EXPECT_EQ(rejected([](LobesProblem&) {}), "accepted");
+  EXPECT_EQ(rejected([](LobesProblem& p) { p.milling.tool.teeth = 0; }), "teeth");
+  EXPECT_EQ(rejected([](LobesProblem& p) { p.keep_modes = {0}; }), "keep_modes");
+  EXPECT_EQ(rejected([](LobesProblem& p) { p.keep_modes = {9}; }), "keep_modes");
+  EXPECT_EQ(rejected([](LobesProblem& p) { p.keep_modes = {2, 2}; }), "keep_modes");
+  EXPECT_EQ(rejected([](LobesProblem& p) { p.dynamics.modes.clear(); }), "modes");
+  EXPECT_EQ(rejected([](LobesProblem& p) { p.dynamics.modes[3].damping_ratio = -0.1; }), "modes[4].damping_ratio");
+  EXPECT_EQ(rejected([](LobesProblem& p) { p.feed_direction_rad = std::nan(""); }), "feed_direction_rad");
   const auto on_z = [](LobesProblem& p) {
     p.dynamics.excitations = p.dynamics.responses = {{.axis = modal::Axis::z}, {.axis = modal::Axis::rx}};
   };
-  EXPECT_EQ(refused(on_z), "modes");
+  EXPECT_EQ(rejected(on_z), "modes");
   const auto elsewhere = [](LobesProblem& p) {
     p.dynamics.excitations = p.dynamics.responses = {{1, modal::Axis::x}, {2, modal::Axis::y}};
   };
-  EXPECT_EQ(refused(elsewhere), "modes");
+  EXPECT_EQ(rejected(elsewhere), "modes");
   LobesProblem tight = robot();
   tight.milling.tool.pitch_rad = {0.02, 3.0, 2.0 * pi - 3.02};
   EXPECT_EQ(field_of([&] { static_cast<void>(at(tight, 6000, 1e-3)); }), "intervals");

@@ -12,9 +12,9 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 
 }  // namespace
 
-Kind kind_of(Complex multiplier) {
-  if (std::abs(multiplier.imag()) > 1e-9 * std::abs(multiplier)) return Kind::hopf;
-  return multiplier.real() < 0.0 ? Kind::flip : Kind::fold;
+BifurcationType kind_of(Complex multiplier) {
+  if (std::abs(multiplier.imag()) > 1e-9 * std::abs(multiplier)) return BifurcationType::hopf;
+  return multiplier.real() < 0.0 ? BifurcationType::flip : BifurcationType::fold;
 }
 
 Motion find_motion(const TipDynamics& tip, Complex multiplier, double period_s, const Eigen::VectorXcd& modal_state,

@@ -14,7 +14,7 @@ struct Motion {
 };
 
 /// Hopf unless the multiplier is real.
-Kind kind_of(std::complex<double> multiplier);
+BifurcationType kind_of(std::complex<double> multiplier);
 
 /// The motion is a sum of harmonics exp(s_j t), s_j = (ln μ + 2πij) / T; the force has the coefficient F_j, mode k the
 /// displacement R_k L_k^T F_j / (s_j - λ_k) + conjugate pole's term. Named are the mode and the harmonic whose

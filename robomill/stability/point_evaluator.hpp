@@ -20,7 +20,7 @@ struct Outcome {
   std::complex<double> multiplier = 0.0;  ///< of greatest modulus, imaginary part >= 0
   double spectral_radius = 0.0;           ///< 1e100 where the motion overflows within a period
   double error_estimate = std::numeric_limits<double>::quiet_NaN();  ///< of the spectral radius
-  Kind kind = Kind::hopf;
+  BifurcationType kind = BifurcationType::hopf;
   double chatter_frequency_hz = 0.0;
   modal::ModeId mode = {};
 };
@@ -45,7 +45,7 @@ class Scheme {
   virtual ~Scheme() = default;
   [[nodiscard]] virtual std::unique_ptr<PointEvaluator> evaluator() const = 0;
   [[nodiscard]] virtual Period period() const = 0;
-  /// Told which depths will be asked for often, before evaluators are made.
+  /// Reported which depths will be asked for often, before evaluators are made.
   virtual void expect(std::span<const double> depths_m) { static_cast<void>(depths_m); }
 };
 

@@ -119,7 +119,7 @@ TEST(SurfaceError, TakesTheWorseWallOfASlotAndNoneWithoutAWall) {
   const double right = y_of_harmonics(slot, point, pi);
   EXPECT_NEAR(found.surface_location_error_m, std::abs(left) > std::abs(right) ? left : right,
               1e-3 * found.peak_to_peak_y_m);
-  EXPECT_GT(std::abs(std::abs(left) - std::abs(right)), 0.01 * found.peak_to_peak_y_m);  // they can be told apart
+  EXPECT_GT(std::abs(std::abs(left) - std::abs(right)), 0.01 * found.peak_to_peak_y_m);  // they can be distinguished
 
   LobesProblem between = fed(0.1);
   between.milling.immersion = {.entry_rad = 0.5, .exit_rad = 1.0};

@@ -94,7 +94,7 @@ TEST(Uncertainty, SameBitsAtAnyNumberOfThreads) {
   EXPECT_NE(one.limit_5_percent_m, uncertain_limits(benchmark(0.05), small_chart(), u).limit_5_percent_m);
 }
 
-TEST(Uncertainty, RefusesWhatCannotBe) {
+TEST(Uncertainty, RejectsWhatCannotBe) {
   const auto field = [](auto change) -> std::string {
     Uncertainty u;
     u.samples = 100;

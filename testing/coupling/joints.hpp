@@ -2,8 +2,8 @@
 // Joints as the model's four numbers, and the tip with them, for tests of the joint's model and of its identification.
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/base.hpp"
+#include "robomill/coupling/beam_element.hpp"
 #include "robomill/coupling/joint_model.hpp"
-#include "robomill/coupling/span.hpp"
 #include "testing/coupling/beams.hpp"
 
 namespace robomill::coupling::test {

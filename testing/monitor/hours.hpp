@@ -19,7 +19,7 @@ class StableHours {
 
   /// The next cut with the idle time before it; empty when the hours are over. Valid until the next call.
   [[nodiscard]] std::span<const float> next();
-  /// Of the cut that next() gave last: the speed as told, off by up to 3 %, and its teeth.
+  /// Of the cut that next() gave last: the speed as given, off by up to 3 %, and its teeth.
   [[nodiscard]] double hint_rad_per_s() const { return hint_; }
   [[nodiscard]] int teeth() const { return bank_[current_].plan.teeth(); }
   [[nodiscard]] double seconds() const { return static_cast<double>(frames_) / corpus_rate_hz; }  ///< given so far

@@ -47,7 +47,7 @@ struct RecordedCut {
   double sample_rate_hz = corpus_rate_hz;
   int channels = 2;                 ///< x, y
   std::vector<float> samples = {};  ///< interleaved [m/s²]
-  double hint_rad_per_s = 0.0;      ///< the spindle speed as told, off by up to five percent
+  double hint_rad_per_s = 0.0;      ///< the spindle speed as given, off by up to five percent
   int teeth = 0;
   Truth truth;
   [[nodiscard]] double seconds() const { return static_cast<double>(samples.size()) / channels / sample_rate_hz; }

@@ -63,13 +63,13 @@ double quantile(std::vector<double> values, double share) {
   return values[k] + (place - static_cast<double>(k)) * (next - values[k]);
 }
 
-CutScore score(const RecordedCut& cut, std::span<const Heard> heard) {
+CutScore score(const RecordedCut& cut, std::span<const Heard> processed) {
   const Truth& truth = cut.truth;
   CutScore out = {.kind = cut.kind, .course = cut.course, .noise = cut.noise, .chatter = truth.chatter};
   out.delay_s = out.recovery_s = unknown;
   std::vector<double> nearest, strongest;
   bool before = false;
-  for (const Heard& h : heard) {
+  for (const Heard& h : processed) {
     const bool in_chatter = truth.chatter && h.time_s >= truth.start_s && h.time_s < truth.end_s;
     const bool ringing = truth.chatter && h.time_s >= truth.end_s && h.time_s < truth.end_s + 0.1;
     if (h.chatter && !before && !in_chatter && !ringing) ++out.false_alarms;
@@ -118,7 +118,7 @@ Summary summarise(std::span<const CutScore> scores) {
   return out;
 }
 
-std::vector<Heard> heard_by_monitor(const RecordedCut& cut) {
+std::vector<Heard> processed_by_monitor(const RecordedCut& cut) {
   MonitorOptions options;
   options.sample_rate_hz = cut.sample_rate_hz;
   options.channels = cut.channels;

@@ -6,7 +6,7 @@
 
 #include "testing/monitor/recording.hpp"
 
-/// How well a detector hears the corpus.
+/// How well a detector processes the corpus.
 namespace robomill::monitor::testing {
 
 /// One decision of any detector.
@@ -31,7 +31,7 @@ struct CutScore {
   /// From truth.end_s to the first report of stable; NaN where chatter does not end 0.5 s before the recording.
   double recovery_s = 0.0;
 };
-[[nodiscard]] CutScore score(const RecordedCut& cut, std::span<const Heard> heard);
+[[nodiscard]] CutScore score(const RecordedCut& cut, std::span<const Heard> processed);
 
 /// Over many cuts; median and 95 % of what is known.
 struct Summary {
@@ -44,12 +44,12 @@ struct Summary {
 /// The share-th of sorted values, by straight lines; NaN of none. Values that are NaN do not count.
 [[nodiscard]] double quantile(std::vector<double> values, double share);
 
-/// ChatterMonitor as it stands, told the recording's hint and teeth.
-[[nodiscard]] std::vector<Heard> heard_by_monitor(const RecordedCut& cut);
+/// ChatterMonitor as it stands, given the recording's hint and teeth.
+[[nodiscard]] std::vector<Heard> processed_by_monitor(const RecordedCut& cut);
 /// Root mean square of 50 ms, each 25 ms, against mean plus five standard deviations of the second before.
 [[nodiscard]] std::vector<Heard> rms_five_sigma(const RecordedCut& cut);
-/// Each sample less the mean of the four revolutions before (at the true speed, which no monitor is told); where the
-/// rms of 50 ms of that exceeds 0.6 of the signal's twice running, chatter.
+/// Each sample less the mean of the four revolutions before (at the true speed, which no monitor knows); where
+/// the rms of 50 ms of that exceeds 0.6 of the signal's twice running, chatter.
 [[nodiscard]] std::vector<Heard> comb_rms_ratio(const RecordedCut& cut);
 
 }  // namespace robomill::monitor::testing

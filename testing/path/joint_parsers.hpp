@@ -29,7 +29,7 @@ struct Parsed {
     for (std::size_t i = 0; i < 6; ++i) point.joints[i] = std::stod(match[first + i]);
     points.push_back(point);
   }
-  void refuse(const std::string& line) {
+  void reject(const std::string& line) {
     if (trouble.empty()) trouble = line;
   }
 };
@@ -64,14 +64,14 @@ inline Parsed parse_krl(const std::string& text) {
     } else if (std::regex_match(line, match, ptp)) {
       out.move(match, 1, 0.0);
     } else if (line == "PTP_SPLINE") {
-      if (in_block) out.refuse(line);
+      if (in_block) out.reject(line);
       in_block = true;
       segments = 0;
       parts = 0.0;
     } else if (line == " TIME_BLOCK START") {
-      if (!in_block || segments > 0) out.refuse(line);
+      if (!in_block || segments > 0) out.reject(line);
     } else if (std::regex_match(line, match, segment)) {
-      if (!in_block || pending) out.refuse(line);
+      if (!in_block || pending) out.reject(line);
       pending_line = line;
       std::smatch kept;
       std::regex_match(pending_line, kept, segment);
@@ -79,25 +79,25 @@ inline Parsed parse_krl(const std::string& text) {
       ++segments;
     } else if (std::regex_match(line, match, part)) {
       if (!pending) {
-        out.refuse(line);
+        out.reject(line);
         continue;
       }
       parts += std::stod(match[1]);
       out.move(*pending, 1, std::stod(match[1]));
       pending.reset();
     } else if (std::regex_match(line, match, end)) {
-      if (std::abs(std::stod(match[1]) - parts) > 1e-5) out.refuse(line);
+      if (std::abs(std::stod(match[1]) - parts) > 1e-5) out.reject(line);
     } else if (line == "ENDSPLINE" || line == "ENDSPLINE C_SPL") {
-      if (!in_block || segments == 0) out.refuse(line);
+      if (!in_block || segments == 0) out.reject(line);
       in_block = false;
     } else if (std::regex_match(line, match, wait)) {
-      if (in_block) out.refuse(line);
+      if (in_block) out.reject(line);
       out.time_s += std::stod(match[1]);
     } else {
-      out.refuse(line);
+      out.reject(line);
     }
   }
-  if (defined != 1 || ended != 1 || in_block) out.refuse("the whole");
+  if (defined != 1 || ended != 1 || in_block) out.reject("the whole");
   return out;
 }
 
@@ -124,11 +124,11 @@ inline Parsed parse_rapid(const std::string& text) {
     } else if (line == "ENDMODULE") {
       ended = open.empty();
     } else if (std::regex_match(line, match, proc)) {
-      if (!open.empty()) out.refuse(line);
+      if (!open.empty()) out.reject(line);
       open = match[2];
       defined.push_back(open);
     } else if (line == "ENDPROC") {
-      if (open.empty()) out.refuse(line);
+      if (open.empty()) out.reject(line);
       open.clear();
     } else if (std::regex_match(line, match, start) && open == "go_to_start") {
       out.move(match, 1, 0.0);
@@ -136,16 +136,16 @@ inline Parsed parse_rapid(const std::string& text) {
       out.move(match, 1, std::stod(match[7]));
       standing = match[8] == "fine";
     } else if (std::regex_match(line, match, wait) && !open.empty()) {
-      if (!standing) out.refuse(line);  // a zone does not stop
+      if (!standing) out.reject(line);  // a zone does not stop
       out.time_s += std::stod(match[1]);
     } else if (open == "main" && std::regex_match(line, std::regex(R"(\w+;)"))) {
       called.push_back(line.substr(0, line.size() - 1));
     } else {
-      out.refuse(line);
+      out.reject(line);
     }
   }
   defined.erase(std::find(defined.begin(), defined.end(), "main"));
-  if (!module || !ended || called != defined || !standing) out.refuse("the whole");
+  if (!module || !ended || called != defined || !standing) out.reject("the whole");
   return out;
 }
 
@@ -175,10 +175,10 @@ inline Parsed parse_urscript(const std::string& text) {
     } else if (line == name + "()" && !inside) {
       called = true;
     } else if (line != "  stopj(2.0)") {
-      out.refuse(line);
+      out.reject(line);
     }
   }
-  if (!called) out.refuse("the whole");
+  if (!called) out.reject("the whole");
   return out;
 }
 
@@ -192,7 +192,7 @@ inline Parsed parse_servoj(const std::string& text, double cycle_s) {
     if (std::regex_match(line, match, row)) {
       out.move(match, 1, out.points.empty() ? 0.0 : cycle_s);
     } else {
-      out.refuse(line);
+      out.reject(line);
     }
   }
   return out;

@@ -375,7 +375,7 @@ export interface Corner {
   turn_deg: number;
   radius_mm: number;
   program: { x_mm: number[]; y_mm: number[] };
-  ways: { x_mm: number[]; y_mm: number[] }[]; // one a method
+  corner_paths: { x_mm: number[]; y_mm: number[] }[]; // one a method
 }
 
 export interface Smooth extends Remarks {

@@ -85,10 +85,10 @@ void read_search(io::TomlFile& file, JointFitOptions& out) {
     if (!file.numbers(key, unknowns[i], 1.0, range)) continue;
     const bool stiffness = i % 2 == 0;
     if (range.size() != 2 || !(range[0] <= range[1]) || !(stiffness ? range[0] > 0.0 : range[0] >= 0.0)) {
-      throw file.refuse(key, fmt::format("must be [from, to] with {} <= to", stiffness ? "0 < from" : "0 <= from"));
+      throw file.reject(key, fmt::format("must be [from, to] with {} <= to", stiffness ? "0 < from" : "0 <= from"));
     }
     // (0, 0) stands for a range that is left open.
-    if (range[1] == 0.0) throw file.refuse(key, "must not end at 0", "For no damping write a small upper bound: 1e-9");
+    if (range[1] == 0.0) throw file.reject(key, "must not end at 0", "For no damping write a small upper bound: 1e-9");
     out.lower[i] = range[0];
     out.upper[i] = range[1];
   }
@@ -106,9 +106,9 @@ void read_range(io::TomlFile& file, AssemblyFile& out) {
   std::vector<double> range;
   file.require("frequency.range_hz", "[from, to]");
   file.numbers("frequency.range_hz", "range_hz", 1.0, range);
-  if (range.size() != 2) throw file.refuse("frequency.range_hz", "must be [from, to]");
-  if (!(range[0] >= 0.0)) throw file.refuse("frequency.range_hz", "must begin at 0 Hz or above");
-  if (!(range[1] > range[0])) throw file.refuse("frequency.range_hz", "must be [from, to] with from below to");
+  if (range.size() != 2) throw file.reject("frequency.range_hz", "must be [from, to]");
+  if (!(range[0] >= 0.0)) throw file.reject("frequency.range_hz", "must begin at 0 Hz or above");
+  if (!(range[1] > range[0])) throw file.reject("frequency.range_hz", "must be [from, to] with from below to");
   out.low_hz = range[0];
   out.high_hz = range[1];
 }
@@ -117,18 +117,18 @@ void read_range(io::TomlFile& file, AssemblyFile& out) {
 Eigen::VectorXd read_step(io::TomlFile& file, const AssemblyFile& out) {
   double step_hz = 0.0;
   if (!file.number("frequency.step_hz", "step_hz", 1.0, step_hz)) return {};
-  if (!(step_hz > 0.0)) throw file.refuse("frequency.step_hz", "must be > 0");
+  if (!(step_hz > 0.0)) throw file.reject("frequency.step_hz", "must be > 0");
   if (!file.has("frequency.range_hz")) file.require("frequency.range_hz", "[from, to]");
   // A step such as 0.1 must not lose the last line to rounding.
   const double steps = std::floor((out.high_hz - out.low_hz) / step_hz * (1.0 + 1e-12) + 1e-9);
   if (!(steps < most_lines)) {
-    throw file.refuse("frequency.step_hz", fmt::format("would give {:.3g} lines; at most {:.0f}", steps, most_lines),
+    throw file.reject("frequency.step_hz", fmt::format("would give {:.3g} lines; at most {:.0f}", steps, most_lines),
                       "Take a larger step or a shorter range");
   }
   // A structure has no receptance where it would fly away: a range from 0 begins with its first step.
   const double first = out.low_hz > 0.0 ? 0.0 : 1.0;
   const auto count = static_cast<Eigen::Index>(steps - first) + 1;
-  if (count < 1) throw file.refuse("frequency.step_hz", "must not be longer than the range");
+  if (count < 1) throw file.reject("frequency.step_hz", "must not be longer than the range");
   return out.low_hz + step_hz * Eigen::ArrayXd::LinSpaced(count, first, steps);
 }
 
@@ -201,7 +201,7 @@ void read_measured(io::TomlFile& file, AssemblyFile& out) {
     }
   }
   if (file.has("holder.artefact") && artefact.empty()) {
-    throw file.refuse("holder.artefact", "must have at least one segment");
+    throw file.reject("holder.artefact", "must have at least one segment");
   }
   modal::FrfFile measured = modal::read_frfs({out.receptances});
   if (measured.added_decay_per_s > 0.0) {
@@ -230,17 +230,17 @@ void read_holder(io::TomlFile& file, AssemblyFile& out) {
   }
   const bool measured = file.path("holder.receptances", out.receptances);
   if (measured && file.has("holder.segments")) {
-    throw file.refuse("holder.receptances", "must not stand beside segments", "Measured or built of beams, not both");
+    throw file.reject("holder.receptances", "must not stand beside segments", "Measured or built of beams, not both");
   }
   if (measured) {
     read_measured(file, out);
     return;
   }
   for (const char* key : {"holder.points_mm", "holder.artefact", "holder.regularisation", "holder.max_amplification"}) {
-    if (file.has(key)) throw file.refuse(key, "goes with holder.receptances");
+    if (file.has(key)) throw file.reject(key, "goes with holder.receptances");
   }
   if (!file.has("holder.segments")) {
-    throw file.refuse("holder", "must give segments or receptances", "For a rigid wall leave [holder] out");
+    throw file.reject("holder", "must give segments or receptances", "For a rigid wall leave [holder] out");
   }
   out.assembly.holder.segments = read_segments(file, "holder.segments");
   if (out.assembly.holder.segments.empty()) out.notes.emplace_back("No segments: the tool stands on a rigid wall");
@@ -255,7 +255,7 @@ void choose_lines(const io::TomlFile& file, const Eigen::VectorXd& own, Assembly
     try {
       out.frequency_hz = lines_between(measured, out.low_hz, out.high_hz).frequency_hz;
     } catch (const InvalidInput&) {
-      throw file.refuse("frequency.range_hz",
+      throw file.reject("frequency.range_hz",
                         fmt::format("holds none of the measured holder's lines, {:.6g} to {:.6g} Hz",
                                     measured.frequency_hz(0), measured.frequency_hz(measured.frequency_hz.size() - 1)));
     }
@@ -275,7 +275,7 @@ AssemblyFile read_assembly(const std::filesystem::path& path, const AssemblyRead
   const Eigen::VectorXd lines = read_step(file, out);
   file.require("tool", "Write [[tool]] above each segment, from the tip to the joint");
   out.assembly.tool = read_segments(file, "tool");
-  if (out.assembly.tool.empty()) throw file.refuse("tool", "must have at least one segment");
+  if (out.assembly.tool.empty()) throw file.reject("tool", "must have at least one segment");
   read_joint(file, reading, out.assembly.joint);
   read_holder(file, out);
   read_search(file, out.search);

@@ -146,7 +146,7 @@ TEST(AssemblyToml, ReadsHowTheJointIsSearchedFor) {
   EXPECT_EQ(none.generations, 50);
 
   const auto expect = [&](const std::string& text, const std::string& words) {
-    const std::string said = test::refusal([&] { static_cast<void>(search(text)); });
+    const std::string said = test::rejection([&] { static_cast<void>(search(text)); });
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
   expect("population = 2\n", "assembly.toml:38: search.population = 2");
@@ -186,10 +186,10 @@ TEST(AssemblyToml, WithoutAHolderTheToolStandsOnAWall) {
   }
 }
 
-TEST(AssemblyToml, RefusesInTheFilesWords) {
+TEST(AssemblyToml, RejectsInTheFilesWords) {
   const test::Folder folder;
   const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& words) {
-    const std::string said = test::refusal(
+    const std::string said = test::rejection(
         [&] { static_cast<void>(read_assembly(folder.file("assembly.toml", with(old_text, new_text)))); });
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
@@ -229,7 +229,7 @@ TEST(AssemblyToml, RefusesInTheFilesWords) {
   expect("[holder]\n", "[holder]\npoints_mm = [0, 15]\n", "holder.points_mm: goes with holder.receptances");
   expect("[[tool]]\nlength_mm = 20", "[tool]\nlength_mm = 20", "assembly.toml");
   const auto say = [&](const std::string& text) {
-    return test::refusal([&] { static_cast<void>(read_assembly(folder.file("assembly.toml", text))); });
+    return test::rejection([&] { static_cast<void>(read_assembly(folder.file("assembly.toml", text))); });
   };
   EXPECT_NE(say("[frequency]\nrange_hz = [1, 2]\nstep_hz = 1\n").find("tool: is missing"), std::string::npos);
   EXPECT_NE(say("tool = []\n").find("at least one segment"), std::string::npos);
@@ -260,7 +260,7 @@ TEST(AssemblyToml, ASoughtJointNeedsNoStiffness) {
   };
   EXPECT_EQ(sought(start).joint->cross_stiffness_n_per_rad, 1e5);
   EXPECT_NO_THROW(sought(start).validate());
-  EXPECT_NE(test::refusal([&] { static_cast<void>(sought(start + "points = 0\n")); }).find("joint.points = 0"),
+  EXPECT_NE(test::rejection([&] { static_cast<void>(sought(start + "points = 0\n")); }).find("joint.points = 0"),
             std::string::npos);
 }
 
@@ -296,7 +296,7 @@ TEST(AssemblyToml, AMeasuredHolderGivesTheLines) {
   EXPECT_EQ(lines(""), holder.frequency_hz);
   EXPECT_EQ(lines("[frequency]\nrange_hz = [100, 200]\n"), Eigen::Vector3d(100.0, 150.0, 200.0));
   EXPECT_EQ(lines("[frequency]\nrange_hz = [100, 200]\nstep_hz = 100\n"), Eigen::Vector2d(100.0, 200.0));
-  const std::string said = test::refusal([&] { static_cast<void>(lines("[frequency]\nrange_hz = [1, 2]\n")); });
+  const std::string said = test::rejection([&] { static_cast<void>(lines("[frequency]\nrange_hz = [1, 2]\n")); });
   EXPECT_NE(said.find("holds none of the measured holder's lines, 50 to 3000 Hz"), std::string::npos) << said;
 }
 
@@ -307,7 +307,7 @@ TEST(AssemblyToml, SaysWhichRotationsAreLacking) {
     modal::FrfSet some{.frequency_hz = holder.frequency_hz, .frfs = {}};
     for (const char* name : names) some.frfs.push_back(frf(name, holder.frfs.front().receptance));
     modal::write_frfs(folder.at("holder.uff"), some);
-    return test::refusal([&] {
+    return test::rejection([&] {
       static_cast<void>(
           read_assembly(folder.file("assembly.toml", bar + "[holder]\nreceptances = \"holder.uff\"\n" + more)));
     });
@@ -349,7 +349,7 @@ TEST(AssemblyToml, CompletesRotationsFromPoints) {
     EXPECT_LT((found->receptance - plane(name)).norm(), 1e-8 * plane(name).norm()) << name;
   }
   const auto say = [&](const std::string& keys) {
-    return test::refusal([&] {
+    return test::rejection([&] {
       static_cast<void>(
           read_assembly(folder.file("assembly.toml", bar + "[holder]\nreceptances = \"points.mat\"\n" + keys)));
     });
@@ -447,11 +447,11 @@ TEST(AssemblyToml, LinesBetweenKeepWhatTheyCarry) {
   EXPECT_EQ(part.frequency_hz, Eigen::Vector2d(10.0, 20.0));
   EXPECT_EQ(part.frfs[0].receptance, Eigen::Vector2cd(2, 3));
   EXPECT_EQ(part.frfs[0].coherence, Eigen::Vector2d(0.2, 0.3));
-  EXPECT_NE(test::refusal([&] { static_cast<void>(lines_between(set, 21.0, 29.0)); }).find("no line"),
+  EXPECT_NE(test::rejection([&] { static_cast<void>(lines_between(set, 21.0, 29.0)); }).find("no line"),
             std::string::npos);
 }
 
-// Cut off or changed at any place, a file is refused or read, and never anything worse.
+// Cut off or changed at any place, a file is rejected or read, and never anything worse.
 TEST(AssemblyToml, SurvivesMutations) {
   const test::Folder folder;
   Random random(11);

@@ -6,7 +6,7 @@
 
 namespace robomill::coupling {
 
-/// joint.json as text: the joint in the keys of assembly.toml, how well it fits and what the FRF tells of it. A
+/// joint.json as text: the joint in the keys of assembly.toml, how well it fits and what the FRF shows of it. A
 /// deviation that is infinite is null.
 [[nodiscard]] ROBOMILL_API std::string joint_json(const JointFitResult& result);
 

@@ -36,7 +36,7 @@ class Row {
     const std::string_view field = text(key);
     if (field.empty()) return false;
     const std::optional<double> number = io::parse_cell(field);
-    if (!number || !std::isfinite(*number)) throw refuse(key, "must be a finite number");
+    if (!number || !std::isfinite(*number)) throw reject(key, "must be a finite number");
     out = *number * factor;
     return true;
   }
@@ -44,12 +44,12 @@ class Row {
     double number = 0.0;
     if (!this->number(key, 1.0, number)) return false;
     if (number != std::floor(number) || number < 0.0 || number > 1000.0) {
-      throw refuse(key, "must be a whole number from 0 to 1000");
+      throw reject(key, "must be a whole number from 0 to 1000");
     }
     out = static_cast<int>(number);
     return true;
   }
-  [[nodiscard]] InvalidInput refuse(std::string_view key, std::string rule, std::string hint = {}) const {
+  [[nodiscard]] InvalidInput reject(std::string_view key, std::string rule, std::string hint = {}) const {
     InvalidInput::Parts parts{
         .where = where_, .field = std::string(key), .rule = std::move(rule), .hint = std::move(hint)};
     const std::string_view field = text(key);
@@ -61,7 +61,7 @@ class Row {
     }
     return InvalidInput(std::move(parts));
   }
-  /// An error about a member of the segment, told in the column's name and unit.
+  /// An error about a member of the segment, reported in the column's name and unit.
   [[nodiscard]] InvalidInput located(const InvalidInput& error) const {
     InvalidInput::Parts parts = error.parts();
     parts.where = where_;
@@ -114,7 +114,7 @@ Segment read_segment(const Row& row, const Segment& like) {
   } else if (beam == "euler-bernoulli") {
     segment.beam = Beam::euler_bernoulli;
   } else if (!beam.empty()) {
-    throw row.refuse("beam", "must be one of \"timoshenko\", \"euler-bernoulli\"");
+    throw row.reject("beam", "must be one of \"timoshenko\", \"euler-bernoulli\"");
   }
   try {
     segment.validate();
@@ -135,10 +135,10 @@ std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segm
   for (const io::TextTable::Row& fields : table.rows) {
     const Row row(file, table, fields);
     const std::string name(row.text("tool"));
-    if (name.empty()) throw row.refuse("tool", "is empty", "Every row names its tool");
+    if (name.empty()) throw row.reject("tool", "is empty", "Every row names its tool");
     const bool next = out.empty() || out.back().name != name;
     if (next && !seen.insert(name).second) {
-      throw row.refuse("tool", "comes a second time",
+      throw row.reject("tool", "comes a second time",
                        "The rows of one tool follow each other, from the tip to the joint");
     }
     if (next) out.push_back({.name = name, .segments = {}, .line = fields.line});
@@ -146,8 +146,8 @@ std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segm
     tool.segments.push_back(read_segment(row, like));
     int teeth = 0;
     if (row.integer("teeth", teeth)) {
-      if (teeth < 1) throw row.refuse("teeth", "must be at least 1");
-      if (tool.teeth != 0 && tool.teeth != teeth) throw row.refuse("teeth", "differs from the rows of this tool above");
+      if (teeth < 1) throw row.reject("teeth", "must be at least 1");
+      if (tool.teeth != 0 && tool.teeth != teeth) throw row.reject("teeth", "differs from the rows of this tool above");
       tool.teeth = teeth;
     }
   }

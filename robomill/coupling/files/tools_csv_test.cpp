@@ -83,11 +83,11 @@ TEST(ToolsCsv, TwoQuotesWithinQuotesAreOne) {
   EXPECT_EQ(tools[1].name, "1/2\"\"") << "without quotes about it, a field is as it stands";
 }
 
-TEST(ToolsCsv, RefusesInTheFilesWords) {
+TEST(ToolsCsv, RejectsInTheFilesWords) {
   const test::Folder folder;
   const auto expect = [&](const std::string& text, const std::string& words) {
     const std::string said =
-        test::refusal([&] { static_cast<void>(read_tools(folder.file("tools.csv", text), carbide())); });
+        test::rejection([&] { static_cast<void>(read_tools(folder.file("tools.csv", text), carbide())); });
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
   const std::string head = "tool,length_mm,diameter_mm,inner_diameter_mm,beam,teeth,density_kg_per_m3\n";
@@ -111,7 +111,7 @@ TEST(ToolsCsv, RefusesInTheFilesWords) {
   expect("tool,length_mm,diameter_mm,lenght_mm\na,2,3,4\n", "Did you mean length_mm?");
 }
 
-// Cut off or changed at any place, a file is refused or read, and never anything worse.
+// Cut off or changed at any place, a file is rejected or read, and never anything worse.
 TEST(ToolsCsv, SurvivesMutations) {
   const test::Folder folder;
   const std::string good = "tool,length_mm,diameter_mm,beam\n\"a\",20,10,timoshenko\n\"b\",30,12,euler-bernoulli\n";

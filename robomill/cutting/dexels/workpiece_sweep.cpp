@@ -230,7 +230,7 @@ Span SweptSolid::extent(int axis) const {
   return {.from = least - radius_, .to = most + radius_};
 }
 
-double SweptSolid::shadow_m2() const {
+double SweptSolid::silhouette_m2() const {
   const double length = high_ - low_;
   const double way = way_.norm();
   return 2.0 * radius_ * (length + way + 2.0 * radius_) + length * way;

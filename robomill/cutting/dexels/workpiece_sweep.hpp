@@ -45,7 +45,7 @@ class SweptSolid {
   /// Range of a coordinate.
   [[nodiscard]] Span extent(int axis) const;
   /// At most the area that it covers, seen from any side.
-  [[nodiscard]] double shadow_m2() const;
+  [[nodiscard]] double silhouette_m2() const;
   /// How far a point lies within the swept cylinder, from its side [m].
   [[nodiscard]] double depth_in_side(const Eigen::Vector3d& point) const;
 

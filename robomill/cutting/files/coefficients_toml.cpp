@@ -42,7 +42,7 @@ double read_helix(io::TomlFile& file) {
   double helix_rad = 0.0;
   const char* const key = file.has("coefficients.helix_deg") ? "coefficients.helix_deg" : "tool.helix_deg";
   if (file.has(key) && !file.is_number(key)) {
-    throw file.refuse(key, "must be one angle where a material is named", "Give coefficients.helix_deg");
+    throw file.reject(key, "must be one angle where a material is named", "Give coefficients.helix_deg");
   }
   if (!file.number(key, "helix_rad", units::deg, helix_rad) && !file.has("tool")) {
     file.require("coefficients.helix_deg", "The cutter's, which inclines its edges");
@@ -60,9 +60,9 @@ MillingCoefficients read_material(io::TomlFile& file, const std::string& name) {
   try {
     return milling_coefficients(material(name), rake_rad, helix_rad, chip_thickness_m);
   } catch (const InvalidInput& error) {
-    const InvalidInput told = file.located(error);
-    if (!told.parts().where.empty()) throw told;
-    throw file.refuse("coefficients.material", error.parts().rule, error.parts().hint);
+    const InvalidInput reported = file.located(error);
+    if (!reported.parts().where.empty()) throw reported;
+    throw file.reject("coefficients.material", error.parts().rule, error.parts().hint);
   }
 }
 
@@ -91,10 +91,10 @@ MillingCoefficients read_coefficient_table(io::TomlFile& file) {
   const bool measured = read_edge_measure(file, out);
   if (file.text("coefficients.material", material)) {
     if (cutting != nullptr) {
-      throw file.refuse("coefficients.material", fmt::format("must not stand beside {}", cutting),
+      throw file.reject("coefficients.material", fmt::format("must not stand beside {}", cutting),
                         "Edge coefficients may; they replace the material's");
     }
-    if (file.has("coefficients.file")) throw file.refuse("coefficients.material", "must not stand beside a file");
+    if (file.has("coefficients.file")) throw file.reject("coefficients.material", "must not stand beside a file");
     return with_own_edge(read_material(file, material), out);
   }
   if (!file.path("coefficients.file", other)) {
@@ -103,16 +103,16 @@ MillingCoefficients read_coefficient_table(io::TomlFile& file) {
     return out;
   }
   if (cutting != nullptr || edge != nullptr || measured) {
-    throw file.refuse("coefficients.file", "must not stand beside coefficients of its own");
+    throw file.reject("coefficients.file", "must not stand beside coefficients of its own");
   }
   return read_coefficients(other);
 }
 
 MillingCoefficients read_coefficients(const std::filesystem::path& path) {
   io::TomlFile file(path);
-  if (file.has("coefficients.file")) throw file.refuse("coefficients.file", "must not name a further file");
+  if (file.has("coefficients.file")) throw file.reject("coefficients.file", "must not name a further file");
   MillingCoefficients out = read_coefficient_table(file);
-  for (const char* told : {"identification", "source"}) file.skip(told);
+  for (const char* reported : {"identification", "source"}) file.skip(reported);
   file.done();
   return out;
 }

@@ -65,7 +65,7 @@ TEST(CoefficientsToml, AMaterialTakesTheToolsHelix) {
   expect_helix(table_of(folder, "[tool]\nhelix_deg = 30\n[coefficients]\nfile = \"k.toml\"\n"), 40.0);
 }
 
-// Orthogonal tests tell little of a cutter's edge: what was measured replaces it, one direction at a time.
+// Orthogonal tests report little of a cutter's edge: what was measured replaces it, one direction at a time.
 TEST(CoefficientsToml, AMaterialTakesEdgeCoefficientsOfItsOwn) {
   const test::Folder folder;
   const std::string named =
@@ -82,10 +82,10 @@ TEST(CoefficientsToml, AMaterialTakesEdgeCoefficientsOfItsOwn) {
   EXPECT_NE(plain.edge_measure, EdgeMeasure::width);
 }
 
-TEST(CoefficientsToml, RefusesInTheFilesWords) {
+TEST(CoefficientsToml, RejectsInTheFilesWords) {
   const test::Folder folder;
   const auto expect = [&](const std::string& text, const std::string& words) {
-    const std::string said = test::refusal([&] { static_cast<void>(table_of(folder, "[coefficients]\n" + text)); });
+    const std::string said = test::rejection([&] { static_cast<void>(table_of(folder, "[coefficients]\n" + text)); });
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
   expect("radial_n_per_mm2 = 3\n", "coefficients.tangential_n_per_mm2: is missing");

@@ -64,7 +64,7 @@ Places find_columns(const io::TextTable& table, const std::string& file) {
 }
 
 /// The error for one field of a row.
-InvalidInput refuse(const std::string& where, const Column& column, const std::string& field, std::string rule,
+InvalidInput reject(const std::string& where, const Column& column, const std::string& field, std::string rule,
                     std::string hint = {}) {
   InvalidInput::Parts parts{.where = where, .field = column.key, .rule = std::move(rule), .hint = std::move(hint)};
   if (field.empty()) return InvalidInput(std::move(parts));
@@ -85,7 +85,7 @@ SlotForce read_row(const io::TextTable::Row& row, const Places& places, const st
     if (text.empty() && columns[i].key == may_be_missing) continue;
     const std::optional<double> number = io::parse_cell(text);
     if (!number || !std::isfinite(*number)) {
-      throw refuse(where, columns[i], text, text.empty() ? "is empty" : "must be a finite number");
+      throw reject(where, columns[i], text, text.empty() ? "is empty" : "must be a finite number");
     }
     columns[i].value(slot) = *number * columns[i].factor;
   }
@@ -94,7 +94,7 @@ SlotForce read_row(const io::TextTable::Row& row, const Places& places, const st
   } catch (const InvalidInput& error) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (error.parts().field == columns[i].member) {
-        throw refuse(where, columns[i], field(i), error.parts().rule, error.parts().hint);
+        throw reject(where, columns[i], field(i), error.parts().rule, error.parts().hint);
       }
     }
     throw;
@@ -198,8 +198,8 @@ SlotsFile read_slots(const std::filesystem::path& path) {
 
 std::string slot_fit_toml(const SlotFit& fit, const SlotsFile& file) {
   std::string text = coefficients_toml(fit.coefficients()) + "\n[identification]\n";
-  const io::Json told = identification(fit, file);
-  for (const auto& [key, value] : told.items()) {
+  const io::Json reported = identification(fit, file);
+  for (const auto& [key, value] : reported.items()) {
     if (!value.is_null()) text += fmt::format("{} = {}\n", key, inline_toml(value));
   }
   return text;

@@ -35,10 +35,10 @@ TEST(SlotsCsv, ReadsRowsInShopUnits) {
   EXPECT_DOUBLE_EQ(other.slots[0].axial_depth_m, 4.5e-3);
 }
 
-TEST(SlotsCsv, RefusesInTheFilesWords) {
+TEST(SlotsCsv, RejectsInTheFilesWords) {
   const test::Folder folder;
   const auto expect = [&](const std::string& text, const std::string& words) {
-    const std::string said = test::refusal([&] { static_cast<void>(read_slots(folder.file("slots.csv", text))); });
+    const std::string said = test::rejection([&] { static_cast<void>(read_slots(folder.file("slots.csv", text))); });
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
   expect(head + "0.05,5,3000,1,2,3\n0.05,0,3000,1,2,3\n", "slots.csv:3: axial_depth_mm = 0 mm; must be > 0");
@@ -101,7 +101,7 @@ TEST(SlotsCsv, WritesCoefficientsThatAreReadAgain) {
   EXPECT_TRUE(json["identification"]["depends_on_speed"].get<bool>());
 }
 
-TEST(SlotsCsv, WhatCannotBeToldIsLeftOut) {
+TEST(SlotsCsv, WhatCannotBeReportedIsLeftOut) {
   const test::Folder folder;
   SlotsFile file = two_speeds(0.0);
   file.slots.resize(2);

@@ -7,8 +7,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/cutting/degrees.hpp"
-#include "robomill/cutting/published/meridian.hpp"
 #include "robomill/cutting/published/patch.hpp"
+#include "robomill/cutting/published/profile_nodes.hpp"
 
 namespace robomill::cutting {
 namespace {
@@ -17,7 +17,7 @@ using std::numbers::pi;
 
 using detail::degrees;
 
-void refuse_shank(const Cutter& cutter, const Cut& cut, const char* what) {
+void reject_shank(const Cutter& cutter, const Cut& cut, const char* what) {
   const std::string rule = std::string("puts the cut on ") + what;
   const std::string posture = "lead " + degrees(cut.lead_rad) + " degrees, tilt " + degrees(cut.tilt_rad) + " degrees";
   Cut upright = cut;
@@ -46,15 +46,15 @@ Engagement engage(const Cutter& cutter, const Cut& cut, const EngagementOptions&
   cut.validate(cutter);
   options.validate();
   const detail::Patch patch(cutter, cut);
-  if (patch.reaches_from(patch.profile().height_m())) refuse_shank(cutter, cut, "the shank");
+  if (patch.reaches_from(patch.profile().height_m())) reject_shank(cutter, cut, "the shank");
   if (cut.curvature_along_feed_per_m != 0.0 && patch.reaches_from(0.5 * cutter.mill.diameter_m)) {
-    refuse_shank(cutter, cut, "the cylinder above the ball, where the feed must be straight");
+    reject_shank(cutter, cut, "the cylinder above the ball, where the feed must be straight");
   }
   Engagement engagement;
   engagement.feed_from_tool = patch.feed_from_tool();
   engagement.first_arc.push_back(0);
   const int count = options.slices > 0 ? options.slices : chosen_slices(cutter, patch, cut);
-  for (const detail::Node& node : detail::meridian_nodes(patch, count)) {
+  for (const detail::Node& node : detail::profile_nodes(patch, count)) {
     const Profile::Point point = patch.profile().at(node.length_m);
     const detail::ArcList arcs = patch.arcs(point);
     if (arcs.empty()) continue;

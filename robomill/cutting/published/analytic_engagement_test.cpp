@@ -13,7 +13,7 @@ namespace robomill::cutting {
 namespace {
 
 using robomill::test::field_of;
-using robomill::test::refusal;
+using robomill::test::rejection;
 using robomill::test::seeds;
 using std::numbers::pi;
 using test::ball_end;
@@ -290,7 +290,8 @@ TEST(AnalyticEngagement, OfAFlatEndIsItsImmersion) {
   }
 }
 
-// Two methods on one ball: its own conditions, and the support function of the same outline told in seven parameters.
+// Two methods on one ball: its own conditions, and the support function of the same outline reported in seven
+// parameters.
 TEST(AnalyticEngagement, BallAndGeneralOutlineAgree) {
   for (int seed = 0; seed < seeds(300); ++seed) {
     Random random(614, static_cast<std::uint64_t>(seed));
@@ -376,7 +377,7 @@ TEST(AnalyticEngagement, ShallowPassBelowTheCuspStillCutsACrescent) {
   EXPECT_NEAR(chip_area_m2(engage(ball_end(radius), cut)), segment, 1e-7 * segment);
 }
 
-TEST(AnalyticEngagement, RefusesWhatCannotBeCut) {
+TEST(AnalyticEngagement, RejectsWhatCannotBeCut) {
   const Cutter cutter = flat_end(10.0 * mm);
   const auto field = [&](auto change) {
     Cut cut = {.axial_depth_m = 1.0 * mm, .radial_depth_m = 2.0 * mm};
@@ -404,13 +405,13 @@ TEST(AnalyticEngagement, RefusesWhatCannotBeCut) {
       "slices");
 }
 
-TEST(AnalyticEngagement, RefusesACutOnTheShank) {
+TEST(AnalyticEngagement, RejectsACutOnTheShank) {
   Cutter cutter = ball_end(3.0 * mm);
   cutter.cutting_height_m = 3.0 * mm;
   Cut cut = {.axial_depth_m = 1.5 * mm, .radial_depth_m = 2.0 * mm};
   EXPECT_NO_THROW(static_cast<void>(engage(cutter, cut)));
   cut.lead_rad = 70.0 * degree;
-  const std::string said = refusal([&] { static_cast<void>(engage(cutter, cut)); });
+  const std::string said = rejection([&] { static_cast<void>(engage(cutter, cut)); });
   EXPECT_NE(said.find("lead_rad"), std::string::npos) << said;
   EXPECT_NE(said.find("lead 70.00 degrees, tilt 0.00 degrees"), std::string::npos) << said;
   cut.lead_rad = 0.0;

@@ -37,8 +37,8 @@ Patch::Patch(const Cutter& cutter, const Cut& cut)
   const bool is_ball = cutter.kind == CutterKind::ball_end;
   if (is_ball) ball_radius_ = 0.5 * cutter.mill.diameter_m;
   const bool flat = cut.curvature_along_feed_per_m == 0.0 && cut.curvature_across_feed_per_m == 0.0;
-  neighbour_ = flat && cut.lead_rad == 0.0 && cut.tilt_rad == 0.0 ? Neighbour::upright : Neighbour::shadow;
-  shadow_ = std::make_unique<Shadow>(profile_, rotation_, origin_);
+  neighbour_ = flat && cut.lead_rad == 0.0 && cut.tilt_rad == 0.0 ? Neighbour::upright : Neighbour::silhouette;
+  silhouette_ = std::make_unique<SweptSilhouette>(profile_, rotation_, origin_);
   if (is_ball && (cut.curvature_along_feed_per_m != 0.0 || !reaches_from(ball_radius_))) neighbour_ = Neighbour::ball;
 }
 
@@ -97,7 +97,7 @@ ArcList Patch::outside_neighbour(const Profile::Point& point, const ArcList& wit
     return Eigen::Vector2d(v.tail<2>().dot(left), v.tail<2>().dot(normal));
   };
   const Eigen::Vector2d center = seen_by_neighbour(r.center.tail<2>());
-  return intersection(within, shadow_->outside(center, turned(r.sine), turned(r.cosine)));
+  return intersection(within, silhouette_->outside(center, turned(r.sine), turned(r.cosine)));
 }
 
 /// |p - d|² > R² in y and z, p and the neighbour's centre d from the ball's own centre. On the ball y² + z² = R² - x²,
@@ -143,11 +143,12 @@ bool Patch::reaches_from(double height_m) const {
 }
 
 std::vector<double> Patch::places() const {
-  const std::unique_ptr<Shadow> own = shadow_ ? nullptr : std::make_unique<Shadow>(profile_, rotation_, origin_);
-  const Shadow& shadow = shadow_ ? *shadow_ : *own;
+  const std::unique_ptr<SweptSilhouette> own =
+      silhouette_ ? nullptr : std::make_unique<SweptSilhouette>(profile_, rotation_, origin_);
+  const SweptSilhouette& silhouette = silhouette_ ? *silhouette_ : *own;
   const bool bent = cut_.curvature_across_feed_per_m != 0.0;
   const auto room = [&](double angle) {
-    const Shadow::Tangent t = shadow.tangent(angle);
+    const SweptSilhouette::Tangent t = silhouette.tangent(angle);
     return room_above(bent ? t.point.x() : 0.0, t.point.y());
   };
   constexpr double down = -0.5 * pi;
@@ -157,13 +158,13 @@ std::vector<double> Patch::places() const {
     for (int i = 0; i < 40; ++i) (room(0.5 * (below + end)) >= 0.0 ? below : end) = 0.5 * (below + end);
     return below;
   };
-  const double from = limit(shadow.first_angle());
-  const double to = limit(shadow.first_angle() + shadow.span());
+  const double from = limit(silhouette.first_angle());
+  const double to = limit(silhouette.first_angle() + silhouette.span());
   std::vector<double> places = {touching_.length_m};
   constexpr int count = 96;
   for (int i = 0; i <= count; ++i) {
-    const Shadow::Tangent t = shadow.tangent(from + (to - from) * i / count);
-    if (neighbour_ != Neighbour::none && shadow.contains(seen_by_neighbour(t.point))) continue;
+    const SweptSilhouette::Tangent t = silhouette.tangent(from + (to - from) * i / count);
+    if (neighbour_ != Neighbour::none && silhouette.contains(seen_by_neighbour(t.point))) continue;
     places.push_back(t.length_m);
   }
   std::ranges::sort(places);

@@ -5,7 +5,7 @@
 
 #include "robomill/cutting/published/analytic_engagement.hpp"
 #include "robomill/cutting/published/arcs.hpp"
-#include "robomill/cutting/published/shadow.hpp"
+#include "robomill/cutting/published/swept_silhouette.hpp"
 
 namespace robomill::cutting::detail {
 
@@ -22,7 +22,7 @@ class Patch {
  public:
   /// Both have been validated.
   Patch(const Cutter& cutter, const Cut& cut);
-  Patch(const Patch&) = delete;  // the shadow looks at the profile
+  Patch(const Patch&) = delete;  // the silhouette looks at the profile
   Patch& operator=(const Patch&) = delete;
   [[nodiscard]] const Profile& profile() const { return profile_; }
   [[nodiscard]] const Eigen::Matrix3d& feed_from_tool() const { return rotation_; }
@@ -38,7 +38,7 @@ class Patch {
   [[nodiscard]] std::vector<double> places() const;
 
  private:
-  enum class Neighbour { none, upright, ball, shadow };
+  enum class Neighbour { none, upright, ball, silhouette };
   [[nodiscard]] Ring ring(const Profile::Point& point) const;
   [[nodiscard]] ArcList outside_neighbour(const Profile::Point& point, const ArcList& within) const;
   [[nodiscard]] ArcList outside_ball(const Ring& ring, const ArcList& within) const;
@@ -55,7 +55,7 @@ class Patch {
   Eigen::Vector2d neighbour_origin_ = Eigen::Vector2d::Zero();   ///< where it touches, in y and z
   Eigen::Vector2d neighbour_normal_ = Eigen::Vector2d::UnitY();  ///< of the finished surface there
   Neighbour neighbour_ = Neighbour::none;
-  std::unique_ptr<Shadow> shadow_;
+  std::unique_ptr<SweptSilhouette> silhouette_;
 };
 
 }  // namespace robomill::cutting::detail

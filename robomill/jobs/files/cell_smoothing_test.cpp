@@ -15,7 +15,7 @@ namespace robomill::jobs {
 namespace {
 
 using robomill::test::Folder;
-using robomill::test::refusal;
+using robomill::test::rejection;
 using robomill::test::seeds;
 
 constexpr double deg = std::numbers::pi / 180.0;
@@ -105,7 +105,7 @@ TEST(SmoothingToml, KnowsEveryMethod) {
 TEST(SmoothingToml, SaysWhatIsWrongAndWhere) {
   const Folder folder;
   const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& message) {
-    const std::string said = refusal([&] { (void)read(folder, with(old_text, new_text)); });
+    const std::string said = rejection([&] { (void)read(folder, with(old_text, new_text)); });
     EXPECT_EQ(said.substr(folder.path().string().size() + 1).substr(0, message.size()), message);
   };
   expect("tip_tolerance_mm = 0.02", "tip_tolerance_mm = 0",
@@ -135,7 +135,7 @@ TEST(SmoothingToml, SaysWhatIsWrongAndWhere) {
   expect("[5, 5, 5, 8, 8]", "[5, 5, -5, 8, 8]",
          "cell.toml:6: robot.joint_max_acceleration[3] = -5; must be > 0. Smoothing needs");
   EXPECT_NE(
-      refusal([&] { (void)read(folder, good.substr(0, good.find("[smoothing]"))); }).find("smoothing: is missing"),
+      rejection([&] { (void)read(folder, good.substr(0, good.find("[smoothing]"))); }).find("smoothing: is missing"),
       std::string::npos);
 }
 
@@ -152,13 +152,13 @@ TEST(SmoothingToml, AMethodBeforeTheFilesIsTheOneThatIsChecked) {
   EXPECT_EQ(read_by(one, path::Method::paper).options.method, path::Method::paper);
   one.replace(one.find("\"optimal\""), 9, "\"paper\"");
   EXPECT_EQ(read(folder, one).options.filters, 1);
-  const std::string said = refusal([&] { (void)read_by(one, path::Method::verified); });
+  const std::string said = rejection([&] { (void)read_by(one, path::Method::verified); });
   EXPECT_NE(said.find("cell.toml:24: smoothing.filters = 1; must be at least 2 where jerk is limited"),
             std::string::npos)
       << said;
 }
 
-TEST(SmoothingToml, DamagedFilesAreReadOrRefused) {
+TEST(SmoothingToml, DamagedFilesAreReadOrRejected) {
   const Folder folder;
   Random random(54);
   int taken = 0;

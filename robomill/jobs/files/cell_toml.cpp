@@ -44,7 +44,7 @@ constexpr std::array<robot::Position6 robot::JointLimits::*, robot::joint_limits
 std::optional<Eigen::Vector3d> read_vector(io::TomlFile& file, const char* key, const char* member, double factor) {
   std::vector<double> values;
   if (!file.numbers(key, member, factor, values)) return std::nullopt;
-  if (values.size() != 3) throw file.refuse(key, "must hold three numbers");
+  if (values.size() != 3) throw file.reject(key, "must hold three numbers");
   return Eigen::Vector3d(values[0], values[1], values[2]);
 }
 
@@ -67,7 +67,7 @@ Kind read_kind(io::TomlFile& file, Robots usable) {
   Kind kind = Kind::serial;
   file.choice<Kind>("robot.kind", {{"serial", Kind::serial}, {"hybrid-2upr-rpu", Kind::hybrid}}, kind);
   if (kind == Kind::hybrid && usable == Robots::serial) {
-    throw file.refuse("robot.kind", "is a hybrid machine; this needs a serial arm",
+    throw file.reject("robot.kind", "is a hybrid machine; this needs a serial arm",
                       "Forces and stiffness at the joints are known of serial arms alone; robomill smooth takes both");
   }
   return kind;
@@ -76,7 +76,7 @@ Kind read_kind(io::TomlFile& file, Robots usable) {
 std::vector<robot::DhRow> read_dh(io::TomlFile& file) {
   std::vector<robot::DhRow> rows(file.tables("robot.dh"));
   if (rows.empty())
-    throw file.refuse("robot.dh", "must hold a row a joint", "dh = [{ a_mm = 350, alpha_deg = -90, … }, …]");
+    throw file.reject("robot.dh", "must hold a row a joint", "dh = [{ a_mm = 350, alpha_deg = -90, … }, …]");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto number = [&](const char* name, const char* member, double factor, double& value) {
       file.number(fmt::format("robot.dh[{}].{}", i, name), fmt::format("dh[{}].{}", i + 1, member), factor, value);
@@ -94,7 +94,7 @@ void read_links(io::TomlFile& file, const std::vector<robot::DhRow>& rows, robot
   if (!file.has("robot.links")) return;
   const std::size_t count = file.tables("robot.links");
   if (count != arm.joints.size()) {
-    throw file.refuse("robot.links",
+    throw file.reject("robot.links",
                       fmt::format("must hold one table a joint, {}; it holds {}", arm.joints.size(), count));
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -108,7 +108,7 @@ void read_links(io::TomlFile& file, const std::vector<robot::DhRow>& rows, robot
     }
     std::vector<double> tensor;
     if (file.numbers(key + "inertia_kg_m2", member + "inertia_kg_m2", 1.0, tensor)) {
-      if (tensor.size() != 6) throw file.refuse(key + "inertia_kg_m2", "must be [xx, yy, zz, xy, xz, yz]");
+      if (tensor.size() != 6) throw file.reject(key + "inertia_kg_m2", "must be [xx, yy, zz, xy, xz, yz]");
       link.inertia_kg_m2 << tensor[0], tensor[3], tensor[4], tensor[3], tensor[1], tensor[5], tensor[4], tensor[5],
           tensor[2];
     }
@@ -122,8 +122,8 @@ void read_links(io::TomlFile& file, const std::vector<robot::DhRow>& rows, robot
 }
 
 std::vector<bool> sliding(const robot::Arm& arm) {
-  std::vector<bool> slides;
-  for (const robot::Joint& joint : arm.joints) slides.push_back(joint.prismatic);
+  std::vector<bool> prismatic;
+  for (const robot::Joint& joint : arm.joints) prismatic.push_back(joint.prismatic);
   return slides;
 }
 
@@ -137,14 +137,14 @@ void read_joint_lists(io::TomlFile& file, robot::Arm& arm, std::vector<std::stri
     std::vector<double> values;
     if (!file.numbers(list.key, list.member, 1.0, values)) continue;
     if (values.size() != arm.joints.size()) {
-      throw file.refuse(list.key,
+      throw file.reject(list.key,
                         fmt::format("must hold one number a joint, {}; it holds {}", arm.joints.size(), values.size()));
     }
     for (std::size_t i = 0; i < values.size(); ++i) arm.joints[i].*list.value = values[i];
   }
 }
 
-/// An error about a joint's member, told with the list's key and the joint's place in it.
+/// An error about a joint's member, reported with the list's key and the joint's place in it.
 InvalidInput located(const io::TomlFile& file, const robot::Arm& arm, const InvalidInput& error) {
   const InvalidInput::Parts& parts = error.parts();
   const auto is_of = [&](const char* member) {
@@ -156,12 +156,12 @@ InvalidInput located(const io::TomlFile& file, const robot::Arm& arm, const Inva
   }
   for (const JointList& list : joint_lists) {
     if (!is_of(list.member) || !file.has(list.key)) continue;
-    InvalidInput::Parts told = file.refuse(list.key, parts.rule, parts.hint).parts();
-    told.field += parts.field.substr(6, parts.field.find(']') - 5);
-    told.number = parts.number;
-    told.unit = parts.unit;
-    told.value.clear();
-    return InvalidInput(std::move(told));
+    InvalidInput::Parts reported = file.reject(list.key, parts.rule, parts.hint).parts();
+    reported.field += parts.field.substr(6, parts.field.find(']') - 5);
+    reported.number = parts.number;
+    reported.unit = parts.unit;
+    reported.value.clear();
+    return InvalidInput(std::move(reported));
   }
   return file.located(error);
 }
@@ -173,7 +173,7 @@ void read_arm(io::TomlFile& file, CellFile& out) {
     if (!from_urdf)
       file.require("robot.dh",
                    "Give the arm as dh = [{ a_mm = …, alpha_deg = …, d_mm = … }, …] or as urdf = \"arm.urdf\"");
-    throw file.refuse("robot.urdf", "must not stand beside dh");
+    throw file.reject("robot.urdf", "must not stand beside dh");
   }
   robot::Arm& arm = out.cell.arm;
   std::vector<robot::DhRow> rows;
@@ -187,7 +187,7 @@ void read_arm(io::TomlFile& file, CellFile& out) {
     out.notes = std::move(read.notes);
   } else {
     for (const char* key : {"robot.urdf_tip", "robot.urdf_base"}) {
-      if (file.has(key)) throw file.refuse(key, "goes with robot.urdf");
+      if (file.has(key)) throw file.reject(key, "goes with robot.urdf");
     }
     rows = read_dh(file);
     arm = file.locate([&] { return robot::arm_from_dh(rows); });
@@ -209,14 +209,14 @@ void read_start(io::TomlFile& file, CellFile& out) {
   const robot::Arm& arm = out.cell.arm;
   if (!file.numbers("robot.start_joints_deg", "start_joints", units::deg, out.start_joints)) return;
   if (out.start_joints.size() != arm.joints.size()) {
-    throw file.refuse("robot.start_joints_deg", fmt::format("must hold one angle a joint, {}", arm.joints.size()));
+    throw file.reject("robot.start_joints_deg", fmt::format("must hold one angle a joint, {}", arm.joints.size()));
   }
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     const robot::Joint& joint = arm.joints[i];
     if (joint.prismatic)
-      throw file.refuse("robot.start_joints_deg", fmt::format("must be angles; joint {} slides", i + 1));
+      throw file.reject("robot.start_joints_deg", fmt::format("must be angles; joint {} slides", i + 1));
     if (out.start_joints[i] < joint.min_position || out.start_joints[i] > joint.max_position) {
-      throw file.refuse("robot.start_joints_deg",
+      throw file.reject("robot.start_joints_deg",
                         fmt::format("must lie within the limits; joint {} has {:.6g} to {:.6g} deg", i + 1,
                                     joint.min_position / units::deg, joint.max_position / units::deg));
     }
@@ -242,13 +242,13 @@ constexpr std::array<Size, 5> hybrid_sizes = {{
 void read_hybrid(io::TomlFile& file, CellFile& out) {
   for (const char* key : {"robot.dh", "robot.urdf", "robot.links", "robot.start_joints_deg", "robot.gamma_deg",
                           "tool.mount_origin_mm", "tool.mount_rotation_deg"}) {
-    if (file.has(key)) throw file.refuse(key, "goes with kind = \"serial\"");
+    if (file.has(key)) throw file.reject(key, "goes with kind = \"serial\"");
   }
   robot::HybridMachine& machine = out.hybrid.emplace();
   for (const Size& size : hybrid_sizes) file.number(size.key, size.member, units::mm, machine.*size.value);
-  const std::vector<bool> slides(hybrid_joints, true);
+  const std::vector<bool> prismatic(hybrid_joints, true);
   for (std::size_t k = 0; k < robot::joint_limits.size(); ++k) {
-    const auto values = robot::read_joint_limit(file, robot::joint_limits[k], slides, out.notes);
+    const auto values = robot::read_joint_limit(file, robot::joint_limits[k], prismatic, out.notes);
     for (std::size_t i = 0; i < values.size(); ++i) {
       double& value = (machine.limits.*of_hybrid[k])(static_cast<Eigen::Index>(i));
       value = values[i].value_or(value);
@@ -258,7 +258,7 @@ void read_hybrid(io::TomlFile& file, CellFile& out) {
 
 void read_serial(io::TomlFile& file, CellFile& out) {
   for (const Size& size : hybrid_sizes) {
-    if (file.has(size.key)) throw file.refuse(size.key, "goes with kind = \"hybrid-2upr-rpu\"");
+    if (file.has(size.key)) throw file.reject(size.key, "goes with kind = \"hybrid-2upr-rpu\"");
   }
   read_arm(file, out);
   read_start(file, out);
@@ -277,13 +277,13 @@ void read_output(io::TomlFile& file, const char* key, const char* member, path::
   if (!file.is_number(key)) {
     file.text(key, out.signal);
     if (!is_name(out.signal)) {
-      throw file.refuse(key, "must be a signal's name: letters, digits and underscores, at most 32");
+      throw file.reject(key, "must be a signal's name: letters, digits and underscores, at most 32");
     }
     return;
   }
   int number = 0;
   file.integer(key, member, number);
-  if (number < 0) throw file.refuse(key, "must be >= 0");
+  if (number < 0) throw file.reject(key, "must be >= 0");
   out.number = number;
 }
 
@@ -294,25 +294,25 @@ void read_end_effector(io::TomlFile& file, CellFile& out) {
   const auto number = [&](const char* key, const char* member, std::optional<int>& value) {
     int read = 0;
     if (!file.integer(key, member, read)) return;
-    if (read < 1) throw file.refuse(key, "must be at least 1");
+    if (read < 1) throw file.reject(key, "must be at least 1");
     value = read;
   };
   number("tool.number", "tool_number", end.tool_number);
   number("tool.load_number", "load_number", end.load_number);
   if (file.text("tool.name", end.tool_name) && !is_name(end.tool_name)) {
-    throw file.refuse("tool.name", "must be a tooldata's name: letters, digits and underscores, at most 32");
+    throw file.reject("tool.name", "must be a tooldata's name: letters, digits and underscores, at most 32");
   }
   double mass_kg = 0.0;
   if (file.number("tool.mass_kg", "mass_kg", 1.0, mass_kg)) {
-    if (!(mass_kg > 0.0)) throw file.refuse("tool.mass_kg", "must be > 0", "Of all that hangs on the flange");
+    if (!(mass_kg > 0.0)) throw file.reject("tool.mass_kg", "must be > 0", "Of all that hangs on the flange");
     end.mass_kg = mass_kg;
   }
   end.center_m = read_vector(file, "tool.center_mm", "center_m", units::mm);
-  if (end.center_m && !end.mass_kg) throw file.refuse("tool.center_mm", "goes with tool.mass_kg");
+  if (end.center_m && !end.mass_kg) throw file.reject("tool.center_mm", "goes with tool.mass_kg");
   read_output(file, "spindle.output", "output", end.spindle);
   read_output(file, "spindle.coolant_output", "coolant_output", end.coolant);
   if (file.number("spindle.spin_up_s", "spin_up_s", 1.0, end.spin_up_s) && !(end.spin_up_s >= 0.0)) {
-    throw file.refuse("spindle.spin_up_s", "must be >= 0");
+    throw file.reject("spindle.spin_up_s", "must be >= 0");
   }
 }
 
@@ -322,7 +322,7 @@ void read_program_words(io::TomlFile& file, CellFile& out) {
     try {
       parse();
     } catch (const InvalidInput& error) {
-      throw file.refuse(key, error.parts().rule);
+      throw file.reject(key, error.parts().rule);
     }
   };
   if (file.text("program.machine", out.machine)) {

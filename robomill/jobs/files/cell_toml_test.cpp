@@ -17,7 +17,7 @@ namespace robomill::jobs {
 namespace {
 
 using robomill::test::Folder;
-using robomill::test::refusal;
+using robomill::test::rejection;
 using robomill::test::seeds;
 namespace arms = robot::testing;
 
@@ -166,7 +166,7 @@ TEST(CellToml, ReadsWhatAControllerMustKnowOfTheSpindle) {
   EXPECT_EQ(end.coolant.signal, "doCoolant");
   EXPECT_EQ(end.spin_up_s, 2.0);
   const auto said = [&](const std::string& tool, const std::string& more = "") {
-    return refusal([&] { static_cast<void>(read(tool, more)); });
+    return rejection([&] { static_cast<void>(read(tool, more)); });
   };
   EXPECT_NE(said("mass_kg = 0\n").find("tool.mass_kg = 0 kg; must be > 0"), std::string::npos) << said("mass_kg = 0\n");
   EXPECT_NE(said("number = 0\n").find("tool.number"), std::string::npos);
@@ -210,7 +210,7 @@ TEST(CellToml, SaysWhatIsWrongAndWhere) {
   folder.file("one.urdf", urdf);
   const auto said = [&](const std::string& text) {
     const auto path = folder.file("cell.toml", text);
-    return refusal([&] { (void)read_cell(path); }).substr(folder.path().string().size() + 1);
+    return rejection([&] { (void)read_cell(path); }).substr(folder.path().string().size() + 1);
   };
   const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& message) {
     EXPECT_EQ(said(with(old_text, new_text)).substr(0, message.size()), message);
@@ -280,7 +280,7 @@ TEST(CellToml, TakesJointLimitsWithTheirUnit) {
     }
   }
   const auto said = [&](const std::string& row) {
-    return refusal([&] { (void)joints(with("joint_max_velocity = [2, 2, 2, 3, 3, 4]", row)); });
+    return rejection([&] { (void)joints(with("joint_max_velocity = [2, 2, 2, 3, 3, 4]", row)); });
   };
   EXPECT_NE(said("joint_max_velocity_deg_per_s = [120, 115, 112, 179, -172, 219]")
                 .find("cell.toml:13: robot.joint_max_velocity_deg_per_s[5] = -172 deg/s; must be >= 0"),
@@ -317,7 +317,7 @@ TEST(CellToml, MixedMachinesGiveAListForEachKindOfJoint) {
   EXPECT_DOUBLE_EQ(joints[2].max_position, 0.3);
   EXPECT_EQ(joints[1].max_position, 1.0) << "of the URDF";
   EXPECT_EQ(read("joint_max_velocity = [0.5, 3, 0.25]\n")[1].max_velocity, 3.0);
-  const std::string said = refusal([&] { (void)read("joint_max_velocity_mm_per_s = [500, -250]\n"); });
+  const std::string said = rejection([&] { (void)read("joint_max_velocity_mm_per_s = [500, -250]\n"); });
   EXPECT_NE(said.find("cell.toml:4: robot.joint_max_velocity_mm_per_s[2] = -250 mm/s"), std::string::npos) << said;
 }
 
@@ -380,7 +380,7 @@ TEST(CellToml, SaysWhatIsWrongWithAHybridMachine) {
   const Folder folder;
   const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& message) {
     const auto path = folder.file("cell.toml", test_support::replaced(hybrid, old_text, new_text));
-    const std::string said = refusal([&] { (void)read_cell(path, Robots::any); });
+    const std::string said = rejection([&] { (void)read_cell(path, Robots::any); });
     EXPECT_EQ(said.substr(folder.path().string().size() + 1).substr(0, message.size()), message);
   };
   expect("platform_offset_mm = 130", "base_half_width_mm = 0",
@@ -396,7 +396,7 @@ TEST(CellToml, SaysWhatIsWrongWithAHybridMachine) {
          "cell.toml:4: robot.joint_min_position_mm[3] = 1400 mm; must be below max_position");
   expect("joint_max_velocity = ", "joint_max_velocity_deg_per_s = ",
          "cell.toml:6: robot.joint_max_velocity_deg_per_s: must hold one number for each joint that turns, 0");
-  EXPECT_NE(refusal([&] {
+  EXPECT_NE(rejection([&] {
               (void)read_cell(folder.file("cell.toml", with("gamma_deg = 30", "base_offset_mm = 30")), Robots::any);
             }).find("cell.toml:21: robot.base_offset_mm = 30 mm; goes with kind = \"hybrid-2upr-rpu\""),
             std::string::npos);
@@ -411,11 +411,11 @@ TEST(CellToml, MakesTheMachineOfTheCell) {
   EXPECT_EQ(machine->limits().max_jerk(5), 70.0);
   folder.file("one.urdf", urdf);
   const auto one = folder.file("one.toml", "[robot]\nurdf = \"one.urdf\"\nurdf_tip = \"tool0\"\n");
-  const std::string said = refusal([&] { (void)kinematics(read_cell(one)); });
+  const std::string said = rejection([&] { (void)kinematics(read_cell(one)); });
   EXPECT_NE(said.find("one.toml: robot = 1 joints; must be six"), std::string::npos) << said;
 }
 
-TEST(CellToml, DamagedFilesAreReadOrRefused) {
+TEST(CellToml, DamagedFilesAreReadOrRejected) {
   const Folder folder;
   Random random(53);
   int read = 0;

@@ -18,10 +18,10 @@ modal::Mode read_inline_mode(io::TomlFile& file, const std::string& row, const s
   file.number(row + "frequency_hz", member + "frequency_hz", 1.0, mode.frequency_hz);
   file.number(row + "damping_ratio", member + "damping_ratio", 1.0, mode.damping_ratio);
   file.number(row + "modal_mass_kg", member + "modal_mass_kg", 1.0, mode.modal_mass_kg);
-  if (!(mode.modal_mass_kg > 0.0)) throw file.refuse(row + "modal_mass_kg", "must be > 0");
-  if (!(mode.frequency_hz > 0.0)) throw file.refuse(row + "frequency_hz", "must be > 0");
+  if (!(mode.modal_mass_kg > 0.0)) throw file.reject(row + "modal_mass_kg", "must be > 0");
+  if (!(mode.frequency_hz > 0.0)) throw file.reject(row + "frequency_hz", "must be > 0");
   if (!(mode.damping_ratio > 0.0 && mode.damping_ratio < 1.0)) {
-    throw file.refuse(row + "damping_ratio", "must lie between 0 and 1", "It is a ratio, not a percentage");
+    throw file.reject(row + "damping_ratio", "must lie between 0 and 1", "It is a ratio, not a percentage");
   }
   return modal::mode_from_mass(mode, axis, 3);
 }
@@ -68,7 +68,7 @@ bool read_direction(io::TomlFile& file, cutting::MillingDirection& direction) {
 
 bool read_radial_depth(io::TomlFile& file, double& radial_depth_m) {
   if (file.has("cut.radial_depth_mm") && file.has("cut.stepover_mm")) {
-    throw file.refuse("cut.stepover_mm", "must not stand beside radial_depth_mm", "They are two names of one thing");
+    throw file.reject("cut.stepover_mm", "must not stand beside radial_depth_mm", "They are two names of one thing");
   }
   return file.number("cut.radial_depth_mm", "radial_depth_m", units::mm, radial_depth_m) ||
          file.number("cut.stepover_mm", "radial_depth_m", units::mm, radial_depth_m);
@@ -80,7 +80,7 @@ modal::MissingDirections read_missing_directions(io::TomlFile& file, const std::
   std::vector<std::string> names;
   file.texts(table + ".rigid_directions", names);
   for (const std::string& name : names) {
-    if (name != "x" && name != "y") throw file.refuse(table + ".rigid_directions", "must be a list of \"x\" and \"y\"");
+    if (name != "x" && name != "y") throw file.reject(table + ".rigid_directions", "must be a list of \"x\" and \"y\"");
     out.rigid.push_back(name == "x" ? modal::Axis::x : modal::Axis::y);
   }
   if (!own.modes.empty()) keep_named_directions(file, table, own);
@@ -121,7 +121,7 @@ void read_structure(io::TomlFile& file, const std::string& table, std::filesyste
     }
   }
   const int sources = (modes.empty() ? 0 : 1) + (frf.empty() ? 0 : 1) + (own.modes.empty() ? 0 : 1);
-  if (sources > 1) throw file.refuse(table, "must give only one of modes, frf, and x, y and z");
+  if (sources > 1) throw file.reject(table, "must give only one of modes, frf, and x, y and z");
   if (!own.modes.empty()) out = own;
 }
 

@@ -24,7 +24,7 @@ double sign_of(const ForcesResult& result) {
 }
 
 std::string revolution_csv(const RevolutionForces& revolution, double sign) {
-  const cutting::CuttingForce& force = revolution.settled.force;
+  const cutting::CuttingForce& force = revolution.deflected.force;
   const bool vibrating = revolution.vibrating_force_n.cols() > 0;
   std::string text = "rotation_deg,fx_n,fy_n,fz_n,torque_n_m";
   text += vibrating ? ",vibrating_fx_n,vibrating_fy_n,vibrating_fz_n\n" : "\n";
@@ -82,7 +82,7 @@ constexpr Column columns[] = {
     {"condition_number", [](const ProgramForces&, const BlockResult& r) { return r.condition_number; }},
 };
 
-/// A column of a program whose sign turns with the side that the force is told of.
+/// A column of a program whose sign turns with the side that the force is reported of.
 bool turns(std::string_view name) {
   return name.starts_with("mean_f");
 }
@@ -128,13 +128,13 @@ Json arcs_json(const cutting::Engagement& engagement) {
   return rings;
 }
 
-const char* name_of(cutting::SettledCut::Status status) {
+const char* name_of(cutting::StaticDeflection::Status status) {
   switch (status) {
-    case cutting::SettledCut::Status::digs_in:
+    case cutting::StaticDeflection::Status::diverged:
       return "digs in";
-    case cutting::SettledCut::Status::lifts_off:
+    case cutting::StaticDeflection::Status::lifts_off:
       return "lifts off";
-    case cutting::SettledCut::Status::found:
+    case cutting::StaticDeflection::Status::found:
       break;
   }
   return "found";
@@ -179,7 +179,7 @@ Json vibration_json(const simulation::Simulation& s) {
 }
 
 Json revolution_json(const RevolutionForces& revolution, double sign) {
-  const cutting::SettledCut& settled = revolution.settled;
+  const cutting::StaticDeflection& settled = revolution.deflected;
   const cutting::CuttingForce& force = settled.force;
   const bool robot = revolution.posture.has_value();
   Json out = {{"mean_n", vector(sign * force.mean_n)},

@@ -39,7 +39,7 @@ void read_cutter(io::TomlFile& file, cutting::Cutter& cutter) {
 void read_radius(io::TomlFile& file, const char* key, double& curvature_per_m) {
   double radius_m = 0.0;
   if (!file.number(key, "surface_radius_m", units::mm, radius_m)) return;
-  if (radius_m == 0.0) throw file.refuse(key, "must not be 0", "> 0 is convex, < 0 concave; a plane has none");
+  if (radius_m == 0.0) throw file.reject(key, "must not be 0", "> 0 is convex, < 0 concave; a plane has none");
   curvature_per_m = 1.0 / radius_m;
 }
 
@@ -59,9 +59,9 @@ void read_cut(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
   std::string on = "tool";
   file.text("force_on", on);
   file.text("cut.force_on", on);
-  if (on != "tool" && on != "workpiece") throw file.refuse("force_on", "must be \"tool\" or \"workpiece\"");
+  if (on != "tool" && on != "workpiece") throw file.reject("force_on", "must be \"tool\" or \"workpiece\"");
   out.on_workpiece = on == "workpiece";
-  if (turning && !(out.motion.spindle_speed_rad_per_s > 0.0)) throw file.refuse("cut.spindle_speed_rpm", "must be > 0");
+  if (turning && !(out.motion.spindle_speed_rad_per_s > 0.0)) throw file.reject("cut.spindle_speed_rpm", "must be > 0");
   if (!alone) return;
   file.require("cut.axial_depth_mm");
   file.require("cut.feed_per_tooth_mm");
@@ -77,7 +77,7 @@ void read_cut(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
     // The file gives radii, whose inverse no factor converts.
     for (const char* which : {"along", "across"}) {
       if (error.parts().field.find(std::string("curvature_") + which) == std::string::npos) continue;
-      throw file.refuse(std::string("cut.surface_radius_") + which + "_feed_mm", error.parts().rule,
+      throw file.reject(std::string("cut.surface_radius_") + which + "_feed_mm", error.parts().rule,
                         error.parts().hint);
     }
     throw;
@@ -90,9 +90,9 @@ void read_robot(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
   file.numbers("robot.joints_deg", "joints_rad", units::deg, out.joints_rad);
   std::vector<double> direction;
   if (file.numbers("robot.feed_direction", "feed_direction", 1.0, direction)) {
-    if (direction.size() != 3) throw file.refuse("robot.feed_direction", "must be [x, y, z] in the work frame");
+    if (direction.size() != 3) throw file.reject("robot.feed_direction", "must be [x, y, z] in the work frame");
     out.feed_direction = {direction[0], direction[1], direction[2]};
-    if (!(out.feed_direction.norm() > 0.0)) throw file.refuse("robot.feed_direction", "must not be zero");
+    if (!(out.feed_direction.norm() > 0.0)) throw file.reject("robot.feed_direction", "must not be zero");
     out.feed_direction.normalize();
   }
   file.boolean("robot.vibration", out.robot_vibrates);
@@ -107,7 +107,7 @@ void read_point(io::TomlFile& file, const std::string& key, const std::string& m
   file.require(key);
   file.numbers(key, member, units::mm, values);
   if (values.size() != static_cast<std::size_t>(out.size())) {
-    throw file.refuse(key, out.size() == 3 ? "must be [x, y, z]" : "must be [x, y]");
+    throw file.reject(key, out.size() == 3 ? "must be [x, y, z]" : "must be [x, y]");
   }
   out = Eigen::Map<const Vector>(values.data());
 }
@@ -127,7 +127,7 @@ void read_round(io::TomlFile& file, cutting::Stock& stock) {
   file.require("stock.outline_z_mm", "Their heights");
   file.numbers("stock.outline_radius_mm", "outline_m", units::mm, radius);
   file.numbers("stock.outline_z_mm", "outline_m", units::mm, height);
-  if (radius.size() != height.size()) throw file.refuse("stock.outline_z_mm", "must have a height for each radius");
+  if (radius.size() != height.size()) throw file.reject("stock.outline_z_mm", "must have a height for each radius");
   stock.outline_m.reserve(radius.size());
   for (std::size_t i = 0; i < radius.size(); ++i) stock.outline_m.emplace_back(radius[i], height[i]);
 }
@@ -135,14 +135,14 @@ void read_round(io::TomlFile& file, cutting::Stock& stock) {
 void read_stock(io::TomlFile& file, ForcesFile& out) {
   using Shape = cutting::Stock::Shape;
   file.number("stock.dexel_mm", "dexel_m", units::mm, out.dexel_m);
-  if (!(out.dexel_m > 0.0)) throw file.refuse("stock.dexel_mm", "must be > 0");
+  if (!(out.dexel_m > 0.0)) throw file.reject("stock.dexel_mm", "must be > 0");
   std::string kind;
   if (file.text("stock.kind", kind) && kind == "neighbours") {
     out.neighbours = true;
     file.require("cut.axial_depth_mm", "How deep every block cuts beside its neighbour");
-    if (!(out.cut.axial_depth_m > 0.0)) throw file.refuse("cut.axial_depth_mm", "must be > 0");
+    if (!(out.cut.axial_depth_m > 0.0)) throw file.reject("cut.axial_depth_mm", "must be > 0");
     if (out.cutter.kind != cutting::CutterKind::ball_end) {
-      throw file.refuse("tool.kind", "must be \"ball-end\" where there is no stock");
+      throw file.reject("tool.kind", "must be \"ball-end\" where there is no stock");
     }
     return;
   }
@@ -172,7 +172,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
   file.integer("forces.steps", "steps", out.force.steps);
   file.integer("forces.slices", "slices", out.slices);
   file.number("forces.power_time_s", "power_time_s", 1.0, out.power_time_s);
-  if (!(out.power_time_s > 0.0)) throw file.refuse("forces.power_time_s", "must be > 0");
+  if (!(out.power_time_s > 0.0)) throw file.reject("forces.power_time_s", "must be > 0");
   file.locate([&] {
     out.force.validate();
     if (job == ForcesJob::program) {
@@ -186,7 +186,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
     }
   });
   if (job == ForcesJob::revolution) {
-    // What only the cut itself can tell, a shank in it or a coefficient below 0, in the file's words.
+    // What only the cut itself can report, a shank in it or a coefficient below 0, in the file's words.
     file.locate([&] {
       const cutting::Engagement engagement = cutting::engage(out.cutter, out.cut, {.slices = out.slices});
       static_cast<void>(cutting::cutting_force(out.cutter, engagement, out.coefficients, out.motion, out.force));
@@ -198,7 +198,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
     std::filesystem::path modes, frf;
     read_structure(file, table, modes, frf, model);
     if (table == "dynamics") said = read_missing_directions(file, table, model);
-    if (!frf.empty()) throw file.refuse(table + ".frf", "must be modes here", "Fit them: robomill modes");
+    if (!frf.empty()) throw file.reject(table + ".frf", "must be modes here", "Fit them: robomill modes");
     if (!modes.empty()) model = modal::read_modes(modes);
   };
   structure("dynamics", out.dynamics);
@@ -215,8 +215,8 @@ InvalidInput ForcesFile::in_its_words(const InvalidInput& error) const {
   if (!error.parts().where.empty()) return error;
   io::TomlFile file(path);
   static_cast<void>(read(file, path, job));
-  InvalidInput told = file.located(error);
-  if (!told.parts().where.empty()) return told;
+  InvalidInput reported = file.located(error);
+  if (!reported.parts().where.empty()) return reported;
   InvalidInput::Parts parts = error.parts();
   parts.where = path.string();
   return InvalidInput(std::move(parts));

@@ -26,7 +26,7 @@ struct ForcesFile {
   cutting::CutMotion motion;  ///< along a program only its speed counts, 0: the program's own
   cutting::ForceOptions force;
   int slices = 0;                                             ///< rings of the engagement; 0: chosen
-  bool on_workpiece = false;                                  ///< forces are told as they act on the workpiece
+  bool on_workpiece = false;                                  ///< forces are reported as they act on the workpiece
   std::filesystem::path cell = {};                            ///< robot.cell, resolved; empty where absent
   std::vector<double> joints_rad = {};                        ///< robot.joints_deg: the posture of a single cut
   Eigen::Vector3d feed_direction = Eigen::Vector3d::UnitX();  ///< of a single cut, in W

@@ -14,7 +14,7 @@ namespace robomill::jobs {
 namespace {
 
 using robomill::test::Folder;
-using robomill::test::refusal;
+using robomill::test::rejection;
 using robomill::test::seeds;
 
 const std::string good = R"(force_on = "workpiece"
@@ -91,17 +91,17 @@ TEST(ForcesToml, AProgramNeedsNoCut) {
   const ForcesFile file = read_forces(path, ForcesJob::program);
   EXPECT_EQ(file.motion.spindle_speed_rad_per_s, 0.0);
   EXPECT_FALSE(file.stock.has_value());
-  EXPECT_NE(refusal([&] { static_cast<void>(read_forces(path)); }).find("cut.axial_depth_mm: is missing"),
+  EXPECT_NE(rejection([&] { static_cast<void>(read_forces(path)); }).find("cut.axial_depth_mm: is missing"),
             std::string::npos);
 }
 
 TEST(ForcesToml, SaysWhatIsWrongAndWhere) {
   const Folder folder;
-  const auto told = [&](const std::string& text) {
-    return refusal([&] { static_cast<void>(read_forces(folder.file("forces.toml", text))); });
+  const auto reported = [&](const std::string& text) {
+    return rejection([&] { static_cast<void>(read_forces(folder.file("forces.toml", text))); });
   };
   const auto expect = [&](const std::string& from, const std::string& to, const std::string& part) {
-    const std::string message = told(with(from, to));
+    const std::string message = reported(with(from, to));
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
   expect("axial_depth_mm = 1.5", "axial_depth_mm = 40", "forces.toml:13: cut.axial_depth_mm = 40 mm");
@@ -122,7 +122,7 @@ TEST(ForcesToml, SaysWhatIsWrongAndWhere) {
          "[robot]\njoints_deg = [0, 0, 0]", "robot.cell: is missing");
 }
 
-TEST(ForcesToml, DamagedFilesAreReadOrRefused) {
+TEST(ForcesToml, DamagedFilesAreReadOrRejected) {
   const Folder folder;
   Random random(5);
   for (int k = 0; k < seeds(500); ++k) {

@@ -21,7 +21,7 @@ void read_sources(io::TomlFile& file, Job& job) {
     file.path(key, *path);
   }
   if (job.forces.empty() && job.cell.empty() != job.program.empty()) {
-    throw file.refuse(job.cell.empty() ? "job.program" : "job.cell", "goes with job.forces, or cell with program",
+    throw file.reject(job.cell.empty() ? "job.program" : "job.cell", "goes with job.forces, or cell with program",
                       "A program and a cell with [smoothing] make a trajectory");
   }
   const bool measured = file.path("job.measured", job.measured);
@@ -29,7 +29,7 @@ void read_sources(io::TomlFile& file, Job& job) {
   file.texts("job.frf_as", job.frf_as);
   std::vector<double> band;
   if (file.numbers("job.band_hz", "band_hz", 1.0, band)) {
-    if (band.size() != 2) throw file.refuse("job.band_hz", "must be [low, high]");
+    if (band.size() != 2) throw file.reject("job.band_hz", "must be [low, high]");
     job.band_low_hz = band[0];
     job.band_high_hz = band[1];
   }
@@ -39,15 +39,15 @@ void read_sources(io::TomlFile& file, Job& job) {
   const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1) +
                       (job.assembly.empty() ? 0 : 1);
   if (sources != 1) {
-    throw file.refuse("job", "must name exactly one of hits, frf, modes and assembly",
+    throw file.reject("job", "must name exactly one of hits, frf, modes and assembly",
                       sources == 0 ? "None is given" : "Several are given");
   }
   if (measured && job.assembly.empty()) {
-    throw file.refuse("job.measured", "goes with job.assembly", "FRFs to start from are job.frf");
+    throw file.reject("job.measured", "goes with job.assembly", "FRFs to start from are job.frf");
   }
   for (const char* key : {"job.equal_directions", "job.rigid_directions"}) {
     if (!job.assembly.empty() && file.has(key)) {
-      throw file.refuse(key, "must not stand beside job.assembly", "Both directions of an assembly are predicted");
+      throw file.reject(key, "must not stand beside job.assembly", "Both directions of an assembly are predicted");
     }
   }
   file.require("job.lobes", "It names the cut: lobes.toml");

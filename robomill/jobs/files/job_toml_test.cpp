@@ -14,8 +14,8 @@ namespace {
 class JobToml : public testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const std::string& text) { return folder_.file(name, text); }
-  std::string refusal(const std::string& text) {
-    return test::refusal([&] { static_cast<void>(read_job(write("job.toml", text))); });
+  std::string rejection(const std::string& text) {
+    return test::rejection([&] { static_cast<void>(read_job(write("job.toml", text))); });
   }
 
   test::Folder folder_;
@@ -64,8 +64,8 @@ TEST_F(JobToml, TakesAProgramWithItsCell) {
   const Job job = read_job(write("job.toml", source + "program = \"part.ngc\"\ncell = \"cell.toml\"\n"));
   EXPECT_EQ(job.program, folder_.at("part.ngc"));
   EXPECT_TRUE(job.forces.empty());
-  EXPECT_NE(refusal(source + "program = \"part.ngc\"\n").find("job.toml:4: job.program"), std::string::npos);
-  EXPECT_NE(refusal(source + "cell = \"cell.toml\"\n").find("job.toml:4: job.cell"), std::string::npos);
+  EXPECT_NE(rejection(source + "program = \"part.ngc\"\n").find("job.toml:4: job.program"), std::string::npos);
+  EXPECT_NE(rejection(source + "cell = \"cell.toml\"\n").find("job.toml:4: job.cell"), std::string::npos);
   EXPECT_EQ(read_job(write("job.toml", source + "forces = \"f.toml\"\ncell = \"cell.toml\"\n")).cell,
             folder_.at("cell.toml"));
 }
@@ -76,35 +76,36 @@ TEST_F(JobToml, TakesWhatAMissingDirectionIsTakenFor) {
   EXPECT_TRUE(read_job(write("job.toml", source + "equal_directions = true\n")).directions.equal);
   EXPECT_EQ(read_job(write("job.toml", source + "rigid_directions = [\"y\"]\n")).directions.rigid,
             std::vector<modal::Axis>{modal::Axis::y});
-  EXPECT_NE(refusal(source + "rigid_directions = [\"up\"]\n").find("job.toml:4: job.rigid_directions"),
+  EXPECT_NE(rejection(source + "rigid_directions = [\"up\"]\n").find("job.toml:4: job.rigid_directions"),
             std::string::npos);
 }
 
 TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
   const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
-  EXPECT_NE(refusal("[job]\nlobes = \"l.toml\"\n").find("exactly one of hits, frf, modes and assembly"),
+  EXPECT_NE(rejection("[job]\nlobes = \"l.toml\"\n").find("exactly one of hits, frf, modes and assembly"),
             std::string::npos);
-  EXPECT_NE(refusal(source + "assembly = \"a.toml\"\n").find("Several are given"), std::string::npos);
-  EXPECT_NE(refusal(source + "measured = \"tip.uff\"\n").find("goes with job.assembly"), std::string::npos)
-      << refusal(source + "measured = \"tip.uff\"\n");
-  EXPECT_NE(refusal("[job]\nassembly = \"a.toml\"\nlobes = \"l.toml\"\nequal_directions = true\n")
+  EXPECT_NE(rejection(source + "assembly = \"a.toml\"\n").find("Several are given"), std::string::npos);
+  EXPECT_NE(rejection(source + "measured = \"tip.uff\"\n").find("goes with job.assembly"), std::string::npos)
+      << rejection(source + "measured = \"tip.uff\"\n");
+  EXPECT_NE(rejection("[job]\nassembly = \"a.toml\"\nlobes = \"l.toml\"\nequal_directions = true\n")
                 .find("Both directions of an assembly are predicted"),
             std::string::npos);
-  EXPECT_NE(refusal(source + "[spindle]\nmax_speed_rpm = -5\n").find("job.toml:5: spindle.max_speed_rpm = -5 rpm"),
+  EXPECT_NE(rejection(source + "[spindle]\nmax_speed_rpm = -5\n").find("job.toml:5: spindle.max_speed_rpm = -5 rpm"),
             std::string::npos)
-      << refusal(source + "[spindle]\nmax_speed_rpm = -5\n");
-  EXPECT_NE(refusal(source + "[[cuts]]\nspindle_speed_rpm = 0\naxial_depth_mm = 1\n").find("spindle_speed_rpm = 0 rpm"),
-            std::string::npos);
+      << rejection(source + "[spindle]\nmax_speed_rpm = -5\n");
   EXPECT_NE(
-      refusal(source + "[[cuts]]\nspindle_speed_rpm = 10\naxial_depth_mm = 1\nresult = \"loud\"\n").find("\"stable\""),
+      rejection(source + "[[cuts]]\nspindle_speed_rpm = 0\naxial_depth_mm = 1\n").find("spindle_speed_rpm = 0 rpm"),
       std::string::npos);
-  EXPECT_NE(refusal(source + "[safety]\ndepth_margin = 20\n").find("0.2 stays 20 % below"), std::string::npos);
-  EXPECT_NE(refusal(source + "[finishing]\nmax_surface_error_um = -1\n").find("finishing.max_surface_error_um = -1"),
+  EXPECT_NE(rejection(source + "[[cuts]]\nspindle_speed_rpm = 10\naxial_depth_mm = 1\nresult = \"loud\"\n")
+                .find("\"stable\""),
             std::string::npos);
-  EXPECT_NE(
-      refusal(source + "[[cuts]]\nspindle_speed_rpm = 10\naxial_depth_mm = 1\npeaks_hz = [300, -5]\n").find("peaks_hz"),
-      std::string::npos);
-  EXPECT_NE(refusal(source + "[spindel]\nmax_speed_rpm = 5\n").find("spindel"), std::string::npos);
+  EXPECT_NE(rejection(source + "[safety]\ndepth_margin = 20\n").find("0.2 stays 20 % below"), std::string::npos);
+  EXPECT_NE(rejection(source + "[finishing]\nmax_surface_error_um = -1\n").find("finishing.max_surface_error_um = -1"),
+            std::string::npos);
+  EXPECT_NE(rejection(source + "[[cuts]]\nspindle_speed_rpm = 10\naxial_depth_mm = 1\npeaks_hz = [300, -5]\n")
+                .find("peaks_hz"),
+            std::string::npos);
+  EXPECT_NE(rejection(source + "[spindel]\nmax_speed_rpm = 5\n").find("spindel"), std::string::npos);
 }
 
 }  // namespace

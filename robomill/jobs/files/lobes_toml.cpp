@@ -22,13 +22,13 @@ namespace {
 /// What a drill needs; its lips are the tool's teeth, and in the cut all round.
 void read_drilling(io::TomlFile& file, LobesFile& out) {
   for (const char* key : {"tool.pitch_deg", "tool.runout_um", "process_damping", "speed_variation"}) {
-    if (file.has(key)) throw file.refuse(key, "is no part of drilling");
+    if (file.has(key)) throw file.reject(key, "is no part of drilling");
   }
   file.number("tool.point_angle_deg", "point_angle_rad", units::deg, out.point_angle_rad);
   file.require("cut.feed_per_revolution_mm", "A drill feeds along its axis");
   file.number("cut.feed_per_revolution_mm", "feed_per_revolution_m", units::mm, out.feed_per_revolution_m);
   file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
-  if (!(out.feed_per_revolution_m > 0.0)) throw file.refuse("cut.feed_per_revolution_mm", "must be > 0");
+  if (!(out.feed_per_revolution_m > 0.0)) throw file.reject("cut.feed_per_revolution_mm", "must be > 0");
   out.radial_depth_m = out.problem.milling.tool.diameter_m;
   out.problem.milling.immersion = {.entry_rad = 0.0, .exit_rad = std::numbers::pi};
 }
@@ -47,8 +47,8 @@ void read_cut(io::TomlFile& file, LobesFile& out) {
   const bool exit = file.number("cut.exit_deg", "exit_rad", units::deg, milling.immersion.exit_rad);
   cutting::MillingDirection direction = cutting::MillingDirection::up;
   const bool named = read_direction(file, direction);
-  if (milling.feed_per_tooth_m < 0.0) throw file.refuse("cut.feed_per_tooth_mm", "must be >= 0");
-  if (named && (entry || exit)) throw file.refuse("cut.direction", "must not stand beside entry_deg and exit_deg");
+  if (milling.feed_per_tooth_m < 0.0) throw file.reject("cut.feed_per_tooth_mm", "must be >= 0");
+  if (named && (entry || exit)) throw file.reject("cut.direction", "must not stand beside entry_deg and exit_deg");
   if (entry != exit) file.require(entry ? "cut.exit_deg" : "cut.entry_deg", "Both angles are needed");
   const double diameter_m = milling.tool.diameter_m;
   if (entry) {
@@ -86,7 +86,7 @@ void read_coefficients_of(io::TomlFile& file, const cutting::FlatEndMill& tool, 
     try {
       k.validate();
     } catch (const InvalidInput& error) {
-      throw file.refuse(named, "gives a coefficient that cannot be used: " + std::string(error.what()));
+      throw file.reject(named, "gives a coefficient that cannot be used: " + std::string(error.what()));
     }
     return;
   }
@@ -114,7 +114,7 @@ void read_forces(io::TomlFile& file, cutting::Milling& milling) {
 void read_pair(io::TomlFile& file, const char* key, const char* member, double factor, std::array<double, 2>& out) {
   std::vector<double> values;
   if (!file.numbers(key, member, factor, values)) return;
-  if (values.size() != 2) throw file.refuse(key, "must be [from, to]");
+  if (values.size() != 2) throw file.reject(key, "must be [from, to]");
   out = {values[0], values[1]};
 }
 
@@ -125,7 +125,7 @@ void read_chart(io::TomlFile& file, stability::LobesOptions& options) {
   read_pair(file, "lobes.axial_depth_mm", "axial_depth_m", units::mm, options.axial_depth_m);
   std::vector<int> grid;
   if (file.integers("lobes.grid", "grid", grid)) {
-    if (grid.size() != 2) throw file.refuse("lobes.grid", "must be [speeds, depths]");
+    if (grid.size() != 2) throw file.reject("lobes.grid", "must be [speeds, depths]");
     options.grid = {grid[0], grid[1]};
   }
   file.choice<stability::Method>(
@@ -156,7 +156,7 @@ void read_uncertainty(io::TomlFile& file, stability::Uncertainty& u) {
   file.number("uncertainty.residue_std_ratio", "residue_std_ratio", 1.0, u.residue_std_ratio);
   std::vector<int> grid;
   if (file.integers("uncertainty.grid", "grid", grid)) {
-    if (grid.size() != 2) throw file.refuse("uncertainty.grid", "must be [speeds, depths]");
+    if (grid.size() != 2) throw file.reject("uncertainty.grid", "must be [speeds, depths]");
     u.grid = {grid[0], grid[1]};
   }
   file.locate([&] { u.validate(); });
@@ -177,9 +177,9 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   if (file.has("surface_error")) {
     std::vector<int> grid = {60, 60};
     file.integers("surface_error.grid", "grid", grid);
-    if (grid.size() != 2) throw file.refuse("surface_error.grid", "must be [speeds, depths]");
+    if (grid.size() != 2) throw file.reject("surface_error.grid", "must be [speeds, depths]");
     if (grid[0] < 2 || grid[1] < 2)
-      throw file.refuse("surface_error.grid", "must have at least 2 points in each direction");
+      throw file.reject("surface_error.grid", "must have at least 2 points in each direction");
     if (!(out.problem.milling.feed_per_tooth_m > 0.0)) file.require("cut.feed_per_tooth_mm", "surface_error needs it");
     out.surface_grid = {grid[0], grid[1]};
   }
@@ -204,7 +204,7 @@ void LobesFile::validate() const {
     if (nothing) throw InvalidInput("dynamics", rule);
     return problem.validate();
   }
-  if (nothing) throw document->refuse("dynamics", rule);
+  if (nothing) throw document->reject("dynamics", rule);
   document->locate([&] { problem.validate(); });
 }
 

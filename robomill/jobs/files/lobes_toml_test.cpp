@@ -94,9 +94,9 @@ TEST(LobesToml, TakesCoefficientsFromAFileOrAMaterial) {
                    cutting::milling_coefficients(cutting::material("Ti6Al4V"), 5 * units::deg, 30 * units::deg, 0.03e-3)
                        .tangential_n_per_m2.front());
   folder.file("low.toml", "[coefficients]\ntangential_n_per_mm2 = 0.6\n");
-  const std::string told = test::refusal([&] { static_cast<void>(read("file = \"low.toml\"\n")); });
-  EXPECT_NE(told.find("lobes.toml:11: coefficients.file"), std::string::npos) << told;
-  EXPECT_NE(told.find("tangential_n_per_m2 = 600000"), std::string::npos) << told;
+  const std::string reported = test::rejection([&] { static_cast<void>(read("file = \"low.toml\"\n")); });
+  EXPECT_NE(reported.find("lobes.toml:11: coefficients.file"), std::string::npos) << reported;
+  EXPECT_NE(reported.find("tangential_n_per_m2 = 600000"), std::string::npos) << reported;
 }
 
 // The modes given by modal mass have the receptance 1 / (m (ω_n² - ω² + 2iζω_nω)).
@@ -129,7 +129,7 @@ TEST(LobesToml, ADirectionThatIsMissingHasToBeSaid) {
     return file;
   };
   const auto said = [&](const std::string& dynamics) {
-    return test::refusal([&] { static_cast<void>(loaded(dynamics)); });
+    return test::rejection([&] { static_cast<void>(loaded(dynamics)); });
   };
   folder.file("x.toml",
               "[[modes]]\nfrequency_hz = 922\ndamping_ratio = 0.011\nleft = { x = [1, 0] }\n"
@@ -199,23 +199,24 @@ grid = [20, 10]
   EXPECT_DOUBLE_EQ(file.uncertainty.tangential_std_n_per_m2, 3e7);
   EXPECT_EQ(file.uncertainty.grid, (std::array<int, 2>{20, 10}));
   EXPECT_EQ(file.surface_grid, (std::array<int, 2>{60, 60}));
-  const auto refused = [&](const std::string& row, const std::string& words) {
-    const std::string said = test::refusal([&] { static_cast<void>(read_lobes(folder.file("bad.toml", good + row))); });
+  const auto rejected = [&](const std::string& row, const std::string& words) {
+    const std::string said =
+        test::rejection([&] { static_cast<void>(read_lobes(folder.file("bad.toml", good + row))); });
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
-  refused("[process_damping]\nwear_land_mm = 5\n", "bad.toml:22: process_damping.wear_land_mm = 5 mm; is longer");
-  refused("[speed_variation]\namplitude_ratio = 10\n", "speed_variation.amplitude_ratio = 10; must lie between");
-  refused("[speed_variation]\namplitude_ratio = 0.1\n", "frequency_ratio");
-  refused("[uncertainty]\nsamples = 3\n", "uncertainty.samples = 3; must be at least 20");
-  refused("[uncertainty]\ndamping_std_ratio = 10\n", "It is a share of the value, not a percentage");
-  refused("[surface_error]\ngrid = [1, 2]\n", "must have at least 2 points");
-  refused("[workpiece_dynamics]\nmass_kg = 2\n", "workpiece_dynamics.mass_kg");
+  rejected("[process_damping]\nwear_land_mm = 5\n", "bad.toml:22: process_damping.wear_land_mm = 5 mm; is longer");
+  rejected("[speed_variation]\namplitude_ratio = 10\n", "speed_variation.amplitude_ratio = 10; must lie between");
+  rejected("[speed_variation]\namplitude_ratio = 0.1\n", "frequency_ratio");
+  rejected("[uncertainty]\nsamples = 3\n", "uncertainty.samples = 3; must be at least 20");
+  rejected("[uncertainty]\ndamping_std_ratio = 10\n", "It is a share of the value, not a percentage");
+  rejected("[surface_error]\ngrid = [1, 2]\n", "must have at least 2 points");
+  rejected("[workpiece_dynamics]\nmass_kg = 2\n", "workpiece_dynamics.mass_kg");
 }
 
-TEST(LobesToml, RefusesInTheFilesWords) {
+TEST(LobesToml, RejectsInTheFilesWords) {
   const test::Folder folder;
   const auto say = [&](const std::string& text) {
-    return test::refusal([&] { read_lobes(folder.file("lobes.toml", text)).validate(); });
+    return test::rejection([&] { read_lobes(folder.file("lobes.toml", text)).validate(); });
   };
   const auto expect = [&](const std::string& old_text, const std::string& new_text, const std::string& words) {
     const std::string said = say(with(old_text, new_text));

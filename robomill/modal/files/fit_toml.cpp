@@ -21,7 +21,7 @@ FitOptions read_fit_options(const std::filesystem::path& path) {
   std::vector<double> band;
   if (file.numbers("fit.band_hz", "band_hz", 1.0, band)) {
     if (band.size() != 2 || !(band[0] < band[1]))
-      throw file.refuse("fit.band_hz", "must be [low, high] with low < high");
+      throw file.reject("fit.band_hz", "must be [low, high] with low < high");
     o.band_low_hz = band[0];
     o.band_high_hz = band[1];
   }

@@ -20,10 +20,10 @@ TEST(FitToml, ReadsMethodBandAndNumbers) {
   EXPECT_EQ(o.stable_mac, 0.9);
 }
 
-TEST(FitToml, RefusesInTheFilesWords) {
+TEST(FitToml, RejectsInTheFilesWords) {
   const test::Folder folder;
   const auto say = [&](const char* text) {
-    return test::refusal([&] { static_cast<void>(read_fit_options(folder.file("modes.toml", text))); });
+    return test::rejection([&] { static_cast<void>(read_fit_options(folder.file("modes.toml", text))); });
   };
   EXPECT_NE(say("[fit]\nmax_damping_ratio = -1\n").find("modes.toml:2: fit.max_damping_ratio = -1"), std::string::npos);
   EXPECT_NE(say("[fit]\nband_hz = [3, 2]\n").find("low < high"), std::string::npos);

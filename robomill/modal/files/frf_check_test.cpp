@@ -46,8 +46,8 @@ constexpr double deg = std::numbers::pi / 180.0;
 class FrfCheck : public testing::Test {
  protected:
   FrfFile read(const std::string& text) { return read_frfs({folder_.file("a.csv", text)}); }
-  std::string refusal(const std::string& text) {
-    return test::refusal([&] { static_cast<void>(read(text)); });
+  std::string rejection(const std::string& text) {
+    return test::rejection([&] { static_cast<void>(read(text)); });
   }
   /// Whether the text is that mode, whatever its columns.
   void expect_receptance(const std::string& text) {
@@ -82,11 +82,12 @@ TEST_F(FrfCheck, ReadsMagnitudeAndPhase) {
   // The other way round.
   expect_receptance("f,Phase (rad),Magnitude (m/N)\n" +
                     rows([](double f) { return std::pair(std::arg(receptance(f)), std::abs(receptance(f))); }));
-  EXPECT_NE(refusal("f,xx_magnitude_m_per_n,xx_phase\n" + polar(1.0, deg)).find("xx_phase_deg"), std::string::npos);
-  EXPECT_NE(refusal("Hz,Magnitude (m/N),Phase\n" + polar(1.0, deg)).find("degrees or radians"), std::string::npos);
-  EXPECT_NE(refusal("Hz,Magnitude (dB),Phase (deg)\n" + polar(1.0, deg)).find("\"db\", a unit that is not known"),
+  EXPECT_NE(rejection("f,xx_magnitude_m_per_n,xx_phase\n" + polar(1.0, deg)).find("xx_phase_deg"), std::string::npos);
+  EXPECT_NE(rejection("Hz,Magnitude (m/N),Phase\n" + polar(1.0, deg)).find("degrees or radians"), std::string::npos);
+  EXPECT_NE(rejection("Hz,Magnitude (dB),Phase (deg)\n" + polar(1.0, deg)).find("\"db\", a unit that is not known"),
             std::string::npos);
-  EXPECT_NE(refusal("Hz,Real,Phase (deg)\n" + polar(1.0, deg)).find("columns Real and Phase (deg)"), std::string::npos);
+  EXPECT_NE(rejection("Hz,Real,Phase (deg)\n" + polar(1.0, deg)).find("columns Real and Phase (deg)"),
+            std::string::npos);
 }
 
 TEST_F(FrfCheck, AccelerancesInWordsBecomeReceptances) {
@@ -95,7 +96,7 @@ TEST_F(FrfCheck, AccelerancesInWordsBecomeReceptances) {
 
 TEST_F(FrfCheck, AsksWhereTheGuessIsWrong) {
   const auto expect = [&](const std::string& text, const std::string& words) {
-    const std::string said = refusal(text);
+    const std::string said = rejection(text);
     EXPECT_NE(said.find(words), std::string::npos) << said;
     EXPECT_NE(said.find("xx_phase_deg"), std::string::npos) << "does not say what to write: " << said;
   };
@@ -139,13 +140,13 @@ TEST_F(FrfCheck, ATimeRecordIsNoFrf) {
     return text;
   };
   for (const int columns : {2, 3, 4, 5}) {
-    const std::string said = refusal(record(columns, 1.0 / 51200.0));
+    const std::string said = rejection(record(columns, 1.0 / 51200.0));
     EXPECT_NE(said.find("looks like a time record"), std::string::npos) << said;
     EXPECT_NE(said.find("51200 samples a second"), std::string::npos) << said;
     EXPECT_NE(said.find("robomill frf"), std::string::npos) << said;
   }
-  EXPECT_NE(refusal(record(2, 1e-3)).find("looks like a time record"), std::string::npos);
-  EXPECT_NE(refusal("time_s,force_n,ax_m_per_s2\n0,1,2\n0.1,2,3\n").find("a column of times"), std::string::npos);
+  EXPECT_NE(rejection(record(2, 1e-3)).find("looks like a time record"), std::string::npos);
+  EXPECT_NE(rejection("time_s,force_n,ax_m_per_s2\n0,1,2\n0.1,2,3\n").find("a column of times"), std::string::npos);
 }
 
 }  // namespace

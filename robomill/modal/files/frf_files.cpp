@@ -80,14 +80,14 @@ void agree_on_zero(std::vector<FrfParts>& all) {
 void require_same_axis(const FrfParts& first, const FrfParts& other) {
   const Eigen::VectorXd& a = first.frequency_hz;
   const Eigen::VectorXd& b = other.frequency_hz;
-  const auto refuse = [&](const std::string& what) {
+  const auto reject = [&](const std::string& what) {
     return InvalidInput(other.file.string(), "has other frequencies than " + first.file.string() + ": " + what,
                         "FRFs that go together need one axis");
   };
-  if (a.size() != b.size()) throw refuse(std::to_string(b.size()) + " lines, not " + std::to_string(a.size()));
+  if (a.size() != b.size()) throw reject(std::to_string(b.size()) + " lines, not " + std::to_string(a.size()));
   for (Eigen::Index i = 0; i < a.size(); ++i) {
     if (std::abs(a(i) - b(i)) > same_frequency * std::abs(a(i))) {
-      throw refuse("line " + std::to_string(i + 1) + " stands at " + std::to_string(b(i)) + " Hz, not " +
+      throw reject("line " + std::to_string(i + 1) + " stands at " + std::to_string(b(i)) + " Hz, not " +
                    std::to_string(a(i)));
     }
   }

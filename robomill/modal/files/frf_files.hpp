@@ -10,7 +10,7 @@
 
 namespace robomill::modal {
 
-/// How the note ends that tells of a file whose FRFs all stand at one numbered point: they have lost the number.
+/// How the note ends on a file whose FRFs all stand at one numbered point: they have lost the number.
 constexpr std::string_view taken_as_tip = ": taken as the tip";
 
 /// FRFs as files hold them, and what a reader of the result must know: data sets skipped, lines left out, units

@@ -47,11 +47,12 @@ TEST(FrfFiles, EveryFormatGivesTheSetBack) {
     write_frfs(folder.at(name), set);
     expect_same(read_frfs({folder.at(name)}).set, set, 0.0);
   }
-  // What is told of a prediction stands beside it and does not disturb the reader.
-  const std::string told = frf_json(set, {.suspect_hz = {7.0}, .unreliable_hz = {8.0, 9.5}, .notes = {"a \"note\""}});
-  expect_same(read_frfs({folder.file("told.json", told)}).set, set, 0.0);
-  EXPECT_NE(told.find("\"suspect_hz\": [7.0]"), std::string::npos);
-  EXPECT_NE(told.find("\"unreliable_hz\": [8.0, 9.5]"), std::string::npos);
+  // What is reported of a prediction stands beside it and does not disturb the reader.
+  const std::string reported =
+      frf_json(set, {.suspect_hz = {7.0}, .unreliable_hz = {8.0, 9.5}, .notes = {"a \"note\""}});
+  expect_same(read_frfs({folder.file("reported.json", reported)}).set, set, 0.0);
+  EXPECT_NE(reported.find("\"suspect_hz\": [7.0]"), std::string::npos);
+  EXPECT_NE(reported.find("\"unreliable_hz\": [8.0, 9.5]"), std::string::npos);
   // E20.12 carries 13 digits.
   write_frfs(folder.at("tip.uff"), set);
   expect_same(read_frfs({folder.at("tip.uff")}).set, set, 1e-12);
@@ -107,18 +108,18 @@ TEST(FrfFiles, HeaderlessColumnsTakeTheirNamesFromTheUser) {
   EXPECT_EQ(to_string(read_frfs({a}).set.frfs[0].name), "xx");
   const FrfSet both = read_frfs({a, b}, {"xx", "yy"}).set;
   EXPECT_EQ(both.find(parse_frf_name("yy"))->receptance(2), std::complex<double>(7e-6, 8e-6));
-  EXPECT_NE(test::refusal([&] { static_cast<void>(read_frfs({a, b})); }).find("--as"), std::string::npos);
-  EXPECT_NE(test::refusal([&] {
+  EXPECT_NE(test::rejection([&] { static_cast<void>(read_frfs({a, b})); }).find("--as"), std::string::npos);
+  EXPECT_NE(test::rejection([&] {
               static_cast<void>(read_frfs({a, b}, {"xx", "xx"}));
             }).find("comes twice"),
             std::string::npos);
 }
 
-TEST(FrfFiles, RefusesAxesThatDiffer) {
+TEST(FrfFiles, RejectsAxesThatDiffer) {
   const test::Folder folder;
   const auto a = folder.file("a.txt", "1 1 0\n2 1 0\n");
   const auto b = folder.file("b.txt", "1 1 0\n2.1 1 0\n");
-  const std::string said = test::refusal([&] { static_cast<void>(read_frfs({a, b}, {"xx", "yy"})); });
+  const std::string said = test::rejection([&] { static_cast<void>(read_frfs({a, b}, {"xx", "yy"})); });
   EXPECT_NE(said.find("a.txt"), std::string::npos);
   EXPECT_NE(said.find("b.txt"), std::string::npos);
 }
@@ -182,9 +183,9 @@ TEST(FrfFiles, UniversalFilesKeepTheirUnits) {
   EXPECT_GT(first(function).real(), 0.0);
   // Force per displacement, and acceleration per acceleration.
   function.numerator = {.type = 13};
-  EXPECT_NE(test::refusal([&] { static_cast<void>(read({function})); }).find("per force"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { static_cast<void>(read({function})); }).find("per force"), std::string::npos);
   function.numerator = function.denominator = {.type = 12};
-  EXPECT_NE(test::refusal([&] { static_cast<void>(read({function})); }).find("per force"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { static_cast<void>(read({function})); }).find("per force"), std::string::npos);
 }
 
 // Millimetres and newtons by data set 164 alone: an angle has no length, and a moment has one.
@@ -232,13 +233,13 @@ TEST(FrfFiles, ColumnsOfRotationsKeepTheirUnits) {
   EXPECT_DOUBLE_EQ(first("ry:my", "rad_per_n_mm"), 2e3);
   const double omega = 2 * std::numbers::pi * 10.0;
   EXPECT_DOUBLE_EQ(first("ry:my", "rad_per_s2_per_n_m"), -2.0 / (omega * omega));
-  const auto refused = [&](const char* name, const char* unit) {
-    const std::string said = test::refusal([&] { static_cast<void>(first(name, unit)); });
+  const auto rejected = [&](const char* name, const char* unit) {
+    const std::string said = test::rejection([&] { static_cast<void>(first(name, unit)); });
     EXPECT_NE(said.find("does not fit its name"), std::string::npos) << said;
   };
-  refused("x:my", "m_per_n");
-  refused("ry:x", "m_per_n");
-  refused("xx", "rad_per_n_m");
+  rejected("x:my", "m_per_n");
+  rejected("ry:x", "m_per_n");
+  rejected("xx", "rad_per_n_m");
 }
 
 TEST(FrfFiles, UniversalFilesMixWhatTheyHold) {
@@ -264,7 +265,7 @@ TEST(FrfFiles, UniversalFilesMixWhatTheyHold) {
   EXPECT_EQ(file.set.find(parse_frf_name("yx"))->coherence, Eigen::Vector2d(0.5, 1.0));
   EXPECT_EQ(file.notes.size(), 3U);
   accelerance.abscissa *= 1.01;
-  EXPECT_NE(test::refusal([&] {
+  EXPECT_NE(test::rejection([&] {
               static_cast<void>(read_frfs({folder.file("a.uff", io::format_uff({receptance, accelerance}, false))}));
             }).find("has other frequencies than the FRF before it"),
             std::string::npos);
@@ -275,7 +276,7 @@ TEST(FrfFiles, UniversalFilesWithoutDirectionsTakeNamesFromTheUser) {
   io::UffFunction function = one_function();
   function.response_direction = function.reference_direction = 0;
   const auto path = folder.file("a.uff", io::format_uff({function, function}, false));
-  EXPECT_NE(test::refusal([&] { static_cast<void>(read_frfs({path})); }).find("--as"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { static_cast<void>(read_frfs({path})); }).find("--as"), std::string::npos);
   EXPECT_NE(read_frfs({path}, {"xx", "yy"}).set.find(parse_frf_name("yy")), nullptr);
   EXPECT_EQ(to_string(read_frfs({folder.file("b.uff", io::format_uff({function}, false))}).set.frfs[0].name), "xx");
 }
@@ -297,7 +298,7 @@ TEST(FrfFiles, ColumnsKeepTheirUnits) {
   const FrfFile words = read_frfs({folder.file("c.csv", "Frequency (Hz),Real,Imag\n1,2,3\n")});
   EXPECT_EQ(words.set.frfs[0].receptance(0), std::complex<double>(2.0, 3.0));
   const auto say = [&](const std::string& text) {
-    return test::refusal([&] { static_cast<void>(read_frfs({folder.file("d.csv", text)})); });
+    return test::rejection([&] { static_cast<void>(read_frfs({folder.file("d.csv", text)})); });
   };
   EXPECT_NE(say("f,xx_re_v,xx_im_v\n1,2,3\n").find("xx_re_v has a unit that is not known"), std::string::npos);
   EXPECT_NE(say("f,xx_re_m_per_n,xx_im_mm_per_n\n1,2,3\n").find("differ in unit"), std::string::npos);
@@ -319,10 +320,10 @@ TEST(FrfFiles, OneNumberedPointIsTheTip) {
   EXPECT_NE(read_frfs({folder.at("p.uff")}).set.find(parse_frf_name("ry:x")), nullptr);
 }
 
-TEST(FrfFiles, RefusesWhatCannotBeAnFrf) {
+TEST(FrfFiles, RejectsWhatCannotBeAnFrf) {
   const test::Folder folder;
   const auto say = [&](const char* name, const std::string& text) {
-    return test::refusal([&] { static_cast<void>(read_frfs({folder.file(name, text)})); });
+    return test::rejection([&] { static_cast<void>(read_frfs({folder.file(name, text)})); });
   };
   EXPECT_NE(say("a.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n1,2,nan\n").find("a.csv:2"), std::string::npos);
   EXPECT_NE(say("a.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n2,2,1\n1,2,1\n").find("must be above"),
@@ -336,7 +337,7 @@ TEST(FrfFiles, RefusesWhatCannotBeAnFrf) {
   EXPECT_NE(say("a.csv", " ").find("a.csv"), std::string::npos);
 }
 
-// Cut off or changed at any place, a file is refused or read, and never anything worse.
+// Cut off or changed at any place, a file is rejected or read, and never anything worse.
 TEST(FrfFiles, SurviveMutations) {
   const test::Folder folder;
   const FrfSet set = robot_frfs();

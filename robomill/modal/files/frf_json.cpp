@@ -81,7 +81,7 @@ FrfParts read_frf_json(const std::filesystem::path& path) {
     const io::JsonNode node = receptances.at(item.key());
     const Eigen::VectorXd re = node.at("re").numbers();
     const Eigen::VectorXd im = node.at("im").numbers();
-    if (re.size() != im.size()) throw node.refuse("must have as many real as imaginary parts");
+    if (re.size() != im.size()) throw node.reject("must have as many real as imaginary parts");
     FrfPart part{.name = frf_name_at(fmt::format("{}: {}", path.string(), node.path()), item.key()),
                  .values = re.cast<std::complex<double>>()};
     part.values.imag() = im;
@@ -91,7 +91,7 @@ FrfParts read_frf_json(const std::filesystem::path& path) {
   }
   if (root.has("added_decay_per_s") && !root.at("added_decay_per_s").json().is_null()) {
     out.added_decay_per_s = root.at("added_decay_per_s").number();
-    if (out.added_decay_per_s < 0.0) throw root.at("added_decay_per_s").refuse("must be >= 0");
+    if (out.added_decay_per_s < 0.0) throw root.at("added_decay_per_s").reject("must be >= 0");
   }
   return out;
 }

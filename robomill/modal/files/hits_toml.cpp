@@ -69,7 +69,7 @@ void read_options(io::TomlFile& file, HitOptions& o) {
 void sensitivity(io::TomlFile& file, const std::string& key, double& factor) {
   double mv_per_unit = 0.0;
   if (!file.number(key, key, 1.0, mv_per_unit)) return;
-  if (mv_per_unit == 0.0) throw file.refuse(key, "must not be 0", "It stands on the sensor's calibration sheet");
+  if (mv_per_unit == 0.0) throw file.reject(key, "must not be 0", "It stands on the sensor's calibration sheet");
   factor = millivolts_per_volt / mv_per_unit;
 }
 
@@ -80,7 +80,7 @@ Sensors read_sensors(io::TomlFile& file, ResponseKind kind) {
   sensors.has_scale = file.number("acquisition.scale", "scale", 1.0, sensors.scale);
   if (file.number("acquisition.sample_rate_hz", "sample_rate_hz", 1.0, sensors.sample_rate_hz) &&
       !(sensors.sample_rate_hz > 0.0)) {
-    throw file.refuse("acquisition.sample_rate_hz", "must be > 0");
+    throw file.reject("acquisition.sample_rate_hz", "must be > 0");
   }
   return sensors;
 }
@@ -97,7 +97,7 @@ Direction direction(const io::TomlFile& file, const std::string& key, std::strin
   try {
     return {.dof = parse_dof(text), .against_axis = against};
   } catch (const InvalidInput&) {
-    throw file.refuse(key, "must be a direction", "x, y or z; -x for a hit against the axis; 3x at point 3");
+    throw file.reject(key, "must be a direction", "x, y or z; -x for a hit against the axis; 3x at point 3");
   }
 }
 
@@ -107,7 +107,7 @@ std::string column(io::TomlFile& file, const std::string& key) {
   int number = 0;
   if (file.is_number(key)) {
     file.integer(key, key, number);
-    if (number < 1) throw file.refuse(key, "must be a column's name or its number from 1");
+    if (number < 1) throw file.reject(key, "must be a column's name or its number from 1");
     return std::to_string(number);
   }
   file.text(key, name);
@@ -116,10 +116,10 @@ std::string column(io::TomlFile& file, const std::string& key) {
 
 double rate_of(const io::TomlFile& file, const std::string& key, const io::Record& record, double given_hz) {
   if (record.sample_rate_hz <= 0.0 && given_hz <= 0.0) {
-    throw file.refuse(key, "has no time column, and acquisition.sample_rate_hz is missing");
+    throw file.reject(key, "has no time column, and acquisition.sample_rate_hz is missing");
   }
   if (record.sample_rate_hz > 0.0 && given_hz > 0.0 && std::abs(record.sample_rate_hz / given_hz - 1.0) > 1e-3) {
-    throw file.refuse(key, fmt::format("was sampled at {:.6g} Hz, not at acquisition.sample_rate_hz = {:.6g} Hz",
+    throw file.reject(key, fmt::format("was sampled at {:.6g} Hz, not at acquisition.sample_rate_hz = {:.6g} Hz",
                                        record.sample_rate_hz, given_hz));
   }
   return record.sample_rate_hz > 0.0 ? record.sample_rate_hz : given_hz;
@@ -131,7 +131,7 @@ Hit read_hit(io::TomlFile& file, std::size_t index, const Sensors& sensors, std:
   std::filesystem::path path;
   file.path(row + "file", path);
   if (io::format_of(path) == io::Format::wav && !sensors.has_scale) {
-    throw file.refuse(row + "file", "is a WAV, and acquisition.scale is missing",
+    throw file.reject(row + "file", "is a WAV, and acquisition.scale is missing",
                       "scale says what full scale means: volts where the sensors' mV per unit are given");
   }
   io::RecordOptions reading{.scale = sensors.scale};
@@ -149,7 +149,7 @@ Hit read_hit(io::TomlFile& file, std::size_t index, const Sensors& sensors, std:
   hit.sample_rate_hz = rate_of(file, row + "file", record, sensors.sample_rate_hz);
   hit.force_n = record.column(column(file, row + "force")) * sensors.force_factor;
   const std::vector<std::string> responses = file.keys(row + "responses");
-  if (responses.empty()) throw file.refuse(row + "responses", "must name a column for one direction at least");
+  if (responses.empty()) throw file.reject(row + "responses", "must name a column for one direction at least");
   for (const std::string& name : responses) {
     const std::string key = row + "responses." + name;
     const Direction sensed = direction(file, key, name);

@@ -55,17 +55,17 @@ TEST(HitsToml, TakesTheRateFromTheFileWhereThereIsNoTime) {
   EXPECT_EQ(file.hits[0].sample_rate_hz, 51200.0);
   EXPECT_EQ(file.hits[0].responses[0].samples(2), 5.0);
   const std::string said =
-      test::refusal([&] { static_cast<void>(read_hits(folder.file("none.toml", "[acquisition]\n" + row))); });
+      test::rejection([&] { static_cast<void>(read_hits(folder.file("none.toml", "[acquisition]\n" + row))); });
   EXPECT_NE(said.find("sample_rate_hz is missing"), std::string::npos) << said;
 }
 
-TEST(HitsToml, RefusesInTheFilesWords) {
+TEST(HitsToml, RejectsInTheFilesWords) {
   const test::Folder folder;
   static_cast<void>(folder.file("a.csv", record));
   const std::string row =
       "[[hits]]\nfile = \"a.csv\"\nforce = \"force_v\"\nforce_direction = \"x\"\nresponses = { x = \"ax\" }\n";
   const auto say = [&](const std::string& text) {
-    return test::refusal([&] { static_cast<void>(read_hits(folder.file("hits.toml", text))); });
+    return test::rejection([&] { static_cast<void>(read_hits(folder.file("hits.toml", text))); });
   };
   EXPECT_NE(say("[acquisition]\naccelerometer_mass_kg = -1\n" + row)
                 .find("hits.toml:2: acquisition.accelerometer_mass_kg = -1 kg"),
@@ -107,13 +107,13 @@ TEST(HitsToml, ReadsSoundWithItsScale) {
   EXPECT_DOUBLE_EQ(file.hits[0].force_n(1), 1000.0);
   EXPECT_DOUBLE_EQ(file.hits[0].responses[0].samples(1), -125.0);
   const auto say = [&](const std::string& text) {
-    return test::refusal([&] { static_cast<void>(read_hits(folder.file("bad.toml", text))); });
+    return test::rejection([&] { static_cast<void>(read_hits(folder.file("bad.toml", text))); });
   };
   EXPECT_NE(say(row).find("acquisition.scale is missing"), std::string::npos);
   EXPECT_NE(say("[acquisition]\nscale = 0\n" + row).find("bad.toml:2: acquisition.scale = 0"), std::string::npos);
 }
 
-// Cut off or changed at any place, a file is refused or read, and never anything worse.
+// Cut off or changed at any place, a file is rejected or read, and never anything worse.
 TEST(HitsToml, SurvivesMutations) {
   const test::Folder folder;
   static_cast<void>(folder.file("a.csv", record));

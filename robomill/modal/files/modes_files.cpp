@@ -43,7 +43,7 @@ io::Json model_json(const ModalModel& model) {
   return json;
 }
 
-/// A mode as a file tells it: entries by the name of their degree of freedom.
+/// A mode as a file reports it: entries by the name of their degree of freedom.
 struct NamedMode {
   Mode mode;
   std::vector<std::pair<Dof, std::complex<double>>> left, right;
@@ -78,7 +78,7 @@ ModalModel to_model(const std::vector<NamedMode>& named) {
   return model;
 }
 
-/// Tells an error of the model with the file's name in front.
+/// Reports an error of the model with the file's name in front.
 void validate(const ModalModel& model, const std::string& file) {
   try {
     model.validate();
@@ -98,7 +98,7 @@ std::vector<std::pair<Dof, std::complex<double>>> read_vector(const io::JsonNode
       out.emplace_back(parse_dof(item.key()), entry.complex_number());
     } catch (const InvalidInput& error) {
       if (!error.parts().where.empty()) throw;
-      throw entry.refuse("must be named by a direction", "x, y, z, 1x, ry");
+      throw entry.reject("must be named by a direction", "x, y, z, 1x, ry");
     }
   }
   return out;
@@ -115,7 +115,7 @@ void require_usable(const io::JsonNode& root) {
   const io::JsonNode fit = root.at("fit");
   if (fit.at("usable").json() != false) return;
   throw fit.at("relative_error")
-      .refuse(fmt::format("must be below {}: these modes do not describe the FRFs that they were fitted to",
+      .reject(fmt::format("must be below {}: these modes do not describe the FRFs that they were fitted to",
                           unusable_fit_error),
               "Fit them better, or take them as they are with robomill modes --accept-fit");
 }
@@ -149,7 +149,7 @@ ModalModel read_modes_json(const std::filesystem::path& path) {
                                    .stiffness = entry.at("stiffness").complex_number()});
       } catch (const InvalidInput& error) {
         if (!error.parts().where.empty()) throw;
-        throw entry.refuse("must be named by an FRF", "xx, xy, 1x:3x");
+        throw entry.reject("must be named by an FRF", "xx, xy, 1x:3x");
       }
     }
   }
@@ -163,11 +163,11 @@ std::vector<std::pair<Dof, std::complex<double>>> read_vector(io::TomlFile& file
   for (const std::string& name : file.keys(key)) {
     std::vector<double> parts;
     file.numbers(key + "." + name, name, 1.0, parts);
-    if (parts.size() != 2) throw file.refuse(key + "." + name, "must be [re, im]");
+    if (parts.size() != 2) throw file.reject(key + "." + name, "must be [re, im]");
     try {
       out.emplace_back(parse_dof(name), std::complex<double>(parts[0], parts[1]));
     } catch (const InvalidInput&) {
-      throw file.refuse(key + "." + name, "must be named by a direction", "x, y, z, 1x, ry");
+      throw file.reject(key + "." + name, "must be named by a direction", "x, y, z, 1x, ry");
     }
   }
   return out;

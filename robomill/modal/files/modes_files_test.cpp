@@ -44,10 +44,10 @@ TEST(ModesFiles, JsonGivesTheModelBack) {
   EXPECT_EQ(read.residuals[0].stiffness, std::complex<double>(3e-9, 4e-9));
 }
 
-TEST(ModesFiles, RefusesWithTheJsonPath) {
+TEST(ModesFiles, RejectsWithTheJsonPath) {
   const test::Folder folder;
   const auto say = [&](const std::string& text) {
-    return test::refusal([&] { static_cast<void>(read_modes(folder.file("modes.json", text))); });
+    return test::rejection([&] { static_cast<void>(read_modes(folder.file("modes.json", text))); });
   };
   const auto mode = [](const std::string& damping, const std::string& left) {
     return R"({"modes":[{"frequency_hz":500,"damping_ratio":)" + damping + R"(,"left":)" + left +
@@ -60,7 +60,7 @@ TEST(ModesFiles, RefusesWithTheJsonPath) {
   EXPECT_NE(say("{\"modes\":[{}]}").find("modes[1].frequency_hz: is missing"), std::string::npos);
   EXPECT_NE(say("{\"modes\":\n[}").find("modes.json:2"), std::string::npos);
   const std::string wrong_ending =
-      test::refusal([&] { static_cast<void>(read_modes(folder.file("tip.uff", "    -1\n"))); });
+      test::rejection([&] { static_cast<void>(read_modes(folder.file("tip.uff", "    -1\n"))); });
   EXPECT_NE(wrong_ending.find("robomill modes"), std::string::npos);
 }
 
@@ -76,14 +76,14 @@ TEST(ModesFiles, AFitThatDoesNotDescribeItsFrfsIsNoInput) {
   EXPECT_EQ(json["fit"]["usable"], false);
   EXPECT_TRUE(json["modes"][0]["at_bounds"].empty());
   EXPECT_EQ(json["modes"][1]["at_bounds"], io::Json::array({"max_damping_ratio", "band_high_hz"}));
-  const std::string said = test::refusal([&] { static_cast<void>(read_modes(path)); });
+  const std::string said = test::rejection([&] { static_cast<void>(read_modes(path)); });
   EXPECT_NE(said.find("modes.json: fit.relative_error = 1.094; must be below 0.2"), std::string::npos) << said;
   EXPECT_NE(said.find("--accept-fit"), std::string::npos) << said;
   fit.accepted = true;
   expect_same(read_modes(folder.file("accepted.json", modes_json(fit))), fit.model, 1e-14);
 }
 
-// Cut off or changed at any place, a file is refused or read, and never anything worse.
+// Cut off or changed at any place, a file is rejected or read, and never anything worse.
 TEST(ModesFiles, SurvivesMutations) {
   const test::Folder folder;
   const std::string good = modes_json(data::robot_modes());

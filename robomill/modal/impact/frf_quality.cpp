@@ -55,14 +55,14 @@ double reciprocity_error(const FrfSet& set, const Frf& frf, const Lines& lines) 
 class Judge {
  public:
   explicit Judge(FrfGrade& grade) : grade_(grade) { grade_.grade = Grade::good; }
-  void minor(std::string fault, std::string remedy) { tell(Grade::usable, std::move(fault), std::move(remedy)); }
-  void major(std::string fault, std::string remedy) { tell(Grade::poor, std::move(fault), std::move(remedy)); }
+  void minor(std::string fault, std::string remedy) { report(Grade::usable, std::move(fault), std::move(remedy)); }
+  void major(std::string fault, std::string remedy) { report(Grade::poor, std::move(fault), std::move(remedy)); }
   void weigh(bool is_major, std::string fault, std::string remedy) {
-    tell(is_major ? Grade::poor : Grade::usable, std::move(fault), std::move(remedy));
+    report(is_major ? Grade::poor : Grade::usable, std::move(fault), std::move(remedy));
   }
 
  private:
-  void tell(Grade at_best, std::string fault, std::string remedy) {
+  void report(Grade at_best, std::string fault, std::string remedy) {
     grade_.grade = std::max(grade_.grade, at_best);
     grade_.faults.push_back(std::move(fault));
     grade_.remedies.push_back(std::move(remedy));

@@ -377,45 +377,45 @@ TEST(PsoPeaks, KnowWidthAndHeight) {
   }
 }
 
-TEST(Pso, RefusesEveryFaultOfTheOptions) {
-  const auto refuses = [](const std::string& field, const std::function<void(PsoOptions&)>& spoil) {
+TEST(Pso, RejectsEveryFaultOfTheOptions) {
+  const auto rejects = [](const std::string& field, const std::function<void(PsoOptions&)>& spoil) {
     PsoOptions options;
     spoil(options);
     EXPECT_EQ(test::field_of([&] { options.validate(); }), field);
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  refuses("modes", [](PsoOptions& o) { o.modes = -1; });
-  refuses("peaks_hz", [](PsoOptions& o) { o.peaks_hz = {10.0, 0.0}; });
-  refuses("frequency_half_width", [](PsoOptions& o) { o.frequency_half_width = 1.0; });
-  refuses("frequency_half_width", [nan](PsoOptions& o) { o.frequency_half_width = nan; });
-  refuses("max_damping_ratio", [](PsoOptions& o) { o.max_damping_ratio = 0.0; });
-  refuses("max_damping_ratio", [](PsoOptions& o) { o.max_damping_ratio = 5.0; });
-  refuses("lines", [](PsoOptions& o) { o.lines = 5; });
-  refuses("particles", [](PsoOptions& o) { o.particles = 1; });
-  refuses("max_iterations", [](PsoOptions& o) { o.max_iterations = 0; });
-  refuses("inertia_start", [](PsoOptions& o) { o.inertia_start = 1.1; });
-  refuses("inertia_end", [](PsoOptions& o) { o.inertia_end = 0.95; });
-  refuses("inertia_iterations", [](PsoOptions& o) { o.inertia_iterations = 0; });
-  refuses("cognitive", [](PsoOptions& o) { o.cognitive = -1.0; });
-  refuses("social", [nan](PsoOptions& o) { o.social = nan; });
-  refuses("velocity_fraction", [](PsoOptions& o) { o.velocity_fraction = 0.0; });
-  refuses("stall_iterations", [](PsoOptions& o) { o.stall_iterations = 0; });
-  refuses("stall_tolerance", [](PsoOptions& o) { o.stall_tolerance = -1.0; });
+  rejects("modes", [](PsoOptions& o) { o.modes = -1; });
+  rejects("peaks_hz", [](PsoOptions& o) { o.peaks_hz = {10.0, 0.0}; });
+  rejects("frequency_half_width", [](PsoOptions& o) { o.frequency_half_width = 1.0; });
+  rejects("frequency_half_width", [nan](PsoOptions& o) { o.frequency_half_width = nan; });
+  rejects("max_damping_ratio", [](PsoOptions& o) { o.max_damping_ratio = 0.0; });
+  rejects("max_damping_ratio", [](PsoOptions& o) { o.max_damping_ratio = 5.0; });
+  rejects("lines", [](PsoOptions& o) { o.lines = 5; });
+  rejects("particles", [](PsoOptions& o) { o.particles = 1; });
+  rejects("max_iterations", [](PsoOptions& o) { o.max_iterations = 0; });
+  rejects("inertia_start", [](PsoOptions& o) { o.inertia_start = 1.1; });
+  rejects("inertia_end", [](PsoOptions& o) { o.inertia_end = 0.95; });
+  rejects("inertia_iterations", [](PsoOptions& o) { o.inertia_iterations = 0; });
+  rejects("cognitive", [](PsoOptions& o) { o.cognitive = -1.0; });
+  rejects("social", [nan](PsoOptions& o) { o.social = nan; });
+  rejects("velocity_fraction", [](PsoOptions& o) { o.velocity_fraction = 0.0; });
+  rejects("stall_iterations", [](PsoOptions& o) { o.stall_iterations = 0; });
+  rejects("stall_tolerance", [](PsoOptions& o) { o.stall_tolerance = -1.0; });
   EXPECT_NO_THROW(PsoOptions().validate());
 }
 
-TEST(Pso, RefusesDataThatCannotCarryTheModes) {
-  const auto refuses = [](const std::string& field, const FrfSet& frfs, const PsoOptions& options) {
+TEST(Pso, RejectsDataThatCannotCarryTheModes) {
+  const auto rejects = [](const std::string& field, const FrfSet& frfs, const PsoOptions& options) {
     EXPECT_EQ(test::field_of([&] { static_cast<void>(fit_pso(frfs, options)); }), field);
   };
-  refuses("modes", two_hits(), {.modes = 1});                          // one mode for two excitations
-  refuses("modes", synthesize(one_mode(), lines()), {.modes = 1000});  // more unknowns than numbers
-  refuses("peaks_hz", synthesize(one_mode(), lines()), {.modes = 0, .peaks_hz = {500.0}});  // outside the band
+  rejects("modes", two_hits(), {.modes = 1});                          // one mode for two excitations
+  rejects("modes", synthesize(one_mode(), lines()), {.modes = 1000});  // more unknowns than numbers
+  rejects("peaks_hz", synthesize(one_mode(), lines()), {.modes = 0, .peaks_hz = {500.0}});  // outside the band
   FrfSet flat = synthesize(one_mode(), lines());
   flat.frfs[0].receptance.setConstant(1e-6);
-  refuses("frfs", flat, {});
+  rejects("frfs", flat, {});
   flat.frfs[0].receptance.setZero();
-  refuses("frfs", flat, {});
+  rejects("frfs", flat, {});
   flat.frfs[0].receptance(3) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(static_cast<void>(fit_pso(flat, {})), InvalidInput);
   EXPECT_THROW(static_cast<void>(fit_pso(FrfSet(), {})), InvalidInput);

@@ -9,7 +9,7 @@ namespace robomill::monitor {
 /// Takes what repeats with the spindle out of one channel: r(t) = x(t) - Re Σ_k a_k exp(i k θ(t)), k = 1 … harmonics,
 /// θ the spindle's angle. The amplitudes follow by stochastic gradient, block by block,
 ///   a_k += gain 2/n Σ_t r(t) exp(-i k θ(t)),
-/// so that r is what the past did not foretell. Over a revolution the harmonics are orthogonal: a gain of n/(samples a
+/// so that r is what the past did not predict. Over a revolution the harmonics are orthogonal: a gain of n/(samples a
 /// revolution) takes over the last revolution whole, one of 1 - exp(-n/τ) forgets with the time constant τ and leaves a
 /// notch of half width 1/(2πτ) at each harmonic. Nothing is allocated after construction.
 class Comb {

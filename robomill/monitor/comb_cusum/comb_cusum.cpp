@@ -82,7 +82,7 @@ void CombCusum::reset() noexcept {
   entry_hops_ = jumps_ = broad_ = calm_ = steady_ = still_bad_ = 0;
   hops_ = bad_ = 0;
   tone_.reset();
-  spill_.reset();
+  broadband_growth_.reset();
   hidden_harmonics_.reset();
   line_ = channel_ = 0;
   state_ = State::stable;
@@ -252,7 +252,7 @@ void CombCusum::leave_power() noexcept {
   }
 }
 
-// Where the tool leaves or the speed runs away, the signal holds less of the comb than the comb foretells: what is left
+// Where the tool leaves or the speed runs away, the signal holds less of the comb than the comb predicts: what is left
 // is the comb's own. Chatter comes on top of it.
 bool CombCusum::comb_follows(std::size_t channel) const noexcept {
   double own = 0.0;
@@ -286,13 +286,13 @@ void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {
   }
   if (spindle_.rotation_hz() > 0.0) take_lags();
   judge(decision);
-  tell_bands(decision);
+  report_bands(decision);
   decision.suggested_sample_rate_hz = spindle_.suggested_sample_rate_hz();
   if (decision.suggested_sample_rate_hz > 0.0) decision.faults |= wrong_sample_rate;
   decision.spindle_speed_rad_per_s = turn * spindle_.rotation_hz();
 }
 
-void CombCusum::tell_bands(Decision& decision) const noexcept {
+void CombCusum::report_bands(Decision& decision) const noexcept {
   const auto bands = static_cast<std::size_t>(options_.bands);
   decision.bands = options_.bands;
   for (std::size_t c = 0; c < channels_; ++c) {

@@ -3,11 +3,11 @@
 #include <memory>
 #include <vector>
 
+#include "robomill/monitor/comb_cusum/broadband_growth.hpp"
 #include "robomill/monitor/comb_cusum/cusum.hpp"
 #include "robomill/monitor/comb_cusum/frequency.hpp"
-#include "robomill/monitor/comb_cusum/hidden.hpp"
-#include "robomill/monitor/comb_cusum/spill.hpp"
-#include "robomill/monitor/comb_cusum/tone.hpp"
+#include "robomill/monitor/comb_cusum/narrowband_detector.hpp"
+#include "robomill/monitor/comb_cusum/synchronous_chatter.hpp"
 #include "robomill/monitor/detector.hpp"
 #include "robomill/monitor/entropy.hpp"
 #include "robomill/monitor/spindle/spindle.hpp"
@@ -37,7 +37,7 @@ class CombCusum final : public Detector {
   void learn_anew() noexcept;
   [[nodiscard]] bool trusted() const noexcept;
   [[nodiscard]] bool comb_known() const noexcept { return spindle_.rotation_hz() > 0.0 && trusted(); }
-  bool hear_hidden() noexcept;
+  bool process_synchronous() noexcept;
   // Comb
   void comb() noexcept;
   void take_lags() noexcept;
@@ -47,15 +47,15 @@ class CombCusum final : public Detector {
   void squeeze() noexcept;
   void judge(Decision& decision) noexcept;
   [[nodiscard]] bool near_a_harmonic(double frequency_hz) const noexcept;
-  [[nodiscard]] bool hear_tone() noexcept;
-  [[nodiscard]] bool hear_spill() noexcept;
+  [[nodiscard]] bool process_narrowband() noexcept;
+  [[nodiscard]] bool process_broadband() noexcept;
   [[nodiscard]] bool may_be_the_cut(double frequency_hz) const noexcept;
   void in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept;
   void begin_chatter(bool above_baseline) noexcept;
   void in_chatter() noexcept;
   void follow_line() noexcept;
-  void tell_frequency(Decision& decision) noexcept;
-  void tell_bands(Decision& decision) const noexcept;
+  void report_frequency(Decision& decision) noexcept;
+  void report_bands(Decision& decision) const noexcept;
   [[nodiscard]] double power() const noexcept;            // of all channels in the hop
   [[nodiscard]] double energy_of_power() const noexcept;  // that it has in the lines
   [[nodiscard]] double level(std::size_t line) const noexcept;
@@ -78,7 +78,7 @@ class CombCusum final : public Detector {
   std::vector<double> left_power_;  // of the residual in the hop, each channel
   std::vector<double> late_half_;   // in its second half
   std::unique_ptr<bool[]> falls_;   // it is on its way down
-  std::size_t away_ = 0;            // channels in which the comb foretells what no longer comes
+  std::size_t away_ = 0;            // channels in which the comb predicts what no longer comes
   std::vector<double> history_;     // of the lines' log energies, loudest channel; `kept` hops
   std::vector<double> band_power_;  // of the hop, each channel's bands
   std::uint64_t bad_ = 0;           // channels that are not listened to
@@ -92,9 +92,9 @@ class CombCusum final : public Detector {
   std::size_t line_ = 0, channel_ = 0;  // of chatter
   bool above_baseline_ = true;
   double highest_ = 0.0;  // log energy of chatter's line, at most so far
-  Tone tone_;
-  Spill spill_;
-  HiddenHarmonics hidden_harmonics_;
+  NarrowbandDetector tone_;
+  BroadbandGrowth broadband_growth_;
+  SynchronousChatter hidden_harmonics_;
   double power_before_ = 0.0;  // of all channels, a hop ago
   std::size_t broad_ = 0, calm_ = 0, steady_ = 0;
   FrequencyEstimate found_;

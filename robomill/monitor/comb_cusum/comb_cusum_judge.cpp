@@ -18,12 +18,12 @@ constexpr std::size_t calm_hops = 2;
 constexpr double hidden_learnt_s = 0.5;  // before that it is not known which harmonics are usual
 constexpr double lowest_tone_hz = 90.0;  // below hums the mains
 constexpr double entry_width_hz = 6.0;   // by which a line misses its harmonic while the tool enters
-constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0;  // orders that a hint can tell
+constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0;  // orders that a hint can report
 constexpr double highest_of_unknown_teeth = 12.0;                    // three of four teeth
 
 }  // namespace
 
-bool CombCusum::hear_hidden() noexcept {
+bool CombCusum::process_synchronous() noexcept {
   if (!comb_known() || !hidden_harmonics_.step(comb_.combs(), power(), comb_.learnt_s() > hidden_learnt_s))
     return false;
   if (!speed_holds()) {
@@ -32,7 +32,7 @@ bool CombCusum::hear_hidden() noexcept {
   }
   hidden_ = hidden_harmonics_.kind();
   found_ = {.frequency_hz = static_cast<double>(hidden_harmonics_.harmonic()) * spindle_.rotation_hz(),
-            .std_hz = 1.0 / (HiddenHarmonics::hops * options_.hop_s) / std::sqrt(12.0)};
+            .std_hz = 1.0 / (SynchronousChatter::hops * options_.hop_s) / std::sqrt(12.0)};
   return true;
 }
 
@@ -60,23 +60,23 @@ void CombCusum::judge(Decision& decision) noexcept {
     now[k] = -1e9;
     for (std::size_t c = 0; c < channels_; ++c) now[k] = std::max(now[k], lines_test_.log_energy(c, k));
   }
-  const bool alone = hear_tone();
-  const bool spills = hear_spill();
+  const bool alone = process_narrowband();
+  const bool grows = process_broadband();
   if (state_ == State::chatter) {
     in_chatter();
   } else {
-    in_cut(verdict, alone || spills);
+    in_cut(verdict, alone || grows);
   }
   if (state_ != State::chatter && trusted()) lines_test_.learn();
   decision.state = state_;
-  decision.score = alone || spills ? std::max(verdict.score, 1.001 * lines_test_.threshold()) : verdict.score;
+  decision.score = alone || grows ? std::max(verdict.score, 1.001 * lines_test_.threshold()) : verdict.score;
   decision.threshold = lines_test_.threshold();
   decision.channel = static_cast<int>(channel_);
   decision.hidden = hidden_;
-  if (state_ != State::stable) tell_frequency(decision);
+  if (state_ != State::stable) report_frequency(decision);
 }
 
-// A multiple of rotation or of tooth passing, at a speed near the one that is told; high ones lie too close to say.
+// A multiple of rotation or of tooth passing, at a speed near the one that is reported; high ones lie too close to say.
 bool CombCusum::may_be_the_cut(double frequency_hz) const noexcept {
   const double near_hz = spindle_.expected_hz();
   if (near_hz <= 0.0) return true;
@@ -93,7 +93,7 @@ bool CombCusum::near_a_harmonic(double frequency_hz) const noexcept {
   return std::abs(std::remainder(frequency_hz, spindle_.rotation_hz() * std::max(1, options_.teeth))) < entry_width_hz;
 }
 
-bool CombCusum::hear_tone() noexcept {
+bool CombCusum::process_narrowband() noexcept {
   std::size_t line = 0;
   double most = 0.0;
   for (std::size_t k = 2; k + 1 < lines_; ++k) {
@@ -121,10 +121,10 @@ bool CombCusum::hear_tone() noexcept {
                      .may_be_the_cut = may_be_the_cut(line_hz(line))});
 }
 
-bool CombCusum::hear_spill() noexcept {
-  const bool spills = spill_.step(std::accumulate(left_power_.begin(), left_power_.end(), 0.0), power());
-  if (comb_known() && state_ != State::chatter) return spills;
-  spill_.relearn();
+bool CombCusum::process_broadband() noexcept {
+  const bool grows = broadband_growth_.step(std::accumulate(left_power_.begin(), left_power_.end(), 0.0), power());
+  if (comb_known() && state_ != State::chatter) return grows;
+  broadband_growth_.relearn();
   return false;
 }
 
@@ -149,7 +149,7 @@ void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
     hidden_harmonics_.doubt();
     return;
   }
-  if (hear_hidden()) {
+  if (process_synchronous()) {
     begin_chatter(false);
     return;
   }
@@ -236,7 +236,7 @@ void CombCusum::in_chatter() noexcept {
   lose();
 }
 
-void CombCusum::tell_frequency(Decision& decision) noexcept {
+void CombCusum::report_frequency(Decision& decision) noexcept {
   // Once its line has fallen, what is left there is another's.
   if (state_ == State::chatter && hidden_ == Hidden::none && calm_ == 0)
     found_ = rings_[channel_].estimate(line_hz(line_), line_hz(1), 8.0 * options_.hop_s);

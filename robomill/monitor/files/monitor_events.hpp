@@ -10,7 +10,7 @@
 
 namespace robomill::monitor {
 
-/// What a monitor has to tell.
+/// What a monitor has to report.
 struct MonitorEvent {
   /// state: it changed, or chatter's frequency moved. window: a decision without a change. fault: what is wrong with
   /// the input changed. stream: the way of the samples. recording: an alarm was recorded.

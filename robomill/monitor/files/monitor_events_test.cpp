@@ -46,7 +46,7 @@ TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   EXPECT_FALSE(json.contains("what"));
 }
 
-TEST(MonitorEvents, TellWhatIsUnknownAsNull) {
+TEST(MonitorEvents, ReportWhatIsUnknownAsNull) {
   MonitorEvent event;
   event.decision.score = std::numeric_limits<double>::quiet_NaN();
   event.decision.energy_entropy = std::numeric_limits<double>::infinity();
@@ -58,7 +58,7 @@ TEST(MonitorEvents, TellWhatIsUnknownAsNull) {
   EXPECT_TRUE(json["faults"].empty());
 }
 
-TEST(MonitorEvents, TellOfTheStream) {
+TEST(MonitorEvents, ReportOfTheStream) {
   MonitorEvent event;
   event.kind = MonitorEvent::Kind::stream;
   event.what = "lost-blocks";

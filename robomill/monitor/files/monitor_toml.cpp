@@ -22,46 +22,46 @@ constexpr double some_rate_hz = 10'240.0;
 void read_mqtt(io::TomlFile& file, MqttSettings& mqtt) {
   file.text("mqtt.host", mqtt.host);
   if (file.integer("mqtt.port", "port", mqtt.port) && (mqtt.port < 1 || mqtt.port > 65'535)) {
-    throw file.refuse("mqtt.port", "must lie between 1 and 65535");
+    throw file.reject("mqtt.port", "must lie between 1 and 65535");
   }
   file.text("mqtt.topic", mqtt.topic);
   if (file.text("mqtt.events_topic", mqtt.events_topic) && mqtt.events_topic.find_first_of("+#") != std::string::npos) {
-    throw file.refuse("mqtt.events_topic", "must be one topic, without + and #");
+    throw file.reject("mqtt.events_topic", "must be one topic, without + and #");
   }
   if (!mqtt.topic.empty() && mqtt.topic == mqtt.events_topic) {
-    throw file.refuse("mqtt.events_topic", "must differ from mqtt.topic");
+    throw file.reject("mqtt.events_topic", "must differ from mqtt.topic");
   }
   file.text("mqtt.client_id", mqtt.client_id);
   file.text("mqtt.user", mqtt.user);
   if (file.path("mqtt.password_file", mqtt.password_file) && mqtt.user.empty()) {
-    throw file.refuse("mqtt.password_file", "needs mqtt.user");
+    throw file.reject("mqtt.password_file", "needs mqtt.user");
   }
   file.boolean("mqtt.tls", mqtt.tls);
   file.path("mqtt.ca_file", mqtt.ca_file);
   file.path("mqtt.certificate_file", mqtt.certificate_file);
   file.path("mqtt.key_file", mqtt.key_file);
   for (const char* key : {"mqtt.ca_file", "mqtt.certificate_file", "mqtt.key_file"}) {
-    if (file.has(key) && !mqtt.tls) throw file.refuse(key, "needs mqtt.tls = true");
+    if (file.has(key) && !mqtt.tls) throw file.reject(key, "needs mqtt.tls = true");
   }
   if (mqtt.certificate_file.empty() != mqtt.key_file.empty()) {
-    throw file.refuse(mqtt.key_file.empty() ? "mqtt.certificate_file" : "mqtt.key_file",
+    throw file.reject(mqtt.key_file.empty() ? "mqtt.certificate_file" : "mqtt.key_file",
                       "certificate_file and key_file go together");
   }
   if (file.integer("mqtt.qos", "qos", mqtt.qos) && (mqtt.qos < 0 || mqtt.qos > 2)) {
-    throw file.refuse("mqtt.qos", "must be 0, 1 or 2");
+    throw file.reject("mqtt.qos", "must be 0, 1 or 2");
   }
 }
 
 void read_outputs(io::TomlFile& file, MonitorFile& out) {
   if (file.integer("metrics.port", "metrics_port", out.metrics_port) &&
       (out.metrics_port < 0 || out.metrics_port > 65'535)) {
-    throw file.refuse("metrics.port", "must lie between 0 and 65535", "0 takes any port that is free");
+    throw file.reject("metrics.port", "must lie between 0 and 65535", "0 takes any port that is free");
   }
   file.text("metrics.host", out.metrics_host);
   file.path("recording.folder", out.recording_folder);
   if (file.number("recording.seconds", "recording_s", 1.0, out.recording_s) &&
       !(out.recording_s > 0.0 && out.recording_s <= 3600.0)) {
-    throw file.refuse("recording.seconds", "must lie between 0 and 3600");
+    throw file.reject("recording.seconds", "must lie between 0 and 3600");
   }
 }
 
@@ -91,7 +91,7 @@ bool read_column(io::TomlFile& file, const std::string& key, std::string& out) {
   if (!file.is_number(key)) return file.text(key, out);
   int number = 0;
   file.integer(key, key, number);
-  if (number < 1) throw file.refuse(key, "must be a column's name or its number from 1");
+  if (number < 1) throw file.reject(key, "must be a column's name or its number from 1");
   out = std::to_string(number);
   return true;
 }
@@ -107,7 +107,7 @@ void read_signal(io::TomlFile& file, MonitorFile& out) {
     std::vector<int> numbers;
     file.integers("signal.channels", "columns", numbers);
     for (const int number : numbers) {
-      if (number < 1) throw file.refuse("signal.channels", "must hold names of columns or numbers from 1");
+      if (number < 1) throw file.reject("signal.channels", "must hold names of columns or numbers from 1");
       out.columns.channels.push_back(std::to_string(number));
     }
   } else {
@@ -152,7 +152,7 @@ void check_options(const io::TomlFile& file, const MonitorFile& monitor) {
     } catch (const InvalidInput& error) {
       // A number of samples, where the file has a time.
       if (error.parts().unit != "samples") throw;
-      throw file.refuse(error.parts().field == "hop_s" ? "detector.hop_ms" : "detector.window_ms", error.parts().rule);
+      throw file.reject(error.parts().field == "hop_s" ? "detector.hop_ms" : "detector.window_ms", error.parts().rule);
     }
   });
 }
@@ -238,9 +238,9 @@ bool parse_mqtt_address(const std::string& text, MqttSettings& settings) {
   } else {
     return false;
   }
-  const auto refuse = [&text](const char* rule) { return InvalidInput(text, rule, "Write mqtt://HOST:PORT/TOPIC"); };
+  const auto reject = [&text](const char* rule) { return InvalidInput(text, rule, "Write mqtt://HOST:PORT/TOPIC"); };
   const std::size_t slash = rest.find('/');
-  if (slash == std::string_view::npos || slash + 1 == rest.size()) throw refuse("names no topic");
+  if (slash == std::string_view::npos || slash + 1 == rest.size()) throw reject("names no topic");
   std::string_view host = rest.substr(0, slash);
   settings.topic = rest.substr(slash + 1);
   const std::size_t colon = host.rfind(':');
@@ -249,13 +249,13 @@ bool parse_mqtt_address(const std::string& text, MqttSettings& settings) {
     const char* const end = digits.data() + digits.size();
     const std::from_chars_result read = std::from_chars(digits.data(), end, settings.port);
     if (read.ec != std::errc() || read.ptr != end || settings.port < 1 || settings.port > 65'535) {
-      throw refuse("has no port between 1 and 65535");
+      throw reject("has no port between 1 and 65535");
     }
     host = host.substr(0, colon);
   } else {
     settings.port = 0;
   }
-  if (host.empty()) throw refuse("names no host");
+  if (host.empty()) throw reject("names no host");
   settings.host = host;
   return true;
 }

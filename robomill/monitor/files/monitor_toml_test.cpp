@@ -78,17 +78,17 @@ TEST(MonitorToml, HasDefaults) {
   EXPECT_EQ(numbered.columns.channels, (std::vector<std::string>{"2", "1"}));
   EXPECT_EQ(numbered.columns.tachometer, "3");
   EXPECT_EQ(read_monitor(folder.file("o.toml", "[signal]\nchannels = 1\n")).columns.channels.front(), "1");
-  // Its rate comes from the recording; where that says nothing either, the file is told.
-  EXPECT_NE(test::refusal([&] { validate(numbered); }).find("signal.sample_rate_hz"), std::string::npos);
+  // Its rate comes from the recording; where that says nothing either, the file is reported.
+  EXPECT_NE(test::rejection([&] { validate(numbered); }).find("signal.sample_rate_hz"), std::string::npos);
 }
 
-TEST(MonitorToml, TellsWhatIsWrongWithLineAndKey) {
+TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
   const test::Folder folder;
-  const auto refusal = [&](const std::string& more) {
-    return test::refusal([&] { (void)read_monitor(folder.file("m.toml", least + more)); });
+  const auto rejection = [&](const std::string& more) {
+    return test::rejection([&] { (void)read_monitor(folder.file("m.toml", least + more)); });
   };
   const auto expect = [&](const std::string& more, const char* part) {
-    EXPECT_NE(refusal(more).find(part), std::string::npos) << refusal(more);
+    EXPECT_NE(rejection(more).find(part), std::string::npos) << rejection(more);
   };
   expect("[detector]\nhop_ms = 0\n", "m.toml:5: detector.hop_ms = 0");
   expect("[detector]\nhop_ms = 1\n", "m.toml:5: detector.hop_ms = 1 ms; must be at least 16 samples long");
@@ -109,7 +109,7 @@ TEST(MonitorToml, TellsWhatIsWrongWithLineAndKey) {
   expect("[metrics]\nport = -2\n", "metrics.port = -2");
   expect("[recording]\nseconds = 0\n", "recording.seconds = 0");
   const auto signal = [&](const char* text) {
-    return test::refusal([&] { (void)read_monitor(folder.file("s.toml", std::string("[signal]\n") + text)); });
+    return test::rejection([&] { (void)read_monitor(folder.file("s.toml", std::string("[signal]\n") + text)); });
   };
   EXPECT_NE(signal("sample_rate_hz = 10240\n").find("signal.channels: is missing"), std::string::npos)
       << signal("sample_rate_hz = 10240\n");
@@ -185,10 +185,10 @@ TEST(RecordingsToml, ReadsLabelsAndOnsets) {
   EXPECT_EQ(file.recordings[3].file, folder.at("d.wav"));
 }
 
-TEST(RecordingsToml, RefusesWhatCannotCalibrate) {
+TEST(RecordingsToml, RejectsWhatCannotCalibrate) {
   const test::Folder folder;
   const auto expect = [&](const std::string& text, const char* part) {
-    const std::string said = test::refusal([&] { (void)read_recordings(folder.file("r.toml", least + text)); });
+    const std::string said = test::rejection([&] { (void)read_recordings(folder.file("r.toml", least + text)); });
     EXPECT_NE(said.find(part), std::string::npos) << said;
   };
   const std::string stable = "[[recordings]]\nfile = \"a.wav\"\nlabel = \"stable\"\n";

@@ -20,12 +20,12 @@ LabelledRecording read_recording(io::TomlFile& file, std::size_t index, double s
   file.path(row + "file", out.file);
   file.choice<bool>(row + "label", {{"stable", false}, {"chatter", true}}, out.chatter);
   if (file.number(row + "onset_s", "onset_s", 1.0, out.onset_s)) {
-    if (!out.chatter) throw file.refuse(row + "onset_s", "is of chatter, and the label is \"stable\"");
-    if (!(out.onset_s >= 0.0)) throw file.refuse(row + "onset_s", "must be >= 0");
+    if (!out.chatter) throw file.reject(row + "onset_s", "is of chatter, and the label is \"stable\"");
+    if (!(out.onset_s >= 0.0)) throw file.reject(row + "onset_s", "must be >= 0");
   }
   if (file.number(row + "spindle_speed_rpm", "spindle_speed", units::rpm, out.spindle_speed_rad_per_s) &&
       !(out.spindle_speed_rad_per_s > 0.0)) {
-    throw file.refuse(row + "spindle_speed_rpm", "must be > 0");
+    throw file.reject(row + "spindle_speed_rpm", "must be > 0");
   }
   return out;
 }
@@ -45,7 +45,7 @@ RecordingsFile read_recordings(const std::filesystem::path& path) {
   read_detector(file, out.monitor);
   if (file.number("calibration.false_alarm_rate", "false_alarm_rate", 1.0, out.false_alarm_rate) &&
       !(out.false_alarm_rate >= 0.0 && out.false_alarm_rate < 1.0)) {
-    throw file.refuse("calibration.false_alarm_rate", "must be at least 0 and below 1",
+    throw file.reject("calibration.false_alarm_rate", "must be at least 0 and below 1",
                       "It is the share of the stable recordings that may raise an alarm");
   }
   if (file.tables("recordings") == 0) file.require("recordings", "Write [[recordings]] above each");

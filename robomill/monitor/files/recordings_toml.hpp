@@ -8,7 +8,7 @@
 
 namespace robomill::monitor {
 
-/// A recording and what was heard in it.
+/// A recording and what was processed in it.
 struct LabelledRecording {
   std::filesystem::path file;
   bool chatter = false;

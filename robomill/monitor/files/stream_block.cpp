@@ -65,28 +65,28 @@ std::string encode_stream_block(const StreamBlock& block) {
 }
 
 DecodedBlock decode_stream_block(std::span<const std::byte> message) {
-  const auto refused = [](const char* why) { return DecodedBlock{.block = {}, .refusal = why}; };
-  if (message.size() > max_stream_block_bytes) return refused("is larger than 1 MiB");
-  if (message.size() < stream_header_bytes) return refused("is shorter than its header");
-  if (!is_magic(message)) return refused("does not begin with RMSB");
+  const auto rejected = [](const char* why) { return DecodedBlock{.block = {}, .rejection = why}; };
+  if (message.size() > max_stream_block_bytes) return rejected("is larger than 1 MiB");
+  if (message.size() < stream_header_bytes) return rejected("is shorter than its header");
+  if (!is_magic(message)) return rejected("does not begin with RMSB");
   const std::byte* const at = message.data();
-  if (take<std::uint16_t>(at + 4) != version) return refused("is of an unknown version");
+  if (take<std::uint16_t>(at + 4) != version) return rejected("is of an unknown version");
   const int channels = take<std::uint16_t>(at + 6);
-  if (channels < 1 || channels > max_channels) return refused("has no channel or more than 256");
+  if (channels < 1 || channels > max_channels) return rejected("has no channel or more than 256");
   const std::size_t frames = take<std::uint32_t>(at + 32);
   // Divided, not multiplied: the count may be anything.
   const std::size_t numbers = (message.size() - stream_header_bytes) / sizeof(float);
-  if (frames == 0) return refused("holds no frame");
-  if (numbers / static_cast<std::size_t>(channels) < frames) return refused("is cut off");
+  if (frames == 0) return rejected("holds no frame");
+  if (numbers / static_cast<std::size_t>(channels) < frames) return rejected("is cut off");
   if (stream_header_bytes + sizeof(float) * frames * static_cast<std::size_t>(channels) != message.size()) {
-    return refused("is longer than its count says");
+    return rejected("is longer than its count says");
   }
   StreamBlock block;
   block.channels = channels;
   block.sequence = take<std::uint64_t>(at + 8);
   block.sample_rate_hz = std::bit_cast<double>(take<std::uint64_t>(at + 16));
   if (!(block.sample_rate_hz > 0.0 && block.sample_rate_hz <= max_sample_rate_hz)) {
-    return refused("has no sample rate between 0 and 10 MHz");
+    return rejected("has no sample rate between 0 and 10 MHz");
   }
   const double rpm = std::bit_cast<double>(take<std::uint64_t>(at + 24));
   // A speed that cannot be is none; the samples are still good.
@@ -95,7 +95,7 @@ DecodedBlock decode_stream_block(std::span<const std::byte> message) {
   for (std::size_t i = 0; i < numbers; ++i) {
     block.samples[i] = std::bit_cast<float>(take<std::uint32_t>(at + stream_header_bytes + sizeof(float) * i));
   }
-  return {.block = std::move(block), .refusal = ""};
+  return {.block = std::move(block), .rejection = ""};
 }
 
 }  // namespace robomill::monitor

@@ -28,7 +28,7 @@ struct StreamBlock {
 /// The header, all of it little-endian: "RMSB", version (u16, 1), channels (u16), sequence (u64), sample rate in Hz
 /// (f64), spindle speed in rpm (f64, NaN: not known), frames (u32), zero (u32).
 inline constexpr std::size_t stream_header_bytes = 40;
-/// Larger messages are refused unread.
+/// Larger messages are rejected unread.
 inline constexpr std::size_t max_stream_block_bytes = std::size_t{1} << 20;
 
 /// The message of a block. @throws InvalidInput if it holds no whole number of frames, none or too many
@@ -37,7 +37,7 @@ inline constexpr std::size_t max_stream_block_bytes = std::size_t{1} << 20;
 /// A message read; what is wrong with it where it is none. Any bytes may come.
 struct DecodedBlock {
   std::optional<StreamBlock> block;
-  const char* refusal = "";  ///< "is cut off", …
+  const char* rejection = "";  ///< "is cut off", …
 };
 [[nodiscard]] ROBOMILL_API DecodedBlock decode_stream_block(std::span<const std::byte> message);
 

@@ -61,7 +61,7 @@ TEST(StreamBlock, ComesBackBitForBit) {
           std::bit_cast<float>(static_cast<std::uint32_t>(any_bits(random))));  // also NaN, infinities
     }
     const DecodedBlock back = decode_stream_block(bytes(encode_stream_block(block)));
-    ASSERT_TRUE(back.block) << back.refusal;
+    ASSERT_TRUE(back.block) << back.rejection;
     EXPECT_EQ(back.block->sequence, block.sequence);
     EXPECT_EQ(back.block->sample_rate_hz, block.sample_rate_hz);
     EXPECT_EQ(back.block->channels, block.channels);
@@ -74,36 +74,36 @@ TEST(StreamBlock, ComesBackBitForBit) {
   }
 }
 
-TEST(StreamBlock, TellsWhatIsWrong) {
+TEST(StreamBlock, ReportsWhatIsWrong) {
   const std::string good = encode_stream_block(some_block());
-  const auto refusal = [](const std::string& message) {
-    return std::string(decode_stream_block(bytes(message)).refusal);
+  const auto rejection = [](const std::string& message) {
+    return std::string(decode_stream_block(bytes(message)).rejection);
   };
   const auto with = [&](std::size_t at, std::string_view other) {
     std::string message = good;
     message.replace(at, other.size(), other);
     return message;
   };
-  EXPECT_EQ(refusal(""), "is shorter than its header");
-  EXPECT_EQ(refusal(good.substr(0, 39)), "is shorter than its header");
-  EXPECT_EQ(refusal(good.substr(0, good.size() - 1)), "is cut off");
-  EXPECT_EQ(refusal(good + "x"), "is longer than its count says");
-  EXPECT_EQ(refusal(good + "xxxx"), "is longer than its count says");
-  EXPECT_EQ(refusal(with(0, "{")), "does not begin with RMSB");
-  EXPECT_EQ(refusal(with(4, "\x02")), "is of an unknown version");
-  EXPECT_EQ(refusal(with(6, std::string_view("\0\0", 2))), "has no channel or more than 256");
-  EXPECT_EQ(refusal(with(6, "\xFF\xFF")), "has no channel or more than 256");
-  EXPECT_EQ(refusal(with(32, std::string_view("\0\0\0\0", 4))), "holds no frame");
-  EXPECT_EQ(refusal(with(32, "\xFF\xFF\xFF\xFF")), "is cut off");
-  EXPECT_EQ(refusal(with(16, std::string_view("\0\0\0\0\0\0\0\0", 8))), "has no sample rate between 0 and 10 MHz");
-  EXPECT_EQ(refusal(with(16, "\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF")), "has no sample rate between 0 and 10 MHz");
-  EXPECT_EQ(refusal(std::string(max_stream_block_bytes + 1, 'R')), "is larger than 1 MiB");
+  EXPECT_EQ(rejection(""), "is shorter than its header");
+  EXPECT_EQ(rejection(good.substr(0, 39)), "is shorter than its header");
+  EXPECT_EQ(rejection(good.substr(0, good.size() - 1)), "is cut off");
+  EXPECT_EQ(rejection(good + "x"), "is longer than its count says");
+  EXPECT_EQ(rejection(good + "xxxx"), "is longer than its count says");
+  EXPECT_EQ(rejection(with(0, "{")), "does not begin with RMSB");
+  EXPECT_EQ(rejection(with(4, "\x02")), "is of an unknown version");
+  EXPECT_EQ(rejection(with(6, std::string_view("\0\0", 2))), "has no channel or more than 256");
+  EXPECT_EQ(rejection(with(6, "\xFF\xFF")), "has no channel or more than 256");
+  EXPECT_EQ(rejection(with(32, std::string_view("\0\0\0\0", 4))), "holds no frame");
+  EXPECT_EQ(rejection(with(32, "\xFF\xFF\xFF\xFF")), "is cut off");
+  EXPECT_EQ(rejection(with(16, std::string_view("\0\0\0\0\0\0\0\0", 8))), "has no sample rate between 0 and 10 MHz");
+  EXPECT_EQ(rejection(with(16, "\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF")), "has no sample rate between 0 and 10 MHz");
+  EXPECT_EQ(rejection(std::string(max_stream_block_bytes + 1, 'R')), "is larger than 1 MiB");
   const DecodedBlock fast = decode_stream_block(bytes(with(24, "\xFF\xFF\xFF\xFF\xFF\xFF\xEF\x7F")));  // 1.8e308 rpm
   ASSERT_TRUE(fast.block);
   EXPECT_TRUE(std::isnan(fast.block->spindle_speed_rad_per_s));
 }
 
-TEST(StreamBlock, RefusesToWriteWhatCannotBeRead) {
+TEST(StreamBlock, RejectsToWriteWhatCannotBeRead) {
   StreamBlock block = some_block();
   block.channels = 4;
   EXPECT_EQ(test::field_of([&] { (void)encode_stream_block(block); }), "samples");
@@ -137,7 +137,7 @@ TEST(StreamBlock, SurvivesAnyBytes) {
     const std::vector<char> exact(message.begin(), message.end());
     const DecodedBlock read = decode_stream_block(std::as_bytes(std::span(exact)));
     if (!read.block) {
-      EXPECT_STRNE(read.refusal, "");
+      EXPECT_STRNE(read.rejection, "");
       continue;
     }
     ++accepted;

@@ -12,7 +12,7 @@ namespace robomill::monitor {
 
 inline constexpr double unknown_s = std::numeric_limits<double>::quiet_NaN();
 
-/// A recording and what was heard in it.
+/// A recording and what was processed in it.
 struct Recording {
   std::string name;
   bool chatter = false;

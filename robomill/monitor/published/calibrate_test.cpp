@@ -123,7 +123,7 @@ TEST(Calibrate, KeepsTheWantedShareOfFalseAlarmsAndAlarmsEarlierForMore) {
   EXPECT_GT(earlier, 0);
 }
 
-TEST(Calibrate, TellsTheLeadOverTheSpectrogram) {
+TEST(Calibrate, ReportsTheLeadOverTheSpectrogram) {
   const std::vector<Recording> recordings = mixed(12);
   const Calibration c = calibrate(recordings, {.sample_rate_hz = rate_hz});
   ASSERT_EQ(c.alarms.size(), recordings.size());
@@ -179,7 +179,7 @@ TEST(Calibrate, SumsOverChannels) {
       calibrate(two, {.sample_rate_hz = rate_hz, .channels = 2, .tachometer_channel = 1}).options.threshold, single);
 }
 
-TEST(Calibrate, RefusesWhatCannotCalibrate) {
+TEST(Calibrate, RejectsWhatCannotCalibrate) {
   const MonitorOptions o = {.sample_rate_hz = rate_hz};
   std::vector<Recording> stable, chatter;
   for (std::uint64_t k = 0; k < 3; ++k) {
@@ -187,7 +187,7 @@ TEST(Calibrate, RefusesWhatCannotCalibrate) {
     chatter.push_back(cut(k, 1.0, 0.5));
   }
   const auto says = [&](const std::vector<Recording>& recordings) {
-    return test::refusal([&] { static_cast<void>(calibrate(recordings, o)); });
+    return test::rejection([&] { static_cast<void>(calibrate(recordings, o)); });
   };
   EXPECT_NE(says(stable).find("hold no chatter"), std::string::npos);
   EXPECT_NE(says(chatter).find("hold no stable cut"), std::string::npos);

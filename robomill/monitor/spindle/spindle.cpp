@@ -48,14 +48,14 @@ SpindleTracker::SpindleTracker(const MonitorOptions& options)
       search_(options.sample_rate_hz, static_cast<std::size_t>(options.channels)),
       pulses_(options.sample_rate_hz),
       hint_hz_(options.spindle_speed_rad_per_s / turn),
-      told_hz_(hint_hz_),
+      reported_hz_(hint_hz_),
       doubt_s_(first_doubt_s) {}
 
 void SpindleTracker::set_hint(double rotation_hz) noexcept {
   hint_hz_ = rotation_hz;
   // Step by step a hint that creeps is another one, too.
-  if (std::abs(rotation_hz - told_hz_) <= same_hint * told_hz_) return;
-  told_hz_ = rotation_hz;
+  if (std::abs(rotation_hz - reported_hz_) <= same_hint * reported_hz_) return;
+  reported_hz_ = rotation_hz;
   known_hz_ = 0.0;
 }
 
@@ -100,13 +100,13 @@ void SpindleTracker::look(std::size_t window, double centre_hz, double share) no
   search_.advance(std::numeric_limits<std::size_t>::max());
 }
 
-// A comb at the mains' frequency that the hint does not tell of.
-bool SpindleTracker::hears_the_mains(double rotation_hz) const noexcept {
+// A comb at the mains' frequency that the hint does not report of.
+bool SpindleTracker::detects_the_mains(double rotation_hz) const noexcept {
   return of_the_mains(rotation_hz) && (hint_hz_ <= 0.0 || std::abs(rotation_hz / hint_hz_ - 1.0) > mains_hint);
 }
 
 bool SpindleTracker::convincing() const noexcept {
-  return search_.best_score() > found_score && !hears_the_mains(search_.best_hz());
+  return search_.best_score() > found_score && !detects_the_mains(search_.best_hz());
 }
 
 SpindleTracker::Change SpindleTracker::check() noexcept {
@@ -201,7 +201,7 @@ SpindleTracker::Change SpindleTracker::search_on() noexcept {
   const double now_score = rotation_hz_ > 0.0 ? search_.score(rotation_hz_) : 0.0;
   const double enough = everywhere_ ? std::max(2.0 * certain_score, 2.0 * now_score) : wide_score;
   if (!search_.advance(candidates_a_hop) || search_.best_score() < enough) return {};
-  if (hears_the_mains(search_.best_hz())) return {};
+  if (detects_the_mains(search_.best_hz())) return {};
   if (everywhere_ && std::abs(search_.best_hz() / hint_hz_ - 1.0) > hint_share)
     suggested_rate_hz_ = rate_hz_ * hint_hz_ / search_.best_hz();
   return lock(search_.best_hz());

@@ -13,7 +13,7 @@ namespace robomill::monitor {
 ///
 /// Found: s(x) > 1.5 in the last 0.1, 0.2, 0.4 and 0.8 s since the power jumped, within 7 % of the hint or else of the
 /// speed followed last, nearer to f where it is refined; without a hint s(x) > 8 from 5 to 500 Hz, some candidates a
-/// hop. Not at the mains' frequency, unless the hint tells of it.
+/// hop. Not at the mains' frequency, unless the hint gives it.
 ///
 /// Held: where a look at the last six turns, within 10 % of f, has s(x) > max(0, s(f)) + 3, x is followed from there
 /// on; one with s(f) < 0 is a misfit, six in a row lose the speed. Between looks f is corrected by the comb's phases.
@@ -53,7 +53,7 @@ class SpindleTracker {
   /// The power jumped: a speed that is not known is looked for in what comes from now on.
   void jumped() noexcept;
   void lose() noexcept;
-  /// Between looks, to what the comb's phases tell.
+  /// Between looks, to what the comb's phases report.
   void correct(double rotation_hz) noexcept { rotation_hz_ = rotation_hz; }
 
   [[nodiscard]] double rotation_hz() const noexcept { return rotation_hz_; }  ///< as followed; 0: unknown
@@ -83,7 +83,7 @@ class SpindleTracker {
   void seek_everywhere() noexcept;
   void look(std::size_t window, double centre_hz, double share) noexcept;
   Change lock(double rotation_hz) noexcept;
-  [[nodiscard]] bool hears_the_mains(double rotation_hz) const noexcept;
+  [[nodiscard]] bool detects_the_mains(double rotation_hz) const noexcept;
   [[nodiscard]] bool convincing() const noexcept;
   [[nodiscard]] bool drifts() const noexcept;
 
@@ -93,7 +93,7 @@ class SpindleTracker {
   SpeedSearch search_;
   Tachometer pulses_;
   double hint_hz_ = 0.0, rotation_hz_ = 0.0;
-  double told_hz_ = 0.0;       // the hint that was another one last
+  double reported_hz_ = 0.0;   // the hint that was another one last
   double known_hz_ = 0.0;      // the last rotation that was locked on
   double since_s_ = 0.0;       // what is looked at has begun
   double since_look_s_ = 0.0;  // of those that come at intervals

@@ -179,7 +179,7 @@ std::span<const float> SpindleComb::learn(std::size_t channel, std::span<const f
     std::fill(sums.begin(), sums.end(), 0.0);
   }
   double angle = 0.0;
-  // Twice, so that the beginning is foretold as well as the end.
+  // Twice, so that the beginning is predicted as well as the end.
   for (int pass = 0; pass < 2; ++pass) {
     angle = 0.0;
     double turns = pass == 0 ? 0.0 : static_cast<double>(count) / per_turn;

@@ -8,30 +8,31 @@
 namespace robomill::path {
 
 void BreachBook::add(const Place& place, int order, double ratio) {
-  const double told = std::isfinite(ratio) ? ratio : std::numeric_limits<double>::max();
-  const auto cell = std::isfinite(path_m_) ? static_cast<std::int64_t>(std::floor(path_m_ * breach_cells_per_m)) : 0;
+  const double reported = std::isfinite(ratio) ? ratio : std::numeric_limits<double>::max();
+  const auto cell = std::isfinite(path_m_) ? static_cast<std::int64_t>(std::floor(path_m_ * violation_cells_per_m)) : 0;
   const std::uint64_t key = (static_cast<std::uint64_t>(cell) * 1'000'003U + std::uint64_t{place.block}) * 5U +
                             static_cast<std::uint64_t>(order + 1);
   const auto known = index_.find(key);
   if (known != index_.end()) {
-    Breach& breach = breaches_[known->second];
-    if (told > breach.ratio) {
-      breach.ratio = told;
-      breach.time_s = place.time_s;
-      breach.path_m = path_m_;
+    Violation& violation = violations_[known->second];
+    if (reported > violation.ratio) {
+      violation.ratio = reported;
+      violation.time_s = place.time_s;
+      violation.path_m = path_m_;
     }
     return;
   }
-  if (breaches_.size() == room) return;
-  index_.emplace(key, breaches_.size());
-  breaches_.push_back({.block = place.block, .time_s = place.time_s, .path_m = path_m_, .ratio = told, .order = order});
+  if (violations_.size() == room) return;
+  index_.emplace(key, violations_.size());
+  violations_.push_back(
+      {.block = place.block, .time_s = place.time_s, .path_m = path_m_, .ratio = reported, .order = order});
 }
 
-std::vector<Breach> BreachBook::take() {
-  std::stable_sort(breaches_.begin(), breaches_.end(),
-                   [](const Breach& a, const Breach& b) { return a.time_s < b.time_s; });
+std::vector<Violation> BreachBook::take() {
+  std::stable_sort(violations_.begin(), violations_.end(),
+                   [](const Violation& a, const Violation& b) { return a.time_s < b.time_s; });
   index_.clear();
-  return std::exchange(breaches_, {});
+  return std::exchange(violations_, {});
 }
 
 Watch::Watch(Usage& usage, double limit, double relative_tolerance, int order)

@@ -1,5 +1,5 @@
 #pragma once
-// Keeps what a check found: largest values, and the worst breach of each block and order.
+// Keeps what a check found: largest values, and the worst violation of each block and order.
 #include <cstddef>
 #include <cstdint>
 #include <unordered_map>
@@ -18,16 +18,16 @@ struct Place {
 class BreachBook {
  public:
   static constexpr std::size_t room = 100000;
-  /// Where breaches that follow are met.
+  /// Where violations that follow are met.
   void at(double path_m) { path_m_ = path_m; }
-  /// A breach; ratios that are not finite count as the largest number.
+  /// A violation; ratios that are not finite count as the largest number.
   void add(const Place& place, int order, double ratio);
   /// In order of time; the book is empty after it.
-  [[nodiscard]] std::vector<Breach> take();
+  [[nodiscard]] std::vector<Violation> take();
 
  private:
   double path_m_ = 0.0;
-  std::vector<Breach> breaches_;
+  std::vector<Violation> violations_;
   std::unordered_map<std::uint64_t, std::size_t> index_;  // by block and order
 };
 
@@ -48,7 +48,7 @@ class Watch {
  private:
   void raise(double value, const Place& place, BreachBook& book);
   Usage* usage_ = nullptr;
-  double bound_ = 0.0;  // what is a breach
+  double bound_ = 0.0;  // what is a violation
   double quiet_ = 0.0;
   int order_ = 1;
 };

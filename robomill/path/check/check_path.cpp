@@ -121,7 +121,7 @@ void Checker::State::errors(const Sample& sample) {
   double tip_m = 0.0, axis_rad = 0.0;
   find(tip_m, axis_rad);
   if (tip_m > options_.tip_tolerance_m || axis_rad > options_.axis_tolerance_rad) {
-    bool more = false;  // look further ahead before it is called a breach
+    bool more = false;  // look further ahead before it is called a violation
     while (window_.high() <= block_ + far_blocks && read()) more = true;
     if (more) find(tip_m, axis_rad);
   }

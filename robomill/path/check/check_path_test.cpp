@@ -24,7 +24,7 @@ using test::options;
 using test::quarters;
 
 // A smooth bulge aside of the line, of tip or axis, named by its block.
-TEST(Checker, TellsTheErrorOfTipAndAxis) {
+TEST(Checker, ReportsTheErrorOfTipAndAxis) {
   Fixture f;
   for (int i = 1; i <= 40; ++i) f.move({0.01 * i, 0.0, 0.0}, {0.001 * i, 0.0, 1.0}, 0.01);
   const std::vector<Sample> line = f.stop_and_go(std::vector<double>(40, 0.5));
@@ -156,8 +156,8 @@ TEST(Checker, KnowsADwellThatWasTooShort) {
   EXPECT_EQ(r.violations(), 1U);
   EXPECT_NEAR(r.dwell_s.max, 0.1, 0.02);
   EXPECT_EQ(r.dwell_s.block, 2U);
-  ASSERT_EQ(r.breaches.size(), 1U);
-  EXPECT_EQ(r.breaches[0].block, 2U);
+  ASSERT_EQ(r.worst_violations.size(), 1U);
+  EXPECT_EQ(r.worst_violations[0].block, 2U);
 }
 
 TEST(Checker, KnowsJointsThatAreNotWhereTheToolIs) {
@@ -196,7 +196,8 @@ TEST(Checker, CountsHostileSamplesAndStaysFinite) {
                              &r.pose_error, &r.joints[4].jerk}) {
         EXPECT_TRUE(std::isfinite(u->max)) << h;
       }
-      for (const Breach& breach : r.breaches) EXPECT_TRUE(std::isfinite(breach.ratio) && std::isfinite(breach.time_s));
+      for (const Violation& violation : r.worst_violations)
+        EXPECT_TRUE(std::isfinite(violation.ratio) && std::isfinite(violation.time_s));
     }
   }
   std::vector<Sample> nothing(100);
@@ -205,7 +206,7 @@ TEST(Checker, CountsHostileSamplesAndStaysFinite) {
 }
 
 // No half turn, no zero block and no program at all makes a number that is none.
-TEST(Checker, NeverTellsANumberThatIsNone) {
+TEST(Checker, NeverReportsANumberThatIsNone) {
   Fixture f;
   f.program.blocks.push_back({.end = {.axis = -Vector3d::UnitZ()}, .duration_s = 1.0});
   f.program.blocks.push_back({.end = {.axis = -Vector3d::UnitZ()}, .duration_s = 0.0});
@@ -227,16 +228,16 @@ TEST(Checker, NeverTellsANumberThatIsNone) {
   EXPECT_EQ(empty.check({still}).violations(), 0U);
 }
 
-// A book holds no more than it has room for, and tells the breaches in order of time.
+// A book holds no more than it has room for, and reports the violations in order of time.
 TEST(Checker, BoundsItsBreaches) {
   Fixture f;
   const Vector3d up(0.0, 0.0, 1.0);
   const int blocks = 110000;
   for (int i = 1; i <= blocks; ++i) f.move({1e-6 * i, 0.0, 0.0}, up, 1.0);
   const CheckResult r = f.check({});
-  EXPECT_EQ(r.breaches.size(), 100000U);
-  EXPECT_TRUE(std::is_sorted(r.breaches.begin(), r.breaches.end(),
-                             [](const Breach& a, const Breach& b) { return a.time_s < b.time_s; }));
+  EXPECT_EQ(r.worst_violations.size(), 100000U);
+  EXPECT_TRUE(std::is_sorted(r.worst_violations.begin(), r.worst_violations.end(),
+                             [](const Violation& a, const Violation& b) { return a.time_s < b.time_s; }));
 }
 
 // The distances by which everything is judged, against brute force along the arc.

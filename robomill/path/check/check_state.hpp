@@ -31,7 +31,7 @@ struct Checker::State {
   };
   void watch_all(const CheckOptions& check);
   void begin(const Sample& sample);
-  void mend(Sample& sample, double due_s) const;
+  void correct(Sample& sample, double due_s) const;
   bool read();
   void advance(std::size_t block);
   void differences(const CheckRow& step);

@@ -22,7 +22,7 @@ namespace robomill::path {
 namespace {
 
 constexpr double usual_period_s = 0.020;
-constexpr double standing = 1e-9;          // rad; less than any of these languages can tell apart
+constexpr double standing = 1e-9;          // rad; less than any of these languages can distinguish
 constexpr std::size_t listed = 20;         // codes of the program that a header names
 constexpr double servoj_period_s = 0.002;  // the 500 Hz of an e-Series controller
 
@@ -128,13 +128,13 @@ std::size_t stride_of(const TrajectoryInfo& info, JointLanguage language) {
   return static_cast<std::size_t>(whole);
 }
 
-/// A length or an angle, rounded up to six decimals: never told smaller than it is.
+/// A length or an angle, rounded up to six decimals: never reported smaller than it is.
 double up(double value, double unit) {
   return std::ceil(value / unit * 1e6) / 1e6;
 }
 
 /// What the controller makes of the program, for its header.
-std::vector<std::string> told(const std::optional<ProgramRun>& run, double period_s) {
+std::vector<std::string> reported(const std::optional<ProgramRun>& run, double period_s) {
   if (!run) {
     return {fmt::format("a point every {:.6g} ms; what the controller makes of them was not checked",
                         period_s / units::ms)};
@@ -161,7 +161,7 @@ std::vector<std::string> told(const std::optional<ProgramRun>& run, double perio
 /// What the program commands beside motion.
 struct Operation {
   Outputs outputs = {};
-  std::vector<std::string> told = {};
+  std::vector<std::string> reported = {};
 };
 
 bool turns(program::Spindle spindle) {
@@ -185,12 +185,12 @@ std::string coolant_text(const program::Coolant& coolant) {
 }
 
 /// What the program commands beside motion. A spindle that it starts runs from before the first move to after the last
-/// one, as does coolant; what would change that on the way is told and not carried out.
+/// one, as does coolant; what would change that on the way is reported and not carried out.
 Operation operation_of(program::Source& program) {
   Operation out;
   std::size_t others = 0;
   const auto leave_out = [&](std::size_t line, const std::string& what) {
-    if (++others <= listed) out.told.push_back(fmt::format("NOT CARRIED OUT: before line {}, {}", line, what));
+    if (++others <= listed) out.reported.push_back(fmt::format("NOT CARRIED OUT: before line {}, {}", line, what));
   };
   program.rewind();
   program::Block last;
@@ -200,7 +200,7 @@ Operation operation_of(program::Source& program) {
         (turns(block.spindle) && block.spindle_speed_rad_per_s != last.spindle_speed_rad_per_s);
     if (!out.outputs.spindle && turns(block.spindle)) {
       out.outputs.spindle = true;
-      out.told.push_back(
+      out.reported.push_back(
           fmt::format("{}, before line {}: on before the first move, off after the last; set speed and direction at "
                       "its drive",
                       spindle_text(block), block.line));
@@ -209,16 +209,16 @@ Operation operation_of(program::Source& program) {
     }
     if (!out.outputs.coolant && runs(block.coolant)) {
       out.outputs.coolant = true;
-      out.told.push_back(fmt::format("{}, before line {}: on before the first move, off after the last",
-                                     coolant_text(block.coolant), block.line));
+      out.reported.push_back(fmt::format("{}, before line {}: on before the first move, off after the last",
+                                         coolant_text(block.coolant), block.line));
     } else if (out.outputs.coolant && block.coolant != last.coolant) {
       leave_out(block.line, coolant_text(block.coolant));
     }
     if (block.operator_stop == program::OperatorStop::always) leave_out(block.line, "stop for the operator (M0)");
     if (block.operator_stop == program::OperatorStop::optional) leave_out(block.line, "optional stop (M1)");
   }
-  if (others > listed) out.told.push_back(fmt::format("NOT CARRIED OUT: {} more such codes", others - listed));
-  if (!out.outputs.spindle) out.told.emplace_back("NOT SET: the program starts no spindle (no M3 or M4).");
+  if (others > listed) out.reported.push_back(fmt::format("NOT CARRIED OUT: {} more such codes", others - listed));
+  if (!out.outputs.spindle) out.reported.emplace_back("NOT SET: the program starts no spindle (no M3 or M4).");
   return out;
 }
 
@@ -353,10 +353,10 @@ class JointProgram final : public SampleFile {
   void write_header() {
     dialect_->open(text_.buffer());
     for (const std::string& line : dialect_->not_set(operation_.outputs)) comment(line);
-    for (const std::string& line : operation_.told) comment(line);
+    for (const std::string& line : operation_.reported) comment(line);
     comment(fmt::format("cell {}, program {}", one_line(info_.cell), one_line(info_.program)));
     comment(fmt::format("duration {:.6f} s", period_s(points_.at.back())));
-    for (const std::string& line : told(run_, period_s(stride_))) comment(line);
+    for (const std::string& line : reported(run_, period_s(stride_))) comment(line);
     std::string advice = dialect_->advice();
     for (std::size_t from = 0; from < advice.size();) {
       const std::size_t to = std::min(advice.find('\n', from), advice.size());
@@ -407,7 +407,7 @@ class JointProgram final : public SampleFile {
 
 std::unique_ptr<SampleFile> open_joint_program(const std::filesystem::path& path, const TrajectoryInfo& info,
                                                JointLanguage language) {
-  if (info.joints != 6 || std::ranges::count(info.slides, true) > 0) {
+  if (info.joints != 6 || std::ranges::count(info.prismatic, true) > 0) {
     throw InvalidInput(path.string(), "is a program of an arm with six joints that turn; this machine is none",
                        "Write .csv or .h5");
   }

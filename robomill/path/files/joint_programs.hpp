@@ -11,7 +11,7 @@ namespace robomill::path {
 enum class JointLanguage { krl, rapid, urscript, servoj };
 
 /// A trajectory as a program of joint points, at most TrajectoryInfo::program_period_s apart; degrees for KUKA and ABB,
-/// rad for Universal Robots. Its header says what the cell does not tell the controller, what of the program is not
+/// rad for Universal Robots. Its header says what the cell does not report the controller, what of the program is not
 /// carried out, and how far the controller's motion is from trajectory and program (SampleFile::settle). Samples are
 /// kept beside the file until it is written.
 /// @throws InvalidInput unless the machine has six joints that all turn, outputs are numbers (KUKA, Universal Robots)

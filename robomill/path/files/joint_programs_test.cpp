@@ -95,7 +95,7 @@ TEST_P(Program, SurvivesATrajectoryThatStandsStill) {
   EXPECT_EQ(program.points.size(), 1U);
 }
 
-TEST_P(Program, TellsItsDurationAndThatNobodyCheckedIt) {
+TEST_P(Program, ReportsItsDurationAndThatNobodyCheckedIt) {
   const std::string text = written(test::sines(2001));
   EXPECT_NE(text.find("duration 2.000000 s"), std::string::npos);
   EXPECT_NE(text.find("cell cell.toml, program part.ngc"), std::string::npos);
@@ -108,14 +108,14 @@ TEST_P(Program, HasNoRoomForTextsThatAreCode) {
   EXPECT_EQ(parse(GetParam().ending, written(test::sines(101), info), GetParam().period_s).trouble, "");
 }
 
-TEST_P(Program, RefusesMachinesThatAreNoSuchArm) {
+TEST_P(Program, RejectsMachinesThatAreNoSuchArm) {
   const auto path = folder_.at(std::string("p") + GetParam().ending);
   TrajectoryInfo five = test::arm_info();
   five.joints = 5;
   TrajectoryInfo slide = test::arm_info();
-  slide.slides[0] = true;
+  slide.prismatic[0] = true;
   for (const TrajectoryInfo& info : {five, slide}) {
-    EXPECT_NE(robomill::test::refusal([&] { static_cast<void>(open_sample_file(path, info)); }).find("six joints"),
+    EXPECT_NE(robomill::test::rejection([&] { static_cast<void>(open_sample_file(path, info)); }).find("six joints"),
               std::string::npos);
   }
   TrajectoryInfo odd = test::arm_info();
@@ -161,7 +161,7 @@ std::string first_comment(const std::string& text, const std::string& mark) {
 }
 
 // Without tool and load the controller's dynamics are those of another arm: the file begins with that.
-TEST(ProgramSetup, BeginsWithWhatTheCellDoesNotTell) {
+TEST(ProgramSetup, BeginsWithWhatTheCellDoesNotReport) {
   const Folder folder;
   const std::array<std::pair<const char*, const char*>, 4> languages = {
       {{".src", "\n; "}, {".mod", "\n! "}, {".script", "  # "}, {".servoj", "# "}}};
@@ -252,12 +252,12 @@ TEST(ProgramSetup, RejectsOutputsOfTheOtherKind) {
   EndEffector numbered, named;
   numbered.spindle.number = 1;
   named.coolant.signal = "doCoolant";
-  EXPECT_NE(robomill::test::refusal([&] {
+  EXPECT_NE(robomill::test::rejection([&] {
               static_cast<void>(with_spindle(folder.at("a.mod"), numbered));
             }).find("cell.toml: spindle.output: must be a signal's name"),
             std::string::npos);
   for (const char* name : {"a.src", "a.script"}) {
-    EXPECT_NE(robomill::test::refusal([&] {
+    EXPECT_NE(robomill::test::rejection([&] {
                 static_cast<void>(with_spindle(folder.at(name), named));
               }).find("cell.toml: spindle.coolant_output: must be an output's number"),
               std::string::npos);
@@ -265,7 +265,7 @@ TEST(ProgramSetup, RejectsOutputsOfTheOtherKind) {
 }
 
 // A name cut off would make one program of two.
-TEST(ProgramNames, AreWholeOrRefused) {
+TEST(ProgramNames, AreWholeOrRejected) {
   const Folder folder;
   const auto named = [&](std::size_t letters, const char* ending) {
     const auto path = folder.at(std::string(letters - 1, 'a') + "-" + ending);
@@ -278,11 +278,11 @@ TEST(ProgramNames, AreWholeOrRefused) {
   EXPECT_NE(named(24, ".src").find("\nDEF " + written(24) + "()\n"), std::string::npos);
   EXPECT_TRUE(named(32, ".mod").starts_with("MODULE " + written(32) + "\n"));
   EXPECT_TRUE(named(80, ".script").starts_with("def " + written(80) + "():\n"));
-  EXPECT_NE(robomill::test::refusal([&] {
+  EXPECT_NE(robomill::test::rejection([&] {
               static_cast<void>(named(25, ".src"));
             }).find("25 characters; KRL takes at most 24. Give the file a shorter name"),
             std::string::npos);
-  EXPECT_NE(robomill::test::refusal([&] {
+  EXPECT_NE(robomill::test::rejection([&] {
               static_cast<void>(named(33, ".mod"));
             }).find("33 characters; RAPID takes at most 32"),
             std::string::npos);
@@ -291,7 +291,7 @@ TEST(ProgramNames, AreWholeOrRefused) {
 TEST(ProgramNames, AreNoWordsOfTheLanguage) {
   const Folder folder;
   for (const char* name : {"test.mod", "main.mod", "Loop.src", "end.script"}) {
-    EXPECT_NE(robomill::test::refusal([&] {
+    EXPECT_NE(robomill::test::rejection([&] {
                 static_cast<void>(open_sample_file(folder.at(name), test::arm_info()));
               }).find("a word of the controller's language"),
               std::string::npos)
@@ -305,8 +305,8 @@ INSTANTIATE_TEST_SUITE_P(Joint, Program,
                                          Case{".script", 0.002, 1.0, 1e-9}, Case{".servoj", 0.002, 1.0, 1e-9}),
                          [](const auto& one) { return std::string(one.param.ending).substr(1); });
 
-// The reader above refuses what is wrong, or it would prove nothing.
-TEST(ProgramParsers, RefuseWhatIsWrong) {
+// The reader above rejects what is wrong, or it would prove nothing.
+TEST(ProgramParsers, RejectWhatIsWrong) {
   EXPECT_NE(test::parse_krl("DEF a()\nPTP_SPLINE\n TIME_BLOCK START\nENDSPLINE\nEND\n").trouble, "");
   EXPECT_NE(test::parse_krl("DEF a()\nPTP {A1 1,A2 2}\nEND\n").trouble, "");
   EXPECT_NE(test::parse_rapid("MODULE a\nPROC main()\npart_1;\nENDPROC\nENDMODULE\n").trouble, "");

@@ -88,14 +88,14 @@ class Follow {
     const CheckResult result = checker_.finish();
     total_.tip_error_m = result.tip_error_m.max;
     total_.axis_error_rad = result.axis_error_rad.max;
-    for (const Breach& breach : result.breaches) {
-      if (breach.order == 0) mark(beyond, breach.time_s);
+    for (const Violation& violation : result.worst_violations) {
+      if (violation.order == 0) mark(beyond, violation.time_s);
     }
     return total_;
   }
 
  private:
-  /// Marks the steps of the samples around a time: a corner that is missed is told where the tool is nearest to it,
+  /// Marks the steps of the samples around a time: a corner that is missed is reported where the tool is nearest to it,
   /// which may be at the end of the step before the one that cuts it.
   void mark(std::vector<bool>& beyond, double time_s) const {
     const double sample = std::round(time_s / options_.sample_period_s);
@@ -114,7 +114,7 @@ class Follow {
     out.tip_m = pose.tip_m;
     out.axis = pose.axis;
     out.block = samples_.row(sample).block;
-    out.path_m = (static_cast<double>(index) + 0.5) / breach_cells_per_m;  // breaches apart, step by step
+    out.path_m = (static_cast<double>(index) + 0.5) / violation_cells_per_m;  // violations apart, step by step
     checker_.add(std::span(&out, 1));
   }
 

@@ -50,7 +50,7 @@ struct RunDistances {
 
 /// Follows the points as a controller that joins them so, by forward kinematics, in at least 8 looks a step. Between
 /// samples the trajectory is a cubic through four of them. The deviations bound those between the looks where the
-/// motion is a parabola over the step: they are told 1/(1 − 1/n²) larger than met with n looks.
+/// motion is a parabola over the step: they are reported 1/(1 − 1/n²) larger than met with n looks.
 /// @param beyond  takes true for each step that leaves a tolerance: of the trajectory or of the program
 /// @throws InvalidInput what the program's reader throws; Interrupted
 [[nodiscard]] RunDistances follow_points(const JointPoints& points, Joining joining, SampleSpool& samples,

@@ -162,8 +162,8 @@ struct Language {
 constexpr std::array<Language, 4> languages = {
     {{".src", 0.020, true}, {".mod", 0.020, true}, {".script", 0.008, false}, {".servoj", 0.008, false}}};
 
-// What is told is never less than what forward kinematics of the file's own points give, however densely looked at.
-TEST(JointRun, TellsAtLeastWhatTheFilesPointsDoAtRandomPostures) {
+// What is reported is never less than what forward kinematics of the file's own points give, however densely looked at.
+TEST(JointRun, ReportsAtLeastWhatTheFilesPointsDoAtRandomPostures) {
   const robomill::test::Folder folder;
   const robot::SerialKinematics machine = arm();
   const SmoothingOptions loose = tolerances(0.1, 1.0);
@@ -308,8 +308,8 @@ TEST(JointRun, KeepsTheCornersOfASmoothedProgram) {
   }
 }
 
-// A cycle is the controller's: no point can be added, but which cycle would do is told.
-TEST(JointRun, TellsTheCycleThatWouldHold) {
+// A cycle is the controller's: no point can be added, but which cycle would do is reported.
+TEST(JointRun, ReportsTheCycleThatWouldHold) {
   const robomill::test::Folder folder;
   const robot::SerialKinematics machine = arm();
   const Turn turn(machine, 1.5, 401);
@@ -323,7 +323,7 @@ TEST(JointRun, TellsTheCycleThatWouldHold) {
 }
 
 // 66 s at 2 ms are 4 MB of URScript; rows that a client streams have no end.
-TEST(JointRun, TellsWhichProgramsNoControllerIsKnownToLoad) {
+TEST(JointRun, ReportsWhichProgramsNoControllerIsKnownToLoad) {
   const robomill::test::Folder folder;
   const robot::SerialKinematics machine = arm();
   const auto joints = [](double time_s) { return Position6::Constant(0.3 + 0.001 * time_s).eval(); };

@@ -15,8 +15,8 @@ void add_usage(io::Json& json, const std::string& name, const Usage& usage, doub
   json["limit_" + name] = usage.limit > 0.0 ? io::number(usage.limit / unit) : io::Json();
 }
 
-io::Json joint_json(const CheckResult::Joint& joint, bool slides, const double* tracking_error) {
-  io::Json json = {{"unit", slides ? "m" : "rad"}};
+io::Json joint_json(const CheckResult::Joint& joint, bool prismatic, const double* tracking_error) {
+  io::Json json = {{"unit", prismatic ? "m" : "rad"}};
   add_usage(json, "velocity", joint.velocity);
   add_usage(json, "acceleration", joint.acceleration);
   add_usage(json, "jerk", joint.jerk);
@@ -50,7 +50,7 @@ io::Json axis_json(const CheckResult& check) {
   return json;
 }
 
-io::Json method_json(const SmoothedBy& smoothed, const std::array<bool, 6>& slides) {
+io::Json method_json(const SmoothedBy& smoothed, const std::array<bool, 6>& prismatic) {
   const Summary& summary = smoothed.summary;
   const CheckResult& check = summary.check;
   const double samples = static_cast<double>(std::max<std::size_t>(summary.samples, 1));
@@ -65,7 +65,7 @@ io::Json method_json(const SmoothedBy& smoothed, const std::array<bool, 6>& slid
   for (std::size_t i = 0; i < check.joints.size(); ++i) {
     const bool tracked = i < smoothed.tracking_error.size();
     json["joints"].push_back(
-        joint_json(check.joints[i], slides.at(i), tracked ? &smoothed.tracking_error[i] : nullptr));
+        joint_json(check.joints[i], prismatic.at(i), tracked ? &smoothed.tracking_error[i] : nullptr));
   }
   json["max_pose_error_mm"] = io::number(check.pose_error.max / units::mm);
   json["blocks"] = summary.blocks;
@@ -126,7 +126,7 @@ std::optional<Method> method_of(std::string_view name) {
 
 std::string smooth_json(const SmoothedProgram& smoothed) {
   if (smoothed.methods.empty()) throw InvalidInput("methods", "must hold at least one");
-  io::Json json = method_json(smoothed.methods.front(), smoothed.slides);
+  io::Json json = method_json(smoothed.methods.front(), smoothed.prismatic);
   json["written"] = smoothed.written;
   json["program"] = smoothed.program;
   json["cell"] = smoothed.cell;
@@ -138,7 +138,8 @@ std::string smooth_json(const SmoothedProgram& smoothed) {
   json["robot_program"] = smoothed.robot_program ? run_json(*smoothed.robot_program) : io::Json();
   if (smoothed.methods.size() > 1) {
     json["methods"] = io::Json::array();
-    for (const SmoothedBy& method : smoothed.methods) json["methods"].push_back(method_json(method, smoothed.slides));
+    for (const SmoothedBy& method : smoothed.methods)
+      json["methods"].push_back(method_json(method, smoothed.prismatic));
   }
   return io::dump(json);
 }

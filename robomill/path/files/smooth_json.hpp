@@ -20,10 +20,10 @@ struct SmoothedBy {
   std::vector<double> tracking_error = {};  ///< one a joint: the largest [rad or m]; empty where not asked for
 };
 
-/// A smoothed program as smooth.json tells it.
+/// A smoothed program as smooth.json reports it.
 struct SmoothedProgram {
   std::string program = {}, cell = {};           ///< names of the files
-  std::array<bool, 6> slides = {};               ///< joints that are lengths [m]
+  std::array<bool, 6> prismatic = {};            ///< joints that are lengths [m]
   bool written = false;                          ///< whether there is a trajectory
   std::vector<SmoothedBy> methods = {};          ///< the first is the one asked for; the others stand beside it
   std::optional<ProgramRun> robot_program = {};  ///< of the first, where it is written as one

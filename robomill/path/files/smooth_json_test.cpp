@@ -30,7 +30,7 @@ SmoothedProgram smoothed() {
   SmoothedProgram out;
   out.program = "part.ngc";
   out.cell = "cell.toml";
-  out.slides[1] = true;
+  out.prismatic[1] = true;
   out.methods = {by};
   out.skipped = {{.line = 7, .what = "M8"}};
   return out;
@@ -61,7 +61,7 @@ TEST(SmoothJson, HasTheNamedFieldsInTheirUnits) {
   EXPECT_EQ(json["method"], "verified");
 }
 
-TEST(SmoothJson, TellsMethodsSideBySideAndNothingAsNull) {
+TEST(SmoothJson, ReportsMethodsSideBySideAndNothingAsNull) {
   SmoothedProgram two = smoothed();
   two.methods.push_back({.method = Method::paper_as_printed});
   two.methods.back().summary.duration_s = 13.0;

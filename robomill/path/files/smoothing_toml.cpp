@@ -41,15 +41,15 @@ void read_per_joint(io::TomlFile& file, const char* key, const char* member, int
   if (!file.numbers(key, member, 1.0, out)) return;
   if (out.size() == 1) out.assign(static_cast<std::size_t>(joints), out.front());
   if (static_cast<int>(out.size()) != joints) {
-    throw file.refuse(
+    throw file.reject(
         key, fmt::format("must hold one number for all joints or one a joint, {}; it holds {}", joints, out.size()));
   }
   for (const double value : out) {
-    if (!(value > 0.0)) throw file.refuse(key, fmt::format("must be > 0; it holds {}", value));
+    if (!(value > 0.0)) throw file.reject(key, fmt::format("must be > 0; it holds {}", value));
   }
 }
 
-/// The limits come from the cell's reader; here they are only told in the file's words.
+/// The limits come from the cell's reader; here they are only reported in the file's words.
 void check_limits(io::TomlFile& file, const robot::JointLimits& limits, int joints) {
   for (const robot::JointLimit& limit : robot::joint_limits) {
     std::vector<double> values;

@@ -52,7 +52,7 @@ class Hdf5 final : public SampleFile {
  public:
   Hdf5(const std::filesystem::path& path, const TrajectoryInfo& info)
       : path_(path), info_(info), pending_((require_regular(path), path)) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // its errors are told as ours
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // its errors are reported as ours
     begin();
   }
 
@@ -121,7 +121,7 @@ class Hdf5 final : public SampleFile {
   }
 
   void open_joint(int joint) {
-    open(fmt::format("q{}", joint + 1), info_.slides[static_cast<std::size_t>(joint)] ? "m" : "rad");
+    open(fmt::format("q{}", joint + 1), info_.prismatic[static_cast<std::size_t>(joint)] ? "m" : "rad");
     const hid_t set = columns_.back().set.get();
     const robot::JointLimits& limits = info_.limits;
     number(set, "min_position", limits.min_position[joint]);

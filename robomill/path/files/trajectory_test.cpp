@@ -59,7 +59,7 @@ TEST(TrajectoryCsv, HasAColumnForEachJointOfTheMachine) {
   const Folder folder;
   TrajectoryInfo info = test::arm_info();
   info.joints = 5;
-  info.slides.fill(true);
+  info.prismatic.fill(true);
   write(folder.at("t.csv"), info, test::sines(3));
   EXPECT_EQ(io::parse_table(io::read_file(folder.at("t.csv")), "t.csv").names.size(), 13U);
 }
@@ -154,7 +154,7 @@ class Hdf5Reader {
 TEST(TrajectoryHdf5, HoldsEveryBitWithUnitsAndLimits) {
   const Folder folder;
   TrajectoryInfo info = test::arm_info();
-  info.slides[4] = true;
+  info.prismatic[4] = true;
   const auto samples = test::sines(40000);  // over two chunks, and a part
   write(folder.at("t.h5"), info, samples);
   const Hdf5Reader file(folder.at("t.h5"));
@@ -181,11 +181,11 @@ TEST(TrajectoryHdf5, HoldsEveryBitWithUnitsAndLimits) {
   EXPECT_EQ(file.number("/", "sample_period_s"), 0.001);
 }
 
-TEST(Trajectory, RefusesWhatItCannotWrite) {
+TEST(Trajectory, RejectsWhatItCannotWrite) {
   const Folder folder;
   const TrajectoryInfo info = test::arm_info();
   const auto open = [](const std::filesystem::path& path, const TrajectoryInfo& with) {
-    return robomill::test::refusal([&] { static_cast<void>(open_sample_file(path, with)); });
+    return robomill::test::rejection([&] { static_cast<void>(open_sample_file(path, with)); });
   };
   EXPECT_NE(open(folder.at("t.step"), info).find(".csv"), std::string::npos);
   EXPECT_NE(open(folder.at("none/t.csv"), info).find("There is no folder"), std::string::npos);

@@ -37,7 +37,7 @@ std::string number(double value) {
   return text.data();
 }
 
-[[noreturn]] void refuse(const program::Program& program, std::size_t block, const Reach& reach) {
+[[noreturn]] void reject(const program::Program& program, std::size_t block, const Reach& reach) {
   std::string rule;
   switch (reach.status) {
     case Reach::Status::out_of_reach:
@@ -129,7 +129,7 @@ void Planner::constants(std::size_t i) {
                       .gamma_end_rad = gamma_at(posture.gamma_rad, i + 1)};
   gamma_rad = way.gamma_end_rad;
   const Reach reach = joints_along(kinematics, way, near, joints);
-  if (reach.status != Reach::Status::found) refuse(program, i, reach);
+  if (reach.status != Reach::Status::found) reject(program, i, reach);
   // As printed the joints' derivatives are those by the tip's way, which a pure rotation does not have.
   if (!printed || length > 0.0) {
     stretch_for_joints(joints, kinematics.limits(), kinematics.joints(), options, shared);
@@ -240,7 +240,7 @@ std::size_t sample_fir(const FirPlan& plan, const program::Program& program, con
               .block = plan.trajectory.block_at(time_s)};
     const robot::ToolPose pose = {.tip_m = sample.tip_m, .axis = sample.axis, .gamma_rad = jet.gamma_rad[0]};
     const Reach reach = kinematics.follow(pose, near, sample.joints);
-    if (reach.status != Reach::Status::found && !program.blocks.empty()) refuse(program, sample.block, reach);
+    if (reach.status != Reach::Status::found && !program.blocks.empty()) reject(program, sample.block, reach);
     near = sample.joints;
     if (++filled == chunk.size() || i == last) {
       sink(std::span<const Sample>(chunk.data(), filled));

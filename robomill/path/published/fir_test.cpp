@@ -397,26 +397,26 @@ TEST(Fir, LongBlocksKeepTolerancesAndJointJerk) {
   EXPECT_GT(jerk, 0.8);
 }
 
-TEST(Fir, RefusesWhatItCannotPlan) {
+TEST(Fir, RejectsWhatItCannotPlan) {
   const test::TiltHead machine(test::tilt_head_limits());
   const Program program = straight(0.03);
-  const auto refusal = [&](const Program& p, const SmoothingOptions& o, const Posture& posture) {
-    return robomill::test::refusal([&] { (void)plan_fir(p, machine, posture, o); });
+  const auto rejection = [&](const Program& p, const SmoothingOptions& o, const Posture& posture) {
+    return robomill::test::rejection([&] { (void)plan_fir(p, machine, posture, o); });
   };
   const SmoothingOptions good = published_options(Method::paper);
-  EXPECT_NE(refusal(program, published_options(Method::verified), {}).find("method"), std::string::npos);
+  EXPECT_NE(rejection(program, published_options(Method::verified), {}).find("method"), std::string::npos);
   SmoothingOptions bad = good;
   bad.tip_tolerance_m = 0.0;
-  EXPECT_NE(refusal(program, bad, {}).find("tip_tolerance_m"), std::string::npos);
+  EXPECT_NE(rejection(program, bad, {}).find("tip_tolerance_m"), std::string::npos);
   Posture posture;
   posture.gamma_rad = {0.0, 0.0, 0.0};
-  EXPECT_NE(refusal(program, good, posture).find("gamma_rad"), std::string::npos);
+  EXPECT_NE(rejection(program, good, posture).find("gamma_rad"), std::string::npos);
   Program over = program;
   over.blocks.push_back({.line = 7, .end = {.tip_m = {0.03, 0.0, 0.0}, .axis = -Vector3d::UnitZ()}, .duration_s = 1.0});
-  EXPECT_NE(refusal(over, good, {}).find("block 2 (line 7): the axis turns by half a circle"), std::string::npos);
+  EXPECT_NE(rejection(over, good, {}).find("block 2 (line 7): the axis turns by half a circle"), std::string::npos);
   Program far = program;
   far.blocks.push_back({.line = 9, .end = {.tip_m = {1.5, 0.0, 0.0}}, .duration_s = 60.0});
-  const std::string message = refusal(far, good, {});
+  const std::string message = rejection(far, good, {});
   EXPECT_NE(message.find("block 2 (line 9)"), std::string::npos) << message;
   EXPECT_NE(message.find("joint 1 beyond its limit"), std::string::npos) << message;
 }

@@ -5,12 +5,12 @@
 #include "robomill/base/ring.hpp"
 #include "robomill/path/blend.hpp"
 #include "robomill/path/speed/rate.hpp"
-#include "robomill/path/speed/span.hpp"
+#include "robomill/path/speed/segment.hpp"
 
 namespace robomill::path {
 
 struct TimedSpan {
-  Span span = {};
+  Segment span = {};
   double begin_s = 0.0, length_s = 0.0;  ///< of plan time
 };
 

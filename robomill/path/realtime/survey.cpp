@@ -181,9 +181,9 @@ void Survey::close(double end_s) noexcept {
   chain_s_ = end_s;
 }
 
-Survey::Went Survey::take(const Span& span) noexcept {
+Survey::ScanStatus Survey::take(const Segment& span) noexcept {
   if (!begun_) {
-    if (ahead_.motion.room() == 0) return Went::full;
+    if (ahead_.motion.room() == 0) return ScanStatus::full;
     begin_s_ += length_s_;
     length_s_ = duration_s(span);
     ahead_.motion.put({.span = span, .begin_s = begin_s_, .length_s = length_s_});
@@ -192,26 +192,26 @@ Survey::Went Survey::take(const Span& span) noexcept {
   }
   const double end_s = begin_s_ + length_s_;
   constexpr std::size_t spare = 2;
-  if (span.kind == Span::Kind::dwell) {
-    if (ahead_.stretches.room() < spare) return Went::full;
+  if (span.kind == Segment::Kind::dwell) {
+    if (ahead_.stretches.room() < spare) return ScanStatus::full;
     put({.kind = Stretch::Kind::dwell, .end_s = end_s});
     chain_s_ = end_s;
     begun_ = false;
-    return Went::on;
+    return ScanStatus::on;
   }
   for (; next_s_ < length_s_; next_s_ += 0.5 * period_s_) {
-    if (ahead_.stretches.room() < spare) return Went::full;
-    if (!look(span.begin_m + way_m(span, next_s_, length_s_))) return Went::unreachable;
+    if (ahead_.stretches.room() < spare) return ScanStatus::full;
+    if (!look(span.begin_m + way_m(span, next_s_, length_s_))) return ScanStatus::unreachable;
   }
-  if (span.kind == Span::Kind::to_rest) {
-    if (ahead_.stretches.room() < spare) return Went::full;
-    if (!look(span.begin_m + span.length_m)) return Went::unreachable;
+  if (span.kind == Segment::Kind::to_rest) {
+    if (ahead_.stretches.room() < spare) return ScanStatus::full;
+    if (!look(span.begin_m + span.length_m)) return ScanStatus::unreachable;
     close(end_s);
   } else {
     next_s_ -= length_s_;
   }
   begun_ = false;
-  return Went::on;
+  return ScanStatus::on;
 }
 
 }  // namespace robomill::path

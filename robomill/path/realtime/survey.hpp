@@ -17,9 +17,9 @@ class Survey {
   Survey(LookAhead& ahead, const robot::Kinematics& kinematics, const SmoothingOptions& options,
          const robot::Position6& start);
 
-  enum class Went { on, full, unreachable };
+  enum class ScanStatus { on, full, unreachable };
   /// Takes a span that follows; its polynomials are in the look-ahead. Called again with the same one after `full`.
-  Went take(const Span& span) noexcept;
+  ScanStatus take(const Segment& span) noexcept;
   [[nodiscard]] const robot::Reach& reach() const noexcept { return reach_; }
   /// Where it is.
   [[nodiscard]] const Polynomial& at() const noexcept { return ahead_.path.put_at(path_at_); }

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "robomill/path/speed/span.hpp"
+#include "robomill/path/speed/segment.hpp"
 
 namespace robomill::path {
 

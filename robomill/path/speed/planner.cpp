@@ -81,7 +81,7 @@ PlannerOptions PlannerOptions::optimal() {
           .look_ahead = 4096,
           .spacing = 0.25,
           .speed = {.relative_gap = 1e-4, .max_iterations = 200},
-          .dip = false};
+          .local_slow_down = false};
 }
 
 PlannerOptions PlannerOptions::real_time() {
@@ -104,10 +104,10 @@ std::size_t Planner::row_points() const noexcept {
 }
 
 Planner::Planner(const robot::Kinematics& kinematics, const SmoothingOptions& options, const PlannerOptions& planner,
-                 const Mends* mends, Task task)
+                 const SpeedCorrections* corrections, Task task)
     : kinematics_(kinematics),
       planner_(planner),
-      mends_(mends),
+      corrections_(corrections),
       task_(task),
       limits_((options.validate(), kinematics.limits().validate(kinematics.joints()),
                channel_limits(kinematics, options, planner))),
@@ -137,7 +137,7 @@ Planner::Status Planner::begin(const program::Pose& pose, double gamma_rad, cons
   motion_.clear();
   path_.clear();
   points_.clear();
-  ahead_at_ = pieces_taken_ = near_node_ = frozen_ = crept_ = 0;
+  ahead_at_ = pieces_taken_ = near_node_ = frozen_ = safe_to_ = 0;
   u_m_ = chain_begin_m_ = waiting_s_ = 0.0;
   resting_ = true;
   busy_ = proposed_ = false;
@@ -158,9 +158,9 @@ Planner::Status Planner::push(const program::Block& block, std::size_t index, do
   }
   if (blend_.room() < spare_nodes / 2) return {.kind = Status::Kind::full, .block = index, .line = block.line};
   double tolerance = planner_.tolerance_share;
-  if (mends_ != nullptr) {
-    const auto mend = mends_->tolerance.find(index);
-    if (mend != mends_->tolerance.end()) tolerance = mend->second;
+  if (corrections_ != nullptr) {
+    const auto correct = corrections_->tolerance.find(index);
+    if (correct != corrections_->tolerance.end()) tolerance = correct->second;
   }
   switch (blend_.add(block, index, gamma_rad, tolerance)) {
     case Blend::Added::antipodal:
@@ -180,7 +180,7 @@ bool Planner::idle() const noexcept {
 }
 
 void Planner::wait() noexcept {
-  if (waiting_s_ > 0.0) motion_.push_back({.kind = Span::Kind::dwell, .begin_m = u_m_, .dwell_s = waiting_s_});
+  if (waiting_s_ > 0.0) motion_.push_back({.kind = Segment::Kind::dwell, .begin_m = u_m_, .dwell_s = waiting_s_});
   waiting_s_ = 0.0;
 }
 
@@ -311,9 +311,9 @@ Planner::Status Planner::look(SpeedSpan& span, double length_m, bool& even) noex
     const double apart_m = (span.share[p + 1] - span.share[p]) * length_m;
     for (Eigen::Index k = 0; k < 6; ++k) {
       const double met = joints[p + 1](k, 0) - joints[p](k, 0);
-      const double told = 0.5 * (joints[p](k, 1) + joints[p + 1](k, 1)) * apart_m;
+      const double reported = 0.5 * (joints[p](k, 1) + joints[p + 1](k, 1)) * apart_m;
       const double size = std::max(std::abs(joints[p](k, 1)), std::abs(joints[p + 1](k, 1))) * apart_m;
-      if (std::abs(met - told) > 0.2 * size + 1e-6) even = false;
+      if (std::abs(met - reported) > 0.2 * size + 1e-6) even = false;
     }
   }
   limit_speed(span);
@@ -344,7 +344,7 @@ void Planner::limit_speed(SpeedSpan& span) const noexcept {
       inverse = std::min(inverse, 1.0 / std::max(rate.norm(), 1e-12));
     }
   }
-  const double speed = mended_speed(u_m_, end_m);
+  const double speed = corrected_speed(u_m_, end_m);
   for (std::size_t p = 0; p < point_count; ++p) {
     PathPoint& point = span.point[p];
     point.speed = speed;
@@ -357,7 +357,7 @@ void Planner::limit_speed(SpeedSpan& span) const noexcept {
   }
 }
 
-Planner::Status Planner::lay(Span::Kind kind, double length_m) noexcept {
+Planner::Status Planner::lay(Segment::Kind kind, double length_m) noexcept {
   SpeedSpan span;
   span.kind = kind;
   const robot::Position6 before = near_;
@@ -366,10 +366,10 @@ Planner::Status Planner::lay(Span::Kind kind, double length_m) noexcept {
     near_ = before;
     const Status status = look(span, length_m, even);
     if (!status.ok()) return status;
-    if (even || kind != Span::Kind::cruise) break;
+    if (even || kind != Segment::Kind::cruise) break;
     length_m *= 0.5;
   }
-  span.creep_b = solver_.own_creep_b(span);
+  span.safe_b = solver_.own_safe_b(span);
   row_.push_back(span);
   begin_m_.push_back(u_m_);
   u_m_ += length_m;
@@ -384,7 +384,7 @@ void Planner::come_to_rest(double at_m, double dwell_s) noexcept {
   if (proposed_) {
     waiting_s_ += dwell_s;
   } else if (dwell_s > 0.0) {
-    motion_.push_back({.kind = Span::Kind::dwell, .begin_m = at_m, .dwell_s = dwell_s});
+    motion_.push_back({.kind = Segment::Kind::dwell, .begin_m = at_m, .dwell_s = dwell_s});
   }
   ahead_.clear();
   ahead_at_ = 0;
@@ -415,12 +415,12 @@ Planner::Status Planner::lay_spans() noexcept {
     const double last_m =
         closed ? std::min({rest_m_, spacing_m(u_m_), 0.25 * (end_m - chain_begin_m_), 0.5 * (end_m - u_m_)}) : 0.0;
     const double dwell_s = last.dwell_s;
-    Span::Kind kind = Span::Kind::cruise;
+    Segment::Kind kind = Segment::Kind::cruise;
     bool ends = false;
     if (!resting_) length_m = snapped_m(length_m);
     if (resting_) {
       wait();
-      kind = Span::Kind::from_rest;
+      kind = Segment::Kind::from_rest;
       length_m = closed ? std::min(length_m, 0.25 * (end_m - chain_begin_m_)) : length_m;
     } else if (closed) {
       const double left_m = end_m - last_m - u_m_;
@@ -432,7 +432,7 @@ Planner::Status Planner::lay_spans() noexcept {
     resting_ = false;
     if (ends && u_m_ > end_m - 1.0001 * last_m) {
       u_m_ = end_m - last_m;
-      if (const Status status = lay(Span::Kind::to_rest, last_m); !status.ok()) return status;
+      if (const Status status = lay(Segment::Kind::to_rest, last_m); !status.ok()) return status;
       come_to_rest(end_m, dwell_s);
     } else if (row_.size() >= planner_.window) {
       solve(false);

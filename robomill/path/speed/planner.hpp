@@ -8,7 +8,7 @@
 #include "robomill/path/check.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/path/speed/bound.hpp"
-#include "robomill/path/speed/span.hpp"
+#include "robomill/path/speed/segment.hpp"
 #include "robomill/path/speed/speed.hpp"
 #include "robomill/robot/kinematics.hpp"
 
@@ -21,9 +21,10 @@ struct PlannerOptions {
   double spacing = 0.5;          ///< spans in a corner: its half width times this
   SpeedOptions speed = {};
   double share = 0.998;  ///< of speed limits that is planned for; accelerations its square, jerks its cube
-  bool dip = true;       ///< a proposed row is revised by slowing down about the places; false: by solving it again
+  bool local_slow_down =
+      true;  ///< a proposed row is revised by slowing down about the places; false: by solving it again
   double acceleration_share = 1.0, jerk_share = 1.0;  ///< of those, what is left once a reserve is taken off
-  double tolerance_share = 1.0;                       ///< of the tolerances that is used where no mend says less
+  double tolerance_share = 1.0;                       ///< of the tolerances that is used where no correction says less
 
   /// For a whole program in memory.
   [[nodiscard]] static PlannerOptions optimal();
@@ -34,16 +35,16 @@ struct PlannerOptions {
 };
 
 /// What slows or narrows places where a trajectory broke a limit before.
-struct Mends {
-  static constexpr double cells_per_m = breach_cells_per_m;
+struct SpeedCorrections {
+  static constexpr double cells_per_m = violation_cells_per_m;
   std::map<std::size_t, double> tolerance = {};  ///< by block: the share of the tolerances that may be used
   std::map<std::int64_t, double> speed = {};     ///< by cell of the path: of all speeds; acceleration takes its square,
                                                  ///< jerk its cube
 };
 
 /// Turns blocks into motion: the blended path (Blend) and the speed along it (SpeedSolver), window by window, in memory
-/// that does not grow with the program. Every window ends at a creeping speed from which the next can go on whatever
-/// comes; before a stop the row ends at rest. Nothing throws, and after construction nothing is allocated.
+/// that does not grow with the program. Every window ends at a safe terminal speed from which the next can go on
+/// whatever comes; before a stop the row ends at rest. Nothing throws, and after construction nothing is allocated.
 class Planner {
  public:
   /// What it makes.
@@ -60,10 +61,10 @@ class Planner {
     [[nodiscard]] bool ok() const noexcept { return kind == Kind::ok; }
   };
 
-  /// @param kinematics  outlives the planner, as mends do
+  /// @param kinematics  outlives the planner, as corrections do
   /// @throws InvalidInput if the options or the machine's limits are invalid
   Planner(const robot::Kinematics& kinematics, const SmoothingOptions& options, const PlannerOptions& planner,
-          const Mends* mends = nullptr, Task task = Task::motion);
+          const SpeedCorrections* corrections = nullptr, Task task = Task::motion);
 
   Status begin(const program::Pose& pose, double gamma_rad, const robot::Position6& start) noexcept;
   /// What was planned is in motion() and path() (or points()), which the caller takes and clears before anything else
@@ -78,7 +79,7 @@ class Planner {
   [[nodiscard]] bool proposes() const noexcept { return proposed_; }
   /// How much of motion() stays; what lies behind is planned again with the next row.
   [[nodiscard]] std::size_t kept() const noexcept { return proposed_ ? kept_ : motion_.size(); }
-  /// Plans the proposed row again, as slow as the mends now say.
+  /// Plans the proposed row again, as slow as the corrections now say.
   /// @return false where they ask nothing more of it, or only of what was taken over with the row before
   bool revise() noexcept;
   /// Whether samples of a span of motion() may break a limit that the span's points do not: something comes near to a
@@ -90,7 +91,7 @@ class Planner {
   [[nodiscard]] std::size_t held() const noexcept { return blend_.end() - blend_.first(); }
 
   [[nodiscard]] const ChannelLimits& limits() const noexcept { return limits_; }
-  [[nodiscard]] std::vector<Span>& motion() noexcept { return motion_; }
+  [[nodiscard]] std::vector<Segment>& motion() noexcept { return motion_; }
   [[nodiscard]] std::vector<Polynomial>& path() noexcept { return path_; }
   [[nodiscard]] std::vector<BoundPoint>& points() noexcept { return points_; }
   [[nodiscard]] std::size_t motion_capacity() const noexcept { return planner_.window + 64; }
@@ -104,31 +105,31 @@ class Planner {
   void wait() noexcept;
   void take_polynomials() noexcept;
   Status lay_spans() noexcept;
-  Status lay(Span::Kind kind, double length_m) noexcept;
+  Status lay(Segment::Kind kind, double length_m) noexcept;
   void come_to_rest(double at_m, double dwell_s) noexcept;
   Status look(SpeedSpan& span, double length_m, bool& even) noexcept;
   void limit_speed(SpeedSpan& span) const noexcept;
-  [[nodiscard]] double mended_speed(double begin_m, double end_m) const noexcept;
+  [[nodiscard]] double corrected_speed(double begin_m, double end_m) const noexcept;
   bool slow_down(std::size_t span, double speed) noexcept;
   Status look_at(const Polynomial& polynomial, double x_m, PathPoint& out, robot::JointJet& joints) noexcept;
   [[nodiscard]] double spacing_m(double u_m) noexcept;
   [[nodiscard]] std::size_t row_points() const noexcept;
   [[nodiscard]] double middle_share(double length_m) const noexcept;
   [[nodiscard]] double snapped_m(double length_m) const noexcept;
-  void begin_creeping(std::size_t size) noexcept;
+  void begin_safe_speed(std::size_t size) noexcept;
   void hand_over(bool to_rest) noexcept;
   void solve(bool to_rest) noexcept;
   bool solve_row() noexcept;
   void find_suspects() noexcept;
   [[nodiscard]] bool tense(std::size_t span) const noexcept;
-  bool dip() noexcept;
+  bool slow_down_locally() noexcept;
   void dip_row(double ramp_m) noexcept;
   void write(std::size_t count) noexcept;
   void take_over() noexcept;
 
   const robot::Kinematics& kinematics_;
   PlannerOptions planner_;
-  const Mends* mends_;
+  const SpeedCorrections* corrections_;
   Task task_;
   ChannelLimits limits_;
   Blend blend_;
@@ -140,9 +141,9 @@ class Planner {
   std::size_t near_node_ = 0;      ///< of the Blend, about where u_m_ is
   std::vector<SpeedSpan> row_;     ///< whose speed is not yet taken over; after a first commit two before it, frozen
   std::vector<double> begin_m_;    ///< of the row's spans
-  std::size_t frozen_ = 0, crept_ = 0;
+  std::size_t frozen_ = 0, safe_to_ = 0;
   /// Of the row that was solved last: its spans, those that the solver could move and those that are taken over; spans
-  /// that did not creep before it.
+  /// that was not at the safe terminal speed before it.
   std::size_t solved_ = 0, moved_ = 0, taken_ = 0, crept_before_ = 0;
   struct Before {
     double begin_b = 0.0, found_b = 0.0, speed = 1.0;
@@ -155,7 +156,7 @@ class Planner {
   double waiting_s_ = 0.0;  ///< of dwells since the tool stopped
   bool resting_ = true, busy_ = false, proposed_ = false;
   std::size_t kept_ = 0, proposed_at_ = 0;  ///< of motion_: what stays; where the proposed row begins
-  std::vector<Span> motion_;
+  std::vector<Segment> motion_;
   std::vector<BoundPoint> points_;
   std::vector<Polynomial> path_;
 };

@@ -113,7 +113,7 @@ void plan_program(benchmark::State& state, Chosen chosen, const path::PlannerOpt
       planner.motion().clear();
       planner.path().clear();
     });
-    if (!ok) state.SkipWithError("refused");
+    if (!ok) state.SkipWithError("rejected");
   }
   const auto blocks = static_cast<double>(of.program.blocks.size());
   state.counters["spans_per_block"] = static_cast<double>(spans) / blocks;
@@ -139,7 +139,7 @@ void emit_samples(benchmark::State& state, Chosen chosen) {
     planner.motion().clear();
     planner.path().clear();
   });
-  if (!ok) return state.SkipWithError("refused");
+  if (!ok) return state.SkipWithError("rejected");
   std::vector<path::Sample> samples;
   for (auto _ : state) {
     samples.clear();

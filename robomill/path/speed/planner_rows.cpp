@@ -9,21 +9,23 @@ namespace {
 
 /// Of a limit: below it a span's points are believed. By how much the tip's way may change in a span that is even.
 constexpr double tense_share = 0.5, even_share = 0.0005;
-/// Spans beside a mended one that are slowed down as much; how many ramps a dip reaches.
+/// Spans beside a corrected one that are slowed down as much; how many ramps a local slow-down reaches.
 constexpr std::size_t dip_beside = 2;
 constexpr double dip_reach = 30.0;
-/// … and beyond how many nothing of it can be told.
+/// … and beyond how many nothing of it can be reported.
 constexpr double dip_felt = 8.0;
 
 }  // namespace
 
-double Planner::mended_speed(double begin_m, double end_m) const noexcept {
+double Planner::corrected_speed(double begin_m, double end_m) const noexcept {
   double out = 1.0;
-  if (mends_ == nullptr) return out;
-  const auto cell = static_cast<std::int64_t>(std::floor(begin_m * Mends::cells_per_m));
-  for (auto mend = mends_->speed.lower_bound(cell);
-       mend != mends_->speed.end() && static_cast<double>(mend->first) <= end_m * Mends::cells_per_m; ++mend) {
-    out = std::min(out, mend->second);
+  if (corrections_ == nullptr) return out;
+  const auto cell = static_cast<std::int64_t>(std::floor(begin_m * SpeedCorrections::cells_per_m));
+  for (auto correct = corrections_->speed.lower_bound(cell);
+       correct != corrections_->speed.end() &&
+       static_cast<double>(correct->first) <= end_m * SpeedCorrections::cells_per_m;
+       ++correct) {
+    out = std::min(out, correct->second);
   }
   return out;
 }
@@ -35,23 +37,23 @@ bool Planner::slow_down(std::size_t span, double speed) noexcept {
     point.speed = speed;
     point.max_b *= factor * factor;
   }
-  row_[span].creep_b = solver_.own_creep_b(row_[span]);
+  row_[span].safe_b = solver_.own_safe_b(row_[span]);
   return true;
 }
 
-void Planner::begin_creeping(std::size_t size) noexcept {
-  for (; crept_ < size; ++crept_) {
-    double b = row_[crept_].creep_b;
-    if (crept_ > 0) b = std::min(b, row_[crept_ - 1].creep_b);
-    if (crept_ + 1 < row_.size()) b = std::min(b, row_[crept_ + 1].creep_b);
-    row_[crept_].b = 0.9 * b;
+void Planner::begin_safe_speed(std::size_t size) noexcept {
+  for (; safe_to_ < size; ++safe_to_) {
+    double b = row_[safe_to_].safe_b;
+    if (safe_to_ > 0) b = std::min(b, row_[safe_to_ - 1].safe_b);
+    if (safe_to_ + 1 < row_.size()) b = std::min(b, row_[safe_to_ + 1].safe_b);
+    row_[safe_to_].b = 0.9 * b;
   }
 }
 
 void Planner::hand_over(bool to_rest) noexcept {
   for (std::size_t i = 0; i < row_.size(); ++i) {
     const SpeedSpan& span = row_[i];
-    if (span.kind == Span::Kind::from_rest) points_.push_back({.u_m = begin_m_[i], .max_b = 0.0, .rests = true});
+    if (span.kind == Segment::Kind::from_rest) points_.push_back({.u_m = begin_m_[i], .max_b = 0.0, .rests = true});
     for (std::size_t p = 0; p < point_count; ++p) {
       const PathPoint& point = span.point[p];
       points_.push_back(
@@ -68,12 +70,12 @@ void Planner::solve(bool to_rest) noexcept {
     hand_over(to_rest);
     return;
   }
-  // Without a stop the last span waits: its creep needs to know of the next.
+  // Without a stop the last span waits: its safe terminal speed needs to know of the next.
   solved_ = to_rest ? row_.size() : row_.size() - 1;
   moved_ = to_rest ? solved_ : solved_ - 2;
   taken_ = to_rest ? solved_ : std::min(planner_.commit, solved_ - 4);
-  crept_before_ = crept_;
-  begin_creeping(solved_);
+  crept_before_ = safe_to_;
+  begin_safe_speed(solved_);
   before_.clear();
   for (const SpeedSpan& span : row_) before_.push_back({.begin_b = span.b});
   solve_row();
@@ -95,7 +97,7 @@ bool Planner::solve_row() noexcept {
 
 bool Planner::tense(std::size_t span) const noexcept {
   const SpeedSpan& here = row_[span];
-  if (here.kind != Span::Kind::cruise) return true;
+  if (here.kind != Segment::Kind::cruise) return true;
   const SpanEnds ends = ends_of(row_.data(), solved_, span);
   double slowest = 1e300, fastest = 0.0;
   bool at_feed = false;
@@ -156,7 +158,7 @@ void Planner::dip_row(double ramp_m) noexcept {
   }
 }
 
-bool Planner::dip() noexcept {
+bool Planner::slow_down_locally() noexcept {
   SpeedOptions look = planner_.speed;
   look.max_iterations = 0;
   for (const double ramp_m : {1.0 * largest_span_m_, 3.0 * largest_span_m_, 9.0 * largest_span_m_}) {
@@ -171,20 +173,20 @@ bool Planner::revise() noexcept {
     before_[i].found_b = row_[i].b;
     before_[i].speed = row_[i].point[0].speed;
   }
-  // What the row before left over moves already, and may do so too fast for a mend: then the fresh spans alone.
+  // What the row before left over moves already, and may do so too fast for a correct: then the fresh spans alone.
   for (const std::size_t from : {frozen_, std::max(frozen_, crept_before_)}) {
     bool slower = false;
     for (std::size_t i = from; i < row_.size(); ++i) {
-      slower = slow_down(i, mended_speed(begin_m_[i], begin_m_[i] + row_[i].length_m)) || slower;
+      slower = slow_down(i, corrected_speed(begin_m_[i], begin_m_[i] + row_[i].length_m)) || slower;
     }
-    if (slower && planner_.dip && dip()) {
+    if (slower && planner_.local_slow_down && slow_down_locally()) {
       motion_.erase(motion_.begin() + static_cast<std::ptrdiff_t>(proposed_at_), motion_.end());
       write(moved_ == solved_ ? solved_ : solved_ - 1);
       return true;
     }
     for (std::size_t i = 0; i < crept_before_; ++i) row_[i].b = before_[i].begin_b;
-    crept_ = crept_before_;
-    begin_creeping(solved_);
+    safe_to_ = crept_before_;
+    begin_safe_speed(solved_);
     if (slower && solve_row()) {
       find_suspects();
       motion_.erase(motion_.begin() + static_cast<std::ptrdiff_t>(proposed_at_), motion_.end());
@@ -199,13 +201,13 @@ bool Planner::revise() noexcept {
 
 void Planner::write(std::size_t count) noexcept {
   for (std::size_t i = frozen_ > 0 ? 1 : 0; i < count; ++i) {
-    Span span{.kind = row_[i].kind, .begin_m = begin_m_[i], .length_m = row_[i].length_m};
-    if (span.kind == Span::Kind::cruise) {
+    Segment span{.kind = row_[i].kind, .begin_m = begin_m_[i], .length_m = row_[i].length_m};
+    if (span.kind == Segment::Kind::cruise) {
       const SpanEnds ends = ends_of(row_.data(), solved_, i);
       span.begin_b = ends.begin_b;
       span.middle_b = row_[i].b;
       span.end_b = ends.end_b;
-    } else if (span.kind == Span::Kind::from_rest) {
+    } else if (span.kind == Segment::Kind::from_rest) {
       span.end_b = ends_of(row_.data(), solved_, i + 1).begin_b;
     } else {
       span.begin_b = ends_of(row_.data(), solved_, i - 1).end_b;
@@ -218,7 +220,7 @@ void Planner::take_over() noexcept {
   const std::size_t gone = taken_ == row_.size() ? taken_ : taken_ - 1;
   row_.erase(row_.begin(), row_.begin() + static_cast<std::ptrdiff_t>(gone));
   begin_m_.erase(begin_m_.begin(), begin_m_.begin() + static_cast<std::ptrdiff_t>(gone));
-  crept_ -= gone;
+  safe_to_ -= gone;
   frozen_ = row_.empty() ? 0 : 2;
 }
 

@@ -42,12 +42,12 @@ const test::TiltHead& head() {
 /// All that a planner makes of a program.
 struct Made {
   Planner::Status status;
-  std::vector<Span> motion;
+  std::vector<Segment> motion;
   std::vector<Polynomial> path;
   std::size_t most_held = 0, most_motion = 0, most_path = 0;
   [[nodiscard]] double time_s() const {
     double sum = 0.0;
-    for (const Span& span : motion) sum += duration_s(span);
+    for (const Segment& span : motion) sum += duration_s(span);
     return sum;
   }
 };
@@ -94,18 +94,18 @@ Made make(const program::Program& program, const robot::Kinematics& machine, con
 void expect_whole(const Made& made) {
   ASSERT_TRUE(made.status.ok()) << static_cast<int>(made.status.kind) << " in block " << made.status.block;
   ASSERT_FALSE(made.motion.empty());
-  EXPECT_EQ(made.motion.front().kind, Span::Kind::from_rest);
+  EXPECT_EQ(made.motion.front().kind, Segment::Kind::from_rest);
   const Polynomial& end = made.path.back();
   double u_m = 0.0, b = 0.0;
   for (std::size_t i = 0; i < made.motion.size(); ++i) {
-    const Span& span = made.motion[i];
+    const Segment& span = made.motion[i];
     ASSERT_NEAR(span.begin_m, u_m, 1e-12) << i;
     ASSERT_NEAR(span.begin_b, b, 1e-12 * b) << i << " of " << made.motion.size();
-    if (span.kind == Span::Kind::cruise) {
+    if (span.kind == Segment::Kind::cruise) {
       ASSERT_GT(span.middle_b, 0.0);
       // b' joins too.
-      if (i > 0 && made.motion[i - 1].kind == Span::Kind::cruise) {
-        const Span& before = made.motion[i - 1];
+      if (i > 0 && made.motion[i - 1].kind == Segment::Kind::cruise) {
+        const Segment& before = made.motion[i - 1];
         const double in = (before.end_b - before.middle_b) / before.length_m;
         const double out = (span.middle_b - span.begin_b) / span.length_m;
         ASSERT_NEAR(in, out, 1e-7 * (before.end_b / before.length_m + span.begin_b / span.length_m)) << i;
@@ -146,8 +146,8 @@ double used(const Made& made, const robot::Kinematics& machine, const SmoothingO
   double out = 0.0;
   std::size_t at = 0;
   robot::Position6 near = robot::Position6::Zero();
-  for (const Span& span : made.motion) {
-    if (span.kind != Span::Kind::cruise) continue;
+  for (const Segment& span : made.motion) {
+    if (span.kind != Segment::Kind::cruise) continue;
     for (const double s : {0.02, 0.2, 0.35, 0.5, 0.65, 0.8, 0.98}) {
       const double u_m = span.begin_m + s * span.length_m, r = 1.0 - s, d = span.length_m;
       while (at + 1 < made.path.size() && made.path[at + 1].begin_m <= u_m) ++at;
@@ -204,22 +204,23 @@ TEST(Planner, LimitsHoldBetweenThePointsToo) {
 /// @param asked  gets where
 Made make_revised(const program::Program& program, const robot::Kinematics& machine, const PlannerOptions& how,
                   std::vector<double>& asked) {
-  Mends mends;
-  Planner planner(machine, options(), how, &mends, Planner::Task::proposals);
+  SpeedCorrections corrections;
+  Planner planner(machine, options(), how, &corrections, Planner::Task::proposals);
   Made out;
   out.status = run(planner, program, [&](Planner& at) {
     if (at.proposes()) {
       EXPECT_FALSE(at.revise());  // nothing is asked
-      const std::vector<Span> before = at.motion();
-      const Span& middle = before[at.kept() / 2];
-      const auto cell = static_cast<std::int64_t>(middle.begin_m * Mends::cells_per_m);
-      for (std::int64_t i = cell; i < cell + 10; ++i) mends.speed.emplace(i, 0.8);
+      const std::vector<Segment> before = at.motion();
+      const Segment& middle = before[at.kept() / 2];
+      const auto cell = static_cast<std::int64_t>(middle.begin_m * SpeedCorrections::cells_per_m);
+      for (std::int64_t i = cell; i < cell + 10; ++i) corrections.speed.emplace(i, 0.8);
       EXPECT_TRUE(at.revise());
       asked.push_back(middle.begin_m);
       EXPECT_EQ(at.motion().size(), before.size());
       for (std::size_t i = 0; i < before.size(); ++i) {
         EXPECT_EQ(at.motion()[i].begin_m, before[i].begin_m);
-        if (how.dip && i > 0 && i + 1 < before.size() && !at.suspect(i - 1) && !at.suspect(i) && !at.suspect(i + 1)) {
+        if (how.local_slow_down && i > 0 && i + 1 < before.size() && !at.suspect(i - 1) && !at.suspect(i) &&
+            !at.suspect(i + 1)) {
           EXPECT_NEAR(at.motion()[i].middle_b, before[i].middle_b, 1e-3 * before[i].middle_b);
         }
       }
@@ -235,18 +236,18 @@ TEST(Planner, RevisesWhatItProposes) {
   const robot::HybridKinematics machine(test::s_machine(2.0, 40.0));
   const program::Program program = dense(1500, 3e-4);
   const Made plain = make(program, machine, options(), {});
-  for (const bool dip : {true, false}) {
+  for (const bool local_slow_down : {true, false}) {
     std::vector<double> asked;
     PlannerOptions how;
-    how.dip = dip;
+    how.local_slow_down = local_slow_down;
     const Made made = make_revised(program, machine, how, asked);
     ASSERT_NO_FATAL_FAILURE(expect_whole(made));
     EXPECT_LT(used(made, machine, options()), 1.03);
     ASSERT_GT(asked.size(), 1U);
     // As slow as asked there, hardly slower than without in all.
     for (const double at_m : asked) {
-      const auto span = std::ranges::upper_bound(made.motion, at_m + 1e-3, {}, &Span::begin_m) - 1;
-      const auto plainly = std::ranges::upper_bound(plain.motion, at_m + 1e-3, {}, &Span::begin_m) - 1;
+      const auto span = std::ranges::upper_bound(made.motion, at_m + 1e-3, {}, &Segment::begin_m) - 1;
+      const auto plainly = std::ranges::upper_bound(plain.motion, at_m + 1e-3, {}, &Segment::begin_m) - 1;
       EXPECT_LT(span->middle_b, 0.7 * plainly->middle_b);
     }
     EXPECT_GT(made.time_s(), plain.time_s());
@@ -277,9 +278,9 @@ TEST(Planner, DwellsWhereTheProgramDoes) {
                     dwell(b, 0.5)};
   const Made made = make(program, head(), options(), {});
   ASSERT_NO_FATAL_FAILURE(expect_whole(made));
-  std::vector<Span> dwells;
-  for (const Span& span : made.motion) {
-    if (span.kind == Span::Kind::dwell) dwells.push_back(span);
+  std::vector<Segment> dwells;
+  for (const Segment& span : made.motion) {
+    if (span.kind == Segment::Kind::dwell) dwells.push_back(span);
   }
   ASSERT_EQ(dwells.size(), 2U);
   EXPECT_EQ(dwells[0].dwell_s, 0.25);
@@ -306,7 +307,7 @@ TEST(Planner, LosesNoDwell) {
   const Made made = make(program, head(), options(), {});
   ASSERT_TRUE(made.status.ok());
   double sum_s = 0.0;
-  for (const Span& span : made.motion) sum_s += span.kind == Span::Kind::dwell ? span.dwell_s : 0.0;
+  for (const Segment& span : made.motion) sum_s += span.kind == Segment::Kind::dwell ? span.dwell_s : 0.0;
   EXPECT_EQ(sum_s, 1.875);
 }
 
@@ -381,7 +382,7 @@ TEST(Planner, SaysWhatIsWrongAndWhere) {
     Planner planner(head(), options(), {});
     EXPECT_EQ(planner.begin({.tip_m = {2.0, 0.0, 0.0}}, 0.0, robot::Position6::Zero()).kind, Kind::outside_limits);
   }
-  {  // Out of the slides' travel in block 1: told with its line, joint and amount.
+  {  // Out of the slides' travel in block 1: reported with its line, joint and amount.
     program::Program program;
     program.blocks = {{.line = 7, .end = {.tip_m = {0.9, 0.0, 0.0}}, .duration_s = 10.0},
                       {.line = 9, .end = {.tip_m = {1.2, 0.0, 0.0}}, .duration_s = 10.0}};
@@ -441,7 +442,7 @@ TEST(Emitter, RunsAlongTheMotion) {
   Emitter slowly(head(), 1e-3, robot::Position6::Zero());
   std::vector<Sample> again;
   ASSERT_TRUE(slowly.add(made.path, {}, again));
-  for (const Span& span : made.motion) ASSERT_TRUE(slowly.add({}, std::span(&span, 1), again));
+  for (const Segment& span : made.motion) ASSERT_TRUE(slowly.add({}, std::span(&span, 1), again));
   ASSERT_TRUE(slowly.finish(again));
   ASSERT_EQ(again.size(), samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_EQ(again[i].joints, samples[i].joints);

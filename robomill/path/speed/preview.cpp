@@ -13,7 +13,7 @@ namespace {
 constexpr double slack = 1.0 + 5e-7;
 /// Shorter steps are rounding and have no direction [m or rad].
 constexpr double no_step = 1e-13;
-constexpr double cells_per_m = Mends::cells_per_m;
+constexpr double cells_per_m = SpeedCorrections::cells_per_m;
 
 }  // namespace
 
@@ -67,20 +67,20 @@ void Preview::pass(std::span<const Sample> samples) {
   }
 }
 
-void Preview::note(double value, double most, int order, double path_m, std::vector<Breach>& breaches) {
+void Preview::note(double value, double most, int order, double path_m, std::vector<Violation>& violations) {
   if (value <= most * slack) return;
   const double cell = std::floor(path_m * cells_per_m), ratio = value / most;
-  Breach& last = last_[static_cast<std::size_t>(order - 1)];
+  Violation& last = last_[static_cast<std::size_t>(order - 1)];
   // Breaches of a place come in a row: the first of each row stands in the book, with the worst of it.
   if (last.order == order && std::floor(last.path_m * cells_per_m) == cell) {
     last.ratio = std::max(last.ratio, ratio);
     return;
   }
-  if (last.order == order) breaches.push_back(last);
+  if (last.order == order) violations.push_back(last);
   last = {.path_m = path_m, .ratio = ratio, .order = order};
 }
 
-void Preview::differences(const Trail& trail, const Row& step, double path_m, std::vector<Breach>& breaches) {
+void Preview::differences(const Trail& trail, const Row& step, double path_m, std::vector<Violation>& violations) {
   using Joints = Eigen::Array<double, 6, 1>;
   const Row second = step - trail.step, third = second - (trail.step - trail.step_before);
   const auto beyond = [&](const Row& difference, std::size_t order) {
@@ -89,46 +89,47 @@ void Preview::differences(const Trail& trail, const Row& step, double path_m, st
   if (beyond(step, 1) || beyond(second, 2) || beyond(third, 3)) {
     for (std::size_t k = 0; k < 6; ++k) {
       const auto row = static_cast<Eigen::Index>(k);
-      note(std::abs(step[row]), most_[0][k], 1, path_m, breaches);
-      note(std::abs(second[row]), most_[1][k], 2, path_m, breaches);
-      note(std::abs(third[row]), most_[2][k], 3, path_m, breaches);
+      note(std::abs(step[row]), most_[0][k], 1, path_m, violations);
+      note(std::abs(second[row]), most_[1][k], 2, path_m, violations);
+      note(std::abs(third[row]), most_[2][k], 3, path_m, violations);
     }
   }
   for (std::size_t k = 6; k < channels; ++k) {
     const Eigen::Index row = k == 6 ? 6 : 9;
     const double speed = step.segment<3>(row).norm(), before = trail.step.segment<3>(row).norm();
-    note(speed, most_[0][k], 1, path_m, breaches);
-    note(std::abs(speed - before), most_[1][k], 2, path_m, breaches);
+    note(speed, most_[0][k], 1, path_m, violations);
+    note(std::abs(speed - before), most_[1][k], 2, path_m, violations);
     if (before > no_step)
-      note(std::abs(third.segment<3>(row).dot(trail.step.segment<3>(row))) / before, most_[2][k], 3, path_m, breaches);
+      note(std::abs(third.segment<3>(row).dot(trail.step.segment<3>(row))) / before, most_[2][k], 3, path_m,
+           violations);
   }
 }
 
-void Preview::look(Emitter& ahead, std::span<const Span> motion, bool joined, std::vector<Breach>& breaches) {
+void Preview::look(Emitter& ahead, std::span<const Segment> motion, bool joined, std::vector<Violation>& violations) {
   last_ = {};
   Trail trail = joined ? trail_ : Trail{};
   // Third differences need four samples.
-  int untold = joined ? 0 : 3;
+  int unreported = joined ? 0 : 3;
   samples_.clear();
   const auto take = [&] {
     const Sample& sample = samples_.front();
     const Row step = step_to(trail, sample);
     const double tip_feed_m = ahead.at().max_tip_m_per_s * period_s_;
-    if (untold > 0) {
-      --untold;
+    if (unreported > 0) {
+      --unreported;
     } else {
-      differences(trail, step, sample.path_m, breaches);
+      differences(trail, step, sample.path_m, violations);
       // From one block to the next the faster feed holds.
-      note(step.segment<3>(6).norm(), std::max(tip_feed_m, trail.tip_feed_m), 1, sample.path_m, breaches);
+      note(step.segment<3>(6).norm(), std::max(tip_feed_m, trail.tip_feed_m), 1, sample.path_m, violations);
     }
     trail.tip_feed_m = tip_feed_m;
     follow(trail, sample, step);
     samples_.clear();
   };
-  // What cannot be reached is told when it is sent out.
+  // What cannot be reached is reported when it is sent out.
   static_cast<void>(ahead.add({}, motion, samples_, take, 1));
-  for (const Breach& last : last_) {
-    if (last.ratio > 1.0) breaches.push_back(last);
+  for (const Violation& last : last_) {
+    if (last.ratio > 1.0) violations.push_back(last);
   }
 }
 

@@ -9,9 +9,9 @@
 
 namespace robomill::path {
 
-/// What the samples of planned motion will break of feed, speed, acceleration and jerk, told before the motion is taken
-/// over, so that a row can be planned again while the rest of the program need not. Finite differences as the Checker
-/// takes them; the Checker alone decides.
+/// What the samples of planned motion will break of feed, speed, acceleration and jerk, reported before the motion is
+/// taken over, so that a row can be planned again while the rest of the program need not. Finite differences as the
+/// Checker takes them; the Checker alone decides.
 class Preview {
  public:
   Preview(const robot::Kinematics& kinematics, const SmoothingOptions& options);
@@ -19,8 +19,8 @@ class Preview {
   void pass(std::span<const Sample> samples);
   /// Adds the worst of each 0.2 mm and order along motion that follows.
   /// @param ahead   as it will send the motion out; its path reaches to the motion's end. Runs on along it
-  /// @param joined  the motion begins where the samples ended; else the first ones tell nothing
-  void look(Emitter& ahead, std::span<const Span> motion, bool joined, std::vector<Breach>& breaches);
+  /// @param joined  the motion begins where the samples ended; else the first ones report nothing
+  void look(Emitter& ahead, std::span<const Segment> motion, bool joined, std::vector<Violation>& violations);
 
  private:
   static constexpr std::size_t channels = 8;  // joints, tip, axis
@@ -35,14 +35,14 @@ class Preview {
   };
   [[nodiscard]] static Row step_to(const Trail& trail, const Sample& sample);
   static void follow(Trail& trail, const Sample& sample, const Row& step);
-  void differences(const Trail& trail, const Row& step, double path_m, std::vector<Breach>& breaches);
-  void note(double value, double most, int order, double path_m, std::vector<Breach>& breaches);
+  void differences(const Trail& trail, const Row& step, double path_m, std::vector<Violation>& violations);
+  void note(double value, double most, int order, double path_m, std::vector<Violation>& violations);
 
   double period_s_ = 0.0;
   std::array<std::array<double, channels>, 3> most_ = {};  ///< of differences, by order
   Trail trail_ = {};
   std::vector<Sample> samples_;
-  std::array<Breach, 3> last_ = {};  ///< of each order, while its place is passed
+  std::array<Violation, 3> last_ = {};  ///< of each order, while its place is passed
 };
 
 }  // namespace robomill::path

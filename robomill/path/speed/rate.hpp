@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 
-#include "robomill/path/speed/span.hpp"
+#include "robomill/path/speed/segment.hpp"
 
 /// The rate s = dτ/dt at which a plan is run, τ being the time it was planned in.
 ///

@@ -8,7 +8,7 @@
 namespace robomill::path {
 namespace {
 
-/// Of a creeping speed's b, the least that is looked at.
+/// Of a safe terminal speed's b, the least that is looked at.
 constexpr double floor_share = 0.1;
 /// Of the time that a step promises, for the barrier; found by trying: 0.3 to 4 need about as many iterations.
 constexpr double promise_weight = 2.0;
@@ -33,11 +33,11 @@ double cube(double x) {
 
 /// Largest b at a resting span's moving end.
 double rest_limit(const SpeedSpan& span, const ChannelLimits& limits) {
-  const double sign = span.kind == Span::Kind::from_rest ? 1.0 : -1.0, x = span.length_m;
+  const double sign = span.kind == Segment::Kind::from_rest ? 1.0 : -1.0, x = span.length_m;
   double out = 1e300;
   for (std::size_t p = 0; p < point_count; ++p) {
     const PathPoint& point = span.point[p];
-    const double own = span.kind == Span::Kind::from_rest ? span.share[p] : 1.0 - span.share[p];
+    const double own = span.kind == Segment::Kind::from_rest ? span.share[p] : 1.0 - span.share[p];
     for (const double share : {own, own > 0.5 ? 1.0 : 0.0}) {
       out = std::min(out, point.max_b / std::max(std::pow(share, 4.0 / 3.0), 1e-6));
       for (std::size_t k = 0; k < channel_count; ++k) {
@@ -64,7 +64,7 @@ struct SpeedSolver::Work {
   double local[point_count][3][3] = {};  // (b, b', b'') at the points by (c_{i−1}, c_i, c_{i+1})
   double gauss[2][3] = {};               // b where the time is summed
   double cap = 1e300;                    // of c_i
-  double floor = 0.0;                    // of c_i, far below a creeping speed: b stays positive
+  double floor = 0.0;                    // of c_i, far below a safe terminal speed: b stays positive
   double rest_time = 0.0;                // rest_time / √c_i is those spans' time
   double diagonal = 0.0, next = 0.0, after = 0.0, right = 0.0, change = 0.0;
   double best = 0.0;
@@ -77,20 +77,20 @@ SpeedSolver::~SpeedSolver() = default;
 SpanEnds ends_of(const SpeedSpan* spans, std::size_t size, std::size_t i) noexcept {
   const SpeedSpan& span = spans[i];
   const auto met = [&](const SpeedSpan& other) {
-    if (other.kind != Span::Kind::cruise) return span.b / (1.0 + 2.0 * span.length_m / (3.0 * other.length_m));
+    if (other.kind != Segment::Kind::cruise) return span.b / (1.0 + 2.0 * span.length_m / (3.0 * other.length_m));
     return (span.length_m * other.b + other.length_m * span.b) / (span.length_m + other.length_m);
   };
   return {.begin_b = i > 0 ? met(spans[i - 1]) : span.b, .end_b = i + 1 < size ? met(spans[i + 1]) : span.b};
 }
 
-double SpeedSolver::own_creep_b(const SpeedSpan& span) const noexcept {
-  if (span.kind != Span::Kind::cruise) return 0.5 * rest_limit(span, limits_);
+double SpeedSolver::own_safe_b(const SpeedSpan& span) const noexcept {
+  if (span.kind != Segment::Kind::cruise) return 0.5 * rest_limit(span, limits_);
   const double d = span.length_m;
   double out = 1e300;
   for (const PathPoint& point : span.point) {
     out = std::min(out, 0.9 * point.max_b);
     for (std::size_t k = 0; k < channel_count; ++k) {
-      // Any b within [0, creep] at the three coefficients: |b'| <= 2 creep / d and |b''| <= 4 creep / d².
+      // Any b within [0, safe_b] at the three coefficients: |b'| <= 2 safe_b / d and |b''| <= 4 safe_b / d².
       const double c1 = std::abs(point.c1[k]), c2 = std::abs(point.c2[k]), c3 = std::abs(point.c3[k]);
       const double a = 0.5 * limits_.acceleration[k] * point.speed * point.speed / std::max(c2 + c1 / d, 1e-30);
       const double j =
@@ -155,15 +155,15 @@ void SpeedSolver::Direction::prepare(std::size_t i) {
   Work& w = work[i];
   const SpeedSpan& span = row.spans[i];
   w.cap = 1e300;
-  w.floor = floor_share * std::min(span.b, span.creep_b);
+  w.floor = floor_share * std::min(span.b, span.safe_b);
   w.rest_time = 0.0;
-  if (span.kind != Span::Kind::cruise) return;
+  if (span.kind != Segment::Kind::cruise) return;
   // Where the limit is even the control points keep the spline below it everywhere.
   w.cap = std::max({span.point[0].max_b, span.point[1].max_b, span.point[2].max_b});
   // (begin, middle, end) by (c_{i−1}, c_i, c_{i+1}).
   double joint[3][3] = {{0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
   const auto meet = [&](const SpeedSpan& other, double& own, double& others) {
-    if (other.kind != Span::Kind::cruise) {
+    if (other.kind != Segment::Kind::cruise) {
       own = 1.0 / (1.0 + 2.0 * span.length_m / (3.0 * other.length_m));
       w.cap = std::min(w.cap, rest_limit(other, row.limits) / own);
       w.rest_time += 3.0 * other.length_m / std::sqrt(own);
@@ -195,7 +195,7 @@ void SpeedSolver::Direction::prepare(std::size_t i) {
 double SpeedSolver::Direction::time() const {
   double sum = 0.0;
   for (std::size_t i = from(); i < to(); ++i) {
-    if (row.spans[i].kind != Span::Kind::cruise) continue;
+    if (row.spans[i].kind != Segment::Kind::cruise) continue;
     for (std::size_t p = 0; p < 2; ++p) sum += 0.5 * row.spans[i].length_m / std::sqrt(time_b(i, p));
     if (work[i].rest_time > 0.0) sum += work[i].rest_time / std::sqrt(row.spans[i].b);
   }
@@ -207,7 +207,7 @@ bool SpeedSolver::Direction::start_duals() {
   for (std::size_t i = from(); i < to(); ++i) {
     const SpeedSpan& span = row.spans[i];
     Work& w = work[i];
-    if (span.kind != Span::Kind::cruise) continue;
+    if (span.kind != Segment::Kind::cruise) continue;
     for (std::size_t p = 0; p < point_count; ++p) {
       const Local s = at(i, p);
       const PathPoint& point = span.point[p];
@@ -240,7 +240,7 @@ bool SpeedSolver::Direction::start_duals() {
 void SpeedSolver::Direction::assemble_span(std::size_t i, double& gap) {
   const SpeedSpan& span = row.spans[i];
   Work& w = work[i];
-  if (span.kind != Span::Kind::cruise) return;
+  if (span.kind != Segment::Kind::cruise) return;
   double matrix[3][3] = {}, right[3] = {};
   alignas(8 * lane_count) double lanes[10][lane_count];
   for (std::size_t p = 0; p < point_count; ++p) {
@@ -323,7 +323,7 @@ void SpeedSolver::Direction::solve() {
   Work* const w = work;
   for (std::size_t i = row.first; i < row.last; ++i) {
     double& d = w[i].diagonal;
-    if (row.spans[i].kind != Span::Kind::cruise) {
+    if (row.spans[i].kind != Segment::Kind::cruise) {
       d = 1.0;
       w[i].next = w[i].after = w[i].right = 0.0;
       continue;
@@ -356,7 +356,7 @@ void SpeedSolver::Direction::find_step(double& primal, double& dual) {
   for (std::size_t i = from(); i < to(); ++i) {
     const SpeedSpan& span = row.spans[i];
     Work& w = work[i];
-    if (span.kind != Span::Kind::cruise) continue;
+    if (span.kind != Segment::Kind::cruise) continue;
     for (std::size_t p = 0; p < point_count; ++p) {
       const PathPoint& point = span.point[p];
       const Local s = at(i, p), ds = change(i, p);
@@ -399,7 +399,7 @@ void SpeedSolver::Direction::find_step(double& primal, double& dual) {
 double SpeedSolver::Direction::promised_s() const {
   double sum = 0.0;
   for (std::size_t i = from(); i < to(); ++i) {
-    if (row.spans[i].kind != Span::Kind::cruise) continue;
+    if (row.spans[i].kind != Segment::Kind::cruise) continue;
     const double before = i > 0 ? work[i - 1].change : 0.0, after = i + 1 < row.size ? work[i + 1].change : 0.0;
     for (std::size_t p = 0; p < 2; ++p) {
       const auto& g = work[i].gauss[p];

@@ -3,18 +3,18 @@
 #include <cstddef>
 #include <memory>
 
-#include "robomill/path/speed/span.hpp"
+#include "robomill/path/speed/segment.hpp"
 
 namespace robomill::path {
 
 /// A span whose speed is sought.
 struct SpeedSpan {
-  Span::Kind kind = Span::Kind::cruise;  ///< not dwell
+  Segment::Kind kind = Segment::Kind::cruise;  ///< not dwell
   double length_m = 0.0;
   std::array<PathPoint, point_count> point = {};
   std::array<double, point_count> share = {first_share, 0.5, last_share};  ///< where the points are
-  double creep_b = 0.0;  ///< any b between 0 and this, of this span and its neighbours, breaks no limit [m²/s²]
-  double b = 0.0;        ///< the spline's coefficient: the middle's b. In: feasible. Out: the fastest found
+  double safe_b = 0.0;  ///< any b between 0 and this, of this span and its neighbours, breaks no limit [m²/s²]
+  double b = 0.0;       ///< the spline's coefficient: the middle's b. In: feasible. Out: the fastest found
 };
 
 struct SpeedOptions {
@@ -35,8 +35,8 @@ struct SpeedResult {
 /// jerk's,
 ///     |c3 b + 3/2 c2 b' + c1 b''/2| <= J / √b,
 /// is taken by the tangent of its right side at each step, which lies below it: an interior-point method whose every
-/// iterate obeys every limit, so that stopping early costs time and never a breach. One factorisation of a matrix with
-/// five diagonals an iteration; O(spans) time and memory, nothing allocated after construction.
+/// iterate obeys every limit, so that stopping early costs time and never a violation. One factorisation of a matrix
+/// with five diagonals an iteration; O(spans) time and memory, nothing allocated after construction.
 class SpeedSolver {
  public:
   /// @param capacity  most spans in a row
@@ -51,8 +51,8 @@ class SpeedSolver {
   SpeedResult solve(SpeedSpan* spans, std::size_t size, std::size_t first, std::size_t last,
                     const SpeedOptions& options) noexcept;
 
-  /// Largest b that SpeedSpan::creep_b may have by the span's own limits.
-  [[nodiscard]] double own_creep_b(const SpeedSpan& span) const noexcept;
+  /// Largest b that SpeedSpan::safe_b may have by the span's own limits.
+  [[nodiscard]] double own_safe_b(const SpeedSpan& span) const noexcept;
   [[nodiscard]] const ChannelLimits& limits() const noexcept { return limits_; }
 
  private:

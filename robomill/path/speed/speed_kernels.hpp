@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "robomill/base/lanes.hpp"
-#include "robomill/path/speed/span.hpp"
+#include "robomill/path/speed/segment.hpp"
 
 namespace robomill::path {
 

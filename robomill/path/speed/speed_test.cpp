@@ -15,7 +15,7 @@ namespace robomill::path {
 namespace {
 
 using robomill::test::seeds;
-using Kind = Span::Kind;
+using Kind = Segment::Kind;
 
 /// Derivatives of all channels by u.
 struct Derivatives {
@@ -31,7 +31,7 @@ ChannelLimits limits(double velocity, double acceleration, double jerk) {
   return out;
 }
 
-/// A row from rest to rest, spans growing from `rest_m` at both ends to `span_m`, speeds creeping.
+/// A row from rest to rest, spans growing from `rest_m` at both ends to `span_m`, at safe terminal speeds.
 struct Row {
   std::vector<SpeedSpan> spans;
   std::vector<double> begin_m;
@@ -64,24 +64,24 @@ struct Row {
               std::min(point.max_b, std::pow(solver.limits().velocity[k] / std::max(std::abs(d.c1[k]), 1e-9), 2));
         }
       }
-      span.creep_b = solver.own_creep_b(span);
+      span.safe_b = solver.own_safe_b(span);
       spans.push_back(span);
       begin_m.push_back(u_m);
       u_m += all[i];
     }
     for (std::size_t i = 0; i < spans.size(); ++i) {
-      spans[i].b = spans[i].creep_b;
-      if (i > 0) spans[i].b = std::min(spans[i].b, spans[i - 1].creep_b);
-      if (i + 1 < spans.size()) spans[i].b = std::min(spans[i].b, spans[i + 1].creep_b);
+      spans[i].b = spans[i].safe_b;
+      if (i > 0) spans[i].b = std::min(spans[i].b, spans[i - 1].safe_b);
+      if (i + 1 < spans.size()) spans[i].b = std::min(spans[i].b, spans[i + 1].safe_b);
       spans[i].b *= 0.9;
     }
   }
 
   /// What is driven.
-  [[nodiscard]] std::vector<Span> motion() const {
-    std::vector<Span> out;
+  [[nodiscard]] std::vector<Segment> motion() const {
+    std::vector<Segment> out;
     for (std::size_t i = 0; i < spans.size(); ++i) {
-      Span span{.kind = spans[i].kind, .begin_m = begin_m[i], .length_m = spans[i].length_m};
+      Segment span{.kind = spans[i].kind, .begin_m = begin_m[i], .length_m = spans[i].length_m};
       if (span.kind == Kind::from_rest) {
         span.end_b = ends_of(spans.data(), spans.size(), i + 1).begin_b;
       } else if (span.kind == Kind::to_rest) {
@@ -98,7 +98,7 @@ struct Row {
   }
   [[nodiscard]] double time_s() const {
     double sum = 0.0;
-    for (const Span& span : motion()) sum += duration_s(span);
+    for (const Segment& span : motion()) sum += duration_s(span);
     return sum;
   }
 };
@@ -107,7 +107,7 @@ struct Row {
 struct Rates {
   double b, first, second;
 };
-Rates rates(const Span& span, double s) {
+Rates rates(const Segment& span, double s) {
   const double d = span.length_m, r = 1.0 - s;
   if (span.kind == Kind::from_rest) {
     return {span.end_b * std::pow(s, 4.0 / 3.0), 4.0 / 3.0 * span.end_b * std::cbrt(s) / d,
@@ -125,7 +125,7 @@ Rates rates(const Span& span, double s) {
 /// The largest share of any limit that is used at the points.
 double used(const Row& row, const ChannelLimits& limits, bool jerk = true) {
   double out = 0.0;
-  const std::vector<Span> motion = row.motion();
+  const std::vector<Segment> motion = row.motion();
   for (std::size_t i = 0; i < motion.size(); ++i) {
     for (std::size_t p = 0; p < point_count; ++p) {
       const PathPoint& point = row.spans[i].point[p];
@@ -363,7 +363,7 @@ TEST(Speed, ScalesWithTime) {
   Row plain(solver, curve, 0.1, 1e-4, 5e-4), slow = plain;
   for (SpeedSpan& span : slow.spans) {
     span.b *= 0.25;
-    span.creep_b *= 0.25;
+    span.safe_b *= 0.25;
     for (PathPoint& point : span.point) {
       point.speed = 0.5;
       point.max_b *= 0.25;

@@ -136,17 +136,17 @@ void AptReader::read(std::string_view statement) {
   std::string_view rest = word_;
   while (!rest.empty() && !is_text(text_)) {
     const std::size_t comma = rest.find(',');
-    if (std::ranges::find(moving, rest.substr(0, comma), &Moving::word) != moving.end()) refuse_motion();
+    if (std::ranges::find(moving, rest.substr(0, comma), &Moving::word) != moving.end()) reject_motion();
     if (comma == std::string_view::npos) break;
     rest.remove_prefix(comma + 1);
   }
   skip_statement();
 }
 
-void AptReader::refuse_motion() const {
+void AptReader::reject_motion() const {
   const std::string_view first = word_.substr(0, word_.find(','));
   const auto* const found = std::ranges::find(moving, first, &Moving::word);
-  refuse_text(std::string(first), shown_, "is not read: it may move the tool or its frame",
+  reject_text(std::string(first), shown_, "is not read: it may move the tool or its frame",
               found == moving.end() ? as_moves : found->hint);
 }
 
@@ -155,8 +155,8 @@ double AptReader::number_of(std::string_view field) const {
   const std::from_chars_result read = std::from_chars(field.data(), field.data() + field.size(), number);
   if (read.ec == std::errc() && read.ptr == field.data() + field.size() && std::isfinite(number)) return number;
   const std::optional<double> slow = io::parse_number(field);
-  if (field.empty()) refuse(std::string(word_), std::nullopt, "", "has an empty field");
-  if (!slow || !std::isfinite(*slow)) refuse_text(std::string(word_), field, "must be a finite number");
+  if (field.empty()) reject(std::string(word_), std::nullopt, "", "has an empty field");
+  if (!slow || !std::isfinite(*slow)) reject_text(std::string(word_), field, "must be a finite number");
   return *slow;
 }
 
@@ -167,7 +167,7 @@ void AptReader::take_numbers(std::size_t few, std::size_t many) {
     if (numbers_.size() > many) break;
   }
   if (numbers_.size() == few || numbers_.size() == many) return;
-  refuse(std::string(word_), std::nullopt, "",
+  reject(std::string(word_), std::nullopt, "",
          fmt::format("has {} numbers; must have {} or {}", fields_.size(), few, many),
          "A position, or a position and the tool's axis");
 }
@@ -193,7 +193,7 @@ void AptReader::take_goto() {
 void AptReader::take_godlta() {
   take_numbers(1, 3);
   if (!start_) {
-    refuse("GODLTA", std::nullopt, "", "is a step from a position that no line has given", "Begin with FROM/ or GOTO/");
+    reject("GODLTA", std::nullopt, "", "is a step from a position that no line has given", "Begin with FROM/ or GOTO/");
   }
   Pose end = pose_;
   if (numbers_.size() == 3) {
@@ -212,7 +212,7 @@ void AptReader::take_from() {
   if (!start_) {
     begin_at(at);
   } else if (moves_to(at)) {
-    refuse_text("FROM", shown_, "is another position than the one that the tool has come to",
+    reject_text("FROM", shown_, "is another position than the one that the tool has come to",
                 "FROM/ states where the first move begins; GOTO/ moves");
   }
 }
@@ -226,7 +226,7 @@ void AptReader::go(const Pose& end) {
   }
   if (!moves_to(end)) return;
   if (cutting_ && tool_ != cutting_tool_) {
-    refuse("LOADTL", std::nullopt, "",
+    reject("LOADTL", std::nullopt, "",
            fmt::format("in line {} mounts another tool than the one that has cut, whose length is not known here",
                        tool_line_),
            "Write a program for each tool");
@@ -242,12 +242,12 @@ void AptReader::go(const Pose& end) {
 
 double AptReader::feed_duration_s(double length_m, double turn_rad) const {
   if (!(feed_ > 0.0)) {
-    refuse("FEDRAT", std::nullopt, "", "must be > 0 where the tool moves at feed", "Is a FEDRAT/ missing before it?");
+    reject("FEDRAT", std::nullopt, "", "must be > 0 where the tool moves at feed", "Is a FEDRAT/ missing before it?");
   }
   double per_minute = feed_;
   if (feed_per_revolution_) {
     if (!(spindle_speed_rad_per_s_ > 0.0)) {
-      refuse("FEDRAT", feed_, feed_in_inches_ ? "in/rev" : "mm/rev", "needs a spindle speed, which no line has given",
+      reject("FEDRAT", feed_, feed_in_inches_ ? "in/rev" : "mm/rev", "needs a spindle speed, which no line has given",
              "Give SPINDL/ in rpm or FEDRAT/ a minute");
     }
     per_minute *= spindle_speed_rad_per_s_ / units::rpm;
@@ -266,14 +266,14 @@ void AptReader::take_feed() {
       inches = unit->inches.value_or(inches_);
       per_revolution = unit->per_revolution;
     } else if (!field.empty() && field.front() >= 'A' && field.front() <= 'Z') {
-      refuse_text("FEDRAT", field, "is no unit of a feed known here", "Known are MMPM, IPM, MMPR, IPR, PERMIN, PERREV");
+      reject_text("FEDRAT", field, "is no unit of a feed known here", "Known are MMPM, IPM, MMPR, IPR, PERMIN, PERREV");
     } else if (feed) {
-      refuse_text("FEDRAT", shown_, "has two numbers");
+      reject_text("FEDRAT", shown_, "has two numbers");
     } else {
       feed = number_of(field);
     }
   }
-  if (!feed) refuse("FEDRAT", std::nullopt, "", "has no number");
+  if (!feed) reject("FEDRAT", std::nullopt, "", "has no number");
   check_feed("FEDRAT", *feed);
   feed_ = *feed;
   feed_in_inches_ = inches;
@@ -283,7 +283,7 @@ void AptReader::take_feed() {
 void AptReader::take_units() {
   const std::string_view unit = fields_.empty() ? std::string_view() : fields_.front();
   const bool inches = unit == "INCHES" || unit == "INCH" || unit == "IN";
-  if (!inches && unit != "MM") refuse_text("UNITS", unit, "is no unit known here", "Known are MM and INCHES");
+  if (!inches && unit != "MM") reject_text("UNITS", unit, "is no unit known here", "Known are MM and INCHES");
   inches_ = inches;
 }
 
@@ -360,7 +360,7 @@ void AptReader::take_delay() {
 
 void AptReader::take_system() {
   if (start_ && text_ != system_) {
-    refuse_text("MSYS", shown_, "changes the coordinate system within the program",
+    reject_text("MSYS", shown_, "changes the coordinate system within the program",
                 "Positions count in one system from the first on; write a file for each");
   }
   system_ = text_;
@@ -371,7 +371,7 @@ void AptReader::take_system() {
 void AptReader::take_switch() {
   const bool off = fields_.size() == 1 && (fields_[0] == "OFF" || fields_[0] == "NOMORE");
   if (!off) {
-    refuse_text(std::string(word_), shown_, "is not read: it may move the tool or its frame",
+    reject_text(std::string(word_), shown_, "is not read: it may move the tool or its frame",
                 word_ == "CYCLE"    ? "Let the CAM system write cycles as straight moves"
                 : word_ == "CUTCOM" ? "Let the CAM system write the path of the tool's tip"
                                     : as_frame);

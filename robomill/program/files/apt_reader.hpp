@@ -32,7 +32,7 @@ class AptReader final : public ProgramReader {
   void go(const Pose& end);
   [[nodiscard]] double feed_duration_s(double length_m, double turn_rad) const;
   void skip_statement() { skip(shown_); }
-  [[noreturn]] void refuse_motion() const;
+  [[noreturn]] void reject_motion() const;
   [[nodiscard]] const char* unit_name() const { return inches_ ? "in" : "mm"; }
 
   void take_goto();

@@ -22,8 +22,8 @@ Program read(const std::string& text) {
   return read_program(folder.file("part.apt", text));
 }
 
-void expect_refused(const std::string& text, const std::string& words) {
-  const std::string said = test::refusal([&] { static_cast<void>(read(text)); });
+void expect_rejected(const std::string& text, const std::string& words) {
+  const std::string said = test::rejection([&] { static_cast<void>(read(text)); });
   EXPECT_NE(said.find(words), std::string::npos) << text << "\n" << said;
 }
 
@@ -77,12 +77,12 @@ TEST(Apt, KeepsSpindleCoolantAndStops) {
 }
 
 // The length of another tool is not known, so that a tool changes before it cuts or not at all.
-TEST(Apt, RefusesAnotherToolOnceOneHasCut) {
+TEST(Apt, RejectsAnotherToolOnceOneHasCut) {
   EXPECT_EQ(read("LOADTL/1\nGOTO/0,0,0\nLOADTL/2\nFEDRAT/60\nGOTO/1,0,0\nLOADTL/2\nGOTO/2,0,0\nLOADTL/3\nFINI\n")
                 .blocks.size(),
             2U);
-  expect_refused("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/2,LENGTH,80\nRAPID\nGOTO/2,0,0\n",
-                 "part.apt:7: LOADTL: in line 5 mounts another tool");
+  expect_rejected("LOADTL/1\nFEDRAT/60\nGOTO/0,0,0\nGOTO/1,0,0\nLOADTL/2,LENGTH,80\nRAPID\nGOTO/2,0,0\n",
+                  "part.apt:7: LOADTL: in line 5 mounts another tool");
 }
 
 TEST(Apt, FromIsTheStart) {
@@ -125,51 +125,51 @@ TEST(Apt, NotesAxesThatAreNearlyUnitVectors) {
   EXPECT_EQ(program.notes[0], "1 axis made a unit vector, off by up to 0.0005, the first in line 3.");
 }
 
-TEST(Apt, RefusesWithLineWordAndRule) {
+TEST(Apt, RejectsWithLineWordAndRule) {
   const std::string head = "FEDRAT/100\nGOTO/0,0,0\n";
-  expect_refused(head + "GOTO/1,2\n", "part.apt:3: GOTO: has 2 numbers; must have 3 or 6");
-  expect_refused(head + "GOTO/1,2,3,0,0,1,4\n", "GOTO: has 7 numbers; must have 3 or 6");
-  expect_refused(head + "GOTO\n", "GOTO: has 0 numbers");
-  expect_refused(head + "GOTO/P1\n", "part.apt:3: GOTO = \"P1\"; must be a finite number");
-  expect_refused(head + "GOTO/1,,3\n", "part.apt:3: GOTO: has an empty field");
-  expect_refused(head + "GOTO/1,NAN,3\n", "\"NAN\"; must be a finite number");
-  expect_refused(head + "GOTO/1,1E999,3\n", "must be a finite number");
-  expect_refused(head + "GOTO/1,2,3000000\n", "z = 3e+06 mm; must lie within 1 km");
-  expect_refused(head + "GODLTA/900000\nGODLTA/900000\n", "part.apt:4: GODLTA = 900000 mm; must lie within 1 km");
-  expect_refused(head + "GOTO/1,2,3,0,0,2\n", "i, j, k = 2; must be a vector of length 1, within 1e-3");
-  expect_refused(head + "GOTO/1,2,3,0,0,0\n", "i, j, k = 0; must be a vector of length 1");
-  expect_refused(head + "GOTO/1,2,3,0,0,-1\n", "axis = 180 deg; turns by half a circle in one move");
-  expect_refused("GODLTA/1,2,3\n", "GODLTA: is a step from a position that no line has given");
-  expect_refused(head + "FROM/1,0,0\n", "FROM = \"FROM/1,0,0\"; is another position than the one");
-  expect_refused("GOTO/0,0,0\nGOTO/1,0,0\n",
-                 "part.apt:2: FEDRAT: must be > 0 where the tool moves at feed. Is a FEDRAT/ missing");
-  expect_refused("FEDRAT/0\nGOTO/0,0,0\nGOTO/1,0,0\n", "part.apt:3: FEDRAT: must be > 0");
-  expect_refused(head + "FEDRAT/-1\n", "FEDRAT = -1; must be > 0");
-  expect_refused(head + "FEDRAT/NAN\n", "FEDRAT = \"NAN\"; is no unit of a feed known here");
-  expect_refused(head + "FEDRAT/1,2\n", "has two numbers");
-  expect_refused(head + "FEDRAT/MMPM\n", "FEDRAT: has no number");
-  expect_refused(head + "FEDRAT/5,INVERS\n", "FEDRAT = \"INVERS\"; is no unit of a feed known here");
-  expect_refused(head + "FEDRAT/.1,MMPR\nGOTO/1,0,0\n", "part.apt:4: FEDRAT = 0.1 mm/rev; needs a spindle speed");
-  expect_refused(head + "UNITS/CM\n", "UNITS = \"CM\"; is no unit known here");
-  expect_refused(head + "SPINDL/-5\n", "SPINDL = -5; must be > 0");
-  expect_refused(head + "DELAY/-1\n", "DELAY = -1 s; must lie between 0 and a day");
-  expect_refused(head + "MSYS/1,0,0,1,0,0,0,1,0\n", "changes the coordinate system within the program");
-  expect_refused(head + "CYCLE/DRILL,5,MMPM,100\n", "cycles as straight moves");
-  expect_refused(head + "CUTCOM/LEFT\n", "CUTCOM = \"CUTCOM/LEFT\"; is not read");
-  expect_refused(head + "TRACUT/M1\n", "It would move the program's frame");
-  expect_refused(
+  expect_rejected(head + "GOTO/1,2\n", "part.apt:3: GOTO: has 2 numbers; must have 3 or 6");
+  expect_rejected(head + "GOTO/1,2,3,0,0,1,4\n", "GOTO: has 7 numbers; must have 3 or 6");
+  expect_rejected(head + "GOTO\n", "GOTO: has 0 numbers");
+  expect_rejected(head + "GOTO/P1\n", "part.apt:3: GOTO = \"P1\"; must be a finite number");
+  expect_rejected(head + "GOTO/1,,3\n", "part.apt:3: GOTO: has an empty field");
+  expect_rejected(head + "GOTO/1,NAN,3\n", "\"NAN\"; must be a finite number");
+  expect_rejected(head + "GOTO/1,1E999,3\n", "must be a finite number");
+  expect_rejected(head + "GOTO/1,2,3000000\n", "z = 3e+06 mm; must lie within 1 km");
+  expect_rejected(head + "GODLTA/900000\nGODLTA/900000\n", "part.apt:4: GODLTA = 900000 mm; must lie within 1 km");
+  expect_rejected(head + "GOTO/1,2,3,0,0,2\n", "i, j, k = 2; must be a vector of length 1, within 1e-3");
+  expect_rejected(head + "GOTO/1,2,3,0,0,0\n", "i, j, k = 0; must be a vector of length 1");
+  expect_rejected(head + "GOTO/1,2,3,0,0,-1\n", "axis = 180 deg; turns by half a circle in one move");
+  expect_rejected("GODLTA/1,2,3\n", "GODLTA: is a step from a position that no line has given");
+  expect_rejected(head + "FROM/1,0,0\n", "FROM = \"FROM/1,0,0\"; is another position than the one");
+  expect_rejected("GOTO/0,0,0\nGOTO/1,0,0\n",
+                  "part.apt:2: FEDRAT: must be > 0 where the tool moves at feed. Is a FEDRAT/ missing");
+  expect_rejected("FEDRAT/0\nGOTO/0,0,0\nGOTO/1,0,0\n", "part.apt:3: FEDRAT: must be > 0");
+  expect_rejected(head + "FEDRAT/-1\n", "FEDRAT = -1; must be > 0");
+  expect_rejected(head + "FEDRAT/NAN\n", "FEDRAT = \"NAN\"; is no unit of a feed known here");
+  expect_rejected(head + "FEDRAT/1,2\n", "has two numbers");
+  expect_rejected(head + "FEDRAT/MMPM\n", "FEDRAT: has no number");
+  expect_rejected(head + "FEDRAT/5,INVERS\n", "FEDRAT = \"INVERS\"; is no unit of a feed known here");
+  expect_rejected(head + "FEDRAT/.1,MMPR\nGOTO/1,0,0\n", "part.apt:4: FEDRAT = 0.1 mm/rev; needs a spindle speed");
+  expect_rejected(head + "UNITS/CM\n", "UNITS = \"CM\"; is no unit known here");
+  expect_rejected(head + "SPINDL/-5\n", "SPINDL = -5; must be > 0");
+  expect_rejected(head + "DELAY/-1\n", "DELAY = -1 s; must lie between 0 and a day");
+  expect_rejected(head + "MSYS/1,0,0,1,0,0,0,1,0\n", "changes the coordinate system within the program");
+  expect_rejected(head + "CYCLE/DRILL,5,MMPM,100\n", "cycles as straight moves");
+  expect_rejected(head + "CUTCOM/LEFT\n", "CUTCOM = \"CUTCOM/LEFT\"; is not read");
+  expect_rejected(head + "TRACUT/M1\n", "It would move the program's frame");
+  expect_rejected(
       head + "CIRCLE / 0,0,0, $\n 0,0,1,5\nGOTO/5,0,0\n",
       "part.apt:3: CIRCLE = \"CIRCLE / 0,0,0,   0,0,1,5\"; is not read: it may move the tool or its frame. Let the "
       "CAM system write straight moves GOTO/");
-  expect_refused(head + "MOVARC/0,0,0,0,0,1,5,ANGLE,90\n", "MOVARC");
-  expect_refused(head + "INDIRV/1,0,0\n", "straight moves GOTO/");
-  expect_refused(head + "TLON,GOFWD/(CIRCLE/0,0,0,5),ON,(LINE/0,0,0,1,1,1)\n", "TLON = \"TLON,GOFWD/");
-  expect_refused(head + "TLAXIS/0,0,1\n", "Give the axis with each GOTO/");
-  expect_refused(head + "ROTABL/90\n", "It would move the program's frame");
-  expect_refused("PPRINT\n", "part.apt: holds no complete position");
+  expect_rejected(head + "MOVARC/0,0,0,0,0,1,5,ANGLE,90\n", "MOVARC");
+  expect_rejected(head + "INDIRV/1,0,0\n", "straight moves GOTO/");
+  expect_rejected(head + "TLON,GOFWD/(CIRCLE/0,0,0,5),ON,(LINE/0,0,0,1,1,1)\n", "TLON = \"TLON,GOFWD/");
+  expect_rejected(head + "TLAXIS/0,0,1\n", "Give the axis with each GOTO/");
+  expect_rejected(head + "ROTABL/90\n", "It would move the program's frame");
+  expect_rejected("PPRINT\n", "part.apt: holds no complete position");
 }
 
-// Cut off, changed at any place, or noise: refused or read, and what is read is finite.
+// Cut off, changed at any place, or noise: rejected or read, and what is read is finite.
 TEST(Apt, SurvivesMutations) {
   const std::string good =
       "$$ x\nPARTNO A\nUNITS/MM\nMULTAX/ON\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/10,20,30,$\n0,0,1\nFEDRAT/600.0,MMPM\n"

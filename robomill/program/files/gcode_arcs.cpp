@@ -24,12 +24,12 @@ void GcodeReader::go_round(const Line& line) {
   static constexpr std::array<const char*, 3> names = {"X", "Y", "Z"};
   for (std::size_t i = 0; i < 3; ++i) {
     if (!known_[i]) {
-      refuse(names[i], std::nullopt, "", "is not known where the first arc begins", "Begin with a G0 to X, Y and Z");
+      reject(names[i], std::nullopt, "", "is not known where the first arc begins", "Begin with a G0 to X, Y and Z");
     }
   }
   for (const char letter : {'l', 'q'}) {
     if (line.has(letter)) {
-      refuse(letter == 'l' ? "L" : "Q", std::nullopt, "", "is not read with an arc: what it would change is not known",
+      reject(letter == 'l' ? "L" : "Q", std::nullopt, "", "is not read with an arc: what it would change is not known",
              "Turns are given by P");
     }
   }
@@ -39,7 +39,7 @@ void GcodeReader::go_round(const Line& line) {
   if (line.rotary[0] || line.rotary[1] || line.rotary[2]) {
     by_rotary_ = true;
     if (by_vector_) {
-      refuse("A, B, C", std::nullopt, "", "stand in a program that gives its axis the other way as well",
+      reject("A, B, C", std::nullopt, "", "stand in a program that gives its axis the other way as well",
              "Use A, B and C or I, J and K");
     }
     turn_rotary(line);
@@ -62,7 +62,7 @@ void GcodeReader::split(PartedMove parted, double duration_s, const char* field)
   if (parted.turn) parted.count = std::max(parted.count, parted.turn->parts(reading_.axis_tolerance_rad));
   constexpr double most_parts = 1e6;
   if (!(parted.count <= most_parts)) {
-    refuse(field, std::nullopt, "", fmt::format("would make a move of {:.3g} parts", parted.count),
+    reject(field, std::nullopt, "", fmt::format("would make a move of {:.3g} parts", parted.count),
            "Allow larger tolerances");
   }
   if (parted.arc) parted.deviation.tip_m = parted.arc->deviation_m(parted.count);
@@ -89,7 +89,7 @@ double GcodeReader::turns_of(const Line& line) const {
   constexpr double most_turns = 1000.0;
   const double turns = line.p->number;
   if (!(turns >= 1.0 && turns <= most_turns && turns == std::round(turns))) {
-    refuse("P", turns, "", "must be a whole number of turns from 1 to 1000");
+    reject("P", turns, "", "must be a whole number of turns from 1 to 1000");
   }
   return turns;
 }
@@ -105,17 +105,17 @@ Vector2d GcodeReader::center_of_words(const Line& line, const Vector2d& from) co
   const auto word = [&](Eigen::Index axis) { return line.vector[static_cast<std::size_t>(axis)]; };
   const char* const across = names[static_cast<std::size_t>(plane_.normal)];
   if (word(plane_.normal) && (centers_absolute_ || *word(plane_.normal) != 0.0)) {
-    refuse(across, *word(plane_.normal), unit_name(), fmt::format("lies across the plane {} of the arc", plane_.name),
+    reject(across, *word(plane_.normal), unit_name(), fmt::format("lies across the plane {} of the arc", plane_.name),
            "Is a G17, G18 or G19 missing?");
   }
   const std::optional<double> first = word(plane_.first);
   const std::optional<double> second = word(plane_.second);
   if (!first && !second) {
-    refuse(fmt::format("{} or R", plane_.centers), std::nullopt, "",
+    reject(fmt::format("{} or R", plane_.centers), std::nullopt, "",
            fmt::format("is missing: an arc in the plane {} needs its centre or its radius", plane_.name));
   }
   if (centers_absolute_ && !(first && second)) {
-    refuse(plane_.centers, std::nullopt, "", "must both be given where centres are absolute (G90.1)");
+    reject(plane_.centers, std::nullopt, "", "must both be given where centres are absolute (G90.1)");
   }
   const Vector2d center_m = unit_m() * Vector2d(first.value_or(0.0), second.value_or(0.0));
   return centers_absolute_ ? center_m : from + center_m;
@@ -124,18 +124,18 @@ Vector2d GcodeReader::center_of_words(const Line& line, const Vector2d& from) co
 // The centre lies on the perpendicular bisector of the ends: left of the way for a short arc that turns left.
 Vector2d GcodeReader::center_of_radius(const Line& line, const Vector2d& from, const Vector2d& to) const {
   if (line.vector[0] || line.vector[1] || line.vector[2]) {
-    refuse("R", *line.radius, unit_name(), "stands beside I, J or K: an arc has a radius or a centre");
+    reject("R", *line.radius, unit_name(), "stands beside I, J or K: an arc has a radius or a centre");
   }
   const Vector2d way = to - from;
   const double half_m = 0.5 * way.norm();
   const double radius_m = std::abs(*line.radius) * unit_m();
-  if (!(radius_m > 0.0)) refuse("R", *line.radius, unit_name(), "must not be 0");
+  if (!(radius_m > 0.0)) reject("R", *line.radius, unit_name(), "must not be 0");
   if (2.0 * half_m <= same_place_m) {
-    refuse("R", *line.radius, unit_name(), "does not define an arc that ends where it begins",
+    reject("R", *line.radius, unit_name(), "does not define an arc that ends where it begins",
            fmt::format("Give its centre by {}", plane_.centers));
   }
   if (half_m - radius_m > allowed_radius_error_m(radius_m)) {
-    refuse("R", *line.radius, unit_name(),
+    reject("R", *line.radius, unit_name(),
            fmt::format("is too small by {:.6g} {}: half the distance of the arc's ends is {:.9g} {}",
                        (half_m - radius_m) / unit_m(), unit_name(), half_m / unit_m(), unit_name()));
   }
@@ -158,7 +158,7 @@ Arc GcodeReader::arc_to(const Line& line, const Vector3d& end_m) const {
   const double error_m = std::abs(arc.end_radius_m - arc.begin_radius_m);
   const double allowed_m = allowed_radius_error_m(arc.begin_radius_m);
   if (!(error_m <= allowed_m)) {
-    refuse(
+    reject(
         plane_.centers, io::round_15(error_m / unit_m()), unit_name(),
         fmt::format("is by how much the arc's radius at its end ({:.9g}) differs from that at its begin ({:.9g}); must "
                     "be <= {:.3g}",
@@ -166,10 +166,10 @@ Arc GcodeReader::arc_to(const Line& line, const Vector3d& end_m) const {
         centers_absolute_ ? "Centres are absolute (G90.1)" : "Centres count from the begin of the arc (G91.1)");
   }
   if (!(std::min(arc.begin_radius_m, arc.end_radius_m) > same_place_m)) {
-    refuse(plane_.centers, std::nullopt, "", "lies where the arc begins or ends: it has no radius");
+    reject(plane_.centers, std::nullopt, "", "lies where the arc begins or ends: it has no radius");
   }
   if (!(arc.begin_radius_m <= farthest_m)) {
-    refuse(line.radius ? "R" : plane_.centers, std::nullopt, "", "gives an arc a radius above 1 km",
+    reject(line.radius ? "R" : plane_.centers, std::nullopt, "", "gives an arc a radius above 1 km",
            "Is it meant to be a straight move?");
   }
   const double side = motion_ == Motion::counterclockwise ? 1.0 : -1.0;

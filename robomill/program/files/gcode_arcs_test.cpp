@@ -27,8 +27,8 @@ Program read(const std::string& text, double chord_tolerance_m = 1e-6, std::opti
   return test_support::read_text<GcodeReader>(text, {.machine = machine, .chord_tolerance_m = chord_tolerance_m});
 }
 
-void expect_refused(const std::string& text, const std::string& words, std::optional<Machine> machine = {}) {
-  const std::string said = test::refusal([&] { static_cast<void>(read(text, 1e-6, machine)); });
+void expect_rejected(const std::string& text, const std::string& words, std::optional<Machine> machine = {}) {
+  const std::string said = test::rejection([&] { static_cast<void>(read(text, 1e-6, machine)); });
   EXPECT_NE(said.find(words), std::string::npos) << text << "\n" << said;
 }
 
@@ -129,7 +129,7 @@ TEST(GcodeArcs, ChordsStandOnTheArcAndNearIt) {
 }
 
 // The same arc by its radius, by its centre from the begin, and by its absolute centre.
-TEST(GcodeArcs, RadiusAndCenterTellTheSameArc) {
+TEST(GcodeArcs, RadiusAndCenterReportTheSameArc) {
   Random random(22);
   for (int i = 0; i < test::seeds(2000); ++i) {
     const bool left = random.index(2) == 0;
@@ -188,7 +188,7 @@ TEST(GcodeArcs, InverseTimeIsThatOfTheWholeArc) {
   for (const Block& block : program.blocks) sum += block.duration_s;
   EXPECT_NEAR(sum, 2.0 + 1.0, 1e-12);
   for (const Block& block : program.blocks) EXPECT_TRUE(block.line == 2 || block.line == 3);
-  expect_refused("G93 G0 X10 Y0 Z0\nG2 X0 Y10 I-10 F30\nX10 Y0 J-10\n", "part:3: F: is missing: under G93");
+  expect_rejected("G93 G0 X10 Y0 Z0\nG2 X0 Y10 I-10 F30\nX10 Y0 J-10\n", "part:3: F: is missing: under G93");
 }
 
 TEST(GcodeArcs, StepsBringAnArcBackToItsBegin) {
@@ -218,39 +218,39 @@ TEST(GcodeArcs, TakesWhatRoundingMakesOfAnArc) {
   EXPECT_NEAR(turned(half, Vector3d(10.0 * mm, 0.0, 0.0), Vector3d::UnitZ()), pi, 1e-12);
 }
 
-TEST(GcodeArcs, RefusesWithLineAndByHowMuch) {
+TEST(GcodeArcs, RejectsWithLineAndByHowMuch) {
   const std::string head = "G0 X0 Y0 Z0 F100\n";
-  expect_refused(head + "G2 X10 Y0 I5.3 J0\n",
-                 "part:2: I, J = 0.6 mm; is by how much the arc's radius at its end (4.7) differs from that at its "
-                 "begin (5.3); must be <= 0.0053. Centres count from the begin of the arc (G91.1)");
-  expect_refused(head + "G90.1 G2 X10 Y0 I5.3 J0\n", "Centres are absolute (G90.1)");
-  expect_refused(head + "G2 X1200 Y0 I600.3 J0\n", "must be <= 0.5");
-  expect_refused(head + "G20 G2 X1 Y0 I0.501 J0\n", "I, J = 0.002 in; is by how much");
-  expect_refused(head + "G2 X10 R4.9\n",
-                 "part:2: R = 4.9 mm; is too small by 0.1 mm: half the distance of the arc's ends is 5 mm");
-  expect_refused(head + "G2 R5\n",
-                 "part:2: R = 5 mm; does not define an arc that ends where it begins. Give its centre by I, J");
-  expect_refused(head + "G2 X1 R0\n", "R = 0 mm; must not be 0");
-  expect_refused(head + "G2 X1 R1 I1\n", "R = 1 mm; stands beside I, J or K");
-  expect_refused(head + "G2 X1 R2000000\n", "R: gives an arc a radius above 1 km");
-  expect_refused(head + "G2 X1\n", "part:2: I, J or R: is missing: an arc in the plane G17 needs its centre");
-  expect_refused(head + "G18 G2 X1\n", "K, I or R: is missing: an arc in the plane G18");
-  expect_refused(head + "G2 X1 I0.5 K1\n", "K = 1 mm; lies across the plane G17 of the arc");
-  expect_refused(head + "G90.1 G2 X1 I0.5 J0 K0\n", "K = 0 mm; lies across the plane G17");
-  expect_refused(head + "G90.1 G2 X1 I0.5\n", "I, J: must both be given where centres are absolute");
-  expect_refused(head + "G2 I0 J0\n", "lies where the arc begins or ends: it has no radius");
-  expect_refused(head + "G2 X1 I.5 P0\n", "P = 0; must be a whole number of turns");
-  expect_refused(head + "G2 X1 I.5 P1.5\n", "P = 1.5; must be a whole number of turns");
-  expect_refused(head + "G2 X1 I.5 L2\n", "L: is not read with an arc");
-  expect_refused(head + "G2 X1 I.5 Q2\n", "Q: is not read with an arc");
-  expect_refused(head + "G2 G3 X1 I.5\n", "is the second code of its modal group");
-  expect_refused(head + "G17 G18 G2 X1 I.5\n", "G = 18; is the second code of its modal group");
-  expect_refused(head + "G2 X1 I.5 F0\n", "F = 0 mm/min; must be > 0 for a move at feed");
-  expect_refused(head + "G2 X1 I.5 A3\n", "A = 3 deg; turns an axis of a machine that is not stated");
-  expect_refused(head + "G1 X1 I0 J0 K1\nG2 X2 I.5 A3\n",
-                 "A, B, C: stand in a program that gives its axis the other way", Machine::xyzac_trt);
-  expect_refused("G0 X0 Y0 F100\nG2 X1 I.5\n", "part:2: Z: is not known where the first arc begins");
-  const std::string said = test::refusal([&] { static_cast<void>(read(head + "G2 X0 I990000 P900\n", 1e-9)); });
+  expect_rejected(head + "G2 X10 Y0 I5.3 J0\n",
+                  "part:2: I, J = 0.6 mm; is by how much the arc's radius at its end (4.7) differs from that at its "
+                  "begin (5.3); must be <= 0.0053. Centres count from the begin of the arc (G91.1)");
+  expect_rejected(head + "G90.1 G2 X10 Y0 I5.3 J0\n", "Centres are absolute (G90.1)");
+  expect_rejected(head + "G2 X1200 Y0 I600.3 J0\n", "must be <= 0.5");
+  expect_rejected(head + "G20 G2 X1 Y0 I0.501 J0\n", "I, J = 0.002 in; is by how much");
+  expect_rejected(head + "G2 X10 R4.9\n",
+                  "part:2: R = 4.9 mm; is too small by 0.1 mm: half the distance of the arc's ends is 5 mm");
+  expect_rejected(head + "G2 R5\n",
+                  "part:2: R = 5 mm; does not define an arc that ends where it begins. Give its centre by I, J");
+  expect_rejected(head + "G2 X1 R0\n", "R = 0 mm; must not be 0");
+  expect_rejected(head + "G2 X1 R1 I1\n", "R = 1 mm; stands beside I, J or K");
+  expect_rejected(head + "G2 X1 R2000000\n", "R: gives an arc a radius above 1 km");
+  expect_rejected(head + "G2 X1\n", "part:2: I, J or R: is missing: an arc in the plane G17 needs its centre");
+  expect_rejected(head + "G18 G2 X1\n", "K, I or R: is missing: an arc in the plane G18");
+  expect_rejected(head + "G2 X1 I0.5 K1\n", "K = 1 mm; lies across the plane G17 of the arc");
+  expect_rejected(head + "G90.1 G2 X1 I0.5 J0 K0\n", "K = 0 mm; lies across the plane G17");
+  expect_rejected(head + "G90.1 G2 X1 I0.5\n", "I, J: must both be given where centres are absolute");
+  expect_rejected(head + "G2 I0 J0\n", "lies where the arc begins or ends: it has no radius");
+  expect_rejected(head + "G2 X1 I.5 P0\n", "P = 0; must be a whole number of turns");
+  expect_rejected(head + "G2 X1 I.5 P1.5\n", "P = 1.5; must be a whole number of turns");
+  expect_rejected(head + "G2 X1 I.5 L2\n", "L: is not read with an arc");
+  expect_rejected(head + "G2 X1 I.5 Q2\n", "Q: is not read with an arc");
+  expect_rejected(head + "G2 G3 X1 I.5\n", "is the second code of its modal group");
+  expect_rejected(head + "G17 G18 G2 X1 I.5\n", "G = 18; is the second code of its modal group");
+  expect_rejected(head + "G2 X1 I.5 F0\n", "F = 0 mm/min; must be > 0 for a move at feed");
+  expect_rejected(head + "G2 X1 I.5 A3\n", "A = 3 deg; turns an axis of a machine that is not stated");
+  expect_rejected(head + "G1 X1 I0 J0 K1\nG2 X2 I.5 A3\n",
+                  "A, B, C: stand in a program that gives its axis the other way", Machine::xyzac_trt);
+  expect_rejected("G0 X0 Y0 F100\nG2 X1 I.5\n", "part:2: Z: is not known where the first arc begins");
+  const std::string said = test::rejection([&] { static_cast<void>(read(head + "G2 X0 I990000 P900\n", 1e-9)); });
   EXPECT_NE(said.find("part:2: I, J: would make a move of "), std::string::npos) << said;
 }
 

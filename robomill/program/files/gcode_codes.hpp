@@ -28,8 +28,8 @@ enum class GcodeGroup : std::uint32_t {
 
 /// What is made of an M code.
 enum class McodeAct {
-  nothing,  ///< moves neither the tool nor its frame: left out
-  refused,  ///< would change what the program's positions or moves mean, or their order
+  nothing,   ///< moves neither the tool nor its frame: left out
+  rejected,  ///< would change what the program's positions or moves mean, or their order
   end,
   stop,           ///< the machine waits for its operator
   optional_stop,  ///< … where its switch says so

@@ -39,13 +39,13 @@ void GcodeReader::take_m(const GcodeWords::Word& word, Line& line) {
   const Mcode* const code = whole ? find_mcode(static_cast<int>(word.number)) : nullptr;
   if (code == nullptr) {
     const bool users = word.number >= 100.0 && word.number < 200.0;
-    refuse("M", word.number, "", "is not known to be harmless",
+    reject("M", word.number, "", "is not known to be harmless",
            users ? "In LinuxCNC it is the user's own code. Take it out if it moves nothing"
                  : "Take it out if it moves nothing");
   }
   switch (code->act) {
-    case McodeAct::refused:
-      refuse("M", word.number, "", fmt::format("is not carried out here: {}", meaning_of(*code)),
+    case McodeAct::rejected:
+      reject("M", word.number, "", fmt::format("is not carried out here: {}", meaning_of(*code)),
              "Let the CAM system write the program without it");
     case McodeAct::nothing:
       break;
@@ -98,10 +98,10 @@ void GcodeReader::take_m(const GcodeWords::Word& word, Line& line) {
 // The order of a line's words does not count.
 void GcodeReader::set_up(const Line& line) {
   if (line.begins_again && line.has('p')) {
-    refuse("M", 99.0, "", "jumps to another line", "Let the CAM system write the program without it");
+    reject("M", 99.0, "", "jumps to another line", "Let the CAM system write the program without it");
   }
   if (line.scaling_off && line.moves()) {
-    refuse("G", 50.0, "", "stands on a line with positions: on a lathe it would set the frame by them");
+    reject("G", 50.0, "", "stands on a line with positions: on a lathe it would set the frame by them");
   }
   constexpr double unknown = -1.0;
   if (line.tool) prepared_tool_ = *line.tool;
@@ -136,23 +136,23 @@ void GcodeReader::begin_cutting() {
 }
 
 void GcodeReader::check_setup(const Line& line) const {
-  const auto refuse_of = [&](const auto& said, const char* what, const char* hint) {
+  const auto reject_of = [&](const auto& said, const char* what, const char* hint) {
     throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file_, said.line),
                                            .field = said.code,
                                            .rule = fmt::format("{}, and line {} moves", what, line_),
                                            .hint = hint});
   };
   if (cutting_ && tool_.value != cutting_tool_) {
-    refuse_of(tool_, "mounts another tool than the one that has cut, whose length is not known here",
+    reject_of(tool_, "mounts another tool than the one that has cut, whose length is not known here",
               "Write a program for each tool");
   }
   if (cutting_ && length_.value != cutting_length_) {
-    refuse_of(length_, "changes the tool's length after moves at feed",
+    reject_of(length_, "changes the tool's length after moves at feed",
               "One length holds from the first move at feed on");
   }
   const bool turned = line.rotary[0] || line.rotary[1] || line.rotary[2] || !rotary_deg_.isZero();
   if (center_point_.value == CenterPoint::off && turned) {
-    refuse_of(center_point_, "turns the tool centre point off: positions are the machine's then, not the tip's",
+    reject_of(center_point_, "turns the tool centre point off: positions are the machine's then, not the tip's",
               "Let the CAM system write positions of the tip");
   }
 }

@@ -1,4 +1,4 @@
-// M codes, and G codes that change what positions mean: obeyed or refused, never skipped.
+// M codes, and G codes that change what positions mean: obeyed or rejected, never skipped.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ std::string said_of(const std::string& text) {
   return "";
 }
 
-void expect_refused(const std::string& text, const std::string& words) {
+void expect_rejected(const std::string& text, const std::string& words) {
   const std::string said = said_of(text);
   EXPECT_NE(said.find(words), std::string::npos) << text << "\n" << said;
 }
@@ -50,7 +50,7 @@ TEST(GcodeMachine, KnowsEachMcodeOnce) {
   EXPECT_EQ(find_mcode(999), nullptr);
 }
 
-TEST(GcodeMachine, EveryMcodeIsReadOrRefusedWithItsLine) {
+TEST(GcodeMachine, EveryMcodeIsReadOrRejectedWithItsLine) {
   const std::set<int> read_codes = {0,  1,  2,  3,  4,  5,  7,  8,  9,  10, 11, 12, 19,  30,  31,  33, 34, 35,
                                     40, 41, 42, 43, 44, 45, 48, 49, 51, 52, 53, 62, 63,  64,  65,  67, 68, 70,
                                     71, 73, 74, 76, 77, 80, 81, 83, 84, 88, 89, 99, 128, 129, 428, 429};
@@ -61,29 +61,29 @@ TEST(GcodeMachine, EveryMcodeIsReadOrRefusedWithItsLine) {
       EXPECT_EQ(said_of(text), "") << code;
       EXPECT_EQ(said_of(text).empty() && read(text).blocks.size() == 1, ends.contains(code)) << code;
     } else if (code == 6 || code == 16) {
-      expect_refused(text, "part:3: M6: mounts another tool");
+      expect_rejected(text, "part:3: M6: mounts another tool");
     } else {
-      expect_refused(text, fmt::format("part:3: M = {}; is not ", code));
+      expect_rejected(text, fmt::format("part:3: M = {}; is not ", code));
     }
   }
-  expect_refused(head + "M3.5\n", "M = 3.5; is not known to be harmless");
-  expect_refused(head + "M-3\n", "M = -3; is not known to be harmless");
+  expect_rejected(head + "M3.5\n", "M = 3.5; is not known to be harmless");
+  expect_rejected(head + "M-3\n", "M = -3; is not known to be harmless");
 }
 
-TEST(GcodeMachine, SaysWhatARefusedCodeDoes) {
-  expect_refused(
+TEST(GcodeMachine, SaysWhatARejectedCodeDoes) {
+  expect_rejected(
       head + "M98 P1\n",
       "part:3: M = 98; is not carried out here: calls a subprogram (LinuxCNC, Fanuc and Haas), machines open "
       "corners completely (Heidenhain)");
-  expect_refused(head + "M97 P1\n", "calls a subprogram within the program (Fanuc and Haas)");
-  expect_refused(head + "M198 P1\n", "calls a subprogram of another file");
-  expect_refused(head + "M126\n", "turns rotary axes the shorter way (Heidenhain)");
-  expect_refused(head + "M101\n", "is not known to be harmless. In LinuxCNC it is the user's own code");
-  expect_refused(head + "M99 P10\n", "M = 99; jumps to another line");
+  expect_rejected(head + "M97 P1\n", "calls a subprogram within the program (Fanuc and Haas)");
+  expect_rejected(head + "M198 P1\n", "calls a subprogram of another file");
+  expect_rejected(head + "M126\n", "turns rotary axes the shorter way (Heidenhain)");
+  expect_rejected(head + "M101\n", "is not known to be harmless. In LinuxCNC it is the user's own code");
+  expect_rejected(head + "M99 P10\n", "M = 99; jumps to another line");
 }
 
-// All G codes from 0 to 999.9: those that are read, those that move nothing, and every other one refused.
-TEST(GcodeMachine, EveryGcodeIsReadOrRefusedWithItsLine) {
+// All G codes from 0 to 999.9: those that are read, those that move nothing, and every other one rejected.
+TEST(GcodeMachine, EveryGcodeIsReadOrRejectedWithItsLine) {
   const std::set<int> read_codes = {0,   10,  170, 180, 190, 200, 210, 800, 900, 901, 910, 911, 930, 940, 150,  400,
                                     490, 500, 610, 611, 640, 690, 921, 922, 970, 980, 990, 430, 434, 435, 2340, 540};
   for (int code = 0; code < 10000; ++code) {
@@ -178,25 +178,25 @@ TEST(GcodeMachine, StopsAreDwellsAfterTheirLine) {
       "a trajectory.");
 }
 
-TEST(GcodeMachine, AnotherToolIsRefusedOnceOneHasCut) {
+TEST(GcodeMachine, AnotherToolIsRejectedOnceOneHasCut) {
   EXPECT_EQ(said_of("T1 M6\nG0 X0 Y0 Z0\nT2\nM6\nG1 X1 F60\nM6 T2\nX2\nT3 (made ready)\nX3\nM6\nM30\n"), "");
-  expect_refused(
+  expect_rejected(
       "T1 M6\nG0 X0 Y0 Z0\nG1 X1 F60\nG0 Z5\nM6 T2\nM3\nG0 X5\n",
       "part:5: M6: mounts another tool than the one that has cut, whose length is not known here, and line 7 "
       "moves. Write a program for each tool");
-  expect_refused("T1 M6\nG0 X0 Y0 Z0\nG2 X2 I1 F60\nT2\nM16\nG3 X0 I-1\n", "part:5: M6: mounts another tool");
+  expect_rejected("T1 M6\nG0 X0 Y0 Z0\nG2 X2 I1 F60\nT2\nM16\nG3 X0 I-1\n", "part:5: M6: mounts another tool");
 }
 
 TEST(GcodeMachine, TheToolsLengthHoldsFromTheFirstMoveAtFeed) {
   EXPECT_EQ(said_of("G49\nG0 X0 Y0\nG43 H1 Z5\nG1 X1 F60\nG43 H1 X2\nG49\nM30\n"), "");
   EXPECT_EQ(said_of("G0 X0 Y0 Z0\nG49 G1 X1 F60\nG17 G49 G80\nG1 X2\n"), "") << "no length was on";
-  expect_refused("G43 H1 G0 X0 Y0 Z0\nG1 X1 F60\nG49\nG0 Z50\n",
-                 "part:3: G49: changes the tool's length after moves at feed, and line 4 moves");
-  expect_refused("G43 H1 G0 X0 Y0 Z0\nG1 X1 F60\nG43 H21 X2\n", "part:3: G43: changes the tool's length");
-  expect_refused("G0 X0 Y0 Z0\nG1 X1 F60\nG43 H1 Z2\n", "part:3: G43: changes the tool's length");
+  expect_rejected("G43 H1 G0 X0 Y0 Z0\nG1 X1 F60\nG49\nG0 Z50\n",
+                  "part:3: G49: changes the tool's length after moves at feed, and line 4 moves");
+  expect_rejected("G43 H1 G0 X0 Y0 Z0\nG1 X1 F60\nG43 H21 X2\n", "part:3: G43: changes the tool's length");
+  expect_rejected("G0 X0 Y0 Z0\nG1 X1 F60\nG43 H1 Z2\n", "part:3: G43: changes the tool's length");
 }
 
-TEST(GcodeMachine, WithoutTheToolCentrePointTurnedAxesAreRefused) {
+TEST(GcodeMachine, WithoutTheToolCentrePointTurnedAxesAreRejected) {
   for (const auto& [on, off] : {std::pair("M428", "M429"), {"M128", "M129"}, {"G43.4 H1", "G49"}, {"G234", "G49"}}) {
     const std::string turned = fmt::format("{}\nG0 X0 Y0 Z0 A-30 C5\nG1 X1 F60\n{}\n", on, off);
     const Program program = read(turned + "M30\n");
@@ -207,9 +207,9 @@ TEST(GcodeMachine, WithoutTheToolCentrePointTurnedAxesAreRefused) {
     }
     EXPECT_NE(said_of(turned + "G0 Z50\n").find("part:4: "), std::string::npos) << said_of(turned + "G0 Z50\n");
   }
-  expect_refused("M128\nG0 X0 Y0 Z0 A-30 C5\nM129\nG0 Z50\n",
-                 "part:3: M129: turns the tool centre point off: positions are the machine's then, not the tip's, and "
-                 "line 4 moves");
+  expect_rejected("M128\nG0 X0 Y0 Z0 A-30 C5\nM129\nG0 Z50\n",
+                  "part:3: M129: turns the tool centre point off: positions are the machine's then, not the tip's, and "
+                  "line 4 moves");
   EXPECT_EQ(said_of("M129\nG0 X0 Y0 Z0\nG1 X1 F60\n"), "") << "nothing is turned";
   const Program program = read("G0 X0 Y0 Z0 A0 C0\nG1 X1 F60\nG1 X2 A-30\nG1 X3\n");
   ASSERT_EQ(program.notes.size(), 1U);

@@ -91,7 +91,7 @@ void GcodeReader::read(std::string_view statement) {
 
 void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
   if (line.has(word.letter) && word.letter != 'g' && word.letter != 'm') {
-    refuse(upper(word.letter), word.number, "", "comes twice on one line");
+    reject(upper(word.letter), word.number, "", "comes twice on one line");
   }
   line.letters |= 1U << letter_index(word.letter);
   switch (word.letter) {
@@ -120,7 +120,7 @@ void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
       line.p = word;
       return;
     case 's':
-      if (!(word.number >= 0.0)) refuse("S", word.number, "rpm", "must be >= 0");
+      if (!(word.number >= 0.0)) reject("S", word.number, "rpm", "must be >= 0");
       spindle_speed_rad_per_s_ = word.number * units::rpm;
       return;
     case 'g':
@@ -149,10 +149,10 @@ void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
         line.leave_out(word);
         return;
       }
-      refuse("O", word.number, "", "is a subroutine or its control, which are not read",
+      reject("O", word.number, "", "is a subroutine or its control, which are not read",
              "Let the CAM system write the program out");
     default:
-      refuse(upper(word.letter), word.number, "", "is a word not known here",
+      reject(upper(word.letter), word.number, "", "is a word not known here",
              line.dwells ? "Is it the time of the dwell? Give that as P, in seconds"
                          : "Known are A B C D F G H I J K L M N P Q R S T X Y Z");
   }
@@ -161,7 +161,7 @@ void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
 void GcodeReader::claim(GcodeGroup group, const GcodeWords::Word& word, Line& line) const {
   const auto bit = static_cast<std::uint32_t>(group);
   if (group != GcodeGroup::other && (line.groups & bit) != 0) {
-    refuse("G", word.number, "", "is the second code of its modal group on this line", "Only one of them can hold");
+    reject("G", word.number, "", "is the second code of its modal group on this line", "Only one of them can hold");
   }
   line.groups |= bit;
 }
@@ -170,7 +170,7 @@ void GcodeReader::take_g(const GcodeWords::Word& word, Line& line) {
   const double tenths = 10.0 * word.number;
   const double whole = std::round(tenths);
   if (!(whole >= 0.0 && whole < 10000.0 && std::abs(tenths - whole) < 1e-6)) {
-    refuse("G", word.number, "", "is no G code");
+    reject("G", word.number, "", "is no G code");
   }
   const int code = static_cast<int>(whole);
   if (set_mode(code, word, line)) return;
@@ -180,7 +180,7 @@ void GcodeReader::take_g(const GcodeWords::Word& word, Line& line) {
   } else {
     const GcodeGroup* const group = still_gcode(code);
     if (group == nullptr) {
-      refuse("G", word.number, "", "is not read: it may move the tool or its frame", gcode_hint(code));
+      reject("G", word.number, "", "is not read: it may move the tool or its frame", gcode_hint(code));
     }
     claim(*group, word, line);
     if (*group == GcodeGroup::length) {
@@ -254,10 +254,10 @@ bool GcodeReader::set_mode(int code, const GcodeWords::Word& word, Line& line) {
 
 void GcodeReader::choose_system(int code, const GcodeWords::Word& word) {
   const bool numbered = code <= 590 ? code % 10 == 0 : true;  // G54 … G59, G59.1 … G59.3
-  if (!numbered) refuse("G", word.number, "", "is no G code");
+  if (!numbered) reject("G", word.number, "", "is no G code");
   const bool moved = known_[0] || known_[1] || known_[2];
   if (moved && code != system_ && !(system_ == 0 && code == 540)) {
-    refuse("G", word.number, "", "changes the coordinate system within the program",
+    reject("G", word.number, "", "changes the coordinate system within the program",
            "One system holds from the first position on; where another one lies in it is not known here");
   }
   system_ = code;
@@ -272,10 +272,10 @@ void GcodeReader::take_feed(const Line& line) {
 
 void GcodeReader::wait(const Line& line) {
   if (line.moves()) {
-    refuse("G", 4.0, "", "stands on a line with positions", "Is one of them the time of the dwell? Give that as P");
+    reject("G", 4.0, "", "stands on a line with positions", "Is one of them the time of the dwell? Give that as P");
   }
   if (!line.p) {
-    refuse("P", std::nullopt, "", "is missing: the time of the dwell G4, in seconds",
+    reject("P", std::nullopt, "", "is missing: the time of the dwell G4, in seconds",
            line.feed || line.has('s') ? "F and S are a feed and a speed here" : "");
   }
   constexpr double long_s = 100.0;
@@ -296,7 +296,7 @@ Eigen::Vector3d GcodeReader::position_after(const Line& line) {
     if (!line.position[i]) continue;
     const auto axis = static_cast<Eigen::Index>(i);
     if (incremental_ && !known_[i]) {
-      refuse(names[i], *line.position[i], "", "is a step (G91) from a position that no line has given",
+      reject(names[i], *line.position[i], "", "is a step (G91) from a position that no line has given",
              "Begin with G90 and a G0 to X, Y and Z");
     }
     position[axis] = *line.position[i] * unit_m() + (incremental_ ? position[axis] : 0.0);
@@ -310,7 +310,7 @@ Eigen::Vector3d GcodeReader::axis_of_vector(const Line& line) const {
   static constexpr std::array<const char*, 3> names = {"I", "J", "K"};
   for (std::size_t i = 0; i < 3; ++i) {
     if (!line.vector[i]) {
-      refuse(names[i], std::nullopt, "", "is missing; I, J and K come together, the axis of the tool",
+      reject(names[i], std::nullopt, "", "is missing; I, J and K come together, the axis of the tool",
              "With G2 and G3 they are the centre of the arc");
     }
   }
@@ -322,17 +322,17 @@ void GcodeReader::turn_rotary(const Line& line) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (!line.rotary[i]) continue;
     if (!reading_.machine) {
-      refuse(names[i], *line.rotary[i], "deg", "turns an axis of a machine that is not stated",
+      reject(names[i], *line.rotary[i], "deg", "turns an axis of a machine that is not stated",
              "Give program.machine: \"xyzac-trt\", \"xyzbc-trt\", \"xyzac-head\" or \"xyzbc-head\"");
     }
     if (!has_axis(*reading_.machine, i)) {
-      refuse(names[i], *line.rotary[i], "deg", "turns an axis that the stated machine does not have",
+      reject(names[i], *line.rotary[i], "deg", "turns an axis that the stated machine does not have",
              "Is it the other machine, with A in place of B or B in place of A?");
     }
     const auto axis = static_cast<Eigen::Index>(i);
     rotary_deg_[axis] = *line.rotary[i] + (incremental_ ? rotary_deg_[axis] : 0.0);
     if (!(std::abs(rotary_deg_[axis]) <= 1e6)) {
-      refuse(names[i], *line.rotary[i], "deg", "must lie within a million degrees");
+      reject(names[i], *line.rotary[i], "deg", "must lie within a million degrees");
     }
   }
 }
@@ -346,7 +346,7 @@ Eigen::Vector3d GcodeReader::axis_after(const Line& line) {
   by_rotary_ = by_rotary_ || any(line.rotary);
   by_vector_ = by_vector_ || any(line.vector);
   if (by_rotary_ && by_vector_) {
-    refuse(any(line.vector) ? "I, J, K" : "A, B, C", std::nullopt, "",
+    reject(any(line.vector) ? "I, J, K" : "A, B, C", std::nullopt, "",
            "stand in a program that gives its axis the other way as well", "Use A, B and C or I, J and K");
   }
   if (any(line.vector)) return axis_of_vector(line);
@@ -358,14 +358,14 @@ Eigen::Vector3d GcodeReader::axis_after(const Line& line) {
 double GcodeReader::feed_duration_s(const Line& line, double length_m, double turn_deg) const {
   if (feed_mode_ == FeedMode::inverse_time) {
     if (!line.feed) {
-      refuse("F", std::nullopt, "", "is missing: under G93 every move at feed gives its own",
+      reject("F", std::nullopt, "", "is missing: under G93 every move at feed gives its own",
              "F is 1 / minutes of the move; is the program meant to be in G94?");
     }
-    if (!(*line.feed > 0.0)) refuse("F", *line.feed, "1/min", "must be > 0 for a move at feed");
+    if (!(*line.feed > 0.0)) reject("F", *line.feed, "1/min", "must be > 0 for a move at feed");
     return units::minute / *line.feed;
   }
-  if (!feed_) refuse("F", std::nullopt, "", "is missing: no line up to this move at feed gives one under G94");
-  if (!(*feed_ > 0.0)) refuse("F", *feed_, feed_in_inches_ ? "in/min" : "mm/min", "must be > 0 for a move at feed");
+  if (!feed_) reject("F", std::nullopt, "", "is missing: no line up to this move at feed gives one under G94");
+  if (!(*feed_ > 0.0)) reject("F", *feed_, feed_in_inches_ ? "in/min" : "mm/min", "must be > 0 for a move at feed");
   if (length_m > 0.0) return units::minute * length_m / (*feed_ * (feed_in_inches_ ? units::inch : units::mm));
   return units::minute * turn_deg / *feed_;
 }
@@ -374,7 +374,7 @@ void GcodeReader::go(const Line& line) {
   check_setup(line);
   switch (motion_) {
     case Motion::none:
-      refuse("G", std::nullopt, "", "is missing: none of G0 to G3 holds where this line gives a position");
+      reject("G", std::nullopt, "", "is missing: none of G0 to G3 holds where this line gives a position");
     case Motion::rapid:
     case Motion::feed:
       go_straight(line);
@@ -387,13 +387,13 @@ void GcodeReader::go(const Line& line) {
 
 void GcodeReader::go_straight(const Line& line) {
   if (line.radius) {
-    refuse("R", *line.radius, unit_name(), "stands on a line that is no arc", "Is a G2 or G3 missing before it?");
+    reject("R", *line.radius, unit_name(), "stands on a line that is no arc", "Is a G2 or G3 missing before it?");
   }
   const Eigen::Vector3d rotary_before_deg = rotary_deg_;
   const Pose end = {.tip_m = position_after(line), .axis = axis_after(line)};
   const bool complete = known_[0] && known_[1] && known_[2];
   if (!complete && motion_ == Motion::feed) {
-    refuse(!known_[0]   ? "X"
+    reject(!known_[0]   ? "X"
            : !known_[1] ? "Y"
                         : "Z",
            std::nullopt, "", "is not known where the first move at feed begins", "Begin with a G0 to X, Y and Z");
@@ -433,7 +433,7 @@ void GcodeReader::check_shortest(const RotaryMove& turn) const {
   const double turn_deg = (turn.end_rad.z() - turn.begin_rad.z()) / units::deg;
   const bool leaves = turn.parts(reading_.axis_tolerance_rad) > 1.0;
   if (motion_ != Motion::feed || std::abs(turn_deg) < half_deg || !leaves) return;
-  refuse("C", io::round_15(turn_deg), "deg", "turns by half a circle or more, which no shortest way does",
+  reject("C", io::round_15(turn_deg), "deg", "turns by half a circle or more, which no shortest way does",
          "program.rotary = \"machine\" turns the axes as far as the words say");
 }
 

@@ -112,7 +112,7 @@ TEST(GcodeRotary, TheShortestWayIsAnOption) {
   ASSERT_EQ(program.blocks.size(), 2U);
   EXPECT_EQ(program.blocks[0].axis_deviation_rad, 0.0);
   const auto said = [&](const std::string& text) {
-    return test::refusal([&] { static_cast<void>(read(head + text, Rotary::great_circle)); });
+    return test::rejection([&] { static_cast<void>(read(head + text, Rotary::great_circle)); });
   };
   EXPECT_NE(said("G1 X20 C360 F600\n")
                 .find("part:3: C = 360 deg; turns by half a circle or more, which no shortest "

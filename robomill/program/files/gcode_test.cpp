@@ -22,8 +22,8 @@ Program read(const std::string& text, std::optional<Machine> machine = {}) {
   return read_gcode(folder.file("part.ngc", text), machine);
 }
 
-void expect_refused(const std::string& text, const std::string& words, std::optional<Machine> machine = {}) {
-  const std::string said = test::refusal([&] { static_cast<void>(read(text, machine)); });
+void expect_rejected(const std::string& text, const std::string& words, std::optional<Machine> machine = {}) {
+  const std::string said = test::rejection([&] { static_cast<void>(read(text, machine)); });
   EXPECT_NE(said.find(words), std::string::npos) << text << "\n" << said;
 }
 
@@ -121,67 +121,67 @@ TEST(Gcode, LeavesOutWhatDoesNotMove) {
   EXPECT_EQ(program.skipped[2].what, "G43 H1");
 }
 
-TEST(Gcode, RefusesWithLineWordAndRule) {
+TEST(Gcode, RejectsWithLineWordAndRule) {
   const std::string head = "G0 X0 Y0 Z0\n";
-  expect_refused(head + "G1 X1\n", "part.ngc:2: F: is missing: no line up to this move at feed gives one");
-  expect_refused(head + "G1 X1 F0\n", "part.ngc:2: F = 0 mm/min; must be > 0 for a move at feed");
-  expect_refused(head + "G1 X1 F-3\n", "part.ngc:2: F = -3; must be > 0");
-  expect_refused(head + "G93 G1 X1 F2\nX2\n", "part.ngc:3: F: is missing: under G93 every move at feed");
-  expect_refused(head + "G1 X1 F5\nG93 X2\n", "part.ngc:3: F: is missing");
-  expect_refused(head + "G93 G1 X1 F2\nG94 X2\n", "part.ngc:3: F: is missing");
-  expect_refused(head + "G0 G1 X1\n", "part.ngc:2: G = 1; is the second code of its modal group");
-  expect_refused(head + "G20 G21\n", "G = 21; is the second code");
-  expect_refused(head + "G1 X1 X2 F1\n", "part.ngc:2: X = 2; comes twice");
-  expect_refused(head + "G1 Xnan F1\n", "part.ngc:2: \"xnanf1\": must be a letter and a number");
-  expect_refused(head + "G1 Xinf F1\n", "must be a letter and a number");
-  expect_refused(head + "G1 X--1 F1\n", "must be a letter and a number");
-  expect_refused(head + "G1 X+-1 F1\n", "must be a letter and a number");
-  expect_refused(head + "G1 X F1\n", "must be a letter and a number");
-  expect_refused(head + "G1 X1e3 F1\n", "E = 3; is a word not known here");
-  expect_refused(head + "G1 X1 U2 F1\n", "U = 2; is a word not known here");
-  expect_refused(head + "G1 X" + std::string(400, '9') + " F1\n", "that a double can hold");
-  expect_refused(head + "G1 X9999999 F1\n", "X = 1e+07 mm; must lie within 1 km");
-  expect_refused(head + "G5 X1 I1 J0 P1 Q1\n",
-                 "part.ngc:2: G = 5; is not read: it may move the tool or its frame. Let the CAM");
-  expect_refused(head + "G93 G1 X1 F0\n", "part.ngc:2: F = 0 1/min; must be > 0 for a move at feed");
-  expect_refused(head + "G1 X1 F2000000000\n", "F = 2e+09; is too large for any machine");
-  expect_refused(head + "G58.5\n", "G = 58.5; is no G code");
-  expect_refused(head + "G43.1 Z5\n", "It would move the tip by the words that come with it");
-  expect_refused(head + "G41 D1\n", "path of the tool's tip");
-  expect_refused(head + "G68 R30\n", "what the words of positions mean");
-  expect_refused(head + "G95\n", "Use G93 or G94");
-  expect_refused(head + "G1 X1 R2 F1\n", "part.ngc:2: R = 2 mm; stands on a line that is no arc");
-  expect_refused(head + "G92 X0\n", "It would move the program's frame");
-  expect_refused(head + "G10 L2 P1 X1\n", "G = 10; is not read");
-  expect_refused(head + "G28\n", "G = 28; is not read");
-  expect_refused(head + "G81 X1 Z-1 R1 F1\n", "cycles");
-  expect_refused(head + "G55\n", "G = 55; changes the coordinate system");
-  expect_refused(head + "G1234567\n", "is no G code");
-  expect_refused(head + "G1.05 X1\n", "is no G code");
-  expect_refused(head + "G4 X2\n", "part.ngc:2: G = 4; stands on a line with positions");
-  expect_refused(head + "G1 X#1 F1\n", "must be a letter and a number");
-  expect_refused(head + "#1=5\n", "is a parameter or an expression");
-  expect_refused(head + "o100 call [1]\n", "part.ngc:2: \"call[1]\": must be a letter and a number");
-  expect_refused(head + "o100 X1\n", "O = 100; is a subroutine or its control");
-  expect_refused(head + "osub call\n", "is a subroutine");
-  expect_refused(head + "G1 X1 F1 (half\n", "is a comment that does not end");
-  expect_refused(head + "S-1\n", "S = -1 rpm; must be >= 0");
-  expect_refused(head + "\xC3\xA4\n", "\"\\xc3\\xa4\": must begin with a letter");
-  expect_refused("X1 Y1 Z1\n", "part.ngc:1: G: is missing: none of G0 to G3 holds");
-  expect_refused("G0 X1 Y1\nG1 X2 F1\n", "part.ngc:2: Z: is not known where the first move at feed begins");
-  expect_refused("G91 G0 X1\n", "X = 1; is a step (G91) from a position");
-  expect_refused("(nothing)\n", "part.ngc: holds no complete position");
+  expect_rejected(head + "G1 X1\n", "part.ngc:2: F: is missing: no line up to this move at feed gives one");
+  expect_rejected(head + "G1 X1 F0\n", "part.ngc:2: F = 0 mm/min; must be > 0 for a move at feed");
+  expect_rejected(head + "G1 X1 F-3\n", "part.ngc:2: F = -3; must be > 0");
+  expect_rejected(head + "G93 G1 X1 F2\nX2\n", "part.ngc:3: F: is missing: under G93 every move at feed");
+  expect_rejected(head + "G1 X1 F5\nG93 X2\n", "part.ngc:3: F: is missing");
+  expect_rejected(head + "G93 G1 X1 F2\nG94 X2\n", "part.ngc:3: F: is missing");
+  expect_rejected(head + "G0 G1 X1\n", "part.ngc:2: G = 1; is the second code of its modal group");
+  expect_rejected(head + "G20 G21\n", "G = 21; is the second code");
+  expect_rejected(head + "G1 X1 X2 F1\n", "part.ngc:2: X = 2; comes twice");
+  expect_rejected(head + "G1 Xnan F1\n", "part.ngc:2: \"xnanf1\": must be a letter and a number");
+  expect_rejected(head + "G1 Xinf F1\n", "must be a letter and a number");
+  expect_rejected(head + "G1 X--1 F1\n", "must be a letter and a number");
+  expect_rejected(head + "G1 X+-1 F1\n", "must be a letter and a number");
+  expect_rejected(head + "G1 X F1\n", "must be a letter and a number");
+  expect_rejected(head + "G1 X1e3 F1\n", "E = 3; is a word not known here");
+  expect_rejected(head + "G1 X1 U2 F1\n", "U = 2; is a word not known here");
+  expect_rejected(head + "G1 X" + std::string(400, '9') + " F1\n", "that a double can hold");
+  expect_rejected(head + "G1 X9999999 F1\n", "X = 1e+07 mm; must lie within 1 km");
+  expect_rejected(head + "G5 X1 I1 J0 P1 Q1\n",
+                  "part.ngc:2: G = 5; is not read: it may move the tool or its frame. Let the CAM");
+  expect_rejected(head + "G93 G1 X1 F0\n", "part.ngc:2: F = 0 1/min; must be > 0 for a move at feed");
+  expect_rejected(head + "G1 X1 F2000000000\n", "F = 2e+09; is too large for any machine");
+  expect_rejected(head + "G58.5\n", "G = 58.5; is no G code");
+  expect_rejected(head + "G43.1 Z5\n", "It would move the tip by the words that come with it");
+  expect_rejected(head + "G41 D1\n", "path of the tool's tip");
+  expect_rejected(head + "G68 R30\n", "what the words of positions mean");
+  expect_rejected(head + "G95\n", "Use G93 or G94");
+  expect_rejected(head + "G1 X1 R2 F1\n", "part.ngc:2: R = 2 mm; stands on a line that is no arc");
+  expect_rejected(head + "G92 X0\n", "It would move the program's frame");
+  expect_rejected(head + "G10 L2 P1 X1\n", "G = 10; is not read");
+  expect_rejected(head + "G28\n", "G = 28; is not read");
+  expect_rejected(head + "G81 X1 Z-1 R1 F1\n", "cycles");
+  expect_rejected(head + "G55\n", "G = 55; changes the coordinate system");
+  expect_rejected(head + "G1234567\n", "is no G code");
+  expect_rejected(head + "G1.05 X1\n", "is no G code");
+  expect_rejected(head + "G4 X2\n", "part.ngc:2: G = 4; stands on a line with positions");
+  expect_rejected(head + "G1 X#1 F1\n", "must be a letter and a number");
+  expect_rejected(head + "#1=5\n", "is a parameter or an expression");
+  expect_rejected(head + "o100 call [1]\n", "part.ngc:2: \"call[1]\": must be a letter and a number");
+  expect_rejected(head + "o100 X1\n", "O = 100; is a subroutine or its control");
+  expect_rejected(head + "osub call\n", "is a subroutine");
+  expect_rejected(head + "G1 X1 F1 (half\n", "is a comment that does not end");
+  expect_rejected(head + "S-1\n", "S = -1 rpm; must be >= 0");
+  expect_rejected(head + "\xC3\xA4\n", "\"\\xc3\\xa4\": must begin with a letter");
+  expect_rejected("X1 Y1 Z1\n", "part.ngc:1: G: is missing: none of G0 to G3 holds");
+  expect_rejected("G0 X1 Y1\nG1 X2 F1\n", "part.ngc:2: Z: is not known where the first move at feed begins");
+  expect_rejected("G91 G0 X1\n", "X = 1; is a step (G91) from a position");
+  expect_rejected("(nothing)\n", "part.ngc: holds no complete position");
 }
 
-TEST(Gcode, RefusesAxesThatTheMachineDoesNotHave) {
+TEST(Gcode, RejectsAxesThatTheMachineDoesNotHave) {
   const std::string head = "G0 X0 Y0 Z0\n";
-  expect_refused(head + "G0 A1\n", "part.ngc:2: A = 1 deg; turns an axis of a machine that is not stated");
-  expect_refused(head + "G0 B1\n", "B = 1 deg; turns an axis that the stated machine does not have",
-                 Machine::xyzac_trt);
-  expect_refused(head + "G0 A1\n", "does not have", Machine::xyzbc_head);
-  expect_refused(head + "G0 I1 J0\n", "K: is missing; I, J and K come together");
-  expect_refused(head + "G0 I3 J4 K0\n", "I, J, K = 5; must be a vector of length 1");
-  expect_refused(head + "G0 I0 J0 K1\nG0 A1\n", "the other way as well", Machine::xyzac_trt);
+  expect_rejected(head + "G0 A1\n", "part.ngc:2: A = 1 deg; turns an axis of a machine that is not stated");
+  expect_rejected(head + "G0 B1\n", "B = 1 deg; turns an axis that the stated machine does not have",
+                  Machine::xyzac_trt);
+  expect_rejected(head + "G0 A1\n", "does not have", Machine::xyzbc_head);
+  expect_rejected(head + "G0 I1 J0\n", "K: is missing; I, J and K come together");
+  expect_rejected(head + "G0 I3 J4 K0\n", "I, J, K = 5; must be a vector of length 1");
+  expect_rejected(head + "G0 I0 J0 K1\nG0 A1\n", "the other way as well", Machine::xyzac_trt);
   EXPECT_EQ(test::field_of([] { static_cast<void>(parse_machine("xyzab")); }), "program.machine");
   EXPECT_EQ(parse_machine("xyzbc-head"), Machine::xyzbc_head);
 }
@@ -205,12 +205,12 @@ TEST(Gcode, ADwellStandsWhereTheLastMoveEnded) {
             "1 dwell of up to 150 s, the first in line 5: P counts in seconds here, on some controllers in ms.");
 
   const std::string head = "G0 X0 Y0 Z0\n";
-  expect_refused(head + "G4\n", "part.ngc:2: P: is missing: the time of the dwell G4, in seconds");
-  expect_refused(head + "G4 F2\n", "in seconds. F and S are a feed and a speed here");
-  expect_refused(head + "G4 S2\n", "F and S are a feed and a speed here");
-  expect_refused(head + "G4 U2\n", "U = 2; is a word not known here. Is it the time of the dwell? Give that as P");
-  expect_refused(head + "G4 P-1\n", "P = -1 s; must lie between 0 and a day");
-  expect_refused(head + "G4 P90000\n", "P = 90000 s; must lie between 0 and a day");
+  expect_rejected(head + "G4\n", "part.ngc:2: P: is missing: the time of the dwell G4, in seconds");
+  expect_rejected(head + "G4 F2\n", "in seconds. F and S are a feed and a speed here");
+  expect_rejected(head + "G4 S2\n", "F and S are a feed and a speed here");
+  expect_rejected(head + "G4 U2\n", "U = 2; is a word not known here. Is it the time of the dwell? Give that as P");
+  expect_rejected(head + "G4 P-1\n", "P = -1 s; must lie between 0 and a day");
+  expect_rejected(head + "G4 P90000\n", "P = 90000 s; must lie between 0 and a day");
 }
 
 TEST(Gcode, AxesAreMadeUnitVectorsWithANoteWhereTheyNearlyAre) {
@@ -222,9 +222,9 @@ TEST(Gcode, AxesAreMadeUnitVectorsWithANoteWhereTheyNearlyAre) {
   for (const Block& block : program.blocks) EXPECT_NEAR(block.end.axis.norm(), 1.0, 1e-15);
   ASSERT_EQ(program.notes.size(), 1U);
   EXPECT_EQ(program.notes[0], "2 axes made a unit vector, off by up to 0.00056, the first in line 2.");
-  expect_refused("G0 X0 Y0 Z0 I0 J0 K1.0011\n", "I, J, K = 1.0011; must be a vector of length 1, within 1e-3");
-  expect_refused("G0 X0 Y0 Z0 I0 J0 K0\n", "I, J, K = 0; must be a vector of length 1");
-  expect_refused("G0 X0 Y0 Z0 I0 J0 K1\nG1 I0 J0 K-1 F1\n", "part.ngc:2: axis = 180 deg; turns by half a circle");
+  expect_rejected("G0 X0 Y0 Z0 I0 J0 K1.0011\n", "I, J, K = 1.0011; must be a vector of length 1, within 1e-3");
+  expect_rejected("G0 X0 Y0 Z0 I0 J0 K0\n", "I, J, K = 0; must be a vector of length 1");
+  expect_rejected("G0 X0 Y0 Z0 I0 J0 K1\nG1 I0 J0 K-1 F1\n", "part.ngc:2: axis = 180 deg; turns by half a circle");
 }
 
 // A statement over several lines counts where it begins.
@@ -240,10 +240,10 @@ TEST(Gcode, StatementsGoOnInTheNextLine) {
   EXPECT_EQ(program.blocks[4].end.tip_m.x(), 0.008);
   ASSERT_EQ(program.skipped.size(), 1U);
   EXPECT_EQ(program.skipped[0].what, "$part.min%");
-  expect_refused("G0 X0 Y0 Z0\nG1 ~\nX1\n", "part.ngc:2: F: is missing");
+  expect_rejected("G0 X0 Y0 Z0\nG1 ~\nX1\n", "part.ngc:2: F: is missing");
   std::string endless = "G0 X0 Y0 Z0\n";
   for (int i = 0; i < 9000; ++i) endless += "X1 ~\n";
-  expect_refused(endless, "part.ngc:2: begins a statement of more than 32768 bytes");
+  expect_rejected(endless, "part.ngc:2: begins a statement of more than 32768 bytes");
 }
 
 TEST(Gcode, TheSecondPercentEndsTheProgram) {
@@ -269,7 +269,7 @@ TEST(Gcode, ReadsLineByLine) {
   EXPECT_TRUE(reader.ended());
 }
 
-// Cut off or changed at any place, or made of nothing but noise, a program is refused or read; what is read is finite.
+// Cut off or changed at any place, or made of nothing but noise, a program is rejected or read; what is read is finite.
 TEST(Gcode, SurvivesMutations) {
   const std::string good =
       "%\n(p)\nG93 G21\nS600 M3\nG0 X16.339 Y-25.409 Z33.353 A-71.841 C-35.930\nG1 X6.302 Y-11.5 Z27 A-71 C-35 F318\n"

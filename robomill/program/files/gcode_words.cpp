@@ -16,7 +16,7 @@ struct Place {
   std::size_t line;
 };
 
-[[noreturn]] void refuse(const Place& place, std::string_view text, const char* rule, const char* hint = "") {
+[[noreturn]] void reject(const Place& place, std::string_view text, const char* rule, const char* hint = "") {
   throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", place.file, place.line),
                                          .field = fmt::format("\"{}\"", printable(text, 24)),
                                          .rule = rule,
@@ -35,7 +35,7 @@ void compact_line(std::string_view line, const Place& place, std::string& out) {
     if (c == ';') return;
     if (c == '(') {
       const std::size_t end = line.find(')', i);
-      if (end == std::string_view::npos) refuse(place, line.substr(i), "is a comment that does not end");
+      if (end == std::string_view::npos) reject(place, line.substr(i), "is a comment that does not end");
       i = end;
     } else if (c >= 'A' && c <= 'Z') {
       out += static_cast<char>(c - 'A' + 'a');
@@ -57,22 +57,22 @@ void GcodeWords::scan(std::string_view line, const std::string& file, std::size_
   while (at != end) {
     const std::string_view rest(at, static_cast<std::size_t>(end - at));
     if (*at == '#' || *at == '[' || *at == '=') {
-      refuse(place, rest, "is a parameter or an expression, which are not read here",
+      reject(place, rest, "is a parameter or an expression, which are not read here",
              "Let the CAM system write numbers");
     }
-    if (!is_letter(*at)) refuse(place, rest, "must begin with a letter: words are a letter and a number");
+    if (!is_letter(*at)) reject(place, rest, "must begin with a letter: words are a letter and a number");
     const char* digits = at + 1;
     if (digits != end && *digits == '+') ++digits;
     // from_chars would take "inf", "nan" and a second sign.
     const char* const first = digits != end && *digits == '-' && *(digits - 1) != '+' ? digits + 1 : digits;
     if (first == end || !((*first >= '0' && *first <= '9') || *first == '.')) {
-      refuse(place, rest,
+      reject(place, rest,
              *at == 'o' ? "is a subroutine or its control, which are not read here" : "must be a letter and a number",
              *at == 'o' ? "Let the CAM system write the program out" : "Parameters and expressions are not read here");
     }
     Word word = {.letter = *at, .number = 0.0, .text = {}};
     const std::from_chars_result read = std::from_chars(digits, end, word.number, std::chars_format::fixed);
-    if (read.ec != std::errc{}) refuse(place, rest, "must be a letter and a number that a double can hold");
+    if (read.ec != std::errc{}) reject(place, rest, "must be a letter and a number that a double can hold");
     word.text = std::string_view(at, static_cast<std::size_t>(read.ptr - at));
     words_.push_back(word);
     at = read.ptr;

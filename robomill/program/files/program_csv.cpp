@@ -27,12 +27,12 @@ void CsvReader::take_header(std::string_view line) {
     const auto* const known = std::ranges::find(names, std::string_view(name));
     if (known == names.end()) {
       const std::string near = io::nearest_word(name, names);
-      refuse_text("header", name, "is no column known here",
+      reject_text("header", name, "is no column known here",
                   near.empty() ? "The columns are x_mm, y_mm, z_mm, i, j, k, feed_mm_per_min"
                                : fmt::format("Did you mean {}?", near));
     }
     const auto column = static_cast<std::size_t>(known - names.begin());
-    if (found[column]) refuse_text("header", name, "names a column twice");
+    if (found[column]) reject_text("header", name, "names a column twice");
     found[column] = true;
     column_.push_back(column);
   }
@@ -40,7 +40,7 @@ void CsvReader::take_header(std::string_view line) {
   for (std::size_t i = 0; i < known_columns; ++i) {
     if (!found[i]) missing += (missing.empty() ? "" : ", ") + std::string(names[i]);
   }
-  if (!missing.empty()) refuse({}, std::nullopt, "", fmt::format("has no column {}", missing));
+  if (!missing.empty()) reject({}, std::nullopt, "", fmt::format("has no column {}", missing));
 }
 
 bool CsvReader::take_plain_numbers(std::string_view line) {
@@ -61,7 +61,7 @@ void CsvReader::take_numbers(std::string_view line) {
   if (take_plain_numbers(line)) return;
   const std::vector<std::string> fields = io::split_texts(line, separator_);
   if (fields.size() > known_columns) {
-    refuse({}, std::nullopt, "", fmt::format("has {} fields where there are {} columns", fields.size(), known_columns),
+    reject({}, std::nullopt, "", fmt::format("has {} fields where there are {} columns", fields.size(), known_columns),
            separator_ == ',' ? "Decimal commas need semicolons between the columns" : "");
   }
   for (std::size_t i = 0; i < known_columns; ++i) {
@@ -72,8 +72,8 @@ void CsvReader::take_numbers(std::string_view line) {
       continue;
     }
     const std::optional<double> number = io::parse_cell(field);
-    if (field.empty()) refuse(names[column], std::nullopt, "", "is empty");
-    if (!number || !std::isfinite(*number)) refuse_text(names[column], field, "must be a finite number");
+    if (field.empty()) reject(names[column], std::nullopt, "", "is empty");
+    if (!number || !std::isfinite(*number)) reject_text(names[column], field, "must be a finite number");
     row_[column] = *number;
   }
 }
@@ -99,7 +99,7 @@ void CsvReader::read(std::string_view statement) {
   }
   if (!moves_to(end)) return;
   const double turn_rad = turn_to(end.axis);
-  if (!(feed > 0.0)) refuse(names[feed_column], feed, "mm/min", "must be > 0");
+  if (!(feed > 0.0)) reject(names[feed_column], feed, "mm/min", "must be > 0");
   const double way = (end.tip_m - pose_.tip_m).norm() / units::mm;
   move(Block::Kind::feed, end, units::minute * (way > 0.0 ? way : turn_rad / units::deg) / feed);
 }

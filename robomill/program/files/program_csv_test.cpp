@@ -23,8 +23,8 @@ Program read(const std::string& text) {
   return read_program(folder.file("part.csv", text));
 }
 
-void expect_refused(const std::string& text, const std::string& words) {
-  const std::string said = test::refusal([&] { static_cast<void>(read(text)); });
+void expect_rejected(const std::string& text, const std::string& words) {
+  const std::string said = test::rejection([&] { static_cast<void>(read(text)); });
   EXPECT_NE(said.find(words), std::string::npos) << text << "\n" << said;
 }
 
@@ -52,28 +52,29 @@ TEST(ProgramCsv, ColumnsComeInAnyOrderAndSeparator) {
             1U);
 }
 
-TEST(ProgramCsv, RefusesWithLineColumnAndValue) {
+TEST(ProgramCsv, RejectsWithLineColumnAndValue) {
   const std::string head = header + "1,2,3,0,0,1,\n";
-  expect_refused("x_mm,y_mm,z_mm,i,k\n1,2,3,4,5\n", "part.csv:1: has no column j, feed_mm_per_min");
-  expect_refused("x_mm,y_mm,z_mn,i,j,k,feed_mm_per_min\n",
-                 "header = \"z_mn\"; is no column known here. Did you mean z_mm?");
-  expect_refused("1,2,3,0,0,1,5\n", "part.csv:1: header = \"1\"; is no column known here");
-  expect_refused("x_mm,x_mm\n", "names a column twice");
-  expect_refused(head + "1,2,4,0,0,1,\n", "part.csv:3: feed_mm_per_min: is empty");
-  expect_refused(head + "1,2,4,0,0,1\n", "part.csv:3: feed_mm_per_min: is empty");
-  expect_refused(head + "1,2,4,0,0,1,0\n", "part.csv:3: feed_mm_per_min = 0 mm/min; must be > 0");
-  expect_refused(head + "1,2,4,0,0,1,-5\n", "feed_mm_per_min = -5; must be > 0");
-  expect_refused(head + "1,2,4,0,0,1,1e12\n", "is too large for any machine");
-  expect_refused(head + "1,,4,0,0,1,9\n", "part.csv:3: y_mm: is empty");
-  expect_refused(head + "1,nan,4,0,0,1,9\n", "part.csv:3: y_mm = \"nan\"; must be a finite number");
-  expect_refused(head + "1,inf,4,0,0,1,9\n", "must be a finite number");
-  expect_refused(head + "1,two,4,0,0,1,9\n", "y_mm = \"two\"; must be a finite number");
-  expect_refused(head + "1,2,4,0,0,1,9,9\n", "part.csv:3: has 8 fields where there are 7 columns. Decimal commas need");
-  expect_refused(head + "1e7,2,4,0,0,1,9\n", "x_mm = 1e+07 mm; must lie within 1 km");
-  expect_refused(head + "1,2,4,0,0,2,9\n", "i, j, k = 2; must be a vector of length 1");
-  expect_refused(head + "1,2,4,0,0,0,9\n", "i, j, k = 0; must be a vector of length 1");
-  expect_refused(head + "1,2,4,0,0,-1,9\n", "axis = 180 deg; turns by half a circle");
-  expect_refused(header, "part.csv: holds no complete position");
+  expect_rejected("x_mm,y_mm,z_mm,i,k\n1,2,3,4,5\n", "part.csv:1: has no column j, feed_mm_per_min");
+  expect_rejected("x_mm,y_mm,z_mn,i,j,k,feed_mm_per_min\n",
+                  "header = \"z_mn\"; is no column known here. Did you mean z_mm?");
+  expect_rejected("1,2,3,0,0,1,5\n", "part.csv:1: header = \"1\"; is no column known here");
+  expect_rejected("x_mm,x_mm\n", "names a column twice");
+  expect_rejected(head + "1,2,4,0,0,1,\n", "part.csv:3: feed_mm_per_min: is empty");
+  expect_rejected(head + "1,2,4,0,0,1\n", "part.csv:3: feed_mm_per_min: is empty");
+  expect_rejected(head + "1,2,4,0,0,1,0\n", "part.csv:3: feed_mm_per_min = 0 mm/min; must be > 0");
+  expect_rejected(head + "1,2,4,0,0,1,-5\n", "feed_mm_per_min = -5; must be > 0");
+  expect_rejected(head + "1,2,4,0,0,1,1e12\n", "is too large for any machine");
+  expect_rejected(head + "1,,4,0,0,1,9\n", "part.csv:3: y_mm: is empty");
+  expect_rejected(head + "1,nan,4,0,0,1,9\n", "part.csv:3: y_mm = \"nan\"; must be a finite number");
+  expect_rejected(head + "1,inf,4,0,0,1,9\n", "must be a finite number");
+  expect_rejected(head + "1,two,4,0,0,1,9\n", "y_mm = \"two\"; must be a finite number");
+  expect_rejected(head + "1,2,4,0,0,1,9,9\n",
+                  "part.csv:3: has 8 fields where there are 7 columns. Decimal commas need");
+  expect_rejected(head + "1e7,2,4,0,0,1,9\n", "x_mm = 1e+07 mm; must lie within 1 km");
+  expect_rejected(head + "1,2,4,0,0,2,9\n", "i, j, k = 2; must be a vector of length 1");
+  expect_rejected(head + "1,2,4,0,0,0,9\n", "i, j, k = 0; must be a vector of length 1");
+  expect_rejected(head + "1,2,4,0,0,-1,9\n", "axis = 180 deg; turns by half a circle");
+  expect_rejected(header, "part.csv: holds no complete position");
 }
 
 TEST(ProgramCsv, SurvivesMutations) {

@@ -46,7 +46,7 @@ struct ROBOMILL_API ProgramReading {
 /// first position that is complete makes the start. An axis whose length is within 1e-3 of 1 is made a unit vector,
 /// with a note where it was off by more than 1e-6. G-code:  gcode.hpp. APT/CL:  GOTO, GODLTA, FROM; RAPID holds for one
 /// move; FEDRAT a minute or a revolution; UNITS (mm unless said),
-///     SPINDL, DELAY in seconds. Unknown statements are skipped, those that move the tool or its frame refused.
+///     SPINDL, DELAY in seconds. Unknown statements are skipped, those that move the tool or its frame rejected.
 /// CSV:     columns x_mm, y_mm, z_mm, i, j, k, feed_mm_per_min in any order; the first row is the start, and the feed
 /// of
 ///     a row that of the move to it.

@@ -66,12 +66,12 @@ TEST(ProgramFiles, StreamedAndWholeAreTheSameAndAgainAfterRewinding) {
     }
     file->rewind();
   }
-  EXPECT_EQ(file->skipped_count(), whole.skipped.size()) << "told once, however often it is read";
+  EXPECT_EQ(file->skipped_count(), whole.skipped.size()) << "reported once, however often it is read";
   ASSERT_EQ(file->skipped().size(), 500U);
   for (std::size_t i = 0; i < 500; ++i) EXPECT_EQ(file->skipped()[i].line, whole.skipped[i].line);
 }
 
-TEST(ProgramFiles, NotesAreToldOnceToo) {
+TEST(ProgramFiles, NotesAreReportedOnceToo) {
   const test::Folder folder;
   const auto file = open_program(folder.file("part.apt", "FEDRAT/9\nGOTO/0,0,0,0,0,.9995\nGOTO/1,0,0,0,0,.9998\n"));
   ASSERT_EQ(file->notes().size(), 1U) << "of the start";
@@ -84,7 +84,7 @@ TEST(ProgramFiles, NotesAreToldOnceToo) {
   }
 }
 
-TEST(ProgramFiles, TheEndingTellsTheFormat) {
+TEST(ProgramFiles, TheEndingReportsTheFormat) {
   EXPECT_EQ(program_format_of("a.APT"), ProgramFormat::apt);
   EXPECT_EQ(program_format_of("a.cls"), ProgramFormat::apt);
   EXPECT_EQ(program_format_of("a.cl"), ProgramFormat::apt);
@@ -98,7 +98,7 @@ TEST(ProgramFiles, TheEndingTellsTheFormat) {
 }
 
 // One program in three languages.
-TEST(ProgramFiles, TheThreeFormatsTellTheSame) {
+TEST(ProgramFiles, TheThreeFormatsReportTheSame) {
   Random random(52);
   std::string gcode = "G0 X0 Y0 Z0 I0 J0 K1\n";
   std::string apt = "GOTO/0,0,0,0,0,1\n";
@@ -163,10 +163,10 @@ TEST(ProgramFiles, LinesAreWholeWhereverTheBufferEnds) {
   }
 }
 
-TEST(ProgramFiles, RefusesWhatIsNoProgram) {
+TEST(ProgramFiles, RejectsWhatIsNoProgram) {
   const test::Folder folder;
   const auto says = [&](const std::filesystem::path& path, const std::string& words, const ProgramReading& how = {}) {
-    const std::string said = test::refusal([&] { static_cast<void>(open_program(path, how)); });
+    const std::string said = test::rejection([&] { static_cast<void>(open_program(path, how)); });
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
   says(folder.at("none.ngc"), "none.ngc: there is no such file");
@@ -192,7 +192,7 @@ TEST(ProgramFiles, ReadsAPipeButNotTwice) {
   Block block;
   EXPECT_TRUE(file->next(block));
   EXPECT_FALSE(file->next(block));
-  const std::string said = test::refusal([&] { file->rewind(); });
+  const std::string said = test::rejection([&] { file->rewind(); });
   EXPECT_NE(said.find("pipe.ngc: cannot be read a second time"), std::string::npos) << said;
 }
 

@@ -28,7 +28,7 @@ void ProgramRemarks::Counted::add(std::size_t line, double value) {
 
 bool ProgramRemarks::is_new(std::size_t line) {
   last_ = std::max(last_, line);
-  return line > told_;
+  return line > reported_;
 }
 
 void ProgramRemarks::skip(std::size_t line, std::string_view what) {
@@ -101,7 +101,7 @@ void ProgramReader::take(std::string_view line, char ahead) {
   }
   joined_.append(part.text).push_back(' ');
   if (joined_.size() > ProgramLines::longest) {
-    refuse({}, std::nullopt, "", fmt::format("begins a statement of more than {} bytes", ProgramLines::longest));
+    reject({}, std::nullopt, "", fmt::format("begins a statement of more than {} bytes", ProgramLines::longest));
   }
   continued_ = part.continues;
   if (!continued_) finish();
@@ -121,7 +121,7 @@ bool ProgramReader::pop(Block& out) {
   return true;
 }
 
-void ProgramReader::refuse(std::string field, std::optional<double> number, const char* unit, std::string rule,
+void ProgramReader::reject(std::string field, std::optional<double> number, const char* unit, std::string rule,
                            std::string hint) const {
   throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file_, line_),
                                          .field = std::move(field),
@@ -131,7 +131,7 @@ void ProgramReader::refuse(std::string field, std::optional<double> number, cons
                                          .hint = std::move(hint)});
 }
 
-void ProgramReader::refuse_text(std::string field, std::string_view value, std::string rule, std::string hint) const {
+void ProgramReader::reject_text(std::string field, std::string_view value, std::string rule, std::string hint) const {
   throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file_, line_),
                                          .field = std::move(field),
                                          .value = fmt::format("\"{}\"", printable(value, 40)),
@@ -140,24 +140,24 @@ void ProgramReader::refuse_text(std::string field, std::string_view value, std::
 }
 
 void ProgramReader::check_coordinate(const char* name, double coordinate_m, double written, const char* unit) const {
-  if (!(std::abs(coordinate_m) <= farthest_m)) refuse(name, written, unit, "must lie within 1 km");
+  if (!(std::abs(coordinate_m) <= farthest_m)) reject(name, written, unit, "must lie within 1 km");
 }
 
 void ProgramReader::check_dwell(const char* name, double time_s, const char* hint) const {
   constexpr double day_s = 86400.0;
-  if (!(time_s >= 0.0 && time_s <= day_s)) refuse(name, time_s, "s", "must lie between 0 and a day", hint);
+  if (!(time_s >= 0.0 && time_s <= day_s)) reject(name, time_s, "s", "must lie between 0 and a day", hint);
 }
 
 void ProgramReader::check_feed(const char* name, double feed) const {
-  if (!(feed >= 0.0)) refuse(name, feed, "", "must be > 0");
-  if (!(feed <= fastest)) refuse(name, feed, "", "is too large for any machine");
+  if (!(feed >= 0.0)) reject(name, feed, "", "must be > 0");
+  if (!(feed <= fastest)) reject(name, feed, "", "is too large for any machine");
 }
 
 Eigen::Vector3d ProgramReader::unit_axis(const char* names, const Eigen::Vector3d& written) const {
   const double length = written.norm();
   const double error = std::abs(length - 1.0);
   if (!(error <= largest_length_error)) {
-    refuse(names, io::round_15(length), "", "must be a vector of length 1, within 1e-3", "It is the axis of the tool");
+    reject(names, io::round_15(length), "", "must be a vector of length 1, within 1e-3", "It is the axis of the tool");
   }
   if (error > silent_length_error) remarks_.normalised(line_, error);
   return written / length;
@@ -166,7 +166,7 @@ Eigen::Vector3d ProgramReader::unit_axis(const char* names, const Eigen::Vector3
 double ProgramReader::turn_to(const Eigen::Vector3d& axis) const {
   const double turn = axis == pose_.axis ? 0.0 : angle_between(pose_.axis, axis);
   if (turn > largest_turn_rad) {
-    refuse("axis", io::round_15(turn / units::deg), "deg",
+    reject("axis", io::round_15(turn / units::deg), "deg",
            "turns by half a circle in one move, which could go any way round", "Split the move");
   }
   return turn;

@@ -11,14 +11,14 @@
 
 namespace robomill::program {
 
-/// What a reader left out, mended or took for granted: told once, however often the program is read again.
+/// What a reader left out, mended or took for granted: reported once, however often the program is read again.
 class ProgramRemarks {
  public:
   /// @param most  that are kept; the others are counted
   explicit ProgramRemarks(std::size_t most) : most_(most) {}
 
   /// The program begins anew: what its lines have said is known.
-  void again() { told_ = last_; }
+  void again() { reported_ = last_; }
   void skip(std::size_t line, std::string_view what);
   /// @param error  |length - 1| of the axis
   void normalised(std::size_t line, double error);
@@ -40,7 +40,7 @@ class ProgramRemarks {
   bool is_new(std::size_t line);
 
   std::size_t most_;
-  std::size_t told_ = 0, last_ = 0;  ///< lines
+  std::size_t reported_ = 0, last_ = 0;  ///< lines
   std::vector<Skipped> skipped_;
   std::size_t skipped_count_ = 0;
   Counted normalised_, long_dwells_, operator_stops_, no_center_point_;
@@ -87,10 +87,10 @@ class ProgramReader {
   /// Turns `block_` into the statement's next block; false where it has none.
   virtual bool advance() { return false; }
 
-  [[noreturn]] void refuse(std::string field, std::optional<double> number, const char* unit, std::string rule,
+  [[noreturn]] void reject(std::string field, std::optional<double> number, const char* unit, std::string rule,
                            std::string hint = {}) const;
   /// The same with a value that is no number.
-  [[noreturn]] void refuse_text(std::string field, std::string_view value, std::string rule,
+  [[noreturn]] void reject_text(std::string field, std::string_view value, std::string rule,
                                 std::string hint = {}) const;
   /// @throws InvalidInput unless a coordinate lies within 1 km
   void check_coordinate(const char* name, double coordinate_m, double written, const char* unit) const;

@@ -17,7 +17,7 @@ struct Key {
   std::string key;
   double factor = 1.0;
   bool turning = true, sliding = true;  ///< which joints it is for
-  [[nodiscard]] bool takes(bool slides) const { return slides ? sliding : turning; }
+  [[nodiscard]] bool takes(bool prismatic) const { return prismatic ? sliding : turning; }
   [[nodiscard]] bool bare() const { return turning && sliding; }
 };
 
@@ -31,10 +31,10 @@ std::array<Key, 4> keys_of(const JointLimit& limit) {
            {.key = fmt::format("{}_mm{}", name, time), .factor = units::mm, .turning = false}}};
 }
 
-std::vector<std::size_t> joints_of(const Key& key, const std::vector<bool>& slides) {
+std::vector<std::size_t> joints_of(const Key& key, const std::vector<bool>& prismatic) {
   std::vector<std::size_t> joints;
-  for (std::size_t i = 0; i < slides.size(); ++i) {
-    if (key.takes(slides[i])) joints.push_back(i);
+  for (std::size_t i = 0; i < prismatic.size(); ++i) {
+    if (key.takes(prismatic[i])) joints.push_back(i);
   }
   return joints;
 }
@@ -44,11 +44,11 @@ void require_length(const io::TomlFile& file, const Key& key, std::size_t wanted
   const char* const kind = key.bare()    ? "a joint"
                            : key.turning ? "for each joint that turns"
                                          : "for each joint that slides";
-  throw file.refuse(key.key, fmt::format("must hold one number {}, {}; it holds {}", kind, wanted, held));
+  throw file.reject(key.key, fmt::format("must hold one number {}, {}; it holds {}", kind, wanted, held));
 }
 
 /// More than three turns, or three turns a second, or as many metres: degrees or millimetres, most likely.
-void doubt_unit(const Key& key, const JointLimit& limit, const std::vector<bool>& slides,
+void doubt_unit(const Key& key, const JointLimit& limit, const std::vector<bool>& prismatic,
                 const std::vector<double>& values, std::vector<std::string>& notes) {
   constexpr double likely = 20.0;
   if (!key.bare() || limit.derivatives > 1) return;
@@ -56,8 +56,8 @@ void doubt_unit(const Key& key, const JointLimit& limit, const std::vector<bool>
     if (!(std::abs(values[i]) > likely)) continue;
     const char* const time = limit.derivatives == 0 ? "" : "/s";
     notes.push_back(fmt::format("{} holds {:.6g} {}{} for joint {}: if it is in {}{}, write {}", key.key, values[i],
-                                slides[i] ? "m" : "rad", time, i + 1, slides[i] ? "mm" : "°", time,
-                                keys_of(limit)[slides[i] ? 3 : 1].key));
+                                prismatic[i] ? "m" : "rad", time, i + 1, prismatic[i] ? "mm" : "°", time,
+                                keys_of(limit)[prismatic[i] ? 3 : 1].key));
     return;
   }
 }
@@ -65,37 +65,38 @@ void doubt_unit(const Key& key, const JointLimit& limit, const std::vector<bool>
 }  // namespace
 
 std::vector<std::optional<double>> read_joint_limit(io::TomlFile& file, const JointLimit& limit,
-                                                    const std::vector<bool>& slides, std::vector<std::string>& notes) {
-  std::vector<std::optional<double>> out(slides.size());
-  std::vector<std::string> from(slides.size());
+                                                    const std::vector<bool>& prismatic,
+                                                    std::vector<std::string>& notes) {
+  std::vector<std::optional<double>> out(prismatic.size());
+  std::vector<std::string> from(prismatic.size());
   for (const Key& key : keys_of(limit)) {
     std::vector<double> values;
     if (!file.numbers(key.key, limit.name, key.factor, values)) continue;
-    const std::vector<std::size_t> joints = joints_of(key, slides);
+    const std::vector<std::size_t> joints = joints_of(key, prismatic);
     require_length(file, key, joints.size(), values.size());
     for (std::size_t k = 0; k < joints.size(); ++k) {
-      if (out[joints[k]]) throw file.refuse(key.key, "must not stand beside " + from[joints[k]]);
+      if (out[joints[k]]) throw file.reject(key.key, "must not stand beside " + from[joints[k]]);
       out[joints[k]] = values[k];
       from[joints[k]] = key.key;
     }
-    doubt_unit(key, limit, slides, values, notes);
+    doubt_unit(key, limit, prismatic, values, notes);
   }
   return out;
 }
 
-InvalidInput located_limit(const io::TomlFile& file, const JointLimit& limit, const std::vector<bool>& slides,
+InvalidInput located_limit(const io::TomlFile& file, const JointLimit& limit, const std::vector<bool>& prismatic,
                            std::size_t joint, const InvalidInput& error) {
   for (const Key& key : keys_of(limit)) {
-    if (!key.takes(slides[joint]) || !file.has(key.key)) continue;
+    if (!key.takes(prismatic[joint]) || !file.has(key.key)) continue;
     std::size_t place = 1;
-    for (std::size_t i = 0; i < joint; ++i) place += key.takes(slides[i]) ? 1U : 0U;
-    InvalidInput::Parts told = file.refuse(key.key, error.parts().rule, error.parts().hint).parts();
-    told.field += fmt::format("[{}]", place);
-    told.number = error.parts().number;
-    if (told.number) told.number = io::round_15(*told.number / key.factor);
-    told.unit = key.bare() ? error.parts().unit : io::unit_of_key(key.key);
-    told.value.clear();
-    return InvalidInput(std::move(told));
+    for (std::size_t i = 0; i < joint; ++i) place += key.takes(prismatic[i]) ? 1U : 0U;
+    InvalidInput::Parts reported = file.reject(key.key, error.parts().rule, error.parts().hint).parts();
+    reported.field += fmt::format("[{}]", place);
+    reported.number = error.parts().number;
+    if (reported.number) reported.number = io::round_15(*reported.number / key.factor);
+    reported.unit = key.bare() ? error.parts().unit : io::unit_of_key(key.key);
+    reported.value.clear();
+    return InvalidInput(std::move(reported));
   }
   return file.located(error);
 }

@@ -18,17 +18,18 @@ struct JointLimit {
 inline constexpr std::array<JointLimit, 5> joint_limits = {
     {{"min_position", 0}, {"max_position", 0}, {"max_velocity", 1}, {"max_acceleration", 2}, {"max_jerk", 3}}};
 
-/// @param slides  for every joint whether it does
+/// @param prismatic  for every joint whether it slides
 /// @param notes   gets a sentence where a number without unit is not likely to be in rad or m
 /// @return of every joint its value in SI, none where the file gives none
 /// @throws InvalidInput if a list has another length, or two give the same joint's limit
 [[nodiscard]] std::vector<std::optional<double>> read_joint_limit(io::TomlFile& file, const JointLimit& limit,
-                                                                  const std::vector<bool>& slides,
+                                                                  const std::vector<bool>& prismatic,
                                                                   std::vector<std::string>& notes);
 
 /// An error about one joint's limit, with the key, the place in its list and the number as the file has them.
 /// @param joint  from 0
 [[nodiscard]] InvalidInput located_limit(const io::TomlFile& file, const JointLimit& limit,
-                                         const std::vector<bool>& slides, std::size_t joint, const InvalidInput& error);
+                                         const std::vector<bool>& prismatic, std::size_t joint,
+                                         const InvalidInput& error);
 
 }  // namespace robomill::robot

@@ -17,7 +17,7 @@ namespace robomill::robot {
 namespace {
 
 using robomill::test::Folder;
-using robomill::test::refusal;
+using robomill::test::rejection;
 using robomill::test::seeds;
 namespace arms = robot::testing;
 
@@ -38,7 +38,7 @@ TEST(LoadsCsv, ReadsALoadARow) {
   EXPECT_EQ(load.wrench.moment_n_m, Eigen::Vector3d(0.0, 0.0, 7.0));
   EXPECT_LT((load.displacement_m - Eigen::Vector3d(1e-4, -2e-4, 3e-4)).norm(), 1e-19);
   EXPECT_DOUBLE_EQ(load.deviation_m, 1e-5);
-  // A sliding joint is told in millimetres.
+  // A sliding joint is reported in millimetres.
   Arm sliding = arms::kr210();
   sliding.joints[1].prismatic = true;
   std::string columns = header;
@@ -50,7 +50,7 @@ TEST(LoadsCsv, SaysWhatIsWrongAndWhere) {
   const Folder folder;
   const auto said = [&](const std::string& text) {
     const auto path = folder.file("loads.csv", text);
-    return refusal([&] {
+    return rejection([&] {
              const LoadsFile file = read_loads(path, arms::kr210());
              (void)identify_joint_stiffness(arms::kr210(), Eigen::Vector3d::Zero(), file);
            })
@@ -67,7 +67,7 @@ TEST(LoadsCsv, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(said(header + "\n1,2,3,4,5,6,100,-200,300,0.1,-0.2\n"), "loads.csv:2: dz_mm: is missing");
   EXPECT_EQ(said(header + ",deviation_mm\n" + row + ",0.1\n" + row + ",-0.1\n"),
             "loads.csv:3: deviation_mm = -0.1 mm; must be >= 0");
-  EXPECT_NE(refusal([&] { (void)read_loads(folder.at("none.csv"), arms::kr210()); }).find("none.csv"),
+  EXPECT_NE(rejection([&] { (void)read_loads(folder.at("none.csv"), arms::kr210()); }).find("none.csv"),
             std::string::npos);
 }
 
@@ -120,10 +120,10 @@ TEST(LoadsCsv, AJointThatIsNotSeenKeepsItsStiffness) {
   EXPECT_NE(stiffness_toml(found, arm).find("# Joint 6, as before: "), std::string::npos);
   Arm bare = arm;
   bare.joints[5].stiffness = 0.0;
-  EXPECT_NE(refusal([&] { (void)stiffness_toml(found, bare); }).find("is not known of joint 6"), std::string::npos);
+  EXPECT_NE(rejection([&] { (void)stiffness_toml(found, bare); }).find("is not known of joint 6"), std::string::npos);
 }
 
-TEST(LoadsCsv, DamagedFilesAreReadOrRefused) {
+TEST(LoadsCsv, DamagedFilesAreReadOrRejected) {
   const Folder folder;
   Random random(62);
   const std::string good = measured(arms::kr210(), Eigen::Vector3d(0.1, 0.0, 0.2), 4);

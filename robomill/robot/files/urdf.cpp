@@ -215,7 +215,7 @@ class Chain {
       collect(*link(way[i]->child_link_name), since_, i + 1 < way.size() ? way[i + 1].get() : nullptr);
     }
     if (out_.arm.joints.empty()) {
-      throw refuse(fmt::format("has no moving joint between {} and {}", base, reading_.tip));
+      throw reject(fmt::format("has no moving joint between {} and {}", base, reading_.tip));
     }
     out_.arm.flange = since_;
     try {
@@ -227,7 +227,7 @@ class Chain {
   }
 
  private:
-  [[nodiscard]] InvalidInput refuse(const std::string& rule, const std::string& hint = {}) const {
+  [[nodiscard]] InvalidInput reject(const std::string& rule, const std::string& hint = {}) const {
     return {where_, rule, hint};
   }
 
@@ -251,11 +251,11 @@ class Chain {
     names.reserve(model_.links_.size());
     for (const auto& entry : model_.links_) names.push_back(entry.first);
     const std::string near = io::nearest_word(name, names);
-    throw refuse(fmt::format("has no link \"{}\"", name), near.empty() ? "" : fmt::format("Did you mean {}?", near));
+    throw reject(fmt::format("has no link \"{}\"", name), near.empty() ? "" : fmt::format("Did you mean {}?", near));
   }
 
   [[nodiscard]] std::vector<urdf::JointSharedPtr> way_to_tip() const {
-    if (reading_.tip.empty()) throw refuse("needs the link of the flange", "urdf_tip = \"tool0\", say");
+    if (reading_.tip.empty()) throw reject("needs the link of the flange", "urdf_tip = \"tool0\", say");
     if (!reading_.base.empty()) (void)link(reading_.base);
     std::vector<urdf::JointSharedPtr> way;
     urdf::LinkConstSharedPtr at = link(reading_.tip);
@@ -264,7 +264,7 @@ class Chain {
       at = link(at->parent_joint->parent_link_name);
     }
     if (!reading_.base.empty() && at->name != reading_.base) {
-      throw refuse(fmt::format("does not lead from {} to {}: the way up from there ends at {}", reading_.base,
+      throw reject(fmt::format("does not lead from {} to {}: the way up from there ends at {}", reading_.base,
                                reading_.tip, at->name),
                    "They stand on different branches, or are exchanged");
     }
@@ -281,16 +281,16 @@ class Chain {
     }
     const bool prismatic = joint.type == urdf::Joint::PRISMATIC, continuous = joint.type == urdf::Joint::CONTINUOUS;
     if (!prismatic && !continuous && joint.type != urdf::Joint::REVOLUTE) {
-      throw refuse(fmt::format("joint \"{}\" must be revolute, continuous, prismatic or fixed", joint.name));
+      throw reject(fmt::format("joint \"{}\" must be revolute, continuous, prismatic or fixed", joint.name));
     }
     if (joint.mimic) {
-      throw refuse(fmt::format("joint \"{}\" mimics {}: such arms are not read", joint.name, joint.mimic->joint_name),
+      throw reject(fmt::format("joint \"{}\" mimics {}: such arms are not read", joint.name, joint.mimic->joint_name),
                    "Linkages that keep axes parallel are left out of a serial arm's URDF");
     }
     Joint next{.name = joint.name, .prismatic = prismatic};
     next.before = since_ * origin;
     const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
-    if (!(axis.norm() > 0.0)) throw refuse(fmt::format("joint \"{}\" must have an axis", joint.name));
+    if (!(axis.norm() > 0.0)) throw reject(fmt::format("joint \"{}\" must have an axis", joint.name));
     next.axis = axis.normalized();
     if (joint.limits) {
       if (!continuous) {

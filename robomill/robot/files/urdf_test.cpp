@@ -15,7 +15,7 @@
 namespace robomill::robot {
 namespace {
 
-using robomill::test::refusal;
+using robomill::test::rejection;
 using robomill::test::seeds;
 namespace arms = robot::testing;
 
@@ -134,7 +134,7 @@ TEST(Urdf, GivesBackAnyArmThatWasWritten) {
 
 TEST(Urdf, SaysWhatIsWrong) {
   const auto said = [](const std::string& text, const UrdfReading& reading) {
-    return refusal([&] { (void)parse_urdf(text, "two.urdf", reading); });
+    return rejection([&] { (void)parse_urdf(text, "two.urdf", reading); });
   };
   const UrdfReading reading{.tip = "flange"};
   EXPECT_NE(said(good, {}).find("needs the link of the flange"), std::string::npos);
@@ -164,7 +164,7 @@ TEST(Urdf, SaysWhatIsWrong) {
   for (int i = 0; i < 1000000; ++i) deep += "<a>";
   EXPECT_NE(said(deep, reading).find("too deeply"), std::string::npos);
   const test::Folder folder;
-  EXPECT_NE(refusal([&] { (void)read_urdf(folder.at("none.urdf"), reading); }).find("none.urdf"), std::string::npos);
+  EXPECT_NE(rejection([&] { (void)read_urdf(folder.at("none.urdf"), reading); }).find("none.urdf"), std::string::npos);
   EXPECT_EQ(read_urdf(folder.file("two.urdf", good), reading).arm.joints.size(), 2U);
 }
 
@@ -175,7 +175,7 @@ std::string fixed(const std::string& name, const std::string& parent, const std:
 
 TEST(Urdf, LinksThatAreNoTreeAreRejected) {
   const auto said = [](const std::string& text) {
-    return refusal([&] { (void)parse_urdf(text, "two.urdf", {.tip = "flange"}); });
+    return rejection([&] { (void)parse_urdf(text, "two.urdf", {.tip = "flange"}); });
   };
   // A ring beside a sound root, which the way up from the flange would never leave.
   const std::string ring = said(with("link=\"base\"/><child", "link=\"flange\"/><child"));
@@ -202,10 +202,10 @@ std::string chain(int joints) {
 
 TEST(Urdf, LongChainsAreReadOrRejected) {
   const UrdfReading tip{.tip = "00000"};
-  EXPECT_NE(refusal([&] { (void)parse_urdf(chain(2000), "long.urdf", tip); }).find("no moving joint"),
+  EXPECT_NE(rejection([&] { (void)parse_urdf(chain(2000), "long.urdf", tip); }).find("no moving joint"),
             std::string::npos);
   for (const int joints : {2001, 50000}) {
-    EXPECT_NE(refusal([&] { (void)parse_urdf(chain(joints), "long.urdf", tip); }).find("has more than 2000 joints"),
+    EXPECT_NE(rejection([&] { (void)parse_urdf(chain(joints), "long.urdf", tip); }).find("has more than 2000 joints"),
               std::string::npos);
   }
 }
@@ -217,16 +217,16 @@ TEST(Urdf, NestingCannotHideBehindCommentsAndQuotes) {
     quoted += "<a b=\"/></>\">";
   }
   for (const std::string& text : {commented, quoted}) {
-    EXPECT_NE(refusal([&] { (void)parse_urdf(text, "deep.urdf", {.tip = "a"}); }).find("too deeply"),
+    EXPECT_NE(rejection([&] { (void)parse_urdf(text, "deep.urdf", {.tip = "a"}); }).find("too deeply"),
               std::string::npos);
   }
   const UrdfArm read = parse_urdf(with("</robot>", "<!-- <a><a> --></robot>"), "two.urdf", {.tip = "flange"});
   EXPECT_EQ(read.arm.joints.size(), 2U);
 }
 
-TEST(Urdf, DamagedFilesAreReadOrRefused) {
+TEST(Urdf, DamagedFilesAreReadOrRejected) {
   Random random(52);
-  int read = 0, refused = 0;
+  int read = 0, rejected = 0;
   for (int k = 0; k < seeds(20000); ++k) {
     std::string text = good;
     for (std::uint64_t changes = 1 + random.index(4); changes > 0; --changes) {
@@ -247,11 +247,11 @@ TEST(Urdf, DamagedFilesAreReadOrRefused) {
       EXPECT_TRUE(forward(arm.arm, Eigen::VectorXd::Zero(arm.arm.size())).matrix().allFinite());
       ++read;
     } catch (const InvalidInput&) {
-      ++refused;
+      ++rejected;
     }
   }
   EXPECT_GT(read, 20);
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(rejected, 100);
 }
 
 }  // namespace

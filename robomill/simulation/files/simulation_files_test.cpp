@@ -51,7 +51,7 @@ TEST(SimulationFiles, ComeBackAsRecords) {
   EXPECT_LT((record.columns[1] - sample(false).acceleration_m_per_s2.col(1)).cwiseAbs().maxCoeff(), 1e-3);
 }
 
-TEST(SimulationFiles, RefusesWhatItCannotWrite) {
+TEST(SimulationFiles, RejectsWhatItCannotWrite) {
   const test::Folder folder;
   Simulation s = sample(false);
   EXPECT_THROW(write_simulation(folder.at("simulation_files.uff"), s), InvalidInput);

@@ -47,7 +47,7 @@ TEST(Chart, LosesNoIslandOfTheGrid) {
   }
 }
 
-// Speeds looked at one by one skip depths that look alike; every depth of the grid tells whether that loses a limit.
+// Speeds looked at one by one skip depths that look alike; every depth of the grid reports whether that loses a limit.
 TEST(Chart, LimitsOfSpeedsAreThoseOfEveryDepth) {
   for (const double helix : {0.0, 30.0, 40.0}) {
     for (const int depths : {2, 30, 100}) {
@@ -149,7 +149,7 @@ TEST(Comparison, PutsEveryMethodBesideCollocation) {
   EXPECT_EQ(comparison.rows.front().method, Method::collocation);
   EXPECT_EQ(comparison.rows.front().worst_error, 0.0);
   for (const MethodRow& row : comparison.rows) {
-    ASSERT_TRUE(row.refusal.empty()) << row.refusal;
+    ASSERT_TRUE(row.rejection.empty()) << row.rejection;
     EXPECT_EQ(row.limits.size(), 10U);
     if (row.method == Method::zeroth_order) {
       EXPECT_LT(row.median_error, 0.1);
@@ -160,8 +160,8 @@ TEST(Comparison, PutsEveryMethodBesideCollocation) {
   LobesProblem runout = robot();
   runout.milling.feed_per_tooth_m = 1e-5;
   runout.milling.tool.runout_m = 3e-6;
-  const MethodComparison refused = compare_methods(runout, traced(4000, 16000, 3e-3, 20, 20), 2);
-  EXPECT_FALSE(refused.rows[1].refusal.empty());
+  const MethodComparison rejected = compare_methods(runout, traced(4000, 16000, 3e-3, 20, 20), 2);
+  EXPECT_FALSE(rejected.rows[1].rejection.empty());
 }
 
 }  // namespace

@@ -16,8 +16,9 @@ class Collocation final : public Scheme {
     return std::make_unique<CollocationEvaluator>(model_, tolerance_);
   }
   [[nodiscard]] Period period() const override {
-    return model_.told_rad() < 0.999 * 2.0 * std::numbers::pi || model_.milling.tool.teeth == 1 ? Period::tooth
-                                                                                                : Period::revolution;
+    return model_.reported_rad() < 0.999 * 2.0 * std::numbers::pi || model_.milling.tool.teeth == 1
+               ? Period::tooth
+               : Period::revolution;
   }
 
  private:
@@ -65,21 +66,21 @@ const CollocationCase& CollocationEvaluator::find_case(std::size_t lane, const O
 void CollocationEvaluator::settle(std::size_t lane, std::size_t column, const Dominant& dominant,
                                   const OperatingPoint& point, Ask ask, Outcome& out) {
   Lane& here = lanes_[lane];
-  const double share = model_.told_rad() / model_.whole_rad();
+  const double share = model_.reported_rad() / model_.whole_rad();
   const double radius = spectral_radius(dominant);
-  const double told = share == 1.0 ? radius : std::pow(radius, share);
-  const double difference = std::abs(told - here.coarse);
-  here.done = !ask.estimate || (here.compared && (difference <= tolerance_ * std::max(1.0, told) ||
+  const double reported = share == 1.0 ? radius : std::pow(radius, share);
+  const double difference = std::abs(reported - here.coarse);
+  here.done = !ask.estimate || (here.compared && (difference <= tolerance_ * std::max(1.0, reported) ||
                                                   here.level == last_level || map_.size() > largest_state));
   if (!here.done) {
-    here.coarse = told;
+    here.coarse = reported;
     here.compared = true;
     ++here.level;
     return;
   }
-  out.spectral_radius = told;
-  out.multiplier = told;
-  if (radius < 1e100) out.multiplier = std::polar(told, std::arg(dominant.multiplier) * share);
+  out.spectral_radius = reported;
+  out.multiplier = reported;
+  if (radius < 1e100) out.multiplier = std::polar(reported, std::arg(dominant.multiplier) * share);
   if (share == 1.0 && radius < 1e100) out.multiplier = dominant.multiplier;
   out.kind = kind_of(dominant.multiplier);
   if (ask.estimate) out.error_estimate = difference;

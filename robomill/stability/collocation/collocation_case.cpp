@@ -103,7 +103,7 @@ CollocationModel::CollocationModel(const LobesProblem& problem, MeshTopology::Fo
   quickening *= std::hypot(c.tangential_n_per_m2, c.radial_n_per_m2) * teeth_in_cut;
 }
 
-double CollocationModel::told_rad() const {
+double CollocationModel::reported_rad() const {
   return contacts.period() == Period::tooth && !variation.active() ? contacts.period_rad() : revolution;
 }
 

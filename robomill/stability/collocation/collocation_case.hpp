@@ -24,8 +24,8 @@ struct CollocationModel {
   /// By how much the cut quickens the structure: the square of its rate grows by this with the depth [rad^2/(s^2 m)].
   double quickening = 0.0;
   MeshTopology::Form least = MeshTopology::Form::chip;  ///< remember no less
-  /// Rotation over which the spectral radius is told, and that of the whole period.
-  [[nodiscard]] double told_rad() const;
+  /// Rotation over which the spectral radius is reported, and that of the whole period.
+  [[nodiscard]] double reported_rad() const;
   [[nodiscard]] double whole_rad() const { return contacts.period_rad() * repeats; }
 };
 

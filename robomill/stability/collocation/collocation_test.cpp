@@ -69,7 +69,7 @@ TEST(Collocation, ReachesTheKnownLimits) {
   const double expected_m[] = {1.843802e-3, 1.486950e-3, 1.651214e-3, 3.250386e-3};
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_NEAR(limits[i].axial_depth_m, expected_m[i], 1e-8);
-    EXPECT_EQ(limits[i].kind, i == 3 ? Kind::flip : Kind::hopf);
+    EXPECT_EQ(limits[i].kind, i == 3 ? BifurcationType::flip : BifurcationType::hopf);
     EXPECT_LE(limits[i].error_estimate, 1e-6);
   }
 }
@@ -201,7 +201,7 @@ LobesProblem three_teeth() {
 struct InTime {
   int steps = 800;  ///< in a mean tooth period
   int periods = 60, slices = 1, teeth_a_period = 0;
-  double told_periods = 1.0;  ///< periods of the spectral radius in that of the integration
+  double reported_periods = 1.0;  ///< periods of the spectral radius in that of the integration
   double relative = 5e-4;
 };
 
@@ -211,7 +211,7 @@ void expect_as_in_time(const LobesProblem& problem, double speed_rpm, double dep
   const double seen = testing::time_domain_radius(problem, {speed_rpm * rpm, depth_m}, how.steps, how.periods,
                                                   how.slices, how.teeth_a_period);
   const PointResult found = at(problem, speed_rpm, depth_m);
-  EXPECT_NEAR(std::pow(found.spectral_radius, how.told_periods), seen, how.relative * seen);
+  EXPECT_NEAR(std::pow(found.spectral_radius, how.reported_periods), seen, how.relative * seen);
   EXPECT_LE(found.error_estimate, 1e-6 * std::max(1.0, found.spectral_radius));
 }
 
@@ -247,7 +247,7 @@ TEST(Collocation, SpeedVariationAsInTime) {
   LobesProblem problem = benchmark(1.0);
   problem.milling.speed_variation = {.amplitude_ratio = 0.2, .frequency_ratio = 0.5};
   expect_as_in_time(problem, 6000, 0.3e-3,
-                    {.steps = 400, .periods = 40, .teeth_a_period = 4, .told_periods = 2.0, .relative = 1e-5});
+                    {.steps = 400, .periods = 40, .teeth_a_period = 4, .reported_periods = 2.0, .relative = 1e-5});
 }
 
 // Runout on a cutter with helix: slices, finer with each level.
@@ -314,7 +314,7 @@ TEST(Collocation, SameBitsWhateverVectorsTheMachineHas) {
   }
 }
 
-TEST(Collocation, RefusesASwingThatNeverComesRound) {
+TEST(Collocation, RejectsASwingThatNeverComesRound) {
   LobesProblem problem = benchmark(0.3);
   problem.milling.speed_variation = {.amplitude_ratio = 0.1, .frequency_ratio = 0.1 * pi};
   EXPECT_THROW(static_cast<void>(at(problem, 7000, 1e-4)), InvalidInput);

@@ -127,7 +127,7 @@ std::string comparison_json(const MethodComparison& comparison) {
                                {"median_error", io::number(row.median_error)},
                                {"worst_error", io::number(row.worst_error)},
                                {"differ", row.differ},
-                               {"refusal", row.refusal},
+                               {"refusal", row.rejection},
                                {"seconds", io::number(row.seconds)}});
   }
   return io::dump(json);

@@ -17,11 +17,11 @@ LobesResult small_result() {
   r.axial_depth_m = Eigen::Vector3d(0.0, 1.5e-3, 3e-3);
   r.spectral_radius = Eigen::MatrixXd::Constant(3, 2, 0.5);
   r.spectral_radius(2, 1) = 1.25;
-  r.boundary = {{8000.0 * units::rpm, 1.2e-3, 563.5, Kind::hopf, {8, modal::ModeOwner::workpiece}, 2e-7, 1},
-                {9000.0 * units::rpm, 2.1e-3, 225.0, Kind::flip, {7}, 0.0, 2}};
+  r.boundary = {{8000.0 * units::rpm, 1.2e-3, 563.5, BifurcationType::hopf, {8, modal::ModeOwner::workpiece}, 2e-7, 1},
+                {9000.0 * units::rpm, 2.1e-3, 225.0, BifurcationType::flip, {7}, 0.0, 2}};
   r.limit.resize(2);
   r.limit[0].spindle_speed_rad_per_s = 4000.0 * units::rpm;
-  r.limit[1] = {16000.0 * units::rpm, Limit::Status::found, 2.5e-3, 540.0, Kind::hopf, {8}, 3e-7};
+  r.limit[1] = {16000.0 * units::rpm, Limit::Status::found, 2.5e-3, 540.0, BifurcationType::hopf, {8}, 3e-7};
   PointResult point;
   point.spindle_speed_rad_per_s = 6500.0 * units::rpm;
   point.axial_depth_m = 0.6e-3;

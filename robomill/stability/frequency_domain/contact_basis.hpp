@@ -81,7 +81,7 @@ class ContactBasis {
                                                  double period_rad);
 /// j_0(z) … j_{count-1}(z).
 void spherical_bessel(double z, Eigen::Ref<Eigen::VectorXd> out);
-/// Refuses what a frequency-domain method of one spindle speed and whole teeth cannot have.
+/// Rejects what a frequency-domain method of one spindle speed and whole teeth cannot have.
 void require_frequency_domain(const cutting::Milling& milling);
 
 }  // namespace robomill::stability::detail

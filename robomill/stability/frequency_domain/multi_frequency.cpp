@@ -241,14 +241,14 @@ class Solver {
     return motion;
   }
 
-  static Kind kind_of(const Crossing& crossing) {
+  static BifurcationType kind_of(const Crossing& crossing) {
     switch (crossing.at) {
       case Crossing::At::from:
-        return Kind::fold;
+        return BifurcationType::fold;
       case Crossing::At::to:
-        return Kind::flip;
+        return BifurcationType::flip;
       default:
-        return Kind::hopf;
+        return BifurcationType::hopf;
     }
   }
 

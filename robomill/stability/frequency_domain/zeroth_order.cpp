@@ -77,7 +77,7 @@ FrequencyLimit limit_at(const cutting::Milling& milling, const FrequencyResponse
   limit.spindle_speed_rad_per_s = speed;
   const std::vector<Crossing> crossings = find_crossings(matrix, sweep);
   for (const Crossing& c : crossings) {
-    limit.crossings.push_back({c.gain, c.frequency / (2.0 * pi), Kind::hopf, c.opens});
+    limit.crossings.push_back({c.gain, c.frequency / (2.0 * pi), BifurcationType::hopf, c.opens});
   }
   if (crossings.empty()) return limit;
   const Crossing& lowest = crossings.front();

@@ -131,24 +131,24 @@ class NodeScheme final : public Scheme {
   KnownDepths depths_;
 };
 
-void refuse(bool asked, const char* field, std::string_view method, const char* what) {
+void reject(bool asked, const char* field, std::string_view method, const char* what) {
   if (!asked) return;
   throw InvalidInput(field, "does not go with " + std::string(method) + ": " + what, "Take method = \"collocation\"");
 }
 
 std::unique_ptr<Scheme> make(const LobesProblem& problem, int intervals, std::string_view method, MakeSteps make) {
   refuse_changing_delays(problem.milling, method);
-  refuse(!problem.milling.tool.has_equal_pitch(), "pitch_rad", method, "it has a single delay");
+  reject(!problem.milling.tool.has_equal_pitch(), "pitch_rad", method, "it has a single delay");
   return std::make_unique<NodeScheme>(problem, intervals, make);
 }
 
 }  // namespace
 
 void refuse_changing_delays(const cutting::Milling& milling, std::string_view method) {
-  refuse(!milling.tool.has_equal_helix(), "tooth_helix_rad", method, "its delays do not change with height");
-  refuse(milling.tool.runout_m > 0.0, "runout_m", method, "it has no missed cuts");
-  refuse(milling.process_damping.active(), "indentation_n_per_m3", method, "it has no process damping");
-  refuse(milling.speed_variation.active(), "amplitude_ratio", method, "its speed is constant");
+  reject(!milling.tool.has_equal_helix(), "tooth_helix_rad", method, "its delays do not change with height");
+  reject(milling.tool.runout_m > 0.0, "runout_m", method, "it has no missed cuts");
+  reject(milling.process_damping.active(), "indentation_n_per_m3", method, "it has no process damping");
+  reject(milling.speed_variation.active(), "amplitude_ratio", method, "its speed is constant");
 }
 
 std::unique_ptr<Scheme> first_order_semi_discretization(const LobesProblem& problem, int intervals) {

@@ -210,7 +210,7 @@ std::vector<LobesProblem> varied_problems() {
   return all;
 }
 
-// Against collocation, which shares neither steps nor delayed displacements; the estimate tells the error.
+// Against collocation, which shares neither steps nor delayed displacements; the estimate reports the error.
 TEST(Discretizations, AgreeWithCollocationWithinTheirEstimate) {
   LobesOptions options;
   for (const LobesProblem& problem : varied_problems()) {
@@ -288,15 +288,15 @@ TEST(Discretizations, StayFiniteWhateverIsAsked) {
   }
 }
 
-TEST(Discretizations, RefuseWhatTheyDoNotKnow) {
-  const auto refused = [](auto change) {
+TEST(Discretizations, RejectWhatTheyDoNotKnow) {
+  const auto rejected = [](auto change) {
     LobesProblem problem = testing::robot();
     change(problem.milling);
     std::string fields;
     for (const Make make : methods) {
       try {
         make(problem, 40);
-        ADD_FAILURE() << "not refused";
+        ADD_FAILURE() << "not rejected";
       } catch (const InvalidInput& e) {
         fields += e.parts().field + " ";
         EXPECT_NE(std::string(e.what()).find("discretization"), std::string::npos);
@@ -305,12 +305,12 @@ TEST(Discretizations, RefuseWhatTheyDoNotKnow) {
     return fields;
   };
   using cutting::Milling;
-  EXPECT_EQ(refused([](Milling& m) { m.tool.pitch_rad = {2.0, 2.1, 2.0 * pi - 4.1}; }), "pitch_rad pitch_rad ");
-  EXPECT_EQ(refused([](Milling& m) { m.tool.tooth_helix_rad = {0.5, 0.6, 0.5}; }), "tooth_helix_rad tooth_helix_rad ");
-  EXPECT_EQ(refused([](Milling& m) { m.tool.runout_m = 1e-5; }), "runout_m runout_m ");
-  EXPECT_EQ(refused([](Milling& m) { m.process_damping = {.indentation_n_per_m3 = 3e13, .wear_land_m = 8e-5}; }),
+  EXPECT_EQ(rejected([](Milling& m) { m.tool.pitch_rad = {2.0, 2.1, 2.0 * pi - 4.1}; }), "pitch_rad pitch_rad ");
+  EXPECT_EQ(rejected([](Milling& m) { m.tool.tooth_helix_rad = {0.5, 0.6, 0.5}; }), "tooth_helix_rad tooth_helix_rad ");
+  EXPECT_EQ(rejected([](Milling& m) { m.tool.runout_m = 1e-5; }), "runout_m runout_m ");
+  EXPECT_EQ(rejected([](Milling& m) { m.process_damping = {.indentation_n_per_m3 = 3e13, .wear_land_m = 8e-5}; }),
             "indentation_n_per_m3 indentation_n_per_m3 ");
-  EXPECT_EQ(refused([](Milling& m) { m.speed_variation = {.amplitude_ratio = 0.1, .frequency_ratio = 0.1}; }),
+  EXPECT_EQ(rejected([](Milling& m) { m.speed_variation = {.amplitude_ratio = 0.1, .frequency_ratio = 0.1}; }),
             "amplitude_ratio amplitude_ratio ");
 }
 

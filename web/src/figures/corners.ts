@@ -87,7 +87,7 @@ export function cornerFigure(smooth: Smooth, corner: Corner, theme: Theme, width
       line: { color: theme.unknown, width: 1.5 },
       marker: { size: 5, color: theme.unknown },
     },
-    ...corner.ways.map((way, i) => ({
+    ...corner.corner_paths.map((way, i) => ({
       type: 'scatter',
       mode: 'lines',
       name: plain(smooth.methods[i]!.name),

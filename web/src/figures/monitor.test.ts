@@ -35,7 +35,7 @@ describe('what the monitor detected', () => {
     expect(data.map((trace) => trace['name'])).toEqual(['&lt;x&gt;', 'y']);
     expect(layout['yaxis']).toMatchObject({ title: { text: 'Signal (m/s²)' } });
   });
-  it('marks the frequencies that were told as chatter, and no others', () => {
+  it('marks the frequencies that were reported as chatter, and no others', () => {
     for (const theme of [light, dark]) {
       const { data } = spectrogramFigure(monitor, theme);
       expect(data[0]).toMatchObject({ x: [0.5, 0.75, 1], zmax: 0 });

@@ -58,11 +58,11 @@ export function waveFigure(monitor: Monitor, theme: Theme): Figure {
 
 const deepest = -50; // dB; below, noise hides what stands above it
 
-/** The synchrosqueezed spectrogram, with the frequencies that were told. */
+/** The synchrosqueezed spectrogram, with the frequencies that were reported. */
 export function spectrogramFigure(monitor: Monitor, theme: Theme): Figure {
   const spectrogram = monitor.spectrogram!;
   const columns = spectrogram.level_db[0]?.length ?? 0;
-  const told = monitor.events.filter((event) => event.chatter_frequency_hz !== null && event.state === 'chatter');
+  const reported = monitor.events.filter((event) => event.chatter_frequency_hz !== null && event.state === 'chatter');
   const last = spectrogram.frequency_hz[spectrogram.frequency_hz.length - 1] ?? 1;
   const data: Trace[] = [
     {
@@ -80,9 +80,9 @@ export function spectrogramFigure(monitor: Monitor, theme: Theme): Figure {
     {
       type: 'scatter',
       mode: 'markers',
-      name: 'told',
-      x: told.map((event) => event.time_s),
-      y: told.map((event) => event.chatter_frequency_hz),
+      name: 'reported',
+      x: reported.map((event) => event.time_s),
+      y: reported.map((event) => event.chatter_frequency_hz),
       marker: { symbol: 'circle-open', size: 11, color: theme.chatter, line: { width: 2 } },
       showlegend: false,
       hovertemplate: `%{x:.3f}${thinSpace}s: chatter at %{y:.1f}${thinSpace}Hz<extra></extra>`,

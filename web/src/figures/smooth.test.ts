@@ -21,7 +21,7 @@ const corner: Corner = {
   turn_deg: 90,
   radius_mm: 0.5,
   program: { x_mm: [-100, 0, 100], y_mm: [100, 0, 100] },
-  ways: [{ x_mm: [-0.4, 0, 0.4], y_mm: [0.4, 0.1, 0.4] }, { x_mm: [-0.4, 0, 0.4], y_mm: [0.4, 0.2, 0.4] }],
+  corner_paths: [{ x_mm: [-0.4, 0, 0.4], y_mm: [0.4, 0.1, 0.4] }, { x_mm: [-0.4, 0, 0.4], y_mm: [0.4, 0.2, 0.4] }],
 };
 
 const method = (name: string, duration: number) => ({
@@ -48,7 +48,7 @@ const smooth = {
 const rows = (figure: { layout: Record<string, unknown> }) => Object.keys(figure.layout).filter((key) => key.startsWith('yaxis'));
 
 describe('speeds', () => {
-  it('have a line a method, over the longest of them, told apart without their colours', () => {
+  it('have a line a method, over the longest of them, distinguished without their colours', () => {
     const { data, layout } = speedFigure(smooth, light);
     expect(data.map((trace) => trace['name'])).toEqual(['verified', '&lt;paper&gt;', 'verified', '&lt;paper&gt;']);
     expect(new Set(data.slice(0, 2).map((trace) => (trace['line'] as { dash: string }).dash)).size).toBe(2);
@@ -126,6 +126,6 @@ describe('corner', () => {
     expect(data.map((trace) => trace['name'])).toEqual(['program', 'verified', '&lt;paper&gt;']);
     expect(layout['title']).toMatchObject({ text: 'Line 14: 90°' });
     expect(layout['yaxis']).toMatchObject({ scaleanchor: 'x', range: [-0.25, 0.75] });
-    expect(cornerFigure({ ...smooth, methods: smooth.methods.slice(0, 1) }, { ...corner, ways: corner.ways.slice(0, 1) }, light, 400).data[1]).toMatchObject({ showlegend: false });
+    expect(cornerFigure({ ...smooth, methods: smooth.methods.slice(0, 1) }, { ...corner, corner_paths: corner.corner_paths.slice(0, 1) }, light, 400).data[1]).toMatchObject({ showlegend: false });
   });
 });

@@ -18,7 +18,7 @@ function surest(events: MonitorEvent[], { from_s: from, to_s: to }: MonitorStay)
 }
 
 /** " at 683.6 ± 0.3 Hz, mode 8; quiet near 3416 rpm" */
-function frequencyTold(event: MonitorEvent): string {
+function frequencyReported(event: MonitorEvent): string {
   const mode = modeName(event);
   const quiet = event.suggested_spindle_speed_rpm;
   return ` at ${frequencyOf(event)} Hz${mode && `, ${mode}`}${quiet === null ? '' : `; quiet near ${fixed(quiet, 0)} rpm`}`;
@@ -40,7 +40,7 @@ function Verdict({ monitor: { stays, events } }: { monitor: Monitor }) {
         return (
           <p class="why">
             <strong>Chatter</strong>
-            {` from ${fixed(stay.from_s, 2)} s to ${fixed(stay.to_s, 2)} s${event === null ? '' : frequencyTold(event)}.`}
+            {` from ${fixed(stay.from_s, 2)} s to ${fixed(stay.to_s, 2)} s${event === null ? '' : frequencyReported(event)}.`}
           </p>
         );
       })}

@@ -11,11 +11,11 @@ namespace robomill::monitor {
 /// Chatter at a multiple of rotation, which the comb swallows: a harmonic that is no multiple of the teeth, holds a
 /// quarter of the power and has grown eightfold against its learnt value, beyond what tooth passing has grown, for six
 /// hops. Half way between multiples of tooth passing it is period doubling. Nothing is allocated after construction.
-class HiddenHarmonics {
+class SynchronousChatter {
  public:
   static constexpr std::size_t hops = 6;
-  /// @param teeth  at least 2; less: nothing can be told from tooth passing
-  HiddenHarmonics(std::size_t max_harmonics, int teeth);
+  /// @param teeth  at least 2; less: nothing can be derived from tooth passing
+  SynchronousChatter(std::size_t max_harmonics, int teeth);
 
   /// Amplitudes of a hop, a comb a channel, against those that were learnt.
   /// @param power  of all channels;  @param known  the combs have had time to learn what is usual

@@ -1,4 +1,4 @@
-#include "robomill/monitor/guard.hpp"
+#include "robomill/monitor/signal_validation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,19 +11,19 @@ constexpr std::size_t flat_top = 4;  // equal samples at the extreme that a conv
 
 }  // namespace
 
-Guard::Guard(const MonitorOptions& options)
+SignalValidation::SignalValidation(const MonitorOptions& options)
     : full_scale_(options.full_scale),
       stuck_run_(std::max<std::size_t>(8, static_cast<std::size_t>(std::lround(stuck_s * options.sample_rate_hz)))) {}
 
-void Guard::reset() noexcept {
+void SignalValidation::reset() noexcept {
   const double full_scale = full_scale_;
   const std::size_t stuck_run = stuck_run_;
-  *this = Guard(MonitorOptions{});
+  *this = SignalValidation(MonitorOptions{});
   full_scale_ = full_scale;
   stuck_run_ = stuck_run;
 }
 
-double Guard::take(float sample) noexcept {
+double SignalValidation::take(float sample) noexcept {
   const auto wide = static_cast<double>(sample);
   // Squares of more would overflow a float's range further on.
   const bool good = std::isfinite(wide) && std::abs(wide) < 1e15;
@@ -55,7 +55,7 @@ double Guard::take(float sample) noexcept {
   return x;
 }
 
-std::uint32_t Guard::hop_faults() noexcept {
+std::uint32_t SignalValidation::hop_faults() noexcept {
   std::uint32_t faults = 0;
   const double n = static_cast<double>(std::max<std::size_t>(1, count_));
   const double mean = sum_ / n;

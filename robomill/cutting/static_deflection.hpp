@@ -8,16 +8,16 @@
 namespace robomill::cutting {
 
 /// A steady cut whose mean force has bent what holds the tool.
-struct SettledCut {
+struct StaticDeflection {
   Cut cut;                ///< with the depth that is left
   Engagement engagement;  ///< of that cut
   CuttingForce force;
   Eigen::Vector3d deflection_m = Eigen::Vector3d::Zero();  ///< q = C F̄, in F [m]
   double peak_deflection_m = 0.0;                          ///< greatest |C F| over the revolution
   int iterations = 0;
-  /// found: the depth agrees with its own force to 1e-9 of the commanded one. digs_in: the force pulls the tool in
+  /// found: the depth agrees with its own force to 1e-9 of the commanded one. diverged: the force pulls the tool in
   /// faster than the structure holds it, no depth settles. lifts_off: the tool is pushed out of the cut altogether.
-  enum class Status { found, digs_in, lifts_off };
+  enum class Status { found, diverged, lifts_off };
   Status status = Status::found;
 };
 
@@ -27,9 +27,10 @@ struct SettledCut {
 /// @param compliance_m_per_n  C, 3 x 3 of the tip against the part, in F [m/N]
 /// @param slices              rings of the engagement; 0: chosen
 /// @throws InvalidInput as engage and cutting_force
-[[nodiscard]] ROBOMILL_API SettledCut settle(const Cutter& cutter, const Cut& cut,
-                                             const MillingCoefficients& coefficients, const CutMotion& motion,
-                                             const Eigen::Matrix3d& compliance_m_per_n,
-                                             const ForceOptions& options = {}, int slices = 0);
+[[nodiscard]] ROBOMILL_API StaticDeflection static_deflection(const Cutter& cutter, const Cut& cut,
+                                                              const MillingCoefficients& coefficients,
+                                                              const CutMotion& motion,
+                                                              const Eigen::Matrix3d& compliance_m_per_n,
+                                                              const ForceOptions& options = {}, int slices = 0);
 
 }  // namespace robomill::cutting

@@ -1,4 +1,4 @@
-#include "robomill/stability/fingerprint.hpp"
+#include "robomill/stability/peak_classification.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ void add_modes(const modal::ModalModel& model, modal::ModeOwner owner, std::vect
 
 /// All readings of a peak, the most likely first.
 std::vector<Explanation> explanations(double peak_hz, double rotation_hz, int teeth,
-                                      const std::vector<NaturalMode>& modes, const FingerprintOptions& options) {
+                                      const std::vector<NaturalMode>& modes, const PeakClassificationOptions& options) {
   std::vector<Explanation> found;
   const auto consider = [&](Explanation e) {
     e.difference_hz = peak_hz - e.expected_hz;
@@ -86,7 +86,7 @@ bool is_chatter(const Explanation& e) {
 }
 
 Reading read(const MeasuredPeaks& peaks, double rotation_hz, const std::vector<NaturalMode>& modes,
-             const FingerprintOptions& options) {
+             const PeakClassificationOptions& options) {
   Reading reading{.rotation_hz = rotation_hz};
   for (const double f : peaks.frequency_hz) {
     const std::vector<Explanation> found = explanations(f, rotation_hz, peaks.teeth, modes, options);
@@ -104,7 +104,7 @@ double own_frequency(double peak_hz, const Explanation& e, double rotation_hz) {
 
 /// What the readings, the most likely first, come to.
 ExplainedPeak judged(double peak_hz, std::vector<Explanation> readings, double rotation_hz,
-                     const FingerprintOptions& options) {
+                     const PeakClassificationOptions& options) {
   ExplainedPeak peak{.frequency_hz = peak_hz, .best = {}};
   if (readings.empty()) return peak;
   const double least = readings.front().likelihood_per_hz / options.clear_odds;
@@ -136,8 +136,8 @@ ExplainedPeak judged(double peak_hz, std::vector<Explanation> readings, double r
   return peak;
 }
 
-double rotation_of(const MeasuredPeaks& peaks, const std::vector<NaturalMode>& modes, const FingerprintOptions& options,
-                   bool& from_peaks) {
+double rotation_of(const MeasuredPeaks& peaks, const std::vector<NaturalMode>& modes,
+                   const PeakClassificationOptions& options, bool& from_peaks) {
   const double commanded_hz = peaks.spindle_speed_rad_per_s / (2.0 * pi);
   Reading best = read(peaks, commanded_hz, modes, options);
   const auto away = [&](const Reading& r) { return std::abs(r.rotation_hz - commanded_hz); };
@@ -167,18 +167,18 @@ double rotation_of(const MeasuredPeaks& peaks, const std::vector<NaturalMode>& m
 }
 
 /// The mode that most peaks name.
-void name_mode(Fingerprint& out) {
+void name_mode(PeakClassification& out) {
   std::map<modal::ModeId, int> named;
   int most = 0;
   for (const ExplainedPeak& peak : out.peaks) {
-    if (peak.state == ExplainedPeak::State::cannot_be_told) out.state = Fingerprint::State::cannot_be_told;
+    if (peak.state == ExplainedPeak::State::cannot_be_told) out.state = PeakClassification::State::cannot_be_told;
     if (peak.best.mode.known()) most = std::max(most, ++named[peak.best.mode]);
   }
   if (most == 0) return;
   const auto has_most = [&](const auto& entry) { return entry.second == most; };
-  out.state = Fingerprint::State::cannot_be_told;
+  out.state = PeakClassification::State::cannot_be_told;
   if (std::ranges::count_if(named, has_most) > 1) return;
-  out.state = Fingerprint::State::named;
+  out.state = PeakClassification::State::named;
   out.mode = std::ranges::find_if(named, has_most)->first;
   double sum_hz = 0.0;
   for (const ExplainedPeak& peak : out.peaks) {
@@ -205,7 +205,7 @@ void MeasuredPeaks::validate() const {
   if (teeth > 100) throw InvalidInput("teeth", teeth, "", "must be at most 100");
 }
 
-void FingerprintOptions::validate() const {
+void PeakClassificationOptions::validate() const {
   require_positive("tolerance_hz", tolerance_hz, "Hz");
   if (!(speed_tolerance >= 0.0 && speed_tolerance <= 0.05)) {
     throw InvalidInput("speed_tolerance", speed_tolerance, "", "must lie between 0 and 0.05");
@@ -243,20 +243,20 @@ std::string_view to_string(ExplainedPeak::State state) {
   return "unexplained";
 }
 
-std::string_view to_string(Fingerprint::State state) {
+std::string_view to_string(PeakClassification::State state) {
   switch (state) {
-    case Fingerprint::State::named:
+    case PeakClassification::State::named:
       return "named";
-    case Fingerprint::State::cannot_be_told:
+    case PeakClassification::State::cannot_be_told:
       return "cannot be told";
-    case Fingerprint::State::no_chatter:
+    case PeakClassification::State::no_chatter:
       break;
   }
   return "no chatter";
 }
 
-Fingerprint explain(const MeasuredPeaks& peaks, const modal::ModalModel& tool, const FingerprintOptions& options,
-                    const modal::ModalModel& workpiece) {
+PeakClassification explain(const MeasuredPeaks& peaks, const modal::ModalModel& tool,
+                           const PeakClassificationOptions& options, const modal::ModalModel& workpiece) {
   peaks.validate();
   tool.validate();
   if (!workpiece.modes.empty()) workpiece.validate();
@@ -270,7 +270,7 @@ Fingerprint explain(const MeasuredPeaks& peaks, const modal::ModalModel& tool, c
   std::vector<NaturalMode> modes;
   add_modes(tool, modal::ModeOwner::tool, modes);
   add_modes(workpiece, modal::ModeOwner::workpiece, modes);
-  Fingerprint out;
+  PeakClassification out;
   const double rotation_hz = rotation_of(peaks, modes, options, out.speed_from_peaks);
   out.spindle_speed_rad_per_s = 2.0 * pi * rotation_hz;
   for (const double f : peaks.frequency_hz) {

@@ -1,4 +1,4 @@
-#include "robomill/monitor/comb_cusum/tone.hpp"
+#include "robomill/monitor/comb_cusum/narrowband_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr std::size_t width = 2;                // lines by which what grows fas
 
 }  // namespace
 
-bool Tone::step(const Hop& hop) noexcept {
+bool NarrowbandDetector::step(const Hop& hop) noexcept {
   const double log_power = std::log(hop.power);
   const double rise = log_power - log_power_;
   const bool same = hop.line + width >= line_ && hop.line <= line_ + width;

@@ -19,7 +19,7 @@ struct ROBOMILL_API MeasuredPeaks {
   void validate() const;
 };
 
-struct ROBOMILL_API FingerprintOptions {
+struct ROBOMILL_API PeakClassificationOptions {
   double tolerance_hz = 1.0;  ///< how far a peak may lie from what explains it [Hz], > 0, below a quarter of rotation
   double speed_tolerance = 2e-3;   ///< share by which the true speed may differ from the commanded one, in [0, 0.05]
   double clear_odds = 3.0;         ///< a reading is named where it is that many times as likely as any other one, >= 1
@@ -60,7 +60,7 @@ struct ExplainedPeak {
   double chatter_frequency_hz = std::numeric_limits<double>::quiet_NaN();
 };
 
-struct Fingerprint {
+struct PeakClassification {
   /// cannot_be_told: there may be chatter, but no peak names its mode, or as many name one as another.
   enum class State { named, cannot_be_told, no_chatter };
   double spindle_speed_rad_per_s = 0.0;  ///< that the peaks which are multiples of rotation agree on, or as commanded
@@ -73,7 +73,7 @@ struct Fingerprint {
 
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Explanation::Kind kind);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(ExplainedPeak::State state);
-[[nodiscard]] ROBOMILL_API std::string_view to_string(Fingerprint::State state);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(PeakClassification::State state);
 
 /// Reads each peak. Chatter appears at f = |f_k + n f_rotation|: with equal teeth at multiples of tooth passing from
 /// the mode alone, with runout at the others too. Of several readings the most likely is named, unless one that means
@@ -83,12 +83,12 @@ struct Fingerprint {
 /// rotation and more peaks are explained; refined by least squares over the peaks that are named as multiples.
 /// @param tool, workpiece  whose modes may chatter; a workpiece without modes stands still
 /// @throws InvalidInput if an input is out of range
-[[nodiscard]] ROBOMILL_API Fingerprint explain(const MeasuredPeaks& peaks, const modal::ModalModel& tool,
-                                               const FingerprintOptions& options = {},
-                                               const modal::ModalModel& workpiece = {});
+[[nodiscard]] ROBOMILL_API PeakClassification explain(const MeasuredPeaks& peaks, const modal::ModalModel& tool,
+                                                      const PeakClassificationOptions& options = {},
+                                                      const modal::ModalModel& workpiece = {});
 
 /// Whether a cut's chatter needs the wave that the tooth before left.
-struct DelayVerdict {
+struct ChatterMechanism {
   enum class Kind { stable, regenerative, mode_coupling };
   Kind kind = Kind::stable;
   double spectral_radius = 0.0;       ///< of one period, as evaluate_point has it
@@ -96,12 +96,12 @@ struct DelayVerdict {
   double chatter_frequency_hz = 0.0;  ///< of the cut with the delay
   modal::ModeId mode = {};            ///< the same
 };
-[[nodiscard]] ROBOMILL_API std::string_view to_string(DelayVerdict::Kind kind);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(ChatterMechanism::Kind kind);
 
 /// Regenerative: unstable, and stable once the delayed displacement is left out of the force. Mode coupling: unstable
 /// without it too. The periodic equation without delay is integrated exactly in its modes, by Runge-Kutta's fourth
 /// order in its force; every tooth cuts, at the mean speed.
 /// @throws InvalidInput if the problem or the point is out of range
-[[nodiscard]] ROBOMILL_API DelayVerdict needs_delay(const LobesProblem& problem, const OperatingPoint& point);
+[[nodiscard]] ROBOMILL_API ChatterMechanism chatter_mechanism(const LobesProblem& problem, const OperatingPoint& point);
 
 }  // namespace robomill::stability

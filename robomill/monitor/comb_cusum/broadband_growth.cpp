@@ -1,4 +1,4 @@
-#include "robomill/monitor/comb_cusum/spill.hpp"
+#include "robomill/monitor/comb_cusum/broadband_growth.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ constexpr double falling = 0.9, fallen = 0.7;   // of the median to the last; of
 
 }  // namespace
 
-bool Spill::step(double left, double whole) noexcept {
+bool BroadbandGrowth::step(double left, double whole) noexcept {
   left_[hops_ % kept] = left;
   whole_[hops_ % kept] = whole;
   if (++hops_ < kept) return false;

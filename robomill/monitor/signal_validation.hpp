@@ -9,9 +9,9 @@
 namespace robomill::monitor {
 
 /// Looks after the samples of one channel: puts finite ones in the place of others and says what is wrong.
-class Guard {
+class SignalValidation {
  public:
-  explicit Guard(const MonitorOptions& options);
+  explicit SignalValidation(const MonitorOptions& options);
   /// The sample to work with.
   double take(float sample) noexcept;
   /// Bits of Fault that the hop showed; a new hop begins.

@@ -8,7 +8,7 @@ namespace robomill::monitor {
 /// rises by 0.25 a hop, four hops in a row and by 2 in all, at a frequency that the cut itself cannot have; or,
 /// wherever it is, five hops, by 4 in all and still by 0.5: what enters a cut rises less and less, chatter as fast as
 /// before. A tone at half of its greatest power rings off and is forgotten.
-class Tone {
+class NarrowbandDetector {
  public:
   struct Hop {
     std::size_t line = 0;         ///< the strongest; 0: none

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "robomill/stability/fingerprint.hpp"
 #include "robomill/stability/frequency_domain/contact_basis.hpp"
+#include "robomill/stability/peak_classification.hpp"
 #include "robomill/stability/tip_dynamics.hpp"
 
 namespace robomill::stability {
@@ -110,26 +110,27 @@ class WithoutDelay {
 
 }  // namespace
 
-std::string_view to_string(DelayVerdict::Kind kind) {
+std::string_view to_string(ChatterMechanism::Kind kind) {
   switch (kind) {
-    case DelayVerdict::Kind::regenerative:
+    case ChatterMechanism::Kind::regenerative:
       return "regenerative";
-    case DelayVerdict::Kind::mode_coupling:
+    case ChatterMechanism::Kind::mode_coupling:
       return "mode coupling";
     default:
       return "stable";
   }
 }
 
-DelayVerdict needs_delay(const LobesProblem& problem, const OperatingPoint& point) {
+ChatterMechanism chatter_mechanism(const LobesProblem& problem, const OperatingPoint& point) {
   const PointResult with = evaluate_point(problem, {}, point);
-  DelayVerdict verdict;
+  ChatterMechanism verdict;
   verdict.spectral_radius = with.spectral_radius;
   verdict.without_delay = WithoutDelay(problem, point).spectral_radius();
   verdict.chatter_frequency_hz = with.chatter_frequency_hz;
   verdict.mode = with.mode;
   if (!with.stable) {
-    verdict.kind = verdict.without_delay >= 1.0 ? DelayVerdict::Kind::mode_coupling : DelayVerdict::Kind::regenerative;
+    verdict.kind =
+        verdict.without_delay >= 1.0 ? ChatterMechanism::Kind::mode_coupling : ChatterMechanism::Kind::regenerative;
   }
   return verdict;
 }

@@ -1,4 +1,4 @@
-#include "robomill/coupling/span.hpp"
+#include "robomill/coupling/beam_element.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 namespace robomill::coupling {
 namespace {
 
-using detail::Span;
+using detail::BeamElement;
 using test::bar;
 using LongComplex = std::complex<long double>;
 
@@ -84,7 +84,7 @@ LongComplex lossy(double x, const Segment& segment) {
   return static_cast<long double>(x) / std::pow(loss, 0.25L);
 }
 
-Eigen::Matrix4cd free_matrix(const Span& span) {
+Eigen::Matrix4cd free_matrix(const BeamElement& span) {
   const Eigen::Matrix2cd r22 = span.stiffness.inverse();
   const Eigen::Matrix2cd r12 = span.carry * r22;
   Eigen::Matrix4cd out;
@@ -100,22 +100,22 @@ double misfit(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b, double lengt
   return (difference).cwiseAbs().maxCoeff() / (unit.asDiagonal() * b * unit.asDiagonal()).cwiseAbs().maxCoeff();
 }
 
-TEST(Span, FreeBeamIsBishopsFromLambdaL1em3To100) {
+TEST(BeamElement, FreeBeamIsBishopsFromLambdaL1em3To100) {
   const Segment segment = bar(0.11892);
   const detail::Section s = detail::section(segment);
   for (double x = 1e-3; x < 100.5; x *= 1.07) {
-    const Span span = detail::spans({segment}, Eigen::VectorXd::Constant(1, frequency_at(x, segment))).front();
+    const BeamElement span = detail::spans({segment}, Eigen::VectorXd::Constant(1, frequency_at(x, segment))).front();
     const Eigen::MatrixXcd expected = free_beam(lossy(x, segment), segment.length_m, s.bending_stiffness_n_m2 * s.loss);
     // At a resonance of the free beam the stiffness is all but singular, and its inverse loses as many digits.
     EXPECT_LT(misfit(free_matrix(span), expected, segment.length_m), 1e-12 * std::max(1.0, x)) << x;
   }
 }
 
-TEST(Span, ClampedBeamIsBishopsFromLambdaL1em3To100) {
+TEST(BeamElement, ClampedBeamIsBishopsFromLambdaL1em3To100) {
   const Segment segment = bar(0.11892);
   const detail::Section s = detail::section(segment);
   for (double x = 1e-3; x < 100.5; x *= 1.07) {
-    const Span span = detail::spans({segment}, Eigen::VectorXd::Constant(1, frequency_at(x, segment))).front();
+    const BeamElement span = detail::spans({segment}, Eigen::VectorXd::Constant(1, frequency_at(x, segment))).front();
     const LongComplex z = lossy(x, segment);
     const BeamFunctions f = beam_functions(z);
     const LongComplex ei = {static_cast<long double>(s.bending_stiffness_n_m2),
@@ -140,7 +140,7 @@ PublishedFunctions published(std::complex<double> x, std::complex<double> ei) {
 
 // Its slopes count from the spindle to the tip: they and the moments turn their signs. As printed equation 8 has c1 for
 // c2, the text gives c5 as c3, c8 as c4, c3 with the holder's length, and c4 = cos cosh for cos - cosh.
-TEST(Span, PublishedClosedFormsHoldWithTheirFunctionsPutRight) {
+TEST(BeamElement, PublishedClosedFormsHoldWithTheirFunctionsPutRight) {
   const Segment tool = bar(0.11892), holder = bar(0.05090);
   const detail::Section section = detail::section(tool);
   const std::complex<double> ei = section.bending_stiffness_n_m2 * section.loss;
@@ -178,7 +178,7 @@ TEST(Span, PublishedClosedFormsHoldWithTheirFunctionsPutRight) {
   }
 }
 
-TEST(Span, NothingOverflowsFarBeyondCosh) {
+TEST(BeamElement, NothingOverflowsFarBeyondCosh) {
   for (const Beam beam : {Beam::euler_bernoulli, Beam::timoshenko}) {
     const Segment wire{.length_m = 3.0,
                        .diameter_m = 0.001,
@@ -186,7 +186,7 @@ TEST(Span, NothingOverflowsFarBeyondCosh) {
                        .density_kg_per_m3 = 7800.0,
                        .loss_factor = 0.02,
                        .beam = beam};
-    const Span span = detail::spans({wire}, Eigen::VectorXd::Constant(1, 50e3)).front();  // λL near 1500
+    const BeamElement span = detail::spans({wire}, Eigen::VectorXd::Constant(1, 50e3)).front();  // λL near 1500
     EXPECT_TRUE(span.clamped.allFinite() && span.carry.allFinite() && span.stiffness.allFinite());
     EXPECT_LT(span.clamped(0, 0).imag(), 0.0);
   }
@@ -217,10 +217,10 @@ Eigen::Matrix4cd transfer(const Segment& segment, double frequency_hz) {
 }
 
 /// x_1, f_1 = -(V, M)(0) and x_2, f_2 = (V, M)(L) from the transfer matrix.
-Span span_of(const Eigen::Matrix4cd& t) {
+BeamElement span_of(const Eigen::Matrix4cd& t) {
   const Eigen::Matrix2cd xx = t.topLeftCorner<2, 2>(), xf = t.topRightCorner<2, 2>();
   const Eigen::Matrix2cd fx = t.bottomLeftCorner<2, 2>(), ff = t.bottomRightCorner<2, 2>();
-  Span out;
+  BeamElement out;
   out.clamped = xx.inverse() * xf;    // 0 = xx x_1 - xf f_1
   out.carry = xx.inverse();           // x_2 = xx x_1
   out.stiffness = fx * xx.inverse();  // f_2 = fx x_1
@@ -228,7 +228,7 @@ Span span_of(const Eigen::Matrix4cd& t) {
   return out;
 }
 
-TEST(Span, TimoshenkoIsTheMatrixExponentialOfItsEquations) {
+TEST(BeamElement, TimoshenkoIsTheMatrixExponentialOfItsEquations) {
   Random random(3);
   for (int i = 0; i < 300; ++i) {
     Segment s = bar(random.uniform(0.002, 0.2), Beam::timoshenko);
@@ -241,15 +241,15 @@ TEST(Span, TimoshenkoIsTheMatrixExponentialOfItsEquations) {
     const detail::Section section = detail::section(s);
     const double waves = section.bending * std::pow(2.0 * std::numbers::pi * f, 2);
     if (waves > 300.0) continue;  // the transfer matrix itself loses its digits
-    const Span span = detail::spans({s}, Eigen::VectorXd::Constant(1, f)).front();
-    const Span expected = span_of(transfer(s, f));
+    const BeamElement span = detail::spans({s}, Eigen::VectorXd::Constant(1, f)).front();
+    const BeamElement expected = span_of(transfer(s, f));
     EXPECT_LT(misfit(span.clamped, expected.clamped, s.length_m), 1e-9) << i;
     EXPECT_LT((span.carry - expected.carry).norm(), 1e-9 * expected.carry.norm()) << i;
     EXPECT_LT(misfit(span.stiffness, expected.stiffness, 1.0 / s.length_m), 1e-9) << i;
   }
 }
 
-TEST(Span, PassesTheCutOnOfTheSecondWave) {
+TEST(BeamElement, PassesTheCutOnOfTheSecondWave) {
   // κGA = ρI ω²: one wave number is zero, and the same on both sides of it.
   Segment s = bar(0.05, Beam::timoshenko);
   s.diameter_m = 0.2;
@@ -257,16 +257,16 @@ TEST(Span, PassesTheCutOnOfTheSecondWave) {
   const detail::Section section = detail::section(s);
   const double cut_on = std::sqrt(section.bending / (section.rotary * section.shear)) / (2.0 * std::numbers::pi);
   const Eigen::VectorXd f = cut_on * (Eigen::VectorXd(3) << 1.0 - 1e-9, 1.0, 1.0 + 1e-9).finished();
-  const std::vector<Span> around = detail::spans({s}, f);
-  for (const Span& span : around) EXPECT_LT(misfit(span.clamped, around[0].clamped, s.length_m), 1e-6);
+  const std::vector<BeamElement> around = detail::spans({s}, f);
+  for (const BeamElement& span : around) EXPECT_LT(misfit(span.clamped, around[0].clamped, s.length_m), 1e-6);
   EXPECT_LT(misfit(around[1].clamped, span_of(transfer(s, cut_on)).clamped, s.length_m), 1e-9);
 }
 
-TEST(Span, IsTheSameHoweverItIsCut) {
+TEST(BeamElement, IsTheSameHoweverItIsCut) {
   for (const Beam beam : {Beam::euler_bernoulli, Beam::timoshenko}) {
     const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(57, 0.5, 20e3);
-    const std::vector<Span> whole = detail::spans({bar(0.15, beam)}, f);
-    const std::vector<Span> pieces =
+    const std::vector<BeamElement> whole = detail::spans({bar(0.15, beam)}, f);
+    const std::vector<BeamElement> pieces =
         detail::spans({bar(0.07, beam), bar(0.001, beam), bar(0.029, beam), bar(0.05, beam)}, f);
     for (std::size_t i = 0; i < whole.size(); ++i) {
       EXPECT_LT(misfit(pieces[i].clamped, whole[i].clamped, 0.15), 1e-10) << i;
@@ -276,10 +276,10 @@ TEST(Span, IsTheSameHoweverItIsCut) {
   }
 }
 
-TEST(Span, OfAFreeBodyIsRigidAtLowFrequency) {
+TEST(BeamElement, OfAFreeBodyIsRigidAtLowFrequency) {
   const Segment s = bar(0.11892, Beam::timoshenko);
   const double f = 0.01;
-  const Span span = detail::spans({s, s}, Eigen::VectorXd::Constant(1, f)).front();
+  const BeamElement span = detail::spans({s, s}, Eigen::VectorXd::Constant(1, f)).front();
   const double omega2 = std::pow(2.0 * std::numbers::pi * f, 2);
   const double length = 2.0 * s.length_m;
   const double mass = s.density_kg_per_m3 * std::numbers::pi / 4.0 * 0.012 * 0.012 * length;
@@ -289,7 +289,7 @@ TEST(Span, OfAFreeBodyIsRigidAtLowFrequency) {
   EXPECT_LT(misfit(span.stiffness / -omega2, inertia.cast<std::complex<double>>(), 1.0 / length), 1e-8);
 }
 
-TEST(Span, IsPassive) {
+TEST(BeamElement, IsPassive) {
   Random random(5);
   for (int i = 0; i < 200; ++i) {
     Segment a = bar(random.uniform(0.01, 0.2), i % 2 == 0 ? Beam::timoshenko : Beam::euler_bernoulli);
@@ -308,15 +308,15 @@ TEST(Span, IsPassive) {
   }
 }
 
-TEST(Span, HasTheSameBitsFromEveryKernel) {
+TEST(BeamElement, HasTheSameBitsFromEveryKernel) {
   const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(61, 10.0, 15e3);
   const std::vector<Segment> segments = {bar(0.03, Beam::timoshenko), bar(0.3), bar(0.004)};
   const Kernels best = best_kernels();
-  const std::vector<Span> expected = detail::spans(segments, f);
+  const std::vector<BeamElement> expected = detail::spans(segments, f);
   for (const Kernels variant : {Kernels::baseline, Kernels::avx2, Kernels::avx512}) {
     if (variant > best) continue;
     kernels() = variant;
-    const std::vector<Span> found = detail::spans(segments, f);
+    const std::vector<BeamElement> found = detail::spans(segments, f);
     kernels() = best;
     for (std::size_t i = 0; i < found.size(); ++i) {
       EXPECT_TRUE(found[i].clamped == expected[i].clamped && found[i].carry == expected[i].carry &&
@@ -343,22 +343,22 @@ TEST(Section, TakesFlutesAsAThinnerRoundAndAWeightAsGiven) {
   EXPECT_NEAR(detail::section(weighed).bending, 2.0 * detail::section(bar(0.05)).bending, 1e-12);
 }
 
-TEST(Section, RefusesWhatIsNoBeam) {
+TEST(Section, RejectsWhatIsNoBeam) {
   using robomill::test::field_of;
-  const auto refused = [](auto&& change) {
+  const auto rejected = [](auto&& change) {
     Segment s = bar(0.1);
     change(s);
     return field_of([&] { s.validate(); });
   };
-  EXPECT_EQ(refused([](Segment& s) { s.length_m = 0.0; }), "length_m");
-  EXPECT_EQ(refused([](Segment& s) { s.length_m = -0.1; }), "length_m");
-  EXPECT_EQ(refused([](Segment& s) { s.diameter_m = std::nan(""); }), "diameter_m");
-  EXPECT_EQ(refused([](Segment& s) { s.inner_diameter_m = 0.012; }), "inner_diameter_m");
-  EXPECT_EQ(refused([](Segment& s) { s.youngs_modulus_pa = 0.0; }), "youngs_modulus_pa");
-  EXPECT_EQ(refused([](Segment& s) { s.density_kg_per_m3 = 0.0; }), "density_kg_per_m3");
-  EXPECT_EQ(refused([](Segment& s) { s.poissons_ratio = 0.6; }), "poissons_ratio");
-  EXPECT_EQ(refused([](Segment& s) { s.loss_factor = 2.0; }), "loss_factor");
-  EXPECT_EQ(refused([](Segment& s) { s.flutes = -1; }), "flutes");
+  EXPECT_EQ(rejected([](Segment& s) { s.length_m = 0.0; }), "length_m");
+  EXPECT_EQ(rejected([](Segment& s) { s.length_m = -0.1; }), "length_m");
+  EXPECT_EQ(rejected([](Segment& s) { s.diameter_m = std::nan(""); }), "diameter_m");
+  EXPECT_EQ(rejected([](Segment& s) { s.inner_diameter_m = 0.012; }), "inner_diameter_m");
+  EXPECT_EQ(rejected([](Segment& s) { s.youngs_modulus_pa = 0.0; }), "youngs_modulus_pa");
+  EXPECT_EQ(rejected([](Segment& s) { s.density_kg_per_m3 = 0.0; }), "density_kg_per_m3");
+  EXPECT_EQ(rejected([](Segment& s) { s.poissons_ratio = 0.6; }), "poissons_ratio");
+  EXPECT_EQ(rejected([](Segment& s) { s.loss_factor = 2.0; }), "loss_factor");
+  EXPECT_EQ(rejected([](Segment& s) { s.flutes = -1; }), "flutes");
 }
 
 }  // namespace

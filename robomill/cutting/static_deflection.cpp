@@ -1,4 +1,4 @@
-#include "robomill/cutting/settle.hpp"
+#include "robomill/cutting/static_deflection.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ class Settling {
     out_.cut = cut;
   }
 
-  SettledCut run() {
+  StaticDeflection run() {
     const double tolerance = 1e-9 * commanded_m_;
     Trial high = look(commanded_m_);
     if (std::abs(high.missing_m) <= tolerance) return out_;
@@ -37,13 +37,13 @@ class Settling {
     if (high.missing_m > 0.0) {
       // Pushed out: the answer lies below. Where even next to no depth is too much, the tool lifts off.
       low = look(1e-3 * commanded_m_);
-      if (low.missing_m > 0.0) return ended(SettledCut::Status::lifts_off);
+      if (low.missing_m > 0.0) return ended(StaticDeflection::Status::lifts_off);
     } else {
       // Pulled in: the answer lies deeper, if the structure holds it before the edges end.
       while (high.missing_m < 0.0) {
         low = high;
         const double deeper = low.depth_m + 0.1 * commanded_m_;
-        if (low.depth_m >= 2.0 * commanded_m_ || !reachable(deeper)) return ended(SettledCut::Status::digs_in);
+        if (low.depth_m >= 2.0 * commanded_m_ || !reachable(deeper)) return ended(StaticDeflection::Status::diverged);
         high = look(deeper);
       }
     }
@@ -90,7 +90,7 @@ class Settling {
     out_.peak_deflection_m = motion.cols() > 0 ? motion.colwise().norm().maxCoeff() : 0.0;
     return {.depth_m = depth_m, .missing_m = depth_m - commanded_m_ + out_.deflection_m.z()};
   }
-  SettledCut ended(SettledCut::Status status) {
+  StaticDeflection ended(StaticDeflection::Status status) {
     look(commanded_m_);  // what the cut would ask of it if it could
     out_.status = status;
     return out_;
@@ -103,14 +103,14 @@ class Settling {
   ForceOptions options_;
   int slices_;
   double commanded_m_;
-  SettledCut out_;
+  StaticDeflection out_;
 };
 
 }  // namespace
 
-SettledCut settle(const Cutter& cutter, const Cut& cut, const MillingCoefficients& coefficients,
-                  const CutMotion& motion, const Eigen::Matrix3d& compliance_m_per_n, const ForceOptions& options,
-                  int slices) {
+StaticDeflection static_deflection(const Cutter& cutter, const Cut& cut, const MillingCoefficients& coefficients,
+                                   const CutMotion& motion, const Eigen::Matrix3d& compliance_m_per_n,
+                                   const ForceOptions& options, int slices) {
   cut.validate(cutter);
   return Settling(cutter, cut, coefficients, motion, compliance_m_per_n, options, slices).run();
 }

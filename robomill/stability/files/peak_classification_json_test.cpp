@@ -1,4 +1,4 @@
-#include "robomill/stability/files/fingerprint_json.hpp"
+#include "robomill/stability/files/peak_classification_json.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@ namespace {
 
 TEST(FingerprintJson, HoldsEveryPeakInShopUnits) {
   const modal::ModalModel modes = data::robot_modes();
-  const Fingerprint found = explain({{324.99, 666.98, 250.0}, 6500.0 * units::rpm, 3}, modes);
-  const DelayVerdict verdict = {DelayVerdict::Kind::regenerative, 1.1, 0.9, 563.5, {8}};
-  const auto json = nlohmann::json::parse(fingerprint_json(found, &verdict));
+  const PeakClassification found = explain({{324.99, 666.98, 250.0}, 6500.0 * units::rpm, 3}, modes);
+  const ChatterMechanism verdict = {ChatterMechanism::Kind::regenerative, 1.1, 0.9, 563.5, {8}};
+  const auto json = nlohmann::json::parse(peak_classification_json(found, &verdict));
   EXPECT_NEAR(json["spindle_speed_rpm"].get<double>(), 6499.8, 1e-6);
   ASSERT_EQ(json["peaks"].size(), 3U);
   EXPECT_EQ(json["peaks"][0]["kind"], "tooth passing");
@@ -29,7 +29,7 @@ TEST(FingerprintJson, HoldsEveryPeakInShopUnits) {
   EXPECT_EQ(json["chatter"]["kind"], "regenerative");
   EXPECT_EQ(json["chatter"]["spectral_radius_without_delay"], 0.9);
   const auto bare =
-      nlohmann::json::parse(fingerprint_json(explain({{324.99}, 6500.0 * units::rpm, 3}, modes), nullptr));
+      nlohmann::json::parse(peak_classification_json(explain({{324.99}, 6500.0 * units::rpm, 3}, modes), nullptr));
   EXPECT_TRUE(bare["mode"].is_null());
   EXPECT_TRUE(bare["chatter_frequency_hz"].is_null());
   EXPECT_TRUE(bare["chatter"].is_null());
@@ -37,9 +37,9 @@ TEST(FingerprintJson, HoldsEveryPeakInShopUnits) {
 }
 
 // Two modes explain 539.5 Hz about as well: no mode is named, and both are listed.
-TEST(FingerprintJson, NamesNothingThatCannotBeTold) {
-  const auto json =
-      nlohmann::json::parse(fingerprint_json(explain({{539.5}, 6500.0 * units::rpm, 3}, data::robot_modes()), nullptr));
+TEST(FingerprintJson, NamesNothingThatCannotBeReported) {
+  const auto json = nlohmann::json::parse(
+      peak_classification_json(explain({{539.5}, 6500.0 * units::rpm, 3}, data::robot_modes()), nullptr));
   EXPECT_EQ(json["state"], "cannot be told");
   EXPECT_TRUE(json["mode"].is_null());
   EXPECT_TRUE(json["mode_of"].is_null());

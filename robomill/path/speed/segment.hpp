@@ -14,7 +14,7 @@ using Channels = std::array<double, channel_count>;
 /// motion.
 struct PathPoint {
   alignas(64) Channels c1 = {}, c2 = {}, c3 = {};
-  double speed = 1.0;  ///< Mends::speed: velocity limits times this, acceleration its square, jerk its cube
+  double speed = 1.0;  ///< SpeedCorrections::speed: velocity limits times this, acceleration its square, jerk its cube
   double max_b = 0.0;  ///< of the velocity limits and the feed [m²/s²]
 };
 
@@ -25,7 +25,7 @@ struct ChannelLimits {
 
 /// A stretch of the path on which b is one piece of a quadratic spline, in Bézier form (begin, middle, end); from rest
 /// b = end ξ^(4/3) and to rest b = begin (1 − ξ)^(4/3), motions of constant jerk.
-struct Span {
+struct Segment {
   enum class Kind { cruise, from_rest, to_rest, dwell };
   Kind kind = Kind::cruise;
   double begin_m = 0.0, length_m = 0.0;               ///< of u
@@ -38,9 +38,9 @@ inline constexpr std::size_t point_count = 3;
 inline constexpr double first_share = 0.005, last_share = 0.995;
 
 /// Time that a span takes [s].
-[[nodiscard]] double duration_s(const Span& span) noexcept;
+[[nodiscard]] double duration_s(const Segment& span) noexcept;
 /// u less the span's begin after t [s], 0 <= t <= duration.
 /// @param total_s  the span's duration
-[[nodiscard]] double way_m(const Span& span, double t_s, double total_s) noexcept;
+[[nodiscard]] double way_m(const Segment& span, double t_s, double total_s) noexcept;
 
 }  // namespace robomill::path

@@ -14,7 +14,7 @@ namespace robomill::coupling::detail {
 ///   x_1 = clamped f_1 + carry x_2,   f_2 = stiffness x_2 - carryᵀ f_1.
 /// On a base of receptance B, x_2 = -B f_2 with f_2 the force on the segments, the free end's receptance is
 ///   G = clamped + carry (1 + B stiffness)⁻¹ B carryᵀ.
-struct Span {
+struct BeamElement {
   Eigen::Matrix2cd clamped;    ///< receptance of end 1 with end 2 held
   Eigen::Matrix2cd carry;      ///< motion of end 1 for an imposed motion of end 2
   Eigen::Matrix2cd stiffness;  ///< dynamic stiffness of end 2 with end 1 free
@@ -22,7 +22,7 @@ struct Span {
 
 /// The spans of segments joined rigidly, one a frequency; end 1 is that of the first segment.
 /// Any @throws as Segment::validate; the frequencies are > 0.
-[[nodiscard]] std::vector<Span> spans(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz);
+[[nodiscard]] std::vector<BeamElement> spans(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz);
 
 /// Kc⁻¹ of a whole joint.
 [[nodiscard]] Eigen::Matrix2cd flexibility(const Joint& joint, double frequency_hz);
@@ -52,7 +52,7 @@ template <class Matrix>
 
 /// G of a span, the same in each plane, on a base.
 template <int N>
-[[nodiscard]] Square<N> on_base(const Span& span, const Square<N>& base) {
+[[nodiscard]] Square<N> on_base(const BeamElement& span, const Square<N>& base) {
   return on_base<Square<N>>(planes<N>(span.clamped), planes<N>(span.carry), planes<N>(span.stiffness), base);
 }
 

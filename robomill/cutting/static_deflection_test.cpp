@@ -1,4 +1,4 @@
-#include "robomill/cutting/settle.hpp"
+#include "robomill/cutting/static_deflection.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,8 +31,8 @@ constexpr CutMotion motion = {.feed_per_tooth_m = 0.05e-3, .spindle_speed_rad_pe
 
 TEST(Settle, LeavesARigidCutAlone) {
   const Cut cut = {.axial_depth_m = 1e-3, .radial_depth_m = 0.5e-3};
-  const SettledCut settled = settle(ball(), cut, aluminium(), motion, Eigen::Matrix3d::Zero());
-  EXPECT_EQ(settled.status, SettledCut::Status::found);
+  const StaticDeflection deflected = static_deflection(ball(), cut, aluminium(), motion, Eigen::Matrix3d::Zero());
+  EXPECT_EQ(settled.status, StaticDeflection::Status::found);
   EXPECT_EQ(settled.cut.axial_depth_m, cut.axial_depth_m);
   EXPECT_EQ(settled.iterations, 1);
   EXPECT_EQ(settled.deflection_m.norm(), 0.0);
@@ -50,8 +50,8 @@ TEST(Settle, DepthAndForceAgree) {
     Eigen::Matrix3d compliance = Eigen::Matrix3d::Zero();
     for (int axis = 0; axis < 3; ++axis) compliance(axis, axis) = random.uniform(0.2e-6, 4e-6);
     compliance(0, 2) = compliance(2, 0) = 0.3e-6;
-    const SettledCut settled = settle(ball(), cut, aluminium(), motion, compliance);
-    ASSERT_EQ(settled.status, SettledCut::Status::found) << i;
+    const StaticDeflection deflected = static_deflection(ball(), cut, aluminium(), motion, compliance);
+    ASSERT_EQ(settled.status, StaticDeflection::Status::found) << i;
     const CuttingForce force = cutting_force(ball(), engage(ball(), settled.cut), aluminium(), motion);
     const Eigen::Vector3d deflection = compliance * force.mean_n;
     EXPECT_NEAR(settled.cut.axial_depth_m, cut.axial_depth_m - deflection.z(), 2e-9 * cut.axial_depth_m) << i;
@@ -60,10 +60,11 @@ TEST(Settle, DepthAndForceAgree) {
   }
 }
 
-TEST(Settle, TellsAStructureThatIsTooSoft) {
+TEST(Settle, ReportsAStructureThatIsTooSoft) {
   const Cut cut = {.axial_depth_m = 0.2e-3, .radial_depth_m = 0.5e-3};
   Eigen::Matrix3d compliance = Eigen::Matrix3d::Identity() * 1e-3;
-  EXPECT_EQ(settle(ball(), cut, aluminium(), motion, compliance).status, SettledCut::Status::lifts_off);
+  EXPECT_EQ(static_deflection(ball(), cut, aluminium(), motion, compliance).status,
+            StaticDeflection::Status::lifts_off);
   // An axial force that pulls, on a spring softer than what it gains by going deeper.
   MillingCoefficients pulling = aluminium();
   pulling.axial_n_per_m2 = {-3000e6};
@@ -71,7 +72,7 @@ TEST(Settle, TellsAStructureThatIsTooSoft) {
   Cutter flat = ball();
   flat.kind = CutterKind::flat_end;
   const Cut slot = {.axial_depth_m = 1e-3, .direction = MillingDirection::slot};
-  EXPECT_EQ(settle(flat, slot, pulling, motion, compliance).status, SettledCut::Status::digs_in);
+  EXPECT_EQ(static_deflection(flat, slot, pulling, motion, compliance).status, StaticDeflection::Status::diverged);
 }
 
 // Pulled in near the end of the edges: a state, and no error about a depth that nobody asked for.
@@ -82,19 +83,19 @@ TEST(Settle, DoesNotLookBeyondTheEdges) {
   flat.kind = CutterKind::flat_end;
   flat.cutting_height_m = 5e-3;
   const Cut slot = {.axial_depth_m = 4.9e-3, .direction = MillingDirection::slot};
-  const SettledCut soft = settle(flat, slot, pulling, motion, Eigen::Matrix3d::Identity() * 1e-4);
-  EXPECT_EQ(soft.status, SettledCut::Status::digs_in);
+  const StaticDeflection soft = static_deflection(flat, slot, pulling, motion, Eigen::Matrix3d::Identity() * 1e-4);
+  EXPECT_EQ(soft.status, StaticDeflection::Status::diverged);
   EXPECT_EQ(soft.cut.axial_depth_m, slot.axial_depth_m);
-  const SettledCut stiff = settle(flat, {.axial_depth_m = 2e-3, .direction = MillingDirection::slot}, pulling, motion,
-                                  Eigen::Matrix3d::Identity() * 1e-6);
-  EXPECT_EQ(stiff.status, SettledCut::Status::found);
+  const StaticDeflection stiff = static_deflection(flat, {.axial_depth_m = 2e-3, .direction = MillingDirection::slot},
+                                                   pulling, motion, Eigen::Matrix3d::Identity() * 1e-6);
+  EXPECT_EQ(stiff.status, StaticDeflection::Status::found);
   EXPECT_GT(stiff.cut.axial_depth_m, 2e-3);
 }
 
-TEST(Settle, RefusesWhatACutMustNotBe) {
-  EXPECT_THROW(
-      static_cast<void>(settle(ball(), {.radial_depth_m = 1e-3}, aluminium(), motion, Eigen::Matrix3d::Zero())),
-      InvalidInput);
+TEST(Settle, RejectsWhatACutMustNotBe) {
+  EXPECT_THROW(static_cast<void>(
+                   static_deflection(ball(), {.radial_depth_m = 1e-3}, aluminium(), motion, Eigen::Matrix3d::Zero())),
+               InvalidInput);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace robomill::monitor {
 /// learnt logs,
 ///   u = min(ln L - b, ln L/P - c),   S = max(0, S + min(u - 0.7, 0.6)) in hops in which L does not fall:
 /// L alone grows with the depth of cut, L/P alone when the tool leaves. Chatter: S > 4 and L > 0.15 P.
-class Spill {
+class BroadbandGrowth {
  public:
   /// Powers of a hop, > 0. true: it is chatter.
   bool step(double left, double whole) noexcept;

@@ -1,4 +1,4 @@
-#include "robomill/path/speed/span.hpp"
+#include "robomill/path/speed/segment.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 namespace robomill::path {
 namespace {
 
-using Kind = Span::Kind;
+using Kind = Segment::Kind;
 
-double b_at(const Span& span, double share) {
+double b_at(const Segment& span, double share) {
   const double s = share, r = 1.0 - share;
   switch (span.kind) {
     case Kind::from_rest:
@@ -25,7 +25,7 @@ double b_at(const Span& span, double share) {
 }
 
 /// ∫ du / √b, by the midpoint rule in w with u = L w³ at a rest, where b vanishes.
-double time_of(const Span& span, double to_share, int steps) {
+double time_of(const Segment& span, double to_share, int steps) {
   double sum = 0.0;
   for (int i = 0; i < steps; ++i) {
     const double w = (i + 0.5) / steps;
@@ -45,8 +45,8 @@ double time_of(const Span& span, double to_share, int steps) {
   return sum;
 }
 
-std::vector<Span> spans() {
-  std::vector<Span> out = {
+std::vector<Segment> spans() {
+  std::vector<Segment> out = {
       {.length_m = 1e-3, .begin_b = 4e-4, .middle_b = 4e-4, .end_b = 4e-4},               // even
       {.length_m = 1e-3, .begin_b = 1e-4, .middle_b = 2e-4, .end_b = 3e-4},               // even acceleration
       {.length_m = 1e-3, .begin_b = 3e-4, .middle_b = 2e-4, .end_b = 1e-4},               // … and braking
@@ -66,15 +66,15 @@ std::vector<Span> spans() {
   return out;
 }
 
-TEST(Span, DurationIsTheIntegral) {
-  for (const Span& span : spans()) {
-    const double told_s = duration_s(span), met_s = time_of(span, 1.0, 20000);
-    EXPECT_NEAR(told_s, met_s, 1e-6 * met_s) << span.begin_b << ' ' << span.middle_b << ' ' << span.end_b;
+TEST(Segment, DurationIsTheIntegral) {
+  for (const Segment& span : spans()) {
+    const double reported_s = duration_s(span), met_s = time_of(span, 1.0, 20000);
+    EXPECT_NEAR(reported_s, met_s, 1e-6 * met_s) << span.begin_b << ' ' << span.middle_b << ' ' << span.end_b;
   }
 }
 
-TEST(Span, WayIsTheIntegralsInverse) {
-  for (const Span& span : spans()) {
+TEST(Segment, WayIsTheIntegralsInverse) {
+  for (const Segment& span : spans()) {
     const double total_s = duration_s(span);
     EXPECT_EQ(way_m(span, 0.0, total_s), 0.0);
     EXPECT_NEAR(way_m(span, total_s, total_s), span.length_m, 1e-12 * span.length_m)
@@ -88,8 +88,8 @@ TEST(Span, WayIsTheIntegralsInverse) {
 }
 
 // du/dt² = b everywhere, so that velocity goes on from span to span where b does.
-TEST(Span, SpeedIsTheRootOfB) {
-  for (const Span& span : spans()) {
+TEST(Segment, SpeedIsTheRootOfB) {
+  for (const Segment& span : spans()) {
     const double total_s = duration_s(span), d = 1e-5 * total_s;
     for (const double share : {0.02, 0.3, 0.6, 0.98}) {
       const double t = share * total_s;
@@ -100,8 +100,8 @@ TEST(Span, SpeedIsTheRootOfB) {
   }
 }
 
-TEST(Span, NeverRunsBack) {
-  for (const Span& span : spans()) {
+TEST(Segment, NeverRunsBack) {
+  for (const Segment& span : spans()) {
     const double total_s = duration_s(span);
     double before = 0.0;
     for (int i = 1; i <= 1000; ++i) {
@@ -113,8 +113,8 @@ TEST(Span, NeverRunsBack) {
   }
 }
 
-TEST(Span, DwellStandsStill) {
-  const Span dwell{.kind = Kind::dwell, .begin_m = 0.1, .dwell_s = 0.25};
+TEST(Segment, DwellStandsStill) {
+  const Segment dwell{.kind = Kind::dwell, .begin_m = 0.1, .dwell_s = 0.25};
   EXPECT_EQ(duration_s(dwell), 0.25);
   EXPECT_EQ(way_m(dwell, 0.1, 0.25), 0.0);
 }

@@ -1,4 +1,4 @@
-#include "robomill/cutting/published/shadow.hpp"
+#include "robomill/cutting/published/swept_silhouette.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -38,13 +38,14 @@ Extreme extreme(const Profile& profile, double across, double along) {
 }
 
 /// For one u, the arc |φ - middle| < half that is outside.
-struct Shadow::Reach {
+struct SweptSilhouette::Reach {
   double middle = 0.0;
   double half = 0.0;    ///< 0: none; 2π: the whole ring
   double excess = 0.0;  ///< how far the ring's furthest point is outside along u
 };
 
-Shadow::Shadow(const Profile& profile, const Eigen::Matrix3d& feed_from_tool, const Eigen::Vector3d& origin_m)
+SweptSilhouette::SweptSilhouette(const Profile& profile, const Eigen::Matrix3d& feed_from_tool,
+                                 const Eigen::Vector3d& origin_m)
     : profile_(&profile), rotation_(feed_from_tool), origin_(origin_m.tail<2>()) {
   undercut_ = profile.pieces().back().last.position_rad > 0.5 * pi + 1e-9;
   first_angle_ = undercut_ ? -1.5 * pi : std::atan2(rotation_(2, 2), rotation_(1, 2)) - 1.5 * pi;
@@ -53,7 +54,7 @@ Shadow::Shadow(const Profile& profile, const Eigen::Matrix3d& feed_from_tool, co
   for (std::size_t i = 0; i <= count; ++i) border_.push_back(tangent(first_angle_ + step * static_cast<double>(i)));
 }
 
-Shadow::Tangent Shadow::tangent(double angle) const {
+SweptSilhouette::Tangent SweptSilhouette::tangent(double angle) const {
   const Eigen::Vector2d u = unit(angle);
   const Extreme far = extreme_along(u);
   const Eigen::Vector3d along = rotation_.bottomRows<2>().transpose() * u;
@@ -63,16 +64,16 @@ Shadow::Tangent Shadow::tangent(double angle) const {
   return {.direction = u, .point = origin_ + rotation_.bottomRows<2>() * point, .length_m = far.length_m};
 }
 
-Extreme Shadow::extreme_along(const Eigen::Vector2d& direction) const {
+Extreme SweptSilhouette::extreme_along(const Eigen::Vector2d& direction) const {
   const Eigen::Vector3d along = rotation_.bottomRows<2>().transpose() * direction;
   return extreme(*profile_, along.head<2>().norm(), undercut_ ? along.z() : std::min(along.z(), 0.0));
 }
 
-double Shadow::support(const Eigen::Vector2d& direction) const {
+double SweptSilhouette::support(const Eigen::Vector2d& direction) const {
   return origin_.dot(direction) + extreme_along(direction).distance_m;
 }
 
-bool Shadow::contains(const Eigen::Vector2d& point) const {
+bool SweptSilhouette::contains(const Eigen::Vector2d& point) const {
   const auto beyond = [&](double angle) {
     const Eigen::Vector2d u = unit(angle);
     return point.dot(u) - support(u);
@@ -90,8 +91,8 @@ bool Shadow::contains(const Eigen::Vector2d& point) const {
   return std::max(most, beyond(highest_between(beyond, from, to, 16))) <= 0.0;
 }
 
-Shadow::Reach Shadow::reach(double angle, const Eigen::Vector2d& center, const Eigen::Vector2d& sine,
-                            const Eigen::Vector2d& cosine) const {
+SweptSilhouette::Reach SweptSilhouette::reach(double angle, const Eigen::Vector2d& center, const Eigen::Vector2d& sine,
+                                              const Eigen::Vector2d& cosine) const {
   const Eigen::Vector2d u = unit(angle);
   const double along_sine = sine.dot(u);
   const double along_cosine = cosine.dot(u);
@@ -107,7 +108,7 @@ Shadow::Reach Shadow::reach(double angle, const Eigen::Vector2d& center, const E
 }
 
 /// Of the arcs of neighbouring u, which overlap, the ones that reach furthest back and furthest on.
-struct Shadow::Run {
+struct SweptSilhouette::Run {
   bool any = false;
   double entry = 0.0, exit = 0.0;
   double entry_angle = 0.0, exit_angle = 0.0;    ///< of their u
@@ -131,8 +132,8 @@ struct Shadow::Run {
 };
 
 /// The union of a run's arcs, its ends sought between the u that were looked at.
-BoundedArc Shadow::sought(const Run& run, const Eigen::Vector2d& center, const Eigen::Vector2d& sine,
-                          const Eigen::Vector2d& cosine) const {
+BoundedArc SweptSilhouette::sought(const Run& run, const Eigen::Vector2d& center, const Eigen::Vector2d& sine,
+                                   const Eigen::Vector2d& cosine) const {
   const auto end = [&](double at, double near, double side) {
     const auto f = [&](double angle) {
       const Reach r = reach(angle, center, sine, cosine);
@@ -149,8 +150,8 @@ BoundedArc Shadow::sought(const Run& run, const Eigen::Vector2d& center, const E
           .at_exit = Bound::neighbour};
 }
 
-ArcList Shadow::outside(const Eigen::Vector2d& center, const Eigen::Vector2d& sine,
-                        const Eigen::Vector2d& cosine) const {
+ArcList SweptSilhouette::outside(const Eigen::Vector2d& center, const Eigen::Vector2d& sine,
+                                 const Eigen::Vector2d& cosine) const {
   ArcList arcs;
   Run run;
   const auto close = [&] {

@@ -20,10 +20,10 @@ struct Extreme {
 /// What a cutter sweeps along x, seen along x: its convex section with the plane of y and z, by its support function
 /// H(u) = max p·u. The shank makes it endless towards the spindle, so u points at most square to the axis. Where the
 /// side leans inwards the shank is narrower than the edges; there it is left out, and u may point anywhere.
-class Shadow {
+class SweptSilhouette {
  public:
   /// @param feed_from_tool  R of P_F = origin + R P_T
-  Shadow(const Profile& profile, const Eigen::Matrix3d& feed_from_tool, const Eigen::Vector3d& origin_m);
+  SweptSilhouette(const Profile& profile, const Eigen::Matrix3d& feed_from_tool, const Eigen::Vector3d& origin_m);
   /// Where the points of a ring, center + sine sin φ + cosine cos φ in y and z, are outside: where p·u > H(u) for some
   /// u. For each u that is one arc; the answer is the union over u, its ends the extremes of theirs.
   [[nodiscard]] ArcList outside(const Eigen::Vector2d& center, const Eigen::Vector2d& sine,

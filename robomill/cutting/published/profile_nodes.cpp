@@ -1,4 +1,4 @@
-#include "robomill/cutting/published/meridian.hpp"
+#include "robomill/cutting/published/profile_nodes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -192,7 +192,7 @@ void add_nodes(const Patch& patch, const Interval& interval, int count, std::vec
 
 }  // namespace
 
-std::vector<Node> meridian_nodes(const Patch& patch, int count) {
+std::vector<Node> profile_nodes(const Patch& patch, int count) {
   const std::vector<double> places = patch.places();
   std::vector<Interval> intervals;
   for (const Profile::Piece& piece : patch.profile().pieces()) add_intervals(patch, piece, places, intervals);

@@ -1,4 +1,4 @@
-#include "robomill/path/speed/span.hpp"
+#include "robomill/path/speed/segment.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,22 +10,22 @@ namespace {
 struct Quadratic {
   double slope, curve;
 };
-Quadratic quadratic(const Span& span) {
+Quadratic quadratic(const Segment& span) {
   return {2.0 * (span.middle_b - span.begin_b) / span.length_m,
           (span.begin_b - 2.0 * span.middle_b + span.end_b) / (span.length_m * span.length_m)};
 }
 
 }  // namespace
 
-double duration_s(const Span& span) noexcept {
+double duration_s(const Segment& span) noexcept {
   switch (span.kind) {
-    case Span::Kind::dwell:
+    case Segment::Kind::dwell:
       return span.dwell_s;
-    case Span::Kind::from_rest:
+    case Segment::Kind::from_rest:
       return 3.0 * span.length_m / std::sqrt(span.end_b);
-    case Span::Kind::to_rest:
+    case Segment::Kind::to_rest:
       return 3.0 * span.length_m / std::sqrt(span.begin_b);
-    case Span::Kind::cruise:
+    case Segment::Kind::cruise:
       break;
   }
   // tanh(k T / 2) = k d / (v0 + v1), from x'' = a + k² x; k imaginary gives the tangent.
@@ -36,19 +36,19 @@ double duration_s(const Span& span) noexcept {
   return 2.0 * z * (w > 0.0 ? std::atanh(k) : std::atan(k)) / k;
 }
 
-double way_m(const Span& span, double t_s, double total_s) noexcept {
+double way_m(const Segment& span, double t_s, double total_s) noexcept {
   switch (span.kind) {
-    case Span::Kind::dwell:
+    case Segment::Kind::dwell:
       return 0.0;
-    case Span::Kind::from_rest: {
+    case Segment::Kind::from_rest: {
       const double share = t_s / total_s;
       return span.length_m * share * share * share;
     }
-    case Span::Kind::to_rest: {
+    case Segment::Kind::to_rest: {
       const double share = 1.0 - t_s / total_s;
       return span.length_m * (1.0 - share * share * share);
     }
-    case Span::Kind::cruise:
+    case Segment::Kind::cruise:
       break;
   }
   const auto [slope, curve] = quadratic(span);

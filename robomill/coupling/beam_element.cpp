@@ -1,4 +1,4 @@
-#include "robomill/coupling/span.hpp"
+#include "robomill/coupling/beam_element.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -90,12 +90,12 @@ Eigen::Matrix2cd flexibility(const Joint& joint, double frequency_hz) {
   return stiffness.inverse();
 }
 
-std::vector<Span> spans(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz) {
+std::vector<BeamElement> spans(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz) {
   std::vector<Section> sections;
   sections.reserve(segments.size());
   for (const Segment& segment : segments) sections.push_back(section(segment));
   const std::size_t count = static_cast<std::size_t>(frequency_hz.size());
-  std::vector<Span> out(count);
+  std::vector<BeamElement> out(count);
   parallel_for((count + lane_count - 1) / lane_count, groups_per_block, [&](std::size_t begin, std::size_t end) {
     SpanWork work;
     SpanJoin join;
@@ -114,7 +114,7 @@ std::vector<Span> spans(const std::vector<Segment>& segments, const Eigen::Vecto
         if (i > 0) span_join(join);
       }
       for (std::size_t l = 0; l < used; ++l) {
-        Span& span = out[first + l];
+        BeamElement& span = out[first + l];
         unpack(join.front.clamped, l, span.clamped);
         unpack(join.front.carry, l, span.carry);
         unpack(join.front.stiffness, l, span.stiffness);

@@ -1,4 +1,4 @@
-#include "robomill/stability/files/fingerprint_json.hpp"
+#include "robomill/stability/files/peak_classification_json.hpp"
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
@@ -39,15 +39,15 @@ io::Json peak_json(const ExplainedPeak& peak) {
 
 }  // namespace
 
-std::string fingerprint_json(const Fingerprint& fingerprint, const DelayVerdict* verdict) {
+std::string peak_classification_json(const PeakClassification& classification, const ChatterMechanism* verdict) {
   io::Json json;
-  json["spindle_speed_rpm"] = io::number(fingerprint.spindle_speed_rad_per_s / units::rpm);
-  json["speed_from_peaks"] = fingerprint.speed_from_peaks;
+  json["spindle_speed_rpm"] = io::number(classification.spindle_speed_rad_per_s / units::rpm);
+  json["speed_from_peaks"] = classification.speed_from_peaks;
   json["peaks"] = io::Json::array();
-  for (const ExplainedPeak& peak : fingerprint.peaks) json["peaks"].push_back(peak_json(peak));
-  json["state"] = to_string(fingerprint.state);
-  modal::set_mode(json, fingerprint.mode);
-  json["chatter_frequency_hz"] = io::number(fingerprint.chatter_frequency_hz);
+  for (const ExplainedPeak& peak : classification.peaks) json["peaks"].push_back(peak_json(peak));
+  json["state"] = to_string(classification.state);
+  modal::set_mode(json, classification.mode);
+  json["chatter_frequency_hz"] = io::number(classification.chatter_frequency_hz);
   json["chatter"] = nullptr;
   if (verdict != nullptr) {
     json["chatter"] = {{"kind", to_string(verdict->kind)},
