@@ -120,8 +120,10 @@ Exit run(const CalibrateCommand& command, const Common& common, Progress& progre
                         100.0 * verified.false_alarm_rate)));
   }
   if (io::lowered(command.report.extension().string()) == ".html") {
-    report::Report page = calibration_page(calibration);
+    report::Report page;
+    page.title = "Calibration of the chatter monitor";
     page.summary = summary_of(calibration);
+    page.calibration = json;
     write_report(command.report, page);
   } else if (!command.report.empty()) {
     io::write_file(command.report, json);

@@ -226,7 +226,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   Broker* broker = nullptr;
   live::SessionOutputs outputs;
   outputs.event = [&](const MonitorEvent& event, const std::string& line) {
-    if (recorder && event.kind != MonitorEvent::Kind::window) recorder->add(report_event(event));
+    if (recorder && event.kind != MonitorEvent::Kind::window) recorder->add(event);
     if (broker) broker->publish(event, line);
     const bool news = common.wants_summary() || (!common.quiet && event.kind == MonitorEvent::Kind::stream);
     if (news && !watch) print_event(people, event);

@@ -2,20 +2,14 @@
 #include <filesystem>
 #include <string>
 
-#include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
-#include "robomill/monitor/published/calibrate.hpp"
 #include "robomill/report/report.hpp"
 
 namespace robomill::app {
 
-/// An event as a row of the report's table. States and input troubles alike.
-[[nodiscard]] report::MonitorEvent report_event(const monitor::MonitorEvent& event);
-
 /// The page of a recorded session. @param source  a file or an address
 [[nodiscard]] report::Report monitor_page(report::MonitorRun run, const monitor::MonitorFile& file,
                                           const std::string& source);
-[[nodiscard]] report::Report calibration_page(const monitor::Calibration& calibration);
 
 /// @throws InvalidInput unless the path is empty or ends in .json or .html
 void check_report_place(const std::filesystem::path& path);

@@ -20,9 +20,8 @@ namespace robomill::report {
 /// Its part on a smoothed program.
 [[nodiscard]] nlohmann::ordered_json smooth_json(const Smooth& smooth);
 
-/// Its parts on a monitored recording and on a calibration.
+/// Its part on a monitored recording.
 [[nodiscard]] nlohmann::ordered_json monitor_json(const MonitorRun& run);
-[[nodiscard]] nlohmann::ordered_json calibration_json(const CalibrationRun& run);
 
 /// Lines of an axis as bands [from, to], neighbours in one; a band reaches half a step beyond its lines.
 [[nodiscard]] nlohmann::ordered_json bands_json(const Eigen::VectorXd& axis_hz, const std::vector<double>& lines_hz);

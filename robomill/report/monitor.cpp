@@ -14,13 +14,6 @@ void validate_spectrogram(const Spectrogram& spectrogram) {
   require_positive("spectrogram.step_s", spectrogram.step_s, "s");
 }
 
-void require_shares(const std::string& field, const Eigen::VectorXd& values) {
-  require_all_finite(field, values);
-  if (values.size() > 0 && (values.minCoeff() < 0.0 || values.maxCoeff() > 1.0)) {
-    throw InvalidInput(field, "must lie in 0 … 1");
-  }
-}
-
 }  // namespace
 
 void MonitorRun::validate() const {
@@ -37,18 +30,6 @@ void MonitorRun::validate() const {
   require_band("threshold", threshold, runs, false);
   require_band("energy_entropy", energy_entropy, runs, true);
   require_band("spindle_speed_rad_per_s", spindle_speed_rad_per_s, runs, true);
-}
-
-void CalibrationRun::validate() const {
-  if (curves.empty()) throw InvalidInput("curves", "must hold at least one");
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    const RocCurve& curve = curves[i];
-    require_shares(member("curves", i, "false_alarm_rate"), curve.false_alarm_rate);
-    require_shares(member("curves", i, "detection_rate"), curve.detection_rate);
-    require_length(member("curves", i, "detection_rate"), curve.detection_rate.size(), curve.false_alarm_rate.size(),
-                   false);
-    require_length(member("curves", i, "threshold"), curve.threshold.size(), curve.false_alarm_rate.size(), false);
-  }
 }
 
 }  // namespace robomill::report

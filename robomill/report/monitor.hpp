@@ -5,12 +5,11 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
-#include "robomill/modal/mode_id.hpp"
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/report/band.hpp"
 #include "robomill/report/fact.hpp"
 
-/// A recording as the chatter monitor processed it, and how a monitor was calibrated, as parts of the report.
+/// A recording as the chatter monitor processed it, as a part of the report.
 namespace robomill::report {
 
 /// The samples of one channel over time.
@@ -32,17 +31,6 @@ struct MonitorStay {
   double from_s = missing, to_s = missing;
 };
 
-/// What the monitor said at one time.
-struct MonitorEvent {
-  double time_s = missing;
-  monitor::State state = monitor::State::stable;
-  double score = missing, threshold = missing;
-  double chatter_frequency_hz = missing, chatter_frequency_std_hz = missing;
-  modal::ModeId mode = {};
-  double suggested_spindle_speed_rad_per_s = missing;  ///< the nearest quiet one
-  std::string note = {};                               ///< "a channel is dead"
-};
-
 struct MonitorRun {
   std::vector<Fact> facts = {};
   std::vector<std::string> warnings = {}, notes = {};
@@ -57,37 +45,11 @@ struct MonitorRun {
   Band score = {}, threshold = {}, energy_entropy = {};  ///< energy_entropy empty where the detector has none
   Band spindle_speed_rad_per_s = {};                     ///< tracked; 0 where unknown
   std::vector<MonitorStay> stays = {};                   ///< one after the other, without gaps
-  std::vector<MonitorEvent> events = {};
+  std::vector<std::string> events = {};                  ///< as monitor::event_line writes them
   std::size_t decisions = 0;
   double compute_mean_s = missing, compute_max_s = missing;  ///< of one decision
 
   /// @throws InvalidInput naming the member if lengths do not match or a number is infinite
-  ROBOMILL_API void validate() const;
-};
-
-/// Share found against share of false alarms, threshold by threshold.
-struct RocCurve {
-  std::string label = {};                                      ///< "energy, up", "set", "verified"
-  Eigen::VectorXd false_alarm_rate = {}, detection_rate = {};  ///< length n, in [0, 1]
-  Eigen::VectorXd threshold = {};                              ///< length n
-};
-
-/// One recording that a threshold was set or verified with.
-struct CalibrationRow {
-  std::string name = {};
-  bool chatter = false, verifies = false, alarmed = false;
-  double delay_s = missing;  ///< of the alarm after the marked begin of chatter
-  double lead_s = missing;   ///< of the alarm before the line stands out in the spectrogram
-};
-
-struct CalibrationRun {
-  std::vector<Fact> facts = {};
-  std::vector<std::string> warnings = {}, notes = {};
-  double false_alarm_rate = missing, detection_rate = missing;  ///< of the chosen threshold, in [0, 1]
-  std::vector<RocCurve> curves = {};                            ///< at least one
-  std::vector<CalibrationRow> rows = {};
-
-  /// @throws InvalidInput naming the member
   ROBOMILL_API void validate() const;
 };
 

@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
-#include "robomill/modal/files/mode_json.hpp"
 #include "robomill/report/json.hpp"
 
 namespace robomill::report {
@@ -60,18 +59,7 @@ Json monitor_json(const MonitorRun& run) {
         {{"state", monitor::to_string(stay.state)}, {"from_s", number(stay.from_s)}, {"to_s", number(stay.to_s)}});
   }
   Json events = Json::array();
-  for (const MonitorEvent& event : run.events) {
-    Json row = {{"time_s", number(event.time_s)},
-                {"state", monitor::to_string(event.state)},
-                {"score", number(event.score)},
-                {"threshold", number(event.threshold)},
-                {"chatter_frequency_hz", number(event.chatter_frequency_hz)},
-                {"chatter_frequency_std_hz", number(event.chatter_frequency_std_hz)},
-                {"suggested_spindle_speed_rpm", number(event.suggested_spindle_speed_rad_per_s, units::rpm)},
-                {"note", text(event.note)}};
-    modal::set_mode(row, event.mode);
-    events.push_back(std::move(row));
-  }
+  for (const std::string& event : run.events) events.push_back(Json::parse(event));
   return {{"facts", facts_json(run.facts)},
           {"warnings", texts(run.warnings)},
           {"notes", texts(run.notes)},
@@ -87,32 +75,6 @@ Json monitor_json(const MonitorRun& run) {
           {"compute_max_us", number(run.compute_max_s, units::us)},
           {"stays", std::move(stays)},
           {"events", std::move(events)}};
-}
-
-Json calibration_json(const CalibrationRun& run) {
-  Json curves = Json::array();
-  for (const RocCurve& curve : run.curves) {
-    curves.push_back({{"label", text(curve.label)},
-                      {"false_alarm_rate", numbers(curve.false_alarm_rate)},
-                      {"detection_rate", numbers(curve.detection_rate)},
-                      {"threshold", numbers(curve.threshold)}});
-  }
-  Json rows = Json::array();
-  for (const CalibrationRow& row : run.rows) {
-    rows.push_back({{"name", text(row.name)},
-                    {"chatter", row.chatter},
-                    {"verifies", row.verifies},
-                    {"alarmed", row.alarmed},
-                    {"delay_ms", number(row.delay_s, units::ms)},
-                    {"lead_ms", number(row.lead_s, units::ms)}});
-  }
-  return {{"facts", facts_json(run.facts)},
-          {"warnings", texts(run.warnings)},
-          {"notes", texts(run.notes)},
-          {"false_alarm_rate", number(run.false_alarm_rate)},
-          {"detection_rate", number(run.detection_rate)},
-          {"curves", std::move(curves)},
-          {"rows", std::move(rows)}};
 }
 
 }  // namespace robomill::report

@@ -105,7 +105,7 @@ struct MonitorRecorder::Parts {
   double compute_s = 0.0, compute_max_s = 0.0;
   int loudest = 0;  ///< channel of the last chatter
   std::vector<MonitorStay> stays;
-  std::vector<MonitorEvent> events;
+  std::vector<std::string> events;
 };
 
 MonitorRecorder::MonitorRecorder(const monitor::MonitorOptions& options, std::vector<std::string> channels,
@@ -157,9 +157,9 @@ void MonitorRecorder::add(const monitor::Decision& decision, double compute_s) {
   }
 }
 
-void MonitorRecorder::add(MonitorEvent event) {
+void MonitorRecorder::add(const monitor::MonitorEvent& event) {
   if (parts_->events.size() < most_events) {
-    parts_->events.push_back(std::move(event));
+    parts_->events.push_back(monitor::event_line(event));
   } else {
     ++parts_->unreported;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/report/monitor.hpp"
 
@@ -32,8 +33,8 @@ class ROBOMILL_API MonitorRecorder {
   /// The decision that followed.
   /// @param compute_s  it took so long
   void add(const monitor::Decision& decision, double compute_s);
-  /// What the reader noted; beyond some hundreds they are counted only.
-  void add(MonitorEvent event);
+  /// What it reported; beyond some hundreds events are counted only.
+  void add(const monitor::MonitorEvent& event);
 
   /// What was recorded so far; facts and warnings are left to the caller.
   [[nodiscard]] MonitorRun run() const;

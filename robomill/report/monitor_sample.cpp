@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
+#include "robomill/monitor/files/calibration_json.hpp"
 #include "robomill/report/monitor_recorder.hpp"
 
 namespace robomill::report {
 
-MonitorRun sample_monitor() {
+MonitorRun sample_monitor(const std::string& message) {
   constexpr double rate_hz = 5120.0, seconds = 4.0, onset_s = 1.5, end_s = 3.0;
   monitor::MonitorOptions options;
   options.sample_rate_hz = rate_hz;
@@ -41,41 +42,54 @@ MonitorRun sample_monitor() {
                                    : monitor::State::stable;
     recorder.add(decision, 180e-6);
   }
-  recorder.add({.time_s = 1.75, .state = monitor::State::transition, .score = 8.0, .threshold = 12.0});
-  recorder.add({.time_s = 1.8,
-                .state = monitor::State::chatter,
-                .score = 20.0,
-                .threshold = 12.0,
-                .chatter_frequency_hz = 683.2,
-                .chatter_frequency_std_hz = 0.6,
-                .mode = {8},
-                .suggested_spindle_speed_rad_per_s = 3416.0 * std::numbers::pi / 30.0});
-  recorder.add({.time_s = 3.05, .state = monitor::State::stable, .score = 3.0, .threshold = 12.0});
+  using monitor::State;
+  const auto event = [](double time_s, State state, double score) {
+    monitor::MonitorEvent out;
+    out.time_s = time_s;
+    out.decision = {.state = state, .score = score, .threshold = 12.0};
+    return out;
+  };
+  recorder.add(event(1.75, State::transition, 8.0));
+  monitor::MonitorEvent chatter = event(1.8, State::chatter, 20.0);
+  chatter.decision.chatter_frequency_hz = 683.2;
+  chatter.decision.chatter_frequency_std_hz = 0.6;
+  chatter.mode = {8};
+  chatter.suggested_spindle_speed_rad_per_s = 3416.0 * std::numbers::pi / 30.0;
+  recorder.add(chatter);
+  monitor::MonitorEvent lost = event(2.5, State::chatter, 20.0);
+  lost.kind = monitor::MonitorEvent::Kind::stream;
+  lost.what = "lost-blocks";
+  lost.message = message;
+  recorder.add(lost);
+  recorder.add(event(3.05, State::stable, 3.0));
   MonitorRun run = recorder.run();
   run.facts = {{"Recording", "cut.wav, 4 s at 5 120 Hz"}, {"Detector", "comb-cusum, 0.1 false alarms an hour"}};
   run.notes = {"A sample, not a recording."};
   return run;
 }
 
-CalibrationRun sample_calibration() {
-  CalibrationRun run;
-  run.facts = {{"Recordings", "480 holes, half to set, half to verify"}, {"Threshold", "110"}};
-  run.false_alarm_rate = 0.008;
-  run.detection_rate = 0.93;
-  RocCurve curve{.label = "set",
-                 .false_alarm_rate = Eigen::VectorXd::LinSpaced(101, 0.0, 1.0),
-                 .detection_rate = Eigen::VectorXd(101),
-                 .threshold = Eigen::VectorXd::LinSpaced(101, 200.0, 20.0)};
-  curve.detection_rate = curve.false_alarm_rate.array().pow(0.02);
-  curve.detection_rate[0] = 0.0;
-  run.curves = {curve, curve};
-  run.curves[1].label = "verified";
-  run.curves[1].detection_rate = curve.detection_rate.array().square();
-  run.rows = {
-      {.name = "hole-001.wav", .chatter = true, .verifies = true, .alarmed = true, .delay_s = 0.04, .lead_s = 0.11},
-      {.name = "hole-002.wav", .chatter = false, .verifies = true, .alarmed = true},
-      {.name = "hole-003.wav", .chatter = true, .alarmed = false}};
-  return run;
+std::string sample_calibration(const std::string& name) {
+  monitor::Calibration out;
+  out.options.kind = monitor::Kind::energy_entropy;
+  out.options.threshold = 110.0;
+  for (int i = 0; i <= 100; ++i) {
+    const double false_alarms = 0.01 * i;
+    const double found = i == 0 ? 0.0 : std::pow(false_alarms, 0.02);
+    const double threshold = 200.0 - 1.8 * i;
+    out.setting.roc.push_back({.threshold = threshold, .false_alarm_rate = false_alarms, .detection_rate = found});
+    out.verifying.roc.push_back(
+        {.threshold = threshold, .false_alarm_rate = false_alarms, .detection_rate = found * found});
+  }
+  out.setting.stable = out.verifying.stable = 120;
+  out.setting.chatter = out.verifying.chatter = 120;
+  out.setting.chosen = {.threshold = 110.0, .false_alarm_rate = 0.008, .detection_rate = 0.95};
+  out.verifying.chosen = {
+      .threshold = 110.0, .false_alarm_rate = 0.008, .detection_rate = 0.93, .median_delay_s = 0.04};
+  out.median_lead_s = 0.11;
+  out.alarms = {{.name = name, .chatter = true, .verifying = true, .alarm_s = 1.04, .onset_s = 1.0, .lead_s = 0.11},
+                {.name = "hole-002.wav", .verifying = true, .alarm_s = 0.5},
+                {.name = "hole-003.wav", .chatter = true, .onset_s = 1.0}};
+  return monitor::calibration_json(out);
 }
 
 }  // namespace robomill::report

@@ -125,9 +125,6 @@ TEST(MonitorReport, RejectsWhatDoesNotFit) {
   EXPECT_NE(rejected([](MonitorRun& r) { r.threshold.low[0] = missing; }).find("threshold.low"), std::string::npos);
   EXPECT_NE(rejected([](MonitorRun& r) { r.spectrogram.frequency_hz[3] = 0.0; }).find("spectrogram.frequency_hz"),
             std::string::npos);
-  CalibrationRun run = sample_calibration();
-  run.curves[0].detection_rate[3] = 1.5;
-  EXPECT_THROW(run.validate(), InvalidInput);
 }
 
 }  // namespace

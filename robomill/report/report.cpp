@@ -136,7 +136,6 @@ void Report::validate() const {
   validate_part("forces.", forces);
   validate_part("smooth.", smooth);
   validate_part("monitor.", monitor);
-  validate_part("calibration.", calibration);
 }
 
 Agreement agreement(const std::vector<TestCut>& cuts) {

@@ -232,7 +232,7 @@ struct Report {
   std::optional<Forces> forces = {};
   std::optional<Smooth> smooth = {};
   std::optional<MonitorRun> monitor = {};
-  std::optional<CalibrationRun> calibration = {};
+  std::string calibration = {};  ///< calibration.json; empty: none
   std::vector<Recording> recordings = {};
   std::vector<StageFile> files = {};
 

@@ -346,7 +346,7 @@ Json shop_units(const Report& report) {
   json["forces"] = report.forces ? forces_json(*report.forces) : Json(nullptr);
   json["smooth"] = report.smooth ? smooth_json(*report.smooth) : Json(nullptr);
   json["monitor"] = report.monitor ? monitor_json(*report.monitor) : Json(nullptr);
-  json["calibration"] = report.calibration ? calibration_json(*report.calibration) : Json(nullptr);
+  json["calibration"] = report.calibration.empty() ? Json(nullptr) : Json::parse(report.calibration);
   json["recordings"] = list_of(report.recordings, recording_json);
   json["files"] = list_of(report.files, [](const StageFile& file) {
     return Json{{"stage", text(file.stage)}, {"file", text(file.file)}, {"description", text(file.description)}};

@@ -2,6 +2,7 @@
 #include <iostream>
 #include <string_view>
 
+#include "robomill/report/monitor_sample.hpp"
 #include "robomill/report/report_sample.hpp"
 
 /// report_sample OUT.html [sample|hostile]: the sample page for the browser test; hostile puts markup into every text
@@ -35,9 +36,8 @@ int main(int argc, char** argv) {
     report.monitor->facts = {{evil, evil}};
     report.monitor->notes = {evil};
     report.monitor->channels.front().name = evil;
-    report.monitor->events.front().note = evil;
-    report.calibration->rows.front().name = evil;
-    report.calibration->curves.front().label = evil;
+    report.monitor->events = robomill::report::sample_monitor(evil).events;
+    report.calibration = robomill::report::sample_calibration(evil);
     report.recordings.front().file = evil;
     report.recordings.front().peaks.front().text = evil;
   }

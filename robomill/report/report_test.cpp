@@ -9,6 +9,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/report/json.hpp"
+#include "robomill/report/monitor_sample.hpp"
 #include "robomill/report/page.hpp"
 #include "robomill/report/report_sample.hpp"
 #include "robomill/report/thin.hpp"
@@ -150,10 +151,8 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.monitor->warnings = report.monitor->notes = {evil};
   report.monitor->unit = report.monitor->detector = evil;
   report.monitor->channels.front().name = evil;
-  report.monitor->events.front().note = evil;
-  report.calibration->facts = {{evil, evil}};
-  report.calibration->rows.front().name = evil;
-  report.calibration->curves.front().label = evil;
+  report.monitor->events = sample_monitor(evil).events;
+  report.calibration = sample_calibration(evil);
   const std::string html = report_html(report);
   EXPECT_EQ(count(html, "<script"), scripts);
   EXPECT_EQ(html.find("<img"), std::string::npos);

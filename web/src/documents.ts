@@ -397,17 +397,23 @@ export interface MonitorStay {
   to_s: number;
 }
 
+/** A line of events.jsonl. */
 export interface MonitorEvent {
   time_s: number;
+  event: 'state' | 'window' | 'fault' | 'stream' | 'recording';
   state: MonitorState;
   score: Num;
   threshold: Num;
   chatter_frequency_hz: Num;
   chatter_frequency_std_hz: Num;
   suggested_spindle_speed_rpm: Num;
-  note: string;
+  hidden: string | null;
   mode: Num;
   mode_of: Owner | null;
+  faults: string[];
+  what?: string | null; // of a stream
+  file?: string | null; // of a recording
+  message?: string;
 }
 
 export interface Monitor extends Remarks {
@@ -424,21 +430,42 @@ export interface Monitor extends Remarks {
   events: MonitorEvent[];
 }
 
-/** A recording that the threshold was set or verified with. */
-export interface CalibrationRow {
-  name: string;
-  chatter: boolean;
-  verifies: boolean;
-  alarmed: boolean;
-  delay_ms: Num;
-  lead_ms: Num;
+/** One threshold. */
+export interface RocPoint {
+  threshold: Num;
+  false_alarm_rate: number;
+  detection_rate: number;
+  median_delay_s: Num;
 }
 
-export interface Calibration extends Remarks {
-  false_alarm_rate: Num;
-  detection_rate: Num;
-  curves: { label: string; false_alarm_rate: number[]; detection_rate: number[]; threshold: Num[] }[];
-  rows: CalibrationRow[];
+/** The recordings that set the threshold, or those that verify it. */
+export interface CalibratedHalf {
+  stable: number;
+  chatter: number;
+  chosen: RocPoint;
+  roc: RocPoint[];
+}
+
+/** A recording at the chosen threshold. */
+export interface CalibrationRecording {
+  name: string;
+  label: 'stable' | 'chatter';
+  half: 'setting' | 'verifying';
+  early: boolean; // an alarm before chatter began
+  alarm_s: Num;
+  onset_s: Num;
+  lead_s: Num;
+}
+
+/** calibration.json */
+export interface Calibration {
+  entropy: string;
+  threshold: Num;
+  alarm: 'above' | 'below';
+  setting: CalibratedHalf;
+  verifying: CalibratedHalf;
+  median_lead_s: Num;
+  recordings: CalibrationRecording[];
 }
 
 export interface StageFile {

@@ -16,8 +16,8 @@ const monitor = {
     { state: 'chatter', from_s: 1.5, to_s: 2 },
   ],
   events: [
-    { time_s: 1, state: 'transition', chatter_frequency_hz: 15 },
-    { time_s: 1.5, state: 'chatter', chatter_frequency_hz: 16 },
+    { time_s: 1, event: 'state', state: 'transition', chatter_frequency_hz: 15 },
+    { time_s: 1.5, event: 'state', state: 'chatter', chatter_frequency_hz: 16 },
   ],
 } as Monitor;
 
@@ -58,13 +58,12 @@ describe('what the monitor detected', () => {
 
 describe('calibration', () => {
   it('draws each curve in percent and the chosen threshold on top', () => {
-    const calibration = {
-      false_alarm_rate: 0.01,
-      detection_rate: 0.9,
-      curves: [{ label: 'set', false_alarm_rate: [0, 1], detection_rate: [0.5, 1], threshold: [9, 1] }],
-    } as Calibration;
+    const chosen = { threshold: 5, false_alarm_rate: 0.01, detection_rate: 0.9, median_delay_s: null };
+    const roc = [{ ...chosen, threshold: 9, false_alarm_rate: 0, detection_rate: 0.5 }, { ...chosen, threshold: 1, false_alarm_rate: 1, detection_rate: 1 }];
+    const half = { stable: 10, chatter: 10, chosen, roc };
+    const calibration: Calibration = { entropy: 'energy', threshold: 5, alarm: 'above', setting: half, verifying: half, median_lead_s: null, recordings: [] };
     const { data } = rocFigure(calibration, light, false);
     expect(data[0]).toMatchObject({ x: [0, 100], y: [50, 100] });
-    expect(data[1]).toMatchObject({ x: [1], y: [90], name: 'chosen' });
+    expect(data[2]).toMatchObject({ x: [1], y: [90], name: 'chosen' });
   });
 });

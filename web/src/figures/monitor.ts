@@ -1,4 +1,4 @@
-import type { Calibration, Monitor, Num } from '../documents';
+import type { Calibration, Monitor, RocPoint } from '../documents';
 import { curve, suffix } from './rows';
 import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
@@ -62,7 +62,7 @@ const deepest = -50; // dB; below, noise hides what stands above it
 export function spectrogramFigure(monitor: Monitor, theme: Theme): Figure {
   const spectrogram = monitor.spectrogram!;
   const columns = spectrogram.level_db[0]?.length ?? 0;
-  const reported = monitor.events.filter((event) => event.chatter_frequency_hz !== null && event.state === 'chatter');
+  const reported = monitor.events.filter((event) => event.event === 'state' && event.state === 'chatter' && event.chatter_frequency_hz !== null);
   const last = spectrogram.frequency_hz[spectrogram.frequency_hz.length - 1] ?? 1;
   const data: Trace[] = [
     {
@@ -138,17 +138,20 @@ export function scoreFigure(monitor: Monitor, theme: Theme): Figure {
   };
 }
 
-const percent = (rate: Num): Num => (rate === null ? null : 100 * rate);
-
 /** Share found against share of false alarms. */
 export function rocFigure(calibration: Calibration, theme: Theme, narrow: boolean): Figure {
-  const data: Trace[] = calibration.curves.map((curve, i) => ({
+  const { setting, verifying } = calibration;
+  const halves: [string, RocPoint[]][] = [
+    ['set', setting.roc],
+    ['verified', verifying.roc],
+  ];
+  const data: Trace[] = halves.map(([name, roc], i) => ({
     type: 'scatter',
     mode: 'lines',
-    name: plain(curve.label),
-    x: curve.false_alarm_rate.map(percent),
-    y: curve.detection_rate.map(percent),
-    customdata: curve.threshold,
+    name,
+    x: roc.map((point) => 100 * point.false_alarm_rate),
+    y: roc.map((point) => 100 * point.detection_rate),
+    customdata: roc.map((point) => point.threshold),
     line: { color: theme.series[i % theme.series.length], width: 2, shape: 'hv', dash: i % 2 === 0 ? 'solid' : '7px,3px' },
     hovertemplate: `%{x:.2f}${thinSpace}% false, %{y:.1f}${thinSpace}% found at %{customdata:.4g}<extra></extra>`,
   }));
@@ -156,8 +159,8 @@ export function rocFigure(calibration: Calibration, theme: Theme, narrow: boolea
     type: 'scatter',
     mode: 'markers',
     name: 'chosen',
-    x: [percent(calibration.false_alarm_rate)],
-    y: [percent(calibration.detection_rate)],
+    x: [100 * verifying.chosen.false_alarm_rate],
+    y: [100 * verifying.chosen.detection_rate],
     marker: { symbol: 'diamond', size: 12, color: theme.chatter },
     hovertemplate: `%{x:.2f}${thinSpace}% false, %{y:.1f}${thinSpace}% found<extra>chosen</extra>`,
   });

@@ -1,19 +1,31 @@
 // What the chatter monitor detected, and how it was calibrated.
-import type { Calibration, CalibrationRow, Monitor, MonitorEvent, MonitorStay } from '../documents';
+import type { CalibratedHalf, Calibration, CalibrationRecording, Fact, Monitor, MonitorEvent, MonitorStay, Num } from '../documents';
 import { rocFigure, scoreFigure, spectrogramFigure, waveFigure } from '../figures/monitor';
 import { Bullets, Details, Facts, Section, Table, WarningBox } from '../parts';
 import { narrow, Plot } from '../plot';
-import { fixed, modeName, significant, withDeviation } from '../text';
+import { dash, fixed, general, modeName, percent, significant, withDeviation } from '../text';
 
 function frequencyOf(event: MonitorEvent): string {
   return withDeviation(event.chatter_frequency_hz, event.chatter_frequency_std_hz, 1, 1);
+}
+
+function isState({ event }: MonitorEvent): boolean {
+  return event === 'state';
+}
+
+/** What an event says beside numbers. */
+function noteOf({ event, faults, what, file, message, hidden }: MonitorEvent): string {
+  if (event === 'fault') return faults.length === 0 ? 'the input is well again' : `the input: ${faults.join(', ')}`;
+  if (event === 'stream') return message ?? what ?? '';
+  if (event === 'recording') return `recorded ${file ?? ''}`;
+  return hidden ?? '';
 }
 
 /** The surest of a stay's frequencies: it settles, and is lost when chatter ends. */
 function surest(events: MonitorEvent[], { from_s: from, to_s: to }: MonitorStay): MonitorEvent | null {
   const deviation = (event: MonitorEvent) => event.chatter_frequency_std_hz ?? Infinity;
   return events
-    .filter((event) => event.state === 'chatter' && event.chatter_frequency_hz !== null && event.time_s >= from && event.time_s <= to)
+    .filter((event) => isState(event) && event.state === 'chatter' && event.chatter_frequency_hz !== null && event.time_s >= from && event.time_s <= to)
     .reduce<MonitorEvent | null>((best, event) => (best === null || deviation(event) < deviation(best) ? event : best), null);
 }
 
@@ -83,12 +95,12 @@ function EventsTable({ events }: { events: MonitorEvent[] }) {
       columns={[
         { heading: 'At (s)', number: true, cell: (event) => fixed(event.time_s, 3) },
         { heading: 'State', cell: (event) => event.state },
-        { heading: 'Score', number: true, cell: (event) => significant(event.score) },
-        { heading: 'Threshold', number: true, cell: (event) => significant(event.threshold) },
-        { heading: 'Frequency (Hz)', number: true, cell: frequencyOf },
-        { heading: 'Mode', cell: modeName },
-        { heading: 'Quiet speed (rpm)', number: true, cell: (event) => fixed(event.suggested_spindle_speed_rpm, 0) },
-        { heading: 'Note', cell: (event) => event.note },
+        { heading: 'Score', number: true, cell: (event) => (isState(event) ? significant(event.score) : dash) },
+        { heading: 'Threshold', number: true, cell: (event) => (isState(event) ? significant(event.threshold) : dash) },
+        { heading: 'Frequency (Hz)', number: true, cell: (event) => (isState(event) ? frequencyOf(event) : dash) },
+        { heading: 'Mode', cell: (event) => (isState(event) ? modeName(event) : '') },
+        { heading: 'Quiet speed (rpm)', number: true, cell: (event) => fixed(isState(event) ? event.suggested_spindle_speed_rpm : null, 0) },
+        { heading: 'Note', cell: noteOf },
       ]}
       rows={events}
       rowClass={(event) => (event.state === 'chatter' ? 'chatter' : '')}
@@ -116,49 +128,72 @@ export function MonitorSection({ monitor }: { monitor: Monitor }) {
   );
 }
 
-function isWrong({ chatter, alarmed }: CalibrationRow): boolean {
-  return chatter !== alarmed;
+function isFound({ alarm_s: alarm, early }: CalibrationRecording): boolean {
+  return alarm !== null && !early;
 }
 
-function alarmOf(row: CalibrationRow) {
-  if (isWrong(row)) return <strong>{row.alarmed ? 'false' : 'missed'}</strong>;
-  return row.alarmed ? 'yes' : 'no';
+function isWrong(recording: CalibrationRecording): boolean {
+  return isFound(recording) !== (recording.label === 'chatter');
 }
 
-function RecordingsTable({ rows }: { rows: CalibrationRow[] }) {
+function alarmOf(recording: CalibrationRecording) {
+  const found = isFound(recording);
+  if (isWrong(recording)) return <strong>{found ? 'false' : 'missed'}</strong>;
+  return found ? 'yes' : 'no';
+}
+
+function delayOf({ alarm_s: alarm, onset_s: onset }: CalibrationRecording): Num {
+  return alarm === null || onset === null ? null : 1e3 * (alarm - onset);
+}
+
+function RecordingsTable({ recordings }: { recordings: CalibrationRecording[] }) {
   return (
-    <Details summary={`${rows.length} recordings, ${rows.filter(isWrong).length} classified wrongly`}>
+    <Details summary={`${recordings.length} recordings, ${recordings.filter(isWrong).length} classified wrongly`}>
       <Table
         caption="Recordings and what became of them"
         quiet
         columns={[
-          { heading: 'Recording', cell: (row) => row.name },
-          { heading: 'Label', cell: (row) => (row.chatter ? 'chatter' : 'stable') },
-          { heading: 'Used to', cell: (row) => (row.verifies ? 'verify' : 'set') },
+          { heading: 'Recording', cell: ({ name }) => name },
+          { heading: 'Label', cell: ({ label }) => label },
+          { heading: 'Used to', cell: ({ half }) => (half === 'verifying' ? 'verify' : 'set') },
           { heading: 'Alarm', cell: alarmOf },
-          { heading: "After chatter's begin (ms)", number: true, cell: (row) => fixed(row.delay_ms, 0) },
-          { heading: 'Before it is visible (ms)', number: true, cell: (row) => fixed(row.lead_ms, 0) },
+          { heading: "After chatter's begin (ms)", number: true, cell: (recording) => fixed(delayOf(recording), 0) },
+          { heading: 'Before it is visible (ms)', number: true, cell: ({ lead_s: lead }) => fixed(lead === null ? null : 1e3 * lead, 0) },
         ]}
-        rows={rows}
-        rowClass={(row) => (isWrong(row) ? 'chatter' : '')}
+        rows={recordings}
+        rowClass={(recording) => (isWrong(recording) ? 'chatter' : '')}
       />
     </Details>
   );
 }
 
+function halfText({ stable, chatter, chosen }: CalibratedHalf): string {
+  const { false_alarm_rate: wrong, detection_rate: found, median_delay_s: delay } = chosen;
+  const after = delay === null ? '' : `, ${fixed(1e3 * delay, 0)} ms after onset`;
+  return `${stable} stable, ${chatter} with chatter: ${percent(wrong, 1)} false, ${percent(found, 1)} found${after}`;
+}
+
+function calibrationFacts({ entropy, alarm, threshold, setting, verifying, median_lead_s: lead }: Calibration): Fact[] {
+  const facts = [
+    { label: 'Chatter is', value: `${entropy} entropy ${alarm} ${threshold === null ? dash : general(threshold, 6)}` },
+    { label: 'The half that set it', value: halfText(setting) },
+    { label: 'The half that verifies it', value: halfText(verifying) },
+  ];
+  if (lead !== null) facts.push({ label: 'Lead over the spectrogram', value: `${fixed(1e3 * lead, 0)} ms (median)` });
+  return facts;
+}
+
 export function CalibrationSection({ calibration }: { calibration: Calibration }) {
   return (
     <Section id="calibration" heading="Calibration" lead="How the threshold was set, and how it did on the other half.">
-      <Facts facts={calibration.facts} />
-      <WarningBox heading="Before you trust it" texts={calibration.warnings} />
+      <Facts facts={calibrationFacts(calibration)} />
       <Plot
         which="calibration-roc"
         shows="Share of chatter found against share of false alarms"
         caption="Share of chatter found against share of false alarms, threshold by threshold; the mark is the chosen one, on the recordings that verify it."
         draw={(theme, width) => rocFigure(calibration, theme, width < narrow)}
       />
-      <RecordingsTable rows={calibration.rows} />
-      <Bullets texts={calibration.notes} />
+      <RecordingsTable recordings={calibration.recordings} />
     </Section>
   );
 }
