@@ -95,7 +95,7 @@ TEST_F(SmoothVerb, DashWritesJsonAndNothingElse) {
 }
 
 // Where a limit is broken, the report reports it and there is no trajectory.
-TEST_F(SmoothVerb, ABreachExitsWithThreeAndLeavesOnlyTheReport) {
+TEST_F(SmoothVerb, AViolationExitsWithThreeAndLeavesOnlyTheReport) {
   std::string cell = slurp(folder_.at("cell.toml"));
   const std::string jerk = "joint_max_jerk = [60, 60, 60, 200, 200, 250]";
   cell.replace(cell.find(jerk), jerk.size(), "joint_max_jerk = [0.5, 0.5, 0.5, 1, 1, 1]");

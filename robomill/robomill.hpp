@@ -38,6 +38,7 @@
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/smooth.hpp"
 #include "robomill/jobs/summary.hpp"
+#include "robomill/jobs/test_cuts.hpp"
 #include "robomill/jobs/tools.hpp"
 #include "robomill/live/advisor.hpp"
 #include "robomill/live/alarm_ring.hpp"

@@ -29,18 +29,18 @@ MillingCoefficients aluminium() {
 
 constexpr CutMotion motion = {.feed_per_tooth_m = 0.05e-3, .spindle_speed_rad_per_s = 1000.0};
 
-TEST(Settle, LeavesARigidCutAlone) {
+TEST(StaticDeflection, LeavesARigidCutAlone) {
   const Cut cut = {.axial_depth_m = 1e-3, .radial_depth_m = 0.5e-3};
   const StaticDeflection deflected = static_deflection(ball(), cut, aluminium(), motion, Eigen::Matrix3d::Zero());
-  EXPECT_EQ(settled.status, StaticDeflection::Status::found);
-  EXPECT_EQ(settled.cut.axial_depth_m, cut.axial_depth_m);
-  EXPECT_EQ(settled.iterations, 1);
-  EXPECT_EQ(settled.deflection_m.norm(), 0.0);
+  EXPECT_EQ(deflected.status, StaticDeflection::Status::found);
+  EXPECT_EQ(deflected.cut.axial_depth_m, cut.axial_depth_m);
+  EXPECT_EQ(deflected.iterations, 1);
+  EXPECT_EQ(deflected.deflection_m.norm(), 0.0);
 }
 
 // The residual: the depth left is the commanded one less what its own force deflects; the deflection is C F of a force
 // computed anew.
-TEST(Settle, DepthAndForceAgree) {
+TEST(StaticDeflection, DepthAndForceAgree) {
   Random random(11);
   for (int i = 0; i < 20; ++i) {
     const Cut cut = {.axial_depth_m = random.uniform(0.2e-3, 1.2e-3),
@@ -51,16 +51,16 @@ TEST(Settle, DepthAndForceAgree) {
     for (int axis = 0; axis < 3; ++axis) compliance(axis, axis) = random.uniform(0.2e-6, 4e-6);
     compliance(0, 2) = compliance(2, 0) = 0.3e-6;
     const StaticDeflection deflected = static_deflection(ball(), cut, aluminium(), motion, compliance);
-    ASSERT_EQ(settled.status, StaticDeflection::Status::found) << i;
-    const CuttingForce force = cutting_force(ball(), engage(ball(), settled.cut), aluminium(), motion);
+    ASSERT_EQ(deflected.status, StaticDeflection::Status::found) << i;
+    const CuttingForce force = cutting_force(ball(), engage(ball(), deflected.cut), aluminium(), motion);
     const Eigen::Vector3d deflection = compliance * force.mean_n;
-    EXPECT_NEAR(settled.cut.axial_depth_m, cut.axial_depth_m - deflection.z(), 2e-9 * cut.axial_depth_m) << i;
-    EXPECT_LE((settled.deflection_m - deflection).norm(), 1e-12) << i;
-    EXPECT_LT(settled.cut.axial_depth_m, cut.axial_depth_m) << "a ball end is pushed out of the cut";
+    EXPECT_NEAR(deflected.cut.axial_depth_m, cut.axial_depth_m - deflection.z(), 2e-9 * cut.axial_depth_m) << i;
+    EXPECT_LE((deflected.deflection_m - deflection).norm(), 1e-12) << i;
+    EXPECT_LT(deflected.cut.axial_depth_m, cut.axial_depth_m) << "a ball end is pushed out of the cut";
   }
 }
 
-TEST(Settle, ReportsAStructureThatIsTooSoft) {
+TEST(StaticDeflection, ReportsAStructureThatIsTooSoft) {
   const Cut cut = {.axial_depth_m = 0.2e-3, .radial_depth_m = 0.5e-3};
   Eigen::Matrix3d compliance = Eigen::Matrix3d::Identity() * 1e-3;
   EXPECT_EQ(static_deflection(ball(), cut, aluminium(), motion, compliance).status,
@@ -76,7 +76,7 @@ TEST(Settle, ReportsAStructureThatIsTooSoft) {
 }
 
 // Pulled in near the end of the edges: a state, and no error about a depth that nobody asked for.
-TEST(Settle, DoesNotLookBeyondTheEdges) {
+TEST(StaticDeflection, DoesNotLookBeyondTheEdges) {
   MillingCoefficients pulling = aluminium();
   pulling.axial_n_per_m2 = {-200e6};
   Cutter flat = ball();
@@ -92,7 +92,7 @@ TEST(Settle, DoesNotLookBeyondTheEdges) {
   EXPECT_GT(stiff.cut.axial_depth_m, 2e-3);
 }
 
-TEST(Settle, RejectsWhatACutMustNotBe) {
+TEST(StaticDeflection, RejectsWhatACutMustNotBe) {
   EXPECT_THROW(static_cast<void>(
                    static_deflection(ball(), {.radial_depth_m = 1e-3}, aluminium(), motion, Eigen::Matrix3d::Zero())),
                InvalidInput);

@@ -292,7 +292,7 @@ void report_resonance(PlanResult& result) {
 
 /// The limit as the feed turns through the plane: a robot is not the same in every direction.
 void turn_feed(PlanResult& result, Progress& progress) {
-  report::FeedDirections out;
+  FeedDirections out;
   const stability::LobesOptions options = comparison_options(result);
   const double low = options.spindle_speed_rad_per_s[0];
   const double high = options.spindle_speed_rad_per_s[1];
@@ -302,14 +302,11 @@ void turn_feed(PlanResult& result, Progress& progress) {
     speeds.push_back(std::lerp(low, high, static_cast<double>(i) / (speeds_a_direction - 1)));
   const bool recommended = result.recommendation.recommended.has_value();
   if (recommended) {
-    out.spindle_speed_rad_per_s = result.recommendation.recommended->spindle_speed_rad_per_s;
-    speeds.push_back(out.spindle_speed_rad_per_s);
+    speeds.push_back(result.recommendation.recommended->spindle_speed_rad_per_s);
     out.limit_at_speed_m.resize(feed_directions);
   }
   out.direction_rad.resize(feed_directions);
   out.lowest_limit_m.setConstant(feed_directions, report::missing);
-  out.used_direction_rad = result.cut.problem.feed_direction_rad;
-  out.searched_depth_m = options.axial_depth_m[1];
   stability::LobesProblem problem = result.cut.problem;
   // Turning the feed by half a turn turns forces and displacements alike: the limit is the same.
   constexpr Eigen::Index half = feed_directions / 2;
@@ -339,14 +336,14 @@ void compare(PlanResult& result, Progress& progress) {
     const TestCut& cut = result.job.cuts[i];
     if (cut.file.empty()) continue;
     result.recordings.push_back(read_recording(cut, result.cut.problem));
-    const report::Recording& processed = result.recordings.back();
-    report::TestCut& row = result.cuts[i];
-    if (row.result == report::Verdict::unknown) {
-      row.result = processed.verdict;
-      const bool clear = row.result == report::Verdict::stable || row.result == report::Verdict::chatter;
+    const Recording& recording = result.recordings.back();
+    ComparedCut& row = result.cuts[i];
+    if (row.result == Verdict::unknown) {
+      row.result = recording.verdict;
+      const bool clear = row.result == Verdict::stable || row.result == Verdict::chatter;
       if (clear) row.agrees = row.result == row.predicted;
     }
-    row.note += "; " + processed.file + ": " + processed.reason;
+    row.note += "; " + recording.file + ": " + recording.reason;
   }
 }
 

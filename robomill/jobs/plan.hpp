@@ -13,13 +13,23 @@
 #include "robomill/jobs/forces.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/smooth.hpp"
+#include "robomill/jobs/test_cuts.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/hits.hpp"
 #include "robomill/report/report.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
+// Method: robomill/jobs/README.md, "What `robomill plan` does (`plan.hpp`)"
+
 namespace robomill::jobs {
+
+/// The limit over the direction of the feed. NaN: none up to the deepest cut of the lobes.
+struct FeedDirections {
+  Eigen::VectorXd direction_rad = {};     ///< length n, increasing, counter-clockwise from x of the FRFs
+  Eigen::VectorXd lowest_limit_m = {};    ///< length n, lowest over all speeds
+  Eigen::VectorXd limit_at_speed_m = {};  ///< length n, at the recommended speed; empty where none was recommended
+};
 
 /// Everything a job came to, stage by stage. What the job did not ask for is empty.
 struct PlanResult {
@@ -35,12 +45,12 @@ struct PlanResult {
   stability::LobesResult lobes;          ///< of all modes; empty where these do not describe the FRFs
   stability::UncertainLimits uncertain;  ///< samples: 0 where nothing is known to be uncertain
   std::vector<report::Lobes> pairs;      ///< limits of modes 1–2, 3–4, …
-  std::optional<report::FeedDirections> feed_directions;
+  std::optional<FeedDirections> feed_directions;
   decision::Recommendation recommendation;
   std::optional<ForcesResult> forces;  ///< of a job that asks for them
   std::optional<SmoothResult> path;    ///< of a job with a program and a cell with [smoothing]
-  std::vector<report::TestCut> cuts;
-  std::vector<report::Recording> recordings;
+  std::vector<ComparedCut> cuts;
+  std::vector<Recording> recordings;
   std::vector<std::string> warnings, notes;
 
   [[nodiscard]] bool has_lobes() const { return !lobes.limit.empty(); }
@@ -72,6 +82,15 @@ ROBOMILL_API void write_plan(const std::filesystem::path& folder, const PlanResu
 
 /// One line for people: what limits an operation.
 [[nodiscard]] ROBOMILL_API std::string limited_by_text(const decision::Operation& operation);
+
+/// Depth over spindle speed that something else than chatter limits.
+struct DepthCurve {
+  std::string label = {};                        ///< "spindle torque"
+  Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing
+  Eigen::VectorXd axial_depth_m = {};            ///< length n
+};
+/// Of the spindle's torque and power, and of the cutter, as far as the job gives them.
+[[nodiscard]] ROBOMILL_API std::vector<DepthCurve> other_limits(const PlanResult& result);
 
 /// Each mode's share of the speeds at which some mode limits the depth, in [0, 1]; empty where none does.
 struct LimitShare {

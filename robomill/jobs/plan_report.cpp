@@ -14,41 +14,6 @@
 namespace robomill::jobs {
 namespace {
 
-report::Recommendation to_report(const decision::Operation& op) {
-  report::Recommendation out;
-  out.spindle_speed_rad_per_s = op.spindle_speed_rad_per_s;
-  out.axial_depth_m = op.axial_depth_m;
-  out.feed_per_tooth_m = op.feed_per_tooth_m;
-  out.margin = op.margin;
-  out.removal_rate_m3_per_s = op.removal_rate_m3_per_s;
-  out.feed_m_per_s = op.feed_m_per_s;
-  out.cutting_speed_m_per_s = op.cutting_speed_m_per_s;
-  out.torque_n_m = op.torque_n_m;
-  out.power_w = op.power_w;
-  out.surface_error_m = op.surface_error_m;
-  out.peak_deflection_m = op.peak_deflection_m;
-  out.limited_by = limited_by_text(op);
-  if (op.chatter_frequency_hz > 0.0) out.chatter_frequency_hz = op.chatter_frequency_hz;
-  out.mode = op.mode;
-  return out;
-}
-
-std::vector<report::Fact> facts(const PlanResult& result) {
-  const cutting::Milling& cut = result.cut.problem.milling;
-  return {
-      {"Cutter", fmt::format("{} teeth, {:.4g} mm, helix {:.3g}°", cut.tool.teeth, cut.tool.diameter_m / units::mm,
-                             cut.tool.helix_rad / units::deg)},
-      {"Cut",
-       fmt::format("radial depth {:.4g} mm, teeth in cut from {:.1f}° to {:.1f}°, {:.4g} mm a tooth",
-                   result.cut.radial_depth_m / units::mm, cut.immersion.entry_rad / units::deg,
-                   cut.immersion.exit_rad / units::deg, result.cut.problem.milling.feed_per_tooth_m / units::mm)},
-      {"Material", fmt::format("tangential {:.4g} N/mm², radial {:.4g} N/mm²",
-                               cut.coefficients.tangential_n_per_m2 / units::n_per_mm2,
-                               cut.coefficients.radial_n_per_m2 / units::n_per_mm2)},
-      {"Feed direction", fmt::format("{:.4g}° from x", result.cut.problem.feed_direction_rad / units::deg)},
-  };
-}
-
 report::Grade to_report(modal::Grade grade) {
   switch (grade) {
     case modal::Grade::good:
@@ -180,10 +145,10 @@ void add_lobes(report::Report& report, const PlanResult& result) {
   report.lobes.insert(report.lobes.end(), result.pairs.begin(), result.pairs.end());
 }
 
-report::DepthCurve spindle_curve(const PlanResult& result, const std::string& label, bool torque) {
+DepthCurve spindle_curve(const PlanResult& result, const std::string& label, bool torque) {
   const double per_depth =
       cutting::mean_load(result.cut.problem.milling, 1.0, result.cut.problem.milling.feed_per_tooth_m, 1.0).torque_n_m;
-  report::DepthCurve curve;
+  DepthCurve curve;
   curve.label = label;
   const auto n = static_cast<Eigen::Index>(result.job.spindle_curve.size());
   curve.spindle_speed_rad_per_s.resize(n);
@@ -194,20 +159,6 @@ report::DepthCurve spindle_curve(const PlanResult& result, const std::string& la
     curve.axial_depth_m(i) = (torque ? p.torque_n_m : p.power_w / p.spindle_speed_rad_per_s) / per_depth;
   }
   return curve;
-}
-
-void add_other_limits(report::Report& report, const PlanResult& result) {
-  if (result.job.spindle_curve.size() > 1) {
-    report.other_limits.push_back(spindle_curve(result, "spindle torque", true));
-    report.other_limits.push_back(spindle_curve(result, "spindle power", false));
-  }
-  if (result.job.max_axial_depth_m > 0.0) {
-    report.other_limits.push_back(
-        {.label = "cutter's depth",
-         .spindle_speed_rad_per_s = Eigen::Vector2d(result.cut.options.spindle_speed_rad_per_s[0],
-                                                    result.cut.options.spindle_speed_rad_per_s[1]),
-         .axial_depth_m = Eigen::Vector2d::Constant(result.job.max_axial_depth_m)});
-  }
 }
 
 /// What the spindle has, where the whole program runs at one speed of its curve.
@@ -252,6 +203,21 @@ std::string limited_by_text(const decision::Operation& operation) {
   return {};
 }
 
+std::vector<DepthCurve> other_limits(const PlanResult& result) {
+  std::vector<DepthCurve> curves;
+  if (result.job.spindle_curve.size() > 1) {
+    curves.push_back(spindle_curve(result, "spindle torque", true));
+    curves.push_back(spindle_curve(result, "spindle power", false));
+  }
+  if (result.job.max_axial_depth_m > 0.0) {
+    const std::array<double, 2>& speeds = result.cut.options.spindle_speed_rad_per_s;
+    curves.push_back({.label = "cutter's depth",
+                      .spindle_speed_rad_per_s = Eigen::Vector2d(speeds[0], speeds[1]),
+                      .axial_depth_m = Eigen::Vector2d::Constant(result.job.max_axial_depth_m)});
+  }
+  return curves;
+}
+
 LimitShare limit_share(const PlanResult& result) {
   const auto zeros = [](const modal::ModalModel& model) {
     return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.modes.size())).eval();
@@ -273,24 +239,12 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   report::Report report;
   if (!result.job.title.empty()) report.title = result.job.title;
   report.created = fmt::format("{:%Y-%m-%d %H:%M} UTC, robomill " ROBOMILL_VERSION, fmt::gmtime(std::time(nullptr)));
-  report.facts = facts(result);
-  report.warnings = result.warnings;
-  report.notes = result.notes;
   report.summary = summary(result);
-  if (result.recommendation.recommended) report.recommendation = to_report(*result.recommendation.recommended);
-  for (const decision::Operation& op : result.recommendation.alternatives) report.alternatives.push_back(to_report(op));
-  if (result.job.max_surface_error_m > 0.0) report.max_surface_error_m = result.job.max_surface_error_m;
-  if (result.job.max_deflection_m > 0.0) report.max_deflection_m = result.job.max_deflection_m;
-  report.no_recommendation = result.recommendation.reason;
   add_frfs(report, result);
   if (result.prediction) add_prediction(report, *result.prediction);
   add_hits(report, result);
   add_fit(report, result);
   if (result.has_lobes()) add_lobes(report, result);
-  add_other_limits(report, result);
-  report.cuts = result.cuts;
-  report.feed_directions = result.feed_directions;
-  report.recordings = result.recordings;
   if (result.forces) report.forces = with_limits(forces_report(*result.forces), result);
   if (result.path) report.smooth = smooth_report(*result.path);
   report.files = files;

@@ -140,13 +140,13 @@ TEST(LimitShare, CountsTheSpeedsOfEachMode) {
 // The plan computes half a turn and mirrors it; the other half computed gives the same.
 TEST_F(Plan, LimitOverFeedDirectionIsThatOfTheTurnedProblem) {
   const PlanResult result = run_job(job(), 1);
-  const report::FeedDirections& turned = *result.feed_directions;
+  const FeedDirections& turned = *result.feed_directions;
+  const double speed = result.recommendation.recommended->spindle_speed_rad_per_s;
   ASSERT_EQ(turned.direction_rad.size(), 36);
   for (const Eigen::Index i : {5, 20, 30}) {
     stability::LobesProblem problem = result.cut.problem;
     problem.feed_direction_rad = turned.direction_rad(i);
-    const stability::Limit limit =
-        stability::limit_depths(problem, result.cut.options, {turned.spindle_speed_rad_per_s}).front();
+    const stability::Limit limit = stability::limit_depths(problem, result.cut.options, {speed}).front();
     if (limit.status == stability::Limit::Status::found) {
       EXPECT_NEAR(turned.limit_at_speed_m(i), limit.axial_depth_m, 2e-3 * limit.axial_depth_m);
     } else {

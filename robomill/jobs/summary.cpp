@@ -171,7 +171,7 @@ void add_details(std::string& out, const decision::Operation& op) {
 }
 
 /// On top: nothing that follows is worth more than the model.
-void add_disagreement(std::string& out, const report::Agreement& count) {
+void add_disagreement(std::string& out, const Agreement& count) {
   if (count.disagree == 0) return;
   add(out, "test cuts    {} of {} disagree with the prediction: find out why before you use these numbers\n",
       count.disagree, count.agree + count.disagree);
@@ -181,7 +181,7 @@ void add_disagreement(std::string& out, const report::Agreement& count) {
 
 std::string summary(const PlanResult& result) {
   std::string out;
-  const report::Agreement count = report::agreement(result.cuts);
+  const Agreement count = agreement(result.cuts);
   add_disagreement(out, count);
   if (result.hits) {
     for (const modal::HitVerdict& hit : result.hits->hits) {

@@ -31,22 +31,6 @@ std::string words(const stability::Explanation& e, int teeth) {
   return e.mirrored ? multiple + " − " + mode : mode + " − " + multiple;
 }
 
-report::PeakKind kind_of(stability::Explanation::Kind kind) {
-  switch (kind) {
-    case stability::Explanation::Kind::tooth_passing:
-      return report::PeakKind::tooth_passing;
-    case stability::Explanation::Kind::rotation:
-      return report::PeakKind::rotation;
-    case stability::Explanation::Kind::chatter:
-      return report::PeakKind::chatter;
-    case stability::Explanation::Kind::cut_or_chatter:
-      return report::PeakKind::cut_or_chatter;
-    case stability::Explanation::Kind::unexplained:
-      break;
-  }
-  return report::PeakKind::other;
-}
-
 std::string words(const stability::ExplainedPeak& peak, int teeth) {
   switch (peak.state) {
     case stability::ExplainedPeak::State::named:
@@ -63,20 +47,6 @@ std::string words(const stability::ExplainedPeak& peak, int teeth) {
       break;
   }
   return "no multiple of rotation";
-}
-
-report::Verdict verdict_of(TestCut::Result result) {
-  switch (result) {
-    case TestCut::Result::stable:
-      return report::Verdict::stable;
-    case TestCut::Result::borderline:
-      return report::Verdict::borderline;
-    case TestCut::Result::chatter:
-      return report::Verdict::chatter;
-    case TestCut::Result::unknown:
-      break;
-  }
-  return report::Verdict::unknown;
 }
 
 /// Whether a measured peak is the predicted chatter frequency or its image about a multiple of tooth passing.
@@ -99,9 +69,9 @@ std::string note_on(const TestCut& cut, const stability::PointResult& point, con
   bool frequency_agrees = false;
   const double tooth_passing_hz = cut.spindle_speed_rad_per_s / two_pi * problem.milling.tool.teeth;
   std::string separator;
-  for (const report::Peak& peak : name_peaks(cut.peaks_hz, cut.spindle_speed_rad_per_s, problem, 1.0)) {
+  for (const Peak& peak : name_peaks(cut.peaks_hz, cut.spindle_speed_rad_per_s, problem, 1.0)) {
     note += fmt::format("{}{:.1f} Hz = {}", std::exchange(separator, ", "), peak.frequency_hz, peak.text);
-    if (peak.kind == report::PeakKind::chatter || peak.kind == report::PeakKind::other) {
+    if (peak.kind == stability::Explanation::Kind::chatter || peak.kind == stability::Explanation::Kind::unexplained) {
       any_chatter = true;
       frequency_agrees = frequency_agrees || is_image(peak.frequency_hz, point.chatter_frequency_hz, tooth_passing_hz);
     }
@@ -116,10 +86,10 @@ std::string note_on(const TestCut& cut, const stability::PointResult& point, con
 struct Heights {
   double multiple = 0.0, other = 0.0, other_hz = 0.0;
   [[nodiscard]] double ratio() const { return multiple > 0.0 ? other / multiple : 0.0; }
-  [[nodiscard]] report::Verdict verdict() const {
+  [[nodiscard]] Verdict verdict() const {
     const bool only_other = multiple == 0.0 && other > 0.0;
-    if (only_other || ratio() >= 0.5) return report::Verdict::chatter;
-    return ratio() >= 0.25 ? report::Verdict::borderline : report::Verdict::stable;
+    if (only_other || ratio() >= 0.5) return Verdict::chatter;
+    return ratio() >= 0.25 ? Verdict::borderline : Verdict::stable;
   }
 };
 
@@ -137,7 +107,7 @@ Counted counted(const stability::ExplainedPeak& peak) {
 }
 
 /// @param open_as  what open peaks count as
-Heights heights_of(const std::vector<report::Peak>& peaks, const std::vector<Counted>& counts, Counted open_as) {
+Heights heights_of(const std::vector<Peak>& peaks, const std::vector<Counted>& counts, Counted open_as) {
   Heights heights;
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     if ((counts[i] == Counted::open ? open_as : counts[i]) == Counted::cut) {
@@ -151,7 +121,7 @@ Heights heights_of(const std::vector<report::Peak>& peaks, const std::vector<Cou
 }
 
 /// What the spectrum says, and why. No verdict where it hangs on open peaks.
-void judge(report::Recording& recording, const std::vector<Counted>& counts) {
+void judge(Recording& recording, const std::vector<Counted>& counts) {
   const Heights as_cut = heights_of(recording.peaks, counts, Counted::cut);
   const Heights as_chatter = heights_of(recording.peaks, counts, Counted::chatter);
   if (as_cut.verdict() != as_chatter.verdict()) {
@@ -180,24 +150,38 @@ std::vector<stability::ExplainedPeak> explained(const std::vector<double>& frequ
       .peaks;
 }
 
-report::Peak to_report(const stability::ExplainedPeak& peak, int teeth) {
-  return {.frequency_hz = peak.frequency_hz, .kind = kind_of(peak.best.kind), .text = words(peak, teeth)};
+Peak named(const stability::ExplainedPeak& peak, int teeth) {
+  return {.frequency_hz = peak.frequency_hz, .kind = peak.best.kind, .text = words(peak, teeth)};
 }
 
 }  // namespace
 
-std::vector<report::Peak> name_peaks(const std::vector<double>& frequency_hz, double spindle_speed_rad_per_s,
-                                     const stability::LobesProblem& problem, double tolerance_hz) {
-  std::vector<report::Peak> out;
+std::vector<Peak> name_peaks(const std::vector<double>& frequency_hz, double spindle_speed_rad_per_s,
+                             const stability::LobesProblem& problem, double tolerance_hz) {
+  std::vector<Peak> out;
   for (const stability::ExplainedPeak& peak : explained(frequency_hz, spindle_speed_rad_per_s, problem, tolerance_hz)) {
-    out.push_back(to_report(peak, problem.milling.tool.teeth));
+    out.push_back(named(peak, problem.milling.tool.teeth));
   }
   return out;
 }
 
-std::vector<report::TestCut> compare_cuts(const std::vector<TestCut>& cuts, const stability::LobesProblem& problem,
-                                          const stability::LobesOptions& options, Progress& progress) {
-  std::vector<report::TestCut> out(cuts.size());
+Agreement agreement(const std::vector<ComparedCut>& cuts) {
+  Agreement counts;
+  for (const ComparedCut& cut : cuts) {
+    if (!cut.agrees) {
+      ++counts.not_compared;
+    } else if (*cut.agrees) {
+      ++counts.agree;
+    } else {
+      ++counts.disagree;
+    }
+  }
+  return counts;
+}
+
+std::vector<ComparedCut> compare_cuts(const std::vector<TestCut>& cuts, const stability::LobesProblem& problem,
+                                      const stability::LobesOptions& options, Progress& progress) {
+  std::vector<ComparedCut> out(cuts.size());
   progress.start("test cuts", cuts.size());
   parallel_for(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -206,15 +190,15 @@ std::vector<report::TestCut> compare_cuts(const std::vector<TestCut>& cuts, cons
           problem, options,
           {.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s, .axial_depth_m = cut.axial_depth_m});
       const stability::Limit limit = stability::limit_depths(problem, options, {cut.spindle_speed_rad_per_s}).front();
-      report::TestCut& row = out[i];
+      ComparedCut& row = out[i];
       row.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s;
       row.axial_depth_m = cut.axial_depth_m;
-      row.result = verdict_of(cut.result);
-      row.predicted = point.stable ? report::Verdict::stable : report::Verdict::chatter;
+      row.result = cut.result;
+      row.predicted = point.stable ? Verdict::stable : Verdict::chatter;
       if (limit.status == stability::Limit::Status::found) row.limit_depth_m = limit.axial_depth_m;
-      if (row.result == report::Verdict::borderline) {
+      if (row.result == Verdict::borderline) {
         row.agrees = std::abs(row.limit_depth_m / cut.axial_depth_m - 1.0) <= 0.2;
-      } else if (row.result != report::Verdict::unknown) {
+      } else if (row.result != Verdict::unknown) {
         row.agrees = row.result == row.predicted;
       }
       row.note = note_on(cut, point, problem);
@@ -224,7 +208,7 @@ std::vector<report::TestCut> compare_cuts(const std::vector<TestCut>& cuts, cons
   return out;
 }
 
-report::Recording read_recording(const TestCut& cut, const stability::LobesProblem& problem) {
+Recording read_recording(const TestCut& cut, const stability::LobesProblem& problem) {
   const io::Record record = io::read_record(cut.file, {.scale = cut.scale});
   const Eigen::VectorXd signal = record.column(cut.column);
   const double rate_hz = record.sample_rate_hz > 0.0 ? record.sample_rate_hz : cut.sample_rate_hz;
@@ -234,7 +218,7 @@ report::Recording read_recording(const TestCut& cut, const stability::LobesProbl
   const double length_s = static_cast<double>(signal.size()) / rate_hz;
   if (length_s < 0.2) throw InvalidInput(cut.file.string(), length_s, "s", "must be at least 0.2 s of cutting");
 
-  report::Recording out;
+  Recording out;
   out.file = cut.file.filename().string();
   out.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s;
   out.teeth = problem.milling.tool.teeth;
@@ -253,7 +237,7 @@ report::Recording read_recording(const TestCut& cut, const stability::LobesProbl
   std::vector<Counted> counts;
   for (const stability::ExplainedPeak& peak :
        explained(frequency_hz, cut.spindle_speed_rad_per_s, problem, 2.0 / length_s)) {
-    out.peaks.push_back(to_report(peak, out.teeth));
+    out.peaks.push_back(named(peak, out.teeth));
     out.peaks.back().amplitude = found[counts.size()].amplitude;
     counts.push_back(counted(peak));
   }

@@ -23,33 +23,35 @@ stability::LobesProblem robot_cut() {
   return problem;
 }
 
-report::Peak explain(double frequency_hz, double rpm) {
+using Kind = stability::Explanation::Kind;
+
+Peak explain(double frequency_hz, double rpm) {
   return name_peaks({frequency_hz}, rpm * units::rpm, robot_cut(), 1.0).front();
 }
 
 // Source: the peaks of the published cuts in data/robot-cuts.toml, read with two teeth; 324.99 Hz is 3 × 108.33 Hz,
 // 3866.9 Hz is 29 × 133.33 Hz, and 666.98 Hz lies 17 Hz above 6 × 108.33 Hz.
 TEST(ExplainPeak, NamesThePeaksOfThePublishedCuts) {
-  EXPECT_EQ(explain(324.99, 6500).kind, report::PeakKind::rotation);
+  EXPECT_EQ(explain(324.99, 6500).kind, Kind::rotation);
   EXPECT_EQ(explain(324.99, 6500).text, "3 × rotation");
-  EXPECT_EQ(explain(3866.9, 8000).kind, report::PeakKind::rotation);
+  EXPECT_EQ(explain(3866.9, 8000).kind, Kind::rotation);
   EXPECT_EQ(explain(3866.9, 8000).text, "29 × rotation");
   for (const double peak : {666.98, 991.98, 1966.95}) {
-    EXPECT_EQ(explain(peak, 6500).kind, report::PeakKind::chatter) << peak;
+    EXPECT_EQ(explain(peak, 6500).kind, Kind::chatter) << peak;
     EXPECT_NE(explain(peak, 6500).text.find("rotation + mode 1"), std::string::npos) << explain(peak, 6500).text;
   }
   EXPECT_EQ(explain(550.0, 7900).text, "mode 8");
-  EXPECT_EQ(explain(200.0, 6000).kind, report::PeakKind::tooth_passing);
-  EXPECT_EQ(explain(390.0, 6000).kind, report::PeakKind::other);
+  EXPECT_EQ(explain(200.0, 6000).kind, Kind::tooth_passing);
+  EXPECT_EQ(explain(390.0, 6000).kind, Kind::unexplained);
 }
 
 // 543.67 Hz is the frequency of mode 8 and within the width of mode 7; 540.9 Hz is near five rotations, too.
 TEST(ExplainPeak, NamesNoReadingWhereAnotherIsAboutAsGood) {
-  const report::Peak either = explain(543.67, 7000);
-  EXPECT_EQ(either.kind, report::PeakKind::chatter);
+  const Peak either = explain(543.67, 7000);
+  EXPECT_EQ(either.kind, Kind::chatter);
   EXPECT_EQ(either.text, "mode 8 or mode 7: cannot be told");
-  const report::Peak open = explain(540.9, 6500);
-  EXPECT_EQ(open.kind, report::PeakKind::cut_or_chatter);
+  const Peak open = explain(540.9, 6500);
+  EXPECT_EQ(open.kind, Kind::cut_or_chatter);
   EXPECT_EQ(open.text.find("5 × rotation or mode 7"), 0U) << open.text;
 }
 
@@ -59,14 +61,14 @@ TEST(ExplainPeak, KnowsTheModesOfTheWorkpiece) {
   problem.workpiece_dynamics.modes.resize(1);
   problem.workpiece_dynamics.modes[0].frequency_hz = 446.0;
   problem.workpiece_dynamics.modes[0].damping_ratio = 0.005;
-  const report::Peak peak = name_peaks({446.5}, 6500 * units::rpm, problem, 1.0).front();
+  const Peak peak = name_peaks({446.5}, 6500 * units::rpm, problem, 1.0).front();
   EXPECT_EQ(peak.text, "mode 1 of the workpiece");
 }
 
-class Recording : public testing::Test {
+class RecordedCut : public testing::Test {
  protected:
   // 6,000 rpm, three teeth: tooth passing at 300 Hz with amplitude 1, and something else at 1,234.5 Hz.
-  report::Recording record(double chatter_amplitude, double length_s = 1.0, double chatter_hz = 1234.5) {
+  Recording record(double chatter_amplitude, double length_s = 1.0, double chatter_hz = 1234.5) {
     std::ofstream file(path_);
     file << "time_s,ax_m_per_s2\n";
     const double rate_hz = 8192.0;
@@ -95,30 +97,30 @@ class Recording : public testing::Test {
   std::filesystem::path path_ = folder_.at("cut.csv");
 };
 
-TEST_F(Recording, ReportsStableFromChatter) {
-  EXPECT_EQ(record(0.0).verdict, report::Verdict::stable);
-  EXPECT_EQ(record(0.35).verdict, report::Verdict::borderline);
-  const report::Recording loud = record(0.8);
-  EXPECT_EQ(loud.verdict, report::Verdict::chatter);
+TEST_F(RecordedCut, ReportsStableFromChatter) {
+  EXPECT_EQ(record(0.0).verdict, Verdict::stable);
+  EXPECT_EQ(record(0.35).verdict, Verdict::borderline);
+  const Recording loud = record(0.8);
+  EXPECT_EQ(loud.verdict, Verdict::chatter);
   EXPECT_NE(loud.reason.find("1234.5 Hz"), std::string::npos) << loud.reason;
   ASSERT_GE(loud.peaks.size(), 3U);
-  EXPECT_EQ(loud.peaks[0].kind, report::PeakKind::tooth_passing);
+  EXPECT_EQ(loud.peaks[0].kind, Kind::tooth_passing);
   EXPECT_NEAR(loud.peaks[0].amplitude, 1.0, 1e-3);
 }
 
 // 1,201 Hz is a second multiple of tooth passing plus 1 Hz and a mode's frequency at once: as the cut it makes the
 // recording stable, as chatter the loudest peak.
-TEST_F(Recording, GivesNoVerdictOnAPeakThatMayBeEither) {
+TEST_F(RecordedCut, GivesNoVerdictOnAPeakThatMayBeEither) {
   problem_.dynamics.modes.resize(1);
   problem_.dynamics.modes[0].frequency_hz = 1201.0;
   problem_.dynamics.modes[0].damping_ratio = 1e-4;
-  const report::Recording open = record(0.8, 1.0, 1201.0);
-  EXPECT_EQ(open.verdict, report::Verdict::unknown);
+  const Recording open = record(0.8, 1.0, 1201.0);
+  EXPECT_EQ(open.verdict, Verdict::unknown);
   EXPECT_NE(open.reason.find("1201.0 Hz may be the cut or chatter"), std::string::npos) << open.reason;
-  EXPECT_EQ(record(0.1, 1.0, 1201.0).verdict, report::Verdict::stable);  // too low to matter
+  EXPECT_EQ(record(0.1, 1.0, 1201.0).verdict, Verdict::stable);  // too low to matter
 }
 
-TEST_F(Recording, RejectsTooLittle) {
+TEST_F(RecordedCut, RejectsTooLittle) {
   EXPECT_THROW(static_cast<void>(record(0.0, 0.1)), InvalidInput);
 }
 
@@ -152,18 +154,25 @@ TEST(CompareCuts, ComparesWithThePrediction) {
   std::vector<TestCut> cuts(3);
   for (TestCut& cut : cuts) cut.spindle_speed_rad_per_s = 5000 * units::rpm;
   cuts[0].axial_depth_m = 0.01e-3;
-  cuts[0].result = TestCut::Result::stable;
+  cuts[0].result = Verdict::stable;
   cuts[1].axial_depth_m = 2e-3;
-  cuts[1].result = TestCut::Result::stable;
+  cuts[1].result = Verdict::stable;
   cuts[2].axial_depth_m = 2e-3;
-  const std::vector<report::TestCut> rows = compare_cuts(cuts, problem, options, Progress::none());
-  EXPECT_EQ(rows[0].predicted, report::Verdict::stable);
+  const std::vector<ComparedCut> rows = compare_cuts(cuts, problem, options, Progress::none());
+  EXPECT_EQ(rows[0].predicted, Verdict::stable);
   EXPECT_EQ(rows[0].agrees, std::optional<bool>(true));
-  EXPECT_EQ(rows[1].predicted, report::Verdict::chatter);
+  EXPECT_EQ(rows[1].predicted, Verdict::chatter);
   EXPECT_EQ(rows[1].agrees, std::optional<bool>(false));
   EXPECT_FALSE(rows[2].agrees.has_value());
   EXPECT_GT(rows[2].limit_depth_m, 0.01e-3);
   EXPECT_LT(rows[2].limit_depth_m, 2e-3);
+}
+
+TEST(Agreement, CountsEveryCutOnce) {
+  const Agreement counts = agreement({{.agrees = true}, {.agrees = false}, {}, {.agrees = true}});
+  EXPECT_EQ(counts.agree, 2U);
+  EXPECT_EQ(counts.disagree, 1U);
+  EXPECT_EQ(counts.not_compared, 1U);
 }
 
 }  // namespace

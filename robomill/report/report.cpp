@@ -38,42 +38,6 @@ void validate_lobes(const Report& report) {
     require_length(map + " columns", lobes.spectral_radius.cols(), lobes.map_speed_rad_per_s.size(), false);
     require_length(map + " rows", lobes.spectral_radius.rows(), lobes.map_depth_m.size(), false);
   }
-  for (std::size_t k = 0; k < report.other_limits.size(); ++k) {
-    const DepthCurve& curve = report.other_limits[k];
-    require_axis(member("other_limits", k, "spindle_speed_rad_per_s"), curve.spindle_speed_rad_per_s);
-    require_length(member("other_limits", k, "axial_depth_m"), curve.axial_depth_m.size(),
-                   curve.spindle_speed_rad_per_s.size(), false);
-  }
-  if (report.feed_directions) {
-    const FeedDirections& feed = *report.feed_directions;
-    require_axis("feed_directions.direction_rad", feed.direction_rad);
-    require_length("feed_directions.lowest_limit_m", feed.lowest_limit_m.size(), feed.direction_rad.size(), false);
-    require_length("feed_directions.limit_at_speed_m", feed.limit_at_speed_m.size(), feed.direction_rad.size(), true);
-  }
-}
-
-void validate_cuts(const Report& report) {
-  for (std::size_t k = 0; k < report.cuts.size(); ++k) {
-    require_positive(member("cuts", k, "spindle_speed_rad_per_s").c_str(), report.cuts[k].spindle_speed_rad_per_s,
-                     "rad/s");
-    require_non_negative(member("cuts", k, "axial_depth_m").c_str(), report.cuts[k].axial_depth_m, "m");
-  }
-  for (std::size_t k = 0; k < report.recordings.size(); ++k) {
-    const Recording& recording = report.recordings[k];
-    require_positive(member("recordings", k, "spindle_speed_rad_per_s").c_str(), recording.spindle_speed_rad_per_s,
-                     "rad/s");
-    if (recording.teeth < 1) {
-      throw InvalidInput(member("recordings", k, "teeth"), recording.teeth, "", "must be at least 1");
-    }
-    require_axis(member("recordings", k, "frequency_hz"), recording.frequency_hz);
-    require_length(member("recordings", k, "amplitude"), recording.amplitude.size(), recording.frequency_hz.size(),
-                   false);
-  }
-}
-
-void validate_recommendation(const std::string& name, const Recommendation& recommendation) {
-  require_positive((name + ".spindle_speed_rad_per_s").c_str(), recommendation.spindle_speed_rad_per_s, "rad/s");
-  require_positive((name + ".axial_depth_m").c_str(), recommendation.axial_depth_m, "m");
 }
 
 /// What the drawing needs; the rest is the assembly's own business.
@@ -116,10 +80,6 @@ void validate_part(const char* name, const std::optional<Part>& part) {
 }  // namespace
 
 void Report::validate() const {
-  if (recommendation) validate_recommendation("recommendation", *recommendation);
-  for (std::size_t k = 0; k < alternatives.size(); ++k) {
-    validate_recommendation("alternatives[" + std::to_string(k) + "]", alternatives[k]);
-  }
   if (prediction) validate_prediction(*prediction);
   validate_frfs(*this);
   if (model) {
@@ -132,24 +92,9 @@ void Report::validate() const {
                    static_cast<Eigen::Index>(workpiece_model->modes.size()), true);
   }
   validate_lobes(*this);
-  validate_cuts(*this);
   validate_part("forces.", forces);
   validate_part("smooth.", smooth);
   validate_part("monitor.", monitor);
-}
-
-Agreement agreement(const std::vector<TestCut>& cuts) {
-  Agreement counts;
-  for (const TestCut& cut : cuts) {
-    if (!cut.agrees) {
-      ++counts.not_compared;
-    } else if (*cut.agrees) {
-      ++counts.agree;
-    } else {
-      ++counts.disagree;
-    }
-  }
-  return counts;
 }
 
 }  // namespace robomill::report

@@ -20,27 +20,6 @@
 /// the range" where a member says so; it becomes null.
 namespace robomill::report {
 
-/// What a cut did, or is predicted to do.
-enum class Verdict { unknown, stable, borderline, chatter };
-
-/// Cutting conditions that will not chatter, and what keeps them from being faster.
-struct Recommendation {
-  double spindle_speed_rad_per_s = missing;  ///< [rad/s], > 0
-  double axial_depth_m = missing;            ///< [m], > 0
-  double feed_per_tooth_m = missing;         ///< [m]
-  double margin = missing;                   ///< 1 - axial depth / lowest limit near this speed (or the searched depth)
-  double removal_rate_m3_per_s = missing;    ///< [m^3/s]
-  double feed_m_per_s = missing;             ///< [m/s]
-  double cutting_speed_m_per_s = missing;    ///< of the tooth [m/s]
-  double torque_n_m = missing;               ///< mean over a revolution [N m]
-  double power_w = missing;                  ///< the same [W]
-  double surface_error_m = missing;          ///< of forced vibration; positive: material is left standing [m]
-  double peak_deflection_m = missing;        ///< of the tip, of forced vibration [m]
-  std::string limited_by = {};               ///< plain words: "mode 8, chatter at 566 Hz", "the spindle's torque"
-  double chatter_frequency_hz = missing;     ///< of the limit, where chatter is what limits [Hz]
-  modal::ModeId mode = {};                   ///< of the limit
-};
-
 /// How well a measurement serves, before any fit.
 enum class Grade { unknown, good, fair, poor };
 
@@ -117,13 +96,6 @@ struct BoundaryPoint {
   modal::ModeId mode = {};
 };
 
-/// Depth over spindle speed.
-struct DepthCurve {
-  std::string label = {};                        ///< "spindle torque"
-  Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing
-  Eigen::VectorXd axial_depth_m = {};            ///< length n; NaN: none in the range
-};
-
 /// Where the limit lies with all that is not known exactly.
 struct LimitBand {
   std::string label = {};                        ///< "5 to 95 % of 200 samples"
@@ -145,57 +117,6 @@ struct Lobes {
   Eigen::MatrixXd spectral_radius = {};      ///< n_d x n_s
 };
 
-/// A cut that was made, beside what was predicted for it.
-struct TestCut {
-  double spindle_speed_rad_per_s = 0.0;
-  double axial_depth_m = 0.0;
-  Verdict result = Verdict::unknown;  ///< as made
-  Verdict predicted = Verdict::unknown;
-  double limit_depth_m = missing;   ///< predicted limit at this speed; NaN: none in the range
-  std::optional<bool> agrees = {};  ///< none where there is nothing to compare
-  std::string note = {};            ///< "chatter at 325, 667 Hz"; the recording's file
-};
-
-/// How many test cuts came out as predicted.
-struct Agreement {
-  std::size_t agree = 0, disagree = 0, not_compared = 0;
-};
-
-/// cut_or_chatter: which of them cannot be told.
-enum class PeakKind { rotation, tooth_passing, chatter, cut_or_chatter, other };
-
-/// A peak in the spectrum of a recorded cut.
-struct Peak {
-  double frequency_hz = 0.0;
-  double amplitude = 0.0;  ///< in Recording::amplitude_unit
-  PeakKind kind = PeakKind::other;
-  std::string text = {};  ///< what it is: "29 × rotation", "mode 8 (543.7 Hz)"
-};
-
-/// The spectrum of a recorded cut.
-struct Recording {
-  std::string file = {};
-  double spindle_speed_rad_per_s = 0.0;  ///< > 0
-  int teeth = 0;                         ///< > 0
-  double axial_depth_m = missing;
-  Eigen::VectorXd frequency_hz = {};  ///< length n, increasing
-  Eigen::VectorXd amplitude = {};     ///< length n, >= 0
-  std::string amplitude_unit = "m/s²";
-  std::vector<Peak> peaks = {};
-  Verdict verdict = Verdict::unknown;  ///< what the spectrum says
-  std::string reason = {};             ///< why
-};
-
-/// The limit over the direction of the feed.
-struct FeedDirections {
-  Eigen::VectorXd direction_rad = {};        ///< length n, increasing, counter-clockwise from x of the FRFs
-  Eigen::VectorXd lowest_limit_m = {};       ///< length n, lowest over all speeds; NaN: none up to searched_depth_m
-  Eigen::VectorXd limit_at_speed_m = {};     ///< length n, at the recommended speed; empty where none was recommended
-  double spindle_speed_rad_per_s = missing;  ///< the speed of limit_at_speed_m
-  double used_direction_rad = missing;       ///< the job's own direction
-  double searched_depth_m = missing;
-};
-
 /// A file that a stage wrote beside the report.
 struct StageFile {
   std::string stage, file, description;
@@ -203,16 +124,10 @@ struct StageFile {
 
 struct Report {
   std::string title = "Cutting conditions without chatter";
-  std::string created = {};                ///< "31 July 2026, robomill 0.1.0"
-  std::vector<Fact> facts = {};            ///< the job in short: cutter, cut, material
-  std::vector<std::string> warnings = {};  ///< what the reader must know before using a number
-  std::vector<std::string> notes = {};     ///< what the reader may want to know
-  std::string summary = {};                ///< in lines of text, for where no script runs
-
-  std::optional<Recommendation> recommendation = {};
-  std::vector<Recommendation> alternatives = {};
-  double max_surface_error_m = missing, max_deflection_m = missing;  ///< of a finishing cut; NaN: no limit
-  std::string no_recommendation = {};                                ///< why there is none, where there is none
+  std::string created = {};     ///< "31 July 2026, robomill 0.1.0"
+  std::string summary = {};     ///< in lines of text, for where no script runs
+  std::string plan = {};        ///< of plan.json what is no stage's document; empty: none
+  std::string recordings = {};  ///< of test cuts, a JSON array; empty: none
 
   std::optional<Prediction> prediction = {};
   Eigen::VectorXd frf_frequency_hz = {};  ///< length n, increasing
@@ -225,24 +140,17 @@ struct Report {
   Eigen::VectorXd workpiece_limit_share = {};
   std::optional<FitSummary> fit = {};
 
-  std::vector<Lobes> lobes = {};              ///< the first is the one that counts: all modes
-  std::vector<DepthCurve> other_limits = {};  ///< torque, power, the cutter's length
-  std::vector<TestCut> cuts = {};
-  std::optional<FeedDirections> feed_directions = {};
+  std::vector<Lobes> lobes = {};  ///< the first is the one that counts: all modes
   std::optional<Forces> forces = {};
   std::optional<Smooth> smooth = {};
   std::optional<MonitorRun> monitor = {};
   std::string calibration = {};  ///< calibration.json; empty: none
-  std::vector<Recording> recordings = {};
   std::vector<StageFile> files = {};
 
   /// @throws InvalidInput naming the member if lengths do not match, an axis does not increase, or a required number is
   /// missing
   ROBOMILL_API void validate() const;
 };
-
-/// Counts Report::cuts.
-[[nodiscard]] ROBOMILL_API Agreement agreement(const std::vector<TestCut>& cuts);
 
 /// The data of the page in shop units, keys with their unit, about six significant digits; numbers finite, "none" is
 /// null.

@@ -17,20 +17,6 @@ Json complex_number(std::complex<double> value) {
   return Json::array({number(value.real()), number(value.imag())});
 }
 
-Json name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::stable:
-      return "stable";
-    case Verdict::borderline:
-      return "borderline";
-    case Verdict::chatter:
-      return "chatter";
-    case Verdict::unknown:
-      break;
-  }
-  return nullptr;
-}
-
 Json name_of(Grade grade) {
   switch (grade) {
     case Grade::good:
@@ -57,37 +43,18 @@ const char* name_of(BoundaryKind kind) {
   return "fold";
 }
 
-const char* name_of(PeakKind kind) {
-  switch (kind) {
-    case PeakKind::rotation:
-      return "rotation";
-    case PeakKind::tooth_passing:
-      return "tooth_passing";
-    case PeakKind::chatter:
-      return "chatter";
-    case PeakKind::cut_or_chatter:
-      return "cut_or_chatter";
-    case PeakKind::other:
-      break;
-  }
-  return "other";
-}
-
-Json recommendation_json(const Recommendation& r) {
-  Json json = {{"spindle_speed_rpm", number(r.spindle_speed_rad_per_s, units::rpm)},
-               {"axial_depth_mm", number(r.axial_depth_m, units::mm)},
-               {"feed_per_tooth_mm", number(r.feed_per_tooth_m, units::mm)},
-               {"margin", number(r.margin)},
-               {"removal_rate_mm3_per_s", number(r.removal_rate_m3_per_s, units::mm3)},
-               {"feed_mm_per_min", number(r.feed_m_per_s, units::mm / units::minute)},
-               {"cutting_speed_m_per_min", number(r.cutting_speed_m_per_s, 1.0 / units::minute)},
-               {"torque_n_m", number(r.torque_n_m)},
-               {"power_w", number(r.power_w)},
-               {"surface_error_um", number(r.surface_error_m, units::um)},
-               {"peak_deflection_um", number(r.peak_deflection_m, units::um)},
-               {"limited_by", text(r.limited_by)},
-               {"chatter_frequency_hz", number(r.chatter_frequency_hz)}};
-  modal::set_mode(json, r.mode);
+/// A document of another writer, its numbers to six digits.
+Json document(const std::string& text) {
+  if (text.empty()) return nullptr;
+  const auto round = [](auto& self, Json& value) -> void {
+    if (value.is_number_float()) {
+      value = number(value.get<double>());
+    } else if (value.is_structured()) {
+      for (Json& part : value) self(self, part);
+    }
+  };
+  Json json = Json::parse(text);
+  round(round, json);
   return json;
 }
 
@@ -255,56 +222,6 @@ Json lobes_json(const Lobes& lobes) {
           {"map", map_json(lobes)}};
 }
 
-Json curve_json(const DepthCurve& curve) {
-  return {{"label", text(curve.label)},
-          {"spindle_speed_rpm", numbers(curve.spindle_speed_rad_per_s, units::rpm)},
-          {"axial_depth_mm", numbers(curve.axial_depth_m, units::mm)}};
-}
-
-Json cut_json(const TestCut& cut) {
-  return {{"spindle_speed_rpm", number(cut.spindle_speed_rad_per_s, units::rpm)},
-          {"axial_depth_mm", number(cut.axial_depth_m, units::mm)},
-          {"result", name_of(cut.result)},
-          {"predicted", name_of(cut.predicted)},
-          {"limit_mm", number(cut.limit_depth_m, units::mm)},
-          {"agrees", cut.agrees ? Json(*cut.agrees) : Json(nullptr)},
-          {"note", text(cut.note)}};
-}
-
-Json recording_json(const Recording& recording) {
-  const std::vector<Eigen::Index> keep = thin(recording.amplitude);
-  Json peaks = Json::array();
-  for (const Peak& peak : recording.peaks) {
-    peaks.push_back({{"frequency_hz", number(peak.frequency_hz)},
-                     {"amplitude", number(peak.amplitude)},
-                     {"kind", name_of(peak.kind)},
-                     {"text", text(peak.text)}});
-  }
-  const double rotation_hz = recording.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
-  return {{"file", text(recording.file)},
-          {"spindle_speed_rpm", number(recording.spindle_speed_rad_per_s, units::rpm)},
-          {"teeth", recording.teeth},
-          {"rotation_hz", number(rotation_hz)},
-          {"tooth_passing_hz", number(rotation_hz * recording.teeth)},
-          {"axial_depth_mm", number(recording.axial_depth_m, units::mm)},
-          {"amplitude_unit", text(recording.amplitude_unit)},
-          {"frequency_hz", numbers(recording.frequency_hz, keep)},
-          {"amplitude", numbers(recording.amplitude, keep)},
-          {"peaks", std::move(peaks)},
-          {"verdict", name_of(recording.verdict)},
-          {"reason", text(recording.reason)}};
-}
-
-Json feed_json(const FeedDirections& feed) {
-  return {{"direction_deg", numbers(feed.direction_rad, units::deg)},
-          {"lowest_limit_mm", numbers(feed.lowest_limit_m, units::mm)},
-          {"limit_at_speed_mm",
-           feed.limit_at_speed_m.size() > 0 ? numbers(feed.limit_at_speed_m, units::mm) : Json(nullptr)},
-          {"spindle_speed_rpm", number(feed.spindle_speed_rad_per_s, units::rpm)},
-          {"used_direction_deg", number(feed.used_direction_rad, units::deg)},
-          {"searched_depth_mm", number(feed.searched_depth_m, units::mm)}};
-}
-
 template <class T, class F>
 Json list_of(const std::vector<T>& items, F&& item_json) {
   Json list = Json::array();
@@ -316,18 +233,10 @@ Json list_of(const std::vector<T>& items, F&& item_json) {
 
 Json shop_units(const Report& report) {
   report.validate();
-  const Agreement counts = agreement(report.cuts);
   Json json = Json::object();
   json["title"] = text(report.title);
   json["created"] = text(report.created);
-  json["facts"] = facts_json(report.facts);
-  json["warnings"] = texts(report.warnings);
-  json["notes"] = texts(report.notes);
-  json["recommendation"] = report.recommendation ? recommendation_json(*report.recommendation) : Json(nullptr);
-  json["alternatives"] = list_of(report.alternatives, recommendation_json);
-  json["finishing"] = {{"max_surface_error_um", number(report.max_surface_error_m, units::um)},
-                       {"max_deflection_um", number(report.max_deflection_m, units::um)}};
-  json["no_recommendation"] = text(report.no_recommendation);
+  json["plan"] = document(report.plan);
   json["assembly"] = report.prediction ? assembly_json(*report.prediction) : Json(nullptr);
   json["frfs"] = list_of(report.frfs, [&](const FrfPlot& frf) { return frf_json(report, frf); });
   json["hits"] = list_of(report.hits, [](const HitRow& hit) {
@@ -339,15 +248,11 @@ Json shop_units(const Report& report) {
   json["modes"] = modes_json(report);
   json["fit"] = report.fit ? fit_json(*report.fit) : Json(nullptr);
   json["lobes"] = list_of(report.lobes, lobes_json);
-  json["other_limits"] = list_of(report.other_limits, [](const DepthCurve& curve) { return curve_json(curve); });
-  json["cuts"] = list_of(report.cuts, cut_json);
-  json["agreement"] = {{"agree", counts.agree}, {"disagree", counts.disagree}, {"not_compared", counts.not_compared}};
-  json["feed_directions"] = report.feed_directions ? feed_json(*report.feed_directions) : Json(nullptr);
   json["forces"] = report.forces ? forces_json(*report.forces) : Json(nullptr);
   json["smooth"] = report.smooth ? smooth_json(*report.smooth) : Json(nullptr);
   json["monitor"] = report.monitor ? monitor_json(*report.monitor) : Json(nullptr);
-  json["calibration"] = report.calibration.empty() ? Json(nullptr) : Json::parse(report.calibration);
-  json["recordings"] = list_of(report.recordings, recording_json);
+  json["calibration"] = document(report.calibration);
+  json["recordings"] = document(report.recordings);
   json["files"] = list_of(report.files, [](const StageFile& file) {
     return Json{{"stage", text(file.stage)}, {"file", text(file.file)}, {"description", text(file.description)}};
   });

@@ -10,6 +10,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/report/forces_sample.hpp"
 #include "robomill/report/monitor_sample.hpp"
+#include "robomill/report/plan_sample.hpp"
 #include "robomill/report/smooth_sample.hpp"
 
 namespace robomill::report {
@@ -148,87 +149,6 @@ void add_lobes(Report& report, const std::string& label, const std::vector<int>&
   report.lobes.push_back(lobes);
 }
 
-double limit_at(const Lobes& lobes, double speed_rad_per_s) {
-  Eigen::Index nearest = 0;
-  (lobes.spindle_speed_rad_per_s.array() - speed_rad_per_s).abs().minCoeff(&nearest);
-  return lobes.limit_depth_m[nearest];
-}
-
-void add_cuts(Report& report) {
-  struct Cut {
-    double rpm, depth_mm;
-    Verdict result;
-    const char* note;
-  };
-  const std::array<Cut, 12> cuts = {{{5000, 0.5, Verdict::unknown, ""},
-                                     {5000, 0.9, Verdict::unknown, ""},
-                                     {6500, 0.4, Verdict::stable, ""},
-                                     {6500, 0.6, Verdict::borderline, "667.5, 1967.5, 2076 Hz"},
-                                     {6500, 0.8, Verdict::chatter, "325.0, 667.0, 992.0 Hz"},
-                                     {8000, 1.0, Verdict::stable, ""},
-                                     {8000, 1.2, Verdict::stable, ""},
-                                     {8000, 1.5, Verdict::chatter, "817.5, 2017.5 Hz"},
-                                     {9500, 0.9, Verdict::unknown, ""},
-                                     {11000, 0.8, Verdict::unknown, ""},
-                                     {15000, 1.1, Verdict::stable, ""},
-                                     {15000, 1.3, Verdict::borderline, ""}}};
-  for (const Cut& made : cuts) {
-    TestCut cut;
-    cut.spindle_speed_rad_per_s = made.rpm * units::rpm;
-    cut.axial_depth_m = made.depth_mm * units::mm;
-    cut.result = made.result;
-    cut.limit_depth_m = limit_at(report.lobes.front(), cut.spindle_speed_rad_per_s);
-    cut.predicted = cut.axial_depth_m > cut.limit_depth_m ? Verdict::chatter : Verdict::stable;
-    if (cut.result == Verdict::stable || cut.result == Verdict::chatter) cut.agrees = cut.result == cut.predicted;
-    cut.note = made.note;
-    report.cuts.push_back(cut);
-  }
-}
-
-void add_recording(Report& report) {
-  Random random(11);
-  Recording recording;
-  recording.file = "cut_6500_08.csv";
-  recording.spindle_speed_rad_per_s = 6500 * units::rpm;
-  recording.teeth = teeth;
-  recording.axial_depth_m = 0.8 * units::mm;
-  recording.frequency_hz = Eigen::VectorXd::LinSpaced(10001, 0.0, 2500.0);
-  recording.amplitude.resize(10001);
-  const double rotation_hz = 6500.0 / 60.0;
-  std::vector<std::pair<double, double>> lines = {{667.0, 5.1}, {991.98, 3.4}, {342.1, 1.6}, {1966.95, 1.9}};
-  for (int k = 1; k < 23; ++k) lines.emplace_back(k * rotation_hz, k % teeth == 0 ? 3.2 / std::sqrt(k) : 0.5);
-  for (Eigen::Index i = 0; i < 10001; ++i) {
-    const double f = recording.frequency_hz[i];
-    double sum = 0.03 * std::hypot(random.normal(), random.normal());
-    for (const auto& [centre, height] : lines) sum += height * std::exp(-std::pow((f - centre) / 0.8, 2));
-    recording.amplitude[i] = sum;
-  }
-  recording.peaks = {{325.0, 1.85, PeakKind::tooth_passing, "3 × rotation: tooth passing"},
-                     {667.0, 5.1, PeakKind::chatter, "chatter, mode 1: 6 × rotation + 17.0 Hz"},
-                     {991.98, 3.4, PeakKind::chatter, "chatter, mode 1: 9 × rotation + 17.0 Hz"},
-                     {108.33, 0.5, PeakKind::rotation, "rotation"}};
-  recording.verdict = Verdict::chatter;
-  recording.reason = "Two peaks above the tooth-passing line stand between the harmonics";
-  report.recordings.push_back(recording);
-}
-
-void add_feed_directions(Report& report) {
-  FeedDirections feed;
-  feed.direction_rad = Eigen::VectorXd::LinSpaced(72, 0.0, 355.0) * units::deg;
-  feed.lowest_limit_m.resize(72);
-  feed.limit_at_speed_m.resize(72);
-  for (Eigen::Index i = 0; i < 72; ++i) {
-    const double turn = std::cos(2.0 * (feed.direction_rad[i] - 0.6));
-    feed.lowest_limit_m[i] = (0.42 + 0.13 * turn) * units::mm;
-    const double at_speed = (1.9 + 1.3 * turn) * units::mm;
-    feed.limit_at_speed_m[i] = at_speed > 3.0 * units::mm ? missing : at_speed;
-  }
-  feed.spindle_speed_rad_per_s = 11000 * units::rpm;
-  feed.used_direction_rad = 0.0;
-  feed.searched_depth_m = 3.0 * units::mm;
-  report.feed_directions = feed;
-}
-
 void add_fit(Report& report) {
   FitSummary fit;
   fit.method = "hybrid";
@@ -286,60 +206,12 @@ void add_prediction(Report& report) {
   report.prediction = prediction;
 }
 
-/// The fastest depth 20 % below the limit, and three more at other speeds.
-void add_recommendations(Report& report) {
-  const Lobes& all = report.lobes.front();
-  std::vector<Recommendation> found;
-  for (Eigen::Index i = 5; i + 5 < all.limit_depth_m.size(); ++i) {
-    double limit = all.searched_depth_m;
-    for (Eigen::Index j = i - 5; j <= i + 5; ++j)
-      limit = std::min(limit, std::isnan(all.limit_depth_m[j]) ? limit : all.limit_depth_m[j]);
-    limit = std::min(limit, (3.4 - 1.6 * static_cast<double>(i) / 240.0) * units::mm / 0.8);
-    Recommendation r;
-    r.spindle_speed_rad_per_s = all.spindle_speed_rad_per_s[i];
-    r.axial_depth_m = 0.8 * limit;
-    r.feed_per_tooth_m = 0.01 * units::mm;
-    r.margin = 0.2;
-    r.removal_rate_m3_per_s = r.axial_depth_m * 1.8 * units::mm * r.feed_per_tooth_m * teeth *
-                              r.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
-    r.feed_m_per_s = r.feed_per_tooth_m * teeth * r.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
-    r.cutting_speed_m_per_s = 6.0 * units::mm * r.spindle_speed_rad_per_s;
-    r.torque_n_m = 0.08;
-    r.power_w = r.torque_n_m * r.spindle_speed_rad_per_s;
-    r.surface_error_m = 12.5 * units::um;
-    r.peak_deflection_m = 31.0 * units::um;
-    r.limited_by = "mode 8, chatter";
-    r.chatter_frequency_hz = 566.4;
-    r.mode = {8};
-    found.push_back(r);
-  }
-  std::ranges::sort(found,
-                    [](const auto& a, const auto& b) { return a.removal_rate_m3_per_s > b.removal_rate_m3_per_s; });
-  report.recommendation = found.front();
-  for (const Recommendation& r : found) {
-    const auto near = [&](const Recommendation& other) {
-      return std::abs(other.spindle_speed_rad_per_s / r.spindle_speed_rad_per_s - 1.0) < 0.06;
-    };
-    if (near(*report.recommendation) || std::ranges::any_of(report.alternatives, near)) continue;
-    report.alternatives.push_back(r);
-    if (report.alternatives.size() == 3) break;
-  }
-}
-
 }  // namespace
 
 Report sample_report() {
   Report report;
   report.title = "Cutting conditions without chatter: sample of the page";
   report.created = "Made by the tests of robomill from invented lobes";
-  report.facts = {{"Cutter", "3 teeth, 12 mm, flat end"},
-                  {"Cut", "up-milling, 1.8 mm radial depth"},
-                  {"Feed", "0.01 mm per tooth, towards 0°"},
-                  {"Material", "Kt 712 N/mm², Kr 287 N/mm²"},
-                  {"Speeds", "4 000 to 16 000 rpm"}};
-  report.warnings = {"The measured model is not passive: Im H_yy > 0 on 46 % of lines."};
-  report.notes = {
-      "The lobes on this page come from a formula for the feed direction alone; they serve to look at the page."};
   report.model = robot_modes();
   report.limit_share = (Eigen::VectorXd(8) << 0.03, 0.02, 0.01, 0.02, 0.02, 0.01, 0.31, 0.58).finished();
   add_fit(report);
@@ -349,19 +221,12 @@ Report sample_report() {
   for (int k = 1; k < 8; k += 2) {
     add_lobes(report, "modes " + std::to_string(k) + "–" + std::to_string(k + 1), {k, k + 1});
   }
-  DepthCurve torque;
-  torque.label = "spindle torque";
-  torque.spindle_speed_rad_per_s = Eigen::VectorXd::LinSpaced(25, 4000.0, 16000.0) * units::rpm;
-  torque.axial_depth_m = (3.4 - 1.6 * Eigen::ArrayXd::LinSpaced(25, 0.0, 1.0)) * units::mm;
-  report.other_limits.push_back(torque);
-  add_recommendations(report);
-  add_cuts(report);
-  add_feed_directions(report);
+  report.plan = sample_plan(report.lobes.front());
+  report.recordings = sample_recordings();
   report.forces = sample_forces();
   report.smooth = sample_smooth();
   report.monitor = sample_monitor();
   report.calibration = sample_calibration();
-  add_recording(report);
   for (int k = 1; k <= 10; ++k) {
     HitRow hit{"hit_" + std::string(k <= 5 ? "x_" : "y_") + std::to_string((k - 1) % 5 + 1) + ".csv",
                k <= 5 ? "x" : "y"};

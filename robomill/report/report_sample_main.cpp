@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "robomill/report/monitor_sample.hpp"
+#include "robomill/report/plan_sample.hpp"
 #include "robomill/report/report_sample.hpp"
 
 /// report_sample OUT.html [sample|hostile]: the sample page for the browser test; hostile puts markup into every text
@@ -17,9 +18,8 @@ int main(int argc, char** argv) {
     const std::string evil =
         "</script><script>throw new Error('escaped')</script><img src=x onerror=alert(1)><!--<script>";
     report.title = evil;
-    report.notes = {evil};
-    report.recommendation->limited_by = evil;
-    report.cuts.front().note = evil;
+    report.plan = robomill::report::sample_plan(report.lobes.front(), evil);
+    report.recordings = robomill::report::sample_recordings(evil);
     report.prediction->holder_file = evil;
     report.prediction->notes = {evil};
     report.lobes.back().label = evil;
@@ -38,8 +38,6 @@ int main(int argc, char** argv) {
     report.monitor->channels.front().name = evil;
     report.monitor->events = robomill::report::sample_monitor(evil).events;
     report.calibration = robomill::report::sample_calibration(evil);
-    report.recordings.front().file = evil;
-    report.recordings.front().peaks.front().text = evil;
   }
   std::ofstream(argv[1], std::ios::binary) << robomill::report::report_html(report);
   return 0;

@@ -164,7 +164,7 @@ export interface Cut {
   axial_depth_mm: number;
   result: Verdict | null;
   predicted: Verdict | null;
-  limit_mm: Num;
+  limit_depth_mm: Num;
   agrees: boolean | null;
   note: string;
 }
@@ -175,19 +175,33 @@ export interface Agreement {
   not_compared: number;
 }
 
-export interface FeedDirections {
-  direction_deg: number[];
-  lowest_limit_mm: Num[];
-  limit_at_speed_mm: Num[] | null;
-  spindle_speed_rpm: Num;
-  used_direction_deg: Num;
-  searched_depth_mm: Num;
+/** The limit with the feed in one direction. */
+export interface FeedDirection {
+  feed_direction_deg: number;
+  lowest_limit_mm: Num; // over all speeds; null: none up to the deepest cut that was looked at
+  limit_at_speed_mm?: Num; // at the recommended speed
+}
+
+/** What plan.json says beside its stages' documents. */
+export interface Plan {
+  facts: Fact[];
+  agreement: Agreement;
+  recommended: Recommendation | null;
+  alternatives: Recommendation[];
+  reason?: string; // why nothing is recommended
+  finishing: Finishing;
+  other_limits: DepthCurve[];
+  cuts: Cut[];
+  feed_direction_deg?: Num;
+  feed_directions?: FeedDirection[];
+  warnings: string[];
+  notes: string[];
 }
 
 export interface Peak {
   frequency_hz: number;
   amplitude: number;
-  kind: 'rotation' | 'tooth_passing' | 'chatter' | 'cut_or_chatter' | 'other';
+  kind: 'rotation' | 'tooth passing' | 'chatter' | 'cut or chatter' | 'unexplained';
   text: string;
 }
 
@@ -474,30 +488,21 @@ export interface StageFile {
   description: string;
 }
 
+/** What robomill writes into the page. */
 export interface Report {
   title: string;
   created: string;
-  facts: Fact[];
-  warnings: string[];
-  notes: string[];
-  recommendation: Recommendation | null;
-  alternatives: Recommendation[];
-  finishing: Finishing;
-  no_recommendation: string;
+  plan: Plan | null;
   assembly: Assembly | null;
-  hits: Hit[];
-  agreement: Agreement;
   frfs: Frf[];
+  hits: Hit[];
   modes: Mode[];
   fit: Fit | null;
   lobes: Lobes[];
-  other_limits: DepthCurve[];
-  cuts: Cut[];
-  feed_directions: FeedDirections | null;
   forces: Forces | null;
   smooth: Smooth | null;
-  recordings: Recording[];
   monitor: Monitor | null;
   calibration: Calibration | null;
+  recordings: Recording[] | null;
   files: StageFile[];
 }

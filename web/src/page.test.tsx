@@ -19,27 +19,18 @@ function page(): string {
 function empty(): Report {
   return {
     ...report,
-    facts: [],
-    warnings: [],
-    notes: [],
-    recommendation: null,
-    alternatives: [],
-    no_recommendation: '',
+    plan: null,
     assembly: null,
     frfs: [],
     hits: [],
     modes: [],
     fit: null,
     lobes: [],
-    other_limits: [],
-    cuts: [],
-    agreement: { agree: 0, disagree: 0, not_compared: 0 },
-    feed_directions: null,
     forces: null,
     smooth: null,
     monitor: null,
     calibration: null,
-    recordings: [],
+    recordings: null,
     files: [],
   };
 }
@@ -67,7 +58,7 @@ it('shows every part of a report', () => {
 
 it('names the chatter frequency once', () => {
   expect(page()).toContain('Chatter would be at 566');
-  report.recommendation!.limited_by = 'chatter of mode 8 at 566.4 Hz';
+  report.plan!.recommended!.limited_by = 'chatter of mode 8 at 566.4 Hz';
   expect(page()).not.toContain('Chatter would be');
 });
 
@@ -76,12 +67,12 @@ it('shows test cuts that disagree before the recommendation they contradict', ()
   expect(banner).toBeGreaterThan(0);
   expect(banner).toBeLessThan(page().indexOf('<dl class="figures">'));
   expect(banner).toBeLessThan(page().indexOf('id="lobes"'));
-  report.agreement = { agree: 6, disagree: 0, not_compared: 0 };
+  report.plan!.agreement = { agree: 6, disagree: 0, not_compared: 0 };
   expect(page()).not.toContain('test cuts disagree');
 });
 
 it('shows on the card what a machinist sets; the surface is limited in finishing and reported in roughing', () => {
-  Object.assign(report.recommendation!, {
+  Object.assign(report.plan!.recommended!, {
     feed_mm_per_min: 4000,
     cutting_speed_m_per_min: 188.4,
     torque_n_m: 0.321,
@@ -92,23 +83,24 @@ it('shows on the card what a machinist sets; the surface is limited in finishing
   for (const part of ['4000 <small>mm/min', '188 <small>m/min', '0.321 <small>N·m', '456 <small>W', '7.5 µm of overcut', 'up to 23 µm', 'this is a roughing cut']) {
     expect(page()).toContain(part);
   }
-  report.finishing.max_surface_error_um = 8;
+  report.plan!.finishing.max_surface_error_um = 8;
   expect(page()).not.toContain('roughing');
   expect(page()).toContain('Permitted: surface error 8 µm.');
 });
 
 it('says whose mode it is', () => {
   report.modes.push({ ...report.modes[7]!, mode_of: 'workpiece' });
-  Object.assign(report.recommendation!, { mode: 8, mode_of: 'workpiece', limited_by: '' });
+  Object.assign(report.plan!.recommended!, { mode: 8, mode_of: 'workpiece', limited_by: '' });
   expect(page()).toContain('Limited by <strong>mode 8 of the workpiece');
   expect(page()).toContain('>8 (workpiece)<');
 });
 
 it('says why there is no safe depth', () => {
-  report = { ...empty(), no_recommendation: 'every speed chatters below 0.05 mm', lobes: [] };
+  const { plan, lobes } = report;
+  report = { ...empty(), plan: { ...plan!, recommended: null, alternatives: [], reason: 'every speed chatters below 0.05 mm' } };
   expect(page()).toContain('No answer.');
   expect(page()).toContain('every speed chatters below 0.05 mm');
-  report.lobes = (JSON.parse(data) as Report).lobes;
+  report.lobes = lobes;
   expect(page()).toContain('No safe depth.');
 });
 

@@ -18,36 +18,37 @@ interface Entry {
 }
 
 function entries(report: Report): Entry[] {
-  const { monitor, calibration, lobes, cuts, feed_directions: feed, forces, smooth, assembly, frfs, modes, fit, recordings, hits, notes, files } = report;
+  const { plan, monitor, calibration, lobes, forces, smooth, assembly, frfs, modes, fit, recordings, hits, files } = report;
+  const { cuts = [], feed_directions: feed = [], notes = [] } = plan ?? {};
   const all: Entry[] = [
     { id: 'monitor', name: 'Monitor', content: monitor && <MonitorSection monitor={monitor} /> },
     { id: 'calibration', name: 'Calibration', content: calibration && <CalibrationSection calibration={calibration} /> },
-    { id: 'lobes', name: 'Lobes', content: lobes.length + cuts.length > 0 && <LobesSection report={report} /> },
-    { id: 'feed', name: 'Feed direction', content: feed && feed.direction_deg.length > 0 && <FeedSection feed={feed} /> },
+    { id: 'lobes', name: 'Lobes', content: lobes.length + cuts.length > 0 && <LobesSection lobes={lobes[0]} plan={plan} /> },
+    { id: 'feed', name: 'Feed direction', content: plan && feed.length > 0 && <FeedSection plan={plan} searched={lobes[0]?.searched_depth_mm ?? null} /> },
     { id: 'forces', name: 'Forces', content: forces && <ForcesSection forces={forces} /> },
     { id: 'smooth', name: 'Smoothed program', content: smooth && <SmoothSection smooth={smooth} /> },
     { id: 'assembly', name: 'Tool and holder', content: assembly && <AssemblySection assembly={assembly} /> },
     { id: 'frf', name: 'Frequency response', content: frfs.length > 0 && <FrfSection report={report} /> },
     { id: 'modes', name: 'Modes', content: (modes.length > 0 || fit) && <ModesSection modes={modes} fit={fit} /> },
     { id: 'pairs', name: 'Which modes matter', content: lobes.length > 1 && <PairsSection lobes={lobes} cuts={cuts} /> },
-    { id: 'recordings', name: 'Recorded cuts', content: recordings.length > 0 && <RecordingsSection recordings={recordings} /> },
+    { id: 'recordings', name: 'Recorded cuts', content: recordings && <RecordingsSection recordings={recordings} /> },
     { id: 'hits', name: 'Hits', content: hits.length > 0 && <HitsSection hits={hits} /> },
     { id: 'notes', name: 'Notes', content: notes.length + files.length > 0 && <NotesSection notes={notes} files={files} /> },
   ];
   return all.filter(({ content }) => content);
 }
 
-function Header({ title, created, facts }: Report) {
+function Header({ title, created, plan }: Report) {
   return (
     <header>
       <h1>{title}</h1>
       {created !== '' && <p class="created">{created}</p>}
-      <Facts facts={facts} />
+      {plan && <Facts facts={plan.facts} />}
     </header>
   );
 }
 
-function Warnings({ warnings }: Report) {
+function Warnings({ warnings }: { warnings: string[] }) {
   if (warnings.length === 0) return null;
   return (
     <aside class="warnings" aria-label="Warnings">
@@ -73,8 +74,8 @@ export function Page({ report }: { report: Report }) {
         </nav>
       )}
       <main id="main">
-        <RecommendationSection report={report} />
-        <Warnings {...report} />
+        {report.plan && <RecommendationSection plan={report.plan} hasLobes={report.lobes.length > 0} />}
+        {report.plan && <Warnings warnings={report.plan.warnings} />}
         {shown.map(({ content }) => content)}
       </main>
     </>

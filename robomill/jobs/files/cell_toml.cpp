@@ -124,7 +124,7 @@ void read_links(io::TomlFile& file, const std::vector<robot::DhRow>& rows, robot
 std::vector<bool> sliding(const robot::Arm& arm) {
   std::vector<bool> prismatic;
   for (const robot::Joint& joint : arm.joints) prismatic.push_back(joint.prismatic);
-  return slides;
+  return prismatic;
 }
 
 void read_joint_lists(io::TomlFile& file, robot::Arm& arm, std::vector<std::string>& notes) {

@@ -82,11 +82,9 @@ void read_cuts(io::TomlFile& file, Job& job) {
     file.require(row + "axial_depth_mm");
     file.number(row + "spindle_speed_rpm", member + "spindle_speed_rad_per_s", units::rpm, cut.spindle_speed_rad_per_s);
     file.number(row + "axial_depth_mm", member + "axial_depth_m", units::mm, cut.axial_depth_m);
-    file.choice<TestCut::Result>(row + "result",
-                                 {{"stable", TestCut::Result::stable},
-                                  {"borderline", TestCut::Result::borderline},
-                                  {"chatter", TestCut::Result::chatter}},
-                                 cut.result);
+    file.choice<Verdict>(
+        row + "result",
+        {{"stable", Verdict::stable}, {"borderline", Verdict::borderline}, {"chatter", Verdict::chatter}}, cut.result);
     file.numbers(row + "peaks_hz", member + "peaks_hz", 1.0, cut.peaks_hz);
     file.path(row + "file", cut.file);
     file.text(row + "column", cut.column);
@@ -133,6 +131,20 @@ void Job::validate() const {
     require_non_negative((path + "sample_rate_hz").c_str(), cuts[i].sample_rate_hz, "Hz");
     for (const double peak_hz : cuts[i].peaks_hz) require_positive((path + "peaks_hz").c_str(), peak_hz, "Hz");
   }
+}
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::stable:
+      return "stable";
+    case Verdict::borderline:
+      return "borderline";
+    case Verdict::chatter:
+      return "chatter";
+    case Verdict::unknown:
+      break;
+  }
+  return {};
 }
 
 Job read_job(const std::filesystem::path& path) {

@@ -1,19 +1,32 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/modal/directions.hpp"
 
+// Method: robomill/jobs/README.md, "Files"
+
 namespace robomill::jobs {
+
+/// What a cut did, or is predicted to do. Of a recording by the ratio r of its highest peak that is no multiple of the
+/// rotation to the highest multiple.
+enum class Verdict {
+  unknown,     ///< nobody said, or a recording that may be either: the cut is predicted and not compared
+  stable,      ///< no chatter. Predicted: |μ| < 1; recorded: r < 0.25
+  borderline,  ///< marks that come and go; agrees where |predicted limit / depth - 1| <= 0.2; recorded: 0.25 <= r < 0.5
+  chatter      ///< predicted: |μ| >= 1; recorded: r >= 0.5
+};
+/// "stable", …; empty where it is unknown.
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Verdict verdict);
 
 /// What a machinist saw and measured at one test cut.
 struct TestCut {
-  enum class Result { unknown, stable, borderline, chatter };
   double spindle_speed_rad_per_s = 0.0;  ///< > 0
   double axial_depth_m = 0.0;            ///< > 0
-  Result result = Result::unknown;
+  Verdict result = Verdict::unknown;
   std::vector<double> peaks_hz = {};  ///< peaks of its spectrum, where known
   std::filesystem::path file = {};    ///< its recording, where there is one
   std::string column = "1";           ///< the recording's column, name or number from 1
@@ -44,13 +57,13 @@ struct Job {
   double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data
   modal::MissingDirections directions = {};      ///< what an unmeasured direction is taken for
   int fit_modes = 0;                             ///< 0: chosen by the fit
-  double max_axial_depth_m = 0.0;                ///< the cutter's flute length; 0: the lobes' range alone
-  double max_spindle_speed_rad_per_s = 0.0;      ///< 0: the lobes' range alone
+  double max_axial_depth_m = 0.0;            ///< the cutter's flute length, depth <= this; 0: the lobes' range alone
+  double max_spindle_speed_rad_per_s = 0.0;  ///< min <= speed <= max; 0: the lobes' range alone
   double min_spindle_speed_rad_per_s = 0.0;
-  double depth_margin = 0.2;         ///< the recommended depth stays this fraction below the limit
-  double speed_window = 0.02;        ///< … over ± this fraction of speed
-  double max_surface_error_m = 0.0;  ///< of a finishing cut; 0: no limit
-  double max_deflection_m = 0.0;     ///< of a finishing cut; 0: no limit
+  double depth_margin = 0.2;         ///< in [0, 1); the recommended depth <= (1 - depth_margin) · limit …
+  double speed_window = 0.02;        ///< … at every speed of n (1 ± speed_window), in [0, 0.5)
+  double max_surface_error_m = 0.0;  ///< of a finishing cut: |surface error| <= this; 0: no limit
+  double max_deflection_m = 0.0;     ///< of a finishing cut: peak deflection <= this; 0: no limit
   std::vector<SpindlePoint> spindle_curve = {};
   std::vector<TestCut> cuts = {};
 

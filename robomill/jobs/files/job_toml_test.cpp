@@ -48,7 +48,7 @@ result = "chatter"
   EXPECT_DOUBLE_EQ(job.max_surface_error_m, 12e-6);
   EXPECT_DOUBLE_EQ(job.max_deflection_m, 30e-6);
   ASSERT_EQ(job.cuts.size(), 2U);
-  EXPECT_EQ(job.cuts[0].result, TestCut::Result::chatter);
+  EXPECT_EQ(job.cuts[0].result, Verdict::chatter);
   EXPECT_DOUBLE_EQ(job.cuts[1].axial_depth_m, 1.2e-3);
 }
 

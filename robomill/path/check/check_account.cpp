@@ -7,7 +7,7 @@
 
 namespace robomill::path {
 
-void BreachBook::add(const Place& place, int order, double ratio) {
+void ViolationBook::add(const Place& place, int order, double ratio) {
   const double reported = std::isfinite(ratio) ? ratio : std::numeric_limits<double>::max();
   const auto cell = std::isfinite(path_m_) ? static_cast<std::int64_t>(std::floor(path_m_ * violation_cells_per_m)) : 0;
   const std::uint64_t key = (static_cast<std::uint64_t>(cell) * 1'000'003U + std::uint64_t{place.block}) * 5U +
@@ -28,7 +28,7 @@ void BreachBook::add(const Place& place, int order, double ratio) {
       {.block = place.block, .time_s = place.time_s, .path_m = path_m_, .ratio = reported, .order = order});
 }
 
-std::vector<Violation> BreachBook::take() {
+std::vector<Violation> ViolationBook::take() {
   std::stable_sort(violations_.begin(), violations_.end(),
                    [](const Violation& a, const Violation& b) { return a.time_s < b.time_s; });
   index_.clear();
@@ -42,7 +42,7 @@ Watch::Watch(Usage& usage, double limit, double relative_tolerance, int order)
   usage.limit = limit;
 }
 
-void Watch::raise(double value, const Place& place, BreachBook& book) {
+void Watch::raise(double value, const Place& place, ViolationBook& book) {
   if (value > usage_->max) {
     usage_->max = value;
     usage_->at_s = place.time_s;

@@ -15,7 +15,7 @@ struct Place {
   std::size_t block = 0;
 };
 
-class BreachBook {
+class ViolationBook {
  public:
   static constexpr std::size_t room = 100000;
   /// Where violations that follow are met.
@@ -38,7 +38,7 @@ class Watch {
   /// @param usage  outlives the watch; its limit is set here. 0: watched without a limit
   Watch(Usage& usage, double limit, double relative_tolerance, int order);
   /// Notes a magnitude.
-  void note(double value, const Place& place, BreachBook& book) {
+  void note(double value, const Place& place, ViolationBook& book) {
     if (value <= quiet_) return;
     raise(value, place, book);
   }
@@ -46,7 +46,7 @@ class Watch {
   [[nodiscard]] double quiet() const { return quiet_; }
 
  private:
-  void raise(double value, const Place& place, BreachBook& book);
+  void raise(double value, const Place& place, ViolationBook& book);
   Usage* usage_ = nullptr;
   double bound_ = 0.0;  // what is a violation
   double quiet_ = 0.0;

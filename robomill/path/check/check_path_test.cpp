@@ -229,7 +229,7 @@ TEST(Checker, NeverReportsANumberThatIsNone) {
 }
 
 // A book holds no more than it has room for, and reports the violations in order of time.
-TEST(Checker, BoundsItsBreaches) {
+TEST(Checker, BoundsItsViolations) {
   Fixture f;
   const Vector3d up(0.0, 0.0, 1.0);
   const int blocks = 110000;

@@ -71,7 +71,7 @@ void Preview::note(double value, double most, int order, double path_m, std::vec
   if (value <= most * slack) return;
   const double cell = std::floor(path_m * cells_per_m), ratio = value / most;
   Violation& last = last_[static_cast<std::size_t>(order - 1)];
-  // Breaches of a place come in a row: the first of each row stands in the book, with the worst of it.
+  // Violations of a place come in a row: the first of each row stands in the book, with the worst of it.
   if (last.order == order && std::floor(last.path_m * cells_per_m) == cell) {
     last.ratio = std::max(last.ratio, ratio);
     return;

@@ -1,8 +1,8 @@
 import { describe, expect, it } from 'vitest';
-import type { FeedDirections, Fit, Frf, Mode, Recording } from '../documents';
+import type { Fit, Frf, Mode, Recording } from '../documents';
 import { convergenceFigure, stabilisationFigure } from './fit';
 import { breakJumps, frfFigure, prefersLogFrequency } from './frf';
-import { polarFigure, rings, toPlane } from './polar';
+import { polarFigure, rings, toPlane, type FeedDirections } from './polar';
 import { harmonics, spectrumFigure } from './spectrum';
 import { light, logTicks, plain, rpm } from './theme';
 
@@ -147,9 +147,9 @@ const recording = {
   frequency_hz: [0, 500, 1000],
   amplitude: [0, 2, null],
   peaks: [
-    { frequency_hz: 325, amplitude: 1, kind: 'tooth_passing', text: 'tooth' },
+    { frequency_hz: 325, amplitude: 1, kind: 'tooth passing', text: 'tooth' },
     { frequency_hz: 417, amplitude: 2, kind: 'chatter', text: 'mode 1' },
-    { frequency_hz: 450, amplitude: 1, kind: 'other', text: '?' },
+    { frequency_hz: 450, amplitude: 1, kind: 'unexplained', text: '?' },
   ],
 } as Recording;
 

@@ -22,7 +22,7 @@ const lobes: Lobes = {
 };
 
 function cut(result: Cut['result'], agrees: boolean | null, note = ''): Cut {
-  return { spindle_speed_rpm: 6500, axial_depth_mm: 0.8, result, predicted: 'stable', limit_mm: 1, agrees, note };
+  return { spindle_speed_rpm: 6500, axial_depth_mm: 0.8, result, predicted: 'stable', limit_depth_mm: 1, agrees, note };
 }
 
 const input = { lobes, otherLimits: [], cuts: [], recommendation: null, alternatives: [] };

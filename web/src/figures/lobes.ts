@@ -80,7 +80,7 @@ function cutText(cut: Cut): string {
     `made: ${cut.result ?? 'not stated'}`,
     `predicted: ${cut.predicted ?? 'not known'}`,
   ];
-  if (cut.limit_mm !== null) lines.push(`limit here: ${cut.limit_mm.toFixed(3)} mm`);
+  if (cut.limit_depth_mm !== null) lines.push(`limit here: ${cut.limit_depth_mm.toFixed(3)} mm`);
   if (cut.agrees !== null) lines.push(cut.agrees ? 'as predicted' : '<b>not as predicted</b>');
   if (cut.note !== '') lines.push(plain(cut.note));
   return lines.join('<br>');

@@ -25,9 +25,9 @@ function verticals(name: string, at: number[], base: number, top: number, bottom
 
 const looks: Record<Peak['kind'], { name: string; symbol: string; colour: keyof Theme }> = {
   chatter: { name: 'chatter', symbol: 'x', colour: 'chatter' },
-  cut_or_chatter: { name: 'the cut or chatter', symbol: 'diamond-open', colour: 'borderline' },
-  other: { name: 'neither', symbol: 'diamond', colour: 'borderline' },
-  tooth_passing: { name: 'tooth-passing peak', symbol: 'circle', colour: 'accent' },
+  'cut or chatter': { name: 'the cut or chatter', symbol: 'diamond-open', colour: 'borderline' },
+  unexplained: { name: 'neither', symbol: 'diamond', colour: 'borderline' },
+  'tooth passing': { name: 'tooth-passing peak', symbol: 'circle', colour: 'accent' },
   rotation: { name: 'rotation peak', symbol: 'circle-open', colour: 'muted' },
 };
 
@@ -52,11 +52,11 @@ export function spectrumFigure(recording: Recording, logarithmic: boolean, theme
       hovertemplate: `%{x:.2f}${thinSpace}Hz: %{y:.4g}${thinSpace}${unit}<extra></extra>`,
     },
   ];
-  for (const kind of ['rotation', 'tooth_passing', 'other', 'cut_or_chatter', 'chatter'] as const) {
+  for (const kind of ['rotation', 'tooth passing', 'unexplained', 'cut or chatter', 'chatter'] as const) {
     const peaks = recording.peaks.filter((peak) => peak.kind === kind);
     if (peaks.length === 0) continue;
     const look = looks[kind];
-    const named = kind !== 'rotation' && kind !== 'tooth_passing';
+    const named = kind !== 'rotation' && kind !== 'tooth passing';
     data.push({
       type: 'scatter',
       mode: named ? 'markers+text' : 'markers',

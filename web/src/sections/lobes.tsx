@@ -1,7 +1,7 @@
 // Stability lobes, over speed, over feed direction, and of some modes alone.
-import type { Agreement, Cut, FeedDirections, Lobes, Num, Report, Verdict } from '../documents';
+import type { Agreement, Cut, Lobes, Num, Plan, Verdict } from '../documents';
 import { lobesFigure, mapFigure, pairFigure } from '../figures/lobes';
-import { polarFigure } from '../figures/polar';
+import { polarFigure, type FeedDirections } from '../figures/polar';
 import { Details, Section, someOf, Table, type Column } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, significant } from '../text';
@@ -39,7 +39,7 @@ function CutsTable({ cuts }: { cuts: Cut[] }) {
         { heading: 'Axial depth (mm)', number: true, cell: (cut) => significant(cut.axial_depth_mm) },
         { heading: 'Result', cell: (cut) => <VerdictBadge verdict={cut.result} /> },
         { heading: 'Predicted', cell: (cut) => <VerdictBadge verdict={cut.predicted} /> },
-        { heading: 'Limit at this speed (mm)', number: true, cell: (cut) => fixed(cut.limit_mm, 3) },
+        { heading: 'Limit at this speed (mm)', number: true, cell: (cut) => fixed(cut.limit_depth_mm, 3) },
         { heading: 'Agrees', cell: ({ agrees }) => (agrees === null ? dash : agrees ? 'yes' : <strong>no</strong>) },
         { heading: 'Note', cell: (cut) => cut.note },
       ]}
@@ -64,12 +64,11 @@ function LimitTable({ lobes }: { lobes: Lobes }) {
   );
 }
 
-export function LobesSection({ report }: { report: Report }) {
-  const { cuts, other_limits: otherLimits, recommendation, alternatives } = report;
-  const lobes = report.lobes[0];
+export function LobesSection({ lobes, plan }: { lobes: Lobes | undefined; plan: Plan | null }) {
+  const { other_limits: otherLimits = [], cuts = [], recommended: recommendation = null, alternatives = [] } = plan ?? {};
   return (
     <Section id="lobes" heading="Stability lobes" lead="How deep the cutter may go at each spindle speed before chatter starts.">
-      {cuts.length > 0 && <AgreementSentence {...report.agreement} />}
+      {plan && cuts.length > 0 && <AgreementSentence {...plan.agreement} />}
       {lobes && (
         <>
           <Plot
@@ -100,8 +99,21 @@ export function LobesSection({ report }: { report: Report }) {
   );
 }
 
-export function FeedSection({ feed }: { feed: FeedDirections }) {
-  const { direction_deg: direction, limit_at_speed_mm: atSpeed, searched_depth_mm: searched } = feed;
+/** The rows of plan.json as curves. */
+function curvesOf({ feed_directions: rows = [], feed_direction_deg: used = null, recommended }: Plan, searched: Num): FeedDirections {
+  return {
+    direction_deg: rows.map((row) => row.feed_direction_deg),
+    lowest_limit_mm: rows.map((row) => row.lowest_limit_mm),
+    limit_at_speed_mm: recommended === null ? null : rows.map((row) => row.limit_at_speed_mm ?? null),
+    spindle_speed_rpm: recommended?.spindle_speed_rpm ?? null,
+    used_direction_deg: used,
+    searched_depth_mm: searched,
+  };
+}
+
+export function FeedSection({ plan, searched }: { plan: Plan; searched: Num }) {
+  const feed = curvesOf(plan, searched);
+  const { direction_deg: direction, limit_at_speed_mm: atSpeed } = feed;
   const columns: Column<number>[] = [
     { heading: 'Feed direction (°)', number: true, cell: (i) => fixed(direction[i]!, 0) },
     { heading: 'Lowest limit (mm)', number: true, cell: (i) => depthText(feed.lowest_limit_mm[i]!, searched) },
@@ -135,7 +147,7 @@ function lowest({ limit_mm: limit, spindle_speed_rpm: speed }: Lobes): { limit: 
   return at < 0 ? { limit: null, speed: null } : { limit: limit[at]!, speed: speed[at]! };
 }
 
-export function PairsSection({ lobes, cuts }: Pick<Report, 'lobes' | 'cuts'>) {
+export function PairsSection({ lobes, cuts }: { lobes: Lobes[]; cuts: Cut[] }) {
   const [all, ...parts] = lobes;
   return (
     <Section id="pairs" heading="Which modes matter" lead="The lobes of some modes alone show which of them set the limit.">

@@ -1,6 +1,6 @@
 // What to cut, and what keeps it from being faster.
 import type { ComponentChildren } from 'preact';
-import type { Agreement, Finishing, Recommendation, Report } from '../documents';
+import type { Agreement, Finishing, Plan, Recommendation } from '../documents';
 import { Table } from '../parts';
 import { fixed, modeName, percent, significant } from '../text';
 
@@ -101,9 +101,9 @@ function Alternatives({ cuts }: { cuts: Recommendation[] }) {
   );
 }
 
-export function RecommendationSection({ report }: { report: Report }) {
-  const { recommendation: cut, no_recommendation: none, alternatives, agreement } = report;
-  const answered = cut !== null || none !== '' || alternatives.length > 0;
+export function RecommendationSection({ plan, hasLobes }: { plan: Plan; hasLobes: boolean }) {
+  const { recommended: cut, reason = '', alternatives, agreement } = plan;
+  const answered = cut !== null || reason !== '' || alternatives.length > 0;
   if (!answered && agreement.disagree === 0) return null;
   return (
     <section id="recommendation" class="hero">
@@ -113,12 +113,12 @@ export function RecommendationSection({ report }: { report: Report }) {
         <>
           <Figures cut={cut} />
           <Why cut={cut} />
-          <p class="why">{surfaceSentence(cut, report.finishing)}</p>
+          <p class="why">{surfaceSentence(cut, plan.finishing)}</p>
         </>
       )}
       {cut === null && answered && (
         <p class="why none">
-          <strong>{report.lobes.length === 0 ? 'No answer.' : 'No safe depth.'}</strong> {none}
+          <strong>{hasLobes ? 'No safe depth.' : 'No answer.'}</strong> {reason}
         </p>
       )}
       <Alternatives cuts={alternatives} />

@@ -1,6 +1,6 @@
 // What was measured of the structure, and the modes fitted to it.
 import { useState } from 'preact/hooks';
-import type { Fit, Frf, Hit, Mode, ModeVector, Num, Owner, Report } from '../documents';
+import type { Fit, Frf, Hit, Mode, ModeVector, Num, Owner, Report, StageFile } from '../documents';
 import { convergenceFigure, stabilisationFigure } from '../figures/fit';
 import { frfFigure, prefersLogFrequency } from '../figures/frf';
 import { Bullets, Details, Section, Table, type Column } from '../parts';
@@ -210,7 +210,7 @@ export function HitsSection({ hits }: { hits: Hit[] }) {
   );
 }
 
-export function NotesSection({ notes, files }: Pick<Report, 'notes' | 'files'>) {
+export function NotesSection({ notes, files }: { notes: string[]; files: StageFile[] }) {
   return (
     <Section id="notes" heading="Notes and files" lead="What else is worth knowing, and where the numbers are.">
       <Bullets texts={notes} />
