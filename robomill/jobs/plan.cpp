@@ -148,18 +148,17 @@ void pairs(PlanResult& result, Progress& progress) {
     stability::LobesProblem problem = result.cut.problem;
     problem.keep_modes = k < modes ? std::vector<int>{k, k + 1} : std::vector<int>{k};
     const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
-    report::Lobes lobes;
-    lobes.label = k < modes ? fmt::format("modes {}–{}", k, k + 1) : fmt::format("mode {}", k);
-    if (!problem.workpiece_dynamics.modes.empty()) lobes.label += " and the workpiece's";
-    lobes.modes = problem.keep_modes;
-    lobes.spindle_speed_rad_per_s = axis;
-    lobes.searched_depth_m = options.axial_depth_m[1];
-    lobes.limit_depth_m.resize(static_cast<Eigen::Index>(limits.size()));
+    PartLimits part;
+    part.label = k < modes ? fmt::format("modes {}–{}", k, k + 1) : fmt::format("mode {}", k);
+    if (!problem.workpiece_dynamics.modes.empty()) part.label += " and the workpiece's";
+    part.modes = problem.keep_modes;
+    part.spindle_speed_rad_per_s = axis;
+    part.limit_depth_m.resize(static_cast<Eigen::Index>(limits.size()));
     for (std::size_t i = 0; i < limits.size(); ++i) {
       const bool found = limits[i].status == stability::Limit::Status::found;
-      lobes.limit_depth_m(static_cast<Eigen::Index>(i)) = found ? limits[i].axial_depth_m : report::missing;
+      part.limit_depth_m(static_cast<Eigen::Index>(i)) = found ? limits[i].axial_depth_m : report::missing;
     }
-    result.pairs.push_back(lobes);
+    result.pairs.push_back(std::move(part));
   }
 }
 

@@ -24,6 +24,14 @@
 
 namespace robomill::jobs {
 
+/// Limits of some modes alone.
+struct PartLimits {
+  std::string label = {};                        ///< "modes 1–2"
+  std::vector<int> modes = {};                   ///< from 1
+  Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing
+  Eigen::VectorXd limit_depth_m = {};            ///< length n; NaN: none up to the deepest cut of the lobes
+};
+
 /// The limit over the direction of the feed. NaN: none up to the deepest cut of the lobes.
 struct FeedDirections {
   Eigen::VectorXd direction_rad = {};     ///< length n, increasing, counter-clockwise from x of the FRFs
@@ -44,7 +52,7 @@ struct PlanResult {
   modal::ModalModel model;
   stability::LobesResult lobes;          ///< of all modes; empty where these do not describe the FRFs
   stability::UncertainLimits uncertain;  ///< samples: 0 where nothing is known to be uncertain
-  std::vector<report::Lobes> pairs;      ///< limits of modes 1–2, 3–4, …
+  std::vector<PartLimits> pairs;         ///< of modes 1–2, 3–4, …
   std::optional<FeedDirections> feed_directions;
   decision::Recommendation recommendation;
   std::optional<ForcesResult> forces;  ///< of a job that asks for them

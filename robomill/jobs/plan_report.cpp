@@ -7,8 +7,10 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/milling.hpp"
+#include "robomill/jobs/files/plan_json.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/summary.hpp"
+#include "robomill/modal/files/modes_files.hpp"
 #include "robomill/version.hpp"
 
 namespace robomill::jobs {
@@ -69,80 +71,6 @@ void add_hits(report::Report& report, const PlanResult& result) {
                            .accepted = hit.accepted,
                            .reasons = hit.reasons});
   }
-}
-
-void add_fit(report::Report& report, const PlanResult& result) {
-  report.model = result.model;
-  LimitShare share = limit_share(result);
-  report.limit_share = std::move(share.tool);
-  if (!result.cut.problem.workpiece_dynamics.modes.empty()) {
-    report.workpiece_model = result.cut.problem.workpiece_dynamics;
-    report.workpiece_limit_share = std::move(share.workpiece);
-  }
-  if (!result.fit) return;
-  const modal::FitResult& fit = *result.fit;
-  report::FitSummary summary;
-  summary.method = "hybrid";
-  summary.relative_error = fit.relative_error;
-  summary.mean_relative_error = fit.mean_relative_error;
-  summary.band_from_hz = fit.band_low_hz;
-  summary.band_to_hz = fit.band_high_hz;
-  summary.converged = fit.status == modal::FitResult::Status::converged;
-  summary.convergence = Eigen::Map<const Eigen::VectorXd>(fit.best.data(), static_cast<Eigen::Index>(fit.best.size()));
-  for (const modal::StabilisationPoint& point : fit.stabilisation) {
-    summary.stabilisation.push_back({.order = point.order,
-                                     .frequency_hz = point.frequency_hz,
-                                     .stable = point.frequency_stable && point.damping_stable && point.vector_stable});
-  }
-  report.fit = std::move(summary);
-}
-
-report::BoundaryKind to_report(stability::BifurcationType kind) {
-  switch (kind) {
-    case stability::BifurcationType::flip:
-      return report::BoundaryKind::flip;
-    case stability::BifurcationType::fold:
-      return report::BoundaryKind::fold;
-    case stability::BifurcationType::hopf:
-      break;
-  }
-  return report::BoundaryKind::hopf;
-}
-
-void add_lobes(report::Report& report, const PlanResult& result) {
-  const stability::LobesResult& lobes = result.lobes;
-  report::Lobes all;
-  all.label = "all modes";
-  all.spindle_speed_rad_per_s = lobes.spindle_speed_rad_per_s;
-  all.searched_depth_m = result.cut.options.axial_depth_m[1];
-  all.limit_depth_m.resize(static_cast<Eigen::Index>(lobes.limit.size()));
-  for (std::size_t i = 0; i < lobes.limit.size(); ++i) {
-    const bool found = lobes.limit[i].status == stability::Limit::Status::found;
-    all.limit_depth_m(static_cast<Eigen::Index>(i)) = found ? lobes.limit[i].axial_depth_m : report::missing;
-  }
-  for (const stability::BoundaryPoint& point : lobes.boundary) {
-    all.boundary.push_back({.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
-                            .axial_depth_m = point.axial_depth_m,
-                            .chatter_frequency_hz = point.chatter_frequency_hz,
-                            .kind = to_report(point.kind),
-                            .mode = point.mode});
-  }
-  if (result.uncertain.samples > 0) {
-    const auto shown = [](const Eigen::VectorXd& depth_m) -> Eigen::VectorXd {
-      return depth_m.unaryExpr([](double depth) { return std::isfinite(depth) ? depth : report::missing; });
-    };
-    all.band.label = fmt::format("5 to 95 % of {} samples", result.uncertain.samples);
-    all.band.spindle_speed_rad_per_s = result.uncertain.spindle_speed_rad_per_s;
-    all.band.low_m = shown(result.uncertain.limit_5_percent_m);
-    all.band.high_m = shown(result.uncertain.limit_95_percent_m);
-  }
-  if (lobes.spectral_radius.size() > 0) {
-    all.map_speed_rad_per_s = lobes.spindle_speed_rad_per_s;
-    all.map_depth_m = lobes.axial_depth_m;
-    all.spectral_radius = lobes.spectral_radius;
-  }
-  report.lobes.push_back(std::move(all));
-  report.lobes.insert(report.lobes.end(), result.pairs.begin(), result.pairs.end());
 }
 
 DepthCurve spindle_curve(const PlanResult& result, const std::string& label, bool torque) {
@@ -243,8 +171,12 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   add_frfs(report, result);
   if (result.prediction) add_prediction(report, *result.prediction);
   add_hits(report, result);
-  add_fit(report, result);
-  if (result.has_lobes()) add_lobes(report, result);
+  report.plan = io::dump(decision_json(result));
+  report.modes = modes_json(result);
+  const modal::ModalModel& workpiece = result.cut.problem.workpiece_dynamics;
+  if (!workpiece.modes.empty()) report.workpiece_modes = modal::modes_json(workpiece);
+  if (result.has_lobes()) report.lobes = lobes_json(result);
+  if (!result.recordings.empty()) report.recordings = io::dump(recordings_json(result));
   if (result.forces) report.forces = with_limits(forces_report(*result.forces), result);
   if (result.path) report.smooth = smooth_report(*result.path);
   report.files = files;

@@ -108,10 +108,10 @@ TEST_F(Plan, ModesOfTheWorkpieceAreNotThoseOfTheTool) {
       EXPECT_EQ(json["lobes"]["limit"][i]["mode_of"], to_string(limit.mode.of));
     }
     const auto page = nlohmann::json::parse(report::report_json(make_report(result, {})));
-    ASSERT_EQ(page["modes"].size(), 11U);
-    EXPECT_EQ(page["modes"][9]["mode"], 2);
-    EXPECT_EQ(page["modes"][9]["mode_of"], "workpiece");
-    EXPECT_EQ(page["modes"][9]["frequency_hz"], 460);
+    EXPECT_EQ(page["modes"]["modes"].size(), 8U);
+    ASSERT_EQ(page["workpiece_modes"]["modes"].size(), 3U);
+    EXPECT_EQ(page["workpiece_modes"]["modes"][1]["frequency_hz"], 460);
+    EXPECT_EQ(page["plan"]["limit_share"]["workpiece"].size(), 3U);
   }
 }
 

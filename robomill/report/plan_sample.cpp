@@ -1,6 +1,7 @@
 #include "robomill/report/plan_sample.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -11,21 +12,57 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/modal/files/modes_files.hpp"
+#include "robomill/modal/fit.hpp"
 #include "robomill/report/json.hpp"
 
 namespace robomill::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using modal::Axis;
+using modal::Dof;
+using std::complex;
 constexpr int teeth = 3;
+constexpr double searched_mm = 3.0;
 
-double limit_at(const Lobes& lobes, double speed_rad_per_s) {
-  Eigen::Index nearest = 0;
-  (lobes.spindle_speed_rad_per_s.array() - speed_rad_per_s).abs().minCoeff(&nearest);
-  return lobes.limit_depth_m[nearest];
+/// Limit depth over 241 spindle speeds, in rpm and mm; NaN: none up to searched_mm.
+struct LimitCurve {
+  Eigen::VectorXd rpm = Eigen::VectorXd::LinSpaced(241, 4000.0, 16000.0);
+  Eigen::VectorXd limit_mm = Eigen::VectorXd::Constant(241, missing);
+  std::vector<double> chatter_hz = std::vector<double>(241, missing);
+};
+
+int mode_at(double chatter_hz) {
+  return chatter_hz > 541.5 ? 8 : chatter_hz > 300.0 ? 7 : chatter_hz > 40.0 ? 4 : 1;
 }
 
-Json cuts_json(const Lobes& lobes) {
+/// Of the feed direction alone: b = -1 / (2 Ks Re G N*) at each chatter frequency, its speeds from the phase.
+/// @param keep  modes from 1; empty: all
+LimitCurve limit_curve(const std::vector<int>& keep) {
+  const double specific_force_n_per_m2 = 712e6;
+  const double teeth_in_cut = 0.09;
+  const modal::ModalModel model = sample_model();
+  LimitCurve out;
+  for (double f = 8.0; f < 900.0; f += 0.02) {
+    const complex<double> g = sample_receptance(model, 0, 0, f, keep) + sample_receptance(model, 1, 1, f, keep);
+    if (g.real() >= 0.0) continue;
+    const double depth_mm = -1.0 / (2.0 * specific_force_n_per_m2 * teeth_in_cut * g.real()) / units::mm;
+    if (depth_mm > searched_mm) continue;
+    const double waves = 0.5 + std::atan2(g.imag(), g.real()) / std::numbers::pi;
+    for (int lobe = 0; lobe < 40; ++lobe) {
+      const double at = (60.0 * f / (teeth * (lobe + waves - std::floor(waves))) - 4000.0) / 50.0;
+      if (!(at >= 0.0 && at <= 240.0)) continue;
+      const auto index = std::lround(at);
+      if (out.limit_mm[index] <= depth_mm) continue;
+      out.limit_mm[index] = depth_mm;
+      out.chatter_hz[static_cast<std::size_t>(index)] = f;
+    }
+  }
+  return out;
+}
+
+Json cuts_json(const LimitCurve& lobes) {
   const std::vector<std::tuple<double, double, const char*, const char*>> made = {
       {5000, 0.5, nullptr, ""},
       {5000, 0.9, nullptr, ""},
@@ -41,7 +78,7 @@ Json cuts_json(const Lobes& lobes) {
       {15000, 1.3, "borderline", ""}};
   Json cuts = Json::array();
   for (const auto& [rpm, depth_mm, result, note] : made) {
-    const double limit_mm = limit_at(lobes, rpm * units::rpm) / units::mm;
+    const double limit_mm = lobes.limit_mm[std::lround((rpm - 4000.0) / 50.0)];
     const Json predicted = depth_mm > limit_mm ? "chatter" : "stable";
     const Json seen = result == nullptr ? Json() : Json(result);
     const bool compared = seen == "stable" || seen == "chatter";
@@ -57,14 +94,14 @@ Json cuts_json(const Lobes& lobes) {
 }
 
 /// The depth 20 % below the limit at every speed, the fastest first.
-std::vector<Json> recommendations(const Lobes& lobes) {
+std::vector<Json> recommendations(const LimitCurve& lobes) {
   std::vector<Json> found;
-  for (Eigen::Index i = 5; i + 5 < lobes.limit_depth_m.size(); ++i) {
-    double limit = lobes.searched_depth_m;
-    for (Eigen::Index j = i - 5; j <= i + 5; ++j) limit = std::fmin(limit, lobes.limit_depth_m[j]);
-    limit = std::min(limit, (3.4 - 1.6 * static_cast<double>(i) / 240.0) * units::mm / 0.8);
-    const double rpm = lobes.spindle_speed_rad_per_s[i] / units::rpm;
-    const double depth_mm = 0.8 * limit / units::mm;
+  for (Eigen::Index i = 5; i + 5 < lobes.limit_mm.size(); ++i) {
+    double limit_mm = searched_mm;
+    for (Eigen::Index j = i - 5; j <= i + 5; ++j) limit_mm = std::fmin(limit_mm, lobes.limit_mm[j]);
+    limit_mm = std::min(limit_mm, (3.4 - 1.6 * static_cast<double>(i) / 240.0) / 0.8);
+    const double rpm = lobes.rpm[i];
+    const double depth_mm = 0.8 * limit_mm;
     const double feed_mm_per_min = 0.01 * teeth * rpm;
     found.push_back({{"spindle_speed_rpm", rpm},
                      {"axial_depth_mm", depth_mm},
@@ -83,7 +120,8 @@ std::vector<Json> recommendations(const Lobes& lobes) {
                      {"mode", 8},
                      {"mode_of", "tool"}});
   }
-  std::ranges::sort(found, std::greater<>(), [](const Json& cut) { return cut["removal_rate_mm3_per_s"].get<double>(); });
+  std::ranges::sort(found, std::greater<>(),
+                    [](const Json& cut) { return cut["removal_rate_mm3_per_s"].get<double>(); });
   return found;
 }
 
@@ -103,10 +141,137 @@ Json fact(const char* label, const std::string& value) {
   return {{"label", label}, {"value", value}};
 }
 
+/// The lobes of two modes each.
+Json pairs_json(const std::string& text) {
+  Json list = Json::array();
+  for (int k = 1; k < 8; k += 2) {
+    const LimitCurve part = limit_curve({k, k + 1});
+    const std::string label = "modes " + std::to_string(k) + "–" + std::to_string(k + 1);
+    list.push_back({{"label", text.empty() ? label : text},
+                    {"modes", {k, k + 1}},
+                    {"spindle_speed_rpm", numbers(part.rpm)},
+                    {"limit_mm", numbers(part.limit_mm)}});
+  }
+  return list;
+}
+
 }  // namespace
 
-std::string sample_plan(const Lobes& lobes, const std::string& text) {
+modal::ModalModel sample_model() {
+  struct Row {
+    double frequency_hz, damping_percent;
+    complex<double> left_x, left_y, right_x, right_y;
+  };
+  const std::array<Row, 8> rows = {
+      {{17.40, 1.27, {-0.52, 0.88}, {-92.57, 23.71}, {-1.13, -18.25}, {-8.9, 93.36}},
+       {19.57, 2.23, {-41.87, 24.01}, {-0.025, -0.49}, {-118.74, 168.83}, {35.74, -40.36}},
+       {49.86, 10, {51.08, 147.75}, {-0.47, 0.45}, {-149.35, 15.18}, {12.66, -25.99}},
+       {53.51, 10, {0.66, -0.09}, {-94.27, -136.68}, {-34.35, -57.71}, {14.96, -155.42}},
+       {57.77, 10, {-0.3, -0.77}, {-27.26, 163.60}, {15.67, -53.87}, {-58.20, -145.84}},
+       {67.26, 10, {-105.83, -82.49}, {0.51, 0.49}, {-93.87, 88.52}, {12.15, -16.74}},
+       {540.08, 0.68, {-0.81, 0.61}, {-317.91, -148.16}, {19.27, -26.45}, {173.44, 303.95}},
+       {543.67, 2.1, {-246.87, 215.31}, {0.24, -0.32}, {-269.37, 275.61}, {36.20, 7.45}}}};
+  modal::ModalModel model;
+  model.excitations = {Dof{0, Axis::x}, Dof{0, Axis::y}};
+  model.responses = model.excitations;
+  for (const Row& row : rows) {
+    modal::Mode mode;
+    mode.frequency_hz = row.frequency_hz;
+    mode.damping_ratio = row.damping_percent / 100.0;
+    mode.left = Eigen::Vector2cd(row.left_x, row.left_y) * 1e-4;
+    mode.right = Eigen::Vector2cd(row.right_x, row.right_y) * 1e-4;
+    mode.frequency_std_hz = 2e-4 * mode.frequency_hz;
+    mode.damping_ratio_std = 0.01 * mode.damping_ratio;
+    model.modes.push_back(mode);
+  }
+  return model;
+}
+
+complex<double> sample_receptance(const modal::ModalModel& model, int response, int excitation, double frequency_hz,
+                                  const std::vector<int>& keep) {
+  const complex<double> s(0.0, 2.0 * std::numbers::pi * frequency_hz);
+  complex<double> sum = 0.0;
+  for (std::size_t k = 0; k < model.modes.size(); ++k) {
+    if (!keep.empty() && std::ranges::find(keep, static_cast<int>(k) + 1) == keep.end()) continue;
+    const modal::Mode& mode = model.modes[k];
+    const double omega = 2.0 * std::numbers::pi * mode.frequency_hz;
+    const complex<double> pole(-mode.damping_ratio * omega, omega * std::sqrt(1.0 - std::pow(mode.damping_ratio, 2)));
+    const complex<double> residue = mode.right[response] * mode.left[excitation];
+    sum += residue / (s - pole) + std::conj(residue) / (s - std::conj(pole));
+  }
+  return sum;
+}
+
+std::string sample_modes() {
+  modal::FitResult fit;
+  fit.model = sample_model();
+  fit.relative_error = 0.0213;
+  fit.mean_relative_error = 0.0187;
+  fit.band_low_hz = 5.0;
+  fit.band_high_hz = 1000.0;
+  fit.status = modal::FitResult::Status::converged;
+  for (int i = 0; i < 24; ++i) fit.best.push_back(0.0187 + 0.6 * std::exp(-0.45 * i));
+  Random random(3);
+  const auto add = [&](int order, double frequency_hz, bool stable) {
+    fit.stabilisation.push_back({.order = order,
+                                 .frequency_hz = frequency_hz,
+                                 .damping_ratio = 0.02,
+                                 .frequency_stable = stable,
+                                 .damping_stable = stable,
+                                 .vector_stable = stable});
+  };
+  for (int order = 4; order <= 40; order += 2) {
+    for (const modal::Mode& mode : fit.model.modes) {
+      const bool stable = order > 8 + static_cast<int>(mode.damping_ratio * 100.0);
+      add(order, mode.frequency_hz * (1.0 + (stable ? 1e-3 : 3e-2) * random.normal()), stable);
+    }
+    for (int k = 0; k < order / 6; ++k) add(order, random.uniform(5.0, 1000.0), false);
+  }
+  return modal::modes_json(fit);
+}
+
+std::string sample_lobes() {
+  const LimitCurve all = limit_curve({});
+  Json limit = Json::array();
+  Json boundary = Json::array();
+  for (Eigen::Index i = 0; i < all.rpm.size(); ++i) {
+    const double chatter_hz = all.chatter_hz[static_cast<std::size_t>(i)];
+    Json row = {{"spindle_speed_rpm", all.rpm[i]}, {"axial_depth_mm", number(all.limit_mm[i])}};
+    if (std::isfinite(chatter_hz)) {
+      row["chatter_frequency_hz"] = chatter_hz;
+      row["kind"] = i % 40 == 0 ? "flip" : "hopf";
+      row["mode"] = mode_at(chatter_hz);
+      row["mode_of"] = "tool";
+      boundary.push_back(row);
+    }
+    limit.push_back(std::move(row));
+  }
+  Json map = Json::array();
+  Eigen::VectorXd map_mm = Eigen::VectorXd::LinSpaced(31, 0.0, searched_mm);
+  for (const double depth_mm : map_mm) {
+    Json row = Json::array();
+    for (Eigen::Index i = 0; i < all.rpm.size(); ++i) {
+      const double limit_mm = std::isfinite(all.limit_mm[i]) ? all.limit_mm[i] : 3.2;
+      row.push_back(std::sqrt(0.4 + 0.6 * depth_mm / limit_mm));
+    }
+    map.push_back(std::move(row));
+  }
+  const Json lobes = {{"spindle_speed_rpm", numbers(all.rpm)},
+                      {"axial_depth_mm", numbers(map_mm)},
+                      {"spectral_radius", std::move(map)},
+                      {"boundary", std::move(boundary)},
+                      {"limit", std::move(limit)},
+                      {"uncertainty",
+                       {{"samples", 200},
+                        {"spindle_speed_rpm", numbers(all.rpm)},
+                        {"limit_5_percent_mm", numbers(0.9 * all.limit_mm)},
+                        {"limit_95_percent_mm", numbers(1.15 * all.limit_mm)}}}};
+  return lobes.dump();
+}
+
+std::string sample_plan(const std::string& text) {
   const auto said = [&](const char* own) { return text.empty() ? std::string(own) : text; };
+  const LimitCurve lobes = limit_curve({});
   const std::vector<Json> found = recommendations(lobes);
   Json recommended = found.front();
   recommended["limited_by"] = said("mode 8, chatter");
@@ -132,23 +297,26 @@ std::string sample_plan(const Lobes& lobes, const std::string& text) {
     return std::ranges::count_if(cuts, [&](const Json& cut) { return cut["agrees"] == agrees; });
   };
   const Json plan = {
-      {"facts", Json::array({fact("Cutter", said("3 teeth, 12 mm, flat end")), fact("Cut", "up-milling, 1.8 mm radial depth"),
-                             fact("Feed", "0.01 mm per tooth, towards 0°"), fact("Material", "Kt 712 N/mm², Kr 287 N/mm²"),
-                             fact("Speeds", "4 000 to 16 000 rpm")})},
+      {"facts",
+       Json::array({fact("Cutter", said("3 teeth, 12 mm, flat end")), fact("Cut", "up-milling, 1.8 mm radial depth"),
+                    fact("Feed", "0.01 mm per tooth, towards 0°"), fact("Material", "Kt 712 N/mm², Kr 287 N/mm²"),
+                    fact("Speeds", "4 000 to 16 000 rpm")})},
       {"agreement", {{"agree", count(true)}, {"disagree", count(false)}, {"not_compared", count(nullptr)}}},
       {"recommended", std::move(recommended)},
       {"alternatives", std::move(alternatives)},
       {"finishing", {{"max_surface_error_um", nullptr}, {"max_deflection_um", nullptr}}},
-      {"other_limits",
-       Json::array({{{"label", said("spindle torque")},
-                     {"spindle_speed_rpm", std::move(torque_rpm)},
-                     {"axial_depth_mm", std::move(torque_mm)}}})},
+      {"other_limits", Json::array({{{"label", said("spindle torque")},
+                                     {"spindle_speed_rpm", std::move(torque_rpm)},
+                                     {"axial_depth_mm", std::move(torque_mm)}}})},
+      {"pairs", pairs_json(text)},
+      {"limit_share", {{"tool", {0.03, 0.02, 0.01, 0.02, 0.02, 0.01, 0.31, 0.58}}, {"workpiece", Json::array()}}},
       {"cuts", std::move(cuts)},
       {"feed_direction_deg", 0},
       {"feed_directions", feed_directions_json()},
       {"warnings", Json::array({said("The measured model is not passive: Im H_yy > 0 on 46 % of lines.")})},
-      {"notes", Json::array({said("The lobes on this page come from a formula for the feed direction alone; they serve to "
-                                  "look at the page.")})}};
+      {"notes",
+       Json::array({said("The lobes on this page come from a formula for the feed direction alone; they serve to "
+                         "look at the page.")})}};
   return plan.dump();
 }
 
@@ -170,22 +338,22 @@ std::string sample_recordings(const std::string& text) {
   const auto peak = [](double at_hz, double height, const char* kind, const std::string& what) -> Json {
     return {{"frequency_hz", at_hz}, {"amplitude", height}, {"kind", kind}, {"text", what}};
   };
-  const Json recordings = Json::array(
-      {{{"file", said("cut_6500_08.csv")},
-        {"spindle_speed_rpm", 6500},
-        {"teeth", teeth},
-        {"rotation_hz", rotation_hz},
-        {"tooth_passing_hz", teeth * rotation_hz},
-        {"axial_depth_mm", 0.8},
-        {"amplitude_unit", "m/s²"},
-        {"frequency_hz", std::move(frequency)},
-        {"amplitude", std::move(amplitude)},
-        {"peaks", Json::array({peak(325.0, 1.85, "tooth passing", said("3 × rotation: tooth passing")),
-                               peak(667.0, 5.1, "chatter", "chatter, mode 1: 6 × rotation + 17.0 Hz"),
-                               peak(991.98, 3.4, "chatter", "chatter, mode 1: 9 × rotation + 17.0 Hz"),
-                               peak(108.33, 0.5, "rotation", "rotation")})},
-        {"verdict", "chatter"},
-        {"reason", said("Two peaks above the tooth-passing line stand between the harmonics")}}});
+  const Json recordings =
+      Json::array({{{"file", said("cut_6500_08.csv")},
+                    {"spindle_speed_rpm", 6500},
+                    {"teeth", teeth},
+                    {"rotation_hz", rotation_hz},
+                    {"tooth_passing_hz", teeth * rotation_hz},
+                    {"axial_depth_mm", 0.8},
+                    {"amplitude_unit", "m/s²"},
+                    {"frequency_hz", std::move(frequency)},
+                    {"amplitude", std::move(amplitude)},
+                    {"peaks", Json::array({peak(325.0, 1.85, "tooth passing", said("3 × rotation: tooth passing")),
+                                           peak(667.0, 5.1, "chatter", "chatter, mode 1: 6 × rotation + 17.0 Hz"),
+                                           peak(991.98, 3.4, "chatter", "chatter, mode 1: 9 × rotation + 17.0 Hz"),
+                                           peak(108.33, 0.5, "rotation", "rotation")})},
+                    {"verdict", "chatter"},
+                    {"reason", said("Two peaks above the tooth-passing line stand between the harmonics")}}});
   return recordings.dump();
 }
 

@@ -22,24 +22,6 @@ void validate_frfs(const Report& report) {
   }
 }
 
-void validate_lobes(const Report& report) {
-  for (std::size_t k = 0; k < report.lobes.size(); ++k) {
-    const Lobes& lobes = report.lobes[k];
-    require_axis(member("lobes", k, "spindle_speed_rad_per_s"), lobes.spindle_speed_rad_per_s);
-    require_length(member("lobes", k, "limit_depth_m"), lobes.limit_depth_m.size(),
-                   lobes.spindle_speed_rad_per_s.size(), false);
-    require_axis(member("lobes", k, "band.spindle_speed_rad_per_s"), lobes.band.spindle_speed_rad_per_s);
-    for (const Eigen::VectorXd* side : {&lobes.band.low_m, &lobes.band.high_m}) {
-      require_length(member("lobes", k, "band"), side->size(), lobes.band.spindle_speed_rad_per_s.size(), false);
-    }
-    require_axis(member("lobes", k, "map_speed_rad_per_s"), lobes.map_speed_rad_per_s);
-    require_axis(member("lobes", k, "map_depth_m"), lobes.map_depth_m);
-    const std::string map = member("lobes", k, "spectral_radius");
-    require_length(map + " columns", lobes.spectral_radius.cols(), lobes.map_speed_rad_per_s.size(), false);
-    require_length(map + " rows", lobes.spectral_radius.rows(), lobes.map_depth_m.size(), false);
-  }
-}
-
 /// What the drawing needs; the rest is the assembly's own business.
 void validate_segments(const std::string& list, const std::vector<coupling::Segment>& segments) {
   for (std::size_t k = 0; k < segments.size(); ++k) {
@@ -82,16 +64,6 @@ void validate_part(const char* name, const std::optional<Part>& part) {
 void Report::validate() const {
   if (prediction) validate_prediction(*prediction);
   validate_frfs(*this);
-  if (model) {
-    model->validate();
-    require_length("limit_share", limit_share.size(), static_cast<Eigen::Index>(model->modes.size()), true);
-  }
-  if (workpiece_model) {
-    workpiece_model->validate();
-    require_length("workpiece_limit_share", workpiece_limit_share.size(),
-                   static_cast<Eigen::Index>(workpiece_model->modes.size()), true);
-  }
-  validate_lobes(*this);
   validate_part("forces.", forces);
   validate_part("smooth.", smooth);
   validate_part("monitor.", monitor);

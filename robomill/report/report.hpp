@@ -8,8 +8,6 @@
 #include "robomill/base/export.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/modal/frf.hpp"
-#include "robomill/modal/mode_id.hpp"
-#include "robomill/modal/modes.hpp"
 #include "robomill/report/fact.hpp"
 #include "robomill/report/forces.hpp"
 #include "robomill/report/monitor.hpp"
@@ -66,57 +64,6 @@ struct HitRow {
   std::vector<std::string> reasons = {};  ///< why it was rejected, or what was noticed
 };
 
-/// One pole of one model order in a stabilisation diagram.
-struct StabilisationPole {
-  int order = 0;
-  double frequency_hz = 0.0;  ///< [Hz]
-  bool stable = false;        ///< frequency, damping and mode shape hardly moved since the order below
-};
-
-/// How the modes came out of the FRFs.
-struct FitSummary {
-  std::string method = {};               ///< "hybrid", "pso", "lscf"
-  double relative_error = missing;       ///< ‖H_fit - H‖ / ‖H‖ over the band, all FRFs together
-  double mean_relative_error = missing;  ///< mean over lines and FRFs of |H_fit - H| / |H|
-  double band_from_hz = missing;         ///< [Hz]
-  double band_to_hz = missing;           ///< [Hz]
-  bool converged = true;
-  Eigen::VectorXd convergence = {};  ///< best objective after each iteration; empty where the method has none
-  std::vector<StabilisationPole> stabilisation = {};  ///< empty where the method has none
-};
-
-enum class BoundaryKind { hopf, flip, fold };
-
-/// A point of the stability boundary.
-struct BoundaryPoint {
-  double spindle_speed_rad_per_s = 0.0;
-  double axial_depth_m = 0.0;
-  double chatter_frequency_hz = missing;
-  BoundaryKind kind = BoundaryKind::hopf;
-  modal::ModeId mode = {};
-};
-
-/// Where the limit lies with all that is not known exactly.
-struct LimitBand {
-  std::string label = {};                        ///< "5 to 95 % of 200 samples"
-  Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing; empty where there is none
-  Eigen::VectorXd low_m = {}, high_m = {};       ///< length n; NaN: beyond searched_depth_m
-};
-
-/// Stability lobes of all modes or of some.
-struct Lobes {
-  std::string label = {};                        ///< "all modes", "modes 1–2"
-  std::vector<int> modes = {};                   ///< from 1; empty: all
-  Eigen::VectorXd spindle_speed_rad_per_s = {};  ///< length n, increasing
-  Eigen::VectorXd limit_depth_m = {};            ///< length n, lowest unstable depth; NaN: none up to searched_depth_m
-  double searched_depth_m = missing;             ///< the deepest that was looked at
-  LimitBand band = {};
-  std::vector<BoundaryPoint> boundary = {};
-  Eigen::VectorXd map_speed_rad_per_s = {};  ///< length n_s, increasing; the next three are empty where there is no map
-  Eigen::VectorXd map_depth_m = {};          ///< length n_d, increasing
-  Eigen::MatrixXd spectral_radius = {};      ///< n_d x n_s
-};
-
 /// A file that a stage wrote beside the report.
 struct StageFile {
   std::string stage, file, description;
@@ -124,23 +71,19 @@ struct StageFile {
 
 struct Report {
   std::string title = "Cutting conditions without chatter";
-  std::string created = {};     ///< "31 July 2026, robomill 0.1.0"
-  std::string summary = {};     ///< in lines of text, for where no script runs
-  std::string plan = {};        ///< of plan.json what is no stage's document; empty: none
-  std::string recordings = {};  ///< of test cuts, a JSON array; empty: none
+  std::string created = {};          ///< "31 July 2026, robomill 0.1.0"
+  std::string summary = {};          ///< in lines of text, for where no script runs
+  std::string plan = {};             ///< of plan.json what is no stage's document; empty: none
+  std::string recordings = {};       ///< of test cuts, a JSON array; empty: none
+  std::string modes = {};            ///< modes.json; empty: none
+  std::string workpiece_modes = {};  ///< the same, of a part that vibrates too
+  std::string lobes = {};            ///< lobes.json; empty: none
 
   std::optional<Prediction> prediction = {};
   Eigen::VectorXd frf_frequency_hz = {};  ///< length n, increasing
   std::vector<FrfPlot> frfs = {};
   std::vector<HitRow> hits = {};
 
-  std::optional<modal::ModalModel> model = {};
-  Eigen::VectorXd limit_share = {};  ///< one a mode, in [0, 1]: its share in the limit; empty where unknown
-  std::optional<modal::ModalModel> workpiece_model = {};  ///< of a part that vibrates too
-  Eigen::VectorXd workpiece_limit_share = {};
-  std::optional<FitSummary> fit = {};
-
-  std::vector<Lobes> lobes = {};  ///< the first is the one that counts: all modes
   std::optional<Forces> forces = {};
   std::optional<Smooth> smooth = {};
   std::optional<MonitorRun> monitor = {};

@@ -18,11 +18,10 @@ int main(int argc, char** argv) {
     const std::string evil =
         "</script><script>throw new Error('escaped')</script><img src=x onerror=alert(1)><!--<script>";
     report.title = evil;
-    report.plan = robomill::report::sample_plan(report.lobes.front(), evil);
+    report.plan = robomill::report::sample_plan(evil);
     report.recordings = robomill::report::sample_recordings(evil);
     report.prediction->holder_file = evil;
     report.prediction->notes = {evil};
-    report.lobes.back().label = evil;
     report.forces->facts = {{evil, evil}};
     report.forces->warnings = {evil};
     report.forces->notes = {evil};

@@ -63,15 +63,30 @@ export interface Frf {
 /** A complex number by degree of freedom. */
 export type ModeVector = Record<string, [number, number]>;
 
-export interface Mode {
-  mode: number;
-  mode_of: Owner;
+/** modes.json; fit and what follows only of modes that were fitted. */
+export interface ModesDocument {
+  modes: {
+    frequency_hz: number;
+    damping_ratio: number;
+    left: ModeVector;
+    right: ModeVector;
+    std: { frequency_hz: Num; damping_ratio: Num };
+  }[];
+  fit?: {
+    relative_error: Num;
+    mean_relative_error: Num;
+    converged: boolean;
+    band_hz: [Num, Num];
+  };
+  convergence?: { best: Num[] };
+  stabilisation?: Pole[];
+}
+
+/** A pole of one model order. */
+export interface Pole {
+  order: number;
   frequency_hz: number;
-  damping_ratio: number;
-  std: { frequency_hz: Num; damping_ratio: Num };
-  left: ModeVector;
-  right: ModeVector;
-  limit_share: Num;
+  stable: boolean; // frequency, damping and mode shape hardly moved since the order below
 }
 
 export interface Hit {
@@ -124,33 +139,32 @@ export interface Assembly {
   notes: string[];
 }
 
-export interface Fit {
-  method: string;
-  relative_error: Num;
-  mean_relative_error: Num;
-  band_from_hz: Num;
-  band_to_hz: Num;
-  converged: boolean;
-  convergence: Num[];
-  stabilisation: { order: number[]; frequency_hz: number[]; stable: boolean[] } | null;
+/** A row of lobes.json: a point where a cut begins to be unstable. */
+export interface BoundaryPoint {
+  spindle_speed_rpm: number;
+  axial_depth_mm: Num; // of a limit, null: none up to the deepest cut that was looked at
+  chatter_frequency_hz?: Num;
+  kind?: Kind;
+  mode?: Num;
+  mode_of?: Owner | null;
 }
 
-export interface Lobes {
+/** lobes.json */
+export interface LobesDocument {
+  spindle_speed_rpm: number[];
+  axial_depth_mm: number[]; // of the map; its last is the deepest cut that was looked at
+  spectral_radius?: Num[][]; // a row a depth
+  boundary: BoundaryPoint[];
+  limit: BoundaryPoint[];
+  uncertainty?: { samples: number; spindle_speed_rpm: number[]; limit_5_percent_mm: Num[]; limit_95_percent_mm: Num[] };
+}
+
+/** The limit with some of the modes alone. */
+export interface PartLimits {
   label: string;
   modes: number[];
   spindle_speed_rpm: number[];
   limit_mm: Num[];
-  searched_depth_mm: Num;
-  band: { label: string; spindle_speed_rpm: number[]; low_mm: Num[]; high_mm: Num[] } | null;
-  boundary: {
-    spindle_speed_rpm: number[];
-    axial_depth_mm: number[];
-    chatter_frequency_hz: Num[];
-    kind: Kind[];
-    mode: Num[];
-    mode_of: (Owner | null)[];
-  };
-  map: { spindle_speed_rpm: number[]; axial_depth_mm: number[]; spectral_radius: Num[][] } | null;
 }
 
 export interface DepthCurve {
@@ -191,6 +205,8 @@ export interface Plan {
   reason?: string; // why nothing is recommended
   finishing: Finishing;
   other_limits: DepthCurve[];
+  pairs: PartLimits[];
+  limit_share: { tool: Num[]; workpiece: Num[] }; // empty: no limit was found
   cuts: Cut[];
   feed_direction_deg?: Num;
   feed_directions?: FeedDirection[];
@@ -496,9 +512,9 @@ export interface Report {
   assembly: Assembly | null;
   frfs: Frf[];
   hits: Hit[];
-  modes: Mode[];
-  fit: Fit | null;
-  lobes: Lobes[];
+  modes: ModesDocument | null;
+  workpiece_modes: ModesDocument | null;
+  lobes: LobesDocument | null;
   forces: Forces | null;
   smooth: Smooth | null;
   monitor: Monitor | null;

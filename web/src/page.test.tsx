@@ -23,9 +23,9 @@ function empty(): Report {
     assembly: null,
     frfs: [],
     hits: [],
-    modes: [],
-    fit: null,
-    lobes: [],
+    modes: null,
+    workpiece_modes: null,
+    lobes: null,
     forces: null,
     smooth: null,
     monitor: null,
@@ -89,7 +89,7 @@ it('shows on the card what a machinist sets; the surface is limited in finishing
 });
 
 it('says whose mode it is', () => {
-  report.modes.push({ ...report.modes[7]!, mode_of: 'workpiece' });
+  report.workpiece_modes = report.modes;
   Object.assign(report.plan!.recommended!, { mode: 8, mode_of: 'workpiece', limited_by: '' });
   expect(page()).toContain('Limited by <strong>mode 8 of the workpiece');
   expect(page()).toContain('>8 (workpiece)<');

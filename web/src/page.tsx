@@ -10,6 +10,7 @@ import { RecommendationSection } from './sections/recommendation';
 import { RecordingsSection } from './sections/recordings';
 import { SmoothSection } from './sections/smooth';
 import { FrfSection, HitsSection, ModesSection, NotesSection } from './sections/structure';
+import { lobesOf, modesOf } from './views';
 
 interface Entry {
   id: string; // of the section's element
@@ -18,19 +19,21 @@ interface Entry {
 }
 
 function entries(report: Report): Entry[] {
-  const { plan, monitor, calibration, lobes, forces, smooth, assembly, frfs, modes, fit, recordings, hits, files } = report;
-  const { cuts = [], feed_directions: feed = [], notes = [] } = plan ?? {};
+  const { plan, monitor, calibration, forces, smooth, assembly, frfs, recordings, hits, files } = report;
+  const { cuts = [], pairs = [], feed_directions: feed = [], notes = [] } = plan ?? {};
+  const lobes = report.lobes && lobesOf(report.lobes);
+  const modes = modesOf(report);
   const all: Entry[] = [
     { id: 'monitor', name: 'Monitor', content: monitor && <MonitorSection monitor={monitor} /> },
     { id: 'calibration', name: 'Calibration', content: calibration && <CalibrationSection calibration={calibration} /> },
-    { id: 'lobes', name: 'Lobes', content: lobes.length + cuts.length > 0 && <LobesSection lobes={lobes[0]} plan={plan} /> },
-    { id: 'feed', name: 'Feed direction', content: plan && feed.length > 0 && <FeedSection plan={plan} searched={lobes[0]?.searched_depth_mm ?? null} /> },
+    { id: 'lobes', name: 'Lobes', content: (lobes || cuts.length > 0) && <LobesSection lobes={lobes} plan={plan} /> },
+    { id: 'feed', name: 'Feed direction', content: plan && feed.length > 0 && <FeedSection plan={plan} searched={lobes?.searched_depth_mm ?? null} /> },
     { id: 'forces', name: 'Forces', content: forces && <ForcesSection forces={forces} /> },
     { id: 'smooth', name: 'Smoothed program', content: smooth && <SmoothSection smooth={smooth} /> },
     { id: 'assembly', name: 'Tool and holder', content: assembly && <AssemblySection assembly={assembly} /> },
-    { id: 'frf', name: 'Frequency response', content: frfs.length > 0 && <FrfSection report={report} /> },
-    { id: 'modes', name: 'Modes', content: (modes.length > 0 || fit) && <ModesSection modes={modes} fit={fit} /> },
-    { id: 'pairs', name: 'Which modes matter', content: lobes.length > 1 && <PairsSection lobes={lobes} cuts={cuts} /> },
+    { id: 'frf', name: 'Frequency response', content: frfs.length > 0 && <FrfSection frfs={frfs} modes={modes} predicted={assembly !== null} /> },
+    { id: 'modes', name: 'Modes', content: modes.length > 0 && <ModesSection modes={modes} document={report.modes} /> },
+    { id: 'pairs', name: 'Which modes matter', content: plan && lobes && pairs.length > 0 && <PairsSection all={lobes} plan={plan} /> },
     { id: 'recordings', name: 'Recorded cuts', content: recordings && <RecordingsSection recordings={recordings} /> },
     { id: 'hits', name: 'Hits', content: hits.length > 0 && <HitsSection hits={hits} /> },
     { id: 'notes', name: 'Notes', content: notes.length + files.length > 0 && <NotesSection notes={notes} files={files} /> },
@@ -74,7 +77,7 @@ export function Page({ report }: { report: Report }) {
         </nav>
       )}
       <main id="main">
-        {report.plan && <RecommendationSection plan={report.plan} hasLobes={report.lobes.length > 0} />}
+        {report.plan && <RecommendationSection plan={report.plan} hasLobes={report.lobes !== null} />}
         {report.plan && <Warnings warnings={report.plan.warnings} />}
         {shown.map(({ content }) => content)}
       </main>

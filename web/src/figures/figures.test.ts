@@ -1,8 +1,9 @@
 import { describe, expect, it } from 'vitest';
-import type { Fit, Frf, Mode, Recording } from '../documents';
+import type { Frf, Recording } from '../documents';
+import type { FeedDirections, Mode } from '../views';
 import { convergenceFigure, stabilisationFigure } from './fit';
 import { breakJumps, frfFigure, prefersLogFrequency } from './frf';
-import { polarFigure, rings, toPlane, type FeedDirections } from './polar';
+import { polarFigure, rings, toPlane } from './polar';
 import { harmonics, spectrumFigure } from './spectrum';
 import { light, logTicks, plain, rpm } from './theme';
 
@@ -173,14 +174,18 @@ describe('spectrum', () => {
 });
 
 describe('fit', () => {
-  const fit = { convergence: [1, 0.5, 0.1], stabilisation: { order: [2, 4, 4], frequency_hz: [10, 10, 50], stable: [false, true, false] } } as Fit;
   it('counts iterations from one', () => {
-    expect(convergenceFigure(fit, light).data[0]!['x']).toEqual([1, 2, 3]);
-    expect(convergenceFigure(fit, light).layout['yaxis']).toMatchObject({ type: 'log' });
-    expect(convergenceFigure({ ...fit, convergence: [1, 0] }, light).layout['yaxis']).toMatchObject({ type: 'linear' });
+    expect(convergenceFigure([1, 0.5, 0.1], light).data[0]!['x']).toEqual([1, 2, 3]);
+    expect(convergenceFigure([1, 0.5, 0.1], light).layout['yaxis']).toMatchObject({ type: 'log' });
+    expect(convergenceFigure([1, 0], light).layout['yaxis']).toMatchObject({ type: 'linear' });
   });
   it('keeps stable and moving poles apart', () => {
-    const [moving, stable] = stabilisationFigure(fit, light).data;
+    const poles = [
+      { order: 2, frequency_hz: 10, stable: false },
+      { order: 4, frequency_hz: 10, stable: true },
+      { order: 4, frequency_hz: 50, stable: false },
+    ];
+    const [moving, stable] = stabilisationFigure(poles, light).data;
     expect(moving!['x']).toEqual([10, 50]);
     expect(stable!['y']).toEqual([4]);
   });

@@ -1,16 +1,16 @@
-import type { Fit } from '../documents';
+import type { Num, Pole } from '../documents';
 import { axis, layout, thinSpace, type Figure, type Theme } from './theme';
 
-export function convergenceFigure(fit: Fit, theme: Theme): Figure {
-  const positive = fit.convergence.every((value) => value === null || value > 0);
+export function convergenceFigure(best: Num[], theme: Theme): Figure {
+  const positive = best.every((value) => value === null || value > 0);
   return {
     data: [
       {
         type: 'scatter',
         mode: 'lines',
         name: 'best',
-        x: fit.convergence.map((_, i) => i + 1),
-        y: fit.convergence,
+        x: best.map((_, i) => i + 1),
+        y: best,
         line: { color: theme.accent, width: 2 },
         hovertemplate: 'iteration %{x}: %{y:.4g}<extra></extra>',
       },
@@ -22,20 +22,21 @@ export function convergenceFigure(fit: Fit, theme: Theme): Figure {
   };
 }
 
-export function stabilisationFigure(fit: Fit, theme: Theme): Figure {
-  const poles = fit.stabilisation;
-  const chosen = (stable: boolean) => (poles === null ? [] : poles.order.map((_, i) => i).filter((i) => poles.stable[i] === stable));
-  const points = (indices: number[]) => ({
-    type: 'scatter',
-    mode: 'markers',
-    x: indices.map((i) => poles!.frequency_hz[i]),
-    y: indices.map((i) => poles!.order[i]),
-    hovertemplate: `%{x:.2f}${thinSpace}Hz, order %{y}<extra></extra>`,
-  });
+export function stabilisationFigure(poles: Pole[], theme: Theme): Figure {
+  const points = (stable: boolean) => {
+    const shown = poles.filter((pole) => pole.stable === stable);
+    return {
+      type: 'scatter',
+      mode: 'markers',
+      x: shown.map((pole) => pole.frequency_hz),
+      y: shown.map((pole) => pole.order),
+      hovertemplate: `%{x:.2f}${thinSpace}Hz, order %{y}<extra></extra>`,
+    };
+  };
   return {
     data: [
-      { ...points(chosen(false)), name: 'new or moving', marker: { symbol: 'x-thin', size: 6, color: theme.unknown, line: { width: 1, color: theme.unknown } } },
-      { ...points(chosen(true)), name: 'stable', marker: { symbol: 'circle', size: 6, color: theme.stable } },
+      { ...points(false), name: 'new or moving', marker: { symbol: 'x-thin', size: 6, color: theme.unknown, line: { width: 1, color: theme.unknown } } },
+      { ...points(true), name: 'stable', marker: { symbol: 'circle', size: 6, color: theme.stable } },
     ],
     layout: layout(theme, 420, {
       hovermode: 'closest',

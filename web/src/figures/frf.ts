@@ -1,4 +1,5 @@
-import type { Frf, Mode } from '../documents';
+import type { Frf } from '../documents';
+import type { Mode } from '../views';
 import { axis, layout, logTicks, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 /** Breaks a phase curve where it jumps by more than half a turn, so that no line crosses the plot. */

@@ -1,23 +1,21 @@
 import { describe, expect, it } from 'vitest';
-import type { Cut, Lobes, Recommendation } from '../documents';
+import type { Cut, Recommendation } from '../documents';
+import type { Lobes } from '../views';
 import { bandTraces, cutTraces, depthTop, frequencyTraces, limitTraces, lobesFigure, mapFigure, pairFigure, searchedDepth, stableDepth, visibleLimits } from './lobes';
 import { dark, light, thinSpace } from './theme';
 
 const lobes: Lobes = {
   label: 'all modes',
-  modes: [],
   spindle_speed_rpm: [4000, 5000, 6000, 7000],
   limit_mm: [0.5, null, 1.25, 0.75],
   searched_depth_mm: 3,
   band: null,
-  boundary: {
-    spindle_speed_rpm: [4000, 4100, 6000, 7000],
-    axial_depth_mm: [0.5, 0.6, 1.25, 0.75],
-    chatter_frequency_hz: [545, 546, null, 18.5],
-    kind: ['hopf', 'flip', 'hopf', 'fold'],
-    mode: [8, 8, 7, null],
-    mode_of: ['tool', 'tool', 'tool', null],
-  },
+  boundary: [
+    { spindle_speed_rpm: 4000, axial_depth_mm: 0.5, chatter_frequency_hz: 545, kind: 'hopf', mode: 8, mode_of: 'tool' },
+    { spindle_speed_rpm: 4100, axial_depth_mm: 0.6, chatter_frequency_hz: 546, kind: 'flip', mode: 8, mode_of: 'tool' },
+    { spindle_speed_rpm: 6000, axial_depth_mm: 1.25, chatter_frequency_hz: null, kind: 'hopf', mode: 7, mode_of: 'tool' },
+    { spindle_speed_rpm: 7000, axial_depth_mm: 0.75, chatter_frequency_hz: 18.5, kind: 'fold', mode: null, mode_of: null },
+  ],
   map: null,
 };
 
@@ -68,12 +66,13 @@ describe('chatter frequency', () => {
     expect(traces.every((trace) => trace['xaxis'] === 'x2' && trace['yaxis'] === 'y2')).toBe(true);
   });
   it('keeps a mode of the workpiece apart from the mode of the tool with its number', () => {
-    const both = { ...lobes, boundary: { ...lobes.boundary, mode_of: ['workpiece' as const, 'tool' as const, null, null] } };
+    const [first, ...others] = lobes.boundary;
+    const both: Lobes = { ...lobes, boundary: [{ ...first!, mode_of: 'workpiece' }, ...others] };
     expect(frequencyTraces(both, light).map((trace) => trace['name'])).toEqual(['mode unknown', 'mode 8', 'mode 8 of the workpiece']);
   });
   it('has a second plot only where there is something to show', () => {
     expect(lobesFigure(input, light, false).layout).toHaveProperty('yaxis2');
-    const none = { ...lobes, boundary: { spindle_speed_rpm: [], axial_depth_mm: [], chatter_frequency_hz: [], kind: [], mode: [], mode_of: [] } };
+    const none = { ...lobes, boundary: [] };
     expect(lobesFigure({ ...input, lobes: none }, light, false).layout).not.toHaveProperty('yaxis2');
   });
 });

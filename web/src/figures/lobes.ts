@@ -1,4 +1,5 @@
-import type { Cut, DepthCurve, Lobes, Num, Recommendation, Verdict } from '../documents';
+import type { BoundaryPoint, Cut, DepthCurve, Num, Recommendation, Verdict } from '../documents';
+import type { Lobes } from '../views';
 import { axis, layout, plain, rpm, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 export interface LobesInput {
@@ -180,37 +181,36 @@ const kinds = [
 ] as const;
 
 /** Chatter frequency along the boundary, coloured by mode; only the points that are the limit at their speed are what occurs first. */
-export function frequencyTraces(lobes: Lobes, theme: Theme): Trace[] {
-  const { boundary } = lobes;
-  const groups = new Map<string, { mode: number; ofWorkpiece: boolean; indices: number[] }>();
-  boundary.chatter_frequency_hz.forEach((frequency, i) => {
-    if (frequency === null) return;
-    const mode = boundary.mode[i] ?? 0;
-    const ofWorkpiece = boundary.mode_of[i] === 'workpiece';
+export function frequencyTraces({ boundary }: Lobes, theme: Theme): Trace[] {
+  const groups = new Map<string, { mode: number; ofWorkpiece: boolean; points: BoundaryPoint[] }>();
+  for (const point of boundary) {
+    if (point.chatter_frequency_hz == null) continue;
+    const mode = point.mode ?? 0;
+    const ofWorkpiece = point.mode_of === 'workpiece';
     const name = mode === 0 ? 'mode unknown' : `mode ${mode}${ofWorkpiece ? ' of the workpiece' : ''}`;
-    const group = groups.get(name) ?? { mode, ofWorkpiece, indices: [] };
-    group.indices.push(i);
+    const group = groups.get(name) ?? { mode, ofWorkpiece, points: [] };
+    group.points.push(point);
     groups.set(name, group);
-  });
+  }
   return [...groups.entries()]
     .sort(([, a], [, b]) => Number(a.ofWorkpiece) - Number(b.ofWorkpiece) || a.mode - b.mode)
-    .map(([name, { mode, ofWorkpiece, indices }]) => ({
+    .map(([name, { mode, ofWorkpiece, points }]) => ({
       type: 'scatter',
       mode: 'markers',
       name,
       legend: 'legend2',
       xaxis: 'x2',
       yaxis: 'y2',
-      x: indices.map((i) => boundary.spindle_speed_rpm[i]),
-      y: indices.map((i) => boundary.chatter_frequency_hz[i]),
-      customdata: indices.map((i) => [boundary.kind[i], boundary.axial_depth_mm[i]]),
+      x: points.map((point) => point.spindle_speed_rpm),
+      y: points.map((point) => point.chatter_frequency_hz),
+      customdata: points.map((point) => [point.kind, point.axial_depth_mm]),
       hovertemplate:
         `chatter at %{y:.1f}${thinSpace}Hz (%{customdata[0]})<br>%{x:.0f}${thinSpace}rpm, ` +
         `%{customdata[1]:.3f}${thinSpace}mm<extra>${mode > 0 ? name : ''}</extra>`,
       marker: {
         size: 4,
         color: mode > 0 ? theme.series[(mode - 1) % theme.series.length] : theme.unknown,
-        symbol: indices.map((i) => (kinds.find((k) => k.kind === boundary.kind[i])?.symbol ?? 'circle') + (ofWorkpiece ? '-open' : '')),
+        symbol: points.map((point) => (kinds.find((k) => k.kind === point.kind)?.symbol ?? 'circle') + (ofWorkpiece ? '-open' : '')),
       },
     }));
 }

@@ -1,15 +1,6 @@
 import type { Num } from '../documents';
+import type { FeedDirections } from '../views';
 import { axis, layout, rpm, thinSpace, type Figure, type Layout, type Theme } from './theme';
-
-/** The limit over the direction of the feed. */
-export interface FeedDirections {
-  direction_deg: number[];
-  lowest_limit_mm: Num[];
-  limit_at_speed_mm: Num[] | null; // where a speed is recommended
-  spindle_speed_rpm: Num; // the recommended
-  used_direction_deg: Num;
-  searched_depth_mm: Num;
-}
 
 /** Rings at round numbers, three to six of them, the last at or beyond `most`. */
 export function rings(most: number): number[] {

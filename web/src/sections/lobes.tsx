@@ -1,10 +1,11 @@
 // Stability lobes, over speed, over feed direction, and of some modes alone.
-import type { Agreement, Cut, Lobes, Num, Plan, Verdict } from '../documents';
+import type { Agreement, Cut, Num, Plan, Verdict } from '../documents';
 import { lobesFigure, mapFigure, pairFigure } from '../figures/lobes';
-import { polarFigure, type FeedDirections } from '../figures/polar';
+import { polarFigure } from '../figures/polar';
 import { Details, Section, someOf, Table, type Column } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, significant } from '../text';
+import { feedOf, partOf, type Lobes } from '../views';
 
 export function VerdictBadge({ verdict }: { verdict: Verdict | null }) {
   return <span class={`verdict ${verdict ?? 'unknown'}`}>{verdict ?? 'not stated'}</span>;
@@ -64,7 +65,7 @@ function LimitTable({ lobes }: { lobes: Lobes }) {
   );
 }
 
-export function LobesSection({ lobes, plan }: { lobes: Lobes | undefined; plan: Plan | null }) {
+export function LobesSection({ lobes, plan }: { lobes: Lobes | null; plan: Plan | null }) {
   const { other_limits: otherLimits = [], cuts = [], recommended: recommendation = null, alternatives = [] } = plan ?? {};
   return (
     <Section id="lobes" heading="Stability lobes" lead="How deep the cutter may go at each spindle speed before chatter starts.">
@@ -99,20 +100,8 @@ export function LobesSection({ lobes, plan }: { lobes: Lobes | undefined; plan: 
   );
 }
 
-/** The rows of plan.json as curves. */
-function curvesOf({ feed_directions: rows = [], feed_direction_deg: used = null, recommended }: Plan, searched: Num): FeedDirections {
-  return {
-    direction_deg: rows.map((row) => row.feed_direction_deg),
-    lowest_limit_mm: rows.map((row) => row.lowest_limit_mm),
-    limit_at_speed_mm: recommended === null ? null : rows.map((row) => row.limit_at_speed_mm ?? null),
-    spindle_speed_rpm: recommended?.spindle_speed_rpm ?? null,
-    used_direction_deg: used,
-    searched_depth_mm: searched,
-  };
-}
-
 export function FeedSection({ plan, searched }: { plan: Plan; searched: Num }) {
-  const feed = curvesOf(plan, searched);
+  const feed = feedOf(plan, searched);
   const { direction_deg: direction, limit_at_speed_mm: atSpeed } = feed;
   const columns: Column<number>[] = [
     { heading: 'Feed direction (°)', number: true, cell: (i) => fixed(direction[i]!, 0) },
@@ -147,19 +136,19 @@ function lowest({ limit_mm: limit, spindle_speed_rpm: speed }: Lobes): { limit: 
   return at < 0 ? { limit: null, speed: null } : { limit: limit[at]!, speed: speed[at]! };
 }
 
-export function PairsSection({ lobes, cuts }: { lobes: Lobes[]; cuts: Cut[] }) {
-  const [all, ...parts] = lobes;
+export function PairsSection({ all, plan }: { all: Lobes; plan: Plan }) {
+  const parts = plan.pairs.map((pair) => partOf(pair, all));
   return (
     <Section id="pairs" heading="Which modes matter" lead="The lobes of some modes alone show which of them set the limit.">
       <Plot
         which="pairs"
         shows="Stability lobes of some modes alone beside those of all modes"
         caption="Each panel keeps only the named modes; the grey line is the limit with all of them."
-        draw={parts.map((part) => (theme) => pairFigure(part, all!, cuts, theme))}
+        draw={parts.map((part) => (theme) => pairFigure(part, all, plan.cuts, theme))}
       />
       <Table
         caption="Lowest limit by modes kept"
-        rows={lobes}
+        rows={[all, ...parts]}
         columns={[
           { heading: 'Modes', cell: (part) => part.label },
           { heading: 'Lowest limit (mm)', number: true, cell: (part) => depthText(lowest(part).limit, part.searched_depth_mm) },

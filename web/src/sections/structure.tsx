@@ -1,11 +1,12 @@
 // What was measured of the structure, and the modes fitted to it.
 import { useState } from 'preact/hooks';
-import type { Fit, Frf, Hit, Mode, ModeVector, Num, Owner, Report, StageFile } from '../documents';
+import type { Frf, Hit, ModesDocument, ModeVector, Num, Owner, Pole, StageFile } from '../documents';
 import { convergenceFigure, stabilisationFigure } from '../figures/fit';
 import { frfFigure, prefersLogFrequency } from '../figures/frf';
 import { Bullets, Details, Section, Table, type Column } from '../parts';
 import { Choice, Plot } from '../plot';
 import { dash, percent, significant, withDeviation } from '../text';
+import type { Mode } from '../views';
 
 function FrfPlot({ frfs, modes, predicted }: { frfs: Frf[]; modes: Mode[]; predicted: boolean }) {
   const [shown, setShown] = useState(0);
@@ -50,9 +51,7 @@ function QualityTable({ frfs }: { frfs: Frf[] }) {
   );
 }
 
-export function FrfSection({ report }: { report: Report }) {
-  const { frfs, modes } = report;
-  const predicted = report.assembly !== null;
+export function FrfSection({ frfs, modes, predicted }: { frfs: Frf[]; modes: Mode[]; predicted: boolean }) {
   const lead = predicted
     ? 'How far the tool tip moves for a force of one newton, as predicted from tool, joint and holder; xx is x due to a force in x.'
     : 'How far the tool tip moves for a force of one newton, at each frequency: xy is x due to a force in y.';
@@ -116,14 +115,10 @@ function Vectors({ modes, owner }: { modes: Mode[]; owner: Owner }) {
   );
 }
 
-function FitSentence({ fit }: { fit: Fit }) {
-  const { band_from_hz: from, band_to_hz: to } = fit;
-  let text = fit.method === '' ? 'Fitted' : `Fitted by the ${fit.method} method`;
-  if (from !== null && to !== null) text += ` from ${significant(from)} to ${significant(to)} Hz`;
-  if (fit.relative_error !== null) {
-    text += `; the fit differs from the FRFs by ${percent(fit.relative_error, 2)}`;
-    if (fit.mean_relative_error !== null) text += ` (mean over lines ${percent(fit.mean_relative_error, 2)})`;
-  }
+function FitSentence({ fit }: { fit: NonNullable<ModesDocument['fit']> }) {
+  const [from, to] = fit.band_hz;
+  let text = `Fitted from ${significant(from)} to ${significant(to)} Hz; the fit differs from the FRFs by ${percent(fit.relative_error, 2)}`;
+  if (fit.mean_relative_error !== null) text += ` (mean over lines ${percent(fit.mean_relative_error, 2)})`;
   return (
     <p>
       {text}.{!fit.converged && <strong> The fit did not converge.</strong>}
@@ -131,26 +126,26 @@ function FitSentence({ fit }: { fit: Fit }) {
   );
 }
 
-function FitPlots({ fit }: { fit: Fit }) {
+function FitPlots({ best, poles }: { best: Num[]; poles: Pole[] }) {
   return (
     <>
-      {fit.convergence.length > 0 && (
+      {best.length > 0 && (
         <Details summary="Convergence of the fit">
           <Plot
             which="convergence"
             shows="Best objective over iterations"
             caption="The fit is done when the curve no longer falls."
-            draw={(theme) => convergenceFigure(fit, theme)}
+            draw={(theme) => convergenceFigure(best, theme)}
           />
         </Details>
       )}
-      {fit.stabilisation !== null && (
+      {poles.length > 0 && (
         <Details summary="Stabilisation diagram">
           <Plot
             which="stabilisation"
             shows="Poles by model order over frequency"
             caption="A pole that stands still while the order grows is a mode of the structure; the others are noise."
-            draw={(theme) => stabilisationFigure(fit, theme)}
+            draw={(theme) => stabilisationFigure(poles, theme)}
           />
         </Details>
       )}
@@ -158,7 +153,8 @@ function FitPlots({ fit }: { fit: Fit }) {
   );
 }
 
-export function ModesSection({ modes, fit }: { modes: Mode[]; fit: Fit | null }) {
+export function ModesSection({ modes, document }: { modes: Mode[]; document: ModesDocument | null }) {
+  const { fit, convergence, stabilisation = [] } = document ?? {};
   return (
     <Section id="modes" heading="Modes" lead="The vibrations the structure has of its own; ± is one standard deviation.">
       {fit && <FitSentence fit={fit} />}
@@ -179,7 +175,7 @@ export function ModesSection({ modes, fit }: { modes: Mode[]; fit: Fit | null })
       )}
       <Vectors modes={modes} owner="tool" />
       <Vectors modes={modes} owner="workpiece" />
-      {fit && <FitPlots fit={fit} />}
+      <FitPlots best={convergence?.best ?? []} poles={stabilisation} />
     </Section>
   );
 }
