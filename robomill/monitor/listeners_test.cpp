@@ -60,10 +60,10 @@ TEST(NarrowbandDetector, ReportsGrowthFromAnEntry) {
 TEST(BroadbandGrowth, ReportsGrowthFromDepthAndExit) {
   Random random(3);
   const auto processes = [&](auto left, auto whole) {
-    BroadbandGrowth broadband growth;
+    BroadbandGrowth growth;
     for (int k = 0; k < 120; ++k) {
       const double unrest = std::exp(0.15 * random.normal());
-      if (broadband growth.step(left(k) * unrest, whole(k) + left(k) * unrest)) return k;
+      if (growth.step(left(k) * unrest, whole(k) + left(k) * unrest)) return k;
     }
     return -1;
   };

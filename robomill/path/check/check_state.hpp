@@ -56,7 +56,7 @@ struct Checker::State {
   const robot::Kinematics& machine_;
   SmoothingOptions options_;
   CheckResult result_;
-  BreachBook book_;
+  ViolationBook book_;
   int joints_;
   std::array<JointWatch, 6> joint_watch_ = {};
   Watch tip_velocity_, tip_acceleration_, tip_jerk_, axis_velocity_, axis_acceleration_, axis_jerk_, feed_, tip_error_,
