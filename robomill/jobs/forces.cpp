@@ -164,19 +164,19 @@ std::optional<robot::Redundancy> turn_about_tool(const robot::Cell& cell, const 
 void run_revolution(ForcesResult& result, Progress& progress) {
   const ForcesFile& file = result.file;
   RevolutionForces out;
-  const auto settled = [&](const Eigen::Matrix3d& compliance) {
+  const auto deflected = [&](const Eigen::Matrix3d& compliance) {
     return cutting::static_deflection(file.cutter, file.cut, file.coefficients, file.motion, compliance, file.force,
                                       file.slices);
   };
   Eigen::VectorXd joints;
   const robot::Cell* cell = result.cell && !file.joints_rad.empty() ? &result.cell->cell : nullptr;
-  out.deflected = settled(Eigen::Matrix3d::Zero());
+  out.deflected = deflected(Eigen::Matrix3d::Zero());
   if (cell != nullptr) {
     joints = joints_of(file, *cell);
     // The load changes the stiffness a little: once more with what the first pass gave.
     for (int pass = 0; pass < 2; ++pass) {
       out.posture = posture_of(file, *cell, joints, out.deflected.force.mean_n);
-      out.deflected = settled(out.posture->compliance_m_per_n);
+      out.deflected = deflected(out.posture->compliance_m_per_n);
     }
     out.spindle_rotation = turn_about_tool(*cell, *out.posture, out.deflected.force.mean_n, joints);
   }
@@ -229,7 +229,7 @@ std::size_t ProgramForces::cutting_blocks() const {
 
 std::vector<SpindleLoad> spindle_loads(const ForcesResult& result) {
   if (result.revolution) {
-    const cutting::CuttingForce& force = result.revolution->settled.force;
+    const cutting::CuttingForce& force = result.revolution->deflected.force;
     return {{.spindle_speed_rad_per_s = result.file.motion.spindle_speed_rad_per_s,
              .torque_n_m = force.mean_torque_n_m,
              .power_w = force.power_w}};

@@ -49,9 +49,9 @@ TEST(RunForces, RunsThePublishedCuts) {
   for (int i = 0; i < 3; ++i) {
     const std::string name = "cut-" + std::to_string(i + 1) + ".toml";
     const ForcesResult result = run_forces(examples / "ball-end-ur5e" / name, {}, {});
-    EXPECT_EQ(result.revolution->settled.status, cutting::StaticDeflection::Status::found);
-    EXPECT_NEAR(result.revolution->settled.force.mean_n.z(), mean_z[i], 1e-3 * mean_z[i]) << name;
-    EXPECT_NEAR(1e3 * result.revolution->settled.cut.axial_depth_m, left_mm[i], 1e-3 * left_mm[i]) << name;
+    EXPECT_EQ(result.revolution->deflected.status, cutting::StaticDeflection::Status::found);
+    EXPECT_NEAR(result.revolution->deflected.force.mean_n.z(), mean_z[i], 1e-3 * mean_z[i]) << name;
+    EXPECT_NEAR(1e3 * result.revolution->deflected.cut.axial_depth_m, left_mm[i], 1e-3 * left_mm[i]) << name;
   }
 }
 
@@ -101,7 +101,7 @@ TEST(RunForces, VibratesWithThePart) {
   ASSERT_TRUE(result.revolution->vibration.has_value());
   EXPECT_EQ(result.revolution->vibration->verdict, simulation::Verdict::stable);
   const Eigen::Matrix3Xd& vibrating = result.revolution->vibrating_force_n;
-  const cutting::CuttingForce& still = result.revolution->settled.force;
+  const cutting::CuttingForce& still = result.revolution->deflected.force;
   ASSERT_EQ(vibrating.cols(), still.force_n.cols());
   EXPECT_LE((vibrating.rowwise().mean() - still.mean_n).norm(), 0.03 * still.mean_n.norm());
   EXPECT_EQ(lines(forces_csv(result)).front(),

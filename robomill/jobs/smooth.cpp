@@ -45,11 +45,11 @@ std::array<bool, 6> slides_of(const CellFile& cell) {
   std::array<bool, 6> prismatic = {};
   if (cell.hybrid) {
     prismatic.fill(true);
-    return slides;
+    return prismatic;
   }
   const std::vector<robot::Joint>& joints = cell.cell.arm.joints;
   for (std::size_t i = 0; i < std::min(joints.size(), prismatic.size()); ++i) prismatic.at(i) = joints[i].prismatic;
-  return slides;
+  return prismatic;
 }
 
 path::PostureChoice posture_of(const Bench& bench) {
