@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "robomill/base/error.hpp"
@@ -41,8 +42,8 @@ void warn_of_distance(const TipPrediction& prediction, std::vector<std::string>&
     std::string text = fmt::format("The predicted {} differs from the measured one by {:.0f} %",
                                    modal::to_string(error.name), 100.0 * error.error.relative);
     // Of a round tool the peaks stand in x alone, for both.
-    const auto peak = std::ranges::find_if(
-        prediction.peaks, [&](const report::TipPeak& p) { return prediction.round || p.name == error.name; });
+    const auto peak = std::ranges::find_if(prediction.peaks,
+                                           [&](const TipPeak& p) { return prediction.round || p.name == error.name; });
     if (peak != prediction.peaks.end()) {
       text += fmt::format(": its first peak is predicted at {:.6g} Hz, ", peak->frequency_hz);
       text += std::isfinite(peak->measured_frequency_hz)
@@ -156,7 +157,8 @@ void pairs(PlanResult& result, Progress& progress) {
     part.limit_depth_m.resize(static_cast<Eigen::Index>(limits.size()));
     for (std::size_t i = 0; i < limits.size(); ++i) {
       const bool found = limits[i].status == stability::Limit::Status::found;
-      part.limit_depth_m(static_cast<Eigen::Index>(i)) = found ? limits[i].axial_depth_m : report::missing;
+      part.limit_depth_m(static_cast<Eigen::Index>(i)) =
+          found ? limits[i].axial_depth_m : std::numeric_limits<double>::quiet_NaN();
     }
     result.pairs.push_back(std::move(part));
   }
@@ -305,7 +307,7 @@ void turn_feed(PlanResult& result, Progress& progress) {
     out.limit_at_speed_m.resize(feed_directions);
   }
   out.direction_rad.resize(feed_directions);
-  out.lowest_limit_m.setConstant(feed_directions, report::missing);
+  out.lowest_limit_m.setConstant(feed_directions, std::numeric_limits<double>::quiet_NaN());
   stability::LobesProblem problem = result.cut.problem;
   // Turning the feed by half a turn turns forces and displacements alike: the limit is the same.
   constexpr Eigen::Index half = feed_directions / 2;
@@ -315,8 +317,9 @@ void turn_feed(PlanResult& result, Progress& progress) {
     out.direction_rad(i + half) = problem.feed_direction_rad + std::numbers::pi;
     const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
     for (std::size_t k = 0; k < limits.size(); ++k) {
-      const double depth =
-          limits[k].status == stability::Limit::Status::found ? limits[k].axial_depth_m : report::missing;
+      const double depth = limits[k].status == stability::Limit::Status::found
+                               ? limits[k].axial_depth_m
+                               : std::numeric_limits<double>::quiet_NaN();
       if (k < speeds_a_direction) {
         out.lowest_limit_m(i) = std::fmin(out.lowest_limit_m(i), depth);
       } else {

@@ -10,67 +10,20 @@
 #include "robomill/jobs/files/plan_json.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/summary.hpp"
+#include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/version.hpp"
 
 namespace robomill::jobs {
 namespace {
 
-report::Grade to_report(modal::Grade grade) {
-  switch (grade) {
-    case modal::Grade::good:
-      return report::Grade::good;
-    case modal::Grade::usable:
-      return report::Grade::fair;
-    case modal::Grade::poor:
-      break;
-  }
-  return report::Grade::poor;
-}
-
-void add_frfs(report::Report& report, const PlanResult& result) {
-  if (!result.frfs) return;
-  const modal::FrfSet& set = *result.frfs;
-  report.frf_frequency_hz = set.frequency_hz;
-  std::optional<modal::FrfSet> fitted;
-  // A mass residual has no value at 0 Hz: the fitted curve starts behind it.
-  const Eigen::Index first = set.frequency_hz(0) == 0.0 ? 1 : 0;
-  if (result.fit) fitted = modal::synthesize(result.fit->model, set.frequency_hz.tail(set.frequency_hz.size() - first));
-  for (std::size_t i = 0; i < set.frfs.size(); ++i) {
-    const modal::Frf& frf = set.frfs[i];
-    report::FrfPlot plot{.name = frf.name, .measured = frf.receptance, .coherence = frf.coherence};
-    if (fitted) {
-      if (const modal::Frf* model = fitted->find(frf.name)) {
-        plot.fitted.setConstant(set.frequency_hz.size(), report::missing);
-        plot.fitted.tail(model->receptance.size()) = model->receptance;
-      }
-    }
-    if (result.fit) {
-      for (const modal::FrfFitError& error : result.fit->by_frf) {
-        if (error.name == frf.name) plot.relative_error = error.error.relative;
-      }
-    }
-    if (result.hits) {
-      const modal::FrfGrade& grade = result.hits->grades[i];
-      plot.grade = to_report(grade.grade);
-      plot.findings = grade.faults;
-      plot.remedies = grade.remedies;
-      plot.trusted_from_hz = grade.lowest_trustworthy_frequency_hz;
-      plot.trusted_to_hz = grade.excited_high_hz;
-    }
-    report.frfs.push_back(std::move(plot));
-  }
-}
-
-void add_hits(report::Report& report, const PlanResult& result) {
-  if (!result.hits) return;
-  for (std::size_t i = 0; i < result.hits->hits.size(); ++i) {
-    const modal::HitVerdict& hit = result.hits->hits[i];
-    report.hits.push_back({.file = std::filesystem::path(hit.file).filename().string(),
-                           .direction = result.hit_directions.at(i),
-                           .accepted = hit.accepted,
-                           .reasons = hit.reasons});
-  }
+/// The FRFs of the modes at the lines they were fitted to. A mass residual has no value at 0 Hz.
+modal::FrfSet fitted(const PlanResult& result) {
+  const Eigen::VectorXd& lines = result.frfs->frequency_hz;
+  modal::FrfSet all =
+      modal::synthesize(result.fit->model, lines(0) == 0.0 ? lines.tail(lines.size() - 1).eval() : lines);
+  std::erase_if(all.frfs, [&](const modal::Frf& frf) { return result.frfs->find(frf.name) == nullptr; });
+  return all;
 }
 
 DepthCurve spindle_curve(const PlanResult& result, const std::string& label, bool torque) {
@@ -168,9 +121,10 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   if (!result.job.title.empty()) report.title = result.job.title;
   report.created = fmt::format("{:%Y-%m-%d %H:%M} UTC, robomill " ROBOMILL_VERSION, fmt::gmtime(std::time(nullptr)));
   report.summary = summary(result);
-  add_frfs(report, result);
-  if (result.prediction) add_prediction(report, *result.prediction);
-  add_hits(report, result);
+  if (result.frfs) report.frf = result.hits ? modal::frf_json(*result.hits) : modal::frf_json(*result.frfs);
+  if (result.frfs && result.fit) report.fitted = modal::frf_json(fitted(result));
+  if (result.prediction) report.assembly = prediction_json(*result.prediction);
+  if (result.prediction && result.prediction->measured) report.measured = modal::frf_json(*result.prediction->measured);
   report.plan = io::dump(decision_json(result));
   report.modes = modes_json(result);
   const modal::ModalModel& workpiece = result.cut.problem.workpiece_dynamics;

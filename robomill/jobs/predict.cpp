@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -125,7 +126,7 @@ void add_peaks(TipPrediction& prediction) {
     std::vector<PeakFound> found = find_peaks(prediction.tip.frfs.frequency_hz, frf.receptance);
     found.resize(std::min(found.size(), peaks_an_frf));
     for (const PeakFound& peak : found) {
-      report::TipPeak row{.name = frf.name, .frequency_hz = peak.frequency_hz, .receptance_m_per_n = peak.magnitude};
+      TipPeak row{.name = frf.name, .frequency_hz = peak.frequency_hz, .receptance_m_per_n = peak.magnitude};
       double nearest = same_peak;
       for (const PeakFound& other : seen) {
         const double apart = std::abs(std::log(other.frequency_hz / peak.frequency_hz));
@@ -188,31 +189,10 @@ modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& opti
         100.0 * out.relative_error));
   }
   // What is left after the fit is not noise: it says nothing of how well joint and material are known.
-  for (modal::Mode& mode : out.model.modes) mode.frequency_std_hz = mode.damping_ratio_std = report::missing;
-  return out;
-}
-
-void add_prediction(report::Report& report, const TipPrediction& prediction) {
-  report::Prediction out;
-  out.assembly = prediction.file.assembly;
-  out.holder_file = prediction.file.receptances.filename().string();
-  out.peaks = prediction.peaks;
-  out.suspect_hz = prediction.tip.suspect_hz;
-  if (prediction.file.holder) out.unreliable_hz = prediction.file.holder->unreliable_hz;
-  out.notes = prediction.notes;
-  report.prediction = std::move(out);
-  for (report::FrfPlot& plot : report.frfs) {
-    // What was fitted is the prediction; the measurement comes beside it, with its own lines.
-    plot.predicted = std::exchange(plot.measured, {});
-    if (!prediction.measured) continue;
-    const modal::Frf* measured = prediction.measured->find(plot.name);
-    if (measured == nullptr) continue;
-    plot.measured_frequency_hz = prediction.measured->frequency_hz;
-    plot.measured = measured->receptance;
-    for (const modal::FrfFitError& error : prediction.error) {
-      if (error.name == plot.name) plot.prediction_error = error.error.relative;
-    }
+  for (modal::Mode& mode : out.model.modes) {
+    mode.frequency_std_hz = mode.damping_ratio_std = std::numeric_limits<double>::quiet_NaN();
   }
+  return out;
 }
 
 }  // namespace robomill::jobs

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,9 +10,19 @@
 #include "robomill/coupling/files/assembly_toml.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/frf.hpp"
-#include "robomill/report/report.hpp"
+
+// Method: robomill/jobs/README.md, "From an assembly (`predict.hpp`)"
 
 namespace robomill::jobs {
+
+/// A peak of a predicted FRF.
+struct TipPeak {
+  modal::FrfName name;
+  double frequency_hz = 0.0;
+  double receptance_m_per_n = 0.0;  ///< its magnitude
+  /// Of the measured peak nearest to it; NaN: there is none.
+  double measured_frequency_hz = std::numeric_limits<double>::quiet_NaN();
+};
 
 /// The tip of an assembly as predicted, and how far a measurement of it is away.
 struct TipPrediction {
@@ -21,7 +32,7 @@ struct TipPrediction {
   std::optional<modal::FrfSet> measured;  ///< of what was measured the FRFs that were predicted too, within the range
   /// Of each measured FRF, ‖predicted - measured‖ / ‖measured‖ over its lines.
   std::vector<modal::FrfFitError> error;
-  std::vector<report::TipPeak> peaks;  ///< the first ones of each FRF on the diagonal; of a round tool of xx alone
+  std::vector<TipPeak> peaks;  ///< the first ones of each FRF on the diagonal; of a round tool of xx alone
   std::vector<std::string> notes;
 };
 
@@ -35,9 +46,6 @@ struct TipPrediction {
 /// @throws InvalidInput as fit_modes
 [[nodiscard]] ROBOMILL_API modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& options,
                                                     Progress& progress);
-
-/// Draws it.
-ROBOMILL_API void add_prediction(report::Report& report, const TipPrediction& prediction);
 
 /// The member `assembly` of plan.json, as text.
 [[nodiscard]] ROBOMILL_API std::string prediction_json(const TipPrediction& prediction);

@@ -190,7 +190,7 @@ std::string summary(const PlanResult& result) {
     }
   }
   if (result.prediction && !result.prediction->peaks.empty()) {
-    const report::TipPeak& first = result.prediction->peaks.front();
+    const TipPeak& first = result.prediction->peaks.front();
     add(out, "predicted    first peak of {} at {:.1f} Hz, {:.3g} µm/N\n", modal::to_string(first.name),
         first.frequency_hz, first.receptance_m_per_n / units::um);
   }

@@ -11,9 +11,6 @@ namespace robomill::report {
 /// The report in shop units, as report_json writes it. Texts are valid UTF-8.
 [[nodiscard]] nlohmann::ordered_json shop_units(const Report& report);
 
-/// Its part on an assembly: every segment in the order of the drawing, the joint, the peaks.
-[[nodiscard]] nlohmann::ordered_json assembly_json(const Prediction& prediction);
-
 /// Its part on forces. Long curves are thinned with their peaks; the worst blocks come from all of them.
 [[nodiscard]] nlohmann::ordered_json forces_json(const Forces& forces);
 
@@ -22,9 +19,6 @@ namespace robomill::report {
 
 /// Its part on a monitored recording.
 [[nodiscard]] nlohmann::ordered_json monitor_json(const MonitorRun& run);
-
-/// Lines of an axis as bands [from, to], neighbours in one; a band reaches half a step beyond its lines.
-[[nodiscard]] nlohmann::ordered_json bands_json(const Eigen::VectorXd& axis_hz, const std::vector<double>& lines_hz);
 
 /// Whether every run of a curve is one sample.
 [[nodiscard]] bool is_single(const Band& band);

@@ -1,7 +1,6 @@
 #include "robomill/report/plan_sample.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -12,16 +11,13 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/modal/files/modes_files.hpp"
-#include "robomill/modal/fit.hpp"
 #include "robomill/report/json.hpp"
+#include "robomill/report/structure_sample.hpp"
 
 namespace robomill::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using modal::Axis;
-using modal::Dof;
 using std::complex;
 constexpr int teeth = 3;
 constexpr double searched_mm = 3.0;
@@ -157,79 +153,6 @@ Json pairs_json(const std::string& text) {
 
 }  // namespace
 
-modal::ModalModel sample_model() {
-  struct Row {
-    double frequency_hz, damping_percent;
-    complex<double> left_x, left_y, right_x, right_y;
-  };
-  const std::array<Row, 8> rows = {
-      {{17.40, 1.27, {-0.52, 0.88}, {-92.57, 23.71}, {-1.13, -18.25}, {-8.9, 93.36}},
-       {19.57, 2.23, {-41.87, 24.01}, {-0.025, -0.49}, {-118.74, 168.83}, {35.74, -40.36}},
-       {49.86, 10, {51.08, 147.75}, {-0.47, 0.45}, {-149.35, 15.18}, {12.66, -25.99}},
-       {53.51, 10, {0.66, -0.09}, {-94.27, -136.68}, {-34.35, -57.71}, {14.96, -155.42}},
-       {57.77, 10, {-0.3, -0.77}, {-27.26, 163.60}, {15.67, -53.87}, {-58.20, -145.84}},
-       {67.26, 10, {-105.83, -82.49}, {0.51, 0.49}, {-93.87, 88.52}, {12.15, -16.74}},
-       {540.08, 0.68, {-0.81, 0.61}, {-317.91, -148.16}, {19.27, -26.45}, {173.44, 303.95}},
-       {543.67, 2.1, {-246.87, 215.31}, {0.24, -0.32}, {-269.37, 275.61}, {36.20, 7.45}}}};
-  modal::ModalModel model;
-  model.excitations = {Dof{0, Axis::x}, Dof{0, Axis::y}};
-  model.responses = model.excitations;
-  for (const Row& row : rows) {
-    modal::Mode mode;
-    mode.frequency_hz = row.frequency_hz;
-    mode.damping_ratio = row.damping_percent / 100.0;
-    mode.left = Eigen::Vector2cd(row.left_x, row.left_y) * 1e-4;
-    mode.right = Eigen::Vector2cd(row.right_x, row.right_y) * 1e-4;
-    mode.frequency_std_hz = 2e-4 * mode.frequency_hz;
-    mode.damping_ratio_std = 0.01 * mode.damping_ratio;
-    model.modes.push_back(mode);
-  }
-  return model;
-}
-
-complex<double> sample_receptance(const modal::ModalModel& model, int response, int excitation, double frequency_hz,
-                                  const std::vector<int>& keep) {
-  const complex<double> s(0.0, 2.0 * std::numbers::pi * frequency_hz);
-  complex<double> sum = 0.0;
-  for (std::size_t k = 0; k < model.modes.size(); ++k) {
-    if (!keep.empty() && std::ranges::find(keep, static_cast<int>(k) + 1) == keep.end()) continue;
-    const modal::Mode& mode = model.modes[k];
-    const double omega = 2.0 * std::numbers::pi * mode.frequency_hz;
-    const complex<double> pole(-mode.damping_ratio * omega, omega * std::sqrt(1.0 - std::pow(mode.damping_ratio, 2)));
-    const complex<double> residue = mode.right[response] * mode.left[excitation];
-    sum += residue / (s - pole) + std::conj(residue) / (s - std::conj(pole));
-  }
-  return sum;
-}
-
-std::string sample_modes() {
-  modal::FitResult fit;
-  fit.model = sample_model();
-  fit.relative_error = 0.0213;
-  fit.mean_relative_error = 0.0187;
-  fit.band_low_hz = 5.0;
-  fit.band_high_hz = 1000.0;
-  fit.status = modal::FitResult::Status::converged;
-  for (int i = 0; i < 24; ++i) fit.best.push_back(0.0187 + 0.6 * std::exp(-0.45 * i));
-  Random random(3);
-  const auto add = [&](int order, double frequency_hz, bool stable) {
-    fit.stabilisation.push_back({.order = order,
-                                 .frequency_hz = frequency_hz,
-                                 .damping_ratio = 0.02,
-                                 .frequency_stable = stable,
-                                 .damping_stable = stable,
-                                 .vector_stable = stable});
-  };
-  for (int order = 4; order <= 40; order += 2) {
-    for (const modal::Mode& mode : fit.model.modes) {
-      const bool stable = order > 8 + static_cast<int>(mode.damping_ratio * 100.0);
-      add(order, mode.frequency_hz * (1.0 + (stable ? 1e-3 : 3e-2) * random.normal()), stable);
-    }
-    for (int k = 0; k < order / 6; ++k) add(order, random.uniform(5.0, 1000.0), false);
-  }
-  return modal::modes_json(fit);
-}
-
 std::string sample_lobes() {
   const LimitCurve all = limit_curve({});
   Json limit = Json::array();
@@ -311,6 +234,7 @@ std::string sample_plan(const std::string& text) {
       {"pairs", pairs_json(text)},
       {"limit_share", {{"tool", {0.03, 0.02, 0.01, 0.02, 0.02, 0.01, 0.31, 0.58}}, {"workpiece", Json::array()}}},
       {"cuts", std::move(cuts)},
+      {"hit_directions", {"x", "x", "x", "x", "x", "y", "y", "y", "y", "y"}},
       {"feed_direction_deg", 0},
       {"feed_directions", feed_directions_json()},
       {"warnings", Json::array({said("The measured model is not passive: Im H_yy > 0 on 46 % of lines.")})},

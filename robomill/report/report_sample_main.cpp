@@ -5,6 +5,7 @@
 #include "robomill/report/monitor_sample.hpp"
 #include "robomill/report/plan_sample.hpp"
 #include "robomill/report/report_sample.hpp"
+#include "robomill/report/structure_sample.hpp"
 
 /// report_sample OUT.html [sample|hostile]: the sample page for the browser test; hostile puts markup into every text
 /// it can.
@@ -18,10 +19,10 @@ int main(int argc, char** argv) {
     const std::string evil =
         "</script><script>throw new Error('escaped')</script><img src=x onerror=alert(1)><!--<script>";
     report.title = evil;
+    report.frf = robomill::report::sample_frf(evil);
+    report.assembly = robomill::report::sample_assembly(evil);
     report.plan = robomill::report::sample_plan(evil);
     report.recordings = robomill::report::sample_recordings(evil);
-    report.prediction->holder_file = evil;
-    report.prediction->notes = {evil};
     report.forces->facts = {{evil, evil}};
     report.forces->warnings = {evil};
     report.forces->notes = {evil};

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "robomill/base/random.hpp"
 #include "robomill/report/json.hpp"
@@ -13,6 +13,7 @@
 #include "robomill/report/page.hpp"
 #include "robomill/report/plan_sample.hpp"
 #include "robomill/report/report_sample.hpp"
+#include "robomill/report/structure_sample.hpp"
 #include "robomill/report/thin.hpp"
 #include "testing/support.hpp"
 
@@ -34,16 +35,6 @@ std::size_t count(const std::string& text, const std::string& part) {
   std::size_t found = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
   return found;
-}
-
-TEST(ReportJson, NumbersAreTheStructsInShopUnits) {
-  const Report report = sample_report();
-  const json data = json::parse(report_json(report));
-  ASSERT_EQ(data["frfs"][0]["frequency_hz"].size(), data["frfs"][0]["measured"]["magnitude"].size());
-  EXPECT_NEAR(data["frfs"][0]["fitted"]["magnitude"][100].get<double>(), std::abs(report.frfs[0].fitted[100]) * 1e6,
-              1e-5);
-  EXPECT_EQ(data["frfs"][1]["name"], "yx");
-  EXPECT_EQ(data["frfs"][1]["unit"], "µm/N");
 }
 
 // What other writers give is rounded too; counts and texts stay.
@@ -70,13 +61,6 @@ TEST(ReportJson, NonFiniteIsNull) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double value : {missing, infinity, -infinity}) EXPECT_TRUE(number(value).is_null());
   EXPECT_EQ(number(2e-3, 1e-3).get<double>(), 2.0);
-  Report report;
-  report.frf_frequency_hz = Eigen::Vector3d(1.0, 2.0, 3.0);
-  report.frfs.push_back({.measured = Eigen::Vector3cd(1e-6, missing, infinity)});
-  const std::string text = report_json(report);
-  EXPECT_EQ(text.find("nan"), std::string::npos);
-  EXPECT_EQ(text.find("inf"), std::string::npos);
-  EXPECT_TRUE(json::parse(text)["frfs"][0]["measured"]["magnitude"][1].is_null());
 }
 
 // A list too long for a page keeps its ends and the extremes of every column.
@@ -117,12 +101,9 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.summary = evil;
   report.plan = sample_plan(evil);
   report.recordings = sample_recordings(evil);
-  report.frfs.front().findings = {evil};
-  report.frfs.front().remedies = {evil};
-  report.hits.front() = {evil, evil, false, {evil}};
+  report.frf = sample_frf(evil);
+  report.assembly = sample_assembly(evil);
   report.files = {{evil, evil, evil}};
-  report.prediction->holder_file = evil;
-  report.prediction->notes = {evil};
   report.forces->facts = {{evil, evil}};
   report.forces->warnings = {evil};
   report.forces->notes = {evil};
@@ -145,28 +126,34 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   EXPECT_EQ(json::parse(embedded(html))["title"], evil);
 }
 
-TEST(ReportJson, SegmentsAndJointAreTheAssembly) {
-  Report report = sample_report();
-  const json data = json::parse(report_json(report));
-  const auto& tool = data["assembly"]["tool"];
-  ASSERT_EQ(tool.size(), 3u);
-  EXPECT_EQ(tool[0]["length_mm"].get<double>(), 26.0);
-  EXPECT_NEAR(tool[0]["equivalent_diameter_mm"].get<double>(), 9.6, 1e-9);
-  EXPECT_TRUE(tool[0]["inner_diameter_mm"].is_null());
-  EXPECT_EQ(tool[1]["inner_diameter_mm"].get<double>(), 2.0);
-  EXPECT_EQ(data["assembly"]["joint"]["rotational_stiffness_n_m_per_rad"].get<double>(), 5e4);
-  EXPECT_EQ(data["assembly"]["holder"]["kind"], "segments");
-  EXPECT_EQ(data["assembly"]["peaks"][0]["receptance_um_per_n"].get<double>(), 2.31);
-  EXPECT_TRUE(data["assembly"]["peaks"][1]["measured_frequency_hz"].is_null());
-  ASSERT_EQ(data["frfs"][0]["suspect_bands_hz"].size(), 1u);
-  EXPECT_NEAR(data["frfs"][0]["suspect_bands_hz"][0][0].get<double>(), 120.0, 0.5);
-  // A measurement with an axis of its own keeps it.
-  report.frfs[0].measured_frequency_hz = Eigen::Vector3d(10.0, 20.0, 30.0);
-  report.frfs[0].measured = Eigen::Vector3cd(1e-6, 2e-6, 3e-6);
-  const json own = json::parse(report_json(report))["frfs"][0];
-  EXPECT_EQ(own["measured_frequency_hz"], (json{10.0, 20.0, 30.0}));
-  EXPECT_EQ(own["measured"]["magnitude"], (json{1.0, 2.0, 3.0}));
-  EXPECT_EQ(own["frequency_hz"].size(), own["predicted"]["magnitude"].size());
+// Curves over one axis keep the same lines, whatever they hang in; other lists and short ones stay.
+TEST(ReportJson, ThinsCurvesOverOneAxisTogether) {
+  Random random(4);
+  json axis = json::array(), re = json::array(), im = json::array();
+  for (int i = 0; i < 20000; ++i) {
+    axis.push_back(0.5 * i);
+    re.push_back(random.normal());
+    im.push_back(random.normal());
+  }
+  re[777] = 40.0;
+  im[15000] = nullptr;
+  im[15001] = -40.0;
+  Report report;
+  report.frf =
+      json{{"frequency_hz", axis}, {"receptance_m_per_n", {{"xx", {{"re", re}, {"im", im}}}}}, {"lines", {1, 2}}}
+          .dump();
+  const json kept = json::parse(report_json(report))["frf"];
+  const json& curve = kept["receptance_m_per_n"]["xx"];
+  ASSERT_LT(kept["frequency_hz"].size(), 6010U);
+  ASSERT_EQ(curve["re"].size(), kept["frequency_hz"].size());
+  ASSERT_EQ(curve["im"].size(), kept["frequency_hz"].size());
+  EXPECT_EQ(kept["lines"].size(), 2U);
+  const auto at = [&](double frequency_hz) {
+    return static_cast<std::size_t>(std::ranges::find(kept["frequency_hz"], json(frequency_hz)) -
+                                    kept["frequency_hz"].begin());
+  };
+  EXPECT_EQ(curve["re"][at(388.5)], 40.0);
+  EXPECT_EQ(curve["im"][at(7500.5)], -40.0);
 }
 
 // The page's script makes tables and plots of the report's own data; the summary is for where no script runs.
@@ -192,28 +179,8 @@ std::string rejected(Change&& change) {
 
 TEST(ReportValidate, NamesTheMember) {
   EXPECT_EQ(rejected([](Report&) {}), "accepted");
-  EXPECT_EQ(rejected([](Report& r) { r.frfs[1].fitted.resize(3); }), "frfs[1].fitted");
-  EXPECT_EQ(rejected([](Report& r) { r.frf_frequency_hz[4] = r.frf_frequency_hz[3]; }), "frf_frequency_hz");
-  EXPECT_EQ(rejected([](Report& r) { r.frfs[1].predicted.resize(3); }), "frfs[1].predicted");
-  EXPECT_EQ(rejected([](Report& r) { r.prediction->assembly.tool.clear(); }), "prediction.assembly.tool");
-  EXPECT_EQ(rejected([](Report& r) { r.prediction->assembly.tool[1].length_m = missing; }),
-            "prediction.assembly.tool[1].length_m");
-  EXPECT_EQ(rejected([](Report& r) { r.prediction->assembly.holder.segments[0].inner_diameter_m = 1.0; }),
-            "prediction.assembly.holder.segments[0].inner_diameter_m");
-  EXPECT_EQ(rejected([](Report& r) { r.prediction->assembly.joint->points = 3; }),
-            "prediction.assembly.joint.insertion_length_m");
   EXPECT_EQ(rejected([](Report& r) { r.forces->path->cuts.pop_back(); }), "forces.path.cuts");
   EXPECT_EQ(rejected([](Report& r) { r.smooth->methods.clear(); }), "smooth.methods");
-}
-
-TEST(Bands, JoinNeighbouringLines) {
-  const Eigen::VectorXd axis = Eigen::VectorXd::LinSpaced(10, 10.0, 100.0);
-  EXPECT_EQ(bands_json(axis, {}).size(), 0U);
-  const nlohmann::ordered_json bands = bands_json(axis, {10.0, 40.0, 50.0, 55.0, 100.0});
-  ASSERT_EQ(bands.size(), 3U);
-  EXPECT_EQ(bands[0], (nlohmann::ordered_json{10.0, 15.0}));
-  EXPECT_EQ(bands[1], (nlohmann::ordered_json{35.0, 55.0}));
-  EXPECT_EQ(bands[2], (nlohmann::ordered_json{95.0, 100.0}));
 }
 
 // Property: increasing indices, within the bound, and the extremes of the whole curve are among them.

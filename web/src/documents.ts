@@ -35,29 +35,22 @@ export interface Finishing {
   max_deflection_um: Num;
 }
 
-export interface Curve {
-  magnitude: Num[];
-  phase_deg: Num[];
+/** How well an FRF was measured. */
+export interface FrfGrade {
+  grade: 'good' | 'usable' | 'poor';
+  excited_band_hz: [Num, Num];
+  lowest_trustworthy_frequency_hz: Num;
+  faults: string[];
+  remedies: string[];
 }
 
-export interface Frf {
-  name: string;
-  unit: string;
+/** tip.json: FRFs by name over one axis; hits and grades where they were measured here. */
+export interface FrfDocument {
   frequency_hz: number[];
-  measured_frequency_hz: number[] | null; // where measured has an axis of its own
-  measured: Curve | null;
-  predicted: Curve | null;
-  fitted: Curve | null;
-  coherence: Num[] | null;
-  trusted_from_hz: Num;
-  trusted_to_hz: Num;
-  suspect_bands_hz: [number, number][];
-  unreliable_bands_hz: [number, number][];
-  grade: 'good' | 'fair' | 'poor' | null;
-  findings: string[];
-  remedies: string[];
-  relative_error: Num;
-  prediction_error: Num;
+  receptance_m_per_n: Record<string, { re: Num[]; im: Num[] }>; // SI, also of rotations and moments
+  coherence: Record<string, Num[]>;
+  hits?: { file: string; accepted: boolean; reasons: string[] }[];
+  grades?: Record<string, FrfGrade>;
 }
 
 /** A complex number by degree of freedom. */
@@ -75,6 +68,7 @@ export interface ModesDocument {
   fit?: {
     relative_error: Num;
     mean_relative_error: Num;
+    relative_error_by_frf: Record<string, Num>;
     converged: boolean;
     band_hz: [Num, Num];
   };
@@ -89,54 +83,48 @@ export interface Pole {
   stable: boolean; // frequency, damping and mode shape hardly moved since the order below
 }
 
-export interface Hit {
-  file: string;
-  direction: string;
-  accepted: boolean;
-  reasons: string[];
-}
-
-export interface Segment {
-  part: 'tool' | 'holder' | 'shank';
-  count: number;
+/** In the keys of assembly.toml. */
+export interface SegmentDocument {
   length_mm: number;
   diameter_mm: number;
-  inner_diameter_mm: Num;
-  flutes: number;
-  equivalent_diameter_mm: Num;
-  youngs_modulus_gpa: Num;
-  density_kg_per_m3: Num;
-  mass_kg: Num;
-  loss_factor: Num;
-  beam: string;
+  inner_diameter_mm: number; // 0: none
+  youngs_modulus_gpa: number;
+  mass_kg?: number;
+  density_kg_per_m3?: number;
+  loss_factor: number;
+  flutes?: number;
+  flute_diameter_ratio?: number;
+  beam: 'timoshenko' | 'euler-bernoulli';
 }
 
-export interface Joint {
-  translational_stiffness_n_per_m: Num;
-  translational_damping_n_s_per_m: Num;
-  rotational_stiffness_n_m_per_rad: Num;
-  rotational_damping_n_m_s_per_rad: Num;
-  cross_stiffness_n_per_rad: Num;
-  points: number;
-  insertion_length_mm: Num;
-  shank: Segment[]; // of a joint of several points
+/** A tool in its holder and what is predicted of its tip. */
+export interface AssemblyDocument {
+  tool: SegmentDocument[];
+  joint:
+    | null // rigid
+    | {
+        translational_stiffness_n_per_m: Num;
+        translational_damping_n_s_per_m: Num;
+        rotational_stiffness_n_m_per_rad: Num;
+        rotational_damping_n_m_s_per_rad: Num;
+        cross_stiffness_n_per_rad: Num;
+        points: number;
+        insertion_length_mm?: Num;
+        shank?: SegmentDocument[]; // of a joint of several points
+      };
+  holder: { segments?: SegmentDocument[]; receptances?: string };
+  peaks: TipPeak[];
+  relative_error: Record<string, Num> | null; // of a prediction beside a measurement
+  suspect_hz: number[]; // lines where the measured holder would create energy
+  unreliable_hz: number[]; // lines where a small error of the measurement became a large one
+  notes: string[];
 }
 
 export interface TipPeak {
-  name: string;
+  frf: string;
   frequency_hz: number;
-  receptance_um_per_n: Num;
-  measured_frequency_hz: Num;
-}
-
-export interface Assembly {
-  tool: Segment[];
-  joint: Joint | null; // null: rigid
-  holder: { kind: 'measured' | 'wall' | 'segments'; segments: Segment[]; file: string };
-  peaks: TipPeak[];
-  suspect_lines: number;
-  unreliable_lines: number;
-  notes: string[];
+  receptance_m_per_n: Num;
+  measured_frequency_hz: Num; // of the measured peak nearest to it
 }
 
 /** A row of lobes.json: a point where a cut begins to be unstable. */
@@ -208,6 +196,7 @@ export interface Plan {
   pairs: PartLimits[];
   limit_share: { tool: Num[]; workpiece: Num[] }; // empty: no limit was found
   cuts: Cut[];
+  hit_directions?: string[]; // of each hit: "x", "-y"
   feed_direction_deg?: Num;
   feed_directions?: FeedDirection[];
   warnings: string[];
@@ -509,9 +498,10 @@ export interface Report {
   title: string;
   created: string;
   plan: Plan | null;
-  assembly: Assembly | null;
-  frfs: Frf[];
-  hits: Hit[];
+  frf: FrfDocument | null; // measured, or predicted where there is an assembly
+  fitted: FrfDocument | null;
+  measured: FrfDocument | null; // beside predicted ones
+  assembly: AssemblyDocument | null;
   modes: ModesDocument | null;
   workpiece_modes: ModesDocument | null;
   lobes: LobesDocument | null;

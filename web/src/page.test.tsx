@@ -20,9 +20,10 @@ function empty(): Report {
   return {
     ...report,
     plan: null,
+    frf: null,
+    fitted: null,
+    measured: null,
     assembly: null,
-    frfs: [],
-    hits: [],
     modes: null,
     workpiece_modes: null,
     lobes: null,

@@ -10,7 +10,7 @@ import { RecommendationSection } from './sections/recommendation';
 import { RecordingsSection } from './sections/recordings';
 import { SmoothSection } from './sections/smooth';
 import { FrfSection, HitsSection, ModesSection, NotesSection } from './sections/structure';
-import { lobesOf, modesOf } from './views';
+import { frfsOf, hitsOf, lobesOf, modesOf } from './views';
 
 interface Entry {
   id: string; // of the section's element
@@ -19,10 +19,12 @@ interface Entry {
 }
 
 function entries(report: Report): Entry[] {
-  const { plan, monitor, calibration, forces, smooth, assembly, frfs, recordings, hits, files } = report;
+  const { plan, monitor, calibration, forces, smooth, assembly, recordings, files } = report;
   const { cuts = [], pairs = [], feed_directions: feed = [], notes = [] } = plan ?? {};
   const lobes = report.lobes && lobesOf(report.lobes);
   const modes = modesOf(report);
+  const frfs = frfsOf(report);
+  const hits = hitsOf(report);
   const all: Entry[] = [
     { id: 'monitor', name: 'Monitor', content: monitor && <MonitorSection monitor={monitor} /> },
     { id: 'calibration', name: 'Calibration', content: calibration && <CalibrationSection calibration={calibration} /> },
@@ -30,7 +32,7 @@ function entries(report: Report): Entry[] {
     { id: 'feed', name: 'Feed direction', content: plan && feed.length > 0 && <FeedSection plan={plan} searched={lobes?.searched_depth_mm ?? null} /> },
     { id: 'forces', name: 'Forces', content: forces && <ForcesSection forces={forces} /> },
     { id: 'smooth', name: 'Smoothed program', content: smooth && <SmoothSection smooth={smooth} /> },
-    { id: 'assembly', name: 'Tool and holder', content: assembly && <AssemblySection assembly={assembly} /> },
+    { id: 'assembly', name: 'Tool and holder', content: assembly && <AssemblySection document={assembly} /> },
     { id: 'frf', name: 'Frequency response', content: frfs.length > 0 && <FrfSection frfs={frfs} modes={modes} predicted={assembly !== null} /> },
     { id: 'modes', name: 'Modes', content: modes.length > 0 && <ModesSection modes={modes} document={report.modes} /> },
     { id: 'pairs', name: 'Which modes matter', content: plan && lobes && pairs.length > 0 && <PairsSection all={lobes} plan={plan} /> },

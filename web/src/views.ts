@@ -1,5 +1,5 @@
 // What tables and plots need, made of the documents.
-import type { BoundaryPoint, LobesDocument, ModesDocument, ModeVector, Num, Owner, PartLimits, Plan, Report } from './documents';
+import type { AssemblyDocument, BoundaryPoint, FrfDocument, LobesDocument, ModesDocument, ModeVector, Num, Owner, PartLimits, Plan, Report, SegmentDocument, TipPeak } from './documents';
 
 export interface Mode {
   mode: number;
@@ -72,5 +72,143 @@ export function feedOf({ feed_directions: rows = [], feed_direction_deg: used = 
     spindle_speed_rpm: recommended?.spindle_speed_rpm ?? null,
     used_direction_deg: used,
     searched_depth_mm: searched,
+  };
+}
+
+/** A curve over its own axis. */
+export interface Curve {
+  frequency_hz: number[];
+  magnitude: Num[];
+  phase_deg: Num[];
+}
+
+export interface Frf {
+  name: string;
+  unit: string;
+  measured: Curve | null;
+  predicted: Curve | null;
+  fitted: Curve | null;
+  coherence: { frequency_hz: number[]; values: Num[] } | null;
+  trusted_from_hz: Num;
+  trusted_to_hz: Num;
+  suspect_bands_hz: [number, number][];
+  unreliable_bands_hz: [number, number][];
+  grade: 'good' | 'usable' | 'poor' | null;
+  findings: string[];
+  remedies: string[];
+  relative_error: Num; // of the fit
+  prediction_error: Num;
+}
+
+/** The unit that an FRF is drawn in, and how many of it one SI unit is: "xx" is displacement by force, "ry:mx" rotation by moment. */
+function unitOf(name: string): [string, number] {
+  const [response = '', excitation = ''] = name.includes(':') ? name.split(':') : [...name];
+  const moment = excitation.includes('m');
+  if (response.includes('r')) return [moment ? 'rad/(N m)' : 'rad/N', 1];
+  return [moment ? 'µm/(N m)' : 'µm/N', 1e6];
+}
+
+function curveOf(document: FrfDocument | null, name: string, scale: number): Curve | null {
+  const values = document?.receptance_m_per_n[name];
+  if (!document || !values) return null;
+  const complex = (f: (re: number, im: number) => number) =>
+    values.re.map((re, i) => {
+      const im = values.im[i] ?? null;
+      return re === null || im === null ? null : f(re, im);
+    });
+  return {
+    frequency_hz: document.frequency_hz,
+    magnitude: complex((re, im) => scale * Math.hypot(re, im)),
+    phase_deg: complex((re, im) => (Math.atan2(im, re) * 180) / Math.PI),
+  };
+}
+
+/** Lines of an axis as bands, neighbours in one; a band reaches half a step beyond its lines. */
+export function bandsOf(axis: number[], lines: number[]): [number, number][] {
+  const bands: [number, number][] = [];
+  let next = 0;
+  let from: number | null = null;
+  axis.forEach((at, i) => {
+    const slack = 1e-5 * Math.abs(at); // axes that differ by less are the same, as for files
+    while (next < lines.length && lines[next]! < at - slack) ++next;
+    const marked = next < lines.length && lines[next]! <= at + slack;
+    const low = i > 0 ? (axis[i - 1]! + at) / 2 : at;
+    if (marked) from ??= low;
+    else if (from !== null) {
+      bands.push([from, low]);
+      from = null;
+    }
+  });
+  if (from !== null) bands.push([from, axis[axis.length - 1]!]);
+  return bands;
+}
+
+export function frfsOf({ frf: document, fitted, measured, modes, assembly }: Pick<Report, 'frf' | 'fitted' | 'measured' | 'modes' | 'assembly'>): Frf[] {
+  if (document === null) return [];
+  return Object.keys(document.receptance_m_per_n).map((name) => {
+    const [unit, scale] = unitOf(name);
+    const own = curveOf(document, name, scale);
+    const grade = document.grades?.[name];
+    const coherence = document.coherence[name];
+    const bands = (lines: number[] = []) => bandsOf(document.frequency_hz, lines);
+    return {
+      name,
+      unit,
+      measured: assembly ? curveOf(measured, name, scale) : own,
+      predicted: assembly ? own : null,
+      fitted: curveOf(fitted, name, scale),
+      coherence: coherence ? { frequency_hz: document.frequency_hz, values: coherence } : null,
+      trusted_from_hz: grade?.lowest_trustworthy_frequency_hz ?? null,
+      trusted_to_hz: grade?.excited_band_hz[1] ?? null,
+      suspect_bands_hz: bands(assembly?.suspect_hz),
+      unreliable_bands_hz: bands(assembly?.unreliable_hz),
+      grade: grade?.grade ?? null,
+      findings: grade?.faults ?? [],
+      remedies: grade?.remedies ?? [],
+      relative_error: modes?.fit?.relative_error_by_frf[name] ?? null,
+      prediction_error: assembly?.relative_error?.[name] ?? null,
+    };
+  });
+}
+
+export interface Hit {
+  file: string;
+  direction: string;
+  accepted: boolean;
+  reasons: string[];
+}
+
+export function hitsOf({ frf, plan }: Pick<Report, 'frf' | 'plan'>): Hit[] {
+  return (frf?.hits ?? []).map((hit, i) => ({ ...hit, file: hit.file.replace(/^.*\//, ''), direction: plan?.hit_directions?.[i] ?? '' }));
+}
+
+export interface Segment extends SegmentDocument {
+  part: 'tool' | 'holder' | 'shank';
+  count: number; // from 1
+}
+
+export type Joint = Omit<NonNullable<AssemblyDocument['joint']>, 'shank'> & { shank: Segment[] };
+
+export interface Assembly {
+  tool: Segment[];
+  joint: Joint | null; // null: rigid
+  holder: { kind: 'measured' | 'wall' | 'segments'; segments: Segment[]; file: string };
+  peaks: TipPeak[];
+  suspect_lines: number;
+  unreliable_lines: number;
+  notes: string[];
+}
+
+export function assemblyOf({ tool, joint, holder, peaks, suspect_hz, unreliable_hz, notes }: AssemblyDocument): Assembly {
+  const named = (segments: SegmentDocument[] = [], part: Segment['part']) => segments.map((segment, i) => ({ ...segment, part, count: i + 1 }));
+  const segments = named(holder.segments, 'holder');
+  return {
+    tool: named(tool, 'tool'),
+    joint: joint && { ...joint, shank: named(joint.shank, 'shank') },
+    holder: { kind: holder.receptances ? 'measured' : segments.length > 0 ? 'segments' : 'wall', segments, file: holder.receptances ?? '' },
+    peaks,
+    suspect_lines: suspect_hz.length,
+    unreliable_lines: unreliable_hz.length,
+    notes,
   };
 }

@@ -140,6 +140,7 @@ Json decision_json(const PlanResult& result) {
     json["feed_direction_deg"] = number(result.cut.problem.feed_direction_rad / units::deg);
     json["feed_directions"] = feed_directions_json(*result.feed_directions);
   }
+  if (result.hits) json["hit_directions"] = result.hit_directions;
   json["warnings"] = result.warnings;
   json["notes"] = result.notes;
   return json;

@@ -63,7 +63,7 @@ std::string prediction_json(const TipPrediction& prediction) {
     holder["receptances"] = prediction.file.receptances.filename().string();
   }
   Json peaks = Json::array();
-  for (const report::TipPeak& peak : prediction.peaks) {
+  for (const TipPeak& peak : prediction.peaks) {
     peaks.push_back({{"frf", modal::to_string(peak.name)},
                      {"frequency_hz", number(peak.frequency_hz)},
                      {"receptance_m_per_n", number(peak.receptance_m_per_n)},

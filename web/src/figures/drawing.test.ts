@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import type { Assembly, Joint, Segment } from '../documents';
+import type { Assembly, Joint, Segment } from '../views';
 import { AssemblyDrawing } from './drawing';
 import { layOut, sideBySide, viewWidth, type Box, type Point, type Shape } from './drawing_layout';
 
@@ -20,14 +20,11 @@ function segment(part: Segment['part'], length_mm: number, diameter_mm: number, 
     count: 1,
     length_mm,
     diameter_mm,
-    inner_diameter_mm: null,
-    flutes: 0,
-    equivalent_diameter_mm: null,
+    inner_diameter_mm: 0,
     youngs_modulus_gpa: 200,
     density_kg_per_m3: 7800,
-    mass_kg: null,
     loss_factor: 0,
-    beam: 'Timoshenko',
+    beam: 'timoshenko',
     ...more,
   };
 }

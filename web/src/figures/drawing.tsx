@@ -1,5 +1,5 @@
 // The drawing of an assembly, to scale, as SVG that takes its colours from the page.
-import type { Assembly } from '../documents';
+import type { Assembly } from '../views';
 import { layOut, viewWidth, type Shape } from './drawing_layout';
 
 function tenths(value: number): string {

@@ -1,5 +1,5 @@
 // What stands where in the drawing of an assembly: shapes in the units of the view box, which drawing.tsx writes as SVG.
-import type { Assembly, Joint, Segment } from '../documents';
+import type { Assembly, Joint, Segment } from '../views';
 import { general, withPower } from '../text';
 import { thinSpace } from './theme';
 
@@ -113,8 +113,7 @@ function atOnePoint({ joint }: Assembly): Joint | null {
 /** Pieces one after the other from x. */
 function row(segments: Segment[], from: number, scale: number): Piece[] {
   let end = from;
-  return segments.map(({ part, length_mm, diameter_mm, inner_diameter_mm, flutes }) => {
-    const bore = inner_diameter_mm ?? 0;
+  return segments.map(({ part, length_mm, diameter_mm, inner_diameter_mm: bore, flutes = 0 }) => {
     const x = end;
     end += scale * length_mm;
     return {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import type { Frf, Recording } from '../documents';
-import type { FeedDirections, Mode } from '../views';
+import type { Recording } from '../documents';
+import type { FeedDirections, Frf, Mode } from '../views';
 import { convergenceFigure, stabilisationFigure } from './fit';
 import { breakJumps, frfFigure, prefersLogFrequency } from './frf';
 import { polarFigure, rings, toPlane } from './polar';
@@ -26,17 +26,16 @@ describe('logarithmic ticks', () => {
   });
 });
 
+const lines = [5, 10, 20, 500];
 const frf: Frf = {
   name: 'xy',
   unit: 'µm/N',
-  frequency_hz: [5, 10, 20, 500],
-  measured_frequency_hz: null,
   predicted: null,
   suspect_bands_hz: [],
   unreliable_bands_hz: [],
-  measured: { magnitude: [1, 2, null, 0.5], phase_deg: [0, -170, 170, 160] },
-  fitted: { magnitude: [1, 2, 3, 0.5], phase_deg: [0, -170, -190, -200] },
-  coherence: [1, 0.9, 0.8, 1],
+  measured: { frequency_hz: lines, magnitude: [1, 2, null, 0.5], phase_deg: [0, -170, 170, 160] },
+  fitted: { frequency_hz: lines, magnitude: [1, 2, 3, 0.5], phase_deg: [0, -170, -190, -200] },
+  coherence: { frequency_hz: lines, values: [1, 0.9, 0.8, 1] },
   trusted_from_hz: 8,
   trusted_to_hz: null,
   grade: null,
@@ -53,7 +52,7 @@ describe('FRF', () => {
   });
   it('prefers a logarithmic axis over a wide band', () => {
     expect(prefersLogFrequency(frf)).toBe(true);
-    expect(prefersLogFrequency({ ...frf, frequency_hz: [0, 500, 3500] })).toBe(false);
+    expect(prefersLogFrequency({ ...frf, measured: { ...frf.measured!, frequency_hz: [0, 500, 3500] } })).toBe(false);
   });
   it('shows measured, fitted and coherence, and shades what is not trusted', () => {
     const modes = [{ mode: 1, mode_of: 'tool', frequency_hz: 10 }, { mode: 2, mode_of: 'tool', frequency_hz: 9000 }, { mode: 1, mode_of: 'workpiece', frequency_hz: 20 }];
@@ -71,7 +70,7 @@ describe('FRF', () => {
   });
   it('shows a prediction over a measurement with an axis of its own, and where it is in doubt', () => {
     const figure = frfFigure(
-      { ...frf, predicted: frf.fitted, coherence: null, measured_frequency_hz: [6, 7, 8, 9], suspect_bands_hz: [[0, 15], [18, 20]], unreliable_bands_hz: [[300, 500]] },
+      { ...frf, predicted: frf.fitted, coherence: null, measured: { ...frf.measured!, frequency_hz: [6, 7, 8, 9] }, suspect_bands_hz: [[0, 15], [18, 20]], unreliable_bands_hz: [[300, 500]] },
       [],
       true,
       light,

@@ -1,5 +1,4 @@
-import type { Frf } from '../documents';
-import type { Mode } from '../views';
+import type { Frf, Mode } from '../views';
 import { axis, layout, logTicks, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 /** Breaks a phase curve where it jumps by more than half a turn, so that no line crosses the plot. */
@@ -21,9 +20,15 @@ export function breakJumps(frequency: number[], phase: (number | null)[]): { x: 
 const energy = 'suspect: the holder would create energy';
 const amplified = 'unreliable: the measurement is amplified';
 
+/** The axis that a figure spans. */
+function axisOf({ predicted, measured, fitted }: Frf): number[] {
+  return (predicted ?? measured ?? fitted)?.frequency_hz ?? [];
+}
+
 /** Lowest frequency above zero, and the highest. */
 function band(frf: Frf): [number, number] {
-  return [frf.frequency_hz.find((f) => f > 0) ?? 1, frf.frequency_hz[frf.frequency_hz.length - 1] ?? 1];
+  const lines = axisOf(frf);
+  return [lines.find((f) => f > 0) ?? 1, lines[lines.length - 1] ?? 1];
 }
 
 /** A logarithmic axis serves where the band spans more than a decade and a half. */
@@ -73,8 +78,9 @@ function marked(frf: Frf, theme: Theme): { shapes: Layout[]; keys: Trace[] } {
 }
 
 function modeMarks(frf: Frf, modes: Mode[], logarithmic: boolean, theme: Theme): { shapes: Layout[]; annotations: Layout[] } {
-  const from = frf.frequency_hz[0] ?? 0;
-  const to = frf.frequency_hz[frf.frequency_hz.length - 1] ?? 0;
+  const lines = axisOf(frf);
+  const from = lines[0] ?? 0;
+  const to = lines[lines.length - 1] ?? 0;
   // The FRFs are those of the tool.
   const inside = modes.filter((mode) => mode.mode_of === 'tool' && mode.frequency_hz >= from && mode.frequency_hz <= to);
   const place = (f: number) => (logarithmic ? Math.log10(f) : f);
@@ -121,7 +127,7 @@ function curves(frf: Frf, theme: Theme): Trace[] {
   const add = (which: 'measured' | 'predicted' | 'fitted', line: Layout) => {
     const curve = frf[which];
     if (curve === null) return;
-    const frequency = (which === 'measured' ? frf.measured_frequency_hz : null) ?? frf.frequency_hz;
+    const { frequency_hz: frequency } = curve;
     const phase = breakJumps(frequency, curve.phase_deg);
     const common = { type: 'scatter', mode: 'lines', name: which, legendgroup: which, line };
     data.push(
@@ -144,8 +150,8 @@ function curves(frf: Frf, theme: Theme): Trace[] {
       mode: 'lines',
       name: 'coherence',
       showlegend: false,
-      x: frf.frequency_hz,
-      y: frf.coherence,
+      x: frf.coherence.frequency_hz,
+      y: frf.coherence.values,
       yaxis: 'y3',
       line: { color: theme.stable, width: 1.2 },
       hovertemplate: `%{y:.3f} at %{x:.2f}${thinSpace}Hz<extra>coherence</extra>`,
@@ -172,7 +178,7 @@ export function frfFigure(frf: Frf, modes: Mode[], logarithmic: boolean, theme: 
         hoverformat: '.2f',
         ...(logarithmic
           ? { type: 'log', range: [Math.log10(from), Math.log10(to)], tickmode: 'array', ...logTicks(from, to) }
-          : { type: 'linear', range: [frf.frequency_hz[0] ?? 0, to] }),
+          : { type: 'linear', range: [axisOf(frf)[0] ?? 0, to] }),
       }),
       yaxis: axis(theme, `|${plain(frf.name)}| (${plain(frf.unit)})`, { type: 'log', domain: domains[0], exponentformat: 'power', dtick: 1 }),
       yaxis2: axis(theme, 'Phase (°)', { domain: domains[1], range: [-185, 185], tickvals: [-180, -90, 0, 90, 180] }),

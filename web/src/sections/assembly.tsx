@@ -1,11 +1,13 @@
 // Tool, joint and holder, and what is predicted of them.
-import type { Assembly, Joint, Segment, TipPeak } from '../documents';
+import type { AssemblyDocument, TipPeak } from '../documents';
 import { AssemblyDrawing } from '../figures/drawing';
 import { Bullets, Details, Section, Table, type Column } from '../parts';
 import { dash, fixed, general, percent, significant, withPower } from '../text';
+import { assemblyOf, type Assembly, type Joint, type Segment } from '../views';
 
-function segmentRemark({ beam, flutes, equivalent_diameter_mm: diameter }: Segment): string {
-  return flutes > 0 ? `${beam}; ${flutes} flutes, counted as a solid round of ${significant(diameter)} mm` : beam;
+function segmentRemark({ beam, flutes, flute_diameter_ratio: ratio = 1, diameter_mm: diameter }: Segment): string {
+  const name = beam === 'timoshenko' ? 'Timoshenko' : 'Euler–Bernoulli';
+  return flutes ? `${name}; ${flutes} flutes, counted as a solid round of ${significant(ratio * diameter)} mm` : name;
 }
 
 function SegmentsTable({ assembly }: { assembly: Assembly }) {
@@ -17,12 +19,12 @@ function SegmentsTable({ assembly }: { assembly: Assembly }) {
         { heading: 'Segment', cell: ({ part, count }) => `${part} ${count}` },
         { heading: 'Length (mm)', number: true, cell: (segment) => general(segment.length_mm, 6) },
         { heading: 'Diameter (mm)', number: true, cell: (segment) => general(segment.diameter_mm, 6) },
-        { heading: 'Bore (mm)', number: true, cell: (segment) => significant(segment.inner_diameter_mm) },
+        { heading: 'Bore (mm)', number: true, cell: (segment) => significant(segment.inner_diameter_mm || null) },
         { heading: 'E (GPa)', number: true, cell: (segment) => significant(segment.youngs_modulus_gpa) },
         {
           heading: 'Density (kg/m³) or mass',
           number: true,
-          cell: ({ mass_kg: mass, density_kg_per_m3: density }) => (mass === null ? significant(density) : `${significant(mass)} kg`),
+          cell: ({ mass_kg: mass, density_kg_per_m3: density }) => (mass ? `${significant(mass)} kg` : significant(density ?? null)),
         },
         { heading: 'Loss factor', number: true, cell: (segment) => significant(segment.loss_factor) },
         { heading: 'Beam', cell: segmentRemark },
@@ -53,7 +55,7 @@ function JointPart({ joint }: { joint: Joint | null }) {
       />
       {joint.points > 1 && (
         <p>
-          Spread over {joint.points} points along {significant(joint.insertion_length_mm)} mm of the shank, an equal share at each.
+          Spread over {joint.points} points along {significant(joint.insertion_length_mm ?? null)} mm of the shank, an equal share at each.
         </p>
       )}
     </>
@@ -63,9 +65,9 @@ function JointPart({ joint }: { joint: Joint | null }) {
 function PeaksTable({ peaks }: { peaks: TipPeak[] }) {
   if (peaks.length === 0) return null;
   const columns: Column<TipPeak>[] = [
-    { heading: 'FRF', cell: ({ name }) => name },
+    { heading: 'FRF', cell: ({ frf }) => frf },
     { heading: 'Frequency (Hz)', number: true, cell: (peak) => fixed(peak.frequency_hz, 1) },
-    { heading: 'Magnitude (µm/N)', number: true, cell: (peak) => significant(peak.receptance_um_per_n) },
+    { heading: 'Magnitude (µm/N)', number: true, cell: ({ receptance_m_per_n: size }) => significant(size === null ? null : 1e6 * size) },
   ];
   if (peaks.some((peak) => peak.measured_frequency_hz !== null)) {
     columns.push(
@@ -102,7 +104,8 @@ function MarkedLines({ suspect_lines: suspect, unreliable_lines: unreliable }: A
   );
 }
 
-export function AssemblySection({ assembly }: { assembly: Assembly }) {
+export function AssemblySection({ document }: { document: AssemblyDocument }) {
+  const assembly = assemblyOf(document);
   return (
     <Section id="assembly" heading="Tool and holder" lead="What the prediction was made of: the tool from its tip, the joint, and what holds it.">
       <AssemblyDrawing assembly={assembly} />

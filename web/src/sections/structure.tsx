@@ -1,12 +1,12 @@
 // What was measured of the structure, and the modes fitted to it.
 import { useState } from 'preact/hooks';
-import type { Frf, Hit, ModesDocument, ModeVector, Num, Owner, Pole, StageFile } from '../documents';
+import type { ModesDocument, ModeVector, Num, Owner, Pole, StageFile } from '../documents';
 import { convergenceFigure, stabilisationFigure } from '../figures/fit';
 import { frfFigure, prefersLogFrequency } from '../figures/frf';
 import { Bullets, Details, Section, Table, type Column } from '../parts';
 import { Choice, Plot } from '../plot';
 import { dash, percent, significant, withDeviation } from '../text';
-import type { Mode } from '../views';
+import type { Frf, Hit, Mode } from '../views';
 
 function FrfPlot({ frfs, modes, predicted }: { frfs: Frf[]; modes: Mode[]; predicted: boolean }) {
   const [shown, setShown] = useState(0);
