@@ -16,7 +16,7 @@ std::optional<LimitedBy> broken(const stability::SurfacePoint& surface, const Fi
   const bool rough =
       limits.max_surface_error_m > 0.0 && !(std::abs(surface.surface_location_error_m) <= limits.max_surface_error_m);
   if (rough) return LimitedBy::surface_error;
-  if (limits.max_deflection_m > 0.0 && surface.peak_deflection_m > limits.max_deflection_m) {
+  if (limits.max_deflection_m > 0.0 && !(surface.peak_deflection_m <= limits.max_deflection_m)) {
     return LimitedBy::deflection;
   }
   return std::nullopt;

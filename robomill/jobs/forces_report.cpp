@@ -131,7 +131,7 @@ report::RedundancySweep sweep_report(const robot::Redundancy& sweep, double used
   for (Eigen::Index i = 0; i < n; ++i) {
     const robot::RedundancySample& sample = sweep.samples[static_cast<std::size_t>(i)];
     out.rotation_rad(i) = sample.gamma_rad;
-    if (sample.status != robot::Choice::Status::found) continue;
+    if (sample.status != robot::Choice::Status::found || sample.buckled) continue;
     out.deflection_m(i) = sample.error_m.norm();
     out.condition_number(i) = sample.condition_number;
   }

@@ -44,14 +44,10 @@ modal::FrfSet frfs(double factor, double noise) {
 }
 
 Json segment(double length_mm, double diameter_mm, double bore_mm, double modulus_gpa, double density) {
-  return {{"length_mm", length_mm},
-          {"diameter_mm", diameter_mm},
-          {"inner_diameter_mm", bore_mm},
-          {"youngs_modulus_gpa", modulus_gpa},
-          {"density_kg_per_m3", density},
-          {"poissons_ratio", 0.3},
-          {"loss_factor", 0.005},
-          {"beam", "timoshenko"}};
+  return {{"length_mm", length_mm},       {"diameter_mm", diameter_mm},
+          {"inner_diameter_mm", bore_mm}, {"youngs_modulus_gpa", modulus_gpa},
+          {"density_kg_per_m3", density}, {"poissons_ratio", 0.3},
+          {"loss_factor", 0.005},         {"beam", "timoshenko"}};
 }
 
 }  // namespace
@@ -138,7 +134,8 @@ std::string sample_frf(const std::string& text) {
     const std::string file = "hit_" + std::string(k <= 5 ? "x_" : "y_") + std::to_string((k - 1) % 5 + 1) + ".csv";
     Json reasons = Json::array();
     if (!accepted) reasons.push_back(said("double hit: a second one of 7 % of the peak after 3.1 ms"));
-    json["hits"].push_back({{"file", accepted ? file : said(file.c_str())}, {"accepted", accepted}, {"reasons", reasons}});
+    json["hits"].push_back(
+        {{"file", accepted ? file : said(file.c_str())}, {"accepted", accepted}, {"reasons", reasons}});
   }
   for (const char* name : {"xx", "yx", "xy", "yy"}) {
     const bool direct = name[0] == name[1];

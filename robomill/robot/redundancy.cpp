@@ -46,7 +46,7 @@ class Turn {
 
   /// What is to be least; infinite where there is no posture.
   [[nodiscard]] double cost(const RedundancySample& sample) const {
-    if (sample.status != Choice::Status::found) return std::numeric_limits<double>::infinity();
+    if (sample.status != Choice::Status::found || sample.buckled) return std::numeric_limits<double>::infinity();
     switch (options_.least) {
       case RedundancyOptions::Least::error:
         return sample.error_m.norm();
@@ -98,6 +98,7 @@ class Turn {
     const Wrench wrench{.force_n = to_b * options_.force_n};
     const Stiffness s = stiffness(cell_.arm, out.position_rad, tip_point(cell_), wrench, options_.singularity);
     out.condition_number = s.condition_number;
+    out.buckled = s.status == Stiffness::Status::buckled;
     Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
     turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = to_b;
     out.compliance = turn.transpose() * s.compliance * turn;

@@ -10,16 +10,22 @@
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/stiffness.hpp"
 
+// Method: robomill/robot/README.md, "Stiffness under load"
+
 namespace robomill::robot {
 
 struct ROBOMILL_API RedundancyOptions {
-  /// What the best gamma makes least: the length of the tip's error, its part along `normal`, or the condition number.
-  enum class Least { error, error_along_normal, condition_number };
+  /// What the best gamma makes least.
+  enum class Least {
+    error,               ///< |C F|, the length of the tip's error; needs force_n
+    error_along_normal,  ///< |normal · C F|, what the surface sees of it; needs force_n
+    condition_number     ///< of the Jacobian at the tip, whatever the force: farthest from a singular posture
+  };
   Least least = Least::error;
   Eigen::Vector3d force_n = Eigen::Vector3d::Zero();  ///< of the cut on the robot at the tip, in W
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of the surface, in W, unit
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of the surface, in W, unit: ||normal| − 1| <= 1e-6
   int samples = 72;                                   ///< >= 4; over a full turn
-  double tolerance_rad = 1e-4;                        ///< > 0; of the best gamma
+  double tolerance_rad = 1e-4;                        ///< > 0; ends where the range that holds gamma is <= this
   SingularityOptions singularity = {};                ///< at the tip
   std::optional<Position6> previous = {};  ///< keeps to the branch nearest to it; else the best of all branches
   /// @throws InvalidInput naming the member
@@ -31,6 +37,7 @@ struct RedundancySample {
   double gamma_rad = 0.0;
   Choice::Status status = Choice::Status::out_of_reach;  ///< the numbers below stand where it is `found`
   Position6 position_rad = Position6::Zero();
+  bool buckled = false;             ///< the joints cannot hold the force there: what follows says nothing
   double limit_distance_rad = 0.0;  ///< of the joint nearest to its limit
   double condition_number = 0.0;
   Eigen::Matrix<double, 6, 6> compliance = Eigen::Matrix<double, 6, 6>::Zero();  ///< at the tip under the force, in W
@@ -39,7 +46,10 @@ struct RedundancySample {
 };
 
 struct Redundancy {
-  enum class Status { found, none };  ///< none: no gamma gives a regular posture within limits
+  enum class Status {
+    found,  ///< one sample at least has a posture: `best` is refined from the best of them
+    none    ///< no gamma gives a regular posture within limits that holds the force
+  };
   Status status = Status::none;
   std::vector<RedundancySample> samples = {};  ///< gamma from −π, evenly
   RedundancySample best = {};

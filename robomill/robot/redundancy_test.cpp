@@ -108,6 +108,23 @@ TEST(Redundancy, ReportsThatThereIsNone) {
   for (const RedundancySample& sample : over.samples) EXPECT_EQ(sample.status, Choice::Status::out_of_reach);
 }
 
+// A posture that cannot hold the force has a compliance of the wrong sign, which a sum of squares does not show.
+TEST(Redundancy, TakesNoPostureThatBuckles) {
+  const Cell cell = table_cell();
+  const SphericalWristInverse inverse(cell.arm);
+  RedundancyOptions huge = milling();
+  huge.force_n *= 1e6;
+  const Redundancy over = redundancy(cell, inverse, tilted(), huge);
+  EXPECT_EQ(over.status, Redundancy::Status::none);
+  int found = 0;
+  for (const RedundancySample& sample : over.samples) {
+    if (sample.status != Choice::Status::found) continue;
+    ++found;
+    EXPECT_TRUE(sample.buckled);
+  }
+  EXPECT_GT(found, 30);
+}
+
 TEST(Redundancy, RejectsWhatMakesNoSense) {
   const Cell cell = table_cell();
   const SphericalWristInverse inverse(cell.arm);

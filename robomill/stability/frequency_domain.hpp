@@ -7,14 +7,15 @@
 #include "robomill/stability/frequency_response.hpp"
 #include "robomill/stability/lobes.hpp"
 
+// Method: robomill/stability/README.md, "In the frequency domain (`frequency_domain.hpp`, `frequency_response.hpp`)"
+
 namespace robomill::stability {
 
 struct ROBOMILL_API FrequencyOptions {
   double largest_depth_m = 0.0;  ///< greatest axial depth to look at [m], > 0; required
-  double tolerance = 1e-7;     ///< polynomials and harmonics grow until the limit moves less than this share of itself
+  /// In [1e-12, 0.1]. Multi-frequency: polynomials and harmonics grow until |Δlimit| <= tolerance · limit.
+  double tolerance = 1e-7;
   bool all_crossings = false;  ///< look for every change of stability up to the greatest depth, not the first alone
-  int depths =
-      40;  ///< with helix, whose lag changes with the depth: depths at which stability is looked at, at least 4
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -29,7 +30,8 @@ struct DepthCrossing {
 
 /// What a frequency-domain method says of one spindle speed.
 struct FrequencyLimit {
-  /// not_converged: the limit still moves by more than the tolerance; error_estimate_m reports by how much.
+  /// found: the other members hold. stable_in_range: no depth up to largest_depth_m is unstable; they are 0.
+  /// not_converged: the limit still moves by > tolerance · limit; error_estimate_m reports by how much.
   enum class Status { found, stable_in_range, not_converged };
   Status status = Status::stable_in_range;
   double spindle_speed_rad_per_s = 0.0;
@@ -66,7 +68,8 @@ struct FrequencyLimit {
 
 /// @throws InvalidInput naming the band that is missing, if measured FRFs still rise towards an end of their band, or
 /// if
-///     what they leave out moves a limit by more than `largest_ratio` of itself
+///     what they leave out moves a limit by more than `largest_ratio` of itself:
+///     FrequencyLimit::uncovered_ratio > largest_ratio
 ROBOMILL_API void require_coverage(const FrequencyResponse& response, const std::vector<FrequencyLimit>& limits,
                                    double largest_ratio = 0.2);
 

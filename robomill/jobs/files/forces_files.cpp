@@ -147,7 +147,7 @@ Json sweep_json(const robot::Redundancy& sweep) {
   Json condition = Json::array();
   Json limit = Json::array();
   for (const robot::RedundancySample& sample : sweep.samples) {
-    const bool stands = sample.status == robot::Choice::Status::found;
+    const bool stands = sample.status == robot::Choice::Status::found && !sample.buckled;
     const auto known = [&](double value) { return stands ? number(value) : Json(); };
     gamma.push_back(number(sample.gamma_rad / units::deg));
     deflection.push_back(known(sample.error_m.norm() / units::um));
