@@ -153,7 +153,8 @@ CommandLine::CommandLine() {
   sub->add_option("--method", smooth.method, "verified, optimal, paper, paper-as-printed or no-joint-jerk")
       ->check(CLI::IsMember({"verified", "optimal", "paper", "paper-as-printed", "no-joint-jerk"}));
   sub->add_flag("--compare", smooth.compare, "all other methods beside it, in the summary and the report");
-  sub->add_flag("--keep-breaches", smooth.keep_violations, "write the trajectory even where it violates a limit");
+  sub->add_flag("--keep-violations,--keep-breaches", smooth.keep_violations,
+                "write the trajectory even where it violates a limit");
   sub->add_option(
       "--program-period-ms", smooth.program_period_ms,
       "longest time between the points of a joint program (default: 20; 2 for .script and .servoj, always)");

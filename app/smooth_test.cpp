@@ -108,7 +108,7 @@ TEST_F(SmoothVerb, AViolationExitsWithThreeAndLeavesOnlyTheReport) {
   EXPECT_GT(json["violations"].get<int>(), 0);
   EXPECT_FALSE(json["written"].get<bool>());
   EXPECT_EQ(run.err.find("earlier"), std::string::npos) << run.err;
-  EXPECT_EQ(robomill("smooth part.ngc --cell tight.toml --method no-joint-jerk -o t.csv --keep-breaches").exit, 3);
+  EXPECT_EQ(robomill("smooth part.ngc --cell tight.toml --method no-joint-jerk -o t.csv --keep-violations").exit, 3);
   EXPECT_TRUE(there("t.csv"));
   // That one must not stay looking like the next run's.
   for (const char* name : {"t.csv", "t.h5", "t.src"}) {
