@@ -5,6 +5,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/base/README.md, "Method"
+
 namespace robomill {
 
 /// Bad input, reported so that its giver can mend it: where, which field, its value and unit, the rule it breaks, the

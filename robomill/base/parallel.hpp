@@ -4,6 +4,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/base/README.md, "Method"
+
 namespace robomill {
 
 /// Runs body(begin, end) over blocks that cover [0, n), at most `grain` items a block, on the threads of

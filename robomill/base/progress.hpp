@@ -8,6 +8,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/base/README.md, "Method"
+
 namespace robomill {
 
 /// Thrown out of long work when its caller asked it to stop.

@@ -4,6 +4,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/base/README.md, "Method"
+
 namespace robomill {
 
 /// Seeded random numbers with the same bits everywhere: std::mt19937_64 is specified to the bit, the standard

@@ -3,6 +3,7 @@
 
 /// Shop units in SI: value_m = value_mm * units::mm, value_mm = value_m / units::mm. The only conversions in the
 /// project.
+// Method: robomill/base/README.md, "Method"
 namespace robomill::units {
 
 inline constexpr double mm = 1e-3;

@@ -7,6 +7,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/modal/frf.hpp"
 
+// Method: robomill/coupling/README.md, "Coupling"
+
 namespace robomill::coupling {
 
 /// What a segment's cross-section does in bending.

@@ -5,6 +5,8 @@
 
 #include "robomill/coupling/assembly.hpp"
 
+// Method: robomill/coupling/README.md, "Measured holders"
+
 namespace robomill::coupling {
 
 /// Receptances at a holder's mouth, found from measurements that lack rotations or still carry a tool.
@@ -19,7 +21,7 @@ struct HolderResult {
 };
 
 struct HolderOptions {
-  double max_amplification = 100.0;  ///< > 0
+  double max_amplification = 100.0;  ///< > 0; a line is unreliable where amplification > max_amplification
   /// Tikhonov's, as a share of the largest singular value, >= 0; a line whose condition is κ is biased by (share κ)².
   double regularisation = 1e-5;
 };

@@ -7,6 +7,8 @@
 #include "robomill/base/progress.hpp"
 #include "robomill/coupling/assembly.hpp"
 
+// Method: robomill/coupling/README.md, "The joint from one FRF (`joint_fit.hpp`)"
+
 namespace robomill::coupling {
 
 enum class JointMethod {
@@ -22,7 +24,12 @@ enum class Mutation {
 
 /// The four unknowns, in this order everywhere: k_u, c_u, k_θ, c_θ.
 inline constexpr int joint_unknowns = 4;
-enum class JointUnknown { translational_stiffness, translational_damping, rotational_stiffness, rotational_damping };
+enum class JointUnknown {
+  translational_stiffness,  ///< k_u [N/m]: force against displacement
+  translational_damping,    ///< c_u [N s/m], viscous: force against velocity
+  rotational_stiffness,     ///< k_θ [N m/rad]: moment against rotation
+  rotational_damping        ///< c_θ [N m s/rad], viscous: moment against angular velocity
+};
 /// "translational stiffness", …
 [[nodiscard]] ROBOMILL_API std::string to_string(JointUnknown unknown);
 
@@ -39,7 +46,7 @@ struct JointFitOptions {
   double crossover = 0.8;       ///< of ga: share of children by arithmetic crossover, in [0, 1]
   double mutation_rate = 0.01;  ///< of ga with Mutation::uniform: a gene's chance, in [0, 1]
   /// No FRF is taken to be truer than this share of itself, in (0, 1], by an error that all lines may share: it keeps
-  /// deviations honest where data has no noise.
+  /// deviations honest where data has no noise. At every line σ >= noise_floor · |H|.
   double noise_floor = 1e-4;
   /// @throws InvalidInput naming the member
   ROBOMILL_API void validate() const;
@@ -49,7 +56,9 @@ struct JointFitOptions {
 struct JointKnowledge {
   double deviation = 0.0;  ///< standard deviation, in the unknown's unit; infinite where the FRF sets no upper bound,
                            ///< or the search did not end at a minimum or misses the FRF
-  bool identifiable = false;  ///< whether the FRF bounds it from both sides
+  /// Whether the FRF bounds it from both sides: 2 · deviation < value, and |value - bound| > 1e-6 · |bound| for both
+  /// bounds of the search.
+  bool identifiable = false;
   /// Of a stiffness: beyond it the FRF cannot distinguish the joint from a rigid one. 0 for damping.
   double visible_up_to = 0.0;
   std::string note =
@@ -57,6 +66,9 @@ struct JointKnowledge {
 };
 
 struct JointFitResult {
+  /// converged: the last steps gained nearly nothing. hybrid: least squares ended with |Δcost| <= 1e-10 · cost or
+  /// |Δx| <= 1e-13 · |x|. ga: the last fifth of the generations lowered the objective by <= 1 % of itself.
+  /// not_converged: iterations or generations ran out first; the joint is the best one found.
   enum class Status { converged, not_converged };
   Status status = Status::not_converged;
   Joint joint;

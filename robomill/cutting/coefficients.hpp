@@ -10,6 +10,7 @@
 
 /// Force coefficients from measured forces. Forces are those on the tool, in F: x along the feed, y to its left, z
 /// towards the spindle; docs/frames.md. A dynamometer under the workpiece feels them with the other sign.
+// Method: robomill/cutting/README.md, "Coefficients (`coefficients.hpp`, `material.hpp`)"
 namespace robomill::cutting {
 
 /// A slot over the whole diameter of a flat end mill, and the mean of its force over whole revolutions.
@@ -25,7 +26,7 @@ struct ROBOMILL_API SlotForce {
 struct ROBOMILL_API SlotOptions {
   int teeth = 0;               ///< N, >= 1; required
   bool edge_forces = true;     ///< false: the edge is taken to push nothing, and one feed is enough
-  double significance = 0.01;  ///< in (0, 1): of the test whether coefficients depend on the speed
+  double significance = 0.01;  ///< in (0, 1); coefficients depend on the speed where speed_probability < this
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -49,14 +50,16 @@ struct SpeedGroup {
 
 struct SlotFit {
   CoefficientPair tangential, radial, axial;
-  /// identified: all six. edge_unknown: slots of a single feed (or of feeds so near each other) cannot part cutting
-  /// from edge; the cutting coefficients are those without any edge force, so upper bounds.
-  enum class Status { identified, edge_unknown };
+  enum class Status {
+    identified,   ///< all six, or the three cutting ones without edge_forces
+    edge_unknown  ///< slots of one feed, max c - min c <= 1e-3 max c, cannot part cutting from edge: the cutting
+                  ///< coefficients are those without any edge force, so upper bounds
+  };
   Status status = Status::identified;
   Eigen::Matrix3Xd residual_n;       ///< measured less fitted, 3 x rows
   std::vector<SpeedGroup> by_speed;  ///< of the speeds with two feeds or more; empty where there are fewer than two
   double speed_probability = 1.0;    ///< of differences between the speeds as large as these, were there none
-  bool depends_on_speed = false;     ///< that is below `significance`
+  bool depends_on_speed = false;     ///< speed_probability < SlotOptions::significance
   std::vector<std::string> notes;    ///< what the user should know: signs, units, feeds, speeds
   [[nodiscard]] ROBOMILL_API MillingCoefficients coefficients() const;
 };
@@ -82,9 +85,9 @@ struct CoefficientDegrees {
 struct ROBOMILL_API SignalOptions {
   CoefficientDegrees degrees = {};
   bool find_offset = true;  ///< the signal's zero of rotation is not known
-  int steps = 1440;         ///< of the modelled revolution
-  double rank_tolerance =
-      1e-8;  ///< in (0, 1): singular values, to the largest, below which a direction is not reported
+  int steps = 1440;         ///< of the modelled revolution, 8 to 100,000
+  /// In (0, 1); a direction is not reported where its singular value σ < this · the largest σ.
+  double rank_tolerance = 1e-8;
   /// @throws InvalidInput naming the member
   void validate() const;
 };

@@ -7,9 +7,16 @@
 
 /// Tool frame T: origin at the tip (where the axis meets the plane that the cutter stands on), z along the axis towards
 /// the spindle; a point of the cutter at (r sin φ, r cos φ, z), φ clockwise from +y as in milling.hpp. docs/frames.md.
+// Method: robomill/cutting/README.md, "Cutters (`cutter.hpp`)"
 namespace robomill::cutting {
 
-enum class CutterKind { flat_end, ball_end, bull_nose, general };
+/// The shape of an end mill, and which members of Cutter give it.
+enum class CutterKind {
+  flat_end,   ///< a cylinder of diameter D with a sharp corner: mill alone
+  ball_end,   ///< a hemisphere of radius D/2 below a cylinder: mill alone
+  bull_nose,  ///< a flat bottom and a side upright, joined by a corner arc of corner_radius_m
+  general     ///< bottom, corner and side are free: tapers, drill points; every member counts
+};
 
 /// Any end mill: a bottom rising at `bottom_angle_rad`, a corner arc, a side at `side_angle_rad` from the axis
 /// [EnginAltintas2001]. Edges have constant lead: a point at height z lags the tip by 2 z tan(β) / D on every shape, so
@@ -22,8 +29,8 @@ struct ROBOMILL_API Cutter {
   double corner_radius_m = 0.0;         ///< R: of bull_nose (0 < R < D/2) and general (>= 0) [m]
   double corner_center_radius_m = 0.0;  ///< general, where R > 0: of the arc's centre from the axis [m]
   double corner_center_height_m = 0.0;  ///< general, where R > 0: of the arc's centre above the tip [m]
-  double bottom_angle_rad = 0.0;        ///< general: in [0, π/2)
-  double side_angle_rad = 0.0;          ///< general: in (-π/2, π/2); > 0 widens upwards
+  double bottom_angle_rad = 0.0;        ///< general: in [0, 0.48 π), above the plane that the cutter stands on [rad]
+  double side_angle_rad = 0.0;  ///< general: in (-0.48 π, 0.48 π), bottom + side < π/2; > 0 widens upwards [rad]
   /// @throws InvalidInput naming the member, also where arc and lines do not meet in a convex outline
   void validate() const;
 };

@@ -4,6 +4,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/cutting/workpiece.hpp"
 
+// Method: robomill/cutting/README.md, "Workpiece (`workpiece.hpp`, `dexels/`)"
+
 namespace robomill::cutting {
 
 /// The stock where a job gives none, and where its height comes from.
@@ -19,8 +21,9 @@ struct ROBOMILL_API DefaultStock {
 };
 
 /// A box about the tips of all feed moves, larger by the cutter's radius in x and y, from a dexel below the lowest tip
-/// up to where the program says that material stands. A pass is a feed move across the tool's axis, or the end of a
-/// plunge; moves that only lead down to a pass (plunge, ramp, helix) are none, for they begin in air.
+/// up to where the program says that material stands. A pass is a feed move across the tool's axis (|way along the
+/// axis| < 0.7 · way), or the end of a plunge; moves that only lead down to a pass (plunge, ramp, helix) are none, for
+/// they begin in air.
 /// @param axial_depth_m  that the highest pass cuts; 0: not known
 /// @throws InvalidInput if the program has no feed move, a length is out of range, or the height cannot be told: no
 /// depth is given and the highest pass does not lie below a z = 0 that the program moves above

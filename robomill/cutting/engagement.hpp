@@ -9,18 +9,21 @@
 #include "robomill/cutting/milling.hpp"
 
 /// Feed frame F: x along the feed, y to its left, z along the surface's normal towards the spindle; docs/frames.md.
+// Method: robomill/cutting/README.md, "Analytic engagement (`published/analytic_engagement.hpp`)"
 namespace robomill::cutting {
 
 /// A pass beside another one over a plane, or over a cylinder that the surface is like nearby.
 struct ROBOMILL_API Cut {
   double axial_depth_m = 0.0;   ///< h: of the unmachined surface above the lowest point of the finished one [m], > 0
-  double radial_depth_m = 0.0;  ///< l: step-over, from the neighbouring pass along the surface [m], in (0, D]; a slot
-                                ///< has no neighbour and ignores it
+  double radial_depth_m = 0.0;  ///< l: step-over, from the neighbouring pass along the surface [m], in (0, 2 r], r the
+                                ///< cutter's largest radius; a slot has no neighbour and ignores it
   MillingDirection direction = MillingDirection::up;  ///< up: the neighbouring pass lies at -y; down: at +y
-  double lead_rad = 0.0;                              ///< P_F = Rx(tilt) Ry(lead) P_T
-  double tilt_rad = 0.0;
-  double curvature_along_feed_per_m = 0.0;   ///< of the finished surface, > 0: convex. Ball ends only [1/m]
-  double curvature_across_feed_per_m = 0.0;  ///< one of the two may differ from 0 [1/m]
+  double lead_rad = 0.0;                              ///< |lead| < 0.48 π; P_F = Rx(tilt) Ry(lead) P_T
+  double tilt_rad = 0.0;                              ///< |tilt| < 0.48 π
+  double curvature_along_feed_per_m = 0.0;            ///< of the finished surface, > 0: convex. Ball ends only [1/m]
+  /// One of the two curvatures k may differ from 0 [1/m]: k max(h, D/2 of a ball end) > -0.999, and |k| l < 1 but for a
+  /// slot.
+  double curvature_across_feed_per_m = 0.0;
   /// @throws InvalidInput naming the member
   void validate(const Cutter& cutter) const;
 };

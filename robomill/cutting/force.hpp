@@ -8,12 +8,15 @@
 #include "robomill/cutting/engagement.hpp"
 
 /// Forces are those on the tool, in F: x along the feed, y to its left, z towards the spindle; docs/frames.md.
+// Method: robomill/cutting/README.md, "Forces (`force.hpp`)"
 namespace robomill::cutting {
 
-/// What edge forces are reported per: the length ds of the helical edge, or the width db of cut. by_kind: the width on
-/// a flat end, where mean slotting forces report them per axial depth whatever the helix; the edge's length on every
-/// other.
-enum class EdgeMeasure { by_kind, edge_length, width };
+/// What edge forces are reported per.
+enum class EdgeMeasure {
+  by_kind,      ///< width on a flat end, whose mean slotting forces are per axial depth; edge_length on every other
+  edge_length,  ///< the length ds of the helical edge, as models of ball ends have it
+  width         ///< the width db of cut along the profile, whatever the helix
+};
 /// Whether the edge's length counts on a cutter of that kind, and not its width.
 [[nodiscard]] ROBOMILL_API bool counts_edge_length(EdgeMeasure measure, CutterKind kind);
 
@@ -31,13 +34,13 @@ struct ROBOMILL_API MillingCoefficients {
   EdgeMeasure edge_measure = EdgeMeasure::by_kind;
   /// Over the angles κ in use.
   /// @throws InvalidInput naming the member: none tangential, tangential or radial negative (at which angle), units
-  /// mixed up
+  /// mixed up: the largest |K| > 0 is < 1e6 or > 1e12 N/m^2, the largest |Ke| is > 1e7 N/m
   void validate(double from_position_rad, double to_position_rad) const;
 };
 
 /// How the cutter goes through the material.
 struct ROBOMILL_API CutMotion {
-  double feed_per_tooth_m = 0.0;         ///< feed of a revolution over N [m], >= 0
+  double feed_per_tooth_m = 0.0;         ///< feed of a revolution over N [m], in [0, 0.01]
   double spindle_speed_rad_per_s = 0.0;  ///< Ω [rad/s], >= 0
   /// @throws InvalidInput naming the member
   void validate() const;

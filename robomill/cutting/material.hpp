@@ -8,6 +8,7 @@
 
 /// Force coefficients of a milling cutter from orthogonal cutting tests of the material, so that no cutter need be
 /// calibrated.
+// Method: robomill/cutting/README.md, "Coefficients (`coefficients.hpp`, `material.hpp`)"
 namespace robomill::cutting {
 
 /// An orthogonal cut, its edge square to its motion, as its thin shear plane is reported.

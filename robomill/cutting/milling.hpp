@@ -6,17 +6,18 @@
 
 /// Angles: φ is a tooth's angle, clockwise from +y as seen from the spindle; x points along the feed, y to its left, z
 /// towards the spindle. The cutter turns clockwise, so φ grows with time. Convention of [Altintas1995].
+// Method: robomill/cutting/README.md, "Force and displacement of a cylindrical cutter (`milling.hpp`)"
 namespace robomill::cutting {
 
 /// A cylindrical cutter.
 struct ROBOMILL_API FlatEndMill {
-  int teeth = 0;                       ///< N, >= 1; required
-  double diameter_m = 0.0;             ///< D [m], > 0; required
-  double helix_rad = 0.0;              ///< β [rad], |β| < π/2; a point at height z lags the tip by 2 z tan(β) / D
-  std::vector<double> pitch_rad = {};  ///< empty (equal), or N angles > 0 that sum to 2π [rad]: tooth j stands at
-                                       ///< Σ_{k<j} pitch_k and cuts what the tooth pitch_j before it left
+  int teeth = 0;            ///< N, 1 to 100; required
+  double diameter_m = 0.0;  ///< D [m], in [1e-5, 1]; required
+  double helix_rad = 0.0;   ///< β [rad], |β| < 0.48 π; a point at height z lags the tip by 2 z tan(β) / D
+  std::vector<double> pitch_rad = {};  ///< empty (equal), or N angles > 0, |Σ pitch_k - 2π| <= 1e-6 · 2π [rad]: tooth j
+                                       ///< stands at Σ_{k<j} pitch_k and cuts what the tooth pitch_j before it left
   std::vector<double> tooth_helix_rad = {};  ///< empty (helix_rad for all), or one helix angle a tooth [rad]
-  double runout_m = 0.0;                     ///< offset of the cutter's axis from the spindle's [m], >= 0
+  double runout_m = 0.0;                     ///< offset of the cutter's axis from the spindle's [m], in [0, 0.1 D]
   double runout_angle_rad = 0.0;             ///< of that offset, from where tooth 0 stands at the tip, clockwise [rad]
   /// @throws InvalidInput naming the member
   void validate() const;
@@ -24,7 +25,7 @@ struct ROBOMILL_API FlatEndMill {
   [[nodiscard]] double pitch(int tooth) const;
   /// Where tooth j stands on the cutter at the tip, Σ_{k<j} pitch_k [rad].
   [[nodiscard]] double standing_angle(int tooth) const;
-  /// Whether all pitches are 2π / N, to within 1e-9.
+  /// Whether all pitches are 2π / N: |pitch_j - 2π / N| <= 1e-9 rad.
   [[nodiscard]] bool has_equal_pitch() const;
   /// Whether all teeth have one helix angle.
   [[nodiscard]] bool has_equal_helix() const;
@@ -35,7 +36,12 @@ struct ROBOMILL_API FlatEndMill {
   [[nodiscard]] double radius_deviation_m(int tooth, double height_m) const;
 };
 
-enum class MillingDirection { up, down, slot };
+/// On which side of the feed the cutter is engaged.
+enum class MillingDirection {
+  up,    ///< the chip begins at nothing: teeth cut from φ = 0 to acos(1 - 2 b/D)
+  down,  ///< the chip ends at nothing: teeth cut from acos(2 b/D - 1) to φ = π
+  slot   ///< over the whole diameter, from 0 to π; no neighbouring pass
+};
 
 /// Where a tooth cuts: from entry to exit.
 struct ROBOMILL_API Immersion {
@@ -58,7 +64,8 @@ struct ROBOMILL_API ForceCoefficients {
   double radial_n_per_m2 = 0.0;          ///< Kr [N/m^2]
   double tangential_edge_n_per_m = 0.0;  ///< Kte [N/m], >= 0; no part in stability
   double radial_edge_n_per_m = 0.0;      ///< Kre [N/m], >= 0; no part in stability
-  /// @throws InvalidInput naming the member, also where the value cannot be that of a material (units mixed up)
+  /// @throws InvalidInput naming the member, also where the value cannot be that of a material (units mixed up): |K| <
+  /// 1e6 or > 1e12 N/m^2, but for Kr = 0
   void validate() const;
 };
 
@@ -67,8 +74,8 @@ struct ROBOMILL_API ForceCoefficients {
 /// r the outward displacement of the tooth and V = Ω D / 2: radial K l² r' / (2 V), tangential μ times that, both
 /// against the edge's motion. Source: [Ahmadi2011].
 struct ROBOMILL_API ProcessDamping {
-  double indentation_n_per_m3 = 0.0;  ///< K, specific indentation force [N/m^3], >= 0; 0: none
-  double wear_land_m = 0.0;           ///< l, length of the land [m], >= 0
+  double indentation_n_per_m3 = 0.0;  ///< K, specific indentation force [N/m^3], in [0, 1e16]; 0: none
+  double wear_land_m = 0.0;           ///< l, length of the land [m], in [0, 1e-3]
   double friction = 0.3;              ///< μ, >= 0
   [[nodiscard]] bool active() const { return indentation_n_per_m3 > 0.0 && wear_land_m > 0.0; }
   /// @throws InvalidInput naming the member

@@ -12,6 +12,7 @@
 #include "robomill/program/program.hpp"
 
 /// Where the cutter touches material while a program runs, found from a workpiece of rays.
+// Method: robomill/cutting/README.md, "Engagement along a program (`program_engagement.hpp`)"
 namespace robomill::cutting {
 
 /// A cutter's motion at one instant: the tip's velocity and how the axis turns, in W.
@@ -31,10 +32,11 @@ struct ROBOMILL_API PoseEngagement {
 };
 
 struct ROBOMILL_API WalkOptions {
-  double ring_width_m = 0.0;    ///< along the profile; 0: a dexel, at least twelve over the corner and the bottom
-  double angle_step_rad = 0.0;  ///< first look around a ring; 0: two dexels, at most 10 degrees
-  double max_step_m = 0.0;      ///< longest way of the tip between two looks; 0: half the cutter's radius
-  double max_turn_rad = 0.05;   ///< largest turn of the axis between two looks, > 0
+  double ring_width_m = 0.0;    ///< >= 0; along the profile, width of a ring <= this; 0: a dexel, and at least twelve
+                                ///< rings over each of corner and bottom
+  double angle_step_rad = 0.0;  ///< >= 0; first look around a ring; 0: two dexels, at most 10 degrees
+  double max_step_m = 0.0;      ///< >= 0; way of the tip between two looks <= this; 0: half the cutter's radius
+  double max_turn_rad = 0.05;   ///< > 0; turn of the axis between two looks <= this
   std::size_t batch = 256;      ///< results handed out at once, >= 1
   /// @throws InvalidInput naming the member
   void validate() const;
@@ -90,8 +92,8 @@ struct BlockEngagement {
   double removed_volume_m3 = 0.0;           ///< by edges and shank
   double shank_volume_m3 = 0.0;             ///< the shank's part of it
   double shank_depth_m = 0.0;               ///< how deep the shank ran into material
-  bool shank = false;                       ///< that was more than a dexel
-  bool rapid_in_material = false;           ///< a rapid move took away more than a cube of a dexel
+  bool shank = false;                       ///< shank_depth_m > Workpiece::dexel_m()
+  bool rapid_in_material = false;           ///< a rapid move with removed_volume_m3 > dexel_m()³
 };
 
 using Deliver = std::function<void(std::span<const BlockEngagement>)>;

@@ -10,17 +10,22 @@
 
 /// The cut of a finishing program from the program alone, without stock: its neighbouring passes say how far apart they
 /// lie, on which side, and how the surface bends.
+// Method: robomill/cutting/README.md, "Engagement along a program (`program_engagement.hpp`)"
 namespace robomill::cutting {
 
 /// At the middle of a block. F as in program_engagement.hpp: x_F along the tip's way, z_F the axis without its part
 /// along x_F.
 struct LocalCut {
-  enum class Neighbour { none, left, right };  ///< left: at +y_F ("down"), right: at -y_F ("up")
-  Neighbour neighbour = Neighbour::none;       ///< the nearest pass that was cut before; none: a slot, a first pass
-  double stepover_m = 0.0;                     ///< distance of the tips' ways to that pass, across the feed
-  double slope_rad = 0.0;        ///< of the tips' surface across the feed: about x_F, from y_F towards z_F
-  double curvature_per_m = 0.0;  ///< of the tips' surface across the feed, > 0 where it bends away from the
-                                 ///< tool; 0 where there is a pass on one side alone (a plane)
+  enum class Neighbour {
+    none,  ///< no pass within reach was cut before: a slot, a first pass
+    left,  ///< at +y_F: milling down
+    right  ///< at -y_F: milling up
+  };
+  Neighbour neighbour = Neighbour::none;  ///< where the nearest pass lies that was cut before
+  double stepover_m = 0.0;                ///< distance of the tips' ways to that pass, across the feed
+  double slope_rad = 0.0;                 ///< of the tips' surface across the feed: about x_F, from y_F towards z_F
+  double curvature_per_m = 0.0;           ///< of the tips' surface across the feed, > 0 where it bends away from the
+                                          ///< tool; 0 where there is a pass on one side alone (a plane)
   Eigen::Matrix3d work_from_feed = Eigen::Matrix3d::Identity();
 };
 
@@ -30,7 +35,8 @@ struct LocalCut {
 /// (1 + k R) times that on the surface.
 class ROBOMILL_API LocalCuts {
  public:
-  /// @param reach_m  farthest pass that still is a neighbour, > 0: the cutter's diameter
+  /// @param reach_m  > 0, the cutter's diameter; a pass at (y, z) across the feed is a neighbour where √(y² + z²) <=
+  ///     reach_m, |z| <= |y| and |y| >= 1e-3 reach_m
   /// @throws InvalidInput if reach_m is not > 0
   LocalCuts(const program::Program& program, double reach_m);
   /// Of a feed move whose tip moves; another has no neighbour. The program must still be there.

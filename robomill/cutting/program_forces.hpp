@@ -10,6 +10,8 @@
 #include "robomill/cutting/program_engagement.hpp"
 #include "robomill/program/program.hpp"
 
+// Method: robomill/cutting/README.md, "Forces along a program (`program_forces.hpp`)"
+
 namespace robomill::cutting {
 
 /// What one block of a program asks of tool, spindle and part. Forces on the tool, in W. Means are over the time in
@@ -33,7 +35,7 @@ struct BlockForce {
   /// Of the means over one revolution the one that options.weight finds heaviest.
   Eigen::Vector3d heaviest_force_n = Eigen::Vector3d::Zero();
   double removed_volume_m3 = 0.0;
-  double shank_depth_m = 0.0;      ///< how deep the shank ran into material, where more than a dexel
+  double shank_depth_m = 0.0;      ///< how deep the shank ran into material, where > a dexel; else 0
   bool rapid_in_material = false;  ///< a rapid move went through material
   [[nodiscard]] bool cuts() const { return cutting_time_s > 0.0; }
 };

@@ -5,6 +5,8 @@
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/force.hpp"
 
+// Method: robomill/cutting/README.md, "A structure that deflects (`static_deflection.hpp`)"
+
 namespace robomill::cutting {
 
 /// A steady cut whose mean force has bent what holds the tool.
@@ -15,9 +17,13 @@ struct StaticDeflection {
   Eigen::Vector3d deflection_m = Eigen::Vector3d::Zero();  ///< q = C F̄, in F [m]
   double peak_deflection_m = 0.0;                          ///< greatest |C F| over the revolution
   int iterations = 0;
-  /// found: the depth agrees with its own force to 1e-9 of the commanded one. diverged: the force pulls the tool in
-  /// faster than the structure holds it, no depth settles. lifts_off: the tool is pushed out of the cut altogether.
-  enum class Status { found, diverged, lifts_off };
+  enum class Status {
+    found,     ///< the depth agrees with its own force: |h' - h + q_z(h')| <= 1e-9 h, or h' lies in a range <= 1e-9 h;
+               ///< the search ends after 60 rounds in any case
+    diverged,  ///< the force pulls the tool in faster than the structure holds it: no depth settles up to 2 h, or as
+               ///< deep as edges and coefficients hold
+    lifts_off  ///< the tool is pushed out of the cut altogether: h' < 1e-3 h
+  };
   Status status = Status::found;
 };
 

@@ -10,11 +10,16 @@
 #include "robomill/program/program.hpp"
 
 /// What is left of the part while a program cuts it, in the work frame W.
+// Method: robomill/cutting/README.md, "Workpiece (`workpiece.hpp`, `dexels/`)"
 namespace robomill::cutting {
 
 /// Material before the first cut.
 struct ROBOMILL_API Stock {
-  enum class Shape { box, cylinder, turned };
+  enum class Shape {
+    box,       ///< from min_m to max_m, its sides along the axes of W
+    cylinder,  ///< radius_m about the axis through center_m, from bottom_m to top_m
+    turned     ///< outline_m turned about the axis through center_m; it gives bottom and top too
+  };
   Shape shape = Shape::box;
   Eigen::Vector3d min_m = Eigen::Vector3d::Zero();     ///< box
   Eigen::Vector3d max_m = Eigen::Vector3d::Zero();     ///< box: above min_m in each direction
@@ -46,7 +51,7 @@ struct ROBOMILL_API Removal {
 /// Material as intervals on rays along x, y and z, spaced by at most a dexel.
 class ROBOMILL_API Workpiece {
  public:
-  /// @param dexel_m  > 0; the grid fits the stock's box, so spacings are the nearest that divide its sides
+  /// @param dexel_m  > 0; the grid fits the stock's box: each spacing divides its side, and spacing <= dexel_m
   /// @throws InvalidInput for bad stock, or a dexel that asks for more than 4e7 rays
   Workpiece(const Stock& stock, double dexel_m);
   ~Workpiece();

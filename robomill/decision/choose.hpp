@@ -7,6 +7,8 @@
 #include "robomill/decision/recommend.hpp"
 #include "robomill/stability/lobes.hpp"
 
+// Method: robomill/decision/README.md, "The recommendation (`recommend.hpp`)"
+
 namespace robomill::decision {
 
 /// The best operation of a cut whose limits were found at its speeds, with the surface that forced vibration leaves at

@@ -8,9 +8,20 @@
 #include "robomill/base/export.hpp"
 #include "robomill/modal/mode_id.hpp"
 
+// Method: robomill/decision/README.md, "The recommendation (`recommend.hpp`)"
+
 namespace robomill::decision {
 
-enum class LimitedBy { chatter, depth_range, cutter, spindle_torque, spindle_power, surface_error, deflection };
+/// Which limit keeps an operation, or a finishing depth, from being deeper.
+enum class LimitedBy {
+  chatter,         ///< (1 - depth_margin) · the lowest unstable depth of the speed window
+  depth_range,     ///< (1 - depth_margin) · searched_depth_m: no depth that was looked at is unstable
+  cutter,          ///< max_axial_depth_m, the cutter's flute length
+  spindle_torque,  ///< the mean cutting torque reaches what the spindle gives at this speed
+  spindle_power,   ///< the mean cutting power reaches what the spindle gives at this speed
+  surface_error,   ///< FinishLimits::max_surface_error_m
+  deflection       ///< FinishLimits::max_deflection_m
+};
 
 /// How deep a finishing cut may go at one speed.
 struct FinishDepth {
@@ -39,21 +50,21 @@ struct SpindleCapacity {
 
 /// What recommend needs to know of the cut and how careful it is.
 struct RecommendOptions {
-  int teeth = 0;                    ///< >= 1; required
-  double radial_depth_m = 0.0;      ///< > 0; required
-  double diameter_m = 0.0;          ///< of the cutter, for the cutting speed; 0: unknown
-  double feed_per_tooth_m = 0.0;    ///< > 0; required
-  double searched_depth_m = 0.0;    ///< largest depth that the limits were looked for at, > 0; required
-  double max_axial_depth_m = 0.0;   ///< the cutter's; 0: searched_depth_m
-  double torque_per_depth_n = 0.0;  ///< mean cutting torque per axial depth [N m/m], >= 0
-  double min_spindle_speed_rad_per_s = 0.0;
+  int teeth = 0;                             ///< >= 1; required
+  double radial_depth_m = 0.0;               ///< > 0; required
+  double diameter_m = 0.0;                   ///< of the cutter, for the cutting speed; 0: unknown
+  double feed_per_tooth_m = 0.0;             ///< > 0; required
+  double searched_depth_m = 0.0;             ///< largest depth that the limits were looked for at, > 0; required
+  double max_axial_depth_m = 0.0;            ///< the cutter's: depth <= max_axial_depth_m; 0: searched_depth_m
+  double torque_per_depth_n = 0.0;           ///< mean cutting torque per axial depth [N m/m], >= 0
+  double min_spindle_speed_rad_per_s = 0.0;  ///< min <= speed <= max
   double max_spindle_speed_rad_per_s = 0.0;  ///< 0: as far as the limits go
   std::vector<SpindleCapacity> spindle =
       {};                        ///< by increasing speed; empty: no limit. Outside it the spindle gives nothing.
-  double depth_margin = 0.2;     ///< stay this fraction below the limit, in [0, 1)
-  double speed_window = 0.02;    ///< over ± this fraction of speed, in [0, 0.5)
+  double depth_margin = 0.2;     ///< in [0, 1); depth <= (1 - depth_margin) · limit …
+  double speed_window = 0.02;    ///< … at every speed of n (1 ± speed_window), in [0, 0.5)
   int alternatives = 3;          ///< >= 0
-  double distinct_speed = 0.05;  ///< alternatives differ by at least this fraction of speed
+  double distinct_speed = 0.05;  ///< of alternatives: |n - n'| >= distinct_speed · n' for every n' already chosen
 
   ROBOMILL_API void validate() const;  ///< throws InvalidInput naming the field
 };
@@ -78,6 +89,7 @@ struct Operation {
 };
 
 struct Recommendation {
+  /// found: `recommended` holds. no_safe_depth: no speed in range has a depth > 0 that keeps all limits; see `reason`.
   enum class Status { found, no_safe_depth };
   Status status = Status::no_safe_depth;
   std::string reason = {};  ///< why there is no safe depth

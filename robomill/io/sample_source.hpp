@@ -10,6 +10,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/io/README.md, "Sound and MAT"
+
 namespace robomill::io {
 
 /// Which columns of a recording are wanted, and what its numbers mean.
@@ -18,7 +20,9 @@ struct SampleColumns {
   std::string tachometer = {};        ///< the same; it becomes the last channel. Empty: none
   int raw_columns = 0;                ///< of raw samples; 0: as many as are named, or the highest number
   double scale = 1.0;                 ///< unit per full scale of WAV and int16, per 1 of raw float32; finite, not 0
-  double sample_rate_hz = 0.0;        ///< what the recording must run at [Hz]; 0: what it says itself
+  /// What the recording must run at [Hz]; 0: what it says itself. Rejected where |own / this - 1| > 1e-3; for times in
+  /// text, whose mean step counts, > 0.01.
+  double sample_rate_hz = 0.0;
 
   /// Channels that come out.
   [[nodiscard]] std::size_t count() const { return channels.size() + (tachometer.empty() ? 0 : 1); }
@@ -26,8 +30,13 @@ struct SampleColumns {
   ROBOMILL_API void validate() const;
 };
 
-/// How bytes without an ending are to be read. automatic: text is CSV, all else float32.
-enum class RawFormat { automatic, float32, int16, csv };
+/// How bytes without an ending are to be read.
+enum class RawFormat {
+  automatic,  ///< of a file, by its ending; of a stream, csv where its first bytes are text, else float32
+  float32,    ///< little-endian IEEE 754 single, columns interleaved; times SampleColumns::scale
+  int16,      ///< little-endian two's complement, columns interleaved; scale / 32768 a count
+  csv         ///< rows of numbers as text, with or without a header
+};
 
 /// Frames in a row.
 struct SampleBlock {

@@ -18,6 +18,8 @@
 #include "robomill/robot/redundancy.hpp"
 #include "robomill/simulation/simulation.hpp"
 
+// Method: robomill/jobs/README.md, "Forces (`forces.hpp`)"
+
 namespace robomill::jobs {
 
 /// A robot in the posture of one cut.

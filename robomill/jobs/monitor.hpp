@@ -4,6 +4,8 @@
 #include "robomill/live/advisor.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
+// Method: robomill/jobs/README.md, "Method"
+
 namespace robomill::jobs {
 
 /// What the files that monitor.toml names say of the cut: modes, and lobes, whose chart is computed.

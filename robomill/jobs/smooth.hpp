@@ -14,6 +14,8 @@
 #include "robomill/report/smooth.hpp"
 #include "robomill/report/smooth_outline.hpp"
 
+// Method: robomill/jobs/README.md, "Smoothed programs (`smooth.hpp`)"
+
 namespace robomill::jobs {
 
 /// A program to smooth and what to make of it.

@@ -6,6 +6,8 @@
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/smooth.hpp"
 
+// Method: robomill/jobs/README.md, "Outputs"
+
 namespace robomill::jobs {
 
 /// A result in the lines that the command line prints, and that a report shows where no script runs. Texts out of files

@@ -13,6 +13,8 @@
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/modal/modes.hpp"
 
+// Method: robomill/jobs/README.md, "A list of tools (`tools.hpp`)"
+
 namespace robomill::jobs {
 
 /// What one tool of a list comes to in the holder.

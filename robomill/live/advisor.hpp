@@ -7,6 +7,8 @@
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/stability/lobes.hpp"
 
+// Method: robomill/live/README.md, "Method"
+
 namespace robomill::live {
 
 /// What is known of the cut that is monitored.

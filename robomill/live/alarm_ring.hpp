@@ -14,6 +14,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/live/README.md, "Method"
+
 namespace robomill::live {
 
 /// Keeps the last seconds of all channels and writes them as WAV when an alarm comes, on a thread of its own.

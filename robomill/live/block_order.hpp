@@ -6,6 +6,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
 
+// Method: robomill/live/README.md, "Method"
+
 namespace robomill::live {
 
 /// What happened to the blocks of a stream on their way.
@@ -19,9 +21,9 @@ struct OrderCounts {
 
 /// Gives the blocks of a stream in the order of their sequence numbers, each once.
 ///
-/// A missing block is waited for until `wait_blocks` later ones are there. A number far ahead (65,536 and more) is a
-/// restart of the sender, and so are numbers that run on from each other behind what was given: two of them further
-/// back than 64, or 32 within these, which copies sent again after a reconnection might be.
+/// A missing block is waited for until more than `wait_blocks` later ones are there. A number far ahead (65,536 and
+/// more) is a restart of the sender, and so are numbers that run on from each other behind what was given: two of them
+/// further back than 64, or 32 within these, which copies sent again after a reconnection might be.
 class ROBOMILL_API BlockOrder {
  public:
   struct Given {
@@ -36,7 +38,7 @@ class ROBOMILL_API BlockOrder {
   void give_up(std::vector<Given>& out);
   [[nodiscard]] const OrderCounts& counts() const { return counts_; }
 
-  static constexpr std::size_t wait_blocks = 4;
+  static constexpr std::size_t wait_blocks = 4;  ///< a gap is given up where blocks waiting behind it > wait_blocks
 
  private:
   void give(monitor::StreamBlock&& block, std::uint64_t lost, bool restarted, std::vector<Given>& out);

@@ -10,6 +10,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/live/README.md, "Method"
+
 namespace robomill::live {
 
 /// Samples of one hop on their way from the input to the detector.
@@ -32,8 +34,11 @@ class ROBOMILL_API HopQueue {
   /// No more hops; what is in it can still be taken.
   void close();
 
-  enum class Taken { hop, nothing, closed };
-  /// nothing: none came within the time.
+  enum class Taken {
+    hop,      ///< the oldest hop was taken
+    nothing,  ///< none came within the time; more may come
+    closed    ///< closed and empty: nothing follows
+  };
   Taken pop(Hop& hop, std::chrono::milliseconds wait);
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] std::size_t capacity() const { return capacity_; }

@@ -15,6 +15,8 @@
 #include "robomill/live/notices.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
+// Method: robomill/live/README.md, "Method"
+
 namespace robomill::live {
 
 /// Reports the notices and the metrics of each hop that is left out.

@@ -9,6 +9,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/live/hop_queue.hpp"
 
+// Method: robomill/live/README.md, "Method"
+
 namespace robomill::live {
 
 /// Cuts samples into hops and puts them into a queue. Used by one thread.

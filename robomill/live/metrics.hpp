@@ -6,6 +6,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/monitor/monitor.hpp"
 
+// Method: robomill/live/README.md, "Outputs"
+
 namespace robomill::live {
 
 /// What /metrics reports; written by the monitor, read by the server.

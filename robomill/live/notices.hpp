@@ -8,6 +8,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/live/README.md, "Method"
+
 namespace robomill::live {
 
 /// Something that befell the stream: "lost-blocks", "broker-lost", …

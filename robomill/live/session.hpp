@@ -16,6 +16,8 @@
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/monitor/monitor.hpp"
 
+// Method: robomill/live/README.md, "Method"
+
 namespace robomill::live {
 
 /// Where a session delivers what it finds. All are called by the thread that runs it; those left empty are not.

@@ -8,6 +8,8 @@
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/modes.hpp"
 
+// Method: robomill/modal/README.md, "FRFs to modes (`fit.hpp`)"
+
 namespace robomill::modal {
 
 /// What somebody takes a direction of the x-y plane to be that was not measured. Nothing said: it has to be measured.

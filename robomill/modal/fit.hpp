@@ -8,6 +8,8 @@
 #include "robomill/base/progress.hpp"
 #include "robomill/modal/modes.hpp"
 
+// Method: robomill/modal/README.md, "FRFs to modes (`fit.hpp`)"
+
 namespace robomill::modal {
 
 /// How modes are found.
@@ -46,7 +48,7 @@ struct FitOptions {
   int lscf_max_order = 40;         ///< highest polynomial order of the stabilisation diagram, in 2 … 200
   double stable_frequency = 0.01;  ///< a pole is stable if it moved less than this share of its frequency, > 0 …
   double stable_damping = 0.05;    ///< … its damping ratio less than this share, > 0 …
-  double stable_mac = 0.95;        ///< … and its vector's MAC with the one before is above this, in (0, 1)
+  double stable_mac = 0.95;        ///< … and MAC(left) · MAC(right) with the one before is above this, in [0, 1]
 
   int pso_particles = 400;                ///< >= 2
   int pso_max_iterations = 8000;          ///< >= 1
@@ -64,17 +66,18 @@ struct StabilisationPoint {
   bool frequency_stable = false, damping_stable = false, vector_stable = false;
 };
 
-/// From this relative error on a fit has a warning …
+/// From this relative error on a fit has a warning: relative_error >= doubtful_fit_error …
 constexpr double doubtful_fit_error = 0.05;
-/// … and from this one on its modes do not describe the FRFs: only who accepts that may use them.
+/// … and from this one on, relative_error >= unusable_fit_error, its modes do not describe the FRFs: only who accepts
+/// that may use them.
 constexpr double unusable_fit_error = 0.2;
 
 /// A bound that the search for a mode ended at: what stands there is no mode that the data shows.
 enum class FitBound {
-  damping,        ///< FitOptions::max_damping_ratio
-  swarm_damping,  ///< FitOptions::pso_max_damping_ratio, where the swarm fitted
-  band_low,       ///< the first line of the band
-  band_high       ///< the last line of the band
+  damping,        ///< FitOptions::max_damping_ratio: ζ >= 0.999 · bound
+  swarm_damping,  ///< FitOptions::pso_max_damping_ratio, where the swarm fitted: ζ >= 0.999 · bound
+  band_low,       ///< the first line of the band: f <= line + half the lines' mean distance
+  band_high       ///< the last line of the band: f >= line - half the lines' mean distance
 };
 /// The name of the option: "max_damping_ratio", "pso_max_damping_ratio", "band_low_hz" or "band_high_hz".
 [[nodiscard]] ROBOMILL_API const char* to_string(FitBound bound);
@@ -95,6 +98,9 @@ struct FrfFitError {
 
 /// The modes and how well they describe the FRFs.
 struct FitResult {
+  /// converged: there are modes, as many as asked for, and the search ended by itself. hybrid: the last refinement met
+  /// its tolerance. pso: the best misfit of each swarm fell by <= 0.1 % of itself in 20 iterations. not_converged:
+  /// else; the model is the best one found, and may hold no mode.
   enum class Status { converged, not_converged };
   Status status = Status::not_converged;
   ModalModel model;                  ///< modes by rising frequency, normalised

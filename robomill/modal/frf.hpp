@@ -7,9 +7,12 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/modal/README.md, "Hammer hits to FRFs (`hits.hpp`)"
+
 namespace robomill::modal {
 
-/// Direction of a force or displacement; rx, ry, rz are moments and rotations. The numbers are those of UFF58.
+/// Direction of a force or displacement: x, y, z along the axis of that name; rx, ry, rz a moment or rotation about it.
+/// The numbers are those of UFF58.
 enum class Axis : int { x = 1, y = 2, z = 3, rx = 4, ry = 5, rz = 6 };
 
 /// One degree of freedom of the structure: a point and a direction at it. Point 0 is the unnumbered tool tip.

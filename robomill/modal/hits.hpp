@@ -9,16 +9,27 @@
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/modes.hpp"
 
+// Method: robomill/modal/README.md, "Hammer hits to FRFs (`hits.hpp`)"
+
 namespace robomill::modal {
 
-/// What the response channels of a hit hold; their SI unit is m/s², m/s or m.
-enum class ResponseKind { acceleration, velocity, displacement };
+/// What the response channels of a hit hold.
+enum class ResponseKind {
+  acceleration,  ///< [m/s²]; receptance = ratio / s², s = iω, or iω + σ where the window's decay σ stays in
+  velocity,      ///< [m/s]; receptance = ratio / s
+  displacement   ///< [m]; the ratio is the receptance
+};
 
 /// H1 = Σ X F* / Σ |F|² (no bias from noise on the response), H2 = Σ |X|² / Σ F X* (no bias from noise on the force),
 /// Hv = their geometric mean: total least squares with force and response scaled to equal power. [Rocklin1985]
 enum class Estimator { h1, h2, hv };
 
-enum class ExponentialWindow { automatic, off, on };
+/// Whether force and responses are multiplied by exp(-t/τ), so that responses that outlast the record do not leak.
+enum class ExponentialWindow {
+  automatic,  ///< where a record ends with > 2 % of a response's vibration left
+  off,        ///< never; what is left leaks
+  on          ///< always
+};
 
 /// One response of a hit.
 struct HitChannel {
@@ -41,12 +52,13 @@ struct HitOptions {
   ResponseKind response = ResponseKind::acceleration;
   Estimator estimator = Estimator::h1;
   double accelerometer_mass_kg = 0.0;  ///< >= 0; taken out of the FRFs
-  double min_frequency_hz = 0.0;  ///< lowest line that is given; 0: the first above zero, which has no double integral
-  double max_frequency_hz = 0.0;  ///< highest line that is given; 0: sample rate / 2.56
+  /// Lowest line that is given, f >= min_frequency_hz; 0: the first above zero, which has no double integral.
+  double min_frequency_hz = 0.0;
+  double max_frequency_hz = 0.0;         ///< highest line that is given, f <= this; 0: sample rate / 2.56
   double frequency_resolution_hz = 0.0;  ///< 0: 1 / record length; coarser cuts the records, finer pads them with zeros
-  double force_overload_n = 0.0;         ///< a force that reaches it is overloaded; 0: only flat tops are
+  double force_overload_n = 0.0;         ///< max |force| >= this rejects the hit; 0: only flat tops do
   double response_overload = 0.0;        ///< the same for responses, in the SI unit of `response`
-  double double_hit_limit = 0.03;        ///< a second pulse above this part of the first rejects the hit, in (0, 1]
+  double double_hit_limit = 0.03;        ///< in (0, 1]; second pulse / first > this rejects the hit
   bool force_window = true;              ///< zero the force outside the pulse
   double force_window_s = 0.0;           ///< length of the force window; 0: from the pulse
   ExponentialWindow exponential_window = ExponentialWindow::automatic;  ///< automatic: where a response has not decayed
@@ -69,7 +81,12 @@ struct HitVerdict {
   double second_pulse_ratio = 0.0;  ///< highest further pulse / first
 };
 
-enum class Grade { good, usable, poor };
+/// How far an FRF is to be trusted, by the worst of its faults.
+enum class Grade {
+  good,    ///< no fault
+  usable,  ///< minor faults alone: mean coherence < 0.95, fewer than 3 hits, Im H > 0, reciprocity error > 20 %, …
+  poor     ///< mean coherence < 0.8, noise > 30 % of |H| (from one hit), or no line that can be trusted
+};
 /// "good", "usable", "poor"
 [[nodiscard]] ROBOMILL_API std::string to_string(Grade grade);
 

@@ -5,6 +5,8 @@
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/modes.hpp"
 
+// Method: robomill/modal/README.md, "Comparing modes and FRFs (`mac.hpp`)"
+
 namespace robomill::modal {
 
 /// Modal assurance criterion of two complex vectors: MAC = |aᴴ b|² / (aᴴa · bᴴb), in [0, 1]; 1 where one is a complex

@@ -5,10 +5,15 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/modal/README.md, "Outputs"
+
 namespace robomill::modal {
 
 /// The structure that a mode belongs to.
-enum class ModeOwner { tool, workpiece };
+enum class ModeOwner {
+  tool,      ///< what carries the cutting edges: cutter, holder, spindle, machine or robot
+  workpiece  ///< the part and its fixture
+};
 
 /// Which mode of which structure.
 struct ModeId {

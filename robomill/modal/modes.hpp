@@ -6,6 +6,8 @@
 
 #include "robomill/modal/frf.hpp"
 
+// Method: robomill/modal/README.md, "FRFs to modes (`fit.hpp`)"
+
 namespace robomill::modal {
 
 /// One pair of conjugate poles λ = -ζ ω + iω sqrt(1 - ζ²) of a structure that need not be symmetric.

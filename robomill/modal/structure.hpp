@@ -6,6 +6,8 @@
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/modes.hpp"
 
+// Method: robomill/modal/README.md, "Matrices to modes (`structure.hpp`)"
+
 namespace robomill::modal {
 
 /// M Ẍ + C Ẋ + K X = F with any real matrices: neither symmetric nor proportionally damped. The units are those of

@@ -6,6 +6,8 @@
 #include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
 
+// Method: robomill/modal/README.md, "Outputs"
+
 namespace robomill::modal {
 
 /// A modal model as the cut sees it: at the tool tip and in the feed's frame (x along the feed, y to its left, z kept),

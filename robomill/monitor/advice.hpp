@@ -6,6 +6,8 @@
 #include "robomill/modal/modes.hpp"
 #include "robomill/stability/lobes.hpp"
 
+// Method: robomill/monitor/README.md, "Outputs"
+
 namespace robomill::monitor {
 
 /// A speed at which the cut follows the chatter's own wave: the teeth pass a whole number of times k a period of it.
@@ -16,7 +18,7 @@ struct StableSpeed {
 };
 
 struct AdviceOptions {
-  double lowest_rad_per_s = 0.0;      ///< of the spindle
+  double lowest_rad_per_s = 0.0;      ///< >= 0; of the spindle: lowest <= speed <= highest
   double highest_rad_per_s = 2100.0;  ///< > lowest; 20,000 rpm
   int most_speeds = 6;                ///< nearest to the present one; >= 1
   /// @throws InvalidInput naming the field

@@ -8,6 +8,8 @@
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/signal/synchrosqueeze.hpp"
 
+// Method: robomill/monitor/README.md, "energy-entropy (`published/`)"
+
 namespace robomill::monitor {
 
 /// Entropy of the bands' energies E_b >= 0, p_b = E_b / Σ E; 0 where Σ E = 0.

@@ -9,25 +9,40 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/monitor/README.md, "Method"
+
 namespace robomill::monitor {
 
-/// Kind::comb_cusum: what the tracking comb leaves, band by band in a sequential test. Kind::energy_entropy: the
-/// published detector.
-enum class Kind { comb_cusum, energy_entropy };
-/// Of the bands' energies: normalised, -Σ p ln p; or un-normalised, which grows with the amplitude.
-enum class Entropy { normalised, energy };
-/// transition: the test is on its way up, or an alarm is on its way down.
-enum class State { stable, transition, chatter };
-/// How chatter was seen that a comb takes for a part of the cut. locked: at a multiple of rotation, by amplitude and
-/// phase against their learnt values. period_doubling: between the multiples of tooth passing.
-enum class Hidden { none, locked, period_doubling };
+/// Which detector decides.
+enum class Kind {
+  comb_cusum,     ///< a comb takes off what repeats with the spindle; a CUSUM tests each spectral line of the rest
+  energy_entropy  ///< the published detector: the entropy of the bands' energies against a calibrated threshold
+};
+/// Of the bands' energies E_b, p_b = E_b / Σ E.
+enum class Entropy {
+  normalised,  ///< -Σ p_b ln p_b: blind to the amplitude
+  energy       ///< -Σ E_b ln p_b: grows with the amplitude's square
+};
+/// What a decision says of the cut.
+enum class State {
+  stable,      ///< no alarm, and none on its way up or down
+  transition,  ///< comb_cusum: score > threshold / 2 without an alarm; both detectors: an alarm on its way down
+  chatter      ///< an alarm: score > threshold (energy_entropy with alarm_below: <), or as Hidden
+};
+/// How chatter was seen that a comb takes for a part of the cut: by the power of a multiple of rotation against what
+/// was learnt of it.
+enum class Hidden {
+  none,            ///< not so
+  locked,          ///< at a multiple of rotation that is none of tooth passing
+  period_doubling  ///< half way between two multiples of tooth passing (even numbers of teeth)
+};
 
 /// What is wrong with the input; a bit mask, since several may be.
 enum Fault : std::uint32_t {
-  not_finite = 1,          ///< NaN or infinite samples; the last good one stands in for them
-  stuck = 2,               ///< a channel that moved repeats one value for 20 ms and longer
-  clipped = 4,             ///< samples at full scale, or runs of equal samples at the extremes
-  dead_channel = 8,        ///< a channel that never moved, or hardly, against the others
+  not_finite = 1,          ///< NaN, infinite or |sample| >= 1e15; the last good one stands in for them
+  stuck = 2,               ///< a channel that moved repeats one value for >= 20 ms
+  clipped = 4,             ///< |sample| >= 0.9999 full_scale, or two runs and more of 4 equal samples at the extremes
+  dead_channel = 8,        ///< a channel that never moved, or with a variance < 1e-8 of the loudest channel's
   wrong_sample_rate = 16,  ///< the comb fits at another one, Decision::suggested_sample_rate_hz
   speed_unknown = 32       ///< no comb was found: the test runs without
 };
@@ -43,11 +58,12 @@ struct ROBOMILL_API MonitorOptions {
   double hop_s = 0.025;                  ///< between decisions; at least 16 samples
   int bands = 16;                        ///< equal, from 0 to half the sample rate; in [2, 64]
   Entropy entropy = Entropy::energy;     ///< energy-entropy
-  /// energy-entropy: finite, required there; it holds for one form, unit and sensor, and calibrate() sets it
+  /// energy-entropy: finite, required there; chatter where Decision::energy_entropy > threshold (alarm_below: <). It
+  /// holds for one form, unit and sensor, and calibrate() sets it.
   double threshold = std::numeric_limits<double>::quiet_NaN();
   bool alarm_below = false;            ///< energy-entropy: which side of the threshold is chatter, from calibration
-  double false_alarms_per_hour = 0.1;  ///< comb-cusum, > 0
-  double full_scale = 0.0;             ///< |sample| at which the converter clips, >= 0; 0: unknown
+  double false_alarms_per_hour = 0.1;  ///< comb-cusum, > 0; alarms an hour <= this in stationary noise (Wald's bound)
+  double full_scale = 0.0;             ///< at which the converter clips, >= 0: |sample| >= 0.9999 of it; 0: unknown
   /// @throws InvalidInput naming the field
   void validate() const;
   /// Samples a hop and a window: the times, rounded.
@@ -62,7 +78,7 @@ struct Decision {
   State state = State::stable;
   bool changed = false;         ///< state differs from the last decision's
   double score = 0.0;           ///< of the test
-  double threshold = 0.0;       ///< that the score is held against
+  double threshold = 0.0;       ///< alarm where score > threshold (MonitorOptions::alarm_below: <), or as `hidden`
   double energy_entropy = 0.0;  ///< Σ over the channels of the bands' energy entropy, as MonitorOptions::entropy has it
   double level = 0.0;           ///< rms of all channels over the hop, mean taken off [input's unit]
   double chatter_frequency_hz = 0.0;      ///< 0: none

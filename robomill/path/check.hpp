@@ -12,18 +12,20 @@
 #include "robomill/program/program.hpp"
 #include "robomill/robot/kinematics.hpp"
 
+// Method: robomill/path/README.md, "The proof"
+
 namespace robomill::path {
 
 /// One limit and how near the trajectory came to it.
 struct Usage {
   double max = 0.0;            ///< the largest magnitude met
   double limit = 0.0;          ///< 0: not given
-  std::size_t violations = 0;  ///< samples beyond the limit
+  std::size_t violations = 0;  ///< samples with magnitude > limit · (1 + CheckOptions::relative_tolerance)
   double at_s = 0.0;           ///< when the largest was met
   std::size_t block = 0;       ///< … and in which block
 };
 
-/// Of the path that one violation stands for.
+/// Of the path that one violation stands for: 0.2 mm a cell.
 inline constexpr double violation_cells_per_m = 5000.0;
 
 /// Samples that break a limit, reported so that a planner can correct them.
@@ -47,10 +49,12 @@ struct CheckResult {
   Usage axis_velocity, axis_acceleration, axis_jerk;  ///< rad/s … along the path
   Usage feed;                                         ///< tip speed over the programmed one; limit 1
   Usage tip_error_m, axis_error_rad;
-  Usage synchrony_rad;     ///< angle between the axis and the one programmed where the tip is; no limit
-  Usage pose_error;        ///< m and rad; of the joints' forward kinematics against the samples' own tip and axis
-  Usage dwell_s;           ///< by how much a dwell stood still too short; limit: two periods, what sampling hides
-  std::size_t faulty = 0;  ///< samples that are not finite, name no block of the program, or are off the sample grid
+  Usage synchrony_rad;  ///< angle between the axis and the one programmed where the tip is; no limit
+  Usage pose_error;     ///< m and rad; of the joints' forward kinematics against the samples' own tip and axis
+  Usage dwell_s;        ///< by how much a dwell stood still too short; limit: two periods, what sampling hides
+  /// Samples that are not finite (or beyond 1e9 m or rad), name no block of the program, or are off the sample grid:
+  /// |time - due| > 1e-6 · period + 1e-12 · |due|.
+  std::size_t faulty = 0;
   std::size_t samples = 0;
   double duration_s = 0.0;
   std::vector<Violation> worst_violations =
@@ -59,9 +63,14 @@ struct CheckResult {
 };
 
 struct ROBOMILL_API CheckOptions {
-  double relative_tolerance = 1e-6;  ///< >= 0; of a limit, which is not yet a violation: rounding of differences
-  double max_pose_error = 1e-7;      ///< > 0; m and rad
-  bool tolerances_alone = false;     ///< the limits of joints, tip, axis and feed are not looked at
+  /// >= 0; a violation is a value > limit · (1 + relative_tolerance): rounding of differences. No such slack for joint
+  /// positions.
+  double relative_tolerance = 1e-6;
+  /// > 0 [m and rad]; a violation where max(|Δtip|, |Δaxis|) > max_pose_error · (1 + relative_tolerance).
+  double max_pose_error = 1e-7;
+  /// Velocity, acceleration, jerk, feed and dwells have no limit; errors of tip and axis, joint positions and poses are
+  /// held to theirs all the same.
+  bool tolerances_alone = false;
   /// @throws InvalidInput naming the member
   void validate() const;
 };

@@ -8,6 +8,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/path/sample.hpp"
 
+// Method: robomill/path/README.md, "Method"
+
 namespace robomill::path {
 
 /// One joint's drive: a servo of second order, and behind it a load on an elastic joint where an inertia is given. With

@@ -8,6 +8,8 @@
 #include "robomill/program/program.hpp"
 #include "robomill/robot/kinematics.hpp"
 
+// Method: robomill/path/README.md, "In real time"
+
 namespace robomill::path {
 
 struct ROBOMILL_API InterpolatorOptions {

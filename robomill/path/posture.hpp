@@ -8,6 +8,8 @@
 #include "robomill/program/program.hpp"
 #include "robomill/robot/kinematics.hpp"
 
+// Method: robomill/path/README.md, "Posture"
+
 namespace robomill::path {
 
 struct ROBOMILL_API PostureOptions {
@@ -15,9 +17,9 @@ struct ROBOMILL_API PostureOptions {
   std::optional<robot::Position6> start = {};  ///< near which the machine begins; not given: any way
   bool free_gamma = false;                     ///< gamma may turn along the way even where a constant one would do
   int gammas = 72;                             ///< >= 4; tried in a full turn
-  double max_axis_step_rad = 0.035;            ///< > 0; between two looks along the program
-  double max_tip_step_m = 0.005;               ///< > 0
-  std::size_t max_blocks = 20'000;             ///< >= 1; a longer program is judged by its first so many
+  double max_axis_step_rad = 0.035;  ///< > 0; between two looks along the program: turn of the axis <= this …
+  double max_tip_step_m = 0.005;     ///< > 0; … and way of the tip <= this
+  std::size_t max_blocks = 20'000;   ///< >= 1; a longer program is judged by its first so many
   /// @throws InvalidInput naming the member
   void validate() const;
 };

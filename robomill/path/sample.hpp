@@ -6,6 +6,8 @@
 
 #include "robomill/robot/inverse.hpp"
 
+// Method: robomill/path/README.md, "Outputs"
+
 namespace robomill::path {
 
 /// One moment of a trajectory.

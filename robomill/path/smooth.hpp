@@ -11,6 +11,8 @@
 #include "robomill/program/program.hpp"
 #include "robomill/robot/kinematics.hpp"
 
+// Method: robomill/path/README.md, "Method"
+
 namespace robomill::path {
 
 /// What became of a program.

@@ -3,6 +3,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/program/README.md, "Method"
+
 namespace robomill::program {
 
 /// Whose rotary axes the words A, B and C of a program turn. All programs here give positions of the tip (TCP) in the
@@ -31,8 +33,8 @@ struct ROBOMILL_API RotaryMove {
   Eigen::Vector3d end_rad = Eigen::Vector3d::Zero();
 
   [[nodiscard]] Eigen::Vector3d axis_at(double share) const;
-  /// Number of parts of equal time, >= 1, whose great circles leave the move by no more than a tolerance. No part turns
-  /// the axis by more than 0.5 rad.
+  /// Number of parts of equal time, >= 1, whose great circles leave the move by no more than a tolerance:
+  /// deviation_rad(parts) <= tolerance_rad. No part turns the axis by more than 0.5 rad.
   [[nodiscard]] double parts(double tolerance_rad) const;
   /// By how much the great circles through so many parts leave the move at the same time, at most. With the tilt t (A
   /// or B), c (C) and derivatives by s, the curve's acceleration along the sphere is

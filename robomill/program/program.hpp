@@ -7,6 +7,7 @@
 #include "robomill/base/export.hpp"
 
 /// Work frame W: the program's own, fixed in the part; docs/frames.md.
+// Method: robomill/program/README.md, "Method"
 namespace robomill::program {
 
 /// Where the tool stands, in W.
@@ -15,11 +16,20 @@ struct Pose {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit vector from the tip to the spindle
 };
 
-/// How the spindle turns: off, clockwise seen from the spindle (M3), or counter-clockwise (M4).
-enum class Spindle { not_given, off, clockwise, counterclockwise };
+/// How the spindle turns, seen from the spindle towards the tip.
+enum class Spindle {
+  not_given,        ///< the program has not said yet
+  off,              ///< M5, M19, SPINDL/OFF
+  clockwise,        ///< M3, SPINDL: a right-hand cutter cuts
+  counterclockwise  ///< M4, SPINDL with CCLW: a left-hand cutter cuts
+};
 
-/// Whether a machine waits for its operator where a dwell stands: always (M0), or where its switch says so (M1).
-enum class OperatorStop { none, always, optional };
+/// Whether a machine waits for its operator where a dwell stands.
+enum class OperatorStop {
+  none,     ///< goes on by itself
+  always,   ///< M0, STOP: waits until the operator starts it again
+  optional  ///< M1, OPSTOP: waits where the machine's switch for it is on
+};
 
 /// Coolants that are on.
 struct Coolant {
@@ -35,7 +45,11 @@ struct Coolant {
 /// Spindle and coolant are the states that hold during the block. Where one differs from the block before it, the
 /// change is commanded before the block begins. The states before the first block are those of its members' defaults.
 struct Block {
-  enum class Kind { rapid, feed, dwell };
+  enum class Kind {
+    rapid,  ///< G0, RAPID: as fast as the machine can; not meant to cut
+    feed,   ///< G1, chords of G2 and G3, GOTO, a row of CSV: takes duration_s; cuts
+    dwell   ///< G4, DELAY or a stop for the operator: stands still for duration_s
+  };
   Kind kind = Kind::feed;
   std::size_t line = 0;  ///< in the program's file, from 1
   Pose end;

@@ -2,6 +2,8 @@
 #include <limits>
 #include <string>
 
+// Method: robomill/report/README.md, "Method"
+
 namespace robomill::report {
 
 /// "Not known", or "none in the range" where a member says so; null in the JSON.

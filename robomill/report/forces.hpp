@@ -7,6 +7,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/report/fact.hpp"
 
+// Method: robomill/report/README.md, "Method"
+
 /// The forces of a cut as a part of the report. Frames and angles are those of docs/frames.md: rotation counts
 /// clockwise from +y of the feed frame, seen from the spindle.
 namespace robomill::report {

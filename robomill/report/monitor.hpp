@@ -9,6 +9,8 @@
 #include "robomill/report/band.hpp"
 #include "robomill/report/fact.hpp"
 
+// Method: robomill/report/README.md, "Method"
+
 /// A recording as the chatter monitor processed it, as a part of the report.
 namespace robomill::report {
 

@@ -11,6 +11,8 @@
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/report/monitor.hpp"
 
+// Method: robomill/report/README.md, "Method"
+
 namespace robomill::report {
 
 /// Takes what a monitor is given and what it says, and keeps what a report shows of it, in memory that does not grow

@@ -8,6 +8,8 @@
 #include "robomill/report/monitor.hpp"
 #include "robomill/report/smooth.hpp"
 
+// Method: robomill/report/README.md, "Method"
+
 /// Results of the other stages, as a page to look at and as the data of its plots: the stages' own JSON documents, as
 /// text, and what is recorded for the page alone. Every part may be left empty, and the page leaves its section out.
 namespace robomill::report {

@@ -8,6 +8,8 @@
 #include "robomill/report/band.hpp"
 #include "robomill/report/fact.hpp"
 
+// Method: robomill/report/README.md, "Method"
+
 /// A smoothed program as a part of the report. Work frame.
 namespace robomill::report {
 

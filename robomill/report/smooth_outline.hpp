@@ -6,6 +6,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/program/program.hpp"
 
+// Method: robomill/report/README.md, "Method"
+
 namespace robomill::report {
 
 /// A corner of a program that is worth a close look.

@@ -7,6 +7,7 @@
 #include "robomill/base/export.hpp"
 
 /// Base frame B of the robot, flange frame E; docs/frames.md. Joint quantities are rad or m, by joint.
+// Method: robomill/robot/README.md, "Jacobian and its derivative"
 namespace robomill::robot {
 
 /// A rigid body that moves with a joint, in the frame after that joint (Arm::Joint).
@@ -22,7 +23,7 @@ struct Joint {
   bool prismatic = false;
   Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-  double min_position = -1e300, max_position = 1e300;
+  double min_position = -1e300, max_position = 1e300;                 ///< min < max; within: min <= q <= max [rad or m]
   double max_velocity = 0.0, max_acceleration = 0.0, max_jerk = 0.0;  ///< > 0; 0: not given
   double stiffness = 0.0;                                             ///< Kθ [N m/rad or N/m]; 0: not given
   double damping = 0.0;                                               ///< [N m s/rad or N s/m]
@@ -62,7 +63,7 @@ struct DhRow {
 [[nodiscard]] ROBOMILL_API Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(
     const Arm& arm, const Eigen::Ref<const Eigen::VectorXd>& position, const Eigen::Vector3d& point_m);
 
-/// The most joints that an arm may have.
+/// The most joints that an arm may have: 1 <= n <= max_joints.
 inline constexpr int max_joints = 16;
 
 /// Where the axes of an arm stand at one position: forward kinematics and Jacobian together, without allocation.
@@ -91,7 +92,7 @@ struct ROBOMILL_API Posture {
 
 /// How far a position is from the limits of its joints.
 struct LimitCheck {
-  bool inside = true;
+  bool inside = true;       ///< min_position <= q <= max_position for every joint
   Eigen::Index joint = -1;  ///< the one nearest to its limit, or farthest beyond it, by its share of the joint's half
                             ///< range (half a turn at most); from 0; -1 where no joint has limits
   double distance = 1e300;  ///< of that joint to its nearer limit, < 0 beyond [rad or m]

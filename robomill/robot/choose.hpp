@@ -11,22 +11,28 @@
 #include "robomill/robot/inverse.hpp"
 #include "robomill/robot/stiffness.hpp"
 
+// Method: robomill/robot/README.md, "Inverse kinematics in closed form"
+
 namespace robomill::robot {
 
 struct ROBOMILL_API ChooseOptions {
   SingularityOptions singularity = {};                ///< of the Jacobian at `point_m`
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< in the flange frame: the tool's tip
   Position6 weight = Position6::Ones();               ///< >= 0; of each joint's travel [1/rad]
-  double max_travel_rad = HUGE_VAL;                   ///< > 0; of a joint from the previous position; more is a jump
+  double max_travel_rad = HUGE_VAL;                   ///< > 0; jump where max |q - previous| > this
   /// @throws InvalidInput naming the member
   void validate() const;
 };
 
 /// One position for a pose.
 struct Choice {
-  /// singular: found and within limits, but with a condition number above the largest allowed. jump: found and within
-  /// limits, but farther from the previous position than is allowed: the arm would have to swing round.
-  enum class Status { found, out_of_reach, outside_limits, singular, jump };
+  enum class Status {
+    found,           ///< within limits, regular and near enough to the previous position
+    out_of_reach,    ///< no solution: the wrist's centre is too far or too near, or the wrist cannot bend that far
+    outside_limits,  ///< every solution and its turns by 2π have a joint beyond its limits: `joint`, `beyond_rad`
+    singular,        ///< within limits, but condition_number > singularity.max_condition_number
+    jump             ///< within limits and regular, but travel_rad > max_travel_rad: the arm would have to swing round
+  };
   Status status = Status::out_of_reach;
   Position6 position_rad = Position6::Zero();  ///< zero where out of reach
   double travel_rad = 0.0;                     ///< the largest of a joint from the previous position
@@ -65,17 +71,20 @@ struct Followed {
                                            const ChooseOptions& options = {});
 
 struct ROBOMILL_API NearOptions {
-  double tolerance_m = 1e-12;    ///< > 0; of the flange's position
-  double tolerance_rad = 1e-12;  ///< > 0; of its orientation
-  int max_iterations = 100;      ///< >= 1
+  double tolerance_m = 1e-12;    ///< > 0; converged where error_m <= this …
+  double tolerance_rad = 1e-12;  ///< > 0; … and error_rad <= this
+  int max_iterations = 100;      ///< >= 1; steps, those that were taken back among them
   /// @throws InvalidInput naming the member
   void validate() const;
 };
 struct NearResult {
-  enum class Status { converged, not_converged };
+  enum class Status {
+    converged,     ///< both errors are within their tolerances
+    not_converged  ///< max_iterations steps were not enough: no position near the seed, or a singular one
+  };
   Status status = Status::not_converged;
-  Eigen::VectorXd position = {};
-  double error_m = 0.0, error_rad = 0.0;  ///< what is left
+  Eigen::VectorXd position = {};          ///< the best one found, also where not converged
+  double error_m = 0.0, error_rad = 0.0;  ///< what is left, of the flange's position and orientation
   int iterations = 0;
 };
 /// The position at which an arm of any kind reaches a pose, by damped Newton steps (Levenberg-Marquardt) from a seed

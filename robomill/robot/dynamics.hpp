@@ -8,6 +8,8 @@
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/stiffness.hpp"
 
+// Method: robomill/robot/README.md, "Mass and modes"
+
 namespace robomill::robot {
 
 /// Joint-space mass matrix M, n x n, of the links (Orocos KDL) with the drives' rotors on its diagonal.
@@ -16,14 +18,18 @@ namespace robomill::robot {
 [[nodiscard]] ROBOMILL_API Eigen::MatrixXd mass_matrix(const Arm& arm,
                                                        const Eigen::Ref<const Eigen::VectorXd>& position);
 
+/// Which part of the mass matrix counts.
 enum class Inertia {
-  full,
+  full,     ///< all of M: joints accelerate each other
   diagonal  ///< M without what is off its diagonal, as published for a milling robot: good where one joint moves alone
 };
 
 /// What a point of the tool resists to acceleration.
 struct CartesianMass {
-  enum class Status { regular, singular };
+  enum class Status {
+    regular,  ///< condition_number <= options.max_condition_number: Λ stands in `mass`
+    singular  ///< above it: the point can hardly move in some direction, Λ has no bound there
+  };
   Status status = Status::singular;
   Eigen::Matrix<double, 6, 6> mass = Eigen::Matrix<double, 6, 6>::Zero();  ///< Λ; zero where singular
   double condition_number = 0.0;                                           ///< of the Jacobian
@@ -59,7 +65,10 @@ struct CreepMode {
   Eigen::Matrix<double, 6, 1> left = Eigen::Matrix<double, 6, 1>::Zero();
 };
 struct ToolModes {
-  enum class Status { found, buckled };
+  enum class Status {
+    found,   ///< every pole stands in `modes` or `creeping`
+    buckled  ///< (Kθ − Kc) is not positive definite: the arm does not hold the wrench, nothing vibrates about it
+  };
   Status status = Status::buckled;
   std::vector<ToolMode> modes = {};      ///< by frequency
   std::vector<CreepMode> creeping = {};  ///< in pairs, where a joint is damped more than critically

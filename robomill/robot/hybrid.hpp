@@ -7,6 +7,8 @@
 #include "robomill/robot/kinematics.hpp"
 #include "robomill/robot/stiffness.hpp"
 
+// Method: robomill/robot/README.md, "Following a tool, with derivatives"
+
 namespace robomill::robot {
 
 /// The five-axis hybrid machine 2-UPR-RPU + two slides; docs/frames.md draws it. Base points A1 = (a, 0, 0),
@@ -36,7 +38,7 @@ struct PlatformPose {
 
 struct ROBOMILL_API HybridOptions {
   SingularityOptions singularity = {};  ///< of the Jacobian of the five joints by the tip and the axis
-  double max_travel_m = HUGE_VAL;       ///< > 0; of a joint from the position before; more is a jump
+  double max_travel_m = HUGE_VAL;       ///< > 0; jump where max |q − near| > this, q the joints, near those before
   /// @throws InvalidInput naming the member
   void validate() const;
 };

@@ -8,6 +8,8 @@
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/stiffness.hpp"
 
+// Method: robomill/robot/README.md, "Identification"
+
 namespace robomill::robot {
 
 /// A known load on the tool and how far the point went.
@@ -19,11 +21,12 @@ struct Load {
 };
 
 struct ROBOMILL_API IdentifyOptions {
-  double max_relative_deviation =
-      0.5;                   ///< > 0; a joint is identifiable where its deviation is at most this share of it
-  double tolerance = 1e-12;  ///< > 0; of the last change of a compliance, as a share of the largest; ends earlier
-                             ///< where rounding stops it
-  int max_iterations = 50;   ///< >= 1
+  /// > 0; a joint is identifiable where compliance_deviation <= this · compliance.
+  double max_relative_deviation = 0.5;
+  /// > 0; ends where max |Δc| <= tolerance · max |c|, or where rounding stops it: that ratio is < 1e-7 and >= half the
+  /// one before.
+  double tolerance = 1e-12;
+  int max_iterations = 50;  ///< >= 1; of each fit: one, and one more for each joint that is taken as rigid
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -39,7 +42,10 @@ struct IdentifiedJoint {
 };
 
 struct IdentifiedStiffness {
-  enum class Status { converged, not_converged };
+  enum class Status {
+    converged,     ///< the compliances no longer change; `joints` says which of them are identifiable
+    not_converged  ///< max_iterations were not enough, or a compliance was not finite; no joint is identifiable
+  };
   Status status = Status::not_converged;
   std::vector<IdentifiedJoint> joints = {};
   Eigen::Matrix3Xd residual_m = {};  ///< 3 x loads, measured less model, in B

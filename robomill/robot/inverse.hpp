@@ -6,6 +6,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/robot/arm.hpp"
 
+// Method: robomill/robot/README.md, "Inverse kinematics in closed form"
+
 namespace robomill::robot {
 
 using Position6 = Eigen::Matrix<double, 6, 1>;
@@ -23,7 +25,10 @@ struct InverseSolution {
 
 /// All ways of an arm to reach a pose.
 struct InverseSolutions {
-  enum class Status { found, out_of_reach };
+  enum class Status {
+    found,        ///< one solution at least
+    out_of_reach  ///< none: out_of_reach_m and out_of_reach_rad say by how much
+  };
   Status status = Status::out_of_reach;
   int count = 0;  ///< of `solution` that hold
   std::array<InverseSolution, 8> solution = {};
@@ -31,9 +36,10 @@ struct InverseSolutions {
                                   ///< offset keeps it out of: 0 where joint 1 is singular
   double out_of_reach_m = 0.0;    ///< the least by which the wrist's centre is too far from the arm or too near
   double out_of_reach_rad = 0.0;  ///< the least by which a wrist whose axes are not perpendicular must bend further
-  bool shoulder_singular = false;  ///< the centre lies on axis 1: joint 1 is free and stands where the hint says
-  bool wrist_singular = false;     ///< in some solution joints 4 and 6 turn about one line: joint 4 is free and stands
-                                   ///< where the hint says
+  bool shoulder_singular = false;  ///< the centre lies on axis 1 (< 1e-12 m): joint 1 is free and stands where the
+                                   ///< hint says
+  bool wrist_singular = false;     ///< in some solution joints 4 and 6 turn about one line (sine between them < 1e-12):
+                                   ///< joint 4 is free and stands where the hint says
 };
 
 /// Closed-form inverse kinematics of arms with six revolute joints and a spherical wrist.
@@ -48,7 +54,8 @@ struct InverseSolutions {
 /// puts out of reach are taken as reached. Source: [Pieper1968].
 class ROBOMILL_API SphericalWristInverse {
  public:
-  /// @param tolerance  by how much axes may miss being parallel [rad] or meeting [m]; poses are missed by as much
+  /// @param tolerance  > 0; by how much axes may miss being parallel [rad] or meeting [m]: |w2 × w3| <= tolerance, and
+  ///     axes 4, 5 and 6 pass their common point at distances <= tolerance; poses are missed by as much
   /// @throws InvalidInput that says which of these the arm is not, and by how much
   explicit SphericalWristInverse(const Arm& arm, double tolerance = 1e-9);
 

@@ -5,9 +5,12 @@
 #include "robomill/robot/inverse.hpp"
 #include "robomill/robot/pose.hpp"
 
+// Method: robomill/robot/README.md, "Following a tool, with derivatives"
+
 namespace robomill::robot {
 
-/// What the drives of a machine can do; entries beyond its joints are 0. Rad or m, by joint.
+/// What the drives of a machine can do; entries beyond its joints are 0. Rad or m, by joint. A position is within
+/// limits where min_position <= q <= max_position.
 struct ROBOMILL_API JointLimits {
   Position6 min_position = Position6::Constant(-1e300), max_position = Position6::Constant(1e300);
   Position6 max_velocity = Position6::Zero(), max_acceleration = Position6::Zero(), max_jerk = Position6::Zero();
@@ -29,12 +32,17 @@ using JointJet = Eigen::Matrix<double, 6, 4>;
 
 /// Whether a pose can be taken, and if not, why.
 struct Reach {
-  /// singular: the joints cannot follow a motion in some direction (condition number above the largest allowed).
-  /// jump: reached, but farther from the position before than is allowed.
-  enum class Status { found, out_of_reach, outside_limits, singular, jump };
+  enum class Status {
+    found,           ///< the pose is taken, and the joints can follow it
+    out_of_reach,    ///< no position reaches the pose, whatever the limits
+    outside_limits,  ///< reached, but `joint` lies beyond its limits
+    singular,        ///< the joints cannot follow a motion in some direction: condition number > max_condition_number
+    jump             ///< reached, but a joint is farther than max_travel_rad or max_travel_m from the position before
+  };
   Status status = Status::out_of_reach;
   int joint = -1;       ///< the one beyond its limit, or at fault in a singularity, from 0; -1 where none is
-  double beyond = 0.0;  ///< outside limits: of that joint beyond its limit [rad or m]; out of reach: by how much [m]
+  double beyond = 0.0;  ///< outside limits: of that joint beyond its limit [rad or m]; out of reach: by how much [m],
+                        ///< [rad] where only the wrist cannot bend far enough, 0 where there is no such number
 };
 
 /// A machine that puts a tool at poses: up to six joints, one position followed from pose to pose.

@@ -5,6 +5,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/robot/arm.hpp"
 
+// Method: robomill/robot/README.md, "Frames"
+
 namespace robomill::robot {
 
 /// Where a tool stands in the work frame W.

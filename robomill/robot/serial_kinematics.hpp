@@ -9,11 +9,13 @@
 #include "robomill/robot/kinematics.hpp"
 #include "robomill/robot/stiffness.hpp"
 
+// Method: robomill/robot/README.md, "Following a tool, with derivatives"
+
 namespace robomill::robot {
 
 struct ROBOMILL_API SerialOptions {
   SingularityOptions singularity = {};  ///< of the Jacobian at the tool's tip
-  double max_travel_rad = HUGE_VAL;     ///< > 0; of a joint from the position before; more is a jump
+  double max_travel_rad = HUGE_VAL;     ///< > 0; jump where max |q − near| > this, q the joints, near those before
   /// @throws InvalidInput naming the member
   void validate() const;
 };

@@ -5,6 +5,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/robot/arm.hpp"
 
+// Method: robomill/robot/README.md, "Stiffness under load"
+
 namespace robomill::robot {
 
 /// Force and moment ON THE ROBOT at a point, in B.
@@ -16,7 +18,7 @@ struct Wrench {
 /// When an arm counts as singular.
 struct ROBOMILL_API SingularityOptions {
   double characteristic_length_m = 1.0;  ///< > 0; the Jacobian's three rows of velocity are divided by it
-  double max_condition_number = 1e3;     ///< >= 1; singular above
+  double max_condition_number = 1e3;     ///< >= 1; singular where condition_number() > this
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -36,8 +38,11 @@ struct ROBOMILL_API SingularityOptions {
 
 /// How an arm yields at a point of its tool.
 struct Stiffness {
-  /// buckled: the wrench is more than the joints can hold in this posture, (Kθ − Kc) is not positive definite.
-  enum class Status { regular, singular, buckled };
+  enum class Status {
+    regular,   ///< compliance and stiffness hold
+    singular,  ///< condition_number > max_condition_number: the compliance holds, `stiffness` is left zero
+    buckled    ///< the joints cannot hold the wrench in this posture: (Kθ − Kc) is not positive definite
+  };
   Status status = Status::regular;
   /// C, translation (m) and rotation (rad) of the point due to force (N) and moment (N m), in B.
   Eigen::Matrix<double, 6, 6> compliance = Eigen::Matrix<double, 6, 6>::Zero();
@@ -66,16 +71,20 @@ struct PrincipalStiffness {
 [[nodiscard]] ROBOMILL_API PrincipalStiffness principal_stiffness(const Eigen::Matrix<double, 6, 6>& compliance);
 
 struct ROBOMILL_API LoadedOptions {
-  double tolerance = 1e-13;  ///< > 0; of the last step [rad or m]
-  int max_iterations = 50;   ///< >= 1
+  /// > 0; a load has settled where max |Δθ| <= tolerance [rad or m], or where the residual no longer falls and |Δθ| <=
+  /// 1e-9.
+  double tolerance = 1e-13;
+  int max_iterations = 50;  ///< >= 1; for each part of the load
   /// @throws InvalidInput naming the member
   void validate() const;
 };
 
 /// Where an arm comes to rest under a wrench.
 struct LoadedPosture {
-  /// buckled: no stable equilibrium was found on the way from no load to this one.
-  enum class Status { converged, buckled };
+  enum class Status {
+    converged,  ///< at rest under the whole wrench, (Kθ − Kc) positive definite at every step
+    buckled     ///< no stable equilibrium was found on the way from no load to this one, in parts >= 1e-3 of it
+  };
   Status status = Status::buckled;
   Eigen::VectorXd position = {};                             ///< θ
   Eigen::Isometry3d flange = Eigen::Isometry3d::Identity();  ///< in B

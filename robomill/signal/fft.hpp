@@ -3,6 +3,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/signal/README.md, "Method"
+
 namespace robomill::signal {
 
 /// X_k = Σ_j x_j exp(-2πi jk/n), of any length n >= 1 (prime factors above 50 by Bluestein's method). [Bluestein1970]

@@ -4,6 +4,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/signal/README.md, "Method"
+
 namespace robomill::signal {
 
 /// One-sided amplitude spectrum: a sine of amplitude A at one of the lines shows A there.
@@ -26,10 +28,10 @@ struct SpectralPeak {
 
 struct PeakOptions {
   int count = 10;                  ///< at most so many, the highest ones; >= 1
-  double min_frequency_hz = 0.0;   ///< ignore below
-  double max_frequency_hz = 0.0;   ///< ignore above; 0: no limit
-  double relative_height = 0.05;   ///< ignore below this part of the highest line in the band, in [0, 1]
-  double min_separation_hz = 0.0;  ///< of two peaks closer than this only the higher counts
+  double min_frequency_hz = 0.0;   ///< >= 0; a line f counts where f >= this
+  double max_frequency_hz = 0.0;   ///< >= 0; a line f counts where f <= this; 0: no limit
+  double relative_height = 0.05;   ///< in [0, 1]; a line counts where A >= this · the highest A in the band
+  double min_separation_hz = 0.0;  ///< >= 0; of two peaks with |Δf| < this only the higher counts
   /// @throws InvalidInput naming the field
   ROBOMILL_API void validate() const;
 };

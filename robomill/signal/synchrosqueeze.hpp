@@ -19,6 +19,7 @@
 /// that is not above the threshold, or whose ω̂ is not in 0 … f_s/2, stays at its own, so that nothing is lost:
 ///   x_m = Re Σ_k squeezed(m, k) / (N g(0)),
 /// exactly, and a sum over part of the lines is that band's share of the signal.
+// Method: robomill/signal/README.md, "Method"
 namespace robomill::signal {
 
 struct SynchrosqueezeOptions {
@@ -44,7 +45,10 @@ struct Synchrosqueezed {
 };
 
 /// What is kept of a record: 8 N bytes a column each.
-enum class Keep { both, squeezed };
+enum class Keep {
+  both,     ///< V_g and the squeezed columns
+  squeezed  ///< the squeezed columns alone, which is all that reconstruct needs: half the memory
+};
 
 /// The whole of a record, on the threads of parallel_for; columns at 0, hop, 2 hop … below its length.
 /// @param x  length >= 1, finite

@@ -3,6 +3,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/signal/README.md, "Method"
+
 namespace robomill::signal {
 
 /// Periodic Hann window, w_j = (1 - cos(2πj/n)) / 2, j = 0 … n-1. [Harris1978]

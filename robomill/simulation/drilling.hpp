@@ -1,6 +1,8 @@
 #pragma once
 #include "robomill/simulation/simulation.hpp"
 
+// Method: robomill/simulation/README.md, "The cut"
+
 namespace robomill::simulation {
 
 /// Drilling, or boring out with a drill: n lips on a cone, fed along the axis, the tool free to vibrate along and

@@ -2,6 +2,8 @@
 #include "robomill/cutting/force.hpp"
 #include "robomill/simulation/simulation.hpp"
 
+// Method: robomill/simulation/README.md, "The cut"
+
 namespace robomill::simulation {
 
 /// Milling with any cutter in any posture: what of it cuts is reported by an engagement, which stays as it is whatever

@@ -3,6 +3,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/simulation/README.md, "The cut"
+
 namespace robomill::simulation {
 
 /// How depth and spindle speed of a cut change with time, as shares of the given ones: straight lines between points,

@@ -10,6 +10,8 @@
 #include "robomill/modal/tip.hpp"
 #include "robomill/simulation/schedule.hpp"
 
+// Method: robomill/simulation/README.md, "Method"
+
 namespace robomill::simulation {
 
 /// Milling at one speed and depth, or a schedule of them, and what vibrates in it.
@@ -31,8 +33,9 @@ struct ROBOMILL_API SimulationOptions {
   bool regeneration = true;
   int steps_per_revolution = 0;  ///< 0: chosen, see robomill/simulation/README.md
   int slices = 0;                ///< along the axis; 0: chosen
-  /// Steps and slices are doubled until the estimated error of the displacement over the first revolutions is below
-  /// this share of its root mean square; only where steps_per_revolution is 0.
+  /// In (0, 1). Steps and slices are doubled, five times at most, until Simulation::error_estimate <= tolerance: the
+  /// error of the displacement over the first revolutions as a share of its root mean square. Doubled only where
+  /// steps_per_revolution is 0.
   double tolerance = 2e-3;
   std::uint64_t seed = 1;  ///< of the start of small vibration
   /// @throws InvalidInput naming the member
@@ -41,8 +44,9 @@ struct ROBOMILL_API SimulationOptions {
 
 /// Where a small vibration about the forced one goes: the linear cut from a random start, looked at once a period.
 struct SmallVibration {
-  /// found: the other members hold. unsettled: the multiplier still moved when the patience ended. not_periodic: the
-  /// speed swings with a ratio that no 50 revolutions repeat. rigid: nothing can vibrate.
+  /// found: the other members hold. unsettled: the multiplier's size still moved by > 1e-7 · max(1, |μ|) when the
+  /// patience ended. not_periodic: the speed swings with a ratio that no 50 revolutions repeat. rigid: nothing can
+  /// vibrate.
   enum class Status { found, unsettled, not_periodic, rigid };
   Status status = Status::rigid;
   std::complex<double> multiplier = 0.0;  ///< of one period, the largest
@@ -56,7 +60,12 @@ struct SmallVibration {
 [[nodiscard]] ROBOMILL_API SmallVibration small_vibration(const MillingCut& cut, const SimulationOptions& options = {},
                                                           Progress& progress = Progress::none());
 
-enum class Verdict { stable, chatter, undecided };
+/// What the changes of the motion from period to period say, last quarter of the time against the one before.
+enum class Verdict {
+  stable,    ///< they die out: ratio < 0.7, or < 1 and below 1e-4 of the motion; or SmallVibration's radius < 1 decides
+  chatter,   ///< they grow (ratio > 1.4), stay above 5 % of the motion or diverge; or that radius >= 1 decides
+  undecided  ///< neither, and no small vibration was found; or depth or speed still change in the last half
+};
 
 /// The wall that stays on the part, at the side where teeth enter (φ = 0) or leave (φ = π), over the last half of the
 /// time.
@@ -88,7 +97,7 @@ struct Simulation {
   int steps_per_revolution = 0, slices = 1;
   double error_estimate = 0.0;  ///< of the displacement over the first revolutions, relative
   bool resolved = true;         ///< error_estimate <= tolerance
-  /// The linear cut grew beyond 1 m; the columns end there.
+  /// |displacement| >= 1 m was reached, as by a linear cut that grows; the columns end there.
   bool diverged = false;
   double seconds = 0.0;  ///< of computing
 };

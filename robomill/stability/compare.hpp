@@ -6,6 +6,8 @@
 #include "robomill/base/progress.hpp"
 #include "robomill/stability/lobes.hpp"
 
+// Method: robomill/stability/README.md, "All methods on one picture"
+
 namespace robomill::stability {
 
 /// What one method makes of the limits, beside the reference.

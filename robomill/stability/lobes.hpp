@@ -11,6 +11,8 @@
 #include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
 
+// Method: robomill/stability/README.md, "Method"
+
 namespace robomill::stability {
 
 /// A structure that vibrates and the cut that excites it.
@@ -34,18 +36,30 @@ struct ROBOMILL_API LobesProblem {
 /// zeroth_order, multi_frequency: in the frequency domain, limits alone; from modes or measured FRFs. The others need
 /// modes and know the spectral radius.
 enum class Method {
-  collocation,
-  semi_discretization,
-  semi_discretization_first_order,
-  full_discretization,
-  zeroth_order,
-  multi_frequency
+  collocation,                      ///< force as polynomials between entries and exits; refined to the tolerance
+  semi_discretization,              ///< [Insperger2004], order zero: delayed displacement held over a step
+  semi_discretization_first_order,  ///< [Insperger2008]: delayed displacement linear over a step; equal pitch
+  full_discretization,              ///< [Ding2010]: present displacement linear too; equal pitch
+  zeroth_order,                     ///< [Altintas1995]: mean cutting stiffness; misses flips and effects of helix
+  multi_frequency                   ///< [Merdol2004], [Budak1998]: all harmonics, to convergence
 };
-/// both: the map and the boundary.
-enum class Output { boundary, map, both };
-enum class Period { tooth, revolution };
-/// How stability is lost: a pair of multipliers, -1, or +1.
-enum class BifurcationType { hopf, flip, fold };
+/// What a chart holds beside limits and points.
+enum class Output {
+  boundary,  ///< curves on which the spectral radius is 1; the grid only shows where to look
+  map,       ///< the spectral radius at every node of the grid
+  both       ///< the map and the boundary
+};
+/// Which time a multiplier, and so the spectral radius, is of.
+enum class Period {
+  tooth,      ///< from a tooth to the next: equal teeth
+  revolution  ///< of the spindle: teeth that differ (unequal pitch, runout, …), or a speed that swings
+};
+/// How stability is lost: where the multiplier μ leaves the unit circle.
+enum class BifurcationType {
+  hopf,  ///< a complex pair: a chatter frequency unrelated to tooth passing
+  flip,  ///< at -1, period doubling: odd multiples of half the frequency of the period
+  fold   ///< at +1: multiples of the frequency of the period
+};
 
 /// "semi-discretization", "tooth", "hopf", …: as the files write them.
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Method method);
@@ -64,8 +78,9 @@ struct ROBOMILL_API LobesOptions {
   std::array<int, 2> grid = {200, 200};              ///< speeds and depths, each at least 2
   Method method = Method::collocation;
   int intervals = 40;  ///< m of semi-discretization: time steps in a mean tooth period, at least 4
-  /// Collocation is refined until its spectral radii are that accurate (a share of them above 1); boundary and limit
-  /// end where |spectral radius - 1| <= tolerance.
+  /// In [1e-10, 0.1]. Collocation is refined until its spectral radii are that accurate (a share of them above 1):
+  /// |Δradius| <= tolerance · max(1, radius). Boundary and limit end where |spectral radius - 1| <= tolerance; those of
+  /// multi_frequency where |Δlimit| <= tolerance · limit.
   double tolerance = 1e-6;
   Output output = Output::boundary;
   std::vector<OperatingPoint> points = {};  ///< evaluated beside the grid; may lie outside its range
@@ -80,7 +95,7 @@ struct PointResult {
   /// Greatest |multiplier| of the period; 1e100 where the motion overflows; NaN for a method that does not know it.
   double spectral_radius = 0.0;
   std::complex<double> multiplier = 0.0;  ///< the one with it, imaginary part >= 0
-  bool stable = false;                    ///< spectral radius < 1
+  bool stable = false;                    ///< spectral radius < 1; in the frequency domain depth < limit
   double error_estimate = 0.0;            ///< of the spectral radius: from a second, finer run; or NaN as it
   double chatter_frequency_hz = 0.0;      ///< at which this multiplier's motion is greatest [Hz]; 0 where it overflows
   BifurcationType kind = BifurcationType::hopf;
@@ -123,7 +138,9 @@ struct LobesResult {
   Period period = Period::tooth;  ///< of the spectral radius
   long long evaluations = 0;      ///< spectral radii found
   long long unsettled = 0;  ///< of these, how many the eigenvalue iterations did not settle; 0 unless the cut is absurd
-  long long uncertain = 0;  ///< points of boundary, limit and points whose error estimate stays above the tolerance
+  /// Nodes of the map and points of boundary, limit and points with error_estimate > tolerance · max(1, radius); of
+  /// multi_frequency the limits that did not converge. 0 for discretizations, which are not refined.
+  long long uncertain = 0;
   double seconds = 0.0;
 };
 

@@ -8,6 +8,8 @@
 #include "robomill/modal/modes.hpp"
 #include "robomill/stability/lobes.hpp"
 
+// Method: robomill/stability/README.md, "What the peaks of a cut are (`peak_classification.hpp`, `robomill explain`)"
+
 namespace robomill::stability {
 
 /// A cut that was listened to.
@@ -20,9 +22,11 @@ struct ROBOMILL_API MeasuredPeaks {
 };
 
 struct ROBOMILL_API PeakClassificationOptions {
-  double tolerance_hz = 1.0;  ///< how far a peak may lie from what explains it [Hz], > 0, below a quarter of rotation
-  double speed_tolerance = 2e-3;   ///< share by which the true speed may differ from the commanded one, in [0, 0.05]
-  double clear_odds = 3.0;         ///< a reading is named where it is that many times as likely as any other one, >= 1
+  /// [Hz], > 0 and < a quarter of rotation; a reading counts where |peak - expected| <= tolerance_hz, of chatter
+  /// <= max(tolerance_hz, ζ f).
+  double tolerance_hz = 1.0;
+  double speed_tolerance = 2e-3;  ///< in [0, 0.05]; |true speed - commanded| <= speed_tolerance · commanded
+  double clear_odds = 3.0;  ///< in [1, 1e6]; a reading is named where likelihood > clear_odds · any other meaning's
   bool multiples_removed = false;  ///< the peaks are no multiples of rotation: those were taken out before
   /// @throws InvalidInput naming the member
   void validate() const;
@@ -31,7 +35,8 @@ struct ROBOMILL_API PeakClassificationOptions {
 /// One way to read a peak.
 struct Explanation {
   /// tooth_passing: n rotations, n a multiple of the teeth. rotation: n rotations. chatter: |f_k + n rotations|.
-  /// cut_or_chatter: some readings are the first or second, some the third.
+  /// cut_or_chatter: some readings are the first or second, some the third. unexplained: none lies within its
+  /// tolerance.
   enum class Kind { tooth_passing, rotation, chatter, cut_or_chatter, unexplained };
   Kind kind = Kind::unexplained;
   int harmonic = 0;         ///< n
@@ -48,8 +53,9 @@ struct Explanation {
 };
 
 struct ExplainedPeak {
-  /// cannot_be_told: another reading, of another mode or of the cut in place of chatter, is about as likely as the
-  /// best; `best` holds the kind alone and the readings are `others`.
+  /// named: one meaning is clearly the likeliest, and `best` is its reading. cannot_be_told: another reading, of
+  /// another mode or of the cut in place of chatter, is about as likely as the best (likelihood >= best / clear_odds);
+  /// `best` holds the kind alone and the readings are `others`. unexplained: nothing lies within its tolerance.
   enum class State { named, cannot_be_told, unexplained };
   double frequency_hz = 0.0;
   State state = State::unexplained;
@@ -61,7 +67,8 @@ struct ExplainedPeak {
 };
 
 struct PeakClassification {
-  /// cannot_be_told: there may be chatter, but no peak names its mode, or as many name one as another.
+  /// named: more peaks name one mode than any other. cannot_be_told: there may be chatter, but no peak names its mode,
+  /// or as many name one as another. no_chatter: every peak is the cut's own or unexplained.
   enum class State { named, cannot_be_told, no_chatter };
   double spindle_speed_rad_per_s = 0.0;  ///< that the peaks which are multiples of rotation agree on, or as commanded
   bool speed_from_peaks = false;
@@ -89,7 +96,11 @@ struct PeakClassification {
 
 /// Whether a cut's chatter needs the wave that the tooth before left.
 struct ChatterMechanism {
-  enum class Kind { stable, regenerative, mode_coupling };
+  enum class Kind {
+    stable,        ///< spectral_radius < 1: no chatter
+    regenerative,  ///< spectral_radius >= 1, without_delay < 1: it lives on the wave that the tooth before left
+    mode_coupling  ///< both >= 1: modes feed each other through the force, without that wave
+  };
   Kind kind = Kind::stable;
   double spectral_radius = 0.0;       ///< of one period, as evaluate_point has it
   double without_delay = 0.0;         ///< of the same period with F = Σ_j K_j(t) q(t)

@@ -5,6 +5,8 @@
 #include "robomill/base/progress.hpp"
 #include "robomill/stability/lobes.hpp"
 
+// Method: robomill/stability/README.md, "The chart"
+
 namespace robomill::stability {
 
 /// What the steady vibration of a stable cut leaves on the wall.
@@ -28,6 +30,7 @@ struct SurfaceMap {
 /// The periodic orbit under the feed's own chip, edge forces and runout: x = Φ x + p for the state of one period's
 /// collocation, by a run from rest (p) and one for each entry of the state. Forces on the tool come from
 /// Milling::feed_per_tooth_m.
+/// @param tolerance  as LobesOptions::tolerance: of the spectral radius, |Δradius| <= tolerance · max(1, radius)
 /// @throws InvalidInput if the problem or the point is out of range, or the feed or the depth is not > 0
 [[nodiscard]] ROBOMILL_API SurfacePoint surface_point(const LobesProblem& problem, const OperatingPoint& point,
                                                       double tolerance = 1e-6);

@@ -7,6 +7,8 @@
 #include "robomill/base/progress.hpp"
 #include "robomill/stability/lobes.hpp"
 
+// Method: robomill/stability/README.md, "The chart"
+
 namespace robomill::stability {
 
 /// How well a problem is known. All errors are independent and normal; shares are of the value itself.

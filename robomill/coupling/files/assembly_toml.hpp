@@ -11,6 +11,8 @@
 #include "robomill/coupling/holder.hpp"
 #include "robomill/coupling/joint_fit.hpp"
 
+// Method: robomill/coupling/README.md, "Files"
+
 namespace robomill::coupling {
 
 /// assembly.toml, with the measured holder that it names.

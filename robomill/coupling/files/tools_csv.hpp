@@ -7,6 +7,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/coupling/assembly.hpp"
 
+// Method: robomill/coupling/README.md, "Files"
+
 namespace robomill::coupling {
 
 /// A tool of a shop's list.

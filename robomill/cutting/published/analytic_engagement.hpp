@@ -3,6 +3,7 @@
 #include "robomill/cutting/engagement.hpp"
 
 /// Feed frame F with its origin where the cutter touches the finished surface; docs/frames.md.
+// Method: robomill/cutting/README.md, "Analytic engagement (`published/analytic_engagement.hpp`)"
 namespace robomill::cutting {
 
 /// Where the cutter is below the unmachined surface, outside the neighbouring pass, and moves outwards (n·x_F > 0).

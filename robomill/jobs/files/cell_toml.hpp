@@ -12,6 +12,8 @@
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/kinematics.hpp"
 
+// Method: robomill/jobs/README.md, "Files"
+
 namespace robomill::io {
 class TomlFile;
 }
@@ -35,7 +37,10 @@ struct CellFile {
 };
 
 /// What kinds of robots a reader of the cell can use.
-enum class Robots { serial, any };
+enum class Robots {
+  serial,  ///< serial arms alone; a hybrid machine is rejected: stiffness and forces at its joints are not known
+  any      ///< serial arms and the hybrid machine: what needs kinematics alone
+};
 
 /// Reads [robot], [workpiece], [tool], [spindle] and [program]; [smoothing] is another reader's.
 /// @throws InvalidInput with file, line, key and value, or with the URDF, its link or joint

@@ -12,10 +12,15 @@
 #include "robomill/cutting/workpiece.hpp"
 #include "robomill/modal/modes.hpp"
 
+// Method: robomill/jobs/README.md, "Files"
+
 namespace robomill::jobs {
 
 /// For which of the verb's two jobs the file is read: what the other one needs may be missing.
-enum class ForcesJob { revolution, program };
+enum class ForcesJob {
+  revolution,  ///< one revolution of one cut: needs depths, feed, speed and direction, and the posture of a robot
+  program      ///< block by block along a program: speed, feed and engagement come from program and workpiece
+};
 
 /// forces.toml.
 struct ForcesFile {

@@ -11,6 +11,8 @@
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
+// Method: robomill/jobs/README.md, "Files"
+
 namespace robomill::io {
 class TomlFile;
 }

@@ -8,6 +8,8 @@
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/hits.hpp"
 
+// Method: robomill/modal/README.md, "Files"
+
 namespace robomill::modal {
 
 /// How the note ends on a file whose FRFs all stand at one numbered point: they have lost the number.

@@ -6,6 +6,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/modal/hits.hpp"
 
+// Method: robomill/modal/README.md, "Files"
+
 namespace robomill::modal {
 
 /// hits.toml with the records that it names, in SI units.

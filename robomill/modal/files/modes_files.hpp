@@ -6,6 +6,8 @@
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/modes.hpp"
 
+// Method: robomill/modal/README.md, "Files"
+
 namespace robomill::modal {
 
 /// Reads modes.json, or the same as TOML: [[modes]] with frequency_hz, damping_ratio, left = { x = [re, im], … },

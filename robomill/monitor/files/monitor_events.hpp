@@ -8,12 +8,15 @@
 #include "robomill/modal/mode_id.hpp"
 #include "robomill/monitor/monitor.hpp"
 
+// Method: robomill/monitor/README.md, "Files"
+
 namespace robomill::monitor {
 
 /// What a monitor has to report.
 struct MonitorEvent {
   /// state: it changed, or chatter's frequency moved. window: a decision without a change. fault: what is wrong with
-  /// the input changed. stream: the way of the samples. recording: an alarm was recorded.
+  /// the input changed. stream: something befell the samples on their way (blocks lost, connection lost, …). recording:
+  /// the samples before an alarm were written to a file.
   enum class Kind { state, window, fault, stream, recording };
   Kind kind = Kind::state;
   double time_s = 0.0;                             ///< of the stream [s]

@@ -6,6 +6,8 @@
 #include "robomill/io/sample_source.hpp"
 #include "robomill/monitor/monitor.hpp"
 
+// Method: robomill/monitor/README.md, "Files"
+
 namespace robomill::monitor {
 
 /// [mqtt]: where samples come from and events go to.

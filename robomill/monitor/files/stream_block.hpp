@@ -9,6 +9,8 @@
 
 #include "robomill/base/export.hpp"
 
+// Method: robomill/monitor/README.md, "Files"
+
 namespace robomill::monitor {
 
 /// Samples as a sensor's gateway publishes them: one MQTT message.

@@ -8,6 +8,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/monitor/monitor.hpp"
 
+// Method: robomill/monitor/README.md, "energy-entropy (`published/`)"
+
 namespace robomill::monitor {
 
 inline constexpr double unknown_s = std::numeric_limits<double>::quiet_NaN();
@@ -21,7 +23,7 @@ struct Recording {
 };
 
 struct CalibrationOptions {
-  double false_alarm_rate = 0.05;  ///< share of the stable recordings that may raise an alarm, in [0, 1)
+  double false_alarm_rate = 0.05;  ///< in [0, 1); share of the setting half's stable recordings with an alarm <= this
   std::uint64_t seed = 1;          ///< of the split into halves
   /// @throws InvalidInput naming the field
   ROBOMILL_API void validate() const;
@@ -29,7 +31,7 @@ struct CalibrationOptions {
 
 /// One threshold on the way from none to all alarms.
 struct RocPoint {
-  double threshold = 0.0;
+  double threshold = 0.0;             ///< an alarm where the entropy > threshold (MonitorOptions::alarm_below: <)
   double false_alarm_rate = 0.0;      ///< of the stable recordings
   double detection_rate = 0.0;        ///< of those with chatter
   double median_delay_s = unknown_s;  ///< alarm less onset, over the detected ones with known onset; NaN: none
@@ -40,7 +42,7 @@ struct Alarm {
   std::string name;
   bool chatter = false;
   bool verifying = false;        ///< of the half that the threshold was not set with
-  bool early = false;            ///< alarm more than a window before the onset: no detection
+  bool early = false;            ///< alarm_s < onset_s - window_s: no detection
   double alarm_s = unknown_s;    ///< when the alarm could be raised; NaN: none
   double onset_s = unknown_s;    ///< as given
   double line_hz = unknown_s;    ///< chatter's line in the spectrogram; NaN: not seen, or onset unknown

@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 
+// Method: robomill/path/README.md, "Files"
+
 namespace robomill::path {
 
 /// A digital output of a controller: a number (KUKA, Universal Robots) or the name of a signal (ABB).

@@ -11,6 +11,8 @@
 #include "robomill/path/smooth.hpp"
 #include "robomill/program/program.hpp"
 
+// Method: robomill/path/README.md, "Files"
+
 namespace robomill::path {
 
 /// One method's trajectory.

@@ -14,6 +14,8 @@
 #include "robomill/program/program.hpp"
 #include "robomill/robot/kinematics.hpp"
 
+// Method: robomill/path/README.md, "Files"
+
 namespace robomill::path {
 
 /// What a trajectory's file reports beside its samples.
@@ -42,7 +44,7 @@ struct ROBOMILL_API ProgramRun {
   double would_hold_s = 0.0;    ///< of a program with a fixed cycle that does not hold: the cycle that would; 0: none
   bool fixed_cycle = false;     ///< a point a cycle: none can be added
   std::size_t most_points = 0;  ///< that such a controller loads; 0: not known
-  /// Whether deviations and errors are within the tolerances.
+  /// Whether deviations and errors are within the tolerances: each <= tolerance · (1 + 1e-6).
   [[nodiscard]] bool keeps_tolerances() const;
   [[nodiscard]] bool too_long() const { return most_points > 0 && points > most_points; }
   [[nodiscard]] bool holds() const { return keeps_tolerances() && !too_long(); }

@@ -7,6 +7,8 @@
 #include "robomill/program/machine.hpp"
 #include "robomill/program/program.hpp"
 
+// Method: robomill/program/README.md, "Files"
+
 namespace robomill::program {
 
 /// "xyzac-trt", "xyzbc-trt", "xyzac-head", "xyzbc-head".

@@ -11,10 +11,16 @@
 #include "robomill/program/machine.hpp"
 #include "robomill/program/program.hpp"
 
+// Method: robomill/program/README.md, "Files"
+
 namespace robomill::program {
 
 /// How a program's file is written.
-enum class ProgramFormat { gcode, apt, csv };
+enum class ProgramFormat {
+  gcode,  ///< words of address letter and number, read as LinuxCNC does: read_gcode
+  apt,    ///< cutter location statements: GOTO, GODLTA, FROM, RAPID, FEDRAT, …
+  csv     ///< a row a pose: x_mm, y_mm, z_mm, i, j, k, feed_mm_per_min
+};
 
 /// .apt .cls .cl, .csv; anything else is G-code. Case does not matter.
 [[nodiscard]] ROBOMILL_API ProgramFormat program_format_of(const std::filesystem::path& path);
@@ -22,7 +28,8 @@ enum class ProgramFormat { gcode, apt, csv };
 /// How the tool's axis goes where the words A, B and C turn.
 enum class Rotary {
   machine,      ///< as a machine goes: each of them evenly in time, as far and in the direction that the words say
-  great_circle  ///< the shortest way between the ends of a straight move
+  great_circle  ///< the shortest way between the ends of a straight move; at feed, words that turn C by >= 180° are
+                ///< rejected where the machine would leave that way by more than axis_tolerance_rad
 };
 
 /// "machine" or "great-circle". @throws InvalidInput naming the field program.rotary
@@ -32,8 +39,9 @@ enum class Rotary {
 struct ROBOMILL_API ProgramReading {
   std::optional<Machine> machine = {};  ///< what A, B and C mean; a program without them needs none
   Rotary rotary = Rotary::machine;
-  double chord_tolerance_m = 1e-6;  ///< >= 1 nm; by how much a chord may leave the arc that it stands for
-  /// >= 1e-9 rad (default 0.001°); by how much the great circle of a part may leave the axis of a machine's move
+  double chord_tolerance_m = 1e-6;  ///< in [1e-9, 1); |chord - arc| <= tolerance at the same time
+  /// In [1e-9, 1) (default 0.001°); angle of a part's great circle to the axis of a machine's move <= tolerance at the
+  /// same time.
   double axis_tolerance_rad = 1.7453292519943296e-5;
   std::optional<ProgramFormat> format = {};  ///< none: by the file's ending
   /// @throws InvalidInput naming the member
