@@ -17,7 +17,7 @@ namespace {
 
 using App = ProgramTest;
 
-TEST_F(App, ReportsVersionAndHelp) {
+TEST_F(App, PrintsVersionAndHelp) {
   EXPECT_EQ(robomill("--version").out.rfind("robomill ", 0), 0U);
   EXPECT_EQ(robomill("--help").exit, 0);
   EXPECT_NE(robomill("lobes --help").out.find("--at"), std::string::npos);
@@ -67,9 +67,9 @@ TEST_F(App, SimulatesACut) {
   const std::string csv = slurp(folder_.at("vibration.csv"));
   EXPECT_EQ(csv.rfind("time_s,x_m,y_m,ax_m_per_s2,ay_m_per_s2,fx_n,fy_n,fz_n\n0,", 0), 0U);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5121);
-  const Ended reported = robomill("simulate lobes.toml --at 6500,0.6 --seconds 0.5 -o -");
-  ASSERT_EQ(reported.exit, 0) << reported.err;
-  const auto json = nlohmann::json::parse(reported.out);
+  const Ended run = robomill("simulate lobes.toml --at 6500,0.6 --seconds 0.5 -o -");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
   EXPECT_EQ(json["verdict"], "chatter");
   // Converged value of this point: 1.10584684.
   EXPECT_NEAR(json["small_vibration"]["spectral_radius"].get<double>(), 1.10584684, 1e-4);
@@ -99,10 +99,10 @@ TEST_F(App, SimulatesFromFrfs) {
   const std::size_t from = text.find("modes = ");
   text.replace(from, text.find('\n', from) - from, "frf = \"tip.csv\"\nrigid_directions = [\"y\"]");
   write("lobes.toml", text);
-  const Ended reported = robomill("simulate lobes.toml --at 6500,0.3 --seconds 0.5");
-  EXPECT_EQ(reported.exit, 0) << reported.err;
-  EXPECT_NE(reported.out.find("tip.csv: 1 modes fitted"), std::string::npos) << reported.out;
-  EXPECT_NE(reported.out.find("Note: y was not measured and is taken as rigid."), std::string::npos) << reported.out;
+  const Ended run = robomill("simulate lobes.toml --at 6500,0.3 --seconds 0.5");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_NE(run.out.find("tip.csv: 1 modes fitted"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("Note: y was not measured and is taken as rigid."), std::string::npos) << run.out;
   const Ended lobes = robomill("lobes lobes.toml");
   EXPECT_EQ(lobes.exit, 1);
   EXPECT_NE(lobes.err.find("multi-frequency"), std::string::npos) << lobes.err;
@@ -115,9 +115,9 @@ TEST_F(App, SimulatesDrilling) {
         "[dynamics]\nx = [{ frequency_hz = 400, damping_ratio = 0.03, modal_mass_kg = 0.3 }]\n"
         "z = [{ frequency_hz = 900, damping_ratio = 0.03, modal_mass_kg = 0.5 }]\n"
         "[lobes]\nspindle_speed_rpm = [1000, 5000]\naxial_depth_mm = [0, 5]\n");
-  const Ended reported = robomill("simulate drill.toml --at 3000,1 --seconds 0.2 -o -");
-  ASSERT_EQ(reported.exit, 0) << reported.err;
-  const auto json = nlohmann::json::parse(reported.out);
+  const Ended run = robomill("simulate drill.toml --at 3000,1 --seconds 0.2 -o -");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
   // Two lips: n (b / sin p) (Kr f/n sin p) sin p = 500 * 1 * 0.1 * sin 59 degrees.
   EXPECT_NEAR(json["peak_force_n"][2].get<double>(), 42.9, 4.0);
   EXPECT_EQ(robomill("simulate drill.toml --at 3000,6 --seconds 0.2").exit, 1);
@@ -140,12 +140,11 @@ TEST_F(App, ExplainNamesMeasuredPeaks) {
   const std::string peaks =
       "explain --peaks 324.99,666.98,991.98,1966.95 --rpm 6500 --teeth 3 --modes " ROBOMILL_SOURCE_DIR
       "/data/robot-modes.toml ";
-  const Ended reported = robomill(peaks + "-o explain.json");
-  ASSERT_EQ(reported.exit, 0) << reported.err;
-  EXPECT_NE(reported.out.find("324.99 Hz  tooth passing x 1"), std::string::npos) << reported.out;
-  EXPECT_NE(reported.out.find("666.98 Hz  chatter: mode 1 at 17.40 Hz + tooth passing x 2"), std::string::npos)
-      << reported.out;
-  EXPECT_NE(reported.out.find("depends on the cut"), std::string::npos);
+  const Ended run = robomill(peaks + "-o explain.json");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_NE(run.out.find("324.99 Hz  tooth passing x 1"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("666.98 Hz  chatter: mode 1 at 17.40 Hz + tooth passing x 2"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("depends on the cut"), std::string::npos);
   const auto json = nlohmann::json::parse(slurp(folder_.at("explain.json")));
   EXPECT_EQ(json["peaks"][3]["mode"], 1);
   EXPECT_EQ(json["peaks"][3]["rotations"], 18);
@@ -231,9 +230,9 @@ TEST_F(App, StiffnessComesBackFromLoads) {
   write("loads.csv",
         "q1_deg,q2_deg,fx_n,fy_n,fz_n,dx_mm,dy_mm,dz_mm\n0,90,100,0,0,0.044,-0.016,0\n0,0,0,100,0,0,0.14,0\n"
         "0,90,0,100,0,-0.016,0.064,0\n");
-  const Ended reported = robomill("stiffness loads.csv --cell cell.toml -o stiffness.json");
-  EXPECT_EQ(reported.exit, 0) << reported.err;
-  EXPECT_NE(reported.out.find("joint 1  "), std::string::npos) << reported.out;
+  const Ended run = robomill("stiffness loads.csv --cell cell.toml -o stiffness.json");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_NE(run.out.find("joint 1  "), std::string::npos) << run.out;
   const auto json = nlohmann::json::parse(slurp(folder_.at("stiffness.json")));
   EXPECT_NEAR(json["joint_stiffness_n_m_per_rad"][0].get<double>(), 1e6, 1e3);
   EXPECT_NEAR(json["joint_stiffness_n_m_per_rad"][1].get<double>(), 1e5, 1e2);
@@ -257,10 +256,10 @@ TEST_F(App, FindsCoefficientsFromSlots) {
   const std::string first = "0.05,5.08,3000,-555.8508,655.6513,255.9891\n";
   write("slots.csv",
         head + first + "0.1,5.08,3000,-751.4308,1119.2013,493.6902\n0.025,5.08,3000,-458.0608,423.8763,137.1385\n");
-  const Ended reported = robomill("coefficients slots.csv --teeth 4 -o coefficients.toml");
-  ASSERT_EQ(reported.exit, 0) << reported.err;
-  EXPECT_NE(reported.out.find("1825"), std::string::npos) << reported.out;
-  EXPECT_NE(reported.out.find("R² 1.000000"), std::string::npos) << reported.out;
+  const Ended run = robomill("coefficients slots.csv --teeth 4 -o coefficients.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_NE(run.out.find("1825"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("R² 1.000000"), std::string::npos) << run.out;
   EXPECT_NE(slurp(folder_.at("coefficients.toml")).find("[identification]"), std::string::npos);
   const auto json = nlohmann::json::parse(robomill("coefficients slots.csv --teeth 4 -o -").out);
   const auto expect = [&](const char* key, double value) {
@@ -273,7 +272,7 @@ TEST_F(App, FindsCoefficientsFromSlots) {
   expect("radial_edge_n_per_mm", 55.7);
   expect("axial_edge_n_per_mm", 1.8);
   EXPECT_NE(robomill("coefficients slots.csv").out.find("4 are assumed"), std::string::npos);
-  // One feed: finished, but not reported.
+  // One feed: the fit ends, but it does not separate cutting from edge.
   write("one.csv", head + first + "0.05,2.54,3000,-277.9254,327.82565,127.99455\n");
   const Ended one = robomill("coefficients one.csv --teeth 4 -o one.json");
   EXPECT_EQ(one.exit, 3);

@@ -23,7 +23,7 @@ class CalibrateVerb : public ProgramTest {
   }
 };
 
-// Noise that doubles where chatter begins: the un-normalised entropy reports them apart.
+// Noise that doubles where chatter begins: the un-normalised entropy distinguishes them.
 TEST_F(CalibrateVerb, Calibrates) {
   std::string text = "[signal]\nchannels = [1]\n[calibration]\nfalse_alarm_rate = 0.1\n";
   Random random(3);

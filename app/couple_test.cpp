@@ -29,13 +29,12 @@ class CoupleVerb : public ProgramTest {
 
 TEST_F(CoupleVerb, CouplesAToolToItsHolder) {
   write_assembly("assembly.toml");
-  const Ended reported = robomill("couple assembly.toml -o tip.uff");
-  ASSERT_EQ(reported.exit, 0) << reported.err;
-  EXPECT_NE(reported.out.find("xx: peak at 294.77"), std::string::npos) << reported.out;
+  const Ended run = robomill("couple assembly.toml -o tip.uff");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_NE(run.out.find("xx: peak at 294.77"), std::string::npos) << run.out;
   // L³ / (3 E I) / (1 + η²) = 8.016 µm/N.
-  EXPECT_NE(reported.out.find("static compliance 8.016 µm/N (stiffness 0.1248 N/µm)"), std::string::npos)
-      << reported.out;
-  EXPECT_NE(reported.out.find("yy: the same as xx"), std::string::npos);
+  EXPECT_NE(run.out.find("static compliance 8.016 µm/N (stiffness 0.1248 N/µm)"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("yy: the same as xx"), std::string::npos);
   const Ended json = robomill("couple assembly.toml --rotations -o -");
   ASSERT_EQ(json.exit, 0) << json.err;
   const auto tip = nlohmann::json::parse(json.out);
@@ -57,15 +56,15 @@ TEST_F(CoupleVerb, CouplesAToolToAMeasuredHolder) {
   ASSERT_EQ(bare.exit, 0) << bare.err;
   EXPECT_NE(bare.out.find("rigid wall"), std::string::npos);
   write_assembly("assembly.toml", "", "receptances = \"holder.uff\"\n", "");
-  const Ended reported = robomill("couple assembly.toml -o tip.json --holder-out kept.mat");
-  ASSERT_EQ(reported.exit, 0) << reported.err;
-  EXPECT_NE(reported.out.find("xx: peak at 294.77"), std::string::npos) << reported.out;
-  EXPECT_NE(reported.out.find("µm/N at the first line, 1 Hz"), std::string::npos);
+  const Ended run = robomill("couple assembly.toml -o tip.json --holder-out kept.mat");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_NE(run.out.find("xx: peak at 294.77"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("µm/N at the first line, 1 Hz"), std::string::npos);
   write_assembly("next.toml", "", "receptances = \"kept.mat\"\n", "");
   EXPECT_NE(robomill("couple next.toml").out.find("xx: peak at 294.77"), std::string::npos);
 }
 
-// What a finite difference makes unreliable is reported in every file that comes of it.
+// Lines that a finite difference makes unreliable are reported in every file derived from them.
 TEST_F(CoupleVerb, CoupleWritesWhichLinesAreNotReliable) {
   const std::string head =
       "frequency_hz,1x:1x_re_m_per_n,1x:1x_im_m_per_n,2x:1x_re_m_per_n,2x:1x_im_m_per_n,2x:2x_re_m_per_n,"
@@ -76,8 +75,8 @@ TEST_F(CoupleVerb, CoupleWritesWhichLinesAreNotReliable) {
   }
   write("points.csv", head + rows);
   write_assembly("a.toml", "", "receptances = \"points.csv\"\npoints_mm = [0, 10]\nmax_amplification = 20\n", "");
-  const Ended reported = robomill("couple a.toml -o tip.json --holder-out kept.uff");
-  ASSERT_EQ(reported.exit, 0) << reported.err;
+  const Ended run = robomill("couple a.toml -o tip.json --holder-out kept.uff");
+  ASSERT_EQ(run.exit, 0) << run.err;
   const auto tip = nlohmann::json::parse(slurp(folder_.at("tip.json")));
   EXPECT_EQ(tip["unreliable_hz"].size(), 40U);
   EXPECT_EQ(tip["unreliable_hz"][1], 20.0);
@@ -142,10 +141,10 @@ TEST_F(CoupleVerb, CouplesAListOfTools) {
                  "[frequency]\nrange_hz = [20, 1000]\nstep_hz = 2\n");
   write("tools.csv", "tool,length_mm,diameter_mm,teeth\nbar,118.92,12,2\nthin,118.92,1,2\nshort,80,12,3\n");
   write_lobes();
-  const Ended reported = robomill("couple assembly.toml --tools tools.csv --lobes lobes.toml -o table.csv");
-  EXPECT_EQ(reported.exit, 3) << reported.err;  // 1.8 mm are more than the thin one has
-  EXPECT_NE(reported.out.find("must be at most the cutter's diameter"), std::string::npos) << reported.out;
-  EXPECT_NE(reported.err.find("not every tool has a result; its row says why"), std::string::npos) << reported.err;
+  const Ended run = robomill("couple assembly.toml --tools tools.csv --lobes lobes.toml -o table.csv");
+  EXPECT_EQ(run.exit, 3) << run.err;  // 1.8 mm are more than the thin one has
+  EXPECT_NE(run.out.find("must be at most the cutter's diameter"), std::string::npos) << run.out;
+  EXPECT_NE(run.err.find("not every tool has a result; its row says why"), std::string::npos) << run.err;
   const std::string csv = slurp(folder_.at("table.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4) << csv;
   EXPECT_NE(csv.find("\"bar\",2,12,118.92,294,"), std::string::npos) << csv;
@@ -176,9 +175,9 @@ TEST_F(CoupleVerb, FindsAJoint) {
   ASSERT_EQ(robomill("couple true.toml -o tip.uff").exit, 0);
   write_assembly("assembly.toml", "", "[[holder.segments]]\n" + bar(50.90), "[frequency]\nrange_hz = [5, 900]\n");
   for (const char* axis : {"x", "y"}) {
-    const Ended reported = robomill(std::string("joint assembly.toml --measured tip.uff -o joint.json --axis ") + axis);
-    ASSERT_EQ(reported.exit, 0) << reported.err;
-    EXPECT_NE(reported.out.find("rotational stiffness"), std::string::npos) << reported.out;
+    const Ended run = robomill(std::string("joint assembly.toml --measured tip.uff -o joint.json --axis ") + axis);
+    ASSERT_EQ(run.exit, 0) << run.err;
+    EXPECT_NE(run.out.find("rotational stiffness"), std::string::npos) << run.out;
     const auto json = nlohmann::json::parse(slurp(folder_.at("joint.json")));
     EXPECT_NEAR(json["joint"]["translational_stiffness_n_per_m"].get<double>(), 2e7, 2e4);
     EXPECT_NEAR(json["joint"]["rotational_stiffness_n_m_per_rad"].get<double>(), 5e4, 50.0);

@@ -90,7 +90,7 @@ RawFormat raw_format(const std::string& name) {
   return name == "csv" ? RawFormat::csv : RawFormat::automatic;
 }
 
-/// What is processed.
+/// The monitor's input.
 struct Input {
   bool is_stream = false;  ///< from the broker
   bool is_live = false;    ///< events are wanted as they come

@@ -82,7 +82,7 @@ class MonitorVerb : public ProgramTest {
       "2\n";
 };
 
-TEST_F(MonitorVerb, HearsChatterInARecording) {
+TEST_F(MonitorVerb, DetectsChatterInARecording) {
   wav("rec.wav", cut(8.0, true));
   const Ended run =
       robomill("monitor monitor.toml --input rec.wav -o events.jsonl --record alarms --report report.json");
@@ -198,7 +198,7 @@ TEST_F(MonitorVerb, ReportsEveryWindow) {
 }
 
 // The same samples by each way in: the same events but for the time that they took.
-TEST_F(MonitorVerb, HearsTheSameByEveryWayIn) {
+TEST_F(MonitorVerb, GivesTheSameEventsForEveryInput) {
   const std::vector<float> samples = cut(6.0, true);
   wav("rec.wav", samples);
   folder_.file("rec.raw", {reinterpret_cast<const char*>(samples.data()), 4 * samples.size()});
@@ -211,7 +211,7 @@ TEST_F(MonitorVerb, HearsTheSameByEveryWayIn) {
   }
   folder_.file("rec.csv", csv);
   folder_.file("bare.csv", bare);
-  const auto processed = [&](const std::string& input) {
+  const auto events_from = [&](const std::string& input) {
     const Ended run = robomill("monitor monitor.toml --every-window -o - " + input);
     EXPECT_EQ(run.exit, 0) << run.err;
     std::string out;
@@ -223,13 +223,13 @@ TEST_F(MonitorVerb, HearsTheSameByEveryWayIn) {
     }
     return out;
   };
-  const std::string wanted = processed("--input rec.wav");
+  const std::string wanted = events_from("--input rec.wav");
   EXPECT_EQ(std::count(wanted.begin(), wanted.end(), '\n'), 240);
-  EXPECT_EQ(processed("--input rec.csv"), wanted);
-  EXPECT_EQ(processed("--input bare.csv"), wanted);
-  EXPECT_EQ(processed("--input - <rec.raw"), wanted);
-  EXPECT_EQ(processed("--input - --format f32 <rec.raw"), wanted);
-  EXPECT_EQ(processed("--input rec.raw --format f32"), wanted);
+  EXPECT_EQ(events_from("--input rec.csv"), wanted);
+  EXPECT_EQ(events_from("--input bare.csv"), wanted);
+  EXPECT_EQ(events_from("--input - <rec.raw"), wanted);
+  EXPECT_EQ(events_from("--input - --format f32 <rec.raw"), wanted);
+  EXPECT_EQ(events_from("--input rec.raw --format f32"), wanted);
   const Ended piped = shell("cat rec.csv | '" ROBOMILL_PROGRAM "' monitor monitor.toml --input - -o events.jsonl");
   EXPECT_EQ(piped.exit, 0) << piped.err;
   EXPECT_FALSE(events_of("state").empty());
@@ -370,12 +370,12 @@ class MonitorStream : public MonitorVerb {
   std::unique_ptr<test::Process> monitor_;
 };
 
-TEST_F(MonitorStream, HearsChatterThroughABroker) {
+TEST_F(MonitorStream, DetectsChatterThroughABroker) {
   listen();
   begin();
   for (std::uint64_t i = 1; i < 150; ++i) {
     send(message(i));
-    // As slowly as the monitor processes: nothing may be left out here.
+    // No faster than the monitor processes them: no hop may be left out here.
     ASSERT_TRUE(wait_for([&] { return i % 20 != 0 || metric("decisions_total") >= 2.0 * static_cast<double>(i); }));
   }
   ASSERT_TRUE(wait_for([&] { return metric("decisions_total") >= 300.0; }));
@@ -393,7 +393,7 @@ TEST_F(MonitorStream, HearsChatterThroughABroker) {
   EXPECT_NE(slurp(folder_.at("out.txt")).find("1 alarm"), std::string::npos);
 }
 
-TEST_F(MonitorStream, ReportsOfEveryTrouble) {
+TEST_F(MonitorStream, ReportsEveryFaultOfTheStream) {
   listen("mqtt://127.0.0.1:" + std::to_string(broker_.port()) + "/cell/ax");
   begin();
   send("garbage");

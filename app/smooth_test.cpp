@@ -63,10 +63,10 @@ TEST_F(SmoothVerb, ARobotProgramBeyondItsTolerancesExitsWithThree) {
   // Controllers that take points at any time get more of them instead.
   const Ended kuka = robomill("smooth part.ngc --cell cell.toml -o part.src --program-period-ms 64 --report kuka.json");
   EXPECT_EQ(kuka.exit, 0) << kuka.out << kuka.err;
-  const auto reported = nlohmann::json::parse(slurp(folder_.at("kuka.json")))["robot_program"];
-  EXPECT_TRUE(reported["holds"].get<bool>());
-  EXPECT_LE(reported["max_tip_error_mm"].get<double>(), 0.02 * (1.0 + 1e-6));
-  EXPECT_LT(reported["shortest_step_ms"].get<double>(), reported["longest_step_ms"].get<double>());
+  const auto robot_program = nlohmann::json::parse(slurp(folder_.at("kuka.json")))["robot_program"];
+  EXPECT_TRUE(robot_program["holds"].get<bool>());
+  EXPECT_LE(robot_program["max_tip_error_mm"].get<double>(), 0.02 * (1.0 + 1e-6));
+  EXPECT_LT(robot_program["shortest_step_ms"].get<double>(), robot_program["longest_step_ms"].get<double>());
 }
 
 TEST_F(SmoothVerb, RobotProgramsKnowToolLoadAndSpindle) {
@@ -94,7 +94,7 @@ TEST_F(SmoothVerb, DashWritesJsonAndNothingElse) {
   EXPECT_EQ(run.exit, json["violations"] == 0 ? 0 : 3);
 }
 
-// Where a limit is broken, the report reports it and there is no trajectory.
+// Where a limit is violated, the report says so and no trajectory is written.
 TEST_F(SmoothVerb, AViolationExitsWithThreeAndLeavesOnlyTheReport) {
   std::string cell = slurp(folder_.at("cell.toml"));
   const std::string jerk = "joint_max_jerk = [60, 60, 60, 200, 200, 250]";

@@ -1,5 +1,5 @@
-// How well the monitor processes 200 simulated cuts, class by class, beside two plain rules. Usage: monitor_corpus
-// [first seed] [cuts]; every other seed from 1001 on is for tuning.
+// How well the monitor detects chatter in 200 simulated cuts, class by class, beside two plain rules. Usage:
+// monitor_corpus [first seed] [cuts]; every other seed from 1001 on is for tuning.
 #include <fmt/core.h>
 
 #include <cstdlib>
@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   const std::uint64_t first = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
   const std::uint64_t count = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : corpus_size;
   const std::vector<std::pair<std::string, Detector>> detectors = {
-      {"monitor", processed_by_monitor}, {"comb, RMS ratio", comb_rms_ratio}, {"RMS 5 sigma", rms_five_sigma}};
+      {"monitor", monitor_decisions}, {"comb, RMS ratio", comb_rms_ratio}, {"RMS 5 sigma", rms_five_sigma}};
   std::vector<std::map<std::string, std::vector<CutScore>>> scores(detectors.size());
   double drawing_s = 0.0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {

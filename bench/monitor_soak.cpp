@@ -1,7 +1,7 @@
 // A stream of stable cutting, 24 hours or as many as the argument says, fed to the monitor as fast as it goes: resident
 // memory each simulated quarter of an hour, alarms, and how exactly the streamed transform still gives the signal back.
-// Usage: monitor_soak [hours] [teeth]; without teeth the cuts have two to four, and the monitor is not reported how
-// many.
+// Usage: monitor_soak [hours] [teeth]; without teeth the cuts have two to four, and the monitor is not given their
+// number.
 #include <fmt/core.h>
 
 #include <algorithm>

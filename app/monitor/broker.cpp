@@ -57,7 +57,7 @@ void Broker::connection(bool connected, const std::string& why) {
 void Broker::publish(const monitor::MonitorEvent& event, const std::string& line) {
   if (events_topic_.empty()) return;
   const std::string_view text = std::string_view(line).substr(0, line.size() - 1);
-  // Of its own trouble it reports once.
+  // A failure to publish this notice itself is not reported again.
   if (!client_->publish(events_topic_, text) && event.what != "events-not-published") {
     notices_->add("events-not-published", fmt::format("{} has no connection or does not take them", address_));
   }

@@ -26,7 +26,7 @@ class Broker {
   [[nodiscard]] const std::string& address() const { return address_; }
   /// For inputs that do not come from it: their first events should not be lost.
   void wait_a_little() const;
-  /// To the topic of the events, where there is one; reports where it cannot.
+  /// Publishes to the topic of the events, where there is one; adds a notice where it cannot.
   void publish(const monitor::MonitorEvent& event, const std::string& line);
 
  private:

@@ -18,7 +18,7 @@ class MqttClient {
   /// Called by the library's threads; must not wait.
   struct Calls {
     std::function<void(std::span<const std::byte> payload)> message = {};
-    /// why: empty once connected, else what went wrong. A rejected subscription reports so with connected = true.
+    /// why: empty once connected, else what went wrong. A rejected subscription: connected, and why is not empty.
     std::function<void(bool connected, const std::string& why)> connection = {};
   };
   /// Subscribes to `subscription` at each connection, unless it is empty.

@@ -22,8 +22,8 @@ monitor::MqttSettings settings_of(const test::Mosquitto& broker) {
   return settings;
 }
 
-/// Keeps what a client is reported.
-class Heard {
+/// Records the calls of a client.
+class CallRecorder {
  public:
   MqttClient::Calls calls() {
     return {.message =
@@ -59,10 +59,11 @@ class Heard {
 };
 
 /// A subscription counts some time after the connection: sends until something comes back.
-bool comes_through(MqttClient& client, const Heard& processed, const std::string& topic, const std::string& text) {
+bool comes_through(MqttClient& client, const CallRecorder& received, const std::string& topic,
+                   const std::string& text) {
   return test::wait_for([&] {
     client.publish(topic, text);
-    const std::vector<std::string> messages = processed.messages();
+    const std::vector<std::string> messages = received.messages();
     return !messages.empty() && messages.back() == text;
   });
 }
@@ -70,45 +71,45 @@ bool comes_through(MqttClient& client, const Heard& processed, const std::string
 TEST(Mqtt, CarriesAnyBytes) {
   const test::Folder folder;
   const test::Mosquitto broker(folder.path());
-  Heard processed;
-  MqttClient client(settings_of(broker), "cell/+/ax", processed.calls());
+  CallRecorder received;
+  MqttClient client(settings_of(broker), "cell/+/ax", received.calls());
   EXPECT_FALSE(client.publish("cell/1/ax", "too early"));
   client.start();
   ASSERT_TRUE(client.wait_until_connected(seconds(60)));
-  ASSERT_TRUE(comes_through(client, processed, "cell/1/ax", std::string("\0\xFF bytes", 8)));
+  ASSERT_TRUE(comes_through(client, received, "cell/1/ax", std::string("\0\xFF bytes", 8)));
   ASSERT_TRUE(client.flush(seconds(60)));
   EXPECT_TRUE(client.publish("cell/2/other", "not subscribed"));
-  EXPECT_TRUE(comes_through(client, processed, "cell/7/ax", "last"));
-  for (const std::string& message : processed.messages()) EXPECT_NE(message, "not subscribed");
+  EXPECT_TRUE(comes_through(client, received, "cell/7/ax", "last"));
+  for (const std::string& message : received.messages()) EXPECT_NE(message, "not subscribed");
 }
 
 TEST(Mqtt, ComesBackWhenTheBrokerDoes) {
   const test::Folder folder;
   test::Mosquitto broker(folder.path());
-  Heard processed;
-  MqttClient client(settings_of(broker), "t", processed.calls());
+  CallRecorder received;
+  MqttClient client(settings_of(broker), "t", received.calls());
   client.start();
   ASSERT_TRUE(client.wait_until_connected(seconds(60)));
   for (int round = 0; round < 2; ++round) {
     broker.stop();
     ASSERT_TRUE(test::wait_for([&] { return !client.connected(); }));
     EXPECT_FALSE(client.publish("t", "nobody"));
-    EXPECT_FALSE(processed.why().empty());
+    EXPECT_FALSE(received.why().empty());
     broker.start();
     ASSERT_TRUE(client.wait_until_connected(seconds(60)));
-    EXPECT_TRUE(comes_through(client, processed, "t", "round " + std::to_string(round)));
+    EXPECT_TRUE(comes_through(client, received, "t", "round " + std::to_string(round)));
   }
-  EXPECT_GE(processed.connections(), 3);  // a broker that has just begun may let one go again
+  EXPECT_GE(received.connections(), 3);  // a broker that has just begun may let one go again
 }
 
 TEST(Mqtt, WaitsForABrokerThatIsNotThereYet) {
   const test::Folder folder;
   test::Mosquitto broker(folder.path());
   broker.stop();
-  Heard processed;
-  MqttClient client(settings_of(broker), "t", processed.calls());
+  CallRecorder received;
+  MqttClient client(settings_of(broker), "t", received.calls());
   client.start();
-  ASSERT_TRUE(test::wait_for([&] { return !processed.why().empty(); }));
+  ASSERT_TRUE(test::wait_for([&] { return !received.why().empty(); }));
   broker.start();
   EXPECT_TRUE(client.wait_until_connected(seconds(60)));
 }
@@ -122,19 +123,19 @@ TEST(Mqtt, LogsIn) {
   monitor::MqttSettings settings = settings_of(broker);
   settings.user = "anna";
   settings.password_file = folder.file("password", "geheim\nsecond line\n");
-  Heard processed;
+  CallRecorder received;
   {
-    MqttClient client(settings, "t", processed.calls());
+    MqttClient client(settings, "t", received.calls());
     client.start();
     ASSERT_TRUE(client.wait_until_connected(seconds(60)));
-    EXPECT_TRUE(comes_through(client, processed, "t", "hello"));
+    EXPECT_TRUE(comes_through(client, received, "t", "hello"));
   }
   settings.password_file = folder.file("wrong", "falsch");
-  Heard rejected;
-  MqttClient client(settings, "t", rejected.calls());
+  CallRecorder failed;
+  MqttClient client(settings, "t", failed.calls());
   client.start();
-  ASSERT_TRUE(test::wait_for([&] { return !rejected.why().empty(); }));
-  EXPECT_EQ(rejected.connections(), 0);
+  ASSERT_TRUE(test::wait_for([&] { return !failed.why().empty(); }));
+  EXPECT_EQ(failed.connections(), 0);
   settings.password_file = folder.at("missing");
   EXPECT_THROW(MqttClient(settings, "t", {}), InvalidInput);
 }
@@ -152,20 +153,20 @@ TEST(Mqtt, SpeaksTls) {
   settings.host = "localhost";
   settings.tls = true;
   settings.ca_file = folder.at("cert.pem");
-  Heard processed;
+  CallRecorder received;
   {
-    MqttClient client(settings, "t", processed.calls());
+    MqttClient client(settings, "t", received.calls());
     client.start();
-    ASSERT_TRUE(client.wait_until_connected(seconds(60))) << processed.why();
-    EXPECT_TRUE(comes_through(client, processed, "t", "hello"));
+    ASSERT_TRUE(client.wait_until_connected(seconds(60))) << received.why();
+    EXPECT_TRUE(comes_through(client, received, "t", "hello"));
   }
   // Signed by nobody that the system knows.
   settings.ca_file.clear();
-  Heard rejected;
-  MqttClient client(settings, "t", rejected.calls());
+  CallRecorder failed;
+  MqttClient client(settings, "t", failed.calls());
   client.start();
-  ASSERT_TRUE(test::wait_for([&] { return !rejected.why().empty(); }));
-  EXPECT_EQ(rejected.connections(), 0);
+  ASSERT_TRUE(test::wait_for([&] { return !failed.why().empty(); }));
+  EXPECT_EQ(failed.connections(), 0);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ double passed_s(const Hole& hole, double threshold) {
 
 // [EnergyEntropyChatter] prints a threshold of 105. In (m/s²)², of mean squares, every simulated hole with chatter
 // passes 105 before its chatter begins; about half do not pass 10⁵ before. No stable one passes either. So 10⁵ can
-// report the onset on drills like the source's, and 105 cannot.
+// detect the onset on drills like the source's, and 105 cannot.
 TEST(PublishedThreshold, IsTenToTheFifthRatherThan105) {
   int chatter = 0, early_105 = 0, found_1e5 = 0;
   for (std::uint64_t k = 0; k < 12; ++k) {
@@ -97,7 +97,7 @@ TEST_F(CalibrateHoles, FindsTheVerifyingHalf) {
   // Not before the onset less a window, not half a second behind.
   EXPECT_GT(verifying["chosen"]["median_delay_s"].get<double>(), -0.05);
   EXPECT_LT(verifying["chosen"]["median_delay_s"].get<double>(), 0.5);
-  // What was written is a detector that processes a hole.
+  // The file that was written makes a detector that detects chatter in a hole.
   const std::string monitor = slurp(folder_.at("holes/monitor.toml"));
   EXPECT_NE(monitor.find("kind = \"energy-entropy\""), std::string::npos) << monitor;
   EXPECT_NE(monitor.find("threshold = "), std::string::npos) << monitor;

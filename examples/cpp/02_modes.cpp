@@ -19,7 +19,7 @@ int main() {
                               {.frequency_hz = 910.0, .damping_ratio = 0.015, .modal_mass_kg = 0.4}},
                              {{.frequency_hz = 450.0, .damping_ratio = 0.025, .modal_mass_kg = 1.1}});
 
-  // Noise of 1 % of each FRF's highest peak. Where the deviation is reported, the fit weights lines with it and the
+  // Noise of 1 % of each FRF's highest peak. Where the deviation is given, the fit weights lines with it and the
   // deviations that it gives are those of this noise.
   modal::FrfSet measured = modal::synthesize(truth, Eigen::VectorXd::LinSpaced(1101, 100.0, 1200.0));
   std::erase_if(measured.frfs, [](const modal::Frf& frf) { return frf.name.response != frf.name.excitation; });

@@ -1,4 +1,4 @@
-// Chatter processed while it grows: three teeth at 6000 rpm, and from 3 s on a vibration that is no multiple of them.
+// Chatter detected while it grows: three teeth at 6000 rpm, and from 3 s on a vibration that is no multiple of them.
 #include <robomill/base/random.hpp>
 #include <robomill/base/units.hpp>
 #include <robomill/monitor/monitor.hpp>

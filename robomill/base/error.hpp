@@ -9,7 +9,7 @@
 
 namespace robomill {
 
-/// Bad input, reported so that its giver can mend it: where, which field, its value and unit, the rule it breaks, the
+/// Bad input, reported so that the user can correct it: where, which field, its value and unit, the rule it breaks, the
 /// likely cause.
 ///
 /// A stage throws it with the SI member's name ("tangential_n_per_m2"); files/ rethrows it with the file, the line

@@ -18,7 +18,7 @@ class ROBOMILL_API Interrupted : public std::exception {
   [[nodiscard]] const char* what() const noexcept override;
 };
 
-/// What long work reports its caller, and where it learns that it should stop. start and report come from one thread;
+/// What long work reports to, and where it learns that it should stop. start and report come from one thread;
 /// advance and check may come from any.
 class ROBOMILL_API Progress {
  public:

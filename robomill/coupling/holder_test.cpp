@@ -234,7 +234,7 @@ TEST(CompleteRotations, HasTheErrorOfItsOrder) {
 }
 
 TEST(CompleteRotations, SeesTheSlopeAndNotTheTurnOfASection) {
-  // At the end that a force pushes, u' - θ = -f / κGA*: a sixth of the turn of this stout nose. No spacing mends it,
+  // At the end that a force pushes, u' - θ = -f / κGA*: a sixth of the turn of this stout nose. No spacing corrects it,
   // an artefact's model does.
   const Eigen::VectorXd f = hertz(3000, 50);
   const std::vector<Eigen::Matrix2cd> base = detail::base_receptances({.segments = nose(), .receptances = {}}, f).x;

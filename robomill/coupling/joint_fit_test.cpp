@@ -243,8 +243,7 @@ TEST(JointFit, SaysWhatCannotBeSeen) {
   EXPECT_GT(squares_with(measured, 2, 0.1 * visible, options) - rigid, 20.0) << "and steep below";
 }
 
-// Genes end beside the minimum, or far from it where the joint lies outside their bounds: no deviation is reported
-// then.
+// Genes end beside the minimum, or far from it where the joint lies outside their bounds. Then no deviation is given.
 TEST(JointFit, SaysNothingOfDeviationsAwayFromTheMinimum) {
   for (const double rotation : {3e5, 5e4}) {
     modal::FrfSet measured = tip_with(test::published_pair(), joint_of({2e7, 40.0, rotation, 5.0}), test::hertz(2000));

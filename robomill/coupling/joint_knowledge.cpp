@@ -38,7 +38,7 @@ Jacobian jacobian(const JointModel& model, const JointValues& joint, const Joint
   return out;
 }
 
-/// How many neighbouring lines report the same: 1 + 2 Σ ρ over the lags until ρ is lost in the noise.
+/// How many neighbouring lines carry the same information: 1 + 2 Σ ρ over the lags until ρ is lost in the noise.
 double correlation_length(const Eigen::VectorXd& residual) {
   const Index n = residual.size() / 2;
   const double square = residual.squaredNorm();

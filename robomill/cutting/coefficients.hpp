@@ -34,7 +34,7 @@ struct ROBOMILL_API SlotOptions {
 /// Cutting and edge coefficient of one direction, from the one component of force that they alone make.
 struct CoefficientPair {
   double cutting_n_per_m2 = 0.0, edge_n_per_m = 0.0;
-  /// Standard deviations, from the residuals; infinite where the data cannot report.
+  /// Standard deviations, from the residuals; infinite where the data do not determine the coefficient.
   double cutting_deviation_n_per_m2 = 0.0, edge_deviation_n_per_m = 0.0;
   double correlation = 0.0;  ///< of the two estimates, in [-1, 1]
   double r_squared = 0.0;    ///< share of the force's variance that is explained; NaN where the force does not vary
@@ -86,7 +86,7 @@ struct ROBOMILL_API SignalOptions {
   CoefficientDegrees degrees = {};
   bool find_offset = true;  ///< the signal's zero of rotation is not known
   int steps = 1440;         ///< of the modelled revolution, 8 to 100,000
-  /// In (0, 1); a direction is not reported where its singular value σ < this · the largest σ.
+  /// In (0, 1); a direction counts as undetermined where its singular value σ < this · the largest σ.
   double rank_tolerance = 1e-8;
   /// @throws InvalidInput naming the member
   void validate() const;
@@ -95,16 +95,16 @@ struct ROBOMILL_API SignalOptions {
 struct SignalFit {
   MillingCoefficients coefficients;
   /// Of the same shape: standard deviations from the residuals, taken as independent from sample to sample; infinite
-  /// where the signal cannot report.
+  /// where the signal does not determine the coefficient.
   MillingCoefficients deviations;
   bool identifiable = true;  ///< every one of them
   double offset_rad = 0.0;   ///< tooth 0 stood at rotation + offset, in [0, a period of the cutter)
   double offset_deviation_rad = 0.0;
   Eigen::Vector3d r_squared = Eigen::Vector3d::Zero();  ///< by component; NaN where it does not vary
   double noise_n = 0.0;                                 ///< standard deviation of the signal about the fit
-  double condition = 0.0;                               ///< of the scaled design, over the directions that are reported
+  double condition = 0.0;                               ///< of the scaled design, over the determined directions
   Eigen::Matrix3Xd residual_n;                          ///< measured less fitted, 3 x n
-  std::vector<std::string> notes;                       ///< what cannot be told, and signs that cannot be
+  std::vector<std::string> notes;                       ///< what the signal does not determine; impossible signs
 };
 
 /// Coefficients as polynomials in κ from the force over a revolution, for any cutter in any cut: the force is linear

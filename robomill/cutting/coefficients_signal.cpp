@@ -179,10 +179,10 @@ double find_offset(const Model& model, const Signal& signal, double period_rad) 
 
 /// Least squares through the singular values of the scaled design.
 struct Solution {
-  Eigen::VectorXd values, deviations;  ///< per unknown; deviations for a noise of 1, infinite where not reported
+  Eigen::VectorXd values, deviations;  ///< per unknown; deviations for a noise of 1, infinite where undetermined
   Eigen::Index rank = 0;
   double condition = 0.0;
-  std::vector<std::vector<Eigen::Index>> mixed;  ///< unknowns that only a sum distinguishes, one list a lost direction
+  std::vector<std::vector<Eigen::Index>> mixed;  ///< unknowns determined only as a sum, one list a lost direction
 };
 
 Solution solve(const Eigen::MatrixXd& design, const Eigen::VectorXd& force_n, double tolerance) {

@@ -130,8 +130,8 @@ TEST(SignalFit, DeviationsCoverTheNoise) {
   EXPECT_NEAR(within / (6.0 * cases), 0.954, 0.03);
 }
 
-// A cylinder has one κ: of a straight line in κ only the sum is reported.
-TEST(SignalFit, ReportsWhatACylinderCannot) {
+// A cylinder has one κ: of a straight line in κ only the sum is determined.
+TEST(SignalFit, ReportsWhatACylinderDoesNotDetermine) {
   const Case cut = flat();
   const CuttingForce force = cut.force({.tangential_n_per_m2 = {700e6}, .radial_n_per_m2 = {250e6}});
   const SignalFit fit = identify_from_signal(
@@ -179,7 +179,7 @@ TEST(SignalFit, AgreesWithTheMeansOfSlots) {
   }
 }
 
-TEST(SignalFit, ReportsAForceOnTheWorkpiece) {
+TEST(SignalFit, DetectsAForceOnTheWorkpiece) {
   const Case cut = flat();
   const CuttingForce force = cut.force({.tangential_n_per_m2 = {700e6}, .radial_n_per_m2 = {250e6}});
   const SignalFit fit = identify_from_signal(cut.cutter, cut.engagement, cut.motion, force.rotation_rad, -force.force_n,

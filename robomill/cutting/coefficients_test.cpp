@@ -90,20 +90,20 @@ std::vector<SlotForce> slots_of_three_depths() {
 
 // Each fault leaves forces that scatter more about the model than about their mean.
 TEST(Slots, RejectForcesThatAreNoSlots) {
-  const auto reported = [](const auto& spoil) {
+  const auto message_of = [](const auto& spoil) {
     std::vector<SlotForce> slots = slots_of_three_depths();
     spoil(slots);
     return test::rejection([&] { static_cast<void>(identify_from_slots(slots, {.teeth = 4})); });
   };
-  const std::string unit = reported([](auto& slots) { slots[4].axial_depth_m *= 1000.0; });
+  const std::string unit = message_of([](auto& slots) { slots[4].axial_depth_m *= 1000.0; });
   EXPECT_NE(unit.find("R² of fy is -"), std::string::npos) << unit;
   EXPECT_NE(unit.find("Row 5 is the odd one"), std::string::npos) << unit;
-  const std::string still = reported([](auto& slots) {
+  const std::string still = message_of([](auto& slots) {
     for (SlotForce& row : slots) row.mean_force_n = {-500.0 + 0.01 * row.axial_depth_m, 600.0, 0.0};
     slots[0].mean_force_n.y() = 601.0;
   });
   EXPECT_NE(still.find("R² of fy is -"), std::string::npos) << still;
-  const std::string columns = reported([](auto& slots) {
+  const std::string columns = message_of([](auto& slots) {
     for (SlotForce& row : slots) row.mean_force_n = {row.mean_force_n.y(), 1e3 - row.mean_force_n.z(), 5.0};
   });
   EXPECT_NE(columns.find("slots"), std::string::npos) << columns;
@@ -195,7 +195,7 @@ TEST(Slots, TwoRowsLeaveNoDeviation) {
   EXPECT_TRUE(notes_say(fit.notes, "third"));
 }
 
-TEST(Slots, ReportsForcesOnTheWorkpieceAndWrongUnits) {
+TEST(Slots, DetectForcesOnTheWorkpieceAndWrongUnits) {
   const Constants k;
   std::vector<SlotForce> slots;
   for (const double feed_mm : {0.05, 0.1, 0.15}) slots.push_back(slot(k, 4, 2.0 * mm, feed_mm * mm));

@@ -119,7 +119,7 @@ TEST(Profile, EndsWhereTheEdgesEndInTheCorner) {
   EXPECT_NEAR(profile.radius_m(5.0 * mm), 3.0 * mm * std::sin(std::acos(0.6)), 1e-14);
 }
 
-// A ball reported in the seven parameters is the same ball.
+// A ball given by the seven parameters is the same ball.
 TEST(Profile, GeneralOutlineMakesTheOtherKinds) {
   Cutter general = ball_end(4.0 * mm);
   general.kind = CutterKind::general;

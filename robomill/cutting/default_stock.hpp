@@ -25,8 +25,8 @@ struct ROBOMILL_API DefaultStock {
 /// axis| < 0.7 · way), or the end of a plunge; moves that only lead down to a pass (plunge, ramp, helix) are none, for
 /// they begin in air.
 /// @param axial_depth_m  that the highest pass cuts; 0: not known
-/// @throws InvalidInput if the program has no feed move, a length is out of range, or the height cannot be told: no
-/// depth is given and the highest pass does not lie below a z = 0 that the program moves above
+/// @throws InvalidInput if the program has no feed move, a length is out of range, or the height cannot be determined:
+/// no depth is given and the highest pass does not lie below a z = 0 that the program moves above
 [[nodiscard]] ROBOMILL_API DefaultStock default_stock(const program::Program& program, const Cutter& cutter,
                                                       double dexel_m, double axial_depth_m);
 

@@ -72,16 +72,16 @@ TEST(DefaultStock, AWayDownToAPassIsNone) {
 }
 
 // Where the zero is below the passes, or nothing moves above it, the height is not in the program.
-TEST(DefaultStock, RejectsWhatTheProgramDoesNotReport) {
+TEST(DefaultStock, RejectsAProgramThatDoesNotGiveTheHeight) {
   const auto rejected = [](std::vector<Move> moves, double raise_mm, double start_z_mm) {
     for (Move& move : moves) move.z_mm += raise_mm;
     const Program program = program_of(moves, start_z_mm);
     EXPECT_EQ(stock_of(program, 2.0).top, DefaultStock::Top::axial_depth);
     return robomill::test::rejection([&] { static_cast<void>(stock_of(program)); });
   };
-  for (const std::string& reported : {rejected(pocket, 20.0, 50.0), rejected(pocket, -400.0, -300.0)}) {
-    EXPECT_NE(reported.find("stock: must be given"), std::string::npos) << reported;
-    EXPECT_NE(reported.find("line 4"), std::string::npos) << reported;
+  for (const std::string& message : {rejected(pocket, 20.0, 50.0), rejected(pocket, -400.0, -300.0)}) {
+    EXPECT_NE(message.find("stock: must be given"), std::string::npos) << message;
+    EXPECT_NE(message.find("line 4"), std::string::npos) << message;
   }
 }
 

@@ -96,7 +96,7 @@ void turn_pair(double& re, double& im, const Turn& t) {
   im = old * t.sine + im * t.cosine;
 }
 
-/// Of the angle φ = θ + α, reported as harmonics of θ.
+/// Of the angle φ = θ + α, expressed as harmonics of θ.
 void turn(Harmonics& h, const Turn& alpha) {
   using H = Harmonics;
   turn_pair(h.c[H::y1], h.c[H::x1], alpha);
@@ -225,9 +225,9 @@ void ForceOptions::validate() const {
   if (steps < 8 || steps > 100000) throw InvalidInput("steps", steps, "", "must lie between 8 and 100,000");
 }
 
-/// A revolution is cut into even steps. An edge element's force is a sum of harmonics while it is in the cut: whole
-/// steps are reported by adding its harmonics where it enters and taking them away where it leaves, the steps in which
-/// it enters or leaves by their integral. So a ring costs the same whatever its arc and however many steps there are.
+/// A revolution is cut into even steps. An edge element's force is a sum of harmonics while it is in the cut: for whole
+/// steps its harmonics are added where it enters and subtracted where it leaves; steps in which it enters or leaves
+/// take their integral. So a ring costs the same whatever its arc and however many steps there are.
 struct ForceKernel::Memory {
   FlatEndMill mill;
   MillingCoefficients coefficients;

@@ -11,7 +11,7 @@
 // Method: robomill/cutting/README.md, "Forces (`force.hpp`)"
 namespace robomill::cutting {
 
-/// What edge forces are reported per.
+/// The length that edge forces are referred to.
 enum class EdgeMeasure {
   by_kind,      ///< width on a flat end, whose mean slotting forces are per axial depth; edge_length on every other
   edge_length,  ///< the length ds of the helical edge, as models of ball ends have it

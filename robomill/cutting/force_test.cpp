@@ -394,7 +394,7 @@ TEST(CutMotion, RejectsWhatIsNoMotion) {
 // An engagement that was put together wrongly must not reach memory that is not the kernel's.
 TEST(CuttingForce, RejectsArcsThatAreNone) {
   const Cutter cutter = flat_end(10e-3);
-  const auto reported = [&](auto spoil) {
+  const auto rejected_field = [&](auto spoil) {
     Engagement engagement = engage(cutter, {.axial_depth_m = 2e-3, .radial_depth_m = 5e-3});
     spoil(engagement);
     return field_of([&] {
@@ -402,11 +402,11 @@ TEST(CuttingForce, RejectsArcsThatAreNone) {
                                       {.feed_per_tooth_m = 1e-4, .spindle_speed_rad_per_s = 100.0}));
     });
   };
-  EXPECT_EQ(reported([](Engagement& e) { e.arcs.front().exit_rad = e.arcs.front().entry_rad + 12.6; }), "arcs");
-  EXPECT_EQ(reported([](Engagement& e) { e.arcs.front().exit_rad = e.arcs.front().entry_rad - 0.1; }), "arcs");
-  EXPECT_EQ(reported([](Engagement& e) { e.arcs.front().entry_rad = std::nan(""); }), "arcs");
-  EXPECT_EQ(reported([](Engagement& e) { e.first_arc.pop_back(); }), "first_arc");
-  EXPECT_EQ(reported([](Engagement& e) { e.feed_from_tool(0, 0) = std::nan(""); }), "feed_from_tool");
+  EXPECT_EQ(rejected_field([](Engagement& e) { e.arcs.front().exit_rad = e.arcs.front().entry_rad + 12.6; }), "arcs");
+  EXPECT_EQ(rejected_field([](Engagement& e) { e.arcs.front().exit_rad = e.arcs.front().entry_rad - 0.1; }), "arcs");
+  EXPECT_EQ(rejected_field([](Engagement& e) { e.arcs.front().entry_rad = std::nan(""); }), "arcs");
+  EXPECT_EQ(rejected_field([](Engagement& e) { e.first_arc.pop_back(); }), "first_arc");
+  EXPECT_EQ(rejected_field([](Engagement& e) { e.feed_from_tool(0, 0) = std::nan(""); }), "feed_from_tool");
 }
 
 }  // namespace

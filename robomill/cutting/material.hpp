@@ -11,7 +11,7 @@
 // Method: robomill/cutting/README.md, "Coefficients (`coefficients.hpp`, `material.hpp`)"
 namespace robomill::cutting {
 
-/// An orthogonal cut, its edge square to its motion, as its thin shear plane is reported.
+/// An orthogonal cut, its edge square to its motion, described by its thin shear plane.
 struct ROBOMILL_API OrthogonalCut {
   double shear_stress_n_per_m2 = 0.0;  ///< τ_s on the shear plane [N/m^2], > 0; required
   double friction_angle_rad = 0.0;     ///< β_a between chip and rake face, in (-π/2, π/2), > 0 but for slips
@@ -44,7 +44,7 @@ struct ObliqueCoefficients {
 /// Source: [BudakAltintasArmarego1996]
 [[nodiscard]] ROBOMILL_API ObliqueCoefficients oblique_coefficients(const OrthogonalCut& cut, double inclination_rad);
 
-/// What orthogonal tests have reported of a material.
+/// What orthogonal tests have measured of a material.
 struct ROBOMILL_API Material {
   std::string name;
   std::string source;  ///< a key of docs/bibliography.md
@@ -65,7 +65,7 @@ struct ROBOMILL_API Material {
 [[nodiscard]] ROBOMILL_API const Material& material(std::string_view name);
 
 /// Constants for a cutter: those of the oblique cut at a mean chip thickness, and the orthogonal edge forces along the
-/// edge; none of these tests reports an axial edge force.
+/// edge; none of these tests measures an axial edge force.
 /// @param helix_rad         β
 /// @param chip_thickness_m  mean of the cut, in a slot 2 c / π with the feed per tooth c
 /// @throws InvalidInput as Material::cut and oblique_coefficients

@@ -89,7 +89,7 @@ std::vector<BlockForce> turning_blocks(const program::Program& program, const Pr
   return blocks;
 }
 
-/// Said with the line, before the kernel rejects it without.
+/// Reported with the line, before the kernel rejects it without one.
 void check_feed(double feed_per_tooth_m, const program::Block& block) {
   if (feed_per_tooth_m <= 0.01) return;
   throw InvalidInput("feed_per_tooth_m", feed_per_tooth_m, "m",

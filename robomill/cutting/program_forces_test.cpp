@@ -159,7 +159,7 @@ TEST(ProgramForces, SustainedPowerIsOverTheTimeThatIsAskedFor) {
 }
 
 // The heaviest force is that of the direction that weighs.
-TEST(ProgramForces, WeighsForcesAsItIsReported) {
+TEST(ProgramForces, WeightsForcesAsItIsAsked) {
   MillingCoefficients coefficients = tangential_only();
   coefficients.axial_n_per_m2 = {150e6};
   Workpiece workpiece(slab(), 0.1e-3);
@@ -194,7 +194,7 @@ TEST(ProgramForces, DoNotDependOnTheThreads) {
 
 // Two ways: the workpiece of rays, and the neighbouring pass alone. On the plane, upright and leant; and on a cylinder
 // whose passes follow it.
-TEST(ProgramForces, NeighboursAloneReportTheSameOnAPlane) {
+TEST(ProgramForces, NeighboursAloneGiveTheSameOnAPlane) {
   const Eigen::Vector3d axes[] = {{0.0, 0.0, 1.0}, {0.15, -0.1, 1.0}};
   for (const Eigen::Vector3d& axis : axes) {
     Program program = two_passes(axis);

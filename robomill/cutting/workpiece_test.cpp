@@ -153,7 +153,7 @@ TEST(SweptSolid, TaperMeetsRaysWhereItsPointsAre) {
   expect_spans(taper(3e-3), 4, test::seeds(20000));
 }
 
-// A flat end mill reported as a general cutter goes the numerical way and must come to the same.
+// A flat end mill given as a general cutter goes the numerical way and must come to the same.
 TEST(SweptSolid, ClosedFormAndNewtonAgree) {
   const Profile profile(flat_end(3e-3));
   Random random(8);
@@ -322,7 +322,7 @@ TEST(Workpiece, SameBitsFromEveryInstructionSet) {
 }
 
 // The shank of a short cutter runs through what its edges do not reach.
-TEST(Workpiece, ReportsTheShankFromTheEdges) {
+TEST(Workpiece, DistinguishesTheShankFromTheEdges) {
   Cutter cutter = flat_end(3e-3);
   cutter.cutting_height_m = 2e-3;
   Workpiece part(box({0.0, 0.0, 0.0}, {0.02, 0.02, 0.01}), 0.1e-3);

@@ -41,7 +41,7 @@ enum class RawFormat {
 /// Frames in a row.
 struct SampleBlock {
   std::vector<float> samples;  ///< all channels interleaved; NaN where a row could not be read
-  /// The last that the recording reports [rad/s]; NaN: none
+  /// The last that the recording gives [rad/s]; NaN: none
   double spindle_speed_rad_per_s = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -91,7 +91,7 @@ class ROBOMILL_API SampleSource {
                                                                             const std::atomic<bool>* stop = nullptr);
 
 /// Where the wanted channels stand among the columns of raw samples, which have no names, the tachometer last.
-/// @throws InvalidInput if they cannot be told
+/// @throws InvalidInput if they cannot be determined
 [[nodiscard]] ROBOMILL_API std::vector<std::size_t> pick_channels(const SampleColumns& columns, std::size_t count,
                                                                   const std::string& where);
 

@@ -118,7 +118,7 @@ class TableReader {
     return take_line(rest_);
   }
 
-  /// On to the first line of numbers, which reports the separator and the number of columns.
+  /// On to the first line of numbers, which determines the separator and the number of columns.
   void read_header() {
     std::vector<std::pair<std::size_t, std::string_view>> header;
     while (!rest_.empty()) {

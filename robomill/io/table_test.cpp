@@ -73,7 +73,7 @@ TEST(Table, RejectsWhatIsNoTable) {
   EXPECT_EQ(says(prose), "t.csv:201: \"words\"; is no number");
 }
 
-// Shortest digits that report a double come back as that double.
+// The shortest digits that determine a double are read back as that double.
 TEST(Table, GivesBackEveryBit) {
   Random random(3);
   std::string content = "a b c\n";

@@ -14,7 +14,7 @@
 namespace robomill::io {
 namespace {
 
-/// What from_chars calls out of range: too large or too small, as the exponent's sign reports (or, without one, the
+/// What from_chars calls out of range: too large or too small, as the exponent's sign shows (or, without one, the
 /// integer part).
 double beyond_range(std::string_view text) {
   const bool negative = text.front() == '-';

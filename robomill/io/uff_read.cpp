@@ -133,7 +133,7 @@ class Reader {
     while (!lines_.at_end()) {
       const std::string_view line = lines_.next();
       if (is_delimiter(line)) {
-        // "-1" ends one data set and begins the next; what follows reports which it is.
+        // "-1" ends one data set and begins the next; what follows shows which it is.
         if (lines_.at_end() || is_delimiter(lines_.peek())) continue;
         read_data_set();
       } else if (!trimmed(line).empty() && !began_) {
@@ -409,7 +409,7 @@ class Reader {
     const std::size_t width = layout.is_double() ? 8 : 4;
     const std::size_t same = layout.count * layout.per_point() * width;
     const std::size_t single_abscissa = layout.count * (layout.ordinates() * width + 4);
-    // Writers differ in the precision of an uneven abscissa, and in what they count as bytes; the closing -1 reports.
+    // Writers differ in the precision of an uneven abscissa, and in what they count as bytes; the closing -1 decides.
     const bool mixed = !layout.even && layout.is_double() && !ends_after(same) &&
                        (ends_after(single_abscissa) || binary.bytes == single_abscissa);
     const std::size_t bytes = mixed ? single_abscissa : same;

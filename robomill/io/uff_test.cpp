@@ -121,10 +121,10 @@ TEST(Uff, ReadsGluedNumbers) {
            " 1.00000E-10-1.50000E-101\n    -1\n");
   EXPECT_EQ(glued.values(5).real(), -6.0);
   EXPECT_EQ(glued.values(7).real(), -1.5e-101);
-  // No sign and no blank between them: only the columns report.
+  // No sign and no blank between them: only the columns separate them.
   const UffFunction packed = only(header(2, 3, 1) + "12345.678901229876.543210935555.5555555\n    -1\n");
   EXPECT_EQ(packed.values(1).real(), 29876.5432109);
-  // Columns of another width: only the signs report.
+  // Columns of another width: only the signs separate them.
   const UffFunction odd = only(header(4, 3, 1) + "-1.25E+00-2.5D-03+3.75e+10\n    -1\n");
   EXPECT_EQ(odd.values(1).real(), -2.5e-3);
   EXPECT_EQ(odd.values(2).real(), 3.75e10);

@@ -28,8 +28,7 @@ std::vector<std::string> lines(const std::string& text) {
   return out;
 }
 
-// Compliance, posture and force agree: the deflection reported is C F with C of the posture, and turning the feed turns
-// it.
+// Compliance, posture and force agree: the deflection is C F with C of the posture, and turning the feed turns it.
 TEST(RunForces, BendsTheRobotUnderTheMeanForce) {
   const ForcesResult result = run_forces(examples / "ball-end-ur5e" / "cut-1.toml", {}, {});
   ASSERT_TRUE(result.revolution && result.revolution->posture);
@@ -153,19 +152,19 @@ TEST(RunForces, APocketWithoutStockIsNoDeeperThanItIs) {
   EXPECT_EQ(json["stock"]["top_from"], "program zero");
   EXPECT_EQ(json["stock"]["max_mm"][2], 0.0);
   EXPECT_NE(stock_text(*result.program).find("assumed, since none is given"), std::string::npos);
-  const ForcesResult reported =
+  const ForcesResult with_depth =
       run_forces(folder.file("forces.toml", "cut = { axial_depth_mm = 1.5 }\n" + pocket_tool), program, {});
-  EXPECT_EQ(nlohmann::json::parse(forces_json(reported))["stock"]["max_mm"][2], -0.5);
+  EXPECT_EQ(nlohmann::json::parse(forces_json(with_depth))["stock"]["max_mm"][2], -0.5);
 }
 
-TEST(RunForces, AProgramThatDoesNotReportItsStocksHeightNeedsOne) {
+TEST(RunForces, AProgramThatDoesNotGiveItsStocksHeightNeedsOne) {
   const Folder folder;
   const std::filesystem::path program =
       folder.file("high.ngc", "G21 G90 G94\nS10000 M3\nG0 X0 Y0 Z30\nG1 Z18 F300\nG1 X40 F1200\nM2\n");
-  const std::string reported =
+  const std::string message =
       rejection([&] { static_cast<void>(run_forces(folder.file("forces.toml", pocket_tool), program, {})); });
-  EXPECT_NE(reported.find("forces.toml"), std::string::npos) << reported;
-  EXPECT_NE(reported.find("how high the material stands"), std::string::npos) << reported;
+  EXPECT_NE(message.find("forces.toml"), std::string::npos) << message;
+  EXPECT_NE(message.find("how high the material stands"), std::string::npos) << message;
 }
 
 // One meaning of "cuts" in summary, document and page; and a way through air lowers no figure of a block.
@@ -225,9 +224,9 @@ TEST(RunForces, SaysWhichBlockTheRobotCannotReach) {
   const auto message = [&](const std::filesystem::path& path) {
     return rejection([&] { static_cast<void>(run_forces(along / "forces.toml", along / "hollow.ngc", path)); });
   };
-  const std::string reported = message(folder.file("cell.toml", cell));
-  EXPECT_NE(reported.find("hollow.ngc:5"), std::string::npos) << reported;
-  EXPECT_NE(reported.find("out of the robot's reach by"), std::string::npos) << reported;
+  const std::string text = message(folder.file("cell.toml", cell));
+  EXPECT_NE(text.find("hollow.ngc:5"), std::string::npos) << text;
+  EXPECT_NE(text.find("out of the robot's reach by"), std::string::npos) << text;
 }
 
 TEST(RunForces, RejectsAPostureBeyondTheLimitsOrSingular) {

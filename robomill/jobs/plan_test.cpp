@@ -235,12 +235,12 @@ TEST_F(Plan, FinishingKeepsTheSurfaceErrorThatRoughingReports) {
       stability::surface_point(rough.cut.problem, {free.spindle_speed_rad_per_s, free.axial_depth_m});
   EXPECT_EQ(free.surface_error_m, there.surface_location_error_m);
   EXPECT_EQ(free.peak_deflection_m, there.peak_deflection_m);
-  const auto reported = nlohmann::json::parse(plan_json(rough))["recommended"];
-  EXPECT_NEAR(reported["surface_error_um"].get<double>(), free.surface_error_m / units::um, 1e-9);
-  EXPECT_NEAR(reported["peak_deflection_um"].get<double>(), free.peak_deflection_m / units::um, 1e-9);
-  const double turns_per_min = reported["spindle_speed_rpm"].get<double>();
-  EXPECT_NEAR(reported["cutting_speed_m_per_min"].get<double>(), std::numbers::pi * 12e-3 * turns_per_min, 1e-6);
-  EXPECT_NEAR(reported["feed_mm_per_min"].get<double>(), 3 * 0.01 * turns_per_min, 1e-6);
+  const auto recommended = nlohmann::json::parse(plan_json(rough))["recommended"];
+  EXPECT_NEAR(recommended["surface_error_um"].get<double>(), free.surface_error_m / units::um, 1e-9);
+  EXPECT_NEAR(recommended["peak_deflection_um"].get<double>(), free.peak_deflection_m / units::um, 1e-9);
+  const double turns_per_min = recommended["spindle_speed_rpm"].get<double>();
+  EXPECT_NEAR(recommended["cutting_speed_m_per_min"].get<double>(), std::numbers::pi * 12e-3 * turns_per_min, 1e-6);
+  EXPECT_NEAR(recommended["feed_mm_per_min"].get<double>(), 3 * 0.01 * turns_per_min, 1e-6);
 
   const double most_um = 0.3 * std::abs(free.surface_error_m) / units::um;
   const PlanResult fine = run_job(job("[finishing]\nmax_surface_error_um = " + std::to_string(most_um) + "\n"), 1);

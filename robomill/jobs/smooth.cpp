@@ -67,7 +67,7 @@ path::PostureChoice posture_of(const Bench& bench) {
   return path::choose_posture(*bench.program, *bench.machine, options);
 }
 
-/// Calls f; what it rejects without a place is of the program.
+/// Calls f; an error that names no place is the program's.
 template <class F>
 auto reported_of_program(const std::filesystem::path& program, F&& f) {
   try {
@@ -109,7 +109,7 @@ std::unique_ptr<path::SampleFile> open_output(const SmoothJob& job, const Bench&
   return path::open_sample_file(job.output, info);
 }
 
-/// The drives that [smoothing] reports of; none where it does not.
+/// The drives that [smoothing] describes; none where it describes none.
 std::vector<path::Drive> drives_of(const path::SmoothingFile& smoothing) {
   std::vector<path::Drive> drives(smoothing.drive_bandwidth_hz.size());
   for (std::size_t i = 0; i < drives.size(); ++i) {

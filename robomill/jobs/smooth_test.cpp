@@ -121,9 +121,9 @@ TEST_F(Smoothing, TheFileKeepsTheLimitsOfEveryJoint) {
     }
   }
   const auto& joints = result.first().summary.check.joints;
-  double reported = 0.0;
-  for (const auto& joint : joints) reported = std::max(reported, joint.jerk.max);
-  EXPECT_NEAR(reported, most, 1e-6 * most);
+  double largest = 0.0;
+  for (const auto& joint : joints) largest = std::max(largest, joint.jerk.max);
+  EXPECT_NEAR(largest, most, 1e-6 * most);
   // It begins and ends where the program does.
   EXPECT_NEAR(file.rows.front()[6], 0.0, 1e-6);
   EXPECT_NEAR(file.rows.back()[6], 6.0, 1e-6);

@@ -97,7 +97,7 @@ class RecordedCut : public testing::Test {
   std::filesystem::path path_ = folder_.at("cut.csv");
 };
 
-TEST_F(RecordedCut, ReportsStableFromChatter) {
+TEST_F(RecordedCut, DistinguishesStableFromChatter) {
   EXPECT_EQ(record(0.0).verdict, Verdict::stable);
   EXPECT_EQ(record(0.35).verdict, Verdict::borderline);
   const Recording loud = record(0.8);

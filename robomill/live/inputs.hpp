@@ -19,7 +19,7 @@
 
 namespace robomill::live {
 
-/// Reports the notices and the metrics of each hop that is left out.
+/// Adds each hop that is left out to the notices and the metrics.
 [[nodiscard]] ROBOMILL_API std::function<void(std::uint64_t)> report_dropped(Notices& notices, MetricValues& metrics);
 
 /// Reads a recording or a pipe on a thread of its own; closes the queue at the end.

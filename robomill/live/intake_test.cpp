@@ -43,8 +43,8 @@ TEST(Intake, CutsBlocksOfAnySizeIntoHops) {
   EXPECT_EQ(at, 1600U);
 }
 
-// Faster than it is processed: whole hops are left out, each is counted, and the next one reports how many frames are
-// missing.
+// Samples that come faster than they are processed: whole hops are left out, each is counted, and the next one says how
+// many frames are missing.
 TEST(Intake, LeavesWholeHopsOutAndSaysSo) {
   HopQueue queue(3);
   std::uint64_t dropped = 0;
@@ -65,7 +65,7 @@ TEST(Intake, LeavesWholeHopsOutAndSaysSo) {
   EXPECT_EQ(hop.frames_before, 0U);
 }
 
-// A fast thread against a slow one: every frame is processed or reported as missing.
+// A fast thread against a slow one: every frame is received or reported as missing.
 TEST(Intake, AccountsForEveryFrameBetweenThreads) {
   HopQueue queue(4);
   std::uint64_t dropped = 0;
@@ -75,15 +75,15 @@ TEST(Intake, AccountsForEveryFrameBetweenThreads) {
     for (std::size_t i = 0; i < hops; ++i) intake.add(ramp(0, frames));
     queue.close();
   });
-  std::uint64_t processed = 0, missing = 0;
+  std::uint64_t received = 0, missing = 0;
   Hop hop;
   while (queue.pop(hop, milliseconds(1000)) == HopQueue::Taken::hop) {
-    processed += hop.samples.size();
+    received += hop.samples.size();
     missing += hop.frames_before;
   }
   writer.join();
-  const std::uint64_t tail = dropped * frames - missing;  // dropped after the last that was processed
-  EXPECT_EQ(processed + missing + tail, hops * frames);
+  const std::uint64_t tail = dropped * frames - missing;  // dropped after the last that was received
+  EXPECT_EQ(received + missing + tail, hops * frames);
   EXPECT_EQ(missing % frames, 0U);
 }
 
@@ -95,12 +95,12 @@ TEST(Intake, ASourceThatCanWaitLosesNothing) {
     EXPECT_TRUE(intake.finish());
     queue.close();
   });
-  std::vector<float> processed;
+  std::vector<float> received;
   Hop hop;
   while (queue.pop(hop, milliseconds(10'000)) == HopQueue::Taken::hop) {
-    processed.insert(processed.end(), hop.samples.begin(), hop.samples.end());
+    received.insert(received.end(), hop.samples.begin(), hop.samples.end());
   }
-  EXPECT_EQ(processed, ramp(0, 402));
+  EXPECT_EQ(received, ramp(0, 402));
 }
 
 TEST(Intake, ClosingLetsAWaitingSourceGo) {

@@ -91,9 +91,9 @@ TEST(Session, RunsToTheEndOfItsQueue) {
   EXPECT_EQ(session.metrics().decisions, 20U);
 }
 
-TEST(Session, EndsWhereItIsReportedTo) {
+TEST(Session, EndsWhereItIsAskedTo) {
   Random random(1);
-  const auto processed = [&](SessionOptions options, SessionOutputs outputs, bool stopped) {
+  const auto decisions_made = [&](SessionOptions options, SessionOutputs outputs, bool stopped) {
     const std::atomic<bool> stop{stopped};
     Session session(some_file(), options, std::move(outputs));
     for (int i = 0; i < 20; ++i) EXPECT_TRUE(session.queue().push(noise(random)));
@@ -102,11 +102,11 @@ TEST(Session, EndsWhereItIsReportedTo) {
     EXPECT_FALSE(session.queue().offer(more));  // whoever still reads is let go
     return session.metrics().decisions.load();
   };
-  EXPECT_EQ(processed({.seconds = 0.1}, {}, false), 4U);
-  EXPECT_EQ(processed({}, {}, true), 0U);
+  EXPECT_EQ(decisions_made({.seconds = 0.1}, {}, false), 4U);
+  EXPECT_EQ(decisions_made({}, {}, true), 0U);
   SessionOutputs nobody;
   nobody.event = [](const MonitorEvent&, const std::string&) { return false; };
-  EXPECT_EQ(processed({.every_window = true}, nobody, false), 1U);
+  EXPECT_EQ(decisions_made({.every_window = true}, nobody, false), 1U);
 }
 
 // In the order of the stream, so that a recording of them has its length.

@@ -57,8 +57,7 @@ Weighting settle(Weighting asked, const FrfSet& set) {
   return asked;
 }
 
-// FRFs that are zero on every line report nothing about a mode; left out, they are zero in the model too if they can
-// be.
+// FRFs that are zero on every line say nothing about a mode; left out, they are zero in the model too where possible.
 FrfSet without_zeros(const FrfSet& set, std::vector<std::string>& warnings) {
   FrfSet rest{.frequency_hz = set.frequency_hz, .frfs = {}};
   for (const Frf& frf : set.frfs) {

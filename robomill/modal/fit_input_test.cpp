@@ -84,7 +84,7 @@ TEST(FitParts, ExactlySoManyModesOverAllParts) {
 }
 
 TEST(FitParts, AMissingFrfFollowsFromTheOthers) {
-  // Left vectors that both excitations feel, so that three FRFs report the fourth.
+  // Left vectors that both excitations feel, so that three FRFs determine the fourth.
   ModalModel truth = data::robot_modes();
   Random random(2);
   for (Mode& mode : truth.modes)

@@ -237,7 +237,7 @@ TEST(EstimateFrfs, TakesOutTheDampingOfTheExponentialWindow) {
 }
 
 // Left in, it is exactly what without_added_decay takes off the modes: H(iω + σ) has the poles λ - σ.
-TEST(EstimateFrfs, LeavesTheAddedDampingInWhenReported) {
+TEST(EstimateFrfs, LeavesTheAddedDampingInWhenAsked) {
   const ModalModel model = data::robot_modes();
   Hammer hammer = quiet();
   hammer.record_s = 2.0;

@@ -49,7 +49,7 @@ TEST(Advise, FoldsSidebandsBackToTheMode) {
 
 // 539.5 Hz lies within the widths of modes 7 and 8; read as a mirror image of mode 8 the vibration is another one: then
 // no speed follows from it. Of two equal modes, as equal directions have, either gives the same speeds.
-TEST(Advise, NamesNoModeThatCannotBeReported) {
+TEST(Advise, NamesNoModeThatCannotBeDetermined) {
   const modal::ModalModel modes = data::robot_modes();
   const Advice open = advise(539.5, 0.2, 6500.0 * rpm, 3, &modes);
   EXPECT_FALSE(open.mode.known());

@@ -74,8 +74,8 @@ TEST(Corpus, ASeedIsACut) {
 }
 
 // By another way: at the chatter's frequency the whole signal, forced vibration included, has the line that the truth
-// reports where it chatters most (of several lines the strongest), and next to nothing of it before chatter starts.
-TEST(Corpus, TheChatterLineIsInTheSignalAndBeganWhenReported) {
+// gives where it chatters most (of several lines the strongest), and next to nothing of it before chatter starts.
+TEST(Corpus, TheChatterLineIsInTheSignalFromItsOnsetOn) {
   int checked = 0;
   const auto last = 1000 + static_cast<std::uint64_t>(test::seeds(200));
   for (std::uint64_t seed = 1001; seed <= last; ++seed) {
@@ -145,14 +145,15 @@ RecordedCut known() {
 
 TEST(Score, CountsWhatItSays) {
   const RecordedCut c = known();
-  const std::vector<Heard> processed = {{.time_s = 0.5, .chatter = true, .stable = false, .frequency_hz = 100.0},
-                                        {.time_s = 0.6},
-                                        {.time_s = 0.97, .chatter = false, .stable = false},
-                                        {.time_s = 1.04, .chatter = true, .stable = false, .frequency_hz = 602.0},
-                                        {.time_s = 2.05, .chatter = true, .stable = false},
-                                        {.time_s = 2.2},
-                                        {.time_s = 2.5, .chatter = true, .stable = false}};
-  const CutScore s = score(c, processed);
+  const std::vector<DetectorDecision> decisions = {
+      {.time_s = 0.5, .chatter = true, .stable = false, .frequency_hz = 100.0},
+      {.time_s = 0.6},
+      {.time_s = 0.97, .chatter = false, .stable = false},
+      {.time_s = 1.04, .chatter = true, .stable = false, .frequency_hz = 602.0},
+      {.time_s = 2.05, .chatter = true, .stable = false},
+      {.time_s = 2.2},
+      {.time_s = 2.5, .chatter = true, .stable = false}};
+  const CutScore s = score(c, decisions);
   EXPECT_TRUE(s.found);
   EXPECT_EQ(s.false_alarms, 2);
   EXPECT_NEAR(s.delay_s, 0.04, 1e-12);
@@ -161,9 +162,9 @@ TEST(Score, CountsWhatItSays) {
   EXPECT_NEAR(s.recovery_s, 0.2, 1e-12);
   RecordedCut stable = c;
   stable.truth.chatter = false;
-  EXPECT_EQ(score(stable, processed).false_alarms, 3);
-  EXPECT_FALSE(score(stable, processed).found);
-  const Summary sum = summarise(std::vector{s, score(stable, processed), score(c, {})});
+  EXPECT_EQ(score(stable, decisions).false_alarms, 3);
+  EXPECT_FALSE(score(stable, decisions).found);
+  const Summary sum = summarise(std::vector{s, score(stable, decisions), score(c, {})});
   EXPECT_EQ(sum.cuts, 3);
   EXPECT_EQ(sum.chatter, 2);
   EXPECT_EQ(sum.found, 1);
@@ -177,8 +178,8 @@ TEST(Score, QuantilesLieBetweenValues) {
   EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
 }
 
-// The plain rules process what nobody could miss.
-TEST(Score, BaselinesHearALoudTone) {
+// The plain rules detect what nobody could miss.
+TEST(Score, BaselinesDetectALoudTone) {
   RecordedCut c = known();
   Random random(5);
   for (std::size_t i = 0; i < c.samples.size() / 2; ++i) {

@@ -226,7 +226,7 @@ TEST(Frequency, IsAsSureAsItSays) {
   EXPECT_GT(squares, 1.0 / 9.0);
 }
 
-TEST(CombCusum, HearsATonesGrowthOnceAndItsEnd) {
+TEST(CombCusum, DetectsATonesGrowthOnceAndItsEnd) {
   for (const auto& [teeth, rotation, chatter] : {std::tuple{3, 80.0, 683.0}, std::tuple{2, 133.0, 1210.0}}) {
     const SyntheticCut cut{
         .rotation_hz = rotation, .teeth = teeth, .channels = 2, .chatter_hz = chatter, .ends_s = 3.2, .seconds = 5.0};
@@ -261,7 +261,7 @@ TEST(CombCusum, StaysQuietInAStableCut) {
   }
 }
 
-// The mains are processed as combs at 50 and 60 Hz and whole parts of them; a spindle may turn at their multiples.
+// The mains appear as combs at 50 and 60 Hz and whole parts of them; a spindle may turn at their multiples.
 TEST(CombCusum, FollowsSpeedsAtMultiplesOfTheMains) {
   for (const double rotation_hz : {100.0, 150.0, 239.7, 240.0}) {
     const SyntheticCut cut{.rotation_hz = rotation_hz, .channels = 2, .seconds = 2.0};
@@ -270,7 +270,7 @@ TEST(CombCusum, FollowsSpeedsAtMultiplesOfTheMains) {
   }
 }
 
-// By less than 0.3 % in the looks that are compared: the slope reports.
+// By less than 0.3 % in the looks that are compared: the slope shows it.
 TEST(SpindleTracker, MovesWhileTheSpeedDrifts) {
   const SyntheticCut cut{.rotation_hz = 43.0, .drift_hz_per_s = -0.6, .noise = 0.03};
   const MonitorOptions options = options_for(cut);
@@ -305,14 +305,14 @@ TEST(CombCusum, KnowsTheSpeedFollowedLastWhileTheHintTrembles) {
   Random random(3);
   const auto frame = [&](double s) { return 2 * static_cast<std::size_t>(s * cut.sample_rate_hz); };
   for (std::size_t i = frame(4.0); i < frame(5.0); ++i) x[i] = static_cast<float>(0.03 * random.normal());
-  const auto found_s = [&](double trembles, double reported) {
+  const auto found_s = [&](double trembles, double hint_share) {
     const MonitorOptions options = options_for(cut);
     ChatterMonitor monitor(options);
     const std::size_t block = options.hop_samples() * 2;
     for (std::size_t at = 0; at + block <= x.size(); at += block) {
       const Decision d = monitor.push(std::span(x).subspan(at, block));
       if (d.time_s > 5.0 && std::abs(d.spindle_speed_rad_per_s / (turn * 74.0) - 1.0) < 2e-3) return d.time_s - 5.0;
-      const double share = d.time_s > 4.5 ? reported : 1.0;
+      const double share = d.time_s > 4.5 ? hint_share : 1.0;
       monitor.set_spindle_speed(options.spindle_speed_rad_per_s * share * (1.0 + trembles * random.uniform(-1.0, 1.0)));
     }
     return 1e9;
@@ -362,7 +362,7 @@ TEST(CombCusum, SuggestsTheSampleRateThatFitsTheComb) {
   for (const Decision& d : listen(options_for(cut), vibration(cut))) EXPECT_FALSE(d.faults & wrong_sample_rate);
 }
 
-// Growth so slow that the comb swallows it: the harmonic's amplitude against what was learnt of it reports.
+// Growth so slow that the comb swallows it: the harmonic's amplitude against what was learnt of it shows it.
 TEST(CombCusum, SeesWhatHidesAtMultiplesOfRotation) {
   for (const auto& [teeth, harmonic, hidden] :
        {std::tuple{3, 7, Hidden::locked}, std::tuple{2, 7, Hidden::period_doubling},
@@ -451,16 +451,16 @@ TEST(ChatterMonitor, AllocatesNothing) {
     options.kind = kind;
     options.threshold = 1e9;
     ChatterMonitor monitor(options);
-    bool processed = false;
+    bool detected = false;
     const std::size_t taken = test::allocations([&] {
       for (std::size_t at = 0; at + 512 <= x.size(); at += 512) {
-        processed = monitor.push(std::span(x).subspan(at, 512)).state == State::chatter || processed;
+        detected = monitor.push(std::span(x).subspan(at, 512)).state == State::chatter || detected;
       }
       monitor.set_spindle_speed(300.0);
       monitor.reset();
     });
     EXPECT_EQ(taken, 0U);
-    EXPECT_TRUE(processed || kind == Kind::energy_entropy);
+    EXPECT_TRUE(detected || kind == Kind::energy_entropy);
   }
 }
 

@@ -1,4 +1,4 @@
-// The listeners beside the sequential test, each on powers that are known, and the whole detector on the corpus.
+// The detectors beside the sequential test, each on powers that are known, and the whole detector on the corpus.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(NarrowbandDetector, WhatWasStruckRingsOff) {
 }
 
 // Without a comb an entry, linear in time over 0.15 s and steady then, is none; exponential growth of 30/s is.
-TEST(NarrowbandDetector, ReportsGrowthFromAnEntry) {
+TEST(NarrowbandDetector, DistinguishesGrowthFromAnEntry) {
   for (const bool may_be : {false, true}) {
     const NarrowbandDetector::Hop hop = {.line = 27, .share = 0.9, .may_be_the_cut = may_be};
     const auto entry = [](int k) { return std::pow(std::min(6, k + 1), 2); };
@@ -57,9 +57,9 @@ TEST(NarrowbandDetector, ReportsGrowthFromAnEntry) {
   }
 }
 
-TEST(BroadbandGrowth, ReportsGrowthFromDepthAndExit) {
+TEST(BroadbandGrowth, DistinguishesGrowthFromDepthAndExit) {
   Random random(3);
-  const auto processes = [&](auto left, auto whole) {
+  const auto detected_at = [&](auto left, auto whole) {
     BroadbandGrowth growth;
     for (int k = 0; k < 120; ++k) {
       const double unrest = std::exp(0.15 * random.normal());
@@ -72,13 +72,13 @@ TEST(BroadbandGrowth, ReportsGrowthFromDepthAndExit) {
   const auto away = [](int k) { return k < 60 ? 1.0 : 1e-6; };
   const auto knocks = [](int k) { return k % 20 == 19 ? 50.0 : 0.2; };
   const auto chatter = [](int k) { return 0.05 * std::exp(k < 60 ? 0.0 : std::min(4.0, 0.5 * (k - 60))); };
-  EXPECT_EQ(processes([&](int k) { return 0.2 * steady(k); }, steady), -1);
-  EXPECT_EQ(processes([&](int k) { return 0.2 * deeper(k); }, deeper), -1);
-  EXPECT_EQ(processes([&](int k) { return 0.05 * steady(k); }, away), -1);
-  EXPECT_EQ(processes(knocks, steady), -1);
-  const int processed = processes(chatter, steady);
-  EXPECT_GT(processed, 60);
-  EXPECT_LT(processed, 80);
+  EXPECT_EQ(detected_at([&](int k) { return 0.2 * steady(k); }, steady), -1);
+  EXPECT_EQ(detected_at([&](int k) { return 0.2 * deeper(k); }, deeper), -1);
+  EXPECT_EQ(detected_at([&](int k) { return 0.05 * steady(k); }, away), -1);
+  EXPECT_EQ(detected_at(knocks, steady), -1);
+  const int detected = detected_at(chatter, steady);
+  EXPECT_GT(detected, 60);
+  EXPECT_LT(detected, 80);
 }
 
 TEST(SynchronousChatter, SeesWhatOutgrowsToothPassing) {
@@ -108,15 +108,15 @@ TEST(SynchronousChatter, SeesWhatOutgrowsToothPassing) {
 }
 
 // Chatter that a comb swallows once it has stood for long: locked to rotation, and period doubling.
-TEST(CombCusum, HearsRecordingsThatHideFromAComb) {
+TEST(CombCusum, DetectsChatterThatHidesFromAComb) {
   using namespace testing;
   const int cuts = test::seeds(30);
   std::vector<CutScore> locked, doubling;
   for (int k = 1; k <= cuts; ++k) {
     const RecordedCut one = locked_chatter(static_cast<std::uint64_t>(k));
     const RecordedCut other = period_doubling(static_cast<std::uint64_t>(k));
-    locked.push_back(score(one, processed_by_monitor(one)));
-    doubling.push_back(score(other, processed_by_monitor(other)));
+    locked.push_back(score(one, monitor_decisions(one)));
+    doubling.push_back(score(other, monitor_decisions(other)));
   }
   EXPECT_GE(summarise(locked).found, 0.6 * cuts);
   EXPECT_GE(summarise(doubling).found, 0.8 * cuts);
@@ -125,20 +125,20 @@ TEST(CombCusum, HearsRecordingsThatHideFromAComb) {
 
 // Seeds that nothing was tuned on, those of the README's table. Measured: in all 200 cuts 94 of 100 found, 7 false
 // alarms, 107 ms, 0.18 Hz; in the first 20 all 10, none, 87 ms, 0.10 Hz.
-TEST(CombCusum, HearsTheCorpus) {
+TEST(CombCusum, DetectsTheChatterOfTheCorpus) {
   using namespace testing;
   const int cuts = test::seeds(static_cast<int>(corpus_size));
   std::vector<CutScore> scores;
   for (int seed = 1; seed <= cuts; ++seed) {
     const RecordedCut recorded = cut(static_cast<std::uint64_t>(seed));
-    scores.push_back(score(recorded, processed_by_monitor(recorded)));
+    scores.push_back(score(recorded, monitor_decisions(recorded)));
   }
-  const Summary processed = summarise(scores);
-  EXPECT_EQ(processed.chatter, cuts / 2);
-  EXPECT_GE(processed.found, 0.93 * processed.chatter - 1.0);
-  EXPECT_LE(processed.false_alarms, cuts / 20);
-  EXPECT_LT(processed.delay_median_s, 0.13);
-  EXPECT_LT(processed.frequency_median_hz, 0.3);
+  const Summary summary = summarise(scores);
+  EXPECT_EQ(summary.chatter, cuts / 2);
+  EXPECT_GE(summary.found, 0.93 * summary.chatter - 1.0);
+  EXPECT_LE(summary.false_alarms, cuts / 20);
+  EXPECT_LT(summary.delay_median_s, 0.13);
+  EXPECT_LT(summary.frequency_median_hz, 0.3);
 }
 
 }  // namespace

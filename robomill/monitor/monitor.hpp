@@ -92,7 +92,7 @@ struct Decision {
   std::array<float, 64> band_level = {};  ///< rms of each band, all channels [input's unit]
 };
 
-/// Processes chatter in a stream of samples. Method and accuracy: robomill/monitor/README.md.
+/// Detects chatter in a stream of samples. Method and accuracy: robomill/monitor/README.md.
 ///
 /// Nothing throws, and nothing is allocated, after construction. Not to be used by two threads at once.
 class ROBOMILL_API ChatterMonitor {

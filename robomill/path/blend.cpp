@@ -261,7 +261,7 @@ void Blend::forget(std::size_t before) noexcept {
 }
 
 void Blend::expand(std::size_t piece, double middle_m, Polynomial& out) const noexcept {
-  // Powers of u − begin; each corner's filtered ramp has one form on the whole stretch, reported by its middle.
+  // Powers of u − begin; each corner's filtered ramp has one form on the whole stretch, found at its middle.
   const Node& here = node(piece);
   out.coefficients.setZero();
   out.coefficients.col(0) = here.at + here.rate * (out.begin_m - here.u_m);

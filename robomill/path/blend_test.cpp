@@ -156,7 +156,7 @@ TEST_P(BlendFilters, JoinsWithContinuousDerivatives) {
 }
 
 // Found at nodes and between them at quarters: a rare place is missed by a few per cent, which the check of the samples
-// finds and the next plan corrections.
+// finds and the next plan corrects.
 TEST_P(BlendFilters, KeepsTolerances) {
   const SmoothingOptions o = options(GetParam());
   double largest = 0.0;

@@ -120,7 +120,7 @@ void Checker::State::begin(const Sample& sample) {
                    book_);
 }
 
-// As if the tool stood still, so that what follows can be reported.
+// As if the tool stood still, so that what follows can be checked.
 void Checker::State::correct(Sample& sample, double due_s) const {
   const bool first = result_.samples == 1;
   sample.time_s = first ? 0.0 : due_s;

@@ -35,7 +35,7 @@ struct Violation {
   double path_m = 0.0;  ///< Sample::path_m
   double ratio = 1.0;   ///< of what was met to the limit
   int order = 1;  ///< 0: tolerance; 1, 2, 3: velocity, acceleration, jerk; −1: what neither a narrower nor a slower
-                  ///< path corrections (faulty samples, positions beyond joint limits, poses, dwells)
+                  ///< path corrects (faulty samples, positions beyond joint limits, poses, dwells)
 };
 
 /// What a trajectory does, found from its samples alone.

@@ -130,12 +130,12 @@ TEST(Drive, SumsUpItsSeries) {
     }
   });
   model.add(samples);
-  const TrackingError reported = model.result();
-  EXPECT_EQ(reported.samples, 500U);
+  const TrackingError result = model.result();
+  EXPECT_EQ(result.samples, 500U);
   for (std::size_t j = 0; j < 3; ++j) {
-    EXPECT_EQ(reported.joints[j].max, largest[j]);
-    EXPECT_NEAR(reported.joints[j].rms, std::sqrt(squares[j] / 500.0), 1e-15);
-    EXPECT_EQ(reported.joints[j].block, static_cast<std::size_t>(std::lround(reported.joints[j].at_s / 1e-3)) / 100);
+    EXPECT_EQ(result.joints[j].max, largest[j]);
+    EXPECT_NEAR(result.joints[j].rms, std::sqrt(squares[j] / 500.0), 1e-15);
+    EXPECT_EQ(result.joints[j].block, static_cast<std::size_t>(std::lround(result.joints[j].at_s / 1e-3)) / 100);
   }
   EXPECT_EQ(DriveModel({servo()}, 1e-3).result().joints[0].rms, 0.0);
 }

@@ -105,7 +105,7 @@ std::size_t block_at(const Head& head, double t) {
 }
 
 /// Why a walk ended. On the way to where the machine cannot reach it is stretched, and singular, first: then what is
-/// missing at the block's end reports more.
+/// missing at the block's end says more.
 struct End {
   robot::Reach reach = {};
   std::size_t block = 0;

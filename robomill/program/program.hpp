@@ -74,7 +74,7 @@ struct ROBOMILL_API Program {
   Pose start;                 ///< where the first block begins
   std::vector<Block> blocks;  ///< no block without motion but dwells
   std::vector<Skipped> skipped = {};
-  std::vector<std::string> notes = {};  ///< sentences for the user: what was mended or taken for granted
+  std::vector<std::string> notes = {};  ///< sentences for the user: what was corrected or taken for granted
   /// Where block i begins.
   [[nodiscard]] const Pose& begin_of(std::size_t block) const { return block == 0 ? start : blocks[block - 1].end; }
 };

@@ -35,7 +35,7 @@ class ROBOMILL_API MonitorRecorder {
   /// The decision that followed.
   /// @param compute_s  it took so long
   void add(const monitor::Decision& decision, double compute_s);
-  /// What it reported; beyond some hundreds events are counted only.
+  /// An event that it reported; beyond some hundreds they are only counted.
   void add(const monitor::MonitorEvent& event);
 
   /// What was recorded so far; facts and warnings are left to the caller.

@@ -134,7 +134,7 @@ class Model {
 struct Solved {
   Eigen::VectorXd step;     // n, zero where not free
   Eigen::MatrixXd inverse;  // n x n, (AᵀA)⁻¹ of the free ones, as far as it exists
-  Eigen::VectorXd unknown;  // n, share of each joint in what the data cannot report
+  Eigen::VectorXd unknown;  // n, share of each joint in what the data do not determine
   Eigen::Index rank = 0;
   double condition = 0.0;
 };
@@ -211,7 +211,7 @@ struct Fit {
   }
 };
 
-/// Joints whose compliance the displacements show at all; reports the reason of the others.
+/// Joints whose compliance the displacements show at all; gives the reason for the others.
 std::vector<Eigen::Index> seen_joints(const Fit& fit, const Arm& arm, std::vector<IdentifiedJoint>& joints) {
   const Eigen::VectorXd length = fit.model.matrix.colwise().norm();
   double most[2] = {0.0, 0.0}, torque[2] = {0.0, 0.0};  // of revolute and prismatic joints: their units differ

@@ -61,9 +61,8 @@ struct IdentifiedStiffness {
 /// c but for the arm's own motion, so that the first Gauss-Newton step is the linear least squares d = J diag(Jᵀ F) c,
 /// and the next ones put in what Kc does. Deviations are those of the residuals (of `deviation_m` only the ratios
 /// count). Joints that no load turns, or whose turning does not move the point, are found by their column; joints that
-/// the data cannot distinguish by a singular value below 1e-9 of the largest. A joint that comes out softer than none
-/// (c
-/// <= 0) is taken as rigid and reported.
+/// the data cannot distinguish by a singular value below 1e-9 of the largest. A joint whose compliance comes out
+/// as c <= 0 is taken as rigid and reported.
 /// @param point_m  in the flange frame
 /// @throws InvalidInput naming the load if lengths differ, a number is not finite, some deviations are given and others
 ///     not, or there are fewer numbers than joints

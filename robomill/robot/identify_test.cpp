@@ -139,7 +139,7 @@ TEST(Identify, ReportsJointsThatStandInOneLine) {
     load.position(4) = 0.0;
     load.displacement_m = loaded_posture(arm, load.position, tip, load.wrench).displacement_m;
   }
-  // Under a load the wrist bends a little, so that only the linear part cannot report them apart: their deviation does.
+  // Under a load the wrist bends a little. The linear part cannot distinguish the joints; their deviations show it.
   const IdentifiedStiffness found = identify_joint_stiffness(arm, tip, loads);
   for (Load& load : loads) load.displacement_m += 1e-6 * testing::random_vector(random);
   const IdentifiedStiffness noisy = identify_joint_stiffness(arm, tip, loads);
@@ -155,18 +155,18 @@ TEST(Identify, ReportsAJointThatComesOutSofterThanNothing) {
   Random random(47);
   Arm arm = testing::kr210();
   arm.joints[5].stiffness = 1e12;
-  int reported = 0;
+  int taken_as_rigid = 0;
   for (int k = 0; k < 20; ++k) {
     const IdentifiedStiffness found = identify_joint_stiffness(arm, tip, planted_loads(arm, random, 20, 500.0, 20e-6));
     EXPECT_FALSE(found.joints[5].identifiable);
     EXPECT_TRUE(found.joints[1].identifiable);
     if (found.joints[5].reason.find("taken as rigid") != std::string::npos) {
-      ++reported;
+      ++taken_as_rigid;
       EXPECT_LE(found.joints[5].compliance, 0.0);
     }
   }
-  EXPECT_GT(reported, 4);
-  EXPECT_LT(reported, 16);
+  EXPECT_GT(taken_as_rigid, 4);
+  EXPECT_LT(taken_as_rigid, 16);
 }
 
 TEST(Identify, RejectsLoadsThatSayNothing) {

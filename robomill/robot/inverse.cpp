@@ -16,7 +16,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 /// A discriminant this little below zero, as a share of what it is the difference of, is rounding.
 constexpr double rounding = 1e-10;
-/// Below this size directions cannot be told [m or rad].
+/// Below this size directions are undefined [m or rad].
 constexpr double nothing = 1e-12;
 /// Below this sine squared of the angle between axes 4 and 6, joint 6 is found from joint 4.
 constexpr double nearly_straight = 1e-6;

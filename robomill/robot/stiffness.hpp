@@ -64,7 +64,7 @@ struct Stiffness {
 
 /// Stiffness of a point that is free to turn.
 struct PrincipalStiffness {
-  Eigen::Vector3d stiffness_n_per_m = Eigen::Vector3d::Zero();  ///< rising; zero where it cannot be told
+  Eigen::Vector3d stiffness_n_per_m = Eigen::Vector3d::Zero();  ///< rising; zero where it is undefined
   Eigen::Matrix3d direction = Eigen::Matrix3d::Identity();      ///< a column each, in B
 };
 /// Of the inverse of the translational block of C, its symmetric part.

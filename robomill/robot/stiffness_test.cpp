@@ -149,10 +149,10 @@ TEST(Stiffness, ReportsSingularPosturesAndWhatBuckles) {
   Random random(6);
   const Arm eight = testing::random_chain(random, 8);
   Jacobian wide = jacobian(eight, testing::random_position(random, 8), tip);
-  const double reported = condition_number(wide, 0.4);
+  const double number = condition_number(wide, 0.4);
   wide.topRows<3>() /= 0.4;
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(wide);
-  EXPECT_NEAR(reported, svd.singularValues()(0) / svd.singularValues()(5), 1e-12 * reported);
+  EXPECT_NEAR(number, svd.singularValues()(0) / svd.singularValues()(5), 1e-12 * number);
 
   const Wrench huge = milling(5e7);
   EXPECT_EQ(stiffness(arm, testing::kr210_posture(), tip, huge).status, Stiffness::Status::buckled);

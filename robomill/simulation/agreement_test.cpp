@@ -73,8 +73,7 @@ Drawn draw(std::uint64_t seed) {
   return drawn;
 }
 
-/// Floquet theory's |multiplier| of the simulation's own period: of a swinging speed the lobes report it per
-/// revolution.
+/// Floquet theory's |multiplier| of the simulation's own period: of a swinging speed the lobes give it per revolution.
 double floquet_radius(const Drawn& drawn, double period_s) {
   const stability::PointResult point =
       stability::evaluate_point(drawn.problem, {}, {drawn.speed_rpm * testing::rpm, drawn.depth_m});

@@ -6,8 +6,8 @@
 
 namespace robomill::simulation {
 
-/// Milling with any cutter in any posture: what of it cuts is reported by an engagement, which stays as it is whatever
-/// vibrates. Force and displacement are in the feed's frame F.
+/// Milling with any cutter in any posture. The engagement says what of it cuts; it stays as it is whatever vibrates.
+/// Force and displacement are in the feed's frame F.
 struct ROBOMILL_API PostureCut {
   cutting::Cutter cutter;
   cutting::Engagement engagement;

@@ -40,7 +40,7 @@ void add_rings(std::vector<Ring>& rings, Ring ring, const cutting::Arc& arc, dou
   rings.push_back(ring);
 }
 
-/// Of tooth j, what its edge forces are reported per, a width of cut.
+/// Of tooth j: the length that its edge forces are referred to, per width of cut.
 double edge_per_width(const PostureCut& cut, int tooth, const cutting::EdgeSlice& slice) {
   const cutting::FlatEndMill& mill = cut.cutter.mill;
   if (!cutting::counts_edge_length(cut.coefficients.edge_measure, cut.cutter.kind)) return 1.0;

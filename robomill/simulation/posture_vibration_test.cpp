@@ -140,7 +140,7 @@ TEST(Posture, AComplianceAloneFollowsTheFixedPointOfForceAndDeflection) {
     run.engine.step();
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), now = Eigen::Vector3d::Zero();
     const Eigen::Vector3d before = q[q.size() - delay];
-    const double rotation = revolution * i / steps - 1e-9;  // the engine reports what is there just before
+    const double rotation = revolution * i / steps - 1e-9;  // the engine gives the state just before
     for (int pass = 0; pass < 60; ++pass) {
       force.setZero();
       for_edges(cut, rotation, [&](const cutting::EdgeSlice& slice, int, double angle) {

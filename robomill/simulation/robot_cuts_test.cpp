@@ -126,7 +126,7 @@ double amplitude(const Simulation& cut, double rotation_hz, int multiple) {
 }
 
 // Three rotations are no multiple of two teeth's passing. Period doubling puts a line there, and so does runout in a
-// cut that does not chatter: the peak alone does not report the two apart.
+// cut that does not chatter: the peak alone does not distinguish the two.
 TEST(RobotCuts, PeriodDoublingAndRunoutBothPutALineAtThreeRotations) {
   const double speed_rpm = 6550.0, rotation_hz = speed_rpm / 60.0;
   const SimulationOptions options = {.seconds = 3.0, .sample_rate_hz = 240.0 * rotation_hz / 4.0};

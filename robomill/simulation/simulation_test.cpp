@@ -182,7 +182,7 @@ TEST(Simulation, ProcessDampingIsADashpotWhereTheCutIsContinuous) {
   EXPECT_NEAR(engine.displacement()(1), expected, 1e-4 * std::exp(-decay * t));
 }
 
-TEST(Simulation, ChatterStaysFiniteAndReportsItsFrequency) {
+TEST(Simulation, ChatterStaysFiniteAndShowsItsFrequency) {
   const stability::LobesProblem problem = stability::testing::robot();
   const MillingCut cut = testing::cut_of(problem, 6500.0, 0.9e-3, 1e-5);
   const Simulation s = simulate(cut, {.seconds = 1.0});

@@ -31,7 +31,7 @@ struct DepthCrossing {
 /// What a frequency-domain method says of one spindle speed.
 struct FrequencyLimit {
   /// found: the other members hold. stable_in_range: no depth up to largest_depth_m is unstable; they are 0.
-  /// not_converged: the limit still moves by > tolerance · limit; error_estimate_m reports by how much.
+  /// not_converged: the limit still moves by > tolerance · limit; error_estimate_m gives by how much.
   enum class Status { found, stable_in_range, not_converged };
   Status status = Status::stable_in_range;
   double spindle_speed_rad_per_s = 0.0;
@@ -67,8 +67,7 @@ struct FrequencyLimit {
     Progress& progress = Progress::none());
 
 /// @throws InvalidInput naming the band that is missing, if measured FRFs still rise towards an end of their band, or
-/// if
-///     what they leave out moves a limit by more than `largest_ratio` of itself:
+///     if what they leave out moves a limit by more than `largest_ratio` of itself:
 ///     FrequencyLimit::uncovered_ratio > largest_ratio
 ROBOMILL_API void require_coverage(const FrequencyResponse& response, const std::vector<FrequencyLimit>& limits,
                                    double largest_ratio = 0.2);

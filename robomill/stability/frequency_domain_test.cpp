@@ -159,7 +159,7 @@ TEST(MultiFrequency, HasProcessDamping) {
   EXPECT_GT(multi(damped, 8e-3, {4000}).front().axial_depth_m, 1.2 * multi(bare, 8e-3, {4000}).front().axial_depth_m);
 }
 
-// Stable just below the limit and unstable just above it, or stable at every depth: reported by another method.
+// Stable just below the limit and unstable just above it, or stable at every depth: checked by another method.
 TEST(MultiFrequency, PropertyLimitsOfRandomCuts) {
   int found = 0;
   for (int seed = 0; seed < seeds(200); ++seed) {

@@ -70,7 +70,7 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   if (options.output == Output::boundary) {
     grid = find_boundary_nodes(*scheme, axes, count, progress);
   } else {
-    // The discretizations report the error that their intervals leave; a map of it would triple their cost.
+    // The discretizations estimate the error that their intervals leave; a map of it would triple their cost.
     grid = evaluate_grid(*scheme, axes, collocated ? std::optional(options.tolerance) : std::nullopt, count, progress);
     result.spectral_radius = grid.radius;
   }

@@ -116,7 +116,7 @@ TEST(PeakClassification, NamesNoReadingWhereAnotherIsAboutAsGood) {
 }
 
 // Equal directions: the frequency says nothing about which of two equal modes chatters, but it is chatter.
-TEST(PeakClassification, EqualModesCannotBeReportedApart) {
+TEST(PeakClassification, EqualModesCannotBeDistinguished) {
   const modal::ModalModel modes =
       testing::plane_model({testing::mass_mode(0, 700.0, 0.01, 1.0), testing::mass_mode(1, 700.0, 0.01, 1.0)});
   const PeakClassification found = explain({{702.0}, 5000 * rpm, 3}, modes);

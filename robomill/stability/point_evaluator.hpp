@@ -45,7 +45,7 @@ class Scheme {
   virtual ~Scheme() = default;
   [[nodiscard]] virtual std::unique_ptr<PointEvaluator> evaluator() const = 0;
   [[nodiscard]] virtual Period period() const = 0;
-  /// Reported which depths will be asked for often, before evaluators are made.
+  /// Called with the depths that will be asked for often, before evaluators are made.
   virtual void expect(std::span<const double> depths_m) { static_cast<void>(depths_m); }
 };
 

@@ -63,13 +63,13 @@ double quantile(std::vector<double> values, double share) {
   return values[k] + (place - static_cast<double>(k)) * (next - values[k]);
 }
 
-CutScore score(const RecordedCut& cut, std::span<const Heard> processed) {
+CutScore score(const RecordedCut& cut, std::span<const DetectorDecision> decisions) {
   const Truth& truth = cut.truth;
   CutScore out = {.kind = cut.kind, .course = cut.course, .noise = cut.noise, .chatter = truth.chatter};
   out.delay_s = out.recovery_s = unknown;
   std::vector<double> nearest, strongest;
   bool before = false;
-  for (const Heard& h : processed) {
+  for (const DetectorDecision& h : decisions) {
     const bool in_chatter = truth.chatter && h.time_s >= truth.start_s && h.time_s < truth.end_s;
     const bool ringing = truth.chatter && h.time_s >= truth.end_s && h.time_s < truth.end_s + 0.1;
     if (h.chatter && !before && !in_chatter && !ringing) ++out.false_alarms;
@@ -118,14 +118,14 @@ Summary summarise(std::span<const CutScore> scores) {
   return out;
 }
 
-std::vector<Heard> processed_by_monitor(const RecordedCut& cut) {
+std::vector<DetectorDecision> monitor_decisions(const RecordedCut& cut) {
   MonitorOptions options;
   options.sample_rate_hz = cut.sample_rate_hz;
   options.channels = cut.channels;
   options.spindle_speed_rad_per_s = cut.hint_rad_per_s;
   options.teeth = cut.teeth;
   ChatterMonitor monitor(options);
-  std::vector<Heard> out;
+  std::vector<DetectorDecision> out;
   std::span<const float> rest = cut.samples;
   const auto channels = static_cast<std::size_t>(cut.channels);
   std::uint64_t hop = 0;
@@ -143,9 +143,9 @@ std::vector<Heard> processed_by_monitor(const RecordedCut& cut) {
   return out;
 }
 
-std::vector<Heard> rms_five_sigma(const RecordedCut& cut) {
+std::vector<DetectorDecision> rms_five_sigma(const RecordedCut& cut) {
   constexpr std::size_t learnt = 40;  // hops: a second
-  std::vector<Heard> out;
+  std::vector<DetectorDecision> out;
   std::deque<double> past;
   for (const std::size_t end : window_ends(cut)) {
     const auto window = static_cast<std::size_t>(window_s * cut.sample_rate_hz);
@@ -161,9 +161,9 @@ std::vector<Heard> rms_five_sigma(const RecordedCut& cut) {
   return out;
 }
 
-std::vector<Heard> comb_rms_ratio(const RecordedCut& cut) {
+std::vector<DetectorDecision> comb_rms_ratio(const RecordedCut& cut) {
   const std::vector<float> left = combed(cut);
-  std::vector<Heard> out;
+  std::vector<DetectorDecision> out;
   int above = 0;
   for (const std::size_t end : window_ends(cut)) {
     const auto window = static_cast<std::size_t>(window_s * cut.sample_rate_hz);

@@ -6,16 +6,16 @@
 
 #include "testing/monitor/recording.hpp"
 
-/// How well a detector processes the corpus.
+/// How well a detector finds the chatter of the corpus.
 namespace robomill::monitor::testing {
 
 /// One decision of any detector.
-struct Heard {
+struct DetectorDecision {
   double time_s = 0.0;  ///< of the last sample it used
   bool chatter = false, stable = true;
   double frequency_hz = 0.0;  ///< 0: none
 };
-using Detector = std::function<std::vector<Heard>(const RecordedCut&)>;
+using Detector = std::function<std::vector<DetectorDecision>(const RecordedCut&)>;
 
 struct CutScore {
   std::string kind = {}, course = {};
@@ -31,7 +31,7 @@ struct CutScore {
   /// From truth.end_s to the first report of stable; NaN where chatter does not end 0.5 s before the recording.
   double recovery_s = 0.0;
 };
-[[nodiscard]] CutScore score(const RecordedCut& cut, std::span<const Heard> processed);
+[[nodiscard]] CutScore score(const RecordedCut& cut, std::span<const DetectorDecision> decisions);
 
 /// Over many cuts; median and 95 % of what is known.
 struct Summary {
@@ -45,11 +45,11 @@ struct Summary {
 [[nodiscard]] double quantile(std::vector<double> values, double share);
 
 /// ChatterMonitor as it stands, given the recording's hint and teeth.
-[[nodiscard]] std::vector<Heard> processed_by_monitor(const RecordedCut& cut);
+[[nodiscard]] std::vector<DetectorDecision> monitor_decisions(const RecordedCut& cut);
 /// Root mean square of 50 ms, each 25 ms, against mean plus five standard deviations of the second before.
-[[nodiscard]] std::vector<Heard> rms_five_sigma(const RecordedCut& cut);
+[[nodiscard]] std::vector<DetectorDecision> rms_five_sigma(const RecordedCut& cut);
 /// Each sample less the mean of the four revolutions before (at the true speed, which no monitor knows); where
 /// the rms of 50 ms of that exceeds 0.6 of the signal's twice running, chatter.
-[[nodiscard]] std::vector<Heard> comb_rms_ratio(const RecordedCut& cut);
+[[nodiscard]] std::vector<DetectorDecision> comb_rms_ratio(const RecordedCut& cut);
 
 }  // namespace robomill::monitor::testing

@@ -65,7 +65,7 @@ TEST(CoefficientsToml, AMaterialTakesTheToolsHelix) {
   expect_helix(table_of(folder, "[tool]\nhelix_deg = 30\n[coefficients]\nfile = \"k.toml\"\n"), 40.0);
 }
 
-// Orthogonal tests report little of a cutter's edge: what was measured replaces it, one direction at a time.
+// Orthogonal tests show little of a cutter's edge: what was measured replaces it, one direction at a time.
 TEST(CoefficientsToml, AMaterialTakesEdgeCoefficientsOfItsOwn) {
   const test::Folder folder;
   const std::string named =

@@ -101,7 +101,7 @@ TEST(SlotsCsv, WritesCoefficientsThatAreReadAgain) {
   EXPECT_TRUE(json["identification"]["depends_on_speed"].get<bool>());
 }
 
-TEST(SlotsCsv, WhatCannotBeReportedIsLeftOut) {
+TEST(SlotsCsv, WhatIsNotDeterminedIsLeftOut) {
   const test::Folder folder;
   SlotsFile file = two_speeds(0.0);
   file.slots.resize(2);

@@ -290,8 +290,7 @@ TEST(AnalyticEngagement, OfAFlatEndIsItsImmersion) {
   }
 }
 
-// Two methods on one ball: its own conditions, and the support function of the same outline reported in seven
-// parameters.
+// Two methods on one ball: its own conditions, and the support function of the same outline given by seven parameters.
 TEST(AnalyticEngagement, BallAndGeneralOutlineAgree) {
   for (int seed = 0; seed < seeds(300); ++seed) {
     Random random(614, static_cast<std::uint64_t>(seed));

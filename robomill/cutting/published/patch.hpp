@@ -22,7 +22,7 @@ class Patch {
  public:
   /// Both have been validated.
   Patch(const Cutter& cutter, const Cut& cut);
-  Patch(const Patch&) = delete;  // the silhouette looks at the profile
+  Patch(const Patch&) = delete;  // the silhouette refers to the profile
   Patch& operator=(const Patch&) = delete;
   [[nodiscard]] const Profile& profile() const { return profile_; }
   [[nodiscard]] const Eigen::Matrix3d& feed_from_tool() const { return rotation_; }

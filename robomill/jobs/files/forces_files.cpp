@@ -82,7 +82,7 @@ constexpr Column columns[] = {
     {"condition_number", [](const ProgramForces&, const BlockResult& r) { return r.condition_number; }},
 };
 
-/// A column of a program whose sign turns with the side that the force is reported of.
+/// A column of a program whose sign depends on whether forces are those on the tool or on the workpiece.
 bool turns(std::string_view name) {
   return name.starts_with("mean_f");
 }

@@ -186,7 +186,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
     }
   });
   if (job == ForcesJob::revolution) {
-    // What only the cut itself can report, a shank in it or a coefficient below 0, in the file's words.
+    // What only the cut itself shows, a shank in it or a coefficient below 0, is reported in the file's words.
     file.locate([&] {
       const cutting::Engagement engagement = cutting::engage(out.cutter, out.cut, {.slices = out.slices});
       static_cast<void>(cutting::cutting_force(out.cutter, engagement, out.coefficients, out.motion, out.force));

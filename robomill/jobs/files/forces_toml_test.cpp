@@ -97,11 +97,11 @@ TEST(ForcesToml, AProgramNeedsNoCut) {
 
 TEST(ForcesToml, SaysWhatIsWrongAndWhere) {
   const Folder folder;
-  const auto reported = [&](const std::string& text) {
+  const auto message_of = [&](const std::string& text) {
     return rejection([&] { static_cast<void>(read_forces(folder.file("forces.toml", text))); });
   };
   const auto expect = [&](const std::string& from, const std::string& to, const std::string& part) {
-    const std::string message = reported(with(from, to));
+    const std::string message = message_of(with(from, to));
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
   expect("axial_depth_mm = 1.5", "axial_depth_mm = 40", "forces.toml:13: cut.axial_depth_mm = 40 mm");

@@ -94,9 +94,9 @@ TEST(LobesToml, TakesCoefficientsFromAFileOrAMaterial) {
                    cutting::milling_coefficients(cutting::material("Ti6Al4V"), 5 * units::deg, 30 * units::deg, 0.03e-3)
                        .tangential_n_per_m2.front());
   folder.file("low.toml", "[coefficients]\ntangential_n_per_mm2 = 0.6\n");
-  const std::string reported = test::rejection([&] { static_cast<void>(read("file = \"low.toml\"\n")); });
-  EXPECT_NE(reported.find("lobes.toml:11: coefficients.file"), std::string::npos) << reported;
-  EXPECT_NE(reported.find("tangential_n_per_m2 = 600000"), std::string::npos) << reported;
+  const std::string message = test::rejection([&] { static_cast<void>(read("file = \"low.toml\"\n")); });
+  EXPECT_NE(message.find("lobes.toml:11: coefficients.file"), std::string::npos) << message;
+  EXPECT_NE(message.find("tangential_n_per_m2 = 600000"), std::string::npos) << message;
 }
 
 // The modes given by modal mass have the receptance 1 / (m (ω_n² - ω² + 2iζω_nω)).

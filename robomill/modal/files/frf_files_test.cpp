@@ -47,12 +47,12 @@ TEST(FrfFiles, EveryFormatGivesTheSetBack) {
     write_frfs(folder.at(name), set);
     expect_same(read_frfs({folder.at(name)}).set, set, 0.0);
   }
-  // What is reported of a prediction stands beside it and does not disturb the reader.
-  const std::string reported =
+  // Remarks on a prediction stand beside it and do not disturb the reader.
+  const std::string annotated =
       frf_json(set, {.suspect_hz = {7.0}, .unreliable_hz = {8.0, 9.5}, .notes = {"a \"note\""}});
-  expect_same(read_frfs({folder.file("reported.json", reported)}).set, set, 0.0);
-  EXPECT_NE(reported.find("\"suspect_hz\": [7.0]"), std::string::npos);
-  EXPECT_NE(reported.find("\"unreliable_hz\": [8.0, 9.5]"), std::string::npos);
+  expect_same(read_frfs({folder.file("annotated.json", annotated)}).set, set, 0.0);
+  EXPECT_NE(annotated.find("\"suspect_hz\": [7.0]"), std::string::npos);
+  EXPECT_NE(annotated.find("\"unreliable_hz\": [8.0, 9.5]"), std::string::npos);
   // E20.12 carries 13 digits.
   write_frfs(folder.at("tip.uff"), set);
   expect_same(read_frfs({folder.at("tip.uff")}).set, set, 1e-12);

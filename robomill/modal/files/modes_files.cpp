@@ -43,7 +43,7 @@ io::Json model_json(const ModalModel& model) {
   return json;
 }
 
-/// A mode as a file reports it: entries by the name of their degree of freedom.
+/// A mode as a file holds it: entries by the name of their degree of freedom.
 struct NamedMode {
   Mode mode;
   std::vector<std::pair<Dof, std::complex<double>>> left, right;

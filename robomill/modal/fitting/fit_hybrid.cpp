@@ -69,7 +69,7 @@ void keep(PartFit& fit, const FitData& data, const std::vector<double>& cost, in
   fit.iterations += iterations;
 }
 
-// The error ‖H_fit - H‖² that fewer modes may leave. Without deviation or coherence nothing reports how true the lines
+// The error ‖H_fit - H‖² that fewer modes may leave. Without deviation or coherence nothing shows how true the lines
 // are, but for their scatter. Where residuals are smooth they are what no mode stands for, such as the error of a
 // single hit; modes that follow the lines closer than that error describe the hit and not the structure.
 double tolerated_error2(const Part& part, const Evaluation& at) {

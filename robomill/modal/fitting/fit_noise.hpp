@@ -8,7 +8,7 @@
 
 namespace robomill::modal::detail {
 
-/// Variance of each line's error as coherence or deviation report it, smoothed over neighbouring lines, since both are
+/// Variance of each line's error as coherence or deviation give it, smoothed over neighbouring lines, since both are
 /// themselves estimates from a few hits. Of coherence only the shape means something: (1 - γ²) / γ² |H|².
 [[nodiscard]] Eigen::VectorXd known_variance(const Frf& frf, Weighting weighting);
 

@@ -69,8 +69,7 @@ TEST(RemoveMass, FreesEveryFrfWhereAllSensorsWereHit) {
   }
 }
 
-// Only x was hit: what the sensor's motion in y does cannot be known, and is reported. Without coupling nothing
-// remains.
+// Only x was hit: what the sensor's motion in y does is unknown, which is reported. Without coupling nothing remains.
 TEST(RemoveMass, ReportsWhichLoadingRemains) {
   const Complex s(0.0, 1.3);
   const double mass_kg = 0.2;

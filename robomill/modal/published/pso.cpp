@@ -217,7 +217,7 @@ std::vector<Peak> share_peaks(std::vector<Peak> peaks, std::size_t count) {
 }
 
 /// As a share of the frequency: a picked peak's is its half-power half width, within bounds. A frequency that somebody
-/// names need not be at a peak, so that its flanks report nothing.
+/// names need not be at a peak, so that its flanks show nothing.
 double frequency_half_width(const Peak& peak, const PsoOptions& options) {
   if (!options.peaks_hz.empty()) return options.frequency_half_width;
   return std::clamp(peak.damping_ratio, std::min(min_frequency_half_width, options.frequency_half_width),

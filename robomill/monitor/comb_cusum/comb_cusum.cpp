@@ -121,7 +121,7 @@ void CombCusum::take_in(const Hop& hop) noexcept {
     power_[c] = sum / static_cast<double>(frames_);
     total += power_[c];
   }
-  // Without a comb, what comes with the tool's entry cannot be told from chatter until the speed is found.
+  // Without a comb, what comes with the tool's entry cannot be distinguished from chatter until the speed is found.
   const double change = slow_power_ > 0.0 ? total / slow_power_ : 1.0;
   jumps_ = change > jump || change < 1.0 / jump ? jumps_ + 1 : 0;
   entry_hops_ = change > jump ? entry_lasts : entry_hops_ > 0 ? entry_hops_ - 1 : 0;

@@ -18,7 +18,7 @@ constexpr std::size_t calm_hops = 2;
 constexpr double hidden_learnt_s = 0.5;  // before that it is not known which harmonics are usual
 constexpr double lowest_tone_hz = 90.0;  // below hums the mains
 constexpr double entry_width_hz = 6.0;   // by which a line misses its harmonic while the tool enters
-constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0;  // orders that a hint can report
+constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0;  // orders that a hint resolves
 constexpr double highest_of_unknown_teeth = 12.0;                    // three of four teeth
 
 }  // namespace
@@ -76,7 +76,7 @@ void CombCusum::judge(Decision& decision) noexcept {
   if (state_ != State::stable) report_frequency(decision);
 }
 
-// A multiple of rotation or of tooth passing, at a speed near the one that is reported; high ones lie too close to say.
+// A multiple of rotation or of tooth passing, at a speed near the given one; high orders lie too close together.
 bool CombCusum::may_be_the_cut(double frequency_hz) const noexcept {
   const double near_hz = spindle_.expected_hz();
   if (near_hz <= 0.0) return true;

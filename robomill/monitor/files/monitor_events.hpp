@@ -12,7 +12,7 @@
 
 namespace robomill::monitor {
 
-/// What a monitor has to report.
+/// What a monitor reports.
 struct MonitorEvent {
   /// state: it changed, or chatter's frequency moved. window: a decision without a change. fault: what is wrong with
   /// the input changed. stream: something befell the samples on their way (blocks lost, connection lost, …). recording:

@@ -46,7 +46,7 @@ TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   EXPECT_FALSE(json.contains("what"));
 }
 
-TEST(MonitorEvents, ReportWhatIsUnknownAsNull) {
+TEST(MonitorEvents, HoldWhatIsUnknownAsNull) {
   MonitorEvent event;
   event.decision.score = std::numeric_limits<double>::quiet_NaN();
   event.decision.energy_entropy = std::numeric_limits<double>::infinity();
@@ -58,7 +58,7 @@ TEST(MonitorEvents, ReportWhatIsUnknownAsNull) {
   EXPECT_TRUE(json["faults"].empty());
 }
 
-TEST(MonitorEvents, ReportOfTheStream) {
+TEST(MonitorEvents, HoldWhatHappenedToTheStream) {
   MonitorEvent event;
   event.kind = MonitorEvent::Kind::stream;
   event.what = "lost-blocks";

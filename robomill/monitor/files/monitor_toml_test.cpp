@@ -78,7 +78,7 @@ TEST(MonitorToml, HasDefaults) {
   EXPECT_EQ(numbered.columns.channels, (std::vector<std::string>{"2", "1"}));
   EXPECT_EQ(numbered.columns.tachometer, "3");
   EXPECT_EQ(read_monitor(folder.file("o.toml", "[signal]\nchannels = 1\n")).columns.channels.front(), "1");
-  // Its rate comes from the recording; where that says nothing either, the file is reported.
+  // Its rate comes from the recording; where that gives none either, the error names the key.
   EXPECT_NE(test::rejection([&] { validate(numbered); }).find("signal.sample_rate_hz"), std::string::npos);
 }
 

@@ -8,7 +8,7 @@
 
 namespace robomill::monitor {
 
-/// A recording and what was processed in it.
+/// A recording with its label: chatter or stable.
 struct LabelledRecording {
   std::filesystem::path file;
   bool chatter = false;

@@ -14,7 +14,7 @@ namespace robomill::monitor {
 
 inline constexpr double unknown_s = std::numeric_limits<double>::quiet_NaN();
 
-/// A recording and what was processed in it.
+/// A recording with its label: chatter or stable.
 struct Recording {
   std::string name;
   bool chatter = false;

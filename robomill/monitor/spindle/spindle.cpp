@@ -100,7 +100,7 @@ void SpindleTracker::look(std::size_t window, double centre_hz, double share) no
   search_.advance(std::numeric_limits<std::size_t>::max());
 }
 
-// A comb at the mains' frequency that the hint does not report of.
+// A comb at the mains' frequency, where the hint gives no such speed.
 bool SpindleTracker::detects_the_mains(double rotation_hz) const noexcept {
   return of_the_mains(rotation_hz) && (hint_hz_ <= 0.0 || std::abs(rotation_hz / hint_hz_ - 1.0) > mains_hint);
 }

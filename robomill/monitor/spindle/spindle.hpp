@@ -53,7 +53,7 @@ class SpindleTracker {
   /// The power jumped: a speed that is not known is looked for in what comes from now on.
   void jumped() noexcept;
   void lose() noexcept;
-  /// Between looks, to what the comb's phases report.
+  /// Between looks, to the speed that the comb's phases give.
   void correct(double rotation_hz) noexcept { rotation_hz_ = rotation_hz; }
 
   [[nodiscard]] double rotation_hz() const noexcept { return rotation_hz_; }  ///< as followed; 0: unknown

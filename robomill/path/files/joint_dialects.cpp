@@ -73,7 +73,7 @@ void add_missing_outputs(const EndEffector& end, const Outputs& wanted, std::vec
   }
 }
 
-/// What the file reports the controller of the load and nobody measured.
+/// What the file gives the controller for the load although nobody measured it.
 void add_assumed_load(const EndEffector& end, std::vector<std::string>& lines) {
   lines.push_back(fmt::format("ASSUMED of the load of {:.6g} kg: {}no moments of inertia", *end.mass_kg,
                               end.center_m ? "" : "its centre half-way to the tip (tool.center_mm), "));

@@ -41,8 +41,7 @@ class JointDialect {
   [[nodiscard]] virtual std::size_t most_points() const = 0;
   /// Before the header's comments.
   virtual void open(fmt::memory_buffer& out) = 0;
-  /// What the cell does not report and the program therefore leaves to the user or takes for granted: tool and load
-  /// first.
+  /// What the cell does not give, so that the program leaves it to the user or assumes it: tool and load first.
   [[nodiscard]] virtual std::vector<std::string> not_set(const Outputs& wanted) const = 0;
   /// After them: tool and load; drives to where the trajectory begins; outputs that the cell names.
   virtual void start(fmt::memory_buffer& out, const robot::Position6& joints, const Outputs& on) = 0;

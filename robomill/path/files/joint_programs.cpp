@@ -22,7 +22,7 @@ namespace robomill::path {
 namespace {
 
 constexpr double usual_period_s = 0.020;
-constexpr double standing = 1e-9;          // rad; less than any of these languages can distinguish
+constexpr double standing = 1e-9;          // rad; less than any of these languages resolves
 constexpr std::size_t listed = 20;         // codes of the program that a header names
 constexpr double servoj_period_s = 0.002;  // the 500 Hz of an e-Series controller
 

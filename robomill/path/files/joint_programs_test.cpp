@@ -161,7 +161,7 @@ std::string first_comment(const std::string& text, const std::string& mark) {
 }
 
 // Without tool and load the controller's dynamics are those of another arm: the file begins with that.
-TEST(ProgramSetup, BeginsWithWhatTheCellDoesNotReport) {
+TEST(ProgramSetup, BeginsWithWhatTheCellDoesNotGive) {
   const Folder folder;
   const std::array<std::pair<const char*, const char*>, 4> languages = {
       {{".src", "\n; "}, {".mod", "\n! "}, {".script", "  # "}, {".servoj", "# "}}};

@@ -114,7 +114,7 @@ class Follow {
     out.tip_m = pose.tip_m;
     out.axis = pose.axis;
     out.block = samples_.row(sample).block;
-    out.path_m = (static_cast<double>(index) + 0.5) / violation_cells_per_m;  // violations apart, step by step
+    out.path_m = (static_cast<double>(index) + 0.5) / violation_cells_per_m;  // keeps violations of steps apart
     checker_.add(std::span(&out, 1));
   }
 

@@ -22,7 +22,7 @@ struct SmoothedBy {
   std::vector<double> tracking_error = {};  ///< one a joint: the largest [rad or m]; empty where not asked for
 };
 
-/// A smoothed program as smooth.json reports it.
+/// A smoothed program as smooth.json holds it.
 struct SmoothedProgram {
   std::string program = {}, cell = {};           ///< names of the files
   std::array<bool, 6> prismatic = {};            ///< joints that are lengths [m]

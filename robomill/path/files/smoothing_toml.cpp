@@ -49,7 +49,7 @@ void read_per_joint(io::TomlFile& file, const char* key, const char* member, int
   }
 }
 
-/// The limits come from the cell's reader; here they are only reported in the file's words.
+/// The limits come from the cell's reader; here their errors are reported in the file's words.
 void check_limits(io::TomlFile& file, const robot::JointLimits& limits, int joints) {
   for (const robot::JointLimit& limit : robot::joint_limits) {
     std::vector<double> values;

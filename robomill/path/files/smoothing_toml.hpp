@@ -17,7 +17,7 @@ namespace robomill::path {
 struct SmoothingFile {
   SmoothingOptions options = {};
   bool free_gamma = false;  ///< the flange may turn about the tool's axis along the way
-  /// Of each joint's position servo; empty where not given, then no tracking error can be reported.
+  /// Of each joint's position servo; empty where not given, then no tracking error can be computed.
   std::vector<double> drive_bandwidth_hz = {};
   double drive_damping_ratio = 0.7;  ///< > 0; of the servos
   /// Natural frequency of the flexible joint behind each drive; empty: stiff.

@@ -18,11 +18,11 @@
 
 namespace robomill::path {
 
-/// What a trajectory's file reports beside its samples.
+/// What a trajectory's file holds beside its samples.
 struct ROBOMILL_API TrajectoryInfo {
   int joints = 0;                       ///< n, 1 to 6
   std::array<bool, 6> prismatic = {};   ///< joints that are lengths [m]; the others are angles [rad]
-  robot::JointLimits limits = {};       ///< reported in .h5
+  robot::JointLimits limits = {};       ///< written to .h5
   double sample_period_s = 0.001;       ///< > 0
   double program_period_s = 0.0;        ///< of joint programs: longest time from point to point; 0: 20 ms, servoj 2 ms,
                                         ///< or the sample period where that is longer
@@ -39,7 +39,7 @@ struct ROBOMILL_API ProgramRun {
   double shortest_step_s = 0.0, longest_step_s = 0.0;  ///< from point to point
   double joint_deviation_rad = 0.0, tip_deviation_m = 0.0,
          axis_deviation_rad = 0.0;                 ///< from the trajectory at the same time
-  double tip_error_m = 0.0, axis_error_rad = 0.0;  ///< from the program, as path::CheckResult reports them
+  double tip_error_m = 0.0, axis_error_rad = 0.0;  ///< from the program, as in path::CheckResult
   double tip_tolerance_m = 0.0, axis_tolerance_rad = 0.0;
   double would_hold_s = 0.0;    ///< of a program with a fixed cycle that does not hold: the cycle that would; 0: none
   bool fixed_cycle = false;     ///< a point a cycle: none can be added

@@ -10,7 +10,7 @@ namespace robomill::path {
 namespace {
 
 constexpr double unlimited = 1e300;
-constexpr double antipodal = 1e-6;  // [rad] from half a turn: the great circle cannot be told any more
+constexpr double antipodal = 1e-6;  // [rad] from half a turn: the great circle is no longer determined
 constexpr int most_halvings = 24;
 
 /// How far block i goes, in steps of the options.

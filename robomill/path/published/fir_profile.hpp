@@ -15,8 +15,8 @@ struct Boxes {
 };
 
 /// Convolution of the boxes, integrated once: what share of the way is done at time t, with its first three
-/// derivatives; 0 before t = 0 and 1 after the boxes' sum. Derivatives of an order above the number of boxes are
-/// reported as 0, though they hold impulses.
+/// derivatives; 0 before t = 0 and 1 after the boxes' sum. Derivatives of an order above the number of boxes are given
+/// as 0, though they hold impulses.
 ///     s(t) = Σ_S (−1)^|S| (t − T_S)₊^m / (m! ΠT),  T_S the sum of the widths in the subset S of the m boxes
 [[nodiscard]] Eigen::Vector4d share_at(const Boxes& boxes, double t_s);
 

@@ -247,7 +247,7 @@ TEST(Fir, AsPrintedAWideTurnIsTimedByItsSupplement) {
 
 // A turn of the head carries its pivot round: r ω² is beyond the slides' acceleration whatever T2 is. The absolute
 // value as printed finds a T2 all the same.
-TEST(Fir, AsPrintedAnAccelerationThatNoT2MendsIsHidden) {
+TEST(Fir, AsPrintedAnAccelerationThatNoT2CorrectsIsHidden) {
   Program program;
   program.start.axis = {std::sin(0.5), 0.0, std::cos(0.5)};
   program.blocks.push_back(

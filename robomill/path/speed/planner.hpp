@@ -143,7 +143,7 @@ class Planner {
   std::vector<double> begin_m_;    ///< of the row's spans
   std::size_t frozen_ = 0, safe_to_ = 0;
   /// Of the row that was solved last: its spans, those that the solver could move and those that are taken over; spans
-  /// that was not at the safe terminal speed before it.
+  /// whose safe terminal speed was set before it.
   std::size_t solved_ = 0, moved_ = 0, taken_ = 0, crept_before_ = 0;
   struct Before {
     double begin_b = 0.0, found_b = 0.0, speed = 1.0;

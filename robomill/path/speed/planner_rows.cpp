@@ -12,7 +12,7 @@ constexpr double tense_share = 0.5, even_share = 0.0005;
 /// Spans beside a corrected one that are slowed down as much; how many ramps a local slow-down reaches.
 constexpr std::size_t dip_beside = 2;
 constexpr double dip_reach = 30.0;
-/// … and beyond how many nothing of it can be reported.
+/// … and beyond how many nothing of it is noticeable.
 constexpr double dip_felt = 8.0;
 
 }  // namespace
@@ -70,7 +70,7 @@ void Planner::solve(bool to_rest) noexcept {
     hand_over(to_rest);
     return;
   }
-  // Without a stop the last span waits: its safe terminal speed needs to know of the next.
+  // Without a stop the last span waits: its safe terminal speed depends on the next one.
   solved_ = to_rest ? row_.size() : row_.size() - 1;
   moved_ = to_rest ? solved_ : solved_ - 2;
   taken_ = to_rest ? solved_ : std::min(planner_.commit, solved_ - 4);
@@ -173,7 +173,7 @@ bool Planner::revise() noexcept {
     before_[i].found_b = row_[i].b;
     before_[i].speed = row_[i].point[0].speed;
   }
-  // What the row before left over moves already, and may do so too fast for a correct: then the fresh spans alone.
+  // What the row before left over moves already, and may do so too fast for a correction: then the fresh spans alone.
   for (const std::size_t from : {frozen_, std::max(frozen_, crept_before_)}) {
     bool slower = false;
     for (std::size_t i = from; i < row_.size(); ++i) {

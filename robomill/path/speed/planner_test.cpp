@@ -382,7 +382,7 @@ TEST(Planner, SaysWhatIsWrongAndWhere) {
     Planner planner(head(), options(), {});
     EXPECT_EQ(planner.begin({.tip_m = {2.0, 0.0, 0.0}}, 0.0, robot::Position6::Zero()).kind, Kind::outside_limits);
   }
-  {  // Out of the slides' travel in block 1: reported with its line, joint and amount.
+  {  // Beyond a prismatic joint's travel in block 1: reported with line, joint and amount.
     program::Program program;
     program.blocks = {{.line = 7, .end = {.tip_m = {0.9, 0.0, 0.0}}, .duration_s = 10.0},
                       {.line = 9, .end = {.tip_m = {1.2, 0.0, 0.0}}, .duration_s = 10.0}};

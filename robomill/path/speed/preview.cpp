@@ -126,7 +126,7 @@ void Preview::look(Emitter& ahead, std::span<const Segment> motion, bool joined,
     follow(trail, sample, step);
     samples_.clear();
   };
-  // What cannot be reached is reported when it is sent out.
+  // What cannot be reached is reported when the motion is sent out.
   static_cast<void>(ahead.add({}, motion, samples_, take, 1));
   for (const Violation& last : last_) {
     if (last.ratio > 1.0) violations.push_back(last);

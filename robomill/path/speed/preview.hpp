@@ -19,7 +19,7 @@ class Preview {
   void pass(std::span<const Sample> samples);
   /// Adds the worst of each 0.2 mm and order along motion that follows.
   /// @param ahead   as it will send the motion out; its path reaches to the motion's end. Runs on along it
-  /// @param joined  the motion begins where the samples ended; else the first ones report nothing
+  /// @param joined  the motion begins where the samples ended; else the first samples have no differences
   void look(Emitter& ahead, std::span<const Segment> motion, bool joined, std::vector<Violation>& violations);
 
  private:

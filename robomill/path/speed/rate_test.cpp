@@ -122,8 +122,8 @@ TEST(Rate, TravelBoundsWhatTheBrakeTakes) {
     const RateState from{.theta = random.uniform(0.0, 6.0), .speed = random.uniform(-1.0, 1.0) * slope};
     const double base = random.uniform() < 0.5 ? 0.0 : random.uniform(0.0, from.theta);
     const double until = random.uniform() < 0.3 ? base : random.uniform(base, std::max(base, from.theta));
-    const double reported = travel_s(from, base, until, slope, period_s);
-    if (!std::isfinite(reported)) continue;
+    const double promised_s = travel_s(from, base, until, slope, period_s);
+    if (!std::isfinite(promised_s)) continue;
     ++feasible;
     double sum = 0.0, to_until = 0.0;
     RateState at = from;
@@ -135,9 +135,9 @@ TEST(Rate, TravelBoundsWhatTheBrakeTakes) {
       at = next;
       ASSERT_LT(n, 100'000);
     }
-    lag = std::max(lag, (to_until - reported) / (period_s * rate_of(from.peak(slope))));
-    EXPECT_LE(to_until, reported) << from.theta << ' ' << from.speed / slope << ' ' << base << ' ' << until;
-    if (until == base && sum > 0.05) worst = std::max(worst, reported / sum);
+    lag = std::max(lag, (to_until - promised_s) / (period_s * rate_of(from.peak(slope))));
+    EXPECT_LE(to_until, promised_s) << from.theta << ' ' << from.speed / slope << ' ' << base << ' ' << until;
+    if (until == base && sum > 0.05) worst = std::max(worst, promised_s / sum);
   }
   EXPECT_GT(feasible, 8'000);
   EXPECT_LT(worst, 1.25);

@@ -68,8 +68,8 @@ std::vector<Segment> spans() {
 
 TEST(Segment, DurationIsTheIntegral) {
   for (const Segment& span : spans()) {
-    const double reported_s = duration_s(span), met_s = time_of(span, 1.0, 20000);
-    EXPECT_NEAR(reported_s, met_s, 1e-6 * met_s) << span.begin_b << ' ' << span.middle_b << ' ' << span.end_b;
+    const double found_s = duration_s(span), met_s = time_of(span, 1.0, 20000);
+    EXPECT_NEAR(found_s, met_s, 1e-6 * met_s) << span.begin_b << ' ' << span.middle_b << ' ' << span.end_b;
   }
 }
 

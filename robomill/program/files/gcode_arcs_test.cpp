@@ -129,7 +129,7 @@ TEST(GcodeArcs, ChordsStandOnTheArcAndNearIt) {
 }
 
 // The same arc by its radius, by its centre from the begin, and by its absolute centre.
-TEST(GcodeArcs, RadiusAndCenterReportTheSameArc) {
+TEST(GcodeArcs, RadiusAndCenterGiveTheSameArc) {
   Random random(22);
   for (int i = 0; i < test::seeds(2000); ++i) {
     const bool left = random.index(2) == 0;

@@ -52,12 +52,16 @@ struct ROBOMILL_API ProgramReading {
 ///
 /// Every format: blocks that move nothing are left out; what is not carried out stands in `skipped`, with its line; the
 /// first position that is complete makes the start. An axis whose length is within 1e-3 of 1 is made a unit vector,
-/// with a note where it was off by more than 1e-6. G-code:  gcode.hpp. APT/CL:  GOTO, GODLTA, FROM; RAPID holds for one
-/// move; FEDRAT a minute or a revolution; UNITS (mm unless said),
-///     SPINDL, DELAY in seconds. Unknown statements are skipped, those that move the tool or its frame rejected.
-/// CSV:     columns x_mm, y_mm, z_mm, i, j, k, feed_mm_per_min in any order; the first row is the start, and the feed
-/// of
-///     a row that of the move to it.
+/// with a note where it was off by more than 1e-6.
+///
+/// G-code: gcode.hpp.
+///
+/// APT/CL: GOTO, GODLTA, FROM; RAPID holds for one move; FEDRAT a minute or a revolution; UNITS (mm unless said),
+/// SPINDL, DELAY in seconds. Unknown statements are skipped, those that move the tool or its frame rejected.
+///
+/// CSV: columns x_mm, y_mm, z_mm, i, j, k, feed_mm_per_min in any order; the first row is the start, and the feed of a
+/// row that of the move to it.
+///
 /// A feed counts the tip's way, and degrees where the axis alone turns.
 class ROBOMILL_API ProgramFile final : public Source {
  public:
@@ -81,7 +85,7 @@ class ROBOMILL_API ProgramFile final : public Source {
   [[nodiscard]] const std::vector<Skipped>& skipped() const;
   /// … and how many they are.
   [[nodiscard]] std::size_t skipped_count() const;
-  /// What was mended or taken for granted so far, in sentences.
+  /// What was corrected or taken for granted so far, in sentences.
   [[nodiscard]] std::vector<std::string> notes() const;
 
  private:

@@ -84,7 +84,7 @@ TEST(ProgramFiles, NotesAreReportedOnceToo) {
   }
 }
 
-TEST(ProgramFiles, TheEndingReportsTheFormat) {
+TEST(ProgramFiles, TheEndingDeterminesTheFormat) {
   EXPECT_EQ(program_format_of("a.APT"), ProgramFormat::apt);
   EXPECT_EQ(program_format_of("a.cls"), ProgramFormat::apt);
   EXPECT_EQ(program_format_of("a.cl"), ProgramFormat::apt);
@@ -98,7 +98,7 @@ TEST(ProgramFiles, TheEndingReportsTheFormat) {
 }
 
 // One program in three languages.
-TEST(ProgramFiles, TheThreeFormatsReportTheSame) {
+TEST(ProgramFiles, TheThreeFormatsGiveTheSame) {
   Random random(52);
   std::string gcode = "G0 X0 Y0 Z0 I0 J0 K1\n";
   std::string apt = "GOTO/0,0,0,0,0,1\n";

@@ -11,7 +11,7 @@
 
 namespace robomill::program {
 
-/// What a reader left out, mended or took for granted: reported once, however often the program is read again.
+/// What a reader left out, corrected or took for granted: reported once, however often the program is read again.
 class ProgramRemarks {
  public:
   /// @param most  that are kept; the others are counted

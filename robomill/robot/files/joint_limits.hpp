@@ -18,7 +18,7 @@ struct JointLimit {
 inline constexpr std::array<JointLimit, 5> joint_limits = {
     {{"min_position", 0}, {"max_position", 0}, {"max_velocity", 1}, {"max_acceleration", 2}, {"max_jerk", 3}}};
 
-/// @param prismatic  for every joint whether it slides
+/// @param prismatic  for every joint whether it is prismatic
 /// @param notes   gets a sentence where a number without unit is not likely to be in rad or m
 /// @return of every joint its value in SI, none where the file gives none
 /// @throws InvalidInput if a list has another length, or two give the same joint's limit

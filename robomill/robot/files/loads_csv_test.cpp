@@ -38,7 +38,7 @@ TEST(LoadsCsv, ReadsALoadARow) {
   EXPECT_EQ(load.wrench.moment_n_m, Eigen::Vector3d(0.0, 0.0, 7.0));
   EXPECT_LT((load.displacement_m - Eigen::Vector3d(1e-4, -2e-4, 3e-4)).norm(), 1e-19);
   EXPECT_DOUBLE_EQ(load.deviation_m, 1e-5);
-  // A sliding joint is reported in millimetres.
+  // A prismatic joint is given in millimetres.
   Arm sliding = arms::kr210();
   sliding.joints[1].prismatic = true;
   std::string columns = header;

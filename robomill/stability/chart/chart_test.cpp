@@ -47,7 +47,7 @@ TEST(Chart, LosesNoIslandOfTheGrid) {
   }
 }
 
-// Speeds looked at one by one skip depths that look alike; every depth of the grid reports whether that loses a limit.
+// Speeds looked at one by one skip depths that look alike; every depth of the grid shows whether that loses a limit.
 TEST(Chart, LimitsOfSpeedsAreThoseOfEveryDepth) {
   for (const double helix : {0.0, 30.0, 40.0}) {
     for (const int depths : {2, 30, 100}) {

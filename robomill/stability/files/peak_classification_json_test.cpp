@@ -11,7 +11,7 @@
 namespace robomill::stability {
 namespace {
 
-TEST(FingerprintJson, HoldsEveryPeakInShopUnits) {
+TEST(PeakClassificationJson, HoldsEveryPeakInShopUnits) {
   const modal::ModalModel modes = data::robot_modes();
   const PeakClassification found = explain({{324.99, 666.98, 250.0}, 6500.0 * units::rpm, 3}, modes);
   const ChatterMechanism verdict = {ChatterMechanism::Kind::regenerative, 1.1, 0.9, 563.5, {8}};
@@ -37,7 +37,7 @@ TEST(FingerprintJson, HoldsEveryPeakInShopUnits) {
 }
 
 // Two modes explain 539.5 Hz about as well: no mode is named, and both are listed.
-TEST(FingerprintJson, NamesNothingThatCannotBeReported) {
+TEST(PeakClassificationJson, NamesNothingThatCannotBeDetermined) {
   const auto json = nlohmann::json::parse(
       peak_classification_json(explain({{539.5}, 6500.0 * units::rpm, 3}, data::robot_modes()), nullptr));
   EXPECT_EQ(json["state"], "cannot be told");

@@ -182,7 +182,7 @@ class Tracer {
     }
   }
 
-  /// Roots of the parabola through the imaginary parts report where to look.
+  /// Roots of the parabola through the imaginary parts show where to look.
   void track(double left, double right, const std::array<Complex, 3>& values) {
     if (std::ranges::all_of(values, [](Complex v) { return v.real() <= 0.0; })) return;
     const double middle = 0.5 * (left + right);

@@ -210,7 +210,7 @@ std::vector<LobesProblem> varied_problems() {
   return all;
 }
 
-// Against collocation, which shares neither steps nor delayed displacements; the estimate reports the error.
+// Against collocation, which shares neither steps nor delayed displacements; the estimate gives the error.
 TEST(Discretizations, AgreeWithCollocationWithinTheirEstimate) {
   LobesOptions options;
   for (const LobesProblem& problem : varied_problems()) {

@@ -11,7 +11,7 @@
 
 namespace robomill::stability::detail {
 
-/// One point of the chart, reported by its speed and its depth.
+/// One point of the chart, given by its speed and its depth.
 struct LanePoint {
   const SpeedPlan* speed = nullptr;
   const DepthPlan* depth = nullptr;

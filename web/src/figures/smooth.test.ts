@@ -48,7 +48,7 @@ const smooth = {
 const rows = (figure: { layout: Record<string, unknown> }) => Object.keys(figure.layout).filter((key) => key.startsWith('yaxis'));
 
 describe('speeds', () => {
-  it('have a line a method, over the longest of them, distinguished without their colours', () => {
+  it('have a line a method, over the longest of them, distinguishable without their colours', () => {
     const { data, layout } = speedFigure(smooth, light);
     expect(data.map((trace) => trace['name'])).toEqual(['verified', '&lt;paper&gt;', 'verified', '&lt;paper&gt;']);
     expect(new Set(data.slice(0, 2).map((trace) => (trace['line'] as { dash: string }).dash)).size).toBe(2);
