@@ -130,7 +130,9 @@ TEST(Redundancy, TakesNoPostureThatBuckles) {
   EXPECT_GT(buckled, 10);
   EXPECT_EQ(over.status == Redundancy::Status::found, std::isfinite(least));
   EXPECT_FALSE(over.best.buckled);
-  if (std::isfinite(least)) EXPECT_LE(over.best.error_m.norm(), least);
+  if (std::isfinite(least)) {
+    EXPECT_LE(over.best.error_m.norm(), least);
+  }
 }
 
 TEST(Redundancy, RejectsWhatMakesNoSense) {
