@@ -31,14 +31,14 @@ class Turn {
     RedundancySample best;
     best.gamma_rad = gamma_rad;
     best.status = choose(cell_.arm, all, from, choosing_).status;
-    double least = std::numeric_limits<double>::infinity();
+    bool any = false;
     for (int k = 0; k < all.count; ++k) {
       InverseSolutions one = all;
       one.count = 1;
       one.solution[0] = all.solution[static_cast<std::size_t>(k)];
       const RedundancySample sample = evaluated(gamma_rad, choose(cell_.arm, one, from, choosing_));
-      if (sample.status != Choice::Status::found || !(cost(sample) < least)) continue;
-      least = cost(sample);
+      if (sample.status != Choice::Status::found || (any && !(cost(sample) < cost(best)))) continue;
+      any = true;
       best = sample;
     }
     return best;
