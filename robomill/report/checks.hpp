@@ -9,7 +9,7 @@
 /// Rules that the parts of a report share. Each throws InvalidInput naming the field.
 namespace robomill::report {
 
-/// "lobes[2].limit_depth_m"
+/// "channels[1].wave"
 [[nodiscard]] std::string member(std::string_view list, std::size_t index, std::string_view name);
 /// Finite, and each value above the one before.
 void require_axis(const std::string& field, const Eigen::VectorXd& axis);

@@ -146,7 +146,7 @@ Json pairs_json(const std::string& text) {
     list.push_back({{"label", text.empty() ? label : text},
                     {"modes", {k, k + 1}},
                     {"spindle_speed_rpm", numbers(part.rpm)},
-                    {"limit_mm", numbers(part.limit_mm)}});
+                    {"limit_depth_mm", numbers(part.limit_mm)}});
   }
   return list;
 }

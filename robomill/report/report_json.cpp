@@ -1,5 +1,8 @@
-#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "robomill/report/json.hpp"
 #include "robomill/report/thin.hpp"
@@ -9,48 +12,62 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_values = 6000;  ///< of a list; more than a plot shows
+constexpr std::size_t most_rows = 6000;    ///< of a list
+constexpr std::size_t most_lines = 12000;  ///< of an axis that all FRFs of a document share
 
-double value_of(const Json& cell) {
-  return cell.is_number() ? cell.get<double>() : missing;
+double value_of(const Json& row, const std::string& key) {
+  const auto cell = row.find(key);
+  return cell != row.end() && cell->is_number() ? cell->get<double>() : missing;
 }
 
 /// Rows that hold an extreme of some column, run by run.
 Json thinned_rows(Json rows) {
+  std::set<std::string> keys;
+  for (const Json& row : rows) {
+    for (const auto& [key, value] : row.items()) {
+      if (value.is_number()) keys.insert(key);
+    }
+  }
   std::vector<Eigen::VectorXd> columns;
-  for (const auto& [key, value] : rows.front().items()) {
-    if (!value.is_number()) continue;
+  for (const std::string& key : keys) {
     Eigen::VectorXd& column = columns.emplace_back(static_cast<Eigen::Index>(rows.size()));
-    for (std::size_t i = 0; i < rows.size(); ++i) column[static_cast<Eigen::Index>(i)] = value_of(rows[i][key]);
+    for (std::size_t i = 0; i < rows.size(); ++i) column[static_cast<Eigen::Index>(i)] = value_of(rows[i], key);
   }
   Json kept = Json::array();
-  for (const Eigen::Index i : thin_together(columns, most_values)) {
+  for (const Eigen::Index i : thin_together(columns, most_rows)) {
     kept.push_back(std::move(rows[static_cast<std::size_t>(i)]));
   }
   return kept;
 }
 
-/// Lists of so many numbers, null among them.
+/// Lists of so many values.
 void collect(Json& node, std::size_t length, std::vector<Json*>& out) {
   if (node.is_object()) {
     for (Json& part : node) collect(part, length, out);
-  } else if (node.is_array() && node.size() == length &&
-             std::ranges::all_of(node, [](const Json& cell) { return cell.is_number() || cell.is_null(); })) {
+  } else if (node.is_array() && node.size() == length && !node.front().is_structured()) {
     out.push_back(&node);
   }
 }
 
-/// Curves over one frequency axis keep the same lines: of each the extremes, run by run.
-void thin_curves(Json& json) {
-  if (!json.is_object() || !json.contains("frequency_hz") || json["frequency_hz"].size() <= most_values) return;
-  std::vector<Json*> lists;
-  collect(json, json["frequency_hz"].size(), lists);
-  std::vector<Eigen::VectorXd> curves;
-  for (const Json* list : lists) {
-    Eigen::VectorXd& curve = curves.emplace_back(static_cast<Eigen::Index>(list->size()));
-    std::ranges::transform(*list, curve.begin(), value_of);
+/// The lines at which some |H| has an extreme, run by run; everything over their axis keeps the same ones.
+void thin_frfs(Json& json) {
+  if (!json.is_object() || !json.contains("receptance_m_per_n")) return;
+  json.erase("deviation_m_per_n");  // no page draws it
+  const std::size_t lines = json["frequency_hz"].size();
+  if (lines <= most_lines) return;
+  std::vector<Eigen::VectorXd> magnitudes;
+  for (const Json& frf : json["receptance_m_per_n"]) {
+    Eigen::VectorXd& magnitude = magnitudes.emplace_back(static_cast<Eigen::Index>(lines));
+    for (std::size_t i = 0; i < lines; ++i) {
+      const Json& re = frf["re"][i];
+      const Json& im = frf["im"][i];
+      const bool known = re.is_number() && im.is_number();
+      magnitude[static_cast<Eigen::Index>(i)] = known ? std::hypot(re.get<double>(), im.get<double>()) : missing;
+    }
   }
-  const std::vector<Eigen::Index> keep = thin_together(curves, most_values);
+  const std::vector<Eigen::Index> keep = thin_together(magnitudes, most_lines);
+  std::vector<Json*> lists;
+  collect(json, lines, lists);
   for (Json* list : lists) {
     Json kept = Json::array();
     for (const Eigen::Index i : keep) kept.push_back((*list)[static_cast<std::size_t>(i)]);
@@ -62,8 +79,7 @@ void thin_curves(Json& json) {
 Json shown(Json value) {
   if (value.is_number_float()) return number(value.get<double>());
   if (!value.is_structured()) return value;
-  if (value.is_array() && value.size() > most_values && value.front().is_object())
-    value = thinned_rows(std::move(value));
+  if (value.is_array() && value.size() > most_rows && value.front().is_object()) value = thinned_rows(std::move(value));
   for (Json& part : value) part = shown(std::move(part));
   return value;
 }
@@ -72,7 +88,7 @@ Json shown(Json value) {
 Json document(const std::string& text) {
   if (text.empty()) return nullptr;
   Json json = Json::parse(text);
-  thin_curves(json);
+  thin_frfs(json);
   return shown(std::move(json));
 }
 

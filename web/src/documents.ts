@@ -155,7 +155,7 @@ export interface PartLimits {
   label: string;
   modes: number[];
   spindle_speed_rpm: number[];
-  limit_mm: Num[];
+  limit_depth_mm: Num[];
 }
 
 export interface DepthCurve {

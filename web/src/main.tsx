@@ -17,4 +17,7 @@ async function start(): Promise<void> {
   document.documentElement.dataset['plots'] = 'ready';
 }
 
-void start();
+start().catch((error: unknown) => {
+  document.getElementById('page')!.textContent = 'This page could not be shown.';
+  console.error(error);
+});

@@ -96,6 +96,11 @@ it('says whose mode it is', () => {
   expect(page()).toContain('>8 (workpiece)<');
 });
 
+it('shows a fit that found no mode', () => {
+  report.modes = { ...report.modes!, modes: [], fit: { ...report.modes!.fit!, converged: false } };
+  expect(page()).toContain('The fit did not converge.');
+});
+
 it('says why there is no safe depth', () => {
   const { plan, lobes } = report;
   report = { ...empty(), plan: { ...plan!, recommended: null, alternatives: [], reason: 'every speed chatters below 0.05 mm' } };

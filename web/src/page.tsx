@@ -1,5 +1,5 @@
 // The page: what to cut first, then what it rests on.
-import type { ComponentChildren } from 'preact';
+import { Component, type ComponentChildren } from 'preact';
 import type { Report } from './documents';
 import { Bullets, Facts } from './parts';
 import { AssemblySection } from './sections/assembly';
@@ -34,13 +34,25 @@ function entries(report: Report): Entry[] {
     { id: 'smooth', name: 'Smoothed program', content: smooth && <SmoothSection smooth={smooth} /> },
     { id: 'assembly', name: 'Tool and holder', content: assembly && <AssemblySection document={assembly} /> },
     { id: 'frf', name: 'Frequency response', content: frfs.length > 0 && <FrfSection frfs={frfs} modes={modes} predicted={assembly !== null} /> },
-    { id: 'modes', name: 'Modes', content: modes.length > 0 && <ModesSection modes={modes} document={report.modes} /> },
+    { id: 'modes', name: 'Modes', content: (modes.length > 0 || report.modes?.fit) && <ModesSection modes={modes} document={report.modes} /> },
     { id: 'pairs', name: 'Which modes matter', content: plan && lobes && pairs.length > 0 && <PairsSection all={lobes} plan={plan} /> },
     { id: 'recordings', name: 'Recorded cuts', content: recordings && <RecordingsSection recordings={recordings} /> },
     { id: 'hits', name: 'Hits', content: hits.length > 0 && <HitsSection hits={hits} /> },
     { id: 'notes', name: 'Notes', content: notes.length + files.length > 0 && <NotesSection notes={notes} files={files} /> },
   ];
   return all.filter(({ content }) => content);
+}
+
+/** A section that fails takes no other with it. */
+class Contained extends Component<{ children: ComponentChildren }, { failed: boolean }> {
+  override state = { failed: false };
+  override componentDidCatch(error: unknown): void {
+    console.error(error);
+    this.setState({ failed: true });
+  }
+  override render() {
+    return this.state.failed ? <p class="notice">This section could not be shown.</p> : this.props.children;
+  }
 }
 
 function Header({ title, created, plan }: Report) {
@@ -81,7 +93,9 @@ export function Page({ report }: { report: Report }) {
       <main id="main">
         {report.plan && <RecommendationSection plan={report.plan} hasLobes={report.lobes !== null} />}
         {report.plan && <Warnings warnings={report.plan.warnings} />}
-        {shown.map(({ content }) => content)}
+        {shown.map(({ content }) => (
+          <Contained>{content}</Contained>
+        ))}
       </main>
     </>
   );

@@ -10,7 +10,8 @@ const modes: ModesDocument = {
 it('joins neighbouring lines to bands', () => {
   const axis = [10, 20, 30, 40, 50, 60, 70, 80, 90, 100];
   expect(bandsOf(axis, [])).toEqual([]);
-  expect(bandsOf(axis, [10, 40, 50, 55, 100])).toEqual([[10, 15], [35, 55], [95, 100]]);
+  expect(bandsOf(axis, [10, 40, 50, 100])).toEqual([[10, 15], [35, 55], [95, 100]]);
+  expect(bandsOf(axis, [42, 43])).toEqual([[45, 55]]);
 });
 
 it('numbers the modes of each structure from one, with their share in the limit', () => {

@@ -50,7 +50,7 @@ export function lobesOf(document: LobesDocument): Lobes {
   };
 }
 
-export function partOf({ label, spindle_speed_rpm, limit_mm }: PartLimits, { searched_depth_mm }: Lobes): Lobes {
+export function partOf({ label, spindle_speed_rpm, limit_depth_mm: limit_mm }: PartLimits, { searched_depth_mm }: Lobes): Lobes {
   return { label, spindle_speed_rpm, limit_mm, searched_depth_mm, band: null, boundary: [], map: null };
 }
 
@@ -123,15 +123,16 @@ function curveOf(document: FrfDocument | null, name: string, scale: number): Cur
   };
 }
 
-/** Lines of an axis as bands, neighbours in one; a band reaches half a step beyond its lines. */
+/** Lines as bands of an axis, neighbours in one; a band reaches half a step beyond its lines. One between two of the axis counts with the next: a long axis is thinned. */
 export function bandsOf(axis: number[], lines: number[]): [number, number][] {
   const bands: [number, number][] = [];
   let next = 0;
   let from: number | null = null;
   axis.forEach((at, i) => {
     const slack = 1e-5 * Math.abs(at); // axes that differ by less are the same, as for files
-    while (next < lines.length && lines[next]! < at - slack) ++next;
-    const marked = next < lines.length && lines[next]! <= at + slack;
+    const before = next;
+    while (next < lines.length && lines[next]! <= at + slack) ++next;
+    const marked = next > before;
     const low = i > 0 ? (axis[i - 1]! + at) / 2 : at;
     if (marked) from ??= low;
     else if (from !== null) {

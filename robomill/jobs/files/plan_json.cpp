@@ -112,7 +112,7 @@ Json pairs_json(const PlanResult& result) {
     list.push_back({{"label", part.label},
                     {"modes", part.modes},
                     {"spindle_speed_rpm", io::numbers(part.spindle_speed_rad_per_s / units::rpm)},
-                    {"limit_mm", depths_json(part.limit_depth_m)}});
+                    {"limit_depth_mm", depths_json(part.limit_depth_m)}});
   }
   return list;
 }

@@ -49,7 +49,7 @@ function Figures({ cut }: { cut: Recommendation }) {
 }
 
 /** What forced vibration leaves, and whether anything limits it. */
-export function surfaceSentence({ surface_error_um: error, peak_deflection_um: deflection }: Recommendation, permitted: Finishing): string {
+function surfaceSentence({ surface_error_um: error, peak_deflection_um: deflection }: Recommendation, permitted: Finishing): string {
   if (deflection === null) return 'The surface that forced vibration leaves is not known.';
   const wall =
     error === null

@@ -68,7 +68,7 @@ function size([real, imaginary]: [number, number]): number {
 }
 
 /** "x 93 %, y 7 %": how a mode's vibration splits over its degrees of freedom. */
-export function directions(vector: ModeVector): string {
+function directions(vector: ModeVector): string {
   const total = Object.values(vector).reduce((sum, value) => sum + size(value) ** 2, 0);
   if (total <= 0) return '';
   return Object.entries(vector).map(([dof, value]) => `${dof} ${percent(size(value) ** 2 / total, 0)}`).join(', ');
