@@ -10,10 +10,6 @@
 namespace robomill::report {
 namespace {
 
-void require_all_finite(const char* field, const Eigen::Ref<const Eigen::MatrixXd>& values) {
-  if (!values.allFinite()) throw InvalidInput(field, "must be finite");
-}
-
 /// NaN says "missing"; an infinity is a mistake.
 void require_no_infinity(const char* field, const Eigen::Ref<const Eigen::MatrixXd>& values) {
   if (values.array().isInf().any()) throw InvalidInput(field, "must be finite, or NaN where missing");

@@ -179,8 +179,8 @@ Json vibration_json(const simulation::Simulation& s) {
 }
 
 Json revolution_json(const RevolutionForces& revolution, double sign) {
-  const cutting::StaticDeflection& settled = revolution.deflected;
-  const cutting::CuttingForce& force = settled.force;
+  const cutting::StaticDeflection& deflected = revolution.deflected;
+  const cutting::CuttingForce& force = deflected.force;
   const bool robot = revolution.posture.has_value();
   Json out = {{"mean_n", vector(sign * force.mean_n)},
               {"peak_n", vector(sign * force.peak_n)},
@@ -190,17 +190,17 @@ Json revolution_json(const RevolutionForces& revolution, double sign) {
               {"peak_torque_n_m", number(force.peak_torque_n_m)},
               {"power_w", number(force.power_w)},
               {"chip_area_mm2", number(force.chip_area_m2 / (units::mm * units::mm))},
-              {"patch_area_mm2", number(cutting::patch_area_m2(settled.engagement) / (units::mm * units::mm))},
+              {"patch_area_mm2", number(cutting::patch_area_m2(deflected.engagement) / (units::mm * units::mm))},
               {"removal_rate_mm3_per_s", number(force.removal_rate_m3_per_s / units::mm3)},
               {"missed_share", number(force.missed_share)},
-              {"deflection_um", robot ? vector(settled.deflection_m, units::um) : Json()},
-              {"peak_deflection_um", robot ? number(settled.peak_deflection_m / units::um) : Json()},
-              {"axial_depth_left_mm", number(settled.cut.axial_depth_m / units::mm)},
-              {"settled", name_of(settled.status)},
+              {"deflection_um", robot ? vector(deflected.deflection_m, units::um) : Json()},
+              {"peak_deflection_um", robot ? number(deflected.peak_deflection_m / units::um) : Json()},
+              {"axial_depth_left_mm", number(deflected.cut.axial_depth_m / units::mm)},
+              {"settled", name_of(deflected.status)},
               {"condition_number", robot ? number(revolution.posture->condition_number) : Json()}};
   out["spindle_rotation"] = revolution.spindle_rotation ? sweep_json(*revolution.spindle_rotation) : Json();
   out["vibration"] = revolution.vibration ? vibration_json(*revolution.vibration) : Json();
-  out["engagement"] = arcs_json(settled.engagement);
+  out["engagement"] = arcs_json(deflected.engagement);
   out["rotation_deg"] = io::numbers(force.rotation_rad / units::deg);
   constexpr const char* names[] = {"fx_n", "fy_n", "fz_n"};
   for (Eigen::Index axis = 0; axis < 3; ++axis) {

@@ -85,7 +85,7 @@ class SemiDiscretization final : public Scheme {
 }  // namespace
 
 std::unique_ptr<Scheme> semi_discretization(const LobesProblem& problem, int intervals) {
-  refuse_changing_delays(problem.milling, "semi-discretization");
+  reject_changing_delays(problem.milling, "semi-discretization");
   return std::make_unique<SemiDiscretization>(problem, intervals);
 }
 

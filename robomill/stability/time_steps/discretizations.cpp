@@ -137,14 +137,14 @@ void reject(bool asked, const char* field, std::string_view method, const char* 
 }
 
 std::unique_ptr<Scheme> make(const LobesProblem& problem, int intervals, std::string_view method, MakeSteps make) {
-  refuse_changing_delays(problem.milling, method);
+  reject_changing_delays(problem.milling, method);
   reject(!problem.milling.tool.has_equal_pitch(), "pitch_rad", method, "it has a single delay");
   return std::make_unique<NodeScheme>(problem, intervals, make);
 }
 
 }  // namespace
 
-void refuse_changing_delays(const cutting::Milling& milling, std::string_view method) {
+void reject_changing_delays(const cutting::Milling& milling, std::string_view method) {
   reject(!milling.tool.has_equal_helix(), "tooth_helix_rad", method, "its delays do not change with height");
   reject(milling.tool.runout_m > 0.0, "runout_m", method, "it has no missed cuts");
   reject(milling.process_damping.active(), "indentation_n_per_m3", method, "it has no process damping");

@@ -13,6 +13,6 @@ std::unique_ptr<Scheme> first_order_semi_discretization(const LobesProblem& prob
 std::unique_ptr<Scheme> full_discretization(const LobesProblem& problem, int intervals);
 
 /// @throws InvalidInput where the delays change with height or time, or velocities cut
-void refuse_changing_delays(const cutting::Milling& milling, std::string_view method);
+void reject_changing_delays(const cutting::Milling& milling, std::string_view method);
 
 }  // namespace robomill::stability::detail
