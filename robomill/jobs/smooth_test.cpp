@@ -241,7 +241,7 @@ TEST_F(Smoothing, SetsMethodsSideBySide) {
     ASSERT_EQ(by.tracking_error.size(), 5U);
     EXPECT_GT(by.tracking_error[3], 1e-6);
     EXPECT_EQ(page.corners.front().tip_m.size(), 5U);
-    const report::Band& behind = page.methods[i].motion.joints[3].tracking_error;
+    const signal::Band& behind = page.methods[i].motion.joints[3].tracking_error;
     EXPECT_DOUBLE_EQ(std::max(behind.high.maxCoeff(), -behind.low.minCoeff()), by.tracking_error[3]);
   }
   // The drives do not depend on whether a page is wished.

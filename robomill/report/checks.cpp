@@ -26,7 +26,7 @@ void require_all_finite(const std::string& field, const Eigen::Ref<const Eigen::
   if (!values.allFinite()) throw InvalidInput(field, "must be finite");
 }
 
-void require_band(const std::string& field, const Band& band, Eigen::Index runs, bool may_be_empty) {
+void require_band(const std::string& field, const signal::Band& band, Eigen::Index runs, bool may_be_empty) {
   require_length(field + ".low", band.low.size(), runs, may_be_empty);
   require_length(field + ".high", band.high.size(), band.low.size(), false);
   require_all_finite(field + ".low", band.low);

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "robomill/report/band.hpp"
+#include "robomill/signal/bands.hpp"
 
 /// Rules that the parts of a report share. Each throws InvalidInput naming the field.
 namespace robomill::report {
@@ -16,6 +16,6 @@ void require_axis(const std::string& field, const Eigen::VectorXd& axis);
 void require_length(const std::string& field, Eigen::Index length, Eigen::Index expected, bool may_be_empty);
 void require_all_finite(const std::string& field, const Eigen::Ref<const Eigen::MatrixXd>& values);
 /// Finite, and `runs` values on both sides.
-void require_band(const std::string& field, const Band& band, Eigen::Index runs, bool may_be_empty);
+void require_band(const std::string& field, const signal::Band& band, Eigen::Index runs, bool may_be_empty);
 
 }  // namespace robomill::report

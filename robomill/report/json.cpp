@@ -50,7 +50,7 @@ Json facts_json(const std::vector<Fact>& facts) {
   return list;
 }
 
-bool is_single(const Band& band) {
+bool is_single(const signal::Band& band) {
   return band.low == band.high;
 }
 
@@ -64,7 +64,7 @@ Json run_times_json(Eigen::Index runs, bool points, double run_s) {
   return list;
 }
 
-Json band_json(const Band& band, bool points, double unit) {
+Json band_json(const signal::Band& band, bool points, double unit) {
   Json list = Json::array();
   for (Eigen::Index run = 0; run < band.low.size(); ++run) {
     list.push_back(number(band.low[run], unit));

@@ -21,11 +21,11 @@ namespace robomill::report {
 [[nodiscard]] nlohmann::ordered_json monitor_json(const MonitorRun& run);
 
 /// Whether every run of a curve is one sample.
-[[nodiscard]] bool is_single(const Band& band);
+[[nodiscard]] bool is_single(const signal::Band& band);
 /// Where the values of band_json stand, for each of `runs`: with `points` its one value at its begin; else its lowest
 /// and highest value a quarter before and after its middle.
 [[nodiscard]] nlohmann::ordered_json run_times_json(Eigen::Index runs, bool points, double run_s);
-[[nodiscard]] nlohmann::ordered_json band_json(const Band& band, bool points, double unit = 1.0);
+[[nodiscard]] nlohmann::ordered_json band_json(const signal::Band& band, bool points, double unit = 1.0);
 
 /// To six significant digits; null unless finite.
 [[nodiscard]] nlohmann::ordered_json number(double value);

@@ -6,8 +6,8 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/monitor/monitor.hpp"
-#include "robomill/report/band.hpp"
 #include "robomill/report/fact.hpp"
+#include "robomill/signal/bands.hpp"
 
 // Method: robomill/report/README.md, "Method"
 
@@ -16,8 +16,8 @@ namespace robomill::report {
 
 /// The samples of one channel over time.
 struct MonitorChannel {
-  std::string name = {};  ///< "ax_m_per_s2"
-  Band wave = {};         ///< in the recording's unit; n runs
+  std::string name = {};   ///< "ax_m_per_s2"
+  signal::Band wave = {};  ///< in the recording's unit; n runs
 };
 
 /// Synchrosqueezed spectrum over time.
@@ -43,11 +43,11 @@ struct MonitorRun {
   std::vector<MonitorChannel> channels = {};  ///< at least one
   Spectrogram spectrogram = {};               ///< of the channel that was loudest in chatter, or the first
   std::string spectrogram_channel = {};
-  double decision_run_s = missing;                       ///< > 0; of the next five, n runs each
-  Band score = {}, threshold = {}, energy_entropy = {};  ///< energy_entropy empty where the detector has none
-  Band spindle_speed_rad_per_s = {};                     ///< tracked; 0 where unknown
-  std::vector<MonitorStay> stays = {};                   ///< one after the other, without gaps
-  std::vector<std::string> events = {};                  ///< as monitor::event_line writes them
+  double decision_run_s = missing;                               ///< > 0; of the next five, n runs each
+  signal::Band score = {}, threshold = {}, energy_entropy = {};  ///< energy_entropy empty where the detector has none
+  signal::Band spindle_speed_rad_per_s = {};                     ///< tracked; 0 where unknown
+  std::vector<MonitorStay> stays = {};                           ///< one after the other, without gaps
+  std::vector<std::string> events = {};                          ///< as monitor::event_line writes them
   std::size_t decisions = 0;
   double compute_mean_s = missing, compute_max_s = missing;  ///< of one decision
 

@@ -28,7 +28,7 @@ Json spectrogram_json(const MonitorRun& run) {
           {"level_db", std::move(rows)}};
 }
 
-Json optional_band(const Band& band, bool points, double unit) {
+Json optional_band(const signal::Band& band, bool points, double unit) {
   return band.low.size() > 0 ? band_json(band, points, unit) : Json(nullptr);
 }
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/report/bands.hpp"
+#include "robomill/signal/bands.hpp"
 #include "robomill/signal/synchrosqueeze.hpp"
 
 namespace robomill::report {
@@ -76,7 +76,7 @@ class Columns {
   std::size_t merged_;  ///< lines in a row
   std::vector<std::complex<double>> lines_;
   std::vector<double> rows_;
-  Bands cells_;
+  signal::Bands cells_;
 };
 
 }  // namespace
@@ -98,7 +98,7 @@ struct MonitorRecorder::Parts {
   std::vector<std::string> channels;
   std::string unit;
   signal::SynchrosqueezeOptions transform;
-  Bands waves, decisions;
+  signal::Bands waves, decisions;
   std::vector<double> frame;
   std::vector<Columns> spectrograms;
   std::size_t count = 0, unreported = 0;

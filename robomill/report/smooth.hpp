@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
-#include "robomill/report/band.hpp"
 #include "robomill/report/fact.hpp"
+#include "robomill/signal/bands.hpp"
 
 // Method: robomill/report/README.md, "Method"
 
@@ -16,15 +16,15 @@ namespace robomill::report {
 /// What one joint does; rad or m.
 struct JointMotion {
   bool prismatic = false;  ///< m; else rad
-  Band velocity = {}, acceleration = {}, jerk = {};
-  Band tracking_error = {};  ///< of its drive; empty where none was modelled
+  signal::Band velocity = {}, acceleration = {}, jerk = {};
+  signal::Band tracking_error = {};  ///< of its drive; empty where none was modelled
   double max_velocity = missing, max_acceleration = missing, max_jerk = missing;  ///< limits, > 0
 };
 
 /// A trajectory over time: every band has n runs of run_s each, from 0 on.
 struct Motion {
   double run_s = missing;
-  Band tip_speed_m_per_s = {}, axis_speed_rad_per_s = {};
+  signal::Band tip_speed_m_per_s = {}, axis_speed_rad_per_s = {};
   std::vector<JointMotion> joints = {};
   Eigen::Matrix3Xd tip_m = {};                ///< 3 x m, some of its points in their order
   Eigen::VectorXd tip_speed_at_m_per_s = {};  ///< length m

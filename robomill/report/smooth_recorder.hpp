@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "robomill/path/sample.hpp"
-#include "robomill/report/bands.hpp"
 #include "robomill/report/smooth.hpp"
 #include "robomill/report/smooth_outline.hpp"
 #include "robomill/robot/kinematics.hpp"
+#include "robomill/signal/bands.hpp"
 
 namespace robomill::report {
 
@@ -45,7 +45,7 @@ class MotionRecorder {
   double period_s_;
   const std::vector<ProgramCorner>& corners_;
   Tracking tracking_ = {};
-  Bands bands_;
+  signal::Bands bands_;
   std::vector<double> values_;
   Decimated<Point> path_;
   std::array<path::Sample, 3> before_ = {};  ///< the last samples, latest first

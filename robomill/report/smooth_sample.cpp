@@ -53,7 +53,7 @@ LimitUse use(const char* what, LimitUse::Quantity quantity, int order, double ma
           .block = 3};
 }
 
-double largest(const Band& band) {
+double largest(const signal::Band& band) {
   return std::max(band.high.maxCoeff(), -band.low.minCoeff());
 }
 

@@ -43,14 +43,15 @@ TEST(SmoothReport, NumbersAreTheStructsInShopUnits) {
 TEST(SmoothReport, AMotionOfFewSamplesIsDrawnSampleBySample) {
   Smooth smooth = sample_smooth();
   Motion& motion = smooth.methods[0].motion;
-  const auto shorten = [](Band& band) {
+  const auto shorten = [](signal::Band& band) {
     band.low = band.low.head(50).eval();
     band.high = band.low;
   };
   shorten(motion.tip_speed_m_per_s);
   shorten(motion.axis_speed_rad_per_s);
   for (JointMotion& joint : motion.joints) {
-    for (Band* band : {&joint.velocity, &joint.acceleration, &joint.jerk, &joint.tracking_error}) shorten(*band);
+    for (signal::Band* band : {&joint.velocity, &joint.acceleration, &joint.jerk, &joint.tracking_error})
+      shorten(*band);
   }
   motion.run_s = 0.001;
   const json data = json::parse(smooth_json(smooth).dump())["methods"][0]["motion"];

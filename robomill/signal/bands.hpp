@@ -1,15 +1,23 @@
 #pragma once
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>
 
-#include "robomill/report/band.hpp"
+#include "robomill/base/export.hpp"
 
-namespace robomill::report {
+// Method: robomill/signal/README.md, "Method"
+
+namespace robomill::signal {
+
+/// A curve over equal runs of time: the lowest and the highest value in each.
+struct Band {
+  Eigen::VectorXd low = {}, high = {};
+};
 
 /// Curves over runs of equal length, how many samples there will be unknown: a run grows twice as long when there are
-/// too many.
-class Bands {
+/// too many. No peak is lost, and the memory does not grow with the samples.
+class ROBOMILL_API Bands {
  public:
   Bands(std::size_t curves, std::size_t most_runs);
   void clear();
@@ -27,4 +35,4 @@ class Bands {
   std::vector<double> low_, high_;  ///< run by run, a value a curve
 };
 
-}  // namespace robomill::report
+}  // namespace robomill::signal

@@ -1,8 +1,8 @@
-#include "robomill/report/bands.hpp"
+#include "robomill/signal/bands.hpp"
 
 #include <algorithm>
 
-namespace robomill::report {
+namespace robomill::signal {
 
 Bands::Bands(std::size_t curves, std::size_t most_runs) : curves_(curves), most_(most_runs + most_runs % 2) {
   low_.reserve(most_ * curves);
@@ -58,4 +58,4 @@ Band Bands::band(std::size_t curve) const {
   return out;
 }
 
-}  // namespace robomill::report
+}  // namespace robomill::signal
