@@ -13,6 +13,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(robomill_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-restrict
     -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
+if(CMAKE_UNITY_BUILD)
+  # Sources that are compiled together see each other's unnamed namespaces.
+  target_compile_options(robomill_flags INTERFACE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 if(ROBOMILL_SANITIZE)
   target_compile_options(robomill_flags INTERFACE -fsanitize=${ROBOMILL_SANITIZE} -fno-omit-frame-pointer
     -fno-sanitize-recover=all)

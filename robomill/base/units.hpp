@@ -19,6 +19,7 @@ inline constexpr double mm3 = 1e-9;
 inline constexpr double kw = 1e3;
 inline constexpr double gpa = 1e9;
 inline constexpr double deg = std::numbers::pi / 180.0;
-inline constexpr double rpm = std::numbers::pi / 30.0;  ///< rad/s
+inline constexpr double rpm = std::numbers::pi / 30.0;        ///< rad/s
+inline constexpr double revolution = 2.0 * std::numbers::pi;  ///< rad
 
 }  // namespace robomill::units

@@ -111,8 +111,8 @@ std::string note_of_stiffness(std::size_t i, double value, const JointKnowledge&
 using Flags = std::array<bool, joint_unknowns>;
 
 /// Why nothing can be said of deviations; empty where it can.
-std::string why_unreported(const Jacobian& columns, const Flags& moves, const Eigen::VectorXd& residual,
-                           double variance, const JointData& data) {
+std::string why_no_deviations(const Jacobian& columns, const Flags& moves, const Eigen::VectorXd& residual,
+                              double variance, const JointData& data) {
   const double misfit = (residual.array() * data.deviation.replicate(2, 1)).matrix().norm() / data.measured.norm();
   if (misfit > no_fit) {
     return fmt::format(
@@ -155,9 +155,9 @@ std::array<JointKnowledge, joint_unknowns> joint_knowledge(const JointModel& mod
   const double variance = std::max(random, shared);
   const Jacobian columns = jacobian(model, joint, data);
   std::array<JointKnowledge, joint_unknowns> knowledge;
-  const std::string unreported = why_unreported(columns, moves, residual, variance, data);
-  if (!unreported.empty()) {
-    notes.push_back(unreported);
+  const std::string reason = why_no_deviations(columns, moves, residual, variance, data);
+  if (!reason.empty()) {
+    notes.push_back(reason);
     report_nothing(free, knowledge);
     return knowledge;
   }

@@ -23,7 +23,6 @@ double probability_of_ratio(double ratio, double a, double b) {
   return boost::math::cdf(boost::math::complement(boost::math::fisher_f(a, b), std::max(ratio, 0.0)));
 }
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 /// Feeds that differ by less, to their mean, are one: the edge part would be the noise a thousandfold.
 constexpr double least_spread_of_feeds = 1e-3;
@@ -101,7 +100,7 @@ PairFit fit_pair(const Slots& slots, const Direction& direction, const SlotOptio
   pair.r_squared = total > 1e-24 * force_n.squaredNorm() ? 1.0 - squares / total : no_number;
   pair.noise_n = left > 0 ? std::sqrt(squares / static_cast<double>(left)) : no_number;
   const Eigen::MatrixXd inverse = (scaled.transpose() * scaled).inverse();
-  const double noise_n = left > 0 ? pair.noise_n : infinity;
+  const double noise_n = left > 0 ? pair.noise_n : HUGE_VAL;
   pair.cutting_deviation_n_per_m2 = noise_n * std::sqrt(inverse(0, 0)) / size(0);
   pair.edge_deviation_n_per_m = with_edge ? noise_n * std::sqrt(inverse(1, 1)) / size(1) : 0.0;
   pair.correlation = with_edge ? inverse(0, 1) / std::sqrt(inverse(0, 0) * inverse(1, 1)) : 0.0;
@@ -275,7 +274,7 @@ SlotFit identify_from_slots(const std::vector<SlotForce>& slots, const SlotOptio
   fit.residual_n.resize(3, static_cast<Eigen::Index>(slots.size()));
   for (const Direction& direction : directions) {
     PairFit own = fit_pair(slots, direction, options, with_edge);
-    if (!reported) own.pair.cutting_deviation_n_per_m2 = own.pair.edge_deviation_n_per_m = infinity;
+    if (!reported) own.pair.cutting_deviation_n_per_m2 = own.pair.edge_deviation_n_per_m = HUGE_VAL;
     fit.*direction.pair = own.pair;
     fit.residual_n.row(direction.component) = own.residual_n.transpose();
   }

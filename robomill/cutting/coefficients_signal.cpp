@@ -17,7 +17,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int highest_degree = 6;
 /// What every modelled set holds, since none may lack a tangential coefficient; it is taken off again.
 constexpr double base_n_per_m2 = 1e9;
@@ -145,7 +144,7 @@ double find_offset(const Model& model, const Signal& signal, double period_rad) 
   const Signal coarse = thinned(signal);
   const int count = std::max(8, static_cast<int>(std::lround(coarse_steps * period_rad / (2.0 * pi))));
   const double step_rad = period_rad / count;
-  double best = infinity, best_rad = 0.0;
+  double best = HUGE_VAL, best_rad = 0.0;
   for (int i = 0; i < count; ++i) {
     const double value = misfit(model, coarse, i * step_rad);
     if (value < best) {
@@ -194,7 +193,7 @@ Solution solve(const Eigen::MatrixXd& design, const Eigen::VectorXd& force_n, do
   Solution out;
   out.rank = svd.rank();
   out.values = svd.solve(force_n).cwiseProduct(scale);
-  out.condition = out.rank > 0 ? svd.singularValues()(0) / svd.singularValues()(out.rank - 1) : infinity;
+  out.condition = out.rank > 0 ? svd.singularValues()(0) / svd.singularValues()(out.rank - 1) : HUGE_VAL;
   out.deviations.resize(unknowns);
   for (Eigen::Index i = 0; i < unknowns; ++i) {
     double variance = 0.0, lost = 0.0;
@@ -206,7 +205,7 @@ Solution solve(const Eigen::MatrixXd& design, const Eigen::VectorXd& force_n, do
         lost += share * share;
       }
     }
-    out.deviations(i) = lost > 1e-6 ? infinity : std::sqrt(variance) * scale(i);
+    out.deviations(i) = lost > 1e-6 ? HUGE_VAL : std::sqrt(variance) * scale(i);
   }
   for (Eigen::Index k = out.rank; k < unknowns; ++k) {
     std::vector<Eigen::Index>& names = out.mixed.emplace_back();
@@ -313,12 +312,12 @@ SignalFit identify_from_signal(const Cutter& cutter, const Engagement& engagemen
   const Eigen::VectorXd residual = signal.force_n - design * values;
   fit.residual_n = residual.reshaped(3, force_n.cols());
   const Eigen::Index left = signal.force_n.size() - solution.rank;
-  fit.noise_n = left > 0 ? std::sqrt(residual.squaredNorm() / static_cast<double>(left)) : infinity;
+  fit.noise_n = left > 0 ? std::sqrt(residual.squaredNorm() / static_cast<double>(left)) : HUGE_VAL;
   fit.r_squared = r_squared(force_n, fit.residual_n);
   fit.condition = solution.condition;
   const Eigen::VectorXd& reported = solution.deviations;
   Eigen::VectorXd deviations = reported;
-  for (double& deviation : deviations) deviation = std::isfinite(deviation) ? deviation * fit.noise_n : infinity;
+  for (double& deviation : deviations) deviation = std::isfinite(deviation) ? deviation * fit.noise_n : HUGE_VAL;
   put(terms, values, fit.coefficients);
   put(terms, deviations.head(unknowns), fit.deviations);
   fit.identifiable = reported.head(unknowns).allFinite();

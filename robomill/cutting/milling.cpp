@@ -6,22 +6,22 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 
 namespace robomill::cutting {
 namespace {
 
 using std::numbers::pi;
-constexpr double revolution = 2.0 * pi;
 
 /// κ(φ) = constant + cosine cos 2φ + sine sin 2φ.
-struct Harmonics {
+struct PairHarmonics {
   Eigen::Matrix2d constant, cosine, sine;
 };
 
-Harmonics harmonics(const ForceCoefficients& c) {
+PairHarmonics pair_harmonics(const ForceCoefficients& c) {
   const double kt = 0.5 * c.tangential_n_per_m2;
   const double kr = 0.5 * c.radial_n_per_m2;
-  Harmonics h;
+  PairHarmonics h;
   h.constant << -kr, -kt, kt, -kr;
   h.cosine << kr, -kt, -kt, -kr;
   h.sine << -kt, -kr, -kr, kt;
@@ -30,9 +30,10 @@ Harmonics harmonics(const ForceCoefficients& c) {
 
 /// ∫ g κ over [low, high], inside which angles may pass several revolutions. Written with lengths and midpoints, so
 /// that nothing cancels where the range is short.
-Eigen::Matrix2d integral(const Harmonics& h, const Immersion& immersion, double low, double high) {
+Eigen::Matrix2d integral(const PairHarmonics& h, const Immersion& immersion, double low, double high) {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (double start = revolution * std::floor(low / revolution); start < high; start += revolution) {
+  for (double start = units::revolution * std::floor(low / units::revolution); start < high;
+       start += units::revolution) {
     const double from = std::max(low - start, immersion.entry_rad);
     const double to = std::min(high - start, immersion.exit_rad);
     if (to <= from) continue;
@@ -46,16 +47,18 @@ Eigen::Matrix2d integral(const Harmonics& h, const Immersion& immersion, double 
 
 /// ∫ C(s) ds over [low, high] with C(s) = ∫ g κ over [start of s's first revolution, s], by the same rule; `first` is
 /// the start of the revolution that C counts from.
-Eigen::Matrix2d double_integral(const Harmonics& h, const Immersion& immersion, double first, double low, double high) {
+Eigen::Matrix2d double_integral(const PairHarmonics& h, const Immersion& immersion, double first, double low,
+                                double high) {
   const double entry = immersion.entry_rad;
   const double exit = immersion.exit_rad;
   const Eigen::Matrix2d whole = integral(h, immersion, entry, exit);
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (double start = revolution * std::floor(low / revolution); start < high; start += revolution) {
+  for (double start = units::revolution * std::floor(low / units::revolution); start < high;
+       start += units::revolution) {
     const double a = std::max(low - start, 0.0);
-    const double b = std::min(high - start, revolution);
+    const double b = std::min(high - start, units::revolution);
     if (b <= a) continue;
-    sum += whole * (std::round((start - first) / revolution) * (b - a));
+    sum += whole * (std::round((start - first) / units::revolution) * (b - a));
     const double from = std::max(a, entry);
     const double to = std::min(b, exit);
     if (to > from) {
@@ -79,14 +82,14 @@ Eigen::Matrix2d stiffness_between(const Milling& milling, const ForceCoefficient
   const double tip = standing - lag * low_m;
   const double top = standing - lag * high_m;
   if (top == tip) {
-    const double angle = tip - revolution * std::floor(tip / revolution);
+    const double angle = tip - units::revolution * std::floor(tip / units::revolution);
     const bool cuts = angle >= milling.immersion.entry_rad && angle <= milling.immersion.exit_rad;
     if (!cuts) return Eigen::Matrix2d::Zero();
     return directional_coefficients(coefficients, angle) * (high_m - low_m);
   }
   const double low = std::min(tip, top);
   const double high = std::max(tip, top);
-  return integral(harmonics(coefficients), milling.immersion, low, high) * ((high_m - low_m) / (high - low));
+  return integral(pair_harmonics(coefficients), milling.immersion, low, high) * ((high_m - low_m) / (high - low));
 }
 
 void require_material(const char* field, double value, const char* hint) {
@@ -99,11 +102,11 @@ void require_material(const char* field, double value, const char* hint) {
 }  // namespace
 
 double FlatEndMill::pitch(int tooth) const {
-  return pitch_rad.empty() ? revolution / teeth : pitch_rad[static_cast<std::size_t>(tooth)];
+  return pitch_rad.empty() ? units::revolution / teeth : pitch_rad[static_cast<std::size_t>(tooth)];
 }
 
 bool FlatEndMill::has_equal_pitch() const {
-  return std::ranges::all_of(pitch_rad, [&](double p) { return std::abs(p - revolution / teeth) <= 1e-9; });
+  return std::ranges::all_of(pitch_rad, [&](double p) { return std::abs(p - units::revolution / teeth) <= 1e-9; });
 }
 
 double FlatEndMill::standing_angle(int tooth) const {
@@ -164,7 +167,7 @@ void FlatEndMill::validate() const {
     require_positive(("pitch_rad[" + std::to_string(j + 1) + "]").c_str(), pitch_rad[j], "rad");
     sum += pitch_rad[j];
   }
-  if (!(std::abs(sum - revolution) <= 1e-6 * revolution)) {
+  if (!(std::abs(sum - units::revolution) <= 1e-6 * units::revolution)) {
     throw InvalidInput("pitch_rad", "must sum to one revolution, 360 degrees");
   }
 }
@@ -273,7 +276,7 @@ Eigen::Matrix2d cutting_damping(const Milling& milling, int tooth, double rotati
 
 Eigen::Matrix2d mean_cutting_stiffness(const Milling& milling, int tooth, double from_rad, double to_rad,
                                        double axial_depth_m) {
-  const Harmonics h = harmonics(milling.coefficients);
+  const PairHarmonics h = pair_harmonics(milling.coefficients);
   const double standing = milling.tool.standing_angle(tooth);
   const double from = from_rad + standing;
   const double to = to_rad + standing;
@@ -281,7 +284,7 @@ Eigen::Matrix2d mean_cutting_stiffness(const Milling& milling, int tooth, double
   if (from - lag == from || to - lag == to) {
     return integral(h, milling.immersion, from, to) * (axial_depth_m / (to - from));
   }
-  const double first = revolution * std::floor(std::min(from, from - lag) / revolution);
+  const double first = units::revolution * std::floor(std::min(from, from - lag) / units::revolution);
   const auto mean = [&](double angle) -> Eigen::Matrix2d {
     const double low = std::min(angle, angle - lag);
     const double high = std::max(angle, angle - lag);
@@ -297,7 +300,7 @@ CutLoad mean_load(const Milling& milling, double axial_depth_m, double feed_per_
   require_non_negative("feed_per_tooth_m", feed_per_tooth_m, "m");
   require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
   const double area = radial_depth(milling.immersion, milling.tool.diameter_m) * feed_per_tooth_m;
-  const double volume_per_rad = milling.tool.teeth * area * axial_depth_m / revolution;
+  const double volume_per_rad = milling.tool.teeth * area * axial_depth_m / units::revolution;
   const double kt = milling.coefficients.tangential_n_per_m2;
   const double thickest = std::clamp(0.5 * pi, milling.immersion.entry_rad, milling.immersion.exit_rad);
   CutLoad load;

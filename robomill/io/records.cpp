@@ -116,18 +116,10 @@ Record read_wav_record(const Path& path, double scale) {
   return record;
 }
 
-bool is_time(const std::string& name) {
-  const std::string word = lowered(name);
-  for (const char* known : {"time_s", "time", "t", "time (s)", "time [s]", "t_s", "t (s)", "t [s]"}) {
-    if (word == known) return true;
-  }
-  return false;
-}
-
 void find_sample_rate(Record& record, const RecordOptions& options) {
   std::string time = options.time;
   if (time.empty()) {
-    const auto known = std::find_if(record.names.begin(), record.names.end(), is_time);
+    const auto known = std::find_if(record.names.begin(), record.names.end(), is_time_column);
     if (known == record.names.end()) return;
     time = *known;
   }

@@ -17,13 +17,7 @@ namespace robomill::io {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t max_header_lines = 200;
 constexpr std::size_t rows_for_the_rate = 1000;  ///< read ahead in a file, to see how its time runs
-
-bool is_time(const std::string& name) {
-  const std::string word = lowered(name);
-  return word == "time_s" || word == "time" || word == "t" || word == "t_s" || word == "time (s)" || word == "time [s]";
-}
 
 std::optional<double> number_of(std::string_view field, char separator) {
   return separator == ',' ? parse_number(field) : parse_cell(field);
@@ -128,7 +122,7 @@ class TextSource : public SampleSource {
 
   /// From the first rows, where a column is the time.
   void find_rate(const SampleColumns& columns) {
-    const auto time = std::find_if(names_.begin(), names_.end(), is_time);
+    const auto time = std::find_if(names_.begin(), names_.end(), is_time_column);
     if (time == names_.end()) return;
     const auto column = static_cast<std::size_t>(time - names_.begin());
     std::vector<double> times_s;

@@ -16,9 +16,6 @@ namespace {
 
 constexpr char blanks = ' ';  ///< separator: any run of blanks and tabs
 
-/// A header longer than this is no header.
-constexpr std::size_t max_header_lines = 200;
-
 bool is_quoted(std::string_view field) {
   return field.size() >= 2 && field.front() == '"' && field.back() == '"';
 }
@@ -63,9 +60,9 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
 std::optional<double> parse_field(std::string_view field, char separator) {
   if (std::optional<double> number = parse_number(field)) return number;
   if (separator == ',' || std::count(field.begin(), field.end(), ',') != 1) return std::nullopt;
-  std::string mended(field);
-  mended[mended.find(',')] = '.';
-  return parse_number(mended);
+  std::string with_point(field);
+  with_point[with_point.find(',')] = '.';
+  return parse_number(with_point);
 }
 
 /// Takes the byte order mark off.

@@ -61,9 +61,9 @@ std::optional<double> parse_number(std::string_view text) {
   if (const std::optional<double> number = from_chars(text)) return number;
   const std::size_t letter = text.find_first_of("dDqQ");
   if (letter == std::string_view::npos || letter == 0 || text.size() > 64) return std::nullopt;
-  std::string mended(text);
-  mended[letter] = 'e';
-  return from_chars(mended);
+  std::string with_e(text);
+  with_e[letter] = 'e';
+  return from_chars(with_e);
 }
 
 double round_15(double number) {
@@ -87,6 +87,12 @@ std::string lowered(std::string_view text) {
   std::transform(result.begin(), result.end(), result.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
   return result;
+}
+
+bool is_time_column(std::string_view name) {
+  const std::string word = lowered(name);
+  constexpr std::string_view known[] = {"time_s", "time", "t", "time (s)", "time [s]", "t_s", "t (s)", "t [s]"};
+  return std::ranges::find(known, word) != std::end(known);
 }
 
 std::string unit_of_key(std::string_view key) {

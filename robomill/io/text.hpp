@@ -16,6 +16,12 @@ namespace robomill::io {
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 [[nodiscard]] std::string lowered(std::string_view text);
 
+/// Whether a column of this name is the time in seconds: "time_s", "t", "Time [s]", ….
+[[nodiscard]] bool is_time_column(std::string_view name);
+
+/// A header longer than this is no header.
+inline constexpr std::size_t max_header_lines = 200;
+
 /// "N/mm^2" of "tangential_n_per_mm2": what the tokens at the end of a key say; empty where they name no unit.
 [[nodiscard]] std::string unit_of_key(std::string_view key);
 

@@ -69,7 +69,7 @@ path::PostureChoice posture_of(const Bench& bench) {
 
 /// Calls f; an error that names no place is the program's.
 template <class F>
-auto reported_of_program(const std::filesystem::path& program, F&& f) {
+auto located_in_program(const std::filesystem::path& program, F&& f) {
   try {
     return f();
   } catch (const InvalidInput& error) {
@@ -91,7 +91,7 @@ Bench prepare(const SmoothJob& job) {
   reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
   reading.axis_tolerance_rad = std::max(turn_share * bench.smoothing.options.axis_tolerance_rad, least_turn_rad);
   bench.program = program::open_program(job.program, reading);
-  bench.posture = reported_of_program(job.program, [&] { return posture_of(bench); });
+  bench.posture = located_in_program(job.program, [&] { return posture_of(bench); });
   return bench;
 }
 
@@ -271,7 +271,7 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
         static_cast<void>(
             path::read_smoothing(*bench.cell.document, bench.machine->limits(), bench.machine->joints(), method));
       }
-      result.smoothed.methods.push_back(reported_of_program(job.program, [&] {
+      result.smoothed.methods.push_back(located_in_program(job.program, [&] {
         return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr, progress);
       }));
     } catch (const InvalidInput& error) {
@@ -280,7 +280,7 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
       continue;
     }
     if (asked_for && file != nullptr) {
-      result.smoothed.robot_program = reported_of_program(job.program, [&] {
+      result.smoothed.robot_program = located_in_program(job.program, [&] {
         return file->settle(*bench.program, *bench.machine, result.options, result.trajectory_holds(), progress);
       });
     }

@@ -4,19 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/signal/spectrum.hpp"
 #include "robomill/stability/peak_classification.hpp"
 
 namespace robomill::jobs {
 namespace {
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 /// A reading in words: "2 × tooth passing", "9 × rotation + mode 1", "mode 7 − 1 × rotation".
 std::string words(const stability::Explanation& e, int teeth) {
@@ -67,7 +65,7 @@ std::string note_on(const TestCut& cut, const stability::PointResult& point, con
   note += "; measured ";
   bool any_chatter = false;
   bool frequency_agrees = false;
-  const double tooth_passing_hz = cut.spindle_speed_rad_per_s / two_pi * problem.milling.tool.teeth;
+  const double tooth_passing_hz = cut.spindle_speed_rad_per_s / units::revolution * problem.milling.tool.teeth;
   std::string separator;
   for (const Peak& peak : name_peaks(cut.peaks_hz, cut.spindle_speed_rad_per_s, problem, 1.0)) {
     note += fmt::format("{}{:.1f} Hz = {}", std::exchange(separator, ", "), peak.frequency_hz, peak.text);
@@ -144,7 +142,7 @@ std::vector<stability::ExplainedPeak> explained(const std::vector<double>& frequ
                                                 const stability::LobesProblem& problem, double tolerance_hz) {
   if (frequency_hz.empty()) return {};
   // explain() wants it below a quarter of the rotation.
-  const double tolerance = std::min(tolerance_hz, 0.24 * spindle_speed_rad_per_s / two_pi);
+  const double tolerance = std::min(tolerance_hz, 0.24 * spindle_speed_rad_per_s / units::revolution);
   return stability::explain({frequency_hz, spindle_speed_rad_per_s, problem.milling.tool.teeth}, problem.dynamics,
                             {.tolerance_hz = tolerance}, problem.workpiece_dynamics)
       .peaks;
@@ -228,7 +226,7 @@ Recording read_recording(const TestCut& cut, const stability::LobesProblem& prob
   out.amplitude = spectrum.amplitude;
   signal::PeakOptions wanted;
   wanted.count = 20;
-  wanted.min_frequency_hz = 0.5 * cut.spindle_speed_rad_per_s / two_pi;
+  wanted.min_frequency_hz = 0.5 * cut.spindle_speed_rad_per_s / units::revolution;
   wanted.min_separation_hz = 4.0 / length_s;
   std::vector<double> frequency_hz;
   const std::vector<signal::SpectralPeak> found = signal::find_peaks(spectrum, wanted);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "robomill/base/statistics.hpp"
+
 namespace robomill::modal {
 namespace {
 
@@ -22,10 +24,7 @@ double noise_near(const Eigen::VectorXd& y, Eigen::Index line) {
   for (Eigen::Index i = std::max<Eigen::Index>(1, line - noise_half_window); i <= last; ++i) {
     differences.push_back(std::abs(y(i - 1) - 2.0 * y(i) + y(i + 1)));
   }
-  if (differences.empty()) return 0.0;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return *middle / (0.6745 * std::sqrt(6.0));
+  return median(differences) / (0.6745 * std::sqrt(6.0));
 }
 
 /// How far one must come down from the line, to either side, before it goes up above it: the lesser of the two

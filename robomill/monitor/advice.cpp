@@ -2,22 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/stability/peak_classification.hpp"
 
 namespace robomill::monitor {
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double deviations = 3.0;  // within which a line is a mode's
 
 // The comb has taken out what rotates with the spindle: what is left is chatter.
 void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const modal::ModalModel& modes,
                const modal::ModalModel& workpiece) {
   // The tolerance of explain() must stay below a quarter of rotation.
-  const double most = 0.24 * spindle_speed_rad_per_s / turn;
+  const double most = 0.24 * spindle_speed_rad_per_s / units::revolution;
   const double tolerance = std::clamp(deviations * advice.std_hz, std::min(1.0, most), most);
   const stability::ExplainedPeak peak =
       stability::explain(
@@ -72,12 +71,13 @@ Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s
     name_mode(out, spindle_speed_rad_per_s, teeth, *modes, workpiece);
   }
   // Lobes far down lie close together: no more of them than can be distinguished from their neighbours.
-  const double first = turn * out.frequency_hz / teeth;
+  const double first = units::revolution * out.frequency_hz / teeth;
   const auto last = static_cast<int>(std::min(200.0, first / std::max(1.0, options.lowest_rad_per_s)));
   for (int k = 1; k <= last; ++k) {
     const double speed = first / k;
     if (speed < options.lowest_rad_per_s || speed > options.highest_rad_per_s) continue;
-    out.speeds.push_back({.lobe = k, .spindle_speed_rad_per_s = speed, .std_rad_per_s = turn * out.std_hz / teeth / k});
+    out.speeds.push_back(
+        {.lobe = k, .spindle_speed_rad_per_s = speed, .std_rad_per_s = units::revolution * out.std_hz / teeth / k});
   }
   const double present = spindle_speed_rad_per_s;
   std::ranges::sort(out.speeds, [&](const StableSpeed& a, const StableSpeed& b) {

@@ -60,7 +60,7 @@ struct PathInterpolator::Parts {
   Pushed failure = {};
   // Of all.
   alignas(64) std::atomic<bool> held{false};
-  std::atomic<double> override_share{1.0}, rate_now{0.0};
+  std::atomic<double> override_share{1.0}, override_now{0.0};
 };
 
 void PathInterpolator::Parts::fail(const Pushed& why) noexcept {
@@ -166,7 +166,7 @@ PathInterpolator::State PathInterpolator::next(Sample& sample) noexcept {
   Parts& s = *parts_;
   const bool held = s.held.load(std::memory_order_relaxed);
   const State out = s.runner.next(held ? 0.0 : s.override_share.load(std::memory_order_relaxed), sample);
-  s.rate_now.store(s.runner.rate(), std::memory_order_relaxed);
+  s.override_now.store(s.runner.feed_override(), std::memory_order_relaxed);
   return out;
 }
 
@@ -177,10 +177,11 @@ void PathInterpolator::resume() noexcept {
   parts_->held.store(false, std::memory_order_relaxed);
 }
 void PathInterpolator::set_override(double share) noexcept {
-  if (!std::isnan(share)) parts_->override_share.store(std::clamp(share, 0.0, rate::max), std::memory_order_relaxed);
+  if (!std::isnan(share))
+    parts_->override_share.store(std::clamp(share, 0.0, override_limits::max), std::memory_order_relaxed);
 }
-double PathInterpolator::rate() const noexcept {
-  return parts_->rate_now.load(std::memory_order_relaxed);
+double PathInterpolator::feed_override() const noexcept {
+  return parts_->override_now.load(std::memory_order_relaxed);
 }
 double PathInterpolator::ready_s() const noexcept {
   return parts_->runner.ready_s();

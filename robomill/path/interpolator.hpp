@@ -23,10 +23,10 @@ struct ROBOMILL_API InterpolatorOptions {
 ///
 /// The pushing thread plans windows of the blended path with a reserve of acceleration and jerk, runs along the plan
 /// ahead of the machine and measures how fast, and how fast changing, the plan may be run at every place. The other
-/// thread runs it, at a rate between 0 and 1.5 that it changes within those bounds; it never takes a step from which it
-/// could not still come to rest before the plan ends, or slow down to what lies ahead. So feed hold, override and a
-/// look-ahead that runs dry all end in the same way: along the path, within every limit, without a jump; and it goes on
-/// when asked, or when blocks come. Where limits hold the plan back an override above 100 % changes nothing.
+/// thread runs it, at a feed override between 0 and 1.5 that it changes within those bounds; it never takes a step from
+/// which it could not still come to rest before the plan ends, or slow down to what lies ahead. So feed hold, override
+/// and a look-ahead that runs dry all end in the same way: along the path, within every limit, without a jump; and it
+/// goes on when asked, or when blocks come. Where limits hold the plan back an override above 100 % changes nothing.
 ///
 /// Threads: push() and finish() from one, next() from one other, the rest from any. Nothing allocates or throws after
 /// construction; next(), hold(), resume() and set_override() are wait-free. Memory is that of the look-ahead.
@@ -72,8 +72,8 @@ class ROBOMILL_API PathInterpolator {
   void resume() noexcept;
   /// Of the programmed feed, within [0, 1.5]; not a number: stays.
   void set_override(double share) noexcept;
-  /// At which rate the plan was run last.
-  [[nodiscard]] double rate() const noexcept;
+  /// The feed override at which the plan was run last.
+  [[nodiscard]] double feed_override() const noexcept;
   /// Plan time that is ready [s]; by the thread that calls next().
   [[nodiscard]] double ready_s() const noexcept;
 

@@ -129,7 +129,7 @@ TEST(PathInterpolator, HoldsAndGoesOn) {
     EXPECT_EQ(s.next(), State::holding);
     EXPECT_EQ(s.speed_m_per_s, 0.0);
   }
-  EXPECT_EQ(s.path.rate(), 0.0);
+  EXPECT_EQ(s.path.feed_override(), 0.0);
   s.path.resume();
   s.run_to_rest();
   EXPECT_EQ(s.next(), State::finished);

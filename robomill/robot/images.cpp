@@ -5,25 +5,23 @@
 #include <cstddef>
 #include <numbers>
 
+#include "robomill/base/units.hpp"
+
 namespace robomill::robot {
-namespace {
-
-constexpr double turn = 2.0 * std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 Image nearest_image(const Joint& joint, double angle, double previous) noexcept {
   const bool inside = angle >= joint.min_position && angle <= joint.max_position;
   if (inside && std::abs(angle - previous) < std::numbers::pi) return {.position = angle};
-  const double lowest = std::ceil((joint.min_position - angle) / turn);
-  const double highest = std::floor((joint.max_position - angle) / turn);
-  const double wanted = std::round((previous - angle) / turn);
-  if (lowest <= highest) return {.position = angle + turn * std::clamp(wanted, lowest, highest)};
+  const double lowest = std::ceil((joint.min_position - angle) / units::revolution);
+  const double highest = std::floor((joint.max_position - angle) / units::revolution);
+  const double wanted = std::round((previous - angle) / units::revolution);
+  if (lowest <= highest) return {.position = angle + units::revolution * std::clamp(wanted, lowest, highest)};
   // The range holds no image: highest is just below it, lowest = highest + 1 just above.
-  const double below = joint.min_position - (angle + turn * highest);
-  const double above = angle + turn * lowest - joint.max_position;
-  return below <= above ? Image{.position = angle + turn * highest, .beyond = below}
-                        : Image{.position = angle + turn * lowest, .beyond = above};
+  const double below = joint.min_position - (angle + units::revolution * highest);
+  const double above = angle + units::revolution * lowest - joint.max_position;
+  return below <= above ? Image{.position = angle + units::revolution * highest, .beyond = below}
+                        : Image{.position = angle + units::revolution * lowest, .beyond = above};
 }
 
 Placed place(const Arm& arm, const Position6& solution, const Position6& previous, const Position6& weight) noexcept {

@@ -13,7 +13,7 @@
 namespace robomill::robot {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// A discriminant this little below zero, as a share of what it is the difference of, is rounding.
 constexpr double rounding = 1e-10;
 /// Below this size directions are undefined [m or rad].

@@ -10,7 +10,7 @@
 namespace robomill::robot {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// One tool pose, at any gamma.
 class Turn {

@@ -7,10 +7,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/robot/condition.hpp"
 #include "robomill/robot/images.hpp"
 #include "robomill/robot/newton.hpp"
@@ -20,7 +20,6 @@ namespace robomill::robot {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-constexpr double turn = 2.0 * std::numbers::pi;
 /// Newton's steps stop at the first, and what rounding leaves above it is taken up to the second [m and rad].
 constexpr double wanted_error = 1e-13, accepted_error = 1e-11;
 const NearOptions steps{.tolerance_m = wanted_error, .tolerance_rad = wanted_error, .max_iterations = 40};
@@ -250,7 +249,8 @@ int SerialKinematics::all(const ToolPose& pose, Position6* out, int room) const 
   int found = 0;
   for (int code = 0; code < 729; ++code) {
     Position6 turned;
-    for (int i = 0, rest = code; i < 6; ++i, rest /= 3) turned(i) = turn * (rest % 3 == 2 ? 1 : -(rest % 3));
+    for (int i = 0, rest = code; i < 6; ++i, rest /= 3)
+      turned(i) = units::revolution * (rest % 3 == 2 ? 1 : -(rest % 3));
     for (int k = 0; k < count && found < room; ++k) {
       const Position6 position = ways[static_cast<std::size_t>(k)] + turned;
       const bool inside = (position.array() >= limits_.min_position.array()).all() &&
@@ -271,15 +271,15 @@ int SerialKinematics::search(const Eigen::Isometry3d& flange, Position6* ways) c
     double power = 1.0;
     for (double& angle : at) {
       power /= root;
-      angle = turn * (std::fmod(0.5 + power * (k + 1), 1.0) - 0.5);
+      angle = units::revolution * (std::fmod(0.5 + power * (k + 1), 1.0) - 0.5);
     }
     const NewtonEnd end = newton(cell_.arm, flange, at, steps);
     if (!(end.error_m <= accepted_error && end.error_rad <= accepted_error)) continue;
-    for (double& angle : at) angle = std::remainder(angle, turn);
+    for (double& angle : at) angle = std::remainder(angle, units::revolution);
     bool known = false;
     for (int other = 0; other < count && !known; ++other) {
       Position6 apart = at - ways[other];
-      for (double& angle : apart) angle = std::remainder(angle, turn);
+      for (double& angle : apart) angle = std::remainder(angle, units::revolution);
       known = apart.cwiseAbs().maxCoeff() < 1e-6;
     }
     if (known) continue;

@@ -1,14 +1,12 @@
 #include "robomill/signal/window_shape.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 
 namespace robomill::signal {
 namespace {
-
-constexpr double turn = 2.0 * std::numbers::pi;
 
 double parameter_of(const WindowShape& shape) {
   if (shape.parameter > 0.0) return shape.parameter;
@@ -22,13 +20,13 @@ void require_even(Eigen::Index n) {
 /// g or dg/du at u = d/n.
 double cosine_sum(const std::vector<double>& c, double u) {
   double sum = 0.0;
-  for (std::size_t j = 0; j < c.size(); ++j) sum += c[j] * std::cos(turn * static_cast<double>(j) * u);
+  for (std::size_t j = 0; j < c.size(); ++j) sum += c[j] * std::cos(units::revolution * static_cast<double>(j) * u);
   return sum;
 }
 double cosine_sum_slope(const std::vector<double>& c, double u) {
   double sum = 0.0;
   for (std::size_t j = 1; j < c.size(); ++j) {
-    const double rate = turn * static_cast<double>(j);
+    const double rate = units::revolution * static_cast<double>(j);
     sum -= c[j] * rate * std::sin(rate * u);
   }
   return sum;

@@ -1,14 +1,11 @@
 #include "robomill/simulation/cut_model.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "robomill/base/units.hpp"
 
 namespace robomill::simulation::detail {
-namespace {
-
-constexpr double revolution = 2.0 * std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 double Spindle::rotation(double time_s) const {
   const double mean = mean_rad_per_s * time_s;
@@ -29,7 +26,7 @@ Resistance resistance(const Ring& ring, double tangential, double radial, double
 
 Element& CutModel::add(double angle_rad, std::size_t ring) {
   Element& element = elements.emplace_back();
-  element.standing_rad = angle_rad - revolution * std::floor(angle_rad / revolution);
+  element.standing_rad = angle_rad - units::revolution * std::floor(angle_rad / units::revolution);
   element.sine = std::sin(element.standing_rad);
   element.cosine = std::cos(element.standing_rad);
   element.ring = static_cast<int>(ring);
@@ -43,7 +40,7 @@ CutModel milling_model(const cutting::Milling& milling, double spindle_speed_rad
   const cutting::ForceCoefficients& k = milling.coefficients;
   model.slices = resolution.slices;
   model.radius_m = 0.5 * tool.diameter_m;
-  model.feed_m_per_s = milling.feed_per_tooth_m * tool.teeth * spindle_speed_rad_per_s / revolution;
+  model.feed_m_per_s = milling.feed_per_tooth_m * tool.teeth * spindle_speed_rad_per_s / units::revolution;
   model.damping = milling.process_damping;
   model.spindle = {
       spindle_speed_rad_per_s, milling.speed_variation.amplitude_ratio, milling.speed_variation.frequency_ratio, {}};

@@ -4,14 +4,13 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/simulation/job.hpp"
 
 namespace robomill::simulation {
 namespace {
 
 using namespace detail;
-
-constexpr double revolution = 2.0 * std::numbers::pi;
 
 Job job_of(const DrillingCut& cut, const SimulationOptions& options) {
   cut.validate();
@@ -21,7 +20,7 @@ Job job_of(const DrillingCut& cut, const SimulationOptions& options) {
   job.structure = cut.structure;
   job.period.parts = cut.runout_m == 0.0 ? cut.lips : 1;
   job.first.steps_per_revolution =
-      first_steps(cut.structure, cut.spindle_speed_rad_per_s, {.teeth = cut.lips}, revolution, options);
+      first_steps(cut.structure, cut.spindle_speed_rad_per_s, {.teeth = cut.lips}, units::revolution, options);
   job.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s;
   job.feed_per_tooth_m = cut.feed_per_revolution_m / cut.lips;
   job.schedule = cut.schedule;
@@ -37,12 +36,12 @@ CutModel detail::drilling_model(const DrillingCut& cut, int steps_per_revolution
   model.dimensions = 3;
   model.rings = {cone};
   model.radius_m = 0.5 * cut.diameter_m;
-  model.feed_m_per_s = cut.feed_per_revolution_m * cut.spindle_speed_rad_per_s / revolution;
+  model.feed_m_per_s = cut.feed_per_revolution_m * cut.spindle_speed_rad_per_s / units::revolution;
   model.feed_direction = -Eigen::Vector3d::UnitZ();
   model.spindle.mean_rad_per_s = cut.spindle_speed_rad_per_s;
   model.steps_per_revolution = steps_per_revolution;
   for (int j = 0; j < cut.lips; ++j) {
-    Element& lip = model.add(revolution * j / cut.lips, 0);
+    Element& lip = model.add(units::revolution * j / cut.lips, 0);
     lip.radius_m = cut.runout_m * std::cos(lip.standing_rad) * cone.lateral;
     lip.width_m = cut.radial_width_m / cone.axial;
     lip.chip = resistance(cone, cut.coefficients.tangential_n_per_m2, cut.coefficients.radial_n_per_m2, 0.0);

@@ -3,12 +3,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "robomill/base/units.hpp"
 
 namespace robomill::simulation::detail {
 namespace {
 
-constexpr double revolution = 2.0 * std::numbers::pi;
 constexpr int most_passes = 8;  // to find which edges touch
 
 constexpr double rounding = 1e-7;  // of a position, in nodes
@@ -38,7 +38,7 @@ template <int D>
 Engine<D>::Engine(const CutModel& model, const modal::TipModes& structure, Physics physics)
     : model_(model),
       physics_(physics),
-      step_s_(revolution / model.steps_per_revolution / model.spindle.mean_rad_per_s),
+      step_s_(units::revolution / model.steps_per_revolution / model.spindle.mean_rad_per_s),
       modes_(structure, step_s_),
       surface_(model),
       elements_(model.elements),
@@ -405,9 +405,9 @@ void Engine<D>::step() {
     angle_a_ = static_cast<double>(steps_ % n) * surface_.step_rad();
     angle_b_ = angle_a_ + surface_.step_rad();
   } else {
-    const double turns = std::floor(model_.spindle.rotation(time_s()) / revolution);
-    angle_a_ = model_.spindle.rotation(time_s()) - turns * revolution;
-    angle_b_ = model_.spindle.rotation(end_s) - turns * revolution;
+    const double turns = std::floor(model_.spindle.rotation(time_s()) / units::revolution);
+    angle_a_ = model_.spindle.rotation(time_s()) - turns * units::revolution;
+    angle_b_ = model_.spindle.rotation(end_s) - turns * units::revolution;
   }
   feed_b_ = model_.feed_m_per_s * end_s;
   set_depth(0.5 * (time_s() + end_s));

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "robomill/base/units.hpp"
 #include "robomill/cutting/polynomial.hpp"
 
 namespace robomill::simulation::detail {
 namespace {
-
-constexpr double revolution = 2.0 * std::numbers::pi;
 
 /// Half the profile's curvature at a height.
 double bend_along(const cutting::Profile& profile, double height_m) {
@@ -27,15 +25,15 @@ void add_rings(std::vector<Ring>& rings, Ring ring, const cutting::Arc& arc, dou
   const double range = arc.exit_rad - arc.entry_rad;
   ring.entry_rad = arc.entry_rad;
   ring.exit_rad = arc.exit_rad;
-  ring.whole_circle = range >= revolution * (1.0 - 1e-12);
-  if (ring.whole_circle || range + margin_steps * step_rad <= revolution) {
+  ring.whole_circle = range >= units::revolution * (1.0 - 1e-12);
+  if (ring.whole_circle || range + margin_steps * step_rad <= units::revolution) {
     rings.push_back(ring);
     return;
   }
   const double middle = arc.entry_rad + 0.5 * range;
   ring.exit_rad = middle;
   rings.push_back(ring);
-  ring.entry_rad = middle >= revolution ? middle - revolution : middle;
+  ring.entry_rad = middle >= units::revolution ? middle - units::revolution : middle;
   ring.exit_rad = ring.entry_rad + 0.5 * range;
   rings.push_back(ring);
 }
@@ -73,7 +71,8 @@ CutModel posture_model(const PostureCut& cut, int steps_per_revolution) {
   model.dimensions = 3;
   model.slices = std::max(1, static_cast<int>(engagement.slices.size()));
   model.radius_m = profile.max_radius_m();
-  model.feed_m_per_s = cut.motion.feed_per_tooth_m * mill.teeth * cut.motion.spindle_speed_rad_per_s / revolution;
+  model.feed_m_per_s =
+      cut.motion.feed_per_tooth_m * mill.teeth * cut.motion.spindle_speed_rad_per_s / units::revolution;
   model.feed_direction = engagement.feed_from_tool.row(0).transpose();
   model.spindle.mean_rad_per_s = cut.motion.spindle_speed_rad_per_s;
   model.steps_per_revolution = steps_per_revolution;
@@ -88,7 +87,7 @@ CutModel posture_model(const PostureCut& cut, int steps_per_revolution) {
     ring.bend_along_per_m = bend_along(profile, slice.height_m);
     std::size_t added = model.rings.size();
     for (const cutting::Arc& arc : engagement.of(i)) {
-      add_rings(model.rings, ring, arc, revolution / steps_per_revolution);
+      add_rings(model.rings, ring, arc, units::revolution / steps_per_revolution);
     }
     for (; added < model.rings.size(); ++added) {
       for (int tooth = 0; tooth < mill.teeth; ++tooth) add_tooth(model, cut, slice, tooth, added);
@@ -105,7 +104,7 @@ double mean_arc_rad(const cutting::Engagement& engagement) {
       width += engagement.slices[i].width_m;
     }
   }
-  return width > 0.0 ? angle / width : revolution;
+  return width > 0.0 ? angle / width : units::revolution;
 }
 
 }  // namespace robomill::simulation::detail

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "robomill/base/units.hpp"
 
 namespace robomill::simulation::detail {
 namespace {
 
-constexpr double revolution = 2.0 * std::numbers::pi;
 constexpr double steps_in_cut = 20.0;
 constexpr double slice_lag_rad = 0.07;       // about 4 degrees
 constexpr double slice_vibration_rad = 0.5;  // of the fastest mode while a slice's edge runs by
@@ -24,7 +24,7 @@ double fastest(const modal::TipModes& structure) {
 double misfit(const cutting::FlatEndMill& teeth, int steps) {
   double worst = 0.0;
   for (int j = 0; j < teeth.teeth; ++j) {
-    const double position = teeth.pitch(j) / revolution * steps;
+    const double position = teeth.pitch(j) / units::revolution * steps;
     worst = std::max(worst, std::abs(position - std::round(position)));
   }
   return worst;
@@ -62,8 +62,8 @@ int first_steps(const modal::TipModes& structure, double spindle_speed_rad_per_s
   }
   double steps = steps_per_natural_period * fastest(structure) / spindle_speed_rad_per_s;
   steps = std::max(steps, steps_per_tooth * teeth.teeth);
-  steps = std::max(steps, steps_in_cut * revolution / arc_rad);
-  steps = std::max(steps, steps_per_sample * options.sample_rate_hz * revolution / spindle_speed_rad_per_s);
+  steps = std::max(steps, steps_in_cut * units::revolution / arc_rad);
+  steps = std::max(steps, steps_per_sample * options.sample_rate_hz * units::revolution / spindle_speed_rad_per_s);
   const int multiple = 2 * teeth.teeth;
   const int least = multiple * static_cast<int>(std::ceil(std::min(steps, 1e7) / multiple));
   if (teeth.has_equal_pitch()) return least;

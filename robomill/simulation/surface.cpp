@@ -1,17 +1,14 @@
 #include "robomill/simulation/surface.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "robomill/base/units.hpp"
 
 namespace robomill::simulation::detail {
-namespace {
-
-constexpr double revolution = 2.0 * std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 template <int D>
-Surface<D>::Surface(const CutModel& model) : model_(model), step_(revolution / model.steps_per_revolution) {
+Surface<D>::Surface(const CutModel& model) : model_(model), step_(units::revolution / model.steps_per_revolution) {
   strips_.reserve(model.rings.size());
   std::size_t size = 0;
   for (const Ring& ring : model.rings) {
@@ -57,9 +54,9 @@ void Surface<D>::set_rigid() {
     const Strip& on = strip(element.ring);
     for (int k = 0; k < on.count; ++k) {
       const double ahead = element.standing_rad - (on.offset_rad + k * step_);
-      double since = ahead - revolution * std::floor(ahead / revolution);
+      double since = ahead - units::revolution * std::floor(ahead / units::revolution);
       // An edge still reads the node behind it: that it passed there is left for it to say.
-      if (since < step_ * (1.0 - 1e-7)) since += revolution;
+      if (since < step_ * (1.0 - 1e-7)) since += units::revolution;
       const std::size_t i = on.index(k);
       const Node mine = {element.radius_m, -since * metres_per_rad, 0.0};
       const double ours = mine.out_m - fed(ring, 0.0, mine, sine_[i], cosine_[i]);

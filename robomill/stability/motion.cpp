@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "robomill/base/units.hpp"
 
 namespace robomill::stability::detail {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ Motion find_motion(const TipDynamics& tip, Complex multiplier, double period_s, 
     if (amplitude <= greatest) return;
     greatest = amplitude;
     best.mode = tip.id[static_cast<std::size_t>(k)];
-    best.frequency_hz = std::abs(frequency) / two_pi;
+    best.frequency_hz = std::abs(frequency) / units::revolution;
   };
 
   // A mode that the cut leaves alone: the eigenvector's entries Re z, Im z are complex, and so z and its conjugate part
@@ -42,10 +42,10 @@ Motion find_motion(const TipDynamics& tip, Complex multiplier, double period_s, 
     offer(amplitude, k, tip.pole(k).imag());
   }
 
-  const double highest = 1.5 * tip.pole.cwiseAbs().maxCoeff() + two_pi / period_s;
-  const int last = static_cast<int>(std::min(highest * period_s / two_pi, 5000.0)) + 1;
+  const double highest = 1.5 * tip.pole.cwiseAbs().maxCoeff() + units::revolution / period_s;
+  const int last = static_cast<int>(std::min(highest * period_s / units::revolution, 5000.0)) + 1;
   for (int j = -last; j <= last; ++j) {
-    const Complex s = growth + Complex(0.0, two_pi * j / period_s);
+    const Complex s = growth + Complex(0.0, units::revolution * j / period_s);
     const Eigen::Vector2cd f = force(s);
     for (Eigen::Index k = 0; k < n; ++k) {
       const Complex pole = tip.pole(k);

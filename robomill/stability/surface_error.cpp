@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/stability/chart/chart.hpp"
 #include "robomill/stability/collocation/collocation.hpp"
 #include "robomill/stability/gauss.hpp"
@@ -17,7 +18,6 @@ namespace robomill::stability {
 namespace {
 
 using namespace detail;
-constexpr double revolution = 2.0 * std::numbers::pi;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// Force per depth that a contact makes without any vibration: chip of the feed and of runout, and the edge.
@@ -26,7 +26,7 @@ Eigen::Vector2d steady_force(const cutting::Milling& milling, const Contact& con
   const cutting::ForceCoefficients& k = milling.coefficients;
   const double lag = milling.tool.lag_rad_per_m(contact.tooth);
   const HeightsInCut in = heights_in_cut(contact, lag, rotation_rad + milling.tool.standing_angle(contact.tooth));
-  const double feed_m = milling.tool.teeth * milling.feed_per_tooth_m / revolution;  // a radian
+  const double feed_m = milling.tool.teeth * milling.feed_per_tooth_m / units::revolution;  // a radian
   constexpr int heights = 12;
   const GaussRule& rule = gauss_rule(heights);
   Eigen::Vector2d force = Eigen::Vector2d::Zero();
@@ -82,7 +82,7 @@ double peak_deflection(const CollocationModel& model, const CollocationCase& at,
   double peak = 0.0;
   for (const Eigen::Vector2cd& q : orbit.displacement_m) peak = std::max(peak, q.real().norm());
   const Rotation turning(at.spindle_speed_rad_per_s, model.variation);
-  const double samples_per_s = 16.0 * model.tip.pole.cwiseAbs().maxCoeff() / revolution;
+  const double samples_per_s = 16.0 * model.tip.pole.cwiseAbs().maxCoeff() / units::revolution;
   for (std::size_t e = 0; e < at.mesh.pieces.size(); ++e) {
     if (at.mesh.topology.pieces[e].records) continue;
     const CutMesh::Piece& piece = at.mesh.pieces[e];

@@ -21,9 +21,9 @@ namespace {
 constexpr std::array<std::string_view, 4> other_columns = {"tool", "flutes", "beam", "teeth"};
 
 /// One row of the table while it is read.
-class Row {
+class TableRow {
  public:
-  Row(const std::string& file, const io::TextTable& table, const io::TextTable::Row& row)
+  TableRow(const std::string& file, const io::TextTable& table, const io::TextTable::Row& row)
       : where_(fmt::format("{}:{}", file, row.line)), table_(table), row_(row) {}
 
   [[nodiscard]] std::string_view text(std::string_view key) const {
@@ -102,7 +102,7 @@ void check_columns(const io::TextTable& table, const std::string& file) {
   }
 }
 
-Segment read_segment(const Row& row, const Segment& like) {
+Segment read_segment(const TableRow& row, const Segment& like) {
   Segment segment = like;
   segment.length_m = segment.diameter_m = segment.inner_diameter_m = segment.mass_kg = 0.0;
   segment.flutes = 0;
@@ -133,7 +133,7 @@ std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segm
   std::vector<ListedTool> out;
   std::set<std::string, std::less<>> seen;
   for (const io::TextTable::Row& fields : table.rows) {
-    const Row row(file, table, fields);
+    const TableRow row(file, table, fields);
     const std::string name(row.text("tool"));
     if (name.empty()) throw row.reject("tool", "is empty", "Every row names its tool");
     const bool next = out.empty() || out.back().name != name;

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/statistics.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -23,12 +23,6 @@ struct Doubt {
 constexpr const char* name_the_columns =
     "Name the columns and their units: frequency_hz, xx_re_m_per_n, xx_im_m_per_n, or xx_magnitude_um_per_n and "
     "xx_phase_deg, or xx_re_m_per_s2_per_n";
-
-double median(Eigen::VectorXd values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// A magnitude and an angle, in degrees or radians, in the places of real and imaginary part.
 bool looks_polar(const Eigen::VectorXcd& h) {

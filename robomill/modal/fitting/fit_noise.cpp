@@ -4,6 +4,8 @@
 #include <cmath>
 #include <complex>
 
+#include "robomill/base/statistics.hpp"
+
 namespace robomill::modal::detail {
 namespace {
 
@@ -13,13 +15,6 @@ using Eigen::Index;
 constexpr double smallest_variance = 1e-20;
 
 constexpr double median_of_exponential = 0.6931471805599453;  // of |e|² where E|e|² = 1
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The mean of the logarithm over 2 half + 1 lines; zeros count as the smallest positive value.
 Eigen::VectorXd smooth_logarithm(const Eigen::VectorXd& variance, Index half) {

@@ -9,6 +9,8 @@
 #include <numbers>
 #include <set>
 
+#include "robomill/base/statistics.hpp"
+
 namespace robomill::modal::detail {
 namespace {
 
@@ -152,12 +154,6 @@ double shape_mac(const VectorXcd& a, const VectorXcd& b) {
 // Between two poles in the s plane, as a share of the second one's distance from the origin.
 double distance(const LscfPole& a, const LscfPole& b) {
   return std::hypot(a.omega - b.omega, a.omega * a.zeta - b.omega * b.zeta) / b.omega;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // The poles of neighbouring orders that are one and the same, by rising order.

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 
+#include "robomill/base/statistics.hpp"
 #include "robomill/modal/peaks.hpp"
 
 namespace robomill::modal {
@@ -17,12 +18,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-double median(Eigen::VectorXd x) {
-  double* const middle = x.data() + x.size() / 2;
-  std::nth_element(x.data(), middle, x.data() + x.size());
-  return *middle;
-}
 
 // Lines first … first + count - 1 of an FRF, between which it is graded.
 struct Lines {

@@ -5,24 +5,16 @@
 #include <limits>
 #include <vector>
 
+#include "robomill/base/statistics.hpp"
+
 namespace robomill::modal {
 namespace {
 
 using Eigen::Index;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double median(const Eigen::VectorXd& x) {
-  return median(std::vector<double>(x.data(), x.data() + x.size()));
-}
-
 // For normal noise the median of |x| is 0.6745 standard deviations.
 double robust_deviation(const Eigen::VectorXd& x) {
-  return median(Eigen::VectorXd(x.cwiseAbs())) / 0.6745;
+  return median(x.cwiseAbs()) / 0.6745;
 }
 
 // Distance from the peak to where the flank has fallen to half, going by `step`.
@@ -107,7 +99,7 @@ double second_near(const Eigen::VectorXd& f, const Pulse& pulse, Index width, In
   const Index smooth = std::max<Index>(1, width / 4);
   const Index foot = step > 0 ? pulse.last : pulse.first;
   const Index beyond = std::clamp<Index>(foot + step * 8 * width, 0, f.size() - 1);
-  const double level = median(Eigen::VectorXd(f.segment(std::min(foot, beyond), std::abs(beyond - foot) + 1)));
+  const double level = median(f.segment(std::min(foot, beyond), std::abs(beyond - foot) + 1));
   const Index limit = foot + step * 3 * width;
   double valley = pulse.peak_n;
   double lowest = level;

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <utility>
+
+#include "robomill/base/units.hpp"
 
 namespace robomill::monitor {
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double drift_hz = 3.0;        // corner of the high-pass
 constexpr double jump = 4.0;            // of the power: the tool enters or leaves
 constexpr std::size_t entry_lasts = 8;  // hops
@@ -67,7 +67,7 @@ CombCusum::CombCusum(const MonitorOptions& options)
 }
 
 void CombCusum::set_spindle_speed(double rad_per_s) noexcept {
-  spindle_.set_hint(rad_per_s / turn);
+  spindle_.set_hint(rad_per_s / units::revolution);
 }
 
 void CombCusum::reset() noexcept {
@@ -91,7 +91,7 @@ void CombCusum::reset() noexcept {
 }
 
 void CombCusum::take_in(const Hop& hop) noexcept {
-  const double share = 1.0 - std::exp(-turn * drift_hz / options_.sample_rate_hz);
+  const double share = 1.0 - std::exp(-units::revolution * drift_hz / options_.sample_rate_hz);
   double total = 0.0;
   std::uint64_t bad = hop.bad_channels;
   if (tachometer_ < channels_) bad |= std::uint64_t{1} << tachometer_;
@@ -289,7 +289,7 @@ void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {
   report_bands(decision);
   decision.suggested_sample_rate_hz = spindle_.suggested_sample_rate_hz();
   if (decision.suggested_sample_rate_hz > 0.0) decision.faults |= wrong_sample_rate;
-  decision.spindle_speed_rad_per_s = turn * spindle_.rotation_hz();
+  decision.spindle_speed_rad_per_s = units::revolution * spindle_.rotation_hz();
 }
 
 void CombCusum::report_bands(Decision& decision) const noexcept {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
+
+#include "robomill/base/units.hpp"
 
 namespace robomill::monitor {
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double hann_loss = 1.9;  // variance under the Hann window against the bound
 
 }  // namespace
@@ -33,7 +33,7 @@ void FrequencyRing::push(std::span<const float> samples) noexcept {
 
 double FrequencyRing::power(double frequency_hz, std::size_t first, std::size_t count) const noexcept {
   // Σ x_t z^t by Goertzel's recursion, in double.
-  const double angle = turn * frequency_hz / rate_hz_;
+  const double angle = units::revolution * frequency_hz / rate_hz_;
   const double c = 2.0 * std::cos(angle);
   double s1 = 0.0;
   double s2 = 0.0;
@@ -78,7 +78,8 @@ FrequencyEstimate FrequencyRing::estimate(double coarse_hz, double around_hz, do
   const float* last = ring_.data() + at_ + size_ - n;
   const auto window = [&](std::size_t first, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      const double w = 0.5 - 0.5 * std::cos(turn * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
+      const double w =
+          0.5 - 0.5 * std::cos(units::revolution * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
       piece_[first + i] = w * static_cast<double>(last[first + i]);
     }
   };
@@ -107,7 +108,7 @@ FrequencyEstimate FrequencyRing::estimate(double coarse_hz, double around_hz, do
   const double bound =
       hann_loss * 24.0 * variance / (std::max(1e-300, out.amplitude * out.amplitude) * count * count * count);
   // Each half's own deviation is √8 of the whole's.
-  const double known = std::sqrt(bound) * rate_hz_ / turn;
+  const double known = std::sqrt(bound) * rate_hz_ / units::revolution;
   const double drift = std::max(0.0, std::abs(late - early) - 4.0 * known) / 3.0;
   out.std_hz = std::hypot(known, drift);
   return out;

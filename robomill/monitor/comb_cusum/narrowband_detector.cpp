@@ -8,7 +8,7 @@ namespace {
 
 constexpr double dominant = 0.15, alone = 0.4;  // shares with and without a comb
 constexpr double rising = 0.25, risen = 2.0;    // of ln P, in a hop and in all
-constexpr std::size_t enough = 3;               // hops
+constexpr std::size_t enough_hops = 3;          // hops
 constexpr double rings_off = 0.5;               // of the greatest power
 constexpr std::size_t width = 2;                // lines by which what grows fast wanders
 
@@ -34,9 +34,9 @@ bool NarrowbandDetector::step(const Hop& hop) noexcept {
   log_power_ = log_power;
   top_ = hops_ <= 1 ? hop.power : std::max(top_, hop.power);
   if (hop.power < rings_off * top_) hops_ = 0;
-  if (hop.comb_known) return hops_ >= enough;
-  return (hops_ > enough && rise_ > risen && !hop.may_be_the_cut) ||
-         (hops_ > enough + 1 && rise_ > 2.0 * risen && rise > 2.0 * rising);
+  if (hop.comb_known) return hops_ >= enough_hops;
+  return (hops_ > enough_hops && rise_ > risen && !hop.may_be_the_cut) ||
+         (hops_ > enough_hops + 1 && rise_ > 2.0 * risen && rise > 2.0 * rising);
 }
 
 }  // namespace robomill::monitor

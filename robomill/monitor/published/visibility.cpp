@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robomill/base/statistics.hpp"
 #include "robomill/signal/fft.hpp"
 #include "robomill/signal/window.hpp"
 
@@ -13,12 +14,6 @@ namespace {
 constexpr double six_db = 3.981071705534973;  ///< 10^0.6
 constexpr Eigen::Index surroundings = 16;     ///< lines on either side
 constexpr int columns_in_a_row = 3;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 struct Spectrogram {
   Eigen::MatrixXd power;        // lines × columns, over all channels
@@ -67,7 +62,7 @@ Visibility visibility(const Recording& recording, const MonitorOptions& options)
   double most = 0.0, stable_of_line = 0.0;
   for (Eigen::Index k = 1; k + 1 < s.power.rows(); ++k) {
     const Eigen::VectorXd then = s.power.row(k).head(before).transpose();
-    const double stable = median({then.begin(), then.end()});
+    const double stable = median(std::vector<double>(then.begin(), then.end()));
     const double growth = s.power.row(k).tail(s.power.cols() - from).mean() - stable;
     if (growth > most) {
       line = k;

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "robomill/base/units.hpp"
 
 namespace robomill::monitor {
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double highest_hz = 500.0;
 constexpr double found_score = 1.5;    // of SpeedSearch
 constexpr double wide_score = 8.0;     // without a hint
@@ -47,7 +47,7 @@ SpindleTracker::SpindleTracker(const MonitorOptions& options)
       teeth_(options.teeth),
       search_(options.sample_rate_hz, static_cast<std::size_t>(options.channels)),
       pulses_(options.sample_rate_hz),
-      hint_hz_(options.spindle_speed_rad_per_s / turn),
+      hint_hz_(options.spindle_speed_rad_per_s / units::revolution),
       reported_hz_(hint_hz_),
       doubt_s_(first_doubt_s) {}
 

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "robomill/base/units.hpp"
 #include "robomill/monitor/spindle/spindle.hpp"
 
 namespace robomill::monitor {
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double memory_s = 0.25;
 constexpr double settle_turns = 4.0;
 constexpr double settle_s = 0.06;
@@ -64,7 +63,7 @@ std::span<std::complex<double>> SpindleComb::innovation(std::size_t channel, std
 
 void SpindleComb::run_block(const Hop& hop, std::span<float> residual, std::size_t first, double rotation_hz) noexcept {
   const std::size_t count = std::min(block_, frames_ - first);
-  const double step = turn * rotation_hz / rate_hz_;
+  const double step = units::revolution * rotation_hz / rate_hz_;
   const double per_turn = rate_hz_ / rotation_hz;
   const double n = static_cast<double>(count);
   const double steady = 1.0 - std::exp(-n / (memory_s * rate_hz_));
@@ -89,7 +88,7 @@ void SpindleComb::run_block(const Hop& hop, std::span<float> residual, std::size
       sums[k - 1] += combs_[c].innovation(k) * (n / static_cast<double>(frames_));
     }
   }
-  angle_ = std::fmod(angle_ + step * n, turn);
+  angle_ = std::fmod(angle_ + step * n, units::revolution);
   revolutions_ += n / per_turn;
 }
 
@@ -123,7 +122,7 @@ double SpindleComb::run(const Hop& hop, std::span<float> residual) noexcept {
     run_block(hop, residual, first, rotation_hz);
     const double by = ahead();
     angle_ += 0.1 * by;
-    if (hop.steers) rotation_hz += 0.005 * by / (turn * block_s);
+    if (hop.steers) rotation_hz += 0.005 * by / (units::revolution * block_s);
   }
   return rotation_hz;
 }
@@ -168,7 +167,7 @@ std::span<const float> SpindleComb::learn(std::size_t channel, std::span<const f
   const std::size_t count = past.size() / block_ * block_;
   past = past.last(count);
   const std::span<float> left = std::span(past_residual_).first(count);
-  const double step = turn * rotation_hz / rate_hz_;
+  const double step = units::revolution * rotation_hz / rate_hz_;
   const double per_turn = rate_hz_ / rotation_hz;
   const double n = static_cast<double>(block_);
   Comb& comb = combs_[channel];
@@ -191,7 +190,7 @@ std::span<const float> SpindleComb::learn(std::size_t channel, std::span<const f
   double sum = 0.0;
   for (const float x : left) sum += static_cast<double>(x * x);
   rms_[channel] = std::sqrt(sum / static_cast<double>(count));
-  angle_ = std::fmod(angle, turn);
+  angle_ = std::fmod(angle, units::revolution);
   revolutions_ = static_cast<double>(count) / per_turn;
   learnt_s_ = static_cast<double>(count) / rate_hz_;
   return left;

@@ -80,7 +80,7 @@ void Checker::State::feed(const Vector3d& tip_step, const Vector3d& axis_step) {
   double tip_feed = 0.0, axis_feed = 0.0;
   bool axis_alone = true;
   for (std::size_t i = from; i <= to && i < window_.high(); ++i) {
-    const Segment& segment = window_.segment(i);
+    const CheckedBlock& segment = window_.segment(i);
     if (segment.length_m > 0.0) axis_alone = false;
     tip_feed = std::max(tip_feed, tip_feed_of(i));
     if (axis_alone) axis_feed = std::max(axis_feed, axis_feed_of(i));
@@ -114,9 +114,9 @@ void Checker::State::errors(const Sample& sample) {
   }
   const auto find = [&](double& tip_m, double& axis_rad) {
     tip_m = nearest(std::max(tip_error_.quiet(), 1e-3 * options_.tip_tolerance_m), options_.tip_tolerance_m,
-                    [&](const Segment& segment) { return segment.tip_distance_m(sample.tip_m); });
+                    [&](const CheckedBlock& segment) { return segment.tip_distance_m(sample.tip_m); });
     axis_rad = nearest(std::max(axis_error_.quiet(), 1e-3 * options_.axis_tolerance_rad), options_.axis_tolerance_rad,
-                       [&](const Segment& segment) { return segment.axis_distance_rad(sample.axis); });
+                       [&](const CheckedBlock& segment) { return segment.axis_distance_rad(sample.axis); });
   };
   double tip_m = 0.0, axis_rad = 0.0;
   find(tip_m, axis_rad);
@@ -127,7 +127,7 @@ void Checker::State::errors(const Sample& sample) {
   }
   tip_error_.note(tip_m, place, book_);
   axis_error_.note(axis_rad, place, book_);
-  const Segment& segment = window_.segment(block_);
+  const CheckedBlock& segment = window_.segment(block_);
   if (segment.length_m > options_.tip_tolerance_m) {
     synchrony_.note(angle_of_chord((sample.axis - segment.axis_beside(sample.tip_m)).norm()), place, book_);
   }
@@ -177,7 +177,7 @@ void Checker::State::stand(const Vector3d& tip_step, const Vector3d& axis_step) 
   for (std::size_t i = std::max(from, window_.low()); i < window_.high(); ++i) {
     // Blocks that do not move may stand between the one named and its dwell.
     if (i > block_ + 1 && window_.segment(i - 1).moves()) break;
-    const Segment& segment = window_.segment(i);
+    const CheckedBlock& segment = window_.segment(i);
     if (segment.dwell_s > 0.0 && (tip - segment.tip_end_m).norm() <= options_.tip_tolerance_m &&
         (axis - segment.axis_end).norm() <= options_.axis_tolerance_rad) {
       window_.corner(i).still_s = std::max(window_.corner(i).still_s, still_s_);
@@ -188,7 +188,7 @@ void Checker::State::stand(const Vector3d& tip_step, const Vector3d& axis_step) 
 // Accounts for the end of the first open block.
 void Checker::State::close() {
   Corner& corner = window_.corner(open_);
-  const Segment& segment = window_.segment(open_);
+  const CheckedBlock& segment = window_.segment(open_);
   if (corner.tip.wake != never) tip_error_.note(corner.tip.best, {.time_s = corner.tip.at_s, .block = open_}, book_);
   if (corner.axis.wake != never) {
     axis_error_.note(angle_of_chord(corner.axis.best), {.time_s = corner.axis.at_s, .block = open_}, book_);

@@ -251,7 +251,7 @@ TEST(BlockWindow, DistancesAgreeWithBruteForce) {
     program::ProgramSource source(p);
     BlockWindow window(source);
     ASSERT_TRUE(window.read());
-    const Segment& segment = window.segment(0);
+    const CheckedBlock& segment = window.segment(0);
     const Vector3d tip = direction(), axis = direction();
     double tip_m = 1e9, axis_rad = 1e9;
     for (int i = 0; i <= 2000; ++i) {

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double stands_m = 1e-12, stands_rad = 1e-12;
 
-Segment segment_of(const program::Pose& from, const Block& block) {
-  Segment s;
+CheckedBlock checked_block(const program::Pose& from, const Block& block) {
+  CheckedBlock s;
   s.kind = block.kind;
   s.tip_begin_m = s.tip_end_m = from.tip_m;
   s.axis_begin = s.axis_end = from.axis;
@@ -61,13 +61,13 @@ double chord_distance(const Vector3d& point, const Vector3d& from, const Vector3
   return (offset - share * way).norm();
 }
 
-double Segment::tip_distance_m(const Vector3d& tip_m) const {
+double CheckedBlock::tip_distance_m(const Vector3d& tip_m) const {
   const Vector3d offset = tip_m - tip_begin_m;
   const double along = std::clamp(offset.dot(tip_direction), 0.0, length_m);
   return (offset - along * tip_direction).norm() + tip_deviation_m;
 }
 
-double Segment::axis_distance_rad(const Vector3d& axis) const {
+double CheckedBlock::axis_distance_rad(const Vector3d& axis) const {
   // The nearest point of the great circle lies on the arc if it is past the beginning and before the end.
   if (angle_rad > 0.0 && axis.dot(across) >= 0.0 && axis.dot(end_tangent) <= 0.0) {
     return std::asin(std::min(1.0, std::abs(axis.dot(normal)))) + axis_deviation_rad;
@@ -76,7 +76,7 @@ double Segment::axis_distance_rad(const Vector3d& axis) const {
   return angle_of_chord(std::sqrt(std::min((axis - axis_begin).squaredNorm(), (axis - axis_end).squaredNorm())));
 }
 
-Vector3d Segment::axis_beside(const Vector3d& tip_m) const {
+Vector3d CheckedBlock::axis_beside(const Vector3d& tip_m) const {
   const double share = std::clamp((tip_m - tip_begin_m).dot(tip_direction) / length_m, 0.0, 1.0);
   return std::cos(share * angle_rad) * axis_begin + std::sin(share * angle_rad) * across;
 }
@@ -90,7 +90,7 @@ bool BlockWindow::read() {
   Block block;
   if (!source_.next(block)) return false;
   Slot& slot = slots_[high_ % room];
-  slot.segment = segment_of(end_, block);
+  slot.segment = checked_block(end_, block);
   slot.corner = Corner();
   end_ = {.tip_m = slot.segment.tip_end_m, .axis = slot.segment.axis_end};
   ++high_;

@@ -10,7 +10,7 @@
 namespace robomill::path {
 
 /// A programmed block as a line of the tip and a great-circle arc of the axis.
-struct Segment {
+struct CheckedBlock {
   program::Block::Kind kind = program::Block::Kind::dwell;
   Eigen::Vector3d tip_begin_m = Eigen::Vector3d::Zero(), tip_end_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d tip_direction = Eigen::Vector3d::Zero();  ///< unit; zero where the tip stands
@@ -65,8 +65,8 @@ class BlockWindow {
   [[nodiscard]] bool full() const { return high_ - low_ == room; }
   [[nodiscard]] const program::Pose& start() const { return start_; }
   [[nodiscard]] const program::Pose& end() const { return end_; }  ///< of the last block read
-  [[nodiscard]] const Segment& segment(std::size_t block) const { return slots_[block % room].segment; }
-  [[nodiscard]] Segment& segment(std::size_t block) { return slots_[block % room].segment; }
+  [[nodiscard]] const CheckedBlock& segment(std::size_t block) const { return slots_[block % room].segment; }
+  [[nodiscard]] CheckedBlock& segment(std::size_t block) { return slots_[block % room].segment; }
   [[nodiscard]] Corner& corner(std::size_t block) { return slots_[block % room].corner; }
   /// Reads one block more; false at the program's end. Must not be full.
   bool read();
@@ -75,7 +75,7 @@ class BlockWindow {
 
  private:
   struct Slot {
-    Segment segment;
+    CheckedBlock segment;
     Corner corner;
   };
   program::Source& source_;

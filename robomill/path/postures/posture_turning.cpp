@@ -4,17 +4,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/parallel.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/path/postures/posture_walk.hpp"
 
 namespace robomill::path {
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr int most_ways = 32;
 constexpr std::size_t most_stations = 400;
 constexpr int most_change = 3;         // of gamma between two stations, in steps of the grid
@@ -57,8 +56,9 @@ class Turning {
     std::array<robot::Position6, most_ways> ways;
     station.first.push_back(0);
     for (int g = 0; g < options_.gammas; ++g) {
-      int count = kinematics_.all({.tip_m = pose.tip_m, .axis = pose.axis, .gamma_rad = turn * g / options_.gammas},
-                                  ways.data(), most_ways);
+      int count = kinematics_.all(
+          {.tip_m = pose.tip_m, .axis = pose.axis, .gamma_rad = units::revolution * g / options_.gammas}, ways.data(),
+          most_ways);
       if (s == 0 && options_.start && count > 0) {
         const auto far = [&](const robot::Position6& way) { return (way - *options_.start).squaredNorm(); };
         ways.front() = *std::min_element(ways.begin(), ways.begin() + count,
@@ -76,7 +76,7 @@ class Turning {
 
   /// The best way into each state of a station.
   void advance(const Station& before, Station& now) const {
-    const double per_step = per_turned * std::pow(turn / options_.gammas, 2);
+    const double per_step = per_turned * std::pow(units::revolution / options_.gammas, 2);
     for (State& state : now.states) {
       double best = std::numeric_limits<double>::infinity();
       for (int change = -most_change; change <= most_change; ++change) {
@@ -102,10 +102,11 @@ class Turning {
     if (end == last.end() || !std::isfinite(end->cost)) return {};
     std::vector<double> gamma(stations_.size());
     const State* state = &*end;
-    gamma.back() = turn * state->gamma / options_.gammas;
+    gamma.back() = units::revolution * state->gamma / options_.gammas;
     for (std::size_t s = stations_.size() - 1; s > 0; --s) {
       const State& from = stations_[s - 1].states[static_cast<std::size_t>(state->from)];
-      gamma[s - 1] = gamma[s] + std::remainder(turn * (from.gamma - state->gamma) / options_.gammas, turn);
+      gamma[s - 1] = gamma[s] + std::remainder(units::revolution * (from.gamma - state->gamma) / options_.gammas,
+                                               units::revolution);
       state = &from;
     }
     start = state->position;

@@ -26,7 +26,7 @@ namespace {
 
 constexpr double half_turn_margin_rad = 1e-9;
 
-double gamma_at(const std::vector<double>& gamma_rad, std::size_t boundary) {
+double gamma_at_boundary(const std::vector<double>& gamma_rad, std::size_t boundary) {
   if (gamma_rad.empty()) return 0.0;
   return gamma_rad.size() == 1 ? gamma_rad[0] : gamma_rad[boundary];
 }
@@ -126,7 +126,7 @@ void Planner::constants(std::size_t i) {
   const FirWay way = {.begin = begin,
                       .end = block.end,
                       .gamma_begin_rad = gamma_rad,
-                      .gamma_end_rad = gamma_at(posture.gamma_rad, i + 1)};
+                      .gamma_end_rad = gamma_at_boundary(posture.gamma_rad, i + 1)};
   gamma_rad = way.gamma_end_rad;
   const Reach reach = joints_along(kinematics, way, near, joints);
   if (reach.status != Reach::Status::found) reject(program, i, reach);
@@ -209,7 +209,7 @@ FirPlan plan_fir(const program::Program& program, const robot::Kinematics& kinem
   Planner planner = {.program = program, .kinematics = kinematics, .posture = posture, .options = options};
   planner.blocks.resize(program.blocks.size());
   planner.near = posture.start;
-  planner.gamma_rad = gamma_at(posture.gamma_rad, 0);
+  planner.gamma_rad = gamma_at_boundary(posture.gamma_rad, 0);
   planner.tip_tolerance_m = within_chords(options.tip_tolerance_m, options.max_acceleration_m_per_s2, options);
   planner.axis_tolerance_rad =
       within_chords(options.axis_tolerance_rad, options.max_angular_acceleration_rad_per_s2, options);

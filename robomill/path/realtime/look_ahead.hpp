@@ -4,7 +4,7 @@
 
 #include "robomill/base/ring.hpp"
 #include "robomill/path/blend.hpp"
-#include "robomill/path/speed/rate.hpp"
+#include "robomill/path/speed/feed_override.hpp"
 #include "robomill/path/speed/segment.hpp"
 
 namespace robomill::path {

@@ -6,7 +6,7 @@
 namespace robomill::path {
 namespace {
 
-/// How long before it must the rate begins to sink towards a cap, in periods: it arrives at rest.
+/// How long before it must the override begins to sink towards a cap, in periods: it arrives at rest.
 constexpr double early_periods = 12.0;
 /// Looks at ever smaller slopes before a step is given up.
 constexpr int max_looks = 12;
@@ -26,11 +26,11 @@ bool Runner::extend(View& view) noexcept {
   if (view.rests || view.next >= known_) return false;
   const Stretch& stretch = ahead_.stretches[view.next];
   if (view.next == stretch_ || stretch.slope < view.slope) view.slope = stretch.slope;
-  const double lowest = view.steps > 0 ? step_[view.steps - 1].rate : rate::max;
+  const double lowest = view.steps > 0 ? step_[view.steps - 1].feed_override : override_limits::max;
   const double cap = wanted_ > 1.0 ? stretch.cap : stretch.feed;
   if (cap < lowest && view.steps < max_steps) {
     step_[view.steps++] = {
-        .theta = theta_of(cap), .rate = cap, .begin_s = std::max(0.0, view.covered_s), .end_s = stretch.end_s};
+        .theta = theta_of(cap), .feed_override = cap, .begin_s = std::max(0.0, view.covered_s), .end_s = stretch.end_s};
   }
   view.covered_s = stretch.end_s - now_s_;
   view.rests = stretch.kind == Stretch::Kind::rests;
@@ -38,18 +38,18 @@ bool Runner::extend(View& view) noexcept {
   return true;
 }
 
-bool Runner::meets(const View& view, const RateState& to, double passed_s) const noexcept {
-  const double peak = rate_of(to.peak(view.slope));
+bool Runner::meets(const View& view, const OverrideState& to, double passed_s) const noexcept {
+  const double peak = override_of(to.peak(view.slope));
   for (std::size_t i = 0; i < view.steps; ++i) {
     const Step& step = step_[i];
-    if (peak <= step.rate * (1.0 + rounding)) continue;
+    if (peak <= step.feed_override * (1.0 + rounding)) continue;
     if (passed_s + travel_s(to, 0.0, step.theta, view.slope, period_s_) > step.begin_s) return false;
   }
   return true;
 }
 
-double Runner::lowered(const View& view, const RateState& to, double passed_s, double target) noexcept {
-  const double early_s = early_periods * period_s_ * std::max(rate_of(to.theta), 0.05);
+double Runner::lowered(const View& view, const OverrideState& to, double passed_s, double target) noexcept {
+  const double early_s = early_periods * period_s_ * std::max(override_of(to.theta), 0.05);
   for (std::size_t i = 0; i < view.steps; ++i) {
     const Step& step = step_[i];
     if (step.theta >= target) continue;
@@ -66,13 +66,14 @@ double Runner::lowered(const View& view, const RateState& to, double passed_s, d
   return target;
 }
 
-Runner::Verdict Runner::consider(double target, const RateState* fixed, RateState& to, double& slope) noexcept {
+Runner::Verdict Runner::consider(double target, const OverrideState* fixed, OverrideState& to, double& slope) noexcept {
   View view{.next = stretch_};
   if (!extend(view)) return Verdict::too_short;
   for (int looks = 0; looks < max_looks; ++looks) {
     slope = view.slope;
-    to = fixed != nullptr ? *fixed : approach(rate_, target, slope, period_s_);
-    const double passed_s = fixed != nullptr ? period_s_ * rate_of(to.theta) : path::passed_s(rate_, to, period_s_);
+    to = fixed != nullptr ? *fixed : approach(state_, target, slope, period_s_);
+    const double passed_s =
+        fixed != nullptr ? period_s_ * override_of(to.theta) : path::passed_s(state_, to, period_s_);
     const double needed_s = passed_s + travel_s(to, 0.0, 0.0, slope, period_s_);
     if (!std::isfinite(needed_s)) return Verdict::too_fast;
     if (to.speed > 0.0 && fixed == nullptr && to.peak(slope) > theta_of(wanted_) + rounding) return Verdict::too_fast;
@@ -103,15 +104,15 @@ bool Runner::rest(double wanted) noexcept {
   if (!(wanted > 0.0)) return false;
   wanted_ = wanted;
   for (const double share : {1.0, 0.8, 0.6, 0.4, 0.2, 0.0}) {
-    const RateState from{.theta = theta_of(wanted * share)};
-    RateState to;
+    const OverrideState from{.theta = theta_of(wanted * share)};
+    OverrideState to;
     double slope = stretch.slope;
     if (consider(0.0, &from, to, slope) == Verdict::holds || share == 0.0) {
-      rate_ = from;
+      state_ = from;
       way_out_ = slope;
       resting_ = starved_ = false;
       low_until_s_ = -1.0;
-      pass(period_s_ * rate_of(rate_.theta));
+      pass(period_s_ * override_of(state_.theta));
       break;
     }
   }
@@ -122,18 +123,18 @@ void Runner::run(double wanted) noexcept {
   wanted_ = wanted;
   double target = starved_ ? 0.0 : theta_of(wanted);
   if (low_until_s_ > now_s_) target = std::min(target, low_theta_);
-  RateState to;
+  OverrideState to;
   double slope = way_out_;
   const Verdict verdict = consider(target, nullptr, to, slope);
   if (verdict == Verdict::holds) {
     way_out_ = slope;
   } else {
     starved_ = starved_ || verdict == Verdict::too_short;
-    to = approach(rate_, 0.0, way_out_, period_s_);
+    to = approach(state_, 0.0, way_out_, period_s_);
   }
   to.theta = std::max(to.theta, 0.0);
-  const double plan_s = passed_s(rate_, to, period_s_);
-  rate_ = to;
+  const double plan_s = passed_s(state_, to, period_s_);
+  state_ = to;
   pass(plan_s);
 }
 
@@ -143,7 +144,7 @@ void Runner::pass(double plan_s) noexcept {
     const Stretch& passed = ahead_.stretches[stretch_++];
     if (passed.kind != Stretch::Kind::flows) {
       now_s_ = passed.end_s;
-      rate_ = {};
+      state_ = {};
       resting_ = true;
       break;
     }
@@ -181,7 +182,7 @@ void Runner::emit(Sample& sample) noexcept {
 }
 
 Runner::State Runner::state(double wanted, LookAhead::Closed closed) const noexcept {
-  const bool still = resting_ || (rate_.theta == 0.0 && rate_.speed == 0.0);
+  const bool still = resting_ || (state_.theta == 0.0 && state_.speed == 0.0);
   if (!still) return State::running;
   if (stretch_ >= known_ && closed == LookAhead::Closed::whole && resting_) return State::finished;
   if ((stretch_ >= known_ || starved_) && closed == LookAhead::Closed::broken) return State::stopped;

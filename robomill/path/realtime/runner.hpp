@@ -4,30 +4,30 @@
 
 #include "robomill/path/interpolator.hpp"
 #include "robomill/path/realtime/look_ahead.hpp"
-#include "robomill/path/speed/rate.hpp"
+#include "robomill/path/speed/feed_override.hpp"
 
 namespace robomill::path {
 
 /// Runs a look-ahead sample by sample.
 ///
-/// At every moment there is a way out that is known to hold: to bring the rate to rest at the slope `way_out_`, which
-/// every stretch allows that this would run through, all of them ready, with every cap met in time. A step is taken
-/// only if another way out is known behind it; else a step of the known one is taken, after which it is still known.
-/// At a rest of the plan any rate will do, so that every row of motion between two rests stands for itself.
+/// At every moment there is a way out that is known to hold: to bring the override to rest at the slope `way_out_`,
+/// which every stretch allows that this would run through, all of them ready, with every cap met in time. A step is
+/// taken only if another way out is known behind it; else a step of the known one is taken, after which it is still
+/// known. At a rest of the plan any override will do, so that every row of motion between two rests stands for itself.
 class Runner {
  public:
   using State = PathInterpolator::State;
   /// @param ahead  outlives the runner, as the kinematics do
   Runner(LookAhead& ahead, const robot::Kinematics& kinematics, double period_s, const Sample& start);
-  /// @param wanted  rate; 0: hold
+  /// @param wanted  override; 0: hold
   State next(double wanted, Sample& sample) noexcept;
-  [[nodiscard]] double rate() const noexcept { return rate_of(rate_.theta); }
+  [[nodiscard]] double feed_override() const noexcept { return override_of(state_.theta); }
   [[nodiscard]] double ready_s() const noexcept;
 
  private:
-  /// A cap that the rate must meet where it begins.
+  /// A cap that the override must meet where it begins.
   struct Step {
-    double theta = 0.0, rate = 0.0, begin_s = 0.0, end_s = 0.0;
+    double theta = 0.0, feed_override = 0.0, begin_s = 0.0, end_s = 0.0;
   };
   /// What lies ahead, as far as it was looked at.
   struct View {
@@ -43,9 +43,9 @@ class Runner {
   void run(double wanted) noexcept;
   bool extend(View& view) noexcept;
   /// The way towards a target, or to stay at `fixed`.
-  Verdict consider(double target, const RateState* fixed, RateState& to, double& slope) noexcept;
-  [[nodiscard]] bool meets(const View& view, const RateState& to, double passed_s) const noexcept;
-  double lowered(const View& view, const RateState& to, double passed_s, double target) noexcept;
+  Verdict consider(double target, const OverrideState* fixed, OverrideState& to, double& slope) noexcept;
+  [[nodiscard]] bool meets(const View& view, const OverrideState& to, double passed_s) const noexcept;
+  double lowered(const View& view, const OverrideState& to, double passed_s, double target) noexcept;
   void pass(double plan_s) noexcept;
   void emit(Sample& sample) noexcept;
   [[nodiscard]] State state(double wanted, LookAhead::Closed closed) const noexcept;
@@ -56,11 +56,11 @@ class Runner {
   Sample last_;
   std::size_t count_ = 0;
 
-  RateState rate_;
+  OverrideState state_;
   double way_out_ = 1.0;                         // slope
   double now_s_ = 0.0;                           // plan time
   bool resting_ = true;                          // at a rest of the plan
-  double wanted_ = 0.0;                          // rate
+  double wanted_ = 0.0;                          // override
   bool starved_ = false;                         // until more is ready than `known_`
   double low_theta_ = 0.0, low_until_s_ = -1.0;  // a target that holds until then
   std::size_t known_ = 0;                        // stretches that are ready

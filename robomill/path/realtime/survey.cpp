@@ -10,7 +10,7 @@ namespace {
 /// A joint that is seen to run this many times faster than it can has been put another way, not moved.
 constexpr double jump_ratio = 3.0;
 /// Rounding [m or rad a period]: no direction.
-constexpr double no_step = 1e-13;
+constexpr double no_length = 1e-13;
 
 ChannelLimits limits_of(const robot::Kinematics& kinematics, const SmoothingOptions& options) {
   const robot::JointLimits& joints = kinematics.limits();
@@ -57,9 +57,9 @@ void along(const Steps& now, const Steps& before, double rate, std::size_t chann
   const double speed = now.last.norm(), middle = now.middle.norm();
   const Eigen::Vector3d second = now.last - now.middle, third = now.third();
   double change = std::abs(speed - middle), jerk = third.norm();
-  if (middle > no_step) {
+  if (middle > no_length) {
     change = std::max(change, std::abs(second.dot(now.middle)) / middle);
-    if (before.middle.norm() > no_step) {
+    if (before.middle.norm() > no_length) {
       jerk = std::max(largest_along(third, now.middle, before.middle),
                       largest_along(before.third(), now.middle, before.middle));
     }

@@ -8,8 +8,8 @@
 
 namespace robomill::path {
 
-/// Runs along the plan before the machine does, at rate 1 and twice a period, and measures by the differences of a
-/// whole period what every stretch demands of the machine. What it finds bounds the rate there, below 1 too where
+/// Runs along the plan before the machine does, at override 1 and twice a period, and measures by the differences of a
+/// whole period what every stretch demands of the machine. What it finds bounds the override there, below 1 too where
 /// samples see more than the planner's derivatives do; and what the machine cannot take is known before it moves.
 class Survey {
  public:

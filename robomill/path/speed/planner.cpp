@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "robomill/path/speed/rate.hpp"
+#include "robomill/path/speed/feed_override.hpp"
 
 namespace robomill::path {
 namespace {
@@ -90,9 +90,9 @@ PlannerOptions PlannerOptions::real_time() {
 
 PlannerOptions PlannerOptions::interpolated() {
   PlannerOptions out = real_time();
-  // Below the shares of rate.hpp by what samples may show beyond the planner's derivatives.
-  out.acceleration_share = 0.975 * rate::alpha;
-  out.jerk_share = 0.95 * rate::beta;
+  // Below the shares of feed_override.hpp by what samples may show beyond the planner's derivatives.
+  out.acceleration_share = 0.975 * override_limits::alpha;
+  out.jerk_share = 0.95 * override_limits::beta;
   // Nothing is planned again where a corner comes out wider than its nodes and middles say.
   out.tolerance_share = 0.9;
   return out;

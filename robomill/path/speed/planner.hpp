@@ -123,7 +123,7 @@ class Planner {
   void find_suspects() noexcept;
   [[nodiscard]] bool tense(std::size_t span) const noexcept;
   bool slow_down_locally() noexcept;
-  void dip_row(double ramp_m) noexcept;
+  void slow_down_around_corrections(double ramp_m) noexcept;
   void write(std::size_t count) noexcept;
   void take_over() noexcept;
 
@@ -144,7 +144,7 @@ class Planner {
   std::size_t frozen_ = 0, safe_to_ = 0;
   /// Of the row that was solved last: its spans, those that the solver could move and those that are taken over; spans
   /// whose safe terminal speed was set before it.
-  std::size_t solved_ = 0, moved_ = 0, taken_ = 0, crept_before_ = 0;
+  std::size_t solved_ = 0, moved_ = 0, taken_ = 0, safe_before_ = 0;
   struct Before {
     double begin_b = 0.0, found_b = 0.0, speed = 1.0;
     bool suspect = false;

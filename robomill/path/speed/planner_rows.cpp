@@ -10,10 +10,10 @@ namespace {
 /// Of a limit: below it a span's points are believed. By how much the tip's way may change in a span that is even.
 constexpr double tense_share = 0.5, even_share = 0.0005;
 /// Spans beside a corrected one that are slowed down as much; how many ramps a local slow-down reaches.
-constexpr std::size_t dip_beside = 2;
-constexpr double dip_reach = 30.0;
+constexpr std::size_t neighbours = 2;
+constexpr double reach_in_ramps = 30.0;
 /// … and beyond how many nothing of it is noticeable.
-constexpr double dip_felt = 8.0;
+constexpr double noticeable_in_ramps = 8.0;
 
 }  // namespace
 
@@ -74,7 +74,7 @@ void Planner::solve(bool to_rest) noexcept {
   solved_ = to_rest ? row_.size() : row_.size() - 1;
   moved_ = to_rest ? solved_ : solved_ - 2;
   taken_ = to_rest ? solved_ : std::min(planner_.commit, solved_ - 4);
-  crept_before_ = safe_to_;
+  safe_before_ = safe_to_;
   begin_safe_speed(solved_);
   before_.clear();
   for (const SpeedSpan& span : row_) before_.push_back({.begin_b = span.b});
@@ -131,7 +131,7 @@ void Planner::find_suspects() noexcept {
   }
 }
 
-void Planner::dip_row(double ramp_m) noexcept {
+void Planner::slow_down_around_corrections(double ramp_m) noexcept {
   for (std::size_t i = 0; i < row_.size(); ++i) {
     row_[i].b = before_[i].found_b;
     before_[i].suspect = false;
@@ -142,12 +142,12 @@ void Planner::dip_row(double ramp_m) noexcept {
     if (factor == 1.0) continue;
     // A depth that dies away as exp(−d / ramp) asks for less of an acceleration than it sets free, however small.
     const double depth = 1.0 - factor * factor;
-    const std::size_t low = k > dip_beside ? k - dip_beside : 0, high = std::min(k + dip_beside, solved_ - 1);
+    const std::size_t low = k > neighbours ? k - neighbours : 0, high = std::min(k + neighbours, solved_ - 1);
     const double from_m = begin_m_[low], to_m = begin_m_[high] + row_[high].length_m;
     const auto lower = [&](std::size_t i, double away_m) {
-      if (i < frozen_ || i >= moved_ || away_m > dip_reach * ramp_m) return false;
+      if (i < frozen_ || i >= moved_ || away_m > reach_in_ramps * ramp_m) return false;
       row_[i].b = std::min(row_[i].b, before_[i].found_b * (1.0 - depth * std::exp(-away_m / ramp_m)));
-      before_[i].suspect = before_[i].suspect || away_m < dip_felt * ramp_m;
+      before_[i].suspect = before_[i].suspect || away_m < noticeable_in_ramps * ramp_m;
       return true;
     };
     for (std::size_t i = low; i <= high; ++i) lower(i, 0.0);
@@ -162,7 +162,7 @@ bool Planner::slow_down_locally() noexcept {
   SpeedOptions look = planner_.speed;
   look.max_iterations = 0;
   for (const double ramp_m : {1.0 * largest_span_m_, 3.0 * largest_span_m_, 9.0 * largest_span_m_}) {
-    dip_row(ramp_m);
+    slow_down_around_corrections(ramp_m);
     if (solver_.solve(row_.data(), solved_, frozen_, moved_, look).feasible) return true;
   }
   return false;
@@ -174,7 +174,7 @@ bool Planner::revise() noexcept {
     before_[i].speed = row_[i].point[0].speed;
   }
   // What the row before left over moves already, and may do so too fast for a correction: then the fresh spans alone.
-  for (const std::size_t from : {frozen_, std::max(frozen_, crept_before_)}) {
+  for (const std::size_t from : {frozen_, std::max(frozen_, safe_before_)}) {
     bool slower = false;
     for (std::size_t i = from; i < row_.size(); ++i) {
       slower = slow_down(i, corrected_speed(begin_m_[i], begin_m_[i] + row_[i].length_m)) || slower;
@@ -184,8 +184,8 @@ bool Planner::revise() noexcept {
       write(moved_ == solved_ ? solved_ : solved_ - 1);
       return true;
     }
-    for (std::size_t i = 0; i < crept_before_; ++i) row_[i].b = before_[i].begin_b;
-    safe_to_ = crept_before_;
+    for (std::size_t i = 0; i < safe_before_; ++i) row_[i].b = before_[i].begin_b;
+    safe_to_ = safe_before_;
     begin_safe_speed(solved_);
     if (slower && solve_row()) {
       find_suspects();

@@ -109,14 +109,14 @@ void Preview::look(Emitter& ahead, std::span<const Segment> motion, bool joined,
   last_ = {};
   Trail trail = joined ? trail_ : Trail{};
   // Third differences need four samples.
-  int unreported = joined ? 0 : 3;
+  int still_to_join = joined ? 0 : 3;
   samples_.clear();
   const auto take = [&] {
     const Sample& sample = samples_.front();
     const Row step = step_to(trail, sample);
     const double tip_feed_m = ahead.at().max_tip_m_per_s * period_s_;
-    if (unreported > 0) {
-      --unreported;
+    if (still_to_join > 0) {
+      --still_to_join;
     } else {
       differences(trail, step, sample.path_m, violations);
       // From one block to the next the faster feed holds.

@@ -16,7 +16,7 @@ constexpr std::size_t letter_index(char letter) {
   return static_cast<std::size_t>(letter - 'a');
 }
 
-std::string upper(char letter) {
+std::string letter_name(char letter) {
   return std::string(1, static_cast<char>(letter - 'a' + 'A'));
 }
 
@@ -42,7 +42,7 @@ bool GcodeReader::Line::moves() const {
 
 void GcodeReader::Line::leave_out(const GcodeWords::Word& word) {
   if (!left_out.empty()) left_out += ' ';
-  left_out += upper(word.letter);
+  left_out += letter_name(word.letter);
   left_out += word.text.substr(1);
 }
 
@@ -91,7 +91,7 @@ void GcodeReader::read(std::string_view statement) {
 
 void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
   if (line.has(word.letter) && word.letter != 'g' && word.letter != 'm') {
-    reject(upper(word.letter), word.number, "", "comes twice on one line");
+    reject(letter_name(word.letter), word.number, "", "comes twice on one line");
   }
   line.letters |= 1U << letter_index(word.letter);
   switch (word.letter) {
@@ -152,7 +152,7 @@ void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
       reject("O", word.number, "", "is a subroutine or its control, which are not read",
              "Let the CAM system write the program out");
     default:
-      reject(upper(word.letter), word.number, "", "is a word not known here",
+      reject(letter_name(word.letter), word.number, "", "is a word not known here",
              line.dwells ? "Is it the time of the dwell? Give that as P, in seconds"
                          : "Known are A B C D F G H I J K L M N P Q R S T X Y Z");
   }

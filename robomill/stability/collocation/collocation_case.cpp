@@ -3,22 +3,21 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/stability/gauss.hpp"
 
 namespace robomill::stability::detail {
 namespace {
 
 using Form = MeshTopology::Form;
-constexpr double revolution = 2.0 * std::numbers::pi;
 
 /// How many periods of the cutter make a whole number of swings.
 int common_repeats(const cutting::SpeedVariation& variation, double period_rad) {
   if (!variation.active()) return 1;
   constexpr int most = 256;
-  const double swings = variation.frequency_ratio * period_rad / revolution;  // in a period of the cutter
+  const double swings = variation.frequency_ratio * period_rad / units::revolution;  // in a period of the cutter
   for (int repeats = 1; repeats <= most; ++repeats) {
     const double count = swings * repeats;
     if (std::round(count) >= 1.0 && std::abs(count - std::round(count)) < 1e-9 * count) return repeats;
@@ -99,12 +98,12 @@ CollocationModel::CollocationModel(const LobesProblem& problem, MeshTopology::Fo
   }
   const cutting::ForceCoefficients& c = milling.coefficients;
   const double teeth_in_cut =
-      std::ceil((milling.immersion.exit_rad - milling.immersion.entry_rad) * milling.tool.teeth / revolution);
+      std::ceil((milling.immersion.exit_rad - milling.immersion.entry_rad) * milling.tool.teeth / units::revolution);
   quickening *= std::hypot(c.tangential_n_per_m2, c.radial_n_per_m2) * teeth_in_cut;
 }
 
 double CollocationModel::reported_rad() const {
-  return contacts.period() == Period::tooth && !variation.active() ? contacts.period_rad() : revolution;
+  return contacts.period() == Period::tooth && !variation.active() ? contacts.period_rad() : units::revolution;
 }
 
 void prepare_case(const CollocationModel& model, double spindle_speed_rad_per_s, double axial_depth_m,

@@ -5,12 +5,12 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 
 namespace robomill::stability::detail {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-constexpr double revolution = 2.0 * pi;
+using std::numbers::pi;
 
 /// One of the surfaces that a tooth at a height may meet, left by the m-th tooth before it.
 struct Surface {
@@ -31,7 +31,7 @@ HeightsInCut heights_in_cut(const Contact& contact, double lag_rad_per_m, double
   const cutting::Immersion& immersion = contact.immersion;
   const double start = immersion.entry_rad + std::min(lag_rad_per_m * contact.low_m, lag_rad_per_m * contact.high_m);
   HeightsInCut in;
-  in.turned_rad = start + wrap(tip_rad - start, revolution);
+  in.turned_rad = start + wrap(tip_rad - start, units::revolution);
   double low = contact.low_m;
   double high = contact.high_m;
   if (lag_rad_per_m != 0.0) {
@@ -57,7 +57,7 @@ CutterContacts::CutterContacts(const cutting::Milling& milling, int slices)
 }
 
 double CutterContacts::period_rad() const {
-  return equal_ ? revolution / milling_.tool.teeth : revolution;
+  return equal_ ? units::revolution / milling_.tool.teeth : units::revolution;
 }
 
 void CutterContacts::at_depth(double axial_depth_m, std::vector<Contact>& out) const {
@@ -90,7 +90,7 @@ void CutterContacts::add_slice(int tooth, double low_m, double high_m, std::vect
     const double delay = pitches - (tool.lag_rad_per_m(other) - tool.lag_rad_per_m(tooth)) * height;
     if (delay <= 1e-9) continue;  // the other tooth has come round in front at this height
     surfaces.push_back({delay, tool.radius_deviation_m(tooth, height) - tool.radius_deviation_m(other, height),
-                        feed_per_revolution_m * delay / revolution});
+                        feed_per_revolution_m * delay / units::revolution});
   }
   const auto meets = [&](double angle) -> const Surface* {
     const double sine = std::sin(angle);

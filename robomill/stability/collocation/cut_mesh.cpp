@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/stability/gauss.hpp"
 
 namespace robomill::stability::detail {
 namespace {
 
-constexpr double revolution = 2.0 * std::numbers::pi;
 constexpr double same_angle = 1e-10;
 constexpr double longest_piece_rad = 8.0;  // of the fastest mode
 
@@ -82,7 +81,7 @@ class Builder {
     out.clear();
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       const Span& span = spans_[i];
-      const double past = wrap(rotation_rad - span.from_rad, revolution);
+      const double past = wrap(rotation_rad - span.from_rad, units::revolution);
       if (past < span.to_rad - span.from_rad) out.push_back(i);
     }
   }
@@ -332,7 +331,7 @@ class Builder {
   std::vector<Contact> contacts_;
   std::vector<double> standing_, lag_;
   std::vector<Span> spans_;
-  double shortest_delay_rad_ = revolution;
+  double shortest_delay_rad_ = units::revolution;
   std::vector<Raw> raw_;
   std::vector<std::vector<std::size_t>> active_;  ///< [piece]
 };

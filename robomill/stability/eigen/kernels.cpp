@@ -136,7 +136,7 @@ CORE void delayed_force(const PeriodArguments& a, const Step& step, Lanes* c, st
 
 /// One step that cuts: z has room for the two entries behind it; q is its displacement, before and after.
 CORE void cut(const PeriodArguments& a, const Step& step, Lanes* z, Lanes* next, Lanes* q, std::size_t lane) {
-  Contact& contact = a.contacts[step.index];
+  StepContact& contact = a.contacts[step.index];
   Lanes c[2];
   delayed_force<V>(a, step, c, lane);
   L(z[a.modal]) = -L(c[0]);

@@ -46,7 +46,7 @@ struct Step {
 };
 
 /// What a step that cuts does beside its block.
-struct Contact {
+struct StepContact {
   Lanes stiffness[4] = {};   ///< K (I - S K)^-1 [N/m]
   Lanes compliance[4] = {};  ///< I + S K (I - S K)^-1
   Lanes force[2] = {};       ///< out: mean force over the step [N]
@@ -59,7 +59,7 @@ struct PeriodArguments {
   std::size_t step_count = 0;
   const Reference* references = nullptr;
   const Lanes* blocks = nullptr;  ///< one after the other
-  Contact* contacts = nullptr;
+  StepContact* contacts = nullptr;
   const Lanes* coasts = nullptr;         ///< 2n for each length of coast: factor of each mode
   const double* displacement = nullptr;  ///< V, 2 x 2n: 2 Re right, -2 Im right
   const Lanes* compliance = nullptr;     ///< S, 2 x 2, or nullptr where it is zero

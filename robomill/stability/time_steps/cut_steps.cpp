@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/base/units.hpp"
 
 namespace robomill::stability::detail {
 namespace {
-
-constexpr double revolution = 2.0 * std::numbers::pi;
 
 Delay delay_of(double steps) {
   // A whole number of steps but for rounding is taken as one.
@@ -27,7 +25,7 @@ CutSteps::CutSteps(const cutting::Milling& milling, int intervals) : milling_(mi
     milling_.tool.pitch_rad.clear();
     period_ = Period::tooth;
     steps_ = intervals;
-    step_rad_ = revolution / teeth / intervals;
+    step_rad_ = units::revolution / teeth / intervals;
     delays_ = {Delay{.whole = intervals}};
     delay_of_tooth_.assign(static_cast<std::size_t>(teeth), 0);
   } else {
@@ -37,7 +35,7 @@ CutSteps::CutSteps(const cutting::Milling& milling, int intervals) : milling_(mi
       throw InvalidInput("intervals", intervals, "", "are too many for a revolution of this cutter");
     }
     steps_ = intervals * teeth;
-    step_rad_ = revolution / steps_;
+    step_rad_ = units::revolution / steps_;
     for (int j = 0; j < teeth; ++j) {
       const Delay delay = delay_of(milling.tool.pitch(j) / step_rad_);
       if (delay.whole < 2) {

@@ -172,7 +172,7 @@ void Monodromy::fill_contacts(std::span<const LanePoint> points) {
   const std::size_t delays = cut_.delays().size();
   for (const Step& step : steps_) {
     if (step.coast > 0) continue;
-    Contact& contact = contacts_[step.index];
+    StepContact& contact = contacts_[step.index];
     for (std::size_t lane = 0; lane < lane_count; ++lane) {
       const DepthPlan& depth = *points[std::min(lane, points.size() - 1)].depth;
       Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();

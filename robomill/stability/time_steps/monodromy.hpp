@@ -60,7 +60,7 @@ class Monodromy final : public SteppedMap {
   std::vector<std::size_t> outputs_;
   // What the points say.
   Resolution resolution_ = {};
-  std::vector<Contact> contacts_;
+  std::vector<StepContact> contacts_;
   std::vector<Lanes> substep_, at_nodes_, response_, influence_, coasts_, blocks_;
   std::vector<Lanes> memory_, state_, work_;
 };

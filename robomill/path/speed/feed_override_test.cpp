@@ -1,4 +1,4 @@
-#include "robomill/path/speed/rate.hpp"
+#include "robomill/path/speed/feed_override.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,12 +18,13 @@ constexpr double period_s = 0.001;
 TEST(Rate, RunsThroughThetaAsItsDifferentialEquationSays) {
   for (double s = 0.01; s < 1.5; s += 0.0137) {
     const double theta = theta_of(s);
-    EXPECT_NEAR(rate_of(theta), s, 1e-12);
+    EXPECT_NEAR(override_of(theta), s, 1e-12);
     if (std::abs(s - 1.0) < 1e-3) continue;
     const double d = 1e-5, below = std::min(s, 1.0);
-    EXPECT_NEAR((rate_of(theta + d) - rate_of(theta - d)) / (2.0 * d), 1.0 - rate::alpha * below * below, 1e-9);
+    EXPECT_NEAR((override_of(theta + d) - override_of(theta - d)) / (2.0 * d),
+                1.0 - override_limits::alpha * below * below, 1e-9);
   }
-  EXPECT_EQ(rate_of(0.0), 0.0);
+  EXPECT_EQ(override_of(0.0), 0.0);
   EXPECT_NEAR(theta_of(1.0), std::atanh(std::sqrt(0.9)) / std::sqrt(0.9), 1e-12);
 }
 
@@ -50,7 +51,7 @@ ChannelLimits random_limits(Random& random) {
   return out;
 }
 
-// The chain rule put back: at any rate up to the cap, any |θ̇| <= r and |θ̈| <= κ r², whatever the signs.
+// The chain rule put back: at any override up to the cap, any |θ̇| <= r and |θ̈| <= κ r², whatever the signs.
 TEST(Rate, AStretchKeepsEveryLimitWhateverTheRateDoesWithinIt) {
   Random random(3);
   int capped = 0, fast = 0;
@@ -65,9 +66,10 @@ TEST(Rate, AStretchKeepsEveryLimitWhateverTheRateDoesWithinIt) {
     for (int j = 0; j < 60; ++j) {
       const double s = stretch.cap * (j < 20 ? 1.0 : random.uniform());
       const double first = stretch.slope * (random.uniform() < 0.5 ? 1.0 : random.uniform(-1.0, 1.0));
-      const double second = rate::kappa * stretch.slope * stretch.slope * (random.uniform() < 0.5 ? 1.0 : -1.0);
-      const double below = std::min(s, 1.0), g = 1.0 - rate::alpha * below * below;
-      const double by_theta = s < 1.0 ? -2.0 * rate::alpha * s * g : 0.0;  // dg/dθ
+      const double second =
+          override_limits::kappa * stretch.slope * stretch.slope * (random.uniform() < 0.5 ? 1.0 : -1.0);
+      const double below = std::min(s, 1.0), g = 1.0 - override_limits::alpha * below * below;
+      const double by_theta = s < 1.0 ? -2.0 * override_limits::alpha * s * g : 0.0;  // dg/dθ
       const double ds = g * first, dds = g * second + by_theta * first * first;
       for (std::size_t k = 0; k < channel_count; ++k) {
         for (const double side : {1.0, -1.0}) {
@@ -87,15 +89,15 @@ TEST(Rate, AStretchKeepsEveryLimitWhateverTheRateDoesWithinIt) {
 TEST(Rate, ApproachesAnyTargetWithinItsBoundsAndRestsThere) {
   Random random(5);
   for (int i = 0; i < 2000; ++i) {
-    const double slope = std::exp(random.uniform(-1.0, 4.5)), jerk = rate::kappa * slope * slope;
-    RateState at{.theta = random.uniform(0.0, 4.0)};
+    const double slope = std::exp(random.uniform(-1.0, 4.5)), jerk = override_limits::kappa * slope * slope;
+    OverrideState at{.theta = random.uniform(0.0, 4.0)};
     for (int leg = 0; leg < 3; ++leg) {
       const double target = random.uniform(0.0, 4.0);
       const bool from_rest = at.speed == 0.0;
       const double from = at.theta;
       const int cut = leg < 2 ? static_cast<int>(random.index(200)) : 1'000'000;
       for (int n = 0; n < cut && (at.theta != target || at.speed != 0.0); ++n) {
-        const RateState next = approach(at, target, slope, period_s);
+        const OverrideState next = approach(at, target, slope, period_s);
         ASSERT_LE(std::abs(next.speed), std::max(slope, std::abs(at.speed)) * (1.0 + 1e-12));
         ASSERT_LE(std::abs(next.speed - at.speed), jerk * period_s * (1.0 + 1e-12));
         ASSERT_NEAR(next.theta - at.theta, 0.5 * (at.speed + next.speed) * period_s, 2e-12);
@@ -119,23 +121,23 @@ TEST(Rate, TravelBoundsWhatTheBrakeTakes) {
   double lag = -9.0;
   for (int i = 0; i < 20'000; ++i) {
     const double slope = std::exp(random.uniform(0.0, 4.6));
-    const RateState from{.theta = random.uniform(0.0, 6.0), .speed = random.uniform(-1.0, 1.0) * slope};
+    const OverrideState from{.theta = random.uniform(0.0, 6.0), .speed = random.uniform(-1.0, 1.0) * slope};
     const double base = random.uniform() < 0.5 ? 0.0 : random.uniform(0.0, from.theta);
     const double until = random.uniform() < 0.3 ? base : random.uniform(base, std::max(base, from.theta));
     const double promised_s = travel_s(from, base, until, slope, period_s);
     if (!std::isfinite(promised_s)) continue;
     ++feasible;
     double sum = 0.0, to_until = 0.0;
-    RateState at = from;
+    OverrideState at = from;
     for (int n = 0; at.theta != base || at.speed != 0.0; ++n) {
-      const RateState next = approach(at, base, slope, period_s);
+      const OverrideState next = approach(at, base, slope, period_s);
       sum += passed_s(at, next, period_s);
       ASSERT_GE(next.theta, base - 1e-9);
       if (next.theta > until + 1e-12) to_until = sum;
       at = next;
       ASSERT_LT(n, 100'000);
     }
-    lag = std::max(lag, (to_until - promised_s) / (period_s * rate_of(from.peak(slope))));
+    lag = std::max(lag, (to_until - promised_s) / (period_s * override_of(from.peak(slope))));
     EXPECT_LE(to_until, promised_s) << from.theta << ' ' << from.speed / slope << ' ' << base << ' ' << until;
     if (until == base && sum > 0.05) worst = std::max(worst, promised_s / sum);
   }
@@ -143,7 +145,7 @@ TEST(Rate, TravelBoundsWhatTheBrakeTakes) {
   EXPECT_LT(worst, 1.25);
 }
 
-// The reserve pays by its logarithm: the way from full rate to rest at full slope is 1.92 and not 10.
+// The reserve pays by its logarithm: the way from full override to rest at full slope is 1.92 and not 10.
 TEST(Rate, StopsFromFullRateInAboutTwiceTheTimeOfAnUnplannedStop) {
   ChannelLimits limits;
   limits.velocity.fill(1.0);
@@ -153,7 +155,7 @@ TEST(Rate, StopsFromFullRateInAboutTwiceTheTimeOfAnUnplannedStop) {
   demand.velocity[2] = 0.998;
   demand.acceleration[2] = 0.87 * 5.0;
   const Stretch stretch = stretch_of(demand, limits, 100.0);
-  RateState at{.theta = theta_of(1.0)};
+  OverrideState at{.theta = theta_of(1.0)};
   int periods = 0;
   for (; at.theta > 0.0; ++periods) at = approach(at, 0.0, stretch.slope, period_s);
   const double shortest_s = 1.0 / 5.0;

@@ -1,4 +1,4 @@
-#include "robomill/path/speed/rate.hpp"
+#include "robomill/path/speed/feed_override.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,12 +17,12 @@ constexpr double lag_periods = 6.0;
 /// Rates at which a slope is looked for; between them it may be 0.3 % too large.
 constexpr int rates = 10;
 
-const double root = std::sqrt(rate::alpha);
+const double root = std::sqrt(override_limits::alpha);
 const double theta_of_one = std::atanh(root) / root;
 
 double gain(double s) {
   const double below = std::min(s, 1.0);
-  return 1.0 - rate::alpha * below * below;
+  return 1.0 - override_limits::alpha * below * below;
 }
 
 /// What one channel demands, in units of its limits; time in s.
@@ -34,16 +34,16 @@ struct Share {
 /// A jerk beyond what a plan may have is one that the planner's points have missed, shorter than a period perhaps: the
 /// differences of samples see a step of acceleration then, which sinks with s² only.
 double jerk_at(const Share& c, double s) {
-  return c.jerk * s * s * (c.jerk > rate::beta ? 1.0 : s);
+  return c.jerk * s * s * (c.jerk > override_limits::beta ? 1.0 : s);
 }
 
-/// Largest slope at a rate; <= 0: none.
+/// Largest slope at an override; <= 0: none.
 double slope_at(const Share& c, double s) {
-  const double g = gain(s), bend = s < 1.0 ? 2.0 * rate::alpha * s : 0.0;
+  const double g = gain(s), bend = s < 1.0 ? 2.0 * override_limits::alpha * s : 0.0;
   const double by_acceleration = (used - c.acceleration * s * s) / std::max(c.velocity * g, 1e-12);
   const double left = used - jerk_at(c, s);
   if (left <= 0.0) return 0.0;
-  const double b = 3.0 * c.to_jerk * s * g, a = c.velocity_to_jerk * g * (rate::kappa + bend);
+  const double b = 3.0 * c.to_jerk * s * g, a = c.velocity_to_jerk * g * (override_limits::kappa + bend);
   return std::min(by_acceleration, 2.0 * left / std::max(b + std::sqrt(b * b + 4.0 * a * left), 1e-12));
 }
 
@@ -60,7 +60,7 @@ void Demand::add(const Demand& other) noexcept {
 
 Stretch stretch_of(const Demand& demand, const ChannelLimits& limits, double max_slope) noexcept {
   std::array<Share, channel_count> channel = {};
-  double cap = rate::max;
+  double cap = override_limits::max;
   for (std::size_t k = 0; k < channel_count; ++k) {
     Share& c = channel[k];
     c = {.velocity = demand.velocity[k] / limits.acceleration[k],
@@ -68,10 +68,10 @@ Stretch stretch_of(const Demand& demand, const ChannelLimits& limits, double max
          .jerk = demand.jerk[k] / limits.jerk[k],
          .to_jerk = demand.acceleration[k] / limits.jerk[k],
          .velocity_to_jerk = demand.velocity[k] / limits.jerk[k]};
-    cap = std::min(
-        {cap, used_velocity * limits.velocity[k] / std::max(demand.velocity[k], 1e-12),
-         std::sqrt(rate::alpha / std::max(c.acceleration, 1e-12)),
-         c.jerk > rate::beta ? std::sqrt(rate::beta / c.jerk) : std::cbrt(rate::beta / std::max(c.jerk, 1e-12))});
+    cap = std::min({cap, used_velocity * limits.velocity[k] / std::max(demand.velocity[k], 1e-12),
+                    std::sqrt(override_limits::alpha / std::max(c.acceleration, 1e-12)),
+                    c.jerk > override_limits::beta ? std::sqrt(override_limits::beta / c.jerk)
+                                                   : std::cbrt(override_limits::beta / std::max(c.jerk, 1e-12))});
   }
   const auto step = [](double s) { return std::max(std::floor(s * caps_per_unit), 1.0) / caps_per_unit; };
   cap = step(cap);
@@ -80,7 +80,7 @@ Stretch stretch_of(const Demand& demand, const ChannelLimits& limits, double max
     const double s = std::min(cap, 1.0) * i / rates;
     for (const Share& c : channel) slope = std::min(slope, slope_at(c, s));
   }
-  // Above rate 1 the slope found has to do.
+  // Above override 1 the slope found has to do.
   const auto holds = [&](double s) {
     return std::all_of(channel.begin(), channel.end(), [&](const Share& c) { return slope_at(c, s) >= slope; });
   };
@@ -89,23 +89,23 @@ Stretch stretch_of(const Demand& demand, const ChannelLimits& limits, double max
   return {.slope = slope, .cap = cap, .feed = feed < 1.0 ? std::min(cap, step(feed)) : cap};
 }
 
-double rate_of(double theta) noexcept {
-  if (theta >= theta_of_one) return 1.0 + (1.0 - rate::alpha) * (theta - theta_of_one);
+double override_of(double theta) noexcept {
+  if (theta >= theta_of_one) return 1.0 + (1.0 - override_limits::alpha) * (theta - theta_of_one);
   return theta > 0.0 ? std::tanh(root * theta) / root : 0.0;
 }
 
-double theta_of(double rate) noexcept {
-  if (rate >= 1.0) return theta_of_one + (rate - 1.0) / (1.0 - rate::alpha);
-  return rate > 0.0 ? std::atanh(root * rate) / root : 0.0;
+double theta_of(double feed_override) noexcept {
+  if (feed_override >= 1.0) return theta_of_one + (feed_override - 1.0) / (1.0 - override_limits::alpha);
+  return feed_override > 0.0 ? std::atanh(root * feed_override) / root : 0.0;
 }
 
-double RateState::peak(double slope) const noexcept {
-  return speed > 0.0 ? theta + 0.5 * speed * speed / (rate::kappa * slope * slope) : theta;
+double OverrideState::peak(double slope) const noexcept {
+  return speed > 0.0 ? theta + 0.5 * speed * speed / (override_limits::kappa * slope * slope) : theta;
 }
 
-RateState approach(const RateState& from, double target, double slope, double period_s) noexcept {
+OverrideState approach(const OverrideState& from, double target, double slope, double period_s) noexcept {
   const double error = target - from.theta, sign = error < 0.0 ? -1.0 : 1.0;
-  const double jerk = rate::kappa * slope * slope, v = sign * from.speed, step = jerk * period_s;
+  const double jerk = override_limits::kappa * slope * slope, v = sign * from.speed, step = jerk * period_s;
   if (std::abs(error) < 1e-12 && std::abs(v) < 1e-9) return {.theta = target, .speed = 0.0};
   // The speed w from which, a period later and with a period to spare, it can still stop:
   // (v + w) T / 2 + w T / 2 + w² / (2 jerk) = |error|.
@@ -116,8 +116,8 @@ RateState approach(const RateState& from, double target, double slope, double pe
   return {.theta = from.theta + sign * 0.5 * (v + w) * period_s, .speed = sign * w};
 }
 
-double travel_s(const RateState& from, double base, double until, double slope, double period_s) noexcept {
-  const double jerk = rate::kappa * slope * slope, w = from.speed, height = from.theta - base;
+double travel_s(const OverrideState& from, double base, double until, double slope, double period_s) noexcept {
+  const double jerk = override_limits::kappa * slope * slope, w = from.speed, height = from.theta - base;
   if (from.peak(slope) <= until) return 0.0;
   const double least = w < 0.0 ? 0.5 * w * w / jerk - 0.5 * w * period_s : 0.0;
   if (std::abs(w) > slope * (1.0 + 1e-12) || height < least * (1.0 - 1e-9) - 1e-12) {
@@ -128,8 +128,8 @@ double travel_s(const RateState& from, double base, double until, double slope, 
   const double p = std::min(slope, std::sqrt(jerk * height + 0.5 * w * w));
   const double first_end = height + 0.5 * (w * w - p * p) / jerk, last_begin = 0.5 * p * p / jerk;
   const double drop = std::max(0.0, until - base);
-  double out = lag_periods * period_s * rate_of(from.peak(slope));
-  const auto pass = [&](double time, double mean) { out += time * rate_of(base + mean); };
+  double out = lag_periods * period_s * override_of(from.peak(slope));
+  const auto pass = [&](double time, double mean) { out += time * override_of(base + mean); };
   const double first_s =
       drop >= first_end ? (w + std::sqrt(std::max(0.0, w * w + 2.0 * jerk * (height - drop)))) / jerk : (w + p) / jerk;
   pass(first_s, height + first_s * (0.5 * w - jerk * first_s / 6.0));
@@ -146,11 +146,11 @@ double travel_s(const RateState& from, double base, double until, double slope, 
   return out;
 }
 
-double passed_s(const RateState& from, const RateState& to, double period_s) noexcept {
-  const double begin = rate_of(from.theta);
+double passed_s(const OverrideState& from, const OverrideState& to, double period_s) noexcept {
+  const double begin = override_of(from.theta);
   if (from.speed == 0.0 && to.speed == 0.0) return period_s * begin;
   const double middle = from.theta + period_s * (0.375 * from.speed + 0.125 * to.speed);
-  return period_s / 6.0 * (begin + 4.0 * rate_of(middle) + rate_of(to.theta));
+  return period_s / 6.0 * (begin + 4.0 * override_of(middle) + override_of(to.theta));
 }
 
 }  // namespace robomill::path
