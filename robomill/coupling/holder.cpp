@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/coupling/artefact.hpp"
 #include "robomill/coupling/base.hpp"
@@ -274,11 +274,11 @@ Eigen::Matrix2cd take_off(const std::vector<Equation>& equations, const detail::
     a.row(e) << weight * t(0) * s(0), weight * (t(0) * s(1) + t(1) * s(0)), weight * t(1) * s(1);
     b(e) = weight * (h - points.receptance(equation.row, equation.column));
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& sigma = svd.singularValues();
+  const ComplexThinSvd svd = thin_svd(a);
+  const Eigen::VectorXd& sigma = svd.values;
   const double floor = regularisation * sigma(0);
   const Eigen::VectorXd gain = sigma.unaryExpr([&](double s) { return s > 0.0 ? s / (s * s + floor * floor) : 0.0; });
-  const Eigen::MatrixXcd inverse = svd.matrixV() * gain.asDiagonal() * svd.matrixU().adjoint();
+  const Eigen::MatrixXcd inverse = svd.v * gain.asDiagonal() * svd.u.adjoint();
   const auto matrix = [](const Eigen::Vector3cd& m) { return Eigen::Matrix2cd{{m(0), m(1)}, {m(1), m(2)}}; };
   const Eigen::Matrix2cd seen = matrix(inverse * b);
   Eigen::Matrix2cd stiffness = points.stiffness;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/linear_algebra.hpp"
 
 namespace robomill::cutting {
 namespace {
@@ -99,11 +100,11 @@ PairFit fit_pair(const Slots& slots, const Direction& direction, const SlotOptio
   // A force that varies by no more than rounding has no variance to explain.
   pair.r_squared = total > 1e-24 * force_n.squaredNorm() ? 1.0 - squares / total : no_number;
   pair.noise_n = left > 0 ? std::sqrt(squares / static_cast<double>(left)) : no_number;
-  const Eigen::MatrixXd inverse = (scaled.transpose() * scaled).inverse();
+  const Eigen::MatrixXd covariance = inverse(Eigen::MatrixXd(scaled.transpose() * scaled));
   const double noise_n = left > 0 ? pair.noise_n : HUGE_VAL;
-  pair.cutting_deviation_n_per_m2 = noise_n * std::sqrt(inverse(0, 0)) / size(0);
-  pair.edge_deviation_n_per_m = with_edge ? noise_n * std::sqrt(inverse(1, 1)) / size(1) : 0.0;
-  pair.correlation = with_edge ? inverse(0, 1) / std::sqrt(inverse(0, 0) * inverse(1, 1)) : 0.0;
+  pair.cutting_deviation_n_per_m2 = noise_n * std::sqrt(covariance(0, 0)) / size(0);
+  pair.edge_deviation_n_per_m = with_edge ? noise_n * std::sqrt(covariance(1, 1)) / size(1) : 0.0;
+  pair.correlation = with_edge ? covariance(0, 1) / std::sqrt(covariance(0, 0) * covariance(1, 1)) : 0.0;
   return out;
 }
 

@@ -1,8 +1,6 @@
 #include "robomill/modal/structure.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -11,6 +9,7 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/linear_algebra.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -22,7 +21,7 @@ constexpr double max_vector_condition = 1e10;
 
 template <class Matrix>
 double condition(const Matrix& matrix) {
-  const Eigen::VectorXd values = Eigen::JacobiSVD<Matrix>(matrix).singularValues();
+  const Eigen::VectorXd values = thin_svd(matrix).values;
   return values(0) / values(values.size() - 1);
 }
 
@@ -70,9 +69,8 @@ void Structure::validate() const {
 ModalModel modes_of(const Structure& structure) {
   structure.validate();
   const Eigen::Index n = structure.mass_kg.rows();
-  const Eigen::PartialPivLU<Eigen::MatrixXd> mass(structure.mass_kg);
-  const Eigen::MatrixXd stiffness = mass.solve(structure.stiffness_n_per_m);
-  const Eigen::MatrixXd damping = mass.solve(structure.damping_n_s_per_m);
+  const Eigen::MatrixXd stiffness = solve(structure.mass_kg, structure.stiffness_n_per_m);
+  const Eigen::MatrixXd damping = solve(structure.mass_kg, structure.damping_n_s_per_m);
   // Time in units of 1/scale, so that displacement and velocity weigh alike in the eigenproblem.
   const double scale = std::sqrt(stiffness.norm() / std::sqrt(static_cast<double>(n)));
 
@@ -80,23 +78,21 @@ ModalModel modes_of(const Structure& structure) {
   state.topRightCorner(n, n).setIdentity();
   state.bottomLeftCorner(n, n) = -stiffness / (scale * scale);
   state.bottomRightCorner(n, n) = -damping / scale;
-  const Eigen::EigenSolver<Eigen::MatrixXd> eigen(state);
-  if (eigen.info() != Eigen::Success) {
+  const EigenPairs eigen = eigen_pairs(state);
+  if (!eigen.converged) {
     throw InvalidInput("stiffness_n_per_m", "has no eigenvalues that double precision can find",
                        "Are the units mixed?");
   }
-  const Eigen::VectorXcd lambda = scale * eigen.eigenvalues();
+  const Eigen::VectorXcd lambda = scale * eigen.values;
   for (const Complex& value : lambda) reject_pole(value);
-  const Eigen::MatrixXcd vectors = eigen.eigenvectors();
+  const Eigen::MatrixXcd& vectors = eigen.vectors;
   if (!(condition(vectors) < max_vector_condition)) {
     throw InvalidInput("damping_n_s_per_m", "makes poles coincide without eigenvectors of their own",
                        "A mode at critical damping is no conjugate pair");
   }
   // The rows of the inverse are the left eigenvectors, which are so biorthogonal within repeated poles too. The force
   // enters the state through M⁻¹ / scale.
-  const Eigen::MatrixXcd inverse = vectors.partialPivLu().inverse();
-  const Eigen::MatrixXd mass_inverse = mass.inverse();
-  const Eigen::MatrixXcd left = inverse.rightCols(n) * mass_inverse.cast<Complex>() / scale;
+  const Eigen::MatrixXcd left = inverse(vectors).rightCols(n) * inverse(structure.mass_kg).cast<Complex>() / scale;
 
   ModalModel model;
   model.excitations = structure.dofs;
@@ -131,7 +127,7 @@ FrfSet receptance(const Structure& structure, const Eigen::VectorXd& frequency_h
     const Eigen::MatrixXcd dynamic_stiffness =
         (structure.stiffness_n_per_m - omega * omega * structure.mass_kg).cast<Complex>() +
         Complex(0.0, omega) * structure.damping_n_s_per_m.cast<Complex>();
-    const Eigen::MatrixXcd h = dynamic_stiffness.partialPivLu().inverse();
+    const Eigen::MatrixXcd h = inverse(dynamic_stiffness);
     if (!h.allFinite()) {
       throw InvalidInput("frequency_hz", frequency_hz(line), "Hz", "is where the dynamic stiffness is singular",
                          "A structure that is not held, or not damped, has no receptance there");

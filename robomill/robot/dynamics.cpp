@@ -11,6 +11,7 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/linear_algebra.hpp"
 
 namespace robomill::robot {
 namespace {
@@ -111,11 +112,14 @@ void solve_modes(const Normal& system, ToolModes& out) {
   state.topRightCorner(n, n).setIdentity();
   state.bottomLeftCorner(n, n) = -system.stiffness;
   state.bottomRightCorner(n, n) = -system.damping;
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(state);
-  const Eigen::MatrixXcd vectors = solver.eigenvectors(), inverse = vectors.partialPivLu().inverse();
+  const EigenPairs pairs = eigen_pairs(state);
+  if (!pairs.converged) {
+    throw InvalidInput("joints", "have no modes that double precision can find", "Are the units mixed?");
+  }
+  const Eigen::MatrixXcd &vectors = pairs.vectors, back = inverse(vectors);
   for (Eigen::Index k = 0; k < 2 * n; ++k) {
-    const Complex pole = solver.eigenvalues()(k);
-    const Eigen::VectorXcd x = vectors.col(k).head(n), y = inverse.row(k).tail(n).transpose();
+    const Complex pole = pairs.values(k);
+    const Eigen::VectorXcd x = vectors.col(k).head(n), y = back.row(k).tail(n).transpose();
     if (pole.imag() > 0.0) {
       out.modes.push_back(make_mode(system, pole, x, y));
     } else if (pole.imag() == 0.0) {
@@ -129,9 +133,9 @@ void solve_modes(const Normal& system, ToolModes& out) {
 /// Damping that gives every undamped mode one ratio.
 Eigen::MatrixXd damping_of_ratio(const Eigen::MatrixXd& stiffness, double ratio) {
   const Eigen::MatrixXd symmetric = 0.5 * (stiffness + stiffness.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
-  const Eigen::VectorXd rate = 2.0 * ratio * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  return solver.eigenvectors() * rate.asDiagonal() * solver.eigenvectors().transpose();
+  const SymmetricEigenPairs pairs = symmetric_eigen_pairs(symmetric);
+  const Eigen::VectorXd rate = 2.0 * ratio * pairs.values.cwiseMax(0.0).cwiseSqrt();
+  return pairs.vectors * rate.asDiagonal() * pairs.vectors.transpose();
 }
 
 }  // namespace

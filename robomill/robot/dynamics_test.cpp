@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <cmath>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/random.hpp"
 #include "testing/robot/arms.hpp"
 #include "testing/support.hpp"
@@ -108,7 +109,7 @@ TEST(Dynamics, ModesSumToTheReceptance) {
     for (int line = 0; line < 20; ++line) {
       const double frequency_hz = random.uniform(0.0, 100.0), w = 2.0 * testing::pi * frequency_hz;
       const Eigen::MatrixXcd dynamic = (stiff - w * w * mass).cast<Complex>() + Complex(0.0, w) * damp.cast<Complex>();
-      const Matrix6c expected = jac.cast<Complex>() * dynamic.inverse() * jac.transpose().cast<Complex>();
+      const Matrix6c expected = jac.cast<Complex>() * inverse(dynamic) * jac.transpose().cast<Complex>();
       EXPECT_LT((modes.receptance(frequency_hz) - expected).norm(), 1e-10 * expected.norm());
     }
     if (options.wrench.moment_n_m.isZero()) {

@@ -1,13 +1,13 @@
 #include "robomill/robot/identify.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/linear_algebra.hpp"
 
 namespace robomill::robot {
 namespace {
@@ -146,16 +146,16 @@ Solved solve(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right, const 
   Eigen::MatrixXd part = matrix(Eigen::all, free);
   const Eigen::VectorXd length = part.colwise().norm();
   part = (part * length.cwiseInverse().asDiagonal()).eval();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(part, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& values = svd.singularValues();
+  const ThinSvd svd = thin_svd(part);
+  const Eigen::VectorXd& values = svd.values;
   out.condition = values(0) / values(values.size() - 1);
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(part.cols(), part.cols());
   Eigen::VectorXd step = Eigen::VectorXd::Zero(part.cols());
   for (Eigen::Index k = 0; k < values.size(); ++k) {
-    const Eigen::VectorXd v = svd.matrixV().col(k);
+    const Eigen::VectorXd v = svd.v.col(k);
     if (values(k) > unseen * values(0)) {
       ++out.rank;
-      step += v * (svd.matrixU().col(k).dot(right) / values(k));
+      step += v * (svd.u.col(k).dot(right) / values(k));
       inverse += v * v.transpose() / (values(k) * values(k));
     } else {
       for (std::size_t i = 0; i < free.size(); ++i) {

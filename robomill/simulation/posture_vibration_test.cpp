@@ -1,10 +1,12 @@
 // Vibration of any cutter: growth, energy, and the deflection of a compliance.
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "robomill/base/linear_algebra.hpp"
 
 #include "testing/simulation/posture_cases.hpp"
 
@@ -101,7 +103,7 @@ double trapezoidal_radius(const PostureCut& cut, const Eigen::Vector3d& mass, co
   }
   Eigen::MatrixXd map(n, n);
   map << history.bottomRows(n - 3), velocity;
-  return Eigen::EigenSolver<Eigen::MatrixXd>(map, false).eigenvalues().cwiseAbs().maxCoeff();
+  return eigenvalues(map).cwiseAbs().maxCoeff();
 }
 
 // A tilted ball, modes along x, y and z: two ways to the same multiplier that share no code.

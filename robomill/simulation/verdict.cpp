@@ -1,10 +1,10 @@
 #include "robomill/simulation/verdict.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/signal/spectrum.hpp"
 
 namespace robomill::simulation::detail {
@@ -13,16 +13,16 @@ std::complex<double> dominant_multiplier(const Eigen::MatrixXd& snapshots) {
   const Eigen::Index n = snapshots.cols() - 1;
   const double size = snapshots.norm();
   if (n < 2 || !(size > 0.0)) return 0.0;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(snapshots.leftCols(n) / size, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const ThinSvd svd = thin_svd(Eigen::MatrixXd(snapshots.leftCols(n) / size));
   // Directions below this share of the greatest are rounding and would give multipliers of their own.
   constexpr double least = 1e-9;
-  const Eigen::VectorXd& sigma = svd.singularValues();
+  const Eigen::VectorXd& sigma = svd.values;
   Eigen::Index rank = 0;
   while (rank < sigma.size() && sigma(rank) > least * sigma(0)) ++rank;
   if (rank == 0) return 0.0;
-  const Eigen::MatrixXd small = svd.matrixU().leftCols(rank).transpose() * (snapshots.rightCols(n) / size) *
-                                svd.matrixV().leftCols(rank) * sigma.head(rank).cwiseInverse().asDiagonal();
-  const Eigen::VectorXcd multipliers = Eigen::EigenSolver<Eigen::MatrixXd>(small, false).eigenvalues();
+  const Eigen::MatrixXd small = svd.u.leftCols(rank).transpose() * (snapshots.rightCols(n) / size) *
+                                svd.v.leftCols(rank) * sigma.head(rank).cwiseInverse().asDiagonal();
+  const Eigen::VectorXcd multipliers = eigenvalues(small);
   Eigen::Index best = 0;
   multipliers.cwiseAbs().maxCoeff(&best);
   return {multipliers(best).real(), std::abs(multipliers(best).imag())};

@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -6,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/stability/frequency_domain/contact_basis.hpp"
 #include "robomill/stability/peak_classification.hpp"
 #include "robomill/stability/tip_dynamics.hpp"
@@ -37,7 +37,7 @@ class WithoutDelay {
     Eigen::MatrixXd whole(2 * n, 2 * n);
     whole << z.real(), z.imag();
     if (!whole.allFinite()) return 1e100;
-    return std::min(1e100, Eigen::EigenSolver<Eigen::MatrixXd>(whole, false).eigenvalues().cwiseAbs().maxCoeff());
+    return std::min(1e100, eigenvalues(whole).cwiseAbs().maxCoeff());
   }
 
  private:

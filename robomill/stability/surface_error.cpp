@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/stability/chart/chart.hpp"
@@ -142,7 +143,7 @@ SurfacePoint orbit_at(const CollocationModel& model, const OperatingPoint& point
     if (j + 1 < size) matrix.col(j + 1) = end.imag();
   }
   const Eigen::VectorXd pushed = trace(model, at, point.axial_depth_m, rest, forces).end.real();
-  const Eigen::VectorXd start = (Eigen::MatrixXd::Identity(size, size) - matrix).partialPivLu().solve(pushed);
+  const Eigen::VectorXd start = solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(size, size) - matrix), pushed);
   const NodeForces orbit = trace(model, at, point.axial_depth_m, start.cast<std::complex<double>>(), forces);
 
   SurfacePoint result;

@@ -1,11 +1,12 @@
 #include "robomill/modal/fitting/fit_search.hpp"
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/modal/fitting/fit_noise.hpp"
 
 namespace robomill::modal::detail {
@@ -93,10 +94,10 @@ std::vector<Candidate> candidates(const FitData& data, const Evaluation& at, con
 
 // L of the R Lᵀ nearest to a residue matrix on the entries that the data has.
 Eigen::VectorXcd left_vector(const Eigen::MatrixXcd& residue, const FitData& data) {
-  const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(residue, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  Eigen::VectorXcd left = svd.matrixV().col(0).conjugate();
+  const ComplexThinSvd svd = thin_svd(residue);
+  Eigen::VectorXcd left = svd.v.col(0).conjugate();
   if (static_cast<Index>(data.entries.size()) == residue.size()) return left;
-  Eigen::VectorXcd right = svd.matrixU().col(0);
+  Eigen::VectorXcd right = svd.u.col(0);
   const auto fit_to = [&](Eigen::VectorXcd& own, const Eigen::VectorXcd& other, bool of_right) {
     Eigen::VectorXcd product = Eigen::VectorXcd::Zero(own.size());
     Eigen::VectorXd size2 = Eigen::VectorXd::Zero(own.size());

@@ -1,14 +1,13 @@
 #include "robomill/modal/fitting/lscf.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/statistics.hpp"
 
 namespace robomill::modal::detail {
@@ -127,7 +126,7 @@ VectorXcd inverse_roots(const Fraction& fraction) {
     companion.block(0, a * refs, refs, refs) = -fraction.alpha[static_cast<std::size_t>(a + 1)];
   }
   companion.bottomLeftCorner((order - 1) * refs, (order - 1) * refs).setIdentity();
-  return Eigen::ComplexEigenSolver<MatrixXcd>(companion, false).eigenvalues();
+  return eigenvalues(companion);
 }
 
 // R_o = B_o(z) v and L = u with A(z) v = 0, uᵀ A(z) = 0.
@@ -135,9 +134,9 @@ void set_vectors(LscfPole& pole, const Fraction& fraction, Complex z) {
   const Index refs = fraction.alpha.front().rows();
   MatrixXcd a = MatrixXcd::Zero(refs, refs);
   for (std::size_t r = fraction.alpha.size(); r > 0; --r) a = (a * z + fraction.alpha[r - 1]).eval();
-  const Eigen::JacobiSVD<MatrixXcd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const VectorXcd v = svd.matrixV().col(refs - 1);
-  pole.left = svd.matrixU().col(refs - 1).conjugate();
+  const ComplexThinSvd svd = thin_svd(a);
+  const VectorXcd v = svd.v.col(refs - 1);
+  pole.left = svd.u.col(refs - 1).conjugate();
   pole.right.resize(static_cast<Index>(fraction.beta.size()));
   for (std::size_t o = 0; o < fraction.beta.size(); ++o) {
     Complex value = 0.0;

@@ -1,9 +1,10 @@
 #include "robomill/modal/fitting/refine.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/modal/fitting/least_squares.hpp"
 
 namespace robomill::modal::detail {
@@ -32,18 +33,17 @@ class ReducedCost : public ceres::CostFunction {
     if (!derivatives) return true;
     const Eigen::VectorXd scale =
         e.hessian.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        Eigen::MatrixXd(scale.asDiagonal() * e.hessian * scale.asDiagonal()));
-    const Eigen::VectorXd size = eigen.eigenvalues().cwiseMax(1e-15).cwiseSqrt();
+    const SymmetricEigenPairs eigen = symmetric_eigen_pairs(scale.asDiagonal() * e.hessian * scale.asDiagonal());
+    const Eigen::VectorXd size = eigen.values.cwiseMax(1e-15).cwiseSqrt();
     const Eigen::VectorXd along =
-        size.cwiseInverse().asDiagonal() * (eigen.eigenvectors().transpose() * (scale.asDiagonal() * e.gradient));
+        size.cwiseInverse().asDiagonal() * (eigen.vectors.transpose() * (scale.asDiagonal() * e.gradient));
     out.head(unknowns_) = -along;
     out(unknowns_) = std::sqrt(std::max(0.0, e.cost - along.squaredNorm()));
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
         jacobians[0], unknowns_ + 1, unknowns_);
     jacobian.setZero();
     const Eigen::VectorXd unscale = scale.unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
-    jacobian.topRows(unknowns_) = size.asDiagonal() * eigen.eigenvectors().transpose() * unscale.asDiagonal();
+    jacobian.topRows(unknowns_) = size.asDiagonal() * eigen.vectors.transpose() * unscale.asDiagonal();
     return true;
   }
 

@@ -1,6 +1,5 @@
 #include "robomill/modal/impact/hits_axis.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/parallel.hpp"
 
 namespace robomill::modal {
@@ -37,7 +37,7 @@ bool poles_stay_away(const Eigen::Ref<const Eigen::VectorXcd>& a, double limit) 
   Eigen::MatrixXcd companion = Eigen::MatrixXcd::Zero(degree, degree);
   companion.row(0) = -a.transpose();
   if (degree > 1) companion.diagonal(-1).setOnes();
-  const Eigen::VectorXcd inverses = companion.eigenvalues();
+  const Eigen::VectorXcd inverses = eigenvalues(companion);
   for (const Complex inverse : inverses) {
     const Complex root = 1.0 / inverse;
     if (std::abs(root.imag()) < 1.0 && root.real() > limit && root.real() < -limit) return false;

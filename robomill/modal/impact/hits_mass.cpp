@@ -6,6 +6,8 @@
 #include <complex>
 #include <cstddef>
 
+#include "robomill/base/linear_algebra.hpp"
+
 namespace robomill::modal {
 namespace {
 
@@ -69,8 +71,8 @@ void correct_line(const Grid& grid, Index line, Complex mass_s2) {
     }
   }
   const Eigen::MatrixXcd unloaded = Eigen::MatrixXcd::Identity(k, k) - mass_s2 * measured.topLeftCorner(k, k);
-  const Eigen::MatrixXcd inverse = unloaded.inverse();
-  const Eigen::MatrixXcd hit = measured.leftCols(k) * inverse;
+  const Eigen::MatrixXcd back = inverse(unloaded);
+  const Eigen::MatrixXcd hit = measured.leftCols(k) * back;
   Eigen::MatrixXcd clean = measured;
   clean += mass_s2 * hit * measured.topRows(k);
 
@@ -78,7 +80,7 @@ void correct_line(const Grid& grid, Index line, Complex mass_s2) {
   Eigen::MatrixXcd left = Eigen::MatrixXcd::Identity(rows, rows);
   left.leftCols(k) += mass_s2 * hit;
   Eigen::MatrixXcd right = Eigen::MatrixXcd::Identity(columns, columns);
-  right.topRows(k) += mass_s2 * inverse * measured.topRows(k);
+  right.topRows(k) += mass_s2 * back * measured.topRows(k);
   const Eigen::MatrixXd clean_variance = left.cwiseAbs2() * variance * right.cwiseAbs2();
   for (Index i = 0; i < rows; ++i) {
     for (Index j = 0; j < columns; ++j) {

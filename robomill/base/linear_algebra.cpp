@@ -1,0 +1,54 @@
+#include "robomill/base/linear_algebra.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+namespace robomill {
+
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& a) {
+  return a.partialPivLu().inverse();
+}
+
+Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& a) {
+  return a.partialPivLu().inverse();
+}
+
+Eigen::VectorXd solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  return a.partialPivLu().solve(b);
+}
+
+Eigen::MatrixXd solve(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.partialPivLu().solve(b);
+}
+
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& a) {
+  return Eigen::EigenSolver<Eigen::MatrixXd>(a, false).eigenvalues();
+}
+
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXcd& a) {
+  return Eigen::ComplexEigenSolver<Eigen::MatrixXcd>(a, false).eigenvalues();
+}
+
+EigenPairs eigen_pairs(const Eigen::MatrixXd& a) {
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(a);
+  if (solver.info() != Eigen::Success) return {};
+  return {.values = solver.eigenvalues(), .vectors = solver.eigenvectors(), .converged = true};
+}
+
+SymmetricEigenPairs symmetric_eigen_pairs(const Eigen::MatrixXd& a) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
+  return {.values = solver.eigenvalues(), .vectors = solver.eigenvectors()};
+}
+
+ThinSvd thin_svd(const Eigen::MatrixXd& a) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return {.u = svd.matrixU(), .v = svd.matrixV(), .values = svd.singularValues()};
+}
+
+ComplexThinSvd thin_svd(const Eigen::MatrixXcd& a) {
+  const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return {.u = svd.matrixU(), .v = svd.matrixV(), .values = svd.singularValues()};
+}
+
+}  // namespace robomill

@@ -1,0 +1,54 @@
+#include "robomill/base/linear_algebra.hpp"
+
+#include <gtest/gtest.h>
+
+#include <complex>
+#include <vector>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/statistics.hpp"
+
+namespace robomill {
+namespace {
+
+Eigen::MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::Index columns) {
+  Eigen::MatrixXd out(rows, columns);
+  for (double& value : out.reshaped()) value = random.normal();
+  return out;
+}
+
+// The answers put back into their equations.
+TEST(LinearAlgebra, AnswersSolveTheirEquations) {
+  Random random(1);
+  for (Eigen::Index n = 1; n <= 12; ++n) {
+    const Eigen::MatrixXd a = random_matrix(random, n, n), b = random_matrix(random, n, 3);
+    const Eigen::MatrixXcd c = a.cast<std::complex<double>>() + std::complex<double>(0.0, 1.0) * random_matrix(random, n, n);
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
+    EXPECT_LT((a * inverse(a) - one).norm(), 1e-9);
+    EXPECT_LT((c * inverse(c) - one).norm(), 1e-9);
+    EXPECT_LT((a * solve(a, b) - b).norm(), 1e-9);
+    EXPECT_LT((a * solve(a, Eigen::VectorXd(b.col(0))) - b.col(0)).norm(), 1e-9);
+    const EigenPairs pairs = eigen_pairs(a);
+    ASSERT_TRUE(pairs.converged);
+    EXPECT_LT((a * pairs.vectors - pairs.vectors * pairs.values.asDiagonal()).norm(), 1e-9);
+    EXPECT_NEAR(std::abs(eigenvalues(a).sum() - a.trace()), 0.0, 1e-9);
+    EXPECT_NEAR(std::abs(eigenvalues(c).sum() - c.trace()), 0.0, 1e-9);
+    const Eigen::MatrixXd symmetric = a + a.transpose();
+    const SymmetricEigenPairs own = symmetric_eigen_pairs(symmetric);
+    EXPECT_LT((own.vectors * own.values.asDiagonal() * own.vectors.transpose() - symmetric).norm(), 1e-9);
+    const ThinSvd svd = thin_svd(Eigen::MatrixXd(b.transpose()));
+    EXPECT_LT((svd.u * svd.values.asDiagonal() * svd.v.transpose() - b.transpose()).norm(), 1e-9);
+    const ComplexThinSvd wide = thin_svd(c);
+    EXPECT_LT((wide.u * wide.values.asDiagonal() * wide.v.adjoint() - c).norm(), 1e-9);
+  }
+}
+
+TEST(Median, IsTheUpperOfTheTwoInTheMiddle) {
+  EXPECT_EQ(median(std::vector<double>{3.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(median(std::vector<double>{4.0, 1.0, 3.0, 2.0}), 3.0);
+  EXPECT_EQ(median(Eigen::Vector2d(5.0, -1.0)), 5.0);
+  EXPECT_EQ(median(std::vector<double>{}), 0.0);
+}
+
+}  // namespace
+}  // namespace robomill
