@@ -13,7 +13,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(robomill_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-restrict
     -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
-if(CMAKE_UNITY_BUILD)
+if(ROBOMILL_UNITY)
   # Sources that are compiled together see each other's unnamed namespaces.
   target_compile_options(robomill_flags INTERFACE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()

@@ -8,10 +8,10 @@
 #                TEST_LIBRARIES ...             what only tests and benchmarks link: any stage, any library
 #                AT_SOURCE ...                  of these, those that read data/ and examples/ by ROBOMILL_SOURCE_DIR
 #                THREADED                       its tests run under ThreadSanitizer too …
-#                ONE_THREAD Fit* ...)           … but for these suites, which run on one thread
+#                NOT_UNDER_TSAN Fit* ...)       … but for these: of one thread, or the longest where shorter ones use the same threads
 function(robomill_stage)
   cmake_parse_arguments(S "THREADED" "NAME;LAYER"
-    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;TESTS;BENCHES;TEST_LIBRARIES;AT_SOURCE;ONE_THREAD" ${ARGN})
+    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;TESTS;BENCHES;TEST_LIBRARIES;AT_SOURCE;NOT_UNDER_TSAN" ${ARGN})
   set(target robomill_${S_NAME})
   foreach(dependency IN LISTS S_DEPENDS)
     if(NOT TARGET robomill_${dependency})
@@ -28,6 +28,7 @@ function(robomill_stage)
   target_include_directories(${target}_objects PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${target}_objects PRIVATE robomill_flags Eigen3::Eigen ${S_LIBRARIES})
   target_precompile_headers(${target}_objects REUSE_FROM robomill_precompiled)
+  set_target_properties(${target}_objects PROPERTIES UNITY_BUILD ${ROBOMILL_UNITY} UNITY_BUILD_BATCH_SIZE 12)
   add_library(${target} STATIC $<TARGET_OBJECTS:${target}_objects>)
   set_target_properties(${target} PROPERTIES ROBOMILL_LAYER ${S_LAYER})
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
@@ -67,11 +68,11 @@ function(robomill_stage)
         string(APPEND label "-threaded")
         add_dependencies(threaded_tests ${S_NAME}_test)
       endif()
-      if(S_ONE_THREAD)
-        string(REPLACE ";" ":" one_thread "${S_ONE_THREAD}")
-        gtest_discover_tests(${S_NAME}_test TEST_FILTER "${one_thread}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+      if(S_NOT_UNDER_TSAN)
+        string(REPLACE ";" ":" others "${S_NOT_UNDER_TSAN}")
+        gtest_discover_tests(${S_NAME}_test TEST_FILTER "${others}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
           PROPERTIES LABELS ${S_NAME} TIMEOUT 1200)
-        set(filter TEST_FILTER "-${one_thread}")
+        set(filter TEST_FILTER "-${others}")
       endif()
       gtest_discover_tests(${S_NAME}_test ${filter} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
         PROPERTIES LABELS ${label} TIMEOUT 1200)

@@ -15,7 +15,7 @@ namespace {
 constexpr double period_s = 0.001;
 
 // ds/dθ = 1 − α min(s, 1)² by differences, and the inverse.
-TEST(Rate, RunsThroughThetaAsItsDifferentialEquationSays) {
+TEST(FeedOverride, RunsThroughThetaAsItsDifferentialEquationSays) {
   for (double s = 0.01; s < 1.5; s += 0.0137) {
     const double theta = theta_of(s);
     EXPECT_NEAR(override_of(theta), s, 1e-12);
@@ -52,7 +52,7 @@ ChannelLimits random_limits(Random& random) {
 }
 
 // The chain rule put back: at any override up to the cap, any |θ̇| <= r and |θ̈| <= κ r², whatever the signs.
-TEST(Rate, AStretchKeepsEveryLimitWhateverTheRateDoesWithinIt) {
+TEST(FeedOverride, AStretchKeepsEveryLimitWhateverItDoesWithin) {
   Random random(3);
   int capped = 0, fast = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -86,7 +86,7 @@ TEST(Rate, AStretchKeepsEveryLimitWhateverTheRateDoesWithinIt) {
   EXPECT_GT(fast, 300);
 }
 
-TEST(Rate, ApproachesAnyTargetWithinItsBoundsAndRestsThere) {
+TEST(FeedOverride, ApproachesAnyTargetWithinItsBoundsAndRestsThere) {
   Random random(5);
   for (int i = 0; i < 2000; ++i) {
     const double slope = std::exp(random.uniform(-1.0, 4.5)), jerk = override_limits::kappa * slope * slope;
@@ -114,7 +114,7 @@ TEST(Rate, ApproachesAnyTargetWithinItsBoundsAndRestsThere) {
 }
 
 // What travel_s() promises against the brake that is run, period by period.
-TEST(Rate, TravelBoundsWhatTheBrakeTakes) {
+TEST(FeedOverride, TravelBoundsWhatTheBrakeTakes) {
   Random random(7);
   double worst = 0.0;
   int feasible = 0;
@@ -146,7 +146,7 @@ TEST(Rate, TravelBoundsWhatTheBrakeTakes) {
 }
 
 // The reserve pays by its logarithm: the way from full override to rest at full slope is 1.92 and not 10.
-TEST(Rate, StopsFromFullRateInAboutTwiceTheTimeOfAnUnplannedStop) {
+TEST(FeedOverride, StopsFromFullFeedInAboutTwiceTheTimeOfAnUnplannedStop) {
   ChannelLimits limits;
   limits.velocity.fill(1.0);
   limits.acceleration.fill(5.0);
