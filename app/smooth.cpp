@@ -10,6 +10,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/jobs/summary.hpp"
+#include "robomill/path/files/motion_json.hpp"
 #include "robomill/report/report.hpp"
 #include "verbs.hpp"
 
@@ -24,7 +25,8 @@ void write_report(const std::filesystem::path& path, const jobs::SmoothResult& r
   report::Report page;
   page.title = "Smoothed program";
   page.summary = jobs::summary(result);
-  page.smooth = jobs::smooth_report(result);
+  page.smooth = path::smooth_json(result.smoothed);
+  page.motion = path::motion_json(result.outline, result.motions);
   io::write_file(path, report::report_html(page));
 }
 

@@ -12,6 +12,7 @@
 #include "robomill/jobs/summary.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
+#include "robomill/path/files/motion_json.hpp"
 #include "robomill/version.hpp"
 
 namespace robomill::jobs {
@@ -132,7 +133,10 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   if (result.has_lobes()) report.lobes = lobes_json(result);
   if (!result.recordings.empty()) report.recordings = io::dump(recordings_json(result));
   if (result.forces) report.forces = with_limits(forces_report(*result.forces), result);
-  if (result.path) report.smooth = smooth_report(*result.path);
+  if (result.path) {
+    report.smooth = path::smooth_json(result.path->smoothed);
+    report.motion = path::motion_json(result.path->outline, result.path->motions);
+  }
   report.files = files;
   return report;
 }

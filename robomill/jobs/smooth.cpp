@@ -21,7 +21,6 @@
 #include "robomill/path/files/trajectory.hpp"
 #include "robomill/path/smooth.hpp"
 #include "robomill/program/files/program_files.hpp"
-#include "robomill/report/smooth_recorder.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -157,7 +156,7 @@ class DriveModel {
 /// @param file      takes the samples; may be null
 /// @param recorder  as well
 path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::SampleFile* file,
-                           report::MotionRecorder* recorder, Progress& progress) {
+                           path::MotionRecorder* recorder, Progress& progress) {
   path::SmoothingOptions options = bench.smoothing.options;
   options.method = method;
   path::SmoothedBy out{.method = method};
@@ -175,8 +174,8 @@ path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::Sample
     if (file != nullptr) file->restart();
     if (!drives.empty()) follower.emplace(drives, options.sample_period_s);
     if (recorder == nullptr) return;
-    recorder->restart(follower ? report::Tracking([&](const path::Sample& sample) { return follower->follow(sample); })
-                               : report::Tracking());
+    recorder->restart(follower ? path::Tracking([&](const path::Sample& sample) { return follower->follow(sample); })
+                               : path::Tracking());
   };
   try {
     out.summary = path::smooth(*bench.program, *bench.machine, bench.posture.posture, options, take, restart, progress);
@@ -229,6 +228,11 @@ void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   smoothed.program = job.program.filename().string();
   smoothed.cell = job.cell.filename().string();
   smoothed.prismatic = bench.prismatic;
+  const std::vector<double>& gamma_rad = bench.posture.posture.gamma_rad;
+  if (bench.machine->turns_about_axis() && !gamma_rad.empty()) {
+    const auto [lowest, highest] = std::ranges::minmax(gamma_rad);
+    smoothed.gamma_rad = {lowest, highest};
+  }
   smoothed.skipped = bench.program->skipped();
   std::vector<std::string>& notes = smoothed.notes;
   notes.insert(notes.end(), bench.cell.notes.begin(), bench.cell.notes.end());
@@ -256,12 +260,11 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
   SmoothResult result;
   result.options = bench.smoothing.options;
   result.posture = bench.posture;
-  result.turns_about_axis = bench.machine->turns_about_axis();
   std::unique_ptr<path::SampleFile> file = open_output(job, bench);
-  std::optional<report::MotionRecorder> recorder;
+  std::optional<path::MotionRecorder> recorder;
   if (job.record) {
-    result.outline = report::outline(*bench.program, result.options.tip_tolerance_m);
-    recorder.emplace(*bench.machine, bench.prismatic, result.options.sample_period_s, result.outline.corners);
+    result.outline = path::outline(*bench.program, result.options.tip_tolerance_m);
+    recorder.emplace(bench.machine->joints(), bench.prismatic, result.options.sample_period_s, result.outline.corners);
   }
   for (const path::Method method : methods_of(job, result.options.method)) {
     const bool asked_for = result.smoothed.methods.empty();
@@ -284,10 +287,7 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
         return file->settle(*bench.program, *bench.machine, result.options, result.trajectory_holds(), progress);
       });
     }
-    if (recorder) {
-      result.motions.push_back(recorder->motion());
-      result.corner_paths.push_back(recorder->corner_paths());
-    }
+    if (recorder) result.motions.push_back(recorder->motion());
   }
   report(result, job, bench);
   if (file == nullptr) return result;

@@ -11,8 +11,8 @@
 #include "robomill/path/files/trajectory.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/path/posture.hpp"
-#include "robomill/report/smooth.hpp"
-#include "robomill/report/smooth_outline.hpp"
+#include "robomill/path/record/motion_recorder.hpp"
+#include "robomill/path/record/outline.hpp"
 
 // Method: robomill/jobs/README.md, "Smoothed programs (`smooth.hpp`)"
 
@@ -37,10 +37,8 @@ struct SmoothResult {
   std::shared_ptr<path::SampleFile> trajectory = {};  ///< whole, beside its place
   path::SmoothingOptions options = {};
   path::PostureChoice posture = {};
-  bool turns_about_axis = false;
-  report::ProgramOutline outline = {};                           ///< the rest only of a job that records
-  std::vector<report::Motion> motions = {};                      ///< one a method
-  std::vector<std::vector<Eigen::Matrix2Xd>> corner_paths = {};  ///< one a method and corner
+  path::ProgramOutline outline = {};       ///< this and the next only of a job that records
+  std::vector<path::Motion> motions = {};  ///< one a method
 
   [[nodiscard]] const path::SmoothedBy& first() const { return smoothed.methods.front(); }
   /// Whether the trajectory asked for breaks no limit.
@@ -59,9 +57,6 @@ struct SmoothResult {
 /// Moves the trajectory of a job that does not place it to its place, or takes away what stands there from an earlier
 /// run. Once. @throws InvalidInput if that fails
 ROBOMILL_API void place(const SmoothResult& result);
-
-/// The part of the report on it. @param result  of a job that recorded
-[[nodiscard]] ROBOMILL_API report::Smooth smooth_report(const SmoothResult& result);
 
 /// The most of a joint's velocity, acceleration or jerk limit that a trajectory uses.
 [[nodiscard]] ROBOMILL_API double joint_share(const path::CheckResult& check);

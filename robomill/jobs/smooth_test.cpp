@@ -171,17 +171,23 @@ TEST_F(Smoothing, ReportsWhatWasLeftOutAndWhatWasFound) {
   EXPECT_EQ(json["joints"][0]["unit"], "m");
   EXPECT_EQ(json["violations"], 0);
   EXPECT_LE(json["max_tip_error_mm"].get<double>(), 0.02);
-  const report::Smooth page = smooth_report(result);
-  EXPECT_EQ(page.methods.size(), 1U);
-  EXPECT_EQ(page.methods[0].motion.joints.size(), 5U);
-  EXPECT_FALSE(page.corners.empty());
-  EXPECT_TRUE(page.warnings.empty());
-  for (const report::CornerView& corner : page.corners) EXPECT_GT(corner.tip_m.at(0).cols(), 2);
-  // The page's curves reach what the check found.
-  const report::JointMotion& joint = page.methods[0].motion.joints[0];
-  const double jerk = std::max(joint.jerk.high.maxCoeff(), -joint.jerk.low.minCoeff());
-  EXPECT_NEAR(jerk, result.first().summary.check.joints[0].jerk.max, 1e-3 * jerk);
-  EXPECT_NO_THROW(page.validate());
+  EXPECT_TRUE(json["gamma_deg"].is_null()) << "the machine has no such freedom";
+  ASSERT_EQ(result.motions.size(), 1U);
+  const path::Motion& motion = result.motions.front();
+  EXPECT_EQ(motion.joints.size(), 5U);
+  EXPECT_FALSE(result.outline.corners.empty());
+  for (const Eigen::Matrix2Xd& way : motion.corner_paths_m) EXPECT_GT(way.cols(), 2);
+  // The page's curves reach what the check found, and when.
+  const signal::Band& jerk = motion.joints[0].jerk;
+  Eigen::Index high = 0, low = 0;
+  const double largest = std::max(jerk.high.maxCoeff(&high), -jerk.low.minCoeff(&low));
+  EXPECT_NEAR(largest, json["joints"][0]["max_jerk"].get<double>(), 1e-3 * largest);
+  const double at_s = json["joints"][0]["jerk"]["at_s"];
+  const auto run = static_cast<Eigen::Index>(at_s / motion.run_s);
+  const Eigen::Index found = jerk.high[high] >= -jerk.low[low] ? high : low;
+  EXPECT_LE(std::abs(run - found), 1);
+  EXPECT_GE(json["joints"][0]["jerk"]["block"], 1);
+  EXPECT_LE(json["joints"][0]["jerk"]["block"], result.first().summary.blocks);
 }
 
 // Without the joints' jerk the earlier method breaks a tight limit of it: no file, unless it is wished.
@@ -192,7 +198,19 @@ TEST_F(Smoothing, WritesNothingThatBreaksALimit) {
   EXPECT_FALSE(result.holds());
   EXPECT_FALSE(result.smoothed.written);
   EXPECT_FALSE(std::filesystem::exists(broken.output));
-  EXPECT_EQ(smooth_report(result).warnings.size(), 1U);
+  // The document says where, limit by limit.
+  const auto json = nlohmann::json::parse(path::smooth_json(result.smoothed));
+  std::size_t violations = 0;
+  for (const auto& joint : json["joints"]) {
+    for (const char* name : {"velocity", "acceleration", "jerk", "position"}) {
+      violations += joint[name]["violations"].get<std::size_t>();
+    }
+  }
+  for (const char* part : {"tip", "axis"}) violations += json[part]["violations"].get<std::size_t>();
+  for (const char* name : {"pose_error", "dwell_error"}) violations += json[name]["violations"].get<std::size_t>();
+  violations += json["faulty_samples"].get<std::size_t>();
+  EXPECT_GT(violations, 0U);
+  EXPECT_EQ(violations, json["violations"]);
   broken.keep_violations = true;
   EXPECT_TRUE(run_smooth(broken).smoothed.written);
   EXPECT_TRUE(std::filesystem::exists(broken.output));
@@ -233,15 +251,14 @@ TEST_F(Smoothing, SetsMethodsSideBySide) {
   ASSERT_EQ(result.smoothed.methods.size(), 5U);
   EXPECT_EQ(result.first().method, path::Method::paper);
   EXPECT_EQ(read(both.output).rows.size(), result.first().summary.samples) << "the file is of the method asked for";
-  const report::Smooth page = smooth_report(result);
-  ASSERT_EQ(page.methods.size(), 5U);
+  ASSERT_EQ(result.motions.size(), 5U);
   for (std::size_t i = 0; i < 5; ++i) {
     const path::SmoothedBy& by = result.smoothed.methods[i];
     EXPECT_GT(by.summary.duration_s, 0.5);
     ASSERT_EQ(by.tracking_error.size(), 5U);
     EXPECT_GT(by.tracking_error[3], 1e-6);
-    EXPECT_EQ(page.corners.front().tip_m.size(), 5U);
-    const signal::Band& behind = page.methods[i].motion.joints[3].tracking_error;
+    EXPECT_EQ(result.motions[i].corner_paths_m.size(), result.outline.corners.size());
+    const signal::Band& behind = result.motions[i].joints[3].tracking_error;
     EXPECT_DOUBLE_EQ(std::max(behind.high.maxCoeff(), -behind.low.minCoeff()), by.tracking_error[3]);
   }
   // The drives do not depend on whether a page is wished.

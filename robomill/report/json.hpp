@@ -14,9 +14,6 @@ namespace robomill::report {
 /// Its part on forces. Long curves are thinned with their peaks; the worst blocks come from all of them.
 [[nodiscard]] nlohmann::ordered_json forces_json(const Forces& forces);
 
-/// Its part on a smoothed program.
-[[nodiscard]] nlohmann::ordered_json smooth_json(const Smooth& smooth);
-
 /// Its part on a monitored recording.
 [[nodiscard]] nlohmann::ordered_json monitor_json(const MonitorRun& run);
 

@@ -6,7 +6,6 @@
 #include "robomill/base/export.hpp"
 #include "robomill/report/forces.hpp"
 #include "robomill/report/monitor.hpp"
-#include "robomill/report/smooth.hpp"
 
 // Method: robomill/report/README.md, "Method"
 
@@ -32,9 +31,10 @@ struct Report {
   std::string modes = {};            ///< modes.json; empty: none
   std::string workpiece_modes = {};  ///< the same, of a part that vibrates too
   std::string lobes = {};            ///< lobes.json; empty: none
+  std::string smooth = {};           ///< smooth.json; empty: none
+  std::string motion = {};  ///< the same program's outline and motion, recorded for the page alone; empty: none
 
   std::optional<Forces> forces = {};
-  std::optional<Smooth> smooth = {};
   std::optional<MonitorRun> monitor = {};
   std::string calibration = {};  ///< calibration.json; empty: none
   std::vector<StageFile> files = {};

@@ -109,7 +109,8 @@ Json shop_units(const Report& report) {
   json["lobes"] = document(report.lobes);
   json["recordings"] = document(report.recordings);
   json["forces"] = report.forces ? forces_json(*report.forces) : Json(nullptr);
-  json["smooth"] = report.smooth ? smooth_json(*report.smooth) : Json(nullptr);
+  json["smooth"] = document(report.smooth);
+  json["motion"] = document(report.motion);
   json["monitor"] = report.monitor ? monitor_json(*report.monitor) : Json(nullptr);
   json["calibration"] = document(report.calibration);
   json["files"] = Json::array();

@@ -22,6 +22,7 @@ Report sample_report() {
   report.recordings = sample_recordings();
   report.forces = sample_forces();
   report.smooth = sample_smooth();
+  report.motion = sample_motion();
   report.monitor = sample_monitor();
   report.calibration = sample_calibration();
   report.files = {{"frf", "tip.uff", "frequency response functions"},

@@ -5,6 +5,7 @@
 #include "robomill/report/monitor_sample.hpp"
 #include "robomill/report/plan_sample.hpp"
 #include "robomill/report/report_sample.hpp"
+#include "robomill/report/smooth_sample.hpp"
 #include "robomill/report/structure_sample.hpp"
 
 /// report_sample OUT.html [sample|hostile]: the sample page for the browser test; hostile puts markup into every text
@@ -28,11 +29,7 @@ int main(int argc, char** argv) {
     report.forces->notes = {evil};
     report.forces->revolution->verdict = evil;
     report.forces->path->troubles = {evil};
-    report.smooth->facts = {{evil, evil}};
-    report.smooth->notes = {evil};
-    report.smooth->skipped = {evil};
-    report.smooth->methods.front().name = evil;
-    report.smooth->methods.front().uses.front().what = evil;
+    report.smooth = robomill::report::sample_smooth(evil);
     report.monitor->facts = {{evil, evil}};
     report.monitor->notes = {evil};
     report.monitor->channels.front().name = evil;

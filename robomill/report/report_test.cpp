@@ -15,6 +15,7 @@
 #include "robomill/report/page.hpp"
 #include "robomill/report/plan_sample.hpp"
 #include "robomill/report/report_sample.hpp"
+#include "robomill/report/smooth_sample.hpp"
 #include "robomill/report/structure_sample.hpp"
 #include "robomill/report/thin.hpp"
 #include "testing/support.hpp"
@@ -114,10 +115,7 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.forces->notes = {evil};
   report.forces->revolution->verdict = evil;
   report.forces->path->troubles = {evil};
-  report.smooth->facts = {{evil, evil}};
-  report.smooth->warnings = report.smooth->notes = report.smooth->skipped = {evil};
-  report.smooth->methods.front().name = evil;
-  report.smooth->methods.front().uses.front().what = evil;
+  report.smooth = sample_smooth(evil);
   report.monitor->facts = {{evil, evil}};
   report.monitor->warnings = report.monitor->notes = {evil};
   report.monitor->unit = report.monitor->detector = evil;
@@ -222,7 +220,6 @@ std::string rejected(Change&& change) {
 TEST(ReportValidate, NamesTheMember) {
   EXPECT_EQ(rejected([](Report&) {}), "accepted");
   EXPECT_EQ(rejected([](Report& r) { r.forces->path->cuts.pop_back(); }), "forces.path.cuts");
-  EXPECT_EQ(rejected([](Report& r) { r.smooth->methods.clear(); }), "smooth.methods");
 }
 
 // Property: increasing indices, within the bound, and the extremes of the whole curve are among them.

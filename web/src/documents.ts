@@ -1,5 +1,6 @@
 // What robomill writes into the page: shop units, null for "none".
-import type { Forces, Monitor, Smooth } from './recorded';
+import type { Band } from './bands';
+import type { Forces, Monitor, Places } from './recorded';
 
 export * from './recorded';
 export type Num = number | null;
@@ -228,6 +229,97 @@ export interface Recording {
   peaks: Peak[];
 }
 
+/** Where a trajectory came nearest to a limit, and how many samples violate it. */
+export interface NearestToLimit {
+  violations: number;
+  at_s: Num;
+  block: number; // from 1
+}
+
+/** A limit by its name: max_velocity_mm_per_s, limit_velocity_mm_per_s (null: none), and velocity. */
+export type Limited<Name extends string, Suffix extends string = ''> = Record<`max_${Name}${Suffix}` | `limit_${Name}${Suffix}`, Num> & Record<Name, NearestToLimit>;
+
+type LimitedTool<Unit extends string> = Limited<'error', `_${Unit}`> &
+  Limited<'velocity', `_${Unit}_per_s`> &
+  Limited<'acceleration', `_${Unit}_per_s2`> &
+  Limited<'jerk', `_${Unit}_per_s3`>;
+
+export interface SmoothedJoint extends Limited<'velocity'>, Limited<'acceleration'>, Limited<'jerk'> {
+  unit: 'rad' | 'm';
+  beyond_position: Num;
+  position: NearestToLimit;
+  max_tracking_error?: Num; // where its drive was modelled
+}
+
+/** One method's trajectory. */
+export interface SmoothedBy extends Limited<'pose_error', '_mm'>, Limited<'dwell_error', '_s'> {
+  method: string;
+  duration_s: number;
+  lower_bound_s: Num;
+  max_tip_error_mm: Num;
+  max_axis_error_deg: Num;
+  violations: number;
+  tip: LimitedTool<'mm'> & Limited<'share_of_feed'>;
+  axis: LimitedTool<'deg'>;
+  joints: SmoothedJoint[];
+  faulty_samples: number;
+  blocks: number;
+  samples: number;
+  plan_seconds: Num;
+  sum_t2_s: Num;
+}
+
+/** smooth.json: the method asked for, and all of them where there are several. */
+export interface SmoothDocument extends SmoothedBy {
+  methods?: SmoothedBy[];
+  written: boolean; // there is a trajectory
+  program: string;
+  cell: string;
+  gamma_deg: [number, number] | null; // lowest and highest turn about the tool's axis
+  skipped: { line: number; what: string }[];
+  notes: string[];
+  robot_program: { holds: boolean } | null;
+}
+
+/** Joints' bands in their unit by time. */
+export interface JointMotion {
+  unit: 'deg' | 'mm';
+  velocity: Band;
+  acceleration: Band;
+  jerk: Band;
+  tracking_error: Band | null;
+}
+
+/** A method's trajectory over time: bands over runs of run_s each. */
+export interface Motion {
+  run_s: number;
+  tip_speed_mm_per_s: Band;
+  axis_speed_deg_per_s: Band;
+  joints: JointMotion[];
+  tip: Places & { speed_mm_per_s: number[] };
+  corner_paths: FlatPlaces[]; // one a corner
+}
+
+/** In the plane of a corner: x along the way, y to the inside. */
+export interface FlatPlaces {
+  x_mm: number[];
+  y_mm: number[];
+}
+
+export interface Corner {
+  line: number;
+  turn_deg: number;
+  radius_mm: number;
+  program: FlatPlaces;
+}
+
+/** What is recorded of a smoothed program for the page alone. */
+export interface MotionDocument {
+  program: Places;
+  corners: Corner[];
+  motions: Motion[]; // one a method, in the order of smooth.json
+}
+
 /** One threshold. */
 export interface RocPoint {
   threshold: Num;
@@ -285,7 +377,8 @@ export interface Report {
   workpiece_modes: ModesDocument | null;
   lobes: LobesDocument | null;
   forces: Forces | null;
-  smooth: Smooth | null;
+  smooth: SmoothDocument | null;
+  motion: MotionDocument | null; // of the same program
   monitor: Monitor | null;
   calibration: Calibration | null;
   recordings: Recording[] | null;

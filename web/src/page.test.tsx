@@ -4,6 +4,7 @@ import { renderToString } from 'preact-render-to-string';
 import { beforeEach, expect, it, vi } from 'vitest';
 import type { Report } from './documents';
 import { Page } from './page';
+import { smoothedBy } from './smooth_views';
 
 vi.mock('plotly.js-cartesian-dist-min', () => ({}));
 
@@ -29,6 +30,7 @@ function empty(): Report {
     lobes: null,
     forces: null,
     smooth: null,
+    motion: null,
     monitor: null,
     calibration: null,
     recordings: null,
@@ -149,13 +151,17 @@ it('leaves out of the forces what is not there', () => {
 });
 
 it('shows a smoothed program, its methods and its limits', () => {
-  for (const part of ['Methods side by side', 'no-joint-jerk', 'Limits used by paper', 'joint 3, jerk', 'Tracking error', '1 statement of the program', 'line 4: M8', 'violates a limit']) {
+  for (const part of ['Methods side by side', 'no-joint-jerk', 'Limits used by paper', 'joint 3, jerk', 'Tracking error', 'Joint limits used', '1 statement of the program', 'line 4: M8', 'violates a limit']) {
     expect(page()).toContain(part);
   }
-  const method = report.smooth!.methods[0]!;
-  report = { ...empty(), smooth: { ...report.smooth!, methods: [method] } };
-  Object.assign(method, { violations: 0, tracking_error_um: null, tracking_error_deg: null });
-  for (const use of method.uses) use.violations = 0;
+  const [method] = smoothedBy(report.smooth!);
+  report = { ...empty(), smooth: { ...report.smooth!, ...method, violations: 0 } };
+  delete report.smooth!.methods;
+  for (const joint of method.joints) {
+    delete joint.max_tracking_error;
+    for (const name of ['velocity', 'acceleration', 'jerk'] as const) joint[name].violations = 0;
+  }
+  for (const of of [method.tip, method.axis]) of.velocity.violations = 0;
   expect(page()).toContain('None of');
   expect(page()).toContain('samples violates a limit.');
   for (const part of ['side by side', 'Tracking error', '<tr class="chatter"']) expect(page()).not.toContain(part);

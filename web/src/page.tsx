@@ -31,7 +31,7 @@ function entries(report: Report): Entry[] {
     { id: 'lobes', name: 'Lobes', content: (lobes || cuts.length > 0) && <LobesSection lobes={lobes} plan={plan} /> },
     { id: 'feed', name: 'Feed direction', content: plan && feed.length > 0 && <FeedSection plan={plan} searched={lobes?.searched_depth_mm ?? null} /> },
     { id: 'forces', name: 'Forces', content: forces && <ForcesSection forces={forces} /> },
-    { id: 'smooth', name: 'Smoothed program', content: smooth && <SmoothSection smooth={smooth} /> },
+    { id: 'smooth', name: 'Smoothed program', content: smooth && <SmoothSection smooth={smooth} motion={report.motion} /> },
     { id: 'assembly', name: 'Tool and holder', content: assembly && <AssemblySection document={assembly} /> },
     { id: 'frf', name: 'Frequency response', content: frfs.length > 0 && <FrfSection frfs={frfs} modes={modes} predicted={assembly !== null} /> },
     { id: 'modes', name: 'Modes', content: (modes.length > 0 || report.modes?.fit) && <ModesSection modes={modes} document={report.modes} /> },

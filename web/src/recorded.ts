@@ -1,4 +1,4 @@
-// What is written for the page alone: forces, a smoothed program, a monitored recording.
+// What is written for the page alone: forces, a monitored recording.
 import type { Fact, Num, Owner } from './documents';
 
 export interface Ring {
@@ -114,74 +114,6 @@ export interface Places {
   x_mm: number[];
   y_mm: number[];
   z_mm: number[];
-}
-
-export interface JointMotion {
-  unit: '°' | 'mm';
-  velocity: number[];
-  acceleration: number[];
-  jerk: number[];
-  tracking_error: number[] | null;
-  max_velocity: Num;
-  max_acceleration: Num;
-  max_jerk: Num;
-}
-
-export interface Motion {
-  time_s: number[];
-  tip_speed_mm_per_s: number[];
-  axis_speed_deg_per_s: number[];
-  joints: JointMotion[];
-  track: Places & { speed_mm_per_s: number[] };
-}
-
-/** One limit and how near a method came to it. */
-export interface LimitUse {
-  what: string;
-  unit: string;
-  max: Num;
-  limit: Num;
-  share: Num;
-  violations: number;
-  at_s: Num;
-  block: Num;
-}
-
-export interface SmoothMethod {
-  name: string;
-  duration_s: number;
-  lower_bound_s: Num;
-  violations: number;
-  tip_error_um: Num;
-  axis_error_deg: Num;
-  joint_share: Num;
-  tracking_error_deg: Num;
-  tracking_error_um: Num;
-  sum_t2_s: Num;
-  plan_s: Num;
-  samples: number;
-  uses: LimitUse[];
-  motion: Motion;
-}
-
-export interface Corner {
-  block: number;
-  line: number;
-  turn_deg: number;
-  radius_mm: number;
-  program: { x_mm: number[]; y_mm: number[] };
-  corner_paths: { x_mm: number[]; y_mm: number[] }[]; // one a method
-}
-
-export interface Smooth extends Remarks {
-  skipped: string[];
-  blocks: number;
-  tip_tolerance_mm: number;
-  max_tip_speed_mm_per_s: Num;
-  max_axis_speed_deg_per_s: Num;
-  program: Places;
-  methods: SmoothMethod[];
-  corners: Corner[];
 }
 
 export type MonitorState = 'stable' | 'transition' | 'chatter';

@@ -9,18 +9,25 @@
 namespace robomill::path {
 namespace {
 
-/// Under "max_velocity_mm_per_s", "limit_velocity_mm_per_s".
-void add_usage(io::Json& json, const std::string& name, const Usage& usage, double unit = 1.0) {
-  json["max_" + name] = io::number(usage.max / unit);
-  json["limit_" + name] = usage.limit > 0.0 ? io::number(usage.limit / unit) : io::Json();
+io::Json place_json(const Usage& usage) {
+  return {{"violations", usage.violations}, {"at_s", io::number(usage.at_s)}, {"block", usage.block + 1}};
+}
+
+/// Under "max_velocity_mm_per_s", "limit_velocity_mm_per_s" and "velocity".
+/// @param suffix  of the unit
+void add_usage(io::Json& json, const std::string& name, const char* suffix, const Usage& usage, double unit = 1.0) {
+  json["max_" + name + suffix] = io::number(usage.max / unit);
+  json["limit_" + name + suffix] = usage.limit > 0.0 ? io::number(usage.limit / unit) : io::Json();
+  json[name] = place_json(usage);
 }
 
 io::Json joint_json(const CheckResult::Joint& joint, bool prismatic, const double* tracking_error) {
   io::Json json = {{"unit", prismatic ? "m" : "rad"}};
-  add_usage(json, "velocity", joint.velocity);
-  add_usage(json, "acceleration", joint.acceleration);
-  add_usage(json, "jerk", joint.jerk);
+  add_usage(json, "velocity", "", joint.velocity);
+  add_usage(json, "acceleration", "", joint.acceleration);
+  add_usage(json, "jerk", "", joint.jerk);
   json["beyond_position"] = io::number(std::max(0.0, joint.position.max));
+  json["position"] = place_json(joint.position);
   json["violations"] =
       joint.position.violations + joint.velocity.violations + joint.acceleration.violations + joint.jerk.violations;
   if (tracking_error != nullptr) json["max_tracking_error"] = io::number(*tracking_error);
@@ -29,11 +36,11 @@ io::Json joint_json(const CheckResult::Joint& joint, bool prismatic, const doubl
 
 io::Json tip_json(const CheckResult& check) {
   io::Json json = io::Json::object();
-  add_usage(json, "velocity_mm_per_s", check.tip_velocity, units::mm);
-  add_usage(json, "acceleration_mm_per_s2", check.tip_acceleration, units::mm);
-  add_usage(json, "jerk_mm_per_s3", check.tip_jerk, units::mm);
-  add_usage(json, "error_mm", check.tip_error_m, units::mm);
-  add_usage(json, "share_of_feed", check.feed);
+  add_usage(json, "velocity", "_mm_per_s", check.tip_velocity, units::mm);
+  add_usage(json, "acceleration", "_mm_per_s2", check.tip_acceleration, units::mm);
+  add_usage(json, "jerk", "_mm_per_s3", check.tip_jerk, units::mm);
+  add_usage(json, "error", "_mm", check.tip_error_m, units::mm);
+  add_usage(json, "share_of_feed", "", check.feed);
   json["violations"] = check.tip_velocity.violations + check.tip_acceleration.violations + check.tip_jerk.violations +
                        check.tip_error_m.violations + check.feed.violations;
   return json;
@@ -41,10 +48,10 @@ io::Json tip_json(const CheckResult& check) {
 
 io::Json axis_json(const CheckResult& check) {
   io::Json json = io::Json::object();
-  add_usage(json, "velocity_deg_per_s", check.axis_velocity, units::deg);
-  add_usage(json, "acceleration_deg_per_s2", check.axis_acceleration, units::deg);
-  add_usage(json, "jerk_deg_per_s3", check.axis_jerk, units::deg);
-  add_usage(json, "error_deg", check.axis_error_rad, units::deg);
+  add_usage(json, "velocity", "_deg_per_s", check.axis_velocity, units::deg);
+  add_usage(json, "acceleration", "_deg_per_s2", check.axis_acceleration, units::deg);
+  add_usage(json, "jerk", "_deg_per_s3", check.axis_jerk, units::deg);
+  add_usage(json, "error", "_deg", check.axis_error_rad, units::deg);
   json["violations"] = check.axis_velocity.violations + check.axis_acceleration.violations +
                        check.axis_jerk.violations + check.axis_error_rad.violations;
   return json;
@@ -67,7 +74,9 @@ io::Json method_json(const SmoothedBy& smoothed, const std::array<bool, 6>& pris
     json["joints"].push_back(
         joint_json(check.joints[i], prismatic.at(i), tracked ? &smoothed.tracking_error[i] : nullptr));
   }
-  json["max_pose_error_mm"] = io::number(check.pose_error.max / units::mm);
+  add_usage(json, "pose_error", "_mm", check.pose_error, units::mm);
+  add_usage(json, "dwell_error", "_s", check.dwell_s);
+  json["faulty_samples"] = check.faulty;
   json["blocks"] = summary.blocks;
   json["samples"] = summary.samples;
   json["rounds"] = summary.rounds;
@@ -130,6 +139,11 @@ std::string smooth_json(const SmoothedProgram& smoothed) {
   json["written"] = smoothed.written;
   json["program"] = smoothed.program;
   json["cell"] = smoothed.cell;
+  json["gamma_deg"] = io::Json();
+  if (smoothed.gamma_rad) {
+    const auto& [lowest, highest] = *smoothed.gamma_rad;
+    json["gamma_deg"] = {io::number(lowest / units::deg), io::number(highest / units::deg)};
+  }
   json["skipped"] = io::Json::array();
   for (const program::Skipped& item : smoothed.skipped) {
     json["skipped"].push_back({{"line", item.line}, {"what", item.what}});

@@ -24,8 +24,10 @@ struct SmoothedBy {
 
 /// A smoothed program as smooth.json holds it.
 struct SmoothedProgram {
-  std::string program = {}, cell = {};           ///< names of the files
-  std::array<bool, 6> prismatic = {};            ///< joints that are lengths [m]
+  std::string program = {}, cell = {};  ///< names of the files
+  std::array<bool, 6> prismatic = {};   ///< joints that are lengths [m]
+  /// The lowest and the highest turn of the flange about the tool's axis; none where the machine has no such freedom.
+  std::optional<std::array<double, 2>> gamma_rad = {};
   bool written = false;                          ///< whether there is a trajectory
   std::vector<SmoothedBy> methods = {};          ///< the first is the one asked for; the others stand beside it
   std::optional<ProgramRun> robot_program = {};  ///< of the first, where it is written as one

@@ -23,7 +23,7 @@ SmoothedProgram smoothed() {
   by.summary.check.axis_error_rad = {.max = 0.01 * units::deg, .limit = 0.02 * units::deg};
   by.summary.check.tip_velocity = {.max = 0.049, .limit = 0.05, .violations = 1};
   by.summary.check.joints.resize(2);
-  by.summary.check.joints[0].jerk = {.max = 99.0, .limit = 100.0, .violations = 3};
+  by.summary.check.joints[0].jerk = {.max = 99.0, .limit = 100.0, .violations = 3, .at_s = 1.5, .block = 4};
   by.summary.check.joints[0].velocity = {.max = 0.5, .limit = 1.0, .violations = 4};
   by.summary.check.joints[1].position = {.max = -0.25, .limit = 0.0};
   by.tracking_error = {1e-5, 2e-5};
@@ -59,6 +59,12 @@ TEST(SmoothJson, HasTheNamedFieldsInTheirUnits) {
   EXPECT_EQ(json["skipped"][0]["line"], 7);
   EXPECT_FALSE(json.contains("methods"));
   EXPECT_EQ(json["method"], "verified");
+  EXPECT_EQ(json["joints"][0]["jerk"], nlohmann::json::parse(R"({"violations": 3, "at_s": 1.5, "block": 5})"));
+  EXPECT_EQ(json["joints"][0]["velocity"]["violations"], 4);
+  EXPECT_EQ(json["tip"]["velocity"]["violations"], 1);
+  EXPECT_EQ(json["tip"]["share_of_feed"]["block"], 1);
+  EXPECT_EQ(json["axis"]["error"]["violations"], 0);
+  EXPECT_TRUE(json["gamma_deg"].is_null());
 }
 
 TEST(SmoothJson, ReportsMethodsSideBySideAndNothingAsNull) {
@@ -71,6 +77,12 @@ TEST(SmoothJson, ReportsMethodsSideBySideAndNothingAsNull) {
   EXPECT_EQ(json["methods"][1]["duration_s"], 13.0);
   EXPECT_TRUE(json["methods"][1]["lower_bound_s"].is_null());
   EXPECT_EQ(robomill::test::field_of([] { static_cast<void>(smooth_json({})); }), "methods");
+}
+
+TEST(SmoothJson, SaysHowTheFlangeTurns) {
+  SmoothedProgram turning = smoothed();
+  turning.gamma_rad = {-30.0 * units::deg, 45.0 * units::deg};
+  EXPECT_EQ(nlohmann::json::parse(smooth_json(turning))["gamma_deg"], nlohmann::json::parse("[-30.0, 45.0]"));
 }
 
 TEST(SmoothJson, KnowsEachMethodByItsName) {

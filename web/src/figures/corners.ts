@@ -1,12 +1,12 @@
-import type { Corner, Smooth } from '../documents';
+import type { Corner, MotionDocument, SmoothDocument } from '../documents';
+import { smoothedBy } from '../smooth_views';
 import { dashes } from './smooth';
 import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 import { frame, views, viewsLayout } from './track';
 
 /** The programmed path and the tip's, from above and from the side, coloured by speed. */
-export function pathFigure(smooth: Smooth, theme: Theme, width: number): Figure {
-  const track = smooth.methods[0]!.motion.track;
-  const { program } = smooth;
+export function pathFigure({ program, motions }: MotionDocument, theme: Theme, width: number): Figure {
+  const track = motions[0]!.tip;
   const both = { x_mm: [...program.x_mm, ...track.x_mm], y_mm: [...program.y_mm, ...track.y_mm], z_mm: [...program.z_mm, ...track.z_mm] };
   const place = frame(both, width);
   const data: Trace[] = views.flatMap((view) => [
@@ -72,9 +72,11 @@ export function tube(moves: [Point, Point][], tolerance: number, colour: string)
 }
 
 /** One corner seen close: the program, its tolerance, and the tip's way by each method. */
-export function cornerFigure(smooth: Smooth, corner: Corner, theme: Theme, width: number): Figure {
+export function cornerFigure(smooth: SmoothDocument, { corners, motions }: MotionDocument, index: number, theme: Theme, width: number): Figure {
+  const corner = corners[index]!;
   const moves = movesInView(corner);
-  const several = smooth.methods.length > 1;
+  const names = smoothedBy(smooth).map(({ method }) => plain(method));
+  const several = names.length > 1;
   const data: Trace[] = [
     {
       type: 'scatter',
@@ -87,20 +89,20 @@ export function cornerFigure(smooth: Smooth, corner: Corner, theme: Theme, width
       line: { color: theme.unknown, width: 1.5 },
       marker: { size: 5, color: theme.unknown },
     },
-    ...corner.corner_paths.map((way, i) => ({
+    ...motions.map(({ corner_paths }, i) => ({
       type: 'scatter',
       mode: 'lines',
-      name: plain(smooth.methods[i]!.name),
+      name: names[i]!,
       showlegend: several,
-      x: way.x_mm,
-      y: way.y_mm,
+      x: corner_paths[index]!.x_mm,
+      y: corner_paths[index]!.y_mm,
       line: { color: theme.series[i % theme.series.length], width: 2, dash: dashes[i % dashes.length] },
-      hovertemplate: `%{x:.4f}, %{y:.4f}${thinSpace}mm<extra>${plain(smooth.methods[i]!.name)}</extra>`,
+      hovertemplate: `%{x:.4f}, %{y:.4f}${thinSpace}mm<extra>${names[i]!}</extra>`,
     })),
   ];
   const r = corner.radius_mm;
   const square = Math.max(200, Math.min(420, width - 90));
-  const more = several ? 22 * Math.ceil((smooth.methods.length + 1) / Math.max(1, Math.floor(width / 150))) : 0;
+  const more = several ? 22 * Math.ceil((names.length + 1) / Math.max(1, Math.floor(width / 150))) : 0;
   return {
     data,
     layout: layout(theme, square + 92 + more, {
@@ -110,7 +112,7 @@ export function cornerFigure(smooth: Smooth, corner: Corner, theme: Theme, width
       legend: { orientation: 'h', yanchor: 'top', y: -46 / square, xanchor: 'center', x: 0.5, font: { size: 12 } },
       xaxis: axis(theme, 'Along the way (mm)', { range: [-r, r], zeroline: false, nticks: 5, constrain: 'domain' }),
       yaxis: axis(theme, 'To the inside (mm)', { range: [-0.5 * r, 1.5 * r], zeroline: false, nticks: 6, scaleanchor: 'x', scaleratio: 1, constrain: 'domain' }),
-      shapes: tube(moves, smooth.tip_tolerance_mm, theme.grid),
+      shapes: tube(moves, smooth.tip.limit_error_mm ?? 0, theme.grid),
     }),
   };
 }

@@ -1,13 +1,13 @@
-import type { JointMotion, Num, Smooth, SmoothMethod } from '../documents';
+import { bandCurve, type Band, type TimeCurve } from '../bands';
+import type { Motion, MotionDocument, Num, SmoothDocument, SmoothedBy } from '../documents';
+import { jointUnit, scaled, smoothedBy } from '../smooth_views';
 import { curve, limitMarks, reach, suffix } from './rows';
 import { axis, layout, plain, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 export const dashes = ['solid', '7px,3px', '2px,2px', '9px,3px,2px,3px', '4px,4px'];
 
-interface Line {
+interface Line extends TimeCurve {
   name: string;
-  x: number[];
-  y: number[];
   color: string;
   dash: string;
 }
@@ -33,11 +33,11 @@ function overTime(rows: Row[], duration: number, legend: boolean, theme: Theme):
   const axes: Layout = {};
   const share = 1 / rows.length;
   rows.forEach((row, index) => {
-    const most = Math.max(...row.lines.map((line) => magnitude(line.y)), 0);
+    const most = Math.max(...row.lines.map((line) => magnitude(line.values)), 0);
     const inside = row.limit !== null && (most === 0 || row.limit <= reach * most);
     for (const line of row.lines) {
       const style = { color: line.color, width: 1.4, dash: line.dash };
-      data.push(curve(index, line.name, row.unit, line.x, line.y, style, { legendgroup: line.name, showlegend: legend && index === 0 }));
+      data.push(curve(index, line.name, row.unit, line.time_s, line.values, style, { legendgroup: line.name, showlegend: legend && index === 0 }));
     }
     if (row.limit !== null) {
       const text = `limit ${Number(row.limit.toPrecision(4))} ${row.unit}${inside ? '' : ', beyond this plot'}`;
@@ -73,38 +73,40 @@ function overTime(rows: Row[], duration: number, legend: boolean, theme: Theme):
 const longest = 3; // of the first method's duration: a far slower one would squeeze all others
 
 /** Speed of the tip and of the axis over time, each method a line. */
-export function speedFigure(smooth: Smooth, theme: Theme): Figure {
-  const lines = (values: (method: SmoothMethod) => number[]): Line[] =>
-    smooth.methods.map((method, i) => ({
-      name: plain(method.name),
-      x: method.motion.time_s,
-      y: values(method),
+export function speedFigure(smooth: SmoothDocument, { motions }: MotionDocument, theme: Theme): Figure {
+  const methods = smoothedBy(smooth);
+  const lines = (band: (motion: Motion) => Band): Line[] =>
+    motions.map((motion, i) => ({
+      name: plain(methods[i]!.method),
+      ...bandCurve(band(motion), motion.run_s),
       color: theme.series[i % theme.series.length]!,
       dash: dashes[i % dashes.length]!,
     }));
   const rows: Row[] = [
-    { title: 'Tip (mm/s)', unit: 'mm/s', lines: lines((m) => m.motion.tip_speed_mm_per_s), limit: smooth.max_tip_speed_mm_per_s, both: false },
-    { title: 'Axis (°/s)', unit: '°/s', lines: lines((m) => m.motion.axis_speed_deg_per_s), limit: smooth.max_axis_speed_deg_per_s, both: false },
+    { title: 'Tip (mm/s)', unit: 'mm/s', lines: lines((m) => m.tip_speed_mm_per_s), limit: smooth.tip.limit_velocity_mm_per_s, both: false },
+    { title: 'Axis (°/s)', unit: '°/s', lines: lines((m) => m.axis_speed_deg_per_s), limit: smooth.axis.limit_velocity_deg_per_s, both: false },
   ];
-  const durations = smooth.methods.map((method) => method.duration_s);
-  return overTime(rows, Math.min(Math.max(...durations), longest * durations[0]!), smooth.methods.length > 1, theme);
+  const durations = methods.map((method) => method.duration_s);
+  return overTime(rows, Math.min(Math.max(...durations), longest * durations[0]!), methods.length > 1, theme);
 }
 
 /** Velocity, acceleration, jerk and tracking error of one joint over time. */
-export function jointFigure(method: SmoothMethod, joint: JointMotion, theme: Theme): Figure {
-  const row = (title: string, unit: string, y: number[], limit: Num): Row => ({
-    title: `${title} (${unit})`,
-    unit,
-    lines: [{ name: title.toLowerCase(), x: method.motion.time_s, y, color: theme.accent, dash: 'solid' }],
-    limit,
+export function jointFigure(method: SmoothedBy, motion: Motion, index: number, theme: Theme): Figure {
+  const joint = motion.joints[index]!;
+  const limits = method.joints[index]!;
+  const [unit, factor] = jointUnit(limits);
+  const row = (title: string, per: string, band: Band, limit: Num): Row => ({
+    title: `${title} (${unit}${per})`,
+    unit: `${unit}${per}`,
+    lines: [{ name: title.toLowerCase(), ...bandCurve(band, motion.run_s), color: theme.accent, dash: 'solid' }],
+    limit: scaled(limit, factor),
     both: true,
   });
-  const unit = joint.unit;
   const rows = [
-    row('Velocity', `${unit}/s`, joint.velocity, joint.max_velocity),
-    row('Acceleration', `${unit}/s²`, joint.acceleration, joint.max_acceleration),
-    row('Jerk', `${unit}/s³`, joint.jerk, joint.max_jerk),
+    row('Velocity', '/s', joint.velocity, limits.limit_velocity),
+    row('Acceleration', '/s²', joint.acceleration, limits.limit_acceleration),
+    row('Jerk', '/s³', joint.jerk, limits.limit_jerk),
   ];
-  if (joint.tracking_error !== null) rows.push(row('Tracking error', unit, joint.tracking_error, null));
+  if (joint.tracking_error !== null) rows.push(row('Tracking error', '', joint.tracking_error, null));
   return overTime(rows, method.duration_s, false, theme);
 }

@@ -1,23 +1,18 @@
 // A smoothed program: what a machine does with it, beside its limits.
 import { useState } from 'preact/hooks';
-import type { LimitUse, Smooth, SmoothMethod } from '../documents';
+import type { MotionDocument, Num, SmoothDocument, SmoothedBy } from '../documents';
 import { cornerFigure, pathFigure } from '../figures/corners';
 import { jointFigure, speedFigure } from '../figures/smooth';
 import { Bullets, Details, Facts, Section, Table, WarningBox, type Column } from '../parts';
 import { Choice, Plot, type Draw } from '../plot';
+import { boundText, jointShare, limitUses, scaled, smoothedBy, smoothFacts, smoothWarnings, trackingError } from '../smooth_views';
 import { fixed, percent, significant } from '../text';
 
-function boundOf({ duration_s: duration, lower_bound_s: bound }: SmoothMethod): string {
-  if (bound === null) return '';
-  return `; without jerk limits the same path takes ${significant(bound)} s at least, ${percent(1 - bound / duration, 1)} less`;
-}
-
-function Verdict({ smooth }: { smooth: Smooth }) {
-  const method = smooth.methods[0]!;
+function Verdict({ method }: { method: SmoothedBy }) {
   return (
     <p class="why">
       <strong>{`${significant(method.duration_s)} s`}</strong>
-      {` for ${smooth.blocks} blocks by ${method.name}${boundOf(method)}. `}
+      {` for ${method.blocks} blocks by ${method.method}${boundText(method)}. `}
       {method.violations === 0 ? (
         `None of ${method.samples} samples violates a limit.`
       ) : (
@@ -27,43 +22,47 @@ function Verdict({ smooth }: { smooth: Smooth }) {
   );
 }
 
-interface MethodColumn extends Column<SmoothMethod> {
-  shownIf?: 'lower_bound_s' | 'joint_share' | 'tracking_error_deg' | 'tracking_error_um' | 'sum_t2_s' | 'plan_s'; // some method has it
+interface MethodColumn extends Column<SmoothedBy> {
+  shownIf?: (method: SmoothedBy) => Num; // some method has it
+}
+
+function shownIfKnown(heading: string, value: (method: SmoothedBy) => Num, text: (value: Num) => string = significant): MethodColumn {
+  return { heading, number: true, cell: (m) => text(value(m)), shownIf: value };
 }
 
 const methodColumns: MethodColumn[] = [
-  { heading: 'Method', cell: (m) => m.name },
+  { heading: 'Method', cell: (m) => m.method },
   { heading: 'Duration (s)', number: true, cell: (m) => significant(m.duration_s) },
-  { heading: 'Bound (s)', number: true, cell: (m) => significant(m.lower_bound_s), shownIf: 'lower_bound_s' },
+  shownIfKnown('Bound (s)', (m) => m.lower_bound_s),
   { heading: 'Violations of limits', number: true, cell: (m) => fixed(m.violations, 0) },
-  { heading: 'Joint limits used', number: true, cell: (m) => percent(m.joint_share, 0), shownIf: 'joint_share' },
-  { heading: 'Tip error (µm)', number: true, cell: (m) => significant(m.tip_error_um) },
-  { heading: 'Axis error (°)', number: true, cell: (m) => significant(m.axis_error_deg) },
-  { heading: 'Tracking error (°)', number: true, cell: (m) => significant(m.tracking_error_deg), shownIf: 'tracking_error_deg' },
-  { heading: 'Tracking error (µm)', number: true, cell: (m) => significant(m.tracking_error_um), shownIf: 'tracking_error_um' },
-  { heading: 'ΣT2 (s)', number: true, cell: (m) => significant(m.sum_t2_s), shownIf: 'sum_t2_s' },
-  { heading: 'Planned in (s)', number: true, cell: (m) => significant(m.plan_s), shownIf: 'plan_s' },
+  shownIfKnown('Joint limits used', jointShare, (share) => percent(share, 0)),
+  { heading: 'Tip error (µm)', number: true, cell: (m) => significant(scaled(m.max_tip_error_mm, 1e3)) },
+  { heading: 'Axis error (°)', number: true, cell: (m) => significant(m.max_axis_error_deg) },
+  shownIfKnown('Tracking error (°)', (m) => scaled(trackingError(m, 'rad'), 180 / Math.PI)),
+  shownIfKnown('Tracking error (µm)', (m) => scaled(trackingError(m, 'm'), 1e6)),
+  shownIfKnown('ΣT2 (s)', (m) => m.sum_t2_s),
+  { heading: 'Planned in (s)', number: true, cell: (m) => significant(m.plan_seconds) },
 ];
 
-function violates({ violations }: SmoothMethod | LimitUse): string {
+function violates({ violations }: { violations: number }): string {
   return violations > 0 ? 'chatter' : '';
 }
 
-function MethodsTable({ methods }: { methods: SmoothMethod[] }) {
+function MethodsTable({ methods }: { methods: SmoothedBy[] }) {
   return (
     <Table
       caption={methods.length > 1 ? 'Methods side by side' : 'In short'}
-      columns={methodColumns.filter(({ shownIf }) => shownIf === undefined || methods.some((method) => method[shownIf] !== null))}
+      columns={methodColumns.filter(({ shownIf }) => shownIf === undefined || methods.some((method) => shownIf(method) !== null))}
       rows={methods}
       rowClass={violates}
     />
   );
 }
 
-function UsesTable({ method }: { method: SmoothMethod }) {
+function UsesTable({ method }: { method: SmoothedBy }) {
   return (
     <Table
-      caption={`Limits and what ${method.name} uses of them`}
+      caption={`Limits and what ${method.method} uses of them`}
       quiet
       columns={[
         { heading: '', cell: (use) => use.what },
@@ -75,78 +74,88 @@ function UsesTable({ method }: { method: SmoothMethod }) {
         { heading: 'At (s)', number: true, cell: (use) => significant(use.at_s) },
         { heading: 'Block', number: true, cell: (use) => fixed(use.block, 0) },
       ]}
-      rows={method.uses}
+      rows={limitUses(method)}
       rowClass={violates}
     />
   );
 }
 
-function JointPlot({ methods }: { methods: SmoothMethod[] }) {
+interface Documents {
+  smooth: SmoothDocument;
+  motion: MotionDocument;
+}
+
+function JointPlot({ smooth, motion: { motions } }: Documents) {
   const [joint, chooseJoint] = useState(0);
   const [chosen, chooseMethod] = useState(0);
-  const method = methods[chosen]!;
+  const methods = smoothedBy(smooth);
   return (
     <Plot
       which="smooth-joint"
       shows="Velocity, acceleration, jerk and tracking error of one joint over time, with its limits"
       caption="One joint by differences of the samples; dashed: its limits."
-      draw={(theme) => jointFigure(method, method.motion.joints[joint]!, theme)}
+      draw={(theme) => jointFigure(methods[chosen]!, motions[chosen]!, joint, theme)}
     >
-      <Choice legend="Joint" names={methods[0]!.motion.joints.map((_, i) => `${i + 1}`)} chosen={joint} choose={chooseJoint} />
-      {methods.length > 1 && <Choice legend="Method" names={methods.map(({ name }) => name)} chosen={chosen} choose={chooseMethod} />}
+      <Choice legend="Joint" names={smooth.joints.map((_, i) => `${i + 1}`)} chosen={joint} choose={chooseJoint} />
+      {methods.length > 1 && <Choice legend="Method" names={methods.map(({ method }) => method)} chosen={chosen} choose={chooseMethod} />}
     </Plot>
   );
 }
 
-function Plots({ smooth }: { smooth: Smooth }) {
-  const { methods, corners } = smooth;
+function Plots({ smooth, motion }: Documents) {
   return (
     <>
       <Plot
         which="smooth-path"
         shows="The programmed path and the tip's, seen from above and from the side, coloured by speed"
         caption="The programmed path grey, the tip's in the colour of its speed."
-        draw={(theme, width) => pathFigure(smooth, theme, width)}
+        draw={(theme, width) => pathFigure(motion, theme, width)}
       />
-      {corners.length > 0 && (
+      {motion.corners.length > 0 && (
         <Plot
           which="smooth-corners"
           shows="Sharp corners of the program seen close, with the tolerance and the tip's path"
           caption="Sharp corners of each kind, each in the plane of its two moves: within the shaded tube the tip is within its tolerance."
-          draw={corners.map((corner): Draw => (theme, width) => cornerFigure(smooth, corner, theme, width))}
+          draw={motion.corners.map((_, i): Draw => (theme, width) => cornerFigure(smooth, motion, i, theme, width))}
         />
       )}
       <Plot
         which="smooth-speed"
         shows="Speed of the tip and of the tool's axis over time"
         caption="Speed of the tip along its path, and of the axis below; dashed: their limits."
-        draw={(theme) => speedFigure(smooth, theme)}
+        draw={(theme) => speedFigure(smooth, motion, theme)}
       />
-      <JointPlot methods={methods} />
+      <JointPlot smooth={smooth} motion={motion} />
     </>
   );
 }
 
-export function SmoothSection({ smooth }: { smooth: Smooth }) {
-  const { facts, warnings, notes, skipped, methods } = smooth;
-  const [first, ...others] = methods as [SmoothMethod, ...SmoothMethod[]]; // the first is the one asked for
+/** Whether there is something to draw. */
+function isMoved(motion: MotionDocument | null): motion is MotionDocument {
+  return (motion?.motions[0]?.tip_speed_mm_per_s.low.length ?? 0) > 0;
+}
+
+export function SmoothSection({ smooth, motion }: { smooth: SmoothDocument; motion: MotionDocument | null }) {
+  const { notes, skipped } = smooth;
+  const methods = smoothedBy(smooth);
+  const [first, ...others] = methods; // the first is the one asked for
   return (
     <Section id="smooth" heading="Smoothed program" lead="How the machine runs the program, and how near it comes to each limit.">
-      <Facts facts={facts} />
-      <WarningBox heading="Before you run it" texts={warnings} />
-      <Verdict smooth={smooth} />
+      <Facts facts={smoothFacts(smooth)} />
+      <WarningBox heading="Before you run it" texts={smoothWarnings(smooth)} />
+      <Verdict method={first} />
       <MethodsTable methods={methods} />
-      {first.motion.time_s.length > 0 && <Plots smooth={smooth} />}
+      {isMoved(motion) && <Plots smooth={smooth} motion={motion} />}
       <h3>Limits and what is used of them</h3>
       <UsesTable method={first} />
       {others.map((method) => (
-        <Details summary={`Limits used by ${method.name}`}>
+        <Details summary={`Limits used by ${method.method}`}>
           <UsesTable method={method} />
         </Details>
       ))}
       {skipped.length > 0 && (
         <Details summary={`${skipped.length} statement${skipped.length === 1 ? '' : 's'} of the program left out`}>
-          <Bullets texts={skipped} />
+          <Bullets texts={skipped.map(({ line, what }) => `line ${line}: ${what}`)} />
         </Details>
       )}
       <Bullets texts={notes} />

@@ -1,4 +1,4 @@
-#include "robomill/report/smooth_outline.hpp"
+#include "robomill/path/record/outline.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <deque>
 #include <numbers>
 
-namespace robomill::report {
+namespace robomill::path {
 namespace {
 
 constexpr std::size_t most_points = 2000;
@@ -131,4 +131,4 @@ ProgramOutline outline(program::Source& source, double tip_tolerance_m, std::siz
   return out;
 }
 
-}  // namespace robomill::report
+}  // namespace robomill::path

@@ -6,9 +6,9 @@
 #include "robomill/base/export.hpp"
 #include "robomill/program/program.hpp"
 
-// Method: robomill/report/README.md, "Method"
+// Method: robomill/path/README.md, "What is recorded for a page"
 
-namespace robomill::report {
+namespace robomill::path {
 
 /// A corner of a program that is worth a close look.
 struct ProgramCorner {
@@ -54,4 +54,4 @@ class Decimated {
   std::vector<T> kept_;
 };
 
-}  // namespace robomill::report
+}  // namespace robomill::path

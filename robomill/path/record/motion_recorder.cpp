@@ -1,9 +1,9 @@
-#include "robomill/report/smooth_recorder.hpp"
+#include "robomill/path/record/motion_recorder.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace robomill::report {
+namespace robomill::path {
 namespace {
 
 constexpr std::size_t shown_runs = 800;
@@ -13,15 +13,14 @@ constexpr std::size_t of_joint = 4;       // curves: velocity, acceleration, jer
 
 }  // namespace
 
-MotionRecorder::MotionRecorder(const robot::Kinematics& kinematics, const std::array<bool, 6>& prismatic,
-                               double sample_period_s, const std::vector<ProgramCorner>& corners)
-    : joints_(kinematics.joints()),
+MotionRecorder::MotionRecorder(int joints, const std::array<bool, 6>& prismatic, double sample_period_s,
+                               const std::vector<ProgramCorner>& corners)
+    : joints_(joints),
       prismatic_(prismatic),
-      limits_(kinematics.limits()),
       period_s_(sample_period_s),
       corners_(corners),
-      bands_(2 + of_joint * static_cast<std::size_t>(kinematics.joints()), shown_runs),
-      values_(2 + of_joint * static_cast<std::size_t>(kinematics.joints())),
+      bands_(2 + of_joint * static_cast<std::size_t>(joints), shown_runs),
+      values_(2 + of_joint * static_cast<std::size_t>(joints)),
       path_(most_points),
       passes_(corners.size()) {}
 
@@ -33,11 +32,11 @@ void MotionRecorder::restart(Tracking tracking) {
   for (auto& pass : passes_) pass.clear();
 }
 
-void MotionRecorder::add(std::span<const path::Sample> samples) {
-  for (const path::Sample& sample : samples) add(sample);
+void MotionRecorder::add(std::span<const Sample> samples) {
+  for (const Sample& sample : samples) add(sample);
 }
 
-void MotionRecorder::add(const path::Sample& sample) {
+void MotionRecorder::add(const Sample& sample) {
   // Before its first sample the machine stood there.
   if (!std::exchange(any_, true)) before_.fill(sample);
   const auto& [one, two, three] = before_;
@@ -62,7 +61,7 @@ void MotionRecorder::add(const path::Sample& sample) {
   before_ = {sample, one, two};
 }
 
-void MotionRecorder::pass_corners(const path::Sample& sample) {
+void MotionRecorder::pass_corners(const Sample& sample) {
   constexpr std::size_t near_blocks = 8;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     const ProgramCorner& corner = corners_[i];
@@ -76,7 +75,6 @@ void MotionRecorder::pass_corners(const path::Sample& sample) {
 }
 
 Motion MotionRecorder::motion() const {
-  const auto limit = [](double value) { return value > 0.0 ? value : missing; };
   Motion out;
   out.run_s = static_cast<double>(bands_.length()) * period_s_;
   out.tip_speed_m_per_s = bands_.band(0);
@@ -88,9 +86,6 @@ Motion MotionRecorder::motion() const {
                        .acceleration = bands_.band(at + 1),
                        .jerk = bands_.band(at + 2)};
     if (tracking_) motion.tracking_error = bands_.band(at + 3);
-    motion.max_velocity = limit(limits_.max_velocity[joint]);
-    motion.max_acceleration = limit(limits_.max_acceleration[joint]);
-    motion.max_jerk = limit(limits_.max_jerk[joint]);
     out.joints.push_back(std::move(motion));
   }
   const std::vector<Point>& points = path_.kept();
@@ -101,16 +96,11 @@ Motion MotionRecorder::motion() const {
     out.tip_m.col(i) = points[static_cast<std::size_t>(i)].tip_m;
     out.tip_speed_at_m_per_s[i] = points[static_cast<std::size_t>(i)].speed_m_per_s;
   }
-  return out;
-}
-
-std::vector<Eigen::Matrix2Xd> MotionRecorder::corner_paths() const {
-  std::vector<Eigen::Matrix2Xd> out(passes_.size());
-  for (std::size_t i = 0; i < passes_.size(); ++i) {
-    out[i].resize(2, static_cast<Eigen::Index>(passes_[i].size()));
-    for (std::size_t k = 0; k < passes_[i].size(); ++k) out[i].col(static_cast<Eigen::Index>(k)) = passes_[i][k];
+  for (const std::vector<Eigen::Vector2d>& pass : passes_) {
+    Eigen::Matrix2Xd& way = out.corner_paths_m.emplace_back(2, static_cast<Eigen::Index>(pass.size()));
+    for (std::size_t k = 0; k < pass.size(); ++k) way.col(static_cast<Eigen::Index>(k)) = pass[k];
   }
   return out;
 }
 
-}  // namespace robomill::report
+}  // namespace robomill::path

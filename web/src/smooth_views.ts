@@ -1,0 +1,129 @@
+// What tables and plots of a smoothed program need, made of smooth.json.
+import type { Fact, Limited, NearestToLimit, Num, SmoothDocument, SmoothedBy, SmoothedJoint } from './documents';
+import { general, percent, significant } from './text';
+
+/** The method asked for, then those beside it. */
+export function smoothedBy(document: SmoothDocument): [SmoothedBy, ...SmoothedBy[]] {
+  const [first = document, ...others] = document.methods ?? [];
+  return [first, ...others];
+}
+
+export function smoothFacts({ program, blocks, cell, joints, tip, axis, gamma_deg }: SmoothDocument): Fact[] {
+  const degrees = (angle: Num) => `${general(angle ?? 0, 4)}°`;
+  const facts = [
+    { label: 'Program', value: `${program}, ${blocks} blocks` },
+    { label: 'Machine', value: `${cell}, ${joints.length} joints` },
+    { label: 'Tolerance', value: `tip ${general(tip.limit_error_mm ?? 0, 4)} mm, axis ${degrees(axis.limit_error_deg)}` },
+  ];
+  if (gamma_deg) {
+    const [lowest, highest] = gamma_deg.map(degrees);
+    facts.push({ label: 'Turn about the tool', value: lowest === highest ? lowest! : `${lowest} to ${highest} along the way` });
+  }
+  return facts;
+}
+
+export function smoothWarnings({ violations, written, robot_program: program }: SmoothDocument): string[] {
+  if (violations > 0) return [`${violations} violations of limits${written ? '; the trajectory was written all the same' : ': there is no trajectory'}.`];
+  if (!program || program.holds) return [];
+  return [`The robot program does not hold, see the notes; it was ${written ? 'written all the same' : 'not written'}.`];
+}
+
+/** "; without jerk limits the same path takes 11 s at least, 8.3 % less" */
+export function boundText({ duration_s: duration, lower_bound_s: bound }: SmoothedBy): string {
+  if (bound === null) return '';
+  return `; without jerk limits the same path takes ${significant(bound)} s at least, ${percent(1 - bound / duration, 1)} less`;
+}
+
+/** The unit that a joint is shown in, and how many of it are one of the document's. */
+export function jointUnit({ unit }: SmoothedJoint): [string, number] {
+  return unit === 'rad' ? ['°', 180 / Math.PI] : ['mm', 1e3];
+}
+
+export function scaled(value: Num, factor: number): Num {
+  return value === null ? null : factor * value;
+}
+
+/** One limit and how near a method came to it. */
+export interface LimitUse {
+  what: string;
+  unit: string;
+  max: Num;
+  limit: Num;
+  share: Num;
+  violations: number;
+  at_s: Num;
+  block: Num;
+}
+
+function shareOf(max: Num, limit: Num): Num {
+  return max === null || limit === null ? null : max / limit;
+}
+
+function limitUse<Name extends string, Suffix extends string>(
+  what: string,
+  of: Limited<Name, Suffix>,
+  name: Name,
+  suffix: Suffix,
+  unit: string,
+  factor = 1,
+): LimitUse {
+  const values = of as Record<string, Num>;
+  const max = scaled(values[`max_${name}${suffix}`]!, factor);
+  const limit = scaled(values[`limit_${name}${suffix}`]!, factor);
+  return { what, unit, max, limit, share: shareOf(max, limit), ...(of[name] as NearestToLimit) };
+}
+
+function jointUses(joint: SmoothedJoint, index: number): LimitUse[] {
+  const [unit, factor] = jointUnit(joint);
+  const name = `joint ${index + 1}`;
+  const uses = [
+    limitUse(`${name}, velocity`, joint, 'velocity', '', `${unit}/s`, factor),
+    limitUse(`${name}, acceleration`, joint, 'acceleration', '', `${unit}/s²`, factor),
+    limitUse(`${name}, jerk`, joint, 'jerk', '', `${unit}/s³`, factor),
+  ];
+  if (joint.position.violations === 0) return uses;
+  return [{ what: `${name}, beyond its range`, unit, max: scaled(joint.beyond_position, factor), limit: null, share: null, ...joint.position }, ...uses];
+}
+
+/** Every limit; of what neither tool nor joints are limited in only what is violated. */
+export function limitUses(method: SmoothedBy): LimitUse[] {
+  const { tip, axis, joints, faulty_samples: faulty } = method;
+  const others = [
+    limitUse('joints, their pose beside the tip', method, 'pose_error', '_mm', 'mm'),
+    limitUse('dwells, cut short by', method, 'dwell_error', '_s', 's'),
+    { what: 'samples, faulty', unit: '', max: null, limit: null, share: null, violations: faulty, at_s: null, block: null },
+  ];
+  return [
+    limitUse('tip, distance to the program', tip, 'error', '_mm', 'mm'),
+    limitUse('axis, angle to the program', axis, 'error', '_deg', '°'),
+    limitUse('tip, speed over the programmed', tip, 'share_of_feed', '', ''),
+    limitUse('tip, speed', tip, 'velocity', '_mm_per_s', 'mm/s'),
+    limitUse('tip, acceleration', tip, 'acceleration', '_mm_per_s2', 'mm/s²'),
+    limitUse('tip, jerk', tip, 'jerk', '_mm_per_s3', 'mm/s³'),
+    limitUse('axis, speed', axis, 'velocity', '_deg_per_s', '°/s'),
+    limitUse('axis, acceleration', axis, 'acceleration', '_deg_per_s2', '°/s²'),
+    limitUse('axis, jerk', axis, 'jerk', '_deg_per_s3', '°/s³'),
+    ...joints.flatMap(jointUses),
+    ...others.filter(({ violations }) => violations > 0),
+  ];
+}
+
+function largest(values: Num[]): Num {
+  return values.reduce((most, value) => (value === null || (most !== null && most >= value) ? most : value), null);
+}
+
+/** The most of a joint's velocity, acceleration or jerk limit that is used. */
+export function jointShare({ joints }: SmoothedBy): Num {
+  return largest(
+    joints.flatMap((joint) => [
+      shareOf(joint.max_velocity, joint.limit_velocity),
+      shareOf(joint.max_acceleration, joint.limit_acceleration),
+      shareOf(joint.max_jerk, joint.limit_jerk),
+    ]),
+  );
+}
+
+/** The largest of the joints of that unit, in it; null where no drive was modelled. */
+export function trackingError({ joints }: SmoothedBy, unit: SmoothedJoint['unit']): Num {
+  return largest(joints.filter((joint) => joint.unit === unit).map((joint) => joint.max_tracking_error ?? null));
+}
