@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
-#include "robomill/report/forces.hpp"
 #include "robomill/report/monitor.hpp"
 #include "robomill/report/smooth.hpp"
 
@@ -32,8 +31,8 @@ struct Report {
   std::string modes = {};            ///< modes.json; empty: none
   std::string workpiece_modes = {};  ///< the same, of a part that vibrates too
   std::string lobes = {};            ///< lobes.json; empty: none
+  std::string forces = {};           ///< forces.json; empty: none
 
-  std::optional<Forces> forces = {};
   std::optional<Smooth> smooth = {};
   std::optional<MonitorRun> monitor = {};
   std::string calibration = {};  ///< calibration.json; empty: none
