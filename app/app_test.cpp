@@ -295,7 +295,7 @@ TEST_F(App, ReportsForcesOverARevolutionAndAlongAProgram) {
   ASSERT_EQ(cut.exit, 0) << cut.err;
   EXPECT_NE(cut.out.find("deflection"), std::string::npos) << cut.out;
   EXPECT_EQ(slurp(folder_.at("forces.csv")).rfind("rotation_deg,fx_n,fy_n,fz_n,torque_n_m\n", 0), 0U);
-  EXPECT_TRUE(nlohmann::json::parse(slurp(folder_.at("forces.json")))["forces"]["revolution"].is_object());
+  EXPECT_TRUE(nlohmann::json::parse(slurp(folder_.at("forces.json")))["forces"]["rotation_deg"].is_array());
   const std::string program = "forces " + along + "forces.toml --program " + along + "hollow.ngc --cell ";
   const Ended run = robomill(program + along + "cell.toml -o -");
   ASSERT_EQ(run.exit, 0) << run.err;

@@ -15,7 +15,7 @@ void write_report(const std::filesystem::path& path, const jobs::ForcesResult& r
   report::Report page;
   page.title = "Cutting forces";
   page.summary = jobs::summary(result);
-  page.forces = jobs::forces_report(result);
+  page.forces = jobs::forces_json(result);
   const bool html = path.extension() == ".html";
   io::write_file(path, html ? report::report_html(page) : report::report_json(page));
 }

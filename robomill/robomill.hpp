@@ -86,7 +86,6 @@
 #include "robomill/program/machine.hpp"
 #include "robomill/program/program.hpp"
 #include "robomill/report/fact.hpp"
-#include "robomill/report/forces.hpp"
 #include "robomill/report/monitor.hpp"
 #include "robomill/report/monitor_recorder.hpp"
 #include "robomill/report/report.hpp"

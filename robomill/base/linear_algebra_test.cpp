@@ -22,7 +22,8 @@ TEST(LinearAlgebra, AnswersSolveTheirEquations) {
   Random random(1);
   for (Eigen::Index n = 1; n <= 12; ++n) {
     const Eigen::MatrixXd a = random_matrix(random, n, n), b = random_matrix(random, n, 3);
-    const Eigen::MatrixXcd c = a.cast<std::complex<double>>() + std::complex<double>(0.0, 1.0) * random_matrix(random, n, n);
+    const Eigen::MatrixXcd c =
+        a.cast<std::complex<double>>() + std::complex<double>(0.0, 1.0) * random_matrix(random, n, n);
     const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
     EXPECT_LT((a * inverse(a) - one).norm(), 1e-9);
     EXPECT_LT((c * inverse(c) - one).norm(), 1e-9);

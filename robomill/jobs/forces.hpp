@@ -10,10 +10,10 @@
 #include "robomill/cutting/default_stock.hpp"
 #include "robomill/cutting/program_forces.hpp"
 #include "robomill/cutting/static_deflection.hpp"
+#include "robomill/decision/recommend.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
 #include "robomill/jobs/files/forces_toml.hpp"
 #include "robomill/program/program.hpp"
-#include "robomill/report/forces.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/redundancy.hpp"
 #include "robomill/simulation/simulation.hpp"
@@ -70,6 +70,7 @@ struct ForcesResult {
   std::optional<CellFile> cell = {};
   std::optional<RevolutionForces> revolution = {};
   std::optional<ProgramForces> program = {};
+  std::optional<decision::SpindleCapacity> spindle = {};  ///< what it has along the program, where the job knows
   std::vector<std::string> warnings = {}, notes = {};
 };
 
@@ -98,7 +99,5 @@ struct SpindleLoad {
 /// A row a step of rotation, or a row a block.
 [[nodiscard]] ROBOMILL_API std::string forces_csv(const ForcesResult& result);
 [[nodiscard]] ROBOMILL_API std::string forces_json(const ForcesResult& result);
-/// The part of the report on forces.
-[[nodiscard]] ROBOMILL_API report::Forces forces_report(const ForcesResult& result);
 
 }  // namespace robomill::jobs

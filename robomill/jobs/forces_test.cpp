@@ -1,11 +1,15 @@
 #include "robomill/jobs/forces.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
@@ -67,7 +71,7 @@ TEST(RunForces, WritesARevolution) {
   EXPECT_FALSE(json["engagement"].empty());
   EXPECT_EQ(json["fx_n"].size(), 360U);
   report::Report page;
-  page.forces = forces_report(result);
+  page.forces = forces_json(result);
   EXPECT_NE(report::report_html(page).find("\"forces\":{"), std::string::npos);
 }
 
@@ -103,6 +107,8 @@ TEST(RunForces, VibratesWithThePart) {
   const cutting::CuttingForce& still = result.revolution->deflected.force;
   ASSERT_EQ(vibrating.cols(), still.force_n.cols());
   EXPECT_LE((vibrating.rowwise().mean() - still.mean_n).norm(), 0.03 * still.mean_n.norm());
+  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  EXPECT_EQ(json["vibrating_fy_n"].get<std::vector<double>>().at(7), vibrating(1, 7));
   EXPECT_EQ(lines(forces_csv(result)).front(),
             "rotation_deg,fx_n,fy_n,fz_n,torque_n_m,vibrating_fx_n,vibrating_fy_n,vibrating_fz_n");
 }
@@ -132,6 +138,50 @@ TEST(RunForces, RunsAlongAProgramWithTheRobot) {
   const std::vector<SpindleLoad> loads = spindle_loads(result);
   ASSERT_GT(loads.size(), 200U);
   EXPECT_GT(loads[0].torque_n_m, 0.0);
+}
+
+// highest and worst are those of all blocks that cut; the way is the sum of the blocks' lengths.
+TEST(RunForces, NamesTheHighestAndTheWorstBlocks) {
+  const ForcesResult result = run_forces(along / "forces.toml", along / "hollow.ngc", along / "cell.toml");
+  const nlohmann::json json = nlohmann::json::parse(forces_json(result));
+  const nlohmann::json& blocks = json["blocks"];
+  std::vector<double> forces;
+  for (const nlohmann::json& block : blocks) {
+    EXPECT_EQ(block["cuts"].get<bool>(), block["cutting_time_s"].get<double>() > 0.0);
+    if (block["cuts"].get<bool>()) forces.push_back(block["peak_f_n"]);
+  }
+  std::ranges::sort(forces, std::greater());
+  ASSERT_EQ(json["worst"].size(), 10U);
+  for (std::size_t i = 0; i < 10; ++i) {
+    const nlohmann::json& worst = json["worst"][i];
+    EXPECT_EQ(worst["peak_f_n"].get<double>(), forces[i]);
+    EXPECT_EQ(worst, blocks[worst["block"].get<std::size_t>() - 1]);
+  }
+  for (const auto& [column, highest] : json["highest"].items()) {
+    const nlohmann::json& there = blocks[highest["block"].get<std::size_t>() - 1];
+    EXPECT_EQ(there[column], highest["value"]) << column;
+    EXPECT_EQ(there["line"], highest["line"]) << column;
+    for (const nlohmann::json& block : blocks) EXPECT_LE(block[column].get<double>(), highest["value"].get<double>());
+  }
+  EXPECT_EQ(json["highest"]["peak_f_n"]["block"], json["worst"][0]["block"]);
+  double path_mm = 0.0;
+  for (std::size_t i = 1; i < blocks.size(); ++i) {
+    Eigen::Vector3d step_mm;
+    for (const auto& [axis, name] : {std::pair{0, "x_mm"}, {1, "y_mm"}, {2, "z_mm"}}) {
+      step_mm[axis] = blocks[i][name].get<double>() - blocks[i - 1][name].get<double>();
+    }
+    path_mm += step_mm.norm();
+    EXPECT_NEAR(blocks[i]["path_mm"].get<double>() - blocks[0]["path_mm"].get<double>(), path_mm, 1e-6);
+    EXPECT_GE(blocks[i]["time_s"].get<double>(), blocks[i - 1]["time_s"].get<double>());
+  }
+  EXPECT_TRUE(json["torque_limit_n_m"].is_null());
+  EXPECT_EQ(json["facts"][1]["value"], fmt::format("{} blocks", blocks.size()));
+  ForcesResult rigid = result;
+  rigid.program->blocks.resize(3);
+  for (BlockResult& row : rigid.program->blocks) row = {.force = {.block = row.force.block}};
+  const nlohmann::json in_air = nlohmann::json::parse(forces_json(rigid));
+  EXPECT_TRUE(in_air["highest"]["peak_f_n"].is_null()) << "no block cuts";
+  EXPECT_TRUE(in_air["worst"].empty());
 }
 
 const std::string pocket_program =
@@ -180,10 +230,10 @@ TEST(RunForces, CountsTheSameBlocksEverywhere) {
   EXPECT_EQ(json["cutting_blocks"], 1);
   EXPECT_EQ(json["stock"]["assumed"], false);
   report::Report page;
-  page.forces = forces_report(result);
+  page.forces = forces_json(result);
   const nlohmann::json shown = nlohmann::json::parse(report::report_json(page));
-  EXPECT_EQ(shown["forces"]["program"]["cutting_blocks"], 1);
-  EXPECT_NEAR(shown["forces"]["program"]["highest"]["power_w"]["value"].get<double>(), 1620.0, 10.0);
+  EXPECT_EQ(shown["forces"]["cutting_blocks"], 1);
+  EXPECT_NEAR(shown["forces"]["highest"]["sustained_power_w"]["value"].get<double>(), 1620.0, 10.0);
   const nlohmann::json& row =
       *std::ranges::find_if(json["blocks"], [](const nlohmann::json& block) { return block["line"] == 5; });
   EXPECT_NEAR(row["peak_power_w"].get<double>(), 1620.0, 10.0);
@@ -227,6 +277,31 @@ TEST(RunForces, SaysWhichBlockTheRobotCannotReach) {
   const std::string text = message(folder.file("cell.toml", cell));
   EXPECT_NE(text.find("hollow.ngc:5"), std::string::npos) << text;
   EXPECT_NE(text.find("out of the robot's reach by"), std::string::npos) << text;
+}
+
+// The curve over γ passes through the posture that the cut was computed in.
+TEST(RunForces, SweepsAboutTheToolsAxis) {
+  const Folder folder;
+  static_cast<void>(folder.file("cell.toml", io::read_file(along / "cell.toml")));
+  std::string text = io::read_file(along / "forces.toml");
+  text.replace(
+      text.find("spindle_speed_rpm"), 17,
+      "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm");
+  text += "[robot]\ncell = \"cell.toml\"\njoints_deg = [0, -60, 90, 0, 60, 0]\n";
+  const auto json = nlohmann::json::parse(forces_json(run_forces(folder.file("forces.toml", text), {}, {})));
+  const nlohmann::json& sweep = json["spindle_rotation"];
+  const double used_deg = sweep["used_deg"];
+  double nearest_deg = 360.0;
+  double nearest_um = 0.0;
+  for (std::size_t i = 0; i < sweep["rotation_deg"].size(); ++i) {
+    const double away_deg = std::abs(sweep["rotation_deg"][i].get<double>() - used_deg);
+    if (sweep["deflection_um"][i].is_null() || away_deg >= nearest_deg) continue;
+    nearest_deg = away_deg;
+    nearest_um = sweep["deflection_um"][i];
+  }
+  const auto bent_um = json["deflection_um"].get<std::array<double, 3>>();
+  EXPECT_LT(nearest_deg, 5.0);
+  EXPECT_NEAR(nearest_um, std::hypot(bent_um[0], bent_um[1], bent_um[2]), 0.05 * nearest_um);
 }
 
 TEST(RunForces, RejectsAPostureBeyondTheLimitsOrSingular) {

@@ -219,6 +219,18 @@ void warn_of_spindle(PlanResult& result) {
       worst.spindle_speed_rad_per_s / units::rpm, has));
 }
 
+/// What the spindle has, where the whole program runs at one speed of its curve.
+std::optional<decision::SpindleCapacity> capacity_along(const ForcesResult& forces,
+                                                        const std::vector<decision::SpindleCapacity>& curve) {
+  const std::vector<SpindleLoad> loads = spindle_loads(forces);
+  if (!forces.program || curve.empty() || loads.empty()) return std::nullopt;
+  const double speed = loads.front().spindle_speed_rad_per_s;
+  if (std::ranges::any_of(loads, [&](const SpindleLoad& l) { return l.spindle_speed_rad_per_s != speed; })) {
+    return std::nullopt;
+  }
+  return decision::capacity_at(curve, speed);
+}
+
 /// Whether the job's program is to be smoothed.
 bool wants_path(const Job& job) {
   if (job.program.empty() || job.cell.empty()) return false;
@@ -387,6 +399,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   measure(result, progress);
   if (!result.job.forces.empty()) {
     result.forces = run_forces(result.job.forces, result.job.program, result.job.cell, progress);
+    result.forces->spindle = capacity_along(*result.forces, spindle_curve(result.job));
     warn_of_spindle(result);
   }
   fit(result, seed, progress);

@@ -1,8 +1,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <ctime>
 
 #include "robomill/base/units.hpp"
@@ -41,26 +39,6 @@ DepthCurve spindle_curve(const PlanResult& result, const std::string& label, boo
     curve.axial_depth_m(i) = (torque ? p.torque_n_m : p.power_w / p.spindle_speed_rad_per_s) / per_depth;
   }
   return curve;
-}
-
-/// What the spindle has, where the whole program runs at one speed of its curve.
-report::Forces with_limits(report::Forces forces, const PlanResult& result) {
-  if (!forces.path || result.job.spindle_curve.empty()) return forces;
-  const std::vector<SpindleLoad> loads = spindle_loads(*result.forces);
-  if (loads.empty()) return forces;
-  const double speed = loads.front().spindle_speed_rad_per_s;
-  if (std::ranges::any_of(loads, [&](const SpindleLoad& l) { return l.spindle_speed_rad_per_s != speed; })) {
-    return forces;
-  }
-  std::vector<decision::SpindleCapacity> curve;
-  curve.reserve(result.job.spindle_curve.size());
-  for (const SpindlePoint& p : result.job.spindle_curve) {
-    curve.push_back({p.spindle_speed_rad_per_s, p.torque_n_m, p.power_w});
-  }
-  const decision::SpindleCapacity able = decision::capacity_at(curve, speed);
-  if (able.torque_n_m > 0.0) forces.path->torque_limit_n_m = able.torque_n_m;
-  if (able.power_w > 0.0) forces.path->power_limit_w = able.power_w;
-  return forces;
 }
 
 }  // namespace
@@ -132,7 +110,7 @@ report::Report make_report(const PlanResult& result, const std::vector<report::S
   if (!workpiece.modes.empty()) report.workpiece_modes = modal::modes_json(workpiece);
   if (result.has_lobes()) report.lobes = lobes_json(result);
   if (!result.recordings.empty()) report.recordings = io::dump(recordings_json(result));
-  if (result.forces) report.forces = with_limits(forces_report(*result.forces), result);
+  if (result.forces) report.forces = forces_json(*result.forces);
   if (result.path) {
     report.smooth = path::smooth_json(result.path->smoothed);
     report.motion = path::motion_json(result.path->outline, result.path->motions);

@@ -341,6 +341,9 @@ dexel_mm = 0.5
       "power_kw = {1} }}, {{ speed_rpm = 12000, torque_n_m = {0}, power_kw = {1} }}]\n";
   const auto warning = [&](double torque_n_m, double power_kw) {
     const PlanResult result = run_job(job(fmt::format(fmt::runtime(curve), torque_n_m, power_kw)), 1);
+    const auto forces = nlohmann::json::parse(plan_json(result))["forces"];
+    EXPECT_EQ(forces["torque_limit_n_m"].get<double>(), torque_n_m);
+    EXPECT_EQ(forces["power_limit_w"].get<double>(), 1e3 * power_kw);
     const auto found = std::ranges::find_if(
         result.warnings, [](const std::string& text) { return text.find("more than the spindle has") != text.npos; });
     return found == result.warnings.end() ? std::string() : *found;

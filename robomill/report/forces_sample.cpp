@@ -1,15 +1,20 @@
 #include "robomill/report/forces_sample.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "robomill/base/units.hpp"
 
 namespace robomill::report {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using std::numbers::pi;
 
 constexpr int teeth = 2;
@@ -66,51 +71,79 @@ Load load_at(double rotation_rad) {
   return sum;
 }
 
-ForceRevolution sample_revolution() {
-  constexpr Eigen::Index n = 361;
-  ForceRevolution turn;
-  turn.rotation_rad = Eigen::VectorXd::LinSpaced(n, 0.0, 2.0 * pi);
-  turn.force_n.resize(3, n);
-  turn.torque_n_m.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Load load = load_at(turn.rotation_rad[i]);
-    turn.force_n.col(i) = load.force_n;
-    turn.torque_n_m[i] = load.torque_n_m;
+/// Forces and torque over the rotation; length n of each.
+struct Turn {
+  Eigen::VectorXd rotation_deg = Eigen::VectorXd::LinSpaced(361, 0.0, 360.0);
+  Eigen::Matrix3Xd force_n = Eigen::Matrix3Xd(3, 361);
+  Eigen::VectorXd torque_n_m = Eigen::VectorXd(361);
+
+  Turn() {
+    for (Eigen::Index i = 0; i < rotation_deg.size(); ++i) {
+      const Load load = load_at(rotation_deg[i] * units::deg);
+      force_n.col(i) = load.force_n;
+      torque_n_m[i] = load.torque_n_m;
+    }
   }
-  turn.mean_n = turn.force_n.leftCols(n - 1).rowwise().mean();
-  turn.rms_n = turn.force_n.leftCols(n - 1).rowwise().squaredNorm().cwiseSqrt() / std::sqrt(static_cast<double>(n - 1));
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    Eigen::Index at = 0;
-    turn.force_n.row(axis).cwiseAbs().maxCoeff(&at);
-    turn.peak_n[axis] = turn.force_n(axis, at);
-  }
-  turn.mean_torque_n_m = turn.torque_n_m.head(n - 1).mean();
-  turn.peak_torque_n_m = turn.torque_n_m.maxCoeff();
-  turn.power_w = turn.mean_torque_n_m * speed_rad_per_s;
-  turn.chip_area_m2 = depth_m * stepover_m;
-  turn.removal_rate_m3_per_s = turn.chip_area_m2 * feed_per_tooth_m * teeth * speed_rad_per_s / (2.0 * pi);
-  turn.deflection_m = turn.mean_n.cwiseProduct(Eigen::Vector3d(1.9, 2.4, 0.6)) * units::um;
-  turn.peak_deflection_m = 3.1 * turn.deflection_m.norm();
-  turn.verdict = "The cut is stable.";
-  turn.vibrating = true;
+  [[nodiscard]] Eigen::Vector3d mean_n() const { return force_n.leftCols(360).rowwise().mean(); }
+  [[nodiscard]] Eigen::Vector3d deflection_um() const { return mean_n().cwiseProduct(Eigen::Vector3d(1.9, 2.4, 0.6)); }
+  [[nodiscard]] double mean_torque_n_m() const { return torque_n_m.head(360).mean(); }
+  [[nodiscard]] double power_w() const { return mean_torque_n_m() * speed_rad_per_s; }
+};
+
+Json list(const Eigen::VectorXd& values) {
+  return std::vector<double>(values.begin(), values.end());
+}
+
+Json engagement_json() {
+  Json engagement = Json::array();
   for (int ring = 0; ring < shown_rings; ++ring) {
     const double position_rad = position_of(ring, shown_rings);
-    EngagementRing found;
-    found.height_m = radius_m * (1.0 - std::cos(position_rad));
-    found.position_rad = position_rad;
-    found.arcs = {{0.0, exit_of(position_rad)}};
-    turn.engagement.push_back(found);
+    engagement.push_back({{"height_mm", radius_m * (1.0 - std::cos(position_rad)) / units::mm},
+                          {"position_deg", position_rad / units::deg},
+                          {"arcs_deg", Json::array({Json::array({0.0, exit_of(position_rad) / units::deg})})}});
   }
-  return turn;
+  return engagement;
+}
+
+Json revolution_json(const Turn& turn) {
+  const Eigen::Matrix3Xd once = turn.force_n.leftCols(360);
+  Eigen::Vector3d peak_n;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    Eigen::Index at = 0;
+    once.row(axis).cwiseAbs().maxCoeff(&at);
+    peak_n[axis] = once(axis, at);
+  }
+  const double chip_area_m2 = depth_m * stepover_m;
+  const double feed_m_per_s = feed_per_tooth_m * teeth * speed_rad_per_s / (2.0 * pi);
+  Json out = {{"mean_n", list(turn.mean_n())},
+              {"peak_n", list(peak_n)},
+              {"rms_n", list(once.rowwise().squaredNorm().cwiseSqrt() / std::sqrt(360.0))},
+              {"torque_n_m", turn.mean_torque_n_m()},
+              {"peak_torque_n_m", turn.torque_n_m.maxCoeff()},
+              {"power_w", turn.power_w()},
+              {"chip_area_mm2", chip_area_m2 / (units::mm * units::mm)},
+              {"removal_rate_mm3_per_s", chip_area_m2 * feed_m_per_s / units::mm3},
+              {"deflection_um", list(turn.deflection_um())},
+              {"peak_deflection_um", 3.1 * turn.deflection_um().norm()},
+              {"vibration", {{"verdict", "stable"}, {"chatter_frequency_hz", nullptr}}},
+              {"engagement", engagement_json()},
+              {"rotation_deg", list(turn.rotation_deg)},
+              {"torque_by_rotation_n_m", list(turn.torque_n_m)}};
+  const std::string names[] = {"fx_n", "fy_n", "fz_n"};
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    out[names[axis]] = list(turn.force_n.row(axis));
+    out["vibrating_" + names[axis]] = list(1.02 * turn.force_n.row(axis));
+  }
+  return out;
 }
 
 /// Rapids at the start and the end of the spiral, one retract half-way.
-bool in_air(Eigen::Index i, Eigen::Index n) {
+bool in_air(int i, int n) {
   return i < 3 || i == n - 1 || (i >= n / 2 && i <= n / 2 + 12);
 }
 
-/// Where block i of a spiral over a dome ends.
-Eigen::Vector3d tip_of(Eigen::Index i, Eigen::Index n) {
+/// Where block i of a spiral over a dome ends [mm].
+Eigen::Vector3d tip_of(int i, int n) {
   if (i < 2) return {45.0, 0.0, i == 0 ? 30.0 : 8.0};
   if (i == n - 1) return {0.0, 0.0, 40.0};
   const double share = static_cast<double>(i - 2) / static_cast<double>(n - 4);
@@ -120,78 +153,111 @@ Eigen::Vector3d tip_of(Eigen::Index i, Eigen::Index n) {
   return {away * std::cos(turned), 0.7 * away * std::sin(turned), 18.0 * (1.0 - std::pow(away / 40.0, 2)) + lift};
 }
 
-ForcePath sample_path(const ForceRevolution& turn) {
-  constexpr Eigen::Index n = 800;
-  ForcePath path;
-  path.block = Eigen::VectorXd::LinSpaced(n, 1.0, static_cast<double>(n));
-  path.line = path.block.array() + 11.0;
-  path.tip_m.resize(3, n);
-  path.mean_force_n.resize(3, n);
-  for (Eigen::VectorXd* values :
-       {&path.path_m, &path.time_s, &path.axial_depth_m, &path.radial_depth_m, &path.peak_force_n, &path.torque_n_m,
-        &path.peak_torque_n_m, &path.power_w, &path.deflection_m}) {
-    values->resize(n);
-  }
+Json blocks_json(const Turn& turn) {
+  constexpr int n = 800;
   const double peak_n = turn.force_n.colwise().norm().maxCoeff();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    path.tip_m.col(i) = tip_of(i, n) * units::mm;
-    const double step_m = i > 0 ? (path.tip_m.col(i) - path.tip_m.col(i - 1)).norm() : 30.0 * units::mm;
+  Json blocks = Json::array();
+  Eigen::Vector3d tip_mm(45.0, 0.0, 60.0);
+  double path_mm = 0.0;
+  double time_s = 0.0;
+  for (int i = 0; i < n; ++i) {
+    const double step_mm = (tip_of(i, n) - tip_mm).norm();
+    tip_mm = tip_of(i, n);
     const bool air = in_air(i, n);
-    const double at = static_cast<double>(i);
-    const double corner = std::exp(-std::pow((at - 523.0) / 4.0, 2));
-    const double load = air ? 0.0 : 1.0 + 0.35 * std::sin(0.031 * at) + 0.12 * std::sin(0.9 * at) + 1.4 * corner;
-    path.path_m[i] = (i > 0 ? path.path_m[i - 1] : 0.0) + step_m;
-    path.time_s[i] = (i > 0 ? path.time_s[i - 1] : 0.0) + step_m / (air ? 0.1 : 0.012);
-    path.axial_depth_m[i] = air ? missing : depth_m * (1.0 + 0.2 * std::sin(0.031 * at));
-    path.radial_depth_m[i] = air ? missing : stepover_m * load;
-    path.peak_force_n[i] = load * peak_n;
-    path.mean_force_n.col(i) = load * turn.mean_n;
-    path.torque_n_m[i] = load * turn.mean_torque_n_m;
-    path.peak_torque_n_m[i] = load * turn.peak_torque_n_m;
-    path.power_w[i] = load * turn.power_w;
-    path.deflection_m[i] = load * turn.deflection_m.norm() * (1.0 + 0.3 * std::cos(0.01 * at));
-    path.cuts.push_back(!air);
+    const double corner = std::exp(-std::pow((i - 523.0) / 4.0, 2));
+    const double load = air ? 0.0 : 1.0 + 0.35 * std::sin(0.031 * i) + 0.12 * std::sin(0.9 * i) + 1.4 * corner;
+    path_mm += step_mm;
+    time_s += step_mm / (air ? 100.0 : 12.0);
+    blocks.push_back({{"block", i + 1},
+                      {"line", i + 12},
+                      {"x_mm", tip_mm.x()},
+                      {"y_mm", tip_mm.y()},
+                      {"z_mm", tip_mm.z()},
+                      {"axial_depth_mm", air ? 0.0 : depth_m / units::mm * (1.0 + 0.2 * std::sin(0.031 * i))},
+                      {"radial_depth_mm", stepover_m / units::mm * load},
+                      {"mean_fx_n", load * turn.mean_n().x()},
+                      {"mean_fy_n", load * turn.mean_n().y()},
+                      {"mean_fz_n", load * turn.mean_n().z()},
+                      {"peak_f_n", load * peak_n},
+                      {"revolution_torque_n_m", load * turn.mean_torque_n_m()},
+                      {"peak_torque_n_m", load * turn.torque_n_m.maxCoeff()},
+                      {"sustained_power_w", load * turn.power_w()},
+                      {"peak_deflection_um", load * turn.deflection_um().norm() * (1.0 + 0.3 * std::cos(0.01 * i))},
+                      {"cuts", !air},
+                      {"path_mm", path_mm},
+                      {"time_s", time_s}});
   }
-  path.troubles = {"part.ngc:412: the robot cannot reach this block"};
-  path.torque_limit_n_m = 1.9 * turn.mean_torque_n_m;
-  path.power_limit_w = 3.2 * turn.power_w;
-  return path;
+  return blocks;
 }
 
-RedundancySweep sample_sweep() {
-  constexpr Eigen::Index n = 73;
-  RedundancySweep sweep;
-  sweep.rotation_rad = Eigen::VectorXd::LinSpaced(n, -pi, pi);
-  sweep.deflection_m.resize(n);
-  sweep.condition_number.resize(n);
-  double best_m = std::numeric_limits<double>::infinity();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double gamma = sweep.rotation_rad[i];
-    const bool reachable = gamma > -1.9 && gamma < 2.3;
-    sweep.deflection_m[i] =
-        reachable ? (38.0 - 9.0 * std::cos(2.0 * gamma - 0.8) - 5.0 * std::sin(gamma)) * units::um : missing;
-    sweep.condition_number[i] = reachable ? 8.0 + 30.0 * std::pow(std::sin(0.7 * gamma + 0.2), 4) : missing;
-    if (!(sweep.deflection_m[i] < best_m)) continue;
-    best_m = sweep.deflection_m[i];
-    sweep.best_rad = gamma;
+Json program_json(const Turn& turn) {
+  Json blocks = blocks_json(turn);
+  const auto higher = [](const char* column) {
+    return [column](const Json& a, const Json& b) { return a[column] > b[column]; };
+  };
+  auto worst = blocks.get<std::vector<Json>>();
+  std::ranges::stable_sort(worst, higher("peak_f_n"));
+  worst.resize(10);
+  Json highest = Json::object();
+  for (const char* column :
+       {"peak_f_n", "revolution_torque_n_m", "peak_torque_n_m", "sustained_power_w", "peak_deflection_um"}) {
+    const Json& most = *std::ranges::min_element(blocks, higher(column));
+    highest[column] = {{"value", most[column]}, {"block", most["block"]}, {"line", most["line"]}};
   }
-  sweep.used_rad = 0.0;
-  return sweep;
+  const auto cutting = std::ranges::count_if(blocks, [](const Json& block) { return block["cuts"].get<bool>(); });
+  return {{"cutting_blocks", cutting},
+          {"power_time_s", 0.1},
+          {"torque_limit_n_m", 1.9 * turn.mean_torque_n_m()},
+          {"power_limit_w", 3.2 * turn.power_w()},
+          {"highest", std::move(highest)},
+          {"worst", worst},
+          {"blocks", std::move(blocks)}};
+}
+
+Json sweep_json() {
+  Json rotation = Json::array();
+  Json deflection = Json::array();
+  Json condition = Json::array();
+  double best_deg = 0.0;
+  double best_um = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 73; ++i) {
+    const double gamma = (5.0 * i - 180.0) * units::deg;
+    const bool reachable = gamma > -1.9 && gamma < 2.3;
+    const double bent_um = 38.0 - 9.0 * std::cos(2.0 * gamma - 0.8) - 5.0 * std::sin(gamma);
+    rotation.push_back(gamma / units::deg);
+    deflection.push_back(reachable ? Json(bent_um) : Json());
+    condition.push_back(reachable ? Json(8.0 + 30.0 * std::pow(std::sin(0.7 * gamma + 0.2), 4)) : Json());
+    if (!reachable || bent_um >= best_um) continue;
+    best_um = bent_um;
+    best_deg = gamma / units::deg;
+  }
+  return {{"rotation_deg", std::move(rotation)},
+          {"deflection_um", std::move(deflection)},
+          {"condition_number", std::move(condition)},
+          {"best_deg", best_deg},
+          {"best_deflection_um", best_um},
+          {"used_deg", 0.0}};
 }
 
 }  // namespace
 
-Forces sample_forces() {
-  Forces forces;
-  forces.facts = {{"Cutter", "ball end, 6 mm, 2 teeth, 30°"},
-                  {"Cut", "1 mm deep, 0.5 mm beside the last pass, up"},
-                  {"Feed", "0.02 mm per tooth at 18 000 rpm"}};
-  forces.warnings = {"The radial coefficient is an assumption: it was not measured on this material."};
-  forces.notes = {"Forces of this sample come from a formula without runout."};
-  forces.revolution = sample_revolution();
-  forces.path = sample_path(*forces.revolution);
-  forces.spindle_rotation = sample_sweep();
-  return forces;
+std::string sample_forces(const std::string& text) {
+  const auto named = [&](const char* own) { return text.empty() ? std::string(own) : text; };
+  const auto fact = [&](const char* label, const char* value) -> Json {
+    return {{"label", named(label)}, {"value", named(value)}};
+  };
+  const Turn turn;
+  Json out = {{"force_on", "tool"}};
+  out.update(revolution_json(turn));
+  out["spindle_rotation"] = sweep_json();
+  out.update(program_json(turn));
+  out["facts"] = Json::array({fact("Cutter", "ball end, 6 mm, 2 teeth, 30°"),
+                              fact("Cut", "1 mm deep, 0.5 mm beside the last pass, up"),
+                              fact("Feed", "0.02 mm per tooth at 18 000 rpm")});
+  out["warnings"] =
+      Json::array({named("The radial coefficient is an assumption: it was not measured on this material.")});
+  out["notes"] = Json::array({named("Forces of this sample come from a formula without runout.")});
+  return out.dump();
 }
 
 }  // namespace robomill::report

@@ -1,10 +1,10 @@
 #pragma once
-#include "robomill/report/forces.hpp"
+#include <string>
 
 namespace robomill::report {
 
-/// Forces of a ball-end cutter from the simplest formulas, along an invented spiral, for tests of the page. Nothing in
-/// it is a prediction.
-[[nodiscard]] Forces sample_forces();
+/// forces.json of a ball end in an invented cut, over a revolution and along a program of 800 blocks, with a robot.
+/// @param text  of facts, warnings and notes, where it is not empty
+[[nodiscard]] std::string sample_forces(const std::string& text = {});
 
 }  // namespace robomill::report

@@ -27,12 +27,6 @@ Json numbers(const Eigen::VectorXd& si, double unit) {
   return list;
 }
 
-Json numbers(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& keep, double unit) {
-  Json list = Json::array();
-  for (const Eigen::Index i : keep) list.push_back(number(values[i], unit));
-  return list;
-}
-
 Json text(const std::string& raw) {
   const Json quoted = raw;
   return Json::parse(quoted.dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -11,9 +11,6 @@ namespace robomill::report {
 /// The report in shop units, as report_json writes it. Texts are valid UTF-8.
 [[nodiscard]] nlohmann::ordered_json shop_units(const Report& report);
 
-/// Its part on forces. Long curves are thinned with their peaks; the worst blocks come from all of them.
-[[nodiscard]] nlohmann::ordered_json forces_json(const Forces& forces);
-
 /// Its part on a monitored recording.
 [[nodiscard]] nlohmann::ordered_json monitor_json(const MonitorRun& run);
 
@@ -29,8 +26,6 @@ namespace robomill::report {
 /// SI to a shop unit: the edge of the stage.
 [[nodiscard]] nlohmann::ordered_json number(double si, double unit);
 [[nodiscard]] nlohmann::ordered_json numbers(const Eigen::VectorXd& si, double unit = 1.0);
-[[nodiscard]] nlohmann::ordered_json numbers(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& keep,
-                                             double unit = 1.0);
 /// Bytes that are no UTF-8 become U+FFFD, so that a stray file name cannot break the page.
 [[nodiscard]] nlohmann::ordered_json text(const std::string& raw);
 [[nodiscard]] nlohmann::ordered_json facts_json(const std::vector<Fact>& facts);

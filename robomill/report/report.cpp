@@ -18,7 +18,6 @@ void validate_part(const char* name, const std::optional<Part>& part) {
 }  // namespace
 
 void Report::validate() const {
-  validate_part("forces.", forces);
   validate_part("monitor.", monitor);
 }
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
-#include "robomill/report/forces.hpp"
 #include "robomill/report/monitor.hpp"
 
 // Method: robomill/report/README.md, "Method"
@@ -31,10 +30,10 @@ struct Report {
   std::string modes = {};            ///< modes.json; empty: none
   std::string workpiece_modes = {};  ///< the same, of a part that vibrates too
   std::string lobes = {};            ///< lobes.json; empty: none
+  std::string forces = {};           ///< forces.json; empty: none
   std::string smooth = {};           ///< smooth.json; empty: none
   std::string motion = {};  ///< the same program's outline and motion, recorded for the page alone; empty: none
 
-  std::optional<Forces> forces = {};
   std::optional<MonitorRun> monitor = {};
   std::string calibration = {};  ///< calibration.json; empty: none
   std::vector<StageFile> files = {};

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <string>
 #include <utility>
@@ -12,31 +14,70 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_rows = 6000;    ///< of a list
+constexpr std::size_t most_rows = 6000;    ///< of a list, of a revolution
 constexpr std::size_t most_lines = 12000;  ///< of an axis that all FRFs of a document share
 
-double value_of(const Json& row, const std::string& key) {
-  const auto cell = row.find(key);
-  return cell != row.end() && cell->is_number() ? cell->get<double>() : missing;
+double number_of(const Json& value) {
+  return value.is_number() ? value.get<double>() : missing;
 }
 
-/// Rows that hold an extreme of some column, run by run.
+double number_in(const Json& row, const std::string& key) {
+  const auto cell = row.find(key);
+  return cell == row.end() ? missing : number_of(*cell);
+}
+
+bool truth_in(const Json& row, const std::string& key) {
+  const auto cell = row.find(key);
+  return cell != row.end() && cell->is_boolean() && cell->get<bool>();
+}
+
+/// As a count or an axis: its extremes are no more than the ends of a run.
+bool never_decreases(const Eigen::VectorXd& values) {
+  return values.allFinite() && std::is_sorted(values.begin(), values.end());
+}
+
+/// What draws long curves over one axis like the whole ones; axes and counts follow.
+std::vector<Eigen::Index> thin_curves(const std::vector<Eigen::VectorXd>& columns, std::size_t most) {
+  std::vector<Eigen::VectorXd> curves;
+  std::ranges::remove_copy_if(columns, std::back_inserter(curves), never_decreases);
+  return thin_together(curves.empty() ? columns : curves, static_cast<Eigen::Index>(most));
+}
+
+/// Both rows wherever a truth value changes, the first of them: where a program goes into the material and out.
+std::vector<Eigen::Index> changes(const Json& rows, const std::set<std::string>& keys, std::size_t most) {
+  std::vector<Eigen::Index> keep;
+  for (std::size_t i = 1; i < rows.size() && keep.size() < most; ++i) {
+    const auto changes_here = [&](const std::string& key) {
+      return truth_in(rows[i], key) != truth_in(rows[i - 1], key);
+    };
+    if (std::ranges::none_of(keys, changes_here)) continue;
+    keep.push_back(static_cast<Eigen::Index>(i - 1));
+    keep.push_back(static_cast<Eigen::Index>(i));
+  }
+  return keep;
+}
+
+/// Rows that hold an extreme of some column, run by run, or a change of a truth value.
 Json thinned_rows(Json rows) {
   std::set<std::string> keys;
+  std::set<std::string> truths;
   for (const Json& row : rows) {
     for (const auto& [key, value] : row.items()) {
       if (value.is_number()) keys.insert(key);
+      if (value.is_boolean()) truths.insert(key);
     }
   }
   std::vector<Eigen::VectorXd> columns;
   for (const std::string& key : keys) {
     Eigen::VectorXd& column = columns.emplace_back(static_cast<Eigen::Index>(rows.size()));
-    for (std::size_t i = 0; i < rows.size(); ++i) column[static_cast<Eigen::Index>(i)] = value_of(rows[i], key);
+    for (std::size_t i = 0; i < rows.size(); ++i) column[static_cast<Eigen::Index>(i)] = number_in(rows[i], key);
   }
+  std::vector<Eigen::Index> keep = changes(rows, truths, most_rows / 3);
+  std::ranges::copy(thin_curves(columns, most_rows - keep.size()), std::back_inserter(keep));
+  std::ranges::sort(keep);
+  keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
   Json kept = Json::array();
-  for (const Eigen::Index i : thin_together(columns, most_rows)) {
-    kept.push_back(std::move(rows[static_cast<std::size_t>(i)]));
-  }
+  for (const Eigen::Index i : keep) kept.push_back(std::move(rows[static_cast<std::size_t>(i)]));
   return kept;
 }
 
@@ -49,7 +90,18 @@ void collect(Json& node, std::size_t length, std::vector<Json*>& out) {
   }
 }
 
-/// The lines at which some |H| has an extreme, run by run; everything over their axis keeps the same ones.
+/// Everything over an axis of so many values keeps the same ones.
+void keep_of_axis(Json& json, std::size_t length, const std::vector<Eigen::Index>& keep) {
+  std::vector<Json*> lists;
+  collect(json, length, lists);
+  for (Json* list : lists) {
+    Json kept = Json::array();
+    for (const Eigen::Index i : keep) kept.push_back((*list)[static_cast<std::size_t>(i)]);
+    *list = std::move(kept);
+  }
+}
+
+/// The lines at which some |H| has an extreme, run by run.
 void thin_frfs(Json& json) {
   if (!json.is_object() || !json.contains("receptance_m_per_n")) return;
   json.erase("deviation_m_per_n");  // no page draws it
@@ -65,14 +117,53 @@ void thin_frfs(Json& json) {
       magnitude[static_cast<Eigen::Index>(i)] = known ? std::hypot(re.get<double>(), im.get<double>()) : missing;
     }
   }
-  const std::vector<Eigen::Index> keep = thin_together(magnitudes, most_lines);
-  std::vector<Json*> lists;
-  collect(json, lines, lists);
-  for (Json* list : lists) {
-    Json kept = Json::array();
-    for (const Eigen::Index i : keep) kept.push_back((*list)[static_cast<std::size_t>(i)]);
-    *list = std::move(kept);
+  keep_of_axis(json, lines, thin_together(magnitudes, most_lines));
+}
+
+/// What the page draws of each block of a program; its tables are made of the worst blocks.
+constexpr const char* drawn_columns[] = {"block",
+                                         "line",
+                                         "x_mm",
+                                         "y_mm",
+                                         "z_mm",
+                                         "peak_f_n",
+                                         "revolution_torque_n_m",
+                                         "peak_torque_n_m",
+                                         "path_mm",
+                                         "time_s",
+                                         "cuts",
+                                         "sustained_power_w",
+                                         "peak_deflection_um"};
+
+void keep_drawn(Json& block) {
+  Json drawn = Json::object();
+  for (const char* column : drawn_columns) {
+    if (const auto cell = block.find(column); cell != block.end()) drawn[column] = std::move(*cell);
   }
+  block = std::move(drawn);
+}
+
+/// The steps of a revolution at which a force has an extreme, run by run.
+void thin_revolution(Json& json, std::size_t steps) {
+  if (steps <= most_rows) return;
+  std::vector<Json*> lists;
+  collect(json, steps, lists);
+  std::vector<Eigen::VectorXd> curves;
+  for (const Json* list : lists) {
+    Eigen::VectorXd& curve = curves.emplace_back(static_cast<Eigen::Index>(steps));
+    for (std::size_t i = 0; i < steps; ++i) curve[static_cast<Eigen::Index>(i)] = number_of((*list)[i]);
+  }
+  keep_of_axis(json, steps, thin_curves(curves, most_rows));
+}
+
+/// Of forces.json what the page shows.
+void thin_forces(Json& json) {
+  if (!json.is_object() || !json.contains("force_on")) return;
+  json.erase("skipped");
+  if (const auto blocks = json.find("blocks"); blocks != json.end()) {
+    for (Json& block : *blocks) keep_drawn(block);
+  }
+  if (const auto rotation = json.find("rotation_deg"); rotation != json.end()) thin_revolution(json, rotation->size());
 }
 
 /// Numbers to six digits, long lists of rows thinned.
@@ -89,6 +180,7 @@ Json document(const std::string& text) {
   if (text.empty()) return nullptr;
   Json json = Json::parse(text);
   thin_frfs(json);
+  thin_forces(json);
   return shown(std::move(json));
 }
 
@@ -108,7 +200,7 @@ Json shop_units(const Report& report) {
   json["workpiece_modes"] = document(report.workpiece_modes);
   json["lobes"] = document(report.lobes);
   json["recordings"] = document(report.recordings);
-  json["forces"] = report.forces ? forces_json(*report.forces) : Json(nullptr);
+  json["forces"] = document(report.forces);
   json["smooth"] = document(report.smooth);
   json["motion"] = document(report.motion);
   json["monitor"] = report.monitor ? monitor_json(*report.monitor) : Json(nullptr);

@@ -2,6 +2,7 @@
 #include <iostream>
 #include <string_view>
 
+#include "robomill/report/forces_sample.hpp"
 #include "robomill/report/monitor_sample.hpp"
 #include "robomill/report/plan_sample.hpp"
 #include "robomill/report/report_sample.hpp"
@@ -24,11 +25,7 @@ int main(int argc, char** argv) {
     report.assembly = robomill::report::sample_assembly(evil);
     report.plan = robomill::report::sample_plan(evil);
     report.recordings = robomill::report::sample_recordings(evil);
-    report.forces->facts = {{evil, evil}};
-    report.forces->warnings = {evil};
-    report.forces->notes = {evil};
-    report.forces->revolution->verdict = evil;
-    report.forces->path->troubles = {evil};
+    report.forces = robomill::report::sample_forces(evil);
     report.smooth = robomill::report::sample_smooth(evil);
     report.monitor->facts = {{evil, evil}};
     report.monitor->notes = {evil};

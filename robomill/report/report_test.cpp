@@ -6,10 +6,15 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/random.hpp"
+#include "robomill/report/forces_sample.hpp"
 #include "robomill/report/json.hpp"
 #include "robomill/report/monitor_sample.hpp"
 #include "robomill/report/page.hpp"
@@ -17,7 +22,6 @@
 #include "robomill/report/report_sample.hpp"
 #include "robomill/report/smooth_sample.hpp"
 #include "robomill/report/structure_sample.hpp"
-#include "robomill/report/thin.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::report {
@@ -91,6 +95,65 @@ TEST(ReportJson, ThinsLongListsOfRows) {
   EXPECT_EQ(high, 7.5);
 }
 
+// Property: of a long program the highest of every curve is drawn, moves in air keep their ends, and what is drawn
+// stays small.
+TEST(ReportJson, LongProgramsKeepTheirPeaks) {
+  Random random(11);
+  constexpr int n = 60000;
+  const std::vector<std::string> curves = {
+      "x_mm", "peak_f_n", "revolution_torque_n_m", "peak_torque_n_m", "sustained_power_w", "peak_deflection_um"};
+  std::map<std::string, double> highest;
+  json blocks = json::array();
+  for (int i = 0; i < n; ++i) {
+    json block = {{"block", i + 1}, {"path_mm", 0.01 * i}, {"cuts", i % 1500 < 1200}, {"mean_fx_n", 1.0}};
+    for (const std::string& curve : curves) {
+      block[curve] = random.uniform();
+      highest[curve] = std::max(highest[curve], block[curve].get<double>());
+    }
+    blocks.push_back(std::move(block));
+  }
+  Report report;
+  report.forces = json{{"force_on", "tool"}, {"blocks", blocks}, {"skipped", {"M8"}}}.dump();
+  const json forces = json::parse(report_json(report))["forces"];
+  const json& kept = forces["blocks"];
+  EXPECT_GT(kept.size(), 5000U);
+  EXPECT_LT(kept.size(), 6020U);
+  EXPECT_EQ(kept.front()["block"], 1);
+  EXPECT_EQ(kept.back()["block"], n);
+  EXPECT_FALSE(forces.contains("skipped"));
+  EXPECT_FALSE(kept.front().contains("mean_fx_n")) << "no page draws it";
+  std::map<std::string, double> shown;
+  std::set<int> numbers;
+  for (const json& block : kept) {
+    numbers.insert(block["block"].get<int>());
+    for (const std::string& curve : curves) shown[curve] = std::max(shown[curve], block[curve].get<double>());
+  }
+  for (const std::string& curve : curves) EXPECT_NEAR(shown[curve], highest[curve], 1e-5) << curve;
+  for (int i = 1200; i < n; i += 1500) {
+    for (const int number : {i, i + 1, i + 300}) EXPECT_TRUE(numbers.contains(number)) << number;
+  }
+}
+
+// Force and torque of a revolution in 50,000 steps keep the same ones, with the peak of each.
+TEST(ReportJson, ThinsALongRevolution) {
+  constexpr int n = 50000;
+  json forces = {{"force_on", "tool"}, {"notes", json::array()}};
+  for (const char* name : {"rotation_deg", "fx_n", "torque_by_rotation_n_m"}) forces[name] = json::array();
+  for (int i = 0; i < n; ++i) {
+    forces["rotation_deg"].push_back(360.0 * i / n);
+    forces["fx_n"].push_back(i == 31234 ? 7.5 : std::sin(1e-3 * i));
+    forces["torque_by_rotation_n_m"].push_back(i == 4321 ? json() : json(std::cos(1e-3 * i)));
+  }
+  Report report;
+  report.forces = forces.dump();
+  const json kept = json::parse(report_json(report))["forces"];
+  const auto fx = kept["fx_n"].get<std::vector<double>>();
+  EXPECT_LT(fx.size(), 6010U);
+  EXPECT_EQ(kept["rotation_deg"].size(), fx.size());
+  EXPECT_EQ(kept["torque_by_rotation_n_m"].size(), fx.size());
+  EXPECT_EQ(kept["rotation_deg"][std::ranges::max_element(fx) - fx.begin()].get<double>(), 224.885);
+}
+
 TEST(ReportJson, StrayBytesBecomeValidText) {
   Report report;
   report.title = "Fr\xe4ser";
@@ -110,11 +173,7 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.frf = sample_frf(evil);
   report.assembly = sample_assembly(evil);
   report.files = {{evil, evil, evil}};
-  report.forces->facts = {{evil, evil}};
-  report.forces->warnings = {evil};
-  report.forces->notes = {evil};
-  report.forces->revolution->verdict = evil;
-  report.forces->path->troubles = {evil};
+  report.forces = sample_forces(evil);
   report.smooth = sample_smooth(evil);
   report.monitor->facts = {{evil, evil}};
   report.monitor->warnings = report.monitor->notes = {evil};
@@ -219,40 +278,6 @@ std::string rejected(Change&& change) {
 
 TEST(ReportValidate, NamesTheMember) {
   EXPECT_EQ(rejected([](Report&) {}), "accepted");
-  EXPECT_EQ(rejected([](Report& r) { r.forces->path->cuts.pop_back(); }), "forces.path.cuts");
-}
-
-// Property: increasing indices, within the bound, and the extremes of the whole curve are among them.
-TEST(Thin, KeepsPeaksAndDips) {
-  Random random(21);
-  for (int round = 0; round < 50; ++round) {
-    const auto n = static_cast<Eigen::Index>(1 + random.index(5000));
-    const auto most = static_cast<Eigen::Index>(10 + random.index(500));
-    Eigen::VectorXd values(n);
-    for (double& value : values) value = random.uniform() < 0.02 ? missing : random.normal();
-    const std::vector<Eigen::Index> keep = thin(values, most);
-    ASSERT_LE(static_cast<Eigen::Index>(keep.size()), std::max(most + 2, Eigen::Index{1}));
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (std::size_t i = 0; i < keep.size(); ++i) {
-      if (i > 0) {
-        ASSERT_LT(keep[i - 1], keep[i]);
-      }
-      if (!std::isnan(values[keep[i]])) {
-        low = std::min(low, values[keep[i]]);
-        high = std::max(high, values[keep[i]]);
-      }
-    }
-    double lowest = std::numeric_limits<double>::infinity();
-    double highest = -lowest;
-    for (const double value : values) {
-      if (std::isnan(value)) continue;
-      lowest = std::min(lowest, value);
-      highest = std::max(highest, value);
-    }
-    EXPECT_EQ(low, lowest);
-    EXPECT_EQ(high, highest);
-  }
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // What robomill writes into the page: shop units, null for "none".
 import type { Band } from './bands';
-import type { Forces, Monitor, Places } from './recorded';
+import type { Monitor, Places, Remarks } from './recorded';
 
 export * from './recorded';
 export type Num = number | null;
@@ -149,6 +149,99 @@ export interface LobesDocument {
   boundary: BoundaryPoint[];
   limit: BoundaryPoint[];
   uncertainty?: { samples: number; spindle_speed_rpm: number[]; limit_5_percent_mm: Num[]; limit_95_percent_mm: Num[] };
+}
+
+/** A number for each of x, y and z. */
+export type Triple = [Num, Num, Num];
+
+/** A ring of the cutter and where its teeth are in the material. */
+export interface Ring {
+  height_mm: number;
+  position_deg: Num;
+  arcs_deg: [number, number][]; // entry and exit
+}
+
+/** What the rotation about the spindle's axis does to the robot's deflection; null where it cannot stand. */
+export interface SpindleRotation {
+  rotation_deg: number[];
+  deflection_um: Num[];
+  condition_number: Num[];
+  best_deg: Num;
+  best_deflection_um: Num;
+  used_deg: number;
+}
+
+/** What forces.json has of one revolution. */
+export interface Revolution {
+  mean_n: Triple;
+  peak_n: Triple;
+  rms_n: Triple;
+  torque_n_m: Num; // mean
+  peak_torque_n_m: Num;
+  power_w: Num;
+  chip_area_mm2: Num;
+  removal_rate_mm3_per_s: Num;
+  deflection_um: Triple | null; // by the mean force; null: rigid
+  peak_deflection_um: Num;
+  spindle_rotation: SpindleRotation | null;
+  vibration: { verdict: 'stable' | 'chatter' | 'undecided'; chatter_frequency_hz: Num } | null;
+  engagement: Ring[];
+  rotation_deg: number[];
+  fx_n: number[];
+  fy_n: number[];
+  fz_n: number[];
+  torque_by_rotation_n_m: number[];
+  vibrating_fx_n?: number[]; // from the time-domain simulation
+  vibrating_fy_n?: number[];
+  vibrating_fz_n?: number[];
+}
+
+/** A block of a program: position, length and time at its end. */
+export interface Block {
+  block: number;
+  line: number;
+  x_mm: number;
+  y_mm: number;
+  z_mm: number;
+  peak_f_n: Num;
+  revolution_torque_n_m: Num;
+  peak_torque_n_m: Num;
+  sustained_power_w: Num;
+  peak_deflection_um: Num; // null: rigid
+  cuts: boolean;
+  path_mm: number;
+  time_s: number;
+}
+
+export interface WorstBlock extends Block {
+  axial_depth_mm: Num;
+  radial_depth_mm: Num;
+  mean_fx_n: Num;
+  mean_fy_n: Num;
+  mean_fz_n: Num;
+}
+
+/** The highest value along a program, and where. */
+export interface Highest {
+  value: number;
+  block: number;
+  line: number;
+}
+
+/** What forces.json has of a program. */
+export interface Program {
+  cutting_blocks: number;
+  power_time_s: number;
+  torque_limit_n_m: Num; // of the spindle
+  power_limit_w: Num;
+  highest: Record<'peak_f_n' | 'revolution_torque_n_m' | 'peak_torque_n_m' | 'sustained_power_w' | 'peak_deflection_um', Highest | null>;
+  worst: WorstBlock[];
+  blocks: Block[]; // of a long program a part, its first and last among them
+}
+
+/** forces.json */
+export interface Forces extends Remarks, Partial<Revolution>, Partial<Program> {
+  force_on: 'tool' | 'workpiece';
 }
 
 /** The limit with some of the modes alone. */

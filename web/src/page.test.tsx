@@ -129,7 +129,7 @@ it('shows forces beside the limits of the spindle', () => {
     'Stiffest at <strong>γ = ',
     'out of reach',
     '783 of 800 blocks cut',
-    'Trouble along the program',
+    'Mean force on the tool while cutting',
     'Engagement as a table',
     'Before you use these forces',
   ]) {
@@ -140,14 +140,21 @@ it('shows forces beside the limits of the spindle', () => {
 it('leaves out of the forces what is not there', () => {
   const { forces } = report;
   report = { ...empty(), forces };
-  const turn = forces!.revolution!;
-  Object.assign(forces!, { program: null, spindle_rotation: null });
-  Object.assign(turn, { engagement: [], deflection_um: [null, null, null], on: 'workpiece' });
+  delete forces!.blocks;
+  Object.assign(forces!, { spindle_rotation: null, engagement: [], deflection_um: null, force_on: 'workpiece' });
   expect(page()).toContain('Force on the workpiece');
   for (const part of ['Along the program', 'γ', 'Engagement', 'Deflection by']) expect(page()).not.toContain(part);
-  turn.engagement = [{ height_mm: 1, position_deg: null, arcs: [] }];
+  forces!.engagement = [{ height_mm: 1, position_deg: null, arcs_deg: [] }];
   expect(page()).toContain('No tooth is in the material here.');
   expect(page()).not.toContain('data-plot="engagement"');
+});
+
+it('says what the simulation found', () => {
+  expect(page()).toContain('<strong>stable</strong> Simulated in the time domain');
+  report.forces!.vibration = { verdict: 'chatter', chatter_frequency_hz: 683.4 };
+  expect(page()).toContain('<strong>chatter</strong> Chatter at 683 Hz. Simulated');
+  report.forces!.vibration = null;
+  expect(page()).not.toContain('Simulated in the time domain');
 });
 
 it('shows a smoothed program, its methods and its limits', () => {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { AssemblyDocument, FrfDocument, LobesDocument, ModesDocument, Plan, SegmentDocument } from './documents';
-import { assemblyOf, bandsOf, feedOf, frfsOf, lobesOf, modesOf } from './views';
+import { assemblyOf, bandsOf, feedOf, frfsOf, lobesOf, modesOf, valueAt } from './views';
 
 const modes: ModesDocument = {
   modes: [10, 20].map((frequency_hz) => ({ frequency_hz, damping_ratio: 0.01, left: {}, right: {}, std: { frequency_hz: null, damping_ratio: null } })),
@@ -73,4 +73,10 @@ it('says what holds the tool', () => {
   expect(assemblyOf({ ...base, holder: { segments: [] } }).holder.kind).toBe('wall');
   expect(assemblyOf({ ...base, holder: { segments: [segment, segment] } }).holder).toMatchObject({ kind: 'segments', segments: [{ part: 'holder', count: 1 }, { count: 2 }] });
   expect(assemblyOf({ ...base, holder: { receptances: 'holder.uff' } })).toMatchObject({ holder: { kind: 'measured', file: 'holder.uff' }, suspect_lines: 1, joint: null });
+});
+
+it('reads a curve between its points', () => {
+  const at = (x: number) => valueAt([-1, 0, 1], [4, 2, null], x);
+  expect([-1, -0.5, 0].map(at)).toEqual([4, 3, 2]);
+  expect([-1.5, 0.5, 1, 1.5, NaN].map(at)).toEqual([null, null, null, null, null]);
 });

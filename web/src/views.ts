@@ -1,5 +1,5 @@
 // What tables and plots need, made of the documents.
-import type { AssemblyDocument, BoundaryPoint, FrfDocument, LobesDocument, ModesDocument, ModeVector, Num, Owner, PartLimits, Plan, Report, SegmentDocument, TipPeak } from './documents';
+import type { AssemblyDocument, BoundaryPoint, Forces, FrfDocument, LobesDocument, ModesDocument, ModeVector, Num, Owner, PartLimits, Plan, Program, Report, Revolution, SegmentDocument, TipPeak } from './documents';
 
 export interface Mode {
   mode: number;
@@ -212,4 +212,24 @@ export function assemblyOf({ tool, joint, holder, peaks, suspect_hz, unreliable_
     unreliable_lines: unreliable_hz.length,
     notes,
   };
+}
+
+export function isRevolution(forces: Forces): forces is Forces & Revolution {
+  return forces.rotation_deg !== undefined;
+}
+
+export function isProgram(forces: Forces): forces is Forces & Program {
+  return forces.blocks !== undefined && forces.blocks.length > 0;
+}
+
+/** On straight lines between the points of a curve; null beyond its ends and beside what is missing. */
+export function valueAt(x: number[], y: Num[], at: number): Num {
+  const above = x.findIndex((value) => value >= at);
+  if (above < 0) return null;
+  const high = y[above] ?? null;
+  if (x[above] === at) return high;
+  const low = y[above - 1] ?? null;
+  if (low === null || high === null) return null;
+  const share = (at - x[above - 1]!) / (x[above]! - x[above - 1]!);
+  return (1 - share) * low + share * high;
 }

@@ -1,8 +1,12 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <functional>
 #include <iterator>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
@@ -140,7 +144,7 @@ const char* name_of(cutting::StaticDeflection::Status status) {
   return "found";
 }
 
-Json sweep_json(const robot::Redundancy& sweep) {
+Json sweep_json(const robot::Redundancy& sweep, double used_rad) {
   Json gamma = Json::array();
   Json deflection = Json::array();
   Json along = Json::array();
@@ -162,7 +166,8 @@ Json sweep_json(const robot::Redundancy& sweep) {
           {"condition_number", std::move(condition)},
           {"limit_distance_deg", std::move(limit)},
           {"best_deg", found ? number(sweep.best.gamma_rad / units::deg) : Json()},
-          {"best_deflection_um", found ? number(sweep.best.error_m.norm() / units::um) : Json()}};
+          {"best_deflection_um", found ? number(sweep.best.error_m.norm() / units::um) : Json()},
+          {"used_deg", number(used_rad / units::deg)}};
 }
 
 Json vibration_json(const simulation::Simulation& s) {
@@ -198,15 +203,21 @@ Json revolution_json(const RevolutionForces& revolution, double sign) {
               {"axial_depth_left_mm", number(deflected.cut.axial_depth_m / units::mm)},
               {"settled", name_of(deflected.status)},
               {"condition_number", robot ? number(revolution.posture->condition_number) : Json()}};
-  out["spindle_rotation"] = revolution.spindle_rotation ? sweep_json(*revolution.spindle_rotation) : Json();
+  out["spindle_rotation"] = revolution.spindle_rotation
+                                ? sweep_json(*revolution.spindle_rotation, revolution.posture->pose.gamma_rad)
+                                : Json();
   out["vibration"] = revolution.vibration ? vibration_json(*revolution.vibration) : Json();
   out["engagement"] = arcs_json(deflected.engagement);
   out["rotation_deg"] = io::numbers(force.rotation_rad / units::deg);
-  constexpr const char* names[] = {"fx_n", "fy_n", "fz_n"};
+  const std::string names[] = {"fx_n", "fy_n", "fz_n"};
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     out[names[axis]] = io::numbers(sign * force.force_n.row(axis).transpose());
   }
   out["torque_by_rotation_n_m"] = io::numbers(force.torque_n_m);
+  if (revolution.vibrating_force_n.cols() == 0) return out;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    out["vibrating_" + names[axis]] = io::numbers(sign * revolution.vibrating_force_n.row(axis).transpose());
+  }
   return out;
 }
 
@@ -223,31 +234,132 @@ Json stock_json(const ProgramForces& program) {
           {"max_mm", vector(stock.stock.highest_m(), units::mm)}};
 }
 
-Json program_json(const ForcesResult& result) {
-  const ProgramForces& program = *result.program;
-  const double sign = sign_of(result);
+Json block_json(const ProgramForces& program, const BlockResult& row, double sign) {
+  Json out = Json::object();
+  for (const Column& column : columns) {
+    const bool known = !of_robot(column.name) || row.joints.size() > 0;
+    const double value = column.value(program, row) * (turns(column.name) ? sign : 1.0);
+    const bool whole = std::string_view(column.name) == "block" || std::string_view(column.name) == "line";
+    out[column.name] = !known ? Json() : whole ? Json(static_cast<std::size_t>(value)) : number(value);
+  }
+  return out;
+}
+
+/// A row a block, with how far and how long the program has run at its end.
+Json blocks_json(const ProgramForces& program, double sign) {
   Json blocks = Json::array();
+  double path_m = 0.0;
+  double time_s = 0.0;
   for (const BlockResult& row : program.blocks) {
-    Json entry = Json::object();
-    for (const Column& column : columns) {
-      const bool known = !of_robot(column.name) || row.joints.size() > 0;
-      const double value = column.value(program, row) * (turns(column.name) ? sign : 1.0);
-      const bool whole = std::string_view(column.name) == "block" || std::string_view(column.name) == "line";
-      entry[column.name] = !known ? Json() : whole ? Json(static_cast<std::size_t>(value)) : number(value);
-    }
+    const program::Block& block = block_of(program, row);
+    path_m += (block.end.tip_m - program.program.begin_of(row.force.block).tip_m).norm();
+    time_s += block.duration_s;
+    Json entry = block_json(program, row, sign);
+    entry["cuts"] = row.force.cuts();
+    entry["path_mm"] = number(path_m / units::mm);
+    entry["time_s"] = number(time_s);
     blocks.push_back(std::move(entry));
   }
+  return blocks;
+}
+
+/// The blocks that cut, the highest of a column first; those of which it is not known are left out.
+std::vector<const Json*> by_column(const Json& blocks, const char* column) {
+  std::vector<const Json*> order;
+  for (const Json& block : blocks) {
+    if (block.at("cuts").get<bool>() && block.at(column).is_number()) order.push_back(&block);
+  }
+  std::ranges::stable_sort(order, std::ranges::greater(),
+                           [&](const Json* block) { return block->at(column).get<double>(); });
+  return order;
+}
+
+/// The highest value of the columns that a program is judged by, and where; null where none is known.
+Json highest_json(const Json& blocks) {
+  Json out = Json::object();
+  for (const char* column :
+       {"peak_f_n", "revolution_torque_n_m", "peak_torque_n_m", "sustained_power_w", "peak_deflection_um"}) {
+    const std::vector<const Json*> order = by_column(blocks, column);
+    out[column] = nullptr;
+    if (order.empty()) continue;
+    const Json& most = *order.front();
+    out[column] = {{"value", most.at(column)}, {"block", most.at("block")}, {"line", most.at("line")}};
+  }
+  return out;
+}
+
+constexpr std::size_t worst_blocks = 10;
+
+/// The blocks with the highest peak force, the worst first.
+Json worst_json(const Json& blocks) {
+  std::vector<const Json*> order = by_column(blocks, "peak_f_n");
+  order.resize(std::min(order.size(), worst_blocks));
+  Json worst = Json::array();
+  for (const Json* block : order) worst.push_back(*block);
+  return worst;
+}
+
+Json program_json(const ForcesResult& result) {
+  const ProgramForces& program = *result.program;
+  Json blocks = blocks_json(program, sign_of(result));
+  Json highest = highest_json(blocks);
+  Json worst = worst_json(blocks);
   Json skipped = Json::array();
   for (const program::Skipped& item : program.program.skipped) {
     skipped.push_back({{"line", item.line}, {"what", item.what}});
   }
+  const auto limit = [&](double decision::SpindleCapacity::*of) {
+    return result.spindle && (*result.spindle).*of > 0.0 ? number((*result.spindle).*of) : Json();
+  };
   return {{"removed_mm3", number(program.removed_volume_m3 / units::mm3)},
           {"seconds", number(program.seconds)},
           {"cutting_blocks", program.cutting_blocks()},
           {"power_time_s", number(result.file.power_time_s)},
+          {"torque_limit_n_m", limit(&decision::SpindleCapacity::torque_n_m)},
+          {"power_limit_w", limit(&decision::SpindleCapacity::power_w)},
           {"stock", stock_json(program)},
+          {"highest", std::move(highest)},
+          {"worst", std::move(worst)},
           {"blocks", std::move(blocks)},
           {"skipped", std::move(skipped)}};
+}
+
+const char* name_of(cutting::CutterKind kind) {
+  switch (kind) {
+    case cutting::CutterKind::flat_end:
+      return "flat end";
+    case cutting::CutterKind::ball_end:
+      return "ball end";
+    case cutting::CutterKind::bull_nose:
+      return "bull nose";
+    case cutting::CutterKind::general:
+      break;
+  }
+  return "general cutter";
+}
+
+/// What was cut with what, in words.
+Json facts_json(const ForcesResult& result) {
+  Json facts = Json::array();
+  const auto add = [&](const char* label, std::string value) {
+    facts.push_back({{"label", label}, {"value", std::move(value)}});
+  };
+  const cutting::Cutter& cutter = result.file.cutter;
+  add("Cutter", fmt::format("{}, {:.4g} mm, {} teeth, helix {:.3g}°", name_of(cutter.kind),
+                            cutter.mill.diameter_m / units::mm, cutter.mill.teeth, cutter.mill.helix_rad / units::deg));
+  if (result.revolution) {
+    const cutting::Cut& cut = result.file.cut;
+    add("Cut", fmt::format("{:.4g} mm deep, {:.4g} mm step-over, {:.4g} mm a tooth, lead {:.3g}°, tilt {:.3g}°",
+                           cut.axial_depth_m / units::mm, cut.radial_depth_m / units::mm,
+                           result.file.motion.feed_per_tooth_m / units::mm, cut.lead_rad / units::deg,
+                           cut.tilt_rad / units::deg));
+    add("Speed", fmt::format("{:.0f} rpm", result.file.motion.spindle_speed_rad_per_s / units::rpm));
+  }
+  if (result.program) {
+    add("Program", fmt::format("{} blocks", result.program->blocks.size()));
+    if (result.program->stock) add("Stock", stock_text(*result.program));
+  }
+  return facts;
 }
 
 }  // namespace
@@ -260,6 +372,7 @@ Json forces_object(const ForcesResult& result) {
   Json out = {{"force_on", result.file.on_workpiece ? "workpiece" : "tool"}};
   if (result.revolution) out.update(revolution_json(*result.revolution, sign_of(result)));
   if (result.program) out.update(program_json(result));
+  out["facts"] = facts_json(result);
   out["warnings"] = result.warnings;
   out["notes"] = result.notes;
   return out;

@@ -74,7 +74,8 @@ TEST(MotionJson, NumbersAreTheStructsInShopUnits) {
 TEST(MotionJson, HasAPathForEachCorner) {
   Motion motion = moved();
   motion.corner_paths_m.clear();
-  EXPECT_EQ(robomill::test::field_of([&] { static_cast<void>(motion_json(outlined(), {motion})); }), "motions.corner_paths_m");
+  EXPECT_EQ(robomill::test::field_of([&] { static_cast<void>(motion_json(outlined(), {motion})); }),
+            "motions.corner_paths_m");
 }
 
 }  // namespace

@@ -1,22 +1,22 @@
 import { describe, expect, it } from 'vitest';
-import type { Program, Revolution, SpindleRotation, Track } from '../documents';
+import type { Block, Forces, Program, Revolution, SpindleRotation } from '../documents';
 import { engagementFigure, gammaFigure, highest, programFigure, revolutionFigure, ringEdges, withinTurn } from './forces';
 import { dark, light } from './theme';
-import { frame, marks, moves, trackFigure } from './track';
+import { frame, marks, moves, placesOf, trackFigure } from './track';
 
 const revolution = {
-  on: 'workpiece',
+  force_on: 'workpiece',
   rotation_deg: [0, 180, 360],
   fx_n: [1, 2, 1],
   fy_n: [3, 4, 3],
   fz_n: [5, 6, 5],
-  torque_n_m: [0.1, 0.2, 0.1],
+  torque_by_rotation_n_m: [0.1, 0.2, 0.1],
   engagement: [
-    { height_mm: 0.1, position_deg: 20, arcs: [{ entry_deg: 0, exit_deg: 120 }] },
-    { height_mm: 0.3, position_deg: null, arcs: [{ entry_deg: 300, exit_deg: 400 }] },
-    { height_mm: 0.7, position_deg: 40, arcs: [] },
+    { height_mm: 0.1, position_deg: 20, arcs_deg: [[0, 120]] },
+    { height_mm: 0.3, position_deg: null, arcs_deg: [[300, 400]] },
+    { height_mm: 0.7, position_deg: 40, arcs_deg: [] },
   ],
-} as Revolution;
+} as unknown as Forces & Revolution;
 
 describe('forces over a revolution', () => {
   it('have the three components above, each with a dash of its own, and the torque below', () => {
@@ -26,6 +26,8 @@ describe('forces over a revolution', () => {
     expect(layout['yaxis']).toMatchObject({ title: { text: 'Force on the workpiece (N)' } });
     expect(layout['xaxis']).toMatchObject({ range: [0, 360], dtick: 45, anchor: 'y2' });
     expect(revolutionFigure({ ...revolution, rotation_deg: [0, 180, 1080] }, light).layout['xaxis']).toMatchObject({ dtick: 135 });
+    const vibrating = { ...revolution, vibrating_fx_n: [7, 8, 7], vibrating_fy_n: [0, 1, 0], vibrating_fz_n: [0, 0, 0] };
+    expect(revolutionFigure(vibrating, light).data[0]!['y']).toEqual([7, 8, 7]);
     expect(revolutionFigure(revolution, light, true).layout['xaxis']).toMatchObject({ dtick: 90 });
   });
 });
@@ -60,32 +62,28 @@ describe('engagement map', () => {
   });
 });
 
-const track: Track = {
-  x_mm: [0, 0, 10, 10.001, 50],
-  y_mm: [0, 0, 0, 0, 0],
-  z_mm: [20, 0, 0, 0, 5],
-  block: [1, 2, 3, 4, 5],
-  line: [11, 12, 13, 14, 15],
-  peak_force_n: [0, 0, 100, 300, null],
-  cuts: [false, false, true, true, false],
-};
+/** Blocks from (0, 0, 20), the first and the last in air. */
+const track = [
+  { x_mm: 0, z_mm: 20, peak_f_n: 0, cuts: false },
+  { x_mm: 0, z_mm: 0, peak_f_n: 0, cuts: false },
+  { x_mm: 10, z_mm: 0, peak_f_n: 100, cuts: true },
+  { x_mm: 10.001, z_mm: 0, peak_f_n: 300, cuts: true },
+  { x_mm: 50, z_mm: 5, peak_f_n: null, cuts: false },
+].map((block, i) => ({ ...block, y_mm: 0, block: i + 1, line: i + 11 }) as Block);
 
 const program = {
   torque_limit_n_m: 0.25,
   power_time_s: 0.1,
   power_limit_w: 4000,
-  curves: {
-    path_mm: [5, 10, 30],
-    block: [1, 2, 3],
-    line: [11, 12, 13],
-    peak_force_n: [10, null, 30],
-    torque_n_m: [0.1, 0.2, 0.3],
-    peak_torque_n_m: [0.2, 0.3, 0.6],
-    power_w: [100, 200, 300],
-    deflection_um: [1, 2, 3],
-  },
-  track,
+  blocks: [
+    { path_mm: 5, peak_f_n: 10, revolution_torque_n_m: 0.1, peak_torque_n_m: 0.2, sustained_power_w: 100, peak_deflection_um: 1 },
+    { path_mm: 10, peak_f_n: null, revolution_torque_n_m: 0.2, peak_torque_n_m: 0.3, sustained_power_w: 200, peak_deflection_um: 2 },
+    { path_mm: 30, peak_f_n: 30, revolution_torque_n_m: 0.3, peak_torque_n_m: 0.6, sustained_power_w: 300, peak_deflection_um: 3 },
+  ].map((block, i) => ({ ...block, block: i + 1, line: i + 11 }) as Block),
 } as Program;
+
+/** The program with something else in each of its blocks. */
+const withBlocks = (change: Partial<Block>): Program => ({ ...program, blocks: program.blocks.map((block) => ({ ...block, ...change })) });
 
 describe('forces along a program', () => {
   const rows = (figure: { layout: Record<string, unknown> }) => Object.keys(figure.layout).filter((key) => key.startsWith('yaxis'));
@@ -93,7 +91,7 @@ describe('forces along a program', () => {
     const figure = programFigure(program, light);
     expect(rows(figure)).toHaveLength(4);
     expect(figure.layout['xaxis']).toMatchObject({ anchor: 'y4', range: [0, 30] });
-    const rigid = programFigure({ ...program, curves: { ...program.curves, deflection_um: null } }, light);
+    const rigid = programFigure(withBlocks({ peak_deflection_um: null }), light);
     expect(rows(rigid)).toHaveLength(3);
     expect(rigid.layout['xaxis']).toMatchObject({ anchor: 'y3' });
   });
@@ -119,7 +117,7 @@ describe('forces along a program', () => {
   });
   it('have a finite range where nothing is known', () => {
     expect(highest([null, null])).toBe(0);
-    const none = programFigure({ ...program, curves: { ...program.curves, peak_force_n: [null, null, null] } }, light);
+    const none = programFigure(withBlocks({ peak_f_n: null }), light);
     expect((none.layout['yaxis'] as { range: number[] }).range).toEqual([0, 1.12]);
   });
 });
@@ -139,7 +137,7 @@ describe('track', () => {
   });
   it('gives a millimetre the same length in all views', () => {
     for (const width of [300, 680, 1100]) {
-      const place = frame(track, width);
+      const place = frame(placesOf(track), width);
       const across = width - 64 - 24;
       const down = place.height - 30 - 104;
       const scale = (range: [number, number], domain: [number, number], room: number) => ((domain[1] - domain[0]) * room) / (range[1] - range[0]);
@@ -154,15 +152,15 @@ describe('track', () => {
     }
   });
   it('holds all of the path within its ranges', () => {
-    const place = frame({ ...track, y_mm: [0, 200, 0, -300, 0] }, 900);
+    const place = frame({ ...placesOf(track), y_mm: [0, 200, 0, -300, 0] }, 900);
     expect(place.y[0]).toBeLessThan(-300);
     expect(place.y[1]).toBeGreaterThan(200);
     expect(place.x[0]).toBeLessThan(0);
     expect(place.x[1]).toBeGreaterThan(50);
   });
   it('survives a program that stays where it is', () => {
-    const still = { ...track, x_mm: [1, 1, 1, 1, 1], y_mm: [2, 2, 2, 2, 2], z_mm: [3, 3, 3, 3, 3] };
-    const place = frame(still, 900);
+    const still = track.map((block) => ({ ...block, x_mm: 1, y_mm: 2, z_mm: 3 }));
+    const place = frame(placesOf(still), 900);
     for (const [low, high] of [place.x, place.y, place.z]) expect(high - low).toBeGreaterThanOrEqual(1 - 1e-9);
     expect(marks(still).force).toEqual([100, 300]);
   });
@@ -183,18 +181,18 @@ describe('deflection over γ', () => {
     deflection_um: [null, 20, 40],
     condition_number: [null, 5, 9],
     best_deg: 0,
-    best_um: 20,
+    best_deflection_um: 20,
     used_deg: 90,
-    used_um: 30,
   };
   it('marks the best and the used', () => {
     const { data, layout } = gammaFigure(sweep, light);
     expect(data.map((trace) => trace['name'])).toEqual(['deflection', 'used', 'best', 'condition number']);
+    expect(data[1]).toMatchObject({ x: [90], y: [30] });
     expect(data[2]).toMatchObject({ x: [0], y: [20], marker: { symbol: 'diamond' } });
     expect(layout['xaxis']).toMatchObject({ anchor: 'y2', dtick: 45 });
   });
   it('does without marks and condition number', () => {
-    const { data, layout } = gammaFigure({ ...sweep, best_um: null, used_deg: null, condition_number: null }, light);
+    const { data, layout } = gammaFigure({ ...sweep, best_deflection_um: null, used_deg: -90, condition_number: [null, null, null] }, light);
     expect(data.map((trace) => trace['name'])).toEqual(['deflection']);
     expect(layout).not.toHaveProperty('yaxis2');
   });

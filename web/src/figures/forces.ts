@@ -1,4 +1,5 @@
-import type { Program, Revolution, Ring, SpindleRotation } from '../documents';
+import type { Block, Forces, Num, Program, Revolution, Ring, SpindleRotation } from '../documents';
+import { valueAt } from '../views';
 import { limitMarks, reach, suffix } from './rows';
 import { axis, layout, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
@@ -9,9 +10,15 @@ function turnTicks(from: number, to: number, narrow: boolean): Layout {
   return { range: [from, to], tick0: 0, dtick: (narrow ? 90 : 45) * Math.max(1, Math.ceil((to - from) / 360)) };
 }
 
+/** Fx, Fy and Fz over the rotation, with the vibration where it was simulated. */
+export function forceCurves(turn: Revolution): [number[], number[], number[]] {
+  return [turn.vibrating_fx_n ?? turn.fx_n, turn.vibrating_fy_n ?? turn.fy_n, turn.vibrating_fz_n ?? turn.fz_n];
+}
+
 /** Fx, Fy and Fz over the rotation, the torque below. */
-export function revolutionFigure(turn: Revolution, theme: Theme, narrow = false): Figure {
+export function revolutionFigure(turn: Forces & Revolution, theme: Theme, narrow = false): Figure {
   const x = turn.rotation_deg;
+  const [fx, fy, fz] = forceCurves(turn);
   const line = (name: string, y: number[], index: number, dash: string): Trace => ({
     type: 'scatter',
     mode: 'lines',
@@ -23,16 +30,16 @@ export function revolutionFigure(turn: Revolution, theme: Theme, narrow = false)
   });
   return {
     data: [
-      line('Fx', turn.fx_n, 0, 'solid'),
-      line('Fy', turn.fy_n, 1, '7px,3px'),
-      line('Fz', turn.fz_n, 2, '2px,2px'),
+      line('Fx', fx, 0, 'solid'),
+      line('Fy', fy, 1, '7px,3px'),
+      line('Fz', fz, 2, '2px,2px'),
       {
         type: 'scatter',
         mode: 'lines',
         name: 'torque',
         showlegend: false,
         x,
-        y: turn.torque_n_m,
+        y: turn.torque_by_rotation_n_m,
         yaxis: 'y2',
         line: { color: theme.text, width: 2 },
         hovertemplate: `%{y:.4g}${thinSpace}N·m at %{x:.1f}°<extra>torque</extra>`,
@@ -42,7 +49,7 @@ export function revolutionFigure(turn: Revolution, theme: Theme, narrow = false)
       hovermode: 'x',
       margin: { l: 64, r: 36, t: 36, b: 48 },
       xaxis: axis(theme, turnAxis, { anchor: 'y2', hoverformat: '.1f', ...turnTicks(x[0] ?? 0, x[x.length - 1] ?? 360, narrow) }),
-      yaxis: axis(theme, `Force on the ${turn.on} (N)`, { domain: [0.38, 1], zeroline: true, zerolinecolor: theme.muted }),
+      yaxis: axis(theme, `Force on the ${turn.force_on} (N)`, { domain: [0.38, 1], zeroline: true, zerolinecolor: theme.muted }),
       yaxis2: axis(theme, 'Torque (N·m)', { domain: [0, 0.3], rangemode: 'tozero' }),
     }),
   };
@@ -78,7 +85,7 @@ export function engagementFigure(rings: Ring[], theme: Theme, narrow = false): F
   rings.forEach((ring, i) => {
     const [low, high] = edges[i]!;
     const position = ring.position_deg === null ? '' : `, κ ${ring.position_deg.toFixed(1)}°`;
-    for (const { entry_deg: entry, exit_deg: exit } of ring.arcs) {
+    for (const [entry, exit] of ring.arcs_deg) {
       for (const [from, to] of withinTurn(entry, exit)) {
         outline.x.push(from, to, to, from, from, null);
         outline.y.push(low, low, high, high, low, null);
@@ -128,42 +135,48 @@ export function engagementFigure(rings: Ring[], theme: Theme, narrow = false): F
 interface Row {
   title: string;
   unit: string;
-  lines: { name: string; y: (number | null)[]; faint?: boolean }[];
+  lines: { name: string; y: Num[]; faint?: boolean }[];
   limit: number | null;
 }
 
 /** Highest of the numbers; 0 where there is none. */
-export function highest(values: (number | null)[]): number {
+export function highest(values: Num[]): number {
   return values.reduce<number>((most, value) => Math.max(most, value ?? 0), 0);
 }
 
-function programRows({ curves, torque_limit_n_m: torqueLimit, power_limit_w: powerLimit, power_time_s: powerTime }: Program): Row[] {
+/** Whether a robot bends along the program. */
+export function bends(blocks: Block[]): boolean {
+  return blocks.some((block) => block.peak_deflection_um !== null);
+}
+
+function programRows({ blocks, torque_limit_n_m: torqueLimit, power_limit_w: powerLimit, power_time_s: powerTime }: Program): Row[] {
+  const column = (value: (block: Block) => Num) => blocks.map(value);
   const rows: Row[] = [
-    { title: 'Peak force (N)', unit: 'N', lines: [{ name: 'peak force', y: curves.peak_force_n }], limit: null },
+    { title: 'Peak force (N)', unit: 'N', lines: [{ name: 'peak force', y: column((block) => block.peak_f_n) }], limit: null },
     {
       title: 'Torque (N·m)',
       unit: 'N·m',
       lines: [
-        { name: 'peak torque', y: curves.peak_torque_n_m, faint: true },
-        { name: 'torque over a revolution', y: curves.torque_n_m },
+        { name: 'peak torque', y: column((block) => block.peak_torque_n_m), faint: true },
+        { name: 'torque over a revolution', y: column((block) => block.revolution_torque_n_m) },
       ],
       limit: torqueLimit,
     },
-    { title: 'Power (W)', unit: 'W', lines: [{ name: `power over ${powerTime} s`, y: curves.power_w }], limit: powerLimit },
+    { title: 'Power (W)', unit: 'W', lines: [{ name: `power over ${powerTime} s`, y: column((block) => block.sustained_power_w) }], limit: powerLimit },
   ];
-  if (curves.deflection_um !== null) {
-    rows.push({ title: 'Deflection (µm)', unit: 'µm', lines: [{ name: 'deflection', y: curves.deflection_um }], limit: null });
+  if (bends(blocks)) {
+    rows.push({ title: 'Deflection (µm)', unit: 'µm', lines: [{ name: 'deflection', y: column((block) => block.peak_deflection_um) }], limit: null });
   }
   return rows;
 }
 
 /** Peak force, torque, power and deflection over the length of the path, one above the other. */
 export function programFigure(program: Program, theme: Theme): Figure {
-  const { curves } = program;
+  const { blocks } = program;
   const rows = programRows(program);
   const share = 1 / rows.length;
-  const x = [0, ...curves.path_mm];
-  const places = curves.block.map((block, i) => [block, curves.line[i]]);
+  const x = [0, ...blocks.map((block) => block.path_mm)];
+  const places = blocks.map(({ block, line }) => [block, line]);
   const first = places[0] ?? [null, null];
   const data: Trace[] = [];
   const shapes: Layout[] = [];
@@ -216,8 +229,8 @@ export function programFigure(program: Program, theme: Theme): Figure {
 /** Deflection over γ, the best and the used one marked, with the condition number below where it is known. */
 export function gammaFigure(sweep: SpindleRotation, theme: Theme, narrow = false): Figure {
   const x = sweep.rotation_deg;
-  const conditioned = sweep.condition_number !== null;
-  const mark = (name: string, at: number | null, y: number | null, symbol: string, colour: string): Trace[] =>
+  const conditioned = sweep.condition_number.some((value) => value !== null);
+  const mark = (name: string, at: Num, y: Num, symbol: string, colour: string): Trace[] =>
     at === null || y === null
       ? []
       : [
@@ -244,8 +257,8 @@ export function gammaFigure(sweep: SpindleRotation, theme: Theme, narrow = false
       marker: { size: 3, color: theme.accent },
       hovertemplate: `%{y:.4g}${thinSpace}µm at γ = %{x:.4g}°<extra></extra>`,
     },
-    ...mark('used', sweep.used_deg, sweep.used_um, 'circle-open', theme.text),
-    ...mark('best', sweep.best_deg, sweep.best_um, 'diamond', theme.stable),
+    ...mark('used', sweep.used_deg, valueAt(x, sweep.deflection_um, sweep.used_deg), 'circle-open', theme.text),
+    ...mark('best', sweep.best_deg, sweep.best_deflection_um, 'diamond', theme.stable),
   ];
   if (conditioned) {
     data.push({

@@ -1,4 +1,4 @@
-import type { Num, Places, Track } from '../documents';
+import type { Block, Num, Places } from '../documents';
 import { axis, layout, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 interface Line {
@@ -16,46 +16,53 @@ export interface Marks {
 }
 
 /** Moves in air or in the cut, each from where the one before ended; a gap between two that do not follow each other. */
-export function moves(track: Track, cutting: boolean): Line {
+export function moves(blocks: Block[], cutting: boolean): Line {
   const line: Line = { x: [], y: [], z: [] };
-  for (let i = 1; i < track.cuts.length; ++i) {
-    if (track.cuts[i] !== cutting) continue;
-    if (i === 1 || track.cuts[i - 1] !== cutting) {
+  for (let i = 1; i < blocks.length; ++i) {
+    if (blocks[i]!.cuts !== cutting) continue;
+    if (i === 1 || blocks[i - 1]!.cuts !== cutting) {
       if (line.x.length > 0) for (const values of [line.x, line.y, line.z]) values.push(null);
-      push(line, track, i - 1);
+      push(line, blocks[i - 1]!);
     }
-    push(line, track, i);
+    push(line, blocks[i]!);
   }
   return line;
 }
 
-function push(line: Line, track: Track, i: number): void {
-  line.x.push(track.x_mm[i]!);
-  line.y.push(track.y_mm[i]!);
-  line.z.push(track.z_mm[i]!);
+function push(line: Line, block: Block): void {
+  line.x.push(block.x_mm);
+  line.y.push(block.y_mm);
+  line.z.push(block.z_mm);
 }
 
-const step = (track: Track, i: number) =>
-  Math.hypot(track.x_mm[i]! - track.x_mm[i - 1]!, track.y_mm[i]! - track.y_mm[i - 1]!, track.z_mm[i]! - track.z_mm[i - 1]!);
-
 /** Marks of the blocks that cut, the highest force last and so on top. A long block has several along its way, up to `more` in all. */
-export function marks(track: Track, more = 1500): Marks {
-  const cutting = track.cuts.map((_, i) => i).filter((i) => track.cuts[i] && track.peak_force_n[i] !== null);
-  const length = cutting.reduce((sum, i) => sum + (i > 0 ? step(track, i) : 0), 0);
+export function marks(blocks: Block[], more = 1500): Marks {
+  const steps = blocks.map((end, i) => {
+    const begin = blocks[i - 1] ?? end;
+    return { begin, end, length: Math.hypot(end.x_mm - begin.x_mm, end.y_mm - begin.y_mm, end.z_mm - begin.z_mm) };
+  });
+  const cutting = steps.filter(({ end }) => end.cuts && end.peak_f_n !== null);
+  const length = cutting.reduce((sum, step) => sum + step.length, 0);
   const spacing = length > 0 ? length / more : Infinity;
   const out: Marks = { x: [], y: [], z: [], force: [], place: [] };
-  for (const i of cutting.sort((a, b) => track.peak_force_n[a]! - track.peak_force_n[b]!)) {
-    const count = i > 0 ? Math.max(1, Math.floor(step(track, i) / spacing)) : 1;
+  for (const step of cutting.sort((a, b) => a.end.peak_f_n! - b.end.peak_f_n!)) {
+    const { begin, end } = step;
+    const count = Math.max(1, Math.floor(step.length / spacing));
     for (let k = 1; k <= count; ++k) {
-      const along = (values: number[]) => (i > 0 ? values[i - 1]! + ((values[i]! - values[i - 1]!) * k) / count : values[i]!);
-      out.x.push(along(track.x_mm));
-      out.y.push(along(track.y_mm));
-      out.z.push(along(track.z_mm));
-      out.force.push(track.peak_force_n[i]!);
-      out.place.push([track.block[i]!, track.line[i]!]);
+      const along = (from: number, to: number) => from + ((to - from) * k) / count;
+      out.x.push(along(begin.x_mm, end.x_mm));
+      out.y.push(along(begin.y_mm, end.y_mm));
+      out.z.push(along(begin.z_mm, end.z_mm));
+      out.force.push(end.peak_f_n!);
+      out.place.push([end.block, end.line]);
     }
   }
   return out;
+}
+
+/** Where blocks end. */
+export function placesOf(blocks: Block[]): Places {
+  return { x_mm: blocks.map((block) => block.x_mm), y_mm: blocks.map((block) => block.y_mm), z_mm: blocks.map((block) => block.z_mm) };
 }
 
 export interface Frame {
@@ -164,11 +171,11 @@ export function viewsLayout(place: Frame, theme: Theme, scale: string | null): L
 }
 
 /** The path from above and from the side, each block that cuts in the colour of its peak force. */
-export function trackFigure(track: Track, theme: Theme, width: number): Figure {
-  const place = frame(track, width);
-  const air = moves(track, false);
-  const cut = moves(track, true);
-  const points = marks(track);
+export function trackFigure(blocks: Block[], theme: Theme, width: number): Figure {
+  const place = frame(placesOf(blocks), width);
+  const air = moves(blocks, false);
+  const cut = moves(blocks, true);
+  const points = marks(blocks);
   const line = { type: 'scatter', mode: 'lines', hoverinfo: 'skip', showlegend: false };
   const data: Trace[] = views.flatMap((view) => [
     { ...line, ...view.axes, name: 'air', x: air.x, y: air[view.up], line: { color: theme.unknown, width: 0.8 } },

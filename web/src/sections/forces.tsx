@@ -1,27 +1,27 @@
 // Forces: over a revolution, along a program, over the spindle's rotation.
 import type { Forces, Highest, Num, Program, Revolution, Ring, SpindleRotation, Triple, WorstBlock } from '../documents';
-import { engagementFigure, gammaFigure, programFigure, revolutionFigure } from '../figures/forces';
+import { engagementFigure, forceCurves, gammaFigure, programFigure, revolutionFigure } from '../figures/forces';
 import { trackFigure } from '../figures/track';
 import { Bullets, Details, Facts, Section, someOf, Table, WarningBox, type Column } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, significant } from '../text';
+import { isProgram, isRevolution, valueAt } from '../views';
 
 /** "12.1, −3, 40": three numbers in one cell. */
 function coordinates(triple: Triple): string {
   return triple.map(significant).join(', ');
 }
 
-function Components({ turn }: { turn: Revolution }) {
+function Components({ turn }: { turn: Forces & Revolution }) {
   const rows: [string, Triple][] = [
     ['Mean (N)', turn.mean_n],
     ['Peak (N)', turn.peak_n],
     ['Root mean square (N)', turn.rms_n],
   ];
-  const bends = turn.deflection_um.some((value) => value !== null);
-  if (bends) rows.push(['Deflection by the mean force (µm)', turn.deflection_um]);
+  if (turn.deflection_um !== null) rows.push(['Deflection by the mean force (µm)', turn.deflection_um]);
   return (
     <Table
-      caption={`Force on the ${turn.on}: x along the feed, y to its left, z to the spindle`}
+      caption={`Force on the ${turn.force_on}: x along the feed, y to its left, z to the spindle`}
       columns={[
         { heading: '', cell: ([name]) => name },
         { heading: 'x', number: true, cell: ([, [x]]) => significant(x) },
@@ -35,7 +35,7 @@ function Components({ turn }: { turn: Revolution }) {
 
 function Totals({ turn }: { turn: Revolution }) {
   const rows: [string, Num, string][] = [
-    ['Torque, mean', turn.mean_torque_n_m, 'N·m'],
+    ['Torque, mean', turn.torque_n_m, 'N·m'],
     ['Torque, peak', turn.peak_torque_n_m, 'N·m'],
     ['Power, mean', turn.power_w, 'W'],
     ['Removal rate', turn.removal_rate_mm3_per_s, 'mm³/s'],
@@ -55,20 +55,22 @@ function Totals({ turn }: { turn: Revolution }) {
   );
 }
 
-function Verdict({ turn }: { turn: Revolution }) {
-  const { verdict, vibrating, chatter_frequency_hz: frequency } = turn;
-  const chatters = frequency !== null && !verdict.includes(' Hz'); // else the verdict names it
-  if (verdict === '' && !chatters && !vibrating) return null;
+const verdicts = { stable: 'stable', chatter: 'chatter', undecided: 'undecided: the simulation was too short' };
+
+function Verdict({ turn: { vibration, vibrating_fx_n: vibrating } }: { turn: Revolution }) {
+  if (vibration === null) return null;
+  const frequency = vibration.chatter_frequency_hz;
   return (
     <p class="why">
-      {verdict !== '' && <strong>{verdict}</strong>} {chatters && `Chatter at ${fixed(frequency, 0)} Hz. `}
+      <strong>{verdicts[vibration.verdict]}</strong> {frequency !== null && `Chatter at ${fixed(frequency, 0)} Hz. `}
       {vibrating && 'Simulated in the time domain: the vibration is in the forces.'}
     </p>
   );
 }
 
-function OverRotation({ turn }: { turn: Revolution }) {
+function OverRotation({ turn }: { turn: Forces & Revolution }) {
   const { rotation_deg: rotation } = turn;
+  const [fx, fy, fz] = forceCurves(turn);
   if (rotation.length === 0) return null;
   const forces = (heading: string, values: number[]): Column<number> => ({ heading, number: true, cell: (i) => significant(values[i]!) });
   return (
@@ -85,10 +87,10 @@ function OverRotation({ turn }: { turn: Revolution }) {
           quiet
           columns={[
             { heading: 'Rotation (°)', number: true, cell: (i) => fixed(rotation[i]!, 0) },
-            forces('Fx (N)', turn.fx_n),
-            forces('Fy (N)', turn.fy_n),
-            forces('Fz (N)', turn.fz_n),
-            forces('Torque (N·m)', turn.torque_n_m),
+            forces('Fx (N)', fx),
+            forces('Fy (N)', fy),
+            forces('Fz (N)', fz),
+            forces('Torque (N·m)', turn.torque_by_rotation_n_m),
           ]}
           rows={someOf(rotation.length)}
         />
@@ -98,13 +100,13 @@ function OverRotation({ turn }: { turn: Revolution }) {
 }
 
 function arcsOf(ring: Ring): string {
-  const arcs = ring.arcs.map((arc) => `${fixed(arc.entry_deg, 1)} – ${fixed(arc.exit_deg, 1)}`);
+  const arcs = ring.arcs_deg.map(([entry, exit]) => `${fixed(entry, 1)} – ${fixed(exit, 1)}`);
   return arcs.length > 0 ? arcs.join('; ') : dash;
 }
 
 function Engagement({ rings }: { rings: Ring[] }) {
   if (rings.length === 0) return null;
-  if (rings.every((ring) => ring.arcs.length === 0)) return <p>No tooth is in the material here.</p>;
+  if (rings.every((ring) => ring.arcs_deg.length === 0)) return <p>No tooth is in the material here.</p>;
   return (
     <>
       <Plot
@@ -129,7 +131,7 @@ function Engagement({ rings }: { rings: Ring[] }) {
   );
 }
 
-function RevolutionPart({ turn }: { turn: Revolution }) {
+function RevolutionPart({ turn }: { turn: Forces & Revolution }) {
   return (
     <>
       <h3>Over a revolution</h3>
@@ -156,11 +158,11 @@ function highestRows(program: Program): HighestRow[] {
   const { highest } = program;
   const row = (name: string, entry: Highest | null, unit: string, limit: Num = null) => (entry === null ? [] : [{ ...entry, name, unit, limit }]);
   return [
-    ...row('Force, peak', highest.peak_force_n, 'N'),
-    ...row('Torque over a revolution', highest.torque_n_m, 'N·m', program.torque_limit_n_m),
+    ...row('Force, peak', highest.peak_f_n, 'N'),
+    ...row('Torque over a revolution', highest.revolution_torque_n_m, 'N·m', program.torque_limit_n_m),
     ...row('Torque, peak', highest.peak_torque_n_m, 'N·m'),
-    ...row(powerName(program), highest.power_w, 'W', program.power_limit_w),
-    ...row('Deflection over a revolution', highest.deflection_um, 'µm'),
+    ...row(powerName(program), highest.sustained_power_w, 'W', program.power_limit_w),
+    ...row('Deflection over a revolution', highest.peak_deflection_um, 'µm'),
   ];
 }
 
@@ -193,33 +195,32 @@ function HighestTable({ program }: { program: Program }) {
   );
 }
 
-function WorstTable({ program }: { program: Program }) {
+function WorstTable({ program }: { program: Forces & Program }) {
   const { worst, highest } = program;
   if (worst.length === 0) return null;
   const columns: Column<WorstBlock>[] = [
     { heading: 'Block', number: true, cell: (row) => fixed(row.block, 0) },
     { heading: 'Line', number: true, cell: (row) => fixed(row.line, 0) },
-    { heading: 'Tip at x, y, z (mm)', number: true, cell: (row) => coordinates(row.tip_mm) },
+    { heading: 'Tip at x, y, z (mm)', number: true, cell: (row) => coordinates([row.x_mm, row.y_mm, row.z_mm]) },
     { heading: 'Axial depth (mm)', number: true, cell: (row) => significant(row.axial_depth_mm) },
     { heading: 'Radial depth (mm)', number: true, cell: (row) => significant(row.radial_depth_mm) },
-    { heading: 'Peak force (N)', number: true, cell: (row) => significant(row.peak_force_n) },
-    { heading: 'Mean force while cutting x, y, z (N)', number: true, cell: (row) => coordinates(row.mean_force_n) },
-    { heading: 'Torque over a revolution (N·m)', number: true, cell: (row) => significant(row.torque_n_m) },
-    { heading: `${powerName(program)} (W)`, number: true, cell: (row) => significant(row.power_w) },
+    { heading: 'Peak force (N)', number: true, cell: (row) => significant(row.peak_f_n) },
+    { heading: `Mean force on the ${program.force_on} while cutting x, y, z (N)`, number: true, cell: (row) => coordinates([row.mean_fx_n, row.mean_fy_n, row.mean_fz_n]) },
+    { heading: 'Torque over a revolution (N·m)', number: true, cell: (row) => significant(row.revolution_torque_n_m) },
+    { heading: `${powerName(program)} (W)`, number: true, cell: (row) => significant(row.sustained_power_w) },
   ];
-  if (highest.deflection_um !== null) {
-    columns.push({ heading: 'Deflection (µm)', number: true, cell: (row) => significant(row.deflection_um) });
+  if (highest.peak_deflection_um !== null) {
+    columns.push({ heading: 'Deflection (µm)', number: true, cell: (row) => significant(row.peak_deflection_um) });
   }
   return <Table caption="The blocks with the highest peak force" columns={columns} rows={worst} />;
 }
 
-function ProgramPart({ program }: { program: Program }) {
-  const time = program.time_s === null ? '' : ` in ${fixed(program.time_s, 1)} s`;
+function ProgramPart({ program }: { program: Forces & Program }) {
+  const last = program.blocks[program.blocks.length - 1]!;
   return (
     <>
       <h3>Along the program</h3>
-      <p>{`${program.cutting_blocks} of ${program.blocks} blocks cut; ${fixed(program.length_mm, 0)} mm${time}.`}</p>
-      <WarningBox heading="Trouble along the program" texts={program.troubles} />
+      <p>{`${program.cutting_blocks} of ${last.block} blocks cut; ${fixed(last.path_mm, 0)} mm in ${fixed(last.time_s, 1)} s.`}</p>
       <HighestTable program={program} />
       <Plot
         which="program"
@@ -231,7 +232,7 @@ function ProgramPart({ program }: { program: Program }) {
         which="track"
         shows="The tool's path seen from above and from the side, coloured by peak force"
         caption="Coloured by the peak force of each block; grey where nothing is cut."
-        draw={(theme, width) => trackFigure(program.track, theme, width)}
+        draw={(theme, width) => trackFigure(program.blocks, theme, width)}
       />
       <WorstTable program={program} />
     </>
@@ -241,11 +242,11 @@ function ProgramPart({ program }: { program: Program }) {
 function Stiffest({ sweep }: { sweep: SpindleRotation }) {
   if (sweep.best_deg === null) return null;
   const bending = (deflection: Num) => (deflection === null ? '' : ` with ${significant(deflection)} µm`);
-  const used = sweep.used_deg === null ? '' : `; this job uses ${significant(sweep.used_deg)}°${bending(sweep.used_um)}`;
+  const used = bending(valueAt(sweep.rotation_deg, sweep.deflection_um, sweep.used_deg));
   return (
     <p class="why">
       Stiffest at <strong>{`γ = ${significant(sweep.best_deg)}°`}</strong>
-      {`${bending(sweep.best_um)}${used}.`}
+      {`${bending(sweep.best_deflection_um)}; this job uses ${significant(sweep.used_deg)}°${used}.`}
     </p>
   );
 }
@@ -255,8 +256,8 @@ function SweepTable({ sweep }: { sweep: SpindleRotation }) {
   const columns: Column<number>[] = [
     { heading: 'Rotation γ (°)', number: true, cell: (i) => fixed(rotation[i]!, 0) },
     { heading: 'Deflection (µm)', number: true, cell: (i) => (deflection[i] === null ? 'out of reach' : significant(deflection[i]!)) },
+    { heading: 'Condition number', number: true, cell: (i) => significant(condition[i]!) },
   ];
-  if (condition !== null) columns.push({ heading: 'Condition number', number: true, cell: (i) => significant(condition[i]!) });
   return (
     <Details summary="Deflection over rotation as a table">
       <Table caption="Deflection over rotation" quiet columns={columns} rows={someOf(rotation.length)} />
@@ -281,13 +282,13 @@ function RotationPart({ sweep }: { sweep: SpindleRotation }) {
 }
 
 export function ForcesSection({ forces }: { forces: Forces }) {
-  const { facts, warnings, notes, revolution, program, spindle_rotation: sweep } = forces;
+  const { facts, warnings, notes, spindle_rotation: sweep } = forces;
   return (
     <Section id="forces" heading="Forces" lead="What the cut asks of cutter, spindle and robot.">
       <Facts facts={facts} />
       <WarningBox heading="Before you use these forces" texts={warnings} />
-      {revolution && <RevolutionPart turn={revolution} />}
-      {program && <ProgramPart program={program} />}
+      {isRevolution(forces) && <RevolutionPart turn={forces} />}
+      {isProgram(forces) && <ProgramPart program={forces} />}
       {sweep && <RotationPart sweep={sweep} />}
       <Bullets texts={notes} />
     </Section>
