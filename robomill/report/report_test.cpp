@@ -151,7 +151,8 @@ TEST(ReportJson, ThinsALongRevolution) {
   EXPECT_LT(fx.size(), 6010U);
   EXPECT_EQ(kept["rotation_deg"].size(), fx.size());
   EXPECT_EQ(kept["torque_by_rotation_n_m"].size(), fx.size());
-  EXPECT_EQ(kept["rotation_deg"][std::ranges::max_element(fx) - fx.begin()].get<double>(), 224.885);
+  EXPECT_EQ(kept["rotation_deg"][static_cast<std::size_t>(std::ranges::max_element(fx) - fx.begin())].get<double>(),
+            224.885);
 }
 
 TEST(ReportJson, StrayBytesBecomeValidText) {
