@@ -2,13 +2,14 @@
 #include <filesystem>
 #include <string>
 
+#include "robomill/live/recorded_run.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 #include "robomill/report/report.hpp"
 
 namespace robomill::app {
 
 /// The page of a recorded session. @param source  a file or an address
-[[nodiscard]] report::Report monitor_page(report::MonitorRun run, const monitor::MonitorFile& file,
+[[nodiscard]] report::Report monitor_page(live::RecordedRun run, const monitor::MonitorFile& file,
                                           const std::string& source);
 
 /// @throws InvalidInput unless the path is empty or ends in .json or .html

@@ -14,9 +14,6 @@ namespace robomill::report {
 /// Its part on a smoothed program.
 [[nodiscard]] nlohmann::ordered_json smooth_json(const Smooth& smooth);
 
-/// Its part on a monitored recording.
-[[nodiscard]] nlohmann::ordered_json monitor_json(const MonitorRun& run);
-
 /// Whether every run of a curve is one sample.
 [[nodiscard]] bool is_single(const signal::Band& band);
 /// Where the values of band_json stand, for each of `runs`: with `points` its one value at its begin; else its lowest

@@ -6,17 +6,19 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
+#include "robomill/live/files/recorded_run_json.hpp"
+#include "robomill/live/recorder.hpp"
 #include "robomill/monitor/files/calibration_json.hpp"
-#include "robomill/report/monitor_recorder.hpp"
 
 namespace robomill::report {
 
-MonitorRun sample_monitor(const std::string& message) {
+std::string sample_monitor(const std::string& text) {
+  const auto named = [&](const char* own) { return text.empty() ? std::string(own) : text; };
   constexpr double rate_hz = 5120.0, seconds = 4.0, onset_s = 1.5, end_s = 3.0;
   monitor::MonitorOptions options;
   options.sample_rate_hz = rate_hz;
   options.channels = 2;
-  MonitorRecorder recorder(options, {"ax_m_per_s2", "ay_m_per_s2"}, "m/s²");
+  live::Recorder recorder(options, {named("ax_m_per_s2"), "ay_m_per_s2"}, named("m/s²"));
   Random random(7);
   const std::size_t hop = options.hop_samples();
   for (std::size_t i = 0; i < static_cast<std::size_t>(rate_hz * seconds); ++i) {
@@ -59,13 +61,15 @@ MonitorRun sample_monitor(const std::string& message) {
   monitor::MonitorEvent lost = event(2.5, State::chatter, 20.0);
   lost.kind = monitor::MonitorEvent::Kind::stream;
   lost.what = "lost-blocks";
-  lost.message = message;
+  lost.message = named("2 blocks of the stream never came");
   recorder.add(lost);
   recorder.add(event(3.05, State::stable, 3.0));
-  MonitorRun run = recorder.run();
-  run.facts = {{"Recording", "cut.wav, 4 s at 5 120 Hz"}, {"Detector", "comb-cusum, 0.1 false alarms an hour"}};
-  run.notes = {"A sample, not a recording."};
-  return run;
+  live::RecordedRun run = recorder.run();
+  run.facts = {{named("Recording"), named("cut.wav, 4 s at 5 120 Hz")},
+               {"Detector", "comb-cusum, 0.1 false alarms an hour"}};
+  if (!text.empty()) run.warnings = {text};
+  run.notes = {named("A sample, not a recording.")};
+  return live::recorded_run_json(run);
 }
 
 std::string sample_calibration(const std::string& name) {

@@ -19,7 +19,6 @@ void validate_part(const char* name, const std::optional<Part>& part) {
 
 void Report::validate() const {
   validate_part("smooth.", smooth);
-  validate_part("monitor.", monitor);
 }
 
 }  // namespace robomill::report

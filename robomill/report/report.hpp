@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
-#include "robomill/report/monitor.hpp"
 #include "robomill/report/smooth.hpp"
 
 // Method: robomill/report/README.md, "Method"
@@ -34,7 +33,7 @@ struct Report {
   std::string forces = {};           ///< forces.json; empty: none
 
   std::optional<Smooth> smooth = {};
-  std::optional<MonitorRun> monitor = {};
+  std::string monitor = {};      ///< a monitored recording, live/files/recorded_run_json.hpp; empty: none
   std::string calibration = {};  ///< calibration.json; empty: none
   std::vector<StageFile> files = {};
 

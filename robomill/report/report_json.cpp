@@ -202,7 +202,7 @@ Json shop_units(const Report& report) {
   json["recordings"] = document(report.recordings);
   json["forces"] = document(report.forces);
   json["smooth"] = report.smooth ? smooth_json(*report.smooth) : Json(nullptr);
-  json["monitor"] = report.monitor ? monitor_json(*report.monitor) : Json(nullptr);
+  json["monitor"] = document(report.monitor);
   json["calibration"] = document(report.calibration);
   json["files"] = Json::array();
   for (const StageFile& file : report.files) {

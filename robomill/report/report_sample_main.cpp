@@ -30,10 +30,7 @@ int main(int argc, char** argv) {
     report.smooth->skipped = {evil};
     report.smooth->methods.front().name = evil;
     report.smooth->methods.front().uses.front().what = evil;
-    report.monitor->facts = {{evil, evil}};
-    report.monitor->notes = {evil};
-    report.monitor->channels.front().name = evil;
-    report.monitor->events = robomill::report::sample_monitor(evil).events;
+    report.monitor = robomill::report::sample_monitor(evil);
     report.calibration = robomill::report::sample_calibration(evil);
   }
   std::ofstream(argv[1], std::ios::binary) << robomill::report::report_html(report);

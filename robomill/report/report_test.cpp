@@ -177,11 +177,7 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.smooth->warnings = report.smooth->notes = report.smooth->skipped = {evil};
   report.smooth->methods.front().name = evil;
   report.smooth->methods.front().uses.front().what = evil;
-  report.monitor->facts = {{evil, evil}};
-  report.monitor->warnings = report.monitor->notes = {evil};
-  report.monitor->unit = report.monitor->detector = evil;
-  report.monitor->channels.front().name = evil;
-  report.monitor->events = sample_monitor(evil).events;
+  report.monitor = sample_monitor(evil);
   report.calibration = sample_calibration(evil);
   const std::string html = report_html(report);
   EXPECT_EQ(count(html, "<script"), scripts);

@@ -1,4 +1,4 @@
-#include "robomill/report/monitor_recorder.hpp"
+#include "robomill/live/recorder.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "robomill/signal/bands.hpp"
 #include "robomill/signal/synchrosqueeze.hpp"
 
-namespace robomill::report {
+namespace robomill::live {
 namespace {
 
 constexpr std::size_t wave_runs = 3000, decision_runs = 1500, spectrogram_runs = 600;
@@ -81,7 +81,7 @@ class Columns {
 
 }  // namespace
 
-struct MonitorRecorder::Parts {
+struct Recorder::Parts {
   Parts(const monitor::MonitorOptions& given, std::vector<std::string> names, std::string of)
       : options(given),
         channels(std::move(names)),
@@ -104,23 +104,22 @@ struct MonitorRecorder::Parts {
   std::size_t count = 0, unreported = 0;
   double compute_s = 0.0, compute_max_s = 0.0;
   int loudest = 0;  ///< channel of the last chatter
-  std::vector<MonitorStay> stays;
+  std::vector<Stay> stays;
   std::vector<std::string> events;
 };
 
-MonitorRecorder::MonitorRecorder(const monitor::MonitorOptions& options, std::vector<std::string> channels,
-                                 std::string unit) {
+Recorder::Recorder(const monitor::MonitorOptions& options, std::vector<std::string> channels, std::string unit) {
   options.validate();
   if (channels.size() != static_cast<std::size_t>(options.channels)) {
     throw InvalidInput("channels", static_cast<double>(channels.size()), "", "must be one name a channel");
   }
   parts_ = std::make_unique<Parts>(options, std::move(channels), std::move(unit));
 }
-MonitorRecorder::~MonitorRecorder() = default;
-MonitorRecorder::MonitorRecorder(MonitorRecorder&&) noexcept = default;
-MonitorRecorder& MonitorRecorder::operator=(MonitorRecorder&&) noexcept = default;
+Recorder::~Recorder() = default;
+Recorder::Recorder(Recorder&&) noexcept = default;
+Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
-void MonitorRecorder::add(std::span<const float> samples) {
+void Recorder::add(std::span<const float> samples) {
   Parts& parts = *parts_;
   const std::size_t channels = parts.channels.size();
   for (std::size_t at = 0; at + channels <= samples.size(); at += channels) {
@@ -132,13 +131,13 @@ void MonitorRecorder::add(std::span<const float> samples) {
   }
 }
 
-void MonitorRecorder::skip(std::uint64_t frames) {
+void Recorder::skip(std::uint64_t frames) {
   const auto most = static_cast<std::uint64_t>(60.0 * parts_->options.sample_rate_hz);
   const std::vector<float> nothing(parts_->channels.size(), 0.0F);
   for (std::uint64_t i = 0; i < std::min(frames, most); ++i) add(nothing);
 }
 
-void MonitorRecorder::add(const monitor::Decision& decision, double compute_s) {
+void Recorder::add(const monitor::Decision& decision, double compute_s) {
   Parts& parts = *parts_;
   std::array<double, curves> values = {};
   values[score] = finite(decision.score);
@@ -157,7 +156,7 @@ void MonitorRecorder::add(const monitor::Decision& decision, double compute_s) {
   }
 }
 
-void MonitorRecorder::add(const monitor::MonitorEvent& event) {
+void Recorder::add(const monitor::MonitorEvent& event) {
   if (parts_->events.size() < most_events) {
     parts_->events.push_back(monitor::event_line(event));
   } else {
@@ -165,10 +164,9 @@ void MonitorRecorder::add(const monitor::MonitorEvent& event) {
   }
 }
 
-MonitorRun MonitorRecorder::run() const {
+RecordedRun Recorder::run() const {
   const Parts& parts = *parts_;
-  MonitorRun out;
-  out.detector = monitor::to_string(parts.options.kind);
+  RecordedRun out;
   out.unit = parts.unit;
   out.wave_run_s = static_cast<double>(parts.waves.length()) / parts.options.sample_rate_hz;
   for (std::size_t c = 0; c < parts.channels.size(); ++c) {
@@ -196,7 +194,7 @@ MonitorRun MonitorRecorder::run() const {
   if (highest > 0.0) {
     const double rate_hz = parts.options.sample_rate_hz;
     const double step = static_cast<double>(columns.columns_in_a_cell()) * static_cast<double>(parts.transform.hop);
-    out.spectrogram_channel = parts.channels[shown];
+    out.spectrogram.channel = parts.channels[shown];
     out.spectrogram.step_s = step / rate_hz;
     out.spectrogram.begin_s = 0.5 * (step - static_cast<double>(parts.transform.hop)) / rate_hz;
     const double row_hz =
@@ -211,4 +209,4 @@ MonitorRun MonitorRecorder::run() const {
   return out;
 }
 
-}  // namespace robomill::report
+}  // namespace robomill::live

@@ -7,26 +7,26 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/live/recorded_run.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/monitor.hpp"
-#include "robomill/report/monitor.hpp"
 
-// Method: robomill/report/README.md, "Method"
+// Method: robomill/live/README.md, "Method"
 
-namespace robomill::report {
+namespace robomill::live {
 
-/// Takes what a monitor is given and what it says, and keeps what a report shows of it, in memory that does not grow
+/// Takes what a session is given and what it reports, and keeps what a page shows of it, in memory that does not grow
 /// with the recording: waves, score and spectrogram over runs that grow twice as long when there are too many.
-class ROBOMILL_API MonitorRecorder {
+class ROBOMILL_API Recorder {
  public:
   /// @param channels  their names, as many as the options say
   /// @throws InvalidInput if an option is out of range or the names do not fit
-  MonitorRecorder(const monitor::MonitorOptions& options, std::vector<std::string> channels, std::string unit);
-  ~MonitorRecorder();
-  MonitorRecorder(MonitorRecorder&&) noexcept;
-  MonitorRecorder& operator=(MonitorRecorder&&) noexcept;
-  MonitorRecorder(const MonitorRecorder&) = delete;
-  MonitorRecorder& operator=(const MonitorRecorder&) = delete;
+  Recorder(const monitor::MonitorOptions& options, std::vector<std::string> channels, std::string unit);
+  ~Recorder();
+  Recorder(Recorder&&) noexcept;
+  Recorder& operator=(Recorder&&) noexcept;
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
 
   /// Whole frames, as they went to the monitor.
   void add(std::span<const float> samples);
@@ -39,11 +39,11 @@ class ROBOMILL_API MonitorRecorder {
   void add(const monitor::MonitorEvent& event);
 
   /// What was recorded so far; facts and warnings are left to the caller.
-  [[nodiscard]] MonitorRun run() const;
+  [[nodiscard]] RecordedRun run() const;
 
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace robomill::report
+}  // namespace robomill::live
