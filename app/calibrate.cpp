@@ -120,7 +120,7 @@ Exit run(const CalibrateCommand& command, const Common& common, Progress& progre
                         100.0 * verified.false_alarm_rate)));
   }
   if (io::lowered(command.report.extension().string()) == ".html") {
-    report::Report page;
+    page::Report page;
     page.title = "Calibration of the chatter monitor";
     page.summary = summary_of(calibration);
     page.calibration = json;

@@ -5,19 +5,19 @@
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/summary.hpp"
-#include "robomill/report/report.hpp"
+#include "robomill/page/report.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
 namespace {
 
 void write_report(const std::filesystem::path& path, const jobs::ForcesResult& result) {
-  report::Report page;
+  page::Report page;
   page.title = "Cutting forces";
   page.summary = jobs::summary(result);
   page.forces = jobs::forces_json(result);
   const bool html = path.extension() == ".html";
-  io::write_file(path, html ? report::report_html(page) : report::report_json(page));
+  io::write_file(path, html ? page::report_html(page) : page::report_json(page));
 }
 
 bool reached(const jobs::ForcesResult& result) {

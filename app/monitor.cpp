@@ -27,9 +27,9 @@
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/monitor.hpp"
 #include "robomill/live/inputs.hpp"
+#include "robomill/live/recorder.hpp"
 #include "robomill/live/session.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
-#include "robomill/report/monitor_recorder.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
@@ -218,7 +218,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   const live::Advisor advisor(jobs::read_advice_basis(file, progress));
   EventFile events(common, input.is_live);
 
-  std::optional<report::MonitorRecorder> recorder;
+  std::optional<live::Recorder> recorder;
   if (!command.report.empty()) recorder.emplace(file.options, channel_names(file), "");
   std::optional<Watch> watch;
   if (command.watch) watch.emplace();
@@ -273,7 +273,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   events.close(common.output);
   const std::string summary = summary_of(session, input.name);
   if (recorder) {
-    report::Report page = monitor_page(recorder->run(), file, input.name);
+    page::Report page = monitor_page(recorder->run(), file, input.name);
     page.summary = summary;
     write_report(command.report, page);
   }

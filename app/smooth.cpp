@@ -10,8 +10,8 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/jobs/summary.hpp"
+#include "robomill/page/report.hpp"
 #include "robomill/path/files/motion_json.hpp"
-#include "robomill/report/report.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -22,12 +22,12 @@ void write_report(const std::filesystem::path& path, const jobs::SmoothResult& r
     io::write_file(path, path::smooth_json(result.smoothed));
     return;
   }
-  report::Report page;
+  page::Report page;
   page.title = "Smoothed program";
   page.summary = jobs::summary(result);
   page.smooth = path::smooth_json(result.smoothed);
   page.motion = path::motion_json(result.outline, result.motions);
-  io::write_file(path, report::report_html(page));
+  io::write_file(path, page::report_html(page));
 }
 
 /// Runs the job; what it rejects of the command line is reported by the option's name.

@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/live/files/recorded_run_json.hpp"
 
 namespace robomill::app {
 namespace {
@@ -32,14 +31,14 @@ std::string detector_fact(const monitor::MonitorOptions& options) {
 
 }  // namespace
 
-report::Report monitor_page(report::MonitorRun run, const monitor::MonitorFile& file, const std::string& source) {
+page::Report monitor_page(live::RecordedRun run, const monitor::MonitorFile& file, const std::string& source) {
   const monitor::MonitorOptions& options = file.options;
   run.facts = {{"Recording", fmt::format("{}, {:.6g} Hz", source, options.sample_rate_hz)},
                {"Detector", detector_fact(options)},
                {"Spindle speed", speed_fact(options)}};
-  report::Report page;
+  page::Report page;
   page.title = "Chatter monitor";
-  page.monitor = std::move(run);
+  page.monitor = live::recorded_run_json(run);
   return page;
 }
 
@@ -49,9 +48,9 @@ void check_report_place(const std::filesystem::path& path) {
   throw InvalidInput(path.string(), "a report is written as .json or .html");
 }
 
-void write_report(const std::filesystem::path& path, const report::Report& page) {
+void write_report(const std::filesystem::path& path, const page::Report& page) {
   const bool html = io::lowered(path.extension().string()) == ".html";
-  io::write_file(path, html ? report::report_html(page) : report::report_json(page));
+  io::write_file(path, html ? page::report_html(page) : page::report_json(page));
 }
 
 }  // namespace robomill::app

@@ -13,7 +13,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/report/report.hpp"
+#include "robomill/page/report.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -70,9 +70,9 @@ TEST(RunForces, WritesARevolution) {
   }
   EXPECT_FALSE(json["engagement"].empty());
   EXPECT_EQ(json["fx_n"].size(), 360U);
-  report::Report page;
+  page::Report page;
   page.forces = forces_json(result);
-  EXPECT_NE(report::report_html(page).find("\"forces\":{"), std::string::npos);
+  EXPECT_NE(page::report_html(page).find("\"forces\":{"), std::string::npos);
 }
 
 TEST(RunForces, ReportsTheForceOnTheWorkpieceWithTheOtherSign) {
@@ -229,9 +229,9 @@ TEST(RunForces, CountsTheSameBlocksEverywhere) {
   const nlohmann::json json = nlohmann::json::parse(forces_json(result));
   EXPECT_EQ(json["cutting_blocks"], 1);
   EXPECT_EQ(json["stock"]["assumed"], false);
-  report::Report page;
+  page::Report page;
   page.forces = forces_json(result);
-  const nlohmann::json shown = nlohmann::json::parse(report::report_json(page));
+  const nlohmann::json shown = nlohmann::json::parse(page::report_json(page));
   EXPECT_EQ(shown["forces"]["cutting_blocks"], 1);
   EXPECT_NEAR(shown["forces"]["highest"]["sustained_power_w"]["value"].get<double>(), 1620.0, 10.0);
   const nlohmann::json& row =

@@ -16,7 +16,7 @@
 #include "robomill/jobs/test_cuts.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/hits.hpp"
-#include "robomill/report/report.hpp"
+#include "robomill/page/report.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
@@ -78,8 +78,8 @@ struct PlanResult {
 
 /// The report of a job.
 /// @param files  that stand beside it
-[[nodiscard]] ROBOMILL_API report::Report make_report(const PlanResult& result,
-                                                      const std::vector<report::StageFile>& files);
+[[nodiscard]] ROBOMILL_API page::Report make_report(const PlanResult& result,
+                                                    const std::vector<page::StageFile>& files);
 
 /// plan.json as text: the recommendation, its alternatives, the test cuts, and every stage's result.
 [[nodiscard]] ROBOMILL_API std::string plan_json(const PlanResult& result);

@@ -95,8 +95,8 @@ LimitShare limit_share(const PlanResult& result) {
   return share;
 }
 
-report::Report make_report(const PlanResult& result, const std::vector<report::StageFile>& files) {
-  report::Report report;
+page::Report make_report(const PlanResult& result, const std::vector<page::StageFile>& files) {
+  page::Report report;
   if (!result.job.title.empty()) report.title = result.job.title;
   report.created = fmt::format("{:%Y-%m-%d %H:%M} UTC, robomill " ROBOMILL_VERSION, fmt::gmtime(std::time(nullptr)));
   report.summary = summary(result);

@@ -107,7 +107,7 @@ TEST_F(Plan, ModesOfTheWorkpieceAreNotThoseOfTheTool) {
       EXPECT_EQ(json["lobes"]["limit"][i]["mode"], limit.mode.number);
       EXPECT_EQ(json["lobes"]["limit"][i]["mode_of"], to_string(limit.mode.of));
     }
-    const auto page = nlohmann::json::parse(report::report_json(make_report(result, {})));
+    const auto page = nlohmann::json::parse(page::report_json(make_report(result, {})));
     EXPECT_EQ(page["modes"]["modes"].size(), 8U);
     ASSERT_EQ(page["workpiece_modes"]["modes"].size(), 3U);
     EXPECT_EQ(page["workpiece_modes"]["modes"][1]["frequency_hz"], 460);
@@ -279,14 +279,14 @@ TEST_F(Plan, StartsFromFrfsWithALineAtZero) {
                                           "650]\nfit_modes = 2\nequal_directions = true\n"),
                                     1);
   EXPECT_EQ(result.model.modes.size(), 4U);
-  const report::Report report = make_report(result, {});
+  const page::Report report = make_report(result, {});
   const auto fitted = nlohmann::json::parse(report.fitted);
   ASSERT_EQ(fitted["receptance_m_per_n"].size(), 1U);
   EXPECT_EQ(fitted["frequency_hz"].size() + 1, static_cast<std::size_t>(xx.receptance.size()));
   const auto& curve = fitted["receptance_m_per_n"]["xx"];
   const std::complex<double> at(curve["re"][2159].get<double>(), curve["im"][2159].get<double>());
   EXPECT_LT(std::abs(at - xx.receptance(2160)), 0.05 * std::abs(xx.receptance(2160)));
-  EXPECT_NO_THROW(static_cast<void>(report::report_html(report)));
+  EXPECT_NO_THROW(static_cast<void>(page::report_html(report)));
 }
 
 TEST_F(Plan, AddsTheForcesOfACutAndHoldsTheSpindleAgainstThem) {

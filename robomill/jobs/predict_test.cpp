@@ -196,7 +196,7 @@ TEST_F(Predicted, PlanStandsOnTheModesOfItsTipFrfs) {
   EXPECT_EQ(json["holder"]["segments"].size(), 3U);
   EXPECT_TRUE(json["relative_error"].is_null());
   EXPECT_NEAR(json["peaks"][0]["frequency_hz"].get<double>(), 2734.0, 2.0);
-  const report::Report report = make_report(predicted, {});
+  const page::Report report = make_report(predicted, {});
   const auto frf = nlohmann::json::parse(report.frf);
   const auto fitted = nlohmann::json::parse(report.fitted);
   EXPECT_EQ(frf["receptance_m_per_n"].size(), 2U);

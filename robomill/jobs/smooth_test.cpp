@@ -15,7 +15,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/plan.hpp"
-#include "robomill/report/report.hpp"
+#include "robomill/page/report.hpp"
 #include "testing/jobs/lobes_file.hpp"
 #include "testing/support.hpp"
 

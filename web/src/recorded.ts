@@ -42,13 +42,19 @@ export interface MonitorEvent {
   message?: string;
 }
 
+/** A curve over runs of equal length: the lowest and the highest value of each. */
+export interface Band {
+  low: number[];
+  high: number[];
+}
+
+/** A monitored recording. */
 export interface Monitor extends Remarks {
   unit: string;
-  entropy_unit: string;
-  wave_time_s: number[];
-  channels: { name: string; wave: number[] }[];
+  wave_run_s: number;
+  channels: { name: string; wave: Band }[];
   spectrogram: { channel: string; begin_s: number; step_s: number; frequency_hz: number[]; level_db: number[][] } | null; // a row a frequency
-  decisions: { time_s: number[]; score: number[]; threshold: number[]; energy_entropy: number[] | null; spindle_speed_rpm: number[] | null };
+  decisions: { run_s: number; score: Band; threshold: Band; energy_entropy: Band; spindle_speed_rpm: Band };
   decision_count: number;
   compute_mean_us: Num; // of one decision
   compute_max_us: Num;

@@ -16,7 +16,7 @@ void remove_later_stages(const std::filesystem::path& folder) {
 
 void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   io::make_folder(folder);
-  std::vector<report::StageFile> files;
+  std::vector<page::StageFile> files;
   if (result.frfs) {
     modal::write_frfs(folder / "tip.uff", *result.frfs);
     files.push_back(
@@ -48,7 +48,7 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
     }
   }
   files.push_back({.stage = "plan", .file = "plan.json", .description = "recommendation and every stage's result"});
-  const std::string page = report::report_html(make_report(result, files));
+  const std::string page = page::report_html(make_report(result, files));
   if (result.path) {
     place(*result.path);
     io::write_file(folder / "smooth.json", path::smooth_json(result.path->smoothed));

@@ -14,7 +14,7 @@
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/mode_json.hpp"
 #include "robomill/modal/files/modes_files.hpp"
-#include "robomill/report/thin.hpp"
+#include "robomill/page/thin.hpp"
 #include "robomill/stability/files/lobes_json.hpp"
 
 namespace robomill::jobs {
@@ -156,7 +156,7 @@ Json recordings_json(const PlanResult& result) {
                        {"kind", to_string(peak.kind)},
                        {"text", peak.text}});
     }
-    const std::vector<Eigen::Index> keep = report::thin(recording.amplitude);
+    const std::vector<Eigen::Index> keep = page::thin(recording.amplitude);
     const double rotation_hz = recording.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
     list.push_back({{"file", recording.file},
                     {"spindle_speed_rpm", number(recording.spindle_speed_rad_per_s / units::rpm)},

@@ -3,13 +3,14 @@ import type { Calibration, Monitor } from '../documents';
 import { alarms, rocFigure, scoreFigure, span, spectrogramFigure, waveFigure } from './monitor';
 import { dark, light } from './theme';
 
+const single = (values: number[]) => ({ low: values, high: values });
+
 const monitor = {
   unit: 'm/s²',
-  entropy_unit: '',
-  wave_time_s: [0, 1, 2],
-  channels: [{ name: '<x>', wave: [0, 1, -1] }, { name: 'y', wave: [0, 2, -2] }],
+  wave_run_s: 1,
+  channels: [{ name: '<x>', wave: single([0, 1, -1]) }, { name: 'y', wave: { low: [0, 1, -2], high: [0, 2, -2] } }],
   spectrogram: { channel: 'x', begin_s: 0.5, step_s: 0.25, frequency_hz: [10, 20], level_db: [[-3, 0, -80], [-10, -20, -30]] },
-  decisions: { time_s: [0.5, 1, 1.5], score: [0, 1, 9], threshold: [5, 5, 5], energy_entropy: [1, 2, 3], spindle_speed_rpm: [0, 3000, 3000] },
+  decisions: { run_s: 0.5, score: single([0, 1, 9]), threshold: single([5, 5, 5]), energy_entropy: single([1, 2, 3]), spindle_speed_rpm: single([0, 3000, 3000]) },
   stays: [
     { state: 'stable', from_s: 0, to_s: 1 },
     { state: 'transition', from_s: 1, to_s: 1.5 },
@@ -33,6 +34,8 @@ describe('what the monitor detected', () => {
   it('has a line a channel, named without markup', () => {
     const { data, layout } = waveFigure(monitor, light);
     expect(data.map((trace) => trace['name'])).toEqual(['&lt;x&gt;', 'y']);
+    expect(data[0]).toMatchObject({ x: [0.25, 0.75, 1.25, 1.75, 2.25, 2.75], y: [0, 0, 1, 1, -1, -1] });
+    expect(data[1]!['y']).toEqual([0, 0, 1, 2, -2, -2]);
     expect(layout['yaxis']).toMatchObject({ title: { text: 'Signal (m/s²)' } });
   });
   it('marks the frequencies that were reported as chatter, and no others', () => {
@@ -50,9 +53,10 @@ describe('what the monitor detected', () => {
       expect(low).toBeLessThan(high);
       if (i > 0) expect(high).toBeLessThanOrEqual(domains[i - 1]![0]);
     });
-    const bare = scoreFigure({ ...monitor, decisions: { ...monitor.decisions, energy_entropy: null, spindle_speed_rpm: [0, 0, 0] } }, light);
-    expect(bare.data).toHaveLength(2);
-    expect(bare.layout['xaxis']).toMatchObject({ anchor: 'y' });
+    expect(data[0]).toMatchObject({ x: [0, 0.5, 1], y: [0, 1, 9] });
+    const bare = scoreFigure({ ...monitor, decisions: { ...monitor.decisions, spindle_speed_rpm: single([0, 0, 0]) } }, light);
+    expect(bare.data).toHaveLength(3);
+    expect(bare.layout['xaxis']).toMatchObject({ anchor: 'y2' });
   });
 });
 

@@ -1,4 +1,5 @@
 import type { Calibration, Monitor, RocPoint } from '../documents';
+import { linesOf } from '../views';
 import { curve, suffix } from './rows';
 import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
@@ -34,12 +35,13 @@ function timeAxis(monitor: Monitor, theme: Theme, more: Layout = {}): Layout {
 /** Each channel's samples over time. */
 export function waveFigure(monitor: Monitor, theme: Theme): Figure {
   const unit = plain(monitor.unit);
+  const { time_s: time, values } = linesOf(monitor.channels.map((channel) => channel.wave), monitor.wave_run_s);
   const data: Trace[] = monitor.channels.map((channel, i) => ({
     type: 'scatter',
     mode: 'lines',
     name: plain(channel.name),
-    x: monitor.wave_time_s,
-    y: channel.wave,
+    x: time,
+    y: values[i],
     opacity: monitor.channels.length > 1 ? 0.7 : 1,
     line: { color: theme.series[i % theme.series.length], width: 0.8 },
     hovertemplate: `%{x:.3f}${thinSpace}s: %{y:.4g}${thinSpace}${unit}<extra></extra>`,
@@ -107,15 +109,18 @@ interface Row {
 
 /** Score against threshold, entropy and tracked speed, one above the other. */
 export function scoreFigure(monitor: Monitor, theme: Theme): Figure {
-  const { decisions } = monitor;
-  const rows: Row[] = [{ title: 'Score', unit: '', y: decisions.score, against: decisions.threshold }];
-  if (decisions.energy_entropy) rows.push({ title: 'Entropy', unit: plain(monitor.entropy_unit), y: decisions.energy_entropy, against: null });
-  if (decisions.spindle_speed_rpm?.some((speed) => speed > 0)) rows.push({ title: 'Speed', unit: 'rpm', y: decisions.spindle_speed_rpm, against: null });
+  const { run_s, score, threshold, energy_entropy, spindle_speed_rpm } = monitor.decisions;
+  const { time_s: time, values } = linesOf([score, threshold, energy_entropy, spindle_speed_rpm], run_s);
+  const rows: Row[] = [
+    { title: 'Score', unit: '', y: values[0]!, against: values[1]! },
+    { title: 'Entropy', unit: '', y: values[2]!, against: null },
+  ];
+  if (spindle_speed_rpm.high.some((speed) => speed > 0)) rows.push({ title: 'Speed', unit: 'rpm', y: values[3]!, against: null });
   const data: Trace[] = [];
   const axes: Layout = {};
   rows.forEach((row, index) => {
     const line = (label: string, y: number[], style: object): Trace =>
-      curve(index, label, row.unit, decisions.time_s, y, style, { showlegend: index === 0 });
+      curve(index, label, row.unit, time, y, style, { showlegend: index === 0 });
     data.push(line(row.title.toLowerCase(), row.y, { color: theme.accent, width: 1.4 }));
     if (row.against) data.push(line('threshold', row.against, { color: theme.chatter, width: 1.4, dash: '6px,4px' }));
     const top = 1 - index / rows.length;

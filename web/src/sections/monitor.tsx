@@ -120,7 +120,7 @@ export function MonitorSection({ monitor }: { monitor: Monitor }) {
       <Facts facts={monitor.facts} />
       <WarningBox heading="Before you trust it" texts={monitor.warnings} />
       <Verdict monitor={monitor} />
-      {monitor.decisions.time_s.length > 0 && <Plots monitor={monitor} />}
+      {monitor.decisions.score.low.length > 0 && <Plots monitor={monitor} />}
       <EventsTable events={monitor.events} />
       <ComputeTime monitor={monitor} />
       <Bullets texts={monitor.notes} />

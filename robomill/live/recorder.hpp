@@ -1,0 +1,49 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/live/recorded_run.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
+#include "robomill/monitor/monitor.hpp"
+
+// Method: robomill/live/README.md, "Method"
+
+namespace robomill::live {
+
+/// Takes what a session is given and what it reports, and keeps what a page shows of it, in memory that does not grow
+/// with the recording: waves, score and spectrogram over runs that grow twice as long when there are too many.
+class ROBOMILL_API Recorder {
+ public:
+  /// @param channels  their names, as many as the options say
+  /// @throws InvalidInput if an option is out of range or the names do not fit
+  Recorder(const monitor::MonitorOptions& options, std::vector<std::string> channels, std::string unit);
+  ~Recorder();
+  Recorder(Recorder&&) noexcept;
+  Recorder& operator=(Recorder&&) noexcept;
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Whole frames, as they went to the monitor.
+  void add(std::span<const float> samples);
+  /// Frames that were left out: drawn as zeros, of a long gap a minute.
+  void skip(std::uint64_t frames);
+  /// The decision that followed.
+  /// @param compute_s  it took so long
+  void add(const monitor::Decision& decision, double compute_s);
+  /// An event that it reported; beyond some hundreds they are only counted.
+  void add(const monitor::MonitorEvent& event);
+
+  /// What was recorded so far; facts and warnings are left to the caller.
+  [[nodiscard]] RecordedRun run() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace robomill::live

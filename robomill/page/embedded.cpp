@@ -1,0 +1,47 @@
+#include "robomill/page/embedded.hpp"
+
+#include <cstddef>
+
+// The assembler reads the files into read-only data; the compiler never sees their content.
+#define ROBOMILL_EMBED(symbol, file)        \
+  __asm__(                                  \
+      ".section .rodata\n"                  \
+      ".global " #symbol                    \
+      "_begin\n"                            \
+      ".hidden " #symbol "_begin\n" #symbol \
+      "_begin:\n"                           \
+      ".incbin \"" file                     \
+      "\"\n"                                \
+      ".global " #symbol                    \
+      "_end\n"                              \
+      ".hidden " #symbol "_end\n" #symbol   \
+      "_end:\n"                             \
+      ".byte 0\n"                           \
+      ".previous\n")
+
+extern "C" {
+ROBOMILL_EMBED(robomill_page_style, ROBOMILL_PAGE_STYLE);
+extern const char robomill_page_style_begin[];
+extern const char robomill_page_style_end[];
+#ifdef ROBOMILL_PAGE_SCRIPT
+ROBOMILL_EMBED(robomill_page_script, ROBOMILL_PAGE_SCRIPT);
+extern const char robomill_page_script_begin[];
+extern const char robomill_page_script_end[];
+#endif
+}
+
+namespace robomill::page {
+
+std::string_view page_style() {
+  return {robomill_page_style_begin, static_cast<std::size_t>(robomill_page_style_end - robomill_page_style_begin)};
+}
+
+std::string_view page_script() {
+#ifdef ROBOMILL_PAGE_SCRIPT
+  return {robomill_page_script_begin, static_cast<std::size_t>(robomill_page_script_end - robomill_page_script_begin)};
+#else
+  return {};
+#endif
+}
+
+}  // namespace robomill::page

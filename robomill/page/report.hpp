@@ -1,0 +1,50 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+
+// Method: robomill/page/README.md, "Method"
+
+/// Results of the other stages, as a page to look at and as the data of its plots: the stages' own JSON documents, as
+/// text, and what is recorded for the page alone. Every part may be left empty, and the page leaves its section out.
+namespace robomill::page {
+
+/// A file that a stage wrote beside the report.
+struct StageFile {
+  std::string stage, file, description;
+};
+
+struct Report {
+  std::string title = "Cutting conditions without chatter";
+  std::string created = {};          ///< "31 July 2026, robomill 0.1.0"
+  std::string summary = {};          ///< in lines of text, for where no script runs
+  std::string plan = {};             ///< of plan.json what is no stage's document; empty: none
+  std::string frf = {};              ///< tip.json: FRFs measured, or predicted from `assembly`; empty: none
+  std::string fitted = {};           ///< the same lines and FRFs of the modes fitted to them; empty: none
+  std::string measured = {};         ///< FRFs measured beside predicted ones; empty: none
+  std::string assembly = {};         ///< plan.json's assembly; empty: none
+  std::string recordings = {};       ///< of test cuts, a JSON array; empty: none
+  std::string modes = {};            ///< modes.json; empty: none
+  std::string workpiece_modes = {};  ///< the same, of a part that vibrates too
+  std::string lobes = {};            ///< lobes.json; empty: none
+  std::string forces = {};           ///< forces.json; empty: none
+  std::string smooth = {};           ///< smooth.json; empty: none
+  std::string motion = {};  ///< the same program's outline and motion, recorded for the page alone; empty: none
+
+  std::string monitor = {};      ///< a monitored recording, live/files/recorded_run_json.hpp; empty: none
+  std::string calibration = {};  ///< calibration.json; empty: none
+  std::vector<StageFile> files = {};
+};
+
+/// The data of the page in shop units, keys with their unit, about six significant digits; numbers finite, "none" is
+/// null.
+/// @throws InvalidInput naming the member that is no JSON
+[[nodiscard]] ROBOMILL_API std::string report_json(const Report& report);
+
+/// One file that opens without a network: the page's script (web/), which makes tables and plots of the data inside.
+/// Where no script runs, and in a build without it (ROBOMILL_WEB=OFF), the page is the summary.
+/// @throws InvalidInput naming the member that is no JSON
+[[nodiscard]] ROBOMILL_API std::string report_html(const Report& report);
+
+}  // namespace robomill::page

@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robomill/page/json.hpp"
+#include "robomill/page/thin.hpp"
+
+namespace robomill::page {
+namespace {
+
+using io::Json;
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t most_rows = 6000;    ///< of a list, of a revolution
+constexpr std::size_t most_lines = 12000;  ///< of an axis that all FRFs of a document share
+
+double number_of(const Json& value) {
+  return value.is_number() ? value.get<double>() : missing;
+}
+
+double number_in(const Json& row, const std::string& key) {
+  const auto cell = row.find(key);
+  return cell == row.end() ? missing : number_of(*cell);
+}
+
+bool truth_in(const Json& row, const std::string& key) {
+  const auto cell = row.find(key);
+  return cell != row.end() && cell->is_boolean() && cell->get<bool>();
+}
+
+/// As a count or an axis: its extremes are no more than the ends of a run.
+bool never_decreases(const Eigen::VectorXd& values) {
+  return values.allFinite() && std::is_sorted(values.begin(), values.end());
+}
+
+/// What draws long curves over one axis like the whole ones; axes and counts follow.
+std::vector<Eigen::Index> thin_curves(const std::vector<Eigen::VectorXd>& columns, std::size_t most) {
+  std::vector<Eigen::VectorXd> curves;
+  std::ranges::remove_copy_if(columns, std::back_inserter(curves), never_decreases);
+  return thin_together(curves.empty() ? columns : curves, static_cast<Eigen::Index>(most));
+}
+
+/// Both rows wherever a truth value changes, the first of them: where a program goes into the material and out.
+std::vector<Eigen::Index> changes(const Json& rows, const std::set<std::string>& keys, std::size_t most) {
+  std::vector<Eigen::Index> keep;
+  for (std::size_t i = 1; i < rows.size() && keep.size() < most; ++i) {
+    const auto changes_here = [&](const std::string& key) {
+      return truth_in(rows[i], key) != truth_in(rows[i - 1], key);
+    };
+    if (std::ranges::none_of(keys, changes_here)) continue;
+    keep.push_back(static_cast<Eigen::Index>(i - 1));
+    keep.push_back(static_cast<Eigen::Index>(i));
+  }
+  return keep;
+}
+
+/// Rows that hold an extreme of some column, run by run, or a change of a truth value.
+Json thinned_rows(Json rows) {
+  std::set<std::string> keys;
+  std::set<std::string> truths;
+  for (const Json& row : rows) {
+    for (const auto& [key, value] : row.items()) {
+      if (value.is_number()) keys.insert(key);
+      if (value.is_boolean()) truths.insert(key);
+    }
+  }
+  std::vector<Eigen::VectorXd> columns;
+  for (const std::string& key : keys) {
+    Eigen::VectorXd& column = columns.emplace_back(static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) column[static_cast<Eigen::Index>(i)] = number_in(rows[i], key);
+  }
+  std::vector<Eigen::Index> keep = changes(rows, truths, most_rows / 3);
+  std::ranges::copy(thin_curves(columns, most_rows - keep.size()), std::back_inserter(keep));
+  std::ranges::sort(keep);
+  keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
+  Json kept = Json::array();
+  for (const Eigen::Index i : keep) kept.push_back(std::move(rows[static_cast<std::size_t>(i)]));
+  return kept;
+}
+
+/// Lists of so many values.
+void collect(Json& node, std::size_t length, std::vector<Json*>& out) {
+  if (node.is_object()) {
+    for (Json& part : node) collect(part, length, out);
+  } else if (node.is_array() && node.size() == length && !node.front().is_structured()) {
+    out.push_back(&node);
+  }
+}
+
+/// Everything over an axis of so many values keeps the same ones.
+void keep_of_axis(Json& json, std::size_t length, const std::vector<Eigen::Index>& keep) {
+  std::vector<Json*> lists;
+  collect(json, length, lists);
+  for (Json* list : lists) {
+    Json kept = Json::array();
+    for (const Eigen::Index i : keep) kept.push_back((*list)[static_cast<std::size_t>(i)]);
+    *list = std::move(kept);
+  }
+}
+
+/// The lines at which some |H| has an extreme, run by run.
+void thin_frfs(Json& json) {
+  if (!json.is_object() || !json.contains("receptance_m_per_n")) return;
+  json.erase("deviation_m_per_n");  // no page draws it
+  const std::size_t lines = json["frequency_hz"].size();
+  if (lines <= most_lines) return;
+  std::vector<Eigen::VectorXd> magnitudes;
+  for (const Json& frf : json["receptance_m_per_n"]) {
+    Eigen::VectorXd& magnitude = magnitudes.emplace_back(static_cast<Eigen::Index>(lines));
+    for (std::size_t i = 0; i < lines; ++i) {
+      const Json& re = frf["re"][i];
+      const Json& im = frf["im"][i];
+      const bool known = re.is_number() && im.is_number();
+      magnitude[static_cast<Eigen::Index>(i)] = known ? std::hypot(re.get<double>(), im.get<double>()) : missing;
+    }
+  }
+  keep_of_axis(json, lines, thin_together(magnitudes, most_lines));
+}
+
+/// What the page draws of each block of a program; its tables are made of the worst blocks.
+constexpr const char* drawn_columns[] = {"block",
+                                         "line",
+                                         "x_mm",
+                                         "y_mm",
+                                         "z_mm",
+                                         "peak_f_n",
+                                         "revolution_torque_n_m",
+                                         "peak_torque_n_m",
+                                         "path_mm",
+                                         "time_s",
+                                         "cuts",
+                                         "sustained_power_w",
+                                         "peak_deflection_um"};
+
+void keep_drawn(Json& block) {
+  Json drawn = Json::object();
+  for (const char* column : drawn_columns) {
+    if (const auto cell = block.find(column); cell != block.end()) drawn[column] = std::move(*cell);
+  }
+  block = std::move(drawn);
+}
+
+/// The steps of a revolution at which a force has an extreme, run by run.
+void thin_revolution(Json& json, std::size_t steps) {
+  if (steps <= most_rows) return;
+  std::vector<Json*> lists;
+  collect(json, steps, lists);
+  std::vector<Eigen::VectorXd> curves;
+  for (const Json* list : lists) {
+    Eigen::VectorXd& curve = curves.emplace_back(static_cast<Eigen::Index>(steps));
+    for (std::size_t i = 0; i < steps; ++i) curve[static_cast<Eigen::Index>(i)] = number_of((*list)[i]);
+  }
+  keep_of_axis(json, steps, thin_curves(curves, most_rows));
+}
+
+/// Of forces.json what the page shows.
+void thin_forces(Json& json) {
+  if (!json.is_object() || !json.contains("force_on")) return;
+  json.erase("skipped");
+  if (const auto blocks = json.find("blocks"); blocks != json.end()) {
+    for (Json& block : *blocks) keep_drawn(block);
+  }
+  if (const auto rotation = json.find("rotation_deg"); rotation != json.end()) thin_revolution(json, rotation->size());
+}
+
+/// Numbers to six digits, long lists of rows thinned.
+Json shown(Json value) {
+  if (value.is_number_float()) return number(value.get<double>());
+  if (!value.is_structured()) return value;
+  if (value.is_array() && value.size() > most_rows && value.front().is_object()) value = thinned_rows(std::move(value));
+  for (Json& part : value) part = shown(std::move(part));
+  return value;
+}
+
+/// What a page needs of a document.
+Json document(const char* member, const std::string& text) {
+  if (text.empty()) return nullptr;
+  Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw InvalidInput(member, "is no JSON");
+  thin_frfs(json);
+  thin_forces(json);
+  return shown(std::move(json));
+}
+
+struct Member {
+  const char* name;
+  std::string Report::*text;
+};
+
+}  // namespace
+
+Json page_data(const Report& report) {
+  static constexpr Member members[] = {{"plan", &Report::plan},
+                                       {"frf", &Report::frf},
+                                       {"fitted", &Report::fitted},
+                                       {"measured", &Report::measured},
+                                       {"assembly", &Report::assembly},
+                                       {"modes", &Report::modes},
+                                       {"workpiece_modes", &Report::workpiece_modes},
+                                       {"lobes", &Report::lobes},
+                                       {"recordings", &Report::recordings},
+                                       {"forces", &Report::forces},
+                                       {"smooth", &Report::smooth},
+                                       {"motion", &Report::motion},
+                                       {"monitor", &Report::monitor},
+                                       {"calibration", &Report::calibration}};
+  Json json = Json::object();
+  json["title"] = text(report.title);
+  json["created"] = text(report.created);
+  for (const Member& member : members) json[member.name] = document(member.name, report.*member.text);
+  json["files"] = Json::array();
+  for (const StageFile& file : report.files) {
+    json["files"].push_back(
+        {{"stage", text(file.stage)}, {"file", text(file.file)}, {"description", text(file.description)}});
+  }
+  return json;
+}
+
+std::string report_json(const Report& report) {
+  return page_data(report).dump() + "\n";
+}
+
+}  // namespace robomill::page

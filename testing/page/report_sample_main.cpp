@@ -1,0 +1,35 @@
+#include <fstream>
+#include <iostream>
+#include <string_view>
+
+#include "testing/page/forces_sample.hpp"
+#include "testing/page/monitor_sample.hpp"
+#include "testing/page/plan_sample.hpp"
+#include "testing/page/report_sample.hpp"
+#include "testing/page/smooth_sample.hpp"
+#include "testing/page/structure_sample.hpp"
+
+/// report_sample OUT.html [sample|hostile]: the sample page for the browser test; hostile puts markup into every text
+/// it can.
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::cerr << "usage: report_sample OUT.html [sample|hostile]\n";
+    return 2;
+  }
+  robomill::page::Report report = robomill::page::sample_report();
+  if (argc > 2 && std::string_view(argv[2]) == "hostile") {
+    const std::string evil =
+        "</script><script>throw new Error('escaped')</script><img src=x onerror=alert(1)><!--<script>";
+    report.title = evil;
+    report.frf = robomill::page::sample_frf(evil);
+    report.assembly = robomill::page::sample_assembly(evil);
+    report.plan = robomill::page::sample_plan(evil);
+    report.recordings = robomill::page::sample_recordings(evil);
+    report.forces = robomill::page::sample_forces(evil);
+    report.smooth = robomill::page::sample_smooth(evil);
+    report.monitor = robomill::page::sample_monitor(evil);
+    report.calibration = robomill::page::sample_calibration(evil);
+  }
+  std::ofstream(argv[1], std::ios::binary) << robomill::page::report_html(report);
+  return 0;
+}
