@@ -10,11 +10,17 @@ export interface TimeCurve {
   values: number[];
 }
 
-/** A band as one curve: of runs of one sample its values at their begins, else of each run the lowest and the highest value a quarter before and after its middle. */
-export function bandCurve({ low, high }: Band, run_s: number): TimeCurve {
-  if (low.every((value, run) => value === high[run])) return { time_s: low.map((_, run) => run * run_s), values: low };
+/** Curves over the same runs: where every run is one sample its values at their begins, else of each run the lowest and the highest value a quarter before and after its middle. */
+export function bandCurves(bands: Band[], run_s: number): { time_s: number[]; values: number[][] } {
+  const single = bands.every(({ low, high }) => low.every((value, run) => value === high[run]));
+  const begins = (bands[0]?.low ?? []).map((_, run) => run * run_s);
   return {
-    time_s: low.flatMap((_, run) => [(run + 0.25) * run_s, (run + 0.75) * run_s]),
-    values: low.flatMap((value, run) => [value, high[run]!]),
+    time_s: single ? begins : begins.flatMap((begin) => [begin + 0.25 * run_s, begin + 0.75 * run_s]),
+    values: bands.map(({ low, high }) => (single ? low : low.flatMap((value, run) => [value, high[run]!]))),
   };
+}
+
+export function bandCurve(band: Band, run_s: number): TimeCurve {
+  const { time_s, values } = bandCurves([band], run_s);
+  return { time_s, values: values[0]! };
 }

@@ -1,4 +1,5 @@
 // What is written for the page alone: a monitored recording.
+import type { Band } from './bands';
 import type { Fact, Num, Owner } from './documents';
 
 /** What a document says in words. */
@@ -40,12 +41,6 @@ export interface MonitorEvent {
   what?: string | null; // of a stream
   file?: string | null; // of a recording
   message?: string;
-}
-
-/** A curve over runs of equal length: the lowest and the highest value of each. */
-export interface Band {
-  low: number[];
-  high: number[];
 }
 
 /** A monitored recording. */

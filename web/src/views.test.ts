@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { AssemblyDocument, FrfDocument, LobesDocument, ModesDocument, Plan, SegmentDocument } from './documents';
-import { assemblyOf, bandsOf, feedOf, frfsOf, linesOf, lobesOf, modesOf, valueAt } from './views';
+import { assemblyOf, bandsOf, feedOf, frfsOf, lobesOf, modesOf, valueAt } from './views';
 
 const modes: ModesDocument = {
   modes: [10, 20].map((frequency_hz) => ({ frequency_hz, damping_ratio: 0.01, left: {}, right: {}, std: { frequency_hz: null, damping_ratio: null } })),
@@ -79,11 +79,4 @@ it('reads a curve between its points', () => {
   const at = (x: number) => valueAt([-1, 0, 1], [4, 2, null], x);
   expect([-1, -0.5, 0].map(at)).toEqual([4, 3, 2]);
   expect([-1.5, 0.5, 1, 1.5, NaN].map(at)).toEqual([null, null, null, null, null]);
-});
-
-it('draws runs of one value as points, else between the lowest and the highest', () => {
-  const points = { low: [1, 2], high: [1, 2] };
-  expect(linesOf([points], 2)).toEqual({ time_s: [0, 2], values: [[1, 2]] });
-  expect(linesOf([points, { low: [3, 4], high: [3, 5] }], 2)).toEqual({ time_s: [0.5, 1.5, 2.5, 3.5], values: [[1, 1, 2, 2], [3, 3, 4, 5]] });
-  expect(linesOf([{ low: [], high: [] }], 2)).toEqual({ time_s: [], values: [[]] });
 });

@@ -1,5 +1,5 @@
 // What tables and plots need, made of the documents.
-import type { AssemblyDocument, Band, BoundaryPoint, Forces, FrfDocument, LobesDocument, ModesDocument, ModeVector, Num, Owner, PartLimits, Plan, Program, Report, Revolution, SegmentDocument, TipPeak } from './documents';
+import type { AssemblyDocument, BoundaryPoint, Forces, FrfDocument, LobesDocument, ModesDocument, ModeVector, Num, Owner, PartLimits, Plan, Program, Report, Revolution, SegmentDocument, TipPeak } from './documents';
 
 export interface Mode {
   mode: number;
@@ -232,14 +232,4 @@ export function valueAt(x: number[], y: Num[], at: number): Num {
   if (low === null || high === null) return null;
   const share = (at - x[above - 1]!) / (x[above]! - x[above - 1]!);
   return (1 - share) * low + share * high;
-}
-
-/** Curves over the same runs of time as lines. A run of one value is a point at its begin; else the lowest and the highest stand a quarter before and after its middle. All are drawn as the least smooth needs it. */
-export function linesOf(bands: Band[], run_s: number): { time_s: number[]; values: number[][] } {
-  const single = bands.every(({ low, high }) => low.every((value, run) => value === high[run]));
-  const begins = (bands[0]?.low ?? []).map((_, run) => run * run_s);
-  return {
-    time_s: single ? begins : begins.flatMap((begin) => [begin + 0.25 * run_s, begin + 0.75 * run_s]),
-    values: bands.map(({ low, high }) => (single ? low : low.flatMap((value, run) => [value, high[run]!]))),
-  };
 }

@@ -1,5 +1,5 @@
 import type { Calibration, Monitor, RocPoint } from '../documents';
-import { linesOf } from '../views';
+import { bandCurves } from '../bands';
 import { curve, suffix } from './rows';
 import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
@@ -35,7 +35,7 @@ function timeAxis(monitor: Monitor, theme: Theme, more: Layout = {}): Layout {
 /** Each channel's samples over time. */
 export function waveFigure(monitor: Monitor, theme: Theme): Figure {
   const unit = plain(monitor.unit);
-  const { time_s: time, values } = linesOf(monitor.channels.map((channel) => channel.wave), monitor.wave_run_s);
+  const { time_s: time, values } = bandCurves(monitor.channels.map((channel) => channel.wave), monitor.wave_run_s);
   const data: Trace[] = monitor.channels.map((channel, i) => ({
     type: 'scatter',
     mode: 'lines',
@@ -110,7 +110,7 @@ interface Row {
 /** Score against threshold, entropy and tracked speed, one above the other. */
 export function scoreFigure(monitor: Monitor, theme: Theme): Figure {
   const { run_s, score, threshold, energy_entropy, spindle_speed_rpm } = monitor.decisions;
-  const { time_s: time, values } = linesOf([score, threshold, energy_entropy, spindle_speed_rpm], run_s);
+  const { time_s: time, values } = bandCurves([score, threshold, energy_entropy, spindle_speed_rpm], run_s);
   const rows: Row[] = [
     { title: 'Score', unit: '', y: values[0]!, against: values[1]! },
     { title: 'Entropy', unit: '', y: values[2]!, against: null },
