@@ -71,7 +71,6 @@
 #include "robomill/monitor/files/stream_block.hpp"
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/monitor/published/calibrate.hpp"
-#include "robomill/page/fact.hpp"
 #include "robomill/page/report.hpp"
 #include "robomill/path/check.hpp"
 #include "robomill/path/drive.hpp"

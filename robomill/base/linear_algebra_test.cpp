@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <complex>
-#include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/base/statistics.hpp"
 
 namespace robomill {
 namespace {
@@ -42,13 +40,6 @@ TEST(LinearAlgebra, AnswersSolveTheirEquations) {
     const ComplexThinSvd wide = thin_svd(c);
     EXPECT_LT((wide.u * wide.values.asDiagonal() * wide.v.adjoint() - c).norm(), 1e-9);
   }
-}
-
-TEST(Median, IsTheUpperOfTheTwoInTheMiddle) {
-  EXPECT_EQ(median(std::vector<double>{3.0, 1.0, 2.0}), 2.0);
-  EXPECT_EQ(median(std::vector<double>{4.0, 1.0, 3.0, 2.0}), 3.0);
-  EXPECT_EQ(median(Eigen::Vector2d(5.0, -1.0)), 5.0);
-  EXPECT_EQ(median(std::vector<double>{}), 0.0);
 }
 
 }  // namespace

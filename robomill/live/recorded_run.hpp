@@ -44,7 +44,7 @@ struct RecordedRun {
   double decision_run_s = NAN;                 ///< > 0; of the next four, n runs each
   signal::Band score = {}, threshold = {}, energy_entropy = {};
   signal::Band spindle_speed_rad_per_s = {};  ///< tracked; 0 where unknown
-  std::vector<Stay> stays = {};               ///< one after the other, without gaps
+  std::vector<Stay> stays = {};               ///< one after the other, without gaps; some thousands at most
   std::vector<std::string> events = {};       ///< as monitor::event_line writes them
   std::size_t decisions = 0;
   double compute_mean_s = NAN, compute_max_s = NAN;  ///< of one decision

@@ -18,6 +18,7 @@ constexpr std::size_t wave_runs = 3000, decision_runs = 1500, spectrogram_runs =
 constexpr std::size_t most_rows = 257;    ///< of a spectrogram
 constexpr std::size_t most_channels = 4;  ///< whose spectrogram is kept
 constexpr std::size_t most_events = 400;
+constexpr std::size_t most_stays = 2000;
 constexpr double lowest_db = -120.0;
 constexpr double drift_hz = 2.0;  ///< below, the spectrogram shows nothing: a sensor's offset would outshine the rest
 
@@ -101,7 +102,8 @@ struct Recorder::Parts {
   signal::Bands waves, decisions;
   std::vector<double> frame;
   std::vector<Columns> spectrograms;
-  std::size_t count = 0, unreported = 0;
+  std::size_t count = 0, unreported = 0, unlisted = 0;
+  monitor::State state = monitor::State::stable;  ///< of the last decision
   double compute_s = 0.0, compute_max_s = 0.0;
   int loudest = 0;  ///< channel of the last chatter
   std::vector<Stay> stays;
@@ -150,9 +152,13 @@ void Recorder::add(const monitor::Decision& decision, double compute_s) {
   parts.compute_max_s = std::max(parts.compute_max_s, compute_s);
   if (decision.state == monitor::State::chatter) parts.loudest = decision.channel;
   if (parts.stays.empty()) parts.stays.push_back({.state = monitor::State::stable, .from_s = 0.0, .to_s = 0.0});
-  parts.stays.back().to_s = decision.time_s;
-  if (decision.state != parts.stays.back().state) {
+  if (parts.unlisted == 0) parts.stays.back().to_s = decision.time_s;
+  if (decision.state == parts.state) return;
+  parts.state = decision.state;
+  if (parts.stays.size() < most_stays) {
     parts.stays.push_back({.state = decision.state, .from_s = decision.time_s, .to_s = decision.time_s});
+  } else {
+    ++parts.unlisted;
   }
 }
 
@@ -186,6 +192,7 @@ RecordedRun Recorder::run() const {
     out.compute_max_s = parts.compute_max_s;
   }
   if (parts.unreported > 0) out.notes.push_back(std::to_string(parts.unreported) + " more events are not listed.");
+  if (parts.unlisted > 0) out.notes.push_back(std::to_string(parts.unlisted) + " more changes of state are not drawn.");
 
   const auto shown = std::min(static_cast<std::size_t>(std::max(parts.loudest, 0)), parts.spectrograms.size() - 1);
   const Columns& columns = parts.spectrograms[shown];

@@ -63,6 +63,20 @@ TEST(Recorder, LongRecordingsTakeNoMoreThanShortOnes) {
   EXPECT_NEAR(run.compute_mean_s, 1e-4, 1e-12);
 }
 
+TEST(Recorder, ListsSomeThousandChangesOfState) {
+  Recorder recorder(one_channel(), {"a"}, "");
+  monitor::Decision decision;
+  for (int i = 0; i < 5000; ++i) {
+    decision.time_s = 0.025 * i;
+    decision.state = i % 2 == 0 ? monitor::State::stable : monitor::State::chatter;
+    recorder.add(decision, 1e-4);
+  }
+  const RecordedRun run = recorder.run();
+  EXPECT_EQ(run.stays.size(), 2000U);
+  EXPECT_EQ(run.stays.back().to_s, 0.025 * 2000);
+  EXPECT_EQ(run.notes, std::vector<std::string>{"3000 more changes of state are not drawn."});
+}
+
 TEST(Recorder, KeepsWhatIsNoNumberOut) {
   Recorder recorder(one_channel(), {"a"}, "");
   std::vector<float> samples = tone(440.0, 0.5, 10240.0);

@@ -39,12 +39,12 @@ struct Report {
 
 /// The data of the page in shop units, keys with their unit, about six significant digits; numbers finite, "none" is
 /// null.
-/// @throws InvalidInput naming the member that is no JSON
+/// @throws InvalidInput naming the member that is not its JSON document
 [[nodiscard]] ROBOMILL_API std::string report_json(const Report& report);
 
 /// One file that opens without a network: the page's script (web/), which makes tables and plots of the data inside.
 /// Where no script runs, and in a build without it (ROBOMILL_WEB=OFF), the page is the summary.
-/// @throws InvalidInput naming the member that is no JSON
+/// @throws InvalidInput naming the member that is not its JSON document
 [[nodiscard]] ROBOMILL_API std::string report_html(const Report& report);
 
 }  // namespace robomill::page

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,8 @@ namespace {
 using io::Json;
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t most_rows = 6000;    ///< of a list, of a revolution
+constexpr std::size_t most_rows = 6000;  ///< of a list, of a revolution
+constexpr int deepest_nesting = 256;
 constexpr std::size_t most_lines = 12000;  ///< of an axis that all FRFs of a document share
 
 double number_of(const Json& value) {
@@ -74,6 +76,8 @@ Json thinned_rows(Json rows) {
     Eigen::VectorXd& column = columns.emplace_back(static_cast<Eigen::Index>(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) column[static_cast<Eigen::Index>(i)] = number_in(rows[i], key);
   }
+  // Rows without a number are as good as each other.
+  if (columns.empty()) columns.emplace_back(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows.size())));
   std::vector<Eigen::Index> keep = changes(rows, truths, most_rows / 3);
   std::ranges::copy(thin_curves(columns, most_rows - keep.size()), std::back_inserter(keep));
   std::ranges::sort(keep);
@@ -113,8 +117,8 @@ void thin_frfs(Json& json) {
   for (const Json& frf : json["receptance_m_per_n"]) {
     Eigen::VectorXd& magnitude = magnitudes.emplace_back(static_cast<Eigen::Index>(lines));
     for (std::size_t i = 0; i < lines; ++i) {
-      const Json& re = frf["re"][i];
-      const Json& im = frf["im"][i];
+      const Json& re = frf.at("re").at(i);
+      const Json& im = frf.at("im").at(i);
       const bool known = re.is_number() && im.is_number();
       magnitude[static_cast<Eigen::Index>(i)] = known ? std::hypot(re.get<double>(), im.get<double>()) : missing;
     }
@@ -168,23 +172,35 @@ void thin_forces(Json& json) {
   if (const auto rotation = json.find("rotation_deg"); rotation != json.end()) thin_revolution(json, rotation->size());
 }
 
+/// Times keep their digits: of an hour, six are not a hundredth of a second.
+bool is_time(std::string_view key) {
+  return key.ends_with("_s") && !key.ends_with("_per_s");
+}
+
 /// Numbers to six digits, long lists of rows thinned.
-Json shown(Json value) {
-  if (value.is_number_float()) return number(value.get<double>());
+Json shown(Json value, bool whole, int depth = 0) {
+  if (value.is_number_float()) return whole ? io::number(value.get<double>()) : number(value.get<double>());
   if (!value.is_structured()) return value;
+  if (depth > deepest_nesting) throw InvalidInput("nesting", "is too deep");
   if (value.is_array() && value.size() > most_rows && value.front().is_object()) value = thinned_rows(std::move(value));
-  for (Json& part : value) part = shown(std::move(part));
+  for (auto& [key, part] : value.items())
+    part = shown(std::move(part), value.is_array() ? whole : is_time(key), depth + 1);
   return value;
 }
 
 /// What a page needs of a document.
 Json document(const char* member, const std::string& text) {
   if (text.empty()) return nullptr;
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) throw InvalidInput(member, "is no JSON");
-  thin_frfs(json);
-  thin_forces(json);
-  return shown(std::move(json));
+  try {
+    Json json = Json::parse(text);
+    thin_frfs(json);
+    thin_forces(json);
+    return shown(std::move(json), false);
+  } catch (const InvalidInput&) {
+    throw InvalidInput(member, "nests its values too deep");
+  } catch (const Json::exception&) {
+    throw InvalidInput(member, "is not the JSON document that it should be");
+  }
 }
 
 struct Member {

@@ -51,6 +51,11 @@ TEST(ReportJson, RoundsDocumentsToSixDigits) {
   const json cut = json::parse(report_json(report))["plan"]["cuts"][0];
   EXPECT_EQ(cut["spindle_speed_rpm"].get<double>(), 1234.57);
   EXPECT_EQ(cut["teeth"], 12345678);
+  report.monitor = R"({"wave_run_s": 0.0123456789, "events": [{"time_s": 12345.675}], "time_s": [98765.4321]})";
+  const json monitor = json::parse(report_json(report))["monitor"];
+  EXPECT_EQ(monitor["wave_run_s"].get<double>(), 0.0123456789);
+  EXPECT_EQ(monitor["events"][0]["time_s"].get<double>(), 12345.675);
+  EXPECT_EQ(monitor["time_s"][0].get<double>(), 98765.4321);
   EXPECT_EQ(cut["note"], "1.23456789");
   EXPECT_TRUE(json::parse(report_json({}))["plan"].is_null());
 }
@@ -269,6 +274,12 @@ TEST(ReportJson, NamesTheMemberThatIsNoJson) {
   Report report;
   report.lobes = "{";
   EXPECT_EQ(test::field_of([&] { static_cast<void>(report_json(report)); }), "lobes");
+  report.lobes.clear();
+  const json axis = std::vector<double>(13000, 1.0);
+  report.measured = json{{"frequency_hz", axis}, {"receptance_m_per_n", {{"xx", {{"re", json::array()}}}}}}.dump();
+  EXPECT_EQ(test::field_of([&] { static_cast<void>(report_json(report)); }), "measured");
+  report.measured = std::string(400, '[') + std::string(400, ']');
+  EXPECT_EQ(test::field_of([&] { static_cast<void>(report_json(report)); }), "measured");
 }
 
 }  // namespace

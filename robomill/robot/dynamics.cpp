@@ -116,7 +116,8 @@ void solve_modes(const Normal& system, ToolModes& out) {
   if (!pairs.converged) {
     throw InvalidInput("joints", "have no modes that double precision can find", "Are the units mixed?");
   }
-  const Eigen::MatrixXcd &vectors = pairs.vectors, back = inverse(vectors);
+  const Eigen::MatrixXcd& vectors = pairs.vectors;
+  const Eigen::MatrixXcd back = inverse(vectors);
   for (Eigen::Index k = 0; k < 2 * n; ++k) {
     const Complex pole = pairs.values(k);
     const Eigen::VectorXcd x = vectors.col(k).head(n), y = back.row(k).tail(n).transpose();

@@ -8,8 +8,6 @@
 #include "robomill/base/units.hpp"
 
 namespace robomill::robot {
-namespace {}  // namespace
-
 Image nearest_image(const Joint& joint, double angle, double previous) noexcept {
   const bool inside = angle >= joint.min_position && angle <= joint.max_position;
   if (inside && std::abs(angle - previous) < std::numbers::pi) return {.position = angle};

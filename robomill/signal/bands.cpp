@@ -2,9 +2,13 @@
 
 #include <algorithm>
 
+#include "robomill/base/error.hpp"
+
 namespace robomill::signal {
 
 Bands::Bands(std::size_t curves, std::size_t most_runs) : curves_(curves), most_(most_runs + most_runs % 2) {
+  if (curves == 0) throw InvalidInput("curves", 0.0, "", "must be > 0");
+  if (most_runs == 0) throw InvalidInput("most_runs", 0.0, "", "must be > 0");
   low_.reserve(most_ * curves);
   high_.reserve(most_ * curves);
 }

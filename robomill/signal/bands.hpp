@@ -19,6 +19,7 @@ struct Band {
 /// too many. No peak is lost, and the memory does not grow with the samples.
 class ROBOMILL_API Bands {
  public:
+  /// @throws InvalidInput if either is 0
   Bands(std::size_t curves, std::size_t most_runs);
   void clear();
   /// @param values  one a curve

@@ -5,8 +5,6 @@
 #include "robomill/base/units.hpp"
 
 namespace robomill::simulation::detail {
-namespace {}  // namespace
-
 double Spindle::rotation(double time_s) const {
   const double mean = mean_rad_per_s * time_s;
   if (amplitude == 0.0) return schedule.empty() ? mean : mean_rad_per_s * schedule.before(time_s);

@@ -5,8 +5,6 @@
 #include "robomill/base/units.hpp"
 
 namespace robomill::simulation::detail {
-namespace {}  // namespace
-
 template <int D>
 Surface<D>::Surface(const CutModel& model) : model_(model), step_(units::revolution / model.steps_per_revolution) {
   strips_.reserve(model.rings.size());

@@ -1,6 +1,5 @@
 // What robomill writes into the page: shop units, null for "none".
-import type { Band } from './bands';
-import type { Monitor, Places, Remarks } from './recorded';
+import type { Monitor, MotionDocument } from './recorded';
 
 export * from './recorded';
 export type Num = number | null;
@@ -239,6 +238,13 @@ export interface Program {
   blocks: Block[]; // of a long program a part, its first and last among them
 }
 
+/** What a document says in words. */
+export interface Remarks {
+  facts: Fact[];
+  warnings: string[];
+  notes: string[];
+}
+
 /** forces.json */
 export interface Forces extends Remarks, Partial<Revolution>, Partial<Program> {
   force_on: 'tool' | 'workpiece';
@@ -372,45 +378,6 @@ export interface SmoothDocument extends SmoothedBy {
   skipped: { line: number; what: string }[];
   notes: string[];
   robot_program: { holds: boolean } | null;
-}
-
-/** Joints' bands in their unit by time. */
-export interface JointMotion {
-  unit: 'deg' | 'mm';
-  velocity: Band;
-  acceleration: Band;
-  jerk: Band;
-  tracking_error: Band | null;
-}
-
-/** A method's trajectory over time: bands over runs of run_s each. */
-export interface Motion {
-  run_s: number;
-  tip_speed_mm_per_s: Band;
-  axis_speed_deg_per_s: Band;
-  joints: JointMotion[];
-  tip: Places & { speed_mm_per_s: number[] };
-  corner_paths: FlatPlaces[]; // one a corner
-}
-
-/** In the plane of a corner: x along the way, y to the inside. */
-export interface FlatPlaces {
-  x_mm: number[];
-  y_mm: number[];
-}
-
-export interface Corner {
-  line: number;
-  turn_deg: number;
-  radius_mm: number;
-  program: FlatPlaces;
-}
-
-/** What is recorded of a smoothed program for the page alone. */
-export interface MotionDocument {
-  program: Places;
-  corners: Corner[];
-  motions: Motion[]; // one a method, in the order of smooth.json
 }
 
 /** One threshold. */

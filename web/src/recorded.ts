@@ -1,13 +1,6 @@
-// What is written for the page alone: a monitored recording.
+// What is recorded for the page alone: a monitored recording, a smoothed program's motion.
 import type { Band } from './bands';
-import type { Fact, Num, Owner } from './documents';
-
-/** What a document says in words. */
-export interface Remarks {
-  facts: Fact[];
-  warnings: string[];
-  notes: string[];
-}
+import type { Num, Owner, Remarks } from './documents';
 
 /** One point after another in the work frame. */
 export interface Places {
@@ -55,4 +48,43 @@ export interface Monitor extends Remarks {
   compute_max_us: Num;
   stays: MonitorStay[];
   events: MonitorEvent[];
+}
+
+/** Joints' bands in their unit by time. */
+export interface JointMotion {
+  unit: 'deg' | 'mm';
+  velocity: Band;
+  acceleration: Band;
+  jerk: Band;
+  tracking_error: Band | null;
+}
+
+/** A method's trajectory over time: bands over runs of run_s each. */
+export interface Motion {
+  run_s: number;
+  tip_speed_mm_per_s: Band;
+  axis_speed_deg_per_s: Band;
+  joints: JointMotion[];
+  tip: Places & { speed_mm_per_s: number[] };
+  corner_paths: FlatPlaces[]; // one a corner
+}
+
+/** In the plane of a corner: x along the way, y to the inside. */
+export interface FlatPlaces {
+  x_mm: number[];
+  y_mm: number[];
+}
+
+export interface Corner {
+  line: number;
+  turn_deg: number;
+  radius_mm: number;
+  program: FlatPlaces;
+}
+
+/** What is recorded of a smoothed program for the page alone. */
+export interface MotionDocument {
+  program: Places;
+  corners: Corner[];
+  motions: Motion[]; // one a method, in the order of smooth.json
 }

@@ -263,15 +263,16 @@ Json blocks_json(const ProgramForces& program, double sign) {
   return blocks;
 }
 
-/// The blocks that cut, the highest of a column first; those of which it is not known are left out.
-std::vector<const Json*> by_column(const Json& blocks, const char* column) {
-  std::vector<const Json*> order;
+using Ranked = std::pair<double, const Json*>;
+
+/// The blocks that cut and their values in a column; those of which it is not known are left out.
+std::vector<Ranked> cutting_blocks(const Json& blocks, const char* column) {
+  std::vector<Ranked> out;
   for (const Json& block : blocks) {
-    if (block.at("cuts").get<bool>() && block.at(column).is_number()) order.push_back(&block);
+    const Json& value = block.at(column);
+    if (value.is_number() && block.at("cuts").get<bool>()) out.emplace_back(value.get<double>(), &block);
   }
-  std::ranges::stable_sort(order, std::ranges::greater(),
-                           [&](const Json* block) { return block->at(column).get<double>(); });
-  return order;
+  return out;
 }
 
 /// The highest value of the columns that a program is judged by, and where; null where none is known.
@@ -279,11 +280,11 @@ Json highest_json(const Json& blocks) {
   Json out = Json::object();
   for (const char* column :
        {"peak_f_n", "revolution_torque_n_m", "peak_torque_n_m", "sustained_power_w", "peak_deflection_um"}) {
-    const std::vector<const Json*> order = by_column(blocks, column);
+    const std::vector<Ranked> values = cutting_blocks(blocks, column);
     out[column] = nullptr;
-    if (order.empty()) continue;
-    const Json& most = *order.front();
-    out[column] = {{"value", most.at(column)}, {"block", most.at("block")}, {"line", most.at("line")}};
+    if (values.empty()) continue;
+    const auto& [value, block] = *std::ranges::max_element(values, {}, &Ranked::first);
+    out[column] = {{"value", value}, {"block", block->at("block")}, {"line", block->at("line")}};
   }
   return out;
 }
@@ -292,10 +293,11 @@ constexpr std::size_t worst_blocks = 10;
 
 /// The blocks with the highest peak force, the worst first.
 Json worst_json(const Json& blocks) {
-  std::vector<const Json*> order = by_column(blocks, "peak_f_n");
+  std::vector<Ranked> order = cutting_blocks(blocks, "peak_f_n");
+  std::ranges::stable_sort(order, std::ranges::greater(), &Ranked::first);
   order.resize(std::min(order.size(), worst_blocks));
   Json worst = Json::array();
-  for (const Json* block : order) worst.push_back(*block);
+  for (const auto& [force, block] : order) worst.push_back(*block);
   return worst;
 }
 

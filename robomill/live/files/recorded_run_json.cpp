@@ -57,7 +57,10 @@ std::string recorded_run_json(const RecordedRun& run) {
         {{"state", monitor::to_string(stay.state)}, {"from_s", number(stay.from_s)}, {"to_s", number(stay.to_s)}});
   }
   Json events = Json::array();
-  for (const std::string& event : run.events) events.push_back(Json::parse(event));
+  for (const std::string& event : run.events) {
+    events.push_back(Json::parse(event, nullptr, false));
+    if (events.back().is_discarded()) throw InvalidInput("events", "must be lines of JSON");
+  }
   return io::dump({{"facts", std::move(facts)},
                    {"warnings", run.warnings},
                    {"notes", run.notes},

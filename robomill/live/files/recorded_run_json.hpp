@@ -8,7 +8,8 @@
 
 namespace robomill::live {
 
-/// A recorded run for its report: curves as `low` and `high` over runs of equal length.
+/// A recorded run for its report: curves as `low` and `high` over runs of equal length. docs/formats.md, "Events".
+/// @throws InvalidInput if an event is no JSON
 [[nodiscard]] ROBOMILL_API std::string recorded_run_json(const RecordedRun& run);
 
 }  // namespace robomill::live

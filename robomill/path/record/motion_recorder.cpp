@@ -1,7 +1,8 @@
 #include "robomill/path/record/motion_recorder.hpp"
 
-#include <algorithm>
 #include <utility>
+
+#include "robomill/base/error.hpp"
 
 namespace robomill::path {
 namespace {
@@ -22,7 +23,10 @@ MotionRecorder::MotionRecorder(int joints, const std::array<bool, 6>& prismatic,
       bands_(2 + of_joint * static_cast<std::size_t>(joints), shown_runs),
       values_(2 + of_joint * static_cast<std::size_t>(joints)),
       path_(most_points),
-      passes_(corners.size()) {}
+      passes_(corners.size()) {
+  if (joints < 1 || joints > 6) throw InvalidInput("joints", joints, "", "must be 1 to 6");
+  require_positive("sample_period_s", sample_period_s, "s");
+}
 
 void MotionRecorder::restart(Tracking tracking) {
   tracking_ = std::move(tracking);

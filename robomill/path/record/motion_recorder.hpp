@@ -42,6 +42,7 @@ class ROBOMILL_API MotionRecorder {
  public:
   /// @param prismatic  of each joint
   /// @param corners    of the outline; outlive the recorder
+  /// @throws InvalidInput if there are not 1 to 6 joints or the period is not > 0
   MotionRecorder(int joints, const std::array<bool, 6>& prismatic, double sample_period_s,
                  const std::vector<ProgramCorner>& corners);
   /// Begins anew. @param tracking  of the drives from here on

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "testing/path/zigzag.hpp"
+#include "testing/support.hpp"
 
 namespace robomill::path {
 namespace {
@@ -80,6 +81,12 @@ TEST(MotionRecorder, SeesTheWayRoundACorner) {
     EXPECT_LT(ways[i](0, 0) * ways[i](0, ways[i].cols() - 1), 0.0);
     EXPECT_LT(ways[i].colwise().norm().maxCoeff(), 2.0 * outlined.corners[i].radius_m + 1e-12);
   }
+}
+
+TEST(MotionRecorder, RejectsWhatItCannotHold) {
+  const std::vector<ProgramCorner> none;
+  EXPECT_EQ(test::field_of([&] { MotionRecorder(7, {}, 0.001, none); }), "joints");
+  EXPECT_EQ(test::field_of([&] { MotionRecorder(6, {}, 0.0, none); }), "sample_period_s");
 }
 
 }  // namespace

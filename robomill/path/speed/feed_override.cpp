@@ -14,8 +14,8 @@ constexpr double used = 0.985, used_velocity = 0.9995;
 constexpr double caps_per_unit = 50.0;
 /// The brake in whole periods lags behind the one in continuous time, by less than this many.
 constexpr double lag_periods = 6.0;
-/// Rates at which a slope is looked for; between them it may be 0.3 % too large.
-constexpr int rates = 10;
+/// Overrides at which a slope is looked for; between them it may be 0.3 % too large.
+constexpr int looked_at = 10;
 
 const double root = std::sqrt(override_limits::alpha);
 const double theta_of_one = std::atanh(root) / root;
@@ -76,8 +76,8 @@ Stretch stretch_of(const Demand& demand, const ChannelLimits& limits, double max
   const auto step = [](double s) { return std::max(std::floor(s * caps_per_unit), 1.0) / caps_per_unit; };
   cap = step(cap);
   double slope = max_slope;
-  for (int i = 1; i <= rates; ++i) {
-    const double s = std::min(cap, 1.0) * i / rates;
+  for (int i = 1; i <= looked_at; ++i) {
+    const double s = std::min(cap, 1.0) * i / looked_at;
     for (const Share& c : channel) slope = std::min(slope, slope_at(c, s));
   }
   // Above override 1 the slope found has to do.
