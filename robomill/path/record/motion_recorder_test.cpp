@@ -85,8 +85,8 @@ TEST(MotionRecorder, SeesTheWayRoundACorner) {
 
 TEST(MotionRecorder, RejectsWhatItCannotHold) {
   const std::vector<ProgramCorner> none;
-  EXPECT_EQ(test::field_of([&] { MotionRecorder(7, {}, 0.001, none); }), "joints");
-  EXPECT_EQ(test::field_of([&] { MotionRecorder(6, {}, 0.0, none); }), "sample_period_s");
+  EXPECT_EQ(robomill::test::field_of([&] { MotionRecorder(7, {}, 0.001, none); }), "joints");
+  EXPECT_EQ(robomill::test::field_of([&] { MotionRecorder(6, {}, 0.0, none); }), "sample_period_s");
 }
 
 }  // namespace
