@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-namespace robomill {
+namespace robomill::linear_algebra {
 
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& a) {
   return a.partialPivLu().inverse();
@@ -51,4 +51,4 @@ ComplexThinSvd thin_svd(const Eigen::MatrixXcd& a) {
   return {.u = svd.matrixU(), .v = svd.matrixV(), .values = svd.singularValues()};
 }
 
-}  // namespace robomill
+}  // namespace robomill::linear_algebra

@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 
 /// Decompositions of dense matrices, compiled once: what Eigen's templates cost to compile is paid here.
-namespace robomill {
+namespace robomill::linear_algebra {
 
 /// A⁻¹ of a square matrix, by LU with partial pivoting; not finite where A is singular.
 [[nodiscard]] Eigen::MatrixXd inverse(const Eigen::MatrixXd& a);
@@ -41,4 +41,4 @@ struct ComplexThinSvd {
 };
 [[nodiscard]] ComplexThinSvd thin_svd(const Eigen::MatrixXcd& a);
 
-}  // namespace robomill
+}  // namespace robomill::linear_algebra

@@ -6,7 +6,7 @@
 
 #include "robomill/base/random.hpp"
 
-namespace robomill {
+namespace robomill::linear_algebra {
 namespace {
 
 Eigen::MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::Index columns) {
@@ -43,4 +43,4 @@ TEST(LinearAlgebra, AnswersSolveTheirEquations) {
 }
 
 }  // namespace
-}  // namespace robomill
+}  // namespace robomill::linear_algebra

@@ -26,7 +26,7 @@ using modal::Axis;
 using modal::Frf;
 using modal::FrfSet;
 
-constexpr std::size_t lines_per_block = 64;
+constexpr std::size_t holder_lines_per_block = 64;
 
 void require_options(const HolderOptions& options) {
   require_positive("max_amplification", options.max_amplification, "");
@@ -274,7 +274,7 @@ Eigen::Matrix2cd take_off(const std::vector<Equation>& equations, const detail::
     a.row(e) << weight * t(0) * s(0), weight * (t(0) * s(1) + t(1) * s(0)), weight * t(1) * s(1);
     b(e) = weight * (h - points.receptance(equation.row, equation.column));
   }
-  const ComplexThinSvd svd = thin_svd(a);
+  const linear_algebra::ComplexThinSvd svd = linear_algebra::thin_svd(a);
   const Eigen::VectorXd& sigma = svd.values;
   const double floor = regularisation * sigma(0);
   const Eigen::VectorXd gain = sigma.unaryExpr([&](double s) { return s > 0.0 ? s / (s * s + floor * floor) : 0.0; });
@@ -330,7 +330,7 @@ HolderResult remove_artefact(const FrfSet& measured, const std::vector<double>& 
                          "The holder has three unknowns: h, l = n and p");
     }
     std::vector<Eigen::Matrix2cd> matrices(points.size());
-    parallel_for(points.size(), lines_per_block, [&](std::size_t begin, std::size_t end) {
+    parallel_for(points.size(), holder_lines_per_block, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Index line = static_cast<Index>(i);
         matrices[i] = take_off(equations, points[i], line, length, options.regularisation, out.amplification(line));

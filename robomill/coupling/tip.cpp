@@ -21,7 +21,7 @@ using detail::BeamElement;
 using Eigen::Index;
 using modal::Axis;
 
-constexpr std::size_t lines_per_block = 128;
+constexpr std::size_t lines_per_task = 128;
 
 void require_frequencies(const Eigen::VectorXd& frequency_hz) {
   if (frequency_hz.size() == 0) throw InvalidInput("frequency_hz", "is empty");
@@ -53,7 +53,7 @@ std::vector<detail::Square<N>> tips(const Assembly& assembly, const std::vector<
                                     const std::vector<detail::Square<N>>& base, const Eigen::VectorXd& frequency_hz) {
   const std::vector<detail::Square<N>> under = under_tool<N>(assembly, base, frequency_hz);
   std::vector<detail::Square<N>> out(under.size());
-  parallel_for(under.size(), lines_per_block, [&](std::size_t begin, std::size_t end) {
+  parallel_for(under.size(), lines_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) out[i] = detail::on_base<N>(tool[i], under[i]);
   });
   for (std::size_t i = 0; i < out.size(); ++i) {

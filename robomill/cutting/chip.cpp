@@ -2,20 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "robomill/base/units.hpp"
 
 namespace robomill::cutting::detail {
 namespace {
 
-constexpr double full_turn = 2.0 * std::numbers::pi;
-
 /// Angle from tooth j forward to tooth k at a height, in (0, 2π].
 double gap(const FlatEndMill& mill, int j, int k, double height) {
-  if (j == k) return full_turn;
+  if (j == k) return units::revolution;
   const double ahead =
       mill.standing_angle(k) - mill.standing_angle(j) - (mill.lag_rad_per_m(k) - mill.lag_rad_per_m(j)) * height;
-  const double turned = ahead - full_turn * std::floor(ahead / full_turn);
-  return turned > 0.0 ? turned : full_turn;
+  const double turned = ahead - units::revolution * std::floor(ahead / units::revolution);
+  return turned > 0.0 ? turned : units::revolution;
 }
 
 }  // namespace
@@ -25,7 +24,7 @@ void ChipShare::set(const FlatEndMill& mill, int tooth, double height_m, double 
   lines_.clear();
   const double own = mill.radius_deviation_m(tooth, height_m);
   for (int k = 0; k < mill.teeth; ++k) {
-    const Line line = {.slope = feed_m * gap(mill, tooth, k, height_m) / full_turn,
+    const Line line = {.slope = feed_m * gap(mill, tooth, k, height_m) / units::revolution,
                        .offset = (own - mill.radius_deviation_m(k, height_m)) * position_sine};
     if (shared_ || lines_.empty()) {
       lines_.push_back(line);
@@ -79,7 +78,7 @@ const std::vector<ChipPiece>& ChipShare::pieces(const Arc& arc, const Forwards& 
     if (!(std::abs(cosine) < 1.0)) continue;
     const double half = std::acos(cosine);
     for (const double angle : {forwards.middle_rad - half, forwards.middle_rad + half}) {
-      double turned = angle - full_turn * std::floor((angle - arc.entry_rad) / full_turn);
+      double turned = angle - units::revolution * std::floor((angle - arc.entry_rad) / units::revolution);
       if (turned > arc.entry_rad && turned < arc.exit_rad) cuts_.push_back(turned);
     }
   }

@@ -100,7 +100,7 @@ PairFit fit_pair(const Slots& slots, const Direction& direction, const SlotOptio
   // A force that varies by no more than rounding has no variance to explain.
   pair.r_squared = total > 1e-24 * force_n.squaredNorm() ? 1.0 - squares / total : no_number;
   pair.noise_n = left > 0 ? std::sqrt(squares / static_cast<double>(left)) : no_number;
-  const Eigen::MatrixXd covariance = inverse(Eigen::MatrixXd(scaled.transpose() * scaled));
+  const Eigen::MatrixXd covariance = linear_algebra::inverse(Eigen::MatrixXd(scaled.transpose() * scaled));
   const double noise_n = left > 0 ? pair.noise_n : HUGE_VAL;
   pair.cutting_deviation_n_per_m2 = noise_n * std::sqrt(covariance(0, 0)) / size(0);
   pair.edge_deviation_n_per_m = with_edge ? noise_n * std::sqrt(covariance(1, 1)) / size(1) : 0.0;

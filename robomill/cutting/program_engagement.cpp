@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 
 constexpr std::size_t ring_grain = 8;
-constexpr double most_looks = 1e12;    ///< along a program: hours
-constexpr double worth_sharing = 3e4;  ///< looks; fewer are done before another thread has woken
+constexpr double most_looks = 1e12;          ///< along a program: hours
+constexpr double looks_worth_sharing = 3e4;  ///< looks; fewer are done before another thread has woken
 
 using detail::RingLook;
 using detail::Seen;
@@ -223,7 +223,7 @@ EngagementFinder::EngagementFinder(const Cutter& cutter, double dexel_m, const W
     cells_.push_back(cells);
   }
   for (const EdgeSlice& slice : slices_) looks_ += 2.0 * pi / step_rad(slice);
-  ring_grain_ = looks_ > worth_sharing ? ring_grain : slices_.size();
+  ring_grain_ = looks_ > looks_worth_sharing ? ring_grain : slices_.size();
 }
 
 EdgeSlice EngagementFinder::slice_at(const Profile::Point& at, double width_m) const {

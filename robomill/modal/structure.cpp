@@ -21,7 +21,7 @@ constexpr double max_vector_condition = 1e10;
 
 template <class Matrix>
 double condition(const Matrix& matrix) {
-  const Eigen::VectorXd values = thin_svd(matrix).values;
+  const Eigen::VectorXd values = linear_algebra::thin_svd(matrix).values;
   return values(0) / values(values.size() - 1);
 }
 
@@ -69,8 +69,8 @@ void Structure::validate() const {
 ModalModel modes_of(const Structure& structure) {
   structure.validate();
   const Eigen::Index n = structure.mass_kg.rows();
-  const Eigen::MatrixXd stiffness = solve(structure.mass_kg, structure.stiffness_n_per_m);
-  const Eigen::MatrixXd damping = solve(structure.mass_kg, structure.damping_n_s_per_m);
+  const Eigen::MatrixXd stiffness = linear_algebra::solve(structure.mass_kg, structure.stiffness_n_per_m);
+  const Eigen::MatrixXd damping = linear_algebra::solve(structure.mass_kg, structure.damping_n_s_per_m);
   // Time in units of 1/scale, so that displacement and velocity weigh alike in the eigenproblem.
   const double scale = std::sqrt(stiffness.norm() / std::sqrt(static_cast<double>(n)));
 
@@ -78,7 +78,7 @@ ModalModel modes_of(const Structure& structure) {
   state.topRightCorner(n, n).setIdentity();
   state.bottomLeftCorner(n, n) = -stiffness / (scale * scale);
   state.bottomRightCorner(n, n) = -damping / scale;
-  const EigenPairs eigen = eigen_pairs(state);
+  const linear_algebra::EigenPairs eigen = linear_algebra::eigen_pairs(state);
   if (!eigen.converged) {
     throw InvalidInput("stiffness_n_per_m", "has no eigenvalues that double precision can find",
                        "Are the units mixed?");
@@ -92,7 +92,8 @@ ModalModel modes_of(const Structure& structure) {
   }
   // The rows of the inverse are the left eigenvectors, which are so biorthogonal within repeated poles too. The force
   // enters the state through M⁻¹ / scale.
-  const Eigen::MatrixXcd left = inverse(vectors).rightCols(n) * inverse(structure.mass_kg).cast<Complex>() / scale;
+  const Eigen::MatrixXcd left = linear_algebra::inverse(vectors).rightCols(n) *
+                                linear_algebra::inverse(structure.mass_kg).cast<Complex>() / scale;
 
   ModalModel model;
   model.excitations = structure.dofs;
@@ -127,7 +128,7 @@ FrfSet receptance(const Structure& structure, const Eigen::VectorXd& frequency_h
     const Eigen::MatrixXcd dynamic_stiffness =
         (structure.stiffness_n_per_m - omega * omega * structure.mass_kg).cast<Complex>() +
         Complex(0.0, omega) * structure.damping_n_s_per_m.cast<Complex>();
-    const Eigen::MatrixXcd h = inverse(dynamic_stiffness);
+    const Eigen::MatrixXcd h = linear_algebra::inverse(dynamic_stiffness);
     if (!h.allFinite()) {
       throw InvalidInput("frequency_hz", frequency_hz(line), "Hz", "is where the dynamic stiffness is singular",
                          "A structure that is not held, or not damped, has no receptance there");

@@ -107,11 +107,11 @@ TEST(Structure, EigenvectorsSolveTheirEquationsAndAreBiorthogonal) {
     const Eigen::MatrixXcd sum = poles.right * poles.left.transpose();
     ASSERT_LT(sum.norm(), 1e-11 * poles.right.norm() * poles.left.norm()) << seed;
     const Eigen::MatrixXcd mobility = poles.right * poles.lambda.asDiagonal() * poles.left.transpose();
-    const Eigen::MatrixXd mass_inverse = inverse(structure.mass_kg);
+    const Eigen::MatrixXd mass_inverse = linear_algebra::inverse(structure.mass_kg);
     ASSERT_LT((mobility - mass_inverse.cast<Complex>()).norm(), 1e-10 * mass_inverse.norm()) << seed;
     const Eigen::MatrixXcd compliance =
         -poles.right * poles.lambda.cwiseInverse().asDiagonal() * poles.left.transpose();
-    const Eigen::MatrixXd stiffness_inverse = inverse(structure.stiffness_n_per_m);
+    const Eigen::MatrixXd stiffness_inverse = linear_algebra::inverse(structure.stiffness_n_per_m);
     ASSERT_LT((compliance - stiffness_inverse.cast<Complex>()).norm(), 1e-10 * stiffness_inverse.norm()) << seed;
   }
 }

@@ -19,15 +19,13 @@ constexpr double largest = 1e9;  // m or rad: beyond is no sample of a machine
 // Speeds below this are rounding [m or rad a period]: they have no direction.
 constexpr double no_step = 1e-13;
 
-using Row = CheckRow;
-
-Row row_of(const Sample& sample) {
-  Row row;
+CheckRow row_of(const Sample& sample) {
+  CheckRow row;
   row << sample.joints, sample.tip_m, sample.axis;
   return row;
 }
 
-bool sane(const Row& row) {  // false for what is not a number
+bool sane(const CheckRow& row) {  // false for what is not a number
   return (row.array().abs() <= largest).all();
 }
 
@@ -145,8 +143,8 @@ void Checker::State::add(const Sample& given) {
   time_s_ = last_time_s_ = sample.time_s;
   book_.at(sample.path_m);
   block_before_ = block_;
-  const Row row = row_of(sample);
-  Row step = row - row_;
+  const CheckRow row = row_of(sample);
+  CheckRow step = row - row_;
   const Vector3d tip_from = row_.segment<3>(6), axis_from = row_.tail<3>();
   const Vector3d tip_step = step.segment<3>(6), axis_step = step.tail<3>();
   tip_travelled_ += tip_step.norm();
@@ -172,11 +170,11 @@ void Checker::State::add(const Sample& given) {
   close_old();
 }
 
-void Checker::State::differences(const Row& step) {
+void Checker::State::differences(const CheckRow& step) {
   const double h = options_.sample_period_s;
   const double rate = 1.0 / h, rate_2 = rate * rate, rate_3 = rate_2 * rate;
-  const Row second = step - step_;
-  const Row third = second - (step_ - step_before_);
+  const CheckRow second = step - step_;
+  const CheckRow third = second - (step_ - step_before_);
   const auto place = [this, h](double periods_ago, std::size_t block) {
     return Place{.time_s = std::clamp(time_s_ - periods_ago * h, first_time_s_, last_time_s_), .block = block};
   };
@@ -225,7 +223,7 @@ void Checker::State::end_at_rest() {
   for (int i = 0; i < 3; ++i) {
     time_s_ += options_.sample_period_s;
     block_before_ = block_;
-    differences(Row::Zero());
+    differences(CheckRow::Zero());
   }
 }
 

@@ -112,12 +112,12 @@ void solve_modes(const Normal& system, ToolModes& out) {
   state.topRightCorner(n, n).setIdentity();
   state.bottomLeftCorner(n, n) = -system.stiffness;
   state.bottomRightCorner(n, n) = -system.damping;
-  const EigenPairs pairs = eigen_pairs(state);
+  const linear_algebra::EigenPairs pairs = linear_algebra::eigen_pairs(state);
   if (!pairs.converged) {
     throw InvalidInput("joints", "have no modes that double precision can find", "Are the units mixed?");
   }
   const Eigen::MatrixXcd& vectors = pairs.vectors;
-  const Eigen::MatrixXcd back = inverse(vectors);
+  const Eigen::MatrixXcd back = linear_algebra::inverse(vectors);
   for (Eigen::Index k = 0; k < 2 * n; ++k) {
     const Complex pole = pairs.values(k);
     const Eigen::VectorXcd x = vectors.col(k).head(n), y = back.row(k).tail(n).transpose();
@@ -134,7 +134,7 @@ void solve_modes(const Normal& system, ToolModes& out) {
 /// Damping that gives every undamped mode one ratio.
 Eigen::MatrixXd damping_of_ratio(const Eigen::MatrixXd& stiffness, double ratio) {
   const Eigen::MatrixXd symmetric = 0.5 * (stiffness + stiffness.transpose());
-  const SymmetricEigenPairs pairs = symmetric_eigen_pairs(symmetric);
+  const linear_algebra::SymmetricEigenPairs pairs = linear_algebra::symmetric_eigen_pairs(symmetric);
   const Eigen::VectorXd rate = 2.0 * ratio * pairs.values.cwiseMax(0.0).cwiseSqrt();
   return pairs.vectors * rate.asDiagonal() * pairs.vectors.transpose();
 }

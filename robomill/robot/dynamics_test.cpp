@@ -109,7 +109,8 @@ TEST(Dynamics, ModesSumToTheReceptance) {
     for (int line = 0; line < 20; ++line) {
       const double frequency_hz = random.uniform(0.0, 100.0), w = 2.0 * testing::pi * frequency_hz;
       const Eigen::MatrixXcd dynamic = (stiff - w * w * mass).cast<Complex>() + Complex(0.0, w) * damp.cast<Complex>();
-      const Matrix6c expected = jac.cast<Complex>() * inverse(dynamic) * jac.transpose().cast<Complex>();
+      const Matrix6c expected =
+          jac.cast<Complex>() * linear_algebra::inverse(dynamic) * jac.transpose().cast<Complex>();
       EXPECT_LT((modes.receptance(frequency_hz) - expected).norm(), 1e-10 * expected.norm());
     }
     if (options.wrench.moment_n_m.isZero()) {

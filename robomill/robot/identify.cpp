@@ -146,7 +146,7 @@ Solved solve(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right, const 
   Eigen::MatrixXd part = matrix(Eigen::all, free);
   const Eigen::VectorXd length = part.colwise().norm();
   part = (part * length.cwiseInverse().asDiagonal()).eval();
-  const ThinSvd svd = thin_svd(part);
+  const linear_algebra::ThinSvd svd = linear_algebra::thin_svd(part);
   const Eigen::VectorXd& values = svd.values;
   out.condition = values(0) / values(values.size() - 1);
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(part.cols(), part.cols());

@@ -103,7 +103,7 @@ double trapezoidal_radius(const PostureCut& cut, const Eigen::Vector3d& mass, co
   }
   Eigen::MatrixXd map(n, n);
   map << history.bottomRows(n - 3), velocity;
-  return eigenvalues(map).cwiseAbs().maxCoeff();
+  return linear_algebra::eigenvalues(map).cwiseAbs().maxCoeff();
 }
 
 // A tilted ball, modes along x, y and z: two ways to the same multiplier that share no code.

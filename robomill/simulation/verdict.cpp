@@ -13,7 +13,7 @@ std::complex<double> dominant_multiplier(const Eigen::MatrixXd& snapshots) {
   const Eigen::Index n = snapshots.cols() - 1;
   const double size = snapshots.norm();
   if (n < 2 || !(size > 0.0)) return 0.0;
-  const ThinSvd svd = thin_svd(Eigen::MatrixXd(snapshots.leftCols(n) / size));
+  const linear_algebra::ThinSvd svd = linear_algebra::thin_svd(Eigen::MatrixXd(snapshots.leftCols(n) / size));
   // Directions below this share of the greatest are rounding and would give multipliers of their own.
   constexpr double least = 1e-9;
   const Eigen::VectorXd& sigma = svd.values;
@@ -22,7 +22,7 @@ std::complex<double> dominant_multiplier(const Eigen::MatrixXd& snapshots) {
   if (rank == 0) return 0.0;
   const Eigen::MatrixXd small = svd.u.leftCols(rank).transpose() * (snapshots.rightCols(n) / size) *
                                 svd.v.leftCols(rank) * sigma.head(rank).cwiseInverse().asDiagonal();
-  const Eigen::VectorXcd multipliers = eigenvalues(small);
+  const Eigen::VectorXcd multipliers = linear_algebra::eigenvalues(small);
   Eigen::Index best = 0;
   multipliers.cwiseAbs().maxCoeff(&best);
   return {multipliers(best).real(), std::abs(multipliers(best).imag())};

@@ -37,7 +37,7 @@ class WithoutDelay {
     Eigen::MatrixXd whole(2 * n, 2 * n);
     whole << z.real(), z.imag();
     if (!whole.allFinite()) return 1e100;
-    return std::min(1e100, eigenvalues(whole).cwiseAbs().maxCoeff());
+    return std::min(1e100, linear_algebra::eigenvalues(whole).cwiseAbs().maxCoeff());
   }
 
  private:

@@ -143,7 +143,8 @@ SurfacePoint orbit_at(const CollocationModel& model, const OperatingPoint& point
     if (j + 1 < size) matrix.col(j + 1) = end.imag();
   }
   const Eigen::VectorXd pushed = trace(model, at, point.axial_depth_m, rest, forces).end.real();
-  const Eigen::VectorXd start = solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(size, size) - matrix), pushed);
+  const Eigen::VectorXd start =
+      linear_algebra::solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(size, size) - matrix), pushed);
   const NodeForces orbit = trace(model, at, point.axial_depth_m, start.cast<std::complex<double>>(), forces);
 
   SurfacePoint result;

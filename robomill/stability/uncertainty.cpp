@@ -16,7 +16,7 @@ namespace {
 
 using namespace detail;
 
-constexpr double most_points = 1e9;  ///< of all samples' grids
+constexpr double most_sampled_points = 1e9;  ///< of all samples' grids
 
 void require_ratio(const char* field, double ratio, double most) {
   if (!(ratio >= 0.0 && ratio <= most)) {
@@ -72,7 +72,7 @@ void Uncertainty::validate() const {
   }
   const double points_asked =
       static_cast<double>(samples) * static_cast<double>(grid[0]) * static_cast<double>(grid[1]);
-  if (points_asked > most_points) {
+  if (points_asked > most_sampled_points) {
     throw InvalidInput("samples", samples, "", "must give at most 1e9 points: samples times grid", "200 is usual");
   }
   require_non_negative("tangential_std_n_per_m2", tangential_std_n_per_m2, "N/m^2");

@@ -8,12 +8,12 @@ namespace robomill::coupling {
 namespace {
 
 /// An unknown's key, as in assembly.toml; SI in the file too.
-struct Unknown {
+struct UnknownKey {
   const char* key;
   double Joint::*value;
   bool is_stiffness;
 };
-constexpr std::array<Unknown, joint_unknowns> rows = {{
+constexpr std::array<UnknownKey, joint_unknowns> rows = {{
     {"translational_stiffness_n_per_m", &Joint::translational_stiffness_n_per_m, true},
     {"translational_damping_n_s_per_m", &Joint::translational_damping_n_s_per_m, false},
     {"rotational_stiffness_n_m_per_rad", &Joint::rotational_stiffness_n_m_per_rad, true},

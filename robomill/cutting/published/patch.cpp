@@ -8,7 +8,7 @@ namespace robomill::cutting::detail {
 namespace {
 
 using std::numbers::pi;
-constexpr int samples = 32;
+constexpr int samples_around = 32;
 
 /// sin x / x and (1 - cos x) / x.
 double sine_ratio(double x) {
@@ -61,7 +61,7 @@ ArcList Patch::below_surface(const Profile::Point& point) const {
     const Eigen::Vector3d p = r.at(angle);
     return room_above(p[sideways], p.z());
   };
-  return where_positive(room, ArcList::whole(), Bound::surface, 2 * samples);
+  return where_positive(room, ArcList::whole(), Bound::surface, 2 * samples_around);
 }
 
 /// > 0 below the unmachined surface, a plane or a cylinder of curvature κ / (1 + κ h) about the finished one's axis:
@@ -113,7 +113,7 @@ ArcList Patch::outside_ball(const Ring& ring, const ArcList& within) const {
       const double above = rise / (1.0 + std::sqrt(std::max(1.0 + curvature * rise, 0.0)));  // the finished surface
       return (p.y() + shift) * (p.y() + shift) + above * above - 2.0 * radius * above;
     };
-    return where_positive(gap, within, Bound::neighbour, samples);
+    return where_positive(gap, within, Bound::neighbour, samples_around);
   }
   const Eigen::Vector2d d = neighbour_origin_ + radius * (neighbour_normal_ - Eigen::Vector2d::UnitY());
   const double squared = d.squaredNorm();
@@ -125,7 +125,7 @@ ArcList Patch::outside_ball(const Ring& ring, const ArcList& within) const {
     const double z = ring.center.z() + ring.sine.z() * sine + ring.cosine.z() * cosine - radius;
     return squared - 2.0 * (y * d.x() + z * d.y()) - x * x;
   };
-  return where_positive(gap, within, Bound::neighbour, samples);
+  return where_positive(gap, within, Bound::neighbour, samples_around);
 }
 
 Eigen::Vector2d Patch::seen_by_neighbour(const Eigen::Vector2d& point) const {

@@ -94,7 +94,7 @@ std::vector<Candidate> candidates(const FitData& data, const Evaluation& at, con
 
 // L of the R Lᵀ nearest to a residue matrix on the entries that the data has.
 Eigen::VectorXcd left_vector(const Eigen::MatrixXcd& residue, const FitData& data) {
-  const ComplexThinSvd svd = thin_svd(residue);
+  const linear_algebra::ComplexThinSvd svd = linear_algebra::thin_svd(residue);
   Eigen::VectorXcd left = svd.v.col(0).conjugate();
   if (static_cast<Index>(data.entries.size()) == residue.size()) return left;
   Eigen::VectorXcd right = svd.u.col(0);

@@ -126,7 +126,7 @@ VectorXcd inverse_roots(const Fraction& fraction) {
     companion.block(0, a * refs, refs, refs) = -fraction.alpha[static_cast<std::size_t>(a + 1)];
   }
   companion.bottomLeftCorner((order - 1) * refs, (order - 1) * refs).setIdentity();
-  return eigenvalues(companion);
+  return linear_algebra::eigenvalues(companion);
 }
 
 // R_o = B_o(z) v and L = u with A(z) v = 0, uᵀ A(z) = 0.
@@ -134,7 +134,7 @@ void set_vectors(LscfPole& pole, const Fraction& fraction, Complex z) {
   const Index refs = fraction.alpha.front().rows();
   MatrixXcd a = MatrixXcd::Zero(refs, refs);
   for (std::size_t r = fraction.alpha.size(); r > 0; --r) a = (a * z + fraction.alpha[r - 1]).eval();
-  const ComplexThinSvd svd = thin_svd(a);
+  const linear_algebra::ComplexThinSvd svd = linear_algebra::thin_svd(a);
   const VectorXcd v = svd.v.col(refs - 1);
   pole.left = svd.u.col(refs - 1).conjugate();
   pole.right.resize(static_cast<Index>(fraction.beta.size()));

@@ -33,7 +33,8 @@ class ReducedCost : public ceres::CostFunction {
     if (!derivatives) return true;
     const Eigen::VectorXd scale =
         e.hessian.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
-    const SymmetricEigenPairs eigen = symmetric_eigen_pairs(scale.asDiagonal() * e.hessian * scale.asDiagonal());
+    const linear_algebra::SymmetricEigenPairs eigen =
+        linear_algebra::symmetric_eigen_pairs(scale.asDiagonal() * e.hessian * scale.asDiagonal());
     const Eigen::VectorXd size = eigen.values.cwiseMax(1e-15).cwiseSqrt();
     const Eigen::VectorXd along =
         size.cwiseInverse().asDiagonal() * (eigen.vectors.transpose() * (scale.asDiagonal() * e.gradient));

@@ -37,7 +37,7 @@ bool poles_stay_away(const Eigen::Ref<const Eigen::VectorXcd>& a, double limit) 
   Eigen::MatrixXcd companion = Eigen::MatrixXcd::Zero(degree, degree);
   companion.row(0) = -a.transpose();
   if (degree > 1) companion.diagonal(-1).setOnes();
-  const Eigen::VectorXcd inverses = eigenvalues(companion);
+  const Eigen::VectorXcd inverses = linear_algebra::eigenvalues(companion);
   for (const Complex inverse : inverses) {
     const Complex root = 1.0 / inverse;
     if (std::abs(root.imag()) < 1.0 && root.real() > limit && root.real() < -limit) return false;

@@ -71,7 +71,7 @@ void correct_line(const Grid& grid, Index line, Complex mass_s2) {
     }
   }
   const Eigen::MatrixXcd unloaded = Eigen::MatrixXcd::Identity(k, k) - mass_s2 * measured.topLeftCorner(k, k);
-  const Eigen::MatrixXcd back = inverse(unloaded);
+  const Eigen::MatrixXcd back = linear_algebra::inverse(unloaded);
   const Eigen::MatrixXcd hit = measured.leftCols(k) * back;
   Eigen::MatrixXcd clean = measured;
   clean += mass_s2 * hit * measured.topRows(k);

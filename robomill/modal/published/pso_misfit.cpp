@@ -18,13 +18,13 @@ constexpr std::size_t block_lines = 256;  // one block's squares stay in the fir
 static_assert(block_lines % lanes == 0);
 
 /// What one pass needs of a mode, for up to two FRFs.
-struct Fraction {
+struct ModeFraction {
   double stiffness, damping_squared;  // ω_k², (2 ζ ω_k)²
   double real_constant[2], real_slope[2], imag_constant[2], imag_slope[2];
 };
 
 /// Pointers to the lines of one block.
-struct Lines {
+struct FrfLines {
   const double* omega;
   const double* omega_squared;
   const double* real[2];
@@ -43,14 +43,14 @@ inline __attribute__((always_inline)) void store(double* to, const Lanes& from) 
 
 /// squares[f][i] = |H_fit - H|² / |H|² for `frfs` FRFs and lines [0, count), count a multiple of `lanes`.
 template <std::size_t frfs>
-inline __attribute__((always_inline)) void relative_squares(std::span<const Fraction> modes, const Lines& lines,
+inline __attribute__((always_inline)) void relative_squares(std::span<const ModeFraction> modes, const FrfLines& lines,
                                                             std::size_t count, double* const* squares) {
   for (std::size_t i = 0; i < count; i += lanes) {
     Lanes u;
     load(u, lines.omega_squared + i);
     Lanes real[frfs] = {};
     Lanes imag[frfs] = {};
-    for (const Fraction& mode : modes) {
+    for (const ModeFraction& mode : modes) {
       const Lanes p = mode.stiffness - u;
       const Lanes inverse = 1.0 / (p * p + mode.damping_squared * u);
       for (std::size_t f = 0; f < frfs; ++f) {
@@ -76,13 +76,13 @@ inline __attribute__((always_inline)) void relative_squares(std::span<const Frac
 }
 
 template <std::size_t frfs>
-void relative_squares_baseline(std::span<const Fraction> modes, const Lines& lines, std::size_t count,
+void relative_squares_baseline(std::span<const ModeFraction> modes, const FrfLines& lines, std::size_t count,
                                double* const* squares) {
   relative_squares<frfs>(modes, lines, count, squares);
 }
 
 template <std::size_t frfs>
-__attribute__((target("avx2"))) void relative_squares_avx2(std::span<const Fraction> modes, const Lines& lines,
+__attribute__((target("avx2"))) void relative_squares_avx2(std::span<const ModeFraction> modes, const FrfLines& lines,
                                                            std::size_t count, double* const* squares) {
   relative_squares<frfs>(modes, lines, count, squares);
 }
@@ -126,7 +126,7 @@ Misfit::Misfit(const Eigen::VectorXd& frequency_hz, std::span<const Frf* const> 
 }
 
 double Misfit::operator()(std::span<const MisfitMode> modes) const {
-  std::vector<Fraction> fractions(modes.size());
+  std::vector<ModeFraction> fractions(modes.size());
   double sum = 0.0;
   for (std::size_t first = 0; first < targets_.size(); first += 2) {
     const std::size_t count = std::min<std::size_t>(2, targets_.size() - first);
@@ -134,7 +134,7 @@ double Misfit::operator()(std::span<const MisfitMode> modes) const {
       const double omega = 2.0 * std::numbers::pi * modes[k].frequency_hz / scale_;
       const double decay = modes[k].damping_ratio * omega;
       const std::complex<double> lambda(-decay, std::sqrt(std::max(0.0, omega * omega - decay * decay)));
-      Fraction& fraction = fractions[k];
+      ModeFraction& fraction = fractions[k];
       fraction.stiffness = omega * omega;
       fraction.damping_squared = 4.0 * decay * decay;
       for (std::size_t f = 0; f < count; ++f) {
@@ -152,11 +152,11 @@ double Misfit::operator()(std::span<const MisfitMode> modes) const {
     double* const rows[2] = {squares[0], squares[1]};
     for (std::size_t start = 0; start < omega_.size(); start += block_lines) {
       const std::size_t length = std::min(block_lines, omega_.size() - start);
-      Lines lines{.omega = omega_.data() + start,
-                  .omega_squared = omega_squared_.data() + start,
-                  .real = {},
-                  .imag = {},
-                  .inverse_square = {}};
+      FrfLines lines{.omega = omega_.data() + start,
+                     .omega_squared = omega_squared_.data() + start,
+                     .real = {},
+                     .imag = {},
+                     .inverse_square = {}};
       for (std::size_t f = 0; f < count; ++f) {
         lines.real[f] = targets_[first + f].real.data() + start;
         lines.imag[f] = targets_[first + f].imag.data() + start;

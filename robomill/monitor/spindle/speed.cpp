@@ -8,10 +8,10 @@ namespace robomill::monitor {
 namespace {
 
 constexpr std::array<double, SpeedSearch::windows> lengths_s = {0.1, 0.2, 0.4, 0.8};
-constexpr double line_step = 0.3;     // of the spectrum's lines, at the highest peak
-constexpr double around_hz = 50.0;    // to each side, that a peak is held against; six lines at least
-constexpr double least_excess = 2.0;  // of a peak's log power
-constexpr double least_share = 1e-5;  // of the greatest peak's power: below is the skirt of its window
+constexpr double line_step = 0.3;          // of the spectrum's lines, at the highest peak
+constexpr double around_hz = 50.0;         // to each side, that a peak is held against; six lines at least
+constexpr double least_excess = 2.0;       // of a peak's log power
+constexpr double least_peak_share = 1e-5;  // of the greatest peak's power: below is the skirt of its window
 constexpr double highest_peak_hz = 2500.0;
 constexpr double tolerance = 0.6;  // lines
 constexpr double other = 0.5;      // worth of a harmonic that is no multiple of the teeth
@@ -94,7 +94,7 @@ void SpeedSearch::begin(std::size_t window, double low_hz, double high_hz, int t
 void SpeedSearch::find_peaks(std::size_t lines) noexcept {
   sums_[0] = 0.0;
   const double greatest = *std::max_element(power_.begin() + 1, power_.begin() + static_cast<std::ptrdiff_t>(lines));
-  const double least = std::log(least_share * greatest);
+  const double least = std::log(least_peak_share * greatest);
   for (std::size_t k = 0; k < lines; ++k) {
     power_[k] = std::log(power_[k]);
     sums_[k + 1] = sums_[k] + power_[k];

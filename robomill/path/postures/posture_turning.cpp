@@ -14,7 +14,7 @@
 namespace robomill::path {
 namespace {
 
-constexpr int most_ways = 32;
+constexpr int most_branches = 32;
 constexpr std::size_t most_stations = 400;
 constexpr int most_change = 3;         // of gamma between two stations, in steps of the grid
 constexpr double per_turned = 100.0;   // of the squared change of gamma [1/rad²], against 1 / margin
@@ -53,12 +53,12 @@ class Turning {
   void fill(std::size_t s) {
     Station& station = stations_[s];
     const program::Pose pose = head_.at(along_[s]);
-    std::array<robot::Position6, most_ways> ways;
+    std::array<robot::Position6, most_branches> ways;
     station.first.push_back(0);
     for (int g = 0; g < options_.gammas; ++g) {
       int count = kinematics_.all(
           {.tip_m = pose.tip_m, .axis = pose.axis, .gamma_rad = units::revolution * g / options_.gammas}, ways.data(),
-          most_ways);
+          most_branches);
       if (s == 0 && options_.start && count > 0) {
         const auto far = [&](const robot::Position6& way) { return (way - *options_.start).squaredNorm(); };
         ways.front() = *std::min_element(ways.begin(), ways.begin() + count,

@@ -82,7 +82,7 @@ double within_chords(double tolerance, double acceleration, const SmoothingOptio
   return std::max(0.5 * tolerance, tolerance - loss);
 }
 
-struct Planner {
+struct FirPlanner {
   const program::Program& program;
   const robot::Kinematics& kinematics;
   const Posture& posture;
@@ -99,7 +99,7 @@ struct Planner {
   void schedule();
 };
 
-void Planner::constants(std::size_t i) {
+void FirPlanner::constants(std::size_t i) {
   const Block& block = program.blocks[i];
   const Pose& begin = program.begin_of(i);
   const bool printed = options.method == Method::paper_as_printed;
@@ -143,7 +143,7 @@ void Planner::constants(std::size_t i) {
   (wait > 0.0 ? blocks[i].axis : blocks[i].tip).width_s[0] += std::abs(wait);
 }
 
-double Planner::overlap(std::size_t before, std::size_t after) const {
+double FirPlanner::overlap(std::size_t before, std::size_t after) const {
   const bool printed = options.method == Method::paper_as_printed;
   const Pose &from = program.begin_of(before), &corner = program.begin_of(after), &to = program.blocks[after].end;
   const Boxes &tip = blocks[before].tip, &next_tip = blocks[after].tip;
@@ -161,7 +161,7 @@ double Planner::overlap(std::size_t before, std::size_t after) const {
   return std::min(tip_s, axis_s);
 }
 
-void Planner::schedule() {
+void FirPlanner::schedule() {
   constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   double done = 0.0;
   std::size_t before = none;  // the block that the next one may overlap with
@@ -206,7 +206,7 @@ void validate(const program::Program& program, const Posture& posture, const Smo
 FirPlan plan_fir(const program::Program& program, const robot::Kinematics& kinematics, const Posture& posture,
                  const SmoothingOptions& options) {
   validate(program, posture, options);
-  Planner planner = {.program = program, .kinematics = kinematics, .posture = posture, .options = options};
+  FirPlanner planner = {.program = program, .kinematics = kinematics, .posture = posture, .options = options};
   planner.blocks.resize(program.blocks.size());
   planner.near = posture.start;
   planner.gamma_rad = gamma_at_boundary(posture.gamma_rad, 0);

@@ -30,7 +30,7 @@ robot::ToolJet jet_at(const FirWay& way, const Vector3d& across, double angle, d
 }
 
 // The block by one joint.
-struct JointStep {
+struct FirStep {
   const std::vector<robot::JointJet>& joints;
   int joint;
   [[nodiscard]] double at(std::size_t i, int order) const { return joints[i](joint, order); }
@@ -47,7 +47,7 @@ double reach_of(const FirConstants& c) {
 }
 
 // T2 by |q''| all along.
-double t2_of_magnitudes(const JointStep& step, double limit, const FirConstants& c) {
+double t2_of_magnitudes(const FirStep& step, double limit, const FirConstants& c) {
   double t2 = 0.0;
   for (std::size_t i = 0; i < step.joints.size(); ++i) {
     const double left = limit - std::abs(step.at(i, 2)) / (c.t1_s * c.t1_s);
@@ -58,7 +58,7 @@ double t2_of_magnitudes(const JointStep& step, double limit, const FirConstants&
 
 // T2 by the sign of q̈: s̈ > 0 only until the pulse has entered the filters, s̈ < 0 only while it leaves them, and there
 // q'' counts where it adds to q' s̈.
-double t2_of_signs(const JointStep& step, double limit, const FirConstants& c, bool as_printed) {
+double t2_of_signs(const FirStep& step, double limit, const FirConstants& c, bool as_printed) {
   const double reach = reach_of(c), last = static_cast<double>(step.joints.size() - 1);
   double t2 = 0.0;
   for (std::size_t i = 0; i < step.joints.size(); ++i) {
@@ -85,7 +85,7 @@ void raise(double& constant, const Needed& needed) {
 
 // T3 for half the limit. At either end of a block s⃛ takes both signs, so both of the source's rows hold and the sign of
 // q⃛ drops out; the terms count by their magnitudes, since opposite ones cancel at full speed and not on the way to it.
-double t3_of_magnitudes(const JointStep& step, double limit, FirConstants& c) {
+double t3_of_magnitudes(const FirStep& step, double limit, FirConstants& c) {
   const double q1 = step.most(1), q2 = step.most(2), q3 = step.most(3), half = 0.5 * limit;
   c.t1_s = std::max(c.t1_s, std::cbrt(q3 / (most_of_jerk * half)));
   c.t2_s = std::max(c.t2_s, 3.0 * q2 / (c.t1_s * c.t1_s * most_of_jerk * half));
@@ -95,7 +95,7 @@ double t3_of_magnitudes(const JointStep& step, double limit, FirConstants& c) {
 
 // The same as printed: point by point at full speed, with signs, the sum's excess over the limit hidden by an absolute
 // value.
-double t3_of_signs(const JointStep& step, double limit, const FirConstants& c) {
+double t3_of_signs(const FirStep& step, double limit, const FirConstants& c) {
   const double reach = reach_of(c), last = static_cast<double>(step.joints.size() - 1), half = 0.5 * limit;
   double t3 = 0.0;
   for (std::size_t i = 0; i < step.joints.size(); ++i) {
@@ -137,13 +137,13 @@ void stretch_for_joints(const std::vector<robot::JointJet>& joints, const robot:
   const bool printed = options.method == Method::paper_as_printed;
   FirConstants& c = constants;
   for (int j = 0; j < count; ++j) {
-    const JointStep step = {.joints = joints, .joint = j};
+    const FirStep step = {.joints = joints, .joint = j};
     c.t1_s = std::max(c.t1_s, step.most(1) / limits.max_velocity[j]);
     if (!printed)
       c.t1_s = std::max(c.t1_s, std::sqrt(step.most(2) / (most_of_acceleration * limits.max_acceleration[j])));
   }
   for (int j = 0; j < count; ++j) {
-    const JointStep step = {.joints = joints, .joint = j};
+    const FirStep step = {.joints = joints, .joint = j};
     const double limit = limits.max_acceleration[j];
     if (options.method == Method::no_joint_jerk) {
       c.t2_s = std::max(c.t2_s, t2_of_magnitudes(step, limit, c));
@@ -153,7 +153,7 @@ void stretch_for_joints(const std::vector<robot::JointJet>& joints, const robot:
   }
   if (options.method == Method::no_joint_jerk || options.filters < 2) return;
   for (int j = 0; j < count; ++j) {
-    const JointStep step = {.joints = joints, .joint = j};
+    const FirStep step = {.joints = joints, .joint = j};
     const double limit = limits.max_jerk[j];
     if (!printed) {
       c.t3_s = std::max(c.t3_s, t3_of_magnitudes(step, limit, c));

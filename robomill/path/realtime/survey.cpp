@@ -70,7 +70,7 @@ void along(const Steps& now, const Steps& before, double rate, std::size_t chann
 }
 
 /// The rotation between two axes that are near each other.
-Eigen::Vector3d rotation(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+Eigen::Vector3d small_rotation(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d across = from.cross(to);
   return across * (1.0 + across.squaredNorm() / 6.0);
 }
@@ -126,7 +126,9 @@ Demand Survey::demand() const noexcept {
   along({tip(0), tip(2), tip(4)}, {tip(1), tip(3), tip(5)}, rate, 6, out);
   // In the half period, as samples may begin anywhere.
   out.feed = 2.0 * rate * (rows_[0] - rows_[1]).segment<3>(6).norm() / std::max(feeds_[0], feeds_[1]);
-  const auto turn = [this](std::size_t from) { return rotation(rows_[from + 2].tail<3>(), rows_[from].tail<3>()); };
+  const auto turn = [this](std::size_t from) {
+    return small_rotation(rows_[from + 2].tail<3>(), rows_[from].tail<3>());
+  };
   along({turn(0), turn(2), turn(4)}, {turn(1), turn(3), turn(5)}, rate, 7, out);
   return out;
 }

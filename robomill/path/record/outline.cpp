@@ -10,7 +10,7 @@
 namespace robomill::path {
 namespace {
 
-constexpr std::size_t most_points = 2000;
+constexpr std::size_t outline_points = 2000;
 constexpr std::size_t reach = 6;        // moves shown to each side of a corner
 constexpr double view_tolerances = 12;  // half a view's width in tolerances: a blend of this tolerance fills it
 constexpr double least_turn_rad = 0.02;
@@ -20,7 +20,7 @@ struct Vertex {
   std::size_t block = 0, line = 0;  ///< of the move that ends here
 };
 
-struct Candidate {
+struct CornerCandidate {
   ProgramCorner corner = {};
   double weight = 0.0;
 };
@@ -60,18 +60,21 @@ class Sharpest {
     const double turn = program::angle_between(in.normalized(), out.normalized());
     if (turn < least_turn_rad) return;
     const double weight = (1.0 - std::cos(turn)) * std::min({in.norm(), out.norm(), radius_m_});
-    std::vector<Candidate>& kind = kinds_.at(std::min(static_cast<std::size_t>(turn / kind_rad), kinds_.size() - 1));
+    std::vector<CornerCandidate>& kind =
+        kinds_.at(std::min(static_cast<std::size_t>(turn / kind_rad), kinds_.size() - 1));
     if (kind.size() == most_ && weight <= kind.back().weight) return;
-    const auto here = [&](const Candidate& other) {
+    const auto here = [&](const CornerCandidate& other) {
       return (other.corner.corner_m - window[middle].tip_m).norm() < radius_m_;
     };
-    for (const std::vector<Candidate>& others : kinds_) {
-      if (std::ranges::any_of(others, [&](const Candidate& other) { return other.weight >= weight && here(other); }))
+    for (const std::vector<CornerCandidate>& others : kinds_) {
+      if (std::ranges::any_of(others,
+                              [&](const CornerCandidate& other) { return other.weight >= weight && here(other); }))
         return;
     }
-    for (std::vector<Candidate>& others : kinds_) std::erase_if(others, here);
+    for (std::vector<CornerCandidate>& others : kinds_) std::erase_if(others, here);
     if (kind.size() == most_) kind.pop_back();
-    const auto lighter = std::ranges::find_if(kind, [&](const Candidate& other) { return other.weight < weight; });
+    const auto lighter =
+        std::ranges::find_if(kind, [&](const CornerCandidate& other) { return other.weight < weight; });
     kind.insert(lighter, {.corner = view(window, middle, radius_m_), .weight = weight});
   }
 
@@ -91,7 +94,7 @@ class Sharpest {
   static constexpr double kind_rad = std::numbers::pi / 6.0;
   std::size_t most_;
   double radius_m_;
-  std::array<std::vector<Candidate>, 6> kinds_;  ///< by turn; each by weight, falling
+  std::array<std::vector<CornerCandidate>, 6> kinds_;  ///< by turn; each by weight, falling
 };
 
 }  // namespace
@@ -99,7 +102,7 @@ class Sharpest {
 ProgramOutline outline(program::Source& source, double tip_tolerance_m, std::size_t corners) {
   source.rewind();
   ProgramOutline out;
-  Decimated<Eigen::Vector3d> path(most_points);
+  Decimated<Eigen::Vector3d> path(outline_points);
   Sharpest sharpest(corners, view_tolerances * tip_tolerance_m);
   std::deque<Vertex> window = {{.tip_m = source.start().tip_m}};
   std::size_t middle = 0;  // the next vertex of the window to be looked at

@@ -12,7 +12,7 @@ namespace {
 /// Below what the checker allows, so that both agree.
 constexpr double slack = 1.0 + 5e-7;
 /// Shorter steps are rounding and have no direction [m or rad].
-constexpr double no_step = 1e-13;
+constexpr double standstill = 1e-13;
 constexpr double cells_per_m = SpeedCorrections::cells_per_m;
 
 }  // namespace
@@ -99,7 +99,7 @@ void Preview::differences(const Trail& trail, const Row& step, double path_m, st
     const double speed = step.segment<3>(row).norm(), before = trail.step.segment<3>(row).norm();
     note(speed, most_[0][k], 1, path_m, violations);
     note(std::abs(speed - before), most_[1][k], 2, path_m, violations);
-    if (before > no_step)
+    if (before > standstill)
       note(std::abs(third.segment<3>(row).dot(trail.step.segment<3>(row))) / before, most_[2][k], 3, path_m,
            violations);
   }

@@ -104,7 +104,7 @@ double SpeedSolver::own_safe_b(const SpeedSpan& span) const noexcept {
 namespace {
 
 /// What one iteration knows of a row of spans.
-struct Row {
+struct SpeedRow {
   SpeedSpan* spans = nullptr;
   std::size_t size = 0, first = 0, last = 0;
   const ChannelLimits& limits;
@@ -114,9 +114,9 @@ struct Row {
 }  // namespace
 
 struct SpeedSolver::Direction {
-  Direction(const Row& of, Work* with) : row(of), work(with) {}
+  Direction(const SpeedRow& of, Work* with) : row(of), work(with) {}
 
-  Row row;
+  SpeedRow row;
   Work* work;
   double mu = 0.0, dual_step = 0.0;
 

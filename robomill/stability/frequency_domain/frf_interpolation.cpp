@@ -12,7 +12,7 @@ namespace {
 using Complex = std::complex<double>;
 
 /// Weights of the divided difference of order points.size() - 1, scaled to norm 1.
-Eigen::VectorXd difference(const Eigen::VectorXd& points) {
+Eigen::VectorXd divided_difference(const Eigen::VectorXd& points) {
   Eigen::VectorXd weights(points.size());
   for (Eigen::Index i = 0; i < points.size(); ++i) {
     double product = 1.0;
@@ -64,7 +64,7 @@ FrfInterpolation::Piece FrfInterpolation::piece(Eigen::Index line) const {
   // Two divided differences of order 6, of H, x H and x² H: the first must be outweighed by the others.
   Eigen::MatrixXcd misses(8, 3);
   for (Eigen::Index shift = 0; shift < 2; ++shift) {
-    const Eigen::VectorXd weights = difference(x.segment(shift, window - 1));
+    const Eigen::VectorXd weights = divided_difference(x.segment(shift, window - 1));
     for (Eigen::Index power = 0; power < 3; ++power) {
       const Eigen::VectorXd at = weights.array() * x.segment(shift, window - 1).array().pow(power);
       misses.block(4 * shift, power, 4, 1) =

@@ -68,7 +68,7 @@ double whole_matrix_radius(Eigen::Index n, int intervals, const StepOf& step_of)
     for (int j = 1; j < intervals; ++j) step.block(2 * n + n * j, 2 * n + n * (j - 1), n, n).setIdentity();
     monodromy = (step * monodromy).eval();
   }
-  return eigenvalues(monodromy).cwiseAbs().maxCoeff();
+  return linear_algebra::eigenvalues(monodromy).cwiseAbs().maxCoeff();
 }
 
 /// Semi-discretization of first order as published: K is its mean over a step, and the exponential is that of the
@@ -82,9 +82,9 @@ double published_first_order(const LobesProblem& problem, Eigen::Index n, double
         testing::mean_stiffness(problem.milling, i * step_rad, (i + 1) * step_rad, depth_m).topLeftCorner(n, n);
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(4 * n, 4 * n);  // u, v, delayed u, what it gains in the step
     a.block(0, n, n, n).setIdentity();
-    a.block(n, 0, n, n) = inverse(p.mass) * (k - p.stiffness);
-    a.block(n, n, n, n) = -inverse(p.mass) * p.damping;
-    a.block(n, 2 * n, n, n) = -inverse(p.mass) * k;
+    a.block(n, 0, n, n) = linear_algebra::inverse(p.mass) * (k - p.stiffness);
+    a.block(n, n, n, n) = -linear_algebra::inverse(p.mass) * p.damping;
+    a.block(n, 2 * n, n, n) = -linear_algebra::inverse(p.mass) * k;
     a.block(2 * n, 3 * n, n, n) = Eigen::MatrixXd::Identity(n, n) / h;
     const Eigen::MatrixXd e = testing::exponential(a * h);
     const Eigen::MatrixXd held = e.block(0, 2 * n, 2 * n, n), gained = e.block(0, 3 * n, 2 * n, n);
@@ -105,15 +105,15 @@ double published_full(const LobesProblem& problem, Eigen::Index n, double speed,
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(2 * n, 2 * n);
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   a.block(0, n, n, n).setIdentity();
-  a.block(n, 0, n, n) = -inverse(p.mass) * p.stiffness;
-  a.block(n, n, n, n) = -inverse(p.mass) * p.damping;
+  a.block(n, 0, n, n) = -linear_algebra::inverse(p.mass) * p.stiffness;
+  a.block(n, n, n, n) = -linear_algebra::inverse(p.mass) * p.damping;
   const Eigen::MatrixXd phi0 = testing::exponential(a * h);
-  const Eigen::MatrixXd phi1 = inverse(a) * (phi0 - one);
-  const Eigen::MatrixXd phi2 = inverse(a) * (h * phi0 - phi1);
-  const Eigen::MatrixXd phi3 = inverse(a) * (h * h * phi0 - 2.0 * phi2);
+  const Eigen::MatrixXd phi1 = linear_algebra::inverse(a) * (phi0 - one);
+  const Eigen::MatrixXd phi2 = linear_algebra::inverse(a) * (h * phi0 - phi1);
+  const Eigen::MatrixXd phi3 = linear_algebra::inverse(a) * (h * h * phi0 - 2.0 * phi2);
   const auto coefficient = [&](const Eigen::Matrix2d& k) {
     Eigen::MatrixXd b = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-    b.block(n, 0, n, n) = inverse(p.mass) * k.topLeftCorner(n, n);
+    b.block(n, 0, n, n) = linear_algebra::inverse(p.mass) * k.topLeftCorner(n, n);
     return b;
   };
   const auto value = [&](double angle) {
@@ -133,7 +133,7 @@ double published_full(const LobesProblem& problem, Eigen::Index n, double speed,
     const Eigen::MatrixXd constant = coefficient(last), slope = coefficient((first - last) / h);
     const Eigen::MatrixXd old = (phi2 * constant + phi3 * slope) / h;
     const Eigen::MatrixXd fresh = phi1 * constant + phi2 * slope - old;
-    const Eigen::MatrixXd back = inverse(Eigen::MatrixXd(one - fresh));
+    const Eigen::MatrixXd back = linear_algebra::inverse(Eigen::MatrixXd(one - fresh));
     return FullStep{back * (phi0 + old), back * old.leftCols(n), back * fresh.leftCols(n)};
   });
 }

@@ -44,7 +44,7 @@ void FirstOrderSteps::build_block(const SpeedPlan& speed, const Eigen::Matrix2d&
     system_.middleRows<2>(2 * j).noalias() -= stiffness * speed.response.middleRows<2>(2 * j);
     nodes_.middleRows<2>(2 * j) = (stiffness * nodes_.middleRows<2>(2 * j)).eval();
   }
-  forces_ = solve(system_, nodes_);
+  forces_ = linear_algebra::solve(system_, nodes_);
   block_.noalias() = speed.influence * forces_;
   for (Eigen::Index k = 0; k < modal / 2; ++k) {
     const std::complex<double> factor = speed.substep(k);

@@ -36,7 +36,7 @@ double published_radius(const cutting::Milling& milling, const Eigen::MatrixXd& 
   const double step_s = step_rad / speed;
   const Eigen::Index size = 2 * n + n * intervals;
   Eigen::MatrixXd monodromy = Eigen::MatrixXd::Identity(size, size);
-  const Eigen::MatrixXd mass_inverse = inverse(mass);
+  const Eigen::MatrixXd mass_inverse = linear_algebra::inverse(mass);
   for (int i = 0; i < intervals; ++i) {
     const Eigen::Matrix2d k = mean_stiffness(milling, i * step_rad, (i + 1) * step_rad, depth_m);
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 3 * n);
@@ -54,7 +54,7 @@ double published_radius(const cutting::Milling& milling, const Eigen::MatrixXd& 
     for (int j = 1; j < intervals; ++j) step.block(2 * n + n * j, 2 * n + n * (j - 1), n, n).setIdentity();
     monodromy = (step * monodromy).eval();
   }
-  return eigenvalues(monodromy).cwiseAbs().maxCoeff();
+  return linear_algebra::eigenvalues(monodromy).cwiseAbs().maxCoeff();
 }
 
 Dominant evaluate(const LobesProblem& problem, double speed, double depth_m, int intervals,
@@ -247,7 +247,7 @@ TEST(Hessenberg, HasTheEigenvaluesThatEigenFinds) {
     std::complex<double> value;
     ASSERT_TRUE(hessenberg.dominant(value)) << seed;
     EXPECT_GE(value.imag(), 0.0);
-    const double expected = eigenvalues(matrix).cwiseAbs().maxCoeff();
+    const double expected = linear_algebra::eigenvalues(matrix).cwiseAbs().maxCoeff();
     EXPECT_NEAR(std::abs(value), expected, 1e-9 * matrix.norm()) << seed;
     const auto& y = hessenberg.vector(value);
     const Eigen::VectorXcd v = Eigen::Map<const Eigen::VectorXcd>(y.data(), static_cast<Eigen::Index>(n));
