@@ -32,6 +32,13 @@ std::vector<std::string> lines(const std::string& text) {
   return out;
 }
 
+/// The example's forces.toml with a cut of its own in place of a program's.
+std::string single_cut() {
+  std::string text = io::read_file(along / "forces.toml");
+  return text.insert(text.find("spindle_speed_rpm"),
+                     "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\n");
+}
+
 // Compliance, posture and force agree: the deflection is C F with C of the posture, and turning the feed turns it.
 TEST(RunForces, BendsTheRobotUnderTheMeanForce) {
   const ForcesResult result = run_forces(examples / "ball-end-ur5e" / "cut-1.toml", {}, {});
@@ -77,11 +84,7 @@ TEST(RunForces, WritesARevolution) {
 
 TEST(RunForces, ReportsTheForceOnTheWorkpieceWithTheOtherSign) {
   const Folder folder;
-  const std::string text = io::read_file(along / "forces.toml");
-  const std::string cut =
-      "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm";
-  std::string one = text;
-  one.replace(one.find("spindle_speed_rpm"), 17, cut);
+  const std::string one = single_cut();
   const auto on_tool = nlohmann::json::parse(forces_json(run_forces(folder.file("tool.toml", one), {}, {})));
   const auto on_part = nlohmann::json::parse(
       forces_json(run_forces(folder.file("part.toml", "force_on = \"workpiece\"\n" + one), {}, {})));
@@ -95,10 +98,7 @@ TEST(RunForces, ReportsTheForceOnTheWorkpieceWithTheOtherSign) {
 // A mode of the part makes the cut vibrate; far too stiff to move, it leaves the force alone.
 TEST(RunForces, VibratesWithThePart) {
   const Folder folder;
-  std::string text = io::read_file(along / "forces.toml");
-  text.replace(
-      text.find("spindle_speed_rpm"), 17,
-      "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm");
+  std::string text = single_cut();
   text += "[workpiece_dynamics]\nz = [{ frequency_hz = 300, damping_ratio = 0.05, modal_mass_kg = 3e4 }]\n";
   const ForcesResult result = run_forces(folder.file("forces.toml", text), {}, {});
   ASSERT_TRUE(result.revolution->vibration.has_value());
@@ -283,10 +283,7 @@ TEST(RunForces, SaysWhichBlockTheRobotCannotReach) {
 TEST(RunForces, SweepsAboutTheToolsAxis) {
   const Folder folder;
   static_cast<void>(folder.file("cell.toml", io::read_file(along / "cell.toml")));
-  std::string text = io::read_file(along / "forces.toml");
-  text.replace(
-      text.find("spindle_speed_rpm"), 17,
-      "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm");
+  std::string text = single_cut();
   text += "[robot]\ncell = \"cell.toml\"\njoints_deg = [0, -60, 90, 0, 60, 0]\n";
   const auto json = nlohmann::json::parse(forces_json(run_forces(folder.file("forces.toml", text), {}, {})));
   const nlohmann::json& sweep = json["spindle_rotation"];
@@ -307,10 +304,7 @@ TEST(RunForces, SweepsAboutTheToolsAxis) {
 TEST(RunForces, RejectsAPostureBeyondTheLimitsOrSingular) {
   const Folder folder;
   static_cast<void>(folder.file("cell.toml", io::read_file(along / "cell.toml")));
-  std::string text = io::read_file(along / "forces.toml");
-  text.replace(
-      text.find("spindle_speed_rpm"), 17,
-      "axial_depth_mm = 1\nstepover_mm = 0.5\nfeed_per_tooth_mm = 0.05\ndirection = \"up\"\nspindle_speed_rpm");
+  std::string text = single_cut();
   const auto message = [&](const std::string& joints) {
     const auto path = folder.file("forces.toml", text + "[robot]\ncell = \"cell.toml\"\njoints_deg = " + joints + "\n");
     return rejection([&] { static_cast<void>(run_forces(path, {}, {})); });

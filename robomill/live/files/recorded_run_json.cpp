@@ -5,12 +5,14 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/signal/files/bands_json.hpp"
 
 namespace robomill::live {
 namespace {
 
 using io::Json;
 using io::number;
+using signal::band_json;
 
 /// Whole decibels: finer ones no colour shows. A row a frequency.
 Json spectrogram_json(const Spectrogram& spectrogram) {
@@ -28,10 +30,6 @@ Json spectrogram_json(const Spectrogram& spectrogram) {
           {"step_s", number(spectrogram.step_s)},
           {"frequency_hz", io::numbers(spectrogram.frequency_hz)},
           {"level_db", std::move(rows)}};
-}
-
-Json band_json(const signal::Band& band, double unit = 1.0) {
-  return {{"low", io::numbers(band.low / unit)}, {"high", io::numbers(band.high / unit)}};
 }
 
 Json decisions_json(const RecordedRun& run) {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
+#include "robomill/base/statistics.hpp"
 #include "robomill/signal/fft.hpp"
 #include "robomill/signal/window.hpp"
 
@@ -21,10 +21,7 @@ double median_around(const Eigen::VectorXd& x, Index k) {
   constexpr Index reach = 32;
   const Index begin = std::max<Index>(1, k - reach);
   const Index end = std::min(x.size(), k + reach + 1);
-  std::vector<double> values(x.data() + begin, x.data() + end);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median(x.segment(begin, end - begin));
 }
 
 }  // namespace

@@ -6,13 +6,12 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/signal/files/bands_json.hpp"
 
 namespace robomill::path {
 namespace {
 
-io::Json band_json(const signal::Band& band, double unit) {
-  return {{"low", io::numbers(band.low / unit)}, {"high", io::numbers(band.high / unit)}};
-}
+using signal::band_json;
 
 /// A column a point; x, y and, of three rows, z.
 io::Json places_json(const Eigen::Ref<const Eigen::MatrixXd>& places_m) {

@@ -19,7 +19,7 @@ constexpr std::size_t chunk_rows = 4096;
 
 SampleSpool::SampleSpool(const std::filesystem::path& beside) : beside_(beside) {
   const std::filesystem::path folder = beside.has_parent_path() ? beside.parent_path() : ".";
-  std::string name = (folder / ".robomill-samples-XXXXXX").string();
+  std::string name = (folder / (".robomill-samples-" + std::string(6, 'X'))).string();
   const int descriptor = ::mkstemp(name.data());
   if (descriptor < 0) fail("cannot be written");
   ::unlink(name.c_str());
