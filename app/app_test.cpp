@@ -13,7 +13,7 @@
 #include "test_program.hpp"
 
 namespace robomill::app {
-namespace {
+namespace app_test {
 
 using App = ProgramTest;
 
@@ -363,5 +363,5 @@ TEST_F(App, CtrlCStopsAndLeavesNoFile) {
   }
 }
 
-}  // namespace
+}  // namespace app_test
 }  // namespace robomill::app

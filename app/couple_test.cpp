@@ -10,7 +10,7 @@
 #include "test_program.hpp"
 
 namespace robomill::app {
-namespace {
+namespace couple_test {
 
 class CoupleVerb : public ProgramTest {
  protected:
@@ -218,5 +218,5 @@ TEST_F(CoupleVerb, JointRejectsWhatDoesNotFit) {
   EXPECT_EQ(robomill("joint assembly.toml --measured tip.csv --axis z").exit, 2);
 }
 
-}  // namespace
+}  // namespace couple_test
 }  // namespace robomill::app

@@ -15,7 +15,7 @@
 #include "test_program.hpp"
 
 namespace robomill::app {
-namespace {
+namespace signals_test {
 
 constexpr std::array<int, 3> signals = {SIGINT, SIGTERM, SIGHUP};
 
@@ -162,5 +162,5 @@ TEST_F(Signals, WhatTheCallerIgnoresIsIgnored) {
   expect_ended(process, SIGTERM, "smooth");
 }
 
-}  // namespace
+}  // namespace signals_test
 }  // namespace robomill::app

@@ -9,7 +9,7 @@
 #include "test_program.hpp"
 
 namespace robomill::app {
-namespace {
+namespace smooth_test {
 
 class SmoothVerb : public ProgramTest {
  protected:
@@ -164,5 +164,5 @@ TEST_F(SmoothVerb, RejectsBadInput) {
   EXPECT_TRUE(there("t.csv"));
 }
 
-}  // namespace
+}  // namespace smooth_test
 }  // namespace robomill::app

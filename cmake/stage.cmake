@@ -1,3 +1,11 @@
+# A test program of googletest. Its sources too are compiled together: each has a namespace with the file's name.
+function(robomill_test_program target)
+  add_executable(${target} ${ARGN})
+  target_link_libraries(${target} PRIVATE robomill_test_flags GTest::gtest_main)
+  target_precompile_headers(${target} REUSE_FROM robomill_precompiled_test)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ROBOMILL_UNITY} UNITY_BUILD_BATCH_SIZE 12)
+endfunction()
+
 # robomill_stage(NAME modal LAYER 2
 #                SOURCES frf.cpp ...            library sources of the stage
 #                PUBLIC_HEADERS frf.hpp ...     installed, and compiled on their own
@@ -43,7 +51,7 @@ function(robomill_stage)
     set_property(GLOBAL APPEND PROPERTY ROBOMILL_PUBLIC_HEADERS robomill/${S_NAME}/${header})
   endforeach()
 
-  if(ROBOMILL_TESTS)
+  if(ROBOMILL_TESTS AND NOT ROBOMILL_SANITIZE)
     # A public header that needs another one first does not compile here.
     set(alone "")
     foreach(header IN LISTS S_PUBLIC_HEADERS)
@@ -56,27 +64,30 @@ function(robomill_stage)
       target_link_libraries(${target}_headers PRIVATE robomill_flags Eigen3::Eigen)
       target_include_directories(${target}_headers PRIVATE ${PROJECT_SOURCE_DIR})
     endif()
-    if(S_TESTS)
-      add_executable(${S_NAME}_test ${S_TESTS})
-      target_link_libraries(${S_NAME}_test PRIVATE robomill_flags ${target} GTest::gtest_main ${S_TEST_LIBRARIES})
-      target_precompile_headers(${S_NAME}_test REUSE_FROM robomill_precompiled_test)
+  endif()
+  if(ROBOMILL_TESTS AND S_TESTS)
+    robomill_test_program(${S_NAME}_test ${S_TESTS})
+    target_link_libraries(${S_NAME}_test PRIVATE ${target} ${S_TEST_LIBRARIES})
+    if(ROBOMILL_UNITY)  # a source with definitions of its own would be compiled alone
+      target_compile_definitions(${S_NAME}_test PRIVATE ROBOMILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    else()
       set_source_files_properties(${S_AT_SOURCE} PROPERTIES COMPILE_DEFINITIONS ROBOMILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-      # One word, which ctest -L finds by either half: gtest_discover_tests tears a list of labels apart.
-      set(label ${S_NAME})
-      set(filter "")
-      if(S_THREADED)
-        string(APPEND label "-threaded")
-        add_dependencies(threaded_tests ${S_NAME}_test)
-      endif()
-      if(S_NOT_UNDER_TSAN)
-        string(REPLACE ";" ":" others "${S_NOT_UNDER_TSAN}")
-        gtest_discover_tests(${S_NAME}_test TEST_FILTER "${others}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-          PROPERTIES LABELS ${S_NAME} TIMEOUT 1200)
-        set(filter TEST_FILTER "-${others}")
-      endif()
-      gtest_discover_tests(${S_NAME}_test ${filter} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-        PROPERTIES LABELS ${label} TIMEOUT 1200)
     endif()
+    # One word, which ctest -L finds by either half: gtest_discover_tests tears a list of labels apart.
+    set(label ${S_NAME})
+    set(filter "")
+    if(S_THREADED)
+      string(APPEND label "-threaded")
+      add_dependencies(threaded_tests ${S_NAME}_test)
+    endif()
+    if(S_NOT_UNDER_TSAN)
+      string(REPLACE ";" ":" others "${S_NOT_UNDER_TSAN}")
+      gtest_discover_tests(${S_NAME}_test TEST_FILTER "${others}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+        PROPERTIES LABELS ${S_NAME} TIMEOUT 1200)
+      set(filter TEST_FILTER "-${others}")
+    endif()
+    gtest_discover_tests(${S_NAME}_test ${filter} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+      PROPERTIES LABELS ${label} TIMEOUT 1200)
   endif()
   if(ROBOMILL_BENCHES AND S_BENCHES)
     add_executable(${S_NAME}_bench ${S_BENCHES})

@@ -12,7 +12,7 @@
 #include "test_program.hpp"
 
 namespace robomill::app {
-namespace {
+namespace calibrate_test {
 
 using nlohmann::json;
 
@@ -78,5 +78,5 @@ TEST_F(CalibrateVerb, RejectsToCalibrateWithoutBothKinds) {
   rejected({"stable", "noisy"}, "noisy");
 }
 
-}  // namespace
+}  // namespace calibrate_test
 }  // namespace robomill::app

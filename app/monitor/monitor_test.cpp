@@ -24,7 +24,7 @@
 #include "test_program.hpp"
 
 namespace robomill::app {
-namespace {
+namespace monitor_test {
 
 using nlohmann::json;
 using test::wait_for;
@@ -448,5 +448,5 @@ TEST_F(MonitorStream, PublishesEventsOfARecording) {
   EXPECT_TRUE(wait_for([&] { return published("\"state\":\"chatter\""); }));
 }
 
-}  // namespace
+}  // namespace monitor_test
 }  // namespace robomill::app

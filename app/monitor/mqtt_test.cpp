@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::app {
-namespace {
+namespace mqtt_test {
 
 using std::chrono::seconds;
 
@@ -169,5 +169,5 @@ TEST(Mqtt, SpeaksTls) {
   EXPECT_EQ(failed.connections(), 0);
 }
 
-}  // namespace
+}  // namespace mqtt_test
 }  // namespace robomill::app

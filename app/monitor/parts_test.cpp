@@ -11,7 +11,7 @@
 #include "watch.hpp"
 
 namespace robomill::app {
-namespace {
+namespace parts_test {
 
 TEST(Metrics, AnswerInTheTextFormat) {
   live::MetricValues values;
@@ -55,5 +55,5 @@ TEST(Watch, ShowsTheSpectrumAsABar) {
   EXPECT_NE(watch_line({}, 0.0).find("[]"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace parts_test
 }  // namespace robomill::app

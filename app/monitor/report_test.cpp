@@ -11,7 +11,7 @@
 #include "robomill/live/session.hpp"
 
 namespace robomill::app {
-namespace {
+namespace report_test {
 
 live::Hop noise(Random& random) {
   live::Hop hop;
@@ -57,5 +57,5 @@ TEST(MonitorPage, ShowsWhatASessionDelivers) {
   }
 }
 
-}  // namespace
+}  // namespace report_test
 }  // namespace robomill::app

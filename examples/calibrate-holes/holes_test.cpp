@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::examples {
-namespace {
+namespace holes_test {
 
 std::string slurp(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -110,5 +110,5 @@ TEST_F(CalibrateHoles, FindsTheVerifyingHalf) {
   }
 }
 
-}  // namespace
+}  // namespace holes_test
 }  // namespace robomill::examples

@@ -11,7 +11,7 @@
 #include "testing/robot_modes.hpp"
 
 namespace robomill::examples {
-namespace {
+namespace hammer_test {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
@@ -114,5 +114,5 @@ TEST(SimulateHit, RejectsAForceTheModelDoesNotKnow) {
   EXPECT_THROW(static_cast<void>(simulate_hit(data::robot_modes(), z, Hammer{}, random)), InvalidInput);
 }
 
-}  // namespace
+}  // namespace hammer_test
 }  // namespace robomill::examples

@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace robomill {
-namespace {
+namespace error_test {
 
 TEST(InvalidInput, SaysFieldValueUnitRuleAndHint) {
   const InvalidInput error("tangential_n_per_m2", 0.0, "N/m^2", "must be > 0", "Aluminium is near 7e8");
@@ -34,5 +34,5 @@ TEST(Require, RejectsNaNAndInfinity) {
   EXPECT_THROW(require_finite("a", -infinity, "m"), InvalidInput);
 }
 
-}  // namespace
+}  // namespace error_test
 }  // namespace robomill

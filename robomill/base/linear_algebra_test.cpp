@@ -7,7 +7,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::linear_algebra {
-namespace {
+namespace linear_algebra_test {
 
 Eigen::MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::Index columns) {
   Eigen::MatrixXd out(rows, columns);
@@ -42,5 +42,5 @@ TEST(LinearAlgebra, AnswersSolveTheirEquations) {
   }
 }
 
-}  // namespace
+}  // namespace linear_algebra_test
 }  // namespace robomill::linear_algebra

@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace robomill {
-namespace {
+namespace parallel_test {
 
 class ParallelFor : public testing::TestWithParam<int> {
  protected:
@@ -35,5 +35,5 @@ TEST_P(ParallelFor, PassesOnAnException) {
 
 INSTANTIATE_TEST_SUITE_P(Threads, ParallelFor, testing::Values(1, 2, 8));
 
-}  // namespace
+}  // namespace parallel_test
 }  // namespace robomill

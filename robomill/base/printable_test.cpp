@@ -8,7 +8,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill {
-namespace {
+namespace printable_test {
 
 TEST(Printable, LeavesTextAlone) {
   for (const char* text : {"", "tip.csv:3", "ÅΩµ — “ä” 刀具 😀", "C:\\new\\x"}) EXPECT_EQ(printable(text), text);
@@ -57,5 +57,5 @@ TEST(Printable, IsWhatAnErrorSays) {
   EXPECT_EQ(error.parts().value, "\"\xff\"") << "what came in is kept";
 }
 
-}  // namespace
+}  // namespace printable_test
 }  // namespace robomill

@@ -7,7 +7,7 @@
 #include "robomill/base/parallel.hpp"
 
 namespace robomill {
-namespace {
+namespace progress_test {
 
 TEST(Progress, ReportsFromStartToEnd) {
   std::vector<double> fractions;
@@ -42,5 +42,5 @@ TEST(Progress, LastStepIsReportedFromAnyThread) {
   EXPECT_EQ(last, 1.0);
 }
 
-}  // namespace
+}  // namespace progress_test
 }  // namespace robomill

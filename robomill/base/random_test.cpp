@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace robomill {
-namespace {
+namespace random_test {
 
 TEST(Random, SameSeedAndStreamGiveTheSameNumbers) {
   Random a(7, 3);
@@ -45,5 +45,5 @@ TEST(Random, IndexIsEvenlySpread) {
   for (const int c : count) EXPECT_NEAR(c, n / 7, 5.0 * std::sqrt(n / 7.0));
 }
 
-}  // namespace
+}  // namespace random_test
 }  // namespace robomill

@@ -9,7 +9,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill {
-namespace {
+namespace ring_test {
 
 TEST(Ring, RoundsItsRoomUpAndCountsIt) {
   Ring<int> ring(5);
@@ -57,5 +57,5 @@ TEST(Ring, HandsEntriesOverWholeAndInOrder) {
   EXPECT_EQ(wrong, 0U);
 }
 
-}  // namespace
+}  // namespace ring_test
 }  // namespace robomill

@@ -5,7 +5,7 @@
 #include <vector>
 
 namespace robomill {
-namespace {
+namespace statistics_test {
 
 TEST(Median, IsTheUpperOfTheTwoInTheMiddle) {
   EXPECT_EQ(median(std::vector<double>{3.0, 1.0, 2.0}), 2.0);
@@ -14,5 +14,5 @@ TEST(Median, IsTheUpperOfTheTwoInTheMiddle) {
   EXPECT_EQ(median(std::vector<double>{}), 0.0);
 }
 
-}  // namespace
+}  // namespace statistics_test
 }  // namespace robomill

@@ -16,10 +16,10 @@
 #include "testing/support.hpp"
 
 namespace robomill::coupling {
-namespace {
+namespace beam_element_test {
 
 using detail::BeamElement;
-using test::bar;
+using testing::bar;
 using LongComplex = std::complex<long double>;
 
 /// Bishop's functions of x = λL; power series where the closed forms cancel. cosh 100 is far within a long double.
@@ -361,5 +361,5 @@ TEST(Section, RejectsWhatIsNoBeam) {
   EXPECT_EQ(rejected([](Segment& s) { s.flutes = -1; }), "flutes");
 }
 
-}  // namespace
+}  // namespace beam_element_test
 }  // namespace robomill::coupling

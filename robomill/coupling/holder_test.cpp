@@ -16,13 +16,13 @@
 #include "testing/support.hpp"
 
 namespace robomill::coupling {
-namespace {
+namespace holder_test {
 
 using modal::FrfSet;
 using robomill::test::rejection;
-using test::bar;
-using test::hertz;
-using test::receptance;
+using testing::bar;
+using testing::hertz;
+using testing::receptance;
 
 /// A holder with a nose: 40 mm for 30 mm, then 63 mm for 80 mm, on a wall.
 std::vector<Segment> nose(Beam beam = Beam::timoshenko) {
@@ -324,5 +324,5 @@ TEST(Holder, RejectsWhatItCannotRead) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace holder_test
 }  // namespace robomill::coupling

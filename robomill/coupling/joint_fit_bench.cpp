@@ -14,14 +14,14 @@ namespace {
 
 /// 5,000 lines of the published pair with a planted joint and 1 % of noise, or with none: the rigid bar.
 modal::FrfSet measured(bool rigid) {
-  Assembly assembly = test::published_pair();
+  Assembly assembly = testing::published_pair();
   if (!rigid) {
     assembly.joint = Joint{.translational_stiffness_n_per_m = 2e7,
                            .translational_damping_n_s_per_m = 40.0,
                            .rotational_stiffness_n_m_per_rad = 5e4,
                            .rotational_damping_n_m_s_per_rad = 0.5};
   }
-  modal::FrfSet set = tip_frfs(assembly, test::hertz(5000)).frfs;
+  modal::FrfSet set = tip_frfs(assembly, testing::hertz(5000)).frfs;
   set.frfs.resize(1);
   if (rigid) return set;
   Random random(1);
@@ -34,7 +34,7 @@ modal::FrfSet measured(bool rigid) {
 void joint(benchmark::State& state, JointMethod method, bool rigid) {
   const modal::FrfSet set = measured(rigid);
   JointFitResult result;
-  for (auto _ : state) result = fit_joint(test::published_pair(), set, {.method = method});
+  for (auto _ : state) result = fit_joint(testing::published_pair(), set, {.method = method});
   state.counters["lines"] = static_cast<double>(set.frequency_hz.size());
   state.counters["iterations"] = result.iterations;
   state.counters["objective"] = result.objective_m_per_n;

@@ -20,7 +20,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::coupling {
-namespace {
+namespace joint_fit_test {
 
 using detail::JointModel;
 using detail::JointValues;
@@ -29,18 +29,18 @@ using robomill::test::field_of;
 using robomill::test::rejection;
 using robomill::test::seeds;
 
-using test::joint_of;
-using test::model_of;
-using test::planted;
-using test::tip_with;
-using test::values_of;
+using testing::joint_of;
+using testing::model_of;
+using testing::planted;
+using testing::tip_with;
+using testing::values_of;
 
 constexpr double best_within_bounds = 6.62e-5;
 
 /// The published case: the whole bar at the wall stands for the measured tip, so that the joint is rigid in truth.
 modal::FrfSet whole_bar() {
-  const Assembly bar{.tool = {test::bar(0.16982)}, .joint = {}, .holder = {}};
-  modal::FrfSet set = tip_frfs(bar, test::hertz(5000)).frfs;
+  const Assembly bar{.tool = {testing::bar(0.16982)}, .joint = {}, .holder = {}};
+  modal::FrfSet set = tip_frfs(bar, testing::hertz(5000)).frfs;
   set.frfs.resize(1);
   return set;
 }
@@ -65,13 +65,13 @@ double median(std::vector<double> values) {
 // Source: [JointIdentification], its joint; the objective it prints is 5.53e-5, which its own numbers do not give.
 TEST(JointFit, PublishedJointGivesItsObjective) {
   const modal::FrfSet measured = whole_bar();
-  const JointModel model = model_of(test::published_pair(), measured.frequency_hz);
+  const JointModel model = model_of(testing::published_pair(), measured.frequency_hz);
   const Eigen::ArrayXd magnitude = measured.frfs[0].receptance.cwiseAbs();
   JointModel::Response scratch;
   const JointValues published = {97062227.0, 18.633, 95978423.0, 10.399};
   EXPECT_NEAR(detail::magnitude_misfit(model, published, magnitude, scratch), 6.82e-5, 0.005e-5);
-  const modal::FrfSet tip = tip_with(test::published_pair(), joint_of(published), measured.frequency_hz);
-  EXPECT_NEAR(test::peak_hz(tip.frequency_hz, tip.frfs[0].receptance), 294.0, 1.0);
+  const modal::FrfSet tip = tip_with(testing::published_pair(), joint_of(published), measured.frequency_hz);
+  EXPECT_NEAR(testing::peak_hz(tip.frequency_hz, tip.frfs[0].receptance), 294.0, 1.0);
   // The best that the published bounds allow stands at the stiffest translation.
   double best = 1.0;
   for (const double c_u : {0.0, 50.0, 100.0}) {
@@ -98,7 +98,7 @@ TEST(JointFit, GenesAsPublishedComeNearTheBestOfTheirBounds) {
   std::vector<double> objectives;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const JointFitResult result =
-        fit_joint(test::published_pair(), measured, {.method = JointMethod::ga, .seed = seed});
+        fit_joint(testing::published_pair(), measured, {.method = JointMethod::ga, .seed = seed});
     objectives.push_back(result.objective_m_per_n);
     EXPECT_EQ(result.iterations, 50);
     EXPECT_TRUE(std::ranges::is_sorted(result.best, std::greater<>())) << "the elite stays";
@@ -112,7 +112,7 @@ TEST(JointFit, GenesAsPublishedComeNearTheBestOfTheirBounds) {
 TEST(JointFit, AdaptiveMutationReachesTheBestOfTheBounds) {
   const modal::FrfSet measured = whole_bar();
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const JointFitResult result = fit_joint(test::published_pair(), measured,
+    const JointFitResult result = fit_joint(testing::published_pair(), measured,
                                             {.method = JointMethod::ga, .mutation = Mutation::adaptive, .seed = seed});
     EXPECT_LE(result.objective_m_per_n, 6.63e-5) << seed;
     EXPECT_EQ(result.iterations, 50);
@@ -128,7 +128,7 @@ TEST(JointFit, GenesStayInTheBoundsGivenAndUseThem) {
                                 .upper = {1e9, 100.0, 1e9, 100.0},
                                 .population = 30,
                                 .generations = 70};
-  const JointFitResult result = fit_joint(test::published_pair(), whole_bar(), options);
+  const JointFitResult result = fit_joint(testing::published_pair(), whole_bar(), options);
   EXPECT_EQ(result.iterations, 70);
   EXPECT_LT(result.objective_m_per_n, 0.5 * best_within_bounds);
   EXPECT_GT(result.joint.translational_stiffness_n_per_m, 1e8);
@@ -136,7 +136,7 @@ TEST(JointFit, GenesStayInTheBoundsGivenAndUseThem) {
 }
 
 TEST(JointFit, HybridFindsTheRigidJointAndSaysWhereTheFrfEnds) {
-  const JointFitResult result = fit_joint(test::published_pair(), whole_bar(), {});
+  const JointFitResult result = fit_joint(testing::published_pair(), whole_bar(), {});
   EXPECT_EQ(result.status, JointFitResult::Status::converged);
   EXPECT_LT(result.objective_m_per_n, 1e-8);
   for (const JointKnowledge& known : result.knowledge) EXPECT_FALSE(known.identifiable);
@@ -154,14 +154,14 @@ TEST(JointFit, HybridFindsTheRigidJointAndSaysWhereTheFrfEnds) {
 }
 
 TEST(JointFit, HybridFindsPlantedJointInNoise) {
-  const modal::FrfSet clean = tip_with(test::published_pair(), joint_of(planted), test::hertz(5000));
+  const modal::FrfSet clean = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(5000));
   constexpr std::array<double, joint_unknowns> bound = {0.001, 0.05, 0.0025, 0.01};
   const int count = std::max(20, seeds(200));
   std::array<int, joint_unknowns> within_two{};
   for (int seed = 1; seed <= count; ++seed) {
     modal::FrfSet measured = clean;
     add_noise(measured, 0.01, static_cast<std::uint64_t>(seed));
-    const JointFitResult result = fit_joint(test::published_pair(), measured, {});
+    const JointFitResult result = fit_joint(testing::published_pair(), measured, {});
     EXPECT_EQ(result.status, JointFitResult::Status::converged);
     const JointValues found = values_of(result.joint);
     for (std::size_t i = 0; i < planted.size(); ++i) {
@@ -184,14 +184,15 @@ TEST(JointFit, HybridFindsPlantedJointInNoise) {
 
 // Stiffness over five decades, damping over four: the evolution has no start to lean on.
 TEST(JointFit, HybridFindsAnyJoint) {
-  const Eigen::VectorXd frequency_hz = test::hertz(2000);
+  const Eigen::VectorXd frequency_hz = testing::hertz(2000);
   Random random(3);
   const int count = seeds(300);
   for (int i = 0; i < count; ++i) {
     const Joint joint = joint_of({std::pow(10.0, random.uniform(4.5, 10.0)), std::pow(10.0, random.uniform(-1.0, 4.0)),
                                   std::pow(10.0, random.uniform(3.0, 8.0)), std::pow(10.0, random.uniform(-2.0, 2.0))});
-    const modal::FrfSet measured = tip_with(test::published_pair(), joint, frequency_hz);
-    const JointFitResult result = fit_joint(test::published_pair(), measured, {.seed = static_cast<std::uint64_t>(i)});
+    const modal::FrfSet measured = tip_with(testing::published_pair(), joint, frequency_hz);
+    const JointFitResult result =
+        fit_joint(testing::published_pair(), measured, {.seed = static_cast<std::uint64_t>(i)});
     EXPECT_LT(result.relative_error, 1e-6) << "joint " << i;
   }
 }
@@ -199,7 +200,7 @@ TEST(JointFit, HybridFindsAnyJoint) {
 /// Σ |H - H model|² / |0.01 H|² when one unknown is given and the others are fitted again.
 double squares_with(const modal::FrfSet& measured, std::size_t unknown, double value, JointFitOptions options = {}) {
   options.lower[unknown] = options.upper[unknown] = value;
-  const JointFitResult result = fit_joint(test::published_pair(), measured, options);
+  const JointFitResult result = fit_joint(testing::published_pair(), measured, options);
   EXPECT_DOUBLE_EQ(values_of(result.joint)[unknown], value);
   EXPECT_NE(result.knowledge[unknown].note.find("given, not fitted"), std::string::npos);
   const Eigen::ArrayXd sigma = 0.01 * measured.frfs[0].receptance.cwiseAbs();
@@ -208,9 +209,9 @@ double squares_with(const modal::FrfSet& measured, std::size_t unknown, double v
 
 // The linearised verdict against profiles: two standard deviations off cost 4 × ½ (a line's σ² is of both its parts).
 TEST(JointFit, ProfilesAgreeWithDeviations) {
-  modal::FrfSet measured = tip_with(test::published_pair(), joint_of(planted), test::hertz(5000));
+  modal::FrfSet measured = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(5000));
   add_noise(measured, 0.01, 5);
-  const JointFitResult result = fit_joint(test::published_pair(), measured, {});
+  const JointFitResult result = fit_joint(testing::published_pair(), measured, {});
   const JointValues found = values_of(result.joint);
   for (std::size_t i = 0; i < found.size(); ++i) {
     const double sigma = result.knowledge[i].deviation;
@@ -224,9 +225,9 @@ TEST(JointFit, ProfilesAgreeWithDeviations) {
 // A rotation as good as rigid: its damping moves nothing, and a profile shows how flat both are.
 TEST(JointFit, SaysWhatCannotBeSeen) {
   const JointValues truth = {2e7, 40.0, 1e9, 5.0};
-  modal::FrfSet measured = tip_with(test::published_pair(), joint_of(truth), test::hertz(5000));
+  modal::FrfSet measured = tip_with(testing::published_pair(), joint_of(truth), testing::hertz(5000));
   add_noise(measured, 0.01, 9);
-  const JointFitResult result = fit_joint(test::published_pair(), measured, {});
+  const JointFitResult result = fit_joint(testing::published_pair(), measured, {});
   EXPECT_TRUE(result.knowledge[0].identifiable);
   EXPECT_TRUE(result.knowledge[1].identifiable);
   EXPECT_EQ(result.knowledge[2].note, "rotational stiffness: not identifiable from this FRF");
@@ -246,11 +247,12 @@ TEST(JointFit, SaysWhatCannotBeSeen) {
 // Genes end beside the minimum, or far from it where the joint lies outside their bounds. Then no deviation is given.
 TEST(JointFit, SaysNothingOfDeviationsAwayFromTheMinimum) {
   for (const double rotation : {3e5, 5e4}) {
-    modal::FrfSet measured = tip_with(test::published_pair(), joint_of({2e7, 40.0, rotation, 5.0}), test::hertz(2000));
+    modal::FrfSet measured =
+        tip_with(testing::published_pair(), joint_of({2e7, 40.0, rotation, 5.0}), testing::hertz(2000));
     add_noise(measured, 0.01, 3);
     for (const Mutation mutation : {Mutation::uniform, Mutation::adaptive}) {
       const JointFitResult genes =
-          fit_joint(test::published_pair(), measured, {.method = JointMethod::ga, .mutation = mutation});
+          fit_joint(testing::published_pair(), measured, {.method = JointMethod::ga, .mutation = mutation});
       for (const JointKnowledge& known : genes.knowledge) {
         EXPECT_FALSE(known.identifiable);
         EXPECT_TRUE(std::isinf(known.deviation));
@@ -258,28 +260,28 @@ TEST(JointFit, SaysNothingOfDeviationsAwayFromTheMinimum) {
       }
       EXPECT_FALSE(genes.notes.empty());
     }
-    for (const JointKnowledge& known : fit_joint(test::published_pair(), measured, {}).knowledge) {
+    for (const JointKnowledge& known : fit_joint(testing::published_pair(), measured, {}).knowledge) {
       EXPECT_TRUE(known.identifiable);
     }
   }
 }
 
 TEST(JointFit, SaysWhenNoJointGivesTheFrf) {
-  modal::FrfSet measured = tip_with(test::published_pair(), joint_of(planted), test::hertz(1000));
+  modal::FrfSet measured = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(1000));
   measured.frfs[0].receptance *= 1000.0;
-  const JointFitResult result = fit_joint(test::published_pair(), measured, {});
+  const JointFitResult result = fit_joint(testing::published_pair(), measured, {});
   ASSERT_FALSE(result.notes.empty());
   EXPECT_NE(result.notes.back().find("cannot give this FRF"), std::string::npos);
   for (const JointKnowledge& known : result.knowledge) EXPECT_FALSE(known.identifiable);
   measured.frfs[0].receptance *= 1e160;
   EXPECT_NE(
-      rejection([&] { static_cast<void>(fit_joint(test::published_pair(), measured, {})); }).find("no machine has"),
+      rejection([&] { static_cast<void>(fit_joint(testing::published_pair(), measured, {})); }).find("no machine has"),
       std::string::npos);
 }
 
 // Weights are the FRF's own where it has them: a band of rubbish that says so does no harm.
 TEST(JointFit, TrustsTheFrfsOwnDeviation) {
-  modal::FrfSet measured = tip_with(test::published_pair(), joint_of(planted), test::hertz(3000));
+  modal::FrfSet measured = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(3000));
   add_noise(measured, 0.01, 4);
   modal::Frf& frf = measured.frfs[0];
   frf.deviation = 0.01 * frf.receptance.cwiseAbs();
@@ -287,7 +289,7 @@ TEST(JointFit, TrustsTheFrfsOwnDeviation) {
     frf.receptance(i) *= 3.0;
     frf.deviation(i) = 100.0 * std::abs(frf.receptance(i));
   }
-  const JointFitResult result = fit_joint(test::published_pair(), measured, {});
+  const JointFitResult result = fit_joint(testing::published_pair(), measured, {});
   const JointValues found = values_of(result.joint);
   for (std::size_t i = 0; i < found.size(); ++i) {
     EXPECT_LT(std::abs(found[i] - planted[i]), 4.0 * result.knowledge[i].deviation) << i;
@@ -297,8 +299,8 @@ TEST(JointFit, TrustsTheFrfsOwnDeviation) {
 TEST(JointFit, KeepsTheCrossStiffness) {
   Joint joint = joint_of(planted);
   joint.cross_stiffness_n_per_rad = 5e5;
-  Assembly assembly = test::published_pair();
-  const modal::FrfSet measured = tip_with(assembly, joint, test::hertz(2000));
+  Assembly assembly = testing::published_pair();
+  const modal::FrfSet measured = tip_with(assembly, joint, testing::hertz(2000));
   assembly.joint = Joint{.cross_stiffness_n_per_rad = 5e5};
   const JointFitResult result = fit_joint(assembly, measured, {});
   EXPECT_LT(result.relative_error, 1e-8);
@@ -307,12 +309,12 @@ TEST(JointFit, KeepsTheCrossStiffness) {
 }
 
 TEST(JointFit, ReadsTheOtherPlaneAndLeavesOutZeroHertz) {
-  modal::FrfSet measured = tip_with(test::published_pair(), joint_of(planted), test::hertz(1000));
+  modal::FrfSet measured = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(1000));
   measured.frfs[0].name = modal::parse_frf_name("3y:3y");
   modal::FrfSet from_zero{.frequency_hz = Eigen::VectorXd::LinSpaced(1001, 0.0, 1000.0), .frfs = measured.frfs};
   from_zero.frfs[0].receptance.resize(1001);
   from_zero.frfs[0].receptance << 1.0, measured.frfs[0].receptance;
-  const JointFitResult result = fit_joint(test::published_pair(), from_zero, {.axis = modal::Axis::y});
+  const JointFitResult result = fit_joint(testing::published_pair(), from_zero, {.axis = modal::Axis::y});
   EXPECT_LT(result.relative_error, 1e-8);
   EXPECT_EQ(result.model.frequency_hz.size(), 1000);
   EXPECT_EQ(modal::to_string(result.model.frfs[0].name), "3y:3y");
@@ -320,35 +322,35 @@ TEST(JointFit, ReadsTheOtherPlaneAndLeavesOutZeroHertz) {
 }
 
 TEST(JointFit, HasTheSameBitsOnAnyThreads) {
-  modal::FrfSet measured = tip_with(test::published_pair(), joint_of(planted), test::hertz(800));
+  modal::FrfSet measured = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(800));
   add_noise(measured, 0.02, 2);
   for (const JointMethod method : {JointMethod::ga, JointMethod::hybrid}) {
     set_thread_count(1);
-    const JointFitResult one = fit_joint(test::published_pair(), measured, {.method = method, .seed = 8});
+    const JointFitResult one = fit_joint(testing::published_pair(), measured, {.method = method, .seed = 8});
     set_thread_count(3);
-    const JointFitResult three = fit_joint(test::published_pair(), measured, {.method = method, .seed = 8});
+    const JointFitResult three = fit_joint(testing::published_pair(), measured, {.method = method, .seed = 8});
     set_thread_count(0);
     EXPECT_EQ(values_of(one.joint), values_of(three.joint));
     EXPECT_EQ(one.best, three.best);
     EXPECT_EQ(one.knowledge[1].deviation, three.knowledge[1].deviation);
-    const JointFitResult other = fit_joint(test::published_pair(), measured, {.method = method, .seed = 9});
+    const JointFitResult other = fit_joint(testing::published_pair(), measured, {.method = method, .seed = 9});
     EXPECT_NE(one.best, other.best);
   }
 }
 
 TEST(JointFit, StopsWhenAsked) {
-  const modal::FrfSet measured = tip_with(test::published_pair(), joint_of(planted), test::hertz(100));
+  const modal::FrfSet measured = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(100));
   const std::atomic<bool> stop = true;
   for (const JointMethod method : {JointMethod::ga, JointMethod::hybrid}) {
     Progress progress({}, &stop);
-    EXPECT_THROW(static_cast<void>(fit_joint(test::published_pair(), measured, {.method = method}, progress)),
+    EXPECT_THROW(static_cast<void>(fit_joint(testing::published_pair(), measured, {.method = method}, progress)),
                  Interrupted);
   }
 }
 
 TEST(JointFit, RejectsBadInput) {
-  const modal::FrfSet good = tip_with(test::published_pair(), joint_of(planted), test::hertz(50));
-  const Assembly pair = test::published_pair();
+  const modal::FrfSet good = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(50));
+  const Assembly pair = testing::published_pair();
   const auto of_options = [&](const JointFitOptions& options) {
     return field_of([&] { static_cast<void>(fit_joint(pair, good, options)); });
   };
@@ -381,10 +383,10 @@ TEST(JointFit, RejectsBadInput) {
   bad = good;
   bad.frfs[0].receptance = bad.frfs[0].receptance.conjugate().eval();
   EXPECT_NE(rejection([&] { static_cast<void>(fit_joint(pair, bad, {})); }).find("create energy"), std::string::npos);
-  EXPECT_EQ(of(pair, tip_with(pair, joint_of(planted), test::hertz(4))), "measured");
+  EXPECT_EQ(of(pair, tip_with(pair, joint_of(planted), testing::hertz(4))), "measured");
 
   Assembly assembly = pair;
-  assembly.joint = Joint{.points = 3, .insertion_length_m = 0.01, .shank = {test::bar(0.01)}};
+  assembly.joint = Joint{.points = 3, .insertion_length_m = 0.01, .shank = {testing::bar(0.01)}};
   EXPECT_EQ(of(assembly, good), "joint.points");
   assembly.joint = Joint{.cross_stiffness_n_per_rad = 1e13};
   EXPECT_EQ(of(assembly, good), "joint.cross_stiffness_n_per_rad");
@@ -395,19 +397,19 @@ TEST(JointFit, RejectsBadInput) {
 
 // A measured holder must have the lines of the measured tip; the message names both steps.
 TEST(JointFit, RejectsAnotherAxisThanTheHolders) {
-  const Eigen::VectorXd frequency_hz = test::hertz(200);
-  Assembly assembly{.tool = {test::bar(0.11892)}, .joint = {}, .holder = {}};
-  const Assembly stub{.tool = {test::bar(0.0509)}, .joint = {}, .holder = {}};
+  const Eigen::VectorXd frequency_hz = testing::hertz(200);
+  Assembly assembly{.tool = {testing::bar(0.11892)}, .joint = {}, .holder = {}};
+  const Assembly stub{.tool = {testing::bar(0.0509)}, .joint = {}, .holder = {}};
   assembly.holder.receptances = tip_frfs(stub, frequency_hz, {.rotations = true}).frfs;
   std::erase_if(assembly.holder.receptances.frfs, [](const modal::Frf& frf) {
     return frf.name.response.axis == modal::Axis::y || frf.name.response.axis == modal::Axis::rx;
   });
-  const modal::FrfSet measured = tip_with(test::published_pair(), joint_of(planted), frequency_hz);
+  const modal::FrfSet measured = tip_with(testing::published_pair(), joint_of(planted), frequency_hz);
   EXPECT_LT(fit_joint(assembly, measured, {}).relative_error, 1e-6);
-  const modal::FrfSet halved = tip_with(test::published_pair(), joint_of(planted), 0.5 * frequency_hz);
+  const modal::FrfSet halved = tip_with(testing::published_pair(), joint_of(planted), 0.5 * frequency_hz);
   const std::string said = rejection([&] { static_cast<void>(fit_joint(assembly, halved, {})); });
   EXPECT_NE(said.find("0.5"), std::string::npos) << said;
 }
 
-}  // namespace
+}  // namespace joint_fit_test
 }  // namespace robomill::coupling

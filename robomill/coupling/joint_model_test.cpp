@@ -13,20 +13,20 @@
 #include "testing/coupling/joints.hpp"
 
 namespace robomill::coupling {
-namespace {
+namespace joint_model_test {
 
 using detail::JointModel;
 using detail::JointValues;
 using Eigen::Index;
-using test::joint_of;
-using test::model_of;
-using test::planted;
-using test::tip_with;
-using test::values_of;
+using testing::joint_of;
+using testing::model_of;
+using testing::planted;
+using testing::tip_with;
+using testing::values_of;
 
 // The short form against the coupling itself, from a joint that hardly holds to one that is nearly rigid.
 TEST(JointModel, EqualsTheCoupling) {
-  const Eigen::VectorXd frequency_hz = test::hertz(501);
+  const Eigen::VectorXd frequency_hz = testing::hertz(501);
   Random random(1);
   for (int i = 0; i < 20; ++i) {
     Joint joint = joint_of({std::pow(10.0, random.uniform(3.0, 12.0)), std::pow(10.0, random.uniform(-2.0, 4.0)),
@@ -35,8 +35,8 @@ TEST(JointModel, EqualsTheCoupling) {
         i % 2 == 0 ? 0.0
                    : random.uniform(-0.9, 0.9) *
                          std::sqrt(joint.translational_stiffness_n_per_m * joint.rotational_stiffness_n_m_per_rad);
-    const modal::FrfSet expected = tip_with(test::published_pair(), joint, frequency_hz);
-    const JointModel model = model_of(test::published_pair(), frequency_hz, joint.cross_stiffness_n_per_rad);
+    const modal::FrfSet expected = tip_with(testing::published_pair(), joint, frequency_hz);
+    const JointModel model = model_of(testing::published_pair(), frequency_hz, joint.cross_stiffness_n_per_rad);
     JointModel::Response response;
     model.receptance(values_of(joint), response);
     for (Index line = 0; line < model.lines(); ++line) {
@@ -48,7 +48,7 @@ TEST(JointModel, EqualsTheCoupling) {
 }
 
 TEST(JointModel, DerivativesAreThoseOfDifferences) {
-  const JointModel model = model_of(test::published_pair(), test::hertz(5000));
+  const JointModel model = model_of(testing::published_pair(), testing::hertz(5000));
   JointModel::Response at;
   JointModel::Response above;
   JointModel::Response below;
@@ -73,7 +73,7 @@ TEST(JointModel, DerivativesAreThoseOfDifferences) {
 }
 
 TEST(JointModel, HasTheSameBitsWithoutWideVectors) {
-  const JointModel model = model_of(test::published_pair(), test::hertz(1003));
+  const JointModel model = model_of(testing::published_pair(), testing::hertz(1003));
   JointModel::Response wide;
   JointModel::Response narrow;
   model.sensitivity(planted, wide);
@@ -87,16 +87,16 @@ TEST(JointModel, HasTheSameBitsWithoutWideVectors) {
 }
 
 TEST(JointModel, ThinnedLinesStandDenseAtResonances) {
-  const modal::FrfSet set = tip_with(test::published_pair(), joint_of(planted), test::hertz(5000));
+  const modal::FrfSet set = tip_with(testing::published_pair(), joint_of(planted), testing::hertz(5000));
   const Eigen::ArrayXd omega = set.frequency_hz.array();
   const std::vector<Index> lines = detail::thinned_lines(omega, set.frfs[0].receptance, 256);
   EXPECT_LE(lines.size(), 260U);
   EXPECT_GE(lines.size(), 200U);
   EXPECT_TRUE(std::ranges::is_sorted(lines));
-  const double peak = test::peak_hz(set.frequency_hz, set.frfs[0].receptance);
+  const double peak = testing::peak_hz(set.frequency_hz, set.frfs[0].receptance);
   const auto near = std::ranges::count_if(lines, [&](Index i) { return std::abs(set.frequency_hz(i) - peak) < 10.0; });
   EXPECT_GE(near, 10);
 }
 
-}  // namespace
+}  // namespace joint_model_test
 }  // namespace robomill::coupling

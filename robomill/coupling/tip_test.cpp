@@ -14,15 +14,15 @@
 #include "testing/support.hpp"
 
 namespace robomill::coupling {
-namespace {
+namespace tip_test {
 
 using modal::FrfSet;
-using test::bar;
-using test::hertz;
-using test::peak_hz;
-using test::published_pair;
-using test::receptance;
-using test::resonance_hz;
+using testing::bar;
+using testing::hertz;
+using testing::peak_hz;
+using testing::published_pair;
+using testing::receptance;
+using testing::resonance_hz;
 
 Eigen::VectorXcd tip_xx(const Assembly& assembly, const Eigen::VectorXd& f) {
   return receptance(tip_frfs(assembly, f).frfs, "xx");
@@ -355,5 +355,5 @@ TEST(Tip, RejectsWhatItCannotCouple) {
   EXPECT_NE(message(assembly, hertz(50, 10)).find("not both"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace tip_test
 }  // namespace robomill::coupling

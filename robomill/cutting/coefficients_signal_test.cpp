@@ -13,14 +13,14 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace coefficients_signal_test {
 
 using robomill::test::field_of;
 using robomill::test::seeds;
 using std::numbers::pi;
-using test::ball_end;
-using test::flat_end;
-using test::mm;
+using testing::ball_end;
+using testing::flat_end;
+using testing::mm;
 
 /// [BallEndRobot] eq. 26: -15881 in Krc read as -1588.1, Kac and Kae in our sign (docs/errata.md).
 MillingCoefficients planted() {
@@ -210,5 +210,5 @@ TEST(SignalFit, RejectsWhatCannotBe) {
       "engagement");
 }
 
-}  // namespace
+}  // namespace coefficients_signal_test
 }  // namespace robomill::cutting

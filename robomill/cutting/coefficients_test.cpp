@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace coefficients_test {
 
 using std::numbers::pi;
 using test::field_of;
@@ -260,5 +260,5 @@ TEST(Slots, RejectsWhatCannotBe) {
   EXPECT_EQ(with([](Slots&, SlotOptions& o) { o.significance = 1.0; }), "significance");
 }
 
-}  // namespace
+}  // namespace coefficients_test
 }  // namespace robomill::cutting

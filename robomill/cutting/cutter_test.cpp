@@ -10,17 +10,17 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace cutter_test {
 
 using robomill::test::field_of;
 using robomill::test::rejection;
 using std::numbers::pi;
-using test::ball_end;
-using test::bull_nose;
-using test::degree;
-using test::flat_end;
-using test::mm;
-using test::tapered_ball;
+using testing::ball_end;
+using testing::bull_nose;
+using testing::degree;
+using testing::flat_end;
+using testing::mm;
+using testing::tapered_ball;
 
 constexpr CutterKind kinds[] = {CutterKind::flat_end, CutterKind::ball_end, CutterKind::bull_nose, CutterKind::general};
 
@@ -148,7 +148,7 @@ TEST(Profile, GeneralOutlineMakesTheOtherKinds) {
 TEST(Profile, IsAConvexCurveByItsLength) {
   for (int seed = 0; seed < robomill::test::seeds(2000); ++seed) {
     Random random(601, static_cast<std::uint64_t>(seed));
-    const Profile profile(test::random_cutter(random, kinds[seed % 4]));
+    const Profile profile(testing::random_cutter(random, kinds[seed % 4]));
     constexpr int count = 400;
     double length = 0.0;
     Profile::Point before = profile.at(0.0);
@@ -173,7 +173,7 @@ TEST(Profile, IsAConvexCurveByItsLength) {
 TEST(Edge, LengthPerWidthIsThatOfTheEdgeInSpace) {
   for (int seed = 0; seed < robomill::test::seeds(400); ++seed) {
     Random random(602, static_cast<std::uint64_t>(seed));
-    const Cutter cutter = test::random_cutter(random, kinds[seed % 4]);
+    const Cutter cutter = testing::random_cutter(random, kinds[seed % 4]);
     const Profile profile(cutter);
     for (const Profile::Piece& piece : profile.pieces()) {
       constexpr int count = 2000;
@@ -249,5 +249,5 @@ TEST(Cutter, RejectsWhatIsNoCutter) {
   EXPECT_NE(rejection([&] { cone.validate(); }).find("above the bottom"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace cutter_test
 }  // namespace robomill::cutting

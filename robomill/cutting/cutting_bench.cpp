@@ -8,9 +8,9 @@
 namespace robomill::cutting {
 namespace {
 
-using test::ball_end;
-using test::degree;
-using test::mm;
+using testing::ball_end;
+using testing::degree;
+using testing::mm;
 
 MillingCoefficients polynomials() {
   return {.tangential_n_per_m2 = {325.4e6, 435.8e6, -65.25e6, 1772e6},
@@ -55,13 +55,13 @@ void EngageBall(benchmark::State& state) {
 BENCHMARK(EngageBall)->Unit(benchmark::kMicrosecond);
 
 void EngageBullNose(benchmark::State& state) {
-  const Cutter cutter = test::bull_nose(12.0 * mm, 2.0 * mm);
+  const Cutter cutter = testing::bull_nose(12.0 * mm, 2.0 * mm);
   for (auto _ : state) benchmark::DoNotOptimize(engage(cutter, pass(), {.slices = 50}));
 }
 BENCHMARK(EngageBullNose)->Unit(benchmark::kMicrosecond);
 
 void EngageFlatUpright(benchmark::State& state) {
-  const Cutter cutter = test::flat_end(12.0 * mm);
+  const Cutter cutter = testing::flat_end(12.0 * mm);
   for (auto _ : state) {
     benchmark::DoNotOptimize(engage(cutter, {.axial_depth_m = 2.0 * mm, .radial_depth_m = mm}, {.slices = 50}));
   }

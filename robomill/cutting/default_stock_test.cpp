@@ -9,13 +9,13 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace default_stock_test {
 
 using Eigen::Vector3d;
 using program::Block;
 using program::Program;
-using test::ball_end;
-using test::mm;
+using testing::ball_end;
+using testing::mm;
 
 struct Move {
   Block::Kind kind;
@@ -90,5 +90,5 @@ TEST(DefaultStock, NeedsAFeedMove) {
   EXPECT_EQ(robomill::test::field_of([&] { static_cast<void>(stock_of(rapids)); }), "program");
 }
 
-}  // namespace
+}  // namespace default_stock_test
 }  // namespace robomill::cutting

@@ -8,10 +8,10 @@
 #include "testing/cutting/cutters.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace engagement_test {
 
 using std::numbers::pi;
-using test::degree;
+using testing::degree;
 
 // Source: docs/frames.md. Lead tips the axis forward along the feed, tilt then turns it about the feed.
 TEST(FeedFromTool, LeadTipsTheAxisForwardAndTiltToTheRight) {
@@ -74,5 +74,5 @@ TEST(Engagement, WithoutArcsHasNoArea) {
   EXPECT_EQ(chip_area_m2(engagement), 0.0);
 }
 
-}  // namespace
+}  // namespace engagement_test
 }  // namespace robomill::cutting

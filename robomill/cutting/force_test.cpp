@@ -11,16 +11,16 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace force_test {
 
 using robomill::test::field_of;
 using robomill::test::rejection;
 using robomill::test::seeds;
 using std::numbers::pi;
-using test::ball_end;
-using test::degree;
-using test::flat_end;
-using test::mm;
+using testing::ball_end;
+using testing::degree;
+using testing::flat_end;
+using testing::mm;
 
 constexpr CutterKind kinds[] = {CutterKind::flat_end, CutterKind::ball_end, CutterKind::bull_nose, CutterKind::general};
 
@@ -123,8 +123,8 @@ TEST(CuttingForce, IsTheSumOverElements) {
   int cases = 0;
   for (int seed = 0; seed < seeds(200); ++seed) {
     Random random(621, static_cast<std::uint64_t>(seed));
-    Cutter cutter = test::random_cutter(random, kinds[seed % 4]);
-    const Cut cut = test::random_cut(random, cutter);
+    Cutter cutter = testing::random_cutter(random, kinds[seed % 4]);
+    const Cut cut = testing::random_cut(random, cutter);
     const CutMotion motion = {.feed_per_tooth_m = 0.05 * mm, .spindle_speed_rad_per_s = 100.0};
     if (seed % 2 == 1) {
       cutter.mill.runout_m = random.uniform(0.0, 0.06) * mm;
@@ -158,8 +158,8 @@ TEST(CuttingForce, PowerIsTangentialCoefficientTimesRemovalRate) {
   int cases = 0;
   for (int seed = 0; seed < seeds(500); ++seed) {
     Random random(622, static_cast<std::uint64_t>(seed));
-    Cutter cutter = test::random_cutter(random, kinds[seed % 4]);
-    const Cut cut = test::random_cut(random, cutter);
+    Cutter cutter = testing::random_cutter(random, kinds[seed % 4]);
+    const Cut cut = testing::random_cut(random, cutter);
     const CutMotion motion = {.feed_per_tooth_m = random.uniform(0.01, 0.1) * mm,
                               .spindle_speed_rad_per_s = random.uniform(50.0, 2000.0)};
     if (seed % 2 == 1) {
@@ -206,11 +206,11 @@ TEST(CuttingForce, PowerOfABallFollowsFromDepthAndStepOver) {
 TEST(CuttingForce, OfAFlatEndAgreesWithTheClosedFormsOfMilling) {
   for (int seed = 0; seed < seeds(200); ++seed) {
     Random random(624, static_cast<std::uint64_t>(seed));
-    Cutter cutter = test::random_cutter(random, CutterKind::flat_end);
+    Cutter cutter = testing::random_cutter(random, CutterKind::flat_end);
     cutter.mill.pitch_rad.clear();  // the feed of a pitch differs there
     const bool straight = seed % 2 == 0;
     if (straight) cutter.mill.helix_rad = 0.0;
-    Cut cut = test::random_cut(random, cutter);
+    Cut cut = testing::random_cut(random, cutter);
     cut.lead_rad = cut.tilt_rad = 0.0;
     const double feed = 0.08 * mm;
     const Milling milling = {.tool = cutter.mill,
@@ -241,8 +241,8 @@ TEST(CuttingForce, OfAFlatEndAgreesWithTheClosedFormsOfMilling) {
 TEST(CuttingForce, RunoutLeavesTheMeanPower) {
   for (int seed = 0; seed < seeds(200); ++seed) {
     Random random(625, static_cast<std::uint64_t>(seed));
-    Cutter cutter = test::random_cutter(random, kinds[seed % 4]);
-    const Cut cut = test::random_cut(random, cutter);
+    Cutter cutter = testing::random_cutter(random, kinds[seed % 4]);
+    const Cut cut = testing::random_cut(random, cutter);
     const CutMotion motion = {.feed_per_tooth_m = 0.03 * mm, .spindle_speed_rad_per_s = 500.0};
     Engagement engagement;
     if (field_of([&] { engagement = engage(cutter, cut); }) != "accepted") continue;
@@ -409,5 +409,5 @@ TEST(CuttingForce, RejectsArcsThatAreNone) {
   EXPECT_EQ(rejected_field([](Engagement& e) { e.feed_from_tool(0, 0) = std::nan(""); }), "feed_from_tool");
 }
 
-}  // namespace
+}  // namespace force_test
 }  // namespace robomill::cutting

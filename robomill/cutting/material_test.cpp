@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace material_test {
 
 using std::numbers::pi;
 using test::field_of;
@@ -137,5 +137,5 @@ TEST(Material, RejectsWhatCannotBe) {
   EXPECT_EQ(field_of([&] { cut.validate(); }), "shear_stress_n_per_m2");
 }
 
-}  // namespace
+}  // namespace material_test
 }  // namespace robomill::cutting

@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace milling_test {
 
 using std::numbers::pi;
 using test::field_of;
@@ -218,5 +218,5 @@ TEST(Milling, RejectsWhatCannotBe) {
   EXPECT_EQ(field_of([&] { return mean_load(robot_cut(), nan, 1e-5, 1.0); }), "axial_depth_m");
 }
 
-}  // namespace
+}  // namespace milling_test
 }  // namespace robomill::cutting

@@ -9,7 +9,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting::detail {
-namespace {
+namespace moving_mean_test {
 
 TEST(MovingMean, AShortLoadCountsByItsShare) {
   MovingMean mean(0.1);
@@ -41,5 +41,5 @@ TEST(MovingMean, AgreesWithSmallSteps) {
   }
 }
 
-}  // namespace
+}  // namespace moving_mean_test
 }  // namespace robomill::cutting::detail

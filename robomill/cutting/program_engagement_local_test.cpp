@@ -8,7 +8,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace program_engagement_local_test {
 
 using Eigen::Vector3d;
 using program::Block;
@@ -88,5 +88,5 @@ TEST(LocalCuts, PassesOutOfReachAreNone) {
   EXPECT_EQ(test::field_of([&] { LocalCuts(program, 0.0); }), "reach_m");
 }
 
-}  // namespace
+}  // namespace program_engagement_local_test
 }  // namespace robomill::cutting

@@ -16,7 +16,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace program_engagement_test {
 
 using Eigen::Vector3d;
 using program::Block;
@@ -437,5 +437,5 @@ TEST(WalkOptions, RejectsNamingTheMember) {
   EXPECT_EQ(test::field_of([] { WalkOptions{.batch = 0}.validate(); }), "batch");
 }
 
-}  // namespace
+}  // namespace program_engagement_test
 }  // namespace robomill::cutting

@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace program_forces_test {
 
 using program::Block;
 using program::Program;
@@ -244,5 +244,5 @@ TEST(ProgramForces, DwellsHaveNone) {
         local_program_forces(dwelling, ball(), tangential_only(), 1e-3, options));
 }
 
-}  // namespace
+}  // namespace program_forces_test
 }  // namespace robomill::cutting

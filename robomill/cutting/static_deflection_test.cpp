@@ -9,7 +9,7 @@
 #include "robomill/cutting/published/analytic_engagement.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace static_deflection_test {
 
 Cutter ball() {
   Cutter cutter;
@@ -98,5 +98,5 @@ TEST(StaticDeflection, RejectsWhatACutMustNotBe) {
                InvalidInput);
 }
 
-}  // namespace
+}  // namespace static_deflection_test
 }  // namespace robomill::cutting

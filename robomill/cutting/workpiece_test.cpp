@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace workpiece_test {
 
 using Eigen::Vector3d;
 using program::Pose;
@@ -392,5 +392,5 @@ TEST(Stock, RejectsNamingTheMember) {
   EXPECT_EQ(test::field_of([&] { stock.validate(); }), "outline_m.r");
 }
 
-}  // namespace
+}  // namespace workpiece_test
 }  // namespace robomill::cutting

@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::decision {
-namespace {
+namespace finish_test {
 
 using stability::testing::rpm;
 
@@ -75,5 +75,5 @@ TEST(FinishDepth, RejectsWhatItCannotJudge) {
   EXPECT_EQ(rejected(measured, {.max_deflection_m = 1e-5}), "finishing");
 }
 
-}  // namespace
+}  // namespace finish_test
 }  // namespace robomill::decision

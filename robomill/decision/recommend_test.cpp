@@ -9,7 +9,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::decision {
-namespace {
+namespace recommend_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -190,5 +190,5 @@ TEST(Recommend, RejectsBadInput) {
   EXPECT_THROW(static_cast<void>(recommend(lobes(), o, lobe)), InvalidInput);
 }
 
-}  // namespace
+}  // namespace recommend_test
 }  // namespace robomill::decision

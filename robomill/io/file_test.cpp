@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::io {
-namespace {
+namespace file_test {
 
 namespace fs = std::filesystem;
 using test::Folder;
@@ -119,5 +119,5 @@ TEST(File, KnowsFormatsByTheirEnding) {
   EXPECT_EQ(format_of("b.xlsx"), Format::unknown);
 }
 
-}  // namespace
+}  // namespace file_test
 }  // namespace robomill::io

@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::io {
-namespace {
+namespace json_test {
 
 using test::Folder;
 using test::rejection;
@@ -87,5 +87,5 @@ TEST(JsonFile, SaysWhereItIsBroken) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace json_test
 }  // namespace robomill::io

@@ -16,7 +16,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::io {
-namespace {
+namespace mat_test {
 
 using test::Folder;
 using test::rejection;
@@ -142,5 +142,5 @@ TEST(Child, HandsBackWhatWasSaidAndSurvivesItsDeath) {
             std::nullopt);
 }
 
-}  // namespace
+}  // namespace mat_test
 }  // namespace robomill::io

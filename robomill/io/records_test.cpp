@@ -14,7 +14,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::io {
-namespace {
+namespace records_test {
 
 using test::Folder;
 using test::rejection;
@@ -165,5 +165,5 @@ TEST(Records, SurvivesMutatedMatFiles) {
   survive("b.mat", read_file(folder.at("a.mat")), 2000, 116);
 }
 
-}  // namespace
+}  // namespace records_test
 }  // namespace robomill::io

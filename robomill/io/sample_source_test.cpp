@@ -19,7 +19,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::io {
-namespace {
+namespace sample_source_test {
 
 std::vector<float> all(SampleSource& source, std::size_t frames = 7) {
   std::vector<float> samples;
@@ -256,5 +256,5 @@ TEST(SampleSource, SurvivesAnyText) {
   EXPECT_GT(rows, 0);
 }
 
-}  // namespace
+}  // namespace sample_source_test
 }  // namespace robomill::io

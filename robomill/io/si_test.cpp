@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace robomill::io {
-namespace {
+namespace si_test {
 
 TEST(Si, KnowsUnitsInEverySpelling) {
   for (const char* text : {"m/s^2", "m/s2", "m/s\xC2\xB2", "m/s\xB2", "(m/s^2)", "M/S**2", "m / s2", "m/s/s"}) {
@@ -45,5 +45,5 @@ TEST(Si, TakesTheUnitBeforeTheFactorsOfTheFile) {
   EXPECT_EQ(si_factor({.type = 0}, 1.0, 1.0).quantity, Quantity::unknown);
 }
 
-}  // namespace
+}  // namespace si_test
 }  // namespace robomill::io

@@ -9,7 +9,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::io {
-namespace {
+namespace table_test {
 
 using test::rejection;
 using Columns = std::vector<std::vector<double>>;
@@ -108,5 +108,5 @@ TEST(Table, SurvivesMutations) {
   }
 }
 
-}  // namespace
+}  // namespace table_test
 }  // namespace robomill::io

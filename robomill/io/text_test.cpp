@@ -11,7 +11,7 @@
 #include "robomill/base/units.hpp"
 
 namespace robomill::io {
-namespace {
+namespace text_test {
 
 TEST(Text, ReadsNumbersInEverySpelling) {
   EXPECT_EQ(parse_number("1.5"), 1.5);
@@ -77,5 +77,5 @@ TEST(Text, FindsTheNearestWord) {
   EXPECT_EQ(nearest_word("runout_um", known), "");
 }
 
-}  // namespace
+}  // namespace text_test
 }  // namespace robomill::io

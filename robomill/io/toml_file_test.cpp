@@ -7,7 +7,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::io {
-namespace {
+namespace toml_file_test {
 
 using test::Folder;
 using test::rejection;
@@ -268,5 +268,5 @@ TEST(TomlFiles, SurvivesMutations) {
   }
 }
 
-}  // namespace
+}  // namespace toml_file_test
 }  // namespace robomill::io

@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::io {
-namespace {
+namespace uff_test {
 
 using test::rejection;
 using Complex = std::complex<double>;
@@ -337,5 +337,5 @@ TEST(Uff, SurvivesMutations) {
   }
 }
 
-}  // namespace
+}  // namespace uff_test
 }  // namespace robomill::io

@@ -17,7 +17,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace forces_test {
 
 using robomill::test::Folder;
 using robomill::test::rejection;
@@ -314,5 +314,5 @@ TEST(RunForces, RejectsAPostureBeyondTheLimitsOrSingular) {
   EXPECT_NE(message("[0, 0, 0]").find("one angle for each of 6 joints"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace forces_test
 }  // namespace robomill::jobs

@@ -19,7 +19,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace plan_test {
 
 const std::string data = ROBOMILL_SOURCE_DIR "/data/";
 
@@ -366,5 +366,5 @@ TEST_F(Plan, SaysWhatIsMissing) {
   EXPECT_NE(rejection(job()).find("feed_per_tooth_mm"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace robomill::jobs

@@ -17,7 +17,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace predict_test {
 
 const std::filesystem::path examples = ROBOMILL_SOURCE_DIR "/examples";
 
@@ -205,5 +205,5 @@ TEST_F(Predicted, PlanStandsOnTheModesOfItsTipFrfs) {
   EXPECT_EQ(nlohmann::json::parse(report.assembly), json);
 }
 
-}  // namespace
+}  // namespace predict_test
 }  // namespace robomill::jobs

@@ -20,7 +20,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace smooth_test {
 
 using robomill::test::rejection;
 
@@ -370,5 +370,5 @@ TEST_F(PlanPath, NeedsTheCellToSaySo) {
   EXPECT_NE(rejection([&] { static_cast<void>(run_job(file, 1)); }).find("has no [smoothing]"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace smooth_test
 }  // namespace robomill::jobs

@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace test_cuts_test {
 
 /// Two teeth and the robot's eight modes.
 stability::LobesProblem robot_cut() {
@@ -175,5 +175,5 @@ TEST(Agreement, CountsEveryCutOnce) {
   EXPECT_EQ(counts.not_compared, 1U);
 }
 
-}  // namespace
+}  // namespace test_cuts_test
 }  // namespace robomill::jobs

@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace tools_test {
 
 const std::string material = "youngs_modulus_gpa = 580\ndensity_kg_per_m3 = 14450\nloss_factor = 0.03\n";
 
@@ -130,5 +130,5 @@ TEST(Tools, RejectACutOfOneCutter) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace tools_test
 }  // namespace robomill::jobs

@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::live {
-namespace {
+namespace block_order_test {
 
 monitor::StreamBlock block(std::uint64_t number) {
   monitor::StreamBlock out;
@@ -154,5 +154,5 @@ TEST(BlockOrder, LivesThroughAnyNumbers) {
   }
 }
 
-}  // namespace
+}  // namespace block_order_test
 }  // namespace robomill::live

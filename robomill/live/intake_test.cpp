@@ -12,7 +12,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::live {
-namespace {
+namespace intake_test {
 
 using std::chrono::milliseconds;
 constexpr milliseconds no_wait{0};
@@ -141,5 +141,5 @@ TEST(Intake, FillsShortGapsAndLeavesLongOnesOut) {
   EXPECT_EQ(hop.frames_before, 1U);
 }
 
-}  // namespace
+}  // namespace intake_test
 }  // namespace robomill::live

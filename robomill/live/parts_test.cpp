@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::live {
-namespace {
+namespace parts_test {
 
 using std::chrono::milliseconds;
 
@@ -77,5 +77,5 @@ TEST(AlarmRing, ReportsWhatItCannotWrite) {
   EXPECT_THROW(AlarmRing({.folder = file, .sample_rate_hz = 100.0}, {}), InvalidInput);
 }
 
-}  // namespace
+}  // namespace parts_test
 }  // namespace robomill::live

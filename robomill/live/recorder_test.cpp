@@ -10,7 +10,7 @@
 #include "robomill/base/error.hpp"
 
 namespace robomill::live {
-namespace {
+namespace recorder_test {
 
 monitor::MonitorOptions one_channel() {
   monitor::MonitorOptions options;
@@ -118,5 +118,5 @@ TEST(Recorder, RejectsNamesThatDoNotFit) {
   EXPECT_THROW(Recorder(one_channel(), {}, ""), InvalidInput);
 }
 
-}  // namespace
+}  // namespace recorder_test
 }  // namespace robomill::live

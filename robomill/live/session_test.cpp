@@ -14,7 +14,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::live {
-namespace {
+namespace session_test {
 
 using monitor::MonitorEvent;
 
@@ -196,5 +196,5 @@ TEST(StreamIntake, FillsWhatWasLost) {
   EXPECT_EQ(reported[1].what, "reordered-blocks");
 }
 
-}  // namespace
+}  // namespace session_test
 }  // namespace robomill::live

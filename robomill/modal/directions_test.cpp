@@ -8,7 +8,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace directions_test {
 
 ModalModel one_direction(Axis axis) {
   ModalModel one;
@@ -91,5 +91,5 @@ TEST(MissingDirections, HaveToBeSaid) {
   EXPECT_NE(said.find("equal_directions = true"), std::string::npos) << said;
 }
 
-}  // namespace
+}  // namespace directions_test
 }  // namespace robomill::modal

@@ -15,7 +15,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace fit_input_test {
 
 using Eigen::Index;
 
@@ -297,5 +297,5 @@ TEST(FitInput, SurvivesOddFrfs) {
   EXPECT_NO_THROW(static_cast<void>(fit_modes(outlier, {})));
 }
 
-}  // namespace
+}  // namespace fit_input_test
 }  // namespace robomill::modal

@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace fit_test {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
@@ -188,5 +188,5 @@ TEST(HybridFit, DoesNotFitTheErrorOfASingleHitWithModes) {
   EXPECT_GT(held_back, 0);  // else the criterion alone would do
 }
 
-}  // namespace
+}  // namespace fit_test
 }  // namespace robomill::modal

@@ -7,7 +7,7 @@
 #include "robomill/base/error.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace frf_test {
 
 TEST(FrfName, ReadsAndWritesEveryForm) {
   for (const char* text : {"xx", "xy", "yx", "zz", "1x:3x", "x:my", "ry:x", "ry:my", "12rz:3mz"}) {
@@ -57,5 +57,5 @@ TEST(FrfSet, RejectsEveryFault) {
   EXPECT_THROW(FrfSet().validate(), InvalidInput);
 }
 
-}  // namespace
+}  // namespace frf_test
 }  // namespace robomill::modal

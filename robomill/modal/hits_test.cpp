@@ -17,7 +17,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace hits_test {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
@@ -484,5 +484,5 @@ TEST(EstimateFrfs, StopsWhenAsked) {
   EXPECT_THROW(static_cast<void>(estimate_frfs(brief_hits(), up_to(600.0), progress)), Interrupted);
 }
 
-}  // namespace
+}  // namespace hits_test
 }  // namespace robomill::modal

@@ -11,7 +11,7 @@
 #include "testing/robot_modes.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace mac_test {
 
 using Complex = std::complex<double>;
 
@@ -90,5 +90,5 @@ TEST(Mac, RejectsWhatCannotBeCompared) {
   EXPECT_THROW(static_cast<void>(frac(set, synthesize(other, Eigen::Vector2d(1.0, 2.0)))), InvalidInput);
 }
 
-}  // namespace
+}  // namespace mac_test
 }  // namespace robomill::modal

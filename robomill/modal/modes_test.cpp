@@ -10,7 +10,7 @@
 #include "testing/robot_modes.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace modes_test {
 
 TEST(Normalise, KeepsTheResidueAndFixesTheFreedom) {
   Random random(3);
@@ -125,5 +125,5 @@ TEST(Synthesize, RejectsFaults) {
   EXPECT_THROW(static_cast<void>(synthesize(model, Eigen::Vector2d(1.0, 2.0))), InvalidInput);
 }
 
-}  // namespace
+}  // namespace modes_test
 }  // namespace robomill::modal

@@ -15,7 +15,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace structure_test {
 
 using Complex = std::complex<double>;
 
@@ -227,5 +227,5 @@ TEST(Structure, RejectsEveryFaultOfTheMatrices) {
   EXPECT_THROW(static_cast<void>(receptance(Structure(), Eigen::Vector2d(1.0, 2.0))), InvalidInput);
 }
 
-}  // namespace
+}  // namespace structure_test
 }  // namespace robomill::modal

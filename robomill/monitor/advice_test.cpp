@@ -8,7 +8,7 @@
 #include "testing/robot_modes.hpp"
 #include "testing/support.hpp"
 
-namespace {
+namespace advice_test {
 
 using namespace robomill;
 using namespace robomill::monitor;
@@ -116,4 +116,4 @@ TEST(Advise, RejectsWhatMakesNoSense) {
             "highest_rad_per_s");
 }
 
-}  // namespace
+}  // namespace advice_test

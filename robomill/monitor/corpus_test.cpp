@@ -14,7 +14,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::monitor::testing {
-namespace {
+namespace corpus_test {
 
 using std::numbers::pi;
 
@@ -197,5 +197,5 @@ TEST(Score, BaselinesDetectALoudTone) {
   }
 }
 
-}  // namespace
+}  // namespace corpus_test
 }  // namespace robomill::monitor::testing

@@ -21,7 +21,7 @@
 #include "testing/monitor/signal.hpp"
 #include "testing/support.hpp"
 
-namespace {
+namespace detector_test {
 
 using namespace robomill;
 using namespace robomill::monitor;
@@ -464,4 +464,4 @@ TEST(ChatterMonitor, AllocatesNothing) {
   }
 }
 
-}  // namespace
+}  // namespace detector_test

@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::monitor {
-namespace {
+namespace entropy_test {
 
 MonitorOptions published(Entropy entropy) {
   return {.sample_rate_hz = 10240.0, .entropy = entropy};
@@ -141,5 +141,5 @@ TEST(EnergyEntropy, AllocatesNothing) {
             0U);
 }
 
-}  // namespace
+}  // namespace entropy_test
 }  // namespace robomill::monitor

@@ -15,7 +15,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::monitor {
-namespace {
+namespace listeners_test {
 
 /// Hops until it is chatter, of powers that a function gives; -1: never within 60.
 template <typename Power>
@@ -141,5 +141,5 @@ TEST(CombCusum, DetectsTheChatterOfTheCorpus) {
   EXPECT_LT(summary.frequency_median_hz, 0.3);
 }
 
-}  // namespace
+}  // namespace listeners_test
 }  // namespace robomill::monitor

@@ -7,7 +7,7 @@
 
 #include "testing/support.hpp"
 
-namespace {
+namespace monitor_test {
 
 using namespace robomill;
 using namespace robomill::monitor;
@@ -41,4 +41,4 @@ TEST(MonitorOptions, RejectWhatMakesNoSense) {
   EXPECT_EQ(field({.sample_rate_hz = 1e4, .full_scale = -1.0}), "full_scale");
 }
 
-}  // namespace
+}  // namespace monitor_test

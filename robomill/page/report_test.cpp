@@ -25,7 +25,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::page {
-namespace {
+namespace report_test {
 
 using nlohmann::json;
 
@@ -282,5 +282,5 @@ TEST(ReportJson, NamesTheMemberThatIsNoJson) {
   EXPECT_EQ(test::field_of([&] { static_cast<void>(report_json(report)); }), "measured");
 }
 
-}  // namespace
+}  // namespace report_test
 }  // namespace robomill::page

@@ -10,7 +10,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::page {
-namespace {
+namespace thin_test {
 
 // Property: increasing indices, within the bound, and the extremes of the whole curve are among them.
 TEST(Thin, KeepsPeaksAndDips) {
@@ -66,5 +66,5 @@ TEST(ThinTogether, KeepsThePeaksOfEveryCurve) {
   }
 }
 
-}  // namespace
+}  // namespace thin_test
 }  // namespace robomill::page

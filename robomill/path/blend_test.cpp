@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace blend_test {
 
 using robomill::test::seeds;
 using test::random_program;
@@ -336,5 +336,5 @@ TEST(Blend, DerivativesAreThoseOfThePose) {
   EXPECT_GT(seen, 50);
 }
 
-}  // namespace
+}  // namespace blend_test
 }  // namespace robomill::path

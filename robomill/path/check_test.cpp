@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace check_test {
 
 using Eigen::Vector3d;
 using program::Block;
@@ -258,5 +258,5 @@ TEST(Checker, RejectsOptionsThatMakeNoSense) {
   EXPECT_EQ(field(options(), {.max_pose_error = 0.0}), "max_pose_error");
 }
 
-}  // namespace
+}  // namespace check_test
 }  // namespace robomill::path

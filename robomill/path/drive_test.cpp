@@ -16,7 +16,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace drive_test {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
@@ -184,5 +184,5 @@ TEST(Drive, ShowsWhatTheJointJerkLimitIsFor) {
   EXPECT_NEAR(soft, 0.855, 0.005);
 }
 
-}  // namespace
+}  // namespace drive_test
 }  // namespace robomill::path

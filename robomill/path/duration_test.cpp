@@ -15,7 +15,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace duration_test {
 
 using robomill::test::field_of;
 using robomill::test::rejection;
@@ -135,5 +135,5 @@ TEST(Duration, AllowsWhatFits) {
   }
 }
 
-}  // namespace
+}  // namespace duration_test
 }  // namespace robomill::path

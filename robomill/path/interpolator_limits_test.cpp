@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace interpolator_limits_test {
 
 using test::Disturbance;
 using test::Machine;
@@ -167,5 +167,5 @@ TEST(InterpolatorThreads, RunAProgramWhileItIsRead) {
   }
 }
 
-}  // namespace
+}  // namespace interpolator_limits_test
 }  // namespace robomill::path

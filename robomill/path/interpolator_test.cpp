@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace interpolator_test {
 
 using test::Machine;
 using Status = PathInterpolator::Pushed::Status;
@@ -350,5 +350,5 @@ TEST(PathInterpolator, RejectsBadOptions) {
   EXPECT_EQ(robomill::test::field_of([&] { make(options(), {}, 2.0); }), "start");
 }
 
-}  // namespace
+}  // namespace interpolator_test
 }  // namespace robomill::path

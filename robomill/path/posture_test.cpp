@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace posture_test {
 
 using robomill::test::field_of;
 using robomill::test::rejection;
@@ -249,5 +249,5 @@ TEST(Posture, RejectsWhatMakesNoSense) {
   EXPECT_EQ(rejected({}), "program");
 }
 
-}  // namespace
+}  // namespace posture_test
 }  // namespace robomill::path

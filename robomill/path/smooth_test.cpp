@@ -18,7 +18,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace smooth_test {
 
 /// A KR210-like arm over a part in front of it; the accelerations and jerks of its joints are chosen.
 robot::Cell kr210_cell() {
@@ -385,5 +385,5 @@ TEST(Smooth, RejectsWhatCannotBeReachedByBlockAndLine) {
   EXPECT_TRUE(start.starts_with("the program's start: takes joint 4 ")) << start;
 }
 
-}  // namespace
+}  // namespace smooth_test
 }  // namespace robomill::path

@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::program {
-namespace {
+namespace machine_test {
 
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
@@ -98,5 +98,5 @@ TEST(RotaryMove, ConesNeedAsManyPartsAsTheirSagittaSays) {
   EXPECT_EQ(still.parts(1e-9), 1.0);
 }
 
-}  // namespace
+}  // namespace machine_test
 }  // namespace robomill::program

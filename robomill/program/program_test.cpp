@@ -9,7 +9,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::program {
-namespace {
+namespace program_test {
 
 using Eigen::Vector3d;
 
@@ -67,5 +67,5 @@ TEST(Program, ABlockBeginsWhereTheLastOneEnded) {
   EXPECT_EQ(program.begin_of(1).tip_m.x(), 2.0);
 }
 
-}  // namespace
+}  // namespace program_test
 }  // namespace robomill::program

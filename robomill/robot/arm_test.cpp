@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace arm_test {
 
 using robomill::test::field_of;
 
@@ -161,5 +161,5 @@ TEST(Arm, RejectsPositionsOfAnotherLength) {
   EXPECT_EQ(field_of([&] { (void)jacobian_derivative(jac, 6); }), "joint");
 }
 
-}  // namespace
+}  // namespace arm_test
 }  // namespace robomill::robot

@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace choose_test {
 
 using robomill::test::field_of;
 using robomill::test::seeds;
@@ -202,5 +202,5 @@ TEST(Choose, RejectsOptionsThatMakeNoSense) {
   EXPECT_EQ(field_of([&] { (void)solve_near(arm, one[0], seed, {.max_iterations = 0}); }), "max_iterations");
 }
 
-}  // namespace
+}  // namespace choose_test
 }  // namespace robomill::robot

@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace dynamics_test {
 
 using robomill::test::field_of;
 using robomill::test::seeds;
@@ -171,5 +171,5 @@ TEST(Dynamics, ReportsWhatBucklesAndRejectsAnArmWithoutMass) {
   EXPECT_EQ(field_of([&] { (void)tool_modes(arm, position, tip); }), "joints[3].stiffness");
 }
 
-}  // namespace
+}  // namespace dynamics_test
 }  // namespace robomill::robot

@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace hybrid_test {
 
 using robomill::test::field_of;
 using testing::RandomWay;
@@ -271,5 +271,5 @@ TEST(Hybrid, RejectsMachinesThatCannotBe) {
   EXPECT_EQ(field_of([&] { (void)HybridKinematics(machine_of(), {.max_travel_m = 0.0}); }), "max_travel_m");
 }
 
-}  // namespace
+}  // namespace hybrid_test
 }  // namespace robomill::robot

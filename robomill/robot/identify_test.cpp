@@ -9,7 +9,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace identify_test {
 
 using robomill::test::field_of;
 using robomill::test::seeds;
@@ -198,5 +198,5 @@ TEST(Identify, RejectsLoadsThatSayNothing) {
   for (const IdentifiedJoint& joint : bare.joints) EXPECT_FALSE(joint.identifiable);
 }
 
-}  // namespace
+}  // namespace identify_test
 }  // namespace robomill::robot

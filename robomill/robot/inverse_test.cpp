@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace inverse_test {
 
 using robomill::test::rejection;
 using robomill::test::seeds;
@@ -257,5 +257,5 @@ TEST(Inverse, SaysWhyAnArmIsNotOfItsKind) {
   EXPECT_NE(said(arm).find("axes 5 and 6 that are not parallel"), std::string::npos) << said(arm);
 }
 
-}  // namespace
+}  // namespace inverse_test
 }  // namespace robomill::robot

@@ -7,7 +7,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace kinematics_test {
 
 using robomill::test::field_of;
 
@@ -29,5 +29,5 @@ TEST(JointLimits, NameTheJointThatCannotBe) {
   EXPECT_EQ(rejected(&JointLimits::max_jerk, 5, 0.0), "accepted");
 }
 
-}  // namespace
+}  // namespace kinematics_test
 }  // namespace robomill::robot

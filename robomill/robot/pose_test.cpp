@@ -8,7 +8,7 @@
 #include "testing/robot/arms.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace pose_test {
 
 Cell random_cell(Random& random) {
   return {.arm = testing::kr210(), .workpiece = testing::random_pose(random, 1.0), .tool_length_m = 0.25};
@@ -60,5 +60,5 @@ TEST(Pose, GammaTurnsAboutTheAxis) {
   EXPECT_LT((turn - Eigen::AngleAxisd(0.3, axis).toRotationMatrix()).norm(), 1e-13);
 }
 
-}  // namespace
+}  // namespace pose_test
 }  // namespace robomill::robot

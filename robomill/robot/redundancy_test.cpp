@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace redundancy_test {
 
 using robomill::test::field_of;
 
@@ -158,5 +158,5 @@ TEST(Redundancy, RejectsWhatMakesNoSense) {
   EXPECT_EQ(field([](auto& c, auto&, auto&) { c.arm.joints[2].stiffness = 0.0; }), "joints[3].stiffness");
 }
 
-}  // namespace
+}  // namespace redundancy_test
 }  // namespace robomill::robot

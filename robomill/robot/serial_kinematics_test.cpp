@@ -17,7 +17,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace serial_kinematics_test {
 
 using robomill::test::field_of;
 using robomill::test::seeds;
@@ -298,5 +298,5 @@ TEST(SerialKinematics, RejectsWhatItCannotFollow) {
   EXPECT_EQ(field_of([&] { (void)SerialKinematics(cell); }), "cell.arm.joints");
 }
 
-}  // namespace
+}  // namespace serial_kinematics_test
 }  // namespace robomill::robot

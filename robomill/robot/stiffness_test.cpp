@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace stiffness_test {
 
 using robomill::test::field_of;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -199,5 +199,5 @@ TEST(Stiffness, RejectsAnArmWithoutStiffnessAndNumbersThatAreNone) {
   EXPECT_EQ(field_of([&] { (void)loaded_posture(arm, position, tip, {}, {.max_iterations = 0}); }), "max_iterations");
 }
 
-}  // namespace
+}  // namespace stiffness_test
 }  // namespace robomill::robot

@@ -10,7 +10,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::signal {
-namespace {
+namespace bands_test {
 
 // Property: each run holds exactly the extremes of its samples, whatever their number.
 TEST(Bands, HoldTheExtremesOfTheirRuns) {
@@ -42,5 +42,5 @@ TEST(Bands, HoldTheExtremesOfTheirRuns) {
   }
 }
 
-}  // namespace
+}  // namespace bands_test
 }  // namespace robomill::signal

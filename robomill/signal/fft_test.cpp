@@ -9,7 +9,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::signal {
-namespace {
+namespace fft_test {
 
 Eigen::VectorXcd random_signal(Eigen::Index n) {
   Random random(static_cast<std::uint64_t>(n));
@@ -49,5 +49,5 @@ TEST(FftInput, RejectsEmptyAndMisfit) {
   EXPECT_THROW(static_cast<void>(inverse_real_fft(Eigen::VectorXcd::Zero(3), 6)), InvalidInput);
 }
 
-}  // namespace
+}  // namespace fft_test
 }  // namespace robomill::signal

@@ -10,7 +10,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::signal {
-namespace {
+namespace spectrum_test {
 
 Eigen::VectorXd sine(Eigen::Index n, double sample_rate_hz, double frequency_hz, double amplitude, double phase) {
   Eigen::VectorXd x(n);
@@ -85,5 +85,5 @@ TEST(Spectrum, RejectsWhatMakesNoSense) {
   EXPECT_THROW(static_cast<void>(amplitude_spectrum(x, 1.0)), InvalidInput);
 }
 
-}  // namespace
+}  // namespace spectrum_test
 }  // namespace robomill::signal

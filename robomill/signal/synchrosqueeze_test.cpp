@@ -14,7 +14,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::signal {
-namespace {
+namespace synchrosqueeze_test {
 
 using Complex = std::complex<double>;
 constexpr double pi = std::numbers::pi;
@@ -369,5 +369,5 @@ TEST(EqualBands, CoverHalfTheRate) {
   EXPECT_EQ(edges(16), 5120.0);
 }
 
-}  // namespace
+}  // namespace synchrosqueeze_test
 }  // namespace robomill::signal

@@ -9,7 +9,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::signal {
-namespace {
+namespace window_shape_test {
 
 constexpr WindowKind all_kinds[] = {
     WindowKind::hann,    WindowKind::hamming,  WindowKind::blackman, WindowKind::blackman_harris,
@@ -73,5 +73,5 @@ TEST(WindowShape, RejectsWhatMakesNoSense) {
             "window.parameter");
 }
 
-}  // namespace
+}  // namespace window_shape_test
 }  // namespace robomill::signal

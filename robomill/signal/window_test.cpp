@@ -7,7 +7,7 @@
 #include "robomill/base/error.hpp"
 
 namespace robomill::signal {
-namespace {
+namespace window_test {
 
 // Half-overlapped periodic Hann windows add up to one everywhere.
 TEST(HannWindow, OverlappedByHalfAddsUpToOne) {
@@ -55,5 +55,5 @@ TEST(Windows, RejectWhatMakesNoSense) {
   EXPECT_THROW(static_cast<void>(force_window(10, 2, 4, -1)), InvalidInput);
 }
 
-}  // namespace
+}  // namespace window_test
 }  // namespace robomill::signal

@@ -9,7 +9,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::simulation {
-namespace {
+namespace agreement_test {
 
 using std::numbers::pi;
 
@@ -122,5 +122,5 @@ TEST(Agreement, OfTheFullCutsVerdictAndFloquetTheoryOverRandomCuts) {
   EXPECT_LE(differ, compared / 50);
 }
 
-}  // namespace
+}  // namespace agreement_test
 }  // namespace robomill::simulation

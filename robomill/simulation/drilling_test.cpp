@@ -9,7 +9,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::simulation {
-namespace {
+namespace drilling_test {
 
 using std::numbers::pi;
 
@@ -118,5 +118,5 @@ TEST(Drilling, RejectsBadInput) {
   EXPECT_EQ(rejected([](DrillingCut&) {}), "accepted");
 }
 
-}  // namespace
+}  // namespace drilling_test
 }  // namespace robomill::simulation

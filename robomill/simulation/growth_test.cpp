@@ -9,7 +9,7 @@
 #include "testing/simulation/cuts.hpp"
 
 namespace robomill::simulation {
-namespace {
+namespace growth_test {
 
 struct Case {
   const char* name;
@@ -152,5 +152,5 @@ TEST(Growth, JudgesKnownSequences) {
   EXPECT_NEAR(detail::judge(sequence(1.0, 0.98, 2.0, 1.0, 200), unknown).growth_per_period, 0.98, 1e-3);
 }
 
-}  // namespace
+}  // namespace growth_test
 }  // namespace robomill::simulation

@@ -9,7 +9,7 @@
 #include "testing/simulation/cuts.hpp"
 
 namespace robomill::simulation::detail {
-namespace {
+namespace modal_step_test {
 
 Eigen::MatrixXd exponential(const Eigen::MatrixXd& a) {
   const double norm = a.cwiseAbs().rowwise().sum().maxCoeff();
@@ -109,5 +109,5 @@ TEST(ModalStep, ASteadyForceBendsItByItsStaticCompliance) {
   EXPECT_EQ(step.displacement()(0), 0.0);
 }
 
-}  // namespace
+}  // namespace modal_step_test
 }  // namespace robomill::simulation::detail

@@ -15,7 +15,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::simulation {
-namespace {
+namespace posture_test {
 
 using detail::Physics;
 using std::numbers::pi;
@@ -56,8 +56,8 @@ TEST(Posture, ARigidCutterFeelsTheCuttingForceOfItsEngagement) {
   for (int seed = 0; seed < test::seeds(100); ++seed) {
     Random random(31, static_cast<std::uint64_t>(seed));
     PostureCut cut = testing::ball_cut(0.0, 0.0, 1);
-    cut.cutter = cutting::test::random_cutter(random, static_cast<cutting::CutterKind>(random.index(4)));
-    const cutting::Cut pass = cutting::test::random_cut(random, cut.cutter);
+    cut.cutter = cutting::testing::random_cutter(random, static_cast<cutting::CutterKind>(random.index(4)));
+    const cutting::Cut pass = cutting::testing::random_cut(random, cut.cutter);
     try {
       cut.engagement = cutting::engage(cut.cutter, pass, {.slices = 30});
     } catch (const InvalidInput&) {
@@ -272,5 +272,5 @@ TEST(Posture, RejectsBadInput) {
   EXPECT_EQ(rejected([](C& c) { c.structure.compliance(2, 2) = std::nan(""); }), "structure");
 }
 
-}  // namespace
+}  // namespace posture_test
 }  // namespace robomill::simulation

@@ -11,7 +11,7 @@
 #include "testing/simulation/posture_cases.hpp"
 
 namespace robomill::simulation {
-namespace {
+namespace posture_vibration_test {
 
 using detail::Physics;
 using std::numbers::pi;
@@ -230,5 +230,5 @@ TEST(Posture, AnArmsCutGivesAVerdictAndAllThreeForces) {
   EXPECT_EQ(air.verdict, Verdict::stable);
 }
 
-}  // namespace
+}  // namespace posture_vibration_test
 }  // namespace robomill::simulation

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace robomill::simulation::detail {
-namespace {
+namespace resample_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -63,5 +63,5 @@ TEST(Resampler, WhatStandsStillHasNoAcceleration) {
   EXPECT_LT((r.displacement_m.block(100, 0, 200, 1).array() - 1.0).abs().maxCoeff(), 1e-4);
 }
 
-}  // namespace
+}  // namespace resample_test
 }  // namespace robomill::simulation::detail

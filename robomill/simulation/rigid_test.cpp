@@ -9,7 +9,7 @@
 #include "testing/simulation/cuts.hpp"
 
 namespace robomill::simulation::detail {
-namespace {
+namespace rigid_test {
 
 using std::numbers::pi;
 
@@ -243,5 +243,5 @@ TEST(RigidCut, HelixSpreadsTheForceAndKeepsItsImpulse) {
   }
 }
 
-}  // namespace
+}  // namespace rigid_test
 }  // namespace robomill::simulation::detail

@@ -15,7 +15,7 @@
 #include "testing/simulation/cuts.hpp"
 
 namespace robomill::simulation {
-namespace {
+namespace robot_cuts_test {
 
 using stability::Limit;
 using testing::rpm;
@@ -144,5 +144,5 @@ TEST(RobotCuts, PeriodDoublingAndRunoutBothPutALineAtThreeRotations) {
   EXPECT_GT(runout_three, 0.2 * runout_tooth);
 }
 
-}  // namespace
+}  // namespace robot_cuts_test
 }  // namespace robomill::simulation

@@ -14,7 +14,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::simulation {
-namespace {
+namespace schedule_test {
 
 using detail::CutModel;
 using detail::Engine;
@@ -247,5 +247,5 @@ TEST(Schedule, RejectsWhatIsNone) {
   rejected({.speed = {{0.0, 0.5}}});
 }
 
-}  // namespace
+}  // namespace schedule_test
 }  // namespace robomill::simulation

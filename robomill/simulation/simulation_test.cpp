@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::simulation {
-namespace {
+namespace simulation_test {
 
 using detail::CutModel;
 using detail::Engine;
@@ -285,5 +285,5 @@ TEST(Simulation, StopsWhenAsked) {
   EXPECT_THROW(static_cast<void>(simulate(benchmark_cut(0.1, 5000.0, 1e-3), {}, progress)), Interrupted);
 }
 
-}  // namespace
+}  // namespace simulation_test
 }  // namespace robomill::simulation

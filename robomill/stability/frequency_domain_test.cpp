@@ -19,7 +19,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::stability {
-namespace {
+namespace frequency_domain_test {
 
 using std::numbers::pi;
 using test::seeds;
@@ -473,5 +473,5 @@ TEST(FrequencyDomain, RejectsWhatCannotBe) {
             0U);
 }
 
-}  // namespace
+}  // namespace frequency_domain_test
 }  // namespace robomill::stability

@@ -8,7 +8,7 @@
 #include "testing/stability/time_domain_reference.hpp"
 
 namespace robomill::stability {
-namespace {
+namespace lobes_accuracy_test {
 
 using testing::benchmark;
 using testing::robot;
@@ -104,5 +104,5 @@ TEST(LobesAccuracy, UnequalPitchAgreesWithIntegrationInTime) {
   }
 }
 
-}  // namespace
+}  // namespace lobes_accuracy_test
 }  // namespace robomill::stability

@@ -18,7 +18,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::stability {
-namespace {
+namespace lobes_test {
 
 using std::numbers::pi;
 using test::field_of;
@@ -390,5 +390,5 @@ TEST(LobesProblem, RejectsWhatCannotBe) {
   EXPECT_EQ(field_of([&] { static_cast<void>(at(tight, 6000, 1e-3)); }), "intervals");
 }
 
-}  // namespace
+}  // namespace lobes_test
 }  // namespace robomill::stability

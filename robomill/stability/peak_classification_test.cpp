@@ -14,7 +14,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::stability {
-namespace {
+namespace peak_classification_test {
 
 using std::numbers::pi;
 using test::field_of;
@@ -220,5 +220,5 @@ TEST(ChatterMechanism, OppositeCrossStiffnessCouplesModes) {
   EXPECT_GT(chatter_mechanism(p, {60000 * rpm, 1.03 * limit_m}).without_delay, 1.0);
 }
 
-}  // namespace
+}  // namespace peak_classification_test
 }  // namespace robomill::stability

@@ -10,7 +10,7 @@
 #include "testing/stability/problems.hpp"
 
 namespace robomill::stability {
-namespace {
+namespace surface_error_test {
 
 using std::numbers::pi;
 using testing::benchmark;
@@ -151,5 +151,5 @@ TEST(SurfaceError, NeedsAFeed) {
   EXPECT_THROW(static_cast<void>(surface_point(benchmark(0.1), {8000 * rpm, 1e-4})), InvalidInput);
 }
 
-}  // namespace
+}  // namespace surface_error_test
 }  // namespace robomill::stability

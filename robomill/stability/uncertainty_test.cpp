@@ -10,7 +10,7 @@
 #include "testing/stability/problems.hpp"
 
 namespace robomill::stability {
-namespace {
+namespace uncertainty_test {
 
 using testing::benchmark;
 using testing::rpm;
@@ -122,5 +122,5 @@ TEST(Uncertainty, RejectsWhatCannotBe) {
   EXPECT_EQ(field([](Uncertainty& u) { u.residue_std_ratio = 5.0; }), "residue_std_ratio");
 }
 
-}  // namespace
+}  // namespace uncertainty_test
 }  // namespace robomill::stability

@@ -6,7 +6,7 @@
 
 #include "robomill/coupling/assembly.hpp"
 
-namespace robomill::coupling::test {
+namespace robomill::coupling::testing {
 
 /// The published bar: steel, 12 mm round.
 inline Segment bar(double length_m, Beam beam = Beam::euler_bernoulli) {
@@ -44,4 +44,4 @@ inline double resonance_hz(const Eigen::VectorXd& frequency_hz, const Eigen::Vec
   return peak_hz(frequency_hz, h.imag().cast<std::complex<double>>());
 }
 
-}  // namespace robomill::coupling::test
+}  // namespace robomill::coupling::testing

@@ -6,7 +6,7 @@
 #include "robomill/coupling/joint_model.hpp"
 #include "testing/coupling/beams.hpp"
 
-namespace robomill::coupling::test {
+namespace robomill::coupling::testing {
 
 inline constexpr detail::JointValues planted = {2e7, 40.0, 5e4, 0.5};
 
@@ -34,4 +34,4 @@ inline modal::FrfSet tip_with(Assembly assembly, const Joint& joint, const Eigen
   set.frfs.resize(1);
   return set;
 }
-}  // namespace robomill::coupling::test
+}  // namespace robomill::coupling::testing

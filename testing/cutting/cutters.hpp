@@ -7,7 +7,7 @@
 #include "robomill/cutting/cutter.hpp"
 #include "robomill/cutting/published/analytic_engagement.hpp"
 
-namespace robomill::cutting::test {
+namespace robomill::cutting::testing {
 
 inline constexpr double degree = std::numbers::pi / 180.0;
 inline constexpr double mm = 1e-3;
@@ -90,4 +90,4 @@ inline Cut random_cut(Random& random, const Cutter& cutter) {
   return cut;
 }
 
-}  // namespace robomill::cutting::test
+}  // namespace robomill::cutting::testing

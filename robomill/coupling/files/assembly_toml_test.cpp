@@ -14,7 +14,7 @@
 #include "testing/text.hpp"
 
 namespace robomill::coupling {
-namespace {
+namespace assembly_toml_test {
 
 const std::string good = R"([frequency]
 range_hz = [1, 5000]
@@ -467,5 +467,5 @@ TEST(AssemblyToml, SurvivesMutations) {
   }
 }
 
-}  // namespace
+}  // namespace assembly_toml_test
 }  // namespace robomill::coupling

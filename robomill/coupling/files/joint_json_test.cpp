@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::coupling {
-namespace {
+namespace joint_json_test {
 
 JointFitResult found() {
   JointFitResult out;
@@ -67,5 +67,5 @@ TEST(JointJson, ItsKeysAreThoseOfTheAssembly) {
   EXPECT_EQ(file.assembly.joint->rotational_damping_n_m_s_per_rad, 0.5);
 }
 
-}  // namespace
+}  // namespace joint_json_test
 }  // namespace robomill::coupling

@@ -8,7 +8,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::coupling {
-namespace {
+namespace tools_csv_test {
 
 Segment carbide() {
   return {.length_m = 0.03,
@@ -130,5 +130,5 @@ TEST(ToolsCsv, SurvivesMutations) {
   }
 }
 
-}  // namespace
+}  // namespace tools_csv_test
 }  // namespace robomill::coupling

@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace coefficients_toml_test {
 
 constexpr double degree = std::numbers::pi / 180.0;
 
@@ -108,5 +108,5 @@ TEST(CoefficientsToml, RejectsInTheFilesWords) {
   expect("file = \"none.toml\"\n", "none.toml");
 }
 
-}  // namespace
+}  // namespace coefficients_toml_test
 }  // namespace robomill::cutting

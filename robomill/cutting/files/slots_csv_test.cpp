@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace slots_csv_test {
 
 const std::string head = "feed_per_tooth_mm,axial_depth_mm,spindle_speed_rpm,fx_n,fy_n,fz_n\n";
 
@@ -115,5 +115,5 @@ TEST(SlotsCsv, WhatIsNotDeterminedIsLeftOut) {
   EXPECT_TRUE(json["identification"]["std"]["axial_n_per_mm2"].is_null());
 }
 
-}  // namespace
+}  // namespace slots_csv_test
 }  // namespace robomill::cutting

@@ -10,17 +10,17 @@
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
-namespace {
+namespace analytic_engagement_test {
 
 using robomill::test::field_of;
 using robomill::test::rejection;
 using robomill::test::seeds;
 using std::numbers::pi;
-using test::ball_end;
-using test::bull_nose;
-using test::degree;
-using test::flat_end;
-using test::mm;
+using testing::ball_end;
+using testing::bull_nose;
+using testing::degree;
+using testing::flat_end;
+using testing::mm;
 
 constexpr CutterKind kinds[] = {CutterKind::flat_end, CutterKind::ball_end, CutterKind::bull_nose, CutterKind::general};
 constexpr double mm2 = 1e-6;
@@ -203,8 +203,8 @@ TEST(AnalyticEngagement, ArcsAreWhereThePointsAreInTheCut) {
   int points = 0;
   for (int seed = 0; seed < seeds(500); ++seed) {
     Random random(612, static_cast<std::uint64_t>(seed));
-    const Cutter cutter = test::random_cutter(random, kinds[seed % 4]);
-    Cut cut = test::random_cut(random, cutter);
+    const Cutter cutter = testing::random_cutter(random, kinds[seed % 4]);
+    Cut cut = testing::random_cut(random, cutter);
     const double half = 0.5 * cutter.mill.diameter_m;
     if (seed % 7 == 3) cut.axial_depth_m *= 4.0;  // up the side
     if (seed % 3 == 1) cut.curvature_across_feed_per_m = random.uniform(-0.25, 0.5) / half;
@@ -232,8 +232,8 @@ TEST(AnalyticEngagement, FiftyRingsGiveTheAreas) {
   int cases = 0;
   for (int seed = 0; seed < seeds(300); ++seed) {
     Random random(613, static_cast<std::uint64_t>(seed));
-    const Cutter cutter = test::random_cutter(random, kinds[seed % 4]);
-    const Cut cut = test::random_cut(random, cutter);
+    const Cutter cutter = testing::random_cutter(random, kinds[seed % 4]);
+    const Cut cut = testing::random_cut(random, cutter);
     Engagement fifty;
     if (field_of([&] { fifty = engage(cutter, cut, {.slices = 50}); }) != "accepted") continue;
     const detail::Patch patch(cutter, cut);
@@ -294,8 +294,8 @@ TEST(AnalyticEngagement, OfAFlatEndIsItsImmersion) {
 TEST(AnalyticEngagement, BallAndGeneralOutlineAgree) {
   for (int seed = 0; seed < seeds(300); ++seed) {
     Random random(614, static_cast<std::uint64_t>(seed));
-    const Cutter ball = test::random_cutter(random, CutterKind::ball_end);
-    Cut cut = test::random_cut(random, ball);
+    const Cutter ball = testing::random_cutter(random, CutterKind::ball_end);
+    Cut cut = testing::random_cut(random, ball);
     if (seed % 2 == 1) cut.curvature_across_feed_per_m = random.uniform(-0.4, 0.5) / ball.mill.diameter_m;
     Cutter general = ball;
     general.kind = CutterKind::general;
@@ -316,8 +316,8 @@ TEST(AnalyticEngagement, BallAndGeneralOutlineAgree) {
 TEST(AnalyticEngagement, UpAndDownMirrorEachOther) {
   for (int seed = 0; seed < seeds(200); ++seed) {
     Random random(615, static_cast<std::uint64_t>(seed));
-    const Cutter cutter = test::random_cutter(random, kinds[seed % 4]);
-    Cut cut = test::random_cut(random, cutter);
+    const Cutter cutter = testing::random_cutter(random, kinds[seed % 4]);
+    Cut cut = testing::random_cut(random, cutter);
     if (cut.direction == MillingDirection::slot) cut.direction = MillingDirection::up;
     Cut mirror = cut;
     mirror.direction = cut.direction == MillingDirection::up ? MillingDirection::down : MillingDirection::up;
@@ -420,5 +420,5 @@ TEST(AnalyticEngagement, RejectsACutOnTheShank) {
   EXPECT_EQ(field_of([&] { static_cast<void>(engage(cutter, cut)); }), "axial_depth_m");
 }
 
-}  // namespace
+}  // namespace analytic_engagement_test
 }  // namespace robomill::cutting

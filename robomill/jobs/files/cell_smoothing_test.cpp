@@ -12,7 +12,7 @@
 #include "testing/text.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace cell_smoothing_test {
 
 using robomill::test::Folder;
 using robomill::test::rejection;
@@ -173,5 +173,5 @@ TEST(SmoothingToml, DamagedFilesAreReadOrRejected) {
   EXPECT_GT(taken, 3);
 }
 
-}  // namespace
+}  // namespace cell_smoothing_test
 }  // namespace robomill::jobs

@@ -14,7 +14,7 @@
 #include "testing/text.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace cell_toml_test {
 
 using robomill::test::Folder;
 using robomill::test::rejection;
@@ -431,5 +431,5 @@ TEST(CellToml, DamagedFilesAreReadOrRejected) {
   EXPECT_GT(read, 10);
 }
 
-}  // namespace
+}  // namespace cell_toml_test
 }  // namespace robomill::jobs

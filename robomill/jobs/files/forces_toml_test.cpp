@@ -11,7 +11,7 @@
 #include "testing/text.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace forces_toml_test {
 
 using robomill::test::Folder;
 using robomill::test::rejection;
@@ -138,5 +138,5 @@ TEST(ForcesToml, DamagedFilesAreReadOrRejected) {
   }
 }
 
-}  // namespace
+}  // namespace forces_toml_test
 }  // namespace robomill::jobs

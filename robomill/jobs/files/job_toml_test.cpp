@@ -9,7 +9,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace job_toml_test {
 
 class JobToml : public testing::Test {
  protected:
@@ -108,5 +108,5 @@ TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
   EXPECT_NE(rejection(source + "[spindel]\nmax_speed_rpm = 5\n").find("spindel"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace job_toml_test
 }  // namespace robomill::jobs

@@ -17,7 +17,7 @@
 #include "testing/text.hpp"
 
 namespace robomill::jobs {
-namespace {
+namespace lobes_toml_test {
 
 const std::string good = R"([tool]
 teeth = 2
@@ -248,5 +248,5 @@ TEST(LobesToml, RejectsInTheFilesWords) {
   expect("[dynamics]", "[dynamics]\nkeep_modes = [3]", "lobes.toml:14: dynamics.keep_modes");
 }
 
-}  // namespace
+}  // namespace lobes_toml_test
 }  // namespace robomill::jobs

@@ -10,7 +10,7 @@
 #include "robomill/live/recorder.hpp"
 
 namespace robomill::live {
-namespace {
+namespace recorded_run_json_test {
 
 TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   constexpr double rate_hz = 10240.0;
@@ -57,5 +57,5 @@ TEST(RecordedRunJson, NoSignalIsNull) {
   EXPECT_TRUE(json["decisions"]["score"]["low"].empty());
 }
 
-}  // namespace
+}  // namespace recorded_run_json_test
 }  // namespace robomill::live

@@ -5,7 +5,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace fit_toml_test {
 
 TEST(FitToml, ReadsMethodBandAndNumbers) {
   const test::Folder folder;
@@ -31,5 +31,5 @@ TEST(FitToml, RejectsInTheFilesWords) {
   EXPECT_NE(say("[fit]\nmods = 3\n").find("modes"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace fit_toml_test
 }  // namespace robomill::modal

@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace frf_check_test {
 
 /// One mode of 300 Hz, 3 % and 1e7 N/m.
 std::complex<double> receptance(double frequency_hz) {
@@ -149,5 +149,5 @@ TEST_F(FrfCheck, ATimeRecordIsNoFrf) {
   EXPECT_NE(rejection("time_s,force_n,ax_m_per_s2\n0,1,2\n0.1,2,3\n").find("a column of times"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace frf_check_test
 }  // namespace robomill::modal

@@ -15,7 +15,7 @@
 #include "testing/text.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace frf_files_test {
 
 FrfSet robot_frfs() {
   FrfSet set = synthesize(data::robot_modes(), Eigen::VectorXd::LinSpaced(97, 5.0, 600.0));
@@ -355,5 +355,5 @@ TEST(FrfFiles, SurviveMutations) {
   }
 }
 
-}  // namespace
+}  // namespace frf_files_test
 }  // namespace robomill::modal

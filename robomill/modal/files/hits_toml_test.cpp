@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace hits_toml_test {
 
 const std::string record = "time_s,force_v,ax,ay\n0,0,1,2\n0.001,0.5,3,4\n0.002,0,5,6\n";
 
@@ -136,5 +136,5 @@ TEST(HitsToml, SurvivesMutations) {
   }
 }
 
-}  // namespace
+}  // namespace hits_toml_test
 }  // namespace robomill::modal

@@ -13,7 +13,7 @@
 #include "testing/text.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace modes_files_test {
 
 void expect_same(const ModalModel& a, const ModalModel& b, double tolerance) {
   ASSERT_EQ(a.modes.size(), b.modes.size());
@@ -97,5 +97,5 @@ TEST(ModesFiles, SurvivesMutations) {
   }
 }
 
-}  // namespace
+}  // namespace modes_files_test
 }  // namespace robomill::modal

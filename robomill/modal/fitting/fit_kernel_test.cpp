@@ -7,7 +7,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::modal::detail {
-namespace {
+namespace fit_kernel_test {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
@@ -168,5 +168,5 @@ TEST(FitKernel, GainOfACandidateIsWhatTheCostFalls) {
   }
 }
 
-}  // namespace
+}  // namespace fit_kernel_test
 }  // namespace robomill::modal::detail

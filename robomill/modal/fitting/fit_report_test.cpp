@@ -8,7 +8,7 @@
 #include "testing/modal/fit_cases.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace fit_report_test {
 
 // Modes of 2 % damping at 80 and 110 Hz, 50 to 150 Hz.
 FrfSet two_modes(double noise) {
@@ -79,5 +79,5 @@ TEST(FitBounds, ModesThatStandThereAreNamed) {
   EXPECT_NE(all_of(cut.warnings).find("stands at the upper end of the band"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace fit_report_test
 }  // namespace robomill::modal

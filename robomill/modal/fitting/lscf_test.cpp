@@ -8,7 +8,7 @@
 #include "testing/modal/fit_cases.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace lscf_test {
 
 using Eigen::Index;
 
@@ -104,5 +104,5 @@ TEST(Lscf, SaysThatThereAreNotSoMany) {
   EXPECT_EQ(result.status, FitResult::Status::not_converged);
 }
 
-}  // namespace
+}  // namespace lscf_test
 }  // namespace robomill::modal

@@ -8,7 +8,7 @@
 #include <string>
 
 namespace robomill::modal {
-namespace {
+namespace frf_quality_test {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
@@ -156,5 +156,5 @@ TEST(GradeFrfs, NamesEachFaultAndItsRemedy) {
   expect_fault(f, Grade::poor, "whole band", "more sensitive");
 }
 
-}  // namespace
+}  // namespace frf_quality_test
 }  // namespace robomill::modal

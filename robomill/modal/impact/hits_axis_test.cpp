@@ -11,7 +11,7 @@
 #include "testing/robot_modes.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace hits_axis_test {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
@@ -88,5 +88,5 @@ TEST(WithoutDecay, LeavesSilenceSilent) {
   EXPECT_EQ(without_decay(Eigen::VectorXcd::Zero(40), 1.0, 0.5).norm(), 0.0);
 }
 
-}  // namespace
+}  // namespace hits_axis_test
 }  // namespace robomill::modal

@@ -9,7 +9,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace hits_mass_test {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
@@ -120,5 +120,5 @@ TEST(RemoveMass, CarriesTheDeviation) {
   }
 }
 
-}  // namespace
+}  // namespace hits_mass_test
 }  // namespace robomill::modal

@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace hits_pulse_test {
 
 using Eigen::Index;
 
@@ -146,5 +146,5 @@ TEST(HasFlatTop, RestIsNoClipping) {
   EXPECT_TRUE(has_flat_top(force.cwiseMin(200.0)));
 }
 
-}  // namespace
+}  // namespace hits_pulse_test
 }  // namespace robomill::modal

@@ -24,7 +24,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::modal {
-namespace {
+namespace pso_test {
 
 using Complex = std::complex<double>;
 using detail::Misfit;
@@ -427,5 +427,5 @@ TEST(Pso, StopsWhenAsked) {
   EXPECT_THROW(static_cast<void>(fit_pso(synthesize(one_mode(), lines()), {}, progress)), Interrupted);
 }
 
-}  // namespace
+}  // namespace pso_test
 }  // namespace robomill::modal

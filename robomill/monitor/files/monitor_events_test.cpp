@@ -8,7 +8,7 @@
 #include "robomill/base/units.hpp"
 
 namespace robomill::monitor {
-namespace {
+namespace monitor_events_test {
 
 TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   MonitorEvent event;
@@ -70,5 +70,5 @@ TEST(MonitorEvents, HoldWhatHappenedToTheStream) {
   EXPECT_EQ(json["count"], 3);
 }
 
-}  // namespace
+}  // namespace monitor_events_test
 }  // namespace robomill::monitor

@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::monitor {
-namespace {
+namespace monitor_toml_test {
 
 constexpr const char* least = "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n";
 
@@ -202,5 +202,5 @@ TEST(RecordingsToml, RejectsWhatCannotCalibrate) {
   expect(std::string("[calibration]\nfalse_alarm_rate = 1\n") + four, "must be at least 0 and below 1");
 }
 
-}  // namespace
+}  // namespace monitor_toml_test
 }  // namespace robomill::monitor

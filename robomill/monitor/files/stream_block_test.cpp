@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::monitor {
-namespace {
+namespace stream_block_test {
 
 std::span<const std::byte> bytes(const std::string& text) {
   return std::as_bytes(std::span(text.data(), text.size()));
@@ -147,5 +147,5 @@ TEST(StreamBlock, SurvivesAnyBytes) {
   EXPECT_GT(accepted, 0);
 }
 
-}  // namespace
+}  // namespace stream_block_test
 }  // namespace robomill::monitor

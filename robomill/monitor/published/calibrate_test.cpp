@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::monitor {
-namespace {
+namespace calibrate_test {
 
 constexpr double rate_hz = 10240.0;
 
@@ -203,5 +203,5 @@ TEST(Calibrate, RejectsWhatCannotCalibrate) {
   EXPECT_EQ(test::field_of([&] { static_cast<void>(calibrate(bad, {}, {})); }), "sample_rate_hz");
 }
 
-}  // namespace
+}  // namespace calibrate_test
 }  // namespace robomill::monitor

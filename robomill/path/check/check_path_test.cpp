@@ -14,7 +14,7 @@
 #include "testing/path/trajectory.hpp"
 
 namespace robomill::path {
-namespace {
+namespace check_path_test {
 
 using Eigen::Vector3d;
 using program::Block;
@@ -265,5 +265,5 @@ TEST(BlockWindow, DistancesAgreeWithBruteForce) {
   }
 }
 
-}  // namespace
+}  // namespace check_path_test
 }  // namespace robomill::path

@@ -18,7 +18,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace joint_programs_test {
 
 using robomill::test::Folder;
 using test::parse;
@@ -314,5 +314,5 @@ TEST(ProgramParsers, RejectWhatIsWrong) {
   EXPECT_NE(test::parse_servoj("1 2 3\n", 0.002).trouble, "");
 }
 
-}  // namespace
+}  // namespace joint_programs_test
 }  // namespace robomill::path

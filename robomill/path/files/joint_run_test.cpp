@@ -22,7 +22,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace joint_run_test {
 
 using robot::Position6;
 
@@ -393,5 +393,5 @@ TEST(JointStep, JoinsPointsAsItSays) {
   EXPECT_NEAR((rest.at(Joining::spline, 1e-6)[0] - parabola(1.0)[0]) / 2e-6, 0.0, 1e-4);
 }
 
-}  // namespace
+}  // namespace joint_run_test
 }  // namespace robomill::path

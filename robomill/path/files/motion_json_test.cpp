@@ -8,7 +8,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace motion_json_test {
 
 using nlohmann::json;
 
@@ -78,5 +78,5 @@ TEST(MotionJson, HasAPathForEachCorner) {
             "motions.corner_paths_m");
 }
 
-}  // namespace
+}  // namespace motion_json_test
 }  // namespace robomill::path

@@ -8,7 +8,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace smooth_json_test {
 
 SmoothedProgram smoothed() {
   SmoothedBy by;
@@ -90,5 +90,5 @@ TEST(SmoothJson, KnowsEachMethodByItsName) {
   EXPECT_FALSE(method_of("fastest"));
 }
 
-}  // namespace
+}  // namespace smooth_json_test
 }  // namespace robomill::path

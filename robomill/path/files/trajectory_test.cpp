@@ -16,7 +16,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace trajectory_test {
 
 using robomill::test::Folder;
 
@@ -203,5 +203,5 @@ TEST(Trajectory, RejectsWhatItCannotWrite) {
   EXPECT_EQ(files_in(folder.path()), 1U);
 }
 
-}  // namespace
+}  // namespace trajectory_test
 }  // namespace robomill::path

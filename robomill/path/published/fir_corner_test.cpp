@@ -9,7 +9,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::path {
-namespace {
+namespace fir_corner_test {
 
 using Eigen::Vector3d;
 
@@ -135,5 +135,5 @@ TEST(FirCorner, EndTangentIsTheAxisVelocityAtUnitTime) {
   EXPECT_EQ(end_tangent(Vector3d::UnitX(), Vector3d::UnitX()).norm(), 0.0);
 }
 
-}  // namespace
+}  // namespace fir_corner_test
 }  // namespace robomill::path

@@ -12,7 +12,7 @@
 #include "robomill/robot/kinematics.hpp"
 
 namespace robomill::path {
-namespace {
+namespace fir_joint_test {
 
 /// One joint along a block: q' = a + b s + c s²/2.
 struct Bend {
@@ -99,5 +99,5 @@ TEST(FirJoint, MagnitudesKeepHalfTheJerkAndPrintedSignsDoNot) {
   EXPECT_GT(printed, 0.6);
 }
 
-}  // namespace
+}  // namespace fir_joint_test
 }  // namespace robomill::path

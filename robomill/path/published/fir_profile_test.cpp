@@ -9,7 +9,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::path {
-namespace {
+namespace fir_profile_test {
 
 Boxes boxes_of(const std::vector<double>& widths) {
   Boxes boxes;
@@ -126,5 +126,5 @@ TEST(FirProfile, TailTimeInvertsTheTail) {
   EXPECT_NEAR(tail_time_s(two, 0.05 * 0.05 / 0.6 * (1.0 + 1e-12)), 0.05, 1e-12);
 }
 
-}  // namespace
+}  // namespace fir_profile_test
 }  // namespace robomill::path

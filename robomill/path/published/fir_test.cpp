@@ -17,7 +17,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace fir_test {
 
 using Eigen::Vector3d;
 using program::Block;
@@ -421,5 +421,5 @@ TEST(Fir, RejectsWhatItCannotPlan) {
   EXPECT_NE(message.find("joint 1 beyond its limit"), std::string::npos) << message;
 }
 
-}  // namespace
+}  // namespace fir_test
 }  // namespace robomill::path

@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace motion_recorder_test {
 
 double largest(const signal::Band& band) {
   return std::max(band.high.maxCoeff(), -band.low.minCoeff());
@@ -89,5 +89,5 @@ TEST(MotionRecorder, RejectsWhatItCannotHold) {
   EXPECT_EQ(robomill::test::field_of([&] { MotionRecorder(6, {}, 0.0, none); }), "sample_period_s");
 }
 
-}  // namespace
+}  // namespace motion_recorder_test
 }  // namespace robomill::path

@@ -7,7 +7,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::path {
-namespace {
+namespace outline_test {
 
 TEST(Outline, FindsTheSharpestCorners) {
   program::Program program;
@@ -90,5 +90,5 @@ TEST(Outline, OfNoMoveHasOnePoint) {
   EXPECT_TRUE(found.corners.empty());
 }
 
-}  // namespace
+}  // namespace outline_test
 }  // namespace robomill::path

@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace feed_override_test {
 
 constexpr double period_s = 0.001;
 
@@ -163,5 +163,5 @@ TEST(FeedOverride, StopsFromFullFeedInAboutTwiceTheTimeOfAnUnplannedStop) {
   EXPECT_GT(periods * period_s, shortest_s);
 }
 
-}  // namespace
+}  // namespace feed_override_test
 }  // namespace robomill::path

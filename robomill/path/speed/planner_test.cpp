@@ -18,7 +18,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace planner_test {
 
 using robomill::test::field_of;
 using robomill::test::seeds;
@@ -448,5 +448,5 @@ TEST(Emitter, RunsAlongTheMotion) {
   for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_EQ(again[i].joints, samples[i].joints);
 }
 
-}  // namespace
+}  // namespace planner_test
 }  // namespace robomill::path

@@ -8,7 +8,7 @@
 #include "robomill/base/random.hpp"
 
 namespace robomill::path {
-namespace {
+namespace segment_test {
 
 using Kind = Segment::Kind;
 
@@ -119,5 +119,5 @@ TEST(Segment, DwellStandsStill) {
   EXPECT_EQ(way_m(dwell, 0.1, 0.25), 0.0);
 }
 
-}  // namespace
+}  // namespace segment_test
 }  // namespace robomill::path

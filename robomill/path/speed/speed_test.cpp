@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::path {
-namespace {
+namespace speed_test {
 
 using robomill::test::seeds;
 using Kind = Segment::Kind;
@@ -376,5 +376,5 @@ TEST(Speed, ScalesWithTime) {
   EXPECT_NEAR(slow.time_s(), 2.0 * plain.time_s(), 1e-4 * slow.time_s());
 }
 
-}  // namespace
+}  // namespace speed_test
 }  // namespace robomill::path

@@ -11,7 +11,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::program {
-namespace {
+namespace apt_reader_test {
 
 using Eigen::Vector3d;
 
@@ -205,5 +205,5 @@ TEST(Apt, SurvivesMutations) {
   EXPECT_GT(accepted, 100);
 }
 
-}  // namespace
+}  // namespace apt_reader_test
 }  // namespace robomill::program

@@ -16,7 +16,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::program {
-namespace {
+namespace gcode_arcs_test {
 
 using Eigen::Vector3d;
 
@@ -254,5 +254,5 @@ TEST(GcodeArcs, RejectsWithLineAndByHowMuch) {
   EXPECT_NE(said.find("part:2: I, J: would make a move of "), std::string::npos) << said;
 }
 
-}  // namespace
+}  // namespace gcode_arcs_test
 }  // namespace robomill::program

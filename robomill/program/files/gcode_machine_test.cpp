@@ -14,7 +14,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::program {
-namespace {
+namespace gcode_machine_test {
 
 Program read(const std::string& text) {
   return test_support::read_text<GcodeReader>(text, {.machine = Machine::xyzac_trt});
@@ -219,5 +219,5 @@ TEST(GcodeMachine, WithoutTheToolCentrePointTurnedAxesAreRejected) {
       "or M428 says so.");
 }
 
-}  // namespace
+}  // namespace gcode_machine_test
 }  // namespace robomill::program

@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::program {
-namespace {
+namespace gcode_rotary_test {
 
 using Eigen::Vector3d;
 
@@ -142,5 +142,5 @@ TEST(GcodeRotary, PartsOfArcsSayByHowMuchTheyLeaveThem) {
   }
 }
 
-}  // namespace
+}  // namespace gcode_rotary_test
 }  // namespace robomill::program

@@ -13,7 +13,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::program {
-namespace {
+namespace gcode_test {
 
 using Eigen::Vector3d;
 
@@ -308,5 +308,5 @@ TEST(Gcode, SurvivesMutations) {
   EXPECT_GT(accepted, 10);
 }
 
-}  // namespace
+}  // namespace gcode_test
 }  // namespace robomill::program

@@ -12,7 +12,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::program {
-namespace {
+namespace program_csv_test {
 
 using Eigen::Vector3d;
 
@@ -105,5 +105,5 @@ TEST(ProgramCsv, SurvivesMutations) {
   EXPECT_GT(accepted, 50);
 }
 
-}  // namespace
+}  // namespace program_csv_test
 }  // namespace robomill::program

@@ -14,7 +14,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::program {
-namespace {
+namespace program_files_test {
 
 bool same(const Block& a, const Block& b) {
   return a.kind == b.kind && a.line == b.line && a.end.tip_m == b.end.tip_m && a.end.axis == b.end.axis &&
@@ -196,5 +196,5 @@ TEST(ProgramFiles, ReadsAPipeButNotTwice) {
   EXPECT_NE(said.find("pipe.ngc: cannot be read a second time"), std::string::npos) << said;
 }
 
-}  // namespace
+}  // namespace program_files_test
 }  // namespace robomill::program

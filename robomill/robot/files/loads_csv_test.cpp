@@ -14,7 +14,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace loads_csv_test {
 
 using robomill::test::Folder;
 using robomill::test::rejection;
@@ -141,5 +141,5 @@ TEST(LoadsCsv, DamagedFilesAreReadOrRejected) {
   EXPECT_GT(read, 3);
 }
 
-}  // namespace
+}  // namespace loads_csv_test
 }  // namespace robomill::robot

@@ -13,7 +13,7 @@
 #include "testing/text.hpp"
 
 namespace robomill::robot {
-namespace {
+namespace urdf_test {
 
 using robomill::test::rejection;
 using robomill::test::seeds;
@@ -254,5 +254,5 @@ TEST(Urdf, DamagedFilesAreReadOrRejected) {
   EXPECT_GT(rejected, 100);
 }
 
-}  // namespace
+}  // namespace urdf_test
 }  // namespace robomill::robot

@@ -10,7 +10,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::simulation {
-namespace {
+namespace simulation_files_test {
 
 Simulation sample(bool with_z) {
   Simulation s;
@@ -77,5 +77,5 @@ TEST(SimulationFiles, JsonSaysNullForNone) {
   EXPECT_EQ(json["walls"][0]["location_error_um"], 2.0);
 }
 
-}  // namespace
+}  // namespace simulation_files_test
 }  // namespace robomill::simulation

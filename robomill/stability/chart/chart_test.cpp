@@ -10,7 +10,7 @@
 #include "testing/stability/problems.hpp"
 
 namespace robomill::stability {
-namespace {
+namespace chart_test {
 
 using testing::benchmark;
 using testing::robot;
@@ -164,5 +164,5 @@ TEST(Comparison, PutsEveryMethodBesideCollocation) {
   EXPECT_FALSE(rejected.rows[1].rejection.empty());
 }
 
-}  // namespace
+}  // namespace chart_test
 }  // namespace robomill::stability

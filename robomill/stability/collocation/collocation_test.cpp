@@ -15,7 +15,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::stability::detail {
-namespace {
+namespace collocation_test {
 
 using std::numbers::pi;
 using test::seeds;
@@ -320,5 +320,5 @@ TEST(Collocation, RejectsASwingThatNeverComesRound) {
   EXPECT_THROW(static_cast<void>(at(problem, 7000, 1e-4)), InvalidInput);
 }
 
-}  // namespace
+}  // namespace collocation_test
 }  // namespace robomill::stability::detail

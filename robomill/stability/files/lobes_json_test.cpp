@@ -9,7 +9,7 @@
 #include "robomill/base/units.hpp"
 
 namespace robomill::stability {
-namespace {
+namespace lobes_json_test {
 
 LobesResult small_result() {
   LobesResult r;
@@ -77,5 +77,5 @@ TEST(LobesJson, LeavesOutTheMapWhereNobodyAskedForIt) {
   EXPECT_TRUE(json.contains("limit"));
 }
 
-}  // namespace
+}  // namespace lobes_json_test
 }  // namespace robomill::stability

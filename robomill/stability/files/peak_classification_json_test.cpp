@@ -9,7 +9,7 @@
 #include "testing/robot_modes.hpp"
 
 namespace robomill::stability {
-namespace {
+namespace peak_classification_json_test {
 
 TEST(PeakClassificationJson, HoldsEveryPeakInShopUnits) {
   const modal::ModalModel modes = data::robot_modes();
@@ -53,5 +53,5 @@ TEST(PeakClassificationJson, NamesNothingThatCannotBeDetermined) {
   EXPECT_LT(peak["others"][0]["likelihood_per_hz"], 3.0 * peak["others"][1]["likelihood_per_hz"].get<double>());
 }
 
-}  // namespace
+}  // namespace peak_classification_json_test
 }  // namespace robomill::stability

@@ -16,7 +16,7 @@
 #include "testing/stability/problems.hpp"
 
 namespace robomill::stability::detail {
-namespace {
+namespace discretizations_test {
 
 using std::numbers::pi;
 using testing::benchmark;
@@ -314,5 +314,5 @@ TEST(Discretizations, RejectWhatTheyDoNotKnow) {
             "amplitude_ratio amplitude_ratio ");
 }
 
-}  // namespace
+}  // namespace discretizations_test
 }  // namespace robomill::stability::detail

@@ -18,7 +18,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::stability::detail {
-namespace {
+namespace monodromy_test {
 
 using std::numbers::pi;
 using test::seeds;
@@ -274,5 +274,5 @@ TEST(Hessenberg, SolvesTheAwkwardOnes) {
   EXPECT_FALSE(hessenberg.dominant(value) && std::isfinite(value.real()));
 }
 
-}  // namespace
+}  // namespace monodromy_test
 }  // namespace robomill::stability::detail
