@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "examples/first-lobes/hammer.hpp"
+#include "robomill/io/append.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 
 namespace {
@@ -32,16 +33,15 @@ std::string column_of(const modal::HitChannel& channel) {
 
 std::string csv_of(const modal::Hit& hit) {
   fmt::memory_buffer text;
-  fmt::format_to(std::back_inserter(text), "time_s,force_n");
+  io::append(text, "time_s,force_n");
   for (const modal::HitChannel& channel : hit.responses) {
-    fmt::format_to(std::back_inserter(text), ",{}", column_of(channel));
+    io::append(text, ",{}", column_of(channel));
   }
   text.push_back('\n');
   for (Eigen::Index j = 0; j < hit.force_n.size(); ++j) {
-    fmt::format_to(std::back_inserter(text), "{:.9g},{:.4f}", static_cast<double>(j) / hit.sample_rate_hz,
-                   hit.force_n(j));
+    io::append(text, "{:.9g},{:.4f}", static_cast<double>(j) / hit.sample_rate_hz, hit.force_n(j));
     for (const modal::HitChannel& channel : hit.responses) {
-      fmt::format_to(std::back_inserter(text), ",{:.5f}", channel.samples(j));
+      io::append(text, ",{:.5f}", channel.samples(j));
     }
     text.push_back('\n');
   }

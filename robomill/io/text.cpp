@@ -7,9 +7,12 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
+
+#include "robomill/io/append.hpp"
 
 namespace robomill::io {
 namespace {
@@ -141,6 +144,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     above.swap(row);
   }
   return above[b.size()];
+}
+
+void append_formatted(std::string& text, fmt::string_view format, fmt::format_args args) {
+  fmt::vformat_to(std::back_inserter(text), format, args);
+}
+
+void append_formatted(fmt::memory_buffer& text, fmt::string_view format, fmt::format_args args) {
+  fmt::vformat_to(fmt::appender(text), format, args);
 }
 
 }  // namespace robomill::io

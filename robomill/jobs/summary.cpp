@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,56 +12,54 @@
 
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/append.hpp"
 
 namespace robomill::jobs {
 namespace {
 
-template <class... Args>
-void add(std::string& out, fmt::format_string<Args...> format, Args&&... args) {
-  fmt::format_to(std::back_inserter(out), format, std::forward<Args>(args)...);
-}
+using io::append;
 
 void add_notes(std::string& out, const std::vector<std::string>& notes, std::string_view label) {
-  for (const std::string& note : notes) add(out, "{}{}\n", label, printable(note));
+  for (const std::string& note : notes) append(out, "{}{}\n", label, printable(note));
 }
 
 void add_vector(std::string& out, const char* label, const Eigen::Vector3d& v) {
-  add(out, "{:<12} {:>10.4g} {:>10.4g} {:>10.4g} N\n", label, v.x(), v.y(), v.z());
+  append(out, "{:<12} {:>10.4g} {:>10.4g} {:>10.4g} N\n", label, v.x(), v.y(), v.z());
 }
 
 void add_vibration(std::string& out, const simulation::Simulation& vibration) {
   const char* const verdict = vibration.verdict == simulation::Verdict::stable    ? "stable"
                               : vibration.verdict == simulation::Verdict::chatter ? "chatter"
                                                                                   : "undecided";
-  add(out, "vibration    {}", verdict);
+  append(out, "vibration    {}", verdict);
   if (vibration.chatter_frequency_hz > 0.0) {
-    add(out, " at {:.1f} Hz, {:.3g} µm", vibration.chatter_frequency_hz, vibration.chatter_amplitude_m / units::um);
+    append(out, " at {:.1f} Hz, {:.3g} µm", vibration.chatter_frequency_hz, vibration.chatter_amplitude_m / units::um);
   }
   if (vibration.small.status == simulation::SmallVibration::Status::found) {
-    add(out, ", |μ| = {:.4f}", vibration.small.spectral_radius);
+    append(out, ", |μ| = {:.4f}", vibration.small.spectral_radius);
   }
-  add(out, "\n");
+  append(out, "\n");
 }
 
 void add_revolution(std::string& out, const RevolutionForces& revolution, bool on_workpiece) {
   const double sign = on_workpiece ? -1.0 : 1.0;
   const cutting::CuttingForce& force = revolution.deflected.force;
-  add(out, "{:<12} {:>10} {:>10} {:>10}   on the {}, feed frame\n", "", "x", "y", "z",
-      on_workpiece ? "workpiece" : "tool");
+  append(out, "{:<12} {:>10} {:>10} {:>10}   on the {}, feed frame\n", "", "x", "y", "z",
+         on_workpiece ? "workpiece" : "tool");
   add_vector(out, "mean", sign * force.mean_n);
   add_vector(out, "peak", sign * force.peak_n);
   add_vector(out, "rms", force.rms_n);
-  add(out, "torque       mean {:.4g}, peak {:.4g} N·m\n", force.mean_torque_n_m, force.peak_torque_n_m);
-  add(out, "power        mean {:.4g} W; removal {:.4g} mm³/s\n", force.power_w,
-      force.removal_rate_m3_per_s / units::mm3);
+  append(out, "torque       mean {:.4g}, peak {:.4g} N·m\n", force.mean_torque_n_m, force.peak_torque_n_m);
+  append(out, "power        mean {:.4g} W; removal {:.4g} mm³/s\n", force.power_w,
+         force.removal_rate_m3_per_s / units::mm3);
   if (revolution.posture) {
     const Eigen::Vector3d q = revolution.deflected.deflection_m / units::um;
-    add(out, "deflection   {:.4g}, {:.4g}, {:.4g} µm under the mean force; depth left {:.6g} mm\n", q.x(), q.y(), q.z(),
-        revolution.deflected.cut.axial_depth_m / units::mm);
+    append(out, "deflection   {:.4g}, {:.4g}, {:.4g} µm under the mean force; depth left {:.6g} mm\n", q.x(), q.y(),
+           q.z(), revolution.deflected.cut.axial_depth_m / units::mm);
   }
   if (revolution.spindle_rotation && revolution.spindle_rotation->status == robot::Redundancy::Status::found) {
-    add(out, "best γ       {:.1f}°: {:.4g} µm\n", revolution.spindle_rotation->best.gamma_rad / units::deg,
-        revolution.spindle_rotation->best.error_m.norm() / units::um);
+    append(out, "best γ       {:.1f}°: {:.4g} µm\n", revolution.spindle_rotation->best.gamma_rad / units::deg,
+           revolution.spindle_rotation->best.error_m.norm() / units::um);
   }
   if (revolution.vibration) add_vibration(out, *revolution.vibration);
 }
@@ -70,24 +67,24 @@ void add_revolution(std::string& out, const RevolutionForces& revolution, bool o
 /// One block with its largest values.
 void add_block(std::string& out, const ProgramForces& program, const char* label, const BlockResult& row) {
   const bool bends = row.joints.size() > 0;
-  add(out, "{:<12} {:>6} {:>10.4g} {:>10.3g} {:>10.4g} {:>10.4g} {:>10} {:>10.3g}\n", label,
-      program.program.blocks[row.force.block].line, row.force.peak_force_n, row.force.revolution_torque_n_m,
-      row.force.peak_power_w, row.force.sustained_power_w,
-      bends ? fmt::format("{:.4g}", row.peak_deflection_m.norm() / units::um) : "–",
-      row.force.axial_depth_m / units::mm);
+  append(out, "{:<12} {:>6} {:>10.4g} {:>10.3g} {:>10.4g} {:>10.4g} {:>10} {:>10.3g}\n", label,
+         program.program.blocks[row.force.block].line, row.force.peak_force_n, row.force.revolution_torque_n_m,
+         row.force.peak_power_w, row.force.sustained_power_w,
+         bends ? fmt::format("{:.4g}", row.peak_deflection_m.norm() / units::um) : "–",
+         row.force.axial_depth_m / units::mm);
 }
 
 void add_program(std::string& out, const ProgramForces& program, double power_time_s) {
   const auto highest = [&](auto value) {
     return *std::ranges::max_element(program.blocks, {}, [&](const BlockResult& row) { return value(row); });
   };
-  add(out, "{} blocks, {} of them cut; {:.4g} mm³ removed; {:.2f} s\n", program.blocks.size(), program.cutting_blocks(),
-      program.removed_volume_m3 / units::mm3, program.seconds);
-  if (program.stock) add(out, "stock        {}\n", stock_text(program));
-  add(out, "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "the block of", "line", "force N", "torque Nm",
-      "power W", "power W", "bends µm", "depth mm");
-  add(out, "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "", "peak", "1 turn", "1 turn",
-      fmt::format("{:.4g} s", power_time_s), "1 turn", "");
+  append(out, "{} blocks, {} of them cut; {:.4g} mm³ removed; {:.2f} s\n", program.blocks.size(),
+         program.cutting_blocks(), program.removed_volume_m3 / units::mm3, program.seconds);
+  if (program.stock) append(out, "stock        {}\n", stock_text(program));
+  append(out, "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "the block of", "line", "force N",
+         "torque Nm", "power W", "power W", "bends µm", "depth mm");
+  append(out, "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "", "peak", "1 turn", "1 turn",
+         fmt::format("{:.4g} s", power_time_s), "1 turn", "");
   add_block(out, program, "most force", highest([](const BlockResult& r) { return r.force.peak_force_n; }));
   add_block(out, program, "most torque", highest([](const BlockResult& r) { return r.force.revolution_torque_n_m; }));
   add_block(out, program, "most power", highest([](const BlockResult& r) { return r.force.sustained_power_w; }));
@@ -103,7 +100,7 @@ std::string share(const path::Usage& usage) {
 
 void add_row(std::string& out, const char* name, const std::array<std::string, 4>& cells,
              const std::string& more = {}) {
-  add(out, "{:<10}{:>12}{:>14}{:>12}{:>12}  {}\n", name, cells[0], cells[1], cells[2], cells[3], more);
+  append(out, "{:<10}{:>12}{:>14}{:>12}{:>12}  {}\n", name, cells[0], cells[1], cells[2], cells[3], more);
 }
 
 void add_check(std::string& out, const path::SmoothedBy& by) {
@@ -127,54 +124,55 @@ void add_check(std::string& out, const path::SmoothedBy& by) {
 }
 
 void add_methods(std::string& out, const path::SmoothedProgram& smoothed) {
-  add(out, "\n{:<18}{:>12}{:>12}{:>14}{:>14}{:>12}\n", "", "duration", "violations", "joint limits", "tip error",
-      "planned in");
+  append(out, "\n{:<18}{:>12}{:>12}{:>14}{:>14}{:>12}\n", "", "duration", "violations", "joint limits", "tip error",
+         "planned in");
   for (const path::SmoothedBy& by : smoothed.methods) {
-    add(out, "{:<18}{:>10.3f} s{:>12}{:>12.1f} %{:>11.4g} mm{:>10.3f} s\n", path::name_of(by.method),
-        by.summary.duration_s, by.summary.check.violations(), 100.0 * joint_share(by.summary.check),
-        by.summary.check.tip_error_m.max / units::mm, by.summary.plan_s);
+    append(out, "{:<18}{:>10.3f} s{:>12}{:>12.1f} %{:>11.4g} mm{:>10.3f} s\n", path::name_of(by.method),
+           by.summary.duration_s, by.summary.check.violations(), 100.0 * joint_share(by.summary.check),
+           by.summary.check.tip_error_m.max / units::mm, by.summary.plan_s);
   }
 }
 
 /// What a controller makes of the points of a joint program.
 void add_run(std::string& out, const path::ProgramRun& run) {
   const double shortest = run.shortest_step_s / units::ms, longest = run.longest_step_s / units::ms;
-  add(out, "\nrobot program  {} points, ", run.points);
+  append(out, "\nrobot program  {} points, ", run.points);
   if (shortest == longest) {
-    add(out, "one every {:.4g} ms", longest);
+    append(out, "one every {:.4g} ms", longest);
   } else {
-    add(out, "{:.4g} to {:.4g} ms apart", shortest, longest);
+    append(out, "{:.4g} to {:.4g} ms apart", shortest, longest);
   }
-  add(out,
-      "; joints interpolated between them: {:.4g} mm and {:.4g}° from the program, {:.4g} mm and {:.4g}° from the "
-      "trajectory\n",
-      run.tip_error_m / units::mm, run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm,
-      run.axis_deviation_rad / units::deg);
+  append(out,
+         "; joints interpolated between them: {:.4g} mm and {:.4g}° from the program, {:.4g} mm and {:.4g}° from the "
+         "trajectory\n",
+         run.tip_error_m / units::mm, run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm,
+         run.axis_deviation_rad / units::deg);
 }
 
 void add_operation(std::string& out, const char* label, const decision::Operation& op) {
-  add(out, "{:<12} {:>7.0f} rpm  {:.3f} mm  {:.3g} mm/tooth  {:.4g} mm³/s  limited by {}\n", label,
-      op.spindle_speed_rad_per_s / units::rpm, op.axial_depth_m / units::mm, op.feed_per_tooth_m / units::mm,
-      op.removal_rate_m3_per_s / units::mm3, limited_by_text(op));
+  append(out, "{:<12} {:>7.0f} rpm  {:.3f} mm  {:.3g} mm/tooth  {:.4g} mm³/s  limited by {}\n", label,
+         op.spindle_speed_rad_per_s / units::rpm, op.axial_depth_m / units::mm, op.feed_per_tooth_m / units::mm,
+         op.removal_rate_m3_per_s / units::mm3, limited_by_text(op));
 }
 
 /// What else to know of the recommended one.
 void add_details(std::string& out, const decision::Operation& op) {
-  add(out, "             cutting speed {:.4g} m/min, feed {:.4g} mm/min, mean torque {:.3g} N·m, mean power {:.3g} W\n",
+  append(
+      out, "             cutting speed {:.4g} m/min, feed {:.4g} mm/min, mean torque {:.3g} N·m, mean power {:.3g} W\n",
       op.cutting_speed_m_per_s * units::minute, op.feed_m_per_s / units::mm * units::minute, op.torque_n_m, op.power_w);
   if (!std::isfinite(op.peak_deflection_m)) return;
   const std::string error = std::isfinite(op.surface_error_m)
                                 ? fmt::format("surface error {:+.3g} µm, ", op.surface_error_m / units::um)
                                 : std::string();
-  add(out, "             {}peak deflection {:.3g} µm, from forced vibration\n", error,
-      op.peak_deflection_m / units::um);
+  append(out, "             {}peak deflection {:.3g} µm, from forced vibration\n", error,
+         op.peak_deflection_m / units::um);
 }
 
 /// On top: nothing that follows is worth more than the model.
 void add_disagreement(std::string& out, const Agreement& count) {
   if (count.disagree == 0) return;
-  add(out, "test cuts    {} of {} disagree with the prediction: find out why before you use these numbers\n",
-      count.disagree, count.agree + count.disagree);
+  append(out, "test cuts    {} of {} disagree with the prediction: find out why before you use these numbers\n",
+         count.disagree, count.agree + count.disagree);
 }
 
 }  // namespace
@@ -186,29 +184,29 @@ std::string summary(const PlanResult& result) {
   if (result.hits) {
     for (const modal::HitVerdict& hit : result.hits->hits) {
       if (hit.accepted) continue;
-      add(out, "rejected     {}: {}\n", printable(hit.file), hit.reasons.empty() ? "" : hit.reasons.front());
+      append(out, "rejected     {}: {}\n", printable(hit.file), hit.reasons.empty() ? "" : hit.reasons.front());
     }
   }
   if (result.prediction && !result.prediction->peaks.empty()) {
     const TipPeak& first = result.prediction->peaks.front();
-    add(out, "predicted    first peak of {} at {:.1f} Hz, {:.3g} µm/N\n", modal::to_string(first.name),
-        first.frequency_hz, first.receptance_m_per_n / units::um);
+    append(out, "predicted    first peak of {} at {:.1f} Hz, {:.3g} µm/N\n", modal::to_string(first.name),
+           first.frequency_hz, first.receptance_m_per_n / units::um);
   }
   if (result.recommendation.recommended) {
     add_operation(out, "recommended", *result.recommendation.recommended);
     add_details(out, *result.recommendation.recommended);
     for (const decision::Operation& op : result.recommendation.alternatives) add_operation(out, "alternative", op);
   } else {
-    add(out, "{}: {}\n", result.has_lobes() ? "no safe depth" : "no answer", result.recommendation.reason);
+    append(out, "{}: {}\n", result.has_lobes() ? "no safe depth" : "no answer", result.recommendation.reason);
   }
   if (result.path) {
     const path::Summary& smoothed = result.path->first().summary;
-    add(out, "program      {:.3f} s for {} blocks; {} violations of limits\n", smoothed.duration_s, smoothed.blocks,
-        smoothed.check.violations());
+    append(out, "program      {:.3f} s for {} blocks; {} violations of limits\n", smoothed.duration_s, smoothed.blocks,
+           smoothed.check.violations());
   }
   if (!result.cuts.empty()) {
-    add(out, "test cuts    {} agree, {} disagree, {} without a result\n", count.agree, count.disagree,
-        count.not_compared);
+    append(out, "test cuts    {} agree, {} disagree, {} without a result\n", count.agree, count.disagree,
+           count.not_compared);
   }
   add_notes(out, result.warnings, "warning      ");
   add_notes(out, result.notes, "note         ");
@@ -228,17 +226,17 @@ std::string summary(const SmoothResult& result) {
   std::string out;
   const path::SmoothedBy& by = result.first();
   const path::Summary& run = by.summary;
-  add(out, "{}  {:.3f} s", path::name_of(by.method), run.duration_s);
-  if (run.lower_bound_s > 0.0) add(out, " (bound {:.3f} s)", run.lower_bound_s);
-  add(out, " for {} blocks; {} samples; planned in {:.3g} s", run.blocks, run.samples, run.plan_s);
-  if (run.rounds > 1) add(out, ", {} rounds", run.rounds);
-  add(out, "\n\n");
+  append(out, "{}  {:.3f} s", path::name_of(by.method), run.duration_s);
+  if (run.lower_bound_s > 0.0) append(out, " (bound {:.3f} s)", run.lower_bound_s);
+  append(out, " for {} blocks; {} samples; planned in {:.3g} s", run.blocks, run.samples, run.plan_s);
+  if (run.rounds > 1) append(out, ", {} rounds", run.rounds);
+  append(out, "\n\n");
   add_check(out, by);
   if (result.smoothed.methods.size() > 1) add_methods(out, result.smoothed);
   if (result.smoothed.robot_program) add_run(out, *result.smoothed.robot_program);
-  add(out, "\n{} violations of limits\n", run.check.violations());
+  append(out, "\n{} violations of limits\n", run.check.violations());
   for (const program::Skipped& item : result.smoothed.skipped)
-    add(out, "skipped    line {}: {}\n", item.line, printable(item.what));
+    append(out, "skipped    line {}: {}\n", item.line, printable(item.what));
   add_notes(out, result.smoothed.notes, "note       ");
   return out;
 }

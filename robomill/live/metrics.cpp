@@ -3,18 +3,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <iterator>
 #include <string_view>
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/append.hpp"
 
 namespace robomill::live {
 namespace {
 
 void row(std::string& out, std::string_view name, std::string_view type, std::string_view help, double value) {
   if (!std::isfinite(value)) return;
-  fmt::format_to(std::back_inserter(out), "# HELP robomill_{0} {1}\n# TYPE robomill_{0} {2}\nrobomill_{0} {3}\n", name,
-                 help, type, value);
+  io::append(out, "# HELP robomill_{0} {1}\n# TYPE robomill_{0} {2}\nrobomill_{0} {3}\n", name, help, type, value);
 }
 
 }  // namespace

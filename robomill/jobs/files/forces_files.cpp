@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/append.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/files/forces_json.hpp"
 #include "robomill/jobs/forces.hpp"
@@ -34,11 +34,11 @@ std::string revolution_csv(const RevolutionForces& revolution, double sign) {
   text += vibrating ? ",vibrating_fx_n,vibrating_fy_n,vibrating_fz_n\n" : "\n";
   for (Eigen::Index i = 0; i < force.rotation_rad.size(); ++i) {
     const Eigen::Vector3d f = sign * force.force_n.col(i);
-    fmt::format_to(std::back_inserter(text), "{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", force.rotation_rad(i) / units::deg,
-                   f.x(), f.y(), f.z(), force.torque_n_m(i));
+    io::append(text, "{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", force.rotation_rad(i) / units::deg, f.x(), f.y(), f.z(),
+               force.torque_n_m(i));
     if (vibrating) {
       const Eigen::Vector3d v = sign * revolution.vibrating_force_n.col(i);
-      fmt::format_to(std::back_inserter(text), ",{:.9g},{:.9g},{:.9g}", v.x(), v.y(), v.z());
+      io::append(text, ",{:.9g},{:.9g},{:.9g}", v.x(), v.y(), v.z());
     }
     text += '\n';
   }
@@ -109,7 +109,7 @@ std::string program_csv(const ForcesResult& result) {
       first = false;
       if (of_robot(column.name) && row.joints.size() == 0) continue;
       const double value = column.value(program, row) * (turns(column.name) ? sign : 1.0);
-      fmt::format_to(std::back_inserter(text), "{:.9g}", value);
+      io::append(text, "{:.9g}", value);
     }
     text += '\n';
   }

@@ -4,12 +4,12 @@
 #include <array>
 #include <cctype>
 #include <complex>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/append.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/si.hpp"
 #include "robomill/io/table.hpp"
@@ -329,12 +329,11 @@ std::string frf_table(const FrfSet& set, char separator) {
   }
   out += '\n';
   for (Eigen::Index i = 0; i < set.frequency_hz.size(); ++i) {
-    fmt::format_to(std::back_inserter(out), "{:.15g}", set.frequency_hz(i));
+    io::append(out, "{:.15g}", set.frequency_hz(i));
     for (const Frf& frf : set.frfs) {
-      fmt::format_to(std::back_inserter(out), "{0}{1}{0}{2}", separator, frf.receptance(i).real(),
-                     frf.receptance(i).imag());
-      if (frf.coherence.size() > 0) fmt::format_to(std::back_inserter(out), "{}{}", separator, frf.coherence(i));
-      if (frf.deviation.size() > 0) fmt::format_to(std::back_inserter(out), "{}{}", separator, frf.deviation(i));
+      io::append(out, "{0}{1}{0}{2}", separator, frf.receptance(i).real(), frf.receptance(i).imag());
+      if (frf.coherence.size() > 0) io::append(out, "{}{}", separator, frf.coherence(i));
+      if (frf.deviation.size() > 0) io::append(out, "{}{}", separator, frf.deviation(i));
     }
     out += '\n';
   }

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/append.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
 
 namespace robomill::monitor {
@@ -191,12 +191,12 @@ std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
   const MonitorOptions& o = file.options;
   std::string out;
   const auto line = [&out](std::string_view key, const std::string& value) {
-    fmt::format_to(std::back_inserter(out), "{} = {}\n", key, value);
+    io::append(out, "{} = {}\n", key, value);
   };
   std::string_view rest = remarks;
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
-    fmt::format_to(std::back_inserter(out), "# {}\n", rest.substr(0, end));
+    io::append(out, "# {}\n", rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   out += "[signal]\n";

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/append.hpp"
 
 namespace robomill::path {
 namespace {
@@ -17,14 +18,14 @@ constexpr const char* same_angles =
 void degrees(fmt::memory_buffer& out, const robot::Position6& joints, bool named) {
   for (int joint = 0; joint < 6; ++joint) {
     if (joint > 0) out.push_back(',');
-    if (named) fmt::format_to(fmt::appender(out), "A{} ", joint + 1);
-    fmt::format_to(fmt::appender(out), "{:.6f}", joints[joint] / units::deg);
+    if (named) io::append(out, "A{} ", joint + 1);
+    io::append(out, "{:.6f}", joints[joint] / units::deg);
   }
 }
 
 void radians(fmt::memory_buffer& out, const robot::Position6& joints, const char* parted) {
   for (int joint = 0; joint < 6; ++joint) {
-    fmt::format_to(fmt::appender(out), "{}{:.9f}", joint > 0 ? parted : "", joints[joint]);
+    io::append(out, "{}{:.9f}", joint > 0 ? parted : "", joints[joint]);
   }
 }
 
@@ -94,9 +95,7 @@ class Krl final : public JointDialect {
   [[nodiscard]] JointPoints::Held held() const override { return held_degrees; }
   [[nodiscard]] bool fixed_cycle() const override { return false; }
   [[nodiscard]] std::size_t most_points() const override { return points_in_memory; }
-  void open(fmt::memory_buffer& out) override {
-    fmt::format_to(fmt::appender(out), "&ACCESS RVP\n&REL 1\nDEF {}()\n", name_);
-  }
+  void open(fmt::memory_buffer& out) override { io::append(out, "&ACCESS RVP\n&REL 1\nDEF {}()\n", name_); }
   [[nodiscard]] std::vector<std::string> not_set(const Outputs& wanted) const override {
     std::vector<std::string> lines;
     if (!end_.tool_number)
@@ -111,7 +110,7 @@ class Krl final : public JointDialect {
   }
   void start(fmt::memory_buffer& out, const robot::Position6& joints, const Outputs& on) override {
     put(out, "BAS(#INITMOV,0)\n");
-    if (end_.tool_number) fmt::format_to(fmt::appender(out), "BAS(#TOOL,{})\n", *end_.tool_number);
+    if (end_.tool_number) io::append(out, "BAS(#TOOL,{})\n", *end_.tool_number);
     write_load(out);
     put(out, "BAS(#VEL_PTP,10)\n$APO.CDIS=0.1\n$APO.CPTP=1\n$ADVANCE=3\nPTP {");
     degrees(out, joints, true);
@@ -123,13 +122,13 @@ class Krl final : public JointDialect {
     if (segments_ == 0) put(out, "PTP_SPLINE\n TIME_BLOCK START\n");
     put(out, " SPTP {");
     degrees(out, joints, true);
-    fmt::format_to(fmt::appender(out), "}}\n TIME_BLOCK PART={:.6f}\n", seconds);
+    io::append(out, "}}\n TIME_BLOCK PART={:.6f}\n", seconds);
     ++segments_;
     seconds_ += seconds;
     if (rests || segments_ == longest) end_block(out, rests);
   }
   void wait(fmt::memory_buffer& out, const robot::Position6&, double seconds) override {
-    fmt::format_to(fmt::appender(out), "WAIT SEC {:.6f}\n", seconds);
+    io::append(out, "WAIT SEC {:.6f}\n", seconds);
   }
   void close(fmt::memory_buffer& out, const Outputs& off) override {
     if (off.spindle) switch_output(out, end_.spindle, false);
@@ -146,7 +145,7 @@ class Krl final : public JointDialect {
  private:
   static bool switch_output(fmt::memory_buffer& out, const DigitalOutput& output, bool on) {
     if (!output.number) return false;
-    fmt::format_to(fmt::appender(out), "$OUT[{}]={}\n", *output.number, on ? "TRUE" : "FALSE");
+    io::append(out, "$OUT[{}]={}\n", *output.number, on ? "TRUE" : "FALSE");
     return true;
   }
 
@@ -154,17 +153,17 @@ class Krl final : public JointDialect {
   void write_load(fmt::memory_buffer& out) const {
     const std::optional<int> number = end_.load_number ? end_.load_number : end_.tool_number;
     if (end_.load_number || (number && !end_.mass_kg)) {
-      fmt::format_to(fmt::appender(out), "$LOAD=LOAD_DATA[{}]\n", *number);
+      io::append(out, "$LOAD=LOAD_DATA[{}]\n", *number);
     } else if (end_.mass_kg) {
-      fmt::format_to(fmt::appender(out), "$LOAD={{M {:.6g},CM {{{},A 0.0,B 0.0,C 0.0}},J {{X 0.0,Y 0.0,Z 0.0}}}}\n",
-                     *end_.mass_kg, three(end_.center(), units::mm, "X {:.6g},Y {:.6g},Z {:.6g}"));
+      io::append(out, "$LOAD={{M {:.6g},CM {{{},A 0.0,B 0.0,C 0.0}},J {{X 0.0,Y 0.0,Z 0.0}}}}\n", *end_.mass_kg,
+                 three(end_.center(), units::mm, "X {:.6g},Y {:.6g},Z {:.6g}"));
     }
   }
 
   static constexpr int longest = 250;  // 5 s of points every 20 ms: a block is computed before it is run
 
   void end_block(fmt::memory_buffer& out, bool rests) {
-    fmt::format_to(fmt::appender(out), " TIME_BLOCK END={:.6f}\nENDSPLINE{}\n", seconds_, rests ? "" : " C_SPL");
+    io::append(out, " TIME_BLOCK END={:.6f}\nENDSPLINE{}\n", seconds_, rests ? "" : " C_SPL");
     segments_ = 0;
     seconds_ = 0.0;
   }
@@ -186,7 +185,7 @@ class Rapid final : public JointDialect {
   [[nodiscard]] JointPoints::Held held() const override { return held_degrees; }
   [[nodiscard]] bool fixed_cycle() const override { return false; }
   [[nodiscard]] std::size_t most_points() const override { return 0; }
-  void open(fmt::memory_buffer& out) override { fmt::format_to(fmt::appender(out), "MODULE {}\n", name_); }
+  void open(fmt::memory_buffer& out) override { io::append(out, "MODULE {}\n", name_); }
   [[nodiscard]] std::vector<std::string> not_set(const Outputs& wanted) const override {
     std::vector<std::string> lines;
     if (tool_ == "tool0") {
@@ -202,10 +201,10 @@ class Rapid final : public JointDialect {
     if (tool_ == "tool_of_cell") write_tool(out);
     put(out, "LOCAL CONST extjoint ext:=[9E9,9E9,9E9,9E9,9E9,9E9];\nLOCAL PROC go_to_start()\nMoveAbsJ [[");
     degrees(out, joints, false);
-    fmt::format_to(fmt::appender(out), "],ext]\\NoEOffs,v100,fine,{};\n", tool_);
+    io::append(out, "],ext]\\NoEOffs,v100,fine,{};\n", tool_);
     if (on.coolant) switch_output(out, end_.coolant, true);
     if (on.spindle && switch_output(out, end_.spindle, true)) {
-      fmt::format_to(fmt::appender(out), "WaitTime {:.6f};\n", end_.spin_up_s);
+      io::append(out, "WaitTime {:.6f};\n", end_.spin_up_s);
     }
     put(out, "ENDPROC\n");
   }
@@ -213,17 +212,16 @@ class Rapid final : public JointDialect {
     next_line(out);
     put(out, "MoveAbsJ [[");
     degrees(out, joints, false);
-    fmt::format_to(fmt::appender(out), "],ext]\\NoEOffs,v1000\\T:={:.6f},{},{};\n", seconds, rests ? "fine" : "z0",
-                   tool_);
+    io::append(out, "],ext]\\NoEOffs,v1000\\T:={:.6f},{},{};\n", seconds, rests ? "fine" : "z0", tool_);
   }
   void wait(fmt::memory_buffer& out, const robot::Position6&, double seconds) override {
     next_line(out);
-    fmt::format_to(fmt::appender(out), "WaitTime {:.6f};\n", seconds);
+    io::append(out, "WaitTime {:.6f};\n", seconds);
   }
   void close(fmt::memory_buffer& out, const Outputs& off) override {
     if (lines_ > 0) put(out, "ENDPROC\n");
     put(out, "PROC main()\ngo_to_start;\n");
-    for (int part = 1; part <= parts_; ++part) fmt::format_to(fmt::appender(out), "part_{};\n", part);
+    for (int part = 1; part <= parts_; ++part) io::append(out, "part_{};\n", part);
     if (off.spindle) switch_output(out, end_.spindle, false);
     if (off.coolant) switch_output(out, end_.coolant, false);
     put(out, "ENDPROC\nENDMODULE\n");
@@ -240,18 +238,17 @@ class Rapid final : public JointDialect {
 
   static bool switch_output(fmt::memory_buffer& out, const DigitalOutput& output, bool on) {
     if (output.signal.empty()) return false;
-    fmt::format_to(fmt::appender(out), "SetDO {},{};\n", output.signal, on ? 1 : 0);
+    io::append(out, "SetDO {},{};\n", output.signal, on ? 1 : 0);
     return true;
   }
 
   /// robhold, tframe, tload: [mass, cog, aom, inertia].
   void write_tool(fmt::memory_buffer& out) const {
     const Eigen::Quaterniond turn(end_.tip.linear());
-    fmt::format_to(
-        fmt::appender(out),
-        "LOCAL PERS tooldata {}:=[TRUE,[[{}],[{:.8f},{:.8f},{:.8f},{:.8f}]],[{:.6g},[{}],[1,0,0,0],0,0,0]];\n", tool_,
-        three(end_.tip.translation(), units::mm), turn.w(), turn.x(), turn.y(), turn.z(), *end_.mass_kg,
-        three(end_.center(), units::mm));
+    io::append(out,
+               "LOCAL PERS tooldata {}:=[TRUE,[[{}],[{:.8f},{:.8f},{:.8f},{:.8f}]],[{:.6g},[{}],[1,0,0,0],0,0,0]];\n",
+               tool_, three(end_.tip.translation(), units::mm), turn.w(), turn.x(), turn.y(), turn.z(), *end_.mass_kg,
+               three(end_.center(), units::mm));
   }
 
   void next_line(fmt::memory_buffer& out) {
@@ -259,7 +256,7 @@ class Rapid final : public JointDialect {
       put(out, "ENDPROC\n");
       lines_ = 0;
     }
-    if (lines_ == 0) fmt::format_to(fmt::appender(out), "LOCAL PROC part_{}()\n", ++parts_);
+    if (lines_ == 0) io::append(out, "LOCAL PROC part_{}()\n", ++parts_);
     ++lines_;
   }
 
@@ -278,7 +275,7 @@ class UrScript final : public JointDialect {
   [[nodiscard]] JointPoints::Held held() const override { return held_radians; }
   [[nodiscard]] bool fixed_cycle() const override { return true; }
   [[nodiscard]] std::size_t most_points() const override { return points_in_memory; }
-  void open(fmt::memory_buffer& out) override { fmt::format_to(fmt::appender(out), "def {}():\n", name_); }
+  void open(fmt::memory_buffer& out) override { io::append(out, "def {}():\n", name_); }
   [[nodiscard]] std::vector<std::string> not_set(const Outputs& wanted) const override {
     std::vector<std::string> lines;
     if (!end_.mass_kg) {
@@ -293,22 +290,21 @@ class UrScript final : public JointDialect {
   void start(fmt::memory_buffer& out, const robot::Position6& joints, const Outputs& on) override {
     if (end_.mass_kg) {
       const Eigen::AngleAxisd turn(end_.tip.linear());
-      fmt::format_to(fmt::appender(out), "  set_tcp(p[{},{}])\n  set_payload({:.6g}, [{}])\n",
-                     three(end_.tip.translation(), 1.0), three(turn.angle() * turn.axis(), 1.0), *end_.mass_kg,
-                     three(end_.center(), 1.0));
+      io::append(out, "  set_tcp(p[{},{}])\n  set_payload({:.6g}, [{}])\n", three(end_.tip.translation(), 1.0),
+                 three(turn.angle() * turn.axis(), 1.0), *end_.mass_kg, three(end_.center(), 1.0));
     }
     put(out, "  movej([");
     radians(out, joints, ", ");
     put(out, "], a=0.5, v=0.2)\n");
     if (on.coolant) switch_output(out, end_.coolant, true);
     if (on.spindle && switch_output(out, end_.spindle, true)) {
-      fmt::format_to(fmt::appender(out), "  sleep({:.6g})\n", end_.spin_up_s);
+      io::append(out, "  sleep({:.6g})\n", end_.spin_up_s);
     }
   }
   void point(fmt::memory_buffer& out, const robot::Position6& joints, double seconds, bool) override {
     put(out, "  servoj([");
     radians(out, joints, ", ");
-    fmt::format_to(fmt::appender(out), "], 0, 0, {:.6g}, 0.03, 2000)\n", seconds);
+    io::append(out, "], 0, 0, {:.6g}, 0.03, 2000)\n", seconds);
   }
   void wait(fmt::memory_buffer& out, const robot::Position6& joints, double seconds) override {
     point(out, joints, seconds, true);
@@ -317,7 +313,7 @@ class UrScript final : public JointDialect {
     put(out, "  stopj(2.0)\n");
     if (off.spindle) switch_output(out, end_.spindle, false);
     if (off.coolant) switch_output(out, end_.coolant, false);
-    fmt::format_to(fmt::appender(out), "end\n{}()\n", name_);
+    io::append(out, "end\n{}()\n", name_);
   }
   [[nodiscard]] std::string advice() const override {
     return fmt::format(
@@ -330,7 +326,7 @@ class UrScript final : public JointDialect {
  private:
   static bool switch_output(fmt::memory_buffer& out, const DigitalOutput& output, bool on) {
     if (!output.number) return false;
-    fmt::format_to(fmt::appender(out), "  set_standard_digital_out({}, {})\n", *output.number, on ? "True" : "False");
+    io::append(out, "  set_standard_digital_out({}, {})\n", *output.number, on ? "True" : "False");
     return true;
   }
 

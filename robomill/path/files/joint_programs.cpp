@@ -13,6 +13,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/append.hpp"
 #include "robomill/path/files/joint_dialects.hpp"
 #include "robomill/path/files/joint_run.hpp"
 #include "robomill/path/files/sample_spool.hpp"
@@ -346,9 +347,7 @@ class JointProgram final : public SampleFile {
     run.longest_step_s = period_s(longest);
   }
 
-  void comment(const std::string& line) {
-    fmt::format_to(fmt::appender(text_.buffer()), "{}{}\n", dialect_->comment(), line);
-  }
+  void comment(const std::string& line) { io::append(text_.buffer(), "{}{}\n", dialect_->comment(), line); }
 
   void write_header() {
     dialect_->open(text_.buffer());

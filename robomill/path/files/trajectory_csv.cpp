@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/append.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 
 namespace robomill::path {
@@ -26,9 +27,9 @@ class Csv final : public SampleFile {
  private:
   void begin() {
     fmt::memory_buffer& out = text_.buffer();
-    fmt::format_to(fmt::appender(out), "time_s");
-    for (int joint = 1; joint <= joints_; ++joint) fmt::format_to(fmt::appender(out), ",q{}", joint);
-    fmt::format_to(fmt::appender(out), ",x_mm,y_mm,z_mm,i,j,k,block\n");
+    io::append(out, "time_s");
+    for (int joint = 1; joint <= joints_; ++joint) io::append(out, ",q{}", joint);
+    io::append(out, ",x_mm,y_mm,z_mm,i,j,k,block\n");
   }
 
   /// The shortest digits that read back as the same number: what was checked is what is in the file.

@@ -101,22 +101,22 @@ bool plan(const Case& of, path::Planner& planner, Take&& take) {
 void plan_program(benchmark::State& state, Chosen chosen, const path::PlannerOptions& options) {
   const Case& of = chosen();
   const path::SmoothingOptions o = path::test::published_options(path::Method::verified);
-  std::size_t spans = 0;
+  std::size_t segments = 0;
   double time_s = 0.0;
   for (auto _ : state) {
     path::Planner planner(*of.machine, o, options);
-    spans = 0;
+    segments = 0;
     time_s = 0.0;
     const bool ok = plan(of, planner, [&] {
-      spans += planner.motion().size();
-      for (const path::Span& span : planner.motion()) time_s += path::duration_s(span);
+      segments += planner.motion().size();
+      for (const path::Segment& span : planner.motion()) time_s += path::duration_s(span);
       planner.motion().clear();
       planner.path().clear();
     });
     if (!ok) state.SkipWithError("rejected");
   }
   const auto blocks = static_cast<double>(of.program.blocks.size());
-  state.counters["spans_per_block"] = static_cast<double>(spans) / blocks;
+  state.counters["segments_per_block"] = static_cast<double>(segments) / blocks;
   state.counters["program_s"] = time_s;
   state.counters["s_per_block"] =
       benchmark::Counter(blocks, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -131,7 +131,7 @@ BENCHMARK_CAPTURE(plan_program, hybrid_optimal, &hybrid, path::PlannerOptions::o
 void emit_samples(benchmark::State& state, Chosen chosen) {
   const Case& of = chosen();
   path::Planner planner(*of.machine, path::test::published_options(path::Method::verified), {});
-  std::vector<path::Span> motion;
+  std::vector<path::Segment> motion;
   std::vector<path::Polynomial> curve;
   const bool ok = plan(of, planner, [&] {
     motion.insert(motion.end(), planner.motion().begin(), planner.motion().end());

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/append.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/mat.hpp"
@@ -46,7 +46,7 @@ std::string csv(const std::vector<Column>& columns) {
   text += '\n';
   for (Eigen::Index i = 0; i < columns.front().values.size(); ++i) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
-      fmt::format_to(std::back_inserter(text), "{}{:.9g}", c == 0 ? "" : ",", columns[c].values(i));
+      io::append(text, "{}{:.9g}", c == 0 ? "" : ",", columns[c].values(i));
     }
     text += '\n';
   }
