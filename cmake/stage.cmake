@@ -15,11 +15,10 @@ endfunction()
 #                BENCHES lobes_bench.cpp ...    one benchmark program: <name>_bench
 #                TEST_LIBRARIES ...             what only tests and benchmarks link: any stage, any library
 #                AT_SOURCE ...                  of these, those that read data/ and examples/ by ROBOMILL_SOURCE_DIR
-#                THREADED                       its tests run under ThreadSanitizer too …
-#                NOT_UNDER_TSAN Fit* ...)       … but for these: of one thread, or the longest where shorter ones use the same threads
+#                THREADED pso_test.cpp ...)     of TESTS, those whose threads ThreadSanitizer looks at; its build has no others
 function(robomill_stage)
-  cmake_parse_arguments(S "THREADED" "NAME;LAYER"
-    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;TESTS;BENCHES;TEST_LIBRARIES;AT_SOURCE;NOT_UNDER_TSAN" ${ARGN})
+  cmake_parse_arguments(S "" "NAME;LAYER"
+    "SOURCES;PUBLIC_HEADERS;DEPENDS;LIBRARIES;TESTS;BENCHES;TEST_LIBRARIES;AT_SOURCE;THREADED" ${ARGN})
   set(target robomill_${S_NAME})
   foreach(dependency IN LISTS S_DEPENDS)
     if(NOT TARGET robomill_${dependency})
@@ -65,6 +64,16 @@ function(robomill_stage)
       target_include_directories(${target}_headers PRIVATE ${PROJECT_SOURCE_DIR})
     endif()
   endif()
+  set(label ${S_NAME})
+  if(ROBOMILL_SANITIZE STREQUAL "thread")
+    list(FILTER S_TESTS EXCLUDE REGEX "_test.cpp$")  # helpers stay
+    list(PREPEND S_TESTS ${S_THREADED})
+    if(NOT S_THREADED)
+      set(S_TESTS "")
+    endif()
+    # One word, which ctest -L finds by either half: gtest_discover_tests tears a list of labels apart.
+    string(APPEND label "-threaded")
+  endif()
   if(ROBOMILL_TESTS AND S_TESTS)
     robomill_test_program(${S_NAME}_test ${S_TESTS})
     target_link_libraries(${S_NAME}_test PRIVATE ${target} ${S_TEST_LIBRARIES})
@@ -73,21 +82,8 @@ function(robomill_stage)
     else()
       set_source_files_properties(${S_AT_SOURCE} PROPERTIES COMPILE_DEFINITIONS ROBOMILL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     endif()
-    # One word, which ctest -L finds by either half: gtest_discover_tests tears a list of labels apart.
-    set(label ${S_NAME})
-    set(filter "")
-    if(S_THREADED)
-      string(APPEND label "-threaded")
-      add_dependencies(threaded_tests ${S_NAME}_test)
-    endif()
-    if(S_NOT_UNDER_TSAN)
-      string(REPLACE ";" ":" others "${S_NOT_UNDER_TSAN}")
-      gtest_discover_tests(${S_NAME}_test TEST_FILTER "${others}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-        PROPERTIES LABELS ${S_NAME} TIMEOUT 1200)
-      set(filter TEST_FILTER "-${others}")
-    endif()
-    gtest_discover_tests(${S_NAME}_test ${filter} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-      PROPERTIES LABELS ${label} TIMEOUT 1200)
+    add_dependencies(stage_tests ${S_NAME}_test)
+    gtest_discover_tests(${S_NAME}_test DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} TIMEOUT 1200)
   endif()
   if(ROBOMILL_BENCHES AND S_BENCHES)
     add_executable(${S_NAME}_bench ${S_BENCHES})
