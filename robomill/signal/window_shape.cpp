@@ -1,12 +1,20 @@
 #include "robomill/signal/window_shape.hpp"
 
 #include <cmath>
+#include <mutex>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 
 namespace robomill::signal {
 namespace {
+
+/// I_order(z), one thread at a time: std::cyl_bessel_i calls lgamma, which writes the C library's signgam.
+double bessel_i(double order, double z) {
+  static std::mutex one;
+  const std::lock_guard lock(one);
+  return std::cyl_bessel_i(order, z);
+}
 
 double parameter_of(const WindowShape& shape) {
   if (shape.parameter > 0.0) return shape.parameter;
@@ -35,13 +43,13 @@ double gaussian(double sigma, double u) {
   return std::exp(-0.5 * (u / sigma) * (u / sigma));
 }
 double kaiser(double beta, double u) {
-  return std::cyl_bessel_i(0.0, beta * std::sqrt(std::max(0.0, 1.0 - 4.0 * u * u))) / std::cyl_bessel_i(0.0, beta);
+  return bessel_i(0.0, beta * std::sqrt(std::max(0.0, 1.0 - 4.0 * u * u))) / bessel_i(0.0, beta);
 }
 /// dI0(z)/du = I1(z) dz/du with z = β √(1 - 4u²): -4 β² u I1(z)/z, and I1(z)/z → 1/2 at the ends.
 double kaiser_slope(double beta, double u) {
   const double z = beta * std::sqrt(std::max(0.0, 1.0 - 4.0 * u * u));
-  const double ratio = z < 1e-6 ? 0.5 : std::cyl_bessel_i(1.0, z) / z;
-  return -4.0 * beta * beta * u * ratio / std::cyl_bessel_i(0.0, beta);
+  const double ratio = z < 1e-6 ? 0.5 : bessel_i(1.0, z) / z;
+  return -4.0 * beta * beta * u * ratio / bessel_i(0.0, beta);
 }
 
 double place(Eigen::Index j, Eigen::Index n) {
