@@ -162,7 +162,7 @@ TEST(Hybrid, RatesAreThoseOfItsRegularity) {
   for (int k = 0; k < 50; ++k) {
     const ToolPose tool = tool_of(machine, random_platform(random), 0.0, 0.0);
     const Eigen::Vector3d across = tool.axis.unitOrthogonal(), other = tool.axis.cross(across);
-    Eigen::Matrix<double, 5, 5> rates;
+    Eigen::MatrixXd rates(5, 5);
     for (int i = 0; i < 5; ++i) {
       const double step = 1e-5;
       std::array<Position6, 2> ends;

@@ -80,7 +80,7 @@ TEST(Stiffness, IsThatOfTheLoadedEquilibrium) {
     const Matrix6 measured = measured_compliance(arm, testing::kr210_posture(), wrench);
     const Stiffness s = stiffness(arm, loaded.position, tip, wrench);
     EXPECT_LT(difference(s.compliance, measured), 1e-6) << force_n << " N";
-    EXPECT_LT(difference(s.stiffness, linear_algebra::inverse(measured)), 1e-6) << force_n << " N";
+    EXPECT_LT(difference(s.stiffness, linear_algebra::inverse(Eigen::MatrixXd(measured))), 1e-6) << force_n << " N";
     // Without Kc it is not, so that the check sees Kc.
     EXPECT_GT(difference(stiffness(arm, loaded.position, tip).compliance, measured), 1e-5) << force_n << " N";
   }
@@ -103,7 +103,7 @@ TEST(Stiffness, IsNotWhatTheMisprintGives) {
     const Wrench wrench = milling(force_n);
     const LoadedPosture loaded = loaded_posture(arm, testing::kr210_posture(), tip, wrench);
     const Jacobian jac = jacobian(arm, loaded.position, tip);
-    const Matrix6 inverse = linear_algebra::inverse(jac).transpose();
+    const Matrix6 inverse = linear_algebra::inverse(Eigen::MatrixXd(jac)).transpose();
     Eigen::Matrix<double, 6, 1> force;
     force << wrench.force_n, wrench.moment_n_m;
     Matrix6 joint = Matrix6::Zero();
@@ -111,7 +111,7 @@ TEST(Stiffness, IsNotWhatTheMisprintGives) {
       joint.col(k) = inverse * jacobian_derivative(jac, k).transpose() * inverse * force;
       joint(k, k) += arm.joints[static_cast<std::size_t>(k)].stiffness;
     }
-    const Matrix6 printed = jac * linear_algebra::inverse(joint) * jac.transpose();
+    const Matrix6 printed = jac * linear_algebra::inverse(Eigen::MatrixXd(joint)) * jac.transpose();
     const Matrix6 measured = measured_compliance(arm, testing::kr210_posture(), wrench);
     const double error = difference(printed, measured);
     EXPECT_GT(error, 100.0 * difference(stiffness(arm, loaded.position, tip, wrench).compliance, measured));
@@ -151,7 +151,7 @@ TEST(Stiffness, ReportsSingularPosturesAndWhatBuckles) {
   Jacobian wide = jacobian(eight, testing::random_position(random, 8), tip);
   const double number = condition_number(wide, 0.4);
   wide.topRows<3>() /= 0.4;
-  const Eigen::VectorXd singular_values = linear_algebra::thin_svd(wide).values;
+  const Eigen::VectorXd singular_values = linear_algebra::thin_svd(Eigen::MatrixXd(wide)).values;
   EXPECT_NEAR(number, singular_values(0) / singular_values(5), 1e-12 * number);
 
   const Wrench huge = milling(5e7);
