@@ -164,15 +164,6 @@ void pairs(PlanResult& result, Progress& progress) {
   }
 }
 
-std::vector<decision::SpindleCapacity> spindle_curve(const Job& job) {
-  std::vector<decision::SpindleCapacity> curve;
-  for (const SpindlePoint& p : job.spindle_curve) {
-    curve.push_back(
-        {.spindle_speed_rad_per_s = p.spindle_speed_rad_per_s, .torque_n_m = p.torque_n_m, .power_w = p.power_w});
-  }
-  return curve;
-}
-
 decision::RecommendOptions recommend_options(const Job& job, const LobesFile& cut) {
   decision::RecommendOptions options;
   options.radial_depth_m = cut.radial_depth_m;
@@ -181,7 +172,7 @@ decision::RecommendOptions recommend_options(const Job& job, const LobesFile& cu
   options.max_spindle_speed_rad_per_s = job.max_spindle_speed_rad_per_s;
   options.depth_margin = job.depth_margin;
   options.speed_window = job.speed_window;
-  options.spindle = spindle_curve(job);
+  options.spindle = job.spindle_curve;
   return options;
 }
 
@@ -191,7 +182,7 @@ decision::FinishLimits finish_limits(const Job& job) {
 
 /// Whether the spindle can turn the cutter through the cut whose forces were asked for.
 void warn_of_spindle(PlanResult& result) {
-  const std::vector<decision::SpindleCapacity> curve = spindle_curve(result.job);
+  const std::vector<decision::SpindleCapacity>& curve = result.job.spindle_curve;
   if (curve.empty()) return;
   std::size_t weak = 0;
   SpindleLoad worst;
@@ -399,7 +390,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   measure(result, progress);
   if (!result.job.forces.empty()) {
     result.forces = run_forces(result.job.forces, result.job.program, result.job.cell, progress);
-    result.forces->spindle = capacity_along(*result.forces, spindle_curve(result.job));
+    result.forces->spindle = capacity_along(*result.forces, result.job.spindle_curve);
     warn_of_spindle(result);
   }
   fit(result, seed, progress);

@@ -34,7 +34,7 @@ DepthCurve spindle_curve(const PlanResult& result, const std::string& label, boo
   curve.spindle_speed_rad_per_s.resize(n);
   curve.axial_depth_m.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const SpindlePoint& p = result.job.spindle_curve[static_cast<std::size_t>(i)];
+    const decision::SpindleCapacity& p = result.job.spindle_curve[static_cast<std::size_t>(i)];
     curve.spindle_speed_rad_per_s(i) = p.spindle_speed_rad_per_s;
     curve.axial_depth_m(i) = (torque ? p.torque_n_m : p.power_w / p.spindle_speed_rad_per_s) / per_depth;
   }

@@ -63,7 +63,7 @@ void read_limits(io::TomlFile& file, Job& job) {
   file.number("finishing.max_deflection_um", "max_deflection_m", units::um, job.max_deflection_m);
   for (std::size_t i = 0; i < file.tables("spindle.curve"); ++i) {
     const std::string row = "spindle.curve[" + std::to_string(i) + "].";
-    SpindlePoint point;
+    decision::SpindleCapacity point;
     for (const char* key : {"speed_rpm", "torque_n_m", "power_kw"}) file.require(row + key);
     const std::string member = "spindle_curve[" + std::to_string(i + 1) + "].";
     file.number(row + "speed_rpm", member + "spindle_speed_rad_per_s", units::rpm, point.spindle_speed_rad_per_s);
@@ -115,7 +115,7 @@ void Job::validate() const {
   }
   for (std::size_t i = 0; i < spindle_curve.size(); ++i) {
     const std::string path = "spindle_curve[" + std::to_string(i + 1) + "].";
-    const SpindlePoint& p = spindle_curve[i];
+    const decision::SpindleCapacity& p = spindle_curve[i];
     require_positive((path + "spindle_speed_rad_per_s").c_str(), p.spindle_speed_rad_per_s, "rad/s");
     require_non_negative((path + "torque_n_m").c_str(), p.torque_n_m, "N m");
     require_non_negative((path + "power_w").c_str(), p.power_w, "W");

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/decision/recommend.hpp"
 #include "robomill/modal/directions.hpp"
 
 // Method: robomill/jobs/README.md, "Files"
@@ -34,13 +35,6 @@ struct TestCut {
   double sample_rate_hz = 0.0;        ///< of a recording without a time column; 0: from the file
 };
 
-/// One point of the spindle's curve; torque and power are interpolated linearly between points.
-struct SpindlePoint {
-  double spindle_speed_rad_per_s = 0.0;
-  double torque_n_m = 0.0;
-  double power_w = 0.0;
-};
-
 /// job.toml. Paths are resolved; an empty one is absent. Exactly one of hits, frf, modes and assembly
 /// is given.
 struct Job {
@@ -64,7 +58,7 @@ struct Job {
   double speed_window = 0.02;        ///< … at every speed of n (1 ± speed_window), in [0, 0.5)
   double max_surface_error_m = 0.0;  ///< of a finishing cut: |surface error| <= this; 0: no limit
   double max_deflection_m = 0.0;     ///< of a finishing cut: peak deflection <= this; 0: no limit
-  std::vector<SpindlePoint> spindle_curve = {};
+  std::vector<decision::SpindleCapacity> spindle_curve = {};
   std::vector<TestCut> cuts = {};
 
   ROBOMILL_API void validate() const;
