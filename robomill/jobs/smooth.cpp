@@ -196,13 +196,14 @@ std::vector<path::Method> methods_of(const SmoothJob& job, path::Method first) {
 
 /// What a controller makes of a joint program that leaves its tolerances, and what would help.
 std::string program_note(const path::ProgramRun& run) {
-  const double tip_m = std::max(run.tip_deviation_m, run.tip_error_m);
-  const double axis_rad = std::max(run.axis_deviation_rad, run.axis_error_rad);
+  const double tip_m = std::max(run.distances.tip_deviation_m, run.distances.tip_error_m);
+  const double axis_rad = std::max(run.distances.axis_deviation_rad, run.distances.axis_error_rad);
   std::string note = fmt::format(
       "Joints interpolated between the program's points leave the programmed path by {:.4g} mm and {:.4g}° and the "
       "trajectory by {:.4g} mm and {:.4g}°; the tolerances are {:.4g} mm and {:.4g}°.",
-      run.tip_error_m / units::mm, run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm,
-      run.axis_deviation_rad / units::deg, run.tip_tolerance_m / units::mm, run.axis_tolerance_rad / units::deg);
+      run.distances.tip_error_m / units::mm, run.distances.axis_error_rad / units::deg,
+      run.distances.tip_deviation_m / units::mm, run.distances.axis_deviation_rad / units::deg,
+      run.tip_tolerance_m / units::mm, run.axis_tolerance_rad / units::deg);
   if (run.would_hold_s > 0.0) {
     return note + fmt::format(" --program-period-ms {:.6g} would hold.", run.would_hold_s / units::ms);
   }

@@ -145,8 +145,8 @@ void add_run(std::string& out, const path::ProgramRun& run) {
   append(out,
          "; joints interpolated between them: {:.4g} mm and {:.4g}° from the program, {:.4g} mm and {:.4g}° from the "
          "trajectory\n",
-         run.tip_error_m / units::mm, run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm,
-         run.axis_deviation_rad / units::deg);
+         run.distances.tip_error_m / units::mm, run.distances.axis_error_rad / units::deg,
+         run.distances.tip_deviation_m / units::mm, run.distances.axis_deviation_rad / units::deg);
 }
 
 void add_operation(std::string& out, const char* label, const decision::Operation& op) {

@@ -151,7 +151,7 @@ Json sweep_json(const robot::Redundancy& sweep, double used_rad) {
   Json condition = Json::array();
   Json limit = Json::array();
   for (const robot::RedundancySample& sample : sweep.samples) {
-    const bool stands = sample.status == robot::Choice::Status::found && !sample.buckled;
+    const bool stands = sample.status == robot::Reach::Status::found && !sample.buckled;
     const auto known = [&](double value) { return stands ? number(value) : Json(); };
     gamma.push_back(number(sample.gamma_rad / units::deg));
     deflection.push_back(known(sample.error_m.norm() / units::um));
