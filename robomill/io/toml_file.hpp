@@ -2,12 +2,13 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/names.hpp"
 
 namespace robomill::io {
 
@@ -40,19 +41,14 @@ class TomlFile {
   bool path(std::string_view key, std::filesystem::path& out);
   bool paths(std::string_view key, std::vector<std::filesystem::path>& out);
   /// One of the named values.
-  template <class Enum>
-  bool choice(std::string_view key, const std::vector<std::pair<std::string_view, Enum>>& values, Enum& out) {
+  template <class Enum, std::size_t n>
+  bool choice(std::string_view key, const Name<Enum> (&names)[n], Enum& out) {
     std::string name;
     if (!text(key, name)) return false;
-    std::string known;
-    for (const auto& [text_value, value] : values) {
-      if (name == text_value) {
-        out = value;
-        return true;
-      }
-      known += (known.empty() ? "\"" : ", \"") + std::string(text_value) + "\"";
-    }
-    throw reject(key, "must be one of " + known);
+    const std::optional<Enum> value = value_in(names, name);
+    if (!value) throw reject(key, one_of(names));
+    out = *value;
+    return true;
   }
 
   /// Accepts a key or a whole table unread: it is for another reader of the same file.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <memory>
 #include <numbers>
 #include <span>
@@ -189,8 +188,9 @@ path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::Sample
 std::vector<path::Method> methods_of(const SmoothJob& job, path::Method first) {
   std::vector<path::Method> methods = {first};
   if (!job.compare) return methods;
-  std::ranges::copy_if(path::smoothing_methods(), std::back_inserter(methods),
-                       [&](path::Method method) { return method != first; });
+  for (const auto& [name, method] : path::method_names) {
+    if (method != first) methods.push_back(method);
+  }
   return methods;
 }
 
@@ -280,7 +280,8 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
       }));
     } catch (const InvalidInput& error) {
       if (asked_for) throw;
-      result.smoothed.notes.push_back(fmt::format("{} is left out: {}", path::name_of(method), error.what()));
+      result.smoothed.notes.push_back(
+          fmt::format("{} is left out: {}", name_in(path::method_names, method), error.what()));
       continue;
     }
     if (asked_for && file != nullptr) {

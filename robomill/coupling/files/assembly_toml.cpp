@@ -25,8 +25,7 @@ Segment read_segment(io::TomlFile& file, const std::string& key, const std::stri
     file.number(key + field.key, member + field.member, field.factor, segment.*field.value);
   }
   file.integer(key + "flutes", member + "flutes", segment.flutes);
-  file.choice<Beam>(key + "beam", {{"timoshenko", Beam::timoshenko}, {"euler-bernoulli", Beam::euler_bernoulli}},
-                    segment.beam);
+  file.choice(key + "beam", beam_names, segment.beam);
   try {
     segment.validate();
   } catch (const InvalidInput& error) {

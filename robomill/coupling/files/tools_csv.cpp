@@ -108,13 +108,10 @@ Segment read_segment(const TableRow& row, const Segment& like) {
   segment.flutes = 0;
   for (const SegmentField& column : segment_fields) row.number(column.key, column.factor, segment.*column.value);
   row.integer("flutes", segment.flutes);
-  const std::string_view beam = row.text("beam");
-  if (beam == "timoshenko") {
-    segment.beam = Beam::timoshenko;
-  } else if (beam == "euler-bernoulli") {
-    segment.beam = Beam::euler_bernoulli;
-  } else if (!beam.empty()) {
-    throw row.reject("beam", "must be one of \"timoshenko\", \"euler-bernoulli\"");
+  if (const std::string_view beam = row.text("beam"); !beam.empty()) {
+    const std::optional<Beam> known = value_in(beam_names, beam);
+    if (!known) throw row.reject("beam", one_of(beam_names));
+    segment.beam = *known;
   }
   try {
     segment.validate();

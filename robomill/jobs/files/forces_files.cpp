@@ -171,11 +171,8 @@ Json sweep_json(const robot::Redundancy& sweep, double used_rad) {
 }
 
 Json vibration_json(const simulation::Simulation& s) {
-  const char* const verdict = s.verdict == simulation::Verdict::stable    ? "stable"
-                              : s.verdict == simulation::Verdict::chatter ? "chatter"
-                                                                          : "undecided";
   const bool found = s.small.status == simulation::SmallVibration::Status::found;
-  return {{"verdict", verdict},
+  return {{"verdict", to_string(s.verdict)},
           {"chatter_frequency_hz", s.chatter_frequency_hz > 0.0 ? number(s.chatter_frequency_hz) : Json()},
           {"chatter_amplitude_um", number(s.chatter_amplitude_m / units::um)},
           {"spectral_radius", found ? number(s.small.spectral_radius) : Json()},

@@ -82,9 +82,7 @@ void read_cuts(io::TomlFile& file, Job& job) {
     file.require(row + "axial_depth_mm");
     file.number(row + "spindle_speed_rpm", member + "spindle_speed_rad_per_s", units::rpm, cut.spindle_speed_rad_per_s);
     file.number(row + "axial_depth_mm", member + "axial_depth_m", units::mm, cut.axial_depth_m);
-    file.choice<Verdict>(
-        row + "result",
-        {{"stable", Verdict::stable}, {"borderline", Verdict::borderline}, {"chatter", Verdict::chatter}}, cut.result);
+    file.choice(row + "result", verdict_names, cut.result);
     file.numbers(row + "peaks_hz", member + "peaks_hz", 1.0, cut.peaks_hz);
     file.path(row + "file", cut.file);
     file.text(row + "column", cut.column);
@@ -134,17 +132,7 @@ void Job::validate() const {
 }
 
 std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::stable:
-      return "stable";
-    case Verdict::borderline:
-      return "borderline";
-    case Verdict::chatter:
-      return "chatter";
-    case Verdict::unknown:
-      break;
-  }
-  return {};
+  return name_in(verdict_names, verdict);
 }
 
 Job read_job(const std::filesystem::path& path) {

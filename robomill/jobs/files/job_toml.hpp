@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/decision/recommend.hpp"
 #include "robomill/modal/directions.hpp"
 
@@ -20,6 +21,8 @@ enum class Verdict {
   borderline,  ///< marks that come and go; agrees where |predicted limit / depth - 1| <= 0.2; recorded: 0.25 <= r < 0.5
   chatter      ///< predicted: |μ| >= 1; recorded: r >= 0.5
 };
+inline constexpr Name<Verdict> verdict_names[] = {
+    {"stable", Verdict::stable}, {"borderline", Verdict::borderline}, {"chatter", Verdict::chatter}};
 /// "stable", …; empty where it is unknown.
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Verdict verdict);
 

@@ -26,7 +26,7 @@ Json segments_json(const std::vector<coupling::Segment>& segments) {
       row["flutes"] = s.flutes;
       row["flute_diameter_ratio"] = number(s.flute_diameter_ratio);
     }
-    row["beam"] = s.beam == coupling::Beam::timoshenko ? "timoshenko" : "euler-bernoulli";
+    row["beam"] = name_in(coupling::beam_names, s.beam);
     list.push_back(std::move(row));
   }
   return list;

@@ -82,13 +82,7 @@ SmoothingFile read_smoothing(io::TomlFile& file, const robot::JointLimits& limit
   for (const Key& row : keys) {
     file.number(std::string("smoothing.") + row.key, row.member, row.factor, out.options.*row.value);
   }
-  file.choice<Method>("smoothing.method",
-                      {{"verified", Method::verified},
-                       {"optimal", Method::optimal},
-                       {"paper", Method::paper},
-                       {"paper-as-printed", Method::paper_as_printed},
-                       {"no-joint-jerk", Method::no_joint_jerk}},
-                      out.options.method);
+  file.choice("smoothing.method", method_names, out.options.method);
   if (method) out.options.method = *method;
   file.integer("smoothing.filters", "filters", out.options.filters);
   file.boolean("smoothing.free_gamma", out.free_gamma);
