@@ -12,6 +12,15 @@
 
 namespace robomill::io {
 
+/// A number of a document: its key, the SI member that it fills and the factor between them.
+template <class T>
+struct Field {
+  const char* key;
+  const char* member;
+  double factor;
+  double T::*value;
+};
+
 /// One TOML file while it is read. Every reading call is one row of the file's table: its key, the SI member that it
 /// fills and the factor between them; the rows it has seen serve to report errors in the file's own words and to reject
 /// unknown keys.
@@ -29,6 +38,11 @@ class TomlFile {
 
   /// out = value * factor
   bool number(std::string_view key, std::string_view member, double factor, double& out);
+  /// The numbers of a table. @param table  before each key: "tool[0]."; @param member  before each member: "tool[1]."
+  template <class T, std::size_t n>
+  void fields(const std::string& table, const Field<T> (&rows)[n], T& out, const std::string& member = {}) {
+    for (const Field<T>& row : rows) number(table + row.key, member + row.member, row.factor, out.*row.value);
+  }
   /// A list of numbers; a single number is a list of one.
   bool numbers(std::string_view key, std::string_view member, double factor, std::vector<double>& out);
   bool integer(std::string_view key, std::string_view member, int& out);

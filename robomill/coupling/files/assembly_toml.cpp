@@ -21,9 +21,7 @@ constexpr double most_lines = 2e6;
 /// @param key  of the table: "tool[0]."; @param member  the same as stages count: "tool[1]."
 Segment read_segment(io::TomlFile& file, const std::string& key, const std::string& member) {
   Segment segment;
-  for (const SegmentField& field : segment_fields) {
-    file.number(key + field.key, member + field.member, field.factor, segment.*field.value);
-  }
+  file.fields(key, segment_fields, segment, member);
   file.integer(key + "flutes", member + "flutes", segment.flutes);
   file.choice(key + "beam", beam_names, segment.beam);
   try {

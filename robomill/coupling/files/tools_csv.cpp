@@ -65,7 +65,7 @@ class TableRow {
   [[nodiscard]] InvalidInput located(const InvalidInput& error) const {
     InvalidInput::Parts parts = error.parts();
     parts.where = where_;
-    for (const SegmentField& column : segment_fields) {
+    for (const io::Field<Segment>& column : segment_fields) {
       if (parts.field != column.member) continue;
       parts.field = column.key;
       if (text(column.key).empty()) {
@@ -88,7 +88,7 @@ class TableRow {
 
 void check_columns(const io::TextTable& table, const std::string& file) {
   std::vector<std::string> known(other_columns.begin(), other_columns.end());
-  for (const SegmentField& column : segment_fields) known.emplace_back(column.key);
+  for (const io::Field<Segment>& column : segment_fields) known.emplace_back(column.key);
   for (const std::string& name : table.names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const std::string near = io::nearest_word(name, known);
@@ -106,7 +106,7 @@ Segment read_segment(const TableRow& row, const Segment& like) {
   Segment segment = like;
   segment.length_m = segment.diameter_m = segment.inner_diameter_m = segment.mass_kg = 0.0;
   segment.flutes = 0;
-  for (const SegmentField& column : segment_fields) row.number(column.key, column.factor, segment.*column.value);
+  for (const io::Field<Segment>& column : segment_fields) row.number(column.key, column.factor, segment.*column.value);
   row.integer("flutes", segment.flutes);
   if (const std::string_view beam = row.text("beam"); !beam.empty()) {
     const std::optional<Beam> known = value_in(beam_names, beam);
