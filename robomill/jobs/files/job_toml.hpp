@@ -6,7 +6,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
-#include "robomill/decision/recommend.hpp"
+#include "robomill/decision/finish.hpp"
 #include "robomill/modal/directions.hpp"
 
 // Method: robomill/jobs/README.md, "Files"
@@ -54,14 +54,8 @@ struct Job {
   double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data
   modal::MissingDirections directions = {};      ///< what an unmeasured direction is taken for
   int fit_modes = 0;                             ///< 0: chosen by the fit
-  double max_axial_depth_m = 0.0;            ///< the cutter's flute length, depth <= this; 0: the lobes' range alone
-  double max_spindle_speed_rad_per_s = 0.0;  ///< min <= speed <= max; 0: the lobes' range alone
-  double min_spindle_speed_rad_per_s = 0.0;
-  double depth_margin = 0.2;         ///< in [0, 1); the recommended depth <= (1 - depth_margin) · limit …
-  double speed_window = 0.02;        ///< … at every speed of n (1 ± speed_window), in [0, 0.5)
-  double max_surface_error_m = 0.0;  ///< of a finishing cut: |surface error| <= this; 0: no limit
-  double max_deflection_m = 0.0;     ///< of a finishing cut: peak deflection <= this; 0: no limit
-  std::vector<decision::SpindleCapacity> spindle_curve = {};
+  decision::RecommendOptions recommend = {};     ///< of the cutter, the spindle and safety; the cut has the rest
+  decision::FinishLimits finish = {};
   std::vector<TestCut> cuts = {};
 
   ROBOMILL_API void validate() const;

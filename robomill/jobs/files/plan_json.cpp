@@ -130,8 +130,8 @@ Json decision_json(const PlanResult& result) {
   for (const decision::Operation& op : result.recommendation.alternatives)
     json["alternatives"].push_back(operation_json(op));
   if (!result.recommendation.recommended) json["reason"] = result.recommendation.reason;
-  json["finishing"] = {{"max_surface_error_um", limit(result.job.max_surface_error_m)},
-                       {"max_deflection_um", limit(result.job.max_deflection_m)}};
+  json["finishing"] = {{"max_surface_error_um", limit(result.job.finish.max_surface_error_m)},
+                       {"max_deflection_um", limit(result.job.finish.max_deflection_m)}};
   json["other_limits"] = other_limits_json(result);
   json["pairs"] = pairs_json(result);
   const LimitShare share = limit_share(result);
