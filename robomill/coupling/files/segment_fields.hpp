@@ -18,4 +18,16 @@ inline constexpr io::Field<Segment> segment_fields[] = {
     {"flute_diameter_ratio", "flute_diameter_ratio", 1.0, &Segment::flute_diameter_ratio},
 };
 
+/// The unknowns of a joint in the order of JointUnknown; SI in the files too.
+inline constexpr io::Field<Joint> joint_fields[] = {
+    {"translational_stiffness_n_per_m", "translational_stiffness_n_per_m", 1.0,
+     &Joint::translational_stiffness_n_per_m},
+    {"translational_damping_n_s_per_m", "translational_damping_n_s_per_m", 1.0,
+     &Joint::translational_damping_n_s_per_m},
+    {"rotational_stiffness_n_m_per_rad", "rotational_stiffness_n_m_per_rad", 1.0,
+     &Joint::rotational_stiffness_n_m_per_rad},
+    {"rotational_damping_n_m_s_per_rad", "rotational_damping_n_m_s_per_rad", 1.0,
+     &Joint::rotational_damping_n_m_s_per_rad},
+};
+
 }  // namespace robomill::coupling
