@@ -97,11 +97,8 @@ void print_small(const SmallVibration& small) {
 }
 
 void print_summary(const Simulation& s, const stability::OperatingPoint& point) {
-  const char* const verdict = s.verdict == Verdict::stable    ? "stable"
-                              : s.verdict == Verdict::chatter ? "chatter"
-                                                              : "undecided: simulate for longer";
-  fmt::print("{:.6g} rpm, {:.4g} mm: {}", point.spindle_speed_rad_per_s / units::rpm, point.axial_depth_m / units::mm,
-             verdict);
+  fmt::print("{:.6g} rpm, {:.4g} mm: {}{}", point.spindle_speed_rad_per_s / units::rpm, point.axial_depth_m / units::mm,
+             to_string(s.verdict), s.verdict == Verdict::undecided ? ": simulate for longer" : "");
   if (s.chatter_frequency_hz > 0.0) {
     fmt::print(" at {:.1f} Hz, {:.3g} µm", s.chatter_frequency_hz, s.chatter_amplitude_m / units::um);
   }

@@ -2,6 +2,7 @@
 /// Every public header.
 #include "robomill/base/error.hpp"
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/base/random.hpp"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/modal/frf.hpp"
 
 // Method: robomill/coupling/README.md, "Coupling"
@@ -16,6 +17,8 @@ enum class Beam {
   euler_bernoulli,  ///< no shear, no rotary inertia
   timoshenko  ///< both; shear coefficient of a round section, 6 (1 + ν)² / (7 + 12 ν + 4 ν²) if solid [Hutchinson2001]
 };
+inline constexpr Name<Beam> beam_names[] = {{"timoshenko", Beam::timoshenko},
+                                            {"euler-bernoulli", Beam::euler_bernoulli}};
 
 /// A round, uniform piece of a tool or holder. Its material has the complex moduli E (1 + iη) and G (1 + iη), with
 /// G = E / (2 (1 + ν)). The fluted part of a cutter is a solid round of flute_diameter_ratio × its diameter.

@@ -9,20 +9,13 @@
 namespace robomill::decision {
 namespace {
 
-/// A limit of the chart, with the depth that finishes.
-DepthLimit to_depth_limit(const stability::Limit& limit, const stability::LobesProblem& problem,
-                          const RecommendOptions& options, const FinishLimits& finish) {
-  DepthLimit out{.spindle_speed_rad_per_s = limit.spindle_speed_rad_per_s};
-  if (limit.status == stability::Limit::Status::found) {
-    out.axial_depth_m = limit.axial_depth_m;
-    out.chatter_frequency_hz = limit.chatter_frequency_hz;
-    out.mode = limit.mode;
-  }
-  if (!finish.any()) return out;
-  double deepest_m = out.axial_depth_m.value_or(options.searched_depth_m) * (1.0 - options.depth_margin);
+DepthLimit with_finish(const stability::Limit& chatter, const stability::LobesProblem& problem,
+                       const RecommendOptions& options, const FinishLimits& finish) {
+  if (!finish.any()) return {.chatter = chatter};
+  const bool found = chatter.status == stability::Limit::Status::found;
+  double deepest_m = (found ? chatter.axial_depth_m : options.searched_depth_m) * (1.0 - options.depth_margin);
   if (options.max_axial_depth_m > 0.0) deepest_m = std::min(deepest_m, options.max_axial_depth_m);
-  out.finish = finish_depth(problem, limit.spindle_speed_rad_per_s, deepest_m, finish);
-  return out;
+  return {.chatter = chatter, .finish = finish_depth(problem, chatter.spindle_speed_rad_per_s, deepest_m, finish)};
 }
 
 void add_surface(Operation& op, const stability::LobesProblem& problem) {
@@ -51,13 +44,13 @@ Recommendation choose(const stability::LobesProblem& problem, const stability::L
   parallel_for(limits.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       progress.check();
-      depths[i] = to_depth_limit(limits[i], problem, options, finish);
+      depths[i] = with_finish(limits[i], problem, options, finish);
       if (finish.any()) progress.advance();
     }
   });
   Recommendation result = recommend(depths, options, [&](double speed) {
     progress.check();
-    return to_depth_limit(stability::limit_depths(problem, lobes, {speed}).front(), problem, options, finish);
+    return with_finish(stability::limit_depths(problem, lobes, {speed}).front(), problem, options, finish);
   });
   if (result.recommended) add_surface(*result.recommended, problem);
   for (Operation& op : result.alternatives) add_surface(op, problem);

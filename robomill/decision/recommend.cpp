@@ -10,17 +10,18 @@
 namespace robomill::decision {
 namespace {
 
-double depth_or_all(const DepthLimit& limit, const RecommendOptions& options) {
-  return std::min(limit.axial_depth_m.value_or(options.searched_depth_m), options.searched_depth_m);
+double depth_or_all(const stability::Limit& limit, const RecommendOptions& options) {
+  const bool found = limit.status == stability::Limit::Status::found;
+  return found ? std::min(limit.axial_depth_m, options.searched_depth_m) : options.searched_depth_m;
 }
 
 /// What binds at the speeds of a window.
 struct Window {
-  std::optional<DepthLimit> lowest = {};  ///< with the lowest limit
+  std::optional<stability::Limit> lowest = {};  ///< with the lowest limit
   FinishDepth finish = {};
 
   void add(const DepthLimit& limit, const RecommendOptions& options) {
-    if (!lowest || depth_or_all(limit, options) < depth_or_all(*lowest, options)) lowest = limit;
+    if (!lowest || depth_or_all(limit.chatter, options) < depth_or_all(*lowest, options)) lowest = limit.chatter;
     if (limit.finish.axial_depth_m < finish.axial_depth_m) finish = limit.finish;
   }
 };
@@ -32,7 +33,7 @@ struct Candidate {
 
 /// The operation at `speed`, given what binds in its window.
 Operation operation_at(double speed, const Window& window, const RecommendOptions& options) {
-  const DepthLimit& lowest = *window.lowest;
+  const stability::Limit& lowest = *window.lowest;
   Operation op;
   op.spindle_speed_rad_per_s = speed;
   op.feed_per_tooth_m = options.feed_per_tooth_m;
@@ -40,11 +41,9 @@ Operation operation_at(double speed, const Window& window, const RecommendOption
   op.cutting_speed_m_per_s = 0.5 * options.diameter_m * speed;
   op.limit_depth_m = depth_or_all(lowest, options);
   op.axial_depth_m = op.limit_depth_m * (1.0 - options.depth_margin);
-  op.limited_by = lowest.axial_depth_m ? LimitedBy::chatter : LimitedBy::depth_range;
-  if (lowest.axial_depth_m) {
-    op.chatter_frequency_hz = lowest.chatter_frequency_hz;
-    op.mode = lowest.mode;
-  }
+  op.limited_by = lowest.status == stability::Limit::Status::found ? LimitedBy::chatter : LimitedBy::depth_range;
+  op.chatter_frequency_hz = lowest.chatter_frequency_hz;
+  op.mode = lowest.mode;
   const auto cap = [&op](double depth, LimitedBy reason) {
     if (depth < op.axial_depth_m) {
       op.axial_depth_m = std::max(depth, 0.0);
@@ -69,17 +68,19 @@ Operation operation_at(double speed, const Window& window, const RecommendOption
 std::vector<Candidate> candidates(const std::vector<DepthLimit>& limits, const RecommendOptions& options) {
   std::vector<Candidate> out;
   const double highest = options.max_spindle_speed_rad_per_s > 0.0 ? options.max_spindle_speed_rad_per_s
-                                                                   : limits.back().spindle_speed_rad_per_s;
+                                                                   : limits.back().chatter.spindle_speed_rad_per_s;
   for (const DepthLimit& centre : limits) {
-    const double speed = centre.spindle_speed_rad_per_s;
+    const double speed = centre.chatter.spindle_speed_rad_per_s;
     const double from = speed * (1.0 - options.speed_window);
     const double to = speed * (1.0 + options.speed_window);
     if (speed < options.min_spindle_speed_rad_per_s || speed > highest) continue;
-    if (from < limits.front().spindle_speed_rad_per_s || to > limits.back().spindle_speed_rad_per_s) continue;
+    if (from < limits.front().chatter.spindle_speed_rad_per_s || to > limits.back().chatter.spindle_speed_rad_per_s)
+      continue;
     Window window;
     window.add(centre, options);
     for (const DepthLimit& other : limits) {
-      const bool inside = other.spindle_speed_rad_per_s >= from && other.spindle_speed_rad_per_s <= to;
+      const double other_speed = other.chatter.spindle_speed_rad_per_s;
+      const bool inside = other_speed >= from && other_speed <= to;
       if (inside) window.add(other, options);
     }
     out.push_back({operation_at(speed, window, options), window});
@@ -132,9 +133,10 @@ Operation verified(const Candidate& candidate, const RecommendOptions& options,
 void validate_limits(const std::vector<DepthLimit>& limits) {
   if (limits.size() < 2) throw InvalidInput("limits", "need at least two spindle speeds");
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    require_positive("spindle_speed_rad_per_s", limits[i].spindle_speed_rad_per_s, "rad/s");
-    if (i > 0 && limits[i].spindle_speed_rad_per_s <= limits[i - 1].spindle_speed_rad_per_s) {
-      throw InvalidInput("spindle_speed_rad_per_s", limits[i].spindle_speed_rad_per_s, "rad/s", "must increase");
+    const double speed = limits[i].chatter.spindle_speed_rad_per_s;
+    require_positive("spindle_speed_rad_per_s", speed, "rad/s");
+    if (i > 0 && speed <= limits[i - 1].chatter.spindle_speed_rad_per_s) {
+      throw InvalidInput("spindle_speed_rad_per_s", speed, "rad/s", "must increase");
     }
   }
 }

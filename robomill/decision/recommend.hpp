@@ -7,6 +7,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/modal/mode_id.hpp"
+#include "robomill/stability/lobes.hpp"
 
 // Method: robomill/decision/README.md, "The recommendation (`recommend.hpp`)"
 
@@ -29,12 +30,9 @@ struct FinishDepth {
   LimitedBy reason = LimitedBy::surface_error;
 };
 
-/// The lowest unstable depth at one speed, and the greatest that finishes.
+/// What limits the depth at one speed.
 struct DepthLimit {
-  double spindle_speed_rad_per_s = 0.0;
-  std::optional<double> axial_depth_m = {};  ///< none: stable up to RecommendOptions::searched_depth_m
-  double chatter_frequency_hz = 0.0;
-  modal::ModeId mode = {};  ///< that chatters
+  stability::Limit chatter;  ///< stable_in_range: up to RecommendOptions::searched_depth_m
   FinishDepth finish = {};
 };
 

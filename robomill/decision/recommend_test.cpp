@@ -12,15 +12,26 @@ namespace robomill::decision {
 namespace recommend_test {
 
 constexpr double pi = std::numbers::pi;
+using Status = stability::Limit::Status;
+
+DepthLimit chatter_at(double speed, double depth, double frequency_hz = 0.0, modal::ModeId mode = {}) {
+  return {.chatter = {.spindle_speed_rad_per_s = speed,
+                      .status = Status::found,
+                      .axial_depth_m = depth,
+                      .chatter_frequency_hz = frequency_hz,
+                      .mode = mode}};
+}
+
+double depth_of(const DepthLimit& limit) {
+  return limit.chatter.status == Status::found ? limit.chatter.axial_depth_m : 4e-3;
+}
 
 // A lobe-like curve: cusps where the phase is a whole number of turns, none above 4 mm.
 DepthLimit lobe(double speed) {
   const double phase = 3000.0 / speed;
   const double depth = 0.5e-3 + 5e-3 * std::pow(std::sin(pi * phase), 8);
-  DepthLimit limit{
-      .spindle_speed_rad_per_s = speed, .axial_depth_m = depth, .chatter_frequency_hz = 540.0, .mode = {7}};
-  if (depth > 4e-3) limit.axial_depth_m.reset();
-  return limit;
+  return depth > 4e-3 ? DepthLimit{.chatter = {.spindle_speed_rad_per_s = speed}}
+                      : chatter_at(speed, depth, 540.0, {7});
 }
 
 std::vector<DepthLimit> lobes() {
@@ -48,7 +59,7 @@ TEST(Recommend, KeepsTheMarginOverTheSpeedWindow) {
   for (const Operation& op : all) {
     for (int i = -4; i <= 4; ++i) {
       const DepthLimit limit = lobe(op.spindle_speed_rad_per_s * (1.0 + 0.005 * i));
-      EXPECT_LE(op.axial_depth_m, 0.8 * limit.axial_depth_m.value_or(4e-3) * (1 + 1e-12));
+      EXPECT_LE(op.axial_depth_m, 0.8 * depth_of(limit) * (1 + 1e-12));
     }
     EXPECT_NEAR(op.removal_rate_m3_per_s, op.axial_depth_m * 1.8e-3 * 1e-5 * 3 * op.spindle_speed_rad_per_s / (2 * pi),
                 1e-18);
@@ -59,12 +70,12 @@ TEST(Recommend, NoOtherSpeedRemovesMore) {
   const std::vector<DepthLimit> limits = lobes();
   const Operation best = *recommend(limits, options(), lobe).recommended;
   for (const DepthLimit& centre : limits) {
-    const double speed = centre.spindle_speed_rad_per_s;
+    const double speed = centre.chatter.spindle_speed_rad_per_s;
     if (speed * 0.98 < 400.0 || speed * 1.02 > 1600.0) continue;
     double lowest = 4e-3;
     for (const DepthLimit& other : limits) {
-      if (std::abs(other.spindle_speed_rad_per_s / speed - 1.0) <= 0.02) {
-        lowest = std::min(lowest, other.axial_depth_m.value_or(4e-3));
+      if (std::abs(other.chatter.spindle_speed_rad_per_s / speed - 1.0) <= 0.02) {
+        lowest = std::min(lowest, depth_of(other));
       }
     }
     EXPECT_LE(0.8 * lowest * 1.8e-3 * 1e-5 * 3 * speed / (2 * pi), best.removal_rate_m3_per_s * 1.001);
@@ -119,7 +130,7 @@ TEST(Recommend, KeepsTheFinishingDepthOverTheWindow) {
     return limit;
   };
   std::vector<DepthLimit> limits;
-  for (const DepthLimit& limit : lobes()) limits.push_back(finishing(limit.spindle_speed_rad_per_s));
+  for (const DepthLimit& limit : lobes()) limits.push_back(finishing(limit.chatter.spindle_speed_rad_per_s));
   const Recommendation r = recommend(limits, options(), finishing);
   ASSERT_EQ(r.status, Recommendation::Status::found);
   std::vector<Operation> all = r.alternatives;
@@ -129,7 +140,7 @@ TEST(Recommend, KeepsTheFinishingDepthOverTheWindow) {
     for (int i = -4; i <= 4; ++i) {
       const DepthLimit limit = finishing(op.spindle_speed_rad_per_s * (1.0 + 0.005 * i));
       EXPECT_LE(op.axial_depth_m, limit.finish.axial_depth_m * (1 + 1e-12));
-      EXPECT_LE(op.axial_depth_m, 0.8 * limit.axial_depth_m.value_or(4e-3) * (1 + 1e-12));
+      EXPECT_LE(op.axial_depth_m, 0.8 * depth_of(limit) * (1 + 1e-12));
     }
     if (op.limited_by == LimitedBy::surface_error) ++bound;
     EXPECT_GE(op.margin, 0.2 - 1e-12);
@@ -153,11 +164,10 @@ TEST(Recommend, SaysFeedAndCuttingSpeed) {
 // A dip between two grid speeds, narrower than their distance, is found by looking closer.
 TEST(Recommend, LooksBetweenTheGivenSpeeds) {
   std::vector<DepthLimit> limits;
-  for (int i = 0; i <= 10; ++i)
-    limits.push_back({.spindle_speed_rad_per_s = 1000.0 + 100.0 * i, .axial_depth_m = 2e-3});
+  for (int i = 0; i <= 10; ++i) limits.push_back(chatter_at(1000.0 + 100.0 * i, 2e-3));
   const auto with_dip = [](double speed) {
     const bool dip = std::abs(speed / 100.0 - std::round(speed / 100.0)) > 1e-6;
-    return DepthLimit{.spindle_speed_rad_per_s = speed, .axial_depth_m = dip ? 1e-3 : 2e-3, .mode = {2}};
+    return chatter_at(speed, dip ? 1e-3 : 2e-3, 0.0, {2});
   };
   const Operation op = *recommend(limits, options(), with_dip).recommended;
   EXPECT_DOUBLE_EQ(op.axial_depth_m, 0.8e-3);
@@ -165,10 +175,8 @@ TEST(Recommend, LooksBetweenTheGivenSpeeds) {
 }
 
 TEST(Recommend, SaysWhenNothingIsSafe) {
-  std::vector<DepthLimit> limits = {{.spindle_speed_rad_per_s = 100.0, .axial_depth_m = 0.0},
-                                    {.spindle_speed_rad_per_s = 101.0, .axial_depth_m = 0.0},
-                                    {.spindle_speed_rad_per_s = 200.0, .axial_depth_m = 0.0}};
-  const auto none = [](double speed) { return DepthLimit{.spindle_speed_rad_per_s = speed, .axial_depth_m = 0.0}; };
+  const auto none = [](double speed) { return chatter_at(speed, 0.0); };
+  std::vector<DepthLimit> limits = {none(100.0), none(101.0), none(200.0)};
   RecommendOptions o = options();
   o.speed_window = 0.005;
   Recommendation r = recommend(limits, o, none);

@@ -240,9 +240,44 @@ std::optional<double> parse_cell(std::string_view field) {
   return parse_field(field, ';');
 }
 
+std::optional<std::size_t> TextTable::column(std::string_view name) const {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+std::string_view TextTable::text(const Row& row, std::string_view name) const {
+  const std::optional<std::size_t> place = column(name);
+  return place ? std::string_view(row.fields[*place]) : std::string_view();
+}
+
+void TextTable::require_known(const std::vector<std::string>& known) const {
+  for (const std::string& name : names) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    const std::string near = nearest_word(name, known);
+    throw InvalidInput(where, fmt::format("has a column {} that is not known here", name),
+                       near.empty() ? "" : fmt::format("Did you mean {}?", near));
+  }
+}
+
+InvalidInput TextTable::reject(const Row& row, std::string_view name, std::string rule, std::string hint) const {
+  InvalidInput::Parts parts{.where = fmt::format("{}:{}", where, row.line),
+                            .field = std::string(name),
+                            .rule = std::move(rule),
+                            .hint = std::move(hint)};
+  const std::string_view field = text(row, name);
+  parts.number = field.empty() ? std::nullopt : parse_cell(field);
+  if (parts.number) {
+    parts.unit = unit_of_key(name);
+  } else if (!field.empty()) {
+    parts.value = fmt::format("\"{}\"", field);
+  }
+  return InvalidInput(std::move(parts));
+}
+
 TextTable parse_text_table(std::string_view content, const std::string& where) {
   check_encoding(content, where);
-  TextTable out;
+  TextTable out{.where = where};
   char separator = ',';
   for (std::size_t line_number = 1; !content.empty(); ++line_number) {
     const std::string_view line = take_line(content);

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "robomill/base/error.hpp"
+
 namespace robomill::io {
 
 /// Columns of numbers in a text file.
@@ -31,8 +33,19 @@ struct TextTable {
     std::size_t line = 0;             ///< in the file, from 1
     std::vector<std::string> fields;  ///< as many as there are columns; empty where the row ends before
   };
-  std::vector<std::string> names;  ///< one a column
-  std::vector<Row> rows;
+  std::string where = {};               ///< names the file in messages
+  std::vector<std::string> names = {};  ///< one a column
+  std::vector<Row> rows = {};
+
+  /// Where a column stands, where there is one.
+  [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
+  /// What a row has in a column; empty where there is no such column.
+  [[nodiscard]] std::string_view text(const Row& row, std::string_view name) const;
+  /// @throws InvalidInput on a column that is none of these, naming the nearest
+  void require_known(const std::vector<std::string>& known) const;
+  /// The error for a field: file:line: column = value unit; rule. hint
+  [[nodiscard]] InvalidInput reject(const Row& row, std::string_view name, std::string rule,
+                                    std::string hint = {}) const;
 };
 
 /// Reads a first line of names and rows below it, parted by semicolons, tabs or commas, whichever the names are. Lines

@@ -73,6 +73,23 @@ TEST(Table, RejectsWhatIsNoTable) {
   EXPECT_EQ(says(prose), "t.csv:201: \"words\"; is no number");
 }
 
+TEST(TextTable, FindsColumnsAndReportsTheirFields) {
+  const TextTable table = parse_text_table("# tools\nname,length_mm\nmill,12.5\nball,x\nslim\n", "t.csv");
+  EXPECT_EQ(table.column("length_mm"), 1u);
+  EXPECT_FALSE(table.column("length"));
+  EXPECT_EQ(table.text(table.rows[0], "length_mm"), "12.5");
+  EXPECT_EQ(table.text(table.rows[0], "teeth"), "");
+  EXPECT_STREQ(table.reject(table.rows[0], "length_mm", "is long").what(), "t.csv:3: length_mm = 12.5 mm; is long");
+  EXPECT_STREQ(table.reject(table.rows[1], "length_mm", "is no number").what(),
+               "t.csv:4: length_mm = \"x\"; is no number");
+  EXPECT_STREQ(table.reject(table.rows[2], "length_mm", "is empty").what(), "t.csv:5: length_mm: is empty");
+  EXPECT_NO_THROW(table.require_known({"length_mm", "name", "teeth"}));
+  EXPECT_EQ(rejection([&] {
+              table.require_known({"name", "length_m"});
+            }),
+            "t.csv: has a column length_mm that is not known here. Did you mean length_m?");
+}
+
 // The shortest digits that determine a double are read back as that double.
 TEST(Table, GivesBackEveryBit) {
   Random random(3);

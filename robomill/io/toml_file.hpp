@@ -2,14 +2,24 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/names.hpp"
 
 namespace robomill::io {
+
+/// A number of a document: its key, the SI member that it fills and the factor between them.
+template <class T>
+struct Field {
+  const char* key;
+  const char* member;
+  double factor;
+  double T::*value;
+};
 
 /// One TOML file while it is read. Every reading call is one row of the file's table: its key, the SI member that it
 /// fills and the factor between them; the rows it has seen serve to report errors in the file's own words and to reject
@@ -28,6 +38,11 @@ class TomlFile {
 
   /// out = value * factor
   bool number(std::string_view key, std::string_view member, double factor, double& out);
+  /// The numbers of a table. @param table  before each key: "tool[0]."; @param member  before each member: "tool[1]."
+  template <class T, std::size_t n>
+  void fields(const std::string& table, const Field<T> (&rows)[n], T& out, const std::string& member = {}) {
+    for (const Field<T>& row : rows) number(table + row.key, member + row.member, row.factor, out.*row.value);
+  }
   /// A list of numbers; a single number is a list of one.
   bool numbers(std::string_view key, std::string_view member, double factor, std::vector<double>& out);
   bool integer(std::string_view key, std::string_view member, int& out);
@@ -40,19 +55,14 @@ class TomlFile {
   bool path(std::string_view key, std::filesystem::path& out);
   bool paths(std::string_view key, std::vector<std::filesystem::path>& out);
   /// One of the named values.
-  template <class Enum>
-  bool choice(std::string_view key, const std::vector<std::pair<std::string_view, Enum>>& values, Enum& out) {
+  template <class Enum, std::size_t n>
+  bool choice(std::string_view key, const Name<Enum> (&names)[n], Enum& out) {
     std::string name;
     if (!text(key, name)) return false;
-    std::string known;
-    for (const auto& [text_value, value] : values) {
-      if (name == text_value) {
-        out = value;
-        return true;
-      }
-      known += (known.empty() ? "\"" : ", \"") + std::string(text_value) + "\"";
-    }
-    throw reject(key, "must be one of " + known);
+    const std::optional<Enum> value = value_in(names, name);
+    if (!value) throw reject(key, one_of(names));
+    out = *value;
+    return true;
   }
 
   /// Accepts a key or a whole table unread: it is for another reader of the same file.

@@ -164,34 +164,9 @@ void pairs(PlanResult& result, Progress& progress) {
   }
 }
 
-std::vector<decision::SpindleCapacity> spindle_curve(const Job& job) {
-  std::vector<decision::SpindleCapacity> curve;
-  for (const SpindlePoint& p : job.spindle_curve) {
-    curve.push_back(
-        {.spindle_speed_rad_per_s = p.spindle_speed_rad_per_s, .torque_n_m = p.torque_n_m, .power_w = p.power_w});
-  }
-  return curve;
-}
-
-decision::RecommendOptions recommend_options(const Job& job, const LobesFile& cut) {
-  decision::RecommendOptions options;
-  options.radial_depth_m = cut.radial_depth_m;
-  options.max_axial_depth_m = job.max_axial_depth_m;
-  options.min_spindle_speed_rad_per_s = job.min_spindle_speed_rad_per_s;
-  options.max_spindle_speed_rad_per_s = job.max_spindle_speed_rad_per_s;
-  options.depth_margin = job.depth_margin;
-  options.speed_window = job.speed_window;
-  options.spindle = spindle_curve(job);
-  return options;
-}
-
-decision::FinishLimits finish_limits(const Job& job) {
-  return {.max_surface_error_m = job.max_surface_error_m, .max_deflection_m = job.max_deflection_m};
-}
-
 /// Whether the spindle can turn the cutter through the cut whose forces were asked for.
 void warn_of_spindle(PlanResult& result) {
-  const std::vector<decision::SpindleCapacity> curve = spindle_curve(result.job);
+  const std::vector<decision::SpindleCapacity>& curve = result.job.recommend.spindle;
   if (curve.empty()) return;
   std::size_t weak = 0;
   SpindleLoad worst;
@@ -294,7 +269,7 @@ void report_resonance(PlanResult& result) {
       "At the recommended speed {:.0f} × tooth passing ({:.1f} Hz) excites {} ({:.1f} Hz): no chatter, but forced "
       "vibration is greatest there.",
       nearest.harmonic, nearest.harmonic * tooth_passing_hz, to_string(nearest.mode), nearest.frequency_hz);
-  if (finish_limits(result.job).any()) {
+  if (result.job.finish.any()) {
     result.notes.push_back(text + " It keeps the limits of [finishing].");
   } else {
     result.warnings.push_back(text +
@@ -391,7 +366,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   }
   const bool with_path = wants_path(result.job);
   try {
-    decision::require_finishable(result.cut.problem, finish_limits(result.job));
+    decision::require_finishable(result.cut.problem, result.job.finish);
   } catch (const InvalidInput& error) {
     throw InvalidInput(InvalidInput::Parts{
         .where = job.string(), .field = "finishing", .rule = error.parts().rule, .hint = error.parts().hint});
@@ -399,7 +374,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   measure(result, progress);
   if (!result.job.forces.empty()) {
     result.forces = run_forces(result.job.forces, result.job.program, result.job.cell, progress);
-    result.forces->spindle = capacity_along(*result.forces, spindle_curve(result.job));
+    result.forces->spindle = capacity_along(*result.forces, result.job.recommend.spindle);
     warn_of_spindle(result);
   }
   fit(result, seed, progress);
@@ -420,9 +395,10 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
   result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
   spread(result, seed, progress);
-  result.recommendation =
-      decision::choose(result.cut.problem, result.cut.options, result.lobes.limit,
-                       recommend_options(result.job, result.cut), finish_limits(result.job), progress);
+  decision::RecommendOptions recommend = result.job.recommend;
+  recommend.radial_depth_m = result.cut.radial_depth_m;
+  result.recommendation = decision::choose(result.cut.problem, result.cut.options, result.lobes.limit, recommend,
+                                           result.job.finish, progress);
   report_resonance(result);
   pairs(result, progress);
   turn_feed(result, progress);

@@ -30,11 +30,11 @@ DepthCurve spindle_curve(const PlanResult& result, const std::string& label, boo
       cutting::mean_load(result.cut.problem.milling, 1.0, result.cut.problem.milling.feed_per_tooth_m, 1.0).torque_n_m;
   DepthCurve curve;
   curve.label = label;
-  const auto n = static_cast<Eigen::Index>(result.job.spindle_curve.size());
+  const auto n = static_cast<Eigen::Index>(result.job.recommend.spindle.size());
   curve.spindle_speed_rad_per_s.resize(n);
   curve.axial_depth_m.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const SpindlePoint& p = result.job.spindle_curve[static_cast<std::size_t>(i)];
+    const decision::SpindleCapacity& p = result.job.recommend.spindle[static_cast<std::size_t>(i)];
     curve.spindle_speed_rad_per_s(i) = p.spindle_speed_rad_per_s;
     curve.axial_depth_m(i) = (torque ? p.torque_n_m : p.power_w / p.spindle_speed_rad_per_s) / per_depth;
   }
@@ -65,15 +65,15 @@ std::string limited_by_text(const decision::Operation& operation) {
 
 std::vector<DepthCurve> other_limits(const PlanResult& result) {
   std::vector<DepthCurve> curves;
-  if (result.job.spindle_curve.size() > 1) {
+  if (result.job.recommend.spindle.size() > 1) {
     curves.push_back(spindle_curve(result, "spindle torque", true));
     curves.push_back(spindle_curve(result, "spindle power", false));
   }
-  if (result.job.max_axial_depth_m > 0.0) {
+  if (result.job.recommend.max_axial_depth_m > 0.0) {
     const std::array<double, 2>& speeds = result.cut.options.spindle_speed_rad_per_s;
     curves.push_back({.label = "cutter's depth",
                       .spindle_speed_rad_per_s = Eigen::Vector2d(speeds[0], speeds[1]),
-                      .axial_depth_m = Eigen::Vector2d::Constant(result.job.max_axial_depth_m)});
+                      .axial_depth_m = Eigen::Vector2d::Constant(result.job.recommend.max_axial_depth_m)});
   }
   return curves;
 }

@@ -26,17 +26,17 @@ std::string where(const std::filesystem::path& program, const program::Block& bl
 /// Why the robot cannot stand where a block ends.
 std::string reason(const robot::Choice& choice) {
   switch (choice.status) {
-    case robot::Choice::Status::out_of_reach:
+    case robot::Reach::Status::out_of_reach:
       return choice.out_of_reach_m > 0.0
                  ? fmt::format("is out of the robot's reach by {:.4g} mm", choice.out_of_reach_m / units::mm)
                  : fmt::format("asks the wrist to bend {:.3g}° too far", choice.out_of_reach_rad / units::deg);
-    case robot::Choice::Status::outside_limits:
+    case robot::Reach::Status::outside_limits:
       return fmt::format("takes joint {} {:.3g}° beyond its limit", choice.joint + 1, choice.beyond_rad / units::deg);
-    case robot::Choice::Status::singular:
+    case robot::Reach::Status::singular:
       return fmt::format("is singular for the robot (condition number {:.3g})", choice.condition_number);
-    case robot::Choice::Status::jump:
+    case robot::Reach::Status::jump:
       return fmt::format("makes a joint jump by {:.3g}°", choice.travel_rad / units::deg);
-    case robot::Choice::Status::found:
+    case robot::Reach::Status::found:
       break;
   }
   return "can be reached";
@@ -109,7 +109,7 @@ std::vector<robot::Position6> joints_along(const CellFile& file, const program::
   std::optional<robot::Position6> start;
   if (file.start_joints.size() == 6) start = robot::Position6(file.start_joints.data());
   const robot::Followed way = robot::follow(cell.arm, *inverse, flanges, start, {.point_m = robot::tip_point(cell)});
-  if (way.status != robot::Choice::Status::found) {
+  if (way.status != robot::Reach::Status::found) {
     throw out_of_the_way(path, program.blocks[way.reached], reason(way.last));
   }
   return way.position_rad;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <memory>
 #include <numbers>
 #include <span>
@@ -189,20 +188,22 @@ path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::Sample
 std::vector<path::Method> methods_of(const SmoothJob& job, path::Method first) {
   std::vector<path::Method> methods = {first};
   if (!job.compare) return methods;
-  std::ranges::copy_if(path::smoothing_methods(), std::back_inserter(methods),
-                       [&](path::Method method) { return method != first; });
+  for (const auto& [name, method] : path::method_names) {
+    if (method != first) methods.push_back(method);
+  }
   return methods;
 }
 
 /// What a controller makes of a joint program that leaves its tolerances, and what would help.
 std::string program_note(const path::ProgramRun& run) {
-  const double tip_m = std::max(run.tip_deviation_m, run.tip_error_m);
-  const double axis_rad = std::max(run.axis_deviation_rad, run.axis_error_rad);
+  const double tip_m = std::max(run.distances.tip_deviation_m, run.distances.tip_error_m);
+  const double axis_rad = std::max(run.distances.axis_deviation_rad, run.distances.axis_error_rad);
   std::string note = fmt::format(
       "Joints interpolated between the program's points leave the programmed path by {:.4g} mm and {:.4g}° and the "
       "trajectory by {:.4g} mm and {:.4g}°; the tolerances are {:.4g} mm and {:.4g}°.",
-      run.tip_error_m / units::mm, run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm,
-      run.axis_deviation_rad / units::deg, run.tip_tolerance_m / units::mm, run.axis_tolerance_rad / units::deg);
+      run.distances.tip_error_m / units::mm, run.distances.axis_error_rad / units::deg,
+      run.distances.tip_deviation_m / units::mm, run.distances.axis_deviation_rad / units::deg,
+      run.tip_tolerance_m / units::mm, run.axis_tolerance_rad / units::deg);
   if (run.would_hold_s > 0.0) {
     return note + fmt::format(" --program-period-ms {:.6g} would hold.", run.would_hold_s / units::ms);
   }
@@ -279,7 +280,8 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
       }));
     } catch (const InvalidInput& error) {
       if (asked_for) throw;
-      result.smoothed.notes.push_back(fmt::format("{} is left out: {}", path::name_of(method), error.what()));
+      result.smoothed.notes.push_back(
+          fmt::format("{} is left out: {}", name_in(path::method_names, method), error.what()));
       continue;
     }
     if (asked_for && file != nullptr) {

@@ -28,10 +28,7 @@ void add_vector(std::string& out, const char* label, const Eigen::Vector3d& v) {
 }
 
 void add_vibration(std::string& out, const simulation::Simulation& vibration) {
-  const char* const verdict = vibration.verdict == simulation::Verdict::stable    ? "stable"
-                              : vibration.verdict == simulation::Verdict::chatter ? "chatter"
-                                                                                  : "undecided";
-  append(out, "vibration    {}", verdict);
+  append(out, "vibration    {}", to_string(vibration.verdict));
   if (vibration.chatter_frequency_hz > 0.0) {
     append(out, " at {:.1f} Hz, {:.3g} µm", vibration.chatter_frequency_hz, vibration.chatter_amplitude_m / units::um);
   }
@@ -127,7 +124,7 @@ void add_methods(std::string& out, const path::SmoothedProgram& smoothed) {
   append(out, "\n{:<18}{:>12}{:>12}{:>14}{:>14}{:>12}\n", "", "duration", "violations", "joint limits", "tip error",
          "planned in");
   for (const path::SmoothedBy& by : smoothed.methods) {
-    append(out, "{:<18}{:>10.3f} s{:>12}{:>12.1f} %{:>11.4g} mm{:>10.3f} s\n", path::name_of(by.method),
+    append(out, "{:<18}{:>10.3f} s{:>12}{:>12.1f} %{:>11.4g} mm{:>10.3f} s\n", name_in(path::method_names, by.method),
            by.summary.duration_s, by.summary.check.violations(), 100.0 * joint_share(by.summary.check),
            by.summary.check.tip_error_m.max / units::mm, by.summary.plan_s);
   }
@@ -145,8 +142,8 @@ void add_run(std::string& out, const path::ProgramRun& run) {
   append(out,
          "; joints interpolated between them: {:.4g} mm and {:.4g}° from the program, {:.4g} mm and {:.4g}° from the "
          "trajectory\n",
-         run.tip_error_m / units::mm, run.axis_error_rad / units::deg, run.tip_deviation_m / units::mm,
-         run.axis_deviation_rad / units::deg);
+         run.distances.tip_error_m / units::mm, run.distances.axis_error_rad / units::deg,
+         run.distances.tip_deviation_m / units::mm, run.distances.axis_deviation_rad / units::deg);
 }
 
 void add_operation(std::string& out, const char* label, const decision::Operation& op) {
@@ -226,7 +223,7 @@ std::string summary(const SmoothResult& result) {
   std::string out;
   const path::SmoothedBy& by = result.first();
   const path::Summary& run = by.summary;
-  append(out, "{}  {:.3f} s", path::name_of(by.method), run.duration_s);
+  append(out, "{}  {:.3f} s", name_in(path::method_names, by.method), run.duration_s);
   if (run.lower_bound_s > 0.0) append(out, " (bound {:.3f} s)", run.lower_bound_s);
   append(out, " for {} blocks; {} samples; planned in {:.3g} s", run.blocks, run.samples, run.plan_s);
   if (run.rounds > 1) append(out, ", {} rounds", run.rounds);

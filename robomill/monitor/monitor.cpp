@@ -145,10 +145,10 @@ const MonitorOptions& ChatterMonitor::options() const noexcept {
 }
 
 std::string_view to_string(Kind kind) {
-  return kind == Kind::comb_cusum ? "comb-cusum" : "energy-entropy";
+  return name_in(kind_names, kind);
 }
 std::string_view to_string(Entropy entropy) {
-  return entropy == Entropy::normalised ? "normalised" : "energy";
+  return name_in(entropy_names, entropy);
 }
 std::string_view to_string(State state) {
   return state == State::stable ? "stable" : state == State::transition ? "transition" : "chatter";

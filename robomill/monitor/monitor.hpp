@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 
 // Method: robomill/monitor/README.md, "Method"
 
@@ -18,11 +19,13 @@ enum class Kind {
   comb_cusum,     ///< a comb takes off what repeats with the spindle; a CUSUM tests each spectral line of the rest
   energy_entropy  ///< the published detector: the entropy of the bands' energies against a calibrated threshold
 };
+inline constexpr Name<Kind> kind_names[] = {{"comb-cusum", Kind::comb_cusum}, {"energy-entropy", Kind::energy_entropy}};
 /// Of the bands' energies E_b, p_b = E_b / Σ E.
 enum class Entropy {
   normalised,  ///< -Σ p_b ln p_b: blind to the amplitude
   energy       ///< -Σ E_b ln p_b: grows with the amplitude's square
 };
+inline constexpr Name<Entropy> entropy_names[] = {{"normalised", Entropy::normalised}, {"energy", Entropy::energy}};
 /// What a decision says of the cut.
 enum class State {
   stable,      ///< no alarm, and none on its way up or down

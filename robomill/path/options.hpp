@@ -1,5 +1,6 @@
 #pragma once
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 
 /// NC program + robot -> smooth joint trajectory. Work frame W: the program's own; docs/frames.md.
 // Method: robomill/path/README.md, "Method"
@@ -12,6 +13,12 @@ namespace robomill::path {
 ///   paper_as_printed: the published equations with their errors
 ///   no_joint_jerk:    the method before it [Sun2021]: joint velocity and |acceleration| alone
 enum class Method { verified, optimal, paper, paper_as_printed, no_joint_jerk };
+/// As in a cell's [smoothing]; the fastest to plan first.
+inline constexpr Name<Method> method_names[] = {{"verified", Method::verified},
+                                                {"optimal", Method::optimal},
+                                                {"paper", Method::paper},
+                                                {"paper-as-printed", Method::paper_as_printed},
+                                                {"no-joint-jerk", Method::no_joint_jerk}};
 
 /// Limits and tolerances of a smoothed path. Limits of tip and axis hold along their paths: speed, d(speed)/dt, and
 /// the jerk vector's projection on the direction of motion.

@@ -40,7 +40,7 @@ Followed follow_from(const Arm& arm, const SphericalWristInverse& inverse,
   for (const Eigen::Isometry3d& flange : flanges) {
     out.last = choose(arm, inverse.solve(flange, previous), previous, options);
     out.status = out.last.status;
-    if (out.status != Choice::Status::found) break;
+    if (out.status != Reach::Status::found) break;
     if (out.last.travel_rad > out.largest_travel_rad) {
       out.largest_travel_rad = out.last.travel_rad;
       out.largest_travel_at = out.reached;
@@ -109,14 +109,14 @@ Choice choose(const Arm& arm, const InverseSolutions& solutions, const Position6
   out.joint = best.placed.joint;
   out.beyond_rad = best.placed.beyond_rad;
   if (out.joint >= 0) {
-    out.status = Choice::Status::outside_limits;
+    out.status = Reach::Status::outside_limits;
     return out;
   }
   out.condition_number = condition_at(arm, out.position_rad, options);
   const bool singular = !(out.condition_number <= options.singularity.max_condition_number);
-  out.status = singular                                  ? Choice::Status::singular
-               : out.travel_rad > options.max_travel_rad ? Choice::Status::jump
-                                                         : Choice::Status::found;
+  out.status = singular                                  ? Reach::Status::singular
+               : out.travel_rad > options.max_travel_rad ? Reach::Status::jump
+                                                         : Reach::Status::found;
   return out;
 }
 

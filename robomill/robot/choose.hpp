@@ -9,6 +9,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/inverse.hpp"
+#include "robomill/robot/kinematics.hpp"
 #include "robomill/robot/stiffness.hpp"
 
 // Method: robomill/robot/README.md, "Inverse kinematics in closed form"
@@ -26,14 +27,7 @@ struct ROBOMILL_API ChooseOptions {
 
 /// One position for a pose.
 struct Choice {
-  enum class Status {
-    found,           ///< within limits, regular and near enough to the previous position
-    out_of_reach,    ///< no solution: the wrist's centre is too far or too near, or the wrist cannot bend that far
-    outside_limits,  ///< every solution and its turns by 2π have a joint beyond its limits: `joint`, `beyond_rad`
-    singular,        ///< within limits, but condition_number > singularity.max_condition_number
-    jump             ///< within limits and regular, but travel_rad > max_travel_rad: the arm would have to swing round
-  };
-  Status status = Status::out_of_reach;
+  Reach::Status status = Reach::Status::out_of_reach;
   Position6 position_rad = Position6::Zero();  ///< zero where out of reach
   double travel_rad = 0.0;                     ///< the largest of a joint from the previous position
   double condition_number = 0.0;               ///< within limits: of the Jacobian at the point
@@ -52,12 +46,12 @@ struct Choice {
 
 /// A way through poses.
 struct Followed {
-  Choice::Status status = Choice::Status::found;  ///< of the first pose that has no regular position within limits
-  std::size_t reached = 0;                        ///< poses before that one: all of them where found
-  std::vector<Position6> position_rad = {};       ///< one each pose reached
-  Choice last = {};                               ///< of the pose where it ended
-  double largest_travel_rad = 0.0;                ///< the largest step of a joint
-  std::size_t largest_travel_at = 0;              ///< into which pose
+  Reach::Status status = Reach::Status::found;  ///< of the first pose that has no regular position within limits
+  std::size_t reached = 0;                      ///< poses before that one: all of them where found
+  std::vector<Position6> position_rad = {};     ///< one each pose reached
+  Choice last = {};                             ///< of the pose where it ended
+  double largest_travel_rad = 0.0;              ///< the largest step of a joint
+  std::size_t largest_travel_at = 0;            ///< into which pose
 };
 
 /// Goes through the poses by choose(), from one to the next. Without a start it tries every way to stand at the first

@@ -53,14 +53,14 @@ TEST(Choose, TakesTheNearestWithinLimits) {
     const double expected = nearest_by_search(arm, solutions, previous);
     if (std::isinf(expected)) {
       ++outside;
-      EXPECT_EQ(choice.status, Choice::Status::outside_limits);
+      EXPECT_EQ(choice.status, Reach::Status::outside_limits);
       ASSERT_GE(choice.joint, 0);
       const Joint& joint = arm.joints[static_cast<std::size_t>(choice.joint)];
       const double at = choice.position_rad(choice.joint);
       EXPECT_NEAR(choice.beyond_rad, std::max(joint.min_position - at, at - joint.max_position), 1e-12);
       continue;
     }
-    ASSERT_EQ(choice.status, Choice::Status::found);
+    ASSERT_EQ(choice.status, Reach::Status::found);
     EXPECT_NEAR((choice.position_rad - previous).squaredNorm(), expected, 1e-9);
     EXPECT_TRUE(within_limits(arm, choice.position_rad).inside);
     EXPECT_LT(pose_error(forward(arm, choice.position_rad), flange), 1e-9);
@@ -76,13 +76,13 @@ TEST(Choose, ReportsWhyThereIsNone) {
   Eigen::Isometry3d flange = forward(arm, testing::kr210_posture());
   flange.translation().x() += 10.0;
   const Choice far = choose(arm, inverse.solve(flange), Position6::Zero());
-  EXPECT_EQ(far.status, Choice::Status::out_of_reach);
+  EXPECT_EQ(far.status, Reach::Status::out_of_reach);
   EXPECT_GT(far.out_of_reach_m, 8.0);
 
   Position6 straight = testing::kr210_posture();
   straight(4) = 1e-5;
   const Choice singular = choose(arm, inverse.solve(forward(arm, straight)), straight);
-  EXPECT_EQ(singular.status, Choice::Status::singular);
+  EXPECT_EQ(singular.status, Reach::Status::singular);
   EXPECT_GT(singular.condition_number, 1e4);
   EXPECT_NEAR(singular.solution.wrist_rad, 1e-5, 1e-9);
   EXPECT_LT(singular.travel_rad, 1e-6);
@@ -92,7 +92,7 @@ TEST(Choose, ReportsWhyThereIsNone) {
   narrow.joints[1].max_position = 1.1;
   const Position6 posture = testing::kr210_posture();
   const Choice outside = choose(narrow, inverse.solve(forward(arm, posture)), posture);
-  EXPECT_EQ(outside.status, Choice::Status::outside_limits);
+  EXPECT_EQ(outside.status, Reach::Status::outside_limits);
   EXPECT_EQ(outside.joint, 1);
   EXPECT_NEAR(outside.beyond_rad, std::max(1.0 - outside.position_rad(1), outside.position_rad(1) - 1.1), 1e-12);
 }
@@ -113,7 +113,7 @@ TEST(Choose, FollowsAPathWithoutJumpsOverManyTurns) {
     flanges.push_back(forward(arm, position));
   }
   const Followed way = follow(arm, inverse, flanges, positions.front());
-  EXPECT_EQ(way.status, Choice::Status::found);
+  EXPECT_EQ(way.status, Reach::Status::found);
   ASSERT_EQ(way.reached, flanges.size());
   for (std::size_t k = 0; k < flanges.size(); ++k) EXPECT_LT((way.position_rad[k] - positions[k]).norm(), 1e-9);
   EXPECT_NEAR(way.largest_travel_rad, 20.0 / 2000.0, 1e-9);
@@ -121,7 +121,7 @@ TEST(Choose, FollowsAPathWithoutJumpsOverManyTurns) {
   // Joint 6 may not turn that far: at its limit the arm would have to swing round.
   const Arm limited = testing::with_limits(arm);
   const Followed ended = follow(limited, inverse, flanges, positions.front(), {.max_travel_rad = 0.5});
-  EXPECT_EQ(ended.status, Choice::Status::jump);
+  EXPECT_EQ(ended.status, Reach::Status::jump);
   EXPECT_GT(ended.last.travel_rad, 0.5);
   const double until = (350.0 - 18.86) * testing::pi / 180.0 / 20.0;
   EXPECT_NEAR(static_cast<double>(ended.reached), 2000.0 * until, 1.0);
@@ -139,12 +139,12 @@ TEST(Choose, FindsTheStartThatGetsFarthest) {
     flanges.push_back(forward(arm, position));
   }
   const Followed way = follow(arm, inverse, flanges);
-  EXPECT_EQ(way.status, Choice::Status::found);
+  EXPECT_EQ(way.status, Reach::Status::found);
   EXPECT_EQ(way.reached, flanges.size());
   EXPECT_NEAR(way.largest_travel_rad, 11.0 / 300.0, 1e-9);
   flanges.front().translation().x() += 10.0;
   const Followed none = follow(arm, inverse, flanges);
-  EXPECT_EQ(none.status, Choice::Status::out_of_reach);
+  EXPECT_EQ(none.status, Reach::Status::out_of_reach);
   EXPECT_EQ(none.reached, 0U);
 }
 

@@ -37,7 +37,7 @@ class Turn {
       one.count = 1;
       one.solution[0] = all.solution[static_cast<std::size_t>(k)];
       const RedundancySample sample = evaluated(gamma_rad, choose(cell_.arm, one, from, choosing_));
-      if (sample.status != Choice::Status::found || (any && !(cost(sample) < cost(best)))) continue;
+      if (sample.status != Reach::Status::found || (any && !(cost(sample) < cost(best)))) continue;
       any = true;
       best = sample;
     }
@@ -46,7 +46,7 @@ class Turn {
 
   /// What is to be least; infinite where there is no posture.
   [[nodiscard]] double cost(const RedundancySample& sample) const {
-    if (sample.status != Choice::Status::found || sample.buckled) return std::numeric_limits<double>::infinity();
+    if (sample.status != Reach::Status::found || sample.buckled) return std::numeric_limits<double>::infinity();
     switch (options_.least) {
       case RedundancyOptions::Least::error:
         return sample.error_m.norm();
@@ -91,7 +91,7 @@ class Turn {
     RedundancySample out;
     out.gamma_rad = gamma_rad;
     out.status = choice.status;
-    if (choice.status != Choice::Status::found) return out;
+    if (choice.status != Reach::Status::found) return out;
     out.position_rad = choice.position_rad;
     out.limit_distance_rad = within_limits(cell_.arm, out.position_rad).distance;
     const Eigen::Matrix3d to_b = cell_.workpiece.linear();

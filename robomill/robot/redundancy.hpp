@@ -35,7 +35,7 @@ struct ROBOMILL_API RedundancyOptions {
 /// A posture with one turn about the tool's axis.
 struct RedundancySample {
   double gamma_rad = 0.0;
-  Choice::Status status = Choice::Status::out_of_reach;  ///< the numbers below stand where it is `found`
+  Reach::Status status = Reach::Status::out_of_reach;  ///< the numbers below stand where it is `found`
   Position6 position_rad = Position6::Zero();
   bool buckled = false;             ///< the joints cannot hold the force there: what follows says nothing
   double limit_distance_rad = 0.0;  ///< of the joint nearest to its limit

@@ -38,7 +38,7 @@ TEST(Redundancy, EverySampleHoldsTheToolAndItsErrorIsThatOfTheLoadedArm) {
   ASSERT_EQ(over.samples.size(), 72U);
   int found = 0;
   for (const RedundancySample& sample : over.samples) {
-    if (sample.status != Choice::Status::found) continue;
+    if (sample.status != Reach::Status::found) continue;
     ++found;
     const ToolPose pose = tool_pose(cell, forward(cell.arm, sample.position_rad));
     EXPECT_LT((pose.tip_m - tilted().tip_m).norm(), 1e-9);
@@ -73,13 +73,13 @@ TEST(Redundancy, NoGammaIsBetterThanTheBest) {
     options.samples = 2000;
     const Redundancy fine = redundancy(cell, inverse, tilted(), options);
     for (const RedundancySample& sample : fine.samples) {
-      if (sample.status != Choice::Status::found) continue;
+      if (sample.status != Reach::Status::found) continue;
       EXPECT_LE(cost(over.best), cost(sample) * (1.0 + 1e-6) + 1e-9);
     }
     const ToolPose pose = tool_pose(cell, forward(cell.arm, over.best.position_rad));
     EXPECT_LT((pose.tip_m - tilted().tip_m).norm(), 1e-9);
     for (const RedundancySample& sample : over.samples) {
-      if (sample.status == Choice::Status::found) {
+      if (sample.status == Reach::Status::found) {
         EXPECT_LE(cost(over.best), cost(sample));
       }
     }
@@ -107,7 +107,7 @@ TEST(Redundancy, ReportsThatThereIsNone) {
   far.tip_m.x() += 5.0;
   const Redundancy over = redundancy(cell, inverse, far, milling());
   EXPECT_EQ(over.status, Redundancy::Status::none);
-  for (const RedundancySample& sample : over.samples) EXPECT_EQ(sample.status, Choice::Status::out_of_reach);
+  for (const RedundancySample& sample : over.samples) EXPECT_EQ(sample.status, Reach::Status::out_of_reach);
 }
 
 // A posture that cannot hold the force has a compliance of the wrong sign, which the size of an error does not show.
@@ -121,7 +121,7 @@ TEST(Redundancy, TakesNoPostureThatBuckles) {
   int buckled = 0;
   double least = std::numeric_limits<double>::infinity();
   for (const RedundancySample& sample : over.samples) {
-    if (sample.status != Choice::Status::found) continue;
+    if (sample.status != Reach::Status::found) continue;
     const Stiffness there = stiffness(cell.arm, sample.position_rad, tip_point(cell), wrench, huge.singularity);
     EXPECT_EQ(sample.buckled, there.status == Stiffness::Status::buckled);
     buckled += sample.buckled ? 1 : 0;

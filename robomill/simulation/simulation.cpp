@@ -34,6 +34,10 @@ Job job_of(const MillingCut& cut, const SimulationOptions& options) {
 
 }  // namespace
 
+std::string_view to_string(Verdict verdict) {
+  return verdict == Verdict::stable ? "stable" : verdict == Verdict::chatter ? "chatter" : "undecided";
+}
+
 void MillingCut::validate() const {
   milling.validate();
   require_turning(spindle_speed_rad_per_s);

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <complex>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -66,6 +67,8 @@ enum class Verdict {
   chatter,   ///< they grow (ratio > 1.4), stay above 5 % of the motion or diverge; or that radius >= 1 decides
   undecided  ///< neither, and no small vibration was found; or depth or speed still change in the last half
 };
+/// "stable", "chatter", "undecided".
+[[nodiscard]] ROBOMILL_API std::string_view to_string(Verdict verdict);
 
 /// The wall that stays on the part, at the side where teeth enter (φ = 0) or leave (φ = π), over the last half of the
 /// time.

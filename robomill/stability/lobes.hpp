@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/cutting/milling.hpp"
 #include "robomill/modal/mode_id.hpp"
@@ -43,6 +44,13 @@ enum class Method {
   zeroth_order,                     ///< [Altintas1995]: mean cutting stiffness; misses flips and effects of helix
   multi_frequency                   ///< [Merdol2004], [Budak1998]: all harmonics, to convergence
 };
+inline constexpr Name<Method> method_names[] = {
+    {"collocation", Method::collocation},
+    {"semi-discretization", Method::semi_discretization},
+    {"semi-discretization-first-order", Method::semi_discretization_first_order},
+    {"full-discretization", Method::full_discretization},
+    {"zeroth-order", Method::zeroth_order},
+    {"multi-frequency", Method::multi_frequency}};
 /// What a chart holds beside limits and points.
 enum class Output {
   boundary,  ///< curves on which the spectral radius is 1; the grid only shows where to look

@@ -30,20 +30,7 @@ void require_depth(const char* field, double depth_m) {
 }  // namespace
 
 std::string_view to_string(Method method) {
-  switch (method) {
-    case Method::semi_discretization:
-      return "semi-discretization";
-    case Method::semi_discretization_first_order:
-      return "semi-discretization-first-order";
-    case Method::full_discretization:
-      return "full-discretization";
-    case Method::zeroth_order:
-      return "zeroth-order";
-    case Method::multi_frequency:
-      return "multi-frequency";
-    default:
-      return "collocation";
-  }
+  return name_in(method_names, method);
 }
 
 std::string_view to_string(Period period) {

@@ -21,12 +21,9 @@ constexpr double most_lines = 2e6;
 /// @param key  of the table: "tool[0]."; @param member  the same as stages count: "tool[1]."
 Segment read_segment(io::TomlFile& file, const std::string& key, const std::string& member) {
   Segment segment;
-  for (const SegmentField& field : segment_fields) {
-    file.number(key + field.key, member + field.member, field.factor, segment.*field.value);
-  }
+  file.fields(key, segment_fields, segment, member);
   file.integer(key + "flutes", member + "flutes", segment.flutes);
-  file.choice<Beam>(key + "beam", {{"timoshenko", Beam::timoshenko}, {"euler-bernoulli", Beam::euler_bernoulli}},
-                    segment.beam);
+  file.choice(key + "beam", beam_names, segment.beam);
   try {
     segment.validate();
   } catch (const InvalidInput& error) {
@@ -48,22 +45,16 @@ std::vector<Segment> read_segments(io::TomlFile& file, const std::string& table)
 void read_joint(io::TomlFile& file, const AssemblyReading& reading, std::optional<Joint>& out) {
   if (!file.has("joint")) return;
   Joint joint;
-  const auto number = [&](const std::string& name, double factor, const std::string& member, double& value) {
-    file.number("joint." + name, "joint." + member, factor, value);
-  };
-  const auto plain = [&](const std::string& name, double& value) { number(name, 1.0, name, value); };
-  plain("cross_stiffness_n_per_rad", joint.cross_stiffness_n_per_rad);
-  plain("translational_stiffness_n_per_m", joint.translational_stiffness_n_per_m);
-  plain("translational_damping_n_s_per_m", joint.translational_damping_n_s_per_m);
-  plain("rotational_stiffness_n_m_per_rad", joint.rotational_stiffness_n_m_per_rad);
-  plain("rotational_damping_n_m_s_per_rad", joint.rotational_damping_n_m_s_per_rad);
+  constexpr const char* cross = "joint.cross_stiffness_n_per_rad";
+  file.number(cross, cross, 1.0, joint.cross_stiffness_n_per_rad);
+  file.fields("joint.", joint_fields, joint, "joint.");
   if (reading.joint_sought) {
     // The search uses none of the four; what stands for them must only be valid.
     joint.translational_stiffness_n_per_m = joint.rotational_stiffness_n_m_per_rad =
         std::max(1e6, 2.0 * std::abs(joint.cross_stiffness_n_per_rad));
     joint.translational_damping_n_s_per_m = joint.rotational_damping_n_m_s_per_rad = 0.0;
   }
-  number("insertion_length_mm", units::mm, "insertion_length_m", joint.insertion_length_m);
+  file.number("joint.insertion_length_mm", "joint.insertion_length_m", units::mm, joint.insertion_length_m);
   file.integer("joint.points", "joint.points", joint.points);
   joint.shank = read_segments(file, "joint.shank");
   try {
@@ -76,13 +67,11 @@ void read_joint(io::TomlFile& file, const AssemblyReading& reading, std::optiona
 
 /// How a joint is searched for; the keys of the ranges are those of [joint].
 void read_search(io::TomlFile& file, JointFitOptions& out) {
-  constexpr std::array<const char*, joint_unknowns> unknowns = {
-      "translational_stiffness_n_per_m", "translational_damping_n_s_per_m", "rotational_stiffness_n_m_per_rad",
-      "rotational_damping_n_m_s_per_rad"};
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const std::string key = fmt::format("search.{}", unknowns[i]);
+  for (std::size_t i = 0; i < joint_unknowns; ++i) {
+    const char* const name = joint_fields[i].key;
+    const std::string key = fmt::format("search.{}", name);
     std::vector<double> range;
-    if (!file.numbers(key, unknowns[i], 1.0, range)) continue;
+    if (!file.numbers(key, name, 1.0, range)) continue;
     const bool stiffness = i % 2 == 0;
     if (range.size() != 2 || !(range[0] <= range[1]) || !(stiffness ? range[0] > 0.0 : range[0] >= 0.0)) {
       throw file.reject(key, fmt::format("must be [from, to] with {} <= to", stiffness ? "0 < from" : "0 <= from"));

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -23,15 +22,9 @@ constexpr std::array<std::string_view, 4> other_columns = {"tool", "flutes", "be
 /// One row of the table while it is read.
 class TableRow {
  public:
-  TableRow(const std::string& file, const io::TextTable& table, const io::TextTable::Row& row)
-      : where_(fmt::format("{}:{}", file, row.line)), table_(table), row_(row) {}
+  TableRow(const io::TextTable& table, const io::TextTable::Row& row) : table_(table), row_(row) {}
 
-  [[nodiscard]] std::string_view text(std::string_view key) const {
-    const auto found = std::find(table_.names.begin(), table_.names.end(), key);
-    return found == table_.names.end()
-               ? std::string_view()
-               : std::string_view(row_.fields[static_cast<std::size_t>(found - table_.names.begin())]);
-  }
+  [[nodiscard]] std::string_view text(std::string_view key) const { return table_.text(row_, key); }
   bool number(std::string_view key, double factor, double& out) const {
     const std::string_view field = text(key);
     if (field.empty()) return false;
@@ -50,22 +43,13 @@ class TableRow {
     return true;
   }
   [[nodiscard]] InvalidInput reject(std::string_view key, std::string rule, std::string hint = {}) const {
-    InvalidInput::Parts parts{
-        .where = where_, .field = std::string(key), .rule = std::move(rule), .hint = std::move(hint)};
-    const std::string_view field = text(key);
-    parts.number = field.empty() ? std::nullopt : io::parse_cell(field);
-    if (parts.number) {
-      parts.unit = io::unit_of_key(key);
-    } else if (!field.empty()) {
-      parts.value = fmt::format("\"{}\"", field);
-    }
-    return InvalidInput(std::move(parts));
+    return table_.reject(row_, key, std::move(rule), std::move(hint));
   }
   /// An error about a member of the segment, reported in the column's name and unit.
   [[nodiscard]] InvalidInput located(const InvalidInput& error) const {
     InvalidInput::Parts parts = error.parts();
-    parts.where = where_;
-    for (const SegmentField& column : segment_fields) {
+    parts.where = fmt::format("{}:{}", table_.where, row_.line);
+    for (const io::Field<Segment>& column : segment_fields) {
       if (parts.field != column.member) continue;
       parts.field = column.key;
       if (text(column.key).empty()) {
@@ -81,24 +65,16 @@ class TableRow {
   }
 
  private:
-  std::string where_;
   const io::TextTable& table_;
   const io::TextTable::Row& row_;
 };
 
-void check_columns(const io::TextTable& table, const std::string& file) {
+void check_columns(const io::TextTable& table) {
   std::vector<std::string> known(other_columns.begin(), other_columns.end());
-  for (const SegmentField& column : segment_fields) known.emplace_back(column.key);
-  for (const std::string& name : table.names) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string near = io::nearest_word(name, known);
-    throw InvalidInput(file, fmt::format("has a column {} that is not known here", name),
-                       near.empty() ? "" : fmt::format("Did you mean {}?", near));
-  }
+  for (const io::Field<Segment>& column : segment_fields) known.emplace_back(column.key);
+  table.require_known(known);
   for (const char* needed : {"tool", "length_mm", "diameter_mm"}) {
-    if (std::find(table.names.begin(), table.names.end(), needed) == table.names.end()) {
-      throw InvalidInput(file, fmt::format("has no column {}", needed));
-    }
+    if (!table.column(needed)) throw InvalidInput(table.where, fmt::format("has no column {}", needed));
   }
 }
 
@@ -106,15 +82,12 @@ Segment read_segment(const TableRow& row, const Segment& like) {
   Segment segment = like;
   segment.length_m = segment.diameter_m = segment.inner_diameter_m = segment.mass_kg = 0.0;
   segment.flutes = 0;
-  for (const SegmentField& column : segment_fields) row.number(column.key, column.factor, segment.*column.value);
+  for (const io::Field<Segment>& column : segment_fields) row.number(column.key, column.factor, segment.*column.value);
   row.integer("flutes", segment.flutes);
-  const std::string_view beam = row.text("beam");
-  if (beam == "timoshenko") {
-    segment.beam = Beam::timoshenko;
-  } else if (beam == "euler-bernoulli") {
-    segment.beam = Beam::euler_bernoulli;
-  } else if (!beam.empty()) {
-    throw row.reject("beam", "must be one of \"timoshenko\", \"euler-bernoulli\"");
+  if (const std::string_view beam = row.text("beam"); !beam.empty()) {
+    const std::optional<Beam> known = value_in(beam_names, beam);
+    if (!known) throw row.reject("beam", one_of(beam_names));
+    segment.beam = *known;
   }
   try {
     segment.validate();
@@ -127,13 +100,12 @@ Segment read_segment(const TableRow& row, const Segment& like) {
 }  // namespace
 
 std::vector<ListedTool> read_tools(const std::filesystem::path& path, const Segment& like) {
-  const std::string file = path.string();
-  const io::TextTable table = io::parse_text_table(io::read_file(path), file);
-  check_columns(table, file);
+  const io::TextTable table = io::parse_text_table(io::read_file(path), path.string());
+  check_columns(table);
   std::vector<ListedTool> out;
   std::set<std::string, std::less<>> seen;
   for (const io::TextTable::Row& fields : table.rows) {
-    const TableRow row(file, table, fields);
+    const TableRow row(table, fields);
     const std::string name(row.text("tool"));
     if (name.empty()) throw row.reject("tool", "is empty", "Every row names its tool");
     const bool next = out.empty() || out.back().name != name;

@@ -2,13 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
@@ -38,63 +35,35 @@ constexpr std::array<Column, 6> columns = {{
 }};
 constexpr std::string_view may_be_missing = "spindle_speed_rpm";
 
-/// Where each known column stands in the table.
-using Places = std::array<std::optional<std::size_t>, columns.size()>;
-
-Places find_columns(const io::TextTable& table, const std::string& file) {
-  Places places;
+void check_columns(const io::TextTable& table) {
   std::vector<std::string> known;
   known.reserve(columns.size());
   for (const Column& column : columns) known.emplace_back(column.key);
-  for (std::size_t i = 0; i < table.names.size(); ++i) {
-    const auto found = std::ranges::find(known, table.names[i]);
-    if (found == known.end()) {
-      const std::string near = io::nearest_word(table.names[i], known);
-      throw InvalidInput(file, fmt::format("has a column {} that is not known here", table.names[i]),
-                         near.empty() ? "" : fmt::format("Did you mean {}?", near));
-    }
-    places[static_cast<std::size_t>(found - known.begin())] = i;
-  }
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (!places[i] && columns[i].key != may_be_missing) {
-      throw InvalidInput(file, fmt::format("has no column {}", columns[i].key));
+  table.require_known(known);
+  for (const std::string& name : known) {
+    if (!table.column(name) && name != may_be_missing) {
+      throw InvalidInput(table.where, fmt::format("has no column {}", name));
     }
   }
-  return places;
 }
 
-/// The error for one field of a row.
-InvalidInput reject(const std::string& where, const Column& column, const std::string& field, std::string rule,
-                    std::string hint = {}) {
-  InvalidInput::Parts parts{.where = where, .field = column.key, .rule = std::move(rule), .hint = std::move(hint)};
-  if (field.empty()) return InvalidInput(std::move(parts));
-  parts.number = io::parse_cell(field);
-  if (parts.number) {
-    parts.unit = io::unit_of_key(column.key);
-  } else {
-    parts.value = fmt::format("\"{}\"", field);
-  }
-  return InvalidInput(std::move(parts));
-}
-
-SlotForce read_row(const io::TextTable::Row& row, const Places& places, const std::string& where) {
+SlotForce read_row(const io::TextTable& table, const io::TextTable::Row& row) {
   SlotForce slot;
-  const auto field = [&](std::size_t i) { return places[i] ? row.fields[*places[i]] : std::string(); };
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const std::string text = field(i);
-    if (text.empty() && columns[i].key == may_be_missing) continue;
+  for (const Column& column : columns) {
+    const std::string_view text = table.text(row, column.key);
+    if (text.empty() && column.key == may_be_missing) continue;
     const std::optional<double> number = io::parse_cell(text);
     if (!number || !std::isfinite(*number)) {
-      throw reject(where, columns[i], text, text.empty() ? "is empty" : "must be a finite number");
+      throw table.reject(row, column.key, text.empty() ? "is empty" : "must be a finite number");
     }
-    columns[i].value(slot) = *number * columns[i].factor;
+    column.value(slot) = *number * column.factor;
   }
   try {
     slot.validate();
   } catch (const InvalidInput& error) {
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (error.parts().field == columns[i].member) {
-        throw reject(where, columns[i], field(i), error.parts().rule, error.parts().hint);
+    for (const Column& column : columns) {
+      if (error.parts().field == column.member) {
+        throw table.reject(row, column.key, error.parts().rule, error.parts().hint);
       }
     }
     throw;
@@ -183,14 +152,13 @@ std::string inline_toml(const io::Json& json) {
 }  // namespace
 
 SlotsFile read_slots(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  const io::TextTable table = io::parse_text_table(io::read_file(path), file);
-  const Places places = find_columns(table, file);
+  const io::TextTable table = io::parse_text_table(io::read_file(path), path.string());
+  check_columns(table);
   SlotsFile out;
   out.slots.reserve(table.rows.size());
   out.lines.reserve(table.rows.size());
   for (const io::TextTable::Row& row : table.rows) {
-    out.slots.push_back(read_row(row, places, fmt::format("{}:{}", file, row.line)));
+    out.slots.push_back(read_row(table, row));
     out.lines.push_back(row.line);
   }
   return out;

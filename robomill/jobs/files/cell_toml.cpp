@@ -21,17 +21,12 @@
 namespace robomill::jobs {
 namespace {
 
-/// Other lists with one value a joint, SI in the file too.
-struct JointList {
-  const char* key;
-  const char* member;
-  double robot::Joint::*value;
+/// Other lists with one value a joint.
+constexpr io::Field<robot::Joint> joint_lists[] = {
+    {"robot.joint_stiffness_n_m_per_rad", "stiffness", 1.0, &robot::Joint::stiffness},
+    {"robot.joint_damping_n_m_s_per_rad", "damping", 1.0, &robot::Joint::damping},
+    {"robot.joint_rotor_inertia_kg_m2", "rotor_inertia", 1.0, &robot::Joint::rotor_inertia},
 };
-constexpr std::array<JointList, 3> joint_lists = {{
-    {"robot.joint_stiffness_n_m_per_rad", "stiffness", &robot::Joint::stiffness},
-    {"robot.joint_damping_n_m_s_per_rad", "damping", &robot::Joint::damping},
-    {"robot.joint_rotor_inertia_kg_m2", "rotor_inertia", &robot::Joint::rotor_inertia},
-}};
 
 /// Where each of joint_limits goes, of an arm and of the hybrid machine.
 constexpr std::array<double robot::Joint::*, robot::joint_limits.size()> of_joint = {
@@ -133,9 +128,9 @@ void read_joint_lists(io::TomlFile& file, robot::Arm& arm, std::vector<std::stri
     for (std::size_t i = 0; i < values.size(); ++i)
       arm.joints[i].*of_joint[k] = values[i].value_or(arm.joints[i].*of_joint[k]);
   }
-  for (const JointList& list : joint_lists) {
+  for (const io::Field<robot::Joint>& list : joint_lists) {
     std::vector<double> values;
-    if (!file.numbers(list.key, list.member, 1.0, values)) continue;
+    if (!file.numbers(list.key, list.member, list.factor, values)) continue;
     if (values.size() != arm.joints.size()) {
       throw file.reject(list.key,
                         fmt::format("must hold one number a joint, {}; it holds {}", arm.joints.size(), values.size()));
@@ -154,7 +149,7 @@ InvalidInput located(const io::TomlFile& file, const robot::Arm& arm, const Inva
     if (!is_of(limit.name)) continue;
     return robot::located_limit(file, limit, sliding(arm), std::stoul(parts.field.substr(7)) - 1, error);
   }
-  for (const JointList& list : joint_lists) {
+  for (const io::Field<robot::Joint>& list : joint_lists) {
     if (!is_of(list.member) || !file.has(list.key)) continue;
     InvalidInput::Parts reported = file.reject(list.key, parts.rule, parts.hint).parts();
     reported.field += parts.field.substr(6, parts.field.find(']') - 5);
@@ -225,27 +220,22 @@ void read_start(io::TomlFile& file, CellFile& out) {
 
 constexpr std::size_t hybrid_joints = 5;  // q1, q2, q3 the legs, q4, q5 the slides
 
-/// Sizes of the hybrid machine.
-struct Size {
-  const char* key;
-  const char* member;
-  double robot::HybridMachine::*value;
+using robot::HybridMachine;
+constexpr io::Field<HybridMachine> hybrid_sizes[] = {
+    {"robot.base_half_width_mm", "base_half_width_m", units::mm, &HybridMachine::base_half_width_m},
+    {"robot.platform_half_width_mm", "platform_half_width_m", units::mm, &HybridMachine::platform_half_width_m},
+    {"robot.platform_offset_mm", "platform_offset_m", units::mm, &HybridMachine::platform_offset_m},
+    {"robot.base_offset_mm", "base_offset_m", units::mm, &HybridMachine::base_offset_m},
+    {"robot.platform_to_flange_mm", "platform_to_flange_m", units::mm, &HybridMachine::platform_to_flange_m},
 };
-constexpr std::array<Size, 5> hybrid_sizes = {{
-    {"robot.base_half_width_mm", "base_half_width_m", &robot::HybridMachine::base_half_width_m},
-    {"robot.platform_half_width_mm", "platform_half_width_m", &robot::HybridMachine::platform_half_width_m},
-    {"robot.platform_offset_mm", "platform_offset_m", &robot::HybridMachine::platform_offset_m},
-    {"robot.base_offset_mm", "base_offset_m", &robot::HybridMachine::base_offset_m},
-    {"robot.platform_to_flange_mm", "platform_to_flange_m", &robot::HybridMachine::platform_to_flange_m},
-}};
 
 void read_hybrid(io::TomlFile& file, CellFile& out) {
   for (const char* key : {"robot.dh", "robot.urdf", "robot.links", "robot.start_joints_deg", "robot.gamma_deg",
                           "tool.mount_origin_mm", "tool.mount_rotation_deg"}) {
     if (file.has(key)) throw file.reject(key, "goes with kind = \"serial\"");
   }
-  robot::HybridMachine& machine = out.hybrid.emplace();
-  for (const Size& size : hybrid_sizes) file.number(size.key, size.member, units::mm, machine.*size.value);
+  HybridMachine& machine = out.hybrid.emplace();
+  file.fields("", hybrid_sizes, machine);
   const std::vector<bool> prismatic(hybrid_joints, true);
   for (std::size_t k = 0; k < robot::joint_limits.size(); ++k) {
     const auto values = robot::read_joint_limit(file, robot::joint_limits[k], prismatic, out.notes);
@@ -257,7 +247,7 @@ void read_hybrid(io::TomlFile& file, CellFile& out) {
 }
 
 void read_serial(io::TomlFile& file, CellFile& out) {
-  for (const Size& size : hybrid_sizes) {
+  for (const io::Field<HybridMachine>& size : hybrid_sizes) {
     if (file.has(size.key)) throw file.reject(size.key, "goes with kind = \"hybrid-2upr-rpu\"");
   }
   read_arm(file, out);

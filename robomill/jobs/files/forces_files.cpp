@@ -151,7 +151,7 @@ Json sweep_json(const robot::Redundancy& sweep, double used_rad) {
   Json condition = Json::array();
   Json limit = Json::array();
   for (const robot::RedundancySample& sample : sweep.samples) {
-    const bool stands = sample.status == robot::Choice::Status::found && !sample.buckled;
+    const bool stands = sample.status == robot::Reach::Status::found && !sample.buckled;
     const auto known = [&](double value) { return stands ? number(value) : Json(); };
     gamma.push_back(number(sample.gamma_rad / units::deg));
     deflection.push_back(known(sample.error_m.norm() / units::um));
@@ -171,11 +171,8 @@ Json sweep_json(const robot::Redundancy& sweep, double used_rad) {
 }
 
 Json vibration_json(const simulation::Simulation& s) {
-  const char* const verdict = s.verdict == simulation::Verdict::stable    ? "stable"
-                              : s.verdict == simulation::Verdict::chatter ? "chatter"
-                                                                          : "undecided";
   const bool found = s.small.status == simulation::SmallVibration::Status::found;
-  return {{"verdict", verdict},
+  return {{"verdict", to_string(s.verdict)},
           {"chatter_frequency_hz", s.chatter_frequency_hz > 0.0 ? number(s.chatter_frequency_hz) : Json()},
           {"chatter_amplitude_um", number(s.chatter_amplitude_m / units::um)},
           {"spectral_radius", found ? number(s.small.spectral_radius) : Json()},

@@ -54,22 +54,24 @@ void read_sources(io::TomlFile& file, Job& job) {
 }
 
 void read_limits(io::TomlFile& file, Job& job) {
-  file.number("tool.max_axial_depth_mm", "max_axial_depth_m", units::mm, job.max_axial_depth_m);
-  file.number("spindle.max_speed_rpm", "max_spindle_speed_rad_per_s", units::rpm, job.max_spindle_speed_rad_per_s);
-  file.number("spindle.min_speed_rpm", "min_spindle_speed_rad_per_s", units::rpm, job.min_spindle_speed_rad_per_s);
-  file.number("safety.depth_margin", "depth_margin", 1.0, job.depth_margin);
-  file.number("safety.speed_window", "speed_window", 1.0, job.speed_window);
-  file.number("finishing.max_surface_error_um", "max_surface_error_m", units::um, job.max_surface_error_m);
-  file.number("finishing.max_deflection_um", "max_deflection_m", units::um, job.max_deflection_m);
+  file.number("tool.max_axial_depth_mm", "max_axial_depth_m", units::mm, job.recommend.max_axial_depth_m);
+  file.number("spindle.max_speed_rpm", "max_spindle_speed_rad_per_s", units::rpm,
+              job.recommend.max_spindle_speed_rad_per_s);
+  file.number("spindle.min_speed_rpm", "min_spindle_speed_rad_per_s", units::rpm,
+              job.recommend.min_spindle_speed_rad_per_s);
+  file.number("safety.depth_margin", "depth_margin", 1.0, job.recommend.depth_margin);
+  file.number("safety.speed_window", "speed_window", 1.0, job.recommend.speed_window);
+  file.number("finishing.max_surface_error_um", "max_surface_error_m", units::um, job.finish.max_surface_error_m);
+  file.number("finishing.max_deflection_um", "max_deflection_m", units::um, job.finish.max_deflection_m);
   for (std::size_t i = 0; i < file.tables("spindle.curve"); ++i) {
     const std::string row = "spindle.curve[" + std::to_string(i) + "].";
-    SpindlePoint point;
+    decision::SpindleCapacity point;
     for (const char* key : {"speed_rpm", "torque_n_m", "power_kw"}) file.require(row + key);
-    const std::string member = "spindle_curve[" + std::to_string(i + 1) + "].";
+    const std::string member = "spindle[" + std::to_string(i + 1) + "].";
     file.number(row + "speed_rpm", member + "spindle_speed_rad_per_s", units::rpm, point.spindle_speed_rad_per_s);
     file.number(row + "torque_n_m", member + "torque_n_m", 1.0, point.torque_n_m);
     file.number(row + "power_kw", member + "power_w", units::kw, point.power_w);
-    job.spindle_curve.push_back(point);
+    job.recommend.spindle.push_back(point);
   }
 }
 
@@ -82,9 +84,7 @@ void read_cuts(io::TomlFile& file, Job& job) {
     file.require(row + "axial_depth_mm");
     file.number(row + "spindle_speed_rpm", member + "spindle_speed_rad_per_s", units::rpm, cut.spindle_speed_rad_per_s);
     file.number(row + "axial_depth_mm", member + "axial_depth_m", units::mm, cut.axial_depth_m);
-    file.choice<Verdict>(
-        row + "result",
-        {{"stable", Verdict::stable}, {"borderline", Verdict::borderline}, {"chatter", Verdict::chatter}}, cut.result);
+    file.choice(row + "result", verdict_names, cut.result);
     file.numbers(row + "peaks_hz", member + "peaks_hz", 1.0, cut.peaks_hz);
     file.path(row + "file", cut.file);
     file.text(row + "column", cut.column);
@@ -97,29 +97,30 @@ void read_cuts(io::TomlFile& file, Job& job) {
 }  // namespace
 
 void Job::validate() const {
-  require_non_negative("max_axial_depth_m", max_axial_depth_m, "m");
-  require_non_negative("max_surface_error_m", max_surface_error_m, "m");
-  require_non_negative("max_deflection_m", max_deflection_m, "m");
-  require_non_negative("min_spindle_speed_rad_per_s", min_spindle_speed_rad_per_s, "rad/s");
-  require_non_negative("max_spindle_speed_rad_per_s", max_spindle_speed_rad_per_s, "rad/s");
-  if (max_spindle_speed_rad_per_s > 0.0 && max_spindle_speed_rad_per_s <= min_spindle_speed_rad_per_s) {
-    throw InvalidInput("max_spindle_speed_rad_per_s", max_spindle_speed_rad_per_s, "rad/s",
+  require_non_negative("max_axial_depth_m", recommend.max_axial_depth_m, "m");
+  finish.validate();
+  require_non_negative("min_spindle_speed_rad_per_s", recommend.min_spindle_speed_rad_per_s, "rad/s");
+  require_non_negative("max_spindle_speed_rad_per_s", recommend.max_spindle_speed_rad_per_s, "rad/s");
+  if (recommend.max_spindle_speed_rad_per_s > 0.0 &&
+      recommend.max_spindle_speed_rad_per_s <= recommend.min_spindle_speed_rad_per_s) {
+    throw InvalidInput("max_spindle_speed_rad_per_s", recommend.max_spindle_speed_rad_per_s, "rad/s",
                        "must be above the spindle's lowest speed");
   }
-  if (!(depth_margin >= 0.0 && depth_margin < 1.0)) {
-    throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)", "0.2 stays 20 % below the limit");
+  if (!(recommend.depth_margin >= 0.0 && recommend.depth_margin < 1.0)) {
+    throw InvalidInput("depth_margin", recommend.depth_margin, "", "must be in [0, 1)",
+                       "0.2 stays 20 % below the limit");
   }
-  if (!(speed_window >= 0.0 && speed_window < 0.5)) {
-    throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)",
+  if (!(recommend.speed_window >= 0.0 && recommend.speed_window < 0.5)) {
+    throw InvalidInput("speed_window", recommend.speed_window, "", "must be in [0, 0.5)",
                        "0.02 looks at 2 % of speed to each side");
   }
-  for (std::size_t i = 0; i < spindle_curve.size(); ++i) {
-    const std::string path = "spindle_curve[" + std::to_string(i + 1) + "].";
-    const SpindlePoint& p = spindle_curve[i];
+  for (std::size_t i = 0; i < recommend.spindle.size(); ++i) {
+    const std::string path = "spindle[" + std::to_string(i + 1) + "].";
+    const decision::SpindleCapacity& p = recommend.spindle[i];
     require_positive((path + "spindle_speed_rad_per_s").c_str(), p.spindle_speed_rad_per_s, "rad/s");
     require_non_negative((path + "torque_n_m").c_str(), p.torque_n_m, "N m");
     require_non_negative((path + "power_w").c_str(), p.power_w, "W");
-    if (i > 0 && p.spindle_speed_rad_per_s <= spindle_curve[i - 1].spindle_speed_rad_per_s) {
+    if (i > 0 && p.spindle_speed_rad_per_s <= recommend.spindle[i - 1].spindle_speed_rad_per_s) {
       throw InvalidInput(path + "spindle_speed_rad_per_s", p.spindle_speed_rad_per_s, "rad/s",
                          "must be above the speed of the point before it");
     }
@@ -134,17 +135,7 @@ void Job::validate() const {
 }
 
 std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::stable:
-      return "stable";
-    case Verdict::borderline:
-      return "borderline";
-    case Verdict::chatter:
-      return "chatter";
-    case Verdict::unknown:
-      break;
-  }
-  return {};
+  return name_in(verdict_names, verdict);
 }
 
 Job read_job(const std::filesystem::path& path) {

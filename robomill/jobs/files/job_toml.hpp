@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
+#include "robomill/decision/finish.hpp"
 #include "robomill/modal/directions.hpp"
 
 // Method: robomill/jobs/README.md, "Files"
@@ -19,6 +21,8 @@ enum class Verdict {
   borderline,  ///< marks that come and go; agrees where |predicted limit / depth - 1| <= 0.2; recorded: 0.25 <= r < 0.5
   chatter      ///< predicted: |μ| >= 1; recorded: r >= 0.5
 };
+inline constexpr Name<Verdict> verdict_names[] = {
+    {"stable", Verdict::stable}, {"borderline", Verdict::borderline}, {"chatter", Verdict::chatter}};
 /// "stable", …; empty where it is unknown.
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Verdict verdict);
 
@@ -32,13 +36,6 @@ struct TestCut {
   std::string column = "1";           ///< the recording's column, name or number from 1
   double scale = 1.0;                 ///< of a WAV: what full scale means, in m/s²
   double sample_rate_hz = 0.0;        ///< of a recording without a time column; 0: from the file
-};
-
-/// One point of the spindle's curve; torque and power are interpolated linearly between points.
-struct SpindlePoint {
-  double spindle_speed_rad_per_s = 0.0;
-  double torque_n_m = 0.0;
-  double power_w = 0.0;
 };
 
 /// job.toml. Paths are resolved; an empty one is absent. Exactly one of hits, frf, modes and assembly
@@ -57,14 +54,8 @@ struct Job {
   double band_low_hz = 0.0, band_high_hz = 0.0;  ///< of the fit; 0, 0: the whole data
   modal::MissingDirections directions = {};      ///< what an unmeasured direction is taken for
   int fit_modes = 0;                             ///< 0: chosen by the fit
-  double max_axial_depth_m = 0.0;            ///< the cutter's flute length, depth <= this; 0: the lobes' range alone
-  double max_spindle_speed_rad_per_s = 0.0;  ///< min <= speed <= max; 0: the lobes' range alone
-  double min_spindle_speed_rad_per_s = 0.0;
-  double depth_margin = 0.2;         ///< in [0, 1); the recommended depth <= (1 - depth_margin) · limit …
-  double speed_window = 0.02;        ///< … at every speed of n (1 ± speed_window), in [0, 0.5)
-  double max_surface_error_m = 0.0;  ///< of a finishing cut: |surface error| <= this; 0: no limit
-  double max_deflection_m = 0.0;     ///< of a finishing cut: peak deflection <= this; 0: no limit
-  std::vector<SpindlePoint> spindle_curve = {};
+  decision::RecommendOptions recommend = {};     ///< of the cutter, the spindle and safety; the cut has the rest
+  decision::FinishLimits finish = {};
   std::vector<TestCut> cuts = {};
 
   ROBOMILL_API void validate() const;

@@ -42,11 +42,11 @@ result = "chatter"
   ASSERT_EQ(job.frf.size(), 2U);
   EXPECT_EQ(job.frf[1], folder_.at("yy.txt"));
   EXPECT_EQ(job.lobes, folder_.at("lobes.toml"));
-  EXPECT_DOUBLE_EQ(job.max_spindle_speed_rad_per_s, 18000 * units::rpm);
-  ASSERT_EQ(job.spindle_curve.size(), 1U);
-  EXPECT_DOUBLE_EQ(job.spindle_curve[0].power_w, 7500.0);
-  EXPECT_DOUBLE_EQ(job.max_surface_error_m, 12e-6);
-  EXPECT_DOUBLE_EQ(job.max_deflection_m, 30e-6);
+  EXPECT_DOUBLE_EQ(job.recommend.max_spindle_speed_rad_per_s, 18000 * units::rpm);
+  ASSERT_EQ(job.recommend.spindle.size(), 1U);
+  EXPECT_DOUBLE_EQ(job.recommend.spindle[0].power_w, 7500.0);
+  EXPECT_DOUBLE_EQ(job.finish.max_surface_error_m, 12e-6);
+  EXPECT_DOUBLE_EQ(job.finish.max_deflection_m, 30e-6);
   ASSERT_EQ(job.cuts.size(), 2U);
   EXPECT_EQ(job.cuts[0].result, Verdict::chatter);
   EXPECT_DOUBLE_EQ(job.cuts[1].axial_depth_m, 1.2e-3);

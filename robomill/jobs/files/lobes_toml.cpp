@@ -128,15 +128,7 @@ void read_chart(io::TomlFile& file, stability::LobesOptions& options) {
     if (grid.size() != 2) throw file.reject("lobes.grid", "must be [speeds, depths]");
     options.grid = {grid[0], grid[1]};
   }
-  file.choice<stability::Method>(
-      "lobes.method",
-      {{"collocation", stability::Method::collocation},
-       {"semi-discretization", stability::Method::semi_discretization},
-       {"semi-discretization-first-order", stability::Method::semi_discretization_first_order},
-       {"full-discretization", stability::Method::full_discretization},
-       {"zeroth-order", stability::Method::zeroth_order},
-       {"multi-frequency", stability::Method::multi_frequency}},
-      options.method);
+  file.choice("lobes.method", stability::method_names, options.method);
   file.choice<stability::Output>(
       "lobes.output", {{"boundary", stability::Output::boundary}, {"map", stability::Output::map}}, options.output);
   file.integer("lobes.intervals", "intervals", options.intervals);

@@ -23,25 +23,6 @@ namespace {
 using io::Json;
 using io::number;
 
-Json to_json(const decision::Operation& op) {
-  Json json = {{"spindle_speed_rpm", number(op.spindle_speed_rad_per_s / units::rpm)},
-               {"axial_depth_mm", number(op.axial_depth_m / units::mm)},
-               {"feed_per_tooth_mm", number(op.feed_per_tooth_m / units::mm)},
-               {"margin", number(op.margin)},
-               {"cutting_speed_m_per_min", number(op.cutting_speed_m_per_s * units::minute)},
-               {"feed_mm_per_min", number(op.feed_m_per_s / units::mm * units::minute)},
-               {"removal_rate_mm3_per_s", number(op.removal_rate_m3_per_s / units::mm3)},
-               {"limited_by", limited_by_text(op)},
-               {"limit_depth_mm", number(op.limit_depth_m / units::mm)},
-               {"chatter_frequency_hz", op.chatter_frequency_hz > 0.0 ? number(op.chatter_frequency_hz) : Json()},
-               {"torque_n_m", number(op.torque_n_m)},
-               {"power_w", number(op.power_w)},
-               {"surface_error_um", number(op.surface_error_m / units::um)},
-               {"peak_deflection_um", number(op.peak_deflection_m / units::um)}};
-  modal::set_mode(json, op.mode);
-  return json;
-}
-
 Json text_or_null(std::string_view text) {
   return text.empty() ? Json() : Json(text);
 }
@@ -119,18 +100,38 @@ Json pairs_json(const PlanResult& result) {
 
 }  // namespace
 
+Json operation_json(const decision::Operation& op) {
+  Json json = {{"spindle_speed_rpm", number(op.spindle_speed_rad_per_s / units::rpm)},
+               {"axial_depth_mm", number(op.axial_depth_m / units::mm)},
+               {"feed_per_tooth_mm", number(op.feed_per_tooth_m / units::mm)},
+               {"margin", number(op.margin)},
+               {"cutting_speed_m_per_min", number(op.cutting_speed_m_per_s * units::minute)},
+               {"feed_mm_per_min", number(op.feed_m_per_s / units::mm * units::minute)},
+               {"removal_rate_mm3_per_s", number(op.removal_rate_m3_per_s / units::mm3)},
+               {"limited_by", limited_by_text(op)},
+               {"limit_depth_mm", number(op.limit_depth_m / units::mm)},
+               {"chatter_frequency_hz", op.chatter_frequency_hz > 0.0 ? number(op.chatter_frequency_hz) : Json()},
+               {"torque_n_m", number(op.torque_n_m)},
+               {"power_w", number(op.power_w)},
+               {"surface_error_um", number(op.surface_error_m / units::um)},
+               {"peak_deflection_um", number(op.peak_deflection_m / units::um)}};
+  modal::set_mode(json, op.mode);
+  return json;
+}
+
 Json decision_json(const PlanResult& result) {
   const auto limit = [](double value_m) { return value_m > 0.0 ? number(value_m / units::um) : Json(); };
   Json json;
   const Agreement count = agreement(result.cuts);
   json["facts"] = facts_json(result);
   json["agreement"] = {{"agree", count.agree}, {"disagree", count.disagree}, {"not_compared", count.not_compared}};
-  json["recommended"] = result.recommendation.recommended ? to_json(*result.recommendation.recommended) : Json();
+  json["recommended"] = result.recommendation.recommended ? operation_json(*result.recommendation.recommended) : Json();
   json["alternatives"] = Json::array();
-  for (const decision::Operation& op : result.recommendation.alternatives) json["alternatives"].push_back(to_json(op));
+  for (const decision::Operation& op : result.recommendation.alternatives)
+    json["alternatives"].push_back(operation_json(op));
   if (!result.recommendation.recommended) json["reason"] = result.recommendation.reason;
-  json["finishing"] = {{"max_surface_error_um", limit(result.job.max_surface_error_m)},
-                       {"max_deflection_um", limit(result.job.max_deflection_m)}};
+  json["finishing"] = {{"max_surface_error_um", limit(result.job.finish.max_surface_error_m)},
+                       {"max_deflection_um", limit(result.job.finish.max_deflection_m)}};
   json["other_limits"] = other_limits_json(result);
   json["pairs"] = pairs_json(result);
   const LimitShare share = limit_share(result);

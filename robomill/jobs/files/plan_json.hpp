@@ -6,6 +6,7 @@
 
 namespace robomill::jobs {
 
+[[nodiscard]] io::Json operation_json(const decision::Operation& op);
 /// What the job itself came to: plan.json without the documents of its stages.
 [[nodiscard]] io::Json decision_json(const PlanResult& result);
 /// Spectra of the recorded test cuts, thinned as for a page.

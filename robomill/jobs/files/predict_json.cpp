@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "robomill/base/units.hpp"
+#include "robomill/coupling/files/segment_fields.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/predict.hpp"
 
@@ -26,19 +27,17 @@ Json segments_json(const std::vector<coupling::Segment>& segments) {
       row["flutes"] = s.flutes;
       row["flute_diameter_ratio"] = number(s.flute_diameter_ratio);
     }
-    row["beam"] = s.beam == coupling::Beam::timoshenko ? "timoshenko" : "euler-bernoulli";
+    row["beam"] = name_in(coupling::beam_names, s.beam);
     list.push_back(std::move(row));
   }
   return list;
 }
 
 Json joint_json(const coupling::Joint& joint) {
-  Json out = {{"translational_stiffness_n_per_m", number(joint.translational_stiffness_n_per_m)},
-              {"translational_damping_n_s_per_m", number(joint.translational_damping_n_s_per_m)},
-              {"rotational_stiffness_n_m_per_rad", number(joint.rotational_stiffness_n_m_per_rad)},
-              {"rotational_damping_n_m_s_per_rad", number(joint.rotational_damping_n_m_s_per_rad)},
-              {"cross_stiffness_n_per_rad", number(joint.cross_stiffness_n_per_rad)},
-              {"points", joint.points}};
+  Json out;
+  for (const io::Field<coupling::Joint>& field : coupling::joint_fields) out[field.key] = number(joint.*field.value);
+  out["cross_stiffness_n_per_rad"] = number(joint.cross_stiffness_n_per_rad);
+  out["points"] = joint.points;
   if (joint.points > 1) {
     out["insertion_length_mm"] = number(joint.insertion_length_m / units::mm);
     out["shank"] = segments_json(joint.shank);

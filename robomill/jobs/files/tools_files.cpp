@@ -7,6 +7,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/jobs/files/plan_json.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/tools.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -48,13 +49,16 @@ std::string cell(double value, double unit, bool known = true) {
   return known ? fmt::format("{:.6g}", value / unit) : std::string();
 }
 
-Json operation_json(const decision::Operation* op) {
-  if (op == nullptr) return {};
-  return {{"spindle_speed_rpm", number(op->spindle_speed_rad_per_s / units::rpm)},
-          {"axial_depth_mm", number(op->axial_depth_m / units::mm)},
-          {"limit_depth_mm", number(op->limit_depth_m / units::mm)},
-          {"removal_rate_mm3_per_s", number(op->removal_rate_m3_per_s / units::mm3)},
-          {"limited_by", limited_by_text(*op)}};
+/// What a row tells of plan.json's operation.
+Json recommended_json(const decision::Operation* op) {
+  Json json;
+  if (op == nullptr) return json;
+  const Json all = operation_json(*op);
+  for (const char* key :
+       {"spindle_speed_rpm", "axial_depth_mm", "limit_depth_mm", "removal_rate_mm3_per_s", "limited_by"}) {
+    json[key] = all[key];
+  }
+  return json;
 }
 
 Json tool_json(const ToolResult& tool) {
@@ -75,7 +79,7 @@ Json tool_json(const ToolResult& tool) {
   json["fit_relative_error"] = done ? number(tool.fit_error) : Json();
   json["suspect_lines"] = tool.suspect_lines;
   json["lowest_limit_mm"] = tool.lowest_limit_m ? number(*tool.lowest_limit_m / units::mm) : Json();
-  json["recommended"] = operation_json(best_of(tool));
+  json["recommended"] = recommended_json(best_of(tool));
   json["reason"] = tool.recommendation || !tool.no_cut.empty() ? Json(reason_of(tool)) : Json();
   json["notes"] = tool.notes;
   return json;

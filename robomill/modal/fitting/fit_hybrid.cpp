@@ -32,10 +32,10 @@ SearchOptions search_options(const FitOptions& options, const FitData& data, int
   const double spacing = (data.omega(n - 1) - data.omega(0)) / static_cast<double>(n - 1);
   return {.modes = modes,
           .max_modes = options.max_modes,
-          .omega_low = data.omega(0),
-          .omega_high = data.omega(n - 1),
-          .zeta_low = std::min(0.001 * spacing, 0.1 * options.max_damping_ratio),
-          .zeta_high = options.max_damping_ratio};
+          .bounds = {.omega_low = data.omega(0),
+                     .omega_high = data.omega(n - 1),
+                     .zeta_low = std::min(0.001 * spacing, 0.1 * options.max_damping_ratio),
+                     .zeta_high = options.max_damping_ratio}};
 }
 
 void set_weight(FitEntry& entry, const Eigen::VectorXd& variance) {
@@ -97,7 +97,7 @@ Poles fewest(const Part& part, const Kernel& kernel, const Poles& start, double 
              PartFit& fit, Progress& progress) {
   for (options.modes = 1; options.modes < start.size(); ++options.modes) {
     const Found found = search(kernel, start, options, progress);
-    if (error2(part, found.fit.at) > tolerated2 || !all_inside(found.fit.poles, options)) continue;
+    if (error2(part, found.fit.at) > tolerated2 || !all_inside(found.fit.poles, options.bounds)) continue;
     keep(fit, part.data, found.cost, found.iterations);
     fit.held_back = true;
     return found.fit.poles;

@@ -19,15 +19,6 @@ constexpr std::size_t most_candidates = 8;   // … or more, while none of them 
 constexpr double exact = 1e-9;               // relative error at which nothing is left to explain
 constexpr double coarse_tolerance = 1e-4;    // of the cost, to compare fits
 
-RefineOptions refine_options(const SearchOptions& options, double tolerance, int iterations) {
-  return {.omega_low = options.omega_low,
-          .omega_high = options.omega_high,
-          .zeta_low = options.zeta_low,
-          .zeta_high = options.zeta_high,
-          .max_iterations = iterations,
-          .tolerance = tolerance};
-}
-
 double unknowns_of_a_mode(const FitData& data) {
   return static_cast<double>(2 * (data.excitations + data.responses));
 }
@@ -76,8 +67,8 @@ std::vector<double> residual_peaks(const FitData& data, const Evaluation& at, In
 std::vector<Candidate> candidates(const FitData& data, const Evaluation& at, const SearchOptions& options) {
   std::vector<Candidate> list;
   const auto add = [&](double omega, double zeta) {
-    if (zeta < options.zeta_low || zeta > options.zeta_high) return;
-    list.push_back({.omega = std::clamp(omega, options.omega_low, options.omega_high), .zeta = zeta});
+    if (zeta < options.bounds.zeta_low || zeta > options.bounds.zeta_high) return;
+    list.push_back({.omega = std::clamp(omega, options.bounds.omega_low, options.bounds.omega_high), .zeta = zeta});
   };
   for (const Index half : {Index{1}, Index{6}, Index{30}}) {
     for (const double omega : residual_peaks(data, at, half, 6)) {
@@ -86,8 +77,8 @@ std::vector<Candidate> candidates(const FitData& data, const Evaluation& at, con
   }
   for (const double zeta : {0.04, 0.12, 0.3}) {
     const double step = std::log1p(2.0 * zeta);
-    const int count = static_cast<int>(std::log(options.omega_high / options.omega_low) / step);
-    for (int i = 0; i <= count; ++i) add(options.omega_low * std::exp(step * i), zeta);
+    const int count = static_cast<int>(std::log(options.bounds.omega_high / options.bounds.omega_low) / step);
+    for (int i = 0; i <= count; ++i) add(options.bounds.omega_low * std::exp(step * i), zeta);
   }
   return list;
 }
@@ -140,7 +131,8 @@ class Search {
 
  private:
   Refined fit(const Poles& from, double tolerance, int iterations) {
-    Refined result = refine(kernel_, from, refine_options(options_, tolerance, iterations), progress_);
+    Refined result = refine(
+        kernel_, from, {.bounds = options_.bounds, .max_iterations = iterations, .tolerance = tolerance}, progress_);
     iterations_ += result.iterations;
     return result;
   }
@@ -154,7 +146,7 @@ class Search {
     state_ = std::move(next);
     grown_.reset();
   }
-  [[nodiscard]] bool all_inside(const Poles& poles) const { return detail::all_inside(poles, options_); }
+  [[nodiscard]] bool all_inside(const Poles& poles) const { return detail::all_inside(poles, options_.bounds); }
 
   // The state with one mode more.
   const Refined& grown() {
@@ -270,16 +262,16 @@ Evidence evidence(const FitData& data, const Evaluation& larger, const Evaluatio
           .equations = independent};
 }
 
-bool all_inside(const Poles& poles, const SearchOptions& options) {
+bool all_inside(const Poles& poles, const PoleBounds& bounds) {
   for (Index k = 0; k < poles.size(); ++k) {
-    if (poles.zeta(k) >= 0.999 * options.zeta_high || poles.zeta(k) <= 1.001 * options.zeta_low) return false;
-    if (poles.omega(k) >= options.omega_high || poles.omega(k) <= options.omega_low) return false;
+    if (poles.zeta(k) >= 0.999 * bounds.zeta_high || poles.zeta(k) <= 1.001 * bounds.zeta_low) return false;
+    if (poles.omega(k) >= bounds.omega_high || poles.omega(k) <= bounds.omega_low) return false;
   }
   return true;
 }
 
 RefineOptions fine_options(const SearchOptions& options) {
-  return refine_options(options, 1e-13, 200);
+  return {.bounds = options.bounds, .max_iterations = 200, .tolerance = 1e-13};
 }
 
 Found search(const Kernel& kernel, const Poles& start, const SearchOptions& options, Progress& progress) {

@@ -12,7 +12,7 @@ struct SearchOptions {
   int max_modes = 20;  // where modes is 0
   bool grow = true;    // whether modes may be added where modes is 0
   bool swap = true;    // also try to leave a local minimum
-  double omega_low = 0.0, omega_high = 1.0, zeta_low = 1e-6, zeta_high = 0.4;
+  PoleBounds bounds = {};
 };
 
 struct Found {
@@ -38,7 +38,7 @@ struct Evidence {
 [[nodiscard]] Found search(const Kernel& kernel, const Poles& start, const SearchOptions& options, Progress& progress);
 
 /// Whether no mode stands at a bound of damping or at the edge of the band, for something that is no mode in the band.
-[[nodiscard]] bool all_inside(const Poles& poles, const SearchOptions& options);
+[[nodiscard]] bool all_inside(const Poles& poles, const PoleBounds& bounds);
 
 /// Bounds and tolerance of refine() for a search's last fit.
 [[nodiscard]] RefineOptions fine_options(const SearchOptions& options);

@@ -59,8 +59,8 @@ class ReducedCost : public ceres::CostFunction {
 Refined refine(const Kernel& kernel, Poles start, const RefineOptions& options, Progress& progress) {
   Refined result;
   start.fix_gauge();
-  start.omega = start.omega.cwiseMax(options.omega_low).cwiseMin(options.omega_high);
-  start.zeta = start.zeta.cwiseMax(options.zeta_low).cwiseMin(options.zeta_high);
+  start.omega = start.omega.cwiseMax(options.bounds.omega_low).cwiseMin(options.bounds.omega_high);
+  start.zeta = start.zeta.cwiseMax(options.bounds.zeta_low).cwiseMin(options.bounds.zeta_high);
   result.poles = start;
   result.converged = true;
   if (start.size() > 0 && options.max_iterations > 0) {
@@ -69,10 +69,10 @@ Refined refine(const Kernel& kernel, Poles start, const RefineOptions& options, 
     problem.AddResidualBlock(new ReducedCost(kernel, start), nullptr, parameters.data());
     const int stride = static_cast<int>(parameters.size() / start.size());
     for (int k = 0; k < static_cast<int>(start.size()); ++k) {
-      problem.SetParameterLowerBound(parameters.data(), k * stride, options.omega_low);
-      problem.SetParameterUpperBound(parameters.data(), k * stride, options.omega_high);
-      problem.SetParameterLowerBound(parameters.data(), k * stride + 1, options.zeta_low);
-      problem.SetParameterUpperBound(parameters.data(), k * stride + 1, options.zeta_high);
+      problem.SetParameterLowerBound(parameters.data(), k * stride, options.bounds.omega_low);
+      problem.SetParameterUpperBound(parameters.data(), k * stride, options.bounds.omega_high);
+      problem.SetParameterLowerBound(parameters.data(), k * stride + 1, options.bounds.zeta_low);
+      problem.SetParameterUpperBound(parameters.data(), k * stride + 1, options.bounds.zeta_high);
     }
     const ceres::Solver::Summary summary =
         solve(problem, options.max_iterations, options.tolerance, 1e-14, result.cost, progress);

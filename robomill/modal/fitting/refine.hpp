@@ -6,9 +6,13 @@
 
 namespace robomill::modal::detail {
 
+/// Of every ω, in units of FitData, and of every ζ.
+struct PoleBounds {
+  double omega_low = 0.0, omega_high = 1.0, zeta_low = 1e-6, zeta_high = 0.4;
+};
+
 struct RefineOptions {
-  double omega_low = 0.0, omega_high = 1.0;  // bounds of every ω, in units of FitData
-  double zeta_low = 1e-6, zeta_high = 0.4;
+  PoleBounds bounds = {};
   int max_iterations = 100;
   double tolerance = 1e-12;  // ends when an iteration takes less than this share off the cost
 };

@@ -129,13 +129,11 @@ void read_process(io::TomlFile& file, MonitorFile& out) {
 
 void read_detector(io::TomlFile& file, MonitorFile& out) {
   MonitorOptions& options = out.options;
-  file.choice<Kind>("detector.kind", {{"comb-cusum", Kind::comb_cusum}, {"energy-entropy", Kind::energy_entropy}},
-                    options.kind);
+  file.choice("detector.kind", kind_names, options.kind);
   file.number("detector.window_ms", "window_s", units::ms, options.window_s);
   file.number("detector.hop_ms", "hop_s", units::ms, options.hop_s);
   file.integer("detector.bands", "bands", options.bands);
-  file.choice<Entropy>("detector.entropy", {{"normalised", Entropy::normalised}, {"energy", Entropy::energy}},
-                       options.entropy);
+  file.choice("detector.entropy", entropy_names, options.entropy);
   file.number("detector.threshold", "threshold", 1.0, options.threshold);
   bool below = options.alarm_below;
   file.choice<bool>("detector.alarm", {{"above", false}, {"below", true}}, below);

@@ -150,12 +150,13 @@ std::vector<std::string> reported(const std::optional<ProgramRun>& run, double p
   lines.push_back(
       fmt::format("joints interpolated between them leave the trajectory by {:.6f} degrees a joint, {:.6f} mm at the "
                   "tip, {:.6f} degrees of the tool's axis",
-                  up(run->joint_deviation_rad, units::deg), up(run->tip_deviation_m, units::mm),
-                  up(run->axis_deviation_rad, units::deg)));
-  lines.push_back(fmt::format(
-      "and the program by {:.6f} mm and {:.6f} degrees; tolerances {:.6g} mm and {:.6g} degrees{}",
-      up(run->tip_error_m, units::mm), up(run->axis_error_rad, units::deg), run->tip_tolerance_m / units::mm,
-      run->axis_tolerance_rad / units::deg, run->keeps_tolerances() ? "" : ": BEYOND THE TOLERANCE"));
+                  up(run->distances.joint_deviation_rad, units::deg), up(run->distances.tip_deviation_m, units::mm),
+                  up(run->distances.axis_deviation_rad, units::deg)));
+  lines.push_back(
+      fmt::format("and the program by {:.6f} mm and {:.6f} degrees; tolerances {:.6g} mm and {:.6g} degrees{}",
+                  up(run->distances.tip_error_m, units::mm), up(run->distances.axis_error_rad, units::deg),
+                  run->tip_tolerance_m / units::mm, run->axis_tolerance_rad / units::deg,
+                  run->keeps_tolerances() ? "" : ": BEYOND THE TOLERANCE"));
   return lines;
 }
 
@@ -249,10 +250,10 @@ class JointProgram final : public SampleFile {
     };
     operation_ = operation_of(program);
     place_points(stride_);
-    ProgramRun run = run_of(options);
+    ProgramRun run{.tip_tolerance_m = options.tip_tolerance_m, .axis_tolerance_rad = options.axis_tolerance_rad};
     for (;;) {
       std::vector<bool> beyond(points_.steps());
-      set(run, follow(beyond));
+      run.distances = follow(beyond);
       if (run.keeps_tolerances() || !refine || dialect_->fixed_cycle() || !split(beyond)) break;
     }
     for (std::size_t stride = stride_; refine && dialect_->fixed_cycle() && !run.keeps_tolerances() && stride > 1;) {
@@ -260,7 +261,7 @@ class JointProgram final : public SampleFile {
       place_points(stride);
       std::vector<bool> beyond(points_.steps());
       ProgramRun nearer = run;
-      set(nearer, follow(beyond));
+      nearer.distances = follow(beyond);
       if (!nearer.keeps_tolerances()) continue;
       run.would_hold_s = period_s(stride);
       break;
@@ -316,21 +317,6 @@ class JointProgram final : public SampleFile {
         if ((samples_.row(sample).position() - from).cwiseAbs().maxCoeff() >= standing) points_.still[i] = false;
       }
     }
-  }
-
-  static ProgramRun run_of(const SmoothingOptions& options) {
-    ProgramRun run;
-    run.tip_tolerance_m = options.tip_tolerance_m;
-    run.axis_tolerance_rad = options.axis_tolerance_rad;
-    return run;
-  }
-
-  static void set(ProgramRun& run, const RunDistances& distances) {
-    run.joint_deviation_rad = distances.joint_deviation_rad;
-    run.tip_deviation_m = distances.tip_deviation_m;
-    run.axis_deviation_rad = distances.axis_deviation_rad;
-    run.tip_error_m = distances.tip_error_m;
-    run.axis_error_rad = distances.axis_error_rad;
   }
 
   void measure_steps(ProgramRun& run) const {

@@ -165,14 +165,6 @@ JointStep JointPoints::step(SampleSpool& samples, std::size_t index) const {
   return out;
 }
 
-void RunDistances::include(const RunDistances& other) {
-  joint_deviation_rad = std::max(joint_deviation_rad, other.joint_deviation_rad);
-  tip_deviation_m = std::max(tip_deviation_m, other.tip_deviation_m);
-  axis_deviation_rad = std::max(axis_deviation_rad, other.axis_deviation_rad);
-  tip_error_m = std::max(tip_error_m, other.tip_error_m);
-  axis_error_rad = std::max(axis_error_rad, other.axis_error_rad);
-}
-
 RunDistances follow_points(const JointPoints& points, Joining joining, SampleSpool& samples, program::Source& program,
                            const robot::Kinematics& machine, const SmoothingOptions& options, std::vector<bool>& beyond,
                            const Progress& progress) {

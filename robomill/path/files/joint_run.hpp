@@ -6,6 +6,7 @@
 
 #include "robomill/base/progress.hpp"
 #include "robomill/path/files/sample_spool.hpp"
+#include "robomill/path/files/trajectory.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/program/program.hpp"
 #include "robomill/robot/kinematics.hpp"
@@ -38,14 +39,6 @@ struct JointPoints {
   [[nodiscard]] std::size_t steps() const { return at.size() - 1; }
   [[nodiscard]] bool rests(std::size_t point) const;
   [[nodiscard]] JointStep step(SampleSpool& samples, std::size_t index) const;
-};
-
-/// Distances of a controller's motion. Deviations: from the trajectory at the same time; errors: from the program,
-/// path::CheckResult.
-struct RunDistances {
-  double joint_deviation_rad = 0.0, tip_deviation_m = 0.0, axis_deviation_rad = 0.0;
-  double tip_error_m = 0.0, axis_error_rad = 0.0;
-  void include(const RunDistances& other);
 };
 
 /// Follows the points as a controller that joins them so, by forward kinematics, in at least 8 looks a step. Between

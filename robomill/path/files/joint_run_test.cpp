@@ -177,12 +177,12 @@ TEST(JointRun, ReportsAtLeastWhatTheFilesPointsDoAtRandomPostures) {
       ASSERT_EQ(file.parsed.trouble, "");
       const Far far = dense(file, language.degrees, machine, joints);
       const Far header = header_of(file.text);
-      EXPECT_GE(file.run.tip_deviation_m, far.tip_m - 1e-12) << language.ending << " round " << round;
-      EXPECT_GE(file.run.axis_deviation_rad, far.axis_rad - 1e-9) << language.ending << " round " << round;
-      EXPECT_GE(header.tip_m, file.run.tip_deviation_m);
-      EXPECT_GE(header.axis_rad, file.run.axis_deviation_rad);
+      EXPECT_GE(file.run.distances.tip_deviation_m, far.tip_m - 1e-12) << language.ending << " round " << round;
+      EXPECT_GE(file.run.distances.axis_deviation_rad, far.axis_rad - 1e-9) << language.ending << " round " << round;
+      EXPECT_GE(header.tip_m, file.run.distances.tip_deviation_m);
+      EXPECT_GE(header.axis_rad, file.run.distances.axis_deviation_rad);
       // … nor much more, unless the controller's corners or spline go farther.
-      EXPECT_LE(file.run.tip_deviation_m, 1.6 * far.tip_m + 1e-6) << language.ending << " round " << round;
+      EXPECT_LE(file.run.distances.tip_deviation_m, 1.6 * far.tip_m + 1e-6) << language.ending << " round " << round;
     }
   }
 }
@@ -216,7 +216,7 @@ TEST(JointRun, SeesTheTipSwingInAPureRotation) {
   for (const Sample& sample : samples) ASSERT_LT((sample.tip_m - samples.front().tip_m).norm(), 1e-9);
   const Written loose = written(folder, ".src", 0.020, samples, machine, tolerances(1e-3, 0.1));
   EXPECT_EQ(loose.run.longest_step_s, loose.run.shortest_step_s);
-  EXPECT_GT(loose.run.tip_deviation_m, 50e-6);
+  EXPECT_GT(loose.run.distances.tip_deviation_m, 50e-6);
   EXPECT_GT(header_of(loose.text).tip_m, 50e-6);
   // With a tolerance of 20 µm points stand nearer to each other, in the file too.
   const Written tight = written(folder, ".src", 0.020, samples, machine, tolerances(20e-6, 0.1));
@@ -233,7 +233,7 @@ TEST(JointRun, SeesTheTipSwingInAPureRotation) {
     worst_m = std::max(worst_m, (machine.forward(middle).tip_m - samples.front().tip_m).norm());
   }
   EXPECT_LE(worst_m, 20e-6);
-  EXPECT_GE(tight.run.tip_deviation_m, worst_m - 1e-6);
+  EXPECT_GE(tight.run.distances.tip_deviation_m, worst_m - 1e-6);
 }
 
 TEST(JointRun, PutsPointsNearerOnlyWhereTheToleranceAsksForIt) {
@@ -300,9 +300,9 @@ TEST(JointRun, KeepsTheCornersOfASmoothedProgram) {
         [&] { file->restart(); }, Progress::none());
     ASSERT_EQ(summary.check.violations(), 0U);
     const ProgramRun far = file->settle(source, machine, options, false, Progress::none()).value();
-    EXPECT_GT(far.tip_error_m, 2.0 * options.tip_tolerance_m) << ending;
+    EXPECT_GT(far.distances.tip_error_m, 2.0 * options.tip_tolerance_m) << ending;
     const ProgramRun run = file->settle(source, machine, options, true, Progress::none()).value();
-    EXPECT_TRUE(run.holds()) << ending << " " << run.tip_error_m << " " << run.shortest_step_s;
+    EXPECT_TRUE(run.holds()) << ending << " " << run.distances.tip_error_m << " " << run.shortest_step_s;
     EXPECT_GT(run.shortest_step_s, 2.0 * period_s) << ending;
     EXPECT_LT(run.shortest_step_s, run.longest_step_s) << ending;
   }
@@ -358,10 +358,10 @@ TEST(JointRun, CountsWhatTheControllersNumbersLeaveOut) {
   }
   const double off_m = (machine.forward(held).tip_m - machine.forward(at).tip_m).norm();
   EXPECT_GT(off_m, 2e-8);
-  EXPECT_GE(kuka.run.tip_deviation_m, off_m);
-  EXPECT_LT(kuka.run.tip_deviation_m, 1.1 * off_m);
+  EXPECT_GE(kuka.run.distances.tip_deviation_m, off_m);
+  EXPECT_LT(kuka.run.distances.tip_deviation_m, 1.1 * off_m);
   const Written ur = written(folder, ".servoj", 0.002, samples, machine, tolerances(1e-3, 0.1));
-  EXPECT_LT(ur.run.tip_deviation_m, 4e-9);
+  EXPECT_LT(ur.run.distances.tip_deviation_m, 4e-9);
 }
 
 // Uneven steps: the spline follows a parabola exactly, the zone stays between corner and chord and ends on the chords.

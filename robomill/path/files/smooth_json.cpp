@@ -61,7 +61,7 @@ io::Json method_json(const SmoothedBy& smoothed, const std::array<bool, 6>& pris
   const Summary& summary = smoothed.summary;
   const CheckResult& check = summary.check;
   const double samples = static_cast<double>(std::max<std::size_t>(summary.samples, 1));
-  io::Json json = {{"method", name_of(smoothed.method)}, {"duration_s", io::number(summary.duration_s)}};
+  io::Json json = {{"method", name_in(method_names, smoothed.method)}, {"duration_s", io::number(summary.duration_s)}};
   json["lower_bound_s"] = summary.lower_bound_s > 0.0 ? io::number(summary.lower_bound_s) : io::Json();
   json["max_tip_error_mm"] = io::number(check.tip_error_m.max / units::mm);
   json["max_axis_error_deg"] = io::number(check.axis_error_rad.max / units::deg);
@@ -91,11 +91,11 @@ io::Json run_json(const ProgramRun& run) {
   return {{"points", run.points},
           {"shortest_step_ms", io::number(run.shortest_step_s / units::ms)},
           {"longest_step_ms", io::number(run.longest_step_s / units::ms)},
-          {"max_joint_deviation_deg", io::number(run.joint_deviation_rad / units::deg)},
-          {"max_tip_deviation_mm", io::number(run.tip_deviation_m / units::mm)},
-          {"max_axis_deviation_deg", io::number(run.axis_deviation_rad / units::deg)},
-          {"max_tip_error_mm", io::number(run.tip_error_m / units::mm)},
-          {"max_axis_error_deg", io::number(run.axis_error_rad / units::deg)},
+          {"max_joint_deviation_deg", io::number(run.distances.joint_deviation_rad / units::deg)},
+          {"max_tip_deviation_mm", io::number(run.distances.tip_deviation_m / units::mm)},
+          {"max_axis_deviation_deg", io::number(run.distances.axis_deviation_rad / units::deg)},
+          {"max_tip_error_mm", io::number(run.distances.tip_error_m / units::mm)},
+          {"max_axis_error_deg", io::number(run.distances.axis_error_rad / units::deg)},
           {"limit_error_mm", io::number(run.tip_tolerance_m / units::mm)},
           {"limit_error_deg", io::number(run.axis_tolerance_rad / units::deg)},
           {"most_points", run.most_points > 0 ? io::Json(run.most_points) : io::Json()},
@@ -104,33 +104,8 @@ io::Json run_json(const ProgramRun& run) {
 
 }  // namespace
 
-const char* name_of(Method method) {
-  switch (method) {
-    case Method::verified:
-      return "verified";
-    case Method::optimal:
-      return "optimal";
-    case Method::paper:
-      return "paper";
-    case Method::paper_as_printed:
-      return "paper-as-printed";
-    case Method::no_joint_jerk:
-      break;
-  }
-  return "no-joint-jerk";
-}
-
-const std::array<Method, 5>& smoothing_methods() {
-  static constexpr std::array<Method, 5> methods = {Method::verified, Method::optimal, Method::paper,
-                                                    Method::paper_as_printed, Method::no_joint_jerk};
-  return methods;
-}
-
 std::optional<Method> method_of(std::string_view name) {
-  for (const Method method : smoothing_methods()) {
-    if (name == name_of(method)) return method;
-  }
-  return std::nullopt;
+  return value_in(method_names, name);
 }
 
 std::string smooth_json(const SmoothedProgram& smoothed) {

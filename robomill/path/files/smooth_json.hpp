@@ -35,10 +35,6 @@ struct SmoothedProgram {
   std::vector<std::string> notes = {};
 };
 
-/// "verified", "paper-as-printed": as in a cell's [smoothing].
-[[nodiscard]] ROBOMILL_API const char* name_of(Method method);
-/// All of them, the fastest to plan first.
-[[nodiscard]] ROBOMILL_API const std::array<Method, 5>& smoothing_methods();
 /// None where there is no such method.
 [[nodiscard]] ROBOMILL_API std::optional<Method> method_of(std::string_view name);
 

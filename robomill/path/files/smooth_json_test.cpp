@@ -86,7 +86,7 @@ TEST(SmoothJson, SaysHowTheFlangeTurns) {
 }
 
 TEST(SmoothJson, KnowsEachMethodByItsName) {
-  for (const Method method : smoothing_methods()) EXPECT_EQ(method_of(name_of(method)), method);
+  for (const auto& [name, method] : method_names) EXPECT_EQ(method_of(name), method);
   EXPECT_FALSE(method_of("fastest"));
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cstddef>
 #include <string>
 
@@ -14,14 +13,8 @@
 namespace robomill::path {
 namespace {
 
-struct Key {
-  const char* key;
-  const char* member;
-  double factor;
-  double SmoothingOptions::*value;
-};
 using Options = SmoothingOptions;
-constexpr std::array<Key, 10> keys = {{
+constexpr io::Field<Options> option_fields[] = {
     {"tip_tolerance_mm", "tip_tolerance_m", units::mm, &Options::tip_tolerance_m},
     {"axis_tolerance_deg", "axis_tolerance_rad", units::deg, &Options::axis_tolerance_rad},
     {"max_velocity_mm_per_s", "max_velocity_m_per_s", units::mm, &Options::max_velocity_m_per_s},
@@ -34,7 +27,7 @@ constexpr std::array<Key, 10> keys = {{
     {"max_angular_jerk_deg_per_s3", "max_angular_jerk_rad_per_s3", units::deg, &Options::max_angular_jerk_rad_per_s3},
     {"sample_period_ms", "sample_period_s", units::ms, &Options::sample_period_s},
     {"max_duration_h", "max_duration_s", 60.0 * units::minute, &Options::max_duration_s},
-}};
+};
 
 /// A list with one number > 0 a joint, or one for all.
 void read_per_joint(io::TomlFile& file, const char* key, const char* member, int joints, std::vector<double>& out) {
@@ -79,16 +72,8 @@ SmoothingFile read_smoothing(io::TomlFile& file, const robot::JointLimits& limit
   file.require("smoothing", "Write [smoothing] with tip_tolerance_mm, axis_tolerance_deg and the limits of the tool");
   check_limits(file, limits, joints);
   SmoothingFile out;
-  for (const Key& row : keys) {
-    file.number(std::string("smoothing.") + row.key, row.member, row.factor, out.options.*row.value);
-  }
-  file.choice<Method>("smoothing.method",
-                      {{"verified", Method::verified},
-                       {"optimal", Method::optimal},
-                       {"paper", Method::paper},
-                       {"paper-as-printed", Method::paper_as_printed},
-                       {"no-joint-jerk", Method::no_joint_jerk}},
-                      out.options.method);
+  file.fields("smoothing.", option_fields, out.options);
+  file.choice("smoothing.method", method_names, out.options.method);
   if (method) out.options.method = *method;
   file.integer("smoothing.filters", "filters", out.options.filters);
   file.boolean("smoothing.free_gamma", out.free_gamma);

@@ -1,5 +1,6 @@
 #include "robomill/path/files/trajectory.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -23,10 +24,19 @@ void TrajectoryInfo::validate() const {
   require_non_negative("program_period_s", program_period_s, "s");
 }
 
+void RunDistances::include(const RunDistances& other) {
+  joint_deviation_rad = std::max(joint_deviation_rad, other.joint_deviation_rad);
+  tip_deviation_m = std::max(tip_deviation_m, other.tip_deviation_m);
+  axis_deviation_rad = std::max(axis_deviation_rad, other.axis_deviation_rad);
+  tip_error_m = std::max(tip_error_m, other.tip_error_m);
+  axis_error_rad = std::max(axis_error_rad, other.axis_error_rad);
+}
+
 bool ProgramRun::keeps_tolerances() const {
   const auto within = [](double value, double tolerance) { return value <= tolerance * (1.0 + 1e-6); };
-  return within(tip_deviation_m, tip_tolerance_m) && within(tip_error_m, tip_tolerance_m) &&
-         within(axis_deviation_rad, axis_tolerance_rad) && within(axis_error_rad, axis_tolerance_rad);
+  return within(distances.tip_deviation_m, tip_tolerance_m) && within(distances.tip_error_m, tip_tolerance_m) &&
+         within(distances.axis_deviation_rad, axis_tolerance_rad) &&
+         within(distances.axis_error_rad, axis_tolerance_rad);
 }
 
 std::optional<ProgramRun> SampleFile::settle(program::Source& /*program*/, const robot::Kinematics& /*machine*/,

@@ -32,14 +32,20 @@ struct ROBOMILL_API TrajectoryInfo {
   void validate() const;
 };
 
+/// Distances of a controller's motion. Deviations: from the trajectory at the same time; errors: from the program, as
+/// in path::CheckResult.
+struct ROBOMILL_API RunDistances {
+  double joint_deviation_rad = 0.0, tip_deviation_m = 0.0, axis_deviation_rad = 0.0;
+  double tip_error_m = 0.0, axis_error_rad = 0.0;
+  void include(const RunDistances& other);  ///< takes the larger of each
+};
+
 /// What a joint program's file holds and what its controller makes of it: the joints between its points as the
 /// controller joins them, with the numbers that it holds, by forward kinematics.
 struct ROBOMILL_API ProgramRun {
   std::size_t points = 0;
   double shortest_step_s = 0.0, longest_step_s = 0.0;  ///< from point to point
-  double joint_deviation_rad = 0.0, tip_deviation_m = 0.0,
-         axis_deviation_rad = 0.0;                 ///< from the trajectory at the same time
-  double tip_error_m = 0.0, axis_error_rad = 0.0;  ///< from the program, as in path::CheckResult
+  RunDistances distances = {};
   double tip_tolerance_m = 0.0, axis_tolerance_rad = 0.0;
   double would_hold_s = 0.0;    ///< of a program with a fixed cycle that does not hold: the cycle that would; 0: none
   bool fixed_cycle = false;     ///< a point a cycle: none can be added

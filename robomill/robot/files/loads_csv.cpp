@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -50,26 +49,16 @@ struct Places {
   std::array<std::optional<std::size_t>, columns.size()> others = {};
 };
 
-Places find_columns(const io::TextTable& table, const Arm& arm, const std::string& file) {
+Places find_columns(const io::TextTable& table, const Arm& arm) {
   std::vector<std::string> known;
   known.reserve(arm.joints.size() + columns.size());
   for (std::size_t i = 0; i < arm.joints.size(); ++i) known.push_back(joint_column(arm, i));
   for (const Column& column : columns) known.emplace_back(column.key);
-  for (const std::string& name : table.names) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string near = io::nearest_word(name, known);
-    throw InvalidInput(file, fmt::format("has a column {} that is not known here", name),
-                       near.empty() ? "" : fmt::format("Did you mean {}?", near));
-  }
-  const auto place = [&](const std::string& name) -> std::optional<std::size_t> {
-    const auto found = std::find(table.names.begin(), table.names.end(), name);
-    if (found == table.names.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - table.names.begin());
-  };
+  table.require_known(known);
   const auto needed = [&](const std::string& name) {
-    const std::optional<std::size_t> found = place(name);
+    const std::optional<std::size_t> found = table.column(name);
     if (!found) {
-      throw InvalidInput(file, fmt::format("has no column {}", name),
+      throw InvalidInput(table.where, fmt::format("has no column {}", name),
                          fmt::format("The arm has {} joints: {} to {}, fx_n, fy_n, fz_n, dx_mm, dy_mm, dz_mm",
                                      arm.joints.size(), known.front(), known[arm.joints.size() - 1]));
     }
@@ -79,17 +68,16 @@ Places find_columns(const io::TextTable& table, const Arm& arm, const std::strin
   out.joints.reserve(arm.joints.size());
   for (std::size_t i = 0; i < arm.joints.size(); ++i) out.joints.push_back(needed(known[i]));
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    out.others[i] = columns[i].needed ? needed(columns[i].key) : place(columns[i].key);
+    out.others[i] = columns[i].needed ? needed(columns[i].key) : table.column(columns[i].key);
   }
   return out;
 }
 
-double read_field(const io::TextTable& table, const io::TextTable::Row& row, std::size_t place, double factor,
-                  const std::string& file) {
+double read_field(const io::TextTable& table, const io::TextTable::Row& row, std::size_t place, double factor) {
   const std::string& field = row.fields[place];
   const std::optional<double> number = io::parse_cell(field);
   if (number && std::isfinite(*number)) return *number * factor;
-  InvalidInput::Parts parts{.where = fmt::format("{}:{}", file, row.line), .field = table.names[place]};
+  InvalidInput::Parts parts{.where = fmt::format("{}:{}", table.where, row.line), .field = table.names[place]};
   parts.rule = field.empty() ? "is missing" : "must be a finite number";
   if (!field.empty()) parts.value = fmt::format("\"{}\"", field);
   throw InvalidInput(std::move(parts));
@@ -98,9 +86,8 @@ double read_field(const io::TextTable& table, const io::TextTable::Row& row, std
 }  // namespace
 
 LoadsFile read_loads(const std::filesystem::path& path, const Arm& arm) {
-  const std::string file = path.string();
-  const io::TextTable table = io::parse_text_table(io::read_file(path), file);
-  const Places places = find_columns(table, arm, file);
+  const io::TextTable table = io::parse_text_table(io::read_file(path), path.string());
+  const Places places = find_columns(table, arm);
   LoadsFile out{.path = path};
   out.loads.reserve(table.rows.size());
   out.line.reserve(table.rows.size());
@@ -108,11 +95,11 @@ LoadsFile read_loads(const std::filesystem::path& path, const Arm& arm) {
     Load load{.position = Eigen::VectorXd(arm.size())};
     for (std::size_t i = 0; i < arm.joints.size(); ++i) {
       const double factor = arm.joints[i].prismatic ? units::mm : units::deg;
-      load.position(static_cast<Eigen::Index>(i)) = read_field(table, row, places.joints[i], factor, file);
+      load.position(static_cast<Eigen::Index>(i)) = read_field(table, row, places.joints[i], factor);
     }
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (!places.others[i]) continue;
-      columns[i].value(load) = read_field(table, row, *places.others[i], columns[i].factor, file);
+      columns[i].value(load) = read_field(table, row, *places.others[i], columns[i].factor);
     }
     out.loads.push_back(std::move(load));
     out.line.push_back(row.line);

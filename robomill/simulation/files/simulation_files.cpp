@@ -62,17 +62,6 @@ void write_accelerations(const std::filesystem::path& path, const Simulation& re
   io::write_wav(path, samples, 2, result.sample_rate_hz);
 }
 
-const char* to_text(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::stable:
-      return "stable";
-    case Verdict::chatter:
-      return "chatter";
-    default:
-      return "undecided";
-  }
-}
-
 io::Json small_json(const SmallVibration& small) {
   if (small.status != SmallVibration::Status::found) return nullptr;
   return {{"spectral_radius", io::number(small.spectral_radius)},
@@ -107,7 +96,7 @@ std::string simulation_json(const Simulation& result, double spindle_speed_rad_p
   io::Json json;
   json["spindle_speed_rpm"] = io::number(spindle_speed_rad_per_s / units::rpm);
   json["axial_depth_mm"] = io::number(axial_depth_m / units::mm);
-  json["verdict"] = to_text(result.verdict);
+  json["verdict"] = to_string(result.verdict);
   json["chatter_frequency_hz"] = chatters ? io::number(result.chatter_frequency_hz) : io::Json(nullptr);
   json["chatter_amplitude_um"] = chatters ? io::number(result.chatter_amplitude_m / units::um) : io::Json(nullptr);
   json["growth_per_period"] = io::number(result.growth_per_period);

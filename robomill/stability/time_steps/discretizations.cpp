@@ -79,13 +79,7 @@ class NodePointEvaluator final : public PointEvaluator {
     evaluator_.find(points, std::span(found).first(size));
     if (ask.motion) evaluator_.describe(std::span(found).first(size), std::span(motion).first(size));
     for (std::size_t i = 0; i < size; ++i) {
-      out[i] = Outcome{};
-      out[i].spectral_radius = spectral_radius(found[i]);
-      const bool finite = std::isfinite(std::abs(found[i].multiplier));
-      out[i].multiplier = finite ? found[i].multiplier : out[i].spectral_radius;
-      out[i].kind = kind_of(found[i].multiplier);
-      out[i].chatter_frequency_hz = motion[i].frequency_hz;
-      out[i].mode = motion[i].mode;
+      out[i] = outcome_of(found[i], motion[i]);
       if (found[i].by == Dominant::By::unsettled) ++unsettled_;
     }
     evaluations_ += static_cast<long long>(size);

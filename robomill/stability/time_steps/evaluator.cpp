@@ -12,6 +12,15 @@ bool finer(const Resolution& a, const Resolution& b) {
 
 }  // namespace
 
+Outcome outcome_of(const Dominant& found, const Motion& motion) {
+  const double radius = spectral_radius(found);
+  return {.multiplier = std::isfinite(std::abs(found.multiplier)) ? found.multiplier : radius,
+          .spectral_radius = radius,
+          .kind = kind_of(found.multiplier),
+          .chatter_frequency_hz = motion.frequency_hz,
+          .mode = motion.mode};
+}
+
 void Evaluator::evaluate(std::span<const Point> points, std::span<Dominant> out) {
   Resolution finest = {.nodes = 0};
   const auto step_s = [&](std::size_t lane) { return model_.cut.step_rad() / points[lane].spindle_speed_rad_per_s; };
@@ -37,8 +46,6 @@ void Evaluator::evaluate(std::span<const Point> points, std::span<Dominant> out)
   }
   monodromy_.prepare(std::span(points_).first(points.size()));
   arnoldi_.find(monodromy_, out);
-  evaluations_ += static_cast<long long>(points.size());
-  unsettled_ += std::ranges::count_if(out, [](const Dominant& d) { return d.by == Dominant::By::unsettled; });
 }
 
 void Evaluator::describe(std::span<const Dominant> dominant, std::span<Motion> out) {

@@ -6,6 +6,7 @@
 #include "robomill/stability/eigen/arnoldi.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/motion.hpp"
+#include "robomill/stability/point_evaluator.hpp"
 #include "robomill/stability/time_steps/cut_steps.hpp"
 #include "robomill/stability/time_steps/monodromy.hpp"
 #include "robomill/stability/time_steps/speed_plan.hpp"
@@ -13,6 +14,9 @@
 #include "robomill/stability/tip_dynamics.hpp"
 
 namespace robomill::stability::detail {
+
+/// What a multiplier and its motion say of a point, without an estimate.
+Outcome outcome_of(const Dominant& found, const Motion& motion);
 
 /// Everything about a problem that no point of the chart changes. Shared by threads.
 struct Model {
@@ -38,9 +42,6 @@ class Evaluator {
   /// Of the points of the last evaluate.
   void describe(std::span<const Dominant> dominant, std::span<Motion> out);
 
-  [[nodiscard]] long long evaluations() const { return evaluations_; }
-  [[nodiscard]] long long unsettled() const { return unsettled_; }
-
  private:
   const Model& model_;
   Monodromy monodromy_;
@@ -49,7 +50,6 @@ class Evaluator {
   std::array<DepthPlan, lane_count> depths_;
   std::array<LanePoint, lane_count> points_;
   StepMotion motion_;
-  long long evaluations_ = 0, unsettled_ = 0;
 };
 
 }  // namespace robomill::stability::detail
