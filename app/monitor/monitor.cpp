@@ -194,13 +194,6 @@ monitor::MonitorFile read_config(const MonitorCommand& command) {
   return file;
 }
 
-/// As they lie in a frame.
-std::vector<std::string> channel_names(const monitor::MonitorFile& file) {
-  std::vector<std::string> names = file.columns.channels;
-  if (!file.columns.tachometer.empty()) names.push_back(file.columns.tachometer);
-  return names;
-}
-
 std::string summary_of(live::Session& session, const std::string& input) {
   const live::MetricValues& m = session.metrics();
   return fmt::format("{:.3f} s of {} processed in {} decisions, {} alarm{}.\n", session.time_s(), printable(input),
@@ -219,7 +212,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   EventFile events(common, input.is_live);
 
   std::optional<live::Recorder> recorder;
-  if (!command.report.empty()) recorder.emplace(file.options, channel_names(file), "");
+  if (!command.report.empty()) recorder.emplace(file.options, file.columns.channels, "");
   std::optional<Watch> watch;
   if (command.watch) watch.emplace();
   std::FILE* const people = common.wants_summary() ? stdout : stderr;
