@@ -212,11 +212,8 @@ std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
   if (o.sample_rate_hz > 0.0) line("sample_rate_hz", number_text(o.sample_rate_hz));
   std::string names, tachometer;
   for (int channel = 0; const std::string& name : file.columns.channels) {
-    if (channel++ == o.tachometer_channel) {
-      tachometer = in_quotes(name);
-    } else {
-      names += (names.empty() ? "" : ", ") + in_quotes(name);
-    }
+    std::string& list = channel++ == o.tachometer_channel ? tachometer : names;
+    list += (list.empty() ? "" : ", ") + in_quotes(name);
   }
   line("channels", "[" + names + "]");
   if (!tachometer.empty()) line("tachometer", tachometer);
