@@ -7,8 +7,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,16 +43,8 @@ using monitor::MonitorEvent;
 /// Lines of events: of a recording the file appears whole at the end, of a stream line by line as they come.
 class EventFile {
  public:
-  EventFile(const Common& common, bool live) : to_stdout_(common.to_stdout()), live_(live) {
-    if (common.output.empty() || to_stdout_) return;
-    const std::filesystem::path path = common.output;
-    std::error_code ignored;
-    const auto kind = std::filesystem::status(path, ignored).type();
-    const bool is_pipe = kind == std::filesystem::file_type::fifo || kind == std::filesystem::file_type::character;
-    if (!is_pipe) pending_ = std::make_unique<io::PendingFile>(path);
-    if (is_pipe || live) pending_.reset();  // it has checked the place
-    file_.open(pending_ ? pending_->temporary() : path, std::ios::binary | std::ios::trunc);
-    if (!file_) throw InvalidInput(path.string(), "cannot be written");
+  EventFile(const Common& common, bool live) : to_stdout_(common.to_stdout()) {
+    if (!common.output.empty() && !to_stdout_) file_.emplace(common.output, live);
   }
 
   bool write(const std::string& line) {
@@ -63,25 +53,18 @@ class EventFile {
       failed_ = errno != EPIPE;  // a reader that has seen enough is none of our trouble
       return false;
     }
-    if (!file_.is_open()) return true;
-    file_.write(line.data(), static_cast<std::streamsize>(line.size()));
-    if (live_) file_.flush();
-    return file_.good();
+    return !file_ || file_->write(line);
   }
 
   /// @throws InvalidInput if something could not be written
-  void close(const std::string& name) {
+  void close() {
     if (failed_) throw InvalidInput("standard output", "could not be written", "Is the disk full?");
-    if (!file_.is_open()) return;
-    file_.close();
-    if (!file_) throw InvalidInput(name, "could not be written to its end", "Is the disk full?");
-    if (pending_) pending_->commit();
+    if (file_) file_->close();
   }
 
  private:
-  bool to_stdout_, live_, failed_ = false;
-  std::unique_ptr<io::PendingFile> pending_;
-  std::ofstream file_;
+  bool to_stdout_, failed_ = false;
+  std::optional<io::LineFile> file_;
 };
 
 RawFormat raw_format(const std::string& name) {
@@ -194,13 +177,6 @@ monitor::MonitorFile read_config(const MonitorCommand& command) {
   return file;
 }
 
-/// As they lie in a frame.
-std::vector<std::string> channel_names(const monitor::MonitorFile& file) {
-  std::vector<std::string> names = file.columns.channels;
-  if (!file.columns.tachometer.empty()) names.push_back(file.columns.tachometer);
-  return names;
-}
-
 std::string summary_of(live::Session& session, const std::string& input) {
   const live::MetricValues& m = session.metrics();
   return fmt::format("{:.3f} s of {} processed in {} decisions, {} alarm{}.\n", session.time_s(), printable(input),
@@ -219,7 +195,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   EventFile events(common, input.is_live);
 
   std::optional<live::Recorder> recorder;
-  if (!command.report.empty()) recorder.emplace(file.options, channel_names(file), "");
+  if (!command.report.empty()) recorder.emplace(file.options, file.columns.channels, "");
   std::optional<Watch> watch;
   if (command.watch) watch.emplace();
   std::FILE* const people = common.wants_summary() ? stdout : stderr;
@@ -270,7 +246,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     take_time_to_end(saving_s);
   }
   watch.reset();
-  events.close(common.output);
+  events.close();
   const std::string summary = summary_of(session, input.name);
   if (recorder) {
     page::Report page = monitor_page(recorder->run(), file, input.name);

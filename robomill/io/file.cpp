@@ -154,4 +154,23 @@ void PendingFile::commit() {
   temporary_.clear();
 }
 
+LineFile::LineFile(fs::path path, bool live) : path_(std::move(path)), live_(live) {
+  if (!is_special(path_)) pending_.emplace(path_);
+  if (live) pending_.reset();  // it has checked the place
+  file_.open(pending_ ? pending_->temporary() : path_, std::ios::binary | std::ios::trunc);
+  if (!file_) reject(path_, "cannot be written");
+}
+
+bool LineFile::write(std::string_view line) {
+  file_.write(line.data(), static_cast<std::streamsize>(line.size()));
+  if (live_) file_.flush();
+  return file_.good();
+}
+
+void LineFile::close() {
+  file_.close();
+  if (!file_) reject(path_, "could not be written to its end", "Is the disk full?");
+  if (pending_) pending_->commit();
+}
+
 }  // namespace robomill::io

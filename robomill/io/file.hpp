@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -54,6 +55,24 @@ class PendingFile {
 
  private:
   std::filesystem::path path_, temporary_;
+};
+
+/// A file written line by line, of which each line is there at once where it is live; else it appears whole when it is
+/// closed, or not at all. A device or a pipe is written through.
+class LineFile {
+ public:
+  /// @throws InvalidInput if the place cannot be written
+  LineFile(std::filesystem::path path, bool live);
+  /// A text with its line's end. False where it could not be written.
+  bool write(std::string_view line);
+  /// @throws InvalidInput if something could not be written
+  void close();
+
+ private:
+  std::filesystem::path path_;
+  bool live_;
+  std::optional<PendingFile> pending_;
+  std::ofstream file_;
 };
 
 }  // namespace robomill::io

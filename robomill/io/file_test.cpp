@@ -110,6 +110,27 @@ TEST(File, WritesThroughLinksAndIntoDevices) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
+TEST(LineFile, IsWholeAtTheEndOrThereLineByLine) {
+  const Folder folder;
+  for (const bool live : {false, true}) {
+    const fs::path path = folder.file("lines.jsonl", "old");
+    LineFile file(path, live);
+    EXPECT_TRUE(file.write("1\n"));
+    EXPECT_EQ(read_file(path), live ? "1\n" : "old");
+    EXPECT_TRUE(file.write("2\n"));
+    file.close();
+    EXPECT_EQ(read_file(path), "1\n2\n");
+    EXPECT_EQ(count(folder.path()), 1u);
+  }
+  const fs::path path = folder.file("lines.jsonl", "old");
+  { EXPECT_TRUE(LineFile(path, false).write("half")); }
+  EXPECT_EQ(read_file(path), "old");
+  EXPECT_NE(rejection([&] { LineFile(folder.at("no/where"), true); }).find("There is no folder"), std::string::npos);
+  LineFile full("/dev/full", false);
+  EXPECT_TRUE(full.write("lost\n"));
+  EXPECT_EQ(rejection([&] { full.close(); }), "/dev/full: could not be written to its end. Is the disk full?");
+}
+
 TEST(File, KnowsFormatsByTheirEnding) {
   EXPECT_EQ(format_of("a/b.UFF"), Format::uff);
   EXPECT_EQ(format_of("b.unv"), Format::uff);

@@ -43,7 +43,7 @@ class ByteReader {
   std::size_t begin_ = 0;
 };
 
-/// Where the wanted channels stand among the columns, the tachometer last.
+/// Where the wanted channels stand among the columns.
 /// @throws InvalidInput naming the columns that are there
 [[nodiscard]] std::vector<std::size_t> pick_columns(const SampleColumns& wanted, const std::vector<std::string>& names,
                                                     std::size_t count, const std::string& where);

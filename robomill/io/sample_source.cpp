@@ -33,20 +33,13 @@ std::optional<std::size_t> number_from_1(const std::string& text) {
   return number;
 }
 
-std::vector<std::string> wanted_names(const SampleColumns& columns) {
-  std::vector<std::string> wanted = columns.channels;
-  if (!columns.tachometer.empty()) wanted.push_back(columns.tachometer);
-  return wanted;
-}
-
 /// float32 or int16, little-endian, columns interleaved.
 class RawSource : public SampleSource {
  public:
   RawSource(std::unique_ptr<ByteReader> bytes, const SampleColumns& columns, const std::string& where, bool is_int16)
       : bytes_(std::move(bytes)), is_int16_(is_int16), scale_(columns.scale) {
-    const std::vector<std::string> wanted = wanted_names(columns);
-    columns_ = wanted.size();
-    for (const std::string& name : wanted) columns_ = std::max(columns_, number_from_1(name).value_or(0));
+    columns_ = columns.channels.size();
+    for (const std::string& name : columns.channels) columns_ = std::max(columns_, number_from_1(name).value_or(0));
     if (columns.raw_columns > 0) columns_ = static_cast<std::size_t>(columns.raw_columns);
     pick_ = pick_columns(columns, {}, columns_, where);
     if (is_int16_) {
@@ -143,7 +136,6 @@ void SampleColumns::validate() const {
   if (channels.empty()) throw InvalidInput("channels", "must name one column at least");
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (channels[i].empty()) throw InvalidInput("channels", "must not hold an empty name");
-    if (channels[i] == tachometer) throw InvalidInput("tachometer", "must be another column than the channels");
     if (std::find(channels.begin(), channels.begin() + static_cast<std::ptrdiff_t>(i), channels[i]) !=
         channels.begin() + static_cast<std::ptrdiff_t>(i)) {
       throw InvalidInput("channels", "must not name " + channels[i] + " twice");
@@ -213,7 +205,7 @@ bool ByteReader::line_here() const {
 
 std::vector<std::size_t> pick_columns(const SampleColumns& wanted, const std::vector<std::string>& names,
                                       std::size_t count, const std::string& where) {
-  const std::vector<std::string> asked = wanted_names(wanted);
+  const std::vector<std::string>& asked = wanted.channels;
   const bool nameless = std::all_of(names.begin(), names.end(), [](const std::string& name) { return name.empty(); });
   std::vector<std::size_t> pick;
   for (const std::string& name : asked) {
@@ -255,7 +247,7 @@ void check_rate(double own_hz, double wanted_hz, double tolerance, const std::st
   if (own_hz <= 0.0 || wanted_hz <= 0.0 || std::abs(own_hz / wanted_hz - 1.0) <= tolerance) return;
   throw InvalidInput(
       where, fmt::format("was sampled at {:.6g} Hz, not at signal.sample_rate_hz = {:.6g} Hz", own_hz, wanted_hz),
-      "Mend the one that is wrong, or leave the key out");
+      "Correct the one that is wrong, or leave the key out");
 }
 
 std::unique_ptr<SampleSource> raw_source(std::unique_ptr<ByteReader> bytes, const SampleColumns& columns,

@@ -17,15 +17,14 @@ namespace robomill::io {
 /// Which columns of a recording are wanted, and what its numbers mean.
 struct SampleColumns {
   std::vector<std::string> channels;  ///< names, or numbers from 1; at least one
-  std::string tachometer = {};        ///< the same; it becomes the last channel. Empty: none
+  std::string followed = {};          ///< name of a column of text that SampleBlock::followed has; empty: none
+  double followed_factor = 1.0;       ///< from its unit to SI
   int raw_columns = 0;                ///< of raw samples; 0: as many as are named, or the highest number
   double scale = 1.0;                 ///< unit per full scale of WAV and int16, per 1 of raw float32; finite, not 0
   /// What the recording must run at [Hz]; 0: what it says itself. Rejected where |own / this - 1| > 1e-3; for times in
   /// text, whose mean step counts, > 0.01.
   double sample_rate_hz = 0.0;
 
-  /// Channels that come out.
-  [[nodiscard]] std::size_t count() const { return channels.size() + (tachometer.empty() ? 0 : 1); }
   /// @throws InvalidInput
   ROBOMILL_API void validate() const;
 };
@@ -41,8 +40,8 @@ enum class RawFormat {
 /// Frames in a row.
 struct SampleBlock {
   std::vector<float> samples;  ///< all channels interleaved; NaN where a row could not be read
-  /// The last that the recording gives [rad/s]; NaN: none
-  double spindle_speed_rad_per_s = std::numeric_limits<double>::quiet_NaN();
+  /// The last number >= 0 of the followed column up to the end of the block, in SI; NaN: none
+  double followed = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A recording read from its begin to its end. WAV, text and raw samples take the same memory whatever their length;
@@ -72,9 +71,9 @@ class ROBOMILL_API SampleSource {
 
 /// A file by its ending (.wav; .csv .txt .dat .asc; .mat; .uff .unv .uf), or as `format` says.
 ///
-/// Text: as parse_table reads it, but a column named spindle_speed_rpm is followed, empty fields and "nan" are NaN, and
-/// rows that cannot be read are frames of NaN that are counted. Names of channels stand for columns in their order
-/// where the recording names none and has as many.
+/// Text: as parse_table reads it, but one column may be followed, empty fields and "nan" are NaN, and rows that cannot
+/// be read are frames of NaN that are counted. Names of channels stand for columns in their order where the recording
+/// names none and has as many.
 /// @param stop  becomes true when reading should end; outlives the source; may be null
 /// @throws InvalidInput if it is missing, has no such columns, or runs at another rate than columns.sample_rate_hz
 [[nodiscard]] ROBOMILL_API std::unique_ptr<SampleSource> open_samples(const std::filesystem::path& path,
@@ -90,7 +89,7 @@ class ROBOMILL_API SampleSource {
                                                                             RawFormat format,
                                                                             const std::atomic<bool>* stop = nullptr);
 
-/// Where the wanted channels stand among the columns of raw samples, which have no names, the tachometer last.
+/// Where the wanted channels stand among the columns of raw samples, which have no names.
 /// @throws InvalidInput if they cannot be determined
 [[nodiscard]] ROBOMILL_API std::vector<std::size_t> pick_channels(const SampleColumns& columns, std::size_t count,
                                                                   const std::string& where);

@@ -46,9 +46,7 @@ TEST(SampleSource, ReadsColumnsByNameOrNumber) {
   const auto csv = folder.file("r.csv", "time_s,ax,ay,pulse\n0,1,10,0\n0.1,2,20,1\n0.2,3,30,0\n");
   EXPECT_EQ(read(csv, named({"ay", "ax"})), (std::vector<float>{10, 1, 20, 2, 30, 3}));
   EXPECT_EQ(read(csv, named({"3", "2"})), (std::vector<float>{10, 1, 20, 2, 30, 3}));
-  SampleColumns with_pulse = named({"ax"});
-  with_pulse.tachometer = "pulse";
-  EXPECT_EQ(read(csv, with_pulse), (std::vector<float>{1, 0, 2, 1, 3, 0}));
+  EXPECT_EQ(read(csv, named({"ax", "pulse"})), (std::vector<float>{1, 0, 2, 1, 3, 0}));
   EXPECT_DOUBLE_EQ(open_samples(csv, named({"ax"}))->sample_rate_hz(), 10.0);
 }
 
@@ -77,13 +75,13 @@ TEST(SampleSource, RowsThatCannotBeReadAreNaN) {
   EXPECT_EQ(source->first_unreadable_line(), 5U);
 }
 
-TEST(SampleSource, FollowsTheSpindleSpeed) {
+TEST(SampleSource, FollowsAColumn) {
   const test::Folder folder;
-  const auto csv = folder.file("r.csv", "a,spindle_speed_rpm\n1,3000\n2,3001\n3,\n4,4500\n");
-  const auto source = open_samples(csv, named({"a"}));
+  const auto csv = folder.file("r.csv", "a,speed_rpm\n1,3000\n2,3001\n3,\n4,4500\n");
+  const auto source = open_samples(csv, {.channels = {"a"}, .followed = "speed_rpm", .followed_factor = units::rpm});
   SampleBlock block;
   std::vector<double> rpm;
-  while (source->next(1, block)) rpm.push_back(std::round(block.spindle_speed_rad_per_s / units::rpm));
+  while (source->next(1, block)) rpm.push_back(std::round(block.followed / units::rpm));
   EXPECT_EQ(rpm, (std::vector<double>{3000, 3001, 3001, 4500}));
 }
 
@@ -249,7 +247,8 @@ TEST(SampleSource, SurvivesAnyText) {
     const int changes = 1 + static_cast<int>(random.index(6));
     for (int i = 0; i < changes; ++i) text[random.index(text.size())] = letters[random.index(letters.size())];
     try {
-      rows += static_cast<int>(read(folder.file("f.csv", text), named({"ax"})).size());
+      const SampleColumns columns = {.channels = {"ax"}, .followed = "spindle_speed_rpm"};
+      rows += static_cast<int>(read(folder.file("f.csv", text), columns).size());
     } catch (const InvalidInput&) {
     }
   }

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/units.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/sample_parts.hpp"
 #include "robomill/io/table.hpp"
@@ -41,7 +40,7 @@ class TextSource : public SampleSource {
       if (!line) break;
       read_row(*line, block);
     }
-    block.spindle_speed_rad_per_s = speed_rad_per_s_;
+    block.followed = followed_;
     return !block.samples.empty();
   }
 
@@ -105,8 +104,10 @@ class TextSource : public SampleSource {
       header.push_back(std::move(text));
     }
     pick_ = pick_columns(columns, names_, count_, where_);
-    const auto speed = std::find(names_.begin(), names_.end(), "spindle_speed_rpm");
-    if (speed != names_.end()) speed_column_ = static_cast<std::size_t>(speed - names_.begin());
+    const auto followed = std::find(names_.begin(), names_.end(), columns.followed);
+    if (columns.followed.empty() || followed == names_.end()) return;
+    followed_column_ = static_cast<std::size_t>(followed - names_.begin());
+    followed_factor_ = columns.followed_factor;
   }
 
   /// The last line above the numbers that has as many fields, or the one above it where that one holds units.
@@ -163,9 +164,9 @@ class TextSource : public SampleSource {
       if (unreadable_rows_++ == 0) first_unreadable_line_ = line_number_;
       return;
     }
-    if (speed_column_ >= count_) return;
-    const std::optional<double> rpm = number_of(fields_[speed_column_], separator_);
-    if (rpm && *rpm >= 0.0) speed_rad_per_s_ = *rpm * units::rpm;
+    if (followed_column_ >= count_) return;
+    const std::optional<double> value = number_of(fields_[followed_column_], separator_);
+    if (value && *value >= 0.0) followed_ = *value * followed_factor_;
   }
 
   std::unique_ptr<ByteReader> bytes_;
@@ -173,8 +174,8 @@ class TextSource : public SampleSource {
   std::deque<std::string> ahead_;
   char separator_ = ',';
   std::size_t count_ = 0, line_number_ = 0;
-  std::size_t speed_column_ = std::numeric_limits<std::size_t>::max();
-  double speed_rad_per_s_ = std::numeric_limits<double>::quiet_NaN();
+  std::size_t followed_column_ = std::numeric_limits<std::size_t>::max();
+  double followed_factor_ = 1.0, followed_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> names_, unquoted_;
   std::vector<std::string_view> fields_;
   std::vector<std::size_t> pick_;

@@ -191,10 +191,6 @@ void run_revolution(ForcesResult& result, Progress& progress) {
   result.revolution = std::move(out);
 }
 
-std::filesystem::path cell_path(const ForcesFile& file, const std::filesystem::path& given) {
-  return given.empty() ? file.cell : given;
-}
-
 }  // namespace
 
 std::optional<robot::SphericalWristInverse> spherical_wrist(const robot::Arm& arm) {
@@ -207,14 +203,17 @@ std::optional<robot::SphericalWristInverse> spherical_wrist(const robot::Arm& ar
 
 ForcesResult run_forces(const std::filesystem::path& forces, const std::filesystem::path& program,
                         const std::filesystem::path& cell, Progress& progress) {
-  ForcesResult result;
-  const ForcesJob job = program.empty() ? ForcesJob::revolution : ForcesJob::program;
-  result.file = read_forces(forces, job);
-  if (const std::filesystem::path path = cell_path(result.file, cell); !path.empty()) {
-    result.cell = read_cell(path);
-    result.notes = result.cell->notes;
-  }
-  if (job == ForcesJob::program) {
+  ForcesFile file = read_forces(forces, program.empty() ? ForcesJob::revolution : ForcesJob::program);
+  if (!cell.empty()) file.cell = cell;
+  return run_forces(std::move(file), program, std::nullopt, progress);
+}
+
+ForcesResult run_forces(ForcesFile forces, const std::filesystem::path& program, std::optional<CellFile> cell,
+                        Progress& progress) {
+  ForcesResult result = {.file = std::move(forces), .cell = std::move(cell)};
+  if (!result.cell && !result.file.cell.empty()) result.cell = read_cell(result.file.cell);
+  if (result.cell) result.notes = result.cell->notes;
+  if (!program.empty()) {
     result.program = run_program(result.file, result.cell, program, result.warnings, result.notes, progress);
   } else {
     run_revolution(result, progress);

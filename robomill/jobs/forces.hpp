@@ -82,6 +82,10 @@ struct ForcesResult {
                                                    const std::filesystem::path& program,
                                                    const std::filesystem::path& cell,
                                                    Progress& progress = Progress::none());
+/// The same of files that have been read, forces.toml for what the program asks (ForcesFile::job).
+/// @param cell  none: the one that forces.toml names, if any
+[[nodiscard]] ROBOMILL_API ForcesResult run_forces(ForcesFile forces, const std::filesystem::path& program,
+                                                   std::optional<CellFile> cell, Progress& progress = Progress::none());
 
 /// What the spindle must give at one place.
 struct SpindleLoad {

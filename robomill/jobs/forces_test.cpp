@@ -52,6 +52,14 @@ TEST(RunForces, BendsTheRobotUnderTheMeanForce) {
   EXPECT_FALSE(r.spindle_rotation) << "a UR5e has no spherical wrist";
 }
 
+TEST(RunForces, OfFilesThatWereRead) {
+  const std::filesystem::path cell = examples / "ball-end-ur5e" / "cell.toml";
+  const std::filesystem::path cut = examples / "ball-end-ur5e" / "cut-1.toml";
+  ForcesFile file = read_forces(cut);
+  file.cell = "elsewhere.toml";
+  EXPECT_EQ(forces_json(run_forces(std::move(file), {}, read_cell(cell))), forces_json(run_forces(cut, {}, cell)));
+}
+
 // The numbers of examples/ball-end-ur5e/README.md.
 TEST(RunForces, RunsThePublishedCuts) {
   const double mean_z[] = {15.341, 15.423, 21.986};

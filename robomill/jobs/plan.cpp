@@ -206,24 +206,29 @@ std::optional<decision::SpindleCapacity> capacity_along(const ForcesResult& forc
   return decision::capacity_at(curve, speed);
 }
 
+/// The job's cell, for forces or for what smooths its program; only serial arms have forces.
+std::optional<CellFile> cell_of(const Job& job) {
+  if (job.cell.empty() || (job.forces.empty() && job.program.empty())) return std::nullopt;
+  return read_cell(job.cell, job.forces.empty() ? Robots::any : Robots::serial);
+}
+
 /// Whether the job's program is to be smoothed.
-bool wants_path(const Job& job) {
-  if (job.program.empty() || job.cell.empty()) return false;
-  if (path::has_smoothing(job.cell)) return true;
+bool wants_path(const Job& job, const std::optional<CellFile>& cell) {
+  if (job.program.empty() || !cell) return false;
+  if (path::has_smoothing(*cell->document)) return true;
   if (!job.forces.empty()) return false;
   throw InvalidInput(job.cell.string(), "has no [smoothing]",
                      "job.program without job.forces is smoothed: write the tolerances and limits there");
 }
 
 /// The program as the robot will run it.
-void smooth(PlanResult& result, const std::filesystem::path& folder, Progress& progress) {
-  const Job& job = result.job;
-  SmoothJob smooth = {.program = job.program, .cell = job.cell, .place = false};
+void smooth(PlanResult& result, const CellFile& cell, const std::filesystem::path& folder, Progress& progress) {
+  SmoothJob smooth = {.program = result.job.program, .cell = cell.path, .place = false};
   if (!folder.empty()) {
     io::make_folder(folder);
     smooth.output = folder / "trajectory.csv";
   }
-  result.path = run_smooth(smooth, progress);
+  result.path = run_smooth(smooth, cell, progress);
   if (!result.path->holds()) {
     result.warnings.push_back(fmt::format(
         "The smoothed program breaks limits {} times: there is no trajectory{}. See the limits of each joint.",
@@ -364,7 +369,8 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
     throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
                        "plan needs it for the removal rate");
   }
-  const bool with_path = wants_path(result.job);
+  const std::optional<CellFile> cell = cell_of(result.job);
+  const bool with_path = wants_path(result.job, cell);
   try {
     decision::require_finishable(result.cut.problem, result.job.finish);
   } catch (const InvalidInput& error) {
@@ -373,7 +379,9 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   }
   measure(result, progress);
   if (!result.job.forces.empty()) {
-    result.forces = run_forces(result.job.forces, result.job.program, result.job.cell, progress);
+    const bool along = !result.job.program.empty();
+    result.forces = run_forces(read_forces(result.job.forces, along ? ForcesJob::program : ForcesJob::revolution),
+                               result.job.program, cell, progress);
     result.forces->spindle = capacity_along(*result.forces, result.job.recommend.spindle);
     warn_of_spindle(result);
   }
@@ -386,7 +394,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
         100.0 * result.fit->relative_error, 100.0 * modal::unusable_fit_error);
     return result;
   }
-  if (with_path) smooth(result, folder, progress);
+  if (with_path) smooth(result, *cell, folder, progress);
   result.cut.drop_dynamics();  // the job's stand in their place
   load_dynamics(result.cut);
   result.cut.problem.dynamics = result.model;

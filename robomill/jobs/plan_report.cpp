@@ -96,23 +96,27 @@ LimitShare limit_share(const PlanResult& result) {
 }
 
 page::Report make_report(const PlanResult& result, const std::vector<page::StageFile>& files) {
+  return make_report(result, files, plan_object(result));
+}
+
+page::Report make_report(const PlanResult& result, const std::vector<page::StageFile>& files, const io::Json& plan) {
   page::Report report;
   if (!result.job.title.empty()) report.title = result.job.title;
   report.created = fmt::format("{:%Y-%m-%d %H:%M} UTC, robomill " ROBOMILL_VERSION, fmt::gmtime(std::time(nullptr)));
   report.summary = summary(result);
   if (result.frfs) report.frf = result.hits ? modal::frf_json(*result.hits) : modal::frf_json(*result.frfs);
   if (result.frfs && result.fit) report.fitted = modal::frf_json(fitted(result));
-  if (result.prediction) report.assembly = prediction_json(*result.prediction);
+  if (result.prediction) report.assembly = io::dump(plan.at("assembly"));
   if (result.prediction && result.prediction->measured) report.measured = modal::frf_json(*result.prediction->measured);
   report.plan = io::dump(decision_json(result));
-  report.modes = modes_json(result);
+  report.modes = io::dump(plan.at("modes"));
   const modal::ModalModel& workpiece = result.cut.problem.workpiece_dynamics;
   if (!workpiece.modes.empty()) report.workpiece_modes = modal::modes_json(workpiece);
-  if (result.has_lobes()) report.lobes = lobes_json(result);
+  if (result.has_lobes()) report.lobes = io::dump(plan.at("lobes"));
   if (!result.recordings.empty()) report.recordings = io::dump(recordings_json(result));
-  if (result.forces) report.forces = forces_json(*result.forces);
+  if (result.forces) report.forces = io::dump(plan.at("forces"));
   if (result.path) {
-    report.smooth = path::smooth_json(result.path->smoothed);
+    report.smooth = io::dump(plan.at("path"));
     report.motion = path::motion_json(result.path->outline, result.path->motions);
   }
   report.files = files;

@@ -203,6 +203,7 @@ TEST_F(Predicted, PlanStandsOnTheModesOfItsTipFrfs) {
   EXPECT_EQ(fitted["receptance_m_per_n"]["yy"]["re"].size(), frf["frequency_hz"].size());
   EXPECT_EQ(report.measured, "");
   EXPECT_EQ(nlohmann::json::parse(report.assembly), json);
+  EXPECT_EQ(nlohmann::json::parse(prediction_json(*predicted.prediction)), json);
 }
 
 }  // namespace predict_test

@@ -14,7 +14,6 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/toml_file.hpp"
-#include "robomill/jobs/files/cell_toml.hpp"
 #include "robomill/path/drive.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
 #include "robomill/path/files/trajectory.hpp"
@@ -78,9 +77,9 @@ auto located_in_program(const std::filesystem::path& program, F&& f) {
   }
 }
 
-Bench prepare(const SmoothJob& job) {
+Bench prepare(const SmoothJob& job, CellFile cell) {
   Bench bench;
-  bench.cell = read_cell(job.cell, Robots::any);
+  bench.cell = std::move(cell);
   bench.machine = kinematics(bench.cell);
   bench.smoothing =
       path::read_smoothing(*bench.cell.document, bench.machine->limits(), bench.machine->joints(), job.method);
@@ -101,7 +100,7 @@ std::unique_ptr<path::SampleFile> open_output(const SmoothJob& job, const Bench&
   info.limits = bench.machine->limits();
   info.sample_period_s = bench.smoothing.options.sample_period_s;
   info.program_period_s = job.program_period_s;
-  info.cell = job.cell.filename().string();
+  info.cell = bench.cell.path.filename().string();
   info.program = job.program.filename().string();
   info.end_effector = bench.cell.end_effector;
   return path::open_sample_file(job.output, info);
@@ -227,7 +226,7 @@ std::string length_note(const path::ProgramRun& run) {
 void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   path::SmoothedProgram& smoothed = result.smoothed;
   smoothed.program = job.program.filename().string();
-  smoothed.cell = job.cell.filename().string();
+  smoothed.cell = bench.cell.path.filename().string();
   smoothed.prismatic = bench.prismatic;
   const std::vector<double>& gamma_rad = bench.posture.posture.gamma_rad;
   if (bench.machine->turns_about_axis() && !gamma_rad.empty()) {
@@ -257,7 +256,11 @@ void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
 }  // namespace
 
 SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
-  const Bench bench = prepare(job);
+  return run_smooth(job, read_cell(job.cell, Robots::any), progress);
+}
+
+SmoothResult run_smooth(const SmoothJob& job, CellFile cell, Progress& progress) {
+  const Bench bench = prepare(job, std::move(cell));
   SmoothResult result;
   result.options = bench.smoothing.options;
   result.posture = bench.posture;

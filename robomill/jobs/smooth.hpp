@@ -7,6 +7,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
+#include "robomill/jobs/files/cell_toml.hpp"
 #include "robomill/path/files/smooth_json.hpp"
 #include "robomill/path/files/trajectory.hpp"
 #include "robomill/path/options.hpp"
@@ -53,6 +54,9 @@ struct SmoothResult {
 /// file that stands in its place from an earlier run is taken away.
 /// @throws InvalidInput with file, line, key and value, or with what cannot be reached; Interrupted
 [[nodiscard]] ROBOMILL_API SmoothResult run_smooth(const SmoothJob& job, Progress& progress = Progress::none());
+/// The same in a cell that has been read, for any robot, from its file.
+[[nodiscard]] ROBOMILL_API SmoothResult run_smooth(const SmoothJob& job, CellFile cell,
+                                                   Progress& progress = Progress::none());
 
 /// Moves the trajectory of a job that does not place it to its place, or takes away what stands there from an earlier
 /// run. Once. @throws InvalidInput if that fails

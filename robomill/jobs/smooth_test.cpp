@@ -266,6 +266,17 @@ TEST_F(Smoothing, SetsMethodsSideBySide) {
   EXPECT_EQ(run_smooth(both).first().tracking_error, result.first().tracking_error);
 }
 
+TEST_F(Smoothing, InACellThatWasRead) {
+  SmoothJob elsewhere = job();
+  CellFile cell = read_cell(elsewhere.cell, Robots::any);
+  const SmoothResult expected = run_smooth(elsewhere);
+  elsewhere.cell = "elsewhere.toml";
+  const SmoothResult result = run_smooth(elsewhere, std::move(cell));
+  EXPECT_EQ(result.smoothed.cell, expected.smoothed.cell);
+  EXPECT_EQ(result.first().summary.samples, expected.first().summary.samples);
+  EXPECT_EQ(result.first().summary.duration_s, expected.first().summary.duration_s);
+}
+
 TEST_F(Smoothing, RejectsInTheUsersWords) {
   const auto said = [&](const std::string& cell, const std::string& program) {
     return rejection([&] { static_cast<void>(run_smooth(job(cell, program))); });

@@ -9,7 +9,6 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/records.hpp"
 #include "robomill/signal/spectrum.hpp"
 #include "robomill/stability/peak_classification.hpp"
 
@@ -207,13 +206,8 @@ std::vector<ComparedCut> compare_cuts(const std::vector<TestCut>& cuts, const st
 }
 
 Recording read_recording(const TestCut& cut, const stability::LobesProblem& problem) {
-  const io::Record record = io::read_record(cut.file, {.scale = cut.scale});
-  const Eigen::VectorXd signal = record.column(cut.column);
-  const double rate_hz = record.sample_rate_hz > 0.0 ? record.sample_rate_hz : cut.sample_rate_hz;
-  if (!(rate_hz > 0.0)) {
-    throw InvalidInput(cut.file.string(), "has no time column", "Give sample_rate_hz beside the file in [[cuts]]");
-  }
-  const double length_s = static_cast<double>(signal.size()) / rate_hz;
+  const CutSignal recorded = read_cut_signal(cut);
+  const double length_s = static_cast<double>(recorded.acceleration.size()) / recorded.sample_rate_hz;
   if (length_s < 0.2) throw InvalidInput(cut.file.string(), length_s, "s", "must be at least 0.2 s of cutting");
 
   Recording out;
@@ -221,7 +215,7 @@ Recording read_recording(const TestCut& cut, const stability::LobesProblem& prob
   out.spindle_speed_rad_per_s = cut.spindle_speed_rad_per_s;
   out.teeth = problem.milling.tool.teeth;
   out.axial_depth_m = cut.axial_depth_m;
-  const signal::Spectrum spectrum = signal::amplitude_spectrum(signal, rate_hz);
+  const signal::Spectrum spectrum = signal::amplitude_spectrum(recorded.acceleration, recorded.sample_rate_hz);
   out.frequency_hz = spectrum.frequency_hz;
   out.amplitude = spectrum.amplitude;
   signal::PeakOptions wanted;

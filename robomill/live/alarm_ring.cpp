@@ -1,30 +1,16 @@
 #include "robomill/live/alarm_ring.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <utility>
 
 #include "robomill/io/file.hpp"
-#include "robomill/io/sample_source.hpp"
+#include "robomill/live/files/alarm_wav.hpp"
 
 namespace robomill::live {
 namespace {
 
 constexpr std::size_t max_jobs = 2;
-
-/// alarm_12.345s.wav, with a number behind it where there is one already.
-std::filesystem::path free_name(const std::filesystem::path& folder, double time_s) {
-  const std::string stem = fmt::format("alarm_{:.3f}s", time_s);
-  std::filesystem::path file = folder / (stem + ".wav");
-  std::error_code ignored;
-  for (int i = 2; std::filesystem::exists(file, ignored) && i < 10'000; ++i) {
-    file = folder / fmt::format("{}_{}.wav", stem, i);
-  }
-  return file;
-}
 
 }  // namespace
 
@@ -54,7 +40,7 @@ void AlarmRing::add(std::vector<float>&& samples) {
 bool AlarmRing::alarm(double time_s) {
   const std::scoped_lock lock(mutex_);
   if (jobs_.size() >= max_jobs) return false;
-  std::filesystem::path file = free_name(options_.folder, time_s);
+  std::filesystem::path file = free_alarm_name(options_.folder, time_s);
   jobs_.push_back({.file = std::move(file), .pieces = {kept_.begin(), kept_.end()}});
   asked_.notify_one();
   return true;
@@ -86,7 +72,7 @@ void AlarmRing::write(const Job& job) const {
     std::vector<float> samples;
     for (const Piece& piece : job.pieces) samples.insert(samples.end(), piece->begin(), piece->end());
     if (samples.size() > room_) samples.erase(samples.begin(), samples.end() - static_cast<std::ptrdiff_t>(room_));
-    io::write_wav(job.file, samples, options_.channels, std::max(1.0, std::round(options_.sample_rate_hz)));
+    write_alarm(job.file, samples, options_.channels, options_.sample_rate_hz);
     reported_(job.file, {});
   } catch (const std::exception& error) {
     reported_({}, error.what());

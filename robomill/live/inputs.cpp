@@ -41,7 +41,7 @@ void SourceInput::read() {
     io::SampleBlock block;
     std::uint64_t reported_rows = 0;
     while (source_->next(hop_frames_, block)) {
-      intake_.speed(block.spindle_speed_rad_per_s);
+      intake_.speed(block.followed);
       if (!intake_.add(block.samples)) return;
       if (source_->unreadable_rows() == reported_rows) continue;
       notices_->add("unreadable-rows",

@@ -149,17 +149,17 @@ void keep_drawn(Json& block) {
   block = std::move(drawn);
 }
 
-/// The steps of a revolution at which a force has an extreme, run by run.
-void thin_revolution(Json& json, std::size_t steps) {
-  if (steps <= most_rows) return;
+/// The places of an axis of so many values at which a curve over it has an extreme, run by run.
+void thin_axis(Json& json, std::size_t length) {
+  if (length <= most_rows) return;
   std::vector<Json*> lists;
-  collect(json, steps, lists);
+  collect(json, length, lists);
   std::vector<Eigen::VectorXd> curves;
   for (const Json* list : lists) {
-    Eigen::VectorXd& curve = curves.emplace_back(static_cast<Eigen::Index>(steps));
-    for (std::size_t i = 0; i < steps; ++i) curve[static_cast<Eigen::Index>(i)] = number_of((*list)[i]);
+    Eigen::VectorXd& curve = curves.emplace_back(static_cast<Eigen::Index>(length));
+    for (std::size_t i = 0; i < length; ++i) curve[static_cast<Eigen::Index>(i)] = number_of((*list)[i]);
   }
-  keep_of_axis(json, steps, thin_curves(curves, most_rows));
+  keep_of_axis(json, length, thin_curves(curves, most_rows));
 }
 
 /// Of forces.json what the page shows.
@@ -169,7 +169,15 @@ void thin_forces(Json& json) {
   if (const auto blocks = json.find("blocks"); blocks != json.end()) {
     for (Json& block : *blocks) keep_drawn(block);
   }
-  if (const auto rotation = json.find("rotation_deg"); rotation != json.end()) thin_revolution(json, rotation->size());
+  if (const auto rotation = json.find("rotation_deg"); rotation != json.end()) thin_axis(json, rotation->size());
+}
+
+/// The lines of each spectrum of a recorded cut.
+void thin_recordings(Json& json) {
+  if (!json.is_array()) return;
+  for (Json& recording : json) {
+    if (recording.is_object() && recording.contains("amplitude")) thin_axis(recording, recording["amplitude"].size());
+  }
 }
 
 /// Times keep their digits: of an hour, six are not a hundredth of a second.
@@ -195,6 +203,7 @@ Json document(const char* member, const std::string& text) {
     Json json = Json::parse(text);
     thin_frfs(json);
     thin_forces(json);
+    thin_recordings(json);
     return shown(std::move(json), false);
   } catch (const InvalidInput&) {
     throw InvalidInput(member, "nests its values too deep");

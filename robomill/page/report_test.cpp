@@ -159,6 +159,29 @@ TEST(ReportJson, ThinsALongRevolution) {
             224.885);
 }
 
+// … and so do the lines of a recording's spectrum.
+TEST(ReportJson, ThinsALongSpectrum) {
+  constexpr int n = 50000;
+  json recording = {{"file", "cut.wav"}, {"frequency_hz", json::array()}, {"amplitude", json::array()}};
+  for (int i = 0; i < n; ++i) {
+    recording["frequency_hz"].push_back(0.5 * i);
+    recording["amplitude"].push_back(i == 31234 ? 7.5 : 1.0 + std::sin(1e-1 * i));
+  }
+  json short_one = recording;
+  for (const char* list : {"frequency_hz", "amplitude"})
+    short_one[list].erase(short_one[list].begin() + 100, short_one[list].end());
+  Report report;
+  report.recordings = json{recording, short_one}.dump();
+  const json kept = json::parse(report_json(report))["recordings"];
+  const json& amplitude = kept[0]["amplitude"];
+  EXPECT_GT(amplitude.size(), 5000U);
+  EXPECT_LE(amplitude.size(), 6002U);
+  ASSERT_EQ(kept[0]["frequency_hz"].size(), amplitude.size());
+  EXPECT_EQ(kept[0]["frequency_hz"][static_cast<std::size_t>(std::ranges::max_element(amplitude) - amplitude.begin())],
+            15617.0);
+  EXPECT_EQ(kept[1]["amplitude"].size(), 100U);
+}
+
 TEST(ReportJson, StrayBytesBecomeValidText) {
   Report report;
   report.title = "Fr\xe4ser";

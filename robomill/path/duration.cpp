@@ -6,11 +6,13 @@
 #include <cstdio>
 #include <string>
 
+#include "robomill/base/units.hpp"
+
 namespace robomill::path {
 namespace {
 
-constexpr double hour_s = 3600.0;
-constexpr double mm_per_min = 1e-3 / 60.0;  // as programs give feeds
+constexpr double hour_s = 60.0 * units::minute;
+constexpr double mm_per_min = units::mm / units::minute;  // as programs give feeds
 
 std::string text(double value, const char* unit) {
   std::array<char, 48> out = {};

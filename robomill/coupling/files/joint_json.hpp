@@ -4,6 +4,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/coupling/joint_fit.hpp"
 
+// Method: robomill/coupling/README.md, "Files"
+
 namespace robomill::coupling {
 
 /// joint.json as text: the joint in the keys of assembly.toml, how well it fits and what the FRF shows of it. A

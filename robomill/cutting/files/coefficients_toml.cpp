@@ -9,6 +9,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/material.hpp"
+#include "robomill/io/toml_file.hpp"
 
 namespace robomill::cutting {
 namespace {

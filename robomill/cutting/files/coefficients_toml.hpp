@@ -4,7 +4,12 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/cutting/force.hpp"
-#include "robomill/io/toml_file.hpp"
+
+// Method: robomill/cutting/README.md, "Files"
+
+namespace robomill::io {
+class TomlFile;
+}
 
 namespace robomill::cutting {
 
@@ -13,7 +18,7 @@ namespace robomill::cutting {
 /// helix, which is coefficients.helix_deg or the tool's. edge_per says what edge forces are per: "width" or
 /// "edge-length".
 /// @throws InvalidInput with file, line, key and value
-[[nodiscard]] MillingCoefficients read_coefficient_table(io::TomlFile& file);
+[[nodiscard]] ROBOMILL_API MillingCoefficients read_coefficient_table(io::TomlFile& file);
 
 /// coefficients.toml. @throws InvalidInput with file, line, key and value
 [[nodiscard]] ROBOMILL_API MillingCoefficients read_coefficients(const std::filesystem::path& path);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robomill/cutting/material.hpp"
+#include "robomill/io/toml_file.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::cutting {

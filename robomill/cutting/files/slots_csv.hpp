@@ -7,6 +7,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/cutting/coefficients.hpp"
 
+// Method: robomill/cutting/README.md, "Files"
+
 namespace robomill::cutting {
 
 /// slots.csv: mean forces of slots, on the tool.

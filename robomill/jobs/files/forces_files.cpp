@@ -10,7 +10,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/append.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/jobs/files/forces_json.hpp"
+#include "robomill/jobs/files/plan_json.hpp"
 #include "robomill/jobs/forces.hpp"
 
 namespace robomill::jobs {

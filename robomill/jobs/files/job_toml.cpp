@@ -4,6 +4,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/records.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
 
@@ -158,6 +159,13 @@ Job read_job(const std::filesystem::path& path) {
   file.done();
   file.locate([&] { job.validate(); });
   return job;
+}
+
+CutSignal read_cut_signal(const TestCut& cut) {
+  const io::Record record = io::read_record(cut.file, {.scale = cut.scale});
+  CutSignal out = {record.column(cut.column), record.sample_rate_hz > 0.0 ? record.sample_rate_hz : cut.sample_rate_hz};
+  if (out.sample_rate_hz > 0.0) return out;
+  throw InvalidInput(cut.file.string(), "has no time column", "Give sample_rate_hz beside the file in [[cuts]]");
 }
 
 }  // namespace robomill::jobs

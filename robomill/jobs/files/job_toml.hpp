@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -63,5 +64,14 @@ struct Job {
 
 /// @throws InvalidInput with file, line, key and value
 [[nodiscard]] ROBOMILL_API Job read_job(const std::filesystem::path& path);
+
+/// What was recorded of a test cut.
+struct CutSignal {
+  Eigen::VectorXd acceleration;  ///< length n [m/s^2]
+  double sample_rate_hz = 0.0;   ///< > 0
+};
+/// Reads the recording that a test cut names.
+/// @throws InvalidInput if it cannot be read, or neither it nor the cut knows its rate
+[[nodiscard]] ROBOMILL_API CutSignal read_cut_signal(const TestCut& cut);
 
 }  // namespace robomill::jobs

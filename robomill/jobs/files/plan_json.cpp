@@ -9,13 +9,10 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/jobs/files/forces_json.hpp"
-#include "robomill/jobs/plan.hpp"
-#include "robomill/modal/files/frf_files.hpp"
+#include "robomill/modal/files/modal_objects.hpp"
 #include "robomill/modal/files/mode_json.hpp"
-#include "robomill/modal/files/modes_files.hpp"
-#include "robomill/page/thin.hpp"
-#include "robomill/stability/files/lobes_json.hpp"
+#include "robomill/path/files/smooth_object.hpp"
+#include "robomill/stability/files/lobes_object.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -157,7 +154,6 @@ Json recordings_json(const PlanResult& result) {
                        {"kind", to_string(peak.kind)},
                        {"text", peak.text}});
     }
-    const std::vector<Eigen::Index> keep = page::thin(recording.amplitude);
     const double rotation_hz = recording.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
     list.push_back({{"file", recording.file},
                     {"spindle_speed_rpm", number(recording.spindle_speed_rad_per_s / units::rpm)},
@@ -166,8 +162,8 @@ Json recordings_json(const PlanResult& result) {
                     {"tooth_passing_hz", number(rotation_hz * recording.teeth)},
                     {"axial_depth_mm", number(recording.axial_depth_m / units::mm)},
                     {"amplitude_unit", "m/s²"},
-                    {"frequency_hz", io::numbers(recording.frequency_hz(keep))},
-                    {"amplitude", io::numbers(recording.amplitude(keep))},
+                    {"frequency_hz", io::numbers(recording.frequency_hz)},
+                    {"amplitude", io::numbers(recording.amplitude)},
                     {"peaks", std::move(peaks)},
                     {"verdict", text_or_null(to_string(recording.verdict))},
                     {"reason", recording.reason}});
@@ -175,23 +171,23 @@ Json recordings_json(const PlanResult& result) {
   return list;
 }
 
-std::string modes_json(const PlanResult& result) {
-  return result.fit ? modal::modes_json(*result.fit) : modal::modes_json(result.model);
+Json plan_object(const PlanResult& result) {
+  Json json = decision_json(result);
+  if (result.prediction) json["assembly"] = prediction_object(*result.prediction);
+  if (result.hits) json["frf"] = modal::hits_object(*result.hits);
+  json["modes"] = result.fit ? modal::modes_object(*result.fit) : modal::modes_object(result.model);
+  if (result.has_lobes()) json["lobes"] = stability::lobes_object(result.lobes, result.uncertain);
+  if (result.forces) json["forces"] = forces_object(*result.forces);
+  if (result.path) json["path"] = path::smooth_object(result.path->smoothed);
+  return json;
 }
 
-std::string lobes_json(const PlanResult& result) {
-  return stability::lobes_json(result.lobes, result.uncertain);
+std::string plan_text(const Json& plan) {
+  return plan.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string plan_json(const PlanResult& result) {
-  Json json = decision_json(result);
-  if (result.prediction) json["assembly"] = Json::parse(prediction_json(*result.prediction));
-  if (result.hits) json["frf"] = Json::parse(modal::hits_json(*result.hits));
-  json["modes"] = Json::parse(modes_json(result));
-  if (result.has_lobes()) json["lobes"] = Json::parse(lobes_json(result));
-  if (result.forces) json["forces"] = forces_object(*result.forces);
-  if (result.path) json["path"] = Json::parse(path::smooth_json(result.path->smoothed));
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return plan_text(plan_object(result));
 }
 
 }  // namespace robomill::jobs

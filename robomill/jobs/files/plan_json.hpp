@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/plan.hpp"
@@ -9,10 +10,18 @@ namespace robomill::jobs {
 [[nodiscard]] io::Json operation_json(const decision::Operation& op);
 /// What the job itself came to: plan.json without the documents of its stages.
 [[nodiscard]] io::Json decision_json(const PlanResult& result);
-/// Spectra of the recorded test cuts, thinned as for a page.
+/// Spectra of the recorded test cuts.
 [[nodiscard]] io::Json recordings_json(const PlanResult& result);
-/// modes.json, lobes.json of a job.
-[[nodiscard]] std::string modes_json(const PlanResult& result);
-[[nodiscard]] std::string lobes_json(const PlanResult& result);
+/// forces.json, and the member `assembly`.
+[[nodiscard]] io::Json forces_object(const ForcesResult& result);
+[[nodiscard]] io::Json prediction_object(const TipPrediction& prediction);
+
+/// plan.json: the decision, and each stage's document as a member.
+[[nodiscard]] io::Json plan_object(const PlanResult& result);
+/// It as text.
+[[nodiscard]] std::string plan_text(const io::Json& plan);
+/// As make_report, of what is in plan.json already.
+[[nodiscard]] page::Report make_report(const PlanResult& result, const std::vector<page::StageFile>& files,
+                                       const io::Json& plan);
 
 }  // namespace robomill::jobs

@@ -3,7 +3,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/coupling/files/segment_fields.hpp"
 #include "robomill/io/json.hpp"
-#include "robomill/jobs/predict.hpp"
+#include "robomill/jobs/files/plan_json.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -53,7 +53,7 @@ Json lines_json(const std::vector<double>& lines_hz) {
 
 }  // namespace
 
-std::string prediction_json(const TipPrediction& prediction) {
+Json prediction_object(const TipPrediction& prediction) {
   const coupling::Assembly& assembly = prediction.file.assembly;
   Json holder = Json::object();
   if (assembly.holder.receptances.frfs.empty()) {
@@ -81,7 +81,11 @@ std::string prediction_json(const TipPrediction& prediction) {
   json["unreliable_hz"] =
       lines_json(prediction.file.holder ? prediction.file.holder->unreliable_hz : std::vector<double>{});
   json["notes"] = prediction.notes;
-  return json.dump();
+  return json;
+}
+
+std::string prediction_json(const TipPrediction& prediction) {
+  return prediction_object(prediction).dump();
 }
 
 }  // namespace robomill::jobs

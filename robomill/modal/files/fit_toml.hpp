@@ -4,6 +4,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/modal/fit.hpp"
 
+// Method: robomill/modal/README.md, "Files"
+
 namespace robomill::modal {
 
 /// Reads how modes are to be fitted: the table [fit], whose keys are the members of FitOptions; band_hz = [low, high].

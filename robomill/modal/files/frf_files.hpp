@@ -62,7 +62,5 @@ struct FrfDoubts {
 };
 /// tip.json with these.
 [[nodiscard]] ROBOMILL_API std::string frf_json(const FrfSet& set, const FrfDoubts& doubts);
-/// Verdicts, grades and notes alone, as JSON text.
-[[nodiscard]] ROBOMILL_API std::string hits_json(const FrfResult& result);
 
 }  // namespace robomill::modal

@@ -3,6 +3,7 @@
 #include "robomill/io/json.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/frf_parts.hpp"
+#include "robomill/modal/files/modal_objects.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -45,23 +46,6 @@ io::Json grade_json(const FrfGrade& grade) {
           {"remedies", grade.remedies}};
 }
 
-void add_hits(io::Json& json, const FrfResult& result) {
-  json["hits"] = io::Json::array();
-  for (const HitVerdict& hit : result.hits) {
-    json["hits"].push_back({{"file", hit.file},
-                            {"accepted", hit.accepted},
-                            {"reasons", hit.reasons},
-                            {"peak_force_n", io::number(hit.peak_force_n)},
-                            {"pulse_width_s", io::number(hit.pulse_width_s)},
-                            {"second_pulse_ratio", io::number(hit.second_pulse_ratio)}});
-  }
-  json["grades"] = io::Json::object();
-  for (const FrfGrade& grade : result.grades) json["grades"][to_string(grade.name)] = grade_json(grade);
-  json["lowest_trustworthy_frequency_hz"] = io::number(result.lowest_trustworthy_frequency_hz);
-  json["added_decay_per_s"] = io::number(result.added_decay_removed ? 0.0 : result.added_decay_per_s);
-  json["notes"] = result.notes;
-}
-
 /// root[key][name], where there is one.
 Eigen::VectorXd optional_numbers(const io::JsonNode& root, const char* key, const std::string& name) {
   if (!root.has(key) || !root.at(key).has(name.c_str())) return {};
@@ -96,13 +80,32 @@ FrfParts read_frf_json(const std::filesystem::path& path) {
   return out;
 }
 
+io::Json hits_object(const FrfResult& result) {
+  io::Json json;
+  json["hits"] = io::Json::array();
+  for (const HitVerdict& hit : result.hits) {
+    json["hits"].push_back({{"file", hit.file},
+                            {"accepted", hit.accepted},
+                            {"reasons", hit.reasons},
+                            {"peak_force_n", io::number(hit.peak_force_n)},
+                            {"pulse_width_s", io::number(hit.pulse_width_s)},
+                            {"second_pulse_ratio", io::number(hit.second_pulse_ratio)}});
+  }
+  json["grades"] = io::Json::object();
+  for (const FrfGrade& grade : result.grades) json["grades"][to_string(grade.name)] = grade_json(grade);
+  json["lowest_trustworthy_frequency_hz"] = io::number(result.lowest_trustworthy_frequency_hz);
+  json["added_decay_per_s"] = io::number(result.added_decay_removed ? 0.0 : result.added_decay_per_s);
+  json["notes"] = result.notes;
+  return json;
+}
+
 std::string frf_json(const FrfSet& set) {
   return io::dump(set_json(set));
 }
 
 std::string frf_json(const FrfResult& result) {
   io::Json json = set_json(result.set);
-  add_hits(json, result);
+  json.update(hits_object(result));
   return io::dump(json);
 }
 
@@ -111,12 +114,6 @@ std::string frf_json(const FrfSet& set, const FrfDoubts& doubts) {
   json["suspect_hz"] = doubts.suspect_hz;
   json["unreliable_hz"] = doubts.unreliable_hz;
   json["notes"] = doubts.notes;
-  return io::dump(json);
-}
-
-std::string hits_json(const FrfResult& result) {
-  io::Json json = io::Json::object();
-  add_hits(json, result);
   return io::dump(json);
 }
 

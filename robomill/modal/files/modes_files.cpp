@@ -10,6 +10,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/toml_file.hpp"
+#include "robomill/modal/files/modal_objects.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -20,27 +21,6 @@ io::Json vector_json(const Eigen::VectorXcd& vector, const std::vector<Dof>& dof
     out[to_string(dofs[i], as_excitation)] = io::complex_number(vector(static_cast<Eigen::Index>(i)));
   }
   return out;
-}
-
-io::Json model_json(const ModalModel& model) {
-  model.validate();
-  io::Json json;
-  json["modes"] = io::Json::array();
-  for (const Mode& mode : model.modes) {
-    json["modes"].push_back({{"frequency_hz", io::number(mode.frequency_hz)},
-                             {"damping_ratio", io::number(mode.damping_ratio)},
-                             {"left", vector_json(mode.left, model.excitations, true)},
-                             {"right", vector_json(mode.right, model.responses, false)},
-                             {"std",
-                              {{"frequency_hz", io::number(mode.frequency_std_hz)},
-                               {"damping_ratio", io::number(mode.damping_ratio_std)}}}});
-  }
-  json["residuals"] = io::Json::object();
-  for (const Residual& residual : model.residuals) {
-    json["residuals"][to_string(residual.name)] = {{"mass", io::complex_number(residual.mass)},
-                                                   {"stiffness", io::complex_number(residual.stiffness)}};
-  }
-  return json;
 }
 
 /// A mode as a file holds it: entries by the name of their degree of freedom.
@@ -208,12 +188,29 @@ ModalModel read_modes(const std::filesystem::path& path) {
                      "FRFs become modes with robomill modes FILE -o modes.json");
 }
 
-std::string modes_json(const ModalModel& model) {
-  return io::dump(model_json(model));
+io::Json modes_object(const ModalModel& model) {
+  model.validate();
+  io::Json json;
+  json["modes"] = io::Json::array();
+  for (const Mode& mode : model.modes) {
+    json["modes"].push_back({{"frequency_hz", io::number(mode.frequency_hz)},
+                             {"damping_ratio", io::number(mode.damping_ratio)},
+                             {"left", vector_json(mode.left, model.excitations, true)},
+                             {"right", vector_json(mode.right, model.responses, false)},
+                             {"std",
+                              {{"frequency_hz", io::number(mode.frequency_std_hz)},
+                               {"damping_ratio", io::number(mode.damping_ratio_std)}}}});
+  }
+  json["residuals"] = io::Json::object();
+  for (const Residual& residual : model.residuals) {
+    json["residuals"][to_string(residual.name)] = {{"mass", io::complex_number(residual.mass)},
+                                                   {"stiffness", io::complex_number(residual.stiffness)}};
+  }
+  return json;
 }
 
-std::string modes_json(const FitResult& fit) {
-  io::Json json = model_json(fit.model);
+io::Json modes_object(const FitResult& fit) {
+  io::Json json = modes_object(fit.model);
   for (std::size_t k = 0; k < fit.model.modes.size(); ++k) {
     io::Json bounds = io::Json::array();
     for (const FitBound bound : fit.bounds_of(static_cast<int>(k) + 1)) bounds.push_back(to_string(bound));
@@ -238,7 +235,15 @@ std::string modes_json(const FitResult& fit) {
          {"stable", point.frequency_stable && point.damping_stable && point.vector_stable}});
   }
   json["warnings"] = fit.warnings;
-  return io::dump(json);
+  return json;
+}
+
+std::string modes_json(const ModalModel& model) {
+  return io::dump(modes_object(model));
+}
+
+std::string modes_json(const FitResult& fit) {
+  return io::dump(modes_object(fit));
 }
 
 }  // namespace robomill::modal

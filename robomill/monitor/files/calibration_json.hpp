@@ -4,6 +4,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/monitor/published/calibrate.hpp"
 
+// Method: robomill/monitor/README.md, "Files"
+
 namespace robomill::monitor {
 
 /// What a calibration found as JSON text: threshold and direction, both halves with their ROC curves, every recording.

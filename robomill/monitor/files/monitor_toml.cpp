@@ -113,13 +113,22 @@ void read_signal(io::TomlFile& file, MonitorFile& out) {
   } else {
     file.texts("signal.channels", out.columns.channels);
   }
-  (void)read_column(file, "signal.tachometer", out.columns.tachometer);
+  std::string tachometer;
+  (void)read_column(file, "signal.tachometer", tachometer);
   file.integer("signal.columns", "columns", out.columns.raw_columns);
   file.number("signal.scale", "scale", 1.0, out.columns.scale);
   file.number("signal.full_scale", "full_scale", 1.0, out.options.full_scale);
-  file.locate([&] { out.columns.validate(); });
-  out.options.channels = static_cast<int>(out.columns.count());
-  if (!out.columns.tachometer.empty()) out.options.tachometer_channel = out.options.channels - 1;
+  std::vector<std::string>& channels = out.columns.channels;
+  file.locate([&] {
+    out.columns.validate();
+    if (std::ranges::find(channels, tachometer) == channels.end()) return;
+    throw InvalidInput("tachometer", "must be another column than the channels");
+  });
+  if (!tachometer.empty()) {
+    out.options.tachometer_channel = static_cast<int>(channels.size());
+    channels.push_back(tachometer);
+  }
+  out.options.channels = static_cast<int>(channels.size());
 }
 
 void read_process(io::TomlFile& file, MonitorFile& out) {
@@ -199,10 +208,13 @@ std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
   }
   out += "[signal]\n";
   if (o.sample_rate_hz > 0.0) line("sample_rate_hz", number_text(o.sample_rate_hz));
-  std::string names;
-  for (const std::string& name : file.columns.channels) names += (names.empty() ? "" : ", ") + in_quotes(name);
+  std::string names, tachometer;
+  for (int channel = 0; const std::string& name : file.columns.channels) {
+    std::string& list = channel++ == o.tachometer_channel ? tachometer : names;
+    list += (list.empty() ? "" : ", ") + in_quotes(name);
+  }
   line("channels", "[" + names + "]");
-  if (!file.columns.tachometer.empty()) line("tachometer", in_quotes(file.columns.tachometer));
+  if (!tachometer.empty()) line("tachometer", tachometer);
   if (file.columns.raw_columns > 0) line("columns", std::to_string(file.columns.raw_columns));
   if (file.columns.scale != 1.0) line("scale", number_text(file.columns.scale));
   if (o.full_scale > 0.0) line("full_scale", number_text(o.full_scale));

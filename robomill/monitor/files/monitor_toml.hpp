@@ -3,6 +3,7 @@
 #include <string>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/io/sample_source.hpp"
 #include "robomill/monitor/monitor.hpp"
 
@@ -30,7 +31,8 @@ struct MqttSettings {
 /// monitor.toml.
 struct MonitorFile {
   std::filesystem::path path = {};
-  io::SampleColumns columns = {};    ///< [signal], without the rate
+  /// [signal], without the rate; the tachometer is the last channel. The spindle speed is followed.
+  io::SampleColumns columns = {.channels = {}, .followed = "spindle_speed_rpm", .followed_factor = units::rpm};
   MonitorOptions options = {};       ///< sample_rate_hz is 0 where the file leaves it to the recording
   std::filesystem::path modes = {};  ///< process.modes; empty: none
   std::filesystem::path lobes = {};  ///< process.lobes; empty: none

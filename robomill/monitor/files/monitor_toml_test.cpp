@@ -32,8 +32,7 @@ TEST(MonitorToml, ReadsEveryKey) {
                                "[metrics]\nport = 9110\nhost = \"0.0.0.0\"\n"
                                "[recording]\nfolder = \"alarms\"\nseconds = 30\n"));
   EXPECT_EQ(file.options.sample_rate_hz, 10240.0);
-  EXPECT_EQ(file.columns.channels, (std::vector<std::string>{"ax", "ay"}));
-  EXPECT_EQ(file.columns.tachometer, "pulse");
+  EXPECT_EQ(file.columns.channels, (std::vector<std::string>{"ax", "ay", "pulse"}));
   EXPECT_EQ(file.columns.raw_columns, 5);
   EXPECT_EQ(file.columns.scale, 50.0);
   EXPECT_EQ(file.options.channels, 3);
@@ -75,8 +74,7 @@ TEST(MonitorToml, HasDefaults) {
   EXPECT_EQ(file.mqtt.port_or_default(), 1883);
   EXPECT_NO_THROW(validate(file));
   const MonitorFile numbered = read_monitor(folder.file("n.toml", "[signal]\nchannels = [2, 1]\ntachometer = 3\n"));
-  EXPECT_EQ(numbered.columns.channels, (std::vector<std::string>{"2", "1"}));
-  EXPECT_EQ(numbered.columns.tachometer, "3");
+  EXPECT_EQ(numbered.columns.channels, (std::vector<std::string>{"2", "1", "3"}));
   EXPECT_EQ(read_monitor(folder.file("o.toml", "[signal]\nchannels = 1\n")).columns.channels.front(), "1");
   // Its rate comes from the recording; where that gives none either, the error names the key.
   EXPECT_NE(test::rejection([&] { validate(numbered); }).find("signal.sample_rate_hz"), std::string::npos);
@@ -122,11 +120,19 @@ TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
   EXPECT_NE(signal("channels = [1]\nscale = 0\n").find("signal.scale = 0"), std::string::npos);
 }
 
+TEST(MonitorToml, FollowsTheSpindleSpeedOfARecording) {
+  const test::Folder folder;
+  const MonitorFile file = read_monitor(folder.file("m.toml", "[signal]\nchannels = \"ax\"\n"));
+  const auto source = io::open_samples(folder.file("r.csv", "ax,spindle_speed_rpm\n1,3000\n2,\n"), file.columns);
+  io::SampleBlock block;
+  ASSERT_TRUE(source->next(2, block));
+  EXPECT_NEAR(block.followed, 3000.0 * units::rpm, 1e-9);
+}
+
 TEST(MonitorToml, IsReadAsItWasWritten) {
   const test::Folder folder;
   MonitorFile file;
-  file.columns.channels = {"a \"quoted\" \\ name", "2"};
-  file.columns.tachometer = "pulse";
+  file.columns.channels = {"a \"quoted\" \\ name", "2", "pulse"};
   file.options.sample_rate_hz = 5000.0;
   file.options.channels = 3;
   file.options.tachometer_channel = 2;

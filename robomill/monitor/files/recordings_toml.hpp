@@ -6,6 +6,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
+// Method: robomill/monitor/README.md, "Files"
+
 namespace robomill::monitor {
 
 /// A recording with its label: chatter or stable.

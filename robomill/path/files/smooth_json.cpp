@@ -108,7 +108,7 @@ std::optional<Method> method_of(std::string_view name) {
   return value_in(method_names, name);
 }
 
-std::string smooth_json(const SmoothedProgram& smoothed) {
+io::Json smooth_object(const SmoothedProgram& smoothed) {
   if (smoothed.methods.empty()) throw InvalidInput("methods", "must hold at least one");
   io::Json json = method_json(smoothed.methods.front(), smoothed.prismatic);
   json["written"] = smoothed.written;
@@ -130,7 +130,11 @@ std::string smooth_json(const SmoothedProgram& smoothed) {
     for (const SmoothedBy& method : smoothed.methods)
       json["methods"].push_back(method_json(method, smoothed.prismatic));
   }
-  return io::dump(json);
+  return json;
+}
+
+std::string smooth_json(const SmoothedProgram& smoothed) {
+  return io::dump(smooth_object(smoothed));
 }
 
 }  // namespace robomill::path

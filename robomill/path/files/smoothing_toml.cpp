@@ -63,8 +63,8 @@ void check_limits(io::TomlFile& file, const robot::JointLimits& limits, int join
 
 }  // namespace
 
-bool has_smoothing(const std::filesystem::path& path) {
-  return io::TomlFile(path).has("smoothing");
+bool has_smoothing(const io::TomlFile& cell) {
+  return cell.has("smoothing");
 }
 
 SmoothingFile read_smoothing(io::TomlFile& file, const robot::JointLimits& limits, int joints,

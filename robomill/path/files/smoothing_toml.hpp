@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -25,8 +24,8 @@ struct SmoothingFile {
   double flexible_joint_damping_ratio = 0.05;  ///< >= 0
 };
 
-/// Whether a cell.toml has [smoothing]. @throws InvalidInput if the file is missing, empty or no TOML
-[[nodiscard]] ROBOMILL_API bool has_smoothing(const std::filesystem::path& path);
+/// Whether a cell.toml has [smoothing].
+[[nodiscard]] ROBOMILL_API bool has_smoothing(const io::TomlFile& cell);
 
 /// Reads [smoothing] and checks the joints' limits, which smoothing needs all of. Errors of what smooths by the options
 /// can be located in the document afterwards.

@@ -7,6 +7,8 @@
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/identify.hpp"
 
+// Method: robomill/robot/README.md, "Files"
+
 namespace robomill::robot {
 
 /// Loads on a robot's tool and the displacements measured.

@@ -5,6 +5,8 @@
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/identify.hpp"
 
+// Method: robomill/robot/README.md, "Files"
+
 namespace robomill::robot {
 
 /// stiffness.json: what was found of every joint, its deviation, residuals; docs/formats.md.

@@ -5,6 +5,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/simulation/simulation.hpp"
 
+// Method: robomill/simulation/README.md, "Files"
+
 namespace robomill::simulation {
 
 /// The columns time_s, x_m, y_m, ax_m_per_s2, ay_m_per_s2, fx_n, fy_n, fz_n (and z_m, az_m_per_s2 where z moves) by the

@@ -5,6 +5,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/modal/files/mode_json.hpp"
+#include "robomill/stability/files/lobes_object.hpp"
 
 namespace robomill::stability {
 namespace {
@@ -60,7 +61,7 @@ io::Json uncertainty_json(const UncertainLimits& limits) {
 
 }  // namespace
 
-std::string lobes_json(const LobesResult& result, const UncertainLimits& uncertain, const SurfaceMap& surface) {
+io::Json lobes_object(const LobesResult& result, const UncertainLimits& uncertain, const SurfaceMap& surface) {
   io::Json json;
   json["spindle_speed_rpm"] = grid_json(result.spindle_speed_rad_per_s, units::rpm);
   json["axial_depth_mm"] = grid_json(result.axial_depth_m, units::mm);
@@ -106,7 +107,11 @@ std::string lobes_json(const LobesResult& result, const UncertainLimits& uncerta
                        {"surface_location_error_um", map_json(surface.surface_location_error_m / units::um)},
                        {"peak_to_peak_um", map_json(surface.peak_to_peak_m / units::um)}};
   }
-  return io::dump(json);
+  return json;
+}
+
+std::string lobes_json(const LobesResult& result, const UncertainLimits& uncertain, const SurfaceMap& surface) {
+  return io::dump(lobes_object(result, uncertain, surface));
 }
 
 std::string comparison_json(const MethodComparison& comparison) {

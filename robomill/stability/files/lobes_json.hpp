@@ -7,6 +7,8 @@
 #include "robomill/stability/surface_error.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
+// Method: robomill/stability/README.md, "Files"
+
 namespace robomill::stability {
 
 /// lobes.json as text; with the map, the uncertain limits and the surface where there are some.

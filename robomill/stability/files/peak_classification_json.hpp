@@ -4,6 +4,8 @@
 #include "robomill/base/export.hpp"
 #include "robomill/stability/peak_classification.hpp"
 
+// Method: robomill/stability/README.md, "Files"
+
 namespace robomill::stability {
 
 /// What `robomill explain` writes: spindle speed, every peak with what it is and what else it could be, the mode that
