@@ -1,4 +1,4 @@
-#include "robomill/monitor/published/calibrate.hpp"
+#include "robomill/monitor/calibration.hpp"
 
 #include <fmt/format.h>
 

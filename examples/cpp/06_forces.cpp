@@ -1,7 +1,7 @@
 // What a ball end feels over a revolution: where it touches the material, and the force on it.
 #include <robomill/base/units.hpp>
+#include <robomill/cutting/engagement.hpp>
 #include <robomill/cutting/force.hpp>
-#include <robomill/cutting/published/analytic_engagement.hpp>
 
 #include <Eigen/Core>
 #include <cmath>

@@ -8,7 +8,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/cutting/coefficients.hpp"
-#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 #include "testing/cutting/cutters.hpp"
 #include "testing/support.hpp"
 

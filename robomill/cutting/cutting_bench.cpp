@@ -1,8 +1,8 @@
 #include <benchmark/benchmark.h>
 
 #include "robomill/cutting/coefficients.hpp"
+#include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/force.hpp"
-#include "robomill/cutting/published/analytic_engagement.hpp"
 #include "testing/cutting/cutters.hpp"
 
 namespace robomill::cutting {

@@ -8,8 +8,9 @@
 #include "robomill/cutting/cutter.hpp"
 #include "robomill/cutting/milling.hpp"
 
-/// Feed frame F: x along the feed, y to its left, z along the surface's normal towards the spindle; docs/frames.md.
-// Method: robomill/cutting/README.md, "Analytic engagement (`published/analytic_engagement.hpp`)"
+/// Feed frame F: x along the feed, y to its left, z along the surface's normal towards the spindle, origin where the
+/// cutter touches the finished surface; docs/frames.md.
+// Method: robomill/cutting/README.md, "Analytic engagement (`engagement.hpp`)"
 namespace robomill::cutting {
 
 /// A pass beside another one over a plane, or over a cylinder that the surface is like nearby.
@@ -60,6 +61,12 @@ struct ROBOMILL_API Engagement {
   }
   [[nodiscard]] bool empty() const { return arcs.empty(); }
 };
+
+/// Where the cutter is below the unmachined surface, outside the neighbouring pass, and moves outwards (n·x_F > 0).
+/// Lead and tilt move only the cutter's own (κ, φ) over that patch [BallEndRobot]; in published/.
+/// @throws InvalidInput as validate; a cut that reaches the shank (lead_rad, tilt_rad, or axial_depth_m)
+[[nodiscard]] ROBOMILL_API Engagement engage(const Cutter& cutter, const Cut& cut,
+                                             const EngagementOptions& options = {});
 
 /// Rx(tilt) Ry(lead): P_F = R P_T.
 [[nodiscard]] ROBOMILL_API Eigen::Matrix3d feed_from_tool(double lead_rad, double tilt_rad);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 #include "testing/cutting/cutters.hpp"
 #include "testing/support.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::cutting {

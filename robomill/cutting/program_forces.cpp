@@ -11,7 +11,6 @@
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/moving_mean.hpp"
 #include "robomill/cutting/program_engagement_local.hpp"
-#include "robomill/cutting/published/analytic_engagement.hpp"
 
 namespace robomill::cutting {
 namespace {

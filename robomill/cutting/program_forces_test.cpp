@@ -8,7 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::cutting {

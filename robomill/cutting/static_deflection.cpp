@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "robomill/base/error.hpp"
-#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 
 namespace robomill::cutting {
 namespace {

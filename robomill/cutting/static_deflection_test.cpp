@@ -6,7 +6,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 
 namespace robomill::cutting {
 namespace static_deflection_test {

@@ -5,7 +5,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/cutting/cutter.hpp"
-#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 
 namespace robomill::cutting::testing {
 

@@ -1,4 +1,4 @@
-#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 
 #include <algorithm>
 #include <cmath>

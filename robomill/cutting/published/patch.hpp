@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "robomill/cutting/published/analytic_engagement.hpp"
+#include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/published/arcs.hpp"
 #include "robomill/cutting/published/swept_silhouette.hpp"
 
@@ -17,7 +17,7 @@ struct Ring {
   }
 };
 
-/// Where a cutter cuts: the conditions of analytic_engagement.hpp on each of its rings.
+/// Where a cutter cuts: the conditions of engage() on each of its rings.
 class Patch {
  public:
   /// Both have been validated.

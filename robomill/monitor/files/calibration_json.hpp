@@ -2,7 +2,7 @@
 #include <string>
 
 #include "robomill/base/export.hpp"
-#include "robomill/monitor/published/calibrate.hpp"
+#include "robomill/monitor/calibration.hpp"
 
 // Method: robomill/monitor/README.md, "Files"
 

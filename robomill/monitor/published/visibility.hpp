@@ -1,5 +1,5 @@
 #pragma once
-#include "robomill/monitor/published/calibrate.hpp"
+#include "robomill/monitor/calibration.hpp"
 
 namespace robomill::monitor {
 

@@ -8,7 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/text.hpp"
-#include "robomill/path/files/joint_programs.hpp"
+#include "robomill/path/files/robot_programs/joint_programs.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 
 namespace robomill::path {

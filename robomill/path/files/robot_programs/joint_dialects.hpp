@@ -1,16 +1,17 @@
 #pragma once
-// The controllers' languages, one class each.
+// The controllers' languages, a class and a source each: krl.cpp, rapid.cpp, urscript.cpp (with the rows for servoj).
 #include <fmt/format.h>
 
 #include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robomill/path/files/end_effector.hpp"
-#include "robomill/path/files/joint_programs.hpp"
-#include "robomill/path/files/joint_run.hpp"
+#include "robomill/path/files/robot_programs/joint_programs.hpp"
+#include "robomill/path/files/robot_programs/joint_run.hpp"
 #include "robomill/robot/inverse.hpp"
 
 namespace robomill::path {
@@ -53,6 +54,32 @@ class JointDialect {
   virtual void close(fmt::memory_buffer& out, const Outputs& off) = 0;
   /// What the user must know before running it.
   [[nodiscard]] virtual std::string advice() const = 0;
+
+ protected:  // what the languages have in common
+  static constexpr const char* same_angles =
+      "Joint angles are those of the cell's model: compare signs and zeros with the controller's before the first "
+      "run.\n";
+  static constexpr const char* wrong_load =
+      "With a wrong load the arm sags, its dynamics are wrong, and it may leave its path by far more than is stated "
+      "here.";
+  /// About 4 MB of text at 120 bytes a point: what is known to fit into the memory of a KR C4. A Universal Robots
+  /// controller is known to fail at 18 MB; that it loads as much is an inference. docs/formats.md.
+  static constexpr std::size_t points_in_memory = 33'000;
+
+  static void put(fmt::memory_buffer& out, std::string_view text) {
+    out.append(text.data(), text.data() + text.size());
+  }
+  /// "{A1 1.5,A2 …}" or "1.5,…": six decimals of a degree, more than a controller's 32-bit numbers hold.
+  static void degrees(fmt::memory_buffer& out, const robot::Position6& joints, bool named);
+  /// Written by degrees(), read as a 32-bit number.
+  [[nodiscard]] static robot::Position6 held_degrees(const robot::Position6& joints);
+  /// "1,2,3", in mm or m.
+  [[nodiscard]] static std::string three(const Eigen::Vector3d& value, double unit,
+                                         const char* form = "{:.6g},{:.6g},{:.6g}");
+  /// Lines about outputs that the cell does not name.
+  static void add_missing_outputs(const EndEffector& end, const Outputs& wanted, std::vector<std::string>& lines);
+  /// What the file gives the controller for the load although nobody measured it.
+  static void add_assumed_load(const EndEffector& end, std::vector<std::string>& lines);
 };
 
 [[nodiscard]] std::unique_ptr<JointDialect> krl_dialect(const std::string& name, const EndEffector& end);

@@ -1,4 +1,4 @@
-#include "robomill/path/files/joint_programs.hpp"
+#include "robomill/path/files/robot_programs/joint_programs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +14,8 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/append.hpp"
-#include "robomill/path/files/joint_dialects.hpp"
-#include "robomill/path/files/joint_run.hpp"
+#include "robomill/path/files/robot_programs/joint_dialects.hpp"
+#include "robomill/path/files/robot_programs/joint_run.hpp"
 #include "robomill/path/files/sample_spool.hpp"
 #include "robomill/path/files/trajectory_parts.hpp"
 

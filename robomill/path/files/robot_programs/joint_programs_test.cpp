@@ -1,4 +1,4 @@
-#include "robomill/path/files/joint_programs.hpp"
+#include "robomill/path/files/robot_programs/joint_programs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "robomill/path/files/joint_run.hpp"
+#include "robomill/path/files/robot_programs/joint_run.hpp"
 
 #include <gtest/gtest.h>
 
