@@ -109,7 +109,7 @@ void plan_program(benchmark::State& state, Chosen chosen, const path::PlannerOpt
     time_s = 0.0;
     const bool ok = plan(of, planner, [&] {
       segments += planner.motion().size();
-      for (const path::Segment& span : planner.motion()) time_s += path::duration_s(span);
+      for (const path::Segment& segment : planner.motion()) time_s += path::duration_s(segment);
       planner.motion().clear();
       planner.path().clear();
     });
