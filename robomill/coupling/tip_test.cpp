@@ -130,8 +130,8 @@ TEST(Tip, OfARoundToolIsTheSameInBothPlanesWithTheSignsOfTheFrame) {
 
 /// A holder of its own in each of two directions, turned by an angle about z: sixteen FRFs.
 FrfSet turned_holder(double angle, const Eigen::VectorXd& f) {
-  const std::vector<detail::BeamElement> soft = detail::spans({bar(0.3)}, f);
-  const std::vector<detail::BeamElement> stiff = detail::spans({bar(0.05)}, f);
+  const std::vector<detail::BeamElement> soft = detail::beam_elements({bar(0.3)}, f);
+  const std::vector<detail::BeamElement> stiff = detail::beam_elements({bar(0.05)}, f);
   Eigen::Matrix4d turn = Eigen::Matrix4d::Zero();  // (u_x, θ_x, u_y, θ_y): slopes turn as displacements do
   turn.topLeftCorner<2, 2>() = turn.bottomRightCorner<2, 2>() = std::cos(angle) * Eigen::Matrix2d::Identity();
   turn.topRightCorner<2, 2>() = -std::sin(angle) * Eigen::Matrix2d::Identity();
@@ -211,8 +211,8 @@ TEST(Tip, ADistributedJointOfTwoPointsIsTheirCoupling) {
                          .insertion_length_m = 0.03,
                          .shank = {bar(0.03)}};
   const Eigen::VectorXcd found = tip_xx(assembly, f);
-  const std::vector<detail::BeamElement> tool = detail::spans(assembly.tool, f);
-  const std::vector<detail::BeamElement> shank = detail::spans({bar(0.03)}, f);
+  const std::vector<detail::BeamElement> tool = detail::beam_elements(assembly.tool, f);
+  const std::vector<detail::BeamElement> shank = detail::beam_elements({bar(0.03)}, f);
   for (Eigen::Index i = 0; i < f.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
     const Eigen::Matrix2cd point = 2.0 * detail::flexibility(*assembly.joint, f(i));
