@@ -153,8 +153,9 @@ std::string_view to_string(Entropy entropy) {
 std::string_view to_string(State state) {
   return state == State::stable ? "stable" : state == State::transition ? "transition" : "chatter";
 }
-std::string_view to_string(Hidden hidden) {
-  return hidden == Hidden::none ? "none" : hidden == Hidden::locked ? "locked" : "period-doubling";
+std::string_view to_string(SynchronousChatter kind) {
+  if (kind == SynchronousChatter::none) return "none";
+  return kind == SynchronousChatter::locked ? "locked" : "period-doubling";
 }
 std::string_view to_string(Fault fault) {
   switch (fault) {

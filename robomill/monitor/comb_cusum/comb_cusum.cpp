@@ -56,7 +56,7 @@ CombCusum::CombCusum(const MonitorOptions& options)
       late_half_(channels_),
       falls_(std::make_unique<bool[]>(channels_)),
       history_(kept * lines_, -1e9),
-      hidden_harmonics_(comb_.max_harmonics(), options.teeth) {
+      synchronous_detector_(comb_.max_harmonics(), options.teeth) {
   for (std::size_t c = 0; c < channels_; ++c) {
     streams_.emplace_back(transform_of(options, columns_a_hop),
                           signal::equal_bands(options.sample_rate_hz, options.bands));
@@ -83,10 +83,10 @@ void CombCusum::reset() noexcept {
   hops_ = bad_ = 0;
   tone_.reset();
   broadband_growth_.reset();
-  hidden_harmonics_.reset();
+  synchronous_detector_.reset();
   line_ = channel_ = 0;
   state_ = State::stable;
-  hidden_ = Hidden::none;
+  synchronous_ = SynchronousChatter::none;
   found_ = {};
 }
 
@@ -174,7 +174,7 @@ void CombCusum::comb() noexcept {
   spindle_.correct(comb_.run({.samples = input_,
                               .bad_channels = bad_,
                               .rotation_hz = spindle_.rotation_hz(),
-                              .learns = !chatters || hidden_ != Hidden::none,
+                              .learns = !chatters || synchronous_ != SynchronousChatter::none,
                               .steers = !chatters},
                              residual_));
   double before = 0.0;

@@ -7,7 +7,7 @@
 #include "robomill/monitor/comb_cusum/cusum.hpp"
 #include "robomill/monitor/comb_cusum/frequency.hpp"
 #include "robomill/monitor/comb_cusum/narrowband_detector.hpp"
-#include "robomill/monitor/comb_cusum/synchronous_chatter.hpp"
+#include "robomill/monitor/comb_cusum/synchronous_detector.hpp"
 #include "robomill/monitor/detector.hpp"
 #include "robomill/monitor/entropy.hpp"
 #include "robomill/monitor/spindle/spindle.hpp"
@@ -94,11 +94,11 @@ class CombCusum final : public Detector {
   double highest_ = 0.0;  // log energy of chatter's line, at most so far
   NarrowbandDetector tone_;
   BroadbandGrowth broadband_growth_;
-  SynchronousChatter hidden_harmonics_;
+  SynchronousDetector synchronous_detector_;
   double power_before_ = 0.0;  // of all channels, a hop ago
   std::size_t broad_ = 0, calm_ = 0, steady_ = 0;
   FrequencyEstimate found_;
-  Hidden hidden_ = Hidden::none;
+  SynchronousChatter synchronous_ = SynchronousChatter::none;
 };
 
 }  // namespace robomill::monitor

@@ -15,24 +15,24 @@ constexpr double fainter = 1.0;       // and fall from its highest
 constexpr double broad_height = 1.2;  // of the median line: entry, exit
 constexpr std::size_t broad_hops = 3;
 constexpr std::size_t calm_hops = 2;
-constexpr double hidden_learnt_s = 0.5;  // before that it is not known which harmonics are usual
-constexpr double lowest_tone_hz = 90.0;  // below hums the mains
-constexpr double entry_width_hz = 6.0;   // by which a line misses its harmonic while the tool enters
+constexpr double synchronous_learnt_s = 0.5;  // before that it is not known which harmonics are usual
+constexpr double lowest_tone_hz = 90.0;       // below hums the mains
+constexpr double entry_width_hz = 6.0;        // by which a line misses its harmonic while the tool enters
 constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0;  // orders that a hint resolves
 constexpr double highest_of_unknown_teeth = 12.0;                    // three of four teeth
 
 }  // namespace
 
 bool CombCusum::process_synchronous() noexcept {
-  if (!comb_known() || !hidden_harmonics_.step(comb_.combs(), power(), comb_.learnt_s() > hidden_learnt_s))
+  if (!comb_known() || !synchronous_detector_.step(comb_.combs(), power(), comb_.learnt_s() > synchronous_learnt_s))
     return false;
   if (!speed_holds()) {
-    hidden_harmonics_.doubt();
+    synchronous_detector_.doubt();
     return false;
   }
-  hidden_ = hidden_harmonics_.kind();
-  found_ = {.frequency_hz = static_cast<double>(hidden_harmonics_.harmonic()) * spindle_.rotation_hz(),
-            .std_hz = 1.0 / (SynchronousChatter::hops * options_.hop_s) / std::sqrt(12.0)};
+  synchronous_ = synchronous_detector_.kind();
+  found_ = {.frequency_hz = static_cast<double>(synchronous_detector_.harmonic()) * spindle_.rotation_hz(),
+            .std_hz = 1.0 / (SynchronousDetector::hops * options_.hop_s) / std::sqrt(12.0)};
   return true;
 }
 
@@ -72,7 +72,7 @@ void CombCusum::judge(Decision& decision) noexcept {
   decision.score = alone || grows ? std::max(verdict.score, 1.001 * lines_test_.threshold()) : verdict.score;
   decision.threshold = lines_test_.threshold();
   decision.channel = static_cast<int>(channel_);
-  decision.hidden = hidden_;
+  decision.synchronous = synchronous_;
   if (state_ != State::stable) report_frequency(decision);
 }
 
@@ -146,7 +146,7 @@ void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
     lines_test_.relearn();
     state_ = State::stable;
     broad_ = 0;
-    hidden_harmonics_.doubt();
+    synchronous_detector_.doubt();
     return;
   }
   if (process_synchronous()) {
@@ -212,12 +212,12 @@ void CombCusum::follow_line() noexcept {
 }
 
 void CombCusum::in_chatter() noexcept {
-  if (hidden_ != Hidden::none) {
+  if (synchronous_ != SynchronousChatter::none) {
     // The comb follows on: it is what sees this one.
-    calm_ = hidden_harmonics_.falls(comb_.combs()) ? calm_ + 1 : 0;
+    calm_ = synchronous_detector_.falls(comb_.combs()) ? calm_ + 1 : 0;
     if (calm_ < calm_hops) return;
-    hidden_ = Hidden::none;
-    hidden_harmonics_.doubt();
+    synchronous_ = SynchronousChatter::none;
+    synchronous_detector_.doubt();
     calm_ = 0;
     state_ = State::transition;
     lines_test_.relearn();
@@ -238,7 +238,7 @@ void CombCusum::in_chatter() noexcept {
 
 void CombCusum::report_frequency(Decision& decision) noexcept {
   // Once its line has fallen, what is left there is another's.
-  if (state_ == State::chatter && hidden_ == Hidden::none && calm_ == 0)
+  if (state_ == State::chatter && synchronous_ == SynchronousChatter::none && calm_ == 0)
     found_ = rings_[channel_].estimate(line_hz(line_), line_hz(1), 8.0 * options_.hop_s);
   decision.chatter_frequency_hz = found_.frequency_hz;
   decision.chatter_frequency_std_hz = found_.std_hz;
