@@ -20,27 +20,27 @@ namespace listeners_test {
 /// Hops until it is chatter, of powers that a function gives; -1: never within 60.
 template <typename Power>
 int hops_to(NarrowbandDetector::Hop hop, Power power) {
-  NarrowbandDetector tone;
+  NarrowbandDetector detector;
   for (int k = 0; k < 60; ++k) {
     hop.power = power(k);
-    if (tone.step(hop)) return k + 1;
+    if (detector.step(hop)) return k + 1;
   }
   return -1;
 }
 
 TEST(NarrowbandDetector, NeedsNoBaselineWhereTheCombIsKnown) {
-  const NarrowbandDetector::Hop tone = {.line = 27, .share = 0.3, .comb_known = true};
-  EXPECT_EQ(hops_to(tone, [](int) { return 2.0; }), 3);
-  NarrowbandDetector::Hop faint = tone;
+  const NarrowbandDetector::Hop hop = {.line = 27, .share = 0.3, .comb_known = true};
+  EXPECT_EQ(hops_to(hop, [](int) { return 2.0; }), 3);
+  NarrowbandDetector::Hop faint = hop;
   faint.share = 0.14;
   EXPECT_EQ(hops_to(faint, [](int) { return 2.0; }), -1);
 }
 
 TEST(NarrowbandDetector, WhatWasStruckRingsOff) {
-  NarrowbandDetector tone;
+  NarrowbandDetector detector;
   double power = 1.0;
   for (int k = 0; k < 40; ++k, power *= 0.8) {
-    EXPECT_FALSE(tone.step({.line = 27, .share = 0.9, .power = power, .comb_known = true, .falls = k > 1})) << k;
+    EXPECT_FALSE(detector.step({.line = 27, .share = 0.9, .power = power, .comb_known = true, .falls = k > 1})) << k;
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double drift_hz = 3.0;        // corner of the high-pass
 constexpr double jump = 4.0;            // of the power: the tool enters or leaves
 constexpr std::size_t entry_lasts = 8;  // hops
-constexpr std::size_t steady_hops = 2;  // of a tone where there is no comb
+constexpr std::size_t steady_hops = 2;  // of a line where there is no comb
 constexpr double longest_look_s = 0.3;  // for the frequency
 constexpr double falling = 0.85;        // of the power to that of the hop before
 constexpr double falling_fast = 0.75;   // of half a hop's power to that of the halves before
@@ -81,7 +81,7 @@ void CombCusum::reset() noexcept {
   slow_power_ = power_before_ = 0.0;
   entry_hops_ = jumps_ = broad_ = calm_ = steady_ = still_bad_ = 0;
   hops_ = bad_ = 0;
-  tone_.reset();
+  narrowband_.reset();
   broadband_growth_.reset();
   synchronous_detector_.reset();
   line_ = channel_ = 0;
@@ -152,8 +152,8 @@ bool CombCusum::speed_holds() noexcept {
   const SpindleTracker::Change change = spindle_.check();
   take_up(change);
   if (change.locked) return false;
-  // Without a comb only a steady tone counts.
-  return spindle_.rotation_hz() > 0.0 || tone_.begun() || steady_ >= steady_hops;
+  // Without a comb only a steady line counts.
+  return spindle_.rotation_hz() > 0.0 || narrowband_.begun() || steady_ >= steady_hops;
 }
 
 // The comb, learnt anew at the speed now followed from so many samples.

@@ -92,7 +92,7 @@ class CombCusum final : public Detector {
   std::size_t line_ = 0, channel_ = 0;  // of chatter
   bool above_baseline_ = true;
   double highest_ = 0.0;  // log energy of chatter's line, at most so far
-  NarrowbandDetector tone_;
+  NarrowbandDetector narrowband_;
   BroadbandGrowth broadband_growth_;
   SynchronousDetector synchronous_detector_;
   double power_before_ = 0.0;  // of all channels, a hop ago

@@ -16,7 +16,7 @@ constexpr double broad_height = 1.2;  // of the median line: entry, exit
 constexpr std::size_t broad_hops = 3;
 constexpr std::size_t calm_hops = 2;
 constexpr double synchronous_learnt_s = 0.5;  // before that it is not known which harmonics are usual
-constexpr double lowest_tone_hz = 90.0;       // below hums the mains
+constexpr double lowest_line_hz = 90.0;       // mains hum lies below
 constexpr double entry_width_hz = 6.0;        // by which a line misses its harmonic while the tool enters
 constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0;  // orders that a hint resolves
 constexpr double highest_of_unknown_teeth = 12.0;                    // three of four teeth
@@ -97,7 +97,7 @@ bool CombCusum::process_narrowband() noexcept {
   std::size_t line = 0;
   double most = 0.0;
   for (std::size_t k = 2; k + 1 < lines_; ++k) {
-    if (line_hz(k) < lowest_tone_hz) continue;
+    if (line_hz(k) < lowest_line_hz) continue;
     double energy = 0.0;
     for (std::size_t c = 0; c < channels_; ++c)
       energy += std::max(0.0, energy_[c * lines_ + k] - taken_[c * lines_ + k]);
@@ -113,12 +113,12 @@ bool CombCusum::process_narrowband() noexcept {
   // Without a comb the residual is the whole; each line is summed thrice.
   const double energy =
       comb_known() ? whole * energy_of_power() : std::accumulate(energy_.begin(), energy_.end(), 1e-300) / 3.0;
-  return tone_.step({.line = line,
-                     .share = most / energy,
-                     .power = whole,
-                     .comb_known = comb_known(),
-                     .falls = std::all_of(falls_.get(), falls_.get() + channels_, [](bool each) { return each; }),
-                     .may_be_the_cut = may_be_the_cut(line_hz(line))});
+  return narrowband_.step({.line = line,
+                           .share = most / energy,
+                           .power = whole,
+                           .comb_known = comb_known(),
+                           .falls = std::all_of(falls_.get(), falls_.get() + channels_, [](bool each) { return each; }),
+                           .may_be_the_cut = may_be_the_cut(line_hz(line))});
 }
 
 bool CombCusum::process_broadband() noexcept {
@@ -138,7 +138,7 @@ void CombCusum::begin_chatter(bool above_baseline) noexcept {
 void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
   const double threshold = lines_test_.threshold();
   if (at_once && away_ == 0 && speed_holds()) {
-    line_ = tone_.line();
+    line_ = narrowband_.line();
     begin_chatter(false);
     return;
   }
