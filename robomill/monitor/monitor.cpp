@@ -32,7 +32,7 @@ void MonitorOptions::validate() const {
   require_between("tachometer_channel", tachometer_channel, -1.0, channels - 1.0, "",
                   "must name a channel, from 0, or be -1");
   if (tachometer_channel >= 0 && channels == 1) {
-    throw InvalidInput("tachometer_channel", tachometer_channel, "", "leaves no channel to listen to");
+    throw InvalidInput("tachometer_channel", tachometer_channel, "", "leaves no channel of vibration");
   }
   require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
   require_between("teeth", teeth, 0.0, 64.0, "", "must be in [0, 64]");

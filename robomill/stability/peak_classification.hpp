@@ -12,7 +12,7 @@
 
 namespace robomill::stability {
 
-/// A cut that was listened to.
+/// The peaks of a recorded cut.
 struct ROBOMILL_API MeasuredPeaks {
   std::vector<double> frequency_hz = {};  ///< peaks of the spectrum [Hz], > 0; at least one
   double spindle_speed_rad_per_s = 0.0;   ///< as commanded [rad/s], > 0; required

@@ -81,7 +81,7 @@ class CombCusum final : public Detector {
   std::size_t away_ = 0;            // channels in which the comb predicts what no longer comes
   std::vector<double> history_;     // of the lines' log energies, loudest channel; `kept` hops
   std::vector<double> band_power_;  // of the hop, each channel's bands
-  std::uint64_t bad_ = 0;           // channels that are not listened to
+  std::uint64_t bad_ = 0;           // channels that are left out
   std::size_t still_bad_ = 0;       // hops until a channel that is well again counts
   double slow_power_ = 0.0;
   std::size_t jumps_ = 0;

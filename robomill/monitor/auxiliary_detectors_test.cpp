@@ -15,7 +15,7 @@
 #include "testing/support.hpp"
 
 namespace robomill::monitor {
-namespace listeners_test {
+namespace auxiliary_detectors_test {
 
 /// Hops until it is chatter, of powers that a function gives; -1: never within 60.
 template <typename Power>
@@ -109,7 +109,7 @@ TEST(SynchronousDetector, DetectsWhatOutgrowsToothPassing) {
 }
 
 // Chatter that a comb takes off once it has stood for long: locked to rotation, and period doubling.
-TEST(CombCusum, DetectsChatterThatHidesFromAComb) {
+TEST(CombCusum, DetectsSynchronousChatterOfSimulatedCuts) {
   using namespace testing;
   const int cuts = test::seeds(30);
   std::vector<CutScore> locked, doubling;
@@ -142,5 +142,5 @@ TEST(CombCusum, DetectsTheChatterOfTheCorpus) {
   EXPECT_LT(summary.frequency_median_hz, 0.3);
 }
 
-}  // namespace listeners_test
+}  // namespace auxiliary_detectors_test
 }  // namespace robomill::monitor
