@@ -89,9 +89,9 @@ bool PathInterpolator::Parts::lay() noexcept {
   ahead.path.publish();
   if (path_at < path.size()) return false;
   for (; motion_at < motion.size(); ++motion_at) {
-    const Survey::ScanStatus went = survey.take(motion[motion_at]);
-    if (went == Survey::ScanStatus::full) return false;
-    if (went == Survey::ScanStatus::unreachable) {
+    const Survey::ScanStatus status = survey.take(motion[motion_at]);
+    if (status == Survey::ScanStatus::full) return false;
+    if (status == Survey::ScanStatus::unreachable) {
       fail({.status = Pushed::Status::unreachable,
             .block = survey.at().block,
             .line = survey.at().line,
