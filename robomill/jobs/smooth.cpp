@@ -161,28 +161,28 @@ path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::Sample
   options.method = method;
   path::SmoothedBy out{.method = method};
   const std::vector<path::Drive> drives = drives_of(bench.smoothing);
-  std::optional<DriveModel> follower;
+  std::optional<DriveModel> drive_model;
   const auto take = [&](std::span<const path::Sample> samples) {
     if (file != nullptr) file->add(samples);
     if (recorder != nullptr) {
       recorder->add(samples);
-    } else if (follower) {
-      for (const path::Sample& sample : samples) follower->follow(sample);
+    } else if (drive_model) {
+      for (const path::Sample& sample : samples) drive_model->follow(sample);
     }
   };
   const auto restart = [&] {
     if (file != nullptr) file->restart();
-    if (!drives.empty()) follower.emplace(drives, options.sample_period_s);
+    if (!drives.empty()) drive_model.emplace(drives, options.sample_period_s);
     if (recorder == nullptr) return;
-    recorder->restart(follower ? path::Tracking([&](const path::Sample& sample) { return follower->follow(sample); })
-                               : path::Tracking());
+    recorder->restart(drive_model ? path::Tracking([&](const path::Sample& s) { return drive_model->follow(s); })
+                                  : path::Tracking());
   };
   try {
     out.summary = path::smooth(*bench.program, *bench.machine, bench.posture.posture, options, take, restart, progress);
   } catch (const InvalidInput& error) {
     throw bench.cell.document->located(error);
   }
-  if (follower) out.tracking_error = follower->worst();
+  if (drive_model) out.tracking_error = drive_model->worst();
   return out;
 }
 
