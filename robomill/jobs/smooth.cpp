@@ -40,7 +40,7 @@ struct Bench {
   path::PostureChoice posture;
 };
 
-std::array<bool, 6> slides_of(const CellFile& cell) {
+std::array<bool, 6> prismatic_of(const CellFile& cell) {
   std::array<bool, 6> prismatic = {};
   if (cell.hybrid) {
     prismatic.fill(true);
@@ -85,7 +85,7 @@ Bench prepare(const SmoothJob& job) {
   bench.machine = kinematics(bench.cell);
   bench.smoothing =
       path::read_smoothing(*bench.cell.document, bench.machine->limits(), bench.machine->joints(), job.method);
-  bench.prismatic = slides_of(bench.cell);
+  bench.prismatic = prismatic_of(bench.cell);
   program::ProgramReading reading = program_reading(bench.cell);
   reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
   reading.axis_tolerance_rad = std::max(turn_share * bench.smoothing.options.axis_tolerance_rad, least_turn_rad);
