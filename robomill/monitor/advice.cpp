@@ -27,7 +27,7 @@ void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const 
   advice.expected_hz = peak.best.mode_frequency_hz;
   if (std::isfinite(peak.chatter_frequency_hz)) {
     advice.frequency_hz = peak.chatter_frequency_hz;
-  } else if (peak.state == stability::ExplainedPeak::State::cannot_be_told) {
+  } else if (peak.state == stability::ExplainedPeak::State::ambiguous) {
     advice.frequency_hz = 0.0;
   }
 }
