@@ -298,7 +298,7 @@ TEST(CombCusum, StaysQuietWhileTheSpeedDrifts) {
   }
 }
 
-// The speed creeps to 9 % below a hint that trembles from hop to hop; the tool leaves, and comes back at that speed.
+// The speed drifts to 9 % below a hint that scatters from hop to hop; the tool leaves, and comes back at that speed.
 // A hint that says another speed makes it forgotten.
 TEST(CombCusum, KnowsTheSpeedFollowedLastWhileTheHintTrembles) {
   const SyntheticCut cut{.rotation_hz = 80.0, .drift_hz_per_s = -6.0, .channels = 2, .noise = 0.03, .seconds = 6.0};
