@@ -284,7 +284,7 @@ SmoothResult run_smooth(const SmoothJob& job, Progress& progress) {
     }
     if (asked_for && file != nullptr) {
       result.smoothed.robot_program = located_in_program(job.program, [&] {
-        return file->settle(*bench.program, *bench.machine, result.options, result.trajectory_holds(), progress);
+        return file->verify(*bench.program, *bench.machine, result.options, result.trajectory_holds(), progress);
       });
     }
     if (recorder) result.motions.push_back(recorder->motion());

@@ -238,7 +238,7 @@ class JointProgram final : public SampleFile {
     for (const Sample& sample : samples) samples_.add(sample);
   }
 
-  std::optional<ProgramRun> settle(program::Source& program, const robot::Kinematics& machine,
+  std::optional<ProgramRun> verify(program::Source& program, const robot::Kinematics& machine,
                                    const SmoothingOptions& options, bool refine, const Progress& progress) override {
     const auto follow = [&](std::vector<bool>& beyond) {
       RunDistances worst;

@@ -69,7 +69,7 @@ class ROBOMILL_API SampleFile {
   /// @param program  that was smoothed; read anew
   /// @param refine   put points nearer to each other where that is needed, down to every sample
   /// @throws InvalidInput what the program's reader throws; Interrupted
-  virtual std::optional<ProgramRun> settle(program::Source& program, const robot::Kinematics& machine,
+  virtual std::optional<ProgramRun> verify(program::Source& program, const robot::Kinematics& machine,
                                            const SmoothingOptions& options, bool refine, const Progress& progress);
   /// Ends the file and moves it to its place. @throws InvalidInput if that fails
   virtual void commit() = 0;

@@ -201,7 +201,7 @@ Planner::Status Planner::resume() noexcept {
 }
 
 Planner::Status Planner::advance() noexcept {
-  blend_.settle();
+  blend_.find_widths();
   take_polynomials();
   return lay_segments();
 }

@@ -17,7 +17,7 @@ namespace robomill::path {
 struct PlannerOptions {
   std::size_t window = 1000;     ///< segments whose speed is sought together
   std::size_t commit = 800;      ///< of them, taken over before the next window; < window
-  std::size_t look_ahead = 512;  ///< nodes of the path gathered before corners are settled
+  std::size_t look_ahead = 512;  ///< nodes of the path gathered before the widths of corners are found
   double spacing = 0.5;          ///< segments in a corner: its half width times this
   SpeedOptions speed = {};
   double share = 0.998;  ///< of speed limits that is planned for; accelerations its square, jerks its cube

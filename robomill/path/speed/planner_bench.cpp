@@ -160,7 +160,7 @@ void blend_program(benchmark::State& state) {
     blend.begin(program.start, 0.0);
     std::size_t taken = 0;
     const auto take = [&] {
-      blend.settle();
+      blend.find_widths();
       for (; taken < blend.ready(); ++taken) benchmark::DoNotOptimize(blend.polynomials(taken, some.data()));
       blend.forget(taken);
     };
