@@ -255,7 +255,7 @@ void check_rate(double own_hz, double wanted_hz, double tolerance, const std::st
   if (own_hz <= 0.0 || wanted_hz <= 0.0 || std::abs(own_hz / wanted_hz - 1.0) <= tolerance) return;
   throw InvalidInput(
       where, fmt::format("was sampled at {:.6g} Hz, not at signal.sample_rate_hz = {:.6g} Hz", own_hz, wanted_hz),
-      "Mend the one that is wrong, or leave the key out");
+      "Correct the one that is wrong, or leave the key out");
 }
 
 std::unique_ptr<SampleSource> raw_source(std::unique_ptr<ByteReader> bytes, const SampleColumns& columns,
