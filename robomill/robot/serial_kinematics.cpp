@@ -94,7 +94,7 @@ SerialKinematics::SerialKinematics(const Cell& cell, const SerialOptions& option
     const Joint& joint = cell.arm.joints[i];
     const auto row = static_cast<Eigen::Index>(i);
     if (joint.prismatic) {
-      throw InvalidInput("cell.arm.joints", "must all be revolute; joint " + std::to_string(i + 1) + " slides");
+      throw InvalidInput("cell.arm.joints", "must all be revolute; joint " + std::to_string(i + 1) + " is prismatic");
     }
     limits_.min_position(row) = joint.min_position;
     limits_.max_position(row) = joint.max_position;
