@@ -52,7 +52,7 @@ double first_alarm_s(const std::vector<Decision>& decisions) {
   return found == decisions.end() ? -1.0 : found->time_s;
 }
 
-// What repeats every turn goes, another tone stays: 1 - 1/(1 + i 2π Δf τ) with 13 Hz to the next harmonic.
+// What repeats every turn goes, another line stays: 1 - 1/(1 + i 2π Δf τ) with 13 Hz to the next harmonic.
 TEST(Comb, TakesHarmonicsAndLeavesTheRest) {
   constexpr double rate = 10240.0;
   constexpr double rotation = 80.0;

@@ -228,9 +228,9 @@ void run(const Job& job, const SimulationOptions& options, Progress& progress, S
   out.growth_per_period = judgement.growth_per_period;
   if (out.verdict == Verdict::chatter) {
     const int repeat = job.period.repeats ? job.period.revolutions * out.steps_per_revolution : 0;
-    const Tone tone = strongest_tone(watch.motion, repeat, 1.0 / h);
-    out.chatter_frequency_hz = tone.frequency_hz;
-    out.chatter_amplitude_m = tone.amplitude_m;
+    const SpectralLine line = strongest_line(watch.motion, repeat, 1.0 / h);
+    out.chatter_frequency_hz = line.frequency_hz;
+    out.chatter_amplitude_m = line.amplitude_m;
   }
   for (std::size_t w = 0; w < job.walls.size(); ++w) {
     add_wall(job.walls[w], job.feed_per_tooth_m, static_cast<int>(model.rings.size()), engine.wall_passes(w), out);

@@ -79,7 +79,7 @@ class ROBOMILL_API SampleFile {
 /// i, j, k, block, which counts from 1), or a joint program: .src (KUKA KRL), .mod (ABB RAPID), .script (Universal
 /// Robots URScript), .servoj (rows of joints, one a cycle). docs/formats.md.
 /// @throws InvalidInput if the ending is another one, the info is invalid, the place cannot be written or is no regular
-///     file, or the machine is none that such a program can drive: six joints that all turn
+///     file, or the machine is none that such a program can drive: six revolute joints
 [[nodiscard]] ROBOMILL_API std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path,
                                                                         const TrajectoryInfo& info);
 
