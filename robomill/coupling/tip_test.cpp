@@ -112,7 +112,7 @@ TEST(Tip, AStiffJointIsRigidWithoutDividingByInfinity) {
   Assembly stiff = published_pair();
   stiff.joint = Joint{.translational_stiffness_n_per_m = 1e16, .rotational_stiffness_n_m_per_rad = 1e14};
   EXPECT_LT(relative(tip_xx(stiff, f), rigid), 1e-6);
-  // What is left falls with the stiffness.
+  // The difference falls with the stiffness.
   stiff.joint = Joint{.translational_stiffness_n_per_m = 1e18, .rotational_stiffness_n_m_per_rad = 1e16};
   EXPECT_LT(relative(tip_xx(stiff, f), rigid), 1e-8);
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double deviations = 3.0;  // within which a line is a mode's
 
-// The comb has taken out what rotates with the spindle: what is left is chatter.
+// The comb has taken out what rotates with the spindle: the residual is chatter.
 void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const modal::ModalModel& modes,
                const modal::ModalModel& workpiece) {
   // The tolerance of explain() must stay below a quarter of rotation.

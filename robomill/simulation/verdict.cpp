@@ -42,7 +42,7 @@ Judgement judge(const Eigen::MatrixXd& samples, const SmallVibration& small) {
   const double earlier = change.middleCols(periods - 2 * quarter, quarter).norm();
   const double last = change.rightCols(quarter).norm();
   const double motion = samples.rightCols(quarter).norm();
-  // What is left of a motion that has died out is rounding.
+  // The remainder of a motion that has died out is rounding.
   if (last <= 1e-8 * motion) return {Verdict::stable, 0.0};
   const double ratio = last / std::max(earlier, 1e-300);
   const double growth = std::pow(ratio, 1.0 / static_cast<double>(quarter));

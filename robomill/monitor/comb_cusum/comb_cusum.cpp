@@ -252,7 +252,7 @@ void CombCusum::leave_power() noexcept {
   }
 }
 
-// Where the tool leaves or the speed runs away, the signal holds less of the comb than the comb predicts: what is left
+// Where the tool leaves or the speed runs away, the signal holds less of the comb than the comb predicts: the residual
 // is the comb's own. Chatter comes on top of it.
 bool CombCusum::comb_follows(std::size_t channel) const noexcept {
   double own = 0.0;

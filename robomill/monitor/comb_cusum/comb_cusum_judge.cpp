@@ -237,7 +237,7 @@ void CombCusum::in_chatter() noexcept {
 }
 
 void CombCusum::report_frequency(Decision& decision) noexcept {
-  // Once its line has fallen, what is left there is another's.
+  // Once its line has fallen, the residual there is another's.
   if (state_ == State::chatter && synchronous_ == SynchronousChatter::none && calm_ == 0)
     found_ = rings_[channel_].estimate(line_hz(line_), line_hz(1), 8.0 * options_.hop_s);
   decision.chatter_frequency_hz = found_.frequency_hz;
