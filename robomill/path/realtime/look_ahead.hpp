@@ -18,11 +18,8 @@ struct TimedSegment {
 /// those after their polynomials, so that whoever sees a stretch sees all that it takes to run through it. `closed` is
 /// set after the last of all.
 struct LookAhead {
-  enum class Closed {
-    no,
-    whole,
-    broken
-  };  ///< whole: the plan ends at rest; broken: it ends where nothing could follow
+  /// whole: the plan ends at rest; broken: it ends where nothing could follow
+  enum class Closed { no, whole, broken };
   LookAhead(std::size_t polynomials, std::size_t segments, std::size_t most_stretches)
       : path(polynomials), motion(segments), stretches(most_stretches) {}
   Ring<Polynomial> path;
