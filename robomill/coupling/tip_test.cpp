@@ -240,7 +240,7 @@ TEST(Tip, AShankGluedIntoItsHolderIsOneBeamOfBoth) {
   EXPECT_LT(relative(tip_xx(assembly, f), tip_xx(whole, f)), 1e-6);
 }
 
-TEST(Tip, ADistributedJointSettlesWithItsPoints) {
+TEST(Tip, ADistributedJointConvergesWithItsPoints) {
   Segment holder = bar(0.05, Beam::timoshenko);
   holder.diameter_m = 0.040;
   Assembly assembly = clamped(bar(0.1, Beam::timoshenko));
