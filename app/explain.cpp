@@ -85,7 +85,7 @@ const char* undecided(Kind kind) {
 }
 
 void print_peak(const stability::ExplainedPeak& peak, int teeth) {
-  const bool named = peak.state != stability::ExplainedPeak::State::cannot_be_told;
+  const bool named = peak.state != stability::ExplainedPeak::State::ambiguous;
   fmt::print("{:>10.2f} Hz  {}\n", peak.frequency_hz, named ? words(peak.best, teeth) : undecided(peak.best.kind));
   for (const stability::Explanation& other : peak.others) {
     const double odds = other.likelihood_per_hz / (named ? peak.best : peak.others.front()).likelihood_per_hz;
@@ -104,7 +104,7 @@ void print_summary(const stability::PeakClassification& found, int teeth,
     case stability::PeakClassification::State::named:
       fmt::print("Chatter of {} at {:.2f} Hz.\n", to_string(found.mode), found.chatter_frequency_hz);
       break;
-    case stability::PeakClassification::State::cannot_be_told:
+    case stability::PeakClassification::State::ambiguous:
       fmt::print("These peaks do not determine which mode chatters, if any.\n");
       break;
     case stability::PeakClassification::State::no_chatter:

@@ -85,8 +85,8 @@ void print_small(const SmallVibration& small) {
                  small.spectral_radius < 1.0 ? "dies out" : "grows", small.spectral_radius, small.error_estimate,
                  small.period_s / units::ms);
       return;
-    case SmallVibration::Status::unsettled:
-      fmt::print("Whether small vibration grows was not settled.\n");
+    case SmallVibration::Status::not_converged:
+      fmt::print("The multiplier of small vibration did not converge.\n");
       return;
     case SmallVibration::Status::not_periodic:
       fmt::print("The swing of the speed repeats in no 50 revolutions: no multiplier.\n");

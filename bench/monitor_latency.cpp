@@ -115,7 +115,7 @@ monitor::MonitorOptions options(Kind kind, int channels) {
 }
 
 /// `monitors` of `channels` each.
-Costs listen(Kind kind, int monitors, int channels, std::size_t hops) {
+Costs monitor_costs(Kind kind, int monitors, int channels, std::size_t hops) {
   const std::vector<float> samples = rounds(channels);
   const std::string_view name = to_string(kind);
   Costs costs = {.what = monitors * channels == 1 ? std::string(name)
@@ -184,8 +184,8 @@ int main(int argc, char** argv) {
   std::vector<Costs> all;
   if (channels == 1) all.push_back(transform(hops));
   for (const Kind kind : {Kind::comb_cusum, Kind::energy_entropy}) {
-    all.push_back(listen(kind, 1, channels, hops));
-    if (channels > 1) all.push_back(listen(kind, channels, 1, hops));
+    all.push_back(monitor_costs(kind, 1, channels, hops));
+    if (channels > 1) all.push_back(monitor_costs(kind, channels, 1, hops));
   }
   print_tables(all);
   print_histograms(all);

@@ -18,7 +18,7 @@ const flags = [
   '--remote-debugging-pipe',
 ];
 
-/** Starts a browser with a fresh profile. `send(method, params, sessionId)` resolves with the answer; `on(listener)` hears every event. */
+/** Starts a browser with a fresh profile. `send(method, params, sessionId)` resolves with the answer; `on(listener)` receives every event. */
 export async function launch(executable) {
   const profile = mkdtempSync(join(tmpdir(), 'robomill-browser-'));
   const child = spawn(executable, [...flags, `--user-data-dir=${profile}`, 'about:blank'], {
@@ -75,7 +75,7 @@ export async function launch(executable) {
   return { send, on: (listener) => listeners.push(listener), close };
 }
 
-/** A page at a width and colour scheme; hears its errors and requests from before it loads. */
+/** A page at a width and colour scheme; collects its errors and requests from before it loads. */
 export async function openPage(browser, url, { width, height = 900, scheme = 'light' }) {
   const { targetId } = await browser.send('Target.createTarget', { url: 'about:blank' });
   const { sessionId } = await browser.send('Target.attachToTarget', { targetId, flatten: true });

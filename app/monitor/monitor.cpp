@@ -123,7 +123,8 @@ void print_event(std::FILE* to, const MonitorEvent& event) {
       fmt::print(to, "{}", monitor::to_string(d.state));
       if (d.state == monitor::State::chatter && d.chatter_frequency_hz > 0.0) {
         fmt::print(to, " at {:.1f} ± {:.2g} Hz", d.chatter_frequency_hz, d.chatter_frequency_std_hz);
-        if (d.hidden != monitor::Hidden::none) fmt::print(to, " ({})", monitor::to_string(d.hidden));
+        if (d.synchronous != monitor::SynchronousChatter::none)
+          fmt::print(to, " ({})", monitor::to_string(d.synchronous));
         if (event.mode.known()) fmt::print(to, ", {}", to_string(event.mode));
         if (event.suggested_spindle_speed_rad_per_s > 0.0) {
           fmt::print(to, "; try {:.0f} rpm", event.suggested_spindle_speed_rad_per_s / units::rpm);

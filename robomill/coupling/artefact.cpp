@@ -11,7 +11,7 @@ namespace {
 using Eigen::Index;
 
 /// Of no length: its ends move as one.
-const BeamElement& no_span() {
+const BeamElement& no_element() {
   static const BeamElement none{.clamped = Eigen::Matrix2cd::Zero(),
                                 .carry = Eigen::Matrix2cd::Identity(),
                                 .stiffness = Eigen::Matrix2cd::Zero()};
@@ -52,7 +52,7 @@ std::vector<ArtefactPoints> artefact_points(const std::vector<Segment>& artefact
   for (std::size_t k = 0; k <= position_m.size(); ++k) {
     const double to = k < position_m.size() ? position_m[k] : length;
     const std::vector<Segment> between = piece(artefact, from, to);
-    pieces.push_back(between.empty() ? std::vector<BeamElement>() : spans(between, frequency_hz));
+    pieces.push_back(between.empty() ? std::vector<BeamElement>() : beam_elements(between, frequency_hz));
     from = to;
   }
   std::vector<ArtefactPoints> out;
@@ -60,7 +60,7 @@ std::vector<ArtefactPoints> artefact_points(const std::vector<Segment>& artefact
   for (std::size_t i = 0; i < static_cast<std::size_t>(frequency_hz.size()); ++i) {
     std::vector<const BeamElement*> at;
     at.reserve(pieces.size());
-    for (const std::vector<BeamElement>& p : pieces) at.push_back(p.empty() ? &no_span() : &p[i]);
+    for (const std::vector<BeamElement>& p : pieces) at.push_back(p.empty() ? &no_element() : &p[i]);
     out.push_back(at_points(at));
   }
   return out;

@@ -193,7 +193,7 @@ Base base_receptances(const Holder& holder, const Eigen::VectorXd& frequency_hz)
   if (holder.segments.empty()) {
     base.x.assign(static_cast<std::size_t>(frequency_hz.size()), Eigen::Matrix2cd::Zero());
   } else {
-    for (const BeamElement& span : spans(holder.segments, frequency_hz)) base.x.push_back(span.clamped);
+    for (const BeamElement& element : beam_elements(holder.segments, frequency_hz)) base.x.push_back(element.clamped);
   }
   base.y = base.x;
   return base;

@@ -9,8 +9,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/coupling/beam_element_kernel.hpp"
 #include "robomill/coupling/section.hpp"
-#include "robomill/coupling/span_kernel.hpp"
 
 namespace robomill::coupling::detail {
 namespace {
@@ -30,7 +30,7 @@ void set(ComplexLanes& to, std::size_t lane, const Complex& value) {
 }
 
 /// The square root of the discriminant, whose real part is >= 0 for every loss factor up to 1.
-void find_roots(SpanWork& work) {
+void find_roots(BeamElementWork& work) {
   for (std::size_t l = 0; l < lane_count; ++l) {
     const double re = work.discriminant.re.v[l];
     const double im = work.discriminant.im.v[l];
@@ -40,7 +40,7 @@ void find_roots(SpanWork& work) {
   }
 }
 
-bool in_series(const SpanWork& work) {
+bool in_series(const BeamElementWork& work) {
   double greatest = 0.0;
   for (const ComplexLanes& q : work.q) {
     for (std::size_t l = 0; l < lane_count; ++l) {
@@ -51,7 +51,7 @@ bool in_series(const SpanWork& work) {
 }
 
 /// For waves longer than the series reaches: cosh and sinh over exp, so that nothing overflows.
-void waves_over_exp(SpanWork& work) {
+void waves_over_exp(BeamElementWork& work) {
   for (std::size_t l = 0; l < lane_count; ++l) {
     for (std::size_t i = 0; i < 2; ++i) {
       const Complex wave = std::sqrt(get(work.q[i], l));
@@ -63,16 +63,16 @@ void waves_over_exp(SpanWork& work) {
   }
 }
 
-void find_span(SpanWork& work) {
-  span_numbers(work);
+void find_beam_element(BeamElementWork& work) {
+  beam_element_numbers(work);
   find_roots(work);
-  span_waves(work);
+  beam_element_waves(work);
   if (in_series(work)) {
-    span_series(work);
+    beam_element_series(work);
   } else {
     waves_over_exp(work);
   }
-  span_matrices(work);
+  beam_element_matrices(work);
 }
 
 void unpack(const ComplexLanes (&from)[4], std::size_t lane, Eigen::Matrix2cd& to) {
@@ -90,15 +90,15 @@ Eigen::Matrix2cd flexibility(const Joint& joint, double frequency_hz) {
   return stiffness.inverse();
 }
 
-std::vector<BeamElement> spans(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz) {
+std::vector<BeamElement> beam_elements(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz) {
   std::vector<Section> sections;
   sections.reserve(segments.size());
   for (const Segment& segment : segments) sections.push_back(section(segment));
   const std::size_t count = static_cast<std::size_t>(frequency_hz.size());
   std::vector<BeamElement> out(count);
   parallel_for((count + lane_count - 1) / lane_count, groups_per_block, [&](std::size_t begin, std::size_t end) {
-    SpanWork work;
-    SpanJoin join;
+    BeamElementWork work;
+    BeamElementJoin join;
     for (std::size_t group = begin; group < end; ++group) {
       const std::size_t first = group * lane_count;
       const std::size_t used = std::min(lane_count, count - first);
@@ -109,15 +109,15 @@ std::vector<BeamElement> spans(const std::vector<Segment>& segments, const Eigen
       }
       for (std::size_t i = 0; i < sections.size(); ++i) {
         work.section = sections[i];
-        find_span(work);
-        (i == 0 ? join.front : join.back) = work.span;
-        if (i > 0) span_join(join);
+        find_beam_element(work);
+        (i == 0 ? join.front : join.back) = work.element;
+        if (i > 0) beam_element_join(join);
       }
       for (std::size_t l = 0; l < used; ++l) {
-        BeamElement& span = out[first + l];
-        unpack(join.front.clamped, l, span.clamped);
-        unpack(join.front.carry, l, span.carry);
-        unpack(join.front.stiffness, l, span.stiffness);
+        BeamElement& element = out[first + l];
+        unpack(join.front.clamped, l, element.clamped);
+        unpack(join.front.carry, l, element.carry);
+        unpack(join.front.stiffness, l, element.stiffness);
       }
     }
   });

@@ -20,9 +20,10 @@ struct BeamElement {
   Eigen::Matrix2cd stiffness;  ///< dynamic stiffness of end 2 with end 1 free
 };
 
-/// The spans of segments joined rigidly, one a frequency; end 1 is that of the first segment.
+/// The beam elements of segments joined rigidly, one a frequency; end 1 is that of the first segment.
 /// Any @throws as Segment::validate; the frequencies are > 0.
-[[nodiscard]] std::vector<BeamElement> spans(const std::vector<Segment>& segments, const Eigen::VectorXd& frequency_hz);
+[[nodiscard]] std::vector<BeamElement> beam_elements(const std::vector<Segment>& segments,
+                                                     const Eigen::VectorXd& frequency_hz);
 
 /// Kc⁻¹ of a whole joint.
 [[nodiscard]] Eigen::Matrix2cd flexibility(const Joint& joint, double frequency_hz);
@@ -50,10 +51,10 @@ template <class Matrix>
   return clamped + carry * held() * carry.transpose();
 }
 
-/// G of a span, the same in each plane, on a base.
+/// G of a beam element, the same in each plane, on a base.
 template <int N>
-[[nodiscard]] Square<N> on_base(const BeamElement& span, const Square<N>& base) {
-  return on_base<Square<N>>(planes<N>(span.clamped), planes<N>(span.carry), planes<N>(span.stiffness), base);
+[[nodiscard]] Square<N> on_base(const BeamElement& element, const Square<N>& base) {
+  return on_base<Square<N>>(planes<N>(element.clamped), planes<N>(element.carry), planes<N>(element.stiffness), base);
 }
 
 }  // namespace robomill::coupling::detail

@@ -84,11 +84,11 @@ LongComplex lossy(double x, const Segment& segment) {
   return static_cast<long double>(x) / std::pow(loss, 0.25L);
 }
 
-Eigen::Matrix4cd free_matrix(const BeamElement& span) {
-  const Eigen::Matrix2cd r22 = span.stiffness.inverse();
-  const Eigen::Matrix2cd r12 = span.carry * r22;
+Eigen::Matrix4cd free_matrix(const BeamElement& element) {
+  const Eigen::Matrix2cd r22 = element.stiffness.inverse();
+  const Eigen::Matrix2cd r12 = element.carry * r22;
   Eigen::Matrix4cd out;
-  out << span.clamped + r12 * span.carry.transpose(), r12, r12.transpose(), r22;
+  out << element.clamped + r12 * element.carry.transpose(), r12, r12.transpose(), r22;
   return out;
 }
 
@@ -104,10 +104,11 @@ TEST(BeamElement, FreeBeamIsBishopsFromLambdaL1em3To100) {
   const Segment segment = bar(0.11892);
   const detail::Section s = detail::section(segment);
   for (double x = 1e-3; x < 100.5; x *= 1.07) {
-    const BeamElement span = detail::spans({segment}, Eigen::VectorXd::Constant(1, frequency_at(x, segment))).front();
+    const BeamElement element =
+        detail::beam_elements({segment}, Eigen::VectorXd::Constant(1, frequency_at(x, segment))).front();
     const Eigen::MatrixXcd expected = free_beam(lossy(x, segment), segment.length_m, s.bending_stiffness_n_m2 * s.loss);
     // At a resonance of the free beam the stiffness is all but singular, and its inverse loses as many digits.
-    EXPECT_LT(misfit(free_matrix(span), expected, segment.length_m), 1e-12 * std::max(1.0, x)) << x;
+    EXPECT_LT(misfit(free_matrix(element), expected, segment.length_m), 1e-12 * std::max(1.0, x)) << x;
   }
 }
 
@@ -115,7 +116,8 @@ TEST(BeamElement, ClampedBeamIsBishopsFromLambdaL1em3To100) {
   const Segment segment = bar(0.11892);
   const detail::Section s = detail::section(segment);
   for (double x = 1e-3; x < 100.5; x *= 1.07) {
-    const BeamElement span = detail::spans({segment}, Eigen::VectorXd::Constant(1, frequency_at(x, segment))).front();
+    const BeamElement element =
+        detail::beam_elements({segment}, Eigen::VectorXd::Constant(1, frequency_at(x, segment))).front();
     const LongComplex z = lossy(x, segment);
     const BeamFunctions f = beam_functions(z);
     const LongComplex ei = {static_cast<long double>(s.bending_stiffness_n_m2),
@@ -124,7 +126,7 @@ TEST(BeamElement, ClampedBeamIsBishopsFromLambdaL1em3To100) {
     Eigen::Matrix<LongComplex, -1, -1> expected(2, 2);
     const LongComplex l = -f.f1 / (ei * lambda * lambda * f.f4);
     expected << -f.f5 / (ei * lambda * lambda * lambda * f.f4), l, l, f.f6 / (ei * lambda * f.f4);
-    EXPECT_LT(misfit(span.clamped, to_double(expected), segment.length_m), 2e-13 * std::max(1.0, x)) << x;
+    EXPECT_LT(misfit(element.clamped, to_double(expected), segment.length_m), 2e-13 * std::max(1.0, x)) << x;
   }
 }
 
@@ -160,7 +162,7 @@ TEST(BeamElement, PublishedClosedFormsHoldWithTheirFunctionsPutRight) {
           -c4 / l2, a.c6 / lambda, -a.c2 / l2, a.c5 / lambda;
       return Eigen::Matrix4cd(turned.asDiagonal() * (r / a.c7) * turned.asDiagonal());
     };
-    const Eigen::Matrix4cd free = free_matrix(detail::spans({tool}, line).front());
+    const Eigen::Matrix4cd free = free_matrix(detail::beam_elements({tool}, line).front());
     EXPECT_LT(misfit(table(a.c3, a.c4), free, tool.length_m), 1e-9) << frequency_hz;
     const std::complex<double> printed_c4 = std::cos(lambda * tool.length_m) * std::cosh(lambda * tool.length_m);
     EXPECT_GT(misfit(table(a.c3, printed_c4), free, tool.length_m), 0.01) << frequency_hz;
@@ -172,7 +174,7 @@ TEST(BeamElement, PublishedClosedFormsHoldWithTheirFunctionsPutRight) {
       r << -b.c1 / l3, -coupling / l2, -coupling / l2, rotation / lambda;
       return Eigen::Matrix2cd(r / b.c8);
     };
-    const Eigen::Matrix2cd clamped = detail::spans({holder}, line).front().clamped;
+    const Eigen::Matrix2cd clamped = detail::beam_elements({holder}, line).front().clamped;
     EXPECT_LT(misfit(tip(b.c2, b.c5), clamped, holder.length_m), 1e-9) << frequency_hz;
     EXPECT_GT(misfit(tip(b.c1, b.c5), clamped, holder.length_m), 0.01) << frequency_hz;
   }
@@ -186,9 +188,10 @@ TEST(BeamElement, NothingOverflowsFarBeyondCosh) {
                        .density_kg_per_m3 = 7800.0,
                        .loss_factor = 0.02,
                        .beam = beam};
-    const BeamElement span = detail::spans({wire}, Eigen::VectorXd::Constant(1, 50e3)).front();  // λL near 1500
-    EXPECT_TRUE(span.clamped.allFinite() && span.carry.allFinite() && span.stiffness.allFinite());
-    EXPECT_LT(span.clamped(0, 0).imag(), 0.0);
+    const BeamElement element =
+        detail::beam_elements({wire}, Eigen::VectorXd::Constant(1, 50e3)).front();  // λL near 1500
+    EXPECT_TRUE(element.clamped.allFinite() && element.carry.allFinite() && element.stiffness.allFinite());
+    EXPECT_LT(element.clamped(0, 0).imag(), 0.0);
   }
 }
 
@@ -217,7 +220,7 @@ Eigen::Matrix4cd transfer(const Segment& segment, double frequency_hz) {
 }
 
 /// x_1, f_1 = -(V, M)(0) and x_2, f_2 = (V, M)(L) from the transfer matrix.
-BeamElement span_of(const Eigen::Matrix4cd& t) {
+BeamElement element_of(const Eigen::Matrix4cd& t) {
   const Eigen::Matrix2cd xx = t.topLeftCorner<2, 2>(), xf = t.topRightCorner<2, 2>();
   const Eigen::Matrix2cd fx = t.bottomLeftCorner<2, 2>(), ff = t.bottomRightCorner<2, 2>();
   BeamElement out;
@@ -241,11 +244,11 @@ TEST(BeamElement, TimoshenkoIsTheMatrixExponentialOfItsEquations) {
     const detail::Section section = detail::section(s);
     const double waves = section.bending * std::pow(2.0 * std::numbers::pi * f, 2);
     if (waves > 300.0) continue;  // the transfer matrix itself loses its digits
-    const BeamElement span = detail::spans({s}, Eigen::VectorXd::Constant(1, f)).front();
-    const BeamElement expected = span_of(transfer(s, f));
-    EXPECT_LT(misfit(span.clamped, expected.clamped, s.length_m), 1e-9) << i;
-    EXPECT_LT((span.carry - expected.carry).norm(), 1e-9 * expected.carry.norm()) << i;
-    EXPECT_LT(misfit(span.stiffness, expected.stiffness, 1.0 / s.length_m), 1e-9) << i;
+    const BeamElement element = detail::beam_elements({s}, Eigen::VectorXd::Constant(1, f)).front();
+    const BeamElement expected = element_of(transfer(s, f));
+    EXPECT_LT(misfit(element.clamped, expected.clamped, s.length_m), 1e-9) << i;
+    EXPECT_LT((element.carry - expected.carry).norm(), 1e-9 * expected.carry.norm()) << i;
+    EXPECT_LT(misfit(element.stiffness, expected.stiffness, 1.0 / s.length_m), 1e-9) << i;
   }
 }
 
@@ -257,17 +260,17 @@ TEST(BeamElement, PassesTheCutOnOfTheSecondWave) {
   const detail::Section section = detail::section(s);
   const double cut_on = std::sqrt(section.bending / (section.rotary * section.shear)) / (2.0 * std::numbers::pi);
   const Eigen::VectorXd f = cut_on * (Eigen::VectorXd(3) << 1.0 - 1e-9, 1.0, 1.0 + 1e-9).finished();
-  const std::vector<BeamElement> around = detail::spans({s}, f);
-  for (const BeamElement& span : around) EXPECT_LT(misfit(span.clamped, around[0].clamped, s.length_m), 1e-6);
-  EXPECT_LT(misfit(around[1].clamped, span_of(transfer(s, cut_on)).clamped, s.length_m), 1e-9);
+  const std::vector<BeamElement> around = detail::beam_elements({s}, f);
+  for (const BeamElement& element : around) EXPECT_LT(misfit(element.clamped, around[0].clamped, s.length_m), 1e-6);
+  EXPECT_LT(misfit(around[1].clamped, element_of(transfer(s, cut_on)).clamped, s.length_m), 1e-9);
 }
 
 TEST(BeamElement, IsTheSameHoweverItIsCut) {
   for (const Beam beam : {Beam::euler_bernoulli, Beam::timoshenko}) {
     const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(57, 0.5, 20e3);
-    const std::vector<BeamElement> whole = detail::spans({bar(0.15, beam)}, f);
+    const std::vector<BeamElement> whole = detail::beam_elements({bar(0.15, beam)}, f);
     const std::vector<BeamElement> pieces =
-        detail::spans({bar(0.07, beam), bar(0.001, beam), bar(0.029, beam), bar(0.05, beam)}, f);
+        detail::beam_elements({bar(0.07, beam), bar(0.001, beam), bar(0.029, beam), bar(0.05, beam)}, f);
     for (std::size_t i = 0; i < whole.size(); ++i) {
       EXPECT_LT(misfit(pieces[i].clamped, whole[i].clamped, 0.15), 1e-10) << i;
       EXPECT_LT((pieces[i].carry - whole[i].carry).norm(), 1e-10 * whole[i].carry.norm()) << i;
@@ -279,14 +282,14 @@ TEST(BeamElement, IsTheSameHoweverItIsCut) {
 TEST(BeamElement, OfAFreeBodyIsRigidAtLowFrequency) {
   const Segment s = bar(0.11892, Beam::timoshenko);
   const double f = 0.01;
-  const BeamElement span = detail::spans({s, s}, Eigen::VectorXd::Constant(1, f)).front();
+  const BeamElement element = detail::beam_elements({s, s}, Eigen::VectorXd::Constant(1, f)).front();
   const double omega2 = std::pow(2.0 * std::numbers::pi * f, 2);
   const double length = 2.0 * s.length_m;
   const double mass = s.density_kg_per_m3 * std::numbers::pi / 4.0 * 0.012 * 0.012 * length;
   const double about_middle = mass * (length * length / 12.0 + 0.012 * 0.012 / 16.0);
   Eigen::Matrix2d inertia;  // about end 2, which moves by u and turns by θ: the middle moves by u - θ L / 2
   inertia << mass, -mass * length / 2.0, -mass * length / 2.0, about_middle + mass * length * length / 4.0;
-  EXPECT_LT(misfit(span.stiffness / -omega2, inertia.cast<std::complex<double>>(), 1.0 / length), 1e-8);
+  EXPECT_LT(misfit(element.stiffness / -omega2, inertia.cast<std::complex<double>>(), 1.0 / length), 1e-8);
 }
 
 TEST(BeamElement, IsPassive) {
@@ -298,7 +301,7 @@ TEST(BeamElement, IsPassive) {
     Segment b = a;
     b.diameter_m = random.uniform(0.004, 0.06);
     const Eigen::VectorXd f = Eigen::VectorXd::Constant(1, std::pow(10.0, random.uniform(0.0, 4.3)));
-    const Eigen::Matrix4cd r = free_matrix(detail::spans({a, b}, f).front());
+    const Eigen::Matrix4cd r = free_matrix(detail::beam_elements({a, b}, f).front());
     const double reciprocity = (r - r.transpose()).norm();
     EXPECT_LT(reciprocity, 1e-9 * r.norm());
     Eigen::Vector4d unit(1.0, a.length_m, 1.0, a.length_m);
@@ -312,11 +315,11 @@ TEST(BeamElement, HasTheSameBitsFromEveryKernel) {
   const Eigen::VectorXd f = Eigen::VectorXd::LinSpaced(61, 10.0, 15e3);
   const std::vector<Segment> segments = {bar(0.03, Beam::timoshenko), bar(0.3), bar(0.004)};
   const Kernels best = best_kernels();
-  const std::vector<BeamElement> expected = detail::spans(segments, f);
+  const std::vector<BeamElement> expected = detail::beam_elements(segments, f);
   for (const Kernels variant : {Kernels::baseline, Kernels::avx2, Kernels::avx512}) {
     if (variant > best) continue;
     kernels() = variant;
-    const std::vector<BeamElement> found = detail::spans(segments, f);
+    const std::vector<BeamElement> found = detail::beam_elements(segments, f);
     kernels() = best;
     for (std::size_t i = 0; i < found.size(); ++i) {
       EXPECT_TRUE(found[i].clamped == expected[i].clamped && found[i].carry == expected[i].carry &&

@@ -28,9 +28,9 @@ std::vector<Gap> gaps_of(const Joint& joint, const Holder& holder, const Eigen::
   const double width = joint.insertion_length_m / (joint.points - 1);
   for (int i = 0; i + 1 < joint.points; ++i) {
     Gap gap;
-    gap.shank = spans(piece(joint.shank, i * width, (i + 1) * width), frequency_hz);
+    gap.shank = beam_elements(piece(joint.shank, i * width, (i + 1) * width), frequency_hz);
     if (!holder.segments.empty()) {
-      gap.holder = spans(piece(holder.segments, i * width, (i + 1) * width), frequency_hz);
+      gap.holder = beam_elements(piece(holder.segments, i * width, (i + 1) * width), frequency_hz);
     } else {
       gap.holder.assign(gap.shank.size(), rigid_link(width));
     }
@@ -50,14 +50,14 @@ std::vector<Square<N>> deep_base(const Joint& joint, const Holder& holder, const
     return out;
   }
   const std::vector<Segment> rest = piece(holder.segments, joint.insertion_length_m, total_length(holder.segments));
-  const std::vector<BeamElement> deep = rest.empty() ? std::vector<BeamElement>() : spans(rest, frequency_hz);
+  const std::vector<BeamElement> deep = rest.empty() ? std::vector<BeamElement>() : beam_elements(rest, frequency_hz);
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = rest.empty() ? Square<N>(Square<N>::Zero()) : planes<N>(deep[i].clamped);
   }
   return out;
 }
 
-/// Both beams' spans of a gap, the shank's planes first.
+/// Both beams' elements of a gap, the shank's planes first.
 template <int N>
 Square<2 * N> both(const Eigen::Matrix2cd& shank, const Eigen::Matrix2cd& holder) {
   Square<2 * N> out = Square<2 * N>::Zero();

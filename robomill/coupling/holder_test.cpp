@@ -33,11 +33,12 @@ std::vector<Segment> nose(Beam beam = Beam::timoshenko) {
   return {front, back};
 }
 
-/// Translations at the free end and at a distance from it of segments that stand on a base, by the span of each part.
+/// Translations at the free end and at a distance from it of segments that stand on a base, by the beam element of each
+/// part.
 FrfSet two_points(const std::vector<Segment>& front, const std::vector<Segment>& back,
                   const std::vector<Eigen::Matrix2cd>& base, const Eigen::VectorXd& f) {
-  const std::vector<detail::BeamElement> a = detail::spans(front, f);
-  const std::vector<detail::BeamElement> b = detail::spans(back, f);
+  const std::vector<detail::BeamElement> a = detail::beam_elements(front, f);
+  const std::vector<detail::BeamElement> b = detail::beam_elements(back, f);
   FrfSet set{.frequency_hz = f, .frfs = {}};
   for (const char* name : {"1x:1x", "2x:1x", "2x:2x"}) {
     set.frfs.push_back({.name = modal::parse_frf_name(name), .receptance = Eigen::VectorXcd(f.size())});
@@ -190,13 +191,13 @@ FrfSet nose_translations(const Eigen::VectorXd& f, double spacing_m, Beam beam =
   // 3x:2x: the piece between carries point 3's motion to point 2.
   Segment first = nose(beam)[0], second = nose(beam)[0];
   first.length_m = second.length_m = spacing_m;
-  const std::vector<detail::BeamElement> hanging = detail::spans({first}, f);
-  const std::vector<detail::BeamElement> between = detail::spans({second}, f);
+  const std::vector<detail::BeamElement> hanging = detail::beam_elements({first}, f);
+  const std::vector<detail::BeamElement> between = detail::beam_elements({second}, f);
   std::vector<Segment> rest = nose(beam);
   rest[0].length_m -= 2.0 * spacing_m;
   if (rest[0].length_m < 1e-9) rest.erase(rest.begin());
-  const std::vector<detail::BeamElement> under = detail::spans(rest, f);
-  const std::vector<detail::BeamElement> whole = detail::spans({first, second}, f);
+  const std::vector<detail::BeamElement> under = detail::beam_elements(rest, f);
+  const std::vector<detail::BeamElement> whole = detail::beam_elements({first, second}, f);
   modal::Frf frf{.name = modal::parse_frf_name("3x:2x"), .receptance = Eigen::VectorXcd(f.size())};
   for (Eigen::Index i = 0; i < f.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(i);

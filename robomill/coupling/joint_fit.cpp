@@ -200,8 +200,9 @@ JointFitResult fit_joint(const Assembly& assembly, const modal::FrfSet& measured
   detail::Base base = detail::base_receptances(assembly.holder, frequency_hz);
   result.notes.insert(result.notes.end(), base.notes.begin(), base.notes.end());
   note_suspects(measured, frf, base, result);
-  const detail::JointModel model(detail::spans(assembly.tool, frequency_hz), options.axis == Axis::x ? base.x : base.y,
-                                 frequency_hz, frame.cross_stiffness_n_per_rad);
+  const detail::JointModel model(detail::beam_elements(assembly.tool, frequency_hz),
+                                 options.axis == Axis::x ? base.x : base.y, frequency_hz,
+                                 frame.cross_stiffness_n_per_rad);
   detail::JointData data = detail::joint_data(frf, lines, options.noise_floor);
   detail::JointSearch search = options.method == JointMethod::ga
                                    ? detail::search_by_genes(model, data.measured, bounded, progress)

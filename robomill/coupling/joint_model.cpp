@@ -144,14 +144,14 @@ JointModel::JointModel(const std::vector<BeamElement>& tool, const std::vector<E
   for (std::size_t i = 0; i < tool.size(); ++i) {
     const double line_hz = frequency_hz(static_cast<Index>(i));
     omega_[i] = 2.0 * std::numbers::pi * line_hz;
-    const BeamElement& span = tool[i];
+    const BeamElement& element = tool[i];
     const Eigen::Matrix2cd one = Eigen::Matrix2cd::Identity();
-    const Eigen::Matrix2cd held = (one + base[i] * span.stiffness).inverse();
-    const Eigen::Matrix2cd z = span.stiffness * held;
-    const Eigen::RowVector2cd carry = span.carry.row(0);
+    const Eigen::Matrix2cd held = (one + base[i] * element.stiffness).inverse();
+    const Eigen::Matrix2cd z = element.stiffness * held;
+    const Eigen::RowVector2cd carry = element.carry.row(0);
     const Eigen::RowVector2cd v = carry * held;
-    const Eigen::Vector2cd w = (one + span.stiffness * base[i]).inverse() * carry.transpose();
-    const Complex h = span.clamped(0, 0) + (v * base[i] * carry.transpose()).value();
+    const Eigen::Vector2cd w = (one + element.stiffness * base[i]).inverse() * carry.transpose();
+    const Complex h = element.clamped(0, 0) + (v * base[i] * carry.transpose()).value();
     if (!std::isfinite(std::abs(h)) || !v.allFinite() || !w.allFinite() || !z.allFinite()) {
       throw InvalidInput("frequency_hz", line_hz, "Hz",
                          "is a resonance without damping, where the receptance has no value",

@@ -18,10 +18,10 @@ struct JointSearch {
   bool converged = false;
 };
 
-/// The tip's receptance in one plane as a function of the joint alone. With the tool's span (g, t, k), the holder's
-/// receptance B and τ the first row of t, what is left of
+/// The tip's receptance in one plane as a function of the joint alone. With the tool's beam element (g, t, k), the
+/// holder's receptance B and τ the first row of t,
 ///   H = g_11 + τ (1 + (B + C) k)⁻¹ (B + C) τᵀ,  C = Kc⁻¹,
-/// is
+/// becomes
 ///   H = H_rigid + vᵀ (Z + Kc)⁻¹ w,  vᵀ = τ (1 + B k)⁻¹,  w = (1 + k B)⁻¹ τᵀ,  Z = k (1 + B k)⁻¹,
 /// with Z the dynamic stiffness of tool and holder joined rigidly against their being moved apart at the joint. The
 /// rigid joint is Kc → ∞, without a difference of large numbers.

@@ -96,7 +96,7 @@ TipResult tip_frfs(const Assembly& assembly, const Eigen::VectorXd& frequency_hz
   assembly.validate();
   require_frequencies(frequency_hz);
   Base base = detail::base_receptances(assembly.holder, frequency_hz);
-  const std::vector<BeamElement> tool = detail::spans(assembly.tool, frequency_hz);
+  const std::vector<BeamElement> tool = detail::beam_elements(assembly.tool, frequency_hz);
   TipResult result;
   result.frfs.frequency_hz = frequency_hz;
   const bool rotations = options.rotations;
@@ -129,11 +129,11 @@ modal::FrfSet free_frfs(const std::vector<Segment>& segments, const Eigen::Vecto
   detail::validate_segments("segments", segments);
   require_frequencies(frequency_hz);
   std::vector<Eigen::Matrix4cd> receptance;
-  for (const BeamElement& span : detail::spans(segments, frequency_hz)) {
-    const Eigen::Matrix2cd r22 = span.stiffness.inverse();
-    const Eigen::Matrix2cd r12 = span.carry * r22;
+  for (const BeamElement& element : detail::beam_elements(segments, frequency_hz)) {
+    const Eigen::Matrix2cd r22 = element.stiffness.inverse();
+    const Eigen::Matrix2cd r12 = element.carry * r22;
     receptance.emplace_back();
-    receptance.back() << span.clamped + r12 * span.carry.transpose(), r12, r12.transpose(), r22;
+    receptance.back() << element.clamped + r12 * element.carry.transpose(), r12, r12.transpose(), r22;
   }
   modal::FrfSet set{.frequency_hz = frequency_hz, .frfs = {}};
   for (int load = 0; load < 2; ++load) {

@@ -112,7 +112,7 @@ TEST(Tip, AStiffJointIsRigidWithoutDividingByInfinity) {
   Assembly stiff = published_pair();
   stiff.joint = Joint{.translational_stiffness_n_per_m = 1e16, .rotational_stiffness_n_m_per_rad = 1e14};
   EXPECT_LT(relative(tip_xx(stiff, f), rigid), 1e-6);
-  // What is left falls with the stiffness.
+  // The difference falls with the stiffness.
   stiff.joint = Joint{.translational_stiffness_n_per_m = 1e18, .rotational_stiffness_n_m_per_rad = 1e16};
   EXPECT_LT(relative(tip_xx(stiff, f), rigid), 1e-8);
 }
@@ -130,8 +130,8 @@ TEST(Tip, OfARoundToolIsTheSameInBothPlanesWithTheSignsOfTheFrame) {
 
 /// A holder of its own in each of two directions, turned by an angle about z: sixteen FRFs.
 FrfSet turned_holder(double angle, const Eigen::VectorXd& f) {
-  const std::vector<detail::BeamElement> soft = detail::spans({bar(0.3)}, f);
-  const std::vector<detail::BeamElement> stiff = detail::spans({bar(0.05)}, f);
+  const std::vector<detail::BeamElement> soft = detail::beam_elements({bar(0.3)}, f);
+  const std::vector<detail::BeamElement> stiff = detail::beam_elements({bar(0.05)}, f);
   Eigen::Matrix4d turn = Eigen::Matrix4d::Zero();  // (u_x, θ_x, u_y, θ_y): slopes turn as displacements do
   turn.topLeftCorner<2, 2>() = turn.bottomRightCorner<2, 2>() = std::cos(angle) * Eigen::Matrix2d::Identity();
   turn.topRightCorner<2, 2>() = -std::sin(angle) * Eigen::Matrix2d::Identity();
@@ -211,8 +211,8 @@ TEST(Tip, ADistributedJointOfTwoPointsIsTheirCoupling) {
                          .insertion_length_m = 0.03,
                          .shank = {bar(0.03)}};
   const Eigen::VectorXcd found = tip_xx(assembly, f);
-  const std::vector<detail::BeamElement> tool = detail::spans(assembly.tool, f);
-  const std::vector<detail::BeamElement> shank = detail::spans({bar(0.03)}, f);
+  const std::vector<detail::BeamElement> tool = detail::beam_elements(assembly.tool, f);
+  const std::vector<detail::BeamElement> shank = detail::beam_elements({bar(0.03)}, f);
   for (Eigen::Index i = 0; i < f.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(i);
     const Eigen::Matrix2cd point = 2.0 * detail::flexibility(*assembly.joint, f(i));
@@ -240,7 +240,7 @@ TEST(Tip, AShankGluedIntoItsHolderIsOneBeamOfBoth) {
   EXPECT_LT(relative(tip_xx(assembly, f), tip_xx(whole, f)), 1e-6);
 }
 
-TEST(Tip, ADistributedJointSettlesWithItsPoints) {
+TEST(Tip, ADistributedJointConvergesWithItsPoints) {
   Segment holder = bar(0.05, Beam::timoshenko);
   holder.diameter_m = 0.040;
   Assembly assembly = clamped(bar(0.1, Beam::timoshenko));

@@ -216,7 +216,7 @@ void judge(std::size_t rows, SlotFit& fit) {
     fit.notes.emplace_back(
         "A cutting coefficient is negative: are x along the feed, y to its left and the forces those on the tool?");
   } else if (fit.tangential.edge_n_per_m < 0.0 || fit.radial.edge_n_per_m < 0.0) {
-    fit.notes.emplace_back("An edge coefficient is negative: more feeds, and smaller ones, would settle it.");
+    fit.notes.emplace_back("An edge coefficient is negative: more feeds, and smaller ones, would determine it.");
   }
   const double tangential = std::abs(fit.tangential.cutting_n_per_m2);
   if (tangential < 1e7 || tangential > 1e11) {

@@ -15,10 +15,10 @@ struct Trial {
   double missing_m = 0.0;  ///< depth - (commanded - deflection): 0 where they agree
 };
 
-class Settling {
+class DeflectionSearch {
  public:
-  Settling(const Cutter& cutter, const Cut& cut, const MillingCoefficients& coefficients, const CutMotion& motion,
-           const Eigen::Matrix3d& compliance, const ForceOptions& options, int slices)
+  DeflectionSearch(const Cutter& cutter, const Cut& cut, const MillingCoefficients& coefficients,
+                   const CutMotion& motion, const Eigen::Matrix3d& compliance, const ForceOptions& options, int slices)
       : cutter_(cutter),
         coefficients_(coefficients),
         motion_(motion),
@@ -112,7 +112,7 @@ StaticDeflection static_deflection(const Cutter& cutter, const Cut& cut, const M
                                    const CutMotion& motion, const Eigen::Matrix3d& compliance_m_per_n,
                                    const ForceOptions& options, int slices) {
   cut.validate(cutter);
-  return Settling(cutter, cut, coefficients, motion, compliance_m_per_n, options, slices).run();
+  return DeflectionSearch(cutter, cut, coefficients, motion, compliance_m_per_n, options, slices).run();
 }
 
 }  // namespace robomill::cutting

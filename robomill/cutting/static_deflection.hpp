@@ -20,8 +20,8 @@ struct StaticDeflection {
   enum class Status {
     found,     ///< the depth agrees with its own force: |h' - h + q_z(h')| <= 1e-9 h, or h' lies in a range <= 1e-9 h;
                ///< the search ends after 60 rounds in any case
-    diverged,  ///< the force pulls the tool in faster than the structure holds it: no depth settles up to 2 h, or as
-               ///< deep as edges and coefficients hold
+    diverged,  ///< the force pulls the tool in faster than the structure holds it: no static deflection up to 2 h, or
+               ///< as deep as edges and coefficients hold
     lifts_off  ///< the tool is pushed out of the cut altogether: h' < 1e-3 h
   };
   Status status = Status::found;

@@ -161,15 +161,15 @@ TEST(Recommend, SaysFeedAndCuttingSpeed) {
   EXPECT_TRUE(std::isnan(op.surface_error_m));
 }
 
-// A dip between two grid speeds, narrower than their distance, is found by looking closer.
+// A minimum between two grid speeds, narrower than their distance, is found by looking closer.
 TEST(Recommend, LooksBetweenTheGivenSpeeds) {
   std::vector<DepthLimit> limits;
   for (int i = 0; i <= 10; ++i) limits.push_back(chatter_at(1000.0 + 100.0 * i, 2e-3));
-  const auto with_dip = [](double speed) {
-    const bool dip = std::abs(speed / 100.0 - std::round(speed / 100.0)) > 1e-6;
-    return chatter_at(speed, dip ? 1e-3 : 2e-3, 0.0, {2});
+  const auto with_minimum = [](double speed) {
+    const bool low = std::abs(speed / 100.0 - std::round(speed / 100.0)) > 1e-6;
+    return chatter_at(speed, low ? 1e-3 : 2e-3, 0.0, {2});
   };
-  const Operation op = *recommend(limits, options(), with_dip).recommended;
+  const Operation op = *recommend(limits, options(), with_minimum).recommended;
   EXPECT_DOUBLE_EQ(op.axial_depth_m, 0.8e-3);
   EXPECT_EQ(op.mode.number, 2);
 }

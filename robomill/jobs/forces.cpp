@@ -181,7 +181,7 @@ void run_revolution(ForcesResult& result, Progress& progress) {
     out.spindle_rotation = turn_about_tool(*cell, *out.posture, out.deflected.force.mean_n, joints);
   }
   if (out.deflected.status == cutting::StaticDeflection::Status::diverged) {
-    result.warnings.emplace_back("The force pulls the tool in faster than the robot holds it: no depth settles.");
+    result.warnings.emplace_back("The force pulls the tool in faster than the robot holds it: no equilibrium.");
   } else if (out.deflected.status == cutting::StaticDeflection::Status::lifts_off) {
     result.warnings.emplace_back("The force pushes the tool out of the cut altogether: the robot is too soft for it.");
   }

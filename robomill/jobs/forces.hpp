@@ -36,7 +36,7 @@ struct RevolutionForces {
   std::optional<CutPosture> posture = {};
   std::optional<robot::Redundancy> spindle_rotation = {};  ///< with a robot: what turning it about the tool does
   std::optional<simulation::Simulation> vibration = {};    ///< with dynamics
-  Eigen::Matrix3Xd vibrating_force_n = {};                 ///< of its last revolution, at the steps of the settled one
+  Eigen::Matrix3Xd vibrating_force_n = {};                 ///< of its last revolution, at the steps of the static one
 };
 
 /// One block of a program with the robot that runs it.

@@ -16,7 +16,7 @@ namespace robomill::jobs {
 namespace {
 
 constexpr std::size_t peaks_an_frf = 6;
-/// A peak stands so far above the dips beside it: scatter of a measured holder does not.
+/// A peak stands so far above the minima beside it: scatter of a measured holder does not.
 constexpr double prominence = 1.5;
 /// A fit of a prediction, which has no noise, is closer than this to it.
 constexpr double poor_fit = 0.02;
@@ -31,7 +31,7 @@ bool is_round(const modal::FrfSet& set) {
 }
 
 /// The lowest value on the way from a peak to the next higher one, or to the end.
-double dip(const Eigen::VectorXd& size, Eigen::Index peak, Eigen::Index step) {
+double minimum_beside(const Eigen::VectorXd& size, Eigen::Index peak, Eigen::Index step) {
   double lowest = size(peak);
   for (Eigen::Index i = peak + step; i >= 0 && i < size.size() && size(i) <= size(peak); i += step) {
     lowest = std::min(lowest, size(i));
@@ -146,7 +146,7 @@ std::vector<PeakFound> find_peaks(const Eigen::VectorXd& frequency_hz, const Eig
   std::vector<PeakFound> out;
   for (Eigen::Index i = 1; i + 1 < size.size(); ++i) {
     if (!(size(i) > size(i - 1) && size(i) >= size(i + 1))) continue;
-    if (size(i) < prominence * std::max(dip(size, i, -1), dip(size, i, 1))) continue;
+    if (size(i) < prominence * std::max(minimum_beside(size, i, -1), minimum_beside(size, i, 1))) continue;
     // Newton's parabola through three points of log |H|.
     const double x0 = frequency_hz(i - 1);
     const double x1 = frequency_hz(i);
@@ -188,7 +188,7 @@ modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& opti
         "cause: extend frequency.range_hz of the assembly, or end job.band_hz well below that mode.",
         100.0 * out.relative_error));
   }
-  // What is left after the fit is not noise: it says nothing of how well joint and material are known.
+  // The fit's residual is not noise: it says nothing of how well joint and material are known.
   for (modal::Mode& mode : out.model.modes) {
     mode.frequency_std_hz = mode.damping_ratio_std = std::numeric_limits<double>::quiet_NaN();
   }

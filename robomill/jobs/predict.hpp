@@ -56,8 +56,8 @@ struct PeakFound {
   double magnitude = 0.0;
 };
 
-/// Local maxima of |H| that stand by half above the higher of the dips to either side, between the lines by a parabola
-/// through log |H|.
+/// Local maxima of |H| that stand by half above the higher of the minima to either side, between the lines by a
+/// parabola through log |H|.
 [[nodiscard]] ROBOMILL_API std::vector<PeakFound> find_peaks(const Eigen::VectorXd& frequency_hz,
                                                              const Eigen::VectorXcd& receptance);
 

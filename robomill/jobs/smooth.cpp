@@ -38,7 +38,7 @@ struct Bench {
   path::PostureChoice posture;
 };
 
-std::array<bool, 6> slides_of(const CellFile& cell) {
+std::array<bool, 6> prismatic_of(const CellFile& cell) {
   std::array<bool, 6> prismatic = {};
   if (cell.hybrid) {
     prismatic.fill(true);
@@ -83,7 +83,7 @@ Bench prepare(const SmoothJob& job, CellFile cell) {
   bench.machine = kinematics(bench.cell);
   bench.smoothing =
       path::read_smoothing(*bench.cell.document, bench.machine->limits(), bench.machine->joints(), job.method);
-  bench.prismatic = slides_of(bench.cell);
+  bench.prismatic = prismatic_of(bench.cell);
   program::ProgramReading reading = program_reading(bench.cell);
   reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
   reading.axis_tolerance_rad = std::max(turn_share * bench.smoothing.options.axis_tolerance_rad, least_turn_rad);
@@ -159,28 +159,28 @@ path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::Sample
   options.method = method;
   path::SmoothedBy out{.method = method};
   const std::vector<path::Drive> drives = drives_of(bench.smoothing);
-  std::optional<DriveModel> follower;
+  std::optional<DriveModel> drive_model;
   const auto take = [&](std::span<const path::Sample> samples) {
     if (file != nullptr) file->add(samples);
     if (recorder != nullptr) {
       recorder->add(samples);
-    } else if (follower) {
-      for (const path::Sample& sample : samples) follower->follow(sample);
+    } else if (drive_model) {
+      for (const path::Sample& sample : samples) drive_model->follow(sample);
     }
   };
   const auto restart = [&] {
     if (file != nullptr) file->restart();
-    if (!drives.empty()) follower.emplace(drives, options.sample_period_s);
+    if (!drives.empty()) drive_model.emplace(drives, options.sample_period_s);
     if (recorder == nullptr) return;
-    recorder->restart(follower ? path::Tracking([&](const path::Sample& sample) { return follower->follow(sample); })
-                               : path::Tracking());
+    recorder->restart(drive_model ? path::Tracking([&](const path::Sample& s) { return drive_model->follow(s); })
+                                  : path::Tracking());
   };
   try {
     out.summary = path::smooth(*bench.program, *bench.machine, bench.posture.posture, options, take, restart, progress);
   } catch (const InvalidInput& error) {
     throw bench.cell.document->located(error);
   }
-  if (follower) out.tracking_error = follower->worst();
+  if (drive_model) out.tracking_error = drive_model->worst();
   return out;
 }
 
@@ -289,7 +289,7 @@ SmoothResult run_smooth(const SmoothJob& job, CellFile cell, Progress& progress)
     }
     if (asked_for && file != nullptr) {
       result.smoothed.robot_program = located_in_program(job.program, [&] {
-        return file->settle(*bench.program, *bench.machine, result.options, result.trajectory_holds(), progress);
+        return file->verify(*bench.program, *bench.machine, result.options, result.trajectory_holds(), progress);
       });
     }
     if (recorder) result.motions.push_back(recorder->motion());

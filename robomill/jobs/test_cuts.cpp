@@ -32,7 +32,7 @@ std::string words(const stability::ExplainedPeak& peak, int teeth) {
   switch (peak.state) {
     case stability::ExplainedPeak::State::named:
       return words(peak.best, teeth);
-    case stability::ExplainedPeak::State::cannot_be_told: {
+    case stability::ExplainedPeak::State::ambiguous: {
       std::string out;
       const double least = peak.others.front().likelihood_per_hz / stability::PeakClassificationOptions{}.clear_odds;
       for (const stability::Explanation& reading : peak.others) {

@@ -40,7 +40,7 @@ bool has_coherence(const FrfSet& set) {
   return std::all_of(set.frfs.begin(), set.frfs.end(), [](const Frf& frf) { return known(frf.coherence, 1.0); });
 }
 
-Weighting settle(Weighting asked, const FrfSet& set) {
+Weighting resolved(Weighting asked, const FrfSet& set) {
   if (asked == Weighting::automatic) {
     if (has_deviation(set)) return Weighting::deviation;
     return has_coherence(set) ? Weighting::coherence : Weighting::estimated;
@@ -164,7 +164,7 @@ void add_diagram(FitResult& result, const PartFits::Done& done) {
 }
 
 void fit_by_poles(FitResult& result, const FrfSet& set, const FitOptions& options, Progress& progress) {
-  result.weighting = settle(options.weighting, set);
+  result.weighting = resolved(options.weighting, set);
   const std::vector<Part> parts = detail::split(set);
   std::vector<PartFits> fits;
   fits.reserve(parts.size());

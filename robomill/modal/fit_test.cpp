@@ -66,7 +66,7 @@ TEST(HybridFit, NoisyFrfsAndHonestDeviations) {
     const FitResult result = fit_modes(set, {});
     ASSERT_EQ(result.status, FitResult::Status::converged) << "seed " << seed;
     ASSERT_EQ(result.model.modes.size(), truth.modes.size()) << "seed " << seed;
-    // What is left is this seed's noise, less the little that 80 unknowns take of 31,848 values.
+    // The residual is this seed's noise, less the little that 80 unknowns take of 31,848 values.
     const double noise = cases::relative_error(set, synthesize(truth, set.frequency_hz));
     EXPECT_GT(result.relative_error, 0.93 * noise) << "seed " << seed;
     EXPECT_LT(result.relative_error, 1.03 * noise) << "seed " << seed;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double deviations = 3.0;  // within which a line is a mode's
 
-// The comb has taken out what rotates with the spindle: what is left is chatter.
+// The comb has taken out what rotates with the spindle: the residual is chatter.
 void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const modal::ModalModel& modes,
                const modal::ModalModel& workpiece) {
   // The tolerance of explain() must stay below a quarter of rotation.
@@ -27,7 +27,7 @@ void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const 
   advice.expected_hz = peak.best.mode_frequency_hz;
   if (std::isfinite(peak.chatter_frequency_hz)) {
     advice.frequency_hz = peak.chatter_frequency_hz;
-  } else if (peak.state == stability::ExplainedPeak::State::cannot_be_told) {
+  } else if (peak.state == stability::ExplainedPeak::State::ambiguous) {
     advice.frequency_hz = 0.0;
   }
 }

@@ -179,14 +179,14 @@ TEST(Score, QuantilesLieBetweenValues) {
 }
 
 // The plain rules detect what nobody could miss.
-TEST(Score, BaselinesDetectALoudTone) {
+TEST(Score, BaselinesDetectAStrongLine) {
   RecordedCut c = known();
   Random random(5);
   for (std::size_t i = 0; i < c.samples.size() / 2; ++i) {
     const double t = static_cast<double>(i) / corpus_rate_hz;
-    const double tone = t > 1.0 && t < 2.0 ? 20.0 * std::sin(2.0 * pi * 517.0 * t) : 0.0;
+    const double line = t > 1.0 && t < 2.0 ? 20.0 * std::sin(2.0 * pi * 517.0 * t) : 0.0;
     for (std::size_t k = 0; k < 2; ++k) {
-      c.samples[2 * i + k] = static_cast<float>(std::sin(2.0 * pi * 300.0 * t) + tone + 0.05 * random.normal());
+      c.samples[2 * i + k] = static_cast<float>(std::sin(2.0 * pi * 300.0 * t) + line + 0.05 * random.normal());
     }
   }
   c.truth.speed_rad_per_s.assign(c.samples.size() / 2, static_cast<float>(2.0 * pi * 100.0));

@@ -12,7 +12,7 @@ struct Hop {
   std::span<const double> samples;
   std::size_t frames = 0;
   std::uint64_t first_frame = 0;   ///< of the stream
-  std::uint64_t bad_channels = 0;  ///< bit c: dead, stuck or not finite; not to be listened to
+  std::uint64_t bad_channels = 0;  ///< bit c: dead, stuck or not finite; to be left out
   [[nodiscard]] std::span<const double> channel(std::size_t c) const noexcept {
     return samples.subspan(c * frames, frames);
   }

@@ -37,7 +37,7 @@ MonitorOptions options_for(const SyntheticCut& cut, double hint_off = 0.02) {
           .teeth = cut.teeth};
 }
 
-std::vector<Decision> listen(const MonitorOptions& options, const std::vector<float>& samples) {
+std::vector<Decision> decisions_of(const MonitorOptions& options, const std::vector<float>& samples) {
   ChatterMonitor monitor(options);
   const std::size_t block = options.hop_samples() * static_cast<std::size_t>(options.channels);
   std::vector<Decision> out;
@@ -52,7 +52,7 @@ double first_alarm_s(const std::vector<Decision>& decisions) {
   return found == decisions.end() ? -1.0 : found->time_s;
 }
 
-// What repeats every turn goes, another tone stays: 1 - 1/(1 + i 2π Δf τ) with 13 Hz to the next harmonic.
+// What repeats every turn goes, another line stays: 1 - 1/(1 + i 2π Δf τ) with 13 Hz to the next harmonic.
 TEST(Comb, TakesHarmonicsAndLeavesTheRest) {
   constexpr double rate = 10240.0;
   constexpr double rotation = 80.0;
@@ -230,7 +230,7 @@ TEST(CombCusum, DetectsATonesGrowthOnceAndItsEnd) {
   for (const auto& [teeth, rotation, chatter] : {std::tuple{3, 80.0, 683.0}, std::tuple{2, 133.0, 1210.0}}) {
     const SyntheticCut cut{
         .rotation_hz = rotation, .teeth = teeth, .channels = 2, .chatter_hz = chatter, .ends_s = 3.2, .seconds = 5.0};
-    const std::vector<Decision> decisions = listen(options_for(cut), vibration(cut));
+    const std::vector<Decision> decisions = decisions_of(options_for(cut), vibration(cut));
     // A tenth of the final amplitude at 2 + ln(100)/30 s.
     const double alarm = first_alarm_s(decisions);
     EXPECT_GT(alarm, 2.0);
@@ -257,7 +257,8 @@ TEST(CombCusum, StaysQuietInAStableCut) {
                            .noise = 0.05 * static_cast<double>(seed),
                            .seconds = 20.0,
                            .seed = seed};
-    EXPECT_EQ(first_alarm_s(listen(options_for(cut, 0.01 * static_cast<double>(seed)), vibration(cut))), -1.0) << seed;
+    EXPECT_EQ(first_alarm_s(decisions_of(options_for(cut, 0.01 * static_cast<double>(seed)), vibration(cut))), -1.0)
+        << seed;
   }
 }
 
@@ -265,7 +266,7 @@ TEST(CombCusum, StaysQuietInAStableCut) {
 TEST(CombCusum, FollowsSpeedsAtMultiplesOfTheMains) {
   for (const double rotation_hz : {100.0, 150.0, 239.7, 240.0}) {
     const SyntheticCut cut{.rotation_hz = rotation_hz, .channels = 2, .seconds = 2.0};
-    const double last = listen(options_for(cut), vibration(cut)).back().spindle_speed_rad_per_s;
+    const double last = decisions_of(options_for(cut), vibration(cut)).back().spindle_speed_rad_per_s;
     EXPECT_NEAR(last, turn * rotation_hz, 1e-3 * turn * rotation_hz);
   }
 }
@@ -290,14 +291,14 @@ TEST(SpindleTracker, MovesWhileTheSpeedDrifts) {
 TEST(CombCusum, StaysQuietWhileTheSpeedDrifts) {
   for (const auto& [rotation, drift] : {std::pair{43.0, -1.2}, std::pair{80.0, 4.0}, std::pair{130.0, -13.0}}) {
     const SyntheticCut cut{.rotation_hz = rotation, .drift_hz_per_s = drift, .channels = 2, .noise = 0.03};
-    const std::vector<Decision> decisions = listen(options_for(cut), vibration(cut));
+    const std::vector<Decision> decisions = decisions_of(options_for(cut), vibration(cut));
     EXPECT_EQ(first_alarm_s(decisions), -1.0) << rotation;
     const double last = turn * (rotation + drift);
     EXPECT_NEAR(decisions.back().spindle_speed_rad_per_s, last, 1e-3 * last);
   }
 }
 
-// The speed creeps to 9 % below a hint that trembles from hop to hop; the tool leaves, and comes back at that speed.
+// The speed drifts to 9 % below a hint that scatters from hop to hop; the tool leaves, and comes back at that speed.
 // A hint that says another speed makes it forgotten.
 TEST(CombCusum, KnowsTheSpeedFollowedLastWhileTheHintTrembles) {
   const SyntheticCut cut{.rotation_hz = 80.0, .drift_hz_per_s = -6.0, .channels = 2, .noise = 0.03, .seconds = 6.0};
@@ -328,7 +329,7 @@ TEST(CombCusum, FollowsTheSpeedInLongHops) {
   MonitorOptions options = options_for(cut);
   options.hop_s = 0.6;
   options.window_s = 0.6;
-  for (const Decision& d : listen(options, vibration(cut)))
+  for (const Decision& d : decisions_of(options, vibration(cut)))
     EXPECT_NEAR(d.spindle_speed_rad_per_s, turn * 80.0, 2e-3 * turn * 80.0) << d.hop;
 }
 
@@ -344,7 +345,7 @@ TEST(CombCusum, FollowsATachometer) {
   MonitorOptions options = options_for(cut);
   options.spindle_speed_rad_per_s = 0.0;
   options.tachometer_channel = 1;
-  const std::vector<Decision> decisions = listen(options, both);
+  const std::vector<Decision> decisions = decisions_of(options, both);
   EXPECT_NEAR(decisions[60].spindle_speed_rad_per_s, turn * 80.0, 1e-3 * turn * 80.0);
   const double alarm = first_alarm_s(decisions);
   EXPECT_GT(alarm, 2.0);
@@ -356,22 +357,22 @@ TEST(CombCusum, SuggestsTheSampleRateThatFitsTheComb) {
   const SyntheticCut cut{.sample_rate_hz = 8000.0, .seconds = 6.0};
   MonitorOptions options = options_for(cut, 0.0);
   options.sample_rate_hz = 10240.0;
-  const Decision last = listen(options, vibration(cut)).back();
+  const Decision last = decisions_of(options, vibration(cut)).back();
   EXPECT_TRUE(last.faults & wrong_sample_rate);
   EXPECT_NEAR(last.suggested_sample_rate_hz, 8000.0, 10.0);
-  for (const Decision& d : listen(options_for(cut), vibration(cut))) EXPECT_FALSE(d.faults & wrong_sample_rate);
+  for (const Decision& d : decisions_of(options_for(cut), vibration(cut))) EXPECT_FALSE(d.faults & wrong_sample_rate);
 }
 
-// Growth so slow that the comb swallows it: the harmonic's amplitude against what was learnt of it shows it.
-TEST(CombCusum, SeesWhatHidesAtMultiplesOfRotation) {
-  for (const auto& [teeth, harmonic, hidden] :
-       {std::tuple{3, 7, Hidden::locked}, std::tuple{2, 7, Hidden::period_doubling},
-        std::tuple{4, 6, Hidden::period_doubling}}) {
+// Growth so slow that the comb takes it off: the harmonic's amplitude against what was learnt of it shows it.
+TEST(CombCusum, DetectsSynchronousChatter) {
+  for (const auto& [teeth, harmonic, kind] :
+       {std::tuple{3, 7, SynchronousChatter::locked}, std::tuple{2, 7, SynchronousChatter::period_doubling},
+        std::tuple{4, 6, SynchronousChatter::period_doubling}}) {
     const SyntheticCut cut{
         .teeth = teeth, .chatter_hz = 80.0 * harmonic, .growth_per_s = 3.0, .chatter = 3.0, .seconds = 7.0};
-    const std::vector<Decision> decisions = listen(options_for(cut), vibration(cut));
+    const std::vector<Decision> decisions = decisions_of(options_for(cut), vibration(cut));
     EXPECT_GT(first_alarm_s(decisions), 2.0) << teeth;
-    EXPECT_TRUE(std::ranges::any_of(decisions, [&, want = hidden](const Decision& d) { return d.hidden == want; }))
+    EXPECT_TRUE(std::ranges::any_of(decisions, [&, want = kind](const Decision& d) { return d.synchronous == want; }))
         << teeth;
     EXPECT_NEAR(decisions.back().chatter_frequency_hz, cut.chatter_hz, 5.0) << teeth;
   }
@@ -383,7 +384,7 @@ TEST(ChatterMonitor, LivesOnWithBadInput) {
   const auto faults_of = [&](auto spoil) {
     std::vector<float> x = good;
     for (std::size_t i = 30720; i < 35840; ++i) spoil(x[2 * i], i);
-    const std::vector<Decision> decisions = listen(options_for(cut), x);
+    const std::vector<Decision> decisions = decisions_of(options_for(cut), x);
     std::uint32_t faults = 0;
     for (const Decision& d : decisions) {
       EXPECT_TRUE(std::isfinite(d.score) && std::isfinite(d.level) && std::isfinite(d.chatter_frequency_hz));
@@ -412,18 +413,18 @@ TEST(ChatterMonitor, NoticesClippingAndDeadChannels) {
   std::vector<float> x = vibration(cut);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = i % 2 == 1 ? 0.0F : std::clamp(x[i], -1.5F, 1.5F);
   MonitorOptions options = options_for(cut);
-  EXPECT_TRUE(listen(options, x).back().faults & clipped);
-  EXPECT_TRUE(listen(options, x).back().faults & dead_channel);
+  EXPECT_TRUE(decisions_of(options, x).back().faults & clipped);
+  EXPECT_TRUE(decisions_of(options, x).back().faults & dead_channel);
   options.full_scale = 1.5;
-  EXPECT_TRUE(listen(options, x).back().faults & clipped);
+  EXPECT_TRUE(decisions_of(options, x).back().faults & clipped);
   options.full_scale = 10.0;
-  EXPECT_FALSE(listen(options, vibration(cut)).back().faults & clipped);
+  EXPECT_FALSE(decisions_of(options, vibration(cut)).back().faults & clipped);
 }
 
 TEST(ChatterMonitor, SameDecisionsInAnyBlocksAndAfterReset) {
   const SyntheticCut cut{.channels = 2, .chatter_hz = 683.0, .seconds = 3.0};
   const std::vector<float> x = vibration(cut);
-  const std::vector<Decision> whole = listen(options_for(cut), x);
+  const std::vector<Decision> whole = decisions_of(options_for(cut), x);
   ChatterMonitor monitor(options_for(cut));
   Random random(5);
   for (int pass = 0; pass < 2; ++pass) {

@@ -32,7 +32,7 @@ void MonitorOptions::validate() const {
   require_between("tachometer_channel", tachometer_channel, -1.0, channels - 1.0, "",
                   "must name a channel, from 0, or be -1");
   if (tachometer_channel >= 0 && channels == 1) {
-    throw InvalidInput("tachometer_channel", tachometer_channel, "", "leaves no channel to listen to");
+    throw InvalidInput("tachometer_channel", tachometer_channel, "", "leaves no channel of vibration");
   }
   require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
   require_between("teeth", teeth, 0.0, 64.0, "", "must be in [0, 64]");
@@ -66,11 +66,11 @@ struct ChatterMonitor::Parts {
         channels(static_cast<std::size_t>(o.channels)),
         hop_frames(o.hop_samples()),
         samples(channels * hop_frames),
-        guards(channels, SignalValidation(o)),
+        validations(channels, SignalValidation(o)),
         detector(make_detector(o)) {}
 
   void take(float sample) noexcept {
-    samples[channel * hop_frames + frame] = guards[channel].take(sample);
+    samples[channel * hop_frames + frame] = validations[channel].take(sample);
     if (++channel < channels) return;
     channel = 0;
     if (++frame < hop_frames) return;
@@ -85,16 +85,16 @@ struct ChatterMonitor::Parts {
     Hop of{.samples = samples, .frames = hop_frames, .first_frame = (hop - 1) * hop_frames};
     double power = 0.0;
     double loudest = 0.0;
-    for (SignalValidation& guard : guards) {
-      last.faults |= guard.hop_faults();
-      power += guard.variance();
-      loudest = std::max(loudest, guard.variance());
+    for (SignalValidation& validation : validations) {
+      last.faults |= validation.hop_faults();
+      power += validation.variance();
+      loudest = std::max(loudest, validation.variance());
     }
     for (std::size_t c = 0; c < channels; ++c) {
       if (static_cast<int>(c) == options.tachometer_channel) continue;
-      const bool silent = guards[c].variance() < silence * loudest;
+      const bool silent = validations[c].variance() < silence * loudest;
       if (silent) last.faults |= dead_channel;
-      if (silent || guards[c].bad()) of.bad_channels |= std::uint64_t{1} << c;
+      if (silent || validations[c].bad()) of.bad_channels |= std::uint64_t{1} << c;
     }
     last.level = std::sqrt(power / static_cast<double>(channels));
     detector->decide(of, last);
@@ -105,7 +105,7 @@ struct ChatterMonitor::Parts {
   std::size_t channels = 1, hop_frames = 1;
   std::vector<double> samples;  // of this hop, channel after channel
   std::size_t frame = 0, channel = 0;
-  std::vector<SignalValidation> guards;
+  std::vector<SignalValidation> validations;
   std::unique_ptr<Detector> detector;
   Decision last;
 };
@@ -136,7 +136,7 @@ void ChatterMonitor::reset() noexcept {
   parts_->frame = 0;
   parts_->channel = 0;
   parts_->last = {};
-  for (SignalValidation& guard : parts_->guards) guard.reset();
+  for (SignalValidation& validation : parts_->validations) validation.reset();
   parts_->detector->reset();
 }
 
@@ -153,8 +153,9 @@ std::string_view to_string(Entropy entropy) {
 std::string_view to_string(State state) {
   return state == State::stable ? "stable" : state == State::transition ? "transition" : "chatter";
 }
-std::string_view to_string(Hidden hidden) {
-  return hidden == Hidden::none ? "none" : hidden == Hidden::locked ? "locked" : "period-doubling";
+std::string_view to_string(SynchronousChatter kind) {
+  if (kind == SynchronousChatter::none) return "none";
+  return kind == SynchronousChatter::locked ? "locked" : "period-doubling";
 }
 std::string_view to_string(Fault fault) {
   switch (fault) {

@@ -30,13 +30,13 @@ inline constexpr Name<Entropy> entropy_names[] = {{"normalised", Entropy::normal
 enum class State {
   stable,      ///< no alarm, and none on its way up or down
   transition,  ///< comb_cusum: score > threshold / 2 without an alarm; both detectors: an alarm on its way down
-  chatter      ///< an alarm: score > threshold (energy_entropy with alarm_below: <), or as Hidden
+  chatter      ///< an alarm: score > threshold (energy_entropy with alarm_below: <), or SynchronousChatter
 };
-/// How chatter was seen that a comb takes for a part of the cut: by the power of a multiple of rotation against what
-/// was learnt of it.
-enum class Hidden {
-  none,            ///< not so
-  locked,          ///< at a multiple of rotation that is none of tooth passing
+/// Chatter synchronous with the spindle, which a comb takes for a part of the cut. It is detected by the power of a
+/// multiple of rotation against what was learnt of it.
+enum class SynchronousChatter {
+  none,            ///< no chatter, or not synchronous
+  locked,          ///< to the rotation: at a multiple of it that is none of tooth passing
   period_doubling  ///< half way between two multiples of tooth passing (even numbers of teeth)
 };
 
@@ -79,9 +79,9 @@ struct Decision {
   std::uint64_t hop = 0;  ///< from 1; 0: none was made yet
   double time_s = 0.0;    ///< of the last sample it used: when it could be made
   State state = State::stable;
-  bool changed = false;         ///< state differs from the last decision's
-  double score = 0.0;           ///< of the test
-  double threshold = 0.0;       ///< alarm where score > threshold (MonitorOptions::alarm_below: <), or as `hidden`
+  bool changed = false;    ///< state differs from the last decision's
+  double score = 0.0;      ///< of the test
+  double threshold = 0.0;  ///< alarm where score > threshold (MonitorOptions::alarm_below: <), or as `synchronous` says
   double energy_entropy = 0.0;  ///< Σ over the channels of the bands' energy entropy, as MonitorOptions::entropy has it
   double level = 0.0;           ///< rms of all channels over the hop, mean taken off [input's unit]
   double chatter_frequency_hz = 0.0;      ///< 0: none
@@ -90,7 +90,7 @@ struct Decision {
   double spindle_speed_rad_per_s = 0.0;   ///< as tracked; 0: unknown
   double suggested_sample_rate_hz = 0.0;  ///< with Fault::wrong_sample_rate
   std::uint32_t faults = 0;               ///< of Fault
-  Hidden hidden = Hidden::none;
+  SynchronousChatter synchronous = SynchronousChatter::none;
   int bands = 0;                          ///< used of band_level
   std::array<float, 64> band_level = {};  ///< rms of each band, all channels [input's unit]
 };
@@ -128,7 +128,7 @@ class ROBOMILL_API ChatterMonitor {
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Kind kind);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Entropy entropy);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(State state);
-[[nodiscard]] ROBOMILL_API std::string_view to_string(Hidden hidden);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(SynchronousChatter kind);
 /// "not-finite", …; of one bit.
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Fault fault);
 

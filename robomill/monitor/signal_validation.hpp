@@ -8,7 +8,7 @@
 
 namespace robomill::monitor {
 
-/// Looks after the samples of one channel: puts finite ones in the place of others and says what is wrong.
+/// Validates the samples of one channel: puts finite ones in the place of others and reports faults.
 class SignalValidation {
  public:
   explicit SignalValidation(const MonitorOptions& options);
@@ -18,7 +18,7 @@ class SignalValidation {
   std::uint32_t hop_faults() noexcept;
   /// Mean square of the hop about its mean, from before hop_faults() began a new one.
   [[nodiscard]] double variance() const noexcept { return variance_; }
-  /// Whether the channel gives nothing to listen to: stuck, dead, or mostly not finite.
+  /// Whether the channel has no usable signal: stuck, dead, or mostly not finite.
   [[nodiscard]] bool bad() const noexcept { return bad_; }
   void reset() noexcept;
 

@@ -37,7 +37,7 @@ Blend::Blend(const SmoothingOptions& options, std::size_t capacity) : options_(o
 
 void Blend::begin(const program::Pose& pose, double gamma_rad) noexcept {
   nodes_.clear();
-  first_ = settled_ = ready_ = last_stop_ = 0;
+  first_ = final_widths_ = ready_ = last_stop_ = 0;
   Node node;
   node.at << pose.tip_m, pose.axis, gamma_rad, 0.0;
   node.stop = true;
@@ -195,7 +195,7 @@ bool Blend::narrow(double u_m, double ratio) noexcept {
   const auto above =
       std::upper_bound(nodes_.begin(), nodes_.end(), u_m, [](double u, const Node& node) { return u < node.u_m; });
   const auto near = static_cast<std::size_t>(above - nodes_.begin()) + first_;
-  const std::size_t from = std::max(settled_, near > first_ + max_reach ? near - max_reach : first_);
+  const std::size_t from = std::max(final_widths_, near > first_ + max_reach ? near - max_reach : first_);
   for (std::size_t k = from; k < end() && k <= near + max_reach; ++k) {
     Node& corner = at(k);
     if (std::abs(u_m - corner.u_m) < corner.half_width_m && corner.step.squaredNorm() > 1e-20) {
@@ -236,19 +236,19 @@ void Blend::find_reach(std::size_t piece) noexcept {
   }
 }
 
-void Blend::settle() noexcept {
+void Blend::find_widths() noexcept {
   const bool closed = node(end() - 1).stop;
   // Corners beyond this one may still meet blocks to come.
   const std::size_t known = closed ? end() - 1 : (end() > max_reach + 1 ? end() - 1 - max_reach : 0);
-  // A stop settles its row even where no corner lies between it and the one before.
-  if (known <= settled_ && (!closed || ready_ >= known)) return;
-  for (std::size_t i = settled_; i < known; ++i) begin_width(i);
-  const std::size_t from = settled_ > first_ + max_reach ? settled_ - max_reach : first_;
+  // A stop makes its row final even where no corner lies between it and the one before.
+  if (known <= final_widths_ && (!closed || ready_ >= known)) return;
+  for (std::size_t i = final_widths_; i < known; ++i) begin_width(i);
+  const std::size_t from = final_widths_ > first_ + max_reach ? final_widths_ - max_reach : first_;
   for (int round = 0; round < 24 && narrow_all(from, known); ++round) {
   }
   const std::size_t last = std::max(last_stop_, known > 2 * max_reach ? known - 2 * max_reach : 0);
-  settled_ = std::max(settled_, closed ? end() - 1 : last);
-  const std::size_t ready = std::max(last_stop_, settled_ > max_reach + 1 ? settled_ - max_reach - 1 : 0);
+  final_widths_ = std::max(final_widths_, closed ? end() - 1 : last);
+  const std::size_t ready = std::max(last_stop_, final_widths_ > max_reach + 1 ? final_widths_ - max_reach - 1 : 0);
   for (std::size_t i = std::max(ready_, first_); i < ready; ++i) find_reach(i);
   ready_ = std::max(ready_, ready);
 }

@@ -61,7 +61,7 @@ class Blend {
   [[nodiscard]] std::size_t ready() const noexcept { return ready_; }
   [[nodiscard]] std::size_t room() const noexcept { return capacity_ - nodes_.size(); }
   /// Finds the widths of corners that lie far enough from the end, and of all before the last stop.
-  void settle() noexcept;
+  void find_widths() noexcept;
   /// Forgets pieces before this one.
   void forget(std::size_t before) noexcept;
 
@@ -108,7 +108,7 @@ class Blend {
   double per_angle_m_ = 0.0;  ///< u for a radian of the axis
   double max_half_width_m_ = 0.0;
   std::vector<Node> nodes_;
-  std::size_t first_ = 0, settled_ = 0, ready_ = 0, last_stop_ = 0;
+  std::size_t first_ = 0, final_widths_ = 0, ready_ = 0, last_stop_ = 0;
 };
 
 }  // namespace robomill::path

@@ -32,7 +32,7 @@ std::vector<Polynomial> curve(const program::Program& program, const SmoothingOp
   std::vector<Polynomial> some(Blend::max_polynomials);
   std::size_t taken = 0;
   const auto take = [&] {
-    blend.settle();
+    blend.find_widths();
     for (; taken < blend.ready(); ++taken) {
       const std::size_t count = blend.polynomials(taken, some.data());
       out.insert(out.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
@@ -232,7 +232,7 @@ std::vector<double> half_widths(const program::Program& program, const Smoothing
   for (std::size_t i = 0; i < program.blocks.size(); ++i)
     EXPECT_EQ(blend.add(program.blocks[i], i, 0.0), Blend::Added::moved);
   blend.stop(0.0);
-  blend.settle();
+  blend.find_widths();
   std::vector<double> out;
   for (std::size_t i = 0; i < blend.end(); ++i) out.push_back(blend.node(i).half_width_m);
   return out;
@@ -306,7 +306,7 @@ TEST(Blend, TurnsAboutTheAxisAlone) {
   blend.begin(program.start, 0.0);
   ASSERT_EQ(blend.add(program.blocks[0], 0, 0.5), Blend::Added::moved);
   blend.stop(0.0);
-  blend.settle();
+  blend.find_widths();
   ASSERT_EQ(blend.ready(), 1U);
   std::vector<Polynomial> some(Blend::max_polynomials);
   ASSERT_EQ(blend.polynomials(0, some.data()), 1U);

@@ -28,15 +28,15 @@ bool Emitter::add(std::span<const Polynomial> path, std::span<const Segment> mot
   path_.erase(path_.begin(), path_.begin() + static_cast<std::ptrdiff_t>(path_at_));
   path_at_ = 0;
   path_.insert(path_.end(), path.begin(), path.end());
-  for (const Segment& span : motion) {
-    const double total_s = path::duration_s(span);
+  for (const Segment& segment : motion) {
+    const double total_s = path::duration_s(segment);
     for (; next_s_ < total_s; next_s_ += period_s_) {
-      if (!emit(span.begin_m + way_m(span, next_s_, total_s), out)) return false;
+      if (!emit(segment.begin_m + way_m(segment, next_s_, total_s), out)) return false;
       if (take && out.size() >= chunk) take();
     }
     next_s_ -= total_s;
     begun_s_ += total_s;
-    end_m_ = span.begin_m + span.length_m;
+    end_m_ = segment.begin_m + segment.length_m;
   }
   return true;
 }

@@ -35,7 +35,7 @@ class Emitter {
   robot::Reach reach_ = {};
   std::vector<Polynomial> path_;
   std::size_t path_at_ = 0, count_ = 0;
-  double begun_s_ = 0.0;  ///< where the present span began
+  double begun_s_ = 0.0;  ///< where the present segment began
   double next_s_ = 0.0;   ///< of the next sample, from there
   double end_m_ = 0.0;
 };

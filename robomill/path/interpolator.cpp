@@ -26,8 +26,8 @@ bool sound(const program::Block& block) {
 
 void InterpolatorOptions::validate() const {
   require_positive("look_ahead_s", look_ahead_s, "s", "4 s suits most machines");
-  if (look_ahead_spans < 64) {
-    throw InvalidInput("look_ahead_spans", static_cast<double>(look_ahead_spans), "", "must be at least 64");
+  if (look_ahead_segments < 64) {
+    throw InvalidInput("look_ahead_segments", static_cast<double>(look_ahead_segments), "", "must be at least 64");
   }
 }
 
@@ -35,9 +35,9 @@ struct PathInterpolator::Parts {
   Parts(const robot::Kinematics& kinematics, const SmoothingOptions& smoothing, const program::Pose& start,
         double gamma, const robot::Position6& joints, const InterpolatorOptions& options)
       : planner(kinematics, smoothing, PlannerOptions::interpolated()),
-        // The path is put out before the spans on it are planned: as far ahead as a window reaches.
+        // The path is put out before the segments on it are planned: as far ahead as a window reaches.
         ahead(Planner::max_pieces * PlannerOptions::interpolated().window + 2 * planner.path_capacity(),
-              options.look_ahead_spans,
+              options.look_ahead_segments,
               static_cast<std::size_t>(options.look_ahead_s / (4.0 * smoothing.sample_period_s)) + 64),
         survey(ahead, kinematics, smoothing, joints),
         runner(ahead, kinematics, smoothing.sample_period_s,
@@ -89,9 +89,9 @@ bool PathInterpolator::Parts::lay() noexcept {
   ahead.path.publish();
   if (path_at < path.size()) return false;
   for (; motion_at < motion.size(); ++motion_at) {
-    const Survey::ScanStatus went = survey.take(motion[motion_at]);
-    if (went == Survey::ScanStatus::full) return false;
-    if (went == Survey::ScanStatus::unreachable) {
+    const Survey::ScanStatus status = survey.take(motion[motion_at]);
+    if (status == Survey::ScanStatus::full) return false;
+    if (status == Survey::ScanStatus::unreachable) {
       fail({.status = Pushed::Status::unreachable,
             .block = survey.at().block,
             .line = survey.at().line,

@@ -13,8 +13,8 @@
 namespace robomill::path {
 
 struct ROBOMILL_API InterpolatorOptions {
-  double look_ahead_s = 4.0;            ///< > 0; of planned motion for which there is room, at 100 %; or up to twice it
-  std::size_t look_ahead_spans = 2048;  ///< >= 64; … and for as many spans of it
+  double look_ahead_s = 4.0;  ///< > 0; of planned motion for which there is room, at 100 %; or up to twice it
+  std::size_t look_ahead_segments = 2048;  ///< >= 64; … and for as many segments of it
   /// @throws InvalidInput naming the member
   void validate() const;
 };

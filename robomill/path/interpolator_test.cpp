@@ -346,7 +346,7 @@ TEST(PathInterpolator, RejectsBadOptions) {
   EXPECT_EQ(robomill::test::field_of([&] { make(options(), {}, 0.0); }), "accepted");
   EXPECT_EQ(robomill::test::field_of([&] { make({}, {}, 0.0); }), "tip_tolerance_m");
   EXPECT_EQ(robomill::test::field_of([&] { make(options(), {.look_ahead_s = 0.0}, 0.0); }), "look_ahead_s");
-  EXPECT_EQ(robomill::test::field_of([&] { make(options(), {.look_ahead_spans = 3}, 0.0); }), "look_ahead_spans");
+  EXPECT_EQ(robomill::test::field_of([&] { make(options(), {.look_ahead_segments = 3}, 0.0); }), "look_ahead_segments");
   EXPECT_EQ(robomill::test::field_of([&] { make(options(), {}, 2.0); }), "start");
 }
 

@@ -15,7 +15,7 @@
 namespace robomill::path {
 namespace {
 
-constexpr int most_ways = 256;
+constexpr int most_start_branches = 256;
 /// The field of candidates narrows twice: looked at in so many places, so many are kept.
 constexpr std::size_t first_places = 24, second_places = 400, second_candidates = 48;
 constexpr WalkOptions roughly{.halvings = 6, .max_step = 0.5, .careful = false};
@@ -37,21 +37,21 @@ bool better(const Candidate& a, const Candidate& b) {
   return found(a.walk) ? a.walk.margin.least > b.walk.margin.least : a.walk.t > b.walk.t;
 }
 
-/// All ways to the first pose with one gamma; where a start is wanted, the one that is nearest to it.
-void add_ways(const robot::Kinematics& kinematics, const Head& head, const PostureOptions& options, double gamma_rad,
-              std::vector<Candidate>& out) {
+/// All branches of the first pose with one gamma; where a start is wanted, the one that is nearest to it.
+void add_branches(const robot::Kinematics& kinematics, const Head& head, const PostureOptions& options,
+                  double gamma_rad, std::vector<Candidate>& out) {
   const program::Pose& first = head.pose.front();
-  std::array<robot::Position6, most_ways> ways;
-  int count =
-      kinematics.all({.tip_m = first.tip_m, .axis = first.axis, .gamma_rad = gamma_rad}, ways.data(), most_ways);
+  std::array<robot::Position6, most_start_branches> branches;
+  int count = kinematics.all({.tip_m = first.tip_m, .axis = first.axis, .gamma_rad = gamma_rad}, branches.data(),
+                             most_start_branches);
   if (options.start && count > 0) {
-    const auto far = [&](const robot::Position6& way) { return (way - *options.start).squaredNorm(); };
-    ways.front() = *std::min_element(ways.begin(), ways.begin() + count,
-                                     [&](const auto& a, const auto& b) { return far(a) < far(b); });
+    const auto far = [&](const robot::Position6& branch) { return (branch - *options.start).squaredNorm(); };
+    branches.front() = *std::min_element(branches.begin(), branches.begin() + count,
+                                         [&](const auto& a, const auto& b) { return far(a) < far(b); });
     count = 1;
   }
   for (int k = 0; k < count; ++k) {
-    out.push_back({.gamma_rad = gamma_rad, .start = ways[static_cast<std::size_t>(k)]});
+    out.push_back({.gamma_rad = gamma_rad, .start = branches[static_cast<std::size_t>(k)]});
   }
 }
 
@@ -59,13 +59,13 @@ std::vector<Candidate> candidates(const robot::Kinematics& kinematics, const Hea
                                   const PostureOptions& options) {
   std::vector<Candidate> out;
   if (options.gamma_rad || !kinematics.turns_about_axis()) {
-    add_ways(kinematics, head, options, options.gamma_rad.value_or(0.0), out);
+    add_branches(kinematics, head, options, options.gamma_rad.value_or(0.0), out);
     return out;
   }
   for (int k = 0; k < options.gammas; ++k) {
     // 0, then to both sides: of equals the first is taken.
     const int turn = k % 2 == 0 ? k / 2 : -(k + 1) / 2;
-    add_ways(kinematics, head, options, 2.0 * std::numbers::pi * turn / options.gammas, out);
+    add_branches(kinematics, head, options, 2.0 * std::numbers::pi * turn / options.gammas, out);
   }
   return out;
 }

@@ -145,7 +145,7 @@ double lower_bound_s(program::Source& source, const Posture& posture, const robo
   double dwells_s = 0.0;
   std::size_t blocks = 0;
   run(source, posture, kinematics, planner, progress, blocks, [&] {
-    for (const Segment& span : planner.motion()) dwells_s += span.dwell_s;
+    for (const Segment& segment : planner.motion()) dwells_s += segment.dwell_s;
     points.insert(points.end(), planner.points().begin(), planner.points().end());
     planner.motion().clear();
     planner.points().clear();
@@ -183,7 +183,7 @@ void plan_once(program::Source& source, const robot::Kinematics& kinematics, con
     const std::span<const Segment> kept = std::span<const Segment>(planner.motion()).first(planner.kept());
     if (kept.empty()) return;
     double planned_s = emitter.duration_s();
-    for (const Segment& span : kept) planned_s += duration_s(span);
+    for (const Segment& segment : kept) planned_s += duration_s(segment);
     if (!(planned_s <= options.max_duration_s)) {
       throw lasts_too_long(options, planned_s, emitter.at().block, emitter.at().line);
     }

@@ -231,7 +231,7 @@ double planned_s(const program::Program& program, const robot::Kinematics& kinem
   double sum_s = 0.0;
   const auto take = [&](const Planner::Status& status) {
     EXPECT_TRUE(status.ok());
-    for (const Segment& span : planner.motion()) sum_s += duration_s(span);
+    for (const Segment& segment : planner.motion()) sum_s += duration_s(segment);
     planner.motion().clear();
     planner.path().clear();
   };
@@ -249,7 +249,7 @@ double bound_s(const program::Program& program, const robot::Kinematics& kinemat
   double dwells_s = 0.0;
   const auto take = [&](const Planner::Status& status) {
     EXPECT_TRUE(status.ok());
-    for (const Segment& span : planner.motion()) dwells_s += span.dwell_s;
+    for (const Segment& segment : planner.motion()) dwells_s += segment.dwell_s;
     points.insert(points.end(), planner.points().begin(), planner.points().end());
     planner.motion().clear();
     planner.points().clear();

@@ -78,7 +78,7 @@ struct NearResult {
   };
   Status status = Status::not_converged;
   Eigen::VectorXd position = {};          ///< the best one found, also where not converged
-  double error_m = 0.0, error_rad = 0.0;  ///< what is left, of the flange's position and orientation
+  double error_m = 0.0, error_rad = 0.0;  ///< residual of the flange's position and orientation
   int iterations = 0;
 };
 /// The position at which an arm of any kind reaches a pose, by damped Newton steps (Levenberg-Marquardt) from a seed

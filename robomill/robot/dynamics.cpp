@@ -97,8 +97,8 @@ ToolMode make_mode(const Normal& system, const Complex& pole, const Eigen::Vecto
   return mode;
 }
 
-CreepMode make_creep(const Normal& system, double pole, const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
-  CreepMode mode{.decay_per_s = -pole * system.rate_per_s};
+OverdampedMode make_overdamped(const Normal& system, double pole, const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
+  OverdampedMode mode{.decay_per_s = -pole * system.rate_per_s};
   const double root = std::sqrt(system.rate_per_s);
   mode.right = system.input.transpose() * x / root;
   mode.left = system.input.transpose() * y / root;
@@ -124,7 +124,7 @@ void solve_modes(const Normal& system, ToolModes& out) {
     if (pole.imag() > 0.0) {
       out.modes.push_back(make_mode(system, pole, x, y));
     } else if (pole.imag() == 0.0) {
-      out.creeping.push_back(make_creep(system, pole.real(), x.real(), y.real()));
+      out.overdamped.push_back(make_overdamped(system, pole.real(), x.real(), y.real()));
     }
   }
   std::sort(out.modes.begin(), out.modes.end(),
@@ -214,7 +214,7 @@ Eigen::Matrix<Complex, 6, 6> ToolModes::receptance(double frequency_hz) const {
     const Eigen::Matrix<Complex, 6, 6> residue = mode.right * mode.left.transpose();
     out += residue / (s - pole) + residue.conjugate() / (s - std::conj(pole));
   }
-  for (const CreepMode& mode : creeping) {
+  for (const OverdampedMode& mode : overdamped) {
     out += (mode.right * mode.left.transpose()).cast<Complex>() / (s + mode.decay_per_s);
   }
   return out;

@@ -58,20 +58,20 @@ struct ToolMode {
   Eigen::Matrix<std::complex<double>, 6, 1> right = Eigen::Matrix<std::complex<double>, 6, 1>::Zero();
   Eigen::Matrix<std::complex<double>, 6, 1> left = Eigen::Matrix<std::complex<double>, 6, 1>::Zero();
 };
-/// A motion that creeps back without swinging: H = R Lᵀ / (iω + decay).
-struct CreepMode {
+/// A motion that decays without oscillation: H = R Lᵀ / (iω + decay).
+struct OverdampedMode {
   double decay_per_s = 0.0;
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 1> left = Eigen::Matrix<double, 6, 1>::Zero();
 };
 struct ToolModes {
   enum class Status {
-    found,   ///< every pole stands in `modes` or `creeping`
+    found,   ///< every pole stands in `modes` or `overdamped`
     buckled  ///< (Kθ − Kc) is not positive definite: the arm does not hold the wrench, nothing vibrates about it
   };
   Status status = Status::buckled;
-  std::vector<ToolMode> modes = {};      ///< by frequency
-  std::vector<CreepMode> creeping = {};  ///< in pairs, where a joint is damped more than critically
+  std::vector<ToolMode> modes = {};             ///< by frequency
+  std::vector<OverdampedMode> overdamped = {};  ///< in pairs, where a joint is damped more than critically
   /// H at a frequency, 6 x 6: translation (m) and rotation (rad) of the point due to force (N) and moment (N m), in B.
   [[nodiscard]] ROBOMILL_API Eigen::Matrix<std::complex<double>, 6, 6> receptance(double frequency_hz) const;
 };

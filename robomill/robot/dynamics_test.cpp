@@ -95,9 +95,9 @@ TEST(Dynamics, ModesSumToTheReceptance) {
     if (k % 3 > 1) options.wrench.moment_n_m = 3e3 * testing::random_vector(random);
     const ToolModes modes = tool_modes(arm, position, tip, options);
     ASSERT_EQ(modes.status, ToolModes::Status::found);
-    EXPECT_EQ(static_cast<Eigen::Index>(2 * modes.modes.size() + modes.creeping.size()), 2 * arm.size());
+    EXPECT_EQ(static_cast<Eigen::Index>(2 * modes.modes.size() + modes.overdamped.size()), 2 * arm.size());
     if (k % 5 == 0) {
-      EXPECT_FALSE(modes.creeping.empty());
+      EXPECT_FALSE(modes.overdamped.empty());
     }
     const Eigen::Matrix<double, 6, Eigen::Dynamic> jac = jacobian(arm, position, tip);
     Eigen::MatrixXd stiff = -load_stiffness(jac, options.wrench), damp = Eigen::MatrixXd::Zero(arm.size(), arm.size());

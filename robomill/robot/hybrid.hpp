@@ -48,8 +48,8 @@ struct ROBOMILL_API HybridOptions {
 ///     X = P_x − h sin β,  Y = P_y + P_z tan α,
 ///     q1² = (b cos β − a)² + (ℓ − b sin β)²,  q2² = (b cos β − a)² + (ℓ + b sin β)²,
 ///     q3² = c² + ℓ² + e² − 2 e (c cos α − ℓ sin α).
-/// One way to stand, and gamma means nothing. The legs let the platform give way at ℓ² cos β = a b sin² β (legs 1 and
-/// 2) and with B3 in the base's plane, c sin α + ℓ cos α = 0 (leg 3); the platform stands above both. Out of reach:
+/// One branch, and gamma means nothing. The legs do not hold the platform (singular) at ℓ² cos β = a b sin² β (legs 1
+/// and 2) and with B3 in the base's plane, c sin α + ℓ cos α = 0 (leg 3); the platform stands above both. Out of reach:
 /// below them (by how much ℓ is short), and t_z <= 0 (the tool would point back at the base).
 class ROBOMILL_API HybridKinematics final : public Kinematics {
  public:

@@ -210,7 +210,7 @@ TEST(Hybrid, ReportsWhyAPoseCannotBeTaken) {
   const Reach low = kinematics.follow(above, near, position);
   EXPECT_EQ(low.status, Reach::Status::out_of_reach);
   EXPECT_NEAR(low.beyond, 0.05, 1e-15);
-  // Below the height where legs 1 and 2 let the platform give way: ℓ² cos β = a b sin² β.
+  // Below the height where the platform on legs 1 and 2 is singular: ℓ² cos β = a b sin² β.
   const double give_way = std::sqrt(0.3 * 0.12 / std::cos(0.8)) * std::sin(0.8);
   const Reach flat = status({.beta_rad = 0.8, .height_m = give_way - 0.01});
   EXPECT_EQ(flat.status, Reach::Status::out_of_reach);

@@ -8,7 +8,7 @@
 namespace robomill::robot {
 
 struct NewtonEnd {
-  double error_m = 0.0, error_rad = 0.0;  ///< what is left
+  double error_m = 0.0, error_rad = 0.0;  ///< residual
   int iterations = 0;
 };
 /// Moves a position to where the flange takes a pose, by damped Newton steps (Levenberg-Marquardt). Allocates nothing,

@@ -23,10 +23,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// Newton's steps stop at the first, and what rounding leaves above it is taken up to the second [m and rad].
 constexpr double wanted_error = 1e-13, accepted_error = 1e-11;
 const NearOptions steps{.tolerance_m = wanted_error, .tolerance_rad = wanted_error, .max_iterations = 40};
-/// Seeds from which an arm without closed form looks for all its ways, and how many in a row that find nothing new end
-/// the search.
+/// Seeds from which an arm without closed form looks for all its branches, and how many in a row that find nothing new
+/// end the search.
 constexpr int seeds = 400, fruitless = 100;
-constexpr int most_ways = 32;
+constexpr int most_branches = 32;
 
 /// Motion of a body: velocity of the point of it that is where the tip is (3), angular velocity (3).
 Position6 cross(const Position6& twist, const Position6& screw) noexcept {
@@ -94,7 +94,7 @@ SerialKinematics::SerialKinematics(const Cell& cell, const SerialOptions& option
     const Joint& joint = cell.arm.joints[i];
     const auto row = static_cast<Eigen::Index>(i);
     if (joint.prismatic) {
-      throw InvalidInput("cell.arm.joints", "must all be revolute; joint " + std::to_string(i + 1) + " slides");
+      throw InvalidInput("cell.arm.joints", "must all be revolute; joint " + std::to_string(i + 1) + " is prismatic");
     }
     limits_.min_position(row) = joint.min_position;
     limits_.max_position(row) = joint.max_position;
@@ -234,25 +234,25 @@ Reach SerialKinematics::follow(const ToolJet& jet, const Position6& near, JointJ
 
 int SerialKinematics::all(const ToolPose& pose, Position6* out, int room) const noexcept {
   const Eigen::Isometry3d flange = flange_pose(cell_, pose);
-  std::array<Position6, most_ways> ways;
+  std::array<Position6, most_branches> branches;
   int count = 0;
   if (inverse_) {
     const InverseSolutions solutions = inverse_->solve(flange);
     for (; count < solutions.count; ++count) {
       const auto k = static_cast<std::size_t>(count);
-      ways[k] = solutions.solution[k].position_rad;
+      branches[k] = solutions.solution[k].position_rad;
     }
   } else {
-    count = search(flange, ways.data());
+    count = search(flange, branches.data());
   }
-  // Turns 0, −1, +1 of each joint; ways without turns come first.
+  // Turns 0, −1, +1 of each joint; branches without turns come first.
   int found = 0;
   for (int code = 0; code < 729; ++code) {
     Position6 turned;
     for (int i = 0, rest = code; i < 6; ++i, rest /= 3)
       turned(i) = units::revolution * (rest % 3 == 2 ? 1 : -(rest % 3));
     for (int k = 0; k < count && found < room; ++k) {
-      const Position6 position = ways[static_cast<std::size_t>(k)] + turned;
+      const Position6 position = branches[static_cast<std::size_t>(k)] + turned;
       const bool inside = (position.array() >= limits_.min_position.array()).all() &&
                           (position.array() <= limits_.max_position.array()).all();
       if (inside) out[found++] = position;
@@ -261,12 +261,12 @@ int SerialKinematics::all(const ToolPose& pose, Position6* out, int room) const 
   return found;
 }
 
-/// Ways of an arm without closed form: where Newton's steps lead from seeds spread over all joints.
-int SerialKinematics::search(const Eigen::Isometry3d& flange, Position6* ways) const noexcept {
+/// Branches of an arm without closed form: where Newton's steps lead from seeds spread over all joints.
+int SerialKinematics::search(const Eigen::Isometry3d& flange, Position6* branches) const noexcept {
   // Roots of x⁷ = x + 1 and their powers spread points evenly in six dimensions.
   constexpr double root = 1.1127756842787055;
   int count = 0;
-  for (int k = 0, last = 0; k < seeds && k - last < fruitless && count < most_ways; ++k) {
+  for (int k = 0, last = 0; k < seeds && k - last < fruitless && count < most_branches; ++k) {
     Position6 at;
     double power = 1.0;
     for (double& angle : at) {
@@ -278,12 +278,12 @@ int SerialKinematics::search(const Eigen::Isometry3d& flange, Position6* ways) c
     for (double& angle : at) angle = std::remainder(angle, units::revolution);
     bool known = false;
     for (int other = 0; other < count && !known; ++other) {
-      Position6 apart = at - ways[other];
+      Position6 apart = at - branches[other];
       for (double& angle : apart) angle = std::remainder(angle, units::revolution);
       known = apart.cwiseAbs().maxCoeff() < 1e-6;
     }
     if (known) continue;
-    ways[count++] = at;
+    branches[count++] = at;
     last = k;
   }
   return count;

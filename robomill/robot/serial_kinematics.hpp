@@ -36,7 +36,7 @@ class ROBOMILL_API SerialKinematics final : public Kinematics {
   explicit SerialKinematics(const Cell& cell, const SerialOptions& options = {});
 
   [[nodiscard]] const Cell& cell() const noexcept { return cell_; }
-  /// Whether all ways to a pose are known in closed form.
+  /// Whether all branches of a pose are known in closed form.
   [[nodiscard]] bool closed_form() const noexcept { return inverse_.has_value(); }
 
   [[nodiscard]] int joints() const noexcept override { return 6; }
@@ -52,7 +52,7 @@ class ROBOMILL_API SerialKinematics final : public Kinematics {
   struct Screws;
   [[nodiscard]] Reach reach(const ToolPose& pose, const Position6& near, Position6& position,
                             Screws& screws) const noexcept;
-  [[nodiscard]] int search(const Eigen::Isometry3d& flange, Position6* ways) const noexcept;
+  [[nodiscard]] int search(const Eigen::Isometry3d& flange, Position6* branches) const noexcept;
   [[nodiscard]] Reach place(const Eigen::Isometry3d& flange, const Position6& near, Position6& position,
                             Posture& posture) const noexcept;
   void undo(const Posture& posture, Screws& screws) const noexcept;

@@ -74,7 +74,7 @@ struct Balance {
   }
 
   /// Newton from `position`; false where it does not come to a stable equilibrium.
-  bool settle(Eigen::VectorXd& position, const Wrench& wrench) {
+  bool find_equilibrium(Eigen::VectorXd& position, const Wrench& wrench) {
     Eigen::VectorXd residual_now = residual(position, wrench);
     for (int k = 0; k < options.max_iterations; ++k) {
       ++iterations;
@@ -192,7 +192,7 @@ LoadedPosture loaded_posture(const Arm& arm, const Eigen::Ref<const Eigen::Vecto
   while (done < 1.0 && part >= least_part) {
     const double share = std::min(1.0, done + part);
     Eigen::VectorXd trial = out.position;
-    if (balance.settle(trial, {.force_n = share * wrench.force_n, .moment_n_m = share * wrench.moment_n_m})) {
+    if (balance.find_equilibrium(trial, {.force_n = share * wrench.force_n, .moment_n_m = share * wrench.moment_n_m})) {
       out.position = trial;
       done = share;
     } else {

@@ -36,7 +36,7 @@ struct ROBOMILL_API SingularityOptions {
 [[nodiscard]] ROBOMILL_API Eigen::MatrixXd load_stiffness(
     const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& jacobian, const Wrench& wrench);
 
-/// How an arm yields at a point of its tool.
+/// How an arm deflects at a point of its tool.
 struct Stiffness {
   enum class Status {
     regular,   ///< compliance and stiffness hold
@@ -71,7 +71,7 @@ struct PrincipalStiffness {
 [[nodiscard]] ROBOMILL_API PrincipalStiffness principal_stiffness(const Eigen::Matrix<double, 6, 6>& compliance);
 
 struct ROBOMILL_API LoadedOptions {
-  /// > 0; a load has settled where max |Δθ| <= tolerance [rad or m], or where the residual no longer falls and |Δθ| <=
+  /// > 0; converged where max |Δθ| <= tolerance [rad or m], or where the residual no longer falls and |Δθ| <=
   /// 1e-9.
   double tolerance = 1e-13;
   int max_iterations = 50;  ///< >= 1; for each part of the load

@@ -74,7 +74,7 @@ typename Engine<D>::Chip Engine<D>::chip(const Element& element, double position
 
 /// Whether the chip's contact changed with this displacement.
 template <int D>
-bool Engine<D>::settle(const Touch& touch, Chip& chip, const Vector<D>& q) const {
+bool Engine<D>::update_contact(const Touch& touch, Chip& chip, const Vector<D>& q) const {
   if (physics_ != Physics::full) return false;
   const bool cuts = normal(*touch.ring, chip.sine, chip.cosine).dot(q) + chip.gap_m > 0.0;
   const bool changed = cuts != chip.cuts;
@@ -191,7 +191,7 @@ void Engine<D>::solve_start() {
   q_a_ = modal_a_;
   if (!compliant_) {
     for (Touch& t : touches_) {
-      if (t.from_start) settle(t, t.start, q_a_);
+      if (t.from_start) update_contact(t, t.start, q_a_);
     }
     return;
   }
@@ -200,7 +200,7 @@ void Engine<D>::solve_start() {
     Affine sum;
     for (Touch& t : touches_) {
       if (!t.from_start) continue;
-      settle(t, t.start, q_a_);
+      update_contact(t, t.start, q_a_);
       add(t, t.start, t.element->width_m, sum);
     }
     const Square<D> implicit = Square<D>::Identity() - sum.k * compliance_;
@@ -209,7 +209,7 @@ void Engine<D>::solve_start() {
     for (Touch& t : touches_) {
       if (!t.from_start) continue;
       Chip looked = t.start;
-      changed = settle(t, looked, q_a_) || changed;
+      changed = update_contact(t, looked, q_a_) || changed;
     }
     if (!changed) break;
   }
@@ -251,8 +251,8 @@ void Engine<D>::solve_step() {
   const Vector<D> fixed_start = start.k * q_a_ + start.f;
   const Vector<D> free = modes_.free_motion();
   for (Touch& t : touches_) {
-    if (t.to_end) settle(t, t.end, q_a_);
-    if (!t.whole()) settle(t, t.middle, q_a_);
+    if (t.to_end) update_contact(t, t.end, q_a_);
+    if (!t.whole()) update_contact(t, t.middle, q_a_);
   }
   Vector<D> from = Vector<D>::Zero(), to = Vector<D>::Zero();
   modal_b_ = free;
@@ -291,8 +291,8 @@ void Engine<D>::solve_step() {
     to = b.k * modal_b_ + b.f;
     bool changed = false;
     for (Touch& t : touches_) {
-      if (t.to_end) changed = settle(t, t.end, q_) || changed;
-      if (!t.whole()) changed = settle(t, t.middle, (1.0 - t.mid) * q_a_ + t.mid * q_) || changed;
+      if (t.to_end) changed = update_contact(t, t.end, q_) || changed;
+      if (!t.whole()) changed = update_contact(t, t.middle, (1.0 - t.mid) * q_a_ + t.mid * q_) || changed;
     }
     if (!changed) break;
   }

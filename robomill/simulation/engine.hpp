@@ -97,7 +97,7 @@ class Engine {
   void touch(const Near& near);
   void add(const Touch& touch, const Chip& chip, double width, Affine& sum) const;
   void add_damping(const Touch& touch, Square<D>& sum) const;
-  bool settle(const Touch& touch, Chip& chip, const Vector<D>& q) const;
+  bool update_contact(const Touch& touch, Chip& chip, const Vector<D>& q) const;
   void solve_start();
   void solve_step();
   struct Assembly;

@@ -132,7 +132,7 @@ TEST(Growth, FindsTheLargestMultiplierOfKnownSnapshots) {
 
 // Source: known sequences of once-a-period samples.
 TEST(Growth, JudgesKnownSequences) {
-  const SmallVibration unknown = {.status = SmallVibration::Status::unsettled};
+  const SmallVibration unknown = {.status = SmallVibration::Status::not_converged};
   const auto sequence = [](double start, double growth, double angle, double most, Eigen::Index n) {
     Eigen::MatrixXd samples(2, n);
     double size = start;

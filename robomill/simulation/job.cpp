@@ -34,7 +34,7 @@ Eigen::Vector3d in_feed_frame(const Eigen::Matrix3d& feed_from_tool, const Vecto
 /// The largest multiplier at one resolution.
 struct Multiplier {
   std::complex<double> value = 0.0;
-  bool settled = false;
+  bool converged = false;
 };
 
 template <int D>
@@ -62,9 +62,9 @@ Multiplier multiplier_at(const CutModel& model, const modal::TipModes& structure
     }
     const double size = snapshots.rightCols(1).norm();
     const std::complex<double> value = dominant_multiplier(snapshots);
-    found.settled = std::abs(std::abs(value) - std::abs(found.value)) <= tolerance * std::max(1.0, std::abs(value));
+    found.converged = std::abs(std::abs(value) - std::abs(found.value)) <= tolerance * std::max(1.0, std::abs(value));
     found.value = value;
-    if (block > 0 && found.settled) break;
+    if (block > 0 && found.converged) break;
     if (!(size > 0.0) || !std::isfinite(size)) break;
     engine.scale(1.0 / size);
   }
@@ -167,7 +167,7 @@ void add_wall(double angle, double feed_per_tooth_m, int rings, const std::vecto
 
 /// Whether the last half of the time, at which verdicts look, repeats with the period of the full speed.
 bool repeats_at_end(const Schedule& schedule, double seconds) {
-  return schedule.settled(0.5 * seconds) && Profile(schedule.speed).at(seconds) == 1.0;
+  return schedule.constant_after(0.5 * seconds) && Profile(schedule.speed).at(seconds) == 1.0;
 }
 
 template <int D>
@@ -222,15 +222,15 @@ void run(const Job& job, const SimulationOptions& options, Progress& progress, S
   }
   if (!repeats_at_end(job.schedule, options.seconds)) return;
   // Small vibration is that of the full depth, which the cut need not have come to.
-  const SmallVibration unknown = {.status = SmallVibration::Status::unsettled};
+  const SmallVibration unknown = {.status = SmallVibration::Status::not_converged};
   const Judgement judgement = judge(watch.samples, job.schedule.active() ? unknown : out.small);
   out.verdict = judgement.verdict;
   out.growth_per_period = judgement.growth_per_period;
   if (out.verdict == Verdict::chatter) {
     const int repeat = job.period.repeats ? job.period.revolutions * out.steps_per_revolution : 0;
-    const Tone tone = strongest_tone(watch.motion, repeat, 1.0 / h);
-    out.chatter_frequency_hz = tone.frequency_hz;
-    out.chatter_amplitude_m = tone.amplitude_m;
+    const SpectralLine line = strongest_line(watch.motion, repeat, 1.0 / h);
+    out.chatter_frequency_hz = line.frequency_hz;
+    out.chatter_amplitude_m = line.amplitude_m;
   }
   for (std::size_t w = 0; w < job.walls.size(); ++w) {
     add_wall(job.walls[w], job.feed_per_tooth_m, static_cast<int>(model.rings.size()), engine.wall_passes(w), out);
@@ -258,8 +258,8 @@ SmallVibration small_vibration(const Job& job, const SimulationOptions& options,
   small.multiplier = found[1].value;
   small.spectral_radius = std::max(0.0, fine + (fine - coarse) / 3.0);
   small.error_estimate = std::abs(fine - coarse) / 3.0;
-  const bool settled = found[0].settled && found[1].settled && std::isfinite(fine);
-  small.status = settled ? SmallVibration::Status::found : SmallVibration::Status::unsettled;
+  const bool converged = found[0].converged && found[1].converged && std::isfinite(fine);
+  small.status = converged ? SmallVibration::Status::found : SmallVibration::Status::not_converged;
   return small;
 }
 

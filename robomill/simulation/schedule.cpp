@@ -23,15 +23,15 @@ void require_line(const char* member, const std::vector<Schedule::Point>& points
   }
 }
 
-bool line_settled(const std::vector<Schedule::Point>& points, double time_s) {
+bool line_constant_after(const std::vector<Schedule::Point>& points, double time_s) {
   const double last = detail::Profile(points).at(time_s);
   return std::ranges::all_of(points, [&](const Schedule::Point& p) { return p.time_s <= time_s || p.share == last; });
 }
 
 }  // namespace
 
-bool Schedule::settled(double time_s) const {
-  return line_settled(depth, time_s) && line_settled(speed, time_s);
+bool Schedule::constant_after(double time_s) const {
+  return line_constant_after(depth, time_s) && line_constant_after(speed, time_s);
 }
 
 void Schedule::validate() const {

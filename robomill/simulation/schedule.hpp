@@ -25,7 +25,7 @@ struct ROBOMILL_API Schedule {
 
   [[nodiscard]] bool active() const { return !depth.empty() || !speed.empty(); }
   /// Whether nothing changes any more after this time.
-  [[nodiscard]] bool settled(double time_s) const;
+  [[nodiscard]] bool constant_after(double time_s) const;
   /// @throws InvalidInput naming the member
   void validate() const;
 };

@@ -45,10 +45,10 @@ struct ROBOMILL_API SimulationOptions {
 
 /// Where a small vibration about the forced one goes: the linear cut from a random start, looked at once a period.
 struct SmallVibration {
-  /// found: the other members hold. unsettled: the multiplier's size still moved by > 1e-7 · max(1, |μ|) when the
-  /// patience ended. not_periodic: the speed swings with a ratio that no 50 revolutions repeat. rigid: nothing can
+  /// found: the other members hold. not_converged: the multiplier's size still moved by > 1e-7 · max(1, |μ|) when the
+  /// iterations ended. not_periodic: the speed swings with a ratio that no 50 revolutions repeat. rigid: nothing can
   /// vibrate.
-  enum class Status { found, unsettled, not_periodic, rigid };
+  enum class Status { found, not_converged, not_periodic, rigid };
   Status status = Status::rigid;
   std::complex<double> multiplier = 0.0;  ///< of one period, the largest
   double spectral_radius = 0.0;           ///< its size, extrapolated from two step sizes

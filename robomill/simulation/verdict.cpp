@@ -42,7 +42,7 @@ Judgement judge(const Eigen::MatrixXd& samples, const SmallVibration& small) {
   const double earlier = change.middleCols(periods - 2 * quarter, quarter).norm();
   const double last = change.rightCols(quarter).norm();
   const double motion = samples.rightCols(quarter).norm();
-  // What is left of a motion that has died out is rounding.
+  // The remainder of a motion that has died out is rounding.
   if (last <= 1e-8 * motion) return {Verdict::stable, 0.0};
   const double ratio = last / std::max(earlier, 1e-300);
   const double growth = std::pow(ratio, 1.0 / static_cast<double>(quarter));
@@ -71,10 +71,10 @@ Eigen::Index quick_length(Eigen::Index n) {
 
 }  // namespace
 
-Tone strongest_tone(const Eigen::MatrixXd& motion, Eigen::Index period, double sample_rate_hz) {
-  Tone tone;
+SpectralLine strongest_line(const Eigen::MatrixXd& motion, Eigen::Index period, double sample_rate_hz) {
+  SpectralLine line;
   const Eigen::Index turns = period > 0 ? motion.rows() / period : 0;
-  if (turns < 4) return tone;
+  if (turns < 4) return line;
   const Eigen::Index length = turns * period;
   for (Eigen::Index c = 0; c < motion.cols(); ++c) {
     Eigen::VectorXd rest = motion.col(c).tail(length);
@@ -84,11 +84,11 @@ Tone strongest_tone(const Eigen::MatrixXd& motion, Eigen::Index period, double s
     folded.colwise() -= repeated;
     const auto peaks =
         signal::find_peaks(signal::amplitude_spectrum(rest.tail(quick_length(length)), sample_rate_hz), {.count = 1});
-    if (!peaks.empty() && peaks.front().amplitude > tone.amplitude_m) {
-      tone = {peaks.front().frequency_hz, peaks.front().amplitude};
+    if (!peaks.empty() && peaks.front().amplitude > line.amplitude_m) {
+      line = {peaks.front().frequency_hz, peaks.front().amplitude};
     }
   }
-  return tone;
+  return line;
 }
 
 }  // namespace robomill::simulation::detail

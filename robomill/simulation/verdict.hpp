@@ -20,11 +20,11 @@ struct Judgement {
 /// @param samples  one column a period: displacements at the same phases of each
 [[nodiscard]] Judgement judge(const Eigen::MatrixXd& samples, const SmallVibration& small);
 
-struct Tone {
+struct SpectralLine {
   double frequency_hz = 0.0, amplitude_m = 0.0;
 };
 /// The strongest motion that does not repeat every `period` samples; nothing where there are fewer than four periods.
 /// @param motion  one row a sample, one column a direction
-[[nodiscard]] Tone strongest_tone(const Eigen::MatrixXd& motion, Eigen::Index period, double sample_rate_hz);
+[[nodiscard]] SpectralLine strongest_line(const Eigen::MatrixXd& motion, Eigen::Index period, double sample_rate_hz);
 
 }  // namespace robomill::simulation::detail

@@ -145,7 +145,7 @@ struct LobesResult {
   Method method = Method::collocation;
   Period period = Period::tooth;  ///< of the spectral radius
   long long evaluations = 0;      ///< spectral radii found
-  long long unsettled = 0;  ///< of these, how many the eigenvalue iterations did not settle; 0 unless the cut is absurd
+  long long unsettled = 0;        ///< of these, in how many the eigenvalue did not converge; 0 unless the cut is absurd
   /// Nodes of the map and points of boundary, limit and points with error_estimate > tolerance · max(1, radius); of
   /// multi_frequency the limits that did not converge. 0 for discretizations, which are not refined.
   long long uncertain = 0;

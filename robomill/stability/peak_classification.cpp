@@ -129,7 +129,7 @@ ExplainedPeak judged(double peak_hz, std::vector<Explanation> readings, double r
     peak.best = readings.front();
     readings.erase(readings.begin());
   } else {
-    peak.state = ExplainedPeak::State::cannot_be_told;
+    peak.state = ExplainedPeak::State::ambiguous;
     peak.best.kind = std::ranges::all_of(likely, is_chatter) ? Named::chatter : Named::cut_or_chatter;
   }
   peak.others = std::move(readings);
@@ -171,12 +171,12 @@ void name_mode(PeakClassification& out) {
   std::map<modal::ModeId, int> named;
   int most = 0;
   for (const ExplainedPeak& peak : out.peaks) {
-    if (peak.state == ExplainedPeak::State::cannot_be_told) out.state = PeakClassification::State::cannot_be_told;
+    if (peak.state == ExplainedPeak::State::ambiguous) out.state = PeakClassification::State::ambiguous;
     if (peak.best.mode.known()) most = std::max(most, ++named[peak.best.mode]);
   }
   if (most == 0) return;
   const auto has_most = [&](const auto& entry) { return entry.second == most; };
-  out.state = PeakClassification::State::cannot_be_told;
+  out.state = PeakClassification::State::ambiguous;
   if (std::ranges::count_if(named, has_most) > 1) return;
   out.state = PeakClassification::State::named;
   out.mode = std::ranges::find_if(named, has_most)->first;
@@ -235,7 +235,7 @@ std::string_view to_string(ExplainedPeak::State state) {
   switch (state) {
     case ExplainedPeak::State::named:
       return "named";
-    case ExplainedPeak::State::cannot_be_told:
+    case ExplainedPeak::State::ambiguous:
       return "cannot be told";
     case ExplainedPeak::State::unexplained:
       break;
@@ -247,7 +247,7 @@ std::string_view to_string(PeakClassification::State state) {
   switch (state) {
     case PeakClassification::State::named:
       return "named";
-    case PeakClassification::State::cannot_be_told:
+    case PeakClassification::State::ambiguous:
       return "cannot be told";
     case PeakClassification::State::no_chatter:
       break;

@@ -12,7 +12,7 @@
 
 namespace robomill::stability {
 
-/// A cut that was listened to.
+/// The peaks of a recorded cut.
 struct ROBOMILL_API MeasuredPeaks {
   std::vector<double> frequency_hz = {};  ///< peaks of the spectrum [Hz], > 0; at least one
   double spindle_speed_rad_per_s = 0.0;   ///< as commanded [rad/s], > 0; required
@@ -53,10 +53,10 @@ struct Explanation {
 };
 
 struct ExplainedPeak {
-  /// named: one meaning is clearly the likeliest, and `best` is its reading. cannot_be_told: another reading, of
+  /// named: one meaning is clearly the likeliest, and `best` is its reading. ambiguous: another reading, of
   /// another mode or of the cut in place of chatter, is about as likely as the best (likelihood >= best / clear_odds);
   /// `best` holds the kind alone and the readings are `others`. unexplained: nothing lies within its tolerance.
-  enum class State { named, cannot_be_told, unexplained };
+  enum class State { named, ambiguous, unexplained };
   double frequency_hz = 0.0;
   State state = State::unexplained;
   Explanation best;
@@ -67,9 +67,9 @@ struct ExplainedPeak {
 };
 
 struct PeakClassification {
-  /// named: more peaks name one mode than any other. cannot_be_told: there may be chatter, but no peak names its mode,
+  /// named: more peaks name one mode than any other. ambiguous: there may be chatter, but no peak names its mode,
   /// or as many name one as another. no_chatter: every peak is the cut's own or unexplained.
-  enum class State { named, cannot_be_told, no_chatter };
+  enum class State { named, ambiguous, no_chatter };
   double spindle_speed_rad_per_s = 0.0;  ///< that the peaks which are multiples of rotation agree on, or as commanded
   bool speed_from_peaks = false;
   std::vector<ExplainedPeak> peaks;

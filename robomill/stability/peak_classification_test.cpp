@@ -87,7 +87,7 @@ TEST(PeakClassification, NamesNoReadingWhereAnotherIsAboutAsGood) {
   using State = ExplainedPeak::State;
   const PeakClassification found = robot_peaks({540.9, 539.5}, 6500);
   const ExplainedPeak& peak = found.peaks[0];
-  EXPECT_EQ(peak.state, State::cannot_be_told);
+  EXPECT_EQ(peak.state, State::ambiguous);
   EXPECT_EQ(peak.best.kind, Named::cut_or_chatter);
   EXPECT_FALSE(peak.best.mode.known());
   EXPECT_TRUE(std::isnan(peak.chatter_frequency_hz));
@@ -100,11 +100,11 @@ TEST(PeakClassification, NamesNoReadingWhereAnotherIsAboutAsGood) {
     EXPECT_NEAR(e.tolerance_hz, e.mode.number == 8 ? 0.021 * 543.67 : e.mode.number == 7 ? 0.0068 * 540.08 : 1.0, 1e-9);
   }
   // Of 539.5 Hz both modes are readings, and no multiple: it is chatter, of either.
-  EXPECT_EQ(found.peaks[1].state, State::cannot_be_told);
+  EXPECT_EQ(found.peaks[1].state, State::ambiguous);
   EXPECT_EQ(found.peaks[1].best.kind, Named::chatter);
   EXPECT_EQ(found.peaks[1].others[0].mode.number, 7);
   EXPECT_EQ(found.peaks[1].others[1].mode.number, 8);
-  EXPECT_EQ(found.state, PeakClassification::State::cannot_be_told);
+  EXPECT_EQ(found.state, PeakClassification::State::ambiguous);
   EXPECT_FALSE(found.mode.known());
   EXPECT_TRUE(std::isnan(found.chatter_frequency_hz));
   // Another peak that mode 8 alone explains names it, for the whole.
@@ -120,17 +120,17 @@ TEST(PeakClassification, EqualModesCannotBeDistinguished) {
   const modal::ModalModel modes =
       testing::plane_model({testing::mass_mode(0, 700.0, 0.01, 1.0), testing::mass_mode(1, 700.0, 0.01, 1.0)});
   const PeakClassification found = explain({{702.0}, 5000 * rpm, 3}, modes);
-  EXPECT_EQ(found.peaks[0].state, ExplainedPeak::State::cannot_be_told);
+  EXPECT_EQ(found.peaks[0].state, ExplainedPeak::State::ambiguous);
   EXPECT_EQ(found.peaks[0].best.kind, Named::chatter);
   EXPECT_NEAR(found.peaks[0].chatter_frequency_hz, 702.0, 1e-9);
-  EXPECT_EQ(found.state, PeakClassification::State::cannot_be_told);
+  EXPECT_EQ(found.state, PeakClassification::State::ambiguous);
   // As many peaks for one mode as for another: neither is named.
   const modal::ModalModel apart =
       testing::plane_model({testing::mass_mode(0, 700.0, 0.001, 1.0), testing::mass_mode(1, 730.0, 0.001, 1.0)});
   const PeakClassification both = explain({{700.1, 730.1}, 5000 * rpm, 3}, apart);
   EXPECT_EQ(both.peaks[0].best.mode.number, 1);
   EXPECT_EQ(both.peaks[1].best.mode.number, 2);
-  EXPECT_EQ(both.state, PeakClassification::State::cannot_be_told);
+  EXPECT_EQ(both.state, PeakClassification::State::ambiguous);
   EXPECT_EQ(explain({{700.1, 730.1, 1200.0}, 5000 * rpm, 3}, apart, {.clear_odds = 1.0}).peaks.size(), 3U);
 }
 

@@ -65,7 +65,7 @@ TEST(SurfaceError, OfEqualTeethIsTheStructuresAnswerToTheSteadyForce) {
   }
 }
 
-// Far below resonance the tool gives way as a spring; down-milling leaves the wall as the last of the chip, which is
+// Far below resonance the tool deflects as a spring; down-milling leaves the wall as the last of the chip, which is
 // nothing, lets it: at the exit the force is that of the edge alone.
 TEST(SurfaceError, SlowCutsBendTheToolAsASpring) {
   LobesProblem problem = fed(0.1);

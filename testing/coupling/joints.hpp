@@ -11,7 +11,7 @@ namespace robomill::coupling::testing {
 inline constexpr detail::JointValues planted = {2e7, 40.0, 5e4, 0.5};
 
 inline detail::JointModel model_of(const Assembly& assembly, const Eigen::VectorXd& frequency_hz, double cross = 0.0) {
-  return detail::JointModel(detail::spans(assembly.tool, frequency_hz),
+  return detail::JointModel(detail::beam_elements(assembly.tool, frequency_hz),
                             detail::base_receptances(assembly.holder, frequency_hz).x, frequency_hz, cross);
 }
 

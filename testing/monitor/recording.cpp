@@ -214,7 +214,6 @@ Truth truth_of(const CutPlan& plan, const CleanCut& clean, bool chatter) {
   Truth truth;
   const double level = reference_level(plan, clean);
   truth.chatter = chatter;
-  truth.hidden = plan.locked;
   truth.speed_rad_per_s = clean.speed_rad_per_s;
   CleanCut::Columns c = clean.acceleration_m_per_s2 - clean.forced_m_per_s2;
   CleanCut::Columns moved = clean.regenerated_m;

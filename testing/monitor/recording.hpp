@@ -26,10 +26,9 @@ struct Truth {
   /// From then to t10 the amplitude is above a fiftieth of the final one or a tenth of the reference level, whichever
   /// is less: chatter is there.
   double start_s = 0.0;
-  double t10_s = 0.0;   ///< from then on it is above a tenth, until it has reached half
-  double end_s = 0.0;   ///< below a tenth after it was last above half; else the end of the recording
-  bool ends = false;    ///< whether that is before the recording's end
-  bool hidden = false;  ///< by design at multiples of the spindle's rotation
+  double t10_s = 0.0;  ///< from then on it is above a tenth, until it has reached half
+  double end_s = 0.0;  ///< below a tenth after it was last above half; else the end of the recording
+  bool ends = false;   ///< whether that is before the recording's end
   double final_m_per_s2 = 0.0;
   double comb_gain = 1.0;  ///< of the change per revolution at frequency_hz; amplitudes are divided by it
   /// Strongest line of c where its amplitude is above half the final one; and all lines within 10 dB of it.

@@ -3,7 +3,7 @@
 
 namespace robomill::page {
 
-/// Two channels of a tooth passing into which a growing tone breaks, as a recorder saw them.
+/// Two channels of a tooth passing with a line that grows, as a recorder saw them.
 /// @param text  of names, facts, notes and an event on the stream, where it is not empty
 [[nodiscard]] std::string sample_monitor(const std::string& text = {});
 /// calibration.json of three recordings. @param name  of the first

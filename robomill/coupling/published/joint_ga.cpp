@@ -163,7 +163,7 @@ JointSearch search_by_genes(const JointModel& model, const Eigen::VectorXcd& mea
   progress.start("genetic algorithm", static_cast<std::size_t>(options.generations));
   const pagmo::algorithm algorithm{Generations(options, random, search.best, progress)};
   std::ranges::copy(algorithm.evolve(population).champion_x(), search.joint.begin());
-  // Settled: the last fifth of the generations brought less than a hundredth.
+  // Converged: the last fifth of the generations brought less than a hundredth.
   const std::size_t fifth = std::max<std::size_t>(1, search.best.size() / 5);
   const double before = search.best.size() > fifth ? search.best[search.best.size() - 1 - fifth] : HUGE_VAL;
   search.converged = before - search.best.back() <= 0.01 * before;

@@ -209,7 +209,7 @@ void read_start(io::TomlFile& file, CellFile& out) {
   for (std::size_t i = 0; i < arm.joints.size(); ++i) {
     const robot::Joint& joint = arm.joints[i];
     if (joint.prismatic)
-      throw file.reject("robot.start_joints_deg", fmt::format("must be angles; joint {} slides", i + 1));
+      throw file.reject("robot.start_joints_deg", fmt::format("must be angles; joint {} is prismatic", i + 1));
     if (out.start_joints[i] < joint.min_position || out.start_joints[i] > joint.max_position) {
       throw file.reject("robot.start_joints_deg",
                         fmt::format("must lie within the limits; joint {} has {:.6g} to {:.6g} deg", i + 1,

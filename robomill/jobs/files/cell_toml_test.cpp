@@ -285,9 +285,9 @@ TEST(CellToml, TakesJointLimitsWithTheirUnit) {
   EXPECT_NE(said("joint_max_velocity_deg_per_s = [120, 115, 112, 179, -172, 219]")
                 .find("cell.toml:13: robot.joint_max_velocity_deg_per_s[5] = -172 deg/s; must be >= 0"),
             std::string::npos);
-  EXPECT_NE(said("joint_max_velocity_deg_per_s = [120]").find("one number for each joint that turns, 6; it holds 1"),
+  EXPECT_NE(said("joint_max_velocity_deg_per_s = [120]").find("one number for each revolute joint, 6; it holds 1"),
             std::string::npos);
-  EXPECT_NE(said("joint_max_velocity_mm_per_s = [120]").find("one number for each joint that slides, 0; it holds 1"),
+  EXPECT_NE(said("joint_max_velocity_mm_per_s = [120]").find("one number for each prismatic joint, 0; it holds 1"),
             std::string::npos);
   EXPECT_NE(said("joint_max_velocity = [2, 2, 2, 3, 3, 4]\njoint_max_velocity_deg_per_s = [1, 2, 3, 4, 5, 6]")
                 .find("robot.joint_max_velocity_deg_per_s: must not stand beside robot.joint_max_velocity"),
@@ -395,7 +395,7 @@ TEST(CellToml, SaysWhatIsWrongWithAHybridMachine) {
   expect("joint_min_position = [0.4, 0.4, 0.4, -1, -1]", "joint_min_position_mm = [400, 400, 1400, -1000, -1000]",
          "cell.toml:4: robot.joint_min_position_mm[3] = 1400 mm; must be below max_position");
   expect("joint_max_velocity = ", "joint_max_velocity_deg_per_s = ",
-         "cell.toml:6: robot.joint_max_velocity_deg_per_s: must hold one number for each joint that turns, 0");
+         "cell.toml:6: robot.joint_max_velocity_deg_per_s: must hold one number for each revolute joint, 0");
   EXPECT_NE(rejection([&] {
               (void)read_cell(folder.file("cell.toml", with("gamma_deg = 30", "base_offset_mm = 30")), Robots::any);
             }).find("cell.toml:21: robot.base_offset_mm = 30 mm; goes with kind = \"hybrid-2upr-rpu\""),

@@ -13,7 +13,7 @@ namespace {
 constexpr double drift_hz = 3.0;        // corner of the high-pass
 constexpr double jump = 4.0;            // of the power: the tool enters or leaves
 constexpr std::size_t entry_lasts = 8;  // hops
-constexpr std::size_t steady_hops = 2;  // of a tone where there is no comb
+constexpr std::size_t steady_hops = 2;  // of a line where there is no comb
 constexpr double longest_look_s = 0.3;  // for the frequency
 constexpr double falling = 0.85;        // of the power to that of the hop before
 constexpr double falling_fast = 0.75;   // of half a hop's power to that of the halves before
@@ -56,7 +56,7 @@ CombCusum::CombCusum(const MonitorOptions& options)
       late_half_(channels_),
       falls_(std::make_unique<bool[]>(channels_)),
       history_(kept * lines_, -1e9),
-      hidden_harmonics_(comb_.max_harmonics(), options.teeth) {
+      synchronous_detector_(comb_.max_harmonics(), options.teeth) {
   for (std::size_t c = 0; c < channels_; ++c) {
     streams_.emplace_back(transform_of(options, columns_a_hop),
                           signal::equal_bands(options.sample_rate_hz, options.bands));
@@ -81,12 +81,12 @@ void CombCusum::reset() noexcept {
   slow_power_ = power_before_ = 0.0;
   entry_hops_ = jumps_ = broad_ = calm_ = steady_ = still_bad_ = 0;
   hops_ = bad_ = 0;
-  tone_.reset();
+  narrowband_.reset();
   broadband_growth_.reset();
-  hidden_harmonics_.reset();
+  synchronous_detector_.reset();
   line_ = channel_ = 0;
   state_ = State::stable;
-  hidden_ = Hidden::none;
+  synchronous_ = SynchronousChatter::none;
   found_ = {};
 }
 
@@ -152,8 +152,8 @@ bool CombCusum::speed_holds() noexcept {
   const SpindleTracker::Change change = spindle_.check();
   take_up(change);
   if (change.locked) return false;
-  // Without a comb only a steady tone counts.
-  return spindle_.rotation_hz() > 0.0 || tone_.begun() || steady_ >= steady_hops;
+  // Without a comb only a steady line counts.
+  return spindle_.rotation_hz() > 0.0 || narrowband_.begun() || steady_ >= steady_hops;
 }
 
 // The comb, learnt anew at the speed now followed from so many samples.
@@ -174,7 +174,7 @@ void CombCusum::comb() noexcept {
   spindle_.correct(comb_.run({.samples = input_,
                               .bad_channels = bad_,
                               .rotation_hz = spindle_.rotation_hz(),
-                              .learns = !chatters || hidden_ != Hidden::none,
+                              .learns = !chatters || synchronous_ != SynchronousChatter::none,
                               .steers = !chatters},
                              residual_));
   double before = 0.0;
@@ -252,7 +252,7 @@ void CombCusum::leave_power() noexcept {
   }
 }
 
-// Where the tool leaves or the speed runs away, the signal holds less of the comb than the comb predicts: what is left
+// Where the tool leaves or the speed runs away, the signal holds less of the comb than the comb predicts: the residual
 // is the comb's own. Chatter comes on top of it.
 bool CombCusum::comb_follows(std::size_t channel) const noexcept {
   double own = 0.0;

@@ -7,7 +7,7 @@
 #include "robomill/monitor/comb_cusum/cusum.hpp"
 #include "robomill/monitor/comb_cusum/frequency.hpp"
 #include "robomill/monitor/comb_cusum/narrowband_detector.hpp"
-#include "robomill/monitor/comb_cusum/synchronous_chatter.hpp"
+#include "robomill/monitor/comb_cusum/synchronous_detector.hpp"
 #include "robomill/monitor/detector.hpp"
 #include "robomill/monitor/entropy.hpp"
 #include "robomill/monitor/spindle/spindle.hpp"
@@ -81,7 +81,7 @@ class CombCusum final : public Detector {
   std::size_t away_ = 0;            // channels in which the comb predicts what no longer comes
   std::vector<double> history_;     // of the lines' log energies, loudest channel; `kept` hops
   std::vector<double> band_power_;  // of the hop, each channel's bands
-  std::uint64_t bad_ = 0;           // channels that are not listened to
+  std::uint64_t bad_ = 0;           // channels that are left out
   std::size_t still_bad_ = 0;       // hops until a channel that is well again counts
   double slow_power_ = 0.0;
   std::size_t jumps_ = 0;
@@ -92,13 +92,13 @@ class CombCusum final : public Detector {
   std::size_t line_ = 0, channel_ = 0;  // of chatter
   bool above_baseline_ = true;
   double highest_ = 0.0;  // log energy of chatter's line, at most so far
-  NarrowbandDetector tone_;
+  NarrowbandDetector narrowband_;
   BroadbandGrowth broadband_growth_;
-  SynchronousChatter hidden_harmonics_;
+  SynchronousDetector synchronous_detector_;
   double power_before_ = 0.0;  // of all channels, a hop ago
   std::size_t broad_ = 0, calm_ = 0, steady_ = 0;
   FrequencyEstimate found_;
-  Hidden hidden_ = Hidden::none;
+  SynchronousChatter synchronous_ = SynchronousChatter::none;
 };
 
 }  // namespace robomill::monitor

@@ -15,24 +15,24 @@ constexpr double fainter = 1.0;       // and fall from its highest
 constexpr double broad_height = 1.2;  // of the median line: entry, exit
 constexpr std::size_t broad_hops = 3;
 constexpr std::size_t calm_hops = 2;
-constexpr double hidden_learnt_s = 0.5;  // before that it is not known which harmonics are usual
-constexpr double lowest_tone_hz = 90.0;  // below hums the mains
-constexpr double entry_width_hz = 6.0;   // by which a line misses its harmonic while the tool enters
+constexpr double synchronous_learnt_s = 0.5;  // before that it is not known which harmonics are usual
+constexpr double lowest_line_hz = 90.0;       // mains hum lies below
+constexpr double entry_width_hz = 6.0;        // by which a line misses its harmonic while the tool enters
 constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0;  // orders that a hint resolves
 constexpr double highest_of_unknown_teeth = 12.0;                    // three of four teeth
 
 }  // namespace
 
 bool CombCusum::process_synchronous() noexcept {
-  if (!comb_known() || !hidden_harmonics_.step(comb_.combs(), power(), comb_.learnt_s() > hidden_learnt_s))
+  if (!comb_known() || !synchronous_detector_.step(comb_.combs(), power(), comb_.learnt_s() > synchronous_learnt_s))
     return false;
   if (!speed_holds()) {
-    hidden_harmonics_.doubt();
+    synchronous_detector_.doubt();
     return false;
   }
-  hidden_ = hidden_harmonics_.kind();
-  found_ = {.frequency_hz = static_cast<double>(hidden_harmonics_.harmonic()) * spindle_.rotation_hz(),
-            .std_hz = 1.0 / (SynchronousChatter::hops * options_.hop_s) / std::sqrt(12.0)};
+  synchronous_ = synchronous_detector_.kind();
+  found_ = {.frequency_hz = static_cast<double>(synchronous_detector_.harmonic()) * spindle_.rotation_hz(),
+            .std_hz = 1.0 / (SynchronousDetector::hops * options_.hop_s) / std::sqrt(12.0)};
   return true;
 }
 
@@ -72,7 +72,7 @@ void CombCusum::judge(Decision& decision) noexcept {
   decision.score = alone || grows ? std::max(verdict.score, 1.001 * lines_test_.threshold()) : verdict.score;
   decision.threshold = lines_test_.threshold();
   decision.channel = static_cast<int>(channel_);
-  decision.hidden = hidden_;
+  decision.synchronous = synchronous_;
   if (state_ != State::stable) report_frequency(decision);
 }
 
@@ -97,7 +97,7 @@ bool CombCusum::process_narrowband() noexcept {
   std::size_t line = 0;
   double most = 0.0;
   for (std::size_t k = 2; k + 1 < lines_; ++k) {
-    if (line_hz(k) < lowest_tone_hz) continue;
+    if (line_hz(k) < lowest_line_hz) continue;
     double energy = 0.0;
     for (std::size_t c = 0; c < channels_; ++c)
       energy += std::max(0.0, energy_[c * lines_ + k] - taken_[c * lines_ + k]);
@@ -113,12 +113,12 @@ bool CombCusum::process_narrowband() noexcept {
   // Without a comb the residual is the whole; each line is summed thrice.
   const double energy =
       comb_known() ? whole * energy_of_power() : std::accumulate(energy_.begin(), energy_.end(), 1e-300) / 3.0;
-  return tone_.step({.line = line,
-                     .share = most / energy,
-                     .power = whole,
-                     .comb_known = comb_known(),
-                     .falls = std::all_of(falls_.get(), falls_.get() + channels_, [](bool each) { return each; }),
-                     .may_be_the_cut = may_be_the_cut(line_hz(line))});
+  return narrowband_.step({.line = line,
+                           .share = most / energy,
+                           .power = whole,
+                           .comb_known = comb_known(),
+                           .falls = std::all_of(falls_.get(), falls_.get() + channels_, [](bool each) { return each; }),
+                           .may_be_the_cut = may_be_the_cut(line_hz(line))});
 }
 
 bool CombCusum::process_broadband() noexcept {
@@ -138,7 +138,7 @@ void CombCusum::begin_chatter(bool above_baseline) noexcept {
 void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
   const double threshold = lines_test_.threshold();
   if (at_once && away_ == 0 && speed_holds()) {
-    line_ = tone_.line();
+    line_ = narrowband_.line();
     begin_chatter(false);
     return;
   }
@@ -146,7 +146,7 @@ void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
     lines_test_.relearn();
     state_ = State::stable;
     broad_ = 0;
-    hidden_harmonics_.doubt();
+    synchronous_detector_.doubt();
     return;
   }
   if (process_synchronous()) {
@@ -212,12 +212,12 @@ void CombCusum::follow_line() noexcept {
 }
 
 void CombCusum::in_chatter() noexcept {
-  if (hidden_ != Hidden::none) {
+  if (synchronous_ != SynchronousChatter::none) {
     // The comb follows on: it is what sees this one.
-    calm_ = hidden_harmonics_.falls(comb_.combs()) ? calm_ + 1 : 0;
+    calm_ = synchronous_detector_.falls(comb_.combs()) ? calm_ + 1 : 0;
     if (calm_ < calm_hops) return;
-    hidden_ = Hidden::none;
-    hidden_harmonics_.doubt();
+    synchronous_ = SynchronousChatter::none;
+    synchronous_detector_.doubt();
     calm_ = 0;
     state_ = State::transition;
     lines_test_.relearn();
@@ -237,8 +237,8 @@ void CombCusum::in_chatter() noexcept {
 }
 
 void CombCusum::report_frequency(Decision& decision) noexcept {
-  // Once its line has fallen, what is left there is another's.
-  if (state_ == State::chatter && hidden_ == Hidden::none && calm_ == 0)
+  // Once its line has fallen, the residual there is another's.
+  if (state_ == State::chatter && synchronous_ == SynchronousChatter::none && calm_ == 0)
     found_ = rings_[channel_].estimate(line_hz(line_), line_hz(1), 8.0 * options_.hop_s);
   decision.chatter_frequency_hz = found_.frequency_hz;
   decision.chatter_frequency_std_hz = found_.std_hz;

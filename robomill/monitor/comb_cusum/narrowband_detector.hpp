@@ -7,7 +7,7 @@ namespace robomill::monitor {
 /// Where the comb is taken off: x > 0.15 in three hops that do not fall. Where it is not known: x > 0.4 while ln P
 /// rises by 0.25 a hop, four hops in a row and by 2 in all, at a frequency that the cut itself cannot have; or,
 /// wherever it is, five hops, by 4 in all and still by 0.5: what enters a cut rises less and less, chatter as fast as
-/// before. A tone at half of its greatest power rings off and is forgotten.
+/// before. A line at half of its greatest power rings off and is forgotten.
 class NarrowbandDetector {
  public:
   struct Hop {

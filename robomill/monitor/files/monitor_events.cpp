@@ -58,7 +58,7 @@ std::string event_line(const MonitorEvent& event) {
   json["chatter_frequency_hz"] = positive(d.chatter_frequency_hz);
   json["chatter_frequency_std_hz"] = chatters ? io::number(d.chatter_frequency_std_hz) : io::Json(nullptr);
   json["channel"] = chatters ? io::Json(d.channel + 1) : io::Json(nullptr);
-  json["hidden"] = d.hidden == Hidden::none ? io::Json(nullptr) : io::Json(to_string(d.hidden));
+  json["hidden"] = d.synchronous == SynchronousChatter::none ? io::Json(nullptr) : io::Json(to_string(d.synchronous));
   modal::set_mode(json, event.mode);
   json["spindle_speed_rpm"] = positive(d.spindle_speed_rad_per_s, units::rpm);
   json["suggested_spindle_speed_rpm"] = positive(event.suggested_spindle_speed_rad_per_s, units::rpm);

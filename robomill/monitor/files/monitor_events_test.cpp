@@ -20,7 +20,7 @@ TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   event.decision.chatter_frequency_std_hz = 0.4;
   event.decision.channel = 1;
   event.decision.faults = clipped | not_finite;
-  event.decision.hidden = Hidden::locked;
+  event.decision.synchronous = SynchronousChatter::locked;
   event.mode = {2};
   event.suggested_spindle_speed_rad_per_s = 6500.0 * units::rpm;
   event.stable_speeds_rad_per_s = {6500.0 * units::rpm, 3250.0 * units::rpm};

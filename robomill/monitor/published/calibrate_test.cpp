@@ -174,7 +174,7 @@ TEST(Calibrate, SumsOverChannels) {
   }
   const double single = calibrate(one, {.sample_rate_hz = rate_hz}).options.threshold;
   EXPECT_DOUBLE_EQ(calibrate(two, {.sample_rate_hz = rate_hz, .channels = 2}).options.threshold, 2.0 * single);
-  // A tachometer's channel is not listened to.
+  // A tachometer's channel is not processed.
   EXPECT_DOUBLE_EQ(
       calibrate(two, {.sample_rate_hz = rate_hz, .channels = 2, .tachometer_channel = 1}).options.threshold, single);
 }

@@ -53,7 +53,7 @@ SpindleTracker::SpindleTracker(const MonitorOptions& options)
 
 void SpindleTracker::set_hint(double rotation_hz) noexcept {
   hint_hz_ = rotation_hz;
-  // Step by step a hint that creeps is another one, too.
+  // Step by step a hint that drifts is another one, too.
   if (std::abs(rotation_hz - reported_hz_) <= same_hint * reported_hz_) return;
   reported_hz_ = rotation_hz;
   known_hz_ = 0.0;

@@ -199,7 +199,7 @@ void Checker::State::close() {
   ++open_;
 }
 
-bool Checker::State::settled(std::size_t block) {
+bool Checker::State::finished(std::size_t block) {
   const Corner& corner = window_.corner(block);
   const bool passed = corner.tip.wake == never && corner.axis.wake == never;
   const bool stands = window_.segment(block).dwell_s > 0.0;
@@ -209,7 +209,7 @@ bool Checker::State::settled(std::size_t block) {
 }
 
 void Checker::State::close_old() {
-  while (open_ < window_.high() && settled(open_)) close();
+  while (open_ < window_.high() && finished(open_)) close();
   while (window_.low() + far_blocks < block_ && window_.low() < open_) window_.drop();
 }
 

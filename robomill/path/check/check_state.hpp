@@ -47,7 +47,7 @@ struct Checker::State {
   static void pass(Pass& pass, const Eigen::Vector3d& corner, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                    double travelled, double tolerance, double time_s);
   void stand(const Eigen::Vector3d& tip_step, const Eigen::Vector3d& axis_step);
-  bool settled(std::size_t block);
+  bool finished(std::size_t block);
   void close();
   void close_old();
   void end_at_rest();

@@ -39,7 +39,7 @@ bool ProgramRun::keeps_tolerances() const {
          within(distances.axis_error_rad, axis_tolerance_rad);
 }
 
-std::optional<ProgramRun> SampleFile::settle(program::Source& /*program*/, const robot::Kinematics& /*machine*/,
+std::optional<ProgramRun> SampleFile::verify(program::Source& /*program*/, const robot::Kinematics& /*machine*/,
                                              const SmoothingOptions& /*options*/, bool /*refine*/,
                                              const Progress& /*progress*/) {
   return std::nullopt;

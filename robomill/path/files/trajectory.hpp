@@ -75,7 +75,7 @@ class ROBOMILL_API SampleFile {
   /// @param program  that was smoothed; read anew
   /// @param refine   put points nearer to each other where that is needed, down to every sample
   /// @throws InvalidInput what the program's reader throws; Interrupted
-  virtual std::optional<ProgramRun> settle(program::Source& program, const robot::Kinematics& machine,
+  virtual std::optional<ProgramRun> verify(program::Source& program, const robot::Kinematics& machine,
                                            const SmoothingOptions& options, bool refine, const Progress& progress);
   /// Ends the file and moves it to its place. @throws InvalidInput if that fails
   virtual void commit() = 0;
@@ -85,7 +85,7 @@ class ROBOMILL_API SampleFile {
 /// i, j, k, block, which counts from 1), or a joint program: .src (KUKA KRL), .mod (ABB RAPID), .script (Universal
 /// Robots URScript), .servoj (rows of joints, one a cycle). docs/formats.md.
 /// @throws InvalidInput if the ending is another one, the info is invalid, the place cannot be written or is no regular
-///     file, or the machine is none that such a program can drive: six joints that all turn
+///     file, or the machine is none that such a program can drive: six revolute joints
 [[nodiscard]] ROBOMILL_API std::unique_ptr<SampleFile> open_sample_file(const std::filesystem::path& path,
                                                                         const TrajectoryInfo& info);
 

@@ -19,7 +19,7 @@ constexpr std::size_t most_stations = 400;
 constexpr int most_change = 3;         // of gamma between two stations, in steps of the grid
 constexpr double per_turned = 100.0;   // of the squared change of gamma [1/rad²], against 1 / margin
 constexpr double least_margin = 0.01;  // added to the margin, so that its inverse stays finite
-constexpr double most_travel = 0.7;    // of a joint between two stations [rad]; a way of another kind is farther off
+constexpr double most_travel = 0.7;    // of a joint between two stations [rad]; another branch is farther off
 
 struct State {
   robot::Position6 position = robot::Position6::Zero();
@@ -53,20 +53,20 @@ class Turning {
   void fill(std::size_t s) {
     Station& station = stations_[s];
     const program::Pose pose = head_.at(along_[s]);
-    std::array<robot::Position6, most_branches> ways;
+    std::array<robot::Position6, most_branches> branches;
     station.first.push_back(0);
     for (int g = 0; g < options_.gammas; ++g) {
       int count = kinematics_.all(
-          {.tip_m = pose.tip_m, .axis = pose.axis, .gamma_rad = units::revolution * g / options_.gammas}, ways.data(),
-          most_branches);
+          {.tip_m = pose.tip_m, .axis = pose.axis, .gamma_rad = units::revolution * g / options_.gammas},
+          branches.data(), most_branches);
       if (s == 0 && options_.start && count > 0) {
-        const auto far = [&](const robot::Position6& way) { return (way - *options_.start).squaredNorm(); };
-        ways.front() = *std::min_element(ways.begin(), ways.begin() + count,
-                                         [&](const auto& a, const auto& b) { return far(a) < far(b); });
+        const auto far = [&](const robot::Position6& branch) { return (branch - *options_.start).squaredNorm(); };
+        branches.front() = *std::min_element(branches.begin(), branches.begin() + count,
+                                             [&](const auto& a, const auto& b) { return far(a) < far(b); });
         count = 1;
       }
       for (int k = 0; k < count; ++k) {
-        const robot::Position6& position = ways[static_cast<std::size_t>(k)];
+        const robot::Position6& position = branches[static_cast<std::size_t>(k)];
         const double margin = std::min(limit_share(kinematics_, position).share, kinematics_.regularity(position));
         station.states.push_back({.position = position, .cost = 1.0 / (margin + least_margin), .gamma = g});
       }

@@ -9,24 +9,21 @@
 
 namespace robomill::path {
 
-struct TimedSpan {
-  Segment span = {};
+struct TimedSegment {
+  Segment segment = {};
   double begin_s = 0.0, length_s = 0.0;  ///< of plan time
 };
 
-/// Between the thread that plans and the one that moves. A stretch is published after the spans that it covers, and
+/// Between the thread that plans and the one that moves. A stretch is published after the segments that it covers, and
 /// those after their polynomials, so that whoever sees a stretch sees all that it takes to run through it. `closed` is
 /// set after the last of all.
 struct LookAhead {
-  enum class Closed {
-    no,
-    whole,
-    broken
-  };  ///< whole: the plan ends at rest; broken: it ends where nothing could follow
-  LookAhead(std::size_t polynomials, std::size_t spans, std::size_t most_stretches)
-      : path(polynomials), motion(spans), stretches(most_stretches) {}
+  /// whole: the plan ends at rest; broken: it ends where nothing could follow
+  enum class Closed { no, whole, broken };
+  LookAhead(std::size_t polynomials, std::size_t segments, std::size_t most_stretches)
+      : path(polynomials), motion(segments), stretches(most_stretches) {}
   Ring<Polynomial> path;
-  Ring<TimedSpan> motion;
+  Ring<TimedSegment> motion;
   Ring<Stretch> stretches;
   std::atomic<Closed> closed{Closed::no};
 };

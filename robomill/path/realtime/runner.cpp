@@ -157,12 +157,12 @@ void Runner::emit(Sample& sample) noexcept {
   last_.time_s = static_cast<double>(count_++) * period_s_;
   if (now_s_ != moved_s_ && known_ > 0) {
     moved_s_ = now_s_;
-    const std::size_t spans = ahead_.motion.end();
-    while (span_ + 1 < spans && ahead_.motion[span_ + 1].begin_s <= now_s_) ++span_;
-    ahead_.motion.drop_before(span_);
-    const TimedSpan& timed = ahead_.motion[span_];
+    const std::size_t segments = ahead_.motion.end();
+    while (segment_ + 1 < segments && ahead_.motion[segment_ + 1].begin_s <= now_s_) ++segment_;
+    ahead_.motion.drop_before(segment_);
+    const TimedSegment& timed = ahead_.motion[segment_];
     const double t_s = std::clamp(now_s_ - timed.begin_s, 0.0, timed.length_s);
-    const double u_m = timed.span.begin_m + way_m(timed.span, t_s, timed.length_s);
+    const double u_m = timed.segment.begin_m + way_m(timed.segment, t_s, timed.length_s);
     const std::size_t pieces = ahead_.path.end();
     while (piece_ + 1 < pieces && ahead_.path[piece_ + 1].begin_m <= u_m) ++piece_;
     ahead_.path.drop_before(piece_);

@@ -64,7 +64,7 @@ class Runner {
   bool starved_ = false;                         // until more is ready than `known_`
   double low_theta_ = 0.0, low_until_s_ = -1.0;  // a target that holds until then
   std::size_t known_ = 0;                        // stretches that are ready
-  std::size_t stretch_ = 0, span_ = 0, piece_ = 0;
+  std::size_t stretch_ = 0, segment_ = 0, piece_ = 0;
   double moved_s_ = -1.0;  // the plan time of last_
   static constexpr std::size_t max_steps = 80;
   std::array<Step, max_steps> step_;

@@ -183,18 +183,18 @@ void Survey::close(double end_s) noexcept {
   chain_s_ = end_s;
 }
 
-Survey::ScanStatus Survey::take(const Segment& span) noexcept {
+Survey::ScanStatus Survey::take(const Segment& segment) noexcept {
   if (!begun_) {
     if (ahead_.motion.room() == 0) return ScanStatus::full;
     begin_s_ += length_s_;
-    length_s_ = duration_s(span);
-    ahead_.motion.put({.span = span, .begin_s = begin_s_, .length_s = length_s_});
+    length_s_ = duration_s(segment);
+    ahead_.motion.put({.segment = segment, .begin_s = begin_s_, .length_s = length_s_});
     ahead_.motion.publish();
     begun_ = true;
   }
   const double end_s = begin_s_ + length_s_;
   constexpr std::size_t spare = 2;
-  if (span.kind == Segment::Kind::dwell) {
+  if (segment.kind == Segment::Kind::dwell) {
     if (ahead_.stretches.room() < spare) return ScanStatus::full;
     put({.kind = Stretch::Kind::dwell, .end_s = end_s});
     chain_s_ = end_s;
@@ -203,11 +203,11 @@ Survey::ScanStatus Survey::take(const Segment& span) noexcept {
   }
   for (; next_s_ < length_s_; next_s_ += 0.5 * period_s_) {
     if (ahead_.stretches.room() < spare) return ScanStatus::full;
-    if (!look(span.begin_m + way_m(span, next_s_, length_s_))) return ScanStatus::unreachable;
+    if (!look(segment.begin_m + way_m(segment, next_s_, length_s_))) return ScanStatus::unreachable;
   }
-  if (span.kind == Segment::Kind::to_rest) {
+  if (segment.kind == Segment::Kind::to_rest) {
     if (ahead_.stretches.room() < spare) return ScanStatus::full;
-    if (!look(span.begin_m + span.length_m)) return ScanStatus::unreachable;
+    if (!look(segment.begin_m + segment.length_m)) return ScanStatus::unreachable;
     close(end_s);
   } else {
     next_s_ -= length_s_;

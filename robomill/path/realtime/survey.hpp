@@ -18,8 +18,8 @@ class Survey {
          const robot::Position6& start);
 
   enum class ScanStatus { on, full, unreachable };
-  /// Takes a span that follows; its polynomials are in the look-ahead. Called again with the same one after `full`.
-  ScanStatus take(const Segment& span) noexcept;
+  /// Takes a segment that follows; its polynomials are in the look-ahead. Called again with the same one after `full`.
+  ScanStatus take(const Segment& segment) noexcept;
   [[nodiscard]] const robot::Reach& reach() const noexcept { return reach_; }
   /// Where it is.
   [[nodiscard]] const Polynomial& at() const noexcept { return ahead_.path.put_at(path_at_); }
@@ -42,7 +42,7 @@ class Survey {
   robot::Position6 near_;
   robot::Reach reach_ = {};
   std::size_t path_at_ = 0;
-  bool begun_ = false;                     // with the span that is being taken
+  bool begun_ = false;                     // with the segment that is being taken
   double begin_s_ = 0.0, length_s_ = 0.0;  // of it
   double next_s_ = 0.0;                    // of the next sample, from there
   double chain_s_ = 0.0;                   // where the tool rested last

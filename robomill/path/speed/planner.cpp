@@ -9,7 +9,7 @@
 namespace robomill::path {
 namespace {
 
-/// How fast spans may grow away from a corner.
+/// How fast segments may grow away from a corner.
 constexpr double growth = 0.5;
 /// Nodes that fit beyond the look-ahead: what a corner's filters reach, and the pieces of one block.
 constexpr std::size_t spare_nodes = 4 * Blend::max_reach + 64;
@@ -115,9 +115,9 @@ Planner::Planner(const robot::Kinematics& kinematics, const SmoothingOptions& op
       solver_(limits_, planner.window + 8) {
   const double v = options.max_velocity_m_per_s, a = options.max_acceleration_m_per_s2, j = options.max_jerk_m_per_s3;
   // Not below what passes in a few samples, however stiff the limits.
-  largest_span_m_ = std::max(0.3 * planner.spacing * v * v / a, 3.0 * v * options.sample_period_s);
+  largest_segment_m_ = std::max(0.3 * planner.spacing * v * v / a, 3.0 * v * options.sample_period_s);
   axis_weight_m_ = j / options.max_angular_jerk_rad_per_s3;
-  rest_m_ = std::clamp(0.25 * a * a * a / (6.0 * j * j), 1e-3 * largest_span_m_, largest_span_m_);
+  rest_m_ = std::clamp(0.25 * a * a * a / (6.0 * j * j), 1e-3 * largest_segment_m_, largest_segment_m_);
   // A corner has two knots (four with three filters) beside its node.
   path_capacity_ = (planner.look_ahead + spare_nodes) * (options.filters == 2 ? 3 : 5) + 8;
   ahead_.reserve(2 * path_capacity_);
@@ -197,13 +197,13 @@ Planner::Status Planner::finish() noexcept {
 Planner::Status Planner::resume() noexcept {
   if (proposed_) take_over();
   proposed_ = false;
-  return lay_spans();
+  return lay_segments();
 }
 
 Planner::Status Planner::advance() noexcept {
-  blend_.settle();
+  blend_.find_widths();
   take_polynomials();
-  return lay_spans();
+  return lay_segments();
 }
 
 void Planner::take_polynomials() noexcept {
@@ -217,15 +217,15 @@ void Planner::take_polynomials() noexcept {
 
 double Planner::spacing_m(double u_m) noexcept {
   while (near_node_ + 1 < blend_.end() && blend_.node(near_node_ + 1).u_m <= u_m) ++near_node_;
-  double out = largest_span_m_;
+  double out = largest_segment_m_;
   const auto meet = [&](const Blend::Node& corner) {
     if (corner.stop || corner.step.squaredNorm() < 1e-16) return;
     const double gap = std::max(0.0, std::abs(u_m - corner.u_m) - corner.half_width_m);
-    // Towards a corner the span itself shortens the gap.
+    // Towards a corner the segment itself shortens the gap.
     const double rate = u_m < corner.u_m ? growth / (1.0 + growth) : growth;
     out = std::min(out, planner_.spacing * corner.half_width_m + rate * gap);
   };
-  const double reach_m = blend_.max_half_width_m() + largest_span_m_ / growth;
+  const double reach_m = blend_.max_half_width_m() + largest_segment_m_ / growth;
   for (std::size_t k = near_node_ + 1; k > blend_.first() && u_m - blend_.node(k - 1).u_m < reach_m;) {
     meet(blend_.node(--k));
     if (blend_.node(k).stop) break;
@@ -238,7 +238,7 @@ double Planner::spacing_m(double u_m) noexcept {
 }
 
 double Planner::snapped_m(double length_m) const noexcept {
-  // Third derivatives step where polynomials join: where they do so in earnest a span should end.
+  // Third derivatives step where polynomials join: where they do so in earnest a segment should end.
   for (std::size_t i = ahead_at_ + 1; i < ahead_.size(); ++i) {
     const double at_m = ahead_[i].begin_m - u_m_;
     if (at_m > 1.4 * length_m) break;
@@ -271,7 +271,7 @@ Planner::Status Planner::look_at(const Polynomial& polynomial, double x_m, PathP
 }
 
 double Planner::middle_share(double length_m) const noexcept {
-  // The middle, or the steeper side of the largest step of third derivatives that the span could not avoid.
+  // The middle, or the steeper side of the largest step of third derivatives that the segment could not avoid.
   double out = 0.5, largest = 0.0;
   for (std::size_t i = ahead_at_ + 1; i < ahead_.size(); ++i) {
     const double share = (ahead_[i].begin_m - u_m_) / length_m;
@@ -289,16 +289,16 @@ double Planner::middle_share(double length_m) const noexcept {
   return out;
 }
 
-Planner::Status Planner::look(SpeedSpan& span, double length_m, bool& even) noexcept {
-  span.length_m = length_m;
-  span.share[1] = middle_share(length_m);
+Planner::Status Planner::look(SpeedSegment& segment, double length_m, bool& even) noexcept {
+  segment.length_m = length_m;
+  segment.share[1] = middle_share(length_m);
   std::array<robot::JointJet, point_count> joints;
   std::size_t at = ahead_at_;
   const robot::Position6 before = near_;
   for (std::size_t p = 0; p < point_count; ++p) {
-    const double u_m = u_m_ + span.share[p] * length_m;
+    const double u_m = u_m_ + segment.share[p] * length_m;
     while (at + 1 < ahead_.size() && ahead_[at + 1].begin_m <= u_m) ++at;
-    const Status status = look_at(ahead_[at], u_m - ahead_[at].begin_m, span.point[p], joints[p]);
+    const Status status = look_at(ahead_[at], u_m - ahead_[at].begin_m, segment.point[p], joints[p]);
     if (!status.ok()) {
       near_ = before;
       return status;
@@ -308,7 +308,7 @@ Planner::Status Planner::look(SpeedSpan& span, double length_m, bool& even) noex
   // What joins the points must be what their slopes say, or something between them was missed.
   even = true;
   for (std::size_t p = 0; p + 1 < point_count; ++p) {
-    const double apart_m = (span.share[p + 1] - span.share[p]) * length_m;
+    const double apart_m = (segment.share[p + 1] - segment.share[p]) * length_m;
     for (Eigen::Index k = 0; k < 6; ++k) {
       const double met = joints[p + 1](k, 0) - joints[p](k, 0);
       const double reported = 0.5 * (joints[p](k, 1) + joints[p + 1](k, 1)) * apart_m;
@@ -316,17 +316,17 @@ Planner::Status Planner::look(SpeedSpan& span, double length_m, bool& even) noex
       if (std::abs(met - reported) > 0.2 * size + 1e-6) even = false;
     }
   }
-  limit_speed(span);
+  limit_speed(segment);
   return {};
 }
 
-void Planner::limit_speed(SpeedSpan& span) const noexcept {
-  // The slowest feed that the span meets holds for all of it; the tip's rate is looked at where its polynomials join.
+void Planner::limit_speed(SpeedSegment& segment) const noexcept {
+  // The slowest feed on the segment holds for all of it; the tip's rate is looked at where its polynomials join.
   double max_rate = 1e300, max_tip = 1e300;
   std::array<double, point_count> tip_rate_inverse = {};
   for (std::size_t p = 0; p < point_count; ++p)
-    tip_rate_inverse[p] = 1.0 / std::max(std::abs(span.point[p].c1[6]), 1e-12);
-  const double end_m = u_m_ + span.length_m;
+    tip_rate_inverse[p] = 1.0 / std::max(std::abs(segment.point[p].c1[6]), 1e-12);
+  const double end_m = u_m_ + segment.length_m;
   for (std::size_t i = ahead_at_; i < ahead_.size() && ahead_[i].begin_m < end_m; ++i) {
     const Polynomial& here = ahead_[i];
     max_rate = std::min(max_rate, here.max_rate_m_per_s);
@@ -339,14 +339,14 @@ void Planner::limit_speed(SpeedSpan& span) const noexcept {
                                         x_m +
                                     here.coefficients.col(1))
                                        .head<3>();
-      const double place = (u_m - u_m_) / span.length_m;
+      const double place = (u_m - u_m_) / segment.length_m;
       double& inverse = tip_rate_inverse[place < 0.25 ? 0 : place < 0.75 ? 1 : 2];
       inverse = std::min(inverse, 1.0 / std::max(rate.norm(), 1e-12));
     }
   }
   const double speed = corrected_speed(u_m_, end_m);
   for (std::size_t p = 0; p < point_count; ++p) {
-    PathPoint& point = span.point[p];
+    PathPoint& point = segment.point[p];
     point.speed = speed;
     double most = planner_.share * std::min(max_rate, std::min(max_tip, limits_.velocity[6]) * tip_rate_inverse[p]);
     for (std::size_t k = 0; k < channel_count; ++k) {
@@ -358,19 +358,19 @@ void Planner::limit_speed(SpeedSpan& span) const noexcept {
 }
 
 Planner::Status Planner::lay(Segment::Kind kind, double length_m) noexcept {
-  SpeedSpan span;
-  span.kind = kind;
+  SpeedSegment segment;
+  segment.kind = kind;
   const robot::Position6 before = near_;
   for (int tries = 0; tries < 12; ++tries) {
     bool even = true;
     near_ = before;
-    const Status status = look(span, length_m, even);
+    const Status status = look(segment, length_m, even);
     if (!status.ok()) return status;
     if (even || kind != Segment::Kind::cruise) break;
     length_m *= 0.5;
   }
-  span.safe_b = solver_.own_safe_b(span);
-  row_.push_back(span);
+  segment.safe_b = solver_.own_safe_b(segment);
+  row_.push_back(segment);
   begin_m_.push_back(u_m_);
   u_m_ += length_m;
   while (ahead_at_ + 1 < ahead_.size() && ahead_[ahead_at_ + 1].begin_m <= u_m_) ++ahead_at_;
@@ -390,7 +390,7 @@ void Planner::come_to_rest(double at_m, double dwell_s) noexcept {
   ahead_at_ = 0;
 }
 
-Planner::Status Planner::lay_spans() noexcept {
+Planner::Status Planner::lay_segments() noexcept {
   busy_ = false;
   bool pressed = blend_.room() < spare_nodes;
   while (!ahead_.empty()) {
@@ -407,7 +407,7 @@ Planner::Status Planner::lay_spans() noexcept {
       length_m = std::min(length_m, ahead_[ahead_at_ + max_pieces].begin_m - u_m_);
     }
     if (const double most_m = (end_m - u_m_) / 3.0; !closed && length_m >= most_m) {
-      // What follows may want short spans; they are laid only where the blocks are too short to hold enough of them.
+      // What follows may want short segments; they are laid only where the blocks are too short to hold enough of them.
       if (!pressed) break;
       length_m = most_m;
       pressed = false;

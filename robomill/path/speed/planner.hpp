@@ -15,10 +15,10 @@
 namespace robomill::path {
 
 struct PlannerOptions {
-  std::size_t window = 1000;     ///< spans whose speed is sought together
+  std::size_t window = 1000;     ///< segments whose speed is sought together
   std::size_t commit = 800;      ///< of them, taken over before the next window; < window
-  std::size_t look_ahead = 512;  ///< nodes of the path gathered before corners are settled
-  double spacing = 0.5;          ///< spans in a corner: its half width times this
+  std::size_t look_ahead = 512;  ///< nodes of the path gathered before the widths of corners are found
+  double spacing = 0.5;          ///< segments in a corner: its half width times this
   SpeedOptions speed = {};
   double share = 0.998;  ///< of speed limits that is planned for; accelerations its square, jerks its cube
   bool local_slow_down =
@@ -82,10 +82,10 @@ class Planner {
   /// Plans the proposed row again, as slow as the corrections now say.
   /// @return false where they ask nothing more of it, or only of what was taken over with the row before
   bool revise() noexcept;
-  /// Whether samples of a span of motion() may break a limit that the span's points do not: something comes near to a
-  /// limit there, and since it was looked at last, revise() changed it.
-  [[nodiscard]] bool suspect(std::size_t span) const noexcept {
-    return span >= proposed_at_ && before_[span - proposed_at_ + (frozen_ > 0 ? 1 : 0)].suspect;
+  /// Whether samples of a segment of motion() may break a limit that the segment's points do not: something comes near
+  /// to a limit there, and since it was looked at last, revise() changed it.
+  [[nodiscard]] bool suspect(std::size_t segment) const noexcept {
+    return segment >= proposed_at_ && before_[segment - proposed_at_ + (frozen_ > 0 ? 1 : 0)].suspect;
   }
   /// Nodes of the path that are held: how far push() runs ahead of motion().
   [[nodiscard]] std::size_t held() const noexcept { return blend_.end() - blend_.first(); }
@@ -96,7 +96,7 @@ class Planner {
   [[nodiscard]] std::vector<BoundPoint>& points() noexcept { return points_; }
   [[nodiscard]] std::size_t motion_capacity() const noexcept { return planner_.window + 64; }
   [[nodiscard]] std::size_t path_capacity() const noexcept { return path_capacity_; }
-  /// Of the path that a span lies across, save at the end of a row.
+  /// Of the path that a segment lies across, save at the end of a row.
   static constexpr std::size_t max_pieces = 24;
 
  private:
@@ -104,13 +104,13 @@ class Planner {
   [[nodiscard]] bool idle() const noexcept;
   void wait() noexcept;
   void take_polynomials() noexcept;
-  Status lay_spans() noexcept;
+  Status lay_segments() noexcept;
   Status lay(Segment::Kind kind, double length_m) noexcept;
   void come_to_rest(double at_m, double dwell_s) noexcept;
-  Status look(SpeedSpan& span, double length_m, bool& even) noexcept;
-  void limit_speed(SpeedSpan& span) const noexcept;
+  Status look(SpeedSegment& segment, double length_m, bool& even) noexcept;
+  void limit_speed(SpeedSegment& segment) const noexcept;
   [[nodiscard]] double corrected_speed(double begin_m, double end_m) const noexcept;
-  bool slow_down(std::size_t span, double speed) noexcept;
+  bool slow_down(std::size_t segment, double speed) noexcept;
   Status look_at(const Polynomial& polynomial, double x_m, PathPoint& out, robot::JointJet& joints) noexcept;
   [[nodiscard]] double spacing_m(double u_m) noexcept;
   [[nodiscard]] std::size_t row_points() const noexcept;
@@ -121,7 +121,7 @@ class Planner {
   void solve(bool to_rest) noexcept;
   bool solve_row() noexcept;
   void find_suspects() noexcept;
-  [[nodiscard]] bool tense(std::size_t span) const noexcept;
+  [[nodiscard]] bool tense(std::size_t segment) const noexcept;
   bool slow_down_locally() noexcept;
   void slow_down_around_corrections(double ramp_m) noexcept;
   void write(std::size_t count) noexcept;
@@ -135,15 +135,15 @@ class Planner {
   Blend blend_;
   SpeedSolver solver_;
   std::size_t path_capacity_ = 0;
-  std::vector<Polynomial> ahead_;  ///< the path from where spans are being laid
+  std::vector<Polynomial> ahead_;  ///< the path from where segments are being laid
   std::size_t ahead_at_ = 0;       ///< in ahead_: what holds u_m_
   std::size_t pieces_taken_ = 0;   ///< of the Blend
   std::size_t near_node_ = 0;      ///< of the Blend, about where u_m_ is
-  std::vector<SpeedSpan> row_;     ///< whose speed is not yet taken over; after a first commit two before it, frozen
-  std::vector<double> begin_m_;    ///< of the row's spans
+  std::vector<SpeedSegment> row_;  ///< whose speed is not yet taken over; after a first commit two before it, frozen
+  std::vector<double> begin_m_;    ///< of the row's segments
   std::size_t frozen_ = 0, safe_to_ = 0;
-  /// Of the row that was solved last: its spans, those that the solver could move and those that are taken over; spans
-  /// whose safe terminal speed was set before it.
+  /// Of the row that was solved last: its segments, those that the solver could move and those that are taken over;
+  /// segments whose safe terminal speed was set before it.
   std::size_t solved_ = 0, moved_ = 0, taken_ = 0, safe_before_ = 0;
   struct Before {
     double begin_b = 0.0, found_b = 0.0, speed = 1.0;
@@ -151,8 +151,8 @@ class Planner {
   };
   std::vector<Before> before_;  ///< of the row, for revise()
   robot::Position6 near_ = robot::Position6::Zero();
-  double u_m_ = 0.0, chain_begin_m_ = 0.0;  ///< where spans are laid; where the tool rested last
-  double rest_m_ = 0.0, largest_span_m_ = 0.0, axis_weight_m_ = 0.0;
+  double u_m_ = 0.0, chain_begin_m_ = 0.0;  ///< where segments are laid; where the tool rested last
+  double rest_m_ = 0.0, largest_segment_m_ = 0.0, axis_weight_m_ = 0.0;
   double waiting_s_ = 0.0;  ///< of dwells since the tool stopped
   bool resting_ = true, busy_ = false, proposed_ = false;
   std::size_t kept_ = 0, proposed_at_ = 0;  ///< of motion_: what stays; where the proposed row begins

@@ -109,7 +109,7 @@ void plan_program(benchmark::State& state, Chosen chosen, const path::PlannerOpt
     time_s = 0.0;
     const bool ok = plan(of, planner, [&] {
       segments += planner.motion().size();
-      for (const path::Segment& span : planner.motion()) time_s += path::duration_s(span);
+      for (const path::Segment& segment : planner.motion()) time_s += path::duration_s(segment);
       planner.motion().clear();
       planner.path().clear();
     });
@@ -160,7 +160,7 @@ void blend_program(benchmark::State& state) {
     blend.begin(program.start, 0.0);
     std::size_t taken = 0;
     const auto take = [&] {
-      blend.settle();
+      blend.find_widths();
       for (; taken < blend.ready(); ++taken) benchmark::DoNotOptimize(blend.polynomials(taken, some.data()));
       blend.forget(taken);
     };

@@ -1,4 +1,4 @@
-// The speed along a row of spans: sought, revised where samples would break a limit, and written down as motion.
+// The speed along a row of segments: sought, revised where samples would break a limit, and written down as motion.
 #include <algorithm>
 #include <cmath>
 
@@ -7,9 +7,9 @@
 namespace robomill::path {
 namespace {
 
-/// Of a limit: below it a span's points are believed. By how much the tip's way may change in a span that is even.
+/// Of a limit: below it a segment's points are believed. By how much the tip's way may change in an even segment.
 constexpr double tense_share = 0.5, even_share = 0.0005;
-/// Spans beside a corrected one that are slowed down as much; how many ramps a local slow-down reaches.
+/// Segments beside a corrected one that are slowed down as much; how many ramps a local slow-down reaches.
 constexpr std::size_t neighbours = 2;
 constexpr double reach_in_ramps = 30.0;
 /// … and beyond how many nothing of it is noticeable.
@@ -30,14 +30,14 @@ double Planner::corrected_speed(double begin_m, double end_m) const noexcept {
   return out;
 }
 
-bool Planner::slow_down(std::size_t span, double speed) noexcept {
-  const double factor = speed / row_[span].point[0].speed;
+bool Planner::slow_down(std::size_t segment, double speed) noexcept {
+  const double factor = speed / row_[segment].point[0].speed;
   if (factor == 1.0) return false;
-  for (PathPoint& point : row_[span].point) {
+  for (PathPoint& point : row_[segment].point) {
     point.speed = speed;
     point.max_b *= factor * factor;
   }
-  row_[span].safe_b = solver_.own_safe_b(row_[span]);
+  row_[segment].safe_b = solver_.own_safe_b(row_[segment]);
   return true;
 }
 
@@ -52,12 +52,12 @@ void Planner::begin_safe_speed(std::size_t size) noexcept {
 
 void Planner::hand_over(bool to_rest) noexcept {
   for (std::size_t i = 0; i < row_.size(); ++i) {
-    const SpeedSpan& span = row_[i];
-    if (span.kind == Segment::Kind::from_rest) points_.push_back({.u_m = begin_m_[i], .max_b = 0.0, .rests = true});
+    const SpeedSegment& segment = row_[i];
+    if (segment.kind == Segment::Kind::from_rest) points_.push_back({.u_m = begin_m_[i], .max_b = 0.0, .rests = true});
     for (std::size_t p = 0; p < point_count; ++p) {
-      const PathPoint& point = span.point[p];
-      points_.push_back(
-          {.u_m = begin_m_[i] + span.share[p] * span.length_m, .c1 = point.c1, .c2 = point.c2, .max_b = point.max_b});
+      const PathPoint& point = segment.point[p];
+      const double u_m = begin_m_[i] + segment.share[p] * segment.length_m;
+      points_.push_back({.u_m = u_m, .c1 = point.c1, .c2 = point.c2, .max_b = point.max_b});
     }
   }
   if (to_rest) points_.push_back({.u_m = begin_m_.back() + row_.back().length_m, .max_b = 0.0, .rests = true});
@@ -70,14 +70,14 @@ void Planner::solve(bool to_rest) noexcept {
     hand_over(to_rest);
     return;
   }
-  // Without a stop the last span waits: its safe terminal speed depends on the next one.
+  // Without a stop the last segment waits: its safe terminal speed depends on the next one.
   solved_ = to_rest ? row_.size() : row_.size() - 1;
   moved_ = to_rest ? solved_ : solved_ - 2;
   taken_ = to_rest ? solved_ : std::min(planner_.commit, solved_ - 4);
   safe_before_ = safe_to_;
   begin_safe_speed(solved_);
   before_.clear();
-  for (const SpeedSpan& span : row_) before_.push_back({.begin_b = span.b});
+  for (const SpeedSegment& segment : row_) before_.push_back({.begin_b = segment.b});
   solve_row();
   if (task_ == Task::motion) {
     write(taken_);
@@ -95,10 +95,10 @@ bool Planner::solve_row() noexcept {
   return solver_.solve(row_.data(), solved_, frozen_, moved_, planner_.speed).feasible;
 }
 
-bool Planner::tense(std::size_t span) const noexcept {
-  const SpeedSpan& here = row_[span];
+bool Planner::tense(std::size_t segment) const noexcept {
+  const SpeedSegment& here = row_[segment];
   if (here.kind != Segment::Kind::cruise) return true;
-  const SpanEnds ends = ends_of(row_.data(), solved_, span);
+  const SegmentEnds ends = ends_of(row_.data(), solved_, segment);
   double slowest = 1e300, fastest = 0.0;
   bool at_feed = false;
   for (std::size_t p = 0; p < point_count; ++p) {
@@ -126,7 +126,7 @@ void Planner::find_suspects() noexcept {
   for (std::size_t i = 0; i < row_.size(); ++i) before_[i].suspect = false;
   for (std::size_t i = 0; i < solved_; ++i) {
     if (!tense(i)) continue;
-    // Differences begin in the span before.
+    // Differences begin in the segment before.
     for (std::size_t k = i > 0 ? i - 1 : 0; k <= std::min(i + 1, solved_ - 1); ++k) before_[k].suspect = true;
   }
 }
@@ -161,7 +161,7 @@ void Planner::slow_down_around_corrections(double ramp_m) noexcept {
 bool Planner::slow_down_locally() noexcept {
   SpeedOptions look = planner_.speed;
   look.max_iterations = 0;
-  for (const double ramp_m : {1.0 * largest_span_m_, 3.0 * largest_span_m_, 9.0 * largest_span_m_}) {
+  for (const double ramp_m : {1.0 * largest_segment_m_, 3.0 * largest_segment_m_, 9.0 * largest_segment_m_}) {
     slow_down_around_corrections(ramp_m);
     if (solver_.solve(row_.data(), solved_, frozen_, moved_, look).feasible) return true;
   }
@@ -173,7 +173,7 @@ bool Planner::revise() noexcept {
     before_[i].found_b = row_[i].b;
     before_[i].speed = row_[i].point[0].speed;
   }
-  // What the row before left over moves already, and may do so too fast for a correction: then the fresh spans alone.
+  // What the row before left over moves already, maybe too fast for a correction: then the fresh segments alone.
   for (const std::size_t from : {frozen_, std::max(frozen_, safe_before_)}) {
     bool slower = false;
     for (std::size_t i = from; i < row_.size(); ++i) {
@@ -201,18 +201,18 @@ bool Planner::revise() noexcept {
 
 void Planner::write(std::size_t count) noexcept {
   for (std::size_t i = frozen_ > 0 ? 1 : 0; i < count; ++i) {
-    Segment span{.kind = row_[i].kind, .begin_m = begin_m_[i], .length_m = row_[i].length_m};
-    if (span.kind == Segment::Kind::cruise) {
-      const SpanEnds ends = ends_of(row_.data(), solved_, i);
-      span.begin_b = ends.begin_b;
-      span.middle_b = row_[i].b;
-      span.end_b = ends.end_b;
-    } else if (span.kind == Segment::Kind::from_rest) {
-      span.end_b = ends_of(row_.data(), solved_, i + 1).begin_b;
+    Segment segment{.kind = row_[i].kind, .begin_m = begin_m_[i], .length_m = row_[i].length_m};
+    if (segment.kind == Segment::Kind::cruise) {
+      const SegmentEnds ends = ends_of(row_.data(), solved_, i);
+      segment.begin_b = ends.begin_b;
+      segment.middle_b = row_[i].b;
+      segment.end_b = ends.end_b;
+    } else if (segment.kind == Segment::Kind::from_rest) {
+      segment.end_b = ends_of(row_.data(), solved_, i + 1).begin_b;
     } else {
-      span.begin_b = ends_of(row_.data(), solved_, i - 1).end_b;
+      segment.begin_b = ends_of(row_.data(), solved_, i - 1).end_b;
     }
-    motion_.push_back(span);
+    motion_.push_back(segment);
   }
 }
 

@@ -47,7 +47,7 @@ struct Made {
   std::size_t most_held = 0, most_motion = 0, most_path = 0;
   [[nodiscard]] double time_s() const {
     double sum = 0.0;
-    for (const Segment& span : motion) sum += duration_s(span);
+    for (const Segment& segment : motion) sum += duration_s(segment);
     return sum;
   }
 };
@@ -98,21 +98,21 @@ void expect_whole(const Made& made) {
   const Polynomial& end = made.path.back();
   double u_m = 0.0, b = 0.0;
   for (std::size_t i = 0; i < made.motion.size(); ++i) {
-    const Segment& span = made.motion[i];
-    ASSERT_NEAR(span.begin_m, u_m, 1e-12) << i;
-    ASSERT_NEAR(span.begin_b, b, 1e-12 * b) << i << " of " << made.motion.size();
-    if (span.kind == Segment::Kind::cruise) {
-      ASSERT_GT(span.middle_b, 0.0);
+    const Segment& segment = made.motion[i];
+    ASSERT_NEAR(segment.begin_m, u_m, 1e-12) << i;
+    ASSERT_NEAR(segment.begin_b, b, 1e-12 * b) << i << " of " << made.motion.size();
+    if (segment.kind == Segment::Kind::cruise) {
+      ASSERT_GT(segment.middle_b, 0.0);
       // b' joins too.
       if (i > 0 && made.motion[i - 1].kind == Segment::Kind::cruise) {
         const Segment& before = made.motion[i - 1];
         const double in = (before.end_b - before.middle_b) / before.length_m;
-        const double out = (span.middle_b - span.begin_b) / span.length_m;
-        ASSERT_NEAR(in, out, 1e-7 * (before.end_b / before.length_m + span.begin_b / span.length_m)) << i;
+        const double out = (segment.middle_b - segment.begin_b) / segment.length_m;
+        ASSERT_NEAR(in, out, 1e-7 * (before.end_b / before.length_m + segment.begin_b / segment.length_m)) << i;
       }
     }
-    u_m = span.begin_m + span.length_m;
-    b = span.end_b;
+    u_m = segment.begin_m + segment.length_m;
+    b = segment.end_b;
   }
   EXPECT_NEAR(u_m, end.begin_m + end.length_m, 1e-12);
   EXPECT_EQ(b, 0.0);
@@ -141,23 +141,23 @@ program::Program dense(std::size_t blocks, double step_m) {
   return out;
 }
 
-/// The largest share of the joints' and the tool's limits, by exact derivatives at 7 places of each span.
+/// The largest share of the joints' and the tool's limits, by exact derivatives at 7 places of each segment.
 double used(const Made& made, const robot::Kinematics& machine, const SmoothingOptions& o) {
   double out = 0.0;
   std::size_t at = 0;
   robot::Position6 near = robot::Position6::Zero();
-  for (const Segment& span : made.motion) {
-    if (span.kind != Segment::Kind::cruise) continue;
+  for (const Segment& segment : made.motion) {
+    if (segment.kind != Segment::Kind::cruise) continue;
     for (const double s : {0.02, 0.2, 0.35, 0.5, 0.65, 0.8, 0.98}) {
-      const double u_m = span.begin_m + s * span.length_m, r = 1.0 - s, d = span.length_m;
+      const double u_m = segment.begin_m + s * segment.length_m, r = 1.0 - s, d = segment.length_m;
       while (at + 1 < made.path.size() && made.path[at + 1].begin_m <= u_m) ++at;
       robot::JointJet q;
       const robot::ToolJet tool = made.path[at].jet(u_m - made.path[at].begin_m);
       EXPECT_EQ(machine.follow(tool, near, q).status, robot::Reach::Status::found);
       near = q.col(0);
-      const double b = r * r * span.begin_b + 2.0 * r * s * span.middle_b + s * s * span.end_b;
-      const double b1 = 2.0 / d * (r * (span.middle_b - span.begin_b) + s * (span.end_b - span.middle_b));
-      const double b2 = 2.0 / (d * d) * (span.begin_b - 2.0 * span.middle_b + span.end_b), v = std::sqrt(b);
+      const double b = r * r * segment.begin_b + 2.0 * r * s * segment.middle_b + s * s * segment.end_b;
+      const double b1 = 2.0 / d * (r * (segment.middle_b - segment.begin_b) + s * (segment.end_b - segment.middle_b));
+      const double b2 = 2.0 / (d * d) * (segment.begin_b - 2.0 * segment.middle_b + segment.end_b), v = std::sqrt(b);
       const robot::Position6 velocity = q.col(1) * v, acceleration = q.col(2) * b + q.col(1) * 0.5 * b1,
                              jerk = v * (q.col(3) * b + 1.5 * q.col(2) * b1 + 0.5 * q.col(1) * b2);
       for (int k = 0; k < machine.joints(); ++k) {
@@ -184,8 +184,8 @@ TEST(Planner, WindowsHardlyCostTime) {
          {PlannerOptions{}, PlannerOptions{.window = 500, .commit = 350}, PlannerOptions::real_time()}) {
       const Made made = make(program, machine, options(), o);
       ASSERT_NO_FATAL_FAILURE(expect_whole(made)) << o.window;
-      EXPECT_LT(made.time_s(), 1.02 * best.time_s()) << o.window << " spans";
-      EXPECT_GT(made.time_s(), 0.99 * best.time_s()) << o.window << " spans";
+      EXPECT_LT(made.time_s(), 1.02 * best.time_s()) << o.window << " segments";
+      EXPECT_GT(made.time_s(), 0.99 * best.time_s()) << o.window << " segments";
     }
   }
 }
@@ -246,9 +246,9 @@ TEST(Planner, RevisesWhatItProposes) {
     ASSERT_GT(asked.size(), 1U);
     // As slow as asked there, hardly slower than without in all.
     for (const double at_m : asked) {
-      const auto span = std::ranges::upper_bound(made.motion, at_m + 1e-3, {}, &Segment::begin_m) - 1;
+      const auto segment = std::ranges::upper_bound(made.motion, at_m + 1e-3, {}, &Segment::begin_m) - 1;
       const auto plainly = std::ranges::upper_bound(plain.motion, at_m + 1e-3, {}, &Segment::begin_m) - 1;
-      EXPECT_LT(span->middle_b, 0.7 * plainly->middle_b);
+      EXPECT_LT(segment->middle_b, 0.7 * plainly->middle_b);
     }
     EXPECT_GT(made.time_s(), plain.time_s());
     EXPECT_LT(made.time_s(), plain.time_s() + 0.15 * static_cast<double>(asked.size()));
@@ -279,8 +279,8 @@ TEST(Planner, DwellsWhereTheProgramDoes) {
   const Made made = make(program, head(), options(), {});
   ASSERT_NO_FATAL_FAILURE(expect_whole(made));
   std::vector<Segment> dwells;
-  for (const Segment& span : made.motion) {
-    if (span.kind == Segment::Kind::dwell) dwells.push_back(span);
+  for (const Segment& segment : made.motion) {
+    if (segment.kind == Segment::Kind::dwell) dwells.push_back(segment);
   }
   ASSERT_EQ(dwells.size(), 2U);
   EXPECT_EQ(dwells[0].dwell_s, 0.25);
@@ -307,12 +307,12 @@ TEST(Planner, LosesNoDwell) {
   const Made made = make(program, head(), options(), {});
   ASSERT_TRUE(made.status.ok());
   double sum_s = 0.0;
-  for (const Segment& span : made.motion) sum_s += span.kind == Segment::Kind::dwell ? span.dwell_s : 0.0;
+  for (const Segment& segment : made.motion) sum_s += segment.kind == Segment::Kind::dwell ? segment.dwell_s : 0.0;
   EXPECT_EQ(sum_s, 1.875);
 }
 
-// Blocks shorter than anything else: many thousand times the look-ahead's nodes within one span.
-TEST(Planner, TakesBlocksFarShorterThanItsSpans) {
+// Blocks shorter than anything else: many thousand times the look-ahead's nodes within one segment.
+TEST(Planner, TakesBlocksFarShorterThanItsSegments) {
   SmoothingOptions quick = options();
   quick.max_velocity_m_per_s = 0.3;
   quick.max_acceleration_m_per_s2 = 1.0;
@@ -337,13 +337,13 @@ TEST(Planner, RunsInBoundedMemory) {
     EXPECT_EQ(motion, planner.motion_capacity());
     EXPECT_EQ(path, planner.path_capacity());
     Random random(32);
-    std::size_t most_held = 0, spans = 0, taken = 0;
+    std::size_t most_held = 0, segments = 0, taken = 0;
     program::Pose at;
     Planner::Status status = planner.begin(at, 0.0, robot::Position6::Zero());
     const auto hold = [&] {
       for (;;) {
         most_held = std::max(most_held, planner.held());
-        spans += planner.motion().size();
+        segments += planner.motion().size();
         EXPECT_EQ(planner.motion().capacity(), motion);
         EXPECT_EQ(planner.path().capacity(), path);
         planner.motion().clear();
@@ -373,7 +373,7 @@ TEST(Planner, RunsInBoundedMemory) {
     EXPECT_TRUE(status.ok());
     EXPECT_EQ(taken, 0U);
     EXPECT_LE(most_held, o.look_ahead + 4 * Blend::max_reach + 64);
-    EXPECT_GT(spans, blocks / 4);
+    EXPECT_GT(segments, blocks / 4);
   }
 }
 
@@ -442,7 +442,7 @@ TEST(Emitter, RunsAlongTheMotion) {
   Emitter slowly(head(), 1e-3, robot::Position6::Zero());
   std::vector<Sample> again;
   ASSERT_TRUE(slowly.add(made.path, {}, again));
-  for (const Segment& span : made.motion) ASSERT_TRUE(slowly.add({}, std::span(&span, 1), again));
+  for (const Segment& segment : made.motion) ASSERT_TRUE(slowly.add({}, std::span(&segment, 1), again));
   ASSERT_TRUE(slowly.finish(again));
   ASSERT_EQ(again.size(), samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) ASSERT_EQ(again[i].joints, samples[i].joints);

@@ -33,14 +33,14 @@ struct Segment {
   double dwell_s = 0.0;
 };
 
-/// Where in a span the limits are looked at: its middle, and beside its ends, where third derivatives may step.
+/// Where in a segment the limits are looked at: its middle, and beside its ends, where third derivatives may step.
 inline constexpr std::size_t point_count = 3;
 inline constexpr double first_share = 0.005, last_share = 0.995;
 
-/// Time that a span takes [s].
-[[nodiscard]] double duration_s(const Segment& span) noexcept;
-/// u less the span's begin after t [s], 0 <= t <= duration.
-/// @param total_s  the span's duration
-[[nodiscard]] double way_m(const Segment& span, double t_s, double total_s) noexcept;
+/// Time that a segment takes [s].
+[[nodiscard]] double duration_s(const Segment& segment) noexcept;
+/// u less the segment's begin after t [s], 0 <= t <= duration.
+/// @param total_s  the segment's duration
+[[nodiscard]] double way_m(const Segment& segment, double t_s, double total_s) noexcept;
 
 }  // namespace robomill::path

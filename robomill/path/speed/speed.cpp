@@ -24,20 +24,20 @@ void bezier(double share, double length_m, double (&out)[3][3]) {
   }
 }
 
-/// Where the time of a span is summed.
+/// Where the time of a segment is summed.
 constexpr std::array<double, 2> gauss_share = {0.21132486540518711775, 0.78867513459481288225};
 
 double cube(double x) {
   return x * x * x;
 }
 
-/// Largest b at a resting span's moving end.
-double rest_limit(const SpeedSpan& span, const ChannelLimits& limits) {
-  const double sign = span.kind == Segment::Kind::from_rest ? 1.0 : -1.0, x = span.length_m;
+/// Largest b at a resting segment's moving end.
+double rest_limit(const SpeedSegment& segment, const ChannelLimits& limits) {
+  const double sign = segment.kind == Segment::Kind::from_rest ? 1.0 : -1.0, x = segment.length_m;
   double out = 1e300;
   for (std::size_t p = 0; p < point_count; ++p) {
-    const PathPoint& point = span.point[p];
-    const double own = span.kind == Segment::Kind::from_rest ? span.share[p] : 1.0 - span.share[p];
+    const PathPoint& point = segment.point[p];
+    const double own = segment.kind == Segment::Kind::from_rest ? segment.share[p] : 1.0 - segment.share[p];
     for (const double share : {own, own > 0.5 ? 1.0 : 0.0}) {
       out = std::min(out, point.max_b / std::max(std::pow(share, 4.0 / 3.0), 1e-6));
       for (std::size_t k = 0; k < channel_count; ++k) {
@@ -56,7 +56,7 @@ double rest_limit(const SpeedSpan& span, const ChannelLimits& limits) {
 
 }  // namespace
 
-/// What the solver keeps for a span.
+/// What the solver keeps for a segment.
 struct SpeedSolver::Work {
   std::array<Duals, point_count> z = {}, dz = {};
   std::array<double, point_count> z_speed = {}, dz_speed = {};
@@ -65,7 +65,7 @@ struct SpeedSolver::Work {
   double gauss[2][3] = {};               // b where the time is summed
   double cap = 1e300;                    // of c_i
   double floor = 0.0;                    // of c_i, far below a safe terminal speed: b stays positive
-  double rest_time = 0.0;                // rest_time / √c_i is those spans' time
+  double rest_time = 0.0;                // rest_time / √c_i is those segments' time
   double diagonal = 0.0, next = 0.0, after = 0.0, right = 0.0, change = 0.0;
   double best = 0.0;
 };
@@ -74,20 +74,20 @@ SpeedSolver::SpeedSolver(const ChannelLimits& limits, std::size_t capacity)
     : limits_(limits), work_(std::make_unique<Work[]>(capacity)) {}
 SpeedSolver::~SpeedSolver() = default;
 
-SpanEnds ends_of(const SpeedSpan* spans, std::size_t size, std::size_t i) noexcept {
-  const SpeedSpan& span = spans[i];
-  const auto met = [&](const SpeedSpan& other) {
-    if (other.kind != Segment::Kind::cruise) return span.b / (1.0 + 2.0 * span.length_m / (3.0 * other.length_m));
-    return (span.length_m * other.b + other.length_m * span.b) / (span.length_m + other.length_m);
+SegmentEnds ends_of(const SpeedSegment* segments, std::size_t size, std::size_t i) noexcept {
+  const SpeedSegment& segment = segments[i];
+  const auto met = [&](const SpeedSegment& other) {
+    if (other.kind != Segment::Kind::cruise) return segment.b / (1.0 + 2.0 * segment.length_m / (3.0 * other.length_m));
+    return (segment.length_m * other.b + other.length_m * segment.b) / (segment.length_m + other.length_m);
   };
-  return {.begin_b = i > 0 ? met(spans[i - 1]) : span.b, .end_b = i + 1 < size ? met(spans[i + 1]) : span.b};
+  return {i > 0 ? met(segments[i - 1]) : segment.b, i + 1 < size ? met(segments[i + 1]) : segment.b};
 }
 
-double SpeedSolver::own_safe_b(const SpeedSpan& span) const noexcept {
-  if (span.kind != Segment::Kind::cruise) return 0.5 * rest_limit(span, limits_);
-  const double d = span.length_m;
+double SpeedSolver::own_safe_b(const SpeedSegment& segment) const noexcept {
+  if (segment.kind != Segment::Kind::cruise) return 0.5 * rest_limit(segment, limits_);
+  const double d = segment.length_m;
   double out = 1e300;
-  for (const PathPoint& point : span.point) {
+  for (const PathPoint& point : segment.point) {
     out = std::min(out, 0.9 * point.max_b);
     for (std::size_t k = 0; k < channel_count; ++k) {
       // Any b within [0, safe_b] at the three coefficients: |b'| <= 2 safe_b / d and |b''| <= 4 safe_b / d².
@@ -103,9 +103,9 @@ double SpeedSolver::own_safe_b(const SpeedSpan& span) const noexcept {
 
 namespace {
 
-/// What one iteration knows of a row of spans.
+/// What one iteration knows of a row of segments.
 struct SpeedRow {
-  SpeedSpan* spans = nullptr;
+  SpeedSegment* segments = nullptr;
   std::size_t size = 0, first = 0, last = 0;
   const ChannelLimits& limits;
   const SpeedOptions& options;
@@ -126,18 +126,19 @@ struct SpeedSolver::Direction {
             m[2][0] * before + m[2][1] * here + m[2][2] * after};
   }
   [[nodiscard]] Local at(std::size_t i, std::size_t p) const {
-    return local(i, p, i > 0 ? row.spans[i - 1].b : 0.0, row.spans[i].b, i + 1 < row.size ? row.spans[i + 1].b : 0.0);
+    return local(i, p, i > 0 ? row.segments[i - 1].b : 0.0, row.segments[i].b,
+                 i + 1 < row.size ? row.segments[i + 1].b : 0.0);
   }
   [[nodiscard]] Local change(std::size_t i, std::size_t p) const {
     return local(i, p, i > 0 ? work[i - 1].change : 0.0, work[i].change, i + 1 < row.size ? work[i + 1].change : 0.0);
   }
   [[nodiscard]] double time_b(std::size_t i, std::size_t p) const {
     const auto& g = work[i].gauss[p];
-    return (i > 0 ? g[0] * row.spans[i - 1].b : 0.0) + g[1] * row.spans[i].b +
-           (i + 1 < row.size ? g[2] * row.spans[i + 1].b : 0.0);
+    return (i > 0 ? g[0] * row.segments[i - 1].b : 0.0) + g[1] * row.segments[i].b +
+           (i + 1 < row.size ? g[2] * row.segments[i + 1].b : 0.0);
   }
   [[nodiscard]] bool moves(std::size_t i) const { return i >= row.first && i < row.last; }
-  /// Spans whose points feel a free coefficient.
+  /// Segments whose points feel a free coefficient.
   [[nodiscard]] std::size_t from() const { return row.first > 0 ? row.first - 1 : 0; }
   [[nodiscard]] std::size_t to() const { return std::min(row.last + 1, row.size); }
 
@@ -145,7 +146,7 @@ struct SpeedSolver::Direction {
   [[nodiscard]] double time() const;
   /// False where a limit is broken.
   [[nodiscard]] bool start_duals();
-  void assemble_span(std::size_t i, double& gap);
+  void assemble_segment(std::size_t i, double& gap);
   void solve();
   void find_step(double& primal, double& dual);
   [[nodiscard]] double promised_s() const;
@@ -153,30 +154,30 @@ struct SpeedSolver::Direction {
 
 void SpeedSolver::Direction::prepare(std::size_t i) {
   Work& w = work[i];
-  const SpeedSpan& span = row.spans[i];
+  const SpeedSegment& segment = row.segments[i];
   w.cap = 1e300;
-  w.floor = floor_share * std::min(span.b, span.safe_b);
+  w.floor = floor_share * std::min(segment.b, segment.safe_b);
   w.rest_time = 0.0;
-  if (span.kind != Segment::Kind::cruise) return;
+  if (segment.kind != Segment::Kind::cruise) return;
   // Where the limit is even the control points keep the spline below it everywhere.
-  w.cap = std::max({span.point[0].max_b, span.point[1].max_b, span.point[2].max_b});
+  w.cap = std::max({segment.point[0].max_b, segment.point[1].max_b, segment.point[2].max_b});
   // (begin, middle, end) by (c_{i−1}, c_i, c_{i+1}).
   double joint[3][3] = {{0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
-  const auto meet = [&](const SpeedSpan& other, double& own, double& others) {
+  const auto meet = [&](const SpeedSegment& other, double& own, double& others) {
     if (other.kind != Segment::Kind::cruise) {
-      own = 1.0 / (1.0 + 2.0 * span.length_m / (3.0 * other.length_m));
+      own = 1.0 / (1.0 + 2.0 * segment.length_m / (3.0 * other.length_m));
       w.cap = std::min(w.cap, rest_limit(other, row.limits) / own);
       w.rest_time += 3.0 * other.length_m / std::sqrt(own);
     } else {
-      own = other.length_m / (span.length_m + other.length_m);
-      others = span.length_m / (span.length_m + other.length_m);
+      own = other.length_m / (segment.length_m + other.length_m);
+      others = segment.length_m / (segment.length_m + other.length_m);
     }
   };
-  if (i > 0) meet(row.spans[i - 1], joint[0][1], joint[0][0]);
-  if (i + 1 < row.size) meet(row.spans[i + 1], joint[2][1], joint[2][2]);
+  if (i > 0) meet(row.segments[i - 1], joint[0][1], joint[0][0]);
+  if (i + 1 < row.size) meet(row.segments[i + 1], joint[2][1], joint[2][2]);
   for (std::size_t p = 0; p < point_count; ++p) {
     double weight[3][3];
-    bezier(span.share[p], span.length_m, weight);
+    bezier(segment.share[p], segment.length_m, weight);
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
         w.local[p][r][c] = weight[r][0] * joint[0][c] + weight[r][1] * joint[1][c] + weight[r][2] * joint[2][c];
@@ -185,7 +186,7 @@ void SpeedSolver::Direction::prepare(std::size_t i) {
   }
   for (std::size_t p = 0; p < 2; ++p) {
     double weight[3][3];
-    bezier(gauss_share[p], span.length_m, weight);
+    bezier(gauss_share[p], segment.length_m, weight);
     for (int c = 0; c < 3; ++c) {
       w.gauss[p][c] = weight[0][0] * joint[0][c] + weight[0][1] * joint[1][c] + weight[0][2] * joint[2][c];
     }
@@ -195,9 +196,9 @@ void SpeedSolver::Direction::prepare(std::size_t i) {
 double SpeedSolver::Direction::time() const {
   double sum = 0.0;
   for (std::size_t i = from(); i < to(); ++i) {
-    if (row.spans[i].kind != Segment::Kind::cruise) continue;
-    for (std::size_t p = 0; p < 2; ++p) sum += 0.5 * row.spans[i].length_m / std::sqrt(time_b(i, p));
-    if (work[i].rest_time > 0.0) sum += work[i].rest_time / std::sqrt(row.spans[i].b);
+    if (row.segments[i].kind != Segment::Kind::cruise) continue;
+    for (std::size_t p = 0; p < 2; ++p) sum += 0.5 * row.segments[i].length_m / std::sqrt(time_b(i, p));
+    if (work[i].rest_time > 0.0) sum += work[i].rest_time / std::sqrt(row.segments[i].b);
   }
   return sum;
 }
@@ -205,12 +206,12 @@ double SpeedSolver::Direction::time() const {
 bool SpeedSolver::Direction::start_duals() {
   bool within = true;
   for (std::size_t i = from(); i < to(); ++i) {
-    const SpeedSpan& span = row.spans[i];
+    const SpeedSegment& segment = row.segments[i];
     Work& w = work[i];
-    if (span.kind != Segment::Kind::cruise) continue;
+    if (segment.kind != Segment::Kind::cruise) continue;
     for (std::size_t p = 0; p < point_count; ++p) {
       const Local s = at(i, p);
-      const PathPoint& point = span.point[p];
+      const PathPoint& point = segment.point[p];
       const double root = 1.0 / std::sqrt(s.b);
       for (std::size_t k = 0; k < channel_count; ++k) {
         const double a = point.c2[k] * s.b + 0.5 * point.c1[k] * s.first;
@@ -228,23 +229,23 @@ bool SpeedSolver::Direction::start_duals() {
       w.dz_speed[p] = 0.0;
       within = within && s.b > 0.0 && s.b < point.max_b;
     }
-    w.z_cap = mu / (w.cap - span.b);
+    w.z_cap = mu / (w.cap - segment.b);
     w.dz_cap = 0.0;
-    w.z_floor = mu / (span.b - w.floor);
+    w.z_floor = mu / (segment.b - w.floor);
     w.dz_floor = 0.0;
-    within = within && span.b < w.cap && span.b > w.floor;
+    within = within && segment.b < w.cap && segment.b > w.floor;
   }
   return within;
 }
 
-void SpeedSolver::Direction::assemble_span(std::size_t i, double& gap) {
-  const SpeedSpan& span = row.spans[i];
+void SpeedSolver::Direction::assemble_segment(std::size_t i, double& gap) {
+  const SpeedSegment& segment = row.segments[i];
   Work& w = work[i];
-  if (span.kind != Segment::Kind::cruise) return;
+  if (segment.kind != Segment::Kind::cruise) return;
   double matrix[3][3] = {}, right[3] = {};
   alignas(8 * lane_count) double lanes[10][lane_count];
   for (std::size_t p = 0; p < point_count; ++p) {
-    const PathPoint& point = span.point[p];
+    const PathPoint& point = segment.point[p];
     const Local s = at(i, p);
     const double root = 1.0 / std::sqrt(s.b);
     Assembly a{.c1 = point.c1.data(),
@@ -281,26 +282,26 @@ void SpeedSolver::Direction::assemble_span(std::size_t i, double& gap) {
   // The time: d / (2 √b).
   for (std::size_t p = 0; p < 2; ++p) {
     const auto& g = w.gauss[p];
-    const double b = time_b(i, p), slope = 0.25 * span.length_m / (b * std::sqrt(b)), bend = 1.5 * slope / b;
+    const double b = time_b(i, p), slope = 0.25 * segment.length_m / (b * std::sqrt(b)), bend = 1.5 * slope / b;
     for (int c = 0; c < 3; ++c) {
       for (int r = 0; r <= c; ++r) matrix[r][c] += g[r] * bend * g[c];
       right[c] += slope * g[c];
     }
   }
   w.z_floor += dual_step * w.dz_floor;
-  const double above = span.b - w.floor;
+  const double above = segment.b - w.floor;
   matrix[1][1] += w.z_floor / above;
   right[1] += mu / above;
   gap += w.z_floor * above;
   w.z_cap += dual_step * w.dz_cap;
-  const double below = w.cap - span.b;
+  const double below = w.cap - segment.b;
   matrix[1][1] += w.z_cap / below;
   right[1] -= mu / below;
   gap += w.z_cap * below;
   if (w.rest_time > 0.0) {
-    const double root = 1.0 / std::sqrt(span.b);
-    matrix[1][1] += 0.75 * w.rest_time * root / (span.b * span.b);
-    right[1] += 0.5 * w.rest_time * root / span.b;
+    const double root = 1.0 / std::sqrt(segment.b);
+    matrix[1][1] += 0.75 * w.rest_time * root / (segment.b * segment.b);
+    right[1] += 0.5 * w.rest_time * root / segment.b;
   }
   w.diagonal += matrix[1][1];
   w.right += right[1];
@@ -323,7 +324,7 @@ void SpeedSolver::Direction::solve() {
   Work* const w = work;
   for (std::size_t i = row.first; i < row.last; ++i) {
     double& d = w[i].diagonal;
-    if (row.spans[i].kind != Segment::Kind::cruise) {
+    if (row.segments[i].kind != Segment::Kind::cruise) {
       d = 1.0;
       w[i].next = w[i].after = w[i].right = 0.0;
       continue;
@@ -354,11 +355,11 @@ void SpeedSolver::Direction::solve() {
 void SpeedSolver::Direction::find_step(double& primal, double& dual) {
   alignas(8 * lane_count) double primal_lanes[lane_count] = {}, dual_lanes[lane_count] = {};
   for (std::size_t i = from(); i < to(); ++i) {
-    const SpeedSpan& span = row.spans[i];
+    const SpeedSegment& segment = row.segments[i];
     Work& w = work[i];
-    if (span.kind != Segment::Kind::cruise) continue;
+    if (segment.kind != Segment::Kind::cruise) continue;
     for (std::size_t p = 0; p < point_count; ++p) {
-      const PathPoint& point = span.point[p];
+      const PathPoint& point = segment.point[p];
       const Local s = at(i, p), ds = change(i, p);
       Stepping a{.c1 = point.c1.data(),
                  .c2 = point.c2.data(),
@@ -380,11 +381,11 @@ void SpeedSolver::Direction::find_step(double& primal, double& dual) {
       primal = std::max(primal, ds.b / slack);
       dual = std::max(dual, -w.dz_speed[p] / w.z_speed[p]);
     }
-    const double above = span.b - w.floor;
+    const double above = segment.b - w.floor;
     w.dz_floor = (mu - w.z_floor * w.change) / above - w.z_floor;
     primal = std::max(primal, -w.change / above);
     dual = std::max(dual, -w.dz_floor / w.z_floor);
-    const double below = w.cap - span.b;
+    const double below = w.cap - segment.b;
     w.dz_cap = (mu + w.z_cap * w.change) / below - w.z_cap;
     primal = std::max(primal, w.change / below);
     dual = std::max(dual, -w.dz_cap / w.z_cap);
@@ -399,30 +400,30 @@ void SpeedSolver::Direction::find_step(double& primal, double& dual) {
 double SpeedSolver::Direction::promised_s() const {
   double sum = 0.0;
   for (std::size_t i = from(); i < to(); ++i) {
-    if (row.spans[i].kind != Segment::Kind::cruise) continue;
+    if (row.segments[i].kind != Segment::Kind::cruise) continue;
     const double before = i > 0 ? work[i - 1].change : 0.0, after = i + 1 < row.size ? work[i + 1].change : 0.0;
     for (std::size_t p = 0; p < 2; ++p) {
       const auto& g = work[i].gauss[p];
       const double b = time_b(i, p), change = g[0] * before + g[1] * work[i].change + g[2] * after;
-      sum += 0.25 * row.spans[i].length_m * change / (b * std::sqrt(b));
+      sum += 0.25 * row.segments[i].length_m * change / (b * std::sqrt(b));
     }
     if (work[i].rest_time > 0.0) {
-      sum += 0.5 * work[i].rest_time * work[i].change / (row.spans[i].b * std::sqrt(row.spans[i].b));
+      sum += 0.5 * work[i].rest_time * work[i].change / (row.segments[i].b * std::sqrt(row.segments[i].b));
     }
   }
   return sum;
 }
 
-SpeedResult SpeedSolver::solve(SpeedSpan* spans, std::size_t size, std::size_t first, std::size_t last,
+SpeedResult SpeedSolver::solve(SpeedSegment* segments, std::size_t size, std::size_t first, std::size_t last,
                                const SpeedOptions& options) noexcept {
-  Direction direction({spans, size, first, last, limits_, options}, work_.get());
+  Direction direction({segments, size, first, last, limits_, options}, work_.get());
   Work* const work = work_.get();
   SpeedResult out;
   const std::size_t from = direction.from(), to = direction.to();
   for (std::size_t i = from; i < to; ++i) {
     direction.prepare(i);
     work[i].change = 0.0;
-    work[i].best = spans[i].b;
+    work[i].best = segments[i].b;
   }
   if (first >= last) return out;
   const double rows =
@@ -435,19 +436,19 @@ SpeedResult SpeedSolver::solve(SpeedSpan* spans, std::size_t size, std::size_t f
   for (out.iterations = 0; out.iterations < options.max_iterations; ++out.iterations) {
     for (std::size_t i = from; i < to; ++i) work[i].diagonal = work[i].next = work[i].after = work[i].right = 0.0;
     double gap = 0.0;
-    for (std::size_t i = from; i < to; ++i) direction.assemble_span(i, gap);
+    for (std::size_t i = from; i < to; ++i) direction.assemble_segment(i, gap);
     direction.solve();
     double primal = 0.0, dual = 0.0;
     direction.find_step(primal, dual);
     const double take = std::min(1.0, 0.98 / std::max(primal, 1e-300));
     direction.dual_step = std::min(1.0, 0.98 / std::max(dual, 1e-300));
     const double promised_s = direction.promised_s();
-    for (std::size_t i = first; i < last; ++i) spans[i].b += take * work[i].change;
+    for (std::size_t i = first; i < last; ++i) segments[i].b += take * work[i].change;
     const double time_s = direction.time(), gained_s = best_s - time_s;
     out.gap_s = gap;
     if (time_s < best_s) {
       best_s = time_s;
-      for (std::size_t i = first; i < last; ++i) work[i].best = spans[i].b;
+      for (std::size_t i = first; i < last; ++i) work[i].best = segments[i].b;
     }
     if (gap < options.relative_gap * best_s && std::abs(gained_s) < options.relative_gap * best_s && take > 0.5) {
       out.converged = true;
@@ -459,7 +460,7 @@ SpeedResult SpeedSolver::solve(SpeedSpan* spans, std::size_t size, std::size_t f
     // only drive the row against its limits, where steps are short.
     direction.mu = std::max({centring * gap, promise_weight * promised_s, 1e-3 * options.relative_gap * best_s}) / rows;
   }
-  for (std::size_t i = first; i < last; ++i) spans[i].b = work[i].best;
+  for (std::size_t i = first; i < last; ++i) segments[i].b = work[i].best;
   out.duration_s = best_s;
   return out;
 }

@@ -31,16 +31,16 @@ ChannelLimits limits(double velocity, double acceleration, double jerk) {
   return out;
 }
 
-/// A row from rest to rest, spans growing from `rest_m` at both ends to `span_m`, at safe terminal speeds.
+/// A row from rest to rest, segments growing from `rest_m` at both ends to `segment_m`, at safe terminal speeds.
 struct Row {
-  std::vector<SpeedSpan> spans;
+  std::vector<SpeedSegment> segments;
   std::vector<double> begin_m;
 
-  Row(const SpeedSolver& solver, const Curve& curve, double length_m, double rest_m, double span_m,
+  Row(const SpeedSolver& solver, const Curve& curve, double length_m, double rest_m, double segment_m,
       double growth = 1.5) {
     std::vector<double> half;
     double sum = 0.0;
-    for (double step = rest_m; sum + step < 0.5 * length_m; step = std::min(span_m, growth * step)) {
+    for (double step = rest_m; sum + step < 0.5 * length_m; step = std::min(segment_m, growth * step)) {
       half.push_back(step);
       sum += step;
     }
@@ -49,12 +49,12 @@ struct Row {
     all.insert(all.end(), half.rbegin(), half.rend());
     double u_m = 0.0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      SpeedSpan span;
-      span.kind = i == 0 ? Kind::from_rest : i + 1 == all.size() ? Kind::to_rest : Kind::cruise;
-      span.length_m = all[i];
+      SpeedSegment segment;
+      segment.kind = i == 0 ? Kind::from_rest : i + 1 == all.size() ? Kind::to_rest : Kind::cruise;
+      segment.length_m = all[i];
       for (std::size_t p = 0; p < point_count; ++p) {
-        const Derivatives d = curve(u_m + span.share[p] * all[i]);
-        PathPoint& point = span.point[p];
+        const Derivatives d = curve(u_m + segment.share[p] * all[i]);
+        PathPoint& point = segment.point[p];
         point.c1 = d.c1;
         point.c2 = d.c2;
         point.c3 = d.c3;
@@ -64,62 +64,62 @@ struct Row {
               std::min(point.max_b, std::pow(solver.limits().velocity[k] / std::max(std::abs(d.c1[k]), 1e-9), 2));
         }
       }
-      span.safe_b = solver.own_safe_b(span);
-      spans.push_back(span);
+      segment.safe_b = solver.own_safe_b(segment);
+      segments.push_back(segment);
       begin_m.push_back(u_m);
       u_m += all[i];
     }
-    for (std::size_t i = 0; i < spans.size(); ++i) {
-      spans[i].b = spans[i].safe_b;
-      if (i > 0) spans[i].b = std::min(spans[i].b, spans[i - 1].safe_b);
-      if (i + 1 < spans.size()) spans[i].b = std::min(spans[i].b, spans[i + 1].safe_b);
-      spans[i].b *= 0.9;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      segments[i].b = segments[i].safe_b;
+      if (i > 0) segments[i].b = std::min(segments[i].b, segments[i - 1].safe_b);
+      if (i + 1 < segments.size()) segments[i].b = std::min(segments[i].b, segments[i + 1].safe_b);
+      segments[i].b *= 0.9;
     }
   }
 
   /// What is driven.
   [[nodiscard]] std::vector<Segment> motion() const {
     std::vector<Segment> out;
-    for (std::size_t i = 0; i < spans.size(); ++i) {
-      Segment span{.kind = spans[i].kind, .begin_m = begin_m[i], .length_m = spans[i].length_m};
-      if (span.kind == Kind::from_rest) {
-        span.end_b = ends_of(spans.data(), spans.size(), i + 1).begin_b;
-      } else if (span.kind == Kind::to_rest) {
-        span.begin_b = ends_of(spans.data(), spans.size(), i - 1).end_b;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      Segment segment{.kind = segments[i].kind, .begin_m = begin_m[i], .length_m = segments[i].length_m};
+      if (segment.kind == Kind::from_rest) {
+        segment.end_b = ends_of(segments.data(), segments.size(), i + 1).begin_b;
+      } else if (segment.kind == Kind::to_rest) {
+        segment.begin_b = ends_of(segments.data(), segments.size(), i - 1).end_b;
       } else {
-        const SpanEnds ends = ends_of(spans.data(), spans.size(), i);
-        span.begin_b = ends.begin_b;
-        span.middle_b = spans[i].b;
-        span.end_b = ends.end_b;
+        const SegmentEnds ends = ends_of(segments.data(), segments.size(), i);
+        segment.begin_b = ends.begin_b;
+        segment.middle_b = segments[i].b;
+        segment.end_b = ends.end_b;
       }
-      out.push_back(span);
+      out.push_back(segment);
     }
     return out;
   }
   [[nodiscard]] double time_s() const {
     double sum = 0.0;
-    for (const Segment& span : motion()) sum += duration_s(span);
+    for (const Segment& segment : motion()) sum += duration_s(segment);
     return sum;
   }
 };
 
-/// b, b', b'' of a span at a share of it, in its own words.
+/// b, b', b'' of a segment at a share of it, in its own words.
 struct Rates {
   double b, first, second;
 };
-Rates rates(const Segment& span, double s) {
-  const double d = span.length_m, r = 1.0 - s;
-  if (span.kind == Kind::from_rest) {
-    return {span.end_b * std::pow(s, 4.0 / 3.0), 4.0 / 3.0 * span.end_b * std::cbrt(s) / d,
-            4.0 / 9.0 * span.end_b * std::pow(s, -2.0 / 3.0) / (d * d)};
+Rates rates(const Segment& segment, double s) {
+  const double d = segment.length_m, r = 1.0 - s;
+  if (segment.kind == Kind::from_rest) {
+    return {segment.end_b * std::pow(s, 4.0 / 3.0), 4.0 / 3.0 * segment.end_b * std::cbrt(s) / d,
+            4.0 / 9.0 * segment.end_b * std::pow(s, -2.0 / 3.0) / (d * d)};
   }
-  if (span.kind == Kind::to_rest) {
-    return {span.begin_b * std::pow(r, 4.0 / 3.0), -4.0 / 3.0 * span.begin_b * std::cbrt(r) / d,
-            4.0 / 9.0 * span.begin_b * std::pow(r, -2.0 / 3.0) / (d * d)};
+  if (segment.kind == Kind::to_rest) {
+    return {segment.begin_b * std::pow(r, 4.0 / 3.0), -4.0 / 3.0 * segment.begin_b * std::cbrt(r) / d,
+            4.0 / 9.0 * segment.begin_b * std::pow(r, -2.0 / 3.0) / (d * d)};
   }
-  return {r * r * span.begin_b + 2.0 * r * s * span.middle_b + s * s * span.end_b,
-          2.0 / d * (r * (span.middle_b - span.begin_b) + s * (span.end_b - span.middle_b)),
-          2.0 / (d * d) * (span.begin_b - 2.0 * span.middle_b + span.end_b)};
+  return {r * r * segment.begin_b + 2.0 * r * s * segment.middle_b + s * s * segment.end_b,
+          2.0 / d * (r * (segment.middle_b - segment.begin_b) + s * (segment.end_b - segment.middle_b)),
+          2.0 / (d * d) * (segment.begin_b - 2.0 * segment.middle_b + segment.end_b)};
 }
 
 /// The largest share of any limit that is used at the points.
@@ -128,8 +128,8 @@ double used(const Row& row, const ChannelLimits& limits, bool jerk = true) {
   const std::vector<Segment> motion = row.motion();
   for (std::size_t i = 0; i < motion.size(); ++i) {
     for (std::size_t p = 0; p < point_count; ++p) {
-      const PathPoint& point = row.spans[i].point[p];
-      const Rates at = rates(motion[i], row.spans[i].share[p]);
+      const PathPoint& point = row.segments[i].point[p];
+      const Rates at = rates(motion[i], row.segments[i].share[p]);
       const double f = point.speed;
       out = std::max(out, at.b / point.max_b);
       for (std::size_t k = 0; k < channel_count; ++k) {
@@ -172,14 +172,14 @@ TEST(Speed, ReachesTheSevenPhaseProfileOnALine) {
     ChannelLimits most = limits(c.v, c.a, c.j);
     SpeedSolver solver(most, 4000);
     const double fall_m = c.a * c.a * c.a / (6.0 * c.j * c.j);
-    // A resting span runs at constant jerk: nearly all of the first phase.
+    // A resting segment runs at constant jerk: nearly all of the first phase.
     Row row(solver, straight, c.length, 0.9 * std::min(fall_m, c.length / 12.0),
             std::min(0.02 * c.v * c.v / c.a, 0.004 * c.length), 1.1);
-    const SpeedResult result = solver.solve(row.spans.data(), row.spans.size(), 0, row.spans.size(),
+    const SpeedResult result = solver.solve(row.segments.data(), row.segments.size(), 0, row.segments.size(),
                                             {.relative_gap = 1e-4, .max_iterations = 200});
     EXPECT_TRUE(result.converged);
     const double best_s = seven_phases_s(c.length, c.v, c.a, c.j), time_s = row.time_s();
-    EXPECT_LT(time_s, 1.003 * best_s) << c.length << " m: " << time_s / best_s << " with " << row.spans.size();
+    EXPECT_LT(time_s, 1.003 * best_s) << c.length << " m: " << time_s / best_s << " with " << row.segments.size();
     EXPECT_GT(time_s, best_s * (1.0 - 1e-5)) << c.length << " m: " << time_s / best_s;
     EXPECT_NEAR(result.duration_s, time_s, 2e-3 * time_s);
     EXPECT_LT(used(row, most), 1.0 + 1e-9);
@@ -252,7 +252,7 @@ TEST(Speed, AgreesWithReachabilityAnalysisWithoutJerk) {
     const Curve curve = swinging(seed, 0.02);
     SpeedSolver solver(most, 4000);
     Row row(solver, curve, 0.1, 2e-6, 5e-5, 1.15);
-    const SpeedResult result = solver.solve(row.spans.data(), row.spans.size(), 0, row.spans.size(),
+    const SpeedResult result = solver.solve(row.segments.data(), row.segments.size(), 0, row.segments.size(),
                                             {.relative_gap = 1e-4, .max_iterations = 200});
     EXPECT_TRUE(result.converged);
     const double best_s = reachable_time_s(curve, most, 0.1, 20000);
@@ -289,11 +289,11 @@ TEST(Speed, EveryIterateIsWithinLimits) {
     ASSERT_LT(used(start, most), 1.0) << seed;
     for (const int iterations : {1, 3, 10, 80}) {
       Row row = start;
-      const SpeedResult result =
-          solver.solve(row.spans.data(), row.spans.size(), 0, row.spans.size(), {.max_iterations = iterations});
+      const SpeedResult result = solver.solve(row.segments.data(), row.segments.size(), 0, row.segments.size(),
+                                              {.max_iterations = iterations});
       EXPECT_LE(used(row, most), 1.0 + 1e-9) << seed << ' ' << iterations;
       EXPECT_LE(row.time_s(), before_s * 1.001) << seed << ' ' << iterations;
-      for (const SpeedSpan& span : row.spans) ASSERT_TRUE(std::isfinite(span.b) && span.b > 0.0) << seed;
+      for (const SpeedSegment& segment : row.segments) ASSERT_TRUE(std::isfinite(segment.b) && segment.b > 0.0) << seed;
       before_s = row.time_s();
       if (iterations == 80) converged += result.converged ? 1 : 0;
     }
@@ -302,20 +302,20 @@ TEST(Speed, EveryIterateIsWithinLimits) {
   EXPECT_GE(converged, (9 * all) / 10) << "of " << all;
 }
 
-// Spans taken over keep their speed, and those after them go on within limits.
+// Segments taken over keep their speed, and those after them go on within limits.
 TEST(Speed, KeepsWhatIsTakenOver) {
   const ChannelLimits most = limits(0.2, 1.0, 30.0);
   SpeedSolver solver(most, 2000);
   const Curve curve = swinging(3, 0.02);
   Row row(solver, curve, 0.1, 1e-4, 5e-4);
-  const std::size_t size = row.spans.size(), window = size / 2;
-  solver.solve(row.spans.data(), window, 0, window - 2, {});
-  const std::vector<SpeedSpan> first = row.spans;
-  solver.solve(row.spans.data(), size, window / 2, size, {});
-  for (std::size_t i = 0; i < window / 2; ++i) ASSERT_EQ(row.spans[i].b, first[i].b);
+  const std::size_t size = row.segments.size(), window = size / 2;
+  solver.solve(row.segments.data(), window, 0, window - 2, {});
+  const std::vector<SpeedSegment> first = row.segments;
+  solver.solve(row.segments.data(), size, window / 2, size, {});
+  for (std::size_t i = 0; i < window / 2; ++i) ASSERT_EQ(row.segments[i].b, first[i].b);
   EXPECT_LT(used(row, most), 1.0 + 1e-9);
   Row whole(solver, curve, 0.1, 1e-4, 5e-4);
-  solver.solve(whole.spans.data(), size, 0, size, {});
+  solver.solve(whole.segments.data(), size, 0, size, {});
   EXPECT_LT(row.time_s(), 1.02 * whole.time_s());
 }
 
@@ -328,16 +328,16 @@ TEST(Speed, IsTheSameOnAllKernels) {
     if (variant > best) continue;
     kernels() = variant;
     Row row(solver, swinging(5, 0.01), 0.05, 1e-4, 5e-4);
-    solver.solve(row.spans.data(), row.spans.size(), 0, row.spans.size(), {});
+    solver.solve(row.segments.data(), row.segments.size(), 0, row.segments.size(), {});
     kernels() = best;
     std::vector<double> b;
-    for (const SpeedSpan& span : row.spans) b.push_back(span.b);
+    for (const SpeedSegment& segment : row.segments) b.push_back(segment.b);
     if (first.empty()) first = b;
     EXPECT_EQ(b, first) << static_cast<int>(variant);
   }
 }
 
-TEST(Speed, HardlyGainsFromHalvingTheSpans) {
+TEST(Speed, HardlyGainsFromHalvingTheSegments) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const ChannelLimits most = limits(0.2, 1.0, 30.0);
     SpeedSolver solver(most, 4000);
@@ -345,7 +345,7 @@ TEST(Speed, HardlyGainsFromHalvingTheSpans) {
     double time_s[2];
     for (int fine = 0; fine < 2; ++fine) {
       Row row(solver, curve, 0.1, fine == 0 ? 1e-4 : 5e-5, fine == 0 ? 5e-4 : 2.5e-4);
-      solver.solve(row.spans.data(), row.spans.size(), 0, row.spans.size(),
+      solver.solve(row.segments.data(), row.segments.size(), 0, row.segments.size(),
                    {.relative_gap = 1e-4, .max_iterations = 200});
       time_s[fine] = row.time_s();
     }
@@ -361,17 +361,17 @@ TEST(Speed, ScalesWithTime) {
   SpeedSolver solver(most, 2000);
   const Curve curve = swinging(7, 0.02);
   Row plain(solver, curve, 0.1, 1e-4, 5e-4), slow = plain;
-  for (SpeedSpan& span : slow.spans) {
-    span.b *= 0.25;
-    span.safe_b *= 0.25;
-    for (PathPoint& point : span.point) {
+  for (SpeedSegment& segment : slow.segments) {
+    segment.b *= 0.25;
+    segment.safe_b *= 0.25;
+    for (PathPoint& point : segment.point) {
       point.speed = 0.5;
       point.max_b *= 0.25;
     }
   }
-  solver.solve(plain.spans.data(), plain.spans.size(), 0, plain.spans.size(),
+  solver.solve(plain.segments.data(), plain.segments.size(), 0, plain.segments.size(),
                {.relative_gap = 1e-5, .max_iterations = 200});
-  solver.solve(slow.spans.data(), slow.spans.size(), 0, slow.spans.size(),
+  solver.solve(slow.segments.data(), slow.segments.size(), 0, slow.segments.size(),
                {.relative_gap = 1e-5, .max_iterations = 200});
   EXPECT_NEAR(slow.time_s(), 2.0 * plain.time_s(), 1e-4 * slow.time_s());
 }

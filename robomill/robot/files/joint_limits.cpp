@@ -42,8 +42,8 @@ std::vector<std::size_t> joints_of(const Key& key, const std::vector<bool>& pris
 void require_length(const io::TomlFile& file, const Key& key, std::size_t wanted, std::size_t held) {
   if (wanted == held) return;
   const char* const kind = key.bare()    ? "a joint"
-                           : key.turning ? "for each joint that turns"
-                                         : "for each joint that slides";
+                           : key.turning ? "for each revolute joint"
+                                         : "for each prismatic joint";
   throw file.reject(key.key, fmt::format("must hold one number {}, {}; it holds {}", kind, wanted, held));
 }
 

@@ -63,7 +63,7 @@ const CollocationCase& CollocationEvaluator::find_case(std::size_t lane, const O
   return cases[lane];
 }
 
-void CollocationEvaluator::settle(std::size_t lane, std::size_t column, const Dominant& dominant,
+void CollocationEvaluator::assess(std::size_t lane, std::size_t column, const Dominant& dominant,
                                   const OperatingPoint& point, Ask ask, Outcome& out) {
   Lane& here = lanes_[lane];
   const double share = model_.reported_rad() / model_.whole_rad();
@@ -127,7 +127,7 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
     arnoldi_.find(map_, std::span(found).first(count));
     evaluations_ += static_cast<long long>(count);
     for (std::size_t i = 0; i < count; ++i) {
-      settle(lane_of[i], i, found[i], points[lane_of[i]], ask, out[lane_of[i]]);
+      assess(lane_of[i], i, found[i], points[lane_of[i]], ask, out[lane_of[i]]);
     }
   }
 }

@@ -35,7 +35,7 @@ class CollocationEvaluator final : public PointEvaluator {
   };
   const CollocationCase& find_case(std::size_t lane, const OperatingPoint& point, int level);
   void run(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out);
-  void settle(std::size_t lane, std::size_t column, const Dominant& dominant, const OperatingPoint& point, Ask ask,
+  void assess(std::size_t lane, std::size_t column, const Dominant& dominant, const OperatingPoint& point, Ask ask,
               Outcome& out);
 
   const CollocationModel& model_;

@@ -39,7 +39,7 @@ void Arnoldi::start(std::size_t size) {
   }
 }
 
-bool Arnoldi::settle(std::size_t lane, std::size_t columns, bool whole_space, Dominant& out) {
+bool Arnoldi::converged(std::size_t lane, std::size_t columns, bool whole_space, Dominant& out) {
   small_.resize(columns);
   for (std::size_t c = 0; c < columns; ++c) {
     const Lanes* column = hessenberg_.data() + c * (most_ + 1);
@@ -81,7 +81,7 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out) {
     look = std::min(most_, look + between);
     for (std::size_t lane = 0; lane < out.size(); ++lane) {
       if (done[lane]) continue;
-      done[lane] = settle(lane, k + 1, k + 1 == size_, out[lane]);
+      done[lane] = converged(lane, k + 1, k + 1 == size_, out[lane]);
       if (done[lane]) --left;
     }
   }

@@ -22,7 +22,7 @@ struct Dominant {
 double spectral_radius(const Dominant& dominant);
 
 struct ArnoldiOptions {
-  double tolerance = 1e-12;           ///< settled where the residual is at most this times (|μ| + 0.1 ‖H‖)
+  double tolerance = 1e-12;           ///< converged where the residual is at most this times (|μ| + 0.1 ‖H‖)
   std::size_t extra = 72;             ///< vectors beyond 2n before the matrix is formed
   std::size_t largest_matrix = 1200;  ///< beyond this the matrix is not formed
   bool full_matrix_only = false;      ///< for tests
@@ -41,7 +41,7 @@ class Arnoldi {
 
  private:
   void start(std::size_t size);
-  bool settle(std::size_t lane, std::size_t columns, bool whole_space, Dominant& out);
+  bool converged(std::size_t lane, std::size_t columns, bool whole_space, Dominant& out);
   void full_matrix(PeriodMap& map, std::span<Dominant> out);
 
   ArnoldiOptions options_;

@@ -26,7 +26,7 @@ class LargestEigenvalues {
     const Eigen::Index n = a.rows();
     for (Eigen::Index columns = 10; 2 * columns <= n; columns += 6) {
       iterate(a, columns);
-      if (settled(columns, least, out)) return;
+      if (converged(columns, least, out)) return;
     }
     built_ = 0;
     solver_.compute(a, false);
@@ -65,7 +65,7 @@ class LargestEigenvalues {
       if (left > 0.0) basis_.col(built_ + 1) = next_ / left;
     }
   }
-  bool settled(Eigen::Index columns, double least, std::vector<Complex>& out) {
+  bool converged(Eigen::Index columns, double least, std::vector<Complex>& out) {
     const Eigen::MatrixXcd h = small_.topLeftCorner(columns, columns);
     solver_.compute(h, true);
     const double rest = std::abs(small_(columns, columns - 1));

@@ -151,8 +151,8 @@ class Solver {
 
   [[nodiscard]] Look closest(Look low, Look middle, Look high) const {
     for (int step = 0; step < 5; ++step) {
-      const bool dips = middle.nearest_ratio <= low.nearest_ratio && middle.nearest_ratio <= high.nearest_ratio;
-      if (!dips || middle.nearest_ratio > 1.2) break;
+      const bool minimum = middle.nearest_ratio <= low.nearest_ratio && middle.nearest_ratio <= high.nearest_ratio;
+      if (!minimum || middle.nearest_ratio > 1.2) break;
       Look left = look(0.5 * (low.depth_m + middle.depth_m));
       if (left.unstable) return left;
       Look right = look(0.5 * (middle.depth_m + high.depth_m));

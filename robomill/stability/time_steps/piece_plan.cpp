@@ -41,7 +41,7 @@ constexpr int least_more = 4;  // quadrature points beyond half the nodes
 constexpr int most_more = 12;
 
 /// Gauss's rule is exact where the force's polynomial and 2 more - 1 powers of the exponential's series end together:
-/// for `more` of 4 plus the radians in the piece what is left of the series is below rounding.
+/// for `more` of 4 plus the radians in the piece the remainder of the series is below rounding.
 const Table& table(int p, double radians) {
   const int more = std::clamp(static_cast<int>(std::ceil(radians)) + least_more, least_more, most_more);
   struct Slot {

@@ -21,7 +21,7 @@ function noteOf({ event, faults, what, file, message, hidden }: MonitorEvent): s
   return hidden ?? '';
 }
 
-/** The surest of a stay's frequencies: it settles, and is lost when chatter ends. */
+/** The surest of a stay's frequencies: it converges, and is lost when chatter ends. */
 function surest(events: MonitorEvent[], { from_s: from, to_s: to }: MonitorStay): MonitorEvent | null {
   const deviation = (event: MonitorEvent) => event.chatter_frequency_std_hz ?? Infinity;
   return events

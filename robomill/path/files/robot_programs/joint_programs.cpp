@@ -239,7 +239,7 @@ class JointProgram final : public SampleFile {
     for (const Sample& sample : samples) samples_.add(sample);
   }
 
-  std::optional<ProgramRun> settle(program::Source& program, const robot::Kinematics& machine,
+  std::optional<ProgramRun> verify(program::Source& program, const robot::Kinematics& machine,
                                    const SmoothingOptions& options, bool refine, const Progress& progress) override {
     const auto follow = [&](std::vector<bool>& beyond) {
       RunDistances worst;
@@ -393,7 +393,7 @@ class JointProgram final : public SampleFile {
 std::unique_ptr<SampleFile> open_joint_program(const std::filesystem::path& path, const TrajectoryInfo& info,
                                                JointLanguage language) {
   if (info.joints != 6 || std::ranges::count(info.prismatic, true) > 0) {
-    throw InvalidInput(path.string(), "is a program of an arm with six joints that turn; this machine is none",
+    throw InvalidInput(path.string(), "is a program of an arm with six revolute joints; this machine is none",
                        "Write .csv or .h5");
   }
   require_outputs(info, language);

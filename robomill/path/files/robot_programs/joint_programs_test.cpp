@@ -149,7 +149,7 @@ std::string with_spindle(const std::filesystem::path& path, const EndEffector& e
   options.max_angular_velocity_rad_per_s = options.max_angular_acceleration_rad_per_s2 = 1.0;
   options.max_angular_jerk_rad_per_s3 = 1.0;
   program::ProgramSource source(program);
-  static_cast<void>(file->settle(source, robot::SerialKinematics(cell), options, false, robomill::Progress::none()));
+  static_cast<void>(file->verify(source, robot::SerialKinematics(cell), options, false, robomill::Progress::none()));
   file->commit();
   return io::read_file(path);
 }

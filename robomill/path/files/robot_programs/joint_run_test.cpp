@@ -110,7 +110,7 @@ Written written(const robomill::test::Folder& folder, const std::string& ending,
   const program::Program program = program_of(samples);
   program::ProgramSource source(program);
   Written out;
-  out.run = file->settle(source, machine, options, true, Progress::none()).value();
+  out.run = file->verify(source, machine, options, true, Progress::none()).value();
   file->commit();
   out.text = io::read_file(path);
   if (out.run.points < 10'000) out.parsed = test::parse(ending, out.text, point_period_s);
@@ -299,9 +299,9 @@ TEST(JointRun, KeepsTheCornersOfASmoothedProgram) {
         source, machine, posture, options, [&](std::span<const Sample> samples) { file->add(samples); },
         [&] { file->restart(); }, Progress::none());
     ASSERT_EQ(summary.check.violations(), 0U);
-    const ProgramRun far = file->settle(source, machine, options, false, Progress::none()).value();
+    const ProgramRun far = file->verify(source, machine, options, false, Progress::none()).value();
     EXPECT_GT(far.distances.tip_error_m, 2.0 * options.tip_tolerance_m) << ending;
-    const ProgramRun run = file->settle(source, machine, options, true, Progress::none()).value();
+    const ProgramRun run = file->verify(source, machine, options, true, Progress::none()).value();
     EXPECT_TRUE(run.holds()) << ending << " " << run.distances.tip_error_m << " " << run.shortest_step_s;
     EXPECT_GT(run.shortest_step_s, 2.0 * period_s) << ending;
     EXPECT_LT(run.shortest_step_s, run.longest_step_s) << ending;

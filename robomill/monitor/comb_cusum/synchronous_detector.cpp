@@ -1,4 +1,4 @@
-#include "robomill/monitor/comb_cusum/synchronous_chatter.hpp"
+#include "robomill/monitor/comb_cusum/synchronous_detector.hpp"
 
 #include <algorithm>
 #include <complex>
@@ -20,20 +20,20 @@ double power_of(std::span<const Comb> combs, std::size_t k) {
 
 }  // namespace
 
-SynchronousChatter::SynchronousChatter(std::size_t max_harmonics, int teeth)
+SynchronousDetector::SynchronousDetector(std::size_t max_harmonics, int teeth)
     : teeth_(static_cast<std::size_t>(std::max(teeth, 0))), now_(max_harmonics), learnt_(max_harmonics) {}
 
-void SynchronousChatter::reset() noexcept {
+void SynchronousDetector::reset() noexcept {
   std::fill(learnt_.begin(), learnt_.end(), 0.0);
   harmonic_ = standing_ = 0;
   greatest_ = 0.0;
 }
 
-Hidden SynchronousChatter::kind() const noexcept {
-  return 2 * (harmonic_ % teeth_) == teeth_ ? Hidden::period_doubling : Hidden::locked;
+SynchronousChatter SynchronousDetector::kind() const noexcept {
+  return 2 * (harmonic_ % teeth_) == teeth_ ? SynchronousChatter::period_doubling : SynchronousChatter::locked;
 }
 
-bool SynchronousChatter::step(std::span<const Comb> combs, double power, bool known) noexcept {
+bool SynchronousDetector::step(std::span<const Comb> combs, double power, bool known) noexcept {
   if (teeth_ < 2) return false;
   const std::size_t count = combs.front().harmonics();
   double cutting = 0.0;
@@ -63,7 +63,7 @@ bool SynchronousChatter::step(std::span<const Comb> combs, double power, bool kn
   return cutting >= left_cut * cutting_learnt;
 }
 
-bool SynchronousChatter::falls(std::span<const Comb> combs) noexcept {
+bool SynchronousDetector::falls(std::span<const Comb> combs) noexcept {
   const double power = power_of(combs, harmonic_);
   greatest_ = std::max(greatest_, power);
   return power < over * greatest_;

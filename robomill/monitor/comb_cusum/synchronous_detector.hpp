@@ -8,14 +8,14 @@
 
 namespace robomill::monitor {
 
-/// Chatter at a multiple of rotation, which the comb swallows: a harmonic that is no multiple of the teeth, holds a
+/// Chatter at a multiple of rotation, which the comb takes off: a harmonic that is no multiple of the teeth, holds a
 /// quarter of the power and has grown eightfold against its learnt value, beyond what tooth passing has grown, for six
 /// hops. Half way between multiples of tooth passing it is period doubling. Nothing is allocated after construction.
-class SynchronousChatter {
+class SynchronousDetector {
  public:
   static constexpr std::size_t hops = 6;
   /// @param teeth  at least 2; less: nothing can be derived from tooth passing
-  SynchronousChatter(std::size_t max_harmonics, int teeth);
+  SynchronousDetector(std::size_t max_harmonics, int teeth);
 
   /// Amplitudes of a hop, a comb a channel, against those that were learnt.
   /// @param power  of all channels;  @param known  the combs have had time to learn what is usual
@@ -25,7 +25,7 @@ class SynchronousChatter {
   /// While it chatters: the power has fallen to a tenth of the greatest.
   bool falls(std::span<const Comb> combs) noexcept;
   [[nodiscard]] std::size_t harmonic() const noexcept { return harmonic_; }
-  [[nodiscard]] Hidden kind() const noexcept;
+  [[nodiscard]] SynchronousChatter kind() const noexcept;
   void reset() noexcept;
 
  private:

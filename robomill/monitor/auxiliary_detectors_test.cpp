@@ -9,38 +9,38 @@
 #include "robomill/base/random.hpp"
 #include "robomill/monitor/comb_cusum/broadband_growth.hpp"
 #include "robomill/monitor/comb_cusum/narrowband_detector.hpp"
-#include "robomill/monitor/comb_cusum/synchronous_chatter.hpp"
+#include "robomill/monitor/comb_cusum/synchronous_detector.hpp"
 #include "testing/monitor/corpus.hpp"
 #include "testing/monitor/score.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::monitor {
-namespace listeners_test {
+namespace auxiliary_detectors_test {
 
 /// Hops until it is chatter, of powers that a function gives; -1: never within 60.
 template <typename Power>
 int hops_to(NarrowbandDetector::Hop hop, Power power) {
-  NarrowbandDetector tone;
+  NarrowbandDetector detector;
   for (int k = 0; k < 60; ++k) {
     hop.power = power(k);
-    if (tone.step(hop)) return k + 1;
+    if (detector.step(hop)) return k + 1;
   }
   return -1;
 }
 
 TEST(NarrowbandDetector, NeedsNoBaselineWhereTheCombIsKnown) {
-  const NarrowbandDetector::Hop tone = {.line = 27, .share = 0.3, .comb_known = true};
-  EXPECT_EQ(hops_to(tone, [](int) { return 2.0; }), 3);
-  NarrowbandDetector::Hop faint = tone;
+  const NarrowbandDetector::Hop hop = {.line = 27, .share = 0.3, .comb_known = true};
+  EXPECT_EQ(hops_to(hop, [](int) { return 2.0; }), 3);
+  NarrowbandDetector::Hop faint = hop;
   faint.share = 0.14;
   EXPECT_EQ(hops_to(faint, [](int) { return 2.0; }), -1);
 }
 
 TEST(NarrowbandDetector, WhatWasStruckRingsOff) {
-  NarrowbandDetector tone;
+  NarrowbandDetector detector;
   double power = 1.0;
   for (int k = 0; k < 40; ++k, power *= 0.8) {
-    EXPECT_FALSE(tone.step({.line = 27, .share = 0.9, .power = power, .comb_known = true, .falls = k > 1})) << k;
+    EXPECT_FALSE(detector.step({.line = 27, .share = 0.9, .power = power, .comb_known = true, .falls = k > 1})) << k;
   }
 }
 
@@ -81,34 +81,35 @@ TEST(BroadbandGrowth, DistinguishesGrowthFromDepthAndExit) {
   EXPECT_LT(detected, 80);
 }
 
-TEST(SynchronousChatter, SeesWhatOutgrowsToothPassing) {
+TEST(SynchronousDetector, DetectsWhatOutgrowsToothPassing) {
   const auto kind = [](int teeth, std::size_t harmonic, double tooth_growth) {
     std::vector<Comb> combs(1, Comb(20));
     combs[0].set_harmonics(20);
-    SynchronousChatter hidden(20, teeth);
+    SynchronousDetector detector(20, teeth);
     for (std::size_t k = 1; k <= 20; ++k) combs[0].correct(k, k % static_cast<std::size_t>(teeth) == 0 ? 1.0 : 0.1);
     const auto power = [&] {
       double sum = 0.0;
       for (std::size_t k = 1; k <= 20; ++k) sum += 0.5 * std::norm(combs[0].amplitude(k));
       return sum;
     };
-    for (int hop = 0; hop < 100; ++hop) EXPECT_FALSE(hidden.step(combs, power(), hop > 20));
+    for (int hop = 0; hop < 100; ++hop) EXPECT_FALSE(detector.step(combs, power(), hop > 20));
     for (std::size_t k = 1; k <= 20; ++k) combs[0].correct(k, (tooth_growth - 1.0) * combs[0].amplitude(k));
     combs[0].correct(harmonic, 4.0);
     for (int hop = 0; hop < 20; ++hop) {
-      if (hidden.step(combs, power(), true)) return hidden.harmonic() == harmonic ? hidden.kind() : Hidden::none;
+      if (detector.step(combs, power(), true))
+        return detector.harmonic() == harmonic ? detector.kind() : SynchronousChatter::none;
     }
-    return Hidden::none;
+    return SynchronousChatter::none;
   };
-  EXPECT_EQ(kind(3, 7, 1.0), Hidden::locked);
-  EXPECT_EQ(kind(2, 7, 1.0), Hidden::period_doubling);
-  EXPECT_EQ(kind(4, 6, 1.0), Hidden::period_doubling);
-  EXPECT_EQ(kind(4, 5, 1.0), Hidden::locked);
-  EXPECT_EQ(kind(3, 7, 20.0), Hidden::none);  // a deeper cut, in which all have grown
+  EXPECT_EQ(kind(3, 7, 1.0), SynchronousChatter::locked);
+  EXPECT_EQ(kind(2, 7, 1.0), SynchronousChatter::period_doubling);
+  EXPECT_EQ(kind(4, 6, 1.0), SynchronousChatter::period_doubling);
+  EXPECT_EQ(kind(4, 5, 1.0), SynchronousChatter::locked);
+  EXPECT_EQ(kind(3, 7, 20.0), SynchronousChatter::none);  // a deeper cut, in which all have grown
 }
 
-// Chatter that a comb swallows once it has stood for long: locked to rotation, and period doubling.
-TEST(CombCusum, DetectsChatterThatHidesFromAComb) {
+// Chatter that a comb takes off once it has stood for long: locked to rotation, and period doubling.
+TEST(CombCusum, DetectsSynchronousChatterOfSimulatedCuts) {
   using namespace testing;
   const int cuts = test::seeds(30);
   std::vector<CutScore> locked, doubling;
@@ -141,5 +142,5 @@ TEST(CombCusum, DetectsTheChatterOfTheCorpus) {
   EXPECT_LT(summary.frequency_median_hz, 0.3);
 }
 
-}  // namespace listeners_test
+}  // namespace auxiliary_detectors_test
 }  // namespace robomill::monitor

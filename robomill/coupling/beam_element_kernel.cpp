@@ -1,4 +1,4 @@
-#include "robomill/coupling/span_kernel.hpp"
+#include "robomill/coupling/beam_element_kernel.hpp"
 
 #include <array>
 
@@ -127,7 +127,7 @@ INLINE Z<V> series(const std::array<double, series_terms>& terms, const Z<V>& q)
   return sum;
 }
 
-ROBOMILL_KERNEL_CORE void span_numbers_core(SpanWork& w, std::size_t lane) {
+ROBOMILL_KERNEL_CORE void beam_element_numbers_core(BeamElementWork& w, std::size_t lane) {
   const Section& s = w.section;
   const std::complex<double> compliance = 1.0 / s.loss;
   const V omega2 = *reinterpret_cast<const V*>(w.omega2.v + lane);
@@ -140,14 +140,14 @@ ROBOMILL_KERNEL_CORE void span_numbers_core(SpanWork& w, std::size_t lane) {
   store(difference * difference + bending, w.discriminant, lane);
 }
 
-ROBOMILL_KERNEL_CORE void span_waves_core(SpanWork& w, std::size_t lane) {
+ROBOMILL_KERNEL_CORE void beam_element_waves_core(BeamElementWork& w, std::size_t lane) {
   const Z<V> mean = -0.5 * (load<V>(w.rotary, lane) + load<V>(w.shear, lane));
   const Z<V> root = load<V>(w.root, lane);
   store(mean + root, w.q[0], lane);
   store(mean - root, w.q[1], lane);
 }
 
-ROBOMILL_KERNEL_CORE void span_series_core(SpanWork& w, std::size_t lane) {
+ROBOMILL_KERNEL_CORE void beam_element_series_core(BeamElementWork& w, std::size_t lane) {
   const Z<V> one = {V{} + 1.0, V{}};
   const Z<V> q1 = load<V>(w.q[0], lane);
   const Z<V> q2 = load<V>(w.q[1], lane);
@@ -163,7 +163,7 @@ ROBOMILL_KERNEL_CORE void span_series_core(SpanWork& w, std::size_t lane) {
   store(q1 * (s1 - c1) - q2 * (s2 - c2) + q1 * q2 * (s1 * c2 - s2 * c1), w.x, lane);
 }
 
-ROBOMILL_KERNEL_CORE void span_matrices_core(SpanWork& w, std::size_t lane) {
+ROBOMILL_KERNEL_CORE void beam_element_matrices_core(BeamElementWork& w, std::size_t lane) {
   const Z<V> bending = load<V>(w.bending, lane);
   const Z<V> rotary = load<V>(w.rotary, lane);
   const Z<V> shear = load<V>(w.shear, lane);
@@ -197,14 +197,14 @@ ROBOMILL_KERNEL_CORE void span_matrices_core(SpanWork& w, std::size_t lane) {
   const std::complex<double> softness = 4.0 / stiffness;
   const M<V> clamped = {softness * compliance.uu, (-1.0 / h) * (softness * compliance.ut),
                         (-1.0 / h) * (softness * compliance.tu), (1.0 / (h * h)) * (softness * compliance.tt)};
-  store(clamped, w.span.clamped, lane);
-  store(M<V>{-1.0 * carry.uu, -h * carry.ut, (1.0 / h) * carry.tu, carry.tt}, w.span.carry, lane);
+  store(clamped, w.element.clamped, lane);
+  store(M<V>{-1.0 * carry.uu, -h * carry.ut, (1.0 / h) * carry.tu, carry.tt}, w.element.carry, lane);
   store(
       M<V>{stiffness * free.uu, h * (stiffness * free.ut), h * (stiffness * free.tu), (h * h) * (stiffness * free.tt)},
-      w.span.stiffness, lane);
+      w.element.stiffness, lane);
 }
 
-ROBOMILL_KERNEL_CORE void span_join_core(SpanJoin& join, std::size_t lane) {
+ROBOMILL_KERNEL_CORE void beam_element_join_core(BeamElementJoin& join, std::size_t lane) {
   const M<V> front_clamped = load<V>(join.front.clamped, lane);
   const M<V> front_carry = load<V>(join.front.carry, lane);
   const M<V> front_stiffness = load<V>(join.front.stiffness, lane);
@@ -223,10 +223,10 @@ ROBOMILL_KERNEL_CORE void span_join_core(SpanJoin& join, std::size_t lane) {
 
 }  // namespace
 
-ROBOMILL_KERNEL(span_numbers, SpanWork)
-ROBOMILL_KERNEL(span_waves, SpanWork)
-ROBOMILL_KERNEL(span_series, SpanWork)
-ROBOMILL_KERNEL(span_matrices, SpanWork)
-ROBOMILL_KERNEL(span_join, SpanJoin)
+ROBOMILL_KERNEL(beam_element_numbers, BeamElementWork)
+ROBOMILL_KERNEL(beam_element_waves, BeamElementWork)
+ROBOMILL_KERNEL(beam_element_series, BeamElementWork)
+ROBOMILL_KERNEL(beam_element_matrices, BeamElementWork)
+ROBOMILL_KERNEL(beam_element_join, BeamElementJoin)
 
 }  // namespace robomill::coupling::detail
