@@ -7,10 +7,8 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/jobs/files/lobes_toml.hpp"
-#include "robomill/modal/files/modes_files.hpp"
+#include "robomill/jobs/explain.hpp"
 #include "robomill/stability/files/peak_classification_json.hpp"
-#include "robomill/stability/peak_classification.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -40,20 +38,9 @@ void check(const ExplainCommand& command) {
     throw InvalidInput(command.at.empty() ? "--at" : "--lobes", "--lobes and --at go together",
                        "The cut says whether its chatter needs the delay: --lobes lobes.toml --at 6500,0.8");
   }
-}
-
-/// The cut that --lobes names.
-std::optional<stability::LobesProblem> cut_of(const ExplainCommand& command) {
-  if (command.lobes.empty()) return std::nullopt;
-  jobs::LobesFile file = jobs::read_lobes(command.lobes);
-  jobs::load_dynamics(file);
-  if (!file.frf.empty() || !file.workpiece_frf.empty()) {
-    throw InvalidInput(command.lobes.string(), "must name modes: without them the equation has no time",
-                       "Run robomill modes on the FRFs and name the result as dynamics.modes");
+  if (!command.at.empty() && !(command.at[0] > 0.0 && command.at[1] >= 0.0)) {
+    throw InvalidInput("--at", "must read RPM,MM, RPM > 0, MM >= 0");
   }
-  file.validate();
-  if (!(command.at[0] > 0.0 && command.at[1] >= 0.0)) throw InvalidInput("--at", "must read RPM,MM, RPM > 0, MM >= 0");
-  return file.problem;
 }
 
 std::string words(const stability::Explanation& e, int teeth) {
@@ -126,21 +113,20 @@ Exit run(const ExplainCommand& command, const Common& common, Progress&) {
     throw InvalidInput(common.output, "explanations are written as .json");
   }
   check(command);
-  const modal::ModalModel modes = modal::read_modes(command.modes);
-  const stability::MeasuredPeaks peaks = {command.peaks_hz, command.rpm * units::rpm, command.teeth};
-  const stability::PeakClassificationOptions options = {command.tolerance_hz, command.speed_tolerance_percent / 100.0};
-  const std::optional<stability::LobesProblem> cut = cut_of(command);
-  const modal::ModalModel workpiece = cut ? cut->workpiece_dynamics : modal::ModalModel{};
-  const stability::PeakClassification found = stability::explain(peaks, modes, options, workpiece);
-  std::optional<stability::ChatterMechanism> verdict;
-  if (cut) verdict = stability::chatter_mechanism(*cut, {command.at[0] * units::rpm, command.at[1] * units::mm});
-  const std::string json = stability::peak_classification_json(found, verdict ? &*verdict : nullptr);
+  jobs::ExplainJob job = {.peaks = {command.peaks_hz, command.rpm * units::rpm, command.teeth},
+                          .options = {command.tolerance_hz, command.speed_tolerance_percent / 100.0},
+                          .modes = command.modes,
+                          .lobes = command.lobes};
+  if (!command.at.empty()) job.point = {command.at[0] * units::rpm, command.at[1] * units::mm};
+  const jobs::ExplainResult result = jobs::run_explain(job);
+  const std::string json =
+      stability::peak_classification_json(result.peaks, result.mechanism ? &*result.mechanism : nullptr);
   if (common.to_stdout()) {
     fmt::print("{}", json);
   } else if (!common.output.empty()) {
     io::write_file(common.output, json);
   }
-  if (common.wants_summary()) print_summary(found, command.teeth, verdict);
+  if (common.wants_summary()) print_summary(result.peaks, command.teeth, result.mechanism);
   return done;
 }
 
