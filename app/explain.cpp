@@ -43,7 +43,8 @@ void check(const ExplainCommand& command) {
   }
 }
 
-std::string words(const stability::Explanation& e, int teeth) {
+/// A reading with frequencies, difference and tolerance; the short one of a report is jobs::Peak::text.
+std::string full_reading(const stability::Explanation& e, int teeth) {
   switch (e.kind) {
     case Kind::tooth_passing:
       return fmt::format("tooth passing x {} ({:+.2f} Hz)", e.harmonic / teeth, e.difference_hz);
@@ -73,10 +74,11 @@ const char* undecided(Kind kind) {
 
 void print_peak(const stability::ExplainedPeak& peak, int teeth) {
   const bool named = peak.state != stability::ExplainedPeak::State::cannot_be_told;
-  fmt::print("{:>10.2f} Hz  {}\n", peak.frequency_hz, named ? words(peak.best, teeth) : undecided(peak.best.kind));
+  fmt::print("{:>10.2f} Hz  {}\n", peak.frequency_hz,
+             named ? full_reading(peak.best, teeth) : undecided(peak.best.kind));
   for (const stability::Explanation& other : peak.others) {
     const double odds = other.likelihood_per_hz / (named ? peak.best : peak.others.front()).likelihood_per_hz;
-    fmt::print("               or {}, relative likelihood {:.2g}\n", words(other, teeth), odds);
+    fmt::print("               or {}, relative likelihood {:.2g}\n", full_reading(other, teeth), odds);
   }
 }
 
