@@ -7,10 +7,8 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/jobs/files/lobes_toml.hpp"
-#include "robomill/modal/files/modes_files.hpp"
+#include "robomill/jobs/explain.hpp"
 #include "robomill/stability/files/peak_classification_json.hpp"
-#include "robomill/stability/peak_classification.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -40,23 +38,13 @@ void check(const ExplainCommand& command) {
     throw InvalidInput(command.at.empty() ? "--at" : "--lobes", "--lobes and --at go together",
                        "The cut says whether its chatter needs the delay: --lobes lobes.toml --at 6500,0.8");
   }
-}
-
-/// The cut that --lobes names.
-std::optional<stability::LobesProblem> cut_of(const ExplainCommand& command) {
-  if (command.lobes.empty()) return std::nullopt;
-  jobs::LobesFile file = jobs::read_lobes(command.lobes);
-  jobs::load_dynamics(file);
-  if (!file.frf.empty() || !file.workpiece_frf.empty()) {
-    throw InvalidInput(command.lobes.string(), "must name modes: without them the equation has no time",
-                       "Run robomill modes on the FRFs and name the result as dynamics.modes");
+  if (!command.at.empty() && !(command.at[0] > 0.0 && command.at[1] >= 0.0)) {
+    throw InvalidInput("--at", "must read RPM,MM, RPM > 0, MM >= 0");
   }
-  file.validate();
-  if (!(command.at[0] > 0.0 && command.at[1] >= 0.0)) throw InvalidInput("--at", "must read RPM,MM, RPM > 0, MM >= 0");
-  return file.problem;
 }
 
-std::string words(const stability::Explanation& e, int teeth) {
+/// A reading with frequencies, difference and tolerance; the short one of a report is jobs::Peak::text.
+std::string full_reading(const stability::Explanation& e, int teeth) {
   switch (e.kind) {
     case Kind::tooth_passing:
       return fmt::format("tooth passing x {} ({:+.2f} Hz)", e.harmonic / teeth, e.difference_hz);
@@ -86,10 +74,11 @@ const char* undecided(Kind kind) {
 
 void print_peak(const stability::ExplainedPeak& peak, int teeth) {
   const bool named = peak.state != stability::ExplainedPeak::State::ambiguous;
-  fmt::print("{:>10.2f} Hz  {}\n", peak.frequency_hz, named ? words(peak.best, teeth) : undecided(peak.best.kind));
+  fmt::print("{:>10.2f} Hz  {}\n", peak.frequency_hz,
+             named ? full_reading(peak.best, teeth) : undecided(peak.best.kind));
   for (const stability::Explanation& other : peak.others) {
     const double odds = other.likelihood_per_hz / (named ? peak.best : peak.others.front()).likelihood_per_hz;
-    fmt::print("               or {}, relative likelihood {:.2g}\n", words(other, teeth), odds);
+    fmt::print("               or {}, relative likelihood {:.2g}\n", full_reading(other, teeth), odds);
   }
 }
 
@@ -126,21 +115,20 @@ Exit run(const ExplainCommand& command, const Common& common, Progress&) {
     throw InvalidInput(common.output, "explanations are written as .json");
   }
   check(command);
-  const modal::ModalModel modes = modal::read_modes(command.modes);
-  const stability::MeasuredPeaks peaks = {command.peaks_hz, command.rpm * units::rpm, command.teeth};
-  const stability::PeakClassificationOptions options = {command.tolerance_hz, command.speed_tolerance_percent / 100.0};
-  const std::optional<stability::LobesProblem> cut = cut_of(command);
-  const modal::ModalModel workpiece = cut ? cut->workpiece_dynamics : modal::ModalModel{};
-  const stability::PeakClassification found = stability::explain(peaks, modes, options, workpiece);
-  std::optional<stability::ChatterMechanism> verdict;
-  if (cut) verdict = stability::chatter_mechanism(*cut, {command.at[0] * units::rpm, command.at[1] * units::mm});
-  const std::string json = stability::peak_classification_json(found, verdict ? &*verdict : nullptr);
+  jobs::ExplainJob job = {.peaks = {command.peaks_hz, command.rpm * units::rpm, command.teeth},
+                          .options = {command.tolerance_hz, command.speed_tolerance_percent / 100.0},
+                          .modes = command.modes,
+                          .lobes = command.lobes};
+  if (!command.at.empty()) job.point = {command.at[0] * units::rpm, command.at[1] * units::mm};
+  const jobs::ExplainResult result = jobs::run_explain(job);
+  const std::string json =
+      stability::peak_classification_json(result.peaks, result.mechanism ? &*result.mechanism : nullptr);
   if (common.to_stdout()) {
     fmt::print("{}", json);
   } else if (!common.output.empty()) {
     io::write_file(common.output, json);
   }
-  if (common.wants_summary()) print_summary(found, command.teeth, verdict);
+  if (common.wants_summary()) print_summary(result.peaks, command.teeth, result.mechanism);
   return done;
 }
 

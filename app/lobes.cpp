@@ -8,17 +8,15 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/jobs/lobes.hpp"
 #include "robomill/stability/files/lobes_json.hpp"
-#include "robomill/stability/lobes.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
 namespace {
 
-void print_summary(const stability::LobesResult& result, const stability::SurfaceMap& surface,
-                   const std::vector<std::string>& notes) {
+void print_summary(const stability::LobesResult& result, const stability::SurfaceMap& surface) {
   for (const stability::PointResult& point : result.points) {
     fmt::print("{:.6g} rpm, {:.4g} mm: ", point.spindle_speed_rad_per_s / units::rpm, point.axial_depth_m / units::mm);
     if (std::isfinite(point.spectral_radius)) {
@@ -59,7 +57,6 @@ void print_summary(const stability::LobesResult& result, const stability::Surfac
     fmt::print("{} points are less accurate than the tolerance; their error_estimate says how much.\n",
                result.uncertain);
   }
-  print_notes(notes, "Note: ");
 }
 
 std::string percent(double share) {
@@ -67,17 +64,7 @@ std::string percent(double share) {
 }
 
 /// Every method beside the first: a row each.
-Exit compare(const jobs::LobesFile& file, const Common& common, Progress& progress) {
-  constexpr int most_speeds = 60;
-  const int speeds = std::min(file.options.grid[0], most_speeds);
-  const stability::MethodComparison comparison =
-      stability::compare_methods(file.problem, file.options, speeds, progress);
-  if (common.to_stdout()) {
-    fmt::print("{}", stability::comparison_json(comparison));
-  } else if (!common.output.empty()) {
-    io::write_file(common.output, stability::comparison_json(comparison));
-  }
-  if (!common.wants_summary()) return done;
+void print_comparison(const stability::MethodComparison& comparison) {
   fmt::print("{:<34}{:>14}{:>14}{:>14}{:>8}{:>10}\n", "method", "lowest limit", "median error", "worst error", "differ",
              "seconds");
   for (const stability::MethodRow& row : comparison.rows) {
@@ -97,8 +84,6 @@ Exit compare(const jobs::LobesFile& file, const Common& common, Progress& progre
   fmt::print(
       "Limits at {} speeds; errors are against the first row, differ counts speeds at which only one has a limit.\n",
       comparison.spindle_speed_rad_per_s.size());
-  print_notes(file.notes, "Note: ");
-  return done;
 }
 
 }  // namespace
@@ -107,30 +92,25 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
   if (!common.output.empty() && !common.to_stdout() && io::format_of(common.output) != io::Format::json) {
     throw InvalidInput(common.output, "lobes are written as .json");
   }
-  jobs::LobesFile file = jobs::read_lobes(command.input);
-  jobs::load_dynamics(file);
-  if (file.drilling) {
-    throw InvalidInput(command.input.string(), "lobes are those of milling", "robomill simulate takes drilling");
-  }
-  file.validate();
-  for (const std::string& text : command.at) file.options.points.push_back(parse_point(text));
-  if (command.compare) return compare(file, common, progress);
-  const stability::LobesResult result = stability::compute_lobes(file.problem, file.options, progress);
-  stability::UncertainLimits uncertain;
-  if (file.uncertainty.samples > 0) {
-    file.uncertainty.seed = common.seed;
-    uncertain = stability::uncertain_limits(file.problem, file.options, file.uncertainty, progress);
-  }
-  stability::SurfaceMap surface;
-  if (file.surface_grid[0] > 0) {
-    surface = stability::surface_map(file.problem, file.options, file.surface_grid, progress);
-  }
+  jobs::LobesJob job = {.lobes = command.input, .compare = command.compare, .seed = common.seed};
+  for (const std::string& text : command.at) job.points.push_back(parse_point(text));
+  const jobs::LobesJobResult result = jobs::run_lobes(job, progress);
+  const auto json = [&result] {
+    return result.comparison ? stability::comparison_json(*result.comparison)
+                             : stability::lobes_json(result.lobes, result.uncertain, result.surface);
+  };
   if (common.to_stdout()) {
-    fmt::print("{}", stability::lobes_json(result, uncertain, surface));
+    fmt::print("{}", json());
   } else if (!common.output.empty()) {
-    io::write_file(common.output, stability::lobes_json(result, uncertain, surface));
+    io::write_file(common.output, json());
   }
-  if (common.wants_summary()) print_summary(result, surface, file.notes);
+  if (!common.wants_summary()) return done;
+  if (result.comparison) {
+    print_comparison(*result.comparison);
+  } else {
+    print_summary(result.lobes, result.surface);
+  }
+  print_notes(result.cut.notes, "Note: ");
   return done;
 }
 

@@ -1,16 +1,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "point.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/jobs/files/lobes_toml.hpp"
-#include "robomill/modal/fit.hpp"
-#include "robomill/modal/tip.hpp"
-#include "robomill/simulation/drilling.hpp"
+#include "robomill/jobs/simulate.hpp"
 #include "robomill/simulation/files/simulation_files.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
@@ -36,46 +34,10 @@ void check_output(const Common& common) {
   }
 }
 
-/// A simulation steps modes: where FRFs are given, those of the hybrid fit over all their lines.
-void fit_where_measured(const std::filesystem::path& path, modal::FrfSet& measured, modal::ModalModel& model,
-                        bool reported, Progress& progress) {
-  if (measured.frfs.empty()) return;
-  const modal::FitResult fit = modal::fit_modes(measured, {}, progress);
-  if (!fit.usable()) {
-    throw InvalidInput(
-        path.string(), fmt::format("the modes fitted to it differ from it by {:.3g} %", 100.0 * fit.relative_error),
-        "Fit the band in which it can be trusted with robomill modes, and name the result as dynamics.modes");
-  }
-  model = fit.model;
-  measured = {};
-  if (reported) {
-    fmt::print("{}: {} modes fitted, {:.2g} % of the FRFs left over.\n", printable(path.filename().string()),
-               model.modes.size(), 100.0 * fit.relative_error);
-  }
-}
-
-jobs::LobesFile read_cut(const std::filesystem::path& path, bool reported, Progress& progress) {
-  jobs::LobesFile file = jobs::read_lobes(path);
-  jobs::load_dynamics(file);
-  stability::LobesProblem& problem = file.problem;
-  if (reported) print_notes(file.notes, "Note: ");
-  fit_where_measured(file.frf, problem.measured, problem.dynamics, reported, progress);
-  fit_where_measured(file.workpiece_frf, problem.workpiece_measured, problem.workpiece_dynamics, reported, progress);
-  file.validate();
-  if (!file.drilling && !(file.problem.milling.feed_per_tooth_m > 0.0)) {
-    throw InvalidInput(InvalidInput::Parts{.where = path.string(),
-                                           .field = "cut.feed_per_tooth_mm",
-                                           .rule = "must be given and > 0",
-                                           .hint = "Without feed nothing is cut"});
-  }
-  return file;
-}
-
-modal::TipModes structure_of(const stability::LobesProblem& problem) {
-  modal::TipModes tool = modal::tip_modes(problem.dynamics, problem.keep_modes, problem.feed_direction_rad);
-  if (problem.workpiece_dynamics.modes.empty()) return tool;
-  return modal::joined(
-      tool, modal::tip_modes(problem.workpiece_dynamics, {}, problem.feed_direction_rad, modal::ModeOwner::workpiece));
+void print_fit(const std::filesystem::path& frf, const std::optional<modal::FitResult>& fit) {
+  if (!fit) return;
+  fmt::print("{}: {} modes fitted, {:.2g} % of the FRFs left over.\n", printable(frf.filename().string()),
+             fit->model.modes.size(), 100.0 * fit->relative_error);
 }
 
 void print_small(const SmallVibration& small) {
@@ -124,51 +86,37 @@ void print_summary(const Simulation& s, const stability::OperatingPoint& point) 
              s.resolved ? "" : " (above tolerance)", s.seconds);
 }
 
-simulation::MillingCut milling_of(const jobs::LobesFile& file, const stability::OperatingPoint& point) {
-  return {.milling = file.problem.milling,
-          .structure = structure_of(file.problem),
-          .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
-          .axial_depth_m = point.axial_depth_m};
-}
-
-/// The point's depth is the lips' radial width: from the pilot hole to the rim.
-simulation::DrillingCut drilling_of(const jobs::LobesFile& file, const stability::OperatingPoint& point) {
-  simulation::DrillingCut cut;
-  cut.lips = file.problem.milling.tool.teeth;
-  cut.diameter_m = file.problem.milling.tool.diameter_m;
-  if (file.point_angle_rad != 0.0) cut.point_angle_rad = file.point_angle_rad;
-  cut.radial_width_m = point.axial_depth_m;
-  cut.feed_per_revolution_m = file.feed_per_revolution_m;
-  cut.coefficients = file.problem.milling.coefficients;
-  cut.structure = structure_of(file.problem);
-  cut.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
-  return cut;
-}
-
 }  // namespace
 
 Exit run(const SimulateCommand& command, const Common& common, Progress& progress) {
   check_output(common);
-  const stability::OperatingPoint point = parse_point(command.at);
-  const jobs::LobesFile file = read_cut(command.input, common.wants_summary(), progress);
-  const simulation::SimulationOptions options = {.seconds = command.seconds,
-                                                 .sample_rate_hz = command.sample_rate_hz,
-                                                 .loss_of_contact = !command.linear,
-                                                 .seed = common.seed};
-  const Simulation result = file.drilling ? simulation::simulate(drilling_of(file, point), options, progress)
-                                          : simulation::simulate(milling_of(file, point), options, progress);
+  const jobs::SimulateJob job = {.lobes = command.input,
+                                 .point = parse_point(command.at),
+                                 .options = {.seconds = command.seconds,
+                                             .sample_rate_hz = command.sample_rate_hz,
+                                             .loss_of_contact = !command.linear,
+                                             .seed = common.seed}};
+  const jobs::SimulateResult result = jobs::run_simulate(job, progress);
+  const Simulation& simulated = result.simulation;
+  const auto json = [&] {
+    return simulation::simulation_json(simulated, job.point.spindle_speed_rad_per_s, job.point.axial_depth_m);
+  };
   if (common.to_stdout()) {
-    fmt::print("{}", simulation::simulation_json(result, point.spindle_speed_rad_per_s, point.axial_depth_m));
+    fmt::print("{}", json());
   } else if (!common.output.empty()) {
     if (io::format_of(common.output) == io::Format::json) {
-      io::write_file(common.output,
-                     simulation::simulation_json(result, point.spindle_speed_rad_per_s, point.axial_depth_m));
+      io::write_file(common.output, json());
     } else {
-      simulation::write_simulation(common.output, result);
+      simulation::write_simulation(common.output, simulated);
     }
   }
-  if (common.wants_summary()) print_summary(result, point);
-  return result.resolved && result.verdict != Verdict::undecided ? done : not_reached;
+  if (common.wants_summary()) {
+    print_notes(result.cut.notes, "Note: ");
+    print_fit(result.cut.frf, result.fit);
+    print_fit(result.cut.workpiece_frf, result.workpiece_fit);
+    print_summary(simulated, job.point);
+  }
+  return simulated.resolved && simulated.verdict != Verdict::undecided ? done : not_reached;
 }
 
 }  // namespace robomill::app

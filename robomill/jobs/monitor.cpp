@@ -9,10 +9,7 @@ namespace robomill::jobs {
 live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& progress) {
   live::AdviceBasis basis{.teeth = file.options.teeth, .spindle_speed_rad_per_s = file.options.spindle_speed_rad_per_s};
   if (!file.lobes.empty()) {
-    LobesFile lobes = read_lobes(file.lobes);
-    load_dynamics(lobes);
-    if (lobes.drilling) throw InvalidInput(file.lobes.string(), "lobes are those of milling");
-    lobes.validate();
+    const LobesFile lobes = read_milling(file.lobes);
     if (basis.teeth == 0) basis.teeth = lobes.problem.milling.tool.teeth;
     if (!lobes.problem.dynamics.modes.empty()) basis.modes = lobes.problem.dynamics;
     basis.workpiece = lobes.problem.workpiece_dynamics;

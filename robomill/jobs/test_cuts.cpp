@@ -15,8 +15,8 @@
 namespace robomill::jobs {
 namespace {
 
-/// A reading in words: "2 × tooth passing", "9 × rotation + mode 1", "mode 7 − 1 × rotation".
-std::string words(const stability::Explanation& e, int teeth) {
+/// A reading in short: "2 × tooth passing", "9 × rotation + mode 1", "mode 7 − 1 × rotation".
+std::string short_reading(const stability::Explanation& e, int teeth) {
   using Kind = stability::Explanation::Kind;
   const int turns = std::abs(e.harmonic);
   if (e.kind == Kind::tooth_passing) return fmt::format("{} × tooth passing", turns / teeth);
@@ -28,15 +28,15 @@ std::string words(const stability::Explanation& e, int teeth) {
   return e.mirrored ? multiple + " − " + mode : mode + " − " + multiple;
 }
 
-std::string words(const stability::ExplainedPeak& peak, int teeth) {
+std::string peak_text(const stability::ExplainedPeak& peak, int teeth) {
   switch (peak.state) {
     case stability::ExplainedPeak::State::named:
-      return words(peak.best, teeth);
+      return short_reading(peak.best, teeth);
     case stability::ExplainedPeak::State::ambiguous: {
       std::string out;
       const double least = peak.others.front().likelihood_per_hz / stability::PeakClassificationOptions{}.clear_odds;
       for (const stability::Explanation& reading : peak.others) {
-        if (reading.likelihood_per_hz >= least) out += (out.empty() ? "" : " or ") + words(reading, teeth);
+        if (reading.likelihood_per_hz >= least) out += (out.empty() ? "" : " or ") + short_reading(reading, teeth);
       }
       return out + ": cannot be told";
     }
@@ -148,7 +148,7 @@ std::vector<stability::ExplainedPeak> explained(const std::vector<double>& frequ
 }
 
 Peak named(const stability::ExplainedPeak& peak, int teeth) {
-  return {.frequency_hz = peak.frequency_hz, .kind = peak.best.kind, .text = words(peak, teeth)};
+  return {.frequency_hz = peak.frequency_hz, .kind = peak.best.kind, .text = peak_text(peak, teeth)};
 }
 
 }  // namespace

@@ -227,4 +227,12 @@ void load_dynamics(LobesFile& file) {
   if (words) file.notes.push_back(*words);
 }
 
+LobesFile read_milling(const std::filesystem::path& path, const std::string& hint) {
+  LobesFile file = read_lobes(path);
+  load_dynamics(file);
+  if (file.drilling) throw InvalidInput(path.string(), "lobes are those of milling", hint);
+  file.validate();
+  return file;
+}
+
 }  // namespace robomill::jobs

@@ -56,4 +56,9 @@ struct LobesFile {
 ///     where milling needs a direction that was not measured and the file does not say what it is taken for
 ROBOMILL_API void load_dynamics(LobesFile& file);
 
+/// A milling cut with the structure that its file names, everything checked.
+/// @param hint  for whoever gave drilling
+/// @throws InvalidInput as read_lobes, load_dynamics and validate, or if the cut is drilling, which has no lobes
+[[nodiscard]] ROBOMILL_API LobesFile read_milling(const std::filesystem::path& path, const std::string& hint = {});
+
 }  // namespace robomill::jobs

@@ -1,0 +1,70 @@
+#include "robomill/jobs/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include "robomill/base/error.hpp"
+#include "robomill/simulation/drilling.hpp"
+#include "robomill/stability/tip_dynamics.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+/// Puts modes in the place of FRFs, where there are some.
+std::optional<modal::FitResult> fit_where_measured(const std::filesystem::path& path, modal::FrfSet& measured,
+                                                   modal::ModalModel& model, Progress& progress) {
+  if (measured.frfs.empty()) return std::nullopt;
+  modal::FitResult fit = modal::fit_modes(measured, {}, progress);
+  if (!fit.usable()) {
+    throw InvalidInput(
+        path.string(), fmt::format("the modes fitted to it differ from it by {:.3g} %", 100.0 * fit.relative_error),
+        "Fit the band in which it can be trusted with robomill modes, and name the result as dynamics.modes");
+  }
+  model = fit.model;
+  measured = {};
+  return fit;
+}
+
+simulation::MillingCut milling_of(const LobesFile& file, const stability::OperatingPoint& point) {
+  return {.milling = file.problem.milling,
+          .structure = stability::detail::tip_modes(file.problem),
+          .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
+          .axial_depth_m = point.axial_depth_m};
+}
+
+simulation::DrillingCut drilling_of(const LobesFile& file, const stability::OperatingPoint& point) {
+  simulation::DrillingCut cut;
+  cut.lips = file.problem.milling.tool.teeth;
+  cut.diameter_m = file.problem.milling.tool.diameter_m;
+  if (file.point_angle_rad != 0.0) cut.point_angle_rad = file.point_angle_rad;
+  cut.radial_width_m = point.axial_depth_m;
+  cut.feed_per_revolution_m = file.feed_per_revolution_m;
+  cut.coefficients = file.problem.milling.coefficients;
+  cut.structure = stability::detail::tip_modes(file.problem);
+  cut.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
+  return cut;
+}
+
+}  // namespace
+
+SimulateResult run_simulate(const SimulateJob& job, Progress& progress) {
+  SimulateResult result;
+  LobesFile& cut = result.cut;
+  stability::LobesProblem& problem = cut.problem;
+  cut = read_lobes(job.lobes);
+  load_dynamics(cut);
+  result.fit = fit_where_measured(cut.frf, problem.measured, problem.dynamics, progress);
+  result.workpiece_fit =
+      fit_where_measured(cut.workpiece_frf, problem.workpiece_measured, problem.workpiece_dynamics, progress);
+  cut.validate();
+  if (!cut.drilling && !(problem.milling.feed_per_tooth_m > 0.0)) {
+    throw InvalidInput(InvalidInput::Parts{.where = job.lobes.string(),
+                                           .field = "cut.feed_per_tooth_mm",
+                                           .rule = "must be given and > 0",
+                                           .hint = "Without feed nothing is cut"});
+  }
+  result.simulation = cut.drilling ? simulation::simulate(drilling_of(cut, job.point), job.options, progress)
+                                   : simulation::simulate(milling_of(cut, job.point), job.options, progress);
+  return result;
+}
+
+}  // namespace robomill::jobs
