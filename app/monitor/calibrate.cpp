@@ -10,12 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "monitor/report.hpp"
-#include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
-#include "robomill/io/text.hpp"
 #include "robomill/monitor/files/calibration_json.hpp"
 #include "robomill/monitor/files/recordings_toml.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -26,13 +24,6 @@ using monitor::Calibration;
 using monitor::Recording;
 
 constexpr std::size_t block_frames = 1 << 16;
-
-void check_places(const CalibrateCommand& command, const Common& common) {
-  if (!common.output.empty() && !common.to_stdout() && io::format_of(common.output) != io::Format::toml) {
-    throw InvalidInput(common.output, "a calibrated detector is written as .toml");
-  }
-  check_report_place(command.report);
-}
 
 /// All recordings run at one rate: that of recordings.toml, or of the first.
 std::vector<Recording> read_all(monitor::RecordingsFile& file, Progress& progress) {
@@ -95,7 +86,8 @@ std::string summary_of(const Calibration& calibration) {
 }  // namespace
 
 Exit run(const CalibrateCommand& command, const Common& common, Progress& progress) {
-  check_places(command, common);
+  require_output(common, {io::Format::toml}, "a calibrated detector is written as .toml");
+  require_report_place(command.report);
   monitor::RecordingsFile file = monitor::read_recordings(command.recordings);
   const std::vector<Recording> recordings = read_all(file, progress);
   const Calibration calibration = monitor::calibrate(recordings, file.monitor.options,
@@ -119,14 +111,12 @@ Exit run(const CalibrateCommand& command, const Common& common, Progress& progre
                         command.recordings.filename().string(), recordings.size(), 100.0 * verified.detection_rate,
                         100.0 * verified.false_alarm_rate)));
   }
-  if (io::lowered(command.report.extension().string()) == ".html") {
+  if (!command.report.empty()) {
     page::Report page;
     page.title = "Calibration of the chatter monitor";
     page.summary = summary_of(calibration);
     page.calibration = json;
-    write_report(command.report, page);
-  } else if (!command.report.empty()) {
-    io::write_file(command.report, json);
+    write_report(command.report, page, json);
   }
   if (common.wants_summary()) fmt::print("{}", summary_of(calibration));
   return calibration.verifying.chosen.detection_rate > 0.0 ? done : not_reached;
