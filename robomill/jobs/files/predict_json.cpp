@@ -3,6 +3,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/predict.hpp"
+#include "robomill/modal/files/frf_files.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -53,6 +54,20 @@ Json lines_json(const std::vector<double>& lines_hz) {
 }
 
 }  // namespace
+
+std::string tip_json(const TipPrediction& prediction) {
+  modal::FrfDoubts doubts{.suspect_hz = prediction.tip.suspect_hz};
+  const auto note = [&](const std::vector<std::string>& notes) {
+    doubts.notes.insert(doubts.notes.end(), notes.begin(), notes.end());
+  };
+  if (const std::optional<coupling::HolderResult>& holder = prediction.file.holder) {
+    doubts.unreliable_hz = holder->unreliable_hz;
+    note(holder->notes);
+  }
+  note(prediction.file.notes);
+  note(prediction.tip.notes);
+  return modal::frf_json(prediction.tip.frfs, doubts);
+}
 
 std::string prediction_json(const TipPrediction& prediction) {
   const coupling::Assembly& assembly = prediction.file.assembly;
