@@ -7,7 +7,6 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/coefficients.hpp"
 #include "robomill/cutting/files/slots_csv.hpp"
-#include "robomill/io/file.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
@@ -74,18 +73,12 @@ cutting::SlotFit identify(const cutting::SlotsFile& file, const CoefficientsComm
 }  // namespace
 
 Exit run(const CoefficientsCommand& command, const Common& common, Progress&) {
-  const io::Format format = io::format_of(common.output);
-  if (!common.output.empty() && !common.to_stdout() && format != io::Format::toml && format != io::Format::json) {
-    throw InvalidInput(common.output, "coefficients are written as .toml or .json");
-  }
+  require_output(common, {io::Format::toml, io::Format::json}, "coefficients are written as .toml or .json");
   const cutting::SlotsFile file = cutting::read_slots(command.slots);
   const cutting::SlotFit fit = identify(file, command);
-  if (common.to_stdout()) {
-    fmt::print("{}", cutting::slot_fit_json(fit, file));
-  } else if (!common.output.empty()) {
-    const bool toml = format == io::Format::toml;
-    io::write_file(common.output, toml ? cutting::slot_fit_toml(fit, file) : cutting::slot_fit_json(fit, file));
-  }
+  write_output(common, [&](io::Format format) {
+    return format == io::Format::toml ? cutting::slot_fit_toml(fit, file) : cutting::slot_fit_json(fit, file);
+  });
   if (common.wants_summary()) print_summary(fit, file);
   if (!(fit.tangential.cutting_n_per_m2 > 0.0)) {
     fmt::print(stderr, "robomill: the tangential coefficient is not above 0: are these the forces on the tool?\n");

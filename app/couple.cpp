@@ -4,7 +4,6 @@
 #include <cmath>
 #include <complex>
 #include <optional>
-#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
@@ -12,7 +11,6 @@
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/files/assembly_toml.hpp"
 #include "robomill/coupling/files/tools_csv.hpp"
-#include "robomill/io/file.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/tools.hpp"
@@ -23,18 +21,15 @@
 namespace robomill::app {
 namespace {
 
-constexpr std::size_t peaks_shown = 6;
-/// Of a holder's measurement, as a share of itself: what its notes speak of too.
-constexpr double measurement_error = 0.01;
-
-void print_peaks(const modal::FrfSet& set, const modal::Frf& frf) {
-  const std::string name = modal::to_string(frf.name);
-  std::vector<jobs::PeakFound> peaks = jobs::find_peaks(set.frequency_hz, frf.receptance);
-  if (peaks.empty()) fmt::print("{}: no peak between the first line and the last\n", name);
-  peaks.resize(std::min(peaks.size(), peaks_shown));
-  for (const jobs::PeakFound& peak : peaks) {
-    fmt::print("{}: peak at {:.6g} Hz, {:.4g} µm/N\n", name, peak.frequency_hz, peak.magnitude / units::um);
+void print_peaks(const jobs::TipPrediction& prediction, const modal::FrfName& frf) {
+  const std::string name = modal::to_string(frf);
+  bool any = false;
+  for (const jobs::TipPeak& peak : prediction.peaks) {
+    if (peak.name != frf) continue;
+    any = true;
+    fmt::print("{}: peak at {:.6g} Hz, {:.4g} µm/N\n", name, peak.frequency_hz, peak.receptance_m_per_n / units::um);
   }
+  if (!any) fmt::print("{}: no peak between the first line and the last\n", name);
 }
 
 /// Of an assembly of beams far below its lines; of a measured holder, which has no such lines, at the first.
@@ -63,60 +58,23 @@ void print_holder(const coupling::AssemblyFile& file) {
   print_notes(file.holder->notes, "Note: ");
 }
 
-void print_summary(const coupling::AssemblyFile& file, const coupling::TipResult& tip) {
+void print_summary(const jobs::TipPrediction& prediction) {
+  const coupling::AssemblyFile& file = prediction.file;
+  const coupling::TipResult& tip = prediction.tip;
   const modal::Frf& x = *tip.frfs.find(modal::parse_frf_name("xx"));
   const modal::Frf& y = *tip.frfs.find(modal::parse_frf_name("yy"));
-  print_peaks(tip.frfs, x);
+  print_peaks(prediction, x.name);
   print_compliance(file, tip.frfs, x.name);
   if (y.receptance == x.receptance) {
     fmt::print("yy: the same as xx\n");
   } else {
-    print_peaks(tip.frfs, y);
+    print_peaks(prediction, y.name);
     print_compliance(file, tip.frfs, y.name);
   }
   print_lines("Suspect", tip.suspect_hz);
   print_holder(file);
   print_notes(file.notes, "Note: ");
   print_notes(tip.notes, "Note: ");
-}
-
-/// tip.json with what the summary says of lines that are not to be trusted.
-std::string tip_json(const coupling::AssemblyFile& file, const coupling::TipResult& tip) {
-  modal::FrfDoubts doubts{.suspect_hz = tip.suspect_hz};
-  const auto note = [&](const std::vector<std::string>& notes) {
-    doubts.notes.insert(doubts.notes.end(), notes.begin(), notes.end());
-  };
-  if (file.holder) {
-    doubts.unreliable_hz = file.holder->unreliable_hz;
-    note(file.holder->notes);
-  }
-  note(file.notes);
-  note(tip.notes);
-  return modal::frf_json(tip.frfs, doubts);
-}
-
-/// The holder's receptances with their uncertainty, so that whoever couples to the file sees which lines are bad.
-modal::FrfSet holder_with_deviation(const coupling::AssemblyFile& file) {
-  modal::FrfSet out = file.assembly.holder.receptances;
-  if (!file.holder) return out;  // as it was measured
-  // Where the receptance itself vanishes the amplification has no bound.
-  const Eigen::ArrayXd amplification =
-      file.holder->amplification.array().isFinite().select(file.holder->amplification.array(), 1e6).min(1e6);
-  for (modal::Frf& frf : out.frfs) {
-    frf.deviation = measurement_error * amplification * frf.receptance.array().abs();
-  }
-  return out;
-}
-
-/// The tip's FRFs; an error about the assembly names its file.
-coupling::TipResult couple(const coupling::AssemblyFile& file, const coupling::TipOptions& options) {
-  try {
-    return coupling::tip_frfs(file.assembly, file.frequency_hz, options);
-  } catch (const InvalidInput& error) {
-    InvalidInput::Parts parts = error.parts();
-    if (parts.where.empty()) parts.where = file.path.string();
-    throw InvalidInput(std::move(parts));
-  }
 }
 
 void print_tools(const std::vector<jobs::ToolResult>& results) {
@@ -144,10 +102,7 @@ void print_tools(const std::vector<jobs::ToolResult>& results) {
 
 /// A table of many tools in the assembly's holder.
 Exit try_tools(const CoupleCommand& command, const Common& common, Progress& progress) {
-  const bool as_json = common.to_stdout() || io::format_of(common.output) == io::Format::json;
-  if (!common.output.empty() && !as_json && io::format_of(common.output) != io::Format::csv) {
-    throw InvalidInput(common.output, "a table of tools is written as .csv or .json");
-  }
+  require_output(common, {io::Format::csv, io::Format::json}, "a table of tools is written as .csv or .json");
   const coupling::AssemblyFile assembly = coupling::read_assembly(command.input);
   const auto tools = coupling::read_tools(command.tools, assembly.assembly.tool.front());
   std::optional<jobs::LobesFile> cut;
@@ -158,11 +113,9 @@ Exit try_tools(const CoupleCommand& command, const Common& common, Progress& pro
     jobs::load_dynamics(*cut);
   }
   const std::vector<jobs::ToolResult> results = jobs::try_tools(assembly, tools, cut, common.seed, progress);
-  if (common.to_stdout()) {
-    fmt::print("{}", jobs::tools_json(results, assembly.holder));
-  } else if (!common.output.empty()) {
-    io::write_file(common.output, as_json ? jobs::tools_json(results, assembly.holder) : jobs::tools_csv(results));
-  }
+  write_output(common, [&](io::Format format) {
+    return format == io::Format::csv ? jobs::tools_csv(results) : jobs::tools_json(results, assembly.holder);
+  });
   if (!command.frfs.empty()) jobs::write_tips(command.frfs, results);
   if (common.wants_summary()) {
     print_tools(results);
@@ -180,23 +133,19 @@ Exit try_tools(const CoupleCommand& command, const Common& common, Progress& pro
 
 Exit run(const CoupleCommand& command, const Common& common, Progress& progress) {
   if (!command.tools.empty()) return try_tools(command, common, progress);
-  const coupling::AssemblyFile file = coupling::read_assembly(command.input);
-  const modal::FrfSet& holder = file.assembly.holder.receptances;
-  if (!command.holder_out.empty() && holder.frfs.empty()) {
+  const jobs::TipPrediction prediction =
+      jobs::predict_tip(command.input, {}, {.rotations = command.rotations}, progress);
+  if (!command.holder_out.empty() && prediction.holder.frfs.empty()) {
     throw InvalidInput("--holder-out", "needs a measured holder",
                        "A holder of segments, or a rigid wall, has nothing to keep for the next tool");
   }
-  progress.check();
-  const coupling::TipResult tip = couple(file, {.rotations = command.rotations});
-  if (common.to_stdout()) {
-    fmt::print("{}", tip_json(file, tip));
-  } else if (!common.output.empty() && io::format_of(common.output) == io::Format::json) {
-    io::write_file(common.output, tip_json(file, tip));
+  if (common.to_stdout() || io::format_of(common.output) == io::Format::json) {
+    write_output(common, [&](io::Format) { return jobs::tip_json(prediction); });
   } else if (!common.output.empty()) {
-    modal::write_frfs(common.output, tip.frfs);
+    modal::write_frfs(common.output, prediction.tip.frfs);
   }
-  if (!command.holder_out.empty()) modal::write_frfs(command.holder_out, holder_with_deviation(file));
-  if (common.wants_summary()) print_summary(file, tip);
+  if (!command.holder_out.empty()) modal::write_frfs(command.holder_out, prediction.holder);
+  if (common.wants_summary()) print_summary(prediction);
   return done;
 }
 

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "robomill/base/error.hpp"
-#include "robomill/io/file.hpp"
 #include "robomill/modal/files/fit_toml.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
@@ -51,19 +49,13 @@ void print_summary(const modal::FitResult& fit) {
 }  // namespace
 
 Exit run(const ModesCommand& command, const Common& common, Progress& progress) {
-  if (!common.output.empty() && !common.to_stdout() && io::format_of(common.output) != io::Format::json) {
-    throw InvalidInput(common.output, "modes are written as .json");
-  }
+  require_output(common, {io::Format::json}, "modes are written as .json");
   const modal::FrfFile file = modal::read_frfs(command.inputs, command.as);
   modal::FitOptions options = options_of(command, common);
   if (file.added_decay_per_s > 0.0) options.exponential_decay_per_s = file.added_decay_per_s;
   modal::FitResult fit = modal::fit_modes(file.set, options, progress);
   fit.accepted = command.accept_fit;
-  if (common.to_stdout()) {
-    fmt::print("{}", modal::modes_json(fit));
-  } else if (!common.output.empty()) {
-    io::write_file(common.output, modal::modes_json(fit));
-  }
+  write_output(common, [&](io::Format) { return modal::modes_json(fit); });
   if (common.wants_summary()) {
     print_notes(file.notes, "Note: ");
     print_summary(fit);

@@ -7,27 +7,22 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/file.hpp"
-#include "robomill/io/text.hpp"
 #include "robomill/jobs/summary.hpp"
-#include "robomill/page/report.hpp"
 #include "robomill/path/files/motion_json.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
 namespace {
 
-void write_report(const std::filesystem::path& path, const jobs::SmoothResult& result) {
-  if (io::lowered(path.extension().string()) == ".json") {
-    io::write_file(path, path::smooth_json(result.smoothed));
-    return;
-  }
+/// @param recorded  whether the job has recorded curves
+page::Report page_of(const jobs::SmoothResult& result, bool recorded) {
   page::Report page;
   page.title = "Smoothed program";
   page.summary = jobs::summary(result);
   page.smooth = path::smooth_json(result.smoothed);
-  page.motion = path::motion_json(result.outline, result.motions);
-  io::write_file(path, page::report_html(page));
+  if (recorded) page.motion = path::motion_json(result.outline, result.motions);
+  return page;
 }
 
 /// Runs the job; what it rejects of the command line is reported by the option's name.
@@ -43,10 +38,7 @@ jobs::SmoothResult run_job(const jobs::SmoothJob& job, Progress& progress) {
 }  // namespace
 
 Exit run(const SmoothCommand& command, const Common& common, Progress& progress) {
-  const std::string ending = io::lowered(command.report.extension().string());
-  if (!command.report.empty() && ending != ".html" && ending != ".json") {
-    throw InvalidInput(command.report.string(), "a report is written as .html or .json");
-  }
+  require_report_place(command.report);
   jobs::SmoothJob job;
   job.program = command.program;
   job.cell = command.cell;
@@ -54,14 +46,17 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
   if (command.method) job.method = path::method_of(*command.method);
   job.compare = command.compare;
   job.keep_violations = command.keep_violations;
-  job.record = ending == ".html";
+  job.record = is_html(command.report);
   if (command.program_period_ms) {
     require_positive("--program-period-ms", *command.program_period_ms, "ms");
     job.program_period_s = *command.program_period_ms * units::ms;
   }
   const jobs::SmoothResult result = run_job(job, progress);
   if (common.to_stdout()) fmt::print("{}", path::smooth_json(result.smoothed));
-  if (!command.report.empty()) write_report(command.report, result);
+  if (!command.report.empty()) {
+    const page::Report page = page_of(result, job.record);
+    write_report(command.report, page, page.smooth);
+  }
   if (common.wants_summary()) fmt::print("{}", jobs::summary(result));
   if (result.holds()) return done;
   std::string become;

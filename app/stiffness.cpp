@@ -2,9 +2,7 @@
 
 #include <cmath>
 
-#include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/file.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
 #include "robomill/robot/files/loads_csv.hpp"
 #include "robomill/robot/files/stiffness_files.hpp"
@@ -38,22 +36,17 @@ Eigen::Vector3d point_of(const StiffnessCommand& command, const robot::Cell& cel
 }  // namespace
 
 Exit run(const StiffnessCommand& command, const Common& common, Progress&) {
-  const io::Format format = io::format_of(common.output);
-  const bool to_file = !common.output.empty() && !common.to_stdout();
-  if (to_file && format != io::Format::json && format != io::Format::toml) {
-    throw InvalidInput(common.output, "joint stiffness is written as .json or as .toml, a line for cell.toml");
-  }
+  require_output(common, {io::Format::json, io::Format::toml},
+                 "joint stiffness is written as .json or as .toml, a line for cell.toml");
   const jobs::CellFile cell = jobs::read_cell(command.cell);
   const robot::LoadsFile loads = robot::read_loads(command.loads, cell.cell.arm);
   const robot::IdentifiedStiffness found =
       robot::identify_joint_stiffness(cell.cell.arm, point_of(command, cell.cell), loads);
   const bool converged = found.status == robot::IdentifiedStiffness::Status::converged;
-  if (common.to_stdout()) {
-    fmt::print("{}", robot::stiffness_json(found));
-  } else if (to_file && format == io::Format::json) {
-    io::write_file(common.output, robot::stiffness_json(found));
-  } else if (to_file && converged) {
-    io::write_file(common.output, robot::stiffness_toml(found, cell.cell.arm));
+  if (converged || io::format_of(common.output) != io::Format::toml) {
+    write_output(common, [&](io::Format format) {
+      return format == io::Format::toml ? robot::stiffness_toml(found, cell.cell.arm) : robot::stiffness_json(found);
+    });
   }
   if (common.wants_summary()) print_summary(found, cell);
   const bool seen = std::ranges::any_of(found.joints, [](const auto& joint) { return joint.identifiable; });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -10,8 +11,10 @@
 #include <ctime>
 #include <string_view>
 
+#include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/io/pending_names.hpp"
+#include "robomill/io/text.hpp"
 
 namespace robomill::app {
 namespace {
@@ -95,6 +98,33 @@ const std::atomic<bool>& stop_on_signal() {
 
 void print_notes(const std::vector<std::string>& notes, std::string_view label) {
   for (const std::string& note : notes) fmt::print("{}{}\n", label, printable(note));
+}
+
+void require_output(const Common& common, std::initializer_list<io::Format> formats, const char* rule) {
+  if (common.output.empty() || common.to_stdout()) return;
+  if (std::ranges::find(formats, io::format_of(common.output)) == formats.end())
+    throw InvalidInput(common.output, rule);
+}
+
+void write_output(const Common& common, const std::function<std::string(io::Format)>& text_of) {
+  if (common.to_stdout()) {
+    fmt::print("{}", text_of(io::Format::json));
+  } else if (!common.output.empty()) {
+    io::write_file(common.output, text_of(io::format_of(common.output)));
+  }
+}
+
+bool is_html(const std::filesystem::path& path) {
+  return io::lowered(path.extension().string()) == ".html";
+}
+
+void require_report_place(const std::filesystem::path& path) {
+  if (path.empty() || is_html(path) || io::format_of(path) == io::Format::json) return;
+  throw InvalidInput(path.string(), "a report is written as .html or .json");
+}
+
+void write_report(const std::filesystem::path& path, const page::Report& page, const std::string& json) {
+  io::write_file(path, is_html(path) ? page::report_html(page) : json.empty() ? page::report_json(page) : json);
 }
 
 int exit_of_signal() noexcept {

@@ -1,10 +1,16 @@
 #pragma once
 #include <atomic>
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "robomill/base/progress.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/page/report.hpp"
+#include "verbs.hpp"
 
 namespace robomill::app {
 
@@ -14,6 +20,17 @@ const std::atomic<bool>& stop_on_signal();
 
 /// Prints sentences, which may hold names out of files, a line each behind a label.
 void print_notes(const std::vector<std::string>& notes, std::string_view label);
+
+/// Before the work. @throws InvalidInput with this rule if -o names a file of another format
+void require_output(const Common& common, std::initializer_list<io::Format> formats, const char* rule);
+/// After it: JSON to standard output, or the file that -o names, in its format; nothing without -o.
+void write_output(const Common& common, const std::function<std::string(io::Format)>& text_of);
+
+[[nodiscard]] bool is_html(const std::filesystem::path& path);
+/// @throws InvalidInput unless the path is empty or ends in .html or .json
+void require_report_place(const std::filesystem::path& path);
+/// The page, or where the path ends in .json this document; without one, the page's data.
+void write_report(const std::filesystem::path& path, const page::Report& page, const std::string& json = {});
 
 /// What a shell sees of a program that the signal ended: 130 (SIGINT), 143 (SIGTERM), 129 (SIGHUP).
 [[nodiscard]] int exit_of_signal() noexcept;

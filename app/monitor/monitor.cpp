@@ -187,7 +187,7 @@ std::string summary_of(live::Session& session, const std::string& input) {
 }  // namespace
 
 Exit run(const MonitorCommand& command, const Common& common, Progress& progress) {
-  check_report_place(command.report);
+  require_report_place(command.report);
   monitor::MonitorFile file = read_config(command);
   std::atomic<bool> ended{false};
   Input input = open_input(command, file, ended);

@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/file.hpp"
-#include "robomill/io/text.hpp"
 #include "robomill/live/files/recorded_run_json.hpp"
 
 namespace robomill::app {
@@ -40,17 +37,6 @@ page::Report monitor_page(live::RecordedRun run, const monitor::MonitorFile& fil
   page.title = "Chatter monitor";
   page.monitor = live::recorded_run_json(run);
   return page;
-}
-
-void check_report_place(const std::filesystem::path& path) {
-  const std::string ending = io::lowered(path.extension().string());
-  if (path.empty() || ending == ".json" || ending == ".html") return;
-  throw InvalidInput(path.string(), "a report is written as .json or .html");
-}
-
-void write_report(const std::filesystem::path& path, const page::Report& page) {
-  const bool html = io::lowered(path.extension().string()) == ".html";
-  io::write_file(path, html ? page::report_html(page) : page::report_json(page));
 }
 
 }  // namespace robomill::app

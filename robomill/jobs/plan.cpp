@@ -92,7 +92,7 @@ void measure(PlanResult& result, Progress& progress) {
     result.frfs = file.set;
     result.added_decay_per_s = file.added_decay_per_s;
   } else if (!result.job.assembly.empty()) {
-    result.prediction = predict_tip(result.job.assembly, result.job.measured);
+    result.prediction = predict_tip(result.job.assembly, result.job.measured, {}, progress);
     result.frfs = result.prediction->tip.frfs;
     warn_of_prediction(result);
   }

@@ -20,6 +20,8 @@ constexpr std::size_t peaks_an_frf = 6;
 constexpr double prominence = 1.5;
 /// A fit of a prediction, which has no noise, is closer than this to it.
 constexpr double poor_fit = 0.02;
+/// Of a holder's measurement, as a share of itself: what its notes speak of too.
+constexpr double measurement_error = 0.01;
 /// Peaks further apart than this share of frequency are not the same.
 constexpr double same_peak = 0.25;
 
@@ -139,6 +141,29 @@ void add_peaks(TipPrediction& prediction) {
   }
 }
 
+/// An error about the assembly names its file.
+coupling::TipResult couple(const coupling::AssemblyFile& file, const coupling::TipOptions& options) {
+  try {
+    return coupling::tip_frfs(file.assembly, file.frequency_hz, options);
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    if (parts.where.empty()) parts.where = file.path.string();
+    throw InvalidInput(std::move(parts));
+  }
+}
+
+modal::FrfSet holder_with_deviation(const coupling::AssemblyFile& file) {
+  modal::FrfSet out = file.assembly.holder.receptances;
+  if (!file.holder) return out;  // as it was measured
+  // Where the receptance itself vanishes the amplification has no bound.
+  const Eigen::ArrayXd amplification =
+      file.holder->amplification.array().isFinite().select(file.holder->amplification.array(), 1e6).min(1e6);
+  for (modal::Frf& frf : out.frfs) {
+    frf.deviation = measurement_error * amplification * frf.receptance.array().abs();
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<PeakFound> find_peaks(const Eigen::VectorXd& frequency_hz, const Eigen::VectorXcd& receptance) {
@@ -164,10 +189,13 @@ std::vector<PeakFound> find_peaks(const Eigen::VectorXd& frequency_hz, const Eig
   return out;
 }
 
-TipPrediction predict_tip(const std::filesystem::path& assembly, const std::filesystem::path& measured) {
+TipPrediction predict_tip(const std::filesystem::path& assembly, const std::filesystem::path& measured,
+                          const coupling::TipOptions& options, Progress& progress) {
   TipPrediction out;
   out.file = coupling::read_assembly(assembly);
-  out.tip = coupling::tip_frfs(out.file.assembly, out.file.frequency_hz);
+  progress.check();
+  out.tip = couple(out.file, options);
+  out.holder = holder_with_deviation(out.file);
   out.round = is_round(out.tip.frfs);
   for (const auto* notes : {&out.file.notes, &out.tip.notes})
     out.notes.insert(out.notes.end(), notes->begin(), notes->end());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/files/assembly_toml.hpp"
 #include "robomill/modal/fit.hpp"
@@ -34,18 +35,28 @@ struct TipPrediction {
   std::vector<modal::FrfFitError> error;
   std::vector<TipPeak> peaks;  ///< the first ones of each FRF on the diagonal; of a round tool of xx alone
   std::vector<std::string> notes;
+  /// The measured holder's receptances, with their deviation where they were found from a measurement: whoever couples
+  /// to them sees which lines are bad. Empty without a measured holder.
+  modal::FrfSet holder = {};
 };
 
 /// @param measured  FRFs to compare with; empty: none
-/// @throws InvalidInput as read_assembly, tip_frfs and read_frfs, or if nothing measured can be compared
+/// @throws InvalidInput naming the file, as read_assembly, tip_frfs and read_frfs, or if nothing measured can be
+///     compared
+/// @throws Interrupted when progress asks to stop
 [[nodiscard]] ROBOMILL_API TipPrediction predict_tip(const std::filesystem::path& assembly,
-                                                     const std::filesystem::path& measured);
+                                                     const std::filesystem::path& measured = {},
+                                                     const coupling::TipOptions& options = {},
+                                                     Progress& progress = Progress::none());
 
 /// The modes of predicted FRFs, without standard deviations. A round tool is fitted in x, and the same modes stand in
 /// y.
 /// @throws InvalidInput as fit_modes
 [[nodiscard]] ROBOMILL_API modal::FitResult fit_tip(const modal::FrfSet& tip, const modal::FitOptions& options,
                                                     Progress& progress);
+
+/// tip.json with the lines that are not to be trusted, and why.
+[[nodiscard]] ROBOMILL_API std::string tip_json(const TipPrediction& prediction);
 
 /// The member `assembly` of plan.json, as text.
 [[nodiscard]] ROBOMILL_API std::string prediction_json(const TipPrediction& prediction);

@@ -153,6 +153,48 @@ TEST_F(Predicted, OfAMeasuredHolderIsComparedBetweenItsLines) {
   EXPECT_NEAR(prediction.peaks.at(0).frequency_hz, 275.0, 0.2);
 }
 
+// Rotations by finite difference: an error of the measurement is amplified in what is kept and told of in tip.json.
+TEST_F(Predicted, KeepsTheMeasuredHolderWithItsDeviation) {
+  std::string rows = "frequency_hz";
+  for (const char* name : {"1x:1x", "2x:1x", "2x:2x"}) {
+    rows += "," + std::string(name) + "_re_m_per_n," + name + "_im_m_per_n";
+  }
+  for (int line = 1; line <= 40; ++line) {
+    rows += "\n" + std::to_string(10 * line) + ",1e-6,-1e-7,0.98e-6,-0.98e-7,0.961e-6,-0.961e-7";
+  }
+  folder_.file("points.csv", rows + "\n");
+  const std::filesystem::path file =
+      folder_.file("assembly.toml",
+                   "[[tool]]\nlength_mm = 100\ndiameter_mm = 12\nyoungs_modulus_gpa = 200\ndensity_kg_per_m3 = 7800\n"
+                   "[holder]\nreceptances = \"points.csv\"\npoints_mm = [0, 10]\nmax_amplification = 20\n");
+  const TipPrediction prediction = predict_tip(file, {}, {.rotations = true});
+  EXPECT_NE(prediction.tip.frfs.find(modal::parse_frf_name("ry:my")), nullptr);
+  const Eigen::VectorXd& amplification = prediction.file.holder->amplification;
+  ASSERT_EQ(amplification.size(), 40);
+  for (const modal::Frf& frf : prediction.holder.frfs) {
+    const Eigen::VectorXd expected = 0.01 * amplification.cwiseProduct(frf.receptance.cwiseAbs());
+    EXPECT_LT((frf.deviation - expected).norm(), 1e-12 * expected.norm()) << modal::to_string(frf.name);
+  }
+  const auto json = nlohmann::json::parse(tip_json(prediction));
+  EXPECT_EQ(json["unreliable_hz"].size(), 40U);
+  EXPECT_EQ(json["notes"][0], prediction.file.holder->notes.at(0));
+  EXPECT_TRUE(predict_tip(examples / "joint-bar/rigid.toml").holder.frfs.empty()) << "nothing was measured";
+}
+
+// The lines are the assembly's fault, which is what the error names.
+TEST_F(Predicted, ErrorsOfTheAssemblyNameItsFile) {
+  modal::write_frfs(folder_.at("holder.json"),
+                    coupling::tip_frfs(predict_tip(examples / "joint-bar/rigid.toml").file.assembly,
+                                       Eigen::VectorXd::LinSpaced(10, 100.0, 1000.0), {.rotations = true})
+                        .frfs);
+  const std::filesystem::path file =
+      folder_.file("assembly.toml",
+                   "[frequency]\nrange_hz = [1, 500]\nstep_hz = 1\n[[tool]]\nlength_mm = 100\ndiameter_mm = 12\n"
+                   "youngs_modulus_gpa = 200\ndensity_kg_per_m3 = 7800\n[holder]\nreceptances = \"holder.json\"\n");
+  const std::string words = test::rejection([&] { static_cast<void>(predict_tip(file)); });
+  EXPECT_NE(words.find("assembly.toml: frequency_hz = 1 Hz; must lie in the range"), std::string::npos) << words;
+}
+
 TEST_F(Predicted, SaysWhatCannotBeCompared) {
   const auto rejection = [&](const modal::FrfSet& set) {
     modal::write_frfs(folder_.at("tip.json"), set);

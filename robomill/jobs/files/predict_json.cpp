@@ -4,6 +4,8 @@
 #include "robomill/coupling/files/segment_fields.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
+#include "robomill/jobs/predict.hpp"
+#include "robomill/modal/files/frf_files.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -53,6 +55,20 @@ Json lines_json(const std::vector<double>& lines_hz) {
 
 }  // namespace
 
+std::string tip_json(const TipPrediction& prediction) {
+  modal::FrfDoubts doubts{.suspect_hz = prediction.tip.suspect_hz};
+  const auto note = [&](const std::vector<std::string>& notes) {
+    doubts.notes.insert(doubts.notes.end(), notes.begin(), notes.end());
+  };
+  if (const std::optional<coupling::HolderResult>& holder = prediction.file.holder) {
+    doubts.unreliable_hz = holder->unreliable_hz;
+    note(holder->notes);
+  }
+  note(prediction.file.notes);
+  note(prediction.tip.notes);
+  return modal::frf_json(prediction.tip.frfs, doubts);
+}
+
 Json prediction_object(const TipPrediction& prediction) {
   const coupling::Assembly& assembly = prediction.file.assembly;
   Json holder = Json::object();
@@ -84,7 +100,7 @@ Json prediction_object(const TipPrediction& prediction) {
   return json;
 }
 
-std::string prediction_json(const TipPrediction& prediction) {
+Json prediction_object(const TipPrediction& prediction) {
   return prediction_object(prediction).dump();
 }
 
