@@ -6,9 +6,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/file.hpp"
 #include "robomill/jobs/explain.hpp"
 #include "robomill/stability/files/peak_classification_json.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -111,9 +111,7 @@ void print_summary(const stability::PeakClassification& found, int teeth,
 }  // namespace
 
 Exit run(const ExplainCommand& command, const Common& common, Progress&) {
-  if (!common.output.empty() && !common.to_stdout() && io::format_of(common.output) != io::Format::json) {
-    throw InvalidInput(common.output, "explanations are written as .json");
-  }
+  require_output(common, {io::Format::json}, "explanations are written as .json");
   check(command);
   jobs::ExplainJob job = {.peaks = {command.peaks_hz, command.rpm * units::rpm, command.teeth},
                           .options = {command.tolerance_hz, command.speed_tolerance_percent / 100.0},
@@ -121,14 +119,12 @@ Exit run(const ExplainCommand& command, const Common& common, Progress&) {
                           .lobes = command.lobes};
   if (!command.at.empty()) job.point = {command.at[0] * units::rpm, command.at[1] * units::mm};
   const jobs::ExplainResult result = jobs::run_explain(job);
-  const std::string json =
-      stability::peak_classification_json(result.peaks, result.mechanism ? &*result.mechanism : nullptr);
-  if (common.to_stdout()) {
-    fmt::print("{}", json);
-  } else if (!common.output.empty()) {
-    io::write_file(common.output, json);
-  }
-  if (common.wants_summary()) print_summary(result.peaks, command.teeth, result.mechanism);
+  write_output(common, [&result](io::Format) {
+    return stability::peak_classification_json(result.peaks, result.mechanism ? &*result.mechanism : nullptr);
+  });
+  if (!common.wants_summary()) return done;
+  print_summary(result.peaks, command.teeth, result.mechanism);
+  if (result.cut) print_notes(result.cut->notes, "Note: ");
   return done;
 }
 

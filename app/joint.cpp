@@ -45,10 +45,8 @@ jobs::JointJob job_of(const JointCommand& command, const Common& common) {
   job.assembly = command.input;
   job.measured = command.measured;
   job.as = command.as;
-  job.method = command.method == "ga" ? coupling::JointMethod::ga : coupling::JointMethod::hybrid;
-  if (!command.mutation.empty()) {
-    job.mutation = command.mutation == "adaptive" ? coupling::Mutation::adaptive : coupling::Mutation::uniform;
-  }
+  job.method = value_in(coupling::joint_method_names, command.method).value();
+  if (!command.mutation.empty()) job.mutation = value_in(coupling::mutation_names, command.mutation);
   job.axis = command.axis == "y" ? modal::Axis::y : modal::Axis::x;
   job.seed = common.seed;
   return job;

@@ -5,9 +5,7 @@
 #include <limits>
 
 #include "point.hpp"
-#include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/io/file.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/stability/files/lobes_json.hpp"
 #include "terminal.hpp"
@@ -89,21 +87,14 @@ void print_comparison(const stability::MethodComparison& comparison) {
 }  // namespace
 
 Exit run(const LobesCommand& command, const Common& common, Progress& progress) {
-  if (!common.output.empty() && !common.to_stdout() && io::format_of(common.output) != io::Format::json) {
-    throw InvalidInput(common.output, "lobes are written as .json");
-  }
+  require_output(common, {io::Format::json}, "lobes are written as .json");
   jobs::LobesJob job = {.lobes = command.input, .compare = command.compare, .seed = common.seed};
   for (const std::string& text : command.at) job.points.push_back(parse_point(text));
   const jobs::LobesJobResult result = jobs::run_lobes(job, progress);
-  const auto json = [&result] {
+  write_output(common, [&result](io::Format) {
     return result.comparison ? stability::comparison_json(*result.comparison)
                              : stability::lobes_json(result.lobes, result.uncertain, result.surface);
-  };
-  if (common.to_stdout()) {
-    fmt::print("{}", json());
-  } else if (!common.output.empty()) {
-    io::write_file(common.output, json());
-  }
+  });
   if (!common.wants_summary()) return done;
   if (result.comparison) {
     print_comparison(*result.comparison);

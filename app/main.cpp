@@ -5,16 +5,28 @@
 #include <new>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/printable.hpp"
+#include "robomill/coupling/joint_fit.hpp"
+#include "robomill/modal/fit.hpp"
+#include "robomill/path/options.hpp"
 #include "robomill/version.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
 namespace {
+
+template <class Value, std::size_t n>
+CLI::IsMember one_of_words(const Name<Value> (&names)[n]) {
+  std::vector<std::string> words;
+  for (const auto& [name, value] : names) words.emplace_back(name);
+  return CLI::IsMember(words);
+}
 
 /// Every verb's parser and what it runs once parsed.
 struct CommandLine {
@@ -37,6 +49,10 @@ struct CommandLine {
   std::function<Exit(Progress&)> chosen;
 
   CommandLine();
+  void add_structure_verbs();
+  void add_cut_verbs();
+  void add_robot_verbs();
+  void add_machine_verbs();
   CLI::App* verb(const char* name, const char* description, std::function<Exit(Progress&)> run);
 };
 
@@ -54,7 +70,14 @@ CLI::App* CommandLine::verb(const char* name, const char* description, std::func
 CommandLine::CommandLine() {
   parser.set_version_flag("--version", "robomill " ROBOMILL_VERSION);
   parser.require_subcommand(1);
+  add_structure_verbs();
+  add_cut_verbs();
+  add_robot_verbs();
+  add_machine_verbs();
+}
 
+/// Hits, FRFs, modes, and the tool in its holder.
+void CommandLine::add_structure_verbs() {
   CLI::App* sub =
       verb("frf", "hammer hits to frequency response functions", [this](Progress& p) { return run(frf, common, p); });
   sub->add_option("hits", frf.hits, "hits.toml")->required();
@@ -65,7 +88,7 @@ CommandLine::CommandLine() {
   sub->add_option("--as", modes.as, "names of headerless FRFs, one a file: xx,yy")->delimiter(',');
   sub->add_option("--band", modes.band_hz, "low,high in Hz")->delimiter(',')->expected(2);
   sub->add_option("--modes", modes.modes, "exactly this many modes")->check(CLI::PositiveNumber);
-  sub->add_option("--method", modes.method, "hybrid, pso or lscf")->check(CLI::IsMember({"hybrid", "pso", "lscf"}));
+  sub->add_option("--method", modes.method, "hybrid, pso or lscf")->check(one_of_words(modal::fit_method_names));
   sub->add_option("--config", modes.config, "modes.toml: every option of the fit");
   sub->add_flag("--accept-fit", modes.accept_fit, "take modes whose relative error is 20 % or more");
 
@@ -90,13 +113,18 @@ CommandLine::CommandLine() {
       ->required()
       ->allow_extra_args(false);
   sub->add_option("--as", joint.as, "names of headerless FRFs, one a file: xx,yy")->delimiter(',');
-  sub->add_option("--method", joint.method, "hybrid or ga (default: hybrid)")->check(CLI::IsMember({"hybrid", "ga"}));
+  sub->add_option("--method", joint.method, "hybrid or ga (default: hybrid)")
+      ->check(one_of_words(coupling::joint_method_names));
   sub->add_option("--mutation", joint.mutation, "of ga: uniform or adaptive (default: search.mutation, else uniform)")
-      ->check(CLI::IsMember({"uniform", "adaptive"}));
+      ->check(one_of_words(coupling::mutation_names));
   sub->add_option("--axis", joint.axis, "which FRF is fitted: x (xx) or y (yy) (default: x)")
       ->check(CLI::IsMember({"x", "y"}));
+}
 
-  sub = verb("lobes", "modes and a cut to stability lobes", [this](Progress& p) { return run(lobes, common, p); });
+/// A cut: its stability, motion and forces.
+void CommandLine::add_cut_verbs() {
+  CLI::App* sub =
+      verb("lobes", "modes and a cut to stability lobes", [this](Progress& p) { return run(lobes, common, p); });
   sub->add_option("lobes", lobes.input, "lobes.toml")->required();
   sub->add_option("--at", lobes.at, "RPM,MM: spectral radius at this point; may be repeated");
   sub->add_flag("--compare", lobes.compare, "the limits by every method: error against collocation and time");
@@ -135,9 +163,12 @@ CommandLine::CommandLine() {
   sub->add_option("slots", coefficients.slots, "slots.csv")->required();
   sub->add_option("--teeth", coefficients.teeth, "teeth of the cutter (default: 4, stated in the notes)")
       ->check(CLI::Range(1, 100));
+}
 
-  sub = verb("stiffness", "loads on a robot's tool and the displacements measured to joint stiffness",
-             [this](Progress& p) { return run(stiffness, common, p); });
+/// The robot under load, and along a program.
+void CommandLine::add_robot_verbs() {
+  CLI::App* sub = verb("stiffness", "loads on a robot's tool and the displacements measured to joint stiffness",
+                       [this](Progress& p) { return run(stiffness, common, p); });
   sub->add_option("loads", stiffness.loads, "loads.csv: joint angles, force on the robot, displacement")->required();
   sub->add_option("--cell", stiffness.cell, "cell.toml: the robot and its tool")->required();
   sub->add_option("--point-mm", stiffness.point_mm,
@@ -151,16 +182,19 @@ CommandLine::CommandLine() {
   sub->add_option("--cell", smooth.cell, "cell.toml: the robot, its joints' limits, [smoothing]")->required();
   sub->add_option("--report", smooth.report, "a page to look at (.html), or its figures (.json)");
   sub->add_option("--method", smooth.method, "verified, optimal, paper, paper-as-printed or no-joint-jerk")
-      ->check(CLI::IsMember({"verified", "optimal", "paper", "paper-as-printed", "no-joint-jerk"}));
+      ->check(one_of_words(path::method_names));
   sub->add_flag("--compare", smooth.compare, "all other methods beside it, in the summary and the report");
   sub->add_flag("--keep-violations,--keep-breaches", smooth.keep_violations,
                 "write the trajectory even where it violates a limit");
   sub->add_option(
       "--program-period-ms", smooth.program_period_ms,
       "longest time between the points of a joint program (default: 20; 2 for .script and .servoj, always)");
+}
 
-  sub = verb("monitor", "a running accelerometer to an alarm, the mode that chatters and a better speed",
-             [this](Progress& p) { return run(monitor, common, p); });
+/// While cutting, and the whole job.
+void CommandLine::add_machine_verbs() {
+  CLI::App* sub = verb("monitor", "a running accelerometer to an alarm, the mode that chatters and a better speed",
+                       [this](Progress& p) { return run(monitor, common, p); });
   sub->add_option("monitor", monitor.config, "monitor.toml: channels, process, detector")->required();
   sub->add_option("--input", monitor.input,
                   "a recording (.wav .csv .txt .mat .uff), - for standard input, or mqtt://HOST:PORT/TOPIC (mqtts:// "

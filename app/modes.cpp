@@ -16,11 +16,7 @@ modal::FitOptions options_of(const ModesCommand& command, const Common& common) 
   modal::FitOptions options;
   if (!command.config.empty()) options = modal::read_fit_options(command.config);
   options.seed = common.seed;
-  if (command.method) {
-    options.method = *command.method == "pso"    ? modal::FitMethod::pso
-                     : *command.method == "lscf" ? modal::FitMethod::lscf
-                                                 : modal::FitMethod::hybrid;
-  }
+  if (command.method) options.method = value_in(modal::fit_method_names, *command.method).value();
   if (!command.band_hz.empty()) {
     options.band_low_hz = command.band_hz[0];
     options.band_high_hz = command.band_hz[1];

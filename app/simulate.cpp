@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "point.hpp"
-#include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
@@ -19,20 +18,6 @@ namespace {
 using simulation::Simulation;
 using simulation::SmallVibration;
 using simulation::Verdict;
-
-/// @throws InvalidInput if the ending is none that a simulation has
-void check_output(const Common& common) {
-  if (common.output.empty() || common.to_stdout()) return;
-  switch (io::format_of(common.output)) {
-    case io::Format::csv:
-    case io::Format::mat:
-    case io::Format::wav:
-    case io::Format::json:
-      return;
-    default:
-      throw InvalidInput(common.output, "a simulation is written as .csv, .mat, .wav or .json");
-  }
-}
 
 void print_fit(const std::filesystem::path& frf, const std::optional<modal::FitResult>& fit) {
   if (!fit) return;
@@ -89,7 +74,8 @@ void print_summary(const Simulation& s, const stability::OperatingPoint& point) 
 }  // namespace
 
 Exit run(const SimulateCommand& command, const Common& common, Progress& progress) {
-  check_output(common);
+  require_output(common, {io::Format::csv, io::Format::mat, io::Format::wav, io::Format::json},
+                 "a simulation is written as .csv, .mat, .wav or .json");
   const jobs::SimulateJob job = {.lobes = command.input,
                                  .point = parse_point(command.at),
                                  .options = {.seconds = command.seconds,
@@ -98,17 +84,12 @@ Exit run(const SimulateCommand& command, const Common& common, Progress& progres
                                              .seed = common.seed}};
   const jobs::SimulateResult result = jobs::run_simulate(job, progress);
   const Simulation& simulated = result.simulation;
-  const auto json = [&] {
-    return simulation::simulation_json(simulated, job.point.spindle_speed_rad_per_s, job.point.axial_depth_m);
-  };
-  if (common.to_stdout()) {
-    fmt::print("{}", json());
-  } else if (!common.output.empty()) {
-    if (io::format_of(common.output) == io::Format::json) {
-      io::write_file(common.output, json());
-    } else {
-      simulation::write_simulation(common.output, simulated);
-    }
+  if (common.output.empty() || common.to_stdout() || io::format_of(common.output) == io::Format::json) {
+    write_output(common, [&](io::Format) {
+      return simulation::simulation_json(simulated, job.point.spindle_speed_rad_per_s, job.point.axial_depth_m);
+    });
+  } else {
+    simulation::write_simulation(common.output, simulated);
   }
   if (common.wants_summary()) {
     print_notes(result.cut.notes, "Note: ");

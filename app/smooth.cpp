@@ -43,7 +43,7 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
   job.program = command.program;
   job.cell = command.cell;
   if (!common.to_stdout()) job.output = common.output;
-  if (command.method) job.method = path::method_of(*command.method);
+  if (command.method) job.method = value_in(path::method_names, *command.method);
   job.compare = command.compare;
   job.keep_violations = command.keep_violations;
   job.record = is_html(command.report);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/names.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/coupling/assembly.hpp"
 
@@ -15,12 +16,14 @@ enum class JointMethod {
   hybrid,  ///< differential evolution on logarithms, then nonlinear least squares on complex residuals
   ga       ///< genetic algorithm on ‖ |H11| - |H11 model| ‖, as published
 };
+inline constexpr Name<JointMethod> joint_method_names[] = {{"hybrid", JointMethod::hybrid}, {"ga", JointMethod::ga}};
 
 /// Of the genetic algorithm.
 enum class Mutation {
   uniform,  ///< a gene in a hundred is drawn anew from its range, as published
   adaptive  ///< Gaussian steps that shrink over the generations
 };
+inline constexpr Name<Mutation> mutation_names[] = {{"uniform", Mutation::uniform}, {"adaptive", Mutation::adaptive}};
 
 /// The four unknowns, in this order everywhere: k_u, c_u, k_θ, c_θ.
 inline constexpr int joint_unknowns = 4;

@@ -2,45 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <memory>
-#include <utility>
 #include <vector>
 
-#include "robomill/io/sample_source.hpp"
 #include "robomill/monitor/files/recordings_toml.hpp"
 
 namespace robomill::jobs {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t block_frames = 1 << 16;
-
-/// All recordings run at one rate: that of recordings.toml, or of the first.
-std::vector<monitor::Recording> read_all(monitor::RecordingsFile& file, Progress& progress) {
-  monitor::MonitorOptions& options = file.monitor.options;
-  std::vector<monitor::Recording> out;
-  progress.start("recordings", file.recordings.size());
-  for (const monitor::LabelledRecording& labelled : file.recordings) {
-    const auto source = io::open_samples(labelled.file, file.monitor.columns);
-    if (options.sample_rate_hz <= 0.0) {
-      options.sample_rate_hz = source->sample_rate_hz();
-      monitor::validate(file.monitor);
-      file.monitor.columns.sample_rate_hz = options.sample_rate_hz;
-    }
-    monitor::Recording recording;
-    recording.name = labelled.file.string();
-    recording.chatter = labelled.chatter;
-    recording.onset_s = labelled.onset_s;
-    io::SampleBlock block;
-    while (source->next(block_frames, block)) {
-      recording.samples.insert(recording.samples.end(), block.samples.begin(), block.samples.end());
-    }
-    out.push_back(std::move(recording));
-    progress.advance();
-  }
-  return out;
-}
 
 /// Relative to the folder of the file that names it.
 fs::path from_folder_of(const fs::path& file, const fs::path& named) {
@@ -52,7 +21,7 @@ fs::path from_folder_of(const fs::path& file, const fs::path& named) {
 
 CalibrateResult run_calibrate(const fs::path& recordings, std::uint64_t seed, Progress& progress) {
   monitor::RecordingsFile file = monitor::read_recordings(recordings);
-  const std::vector<monitor::Recording> samples = read_all(file, progress);
+  const std::vector<monitor::Recording> samples = monitor::read_samples(file, progress);
   CalibrateResult out;
   out.calibration =
       monitor::calibrate(samples, file.monitor.options, {.false_alarm_rate = file.false_alarm_rate, .seed = seed});

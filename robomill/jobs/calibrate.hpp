@@ -5,8 +5,8 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
+#include "robomill/monitor/calibration.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
-#include "robomill/monitor/published/calibrate.hpp"
 
 // Method: robomill/jobs/README.md, "Calibrated detectors (`calibrate.hpp`)"
 
@@ -20,7 +20,7 @@ struct CalibrateResult {
 /// Reads recordings.toml and all its recordings, which run at one rate (the file's, else the first one's), and sets the
 /// published detector's threshold with them: monitor::calibrate.
 /// @param seed  of the split into halves
-/// @throws InvalidInput with file, line, key and value of recordings.toml, as io::open_samples, or as
+/// @throws InvalidInput with file, line, key and value of recordings.toml, as monitor::read_samples, or as
 ///     monitor::calibrate
 /// @throws Interrupted when progress asks to stop
 [[nodiscard]] ROBOMILL_API CalibrateResult run_calibrate(const std::filesystem::path& recordings, std::uint64_t seed,

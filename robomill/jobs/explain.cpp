@@ -8,13 +8,11 @@ namespace {
 
 /// A cut whose equation can be integrated in time.
 LobesFile cut_of_modes(const std::filesystem::path& path) {
-  LobesFile cut = read_lobes(path);
-  load_dynamics(cut);
+  LobesFile cut = read_milling(path);
   if (!cut.frf.empty() || !cut.workpiece_frf.empty()) {
     throw InvalidInput(path.string(), "must name modes: without them the equation has no time",
                        "Run robomill modes on the FRFs and name the result as dynamics.modes");
   }
-  cut.validate();
   return cut;
 }
 

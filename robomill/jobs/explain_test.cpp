@@ -72,6 +72,11 @@ TEST(RunExplain, RejectsWhatIsMissingAndACutWithoutModes) {
   job.lobes = folder.file("lobes.toml", replaced(io::read_file(example), "modes = \"../../data/robot-modes.toml\"",
                                                  "frf = \"tip.csv\"\nequal_directions = true"));
   EXPECT_NE(rejects().find("lobes.toml: must name modes"), std::string::npos) << rejects();
+  job.lobes = folder.file("drill.toml",
+                          replaced(replaced(io::read_file(example), "../../data/robot-modes.toml", modes.string()),
+                                   "direction = \"up\"\nradial_depth_mm = 1.8\nfeed_per_tooth_mm = 0.01\n",
+                                   "kind = \"drilling\"\nfeed_per_revolution_mm = 0.1\n"));
+  EXPECT_NE(rejects().find("drill.toml: lobes are those of milling"), std::string::npos) << rejects();
   job.modes = folder.at("missing.json");
   EXPECT_NE(rejects().find("missing.json"), std::string::npos);
 }

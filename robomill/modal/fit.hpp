@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/names.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/modal/modes.hpp"
 
@@ -18,6 +19,8 @@ enum class FitMethod {
   pso,     ///< particle swarm, one fit an excitation, as published
   lscf     ///< poly-reference least-squares complex frequency, poles picked from the stabilisation diagram
 };
+inline constexpr Name<FitMethod> fit_method_names[] = {
+    {"hybrid", FitMethod::hybrid}, {"pso", FitMethod::pso}, {"lscf", FitMethod::lscf}};
 
 /// What a line's error is taken to be; each line counts by its inverse.
 enum class Weighting {

@@ -85,8 +85,7 @@ void read_search(io::TomlFile& file, JointFitOptions& out) {
   file.integer("search.generations", "generations", out.generations);
   file.number("search.crossover", "crossover", 1.0, out.crossover);
   file.number("search.mutation_rate", "mutation_rate", 1.0, out.mutation_rate);
-  file.choice<Mutation>("search.mutation", {{"uniform", Mutation::uniform}, {"adaptive", Mutation::adaptive}},
-                        out.mutation);
+  file.choice("search.mutation", mutation_names, out.mutation);
   file.locate([&] { out.validate(); });
 }
 

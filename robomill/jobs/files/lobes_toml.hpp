@@ -51,9 +51,8 @@ struct LobesFile {
 [[nodiscard]] ROBOMILL_API LobesFile read_lobes(const std::filesystem::path& path);
 
 /// Reads the files of modes and of FRFs that it names, of the tool and of the workpiece, into its problem.
-/// @throws InvalidInput, also where an exponential window's damping is still in FRFs (without modes it stays there),
-/// and
-///     where milling needs a direction that was not measured and the file does not say what it is taken for
+/// @throws InvalidInput, also where an exponential window's damping is still in FRFs (without modes it stays
+///     there), and where milling needs a direction that was not measured and the file does not say what it is taken for
 ROBOMILL_API void load_dynamics(LobesFile& file);
 
 /// A milling cut with the structure that its file names, everything checked.

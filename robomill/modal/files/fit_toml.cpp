@@ -8,8 +8,7 @@ namespace robomill::modal {
 FitOptions read_fit_options(const std::filesystem::path& path) {
   io::TomlFile file(path);
   FitOptions o;
-  file.choice<FitMethod>("fit.method",
-                         {{"hybrid", FitMethod::hybrid}, {"pso", FitMethod::pso}, {"lscf", FitMethod::lscf}}, o.method);
+  file.choice("fit.method", fit_method_names, o.method);
   file.choice<Weighting>("fit.weighting",
                          {{"automatic", Weighting::automatic},
                           {"none", Weighting::none},

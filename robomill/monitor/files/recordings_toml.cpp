@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/sample_source.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
 
 namespace robomill::monitor {
@@ -62,6 +64,32 @@ RecordingsFile read_recordings(const std::filesystem::path& path) {
         path.string(),
         fmt::format("must name two recordings at least with label = \"{}\"", chatter ? "chatter" : "stable"),
         "One half of each kind sets the threshold, the other verifies it");
+  }
+  return out;
+}
+
+std::vector<Recording> read_samples(RecordingsFile& file, Progress& progress) {
+  constexpr std::size_t block_frames = 1 << 16;
+  MonitorOptions& options = file.monitor.options;
+  std::vector<Recording> out;
+  progress.start("recordings", file.recordings.size());
+  for (const LabelledRecording& labelled : file.recordings) {
+    const auto source = io::open_samples(labelled.file, file.monitor.columns);
+    if (options.sample_rate_hz <= 0.0) {
+      options.sample_rate_hz = source->sample_rate_hz();
+      validate(file.monitor);
+      file.monitor.columns.sample_rate_hz = options.sample_rate_hz;
+    }
+    Recording recording;
+    recording.name = labelled.file.string();
+    recording.chatter = labelled.chatter;
+    recording.onset_s = labelled.onset_s;
+    io::SampleBlock block;
+    while (source->next(block_frames, block)) {
+      recording.samples.insert(recording.samples.end(), block.samples.begin(), block.samples.end());
+    }
+    out.push_back(std::move(recording));
+    progress.advance();
   }
   return out;
 }

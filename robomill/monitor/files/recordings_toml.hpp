@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/monitor/calibration.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
 // Method: robomill/monitor/README.md, "Files"
@@ -27,5 +29,12 @@ struct RecordingsFile {
 
 /// @throws InvalidInput with file, line, key and value, also where no recording chatters or none is stable
 [[nodiscard]] ROBOMILL_API RecordingsFile read_recordings(const std::filesystem::path& path);
+
+/// The samples of the labelled recordings, in their order. All run at one rate: that of recordings.toml, else the first
+/// one's, which is then the file's.
+/// @throws InvalidInput as io::open_samples and SampleSource::next
+/// @throws Interrupted when progress asks to stop
+[[nodiscard]] ROBOMILL_API std::vector<Recording> read_samples(RecordingsFile& file,
+                                                               Progress& progress = Progress::none());
 
 }  // namespace robomill::monitor

@@ -104,10 +104,6 @@ io::Json run_json(const ProgramRun& run) {
 
 }  // namespace
 
-std::optional<Method> method_of(std::string_view name) {
-  return value_in(method_names, name);
-}
-
 io::Json smooth_object(const SmoothedProgram& smoothed) {
   if (smoothed.methods.empty()) throw InvalidInput("methods", "must hold at least one");
   io::Json json = method_json(smoothed.methods.front(), smoothed.prismatic);

@@ -2,7 +2,6 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -34,9 +33,6 @@ struct SmoothedProgram {
   std::vector<program::Skipped> skipped = {};
   std::vector<std::string> notes = {};
 };
-
-/// None where there is no such method.
-[[nodiscard]] ROBOMILL_API std::optional<Method> method_of(std::string_view name);
 
 /// smooth.json: of the first method, and under "methods" of each where there are several. docs/formats.md.
 /// @throws InvalidInput if there is no method

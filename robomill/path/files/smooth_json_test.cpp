@@ -86,8 +86,8 @@ TEST(SmoothJson, SaysHowTheFlangeTurns) {
 }
 
 TEST(SmoothJson, KnowsEachMethodByItsName) {
-  for (const auto& [name, method] : method_names) EXPECT_EQ(method_of(name), method);
-  EXPECT_FALSE(method_of("fastest"));
+  for (const auto& [name, method] : method_names) EXPECT_EQ(value_in(method_names, name), method);
+  EXPECT_FALSE(value_in(method_names, "fastest"));
 }
 
 }  // namespace smooth_json_test
