@@ -58,9 +58,6 @@ struct TipPrediction {
 /// tip.json with the lines that are not to be trusted, and why.
 [[nodiscard]] ROBOMILL_API std::string tip_json(const TipPrediction& prediction);
 
-/// The member `assembly` of plan.json, as text.
-[[nodiscard]] ROBOMILL_API std::string prediction_json(const TipPrediction& prediction);
-
 /// A frequency at which a receptance is greatest.
 struct PeakFound {
   double frequency_hz = 0.0;

@@ -153,7 +153,7 @@ TEST_F(Predicted, OfAMeasuredHolderIsComparedBetweenItsLines) {
   EXPECT_NEAR(prediction.peaks.at(0).frequency_hz, 275.0, 0.2);
 }
 
-// Rotations by finite difference: an error of the measurement is amplified in what is kept and told of in tip.json.
+// Rotations by finite difference: an error of the measurement is amplified in what is kept, and tip.json notes it.
 TEST_F(Predicted, KeepsTheMeasuredHolderWithItsDeviation) {
   std::string rows = "frequency_hz";
   for (const char* name : {"1x:1x", "2x:1x", "2x:2x"}) {
@@ -245,7 +245,6 @@ TEST_F(Predicted, PlanStandsOnTheModesOfItsTipFrfs) {
   EXPECT_EQ(fitted["receptance_m_per_n"]["yy"]["re"].size(), frf["frequency_hz"].size());
   EXPECT_EQ(report.measured, "");
   EXPECT_EQ(nlohmann::json::parse(report.assembly), json);
-  EXPECT_EQ(nlohmann::json::parse(prediction_json(*predicted.prediction)), json);
 }
 
 }  // namespace predict_test

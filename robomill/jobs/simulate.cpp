@@ -4,7 +4,6 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/simulation/drilling.hpp"
-#include "robomill/stability/tip_dynamics.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -26,7 +25,7 @@ std::optional<modal::FitResult> fit_where_measured(const std::filesystem::path& 
 
 simulation::MillingCut milling_of(const LobesFile& file, const stability::OperatingPoint& point) {
   return {.milling = file.problem.milling,
-          .structure = stability::detail::tip_modes(file.problem),
+          .structure = stability::tip_modes(file.problem),
           .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
           .axial_depth_m = point.axial_depth_m};
 }
@@ -39,7 +38,7 @@ simulation::DrillingCut drilling_of(const LobesFile& file, const stability::Oper
   cut.radial_width_m = point.axial_depth_m;
   cut.feed_per_revolution_m = file.feed_per_revolution_m;
   cut.coefficients = file.problem.milling.coefficients;
-  cut.structure = stability::detail::tip_modes(file.problem);
+  cut.structure = stability::tip_modes(file.problem);
   cut.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
   return cut;
 }

@@ -96,7 +96,7 @@ void FrequencyResponse::add(std::shared_ptr<const Part> part) {
 
 FrequencyResponse FrequencyResponse::of_modes(const LobesProblem& problem) {
   problem.validate();
-  return of_modes(detail::tip_modes(problem));
+  return of_modes(tip_modes(problem));
 }
 
 FrequencyResponse FrequencyResponse::of_modes(const modal::TipModes& modes) {

@@ -11,6 +11,7 @@
 #include "robomill/cutting/milling.hpp"
 #include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
+#include "robomill/modal/tip.hpp"
 
 // Method: robomill/stability/README.md, "Method"
 
@@ -33,6 +34,10 @@ struct ROBOMILL_API LobesProblem {
   /// @throws InvalidInput naming the member
   void validate() const;
 };
+
+/// The structure at the tool's tip in the feed's frame: the tool's modes that take part, then the workpiece's.
+/// @throws InvalidInput if a model has no x or y at a tip, or several points that could be the tip
+[[nodiscard]] ROBOMILL_API modal::TipModes tip_modes(const LobesProblem& problem);
 
 /// zeroth_order, multi_frequency: in the frequency domain, limits alone; from modes or measured FRFs. The others need
 /// modes and know the spectral radius.

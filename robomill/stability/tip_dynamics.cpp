@@ -1,6 +1,6 @@
 #include "robomill/stability/tip_dynamics.hpp"
 
-namespace robomill::stability::detail {
+namespace robomill::stability {
 
 modal::TipModes tip_modes(const LobesProblem& problem) {
   const double feed_rad = problem.feed_direction_rad;
@@ -8,6 +8,8 @@ modal::TipModes tip_modes(const LobesProblem& problem) {
   if (problem.workpiece_dynamics.modes.empty()) return tool;
   return modal::joined(tool, modal::tip_modes(problem.workpiece_dynamics, {}, feed_rad, modal::ModeOwner::workpiece));
 }
+
+namespace detail {
 
 TipDynamics tip_dynamics(const modal::TipModes& modes) {
   TipDynamics tip;
@@ -29,4 +31,5 @@ TipDynamics tip_dynamics(const LobesProblem& problem) {
   return tip_dynamics(tip_modes(problem));
 }
 
-}  // namespace robomill::stability::detail
+}  // namespace detail
+}  // namespace robomill::stability

@@ -19,10 +19,6 @@ struct TipDynamics {
   std::vector<modal::ModeId> id;  ///< length n: the workpiece's follow the tool's
 };
 
-/// The tool's modes that take part, and the workpiece's.
-/// @throws InvalidInput if a model has no x or y at a tip, or several points that could be the tip
-modal::TipModes tip_modes(const LobesProblem& problem);
-
 /// Of these modes in the plane, or of the problem's.
 /// @throws InvalidInput as tip_modes
 TipDynamics tip_dynamics(const modal::TipModes& modes);

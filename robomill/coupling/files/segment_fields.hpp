@@ -1,6 +1,9 @@
 #pragma once
+#include <iterator>
+
 #include "robomill/base/units.hpp"
 #include "robomill/coupling/assembly.hpp"
+#include "robomill/coupling/joint_fit.hpp"
 #include "robomill/io/toml_file.hpp"
 
 namespace robomill::coupling {
@@ -29,5 +32,6 @@ inline constexpr io::Field<Joint> joint_fields[] = {
     {"rotational_damping_n_m_s_per_rad", "rotational_damping_n_m_s_per_rad", 1.0,
      &Joint::rotational_damping_n_m_s_per_rad},
 };
+static_assert(std::size(joint_fields) == joint_unknowns);
 
 }  // namespace robomill::coupling

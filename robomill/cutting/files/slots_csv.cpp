@@ -13,7 +13,6 @@
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/table.hpp"
-#include "robomill/io/text.hpp"
 
 namespace robomill::cutting {
 namespace {

@@ -116,7 +116,7 @@ void read_links(io::TomlFile& file, const std::vector<robot::DhRow>& rows, robot
   }
 }
 
-std::vector<bool> sliding(const robot::Arm& arm) {
+std::vector<bool> prismatic_joints(const robot::Arm& arm) {
   std::vector<bool> prismatic;
   for (const robot::Joint& joint : arm.joints) prismatic.push_back(joint.prismatic);
   return prismatic;
@@ -124,7 +124,7 @@ std::vector<bool> sliding(const robot::Arm& arm) {
 
 void read_joint_lists(io::TomlFile& file, robot::Arm& arm, std::vector<std::string>& notes) {
   for (std::size_t k = 0; k < robot::joint_limits.size(); ++k) {
-    const auto values = robot::read_joint_limit(file, robot::joint_limits[k], sliding(arm), notes);
+    const auto values = robot::read_joint_limit(file, robot::joint_limits[k], prismatic_joints(arm), notes);
     for (std::size_t i = 0; i < values.size(); ++i)
       arm.joints[i].*of_joint[k] = values[i].value_or(arm.joints[i].*of_joint[k]);
   }
@@ -147,7 +147,7 @@ InvalidInput located(const io::TomlFile& file, const robot::Arm& arm, const Inva
   };
   for (const robot::JointLimit& limit : robot::joint_limits) {
     if (!is_of(limit.name)) continue;
-    return robot::located_limit(file, limit, sliding(arm), std::stoul(parts.field.substr(7)) - 1, error);
+    return robot::located_limit(file, limit, prismatic_joints(arm), std::stoul(parts.field.substr(7)) - 1, error);
   }
   for (const io::Field<robot::Joint>& list : joint_lists) {
     if (!is_of(list.member) || !file.has(list.key)) continue;

@@ -11,6 +11,7 @@
 #include "robomill/io/json.hpp"
 #include "robomill/modal/files/modal_objects.hpp"
 #include "robomill/modal/files/mode_json.hpp"
+#include "robomill/page/thin.hpp"
 #include "robomill/path/files/smooth_object.hpp"
 #include "robomill/stability/files/lobes_object.hpp"
 
@@ -154,6 +155,8 @@ Json recordings_json(const PlanResult& result) {
                        {"kind", to_string(peak.kind)},
                        {"text", peak.text}});
     }
+    // A long recording's spectrum is thinned before it is text, by the page's own rule.
+    const std::vector<Eigen::Index> keep = page::thin(recording.amplitude);
     const double rotation_hz = recording.spindle_speed_rad_per_s / (2.0 * std::numbers::pi);
     list.push_back({{"file", recording.file},
                     {"spindle_speed_rpm", number(recording.spindle_speed_rad_per_s / units::rpm)},
@@ -162,8 +165,8 @@ Json recordings_json(const PlanResult& result) {
                     {"tooth_passing_hz", number(rotation_hz * recording.teeth)},
                     {"axial_depth_mm", number(recording.axial_depth_m / units::mm)},
                     {"amplitude_unit", "m/s²"},
-                    {"frequency_hz", io::numbers(recording.frequency_hz)},
-                    {"amplitude", io::numbers(recording.amplitude)},
+                    {"frequency_hz", io::numbers(recording.frequency_hz(keep))},
+                    {"amplitude", io::numbers(recording.amplitude(keep))},
                     {"peaks", std::move(peaks)},
                     {"verdict", text_or_null(to_string(recording.verdict))},
                     {"reason", recording.reason}});

@@ -100,8 +100,4 @@ Json prediction_object(const TipPrediction& prediction) {
   return json;
 }
 
-Json prediction_object(const TipPrediction& prediction) {
-  return prediction_object(prediction).dump();
-}
-
 }  // namespace robomill::jobs

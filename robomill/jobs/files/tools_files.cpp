@@ -49,7 +49,7 @@ std::string cell(double value, double unit, bool known = true) {
   return known ? fmt::format("{:.6g}", value / unit) : std::string();
 }
 
-/// What a row tells of plan.json's operation.
+/// What a row has of plan.json's operation.
 Json recommended_json(const decision::Operation* op) {
   Json json;
   if (op == nullptr) return json;

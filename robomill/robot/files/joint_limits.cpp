@@ -16,9 +16,9 @@ namespace {
 struct Key {
   std::string key;
   double factor = 1.0;
-  bool turning = true, sliding = true;  ///< which joints it is for
-  [[nodiscard]] bool takes(bool prismatic) const { return prismatic ? sliding : turning; }
-  [[nodiscard]] bool bare() const { return turning && sliding; }
+  bool for_revolute = true, for_prismatic = true;  ///< which joints it is for
+  [[nodiscard]] bool takes(bool prismatic) const { return prismatic ? for_prismatic : for_revolute; }
+  [[nodiscard]] bool bare() const { return for_revolute && for_prismatic; }
 };
 
 std::array<Key, 4> keys_of(const JointLimit& limit) {
@@ -26,9 +26,9 @@ std::array<Key, 4> keys_of(const JointLimit& limit) {
   const char* const time = per[static_cast<std::size_t>(limit.derivatives)];
   const std::string name = fmt::format("robot.joint_{}", limit.name);
   return {{{.key = name},
-           {.key = fmt::format("{}_deg{}", name, time), .factor = units::deg, .sliding = false},
-           {.key = fmt::format("{}_rad{}", name, time), .sliding = false},
-           {.key = fmt::format("{}_mm{}", name, time), .factor = units::mm, .turning = false}}};
+           {.key = fmt::format("{}_deg{}", name, time), .factor = units::deg, .for_prismatic = false},
+           {.key = fmt::format("{}_rad{}", name, time), .for_prismatic = false},
+           {.key = fmt::format("{}_mm{}", name, time), .factor = units::mm, .for_revolute = false}}};
 }
 
 std::vector<std::size_t> joints_of(const Key& key, const std::vector<bool>& prismatic) {
@@ -41,9 +41,9 @@ std::vector<std::size_t> joints_of(const Key& key, const std::vector<bool>& pris
 
 void require_length(const io::TomlFile& file, const Key& key, std::size_t wanted, std::size_t held) {
   if (wanted == held) return;
-  const char* const kind = key.bare()    ? "a joint"
-                           : key.turning ? "for each revolute joint"
-                                         : "for each prismatic joint";
+  const char* const kind = key.bare()         ? "a joint"
+                           : key.for_revolute ? "for each revolute joint"
+                                              : "for each prismatic joint";
   throw file.reject(key.key, fmt::format("must hold one number {}, {}; it holds {}", kind, wanted, held));
 }
 

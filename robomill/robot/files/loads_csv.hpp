@@ -18,7 +18,7 @@ struct LoadsFile {
   std::vector<std::size_t> line = {};  ///< of each, from 1
 };
 
-/// Reads loads.csv: columns q1_deg … qn_deg (q2_mm of a sliding joint) without load, fx_n, fy_n, fz_n on the robot,
+/// Reads loads.csv: columns q1_deg … qn_deg (q2_mm of a prismatic joint) without load, fx_n, fy_n, fz_n on the robot,
 /// dx_mm, dy_mm, dz_mm of the point, all in the robot's base frame; optionally mx_n_m, my_n_m, mz_n_m and deviation_mm.
 /// @throws InvalidInput with file, line, column and value
 [[nodiscard]] ROBOMILL_API LoadsFile read_loads(const std::filesystem::path& path, const Arm& arm);

@@ -1,6 +1,5 @@
 #include "robomill/stability/time_steps/evaluator.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace robomill::stability::detail {
