@@ -96,10 +96,10 @@ LimitShare limit_share(const PlanResult& result) {
 }
 
 page::Report make_report(const PlanResult& result, const std::vector<page::StageFile>& files) {
-  return make_report(result, files, plan_object(result));
+  return report_of(result, files, plan_object(result));
 }
 
-page::Report make_report(const PlanResult& result, const std::vector<page::StageFile>& files, const io::Json& plan) {
+page::Report report_of(const PlanResult& result, const std::vector<page::StageFile>& files, const io::Json& plan) {
   page::Report report;
   if (!result.job.title.empty()) report.title = result.job.title;
   report.created = fmt::format("{:%Y-%m-%d %H:%M} UTC, robomill " ROBOMILL_VERSION, fmt::gmtime(std::time(nullptr)));

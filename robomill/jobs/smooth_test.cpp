@@ -302,7 +302,7 @@ TEST_F(Smoothing, RejectsInTheUsersWords) {
   EXPECT_NE(said(hybrid("max_duration_h = 1\n"), day).find("line 4): dwells for 1.111 h"), std::string::npos);
   SmoothJob program = job();
   program.output = folder_.at("t.src");
-  EXPECT_NE(rejection([&] { static_cast<void>(run_smooth(program)); }).find("six joints"), std::string::npos);
+  EXPECT_NE(rejection([&] { static_cast<void>(run_smooth(program)); }).find("six revolute joints"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder_.at("t.csv")));
 }
 

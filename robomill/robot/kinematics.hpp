@@ -35,7 +35,7 @@ struct Reach {
   enum class Status {
     found,           ///< the pose is taken, and the joints can follow it
     out_of_reach,    ///< no position reaches the pose, whatever the limits
-    outside_limits,  ///< every position that reaches it has a joint beyond its limits, the nearest one `joint`
+    outside_limits,  ///< the position found has `joint` beyond its limits; in closed form every position has one
     singular,        ///< the joints cannot follow a motion in some direction: condition number > max_condition_number
     jump             ///< reached, but a joint is farther than max_travel_rad or max_travel_m from the position before
   };

@@ -46,7 +46,7 @@ std::vector<page::StageFile> stage_files(const PlanResult& result) {
 void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   io::make_folder(folder);
   const io::Json plan = plan_object(result);
-  const page::Report report = make_report(result, stage_files(result), plan);
+  const page::Report report = report_of(result, stage_files(result), plan);
   const std::string page = page::report_html(report);
   if (result.frfs) modal::write_frfs(folder / "tip.uff", *result.frfs);
   io::write_file(folder / "modes.json", report.modes);

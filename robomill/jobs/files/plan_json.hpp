@@ -21,7 +21,7 @@ namespace robomill::jobs {
 /// It as text.
 [[nodiscard]] std::string plan_text(const io::Json& plan);
 /// As make_report, of what is in plan.json already.
-[[nodiscard]] page::Report make_report(const PlanResult& result, const std::vector<page::StageFile>& files,
-                                       const io::Json& plan);
+[[nodiscard]] page::Report report_of(const PlanResult& result, const std::vector<page::StageFile>& files,
+                                     const io::Json& plan);
 
 }  // namespace robomill::jobs

@@ -115,8 +115,9 @@ TEST_P(Program, RejectsMachinesThatAreNoSuchArm) {
   TrajectoryInfo slide = test::arm_info();
   slide.prismatic[0] = true;
   for (const TrajectoryInfo& info : {five, slide}) {
-    EXPECT_NE(robomill::test::rejection([&] { static_cast<void>(open_sample_file(path, info)); }).find("six joints"),
-              std::string::npos);
+    EXPECT_NE(
+        robomill::test::rejection([&] { static_cast<void>(open_sample_file(path, info)); }).find("six revolute joints"),
+        std::string::npos);
   }
   TrajectoryInfo odd = test::arm_info();
   odd.program_period_s = 0.0125;
