@@ -38,7 +38,7 @@ std::string MetricValues::text() const {
   const auto counter = [&out](std::string_view name, std::string_view help, const std::atomic<std::uint64_t>& value) {
     row(out, name, "counter", help, static_cast<double>(value.load()));
   };
-  gauge("state", "0 stable, 1 transition, 2 chatter", state);
+  gauge("state", "0 stable, 1 transition, 2 chatter, 3 blind", state);
   gauge("score", "of the detector", score);
   gauge("threshold", "that the score is held against", threshold);
   gauge("energy_entropy", "of the bands", energy_entropy);

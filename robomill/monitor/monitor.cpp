@@ -34,7 +34,9 @@ void MonitorOptions::validate() const {
   if (tachometer_channel >= 0 && channels == 1) {
     throw InvalidInput("tachometer_channel", tachometer_channel, "", "leaves no channel of vibration");
   }
+  require_between("pulses_per_revolution", pulses_per_revolution, 1.0, 10'000.0, "", "must be in [1, 10000]");
   require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  require_between("speed_std_ratio", speed_std_ratio, 1e-4, 0.2, "", "must be in [0.0001, 0.2]");
   require_between("teeth", teeth, 0.0, 64.0, "", "must be in [0, 64]");
   require_positive("window_s", window_s, "s");
   require_positive("hop_s", hop_s, "s");
@@ -151,7 +153,30 @@ std::string_view to_string(Entropy entropy) {
   return name_in(entropy_names, entropy);
 }
 std::string_view to_string(State state) {
-  return state == State::stable ? "stable" : state == State::transition ? "transition" : "chatter";
+  switch (state) {
+    case State::stable:
+      return "stable";
+    case State::transition:
+      return "transition";
+    case State::chatter:
+      return "chatter";
+    default:
+      return "blind";
+  }
+}
+std::string_view to_string(BlindReason reason) {
+  switch (reason) {
+    case BlindReason::no_signal:
+      return "no-signal";
+    case BlindReason::clipped:
+      return "clipped";
+    case BlindReason::speed_unknown:
+      return "speed-unknown";
+    case BlindReason::gap:
+      return "gap";
+    default:
+      return "none";
+  }
 }
 std::string_view to_string(SynchronousChatter kind) {
   if (kind == SynchronousChatter::none) return "none";

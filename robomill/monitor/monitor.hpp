@@ -30,7 +30,16 @@ inline constexpr Name<Entropy> entropy_names[] = {{"normalised", Entropy::normal
 enum class State {
   stable,      ///< no alarm, and none on its way up or down
   transition,  ///< comb_cusum: score > threshold / 2 without an alarm; both detectors: an alarm on its way down
-  chatter      ///< an alarm: score > threshold (energy_entropy with alarm_below: <), or SynchronousChatter
+  chatter,     ///< an alarm: score > threshold (energy_entropy with alarm_below: <), or SynchronousChatter
+  blind        ///< nothing can be said of the cut; Decision::reason says why
+};
+/// Why nothing can be said of the cut.
+enum class BlindReason {
+  none,
+  no_signal,      ///< no channel has a usable signal, or no samples come
+  clipped,        ///< every channel that has a signal is at its converter's limit
+  speed_unknown,  ///< no spindle speed was given, and none can be found
+  gap             ///< samples were lost on their way
 };
 /// Chatter synchronous with the spindle, which a comb takes for a part of the cut. It is detected by the power of a
 /// multiple of rotation against what was learnt of it.
@@ -54,8 +63,10 @@ struct ROBOMILL_API MonitorOptions {
   Kind kind = Kind::comb_cusum;
   double sample_rate_hz = 0.0;           ///< in [100, 1e6]; required
   int channels = 1;                      ///< in [1, 64]; interleaved, in the order of the files
-  int tachometer_channel = -1;           ///< of these, from 0: pulses once a revolution; -1: none
+  int tachometer_channel = -1;           ///< of these, from 0: pulses, which are no vibration; -1: none
+  int pulses_per_revolution = 1;         ///< of the tachometer or encoder; in [1, 10000]
   double spindle_speed_rad_per_s = 0.0;  ///< a hint, off by several percent in real metadata; 0: unknown
+  double speed_std_ratio = 0.015;        ///< of the hint, in (0, 0.2]: width of a Cauchy distribution about it
   int teeth = 0;                         ///< in [0, 64]; 0: unknown
   double window_s = 0.05;                ///< of the short-time transform; at least 32 samples and one hop
   double hop_s = 0.025;                  ///< between decisions; at least 16 samples
@@ -79,17 +90,19 @@ struct Decision {
   std::uint64_t hop = 0;  ///< from 1; 0: none was made yet
   double time_s = 0.0;    ///< of the last sample it used: when it could be made
   State state = State::stable;
-  bool changed = false;    ///< state differs from the last decision's
-  double score = 0.0;      ///< of the test
+  BlindReason reason = BlindReason::none;  ///< of State::blind
+  bool changed = false;                    ///< state differs from the last decision's
+  double score = 0.0;                      ///< of the test
   double threshold = 0.0;  ///< alarm where score > threshold (MonitorOptions::alarm_below: <), or as `synchronous` says
   double energy_entropy = 0.0;  ///< Σ over the channels of the bands' energy entropy, as MonitorOptions::entropy has it
   double level = 0.0;           ///< rms of all channels over the hop, mean taken off [input's unit]
-  double chatter_frequency_hz = 0.0;      ///< 0: none
-  double chatter_frequency_std_hz = 0.0;  ///< its standard deviation
-  int channel = 0;                        ///< in which chatter is strongest, from 0
-  double spindle_speed_rad_per_s = 0.0;   ///< as tracked; 0: unknown
-  double suggested_sample_rate_hz = 0.0;  ///< with Fault::wrong_sample_rate
-  std::uint32_t faults = 0;               ///< of Fault
+  double chatter_frequency_hz = 0.0;         ///< 0: none
+  double chatter_frequency_std_hz = 0.0;     ///< its standard deviation
+  int channel = 0;                           ///< in which chatter is strongest, from 0
+  double spindle_speed_rad_per_s = 0.0;      ///< as tracked; 0: unknown
+  double spindle_speed_std_rad_per_s = 0.0;  ///< its standard deviation
+  double suggested_sample_rate_hz = 0.0;     ///< with Fault::wrong_sample_rate
+  std::uint32_t faults = 0;                  ///< of Fault
   SynchronousChatter synchronous = SynchronousChatter::none;
   int bands = 0;                          ///< used of band_level
   std::array<float, 64> band_level = {};  ///< rms of each band, all channels [input's unit]
@@ -128,6 +141,7 @@ class ROBOMILL_API ChatterMonitor {
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Kind kind);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Entropy entropy);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(State state);
+[[nodiscard]] ROBOMILL_API std::string_view to_string(BlindReason reason);
 [[nodiscard]] ROBOMILL_API std::string_view to_string(SynchronousChatter kind);
 /// "not-finite", …; of one bit.
 [[nodiscard]] ROBOMILL_API std::string_view to_string(Fault fault);

@@ -51,6 +51,7 @@ std::string event_line(const MonitorEvent& event) {
   json["time_s"] = io::number(event.time_s);
   json["event"] = to_string(event.kind);
   json["state"] = to_string(d.state);
+  json["reason"] = d.state == State::blind ? io::Json(to_string(d.reason)) : io::Json(nullptr);
   json["score"] = io::number(d.score);
   json["threshold"] = io::number(d.threshold);
   json["energy_entropy"] = io::number(d.energy_entropy);
@@ -61,6 +62,7 @@ std::string event_line(const MonitorEvent& event) {
   json["hidden"] = d.synchronous == SynchronousChatter::none ? io::Json(nullptr) : io::Json(to_string(d.synchronous));
   modal::set_mode(json, event.mode);
   json["spindle_speed_rpm"] = positive(d.spindle_speed_rad_per_s, units::rpm);
+  json["spindle_speed_std_rpm"] = positive(d.spindle_speed_std_rad_per_s, units::rpm);
   json["suggested_spindle_speed_rpm"] = positive(event.suggested_spindle_speed_rad_per_s, units::rpm);
   json["suggested_axial_depth_mm"] = positive(event.suggested_axial_depth_m, units::mm);
   json["stable_spindle_speeds_rpm"] = io::Json::array();

@@ -52,6 +52,13 @@ void read_mqtt(io::TomlFile& file, MqttSettings& mqtt) {
   }
 }
 
+void read_act(io::TomlFile& file, ActSettings& act) {
+  file.choice("act.rule", act_rule_names, act.rule);
+  if (file.number("act.reduce_to", "reduce_to", 1.0, act.reduce_to) && !(act.reduce_to > 0.0 && act.reduce_to < 1.0)) {
+    throw file.reject("act.reduce_to", "must lie between 0 and 1", "It is a share of the programmed feed");
+  }
+}
+
 void read_outputs(io::TomlFile& file, MonitorFile& out) {
   if (file.integer("metrics.port", "metrics_port", out.metrics_port) &&
       (out.metrics_port < 0 || out.metrics_port > 65'535)) {
@@ -118,6 +125,7 @@ void read_signal(io::TomlFile& file, MonitorFile& out) {
   file.integer("signal.columns", "columns", out.columns.raw_columns);
   file.number("signal.scale", "scale", 1.0, out.columns.scale);
   file.number("signal.full_scale", "full_scale", 1.0, out.options.full_scale);
+  file.integer("signal.pulses_per_revolution", "pulses_per_revolution", out.options.pulses_per_revolution);
   std::vector<std::string>& channels = out.columns.channels;
   file.locate([&] {
     out.columns.validate();
@@ -133,6 +141,7 @@ void read_signal(io::TomlFile& file, MonitorFile& out) {
 
 void read_process(io::TomlFile& file, MonitorFile& out) {
   file.number("process.spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm, out.options.spindle_speed_rad_per_s);
+  file.number("process.spindle_speed_std_ratio", "speed_std_ratio", 1.0, out.options.speed_std_ratio);
   file.integer("process.teeth", "teeth", out.options.teeth);
 }
 
@@ -173,6 +182,11 @@ MonitorFile read_monitor(const std::filesystem::path& path) {
   file.path("process.modes", out.modes);
   file.path("process.lobes", out.lobes);
   read_detector(file, out);
+  if (file.number("signal.timeout_s", "timeout_s", 1.0, out.timeout_s) &&
+      !(out.timeout_s > 0.0 && out.timeout_s <= 3600.0)) {
+    throw file.reject("signal.timeout_s", "must lie between 0 and 3600");
+  }
+  read_act(file, out.act);
   read_mqtt(file, out.mqtt);
   read_outputs(file, out);
   file.done();
@@ -215,6 +229,7 @@ std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
   }
   line("channels", "[" + names + "]");
   if (!tachometer.empty()) line("tachometer", tachometer);
+  if (o.pulses_per_revolution != 1) line("pulses_per_revolution", std::to_string(o.pulses_per_revolution));
   if (file.columns.raw_columns > 0) line("columns", std::to_string(file.columns.raw_columns));
   if (file.columns.scale != 1.0) line("scale", number_text(file.columns.scale));
   if (o.full_scale > 0.0) line("full_scale", number_text(o.full_scale));

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/sample_source.hpp"
 #include "robomill/monitor/monitor.hpp"
@@ -28,6 +29,20 @@ struct MqttSettings {
   [[nodiscard]] int port_or_default() const { return port != 0 ? port : (tls ? 8883 : 1883); }
 };
 
+/// [act]: what to do about chatter. Rules act on the robot through live/; none does unless it is asked for.
+enum class ActRule {
+  none,
+  reduce,  ///< the feed, to reduce_to: it bounds the damage and does not end regenerative chatter
+  hold,    ///< the motion, with a retract: a tool that stands still in the cut rubs
+  speed    ///< the spindle, to the suggested speed; the feed follows, so that feed per tooth stays
+};
+inline constexpr Name<ActRule> act_rule_names[] = {
+    {"none", ActRule::none}, {"reduce", ActRule::reduce}, {"hold", ActRule::hold}, {"speed", ActRule::speed}};
+struct ActSettings {
+  ActRule rule = ActRule::none;
+  double reduce_to = 0.5;  ///< of the programmed feed, in (0, 1)
+};
+
 /// monitor.toml.
 struct MonitorFile {
   std::filesystem::path path = {};
@@ -36,6 +51,8 @@ struct MonitorFile {
   MonitorOptions options = {};       ///< sample_rate_hz is 0 where the file leaves it to the recording
   std::filesystem::path modes = {};  ///< process.modes; empty: none
   std::filesystem::path lobes = {};  ///< process.lobes; empty: none
+  double timeout_s = 1.0;            ///< without samples for so long, the state is blind; > 0
+  ActSettings act = {};
   MqttSettings mqtt = {};
   int metrics_port = -1;  ///< -1: none; 0: any that is free
   std::string metrics_host = "127.0.0.1";
