@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
-#include "robomill/monitor/comb_cusum/comb_cusum.hpp"
+#include "robomill/monitor/combined_detector.hpp"
 #include "robomill/monitor/detector.hpp"
 #include "robomill/monitor/published/entropy_detector.hpp"
 #include "robomill/monitor/signal_validation.hpp"
@@ -21,7 +21,7 @@ void require_between(const char* field, double number, double low, double high, 
 
 std::unique_ptr<Detector> make_detector(const MonitorOptions& options) {
   if (options.kind == Kind::energy_entropy) return std::make_unique<EntropyDetector>(options);
-  return std::make_unique<CombCusum>(options);
+  return std::make_unique<CombinedDetector>(options);
 }
 
 }  // namespace

@@ -1,0 +1,93 @@
+#include "robomill/monitor/combined_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "robomill/base/units.hpp"
+
+namespace robomill::monitor {
+namespace {
+
+constexpr double drift_hz = 3.0;       // corner of the high-pass
+constexpr double bears_out = 0.03;     // of the synchronous energy, in lines beside the orders
+constexpr double leaving_swing = 3.0;  // of the synchronous energy in 0.3 s, by itself
+
+}  // namespace
+
+CombinedDetector::CombinedDetector(const MonitorOptions& options)
+    : options_(options),
+      growth_(options),
+      orders_({.sample_rate_hz = options.sample_rate_hz,
+               .hop_s = options.hop_s,
+               .channels = static_cast<std::size_t>(options.channels),
+               .teeth = options.teeth,
+               .speed_std_ratio = options.speed_std_ratio}),
+      samples_(static_cast<std::size_t>(options.channels) * options.hop_samples()),
+      mean_(static_cast<std::size_t>(options.channels)) {
+  orders_.set_hint(options.spindle_speed_rad_per_s / units::revolution);
+}
+
+void CombinedDetector::set_spindle_speed(double rad_per_s) noexcept {
+  growth_.set_spindle_speed(rad_per_s);
+  orders_.set_hint(rad_per_s / units::revolution);
+}
+
+void CombinedDetector::reset() noexcept {
+  growth_.reset();
+  orders_.reset();
+  std::ranges::fill(mean_, 0.0);
+  first_ = true;
+  accepted_ = false;
+}
+
+void CombinedDetector::high_pass(const Hop& hop) noexcept {
+  const double share = 1.0 - std::exp(-units::revolution * drift_hz / options_.sample_rate_hz);
+  for (std::size_t c = 0; c < mean_.size(); ++c) {
+    const auto from = hop.channel(c);
+    if (first_) {
+      for (const double x : from) mean_[c] += x / static_cast<double>(hop.frames);
+    }
+    for (std::size_t i = 0; i < hop.frames; ++i) {
+      mean_[c] += share * (from[i] - mean_[c]);
+      samples_[c * hop.frames + i] = static_cast<float>(from[i] - mean_[c]);
+    }
+  }
+  first_ = false;
+}
+
+void CombinedDetector::decide(const Hop& hop, Decision& decision) noexcept {
+  growth_.decide(hop, decision);
+  high_pass(hop);
+  std::uint64_t left_out = hop.bad_channels;
+  if (options_.tachometer_channel >= 0) left_out |= std::uint64_t{1} << options_.tachometer_channel;
+  judge(orders_.step(samples_, hop.frames, left_out), decision);
+}
+
+void CombinedDetector::judge(const RatioTest::Verdict& orders, Decision& decision) noexcept {
+  if (orders.rotation_hz > 0.0) {
+    decision.spindle_speed_rad_per_s = units::revolution * orders.rotation_hz;
+    decision.spindle_speed_std_rad_per_s = decision.spindle_speed_rad_per_s * orders.rotation_std_ratio;
+    if (orders.known) decision.faults &= ~static_cast<std::uint32_t>(speed_unknown);
+  }
+  const bool grew = decision.state == State::chatter;
+  const bool borne_out = (!orders.known || orders.ratio > bears_out) && orders.swing < leaving_swing;
+  accepted_ = grew && (accepted_ || borne_out);
+  if (orders.chatter) {
+    decision.state = State::chatter;
+    decision.chatter_frequency_hz = orders.frequency_hz;
+    decision.chatter_frequency_std_hz = orders.frequency_std_hz;
+    decision.channel = static_cast<int>(orders.channel);
+    decision.synchronous = orders.synchronous;
+  } else if (grew && !accepted_) {
+    decision.state = State::transition;
+  } else if (decision.state == State::stable && orders.pending) {
+    decision.state = State::transition;
+    decision.chatter_frequency_hz = orders.frequency_hz;
+    decision.chatter_frequency_std_hz = orders.frequency_std_hz;
+  }
+  // The score is that of CombCusum: what the orders say holds it on its side of the threshold.
+  decision.score = decision.state == State::chatter ? std::max(decision.score, 1.001 * decision.threshold)
+                                                    : std::min(decision.score, decision.threshold);
+}
+
+}  // namespace robomill::monitor

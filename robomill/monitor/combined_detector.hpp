@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "robomill/monitor/comb_cusum/comb_cusum.hpp"
+#include "robomill/monitor/detector.hpp"
+#include "robomill/monitor/orders/ratio_test.hpp"
+
+namespace robomill::monitor {
+
+/// The default detector: RatioTest, which needs no history, beside CombCusum, which finds slow growth and the chatter of
+/// a tool that hardly has a comb. An alarm of CombCusum counts where the orders bear it out: where the speed is not
+/// known, or lines beside the orders hold a thirtieth of the synchronous energy, and where that energy does not swing as
+/// it does when the tool leaves the cut. Method: README.md.
+class CombinedDetector final : public Detector {
+ public:
+  explicit CombinedDetector(const MonitorOptions& options);
+  void decide(const Hop& hop, Decision& decision) noexcept override;
+  void set_spindle_speed(double rad_per_s) noexcept override;
+  void reset() noexcept override;
+
+ private:
+  void high_pass(const Hop& hop) noexcept;
+  void judge(const RatioTest::Verdict& orders, Decision& decision) noexcept;
+
+  MonitorOptions options_;
+  CombCusum growth_;
+  RatioTest orders_;
+  std::vector<float> samples_;  // of the hop, channel after channel
+  std::vector<double> mean_;    // of each channel, slow
+  bool first_ = true;
+  bool accepted_ = false;  // the alarm of CombCusum
+};
+
+}  // namespace robomill::monitor

@@ -1,0 +1,63 @@
+#include "robomill/monitor/orders/growth_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace robomill::monitor {
+namespace {
+
+constexpr std::size_t width = 5;             // cells that a line's energy is summed over
+constexpr double growth = 10.0;              // of the energy
+constexpr double suspect_growth = 3.0;
+constexpr double least_share = 0.05;         // of the synchronous energy: what is smaller marks no part
+constexpr double first_s = 0.4;              // that are learnt before anything is judged
+constexpr double memory_s = 1.0, suspect_memory_s = 5.0;
+
+}  // namespace
+
+GrowthTest::GrowthTest(double highest_hz, double hop_s)
+    : hop_s_(hop_s), cells_(static_cast<std::size_t>(highest_hz / cell_hz) + width), usual_(cells_.size()) {}
+
+std::span<double> GrowthTest::begin() noexcept {
+  std::ranges::fill(cells_, 0.0);
+  return cells_;
+}
+
+GrowthTest::Verdict GrowthTest::step(double synchronous) noexcept {
+  Verdict out;
+  synchronous_ = synchronous;
+  suspect_ = false;
+  if (static_cast<double>(learnt_) * hop_s_ < first_s) return out;
+  const double cut = std::max(1.0, synchronous / usual_synchronous_);
+  std::size_t from = 0;
+  for (std::size_t i = 0; i + width <= cells_.size(); ++i) {
+    double now = 0.0;
+    double before = 0.0;
+    for (std::size_t j = i; j < i + width; ++j) {
+      now += cells_[j];
+      before += usual_[j];
+    }
+    if (now < least_share * synchronous || now < suspect_growth * cut * before) continue;
+    suspect_ = true;
+    if (now > growth * cut * before && now > out.energy) {
+      out.energy = now;
+      from = i;
+    }
+  }
+  if (out.energy > 0.0) {
+    const auto first = cells_.begin() + static_cast<std::ptrdiff_t>(from);
+    const auto most = std::max_element(first, first + width);
+    out.frequency_hz = (static_cast<double>(most - cells_.begin()) + 0.5) * cell_hz;
+  }
+  return out;
+}
+
+void GrowthTest::learn() noexcept {
+  const double memory = suspect_ ? suspect_memory_s : memory_s;
+  const double share = std::max(hop_s_ / memory, suspect_ ? 0.0 : 1.0 / static_cast<double>(learnt_ + 1));
+  for (std::size_t i = 0; i < cells_.size(); ++i) usual_[i] += share * (cells_[i] - usual_[i]);
+  usual_synchronous_ += share * (synchronous_ - usual_synchronous_);
+  ++learnt_;
+}
+
+}  // namespace robomill::monitor

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace robomill::monitor {
+
+/// Tests a cut against its own past: whether the energy of a line that is no multiple of the teeth has grown by 10 dB
+/// while that of the multiples has not. Energies are taken in cells of 10 Hz and summed over five of them, so that a line
+/// may drift; the past is their mean with a memory of 1 s, of 5 s while something has grown by 5 dB.
+class GrowthTest {
+ public:
+  static constexpr double cell_hz = 10.0;
+
+  struct Verdict {
+    double energy = 0.0;        ///< of the strongest line that has grown by 10 dB; 0: none
+    double frequency_hz = 0.0;  ///< of its cell
+  };
+  GrowthTest(double highest_hz, double hop_s);
+  /// Where the energies of a hop go: cells of cell_hz from 0 on, all 0.
+  [[nodiscard]] std::span<double> begin() noexcept;
+  /// @param synchronous  energy of the multiples of rotation
+  [[nodiscard]] Verdict step(double synchronous) noexcept;
+  /// After step(): the hop belongs to a stable cut.
+  void learn() noexcept;
+  void forget() noexcept { learnt_ = 0; }
+
+ private:
+  double hop_s_;
+  std::vector<double> cells_, usual_;
+  double synchronous_ = 0.0, usual_synchronous_ = 0.0;
+  std::size_t learnt_ = 0;  // hops
+  bool suspect_ = false;
+};
+
+}  // namespace robomill::monitor

@@ -1,0 +1,141 @@
+#include "robomill/monitor/orders/spectra.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+namespace robomill::monitor {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double enough_hz = 10240.0;      // of the sample rate
+constexpr std::size_t taps_a_factor = 24;  // of the low-pass, for each sample left out
+constexpr double passed = 0.85;            // of half the reduced rate
+
+std::vector<float> low_pass(std::size_t factor) {
+  // A windowed sinc (Hann) whose half is at the reduced Nyquist frequency's 0.925th part.
+  const std::size_t taps = taps_a_factor * factor + 1;
+  const double cut = 0.5 * (1.0 + passed) / (2.0 * static_cast<double>(factor));  // of the sample rate
+  std::vector<double> h(taps);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < taps; ++i) {
+    const double t = static_cast<double>(i) - 0.5 * static_cast<double>(taps - 1);
+    const double sinc = t == 0.0 ? 2.0 * cut : std::sin(2.0 * pi * cut * t) / (pi * t);
+    h[i] = sinc * (0.5 + 0.5 * std::cos(2.0 * pi * t / static_cast<double>(taps + 1)));
+    sum += h[i];
+  }
+  std::vector<float> out(taps);
+  std::ranges::transform(h, out.begin(), [&](double tap) { return static_cast<float>(tap / sum); });
+  return out;
+}
+
+}  // namespace
+
+double hann_kernel(double u) noexcept {
+  if (std::abs(u) < 1e-8) return 1.0;
+  if (std::abs(std::abs(u) - 1.0) < 1e-8) return 0.5;
+  return std::sin(pi * u) / (pi * u * (1.0 - u * u));
+}
+
+Spectra::Spectra(double sample_rate_hz, std::size_t channels)
+    : channels_(channels), factor_(std::max<std::size_t>(1, static_cast<std::size_t>(sample_rate_hz / enough_hz))) {
+  rate_hz_ = sample_rate_hz / static_cast<double>(factor_);
+  if (factor_ > 1) {
+    low_pass_ = low_pass(factor_);
+    passed_ = passed;
+  }
+  past_.resize(2 * low_pass_.size() * channels);
+  for (const double seconds : windows_s) {
+    const std::size_t length = static_cast<std::size_t>(seconds * rate_hz_) / 2 * 2 + 1;
+    const std::size_t padded = std::bit_ceil(2 * length);
+    Window& window =
+        windows_.emplace_back(Window{length, padded, kissfft<float>(padded / 2, false), std::vector<float>(length), {}});
+    double sum = 0.0;
+    for (std::size_t i = 0; i < length; ++i) {
+      const double w = 0.5 - 0.5 * std::cos(2.0 * pi * static_cast<double>(i + 1) / static_cast<double>(length + 1));
+      window.shape[i] = static_cast<float>(w);
+      sum += w;
+    }
+    for (float& w : window.shape) w *= static_cast<float>(2.0 / sum);
+    window.spectra.resize(channels);
+    for (Spectrum& spectrum : window.spectra) {
+      spectrum.seconds = static_cast<double>(length + 1) / rate_hz_;
+      spectrum.step_hz = rate_hz_ / static_cast<double>(padded);
+      spectrum.line.resize(padded / 2);
+    }
+  }
+  size_ = windows_.front().length;
+  ring_.resize(2 * size_ * channels);
+  in_.resize(windows_.front().padded);
+}
+
+void Spectra::reset() noexcept {
+  std::ranges::fill(past_, 0.0F);
+  std::ranges::fill(ring_, 0.0F);
+  at_ = past_at_ = phase_ = pushed_ = 0;
+}
+
+void Spectra::push(std::span<const float> samples, std::size_t frames) noexcept {
+  const std::size_t taps = low_pass_.size();
+  for (std::size_t i = 0; i < frames; ++i) {
+    if (taps > 0) {
+      for (std::size_t c = 0; c < channels_; ++c) {
+        float* past = past_.data() + 2 * c * taps;
+        past[past_at_] = past[past_at_ + taps] = samples[c * frames + i];
+      }
+      past_at_ = past_at_ + 1 == taps ? 0 : past_at_ + 1;
+      phase_ = phase_ + 1 == factor_ ? 0 : phase_ + 1;
+      if (phase_ != 0) continue;
+    }
+    for (std::size_t c = 0; c < channels_; ++c) {
+      float x = 0.0F;
+      if (taps > 0) {
+        const float* past = past_.data() + 2 * c * taps + past_at_;
+        for (std::size_t j = 0; j < taps; ++j) x += low_pass_[j] * past[j];
+      } else {
+        x = samples[c * frames + i];
+      }
+      float* ring = ring_.data() + 2 * c * size_;
+      ring[at_] = ring[at_ + size_] = x;
+    }
+    at_ = at_ + 1 == size_ ? 0 : at_ + 1;
+    ++pushed_;
+  }
+}
+
+void Spectra::course(std::size_t channel, double frequency_hz, std::span<double> blocks) const noexcept {
+  const std::size_t length = windows_.back().length;
+  const float* last = ring_.data() + 2 * channel * size_ + at_ + size_ - length;
+  const std::size_t each = length / blocks.size();
+  const double c = 2.0 * std::cos(2.0 * pi * frequency_hz / rate_hz_);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    // Goertzel's recursion.
+    double s1 = 0.0;
+    double s2 = 0.0;
+    for (std::size_t i = b * each; i < (b + 1) * each; ++i) {
+      const double s = static_cast<double>(last[i]) + c * s1 - s2;
+      s2 = s1;
+      s1 = s;
+    }
+    const double scale = 2.0 / static_cast<double>(each);
+    blocks[b] = scale * scale * std::max(0.0, s1 * s1 + s2 * s2 - c * s1 * s2);
+  }
+}
+
+void Spectra::transform() noexcept {
+  for (Window& window : windows_) {
+    const std::size_t half = window.length / 2;
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const float* last = ring_.data() + 2 * c * size_ + at_ + size_ - window.length;
+      // The middle stands at 0, so that the phases are its own.
+      std::fill_n(in_.begin(), window.padded, 0.0F);
+      for (std::size_t i = 0; i <= half; ++i) in_[i] = window.shape[half + i] * last[half + i];
+      for (std::size_t i = 0; i < half; ++i) in_[window.padded - half + i] = window.shape[i] * last[i];
+      window.fft.transform_real(in_.data(), window.spectra[c].line.data());
+      window.spectra[c].line[0] = {};
+    }
+  }
+}
+
+}  // namespace robomill::monitor

@@ -1,0 +1,76 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <kissfft.hh>
+#include <span>
+#include <vector>
+
+namespace robomill::monitor {
+
+/// What a sine of amplitude 1 shows at a distance u = (ν - ν₀) T under the Hann window of length T:
+///   h(u) = sin(πu)/(πu (1 - u²)),   h(0) = 1, h(±1) = 1/2, ∫ h² du = 3/2.   [Harris1978]
+[[nodiscard]] double hann_kernel(double u) noexcept;
+
+/// One spectrum under a Hann window: X(ν) = 2/Σw Σ w_j x_j exp(-2πiν(t_j - t_m)), t_m the window's middle. A sine of
+/// amplitude A at ν shows |X(ν)| = A; X of a sine that grows, or drifts in frequency, keeps the phase of the middle.
+struct Spectrum {
+  double seconds = 0.0;  ///< T
+  double step_hz = 0.0;  ///< between lines, at most 1/(2T)
+  std::vector<std::complex<float>> line;
+
+  /// Of a line's |X|², so that they sum up to Σ A²: T Δν/∫h².
+  [[nodiscard]] double energy_share() const noexcept { return seconds * step_hz / 1.5; }
+  /// Where a peak at line k stands between its neighbours, by the parabola through their powers.
+  [[nodiscard]] double peak_hz(std::size_t k, double before, double here, double after) const noexcept {
+    const double bend = before - 2.0 * here + after;
+    const double off = bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
+    return (static_cast<double>(k) + off) * step_hz;
+  }
+};
+
+/// The spectra of the last 0.3 s and 0.15 s of several channels. A sample rate above 20 kHz is reduced by a whole number,
+/// to 10 kHz and more, behind a low-pass. Nothing is allocated after construction.
+class Spectra {
+ public:
+  static constexpr std::array<double, 2> windows_s = {0.3, 0.15};
+
+  Spectra(double sample_rate_hz, std::size_t channels);
+  /// @param samples  all channels, channel after channel, `frames` each
+  void push(std::span<const float> samples, std::size_t frames) noexcept;
+  /// Fills the spectra.
+  void transform() noexcept;
+  [[nodiscard]] const Spectrum& spectrum(std::size_t window, std::size_t channel) const noexcept {
+    return windows_[window].spectra[channel];
+  }
+  /// How the amplitude at a frequency went: |X(ν)|² of a channel in consecutive blocks of the short window, oldest first.
+  void course(std::size_t channel, double frequency_hz, std::span<double> blocks) const noexcept;
+  /// The highest frequency that the spectra show undiminished [Hz].
+  [[nodiscard]] double highest_hz() const noexcept { return 0.5 * passed_ * rate_hz_; }
+  /// Seconds pushed since construction or reset().
+  [[nodiscard]] double past_s() const noexcept { return static_cast<double>(pushed_) / rate_hz_; }
+  void reset() noexcept;
+
+ private:
+  struct Window {
+    std::size_t length;   // odd
+    std::size_t padded;   // of the transform, a power of two >= 2 length
+    kissfft<float> fft;   // of half the length: a real signal
+    std::vector<float> shape;
+    std::vector<Spectrum> spectra;  // of each channel
+  };
+
+  double rate_hz_;
+  double passed_ = 1.0;  // share of half the rate that the low-pass lets through
+  std::size_t channels_, factor_ = 1, size_ = 0;
+  std::vector<float> low_pass_;           // taps; empty: none
+  std::vector<float> past_;               // of each channel, as long as the taps, twice
+  std::vector<float> ring_;               // of each channel, `size_`, twice
+  std::size_t at_ = 0, past_at_ = 0, phase_ = 0;
+  std::size_t pushed_ = 0;
+  std::vector<float> in_;
+  std::vector<Window> windows_;
+};
+
+}  // namespace robomill::monitor

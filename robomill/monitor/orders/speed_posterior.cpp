@@ -1,0 +1,163 @@
+#include "robomill/monitor/orders/speed_posterior.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace robomill::monitor {
+namespace {
+
+constexpr double drift_ratio = 8e-4;    // of a Cauchy distribution, a hop
+constexpr std::size_t drift_reach = 30;  // steps
+constexpr std::size_t near_reach = 6;    // steps
+constexpr double held_reach = 4.0;       // steps
+constexpr double anew = 1e-3;            // a hop, to be drawn from the prior
+constexpr double known_within = 0.004;
+constexpr double unexplained = 0.02;     // share of the energy that a comb never explains
+constexpr double offset_guard = 2.5;     // 1/T, from 0
+constexpr double most_lines = 20.0;      // M
+constexpr int low_of_teeth = 6, low_of_rotation = 5, low_of_unknown_teeth = 12;
+constexpr double peaked = 0.53;          // ∫h⁴/(∫h²)²
+
+}  // namespace
+
+SpeedPosterior::SpeedPosterior(const Setup& setup)
+    : setup_(setup), prior_(size), belief_(size), spread_(size), drift_(drift_reach + 1), evidence_(size), shares_(size) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < drift_.size(); ++i) {
+    const double x = static_cast<double>(i) * step / drift_ratio;
+    drift_[i] = 1.0 / (1.0 + x * x);
+    sum += (i == 0 ? 1.0 : 2.0) * drift_[i];
+  }
+  for (double& p : drift_) p /= sum;
+  sum = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double x = (static_cast<double>(i) - static_cast<double>(side)) * step / setup.std_ratio;
+    prior_[i] = 1.0 / (1.0 + x * x);
+    sum += prior_[i];
+  }
+  for (double& p : prior_) p /= sum;
+  reset();
+}
+
+void SpeedPosterior::set_hint(double rotation_hz) noexcept {
+  if (rotation_hz == hint_hz_) return;
+  const double shift = hint_hz_ > 0.0 && rotation_hz > 0.0 ? std::log(rotation_hz / hint_hz_) / step : 1e9;
+  hint_hz_ = rotation_hz;
+  if (std::abs(shift) > static_cast<double>(side)) {
+    reset();
+    return;
+  }
+  // The candidates move with the hint, the speeds that were believed in do not.
+  const auto by = static_cast<std::ptrdiff_t>(std::lround(shift));
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(i) + by;
+    const bool within = from >= 0 && from < static_cast<std::ptrdiff_t>(size);
+    spread_[i] = within ? belief_[static_cast<std::size_t>(from)] : anew * prior_[i];
+  }
+  belief_.swap(spread_);
+  held_place_ = -1.0;
+}
+
+void SpeedPosterior::reset() noexcept {
+  rotation_hz_ = hint_hz_;
+  std_ratio_ = setup_.std_ratio;
+  share_ = known_ = lines_ = 0.0;
+  held_place_ = -1.0;
+  belief_ = prior_;
+  std::ranges::fill(evidence_, 0.0);
+}
+
+double SpeedPosterior::candidate_hz(double place) const noexcept {
+  return hint_hz_ * std::exp((place - static_cast<double>(side)) * step);
+}
+
+void SpeedPosterior::predict(Motion motion) noexcept {
+  if (motion != Motion::held) held_place_ = -1.0;
+  else if (held_place_ < 0.0) held_place_ = static_cast<double>(std::ranges::max_element(belief_) - belief_.begin());
+  const double fresh = motion == Motion::free ? anew : 0.0;
+  const std::size_t reach_steps = motion == Motion::free ? drift_reach : near_reach;
+  for (std::size_t i = 0; i < size; ++i) {
+    double sum = drift_[0] * belief_[i];
+    for (std::size_t j = 1; j <= reach_steps; ++j) {
+      if (i >= j) sum += drift_[j] * belief_[i - j];
+      if (i + j < size) sum += drift_[j] * belief_[i + j];
+    }
+    const bool out = held_place_ >= 0.0 && std::abs(static_cast<double>(i) - held_place_) > held_reach;
+    spread_[i] = out ? 1e-30 : (1.0 - fresh) * sum + fresh * prior_[i];
+  }
+  belief_.swap(spread_);
+  std::ranges::fill(evidence_, 0.0);
+}
+
+void SpeedPosterior::observe(std::span<const float> power, const Spectrum& like) noexcept {
+  if (hint_hz_ <= 0.0) return;
+  const auto last = std::min(power.size() - 2, static_cast<std::size_t>(setup_.highest_hz / like.step_hz));
+  const auto first = static_cast<std::size_t>(offset_guard / (like.seconds * like.step_hz)) + 1;
+  double sum = 0.0;
+  double squares = 1e-300;
+  for (std::size_t i = first; i <= last; ++i) {
+    const auto p = static_cast<double>(power[i]);
+    sum += p;
+    squares += p * p;
+  }
+  if (sum <= 0.0) return;
+  const double bin = like.seconds * like.step_hz;
+  const double lines = std::clamp(sum * sum / squares * bin * peaked - 1.0, 0.0, most_lines);
+  const int teeth = std::max(1, setup_.teeth);
+  const int low_orders = setup_.teeth > 0 ? low_of_teeth * teeth : low_of_unknown_teeth;
+  lines_ = lines;
+  const double whole = sum * like.energy_share();
+  const double weight = 2.0 * setup_.hop_s / like.seconds;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double rotation_hz = candidate_hz(static_cast<double>(i));
+    const double order_step = rotation_hz / like.step_hz;
+    float held = 0.0F;
+    float low = 0.0F;
+    int order = 1;
+    for (double at = order_step; at < static_cast<double>(last); at += order_step, ++order) {
+      const auto k = static_cast<std::size_t>(at);
+      const auto part = static_cast<float>(at - static_cast<double>(k));
+      const float here = power[k] + part * (power[k + 1] - power[k]);
+      held += here;
+      if (order <= low_orders && (order % teeth == 0 || order <= low_of_rotation)) low += here;
+    }
+    const double chance = std::min(0.9, 1.5 / (rotation_hz * like.seconds));
+    const double share = std::min(1.0, (static_cast<double>(held) / whole - chance) / (1.0 - chance));
+    shares_[i] = static_cast<float>(share);
+    const double alone = std::min(1.0, static_cast<double>(low) / whole);
+    evidence_[i] -= weight * (lines + alone) * std::log(1.0 + unexplained - std::max(0.0, share));
+  }
+}
+
+void SpeedPosterior::conclude() noexcept {
+  if (hint_hz_ <= 0.0) return;
+  const double most = *std::ranges::max_element(evidence_);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
+    belief_[i] *= std::exp(evidence_[i] - most);
+    sum += belief_[i];
+  }
+  for (double& p : belief_) p /= sum;
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(belief_) - belief_.begin());
+  double off = 0.0;
+  if (best > 0 && best + 1 < size) {
+    const double before = std::log(belief_[best - 1] + 1e-300);
+    const double after = std::log(belief_[best + 1] + 1e-300);
+    const double bend = before - 2.0 * std::log(belief_[best]) + after;
+    if (bend < 0.0) off = std::clamp(0.5 * (before - after) / bend, -0.5, 0.5);
+  }
+  const double place = static_cast<double>(best) + off;
+  rotation_hz_ = candidate_hz(place);
+  double variance = 0.0;
+  known_ = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double d = (static_cast<double>(i) - place) * step;
+    variance += belief_[i] * d * d;
+    if (std::abs(d) < known_within) known_ += belief_[i];
+  }
+  std_ratio_ = std::sqrt(variance);
+  share_ = static_cast<double>(shares_[best]);
+}
+
+}  // namespace robomill::monitor

@@ -1,0 +1,72 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "robomill/monitor/orders/spectra.hpp"
+
+namespace robomill::monitor {
+
+/// The spindle's speed as a distribution over g = ln f, carried from hop to hop.
+///
+/// A window of length T with power |X(ν)|², summed over the channels, speaks for f by the share of its energy that the
+/// multiples k f hold, less what a comb holds by chance, c = 3/(2 f T):
+///   s(f) = (Σ_k |X(k f)|²/Σ A² - c)/(1 - c),   ln L(f) = -w M ln(1 - max(0, s) + 0.02).
+/// M = (ΣA²)²/ΣA⁴ is about how many lines the window holds: one line alone, such as chatter's, says nothing about the speed.
+/// w is the hop over T, since windows overlap. Between hops the speed may drift, by a Cauchy distribution of 0.2 % a hop,
+/// and with a probability of 1e-3 it is drawn anew from the prior: a Cauchy distribution about the hint.
+///
+/// Nothing is allocated after construction.
+class SpeedPosterior {
+ public:
+  static constexpr double reach = 0.15;  ///< of the hint, to each side
+
+  struct Setup {
+    double hop_s = 0.025;
+    double highest_hz = 5120.0;  ///< of the orders that are looked at
+    double std_ratio = 0.015;    ///< width of the prior
+    int teeth = 0;               ///< 0: unknown
+  };
+  explicit SpeedPosterior(const Setup& setup);
+  /// What is given as the speed [Hz]; 0: unknown. Within 15 % of the hint before it, what is believed of the speed stays.
+  void set_hint(double rotation_hz) noexcept;
+  /// Begins anew about the hint.
+  void reset() noexcept;
+  [[nodiscard]] double hint_hz() const noexcept { return hint_hz_; }
+
+  /// How the speed may change in a hop.
+  enum class Motion {
+    free,  ///< it drifts, and may be drawn anew
+    near,  ///< it drifts: what it is now still explains as much of the signal as before
+    held   ///< by no more than 0.3 % from where it was held first: while chatter is on, whose lines would draw it away
+  };
+  /// A hop passes.
+  void predict(Motion motion) noexcept;
+  /// What a window says.
+  /// @param power  |X|², of all channels, line by line;  @param like  one of their spectra: T and Δν
+  void observe(std::span<const float> power, const Spectrum& like) noexcept;
+  /// After the windows of a hop: fills what follows.
+  void conclude() noexcept;
+
+  [[nodiscard]] double rotation_hz() const noexcept { return rotation_hz_; }  ///< the most likely; 0: no hint
+  [[nodiscard]] double std_ratio() const noexcept { return std_ratio_; }      ///< spread about it, of f
+  [[nodiscard]] double known() const noexcept { return known_; }  ///< probability that f is within 0.4 % of it
+  [[nodiscard]] double lines() const noexcept { return lines_; }              ///< M - 1, in the window observed last
+  [[nodiscard]] double share() const noexcept { return share_; }              ///< s at it, in the window observed last
+
+ private:
+  static constexpr double step = 8e-4;
+  static constexpr std::size_t side = static_cast<std::size_t>(reach / step);
+  static constexpr std::size_t size = 2 * side + 1;
+
+  [[nodiscard]] double candidate_hz(double place) const noexcept;
+
+  Setup setup_;
+  double hint_hz_ = 0.0, rotation_hz_ = 0.0, std_ratio_ = 0.0, share_ = 0.0, known_ = 0.0;
+  double lines_ = 0.0;
+  double held_place_ = -1.0;  // < 0: not held
+  std::vector<double> prior_, belief_, spread_, drift_, evidence_;
+  std::vector<float> shares_;
+};
+
+}  // namespace robomill::monitor
