@@ -10,6 +10,8 @@ namespace {
 
 constexpr double drift_hz = 3.0;       // corner of the high-pass
 constexpr double bears_out = 0.03;     // of the synchronous energy, in lines beside the orders
+constexpr double faint = 0.01;         // of the loudest energy
+constexpr double forgets_s = 10.0;
 constexpr double leaving_swing = 3.0;  // of the synchronous energy in 0.3 s, by itself
 
 }  // namespace
@@ -24,12 +26,13 @@ CombinedDetector::CombinedDetector(const MonitorOptions& options)
                .speed_std_ratio = options.speed_std_ratio}),
       samples_(static_cast<std::size_t>(options.channels) * options.hop_samples()),
       mean_(static_cast<std::size_t>(options.channels)) {
-  orders_.set_hint(options.spindle_speed_rad_per_s / units::revolution);
+  set_spindle_speed(options.spindle_speed_rad_per_s);
 }
 
 void CombinedDetector::set_spindle_speed(double rad_per_s) noexcept {
   growth_.set_spindle_speed(rad_per_s);
-  orders_.set_hint(rad_per_s / units::revolution);
+  hint_hz_ = rad_per_s / units::revolution;
+  orders_.set_hint(hint_hz_);
 }
 
 void CombinedDetector::reset() noexcept {
@@ -38,6 +41,7 @@ void CombinedDetector::reset() noexcept {
   std::ranges::fill(mean_, 0.0);
   first_ = true;
   accepted_ = false;
+  loudest_ = 0.0;
 }
 
 void CombinedDetector::high_pass(const Hop& hop) noexcept {
@@ -60,6 +64,7 @@ void CombinedDetector::decide(const Hop& hop, Decision& decision) noexcept {
   high_pass(hop);
   std::uint64_t left_out = hop.bad_channels;
   if (options_.tachometer_channel >= 0) left_out |= std::uint64_t{1} << options_.tachometer_channel;
+  if (hint_hz_ == 0.0 && growth_.rotation_hz() > 0.0) orders_.set_hint(growth_.rotation_hz());
   judge(orders_.step(samples_, hop.frames, left_out), decision);
 }
 
@@ -70,7 +75,11 @@ void CombinedDetector::judge(const RatioTest::Verdict& orders, Decision& decisio
     if (orders.known) decision.faults &= ~static_cast<std::uint32_t>(speed_unknown);
   }
   const bool grew = decision.state == State::chatter;
-  const bool borne_out = (!orders.known || orders.ratio > bears_out) && orders.swing < leaving_swing;
+  loudest_ = std::max(orders.energy, loudest_ * (1.0 - options_.hop_s / forgets_s));
+  const bool borne_out =
+      (orders.known     ? orders.ratio > bears_out
+       : hint_hz_ == 0.0 ? false
+                         : orders.energy > faint * loudest_) && orders.swing < leaving_swing;
   accepted_ = grew && (accepted_ || borne_out);
   if (orders.chatter) {
     decision.state = State::chatter;

@@ -22,7 +22,7 @@ constexpr double least_anchor = 0.1;   // of the whole, in S: less does not hold
 constexpr double lost_s = 1.0;         // after which a lone line counts again
 constexpr double forgets_s = 10.0;
 constexpr double faint = 0.01;         // of loudest_
-constexpr double steady_ratio = 0.004; // of the speed, in 0.3 s
+constexpr double steady_ratio = 0.008; // of the speed, in 0.3 s
 constexpr double growth_of_swing = 0.5;
 constexpr double alone_share = 0.6;
 constexpr double line_moves = 0.04;    // of a frequency between the windows
@@ -124,7 +124,7 @@ RatioTest::Peak RatioTest::strongest(const Spectrum& like, double low_hz, double
   for (std::size_t i = std::max(first, at - std::min(at, beside)); i < std::min(end, at + beside + 1); ++i) {
     line += static_cast<double>(power_[i]);
   }
-  return {like.peak_hz(at, power_[at - 1], power_[at], power_[at + 1]), line / whole};
+  return {like.peak_hz(at, power_[at - 1], power_[at], power_[at + 1]), line / whole, whole * like.energy_share()};
 }
 
 void RatioTest::follow_cut() noexcept {
@@ -201,6 +201,9 @@ RatioTest::Finding RatioTest::find(std::uint64_t bad_channels) noexcept {
   } else {
     lines_.back().share_out(GrowthTest::cell_hz, growth_.begin());
   }
+  const auto [slowest, fastest] = std::ranges::minmax_element(rotation_);
+  const bool steady = *fastest - *slowest < steady_ratio * *fastest;
+  if (!steady && !chatter_) growth_.forget();
   const GrowthTest::Verdict grown = cut_ > 0.0 ? growth_.step(found_.back().synchronous) : GrowthTest::Verdict{};
   if (cut_ > 0.0 && !chatter_) growth_.learn();
   if (stands_alone()) {
@@ -208,14 +211,12 @@ RatioTest::Finding RatioTest::find(std::uint64_t bad_channels) noexcept {
     out.frequency_hz = peak_.back().frequency_hz;
   }
   if (grown.energy > 0.0) {
-    const auto [slowest, fastest] = std::ranges::minmax_element(rotation_);
-    const bool steady = *fastest - *slowest < steady_ratio * *fastest;
-    out.growth = chatter_ || (steady && grown.energy > growth_of_swing * swing());
+    out.growth = chatter_ || grown.energy > growth_of_swing * swing();
     out.frequency_hz = strongest(spectra_.spectrum(windows - 1, 0), grown.frequency_hz - 0.5 * GrowthTest::cell_hz,
                                  grown.frequency_hz + 0.5 * GrowthTest::cell_hz)
                            .frequency_hz;
   }
-  if (ratio_stands_out()) {
+  if ((steady || chatter_) && ratio_stands_out()) {
     out.ratio = true;
     out.frequency_hz = found_.back().frequency_hz;
   }
@@ -272,6 +273,7 @@ RatioTest::Verdict RatioTest::step(std::span<const float> samples, std::size_t f
               .pending = !chatter_ && found.any(),
               .ratio = near.family / (near.synchronous + 1e-300),
               .swing = swing() / (near.synchronous + 1e-300),
+              .energy = peak_.back().energy,
               .rotation_hz = speed_.rotation_hz(),
               .rotation_std_ratio = speed_.std_ratio(),
               .known = cut_ > 0.0};

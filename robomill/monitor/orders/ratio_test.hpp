@@ -46,6 +46,7 @@ class RatioTest {
     SynchronousChatter synchronous = SynchronousChatter::none;
     double ratio = 0.0;               ///< L/S of the last 0.15 s
     double swing = 0.0;               ///< of S in 0.3 s, to the last S
+    double energy = 0.0;              ///< of everything in the last 0.15 s
     double rotation_hz = 0.0;         ///< most likely; 0: no hint
     double rotation_std_ratio = 0.0;  ///< standard deviation, of it
     bool known = false;               ///< the tool cuts at a known speed
@@ -66,7 +67,8 @@ class RatioTest {
   /// The strongest line of a window, of whatever order.
   struct Peak {
     double frequency_hz = 0.0;
-    double share = 0.0;  ///< of the whole energy
+    double share = 0.0;   ///< of the whole energy between the limits that it was looked for in
+    double energy = 0.0;  ///< that whole
   };
   /// What stands out in a hop.
   struct Finding {

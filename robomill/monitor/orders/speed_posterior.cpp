@@ -13,6 +13,7 @@ constexpr std::size_t near_reach = 6;    // steps
 constexpr double held_reach = 4.0;       // steps
 constexpr double anew = 1e-3;            // a hop, to be drawn from the prior
 constexpr double known_within = 0.004;
+constexpr double mains_ratio = 0.01, highest_of_mains_hz = 190.0, hint_of_mains_ratio = 0.01;
 constexpr double unexplained = 0.02;     // share of the energy that a comb never explains
 constexpr double offset_guard = 2.5;     // 1/T, from 0
 constexpr double most_lines = 20.0;      // M
@@ -72,6 +73,15 @@ double SpeedPosterior::candidate_hz(double place) const noexcept {
   return hint_hz_ * std::exp((place - static_cast<double>(side)) * step);
 }
 
+// Hum has a comb of its own, which shows while the spindle idles.
+bool SpeedPosterior::of_the_mains(double rotation_hz) const noexcept {
+  const auto near = [](double hz, double mains_hz, double ratio) { return std::abs(hz - mains_hz) < ratio * mains_hz; };
+  for (const double mains_hz : {25.0, 30.0, 50.0, 60.0}) {
+    if (near(rotation_hz, mains_hz, mains_ratio)) return !near(hint_hz_, mains_hz, hint_of_mains_ratio);
+  }
+  return false;
+}
+
 void SpeedPosterior::predict(Motion motion) noexcept {
   if (motion != Motion::held) held_place_ = -1.0;
   else if (held_place_ < 0.0) held_place_ = static_cast<double>(std::ranges::max_element(belief_) - belief_.begin());
@@ -112,20 +122,28 @@ void SpeedPosterior::observe(std::span<const float> power, const Spectrum& like)
   for (std::size_t i = 0; i < size; ++i) {
     const double rotation_hz = candidate_hz(static_cast<double>(i));
     const double order_step = rotation_hz / like.step_hz;
+    // Beside hum only what stands above it speaks for a speed.
+    const bool hum = of_the_mains(rotation_hz);
     float held = 0.0F;
     float low = 0.0F;
+    float humming = 0.0F;
     int order = 1;
     for (double at = order_step; at < static_cast<double>(last); at += order_step, ++order) {
       const auto k = static_cast<std::size_t>(at);
       const auto part = static_cast<float>(at - static_cast<double>(k));
       const float here = power[k] + part * (power[k + 1] - power[k]);
+      if (hum && order * rotation_hz < highest_of_mains_hz) {
+        humming += here;
+        continue;
+      }
       held += here;
       if (order <= low_orders && (order % teeth == 0 || order <= low_of_rotation)) low += here;
     }
     const double chance = std::min(0.9, 1.5 / (rotation_hz * like.seconds));
-    const double share = std::min(1.0, (static_cast<double>(held) / whole - chance) / (1.0 - chance));
+    const double rest = std::max(1e-3 * whole, whole - static_cast<double>(humming));
+    const double share = std::min(1.0, (static_cast<double>(held) / rest - chance) / (1.0 - chance));
     shares_[i] = static_cast<float>(share);
-    const double alone = std::min(1.0, static_cast<double>(low) / whole);
+    const double alone = std::min(1.0, static_cast<double>(low) / rest);
     evidence_[i] -= weight * (lines + alone) * std::log(1.0 + unexplained - std::max(0.0, share));
   }
 }

@@ -60,6 +60,7 @@ class SpeedPosterior {
   static constexpr std::size_t size = 2 * side + 1;
 
   [[nodiscard]] double candidate_hz(double place) const noexcept;
+  [[nodiscard]] bool of_the_mains(double rotation_hz) const noexcept;
 
   Setup setup_;
   double hint_hz_ = 0.0, rotation_hz_ = 0.0, std_ratio_ = 0.0, share_ = 0.0, known_ = 0.0;
