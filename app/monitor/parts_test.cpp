@@ -53,6 +53,9 @@ TEST(Watch, ShowsTheSpectrumAsABar) {
   EXPECT_NE(line.find("683.6 Hz"), std::string::npos) << line;
   EXPECT_EQ(line.find("rpm"), std::string::npos) << line;
   EXPECT_NE(watch_line({}, 0.0).find("[]"), std::string::npos);
+  decision.state = monitor::State::blind;
+  decision.reason = monitor::BlindReason::no_signal;
+  EXPECT_NE(watch_line(decision, 0.0).find("blind (no-signal)"), std::string::npos);
 }
 
 }  // namespace parts_test

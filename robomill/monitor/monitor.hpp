@@ -43,6 +43,9 @@ enum class BlindReason {
   speed_unknown,  ///< no spindle speed was given, and none can be found: the detector's
   gap             ///< as no_signal, where most frames are NaN in every channel: samples that were lost on their way
 };
+/// Those that are one.
+inline constexpr BlindReason blind_reasons[] = {BlindReason::no_signal, BlindReason::clipped,
+                                                BlindReason::speed_unknown, BlindReason::gap};
 /// Chatter synchronous with the spindle, which a comb takes for a part of the cut. It is detected by the power of a
 /// multiple of rotation against what was learnt of it.
 enum class SynchronousChatter {
