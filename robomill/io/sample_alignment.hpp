@@ -8,8 +8,8 @@
 
 namespace robomill::io {
 
-/// Whether raw samples begin at the first byte of a sample. A pipe that lost a byte, and a wrong format, give numbers that
-/// no converter gives. Judged each 128 frames; all columns must agree, since a byte shifts them all.
+/// Whether raw samples begin at the first byte of a sample. A pipe that lost a byte, and a wrong format, give numbers
+/// that no converter gives. Judged each 128 frames; all columns must agree, since a byte shifts them all.
 ///
 /// float32: bytes of the mantissa stand where the exponent is, which then is about uniform over its 256 values. A third
 /// of the numbers is beyond 2^50 (1e15; no unit of vibration makes such), or, where the mantissa ends in zeros, most
@@ -19,9 +19,9 @@ namespace robomill::io {
 /// white and uniform over the full scale, rms 18,918 counts, or 256 times the true ones where these are small; read a
 /// byte later they are the true ones. Where the low byte is uniform, an aligned signal has at most
 /// (32768 / 18918)^2 = 3 times the variance that it has when read a byte later. Misaligned where it has more than 4
-/// times: true signals up to a fifth of full scale rms are found for sure, those beyond 0.29 of it are not. A column has
-/// no say where its low byte is constant (8-bit converters, constants), or where more than a quarter is at full scale
-/// (clipped: then the low byte is not uniform).
+/// times: true signals up to a fifth of full scale rms are found for sure, those beyond 0.29 of it are not. A column
+/// has no say where its low byte is constant (8-bit converters, constants), or where more than a quarter is at full
+/// scale (clipped: then the low byte is not uniform).
 class SampleAlignment {
  public:
   SampleAlignment(std::size_t columns, bool is_int16);

@@ -116,9 +116,9 @@ TEST(SampleAlignment, LeavesOddSignalsAlone) {
   };
   EXPECT_EQ(as_counts([&](std::size_t) { return 0.0; }), 0U);
   EXPECT_EQ(as_counts([&](std::size_t) { return 5000.0; }), 0U);
-  EXPECT_EQ(as_counts([&](std::size_t) { return std::round(random.normal()); }), 0U);              // a count of noise
-  EXPECT_EQ(as_counts([&](std::size_t) { return 20'000.0 * random.normal(); }), 0U);  // some at full scale
-  EXPECT_EQ(as_counts([&](std::size_t) { return 1e6 * random.normal(); }), 0U);                    // clipped to squares
+  EXPECT_EQ(as_counts([&](std::size_t) { return std::round(random.normal()); }), 0U);  // a count of noise
+  EXPECT_EQ(as_counts([&](std::size_t) { return 20'000.0 * random.normal(); }), 0U);   // some at full scale
+  EXPECT_EQ(as_counts([&](std::size_t) { return 1e6 * random.normal(); }), 0U);        // clipped to squares
   EXPECT_EQ(as_counts([&](std::size_t i) { return 32'700.0 * std::sin(0.1 * static_cast<double>(i)); }), 0U);
   EXPECT_EQ(as_counts([&](std::size_t) { return 256.0 * std::round(20.0 * random.normal()); }), 0U);  // of 8 bits
   EXPECT_EQ(as_counts([&](std::size_t) { return random.uniform(-32'768.0, 32'767.0); }), 0U);

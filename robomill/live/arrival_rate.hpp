@@ -20,8 +20,8 @@ class ROBOMILL_API ArrivalRate {
   ArrivalRate(double sample_rate_hz, double longest_pause_s)
       : sample_rate_hz_(sample_rate_hz), longest_pause_s_(longest_pause_s) {}
 
-  /// Frames that have arrived just now, those lost on their way among them. Measures over 10 s and more, from one arrival
-  /// to another; not in the first 2 s, in which comes at once what had waited.
+  /// Frames that have arrived just now, those lost on their way among them. Measures over 10 s and more, from one
+  /// arrival to another; not in the first 2 s, in which comes at once what had waited.
   /// @return the measured rate [Hz] where it is off by more than 10 %
   std::optional<double> add(std::uint64_t frames, Clock::time_point now);
   /// What is wrong, for people.

@@ -34,9 +34,8 @@ TEST(SourceInput, ReportsMisalignedSamples) {
   Session session(file, {}, std::move(outputs));
   const std::atomic<bool> stop{false};
   {
-    const SourceInput input(
-        io::open_samples(folder.file("lost.raw", bytes), file.columns, io::RawFormat::float32), file, session.queue(),
-        session.notices(), session.metrics(), true);
+    const SourceInput input(io::open_samples(folder.file("lost.raw", bytes), file.columns, io::RawFormat::float32),
+                            file, session.queue(), session.notices(), session.metrics(), true);
     session.run(stop);
   }
   std::uint64_t misaligned = 0;

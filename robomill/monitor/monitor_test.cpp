@@ -148,6 +148,24 @@ TEST(ChatterMonitor, IsBlindWhereEverySignalStaysClipped) {
   EXPECT_NE(push_hop(monitor, random, one).state, State::blind);
 }
 
+// A spindle at rest before a 16-bit converter: hum of three counts, whose tops are flat.
+TEST(ChatterMonitor, StepsOfAConverterAreNotClipped) {
+  for (const double full_scale : {32'768.0, 0.0}) {
+    MonitorOptions options = options_of(1);
+    options.full_scale = full_scale;
+    ChatterMonitor monitor(options);
+    Random random(1);
+    Decision decision;
+    for (std::size_t hop = 0; hop < 20; ++hop) {
+      std::size_t i = hop * hop_frames;
+      decision = push_hop(monitor, random, [&](int, float) {
+        return static_cast<float>(std::round(3.0 * std::sin(0.06 * static_cast<double>(i++))));
+      });
+    }
+    EXPECT_EQ((decision.faults & clipped) != 0, full_scale == 0.0);  // where it is not known they might be
+  }
+}
+
 TEST(ChatterMonitor, ForgetsOnResetWhyItWasBlind) {
   ChatterMonitor monitor(options_of(1));
   Random random(1);
