@@ -50,6 +50,7 @@
 #include "robomill/jobs/tools.hpp"
 #include "robomill/live/advisor.hpp"
 #include "robomill/live/alarm_ring.hpp"
+#include "robomill/live/arrival_rate.hpp"
 #include "robomill/live/block_order.hpp"
 #include "robomill/live/files/recorded_run_json.hpp"
 #include "robomill/live/hop_queue.hpp"

@@ -1,7 +1,6 @@
 #include "metrics_server.hpp"
 
 // Plain HTTP on loopback needs neither TLS nor compression.
-#define CPPHTTPLIB_KEEPALIVE_MAX_COUNT 100
 #include <fmt/format.h>
 #include <httplib.h>
 
@@ -13,6 +12,9 @@ namespace robomill::app {
 namespace {
 
 constexpr std::size_t max_request_bytes = 4096;
+/// A connection holds a thread until it has asked and was answered, or has been silent for this long.
+constexpr std::size_t connections = 32;
+constexpr time_t longest_silence_s = 1;
 
 }  // namespace
 
@@ -24,16 +26,18 @@ struct MetricsServer::Parts {
 MetricsServer::MetricsServer(const live::MetricValues& values, const std::string& host, int port)
     : parts_(std::make_unique<Parts>()) {
   httplib::Server& server = parts_->server;
-  server.new_task_queue = [] { return new httplib::ThreadPool(2); };  // NOLINT: httplib takes it over
+  server.new_task_queue = [] { return new httplib::ThreadPool(connections); };  // NOLINT: httplib takes it over
   // Not shared with another server, as httplib would have it.
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   });
   server.set_payload_max_length(max_request_bytes);
-  server.set_read_timeout(2);
-  server.set_write_timeout(2);
-  server.set_keep_alive_timeout(2);
+  server.set_read_timeout(longest_silence_s);
+  server.set_write_timeout(longest_silence_s);
+  server.set_keep_alive_timeout(longest_silence_s);
+  // Who asks every few seconds need not hold a thread in between.
+  server.set_keep_alive_max_count(1);
   server.Get("/metrics", [&values](const httplib::Request&, httplib::Response& response) {
     response.set_content(values.text(), "text/plain; version=0.0.4");
   });

@@ -6,7 +6,8 @@
 
 namespace robomill::app {
 
-/// Answers GET /metrics, two requests at a time.
+/// Answers GET /metrics, of up to 32 connections at a time and once each. One that asks nothing is closed after a
+/// second.
 class MetricsServer {
  public:
   /// @param host  address to listen at; loopback unless others are to see it

@@ -1,12 +1,14 @@
 #include "robomill/monitor/monitor.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -76,17 +78,24 @@ RawFormat raw_format(const std::string& name) {
 struct Input {
   bool is_stream = false;  ///< from the broker
   bool is_live = false;    ///< events are wanted as they come
+  bool by_clock = false;   ///< its samples come while they are taken: where none come, something is wrong
   bool can_wait = true;
   std::string name;
   std::unique_ptr<io::SampleSource> source;
 };
+
+/// Pipes, sockets and devices have their samples when they are taken; a file, on standard input too, has them all.
+bool is_file(int descriptor) {
+  struct stat status = {};
+  return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+}
 
 Input open_input(const MonitorCommand& command, monitor::MonitorFile& file, const std::atomic<bool>& ended) {
   Input input;
   input.is_stream =
       command.input.empty() ? !file.mqtt.topic.empty() : monitor::parse_mqtt_address(command.input, file.mqtt);
   if (input.is_stream) {
-    input.is_live = true;
+    input.is_live = input.by_clock = true;
     input.name = fmt::format("mqtt://{}:{}/{}", file.mqtt.host, file.mqtt.port_or_default(), file.mqtt.topic);
     if (file.options.sample_rate_hz <= 0.0) {
       throw InvalidInput(InvalidInput::Parts{
@@ -102,10 +111,12 @@ Input open_input(const MonitorCommand& command, monitor::MonitorFile& file, cons
   if (command.input == "-") {
     input.name = "standard input";
     input.is_live = true;
+    input.by_clock = !is_file(STDIN_FILENO);
     input.can_wait = !command.live;
     input.source = io::open_sample_stream(STDIN_FILENO, input.name, file.columns, format, &ended);
   } else {
     input.name = command.input;
+    input.is_live = input.by_clock = std::filesystem::is_fifo(command.input);
     input.source = io::open_samples(command.input, file.columns, format, &ended);
   }
   if (file.options.sample_rate_hz <= 0.0) file.options.sample_rate_hz = input.source->sample_rate_hz();
@@ -120,6 +131,7 @@ void print_event(std::FILE* to, const MonitorEvent& event) {
   switch (event.kind) {
     case MonitorEvent::Kind::state:
       fmt::print(to, "{}", monitor::to_string(d.state));
+      if (d.state == monitor::State::blind) fmt::print(to, " ({})", monitor::to_string(d.reason));
       if (d.state == monitor::State::chatter && d.chatter_frequency_hz > 0.0) {
         fmt::print(to, " at {:.1f} ± {:.2g} Hz", d.chatter_frequency_hz, d.chatter_frequency_std_hz);
         if (d.synchronous != monitor::SynchronousChatter::none)
@@ -177,10 +189,16 @@ monitor::MonitorFile read_config(const MonitorCommand& command) {
   return file;
 }
 
+/// No alarm says nothing of the time that could not be judged: that stands beside it.
 std::string summary_of(live::Session& session, const std::string& input) {
   const live::MetricValues& m = session.metrics();
-  return fmt::format("{:.3f} s of {} processed in {} decisions, {} alarm{}.\n", session.time_s(), printable(input),
-                     m.decisions.load(), m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
+  std::string out = fmt::format("{:.3f} s of {} processed in {} decisions, {} alarm{}.\n", session.time_s(),
+                                printable(input), m.decisions.load(), m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
+  for (const monitor::BlindReason reason : monitor::blind_reasons) {
+    const double blind_s = m.blind_for_s(reason);
+    if (blind_s > 0.0) out += fmt::format("cannot tell: {}, for {:.3g} s\n", monitor::to_string(reason), blind_s);
+  }
+  return out;
 }
 
 }  // namespace
@@ -206,6 +224,8 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     if (broker) broker->publish(event, line);
     const bool news = common.wants_summary() || (!common.quiet && event.kind == MonitorEvent::Kind::stream);
     if (news && !watch) print_event(people, event);
+    // That no samples come is no decision.
+    if (watch && event.decision.state == monitor::State::blind) watch->show(event.decision, event.time_s);
     return events.write(line);
   };
   outputs.decision = [&](const monitor::Decision& decision, double time_s, double compute_s) {
@@ -222,7 +242,9 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     outputs.skipped = [&](std::uint64_t frames) { recorder->skip(frames); };
   }
 
-  live::Session session(file, {.every_window = command.every_window, .seconds = command.seconds}, std::move(outputs));
+  live::Session session(file,
+                        {.every_window = command.every_window, .seconds = command.seconds, .live = input.by_clock},
+                        std::move(outputs));
   std::optional<MetricsServer> metrics;
   if (file.metrics_port >= 0) {
     metrics.emplace(session.metrics(), file.metrics_host, file.metrics_port);

@@ -77,6 +77,11 @@ class MonitorVerb : public ProgramTest {
     return slurp(folder_.at("events.jsonl")).find("\"" + what + "\"") != std::string::npos;
   }
 
+  /// The configuration with another timeout.
+  [[nodiscard]] std::string timed(const std::string& timeout_s) const {
+    return "[signal]\ntimeout_s = " + timeout_s + "\n" + config_.substr(config_.find('\n') + 1);
+  }
+
   const std::string config_ =
       "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax_m_per_s2\"]\n[process]\nspindle_speed_rpm = 3000\nteeth = "
       "2\n";
@@ -239,10 +244,17 @@ TEST_F(MonitorVerb, LivesThroughBadSamples) {
   std::vector<float> samples = cut(4.0, false);
   for (std::size_t i = 20'000; i < 21'000; ++i) samples[i] = std::numeric_limits<float>::quiet_NaN();
   wav("rec.wav", samples);
-  ASSERT_EQ(robomill("monitor monitor.toml --input rec.wav -o events.jsonl").exit, 0);
+  const Ended run = robomill("monitor monitor.toml --input rec.wav -o events.jsonl");
+  ASSERT_EQ(run.exit, 0);
+  // 1,000 samples are three hops that are mostly lost, and four more are left out.
+  EXPECT_NE(run.out.find("cannot tell: gap, for 0.2 s\n"), std::string::npos) << run.out;
   const std::vector<json> faults = events_of("fault");
   ASSERT_FALSE(faults.empty());
   EXPECT_EQ(faults.front()["faults"][0], "not-finite");
+  const std::vector<json> states = events_of("state");
+  ASSERT_GE(states.size(), 2U);
+  EXPECT_EQ(states[0]["reason"], "gap");
+  EXPECT_NE(states[1]["state"], "blind");
   EXPECT_NEAR(faults.front()["time_s"].get<double>(), 20'000 / rate_hz, 0.03);
   folder_.file(
       "rec.csv", "ax_m_per_s2\n" + [] {
@@ -254,6 +266,26 @@ TEST_F(MonitorVerb, LivesThroughBadSamples) {
   std::uint64_t rows = 0;
   for (const json& event : events_of("unreadable-rows")) rows += event["count"].get<std::uint64_t>();
   EXPECT_EQ(rows, 30U);
+}
+
+// A pipe whose writer waits until it is missed, and then goes on.
+TEST_F(MonitorVerb, MissesSamplesOfAPipe) {
+  const std::vector<float> samples = cut(1.0, false);
+  folder_.file("rec.raw", {reinterpret_cast<const char*>(samples.data()), 4 * samples.size()});
+  folder_.file("monitor.toml", timed("0.2"));
+  const Ended run = shell(
+      "(cat rec.raw; i=0; until grep -q no-signal events.jsonl || [ $i -gt 600 ]; do i=$((i+1)); sleep 0.1; done; "
+      "cat rec.raw) | '" ROBOMILL_PROGRAM "' monitor monitor.toml --input - --format f32 -o events.jsonl");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const std::vector<json> states = events_of("state");
+  ASSERT_GE(states.size(), 2U);
+  EXPECT_EQ(states[0]["state"], "blind");
+  EXPECT_EQ(states[0]["reason"], "no-signal");
+  EXPECT_NE(states[1]["state"], "blind");
+  EXPECT_TRUE(states[1]["reason"].is_null());
+  EXPECT_NE(run.out.find("blind (no-signal)\n"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("0 alarms.\ncannot tell: no-signal, for 0."), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find("gap"), std::string::npos) << run.out;
 }
 
 TEST_F(MonitorVerb, RejectsBadInputWithOneMessage) {
@@ -296,8 +328,7 @@ class MonitorStream : public MonitorVerb {
  protected:
   void SetUp() override {
     MonitorVerb::SetUp();
-    folder_.file("monitor.toml", config_ + "[mqtt]\nport = " + std::to_string(broker_.port()) +
-                                     "\ntopic = \"cell/ax\"\nevents_topic = \"cell/events\"\n");
+    configure("3600");  // a test may take its time between two blocks
     monitor::MqttSettings settings;
     settings.port = broker_.port();
     client_ = std::make_unique<MqttClient>(
@@ -310,6 +341,10 @@ class MonitorStream : public MonitorVerb {
     ASSERT_TRUE(client_->wait_until_connected(std::chrono::seconds(60)));
   }
   void TearDown() override { client_.reset(); }
+  void configure(const std::string& timeout_s) {
+    folder_.file("monitor.toml", timed(timeout_s) + "[mqtt]\nport = " + std::to_string(broker_.port()) +
+                                     "\ntopic = \"cell/ax\"\nevents_topic = \"cell/events\"\n");
+  }
   void listen(const std::string& input = {}) {
     std::vector<std::string> words = {
         ROBOMILL_PROGRAM, "monitor", folder_.at("monitor.toml"), "-o", folder_.at("events.jsonl"),
@@ -438,6 +473,23 @@ TEST_F(MonitorStream, SaysThatThereIsNoBrokerAndEndsByCtrlC) {
   ASSERT_TRUE(wait_for([&] { return has_event("broker-unreachable"); }));
   EXPECT_NE(slurp(folder_.at("out.txt")).find("trying again"), std::string::npos);
   interrupt();
+}
+
+// Blocks stop coming, whether or not the connection stands.
+TEST_F(MonitorStream, MissesTheBlocksOfABroker) {
+  configure("0.2");
+  listen();
+  ASSERT_TRUE(wait_for([&] { return has_event("no-signal"); }));
+  EXPECT_EQ(metric("state"), 3.0);
+  EXPECT_EQ(metric("decisions_total"), 0.0);
+  begin();
+  ASSERT_TRUE(wait_for([&] { return metric("blind_seconds_total{reason=\"no-signal\"}") > 0.3; }));
+  interrupt();
+  const std::vector<json> states = events_of("state");
+  ASSERT_GE(states.size(), 2U);
+  EXPECT_EQ(states[0]["state"], "blind");
+  EXPECT_NE(states[1]["state"], "blind");
+  EXPECT_NE(slurp(folder_.at("out.txt")).find("cannot tell: no-signal"), std::string::npos);
 }
 
 TEST_F(MonitorStream, PublishesEventsOfARecording) {

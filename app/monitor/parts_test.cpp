@@ -1,12 +1,15 @@
 // Metrics over HTTP, and the line of --watch.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "http_get.hpp"
 #include "metrics_server.hpp"
 #include "robomill/base/error.hpp"
+#include "test_processes.hpp"
 #include "testing/support.hpp"
 #include "watch.hpp"
 
@@ -38,6 +41,22 @@ TEST(Metrics, AnswerInTheTextFormat) {
       std::string::npos);
 }
 
+// Ten that connect and say nothing must not keep an eleventh waiting: the server holds each for a while.
+TEST(Metrics, AnswerBesideIdleConnections) {
+  const live::MetricValues values;
+  const MetricsServer server(values, "127.0.0.1", 0);
+  std::vector<int> idle;
+  for (int i = 0; i < 10; ++i) {
+    idle.push_back(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    const sockaddr_in address = test::loopback(server.port());
+    ASSERT_EQ(::connect(idle.back(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(test::http_get(server.port(), "/metrics").rfind("HTTP/1.1 200 OK", 0), 0U);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  for (const int descriptor : idle) ::close(descriptor);
+}
+
 TEST(Watch, ShowsTheSpectrumAsABar) {
   monitor::Decision decision;
   decision.state = monitor::State::transition;
@@ -53,6 +72,9 @@ TEST(Watch, ShowsTheSpectrumAsABar) {
   EXPECT_NE(line.find("683.6 Hz"), std::string::npos) << line;
   EXPECT_EQ(line.find("rpm"), std::string::npos) << line;
   EXPECT_NE(watch_line({}, 0.0).find("[]"), std::string::npos);
+  decision.state = monitor::State::blind;
+  decision.reason = monitor::BlindReason::no_signal;
+  EXPECT_NE(watch_line(decision, 0.0).find("blind (no-signal)"), std::string::npos);
 }
 
 }  // namespace parts_test

@@ -33,9 +33,10 @@ std::string bar(const monitor::Decision& decision) {
 }  // namespace
 
 std::string watch_line(const monitor::Decision& decision, double time_s) {
-  std::string line = fmt::format("{:9.3f} s  {:<10}  level {:<9.4g}  score {:7.3g} of {:<7.3g} [{}]", time_s,
-                                 monitor::to_string(decision.state), decision.level, decision.score, decision.threshold,
-                                 bar(decision));
+  std::string state(monitor::to_string(decision.state));
+  if (decision.state == monitor::State::blind) state += fmt::format(" ({})", monitor::to_string(decision.reason));
+  std::string line = fmt::format("{:9.3f} s  {:<10}  level {:<9.4g}  score {:7.3g} of {:<7.3g} [{}]", time_s, state,
+                                 decision.level, decision.score, decision.threshold, bar(decision));
   if (decision.spindle_speed_rad_per_s > 0.0) {
     line += fmt::format("  {:.0f} rpm", decision.spindle_speed_rad_per_s / units::rpm);
   }
@@ -51,8 +52,11 @@ Watch::~Watch() {
 
 void Watch::show(const monitor::Decision& decision, double time_s) {
   if (!terminal_) {
-    if (time_s - shown_s_ < 1.0 && !decision.changed) return;
+    // A change may be shown as a decision and as an event.
+    const bool again = time_s == shown_s_ && decision.state == shown_state_;
+    if (again || (time_s - shown_s_ < 1.0 && !decision.changed)) return;
     shown_s_ = time_s;
+    shown_state_ = decision.state;
     fmt::print(stderr, "{}\n", watch_line(decision, time_s));
     return;
   }

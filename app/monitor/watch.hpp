@@ -23,6 +23,7 @@ class Watch {
   bool terminal_ = false, drawn_ = false;
   std::chrono::steady_clock::time_point shown_ = {};
   double shown_s_ = -1e300;
+  monitor::State shown_state_ = monitor::State::stable;
 };
 
 }  // namespace robomill::app

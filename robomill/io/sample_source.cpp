@@ -11,11 +11,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/records.hpp"
+#include "robomill/io/sample_alignment.hpp"
 #include "robomill/io/sample_parts.hpp"
 
 namespace robomill::io {
@@ -42,6 +44,7 @@ class RawSource : public SampleSource {
     for (const std::string& name : columns.channels) columns_ = std::max(columns_, number_from_1(name).value_or(0));
     if (columns.raw_columns > 0) columns_ = static_cast<std::size_t>(columns.raw_columns);
     pick_ = pick_columns(columns, {}, columns_, where);
+    alignment_ = SampleAlignment(columns_, is_int16_);
     if (is_int16_) {
       scale_ /= 32768.0;
       full_scale_ = 32767.0 * std::abs(scale_);
@@ -59,6 +62,11 @@ class RawSource : public SampleSource {
     for (std::size_t frame = 0; frame < count; ++frame) {
       for (const std::size_t column : pick_)
         block.samples.push_back(value(there.data() + frame * frame_bytes + width * column));
+    }
+    if (alignment_.take(there.substr(0, count * frame_bytes))) {
+      // Such numbers mean nothing: they must not be taken for vibration.
+      std::fill(block.samples.begin(), block.samples.end(), std::numeric_limits<float>::infinity());
+      misaligned_frames_ += count;
     }
     bytes_->consume(count * frame_bytes);
     return true;
@@ -79,6 +87,7 @@ class RawSource : public SampleSource {
   bool is_int16_ = false;
   double scale_ = 1.0;
   std::size_t columns_ = 0;
+  SampleAlignment alignment_{0, false};
   std::vector<std::size_t> pick_;
 };
 

@@ -39,7 +39,8 @@ enum class RawFormat {
 
 /// Frames in a row.
 struct SampleBlock {
-  std::vector<float> samples;  ///< all channels interleaved; NaN where a row could not be read
+  /// All channels interleaved; NaN where a row could not be read, infinite where raw samples are misaligned.
+  std::vector<float> samples;
   /// The last number >= 0 of the followed column up to the end of the block, in SI; NaN: none
   double followed = std::numeric_limits<double>::quiet_NaN();
 };
@@ -63,10 +64,12 @@ class ROBOMILL_API SampleSource {
   /// Rows of text that held something else than their numbers, and the line of the first.
   [[nodiscard]] std::uint64_t unreadable_rows() const { return unreadable_rows_; }
   [[nodiscard]] std::uint64_t first_unreadable_line() const { return first_unreadable_line_; }
+  /// Frames of raw samples that do not begin at the first byte of a sample: a byte was lost, or the format is another.
+  [[nodiscard]] std::uint64_t misaligned_frames() const { return misaligned_frames_; }
 
  protected:
   double sample_rate_hz_ = 0.0, full_scale_ = 0.0;
-  std::uint64_t unreadable_rows_ = 0, first_unreadable_line_ = 0;
+  std::uint64_t unreadable_rows_ = 0, first_unreadable_line_ = 0, misaligned_frames_ = 0;
 };
 
 /// A file by its ending (.wav; .csv .txt .dat .asc; .mat; .uff .unv .uf), or as `format` says.

@@ -34,20 +34,40 @@ SourceInput::SourceInput(std::unique_ptr<io::SampleSource> source, const monitor
       intake_(queue, static_cast<std::size_t>(file.options.channels), file.options.hop_samples(), can_wait,
               report_dropped(notices, metrics)),
       hop_frames_(file.options.hop_samples()),
-      thread_([this] { read(); }) {}
+      channels_(static_cast<std::size_t>(file.options.channels)) {
+  if (!can_wait) rate_.emplace(file.options.sample_rate_hz, file.timeout_s);
+  thread_ = std::jthread([this] { read(); });
+}
+
+void SourceInput::report_faults() {
+  if (source_->unreadable_rows() != reported_rows_) {
+    notices_->add("unreadable-rows",
+                  fmt::format("rows that cannot be read, from line {} on", source_->first_unreadable_line()),
+                  source_->unreadable_rows() - reported_rows_);
+    reported_rows_ = source_->unreadable_rows();
+  }
+  if (source_->misaligned_frames() != reported_misaligned_) {
+    notices_->add(
+        "misaligned",
+        "frames do not begin at the first byte of a sample and are left out; was a byte lost on the way, or is "
+        "the format another?",
+        source_->misaligned_frames() - reported_misaligned_);
+    reported_misaligned_ = source_->misaligned_frames();
+  }
+}
 
 void SourceInput::read() {
   try {
     io::SampleBlock block;
-    std::uint64_t reported_rows = 0;
     while (source_->next(hop_frames_, block)) {
+      if (rate_) {
+        const std::optional<double> measured_hz =
+            rate_->add(block.samples.size() / channels_, ArrivalRate::Clock::now());
+        if (measured_hz) notices_->add("sample-rate", rate_->message(*measured_hz));
+      }
+      report_faults();
       intake_.speed(block.followed);
       if (!intake_.add(block.samples)) return;
-      if (source_->unreadable_rows() == reported_rows) continue;
-      notices_->add("unreadable-rows",
-                    fmt::format("rows that cannot be read, from line {} on", source_->first_unreadable_line()),
-                    source_->unreadable_rows() - reported_rows);
-      reported_rows = source_->unreadable_rows();
     }
     intake_.finish();
   } catch (const std::exception& error) {
@@ -62,7 +82,8 @@ StreamIntake::StreamIntake(const monitor::MonitorFile& file, HopQueue& queue, No
       notices_(&notices),
       metrics_(&metrics),
       intake_(queue, static_cast<std::size_t>(file.options.channels), file.options.hop_samples(), false,
-              report_dropped(notices, metrics)) {}
+              report_dropped(notices, metrics)),
+      rate_(file.options.sample_rate_hz, file.timeout_s) {}
 
 void StreamIntake::reject(const std::string& why) {
   ++metrics_->rejected_messages;
@@ -104,6 +125,7 @@ void StreamIntake::give_up() {
 
 void StreamIntake::give() {
   const auto most_filled = static_cast<std::uint64_t>(longest_filled_s * sample_rate_hz_);
+  std::uint64_t frames = 0;
   for (const BlockOrder::Given& given : given_) {
     const monitor::StreamBlock& block = given.block;
     if (!pick(block.channels)) continue;
@@ -117,6 +139,11 @@ void StreamIntake::give() {
       for (const std::size_t column : pick_) picked_.push_back(block.samples[frame * channels + column]);
     }
     intake_.add(picked_);
+    frames += (1 + given.lost_before) * block.frames();
+  }
+  if (!given_.empty()) {
+    const std::optional<double> measured_hz = rate_.add(frames, ArrivalRate::Clock::now());
+    if (measured_hz) notices_->add("sample-rate", rate_.message(*measured_hz));
   }
   given_.clear();
   report_counts();

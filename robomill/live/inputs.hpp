@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
@@ -9,6 +10,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/io/sample_source.hpp"
+#include "robomill/live/arrival_rate.hpp"
 #include "robomill/live/block_order.hpp"
 #include "robomill/live/intake.hpp"
 #include "robomill/live/metrics.hpp"
@@ -22,7 +24,8 @@ namespace robomill::live {
 /// Adds each hop that is left out to the notices and the metrics.
 [[nodiscard]] ROBOMILL_API std::function<void(std::uint64_t)> report_dropped(Notices& notices, MetricValues& metrics);
 
-/// Reads a recording or a pipe on a thread of its own; closes the queue at the end.
+/// Reads a recording or a pipe on a thread of its own; closes the queue at the end. Reports rows that cannot be read,
+/// raw samples that are misaligned, and of what cannot wait a rate that is off.
 class ROBOMILL_API SourceInput {
  public:
   /// @param can_wait  whether the source may be kept waiting; else hops are left out
@@ -33,17 +36,20 @@ class ROBOMILL_API SourceInput {
 
  private:
   void read();
+  void report_faults();
 
   std::unique_ptr<io::SampleSource> source_;
   HopQueue* queue_;
   Notices* notices_;
   Intake intake_;
-  std::size_t hop_frames_;
+  std::size_t hop_frames_, channels_;
+  std::optional<ArrivalRate> rate_;  ///< of what cannot wait
+  std::uint64_t reported_rows_ = 0, reported_misaligned_ = 0;
   std::jthread thread_;
 };
 
 /// What a stream's messages go through on their way to the queue: rejected where they are no blocks of these channels
-/// at this rate, put in order, gaps filled. Used by one thread.
+/// at this rate, put in order, gaps filled, their rate compared with the clock. Used by one thread.
 class ROBOMILL_API StreamIntake {
  public:
   StreamIntake(const monitor::MonitorFile& file, HopQueue& queue, Notices& notices, MetricValues& metrics);
@@ -63,6 +69,7 @@ class ROBOMILL_API StreamIntake {
   Notices* notices_;
   MetricValues* metrics_;
   Intake intake_;
+  ArrivalRate rate_;
   BlockOrder order_;
   OrderCounts reported_;
   std::vector<BlockOrder::Given> given_;

@@ -18,13 +18,26 @@ void row(std::string& out, std::string_view name, std::string_view type, std::st
 
 }  // namespace
 
-void MetricValues::set(const monitor::Decision& decision) {
+void MetricValues::set_state(const monitor::Decision& decision) {
   state = static_cast<int>(decision.state);
+  chatter_frequency_hz = decision.chatter_frequency_hz;
+}
+
+void MetricValues::add_blind(monitor::BlindReason reason, double seconds) {
+  std::atomic<double>& of = blind_s.at(static_cast<std::size_t>(reason));
+  of = of + seconds;
+}
+
+double MetricValues::blind_for_s(monitor::BlindReason reason) const {
+  return blind_s.at(static_cast<std::size_t>(reason));
+}
+
+void MetricValues::set(const monitor::Decision& decision) {
+  set_state(decision);
   score = decision.score;
   threshold = decision.threshold;
   energy_entropy = decision.energy_entropy;
   level = decision.level;
-  chatter_frequency_hz = decision.chatter_frequency_hz;
   spindle_speed_rpm = decision.spindle_speed_rad_per_s / units::rpm;
   faults = decision.faults;
   ++decisions;
@@ -56,6 +69,13 @@ std::string MetricValues::text() const {
   counter("dropped_hops_total", "left out since input was faster than the detector", dropped_hops);
   counter("lost_blocks_total", "that never came", lost_blocks);
   counter("refused_messages_total", "that were no blocks of samples", rejected_messages);
+  io::append(out,
+             "# HELP robomill_blind_seconds_total for which nothing could be said of the cut\n# TYPE "
+             "robomill_blind_seconds_total counter\n");
+  for (const monitor::BlindReason reason : monitor::blind_reasons) {
+    io::append(out, "robomill_blind_seconds_total{{reason=\"{}\"}} {}\n", monitor::to_string(reason),
+               blind_for_s(reason));
+  }
   return out;
 }
 

@@ -11,8 +11,9 @@
 namespace robomill::live {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using monitor::BlindReason;
 using monitor::MonitorEvent;
+using monitor::State;
 
 /// Hops between input and detector: 1.6 s at 25 ms.
 constexpr std::size_t queued_hops = 64;
@@ -22,6 +23,8 @@ constexpr double fault_pause_s = 1.0;
 /// Chatter is emitted again when its frequency has moved by so much, and at most so often.
 constexpr double frequency_step_hz = 2.0, frequency_pause_s = 0.25;
 constexpr double speed_patience_s = 3.0;
+/// Samples left out for less, a hop say, are counted and notified, but make no event of their own.
+constexpr double shortest_gap_s = 1.0;
 
 }  // namespace
 
@@ -51,11 +54,18 @@ double Session::time_s() const {
 }
 
 void Session::run(const std::atomic<bool>& stop) {
+  const auto timeout = std::chrono::milliseconds(std::lround(1e3 * file_.timeout_s));
+  const std::chrono::milliseconds wait = std::clamp(timeout, std::chrono::milliseconds(1), longest_wait);
   Hop hop;
+  samples_at_ = Clock::now();
   while (!stop && !ended_) {
-    const HopQueue::Taken taken = queue_.pop(hop, longest_wait);
+    const HopQueue::Taken taken = queue_.pop(hop, wait);
     if (taken == HopQueue::Taken::closed) break;
-    if (taken == HopQueue::Taken::hop) process(std::move(hop));
+    if (taken == HopQueue::Taken::hop) {
+      process(std::move(hop));
+    } else if (options_.live) {
+      check_silence(Clock::now());
+    }
     metrics_.queued_hops = queue_.size();
     emit_notices();
     if (options_.seconds > 0.0 && time_s() >= options_.seconds) break;
@@ -65,10 +75,43 @@ void Session::run(const std::atomic<bool>& stop) {
   emit_notices(true);
 }
 
+void Session::check_silence(Clock::time_point now) {
+  const double silence_s = std::chrono::duration<double>(now - samples_at_).count();
+  if (silence_s < file_.timeout_s) return;
+  metrics_.add_blind(BlindReason::no_signal, silence_s - silence_s_);
+  silence_s_ = silence_s;
+  become_blind(BlindReason::no_signal);
+}
+
+void Session::become_blind(BlindReason reason) {
+  if (last_.state == State::blind && last_.reason == reason) return;
+  last_.changed = last_.state != State::blind;
+  last_.state = State::blind;
+  last_.reason = reason;
+  last_.chatter_frequency_hz = last_.chatter_frequency_std_hz = 0.0;
+  last_.channel = 0;
+  last_.synchronous = monitor::SynchronousChatter::none;
+  metrics_.set_state(last_);
+  MonitorEvent event;
+  event.kind = MonitorEvent::Kind::state;
+  event.time_s = time_s();
+  event.decision = last_;
+  emit(std::move(event));
+}
+
+void Session::leave_out(std::uint64_t frames) {
+  if (frames == 0) return;
+  const double gap_s = static_cast<double>(frames) / file_.options.sample_rate_hz;
+  // Time that went by without samples was counted as it went.
+  metrics_.add_blind(BlindReason::gap, std::max(0.0, gap_s - silence_s_));
+  if (gap_s >= shortest_gap_s && silence_s_ == 0.0) become_blind(BlindReason::gap);
+  frames_ += frames;
+  base_s_ += gap_s;
+  if (outputs_.skipped) outputs_.skipped(frames);
+}
+
 void Session::process(Hop&& hop) {
-  frames_ += hop.frames_before;
-  base_s_ += static_cast<double>(hop.frames_before) / file_.options.sample_rate_hz;
-  if (outputs_.skipped && hop.frames_before > 0) outputs_.skipped(hop.frames_before);
+  leave_out(hop.frames_before);
   if (hop.restarted) {
     monitor_.reset();
     base_s_ = time_s();
@@ -90,6 +133,8 @@ void Session::process(Hop&& hop) {
     if (decision.hop != last_.hop) decide(decision, std::exchange(compute_s_, 0.0));
   }
   if (outputs_.samples) outputs_.samples(hop.samples);
+  samples_at_ = Clock::now();
+  silence_s_ = 0.0;
   if (!ring_) return;
   ring_->add(std::move(hop.samples));
   if (std::exchange(alarm_, false) && !ring_->alarm(base_s_ + last_.time_s)) {
@@ -100,27 +145,37 @@ void Session::process(Hop&& hop) {
 void Session::decide(monitor::Decision decision, double compute_s) {
   // Against what was emitted: a detector that begins anew is stable and calls it no change.
   decision.changed = decision.state != last_.state;
+  const bool blind = decision.state == State::blind;
+  const bool reason_news = blind && decision.reason != last_.reason;
   last_ = decision;
   const double time_s = base_s_ + decision.time_s;
   metrics_.set(decision);
   metrics_.stream_s = time_s;
   metrics_.compute_s = compute_s;
-  if (decision.changed && decision.state == monitor::State::chatter) {
+  if (blind) {
+    metrics_.add_blind(decision.reason,
+                       static_cast<double>(file_.options.hop_samples()) / file_.options.sample_rate_hz);
+  }
+  if (decision.changed && decision.state == State::chatter) {
     ++metrics_.alarms;
     alarm_ = true;
   }
   if (outputs_.decision) outputs_.decision(decision, time_s, compute_s);
   const bool fault_news = fault_is_news(decision);
   const bool frequency_news = frequency_is_news(decision);
-  if (!decision.changed && !fault_news && !frequency_news && !options_.every_window) return;
-  MonitorEvent event;
-  event.kind = decision.changed || frequency_news ? MonitorEvent::Kind::state
-               : fault_news                       ? MonitorEvent::Kind::fault
-                                                  : MonitorEvent::Kind::window;
-  event.time_s = time_s;
-  event.decision = decision;
-  event.compute_s = compute_s;
-  emit(std::move(event));
+  const bool state_news = decision.changed || reason_news || frequency_news;
+  const auto emit_as = [&](MonitorEvent::Kind kind) {
+    MonitorEvent event;
+    event.kind = kind;
+    event.time_s = time_s;
+    event.decision = decision;
+    event.compute_s = compute_s;
+    emit(std::move(event));
+  };
+  // A change of state holds the faults; where they are its cause they are news of their own.
+  if (fault_news && (!state_news || blind)) emit_as(MonitorEvent::Kind::fault);
+  if (state_news) emit_as(MonitorEvent::Kind::state);
+  if (!state_news && !fault_news && options_.every_window) emit_as(MonitorEvent::Kind::window);
 }
 
 bool Session::fault_is_news(const monitor::Decision& decision) {
@@ -139,7 +194,7 @@ bool Session::fault_is_news(const monitor::Decision& decision) {
 }
 
 bool Session::frequency_is_news(const monitor::Decision& decision) {
-  if (decision.state != monitor::State::chatter || decision.chatter_frequency_hz <= 0.0) return false;
+  if (decision.state != State::chatter || decision.chatter_frequency_hz <= 0.0) return false;
   const double time_s = base_s_ + decision.time_s;
   const double step_hz = std::max(frequency_step_hz, 3.0 * decision.chatter_frequency_std_hz);
   const bool moved = std::abs(decision.chatter_frequency_hz - emitted_frequency_hz_) > step_hz;
@@ -167,7 +222,7 @@ void Session::emit_notices(bool all) {
 }
 
 void Session::emit(MonitorEvent event) {
-  if (event.decision.state == monitor::State::chatter && event.decision.chatter_frequency_hz > 0.0 && outputs_.advise) {
+  if (event.decision.state == State::chatter && event.decision.chatter_frequency_hz > 0.0 && outputs_.advise) {
     outputs_.advise(event);
   }
   ++metrics_.events;

@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -37,6 +38,9 @@ struct SessionOutputs {
 struct SessionOptions {
   bool every_window = false;  ///< an event each decision, not only on change
   double seconds = 0.0;       ///< of the stream, after which it ends; 0: never
+  /// Samples come by the clock: where there are none for MonitorFile::timeout_s the state is blind. Of a recording
+  /// none are awaited.
+  bool live = false;
 };
 
 /// Processes a stream: takes hops out of a queue until that is closed, and emits decisions and events.
@@ -64,7 +68,12 @@ class ROBOMILL_API Session {
   [[nodiscard]] bool ended() const { return ended_; }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void decide(monitor::Decision decision, double compute_s);
+  void check_silence(Clock::time_point now);
+  void leave_out(std::uint64_t frames);
+  void become_blind(monitor::BlindReason reason);
   void emit(monitor::MonitorEvent event);
   [[nodiscard]] bool fault_is_news(const monitor::Decision& decision);
   [[nodiscard]] bool frequency_is_news(const monitor::Decision& decision);
@@ -82,6 +91,8 @@ class ROBOMILL_API Session {
   double base_s_ = 0.0;       ///< the stream's time less the detector's
   double compute_s_ = 0.0;    ///< since the last decision
   double speed_rad_per_s_ = 0.0;
+  Clock::time_point samples_at_ = Clock::now();  ///< when the last ones were processed
+  double silence_s_ = 0.0;                       ///< since then, where it is longer than the timeout
   std::uint32_t emitted_faults_ = 0;
   double faults_emitted_s_ = -1e300, speed_known_s_ = 0.0;
   double emitted_frequency_hz_ = 0.0, frequency_emitted_s_ = -1e300;

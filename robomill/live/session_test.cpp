@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <limits>
+#include <mutex>
 #include <span>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "robomill/base/random.hpp"
@@ -16,7 +21,9 @@
 namespace robomill::live {
 namespace session_test {
 
+using monitor::BlindReason;
 using monitor::MonitorEvent;
+using monitor::State;
 
 monitor::MonitorFile some_file() {
   monitor::MonitorFile file;
@@ -129,6 +136,141 @@ TEST(Session, DeliversSamplesAndGapsInOrder) {
   EXPECT_EQ(frames, (std::vector<std::uint64_t>{256, 100, 256}));
   ASSERT_EQ(times_s.size(), 2U);
   EXPECT_NEAR(times_s[1] - times_s[0], 356 / 10'240.0, 1.1e-4);
+}
+
+/// A session that runs on a thread of its own, and the states it reported.
+class Running {
+ public:
+  Running(const monitor::MonitorFile& file, bool live) : session_(file, {.live = live}, outputs()) {}
+  ~Running() { end(); }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  void start() {
+    thread_ = std::jthread([this] { session_.run(stop_); });
+  }
+  [[nodiscard]] Session& session() { return session_; }
+  [[nodiscard]] std::vector<MonitorEvent> states() {
+    const std::scoped_lock lock(mutex_);
+    return states_;
+  }
+  void end() {
+    session_.queue().close();
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  SessionOutputs outputs() {
+    SessionOutputs out;
+    out.event = [this](const MonitorEvent& event, const std::string&) {
+      const std::scoped_lock lock(mutex_);
+      if (event.kind == MonitorEvent::Kind::state) states_.push_back(event);
+      return true;
+    };
+    return out;
+  }
+
+  std::mutex mutex_;
+  std::vector<MonitorEvent> states_;
+  std::atomic<bool> stop_{false};
+  Session session_;
+  std::jthread thread_;
+};
+
+/// Waits for something to be so; false where it is not within a minute, which only a fault takes.
+template <class Condition>
+bool wait_for(Condition&& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+TEST(Session, IsBlindWhereNoSamplesCome) {
+  Random random(1);
+  for (const bool had_samples : {false, true}) {
+    monitor::MonitorFile file = some_file();
+    file.timeout_s = 0.05;
+    Running running(file, true);
+    const MetricValues& metrics = running.session().metrics();
+    Hop first = noise(random);
+    EXPECT_EQ(had_samples && running.session().queue().offer(first), had_samples);
+    running.start();
+    // Six times as long as it takes: still one event.
+    ASSERT_TRUE(wait_for([&] { return metrics.blind_for_s(BlindReason::no_signal) > 0.3; }));
+    ASSERT_EQ(running.states().size(), 1U);
+    const MonitorEvent silent = running.states()[0];
+    EXPECT_EQ(silent.decision.state, State::blind);
+    EXPECT_EQ(silent.decision.reason, BlindReason::no_signal);
+    EXPECT_NEAR(silent.time_s, had_samples ? 0.025 : 0.0, 1e-9);
+    EXPECT_EQ(metrics.state, 3);
+    EXPECT_EQ(metrics.decisions, had_samples ? 1U : 0U);
+    Hop next = noise(random);
+    next.frames_before = 1024;  // 0.1 s of what was counted already
+    ASSERT_TRUE(running.session().queue().push(std::move(next)));
+    ASSERT_TRUE(wait_for([&] { return running.states().size() >= 2; }));
+    EXPECT_EQ(metrics.blind_for_s(BlindReason::gap), 0.0);
+    EXPECT_NE(running.states()[1].decision.state, State::blind);
+    EXPECT_TRUE(running.states()[1].decision.changed);
+  }
+}
+
+// A file that is slow to read, or is kept waiting, has no clock.
+TEST(Session, AwaitsNoSamplesOfARecording) {
+  Random random(1);
+  monitor::MonitorFile file = some_file();
+  file.timeout_s = 0.001;
+  Running running(file, false);
+  running.start();
+  std::this_thread::sleep_for(std::chrono::milliseconds(150));
+  ASSERT_TRUE(running.session().queue().push(noise(random)));
+  running.end();
+  EXPECT_EQ(running.session().metrics().decisions, 1U);
+  EXPECT_TRUE(running.states().empty());
+}
+
+TEST(Session, IsBlindForTheTimeOfALongGap) {
+  Kept kept;
+  Session session(some_file(), {}, kept.outputs());
+  Random random(1);
+  session.process(noise(random));
+  Hop after_hop = noise(random);
+  after_hop.frames_before = 256;  // one that was left out is counted, and no event
+  session.process(std::move(after_hop));
+  EXPECT_TRUE(kept.events.empty());
+  Hop after_gap = noise(random);
+  after_gap.frames_before = 20'480;
+  session.process(std::move(after_gap));
+  ASSERT_EQ(kept.events.size(), 2U);
+  EXPECT_EQ(kept.events[0].decision.state, State::blind);
+  EXPECT_EQ(kept.events[0].decision.reason, BlindReason::gap);
+  EXPECT_NEAR(kept.events[0].time_s, 768 / 10'240.0, 1e-9);
+  EXPECT_NE(kept.events[1].decision.state, State::blind);
+  EXPECT_NEAR(kept.events[1].time_s, (1024 + 20'480) / 10'240.0, 1.1e-4);
+  EXPECT_NEAR(session.metrics().blind_for_s(BlindReason::gap), 2.025, 1e-9);
+}
+
+// What the monitor itself cannot judge: a gap that was filled, then a sensor that is dead.
+TEST(Session, ReportsEveryReasonToBeBlind) {
+  Kept kept;
+  Session session(some_file(), {}, kept.outputs());
+  Random random(1);
+  session.process(noise(random));
+  const auto constant = [](float value) { return Hop{.samples = std::vector<float>(256, value)}; };
+  session.process(constant(std::numeric_limits<float>::quiet_NaN()));
+  for (int i = 0; i < 3; ++i) session.process(constant(0.0F));
+  std::vector<BlindReason> reasons;
+  for (const MonitorEvent& event : kept.events) {
+    if (event.kind == MonitorEvent::Kind::state) reasons.push_back(event.decision.reason);
+  }
+  EXPECT_EQ(reasons, (std::vector<BlindReason>{BlindReason::gap, BlindReason::no_signal}));
+  EXPECT_NEAR(session.metrics().blind_for_s(BlindReason::gap), 0.025, 1e-9);
+  EXPECT_NEAR(session.metrics().blind_for_s(BlindReason::no_signal), 0.075, 1e-9);
+  const std::string text = session.metrics().text();
+  EXPECT_NE(text.find("\nrobomill_blind_seconds_total{reason=\"gap\"} 0.025\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nrobomill_blind_seconds_total{reason=\"clipped\"} 0\n"), std::string::npos) << text;
 }
 
 std::string message(std::uint64_t number, double rate_hz = 10'240.0, int channels = 1) {

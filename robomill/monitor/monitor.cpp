@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
@@ -14,6 +15,10 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double silence = 1e-8;  // share of the loudest channel's power below which a channel is dead
+// For which a channel that is well again still counts as bad: as long as the detector leaves it out.
+constexpr std::size_t left_out_hops = 4;
+// Hops in a row at the converter's limit that an impact does not make.
+constexpr std::size_t clipped_hops = 4;
 
 void require_between(const char* field, double number, double low, double high, const char* unit, const char* rule) {
   if (!(number >= low && number <= high)) throw InvalidInput(field, number, unit, rule);
@@ -69,12 +74,15 @@ struct ChatterMonitor::Parts {
         hop_frames(o.hop_samples()),
         samples(channels * hop_frames),
         validations(channels, SignalValidation(o)),
+        left_out(channels),
         detector(make_detector(o)) {}
 
   void take(float sample) noexcept {
     samples[channel * hop_frames + frame] = validations[channel].take(sample);
+    frame_is_lost = frame_is_lost && std::isnan(sample);
     if (++channel < channels) return;
     channel = 0;
+    if (std::exchange(frame_is_lost, true)) ++lost_frames;
     if (++frame < hop_frames) return;
     frame = 0;
     decide();
@@ -85,22 +93,71 @@ struct ChatterMonitor::Parts {
     const std::uint64_t hop = last.hop + 1;
     last = {.hop = hop, .time_s = static_cast<double>(hop * hop_frames - 1) / options.sample_rate_hz};
     Hop of{.samples = samples, .frames = hop_frames, .first_frame = (hop - 1) * hop_frames};
+    validate(of);
+    detector->decide(of, last);
+    take_blindness();
+    last.changed = last.state != before;
+  }
+
+  [[nodiscard]] bool is_vibration(std::size_t c) const noexcept {
+    return static_cast<int>(c) != options.tachometer_channel;
+  }
+
+  /// Faults and level of the hop, which channels are bad, and whether what is left can be judged.
+  void validate(Hop& hop) noexcept {
     double power = 0.0;
     double loudest = 0.0;
-    for (SignalValidation& validation : validations) {
-      last.faults |= validation.hop_faults();
-      power += validation.variance();
-      loudest = std::max(loudest, validation.variance());
-    }
+    std::uint64_t at_limit = 0;
     for (std::size_t c = 0; c < channels; ++c) {
-      if (static_cast<int>(c) == options.tachometer_channel) continue;
+      const std::uint32_t faults = validations[c].hop_faults();
+      // Pulses rest at their limits, and are as loud as they are.
+      last.faults |= is_vibration(c) ? faults : faults & not_finite;
+      if (!is_vibration(c)) continue;
+      if ((faults & clipped) != 0) at_limit |= std::uint64_t{1} << c;
+      power += validations[c].variance();
+      loudest = std::max(loudest, validations[c].variance());
+    }
+    std::size_t vibration = 0;
+    std::size_t bad = 0;
+    std::size_t usable = 0;
+    std::size_t usable_at_limit = 0;
+    for (std::size_t c = 0; c < channels; ++c) {
+      if (!is_vibration(c)) continue;
+      ++vibration;
       const bool silent = validations[c].variance() < silence * loudest;
       if (silent) last.faults |= dead_channel;
-      if (silent || validations[c].bad()) of.bad_channels |= std::uint64_t{1} << c;
+      if (silent || validations[c].bad()) {
+        hop.bad_channels |= std::uint64_t{1} << c;
+        left_out[c] = left_out_hops;
+        ++bad;
+      } else if (left_out[c] > 0) {
+        --left_out[c];
+      } else {
+        ++usable;
+        if ((at_limit >> c & 1U) != 0) ++usable_at_limit;
+      }
     }
-    last.level = std::sqrt(power / static_cast<double>(channels));
-    detector->decide(of, last);
-    last.changed = last.state != before;
+    last.level = std::sqrt(power / static_cast<double>(vibration));
+    clipped_run = usable > 0 && usable == usable_at_limit ? clipped_run + 1 : 0;
+    const bool is_gap = 2 * std::exchange(lost_frames, 0) > hop_frames;
+    if (bad == vibration) {
+      unusable = is_gap ? BlindReason::gap : BlindReason::no_signal;
+    } else if (usable > 0) {
+      unusable = clipped_run >= clipped_hops ? BlindReason::clipped : BlindReason::none;
+    } else if (unusable != BlindReason::gap) {
+      unusable = BlindReason::no_signal;
+    }
+  }
+
+  /// What is wrong with the input stands before what the detector lacks; an alarm stands until the detector ends it.
+  void take_blindness() noexcept {
+    if (unusable != BlindReason::none) last.reason = unusable;
+    if (last.state == State::chatter) last.reason = BlindReason::none;
+    if (last.reason == BlindReason::none) return;
+    last.state = State::blind;
+    last.chatter_frequency_hz = last.chatter_frequency_std_hz = 0.0;
+    last.channel = 0;
+    last.synchronous = SynchronousChatter::none;
   }
 
   MonitorOptions options;
@@ -108,6 +165,11 @@ struct ChatterMonitor::Parts {
   std::vector<double> samples;  // of this hop, channel after channel
   std::size_t frame = 0, channel = 0;
   std::vector<SignalValidation> validations;
+  std::vector<std::size_t> left_out;  // hops for which each channel is still left out
+  std::size_t clipped_run = 0;        // hops in which every usable channel was at its limit
+  std::size_t lost_frames = 0;        // of this hop, NaN in every channel
+  bool frame_is_lost = true;          // so far
+  BlindReason unusable = BlindReason::none;
   std::unique_ptr<Detector> detector;
   Decision last;
 };
@@ -138,6 +200,10 @@ void ChatterMonitor::reset() noexcept {
   parts_->frame = 0;
   parts_->channel = 0;
   parts_->last = {};
+  std::fill(parts_->left_out.begin(), parts_->left_out.end(), 0);
+  parts_->clipped_run = parts_->lost_frames = 0;
+  parts_->frame_is_lost = true;
+  parts_->unusable = BlindReason::none;
   for (SignalValidation& validation : parts_->validations) validation.reset();
   parts_->detector->reset();
 }

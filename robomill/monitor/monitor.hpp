@@ -33,14 +33,19 @@ enum class State {
   chatter,     ///< an alarm: score > threshold (energy_entropy with alarm_below: <), or SynchronousChatter
   blind        ///< nothing can be said of the cut; Decision::reason says why
 };
-/// Why nothing can be said of the cut.
+/// Why nothing can be said of the cut. The first that applies is given; chatter once found is not blind.
 enum class BlindReason {
   none,
-  no_signal,      ///< no channel has a usable signal, or no samples come
-  clipped,        ///< every channel that has a signal is at its converter's limit
-  speed_unknown,  ///< no spindle speed was given, and none can be found
-  gap             ///< samples were lost on their way
+  /// No channel of vibration can be used: each is stuck, dead or mostly not finite, or was so within the last four
+  /// hops. A session also gives it where no samples come.
+  no_signal,
+  clipped,        ///< for 4 hops and more, every channel that can be used was at its converter's limit
+  speed_unknown,  ///< no spindle speed was given, and none can be found: the detector's
+  gap             ///< as no_signal, where most frames are NaN in every channel: samples that were lost on their way
 };
+/// Those that are one.
+inline constexpr BlindReason blind_reasons[] = {BlindReason::no_signal, BlindReason::clipped,
+                                                BlindReason::speed_unknown, BlindReason::gap};
 /// Chatter synchronous with the spindle, which a comb takes for a part of the cut. It is detected by the power of a
 /// multiple of rotation against what was learnt of it.
 enum class SynchronousChatter {
@@ -95,7 +100,7 @@ struct Decision {
   double score = 0.0;                      ///< of the test
   double threshold = 0.0;  ///< alarm where score > threshold (MonitorOptions::alarm_below: <), or as `synchronous` says
   double energy_entropy = 0.0;  ///< Σ over the channels of the bands' energy entropy, as MonitorOptions::entropy has it
-  double level = 0.0;           ///< rms of all channels over the hop, mean taken off [input's unit]
+  double level = 0.0;           ///< rms of all channels of vibration over the hop, mean taken off [input's unit]
   double chatter_frequency_hz = 0.0;         ///< 0: none
   double chatter_frequency_std_hz = 0.0;     ///< its standard deviation
   int channel = 0;                           ///< in which chatter is strongest, from 0

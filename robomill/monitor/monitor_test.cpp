@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "robomill/base/random.hpp"
 #include "testing/support.hpp"
 
 namespace monitor_test {
@@ -24,6 +27,152 @@ TEST(ChatterMonitor, DecidesOnceAHopWhateverTheBlocks) {
     EXPECT_EQ(decision.hop, pushed / 512);
   }
   EXPECT_DOUBLE_EQ(decision.time_s, (10.0 * 256.0 - 1.0) / 10240.0);
+}
+
+constexpr std::size_t hop_frames = 256;  // 25 ms at 10,240 Hz
+
+MonitorOptions options_of(int channels, Kind kind = Kind::comb_cusum) {
+  return {.kind = kind,
+          .sample_rate_hz = 10'240.0,
+          .channels = channels,
+          .spindle_speed_rad_per_s = 300.0,
+          .threshold = 1e300};
+}
+
+/// White noise of rms 1, of which spoil(channel, value) gives what the monitor is given.
+template <class Spoil>
+Decision push_hop(ChatterMonitor& monitor, Random& random, Spoil&& spoil) {
+  const int channels = monitor.options().channels;
+  std::vector<float> samples;
+  for (std::size_t i = 0; i < hop_frames; ++i) {
+    for (int c = 0; c < channels; ++c) samples.push_back(spoil(c, static_cast<float>(random.normal())));
+  }
+  return monitor.push(samples);
+}
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+const auto as_it_is = [](int, float x) { return x; };
+
+// The pulses stand at 0 or 5, so that alone they would be clipped, stuck and the loudest of all.
+TEST(ChatterMonitor, ATachometerIsNoVibration) {
+  MonitorOptions options = options_of(2);
+  options.tachometer_channel = 1;
+  options.full_scale = 5.0;
+  ChatterMonitor monitor(options);
+  Random random(1);
+  for (std::size_t hop = 0; hop < 40; ++hop) {
+    std::vector<float> samples;
+    for (std::size_t i = 0; i < hop_frames; ++i) {
+      samples.push_back(static_cast<float>(random.normal()));
+      samples.push_back((hop * hop_frames + i) % 215 < 100 || hop >= 20 ? 5.0F : 0.0F);
+    }
+    const Decision decision = monitor.push(samples);
+    EXPECT_EQ(decision.faults & (clipped | stuck | dead_channel), 0U) << hop;
+    EXPECT_NEAR(decision.level, 1.0, 0.3) << hop;
+    EXPECT_NE(decision.state, State::blind) << hop;
+  }
+  // Vibration of 1e-5 beside pulses of 5 V is not dead.
+  const Decision decision = push_hop(monitor, random, [](int c, float x) { return c == 1 ? 5.0F * x : 1e-5F * x; });
+  EXPECT_EQ(decision.faults & dead_channel, 0U);
+  EXPECT_NE(decision.state, State::blind);
+  // That it is not finite is a fault of the input, and leaves the vibration.
+  const Decision lost = push_hop(monitor, random, [](int c, float x) { return c == 1 ? nan : x; });
+  EXPECT_NE(lost.faults & not_finite, 0U);
+  EXPECT_NE(lost.state, State::blind);
+}
+
+TEST(ChatterMonitor, IsBlindWhereNoChannelHasASignal) {
+  for (const Kind kind : {Kind::comb_cusum, Kind::energy_entropy}) {
+    ChatterMonitor monitor(options_of(2, kind));
+    Random random(1);
+    const auto push = [&](auto spoil) { return push_hop(monitor, random, spoil); };
+    EXPECT_NE(push(as_it_is).state, State::blind);
+    EXPECT_NE(push([](int c, float x) { return c == 0 ? nan : x; }).state, State::blind);
+    for (int i = 0; i < 6; ++i) EXPECT_NE(push(as_it_is).state, State::blind);
+    // One is stuck, the other not finite.
+    Decision decision = push([](int c, float) { return c == 0 ? 0.5F : infinity; });
+    EXPECT_EQ(decision.state, State::blind);
+    EXPECT_EQ(decision.reason, BlindReason::no_signal);
+    EXPECT_TRUE(decision.changed);
+    EXPECT_EQ(decision.chatter_frequency_hz, 0.0);
+    // The detector leaves channels out for four hops more.
+    for (int i = 0; i < 4; ++i) {
+      decision = push(as_it_is);
+      EXPECT_EQ(decision.reason, BlindReason::no_signal);
+      EXPECT_FALSE(decision.changed);
+    }
+    decision = push(as_it_is);
+    EXPECT_NE(decision.state, State::blind);
+    EXPECT_EQ(decision.reason, BlindReason::none);
+    EXPECT_TRUE(decision.changed);
+  }
+}
+
+// What is filled in for lost samples is NaN in every channel; a sensor's fault is not.
+TEST(ChatterMonitor, DistinguishesAGapFromAMissingSignal) {
+  const auto reason_of = [](int channels, int tachometer, auto spoil) {
+    MonitorOptions options = options_of(channels);
+    options.tachometer_channel = tachometer;
+    ChatterMonitor monitor(options);
+    Random random(1);
+    (void)push_hop(monitor, random, as_it_is);
+    return push_hop(monitor, random, spoil).reason;
+  };
+  const auto lost = [](int, float) { return nan; };
+  EXPECT_EQ(reason_of(1, -1, lost), BlindReason::gap);
+  EXPECT_EQ(reason_of(2, -1, lost), BlindReason::gap);
+  EXPECT_EQ(reason_of(2, 1, lost), BlindReason::gap);
+  EXPECT_EQ(reason_of(2, 1, [](int c, float x) { return c == 0 ? nan : x; }), BlindReason::no_signal);
+  EXPECT_EQ(reason_of(2, -1, [](int, float) { return infinity; }), BlindReason::no_signal);
+  EXPECT_EQ(reason_of(2, -1, [](int, float) { return 0.0F; }), BlindReason::no_signal);
+  // A third of the hop lost is lived through.
+  EXPECT_EQ(reason_of(1, -1, [i = 0](int, float x) mutable { return i++ % 3 == 0 ? nan : x; }), BlindReason::none);
+}
+
+TEST(ChatterMonitor, IsBlindWhereEverySignalStaysClipped) {
+  MonitorOptions options = options_of(2);
+  options.full_scale = 1.0;
+  ChatterMonitor monitor(options);
+  Random random(1);
+  const auto both = [](int, float x) { return std::clamp(x, -1.0F, 1.0F); };
+  const auto one = [](int c, float x) { return c == 0 ? std::clamp(x, -1.0F, 1.0F) : 0.1F * x; };
+  for (int i = 0; i < 20; ++i) EXPECT_NE(push_hop(monitor, random, one).state, State::blind);
+  for (int i = 0; i < 3; ++i) EXPECT_NE(push_hop(monitor, random, both).state, State::blind);
+  EXPECT_EQ(push_hop(monitor, random, both).reason, BlindReason::clipped);
+  // A channel without a signal cannot speak for the clipped one.
+  EXPECT_EQ(push_hop(monitor, random, [](int c, float x) { return c == 0 ? std::clamp(x, -1.0F, 1.0F) : 0.0F; }).reason,
+            BlindReason::clipped);
+  // Its run of zeros reaches into the next hop, and then it is left out for four more.
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(push_hop(monitor, random, one).reason, BlindReason::clipped);
+  EXPECT_NE(push_hop(monitor, random, one).state, State::blind);
+}
+
+// A spindle at rest before a 16-bit converter: hum of three counts, whose tops are flat.
+TEST(ChatterMonitor, StepsOfAConverterAreNotClipped) {
+  for (const double full_scale : {32'768.0, 0.0}) {
+    MonitorOptions options = options_of(1);
+    options.full_scale = full_scale;
+    ChatterMonitor monitor(options);
+    Random random(1);
+    Decision decision;
+    for (std::size_t hop = 0; hop < 20; ++hop) {
+      std::size_t i = hop * hop_frames;
+      decision = push_hop(monitor, random, [&](int, float) {
+        return static_cast<float>(std::round(3.0 * std::sin(0.06 * static_cast<double>(i++))));
+      });
+    }
+    EXPECT_EQ((decision.faults & clipped) != 0, full_scale == 0.0);  // where it is not known they might be
+  }
+}
+
+TEST(ChatterMonitor, ForgetsOnResetWhyItWasBlind) {
+  ChatterMonitor monitor(options_of(1));
+  Random random(1);
+  (void)push_hop(monitor, random, as_it_is);
+  EXPECT_EQ(push_hop(monitor, random, [](int, float) { return nan; }).state, State::blind);
+  monitor.reset();
+  EXPECT_NE(push_hop(monitor, random, as_it_is).state, State::blind);
 }
 
 TEST(MonitorOptions, RejectWhatMakesNoSense) {

@@ -8,6 +8,8 @@ namespace {
 
 constexpr double stuck_s = 0.02;
 constexpr std::size_t flat_top = 4;  // equal samples at the extreme that a converter's limit makes
+// Of full scale, where that is known: what stands still below are the steps of a converter that has hardly a signal.
+constexpr double least_limit = 0.01;
 
 }  // namespace
 
@@ -46,7 +48,8 @@ double SignalValidation::take(float sample) noexcept {
     ever_low_ = std::min(ever_low_, x);
     ever_high_ = std::max(ever_high_, x);
     if (full_scale_ > 0.0 && std::abs(x) >= 0.9999 * full_scale_) ++at_full_scale_;
-    if (run_ == flat_top && ever_high_ > ever_low_ && (x == ever_low_ || x == ever_high_)) ++flat_tops_;
+    const bool at_extreme = ever_high_ > ever_low_ && (x == ever_low_ || x == ever_high_);
+    if (run_ == flat_top && at_extreme && std::abs(x) >= least_limit * full_scale_) ++flat_tops_;
   }
   last_ = x;
   ++count_;
