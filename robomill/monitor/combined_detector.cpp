@@ -8,9 +8,11 @@
 namespace robomill::monitor {
 namespace {
 
-constexpr double drift_hz = 3.0;       // corner of the high-pass
-constexpr double bears_out = 0.03;     // of the synchronous energy, in lines beside the orders
-constexpr double faint = 0.01;         // of the loudest energy
+constexpr double drift_hz = 3.0;          // corner of the high-pass
+constexpr double bears_out = 0.03;        // of the synchronous energy, in lines beside the orders
+constexpr double bears_out_unsure = 0.2;  // the same where no speed is given, and the comb found may miss orders
+constexpr double patience_s = 1.0;        // for which no speed need be known
+constexpr double faint = 0.01;            // of the loudest energy
 constexpr double forgets_s = 10.0;
 constexpr double leaving_swing = 3.0;  // of the synchronous energy in 0.3 s, by itself
 
@@ -41,7 +43,7 @@ void CombinedDetector::reset() noexcept {
   std::ranges::fill(mean_, 0.0);
   first_ = true;
   accepted_ = false;
-  loudest_ = 0.0;
+  loudest_ = unknown_s_ = 0.0;
 }
 
 void CombinedDetector::high_pass(const Hop& hop) noexcept {
@@ -64,39 +66,39 @@ void CombinedDetector::decide(const Hop& hop, Decision& decision) noexcept {
   high_pass(hop);
   std::uint64_t left_out = hop.bad_channels;
   if (options_.tachometer_channel >= 0) left_out |= std::uint64_t{1} << options_.tachometer_channel;
-  if (hint_hz_ == 0.0 && growth_.rotation_hz() > 0.0) orders_.set_hint(growth_.rotation_hz());
   judge(orders_.step(samples_, hop.frames, left_out), decision);
+}
+
+// Whether the orders bear out an alarm of CombCusum.
+bool CombinedDetector::borne_out(const RatioTest::Verdict& orders) const noexcept {
+  if (orders.swing > leaving_swing) return false;
+  if (hint_hz_ == 0.0) return orders.known && orders.ratio > bears_out_unsure;
+  return orders.known ? orders.ratio > bears_out : orders.energy > faint * loudest_;
 }
 
 void CombinedDetector::judge(const RatioTest::Verdict& orders, Decision& decision) noexcept {
   if (orders.rotation_hz > 0.0) {
     decision.spindle_speed_rad_per_s = units::revolution * orders.rotation_hz;
     decision.spindle_speed_std_rad_per_s = decision.spindle_speed_rad_per_s * orders.rotation_std_ratio;
-    if (orders.known) decision.faults &= ~static_cast<std::uint32_t>(speed_unknown);
   }
-  const bool grew = decision.state == State::chatter;
+  if (orders.known) decision.faults &= ~static_cast<std::uint32_t>(speed_unknown);
   loudest_ = std::max(orders.energy, loudest_ * (1.0 - options_.hop_s / forgets_s));
-  const bool borne_out =
-      (orders.known     ? orders.ratio > bears_out
-       : hint_hz_ == 0.0 ? false
-                         : orders.energy > faint * loudest_) && orders.swing < leaving_swing;
-  accepted_ = grew && (accepted_ || borne_out);
-  if (orders.chatter) {
-    decision.state = State::chatter;
+  const bool grew = decision.state == State::chatter;
+  accepted_ = grew && (accepted_ || borne_out(orders));
+  if (orders.chatter || (decision.state == State::stable && orders.pending)) {
+    decision.state = orders.chatter ? State::chatter : State::transition;
     decision.chatter_frequency_hz = orders.frequency_hz;
     decision.chatter_frequency_std_hz = orders.frequency_std_hz;
     decision.channel = static_cast<int>(orders.channel);
     decision.synchronous = orders.synchronous;
   } else if (grew && !accepted_) {
     decision.state = State::transition;
-  } else if (decision.state == State::stable && orders.pending) {
-    decision.state = State::transition;
-    decision.chatter_frequency_hz = orders.frequency_hz;
-    decision.chatter_frequency_std_hz = orders.frequency_std_hz;
   }
   // The score is that of CombCusum: what the orders say holds it on its side of the threshold.
   decision.score = decision.state == State::chatter ? std::max(decision.score, 1.001 * decision.threshold)
                                                     : std::min(decision.score, decision.threshold);
+  unknown_s_ = hint_hz_ > 0.0 || orders.known ? 0.0 : unknown_s_ + options_.hop_s;
+  if (unknown_s_ > patience_s) decision.reason = BlindReason::speed_unknown;
 }
 
 }  // namespace robomill::monitor

@@ -8,10 +8,10 @@
 
 namespace robomill::monitor {
 
-/// The default detector: RatioTest, which needs no history, beside CombCusum, which finds slow growth and the chatter of
-/// a tool that hardly has a comb. An alarm of CombCusum counts where the orders bear it out: where the speed is not
-/// known, or lines beside the orders hold a thirtieth of the synchronous energy, and where that energy does not swing as
-/// it does when the tool leaves the cut. Method: README.md.
+/// The default detector: RatioTest, which needs no history, beside CombCusum, which finds slow growth and the chatter
+/// of a tool that hardly has a comb. An alarm of CombCusum counts where the orders bear it out: where the speed is not
+/// known, or lines beside the orders hold a thirtieth of the synchronous energy, and where that energy does not swing
+/// as it does when the tool leaves the cut. Method: README.md.
 class CombinedDetector final : public Detector {
  public:
   explicit CombinedDetector(const MonitorOptions& options);
@@ -21,6 +21,7 @@ class CombinedDetector final : public Detector {
 
  private:
   void high_pass(const Hop& hop) noexcept;
+  [[nodiscard]] bool borne_out(const RatioTest::Verdict& orders) const noexcept;
   void judge(const RatioTest::Verdict& orders, Decision& decision) noexcept;
 
   MonitorOptions options_;
@@ -30,8 +31,9 @@ class CombinedDetector final : public Detector {
   std::vector<double> mean_;    // of each channel, slow
   double hint_hz_ = 0.0;        // as given; 0: none
   bool first_ = true;
-  bool accepted_ = false;  // the alarm of CombCusum
-  double loudest_ = 0.0;   // energy, slowly forgotten
+  bool accepted_ = false;   // the alarm of CombCusum
+  double loudest_ = 0.0;    // energy, slowly forgotten
+  double unknown_s_ = 0.0;  // for which neither a speed is given nor a comb found
 };
 
 }  // namespace robomill::monitor

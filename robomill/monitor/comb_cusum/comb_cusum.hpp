@@ -23,8 +23,6 @@ class CombCusum final : public Detector {
   void decide(const Hop& hop, Decision& decision) noexcept override;
   void set_spindle_speed(double rad_per_s) noexcept override;
   void reset() noexcept override;
-  /// As followed; 0: unknown.
-  [[nodiscard]] double rotation_hz() const noexcept { return spindle_.rotation_hz(); }
 
  private:
   static constexpr std::size_t columns_a_hop = 4;  // of the transform

@@ -14,7 +14,7 @@ constexpr double unexplained = 0.02;
 constexpr double peaked = 0.53;  // ∫h⁴/(∫h²)²
 constexpr double most_lines = 20.0;
 constexpr double credit = 4.0;  // of ln f
-constexpr double margin = 6.0;
+constexpr double margin = 4.0;
 constexpr double beside = 0.01;
 constexpr double mains_ratio = 0.01;
 
@@ -47,8 +47,7 @@ void CombSearch::observe(std::span<const float> power, const Spectrum& like) noe
     squares += p * p;
   }
   if (sum <= 0.0) return;
-  const double lines =
-      std::clamp(sum * sum / squares * like.seconds * like.step_hz * peaked - 1.0, 0.0, most_lines);
+  const double lines = std::clamp(sum * sum / squares * like.seconds * like.step_hz * peaked, 0.0, most_lines);
   const double whole = sum * like.energy_share();
   const double forgets = std::exp(-hop_s_ / memory_s);
   const double weight = 2.0 * hop_s_ / like.seconds * lines;

@@ -9,8 +9,8 @@ namespace robomill::monitor {
 
 /// Finds the rotation where no speed is given, among 15 to 500 Hz. Evidence is gathered over the hops with a memory of
 /// 1 s, by the share s(f) of the energy below 1.5 kHz that the multiples of f hold, as SpeedPosterior has it. Half of f
-/// explains all that f does: a candidate is credited 4 ln f, so that the greatest one wins whose multiples are there. It is
-/// found where it beats all others, but those within 1 % of it, by 6.
+/// explains all that f does: a candidate is credited 4 ln f, so that the greatest one wins whose multiples are there.
+/// It is found where it beats all others, but those within 1 % of it, by 6.
 class CombSearch {
  public:
   explicit CombSearch(double hop_s);

@@ -6,11 +6,11 @@
 namespace robomill::monitor {
 namespace {
 
-constexpr std::size_t width = 5;             // cells that a line's energy is summed over
-constexpr double growth = 10.0;              // of the energy
+constexpr std::size_t width = 5;  // cells that a line's energy is summed over
+constexpr double growth = 10.0;   // of the energy
 constexpr double suspect_growth = 3.0;
-constexpr double least_share = 0.05;         // of the synchronous energy: what is smaller marks no part
-constexpr double first_s = 0.4;              // that are learnt before anything is judged
+constexpr double least_share = 0.05;  // of the synchronous energy: what is smaller marks no part
+constexpr double first_s = 0.4;       // that are learnt before anything is judged
 constexpr double memory_s = 1.0, suspect_memory_s = 5.0;
 
 }  // namespace

@@ -6,8 +6,8 @@
 namespace robomill::monitor {
 
 /// Tests a cut against its own past: whether the energy of a line that is no multiple of the teeth has grown by 10 dB
-/// while that of the multiples has not. Energies are taken in cells of 10 Hz and summed over five of them, so that a line
-/// may drift; the past is their mean with a memory of 1 s, of 5 s while something has grown by 5 dB.
+/// while that of the multiples has not. Energies are taken in cells of 10 Hz and summed over five of them, so that a
+/// line may drift; the past is their mean with a memory of 1 s, of 5 s while something has grown by 5 dB.
 class GrowthTest {
  public:
   static constexpr double cell_hz = 10.0;

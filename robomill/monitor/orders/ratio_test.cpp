@@ -11,30 +11,30 @@ constexpr double long_ratio = 0.2, short_ratio = 0.3;   // of L to S
 constexpr double alarm_s = 0.075, alone_alarm_s = 0.1;  // that something stands out for
 constexpr double entry_alarm_s = 0.2, entry_s = 0.4;    // the same while the tool enters; which lasts so long
 constexpr double over_s = 0.15;
-constexpr double enters = 4.0;         // growth of the energy in 0.3 s
-constexpr double locks_at = 0.4;       // probability
-constexpr double locks_share = 0.35;   // of the energy, in the comb
-constexpr double follows = 0.1;        // a hop, of cut_
-constexpr double leaves = 0.1;         // of cut_
-constexpr double vanishes = 0.4;       // of S in 0.3 s
-constexpr double stays = 0.5;          // of cut_, or of the energy before
-constexpr double least_anchor = 0.1;   // of the whole, in S: less does not hold the speed
-constexpr double lost_s = 1.0;         // after which a lone line counts again
+constexpr double enters = 4.0;        // growth of the energy in 0.3 s
+constexpr double locks_at = 0.4;      // probability
+constexpr double locks_share = 0.35;  // of the energy, in the comb
+constexpr double follows = 0.1;       // a hop, of cut_
+constexpr double leaves = 0.1;        // of cut_
+constexpr double vanishes = 0.4;      // of S in 0.3 s
+constexpr double stays = 0.5;         // of cut_, or of the energy before
+constexpr double least_anchor = 0.1;  // of the whole, in S: less does not hold the speed
+constexpr double lost_s = 1.0;        // after which a lone line counts again
 constexpr double forgets_s = 10.0;
-constexpr double faint = 0.01;         // of loudest_
-constexpr double steady_ratio = 0.008; // of the speed, in 0.3 s
+constexpr double faint = 0.01;          // of loudest_
+constexpr double steady_ratio = 0.008;  // of the speed, in 0.3 s
 constexpr double growth_of_swing = 0.5;
 constexpr double alone_share = 0.6;
-constexpr double line_moves = 0.04;    // of a frequency between the windows
+constexpr double line_moves = 0.04;                     // of a frequency between the windows
 constexpr double unsure_ratio = 0.07, unsure_hz = 5.0;  // by which a hint and a line may be off
 constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0, highest_of_unknown_teeth = 12.0;  // orders
 constexpr double mains_width_hz = 0.7, highest_of_mains = 3.5;
-constexpr std::size_t blocks = 6;      // that the short window is cut into
-constexpr double rung_down = 0.4;      // of the strongest block, in the last
-constexpr double reading = 0.05;       // 1/T: how well a line's frequency is read off
-constexpr double lowest = 2.5;         // 1/T, of a lone line
-constexpr double spread = 1.25;        // 1/T, to each side, that hold a line's energy
-constexpr double on_an_order = 0.75;   // 1/T
+constexpr std::size_t blocks = 6;     // that the short window is cut into
+constexpr double rung_down = 0.4;     // of the strongest block, in the last
+constexpr double reading = 0.05;      // 1/T: how well a line's frequency is read off
+constexpr double lowest = 2.5;        // 1/T, of a lone line
+constexpr double spread = 1.25;       // 1/T, to each side, that hold a line's energy
+constexpr double on_an_order = 0.75;  // 1/T
 
 // Hum.
 bool of_the_mains(double frequency_hz) {
@@ -53,6 +53,7 @@ RatioTest::RatioTest(const Setup& setup)
               .highest_hz = spectra_.highest_hz(),
               .std_ratio = setup.speed_std_ratio,
               .teeth = setup.teeth}),
+      search_(setup.hop_s),
       growth_(spectra_.highest_hz(), setup.hop_s),
       power_(spectra_.spectrum(0, 0).line.size()),
       synchronous_(hops(memory_s)),
@@ -66,13 +67,16 @@ std::size_t RatioTest::hops(double seconds) const noexcept {
 }
 
 void RatioTest::set_hint(double rotation_hz) noexcept {
-  speed_.set_hint(rotation_hz);
-  if (rotation_hz <= 0.0) cut_ = 0.0;
+  if (rotation_hz <= 0.0 && given_) cut_ = 0.0;
+  given_ = rotation_hz > 0.0;
+  speed_.set_hint(std::max(0.0, rotation_hz));
 }
 
 void RatioTest::reset() noexcept {
   spectra_.reset();
+  if (!given_) speed_.set_hint(0.0);
   speed_.reset();
+  search_.reset();
   growth_.forget();
   found_ = {};
   peak_ = {};
@@ -95,13 +99,17 @@ void RatioTest::measure(std::uint64_t bad_channels) noexcept {
       const Spectrum& own = spectra_.spectrum(w, c);
       for (std::size_t i = 1; i < own.line.size(); ++i) power_[i] += std::norm(own.line[i]);
     }
+    if (w == 0 && !given_) {
+      search_.observe(std::span(power_).first(like.line.size()), like);
+      if (!chatter_ && cut_ == 0.0 && search_.rotation_hz() > 0.0) speed_.set_hint(search_.rotation_hz());
+    }
     peak_[w] = strongest(like, lowest / like.seconds, spectra_.highest_hz());
     speed_.observe(std::span(power_).first(like.line.size()), like);
   }
   speed_.conclude();
   if (speed_.rotation_hz() <= 0.0) return;
   for (std::size_t w = 0; w < windows; ++w) {
-    lines_[w].begin(speed_.rotation_hz(), setup_.teeth);
+    lines_[w].begin(speed_.rotation_hz(), setup_.teeth, given_);
     for (std::size_t c = 0; c < setup_.channels; ++c) {
       if ((bad_channels >> c & 1U) == 0) lines_[w].add(spectra_.spectrum(w, c));
     }
@@ -274,7 +282,7 @@ RatioTest::Verdict RatioTest::step(std::span<const float> samples, std::size_t f
               .ratio = near.family / (near.synchronous + 1e-300),
               .swing = swing() / (near.synchronous + 1e-300),
               .energy = peak_.back().energy,
-              .rotation_hz = speed_.rotation_hz(),
+              .rotation_hz = given_ ? speed_.rotation_hz() : 0.0,
               .rotation_std_ratio = speed_.std_ratio(),
               .known = cut_ > 0.0};
   if (chatter_ || out.pending) describe(bad_channels, out);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robomill/monitor/monitor.hpp"
+#include "robomill/monitor/orders/comb_search.hpp"
 #include "robomill/monitor/orders/growth_test.hpp"
 #include "robomill/monitor/orders/residual_lines.hpp"
 #include "robomill/monitor/orders/spectra.hpp"
@@ -19,16 +20,19 @@ namespace robomill::monitor {
 ///
 /// ratio:  L > 0.2 S in the one and L > 0.3 S in the other window, at a known speed, where L exceeds the swing of S in
 ///         0.3 s: entry, exit and a change of speed move energy out of the orders. Eight hops, while the tool enters.
-/// growth: a line that is no multiple of the teeth has grown by 10 dB (GrowthTest), the speed stands still to 0.4 %, and
+/// growth: a line that is no multiple of the teeth has grown by 10 dB (GrowthTest), the speed stands still to 0.4 %,
+/// and
 ///         the line exceeds half the swing.
 /// alone:  one line holds 0.6 of all energy where no speed was known since the tool entered, and is no low multiple of
 ///         rotation or of tooth passing. Four hops.
 ///
-/// No line counts that rings down as a knock does (the last 25 ms below 0.4 of the strongest of the last six), that is a
-/// low multiple of 50 or 60 Hz, or that is smaller than a hundredth of the cut. Chatter is over after six hops without.
+/// No line counts that rings down as a knock does (the last 25 ms below 0.4 of the strongest of the last six), that is
+/// a low multiple of 50 or 60 Hz, or that is smaller than a hundredth of the cut. Chatter is over after six hops
+/// without.
 ///
-/// The speed is known from where the posterior is narrow and the comb holds a third of the energy, until S falls below a
-/// tenth of what it was, which is the tool leaving, or to 0.4 within 0.3 s while the whole stays, which is another speed.
+/// The speed is known from where the posterior is narrow and the comb holds a third of the energy, until S falls below
+/// a tenth of what it was, which is the tool leaving, or to 0.4 within 0.3 s while the whole stays, which is another
+/// speed.
 class RatioTest {
  public:
   struct Setup {
@@ -47,9 +51,9 @@ class RatioTest {
     double ratio = 0.0;               ///< L/S of the last 0.15 s
     double swing = 0.0;               ///< of S in 0.3 s, to the last S
     double energy = 0.0;              ///< of everything in the last 0.15 s
-    double rotation_hz = 0.0;         ///< most likely; 0: no hint
+    double rotation_hz = 0.0;         ///< most likely; 0: no hint, where the comb found may be a multiple of it
     double rotation_std_ratio = 0.0;  ///< standard deviation, of it
-    bool known = false;               ///< the tool cuts at a known speed
+    bool known = false;               ///< the tool cuts at a known speed, or a multiple of it
   };
   explicit RatioTest(const Setup& setup);
   /// [Hz]; 0: unknown.
@@ -92,6 +96,8 @@ class RatioTest {
   Setup setup_;
   Spectra spectra_;
   SpeedPosterior speed_;
+  CombSearch search_;   // where no speed is given
+  bool given_ = false;  // a speed is
   GrowthTest growth_;
   std::vector<ResidualLines> lines_;  // of each window
   std::vector<float> power_;          // of all channels; after measure() of the short window
@@ -101,8 +107,8 @@ class RatioTest {
   std::size_t hop_ = 0;                                 // in these
   std::size_t ratio_hops_ = 0, growth_hops_ = 0, alone_hops_ = 0, calm_hops_ = 0;  // running
   std::size_t entry_hops_ = 0, lost_hops_ = 0;  // until the tool has entered; until a lost speed is no news
-  double cut_ = 0.0;      // S while the tool cuts at a known speed, slow; 0: it does not
-  double loudest_ = 0.0;  // of these, slowly forgotten
+  double cut_ = 0.0;                            // S while the tool cuts at a known speed, slow; 0: it does not
+  double loudest_ = 0.0;                        // of these, slowly forgotten
   bool chatter_ = false;
   double frequency_hz_ = 0.0, short_frequency_hz_ = 0.0;
 };

@@ -12,6 +12,8 @@ constexpr double kernel_steps = 32.0;       // of 1/T
 constexpr double skirt = 0.5;               // of an order's energy, over the square of the distance
 constexpr double order_guard = 0.75;        // 1/T
 constexpr double teeth_guard = 2.0;         // 1/T
+constexpr int most_parts = 6;               // of an order, where it may be a multiple of the rotation
+constexpr double fewest_apart = 4.5;        // 1/T, that these stand apart: 15 Hz, the slowest rotation that is sought
 constexpr double offset_guard = 2.5;        // 1/T, from 0: a drifting offset
 constexpr std::size_t folds_a_line = 2;     // of 1/T
 constexpr std::size_t fewest_folds = 20;    // whose median is the floor; with fewer it is that of the lines
@@ -41,12 +43,23 @@ ResidualLines::ResidualLines(const Spectrum& spectrum, double highest_hz)
   between_.resize(order_energy_.size());
 }
 
-void ResidualLines::begin(double rotation_hz, int teeth) noexcept {
+void ResidualLines::begin(double rotation_hz, int teeth, bool sure) noexcept {
+  sure_ = sure;
   rotation_hz_ = std::max(rotation_hz, lowest_rotation_hz);
   teeth_ = teeth;
   std::ranges::fill(left_, 0.0F);
   std::ranges::fill(between_, 0.0F);
   whole_ = synchronous_ = 0.0;
+}
+
+// At a half, third, … of an order.
+bool ResidualLines::near_a_fraction(double to_below) const noexcept {
+  const double order = rotation_hz_ * seconds_;
+  for (int parts = 2; parts <= most_parts; ++parts) {
+    if (order / parts < fewest_apart) return false;
+    if (std::abs(std::remainder(to_below, order / parts)) < order_guard) return true;
+  }
+  return false;
 }
 
 void ResidualLines::add(const Spectrum& spectrum) noexcept {
@@ -88,6 +101,7 @@ void ResidualLines::add(const Spectrum& spectrum) noexcept {
       return k % static_cast<std::size_t>(teeth) == 0 ? teeth_guard : order_guard;
     };
     if (to_below < guard(below) || to_above < guard(below + 1)) continue;
+    if (!sure_ && near_a_fraction(to_below)) continue;
     const double beside = skirt * (static_cast<double>(order_energy_[below]) / (to_below * to_below) +
                                    static_cast<double>(order_energy_[below + 1]) / (to_above * to_above));
     left_[i] += share * std::max(0.0F, std::norm(rest_[i]) - static_cast<float>(beside));
@@ -96,7 +110,8 @@ void ResidualLines::add(const Spectrum& spectrum) noexcept {
 
 void ResidualLines::share_out(double cell_hz, std::span<double> cells) const noexcept {
   const auto cell = [&](double hz) { return std::min(cells.size() - 1, static_cast<std::size_t>(hz / cell_hz)); };
-  for (std::size_t i = first_; i < lines_; ++i) cells[cell(static_cast<double>(i) * step_hz_)] += static_cast<double>(left_[i]);
+  for (std::size_t i = first_; i < lines_; ++i)
+    cells[cell(static_cast<double>(i) * step_hz_)] += static_cast<double>(left_[i]);
   for (std::size_t k = 1; static_cast<double>(k) * rotation_hz_ < static_cast<double>(lines_) * step_hz_; ++k) {
     // An order at the border of two cells stands in both, however its speed wavers.
     const double hz = static_cast<double>(k) * rotation_hz_;
@@ -108,8 +123,8 @@ void ResidualLines::share_out(double cell_hz, std::span<double> cells) const noe
 
 ResidualFamily ResidualLines::finish() noexcept {
   ResidualFamily out{.whole = whole_, .synchronous = synchronous_};
-  const auto folds = std::clamp<std::size_t>(
-      static_cast<std::size_t>(0.5 * rotation_hz_ * seconds_ * folds_a_line), 1, fold_.size() - line_folds);
+  const auto folds = std::clamp<std::size_t>(static_cast<std::size_t>(0.5 * rotation_hz_ * seconds_ * folds_a_line), 1,
+                                             fold_.size() - line_folds);
   std::fill_n(fold_.begin(), folds, 0.0);
   std::fill_n(room_.begin(), folds, 0.0);
   const auto place = [&](std::size_t i) {

@@ -17,20 +17,23 @@ struct ResidualFamily {
   double line = 0.0;          ///< of that line alone
 };
 
-/// Takes the multiples k f of rotation off the spectra of a window, and finds among what they leave the strongest family
-/// of lines {±f_c + k f}: what regeneration modulates with the spindle.
+/// Takes the multiples k f of rotation off the spectra of a window, and finds among what they leave the strongest
+/// family of lines {±f_c + k f}: what regeneration modulates with the spindle.
 ///
-/// With T the window's length and a_k = X(k f), what is left at ν is R = X - Σ a_k h((ν - k f) T). A line's energy counts
-/// as far as it exceeds the skirt of the orders beside it, Σ 0.5 |a_k|²/d², d = |ν - k f| T, and not at all within 0.75/T
-/// of an order or 2/T of a multiple of the teeth: there an order of unsteady speed or amplitude is no line of its own.
-/// Lines are added up by the fraction of an order, φ = |ν/f - round(ν/f)|, over 2.5/T, less the median of all φ, which is
-/// the floor.
+/// With T the window's length and a_k = X(k f), what is left at ν is R = X - Σ a_k h((ν - k f) T). A line's energy
+/// counts as far as it exceeds the skirt of the orders beside it, Σ 0.5 |a_k|²/d², d = |ν - k f| T, and not at all
+/// within 0.75/T of an order or 2/T of a multiple of the teeth: there an order of unsteady speed or amplitude is no
+/// line of its own. Lines are added up by the fraction of an order, φ = |ν/f - round(ν/f)|, over 2.5/T, less the median
+/// of all φ, which is the floor.
 class ResidualLines {
  public:
   /// @param spectrum  one that all are like;  @param highest_hz  of the lines that count
   ResidualLines(const Spectrum& spectrum, double highest_hz);
   /// @param teeth  0: unknown
-  void begin(double rotation_hz, int teeth) noexcept;
+  /// @param sure   rotation_hz is the rotation, and no multiple of it: otherwise what stands at simple fractions of it,
+  /// up
+  ///               to sixths, is taken for a multiple of the rotation
+  void begin(double rotation_hz, int teeth, bool sure) noexcept;
   /// A channel's spectrum.
   void add(const Spectrum& spectrum) noexcept;
   [[nodiscard]] ResidualFamily finish() noexcept;
@@ -39,17 +42,20 @@ class ResidualLines {
   void share_out(double cell_hz, std::span<double> cells) const noexcept;
 
  private:
+  [[nodiscard]] bool near_a_fraction(double to_below) const noexcept;
+
   Spectrum like_;  // without lines
   double seconds_, step_hz_, share_;
   std::size_t first_, lines_, order_lines_;  // that count, from first_ on; to each side of an order that are taken off
   double rotation_hz_ = 0.0;
   int teeth_ = 0;
-  std::vector<float> kernel_;                // h at steps of 1/32 of 1/T
-  std::vector<std::complex<float>> rest_;    // of a channel
-  std::vector<float> order_energy_;          // of a channel
-  std::vector<float> left_;                  // of all channels
-  std::vector<float> between_;               // energy of each order that is no multiple of the teeth, of all channels
-  std::vector<double> fold_, room_, sorted_; // energy by fraction of an order; share of the lines there that count
+  bool sure_ = true;
+  std::vector<float> kernel_;                 // h at steps of 1/32 of 1/T
+  std::vector<std::complex<float>> rest_;     // of a channel
+  std::vector<float> order_energy_;           // of a channel
+  std::vector<float> left_;                   // of all channels
+  std::vector<float> between_;                // energy of each order that is no multiple of the teeth, of all channels
+  std::vector<double> fold_, room_, sorted_;  // energy by fraction of an order; share of the lines there that count
   double whole_ = 0.0, synchronous_ = 0.0;
 };
 

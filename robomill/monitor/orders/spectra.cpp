@@ -49,8 +49,8 @@ Spectra::Spectra(double sample_rate_hz, std::size_t channels)
   for (const double seconds : windows_s) {
     const std::size_t length = static_cast<std::size_t>(seconds * rate_hz_) / 2 * 2 + 1;
     const std::size_t padded = std::bit_ceil(2 * length);
-    Window& window =
-        windows_.emplace_back(Window{length, padded, kissfft<float>(padded / 2, false), std::vector<float>(length), {}});
+    Window& window = windows_.emplace_back(
+        Window{length, padded, kissfft<float>(padded / 2, false), std::vector<float>(length), {}});
     double sum = 0.0;
     for (std::size_t i = 0; i < length; ++i) {
       const double w = 0.5 - 0.5 * std::cos(2.0 * pi * static_cast<double>(i + 1) / static_cast<double>(length + 1));

@@ -30,8 +30,8 @@ struct Spectrum {
   }
 };
 
-/// The spectra of the last 0.3 s and 0.15 s of several channels. A sample rate above 20 kHz is reduced by a whole number,
-/// to 10 kHz and more, behind a low-pass. Nothing is allocated after construction.
+/// The spectra of the last 0.3 s and 0.15 s of several channels. A sample rate above 20 kHz is reduced by a whole
+/// number, to 10 kHz and more, behind a low-pass. Nothing is allocated after construction.
 class Spectra {
  public:
   static constexpr std::array<double, 2> windows_s = {0.3, 0.15};
@@ -44,7 +44,8 @@ class Spectra {
   [[nodiscard]] const Spectrum& spectrum(std::size_t window, std::size_t channel) const noexcept {
     return windows_[window].spectra[channel];
   }
-  /// How the amplitude at a frequency went: |X(ν)|² of a channel in consecutive blocks of the short window, oldest first.
+  /// How the amplitude at a frequency went: |X(ν)|² of a channel in consecutive blocks of the short window, oldest
+  /// first.
   void course(std::size_t channel, double frequency_hz, std::span<double> blocks) const noexcept;
   /// The highest frequency that the spectra show undiminished [Hz].
   [[nodiscard]] double highest_hz() const noexcept { return 0.5 * passed_ * rate_hz_; }
@@ -54,9 +55,9 @@ class Spectra {
 
  private:
   struct Window {
-    std::size_t length;   // odd
-    std::size_t padded;   // of the transform, a power of two >= 2 length
-    kissfft<float> fft;   // of half the length: a real signal
+    std::size_t length;  // odd
+    std::size_t padded;  // of the transform, a power of two >= 2 length
+    kissfft<float> fft;  // of half the length: a real signal
     std::vector<float> shape;
     std::vector<Spectrum> spectra;  // of each channel
   };
@@ -64,9 +65,9 @@ class Spectra {
   double rate_hz_;
   double passed_ = 1.0;  // share of half the rate that the low-pass lets through
   std::size_t channels_, factor_ = 1, size_ = 0;
-  std::vector<float> low_pass_;           // taps; empty: none
-  std::vector<float> past_;               // of each channel, as long as the taps, twice
-  std::vector<float> ring_;               // of each channel, `size_`, twice
+  std::vector<float> low_pass_;  // taps; empty: none
+  std::vector<float> past_;      // of each channel, as long as the taps, twice
+  std::vector<float> ring_;      // of each channel, `size_`, twice
   std::size_t at_ = 0, past_at_ = 0, phase_ = 0;
   std::size_t pushed_ = 0;
   std::vector<float> in_;

@@ -7,23 +7,29 @@
 namespace robomill::monitor {
 namespace {
 
-constexpr double drift_ratio = 8e-4;    // of a Cauchy distribution, a hop
+constexpr double drift_ratio = 8e-4;     // of a Cauchy distribution, a hop
 constexpr std::size_t drift_reach = 30;  // steps
 constexpr std::size_t near_reach = 6;    // steps
 constexpr double held_reach = 4.0;       // steps
 constexpr double anew = 1e-3;            // a hop, to be drawn from the prior
 constexpr double known_within = 0.004;
 constexpr double mains_ratio = 0.01, highest_of_mains_hz = 190.0, hint_of_mains_ratio = 0.01;
-constexpr double unexplained = 0.02;     // share of the energy that a comb never explains
-constexpr double offset_guard = 2.5;     // 1/T, from 0
-constexpr double most_lines = 20.0;      // M
+constexpr double unexplained = 0.02;  // share of the energy that a comb never explains
+constexpr double offset_guard = 2.5;  // 1/T, from 0
+constexpr double most_lines = 20.0;   // M
 constexpr int low_of_teeth = 6, low_of_rotation = 5, low_of_unknown_teeth = 12;
-constexpr double peaked = 0.53;          // ∫h⁴/(∫h²)²
+constexpr double peaked = 0.53;  // ∫h⁴/(∫h²)²
 
 }  // namespace
 
 SpeedPosterior::SpeedPosterior(const Setup& setup)
-    : setup_(setup), prior_(size), belief_(size), spread_(size), drift_(drift_reach + 1), evidence_(size), shares_(size) {
+    : setup_(setup),
+      prior_(size),
+      belief_(size),
+      spread_(size),
+      drift_(drift_reach + 1),
+      evidence_(size),
+      shares_(size) {
   double sum = 0.0;
   for (std::size_t i = 0; i < drift_.size(); ++i) {
     const double x = static_cast<double>(i) * step / drift_ratio;
@@ -83,8 +89,10 @@ bool SpeedPosterior::of_the_mains(double rotation_hz) const noexcept {
 }
 
 void SpeedPosterior::predict(Motion motion) noexcept {
-  if (motion != Motion::held) held_place_ = -1.0;
-  else if (held_place_ < 0.0) held_place_ = static_cast<double>(std::ranges::max_element(belief_) - belief_.begin());
+  if (motion != Motion::held)
+    held_place_ = -1.0;
+  else if (held_place_ < 0.0)
+    held_place_ = static_cast<double>(std::ranges::max_element(belief_) - belief_.begin());
   const double fresh = motion == Motion::free ? anew : 0.0;
   const std::size_t reach_steps = motion == Motion::free ? drift_reach : near_reach;
   for (std::size_t i = 0; i < size; ++i) {

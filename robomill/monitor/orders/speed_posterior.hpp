@@ -12,9 +12,9 @@ namespace robomill::monitor {
 /// A window of length T with power |X(ν)|², summed over the channels, speaks for f by the share of its energy that the
 /// multiples k f hold, less what a comb holds by chance, c = 3/(2 f T):
 ///   s(f) = (Σ_k |X(k f)|²/Σ A² - c)/(1 - c),   ln L(f) = -w M ln(1 - max(0, s) + 0.02).
-/// M = (ΣA²)²/ΣA⁴ is about how many lines the window holds: one line alone, such as chatter's, says nothing about the speed.
-/// w is the hop over T, since windows overlap. Between hops the speed may drift, by a Cauchy distribution of 0.2 % a hop,
-/// and with a probability of 1e-3 it is drawn anew from the prior: a Cauchy distribution about the hint.
+/// M = (ΣA²)²/ΣA⁴ is about how many lines the window holds: one line alone, such as chatter's, says nothing about the
+/// speed. w is the hop over T, since windows overlap. Between hops the speed may drift, by a Cauchy distribution of 0.2
+/// % a hop, and with a probability of 1e-3 it is drawn anew from the prior: a Cauchy distribution about the hint.
 ///
 /// Nothing is allocated after construction.
 class SpeedPosterior {
@@ -28,7 +28,8 @@ class SpeedPosterior {
     int teeth = 0;               ///< 0: unknown
   };
   explicit SpeedPosterior(const Setup& setup);
-  /// What is given as the speed [Hz]; 0: unknown. Within 15 % of the hint before it, what is believed of the speed stays.
+  /// What is given as the speed [Hz]; 0: unknown. Within 15 % of the hint before it, what is believed of the speed
+  /// stays.
   void set_hint(double rotation_hz) noexcept;
   /// Begins anew about the hint.
   void reset() noexcept;
@@ -51,8 +52,8 @@ class SpeedPosterior {
   [[nodiscard]] double rotation_hz() const noexcept { return rotation_hz_; }  ///< the most likely; 0: no hint
   [[nodiscard]] double std_ratio() const noexcept { return std_ratio_; }      ///< spread about it, of f
   [[nodiscard]] double known() const noexcept { return known_; }  ///< probability that f is within 0.4 % of it
-  [[nodiscard]] double lines() const noexcept { return lines_; }              ///< M - 1, in the window observed last
-  [[nodiscard]] double share() const noexcept { return share_; }              ///< s at it, in the window observed last
+  [[nodiscard]] double lines() const noexcept { return lines_; }  ///< M - 1, in the window observed last
+  [[nodiscard]] double share() const noexcept { return share_; }  ///< s at it, in the window observed last
 
  private:
   static constexpr double step = 8e-4;
