@@ -56,6 +56,7 @@ TEST(MonitorPage, ShowsWhatASessionDelivers) {
   for (const char* part : {"cut.wav, 10240 Hz", "comb-cusum", "\"reason\":\"gap\"", "\"message\":\"gone\""}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   }
+  EXPECT_NE(state_summary(run).find("Cannot tell: gap, for 0.03 s."), std::string::npos) << state_summary(run);
 }
 
 }  // namespace report_test

@@ -178,12 +178,12 @@ RecordedRun Recorder::run() const {
     out.compute_mean_s = parts.compute_s / static_cast<double>(parts.count);
     out.compute_max_s = parts.compute_max_s;
   }
-  const auto note = [&out](std::size_t count, const char* what) {
+  const auto add_note = [&out](std::size_t count, const char* what) {
     if (count > 0) out.notes.push_back(std::to_string(count) + what);
   };
-  note(parts.unreported, " more events are not listed.");
-  note(parts.states.unlisted(), " more changes of state are not drawn.");
-  note(parts.alarms.unlisted(), " more alarms are not listed.");
+  add_note(parts.unreported, " more events are not listed.");
+  add_note(parts.states.unlisted(), " more changes of state are not drawn.");
+  add_note(parts.alarms.unlisted(), " more alarms are not listed.");
 
   const auto shown = std::min(static_cast<std::size_t>(std::max(parts.loudest, 0)), parts.spectrograms.size() - 1);
   const SpectrogramStore& store = parts.spectrograms[shown];
