@@ -69,6 +69,7 @@ async function look(browser, url, view, problems, shots) {
   for (const address of fetched) problems.push(`${where}: fetched ${address}`);
   if (shots) writeFileSync(join(shots, `${view.name}-open.png`), await page.screenshot(await whole(page, view)));
   if (hasPlots && view.controls) await tryControls(page, where, problems);
+  if (hasPlots && view.controls) await tryResize(page, where, problems, view);
   if (hasPlots && view.controls) await tryPrint(page, where, problems, shots && join(shots, `${view.name}-print.png`));
   await page.close();
   return seen;
@@ -95,6 +96,20 @@ async function tryControls(page, where, problems) {
       `${where}: FRF ${name} chosen`, 10);
   }
   for (const error of page.errors) if (!problems.some((problem) => problem.endsWith(error))) problems.push(`${where}: ${error}`);
+}
+
+/** A window that becomes narrower and wide again, as a telephone does that is turned, leaves every plot as high as it was. */
+async function tryResize(page, where, problems, { width }) {
+  const heights = `JSON.stringify([...document.querySelectorAll('.canvas svg.main-svg')].map((svg) => Math.round(svg.getBoundingClientRect().height)))`;
+  const fitted = `[...document.querySelectorAll('figure[data-plot] .canvas:not(.several)')].every((canvas) =>
+    canvas.offsetParent === null || Math.abs(canvas.querySelector('svg.main-svg').getBoundingClientRect().width - canvas.clientWidth) < 2)`;
+  const before = await page.evaluate(heights);
+  for (const now of [width - 200, width, width - 200, width]) {
+    await page.send('Emulation.setDeviceMetricsOverride', { width: now, height: 900, deviceScaleFactor: 1, mobile: false });
+    await page.until(`window.innerWidth === ${now} && ${fitted}`, `${where}: plots at ${now} px`, 15);
+  }
+  const after = await page.evaluate(heights);
+  if (before !== after) problems.push(`${where}: plots are ${before} px high, and ${after} px after the window was resized`);
 }
 
 /** On paper (A4 between its margins) no plot may be wider than the page, nor keep the dark colours. */

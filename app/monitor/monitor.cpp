@@ -271,8 +271,9 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   events.close();
   const std::string summary = summary_of(session, input.name);
   if (recorder) {
-    page::Report page = monitor_page(recorder->run(), file, input.name);
-    page.summary = summary;
+    const live::RecordedRun recorded = recorder->run();
+    page::Report page = monitor_page(recorded, file, input.name);
+    page.summary = summary + state_summary(recorded);
     write_report(command.report, page);
   }
   if (common.wants_summary()) fmt::print("{}", summary);

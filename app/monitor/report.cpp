@@ -39,4 +39,16 @@ page::Report monitor_page(live::RecordedRun run, const monitor::MonitorFile& fil
   return page;
 }
 
+std::string state_summary(const live::RecordedRun& run) {
+  std::string out;
+  for (const live::StateTime& time : run.state_times) {
+    if (time.state == monitor::State::blind) {
+      out += fmt::format("Cannot tell: {}, for {:.2f} s.\n", monitor::to_string(time.reason), time.duration_s);
+    } else {
+      out += fmt::format("In the state {} for {:.2f} s.\n", monitor::to_string(time.state), time.duration_s);
+    }
+  }
+  return out;
+}
+
 }  // namespace robomill::app

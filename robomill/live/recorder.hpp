@@ -16,7 +16,8 @@
 namespace robomill::live {
 
 /// Takes what a session is given and what it reports, and keeps what a page shows of it, in memory that does not grow
-/// with the recording: waves, score and spectrogram over runs that grow twice as long when there are too many.
+/// with the recording: waves, score and spectrogram over runs that grow twice as long when there are too many, states,
+/// and alarms, those that repeat put together.
 class ROBOMILL_API Recorder {
  public:
   /// @param channels  their names, as many as the options say
@@ -28,11 +29,11 @@ class ROBOMILL_API Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Whole frames, as they went to the monitor.
+  /// Whole frames, as they went to the monitor; NaN and infinite samples are absent.
   void add(std::span<const float> samples);
-  /// Frames that were left out: drawn as zeros, of a long gap a minute.
+  /// Frames that were left out: of their time nothing is known, BlindReason::gap.
   void skip(std::uint64_t frames);
-  /// The decision that followed.
+  /// The decision that followed. Its time is that of the stream, frames that were left out counted.
   /// @param compute_s  it took so long
   void add(const monitor::Decision& decision, double compute_s);
   /// An event that it reported; beyond some hundreds they are only counted.

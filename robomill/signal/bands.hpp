@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,7 +11,7 @@
 
 namespace robomill::signal {
 
-/// A curve over equal runs of time: the lowest and the highest value in each.
+/// A curve over equal runs of time: the lowest and the highest value in each; NaN where there was none.
 struct Band {
   Eigen::VectorXd low = {}, high = {};
 };
@@ -22,18 +23,23 @@ class ROBOMILL_API Bands {
   /// @throws InvalidInput if either is 0
   Bands(std::size_t curves, std::size_t most_runs);
   void clear();
-  /// @param values  one a curve
+  /// @param values  one a curve; NaN: the curve has none here
   void add(std::span<const double> values);
+  /// As many samples at which no curve has a value, however many they are.
+  void skip(std::uint64_t samples);
   [[nodiscard]] Band band(std::size_t curve) const;
   /// Samples in a run.
   [[nodiscard]] std::size_t length() const { return length_; }
 
  private:
   void halve();
+  /// Begins a run; two runs become one first where there is no room.
+  void begin(std::span<const double> values);
   std::size_t curves_, most_;
   std::size_t length_ = 1;          ///< samples in a run
   std::size_t in_last_ = 0;         ///< … in the last one
   std::vector<double> low_, high_;  ///< run by run, a value a curve
+  std::vector<double> none_;        ///< NaN for each curve
 };
 
 }  // namespace robomill::signal

@@ -1,22 +1,23 @@
-// Curves over equal runs of time, of which the lowest and the highest value are known.
+// Curves over equal runs of time, of which the lowest and the highest value are known; null where there was none.
+import type { Num } from './documents';
 
 export interface Band {
-  low: number[];
-  high: number[];
+  low: Num[];
+  high: Num[];
 }
 
 export interface TimeCurve {
   time_s: number[];
-  values: number[];
+  values: Num[];
 }
 
 /** Curves over the same runs: where every run is one sample its values at their begins, else of each run the lowest and the highest value a quarter before and after its middle. */
-export function bandCurves(bands: Band[], run_s: number): { time_s: number[]; values: number[][] } {
+export function bandCurves(bands: Band[], run_s: number): { time_s: number[]; values: Num[][] } {
   const single = bands.every(({ low, high }) => low.every((value, run) => value === high[run]));
   const begins = (bands[0]?.low ?? []).map((_, run) => run * run_s);
   return {
     time_s: single ? begins : begins.flatMap((begin) => [begin + 0.25 * run_s, begin + 0.75 * run_s]),
-    values: bands.map(({ low, high }) => (single ? low : low.flatMap((value, run) => [value, high[run]!]))),
+    values: bands.map(({ low, high }) => (single ? low : low.flatMap((value, run) => [value, high[run] ?? null]))),
   };
 }
 

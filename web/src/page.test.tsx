@@ -175,11 +175,23 @@ it('shows a smoothed program, its methods and its limits', () => {
 });
 
 it('shows what the monitor detected', () => {
-  for (const part of ['<strong>Chatter</strong> from', '683.20\u202f±\u202f0.60', 'Events', '3 recordings, 2 classified wrongly', 'missed', 'false']) {
+  for (const part of ['<strong>Chatter</strong> for 1.60 s in 2 alarms', '682 to 696', 'mode 8', 'Alarms by frequency', '9 events, one by one', '3 recordings, 2 classified wrongly', 'missed', 'false']) {
     expect(page()).toContain(part);
   }
-  report.monitor!.stays = [];
-  expect(page()).toContain('No chatter');
+  const monitor = report.monitor!;
+  Object.assign(monitor, { alarms: [], alarm_count: 0, state_times: [{ state: 'stable', reason: null, duration_s: 4 }] });
+  expect(page()).toContain('<strong>No alarm</strong> in the 4.00 s that were judged.');
+  expect(page()).not.toContain('Alarms by');
+});
+
+it('says why the monitor could not tell, and nothing of the cut then', () => {
+  expect(page()).toContain('<strong>Cannot tell</strong>: spindle speed unknown, for 0.63 s; samples lost, for 0.42 s.');
+  report = { ...empty(), monitor: report.monitor };
+  Object.assign(report.monitor!, { alarms: [], alarm_count: 0, events: [], state_times: [{ state: 'blind', reason: 'no-signal', duration_s: 3.2 }] });
+  expect(page()).toContain('<strong>Cannot tell</strong>: no usable signal, for 3.20 s.');
+  expect(page()).not.toMatch(/no chatter|no alarm|<strong>stable/i);
+  report.monitor!.events = [{ ...(JSON.parse(data) as Report).monitor!.events[0]!, event: 'state', state: 'blind', reason: 'clipped' }];
+  expect(page()).toContain('signal at the limit of its converter');
 });
 
 it('keeps markup in texts as text', () => {

@@ -11,11 +11,11 @@ export const narrow = 600;
 interface Place {
   root: HTMLElement;
   draw: Draw;
+  width: number; // at which it was drawn last
 }
 
 const config = {
   displaylogo: false,
-  responsive: true,
   modeBarButtonsToRemove: ['lasso2d', 'select2d', 'autoScale2d'],
   toImageButtonOptions: { format: 'svg', filename: 'robomill' },
 };
@@ -25,10 +25,12 @@ const darkScheme = () => window.matchMedia('(prefers-color-scheme: dark)');
 let printing = false;
 
 /** Draws, unless the place is inside a closed part of the page: it has no width yet and is drawn when it opens. */
-async function draw({ root, draw: make }: Place, width?: number): Promise<void> {
+async function draw(place: Place, width?: number): Promise<void> {
+  const { root, draw: make } = place;
   if (root.offsetParent === null) return;
   try {
     const room = width ?? root.clientWidth;
+    place.width = room;
     const figure = make(darkScheme().matches && !printing ? dark : light, room);
     if (width !== undefined) Object.assign(figure.layout, { width, autosize: false });
     const bar = room > 300 && window.innerWidth > narrow;
@@ -48,8 +50,19 @@ export function drawAll(): Promise<void[]> {
 /** A4 between its margins, at 96 pixels an inch. */
 const paperWidth = 680;
 
-/** Draws anew when the colours change, a part of the page opens, or the page is printed. */
+/** Draws anew what has another width now. Plotly would do it, but forgets the height at every second time. */
+function drawResized(): void {
+  if (printing) return;
+  for (const place of places) if (place.root.clientWidth !== place.width) void draw(place);
+}
+
+/** Draws anew when the window's width or the colours change, a part of the page opens, or the page is printed. */
 export function drawOnEvents(): void {
+  let due = 0;
+  window.addEventListener('resize', () => {
+    cancelAnimationFrame(due);
+    due = requestAnimationFrame(drawResized);
+  });
   darkScheme().addEventListener('change', () => void drawAll());
   document.addEventListener(
     'toggle',
@@ -74,7 +87,7 @@ function Canvas({ make, name, shows }: { make: Draw; name: string; shows?: strin
   const root = useRef<HTMLDivElement>(null);
   const place = useRef<Place | null>(null);
   useLayoutEffect(() => {
-    const own = { root: root.current!, draw: make };
+    const own: Place = { root: root.current!, draw: make, width: 0 };
     place.current = own;
     places.add(own);
     return () => void places.delete(own);

@@ -9,19 +9,40 @@ export interface Places {
   z_mm: number[];
 }
 
-export type MonitorState = 'stable' | 'transition' | 'chatter';
+export type MonitorState = 'stable' | 'transition' | 'chatter' | 'blind';
 
-export interface MonitorStay {
+/** A state, and why the monitor could not tell where it is blind: "no-signal", "clipped", "speed-unknown", "gap". */
+interface Stated {
   state: MonitorState;
+  reason: string | null;
+}
+
+export interface MonitorStay extends Stated {
   from_s: number;
   to_s: number;
 }
 
+/** Alarms of about one frequency that follow each other. */
+export interface MonitorAlarm {
+  count: number;
+  from_s: number;
+  to_s: number;
+  chatter_s: number;
+  low_frequency_hz: Num;
+  high_frequency_hz: Num;
+  chatter_frequency_hz: Num; // the surest
+  chatter_frequency_std_hz: Num;
+  channel: string | null;
+  hidden: string | null;
+  mode: Num;
+  mode_of: Owner | null;
+  suggested_spindle_speed_rpm: Num;
+}
+
 /** A line of events.jsonl. */
-export interface MonitorEvent {
+export interface MonitorEvent extends Stated {
   time_s: number;
   event: 'state' | 'window' | 'fault' | 'stream' | 'recording';
-  state: MonitorState;
   score: Num;
   threshold: Num;
   chatter_frequency_hz: Num;
@@ -36,17 +57,31 @@ export interface MonitorEvent {
   message?: string;
 }
 
+/** A row a frequency, up to the highest that is worth drawing; null in gaps. */
+export interface Spectrogram {
+  channel: string;
+  begin_s: number;
+  step_s: number;
+  max_frequency_hz: number;
+  frequency_hz: number[];
+  level_db: Num[][];
+}
+
 /** A monitored recording. */
 export interface Monitor extends Remarks {
   unit: string;
   wave_run_s: number;
   channels: { name: string; wave: Band }[];
-  spectrogram: { channel: string; begin_s: number; step_s: number; frequency_hz: number[]; level_db: number[][] } | null; // a row a frequency
-  decisions: { run_s: number; score: Band; threshold: Band; energy_entropy: Band; spindle_speed_rpm: Band };
+  spectrogram: Spectrogram | null;
+  teeth: Num;
+  decisions: Record<'score' | 'threshold' | 'energy_entropy' | 'spindle_speed_rpm' | 'spindle_speed_std_rpm', Band> & { run_s: number };
   decision_count: number;
   compute_mean_us: Num; // of one decision
   compute_max_us: Num;
   stays: MonitorStay[];
+  state_times: (Stated & { duration_s: number })[];
+  alarm_count: number;
+  alarms: MonitorAlarm[];
   events: MonitorEvent[];
 }
 

@@ -5,6 +5,7 @@
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/modal/files/mode_json.hpp"
 #include "robomill/signal/files/bands_json.hpp"
 
 namespace robomill::live {
@@ -14,6 +15,15 @@ using io::Json;
 using io::number;
 using signal::band_json;
 
+Json positive(double value, double unit = 1.0) {
+  return value > 0.0 ? number(value / unit) : Json(nullptr);
+}
+
+Json state_json(monitor::State state, monitor::BlindReason reason) {
+  return {{"state", monitor::to_string(state)},
+          {"reason", state == monitor::State::blind ? Json(monitor::to_string(reason)) : Json(nullptr)}};
+}
+
 /// Whole decibels: finer ones no colour shows. A row a frequency.
 Json spectrogram_json(const Spectrogram& spectrogram) {
   if (spectrogram.level_db.size() == 0) return nullptr;
@@ -21,13 +31,15 @@ Json spectrogram_json(const Spectrogram& spectrogram) {
   for (Eigen::Index i = 0; i < spectrogram.level_db.rows(); ++i) {
     Json row = Json::array();
     for (Eigen::Index k = 0; k < spectrogram.level_db.cols(); ++k) {
-      row.push_back(static_cast<int>(std::lround(spectrogram.level_db(i, k))));
+      const double level = spectrogram.level_db(i, k);
+      row.push_back(std::isnan(level) ? Json(nullptr) : Json(static_cast<int>(std::lround(level))));
     }
     rows.push_back(std::move(row));
   }
   return {{"channel", spectrogram.channel},
           {"begin_s", number(spectrogram.begin_s)},
           {"step_s", number(spectrogram.step_s)},
+          {"max_frequency_hz", number(spectrogram.max_frequency_hz)},
           {"frequency_hz", io::numbers(spectrogram.frequency_hz)},
           {"level_db", std::move(rows)}};
 }
@@ -37,7 +49,25 @@ Json decisions_json(const RecordedRun& run) {
           {"score", band_json(run.score)},
           {"threshold", band_json(run.threshold)},
           {"energy_entropy", band_json(run.energy_entropy)},
-          {"spindle_speed_rpm", band_json(run.spindle_speed_rad_per_s, units::rpm)}};
+          {"spindle_speed_rpm", band_json(run.spindle_speed_rad_per_s, units::rpm)},
+          {"spindle_speed_std_rpm", band_json(run.spindle_speed_std_rad_per_s, units::rpm)}};
+}
+
+Json alarm_json(const RecordedAlarm& alarm) {
+  const bool hidden = alarm.synchronous != monitor::SynchronousChatter::none;
+  Json out = {{"count", alarm.count},
+              {"from_s", number(alarm.from_s)},
+              {"to_s", number(alarm.to_s)},
+              {"chatter_s", number(alarm.chatter_s)},
+              {"low_frequency_hz", number(alarm.low_frequency_hz)},
+              {"high_frequency_hz", number(alarm.high_frequency_hz)},
+              {"chatter_frequency_hz", number(alarm.chatter_frequency_hz)},
+              {"chatter_frequency_std_hz", number(alarm.chatter_frequency_std_hz)},
+              {"channel", alarm.channel.empty() ? Json(nullptr) : Json(alarm.channel)},
+              {"hidden", hidden ? Json(monitor::to_string(alarm.synchronous)) : Json(nullptr)},
+              {"suggested_spindle_speed_rpm", positive(alarm.suggested_spindle_speed_rad_per_s, units::rpm)}};
+  modal::set_mode(out, alarm.mode);
+  return out;
 }
 
 }  // namespace
@@ -51,9 +81,17 @@ std::string recorded_run_json(const RecordedRun& run) {
   }
   Json stays = Json::array();
   for (const Stay& stay : run.stays) {
-    stays.push_back(
-        {{"state", monitor::to_string(stay.state)}, {"from_s", number(stay.from_s)}, {"to_s", number(stay.to_s)}});
+    stays.push_back(state_json(stay.state, stay.reason));
+    stays.back()["from_s"] = number(stay.from_s);
+    stays.back()["to_s"] = number(stay.to_s);
   }
+  Json state_times = Json::array();
+  for (const StateTime& time : run.state_times) {
+    state_times.push_back(state_json(time.state, time.reason));
+    state_times.back()["duration_s"] = number(time.duration_s);
+  }
+  Json alarms = Json::array();
+  for (const RecordedAlarm& alarm : run.alarms) alarms.push_back(alarm_json(alarm));
   Json events = Json::array();
   for (const std::string& event : run.events) {
     events.push_back(Json::parse(event, nullptr, false));
@@ -70,7 +108,11 @@ std::string recorded_run_json(const RecordedRun& run) {
                    {"decision_count", run.decisions},
                    {"compute_mean_us", number(run.compute_mean_s / units::us)},
                    {"compute_max_us", number(run.compute_max_s / units::us)},
+                   {"teeth", run.teeth > 0 ? Json(run.teeth) : Json(nullptr)},
                    {"stays", std::move(stays)},
+                   {"state_times", std::move(state_times)},
+                   {"alarm_count", run.alarm_count},
+                   {"alarms", std::move(alarms)},
                    {"events", std::move(events)}});
 }
 

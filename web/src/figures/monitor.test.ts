@@ -1,20 +1,30 @@
 import { describe, expect, it } from 'vitest';
-import type { Calibration, Monitor } from '../documents';
-import { alarms, rocFigure, scoreFigure, span, spectrogramFigure, waveFigure } from './monitor';
+import type { Calibration, Monitor, Num } from '../documents';
+import { rocFigure, scoreFigure, span, spectrogramFigure, states, waveFigure } from './monitor';
 import { dark, light } from './theme';
 
-const single = (values: number[]) => ({ low: values, high: values });
+const single = (values: Num[]) => ({ low: values, high: values });
 
 const monitor = {
   unit: 'm/s²',
+  teeth: 2,
   wave_run_s: 1,
   channels: [{ name: '<x>', wave: single([0, 1, -1]) }, { name: 'y', wave: { low: [0, 1, -2], high: [0, 2, -2] } }],
-  spectrogram: { channel: 'x', begin_s: 0.5, step_s: 0.25, frequency_hz: [10, 20], level_db: [[-3, 0, -80], [-10, -20, -30]] },
-  decisions: { run_s: 0.5, score: single([0, 1, 9]), threshold: single([5, 5, 5]), energy_entropy: single([1, 2, 3]), spindle_speed_rpm: single([0, 3000, 3000]) },
+  spectrogram: { channel: 'x', begin_s: 0.5, step_s: 0.25, max_frequency_hz: 230, frequency_hz: [100, 200], level_db: [[-3, 0, -80], [-10, null, -30]] },
+  decisions: {
+    run_s: 0.5,
+    score: single([null, 1, 9]),
+    threshold: single([5, 5, 5]),
+    energy_entropy: single([1, 2, 3]),
+    spindle_speed_rpm: single([null, 3000, 3060]),
+    spindle_speed_std_rpm: single([null, 2, null]),
+  },
   stays: [
-    { state: 'stable', from_s: 0, to_s: 1 },
-    { state: 'transition', from_s: 1, to_s: 1.5 },
-    { state: 'chatter', from_s: 1.5, to_s: 2 },
+    { state: 'blind', reason: 'speed-unknown', from_s: 0, to_s: 0.5 },
+    { state: 'stable', reason: null, from_s: 0.5, to_s: 1 },
+    { state: 'transition', reason: null, from_s: 1, to_s: 1.5 },
+    { state: 'chatter', reason: null, from_s: 1.5, to_s: 2 },
+    { state: 'blind', reason: 'gap', from_s: 2, to_s: 3 },
   ],
   events: [
     { time_s: 1, event: 'state', state: 'transition', chatter_frequency_hz: 15 },
@@ -23,12 +33,16 @@ const monitor = {
 } as Monitor;
 
 describe('what the monitor detected', () => {
-  it('is shaded where it was not stable', () => {
-    expect(alarms(monitor, light)).toMatchObject([
+  it('is shaded where it was not stable, each state once in the legend', () => {
+    const shades = states(monitor, light);
+    expect(shades).toMatchObject([
+      { x0: 0, x1: 0.5, fillcolor: light.unknown, name: 'cannot tell', showlegend: true },
       { x0: 1, x1: 1.5, fillcolor: light.borderline },
       { x0: 1.5, x1: 2, fillcolor: light.chatter },
+      { x0: 2, x1: 3, fillcolor: light.unknown, showlegend: false },
     ]);
-    expect(span(monitor)).toEqual([0, 2]);
+    expect(scoreFigure(monitor, light).layout['shapes']).toEqual(shades);
+    expect(span(monitor)).toEqual([0, 3]);
     expect(span({ ...monitor, stays: [] })).toEqual([0, 1]);
   });
   it('has a line a channel, named without markup', () => {
@@ -42,21 +56,41 @@ describe('what the monitor detected', () => {
     for (const theme of [light, dark]) {
       const { data } = spectrogramFigure(monitor, theme);
       expect(data[0]).toMatchObject({ x: [0.5, 0.75, 1], zmax: 0 });
-      expect(data[1]).toMatchObject({ x: [1.5], y: [16] });
+      expect(data.find(({ name }) => name === 'chatter reported')).toMatchObject({ x: [1.5], y: [16] });
     }
+  });
+  it('ends the axis of frequencies where the document says, with the lines of the cut while the speed is known', () => {
+    const { data, layout } = spectrogramFigure(monitor, light);
+    expect(layout['yaxis']).toMatchObject({ range: [0, 230] });
+    // 3000 rpm are 50 Hz: of two teeth rotation is drawn once, tooth passing up to its second multiple.
+    expect(data.find(({ name }) => name === 'rotation')).toMatchObject({ x: [0.5, 1, 1.5, null], y: [50, 51, 51, null] });
+    expect(data.find(({ name }) => name === 'tooth passing')!['y']).toEqual([100, 102, 102, null, 200, 204, 204, null]);
+    const unknown = spectrogramFigure({ ...monitor, teeth: null, events: [] }, light);
+    expect(unknown.data.map(({ name }) => name)).toEqual([undefined, 'rotation']);
+    expect(unknown.data[1]!['y']).toHaveLength(12);
   });
   it('shows the rows that are there, each in a domain of its own', () => {
     const { data, layout } = scoreFigure(monitor, light);
-    expect(data.map((trace) => trace['name'])).toEqual(['score', 'threshold', 'entropy', 'speed']);
+    expect(data.map((trace) => trace['name'])).toEqual(['score', 'threshold', 'entropy', 'speed ± its standard deviation', 'speed']);
     const domains = ['yaxis', 'yaxis2', 'yaxis3'].map((key) => (layout[key] as { domain: [number, number] }).domain);
     domains.forEach(([low, high], i) => {
       expect(low).toBeLessThan(high);
       if (i > 0) expect(high).toBeLessThanOrEqual(domains[i - 1]![0]);
     });
-    expect(data[0]).toMatchObject({ x: [0, 0.5, 1], y: [0, 1, 9] });
-    const bare = scoreFigure({ ...monitor, decisions: { ...monitor.decisions, spindle_speed_rpm: single([0, 0, 0]) } }, light);
+    expect(data[0]).toMatchObject({ x: [0, 0.5, 1], y: [null, 1, 9] });
+    const bare = scoreFigure({ ...monitor, decisions: { ...monitor.decisions, spindle_speed_rpm: single([null, null, null]) } }, light);
     expect(bare.data).toHaveLength(3);
     expect(bare.layout['xaxis']).toMatchObject({ anchor: 'y2' });
+  });
+  it('draws the speed with its deviation and a gap where it is unknown', () => {
+    const { data, layout } = scoreFigure(monitor, light);
+    expect(data[4]).toMatchObject({ x: [0.5, 1, 1.5, null], y: [3000, 3060, 3060, null] });
+    expect(data[3]).toMatchObject({ fill: 'toself', y: [2998, 3060, 3060, 3060, 3060, 3002, null] });
+    const [low, high] = (layout['yaxis3'] as { range: [number, number] }).range;
+    expect(low).toBeGreaterThan(2900);
+    expect(high).toBeLessThan(3160);
+    const sure = scoreFigure({ ...monitor, decisions: { ...monitor.decisions, spindle_speed_std_rpm: single([null, null, null]) } }, light);
+    expect(sure.data.map(({ name }) => name)).toEqual(['score', 'threshold', 'entropy', 'speed']);
   });
 });
 

@@ -1,25 +1,39 @@
-import type { Calibration, Monitor, RocPoint } from '../documents';
+import type { Calibration, Monitor, MonitorState, Num, RocPoint } from '../documents';
 import { bandCurves } from '../bands';
+import { multiplesOver, shadedStays, speedStretches, type SpeedStretch } from '../monitor_views';
 import { curve, suffix } from './rows';
 import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
-/** Where the monitor said chatter, as shaded stretches over the whole height. */
-export function alarms(monitor: Monitor, theme: Theme): Layout[] {
-  return monitor.stays
-    .filter((stay) => stay.state !== 'stable')
-    .map((stay) => ({
+const shades: { state: MonitorState; name: string; colour: (theme: Theme) => string; opacity: number }[] = [
+  { state: 'chatter', name: 'chatter', colour: (theme) => theme.chatter, opacity: 0.2 },
+  { state: 'transition', name: 'transition', colour: (theme) => theme.borderline, opacity: 0.2 },
+  { state: 'blind', name: 'cannot tell', colour: (theme) => theme.unknown, opacity: 0.3 },
+];
+
+/** The state as a colour over the whole height, where it was not stable; each colour once in the legend. */
+export function states(monitor: Monitor, theme: Theme): Layout[] {
+  const named = new Set<MonitorState>();
+  return shadedStays(monitor.stays).map(({ state, from_s, to_s }) => {
+    const { name, colour, opacity } = shades.find((shade) => shade.state === state)!;
+    const first = !named.has(state);
+    named.add(state);
+    return {
       type: 'rect',
       xref: 'x',
       yref: 'paper',
-      x0: stay.from_s,
-      x1: stay.to_s,
+      x0: from_s,
+      x1: to_s,
       y0: 0,
       y1: 1,
       layer: 'below',
-      fillcolor: stay.state === 'chatter' ? theme.chatter : theme.borderline,
-      opacity: 0.16,
+      fillcolor: colour(theme),
+      opacity,
       line: { width: 0 },
-    }));
+      name,
+      legendgroup: state,
+      showlegend: first,
+    };
+  });
 }
 
 /** From the first to the last moment of the recording. */
@@ -40,6 +54,7 @@ export function waveFigure(monitor: Monitor, theme: Theme): Figure {
     type: 'scatter',
     mode: 'lines',
     name: plain(channel.name),
+    showlegend: monitor.channels.length > 1,
     x: time,
     y: values[i],
     opacity: monitor.channels.length > 1 ? 0.7 : 1,
@@ -49,23 +64,46 @@ export function waveFigure(monitor: Monitor, theme: Theme): Figure {
   return {
     data,
     layout: layout(theme, 240, {
-      showlegend: data.length > 1,
-      margin: { l: 72, r: 36, t: data.length > 1 ? 32 : 16, b: 48 },
+      showlegend: true,
+      margin: { l: 72, r: 36, t: 32, b: 48 },
       xaxis: timeAxis(monitor, theme),
-      yaxis: axis(theme, unit === '' ? 'Signal' : `Signal (${unit})`, { exponentformat: 'none' }),
-      shapes: alarms(monitor, theme),
+      yaxis: axis(theme, unit === '' ? 'Signal (as recorded)' : `Signal (${unit})`, { exponentformat: 'none' }),
+      shapes: states(monitor, theme),
     }),
   };
 }
 
 const deepest = -50; // dB; below, noise hides what stands above it
 
-/** The synchrosqueezed spectrogram, with the frequencies that were reported. */
+const mostMultiples = 12;
+
+function count(to: number): number[] {
+  return Array.from({ length: Math.max(0, to) }, (_, i) => i + 1);
+}
+
+/** Tooth passing and its multiples; rotation up to its third multiple, or up to tooth passing where that comes first. */
+function cutLines(monitor: Monitor, theme: Theme, highest_hz: number): Trace[] {
+  const stretches = speedStretches(monitor);
+  const teeth = monitor.teeth ?? 0;
+  const line = (name: string, perTurn: number, multiples: number[], style: object): Trace => ({
+    type: 'scatter',
+    mode: 'lines',
+    name,
+    ...multiplesOver(stretches, perTurn, multiples, highest_hz),
+    line: style,
+    hoverinfo: 'skip',
+  });
+  const lines = [line('rotation', 1, count(teeth > 0 ? Math.min(3, teeth - 1) : 3), { color: theme.overlay, width: 1, dash: '1px,4px' })];
+  if (teeth > 0) lines.push(line('tooth passing', teeth, count(mostMultiples), { color: theme.overlay, width: 1.2, dash: '6px,5px' }));
+  return lines.filter(({ x }) => (x as Num[]).length > 0);
+}
+
+/** The synchrosqueezed spectrogram up to what is worth drawing, with the frequencies that were reported and those of the cut. */
 export function spectrogramFigure(monitor: Monitor, theme: Theme): Figure {
   const spectrogram = monitor.spectrogram!;
   const columns = spectrogram.level_db[0]?.length ?? 0;
   const reported = monitor.events.filter((event) => event.event === 'state' && event.state === 'chatter' && event.chatter_frequency_hz !== null);
-  const last = spectrogram.frequency_hz[spectrogram.frequency_hz.length - 1] ?? 1;
+  const highest = spectrogram.max_frequency_hz;
   const data: Trace[] = [
     {
       type: 'heatmap',
@@ -76,26 +114,40 @@ export function spectrogramFigure(monitor: Monitor, theme: Theme): Figure {
       zmax: 0,
       zsmooth: false,
       colorscale: [[0, theme.panel], ...theme.scale.map(([at, colour]) => [0.25 + 0.75 * at, colour])],
-      colorbar: { title: { text: 'dB', side: 'top' }, thickness: 12, outlinewidth: 0 },
+      colorbar: {
+        title: { text: 'Level (dB below the highest)', side: 'top', font: { size: 12 } },
+        orientation: 'h',
+        thickness: 10,
+        len: 1,
+        x: 0.5,
+        y: -0.16,
+        yanchor: 'top',
+        outlinewidth: 0,
+        tickvals: [-50, -40, -30, -20, -10, 0],
+        ticktext: ['50', '40', '30', '20', '10', '0'],
+      },
       hovertemplate: `%{x:.3f}${thinSpace}s, %{y:.1f}${thinSpace}Hz: %{z}${thinSpace}dB<extra></extra>`,
     },
-    {
+    ...cutLines(monitor, theme, highest),
+  ];
+  if (reported.length > 0) {
+    data.push({
       type: 'scatter',
       mode: 'markers',
-      name: 'reported',
+      name: 'chatter reported',
       x: reported.map((event) => event.time_s),
       y: reported.map((event) => event.chatter_frequency_hz),
       marker: { symbol: 'circle-open', size: 11, color: theme.chatter, line: { width: 2 } },
-      showlegend: false,
       hovertemplate: `%{x:.3f}${thinSpace}s: chatter at %{y:.1f}${thinSpace}Hz<extra></extra>`,
-    },
-  ];
+    });
+  }
   return {
     data,
-    layout: layout(theme, 380, {
-      margin: { l: 72, r: 12, t: 16, b: 48 },
+    layout: layout(theme, 460, {
+      showlegend: data.length > 1,
+      margin: { l: 72, r: 36, t: 32, b: 108 },
       xaxis: timeAxis(monitor, theme),
-      yaxis: axis(theme, 'Frequency (Hz)', { range: [0, last], exponentformat: 'none' }),
+      yaxis: axis(theme, 'Frequency (Hz)', { range: [0, highest], exponentformat: 'none' }),
     }),
   };
 }
@@ -103,42 +155,83 @@ export function spectrogramFigure(monitor: Monitor, theme: Theme): Figure {
 interface Row {
   title: string;
   unit: string;
-  y: number[];
-  against: number[] | null;
+  traces: (index: number) => Trace[];
+  axis: Layout;
 }
 
-/** Score against threshold, entropy and tracked speed, one above the other. */
+/** About the curve, a hundredth of it at least: a speed that hardly moves is no zigzag. */
+function speedRange(stretches: SpeedStretch[]): [number, number] {
+  const low = Math.min(...stretches.flatMap(({ low_rpm }) => low_rpm));
+  const high = Math.max(...stretches.flatMap(({ high_rpm }) => high_rpm));
+  const margin = Math.max(0.08 * (high - low), 0.005 * high);
+  return [Math.max(0, low - margin), high + margin];
+}
+
+/** The tracked speed between one standard deviation less and more; a gap where it is unknown. */
+function speedRow(stretches: SpeedStretch[], theme: Theme): Row {
+  const gapped = <T>(of: (stretch: SpeedStretch) => T[]) => stretches.flatMap((stretch) => [...of(stretch), null]);
+  const there = gapped(({ time_s }) => time_s);
+  const doubtful = stretches.some(({ low_rpm, speed_rpm }) => low_rpm.some((low, i) => low < speed_rpm[i]!));
+  return {
+    title: 'Speed',
+    unit: 'rpm',
+    axis: { range: speedRange(stretches), exponentformat: 'none' },
+    traces: (index) => [
+      ...(doubtful
+        ? [
+            curve(
+              index,
+              'speed ± its standard deviation',
+              'rpm',
+              gapped(({ time_s }) => [...time_s, ...[...time_s].reverse()]),
+              gapped(({ low_rpm, high_rpm }) => [...low_rpm, ...[...high_rpm].reverse()]),
+              { width: 0 },
+              { fill: 'toself', fillcolor: theme.accent, opacity: 0.3, hoverinfo: 'skip', hovertemplate: undefined },
+            ),
+          ]
+        : []),
+      curve(index, 'speed', 'rpm', there, gapped(({ speed_rpm }) => speed_rpm), { color: theme.accent, width: 1.4 }, { showlegend: false }),
+    ],
+  };
+}
+
+/** Score against threshold, entropy and tracked speed, one above the other, over the state. */
 export function scoreFigure(monitor: Monitor, theme: Theme): Figure {
-  const { run_s, score, threshold, energy_entropy, spindle_speed_rpm } = monitor.decisions;
-  const { time_s: time, values } = bandCurves([score, threshold, energy_entropy, spindle_speed_rpm], run_s);
+  const { run_s, score, threshold, energy_entropy } = monitor.decisions;
+  const { time_s: time, values } = bandCurves([score, threshold, energy_entropy], run_s);
+  const fromZero = { rangemode: 'tozero', exponentformat: 'SI' };
+  const line = (index: number, label: string, y: Num[], style: object): Trace => curve(index, label, '', time, y, style, { showlegend: index === 0 });
   const rows: Row[] = [
-    { title: 'Score', unit: '', y: values[0]!, against: values[1]! },
-    { title: 'Entropy', unit: '', y: values[2]!, against: null },
+    {
+      title: 'Score',
+      unit: '',
+      axis: fromZero,
+      traces: (index) => [
+        line(index, 'score', values[0]!, { color: theme.accent, width: 1.4 }),
+        line(index, 'threshold', values[1]!, { color: theme.chatter, width: 1.4, dash: '6px,4px' }),
+      ],
+    },
+    { title: 'Entropy', unit: '', axis: fromZero, traces: (index) => [line(index, 'entropy', values[2]!, { color: theme.accent, width: 1.4 })] },
   ];
-  if (spindle_speed_rpm.high.some((speed) => speed > 0)) rows.push({ title: 'Speed', unit: 'rpm', y: values[3]!, against: null });
-  const data: Trace[] = [];
+  const stretches = speedStretches(monitor);
+  if (stretches.length > 0) rows.push(speedRow(stretches, theme));
   const axes: Layout = {};
   rows.forEach((row, index) => {
-    const line = (label: string, y: number[], style: object): Trace =>
-      curve(index, label, row.unit, time, y, style, { showlegend: index === 0 });
-    data.push(line(row.title.toLowerCase(), row.y, { color: theme.accent, width: 1.4 }));
-    if (row.against) data.push(line('threshold', row.against, { color: theme.chatter, width: 1.4, dash: '6px,4px' }));
     const top = 1 - index / rows.length;
     axes[`yaxis${suffix(index)}`] = axis(theme, row.unit === '' ? row.title : `${row.title} (${row.unit})`, {
       domain: [index === rows.length - 1 ? 0 : top - 1 / rows.length + 0.05, top],
       nticks: 5,
-      rangemode: 'tozero',
-      exponentformat: 'SI',
+      ...row.axis,
     });
   });
   return {
-    data,
+    data: rows.flatMap((row, index) => row.traces(index)),
     layout: layout(theme, 150 * rows.length + 110, {
       hovermode: 'x',
       margin: { l: 72, r: 36, t: 40, b: 48 },
       xaxis: timeAxis(monitor, theme, { anchor: `y${suffix(rows.length - 1)}` }),
       ...axes,
-      shapes: alarms(monitor, theme),
+      shapes: states(monitor, theme),
     }),
   };
 }

@@ -1,4 +1,5 @@
 // Plots one above the other that share the axis below them.
+import type { Num } from '../documents';
 import { thinSpace, type Layout, type Theme, type Trace } from './theme';
 
 /** What the names of an axis end with in the index-th plot from above. */
@@ -7,7 +8,7 @@ export function suffix(index: number): string {
 }
 
 /** A curve in the index-th plot. */
-export function curve(index: number, name: string, unit: string, x: number[], y: number[], line: object, more: Trace = {}): Trace {
+export function curve(index: number, name: string, unit: string, x: Num[], y: Num[], line: object, more: Trace = {}): Trace {
   return {
     type: 'scatter',
     mode: 'lines',

@@ -20,9 +20,9 @@ interface Row {
   both: boolean; // signs
 }
 
-/** Largest magnitude of the numbers. */
-export function magnitude(values: number[]): number {
-  return values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+/** Largest magnitude of the numbers that there are. */
+export function magnitude(values: Num[]): number {
+  return values.reduce<number>((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
 }
 
 /** Rows of curves over time, one above the other, each with its limit. */

@@ -12,6 +12,7 @@ export interface Theme {
   unknown: string;
   accent: string;
   measured: string;
+  overlay: string; // lines over a map in the colours of scale
   series: string[];
   scale: [number, string][]; // low to high
 }
@@ -29,6 +30,7 @@ export const light: Theme = {
   unknown: '#8a94a3',
   accent: '#0b5cad',
   measured: '#8796aa',
+  overlay: '#b3006b',
   // viridis without its light end, turned round: the highest stands out on white
   scale: [[0, '#a5db36'], [0.25, '#4ac16d'], [0.5, '#1fa187'], [0.75, '#365c8d'], [1, '#440154']],
   series: ['#0b5cad', '#c8401c', '#007f5f', '#a3498e', '#c98a00', '#2f9ec4', '#3c4450', '#7ba800'],
@@ -47,6 +49,7 @@ export const dark: Theme = {
   unknown: '#8a97a8',
   accent: '#63b0ff',
   measured: '#76869b',
+  overlay: '#ff9ed2',
   // viridis without its dark end
   scale: [[0, '#414487'], [0.25, '#2a788e'], [0.5, '#22a884'], [0.75, '#7ad151'], [1, '#fde725']],
   series: ['#63b0ff', '#ff7a55', '#3ecf9f', '#d98cc7', '#f0b840', '#7fd3ef', '#c9ced6', '#b6e04a'],

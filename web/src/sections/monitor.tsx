@@ -1,6 +1,7 @@
 // What the chatter monitor detected, and how it was calibrated.
-import type { CalibratedHalf, Calibration, CalibrationRecording, Fact, Monitor, MonitorEvent, MonitorStay, Num } from '../documents';
+import type { CalibratedHalf, Calibration, CalibrationRecording, Fact, Monitor, MonitorAlarm, MonitorEvent, Num } from '../documents';
 import { rocFigure, scoreFigure, spectrogramFigure, waveFigure } from '../figures/monitor';
+import { findings, frequencyText, reasonText } from '../monitor_views';
 import { Bullets, Details, Facts, Section, Table, WarningBox } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, general, modeName, percent, significant, withDeviation } from '../text';
@@ -14,50 +15,30 @@ function isState({ event }: MonitorEvent): boolean {
 }
 
 /** What an event says beside numbers. */
-function noteOf({ event, faults, what, file, message, hidden }: MonitorEvent): string {
+function noteOf({ event, state, reason, faults, what, file, message, hidden }: MonitorEvent): string {
   if (event === 'fault') return faults.length === 0 ? 'the input is well again' : `the input: ${faults.join(', ')}`;
   if (event === 'stream') return message ?? what ?? '';
   if (event === 'recording') return `recorded ${file ?? ''}`;
+  if (state === 'blind') return reasonText(reason);
   return hidden ?? '';
 }
 
-/** The surest of a stay's frequencies: it converges, and is lost when chatter ends. */
-function surest(events: MonitorEvent[], { from_s: from, to_s: to }: MonitorStay): MonitorEvent | null {
-  const deviation = (event: MonitorEvent) => event.chatter_frequency_std_hz ?? Infinity;
-  return events
-    .filter((event) => isState(event) && event.state === 'chatter' && event.chatter_frequency_hz !== null && event.time_s >= from && event.time_s <= to)
-    .reduce<MonitorEvent | null>((best, event) => (best === null || deviation(event) < deviation(best) ? event : best), null);
-}
-
-/** " at 683.6 ± 0.3 Hz, mode 8; quiet near 3416 rpm" */
-function frequencyReported(event: MonitorEvent): string {
-  const mode = modeName(event);
-  const quiet = event.suggested_spindle_speed_rpm;
-  return ` at ${frequencyOf(event)} Hz${mode && `, ${mode}`}${quiet === null ? '' : `; quiet near ${fixed(quiet, 0)} rpm`}`;
-}
-
-function Verdict({ monitor: { stays, events } }: { monitor: Monitor }) {
-  const alarms = stays.filter((stay) => stay.state === 'chatter');
-  if (alarms.length === 0) {
-    return (
-      <p class="why">
-        <strong>No chatter</strong> was detected.
-      </p>
-    );
-  }
+function Findings({ monitor }: { monitor: Monitor }) {
   return (
     <>
-      {alarms.map((stay) => {
-        const event = surest(events, stay);
-        return (
-          <p class="why">
-            <strong>Chatter</strong>
-            {` from ${fixed(stay.from_s, 2)} s to ${fixed(stay.to_s, 2)} s${event === null ? '' : frequencyReported(event)}.`}
-          </p>
-        );
-      })}
+      {findings(monitor).map(({ head, text }) => (
+        <p class="why">
+          <strong>{head}</strong>
+          {text}
+        </p>
+      ))}
     </>
   );
+}
+
+function spectrogramCaption({ spectrogram, teeth }: Monitor): string {
+  const lines = teeth === null ? 'rotation' : 'rotation and tooth passing';
+  return `Synchrosqueezed spectrogram of channel ${spectrogram!.channel}, up to the highest frequency worth drawing. Lines: ${lines}, where the speed is known.`;
 }
 
 function Plots({ monitor }: { monitor: Monitor }) {
@@ -65,46 +46,70 @@ function Plots({ monitor }: { monitor: Monitor }) {
     <>
       <Plot
         which="monitor-wave"
-        shows="The samples over time, chatter shaded"
-        caption="What was recorded; shaded where chatter was reported."
+        shows="The samples over time, shaded by the monitor's state"
+        caption="What was recorded, shaded by the monitor's state where that is not stable."
         draw={(theme) => waveFigure(monitor, theme)}
       />
       {monitor.spectrogram && (
         <Plot
           which="monitor-spectrogram"
           shows="Synchrosqueezed spectrogram of the recording over time"
-          caption="Synchrosqueezed spectrogram; the marks are what the monitor took for chatter."
+          caption={spectrogramCaption(monitor)}
           draw={(theme) => spectrogramFigure(monitor, theme)}
         />
       )}
       <Plot
         which="monitor-score"
         shows="Score against its threshold, energy entropy and spindle speed over time"
-        caption="The score against its threshold, and what else was followed."
+        caption="The score against its threshold over the monitor's state, and what else was followed. Where a curve has a gap, nothing is known."
         draw={(theme) => scoreFigure(monitor, theme)}
       />
     </>
   );
 }
 
+function AlarmsTable({ alarms }: { alarms: MonitorAlarm[] }) {
+  if (alarms.length === 0) return null;
+  return (
+    <Table
+      caption="Alarms by frequency"
+      columns={[
+        { heading: 'Times', number: true, cell: ({ count }) => fixed(count, 0) },
+        { heading: 'From (s)', number: true, cell: ({ from_s }) => fixed(from_s, 2) },
+        { heading: 'To (s)', number: true, cell: ({ to_s }) => fixed(to_s, 2) },
+        { heading: 'In chatter (s)', number: true, cell: ({ chatter_s }) => fixed(chatter_s, 2) },
+        { heading: 'Frequency (Hz)', number: true, cell: frequencyText },
+        { heading: 'Strongest in', cell: ({ channel }) => channel ?? dash },
+        { heading: 'Mode', cell: (alarm) => modeName(alarm) || dash },
+        { heading: 'Quiet speed (rpm)', number: true, cell: ({ suggested_spindle_speed_rpm: speed }) => fixed(speed, 0) },
+        { heading: 'Note', cell: ({ hidden }) => hidden ?? '' },
+      ]}
+      rows={alarms}
+    />
+  );
+}
+
 function EventsTable({ events }: { events: MonitorEvent[] }) {
   if (events.length === 0) return null;
   return (
-    <Table
-      caption="Events"
-      columns={[
-        { heading: 'At (s)', number: true, cell: (event) => fixed(event.time_s, 3) },
-        { heading: 'State', cell: (event) => event.state },
-        { heading: 'Score', number: true, cell: (event) => (isState(event) ? significant(event.score) : dash) },
-        { heading: 'Threshold', number: true, cell: (event) => (isState(event) ? significant(event.threshold) : dash) },
-        { heading: 'Frequency (Hz)', number: true, cell: (event) => (isState(event) ? frequencyOf(event) : dash) },
-        { heading: 'Mode', cell: (event) => (isState(event) ? modeName(event) : '') },
-        { heading: 'Quiet speed (rpm)', number: true, cell: (event) => fixed(isState(event) ? event.suggested_spindle_speed_rpm : null, 0) },
-        { heading: 'Note', cell: noteOf },
-      ]}
-      rows={events}
-      rowClass={(event) => (event.state === 'chatter' ? 'chatter' : '')}
-    />
+    <Details summary={`${events.length} ${events.length === 1 ? 'event' : 'events'}, one by one`}>
+      <Table
+        caption="Events"
+        quiet
+        columns={[
+          { heading: 'At (s)', number: true, cell: (event) => fixed(event.time_s, 3) },
+          { heading: 'State', cell: (event) => event.state },
+          { heading: 'Score', number: true, cell: (event) => (isState(event) ? significant(event.score) : dash) },
+          { heading: 'Threshold', number: true, cell: (event) => (isState(event) ? significant(event.threshold) : dash) },
+          { heading: 'Frequency (Hz)', number: true, cell: (event) => (isState(event) ? frequencyOf(event) : dash) },
+          { heading: 'Mode', cell: (event) => (isState(event) ? modeName(event) : '') },
+          { heading: 'Quiet speed (rpm)', number: true, cell: (event) => fixed(isState(event) ? event.suggested_spindle_speed_rpm : null, 0) },
+          { heading: 'Note', cell: noteOf },
+        ]}
+        rows={events}
+        rowClass={(event) => (event.state === 'chatter' ? 'chatter' : '')}
+      />
+    </Details>
   );
 }
 
@@ -119,8 +124,9 @@ export function MonitorSection({ monitor }: { monitor: Monitor }) {
     <Section id="monitor" heading="Chatter monitor" lead="What the monitor detected in the recording, and when.">
       <Facts facts={monitor.facts} />
       <WarningBox heading="Before you trust it" texts={monitor.warnings} />
-      <Verdict monitor={monitor} />
+      <Findings monitor={monitor} />
       {monitor.decisions.score.low.length > 0 && <Plots monitor={monitor} />}
+      <AlarmsTable alarms={monitor.alarms} />
       <EventsTable events={monitor.events} />
       <ComputeTime monitor={monitor} />
       <Bullets texts={monitor.notes} />
