@@ -20,6 +20,7 @@ constexpr double leaving_swing = 3.0;  // of the synchronous energy in 0.3 s, by
 
 CombinedDetector::CombinedDetector(const MonitorOptions& options)
     : options_(options),
+      pulses_(options.sample_rate_hz, options.pulses_per_revolution),
       growth_(options),
       orders_({.sample_rate_hz = options.sample_rate_hz,
                .hop_s = options.hop_s,
@@ -38,6 +39,7 @@ void CombinedDetector::set_spindle_speed(double rad_per_s) noexcept {
 }
 
 void CombinedDetector::reset() noexcept {
+  pulses_.reset();
   growth_.reset();
   orders_.reset();
   std::ranges::fill(mean_, 0.0);
@@ -61,12 +63,19 @@ void CombinedDetector::high_pass(const Hop& hop) noexcept {
   first_ = false;
 }
 
-void CombinedDetector::decide(const Hop& hop, Decision& decision) noexcept {
+void CombinedDetector::decide(const Hop& given, Decision& decision) noexcept {
+  Hop hop = given;
+  if (options_.tachometer_channel >= 0) {
+    const auto channel = static_cast<std::size_t>(options_.tachometer_channel);
+    pulses_.push(hop.channel(channel));
+    hop.bad_channels |= std::uint64_t{1} << channel;
+    hop.measured_rotation_hz = pulses_.rotation_hz();
+    hop.measured_std_ratio = pulses_.std_ratio();
+  }
   growth_.decide(hop, decision);
   high_pass(hop);
-  std::uint64_t left_out = hop.bad_channels;
-  if (options_.tachometer_channel >= 0) left_out |= std::uint64_t{1} << options_.tachometer_channel;
-  judge(orders_.step(samples_, hop.frames, left_out), decision);
+  if (hop.measured_rotation_hz.value_or(0.0) > 0.0) orders_.measured(*hop.measured_rotation_hz, hop.measured_std_ratio);
+  judge(orders_.step(samples_, hop.frames, hop.bad_channels), decision);
 }
 
 // Whether the orders bear out an alarm of CombCusum.

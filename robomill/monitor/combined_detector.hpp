@@ -5,6 +5,7 @@
 #include "robomill/monitor/comb_cusum/comb_cusum.hpp"
 #include "robomill/monitor/detector.hpp"
 #include "robomill/monitor/orders/ratio_test.hpp"
+#include "robomill/monitor/spindle/tachometer.hpp"
 
 namespace robomill::monitor {
 
@@ -25,6 +26,7 @@ class CombinedDetector final : public Detector {
   void judge(const RatioTest::Verdict& orders, Decision& decision) noexcept;
 
   MonitorOptions options_;
+  Tachometer pulses_;
   CombCusum growth_;
   RatioTest orders_;
   std::vector<float> samples_;  // of the hop, channel after channel

@@ -104,7 +104,7 @@ TEST(SpeedSearch, FindsTheCombNearAHintAndFarFromAny) {
 }
 
 TEST(Tachometer, CountsPulsesBetweenSamples) {
-  Tachometer pulses(10240.0);
+  Tachometer pulses(10240.0, 1);
   std::vector<double> x;
   for (int i = 0; i < 20480; ++i) {
     const double phase = std::fmod(73.3 * i / 10240.0, 1.0);
@@ -279,7 +279,7 @@ TEST(SpindleTracker, MovesWhileTheSpeedDrifts) {
   SpindleTracker tracker(options);
   int moves = 0, still = 0;
   for (std::size_t at = 0; at + options.hop_samples() <= x.size(); at += options.hop_samples()) {
-    tracker.step(std::span(x).subspan(at, options.hop_samples()), {}, false);
+    tracker.step(std::span(x).subspan(at, options.hop_samples()), std::nullopt, false);
     const double t = static_cast<double>(at) / cut.sample_rate_hz;
     if (t > 2.4 && t < 2.9) moves += tracker.settled() ? 0 : 1;
     if ((t > 1.5 && t < 2.0) || t > 3.5) still += tracker.settled() ? 1 : 0;

@@ -269,8 +269,7 @@ void CombCusum::decide(const Hop& hop, Decision& decision) noexcept {
   ++hops_;
   take_in(hop);
   comb_.begin_hop();
-  const auto pulses = tachometer_ < channels_ ? hop.channel(tachometer_) : std::span<const double>();
-  take_up(spindle_.step(input_, pulses, state_ == State::chatter));
+  take_up(spindle_.step(input_, hop.measured_rotation_hz, state_ == State::chatter));
   if (spindle_.rotation_hz() > 0.0) {
     comb();
   } else {

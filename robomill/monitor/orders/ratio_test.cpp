@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace robomill::monitor {
 namespace {
@@ -72,6 +73,12 @@ void RatioTest::set_hint(double rotation_hz) noexcept {
   speed_.set_hint(std::max(0.0, rotation_hz));
 }
 
+void RatioTest::measured(double rotation_hz, double std_ratio) noexcept {
+  if (!given_) set_hint(rotation_hz);
+  measured_hz_ = rotation_hz;
+  measured_std_ratio_ = std_ratio;
+}
+
 void RatioTest::reset() noexcept {
   spectra_.reset();
   if (!given_) speed_.set_hint(0.0);
@@ -106,6 +113,7 @@ void RatioTest::measure(std::uint64_t bad_channels) noexcept {
     peak_[w] = strongest(like, lowest / like.seconds, spectra_.highest_hz());
     speed_.observe(std::span(power_).first(like.line.size()), like);
   }
+  if (measured_hz_ > 0.0) speed_.observe(std::exchange(measured_hz_, 0.0), measured_std_ratio_);
   speed_.conclude();
   if (speed_.rotation_hz() <= 0.0) return;
   for (std::size_t w = 0; w < windows; ++w) {

@@ -58,6 +58,8 @@ class RatioTest {
   explicit RatioTest(const Setup& setup);
   /// [Hz]; 0: unknown.
   void set_hint(double rotation_hz) noexcept;
+  /// A measurement of the speed [Hz], good for the next hop.
+  void measured(double rotation_hz, double std_ratio) noexcept;
   /// A hop.
   /// @param samples       of all channels, channel after channel, without offset, `frames` each
   /// @param bad_channels  bit c: left out
@@ -98,6 +100,7 @@ class RatioTest {
   SpeedPosterior speed_;
   CombSearch search_;   // where no speed is given
   bool given_ = false;  // a speed is
+  double measured_hz_ = 0.0, measured_std_ratio_ = 0.0;  // 0: not, in this hop
   GrowthTest growth_;
   std::vector<ResidualLines> lines_;  // of each window
   std::vector<float> power_;          // of all channels; after measure() of the short window

@@ -14,6 +14,7 @@ constexpr double held_reach = 4.0;       // steps
 constexpr double anew = 1e-3;            // a hop, to be drawn from the prior
 constexpr double known_within = 0.004;
 constexpr double mains_ratio = 0.01, highest_of_mains_hz = 190.0, hint_of_mains_ratio = 0.01;
+constexpr double miscounted = 1e-4;  // probability density of a measurement that is wrong
 constexpr double unexplained = 0.02;  // share of the energy that a comb never explains
 constexpr double offset_guard = 2.5;  // 1/T, from 0
 constexpr double most_lines = 20.0;   // M
@@ -153,6 +154,16 @@ void SpeedPosterior::observe(std::span<const float> power, const Spectrum& like)
     shares_[i] = static_cast<float>(share);
     const double alone = std::min(1.0, static_cast<double>(low) / rest);
     evidence_[i] -= weight * (lines + alone) * std::log(1.0 + unexplained - std::max(0.0, share));
+  }
+}
+
+void SpeedPosterior::observe(double rotation_hz, double std_ratio) noexcept {
+  if (hint_hz_ <= 0.0 || rotation_hz <= 0.0) return;
+  const double at = std::log(rotation_hz / hint_hz_) / step + static_cast<double>(side);
+  const double width = std::max(1.0, std_ratio / step);
+  for (std::size_t i = 0; i < size; ++i) {
+    const double d = (static_cast<double>(i) - at) / width;
+    evidence_[i] += std::log(std::exp(-0.5 * d * d) + miscounted);
   }
 }
 

@@ -46,6 +46,8 @@ class SpeedPosterior {
   /// What a window says.
   /// @param power  |X|², of all channels, line by line;  @param like  one of their spectra: T and Δν
   void observe(std::span<const float> power, const Spectrum& like) noexcept;
+  /// A measurement of f [Hz]: ln L = ln(exp(-d²/2) + 1e-4), d = ln(f/measured)/std, since pulses may be miscounted.
+  void observe(double rotation_hz, double std_ratio) noexcept;
   /// After the windows of a hop: fills what follows.
   void conclude() noexcept;
 

@@ -46,7 +46,6 @@ SpindleTracker::SpindleTracker(const MonitorOptions& options)
       frames_(options.hop_samples()),
       teeth_(options.teeth),
       search_(options.sample_rate_hz, static_cast<std::size_t>(options.channels)),
-      pulses_(options.sample_rate_hz),
       hint_hz_(options.spindle_speed_rad_per_s / units::revolution),
       reported_hz_(hint_hz_),
       doubt_s_(first_doubt_s) {}
@@ -61,7 +60,6 @@ void SpindleTracker::set_hint(double rotation_hz) noexcept {
 
 void SpindleTracker::reset() noexcept {
   search_.reset();
-  pulses_.reset();
   rotation_hz_ = known_hz_ = since_s_ = since_look_s_ = suggested_rate_hz_ = 0.0;
   window_ = misfits_ = moving_ = seen_ = 0;
   everywhere_ = false;
@@ -168,24 +166,22 @@ void SpindleTracker::seek_everywhere() noexcept {
   search_.begin(2, 0.4 * hint_hz_, 2.5 * hint_hz_, teeth_);
 }
 
-SpindleTracker::Change SpindleTracker::follow_pulses(std::span<const double> pulses) noexcept {
-  pulses_.push(pulses);
-  const double now = pulses_.rotation_hz();
-  if (now < lowest_hz) {
+SpindleTracker::Change SpindleTracker::take_measured(double now_hz) noexcept {
+  if (now_hz < lowest_hz) {
     if (rotation_hz_ == 0.0) return {};
     lose();
     return {.relearn = true};
   }
-  if (rotation_hz_ == 0.0 || std::abs(now / rotation_hz_ - 1.0) >= little) return lock(now);
-  rotation_hz_ += 0.1 * (now - rotation_hz_);
+  if (rotation_hz_ == 0.0 || std::abs(now_hz / rotation_hz_ - 1.0) >= little) return lock(now_hz);
+  rotation_hz_ += 0.1 * (now_hz - rotation_hz_);
   return {};
 }
 
-SpindleTracker::Change SpindleTracker::step(std::span<const float> samples, std::span<const double> pulses,
+SpindleTracker::Change SpindleTracker::step(std::span<const float> samples, std::optional<double> measured_hz,
                                             bool chatters) noexcept {
   search_.push(samples, frames_);
   since_s_ += hop_s_;
-  if (!pulses.empty()) return follow_pulses(pulses);
+  if (measured_hz) return take_measured(*measured_hz);
   since_look_s_ += hop_s_;
   if (moving_ > 0) --moving_;
   if (chatters) return {};

@@ -1,11 +1,11 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/monitor/spindle/speed.hpp"
-#include "robomill/monitor/spindle/tachometer.hpp"
 
 namespace robomill::monitor {
 
@@ -25,7 +25,7 @@ namespace robomill::monitor {
 /// Far off: where no comb, or a weak one, is near the hint, a strong one at 0.4 to 2.5 times it says that the sample
 /// rate is wrong, and hint/x of it right: s(x) > max(16, 2 s(f)).
 ///
-/// Pulses of a tachometer override all of this. Nothing is allocated after construction.
+/// A measured speed overrides all of this. Nothing is allocated after construction.
 class SpindleTracker {
  public:
   static constexpr double lowest_hz = 5.0;    ///< of rotation
@@ -43,10 +43,10 @@ class SpindleTracker {
   void set_hint(double rotation_hz) noexcept;
 
   /// A hop.
-  /// @param samples   all channels, channel after channel
-  /// @param pulses    of the tachometer; empty: there is none
-  /// @param chatters  the speed is not looked for
-  Change step(std::span<const float> samples, std::span<const double> pulses, bool chatters) noexcept;
+  /// @param samples      all channels, channel after channel
+  /// @param measured_hz  by a tachometer, 0: not known; empty: there is none
+  /// @param chatters     the speed is not looked for
+  Change step(std::span<const float> samples, std::optional<double> measured_hz, bool chatters) noexcept;
   /// Looks, without a tachometer, at the last hop once more: whether the speed still holds, or, where there is none,
   /// whether one near the hint has come in gently.
   Change check() noexcept;
@@ -75,7 +75,7 @@ class SpindleTracker {
  private:
   static constexpr std::size_t longest_past_window = 2;
 
-  Change follow_pulses(std::span<const double> pulses) noexcept;
+  Change take_measured(double now_hz) noexcept;
   Change search_on() noexcept;
   Change look_closer() noexcept;
   Change hold() noexcept;
@@ -91,7 +91,6 @@ class SpindleTracker {
   std::size_t frames_;
   int teeth_;
   SpeedSearch search_;
-  Tachometer pulses_;
   double hint_hz_ = 0.0, rotation_hz_ = 0.0;
   double reported_hz_ = 0.0;   // the hint that was another one last
   double known_hz_ = 0.0;      // the last rotation that was locked on

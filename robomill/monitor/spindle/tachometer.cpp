@@ -1,11 +1,34 @@
 #include "robomill/monitor/spindle/tachometer.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace robomill::monitor {
+namespace {
+
+constexpr double memory_s = 2.0;       // of the extremes
+constexpr double hysteresis = 0.125;   // of their distance, below the middle
+constexpr double stale = 2.5;          // distances of marks without one
+constexpr double least_std = 2e-4;     // of f: no shaft turns more evenly
+
+}  // namespace
+
+Tachometer::Tachometer(double sample_rate_hz, int pulses_per_revolution) noexcept : rate_hz_(sample_rate_hz) {
+  const auto pulses = static_cast<std::size_t>(std::max(1, pulses_per_revolution));
+  stride_ = std::max<std::size_t>(1, pulses / marks_a_turn);
+  turns_a_mark_ = static_cast<double>(stride_) / static_cast<double>(pulses);
+  used_ = std::min(kept, static_cast<std::size_t>(static_cast<double>(turns) / turns_a_mark_) + 1);
+}
+
+void Tachometer::reset() noexcept {
+  low_ = high_ = last_ = time_ = rotation_hz_ = std_ratio_ = 0.0;
+  pulses_ = marks_ = 0;
+  first_ = true;
+  armed_ = false;
+}
 
 void Tachometer::push(std::span<const double> samples) noexcept {
-  const double forget = 1.0 / (2.0 * rate_hz_);
+  const double forget = 1.0 / (memory_s * rate_hz_);
   for (const double x : samples) {
     if (first_) low_ = high_ = last_ = x;
     first_ = false;
@@ -13,22 +36,34 @@ void Tachometer::push(std::span<const double> samples) noexcept {
     low_ = std::min(x, low_ + forget * (middle - low_));
     high_ = std::max(x, high_ + forget * (middle - high_));
     const double level = 0.5 * (low_ + high_);
-    if (x < level - 0.125 * (high_ - low_)) armed_ = true;
+    if (x < level - hysteresis * (high_ - low_)) armed_ = true;
     if (armed_ && x >= level && last_ < level) {
-      pulse_[pulses_++ % kept] = time_ - (x - level) / (x - last_);
+      if (pulses_++ % stride_ == 0) mark_[marks_++ % kept] = time_ - (x - level) / (x - last_);
       armed_ = false;
     }
     last_ = x;
     time_ += 1.0;
   }
+  regress();
 }
 
-double Tachometer::rotation_hz() const noexcept {
-  if (pulses_ < 2) return 0.0;
-  const std::size_t turns = std::min(pulses_, kept) - 1;
-  const double newest = pulse_[(pulses_ - 1) % kept];
-  const double length = (newest - pulse_[(pulses_ - 1 - turns) % kept]) / static_cast<double>(turns);
-  return length > 0.0 && time_ - newest < 2.5 * length ? rate_hz_ / length : 0.0;
+void Tachometer::regress() noexcept {
+  rotation_hz_ = std_ratio_ = 0.0;
+  const std::size_t n = std::min(marks_, used_);
+  if (n < 2) return;
+  const double newest = mark_[(marks_ - 1) % kept];
+  const double middle = 0.5 * static_cast<double>(n - 1);
+  double squares = 0.0;
+  double product = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double place = static_cast<double>(i) - middle;
+    squares += place * place;
+    product += place * (mark_[(marks_ - n + i) % kept] - newest);
+  }
+  const double apart = product / squares;  // samples from mark to mark
+  if (apart <= 0.0 || time_ - newest > stale * apart) return;
+  rotation_hz_ = rate_hz_ * turns_a_mark_ / apart;
+  std_ratio_ = std::hypot(least_std, 1.0 / (std::sqrt(12.0 * squares) * apart));
 }
 
 }  // namespace robomill::monitor
