@@ -57,6 +57,7 @@ RatioTest::RatioTest(const Setup& setup)
       search_(setup.hop_s),
       growth_(spectra_.highest_hz(), setup.hop_s),
       power_(spectra_.spectrum(0, 0).line.size()),
+      long_power_(power_.size()),
       synchronous_(hops(memory_s)),
       whole_(hops(memory_s)),
       rotation_(hops(memory_s)) {
@@ -106,6 +107,7 @@ void RatioTest::measure(std::uint64_t bad_channels) noexcept {
       const Spectrum& own = spectra_.spectrum(w, c);
       for (std::size_t i = 1; i < own.line.size(); ++i) power_[i] += std::norm(own.line[i]);
     }
+    if (w == 0) std::copy_n(power_.begin(), like.line.size(), long_power_.begin());
     if (w == 0 && !given_) {
       search_.observe(std::span(power_).first(like.line.size()), like);
       if (!chatter_ && cut_ == 0.0 && search_.rotation_hz() > 0.0) speed_.set_hint(search_.rotation_hz());
@@ -115,6 +117,7 @@ void RatioTest::measure(std::uint64_t bad_channels) noexcept {
   }
   if (measured_hz_ > 0.0) speed_.observe(std::exchange(measured_hz_, 0.0), measured_std_ratio_);
   speed_.conclude();
+  speed_.refine(long_power_, spectra_.spectrum(0, 0));
   if (speed_.rotation_hz() <= 0.0) return;
   for (std::size_t w = 0; w < windows; ++w) {
     lines_[w].begin(speed_.rotation_hz(), setup_.teeth, given_);

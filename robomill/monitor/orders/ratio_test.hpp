@@ -98,12 +98,12 @@ class RatioTest {
   Setup setup_;
   Spectra spectra_;
   SpeedPosterior speed_;
-  CombSearch search_;   // where no speed is given
-  bool given_ = false;  // a speed is
+  CombSearch search_;                                    // where no speed is given
+  bool given_ = false;                                   // a speed is
   double measured_hz_ = 0.0, measured_std_ratio_ = 0.0;  // 0: not, in this hop
   GrowthTest growth_;
-  std::vector<ResidualLines> lines_;  // of each window
-  std::vector<float> power_;          // of all channels; after measure() of the short window
+  std::vector<ResidualLines> lines_;       // of each window
+  std::vector<float> power_, long_power_;  // of all channels, of the window measured last and of the long one
   std::array<ResidualFamily, windows> found_ = {};
   std::array<Peak, windows> peak_ = {};
   std::vector<double> synchronous_, whole_, rotation_;  // of the short window, the last 0.3 s; rings

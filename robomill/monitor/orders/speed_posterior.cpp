@@ -14,12 +14,13 @@ constexpr double held_reach = 4.0;       // steps
 constexpr double anew = 1e-3;            // a hop, to be drawn from the prior
 constexpr double known_within = 0.004;
 constexpr double mains_ratio = 0.01, highest_of_mains_hz = 190.0, hint_of_mains_ratio = 0.01;
-constexpr double miscounted = 1e-4;  // probability density of a measurement that is wrong
+constexpr double miscounted = 1e-4;   // probability density of a measurement that is wrong
 constexpr double unexplained = 0.02;  // share of the energy that a comb never explains
 constexpr double offset_guard = 2.5;  // 1/T, from 0
 constexpr double most_lines = 20.0;   // M
 constexpr int low_of_teeth = 6, low_of_rotation = 5, low_of_unknown_teeth = 12;
-constexpr double peaked = 0.53;  // ∫h⁴/(∫h²)²
+constexpr double peak_reach = 0.5;  // 1/T
+constexpr double peaked = 0.53;     // ∫h⁴/(∫h²)²
 
 }  // namespace
 
@@ -195,6 +196,28 @@ void SpeedPosterior::conclude() noexcept {
   }
   std_ratio_ = std::sqrt(variance);
   share_ = static_cast<double>(shares_[best]);
+}
+
+void SpeedPosterior::refine(std::span<const float> power, const Spectrum& like) noexcept {
+  if (rotation_hz_ <= 0.0) return;
+  const auto last = std::min(power.size() - 2, static_cast<std::size_t>(setup_.highest_hz / like.step_hz));
+  const double order_step = rotation_hz_ / like.step_hz;
+  const double reach_lines = peak_reach / (like.seconds * like.step_hz);
+  double sum = 0.0;
+  double weight = 0.0;
+  double k = 1.0;
+  for (double at = order_step; at + 2.0 < static_cast<double>(last); at += order_step, k += 1.0) {
+    auto near = static_cast<std::size_t>(std::lround(at));
+    if (power[near + 1] > power[near]) ++near;
+    if (power[near - 1] > power[near]) --near;
+    if (power[near] < power[near - 1] || power[near] < power[near + 1]) continue;
+    const double peak_hz = like.peak_hz(near, static_cast<double>(power[near - 1]), static_cast<double>(power[near]),
+                                        static_cast<double>(power[near + 1]));
+    if (std::abs(peak_hz / like.step_hz - at) > reach_lines) continue;
+    sum += k * static_cast<double>(power[near]) * peak_hz;
+    weight += k * k * static_cast<double>(power[near]);
+  }
+  if (weight > 0.0) rotation_hz_ = sum / weight;
 }
 
 }  // namespace robomill::monitor

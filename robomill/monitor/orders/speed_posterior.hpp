@@ -50,6 +50,9 @@ class SpeedPosterior {
   void observe(double rotation_hz, double std_ratio) noexcept;
   /// After the windows of a hop: fills what follows.
   void conclude() noexcept;
+  /// The most likely speed, by the peaks ν_k of the orders that stand within 0.5/T of it, to the power of the long
+  /// window: f = Σ k |X_k|² ν_k/Σ k² |X_k|².
+  void refine(std::span<const float> power, const Spectrum& like) noexcept;
 
   [[nodiscard]] double rotation_hz() const noexcept { return rotation_hz_; }  ///< the most likely; 0: no hint
   [[nodiscard]] double std_ratio() const noexcept { return std_ratio_; }      ///< spread about it, of f

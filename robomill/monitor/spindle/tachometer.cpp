@@ -6,10 +6,10 @@
 namespace robomill::monitor {
 namespace {
 
-constexpr double memory_s = 2.0;       // of the extremes
-constexpr double hysteresis = 0.125;   // of their distance, below the middle
-constexpr double stale = 2.5;          // distances of marks without one
-constexpr double least_std = 2e-4;     // of f: no shaft turns more evenly
+constexpr double memory_s = 2.0;      // of the extremes
+constexpr double hysteresis = 0.125;  // of their distance, below the middle
+constexpr double stale = 2.5;         // distances of marks without one
+constexpr double least_std = 2e-4;    // of f: no shaft turns more evenly
 
 }  // namespace
 

@@ -25,9 +25,9 @@ class Tachometer {
   void regress() noexcept;
 
   double rate_hz_;
-  std::size_t stride_ = 1;        // pulses from mark to mark
+  std::size_t stride_ = 1;  // pulses from mark to mark
   double turns_a_mark_ = 1.0;
-  std::size_t used_ = kept;       // marks in four turns
+  std::size_t used_ = kept;                                  // marks in four turns
   double low_ = 0.0, high_ = 0.0, last_ = 0.0, time_ = 0.0;  // time_: samples
   std::array<double, kept> mark_ = {};                       // times; a ring
   std::size_t pulses_ = 0, marks_ = 0;
