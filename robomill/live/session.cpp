@@ -30,7 +30,8 @@ Session::Session(const monitor::MonitorFile& file, SessionOptions options, Sessi
       options_(options),
       outputs_(std::move(outputs)),
       monitor_((monitor::validate(file), file.options)),
-      queue_(queued_hops) {
+      queue_(queued_hops),
+      actor_(file.act, file.options.spindle_speed_rad_per_s) {
   if (!file_.recording_folder.empty()) {
     ring_.emplace(AlarmRing::Options{.folder = file_.recording_folder,
                                      .seconds = file_.recording_s,
@@ -69,11 +70,7 @@ void Session::process(Hop&& hop) {
   frames_ += hop.frames_before;
   base_s_ += static_cast<double>(hop.frames_before) / file_.options.sample_rate_hz;
   if (outputs_.skipped && hop.frames_before > 0) outputs_.skipped(hop.frames_before);
-  if (hop.restarted) {
-    monitor_.reset();
-    base_s_ = time_s();
-    last_.hop = 0;
-  }
+  if (hop.restarted) begin_anew();
   if (std::isfinite(hop.spindle_speed_rad_per_s) && hop.spindle_speed_rad_per_s != speed_rad_per_s_) {
     speed_rad_per_s_ = hop.spindle_speed_rad_per_s;
     monitor_.set_spindle_speed(speed_rad_per_s_);
@@ -87,7 +84,9 @@ void Session::process(Hop&& hop) {
     compute_s_ += std::chrono::duration<double>(Clock::now() - begin).count();
     rest = rest.subspan(count);
     frames_ += count / channels;
-    if (decision.hop != last_.hop) decide(decision, std::exchange(compute_s_, 0.0));
+    if (decision.hop == last_.hop) continue;
+    decide(decision, std::exchange(compute_s_, 0.0));
+    if (actor_.take_restart()) begin_anew();
   }
   if (outputs_.samples) outputs_.samples(hop.samples);
   if (!ring_) return;
@@ -95,6 +94,12 @@ void Session::process(Hop&& hop) {
   if (std::exchange(alarm_, false) && !ring_->alarm(base_s_ + last_.time_s)) {
     notices_.add("recording-failed", "alarms come faster than they can be written");
   }
+}
+
+void Session::begin_anew() {
+  monitor_.reset();
+  base_s_ = time_s();
+  last_.hop = 0;
 }
 
 void Session::decide(monitor::Decision decision, double compute_s) {
@@ -112,7 +117,9 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   if (outputs_.decision) outputs_.decision(decision, time_s, compute_s);
   const bool fault_news = fault_is_news(decision);
   const bool frequency_news = frequency_is_news(decision);
-  if (!decision.changed && !fault_news && !frequency_news && !options_.every_window) return;
+  const bool news = decision.changed || fault_news || frequency_news || options_.every_window;
+  const bool act_due = actor_.observe(decision, time_s);
+  if (!news && !act_due) return;
   MonitorEvent event;
   event.kind = decision.changed || frequency_news ? MonitorEvent::Kind::state
                : fault_news                       ? MonitorEvent::Kind::fault
@@ -120,7 +127,9 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   event.time_s = time_s;
   event.decision = decision;
   event.compute_s = compute_s;
-  emit(std::move(event));
+  advise(event);
+  act(event);
+  if (news || !event.command.empty()) emit(std::move(event));
 }
 
 bool Session::fault_is_news(const monitor::Decision& decision) {
@@ -162,16 +171,31 @@ void Session::emit_notices(bool all) {
       event.kind = MonitorEvent::Kind::recording;
       event.file = std::exchange(event.message, {});
     }
+    advise(event);
     emit(std::move(event));
   }
 }
 
+void Session::advise(MonitorEvent& event) const {
+  const monitor::Decision& d = event.decision;
+  if (!outputs_.advise || d.state != monitor::State::chatter || d.chatter_frequency_hz <= 0.0) return;
+  if (!actor_.settling()) outputs_.advise(event);
+}
+
 void Session::emit(MonitorEvent event) {
-  if (event.decision.state == monitor::State::chatter && event.decision.chatter_frequency_hz > 0.0 && outputs_.advise) {
-    outputs_.advise(event);
-  }
   ++metrics_.events;
   if (outputs_.event && !outputs_.event(event, monitor::event_line(event))) ended_ = true;
+}
+
+void Session::act(MonitorEvent& event) {
+  const std::optional<Command> command = actor_.act(event);
+  if (!command) return;
+  if (outputs_.command) outputs_.command(*command);
+  event.kind = MonitorEvent::Kind::state;
+  // A stream that carries the speed says itself when the spindle turns at another one.
+  if (command->kind == Command::Kind::spindle_speed && speed_rad_per_s_ == 0.0) {
+    monitor_.set_spindle_speed(command->spindle_speed_rad_per_s);
+  }
 }
 
 }  // namespace robomill::live

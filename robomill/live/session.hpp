@@ -8,6 +8,7 @@
 #include <string>
 
 #include "robomill/base/export.hpp"
+#include "robomill/live/act.hpp"
 #include "robomill/live/alarm_ring.hpp"
 #include "robomill/live/hop_queue.hpp"
 #include "robomill/live/metrics.hpp"
@@ -28,6 +29,7 @@ struct SessionOutputs {
   /// @param compute_s  that the decision took
   std::function<void(const monitor::Decision& decision, double time_s, double compute_s)> decision = {};
   std::function<void(monitor::MonitorEvent& event)> advise = {};  ///< fills in mode and better speeds of chatter
+  std::function<void(const Command& command)> command = {};       ///< of a rule of [act], before the event that has it
   /// Samples of whole frames after the detector took them, for a recording or a report …
   std::function<void(std::span<const float> samples)> samples = {};
   /// … and frames that were left out before the next ones.
@@ -66,6 +68,9 @@ class ROBOMILL_API Session {
  private:
   void decide(monitor::Decision decision, double compute_s);
   void emit(monitor::MonitorEvent event);
+  void advise(monitor::MonitorEvent& event) const;
+  void act(monitor::MonitorEvent& event);
+  void begin_anew();
   [[nodiscard]] bool fault_is_news(const monitor::Decision& decision);
   [[nodiscard]] bool frequency_is_news(const monitor::Decision& decision);
 
@@ -77,6 +82,7 @@ class ROBOMILL_API Session {
   Notices notices_;
   MetricValues metrics_;
   std::optional<AlarmRing> ring_;
+  Actor actor_;
   monitor::Decision last_;
   std::uint64_t frames_ = 0;  ///< processed and left out
   double base_s_ = 0.0;       ///< the stream's time less the detector's
