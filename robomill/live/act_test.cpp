@@ -356,6 +356,9 @@ TEST(Advisor, SuggestsNoSpeedForModeCoupling) {
   const MonitorEvent coupled = advised(basis, 545.0);
   EXPECT_EQ(coupled.no_speed, NoSpeed::mode_coupling);
   EXPECT_EQ(coupled.suggested_spindle_speed_rad_per_s, 0.0);
+  AdviceBasis elsewhere = basis;
+  for (stability::Limit& limit : elsewhere.lobes->limit) limit.spindle_speed_rad_per_s *= 1.5;
+  EXPECT_EQ(advised(elsewhere, 545.0).no_speed, NoSpeed::none);
   basis.mode_coupling.back() = false;
   EXPECT_GT(advised(basis, 545.0).suggested_spindle_speed_rad_per_s, 0.0);
 }

@@ -15,6 +15,8 @@ namespace {
 
 /// Of the limit of depth, as a plan keeps it.
 constexpr double depth_margin = 0.2;
+/// Of the speed: how near a limit of the chart must be to be that of the cut.
+constexpr double chart_reach = 0.05;
 
 }  // namespace
 
@@ -25,10 +27,12 @@ NoSpeed Advisor::no_speed(const monitor::Advice& advice, double spindle_speed_ra
   }
   if (!basis_.lobes || basis_.mode_coupling.size() != basis_.lobes->limit.size()) return NoSpeed::none;
   const std::vector<stability::Limit>& limits = basis_.lobes->limit;
-  const auto nearest = std::ranges::min_element(limits, {}, [&](const stability::Limit& limit) {
+  const auto away = [&](const stability::Limit& limit) {
     return std::abs(limit.spindle_speed_rad_per_s - spindle_speed_rad_per_s);
-  });
-  if (nearest == limits.end()) return NoSpeed::none;
+  };
+  const auto nearest = std::ranges::min_element(limits, {}, away);
+  // What the chart says beyond its ends is nothing.
+  if (nearest == limits.end() || away(*nearest) > chart_reach * spindle_speed_rad_per_s) return NoSpeed::none;
   const auto index = static_cast<std::size_t>(std::distance(limits.begin(), nearest));
   return basis_.mode_coupling[index] ? NoSpeed::mode_coupling : NoSpeed::none;
 }

@@ -5,8 +5,6 @@
 
 namespace robomill::live {
 
-using State = path::PathInterpolator::State;
-
 bool PathActuator::apply(const Command& command) noexcept {
   using Kind = Command::Kind;
   if (command.kind == Kind::none) return true;
@@ -21,7 +19,7 @@ bool PathActuator::apply(const Command& command) noexcept {
   return true;
 }
 
-State PathActuator::next(path::Sample& sample) noexcept {
+path::PathInterpolator::State PathActuator::next(path::Sample& sample) noexcept {
   const Feed feed = feed_.load();
   const double measured = measured_rad_per_s_.load(), with = static_cast<double>(feed.with_rad_per_s);
   if (with == 0.0) {
@@ -38,6 +36,7 @@ State PathActuator::next(path::Sample& sample) noexcept {
     retracted_ = false;
   }
   held_ = hold_m > 0.0;
+  using State = path::PathInterpolator::State;
   const State state = path_.next(sample);
   if (held_ && !retracted_ && state != State::running && state != State::finished) {
     retracted_ = true;

@@ -86,7 +86,7 @@ void Session::process(Hop&& hop) {
     frames_ += count / channels;
     if (decision.hop == last_.hop) continue;
     decide(decision, std::exchange(compute_s_, 0.0));
-    if (actor_.take_restart()) begin_anew();
+    if (actor_.take_restart() && outputs_.command) begin_anew();
   }
   if (outputs_.samples) outputs_.samples(hop.samples);
   if (!ring_) return;
@@ -179,7 +179,8 @@ void Session::emit_notices(bool all) {
 void Session::advise(MonitorEvent& event) const {
   const monitor::Decision& d = event.decision;
   if (!outputs_.advise || d.state != monitor::State::chatter || d.chatter_frequency_hz <= 0.0) return;
-  if (!actor_.settling()) outputs_.advise(event);
+  // While the spindle changes its speed the detector's is the one of before.
+  if (!outputs_.command || !actor_.settling()) outputs_.advise(event);
 }
 
 void Session::emit(MonitorEvent event) {
@@ -190,8 +191,9 @@ void Session::emit(MonitorEvent event) {
 void Session::act(MonitorEvent& event) {
   const std::optional<Command> command = actor_.act(event);
   if (!command) return;
-  if (outputs_.command) outputs_.command(*command);
   event.kind = MonitorEvent::Kind::state;
+  if (!outputs_.command) return;
+  outputs_.command(*command);
   // A stream that carries the speed says itself when the spindle turns at another one.
   if (command->kind == Command::Kind::spindle_speed && speed_rad_per_s_ == 0.0) {
     monitor_.set_spindle_speed(command->spindle_speed_rad_per_s);

@@ -29,7 +29,9 @@ struct SessionOutputs {
   /// @param compute_s  that the decision took
   std::function<void(const monitor::Decision& decision, double time_s, double compute_s)> decision = {};
   std::function<void(monitor::MonitorEvent& event)> advise = {};  ///< fills in mode and better speeds of chatter
-  std::function<void(const Command& command)> command = {};       ///< of a rule of [act], before the event that has it
+  /// Takes what a rule of [act] commands, before the event that names it. Without it events say what would be
+  /// commanded.
+  std::function<void(const Command& command)> command = {};
   /// Samples of whole frames after the detector took them, for a recording or a report …
   std::function<void(std::span<const float> samples)> samples = {};
   /// … and frames that were left out before the next ones.
