@@ -129,7 +129,7 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   event.compute_s = compute_s;
   advise(event);
   act(event);
-  if (news || !event.command.empty()) emit(std::move(event));
+  if (news || !event.command.empty()) emit(event);
 }
 
 bool Session::fault_is_news(const monitor::Decision& decision) {
@@ -172,7 +172,7 @@ void Session::emit_notices(bool all) {
       event.file = std::exchange(event.message, {});
     }
     advise(event);
-    emit(std::move(event));
+    emit(event);
   }
 }
 
@@ -183,7 +183,7 @@ void Session::advise(MonitorEvent& event) const {
   if (!outputs_.command || !actor_.settling()) outputs_.advise(event);
 }
 
-void Session::emit(MonitorEvent event) {
+void Session::emit(const MonitorEvent& event) {
   ++metrics_.events;
   if (outputs_.event && !outputs_.event(event, monitor::event_line(event))) ended_ = true;
 }

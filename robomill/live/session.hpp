@@ -69,7 +69,7 @@ class ROBOMILL_API Session {
 
  private:
   void decide(monitor::Decision decision, double compute_s);
-  void emit(monitor::MonitorEvent event);
+  void emit(const monitor::MonitorEvent& event);
   void advise(monitor::MonitorEvent& event) const;
   void act(monitor::MonitorEvent& event);
   void begin_anew();
