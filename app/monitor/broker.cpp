@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "robomill/live/files/command_json.hpp"
+
 namespace robomill::app {
 namespace {
 
@@ -17,6 +19,7 @@ Broker::Broker(const monitor::MonitorFile& file, bool stream, live::HopQueue& qu
                live::MetricValues& metrics)
     : address_(fmt::format("{}:{}", file.mqtt.host, file.mqtt.port_or_default())),
       events_topic_(file.mqtt.events_topic),
+      commands_topic_(file.mqtt.commands_topic),
       notices_(&notices),
       metrics_(&metrics) {
   if (stream) stream_.emplace(file, queue, notices, metrics);
@@ -32,7 +35,7 @@ Broker::Broker(const monitor::MonitorFile& file, bool stream, live::HopQueue& qu
 }
 
 Broker::~Broker() {
-  if (!events_topic_.empty()) client_->flush(publish_wait);
+  if (!events_topic_.empty() || !commands_topic_.empty()) client_->flush(publish_wait);
 }
 
 void Broker::wait_a_little() const {
@@ -54,13 +57,22 @@ void Broker::connection(bool connected, const std::string& why) {
   if (stream_) stream_->give_up();
 }
 
-void Broker::publish(const monitor::MonitorEvent& event, const std::string& line) {
-  if (events_topic_.empty()) return;
+void Broker::send(const std::string& topic, const std::string& line, const char* failure, bool report) {
+  if (topic.empty()) return;
   const std::string_view text = std::string_view(line).substr(0, line.size() - 1);
-  // A failure to publish this notice itself is not reported again.
-  if (!client_->publish(events_topic_, text) && event.what != "events-not-published") {
-    notices_->add("events-not-published", fmt::format("{} has no connection or does not take them", address_));
+  if (!client_->publish(topic, text) && report) {
+    notices_->add(failure, fmt::format("{} has no connection or does not take them", address_));
   }
+}
+
+void Broker::publish(const monitor::MonitorEvent& event, const std::string& line) {
+  // A failure to publish this notice itself is not reported again.
+  send(events_topic_, line, "events-not-published", event.what != "events-not-published");
+}
+
+void Broker::publish(const live::Command& command) {
+  const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+  send(commands_topic_, live::command_line(command, now.count()), "commands-not-published", true);
 }
 
 }  // namespace robomill::app

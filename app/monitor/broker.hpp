@@ -5,12 +5,13 @@
 #include <string>
 
 #include "mqtt.hpp"
+#include "robomill/live/act.hpp"
 #include "robomill/live/inputs.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 
 namespace robomill::app {
 
-/// A broker: samples from it where a topic is named, and events to it.
+/// A broker: samples from it where a topic is named, events and commands to it.
 class Broker {
  public:
   /// @param stream  whether samples come from mqtt.topic
@@ -28,11 +29,15 @@ class Broker {
   void wait_a_little() const;
   /// Publishes to the topic of the events, where there is one; adds a notice where it cannot.
   void publish(const monitor::MonitorEvent& event, const std::string& line);
+  /// Publishes to the topic of the commands in the same way, with the time of the clock. One that finds no connection
+  /// is dropped: it would come too late.
+  void publish(const live::Command& command);
 
  private:
+  void send(const std::string& topic, const std::string& line, const char* failure, bool report);
   void connection(bool connected, const std::string& why);
 
-  std::string address_, events_topic_;
+  std::string address_, events_topic_, commands_topic_;
   live::Notices* notices_;
   live::MetricValues* metrics_;
   std::mutex mutex_;  ///< messages and lost connections come from several threads

@@ -144,6 +144,7 @@ void print_event(std::FILE* to, const MonitorEvent& event) {
           fmt::print(to, " and {:.3g} mm", event.suggested_axial_depth_m / units::mm);
         }
       }
+      if (!event.message.empty()) fmt::print(to, "; {}", event.message);
       break;
     case MonitorEvent::Kind::fault: {
       std::string names;
@@ -237,6 +238,11 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     if (watch) watch->show(decision, time_s);
   };
   outputs.advise = [&](MonitorEvent& event) { advisor.advise(event); };
+  if (!file.mqtt.commands_topic.empty()) {
+    outputs.command = [&](const live::Command& issued) {
+      if (broker) broker->publish(issued);
+    };
+  }
   if (recorder) {
     outputs.samples = [&](std::span<const float> samples) { recorder->add(samples); };
     outputs.skipped = [&](std::uint64_t frames) { recorder->skip(frames); };
@@ -253,7 +259,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   const std::atomic<bool>& stop = stop_on_signal();
   {
     std::optional<Broker> connection;
-    if (input.is_stream || !file.mqtt.events_topic.empty()) {
+    if (input.is_stream || !file.mqtt.events_topic.empty() || !file.mqtt.commands_topic.empty()) {
       connection.emplace(file, input.is_stream, session.queue(), session.notices(), session.metrics());
       broker = &*connection;
       if (!input.is_stream) broker->wait_a_little();

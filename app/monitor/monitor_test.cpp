@@ -140,8 +140,9 @@ TEST_F(MonitorVerb, AdvisesTheBestSpeedAndDepthOfTheLobes) {
   folder_.file("lobes.toml",
                "[tool]\nteeth = 3\ndiameter_mm = 12\n[cut]\ndirection = \"up\"\nradial_depth_mm = 1.8\n"
                "feed_per_tooth_mm = 0.01\n[coefficients]\ntangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n"
-               "[dynamics]\nmodes = \"" ROBOMILL_SOURCE_DIR
-               "/data/robot-modes.toml\"\n[lobes]\nspindle_speed_rpm = [6600, 7500]\naxial_depth_mm = [0, 3]\n"
+               "[dynamics]\nx = [{ frequency_hz = 682, damping_ratio = 0.02, modal_mass_kg = 0.02 }]\n"
+               "y = [{ frequency_hz = 682, damping_ratio = 0.02, modal_mass_kg = 0.02 }]\n"
+               "[lobes]\nspindle_speed_rpm = [6600, 7500]\naxial_depth_mm = [0, 3]\n"
                "grid = [20, 10]\n");
   const Ended chart = robomill("lobes lobes.toml -o -");
   ASSERT_EQ(chart.exit, 0) << chart.err;
@@ -167,6 +168,15 @@ TEST_F(MonitorVerb, AdvisesTheBestSpeedAndDepthOfTheLobes) {
   ASSERT_NE(alarm, states.end());
   EXPECT_NEAR((*alarm)["suggested_spindle_speed_rpm"].get<double>(), best_rpm, 1e-6 * best_rpm);
   EXPECT_NEAR((*alarm)["suggested_axial_depth_mm"].get<double>(), 0.8 * best_mm, 1e-6 * best_mm);
+  // Of the milling robot's modes it is one of the arm that shows up there, 7 tooth passings less 17.4 Hz: for it there
+  // is no better speed.
+  folder_.file("armed.toml", config_ + "modes = \"" ROBOMILL_SOURCE_DIR "/data/robot-modes.toml\"\n");
+  ASSERT_EQ(robomill("monitor armed.toml --input rec.wav -o events.jsonl").exit, 0);
+  for (const json& event : events_of("state")) {
+    EXPECT_TRUE(event["suggested_spindle_speed_rpm"].is_null());
+    if (event["state"] != "chatter") continue;
+    EXPECT_TRUE(event["no_speed"] == "arm" || event["no_speed"] == "unclear") << event;
+  }
   folder_.file("unlobed.toml", config_ + "lobes = \"none.toml\"\n");
   const Ended rejected = robomill("monitor unlobed.toml --input rec.wav -o unlobed.jsonl");
   EXPECT_EQ(rejected.exit, 1);
@@ -498,6 +508,26 @@ TEST_F(MonitorStream, PublishesEventsOfARecording) {
   EXPECT_EQ(run.exit, 0) << run.err;
   EXPECT_NE(run.out.find("280 decisions"), std::string::npos) << run.out;
   EXPECT_TRUE(wait_for([&] { return published("\"state\":\"chatter\""); }));
+}
+
+// What a rule commands goes to its topic, and the event says that it did.
+TEST_F(MonitorStream, PublishesCommands) {
+  folder_.file("acting.toml", config_ + "[act]\nrule = \"reduce\"\n[mqtt]\nport = " + std::to_string(broker_.port()) +
+                                  "\ncommands_topic = \"cell/events\"\n");
+  wav("rec.wav", samples_);
+  const Ended run = robomill("monitor acting.toml --input rec.wav -o events.jsonl");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_NE(run.out.find("; chatter: feed to 50 %"), std::string::npos) << run.out;
+  EXPECT_TRUE(wait_for([&] { return published("\"command\":\"feed\""); }));
+  EXPECT_TRUE(published("\"feed_override\":0.5"));
+  std::size_t followed = 0;
+  for (const json& event : events()) followed += event["command"] == "feed" ? 1U : 0U;
+  EXPECT_EQ(followed, 1U);
+  // Without a topic the events alone say what would have been commanded.
+  folder_.file("dry.toml", config_ + "[act]\nrule = \"reduce\"\n");
+  ASSERT_EQ(robomill("monitor dry.toml --input rec.wav -o events.jsonl").exit, 0);
+  EXPECT_TRUE(has_event("feed"));
+  EXPECT_EQ(slurp(folder_.at("events.jsonl")).find("broker"), std::string::npos);
 }
 
 }  // namespace monitor_test

@@ -1,24 +1,56 @@
 #include "robomill/live/advisor.hpp"
 
-#include "robomill/monitor/advice.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+
+#include "robomill/base/units.hpp"
 
 namespace robomill::live {
+
+using monitor::NoSpeed;
+
 namespace {
 
 /// Of the limit of depth, as a plan keeps it.
 constexpr double depth_margin = 0.2;
+/// Of the speed: how near a limit of the chart must be to be that of the cut.
+constexpr double chart_reach = 0.05;
 
 }  // namespace
+
+NoSpeed Advisor::no_speed(const monitor::Advice& advice, double spindle_speed_rad_per_s) const {
+  const double lowest_tooth_passing_hz = basis_.teeth * basis_.lowest_rad_per_s / units::revolution;
+  if (advice.lowest_hz < std::max(basis_.arm_below_hz, lowest_tooth_passing_hz)) {
+    return advice.frequency_hz > 0.0 ? NoSpeed::arm : NoSpeed::unclear;
+  }
+  if (!basis_.lobes || basis_.mode_coupling.size() != basis_.lobes->limit.size()) return NoSpeed::none;
+  const std::vector<stability::Limit>& limits = basis_.lobes->limit;
+  const auto away = [&](const stability::Limit& limit) {
+    return std::abs(limit.spindle_speed_rad_per_s - spindle_speed_rad_per_s);
+  };
+  const auto nearest = std::ranges::min_element(limits, {}, away);
+  // What the chart says beyond its ends is nothing.
+  if (nearest == limits.end() || away(*nearest) > chart_reach * spindle_speed_rad_per_s) return NoSpeed::none;
+  const auto index = static_cast<std::size_t>(std::distance(limits.begin(), nearest));
+  return basis_.mode_coupling[index] ? NoSpeed::mode_coupling : NoSpeed::none;
+}
 
 void Advisor::advise(monitor::MonitorEvent& event) const {
   const monitor::Decision& d = event.decision;
   const double speed_rad_per_s =
       d.spindle_speed_rad_per_s > 0.0 ? d.spindle_speed_rad_per_s : basis_.spindle_speed_rad_per_s;
   if (!(d.chatter_frequency_hz > 0.0) || basis_.teeth < 1 || !(speed_rad_per_s > 0.0)) return;
+  monitor::AdviceOptions options;
+  options.lowest_rad_per_s = basis_.lowest_rad_per_s;
+  if (basis_.highest_rad_per_s > 0.0) options.highest_rad_per_s = basis_.highest_rad_per_s;
   const monitor::Advice advice = monitor::advise(d.chatter_frequency_hz, d.chatter_frequency_std_hz, speed_rad_per_s,
                                                  basis_.teeth, basis_.modes ? &*basis_.modes : nullptr,
-                                                 basis_.lobes ? &*basis_.lobes : nullptr, {}, basis_.workpiece);
+                                                 basis_.lobes ? &*basis_.lobes : nullptr, options, basis_.workpiece);
   event.mode = advice.mode;
+  event.no_speed = no_speed(advice, speed_rad_per_s);
+  if (event.no_speed != NoSpeed::none) return;
   for (const monitor::StableSpeed& stable : advice.speeds) {
     event.stable_speeds_rad_per_s.push_back(stable.spindle_speed_rad_per_s);
   }

@@ -1,9 +1,11 @@
 #pragma once
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/modal/modes.hpp"
+#include "robomill/monitor/advice.hpp"
 #include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/stability/lobes.hpp"
 
@@ -18,9 +20,16 @@ struct AdviceBasis {
   std::optional<modal::ModalModel> modes = {};
   modal::ModalModel workpiece = {};  ///< no modes: it stands still
   std::optional<stability::LobesResult> lobes = {};
+  /// Of each limit of the lobes whether just above it modes couple, which needs no wave of an earlier tooth; empty:
+  /// unknown.
+  std::vector<bool> mode_coupling = {};
+  double lowest_rad_per_s = 0.0, highest_rad_per_s = 0.0;  ///< of the spindle, lowest < highest; 0: no bound
+  /// Below it a mode is one of the arm, whose chatter no speed is suggested for; so is one below the lowest tooth
+  /// passing that the spindle can give.
+  double arm_below_hz = 100.0;
 };
 
-/// Names the mode that chatters, and speeds and a depth that are stable.
+/// Names the mode that chatters, and speeds and a depth that are stable, or why no speed is.
 class ROBOMILL_API Advisor {
  public:
   explicit Advisor(AdviceBasis basis) : basis_(std::move(basis)) {}
@@ -28,6 +37,7 @@ class ROBOMILL_API Advisor {
   void advise(monitor::MonitorEvent& event) const;
 
  private:
+  [[nodiscard]] monitor::NoSpeed no_speed(const monitor::Advice& advice, double spindle_speed_rad_per_s) const;
   AdviceBasis basis_;
 };
 

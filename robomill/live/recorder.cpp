@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
-#include "robomill/live/alarm_log.hpp"
-#include "robomill/live/spectrogram_store.hpp"
-#include "robomill/live/state_log.hpp"
+#include "robomill/live/record/alarm_log.hpp"
+#include "robomill/live/record/spectrogram_store.hpp"
+#include "robomill/live/record/state_log.hpp"
 
 namespace robomill::live {
 namespace {

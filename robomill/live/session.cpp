@@ -33,7 +33,8 @@ Session::Session(const monitor::MonitorFile& file, SessionOptions options, Sessi
       options_(options),
       outputs_(std::move(outputs)),
       monitor_((monitor::validate(file), file.options)),
-      queue_(queued_hops) {
+      queue_(queued_hops),
+      actor_(file.act, file.options.spindle_speed_rad_per_s) {
   if (!file_.recording_folder.empty()) {
     ring_.emplace(AlarmRing::Options{.folder = file_.recording_folder,
                                      .seconds = file_.recording_s,
@@ -112,11 +113,7 @@ void Session::leave_out(std::uint64_t frames) {
 
 void Session::process(Hop&& hop) {
   leave_out(hop.frames_before);
-  if (hop.restarted) {
-    monitor_.reset();
-    base_s_ = time_s();
-    last_.hop = 0;
-  }
+  if (hop.restarted) begin_anew();
   if (std::isfinite(hop.spindle_speed_rad_per_s) && hop.spindle_speed_rad_per_s != speed_rad_per_s_) {
     speed_rad_per_s_ = hop.spindle_speed_rad_per_s;
     monitor_.set_spindle_speed(speed_rad_per_s_);
@@ -130,7 +127,9 @@ void Session::process(Hop&& hop) {
     compute_s_ += std::chrono::duration<double>(Clock::now() - begin).count();
     rest = rest.subspan(count);
     frames_ += count / channels;
-    if (decision.hop != last_.hop) decide(decision, std::exchange(compute_s_, 0.0));
+    if (decision.hop == last_.hop) continue;
+    decide(decision, std::exchange(compute_s_, 0.0));
+    if (actor_.take_restart() && outputs_.command) begin_anew();
   }
   if (outputs_.samples) outputs_.samples(hop.samples);
   samples_at_ = Clock::now();
@@ -140,6 +139,12 @@ void Session::process(Hop&& hop) {
   if (std::exchange(alarm_, false) && !ring_->alarm(base_s_ + last_.time_s)) {
     notices_.add("recording-failed", "alarms come faster than they can be written");
   }
+}
+
+void Session::begin_anew() {
+  monitor_.reset();
+  base_s_ = time_s();
+  last_.hop = 0;
 }
 
 void Session::decide(monitor::Decision decision, double compute_s) {
@@ -164,18 +169,23 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   const bool fault_news = fault_is_news(decision);
   const bool frequency_news = frequency_is_news(decision);
   const bool state_news = decision.changed || reason_news || frequency_news;
-  const auto emit_as = [&](MonitorEvent::Kind kind) {
+  const bool act_due = actor_.observe(decision, time_s);
+  const auto event_of = [&](MonitorEvent::Kind kind) {
     MonitorEvent event;
     event.kind = kind;
     event.time_s = time_s;
     event.decision = decision;
     event.compute_s = compute_s;
-    emit(std::move(event));
+    advise(event);
+    return event;
   };
   // A change of state holds the faults; where they are its cause they are news of their own.
-  if (fault_news && (!state_news || blind)) emit_as(MonitorEvent::Kind::fault);
-  if (state_news) emit_as(MonitorEvent::Kind::state);
-  if (!state_news && !fault_news && options_.every_window) emit_as(MonitorEvent::Kind::window);
+  if (fault_news && (!state_news || blind)) emit(event_of(MonitorEvent::Kind::fault));
+  const bool window_news = !state_news && !fault_news && options_.every_window;
+  if (!state_news && !window_news && !act_due) return;
+  MonitorEvent event = event_of(state_news ? MonitorEvent::Kind::state : MonitorEvent::Kind::window);
+  act(event);
+  if (state_news || window_news || !event.command.empty()) emit(event);
 }
 
 bool Session::fault_is_news(const monitor::Decision& decision) {
@@ -217,16 +227,33 @@ void Session::emit_notices(bool all) {
       event.kind = MonitorEvent::Kind::recording;
       event.file = std::exchange(event.message, {});
     }
-    emit(std::move(event));
+    advise(event);
+    emit(event);
   }
 }
 
-void Session::emit(MonitorEvent event) {
-  if (event.decision.state == State::chatter && event.decision.chatter_frequency_hz > 0.0 && outputs_.advise) {
-    outputs_.advise(event);
-  }
+void Session::advise(MonitorEvent& event) const {
+  const monitor::Decision& d = event.decision;
+  if (!outputs_.advise || d.state != monitor::State::chatter || d.chatter_frequency_hz <= 0.0) return;
+  // While the spindle changes its speed the detector's is the one of before.
+  if (!outputs_.command || !actor_.settling()) outputs_.advise(event);
+}
+
+void Session::emit(const MonitorEvent& event) {
   ++metrics_.events;
   if (outputs_.event && !outputs_.event(event, monitor::event_line(event))) ended_ = true;
+}
+
+void Session::act(MonitorEvent& event) {
+  const std::optional<Command> command = actor_.act(event);
+  if (!command) return;
+  event.kind = MonitorEvent::Kind::state;
+  if (!outputs_.command) return;
+  outputs_.command(*command);
+  // A stream that carries the speed says itself when the spindle turns at another one.
+  if (command->kind == Command::Kind::spindle_speed && speed_rad_per_s_ == 0.0) {
+    monitor_.set_spindle_speed(command->spindle_speed_rad_per_s);
+  }
 }
 
 }  // namespace robomill::live

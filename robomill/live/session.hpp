@@ -9,6 +9,7 @@
 #include <string>
 
 #include "robomill/base/export.hpp"
+#include "robomill/live/act.hpp"
 #include "robomill/live/alarm_ring.hpp"
 #include "robomill/live/hop_queue.hpp"
 #include "robomill/live/metrics.hpp"
@@ -29,6 +30,9 @@ struct SessionOutputs {
   /// @param compute_s  that the decision took
   std::function<void(const monitor::Decision& decision, double time_s, double compute_s)> decision = {};
   std::function<void(monitor::MonitorEvent& event)> advise = {};  ///< fills in mode and better speeds of chatter
+  /// Takes what a rule of [act] commands, before the event that names it. Without it events say what would be
+  /// commanded.
+  std::function<void(const Command& command)> command = {};
   /// Samples of whole frames after the detector took them, for a recording or a report …
   std::function<void(std::span<const float> samples)> samples = {};
   /// … and frames that were left out before the next ones.
@@ -74,7 +78,10 @@ class ROBOMILL_API Session {
   void check_silence(Clock::time_point now);
   void leave_out(std::uint64_t frames);
   void become_blind(monitor::BlindReason reason);
-  void emit(monitor::MonitorEvent event);
+  void emit(const monitor::MonitorEvent& event);
+  void advise(monitor::MonitorEvent& event) const;
+  void act(monitor::MonitorEvent& event);
+  void begin_anew();
   [[nodiscard]] bool fault_is_news(const monitor::Decision& decision);
   [[nodiscard]] bool frequency_is_news(const monitor::Decision& decision);
 
@@ -86,6 +93,7 @@ class ROBOMILL_API Session {
   Notices notices_;
   MetricValues metrics_;
   std::optional<AlarmRing> ring_;
+  Actor actor_;
   monitor::Decision last_;
   std::uint64_t frames_ = 0;  ///< processed and left out
   double base_s_ = 0.0;       ///< the stream's time less the detector's

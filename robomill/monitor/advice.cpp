@@ -26,9 +26,12 @@ void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const 
   advice.mode = peak.best.mode;
   advice.expected_hz = peak.best.mode_frequency_hz;
   if (std::isfinite(peak.chatter_frequency_hz)) {
-    advice.frequency_hz = peak.chatter_frequency_hz;
+    advice.frequency_hz = advice.lowest_hz = peak.chatter_frequency_hz;
   } else if (peak.state == stability::ExplainedPeak::State::ambiguous) {
     advice.frequency_hz = 0.0;
+    for (const stability::Explanation& reading : peak.others) {
+      if (reading.mode.known()) advice.lowest_hz = std::min(advice.lowest_hz, reading.mode_frequency_hz);
+    }
   }
 }
 
@@ -64,7 +67,7 @@ Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s
   require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");
   Advice out;
-  out.frequency_hz = frequency_hz;
+  out.frequency_hz = out.lowest_hz = frequency_hz;
   out.std_hz = std_hz;
   if (modes != nullptr) {
     require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", "It separates the modes");

@@ -32,7 +32,10 @@ struct Advice {
   /// explain it about as well disagree on that: then there are no speeds.
   double frequency_hz = 0.0;
   double std_hz = 0.0;
-  double expected_hz = 0.0;         ///< of that mode; 0 without one
+  double expected_hz = 0.0;  ///< of that mode; 0 without one
+  /// Of the mode's motion as far as it is known: where several modes explain the line about as well, that of the
+  /// lowest.
+  double lowest_hz = 0.0;
   std::vector<StableSpeed> speeds;  ///< nearest to the present speed first
   /// With a chart: the speed in range with the greatest limit of depth, and that limit; of a depth that is stable up to
   /// the end of the chart, that end.

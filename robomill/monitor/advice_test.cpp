@@ -43,6 +43,7 @@ TEST(Advise, FoldsSidebandsBackToTheMode) {
       EXPECT_EQ(advice.mode.number, mode) << line;
       EXPECT_NEAR(advice.frequency_hz, frequency, 0.1) << line;
       EXPECT_NEAR(advice.expected_hz, frequency, 1e-9) << line;
+      EXPECT_EQ(advice.lowest_hz, advice.frequency_hz);
     }
   }
 }
@@ -54,6 +55,7 @@ TEST(Advise, NamesNoModeThatCannotBeDetermined) {
   const Advice open = advise(539.5, 0.2, 6500.0 * rpm, 3, &modes);
   EXPECT_FALSE(open.mode.known());
   EXPECT_EQ(open.frequency_hz, 0.0);
+  EXPECT_LE(open.lowest_hz, 539.5);
   EXPECT_TRUE(open.speeds.empty());
 
   modal::ModalModel twice;

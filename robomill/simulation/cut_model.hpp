@@ -63,6 +63,7 @@ struct CutModel {
   int slices = 1;
   double radius_m = 0.0;
   double feed_m_per_s = 0.0;
+  Profile feed;   ///< of feed_m_per_s; from 1 at time 0
   Profile depth;  ///< of the elements' width, ring by ring from the first; with points: every ring a slice
   Eigen::Vector3d feed_direction = Eigen::Vector3d::UnitX();
   cutting::ProcessDamping damping;

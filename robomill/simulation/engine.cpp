@@ -368,7 +368,7 @@ void Engine<D>::pass_wall(const Near& near, WatchedWall& watched) {
   const Vector<D> q = (1.0 - s) * q_a_ + s * q_;
   const Vector<D> speed = (q_ - q_a_) / step_s_;
   const double turning = model_.spindle.speed(time_s());
-  const double along = model_.feed_m_per_s + speed(0) + outward * model_.radius_m * turning;
+  const double along = model_.feed_m_per_s * model_.feed.at(time_s()) + speed(0) + outward * model_.radius_m * turning;
   WallPass pass;
   pass.ring = e.ring;
   pass.x_m = feed_a_ + s * (feed_b_ - feed_a_) + q(0);
@@ -409,7 +409,7 @@ void Engine<D>::step() {
     angle_a_ = model_.spindle.rotation(time_s()) - turns * units::revolution;
     angle_b_ = model_.spindle.rotation(end_s) - turns * units::revolution;
   }
-  feed_b_ = model_.feed_m_per_s * end_s;
+  feed_b_ = model_.feed_m_per_s * model_.feed.before(end_s);
   set_depth(0.5 * (time_s() + end_s));
   if (damped_) {
     // K l² / 2V with V = Ω D / 2.

@@ -28,7 +28,7 @@ struct WallPass {
 template <int D>
 class Engine {
  public:
-  /// model must outlive this.
+  /// model must outlive this; profiles in it may change meanwhile from the end of the last step on.
   Engine(const CutModel& model, const modal::TipModes& structure, Physics physics);
 
   void step();

@@ -117,6 +117,33 @@ TEST(Schedule, ForcesScaleWithTheDepth) {
   EXPECT_EQ(s.verdict, Verdict::stable);
 }
 
+// A feed that follows the speed: the same thickness a tooth, so the same forces of a rigid cutter, only slower.
+TEST(Schedule, AFeedThatFollowsTheSpeedKeepsTheChips) {
+  const MillingCut cut = testing::rigid_cut();
+  CutModel model = detail::milling_model(cut.milling, cut.spindle_speed_rad_per_s, cut.axial_depth_m, {1000, 1});
+  model.spindle.schedule = Profile({{0.0, 1.0}});
+  model.feed = Profile({{0.0, 1.0}});
+  Engine<2> engine(model, cut.structure, Physics::full);
+  const auto greatest = [&](int steps) {
+    double most = 0.0;
+    for (int i = 0; i < steps; ++i) {
+      engine.step();
+      most = std::max(most, engine.mean_force().norm());
+    }
+    return most;
+  };
+  const double before = greatest(3000);
+  // While it runs: from now on, within a revolution.
+  const double now_s = engine.time_s(), turn_s = 1000 * engine.step_s();
+  model.spindle.schedule = Profile({{0.0, 1.0}, {now_s, 1.0}, {now_s + turn_s, 0.7}});
+  model.feed = Profile({{0.0, 1.0}, {now_s, 1.0}, {now_s + turn_s, 0.7}});
+  EXPECT_LT(greatest(3000), 1.02 * before);
+  EXPECT_NEAR(greatest(3000), before, 2e-3 * before);
+  model.feed =
+      Profile({{0.0, 1.0}, {now_s, 1.0}, {now_s + turn_s, 0.7}, {engine.time_s(), 0.7}, {engine.time_s(), 1.0}});
+  EXPECT_GT(greatest(6000), 1.15 * before);  // thicker by 1/0.7, edge forces stay
+}
+
 TEST(Schedule, NothingIsCutAtNoDepth) {
   MillingCut cut = robot_cut(6500.0, 0.6e-3);
   cut.schedule.depth = {{0.1, 0.0}, {0.1, 1.0}, {0.15, 1.0}, {0.15, 0.0}};

@@ -69,6 +69,8 @@ std::string event_line(const MonitorEvent& event) {
   for (const double speed : event.stable_speeds_rad_per_s) {
     json["stable_spindle_speeds_rpm"].push_back(io::number(speed / units::rpm));
   }
+  json["no_speed"] = text_or_null(std::string(name_in(no_speed_names, event.no_speed)));
+  json["command"] = text_or_null(event.command);
   json["faults"] = fault_names(d.faults);
   json["suggested_sample_rate_hz"] =
       (d.faults & wrong_sample_rate) != 0 ? positive(d.suggested_sample_rate_hz) : io::Json(nullptr);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/modal/mode_id.hpp"
 #include "robomill/monitor/monitor.hpp"
 
@@ -12,11 +13,21 @@
 
 namespace robomill::monitor {
 
+/// Why no speed is suggested although chatter's frequency is known.
+enum class NoSpeed {
+  none,          ///< one is suggested, or chatter's frequency or the number of teeth is not known
+  arm,           ///< the mode that chatters is one of the arm: teeth pass too often for any lobe of it
+  unclear,       ///< several modes explain it about as well, one of the arm among them
+  mode_coupling  ///< it needs no wave of an earlier tooth: no tooth passing ends it
+};
+inline constexpr Name<NoSpeed> no_speed_names[] = {
+    {"arm", NoSpeed::arm}, {"unclear", NoSpeed::unclear}, {"mode-coupling", NoSpeed::mode_coupling}};
+
 /// What a monitor reports.
 struct MonitorEvent {
-  /// state: it changed, or chatter's frequency moved. window: a decision without a change. fault: what is wrong with
-  /// the input changed. stream: something befell the samples on their way (blocks lost, connection lost, …). recording:
-  /// the samples before an alarm were written to a file.
+  /// state: it changed, chatter's frequency moved, or a rule acts. window: a decision without a change. fault: what is
+  /// wrong with the input changed. stream: something befell the samples on their way (blocks lost, connection lost, …).
+  /// recording: the samples before an alarm were written to a file.
   enum class Kind { state, window, fault, stream, recording };
   Kind kind = Kind::state;
   double time_s = 0.0;                             ///< of the stream [s]
@@ -25,6 +36,8 @@ struct MonitorEvent {
   double suggested_spindle_speed_rad_per_s = 0.0;  ///< 0: none
   double suggested_axial_depth_m = 0.0;            ///< 0: none
   std::vector<double> stable_speeds_rad_per_s = {};
+  NoSpeed no_speed = NoSpeed::none;
+  std::string command = {};  ///< that followed by a rule of [act]; empty: none
   double compute_s = 0.0;    ///< that the decision took
   std::string what = {};     ///< of streams: "lost-blocks", …
   std::uint64_t count = 0;   ///< of streams: how many

@@ -24,6 +24,7 @@ TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   event.mode = {2};
   event.suggested_spindle_speed_rad_per_s = 6500.0 * units::rpm;
   event.stable_speeds_rad_per_s = {6500.0 * units::rpm, 3250.0 * units::rpm};
+  event.command = "spindle-speed";
   event.compute_s = 123e-6;
   const std::string line = event_line(event);
   EXPECT_EQ(line.find('\n'), line.size() - 1);
@@ -42,6 +43,10 @@ TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   EXPECT_EQ(json["suggested_spindle_speed_rpm"], 6500);
   EXPECT_EQ(json["stable_spindle_speeds_rpm"][1], 3250);
   EXPECT_EQ(json["faults"], (std::vector<std::string>{"not-finite", "clipped"}));
+  EXPECT_EQ(json["command"], "spindle-speed");
+  EXPECT_TRUE(json["no_speed"].is_null());
+  event.no_speed = NoSpeed::mode_coupling;
+  EXPECT_EQ(nlohmann::json::parse(event_line(event))["no_speed"], "mode-coupling");
   EXPECT_EQ(json["compute_us"], 123);
   EXPECT_FALSE(json.contains("what"));
 }
@@ -52,7 +57,8 @@ TEST(MonitorEvents, HoldWhatIsUnknownAsNull) {
   event.decision.energy_entropy = std::numeric_limits<double>::infinity();
   const auto json = nlohmann::json::parse(event_line(event));
   for (const char* key : {"score", "energy_entropy", "chatter_frequency_hz", "chatter_frequency_std_hz", "mode",
-                          "suggested_spindle_speed_rpm", "suggested_axial_depth_mm", "spindle_speed_rpm", "hidden"}) {
+                          "suggested_spindle_speed_rpm", "suggested_axial_depth_mm", "spindle_speed_rpm", "hidden",
+                          "no_speed", "command"}) {
     EXPECT_TRUE(json[key].is_null()) << key;
   }
   EXPECT_TRUE(json["faults"].empty());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,11 +26,16 @@ void read_mqtt(io::TomlFile& file, MqttSettings& mqtt) {
     throw file.reject("mqtt.port", "must lie between 1 and 65535");
   }
   file.text("mqtt.topic", mqtt.topic);
-  if (file.text("mqtt.events_topic", mqtt.events_topic) && mqtt.events_topic.find_first_of("+#") != std::string::npos) {
-    throw file.reject("mqtt.events_topic", "must be one topic, without + and #");
+  file.text("mqtt.events_topic", mqtt.events_topic);
+  file.text("mqtt.commands_topic", mqtt.commands_topic);
+  for (const auto& [key, topic] :
+       {std::pair{"mqtt.events_topic", &mqtt.events_topic}, {"mqtt.commands_topic", &mqtt.commands_topic}}) {
+    if (topic->empty()) continue;
+    if (topic->find_first_of("+#") != std::string::npos) throw file.reject(key, "must be one topic, without + and #");
+    if (*topic == mqtt.topic) throw file.reject(key, "must differ from mqtt.topic");
   }
-  if (!mqtt.topic.empty() && mqtt.topic == mqtt.events_topic) {
-    throw file.reject("mqtt.events_topic", "must differ from mqtt.topic");
+  if (!mqtt.commands_topic.empty() && mqtt.commands_topic == mqtt.events_topic) {
+    throw file.reject("mqtt.commands_topic", "must differ from mqtt.events_topic");
   }
   file.text("mqtt.client_id", mqtt.client_id);
   file.text("mqtt.user", mqtt.user);
@@ -53,9 +59,32 @@ void read_mqtt(io::TomlFile& file, MqttSettings& mqtt) {
 }
 
 void read_act(io::TomlFile& file, ActSettings& act) {
+  if (!file.has("act")) return;
+  act.rule = ActRule::speed;
   file.choice("act.rule", act_rule_names, act.rule);
   if (file.number("act.reduce_to", "reduce_to", 1.0, act.reduce_to) && !(act.reduce_to > 0.0 && act.reduce_to < 1.0)) {
     throw file.reject("act.reduce_to", "must lie between 0 and 1", "It is a share of the programmed feed");
+  }
+  if (file.number("act.retract_mm", "retract_m", units::mm, act.retract_m) && !(act.retract_m > 0.0)) {
+    throw file.reject("act.retract_mm", "must be > 0");
+  }
+  if (act.rule == ActRule::hold && act.retract_m == 0.0) {
+    file.require("act.retract_mm", "A tool that stands still in the cut rubs and marks the part: hold needs a retract");
+  }
+  std::vector<double> range;
+  if (file.numbers("act.spindle_speed_rpm", "lowest_rad_per_s", units::rpm, range)) {
+    if (range.size() != 2 || !(range[0] > 0.0 && range[1] > range[0])) {
+      throw file.reject("act.spindle_speed_rpm", "must be [lowest, highest], both > 0",
+                        "The range that tool and spindle allow");
+    }
+    act.lowest_rad_per_s = range[0];
+    act.highest_rad_per_s = range[1];
+  }
+  for (const auto& [key, member, value] :
+       {std::tuple{"act.settle_s", "settle_s", &act.settle_s}, std::tuple{"act.calm_s", "calm_s", &act.calm_s}}) {
+    if (file.number(key, member, 1.0, *value) && !(*value > 0.0 && *value <= 3600.0)) {
+      throw file.reject(key, "must lie between 0 and 3600");
+    }
   }
 }
 

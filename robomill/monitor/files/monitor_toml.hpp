@@ -15,10 +15,11 @@ namespace robomill::monitor {
 /// [mqtt]: where samples come from and events go to.
 struct MqttSettings {
   std::string host = "127.0.0.1";
-  int port = 0;                   ///< 0: 1883, with TLS 8883
-  std::string topic = {};         ///< of the samples; empty: none
-  std::string events_topic = {};  ///< of the events; empty: they are not published
-  std::string client_id = {};     ///< empty: one of its own
+  int port = 0;                     ///< 0: 1883, with TLS 8883
+  std::string topic = {};           ///< of the samples; empty: none
+  std::string events_topic = {};    ///< of the events; empty: they are not published
+  std::string commands_topic = {};  ///< of what a rule of [act] commands; empty: the events alone say it
+  std::string client_id = {};       ///< empty: one of its own
   std::string user = {};
   std::filesystem::path password_file = {};  ///< its first line
   bool tls = false;
@@ -29,7 +30,7 @@ struct MqttSettings {
   [[nodiscard]] int port_or_default() const { return port != 0 ? port : (tls ? 8883 : 1883); }
 };
 
-/// [act]: what to do about chatter. Rules act on the robot through live/; none does unless it is asked for.
+/// [act]: what to do about chatter. Rules act on the robot through live/; none does without that table.
 enum class ActRule {
   none,
   reduce,  ///< the feed, to reduce_to: it bounds the damage and does not end regenerative chatter
@@ -39,8 +40,14 @@ enum class ActRule {
 inline constexpr Name<ActRule> act_rule_names[] = {
     {"none", ActRule::none}, {"reduce", ActRule::reduce}, {"hold", ActRule::hold}, {"speed", ActRule::speed}};
 struct ActSettings {
-  ActRule rule = ActRule::none;
-  double reduce_to = 0.5;  ///< of the programmed feed, in (0, 1)
+  ActRule rule = ActRule::none;  ///< of a table that names none: speed
+  double reduce_to = 0.5;        ///< of the programmed feed, in (0, 1)
+  double retract_m = 0.0;        ///< out of the cut, along the tool's axis; hold: > 0, required
+  /// Of the spindle: speeds that tool and machine allow, lowest < highest. 0: from half the speed at which chatter was
+  /// first detected up to that speed.
+  double lowest_rad_per_s = 0.0, highest_rad_per_s = 0.0;
+  double settle_s = 2.0;  ///< > 0; after a change of speed, before chatter that is still there counts against it
+  double calm_s = 1.0;    ///< > 0; stable for so long, an alarm is over and a reduced feed is restored
 };
 
 /// monitor.toml.

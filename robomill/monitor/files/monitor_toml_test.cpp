@@ -16,21 +16,23 @@ constexpr const char* least = "[signal]\nsample_rate_hz = 10240\nchannels = [\"a
 
 TEST(MonitorToml, ReadsEveryKey) {
   const test::Folder folder;
-  const MonitorFile file =
-      read_monitor(folder.file("monitor.toml",
-                               "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax\", \"ay\"]\n"
-                               "tachometer = \"pulse\"\ncolumns = 5\nscale = 50\nfull_scale = 49.9\n"
-                               "[process]\nspindle_speed_rpm = 3000\nteeth = 2\n"
-                               "modes = \"modes.json\"\nlobes = \"lobes.toml\"\n"
-                               "[detector]\nkind = \"energy-entropy\"\nwindow_ms = 50\nhop_ms = 25\n"
-                               "bands = 8\nentropy = \"normalised\"\nthreshold = 1.5\n"
-                               "alarm = \"below\"\nfalse_alarms_per_hour = 0.5\n"
-                               "[mqtt]\nhost = \"broker\"\nport = 8884\ntopic = \"cell/ax\"\n"
-                               "events_topic = \"cell/events\"\nclient_id = \"me\"\nuser = \"u\"\n"
-                               "password_file = \"secret\"\ntls = true\nca_file = \"ca.pem\"\n"
-                               "certificate_file = \"c.pem\"\nkey_file = \"k.pem\"\nqos = 0\n"
-                               "[metrics]\nport = 9110\nhost = \"0.0.0.0\"\n"
-                               "[recording]\nfolder = \"alarms\"\nseconds = 30\n"));
+  const MonitorFile file = read_monitor(folder.file(
+      "monitor.toml",
+      "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax\", \"ay\"]\n"
+      "tachometer = \"pulse\"\ncolumns = 5\nscale = 50\nfull_scale = 49.9\n"
+      "[process]\nspindle_speed_rpm = 3000\nteeth = 2\n"
+      "modes = \"modes.json\"\nlobes = \"lobes.toml\"\n"
+      "[detector]\nkind = \"energy-entropy\"\nwindow_ms = 50\nhop_ms = 25\n"
+      "bands = 8\nentropy = \"normalised\"\nthreshold = 1.5\n"
+      "alarm = \"below\"\nfalse_alarms_per_hour = 0.5\n"
+      "[mqtt]\nhost = \"broker\"\nport = 8884\ntopic = \"cell/ax\"\n"
+      "events_topic = \"cell/events\"\ncommands_topic = \"cell/commands\"\nclient_id = \"me\"\nuser = \"u\"\n"
+      "password_file = \"secret\"\ntls = true\nca_file = \"ca.pem\"\n"
+      "certificate_file = \"c.pem\"\nkey_file = \"k.pem\"\nqos = 0\n"
+      "[metrics]\nport = 9110\nhost = \"0.0.0.0\"\n"
+      "[act]\nrule = \"hold\"\nreduce_to = 0.4\nretract_mm = 3\n"
+      "spindle_speed_rpm = [3000, 9000]\nsettle_s = 1.5\ncalm_s = 4\n"
+      "[recording]\nfolder = \"alarms\"\nseconds = 30\n"));
   EXPECT_EQ(file.options.sample_rate_hz, 10240.0);
   EXPECT_EQ(file.columns.channels, (std::vector<std::string>{"ax", "ay", "pulse"}));
   EXPECT_EQ(file.columns.raw_columns, 5);
@@ -54,6 +56,14 @@ TEST(MonitorToml, ReadsEveryKey) {
   EXPECT_EQ(file.mqtt.port_or_default(), 8884);
   EXPECT_EQ(file.mqtt.topic, "cell/ax");
   EXPECT_EQ(file.mqtt.events_topic, "cell/events");
+  EXPECT_EQ(file.mqtt.commands_topic, "cell/commands");
+  EXPECT_EQ(file.act.rule, ActRule::hold);
+  EXPECT_EQ(file.act.reduce_to, 0.4);
+  EXPECT_DOUBLE_EQ(file.act.retract_m, 3e-3);
+  EXPECT_NEAR(file.act.lowest_rad_per_s, 100.0 * std::numbers::pi, 1e-9);
+  EXPECT_NEAR(file.act.highest_rad_per_s, 300.0 * std::numbers::pi, 1e-9);
+  EXPECT_EQ(file.act.settle_s, 1.5);
+  EXPECT_EQ(file.act.calm_s, 4.0);
   EXPECT_EQ(file.mqtt.password_file, folder.at("secret"));
   EXPECT_TRUE(file.mqtt.tls);
   EXPECT_EQ(file.mqtt.key_file, folder.at("k.pem"));
@@ -80,6 +90,19 @@ TEST(MonitorToml, HasDefaults) {
   EXPECT_NE(test::rejection([&] { validate(numbered); }).find("signal.sample_rate_hz"), std::string::npos);
 }
 
+// Nothing acts unless asked to; who asks for no rule in particular gets the one that can end chatter.
+TEST(MonitorToml, ActsOnlyWhereATableSaysSo) {
+  const test::Folder folder;
+  const auto rule = [&](const std::string& more) { return read_monitor(folder.file("m.toml", least + more)).act.rule; };
+  EXPECT_EQ(rule(""), ActRule::none);
+  EXPECT_EQ(rule("[act]\n"), ActRule::speed);
+  EXPECT_EQ(rule("[act]\nreduce_to = 0.3\n"), ActRule::speed);
+  EXPECT_EQ(rule("[act]\nrule = \"none\"\n"), ActRule::none);
+  EXPECT_EQ(rule("[act]\nrule = \"reduce\"\n"), ActRule::reduce);
+  EXPECT_EQ(rule("[act]\nrule = \"speed\"\n"), ActRule::speed);
+  EXPECT_EQ(rule("[act]\nrule = \"hold\"\nretract_mm = 1\n"), ActRule::hold);
+}
+
 TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
   const test::Folder folder;
   const auto rejection = [&](const std::string& more) {
@@ -104,6 +127,17 @@ TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
   expect("[mqtt]\npassword_file = \"k\"\n", "needs mqtt.user");
   expect("[mqtt]\nqos = 3\n", "must be 0, 1 or 2");
   expect("[mqtt]\nevents_topic = \"a/#\"\n", "without + and #");
+  expect("[mqtt]\ncommands_topic = \"a/+\"\n", "m.toml:5: mqtt.commands_topic = \"a/+\"; must be one topic");
+  expect("[mqtt]\ntopic = \"a\"\ncommands_topic = \"a\"\n", "must differ from mqtt.topic");
+  expect("[mqtt]\nevents_topic = \"a\"\ncommands_topic = \"a\"\n", "must differ from mqtt.events_topic");
+  expect("[act]\nrule = \"stop\"\n", "must be one of \"none\", \"reduce\", \"hold\", \"speed\"");
+  expect("[act]\nreduce_to = 1\n", "m.toml:5: act.reduce_to = 1; must lie between 0 and 1");
+  expect("[act]\nrule = \"hold\"\n", "m.toml:4: act.retract_mm: is missing. A tool that stands still in the cut rubs");
+  expect("[act]\nrule = \"hold\"\nretract_mm = 0\n", "m.toml:6: act.retract_mm = 0 mm; must be > 0");
+  expect("[act]\nspindle_speed_rpm = 9000\n", "must be [lowest, highest]");
+  expect("[act]\nspindle_speed_rpm = [9000, 3000]\n", "must be [lowest, highest]");
+  expect("[act]\nsettle_s = 0\n", "m.toml:5: act.settle_s = 0");
+  expect("[act]\nwait_s = 1\n", "act.wait_s");
   expect("[metrics]\nport = -2\n", "metrics.port = -2");
   expect("[recording]\nseconds = 0\n", "recording.seconds = 0");
   const auto signal = [&](const char* text) {

@@ -1,4 +1,4 @@
-#include "robomill/live/state_log.hpp"
+#include "robomill/live/record/state_log.hpp"
 
 #include <gtest/gtest.h>
 

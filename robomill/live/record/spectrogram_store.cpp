@@ -1,4 +1,4 @@
-#include "robomill/live/spectrogram_store.hpp"
+#include "robomill/live/record/spectrogram_store.hpp"
 
 #include <algorithm>
 #include <bit>

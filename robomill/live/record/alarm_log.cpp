@@ -1,4 +1,4 @@
-#include "robomill/live/alarm_log.hpp"
+#include "robomill/live/record/alarm_log.hpp"
 
 #include <algorithm>
 

@@ -1,0 +1,60 @@
+#include "robomill/jobs/monitor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "robomill/base/units.hpp"
+#include "testing/support.hpp"
+
+namespace robomill::jobs {
+namespace monitor_test {
+
+live::AdviceBasis basis_of(const std::string& lobes, const test::Folder& folder) {
+  monitor::MonitorFile file;
+  file.lobes = folder.file("lobes.toml", lobes);
+  file.act.lowest_rad_per_s = 3000.0 * units::rpm;
+  file.act.highest_rad_per_s = 9000.0 * units::rpm;
+  return read_advice_basis(file, Progress::none());
+}
+
+bool couples(const live::AdviceBasis& basis, bool wanted) {
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < basis.mode_coupling.size(); ++i) {
+    if (basis.lobes->limit[i].status != stability::Limit::Status::found) continue;
+    ++found;
+    if (basis.mode_coupling[i] != wanted) return false;
+  }
+  return found > 0 && basis.mode_coupling.size() == basis.lobes->limit.size();
+}
+
+// Source: stability/peak_classification_test.cpp. One direction has nothing to couple with; two equal modes in a slot
+// without radial force couple, at any speed at which the cut is fast.
+TEST(ReadAdviceBasis, KnowsWhereModesCouple) {
+  const test::Folder folder;
+  const std::string mode = "[{ frequency_hz = 922, damping_ratio = 0.011, modal_mass_kg = 0.03993 }]\n";
+  const std::string tool =
+      "diameter_mm = 10\n[cut]\ndirection = \"down\"\nradial_depth_mm = 10\nfeed_per_tooth_mm = 0.05\n";
+  const std::string lobes = "[lobes]\ngrid = [5, 20]\n";
+  const live::AdviceBasis one = basis_of("[tool]\nteeth = 2\n" + tool +
+                                             "[coefficients]\ntangential_n_per_mm2 = 600\nradial_n_per_mm2 = 200\n"
+                                             "[dynamics]\nx = " +
+                                             mode + "rigid_directions = [\"y\"]\n" + lobes +
+                                             "spindle_speed_rpm = [4800, 5200]\naxial_depth_mm = [0, 2]\n",
+                                         folder);
+  EXPECT_TRUE(couples(one, false));
+  EXPECT_NEAR(one.lowest_rad_per_s, 3000.0 * units::rpm, 1e-9);
+  EXPECT_NEAR(one.highest_rad_per_s, 9000.0 * units::rpm, 1e-9);
+  EXPECT_EQ(one.teeth, 2);
+  const live::AdviceBasis two =
+      basis_of("[tool]\nteeth = 8\n" + tool +
+                   "[coefficients]\ntangential_n_per_mm2 = 600\nradial_n_per_mm2 = 0\n"
+                   "[dynamics]\nx = " +
+                   mode + "y = " + mode + lobes + "spindle_speed_rpm = [50000, 60000]\naxial_depth_mm = [0, 2]\n",
+               folder);
+  EXPECT_TRUE(couples(two, true));
+}
+
+}  // namespace monitor_test
+}  // namespace robomill::jobs
