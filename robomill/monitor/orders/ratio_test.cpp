@@ -8,7 +8,7 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double memory_s = 0.3;                        // of the rings
-constexpr double long_ratio = 0.2, short_ratio = 0.3;   // of L to S
+constexpr double least_ratio = 0.2;                     // of L to S
 constexpr double alarm_s = 0.075, alone_alarm_s = 0.1;  // that something stands out for
 constexpr double entry_alarm_s = 0.2, entry_s = 0.4;    // the same while the tool enters; which lasts so long
 constexpr double over_s = 0.15;
@@ -178,7 +178,7 @@ double RatioTest::swing() const noexcept {
 bool RatioTest::ratio_stands_out() const noexcept {
   const ResidualFamily& far = found_.front();
   const ResidualFamily& near = found_.back();
-  return cut_ > 0.0 && far.family > long_ratio * far.synchronous && near.family > short_ratio * near.synchronous &&
+  return cut_ > 0.0 && far.family > least_ratio * far.synchronous && near.family > least_ratio * near.synchronous &&
          near.family > std::max(swing(), faint * loudest_) && !of_the_mains(far.frequency_hz);
 }
 

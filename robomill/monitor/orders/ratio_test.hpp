@@ -18,10 +18,9 @@ namespace robomill::monitor {
 /// tool cuts; chatter stands beside them. With S the synchronous energy and L that of the strongest family of lines
 /// {±f_c + k f} (ResidualLines), in the last 0.3 s and 0.15 s, any of these for three hops is chatter:
 ///
-/// ratio:  L > 0.2 S in the one and L > 0.3 S in the other window, at a known speed, where L exceeds the swing of S in
-///         0.3 s: entry, exit and a change of speed move energy out of the orders. Eight hops, while the tool enters.
-/// growth: a line that is no multiple of the teeth has grown by 10 dB (GrowthTest), the speed stands still to 0.4 %,
-/// and
+/// ratio:  L > 0.2 S in both windows, at a known speed, where L exceeds the swing of S in 0.3 s: entry, exit and a
+/// change of speed move energy out of the orders. Eight hops, while the tool enters. growth: a line that is no multiple
+/// of the teeth has grown by 10 dB (GrowthTest), the speed stands still to 0.4 %, and
 ///         the line exceeds half the swing.
 /// alone:  one line holds 0.6 of all energy where no speed was known since the tool entered, and is no low multiple of
 ///         rotation or of tooth passing. Four hops.

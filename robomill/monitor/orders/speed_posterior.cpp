@@ -18,7 +18,7 @@ constexpr double miscounted = 1e-4;   // probability density of a measurement th
 constexpr double unexplained = 0.02;  // share of the energy that a comb never explains
 constexpr double offset_guard = 2.5;  // 1/T, from 0
 constexpr double most_lines = 20.0;   // M
-constexpr int low_of_teeth = 6, low_of_rotation = 5, low_of_unknown_teeth = 12;
+constexpr int low_of_teeth = 6, low_of_rotation = 1, low_of_unknown_teeth = 12;
 constexpr double peak_reach = 0.5;  // 1/T
 constexpr double peaked = 0.53;     // ∫h⁴/(∫h²)²
 
