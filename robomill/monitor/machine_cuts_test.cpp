@@ -226,6 +226,26 @@ TEST(MachineCuts, PulsesCountTheRevolutions) {
   EXPECT_TRUE(counts.contains(1024));
 }
 
+// Source: [ClopperPearson1934]: none of n gives 1 - 0.025^(1/n), and an interval covers the rate it is drawn from.
+TEST(Score, RateIntervalsCover) {
+  EXPECT_EQ(rate_interval(0, 10).low, 0.0);
+  EXPECT_NEAR(rate_interval(0, 10).high, 1.0 - std::pow(0.025, 0.1), 1e-12);
+  EXPECT_NEAR(rate_interval(10, 10).low, std::pow(0.025, 0.1), 1e-12);
+  EXPECT_EQ(rate_interval(10, 10).high, 1.0);
+  EXPECT_NEAR(rate_interval(94, 100).low, 0.8740, 5e-5);
+  EXPECT_NEAR(rate_interval(94, 100).high, 0.9777, 5e-5);
+  EXPECT_EQ(rate_interval(0, 0).high, 1.0);
+  Random random(8);
+  int covered = 0;
+  for (int k = 0; k < 2000; ++k) {
+    int events = 0;
+    for (int i = 0; i < 40; ++i) events += random.uniform() < 0.2 ? 1 : 0;
+    const RateInterval interval = rate_interval(events, 40);
+    covered += interval.low <= 0.2 && 0.2 <= interval.high ? 1 : 0;
+  }
+  EXPECT_GE(covered, 1880);  // 95 % at least, less four standard deviations
+}
+
 TEST(Score, AMovingLineIsComparedWithWhereItWas) {
   RecordedCut c;
   c.samples.assign(2 * 20480, 0.0F);

@@ -1,6 +1,7 @@
 #include "testing/monitor/score.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -126,6 +127,13 @@ CutScore score(const RecordedCut& cut, std::span<const DetectorDecision> decisio
   return out;
 }
 
+RateInterval rate_interval(int events, int trials) {
+  using Binomial = boost::math::binomial_distribution<double>;
+  if (trials <= 0) return {};
+  return {.low = events == 0 ? 0.0 : Binomial::find_lower_bound_on_p(trials, events, 0.025),
+          .high = events == trials ? 1.0 : Binomial::find_upper_bound_on_p(trials, events, 0.025)};
+}
+
 Summary summarise(std::span<const CutScore> scores) {
   Summary out;
   std::vector<double> delay, frequency, recovery;
@@ -134,6 +142,7 @@ Summary summarise(std::span<const CutScore> scores) {
     out.chatter += s.chatter ? 1 : 0;
     out.found += s.found ? 1 : 0;
     out.false_alarms += s.false_alarms;
+    out.with_false_alarms += s.false_alarms > 0 ? 1 : 0;
     delay.push_back(s.delay_s);
     if (s.found) frequency.push_back(s.frequency_error_hz);
     recovery.push_back(s.recovery_s);

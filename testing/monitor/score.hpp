@@ -37,11 +37,18 @@ struct CutScore {
 /// Over many cuts; median and 95 % of what is known.
 struct Summary {
   int cuts = 0, chatter = 0, found = 0, false_alarms = 0;
+  int with_false_alarms = 0;  ///< cuts with one or more
   double delay_median_s = 0.0, delay_95_s = 0.0;
   double frequency_median_hz = 0.0, frequency_95_hz = 0.0;
   double recovery_median_s = 0.0, recovery_95_s = 0.0;
 };
 [[nodiscard]] Summary summarise(std::span<const CutScore> scores);
+/// Where a rate lies with a confidence of 95 % [ClopperPearson1934]: of the rates at which so many events in so many
+/// independent trials, or fewer, come in 2.5 % of the cases, and so many or more.
+struct RateInterval {
+  double low = 0.0, high = 1.0;
+};
+[[nodiscard]] RateInterval rate_interval(int events, int trials);
 /// The share-th of sorted values, by straight lines; NaN of none. Values that are NaN do not count.
 [[nodiscard]] double quantile(std::vector<double> values, double share);
 
