@@ -5,6 +5,7 @@
 // stands its interval of 95 %.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <map>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "testing/monitor/corpus.hpp"
+#include "testing/monitor/ideal_observer.hpp"
 #include "testing/monitor/machine_cuts.hpp"
 #include "testing/monitor/score.hpp"
 
@@ -57,14 +59,62 @@ void print_if_bad(std::uint64_t seed, const CutScore& s) {
              s.frequency_error_hz);
 }
 
+/// Cuts with chatter, to be given to the ideal observer at the rate of false alarms that the monitor showed.
+struct Observed {
+  RecordedCut recorded;  // without samples
+  IdealObservation observation;
+  CutScore monitor;
+};
+
+void print_ideal(const std::string& name, const std::vector<Observed>& cuts, double per_hour) {
+  std::vector<double> delay, since_start, monitor_since_start, ratio;
+  int found = 0, false_alarms = 0, within = 0, both = 0;
+  for (const Observed& cut : cuts) {
+    const CutScore s = score(cut.recorded, ideal_decisions(cut.observation, {.false_alarms_per_hour = per_hour}));
+    false_alarms += s.false_alarms;
+    if (!s.found) continue;
+    ++found;
+    const double before_s = cut.recorded.truth.t10_s - cut.recorded.truth.start_s;
+    delay.push_back(s.delay_s);
+    since_start.push_back(s.delay_s + before_s);
+    if (!cut.monitor.found) continue;
+    ++both;
+    monitor_since_start.push_back(cut.monitor.delay_s + before_s);
+    ratio.push_back(monitor_since_start.back() / std::max(since_start.back(), 0.025));
+    within += ratio.back() <= 2.0 ? 1 : 0;
+  }
+  fmt::print("| {} | {:.3g} | {} | {} | {} | {} | {} | {:.1f} | {} |\n", name, per_hour,
+             rate(found, static_cast<int>(cuts.size())), false_alarms,
+             two(quantile(delay, 0.5), quantile(delay, 0.95), 1e3, 0),
+             two(quantile(since_start, 0.5), quantile(since_start, 0.95), 1e3, 0),
+             two(quantile(monitor_since_start, 0.5), quantile(monitor_since_start, 0.95), 1e3, 0), quantile(ratio, 0.5),
+             rate(within, both));
+}
+
+/// @param seconds  of all cuts together, in which the monitor raised so many false alarms
+void print_ideals(const std::vector<Observed>& cuts, double seconds, int false_alarms) {
+  fmt::print(
+      "\nideal observer (testing/monitor/README.md); delays in ms: median / 95 %\n\n"
+      "| | false alarms asked for, 1/h | found (95 %) | false alarms | delay | since chatter's start | the monitor's "
+      "since then | ratio to 25 ms at least, median | monitor within twice (95 %) |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  print_ideal("at the rate that the monitor is asked for", cuts, 0.1);
+  const double measured = 3600.0 * false_alarms / seconds;
+  if (false_alarms > 0) print_ideal("at the rate that the monitor shows on these cuts", cuts, measured);
+}
+
 void corpus(std::uint64_t first, std::uint64_t count) {
   const std::vector<std::pair<std::string, Detector>> detectors = {
       {"monitor", monitor_decisions}, {"comb, RMS ratio", comb_rms_ratio}, {"RMS 5 sigma", rms_five_sigma}};
   std::vector<Scores> scores(detectors.size());
-  double drawing_s = 0.0;
+  std::vector<Observed> observed;
+  double drawing_s = 0.0, seconds = 0.0;
+  int false_alarms = 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const std::clock_t begun = std::clock();
-    const RecordedCut cut = monitor::testing::cut(seed);
+    const DrawnCut drawn = draw(seed);
+    const RecordedCut& cut = drawn.recorded;
+    seconds += cut.seconds();
     drawing_s += static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
     for (std::size_t d = 0; d < detectors.size(); ++d) {
       const CutScore s = score(cut, detectors[d].second(cut));
@@ -72,11 +122,17 @@ void corpus(std::uint64_t first, std::uint64_t count) {
            {std::string("all"), s.kind + ", " + s.course, fmt::format("noise {}", s.noise)}) {
         scores[d][group].push_back(s);
       }
-      if (d == 0) print_if_bad(seed, s);
+      if (d > 0) continue;
+      print_if_bad(seed, s);
+      false_alarms += s.false_alarms;
+      if (!s.chatter) continue;
+      observed.push_back({cut, observe(drawn), s});
+      observed.back().recorded.samples.assign(2, 0.0F);
     }
   }
   fmt::print("{} cuts drawn and simulated in {:.1f} s of processor time\n", count, drawing_s);
   for (std::size_t d = 0; d < detectors.size(); ++d) print(detectors[d].first, scores[d]);
+  print_ideals(observed, seconds, false_alarms);
 }
 
 /// Every class but `pulses`, which has its own, is given one pulse a revolution for the comparison.
