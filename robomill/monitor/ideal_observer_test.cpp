@@ -85,8 +85,7 @@ TEST(IdealObserver, AlarmsWhereTheGrowingLineReachesTheThreshold) {
   const double g = 20.0, first = 1e-5;
   double information = 0.0;
   for (const NoiseResonances& r : observed.resonances) {
-    information +=
-        1.0 / (4.0 * g * noise_density_per_hz(r, 900.0) * observed.noise_m_per_s2 * observed.noise_m_per_s2);
+    information += 1.0 / (4.0 * g * noise_density_per_hz(r, 900.0) * observed.noise_m_per_s2 * observed.noise_m_per_s2);
   }
   const double reached_s = std::log(ideal_threshold(2, options) / (first * first * information)) / (2.0 * g);
   for (Eigen::Index i = 0; i < observed.residual_m_per_s2.rows(); ++i) {
@@ -101,7 +100,7 @@ TEST(IdealObserver, AlarmsWhereTheGrowingLineReachesTheThreshold) {
 }
 
 TEST(IdealObserver, FindsTheCorpusChatterBeforeItIsFull) {
-  for (const std::uint64_t seed : {2, 4, 6}) {
+  for (std::uint64_t seed = 2; seed <= 6; seed += 2) {
     const DrawnCut d = draw(seed);
     ASSERT_TRUE(d.recorded.truth.chatter);
     const CutScore s = score(d.recorded, ideal_decisions(observe(d), {}));

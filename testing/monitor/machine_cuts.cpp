@@ -18,7 +18,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::array<double, 3> noises = {0.03, 0.1, 0.3};
+constexpr std::array<double, 3> noise_shares = {0.03, 0.1, 0.3};
 constexpr double abrupt_s = 0.1;
 
 double log_uniform(double low, double high, Random& random) {
@@ -280,7 +280,7 @@ std::vector<double> rotation_of(const std::vector<float>& speed_rad_per_s, doubl
 void record(MachineClass kind, const PulseTrain& train, Random& random, MachineCut& cut) {
   RecordedCut& out = cut.recorded;
   const double level = reference_level(cut.plan, cut.clean);
-  const double noise = noises.at(static_cast<std::size_t>(out.noise));
+  const double noise = noise_shares.at(static_cast<std::size_t>(out.noise));
   const bool turns_alone = kind == MachineClass::run_up_down || kind == MachineClass::air;
   const Disturbance disturbance = {
       .noise = kind == MachineClass::microphone ? 0.3 * noise : noise,
