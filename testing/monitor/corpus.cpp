@@ -314,7 +314,9 @@ bool settles(const CutPlan& plan, const CleanCut& clean) {
 
 DrawnCut draw(const CutWish& wish, Random& random) {
   DrawnCut out;
-  for (out.draws = 1; out.draws < 200; ++out.draws) {
+  // Draws at too high a speed cost nothing.
+  const int most = wish.most_speed_rad_per_s < 1e300 ? 10'000 : 200;
+  for (out.draws = 1; out.draws < most; ++out.draws) {
     const std::optional<CutPlan> plan =
         wish.chatter ? chatter_plan(wish, random)
                      : std::optional(stable_plan(wish.drilling, random.uniform(2.6, 3.4), random));
