@@ -1,14 +1,21 @@
 // How well the monitor detects chatter in 200 simulated cuts, class by class, beside two plain rules. Usage:
 // monitor_corpus [first seed] [cuts]; every other seed from 1001 on is for tuning.
+// monitor_corpus --machines [first seed] [cuts a class]: the same of the cuts with what recordings show (seeds 1 to 20
+// of each class are reported; 1001 on for tuning, 5001 on held out), with and without a tachometer. Beside each rate
+// stands its interval of 95 %.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "testing/monitor/corpus.hpp"
+#include "testing/monitor/ideal_observer.hpp"
+#include "testing/monitor/machine_cuts.hpp"
 #include "testing/monitor/score.hpp"
 
 namespace {
@@ -16,24 +23,98 @@ namespace {
 using namespace robomill;
 using namespace robomill::monitor::testing;
 
-void print(const std::string& name, const Summary& s) {
-  fmt::print("| {} | {} | {}/{} | {} | {:.0f} / {:.0f} | {:.2f} / {:.2f} | {:.0f} / {:.0f} |\n", name, s.cuts, s.found,
-             s.chatter, s.false_alarms, 1e3 * s.delay_median_s, 1e3 * s.delay_95_s, s.frequency_median_hz,
-             s.frequency_95_hz, 1e3 * s.recovery_median_s, 1e3 * s.recovery_95_s);
+using Scores = std::map<std::string, std::vector<CutScore>>;
+
+std::string rate(int events, int trials) {
+  if (trials == 0) return "-";
+  const RateInterval interval = rate_interval(events, trials);
+  return fmt::format("{}/{} ({:.0f} to {:.0f} %)", events, trials, 100.0 * interval.low, 100.0 * interval.high);
 }
 
-}  // namespace
+std::string two(double median, double most, double factor, int digits) {
+  if (median != median) return "-";
+  return fmt::format("{:.{}f} / {:.{}f}", factor * median, digits, factor * most, digits);
+}
 
-int main(int argc, char** argv) {
-  const std::uint64_t first = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
-  const std::uint64_t count = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : corpus_size;
+void print(const std::string& detector, const Scores& scores) {
+  fmt::print(
+      "\n{}\n\n| class | cuts | found (95 %) | false alarms | cuts with false alarms (95 %) | delay, ms: median / 95 % "
+      "| "
+      "frequency, Hz | recovery, ms |\n|---|---|---|---|---|---|---|---|\n",
+      detector);
+  for (const auto& [group, of] : scores) {
+    const Summary s = summarise(of);
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n", group, s.cuts, rate(s.found, s.chatter), s.false_alarms,
+               rate(s.with_false_alarms, s.cuts), two(s.delay_median_s, s.delay_95_s, 1e3, 0),
+               two(s.frequency_median_hz, s.frequency_95_hz, 1.0, 2),
+               two(s.recovery_median_s, s.recovery_95_s, 1e3, 0));
+  }
+}
+
+/// A line for a cut that the monitor does badly on.
+void print_if_bad(std::uint64_t seed, const CutScore& s) {
+  if (s.false_alarms == 0 && s.found == s.chatter && !(s.delay_s > 0.15) && !(s.frequency_error_hz > 5.0)) return;
+  fmt::print("seed {}: {}, {}, noise {}: found {} of {}, false alarms {}, delay {:.0f} ms, frequency off {:.1f} Hz\n",
+             seed, s.kind, s.course, s.noise, s.found ? 1 : 0, s.chatter ? 1 : 0, s.false_alarms, 1e3 * s.delay_s,
+             s.frequency_error_hz);
+}
+
+/// Cuts with chatter, to be given to the ideal observer at the rate of false alarms that the monitor showed.
+struct Observed {
+  RecordedCut recorded;  // without samples
+  IdealObservation observation;
+  CutScore monitor;
+};
+
+void print_ideal(const std::string& name, const std::vector<Observed>& cuts, double per_hour) {
+  std::vector<double> delay, since_start, monitor_since_start, ratio;
+  int found = 0, false_alarms = 0, within = 0, both = 0;
+  for (const Observed& cut : cuts) {
+    const CutScore s = score(cut.recorded, ideal_decisions(cut.observation, {.false_alarms_per_hour = per_hour}));
+    false_alarms += s.false_alarms;
+    if (!s.found) continue;
+    ++found;
+    const double before_s = cut.recorded.truth.t10_s - cut.recorded.truth.start_s;
+    delay.push_back(s.delay_s);
+    since_start.push_back(s.delay_s + before_s);
+    if (!cut.monitor.found) continue;
+    ++both;
+    monitor_since_start.push_back(cut.monitor.delay_s + before_s);
+    ratio.push_back(monitor_since_start.back() / std::max(since_start.back(), 0.025));
+    within += ratio.back() <= 2.0 ? 1 : 0;
+  }
+  fmt::print("| {} | {:.3g} | {} | {} | {} | {} | {} | {:.1f} | {} |\n", name, per_hour,
+             rate(found, static_cast<int>(cuts.size())), false_alarms,
+             two(quantile(delay, 0.5), quantile(delay, 0.95), 1e3, 0),
+             two(quantile(since_start, 0.5), quantile(since_start, 0.95), 1e3, 0),
+             two(quantile(monitor_since_start, 0.5), quantile(monitor_since_start, 0.95), 1e3, 0), quantile(ratio, 0.5),
+             rate(within, both));
+}
+
+/// @param seconds  of all cuts together, in which the monitor raised so many false alarms
+void print_ideals(const std::vector<Observed>& cuts, double seconds, int false_alarms) {
+  fmt::print(
+      "\nideal observer (testing/monitor/README.md); delays in ms: median / 95 %\n\n"
+      "| | false alarms asked for, 1/h | found (95 %) | false alarms | delay | since chatter's start | the monitor's "
+      "since then | ratio to 25 ms at least, median | monitor within twice (95 %) |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  print_ideal("at the rate that the monitor is asked for", cuts, 0.1);
+  const double measured = 3600.0 * false_alarms / seconds;
+  if (false_alarms > 0) print_ideal("at the rate that the monitor shows on these cuts", cuts, measured);
+}
+
+void corpus(std::uint64_t first, std::uint64_t count) {
   const std::vector<std::pair<std::string, Detector>> detectors = {
       {"monitor", monitor_decisions}, {"comb, RMS ratio", comb_rms_ratio}, {"RMS 5 sigma", rms_five_sigma}};
-  std::vector<std::map<std::string, std::vector<CutScore>>> scores(detectors.size());
-  double drawing_s = 0.0;
+  std::vector<Scores> scores(detectors.size());
+  std::vector<Observed> observed;
+  double drawing_s = 0.0, seconds = 0.0;
+  int false_alarms = 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const std::clock_t begun = std::clock();
-    const RecordedCut cut = monitor::testing::cut(seed);
+    const DrawnCut drawn = draw(seed);
+    const RecordedCut& cut = drawn.recorded;
+    seconds += cut.seconds();
     drawing_s += static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
     for (std::size_t d = 0; d < detectors.size(); ++d) {
       const CutScore s = score(cut, detectors[d].second(cut));
@@ -41,21 +122,49 @@ int main(int argc, char** argv) {
            {std::string("all"), s.kind + ", " + s.course, fmt::format("noise {}", s.noise)}) {
         scores[d][group].push_back(s);
       }
-      if (d == 0 && (s.false_alarms > 0 || s.found != s.chatter || s.delay_s > 0.15 || s.frequency_error_hz > 5.0)) {
-        fmt::print(
-            "seed {}: {}, {}, noise {}: found {} of {}, false alarms {}, delay {:.0f} ms, frequency off {:.1f} Hz\n",
-            seed, s.kind, s.course, s.noise, s.found ? 1 : 0, s.chatter ? 1 : 0, s.false_alarms, 1e3 * s.delay_s,
-            s.frequency_error_hz);
-      }
+      if (d > 0) continue;
+      print_if_bad(seed, s);
+      false_alarms += s.false_alarms;
+      if (!s.chatter) continue;
+      observed.push_back({cut, observe(drawn), s});
+      observed.back().recorded.samples.assign(2, 0.0F);
     }
   }
   fmt::print("{} cuts drawn and simulated in {:.1f} s of processor time\n", count, drawing_s);
-  for (std::size_t d = 0; d < detectors.size(); ++d) {
-    fmt::print(
-        "\n{}\n\n| class | cuts | found | false alarms | delay, ms: median / 95 % | frequency, Hz | recovery, ms "
-        "|\n|---|---|---|---|---|---|---|\n",
-        detectors[d].first);
-    for (const auto& [group, of] : scores[d]) print(group, summarise(of));
+  for (std::size_t d = 0; d < detectors.size(); ++d) print(detectors[d].first, scores[d]);
+  print_ideals(observed, seconds, false_alarms);
+}
+
+/// Every class but `pulses`, which has its own, is given one pulse a revolution for the comparison.
+void machines(std::uint64_t first, std::uint64_t count) {
+  const std::vector<std::string> names = {"monitor", "monitor, with a tachometer", "comb, RMS ratio", "RMS 5 sigma"};
+  std::vector<Scores> scores(names.size());
+  for (const auto& [name, kind] : machine_class_names) {
+    for (std::uint64_t seed = first; seed < first + count; ++seed) {
+      const RecordedCut cut = machine_cut(kind, seed);
+      const RecordedCut bare = without_tachometer(cut);
+      RecordedCut with = cut;
+      Random random(seed, 3000);
+      if (with.tachometer_channel < 0) add_tachometer(with, {}, random);
+      const std::vector<CutScore> here = {score(bare, monitor_decisions(bare)), score(with, monitor_decisions(with)),
+                                          score(bare, comb_rms_ratio(bare)), score(bare, rms_five_sigma(bare))};
+      for (std::size_t d = 0; d < here.size(); ++d) {
+        for (const std::string& group : {std::string("all"), std::string(name)}) scores[d][group].push_back(here[d]);
+      }
+      print_if_bad(seed, here[0]);
+    }
   }
+  for (std::size_t d = 0; d < names.size(); ++d) print(names[d], scores[d]);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const bool of_machines = argc > 1 && std::string_view(argv[1]) == "--machines";
+  const int at = of_machines ? 2 : 1;
+  const std::uint64_t first = argc > at ? std::strtoull(argv[at], nullptr, 10) : 1;
+  const std::uint64_t all = of_machines ? 20 : corpus_size;
+  const std::uint64_t count = argc > at + 1 ? std::strtoull(argv[at + 1], nullptr, 10) : all;
+  of_machines ? machines(first, count) : corpus(first, count);
   return 0;
 }

@@ -30,7 +30,10 @@ std::string direction(const Calibration& calibration) {
 }
 
 std::string summary_of(const Calibration& calibration) {
-  std::string out = fmt::format("Chatter is {}.\n", direction(calibration));
+  std::string out = calibration.status == Calibration::Status::found
+                        ? fmt::format("Chatter is {}.\n", direction(calibration))
+                        : fmt::format("Not calibrated: {}. Of what was tried, {} did best.\n",
+                                      monitor::reason(calibration), direction(calibration));
   out += half_text("setting", calibration.setting) + half_text("verifying", calibration.verifying);
   if (std::isfinite(calibration.median_lead_s)) {
     out += fmt::format(
@@ -47,9 +50,12 @@ Exit run(const CalibrateCommand& command, const Common& common, Progress& progre
   require_report_place(command.report);
   const jobs::CalibrateResult result = jobs::run_calibrate(command.recordings, common.seed, progress);
   const std::string json = monitor::calibration_json(result.calibration);
-  write_output(common, [&](io::Format format) {
-    return format == io::Format::toml ? jobs::calibrated_toml(result, common.output) : json;
-  });
+  const bool found = result.calibration.status == Calibration::Status::found;
+  if (found || common.output == "-") {
+    write_output(common, [&](io::Format format) {
+      return format == io::Format::toml ? jobs::calibrated_toml(result, common.output) : json;
+    });
+  }
   if (!command.report.empty()) {
     page::Report page;
     page.title = "Calibration of the chatter monitor";
@@ -58,7 +64,10 @@ Exit run(const CalibrateCommand& command, const Common& common, Progress& progre
     write_report(command.report, page, json);
   }
   if (common.wants_summary()) fmt::print("{}", summary_of(result.calibration));
-  return result.calibration.verifying.chosen.detection_rate > 0.0 ? done : not_reached;
+  if (found) return done;
+  fmt::print(stderr, "robomill: not calibrated: {}{}\n", monitor::reason(result.calibration),
+             common.output.empty() || common.output == "-" ? "" : "; " + common.output + " is not written");
+  return not_reached;
 }
 
 }  // namespace robomill::app

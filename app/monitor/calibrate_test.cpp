@@ -43,12 +43,41 @@ TEST_F(CalibrateVerb, Calibrates) {
   ASSERT_EQ(run.exit, 0) << run.err;
   EXPECT_NE(run.out.find("100.0 % found"), std::string::npos) << run.out;
   const json report = json::parse(slurp(folder_.at("report.json")));
+  EXPECT_EQ(report["status"], "found");
+  EXPECT_EQ(report["reason"], "");
   EXPECT_EQ(report["alarm"], "above");
   EXPECT_EQ(report["recordings"].size(), 8U);
   EXPECT_EQ(report["verifying"]["chosen"]["detection_rate"], 1.0);
   EXPECT_GE(report["setting"]["roc"].size(), 2U);
   EXPECT_NE(slurp(folder_.at("calibrated.toml")).find("threshold = "), std::string::npos);
   EXPECT_EQ(robomill("monitor calibrated.toml --input rec1.wav --quiet").exit, 0);
+}
+
+// Labels that the signal does not bear out: exit code 3, the report of what was reached, and no monitor.toml.
+TEST_F(CalibrateVerb, WritesNoDetectorWhereNoThresholdWorks) {
+  std::string text = "[signal]\nchannels = [1]\n[calibration]\nfalse_alarm_rate = 0.0\n";
+  for (int i = 0; i < 8; ++i) {
+    Random random(static_cast<std::uint64_t>(10 + i / 2));
+    std::vector<float> samples(20'000);
+    for (float& sample : samples) sample = static_cast<float>(random.normal());
+    const std::string name = "rec" + std::to_string(i) + ".wav";
+    wav(name, samples);
+    text += "[[recordings]]\nfile = \"" + name + "\"\nlabel = \"" + (i % 2 == 1 ? "chatter" : "stable") + "\"\n";
+  }
+  folder_.file("recordings.toml", text);
+  const Ended run = robomill("calibrate recordings.toml -o calibrated.toml --report report.json");
+  EXPECT_EQ(run.exit, 3);
+  EXPECT_NE(run.err.find("robomill: not calibrated: "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("calibrated.toml is not written"), std::string::npos) << run.err;
+  EXPECT_NE(run.out.find("Not calibrated"), std::string::npos) << run.out;
+  EXPECT_FALSE(std::filesystem::exists(folder_.at("calibrated.toml")));
+  const json report = json::parse(slurp(folder_.at("report.json")));
+  EXPECT_NE(report["status"], "found");
+  EXPECT_NE(report["reason"], "");
+  EXPECT_GE(report["setting"]["roc"].size(), 2U);
+  const Ended printed = robomill("calibrate recordings.toml -o -");
+  EXPECT_EQ(printed.exit, 3);
+  EXPECT_EQ(json::parse(printed.out)["status"], report["status"]);
 }
 
 // One message, exit code 1, and none of the files that were wanted.

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "robomill/base/error.hpp"
 #include "robomill/monitor/files/recordings_toml.hpp"
 
 namespace robomill::jobs {
@@ -31,6 +32,9 @@ CalibrateResult run_calibrate(const fs::path& recordings, std::uint64_t seed, Pr
 }
 
 std::string calibrated_toml(const CalibrateResult& result, const fs::path& place) {
+  if (result.calibration.status != monitor::Calibration::Status::found) {
+    throw InvalidInput("calibration", "is none: " + monitor::reason(result.calibration));
+  }
   monitor::MonitorFile file = result.monitor;
   file.modes = from_folder_of(place, file.modes);
   file.lobes = from_folder_of(place, file.lobes);

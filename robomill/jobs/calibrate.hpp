@@ -28,6 +28,7 @@ struct CalibrateResult {
 
 /// The calibrated detector as monitor.toml, under a remark on the share of alarms when verified.
 /// @param place  where the text is to stand: its paths are relative to that folder
+/// @throws InvalidInput if the calibration's status is not found: that is no detector
 [[nodiscard]] ROBOMILL_API std::string calibrated_toml(const CalibrateResult& result,
                                                        const std::filesystem::path& place);
 

@@ -55,6 +55,11 @@ TEST(RunCalibrate, IsTheCalibrationOfItsRecordings) {
   const monitor::MonitorFile back = monitor::read_monitor(folder.file("machine/monitor.toml", toml));
   EXPECT_NEAR(back.options.threshold, expected.options.threshold, 1e-12 * expected.options.threshold);
   EXPECT_EQ(back.options.alarm_below, expected.options.alarm_below);
+
+  CalibrateResult failed = found;
+  failed.calibration.status = monitor::Calibration::Status::not_verified;
+  EXPECT_EQ(test::field_of([&] { static_cast<void>(calibrated_toml(failed, folder.at("monitor.toml"))); }),
+            "calibration");
 }
 
 }  // namespace calibrate_test

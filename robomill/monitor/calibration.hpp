@@ -57,11 +57,27 @@ struct CalibratedHalf {
 };
 
 struct Calibration {
+  /// found: a detector, of which the other members say how it did. The others are none, and say what was reached:
+  enum class Status {
+    found,
+    none_detects,          ///< no threshold finds chatter in the setting half at the wanted share of false alarms
+    not_verified,          ///< the one that does finds none in the verifying half
+    no_better_than_chance  ///< there it is raised in as large a share of the stable recordings as of those with chatter
+  };
+  Status status = Status::none_detects;
   MonitorOptions options;  ///< as given, kind energy-entropy, with threshold and alarm_below set
   CalibratedHalf setting, verifying;
   double median_lead_s = unknown_s;  ///< over the verifying half; NaN: no onset known, or nothing detected
   std::vector<Alarm> alarms;         ///< one a recording, in the order given
 };
+
+inline constexpr Name<Calibration::Status> calibration_status_names[] = {
+    {"found", Calibration::Status::found},
+    {"none-detects", Calibration::Status::none_detects},
+    {"not-verified", Calibration::Status::not_verified},
+    {"no-better-than-chance", Calibration::Status::no_better_than_chance}};
+/// Why it is no calibration, with the counts; empty where it is one.
+[[nodiscard]] ROBOMILL_API std::string reason(const Calibration& calibration);
 
 /// Sets the published detector's threshold [EnergyEntropyChatter]: half of the stable recordings and half of those with
 /// chatter, drawn by the seed, set it, the others verify it.
@@ -69,7 +85,8 @@ struct Calibration {
 /// A recording raises an alarm at its first hop with entropy above (or below) the threshold; the first two windows,
 /// which reach before its start, do not count. Of all thresholds, above and below, at which no more than the wanted
 /// share of the stable recordings raises one, the one that detects most is taken, of several the earliest: the nearest
-/// one detects less where it fires before chatter's onset, too.
+/// one detects less where it fires before chatter's onset, too. Where none detects, or what it detects is not verified,
+/// the status says so: that is no detector.
 ///
 /// Chatter's line is visible from the last sample of the third spectrogram column (Hann window, columns as the
 /// detector's hops) in a row in which it is 6 dB above the median of the 16 lines on either side and 6 dB above its own

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -218,16 +219,17 @@ bool came_true(const CutPlan& plan, const CleanCut& clean, const Truth& truth, b
   return settles(plan, clean);
 }
 
-RecordedCut record(const DrawnCut& drawn, const Truth& truth, int noise, Random& random) {
+RecordedCut record(DrawnCut& drawn, const Truth& truth, int noise, Random& random) {
   RecordedCut out;
   out.noise = noise;
   out.teeth = drawn.plan.teeth();
-  const Disturbance disturbance = {.noise = noises.at(static_cast<std::size_t>(noise)),
-                                   .hum = random.uniform(0.01, 0.1),
-                                   .unbalance = random.uniform(0.01, 0.1),
-                                   .gain_swing = random.uniform(0.0, 0.25),
-                                   .knocks_per_s = random.uniform(0.1, 0.8)};
-  out.samples = disturbed(drawn.plan, drawn.clean, disturbance, random);
+  drawn.disturbance = {.noise = noises.at(static_cast<std::size_t>(noise)),
+                       .hum = random.uniform(0.01, 0.1),
+                       .unbalance = random.uniform(0.01, 0.1),
+                       .gain_swing = random.uniform(0.0, 0.25),
+                       .knocks_per_s = random.uniform(0.1, 0.8)};
+  drawn.random = random;
+  out.samples = disturbed(drawn.plan, drawn.clean, drawn.disturbance, random);
   const double off = random.uniform() < 0.2 ? 0.0 : random.uniform(-0.05, 0.05);
   out.hint_rad_per_s = static_cast<double>(drawn.clean.speed_rad_per_s.front()) * (1.0 + off);
   out.truth = truth;
@@ -236,14 +238,42 @@ RecordedCut record(const DrawnCut& drawn, const Truth& truth, int noise, Random&
 
 /// A depth above the limit at which small vibration grows as fast as wanted, or a multiple of the limit: a drill's
 /// many waves a revolution grow slowly just above it.
-double chatter_depth(const Draw& draw, double speed_rad_per_s, double limit_m, double growth_per_s) {
-  const double most_m = (draw.plan.drilling ? 8.0 : 3.0) * limit_m;
+double chatter_depth(const Draw& draw, double speed_rad_per_s, double limit_m, double growth_per_s,
+                     double most_limits = 3.0) {
+  const double most_m = most_limits * limit_m;
   double depth_m = 1.15 * limit_m;
   while (depth_m < most_m && depth_m < greatest(draw) &&
          growth_at(draw, speed_rad_per_s, depth_m).per_s < growth_per_s) {
     depth_m *= draw.plan.drilling ? 1.3 : 1.1;
   }
   return std::min(depth_m, greatest(draw));
+}
+
+/// A plan of chatter; nothing where this draw gives none.
+std::optional<CutPlan> chatter_plan(const CutWish& wish, Random& random) {
+  Draw one = wish.drilling ? draw_drilling(random) : draw_milling(wish.low, random);
+  const double speed = one.plan.speed_rad_per_s();
+  if (speed > wish.most_speed_rad_per_s) return std::nullopt;
+  const double limit_m = limit_at(one, speed);
+  if (limit_m > 0.7 * greatest(one)) return std::nullopt;
+  const double wanted_per_s =
+      std::exp(random.uniform(std::log(wish.least_growth_per_s), std::log(wish.most_growth_per_s)));
+  const double depth_m = chatter_depth(one, speed, limit_m, wanted_per_s, wish.most_limits);
+  const Growth growth = growth_at(one, speed, depth_m);
+  if (growth.per_s < 2.0 / 3.0 * wish.least_growth_per_s) return std::nullopt;
+  if (!wish.drilling) {
+    if ((growth.frequency_hz < 120.0) != wish.low) return std::nullopt;
+    if (random.uniform() < 0.7) one.problem.milling.tool.runout_m = random.uniform(0.0, 1.2e-5);
+  }
+  SpeedChange change = steady(speed);
+  if (wish.course != "abrupt" && random.uniform() < 0.3) {
+    change.before_rad_per_s *= random.uniform(0.93, 1.07);
+    change.from_s = random.uniform(0.35, 0.5);
+    change.to_s = change.from_s + random.uniform(0.1, 0.3);
+  }
+  plan_chatter(one, change, depth_m, limit_m / depth_m, wish.course, random);
+  one.plan.idle_before_s = random.uniform(0.25, 0.6);
+  return one.plan;
 }
 
 }  // namespace
@@ -282,51 +312,43 @@ bool settles(const CutPlan& plan, const CleanCut& clean) {
   return static_cast<double>(cutting) > 0.8 * corpus_rate_hz;
 }
 
+DrawnCut draw(const CutWish& wish, Random& random) {
+  DrawnCut out;
+  // Draws at too high a speed cost nothing.
+  const int most = wish.most_speed_rad_per_s < 1e300 ? 10'000 : 200;
+  for (out.draws = 1; out.draws < most; ++out.draws) {
+    const std::optional<CutPlan> plan =
+        wish.chatter ? chatter_plan(wish, random)
+                     : std::optional(stable_plan(wish.drilling, random.uniform(2.6, 3.4), random));
+    if (!plan || plan->speed_rad_per_s() > wish.most_speed_rad_per_s) continue;
+    out.plan = *plan;
+    out.clean = simulate(out.plan);
+    if (out.clean.diverged) continue;
+    const Truth truth = truth_of(out.plan, out.clean, wish.chatter);
+    if (!came_true(out.plan, out.clean, truth, wish.low && !wish.drilling, wish.drilling ? 300.0 : 10.0)) continue;
+    out.recorded = record(out, truth, wish.noise, random);
+    out.recorded.course = wish.chatter ? wish.course : "stable";
+    out.recorded.kind = wish.drilling   ? "drilling"
+                        : !wish.chatter ? "milling"
+                        : wish.low      ? "milling low"
+                                        : "milling high";
+    return out;
+  }
+  throw InvalidInput("draws", out.draws, "", "gave no cut that does as planned");
+}
+
 DrawnCut draw(std::uint64_t seed) {
   const std::uint64_t place = (seed - 1) % 20, block = (seed - 1) / 20;
   const bool drilling = place == 0 || place == 7 || place == 13;
-  const bool chatter = (place + block) % 2 == 1;
-  const bool low = (place / 2 + block) % 2 == 0;
-  const std::string course = std::array{"ramp", "step", "abrupt"}.at((place / 2 + block / 2) % 3);
-  const int noise = static_cast<int>((place / 2 + 2 * block) % 3);
+  const CutWish wish = {.drilling = drilling,
+                        .chatter = (place + block) % 2 == 1,
+                        .low = (place / 2 + block) % 2 == 0,
+                        .course = std::array{"ramp", "step", "abrupt"}.at((place / 2 + block / 2) % 3),
+                        .noise = static_cast<int>((place / 2 + 2 * block) % 3),
+                        .least_growth_per_s = drilling ? 15.0 : 6.0,
+                        .most_limits = drilling ? 8.0 : 3.0};
   Random random(seed, 7);
-  DrawnCut out;
-  for (out.draws = 1; out.draws < 200; ++out.draws) {
-    if (!chatter) {
-      out.plan = stable_plan(drilling, random.uniform(2.6, 3.4), random);
-    } else {
-      Draw one = drilling ? draw_drilling(random) : draw_milling(low, random);
-      const double speed = one.plan.speed_rad_per_s();
-      const double limit_m = limit_at(one, speed);
-      if (limit_m > 0.7 * greatest(one)) continue;
-      const double depth_m =
-          chatter_depth(one, speed, limit_m, std::exp(random.uniform(std::log(drilling ? 15.0 : 6.0), std::log(60.0))));
-      const Growth growth = growth_at(one, speed, depth_m);
-      if (growth.per_s < (drilling ? 10.0 : 4.0)) continue;
-      if (!drilling) {
-        if ((growth.frequency_hz < 120.0) != low) continue;
-        if (random.uniform() < 0.7) one.problem.milling.tool.runout_m = random.uniform(0.0, 1.2e-5);
-      }
-      SpeedChange change = steady(speed);
-      if (course != "abrupt" && random.uniform() < 0.3) {
-        change.before_rad_per_s *= random.uniform(0.93, 1.07);
-        change.from_s = random.uniform(0.35, 0.5);
-        change.to_s = change.from_s + random.uniform(0.1, 0.3);
-      }
-      plan_chatter(one, change, depth_m, limit_m / depth_m, course, random);
-      one.plan.idle_before_s = random.uniform(0.25, 0.6);
-      out.plan = one.plan;
-    }
-    out.clean = simulate(out.plan);
-    if (out.clean.diverged) continue;
-    const Truth truth = truth_of(out.plan, out.clean, chatter);
-    if (!came_true(out.plan, out.clean, truth, low && !drilling, drilling ? 300.0 : 10.0)) continue;
-    out.recorded = record(out, truth, noise, random);
-    out.recorded.course = chatter ? course : "stable";
-    out.recorded.kind = drilling ? "drilling" : !chatter ? "milling" : low ? "milling low" : "milling high";
-    return out;
-  }
-  throw InvalidInput("seed", static_cast<double>(seed), "", "gave no cut that does as planned");
+  return draw(wish, random);
 }
 
 RecordedCut cut(std::uint64_t seed) {

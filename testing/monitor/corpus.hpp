@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <string>
 
 #include "testing/monitor/recording.hpp"
 
@@ -30,8 +31,24 @@ struct DrawnCut {
   CleanCut clean;
   RecordedCut recorded;
   int draws = 0;
+  Disturbance disturbance;    ///< what disturbed() made of plan and clean to give the samples
+  Random random = Random(0);  ///< as disturbed() was given it: with parts of the disturbance the same noise comes again
 };
 [[nodiscard]] DrawnCut draw(std::uint64_t seed);
+
+/// What a cut is to be.
+struct CutWish {
+  bool drilling = false, chatter = false;
+  bool low = false;             ///< in milling, chatter of the arm instead of the tool
+  std::string course = "step";  ///< of chatter: "ramp", "step" or "abrupt"
+  int noise = 0;                ///< 0, 1, 2
+  /// Growth of small vibration in full depth: drawn between these, evenly in its logarithm [1/s].
+  double least_growth_per_s = 6.0, most_growth_per_s = 60.0;
+  double most_limits = 3.0;             ///< greatest depth, as a multiple of the limit
+  double most_speed_rad_per_s = 1e300;  ///< of the spindle
+};
+/// Draws as cut() does, until the cut is as wished.
+[[nodiscard]] DrawnCut draw(const CutWish& wish, Random& random);
 
 /// A plan of stable cutting, without idle times: entry, steady cutting, a change of speed in half of them, exit.
 [[nodiscard]] CutPlan stable_plan(bool drilling, double seconds, Random& random);

@@ -50,27 +50,6 @@ bool run(const CutModel& model, const CutPlan& plan, Physics physics, Resampler&
   return true;
 }
 
-/// x at a row that need not be whole, by a sinc under a Hann window; 0 outside.
-Eigen::RowVector2d between(const CleanCut::Columns& x, double row) {
-  constexpr int reach = 12;
-  const auto base = static_cast<Eigen::Index>(std::floor(row));
-  Eigen::RowVector2d sum = Eigen::RowVector2d::Zero();
-  const double fraction = row - static_cast<double>(base);
-  if (fraction < 1e-9) return base >= 0 && base < x.rows() ? Eigen::RowVector2d(x.row(base)) : sum;
-  const double sine = std::sin(pi * fraction) / pi;  // sin(π (row - k)) changes its sign from k to k + 1
-  const std::complex<double> turn = std::polar(1.0, -pi / reach);
-  std::complex<double> hann = std::polar(1.0, pi * (fraction + reach - 1) / reach);
-  double sign = reach % 2 == 0 ? -1.0 : 1.0;
-  for (Eigen::Index k = base - reach + 1; k <= base + reach; ++k) {
-    if (k >= 0 && k < x.rows()) {
-      sum += sign * sine / (row - static_cast<double>(k)) * (0.5 + 0.5 * hann.real()) * x.row(k);
-    }
-    sign = -sign;
-    hann *= turn;
-  }
-  return sum;
-}
-
 /// What changed since one revolution before.
 CleanCut::Columns change_per_turn(const CleanCut::Columns& x, const std::vector<double>& rotation) {
   CleanCut::Columns change = x;
@@ -81,7 +60,7 @@ CleanCut::Columns change_per_turn(const CleanCut::Columns& x, const std::vector<
     while (rotation[behind + 1] <= angle) ++behind;
     const double row =
         static_cast<double>(behind) + (angle - rotation[behind]) / (rotation[behind + 1] - rotation[behind]);
-    change.row(static_cast<Eigen::Index>(i)) -= between(x, row);
+    change.row(static_cast<Eigen::Index>(i)) -= at_row(x, row);
   }
   return change;
 }
@@ -127,6 +106,55 @@ std::pair<Eigen::Index, Eigen::Index> longest_above(const std::vector<float>& am
   return {best_from, best};
 }
 
+/// Two-pole resonance driven by white noise, of rms 1.
+class Coloured {
+ public:
+  Coloured(double frequency_hz, double damping_ratio) {
+    const double angle = 2.0 * pi * frequency_hz / corpus_rate_hz;
+    radius_ = std::exp(-damping_ratio * angle);
+    turn_ = 2.0 * radius_ * std::cos(angle);
+    const double r2 = radius_ * radius_;
+    const double variance = (1.0 + r2) / ((1.0 - r2) * ((1.0 + r2) * (1.0 + r2) - turn_ * turn_));
+    gain_ = 1.0 / std::sqrt(variance);
+  }
+  /// Of its output, per cycle a sample, two-sided.
+  [[nodiscard]] double density(double frequency_hz) const {
+    const std::complex<double> back = std::polar(1.0, -2.0 * pi * frequency_hz / corpus_rate_hz);
+    return gain_ * gain_ / std::norm(1.0 - turn_ * back + radius_ * radius_ * back * back);
+  }
+  double next(double white) {
+    const double y = gain_ * white + turn_ * a_ - radius_ * radius_ * b_;
+    b_ = a_;
+    a_ = y;
+    return y;
+  }
+
+ private:
+  double radius_ = 0.0, turn_ = 0.0, gain_ = 1.0, a_ = 0.0, b_ = 0.0;
+};
+
+}  // namespace
+
+Eigen::RowVector2d at_row(const CleanCut::Columns& x, double row) {
+  constexpr int reach = 12;
+  const auto base = static_cast<Eigen::Index>(std::floor(row));
+  Eigen::RowVector2d sum = Eigen::RowVector2d::Zero();
+  const double fraction = row - static_cast<double>(base);
+  if (fraction < 1e-9) return base >= 0 && base < x.rows() ? Eigen::RowVector2d(x.row(base)) : sum;
+  const double sine = std::sin(pi * fraction) / pi;  // sin(π (row - k)) changes its sign from k to k + 1
+  const std::complex<double> turn = std::polar(1.0, -pi / reach);
+  std::complex<double> hann = std::polar(1.0, pi * (fraction + reach - 1) / reach);
+  double sign = reach % 2 == 0 ? -1.0 : 1.0;
+  for (Eigen::Index k = base - reach + 1; k <= base + reach; ++k) {
+    if (k >= 0 && k < x.rows()) {
+      sum += sign * sine / (row - static_cast<double>(k)) * (0.5 + 0.5 * hann.real()) * x.row(k);
+    }
+    sign = -sign;
+    hann *= turn;
+  }
+  return sum;
+}
+
 void find_times(Truth& truth, double level) {
   const std::vector<float>& a = truth.amplitude_m_per_s2;
   const double largest = *std::ranges::max_element(a);
@@ -152,30 +180,6 @@ void find_times(Truth& truth, double level) {
   truth.ends = end < a.size();
   truth.end_s = time(end);
 }
-
-/// Two-pole resonance driven by white noise, of rms 1.
-class Coloured {
- public:
-  Coloured(double frequency_hz, double damping_ratio) {
-    const double angle = 2.0 * pi * frequency_hz / corpus_rate_hz;
-    radius_ = std::exp(-damping_ratio * angle);
-    turn_ = 2.0 * radius_ * std::cos(angle);
-    const double r2 = radius_ * radius_;
-    const double variance = (1.0 + r2) / ((1.0 - r2) * ((1.0 + r2) * (1.0 + r2) - turn_ * turn_));
-    gain_ = 1.0 / std::sqrt(variance);
-  }
-  double next(double white) {
-    const double y = gain_ * white + turn_ * a_ - radius_ * radius_ * b_;
-    b_ = a_;
-    a_ = y;
-    return y;
-  }
-
- private:
-  double radius_ = 0.0, turn_ = 0.0, gain_ = 1.0, a_ = 0.0, b_ = 0.0;
-};
-
-}  // namespace
 
 double CutPlan::speed_rad_per_s() const {
   return drilling ? drill.spindle_speed_rad_per_s : milling.spindle_speed_rad_per_s;
@@ -208,6 +212,12 @@ CleanCut simulate(const CutPlan& plan) {
     clean.depth_share.push_back(t < 0.0 || i >= before + rows ? 0.0F : static_cast<float>(model.depth.at(t)));
   }
   return clean;
+}
+
+CleanCut::Columns chatter_of(const CutPlan& plan, const CleanCut& clean, const Truth& truth) {
+  const CleanCut::Columns c = clean.acceleration_m_per_s2 - clean.forced_m_per_s2;
+  if (plan.locked) return c;
+  return change_per_turn(c, clean.rotation_rad) / truth.comb_gain;
 }
 
 Truth truth_of(const CutPlan& plan, const CleanCut& clean, bool chatter) {
@@ -308,15 +318,24 @@ void add_knock(const modal::TipModes& structure, double peak_m_per_s2, double ti
   }
 }
 
-std::vector<float> disturbed(const CutPlan& plan, const CleanCut& clean, const Disturbance& disturbance,
-                             Random& random) {
+double noise_density_per_hz(const NoiseResonances& of, double frequency_hz) {
+  const double sum = 0.75 * 0.75 + 0.35 * 0.35 * Coloured(3.0, 0.7).density(frequency_hz) +
+                     0.4 * 0.4 * Coloured(of.structure_hz, 0.02).density(frequency_hz) +
+                     0.4 * 0.4 * Coloured(of.local_hz, 0.05).density(frequency_hz);
+  return 2.0 * sum / corpus_rate_hz;
+}
+
+std::vector<float> disturbed(const CutPlan& plan, const CleanCut& clean, const Disturbance& disturbance, Random& random,
+                             std::array<NoiseResonances, 2>* drawn) {
   const Eigen::Index n = clean.acceleration_m_per_s2.rows();
   const double level = reference_level(plan, clean);
   std::vector<float> samples(2 * static_cast<std::size_t>(n));
   const double hum_hz = 50.0 * random.uniform(0.998, 1.002);
   const double swing_s = random.uniform(2.0, 8.0), swing_phase = random.uniform(0.0, 2.0 * pi);
   for (std::size_t c = 0; c < 2; ++c) {
-    Coloured red(3.0, 0.7), structure(random.uniform(500.0, 600.0), 0.02), local(random.uniform(1200.0, 3800.0), 0.05);
+    const double structure_hz = random.uniform(500.0, 600.0), local_hz = random.uniform(1200.0, 3800.0);
+    if (drawn != nullptr) drawn->at(c) = {structure_hz, local_hz};
+    Coloured red(3.0, 0.7), structure(structure_hz, 0.02), local(local_hz, 0.05);
     const double hum_phase = random.uniform(0.0, 2.0 * pi), unbalance_phase = random.uniform(0.0, 2.0 * pi);
     const double share = random.uniform(0.5, 1.0);
     for (Eigen::Index i = 0; i < n; ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -37,6 +38,9 @@ struct Truth {
   double displacement_hz = 0.0;                ///< strongest line of the displacement: the mode's, not its sideband's
   std::vector<float> amplitude_m_per_s2 = {};  ///< one a frame
   std::vector<float> speed_rad_per_s = {};     ///< of the spindle, one a frame
+  /// Where the frequency moves: of the strongest line, one a frame; the other lines keep their distance from it. Empty:
+  /// frequency_hz holds throughout.
+  std::vector<float> course_hz = {};
 };
 
 struct RecordedCut {
@@ -46,6 +50,8 @@ struct RecordedCut {
   double sample_rate_hz = corpus_rate_hz;
   int channels = 2;                 ///< x, y
   std::vector<float> samples = {};  ///< interleaved [m/s²]
+  int tachometer_channel = -1;      ///< of these, from 0: pulses of 0 or 5 V; -1: none
+  int pulses_per_revolution = 1;    ///< of it
   double hint_rad_per_s = 0.0;      ///< the spindle speed as given, off by up to five percent
   int teeth = 0;
   Truth truth;
@@ -81,6 +87,12 @@ struct CleanCut {
 };
 [[nodiscard]] CleanCut simulate(const CutPlan& plan);
 [[nodiscard]] Truth truth_of(const CutPlan& plan, const CleanCut& clean, bool chatter);
+/// Truth's c(t), x and y: what of the acceleration is chatter.
+[[nodiscard]] CleanCut::Columns chatter_of(const CutPlan& plan, const CleanCut& clean, const Truth& truth);
+/// Fills the final amplitude and the times from the amplitudes at corpus_rate_hz.
+void find_times(Truth& truth, double reference_level_m_per_s2);
+/// x at a row that need not be whole, by a sinc under a Hann window of 24 rows; 0 outside.
+[[nodiscard]] Eigen::RowVector2d at_row(const CleanCut::Columns& x, double row);
 
 /// Root mean square of the forced vibration while cutting, over both channels, at least 0.5 m/s², drilling
 /// 5 m/s²: what drills do beside what is simulated.
@@ -94,9 +106,17 @@ struct Disturbance {
   double gain_swing = 0.1;    ///< of the gain about 1
   double knocks_per_s = 0.4;  ///< impulses on the structure, 1 to 10 times the rms at their peak
 };
+/// The resonances that colour a channel's noise while cutting.
+struct NoiseResonances {
+  double structure_hz = 0.0, local_hz = 0.0;
+};
 /// Interleaved samples.
+/// @param drawn  where not null, the resonances that were drawn
 [[nodiscard]] std::vector<float> disturbed(const CutPlan& plan, const CleanCut& clean, const Disturbance& disturbance,
-                                           Random& random);
+                                           Random& random, std::array<NoiseResonances, 2>* drawn = nullptr);
+/// Power per hertz of the noise of one channel while cutting, one-sided, as a share of (reference level x
+/// Disturbance::noise)²; its integral from 0 to half of corpus_rate_hz is its variance.
+[[nodiscard]] double noise_density_per_hz(const NoiseResonances& of, double frequency_hz);
 /// Adds a knock to interleaved samples of two channels: the structure's acceleration after a blow, and a short ring of
 /// the accelerometer's surroundings.
 void add_knock(const modal::TipModes& structure, double peak_m_per_s2, double time_s, Random& random,

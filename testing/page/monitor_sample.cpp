@@ -98,6 +98,7 @@ std::string sample_calibration(const std::string& name) {
     out.verifying.roc.push_back(
         {.threshold = threshold, .false_alarm_rate = false_alarms, .detection_rate = found * found});
   }
+  out.status = monitor::Calibration::Status::found;
   out.setting.stable = out.verifying.stable = 120;
   out.setting.chatter = out.verifying.chatter = 120;
   out.setting.chosen = {.threshold = 110.0, .false_alarm_rate = 0.008, .detection_rate = 0.95};

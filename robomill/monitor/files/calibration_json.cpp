@@ -23,6 +23,8 @@ io::Json half_json(const CalibratedHalf& half) {
 
 std::string calibration_json(const Calibration& calibration) {
   io::Json json;
+  json["status"] = name_in(calibration_status_names, calibration.status);
+  json["reason"] = reason(calibration);
   json["kind"] = to_string(calibration.options.kind);
   json["entropy"] = to_string(calibration.options.entropy);
   json["threshold"] = io::number(calibration.options.threshold);

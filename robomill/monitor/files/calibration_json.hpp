@@ -8,7 +8,8 @@
 
 namespace robomill::monitor {
 
-/// What a calibration found as JSON text: threshold and direction, both halves with their ROC curves, every recording.
+/// What a calibration found as JSON text: its status and, where it is not "found", the reason; threshold and direction,
+/// both halves with their ROC curves, every recording.
 [[nodiscard]] ROBOMILL_API std::string calibration_json(const Calibration& calibration);
 
 }  // namespace robomill::monitor

@@ -1,5 +1,7 @@
 #include "robomill/monitor/calibration.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -173,7 +175,42 @@ void set_threshold(const Courses& setting, double false_alarm_rate, MonitorOptio
   o.threshold = best.threshold;
 }
 
+Calibration::Status status_of(const Calibration& calibration) {
+  using Status = Calibration::Status;
+  const RocPoint &set = calibration.setting.chosen, &verified = calibration.verifying.chosen;
+  if (!(set.detection_rate > 0.0)) return Status::none_detects;
+  if (!(verified.detection_rate > 0.0)) return Status::not_verified;
+  if (verified.detection_rate <= verified.false_alarm_rate) return Status::no_better_than_chance;
+  return Status::found;
+}
+
 }  // namespace
+
+std::string reason(const Calibration& calibration) {
+  const auto share_of = [](double rate, int count) {
+    return fmt::format("{} of {}", std::lround(rate * static_cast<double>(count)), count);
+  };
+  const CalibratedHalf &setting = calibration.setting, &verifying = calibration.verifying;
+  switch (calibration.status) {
+    case Calibration::Status::found:
+      return {};
+    case Calibration::Status::none_detects:
+      return fmt::format(
+          "no threshold finds chatter in the setting half ({} recordings with chatter) at the wanted share of false "
+          "alarms",
+          setting.chatter);
+    case Calibration::Status::not_verified:
+      return share_of(verifying.chosen.detection_rate, verifying.chatter) +
+             " recordings with chatter found in the verifying half";
+    case Calibration::Status::no_better_than_chance:
+      return fmt::format(
+          "an alarm says nothing: in the verifying half {} recordings with chatter are found, and {} stable "
+          "ones raise a false alarm",
+          share_of(verifying.chosen.detection_rate, verifying.chatter),
+          share_of(verifying.chosen.false_alarm_rate, verifying.stable));
+  }
+  return {};
+}
 
 void CalibrationOptions::validate() const {
   if (!(false_alarm_rate >= 0.0 && false_alarm_rate < 1.0)) {
@@ -201,6 +238,7 @@ Calibration calibrate(std::span<const Recording> recordings, const MonitorOption
   set_threshold(setting, calibration.false_alarm_rate, out.options);
   out.setting = calibrated(setting, out.options);
   out.verifying = calibrated(verifying, out.options);
+  out.status = status_of(out);
   std::vector<double> leads;
   for (std::size_t r = 0; r < courses.size(); ++r) {
     const Course& course = courses[r];

@@ -66,6 +66,52 @@ TEST(Calibrate, SeparatesChatterThatIsLoudInBothForms) {
   }
 }
 
+TEST(Calibrate, SaysThatItFoundAThreshold) {
+  const Calibration c = calibrate(mixed(6), {.sample_rate_hz = rate_hz});
+  EXPECT_EQ(c.status, Calibration::Status::found);
+  EXPECT_EQ(reason(c), "");
+}
+
+// Recordings with a label and nothing that the entropy could tell by.
+TEST(Calibrate, SaysWhereNoThresholdDetects) {
+  std::vector<Recording> recordings = mixed(6, 0.0);
+  for (std::size_t r = 1; r < recordings.size(); r += 2) recordings[r] = recordings[r - 1];
+  for (std::size_t r = 1; r < recordings.size(); r += 2) recordings[r].chatter = true;
+  const Calibration c = calibrate(recordings, {.sample_rate_hz = rate_hz}, {.false_alarm_rate = 0.0});
+  EXPECT_NE(c.status, Calibration::Status::found);
+  EXPECT_FALSE(reason(c).empty());
+  EXPECT_TRUE(std::isfinite(c.options.threshold));  // what was reached
+  EXPECT_EQ(c.verifying.chatter, 3);
+}
+
+// The half that sets the threshold has loud chatter, the other one none that is louder than the stable cuts.
+TEST(Calibrate, SaysWhereTheOtherHalfDoesNotVerify) {
+  std::vector<Recording> recordings = mixed(6);
+  const MonitorOptions o = {.sample_rate_hz = rate_hz};
+  const Calibration first = calibrate(recordings, o);
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    if (first.alarms[r].verifying && recordings[r].chatter) recordings[r].samples = recordings[0].samples;
+  }
+  const Calibration c = calibrate(recordings, o);
+  EXPECT_EQ(c.setting.chosen.detection_rate, 1.0);
+  EXPECT_EQ(c.status, Calibration::Status::not_verified);
+  EXPECT_NE(reason(c).find("0 of 3 recordings with chatter found in the verifying half"), std::string::npos)
+      << reason(c);
+}
+
+// The stable recordings of the verifying half are as loud as those with chatter.
+TEST(Calibrate, SaysWhereAnAlarmTellsNothing) {
+  std::vector<Recording> recordings = mixed(6);
+  const MonitorOptions o = {.sample_rate_hz = rate_hz};
+  const Calibration first = calibrate(recordings, o);
+  for (std::size_t r = 0; r < recordings.size(); ++r) {
+    if (first.alarms[r].verifying && !recordings[r].chatter) recordings[r].samples = recordings[1].samples;
+  }
+  const Calibration c = calibrate(recordings, o);
+  EXPECT_EQ(c.status, Calibration::Status::no_better_than_chance);
+  EXPECT_NE(reason(c).find("3 of 3 stable ones raise a false alarm"), std::string::npos) << reason(c);
+}
+
 // A quiet cut between the lines: chatter at many lines evens the bands out, and the normalised entropy rises.
 TEST(Calibrate, FindsTheDirection) {
   std::vector<Recording> recordings;
