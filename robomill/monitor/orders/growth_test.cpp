@@ -15,8 +15,12 @@ constexpr double memory_s = 1.0, suspect_memory_s = 5.0;
 
 }  // namespace
 
+std::size_t GrowthTest::cells(double highest_hz) noexcept {
+  return static_cast<std::size_t>(highest_hz / cell_hz) + width;
+}
+
 GrowthTest::GrowthTest(double highest_hz, double hop_s)
-    : hop_s_(hop_s), cells_(static_cast<std::size_t>(highest_hz / cell_hz) + width), usual_(cells_.size()) {}
+    : hop_s_(hop_s), cells_(cells(highest_hz)), usual_(cells_.size()) {}
 
 std::span<double> GrowthTest::begin() noexcept {
   std::ranges::fill(cells_, 0.0);

@@ -16,6 +16,8 @@ class GrowthTest {
     double energy = 0.0;        ///< of the strongest line that has grown by 10 dB; 0: none
     double frequency_hz = 0.0;  ///< of its cell
   };
+  /// Cells up to a frequency, and some to spare.
+  [[nodiscard]] static std::size_t cells(double highest_hz) noexcept;
   GrowthTest(double highest_hz, double hop_s);
   /// Where the energies of a hop go: cells of cell_hz from 0 on, all 0.
   [[nodiscard]] std::span<double> begin() noexcept;

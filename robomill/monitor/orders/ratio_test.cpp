@@ -22,15 +22,22 @@ constexpr double stays = 0.5;         // of cut_, or of the energy before
 constexpr double least_anchor = 0.1;  // of the whole, in S: less does not hold the speed
 constexpr double lost_s = 1.0;        // after which a lone line counts again
 constexpr double forgets_s = 10.0;
+constexpr double idle = 0.03;           // of loudest_, in S
 constexpr double faint = 0.01;          // of loudest_
 constexpr double steady_ratio = 0.008;  // of the speed, in 0.3 s
 constexpr double growth_of_swing = 0.5;
+constexpr double loud = 30.0;  // of the least energy: a tone of an idling machine is weaker
 constexpr double alone_share = 0.6;
 constexpr double line_moves = 0.04;                     // of a frequency between the windows
 constexpr double unsure_ratio = 0.07, unsure_hz = 5.0;  // by which a hint and a line may be off
 constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0, highest_of_unknown_teeth = 12.0;  // orders
 constexpr double mains_width_hz = 0.7, highest_of_mains = 3.5;
-constexpr std::size_t blocks = 6;     // that the short window is cut into
+constexpr std::size_t blocks = 6;  // that the short window is cut into
+constexpr double tone_memory_s = 1.0;
+constexpr double stable_ratio = 0.05;  // L to S
+constexpr double still_air = 2.0;      // of the least energy: more is not the air
+constexpr double tone_growth = 4.0;    // of the energy within ± tone_cells
+constexpr std::size_t tone_cells = 2;
 constexpr double rung_down = 0.4;     // of the strongest block, in the last
 constexpr double reading = 0.05;      // 1/T: how well a line's frequency is read off
 constexpr double lowest = 2.5;        // 1/T, of a lone line
@@ -58,6 +65,8 @@ RatioTest::RatioTest(const Setup& setup)
       growth_(spectra_.highest_hz(), setup.hop_s),
       power_(spectra_.spectrum(0, 0).line.size()),
       long_power_(power_.size()),
+      cells_(GrowthTest::cells(spectra_.highest_hz())),
+      tones_(cells_.size()),
       synchronous_(hops(memory_s)),
       whole_(hops(memory_s)),
       rotation_(hops(memory_s)) {
@@ -89,6 +98,8 @@ void RatioTest::reset() noexcept {
   found_ = {};
   peak_ = {};
   for (auto* ring : {&synchronous_, &whole_, &rotation_}) std::ranges::fill(*ring, 0.0);
+  tone_hops_ = 0;
+  air_energy_ = 0.0;
   hop_ = ratio_hops_ = growth_hops_ = alone_hops_ = calm_hops_ = entry_hops_ = lost_hops_ = 0;
   cut_ = loudest_ = frequency_hz_ = short_frequency_hz_ = 0.0;
   chatter_ = false;
@@ -160,7 +171,9 @@ void RatioTest::follow_cut() noexcept {
   }
   if (lost_hops_ > 0) --lost_hops_;
   const bool locked = speed_.known() > locks_at && speed_.share() > locks_share;
-  if (locked && !chatter_) cut_ = cut_ == 0.0 ? now.synchronous : cut_ + follows * (now.synchronous - cut_);
+  // An idling spindle is no cut.
+  const bool cuts = now.synchronous > idle * loudest_;
+  if (locked && cuts && !chatter_) cut_ = cut_ == 0.0 ? now.synchronous : cut_ + follows * (now.synchronous - cut_);
   loudest_ = std::max(cut_, loudest_ * (1.0 - setup_.hop_s / forgets_s));
   if (now.synchronous < leaves * cut_) cut_ = 0.0;
   if (cut_ > 0.0 && !chatter_ && now.synchronous < vanishes * *std::ranges::max_element(synchronous_) &&
@@ -197,7 +210,8 @@ bool RatioTest::may_be_the_cut(double frequency_hz) const noexcept {
 bool RatioTest::stands_alone() const noexcept {
   const Peak& far = peak_.front();
   const Peak& near = peak_.back();
-  return cut_ == 0.0 && (chatter_ || lost_hops_ == 0) && std::min(far.share, near.share) > alone_share &&
+  return cut_ == 0.0 && (chatter_ || (lost_hops_ == 0 && near.energy > loud * air_energy_)) &&
+         std::min(far.share, near.share) > alone_share &&
          std::abs(far.frequency_hz - near.frequency_hz) < line_moves * near.frequency_hz &&
          !may_be_the_cut(near.frequency_hz) && !of_the_mains(far.frequency_hz);
 }
@@ -215,10 +229,14 @@ bool RatioTest::rings_down(double frequency_hz, std::uint64_t bad_channels) cons
 
 RatioTest::Finding RatioTest::find(std::uint64_t bad_channels) noexcept {
   Finding out;
+  std::ranges::fill(cells_, 0.0);
+  lines_.back().share_out(GrowthTest::cell_hz, cells_);
   if (cut_ == 0.0) {
     growth_.forget();
   } else {
-    lines_.back().share_out(GrowthTest::cell_hz, growth_.begin());
+    const std::span<double> cells = growth_.begin();
+    std::ranges::copy(cells_, cells.begin());
+    lines_.back().share_out_between(GrowthTest::cell_hz, cells);
   }
   const auto [slowest, fastest] = std::ranges::minmax_element(rotation_);
   const bool steady = *fastest - *slowest < steady_ratio * *fastest;
@@ -239,8 +257,37 @@ RatioTest::Finding RatioTest::find(std::uint64_t bad_channels) noexcept {
     out.ratio = true;
     out.frequency_hz = found_.back().frequency_hz;
   }
-  if (out.any() && !chatter_ && rings_down(out.frequency_hz, bad_channels)) return {};
+  if (out.any() && !chatter_ && rings_down(out.frequency_hz, bad_channels)) out = {};
+  if ((out.ratio || out.alone) && !chatter_ && was_there(out.frequency_hz)) out = {};
+  if (!chatter_ && !out.any()) learn_tones();
   return out;
+}
+
+// In air, and in cuts that are surely stable; what comes with the tool's entry may be chatter.
+void RatioTest::learn_tones() noexcept {
+  const ResidualFamily& near = found_.back();
+  const ResidualFamily& far = found_.front();
+  const bool stable = cut_ > 0.0 && entry_hops_ == 0 && near.family < stable_ratio * near.synchronous &&
+                      far.family < stable_ratio * far.synchronous;
+  const double energy = peak_.back().energy;
+  if (spectra_.past_s() < memory_s) return;
+  air_energy_ = tone_hops_ == 0 ? energy : std::min(energy, air_energy_ * (1.0 + setup_.hop_s / forgets_s));
+  if (!stable && energy > still_air * air_energy_) return;
+  ++tone_hops_;
+  const double share = std::max(setup_.hop_s / tone_memory_s, 1.0 / static_cast<double>(tone_hops_));
+  for (std::size_t i = 0; i < cells_.size(); ++i) tones_[i] += share * (cells_[i] - tones_[i]);
+}
+
+bool RatioTest::was_there(double frequency_hz) const noexcept {
+  if (tone_hops_ < hops(memory_s)) return false;
+  const auto at = static_cast<std::size_t>(frequency_hz / GrowthTest::cell_hz);
+  double now = 0.0;
+  double before = 0.0;
+  for (std::size_t i = at > tone_cells ? at - tone_cells : 0; i < std::min(cells_.size(), at + tone_cells + 1); ++i) {
+    now += cells_[i];
+    before += tones_[i];
+  }
+  return now < tone_growth * before;
 }
 
 void RatioTest::describe(std::uint64_t bad_channels, Verdict& verdict) const noexcept {

@@ -26,8 +26,8 @@ namespace robomill::monitor {
 ///         rotation or of tooth passing. Four hops.
 ///
 /// No line counts that rings down as a knock does (the last 25 ms below 0.4 of the strongest of the last six), that is
-/// a low multiple of 50 or 60 Hz, or that is smaller than a hundredth of the cut. Chatter is over after six hops
-/// without.
+/// a low multiple of 50 or 60 Hz, that is smaller than a hundredth of the cut, or that has not grown by 6 dB within a
+/// second or so: tones of the machine or of the room were there before. Chatter is over after six hops without.
 ///
 /// The speed is known from where the posterior is narrow and the comb holds a third of the energy, until S falls below
 /// a tenth of what it was, which is the tool leaving, or to 0.4 within 0.3 s while the whole stays, which is another
@@ -89,6 +89,8 @@ class RatioTest {
   [[nodiscard]] bool ratio_stands_out() const noexcept;
   [[nodiscard]] bool stands_alone() const noexcept;
   [[nodiscard]] bool may_be_the_cut(double frequency_hz) const noexcept;
+  void learn_tones() noexcept;
+  [[nodiscard]] bool was_there(double frequency_hz) const noexcept;
   [[nodiscard]] bool rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept;
   [[nodiscard]] double swing() const noexcept;
   [[nodiscard]] std::size_t hops(double seconds) const noexcept;
@@ -105,6 +107,9 @@ class RatioTest {
   std::vector<float> power_, long_power_;  // of all channels, of the window measured last and of the long one
   std::array<ResidualFamily, windows> found_ = {};
   std::array<Peak, windows> peak_ = {};
+  std::vector<double> cells_, tones_;  // energy beside the orders by frequency; the same, slow, without chatter
+  double air_energy_ = 0.0;            // the least of late
+  std::size_t tone_hops_ = 0;          // that these were learnt from
   std::vector<double> synchronous_, whole_, rotation_;  // of the short window, the last 0.3 s; rings
   std::size_t hop_ = 0;                                 // in these
   std::size_t ratio_hops_ = 0, growth_hops_ = 0, alone_hops_ = 0, calm_hops_ = 0;  // running

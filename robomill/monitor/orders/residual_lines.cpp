@@ -109,13 +109,19 @@ void ResidualLines::add(const Spectrum& spectrum) noexcept {
 }
 
 void ResidualLines::share_out(double cell_hz, std::span<double> cells) const noexcept {
+  for (std::size_t i = first_; i < lines_; ++i) {
+    const auto cell = static_cast<std::size_t>(static_cast<double>(i) * step_hz_ / cell_hz);
+    cells[std::min(cells.size() - 1, cell)] += static_cast<double>(left_[i]);
+  }
+}
+
+void ResidualLines::share_out_between(double cell_hz, std::span<double> cells) const noexcept {
   const auto cell = [&](double hz) { return std::min(cells.size() - 1, static_cast<std::size_t>(hz / cell_hz)); };
-  for (std::size_t i = first_; i < lines_; ++i)
-    cells[cell(static_cast<double>(i) * step_hz_)] += static_cast<double>(left_[i]);
   for (std::size_t k = 1; static_cast<double>(k) * rotation_hz_ < static_cast<double>(lines_) * step_hz_; ++k) {
     // An order at the border of two cells stands in both, however its speed wavers.
     const double hz = static_cast<double>(k) * rotation_hz_;
-    const double part = std::clamp(hz / cell_hz - 0.5 - std::floor(hz / cell_hz - 0.5), 0.0, 1.0);
+    const double place = hz / cell_hz - 0.5;
+    const double part = place - std::floor(place);
     cells[cell(std::max(0.0, hz - 0.5 * cell_hz))] += (1.0 - part) * static_cast<double>(between_[k]);
     cells[cell(hz + 0.5 * cell_hz)] += part * static_cast<double>(between_[k]);
   }

@@ -37,9 +37,10 @@ class ResidualLines {
   /// A channel's spectrum.
   void add(const Spectrum& spectrum) noexcept;
   [[nodiscard]] ResidualFamily finish() noexcept;
-  /// Adds to `cells`, `cell_hz` wide each, the energy that is no multiple of the teeth: what stands beside the orders,
-  /// and the orders between the multiples.
+  /// Adds to `cells`, `cell_hz` wide each, the energy that stands beside the orders …
   void share_out(double cell_hz, std::span<double> cells) const noexcept;
+  /// … and that of the orders between the multiples of the teeth.
+  void share_out_between(double cell_hz, std::span<double> cells) const noexcept;
 
  private:
   [[nodiscard]] bool near_a_fraction(double to_below) const noexcept;
