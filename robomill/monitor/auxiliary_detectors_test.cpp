@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "robomill/base/random.hpp"
-#include "robomill/monitor/comb_cusum/broadband_growth.hpp"
 #include "robomill/monitor/comb_cusum/narrowband_detector.hpp"
-#include "robomill/monitor/comb_cusum/synchronous_detector.hpp"
 #include "testing/monitor/corpus.hpp"
 #include "testing/monitor/score.hpp"
 #include "testing/support.hpp"
@@ -55,57 +53,6 @@ TEST(NarrowbandDetector, DistinguishesGrowthFromAnEntry) {
       EXPECT_EQ(hops_to(hop, entry), -1);
     }
   }
-}
-
-TEST(BroadbandGrowth, DistinguishesGrowthFromDepthAndExit) {
-  Random random(3);
-  const auto detected_at = [&](auto left, auto whole) {
-    BroadbandGrowth growth;
-    for (int k = 0; k < 120; ++k) {
-      const double unrest = std::exp(0.15 * random.normal());
-      if (growth.step(left(k) * unrest, whole(k) + left(k) * unrest)) return k;
-    }
-    return -1;
-  };
-  const auto steady = [](int) { return 1.0; };
-  const auto deeper = [](int k) { return k < 60 ? 1.0 : 8.0; };
-  const auto away = [](int k) { return k < 60 ? 1.0 : 1e-6; };
-  const auto knocks = [](int k) { return k % 20 == 19 ? 50.0 : 0.2; };
-  const auto chatter = [](int k) { return 0.05 * std::exp(k < 60 ? 0.0 : std::min(4.0, 0.5 * (k - 60))); };
-  EXPECT_EQ(detected_at([&](int k) { return 0.2 * steady(k); }, steady), -1);
-  EXPECT_EQ(detected_at([&](int k) { return 0.2 * deeper(k); }, deeper), -1);
-  EXPECT_EQ(detected_at([&](int k) { return 0.05 * steady(k); }, away), -1);
-  EXPECT_EQ(detected_at(knocks, steady), -1);
-  const int detected = detected_at(chatter, steady);
-  EXPECT_GT(detected, 60);
-  EXPECT_LT(detected, 80);
-}
-
-TEST(SynchronousDetector, DetectsWhatOutgrowsToothPassing) {
-  const auto kind = [](int teeth, std::size_t harmonic, double tooth_growth) {
-    std::vector<Comb> combs(1, Comb(20));
-    combs[0].set_harmonics(20);
-    SynchronousDetector detector(20, teeth);
-    for (std::size_t k = 1; k <= 20; ++k) combs[0].correct(k, k % static_cast<std::size_t>(teeth) == 0 ? 1.0 : 0.1);
-    const auto power = [&] {
-      double sum = 0.0;
-      for (std::size_t k = 1; k <= 20; ++k) sum += 0.5 * std::norm(combs[0].amplitude(k));
-      return sum;
-    };
-    for (int hop = 0; hop < 100; ++hop) EXPECT_FALSE(detector.step(combs, power(), hop > 20));
-    for (std::size_t k = 1; k <= 20; ++k) combs[0].correct(k, (tooth_growth - 1.0) * combs[0].amplitude(k));
-    combs[0].correct(harmonic, 4.0);
-    for (int hop = 0; hop < 20; ++hop) {
-      if (detector.step(combs, power(), true))
-        return detector.harmonic() == harmonic ? detector.kind() : SynchronousChatter::none;
-    }
-    return SynchronousChatter::none;
-  };
-  EXPECT_EQ(kind(3, 7, 1.0), SynchronousChatter::locked);
-  EXPECT_EQ(kind(2, 7, 1.0), SynchronousChatter::period_doubling);
-  EXPECT_EQ(kind(4, 6, 1.0), SynchronousChatter::period_doubling);
-  EXPECT_EQ(kind(4, 5, 1.0), SynchronousChatter::locked);
-  EXPECT_EQ(kind(3, 7, 20.0), SynchronousChatter::none);  // a deeper cut, in which all have grown
 }
 
 // Chatter that a comb takes off once it has stood for long: locked to rotation, and period doubling.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/monitor/combined_detector.hpp"
 #include "robomill/monitor/detector.hpp"
 #include "robomill/monitor/published/entropy_detector.hpp"
@@ -41,6 +42,12 @@ void MonitorOptions::validate() const {
   }
   require_between("pulses_per_revolution", pulses_per_revolution, 1.0, 10'000.0, "", "must be in [1, 10000]");
   require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
+  const double pulses_hz = pulses_per_revolution * spindle_speed_rad_per_s / units::revolution;
+  if (tachometer_channel >= 0 && pulses_hz > 0.5 * sample_rate_hz) {
+    throw InvalidInput("pulses_per_revolution", pulses_per_revolution, "",
+                       "gives more pulses than half the sample rate can show",
+                       "Is spindle_speed_rpm right? Otherwise divide the pulses before they are sampled");
+  }
   require_between("speed_std_ratio", speed_std_ratio, 1e-4, 0.2, "", "must be in [0.0001, 0.2]");
   require_between("teeth", teeth, 0.0, 64.0, "", "must be in [0, 64]");
   require_positive("window_s", window_s, "s");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "robomill/base/random.hpp"
@@ -14,6 +15,17 @@ namespace monitor_test {
 
 using namespace robomill;
 using namespace robomill::monitor;
+
+TEST(MonitorOptions, PulsesComeAtLessThanHalfTheSampleRate) {
+  MonitorOptions options{
+      .sample_rate_hz = 10'240.0, .channels = 2, .tachometer_channel = 1, .pulses_per_revolution = 60};
+  options.spindle_speed_rad_per_s = 85.0 * 2.0 * std::numbers::pi;
+  EXPECT_NO_THROW(options.validate());
+  options.spindle_speed_rad_per_s = 86.0 * 2.0 * std::numbers::pi;
+  EXPECT_THROW(options.validate(), InvalidInput);
+  options.tachometer_channel = -1;
+  EXPECT_NO_THROW(options.validate());
+}
 
 TEST(ChatterMonitor, DecidesOnceAHopWhateverTheBlocks) {
   ChatterMonitor monitor({.sample_rate_hz = 10240.0, .channels = 2});

@@ -55,8 +55,7 @@ CombCusum::CombCusum(const MonitorOptions& options)
       left_power_(channels_),
       late_half_(channels_),
       falls_(std::make_unique<bool[]>(channels_)),
-      history_(kept * lines_, -1e9),
-      synchronous_detector_(comb_.max_harmonics(), options.teeth) {
+      history_(kept * lines_, -1e9) {
   for (std::size_t c = 0; c < channels_; ++c) {
     streams_.emplace_back(transform_of(options, columns_a_hop),
                           signal::equal_bands(options.sample_rate_hz, options.bands));
@@ -82,11 +81,8 @@ void CombCusum::reset() noexcept {
   entry_hops_ = jumps_ = broad_ = calm_ = steady_ = still_bad_ = 0;
   hops_ = bad_ = 0;
   narrowband_.reset();
-  broadband_growth_.reset();
-  synchronous_detector_.reset();
   line_ = channel_ = 0;
   state_ = State::stable;
-  synchronous_ = SynchronousChatter::none;
   found_ = {};
 }
 
@@ -174,7 +170,7 @@ void CombCusum::comb() noexcept {
   spindle_.correct(comb_.run({.samples = input_,
                               .bad_channels = bad_,
                               .rotation_hz = spindle_.rotation_hz(),
-                              .learns = !chatters || synchronous_ != SynchronousChatter::none,
+                              .learns = !chatters,
                               .steers = !chatters},
                              residual_));
   double before = 0.0;

@@ -3,11 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "robomill/monitor/comb_cusum/broadband_growth.hpp"
 #include "robomill/monitor/comb_cusum/cusum.hpp"
 #include "robomill/monitor/comb_cusum/frequency.hpp"
 #include "robomill/monitor/comb_cusum/narrowband_detector.hpp"
-#include "robomill/monitor/comb_cusum/synchronous_detector.hpp"
 #include "robomill/monitor/detector.hpp"
 #include "robomill/monitor/entropy.hpp"
 #include "robomill/monitor/spindle/spindle.hpp"
@@ -37,7 +35,6 @@ class CombCusum final : public Detector {
   void learn_anew() noexcept;
   [[nodiscard]] bool trusted() const noexcept;
   [[nodiscard]] bool comb_known() const noexcept { return spindle_.rotation_hz() > 0.0 && trusted(); }
-  bool process_synchronous() noexcept;
   // Comb
   void comb() noexcept;
   void take_lags() noexcept;
@@ -48,7 +45,6 @@ class CombCusum final : public Detector {
   void judge(Decision& decision) noexcept;
   [[nodiscard]] bool near_a_harmonic(double frequency_hz) const noexcept;
   [[nodiscard]] bool process_narrowband() noexcept;
-  [[nodiscard]] bool process_broadband() noexcept;
   [[nodiscard]] bool may_be_the_cut(double frequency_hz) const noexcept;
   void in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept;
   void begin_chatter(bool above_baseline) noexcept;
@@ -93,12 +89,9 @@ class CombCusum final : public Detector {
   bool above_baseline_ = true;
   double highest_ = 0.0;  // log energy of chatter's line, at most so far
   NarrowbandDetector narrowband_;
-  BroadbandGrowth broadband_growth_;
-  SynchronousDetector synchronous_detector_;
   double power_before_ = 0.0;  // of all channels, a hop ago
   std::size_t broad_ = 0, calm_ = 0, steady_ = 0;
   FrequencyEstimate found_;
-  SynchronousChatter synchronous_ = SynchronousChatter::none;
 };
 
 }  // namespace robomill::monitor

@@ -15,26 +15,12 @@ constexpr double fainter = 1.0;       // and fall from its highest
 constexpr double broad_height = 1.2;  // of the median line: entry, exit
 constexpr std::size_t broad_hops = 3;
 constexpr std::size_t calm_hops = 2;
-constexpr double synchronous_learnt_s = 0.5;  // before that it is not known which harmonics are usual
-constexpr double lowest_line_hz = 90.0;       // mains hum lies below
-constexpr double entry_width_hz = 6.0;        // by which a line misses its harmonic while the tool enters
+constexpr double lowest_line_hz = 90.0;  // mains hum lies below
+constexpr double entry_width_hz = 6.0;   // by which a line misses its harmonic while the tool enters
 constexpr double highest_of_rotation = 5.5, highest_of_teeth = 6.0;  // orders that a hint resolves
 constexpr double highest_of_unknown_teeth = 12.0;                    // three of four teeth
 
 }  // namespace
-
-bool CombCusum::process_synchronous() noexcept {
-  if (!comb_known() || !synchronous_detector_.step(comb_.combs(), power(), comb_.learnt_s() > synchronous_learnt_s))
-    return false;
-  if (!speed_holds()) {
-    synchronous_detector_.doubt();
-    return false;
-  }
-  synchronous_ = synchronous_detector_.kind();
-  found_ = {.frequency_hz = static_cast<double>(synchronous_detector_.harmonic()) * spindle_.rotation_hz(),
-            .std_hz = 1.0 / (SynchronousDetector::hops * options_.hop_s) / std::sqrt(12.0)};
-  return true;
-}
 
 double CombCusum::line_hz(std::size_t line) const noexcept {
   return static_cast<double>(line) * options_.sample_rate_hz / static_cast<double>(2 * (lines_ - 1));
@@ -61,18 +47,16 @@ void CombCusum::judge(Decision& decision) noexcept {
     for (std::size_t c = 0; c < channels_; ++c) now[k] = std::max(now[k], lines_test_.log_energy(c, k));
   }
   const bool alone = process_narrowband();
-  const bool grows = process_broadband();
   if (state_ == State::chatter) {
     in_chatter();
   } else {
-    in_cut(verdict, alone || grows);
+    in_cut(verdict, alone);
   }
   if (state_ != State::chatter && trusted()) lines_test_.learn();
   decision.state = state_;
-  decision.score = alone || grows ? std::max(verdict.score, 1.001 * lines_test_.threshold()) : verdict.score;
+  decision.score = alone ? std::max(verdict.score, 1.001 * lines_test_.threshold()) : verdict.score;
   decision.threshold = lines_test_.threshold();
   decision.channel = static_cast<int>(channel_);
-  decision.synchronous = synchronous_;
   if (state_ != State::stable) report_frequency(decision);
 }
 
@@ -121,13 +105,6 @@ bool CombCusum::process_narrowband() noexcept {
                            .may_be_the_cut = may_be_the_cut(line_hz(line))});
 }
 
-bool CombCusum::process_broadband() noexcept {
-  const bool grows = broadband_growth_.step(std::accumulate(left_power_.begin(), left_power_.end(), 0.0), power());
-  if (comb_known() && state_ != State::chatter) return grows;
-  broadband_growth_.relearn();
-  return false;
-}
-
 void CombCusum::begin_chatter(bool above_baseline) noexcept {
   state_ = State::chatter;
   above_baseline_ = above_baseline;
@@ -146,11 +123,6 @@ void CombCusum::in_cut(const Cusum::Verdict& verdict, bool at_once) noexcept {
     lines_test_.relearn();
     state_ = State::stable;
     broad_ = 0;
-    synchronous_detector_.doubt();
-    return;
-  }
-  if (process_synchronous()) {
-    begin_chatter(false);
     return;
   }
   broad_ = std::abs(verdict.common) > broad_height ? broad_ + 1 : 0;
@@ -212,17 +184,6 @@ void CombCusum::follow_line() noexcept {
 }
 
 void CombCusum::in_chatter() noexcept {
-  if (synchronous_ != SynchronousChatter::none) {
-    // The comb follows on: it is what sees this one.
-    calm_ = synchronous_detector_.falls(comb_.combs()) ? calm_ + 1 : 0;
-    if (calm_ < calm_hops) return;
-    synchronous_ = SynchronousChatter::none;
-    synchronous_detector_.doubt();
-    calm_ = 0;
-    state_ = State::transition;
-    lines_test_.relearn();
-    return;
-  }
   follow_line();
   double height = -1e9;
   for (std::size_t c = 0; c < channels_; ++c) height = std::max(height, lines_test_.height(c, line_));
@@ -238,7 +199,7 @@ void CombCusum::in_chatter() noexcept {
 
 void CombCusum::report_frequency(Decision& decision) noexcept {
   // Once its line has fallen, the residual there is another's.
-  if (state_ == State::chatter && synchronous_ == SynchronousChatter::none && calm_ == 0)
+  if (state_ == State::chatter && calm_ == 0)
     found_ = rings_[channel_].estimate(line_hz(line_), line_hz(1), 8.0 * options_.hop_s);
   decision.chatter_frequency_hz = found_.frequency_hz;
   decision.chatter_frequency_std_hz = found_.std_hz;
