@@ -82,7 +82,9 @@ void CombinedDetector::decide(const Hop& given, Decision& decision) noexcept {
 bool CombinedDetector::borne_out(const RatioTest::Verdict& orders) const noexcept {
   if (orders.swing > leaving_swing) return false;
   if (hint_hz_ == 0.0) return orders.known && orders.ratio > bears_out_unsure;
-  return orders.known ? orders.ratio > bears_out : orders.energy > faint * loudest_;
+  // A lone line of high order may have been taken for the comb, as a drill's chatter is.
+  if (orders.known) return orders.ratio > bears_out || orders.one_line;
+  return orders.energy > faint * loudest_;
 }
 
 void CombinedDetector::judge(const RatioTest::Verdict& orders, Decision& decision) noexcept {

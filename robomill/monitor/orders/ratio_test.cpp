@@ -207,13 +207,17 @@ bool RatioTest::may_be_the_cut(double frequency_hz) const noexcept {
   return multiple(near_hz, highest_of_rotation) || multiple(near_hz * setup_.teeth, highest_of_teeth);
 }
 
-bool RatioTest::stands_alone() const noexcept {
+bool RatioTest::one_line_dominates() const noexcept {
   const Peak& far = peak_.front();
   const Peak& near = peak_.back();
-  return cut_ == 0.0 && (chatter_ || (lost_hops_ == 0 && near.energy > loud * air_energy_)) &&
-         std::min(far.share, near.share) > alone_share &&
+  return std::min(far.share, near.share) > alone_share &&
          std::abs(far.frequency_hz - near.frequency_hz) < line_moves * near.frequency_hz &&
          !may_be_the_cut(near.frequency_hz) && !of_the_mains(far.frequency_hz);
+}
+
+bool RatioTest::stands_alone() const noexcept {
+  return cut_ == 0.0 && (chatter_ || (lost_hops_ == 0 && peak_.back().energy > loud * air_energy_)) &&
+         one_line_dominates();
 }
 
 bool RatioTest::rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept {
@@ -339,6 +343,7 @@ RatioTest::Verdict RatioTest::step(std::span<const float> samples, std::size_t f
               .pending = !chatter_ && found.any(),
               .ratio = near.family / (near.synchronous + 1e-300),
               .swing = swing() / (near.synchronous + 1e-300),
+              .one_line = one_line_dominates(),
               .energy = peak_.back().energy,
               .rotation_hz = given_ ? speed_.rotation_hz() : 0.0,
               .rotation_std_ratio = speed_.std_ratio(),

@@ -49,6 +49,7 @@ class RatioTest {
     SynchronousChatter synchronous = SynchronousChatter::none;
     double ratio = 0.0;               ///< L/S of the last 0.15 s
     double swing = 0.0;               ///< of S in 0.3 s, to the last S
+    bool one_line = false;            ///< one line dominates that no low order can be, at the speed that is given
     double energy = 0.0;              ///< of everything in the last 0.15 s
     double rotation_hz = 0.0;         ///< most likely; 0: no hint, where the comb found may be a multiple of it
     double rotation_std_ratio = 0.0;  ///< standard deviation, of it
@@ -87,6 +88,7 @@ class RatioTest {
   void follow_cut() noexcept;
   [[nodiscard]] Finding find(std::uint64_t bad_channels) noexcept;
   [[nodiscard]] bool ratio_stands_out() const noexcept;
+  [[nodiscard]] bool one_line_dominates() const noexcept;
   [[nodiscard]] bool stands_alone() const noexcept;
   [[nodiscard]] bool may_be_the_cut(double frequency_hz) const noexcept;
   void learn_tones() noexcept;
