@@ -1,0 +1,276 @@
+// The test of orders on cuts that are known to the last term.
+#include "robomill/monitor/orders/ratio_test.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "robomill/base/random.hpp"
+#include "testing/monitor/signal.hpp"
+
+namespace ratio_test_test {
+
+using namespace robomill;
+using namespace robomill::monitor;
+using monitor::testing::SyntheticCut;
+using monitor::testing::vibration;
+
+constexpr double turn = 2.0 * std::numbers::pi;
+constexpr double hop_s = 0.025;
+// What grows by 30/s from 1e-3 is a third of tooth passing after so long.
+const double to_a_third_s = std::log(1000.0 / 3.0) / 30.0;
+
+struct Heard {
+  double alarm_s = -1.0;  // the first
+  double over_s = -1.0;   // the last hop of chatter
+  std::vector<RatioTest::Verdict> verdicts;
+};
+
+Heard hear(const SyntheticCut& cut, const std::vector<float>& x, double hint_off = 0.0) {
+  const auto channels = static_cast<std::size_t>(cut.channels);
+  RatioTest test({.sample_rate_hz = cut.sample_rate_hz, .hop_s = hop_s, .channels = channels, .teeth = cut.teeth});
+  test.set_hint(cut.rotation_hz * (1.0 + hint_off));
+  const auto frames = static_cast<std::size_t>(std::lround(hop_s * cut.sample_rate_hz));
+  std::vector<float> hop(frames * channels);
+  Heard out;
+  for (std::size_t at = 0; (at + frames) * channels <= x.size(); at += frames) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      for (std::size_t i = 0; i < frames; ++i) hop[c * frames + i] = x[(at + i) * channels + c];
+    }
+    out.verdicts.push_back(test.step(hop, frames, 0));
+    if (!out.verdicts.back().chatter) continue;
+    out.over_s = static_cast<double>(at + frames) / cut.sample_rate_hz;
+    if (out.alarm_s < 0.0) out.alarm_s = out.over_s;
+  }
+  return out;
+}
+
+/// Adds what a function of the time [s] gives, to all channels.
+template <class F>
+std::vector<float> with(const SyntheticCut& cut, F&& more) {
+  std::vector<float> x = vibration(cut);
+  const auto channels = static_cast<std::size_t>(cut.channels);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] += static_cast<float>(more(static_cast<double>(i / channels) / cut.sample_rate_hz));
+  }
+  return x;
+}
+
+/// The tool cuts from a time to another; air, a hundredth of noise, beside it. Entry and exit last 50 ms.
+std::vector<float> within(const SyntheticCut& cut, double from_s, double to_s) {
+  std::vector<float> x = vibration(cut);
+  Random random(77);
+  const auto channels = static_cast<std::size_t>(cut.channels);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double t = static_cast<double>(i / channels) / cut.sample_rate_hz;
+    const double in = std::clamp(std::min(t - from_s, to_s - t) / 0.05, 0.0, 1.0);
+    x[i] = static_cast<float>(in * x[i] + 0.01 * random.normal());
+  }
+  return x;
+}
+
+TEST(RatioTest, FindsChatterSoonWhateverTheHint) {
+  Random random(1);
+  for (const double hint_off : {0.0, 0.03, -0.03}) {
+    for (int run = 0; run < 5; ++run) {
+      SyntheticCut cut{.rotation_hz = random.uniform(62.0, 150.0), .teeth = 2 + run % 3, .seconds = 3.0};
+      cut.seed = static_cast<std::uint64_t>(run) + 1;
+      cut.channels = 1 + run % 2;
+      cut.chatter_hz = (std::floor(random.uniform(4.0, 14.0)) + random.uniform(0.2, 0.8)) * cut.rotation_hz;
+      const Heard heard = hear(cut, vibration(cut), hint_off);
+      EXPECT_GT(heard.alarm_s, 2.0 + to_a_third_s - 0.05) << cut.rotation_hz << " " << cut.chatter_hz;
+      EXPECT_LT(heard.alarm_s, 2.0 + to_a_third_s + 0.2) << cut.rotation_hz << " " << cut.chatter_hz;
+      for (std::size_t k = 0; k < heard.verdicts.size(); ++k) {
+        const RatioTest::Verdict& v = heard.verdicts[k];
+        const double t = static_cast<double>(k + 1) * hop_s;
+        EXPECT_EQ(v.chatter, heard.alarm_s > 0.0 && t > heard.alarm_s - 1e-6) << t;  // without a break
+        if (t > 0.6) {
+          EXPECT_TRUE(v.known) << t;
+          EXPECT_NEAR(v.rotation_hz, cut.rotation_hz, 2e-3 * cut.rotation_hz) << t;
+        }
+        if (!v.chatter) continue;
+        EXPECT_NEAR(v.frequency_hz, cut.chatter_hz, 3.0) << t;
+        EXPECT_LT(v.frequency_std_hz, 2.0);
+        EXPECT_EQ(v.channel, 0U);
+        EXPECT_EQ(v.synchronous, SynchronousChatter::none);
+        if (t > heard.alarm_s + 0.15) {
+          EXPECT_NEAR(v.frequency_hz, cut.chatter_hz, std::min(1.0, 3.0 * v.frequency_std_hz)) << t;
+        }
+      }
+    }
+  }
+}
+
+// L/S = A²/(Σ 1/j² + 0.01), j to 6.
+TEST(RatioTest, TellsTheRatioOfTheEnergies) {
+  for (const double amplitude : {0.3, 1.0, 2.0}) {
+    const SyntheticCut cut{.noise = 0.02, .chatter_hz = 683.0, .chatter = amplitude, .seconds = 3.5};
+    const double ratio = amplitude * amplitude / 1.5014;
+    const Heard heard = hear(cut, vibration(cut));
+    EXPECT_NEAR(heard.verdicts.back().ratio, ratio, 0.05 * ratio);
+    EXPECT_NEAR(heard.verdicts.back().energy, 1.5014 * (1.0 + ratio), 0.05 * (1.0 + ratio));
+    EXPECT_LT(heard.verdicts.back().swing, 0.05);
+  }
+}
+
+TEST(RatioTest, IsOverWhenTheChatterIs) {
+  const SyntheticCut cut{.chatter_hz = 683.0, .ends_s = 2.7, .seconds = 4.5};
+  const Heard heard = hear(cut, vibration(cut));
+  EXPECT_GT(heard.alarm_s, 2.0);
+  EXPECT_GT(heard.over_s, 2.7);
+  EXPECT_LT(heard.over_s, 3.2);
+}
+
+TEST(RatioTest, IsQuietInStableCutsAndWhileTheSpeedDrifts) {
+  Random random(2);
+  for (int run = 0; run < 9; ++run) {
+    SyntheticCut cut{.rotation_hz = random.uniform(45.0, 180.0), .teeth = 1 + run % 4, .noise = 0.05 * (1 + run % 4)};
+    cut.seed = static_cast<std::uint64_t>(run) + 1;
+    cut.drift_hz_per_s = run % 3 == 0 ? 0.0 : random.uniform(-0.05, 0.05) * cut.rotation_hz;
+    EXPECT_EQ(hear(cut, vibration(cut), random.uniform(-0.03, 0.03)).alarm_s, -1.0)
+        << cut.rotation_hz << " " << cut.drift_hz_per_s;
+  }
+}
+
+TEST(RatioTest, IsQuietWhereSomethingKnocks) {
+  for (const double hz : {417.0, 1310.0, 2777.0}) {
+    for (const double height : {1.0, 10.0}) {
+      const SyntheticCut cut{.seconds = 3.2};
+      const std::vector<float> x = with(cut, [&](double t) {
+        double sum = 0.0;
+        for (const double at : {1.013, 2.0, 2.311, 2.907}) {
+          if (t > at) sum += height * std::exp((at - t) / 0.02) * std::sin(turn * hz * (t - at));
+        }
+        return sum;
+      });
+      EXPECT_EQ(hear(cut, x).alarm_s, -1.0) << hz << " " << height;
+    }
+  }
+}
+
+TEST(RatioTest, IsQuietWhereTheToolEntersAndLeaves) {
+  for (const double hint_off : {0.0, 0.03, -0.03}) {
+    for (const double rotation_hz : {47.0, 133.0}) {
+      const SyntheticCut cut{.rotation_hz = rotation_hz, .seconds = 3.4};
+      EXPECT_EQ(hear(cut, within(cut, 1.0, 2.9), hint_off).alarm_s, -1.0) << rotation_hz << " " << hint_off;
+      EXPECT_EQ(hear(cut, within(cut, -1.0, 2.003), hint_off).alarm_s, -1.0) << rotation_hz << " " << hint_off;
+    }
+  }
+}
+
+TEST(RatioTest, FindsChatterThatStartsWithTheRecordingOrTheCut) {
+  for (const double hint_off : {0.0, 0.03, -0.03}) {
+    const SyntheticCut cut{.chatter_hz = 683.0, .starts_s = -1.0, .seconds = 3.0};
+    const Heard first = hear(cut, vibration(cut), hint_off);
+    EXPECT_GT(first.alarm_s, 0.0);
+    EXPECT_LT(first.alarm_s, 0.7);
+    const Heard second = hear(cut, within(cut, 1.0, 10.0), hint_off);
+    EXPECT_GT(second.alarm_s, 1.0);
+    EXPECT_LT(second.alarm_s, 1.65) << hint_off;
+    EXPECT_NEAR(second.verdicts.back().frequency_hz, 683.0, 1.0);
+  }
+}
+
+// Another tone as loud is.
+TEST(RatioTest, HumIsNoChatter) {
+  const SyntheticCut cut{.rotation_hz = 83.0, .seconds = 2.0};
+  for (const double hz : {50.0, 100.0, 107.0, 120.0, 150.0, 180.0}) {
+    const auto tone = [&](double t) { return std::cos(turn * hz * t); };
+    EXPECT_EQ(hear(cut, with(cut, tone)).alarm_s > 0.0, hz == 107.0) << hz;
+  }
+}
+
+// A twentieth of tooth passing, while the tool is in air: a posterior that settles on it is lost when the tool enters.
+TEST(RatioTest, HumOfAnIdlingMachineIsNoCut) {
+  for (const double rotation_hz : {54.0, 56.0, 64.0}) {
+    const SyntheticCut cut{.rotation_hz = rotation_hz, .seconds = 3.5};
+    const double mains_hz = rotation_hz > 60.0 ? 60.0 : 50.0;
+    std::vector<float> x = within(cut, 2.0, 10.0);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double angle = turn * mains_hz * static_cast<double>(i) / cut.sample_rate_hz;
+      x[i] += static_cast<float>(
+          0.05 * (std::cos(angle) + 0.4 * std::cos(2.0 * angle + 1.0) + 0.5 * std::cos(3.0 * angle + 2.0)));
+    }
+    const Heard heard = hear(cut, x);
+    EXPECT_EQ(heard.alarm_s, -1.0) << rotation_hz;
+    EXPECT_NEAR(heard.verdicts.back().rotation_hz, rotation_hz, 2e-3 * rotation_hz);
+    EXPECT_FALSE(heard.verdicts[75].known) << rotation_hz;
+  }
+}
+
+TEST(RatioTest, NamesSynchronousChatterByItsOrder) {
+  using enum SynchronousChatter;
+  for (const auto& [teeth, order, kind] :
+       {std::tuple{3, 7.0, locked}, std::tuple{2, 7.0, period_doubling}, std::tuple{4, 6.0, period_doubling},
+        std::tuple{4, 9.0, locked}, std::tuple{3, 7.5, none}, std::tuple{2, 6.4, none}}) {
+    const SyntheticCut cut{.teeth = teeth, .chatter_hz = 80.0 * order, .chatter = 3.0, .seconds = 3.0};
+    const Heard heard = hear(cut, vibration(cut));
+    EXPECT_GT(heard.alarm_s, 2.0) << teeth << " " << order;
+    EXPECT_LT(heard.alarm_s, 2.0 + to_a_third_s + 0.2) << teeth << " " << order;
+    EXPECT_EQ(heard.verdicts.back().synchronous, kind) << teeth << " " << order;
+    EXPECT_NEAR(heard.verdicts.back().frequency_hz, cut.chatter_hz, 1.5);
+  }
+}
+
+TEST(RatioTest, StaysFiniteWithAnyInput) {
+  static_assert(noexcept(std::declval<RatioTest&>().step({}, 0, 0)));
+  for (const double rate_hz : {100.0, 10240.0, 44100.0, 1e6}) {
+    for (const double any_hop_s : {0.16, 0.6}) {
+      for (const double amplitude : {0.0, 1e14}) {
+        for (const std::size_t channels : {1U, 64U}) {
+          if (channels == 64 && (rate_hz > 20000.0 || any_hop_s < 0.5)) continue;
+          RatioTest test({.sample_rate_hz = rate_hz, .hop_s = any_hop_s, .channels = channels, .teeth = 3});
+          const auto frames = static_cast<std::size_t>(any_hop_s * rate_hz);
+          std::vector<float> hop(frames * channels);
+          for (int k = 0; k < 6; ++k) {
+            for (std::size_t i = 0; i < hop.size(); ++i) {
+              const double t = static_cast<double>(i % frames) / rate_hz + k * any_hop_s;
+              hop[i] = static_cast<float>(amplitude * std::sin(turn * 20.0 * t));
+            }
+            test.set_hint(k % 3 == 0 ? 0.0 : 20.0);
+            if (k == 4) test.measured(20.0, 1e-3);
+            const std::uint64_t bad = k == 2 ? ~std::uint64_t{0} : k == 3 ? 1U : 0U;
+            const RatioTest::Verdict v = test.step(hop, frames, bad);
+            for (const double x : {v.frequency_hz, v.frequency_std_hz, v.ratio, v.swing, v.energy, v.rotation_hz,
+                                   v.rotation_std_ratio}) {
+              EXPECT_FALSE(std::isnan(x)) << rate_hz << " " << any_hop_s << " " << amplitude << " " << k;
+            }
+            EXPECT_FALSE(v.chatter);
+            EXPECT_LT(v.channel, channels);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(RatioTest, HearsTheSameAfterReset) {
+  const SyntheticCut cut{.chatter_hz = 683.0, .seconds = 2.6};
+  const std::vector<float> x = vibration(cut);
+  RatioTest test({.sample_rate_hz = cut.sample_rate_hz, .hop_s = hop_s, .teeth = cut.teeth});
+  test.set_hint(81.0);
+  std::vector<RatioTest::Verdict> first;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t at = 0, k = 0; at + 256 <= x.size(); at += 256, ++k) {
+      const RatioTest::Verdict v = test.step(std::span(x).subspan(at, 256), 256, 0);
+      if (pass == 0) {
+        first.push_back(v);
+        continue;
+      }
+      ASSERT_EQ(v.chatter, first[k].chatter) << k;
+      ASSERT_EQ(v.rotation_hz, first[k].rotation_hz) << k;
+      ASSERT_EQ(v.ratio, first[k].ratio) << k;
+      ASSERT_EQ(v.frequency_hz, first[k].frequency_hz) << k;
+    }
+    test.reset();
+  }
+  EXPECT_TRUE(first.back().chatter);
+}
+
+}  // namespace ratio_test_test
