@@ -86,6 +86,10 @@ Json number(double value) {
   return std::isfinite(value) ? Json(round_15(value)) : Json();
 }
 
+Json positive(double value, double unit) {
+  return value > 0.0 ? number(value / unit) : Json(nullptr);
+}
+
 Json complex_number(const std::complex<double>& value) {
   return Json::array({number(value.real()), number(value.imag())});
 }

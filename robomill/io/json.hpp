@@ -15,6 +15,8 @@ using Json = nlohmann::ordered_json;
 
 /// A number of 15 significant digits; null where it is not finite.
 [[nodiscard]] Json number(double value);
+/// In a unit; null where it is not > 0: unknown, none.
+[[nodiscard]] Json positive(double value, double unit = 1.0);
 /// [re, im]
 [[nodiscard]] Json complex_number(const std::complex<double>& value);
 /// A list of all digits of each.

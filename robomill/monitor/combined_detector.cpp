@@ -8,12 +8,12 @@
 namespace robomill::monitor {
 namespace {
 
-constexpr double drift_hz = 3.0;          // corner of the high-pass
+constexpr double offset_drift_hz = 3.0;   // corner of the high-pass
 constexpr double bears_out = 0.03;        // of the synchronous energy, in lines beside the orders
 constexpr double bears_out_unsure = 0.2;  // the same where no speed is given, and the comb found may miss orders
 constexpr double patience_s = 1.0;        // for which no speed need be known
-constexpr double faint = 0.01;            // of the loudest energy
-constexpr double forgets_s = 10.0;
+constexpr double faint_energy = 0.01;     // of the loudest energy
+constexpr double energy_memory_s = 10.0;
 constexpr double leaving_swing = 3.0;  // of the synchronous energy in 0.3 s, by itself
 
 }  // namespace
@@ -49,7 +49,7 @@ void CombinedDetector::reset() noexcept {
 }
 
 void CombinedDetector::high_pass(const Hop& hop) noexcept {
-  const double share = 1.0 - std::exp(-units::revolution * drift_hz / options_.sample_rate_hz);
+  const double share = 1.0 - std::exp(-units::revolution * offset_drift_hz / options_.sample_rate_hz);
   for (std::size_t c = 0; c < mean_.size(); ++c) {
     const auto from = hop.channel(c);
     if (first_) {
@@ -84,7 +84,7 @@ bool CombinedDetector::borne_out(const RatioTest::Verdict& orders) const noexcep
   if (hint_hz_ == 0.0) return orders.known && orders.ratio > bears_out_unsure;
   // A lone line of high order may have been taken for the comb, as a drill's chatter is.
   if (orders.known) return orders.ratio > bears_out || orders.one_line;
-  return orders.energy > faint * loudest_;
+  return orders.energy > faint_energy * loudest_;
 }
 
 void CombinedDetector::judge(const RatioTest::Verdict& orders, Decision& decision) noexcept {
@@ -93,7 +93,7 @@ void CombinedDetector::judge(const RatioTest::Verdict& orders, Decision& decisio
     decision.spindle_speed_std_rad_per_s = decision.spindle_speed_rad_per_s * orders.rotation_std_ratio;
   }
   if (orders.known) decision.faults &= ~static_cast<std::uint32_t>(speed_unknown);
-  loudest_ = std::max(orders.energy, loudest_ * (1.0 - options_.hop_s / forgets_s));
+  loudest_ = std::max(orders.energy, loudest_ * (1.0 - options_.hop_s / energy_memory_s));
   const bool grew = decision.state == State::chatter;
   accepted_ = grew && (accepted_ || borne_out(orders));
   if (orders.chatter || (decision.state == State::stable && orders.pending)) {

@@ -13,11 +13,8 @@ namespace {
 
 using io::Json;
 using io::number;
+using io::positive;
 using signal::band_json;
-
-Json positive(double value, double unit = 1.0) {
-  return value > 0.0 ? number(value / unit) : Json(nullptr);
-}
 
 Json state_json(monitor::State state, monitor::BlindReason reason) {
   return {{"state", monitor::to_string(state)},

@@ -11,10 +11,6 @@ namespace {
 constexpr std::array<Fault, 6> all_faults = {not_finite,        stuck,        clipped, dead_channel,
                                              wrong_sample_rate, speed_unknown};
 
-io::Json positive(double value, double unit = 1.0) {
-  return value > 0.0 ? io::number(value / unit) : io::Json(nullptr);
-}
-
 io::Json text_or_null(const std::string& text) {
   return text.empty() ? io::Json(nullptr) : io::Json(text);
 }
@@ -56,15 +52,15 @@ std::string event_line(const MonitorEvent& event) {
   json["threshold"] = io::number(d.threshold);
   json["energy_entropy"] = io::number(d.energy_entropy);
   json["level"] = io::number(d.level);
-  json["chatter_frequency_hz"] = positive(d.chatter_frequency_hz);
+  json["chatter_frequency_hz"] = io::positive(d.chatter_frequency_hz);
   json["chatter_frequency_std_hz"] = chatters ? io::number(d.chatter_frequency_std_hz) : io::Json(nullptr);
   json["channel"] = chatters ? io::Json(d.channel + 1) : io::Json(nullptr);
   json["hidden"] = d.synchronous == SynchronousChatter::none ? io::Json(nullptr) : io::Json(to_string(d.synchronous));
   modal::set_mode(json, event.mode);
-  json["spindle_speed_rpm"] = positive(d.spindle_speed_rad_per_s, units::rpm);
-  json["spindle_speed_std_rpm"] = positive(d.spindle_speed_std_rad_per_s, units::rpm);
-  json["suggested_spindle_speed_rpm"] = positive(event.suggested_spindle_speed_rad_per_s, units::rpm);
-  json["suggested_axial_depth_mm"] = positive(event.suggested_axial_depth_m, units::mm);
+  json["spindle_speed_rpm"] = io::positive(d.spindle_speed_rad_per_s, units::rpm);
+  json["spindle_speed_std_rpm"] = io::positive(d.spindle_speed_std_rad_per_s, units::rpm);
+  json["suggested_spindle_speed_rpm"] = io::positive(event.suggested_spindle_speed_rad_per_s, units::rpm);
+  json["suggested_axial_depth_mm"] = io::positive(event.suggested_axial_depth_m, units::mm);
   json["stable_spindle_speeds_rpm"] = io::Json::array();
   for (const double speed : event.stable_speeds_rad_per_s) {
     json["stable_spindle_speeds_rpm"].push_back(io::number(speed / units::rpm));
@@ -73,7 +69,7 @@ std::string event_line(const MonitorEvent& event) {
   json["command"] = text_or_null(event.command);
   json["faults"] = fault_names(d.faults);
   json["suggested_sample_rate_hz"] =
-      (d.faults & wrong_sample_rate) != 0 ? positive(d.suggested_sample_rate_hz) : io::Json(nullptr);
+      (d.faults & wrong_sample_rate) != 0 ? io::positive(d.suggested_sample_rate_hz) : io::Json(nullptr);
   json["compute_us"] = io::number(event.compute_s / units::us);
   if (event.kind == MonitorEvent::Kind::stream) {
     json["what"] = text_or_null(event.what);

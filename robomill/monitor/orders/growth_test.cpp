@@ -11,7 +11,7 @@ constexpr double growth = 10.0;   // of the energy
 constexpr double suspect_growth = 3.0;
 constexpr double least_share = 0.05;  // of the synchronous energy: what is smaller marks no part
 constexpr double first_s = 0.4;       // that are learnt before anything is judged
-constexpr double memory_s = 1.0, suspect_memory_s = 5.0;
+constexpr double usual_memory_s = 1.0, suspect_memory_s = 5.0;
 
 }  // namespace
 
@@ -57,7 +57,7 @@ GrowthTest::Verdict GrowthTest::step(double synchronous) noexcept {
 }
 
 void GrowthTest::learn() noexcept {
-  const double memory = suspect_ ? suspect_memory_s : memory_s;
+  const double memory = suspect_ ? suspect_memory_s : usual_memory_s;
   const double share = std::max(hop_s_ / memory, suspect_ ? 0.0 : 1.0 / static_cast<double>(learnt_ + 1));
   for (std::size_t i = 0; i < cells_.size(); ++i) usual_[i] += share * (cells_[i] - usual_[i]);
   usual_synchronous_ += share * (synchronous_ - usual_synchronous_);

@@ -7,7 +7,7 @@
 namespace robomill::monitor {
 namespace {
 
-constexpr double memory_s = 0.3;                        // of the rings
+constexpr double rings_s = 0.3;                         // of the rings
 constexpr double least_ratio = 0.2;                     // of L to S
 constexpr double alarm_s = 0.075, alone_alarm_s = 0.1;  // that something stands out for
 constexpr double entry_alarm_s = 0.2, entry_s = 0.4;    // the same while the tool enters; which lasts so long
@@ -21,9 +21,9 @@ constexpr double vanishes = 0.4;      // of S in 0.3 s
 constexpr double stays = 0.5;         // of cut_, or of the energy before
 constexpr double least_anchor = 0.1;  // of the whole, in S: less does not hold the speed
 constexpr double lost_s = 1.0;        // after which a lone line counts again
-constexpr double forgets_s = 10.0;
+constexpr double loudest_memory_s = 10.0;
 constexpr double idle = 0.03;           // of loudest_, in S
-constexpr double faint = 0.01;          // of loudest_
+constexpr double faint_share = 0.01;    // of loudest_
 constexpr double steady_ratio = 0.008;  // of the speed, in 0.3 s
 constexpr double growth_of_swing = 0.5;
 constexpr double loud = 30.0;  // of the least energy: a tone of an idling machine is weaker
@@ -40,7 +40,6 @@ constexpr double tone_growth = 4.0;    // of the energy within ± tone_cells
 constexpr std::size_t tone_cells = 2;
 constexpr double rung_down = 0.4;     // of the strongest block, in the last
 constexpr double reading = 0.05;      // 1/T: how well a line's frequency is read off
-constexpr double lowest = 2.5;        // 1/T, of a lone line
 constexpr double spread = 1.25;       // 1/T, to each side, that hold a line's energy
 constexpr double on_an_order = 0.75;  // 1/T
 
@@ -67,9 +66,9 @@ RatioTest::RatioTest(const Setup& setup)
       long_power_(power_.size()),
       cells_(GrowthTest::cells(spectra_.highest_hz())),
       tones_(cells_.size()),
-      synchronous_(hops(memory_s)),
-      whole_(hops(memory_s)),
-      rotation_(hops(memory_s)) {
+      synchronous_(hops(rings_s)),
+      whole_(hops(rings_s)),
+      rotation_(hops(rings_s)) {
   for (std::size_t w = 0; w < windows; ++w) lines_.emplace_back(spectra_.spectrum(w, 0), spectra_.highest_hz());
 }
 
@@ -123,7 +122,7 @@ void RatioTest::measure(std::uint64_t bad_channels) noexcept {
       search_.observe(std::span(power_).first(like.line.size()), like);
       if (!chatter_ && cut_ == 0.0 && search_.rotation_hz() > 0.0) speed_.set_hint(search_.rotation_hz());
     }
-    peak_[w] = strongest(like, lowest / like.seconds, spectra_.highest_hz());
+    peak_[w] = strongest(like, 0.0, spectra_.highest_hz());
     speed_.observe(std::span(power_).first(like.line.size()), like);
   }
   if (measured_hz_ > 0.0) speed_.observe(std::exchange(measured_hz_, 0.0), measured_std_ratio_);
@@ -140,7 +139,7 @@ void RatioTest::measure(std::uint64_t bad_channels) noexcept {
 }
 
 RatioTest::Peak RatioTest::strongest(const Spectrum& like, double low_hz, double high_hz) const noexcept {
-  const auto first = static_cast<std::size_t>(low_hz / like.step_hz) + 1;
+  const auto first = std::max(like.first_line(), static_cast<std::size_t>(low_hz / like.step_hz) + 1);
   const auto end = std::min(like.line.size() - 1, static_cast<std::size_t>(high_hz / like.step_hz) + 1);
   const auto beside = static_cast<std::size_t>(spread / (like.seconds * like.step_hz));
   if (first >= end) return {};
@@ -174,7 +173,7 @@ void RatioTest::follow_cut() noexcept {
   // An idling spindle is no cut.
   const bool cuts = now.synchronous > idle * loudest_;
   if (locked && cuts && !chatter_) cut_ = cut_ == 0.0 ? now.synchronous : cut_ + follows * (now.synchronous - cut_);
-  loudest_ = std::max(cut_, loudest_ * (1.0 - setup_.hop_s / forgets_s));
+  loudest_ = std::max(cut_, loudest_ * (1.0 - setup_.hop_s / loudest_memory_s));
   if (now.synchronous < leaves * cut_) cut_ = 0.0;
   if (cut_ > 0.0 && !chatter_ && now.synchronous < vanishes * *std::ranges::max_element(synchronous_) &&
       now.synchronous < stays * now.whole && now.whole > stays * whole_before) {
@@ -192,7 +191,7 @@ bool RatioTest::ratio_stands_out() const noexcept {
   const ResidualFamily& far = found_.front();
   const ResidualFamily& near = found_.back();
   return cut_ > 0.0 && far.family > least_ratio * far.synchronous && near.family > least_ratio * near.synchronous &&
-         near.family > std::max(swing(), faint * loudest_) && !of_the_mains(far.frequency_hz);
+         near.family > std::max(swing(), faint_share * loudest_) && !of_the_mains(far.frequency_hz);
 }
 
 // A low multiple of rotation or of tooth passing, at a speed near the given one; high orders lie too close together.
@@ -274,8 +273,8 @@ void RatioTest::learn_tones() noexcept {
   const bool stable = cut_ > 0.0 && entry_hops_ == 0 && near.family < stable_ratio * near.synchronous &&
                       far.family < stable_ratio * far.synchronous;
   const double energy = peak_.back().energy;
-  if (spectra_.past_s() < memory_s) return;
-  air_energy_ = tone_hops_ == 0 ? energy : std::min(energy, air_energy_ * (1.0 + setup_.hop_s / forgets_s));
+  if (spectra_.past_s() < rings_s) return;
+  air_energy_ = tone_hops_ == 0 ? energy : std::min(energy, air_energy_ * (1.0 + setup_.hop_s / loudest_memory_s));
   if (!stable && energy > still_air * air_energy_) return;
   ++tone_hops_;
   const double share = std::max(setup_.hop_s / tone_memory_s, 1.0 / static_cast<double>(tone_hops_));
@@ -283,7 +282,7 @@ void RatioTest::learn_tones() noexcept {
 }
 
 bool RatioTest::was_there(double frequency_hz) const noexcept {
-  if (tone_hops_ < hops(memory_s)) return false;
+  if (tone_hops_ < hops(rings_s)) return false;
   const auto at = static_cast<std::size_t>(frequency_hz / GrowthTest::cell_hz);
   double now = 0.0;
   double before = 0.0;

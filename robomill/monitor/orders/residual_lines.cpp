@@ -14,7 +14,6 @@ constexpr double order_guard = 0.75;        // 1/T
 constexpr double teeth_guard = 2.0;         // 1/T
 constexpr int most_parts = 6;               // of an order, where it may be a multiple of the rotation
 constexpr double fewest_apart = 4.5;        // 1/T, that these stand apart: 15 Hz, the slowest rotation that is sought
-constexpr double offset_guard = 2.5;        // 1/T, from 0: a drifting offset
 constexpr std::size_t folds_a_line = 2;     // of 1/T
 constexpr std::size_t fewest_folds = 20;    // whose median is the floor; with fewer it is that of the lines
 constexpr std::size_t line_folds = 5;       // that a line spreads over
@@ -28,7 +27,7 @@ ResidualLines::ResidualLines(const Spectrum& spectrum, double highest_hz)
       step_hz_(spectrum.step_hz),
       share_(spectrum.energy_share()) {
   lines_ = std::min(spectrum.line.size(), static_cast<std::size_t>(highest_hz / step_hz_));
-  first_ = static_cast<std::size_t>(offset_guard / (seconds_ * step_hz_)) + 1;
+  first_ = spectrum.first_line();
   order_lines_ = static_cast<std::size_t>(reach / (seconds_ * step_hz_));
   kernel_.resize(static_cast<std::size_t>((reach + 1.0) * kernel_steps) + 2);
   for (std::size_t i = 0; i < kernel_.size(); ++i) {

@@ -11,6 +11,8 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double enough_hz = 10240.0;      // of the sample rate
 constexpr std::size_t taps_a_factor = 24;  // of the low-pass, for each sample left out
+constexpr double most_lines = 20.0;        // M
+constexpr double peaked = 0.53;            // ∫h⁴/(∫h²)²
 constexpr double passed = 0.85;            // of half the reduced rate
 
 std::vector<float> low_pass(std::size_t factor) {
@@ -36,6 +38,31 @@ double hann_kernel(double u) noexcept {
   if (std::abs(u) < 1e-8) return 1.0;
   if (std::abs(std::abs(u) - 1.0) < 1e-8) return 0.5;
   return std::sin(pi * u) / (pi * u * (1.0 - u * u));
+}
+
+WindowEnergy energy_of(std::span<const float> power, const Spectrum& like, double highest_hz) noexcept {
+  WindowEnergy out;
+  out.last = std::min(power.size() - 2, static_cast<std::size_t>(highest_hz / like.step_hz));
+  double sum = 0.0;
+  double squares = 1e-300;
+  for (std::size_t i = like.first_line(); i <= out.last; ++i) {
+    const auto p = static_cast<double>(power[i]);
+    sum += p;
+    squares += p * p;
+  }
+  out.whole = sum * like.energy_share();
+  out.lines = std::min(most_lines, sum * sum / squares * like.seconds * like.step_hz * peaked);
+  return out;
+}
+
+float at_multiples(std::span<const float> power, double rotation_lines, std::size_t last) noexcept {
+  float sum = 0.0F;
+  for (double at = rotation_lines; at < static_cast<double>(last); at += rotation_lines) {
+    const auto k = static_cast<std::size_t>(at);
+    const auto part = static_cast<float>(at - static_cast<double>(k));
+    sum += power[k] + part * (power[k + 1] - power[k]);
+  }
+  return sum;
 }
 
 Spectra::Spectra(double sample_rate_hz, std::size_t channels)

@@ -22,6 +22,10 @@ struct Spectrum {
 
   /// Of a line's |X|², so that they sum up to Σ A²: T Δν/∫h².
   [[nodiscard]] double energy_share() const noexcept { return seconds * step_hz / 1.5; }
+  /// The first line that counts, 2.5/T from 0: below is what a drifting offset reaches.
+  [[nodiscard]] std::size_t first_line() const noexcept {
+    return static_cast<std::size_t>(2.5 / (seconds * step_hz)) + 1;
+  }
   /// Where a peak at line k stands between its neighbours, by the parabola through their powers.
   [[nodiscard]] double peak_hz(std::size_t k, double before, double here, double after) const noexcept {
     const double bend = before - 2.0 * here + after;
@@ -29,6 +33,17 @@ struct Spectrum {
     return (static_cast<double>(k) + off) * step_hz;
   }
 };
+
+/// What a window holds in all channels together.
+struct WindowEnergy {
+  double whole = 0.0;    ///< Σ A² [input's unit²]
+  double lines = 0.0;    ///< M = (ΣA²)²/ΣA⁴: about so many hold most of it; at most 20
+  std::size_t last = 0;  ///< line that counts
+};
+/// @param power  Σ |X|² over the channels, line by line;  @param like  a spectrum of one: T and Δν
+[[nodiscard]] WindowEnergy energy_of(std::span<const float> power, const Spectrum& like, double highest_hz) noexcept;
+/// Σ_k power(k f) up to the last line, between lines by straight lines.
+[[nodiscard]] float at_multiples(std::span<const float> power, double rotation_lines, std::size_t last) noexcept;
 
 /// The spectra of the last 0.3 s and 0.15 s of several channels. A sample rate above 20 kHz is reduced by a whole
 /// number, to 10 kHz and more, behind a low-pass. Nothing is allocated after construction.

@@ -16,11 +16,8 @@ constexpr double known_within = 0.004;
 constexpr double mains_ratio = 0.07, highest_of_mains_hz = 190.0, hint_of_mains_ratio = 0.01;
 constexpr double miscounted = 1e-4;   // probability density of a measurement that is wrong
 constexpr double unexplained = 0.02;  // share of the energy that a comb never explains
-constexpr double offset_guard = 2.5;  // 1/T, from 0
-constexpr double most_lines = 20.0;   // M
 constexpr int low_of_teeth = 6, low_of_rotation = 1, low_of_unknown_teeth = 12;
 constexpr double peak_reach = 0.5;  // 1/T
-constexpr double peaked = 0.53;     // ∫h⁴/(∫h²)²
 
 }  // namespace
 
@@ -112,22 +109,14 @@ void SpeedPosterior::predict(Motion motion) noexcept {
 
 void SpeedPosterior::observe(std::span<const float> power, const Spectrum& like) noexcept {
   if (hint_hz_ <= 0.0) return;
-  const auto last = std::min(power.size() - 2, static_cast<std::size_t>(setup_.highest_hz / like.step_hz));
-  const auto first = static_cast<std::size_t>(offset_guard / (like.seconds * like.step_hz)) + 1;
-  double sum = 0.0;
-  double squares = 1e-300;
-  for (std::size_t i = first; i <= last; ++i) {
-    const auto p = static_cast<double>(power[i]);
-    sum += p;
-    squares += p * p;
-  }
-  if (sum <= 0.0) return;
-  const double bin = like.seconds * like.step_hz;
-  const double lines = std::clamp(sum * sum / squares * bin * peaked - 1.0, 0.0, most_lines);
+  const WindowEnergy energy = energy_of(power, like, setup_.highest_hz);
+  if (energy.whole <= 0.0) return;
+  const double whole = energy.whole;
+  const std::size_t last = energy.last;
+  const double lines = std::max(0.0, energy.lines - 1.0);
   const int teeth = std::max(1, setup_.teeth);
   const int low_orders = setup_.teeth > 0 ? low_of_teeth * teeth : low_of_unknown_teeth;
   lines_ = lines;
-  const double whole = sum * like.energy_share();
   const double weight = 2.0 * setup_.hop_s / like.seconds;
   for (std::size_t i = 0; i < size; ++i) {
     const double rotation_hz = candidate_hz(static_cast<double>(i));

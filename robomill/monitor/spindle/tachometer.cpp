@@ -6,10 +6,10 @@
 namespace robomill::monitor {
 namespace {
 
-constexpr double memory_s = 2.0;      // of the extremes
-constexpr double hysteresis = 0.125;  // of their distance, below the middle
-constexpr double stale = 2.5;         // distances of marks without one
-constexpr double least_std = 2e-4;    // of f: no shaft turns more evenly
+constexpr double extremes_memory_s = 2.0;  // of the extremes
+constexpr double hysteresis = 0.125;       // of their distance, below the middle
+constexpr double stale_marks = 2.5;        // distances of marks without one
+constexpr double least_std = 2e-4;         // of f: no shaft turns more evenly
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void Tachometer::reset() noexcept {
 }
 
 void Tachometer::push(std::span<const double> samples) noexcept {
-  const double forget = 1.0 / (memory_s * rate_hz_);
+  const double forget = 1.0 / (extremes_memory_s * rate_hz_);
   for (const double x : samples) {
     if (first_) low_ = high_ = last_ = x;
     first_ = false;
@@ -61,7 +61,7 @@ void Tachometer::regress() noexcept {
     product += place * (mark_[(marks_ - n + i) % kept] - newest);
   }
   const double apart = product / squares;  // samples from mark to mark
-  if (apart <= 0.0 || time_ - newest > stale * apart) return;
+  if (apart <= 0.0 || time_ - newest > stale_marks * apart) return;
   rotation_hz_ = rate_hz_ * turns_a_mark_ / apart;
   std_ratio_ = std::hypot(least_std, 1.0 / (std::sqrt(12.0 * squares) * apart));
 }
