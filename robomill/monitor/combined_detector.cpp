@@ -15,6 +15,7 @@ constexpr double patience_s = 1.0;        // for which no speed need be known
 constexpr double faint_energy = 0.01;     // of the loudest energy
 constexpr double energy_memory_s = 10.0;
 constexpr double leaving_swing = 3.0;  // of the synchronous energy in 0.3 s, by itself
+constexpr double leaving_swing_unsure = 1.0;
 
 }  // namespace
 
@@ -81,7 +82,7 @@ void CombinedDetector::decide(const Hop& given, Decision& decision) noexcept {
 // Whether the orders bear out an alarm of CombCusum.
 bool CombinedDetector::borne_out(const RatioTest::Verdict& orders) const noexcept {
   if (orders.swing > leaving_swing) return false;
-  if (hint_hz_ == 0.0) return orders.known && orders.ratio > bears_out_unsure;
+  if (hint_hz_ == 0.0) return orders.known && orders.ratio > bears_out_unsure && orders.swing < leaving_swing_unsure;
   // A lone line of high order may have been taken for the comb, as a drill's chatter is.
   if (orders.known) return orders.ratio > bears_out || orders.one_line;
   return orders.energy > faint_energy * loudest_;

@@ -41,6 +41,11 @@ GrowthTest::Verdict GrowthTest::step(double synchronous) noexcept {
       now += cells_[j];
       before += usual_[j];
     }
+    // A line that moved stands in some window without its past: only one that stands in the middle counts.
+    if (*std::max_element(cells_.begin() + static_cast<std::ptrdiff_t>(i),
+                          cells_.begin() + static_cast<std::ptrdiff_t>(i + width)) > cells_[i + width / 2]) {
+      continue;
+    }
     if (now < least_share * synchronous || now < suspect_growth * cut * before) continue;
     suspect_ = true;
     if (now > growth * cut * before && now > out.energy) {

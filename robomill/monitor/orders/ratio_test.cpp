@@ -38,10 +38,11 @@ constexpr double stable_ratio = 0.05;  // L to S
 constexpr double still_air = 2.0;      // of the least energy: more is not the air
 constexpr double tone_growth = 4.0;    // of the energy within ± tone_cells
 constexpr std::size_t tone_cells = 2;
-constexpr double rung_down = 0.4;     // of the strongest block, in the last
-constexpr double reading = 0.05;      // 1/T: how well a line's frequency is read off
-constexpr double spread = 1.25;       // 1/T, to each side, that hold a line's energy
-constexpr double on_an_order = 0.75;  // 1/T
+constexpr double rung_down = 0.4;       // of the strongest block, in the last
+constexpr double reading = 0.05;        // 1/T: how well a line's frequency is read off
+constexpr double first_reading = 0.15;  // the same of a line that has just come
+constexpr double spread = 1.25;         // 1/T, to each side, that hold a line's energy
+constexpr double on_an_order = 0.75;    // 1/T
 
 // Hum.
 bool of_the_mains(double frequency_hz) {
@@ -215,7 +216,8 @@ bool RatioTest::one_line_dominates() const noexcept {
 }
 
 bool RatioTest::stands_alone() const noexcept {
-  return cut_ == 0.0 && (chatter_ || (lost_hops_ == 0 && peak_.back().energy > loud * air_energy_)) &&
+  return cut_ == 0.0 &&
+         (chatter_ || (lost_hops_ == 0 && air_energy_ > 0.0 && peak_.back().energy > loud * air_energy_)) &&
          one_line_dominates();
 }
 
@@ -295,8 +297,10 @@ bool RatioTest::was_there(double frequency_hz) const noexcept {
 
 void RatioTest::describe(std::uint64_t bad_channels, Verdict& verdict) const noexcept {
   const Spectrum& like = spectra_.spectrum(0, 0);
+  const bool at_first = frequency_hz_ == short_frequency_hz_;  // read in the short window, where the line is still new
+  const double read_hz = at_first ? first_reading / spectra_.spectrum(windows - 1, 0).seconds : reading / like.seconds;
   verdict.frequency_hz = frequency_hz_;
-  verdict.frequency_std_hz = std::hypot(reading / like.seconds, (frequency_hz_ - short_frequency_hz_) / 3.0);
+  verdict.frequency_std_hz = std::hypot(read_hz, (frequency_hz_ - short_frequency_hz_) / 3.0);
   const auto at = std::min(like.line.size() - 1, static_cast<std::size_t>(std::lround(frequency_hz_ / like.step_hz)));
   for (std::size_t c = 0; c < setup_.channels; ++c) {
     if ((bad_channels >> c & 1U) != 0) continue;

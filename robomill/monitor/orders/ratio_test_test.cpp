@@ -186,24 +186,6 @@ TEST(RatioTest, HumIsNoChatter) {
   }
 }
 
-// A twentieth of tooth passing, while the tool is in air: a posterior that settles on it is lost when the tool enters.
-TEST(RatioTest, HumOfAnIdlingMachineIsNoCut) {
-  for (const double rotation_hz : {54.0, 56.0, 64.0}) {
-    const SyntheticCut cut{.rotation_hz = rotation_hz, .seconds = 3.5};
-    const double mains_hz = rotation_hz > 60.0 ? 60.0 : 50.0;
-    std::vector<float> x = within(cut, 2.0, 10.0);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double angle = turn * mains_hz * static_cast<double>(i) / cut.sample_rate_hz;
-      x[i] += static_cast<float>(
-          0.05 * (std::cos(angle) + 0.4 * std::cos(2.0 * angle + 1.0) + 0.5 * std::cos(3.0 * angle + 2.0)));
-    }
-    const Heard heard = hear(cut, x);
-    EXPECT_EQ(heard.alarm_s, -1.0) << rotation_hz;
-    EXPECT_NEAR(heard.verdicts.back().rotation_hz, rotation_hz, 2e-3 * rotation_hz);
-    EXPECT_FALSE(heard.verdicts[75].known) << rotation_hz;
-  }
-}
-
 TEST(RatioTest, NamesSynchronousChatterByItsOrder) {
   using enum SynchronousChatter;
   for (const auto& [teeth, order, kind] :

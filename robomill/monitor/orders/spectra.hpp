@@ -62,7 +62,7 @@ class Spectra {
   /// How the amplitude at a frequency went: |X(ν)|² of a channel in consecutive blocks of the short window, oldest
   /// first.
   void course(std::size_t channel, double frequency_hz, std::span<double> blocks) const noexcept;
-  /// The highest frequency that the spectra show undiminished [Hz].
+  /// The highest frequency that counts [Hz]; where the rate is reduced, a line there is shown 1.2 dB too small.
   [[nodiscard]] double highest_hz() const noexcept { return 0.5 * passed_ * rate_hz_; }
   /// Seconds pushed since construction or reset().
   [[nodiscard]] double past_s() const noexcept { return static_cast<double>(pushed_) / rate_hz_; }

@@ -13,7 +13,7 @@ constexpr std::size_t near_reach = 6;    // steps
 constexpr double held_reach = 4.0;       // steps
 constexpr double anew = 1e-3;            // a hop, to be drawn from the prior
 constexpr double known_within = 0.004;
-constexpr double mains_ratio = 0.07, highest_of_mains_hz = 190.0, hint_of_mains_ratio = 0.01;
+constexpr double mains_ratio = 0.01, highest_of_mains_hz = 190.0, hint_of_mains_ratio = 0.01;
 constexpr double miscounted = 1e-4;   // probability density of a measurement that is wrong
 constexpr double unexplained = 0.02;  // share of the energy that a comb never explains
 constexpr int low_of_teeth = 6, low_of_rotation = 1, low_of_unknown_teeth = 12;
