@@ -8,6 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "robomill/base/units.hpp"
+
 namespace robomill::live {
 namespace {
 
@@ -23,6 +25,8 @@ constexpr double fault_pause_s = 1.0;
 /// Chatter is emitted again when its frequency has moved by so much, and at most so often.
 constexpr double frequency_step_hz = 2.0, frequency_pause_s = 0.25;
 constexpr double speed_patience_s = 3.0;
+/// A hint that the signal contradicts by so much, for so long, is reported once.
+constexpr double contradicting_ratio = 0.02, contradicting_s = 1.0, surely_ratio = 0.02;
 /// Samples left out for less, a hop say, are counted and notified, but make no event of their own.
 constexpr double shortest_gap_s = 1.0;
 
@@ -166,6 +170,7 @@ void Session::decide(monitor::Decision decision, double compute_s) {
     alarm_ = true;
   }
   if (outputs_.decision) outputs_.decision(decision, time_s, compute_s);
+  check_hint(decision);
   const bool fault_news = fault_is_news(decision);
   const bool frequency_news = frequency_is_news(decision);
   const bool state_news = decision.changed || reason_news || frequency_news;
@@ -186,6 +191,21 @@ void Session::decide(monitor::Decision decision, double compute_s) {
   MonitorEvent event = event_of(state_news ? MonitorEvent::Kind::state : MonitorEvent::Kind::window);
   act(event);
   if (state_news || window_news || !event.command.empty()) emit(event);
+}
+
+void Session::check_hint(const monitor::Decision& decision) {
+  const double given = speed_rad_per_s_ > 0.0 ? speed_rad_per_s_ : file_.options.spindle_speed_rad_per_s;
+  const double found = decision.spindle_speed_rad_per_s;
+  const bool sure = found > 0.0 && (decision.faults & monitor::speed_unknown) == 0 &&
+                    decision.spindle_speed_std_rad_per_s < surely_ratio * found;
+  const bool contradicts = given > 0.0 && sure && std::abs(found / given - 1.0) > contradicting_ratio;
+  contradicting_hops_ = contradicts ? contradicting_hops_ + 1 : 0;
+  if (static_cast<double>(contradicting_hops_) * file_.options.hop_s < contradicting_s ||
+      given == contradicted_rad_per_s_)
+    return;
+  contradicted_rad_per_s_ = given;
+  notices_.add("spindle-speed",
+               fmt::format("the signal says {:.0f} rpm, {:.0f} rpm was given", found / units::rpm, given / units::rpm));
 }
 
 bool Session::fault_is_news(const monitor::Decision& decision) {

@@ -82,6 +82,7 @@ class ROBOMILL_API Session {
   void advise(monitor::MonitorEvent& event) const;
   void act(monitor::MonitorEvent& event);
   void begin_anew();
+  void check_hint(const monitor::Decision& decision);
   [[nodiscard]] bool fault_is_news(const monitor::Decision& decision);
   [[nodiscard]] bool frequency_is_news(const monitor::Decision& decision);
 
@@ -103,6 +104,8 @@ class ROBOMILL_API Session {
   double silence_s_ = 0.0;                       ///< since then, where it is longer than the timeout
   std::uint32_t emitted_faults_ = 0;
   double faults_emitted_s_ = -1e300, speed_known_s_ = 0.0;
+  std::size_t contradicting_hops_ = 0;
+  double contradicted_rad_per_s_ = 0.0;  ///< the hint that was reported
   double emitted_frequency_hz_ = 0.0, frequency_emitted_s_ = -1e300;
   bool alarm_ = false, ended_ = false;
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <numbers>
 #include <span>
 #include <string>
 #include <thread>
@@ -16,6 +17,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/live/inputs.hpp"
 #include "robomill/monitor/files/stream_block.hpp"
+#include "testing/monitor/signal.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::live {
@@ -336,6 +338,32 @@ TEST(StreamIntake, FillsWhatWasLost) {
   EXPECT_EQ(reported[0].what, "lost-blocks");
   EXPECT_EQ(reported[0].count, 2U);
   EXPECT_EQ(reported[1].what, "reordered-blocks");
+}
+
+TEST(Session, AHintThatTheSignalContradictsIsReportedOnce) {
+  const monitor::testing::SyntheticCut cut{.rotation_hz = 75.0, .seconds = 5.0};
+  const std::vector<float> x = monitor::testing::vibration(cut);
+  for (const double share : {1.0, 1.1}) {
+    Kept kept;
+    monitor::MonitorFile file = some_file();
+    file.options.teeth = cut.teeth;
+    file.options.spindle_speed_rad_per_s = share * cut.rotation_hz * 2.0 * std::numbers::pi;
+    Session session(file, {}, kept.outputs());
+    for (std::size_t at = 0; at + 256 <= x.size(); at += 256) {
+      session.process({.samples = {x.begin() + static_cast<std::ptrdiff_t>(at),
+                                   x.begin() + static_cast<std::ptrdiff_t>(at + 256)}});
+      session.emit_notices(true);
+    }
+    std::vector<std::string> said;
+    for (const MonitorEvent& event : kept.events) {
+      if (event.what == "spindle-speed") said.push_back(event.message);
+    }
+    if (share == 1.0) {
+      EXPECT_TRUE(said.empty());
+    } else {
+      EXPECT_EQ(said, std::vector<std::string>{"the signal says 4500 rpm, 4950 rpm was given"});
+    }
+  }
 }
 
 }  // namespace session_test

@@ -14,6 +14,8 @@ constexpr double bears_out_unsure = 0.2;  // the same where no speed is given, a
 constexpr double patience_s = 1.0;        // for which no speed need be known
 constexpr double faint_energy = 0.01;     // of the loudest energy
 constexpr double energy_memory_s = 10.0;
+constexpr double order_width_hz = 3.5;
+constexpr int low_orders = 5;
 constexpr double leaving_swing = 3.0;  // of the synchronous energy in 0.3 s, by itself
 constexpr double leaving_swing_unsure = 1.0;
 
@@ -79,9 +81,19 @@ void CombinedDetector::decide(const Hop& given, Decision& decision) noexcept {
   judge(orders_.step(samples_, hop.frames, hop.bad_channels), decision);
 }
 
+// A low multiple of the known speed, or of tooth passing.
+bool CombinedDetector::is_the_cut(const RatioTest::Verdict& orders, double frequency_hz) const noexcept {
+  if (!orders.known || orders.rotation_hz <= 0.0) return false;
+  const double near = std::max(1.0, std::round(frequency_hz / orders.rotation_hz));
+  if (std::abs(frequency_hz - near * orders.rotation_hz) > order_width_hz) return false;
+  const auto k = static_cast<int>(near);
+  const int teeth = std::max(1, options_.teeth);
+  return k <= low_orders || (k % teeth == 0 && k <= low_orders * teeth);
+}
+
 // Whether the orders bear out an alarm of CombCusum.
-bool CombinedDetector::borne_out(const RatioTest::Verdict& orders) const noexcept {
-  if (orders.swing > leaving_swing) return false;
+bool CombinedDetector::borne_out(const RatioTest::Verdict& orders, double frequency_hz) const noexcept {
+  if (orders.swing > leaving_swing || is_the_cut(orders, frequency_hz)) return false;
   if (hint_hz_ == 0.0) return orders.known && orders.ratio > bears_out_unsure && orders.swing < leaving_swing_unsure;
   // A lone line of high order may have been taken for the comb, as a drill's chatter is.
   if (orders.known) return orders.ratio > bears_out || orders.one_line;
@@ -96,7 +108,7 @@ void CombinedDetector::judge(const RatioTest::Verdict& orders, Decision& decisio
   if (orders.known) decision.faults &= ~static_cast<std::uint32_t>(speed_unknown);
   loudest_ = std::max(orders.energy, loudest_ * (1.0 - options_.hop_s / energy_memory_s));
   const bool grew = decision.state == State::chatter;
-  accepted_ = grew && (accepted_ || borne_out(orders));
+  accepted_ = grew && (accepted_ || borne_out(orders, decision.chatter_frequency_hz));
   if (orders.chatter || (decision.state == State::stable && orders.pending)) {
     decision.state = orders.chatter ? State::chatter : State::transition;
     decision.chatter_frequency_hz = orders.frequency_hz;

@@ -22,7 +22,8 @@ class CombinedDetector final : public Detector {
 
  private:
   void high_pass(const Hop& hop) noexcept;
-  [[nodiscard]] bool borne_out(const RatioTest::Verdict& orders) const noexcept;
+  [[nodiscard]] bool is_the_cut(const RatioTest::Verdict& orders, double frequency_hz) const noexcept;
+  [[nodiscard]] bool borne_out(const RatioTest::Verdict& orders, double frequency_hz) const noexcept;
   void judge(const RatioTest::Verdict& orders, Decision& decision) noexcept;
 
   MonitorOptions options_;

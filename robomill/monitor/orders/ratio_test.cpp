@@ -195,9 +195,10 @@ bool RatioTest::ratio_stands_out() const noexcept {
          near.family > std::max(swing(), faint_share * loudest_) && !of_the_mains(far.frequency_hz);
 }
 
-// A low multiple of rotation or of tooth passing, at a speed near the given one; high orders lie too close together.
+// A low multiple of rotation or of tooth passing, at the speed that is known or near the given one; high orders lie too
+// close together.
 bool RatioTest::may_be_the_cut(double frequency_hz) const noexcept {
-  const double near_hz = speed_.hint_hz();
+  const double near_hz = cut_ > 0.0 ? speed_.rotation_hz() : speed_.hint_hz();
   if (near_hz <= 0.0) return true;
   const auto multiple = [&](double of_hz, double highest) {
     const double order = frequency_hz / of_hz;
