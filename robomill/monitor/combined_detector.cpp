@@ -14,6 +14,7 @@ constexpr double bears_out_unsure = 0.2;  // the same where no speed is given, a
 constexpr double patience_s = 1.0;        // for which no speed need be known
 constexpr double faint_energy = 0.01;     // of the loudest energy
 constexpr double energy_memory_s = 10.0;
+constexpr double hint_is_off = 0.07;
 constexpr double order_width_hz = 3.5;
 constexpr int low_orders = 5;
 constexpr double leaving_swing = 3.0;  // of the synchronous energy in 0.3 s, by itself
@@ -37,7 +38,7 @@ CombinedDetector::CombinedDetector(const MonitorOptions& options)
 
 void CombinedDetector::set_spindle_speed(double rad_per_s) noexcept {
   growth_.set_spindle_speed(rad_per_s);
-  hint_hz_ = rad_per_s / units::revolution;
+  hint_hz_ = sought_hz_ = rad_per_s / units::revolution;
   orders_.set_hint(hint_hz_);
 }
 
@@ -81,14 +82,14 @@ void CombinedDetector::decide(const Hop& given, Decision& decision) noexcept {
   judge(orders_.step(samples_, hop.frames, hop.bad_channels), decision);
 }
 
-// A low multiple of the known speed, or of tooth passing.
+// A low multiple of tooth passing, at the known speed.
 bool CombinedDetector::is_the_cut(const RatioTest::Verdict& orders, double frequency_hz) const noexcept {
   if (!orders.known || orders.rotation_hz <= 0.0) return false;
   const double near = std::max(1.0, std::round(frequency_hz / orders.rotation_hz));
   if (std::abs(frequency_hz - near * orders.rotation_hz) > order_width_hz) return false;
   const auto k = static_cast<int>(near);
   const int teeth = std::max(1, options_.teeth);
-  return k <= low_orders || (k % teeth == 0 && k <= low_orders * teeth);
+  return k % teeth == 0 && k <= low_orders * teeth;
 }
 
 // Whether the orders bear out an alarm of CombCusum.
@@ -104,6 +105,12 @@ void CombinedDetector::judge(const RatioTest::Verdict& orders, Decision& decisio
   if (orders.rotation_hz > 0.0) {
     decision.spindle_speed_rad_per_s = units::revolution * orders.rotation_hz;
     decision.spindle_speed_std_rad_per_s = decision.spindle_speed_rad_per_s * orders.rotation_std_ratio;
+  }
+  // CombCusum seeks its speed within 7 % of the hint.
+  if (orders.known && orders.rotation_hz > 0.0 && !orders.chatter &&
+      std::abs(orders.rotation_hz / sought_hz_ - 1.0) > hint_is_off) {
+    sought_hz_ = orders.rotation_hz;
+    growth_.set_spindle_speed(units::revolution * sought_hz_);
   }
   if (orders.known) decision.faults &= ~static_cast<std::uint32_t>(speed_unknown);
   loudest_ = std::max(orders.energy, loudest_ * (1.0 - options_.hop_s / energy_memory_s));

@@ -32,6 +32,7 @@ class CombinedDetector final : public Detector {
   RatioTest orders_;
   std::vector<float> samples_;  // of the hop, channel after channel
   std::vector<double> mean_;    // of each channel, slow
+  double sought_hz_ = 0.0;      // about which CombCusum seeks the speed
   double hint_hz_ = 0.0;        // as given; 0: none
   bool first_ = true;
   bool accepted_ = false;   // the alarm of CombCusum
