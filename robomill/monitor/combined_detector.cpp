@@ -16,7 +16,7 @@ constexpr double faint_energy = 0.01;     // of the loudest energy
 constexpr double energy_memory_s = 10.0;
 constexpr double hint_is_off = 0.07;
 constexpr double order_width_hz = 3.5;
-constexpr int low_orders = 5;
+constexpr int low_multiples = 5;
 constexpr double leaving_swing = 3.0;  // of the synchronous energy in 0.3 s, by itself
 constexpr double leaving_swing_unsure = 1.0;
 
@@ -89,7 +89,7 @@ bool CombinedDetector::is_the_cut(const RatioTest::Verdict& orders, double frequ
   if (std::abs(frequency_hz - near * orders.rotation_hz) > order_width_hz) return false;
   const auto k = static_cast<int>(near);
   const int teeth = std::max(1, options_.teeth);
-  return k % teeth == 0 && k <= low_orders * teeth;
+  return k % teeth == 0 && k <= low_multiples * teeth;
 }
 
 // Whether the orders bear out an alarm of CombCusum.
