@@ -11,8 +11,8 @@ namespace robomill::monitor {
 
 /// The default detector: RatioTest, which needs no history, beside CombCusum, which finds slow growth and the chatter
 /// of a tool that hardly has a comb. An alarm of CombCusum counts where the orders bear it out: where the speed is not
-/// known, or lines beside the orders hold a thirtieth of the synchronous energy, and where that energy does not swing
-/// as it does when the tool leaves the cut. Method: README.md.
+/// known, or lines beside the orders hold 3 % of the synchronous energy, or one line of high order dominates; and where
+/// that energy does not swing as it does when the tool leaves the cut. Method: README.md.
 class CombinedDetector final : public Detector {
  public:
   explicit CombinedDetector(const MonitorOptions& options);

@@ -308,7 +308,7 @@ void RatioTest::describe(std::uint64_t bad_channels, Verdict& verdict) const noe
     const auto level = [&](std::size_t channel) { return std::norm(spectra_.spectrum(0, channel).line[at]); };
     if (level(c) > level(verdict.channel)) verdict.channel = c;
   }
-  if (!verdict.known || setup_.teeth < 2) return;
+  if (!verdict.known || verdict.rotation_hz <= 0.0 || setup_.teeth < 2) return;
   const double order = frequency_hz_ / verdict.rotation_hz;
   const double near = std::round(order);
   const auto k = static_cast<int>(near);

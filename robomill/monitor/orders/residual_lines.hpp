@@ -30,9 +30,8 @@ class ResidualLines {
   /// @param spectrum  one that all are like;  @param highest_hz  of the lines that count
   ResidualLines(const Spectrum& spectrum, double highest_hz);
   /// @param teeth  0: unknown
-  /// @param sure   rotation_hz is the rotation, and no multiple of it: otherwise what stands at simple fractions of it,
-  /// up
-  ///               to sixths, is taken for a multiple of the rotation
+  /// @param sure   rotation_hz is the rotation, and no multiple of it: otherwise what stands at simple fractions, up to
+  ///               sixths, is taken for a multiple of the rotation
   void begin(double rotation_hz, int teeth, bool sure) noexcept;
   /// A channel's spectrum.
   void add(const Spectrum& spectrum) noexcept;

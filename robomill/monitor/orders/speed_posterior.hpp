@@ -11,10 +11,12 @@ namespace robomill::monitor {
 ///
 /// A window of length T with power |X(ν)|², summed over the channels, speaks for f by the share of its energy that the
 /// multiples k f hold, less what a comb holds by chance, c = 3/(2 f T):
-///   s(f) = (Σ_k |X(k f)|²/Σ A² - c)/(1 - c),   ln L(f) = -w M ln(1 - max(0, s) + 0.02).
+///   s(f) = (Σ_k |X(k f)|²/Σ A² - c)/(1 - c),   ln L(f) = -w (M - 1 + q(f)) ln(1.02 - max(0, s)).
 /// M = (ΣA²)²/ΣA⁴ is about how many lines the window holds: one line alone, such as chatter's, says nothing about the
-/// speed. w is the hop over T, since windows overlap. Between hops the speed may drift, by a Cauchy distribution of 0.2
-/// % a hop, and with a probability of 1e-3 it is drawn anew from the prior: a Cauchy distribution about the hint.
+/// speed, but for the share q(f) of the energy at low multiples of tooth passing. w is twice the hop over T, since
+/// windows overlap. Between hops the speed may drift, by a Cauchy distribution of 0.08 % a hop, and with a probability
+/// of 1e-3 it is drawn anew from the prior: a Cauchy distribution about the hint. Candidates near the mains' frequency
+/// count no lines below 190 Hz, unless the hint is there.
 ///
 /// Nothing is allocated after construction.
 class SpeedPosterior {
