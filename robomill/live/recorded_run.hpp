@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robomill/modal/mode_id.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/signal/bands.hpp"
 
@@ -55,6 +56,7 @@ struct RecordedAlarm {
   monitor::SynchronousChatter synchronous = monitor::SynchronousChatter::none;
   modal::ModeId mode = {};
   double suggested_spindle_speed_rad_per_s = NAN;  ///< NaN: none
+  monitor::NoSpeed no_speed = monitor::NoSpeed::none;
 };
 
 /// A recording as the chatter monitor processed it.

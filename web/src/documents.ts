@@ -407,8 +407,10 @@ export interface CalibrationRecording {
   lead_s: Num;
 }
 
-/** calibration.json */
+/** calibration.json; where its status is not "found", threshold and halves are the best of what was tried. */
 export interface Calibration {
+  status: 'found' | 'none-detects' | 'not-verified' | 'no-better-than-chance';
+  reason: string; // why it is no calibration
   entropy: string;
   threshold: Num;
   alarm: 'above' | 'below';

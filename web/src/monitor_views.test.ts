@@ -16,6 +16,7 @@ const alarm: MonitorAlarm = {
   mode: 8,
   mode_of: 'tool',
   suggested_spindle_speed_rpm: 3416,
+  no_speed: null,
 };
 
 function said(part: Partial<Monitor>): string[] {
@@ -35,6 +36,8 @@ describe('what was found, in words', () => {
     ]);
     const others = [1, 2, 3, 4].map((i) => ({ ...alarm, mode: null, suggested_spindle_speed_rpm: null, chatter_s: 2 / i, chatter_frequency_hz: 100 * i, low_frequency_hz: 100 * i, high_frequency_hz: 100 * i, chatter_frequency_std_hz: null }));
     expect(said({ state_times: [chatter], alarm_count: 4, alarms: others })[0]).toContain('at 100.0 Hz, 200.0 Hz and 300.0 Hz and others.');
+    const arm = { ...alarm, suggested_spindle_speed_rpm: null, no_speed: 'arm' as const };
+    expect(said({ state_times: [chatter], alarm_count: 3, alarms: [arm] })[0]).toContain('(mode 8; no spindle speed avoids it: a mode of the arm).');
     const without = { ...alarm, low_frequency_hz: null, high_frequency_hz: null, chatter_frequency_hz: null };
     expect(said({ state_times: [chatter], alarm_count: 1, alarms: [without] })).toEqual(['Chatter for 2.00 s in 1 alarm, between 1.50 s and 4.00 s.']);
   });

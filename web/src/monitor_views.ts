@@ -1,5 +1,5 @@
 // What is said and drawn of a monitored recording, made of its document.
-import type { Monitor, MonitorAlarm, MonitorStay, Num } from './documents';
+import type { Monitor, MonitorAlarm, MonitorStay, NoSpeed, Num } from './documents';
 import { fixed, modeName, withDeviation } from './text';
 
 /** Why the monitor could not tell, in words. */
@@ -16,6 +16,24 @@ export function reasonText(reason: string | null): string {
     default:
       return reason === null || reason === 'none' ? 'reason unknown' : reason;
   }
+}
+
+const noSpeedTexts: Record<NoSpeed, string> = {
+  arm: 'no spindle speed avoids it: a mode of the arm',
+  unclear: 'no spindle speed is suggested: it may be a mode of the arm',
+  'mode-coupling': 'no spindle speed avoids it: modes couple through the force',
+};
+
+/** Why no speed is suggested, in words; empty where one is, or nothing is known. */
+export function noSpeedText(reason: NoSpeed | null): string {
+  return reason === null ? '' : noSpeedTexts[reason];
+}
+
+const hiddenTexts = { locked: 'locked to the rotation', 'period-doubling': 'period doubling' };
+
+/** How chatter hides in what repeats with the spindle, and why no speed is suggested. */
+export function chatterNotes({ hidden, no_speed }: Pick<MonitorAlarm, 'hidden' | 'no_speed'>): string[] {
+  return [hidden === null ? '' : hiddenTexts[hidden], noSpeedText(no_speed)].filter((text) => text !== '');
 }
 
 /** "0.63 s", "12.4 s", "5 min 20 s", "2 h 5 min" */
@@ -47,7 +65,7 @@ function placesText(alarms: MonitorAlarm[]): string {
   if (longest.length === 0) return '';
   const texts = longest.map((alarm) => {
     const quiet = alarm.suggested_spindle_speed_rpm;
-    const more = [modeName(alarm), quiet === null ? '' : `quiet near ${fixed(quiet, 0)} rpm`].filter((text) => text !== '');
+    const more = [modeName(alarm), quiet === null ? noSpeedText(alarm.no_speed) : `quiet near ${fixed(quiet, 0)} rpm`].filter((text) => text !== '');
     return `${frequencyText(alarm)} Hz${more.length > 0 ? ` (${more.join('; ')})` : ''}`;
   });
   return `, at ${listed(texts)}${heard.length > longest.length ? ' and others' : ''}`;

@@ -194,6 +194,39 @@ it('says why the monitor could not tell, and nothing of the cut then', () => {
   expect(page()).toContain('signal at the limit of its converter');
 });
 
+it('shows what was commanded and why no speed is suggested', () => {
+  report = { ...empty(), monitor: report.monitor };
+  const monitor = report.monitor!;
+  const chatter = { ...monitor.events[0]!, event: 'state' as const, state: 'chatter' as const, reason: null, suggested_spindle_speed_rpm: null };
+  const headings = () => [...page().matchAll(/<th[^>]*>([^<]*)<\/th>/g)].map(([, heading]) => heading);
+  monitor.events = [{ ...chatter, no_speed: 'arm' }];
+  expect(page()).toContain('<td class="long">no spindle speed avoids it: a mode of the arm</td>');
+  expect(headings()).not.toContain('Command');
+  monitor.events = [
+    { ...chatter, command: 'hold', message: 'chatter: stop, and 5 mm out of the cut' },
+    { ...chatter, command: 'none', no_speed: 'mode-coupling', message: 'modes couple' },
+    { ...chatter, state: 'blind', reason: 'gap', command: null, message: 'blind: nothing is commanded; the hold stays' },
+  ];
+  expect(headings()).toContain('Command');
+  for (const part of ['<td>hold</td>', '<td>none is possible</td>', 'chatter: stop, and 5 mm out of the cut', '>modes couple<', 'samples lost; blind: nothing is commanded; the hold stays']) {
+    expect(page()).toContain(part);
+  }
+  monitor.alarms[0]!.suggested_spindle_speed_rpm = null;
+  monitor.alarms[0]!.no_speed = 'unclear';
+  monitor.alarms[0]!.hidden = 'locked';
+  expect(page()).toContain('locked to the rotation; no spindle speed is suggested: it may be a mode of the arm');
+});
+
+it('says where no threshold works, and of what its numbers are', () => {
+  expect(page()).not.toContain('Not calibrated');
+  report = { ...empty(), calibration: report.calibration };
+  Object.assign(report.calibration!, { status: 'not-verified', reason: '0 of 3 recordings with chatter found in the verifying half' });
+  for (const part of ['<strong>Not calibrated</strong>: 0 of 3 recordings with chatter found in the verifying half.', 'Best that was tried', 'the mark is the best one']) {
+    expect(page()).toContain(part);
+  }
+  for (const part of ['Chatter is', 'chosen', 'How the threshold was set']) expect(page()).not.toContain(part);
+});
+
 it('keeps markup in texts as text', () => {
   const evil = '</script><img src=x onerror=alert(1)>';
   report = JSON.parse(data, (_, value: unknown) => (typeof value === 'string' && /^[A-Za-z .]{12,}$/.test(value) ? evil : value)) as Report;

@@ -22,39 +22,42 @@ export interface MonitorStay extends Stated {
   to_s: number;
 }
 
-/** Alarms of about one frequency that follow each other. */
-export interface MonitorAlarm {
+/** Why no speed is suggested: a mode of the arm, perhaps one, or modes that couple through the force. */
+export type NoSpeed = 'arm' | 'unclear' | 'mode-coupling';
+
+/** What an alarm and an event say of chatter. */
+interface OfChatter {
+  chatter_frequency_hz: Num;
+  chatter_frequency_std_hz: Num;
+  hidden: 'locked' | 'period-doubling' | null;
+  mode: Num;
+  mode_of: Owner | null;
+  suggested_spindle_speed_rpm: Num;
+  no_speed: NoSpeed | null;
+}
+
+/** Alarms of about one frequency that follow each other; of their frequencies chatter_frequency_hz is the surest. */
+export interface MonitorAlarm extends OfChatter {
   count: number;
   from_s: number;
   to_s: number;
   chatter_s: number;
   low_frequency_hz: Num;
   high_frequency_hz: Num;
-  chatter_frequency_hz: Num; // the surest
-  chatter_frequency_std_hz: Num;
   channel: string | null;
-  hidden: string | null;
-  mode: Num;
-  mode_of: Owner | null;
-  suggested_spindle_speed_rpm: Num;
 }
 
 /** A line of events.jsonl. */
-export interface MonitorEvent extends Stated {
+export interface MonitorEvent extends Stated, OfChatter {
   time_s: number;
   event: 'state' | 'window' | 'fault' | 'stream' | 'recording';
   score: Num;
   threshold: Num;
-  chatter_frequency_hz: Num;
-  chatter_frequency_std_hz: Num;
-  suggested_spindle_speed_rpm: Num;
-  hidden: string | null;
-  mode: Num;
-  mode_of: Owner | null;
+  command: 'spindle-speed' | 'feed' | 'hold' | 'release' | 'none' | null; // that followed by a rule of [act]
   faults: string[];
   what?: string | null; // of a stream
   file?: string | null; // of a recording
-  message?: string;
+  message?: string; // of a stream, or why the command
 }
 
 /** A row a frequency, up to the highest that is worth drawing; null in gaps. */

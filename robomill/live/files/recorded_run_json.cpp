@@ -63,6 +63,8 @@ Json alarm_json(const RecordedAlarm& alarm) {
               {"channel", alarm.channel.empty() ? Json(nullptr) : Json(alarm.channel)},
               {"hidden", hidden ? Json(monitor::to_string(alarm.synchronous)) : Json(nullptr)},
               {"suggested_spindle_speed_rpm", positive(alarm.suggested_spindle_speed_rad_per_s, units::rpm)}};
+  const std::string_view no_speed = name_in(monitor::no_speed_names, alarm.no_speed);
+  out["no_speed"] = no_speed.empty() ? Json(nullptr) : Json(no_speed);
   modal::set_mode(out, alarm.mode);
   return out;
 }

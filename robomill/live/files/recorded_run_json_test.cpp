@@ -45,6 +45,7 @@ TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   recorder.add(event);
   RecordedRun run = recorder.run();
   run.facts = {{"Detector", "comb-cusum"}};
+  run.alarms.at(0).no_speed = monitor::NoSpeed::mode_coupling;
   const auto json = nlohmann::json::parse(recorded_run_json(run));
   EXPECT_EQ(json["facts"][0]["label"], "Detector");
   EXPECT_EQ(json["unit"], "g");
@@ -83,6 +84,7 @@ TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   EXPECT_EQ(alarm["channel"], "ax");
   EXPECT_TRUE(alarm["mode"].is_null());
   EXPECT_TRUE(alarm["suggested_spindle_speed_rpm"].is_null());
+  EXPECT_EQ(alarm["no_speed"], "mode-coupling");
   EXPECT_TRUE(json["teeth"].is_null());
   EXPECT_EQ(json["events"][0]["mode"], 8);
   EXPECT_TRUE(json["events"][0]["chatter_frequency_hz"].is_null());

@@ -128,6 +128,17 @@ TEST(AlarmLog, TakesTheAdviceOnTheSurestFrequency) {
   EXPECT_EQ(stream.log.alarms()[0].suggested_spindle_speed_rad_per_s, 350.0);
 }
 
+TEST(AlarmLog, SaysWhyNoSpeedIsSuggested) {
+  Stream stream;
+  stream.chatter(0.25, 80.0);
+  monitor::MonitorEvent event;
+  event.decision = stream.decision;
+  event.no_speed = monitor::NoSpeed::unclear;
+  stream.log.add(event);
+  EXPECT_EQ(stream.log.alarms().at(0).no_speed, monitor::NoSpeed::unclear);
+  EXPECT_TRUE(std::isnan(stream.log.alarms()[0].suggested_spindle_speed_rad_per_s));
+}
+
 TEST(AlarmLog, EndsWhereNothingFollows) {
   Stream stream;
   stream.chatter(0.5, 700.0);

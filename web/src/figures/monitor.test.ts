@@ -99,9 +99,11 @@ describe('calibration', () => {
     const chosen = { threshold: 5, false_alarm_rate: 0.01, detection_rate: 0.9, median_delay_s: null };
     const roc = [{ ...chosen, threshold: 9, false_alarm_rate: 0, detection_rate: 0.5 }, { ...chosen, threshold: 1, false_alarm_rate: 1, detection_rate: 1 }];
     const half = { stable: 10, chatter: 10, chosen, roc };
-    const calibration: Calibration = { entropy: 'energy', threshold: 5, alarm: 'above', setting: half, verifying: half, median_lead_s: null, recordings: [] };
+    const calibration: Calibration = { status: 'found', reason: '', entropy: 'energy', threshold: 5, alarm: 'above', setting: half, verifying: half, median_lead_s: null, recordings: [] };
     const { data } = rocFigure(calibration, light, false);
     expect(data[0]).toMatchObject({ x: [0, 100], y: [50, 100] });
     expect(data[2]).toMatchObject({ x: [1], y: [90], name: 'chosen' });
+    const none = rocFigure({ ...calibration, status: 'no-better-than-chance' }, light, false);
+    expect(none.data[2]).toMatchObject({ name: 'best that was tried' });
   });
 });

@@ -238,7 +238,8 @@ export function scoreFigure(monitor: Monitor, theme: Theme): Figure {
 
 /** Share found against share of false alarms. */
 export function rocFigure(calibration: Calibration, theme: Theme, narrow: boolean): Figure {
-  const { setting, verifying } = calibration;
+  const { status, setting, verifying } = calibration;
+  const mark = status === 'found' ? 'chosen' : 'best that was tried';
   const halves: [string, RocPoint[]][] = [
     ['set', setting.roc],
     ['verified', verifying.roc],
@@ -256,11 +257,11 @@ export function rocFigure(calibration: Calibration, theme: Theme, narrow: boolea
   data.push({
     type: 'scatter',
     mode: 'markers',
-    name: 'chosen',
+    name: mark,
     x: [100 * verifying.chosen.false_alarm_rate],
     y: [100 * verifying.chosen.detection_rate],
     marker: { symbol: 'diamond', size: 12, color: theme.chatter },
-    hovertemplate: `%{x:.2f}${thinSpace}% false, %{y:.1f}${thinSpace}% found<extra>chosen</extra>`,
+    hovertemplate: `%{x:.2f}${thinSpace}% false, %{y:.1f}${thinSpace}% found<extra>${mark}</extra>`,
   });
   return {
     data,

@@ -1,7 +1,7 @@
 // What the chatter monitor detected, and how it was calibrated.
 import type { CalibratedHalf, Calibration, CalibrationRecording, Fact, Monitor, MonitorAlarm, MonitorEvent, Num } from '../documents';
 import { rocFigure, scoreFigure, spectrogramFigure, waveFigure } from '../figures/monitor';
-import { findings, frequencyText, reasonText } from '../monitor_views';
+import { chatterNotes, findings, frequencyText, reasonText } from '../monitor_views';
 import { Bullets, Details, Facts, Section, Table, WarningBox } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, general, modeName, percent, significant, withDeviation } from '../text';
@@ -14,13 +14,19 @@ function isState({ event }: MonitorEvent): boolean {
   return event === 'state';
 }
 
-/** What an event says beside numbers. */
-function noteOf({ event, state, reason, faults, what, file, message, hidden }: MonitorEvent): string {
+/** What an event says beside numbers; of a command its reason, which says why there is no speed. */
+function noteOf(of: MonitorEvent): string {
+  const { event, state, reason, command, faults, what, file, message, hidden, no_speed } = of;
   if (event === 'fault') return faults.length === 0 ? 'the input is well again' : `the input: ${faults.join(', ')}`;
   if (event === 'stream') return message ?? what ?? '';
   if (event === 'recording') return `recorded ${file ?? ''}`;
-  if (state === 'blind') return reasonText(reason);
-  return hidden ?? '';
+  const own = state === 'blind' ? [reasonText(reason)] : chatterNotes({ hidden, no_speed: command === null ? no_speed : null });
+  return [...own, ...(message === undefined ? [] : [message])].join('; ');
+}
+
+function commandOf({ command }: MonitorEvent): string {
+  if (command === null) return '';
+  return command === 'none' ? 'none is possible' : command.replace('-', ' ');
 }
 
 function Findings({ monitor }: { monitor: Monitor }) {
@@ -82,7 +88,7 @@ function AlarmsTable({ alarms }: { alarms: MonitorAlarm[] }) {
         { heading: 'Strongest in', cell: ({ channel }) => channel ?? dash },
         { heading: 'Mode', cell: (alarm) => modeName(alarm) || dash },
         { heading: 'Quiet speed (rpm)', number: true, cell: ({ suggested_spindle_speed_rpm: speed }) => fixed(speed, 0) },
-        { heading: 'Note', cell: ({ hidden }) => hidden ?? '' },
+        { heading: 'Note', cell: (alarm) => chatterNotes(alarm).join('; ') },
       ]}
       rows={alarms}
     />
@@ -91,6 +97,7 @@ function AlarmsTable({ alarms }: { alarms: MonitorAlarm[] }) {
 
 function EventsTable({ events }: { events: MonitorEvent[] }) {
   if (events.length === 0) return null;
+  const commanded = events.some(({ command }) => command !== null);
   return (
     <Details summary={`${events.length} ${events.length === 1 ? 'event' : 'events'}, one by one`}>
       <Table
@@ -104,6 +111,7 @@ function EventsTable({ events }: { events: MonitorEvent[] }) {
           { heading: 'Frequency (Hz)', number: true, cell: (event) => (isState(event) ? frequencyOf(event) : dash) },
           { heading: 'Mode', cell: (event) => (isState(event) ? modeName(event) : '') },
           { heading: 'Quiet speed (rpm)', number: true, cell: (event) => fixed(isState(event) ? event.suggested_spindle_speed_rpm : null, 0) },
+          ...(commanded ? [{ heading: 'Command', cell: commandOf }] : []),
           { heading: 'Note', cell: noteOf },
         ]}
         rows={events}
@@ -179,10 +187,10 @@ function halfText({ stable, chatter, chosen }: CalibratedHalf): string {
   return `${stable} stable, ${chatter} with chatter: ${percent(wrong, 1)} false, ${percent(found, 1)} found${after}`;
 }
 
-function calibrationFacts({ entropy, alarm, threshold, setting, verifying, median_lead_s: lead }: Calibration): Fact[] {
+function calibrationFacts({ status, entropy, alarm, threshold, setting, verifying, median_lead_s: lead }: Calibration): Fact[] {
   const facts = [
-    { label: 'Chatter is', value: `${entropy} entropy ${alarm} ${threshold === null ? dash : general(threshold, 6)}` },
-    { label: 'The half that set it', value: halfText(setting) },
+    { label: status === 'found' ? 'Chatter is' : 'Best that was tried', value: `${entropy} entropy ${alarm} ${threshold === null ? dash : general(threshold, 6)}` },
+    { label: 'The half that sets it', value: halfText(setting) },
     { label: 'The half that verifies it', value: halfText(verifying) },
   ];
   if (lead !== null) facts.push({ label: 'Lead over the spectrogram', value: `${fixed(1e3 * lead, 0)} ms (median)` });
@@ -190,13 +198,20 @@ function calibrationFacts({ entropy, alarm, threshold, setting, verifying, media
 }
 
 export function CalibrationSection({ calibration }: { calibration: Calibration }) {
+  const found = calibration.status === 'found';
+  const lead = found ? 'How the threshold was set, and how it did on the other half.' : 'What was tried as a threshold on one half, and how it did on the other.';
   return (
-    <Section id="calibration" heading="Calibration" lead="How the threshold was set, and how it did on the other half.">
+    <Section id="calibration" heading="Calibration" lead={lead}>
+      {!found && (
+        <p class="why">
+          <strong>Not calibrated</strong>: {calibration.reason}. The numbers below are those of the best threshold that was tried; it is no detector.
+        </p>
+      )}
       <Facts facts={calibrationFacts(calibration)} />
       <Plot
         which="calibration-roc"
         shows="Share of chatter found against share of false alarms"
-        caption="Share of chatter found against share of false alarms, threshold by threshold; the mark is the chosen one, on the recordings that verify it."
+        caption={`Share of chatter found against share of false alarms, threshold by threshold; the mark is the ${found ? 'chosen' : 'best'} one, on the recordings that verify it.`}
         draw={(theme, width) => rocFigure(calibration, theme, width < narrow)}
       />
       <RecordingsTable recordings={calibration.recordings} />
