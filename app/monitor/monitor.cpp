@@ -190,11 +190,15 @@ monitor::MonitorFile read_config(const MonitorCommand& command) {
   return file;
 }
 
-/// No alarm says nothing of the time that could not be judged: that stands beside it.
 std::string summary_of(live::Session& session, const std::string& input) {
   const live::MetricValues& m = session.metrics();
-  std::string out = fmt::format("{:.3f} s of {} processed in {} decisions, {} alarm{}.\n", session.time_s(),
-                                printable(input), m.decisions.load(), m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
+  return fmt::format("{:.3f} s of {} processed in {} decisions, {} alarm{}.\n", session.time_s(), printable(input),
+                     m.decisions.load(), m.alarms.load(), m.alarms.load() == 1 ? "" : "s");
+}
+
+/// No alarm says nothing of the time that could not be judged: that stands beside it.
+std::string blind_summary(const live::MetricValues& m) {
+  std::string out;
   for (const monitor::BlindReason reason : monitor::blind_reasons) {
     const double blind_s = m.blind_for_s(reason);
     if (blind_s > 0.0) out += fmt::format("cannot tell: {}, for {:.3g} s\n", monitor::to_string(reason), blind_s);
@@ -246,6 +250,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   if (recorder) {
     outputs.samples = [&](std::span<const float> samples) { recorder->add(samples); };
     outputs.skipped = [&](std::uint64_t frames) { recorder->skip(frames); };
+    outputs.silent = [&](double seconds) { recorder->silent(seconds); };
   }
 
   live::Session session(file,
@@ -282,7 +287,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     page.summary = summary + state_summary(recorded);
     write_report(command.report, page);
   }
-  if (common.wants_summary()) fmt::print("{}", summary);
+  if (common.wants_summary()) fmt::print("{}{}", summary, blind_summary(session.metrics()));
   return stop ? static_cast<Exit>(exit_of_signal()) : done;
 }
 

@@ -254,10 +254,13 @@ TEST_F(MonitorVerb, LivesThroughBadSamples) {
   std::vector<float> samples = cut(4.0, false);
   for (std::size_t i = 20'000; i < 21'000; ++i) samples[i] = std::numeric_limits<float>::quiet_NaN();
   wav("rec.wav", samples);
-  const Ended run = robomill("monitor monitor.toml --input rec.wav -o events.jsonl");
+  const Ended run = robomill("monitor monitor.toml --input rec.wav -o events.jsonl --report report.html");
   ASSERT_EQ(run.exit, 0);
   // 1,000 samples are three hops that are mostly lost, and four more are left out.
   EXPECT_NE(run.out.find("cannot tell: gap, for 0.2 s\n"), std::string::npos) << run.out;
+  const std::string page = slurp(folder_.at("report.html"));
+  EXPECT_NE(page.find("Cannot tell: gap, for 0."), std::string::npos);
+  EXPECT_EQ(page.find("cannot tell: gap"), std::string::npos);  // once is enough
   const std::vector<json> faults = events_of("fault");
   ASSERT_FALSE(faults.empty());
   EXPECT_EQ(faults.front()["faults"][0], "not-finite");
@@ -285,7 +288,9 @@ TEST_F(MonitorVerb, MissesSamplesOfAPipe) {
   folder_.file("monitor.toml", timed("0.2"));
   const Ended run = shell(
       "(cat rec.raw; i=0; until grep -q no-signal events.jsonl || [ $i -gt 600 ]; do i=$((i+1)); sleep 0.1; done; "
-      "cat rec.raw) | '" ROBOMILL_PROGRAM "' monitor monitor.toml --input - --format f32 -o events.jsonl");
+      "cat rec.raw) | '" ROBOMILL_PROGRAM
+      "' monitor monitor.toml --input - --format f32 -o events.jsonl --report "
+      "report.json");
   ASSERT_EQ(run.exit, 0) << run.err;
   const std::vector<json> states = events_of("state");
   ASSERT_GE(states.size(), 2U);
@@ -296,6 +301,12 @@ TEST_F(MonitorVerb, MissesSamplesOfAPipe) {
   EXPECT_NE(run.out.find("blind (no-signal)\n"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("0 alarms.\ncannot tell: no-signal, for 0."), std::string::npos) << run.out;
   EXPECT_EQ(run.out.find("gap"), std::string::npos) << run.out;
+  const json times = json::parse(slurp(folder_.at("report.json")))["monitor"]["state_times"];
+  const auto blind =
+      std::find_if(times.begin(), times.end(), [](const json& time) { return time["state"] == "blind"; });
+  ASSERT_NE(blind, times.end()) << times;
+  EXPECT_EQ((*blind)["reason"], "no-signal");
+  EXPECT_GE((*blind)["duration_s"].get<double>(), 0.2);
 }
 
 TEST_F(MonitorVerb, RejectsBadInputWithOneMessage) {

@@ -37,7 +37,8 @@ struct Stay {
   double from_s = NAN, to_s = NAN;
 };
 
-/// How long the run was in a state, all stays together.
+/// How long the run was in a state, all stays together; of BlindReason::no_signal with the time by the clock in which
+/// no samples came, while that of the stream stands still.
 struct StateTime {
   monitor::State state = monitor::State::stable;
   monitor::BlindReason reason = monitor::BlindReason::none;  ///< of State::blind

@@ -118,8 +118,15 @@ void Recorder::skip(std::uint64_t frames) {
   parts.waves.skip(frames);
   for (SpectrogramStore& each : parts.spectrograms) each.skip(frames);
   parts.frames += frames;
-  parts.states.add(from_s, monitor::State::blind, monitor::BlindReason::gap);
+  parts.states.leave_out(from_s);
   parts.alarms.end(from_s);
+}
+
+void Recorder::silent(double seconds) {
+  Parts& parts = *parts_;
+  const double at_s = static_cast<double>(parts.frames) / parts.options.sample_rate_hz;
+  parts.states.silent(at_s, seconds);
+  parts.alarms.end(at_s);
 }
 
 void Recorder::add(const monitor::Decision& decision, double compute_s) {

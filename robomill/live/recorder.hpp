@@ -33,6 +33,9 @@ class ROBOMILL_API Recorder {
   void add(std::span<const float> samples);
   /// Frames that were left out: of their time nothing is known, BlindReason::gap.
   void skip(std::uint64_t frames);
+  /// So much more time went by without samples, by the clock: BlindReason::no_signal, as that of frames which turn out
+  /// to have been left out then.
+  void silent(double seconds);
   /// The decision that followed. Its time is that of the stream, frames that were left out counted.
   /// @param compute_s  it took so long
   void add(const monitor::Decision& decision, double compute_s);

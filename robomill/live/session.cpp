@@ -83,8 +83,9 @@ void Session::run(const std::atomic<bool>& stop) {
 void Session::check_silence(Clock::time_point now) {
   const double silence_s = std::chrono::duration<double>(now - samples_at_).count();
   if (silence_s < file_.timeout_s) return;
-  metrics_.add_blind(BlindReason::no_signal, silence_s - silence_s_);
-  silence_s_ = silence_s;
+  const double more_s = silence_s - std::exchange(silence_s_, silence_s);
+  metrics_.add_blind(BlindReason::no_signal, more_s);
+  if (outputs_.silent) outputs_.silent(more_s);
   become_blind(BlindReason::no_signal);
 }
 

@@ -37,6 +37,8 @@ struct SessionOutputs {
   std::function<void(std::span<const float> samples)> samples = {};
   /// … and frames that were left out before the next ones.
   std::function<void(std::uint64_t frames)> skipped = {};
+  /// So much more time went by without samples, by the clock.
+  std::function<void(double seconds)> silent = {};
 };
 
 struct SessionOptions {

@@ -156,6 +156,8 @@ class Running {
     const std::scoped_lock lock(mutex_);
     return states_;
   }
+  /// Of a session that has ended.
+  [[nodiscard]] double silent_s() const { return silent_s_; }
   void end() {
     session_.queue().close();
     if (thread_.joinable()) thread_.join();
@@ -169,11 +171,13 @@ class Running {
       if (event.kind == MonitorEvent::Kind::state) states_.push_back(event);
       return true;
     };
+    out.silent = [this](double seconds) { silent_s_ += seconds; };
     return out;
   }
 
   std::mutex mutex_;
   std::vector<MonitorEvent> states_;
+  double silent_s_ = 0.0;
   std::atomic<bool> stop_{false};
   Session session_;
   std::jthread thread_;
@@ -216,6 +220,8 @@ TEST(Session, IsBlindWhereNoSamplesCome) {
     EXPECT_EQ(metrics.blind_for_s(BlindReason::gap), 0.0);
     EXPECT_NE(running.states()[1].decision.state, State::blind);
     EXPECT_TRUE(running.states()[1].decision.changed);
+    running.end();
+    EXPECT_NEAR(running.silent_s(), metrics.blind_for_s(BlindReason::no_signal), 1e-9);
   }
 }
 

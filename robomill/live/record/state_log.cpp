@@ -1,6 +1,7 @@
 #include "robomill/live/record/state_log.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace robomill::live {
 namespace {
@@ -16,7 +17,7 @@ void StateLog::add(double time_s, monitor::State state, monitor::BlindReason rea
     now_ = next;
   }
   time_s = std::max(time_s, last_s_);
-  duration_s_[now_] += time_s - last_s_;
+  if (time_s > last_s_) duration_s_[now_] += std::max(0.0, time_s - last_s_ - std::exchange(silence_s_, 0.0));
   last_s_ = time_s;
   if (unlisted_ == 0) stays_.back().to_s = time_s;
   if (next == now_) return;
@@ -26,6 +27,16 @@ void StateLog::add(double time_s, monitor::State state, monitor::BlindReason rea
   } else {
     ++unlisted_;
   }
+}
+
+void StateLog::leave_out(double time_s) {
+  add(time_s, monitor::State::blind, silence_s_ > 0.0 ? monitor::BlindReason::no_signal : monitor::BlindReason::gap);
+}
+
+void StateLog::silent(double time_s, double seconds) {
+  add(time_s, monitor::State::blind, monitor::BlindReason::no_signal);
+  duration_s_[now_] += seconds;
+  silence_s_ += seconds;
 }
 
 std::vector<StateTime> StateLog::times() const {

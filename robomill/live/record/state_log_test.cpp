@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "robomill/base/random.hpp"
@@ -47,6 +48,42 @@ TEST(StateLog, TheFirstStateAlsoHoldsBeforeIt) {
   EXPECT_EQ(log.stays()[1].from_s, 3.0);
   EXPECT_EQ(log.stays()[2].from_s, 3.0);
   EXPECT_EQ(log.stays()[2].to_s, 4.0);
+}
+
+// Without samples the stream's time stands still: the clock's counts.
+TEST(StateLog, CountsTimeWithoutSamplesByTheClock) {
+  StateLog log;
+  log.add(2.0, State::stable);
+  log.silent(2.0, 1.0);
+  log.silent(2.0, 2.2);
+  log.add(2.025, State::stable);
+  log.add(5.0, State::stable);
+  ASSERT_EQ(log.stays().size(), 3U);
+  EXPECT_EQ(log.stays()[1].state, State::blind);
+  EXPECT_EQ(log.stays()[1].reason, BlindReason::no_signal);
+  EXPECT_EQ(log.stays()[1].from_s, 2.0);
+  ASSERT_EQ(log.times().size(), 2U);
+  EXPECT_NEAR(log.times()[0].duration_s, 4.975, 1e-9);
+  EXPECT_EQ(log.times()[1].reason, BlindReason::no_signal);
+  EXPECT_NEAR(log.times()[1].duration_s, 3.2, 1e-9);
+}
+
+// The sender's numbers say later how long it was: that is not another reason, and not counted again.
+TEST(StateLog, TimeWithoutSamplesIsNoGapOnTop) {
+  for (const double gap_s : {3.0, 5.0}) {
+    StateLog log;
+    log.add(2.0, State::stable);
+    log.silent(2.0, 3.2);
+    log.leave_out(2.0);
+    log.add(2.0 + gap_s, State::stable);
+    log.leave_out(10.0);
+    log.add(12.0, State::stable);
+    ASSERT_EQ(log.times().size(), 3U);
+    EXPECT_EQ(log.times()[1].reason, BlindReason::no_signal);
+    EXPECT_NEAR(log.times()[1].duration_s, std::max(3.2, gap_s), 1e-9);
+    EXPECT_EQ(log.times()[2].reason, BlindReason::gap);
+    EXPECT_NEAR(log.times()[2].duration_s, 2.0, 1e-9);
+  }
 }
 
 TEST(StateLog, CountsTheTimeOfStaysThatItDoesNotList) {
