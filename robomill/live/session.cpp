@@ -67,6 +67,7 @@ void Session::run(const std::atomic<bool>& stop) {
     const HopQueue::Taken taken = queue_.pop(hop, wait);
     if (taken == HopQueue::Taken::closed) break;
     if (taken == HopQueue::Taken::hop) {
+      if (silence_s_ > 0.0) check_silence(Clock::now());
       process(std::move(hop));
     } else if (options_.live) {
       check_silence(Clock::now());

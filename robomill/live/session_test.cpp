@@ -213,14 +213,19 @@ TEST(Session, IsBlindWhereNoSamplesCome) {
     EXPECT_NEAR(silent.time_s, had_samples ? 0.025 : 0.0, 1e-9);
     EXPECT_EQ(metrics.state, 3);
     EXPECT_EQ(metrics.decisions, had_samples ? 1U : 0U);
+    const double counted_s = metrics.blind_for_s(BlindReason::no_signal);
+    const auto counted_at = std::chrono::steady_clock::now();
     Hop next = noise(random);
     next.frames_before = 1024;  // 0.1 s of what was counted already
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    const std::chrono::duration<double> more = std::chrono::steady_clock::now() - counted_at;
     ASSERT_TRUE(running.session().queue().push(std::move(next)));
     ASSERT_TRUE(wait_for([&] { return running.states().size() >= 2; }));
     EXPECT_EQ(metrics.blind_for_s(BlindReason::gap), 0.0);
     EXPECT_NE(running.states()[1].decision.state, State::blind);
     EXPECT_TRUE(running.states()[1].decision.changed);
     running.end();
+    EXPECT_GE(running.silent_s(), counted_s + more.count());  // up to the samples that end it
     EXPECT_NEAR(running.silent_s(), metrics.blind_for_s(BlindReason::no_signal), 1e-9);
   }
 }
