@@ -346,6 +346,13 @@ TEST(Advisor, KeepsToTheSpeedsOfTheSpindle) {
   EXPECT_NEAR(event.stable_speeds_rad_per_s[0], 5450.0 * rpm, 1e-9);
 }
 
+// Two tooth passings at 6,500 rpm are 650 Hz: the cut chatters at that speed.
+TEST(Advisor, SuggestsNoSpeedAtWhichItChatters) {
+  const MonitorEvent event = advised({.teeth = 3}, 651.0);
+  EXPECT_NEAR(event.suggested_spindle_speed_rad_per_s, 651.0 * 60.0 / 9.0 * rpm, 1e-9);
+  for (const double speed : event.stable_speeds_rad_per_s) EXPECT_GT(std::abs(speed / rpm - 6500.0), 65.0);
+}
+
 TEST(Advisor, SuggestsNoSpeedForModeCoupling) {
   AdviceBasis basis{.teeth = 3, .lobes = stability::LobesResult{}, .mode_coupling = {false, true, true}};
   basis.lobes->axial_depth_m = Eigen::VectorXd::LinSpaced(3, 0.0, 4e-3);
