@@ -218,7 +218,10 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   EventFile events(common, input.is_live);
 
   std::optional<live::Recorder> recorder;
-  if (!command.report.empty()) recorder.emplace(file.options, file.columns.channels, "");
+  if (!command.report.empty()) {
+    const std::vector<std::string>& channels = file.columns.channels;
+    recorder.emplace(file.options, channels, unit_of(channels, file.options.tachometer_channel));
+  }
   std::optional<Watch> watch;
   if (command.watch) watch.emplace();
   std::FILE* const people = common.wants_summary() ? stdout : stderr;

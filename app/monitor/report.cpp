@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
 #include "robomill/base/units.hpp"
 #include "robomill/live/files/recorded_run_json.hpp"
 
@@ -17,7 +22,7 @@ std::string speed_fact(const monitor::MonitorOptions& options) {
 }
 
 std::string detector_fact(const monitor::MonitorOptions& options) {
-  std::string out = fmt::format("{}, {:.4g} ms each {:.4g} ms", monitor::to_string(options.kind),
+  std::string out = fmt::format("{}, windows of {:.4g} ms every {:.4g} ms", monitor::to_string(options.kind),
                                 options.window_s / units::ms, options.hop_s / units::ms);
   if (options.kind == monitor::Kind::comb_cusum) {
     return out + fmt::format(", {:.3g} false alarms an hour allowed", options.false_alarms_per_hour);
@@ -28,9 +33,21 @@ std::string detector_fact(const monitor::MonitorOptions& options) {
 
 }  // namespace
 
+std::string unit_of(const std::vector<std::string>& channels, int tachometer_channel) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 2> units = {{{"_m_per_s2", "m/s²"}, {"_g", "g"}}};
+  for (const auto& [suffix, unit] : units) {
+    bool all = true;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      all = all && (channels[i].ends_with(suffix) || static_cast<int>(i) == tachometer_channel);
+    }
+    if (all) return std::string(unit);
+  }
+  return {};
+}
+
 page::Report monitor_page(live::RecordedRun run, const monitor::MonitorFile& file, const std::string& source) {
   const monitor::MonitorOptions& options = file.options;
-  run.facts = {{"Recording", fmt::format("{}, {:.6g} Hz", source, options.sample_rate_hz)},
+  run.facts = {{"Signal", fmt::format("{}, {:.6g} Hz", source, options.sample_rate_hz)},
                {"Detector", detector_fact(options)},
                {"Spindle speed", speed_fact(options)}};
   page::Report page;

@@ -20,6 +20,13 @@ live::Hop noise(Random& random) {
   return hop;
 }
 
+TEST(MonitorPage, TakesTheUnitOfTheChannels) {
+  EXPECT_EQ(unit_of({"ax_m_per_s2", "ay_m_per_s2"}, -1), "m/s²");
+  EXPECT_EQ(unit_of({"ax_g", "pulses"}, 1), "g");
+  EXPECT_EQ(unit_of({"ax_g", "ay_m_per_s2"}, -1), "");
+  EXPECT_EQ(unit_of({"1", "2"}, -1), "");
+}
+
 TEST(MonitorPage, ShowsWhatASessionDelivers) {
   monitor::MonitorFile file;
   file.columns.channels = {"ax"};
@@ -53,7 +60,8 @@ TEST(MonitorPage, ShowsWhatASessionDelivers) {
   EXPECT_NE(run.events[0].find("\"message\":\"gone\""), std::string::npos) << run.events[0];
   EXPECT_NEAR(run.stays.back().to_s, session.time_s(), 1e-3);
   const std::string page = page::report_json(monitor_page(run, file, "cut.wav"));
-  for (const char* part : {"cut.wav, 10240 Hz", "comb-cusum", "\"reason\":\"gap\"", "\"message\":\"gone\""}) {
+  for (const char* part : {"cut.wav, 10240 Hz", "comb-cusum, windows of 50 ms every 25 ms", "\"reason\":\"gap\"",
+                           "\"message\":\"gone\""}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   }
   EXPECT_NE(state_summary(run).find("Cannot tell: gap, for 0.03 s."), std::string::npos) << state_summary(run);

@@ -69,9 +69,10 @@ struct RecordedRun {
   std::vector<RecordedChannel> channels = {};  ///< at least one
   Spectrogram spectrogram = {};                ///< of the channel that was loudest in chatter, or the first
   int teeth = 0;                               ///< of the cutter; 0: unknown
-  double decision_run_s = NAN;                 ///< > 0; of the next five, n runs each, NaN where there is no value
+  double decision_run_s = NAN;                 ///< > 0; of the next six, n runs each, NaN where there is no value
   signal::Band score = {};                     ///< none while the monitor is blind
   signal::Band threshold = {}, energy_entropy = {};
+  signal::Band chatter_frequency_hz = {};     ///< while in chatter
   signal::Band spindle_speed_rad_per_s = {};  ///< tracked
   signal::Band spindle_speed_std_rad_per_s = {};
   std::vector<Stay> stays = {};             ///< one after the other, without gaps; some thousands at most

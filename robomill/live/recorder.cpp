@@ -19,7 +19,7 @@ constexpr std::size_t most_channels = 4;  ///< whose spectrogram is kept
 constexpr std::size_t most_events = 400;
 constexpr double two_windows = 2.0;  ///< of the detector: the spectrogram's, whose lines are half as far apart
 
-enum Curve : std::size_t { score, threshold, energy_entropy, speed, speed_std, curves };
+enum Curve : std::size_t { score, threshold, energy_entropy, frequency, speed, speed_std, curves };
 
 double finite_or_none(double value) {
   return std::isfinite(value) ? value : NAN;
@@ -136,6 +136,8 @@ void Recorder::add(const monitor::Decision& decision, double compute_s) {
   values[score] = blind ? NAN : finite_or_none(decision.score);
   values[threshold] = finite_or_none(decision.threshold);
   values[energy_entropy] = finite_or_none(decision.energy_entropy);
+  const bool chatters = decision.state == monitor::State::chatter;
+  values[frequency] = chatters ? positive_or_none(decision.chatter_frequency_hz) : NAN;
   values[speed] = positive_or_none(decision.spindle_speed_rad_per_s);
   const bool known = !std::isnan(values[speed]);
   values[speed_std] = known ? positive_or_none(decision.spindle_speed_std_rad_per_s) : NAN;
@@ -145,7 +147,7 @@ void Recorder::add(const monitor::Decision& decision, double compute_s) {
   ++parts.count;
   parts.compute_s += compute_s;
   parts.compute_max_s = std::max(parts.compute_max_s, compute_s);
-  if (decision.state == monitor::State::chatter) parts.loudest = decision.channel;
+  if (chatters) parts.loudest = decision.channel;
   parts.states.add(decision.time_s, decision.state, decision.reason);
   parts.alarms.add(decision, parts.channels);
 }
@@ -172,6 +174,7 @@ RecordedRun Recorder::run() const {
   out.score = parts.decisions.band(score);
   out.threshold = parts.decisions.band(threshold);
   out.energy_entropy = parts.decisions.band(energy_entropy);
+  out.chatter_frequency_hz = parts.decisions.band(frequency);
   out.spindle_speed_rad_per_s = parts.decisions.band(speed);
   out.spindle_speed_std_rad_per_s = parts.decisions.band(speed_std);
   out.teeth = parts.options.teeth;

@@ -175,6 +175,24 @@ TEST(Recorder, ABlindMonitorHasNoScore) {
   EXPECT_EQ(run.stays[0].from_s, 0.0);
 }
 
+// However many alarms there are: events are listed up to a number.
+TEST(Recorder, FollowsTheFrequencyOfChatter) {
+  Recorder recorder(one_channel(), {"a"}, "");
+  monitor::Decision decision;
+  for (int i = 1; i <= 8000; ++i) {
+    decision.time_s = 0.025 * i;
+    decision.state = i > 4000 ? monitor::State::chatter : monitor::State::stable;
+    decision.chatter_frequency_hz = i > 4000 ? 680.0 + 5.0 * (i % 2) : 0.0;
+    recorder.add(decision, 1e-4);
+  }
+  const RecordedRun run = recorder.run();
+  const signal::Band& frequency_hz = run.chatter_frequency_hz;
+  ASSERT_GT(frequency_hz.low.size(), 700);
+  EXPECT_TRUE(std::isnan(frequency_hz.low[frequency_hz.low.size() / 2 - 3]));
+  EXPECT_EQ(frequency_hz.low[frequency_hz.low.size() - 2], 680.0);
+  EXPECT_EQ(frequency_hz.high[frequency_hz.high.size() - 2], 685.0);
+}
+
 // A score and the state it belongs to are drawn over one axis of time.
 TEST(Recorder, ScoresStandWhereTheirStatesBegin) {
   Recorder recorder(one_channel(), {"a"}, "");

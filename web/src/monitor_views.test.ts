@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Monitor, MonitorAlarm, MonitorStay, Num } from './documents';
-import { duration, findings, frequencyText, multiplesOver, reasonText, shadedStays, speedStretches } from './monitor_views';
+import { chatterMarks, duration, faultText, findings, frequencyText, multiplesOver, reasonText, shadedStays, speedStretches } from './monitor_views';
 
 const alarm: MonitorAlarm = {
   count: 3,
@@ -69,6 +69,9 @@ describe('what was found, in words', () => {
     ]);
     expect(reasonText(null)).toBe('reason unknown');
   });
+  it('has words for every fault', () => {
+    expect(['not-finite', 'wrong-sample-rate', 'moon'].map(faultText)).toEqual(['samples that are no number', 'the sample rate is another one', 'moon']);
+  });
   it('writes durations as people say them', () => {
     expect([0, 0.625, 12.44, 99.96, 320, 7500].map(duration)).toEqual(['0.00 s', '0.63 s', '12.4 s', '1 min 40 s', '5 min 20 s', '2 h 5 min']);
   });
@@ -96,6 +99,16 @@ describe('shaded stays', () => {
       expect(shown.some(({ state, from_s, to_s }) => state === 'chatter' && from_s <= chatter.from_s && to_s >= chatter.to_s)).toBe(true);
     }
   });
+});
+
+it('marks where the frequency of chatter is, apart enough to be distinguished', () => {
+  const low = Array.from({ length: 1000 }, (_, run) => (run < 500 ? null : run === 700 ? 300 : 680));
+  const high = low.map((value, run) => (value !== null && run === 800 ? 900 : value));
+  const { time_s, frequency_hz } = chatterMarks({ decisions: { run_s: 2, chatter_frequency_hz: { low, high } } } as unknown as Monitor, 2000);
+  expect(time_s[0]).toBe(1000);
+  expect(time_s.length).toBeLessThan(40);
+  for (const [time, frequency] of [[1400, 300], [1600, 900]]) expect(time_s.some((at, i) => at === time && frequency_hz[i] === frequency)).toBe(true);
+  expect(Math.max(...time_s)).toBeGreaterThan(1950);
 });
 
 describe('the speed', () => {

@@ -18,6 +18,20 @@ export function reasonText(reason: string | null): string {
   }
 }
 
+const faultTexts: Record<string, string> = {
+  'not-finite': 'samples that are no number',
+  stuck: 'a channel is stuck',
+  clipped: 'signal at the limit of its converter',
+  'dead-channel': 'a channel is dead',
+  'wrong-sample-rate': 'the sample rate is another one',
+  'speed-unknown': 'spindle speed unknown',
+};
+
+/** What is wrong with the input, in words. */
+export function faultText(fault: string): string {
+  return faultTexts[fault] ?? fault;
+}
+
 const noSpeedTexts: Record<NoSpeed, string> = {
   arm: 'no spindle speed avoids it: a mode of the arm',
   unclear: 'no spindle speed is suggested: it may be a mode of the arm',
@@ -121,6 +135,26 @@ export function shadedStays(stays: MonitorStay[], most = 400): MonitorStay[] {
     }
   }
   return out;
+}
+
+/** Where marks of chatter's frequency go: at each run's lowest and highest one that is not near a mark before, in time (a fiftieth of the span) and frequency. */
+export function chatterMarks({ decisions: { run_s, chatter_frequency_hz: of } }: Monitor, span_s: number): { time_s: number[]; frequency_hz: number[] } {
+  const time_s: number[] = [];
+  const frequency_hz: number[] = [];
+  const isMarked = (time: number, frequency: number) => {
+    for (let i = time_s.length - 1; i >= 0 && time - time_s[i]! < span_s / 50; --i) {
+      if (Math.abs(frequency_hz[i]! / frequency - 1) < 0.02) return true;
+    }
+    return false;
+  };
+  of.low.forEach((low, run) => {
+    for (const frequency of [low, of.high[run] ?? null]) {
+      if (frequency === null || isMarked(run * run_s, frequency)) continue;
+      time_s.push(run * run_s);
+      frequency_hz.push(frequency);
+    }
+  });
+  return { time_s, frequency_hz };
 }
 
 /** A stretch over which the speed is known. */

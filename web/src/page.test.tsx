@@ -217,6 +217,26 @@ it('shows what was commanded and why no speed is suggested', () => {
   expect(page()).toContain('locked to the rotation; no spindle speed is suggested: it may be a mode of the arm');
 });
 
+it('says of a blind monitor in words what it lacks, and no score', () => {
+  report = { ...empty(), monitor: report.monitor };
+  const event = report.monitor!.events[0]!;
+  report.monitor!.events = [
+    { ...event, event: 'state', state: 'blind', reason: 'no-signal', score: 0, threshold: 17.9 },
+    { ...event, event: 'fault', state: 'stable', reason: null, faults: ['speed-unknown', 'clipped'] },
+  ];
+  const rows = [...page().split('Events</caption>')[1]!.matchAll(/<tr>(.*?)<\/tr>/g)].map(([, row]) => row!.replace(/<[^>]*>/g, '|'));
+  expect(rows[1]).toContain('|cannot\u00a0tell||–||17.9|');
+  expect(rows[2]).toContain('input: spindle speed unknown, signal at the limit of its converter');
+});
+
+it('has no column that says nothing, and no navigation to a single section', () => {
+  report = { ...empty(), monitor: report.monitor };
+  expect(page()).toContain('>Mode</th>');
+  expect(page()).not.toContain('<nav');
+  for (const row of [...report.monitor!.events, ...report.monitor!.alarms]) Object.assign(row, { mode: null, hidden: null, no_speed: null });
+  expect(page()).not.toContain('>Mode</th>');
+});
+
 it('says where no threshold works, and of what its numbers are', () => {
   expect(page()).not.toContain('Not calibrated');
   report = { ...empty(), calibration: report.calibration };

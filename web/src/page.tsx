@@ -80,10 +80,10 @@ export function Page({ report }: { report: Report }) {
   return (
     <>
       <a class="skip" href="#main">
-        Skip to the recommendation
+        Skip to the content
       </a>
       <Header {...report} />
-      {shown.length > 0 && (
+      {shown.length > 1 && (
         <nav aria-label="Sections">
           {shown.map(({ id, name }) => (
             <a href={`#${id}`}>{name}</a>

@@ -1,6 +1,7 @@
 // What the sections are made of.
 import type { ComponentChildren } from 'preact';
 import type { Fact } from './documents';
+import { dash } from './text';
 
 interface SectionProps {
   id: string;
@@ -20,10 +21,11 @@ export function Section({ id, heading, lead, children }: SectionProps) {
   );
 }
 
-/** A column of a table; `number`: its cells are numbers. */
+/** A column of a table; `number`: its cells are numbers; `optional`: not shown where no cell says anything. */
 export interface Column<Row> {
   heading: string;
   number?: boolean;
+  optional?: boolean;
   cell: (row: Row, index: number) => ComponentChildren;
 }
 
@@ -40,7 +42,8 @@ function cellClass(number: boolean | undefined, content: ComponentChildren): str
   return typeof content === 'string' && content.length > 24 ? 'long' : undefined;
 }
 
-export function Table<Row>({ caption, quiet, columns, rows, rowClass }: TableProps<Row>) {
+export function Table<Row>({ caption, quiet, columns: all, rows, rowClass }: TableProps<Row>) {
+  const columns = all.filter(({ optional, cell }) => !optional || rows.some((row, index) => !['', dash].includes(cell(row, index) as string)));
   return (
     <div class="table" tabIndex={0} role="region" aria-label={caption}>
       <table>

@@ -77,7 +77,7 @@ export interface Monitor extends Remarks {
   channels: { name: string; wave: Band }[];
   spectrogram: Spectrogram | null;
   teeth: Num;
-  decisions: Record<'score' | 'threshold' | 'energy_entropy' | 'spindle_speed_rpm' | 'spindle_speed_std_rpm', Band> & { run_s: number };
+  decisions: Record<'score' | 'threshold' | 'energy_entropy' | 'chatter_frequency_hz' | 'spindle_speed_rpm' | 'spindle_speed_std_rpm', Band> & { run_s: number };
   decision_count: number;
   compute_mean_us: Num; // of one decision
   compute_max_us: Num;

@@ -46,6 +46,7 @@ Json decisions_json(const RecordedRun& run) {
           {"score", band_json(run.score)},
           {"threshold", band_json(run.threshold)},
           {"energy_entropy", band_json(run.energy_entropy)},
+          {"chatter_frequency_hz", band_json(run.chatter_frequency_hz)},
           {"spindle_speed_rpm", band_json(run.spindle_speed_rad_per_s, units::rpm)},
           {"spindle_speed_std_rpm", band_json(run.spindle_speed_std_rad_per_s, units::rpm)}};
 }

@@ -59,6 +59,8 @@ TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   EXPECT_NEAR(decisions["spindle_speed_std_rpm"]["high"][0].get<double>(), 3.0, 1e-9);
   EXPECT_TRUE(decisions["spindle_speed_rpm"]["low"].back().is_null());
   EXPECT_TRUE(decisions["score"]["low"][0].is_null());
+  EXPECT_TRUE(decisions["chatter_frequency_hz"]["low"][0].is_null());
+  EXPECT_EQ(decisions["chatter_frequency_hz"]["low"].size(), decisions["score"]["low"].size());
   EXPECT_EQ(json["decisions"]["run_s"].get<double>(), static_cast<double>(options.hop_samples()) / rate_hz);
   EXPECT_EQ(json["decision_count"], 4);
   EXPECT_NEAR(json["compute_max_us"].get<double>(), 200.0, 1e-9);

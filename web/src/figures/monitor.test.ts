@@ -16,6 +16,7 @@ const monitor = {
     score: single([null, 1, 9]),
     threshold: single([5, 5, 5]),
     energy_entropy: single([1, 2, 3]),
+    chatter_frequency_hz: single([null, null, 16]),
     spindle_speed_rpm: single([null, 3000, 3060]),
     spindle_speed_std_rpm: single([null, 2, null]),
   },
@@ -25,10 +26,6 @@ const monitor = {
     { state: 'transition', reason: null, from_s: 1, to_s: 1.5 },
     { state: 'chatter', reason: null, from_s: 1.5, to_s: 2 },
     { state: 'blind', reason: 'gap', from_s: 2, to_s: 3 },
-  ],
-  events: [
-    { time_s: 1, event: 'state', state: 'transition', chatter_frequency_hz: 15 },
-    { time_s: 1.5, event: 'state', state: 'chatter', chatter_frequency_hz: 16 },
   ],
 } as Monitor;
 
@@ -43,10 +40,12 @@ describe('what the monitor detected', () => {
     ]);
     expect(scoreFigure(monitor, light).layout['shapes']).toEqual(shades);
     expect(span(monitor)).toEqual([0, 3]);
+    const long = { ...monitor, stays: [{ ...monitor.stays[1]!, from_s: 0, to_s: 1000 }, { ...monitor.stays[3]!, from_s: 1000, to_s: 1000.1 }] };
+    expect(states(long, light)).toMatchObject([{ x0: 1000, x1: 1002.0002 }]); // wide enough to be seen
     expect(span({ ...monitor, stays: [] })).toEqual([0, 1]);
   });
   it('has a line a channel, named without markup', () => {
-    const { data, layout } = waveFigure(monitor, light);
+    const { data, layout } = waveFigure(monitor, light, false);
     expect(data.map((trace) => trace['name'])).toEqual(['&lt;x&gt;', 'y']);
     expect(data[0]).toMatchObject({ x: [0.25, 0.75, 1.25, 1.75, 2.25, 2.75], y: [0, 0, 1, 1, -1, -1] });
     expect(data[1]!['y']).toEqual([0, 0, 1, 2, -2, -2]);
@@ -56,7 +55,7 @@ describe('what the monitor detected', () => {
     for (const theme of [light, dark]) {
       const { data } = spectrogramFigure(monitor, theme);
       expect(data[0]).toMatchObject({ x: [0.5, 0.75, 1], zmax: 0 });
-      expect(data.find(({ name }) => name === 'chatter reported')).toMatchObject({ x: [1.5], y: [16] });
+      expect(data.find(({ name }) => name === 'chatter reported')).toMatchObject({ x: [1], y: [16] });
     }
   });
   it('ends the axis of frequencies where the document says, with the lines of the cut while the speed is known', () => {
@@ -65,7 +64,8 @@ describe('what the monitor detected', () => {
     // 3000 rpm are 50 Hz: of two teeth rotation is drawn once, tooth passing up to its second multiple.
     expect(data.find(({ name }) => name === 'rotation')).toMatchObject({ x: [0.5, 1, 1.5, null], y: [50, 51, 51, null] });
     expect(data.find(({ name }) => name === 'tooth passing')!['y']).toEqual([100, 102, 102, null, 200, 204, 204, null]);
-    const unknown = spectrogramFigure({ ...monitor, teeth: null, events: [] }, light);
+    const decisions = { ...monitor.decisions, chatter_frequency_hz: single([null, null, null]) };
+    const unknown = spectrogramFigure({ ...monitor, teeth: null, decisions }, light);
     expect(unknown.data.map(({ name }) => name)).toEqual([undefined, 'rotation']);
     expect(unknown.data[1]!['y']).toHaveLength(12);
   });

@@ -1,6 +1,6 @@
 import type { Calibration, Monitor, MonitorState, Num, RocPoint } from '../documents';
 import { bandCurves } from '../bands';
-import { multiplesOver, shadedStays, speedStretches, type SpeedStretch } from '../monitor_views';
+import { chatterMarks, multiplesOver, shadedStays, speedStretches, type SpeedStretch } from '../monitor_views';
 import { curve, suffix } from './rows';
 import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
@@ -10,8 +10,9 @@ const shades: { state: MonitorState; name: string; colour: (theme: Theme) => str
   { state: 'blind', name: 'cannot tell', colour: (theme) => theme.unknown, opacity: 0.3 },
 ];
 
-/** The state as a colour over the whole height, where it was not stable; each colour once in the legend. */
+/** The state as a colour over the whole height, where it was not stable, wide enough to be seen; each colour once in the legend. */
 export function states(monitor: Monitor, theme: Theme): Layout[] {
+  const [begin, end] = span(monitor);
   const named = new Set<MonitorState>();
   return shadedStays(monitor.stays).map(({ state, from_s, to_s }) => {
     const { name, colour, opacity } = shades.find((shade) => shade.state === state)!;
@@ -22,7 +23,7 @@ export function states(monitor: Monitor, theme: Theme): Layout[] {
       xref: 'x',
       yref: 'paper',
       x0: from_s,
-      x1: to_s,
+      x1: Math.max(to_s, from_s + (end - begin) / 500),
       y0: 0,
       y1: 1,
       layer: 'below',
@@ -47,7 +48,7 @@ function timeAxis(monitor: Monitor, theme: Theme, more: Layout = {}): Layout {
 }
 
 /** Each channel's samples over time. */
-export function waveFigure(monitor: Monitor, theme: Theme): Figure {
+export function waveFigure(monitor: Monitor, theme: Theme, narrow: boolean): Figure {
   const unit = plain(monitor.unit);
   const { time_s: time, values } = bandCurves(monitor.channels.map((channel) => channel.wave), monitor.wave_run_s);
   const data: Trace[] = monitor.channels.map((channel, i) => ({
@@ -63,7 +64,7 @@ export function waveFigure(monitor: Monitor, theme: Theme): Figure {
   }));
   return {
     data,
-    layout: layout(theme, 240, {
+    layout: layout(theme, narrow ? 320 : 240, {
       showlegend: true,
       margin: { l: 72, r: 36, t: 32, b: 48 },
       xaxis: timeAxis(monitor, theme),
@@ -98,11 +99,12 @@ function cutLines(monitor: Monitor, theme: Theme, highest_hz: number): Trace[] {
   return lines.filter(({ x }) => (x as Num[]).length > 0);
 }
 
-/** The synchrosqueezed spectrogram up to what is worth drawing, with the frequencies that were reported and those of the cut. */
+/** The synchrosqueezed spectrogram up to what is worth drawing, with the frequencies of chatter and those of the cut. */
 export function spectrogramFigure(monitor: Monitor, theme: Theme): Figure {
   const spectrogram = monitor.spectrogram!;
   const columns = spectrogram.level_db[0]?.length ?? 0;
-  const reported = monitor.events.filter((event) => event.event === 'state' && event.state === 'chatter' && event.chatter_frequency_hz !== null);
+  const [begin, end] = span(monitor);
+  const marks = chatterMarks(monitor, end - begin);
   const highest = spectrogram.max_frequency_hz;
   const data: Trace[] = [
     {
@@ -130,13 +132,13 @@ export function spectrogramFigure(monitor: Monitor, theme: Theme): Figure {
     },
     ...cutLines(monitor, theme, highest),
   ];
-  if (reported.length > 0) {
+  if (marks.time_s.length > 0) {
     data.push({
       type: 'scatter',
       mode: 'markers',
       name: 'chatter reported',
-      x: reported.map((event) => event.time_s),
-      y: reported.map((event) => event.chatter_frequency_hz),
+      x: marks.time_s,
+      y: marks.frequency_hz,
       marker: { symbol: 'circle-open', size: 11, color: theme.chatter, line: { width: 2 } },
       hovertemplate: `%{x:.3f}${thinSpace}s: chatter at %{y:.1f}${thinSpace}Hz<extra></extra>`,
     });

@@ -1,7 +1,7 @@
 // What the chatter monitor detected, and how it was calibrated.
 import type { CalibratedHalf, Calibration, CalibrationRecording, Fact, Monitor, MonitorAlarm, MonitorEvent, Num } from '../documents';
 import { rocFigure, scoreFigure, spectrogramFigure, waveFigure } from '../figures/monitor';
-import { chatterNotes, findings, frequencyText, reasonText } from '../monitor_views';
+import { chatterNotes, faultText, findings, frequencyText, reasonText } from '../monitor_views';
 import { Bullets, Details, Facts, Section, Table, WarningBox } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, general, modeName, percent, significant, withDeviation } from '../text';
@@ -17,7 +17,7 @@ function isState({ event }: MonitorEvent): boolean {
 /** What an event says beside numbers; of a command its reason, which says why there is no speed. */
 function noteOf(of: MonitorEvent): string {
   const { event, state, reason, command, faults, what, file, message, hidden, no_speed } = of;
-  if (event === 'fault') return faults.length === 0 ? 'the input is well again' : `the input: ${faults.join(', ')}`;
+  if (event === 'fault') return faults.length === 0 ? 'the input is well again' : `input: ${faults.map(faultText).join(', ')}`;
   if (event === 'stream') return message ?? what ?? '';
   if (event === 'recording') return `recorded ${file ?? ''}`;
   const own = state === 'blind' ? [reasonText(reason)] : chatterNotes({ hidden, no_speed: command === null ? no_speed : null });
@@ -44,7 +44,7 @@ function Findings({ monitor }: { monitor: Monitor }) {
 
 function spectrogramCaption({ spectrogram, teeth }: Monitor): string {
   const lines = teeth === null ? 'rotation' : 'rotation and tooth passing';
-  return `Synchrosqueezed spectrogram of channel ${spectrogram!.channel}, up to the highest frequency worth drawing. Lines: ${lines}, where the speed is known.`;
+  return `Synchrosqueezed spectrogram of channel ${spectrogram!.channel}, up to the highest frequency worth drawing. Lines: ${lines}, where the speed is known; circles: the frequency of chatter.`;
 }
 
 function Plots({ monitor }: { monitor: Monitor }) {
@@ -54,7 +54,7 @@ function Plots({ monitor }: { monitor: Monitor }) {
         which="monitor-wave"
         shows="The samples over time, shaded by the monitor's state"
         caption="What was recorded, shaded by the monitor's state where that is not stable."
-        draw={(theme) => waveFigure(monitor, theme)}
+        draw={(theme, width) => waveFigure(monitor, theme, width < narrow)}
       />
       {monitor.spectrogram && (
         <Plot
@@ -86,9 +86,9 @@ function AlarmsTable({ alarms }: { alarms: MonitorAlarm[] }) {
         { heading: 'In chatter (s)', number: true, cell: ({ chatter_s }) => fixed(chatter_s, 2) },
         { heading: 'Frequency (Hz)', number: true, cell: frequencyText },
         { heading: 'Strongest in', cell: ({ channel }) => channel ?? dash },
-        { heading: 'Mode', cell: (alarm) => modeName(alarm) || dash },
+        { heading: 'Mode', optional: true, cell: (alarm) => modeName(alarm) || dash },
         { heading: 'Quiet speed (rpm)', number: true, cell: ({ suggested_spindle_speed_rpm: speed }) => fixed(speed, 0) },
-        { heading: 'Note', cell: (alarm) => chatterNotes(alarm).join('; ') },
+        { heading: 'Note', optional: true, cell: (alarm) => chatterNotes(alarm).join('; ') },
       ]}
       rows={alarms}
     />
@@ -97,7 +97,6 @@ function AlarmsTable({ alarms }: { alarms: MonitorAlarm[] }) {
 
 function EventsTable({ events }: { events: MonitorEvent[] }) {
   if (events.length === 0) return null;
-  const commanded = events.some(({ command }) => command !== null);
   return (
     <Details summary={`${events.length} ${events.length === 1 ? 'event' : 'events'}, one by one`}>
       <Table
@@ -105,14 +104,14 @@ function EventsTable({ events }: { events: MonitorEvent[] }) {
         quiet
         columns={[
           { heading: 'At (s)', number: true, cell: (event) => fixed(event.time_s, 3) },
-          { heading: 'State', cell: (event) => event.state },
-          { heading: 'Score', number: true, cell: (event) => (isState(event) ? significant(event.score) : dash) },
+          { heading: 'State', cell: ({ state }) => (state === 'blind' ? 'cannot\u00a0tell' : state) },
+          { heading: 'Score', number: true, cell: (event) => (isState(event) && event.state !== 'blind' ? significant(event.score) : dash) },
           { heading: 'Threshold', number: true, cell: (event) => (isState(event) ? significant(event.threshold) : dash) },
           { heading: 'Frequency (Hz)', number: true, cell: (event) => (isState(event) ? frequencyOf(event) : dash) },
-          { heading: 'Mode', cell: (event) => (isState(event) ? modeName(event) : '') },
+          { heading: 'Mode', optional: true, cell: (event) => (isState(event) ? modeName(event) : '') },
           { heading: 'Quiet speed (rpm)', number: true, cell: (event) => fixed(isState(event) ? event.suggested_spindle_speed_rpm : null, 0) },
-          ...(commanded ? [{ heading: 'Command', cell: commandOf }] : []),
-          { heading: 'Note', cell: noteOf },
+          { heading: 'Command', optional: true, cell: commandOf },
+          { heading: 'Note', optional: true, cell: noteOf },
         ]}
         rows={events}
         rowClass={(event) => (event.state === 'chatter' ? 'chatter' : '')}
@@ -129,7 +128,7 @@ function ComputeTime({ monitor }: { monitor: Monitor }) {
 
 export function MonitorSection({ monitor }: { monitor: Monitor }) {
   return (
-    <Section id="monitor" heading="Chatter monitor" lead="What the monitor detected in the recording, and when.">
+    <Section id="monitor" heading="Chatter monitor" lead="What the monitor detected, and when.">
       <Facts facts={monitor.facts} />
       <WarningBox heading="Before you trust it" texts={monitor.warnings} />
       <Findings monitor={monitor} />
@@ -171,8 +170,8 @@ function RecordingsTable({ recordings }: { recordings: CalibrationRecording[] })
           { heading: 'Label', cell: ({ label }) => label },
           { heading: 'Used to', cell: ({ half }) => (half === 'verifying' ? 'verify' : 'set') },
           { heading: 'Alarm', cell: alarmOf },
-          { heading: "After chatter's begin (ms)", number: true, cell: (recording) => fixed(delayOf(recording), 0) },
-          { heading: 'Before it is visible (ms)', number: true, cell: ({ lead_s: lead }) => fixed(lead === null ? null : 1e3 * lead, 0) },
+          { heading: "After chatter's begin (ms)", number: true, optional: true, cell: (recording) => fixed(delayOf(recording), 0) },
+          { heading: 'Before it is visible (ms)', number: true, optional: true, cell: ({ lead_s: lead }) => fixed(lead === null ? null : 1e3 * lead, 0) },
         ]}
         rows={recordings}
         rowClass={(recording) => (isWrong(recording) ? 'chatter' : '')}
