@@ -15,6 +15,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "monitor/broker.hpp"
 #include "monitor/metrics_server.hpp"
