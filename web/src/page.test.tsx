@@ -203,12 +203,12 @@ it('shows what was commanded and why no speed is suggested', () => {
   expect(page()).toContain('<td class="long">no spindle speed avoids it: a mode of the arm</td>');
   expect(headings()).not.toContain('Command');
   monitor.events = [
-    { ...chatter, command: 'hold', message: 'chatter: stop, and 5 mm out of the cut' },
+    { ...chatter, command: 'hold', no_speed: 'unclear', message: 'chatter: stop, and 5 mm out of the cut' },
     { ...chatter, command: 'none', no_speed: 'mode-coupling', message: 'modes couple' },
     { ...chatter, state: 'blind', reason: 'gap', command: null, message: 'blind: nothing is commanded; the hold stays' },
   ];
   expect(headings()).toContain('Command');
-  for (const part of ['<td>hold</td>', '<td>none is possible</td>', 'chatter: stop, and 5 mm out of the cut', '>modes couple<', 'samples lost; blind: nothing is commanded; the hold stays']) {
+  for (const part of ['<td>hold</td>', '<td>none is possible</td>', 'it may be a mode of the arm; chatter: stop, and 5 mm out of the cut', '>modes couple<', 'samples lost; blind: nothing is commanded; the hold stays']) {
     expect(page()).toContain(part);
   }
   monitor.alarms[0]!.suggested_spindle_speed_rpm = null;

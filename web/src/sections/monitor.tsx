@@ -14,13 +14,13 @@ function isState({ event }: MonitorEvent): boolean {
   return event === 'state';
 }
 
-/** What an event says beside numbers; of a command its reason, which says why there is no speed. */
+/** What an event says beside numbers. Where no command is possible the message says why there is no speed. */
 function noteOf(of: MonitorEvent): string {
   const { event, state, reason, command, faults, what, file, message, hidden, no_speed } = of;
   if (event === 'fault') return faults.length === 0 ? 'the input is well again' : `input: ${faults.map(faultText).join(', ')}`;
   if (event === 'stream') return message ?? what ?? '';
   if (event === 'recording') return `recorded ${file ?? ''}`;
-  const own = state === 'blind' ? [reasonText(reason)] : chatterNotes({ hidden, no_speed: command === null ? no_speed : null });
+  const own = state === 'blind' ? [reasonText(reason)] : chatterNotes({ hidden, no_speed: command === 'none' ? null : no_speed });
   return [...own, ...(message === undefined ? [] : [message])].join('; ');
 }
 
