@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robomill/modal/mode_id.hpp"
+#include "robomill/monitor/files/monitor_events.hpp"
 #include "robomill/monitor/monitor.hpp"
 #include "robomill/signal/bands.hpp"
 
@@ -54,6 +55,8 @@ struct RecordedAlarm {
   std::string channel = {};                                           ///< in which it was strongest then
   monitor::SynchronousChatter synchronous = monitor::SynchronousChatter::none;
   modal::ModeId mode = {};
+  std::vector<double> line_hz = {};  ///< as MonitorEvent has it
+  monitor::NoSpeed no_speed = monitor::NoSpeed::none;
   double suggested_spindle_speed_rad_per_s = NAN;  ///< NaN: none
 };
 

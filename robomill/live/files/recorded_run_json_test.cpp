@@ -33,6 +33,11 @@ TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   decision.spindle_speed_rad_per_s = 0.0;
   decision.time_s = 1.0;
   recorder.add(decision, 2e-4);
+  monitor::MonitorEvent folded;
+  folded.decision = decision;
+  folded.no_speed = monitor::NoSpeed::ambiguous_alias;
+  folded.line_hz = {440.0, 560.0};
+  recorder.add(folded);
   decision.state = monitor::State::blind;
   decision.reason = monitor::BlindReason::speed_unknown;
   decision.time_s = 1.5;
@@ -83,9 +88,11 @@ TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   EXPECT_EQ(alarm["channel"], "ax");
   EXPECT_TRUE(alarm["mode"].is_null());
   EXPECT_TRUE(alarm["suggested_spindle_speed_rpm"].is_null());
+  EXPECT_EQ(alarm["no_speed"], "ambiguous-alias");
+  EXPECT_EQ(alarm["line_frequencies_hz"], (std::vector<double>{440.0, 560.0}));
   EXPECT_TRUE(json["teeth"].is_null());
-  EXPECT_EQ(json["events"][0]["mode"], 8);
-  EXPECT_TRUE(json["events"][0]["chatter_frequency_hz"].is_null());
+  EXPECT_EQ(json["events"][1]["mode"], 8);
+  EXPECT_TRUE(json["events"][1]["chatter_frequency_hz"].is_null());
 }
 
 TEST(RecordedRunJson, NoSignalIsNull) {

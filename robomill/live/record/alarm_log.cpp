@@ -77,13 +77,16 @@ void AlarmLog::add(const monitor::Decision& decision, const std::vector<std::str
 }
 
 void AlarmLog::add(const monitor::MonitorEvent& event) {
-  const bool advised = event.mode.known() || event.suggested_spindle_speed_rad_per_s > 0.0;
+  const bool advised = event.mode.known() || event.suggested_spindle_speed_rad_per_s > 0.0 ||
+                       event.no_speed == monitor::NoSpeed::ambiguous_alias;
   if (!row_ || !advised || event.kind != monitor::MonitorEvent::Kind::state) return;
   Row& row = rows_[*row_];
   if (!fits(row.alarm, event.decision.chatter_frequency_hz)) return;
   if (event.decision.chatter_frequency_std_hz >= row.advised_std_hz) return;
   row.advised_std_hz = event.decision.chatter_frequency_std_hz;
   row.alarm.mode = event.mode;
+  row.alarm.line_hz = event.line_hz;
+  row.alarm.no_speed = event.no_speed;
   const double speed = event.suggested_spindle_speed_rad_per_s;
   row.alarm.suggested_spindle_speed_rad_per_s = speed > 0.0 ? speed : NAN;
 }
