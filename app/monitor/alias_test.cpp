@@ -106,11 +106,12 @@ TEST_F(FoldedLine, IsNotNamedWhereSeveralFitOrNone) {
     EXPECT_TRUE(event["stable_spindle_speeds_rpm"].empty());
     EXPECT_EQ(event["no_speed"], "ambiguous-alias");
     EXPECT_EQ(event["line_frequencies_hz"].size(), modes_hz.size() == 2 ? 2U : 3U) << event;
-    EXPECT_NE(said_.find("no mode, no speed: without an anti-alias filter the line may be 66"), std::string::npos)
+    EXPECT_NE(said_.find("no mode, no speed: signal.anti_alias_filter is not stated, the line may be 66"),
+              std::string::npos)
         << said_;
     // The rule commands nothing, and says why.
     EXPECT_EQ(command_, "none");
-    EXPECT_NE(said_.find("state signal.anti_alias_filter"), std::string::npos) << said_;
+    EXPECT_NE(said_.find("; signal.anti_alias_filter is not stated: the line may be 66"), std::string::npos) << said_;
     EXPECT_EQ(recorded_alarm()["no_speed"], "ambiguous-alias");
   }
 }

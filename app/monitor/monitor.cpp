@@ -129,7 +129,7 @@ void print_alias(std::FILE* to, const MonitorEvent& event) {
   if (event.no_speed != monitor::NoSpeed::ambiguous_alias) {
     if (!line.empty()) fmt::print(to, " ({})", line);
   } else if (event.message.empty()) {
-    fmt::print(to, "; no mode, no speed: without an anti-alias filter the line may be {}", line);
+    fmt::print(to, "; no mode, no speed: signal.anti_alias_filter is not stated, the line may be {}", line);
   }
 }
 

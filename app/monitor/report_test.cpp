@@ -64,9 +64,9 @@ TEST(MonitorPage, SaysInTheSummaryWhatALineMayBe) {
   live::RecordedRun run;
   run.alarms = {
       {.chatter_frequency_hz = 661.0, .line_hz = {661.0, 989.0}, .no_speed = monitor::NoSpeed::ambiguous_alias}};
-  EXPECT_EQ(
-      run_summary(run),
-      "Chatter at 661.0 Hz: without an anti-alias filter the line may be 661.0 or 989.0 Hz. No mode, no speed.\n");
+  EXPECT_EQ(run_summary(run),
+            "Chatter at 661.0 Hz: signal.anti_alias_filter is not stated, and the line may be 661.0 or 989.0 Hz. No "
+            "mode, no speed.\n");
 }
 
 }  // namespace report_test

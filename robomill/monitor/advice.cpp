@@ -23,8 +23,8 @@ struct Structure {
 };
 
 // The comb has taken out what rotates with the spindle: the residual is chatter.
-stability::ExplainedPeak explained(double line_hz, bool folded, double std_hz, double spindle_speed_rad_per_s,
-                                   int teeth, const Structure& structure) {
+stability::ExplainedPeak explained_peak(double line_hz, bool folded, double std_hz, double spindle_speed_rad_per_s,
+                                        int teeth, const Structure& structure) {
   if (folded && line_hz > stability::MeasuredPeaks::highest_hz) return {};
   // The tolerance of explain() must stay below a quarter of rotation.
   const double most = 0.24 * spindle_speed_rad_per_s / units::revolution;
@@ -58,7 +58,7 @@ void read_line(Advice& advice, double spindle_speed_rad_per_s, int teeth, const 
   for (const double line_hz : advice.line_hz) {
     const bool folded = line_hz != advice.line_hz.front();
     const stability::ExplainedPeak peak =
-        explained(line_hz, folded, advice.std_hz, spindle_speed_rad_per_s, teeth, structure);
+        explained_peak(line_hz, folded, advice.std_hz, spindle_speed_rad_per_s, teeth, structure);
     if (!known && peak.state == stability::ExplainedPeak::State::unexplained) continue;
     fitting_hz.push_back(line_hz);
     last = peak;

@@ -1,5 +1,5 @@
 // What is said and drawn of a monitored recording, made of its document.
-import type { Monitor, MonitorAlarm, MonitorStay, Num } from './documents';
+import type { Folded, Monitor, MonitorAlarm, MonitorStay, Num } from './documents';
 import { fixed, modeName, withDeviation } from './text';
 
 /** Why the monitor could not tell, in words. */
@@ -36,8 +36,15 @@ export function frequencyText({ low_frequency_hz: low, high_frequency_hz: high, 
   return withDeviation(surest, deviation, 1, 1);
 }
 
-function listed(parts: string[]): string {
-  return parts.length < 2 ? parts.join('') : `${parts.slice(0, -1).join(', ')} and ${parts[parts.length - 1]}`;
+function listed(parts: string[], last = 'and'): string {
+  return parts.length < 2 ? parts.join('') : `${parts.slice(0, -1).join(', ')} ${last} ${parts[parts.length - 1]}`;
+}
+
+/** "989.0 Hz folded", or why neither mode nor speed is named; empty of a line that is as measured. */
+export function aliasText({ line_frequencies_hz: lines, no_speed: reason }: Folded): string {
+  if (lines.length === 0) return '';
+  const text = `${listed(lines.map((line) => fixed(line, 1)), 'or')} Hz`;
+  return reason === 'ambiguous-alias' ? `no mode, no speed: no anti-alias filter is stated, it may be ${text}` : `${text} folded`;
 }
 
 /** " at 683.20 ± 0.60 Hz (mode 8; quiet near 3416 rpm)"; of many rows the longest three. */
@@ -47,7 +54,7 @@ function placesText(alarms: MonitorAlarm[]): string {
   if (longest.length === 0) return '';
   const texts = longest.map((alarm) => {
     const quiet = alarm.suggested_spindle_speed_rpm;
-    const more = [modeName(alarm), quiet === null ? '' : `quiet near ${fixed(quiet, 0)} rpm`].filter((text) => text !== '');
+    const more = [modeName(alarm), aliasText(alarm), quiet === null ? '' : `quiet near ${fixed(quiet, 0)} rpm`].filter((text) => text !== '');
     return `${frequencyText(alarm)} Hz${more.length > 0 ? ` (${more.join('; ')})` : ''}`;
   });
   return `, at ${listed(texts)}${heard.length > longest.length ? ' and others' : ''}`;

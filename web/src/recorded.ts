@@ -22,8 +22,14 @@ export interface MonitorStay extends Stated {
   to_s: number;
 }
 
+/** What the line of chatter may be that was measured, folded: empty where it is as measured. Why no speed is named. */
+export interface Folded {
+  line_frequencies_hz: number[];
+  no_speed: string | null;
+}
+
 /** Alarms of about one frequency that follow each other. */
-export interface MonitorAlarm {
+export interface MonitorAlarm extends Folded {
   count: number;
   from_s: number;
   to_s: number;
@@ -40,7 +46,7 @@ export interface MonitorAlarm {
 }
 
 /** A line of events.jsonl. */
-export interface MonitorEvent extends Stated {
+export interface MonitorEvent extends Stated, Folded {
   time_s: number;
   event: 'state' | 'window' | 'fault' | 'stream' | 'recording';
   score: Num;

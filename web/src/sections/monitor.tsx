@@ -1,7 +1,7 @@
 // What the chatter monitor detected, and how it was calibrated.
 import type { CalibratedHalf, Calibration, CalibrationRecording, Fact, Monitor, MonitorAlarm, MonitorEvent, Num } from '../documents';
 import { rocFigure, scoreFigure, spectrogramFigure, waveFigure } from '../figures/monitor';
-import { findings, frequencyText, reasonText } from '../monitor_views';
+import { aliasText, findings, frequencyText, reasonText } from '../monitor_views';
 import { Bullets, Details, Facts, Section, Table, WarningBox } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, general, modeName, percent, significant, withDeviation } from '../text';
@@ -14,13 +14,19 @@ function isState({ event }: MonitorEvent): boolean {
   return event === 'state';
 }
 
+/** What stands beside frequency, mode and speed of chatter. */
+function chatterNote(chatter: MonitorAlarm | MonitorEvent): string {
+  return [chatter.hidden ?? '', aliasText(chatter)].filter((text) => text !== '').join('; ');
+}
+
 /** What an event says beside numbers. */
-function noteOf({ event, state, reason, faults, what, file, message, hidden }: MonitorEvent): string {
+function noteOf(given: MonitorEvent): string {
+  const { event, state, reason, faults, what, file, message } = given;
   if (event === 'fault') return faults.length === 0 ? 'the input is well again' : `the input: ${faults.join(', ')}`;
   if (event === 'stream') return message ?? what ?? '';
   if (event === 'recording') return `recorded ${file ?? ''}`;
   if (state === 'blind') return reasonText(reason);
-  return hidden ?? '';
+  return chatterNote(given);
 }
 
 function Findings({ monitor }: { monitor: Monitor }) {
@@ -82,7 +88,7 @@ function AlarmsTable({ alarms }: { alarms: MonitorAlarm[] }) {
         { heading: 'Strongest in', cell: ({ channel }) => channel ?? dash },
         { heading: 'Mode', cell: (alarm) => modeName(alarm) || dash },
         { heading: 'Quiet speed (rpm)', number: true, cell: ({ suggested_spindle_speed_rpm: speed }) => fixed(speed, 0) },
-        { heading: 'Note', cell: ({ hidden }) => hidden ?? '' },
+        { heading: 'Note', cell: chatterNote },
       ]}
       rows={alarms}
     />
