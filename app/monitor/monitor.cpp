@@ -125,6 +125,15 @@ Input open_input(const MonitorCommand& command, monitor::MonitorFile& file, cons
   return input;
 }
 
+void print_alias(std::FILE* to, const MonitorEvent& event) {
+  const std::string line = monitor::line_text(event.line_hz);
+  if (event.no_speed != monitor::NoSpeed::ambiguous_alias) {
+    if (!line.empty()) fmt::print(to, " ({})", line);
+  } else if (event.message.empty()) {
+    fmt::print(to, "; no mode, no speed: signal.anti_alias_filter is not stated, the line may be {}", line);
+  }
+}
+
 void print_event(std::FILE* to, const MonitorEvent& event) {
   const monitor::Decision& d = event.decision;
   if (event.kind == MonitorEvent::Kind::window) return;
@@ -137,6 +146,7 @@ void print_event(std::FILE* to, const MonitorEvent& event) {
         fmt::print(to, " at {:.1f} ± {:.2g} Hz", d.chatter_frequency_hz, d.chatter_frequency_std_hz);
         if (d.synchronous != monitor::SynchronousChatter::none)
           fmt::print(to, " ({})", monitor::to_string(d.synchronous));
+        print_alias(to, event);
         if (event.mode.known()) fmt::print(to, ", {}", to_string(event.mode));
         if (event.suggested_spindle_speed_rad_per_s > 0.0) {
           fmt::print(to, "; try {:.0f} rpm", event.suggested_spindle_speed_rad_per_s / units::rpm);
@@ -288,7 +298,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   if (recorder) {
     const live::RecordedRun recorded = recorder->run();
     page::Report page = monitor_page(recorded, file, input.name);
-    page.summary = summary + state_summary(recorded);
+    page.summary = summary + run_summary(recorded);
     write_report(command.report, page);
   }
   if (common.wants_summary()) fmt::print("{}{}", summary, blind_summary(session.metrics()));

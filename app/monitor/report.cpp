@@ -56,8 +56,14 @@ page::Report monitor_page(live::RecordedRun run, const monitor::MonitorFile& fil
   return page;
 }
 
-std::string state_summary(const live::RecordedRun& run) {
+std::string run_summary(const live::RecordedRun& run) {
   std::string out;
+  for (const live::RecordedAlarm& alarm : run.alarms) {
+    if (alarm.no_speed != monitor::NoSpeed::ambiguous_alias) continue;
+    out += fmt::format(
+        "Chatter at {:.1f} Hz: signal.anti_alias_filter is not stated, and the line may be {}. No mode, no speed.\n",
+        alarm.chatter_frequency_hz, monitor::line_text(alarm.line_hz));
+  }
   for (const live::StateTime& time : run.state_times) {
     if (time.state == monitor::State::blind) {
       out += fmt::format("Cannot tell: {}, for {:.2f} s.\n", monitor::to_string(time.reason), time.duration_s);

@@ -17,7 +17,7 @@ namespace robomill::app {
 [[nodiscard]] page::Report monitor_page(live::RecordedRun run, const monitor::MonitorFile& file,
                                         const std::string& source);
 
-/// For how long the session was in each state, and why it could not tell: a line each.
-[[nodiscard]] std::string state_summary(const live::RecordedRun& run);
+/// Where chatter may be folded, for how long the session was in each state, and why it could not tell: a line each.
+[[nodiscard]] std::string run_summary(const live::RecordedRun& run);
 
 }  // namespace robomill::app

@@ -64,7 +64,17 @@ TEST(MonitorPage, ShowsWhatASessionDelivers) {
                            "\"message\":\"gone\""}) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   }
-  EXPECT_NE(state_summary(run).find("Cannot tell: gap, for 0.03 s."), std::string::npos) << state_summary(run);
+  EXPECT_NE(run_summary(run).find("Cannot tell: gap, for 0.03 s."), std::string::npos) << run_summary(run);
+  EXPECT_EQ(run_summary(run).find("alias"), std::string::npos) << run_summary(run);
+}
+
+TEST(MonitorPage, SaysInTheSummaryWhatALineMayBe) {
+  live::RecordedRun run;
+  run.alarms = {
+      {.chatter_frequency_hz = 661.0, .line_hz = {661.0, 989.0}, .no_speed = monitor::NoSpeed::ambiguous_alias}};
+  EXPECT_EQ(run_summary(run),
+            "Chatter at 661.0 Hz: signal.anti_alias_filter is not stated, and the line may be 661.0 or 989.0 Hz. No "
+            "mode, no speed.\n");
 }
 
 }  // namespace report_test

@@ -52,6 +52,7 @@ void write_holes(const std::filesystem::path& folder, std::uint64_t count, std::
       "# Holes simulated by simulate_holes, seed {}.\n"
       "[signal]\n"
       "sample_rate_hz = {:.0f}\n"
+      "anti_alias_filter = true\n"
       "channels = [1, 2]\n"
       "[process]\n"
       "teeth = 2\n"

@@ -35,10 +35,12 @@ std::vector<bool> coupling_above(const stability::LobesProblem& problem, const s
 }  // namespace
 
 live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& progress) {
+  monitor::validate(file);
   live::AdviceBasis basis{.teeth = file.options.teeth,
                           .spindle_speed_rad_per_s = file.options.spindle_speed_rad_per_s,
                           .lowest_rad_per_s = file.act.lowest_rad_per_s,
-                          .highest_rad_per_s = file.act.highest_rad_per_s};
+                          .highest_rad_per_s = file.act.highest_rad_per_s,
+                          .unfiltered_sample_rate_hz = file.anti_alias_filter ? 0.0 : file.options.sample_rate_hz};
   if (!file.lobes.empty()) {
     const LobesFile lobes = read_milling(file.lobes);
     if (basis.teeth == 0) basis.teeth = lobes.problem.milling.tool.teeth;

@@ -9,7 +9,7 @@
 namespace robomill::jobs {
 
 /// What the files that monitor.toml names say of the cut: modes, and lobes, whose chart is computed.
-/// @throws InvalidInput  if a file is missing or wrong, or modes come without teeth
+/// @throws InvalidInput  if a file is missing or wrong, modes come without teeth, or as monitor::validate
 /// @throws Interrupted   when progress asks to stop
 [[nodiscard]] ROBOMILL_API live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& progress);
 

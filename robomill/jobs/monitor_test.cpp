@@ -13,6 +13,7 @@ namespace monitor_test {
 
 live::AdviceBasis basis_of(const std::string& lobes, const test::Folder& folder) {
   monitor::MonitorFile file;
+  file.options.sample_rate_hz = 10'240.0;
   file.lobes = folder.file("lobes.toml", lobes);
   file.act.lowest_rad_per_s = 3000.0 * units::rpm;
   file.act.highest_rad_per_s = 9000.0 * units::rpm;
@@ -54,6 +55,17 @@ TEST(ReadAdviceBasis, KnowsWhereModesCouple) {
                    mode + "y = " + mode + lobes + "spindle_speed_rpm = [50000, 60000]\naxial_depth_mm = [0, 2]\n",
                folder);
   EXPECT_TRUE(couples(two, true));
+}
+
+// Where no filter is stated lines may be folded about the sample rate, which then must be known.
+TEST(ReadAdviceBasis, KnowsWhetherLinesMayBeFolded) {
+  monitor::MonitorFile file;
+  EXPECT_NE(test::rejection([&] { (void)read_advice_basis(file, Progress::none()); }).find("signal.sample_rate_hz"),
+            std::string::npos);
+  file.options.sample_rate_hz = 1650.0;
+  EXPECT_EQ(read_advice_basis(file, Progress::none()).unfiltered_sample_rate_hz, 1650.0);
+  file.anti_alias_filter = true;
+  EXPECT_EQ(read_advice_basis(file, Progress::none()).unfiltered_sample_rate_hz, 0.0);
 }
 
 }  // namespace monitor_test

@@ -66,6 +66,9 @@ std::string why_no_speed(const MonitorEvent& event) {
       return "it is not clear whether a mode of the arm chatters, which no spindle speed would avoid";
     case monitor::NoSpeed::mode_coupling:
       return "modes couple through the force, whatever the spindle speed: take less depth or another feed direction";
+    case monitor::NoSpeed::ambiguous_alias:
+      return fmt::format("signal.anti_alias_filter is not stated: the line may be {}",
+                         monitor::line_text(event.line_hz));
     case monitor::NoSpeed::none:
       break;
   }

@@ -56,6 +56,7 @@ class Course {
     event.decision = d;
     if (state == State::chatter && !actor_.settling()) {
       event.no_speed = no_speed;
+      if (no_speed == NoSpeed::ambiguous_alias) event.line_hz = {661.0, 989.0};
       for (const double each : suggested_rpm) event.stable_speeds_rad_per_s.push_back(each * rpm);
       if (!suggested_rpm.empty()) event.suggested_spindle_speed_rad_per_s = suggested_rpm.front() * rpm;
     }
@@ -102,6 +103,7 @@ TEST(Act, WhatFollowsChatter) {
            {ActRule::speed, {}, NoSpeed::arm, 20, Kind::none, 0, 1.0, 0, "mode of the arm"},
            {ActRule::speed, {}, NoSpeed::unclear, 545, Kind::none, 0, 1.0, 0, "not clear"},
            {ActRule::speed, {}, NoSpeed::mode_coupling, 545, Kind::none, 0, 1.0, 0, "couple"},
+           {ActRule::speed, {}, NoSpeed::ambiguous_alias, 661, Kind::none, 0, 1.0, 0, "may be 661.0 or 989.0 Hz"},
            {ActRule::speed, {}, NoSpeed::none, 0, Kind::none, 0, 1.0, 0, "frequency of chatter is not known"},
            {ActRule::speed, {}, NoSpeed::none, 545, Kind::none, 0, 1.0, 0, "number of teeth"}}) {
     Course course(rule(row.rule));
@@ -333,6 +335,39 @@ TEST(Advisor, SuggestsNoSpeedForTheArm) {
   // Without modes the measured line counts.
   EXPECT_EQ(advised({.teeth = 3}, 60.0).no_speed, NoSpeed::arm);
   EXPECT_EQ(advised({.teeth = 3}, 545.0).no_speed, NoSpeed::none);
+}
+
+/// One mode of the tool [Hz].
+modal::ModalModel mode_at(double frequency_hz) {
+  modal::ModalModel model;
+  model.excitations = model.responses = {{.axis = modal::Axis::x}};
+  modal::Mode mode;
+  mode.frequency_hz = frequency_hz;
+  mode.damping_ratio = 0.002;
+  mode.left = mode.right = Eigen::VectorXcd::Ones(1);
+  model.modes = {mode};
+  return model;
+}
+
+// 661 Hz at 1,650 Hz without a filter: 989 Hz folded where that is the mode's, else it may be either.
+TEST(Advisor, SuggestsNoSpeedWhereTheLineMayBeFolded) {
+  const MonitorEvent folded =
+      advised({.teeth = 3, .modes = mode_at(989.0), .unfiltered_sample_rate_hz = 1650.0}, 661.0);
+  EXPECT_EQ(folded.line_hz, std::vector<double>{989.0});
+  EXPECT_EQ(folded.mode.number, 1);
+  EXPECT_EQ(folded.no_speed, NoSpeed::none);
+  const double passings = 60.0 * 989.0 / 3.0 / (folded.suggested_spindle_speed_rad_per_s / rpm);
+  EXPECT_NEAR(passings, std::round(passings), 1e-9);
+  const MonitorEvent as_measured =
+      advised({.teeth = 3, .modes = mode_at(661.0), .unfiltered_sample_rate_hz = 1650.0}, 661.0);
+  EXPECT_TRUE(as_measured.line_hz.empty());
+  EXPECT_EQ(as_measured.no_speed, NoSpeed::none);
+  const MonitorEvent open = advised({.teeth = 3, .unfiltered_sample_rate_hz = 1650.0}, 661.0);
+  EXPECT_EQ(open.line_hz, (std::vector{661.0, 989.0, 2311.0}));
+  EXPECT_EQ(open.no_speed, NoSpeed::ambiguous_alias);
+  EXPECT_FALSE(open.mode.known());
+  EXPECT_EQ(open.suggested_spindle_speed_rad_per_s, 0.0);
+  EXPECT_TRUE(open.stable_speeds_rad_per_s.empty());
 }
 
 // A spindle from 12,000 rpm on passes 600 teeth a second at least: no lobe of 545 Hz lies there.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <vector>
 
 #include "robomill/base/units.hpp"
 
@@ -23,6 +24,7 @@ constexpr double same_speed = 0.01;
 }  // namespace
 
 NoSpeed Advisor::no_speed(const monitor::Advice& advice, double spindle_speed_rad_per_s) const {
+  if (advice.line_hz.size() > 1) return NoSpeed::ambiguous_alias;
   const double lowest_tooth_passing_hz = basis_.teeth * basis_.lowest_rad_per_s / units::revolution;
   if (advice.lowest_hz < std::max(basis_.arm_below_hz, lowest_tooth_passing_hz)) {
     return advice.frequency_hz > 0.0 ? NoSpeed::arm : NoSpeed::unclear;
@@ -47,10 +49,12 @@ void Advisor::advise(monitor::MonitorEvent& event) const {
   monitor::AdviceOptions options;
   options.lowest_rad_per_s = basis_.lowest_rad_per_s;
   if (basis_.highest_rad_per_s > 0.0) options.highest_rad_per_s = basis_.highest_rad_per_s;
+  options.unfiltered_sample_rate_hz = basis_.unfiltered_sample_rate_hz;
   const monitor::Advice advice = monitor::advise(d.chatter_frequency_hz, d.chatter_frequency_std_hz, speed_rad_per_s,
                                                  basis_.teeth, basis_.modes ? &*basis_.modes : nullptr,
                                                  basis_.lobes ? &*basis_.lobes : nullptr, options, basis_.workpiece);
   event.mode = advice.mode;
+  if (advice.line_hz != std::vector{d.chatter_frequency_hz}) event.line_hz = advice.line_hz;
   event.no_speed = no_speed(advice, speed_rad_per_s);
   if (event.no_speed != NoSpeed::none) return;
   for (const monitor::StableSpeed& stable : advice.speeds) {

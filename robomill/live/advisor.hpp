@@ -27,13 +27,15 @@ struct AdviceBasis {
   /// Below it a mode is one of the arm, whose chatter no speed is suggested for; so is one below the lowest tooth
   /// passing that the spindle can give.
   double arm_below_hz = 100.0;
+  /// Of samples that no anti-alias filter is stated for: their lines may be folded. 0: a filter is stated.
+  double unfiltered_sample_rate_hz = 0.0;
 };
 
 /// Names the mode that chatters, and speeds and a depth that are stable, or why no speed is.
 class ROBOMILL_API Advisor {
  public:
   explicit Advisor(AdviceBasis basis) : basis_(std::move(basis)) {}
-  /// Fills in mode, speeds and depth; leaves an event alone whose frequency or teeth are not known.
+  /// Fills in mode, aliases, speeds and depth; leaves an event alone whose frequency or teeth are not known.
   void advise(monitor::MonitorEvent& event) const;
 
  private:

@@ -56,8 +56,9 @@ struct RecordedAlarm {
   std::string channel = {};                                           ///< in which it was strongest then
   monitor::SynchronousChatter synchronous = monitor::SynchronousChatter::none;
   modal::ModeId mode = {};
-  double suggested_spindle_speed_rad_per_s = NAN;  ///< NaN: none
+  std::vector<double> line_hz = {};  ///< as MonitorEvent has it
   monitor::NoSpeed no_speed = monitor::NoSpeed::none;
+  double suggested_spindle_speed_rad_per_s = NAN;  ///< NaN: none
 };
 
 /// A recording as the chatter monitor processed it.

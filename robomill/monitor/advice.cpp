@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
@@ -11,18 +13,31 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double deviations = 3.0;  // within which a line is a mode's
+// The force's harmonics fall at least as their number. Without this bound lines of 10 kHz would count as sidebands of
+// modes of 500 Hz: they are as many as there are multiples of rotation.
+constexpr int most_tooth_passings = 10;
+
+struct Structure {
+  const modal::ModalModel& modes;
+  const modal::ModalModel& workpiece;
+};
 
 // The comb has taken out what rotates with the spindle: the residual is chatter.
-void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const modal::ModalModel& modes,
-               const modal::ModalModel& workpiece) {
+stability::ExplainedPeak explained_peak(double line_hz, bool folded, double std_hz, double spindle_speed_rad_per_s,
+                                        int teeth, const Structure& structure) {
+  if (folded && line_hz > stability::MeasuredPeaks::highest_hz) return {};
   // The tolerance of explain() must stay below a quarter of rotation.
   const double most = 0.24 * spindle_speed_rad_per_s / units::revolution;
-  const double tolerance = std::clamp(deviations * advice.std_hz, std::min(1.0, most), most);
-  const stability::ExplainedPeak peak =
-      stability::explain(
-          {.frequency_hz = {advice.frequency_hz}, .spindle_speed_rad_per_s = spindle_speed_rad_per_s, .teeth = teeth},
-          modes, {.tolerance_hz = tolerance, .multiples_removed = true}, workpiece)
-          .peaks.front();
+  stability::PeakClassificationOptions options{
+      .tolerance_hz = std::clamp(deviations * std_hz, std::min(1.0, most), most), .multiples_removed = true};
+  if (folded) options.most_rotations = most_tooth_passings * teeth;
+  return stability::explain(
+             {.frequency_hz = {line_hz}, .spindle_speed_rad_per_s = spindle_speed_rad_per_s, .teeth = teeth},
+             structure.modes, options, structure.workpiece)
+      .peaks.front();
+}
+
+void name_mode(Advice& advice, const stability::ExplainedPeak& peak) {
   advice.mode = peak.best.mode;
   advice.expected_hz = peak.best.mode_frequency_hz;
   if (std::isfinite(peak.chatter_frequency_hz)) {
@@ -32,6 +47,44 @@ void name_mode(Advice& advice, double spindle_speed_rad_per_s, int teeth, const 
     for (const stability::Explanation& reading : peak.others) {
       if (reading.mode.known()) advice.lowest_hz = std::min(advice.lowest_hz, reading.mode_frequency_hz);
     }
+  }
+}
+
+// Leaves of the frequencies that the line may have those that the modes explain, where they explain any.
+void read_line(Advice& advice, double spindle_speed_rad_per_s, int teeth, const Structure& structure) {
+  const bool known = advice.line_hz.size() == 1;
+  std::vector<double> fitting_hz;
+  stability::ExplainedPeak last;
+  for (const double line_hz : advice.line_hz) {
+    const bool folded = line_hz != advice.line_hz.front();
+    const stability::ExplainedPeak peak =
+        explained_peak(line_hz, folded, advice.std_hz, spindle_speed_rad_per_s, teeth, structure);
+    if (!known && peak.state == stability::ExplainedPeak::State::unexplained) continue;
+    fitting_hz.push_back(line_hz);
+    last = peak;
+  }
+  if (!fitting_hz.empty()) advice.line_hz = std::move(fitting_hz);
+  if (advice.line_hz.size() > 1) return;
+  advice.frequency_hz = advice.lowest_hz = advice.line_hz.front();
+  name_mode(advice, last);
+}
+
+// Lobes far down lie close together: no more of them than can be distinguished from their neighbours.
+void add_speeds(Advice& advice, double present_rad_per_s, int teeth, const AdviceOptions& options) {
+  const double first = units::revolution * advice.frequency_hz / teeth;
+  const auto last = static_cast<int>(std::min(200.0, first / std::max(1.0, options.lowest_rad_per_s)));
+  for (int k = 1; k <= last; ++k) {
+    const double speed = first / k;
+    if (speed < options.lowest_rad_per_s || speed > options.highest_rad_per_s) continue;
+    advice.speeds.push_back(
+        {.lobe = k, .spindle_speed_rad_per_s = speed, .std_rad_per_s = units::revolution * advice.std_hz / teeth / k});
+  }
+  std::ranges::sort(advice.speeds, [&](const StableSpeed& a, const StableSpeed& b) {
+    return std::abs(a.spindle_speed_rad_per_s - present_rad_per_s) <
+           std::abs(b.spindle_speed_rad_per_s - present_rad_per_s);
+  });
+  if (advice.speeds.size() > static_cast<std::size_t>(options.most_speeds)) {
+    advice.speeds.resize(static_cast<std::size_t>(options.most_speeds));
   }
 }
 
@@ -56,6 +109,7 @@ void AdviceOptions::validate() const {
     throw InvalidInput("highest_rad_per_s", highest_rad_per_s, "rad/s", "must be above lowest_rad_per_s");
   }
   if (most_speeds < 1) throw InvalidInput("most_speeds", most_speeds, "", "must be at least 1");
+  require_non_negative("unfiltered_sample_rate_hz", unfiltered_sample_rate_hz, "Hz");
 }
 
 Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s, int teeth,
@@ -67,28 +121,23 @@ Advice advise(double frequency_hz, double std_hz, double spindle_speed_rad_per_s
   require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");
   Advice out;
-  out.frequency_hz = out.lowest_hz = frequency_hz;
+  out.line_hz = {frequency_hz};
   out.std_hz = std_hz;
+  if (const double rate_hz = options.unfiltered_sample_rate_hz; rate_hz > 0.0) {
+    if (frequency_hz >= rate_hz) {
+      throw InvalidInput("frequency_hz", frequency_hz, "Hz", "must be below unfiltered_sample_rate_hz",
+                         "Samples show lines up to half their rate");
+    }
+    out.line_hz = {frequency_hz, rate_hz - frequency_hz, rate_hz + frequency_hz};
+  }
   if (modes != nullptr) {
     require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s", "It separates the modes");
-    name_mode(out, spindle_speed_rad_per_s, teeth, *modes, workpiece);
+    read_line(out, spindle_speed_rad_per_s, teeth, {*modes, workpiece});
+  } else if (out.line_hz.size() == 1) {
+    out.frequency_hz = out.lowest_hz = frequency_hz;
   }
-  // Lobes far down lie close together: no more of them than can be distinguished from their neighbours.
-  const double first = units::revolution * out.frequency_hz / teeth;
-  const auto last = static_cast<int>(std::min(200.0, first / std::max(1.0, options.lowest_rad_per_s)));
-  for (int k = 1; k <= last; ++k) {
-    const double speed = first / k;
-    if (speed < options.lowest_rad_per_s || speed > options.highest_rad_per_s) continue;
-    out.speeds.push_back(
-        {.lobe = k, .spindle_speed_rad_per_s = speed, .std_rad_per_s = units::revolution * out.std_hz / teeth / k});
-  }
-  const double present = spindle_speed_rad_per_s;
-  std::ranges::sort(out.speeds, [&](const StableSpeed& a, const StableSpeed& b) {
-    return std::abs(a.spindle_speed_rad_per_s - present) < std::abs(b.spindle_speed_rad_per_s - present);
-  });
-  if (out.speeds.size() > static_cast<std::size_t>(options.most_speeds)) {
-    out.speeds.resize(static_cast<std::size_t>(options.most_speeds));
-  }
+  if (out.line_hz.size() > 1) return out;
+  add_speeds(out, spindle_speed_rad_per_s, teeth, options);
   if (lobes != nullptr) choose(out, *lobes, options);
   return out;
 }

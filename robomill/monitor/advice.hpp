@@ -21,12 +21,18 @@ struct AdviceOptions {
   double lowest_rad_per_s = 0.0;      ///< >= 0; of the spindle: lowest <= speed <= highest
   double highest_rad_per_s = 2100.0;  ///< > lowest; 20,000 rpm
   int most_speeds = 6;                ///< nearest to the present one; >= 1
+  /// Of samples that no anti-alias filter is stated for, f_s > 0: then the line may be one of f_s - f and f_s + f that
+  /// is folded to f. 0: a filter is stated.
+  double unfiltered_sample_rate_hz = 0.0;
   /// @throws InvalidInput naming the field
   ROBOMILL_API void validate() const;
 };
 
 /// What to do about chatter.
 struct Advice {
+  /// What the measured line f may be, in the order f, f_s - f, f_s + f. Of more than one it is not known which: then no
+  /// mode is named, there are no speeds and no best one, and the frequencies below are 0.
+  std::vector<double> line_hz = {};
   modal::ModeId mode = {};  ///< that chatters; unknown: none explains it, several do about as well, or none were given
   /// Of the mode's motion: the one measured less its multiple of tooth passing or rotation. 0 where the modes that
   /// explain it about as well disagree on that: then there are no speeds.
@@ -44,7 +50,10 @@ struct Advice {
 
 /// The mode is that which stability::explain names for the measured line; its own frequency then counts for the speeds,
 /// because a sideband n f_tooth ± f is no vibration of the structure. Without modes the measured frequency counts.
-/// @param frequency_hz            of chatter, > 0
+///
+/// Without an anti-alias filter the line may be f, f_s - f or f_s + f, up to 3/2 f_s. It is that which the modes
+/// explain where they explain one alone. Of a folded line a multiple of tooth passing up to the tenth counts.
+/// @param frequency_hz            of chatter as measured, f > 0; below unfiltered_sample_rate_hz, where that is given
 /// @param std_hz                  its standard deviation, >= 0
 /// @param spindle_speed_rad_per_s > 0 where modes are given
 /// @param teeth                   >= 1

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "testing/robot_modes.hpp"
 #include "testing/support.hpp"
@@ -105,6 +106,91 @@ TEST(Advise, TakesTheDeepestSpeedInRangeOfAChart) {
   EXPECT_EQ(slower.best->axial_depth_m, 3e-3);
 }
 
+/// Modes of the tool at these frequencies, 0.5 % of damping each.
+modal::ModalModel modes_at(const std::vector<double>& frequencies_hz) {
+  modal::ModalModel model;
+  model.excitations = model.responses = {{.axis = modal::Axis::x}};
+  for (const double frequency_hz : frequencies_hz) {
+    modal::Mode mode;
+    mode.frequency_hz = frequency_hz;
+    mode.damping_ratio = 0.005;
+    mode.left = mode.right = Eigen::VectorXcd::Ones(1);
+    model.modes.push_back(mode);
+  }
+  return model;
+}
+
+// Without a filter 989 Hz sampled at 1,650 Hz shows up at 661 Hz. At 115 rotations a second neither line is a sideband
+// of the other mode.
+TEST(Advise, NamesTheAliasThatAloneFitsTheModes) {
+  const AdviceOptions unfiltered{.unfiltered_sample_rate_hz = 1650.0};
+  const auto advised = [](const std::vector<double>& frequencies_hz, const AdviceOptions& options) {
+    const modal::ModalModel modes = modes_at(frequencies_hz);
+    return advise(661.0, 0.2, 6900.0 * rpm, 2, &modes, nullptr, options);
+  };
+  for (const double line_hz : {661.0, 989.0, 2311.0}) {
+    const Advice alone = advised({line_hz}, unfiltered);
+    EXPECT_EQ(alone.line_hz, std::vector<double>{line_hz});
+    EXPECT_EQ(alone.mode.number, 1);
+    EXPECT_NEAR(alone.frequency_hz, line_hz, 1e-9);
+    ASSERT_FALSE(alone.speeds.empty());
+    const StableSpeed& nearest = alone.speeds.front();
+    EXPECT_NEAR(nearest.spindle_speed_rad_per_s, 60.0 * line_hz / (2.0 * nearest.lobe) * rpm, 1e-9);
+    // With a filter the line is where it was measured: the mode elsewhere does not explain it.
+    const Advice filtered = advised({line_hz}, {});
+    EXPECT_EQ(filtered.line_hz, std::vector<double>{661.0});
+    EXPECT_EQ(filtered.mode.known(), line_hz == 661.0);
+    EXPECT_NEAR(filtered.frequency_hz, 661.0, 1e-9);
+  }
+  for (const std::vector<double>& both : {std::vector{661.0, 989.0}, {661.0, 2311.0}, {989.0, 2311.0}}) {
+    const Advice open = advised(both, unfiltered);
+    EXPECT_EQ(open.line_hz, both);
+    EXPECT_FALSE(open.mode.known());
+    EXPECT_TRUE(open.speeds.empty());
+    EXPECT_EQ(open.frequency_hz, 0.0);
+    EXPECT_EQ(open.lowest_hz, 0.0);
+  }
+  EXPECT_EQ(advised({661.0, 989.0}, {}).mode.number, 1);
+}
+
+// As measured: 529 Hz and four rotations of 115 Hz, folded at 1,650 Hz.
+TEST(Advise, AddsTheMultiplesOfRotationToTheUnfoldedLine) {
+  const modal::ModalModel modes = modes_at({529.0});
+  const Advice advice = advise(661.0, 0.2, 6900.0 * rpm, 2, &modes, nullptr, {.unfiltered_sample_rate_hz = 1650.0});
+  EXPECT_EQ(advice.line_hz, std::vector<double>{989.0});
+  EXPECT_EQ(advice.mode.number, 1);
+  EXPECT_NEAR(advice.frequency_hz, 529.0, 1e-9);
+}
+
+// No mode near, or none given: nothing says which alias it is, and no chart helps.
+TEST(Advise, NamesNoSpeedOfALineThatMayBeFolded) {
+  const modal::ModalModel modes = modes_at({60.0});
+  stability::LobesResult lobes;
+  lobes.limit.push_back({.spindle_speed_rad_per_s = 700.0, .status = stability::Limit::Status::found});
+  for (const modal::ModalModel* given : {&modes, static_cast<const modal::ModalModel*>(nullptr)}) {
+    const Advice advice = advise(661.0, 0.2, 6900.0 * rpm, 2, given, &lobes, {.unfiltered_sample_rate_hz = 1650.0});
+    EXPECT_EQ(advice.line_hz, (std::vector{661.0, 989.0, 2311.0}));
+    EXPECT_TRUE(advice.speeds.empty());
+    EXPECT_FALSE(advice.best);
+  }
+}
+
+// At 10,240 Hz the aliases of each line lie ten tooth passings and more above all modes of the robot: it is what it is
+// without a filter, too. At the end of what can be sampled no alias is out of range.
+TEST(Advise, NeedsNoFilterFarAboveTheModes) {
+  const modal::ModalModel modes = data::robot_modes();
+  for (const double line_hz : {17.4, 540.08, 650.0 - 17.4}) {
+    for (const double rate_hz : {10'240.0, 1e6}) {
+      const Advice filtered = advise(line_hz, 0.2, 6500.0 * rpm, 3, &modes);
+      const Advice advice =
+          advise(line_hz, 0.2, 6500.0 * rpm, 3, &modes, nullptr, {.unfiltered_sample_rate_hz = rate_hz});
+      EXPECT_EQ(advice.mode, filtered.mode) << line_hz;
+      EXPECT_EQ(advice.line_hz, std::vector<double>{line_hz});
+      EXPECT_EQ(advice.frequency_hz, filtered.frequency_hz) << line_hz;
+    }
+  }
+}
+
 TEST(Advise, RejectsWhatMakesNoSense) {
   const modal::ModalModel modes = data::robot_modes();
   EXPECT_EQ(test::field_of([] { static_cast<void>(advise(0.0, 1.0, 700.0, 2)); }), "frequency_hz");
@@ -116,6 +202,14 @@ TEST(Advise, RejectsWhatMakesNoSense) {
                                        {.lowest_rad_per_s = 900.0, .highest_rad_per_s = 800.0}));
             }),
             "highest_rad_per_s");
+  const auto unfiltered = [](double rate_hz) {
+    return test::field_of([=] {
+      static_cast<void>(advise(600.0, 1.0, 700.0, 2, nullptr, nullptr, {.unfiltered_sample_rate_hz = rate_hz}));
+    });
+  };
+  EXPECT_EQ(unfiltered(-1.0), "unfiltered_sample_rate_hz");
+  EXPECT_EQ(unfiltered(NAN), "unfiltered_sample_rate_hz");
+  EXPECT_EQ(unfiltered(600.0), "frequency_hz");
 }
 
 }  // namespace advice_test

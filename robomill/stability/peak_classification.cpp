@@ -55,6 +55,7 @@ std::vector<Explanation> explanations(double peak_hz, double rotation_hz, int te
       const double turns = (sign * peak_hz - mode_hz) / rotation_hz;
       const double reach = allowed_hz / rotation_hz;
       for (double n = std::ceil(turns - reach); n <= turns + reach; ++n) {
+        if (std::abs(n) > options.most_rotations) continue;
         const double signed_hz = mode_hz + n * rotation_hz;
         if (signed_hz * sign < 0.0) continue;
         consider({.kind = Named::chatter,
@@ -198,7 +199,7 @@ void MeasuredPeaks::validate() const {
   }
   for (const double f : frequency_hz) {
     require_positive("frequency_hz", f, "Hz");
-    if (f > 1e6) throw InvalidInput("frequency_hz", f, "Hz", "must be at most 1 MHz", "Are the units mixed up?");
+    if (f > highest_hz) throw InvalidInput("frequency_hz", f, "Hz", "must be at most 1 MHz", "Are the units mixed up?");
   }
   require_positive("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be at least 1");
@@ -213,6 +214,7 @@ void PeakClassificationOptions::validate() const {
   if (!(clear_odds >= 1.0 && clear_odds <= 1e6)) {
     throw InvalidInput("clear_odds", clear_odds, "", "must lie between 1 and 1e6", "3: three times as likely");
   }
+  if (most_rotations < 0) throw InvalidInput("most_rotations", most_rotations, "", "must be at least 0");
 }
 
 std::string_view to_string(Explanation::Kind kind) {

@@ -14,7 +14,8 @@ namespace robomill::stability {
 
 /// The peaks of a recorded cut.
 struct ROBOMILL_API MeasuredPeaks {
-  std::vector<double> frequency_hz = {};  ///< peaks of the spectrum [Hz], > 0; at least one
+  static constexpr double highest_hz = 1e6;
+  std::vector<double> frequency_hz = {};  ///< peaks of the spectrum [Hz], in (0, highest_hz]; at least one
   double spindle_speed_rad_per_s = 0.0;   ///< as commanded [rad/s], > 0; required
   int teeth = 0;                          ///< >= 1; required
   /// @throws InvalidInput naming the member
@@ -28,6 +29,7 @@ struct ROBOMILL_API PeakClassificationOptions {
   double speed_tolerance = 2e-3;  ///< in [0, 0.05]; |true speed - commanded| <= speed_tolerance · commanded
   double clear_odds = 3.0;  ///< in [1, 1e6]; a reading is named where likelihood > clear_odds · any other meaning's
   bool multiples_removed = false;  ///< the peaks are no multiples of rotation: those were taken out before
+  int most_rotations = std::numeric_limits<int>::max();  ///< >= 0; chatter's |n| <= it
   /// @throws InvalidInput naming the member
   void validate() const;
 };

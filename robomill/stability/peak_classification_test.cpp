@@ -134,6 +134,20 @@ TEST(PeakClassification, EqualModesCannotBeDistinguished) {
   EXPECT_EQ(explain({{700.1, 730.1, 1200.0}, 5000 * rpm, 3}, apart, {.clear_odds = 1.0}).peaks.size(), 3U);
 }
 
+// 1,000 Hz is 700 Hz and three rotations of 100 Hz, or from below 17 rotations less it.
+TEST(PeakClassification, CountsSidebandsUpToTheMostRotations) {
+  const modal::ModalModel modes = testing::plane_model({testing::mass_mode(0, 700.0, 0.001, 1.0)});
+  const auto state = [&](int most) {
+    return explain({{1000.0}, 6000 * rpm, 7}, modes, {.multiples_removed = true, .most_rotations = most})
+        .peaks[0]
+        .state;
+  };
+  EXPECT_EQ(state(3), ExplainedPeak::State::named);
+  EXPECT_EQ(state(2), ExplainedPeak::State::unexplained);
+  EXPECT_EQ(state(0), ExplainedPeak::State::unexplained);
+  EXPECT_EQ(explain({{700.0}, 6000 * rpm, 7}, modes, {.multiples_removed = true, .most_rotations = 0}).mode.number, 1);
+}
+
 TEST(PeakClassification, NamesTheWorkpiecesMode) {
   const modal::ModalModel tool = testing::plane_model({testing::mass_mode(0, 700.0, 0.001, 1.0)});
   const modal::ModalModel part = testing::plane_model({testing::mass_mode(1, 430.0, 0.001, 1.0)});
@@ -186,6 +200,7 @@ TEST(PeakClassification, RejectsWhatCannotBe) {
   EXPECT_EQ(rejected({{1e6}, 1e-3, 3}), "tolerance_hz");
   EXPECT_EQ(rejected({{100.0}, 680.0, 3}, {.speed_tolerance = 0.3}), "speed_tolerance");
   EXPECT_EQ(rejected({{100.0}, 680.0, 3}, {.clear_odds = 0.5}), "clear_odds");
+  EXPECT_EQ(rejected({{100.0}, 680.0, 3}, {.most_rotations = -1}), "most_rotations");
   EXPECT_EQ(robot_peaks({1e6}, 6500).peaks.size(), 1U);
 }
 

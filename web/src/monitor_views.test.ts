@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Monitor, MonitorAlarm, MonitorStay, Num } from './documents';
-import { chatterMarks, duration, faultText, findings, frequencyText, multiplesOver, reasonText, shadedStays, speedStretches } from './monitor_views';
+import { aliasText, chatterMarks, duration, faultText, findings, frequencyText, multiplesOver, reasonText, shadedStays, speedStretches } from './monitor_views';
 
 const alarm: MonitorAlarm = {
   count: 3,
@@ -16,6 +16,7 @@ const alarm: MonitorAlarm = {
   mode: 8,
   mode_of: 'tool',
   suggested_spindle_speed_rpm: 3416,
+  line_frequencies_hz: [],
   no_speed: null,
 };
 
@@ -75,6 +76,16 @@ describe('what was found, in words', () => {
   it('writes durations as people say them', () => {
     expect([0, 0.625, 12.44, 99.96, 320, 7500].map(duration)).toEqual(['0.00 s', '0.63 s', '12.4 s', '1 min 40 s', '5 min 20 s', '2 h 5 min']);
   });
+});
+
+it('says what a line is that was measured folded, or may be', () => {
+  expect(aliasText(alarm)).toBe('');
+  expect(aliasText({ line_frequencies_hz: [989], no_speed: null })).toBe('989.0 Hz folded');
+  const open = { line_frequencies_hz: [661, 989, 2311], no_speed: 'ambiguous-alias' as const };
+  expect(aliasText(open)).toBe('no mode, no speed: no anti-alias filter is stated, it may be 661.0, 989.0 or 2311.0 Hz');
+  const chatter = { state: 'chatter' as const, reason: null, duration_s: 2 };
+  const found = said({ state_times: [chatter], alarm_count: 1, alarms: [{ ...alarm, ...open, mode: null, mode_of: null, suggested_spindle_speed_rpm: null }] });
+  expect(found[0]).toContain('Hz (no mode, no speed: no anti-alias filter is stated, it may be 661.0, 989.0 or 2311.0 Hz).');
 });
 
 it('gives a range where a frequency moved by more than its deviation', () => {

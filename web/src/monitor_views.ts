@@ -1,5 +1,5 @@
 // What is said and drawn of a monitored recording, made of its document.
-import type { Monitor, MonitorAlarm, MonitorStay, NoSpeed, Num } from './documents';
+import type { Folded, Monitor, MonitorAlarm, MonitorStay, NoSpeed, Num } from './documents';
 import { fixed, modeName, withDeviation } from './text';
 
 /** Why the monitor could not tell, in words. */
@@ -36,6 +36,7 @@ const noSpeedTexts: Record<NoSpeed, string> = {
   arm: 'no spindle speed avoids it: a mode of the arm',
   unclear: 'no spindle speed is suggested: it may be a mode of the arm',
   'mode-coupling': 'no spindle speed avoids it: modes couple through the force',
+  'ambiguous-alias': '', // aliasText says it
 };
 
 /** Why no speed is suggested, in words; empty where one is, or nothing is known. */
@@ -45,9 +46,9 @@ export function noSpeedText(reason: NoSpeed | null): string {
 
 const hiddenTexts = { locked: 'locked to the rotation', 'period-doubling': 'period doubling' };
 
-/** How chatter hides in what repeats with the spindle, and why no speed is suggested. */
-export function chatterNotes({ hidden, no_speed }: Pick<MonitorAlarm, 'hidden' | 'no_speed'>): string[] {
-  return [hidden === null ? '' : hiddenTexts[hidden], noSpeedText(no_speed)].filter((text) => text !== '');
+/** How chatter hides in what repeats with the spindle, what a folded line is, and why no speed is suggested. */
+export function chatterNotes(of: Pick<MonitorAlarm, 'hidden' | keyof Folded>): string[] {
+  return [of.hidden === null ? '' : hiddenTexts[of.hidden], aliasText(of), noSpeedText(of.no_speed)].filter((text) => text !== '');
 }
 
 /** "0.63 s", "12.4 s", "5 min 20 s", "2 h 5 min" */
@@ -68,8 +69,15 @@ export function frequencyText({ low_frequency_hz: low, high_frequency_hz: high, 
   return withDeviation(surest, deviation, 1, 1);
 }
 
-function listed(parts: string[]): string {
-  return parts.length < 2 ? parts.join('') : `${parts.slice(0, -1).join(', ')} and ${parts[parts.length - 1]}`;
+function listed(parts: string[], last = 'and'): string {
+  return parts.length < 2 ? parts.join('') : `${parts.slice(0, -1).join(', ')} ${last} ${parts[parts.length - 1]}`;
+}
+
+/** "989.0 Hz folded", or why neither mode nor speed is named; empty of a line that is as measured. */
+export function aliasText({ line_frequencies_hz: lines, no_speed: reason }: Folded): string {
+  if (lines.length === 0) return '';
+  const text = `${listed(lines.map((line) => fixed(line, 1)), 'or')} Hz`;
+  return reason === 'ambiguous-alias' ? `no mode, no speed: no anti-alias filter is stated, it may be ${text}` : `${text} folded`;
 }
 
 /** " at 683.20 ± 0.60 Hz (mode 8; quiet near 3416 rpm)"; of many rows the longest three. */
@@ -79,7 +87,7 @@ function placesText(alarms: MonitorAlarm[]): string {
   if (longest.length === 0) return '';
   const texts = longest.map((alarm) => {
     const quiet = alarm.suggested_spindle_speed_rpm;
-    const more = [modeName(alarm), quiet === null ? noSpeedText(alarm.no_speed) : `quiet near ${fixed(quiet, 0)} rpm`].filter((text) => text !== '');
+    const more = [modeName(alarm), aliasText(alarm), quiet === null ? noSpeedText(alarm.no_speed) : `quiet near ${fixed(quiet, 0)} rpm`].filter((text) => text !== '');
     return `${frequencyText(alarm)} Hz${more.length > 0 ? ` (${more.join('; ')})` : ''}`;
   });
   return `, at ${listed(texts)}${heard.length > longest.length ? ' and others' : ''}`;

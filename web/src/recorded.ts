@@ -22,18 +22,23 @@ export interface MonitorStay extends Stated {
   to_s: number;
 }
 
-/** Why no speed is suggested: a mode of the arm, perhaps one, or modes that couple through the force. */
-export type NoSpeed = 'arm' | 'unclear' | 'mode-coupling';
+/** Why no speed is suggested: a mode of the arm, perhaps one, modes that couple through the force, or a line that may be folded. */
+export type NoSpeed = 'arm' | 'unclear' | 'mode-coupling' | 'ambiguous-alias';
+
+/** What the line of chatter may be that was measured, folded: empty where it is as measured. Why no speed is named. */
+export interface Folded {
+  line_frequencies_hz: number[];
+  no_speed: NoSpeed | null;
+}
 
 /** What an alarm and an event say of chatter. */
-interface OfChatter {
+interface OfChatter extends Folded {
   chatter_frequency_hz: Num;
   chatter_frequency_std_hz: Num;
   hidden: 'locked' | 'period-doubling' | null;
   mode: Num;
   mode_of: Owner | null;
   suggested_spindle_speed_rpm: Num;
-  no_speed: NoSpeed | null;
 }
 
 /** Alarms of about one frequency that follow each other; of their frequencies chatter_frequency_hz is the surest. */

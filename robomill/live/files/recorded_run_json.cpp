@@ -1,6 +1,7 @@
 #include "robomill/live/files/recorded_run_json.hpp"
 
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "robomill/base/units.hpp"
@@ -52,6 +53,7 @@ Json decisions_json(const RecordedRun& run) {
 }
 
 Json alarm_json(const RecordedAlarm& alarm) {
+  const std::string no_speed(name_in(monitor::no_speed_names, alarm.no_speed));
   const bool hidden = alarm.synchronous != monitor::SynchronousChatter::none;
   Json out = {{"count", alarm.count},
               {"from_s", number(alarm.from_s)},
@@ -63,9 +65,9 @@ Json alarm_json(const RecordedAlarm& alarm) {
               {"chatter_frequency_std_hz", number(alarm.chatter_frequency_std_hz)},
               {"channel", alarm.channel.empty() ? Json(nullptr) : Json(alarm.channel)},
               {"hidden", hidden ? Json(monitor::to_string(alarm.synchronous)) : Json(nullptr)},
-              {"suggested_spindle_speed_rpm", positive(alarm.suggested_spindle_speed_rad_per_s, units::rpm)}};
-  const std::string_view no_speed = name_in(monitor::no_speed_names, alarm.no_speed);
-  out["no_speed"] = no_speed.empty() ? Json(nullptr) : Json(no_speed);
+              {"suggested_spindle_speed_rpm", positive(alarm.suggested_spindle_speed_rad_per_s, units::rpm)},
+              {"line_frequencies_hz", alarm.line_hz},
+              {"no_speed", no_speed.empty() ? Json(nullptr) : Json(no_speed)}};
   modal::set_mode(out, alarm.mode);
   return out;
 }

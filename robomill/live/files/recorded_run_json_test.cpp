@@ -33,6 +33,11 @@ TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   decision.spindle_speed_rad_per_s = 0.0;
   decision.time_s = 1.0;
   recorder.add(decision, 2e-4);
+  monitor::MonitorEvent folded;
+  folded.decision = decision;
+  folded.no_speed = monitor::NoSpeed::ambiguous_alias;
+  folded.line_hz = {440.0, 560.0};
+  recorder.add(folded);
   decision.state = monitor::State::blind;
   decision.reason = monitor::BlindReason::speed_unknown;
   decision.time_s = 1.5;
@@ -45,7 +50,6 @@ TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   recorder.add(event);
   RecordedRun run = recorder.run();
   run.facts = {{"Detector", "comb-cusum"}};
-  run.alarms.at(0).no_speed = monitor::NoSpeed::mode_coupling;
   const auto json = nlohmann::json::parse(recorded_run_json(run));
   EXPECT_EQ(json["facts"][0]["label"], "Detector");
   EXPECT_EQ(json["unit"], "g");
@@ -86,10 +90,11 @@ TEST(RecordedRunJson, HoldsWhatWasRecorded) {
   EXPECT_EQ(alarm["channel"], "ax");
   EXPECT_TRUE(alarm["mode"].is_null());
   EXPECT_TRUE(alarm["suggested_spindle_speed_rpm"].is_null());
-  EXPECT_EQ(alarm["no_speed"], "mode-coupling");
+  EXPECT_EQ(alarm["no_speed"], "ambiguous-alias");
+  EXPECT_EQ(alarm["line_frequencies_hz"], (std::vector<double>{440.0, 560.0}));
   EXPECT_TRUE(json["teeth"].is_null());
-  EXPECT_EQ(json["events"][0]["mode"], 8);
-  EXPECT_TRUE(json["events"][0]["chatter_frequency_hz"].is_null());
+  EXPECT_EQ(json["events"][1]["mode"], 8);
+  EXPECT_TRUE(json["events"][1]["chatter_frequency_hz"].is_null());
 }
 
 TEST(RecordedRunJson, NoSignalIsNull) {

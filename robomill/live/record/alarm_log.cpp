@@ -85,6 +85,7 @@ void AlarmLog::add(const monitor::MonitorEvent& event) {
   if (event.decision.chatter_frequency_std_hz >= row.advised_std_hz) return;
   row.advised_std_hz = event.decision.chatter_frequency_std_hz;
   row.alarm.mode = event.mode;
+  row.alarm.line_hz = event.line_hz;
   row.alarm.no_speed = event.no_speed;
   const double speed = event.suggested_spindle_speed_rad_per_s;
   row.alarm.suggested_spindle_speed_rad_per_s = speed > 0.0 ? speed : NAN;

@@ -126,6 +126,28 @@ TEST(AlarmLog, TakesTheAdviceOnTheSurestFrequency) {
   stream.log.add(event);
   EXPECT_EQ(stream.log.alarms().at(0).mode.number, 8);
   EXPECT_EQ(stream.log.alarms()[0].suggested_spindle_speed_rad_per_s, 350.0);
+  EXPECT_EQ(stream.log.alarms()[0].no_speed, monitor::NoSpeed::none);
+}
+
+TEST(AlarmLog, SaysWhyNothingIsAdvised) {
+  Stream stream;
+  stream.chatter(0.25, 661.0);
+  monitor::MonitorEvent event;
+  event.decision = stream.decision;
+  event.decision.chatter_frequency_std_hz = 3.0;
+  event.mode = {8};
+  event.line_hz = {989.0};
+  stream.log.add(event);
+  EXPECT_EQ(stream.log.alarms().at(0).line_hz, event.line_hz);
+  event.decision.chatter_frequency_std_hz = 0.5;
+  event.mode = {};
+  event.line_hz = {661.0, 989.0};
+  event.no_speed = monitor::NoSpeed::ambiguous_alias;
+  stream.log.add(event);
+  const RecordedAlarm alarm = stream.log.alarms().at(0);
+  EXPECT_FALSE(alarm.mode.known());
+  EXPECT_EQ(alarm.line_hz, event.line_hz);
+  EXPECT_EQ(alarm.no_speed, monitor::NoSpeed::ambiguous_alias);
 }
 
 TEST(AlarmLog, SaysWhyNoSpeedIsSuggested) {

@@ -1,6 +1,9 @@
 #include "robomill/monitor/files/monitor_events.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cstddef>
 
 #include "robomill/base/units.hpp"
 #include "robomill/modal/files/mode_json.hpp"
@@ -40,6 +43,15 @@ std::vector<std::string> fault_names(std::uint32_t faults) {
   return names;
 }
 
+std::string line_text(const std::vector<double>& line_hz) {
+  if (line_hz.empty()) return {};
+  std::string out = fmt::format("{:.1f}", line_hz.front());
+  for (std::size_t i = 1; i < line_hz.size(); ++i) {
+    out += fmt::format("{}{:.1f}", i + 1 < line_hz.size() ? ", " : " or ", line_hz[i]);
+  }
+  return out + (line_hz.size() == 1 ? " Hz folded" : " Hz");
+}
+
 std::string event_line(const MonitorEvent& event) {
   const Decision& d = event.decision;
   const bool chatters = d.chatter_frequency_hz > 0.0;
@@ -57,6 +69,8 @@ std::string event_line(const MonitorEvent& event) {
   json["channel"] = chatters ? io::Json(d.channel + 1) : io::Json(nullptr);
   json["hidden"] = d.synchronous == SynchronousChatter::none ? io::Json(nullptr) : io::Json(to_string(d.synchronous));
   modal::set_mode(json, event.mode);
+  json["line_frequencies_hz"] = io::Json::array();
+  for (const double line_hz : event.line_hz) json["line_frequencies_hz"].push_back(io::number(line_hz));
   json["spindle_speed_rpm"] = io::positive(d.spindle_speed_rad_per_s, units::rpm);
   json["spindle_speed_std_rpm"] = io::positive(d.spindle_speed_std_rad_per_s, units::rpm);
   json["suggested_spindle_speed_rpm"] = io::positive(event.suggested_spindle_speed_rad_per_s, units::rpm);

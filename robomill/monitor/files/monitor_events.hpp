@@ -15,13 +15,16 @@ namespace robomill::monitor {
 
 /// Why no speed is suggested although chatter's frequency is known.
 enum class NoSpeed {
-  none,          ///< one is suggested, or chatter's frequency or the number of teeth is not known
-  arm,           ///< the mode that chatters is one of the arm: teeth pass too often for any lobe of it
-  unclear,       ///< several modes explain it about as well, one of the arm among them
-  mode_coupling  ///< it needs no wave of an earlier tooth: no tooth passing ends it
+  none,            ///< one is suggested, or chatter's frequency or the number of teeth is not known
+  arm,             ///< the mode that chatters is one of the arm: teeth pass too often for any lobe of it
+  unclear,         ///< several modes explain it about as well, one of the arm among them
+  mode_coupling,   ///< it needs no wave of an earlier tooth: no tooth passing ends it
+  ambiguous_alias  ///< without an anti-alias filter the line may be folded, and the modes do not say from where
 };
-inline constexpr Name<NoSpeed> no_speed_names[] = {
-    {"arm", NoSpeed::arm}, {"unclear", NoSpeed::unclear}, {"mode-coupling", NoSpeed::mode_coupling}};
+inline constexpr Name<NoSpeed> no_speed_names[] = {{"arm", NoSpeed::arm},
+                                                   {"unclear", NoSpeed::unclear},
+                                                   {"mode-coupling", NoSpeed::mode_coupling},
+                                                   {"ambiguous-alias", NoSpeed::ambiguous_alias}};
 
 /// What a monitor reports.
 struct MonitorEvent {
@@ -30,9 +33,12 @@ struct MonitorEvent {
   /// recording: the samples before an alarm were written to a file.
   enum class Kind { state, window, fault, stream, recording };
   Kind kind = Kind::state;
-  double time_s = 0.0;                             ///< of the stream [s]
-  Decision decision = {};                          ///< the last one
-  modal::ModeId mode = {};                         ///< that chatters
+  double time_s = 0.0;      ///< of the stream [s]
+  Decision decision = {};   ///< the last one
+  modal::ModeId mode = {};  ///< that chatters
+  /// What the line of chatter is that was measured folded; of several it is not known which. Empty: as measured, or
+  /// nothing is advised.
+  std::vector<double> line_hz = {};
   double suggested_spindle_speed_rad_per_s = 0.0;  ///< 0: none
   double suggested_axial_depth_m = 0.0;            ///< 0: none
   std::vector<double> stable_speeds_rad_per_s = {};
@@ -49,6 +55,9 @@ struct MonitorEvent {
 
 /// One line of JSON with its end. What is not known is null; numbers are finite.
 [[nodiscard]] ROBOMILL_API std::string event_line(const MonitorEvent& event);
+
+/// For people, of MonitorEvent::line_hz: "989.0 Hz folded"; "661.0, 989.0 or 2311.0 Hz". Empty of none.
+[[nodiscard]] ROBOMILL_API std::string line_text(const std::vector<double>& line_hz);
 
 /// "not-finite", … of a mask.
 [[nodiscard]] ROBOMILL_API std::vector<std::string> fault_names(std::uint32_t faults);

@@ -22,6 +22,7 @@ TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   event.decision.faults = clipped | not_finite;
   event.decision.synchronous = SynchronousChatter::locked;
   event.mode = {2};
+  event.line_hz = {989.0};
   event.suggested_spindle_speed_rad_per_s = 6500.0 * units::rpm;
   event.stable_speeds_rad_per_s = {6500.0 * units::rpm, 3250.0 * units::rpm};
   event.command = "spindle-speed";
@@ -40,6 +41,7 @@ TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   EXPECT_EQ(json["hidden"], "locked");
   EXPECT_EQ(json["mode"], 2);
   EXPECT_EQ(json["mode_of"], "tool");
+  EXPECT_EQ(json["line_frequencies_hz"], (std::vector<double>{989.0}));
   EXPECT_EQ(json["suggested_spindle_speed_rpm"], 6500);
   EXPECT_EQ(json["stable_spindle_speeds_rpm"][1], 3250);
   EXPECT_EQ(json["faults"], (std::vector<std::string>{"not-finite", "clipped"}));
@@ -47,6 +49,8 @@ TEST(MonitorEvents, AreOneLineWithTheNamesOfTheInterface) {
   EXPECT_TRUE(json["no_speed"].is_null());
   event.no_speed = NoSpeed::mode_coupling;
   EXPECT_EQ(nlohmann::json::parse(event_line(event))["no_speed"], "mode-coupling");
+  event.no_speed = NoSpeed::ambiguous_alias;
+  EXPECT_EQ(nlohmann::json::parse(event_line(event))["no_speed"], "ambiguous-alias");
   EXPECT_EQ(json["compute_us"], 123);
   EXPECT_FALSE(json.contains("what"));
 }
@@ -62,6 +66,14 @@ TEST(MonitorEvents, HoldWhatIsUnknownAsNull) {
     EXPECT_TRUE(json[key].is_null()) << key;
   }
   EXPECT_TRUE(json["faults"].empty());
+  EXPECT_TRUE(json["line_frequencies_hz"].empty());
+}
+
+TEST(MonitorEvents, HaveWordsForAliases) {
+  EXPECT_EQ(line_text({}), "");
+  EXPECT_EQ(line_text({989.04}), "989.0 Hz folded");
+  EXPECT_EQ(line_text({661.0, 989.0}), "661.0 or 989.0 Hz");
+  EXPECT_EQ(line_text({661.0, 989.0, 2311.0}), "661.0, 989.0 or 2311.0 Hz");
 }
 
 TEST(MonitorEvents, HoldWhatHappenedToTheStream) {

@@ -135,6 +135,7 @@ bool read_column(io::TomlFile& file, const std::string& key, std::string& out) {
 void read_signal(io::TomlFile& file, MonitorFile& out) {
   file.number("signal.sample_rate_hz", "sample_rate_hz", 1.0, out.options.sample_rate_hz);
   out.columns.sample_rate_hz = out.options.sample_rate_hz;
+  file.boolean("signal.anti_alias_filter", out.anti_alias_filter);
   file.require("signal.channels", "Write channels = [\"ax_m_per_s2\"]: names of columns, or numbers from 1");
   if (file.is_number("signal.channels")) {
     out.columns.channels.resize(1);
@@ -251,6 +252,7 @@ std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
   }
   out += "[signal]\n";
   if (o.sample_rate_hz > 0.0) line("sample_rate_hz", number_text(o.sample_rate_hz));
+  if (file.anti_alias_filter) line("anti_alias_filter", "true");
   std::string names, tachometer;
   for (int channel = 0; const std::string& name : file.columns.channels) {
     std::string& list = channel++ == o.tachometer_channel ? tachometer : names;

@@ -55,7 +55,9 @@ struct MonitorFile {
   std::filesystem::path path = {};
   /// [signal], without the rate; the tachometer is the last channel. The spindle speed is followed.
   io::SampleColumns columns = {.channels = {}, .followed = "spindle_speed_rpm", .followed_factor = units::rpm};
-  MonitorOptions options = {};       ///< sample_rate_hz is 0 where the file leaves it to the recording
+  MonitorOptions options = {};  ///< sample_rate_hz is 0 where the file leaves it to the recording
+  /// Whether nothing above half the sample rate was sampled; false: not stated, and lines may be folded.
+  bool anti_alias_filter = false;
   std::filesystem::path modes = {};  ///< process.modes; empty: none
   std::filesystem::path lobes = {};  ///< process.lobes; empty: none
   double timeout_s = 1.0;            ///< without samples for so long, the state is blind; > 0

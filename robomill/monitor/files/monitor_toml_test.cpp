@@ -18,7 +18,7 @@ TEST(MonitorToml, ReadsEveryKey) {
   const test::Folder folder;
   const MonitorFile file = read_monitor(folder.file(
       "monitor.toml",
-      "[signal]\nsample_rate_hz = 10240\nchannels = [\"ax\", \"ay\"]\n"
+      "[signal]\nsample_rate_hz = 10240\nanti_alias_filter = true\nchannels = [\"ax\", \"ay\"]\n"
       "tachometer = \"pulse\"\ncolumns = 5\nscale = 50\nfull_scale = 49.9\n"
       "[process]\nspindle_speed_rpm = 3000\nteeth = 2\n"
       "modes = \"modes.json\"\nlobes = \"lobes.toml\"\n"
@@ -34,6 +34,7 @@ TEST(MonitorToml, ReadsEveryKey) {
       "spindle_speed_rpm = [3000, 9000]\nsettle_s = 1.5\ncalm_s = 4\n"
       "[recording]\nfolder = \"alarms\"\nseconds = 30\n"));
   EXPECT_EQ(file.options.sample_rate_hz, 10240.0);
+  EXPECT_TRUE(file.anti_alias_filter);
   EXPECT_EQ(file.columns.channels, (std::vector<std::string>{"ax", "ay", "pulse"}));
   EXPECT_EQ(file.columns.raw_columns, 5);
   EXPECT_EQ(file.columns.scale, 50.0);
@@ -78,6 +79,7 @@ TEST(MonitorToml, HasDefaults) {
   const test::Folder folder;
   const MonitorFile file = read_monitor(folder.file("monitor.toml", least));
   EXPECT_EQ(file.options.kind, Kind::comb_cusum);
+  EXPECT_FALSE(file.anti_alias_filter);
   EXPECT_EQ(file.options.tachometer_channel, -1);
   EXPECT_EQ(file.metrics_port, -1);
   EXPECT_EQ(file.recording_s, 60.0);
@@ -152,6 +154,13 @@ TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
             std::string::npos);
   EXPECT_NE(signal("channels = [1]\ntachometer = 1\n").find("another column"), std::string::npos);
   EXPECT_NE(signal("channels = [1]\nscale = 0\n").find("signal.scale = 0"), std::string::npos);
+  // A corner frequency, a text or a number states nothing: whether the filter is there is asked.
+  for (const char* wrong : {"4000", "\"yes\"", "1", "nan", "[true]", "{ corner_hz = 800 }"}) {
+    const std::string said = signal(("channels = [1]\nanti_alias_filter = " + std::string(wrong) + "\n").c_str());
+    EXPECT_NE(said.find("s.toml:3: signal.anti_alias_filter"), std::string::npos) << said;
+    EXPECT_NE(said.find("must be true or false"), std::string::npos) << said;
+  }
+  EXPECT_NE(signal("channels = [1]\nantialias_filter = true\n").find("signal.anti_alias_filter"), std::string::npos);
 }
 
 TEST(MonitorToml, FollowsTheSpindleSpeedOfARecording) {
@@ -184,6 +193,9 @@ TEST(MonitorToml, IsReadAsItWasWritten) {
   EXPECT_EQ(back.options.alarm_below, true);
   EXPECT_EQ(back.options.tachometer_channel, 2);
   EXPECT_EQ(monitor_toml(back), monitor_toml(file));
+  EXPECT_EQ(text.find("anti_alias_filter"), std::string::npos);
+  file.anti_alias_filter = true;
+  EXPECT_TRUE(read_monitor(folder.file("m.toml", monitor_toml(file))).anti_alias_filter);
 }
 
 TEST(MqttAddress, IsHostPortAndTopic) {

@@ -16,11 +16,12 @@ function isState({ event }: MonitorEvent): boolean {
 
 /** What an event says beside numbers. Where no command is possible the message says why there is no speed. */
 function noteOf(of: MonitorEvent): string {
-  const { event, state, reason, command, faults, what, file, message, hidden, no_speed } = of;
+  const { event, state, reason, command, faults, what, file, message } = of;
   if (event === 'fault') return faults.length === 0 ? 'the input is well again' : `input: ${faults.map(faultText).join(', ')}`;
   if (event === 'stream') return message ?? what ?? '';
   if (event === 'recording') return `recorded ${file ?? ''}`;
-  const own = state === 'blind' ? [reasonText(reason)] : chatterNotes({ hidden, no_speed: command === 'none' ? null : no_speed });
+  const explained = command === 'none' ? { ...of, no_speed: null, line_frequencies_hz: [] } : of;
+  const own = state === 'blind' ? [reasonText(reason)] : chatterNotes(explained);
   return [...own, ...(message === undefined ? [] : [message])].join('; ');
 }
 
