@@ -24,7 +24,11 @@ bool related(double a_hz, double b_hz) {
 }  // namespace
 
 CombSearch::CombSearch(double hop_s) : hop_s_(hop_s) {
-  for (double hz = lowest_sought_hz; hz <= highest_sought_hz; hz *= 1.0 + step) candidate_hz_.push_back(hz);
+  for (double hz = lowest_sought_hz; hz <= highest_sought_hz; hz *= 1.0 + step) {
+    candidate_hz_.push_back(hz);
+    credit_.push_back(credit * std::log(hz));
+  }
+  for (auto* of_each : {&place_, &held_, &here_}) of_each->resize(candidate_hz_.size());
   evidence_.resize(candidate_hz_.size());
 }
 
@@ -38,18 +42,23 @@ void CombSearch::observe(std::span<const float> power, const Spectrum& like) noe
   if (energy.whole <= 0.0) return;
   const double forgets = std::exp(-hop_s_ / search_memory_s);
   const double weight = 2.0 * hop_s_ / like.seconds * energy.lines;
+  for (std::size_t i = 0; i < place_.size(); ++i) place_[i] = static_cast<float>(candidate_hz_[i] / like.step_hz);
+  std::ranges::fill(held_, 0.0F);
+  std::size_t count = 0;
+  for (int k = 1; (count = at_multiple(power, place_, k, energy.last, here_)) > 0; ++k) {
+    for (std::size_t i = 0; i < count; ++i) held_[i] += here_[i];
+  }
   std::size_t best = 0;
-  const auto total = [&](std::size_t i) { return evidence_[i] + credit * std::log(candidate_hz_[i]); };
+  const auto total = [&](std::size_t i) { return evidence_[i] + credit_[i]; };
   for (std::size_t i = 0; i < candidate_hz_.size(); ++i) {
-    const double held = static_cast<double>(at_multiples(power, candidate_hz_[i] / like.step_hz, energy.last));
     const double chance = std::min(0.9, 1.5 / (candidate_hz_[i] * like.seconds));
-    const double share = std::clamp((held / energy.whole - chance) / (1.0 - chance), 0.0, 1.0);
+    const double share = std::clamp((static_cast<double>(held_[i]) / energy.whole - chance) / (1.0 - chance), 0.0, 1.0);
     evidence_[i] = forgets * evidence_[i] - weight * std::log(1.0 + comb_search_floor - share);
     if (total(i) > total(best)) best = i;
   }
   double second = -1e9;
   for (std::size_t i = 0; i < candidate_hz_.size(); ++i) {
-    if (!related(candidate_hz_[i], candidate_hz_[best])) second = std::max(second, total(i));
+    if (total(i) > second && !related(candidate_hz_[i], candidate_hz_[best])) second = total(i);
   }
   const bool mains = std::ranges::any_of(std::array{25.0, 30.0, 50.0, 60.0}, [&](double hz) {
     return std::abs(candidate_hz_[best] / hz - 1.0) < mains_width;

@@ -23,7 +23,8 @@ class CombSearch {
  private:
   double hop_s_;
   double found_hz_ = 0.0;
-  std::vector<double> candidate_hz_, evidence_;
+  std::vector<double> candidate_hz_, credit_, evidence_;
+  std::vector<float> place_, held_, here_;  // in lines; at all multiples; at one
 };
 
 }  // namespace robomill::monitor

@@ -34,6 +34,12 @@ struct Spectrum {
   }
 };
 
+/// Σ x and Σ x².
+struct Sums {
+  double plain = 0.0, squares = 0.0;
+};
+[[nodiscard]] Sums sums_of(std::span<const float> x) noexcept;
+
 /// What a window holds in all channels together.
 struct WindowEnergy {
   double whole = 0.0;    ///< Σ A² [input's unit²]
@@ -42,8 +48,11 @@ struct WindowEnergy {
 };
 /// @param power  Σ |X|² over the channels, line by line;  @param like  a spectrum of one: T and Δν
 [[nodiscard]] WindowEnergy energy_of(std::span<const float> power, const Spectrum& like, double highest_hz) noexcept;
-/// Σ_k power(k f) up to the last line, between lines by straight lines.
-[[nodiscard]] float at_multiples(std::span<const float> power, double rotation_lines, std::size_t last) noexcept;
+/// power(k f) of many f at once, between lines by straight lines.
+/// @param places  f/Δν, rising;  @param out  of those first places whose k f stands before the last line
+/// @return how many these are
+std::size_t at_multiple(std::span<const float> power, std::span<const float> places, int k, std::size_t last,
+                        std::span<float> out) noexcept;
 
 /// The spectra of the last 0.3 s and 0.15 s of several channels. A sample rate above 20 kHz is reduced by a whole
 /// number, to 10 kHz and more, behind a low-pass. Nothing is allocated after construction.

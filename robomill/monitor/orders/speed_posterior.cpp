@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace robomill::monitor {
 namespace {
@@ -11,6 +12,7 @@ constexpr std::size_t drift_reach = 30;  // steps
 constexpr std::size_t near_reach = 6;    // steps
 constexpr double held_reach = 4.0;       // steps
 constexpr double anew = 1e-3;            // a hop, to be drawn from the prior
+constexpr double believable = 1e-15;
 constexpr double known_within = 0.004;
 constexpr double mains_ratio = 0.01, highest_of_mains_hz = 190.0, hint_of_mains_ratio = 0.01;
 constexpr double miscounted = 1e-4;   // probability density of a measurement that is wrong
@@ -24,10 +26,11 @@ SpeedPosterior::SpeedPosterior(const Setup& setup)
     : setup_(setup),
       prior_(size),
       belief_(size),
-      spread_(size),
       drift_(drift_reach + 1),
       evidence_(size),
-      shares_(size) {
+      wide_(size + 2 * drift_reach),
+      ratio_(size) {
+  for (auto* of_each : {&place_, &here_, &held_, &low_, &hum_, &shares_}) of_each->resize(size);
   double sum = 0.0;
   for (std::size_t i = 0; i < drift_.size(); ++i) {
     const double x = static_cast<double>(i) * step / drift_ratio;
@@ -40,6 +43,7 @@ SpeedPosterior::SpeedPosterior(const Setup& setup)
     const double x = (static_cast<double>(i) - static_cast<double>(side)) * step / setup.std_ratio;
     prior_[i] = 1.0 / (1.0 + x * x);
     sum += prior_[i];
+    ratio_[i] = std::exp((static_cast<double>(i) - static_cast<double>(side)) * step);
   }
   for (double& p : prior_) p /= sum;
   reset();
@@ -58,9 +62,9 @@ void SpeedPosterior::set_hint(double rotation_hz) noexcept {
   for (std::size_t i = 0; i < size; ++i) {
     const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(i) + by;
     const bool within = from >= 0 && from < static_cast<std::ptrdiff_t>(size);
-    spread_[i] = within ? belief_[static_cast<std::size_t>(from)] : anew * prior_[i];
+    wide_[drift_reach + i] = within ? belief_[static_cast<std::size_t>(from)] : anew * prior_[i];
   }
-  belief_.swap(spread_);
+  std::copy_n(wide_.begin() + drift_reach, size, belief_.begin());
   held_place_ = -1.0;
 }
 
@@ -93,16 +97,18 @@ void SpeedPosterior::predict(Motion motion) noexcept {
     held_place_ = static_cast<double>(std::ranges::max_element(belief_) - belief_.begin());
   const double fresh = motion == Motion::free ? anew : 0.0;
   const std::size_t reach_steps = motion == Motion::free ? drift_reach : near_reach;
-  for (std::size_t i = 0; i < size; ++i) {
-    double sum = drift_[0] * belief_[i];
-    for (std::size_t j = 1; j <= reach_steps; ++j) {
-      if (i >= j) sum += drift_[j] * belief_[i - j];
-      if (i + j < size) sum += drift_[j] * belief_[i + j];
-    }
-    const bool out = held_place_ >= 0.0 && std::abs(static_cast<double>(i) - held_place_) > held_reach;
-    spread_[i] = out ? 1e-30 : (1.0 - fresh) * sum + fresh * prior_[i];
+  std::ranges::copy(belief_, wide_.begin() + drift_reach);
+  for (std::size_t i = 0; i < size; ++i) belief_[i] *= drift_[0];
+  for (std::size_t j = 1; j <= reach_steps; ++j) {
+    const double* before = wide_.data() + drift_reach - j;
+    const double* after = wide_.data() + drift_reach + j;
+    const double share = drift_[j];
+    for (std::size_t i = 0; i < size; ++i) belief_[i] += share * (before[i] + after[i]);
   }
-  belief_.swap(spread_);
+  for (std::size_t i = 0; i < size; ++i) {
+    const bool out = held_place_ >= 0.0 && std::abs(static_cast<double>(i) - held_place_) > held_reach;
+    belief_[i] = out ? 1e-30 : (1.0 - fresh) * belief_[i] + fresh * prior_[i];
+  }
   std::ranges::fill(evidence_, 0.0);
 }
 
@@ -110,39 +116,38 @@ void SpeedPosterior::observe(std::span<const float> power, const Spectrum& like)
   if (hint_hz_ <= 0.0) return;
   const WindowEnergy energy = energy_of(power, like, setup_.highest_hz);
   if (energy.whole <= 0.0) return;
-  const double whole = energy.whole;
-  const std::size_t last = energy.last;
-  const double lines = std::max(0.0, energy.lines - 1.0);
   const int teeth = std::max(1, setup_.teeth);
   const int low_orders = setup_.teeth > 0 ? low_of_teeth * teeth : low_of_unknown_teeth;
-  lines_ = lines;
+  lines_ = std::max(0.0, energy.lines - 1.0);
   const double weight = 2.0 * setup_.hop_s / like.seconds;
-  for (std::size_t i = 0; i < size; ++i) {
-    const double rotation_hz = candidate_hz(static_cast<double>(i));
-    const double order_step = rotation_hz / like.step_hz;
+  std::ranges::fill(shares_, 0.0F);
+  const auto believed = [](double p) { return p > believable; };
+  const auto first = std::ranges::find_if(belief_, believed) - belief_.begin();
+  const auto end = std::find_if(belief_.rbegin(), belief_.rend() - first, believed).base() - belief_.begin();
+  const auto ratios = std::span(ratio_).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(end - first));
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    place_[i] = static_cast<float>(hint_hz_ * ratios[i] / like.step_hz);
+    held_[i] = low_[i] = hum_[i] = 0.0F;
+  }
+  const auto places = std::span(place_).first(ratios.size());
+  std::size_t count = 0;
+  for (int k = 1; (count = at_multiple(power, places, k, energy.last, here_)) > 0; ++k) {
     // Beside hum only what stands above it speaks for a speed.
-    const bool hum = of_the_mains(rotation_hz);
-    float held = 0.0F;
-    float low = 0.0F;
-    float humming = 0.0F;
-    int order = 1;
-    for (double at = order_step; at < static_cast<double>(last); at += order_step, ++order) {
-      const auto k = static_cast<std::size_t>(at);
-      const auto part = static_cast<float>(at - static_cast<double>(k));
-      const float here = power[k] + part * (power[k + 1] - power[k]);
-      if (hum && order * rotation_hz < highest_of_mains_hz) {
-        humming += here;
-        continue;
-      }
-      held += here;
-      if (order <= low_orders && (order % teeth == 0 || order <= low_of_rotation)) low += here;
+    for (std::size_t i = 0; i < count && k * hint_hz_ * ratios[i] < highest_of_mains_hz; ++i) {
+      if (of_the_mains(hint_hz_ * ratios[i])) hum_[i] += std::exchange(here_[i], 0.0F);
     }
-    const double chance = std::min(0.9, 1.5 / (rotation_hz * like.seconds));
-    const double rest = std::max(1e-3 * whole, whole - static_cast<double>(humming));
-    const double share = std::min(1.0, (static_cast<double>(held) / rest - chance) / (1.0 - chance));
-    shares_[i] = static_cast<float>(share);
-    const double alone = std::min(1.0, static_cast<double>(low) / rest);
-    evidence_[i] -= weight * (lines + alone) * std::log(1.0 + unexplained - std::max(0.0, share));
+    for (std::size_t i = 0; i < count; ++i) held_[i] += here_[i];
+    if (k > low_orders || (k % teeth != 0 && k > low_of_rotation)) continue;
+    for (std::size_t i = 0; i < count; ++i) low_[i] += here_[i];
+  }
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    const double chance = std::min(0.9, 1.5 / (hint_hz_ * ratios[i] * like.seconds));
+    const double rest = std::max(1e-3 * energy.whole, energy.whole - static_cast<double>(hum_[i]));
+    const double share = std::min(1.0, (static_cast<double>(held_[i]) / rest - chance) / (1.0 - chance));
+    const double alone = std::min(1.0, static_cast<double>(low_[i]) / rest);
+    const std::size_t candidate = static_cast<std::size_t>(first) + i;
+    shares_[candidate] = static_cast<float>(share);
+    evidence_[candidate] -= weight * (lines_ + alone) * std::log(1.0 + unexplained - std::max(0.0, share));
   }
 }
 

@@ -16,7 +16,8 @@ namespace robomill::monitor {
 /// speed, but for the share q(f) of the energy at low multiples of tooth passing. w is twice the hop over T, since
 /// windows overlap. Between hops the speed may drift, by a Cauchy distribution of 0.08 % a hop, and with a probability
 /// of 1e-3 it is drawn anew from the prior: a Cauchy distribution about the hint. Candidates near the mains' frequency
-/// count no lines below 190 Hz, unless the hint is there.
+/// count no lines below 190 Hz, unless the hint is there. Beyond the candidates whose belief is above 1e-15 none is
+/// looked at: ln L = 0.
 ///
 /// Nothing is allocated after construction.
 class SpeedPosterior {
@@ -74,8 +75,11 @@ class SpeedPosterior {
   double hint_hz_ = 0.0, rotation_hz_ = 0.0, std_ratio_ = 0.0, share_ = 0.0, known_ = 0.0;
   double lines_ = 0.0;
   double held_place_ = -1.0;  // < 0: not held
-  std::vector<double> prior_, belief_, spread_, drift_, evidence_;
-  std::vector<float> shares_;
+  std::vector<double> prior_, belief_, drift_, evidence_;
+  std::vector<double> wide_;   // beliefs between zeros on both sides
+  std::vector<double> ratio_;  // of each candidate to the hint
+  // Of those looked at: place in lines, energy at one order, at all, at low ones, of hum; of each: s.
+  std::vector<float> place_, here_, held_, low_, hum_, shares_;
 };
 
 }  // namespace robomill::monitor
