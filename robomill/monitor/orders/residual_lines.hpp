@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -42,20 +43,28 @@ class ResidualLines {
   void share_out_between(double cell_hz, std::span<double> cells) const noexcept;
 
  private:
-  [[nodiscard]] bool near_a_fraction(double to_below) const noexcept;
+  struct Lines {
+    std::size_t from = 0, to = 0;
+  };
+  [[nodiscard]] double median_line(std::size_t count) const noexcept;
 
   Spectrum like_;  // without lines
   double seconds_, step_hz_, share_;
   std::size_t first_, lines_, order_lines_;  // that count, from first_ on; to each side of an order that are taken off
   double rotation_hz_ = 0.0;
   int teeth_ = 0;
-  bool sure_ = true;
-  std::vector<float> kernel_;                 // h at steps of 1/32 of 1/T
-  std::vector<std::complex<float>> rest_;     // of a channel
+  std::size_t orders_ = 0, folds_ = 0;
+  std::vector<float> kernel_;          // h at the lines about an order; a row for each place of it between two lines
+  std::vector<Lines> between_orders_;  // that count, from each order to the next
+  // Of each of these: the energy it stands for, the skirts there of the orders below and above, the place of φ.
+  std::vector<float> share_of_, skirt_below_, skirt_above_;
+  std::vector<std::int32_t> fold_of_;
+  std::vector<float> re_, im_;                // what is left of a channel
   std::vector<float> order_energy_;           // of a channel
   std::vector<float> left_;                   // of all channels
   std::vector<float> between_;                // energy of each order that is no multiple of the teeth, of all channels
-  std::vector<double> fold_, room_, sorted_;  // energy by fraction of an order; share of the lines there that count
+  std::vector<double> fold_, room_, sorted_;  // energy by fraction of an order; lines there that count
+  std::vector<std::size_t> strongest_;        // line there
   double whole_ = 0.0, synchronous_ = 0.0;
 };
 
