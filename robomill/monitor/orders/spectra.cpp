@@ -189,7 +189,8 @@ void Spectra::transform() noexcept {
     for (std::size_t c = 0; c < channels_; ++c) {
       const float* last = ring_.data() + 2 * c * size_ + at_ + size_ - window.length;
       // The middle stands at 0, so that the phases are its own.
-      std::fill_n(in_.begin(), window.padded, 0.0F);
+      std::fill(in_.begin() + static_cast<std::ptrdiff_t>(half + 1),
+                in_.begin() + static_cast<std::ptrdiff_t>(window.padded - half), 0.0F);
       for (std::size_t i = 0; i <= half; ++i) in_[i] = window.shape[half + i] * last[half + i];
       for (std::size_t i = 0; i < half; ++i) in_[window.padded - half + i] = window.shape[i] * last[i];
       window.fft.transform_real(in_.data(), window.spectra[c].line.data());
