@@ -1,7 +1,6 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "robomill/monitor/monitor.hpp"
@@ -14,8 +13,6 @@ struct Hop {
   std::size_t frames = 0;
   std::uint64_t first_frame = 0;   ///< of the stream
   std::uint64_t bad_channels = 0;  ///< bit c: dead, stuck or not finite, or no vibration; to be left out
-  std::optional<double> measured_rotation_hz = {};  ///< by the tachometer; 0: not known; empty: there is none
-  double measured_std_ratio = 0.0;                  ///< its standard deviation, of it
   [[nodiscard]] std::span<const double> channel(std::size_t c) const noexcept {
     return samples.subspan(c * frames, frames);
   }

@@ -7,8 +7,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/monitor/combined_detector.hpp"
 #include "robomill/monitor/detector.hpp"
+#include "robomill/monitor/order_detector.hpp"
 #include "robomill/monitor/published/entropy_detector.hpp"
 #include "robomill/monitor/signal_validation.hpp"
 
@@ -27,7 +27,7 @@ void require_between(const char* field, double number, double low, double high, 
 
 std::unique_ptr<Detector> make_detector(const MonitorOptions& options) {
   if (options.kind == Kind::energy_entropy) return std::make_unique<EntropyDetector>(options);
-  return std::make_unique<CombinedDetector>(options);
+  return std::make_unique<OrderDetector>(options);
 }
 
 }  // namespace

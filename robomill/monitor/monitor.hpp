@@ -16,7 +16,7 @@ namespace robomill::monitor {
 
 /// Which detector decides.
 enum class Kind {
-  comb_cusum,     ///< a comb takes off what repeats with the spindle; a CUSUM tests each spectral line of the rest
+  comb_cusum,     ///< what repeats with the spindle is taken off; the rest is tested against it and against its past
   energy_entropy  ///< the published detector: the entropy of the bands' energies against a calibrated threshold
 };
 inline constexpr Name<Kind> kind_names[] = {{"comb-cusum", Kind::comb_cusum}, {"energy-entropy", Kind::energy_entropy}};
@@ -29,8 +29,8 @@ inline constexpr Name<Entropy> entropy_names[] = {{"normalised", Entropy::normal
 /// What a decision says of the cut.
 enum class State {
   stable,      ///< no alarm, and none on its way up or down
-  transition,  ///< comb_cusum: score > threshold / 2 without an alarm; both detectors: an alarm on its way down
-  chatter,     ///< an alarm: score > threshold (energy_entropy with alarm_below: <), or SynchronousChatter
+  transition,  ///< comb_cusum: something stands out, not yet for long enough; energy_entropy: an alarm on its way down
+  chatter,     ///< an alarm: score > threshold (energy_entropy with alarm_below: <)
   blind        ///< nothing can be said of the cut; Decision::reason says why
 };
 /// Why nothing can be said of the cut. The first that applies is given; chatter once found is not blind.
@@ -46,8 +46,8 @@ enum class BlindReason {
 /// Those that are one.
 inline constexpr BlindReason blind_reasons[] = {BlindReason::no_signal, BlindReason::clipped,
                                                 BlindReason::speed_unknown, BlindReason::gap};
-/// Chatter synchronous with the spindle, which a comb takes for a part of the cut. It is detected by the power of a
-/// multiple of rotation against what was learnt of it.
+/// Chatter synchronous with the spindle. It is detected by the power of a multiple of rotation against what was learnt
+/// of it.
 enum class SynchronousChatter {
   none,            ///< no chatter, or not synchronous
   locked,          ///< to the rotation: at a multiple of it that is none of tooth passing
@@ -61,7 +61,7 @@ enum Fault : std::uint32_t {
   clipped = 4,             ///< |sample| >= 0.9999 full_scale, or two runs and more of 4 equal samples at the extremes
   dead_channel = 8,        ///< a channel that never moved, or with a variance < 1e-8 of the loudest channel's
   wrong_sample_rate = 16,  ///< the comb fits at another one, Decision::suggested_sample_rate_hz
-  speed_unknown = 32       ///< no comb was found: the test runs without
+  speed_unknown = 32       ///< no comb was found: in air, or the tests run without
 };
 
 struct ROBOMILL_API MonitorOptions {
@@ -73,16 +73,17 @@ struct ROBOMILL_API MonitorOptions {
   double spindle_speed_rad_per_s = 0.0;  ///< a hint, off by several percent in real metadata; 0: unknown
   double speed_std_ratio = 0.015;        ///< of the hint, in (0, 0.2]: width of a Cauchy distribution about it
   int teeth = 0;                         ///< in [0, 64]; 0: unknown
-  double window_s = 0.05;                ///< of the short-time transform; at least 32 samples and one hop
+  double window_s = 0.05;                ///< energy-entropy: of the transform; at least 32 samples and one hop
   double hop_s = 0.025;                  ///< between decisions; at least 16 samples
   int bands = 16;                        ///< equal, from 0 to half the sample rate; in [2, 64]
   Entropy entropy = Entropy::energy;     ///< energy-entropy
   /// energy-entropy: finite, required there; chatter where Decision::energy_entropy > threshold (alarm_below: <). It
   /// holds for one form, unit and sensor, and calibrate() sets it.
   double threshold = std::numeric_limits<double>::quiet_NaN();
-  bool alarm_below = false;            ///< energy-entropy: which side of the threshold is chatter, from calibration
-  double false_alarms_per_hour = 0.1;  ///< comb-cusum, > 0; alarms an hour <= this in stationary noise (Wald's bound)
-  double full_scale = 0.0;             ///< at which the converter clips, >= 0: |sample| >= 0.9999 of it; 0: unknown
+  bool alarm_below = false;  ///< energy-entropy: which side of the threshold is chatter, from calibration
+  /// comb-cusum, > 0: how long slow growth must last, a hop more for every factor of 37 fewer; 4 hops at 0.1.
+  double false_alarms_per_hour = 0.1;
+  double full_scale = 0.0;  ///< at which the converter clips, >= 0: |sample| >= 0.9999 of it; 0: unknown
   /// @throws InvalidInput naming the field
   void validate() const;
   /// Samples a hop and a window: the times, rounded.
@@ -98,10 +99,12 @@ struct Decision {
   BlindReason reason = BlindReason::none;  ///< of State::blind
   bool changed = false;                    ///< state differs from the last decision's
   double score = 0.0;                      ///< of the test
-  double threshold = 0.0;  ///< alarm where score > threshold (MonitorOptions::alarm_below: <), or as `synchronous` says
-  double energy_entropy = 0.0;  ///< Σ over the channels of the bands' energy entropy, as MonitorOptions::entropy has it
-  double level = 0.0;           ///< rms of all channels of vibration over the hop, mean taken off [input's unit]
-  double chatter_frequency_hz = 0.0;         ///< 0: none
+  double threshold = 0.0;  ///< alarm where score > threshold (MonitorOptions::alarm_below: <); comb-cusum: 1
+  /// Σ over the channels of the bands' energy entropy, as MonitorOptions::entropy has it; comb-cusum: of the last 0.15
+  /// s.
+  double energy_entropy = 0.0;
+  double level = 0.0;                 ///< rms of all channels of vibration over the hop, mean taken off [input's unit]
+  double chatter_frequency_hz = 0.0;  ///< 0: none
   double chatter_frequency_std_hz = 0.0;     ///< its standard deviation
   int channel = 0;                           ///< in which chatter is strongest, from 0
   double spindle_speed_rad_per_s = 0.0;      ///< as tracked; 0: unknown

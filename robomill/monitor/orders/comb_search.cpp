@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robomill/monitor/orders/mains.hpp"
+
 namespace robomill::monitor {
 namespace {
 
@@ -60,9 +62,8 @@ void CombSearch::observe(std::span<const float> power, const Spectrum& like) noe
   for (std::size_t i = 0; i < candidate_hz_.size(); ++i) {
     if (total(i) > second && !related(candidate_hz_[i], candidate_hz_[best])) second = total(i);
   }
-  const bool mains = std::ranges::any_of(std::array{25.0, 30.0, 50.0, 60.0}, [&](double hz) {
-    return std::abs(candidate_hz_[best] / hz - 1.0) < mains_width;
-  });
+  const bool mains = std::ranges::any_of(
+      mains_rotation_hz, [&](double hz) { return std::abs(candidate_hz_[best] / hz - 1.0) < mains_width; });
   found_hz_ = total(best) - second > margin && !mains ? candidate_hz_[best] : 0.0;
 }
 

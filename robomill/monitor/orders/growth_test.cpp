@@ -13,6 +13,10 @@ constexpr double least_share = 0.05;  // of the synchronous energy: what is smal
 constexpr double first_s = 0.4;       // that are learnt before anything is judged
 constexpr double usual_memory_s = 1.0, suspect_memory_s = 5.0;
 
+constexpr double family_growth = 3.0, family_share = 0.02, family_of_swing = 0.1;
+constexpr double family_first_s = 0.25, family_memory_s = 2.0;
+constexpr double slower = 0.2;  // is what has grown learnt
+
 }  // namespace
 
 std::size_t GrowthTest::cells(double highest_hz) noexcept {
@@ -46,7 +50,7 @@ GrowthTest::Verdict GrowthTest::step(double synchronous) noexcept {
                           cells_.begin() + static_cast<std::ptrdiff_t>(i + width)) > cells_[i + width / 2]) {
       continue;
     }
-    if (now < least_share * synchronous || now < suspect_growth * cut * before) continue;
+    if (now <= 0.0 || now < least_share * synchronous || now < suspect_growth * cut * before) continue;
     suspect_ = true;
     if (now > growth * cut * before && now > out.energy) {
       out.energy = now;
@@ -63,10 +67,23 @@ GrowthTest::Verdict GrowthTest::step(double synchronous) noexcept {
 
 void GrowthTest::learn() noexcept {
   const double memory = suspect_ ? suspect_memory_s : usual_memory_s;
-  const double share = std::max(hop_s_ / memory, suspect_ ? 0.0 : 1.0 / static_cast<double>(learnt_ + 1));
+  const double share =
+      std::min(1.0, std::max(hop_s_ / memory, suspect_ ? 0.0 : 1.0 / static_cast<double>(learnt_ + 1)));
   for (std::size_t i = 0; i < cells_.size(); ++i) usual_[i] += share * (cells_[i] - usual_[i]);
   usual_synchronous_ += share * (synchronous_ - usual_synchronous_);
   ++learnt_;
+}
+
+bool FamilyGrowth::step(const ResidualFamily& now, double swing, bool learns) noexcept {
+  const double least = std::max(family_share * now.synchronous, family_of_swing * swing);
+  const bool grown =
+      static_cast<double>(learnt_) * hop_s_ > family_first_s && now.family > std::max(least, family_growth * usual_);
+  if (learns) {
+    ++learnt_;
+    const double share = std::min(1.0, std::max(hop_s_ / family_memory_s, 1.0 / static_cast<double>(learnt_)));
+    usual_ += share * (grown ? slower : 1.0) * (now.family - usual_);
+  }
+  return grown;
 }
 
 }  // namespace robomill::monitor

@@ -3,11 +3,14 @@
 #include <span>
 #include <vector>
 
+#include "robomill/monitor/orders/residual_lines.hpp"
+
 namespace robomill::monitor {
 
 /// Tests a cut against its own past: whether the energy of a line that is no multiple of the teeth has grown by 10 dB
 /// while that of the multiples has not. Energies are taken in cells of 10 Hz and summed over five of them, so that a
-/// line may drift; the past is their mean with a memory of 1 s, of 5 s while something has grown by 5 dB.
+/// line may drift; the past is their mean with a memory of 1 s, of 5 s while something has grown by 5 dB, once
+/// 0.4 s have been learnt.
 class GrowthTest {
  public:
   static constexpr double cell_hz = 10.0;
@@ -33,6 +36,23 @@ class GrowthTest {
   double synchronous_ = 0.0, usual_synchronous_ = 0.0;
   std::size_t learnt_ = 0;  // hops
   bool suspect_ = false;
+};
+
+/// Tests the strongest family of lines {±f_c + k f} against its own past: L > 3 times the mean of L, whose memory is
+/// 2 s (10 s while this holds), once 0.25 s have been learnt, and L > 0.02 S and a tenth of the swing of S: growth so
+/// far below the cut marks no part.
+class FamilyGrowth {
+ public:
+  explicit FamilyGrowth(double hop_s) : hop_s_(hop_s) {}
+  /// @param swing   of S in 0.3 s
+  /// @param learns  false: the past stays as it is
+  [[nodiscard]] bool step(const ResidualFamily& now, double swing, bool learns) noexcept;
+  void forget() noexcept { learnt_ = 0; }
+
+ private:
+  double hop_s_;
+  double usual_ = 0.0;
+  std::size_t learnt_ = 0;  // hops
 };
 
 }  // namespace robomill::monitor

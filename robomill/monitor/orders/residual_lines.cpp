@@ -174,6 +174,7 @@ double ResidualLines::median_line(std::size_t count) const noexcept {
 
 ResidualFamily ResidualLines::finish() noexcept {
   ResidualFamily out{.whole = whole_, .synchronous = synchronous_};
+  out.teeth = synchronous_ - std::accumulate(between_.begin(), between_.end(), 0.0);
   std::fill_n(fold_.begin(), folds_, 0.0);
   std::fill_n(room_.begin(), folds_, 0.0);
   std::fill_n(strongest_.begin(), folds_, 0);

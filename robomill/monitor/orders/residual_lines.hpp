@@ -12,6 +12,7 @@ namespace robomill::monitor {
 struct ResidualFamily {
   double whole = 0.0;         ///< of everything
   double synchronous = 0.0;   ///< of the multiples of rotation
+  double teeth = 0.0;         ///< of the multiples of tooth passing; where the teeth are unknown, of rotation
   double residual = 0.0;      ///< of what stands beside them
   double family = 0.0;        ///< of the strongest family of lines {±f_c + k f}, above the floor
   double frequency_hz = 0.0;  ///< of the family's strongest line; 0: none

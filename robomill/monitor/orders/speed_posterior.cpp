@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "robomill/monitor/orders/mains.hpp"
+
 namespace robomill::monitor {
 namespace {
 
@@ -83,9 +85,9 @@ double SpeedPosterior::candidate_hz(double place) const noexcept {
 
 // Hum has a comb of its own, which shows while the spindle idles.
 bool SpeedPosterior::of_the_mains(double rotation_hz) const noexcept {
-  const auto near = [](double hz, double mains_hz, double ratio) { return std::abs(hz - mains_hz) < ratio * mains_hz; };
-  for (const double mains_hz : {25.0, 30.0, 50.0, 60.0}) {
-    if (near(rotation_hz, mains_hz, mains_ratio)) return !near(hint_hz_, mains_hz, hint_of_mains_ratio);
+  const auto near = [](double a_hz, double b_hz, double ratio) { return std::abs(a_hz - b_hz) < ratio * b_hz; };
+  for (const double hz : mains_rotation_hz) {
+    if (near(rotation_hz, hz, mains_ratio)) return !near(hint_hz_, hz, hint_of_mains_ratio);
   }
   return false;
 }

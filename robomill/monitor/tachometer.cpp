@@ -1,4 +1,4 @@
-#include "robomill/monitor/spindle/tachometer.hpp"
+#include "robomill/monitor/tachometer.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,38 +9,20 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/monitor/monitor.hpp"
+#include "testing/monitor/decisions.hpp"
 #include "testing/monitor/signal.hpp"
 
-namespace combined_detector_test {
+namespace order_detector_test {
 
 using namespace robomill;
 using namespace robomill::monitor;
+using monitor::testing::decisions_of;
+using monitor::testing::first_alarm_s;
+using monitor::testing::options_for;
 using monitor::testing::SyntheticCut;
 using monitor::testing::vibration;
 
 constexpr double turn = 2.0 * std::numbers::pi;
-
-MonitorOptions told(const SyntheticCut& cut, double hint_off = 0.0) {
-  return {.sample_rate_hz = cut.sample_rate_hz,
-          .channels = cut.channels,
-          .spindle_speed_rad_per_s = turn * cut.rotation_hz * (1.0 + hint_off),
-          .teeth = cut.teeth};
-}
-
-std::vector<Decision> heard(const MonitorOptions& options, const std::vector<float>& x) {
-  ChatterMonitor monitor(options);
-  const std::size_t block = options.hop_samples() * static_cast<std::size_t>(options.channels);
-  std::vector<Decision> out;
-  for (std::size_t at = 0; at + block <= x.size(); at += block) {
-    out.push_back(monitor.push(std::span(x).subspan(at, block)));
-  }
-  return out;
-}
-
-double alarm_s(const std::vector<Decision>& decisions) {
-  const auto found = std::ranges::find(decisions, State::chatter, &Decision::state);
-  return found == decisions.end() ? -1.0 : found->time_s;
-}
 
 /// A second channel with pulses: of a tenth of a turn, or as long as their gaps.
 std::vector<float> with_pulses(const SyntheticCut& cut, int pulses, double low, double high) {
@@ -54,12 +36,12 @@ std::vector<float> with_pulses(const SyntheticCut& cut, int pulses, double low, 
   return out;
 }
 
-TEST(CombinedDetector, TheScoreExceedsTheThresholdExactlyInChatter) {
+TEST(OrderDetector, TheScoreExceedsTheThresholdExactlyInChatter) {
   for (const double hint_off : {0.0, 0.03, -1.0}) {
     for (const double chatter_hz : {0.0, 683.0}) {
       const SyntheticCut cut{.channels = 2, .chatter_hz = chatter_hz, .ends_s = 2.5, .seconds = 3.0};
       int chatter = 0;
-      for (const Decision& d : heard(told(cut, hint_off), vibration(cut))) {
+      for (const Decision& d : decisions_of(options_for(cut, hint_off), vibration(cut))) {
         EXPECT_EQ(d.score > d.threshold, d.state == State::chatter) << d.time_s;
         EXPECT_EQ(d.state == State::blind, d.reason != BlindReason::none) << d.time_s;
         if (d.state == State::chatter) {
@@ -77,13 +59,13 @@ TEST(CombinedDetector, TheScoreExceedsTheThresholdExactlyInChatter) {
   }
 }
 
-TEST(CombinedDetector, CorrectsAHintThatIsATenthOff) {
+TEST(OrderDetector, CorrectsAHintThatIsATenthOff) {
   Random random(1);
   for (const double hint_off : {-0.1, -0.06, 0.04, 0.1}) {
     for (int run = 0; run < 3; ++run) {
       SyntheticCut cut{.rotation_hz = random.uniform(62.0, 200.0), .teeth = 2 + run, .seconds = 2.0};
       cut.seed = static_cast<std::uint64_t>(run) + 1;
-      for (const Decision& d : heard(told(cut, hint_off), vibration(cut))) {
+      for (const Decision& d : decisions_of(options_for(cut, hint_off), vibration(cut))) {
         EXPECT_NE(d.state, State::chatter) << cut.rotation_hz << " " << hint_off << " " << d.time_s;
         if (d.time_s < 0.7) continue;
         EXPECT_NEAR(d.spindle_speed_rad_per_s / (turn * cut.rotation_hz), 1.0, 2e-3) << hint_off << " " << d.time_s;
@@ -94,15 +76,15 @@ TEST(CombinedDetector, CorrectsAHintThatIsATenthOff) {
   }
 }
 
-TEST(CombinedDetector, IsBlindWhereNeitherAHintNorACombGivesTheSpeed) {
+TEST(OrderDetector, IsBlindWhereNeitherAHintNorACombGivesTheSpeed) {
   const SyntheticCut nothing{.seconds = 3.0};
   Random random(2);
   std::vector<float> air(static_cast<std::size_t>(nothing.seconds * nothing.sample_rate_hz));
   for (float& x : air) x = static_cast<float>(random.normal());
-  MonitorOptions options = told(nothing);
-  for (const Decision& d : heard(options, air)) EXPECT_EQ(d.state, State::stable) << d.time_s;
+  MonitorOptions options = options_for(nothing);
+  for (const Decision& d : decisions_of(options, air)) EXPECT_EQ(d.state, State::stable) << d.time_s;
   options.spindle_speed_rad_per_s = 0.0;
-  for (const Decision& d : heard(options, air)) {
+  for (const Decision& d : decisions_of(options, air)) {
     EXPECT_EQ(d.reason, d.time_s < 0.99 ? BlindReason::none : BlindReason::speed_unknown) << d.time_s;
   }
   // A hint ends it at once, and its loss begins it anew.
@@ -118,17 +100,17 @@ TEST(CombinedDetector, IsBlindWhereNeitherAHintNorACombGivesTheSpeed) {
   EXPECT_EQ(monitor.push(std::span(air).first(256)).reason, BlindReason::none);
 }
 
-TEST(CombinedDetector, FindsTheCombOfACutWithoutAHint) {
+TEST(OrderDetector, FindsTheCombOfACutWithoutAHint) {
   const SyntheticCut cut{.rotation_hz = 71.0, .chatter_hz = 660.0, .seconds = 3.5};
-  MonitorOptions options = told(cut);
+  MonitorOptions options = options_for(cut);
   options.spindle_speed_rad_per_s = 0.0;
-  const std::vector<Decision> decisions = heard(options, vibration(cut));
+  const std::vector<Decision> decisions = decisions_of(options, vibration(cut));
   for (const Decision& d : decisions) EXPECT_NE(d.state, State::blind) << d.time_s;
-  EXPECT_GT(alarm_s(decisions), 2.0);
-  EXPECT_LT(alarm_s(decisions), 2.5);
+  EXPECT_GT(first_alarm_s(decisions), 2.0);
+  EXPECT_LT(first_alarm_s(decisions), 2.5);
 }
 
-TEST(CombinedDetector, PulsesDetectNoLaterAndAlarmNoMore) {
+TEST(OrderDetector, PulsesDetectNoLaterAndAlarmNoMore) {
   struct Wheel {
     int pulses;
     double rate_hz, rotation_hz, low, high;
@@ -140,19 +122,20 @@ TEST(CombinedDetector, PulsesDetectNoLaterAndAlarmNoMore) {
       SyntheticCut cut{.sample_rate_hz = wheel.rate_hz, .rotation_hz = wheel.rotation_hz, .chatter_hz = chatter_hz};
       cut.starts_s = 0.8;
       cut.seconds = 1.3;
-      const double without = alarm_s(heard(told(cut, 0.02), vibration(cut)));
+      const double without = first_alarm_s(decisions_of(options_for(cut, 0.02), vibration(cut)));
       EXPECT_EQ(without > cut.starts_s, chatter_hz > 0.0) << wheel.pulses;
       const std::vector<float> both = with_pulses(cut, wheel.pulses, wheel.low, wheel.high);
       cut.channels = 2;
       for (const double hint_off : {0.02, -1.0}) {
         if (hint_off == -1.0 && wheel.high < wheel.low) continue;
-        MonitorOptions options = told(cut, hint_off);
+        MonitorOptions options = options_for(cut, hint_off);
         options.tachometer_channel = 1;
         options.pulses_per_revolution = wheel.pulses;
-        const std::vector<Decision> decisions = heard(options, both);
+        const std::vector<Decision> decisions = decisions_of(options, both);
         // To a hop; three where the pulses are all there is.
-        EXPECT_LE(alarm_s(decisions), without + (hint_off > -1.0 ? 0.026 : 0.076)) << wheel.pulses << " " << hint_off;
-        EXPECT_EQ(alarm_s(decisions) > cut.starts_s, chatter_hz > 0.0) << wheel.pulses << " " << hint_off;
+        EXPECT_LE(first_alarm_s(decisions), without + (hint_off > -1.0 ? 0.026 : 0.076))
+            << wheel.pulses << " " << hint_off;
+        EXPECT_EQ(first_alarm_s(decisions) > cut.starts_s, chatter_hz > 0.0) << wheel.pulses << " " << hint_off;
         for (const Decision& d : decisions) {
           if (d.time_s < 0.6) continue;
           EXPECT_NEAR(d.spindle_speed_rad_per_s / (turn * cut.rotation_hz), 1.0, 2e-3) << wheel.pulses << d.time_s;
@@ -165,32 +148,32 @@ TEST(CombinedDetector, PulsesDetectNoLaterAndAlarmNoMore) {
 }
 
 // The hint is 8 % off, and the pulses stop: what was known stays.
-TEST(CombinedDetector, LivesOnWithoutPulses) {
+TEST(OrderDetector, LivesOnWithoutPulses) {
   SyntheticCut cut{.chatter_hz = 683.0, .seconds = 3.0};
   std::vector<float> both = with_pulses(cut, 1, 0.0, 5.0);
   for (std::size_t i = both.size() / 2; i < both.size(); ++i) {
     if (i % 2 == 1) both[i] = 0.0F;
   }
   cut.channels = 2;
-  MonitorOptions options = told(cut, 0.08);
+  MonitorOptions options = options_for(cut, 0.08);
   options.tachometer_channel = 1;
-  const std::vector<Decision> decisions = heard(options, both);
-  EXPECT_GT(alarm_s(decisions), 2.0);
-  EXPECT_LT(alarm_s(decisions), 2.4);
+  const std::vector<Decision> decisions = decisions_of(options, both);
+  EXPECT_GT(first_alarm_s(decisions), 2.0);
+  EXPECT_LT(first_alarm_s(decisions), 2.4);
   for (const Decision& d : decisions) {
     if (d.time_s < 0.6) continue;
     EXPECT_NEAR(d.spindle_speed_rad_per_s / (turn * 80.0), 1.0, 2e-3) << d.time_s;
   }
 }
 
-TEST(CombinedDetector, AnOffsetIsNoVibration) {
+TEST(OrderDetector, AnOffsetIsNoVibration) {
   const SyntheticCut cut{.chatter_hz = 683.0, .seconds = 3.0};
   const std::vector<float> x = vibration(cut);
   std::vector<float> lifted = x;
   for (float& sample : lifted) sample += 20.0F;
-  const double there = alarm_s(heard(told(cut), x));
+  const double there = first_alarm_s(decisions_of(options_for(cut), x));
   EXPECT_GT(there, 2.0);
-  EXPECT_NEAR(alarm_s(heard(told(cut), lifted)), there, 0.026);
+  EXPECT_NEAR(first_alarm_s(decisions_of(options_for(cut), lifted)), there, 0.026);
 }
 
-}  // namespace combined_detector_test
+}  // namespace order_detector_test

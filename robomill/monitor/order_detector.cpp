@@ -1,0 +1,125 @@
+#include "robomill/monitor/order_detector.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "robomill/base/units.hpp"
+#include "robomill/monitor/entropy.hpp"
+
+namespace robomill::monitor {
+namespace {
+
+constexpr double offset_drift_hz = 3.0;  // corner of the high-pass
+constexpr double patience_s = 1.0;       // for which no speed need be known
+constexpr double doubt_s = 1.0;          // for which a comb must be where no speed is
+constexpr double slowest_rate = 0.4, fastest_rate = 2.5;
+
+}  // namespace
+
+OrderDetector::OrderDetector(const MonitorOptions& options)
+    : options_(options),
+      pulses_(options.sample_rate_hz, options.pulses_per_revolution),
+      orders_({.sample_rate_hz = options.sample_rate_hz,
+               .hop_s = options.hop_s,
+               .channels = static_cast<std::size_t>(options.channels),
+               .teeth = options.teeth,
+               .speed_std_ratio = options.speed_std_ratio,
+               .false_alarms_per_hour = options.false_alarms_per_hour}),
+      samples_(static_cast<std::size_t>(options.channels) * options.hop_samples()),
+      mean_(static_cast<std::size_t>(options.channels)),
+      bands_(static_cast<std::size_t>(options.bands)) {
+  set_spindle_speed(options.spindle_speed_rad_per_s);
+}
+
+void OrderDetector::set_spindle_speed(double rad_per_s) noexcept {
+  hint_hz_ = rad_per_s / units::revolution;
+  orders_.set_hint(hint_hz_);
+}
+
+void OrderDetector::reset() noexcept {
+  pulses_.reset();
+  orders_.reset();
+  std::ranges::fill(mean_, 0.0);
+  first_ = true;
+  unknown_s_ = doubt_s_ = suggested_rate_hz_ = 0.0;
+}
+
+void OrderDetector::high_pass(const Hop& hop) noexcept {
+  const double share = 1.0 - std::exp(-units::revolution * offset_drift_hz / options_.sample_rate_hz);
+  for (std::size_t c = 0; c < mean_.size(); ++c) {
+    const auto from = hop.channel(c);
+    if (first_) {
+      for (const double x : from) mean_[c] += x / static_cast<double>(hop.frames);
+    }
+    for (std::size_t i = 0; i < hop.frames; ++i) {
+      mean_[c] += share * (from[i] - mean_[c]);
+      samples_[c * hop.frames + i] = static_cast<float>(from[i] - mean_[c]);
+    }
+  }
+  first_ = false;
+}
+
+void OrderDetector::decide(const Hop& given, Decision& decision) noexcept {
+  Hop hop = given;
+  if (options_.tachometer_channel >= 0) {
+    const auto channel = static_cast<std::size_t>(options_.tachometer_channel);
+    pulses_.push(hop.channel(channel));
+    hop.bad_channels |= std::uint64_t{1} << channel;
+    if (pulses_.rotation_hz() > 0.0) orders_.measured(pulses_.rotation_hz(), pulses_.std_ratio());
+  }
+  high_pass(hop);
+  const CutTests::Verdict orders = orders_.step(samples_, hop.frames, hop.bad_channels);
+  decision.threshold = 1.0;
+  decision.score = orders.score;
+  decision.state = orders.chatter ? State::chatter : orders.score > 0.0 ? State::transition : State::stable;
+  if (decision.state != State::stable) {
+    decision.chatter_frequency_hz = orders.frequency_hz;
+    decision.chatter_frequency_std_hz = orders.frequency_std_hz;
+    decision.channel = static_cast<int>(orders.channel);
+    decision.synchronous = orders.synchronous;
+  }
+  decision.spindle_speed_rad_per_s = units::revolution * orders.rotation_hz;
+  decision.spindle_speed_std_rad_per_s = decision.spindle_speed_rad_per_s * orders.rotation_std_ratio;
+  if (!orders.known) decision.faults |= speed_unknown;
+  unknown_s_ = hint_hz_ > 0.0 || orders.known ? 0.0 : unknown_s_ + options_.hop_s;
+  if (unknown_s_ > patience_s) decision.reason = BlindReason::speed_unknown;
+  doubt_the_sample_rate(orders, decision);
+  report_bands(hop.bad_channels, decision);
+}
+
+// Where the comb of the speed given is not there, but another: at another sample rate it would be that one.
+void OrderDetector::doubt_the_sample_rate(const CutTests::Verdict& orders, Decision& decision) noexcept {
+  if (orders.known || hint_hz_ == 0.0) doubt_s_ = suggested_rate_hz_ = 0.0;
+  if (orders.comb_hz > 0.0) doubt_s_ += options_.hop_s;
+  // Most often it is tooth passing that repeats.
+  for (const double rotation_hz : {orders.comb_hz / std::max(1, options_.teeth), orders.comb_hz}) {
+    const double ratio = hint_hz_ > 0.0 ? rotation_hz / hint_hz_ : 1.0;
+    if (std::abs(ratio - 1.0) < SpeedPosterior::reach || ratio < slowest_rate || ratio > fastest_rate) continue;
+    if (doubt_s_ >= doubt_s) suggested_rate_hz_ = options_.sample_rate_hz / ratio;
+    break;
+  }
+  if (suggested_rate_hz_ == 0.0) return;
+  decision.faults |= wrong_sample_rate;
+  decision.suggested_sample_rate_hz = suggested_rate_hz_;
+}
+
+void OrderDetector::report_bands(std::uint64_t bad_channels, Decision& decision) noexcept {
+  decision.bands = options_.bands;
+  std::array<double, std::tuple_size_v<decltype(decision.band_level)>> level = {};
+  for (std::size_t c = 0; c < mean_.size(); ++c) {
+    if ((bad_channels >> c & 1U) != 0) continue;
+    const Spectrum& spectrum = orders_.spectrum(c);
+    const double lines_a_band = 0.5 * options_.sample_rate_hz / static_cast<double>(options_.bands) / spectrum.step_hz;
+    std::ranges::fill(bands_, 0.0);
+    for (std::size_t i = spectrum.first_line(); i < spectrum.line.size(); ++i) {
+      const auto band = std::min(bands_.size() - 1, static_cast<std::size_t>(static_cast<double>(i) / lines_a_band));
+      bands_[band] += 0.5 * spectrum.energy_share() * static_cast<double>(std::norm(spectrum.line[i]));
+    }
+    decision.energy_entropy += energy_entropy(bands_, options_.entropy);
+    for (std::size_t b = 0; b < bands_.size(); ++b) level[b] += bands_[b];
+  }
+  for (std::size_t b = 0; b < bands_.size(); ++b) decision.band_level.at(b) = static_cast<float>(std::sqrt(level[b]));
+}
+
+}  // namespace robomill::monitor
