@@ -19,7 +19,7 @@ constexpr double depth_margin = 0.2;
 /// Of the speed: how near a limit of the chart must be to be that of the cut.
 constexpr double chart_reach = 0.05;
 /// Of the speed: a suggestion as near as that is the speed at which it chatters.
-constexpr double same_speed = 0.01;
+constexpr double same_as_present = 0.01;
 
 }  // namespace
 
@@ -59,7 +59,7 @@ void Advisor::advise(monitor::MonitorEvent& event) const {
   if (event.no_speed != NoSpeed::none) return;
   for (const monitor::StableSpeed& stable : advice.speeds) {
     const double away_rad_per_s = std::abs(stable.spindle_speed_rad_per_s - speed_rad_per_s);
-    if (away_rad_per_s < same_speed * speed_rad_per_s) continue;
+    if (away_rad_per_s < same_as_present * speed_rad_per_s) continue;
     event.stable_speeds_rad_per_s.push_back(stable.spindle_speed_rad_per_s);
   }
   if (advice.best) {

@@ -23,7 +23,7 @@ constexpr double alone_share = 0.6;
 constexpr double line_moves = 0.04;  // of a frequency between the windows
 // By which the speed may be off a hint, or, after a change, the speed that was; and by which a line is read wrong.
 constexpr double hint_off = 0.07, speed_off = SpeedPosterior::reach, line_off_hz = 5.0;
-constexpr double highest_of_rotation = 3.5, highest_of_teeth = 6.0, highest_of_unknown_teeth = 12.0;  // orders
+constexpr double highest_of_rotation = 2.5, highest_of_teeth = 6.0, highest_of_unknown_teeth = 12.0;  // orders
 constexpr double strongest_of_teeth = 3.5;  // order, above which tooth passing is not what enters first
 constexpr double mains_width_hz = 0.7, highest_of_mains = 3.5;
 constexpr std::size_t blocks = 6;  // that the short window is cut into
@@ -36,7 +36,7 @@ constexpr double first_reading = 0.15;  // the same of a line that has just come
 constexpr double spread = 1.25;         // 1/T, to each side, that hold a line's energy
 constexpr double on_an_order = 0.75;    // 1/T
 constexpr float own_comb = 0.5F;        // of the rest, in the multiples of such a line
-constexpr double skirt = 4.0;           // 1/T, to each side, that a line that dominates shows
+constexpr double lone_reach = 4.0;      // 1/T, to each side, that a line that dominates shows
 
 // Hum.
 bool of_the_mains(double frequency_hz) {
@@ -146,7 +146,7 @@ std::span<const float> CutTests::without_a_lone_line(std::size_t window) noexcep
   const auto power = std::span<const float>(power_).first(like.line.size());
   if (peak.share < alone_share || may_be_the_cut(peak.frequency_hz, highest_of_teeth)) return power;
   std::ranges::copy(power, rest_.begin());
-  const double reach_hz = skirt / like.seconds;
+  const double reach_hz = lone_reach / like.seconds;
   const auto from = static_cast<std::size_t>(std::max(0.0, peak.frequency_hz - reach_hz) / like.step_hz);
   const auto to = std::min(power.size(), static_cast<std::size_t>((peak.frequency_hz + reach_hz) / like.step_hz) + 1);
   std::fill(rest_.begin() + static_cast<std::ptrdiff_t>(from), rest_.begin() + static_cast<std::ptrdiff_t>(to), 0.0F);

@@ -9,7 +9,7 @@ namespace {
 constexpr double least_rise_per_s = 20.0;  // of ln E
 constexpr double enough_s = 0.1, stands_s = 0.2;
 constexpr double as_before = 0.6;  // of the mean rise
-constexpr double least_share = 0.3;
+constexpr double least_line_share = 0.3;
 constexpr double same_hz = 20.0;
 
 std::size_t hops(double seconds, double hop_s) {
@@ -28,7 +28,7 @@ bool Runaway::step(double frequency_hz, double energy, double share) noexcept {
   log_energy_ = log_energy;
   frequency_hz_ = frequency_hz;
   if (left_ > 0) --left_;
-  if (share > least_share && rise > least_rise_per_s * hop_s_ && same) {
+  if (share > least_line_share && rise > least_rise_per_s * hop_s_ && same) {
     ++hops_;
     risen_ += rise;
     if (hops_ >= enough_hops_ && rise > as_before * risen_ / static_cast<double>(hops_)) left_ = standing_hops_;
@@ -36,7 +36,7 @@ bool Runaway::step(double frequency_hz, double energy, double share) noexcept {
     hops_ = 0;
     risen_ = 0.0;
   }
-  return left_ > 0 && share > least_share;
+  return left_ > 0 && share > least_line_share;
 }
 
 }  // namespace robomill::monitor
