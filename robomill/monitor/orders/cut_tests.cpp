@@ -23,8 +23,9 @@ constexpr double alone_share = 0.6;
 constexpr double line_moves = 0.04;  // of a frequency between the windows
 // By which the speed may be off a hint, or, after a change, the speed that was; and by which a line is read wrong.
 constexpr double hint_off = 0.07, speed_off = SpeedPosterior::reach, line_off_hz = 5.0;
-constexpr double highest_of_rotation = 2.5, highest_of_teeth = 6.0, highest_of_unknown_teeth = 12.0;  // orders
-constexpr double strongest_of_teeth = 3.5;  // order, above which tooth passing is not what enters first
+constexpr double highest_of_rotation = 5.5, loudest_of_rotation = 2.5, highest_of_teeth = 6.0,
+                 highest_of_unknown_teeth = 12.0;  // orders
+constexpr double strongest_of_teeth = 3.5;         // order, above which tooth passing is not what enters first
 constexpr double mains_width_hz = 0.7, highest_of_mains = 3.5;
 constexpr std::size_t blocks = 6;  // that the short window is cut into
 constexpr double first_tones_s = 0.3, air_memory_s = 10.0;
@@ -144,7 +145,8 @@ std::span<const float> CutTests::without_a_lone_line(std::size_t window) noexcep
   const Spectrum& like = spectra_.spectrum(window, 0);
   const Peak& peak = peak_[window];
   const auto power = std::span<const float>(power_).first(like.line.size());
-  if (peak.share < alone_share || may_be_the_cut(peak.frequency_hz, highest_of_teeth)) return power;
+  if (peak.share < alone_share || may_be_the_cut(peak.frequency_hz, highest_of_teeth, loudest_of_rotation))
+    return power;
   std::ranges::copy(power, rest_.begin());
   const double reach_hz = lone_reach / like.seconds;
   const auto from = static_cast<std::size_t>(std::max(0.0, peak.frequency_hz - reach_hz) / like.step_hz);
@@ -188,7 +190,7 @@ bool CutTests::ratio_stands_out() const noexcept {
 
 // A low multiple of rotation or of tooth passing, at the speed that is known or near the given one; high orders lie too
 // close together.
-bool CutTests::may_be_the_cut(double frequency_hz, double highest_order) const noexcept {
+bool CutTests::may_be_the_cut(double frequency_hz, double highest_order, double of_rotation) const noexcept {
   const double near_hz = speed_.hint_hz();
   if (near_hz <= 0.0) return true;
   const double off = cut_.has_cut() ? speed_off : hint_off;
@@ -197,7 +199,7 @@ bool CutTests::may_be_the_cut(double frequency_hz, double highest_order) const n
     return order < highest && std::abs(order - std::round(order)) < off * order + line_off_hz / of_hz;
   };
   if (setup_.teeth == 0) return multiple(near_hz, highest_of_unknown_teeth);
-  return multiple(near_hz, highest_of_rotation) || multiple(near_hz * setup_.teeth, highest_order);
+  return multiple(near_hz, of_rotation) || multiple(near_hz * setup_.teeth, highest_order);
 }
 
 bool CutTests::stands_alone() const noexcept {
@@ -208,7 +210,7 @@ bool CutTests::stands_alone() const noexcept {
   }
   return std::min(far.share, near.share) > alone_share &&
          std::abs(far.frequency_hz - near.frequency_hz) < line_moves * near.frequency_hz &&
-         !may_be_the_cut(near.frequency_hz, highest_of_teeth) && !of_the_mains(far.frequency_hz);
+         !may_be_the_cut(near.frequency_hz, highest_of_teeth, highest_of_rotation) && !of_the_mains(far.frequency_hz);
 }
 
 bool CutTests::rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept {
@@ -270,7 +272,7 @@ CutTests::Finding CutTests::find(std::uint64_t bad_channels) noexcept {
   fill_cells();
   const Peak& peak = peak_.back();
   out.runaway = runaway_.step(peak.frequency_hz, peak.share * peak.energy, peak.share) &&
-                !may_be_the_cut(peak.frequency_hz, strongest_of_teeth);
+                !may_be_the_cut(peak.frequency_hz, strongest_of_teeth, highest_of_rotation);
   out.alone = stands_alone();
   if (out.runaway || out.alone) out.frequency_hz = peak.frequency_hz;
   find_growth(out);

@@ -101,7 +101,7 @@ class CutTests {
   void find_growth(Finding& out) noexcept;
   [[nodiscard]] bool ratio_stands_out() const noexcept;
   [[nodiscard]] bool stands_alone() const noexcept;
-  [[nodiscard]] bool may_be_the_cut(double frequency_hz, double highest_order) const noexcept;
+  [[nodiscard]] bool may_be_the_cut(double frequency_hz, double highest_order, double of_rotation) const noexcept;
   void learn_tones() noexcept;
   [[nodiscard]] bool rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept;
   [[nodiscard]] std::size_t hops(double seconds) const noexcept;
