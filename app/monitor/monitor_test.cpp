@@ -179,8 +179,8 @@ TEST_F(MonitorVerb, LivesThroughBadSamples) {
   wav("rec.wav", samples);
   const Ended run = robomill("monitor monitor.toml --input rec.wav -o events.jsonl --report report.html");
   ASSERT_EQ(run.exit, 0);
-  // 1,000 samples are three hops that are mostly lost, and four more are left out.
-  EXPECT_NE(run.out.find("cannot tell: gap, for 0.2 s\n"), std::string::npos) << run.out;
+  // 1,000 samples are four hops that are mostly lost; eleven more are left out.
+  EXPECT_NE(run.out.find("cannot tell: gap, for 0.375 s\n"), std::string::npos) << run.out;
   const std::string page = slurp(folder_.at("report.html"));
   EXPECT_NE(page.find("Cannot tell: gap, for 0."), std::string::npos);
   EXPECT_EQ(page.find("cannot tell: gap"), std::string::npos);  // once is enough

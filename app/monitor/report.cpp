@@ -22,13 +22,12 @@ std::string speed_fact(const monitor::MonitorOptions& options) {
 }
 
 std::string detector_fact(const monitor::MonitorOptions& options) {
-  std::string out = fmt::format("{}, windows of {:.4g} ms every {:.4g} ms", monitor::to_string(options.kind),
-                                options.window_s / units::ms, options.hop_s / units::ms);
-  if (options.kind == monitor::Kind::comb_cusum) {
-    return out + fmt::format(", {:.3g} false alarms an hour allowed", options.false_alarms_per_hour);
-  }
-  return out + fmt::format(", {} entropy {} {:.6g}", monitor::to_string(options.entropy),
-                           options.alarm_below ? "below" : "above", options.threshold);
+  const std::string out =
+      fmt::format("{}, every {:.4g} ms", monitor::to_string(options.kind), options.hop_s / units::ms);
+  if (options.kind == monitor::Kind::comb_cusum) return out;
+  return out + fmt::format(", windows of {:.4g} ms, {} entropy {} {:.6g}", options.window_s / units::ms,
+                           monitor::to_string(options.entropy), options.alarm_below ? "below" : "above",
+                           options.threshold);
 }
 
 }  // namespace

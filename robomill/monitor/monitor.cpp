@@ -9,6 +9,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/monitor/detector.hpp"
 #include "robomill/monitor/order_detector.hpp"
+#include "robomill/monitor/orders/spectra.hpp"
 #include "robomill/monitor/published/entropy_detector.hpp"
 #include "robomill/monitor/signal_validation.hpp"
 
@@ -16,8 +17,8 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double silence = 1e-8;  // share of the loudest channel's power below which a channel is dead
-// For which a channel that is well again still counts as bad: as long as the detector leaves it out.
-constexpr std::size_t left_out_hops = 4;
+// For which a channel must have been well again: the longest that a detector looks back.
+constexpr double look_back_s = Spectra::windows_s.front();
 // Hops in a row at the converter's limit that an impact does not make.
 constexpr std::size_t clipped_hops = 4;
 
@@ -79,6 +80,7 @@ struct ChatterMonitor::Parts {
       : options(o),
         channels(static_cast<std::size_t>(o.channels)),
         hop_frames(o.hop_samples()),
+        left_out_hops(static_cast<std::size_t>(std::ceil(look_back_s / o.hop_s - 1e-9)) - 1),
         samples(channels * hop_frames),
         validations(channels, SignalValidation(o)),
         left_out(channels),
@@ -133,12 +135,11 @@ struct ChatterMonitor::Parts {
       ++vibration;
       const bool silent = validations[c].variance() < silence * loudest;
       if (silent) last.faults |= dead_channel;
-      if (silent || validations[c].bad()) {
+      const bool is_bad = silent || validations[c].bad();
+      if (is_bad) ++bad;
+      if (is_bad || left_out[c] > 0) {
         hop.bad_channels |= std::uint64_t{1} << c;
-        left_out[c] = left_out_hops;
-        ++bad;
-      } else if (left_out[c] > 0) {
-        --left_out[c];
+        left_out[c] = is_bad ? left_out_hops : left_out[c] - 1;
       } else {
         ++usable;
         if ((at_limit >> c & 1U) != 0) ++usable_at_limit;
@@ -169,7 +170,8 @@ struct ChatterMonitor::Parts {
 
   MonitorOptions options;
   std::size_t channels = 1, hop_frames = 1;
-  std::vector<double> samples;  // of this hop, channel after channel
+  std::size_t left_out_hops = 0;  // after a bad one
+  std::vector<double> samples;    // of this hop, channel after channel
   std::size_t frame = 0, channel = 0;
   std::vector<SignalValidation> validations;
   std::vector<std::size_t> left_out;  // hops for which each channel is still left out

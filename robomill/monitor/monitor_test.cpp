@@ -6,15 +6,24 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "robomill/base/random.hpp"
+#include "testing/allocations.hpp"
+#include "testing/monitor/decisions.hpp"
+#include "testing/monitor/signal.hpp"
 #include "testing/support.hpp"
 
 namespace monitor_test {
 
 using namespace robomill;
 using namespace robomill::monitor;
+using monitor::testing::decisions_of;
+using monitor::testing::first_alarm_s;
+using monitor::testing::options_for;
+using monitor::testing::SyntheticCut;
+using monitor::testing::vibration;
 
 TEST(MonitorOptions, PulsesComeAtLessThanHalfTheSampleRate) {
   MonitorOptions options{
@@ -101,15 +110,15 @@ TEST(ChatterMonitor, IsBlindWhereNoChannelHasASignal) {
     const auto push = [&](auto spoil) { return push_hop(monitor, random, spoil); };
     EXPECT_NE(push(as_it_is).state, State::blind);
     EXPECT_NE(push([](int c, float x) { return c == 0 ? nan : x; }).state, State::blind);
-    for (int i = 0; i < 6; ++i) EXPECT_NE(push(as_it_is).state, State::blind);
+    for (int i = 0; i < 12; ++i) EXPECT_NE(push(as_it_is).state, State::blind);
     // One is stuck, the other not finite.
     Decision decision = push([](int c, float) { return c == 0 ? 0.5F : infinity; });
     EXPECT_EQ(decision.state, State::blind);
     EXPECT_EQ(decision.reason, BlindReason::no_signal);
     EXPECT_TRUE(decision.changed);
     EXPECT_EQ(decision.chatter_frequency_hz, 0.0);
-    // The detector leaves channels out for four hops more.
-    for (int i = 0; i < 4; ++i) {
+    // Left out until they have been well for 0.3 s, the hop at hand among it.
+    for (int i = 0; i < 11; ++i) {
       decision = push(as_it_is);
       EXPECT_EQ(decision.reason, BlindReason::no_signal);
       EXPECT_FALSE(decision.changed);
@@ -155,8 +164,8 @@ TEST(ChatterMonitor, IsBlindWhereEverySignalStaysClipped) {
   // A channel without a signal cannot speak for the clipped one.
   EXPECT_EQ(push_hop(monitor, random, [](int c, float x) { return c == 0 ? std::clamp(x, -1.0F, 1.0F) : 0.0F; }).reason,
             BlindReason::clipped);
-  // Its run of zeros reaches into the next hop, and then it is left out for four more.
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(push_hop(monitor, random, one).reason, BlindReason::clipped);
+  // Its run of zeros reaches into the next hop, and then it is left out for 0.3 s.
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(push_hop(monitor, random, one).reason, BlindReason::clipped);
   EXPECT_NE(push_hop(monitor, random, one).state, State::blind);
 }
 
@@ -185,6 +194,110 @@ TEST(ChatterMonitor, ForgetsOnResetWhyItWasBlind) {
   EXPECT_EQ(push_hop(monitor, random, [](int, float) { return nan; }).state, State::blind);
   monitor.reset();
   EXPECT_NE(push_hop(monitor, random, as_it_is).state, State::blind);
+}
+
+TEST(ChatterMonitor, LivesOnWithBadInput) {
+  const SyntheticCut cut{.channels = 2, .chatter_hz = 683.0, .starts_s = 5.0, .seconds = 7.0};
+  const std::vector<float> good = vibration(cut);
+  const auto faults_of = [&](auto spoil) {
+    std::vector<float> x = good;
+    for (std::size_t i = 30720; i < 35840; ++i) spoil(x[2 * i], i);
+    const std::vector<Decision> decisions = decisions_of(options_for(cut), x);
+    std::uint32_t faults = 0;
+    for (const Decision& d : decisions) {
+      EXPECT_TRUE(std::isfinite(d.score) && std::isfinite(d.level) && std::isfinite(d.chatter_frequency_hz));
+      if (d.time_s > 3.0 && d.time_s < 3.5) faults |= d.faults;
+      if (d.time_s > 4.0) {
+        EXPECT_EQ(d.faults & ~std::uint32_t{speed_unknown}, 0U);
+      }
+    }
+    const double alarm = first_alarm_s(decisions);
+    EXPECT_GT(alarm, 5.0);
+    EXPECT_LT(alarm, 5.35);
+    return faults;
+  };
+  EXPECT_TRUE(faults_of([](float& x, std::size_t i) {
+                if (i % 3 == 0) x = std::numeric_limits<float>::quiet_NaN();
+                if (i % 3 == 1) x = std::numeric_limits<float>::infinity();
+              }) &
+              not_finite);
+  EXPECT_TRUE(faults_of([](float& x, std::size_t) { x = 0.25F; }) & stuck);
+  EXPECT_TRUE(faults_of([](float& x, std::size_t) { x = 0.0F; }) & (stuck | dead_channel));
+  EXPECT_FALSE(faults_of([](float&, std::size_t) {}) & ~std::uint32_t{speed_unknown});
+}
+
+// The window of the orders is 0.3 s long: what stood in the place of a lost signal would be taken for vibration. Of two
+// channels the one that rested at 50 times the vibration's amplitude says nothing until its window is good again.
+TEST(ChatterMonitor, LeavesAChannelOutForAsLongAsItsWindowHoldsWhatWasBad) {
+  const SyntheticCut cut{.channels = 2, .noise = 0.03, .seconds = 6.0};
+  const std::vector<float> good = vibration(cut);
+  std::vector<float> bad = good;
+  for (std::size_t i = 30720; i < 33280; ++i) bad[2 * i] = 50.0F;
+  const std::vector<Decision> expected = decisions_of(options_for(cut), good);
+  const std::vector<Decision> decisions = decisions_of(options_for(cut), bad);
+  for (std::size_t i = 0; i < decisions.size(); ++i) {
+    EXPECT_EQ(decisions[i].state, expected[i].state) << decisions[i].time_s;
+    EXPECT_NEAR(decisions[i].spindle_speed_rad_per_s, expected[i].spindle_speed_rad_per_s, 0.5) << decisions[i].time_s;
+    if (i == 0 || decisions[i].time_s < 3.0) continue;
+    EXPECT_NEAR(decisions[i].energy_entropy, expected[i].energy_entropy, 1.2) << decisions[i].time_s;
+  }
+}
+
+TEST(ChatterMonitor, NoticesClippingAndDeadChannels) {
+  const SyntheticCut cut{.channels = 2, .seconds = 1.0};
+  std::vector<float> x = vibration(cut);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = i % 2 == 1 ? 0.0F : std::clamp(x[i], -1.5F, 1.5F);
+  MonitorOptions options = options_for(cut);
+  EXPECT_TRUE(decisions_of(options, x).back().faults & clipped);
+  EXPECT_TRUE(decisions_of(options, x).back().faults & dead_channel);
+  options.full_scale = 1.5;
+  EXPECT_TRUE(decisions_of(options, x).back().faults & clipped);
+  options.full_scale = 10.0;
+  EXPECT_FALSE(decisions_of(options, vibration(cut)).back().faults & clipped);
+}
+
+TEST(ChatterMonitor, SameDecisionsInAnyBlocksAndAfterReset) {
+  const SyntheticCut cut{.channels = 2, .chatter_hz = 683.0, .seconds = 3.0};
+  const std::vector<float> x = vibration(cut);
+  const std::vector<Decision> whole = decisions_of(options_for(cut), x);
+  ChatterMonitor monitor(options_for(cut));
+  Random random(5);
+  for (int pass = 0; pass < 2; ++pass) {
+    std::size_t at = 0;
+    while (at < x.size()) {
+      const std::size_t n = std::min<std::size_t>(1 + random.index(700), x.size() - at);
+      const Decision d = monitor.push(std::span(x).subspan(at, n));
+      at += n;
+      if (d.hop == 0 || d.hop > whole.size()) continue;
+      const Decision& same = whole[d.hop - 1];
+      ASSERT_EQ(d.score, same.score) << d.hop;
+      ASSERT_EQ(d.state, same.state) << d.hop;
+      ASSERT_EQ(d.chatter_frequency_hz, same.chatter_frequency_hz) << d.hop;
+    }
+    monitor.reset();
+  }
+}
+
+TEST(ChatterMonitor, AllocatesNothing) {
+  for (const Kind kind : {Kind::comb_cusum, Kind::energy_entropy}) {
+    const SyntheticCut cut{.channels = 2, .chatter_hz = 683.0, .ends_s = 3.0};
+    std::vector<float> x = vibration(cut);
+    x[50000] = std::numeric_limits<float>::quiet_NaN();
+    MonitorOptions options = options_for(cut);
+    options.kind = kind;
+    options.threshold = 1e9;
+    ChatterMonitor monitor(options);
+    bool detected = false;
+    const std::size_t taken = test::allocations([&] {
+      for (std::size_t at = 0; at + 512 <= x.size(); at += 512) {
+        detected = monitor.push(std::span(x).subspan(at, 512)).state == State::chatter || detected;
+      }
+      monitor.set_spindle_speed(300.0);
+      monitor.reset();
+    });
+    EXPECT_EQ(taken, 0U);
+    EXPECT_TRUE(detected || kind == Kind::energy_entropy);
+  }
 }
 
 TEST(MonitorOptions, RejectWhatMakesNoSense) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double offset_drift_hz = 3.0;  // corner of the high-pass
 constexpr double patience_s = 1.0;       // for which no speed need be known
-constexpr double doubt_s = 1.0;          // for which a comb must be where no speed is
+constexpr double least_doubt_s = 1.0;    // for which a comb must be where no speed is
 constexpr double slowest_rate = 0.4, fastest_rate = 2.5;
 
 }  // namespace
@@ -60,16 +60,16 @@ void OrderDetector::high_pass(const Hop& hop) noexcept {
   first_ = false;
 }
 
-void OrderDetector::decide(const Hop& given, Decision& decision) noexcept {
-  Hop hop = given;
+void OrderDetector::decide(const Hop& hop, Decision& decision) noexcept {
+  std::uint64_t bad_channels = hop.bad_channels;
   if (options_.tachometer_channel >= 0) {
     const auto channel = static_cast<std::size_t>(options_.tachometer_channel);
     pulses_.push(hop.channel(channel));
-    hop.bad_channels |= std::uint64_t{1} << channel;
+    bad_channels |= std::uint64_t{1} << channel;
     if (pulses_.rotation_hz() > 0.0) orders_.measured(pulses_.rotation_hz(), pulses_.std_ratio());
   }
   high_pass(hop);
-  const CutTests::Verdict orders = orders_.step(samples_, hop.frames, hop.bad_channels);
+  const CutTests::Verdict orders = orders_.step(samples_, hop.frames, bad_channels);
   decision.threshold = 1.0;
   decision.score = orders.score;
   decision.state = orders.chatter ? State::chatter : orders.score > 0.0 ? State::transition : State::stable;
@@ -85,7 +85,7 @@ void OrderDetector::decide(const Hop& given, Decision& decision) noexcept {
   unknown_s_ = hint_hz_ > 0.0 || orders.known ? 0.0 : unknown_s_ + options_.hop_s;
   if (unknown_s_ > patience_s) decision.reason = BlindReason::speed_unknown;
   doubt_the_sample_rate(orders, decision);
-  report_bands(hop.bad_channels, decision);
+  report_bands(bad_channels, decision);
 }
 
 // Where the comb of the speed given is not there, but another: at another sample rate it would be that one.
@@ -96,7 +96,7 @@ void OrderDetector::doubt_the_sample_rate(const CutTests::Verdict& orders, Decis
   for (const double rotation_hz : {orders.comb_hz / std::max(1, options_.teeth), orders.comb_hz}) {
     const double ratio = hint_hz_ > 0.0 ? rotation_hz / hint_hz_ : 1.0;
     if (std::abs(ratio - 1.0) < SpeedPosterior::reach || ratio < slowest_rate || ratio > fastest_rate) continue;
-    if (doubt_s_ >= doubt_s) suggested_rate_hz_ = options_.sample_rate_hz / ratio;
+    if (doubt_s_ >= least_doubt_s) suggested_rate_hz_ = options_.sample_rate_hz / ratio;
     break;
   }
   if (suggested_rate_hz_ == 0.0) return;
@@ -107,10 +107,11 @@ void OrderDetector::doubt_the_sample_rate(const CutTests::Verdict& orders, Decis
 void OrderDetector::report_bands(std::uint64_t bad_channels, Decision& decision) noexcept {
   decision.bands = options_.bands;
   std::array<double, std::tuple_size_v<decltype(decision.band_level)>> level = {};
+  const double lines_a_band =
+      0.5 * options_.sample_rate_hz / static_cast<double>(options_.bands) / orders_.spectrum(0).step_hz;
   for (std::size_t c = 0; c < mean_.size(); ++c) {
     if ((bad_channels >> c & 1U) != 0) continue;
     const Spectrum& spectrum = orders_.spectrum(c);
-    const double lines_a_band = 0.5 * options_.sample_rate_hz / static_cast<double>(options_.bands) / spectrum.step_hz;
     std::ranges::fill(bands_, 0.0);
     for (std::size_t i = spectrum.first_line(); i < spectrum.line.size(); ++i) {
       const auto band = std::min(bands_.size() - 1, static_cast<std::size_t>(static_cast<double>(i) / lines_a_band));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "robomill/base/random.hpp"
@@ -34,6 +36,42 @@ std::vector<float> with_pulses(const SyntheticCut& cut, int pulses, double low, 
     out.push_back(static_cast<float>(std::fmod(turns * pulses, 1.0) < (pulses > 1 ? 0.5 : 0.1) ? high : low));
   }
   return out;
+}
+
+TEST(OrderDetector, DetectsATonesGrowthOnceAndItsEnd) {
+  for (const auto& [teeth, rotation, chatter] : {std::tuple{3, 80.0, 683.0}, std::tuple{2, 133.0, 1210.0}}) {
+    const SyntheticCut cut{
+        .rotation_hz = rotation, .teeth = teeth, .channels = 2, .chatter_hz = chatter, .ends_s = 3.2, .seconds = 5.0};
+    const std::vector<Decision> decisions = decisions_of(options_for(cut), vibration(cut));
+    // A tenth of the final amplitude at 2 + ln(100)/30 s.
+    const double alarm = first_alarm_s(decisions);
+    EXPECT_GT(alarm, 2.0);
+    EXPECT_LT(alarm, 2.0 + std::log(100.0) / 30.0 + 0.2);
+    int changes = 0;
+    for (const Decision& d : decisions) {
+      changes += d.changed && d.state == State::chatter ? 1 : 0;
+      if (d.time_s > 2.6 && d.time_s < 3.15) {
+        EXPECT_EQ(d.state, State::chatter);
+        EXPECT_NEAR(d.chatter_frequency_hz, chatter, 1.0);
+        EXPECT_NEAR(d.spindle_speed_rad_per_s, turn * rotation, 1e-3 * turn * rotation);
+      }
+      if (d.time_s > 3.6) {
+        EXPECT_EQ(d.state, State::stable) << d.time_s;
+      }
+    }
+    EXPECT_EQ(changes, 1);
+  }
+}
+
+TEST(OrderDetector, StaysQuietInAStableCut) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const SyntheticCut cut{.rotation_hz = 60.0 + 17.0 * static_cast<double>(seed),
+                           .noise = 0.05 * static_cast<double>(seed),
+                           .seconds = 20.0,
+                           .seed = seed};
+    EXPECT_EQ(first_alarm_s(decisions_of(options_for(cut, 0.01 * static_cast<double>(seed)), vibration(cut))), -1.0)
+        << seed;
+  }
 }
 
 TEST(OrderDetector, TheScoreExceedsTheThresholdExactlyInChatter) {
@@ -174,6 +212,105 @@ TEST(OrderDetector, AnOffsetIsNoVibration) {
   const double there = first_alarm_s(decisions_of(options_for(cut), x));
   EXPECT_GT(there, 2.0);
   EXPECT_NEAR(first_alarm_s(decisions_of(options_for(cut), lifted)), there, 0.026);
+}
+
+// The mains appear as combs at 50 and 60 Hz and whole parts of them; a spindle may turn at their multiples.
+TEST(OrderDetector, FollowsSpeedsAtMultiplesOfTheMains) {
+  for (const double rotation_hz : {100.0, 150.0, 239.7, 240.0}) {
+    const SyntheticCut cut{.rotation_hz = rotation_hz, .channels = 2, .seconds = 2.0};
+    const double last = decisions_of(options_for(cut), vibration(cut)).back().spindle_speed_rad_per_s;
+    EXPECT_NEAR(last, turn * rotation_hz, 1e-3 * turn * rotation_hz);
+  }
+}
+
+TEST(OrderDetector, StaysQuietWhileTheSpeedDrifts) {
+  for (const auto& [rotation, drift] : {std::pair{43.0, -1.2}, std::pair{80.0, 4.0}, std::pair{130.0, -13.0}}) {
+    const SyntheticCut cut{.rotation_hz = rotation, .drift_hz_per_s = drift, .channels = 2, .noise = 0.03};
+    const std::vector<Decision> decisions = decisions_of(options_for(cut), vibration(cut));
+    EXPECT_EQ(first_alarm_s(decisions), -1.0) << rotation;
+    const double last = turn * (rotation + drift);
+    EXPECT_NEAR(decisions.back().spindle_speed_rad_per_s, last, 1e-3 * last);
+  }
+}
+
+// The speed drifts to 9 % below a hint that scatters from hop to hop; the tool leaves, and comes back at that speed.
+// A hint that says another speed makes it forgotten.
+TEST(OrderDetector, KnowsTheSpeedFollowedLastWhileTheHintTrembles) {
+  const SyntheticCut cut{.rotation_hz = 80.0, .drift_hz_per_s = -6.0, .channels = 2, .noise = 0.03, .seconds = 6.0};
+  std::vector<float> x = vibration(cut);
+  Random random(3);
+  const auto frame = [&](double s) { return 2 * static_cast<std::size_t>(s * cut.sample_rate_hz); };
+  for (std::size_t i = frame(4.0); i < frame(5.0); ++i) x[i] = static_cast<float>(0.03 * random.normal());
+  const auto found_s = [&](double trembles, double hint_share) {
+    const MonitorOptions options = options_for(cut);
+    ChatterMonitor monitor(options);
+    const std::size_t block = options.hop_samples() * 2;
+    for (std::size_t at = 0; at + block <= x.size(); at += block) {
+      const Decision d = monitor.push(std::span(x).subspan(at, block));
+      if (d.time_s > 5.0 && std::abs(d.spindle_speed_rad_per_s / (turn * 74.0) - 1.0) < 2e-3) return d.time_s - 5.0;
+      const double share = d.time_s > 4.5 ? hint_share : 1.0;
+      monitor.set_spindle_speed(options.spindle_speed_rad_per_s * share * (1.0 + trembles * random.uniform(-1.0, 1.0)));
+    }
+    return 1e9;
+  };
+  EXPECT_LT(found_s(0.0, 1.0), 0.2);
+  EXPECT_LT(found_s(1e-3, 1.0), 0.2);
+  EXPECT_GT(found_s(1e-3, 1.1), 0.2);
+}
+
+// A quarter of such a hop is longer than the look in which the speed is found.
+TEST(OrderDetector, FollowsTheSpeedInLongHops) {
+  const SyntheticCut cut{.seconds = 8.0};
+  MonitorOptions options = options_for(cut);
+  options.hop_s = 0.6;
+  options.window_s = 0.6;
+  for (const Decision& d : decisions_of(options, vibration(cut)))
+    EXPECT_NEAR(d.spindle_speed_rad_per_s, turn * 80.0, 2e-3 * turn * 80.0) << d.hop;
+}
+
+TEST(OrderDetector, FollowsATachometer) {
+  SyntheticCut cut{.channels = 1, .chatter_hz = 683.0};
+  const std::vector<float> x = vibration(cut);
+  std::vector<float> both;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    both.push_back(x[i]);
+    both.push_back(std::fmod(cut.rotation_hz * static_cast<double>(i) / cut.sample_rate_hz, 1.0) < 0.1 ? 5.0F : 0.0F);
+  }
+  cut.channels = 2;
+  MonitorOptions options = options_for(cut);
+  options.spindle_speed_rad_per_s = 0.0;
+  options.tachometer_channel = 1;
+  const std::vector<Decision> decisions = decisions_of(options, both);
+  EXPECT_NEAR(decisions[60].spindle_speed_rad_per_s, turn * 80.0, 1e-3 * turn * 80.0);
+  const double alarm = first_alarm_s(decisions);
+  EXPECT_GT(alarm, 2.0);
+  EXPECT_LT(alarm, 2.35);
+  EXPECT_EQ(decisions.back().channel, 0);
+}
+
+TEST(OrderDetector, SuggestsTheSampleRateThatFitsTheComb) {
+  const SyntheticCut cut{.sample_rate_hz = 20480.0, .seconds = 6.0};
+  MonitorOptions options = options_for(cut, 0.0);
+  options.sample_rate_hz = 10240.0;
+  const Decision last = decisions_of(options, vibration(cut)).back();
+  EXPECT_TRUE(last.faults & wrong_sample_rate);
+  EXPECT_NEAR(last.suggested_sample_rate_hz, 20480.0, 50.0);
+  for (const Decision& d : decisions_of(options_for(cut), vibration(cut))) EXPECT_FALSE(d.faults & wrong_sample_rate);
+}
+
+// Growth so slow that the comb takes it off: the harmonic's amplitude against what was learnt of it shows it.
+TEST(OrderDetector, DetectsSynchronousChatter) {
+  for (const auto& [teeth, harmonic, kind] :
+       {std::tuple{3, 7, SynchronousChatter::locked}, std::tuple{2, 7, SynchronousChatter::period_doubling},
+        std::tuple{4, 6, SynchronousChatter::period_doubling}}) {
+    const SyntheticCut cut{
+        .teeth = teeth, .chatter_hz = 80.0 * harmonic, .growth_per_s = 3.0, .chatter = 3.0, .seconds = 7.0};
+    const std::vector<Decision> decisions = decisions_of(options_for(cut), vibration(cut));
+    EXPECT_GT(first_alarm_s(decisions), 2.0) << teeth;
+    EXPECT_TRUE(std::ranges::any_of(decisions, [&, want = kind](const Decision& d) { return d.synchronous == want; }))
+        << teeth;
+    EXPECT_NEAR(decisions.back().chatter_frequency_hz, cut.chatter_hz, 5.0) << teeth;
+  }
 }
 
 }  // namespace order_detector_test

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robomill/monitor/orders/hops.hpp"
+
 namespace robomill::monitor {
 namespace {
 
@@ -24,11 +26,10 @@ constexpr double steady_ratio = 0.008;  // of the speed, over the rings
 }  // namespace
 
 CutFollower::CutFollower(double hop_s)
-    : hop_s_(hop_s), synchronous_(hops(rings_s)), whole_(hops(rings_s)), rotation_hz_(hops(rings_s)) {}
-
-std::size_t CutFollower::hops(double seconds) const noexcept {
-  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(seconds / hop_s_)));
-}
+    : hop_s_(hop_s),
+      synchronous_(hops_of(rings_s, hop_s)),
+      whole_(synchronous_.size()),
+      rotation_hz_(synchronous_.size()) {}
 
 void CutFollower::reset() noexcept {
   for (auto* ring : {&synchronous_, &whole_, &rotation_hz_}) std::ranges::fill(*ring, 0.0);
@@ -51,7 +52,7 @@ bool CutFollower::steady() const noexcept {
 }
 
 void CutFollower::chatter_ended() noexcept {
-  unsettled_hops_ = hops(unsettled_s);
+  unsettled_hops_ = hops_of(unsettled_s, hop_s_);
 }
 
 void CutFollower::step(const ResidualFamily& now, const SpeedPosterior& speed, bool chatter) noexcept {
@@ -61,7 +62,7 @@ void CutFollower::step(const ResidualFamily& now, const SpeedPosterior& speed, b
   rotation_hz_[at_] = speed.rotation_hz();
   at_ = at_ + 1 == whole_.size() ? 0 : at_ + 1;
   if (now.whole > enters_by * whole_before && !chatter && !known()) {
-    entry_hops_ = hops(entry_s);
+    entry_hops_ = hops_of(entry_s, hop_s_);
   } else if (entry_hops_ > 0) {
     --entry_hops_;
   }
@@ -75,7 +76,7 @@ void CutFollower::step(const ResidualFamily& now, const SpeedPosterior& speed, b
   if (known() && !chatter && now.synchronous < vanishes * *std::ranges::max_element(synchronous_) &&
       now.synchronous < stays * now.whole && now.whole > stays * whole_before) {
     cut_ = 0.0;
-    unsettled_hops_ = hops(unsettled_s);
+    unsettled_hops_ = hops_of(unsettled_s, hop_s_);
   }
 }
 

@@ -37,8 +37,6 @@ class CutFollower {
   void reset() noexcept;
 
  private:
-  [[nodiscard]] std::size_t hops(double seconds) const noexcept;
-
   double hop_s_;
   std::vector<double> synchronous_, whole_, rotation_hz_;  // of the last 0.3 s; rings
   std::size_t at_ = 0;                                     // in these

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "robomill/monitor/orders/hops.hpp"
 #include "robomill/monitor/orders/mains.hpp"
 
 namespace robomill::monitor {
@@ -23,9 +24,11 @@ constexpr double alone_share = 0.6;
 constexpr double line_moves = 0.04;  // of a frequency between the windows
 // By which the speed may be off a hint, or, after a change, the speed that was; and by which a line is read wrong.
 constexpr double hint_off = 0.07, speed_off = SpeedPosterior::reach, line_off_hz = 5.0;
-constexpr double highest_of_rotation = 5.5, loudest_of_rotation = 2.5, highest_of_teeth = 6.0,
-                 highest_of_unknown_teeth = 12.0;  // orders
-constexpr double strongest_of_teeth = 3.5;         // order, above which tooth passing is not what enters first
+// Orders up to which a line may be one of rotation or of tooth passing: any, one that dominates all else, and one that
+// rises first as the tool enters.
+constexpr double any_of_rotation = 5.5, dominant_of_rotation = 2.5;
+constexpr double any_of_teeth = 6.0, first_of_teeth = 3.5;
+constexpr double highest_of_unknown_teeth = 12.0;
 constexpr double mains_width_hz = 0.7, highest_of_mains = 3.5;
 constexpr std::size_t blocks = 6;  // that the short window is cut into
 constexpr double first_tones_s = 0.3, air_memory_s = 10.0;
@@ -68,10 +71,6 @@ CutTests::CutTests(const Setup& setup)
       rest_(power_.size()),
       cells_(GrowthTest::cells(spectra_.highest_hz())) {
   for (std::size_t w = 0; w < windows; ++w) lines_.emplace_back(spectra_.spectrum(w, 0), spectra_.highest_hz());
-}
-
-std::size_t CutTests::hops(double seconds) const noexcept {
-  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(seconds / setup_.hop_s)));
 }
 
 void CutTests::set_hint(double rotation_hz) noexcept {
@@ -145,8 +144,7 @@ std::span<const float> CutTests::without_a_lone_line(std::size_t window) noexcep
   const Spectrum& like = spectra_.spectrum(window, 0);
   const Peak& peak = peak_[window];
   const auto power = std::span<const float>(power_).first(like.line.size());
-  if (peak.share < alone_share || may_be_the_cut(peak.frequency_hz, highest_of_teeth, loudest_of_rotation))
-    return power;
+  if (peak.share < alone_share || may_be_the_cut(peak.frequency_hz, any_of_teeth, dominant_of_rotation)) return power;
   std::ranges::copy(power, rest_.begin());
   const double reach_hz = lone_reach / like.seconds;
   const auto from = static_cast<std::size_t>(std::max(0.0, peak.frequency_hz - reach_hz) / like.step_hz);
@@ -188,18 +186,17 @@ bool CutTests::ratio_stands_out() const noexcept {
          near.family > std::max(cut_.swing(), faint_share * cut_.loudest()) && !of_the_mains(far.frequency_hz);
 }
 
-// A low multiple of rotation or of tooth passing, at the speed that is known or near the given one; high orders lie too
-// close together.
-bool CutTests::may_be_the_cut(double frequency_hz, double highest_order, double of_rotation) const noexcept {
-  const double near_hz = speed_.hint_hz();
-  if (near_hz <= 0.0) return true;
+// A low multiple of rotation or of tooth passing, as far as the hint is unsure; high orders lie too close together.
+bool CutTests::may_be_the_cut(double frequency_hz, double highest_of_teeth, double highest_of_rotation) const noexcept {
+  const double hint_hz = speed_.hint_hz();
+  if (hint_hz <= 0.0) return true;
   const double off = cut_.has_cut() ? speed_off : hint_off;
   const auto multiple = [&](double of_hz, double highest) {
     const double order = frequency_hz / of_hz;
     return order < highest && std::abs(order - std::round(order)) < off * order + line_off_hz / of_hz;
   };
-  if (setup_.teeth == 0) return multiple(near_hz, highest_of_unknown_teeth);
-  return multiple(near_hz, of_rotation) || multiple(near_hz * setup_.teeth, highest_order);
+  if (setup_.teeth == 0) return multiple(hint_hz, highest_of_unknown_teeth);
+  return multiple(hint_hz, highest_of_rotation) || multiple(hint_hz * setup_.teeth, highest_of_teeth);
 }
 
 bool CutTests::stands_alone() const noexcept {
@@ -210,7 +207,7 @@ bool CutTests::stands_alone() const noexcept {
   }
   return std::min(far.share, near.share) > alone_share &&
          std::abs(far.frequency_hz - near.frequency_hz) < line_moves * near.frequency_hz &&
-         !may_be_the_cut(near.frequency_hz, highest_of_teeth, highest_of_rotation) && !of_the_mains(far.frequency_hz);
+         !may_be_the_cut(near.frequency_hz, any_of_teeth, any_of_rotation) && !of_the_mains(far.frequency_hz);
 }
 
 bool CutTests::rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept {
@@ -238,7 +235,7 @@ void CutTests::fill_cells() noexcept {
   }
 }
 
-void CutTests::find_growth(Finding& out) noexcept {
+void CutTests::find_in_cut(Finding& out) noexcept {
   const ResidualFamily& near = found_.back();
   const bool steady = cut_.steady();
   if (!cut_.known() || (!steady && !chatter_)) {
@@ -272,10 +269,10 @@ CutTests::Finding CutTests::find(std::uint64_t bad_channels) noexcept {
   fill_cells();
   const Peak& peak = peak_.back();
   out.runaway = runaway_.step(peak.frequency_hz, peak.share * peak.energy, peak.share) &&
-                !may_be_the_cut(peak.frequency_hz, strongest_of_teeth, highest_of_rotation);
+                !may_be_the_cut(peak.frequency_hz, first_of_teeth, any_of_rotation);
   out.alone = stands_alone();
   if (out.runaway || out.alone) out.frequency_hz = peak.frequency_hz;
-  find_growth(out);
+  find_in_cut(out);
   if (out.any() && !chatter_ && rings_down(out.frequency_hz, bad_channels)) out = {};
   const auto cell = static_cast<std::size_t>(out.frequency_hz / GrowthTest::cell_hz);
   if ((out.ratio || out.alone || out.runaway) && !chatter_ && tones_.stood(cell, cells_)) out = {};
@@ -322,8 +319,9 @@ double CutTests::count(const Finding& found) noexcept {
   in_a_row(found.family, counts_.family);
   in_a_row(found.alone, counts_.alone);
   in_a_row(!found.any(), counts_.calm);
-  counts_.ratio = found.ratio ? std::min(counts_.ratio + 1, hops(entry_alarm_s)) : counts_.ratio - (counts_.ratio > 0);
   const auto part = [](std::size_t of, std::size_t all) { return static_cast<double>(of) / static_cast<double>(all); };
+  const auto hops = [&](double seconds) { return hops_of(seconds, setup_.hop_s); };
+  counts_.ratio = found.ratio ? std::min(counts_.ratio + 1, hops(entry_alarm_s)) : counts_.ratio - (counts_.ratio > 0);
   return std::max({part(counts_.ratio, hops(cut_.enters() ? entry_alarm_s : alarm_s)),
                    cut_.enters() ? 0.0 : part(counts_.growth, hops(alarm_s)), part(counts_.family, family_hops_),
                    part(counts_.alone, hops(alone_alarm_s)), found.runaway ? 1.0 : 0.0});
@@ -347,7 +345,7 @@ CutTests::Verdict CutTests::step(std::span<const float> samples, std::size_t fra
   }
   if (!chatter_) {
     chatter_ = evidence >= 1.0;
-  } else if (counts_.calm >= hops(over_s)) {
+  } else if (counts_.calm >= hops_of(over_s, setup_.hop_s)) {
     chatter_ = false;
     counts_ = {};
     cut_.chatter_ended();

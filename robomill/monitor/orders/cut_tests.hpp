@@ -31,10 +31,10 @@ namespace robomill::monitor {
 ///           passing. Four hops.
 /// runaway:  the strongest line grows exponentially (Runaway).
 ///
-/// No line counts that rings down as a knock does (the last 25 ms below 0.4 of the strongest of the last six), that is
-/// a low multiple of 50 or 60 Hz, that is smaller than a hundredth of the cut, or, but for growth, family and runaway,
-/// that has not grown by 6 dB within a second or so: tones of the machine or of the room were there before (Tones).
-/// Chatter is over after six hops without.
+/// No line counts that rings down as a knock does (the last 25 ms below 0.4 of the strongest of the last six). For
+/// ratio, alone and runaway it must have grown by 6 dB within a second or so: tones of the machine or of the room were
+/// there before (Tones). For ratio and alone it is no low multiple of 50 or 60 Hz, for ratio L is a hundredth of the
+/// loudest cut. Chatter is over after six hops without.
 class CutTests {
  public:
   struct Setup {
@@ -46,7 +46,8 @@ class CutTests {
   };
   struct Verdict {
     bool chatter = false;
-    double score = 0.0;             ///< hops that speak for chatter, of those an alarm takes; in chatter 1 + L/S
+    double score =
+        0.0;  ///< hops that speak for chatter, of those an alarm takes; in chatter 1 + L/S, within 1.2 and 100
     double frequency_hz = 0.0;      ///< of the strongest line that stands out; 0: none
     double frequency_std_hz = 0.0;  ///< its standard deviation
     std::size_t channel = 0;        ///< in which it is strongest
@@ -98,13 +99,13 @@ class CutTests {
   [[nodiscard]] Peak strongest(const Spectrum& like, double low_hz, double high_hz) const noexcept;
   void fill_cells() noexcept;
   [[nodiscard]] Finding find(std::uint64_t bad_channels) noexcept;
-  void find_growth(Finding& out) noexcept;
+  void find_in_cut(Finding& out) noexcept;
   [[nodiscard]] bool ratio_stands_out() const noexcept;
   [[nodiscard]] bool stands_alone() const noexcept;
-  [[nodiscard]] bool may_be_the_cut(double frequency_hz, double highest_order, double of_rotation) const noexcept;
+  [[nodiscard]] bool may_be_the_cut(double frequency_hz, double highest_of_teeth,
+                                    double highest_of_rotation) const noexcept;
   void learn_tones() noexcept;
   [[nodiscard]] bool rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept;
-  [[nodiscard]] std::size_t hops(double seconds) const noexcept;
   [[nodiscard]] double count(const Finding& found) noexcept;
   void describe(std::uint64_t bad_channels, Verdict& verdict) const noexcept;
 

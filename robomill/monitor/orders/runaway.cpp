@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robomill/monitor/orders/hops.hpp"
+
 namespace robomill::monitor {
 namespace {
 
@@ -12,14 +14,12 @@ constexpr double as_before = 0.6;  // of the mean rise
 constexpr double least_line_share = 0.3;
 constexpr double same_hz = 20.0;
 
-std::size_t hops(double seconds, double hop_s) {
-  return std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(seconds / hop_s)));
-}
-
 }  // namespace
 
 Runaway::Runaway(double hop_s) noexcept
-    : hop_s_(hop_s), enough_hops_(hops(enough_s, hop_s)), standing_hops_(hops(stands_s, hop_s)) {}
+    : hop_s_(hop_s),
+      enough_hops_(std::max<std::size_t>(2, hops_of(enough_s, hop_s))),
+      standing_hops_(std::max<std::size_t>(2, hops_of(stands_s, hop_s))) {}
 
 bool Runaway::step(double frequency_hz, double energy, double share) noexcept {
   const double log_energy = std::log(energy + 1e-300);
