@@ -35,6 +35,7 @@ void CutFollower::reset() noexcept {
   for (auto* ring : {&synchronous_, &whole_, &rotation_hz_}) std::ranges::fill(*ring, 0.0);
   at_ = entry_hops_ = unsettled_hops_ = 0;
   cut_ = loudest_ = 0.0;
+  locked_ = false;
 }
 
 bool CutFollower::anchored(const ResidualFamily& now) const noexcept {
@@ -46,9 +47,13 @@ double CutFollower::swing() const noexcept {
   return *most - *least;
 }
 
-bool CutFollower::steady() const noexcept {
+double CutFollower::speed_range() const noexcept {
   const auto [slowest, fastest] = std::ranges::minmax_element(rotation_hz_);
-  return *fastest - *slowest < steady_ratio * *fastest;
+  return *fastest > 0.0 ? 1.0 - *slowest / *fastest : 1.0;
+}
+
+bool CutFollower::steady() const noexcept {
+  return speed_range() < steady_ratio;
 }
 
 void CutFollower::chatter_ended() noexcept {
@@ -67,9 +72,9 @@ void CutFollower::step(const ResidualFamily& now, const SpeedPosterior& speed, b
     --entry_hops_;
   }
   if (unsettled_hops_ > 0) --unsettled_hops_;
-  const bool locked = speed.known() > locks_at && speed.share() > locks_share;
+  locked_ = speed.known() > locks_at && speed.share() > locks_share;
   const bool cuts = now.synchronous > idle * loudest_;
-  if (locked && cuts && !chatter) cut_ = known() ? cut_ + follows * (now.synchronous - cut_) : now.synchronous;
+  if (locked_ && cuts && !chatter) cut_ = known() ? cut_ + follows * (now.synchronous - cut_) : now.synchronous;
   loudest_ = std::max(cut_, loudest_ * std::exp(-hop_s_ / loudest_memory_s));
   // Chatter may leave next to nothing of S, while it holds the whole.
   if ((chatter ? now.whole : now.synchronous) < leaves * cut_) cut_ = 0.0;

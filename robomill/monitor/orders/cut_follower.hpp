@@ -19,6 +19,8 @@ class CutFollower {
   /// @param chatter  neither a speed nor an entry is taken up
   void step(const ResidualFamily& now, const SpeedPosterior& speed, bool chatter) noexcept;
   [[nodiscard]] bool known() const noexcept { return cut_ > 0.0; }
+  /// The posterior is narrow and the comb holds its share, in this hop, of a cut or of an idling spindle.
+  [[nodiscard]] bool locked() const noexcept { return locked_; }
   /// What explained the cut still does: half of S, and a tenth of the whole.
   [[nodiscard]] bool anchored(const ResidualFamily& now) const noexcept;
   /// The tool enters: the energy has grown by four in 0.3 s, 0.4 s ago or less, where no cut was known. So does what
@@ -30,6 +32,7 @@ class CutFollower {
   [[nodiscard]] bool has_cut() const noexcept { return loudest_ > 0.0; }
   [[nodiscard]] double loudest() const noexcept { return loudest_; }  ///< S, slowly forgotten
   [[nodiscard]] double swing() const noexcept;                        ///< of S in 0.3 s
+  [[nodiscard]] double speed_range() const noexcept;                  ///< in 0.3 s, of the fastest
   [[nodiscard]] bool steady() const noexcept;                         ///< the speed, to 0.8 % in 0.3 s
   void chatter_ended() noexcept;
   /// The speed is not given any more.
@@ -41,6 +44,7 @@ class CutFollower {
   std::vector<double> synchronous_, whole_, rotation_hz_;  // of the last 0.3 s; rings
   std::size_t at_ = 0;                                     // in these
   std::size_t entry_hops_ = 0, unsettled_hops_ = 0;
+  bool locked_ = false;
   double cut_ = 0.0;  // S while the tool cuts at a known speed, slow; 0: it does not
   double loudest_ = 0.0;
 };

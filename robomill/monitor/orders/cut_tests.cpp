@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double least_ratio = 0.2;                     // of L to S
 constexpr double alarm_s = 0.075, alone_alarm_s = 0.1;  // that something stands out for
-constexpr double entry_alarm_s = 0.2;                   // the same while the tool enters
+constexpr double entry_alarm_s = 0.15;                  // the same while the tool enters
 constexpr double over_s = 0.15;
 constexpr double most_score = 99.0;     // of L to S
 constexpr double evidence_a_hop = 3.6;  // of ln(hops an hour/alarms an hour)
@@ -22,25 +23,23 @@ constexpr double growth_of_swing = 0.5;
 constexpr double loud = 30.0;  // of the least energy: a tone of an idling machine is weaker
 constexpr double alone_share = 0.6;
 constexpr double line_moves = 0.04;  // of a frequency between the windows
-// By which the speed may be off a hint, or, after a change, the speed that was; and by which a line is read wrong.
-constexpr double hint_off = 0.07, speed_off = SpeedPosterior::reach, line_off_hz = 5.0;
-// Orders up to which a line may be one of rotation or of tooth passing: any, one that dominates all else, and one that
-// rises first as the tool enters.
-constexpr double any_of_rotation = 5.5, dominant_of_rotation = 2.5;
-constexpr double any_of_teeth = 6.0, first_of_teeth = 3.5;
-constexpr double highest_of_unknown_teeth = 12.0;
+// By which the speed may be off a hint, in its standard deviations, and a line is read wrong.
+constexpr double hint_off = 4.7, line_off_hz = 5.0;
+// Orders of rotation up to which a line may be one, or dominate; of tooth passing that rise first as the tool enters.
+constexpr double any_of_rotation = 5.5, dominant_of_rotation = 2.5, first_of_teeth = 3.5;
+constexpr double any_order = std::numeric_limits<double>::infinity();
 constexpr double mains_width_hz = 0.7, highest_of_mains = 3.5;
 constexpr std::size_t blocks = 6;  // that the short window is cut into
 constexpr double first_tones_s = 0.3, air_memory_s = 10.0;
 constexpr double stable_ratio = 0.05;   // L to S
 constexpr double still_air = 2.0;       // of the least energy: more is not the air
-constexpr double rung_down = 0.4;       // of the strongest block, in the last
+constexpr double rung_down = 0.5;       // of the strongest block, in the last
 constexpr double reading = 0.05;        // 1/T: how well a line's frequency is read off
 constexpr double first_reading = 0.15;  // the same of a line that has just come
-constexpr double spread = 1.25;         // 1/T, to each side, that hold a line's energy
-constexpr double on_an_order = 0.75;    // 1/T
+constexpr double sharp_line = 0.5;      // 1/T, by which an order moves in 0.3 s
 constexpr float own_comb = 0.5F;        // of the rest, in the multiples of such a line
 constexpr double lone_reach = 4.0;      // 1/T, to each side, that a line that dominates shows
+constexpr double spread = 1.25;         // 1/T, to each side, that hold a line's energy
 
 // Hum.
 bool of_the_mains(double frequency_hz) {
@@ -144,7 +143,9 @@ std::span<const float> CutTests::without_a_lone_line(std::size_t window) noexcep
   const Spectrum& like = spectra_.spectrum(window, 0);
   const Peak& peak = peak_[window];
   const auto power = std::span<const float>(power_).first(like.line.size());
-  if (peak.share < alone_share || may_be_the_cut(peak.frequency_hz, any_of_teeth, dominant_of_rotation)) return power;
+  if (peak.share < alone_share ||
+      may_be_the_cut(peak.frequency_hz, dominant_of_rotation, any_order, SpeedPosterior::reach))
+    return power;
   std::ranges::copy(power, rest_.begin());
   const double reach_hz = lone_reach / like.seconds;
   const auto from = static_cast<std::size_t>(std::max(0.0, peak.frequency_hz - reach_hz) / like.step_hz);
@@ -186,28 +187,33 @@ bool CutTests::ratio_stands_out() const noexcept {
          near.family > std::max(cut_.swing(), faint_share * cut_.loudest()) && !of_the_mains(far.frequency_hz);
 }
 
-// A low multiple of rotation or of tooth passing, as far as the hint is unsure; high orders lie too close together.
-bool CutTests::may_be_the_cut(double frequency_hz, double highest_of_teeth, double highest_of_rotation) const noexcept {
+// A low multiple of rotation or one of tooth passing, as far as the hint is unsure: where a harmonic of the teeth meets
+// a mode it may hold nearly all energy.
+bool CutTests::may_be_the_cut(double frequency_hz, double highest_of_rotation, double highest_of_teeth,
+                              double off) const noexcept {
   const double hint_hz = speed_.hint_hz();
-  if (hint_hz <= 0.0) return true;
-  const double off = cut_.has_cut() ? speed_off : hint_off;
+  if (hint_hz <= 0.0 || setup_.teeth == 0) return true;
   const auto multiple = [&](double of_hz, double highest) {
     const double order = frequency_hz / of_hz;
     return order < highest && std::abs(order - std::round(order)) < off * order + line_off_hz / of_hz;
   };
-  if (setup_.teeth == 0) return multiple(hint_hz, highest_of_unknown_teeth);
   return multiple(hint_hz, highest_of_rotation) || multiple(hint_hz * setup_.teeth, highest_of_teeth);
+}
+
+double CutTests::speed_off() const noexcept {
+  return cut_.has_cut() ? SpeedPosterior::reach : std::min(SpeedPosterior::reach, hint_off * setup_.speed_std_ratio);
 }
 
 bool CutTests::stands_alone() const noexcept {
   const Peak& far = peak_.front();
   const Peak& near = peak_.back();
-  if (cut_.known() || (!chatter_ && (cut_.unsettled() || air_energy_ <= 0.0 || near.energy < loud * air_energy_))) {
+  if (cut_.known() ||
+      (!chatter_ && (cut_.locked() || cut_.unsettled() || air_energy_ <= 0.0 || near.energy < loud * air_energy_))) {
     return false;
   }
   return std::min(far.share, near.share) > alone_share &&
          std::abs(far.frequency_hz - near.frequency_hz) < line_moves * near.frequency_hz &&
-         !may_be_the_cut(near.frequency_hz, any_of_teeth, any_of_rotation) && !of_the_mains(far.frequency_hz);
+         !may_be_the_cut(near.frequency_hz, any_of_rotation, any_order, speed_off()) && !of_the_mains(far.frequency_hz);
 }
 
 bool CutTests::rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept {
@@ -215,7 +221,7 @@ bool CutTests::rings_down(double frequency_hz, std::uint64_t bad_channels) const
   for (std::size_t c = 0; c < setup_.channels; ++c) {
     if ((bad_channels >> c & 1U) != 0) continue;
     std::array<double, blocks> own = {};
-    spectra_.course(c, frequency_hz, own);
+    spectra_.course(c, frequency_hz, given_ && cut_.known() ? speed_.rotation_hz() : 0.0, own);
     for (std::size_t b = 0; b < blocks; ++b) sum[b] += own[b];
   }
   return sum.back() < rung_down * *std::ranges::max_element(sum);
@@ -248,7 +254,9 @@ void CutTests::find_in_cut(Finding& out) noexcept {
   lines_.back().share_out_between(GrowthTest::cell_hz, cells);
   const GrowthTest::Verdict grown = growth_.step(near.teeth);
   if (!chatter_) growth_.learn();
-  if (!cut_.enters() && family_.step(near, cut_.swing(), !chatter_)) {
+  // An order that moves by more than half of a line's width stands beside itself.
+  const bool sharp = cut_.speed_range() * near.frequency_hz * spectrum(0).seconds < sharp_line;
+  if (!cut_.enters() && family_.step(near, cut_.swing(), !chatter_) && sharp) {
     out.family = true;
     out.frequency_hz = near.frequency_hz;
   }
@@ -269,7 +277,7 @@ CutTests::Finding CutTests::find(std::uint64_t bad_channels) noexcept {
   fill_cells();
   const Peak& peak = peak_.back();
   out.runaway = runaway_.step(peak.frequency_hz, peak.share * peak.energy, peak.share) &&
-                !may_be_the_cut(peak.frequency_hz, first_of_teeth, any_of_rotation);
+                !may_be_the_cut(peak.frequency_hz, any_of_rotation, first_of_teeth, speed_off());
   out.alone = stands_alone();
   if (out.runaway || out.alone) out.frequency_hz = peak.frequency_hz;
   find_in_cut(out);

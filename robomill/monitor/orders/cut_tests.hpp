@@ -22,19 +22,20 @@ namespace robomill::monitor {
 /// {±f_c + k f} (ResidualLines), in the last 0.3 s and 0.15 s, any of these is chatter:
 ///
 /// ratio:    L > 0.2 S in both windows, at a known speed, where L exceeds the swing of S in 0.3 s: entry, exit and a
-///           change of speed move energy out of the orders. Three hops more with it than without; eight while the tool
+///           change of speed move energy out of the orders. Three hops more with it than without; six while the tool
 ///           enters.
 /// growth:   a line that is no multiple of the teeth has grown by 10 dB (GrowthTest), the speed stands still to 0.8 %,
 ///           and the line exceeds half the swing. Three hops.
-/// family:   L has grown by three (FamilyGrowth). So many hops as the rate of false alarms asks for.
-/// alone:    one line holds 0.6 of all energy where no speed is known, and is no low multiple of rotation or of tooth
-///           passing. Four hops.
+/// family:   L has grown by three (FamilyGrowth), and the speed stands so still that the order beside the line has
+///           moved by less than 0.5/T of the short window. So many hops as the rate of false alarms asks for.
+/// alone:    one line holds 0.6 of all energy where no comb explains the signal, the teeth are known, and it is no low
+///           multiple of rotation and none of tooth passing. Four hops.
 /// runaway:  the strongest line grows exponentially (Runaway).
 ///
-/// No line counts that rings down as a knock does (the last 25 ms below 0.4 of the strongest of the last six). For
-/// ratio, alone and runaway it must have grown by 6 dB within a second or so: tones of the machine or of the room were
-/// there before (Tones). For ratio and alone it is no low multiple of 50 or 60 Hz, for ratio L is a hundredth of the
-/// loudest cut. Chatter is over after six hops without.
+/// No line counts that rings down as a knock does (without the orders, the last 25 ms below half of the strongest of
+/// the last six). For ratio, alone and runaway it must have grown by 6 dB within a second or so: tones of the machine
+/// or of the room were there before (Tones). For ratio and alone it is no low multiple of 50 or 60 Hz, for ratio L is a
+/// hundredth of the loudest cut. Chatter is over after six hops without.
 class CutTests {
  public:
   struct Setup {
@@ -102,8 +103,9 @@ class CutTests {
   void find_in_cut(Finding& out) noexcept;
   [[nodiscard]] bool ratio_stands_out() const noexcept;
   [[nodiscard]] bool stands_alone() const noexcept;
-  [[nodiscard]] bool may_be_the_cut(double frequency_hz, double highest_of_teeth,
-                                    double highest_of_rotation) const noexcept;
+  [[nodiscard]] bool may_be_the_cut(double frequency_hz, double highest_of_rotation, double highest_of_teeth,
+                                    double off) const noexcept;
+  [[nodiscard]] double speed_off() const noexcept;
   void learn_tones() noexcept;
   [[nodiscard]] bool rings_down(double frequency_hz, std::uint64_t bad_channels) const noexcept;
   [[nodiscard]] double count(const Finding& found) noexcept;

@@ -12,7 +12,6 @@ namespace {
 constexpr double reach = 6.0;               // 1/T, to each side of an order that it is taken off
 constexpr std::size_t kernel_rows = 16;     // from one line to the next
 constexpr float skirt = 0.5F;               // of an order's energy, over the square of the distance
-constexpr double order_guard = 0.75;        // 1/T
 constexpr double teeth_guard = 2.0;         // 1/T
 constexpr int most_parts = 6;               // of an order, where it may be a multiple of the rotation
 constexpr float fewest_apart = 4.5F;        // 1/T, that these stand apart: 15 Hz, the slowest rotation that is sought
@@ -66,7 +65,7 @@ void ResidualLines::begin(double rotation_hz, int teeth, bool sure) noexcept {
   const float folds_of_it = 2.0F * static_cast<float>(folds_) / apart;
   const auto last_fold = static_cast<std::int32_t>(folds_ - 1);
   const auto guard = [&](std::size_t k) {
-    return (k % static_cast<std::size_t>(std::max(1, teeth)) == 0 ? teeth_guard : order_guard) / bin;
+    return (k % static_cast<std::size_t>(std::max(1, teeth)) == 0 ? teeth_guard : on_an_order) / bin;
   };
   for (std::size_t k = 0; k <= orders_; ++k) {
     const double at = static_cast<double>(k) * order_step;
@@ -92,7 +91,7 @@ void ResidualLines::begin(double rotation_hz, int teeth, bool sure) noexcept {
       for (std::size_t i = from; i < to; ++i) {
         const float below = to_below(i) / part;
         const float off = below - static_cast<float>(static_cast<std::int32_t>(below + 0.5F));
-        share_of_[i] = std::abs(off) * part < static_cast<float>(order_guard) ? 0.0F : share_of_[i];
+        share_of_[i] = std::abs(off) * part < static_cast<float>(on_an_order) ? 0.0F : share_of_[i];
       }
     }
   }

@@ -10,6 +10,7 @@ namespace robomill::monitor {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+constexpr double near_block = 4.0;         // 1/T of a block, to each side, that a multiple of rotation shows
 constexpr double enough_hz = 10240.0;      // of the sample rate
 constexpr std::size_t taps_a_factor = 24;  // of the low-pass, for each sample left out
 constexpr double most_lines = 20.0;        // M
@@ -164,22 +165,35 @@ void Spectra::push(std::span<const float> samples, std::size_t frames) noexcept 
   }
 }
 
-void Spectra::course(std::size_t channel, double frequency_hz, std::span<double> blocks) const noexcept {
-  const std::size_t length = windows_.back().length;
-  const float* last = ring_.data() + 2 * channel * size_ + at_ + size_ - length;
-  const std::size_t each = length / blocks.size();
-  const double c = 2.0 * std::cos(2.0 * pi * frequency_hz / rate_hz_);
+void Spectra::course(std::size_t channel, double frequency_hz, double rotation_hz,
+                     std::span<double> blocks) const noexcept {
+  const Window& window = windows_.back();
+  const Spectrum& spectrum = window.spectra[channel];
+  const float* last = ring_.data() + 2 * channel * size_ + at_ + size_ - window.length;
+  const std::size_t each = window.length / blocks.size();
+  const double turn = 2.0 * pi * frequency_hz / rate_hz_;  // a sample
+  const std::complex<double> step = std::polar(1.0, -turn);
+  const double near_hz = near_block * rate_hz_ / static_cast<double>(each);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    // Goertzel's recursion.
-    double s1 = 0.0;
-    double s2 = 0.0;
+    const double begins = static_cast<double>(b * each) - static_cast<double>(window.length / 2);
+    std::complex<double> phase = std::polar(1.0, -turn * begins);
+    std::complex<double> sum = 0.0;
     for (std::size_t i = b * each; i < (b + 1) * each; ++i) {
-      const double s = static_cast<double>(last[i]) + c * s1 - s2;
-      s2 = s1;
-      s1 = s;
+      sum += static_cast<double>(last[i]) * phase;
+      phase *= step;
     }
-    const double scale = 2.0 / static_cast<double>(each);
-    blocks[b] = scale * scale * std::max(0.0, s1 * s1 + s2 * s2 - c * s1 * s2);
+    sum *= 2.0 / static_cast<double>(each);
+    const double middle = begins + 0.5 * static_cast<double>(each - 1);
+    const double first = rotation_hz > 0.0 ? std::ceil((frequency_hz - near_hz) / rotation_hz) : 0.0;
+    for (double k = std::max(1.0, first); rotation_hz > 0.0 && k * rotation_hz <= frequency_hz + near_hz; ++k) {
+      const double apart_hz = k * rotation_hz - frequency_hz;
+      if (std::abs(apart_hz) * spectrum.seconds < on_an_order) continue;
+      const double half_turn = pi * apart_hz / rate_hz_;  // a sample
+      const double seen =
+          std::sin(half_turn * static_cast<double>(each)) / (static_cast<double>(each) * std::sin(half_turn));
+      sum -= seen * std::complex<double>(spectrum.at(k * rotation_hz)) * std::polar(1.0, 2.0 * half_turn * middle);
+    }
+    blocks[b] = std::norm(sum);
   }
 }
 

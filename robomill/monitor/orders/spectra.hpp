@@ -13,6 +13,9 @@ namespace robomill::monitor {
 ///   h(u) = sin(πu)/(πu (1 - u²)),   h(0) = 1, h(±1) = 1/2, ∫ h² du = 3/2.   [Harris1978]
 [[nodiscard]] double hann_kernel(double u) noexcept;
 
+/// So near [1/T] what stands is not told from an order.
+inline constexpr double on_an_order = 0.75;
+
 /// One spectrum under a Hann window: X(ν) = 2/Σw Σ w_j x_j exp(-2πiν(t_j - t_m)), t_m the window's middle. A sine of
 /// amplitude A at ν shows |X(ν)| = A; X of a sine that grows, or drifts in frequency, keeps the phase of the middle.
 struct Spectrum {
@@ -25,6 +28,13 @@ struct Spectrum {
   /// The first line that counts, 2.5/T from 0: below is what a drifting offset reaches.
   [[nodiscard]] std::size_t first_line() const noexcept {
     return static_cast<std::size_t>(2.5 / (seconds * step_hz)) + 1;
+  }
+  /// X between the lines, by straight lines.
+  [[nodiscard]] std::complex<float> at(double frequency_hz) const noexcept {
+    const double place = std::clamp(frequency_hz / step_hz, 0.0, static_cast<double>(line.size() - 2));
+    const auto k = static_cast<std::size_t>(place);
+    const auto part = static_cast<float>(place - static_cast<double>(k));
+    return line[k] + part * (line[k + 1] - line[k]);
   }
   /// Where a peak at line k stands between its neighbours, by the parabola through their powers.
   [[nodiscard]] double peak_hz(std::size_t k, double before, double here, double after) const noexcept {
@@ -69,8 +79,8 @@ class Spectra {
     return windows_[window].spectra[channel];
   }
   /// How the amplitude at a frequency went: |X(ν)|² of a channel in consecutive blocks of the short window, oldest
-  /// first.
-  void course(std::size_t channel, double frequency_hz, std::span<double> blocks) const noexcept;
+  /// first, without what the multiples of a rotation hold there whose amplitude transform() has found; 0: none.
+  void course(std::size_t channel, double frequency_hz, double rotation_hz, std::span<double> blocks) const noexcept;
   /// The highest frequency that counts [Hz]; where the rate is reduced, a line there is shown 1.2 dB too small.
   [[nodiscard]] double highest_hz() const noexcept { return 0.5 * passed_ * rate_hz_; }
   /// Seconds pushed since construction or reset().

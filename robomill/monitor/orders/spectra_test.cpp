@@ -165,8 +165,8 @@ TEST(Spectra, TheCourseOfADecayingSineFallsAsItDoes) {
         }(),
         x.size());
     std::array<double, 6> steady = {}, falling = {};
-    spectra.course(0, hz, steady);
-    spectra.course(1, hz, falling);
+    spectra.course(0, hz, 0.0, steady);
+    spectra.course(1, hz, 0.0, falling);
     for (std::size_t b = 0; b < 6; ++b) {
       EXPECT_NEAR(steady[b], 4.0, 0.1);
       if (b == 0) continue;
