@@ -22,8 +22,7 @@ std::string speed_fact(const monitor::MonitorOptions& options) {
 }
 
 std::string detector_fact(const monitor::MonitorOptions& options) {
-  const std::string out =
-      fmt::format("{}, every {:.4g} ms", monitor::to_string(options.kind), options.hop_s / units::ms);
+  std::string out = fmt::format("{}, every {:.4g} ms", monitor::to_string(options.kind), options.hop_s / units::ms);
   if (options.kind == monitor::Kind::comb_cusum) return out;
   return out + fmt::format(", windows of {:.4g} ms, {} entropy {} {:.6g}", options.window_s / units::ms,
                            monitor::to_string(options.entropy), options.alarm_below ? "below" : "above",

@@ -103,7 +103,7 @@ void Session::become_blind(BlindReason reason) {
   event.kind = MonitorEvent::Kind::state;
   event.time_s = time_s();
   event.decision = last_;
-  emit(std::move(event));
+  emit(event);
 }
 
 void Session::leave_out(std::uint64_t frames) {

@@ -90,7 +90,8 @@ void ResidualLines::begin(double rotation_hz, int teeth, bool sure) noexcept {
       const float part = apart / static_cast<float>(parts);
       for (std::size_t i = from; i < to; ++i) {
         const float below = to_below(i) / part;
-        const float off = below - static_cast<float>(static_cast<std::int32_t>(below + 0.5F));
+        const std::int32_t nearest = static_cast<std::int32_t>(2.0F * below + 1.0F) / 2;
+        const float off = below - static_cast<float>(nearest);
         share_of_[i] = std::abs(off) * part < static_cast<float>(on_an_order) ? 0.0F : share_of_[i];
       }
     }
@@ -108,7 +109,7 @@ void ResidualLines::add(const Spectrum& spectrum) noexcept {
   std::ranges::fill(order_energy_, 0.0F);
   for (std::size_t k = 1; k <= orders_; ++k) {
     const double at = static_cast<double>(k) * order_step;
-    const auto near = static_cast<std::size_t>(at + 0.5);
+    const auto near = static_cast<std::size_t>(std::lround(at));
     if (near >= lines_) break;
     const double place = (at - static_cast<double>(near) + 0.5) * kernel_rows;
     const std::size_t row = std::min(kernel_rows - 1, static_cast<std::size_t>(place));

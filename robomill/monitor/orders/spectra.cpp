@@ -175,7 +175,7 @@ void Spectra::course(std::size_t channel, double frequency_hz, double rotation_h
   const std::complex<double> step = std::polar(1.0, -turn);
   const double near_hz = near_block * rate_hz_ / static_cast<double>(each);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const double begins = static_cast<double>(b * each) - static_cast<double>(window.length / 2);
+    const double begins = static_cast<double>(b * each) - 0.5 * static_cast<double>(window.length - 1);
     std::complex<double> phase = std::polar(1.0, -turn * begins);
     std::complex<double> sum = 0.0;
     for (std::size_t i = b * each; i < (b + 1) * each; ++i) {
