@@ -13,7 +13,7 @@ namespace robomill::monitor {
 ///   h(u) = sin(πu)/(πu (1 - u²)),   h(0) = 1, h(±1) = 1/2, ∫ h² du = 3/2.   [Harris1978]
 [[nodiscard]] double hann_kernel(double u) noexcept;
 
-/// So near [1/T] what stands is not told from an order.
+/// As near as this [1/T] a line cannot be distinguished from an order.
 inline constexpr double on_an_order = 0.75;
 
 /// One spectrum under a Hann window: X(ν) = 2/Σw Σ w_j x_j exp(-2πiν(t_j - t_m)), t_m the window's middle. A sine of

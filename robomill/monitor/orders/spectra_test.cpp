@@ -176,6 +176,35 @@ TEST(Spectra, TheCourseOfADecayingSineFallsAsItDoes) {
   }
 }
 
+// Orders of the amplitude 1 about a knock of 0.7 that decays in 20 ms: beside them its decay shows.
+TEST(Spectra, TheCourseLeavesTheOrdersOut) {
+  Random random(7);
+  int fall_beside = 0, fall_among = 0;
+  const int runs = 100;
+  for (int run = 0; run < runs; ++run) {
+    const double rotation_hz = random.uniform(30.0, 60.0), knock_hz = (12.0 + run % 5 + 0.5) * rotation_hz;
+    std::vector<Tone> tones;
+    for (int k = 1; k <= 30; ++k) tones.push_back({k * rotation_hz, 1.0, random.uniform(0.0, turn)});
+    std::vector<float> x = sum_of(tones, rate_hz, 0.35);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double t = static_cast<double>(i) / rate_hz - 0.25;
+      if (t > 0.0) x[i] += static_cast<float>(0.7 * std::exp(-t / 0.02) * std::sin(turn * knock_hz * t));
+    }
+    Spectra spectra(rate_hz, 1);
+    spectra.push(x, x.size());
+    spectra.transform();
+    const auto falls = [&](double without_hz) {
+      std::array<double, 6> course = {};
+      spectra.course(0, knock_hz, without_hz, course);
+      return course.back() < 0.5 * *std::ranges::max_element(course);
+    };
+    fall_beside += falls(rotation_hz) ? 1 : 0;
+    fall_among += falls(0.0) ? 1 : 0;
+  }
+  EXPECT_GE(fall_beside, 80);
+  EXPECT_LE(fall_among, 60);
+}
+
 TEST(Spectra, AreTheSameInAnyBlocksAndAfterReset) {
   for (const double any_hz : {8000.0, 44100.0}) {
     const std::vector<float> x = sum_of(std::array{Tone{700.0}}, any_hz, 0.5, 0.3);
