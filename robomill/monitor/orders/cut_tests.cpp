@@ -184,7 +184,7 @@ bool CutTests::ratio_stands_out() const noexcept {
   const ResidualFamily& far = found_.front();
   const ResidualFamily& near = found_.back();
   return cut_.known() && far.family > least_ratio * far.synchronous && near.family > least_ratio * near.synchronous &&
-         near.family > std::max(cut_.swing(), faint_share * cut_.loudest()) && !of_the_mains(far.frequency_hz);
+         near.family > faint_share * cut_.loudest() && !of_the_mains(far.frequency_hz);
 }
 
 // A low multiple of rotation or one of tooth passing, as far as the hint is unsure: where a harmonic of the teeth meets

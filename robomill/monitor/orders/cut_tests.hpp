@@ -21,11 +21,11 @@ namespace robomill::monitor {
 /// tool cuts; chatter stands beside them. With S the synchronous energy and L that of the strongest family of lines
 /// {±f_c + k f} (ResidualLines), in the last 0.3 s and 0.15 s, any of these is chatter:
 ///
-/// ratio:    L > 0.2 S in both windows, at a known speed, where L exceeds the swing of S in 0.3 s: entry, exit and a
-///           change of speed move energy out of the orders. Three hops more with it than without; six while the tool
-///           enters.
+/// ratio:    L > 0.2 S in both windows, at a known speed that stands still to 0.8 %. Three hops more with it than
+///           without; six while the tool enters.
 /// growth:   a line that is no multiple of the teeth has grown by 10 dB (GrowthTest), the speed stands still to 0.8 %,
-///           and the line exceeds half the swing. Three hops.
+///           and the line exceeds half the swing of S in 0.3 s: a change of depth or speed moves energy out of the
+///           orders. Three hops.
 /// family:   L has grown by three (FamilyGrowth), and the speed stands so still that the order beside the line has
 ///           moved by less than 0.5/T of the short window. So many hops as the rate of false alarms asks for.
 /// alone:    one line holds 0.6 of all energy where no comb explains the signal, the teeth are known, and it is no low
