@@ -27,8 +27,8 @@ TEST(OrderDetector, DetectsSynchronousChatterOfSimulatedCuts) {
   EXPECT_LE(summarise(locked).false_alarms + summarise(doubling).false_alarms, 1 + cuts / 15);
 }
 
-// Seeds that nothing was tuned on, those of the README's table. Measured: in all 200 cuts 78 of 100 found, 1 false
-// alarm, 182 ms, 0.07 Hz.
+// Seeds that nothing was tuned on, those of the README's table. Measured: in all 200 cuts 87 of 100 found, 2 false
+// alarms, 194 ms, 0.11 Hz.
 TEST(OrderDetector, DetectsTheChatterOfTheCorpus) {
   using namespace testing;
   const int cuts = test::seeds(static_cast<int>(corpus_size));
@@ -39,7 +39,7 @@ TEST(OrderDetector, DetectsTheChatterOfTheCorpus) {
   }
   const Summary summary = summarise(scores);
   EXPECT_EQ(summary.chatter, cuts / 2);
-  EXPECT_GE(summary.found, 0.77 * summary.chatter - 1.0);
+  EXPECT_GE(summary.found, 0.86 * summary.chatter - 1.0);
   EXPECT_LE(summary.false_alarms, 1 + cuts / 100);
   EXPECT_LT(summary.delay_median_s, 0.2);
   EXPECT_LT(summary.frequency_median_hz, 0.3);
