@@ -22,6 +22,23 @@ constexpr double look_back_s = Spectra::windows_s.front();
 // Hops in a row at the converter's limit that an impact does not make.
 constexpr std::size_t clipped_hops = 4;
 
+constexpr Name<State> state_names[] = {
+    {"stable", State::stable}, {"transition", State::transition}, {"chatter", State::chatter}, {"blind", State::blind}};
+constexpr Name<BlindReason> reason_names[] = {{"none", BlindReason::none},
+                                              {"no-signal", BlindReason::no_signal},
+                                              {"clipped", BlindReason::clipped},
+                                              {"speed-unknown", BlindReason::speed_unknown},
+                                              {"gap", BlindReason::gap}};
+constexpr Name<SynchronousChatter> synchronous_names[] = {{"none", SynchronousChatter::none},
+                                                          {"locked", SynchronousChatter::locked},
+                                                          {"period-doubling", SynchronousChatter::period_doubling}};
+constexpr Name<Fault> fault_names[] = {{"not-finite", Fault::not_finite},
+                                       {"stuck", Fault::stuck},
+                                       {"clipped", Fault::clipped},
+                                       {"dead-channel", Fault::dead_channel},
+                                       {"wrong-sample-rate", Fault::wrong_sample_rate},
+                                       {"speed-unknown", Fault::speed_unknown}};
+
 void require_between(const char* field, double number, double low, double high, const char* unit, const char* rule) {
   if (!(number >= low && number <= high)) throw InvalidInput(field, number, unit, rule);
 }
@@ -228,50 +245,16 @@ std::string_view to_string(Entropy entropy) {
   return name_in(entropy_names, entropy);
 }
 std::string_view to_string(State state) {
-  switch (state) {
-    case State::stable:
-      return "stable";
-    case State::transition:
-      return "transition";
-    case State::chatter:
-      return "chatter";
-    default:
-      return "blind";
-  }
+  return name_in(state_names, state);
 }
 std::string_view to_string(BlindReason reason) {
-  switch (reason) {
-    case BlindReason::no_signal:
-      return "no-signal";
-    case BlindReason::clipped:
-      return "clipped";
-    case BlindReason::speed_unknown:
-      return "speed-unknown";
-    case BlindReason::gap:
-      return "gap";
-    default:
-      return "none";
-  }
+  return name_in(reason_names, reason);
 }
 std::string_view to_string(SynchronousChatter kind) {
-  if (kind == SynchronousChatter::none) return "none";
-  return kind == SynchronousChatter::locked ? "locked" : "period-doubling";
+  return name_in(synchronous_names, kind);
 }
 std::string_view to_string(Fault fault) {
-  switch (fault) {
-    case Fault::not_finite:
-      return "not-finite";
-    case Fault::stuck:
-      return "stuck";
-    case Fault::clipped:
-      return "clipped";
-    case Fault::dead_channel:
-      return "dead-channel";
-    case Fault::wrong_sample_rate:
-      return "wrong-sample-rate";
-    default:
-      return "speed-unknown";
-  }
+  return name_in(fault_names, fault);
 }
 
 }  // namespace robomill::monitor

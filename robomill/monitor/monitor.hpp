@@ -36,8 +36,8 @@ enum class State {
 /// Why nothing can be said of the cut. The first that applies is given; chatter once found is not blind.
 enum class BlindReason {
   none,
-  /// No channel of vibration can be used: each is stuck, dead or mostly not finite, or was so within the last four
-  /// hops. A session also gives it where no samples come.
+  /// No channel of vibration can be used: each is stuck, dead or mostly not finite, or was so within the last 0.3 s. A
+  /// session also gives it where no samples come.
   no_signal,
   clipped,        ///< for 4 hops and more, every channel that can be used was at its converter's limit
   speed_unknown,  ///< no spindle speed was given, and none can be found: the detector's

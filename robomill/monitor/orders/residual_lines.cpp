@@ -187,7 +187,6 @@ ResidualFamily ResidualLines::finish() noexcept {
     if (left_[i] > left_[strongest_[j]]) strongest_[j] = i;
     ++count;
   }
-  out.residual = std::accumulate(fold_.begin(), fold_.begin() + static_cast<std::ptrdiff_t>(folds_), 0.0);
   // What a line holds where nothing stands out.
   double floor = 0.0;
   if (folds_ >= fewest_folds) {
@@ -217,10 +216,6 @@ ResidualFamily ResidualLines::finish() noexcept {
   std::size_t at = 0;
   for (std::size_t j = best; j < best + width; ++j) {
     if (left_[strongest_[j]] > left_[at]) at = strongest_[j];
-  }
-  const auto reach_lines = static_cast<std::size_t>(1.25 / (seconds_ * step_hz_));
-  for (std::size_t i = at > reach_lines ? at - reach_lines : 1; i < std::min(lines_, at + reach_lines + 1); ++i) {
-    out.line += static_cast<double>(left_[i]);
   }
   out.frequency_hz = like_.peak_hz(at, static_cast<double>(left_[at - 1]), static_cast<double>(left_[at]),
                                    static_cast<double>(left_[at + 1]));

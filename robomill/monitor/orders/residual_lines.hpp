@@ -13,10 +13,8 @@ struct ResidualFamily {
   double whole = 0.0;         ///< of everything
   double synchronous = 0.0;   ///< of the multiples of rotation
   double teeth = 0.0;         ///< of the multiples of tooth passing; where the teeth are unknown, of rotation
-  double residual = 0.0;      ///< of what stands beside them
   double family = 0.0;        ///< of the strongest family of lines {±f_c + k f}, above the floor
   double frequency_hz = 0.0;  ///< of the family's strongest line; 0: none
-  double line = 0.0;          ///< of that line alone
 };
 
 /// Takes the multiples k f of rotation off the spectra of a window, and finds among what they leave the strongest

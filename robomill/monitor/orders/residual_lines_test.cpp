@@ -39,6 +39,12 @@ struct Left {
     lines.add(spectra.spectrum(window, 0));
     family = lines.finish();
   }
+  /// Energy of what stands beside the orders.
+  [[nodiscard]] double residual() const {
+    std::vector<double> cells(600);
+    lines.share_out(10.0, cells);
+    return std::accumulate(cells.begin(), cells.end(), 0.0);
+  }
   Spectra spectra;
   ResidualLines lines;
   ResidualFamily family;
@@ -52,10 +58,10 @@ TEST(ResidualLines, OrdersAloneLeaveNothing) {
     const std::vector<Tone> tones = cut_of(rotation_hz, teeth, random);
     for (std::size_t w = 0; w < 2; ++w) {
       if (rotation_hz < 50.0 && w == 1) continue;  // there the window does not tell neighbours apart
-      const ResidualFamily left = Left(tones, rotation_hz, w, teeth).family;
-      EXPECT_NEAR(left.whole, energy(tones), 0.01 * energy(tones)) << rotation_hz;
-      EXPECT_NEAR(left.synchronous, energy(tones), 0.03 * energy(tones)) << rotation_hz << " " << teeth;
-      EXPECT_LT(left.residual, 1e-3 * energy(tones)) << rotation_hz << " " << teeth;
+      const Left left(tones, rotation_hz, w, teeth);
+      EXPECT_NEAR(left.family.whole, energy(tones), 0.01 * energy(tones)) << rotation_hz;
+      EXPECT_NEAR(left.family.synchronous, energy(tones), 0.03 * energy(tones)) << rotation_hz << " " << teeth;
+      EXPECT_LT(left.residual(), 1e-3 * energy(tones)) << rotation_hz << " " << teeth;
       // A speed that is off by a thousandth leaves little more.
       EXPECT_LT(Left(tones, 1.001 * rotation_hz, w, teeth).family.family, 0.03 * energy(tones)) << rotation_hz;
     }
@@ -80,7 +86,6 @@ TEST(ResidualLines, AFamilyCountsAsItsAmplitudesSay) {
       EXPECT_NEAR(left.synchronous, cut, 0.05 * cut) << rotation_hz << " " << strongest_hz << " " << w;
       EXPECT_NEAR(left.family, energy(family), 0.08 * energy(family)) << rotation_hz << " " << strongest_hz << " " << w;
       EXPECT_NEAR(left.frequency_hz, strongest_hz, w == 0 ? 0.3 : 0.6) << rotation_hz;
-      EXPECT_NEAR(left.line, 0.81, 0.06) << rotation_hz;
     }
   }
 }
@@ -91,7 +96,7 @@ TEST(ResidualLines, TheMirrorImagesOfAFamilyBelongToIt) {
   EXPECT_NEAR(Left(tones, 80.0, 0).family.family, 0.25, 0.02);
   tones.push_back({12.45 * 80.0, 0.35});  // another
   EXPECT_NEAR(Left(tones, 80.0, 0).family.family, 0.25, 0.02);
-  EXPECT_NEAR(Left(tones, 80.0, 0).family.residual, 0.3725, 0.02);
+  EXPECT_NEAR(Left(tones, 80.0, 0).residual(), 0.3725, 0.02);
 }
 
 TEST(ResidualLines, NoiseIsNoFamily) {
@@ -99,9 +104,9 @@ TEST(ResidualLines, NoiseIsNoFamily) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     const double rotation_hz = random.uniform(40.0, 250.0);
     const std::vector<Tone> tones = cut_of(rotation_hz, 3, random);
-    const ResidualFamily left = Left(tones, rotation_hz, 0, 3, true, 0.5, seed).family;
-    EXPECT_GT(left.residual, 0.15);
-    EXPECT_LT(left.family, 0.2 * left.synchronous) << rotation_hz;
+    const Left left(tones, rotation_hz, 0, 3, true, 0.5, seed);
+    EXPECT_GT(left.residual(), 0.15);
+    EXPECT_LT(left.family.family, 0.2 * left.family.synchronous) << rotation_hz;
   }
 }
 
@@ -116,7 +121,7 @@ TEST(ResidualLines, SharesItselfOutWholly) {
     std::vector<double> beside(600), orders(600);
     left.lines.share_out(10.0, beside);
     left.lines.share_out_between(10.0, orders);
-    EXPECT_NEAR(std::accumulate(beside.begin(), beside.end(), 0.0), left.family.residual, 1e-4);
+    EXPECT_NEAR(std::accumulate(beside.begin(), beside.end(), 0.0), 0.25, 0.01);
     EXPECT_NEAR(std::accumulate(orders.begin(), orders.end(), 0.0), 0.09, 0.005) << between;
     const auto near = [](const std::vector<double>& cells, double hz) {
       const auto at = static_cast<std::size_t>(hz / 10.0);

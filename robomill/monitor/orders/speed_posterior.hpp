@@ -60,7 +60,6 @@ class SpeedPosterior {
   [[nodiscard]] double rotation_hz() const noexcept { return rotation_hz_; }  ///< the most likely; 0: no hint
   [[nodiscard]] double std_ratio() const noexcept { return std_ratio_; }      ///< spread about it, of f
   [[nodiscard]] double known() const noexcept { return known_; }  ///< probability that f is within 0.4 % of it
-  [[nodiscard]] double lines() const noexcept { return lines_; }  ///< M - 1, in the window observed last
   [[nodiscard]] double share() const noexcept { return share_; }  ///< s at it, in the window observed last
 
  private:
@@ -73,7 +72,7 @@ class SpeedPosterior {
 
   Setup setup_;
   double hint_hz_ = 0.0, rotation_hz_ = 0.0, std_ratio_ = 0.0, share_ = 0.0, known_ = 0.0;
-  double lines_ = 0.0;
+  double lines_ = 0.0;        // M - 1, in the window observed last
   double held_place_ = -1.0;  // < 0: not held
   std::vector<double> prior_, belief_, drift_, evidence_;
   std::vector<double> wide_;   // beliefs between zeros on both sides
