@@ -47,8 +47,8 @@ class CutTests {
   };
   struct Verdict {
     bool chatter = false;
-    double score =
-        0.0;  ///< hops that speak for chatter, of those an alarm takes; in chatter 1 + L/S, within 1.2 and 100
+    /// Hops that speak for chatter, of those an alarm takes; in chatter 1 + L/S, 1.2 to 100.
+    double score = 0.0;
     double frequency_hz = 0.0;      ///< of the strongest line that stands out; 0: none
     double frequency_std_hz = 0.0;  ///< its standard deviation
     std::size_t channel = 0;        ///< in which it is strongest
