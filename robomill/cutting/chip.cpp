@@ -24,11 +24,13 @@ void ChipShare::set(const FlatEndMill& mill, int tooth, double height_m, double 
   lines_.clear();
   const double own = mill.radius_deviation_m(tooth, height_m);
   for (int k = 0; k < mill.teeth; ++k) {
-    const Line line = {.slope = feed_m * gap(mill, tooth, k, height_m) / units::revolution,
-                       .offset = (own - mill.radius_deviation_m(k, height_m)) * position_sine};
+    const double delay = gap(mill, tooth, k, height_m);
+    const Line line = {.slope = feed_m * delay / units::revolution,
+                       .offset = (own - mill.radius_deviation_m(k, height_m)) * position_sine,
+                       .delay_rad = delay};
     if (shared_ || lines_.empty()) {
       lines_.push_back(line);
-    } else if (line.slope < lines_.front().slope) {
+    } else if (line.delay_rad < lines_.front().delay_rad) {
       lines_.front() = line;
     }
   }
@@ -68,7 +70,10 @@ void ChipShare::find_levels() {
 const std::vector<ChipPiece>& ChipShare::pieces(const Arc& arc, const Forwards& forwards, double& missed_rad) {
   pieces_.clear();
   if (!shared_) {
-    pieces_.push_back({.from_rad = arc.entry_rad, .to_rad = arc.exit_rad, .slope_m = lines_.front().slope});
+    pieces_.push_back({.from_rad = arc.entry_rad,
+                       .to_rad = arc.exit_rad,
+                       .slope_m = lines_.front().slope,
+                       .delay_rad = lines_.front().delay_rad});
     return pieces_;
   }
   cuts_.clear();
@@ -93,8 +98,11 @@ const std::vector<ChipPiece>& ChipShare::pieces(const Arc& arc, const Forwards& 
       if (line.slope * along + line.offset < lowest->slope * along + lowest->offset) lowest = &line;
     }
     if (lowest->slope * along + lowest->offset > 0.0) {
-      pieces_.push_back(
-          {.from_rad = cuts_[i - 1], .to_rad = cuts_[i], .slope_m = lowest->slope, .offset_m = lowest->offset});
+      pieces_.push_back({.from_rad = cuts_[i - 1],
+                         .to_rad = cuts_[i],
+                         .slope_m = lowest->slope,
+                         .offset_m = lowest->offset,
+                         .delay_rad = lowest->delay_rad});
     } else {
       missed_rad += cuts_[i] - cuts_[i - 1];
     }

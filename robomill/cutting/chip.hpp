@@ -10,6 +10,7 @@ namespace robomill::cutting::detail {
 struct ChipPiece {
   double from_rad = 0.0, to_rad = 0.0;
   double slope_m = 0.0, offset_m = 0.0;
+  double delay_rad = 0.0;  ///< rotation since the tooth whose surface it meets
 };
 
 /// n·x_F on a ring: mean + amplitude cos(φ - middle).
@@ -30,6 +31,7 @@ class ChipShare {
  private:
   struct Line {
     double slope = 0.0, offset = 0.0;
+    double delay_rad = 0.0;
   };
   void find_levels();
   std::vector<Line> lines_;

@@ -101,7 +101,7 @@ FrequencyResponse FrequencyResponse::of_modes(const LobesProblem& problem) {
 
 FrequencyResponse FrequencyResponse::of_modes(const modal::TipModes& modes) {
   auto part = std::make_shared<Part>();
-  part->modes = detail::tip_dynamics(modes);
+  part->modes = detail::tip_dynamics<2>(modes);
   FrequencyResponse response;
   response.add(std::move(part));
   return response;

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <complex>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
 #include "robomill/modal/tip.hpp"
+#include "robomill/stability/spatial.hpp"
 
 // Method: robomill/stability/README.md, "Method"
 
@@ -19,9 +21,14 @@ namespace robomill::stability {
 
 /// A structure that vibrates and the cut that excites it.
 struct ROBOMILL_API LobesProblem {
-  cutting::Milling milling;
-  /// Modes at the tool tip in fixed axes x, y (other axes are ignored; x or y alone is a structure of one direction).
-  /// The stiffness residuals (real parts) act as a static compliance, the mass residuals are left out.
+  cutting::Milling milling;  ///< a cylindrical cutter, upright, in x and y
+  /// In place of milling, at most one of them; in x, y and z. By collocation alone.
+  std::optional<SpatialMilling> spatial = {};
+  std::optional<Drilling> drilling = {};
+  [[nodiscard]] bool in_three_directions() const { return spatial.has_value() || drilling.has_value(); }
+  /// Modes at the tool tip in fixed axes x, y and, for a cut in three directions, z; others are ignored, and a
+  /// direction that is not there is rigid. The stiffness residuals (real parts) act as a static compliance, the mass
+  /// residuals are left out.
   modal::ModalModel dynamics;
   std::vector<int> keep_modes = {};  ///< numbers of the modes that take part, from 1; empty: all
   double feed_direction_rad = 0.0;   ///< of the feed in the x-y plane, counter-clockwise from x [rad]
@@ -83,6 +90,7 @@ enum class BifurcationType {
 struct OperatingPoint {
   double spindle_speed_rad_per_s = 0.0;  ///< Ω [rad/s], > 0
   double axial_depth_m = 0.0;            ///< a [m], >= 0
+  double gain = 1.0;                     ///< factor on the cutting stiffness, > 0; for collocation
 };
 
 struct ROBOMILL_API LobesOptions {

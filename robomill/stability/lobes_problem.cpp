@@ -2,7 +2,6 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/stability/lobes.hpp"
-#include "robomill/stability/tip_dynamics.hpp"
 
 namespace robomill::stability {
 namespace {
@@ -74,7 +73,10 @@ void LobesOptions::validate() const {
 }
 
 void LobesProblem::validate() const {
-  milling.validate();
+  if (spatial && drilling) throw InvalidInput("spatial", "must not stand beside drilling");
+  if (spatial) spatial->validate();
+  if (drilling) drilling->validate();
+  if (!in_three_directions()) milling.validate();
   require_finite("feed_direction_rad", feed_direction_rad, "rad");
   if (!measured.frfs.empty()) measured.validate();
   if (!workpiece_measured.frfs.empty()) workpiece_measured.validate();
@@ -85,7 +87,7 @@ void LobesProblem::validate() const {
   }
   dynamics.validate();
   if (dynamics.modes.empty()) throw InvalidInput("modes", "must hold at least one mode");
-  static_cast<void>(detail::tip_dynamics(*this));
+  static_cast<void>(tip_modes(*this));
 }
 
 }  // namespace robomill::stability

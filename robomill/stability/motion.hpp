@@ -25,4 +25,10 @@ Motion find_motion(const TipDynamics& tip, std::complex<double> multiplier, doub
                    const Eigen::VectorXcd& modal_state,
                    const std::function<Eigen::Vector2cd(std::complex<double>)>& force);
 
+/// The same in three directions: the harmonic in which the tip moves most, residual compliance included, and the mode
+/// that moves most in it.
+Motion strongest_line(const TipDynamicsIn<3>& tip, std::complex<double> multiplier, double period_s,
+                      const Eigen::VectorXcd& modal_state,
+                      const std::function<Eigen::Vector3cd(std::complex<double>)>& force);
+
 }  // namespace robomill::stability::detail

@@ -15,6 +15,11 @@ std::unique_ptr<Scheme> make_scheme(const LobesProblem& problem, const LobesOpti
         std::string("does not go with ") + std::string(to_string(options.method)) + ", which needs modes",
         "Take method = \"multi-frequency\", or fit modes first: robomill modes");
   }
+  if (problem.in_three_directions() && options.method != Method::collocation) {
+    throw InvalidInput("lobes.method",
+                       std::string(to_string(options.method)) + " is for cylindrical cutters in x and y",
+                       "Take method = \"collocation\"");
+  }
   switch (options.method) {
     case Method::semi_discretization:
       return semi_discretization(problem, options.intervals);

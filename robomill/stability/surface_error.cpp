@@ -13,6 +13,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/stability/chart/chart.hpp"
 #include "robomill/stability/collocation/collocation.hpp"
+#include "robomill/stability/collocation/milling_model.hpp"
 #include "robomill/stability/gauss.hpp"
 
 namespace robomill::stability {
@@ -46,7 +47,7 @@ Eigen::Vector2d steady_force(const cutting::Milling& milling, const Contact& con
 }
 
 /// The same at every node of a case, in order.
-std::vector<Eigen::Vector2d> steady_forces(const CollocationModel& model, const CollocationCase& at) {
+std::vector<Eigen::Vector2d> steady_forces(const MillingModel& model, const CollocationCase& at) {
   const double depth_m = model.contacts.depends_on_depth() ? at.axial_depth_m : 1.0;
   const bool sliced = model.contacts.depends_on_depth() && model.milling.tool.runout_m > 0.0;
   const CutterContacts cutter = sliced ? CutterContacts(model.milling, at.level.slices) : model.contacts;
@@ -69,7 +70,7 @@ std::vector<Eigen::Vector2d> steady_forces(const CollocationModel& model, const 
 }
 
 /// The tip a time after the start of a piece without force.
-Eigen::Vector2d coasting(const CollocationModel& model, const Eigen::VectorXcd& start, double time_s) {
+Eigen::Vector2d coasting(const MillingModel& model, const Eigen::VectorXcd& start, double time_s) {
   Eigen::Vector2d tip = Eigen::Vector2d::Zero();
   for (Eigen::Index k = 0; k < model.tip.pole.size(); ++k) {
     const std::complex<double> here(start(2 * k).real(), start(2 * k + 1).real());
@@ -79,7 +80,7 @@ Eigen::Vector2d coasting(const CollocationModel& model, const Eigen::VectorXcd& 
 }
 
 /// Greatest distance from rest: at the nodes of the cut, and between cuts sixteen times in the fastest mode's period.
-double peak_deflection(const CollocationModel& model, const CollocationCase& at, const NodeForces& orbit) {
+double peak_deflection(const MillingModel& model, const CollocationCase& at, const NodeForces<2>& orbit) {
   double peak = 0.0;
   for (const Eigen::Vector2cd& q : orbit.displacement_m) peak = std::max(peak, q.real().norm());
   const Rotation turning(at.spindle_speed_rad_per_s, model.variation);
@@ -97,7 +98,7 @@ double peak_deflection(const CollocationModel& model, const CollocationCase& at,
 }
 
 /// Tip in y as the first tooth's tip stands at an angle, from the modes at the start of the piece before.
-double y_at(const CollocationModel& model, const CollocationCase& at, const NodeForces& orbit, double angle_rad) {
+double y_at(const MillingModel& model, const CollocationCase& at, const NodeForces<2>& orbit, double angle_rad) {
   const double wanted =
       at.mesh.pieces.front().from_rad + wrap(angle_rad - at.mesh.pieces.front().from_rad, at.mesh.period_rad);
   for (std::size_t e = 0; e < at.mesh.pieces.size(); ++e) {
@@ -111,7 +112,7 @@ double y_at(const CollocationModel& model, const CollocationCase& at, const Node
 }
 
 /// Of every tooth and wall the error that is greatest in magnitude; NaN where no tooth finishes a wall.
-double wall_error(const CollocationModel& model, const CollocationCase& at, const NodeForces& orbit) {
+double wall_error(const MillingModel& model, const CollocationCase& at, const NodeForces<2>& orbit) {
   double worst = missing;
   const auto look = [&](double wall_rad, double sign) {
     for (int tooth = 0; tooth < model.milling.tool.teeth; ++tooth) {
@@ -125,9 +126,9 @@ double wall_error(const CollocationModel& model, const CollocationCase& at, cons
   return worst;
 }
 
-SurfacePoint orbit_at(const CollocationModel& model, const OperatingPoint& point, int level) {
+SurfacePoint orbit_at(const MillingModel& model, const OperatingPoint& point, int level) {
   CollocationCase at;
-  prepare_case(model, point.spindle_speed_rad_per_s, point.axial_depth_m, mesh_level(level), at);
+  model.prepare(point, mesh_level(level), at);
   const std::vector<Eigen::Vector2d> forces = steady_forces(model, at);
   const NodeLayout layout(at.mesh.topology, static_cast<std::size_t>(model.tip.pole.size()));
   const Eigen::Index size = static_cast<Eigen::Index>(layout.size());
@@ -138,14 +139,14 @@ SurfacePoint orbit_at(const CollocationModel& model, const OperatingPoint& point
     Eigen::VectorXcd unit = Eigen::VectorXcd::Zero(size);
     unit(j) = 1.0;
     if (j + 1 < size) unit(j + 1) = std::complex<double>(0.0, 1.0);
-    const Eigen::VectorXcd end = trace(model, at, point.axial_depth_m, unit).end;
+    const Eigen::VectorXcd end = trace<2>(at, point.axial_depth_m, unit).end;
     matrix.col(j) = end.real();
     if (j + 1 < size) matrix.col(j + 1) = end.imag();
   }
-  const Eigen::VectorXd pushed = trace(model, at, point.axial_depth_m, rest, forces).end.real();
+  const Eigen::VectorXd pushed = trace<2>(at, point.axial_depth_m, rest, forces).end.real();
   const Eigen::VectorXd start =
       linear_algebra::solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(size, size) - matrix), pushed);
-  const NodeForces orbit = trace(model, at, point.axial_depth_m, start.cast<std::complex<double>>(), forces);
+  const NodeForces<2> orbit = trace<2>(at, point.axial_depth_m, start.cast<std::complex<double>>(), forces);
 
   SurfacePoint result;
   result.stable = true;
@@ -179,13 +180,13 @@ SurfacePoint surface_point(const LobesProblem& problem, const OperatingPoint& po
   require_feed(problem);
   require_positive("axial_depth_m", point.axial_depth_m, "m");
   require_positive("spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
-  const CollocationModel model(problem, MeshTopology::Form::several);
-  const CollocationModel plain(problem);
+  const MillingModel model(problem, MeshTopology::Form::several);
+  const MillingModel plain(problem);
   CollocationEvaluator evaluator(plain, tolerance);
   Outcome outcome;
   evaluator.evaluate({&point, 1}, {.estimate = true}, {&outcome, 1});
   if (outcome.spectral_radius >= 1.0) return unstable_point();
-  return orbit_at(model, point, first_level(model, point, tolerance) + 1);
+  return orbit_at(model, point, model.first_level(point, tolerance) + 1);
 }
 
 SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options, const std::array<int, 2>& grid,
@@ -200,7 +201,7 @@ SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options,
   depths.erase(depths.begin());
   const Axes axes = {even(options.spindle_speed_rad_per_s, grid[0]), depths};
   const std::unique_ptr<Scheme> scheme = collocation(problem, options.tolerance);
-  const CollocationModel model(problem, MeshTopology::Form::several);
+  const MillingModel model(problem, MeshTopology::Form::several);
   Count count;
   const GridRadii radii = evaluate_grid(*scheme, axes, options.tolerance, count, progress);
   SurfaceMap map;
@@ -218,7 +219,7 @@ SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options,
         const Eigen::Index row = static_cast<Eigen::Index>(d);
         const Eigen::Index column = static_cast<Eigen::Index>(s);
         if (radii.unstable(row, column)) continue;
-        const SurfacePoint point = orbit_at(model, axes.at(s, d), first_level(model, axes.at(s, d), options.tolerance));
+        const SurfacePoint point = orbit_at(model, axes.at(s, d), model.first_level(axes.at(s, d), options.tolerance));
         map.surface_location_error_m(row, column) = point.surface_location_error_m;
         map.peak_to_peak_m(row, column) = std::max(point.peak_to_peak_x_m, point.peak_to_peak_y_m);
       }

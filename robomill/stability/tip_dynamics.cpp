@@ -11,12 +11,13 @@ modal::TipModes tip_modes(const LobesProblem& problem) {
 
 namespace detail {
 
-TipDynamics tip_dynamics(const modal::TipModes& modes) {
-  TipDynamics tip;
+template <int D>
+TipDynamicsIn<D> tip_dynamics(const modal::TipModes& modes) {
+  TipDynamicsIn<D> tip;
   tip.pole = modes.pole;
-  tip.right = modes.right.topRows<2>();
-  tip.left = modes.left.topRows<2>();
-  tip.compliance = modes.compliance.topLeftCorner<2, 2>();
+  tip.right = modes.right.template topRows<D>();
+  tip.left = modes.left.template topRows<D>();
+  tip.compliance = modes.compliance.template topLeftCorner<D, D>();
   tip.id = modes.id;
   for (Eigen::Index k = 0; k < tip.pole.size(); ++k) {
     const double size = 2.0 * tip.right.col(k).norm();
@@ -26,9 +27,11 @@ TipDynamics tip_dynamics(const modal::TipModes& modes) {
   }
   return tip;
 }
+template TipDynamicsIn<2> tip_dynamics<2>(const modal::TipModes& modes);
+template TipDynamicsIn<3> tip_dynamics<3>(const modal::TipModes& modes);
 
 TipDynamics tip_dynamics(const LobesProblem& problem) {
-  return tip_dynamics(tip_modes(problem));
+  return tip_dynamics<2>(tip_modes(problem));
 }
 
 }  // namespace detail

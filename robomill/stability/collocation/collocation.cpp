@@ -4,25 +4,28 @@
 #include <cmath>
 #include <numbers>
 
+#include "robomill/stability/collocation/milling_model.hpp"
+#include "robomill/stability/collocation/spatial_model.hpp"
+
 namespace robomill::stability::detail {
 namespace {
 
-using Complex = std::complex<double>;
-
 class Collocation final : public Scheme {
  public:
-  Collocation(const LobesProblem& problem, double tolerance) : model_(problem), tolerance_(tolerance) {}
+  Collocation(std::unique_ptr<const CollocationModel> model, int teeth, double tolerance)
+      : model_(std::move(model)), teeth_(teeth), tolerance_(tolerance) {}
   [[nodiscard]] std::unique_ptr<PointEvaluator> evaluator() const override {
-    return std::make_unique<CollocationEvaluator>(model_, tolerance_);
+    return std::make_unique<CollocationEvaluator>(*model_, tolerance_);
   }
   [[nodiscard]] Period period() const override {
-    return model_.reported_rad() < 0.999 * 2.0 * std::numbers::pi || model_.milling.tool.teeth == 1
+    return model_->reported_rad() < 0.999 * 2.0 * std::numbers::pi || teeth_ == 1
                ? Period::tooth
                : Period::revolution;
   }
 
  private:
-  CollocationModel model_;
+  std::unique_ptr<const CollocationModel> model_;
+  int teeth_;
   double tolerance_;
 };
 
@@ -37,19 +40,13 @@ MeshLevel mesh_level(int number) {
   return level;
 }
 
-int first_level(const CollocationModel& model, const OperatingPoint& point, double tolerance) {
-  // A piece is cut to the structure's own radians; the cut makes it quicker.
-  const cutting::Immersion& immersion = model.milling.immersion;
-  const double stretch = std::min(immersion.exit_rad - immersion.entry_rad, model.contacts.period_rad()) *
-                         model.fastest_rad_per_s / point.spindle_speed_rad_per_s;
-  const double quicker =
-      std::sqrt(1.0 + model.quickening * point.axial_depth_m / (model.fastest_rad_per_s * model.fastest_rad_per_s));
-  const double nodes = 0.5 * std::min(stretch, 8.0) * quicker + 1.5 - 0.5 * std::log10(tolerance);
+int level_for(double radians, double quicker, double tolerance) {
+  const double nodes = 0.5 * std::min(radians, 8.0) * quicker + 1.5 - 0.5 * std::log10(tolerance);
   return std::clamp(static_cast<int>(std::ceil((nodes - 4.0) / 2.0)), 1, 6);
 }
 
 const CollocationCase& CollocationEvaluator::find_case(std::size_t lane, const OperatingPoint& point, int level) {
-  const bool by_depth = model_.contacts.depends_on_depth();
+  const bool by_depth = model_.depends_on_depth();
   const MeshLevel wanted = mesh_level(level);
   const auto fits = [&](const CollocationCase& c) {
     return c.spindle_speed_rad_per_s == point.spindle_speed_rad_per_s && c.level.nodes == wanted.nodes &&
@@ -58,7 +55,7 @@ const CollocationCase& CollocationEvaluator::find_case(std::size_t lane, const O
   auto& cases = cases_[static_cast<std::size_t>(level % 2)];
   if (lane > 0 && at_[lane - 1] != nullptr && fits(*at_[lane - 1])) return *at_[lane - 1];
   if (!fits(cases[lane])) {
-    prepare_case(model_, point.spindle_speed_rad_per_s, point.axial_depth_m, wanted, cases[lane]);
+    model_.prepare(point, wanted, cases[lane]);
   }
   return cases[lane];
 }
@@ -71,7 +68,7 @@ void CollocationEvaluator::assess(std::size_t lane, std::size_t column, const Do
   const double reported = share == 1.0 ? radius : std::pow(radius, share);
   const double difference = std::abs(reported - here.coarse);
   here.done = !ask.estimate || (here.compared && (difference <= tolerance_ * std::max(1.0, reported) ||
-                                                  here.level == last_level || map_.size() > largest_state));
+                                                  here.level == last_level || map_.size() > model_.largest_state()));
   if (!here.done) {
     here.coarse = reported;
     here.compared = true;
@@ -88,18 +85,7 @@ void CollocationEvaluator::assess(std::size_t lane, std::size_t column, const Do
   if (!ask.motion || radius >= 1e100) return;
   const Eigen::VectorXcd vector = arnoldi_.vector(column);
   if (!vector.allFinite()) return;
-  const NodeForces forces = trace(model_, *at_[lane], point.axial_depth_m, vector);
-  const Rotation turning(point.spindle_speed_rad_per_s, model_.variation);
-  const double start = at_[lane]->mesh.pieces.front().from_rad;
-  const double period_s = turning.time_s(start + model_.whole_rad()) - turning.time_s(start);
-  const auto coefficient = [&](Complex s) -> Eigen::Vector2cd {
-    Eigen::Vector2cd sum = Eigen::Vector2cd::Zero();
-    for (std::size_t i = 0; i < forces.time_s.size(); ++i) {
-      sum += forces.force_n[i] * (std::exp(-s * forces.time_s[i]) * (forces.weight_s[i] / period_s));
-    }
-    return sum;
-  };
-  const Motion motion = find_motion(model_.tip, dominant.multiplier, period_s, vector, coefficient);
+  const Motion motion = model_.motion(*at_[lane], model_.factor(point), dominant.multiplier, vector);
   out.chatter_frequency_hz = motion.frequency_hz;
   out.mode = motion.mode;
 }
@@ -119,11 +105,11 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
     std::size_t count = 0;
     for (std::size_t lane = first; lane < points.size(); ++lane) {
       if (!waits[lane] || !(at_[lane]->mesh.topology == at_[first]->mesh.topology)) continue;
-      together[count] = {at_[lane], points[lane].axial_depth_m};
+      together[count] = {at_[lane], model_.factor(points[lane])};
       lane_of[count++] = lane;
       waits[lane] = false;
     }
-    map_.prepare(model_, std::span(together).first(count));
+    map_.prepare(model_.modes(), std::span(together).first(count));
     arnoldi_.find(map_, std::span(found).first(count));
     evaluations_ += static_cast<long long>(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -134,7 +120,7 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
 
 void CollocationEvaluator::evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) {
   for (std::size_t lane = 0; lane < points.size(); ++lane) {
-    const int level = first_level(model_, points[lane], tolerance_);
+    const int level = model_.first_level(points[lane], tolerance_);
     lanes_[lane] = {.level = ask.estimate ? level - 1 : level};
     out[lane] = Outcome{};
   }
@@ -147,15 +133,19 @@ void CollocationEvaluator::evaluate(std::span<const OperatingPoint> points, Ask 
 void CollocationEvaluator::evaluate_at(std::span<const OperatingPoint> points, int level, std::span<Dominant> out) {
   for (std::size_t lane = 0; lane < points.size(); ++lane) {
     CollocationCase single;
-    prepare_case(model_, points[lane].spindle_speed_rad_per_s, points[lane].axial_depth_m, mesh_level(level), single);
-    const CollocationMap::Point point{&single, points[lane].axial_depth_m};
-    map_.prepare(model_, {&point, 1});
+    model_.prepare(points[lane], mesh_level(level), single);
+    const CollocationMap::Point point{&single, model_.factor(points[lane])};
+    map_.prepare(model_.modes(), {&point, 1});
     arnoldi_.find(map_, out.subspan(lane, 1));
   }
 }
 
 std::unique_ptr<Scheme> collocation(const LobesProblem& problem, double tolerance) {
-  return std::make_unique<Collocation>(problem, tolerance);
+  if (problem.in_three_directions()) {
+    const int teeth = problem.spatial ? problem.spatial->cutter.mill.teeth : problem.drilling->lips;
+    return std::make_unique<Collocation>(std::make_unique<SpatialModel>(spatial_parts(problem)), teeth, tolerance);
+  }
+  return std::make_unique<Collocation>(std::make_unique<MillingModel>(problem), problem.milling.tool.teeth, tolerance);
 }
 
 }  // namespace robomill::stability::detail

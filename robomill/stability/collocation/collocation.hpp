@@ -4,16 +4,10 @@
 
 #include "robomill/stability/collocation/collocation_map.hpp"
 #include "robomill/stability/eigen/arnoldi.hpp"
-#include "robomill/stability/motion.hpp"
+#include "robomill/stability/collocation/collocation_model.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 
 namespace robomill::stability::detail {
-
-inline constexpr int last_level = 11;
-/// Ever finer meshes: 4, 6, … 16 nodes in a piece, then 14 in halves, quarters, … of it.
-MeshLevel mesh_level(int number);
-/// Where the search for an accuracy starts.
-int first_level(const CollocationModel& model, const OperatingPoint& point, double tolerance);
 
 /// Multipliers by collocation. With an estimate, levels rise until two of them agree within the tolerance; the estimate
 /// is by how much they differ, which is the error of the coarser.
@@ -40,7 +34,6 @@ class CollocationEvaluator final : public PointEvaluator {
 
   const CollocationModel& model_;
   double tolerance_;
-  static constexpr std::size_t largest_state = 12000;
   CollocationMap map_;
   Arnoldi arnoldi_;
   std::array<Lane, lane_count> lanes_;

@@ -11,24 +11,6 @@
 
 namespace robomill::stability::detail {
 
-/// What no point of the chart changes. Shared by threads.
-struct CollocationModel {
-  /// @throws InvalidInput if swing and cut of a varied speed have no common period of a sensible length
-  explicit CollocationModel(const LobesProblem& problem, MeshTopology::Form least = MeshTopology::Form::chip);
-  TipDynamics tip;
-  cutting::SpeedVariation variation;
-  CutterContacts contacts;  ///< its angles and delays; where slices count, see MeshLevel
-  cutting::Milling milling;
-  int repeats = 1;                 ///< of the cutter's period in that of the whole
-  double fastest_rad_per_s = 0.0;  ///< of the modes
-  /// By how much the cut quickens the structure: the square of its rate grows by this with the depth [rad^2/(s^2 m)].
-  double quickening = 0.0;
-  MeshTopology::Form least = MeshTopology::Form::chip;  ///< remember no less
-  /// Rotation over which the spectral radius is reported, and that of the whole period.
-  [[nodiscard]] double reported_rad() const;
-  [[nodiscard]] double whole_rad() const { return contacts.period_rad() * repeats; }
-};
-
 /// Everything about one spindle speed at one level, and where angles depend on it, about one depth: for the force
 /// a b g at the nodes of each piece, with g = O z + a R g - c (collocation_kernels.hpp).
 struct CollocationCase {
@@ -37,8 +19,10 @@ struct CollocationCase {
     Eigen::MatrixXd coupling;       ///< R, m x m
     Eigen::MatrixXd observation;    ///< O, m x 2n
     Eigen::MatrixXd influence;      ///< W, 2n x m
-    Eigen::MatrixXd displacement;   ///< D, m x 2n; Form::several alone
-    Eigen::MatrixXd node_response;  ///< C, m x m; Form::several alone
+    Eigen::MatrixXd displacement;   ///< D, m x 2n; Form::several and blocks alone
+    Eigen::MatrixXd node_response;  ///< C, m x m; the same
+    Eigen::MatrixXd stiffness;      ///< M of the force M g at the nodes, m x m [N/m]; in three directions, Form::whole
+    std::vector<Eigen::MatrixXd> delayed;  ///< Form::blocks: m x m for each source [N/m]
   };
   double spindle_speed_rad_per_s = 0.0;
   double axial_depth_m = 0.0;  ///< that the mesh was made for
@@ -47,8 +31,6 @@ struct CollocationCase {
   std::vector<PiecePlan> plans;
   std::vector<Piece> pieces;
 };
-void prepare_case(const CollocationModel& model, double spindle_speed_rad_per_s, double axial_depth_m,
-                  const MeshLevel& level, CollocationCase& out);
 
 /// Where things stand in the state and in the memory of one period.
 struct NodeLayout {
@@ -64,17 +46,32 @@ struct NodeLayout {
   static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 };
 
-/// One period's motion from its state at the start.
+/// One period's motion from its state at the start, in D directions.
+template <int D>
 struct NodeForces {
+  using Vector = Eigen::Matrix<std::complex<double>, D, 1>;
   std::vector<double> time_s, weight_s;  ///< of the nodes; weights integrate over the period
-  std::vector<Eigen::Vector2cd> force_n;
-  std::vector<Eigen::Vector2cd> displacement_m;  ///< at the nodes of pieces with contact; Form::several alone
-  std::vector<Eigen::VectorXcd> starts;          ///< modes at the start of each piece
-  Eigen::VectorXcd end;                          ///< state after the period
+  std::vector<Vector> force_n;
+  std::vector<Vector> displacement_m;    ///< at the nodes of pieces with contact; Form::several alone
+  std::vector<Eigen::VectorXcd> starts;  ///< modes at the start of each piece
+  Eigen::VectorXcd end;                  ///< state after the period
 };
-/// @param forcing_n_per_m  force per depth that acts beside the regenerative one, at the nodes in order; Form::several
+/// @param factor           what the case's stiffness is multiplied by
+/// @param forcing_n_per_m  force per factor that acts beside the regenerative one, at the nodes in order; Form::several
 ///                         alone, or empty
-NodeForces trace(const CollocationModel& model, const CollocationCase& point, double axial_depth_m,
-                 const Eigen::VectorXcd& state, std::span<const Eigen::Vector2d> forcing_n_per_m = {});
+template <int D>
+NodeForces<D> trace(const CollocationCase& point, double factor, const Eigen::VectorXcd& state,
+                    std::span<const Eigen::Matrix<double, D, 1>> forcing_n_per_m = {});
+extern template NodeForces<2> trace<2>(const CollocationCase&, double, const Eigen::VectorXcd&,
+                                       std::span<const Eigen::Vector2d>);
+extern template NodeForces<3> trace<3>(const CollocationCase&, double, const Eigen::VectorXcd&,
+                                       std::span<const Eigen::Vector3d>);
+
+/// (1/T) ∫ F(t) exp(-s t) dt over the period T.
+template <int D>
+typename NodeForces<D>::Vector fourier_coefficient(const NodeForces<D>& forces, double period_s,
+                                                   std::complex<double> s);
+extern template NodeForces<2>::Vector fourier_coefficient<2>(const NodeForces<2>&, double, std::complex<double>);
+extern template NodeForces<3>::Vector fourier_coefficient<3>(const NodeForces<3>&, double, std::complex<double>);
 
 }  // namespace robomill::stability::detail

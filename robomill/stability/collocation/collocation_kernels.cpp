@@ -69,26 +69,41 @@ CORE void see(const PeriodOfNodes& a, const NodeLook& look, std::size_t channel,
   for (std::size_t l = 0; l < a.nodes / a.channels; ++l) sum += L(weight[l]) * L(from[l * a.channels]);
 }
 
+/// All that one piece looks back to in another.
+CORE void see_block(const PeriodOfNodes& a, const NodeLook& look, Lanes* c, std::size_t lane) {
+  const Lanes* from = a.memory + look.from;
+  const Lanes* row = a.matrices + look.matrix;
+  for (std::size_t i = 0; i < a.nodes; ++i, row += a.nodes) {
+    V sum = L(c[i]);
+    for (std::size_t l = 0; l < a.nodes; ++l) sum += L(row[l]) * L(from[l]);
+    L(c[i]) = sum;
+  }
+}
+
 CORE void gather(const PeriodOfNodes& a, const NodePiece& piece, Lanes* c, std::size_t lane) {
+  using Through = NodeLook::Through;
   for (std::size_t i = 0; i < a.nodes; ++i) L(c[i]) = V{};
   for (std::size_t i = piece.first_look; i < piece.last_look; ++i) {
     const NodeLook& look = a.looks[i];
-    V x;
-    see<V>(a, look, 0, x, lane);
-    if (a.channels == 1) {
-      L(c[look.to]) += x;
+    if (look.through == Through::block) {
+      see_block<V>(a, look, c, lane);
       continue;
     }
-    V y;
-    see<V>(a, look, 1, y, lane);
-    if (look.through_stiffness) {
-      const Lanes* k = a.matrices + look.matrix;
-      L(c[look.to]) += L(k[0]) * x + L(k[1]) * y;
-      L(c[look.to + 1]) += L(k[2]) * x + L(k[3]) * y;
-    } else {
-      L(c[look.to]) += x;
-      L(c[look.to + 1]) += y;
+    if (look.through == Through::as_is) {
+      for (std::size_t channel = 0; channel < a.channels; ++channel) {
+        V x;
+        see<V>(a, look, channel, x, lane);
+        L(c[look.to + channel]) += x;
+      }
+      continue;
     }
+    V x;
+    V y;
+    see<V>(a, look, 0, x, lane);
+    see<V>(a, look, 1, y, lane);
+    const Lanes* k = a.matrices + look.matrix;
+    L(c[look.to]) += L(k[0]) * x + L(k[1]) * y;
+    L(c[look.to + 1]) += L(k[2]) * x + L(k[3]) * y;
   }
 }
 

@@ -32,12 +32,15 @@ void build_node_block(NodeBlockArguments& a);
 
 /// What a node takes of one earlier surface: from memory, matrix times weights times what a piece remembers.
 struct NodeLook {
-  std::size_t from = 0;            ///< entry of memory: of the node where `exact`, else of the piece's first
-  bool exact = true;               ///< else weights are
-  std::size_t weights = 0;         ///< entry of PeriodOfNodes::weights, one a node of the piece
-  bool through_stiffness = false;  ///< else as it is
-  std::size_t matrix = 0;          ///< entry of PeriodOfNodes::matrices, 2 x 2
-  std::size_t to = 0;              ///< entry of c
+  /// as_is: what is remembered itself; stiffness: a 2 x 2 matrix times that; block: all nodes of a piece at once, by an
+  /// m x m matrix.
+  enum class Through { as_is, stiffness, block };
+  std::size_t from = 0;     ///< entry of memory: of the node where `exact`, else of the piece's first
+  bool exact = true;        ///< else weights are
+  std::size_t weights = 0;  ///< entry of PeriodOfNodes::weights, one a node of the piece
+  Through through = Through::as_is;
+  std::size_t matrix = 0;  ///< entry of PeriodOfNodes::matrices
+  std::size_t to = 0;      ///< entry of c
 };
 
 struct NodePiece {

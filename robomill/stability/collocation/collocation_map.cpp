@@ -16,11 +16,11 @@ void put(std::vector<Lanes>& to, std::size_t from, std::size_t lane, const Eigen
 
 }  // namespace
 
-void CollocationMap::prepare(const CollocationModel& model, std::span<const Point> points) {
+void CollocationMap::prepare(std::size_t modes, std::span<const Point> points) {
   const MeshTopology& topology = points.front().at->mesh.topology;
   if (pieces_.empty() || !(topology == topology_)) {
     topology_ = topology;
-    layout_ = NodeLayout(topology, static_cast<std::size_t>(model.tip.pole.size()));
+    layout_ = NodeLayout(topology, modes);
     lay_out(topology);
   }
   fill(points);
@@ -33,10 +33,13 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
   const std::size_t p = static_cast<std::size_t>(topology.nodes);
   const std::size_t channels = static_cast<std::size_t>(topology.channels());
   const bool several = topology.form == Form::several;
+  const bool blocks = topology.form == Form::blocks;
+  const bool remembers_motion = several || blocks;
   pieces_.clear();
   looks_.clear();
   std::size_t contacts = 0;
   std::size_t weights = 0;
+  std::size_t matrices = 0;
   for (std::size_t e = 0; e < topology.pieces.size(); ++e) {
     NodePiece piece;
     piece.coasts = !topology.pieces[e].records;
@@ -52,14 +55,17 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
       NodeLook look;
       look.from = (source.before ? layout_.before : layout_.record)[static_cast<std::size_t>(source.piece)];
       look.exact = source.exact;
-      if (source.exact) {
+      if (blocks) {
+        look.through = NodeLook::Through::block;
+      } else if (source.exact) {
         look.from += node * channels;
       } else {
         look.weights = weights;
         weights += p;
       }
-      look.through_stiffness = several;
-      look.matrix = 4 * looks_.size();
+      if (several) look.through = NodeLook::Through::stiffness;
+      look.matrix = matrices;
+      matrices += blocks ? m * m : several ? 4 : 0;
       look.to = node * channels;
       looks_.push_back(look);
     }
@@ -69,24 +75,38 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
   coupling_.resize(contacts * m * m);
   observation_.resize(contacts * m * modal);
   influence_.resize(contacts * m * modal);
-  displacement_.resize(several ? contacts * m * modal : 0);
-  node_response_.resize(several ? contacts * m * m : 0);
+  displacement_.resize(remembers_motion ? contacts * m * modal : 0);
+  node_response_.resize(remembers_motion ? contacts * m * m : 0);
   factors_.resize(topology.pieces.size() * modal);
   weights_.resize(weights);
-  matrices_.resize(several ? 4 * looks_.size() : 0);
+  matrices_.resize(matrices);
   blocks_.resize(contacts * node_block_size(modal, m));
   work_.resize(node_block_work(modal, m));
   memory_.resize(layout_.memory);
   state_.resize(2 * ((modal + m + 3) / 4 * 4));
 }
 
+void CollocationMap::fill_looks(const CollocationCase& at, std::size_t e, std::size_t lane) {
+  const std::size_t p = static_cast<std::size_t>(topology_.nodes);
+  const CutMesh::Piece& mesh = at.mesh.pieces[e];
+  for (std::size_t i = pieces_[e].first_look; i < pieces_[e].last_look; ++i) {
+    const std::size_t s = i - pieces_[e].first_look;
+    const NodeLook& look = looks_[i];
+    if (look.through == NodeLook::Through::block) {
+      put(matrices_, look.matrix, lane, at.pieces[e].delayed[s]);
+      continue;
+    }
+    for (std::size_t l = 0; l < p && !look.exact; ++l) weights_[look.weights + l].v[lane] = mesh.weights[s * p + l];
+    if (look.through == NodeLook::Through::stiffness) put(matrices_, look.matrix, lane, mesh.delayed_stiffness[s]);
+  }
+}
+
 void CollocationMap::fill(std::span<const Point> points) {
   const std::size_t m = layout_.nodes;
   const std::size_t modal = layout_.modal;
-  const std::size_t p = static_cast<std::size_t>(topology_.nodes);
   for (std::size_t lane = 0; lane < lane_count; ++lane) {
     const Point& point = points[std::min(lane, points.size() - 1)];
-    depth_.v[lane] = point.axial_depth_m;
+    factor_.v[lane] = point.factor;
     std::size_t contact = 0;
     for (std::size_t e = 0; e < pieces_.size(); ++e) {
       const CollocationCase::Piece& piece = point.at->pieces[e];
@@ -99,24 +119,12 @@ void CollocationMap::fill(std::span<const Point> points) {
       put(coupling_, contact * m * m, lane, piece.coupling);
       put(observation_, contact * m * modal, lane, piece.observation);
       put(influence_, contact * m * modal, lane, piece.influence);
-      if (topology_.form == Form::several) {
+      if (!displacement_.empty()) {
         put(displacement_, contact * m * modal, lane, piece.displacement);
         put(node_response_, contact * m * m, lane, piece.node_response);
       }
       ++contact;
-      const CutMesh::Piece& mesh = point.at->mesh.pieces[e];
-      for (std::size_t i = pieces_[e].first_look; i < pieces_[e].last_look; ++i) {
-        const std::size_t s = i - pieces_[e].first_look;
-        for (std::size_t l = 0; l < p && !looks_[i].exact; ++l) {
-          weights_[looks_[i].weights + l].v[lane] = mesh.weights[s * p + l];
-        }
-        if (!looks_[i].through_stiffness) continue;
-        const Eigen::Matrix2d& k = mesh.delayed_stiffness[s];
-        for (std::size_t j = 0; j < 4; ++j) {
-          matrices_[looks_[i].matrix + j].v[lane] =
-              k(static_cast<Eigen::Index>(j / 2), static_cast<Eigen::Index>(j % 2));
-        }
-      }
+      fill_looks(*point.at, e, lane);
     }
   }
 }
@@ -125,7 +133,7 @@ void CollocationMap::build_blocks() {
   NodeBlockArguments a;
   a.modal = layout_.modal;
   a.nodes = layout_.nodes;
-  a.depth = &depth_;
+  a.depth = &factor_;
   a.work = work_.data();
   std::size_t contact = 0;
   for (const NodePiece& piece : pieces_) {
@@ -134,7 +142,7 @@ void CollocationMap::build_blocks() {
     a.observation = observation_.data() + contact * a.nodes * a.modal;
     a.influence = influence_.data() + contact * a.nodes * a.modal;
     a.factor = factors_.data() + piece.factor;
-    if (topology_.form == Form::several) {
+    if (!displacement_.empty()) {
       a.displacement = displacement_.data() + contact * a.nodes * a.modal;
       a.node_response = node_response_.data() + contact * a.nodes * a.nodes;
     }

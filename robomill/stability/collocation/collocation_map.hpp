@@ -13,10 +13,10 @@ class CollocationMap final : public PeriodMap {
  public:
   struct Point {
     const CollocationCase* at = nullptr;
-    double axial_depth_m = 0.0;
+    double factor = 0.0;  ///< what its stiffness is multiplied by
   };
   /// Takes one to eight points of one topology; lanes left over repeat the last.
-  void prepare(const CollocationModel& model, std::span<const Point> points);
+  void prepare(std::size_t modes, std::span<const Point> points);
 
   [[nodiscard]] std::size_t size() const override { return layout_.size(); }
   [[nodiscard]] std::size_t modal_size() const override { return layout_.modal; }
@@ -25,6 +25,7 @@ class CollocationMap final : public PeriodMap {
  private:
   void lay_out(const MeshTopology& topology);
   void fill(std::span<const Point> points);
+  void fill_looks(const CollocationCase& at, std::size_t piece, std::size_t lane);
   void build_blocks();
 
   NodeLayout layout_;
@@ -32,7 +33,7 @@ class CollocationMap final : public PeriodMap {
   std::vector<NodePiece> pieces_;
   std::vector<NodeLook> looks_;
   // What the points say; matrices of the pieces one after the other.
-  Lanes depth_ = {};
+  Lanes factor_ = {};
   std::vector<Lanes> coupling_, observation_, influence_, displacement_, node_response_, factors_, weights_, matrices_;
   std::vector<Lanes> blocks_, work_, memory_, state_;
 };

@@ -1,4 +1,5 @@
 #include "robomill/stability/collocation/collocation.hpp"
+#include "robomill/stability/collocation/milling_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -141,11 +142,11 @@ TEST(Collocation, AgreesWithSemiDiscretizationOnRandomCuts) {
 // Two levels that were the same would agree without being right.
 TEST(Collocation, EveryLevelIsFinerThanTheOneBefore) {
   for (const LobesProblem& problem : {benchmark(0.05), benchmark(1.0), robot()}) {
-    const CollocationModel model(problem);
+    const MillingModel model(problem);
     std::size_t before = 0;
     for (int level = 0; level <= last_level; ++level) {
       CollocationCase here;
-      prepare_case(model, 9000 * rpm, 1e-3, mesh_level(level), here);
+      model.prepare({9000 * rpm, 1e-3}, mesh_level(level), here);
       const std::size_t nodes = here.mesh.pieces.size() * static_cast<std::size_t>(here.mesh.topology.nodes);
       EXPECT_GT(nodes, before);
       before = nodes;
@@ -156,13 +157,13 @@ TEST(Collocation, EveryLevelIsFinerThanTheOneBefore) {
 // What is remembered of the nodes is chosen for speed; the result does not depend on it.
 TEST(Collocation, WhatIsRememberedDoesNotMatter) {
   for (const LobesProblem& problem : {benchmark(0.1), robot()}) {
-    const CollocationModel chip(problem);
-    const CollocationModel plane(problem, MeshTopology::Form::plane);
-    const CollocationModel several(problem, MeshTopology::Form::several);
+    const MillingModel chip(problem);
+    const MillingModel whole(problem, MeshTopology::Form::whole);
+    const MillingModel several(problem, MeshTopology::Form::several);
     const OperatingPoint point{7000 * rpm, 0.7e-3};
     Dominant a, b, c;
     CollocationEvaluator(chip, 1e-6).evaluate_at({&point, 1}, 4, {&a, 1});
-    CollocationEvaluator(plane, 1e-6).evaluate_at({&point, 1}, 4, {&b, 1});
+    CollocationEvaluator(whole, 1e-6).evaluate_at({&point, 1}, 4, {&b, 1});
     CollocationEvaluator(several, 1e-6).evaluate_at({&point, 1}, 4, {&c, 1});
     EXPECT_NEAR(std::abs(a.multiplier), std::abs(b.multiplier), 1e-12);
     EXPECT_NEAR(std::abs(a.multiplier), std::abs(c.multiplier), 1e-12);
@@ -175,18 +176,18 @@ TEST(Collocation, EigenvectorComesBackMultiplied) {
   for (int i = 0; i < 12; ++i) {
     LobesProblem problem = random_problem(random);
     if (i % 3 == 0) problem.milling.process_damping = {.indentation_n_per_m3 = 4e13, .wear_land_m = 5e-5};
-    const CollocationModel model(problem);
+    const MillingModel model(problem);
     const OperatingPoint point{random.uniform(3000.0, 15000.0) * rpm, random.uniform(0.1e-3, 1e-3)};
     CollocationCase here;
-    prepare_case(model, point.spindle_speed_rad_per_s, point.axial_depth_m, mesh_level(3), here);
+    model.prepare(point, mesh_level(3), here);
     CollocationMap map;
     const CollocationMap::Point mapped{&here, point.axial_depth_m};
-    map.prepare(model, {&mapped, 1});
+    map.prepare(model.modes(), {&mapped, 1});
     Arnoldi arnoldi;
     Dominant found;
     arnoldi.find(map, {&found, 1});
     const Eigen::VectorXcd vector = arnoldi.vector(0);
-    const NodeForces run = trace(model, here, point.axial_depth_m, vector);
+    const NodeForces<2> run = trace<2>(here, point.axial_depth_m, vector);
     EXPECT_LT((run.end - found.multiplier * vector).norm(), 1e-9 * (1.0 + std::abs(found.multiplier))) << i;
   }
 }

@@ -150,16 +150,16 @@ class Builder {
     using Form = MeshTopology::Form;
     const bool damped = milling_.process_damping.active();
     bool chip = least == Form::chip && !damped && !source_.depends_on_depth();
-    bool plane = least != Form::several && !damped;
+    bool whole = least != Form::several && !damped;
     for (const Raw& raw : raw_) {
       chip = chip && raw.active.size() <= 1 && (raw.records == !raw.active.empty());
       for (const std::size_t i : raw.active) {
         const Contact& first = contacts_[raw.active.front()];
-        plane = plane && contacts_[i].delay_rad_per_m == 0.0 && contacts_[i].delay_rad == first.delay_rad;
+        whole = whole && contacts_[i].delay_rad_per_m == 0.0 && contacts_[i].delay_rad == first.delay_rad;
       }
     }
     out.topology.nodes = level_.nodes;
-    out.topology.form = chip ? Form::chip : plane ? Form::plane : Form::several;
+    out.topology.form = chip ? Form::chip : whole ? Form::whole : Form::several;
   }
 
   /// What looks back by one delay: contacts of the same constant delay together, or one height of one contact.

@@ -26,19 +26,21 @@ struct Source {
 /// What a point has in common with its neighbours in the chart: points of one topology are solved side by side.
 struct MeshTopology {
   /// What is remembered of a node. chip: sᵀq along the chip thickness, enough where one straight tooth cuts at a time;
-  /// plane: q, where all that cut look back by one delay; several: q, with several delays or process damping.
-  enum class Form { chip, plane, several };
+  /// whole: q, where all that cut look back by one delay; several: q, with several delays or process damping; blocks:
+  /// the same in three directions, a matrix for each earlier piece that is looked back to.
+  enum class Form { chip, whole, several, blocks };
   struct Piece {
     bool records = false;              ///< false: free flight that nobody looks back to
     int groups = 0;                    ///< delays at work
-    std::vector<Source> sources = {};  ///< [group * nodes + node]
+    std::vector<Source> sources = {};  ///< [group * nodes + node]; of blocks one for each earlier piece
     bool operator==(const Piece&) const = default;
   };
   int nodes = 0;
   Form form = Form::chip;
+  int directions = 2;
   std::vector<Piece> pieces = {};
   bool operator==(const MeshTopology&) const = default;
-  [[nodiscard]] int channels() const { return form == Form::chip ? 1 : 2; }
+  [[nodiscard]] int channels() const { return form == Form::chip ? 1 : directions; }
 };
 
 /// One period of rotation in pieces. Borders stand where a tooth, or an end of its edge, enters or leaves.

@@ -74,8 +74,10 @@ void decays(Complex pole, const std::array<double, most_gauss_points>& before_s,
 
 }  // namespace
 
-void plan_piece(const TipDynamics& tip, const Rotation& rotation, double from_rad, double length_rad, int nodes,
+template <int D>
+void plan_piece(const TipDynamicsIn<D>& tip, const Rotation& rotation, double from_rad, double length_rad, int nodes,
                 bool velocities, PiecePlan& out) {
+  using Vector = Eigen::Matrix<Complex, D, 1>;
   const double radians = tip.pole.cwiseAbs().maxCoeff() * length_rad / rotation.slowest_rad_per_s();
   const Table& t = table(nodes, radians);
   const std::size_t p = static_cast<std::size_t>(nodes);
@@ -96,20 +98,24 @@ void plan_piece(const TipDynamics& tip, const Rotation& rotation, double from_ra
   }
   out.duration_s = end_s[p];
   out.time_s.assign(end_s.begin(), end_s.begin() + nodes);
+  out.weight_s.resize(p);
+  for (std::size_t i = 0; i < p; ++i) {
+    out.weight_s[i] = t.nodes->weight[i] * length_rad / rotation.speed_rad_per_s(from_rad + t.end[i] * length_rad);
+  }
   out.factor.resize(n);
-  out.at_nodes.resize(2 * nodes, 2 * n);
-  out.response.setZero(2 * nodes, 2 * nodes);
-  out.influence.resize(2 * n, 2 * nodes);
-  out.velocity_at_nodes.resize(velocities ? 2 * nodes : 0, 2 * n);
-  out.velocity_response.setZero(velocities ? 2 * nodes : 0, 2 * nodes);
+  out.at_nodes.resize(D * nodes, 2 * n);
+  out.response.setZero(D * nodes, D * nodes);
+  out.influence.resize(2 * n, D * nodes);
+  out.velocity_at_nodes.resize(velocities ? D * nodes : 0, 2 * n);
+  out.velocity_response.setZero(velocities ? D * nodes : 0, D * nodes);
   std::array<Complex, most_gauss_points> decay;
   for (Eigen::Index k = 0; k < n; ++k) {
     const Complex pole = tip.pole(k);
-    const Eigen::Vector2cd right = tip.right.col(k);
-    const Eigen::Vector2cd left = tip.left.col(k);
-    const Eigen::Matrix2cd residue = right * left.transpose();
+    const Vector right = tip.right.col(k);
+    const Vector left = tip.left.col(k);
+    const Eigen::Matrix<Complex, D, D> residue = right * left.transpose();
     for (std::size_t i = 0; i <= p; ++i) {
-      const Eigen::Index row = 2 * static_cast<Eigen::Index>(i);
+      const Eigen::Index row = D * static_cast<Eigen::Index>(i);
       const Complex decay_to_end = std::exp(pole * end_s[i]);
       std::array<double, most_nodes> real = {}, imaginary = {};  // ∫ exp(pole (end - s)) ℓ_l(s) ds
       decays(pole, before_s[i], points, rotation.even(), decay);
@@ -126,28 +132,30 @@ void plan_piece(const TipDynamics& tip, const Rotation& rotation, double from_ra
         out.factor(k) = decay_to_end;
         for (std::size_t l = 0; l < p; ++l) {
           const Complex w(real[l], imaginary[l]);
-          const Eigen::Index column = 2 * static_cast<Eigen::Index>(l);
-          out.influence.block<1, 2>(2 * k, column) = (w * left.transpose()).real();
-          out.influence.block<1, 2>(2 * k + 1, column) = (w * left.transpose()).imag();
+          const Eigen::Index column = D * static_cast<Eigen::Index>(l);
+          out.influence.template block<1, D>(2 * k, column) = (w * left.transpose()).real();
+          out.influence.template block<1, D>(2 * k + 1, column) = (w * left.transpose()).imag();
         }
         continue;
       }
-      out.at_nodes.block<2, 1>(row, 2 * k) = 2.0 * (right * decay_to_end).real();
-      out.at_nodes.block<2, 1>(row, 2 * k + 1) = -2.0 * (right * decay_to_end).imag();
+      out.at_nodes.template block<D, 1>(row, 2 * k) = 2.0 * (right * decay_to_end).real();
+      out.at_nodes.template block<D, 1>(row, 2 * k + 1) = -2.0 * (right * decay_to_end).imag();
       for (std::size_t l = 0; l < p; ++l) {
-        out.response.block<2, 2>(row, 2 * static_cast<Eigen::Index>(l)) +=
+        out.response.template block<D, D>(row, D * static_cast<Eigen::Index>(l)) +=
             2.0 * (real[l] * residue.real() - imaginary[l] * residue.imag());
       }
       if (!velocities) continue;
       const Complex slope = pole * decay_to_end;
-      out.velocity_at_nodes.block<2, 1>(row, 2 * k) = 2.0 * (right * slope).real();
-      out.velocity_at_nodes.block<2, 1>(row, 2 * k + 1) = -2.0 * (right * slope).imag();
+      out.velocity_at_nodes.template block<D, 1>(row, 2 * k) = 2.0 * (right * slope).real();
+      out.velocity_at_nodes.template block<D, 1>(row, 2 * k + 1) = -2.0 * (right * slope).imag();
       for (std::size_t l = 0; l < p; ++l) {
         const Complex w = pole * Complex(real[l], imaginary[l]) + (l == i ? 1.0 : 0.0);
-        out.velocity_response.block<2, 2>(row, 2 * static_cast<Eigen::Index>(l)) += 2.0 * (residue * w).real();
+        out.velocity_response.template block<D, D>(row, D * static_cast<Eigen::Index>(l)) += 2.0 * (residue * w).real();
       }
     }
   }
 }
+template void plan_piece<2>(const TipDynamicsIn<2>&, const Rotation&, double, double, int, bool, PiecePlan&);
+template void plan_piece<3>(const TipDynamicsIn<3>&, const Rotation&, double, double, int, bool, PiecePlan&);
 
 }  // namespace robomill::stability::detail

@@ -1,0 +1,48 @@
+#pragma once
+#include <functional>
+
+#include "robomill/stability/collocation/collocation_model.hpp"
+#include "robomill/stability/collocation/edge_contacts.hpp"
+
+namespace robomill::stability::detail {
+
+/// Any cutter in three directions.
+class SpatialModel final : public CollocationModel {
+ public:
+  /// What cuts at a depth (or whatever a chart varies in its place), with so many rings of the cutter.
+  using Engage = std::function<cutting::Engagement(double depth, int rings)>;
+  struct Parts {
+    cutting::Cutter cutter;
+    cutting::MillingCoefficients coefficients;
+    double feed_per_tooth_m = 0.0;
+    modal::TipModes structure = {};  ///< of the tool against the workpiece
+    bool turns_with_tool = false;  ///< the structure's axes are those of T; else those of F
+    bool varies = true;            ///< the engagement depends on the depth
+    Engage engage = {};
+  };
+  explicit SpatialModel(Parts parts);
+
+  [[nodiscard]] std::size_t modes() const override { return static_cast<std::size_t>(tip_.pole.size()); }
+  [[nodiscard]] bool depends_on_depth() const override { return parts_.varies; }
+  [[nodiscard]] double factor(const OperatingPoint& point) const override { return point.gain; }
+  void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const override;
+  [[nodiscard]] int first_level(const OperatingPoint& point, double tolerance) const override;
+  /// With several delays a piece has a matrix for each other one that it looks back to.
+  [[nodiscard]] std::size_t largest_state() const override { return equal_teeth_ ? 4000 : 1500; }
+  [[nodiscard]] double reported_rad() const override { return period_rad_; }
+  [[nodiscard]] double whole_rad() const override { return period_rad_; }
+  [[nodiscard]] Motion motion(const CollocationCase& at, double factor, std::complex<double> multiplier,
+                              const Eigen::VectorXcd& vector) const override;
+
+ private:
+  Parts parts_;
+  TipDynamicsIn<3> tip_;
+  double fastest_rad_per_s_ = 0.0;
+  bool equal_teeth_ = true;
+  double period_rad_ = 0.0;
+};
+
+/// Of a problem in three directions; a chart varies `sweep`.
+SpatialModel::Parts spatial_parts(const LobesProblem& problem, SweptParameter sweep = SweptParameter::axial_depth);
+
+}  // namespace robomill::stability::detail

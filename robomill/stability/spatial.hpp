@@ -1,0 +1,45 @@
+#pragma once
+#include "robomill/base/export.hpp"
+#include "robomill/cutting/engagement.hpp"
+#include "robomill/cutting/force.hpp"
+
+// Method: robomill/stability/README.md, "Three directions"
+
+namespace robomill::stability {
+
+/// Milling with any cutter at any lead and tilt, whose tool vibrates in x, y and z.
+///
+/// The surface that a tooth meets is that of the tooth before; what the neighbouring pass left is taken for smooth.
+struct ROBOMILL_API SpatialMilling {
+  cutting::Cutter cutter;
+  cutting::Cut cut;  ///< what a chart varies of it is replaced
+  cutting::MillingCoefficients coefficients;
+  double feed_per_tooth_m = 0.0;  ///< f [m], >= 0; with runout, which needs it, it decides which teeth miss the cut
+  /// The modes' x, y and z are those of the tool frame T and lean with it; else those of the feed's frame F.
+  bool modes_turn_with_tool = false;
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// Drilling, or boring out with a drill: lips on a cone that cut all round. A chip is cut along
+/// n = (cos p sin φ, cos p cos φ, -sin p), p half the point angle, over the width b / sin p, b the depth of the chart:
+/// from the pilot hole (or the core) to the rim. Kt acts against the cut's motion, Kr against n. Chisel edge, margins
+/// and twisting are left out. The same cut in the time domain: robomill/simulation/drilling.hpp.
+struct ROBOMILL_API Drilling {
+  int lips = 2;                                 ///< evenly spaced
+  double diameter_m = 0.0;                      ///< D [m], > 0; required
+  double point_angle_rad = 2.0594885173533087;  ///< 2p [rad], in (0, π]; 118 degrees
+  cutting::ForceCoefficients coefficients;
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// What a stability chart varies beside the spindle speed.
+enum class SweptParameter {
+  axial_depth,   ///< [m]
+  radial_depth,  ///< step-over [m]
+  lead,          ///< [rad]
+  tilt           ///< [rad]
+};
+
+}  // namespace robomill::stability
