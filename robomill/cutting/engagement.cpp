@@ -54,6 +54,9 @@ void Cut::validate(const Cutter& cutter) const {
 
 void EngagementOptions::validate() const {
   if (slices < 0 || slices > 10000) throw InvalidInput("slices", slices, "", "must lie between 0 and 10,000");
+  if (rings_per_stretch < 0 || rings_per_stretch > 1000) {
+    throw InvalidInput("rings_per_stretch", rings_per_stretch, "", "must lie between 0 and 1,000");
+  }
 }
 
 Eigen::Matrix3d feed_from_tool(double lead_rad, double tilt_rad) {

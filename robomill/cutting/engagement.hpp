@@ -31,6 +31,9 @@ struct ROBOMILL_API Cut {
 
 struct ROBOMILL_API EngagementOptions {
   int slices = 0;  ///< rings, at most 10,000; 0: as many as area and force need
+  /// > 0: in place of slices, rings in each stretch of the profile along which the arcs change smoothly, at most 1,000.
+  /// Integrals over the patch then converge exponentially with it.
+  int rings_per_stretch = 0;
   /// @throws InvalidInput naming the member
   void validate() const;
 };

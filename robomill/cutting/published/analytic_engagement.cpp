@@ -54,7 +54,10 @@ Engagement engage(const Cutter& cutter, const Cut& cut, const EngagementOptions&
   engagement.feed_from_tool = patch.feed_from_tool();
   engagement.first_arc.push_back(0);
   const int count = options.slices > 0 ? options.slices : chosen_slices(cutter, patch, cut);
-  for (const detail::Node& node : detail::profile_nodes(patch, count)) {
+  const std::vector<detail::Node> nodes = options.rings_per_stretch > 0
+                                              ? detail::profile_nodes_each(patch, options.rings_per_stretch)
+                                              : detail::profile_nodes(patch, count);
+  for (const detail::Node& node : nodes) {
     const Profile::Point point = patch.profile().at(node.length_m);
     const detail::ArcList arcs = patch.arcs(point);
     if (arcs.empty()) continue;

@@ -28,15 +28,18 @@ Patch::Patch(const Cutter& cutter, const Cut& cut)
   Eigen::Vector3d touches(0.0, 0.0, touching_.at.height_m);
   if (across > 0.0) touches.head<2>() = down.head<2>() * (touching_.at.radius_m / across);
   origin_ = -(rotation_ * touches);
-  if (cut.direction == MillingDirection::slot) return;
+  const bool is_ball = cutter.kind == CutterKind::ball_end;
+  if (is_ball) ball_radius_ = 0.5 * cutter.mill.diameter_m;
+  const bool flat = cut.curvature_along_feed_per_m == 0.0 && cut.curvature_across_feed_per_m == 0.0;
+  if (cut.direction != MillingDirection::slot) add_neighbour(cut, is_ball, flat);
+  if (is_ball && flat && !reaches_from(ball_radius_)) ball_.emplace(ball_radius_, cut, rotation_);
+}
 
+void Patch::add_neighbour(const Cut& cut, bool is_ball, bool flat) {
   side_ = cut.direction == MillingDirection::up ? -1.0 : 1.0;
   const double turn = side_ * cut.curvature_across_feed_per_m * cut.radial_depth_m;
   neighbour_normal_ = Eigen::Vector2d(std::sin(turn), std::cos(turn));
   neighbour_origin_ = side_ * cut.radial_depth_m * Eigen::Vector2d(sine_ratio(turn), -cosine_ratio(turn));
-  const bool is_ball = cutter.kind == CutterKind::ball_end;
-  if (is_ball) ball_radius_ = 0.5 * cutter.mill.diameter_m;
-  const bool flat = cut.curvature_along_feed_per_m == 0.0 && cut.curvature_across_feed_per_m == 0.0;
   neighbour_ = flat && cut.lead_rad == 0.0 && cut.tilt_rad == 0.0 ? Neighbour::upright : Neighbour::silhouette;
   silhouette_ = std::make_unique<SweptSilhouette>(profile_, rotation_, origin_);
   if (is_ball && (cut.curvature_along_feed_per_m != 0.0 || !reaches_from(ball_radius_))) neighbour_ = Neighbour::ball;
@@ -74,6 +77,7 @@ double Patch::room_above(double sideways, double z) const {
 }
 
 ArcList Patch::arcs(const Profile::Point& point) const {
+  if (ball_) return point.height_m <= ball_radius_ ? ball_->arcs(point.position_rad) : ArcList();
   ArcList found = below_surface(point);
   if (found.empty()) return found;
   const double sine = std::sin(point.position_rad);

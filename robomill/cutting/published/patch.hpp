@@ -1,10 +1,12 @@
 #pragma once
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/published/arcs.hpp"
+#include "robomill/cutting/published/ball_patch.hpp"
 #include "robomill/cutting/published/swept_silhouette.hpp"
 
 namespace robomill::cutting::detail {
@@ -34,11 +36,14 @@ class Patch {
   [[nodiscard]] bool reaches_from(double height_m) const;
   /// Where the cutter touches the finished surface: s.
   [[nodiscard]] double touching_length_m() const { return touching_.length_m; }
+  /// Where only the ball of a ball end cuts a plane: the patch by its border, which arcs() then uses.
+  [[nodiscard]] const std::optional<BallPatch>& ball() const { return ball_; }
   /// Places s that surely lie in the patch or on its border.
   [[nodiscard]] std::vector<double> places() const;
 
  private:
   enum class Neighbour { none, upright, ball, silhouette };
+  void add_neighbour(const Cut& cut, bool is_ball, bool flat);
   [[nodiscard]] Ring ring(const Profile::Point& point) const;
   [[nodiscard]] ArcList outside_neighbour(const Profile::Point& point, const ArcList& within) const;
   [[nodiscard]] ArcList outside_ball(const Ring& ring, const ArcList& within) const;
@@ -56,6 +61,7 @@ class Patch {
   Eigen::Vector2d neighbour_normal_ = Eigen::Vector2d::UnitY();  ///< of the finished surface there
   Neighbour neighbour_ = Neighbour::none;
   std::unique_ptr<SweptSilhouette> silhouette_;
+  std::optional<BallPatch> ball_;
 };
 
 }  // namespace robomill::cutting::detail

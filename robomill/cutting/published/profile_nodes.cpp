@@ -156,6 +156,18 @@ void add_intervals(const Patch& patch, const Profile::Piece& piece, const std::v
   }
 }
 
+/// Of a ball, whose border says where arcs change.
+void add_ball_intervals(const Patch& patch, const BallPatch& ball, std::vector<Interval>& intervals) {
+  const double radius = patch.profile().pieces().front().arc_radius_m;
+  const std::vector<double>& borders = ball.borders();
+  for (std::size_t i = 1; i < borders.size(); ++i) {
+    const double middle = 0.5 * (borders[i - 1] + borders[i]);
+    Interval interval = {.from = radius * borders[i - 1], .to = radius * borders[i]};
+    interval.area_m2 = interval.length() * radius * std::sin(middle) * ball.arcs(middle).length();
+    if (interval.area_m2 > 0.0) intervals.push_back(interval);
+  }
+}
+
 bool is_even(const Patch& patch, const Interval& interval) {
   if (!interval.straight) return false;
   ArcList first;
@@ -175,27 +187,46 @@ bool is_even(const Patch& patch, const Interval& interval) {
   return true;
 }
 
-void add_nodes(const Patch& patch, const Interval& interval, int count, std::vector<Node>& nodes) {
-  if (is_even(patch, interval)) {
-    const double width = interval.length() / count;
-    for (int i = 0; i < count; ++i) nodes.push_back({.length_m = interval.from + width * (i + 0.5), .width_m = width});
-    return;
-  }
-  const GaussRule rule = make_gauss_rule(count);
+void add_gauss_nodes(const Interval& interval, const GaussRule& rule, std::vector<Node>& nodes) {
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double x = rule.node[i];  // 3 x² - 2 x³ on [0, 1]
-    const double weight = count > 1 ? 6.0 * x * (1.0 - x) * rule.weight[i] : 1.0;
+    const double weight = rule.node.size() > 1 ? 6.0 * x * (1.0 - x) * rule.weight[i] : 1.0;
     nodes.push_back({.length_m = interval.from + interval.length() * x * x * (3.0 - 2.0 * x),
                      .width_m = interval.length() * weight});
   }
 }
 
+void add_nodes(const Patch& patch, const Interval& interval, int count, std::vector<Node>& nodes) {
+  if (!is_even(patch, interval)) {
+    add_gauss_nodes(interval, make_gauss_rule(count), nodes);
+    return;
+  }
+  const double width = interval.length() / count;
+  for (int i = 0; i < count; ++i) nodes.push_back({.length_m = interval.from + width * (i + 0.5), .width_m = width});
+}
+
+std::vector<Interval> intervals_of(const Patch& patch) {
+  std::vector<Interval> intervals;
+  if (patch.ball()) {
+    add_ball_intervals(patch, *patch.ball(), intervals);
+  } else {
+    const std::vector<double> places = patch.places();
+    for (const Profile::Piece& piece : patch.profile().pieces()) add_intervals(patch, piece, places, intervals);
+  }
+  return intervals;
+}
+
 }  // namespace
 
+std::vector<Node> profile_nodes_each(const Patch& patch, int count) {
+  const GaussRule rule = make_gauss_rule(count);
+  std::vector<Node> nodes;
+  for (const Interval& interval : intervals_of(patch)) add_gauss_nodes(interval, rule, nodes);
+  return nodes;
+}
+
 std::vector<Node> profile_nodes(const Patch& patch, int count) {
-  const std::vector<double> places = patch.places();
-  std::vector<Interval> intervals;
-  for (const Profile::Piece& piece : patch.profile().pieces()) add_intervals(patch, piece, places, intervals);
+  const std::vector<Interval> intervals = intervals_of(patch);
   double left = 0.0;
   for (const Interval& interval : intervals) left += std::sqrt(interval.area_m2);
   std::vector<Node> nodes;

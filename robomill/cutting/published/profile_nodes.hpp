@@ -14,5 +14,7 @@ struct Node {
 /// arcs' bounds change the engaged angle is smooth but for a root at either end, which Gauss's rule meets by the
 /// substitution s = m + d (3 τ - τ³) / 2; where the arcs do not change at all the rings are even.
 [[nodiscard]] std::vector<Node> profile_nodes(const Patch& patch, int count);
+/// The same rule with `count` rings between any two such places, also where arcs do not change.
+[[nodiscard]] std::vector<Node> profile_nodes_each(const Patch& patch, int count);
 
 }  // namespace robomill::cutting::detail

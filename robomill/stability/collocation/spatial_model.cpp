@@ -54,7 +54,7 @@ SpatialModel::Engage engagement_of(const SpatialMilling& milling, SweptParameter
       nothing.first_arc = {0};
       return nothing;
     }
-    return cutting::engage(milling.cutter, cut, {.slices = rings});
+    return cutting::engage(milling.cutter, cut, {.rings_per_stretch = rings});
   };
 }
 
@@ -110,12 +110,11 @@ int SpatialModel::first_level(const OperatingPoint& point, double tolerance) con
 }
 
 void SpatialModel::prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const {
-  constexpr int rings_per_node = 4;
   out.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
   out.axial_depth_m = point.axial_depth_m;
   out.level = level;
   const cutting::Engagement engagement =
-      parts_.engage(point.axial_depth_m, rings_per_node * level.nodes * level.splits);
+      parts_.engage(point.axial_depth_m, (level.nodes + 4) * level.splits);
   const EdgeContacts contacts =
       edge_contacts(parts_.cutter, engagement, parts_.coefficients, parts_.feed_per_tooth_m);
   const Eigen::Matrix3d axes =

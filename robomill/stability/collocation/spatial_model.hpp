@@ -9,7 +9,7 @@ namespace robomill::stability::detail {
 /// Any cutter in three directions.
 class SpatialModel final : public CollocationModel {
  public:
-  /// What cuts at a depth (or whatever a chart varies in its place), with so many rings of the cutter.
+  /// What cuts at a depth (or whatever a chart varies in its place), with so many rings in each smooth stretch of the cutter.
   using Engage = std::function<cutting::Engagement(double depth, int rings)>;
   struct Parts {
     cutting::Cutter cutter;
