@@ -16,7 +16,6 @@ TEST(Spatial, HasTheRadiiOfAnIndependentSolver) {
     const PointResult point = evaluate_point(known.problem, {}, {known.speed_rpm * rpm, 1e-3 * known.depth_mm});
     EXPECT_NEAR(point.spectral_radius, known.spectral_radius, 1e-6);
     EXPECT_LE(point.error_estimate, 1e-6);
-    std::printf("%.9f %.9f %.1e %.1e\n", point.spectral_radius, known.spectral_radius, point.spectral_radius- known.spectral_radius, point.error_estimate);
   }
 }
 
@@ -31,7 +30,6 @@ TEST(Spatial, HasTheLowestUnstableDepthsOfAnIndependentSolver) {
     if (known.chatter_frequency_hz > 0.0) {
       EXPECT_NEAR(limit.chatter_frequency_hz, known.chatter_frequency_hz, 0.05);
     }
-    std::printf("%.7f %.7f %.1f\n", 1e3*limit.axial_depth_m, known.limit_mm, limit.chatter_frequency_hz);
   }
 }
 

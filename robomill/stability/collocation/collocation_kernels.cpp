@@ -5,56 +5,91 @@
 namespace robomill::stability::detail {
 namespace {
 
-CORE void build_node_block_core(NodeBlockArguments& a, std::size_t lane) {
+CORE void factor_node_block_core(FactorArguments& a, std::size_t lane) {
   const std::size_t m = a.nodes;
-  const std::size_t columns = a.modal + m;
-  Lanes* matrix = a.work;
-  Lanes* g = matrix + m * m;
-  const V depth = L(*a.depth);
-  for (std::size_t r = 0; r < m; ++r) {
-    for (std::size_t c = 0; c < m; ++c) {
-      L(matrix[r * m + c]) = -(depth * L(a.coupling[r * m + c]));
-      L(g[r * columns + a.modal + c]) = V{};
-    }
-    L(matrix[r * m + r]) += 1.0;
-    for (std::size_t c = 0; c < a.modal; ++c) L(g[r * columns + c]) = L(a.observation[r * a.modal + c]);
-    L(g[r * columns + a.modal + r]) -= 1.0;
+  const V factor = L(*a.factor);
+  Lanes* matrix = a.factored;
+  for (std::size_t c = 0; c < m; ++c) {
+    for (std::size_t r = 0; r < m; ++r) L(matrix[c * m + r]) = -(factor * L(a.coupling[c * m + r]));
+    L(matrix[c * m + c]) += 1.0;
   }
-  eliminate<V>(m, columns, matrix, g, lane);
+  for (std::size_t k = 0; k < m; ++k) {
+    Lanes* pivot = matrix + k * m;
+    const V inverse = 1.0 / L(pivot[k]);
+    L(pivot[k]) = inverse;
+    for (std::size_t r = k + 1; r < m; ++r) L(pivot[r]) *= inverse;
+    for (std::size_t c = k + 1; c < m; ++c) {
+      Lanes* column = matrix + c * m;
+      const V top = L(column[k]);
+      for (std::size_t r = k + 1; r < m; ++r) L(column[r]) -= L(pivot[r]) * top;
+    }
+  }
+}
 
-  const std::size_t rows = (a.modal + m + 3) / 4 * 4;
-  for (std::size_t r = 0; r < rows; ++r) {
-    Lanes* to = a.block + in_block(r, 0, columns);
-    const bool mode = r < a.modal;
-    const bool node = !mode && r < a.modal + m;
-    const std::size_t i = mode ? r : r - a.modal;
+/// x <- what the factors' matrix makes of it, column by column.
+CORE void solve(std::size_t m, const Lanes* factored, Lanes* x, std::size_t lane) {
+  for (std::size_t k = 0; k < m; ++k) {
+    const Lanes* column = factored + k * m;
+    const V top = L(x[k]);
+    for (std::size_t r = k + 1; r < m; ++r) L(x[r]) -= L(column[r]) * top;
+  }
+  for (std::size_t k = m; k-- > 0;) {
+    const Lanes* column = factored + k * m;
+    const V value = L(x[k]) * L(column[k]);
+    L(x[k]) = value;
+    for (std::size_t r = 0; r < k; ++r) L(x[r]) -= L(column[r]) * value;
+  }
+}
+
+/// out = matrix in, row by row, four rows at a time.
+CORE void multiply_rows(std::size_t rows, std::size_t columns, const Lanes* matrix, const Lanes* in, Lanes* out,
+                        std::size_t lane) {
+  std::size_t r = 0;
+  for (; r + 4 <= rows; r += 4, matrix += 4 * columns) {
+    V sum0 = {}, sum1 = {}, sum2 = {}, sum3 = {};
     for (std::size_t c = 0; c < columns; ++c) {
-      V sum = {};
-      if (mode) {
-        for (std::size_t l = 0; l < m; ++l) sum += L(a.influence[i * m + l]) * L(g[l * columns + c]);
-        sum *= depth;
-      } else if (node && a.displacement == nullptr) {
-        sum = L(g[i * columns + c]);
-      } else if (node) {
-        for (std::size_t l = 0; l < m; ++l) sum += L(a.node_response[i * m + l]) * L(g[l * columns + c]);
-        sum *= depth;
-        if (c < a.modal) sum += L(a.displacement[i * a.modal + c]);
-      }
-      L(to[4 * c]) = sum;
+      const V x = L(in[c]);
+      sum0 += L(matrix[c]) * x;
+      sum1 += L(matrix[columns + c]) * x;
+      sum2 += L(matrix[2 * columns + c]) * x;
+      sum3 += L(matrix[3 * columns + c]) * x;
     }
-    if (mode) {
-      const std::size_t k = r / 2 * 2;
-      if (r == k) {
-        L(to[4 * k]) += L(a.factor[k]);
-        L(to[4 * (k + 1)]) -= L(a.factor[k + 1]);
-      } else {
-        L(to[4 * k]) += L(a.factor[k + 1]);
-        L(to[4 * (k + 1)]) += L(a.factor[k]);
-      }
-    } else if (node && a.displacement == nullptr) {
-      L(to[4 * (a.modal + i)]) += 1.0;
+    L(out[r]) = sum0;
+    L(out[r + 1]) = sum1;
+    L(out[r + 2]) = sum2;
+    L(out[r + 3]) = sum3;
+  }
+  for (; r < rows; ++r, matrix += columns) {
+    V sum = {};
+    for (std::size_t c = 0; c < columns; ++c) sum += L(matrix[c]) * L(in[c]);
+    L(out[r]) = sum;
+  }
+}
+
+/// z and, in the place of c, u.
+CORE void pass_block(const PeriodOfNodes& a, const NodePiece& piece, Lanes* z, Lanes* c, std::size_t lane) {
+  const NodeBlock& block = a.blocks[piece.block];
+  const std::size_t m = a.nodes;
+  const V factor = L(*a.factor);
+  Lanes* g = c + m;
+  Lanes* moved = g + m;
+  multiply_rows<V>(m, a.modal, block.observation, z, g, lane);
+  for (std::size_t i = 0; i < m; ++i) L(g[i]) -= L(c[i]);
+  solve<V>(m, block.factored, g, lane);
+  if (block.displacement == nullptr) {
+    for (std::size_t i = 0; i < m; ++i) L(c[i]) += L(g[i]);
+  } else {
+    multiply_rows<V>(m, m, block.node_response, g, c, lane);
+    for (std::size_t i = 0; i < m; ++i) {
+      V sum = L(c[i]) * factor;
+      const Lanes* row = block.displacement + i * a.modal;
+      for (std::size_t k = 0; k < a.modal; ++k) sum += L(row[k]) * L(z[k]);
+      L(c[i]) = sum;
     }
   }
+  multiply_rows<V>(a.modal, m, block.influence, g, moved, lane);
+  coast<V>(a.modal, a.factors + piece.factor, z, lane);
+  for (std::size_t k = 0; k < a.modal; ++k) L(z[k]) += factor * L(moved[k]);
 }
 
 /// One channel of what a node looks back to.
@@ -108,9 +143,8 @@ CORE void gather(const PeriodOfNodes& a, const NodePiece& piece, Lanes* c, std::
 }
 
 CORE void run_period_of_nodes_core(PeriodOfNodes& a, std::size_t lane) {
-  const std::size_t columns = a.modal + a.nodes;
   Lanes* z = a.state;
-  Lanes* next = a.state + (columns + 3) / 4 * 4;
+  Lanes* c = a.state + a.modal;
   for (std::size_t k = 0; k < a.modal; ++k) L(z[k]) = L(a.in[k]);
   for (std::size_t e = 0; e < a.carried; ++e) L(a.memory[e]) = L(a.in[a.modal + e]);
   for (std::size_t i = 0; i < a.piece_count; ++i) {
@@ -119,12 +153,9 @@ CORE void run_period_of_nodes_core(PeriodOfNodes& a, std::size_t lane) {
       coast<V>(a.modal, a.factors + piece.factor, z, lane);
       continue;
     }
-    gather<V>(a, piece, z + a.modal, lane);
-    multiply<V>(columns, columns, a.blocks + piece.block, z, next, lane);
-    for (std::size_t c = 0; c < a.nodes; ++c) L(a.memory[piece.record + c]) = L(next[a.modal + c]);
-    Lanes* swap = z;
-    z = next;
-    next = swap;
+    gather<V>(a, piece, c, lane);
+    pass_block<V>(a, piece, z, c, lane);
+    for (std::size_t n = 0; n < a.nodes; ++n) L(a.memory[piece.record + n]) = L(c[n]);
   }
   for (std::size_t k = 0; k < a.modal; ++k) L(a.out[k]) = L(z[k]);
   for (std::size_t e = 0; e < a.carried; ++e) L(a.out[a.modal + e]) = L(a.memory[a.handed[e]]);
@@ -132,7 +163,7 @@ CORE void run_period_of_nodes_core(PeriodOfNodes& a, std::size_t lane) {
 
 }  // namespace
 
-ROBOMILL_KERNEL(build_node_block, NodeBlockArguments)
+ROBOMILL_KERNEL(factor_node_block, FactorArguments)
 ROBOMILL_KERNEL(run_period_of_nodes, PeriodOfNodes)
 
 }  // namespace robomill::stability::detail

@@ -9,26 +9,24 @@ namespace robomill::stability::detail {
 
 /// One piece with contact maps the modes z at its start and what it looks back to, c, to the modes at its end and to
 /// what is remembered of its nodes, u:
-///   g = O z + a R g - c,  z' = E z + a W g,  u = g + c, or u = D z + a C g where `displacement` is given.
-struct NodeBlockArguments {
-  std::size_t modal = 0, nodes = 0;      ///< 2n, m
-  const Lanes* depth = nullptr;          ///< a
-  const Lanes* coupling = nullptr;       ///< R, m x m
+///   (1 - a R) g = O z - c,  z' = E z + a W g,  u = g + c, or u = D z + a C g where `displacement` is given.
+struct NodeBlock {
+  const Lanes* factored = nullptr;       ///< 1 - a R in its triangular factors, m x m, column by column
   const Lanes* observation = nullptr;    ///< O, m x 2n
   const Lanes* influence = nullptr;      ///< W, 2n x m
-  const Lanes* factor = nullptr;         ///< E: real and imaginary part for each mode
   const Lanes* displacement = nullptr;   ///< D, m x 2n, or nullptr
   const Lanes* node_response = nullptr;  ///< C, m x m
-  Lanes* work = nullptr;                 ///< node_block_work(modal, nodes)
-  Lanes* block = nullptr;                ///< node_block_size(modal, nodes): [z', u] = block [z, c]
 };
-[[nodiscard]] constexpr std::size_t node_block_size(std::size_t modal, std::size_t nodes) {
-  return (modal + nodes + 3) / 4 * 4 * (modal + nodes);
-}
-[[nodiscard]] constexpr std::size_t node_block_work(std::size_t modal, std::size_t nodes) {
-  return nodes * (2 * nodes + modal);
-}
-void build_node_block(NodeBlockArguments& a);
+
+struct FactorArguments {
+  std::size_t nodes = 0;           ///< m
+  const Lanes* factor = nullptr;   ///< a
+  const Lanes* coupling = nullptr; ///< R, m x m, column by column
+  Lanes* factored = nullptr;       ///< out: m x m
+};
+/// Triangular factors of 1 - a R without pivots, for pieces so short that it is near enough to 1; the upper one's
+/// diagonal is stored inverted.
+void factor_node_block(FactorArguments& a);
 
 /// What a node takes of one earlier surface: from memory, matrix times weights times what a piece remembers.
 struct NodeLook {
@@ -46,7 +44,7 @@ struct NodeLook {
 struct NodePiece {
   bool coasts = false;
   std::size_t factor = 0;  ///< of a coast: entry of factors, 2n
-  std::size_t block = 0;   ///< entry of blocks
+  std::size_t block = 0;   ///< entry of blocks, where it cuts
   std::size_t record = 0;  ///< entry of memory that u goes to, m
   std::size_t first_look = 0, last_look = 0;
 };
@@ -59,11 +57,12 @@ struct PeriodOfNodes {
   const Lanes* weights = nullptr;
   const Lanes* matrices = nullptr;
   const Lanes* factors = nullptr;
-  const Lanes* blocks = nullptr;
+  const Lanes* factor = nullptr;  ///< a
+  const NodeBlock* blocks = nullptr;
   Lanes* memory = nullptr;
   std::size_t carried = 0;              ///< first entries of memory: what comes from the period before
   const std::size_t* handed = nullptr;  ///< length carried: entries of memory that go to the next
-  Lanes* state = nullptr;               ///< 2 (2n + m rounded up to fours)
+  Lanes* state = nullptr;               ///< 4n + 2m
   const Lanes* in = nullptr;            ///< 2n + carried
   Lanes* out = nullptr;
 };

@@ -14,6 +14,10 @@ void put(std::vector<Lanes>& to, std::size_t from, std::size_t lane, const Eigen
   }
 }
 
+void put_columns(std::vector<Lanes>& to, std::size_t from, std::size_t lane, const Eigen::MatrixXd& matrix) {
+  for (Eigen::Index i = 0; i < matrix.size(); ++i) to[from++].v[lane] = matrix.data()[i];
+}
+
 }  // namespace
 
 void CollocationMap::prepare(std::size_t modes, std::span<const Point> points) {
@@ -24,7 +28,7 @@ void CollocationMap::prepare(std::size_t modes, std::span<const Point> points) {
     lay_out(topology);
   }
   fill(points);
-  build_blocks();
+  factor();
 }
 
 void CollocationMap::lay_out(const MeshTopology& topology) {
@@ -46,7 +50,7 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
     piece.factor = e * modal;
     piece.first_look = looks_.size();
     if (!piece.coasts) {
-      piece.block = contacts++ * node_block_size(modal, m);
+      piece.block = contacts++;
       piece.record = layout_.record[e];
     }
     for (std::size_t s = 0; s < topology.pieces[e].sources.size(); ++s) {
@@ -80,10 +84,10 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
   factors_.resize(topology.pieces.size() * modal);
   weights_.resize(weights);
   matrices_.resize(matrices);
-  blocks_.resize(contacts * node_block_size(modal, m));
-  work_.resize(node_block_work(modal, m));
+  factored_.resize(contacts * m * m);
+  blocks_.resize(contacts);
   memory_.resize(layout_.memory);
-  state_.resize(2 * ((modal + m + 3) / 4 * 4));
+  state_.resize(2 * modal + 2 * m);
 }
 
 void CollocationMap::fill_looks(const CollocationCase& at, std::size_t e, std::size_t lane) {
@@ -116,7 +120,7 @@ void CollocationMap::fill(std::span<const Point> points) {
         factors_[pieces_[e].factor + 2 * k + 1].v[lane] = plan.factor(static_cast<Eigen::Index>(k)).imag();
       }
       if (pieces_[e].coasts) continue;
-      put(coupling_, contact * m * m, lane, piece.coupling);
+      put_columns(coupling_, contact * m * m, lane, piece.coupling);
       put(observation_, contact * m * modal, lane, piece.observation);
       put(influence_, contact * m * modal, lane, piece.influence);
       if (!displacement_.empty()) {
@@ -129,26 +133,22 @@ void CollocationMap::fill(std::span<const Point> points) {
   }
 }
 
-void CollocationMap::build_blocks() {
-  NodeBlockArguments a;
-  a.modal = layout_.modal;
-  a.nodes = layout_.nodes;
-  a.depth = &factor_;
-  a.work = work_.data();
-  std::size_t contact = 0;
-  for (const NodePiece& piece : pieces_) {
-    if (piece.coasts) continue;
-    a.coupling = coupling_.data() + contact * a.nodes * a.nodes;
-    a.observation = observation_.data() + contact * a.nodes * a.modal;
-    a.influence = influence_.data() + contact * a.nodes * a.modal;
-    a.factor = factors_.data() + piece.factor;
-    if (!displacement_.empty()) {
-      a.displacement = displacement_.data() + contact * a.nodes * a.modal;
-      a.node_response = node_response_.data() + contact * a.nodes * a.nodes;
-    }
-    a.block = blocks_.data() + piece.block;
-    build_node_block(a);
-    ++contact;
+void CollocationMap::factor() {
+  const std::size_t m = layout_.nodes;
+  const std::size_t modal = layout_.modal;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    FactorArguments a;
+    a.nodes = m;
+    a.factor = &factor_;
+    a.coupling = coupling_.data() + i * m * m;
+    a.factored = factored_.data() + i * m * m;
+    factor_node_block(a);
+    blocks_[i] = {.factored = a.factored,
+                  .observation = observation_.data() + i * m * modal,
+                  .influence = influence_.data() + i * m * modal};
+    if (displacement_.empty()) continue;
+    blocks_[i].displacement = displacement_.data() + i * m * modal;
+    blocks_[i].node_response = node_response_.data() + i * m * m;
   }
 }
 
@@ -163,6 +163,7 @@ void CollocationMap::apply(const Lanes* in, Lanes* out) {
   a.weights = weights_.data();
   a.matrices = matrices_.data();
   a.factors = factors_.data();
+  a.factor = &factor_;
   a.blocks = blocks_.data();
   a.memory = memory_.data();
   a.carried = layout_.handed.size();

@@ -26,7 +26,7 @@ class CollocationMap final : public PeriodMap {
   void lay_out(const MeshTopology& topology);
   void fill(std::span<const Point> points);
   void fill_looks(const CollocationCase& at, std::size_t piece, std::size_t lane);
-  void build_blocks();
+  void factor();
 
   NodeLayout layout_;
   MeshTopology topology_;
@@ -35,7 +35,8 @@ class CollocationMap final : public PeriodMap {
   // What the points say; matrices of the pieces one after the other.
   Lanes factor_ = {};
   std::vector<Lanes> coupling_, observation_, influence_, displacement_, node_response_, factors_, weights_, matrices_;
-  std::vector<Lanes> blocks_, work_, memory_, state_;
+  std::vector<Lanes> factored_, memory_, state_;
+  std::vector<NodeBlock> blocks_;
 };
 
 }  // namespace robomill::stability::detail

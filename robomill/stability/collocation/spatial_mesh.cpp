@@ -5,9 +5,11 @@
 #include <cmath>
 #include <complex>
 #include <mutex>
+#include <numbers>
 
 #include "robomill/base/units.hpp"
 #include "robomill/stability/collocation/contacts.hpp"
+#include "robomill/stability/collocation/moment_kernels.hpp"
 #include "robomill/stability/gauss.hpp"
 
 namespace robomill::stability::detail {
@@ -135,27 +137,11 @@ std::vector<Run> divided(const std::vector<Run>& runs, const std::vector<double>
   return parts;
 }
 
-/// P_m(2x - 1), m = 0 … count - 1.
-void legendre(double x, std::size_t count, double* out) {
-  const double t = 2.0 * x - 1.0;
-  out[0] = 1.0;
-  if (count > 1) out[1] = t;
-  for (std::size_t m = 2; m < count; ++m) {
-    const double k = static_cast<double>(m);
-    out[m] = ((2.0 * k - 1.0) * t * out[m - 1] - (k - 1.0) * out[m - 2]) / k;
-  }
-}
-
-constexpr std::size_t most_moments = 2 * most_nodes - 1;
-constexpr std::size_t entries = 9;  // of a 3 x 3 matrix, row by row
-
 /// What the number of nodes alone decides.
 struct NodeTable {
   std::size_t nodes = 0, moments = 0;
-  const GaussRule* rule = nullptr;     ///< of the nodes
-  const GaussRule* product = nullptr;  ///< exact for the product of four of the nodes' polynomials
-  std::vector<double> from_moments;    ///< [point of product][moment]: (2m + 1) P_m
-  std::vector<double> value;           ///< [point of product][node]: ℓ_i
+  const GaussRule* rule = nullptr;  ///< of the nodes
+  std::vector<double> product;      ///< [pair i <= l of nodes][moment]: ℓ_i ℓ_l = Σ_m product P_m
 };
 
 NodeTable make_table(int nodes) {
@@ -163,12 +149,19 @@ NodeTable make_table(int nodes) {
   t.nodes = static_cast<std::size_t>(nodes);
   t.moments = 2 * t.nodes - 1;
   t.rule = &gauss_rule(nodes);
-  t.product = &gauss_rule(2 * nodes - 1);
-  std::array<double, most_moments> p = {};
-  for (const double x : t.product->node) {
-    legendre(x, t.moments, p.data());
-    for (std::size_t m = 0; m < t.moments; ++m) t.from_moments.push_back(static_cast<double>(2 * m + 1) * p[m]);
-    for (std::size_t i = 0; i < t.nodes; ++i) t.value.push_back(lagrange(t.rule->node, i, x));
+  const GaussRule& exact = gauss_rule(2 * nodes - 1);
+  for (std::size_t i = 0; i < t.nodes; ++i) {
+    for (std::size_t l = i; l < t.nodes; ++l) {
+      for (std::size_t m = 0; m < t.moments; ++m) {
+        double sum = 0.0;
+        for (std::size_t q = 0; q < exact.node.size(); ++q) {
+          const double x = exact.node[q];
+          sum += exact.weight[q] * lagrange(t.rule->node, i, x) * lagrange(t.rule->node, l, x) *
+                 std::legendre(static_cast<unsigned>(m), 2.0 * x - 1.0);
+        }
+        t.product.push_back(static_cast<double>(2 * m + 1) * sum);
+      }
+    }
   }
   return t;
 }
@@ -184,81 +177,130 @@ const NodeTable& node_table(int nodes) {
   return slot.table;
 }
 
-/// K of edges at φ = rotation + turn, as functions of the rotation: Σ over edges of what the harmonics of f nᵀ need.
+/// f nᵀ of edges by its harmonics at an angle, from which it turns on.
 struct Harmonics {
-  std::complex<double> mean, second;  ///< g s and g s e^{2i turn}, g = outward - i tangential, s = sin κ
-  std::complex<double> column, row;   ///< -g cos κ e^{i turn}; upward s e^{i turn}
+  std::complex<double> mean, second;  ///< g s and g s e^{2iφ}, g = outward - i tangential, s = sin κ
+  std::complex<double> column, row;   ///< -g cos κ e^{iφ}; upward s e^{iφ}
   double axial = 0.0;                 ///< -upward cos κ
 
-  void add(const RingStiffness& ring, double turn_rad) {
+  Harmonics() = default;
+  Harmonics(const RingStiffness& ring, double angle_rad) {
     const std::complex<double> g(ring.outward, -ring.tangential);
-    const std::complex<double> turn = std::polar(1.0, turn_rad);
-    mean += g * ring.sine;
-    second += g * ring.sine * turn * turn;
-    column -= g * ring.cosine * turn;
-    row += ring.upward * ring.sine * turn;
-    axial -= ring.upward * ring.cosine;
+    const std::complex<double> turn = std::polar(1.0, angle_rad);
+    mean = g * ring.sine;
+    second = mean * turn * turn;
+    column = -g * ring.cosine * turn;
+    row = ring.upward * ring.sine * turn;
+    axial = -ring.upward * ring.cosine;
   }
-  /// K in T, row by row.
-  [[nodiscard]] std::array<double, entries> at(double rotation_rad) const {
-    const std::complex<double> e = std::polar(1.0, rotation_rad);
+  void add(const Harmonics& other) {
+    mean += other.mean;
+    second += other.second;
+    column += other.column;
+    row += other.row;
+    axial += other.axial;
+  }
+  [[nodiscard]] Harmonics turned(double further_rad) const {
+    const std::complex<double> e = std::polar(1.0, further_rad);
+    Harmonics other = *this;
+    other.second *= e * e;
+    other.column *= e;
+    other.row *= e;
+    return other;
+  }
+  /// K in T after a further turn.
+  [[nodiscard]] Eigen::Matrix3d at(double further_rad) const {
+    const std::complex<double> e = std::polar(1.0, further_rad);
     const std::complex<double> twice = second * e * e;
     const std::complex<double> c = column * e;
     const std::complex<double> r = row * e;
-    return {0.5 * (mean.real() - twice.real()), 0.5 * (twice.imag() + mean.imag()), c.imag(),
-            0.5 * (twice.imag() - mean.imag()), 0.5 * (mean.real() + twice.real()), c.real(),
-            r.imag(),                           r.real(),                           axial};
+    Eigen::Matrix3d k;
+    k << 0.5 * (mean.real() - twice.real()), 0.5 * (twice.imag() + mean.imag()), c.imag(),  //
+        0.5 * (twice.imag() - mean.imag()), 0.5 * (mean.real() + twice.real()), c.real(),   //
+        r.imag(), r.real(), axial;
+    return k;
   }
 };
 
-/// ∫ K P_m dx of a piece, x its share: [entry][moment].
+/// ∫ K P_m dx of a piece, x its share, gathered eight edges at a time.
 class Moments {
  public:
-  explicit Moments(std::size_t count) : count_(count), sum_(entries * count, 0.0) {}
+  Moments(std::size_t count, double length_rad)
+      : count_(count), length_rad_(length_rad), sum_(spatial_entries * count, Lanes{}) {}
 
-  /// Adds what cuts over the part [low, high] of the piece.
-  void add(const Harmonics& k, double piece_from_rad, double piece_length_rad, double low, double high) {
-    const double length = high - low;
-    const int points = static_cast<int>(count_) / 2 + 3 + static_cast<int>(std::ceil(piece_length_rad * length));
-    const GaussRule& rule = gauss_rule(std::min(points, most_gauss_points));
-    std::array<double, most_moments> p = {};
-    for (std::size_t q = 0; q < rule.node.size(); ++q) {
-      const double x = low + length * rule.node[q];
-      const std::array<double, entries> value = k.at(piece_from_rad + x * piece_length_rad);
-      legendre(x, count_, p.data());
-      for (std::size_t e = 0; e < entries; ++e) {
-        const double weighted = value[e] * (length * rule.weight[q]);
-        double* to = sum_.data() + e * count_;
-        for (std::size_t m = 0; m < count_; ++m) to[m] += weighted * p[m];
-      }
+  /// Adds what cuts over the part [low, high] of the piece. @param ring_at  harmonics at a share of the piece
+  template <class At>
+  void add(const At& ring_at, double low, double high) {
+    const int parts = static_cast<int>(std::ceil((high - low) * length_rad_ / std::numbers::pi));
+    for (int i = 0; i < parts; ++i) {
+      const double half = 0.5 * (high - low) / parts;
+      const double middle = low + (2 * i + 1) * half;
+      const Harmonics k = ring_at(middle);
+      batch_.middle.v[filled_] = middle;
+      batch_.half.v[filled_] = half;
+      batch_.half_rad.v[filled_] = half * length_rad_;
+      const auto put = [&](Lanes* to, const std::complex<double>& value) {
+        to[0].v[filled_] = value.real();
+        to[1].v[filled_] = value.imag();
+      };
+      put(batch_.mean, k.mean);
+      put(batch_.second, k.second);
+      put(batch_.column, k.column);
+      put(batch_.row, k.row);
+      batch_.axial.v[filled_] = k.axial;
+      if (++filled_ == lane_count) flush();
     }
+  }
+
+  void flush() {
+    for (std::size_t lane = filled_; lane < lane_count; ++lane) batch_.half.v[lane] = batch_.half_rad.v[lane] = 0.0;
+    double longest = 0.0;
+    for (const double half : batch_.half_rad.v) longest = std::max(longest, half);
+    const int points = static_cast<int>(count_) / 2 + 3 + static_cast<int>(std::ceil(longest));
+    const GaussRule& rule = gauss_rule(std::min(points, most_gauss_points));
+    batch_.count = count_;
+    batch_.points = rule.node.size();
+    batch_.node = rule.node.data();
+    batch_.weight = rule.weight.data();
+    batch_.sum = sum_.data();
+    if (filled_ > 0) add_moments(batch_);
+    filled_ = 0;
   }
 
   /// M_il = ∫ ℓ_i ℓ_l K dx / w_i in axes turned by R.
   void matrix(const NodeTable& t, const Eigen::Matrix3d& turn, Eigen::MatrixXd& out) const {
-    const Eigen::Index size = 3 * static_cast<Eigen::Index>(t.nodes);
-    out.setZero(size, size);
-    for (std::size_t q = 0; q < t.product->node.size(); ++q) {
+    std::vector<Eigen::Matrix3d> moment(count_);
+    for (std::size_t m = 0; m < count_; ++m) {
       Eigen::Matrix3d k;
-      for (std::size_t e = 0; e < entries; ++e) {
+      for (std::size_t e = 0; e < spatial_entries; ++e) {
         double sum = 0.0;
-        for (std::size_t m = 0; m < count_; ++m) sum += t.from_moments[q * count_ + m] * sum_[e * count_ + m];
+        for (const double lane : sum_[e * count_ + m].v) sum += lane;
         k(static_cast<Eigen::Index>(e / 3), static_cast<Eigen::Index>(e % 3)) = sum;
       }
-      k = (turn * k * turn.transpose()).eval();
-      const double* value = t.value.data() + q * t.nodes;
-      for (std::size_t i = 0; i < t.nodes; ++i) {
-        const double share = t.product->weight[q] * value[i] / t.rule->weight[i];
-        for (std::size_t l = 0; l < t.nodes; ++l) {
-          out.block<3, 3>(3 * static_cast<Eigen::Index>(i), 3 * static_cast<Eigen::Index>(l)) += (share * value[l]) * k;
-        }
+      moment[m].noalias() = turn * k * turn.transpose();
+    }
+    const Eigen::Index size = 3 * static_cast<Eigen::Index>(t.nodes);
+    out.resize(size, size);
+    std::size_t pair = 0;
+    for (std::size_t i = 0; i < t.nodes; ++i) {
+      for (std::size_t l = i; l < t.nodes; ++l, ++pair) {
+        const double* share = t.product.data() + pair * count_;
+        Eigen::Matrix3d sum = share[0] * moment[0];
+        for (std::size_t m = 1; m < count_; ++m) sum += share[m] * moment[m];
+        const Eigen::Index row = 3 * static_cast<Eigen::Index>(i);
+        const Eigen::Index column = 3 * static_cast<Eigen::Index>(l);
+        out.block<3, 3>(row, column) = sum / t.rule->weight[i];
+        out.block<3, 3>(column, row) = sum / t.rule->weight[l];
       }
     }
   }
 
  private:
   std::size_t count_;
-  std::vector<double> sum_;
+  double length_rad_;
+  std::vector<Lanes> sum_;
+  MomentArguments batch_;
+  std::size_t filled_ = 0;
 };
 
 class Builder {
@@ -338,26 +380,28 @@ class Builder {
 
   void answer_now() {
     const std::vector<CutMesh::Piece>& pieces = out_.mesh.pieces;
-    std::vector<Moments> moments(pieces.size(), Moments(table_.moments));
-    std::vector<Harmonics> all_along(pieces.size());  // of edges that cut over the whole piece
+    std::vector<Moments> moments;
+    for (const CutMesh::Piece& piece : pieces) moments.emplace_back(table_.moments, piece.length_rad);
+    std::vector<Harmonics> all_along(pieces.size());  // at the middle, of edges that cut over the whole piece
     for (const EdgeContact& contact : contacts_.contacts) {
       for_parts(contact, [&](std::size_t at, double low, double high, double from) {
-        Harmonics k;
-        k.add(contacts_.rings[contact.ring], contact.turn_rad + from - pieces[at].from_rad);
+        const auto ring_at = [&](double share) {
+          return Harmonics(contacts_.rings[contact.ring], contact.turn_rad + from + share * pieces[at].length_rad);
+        };
         if (low > 1e-13 || high < 1.0 - 1e-13) {
-          moments[at].add(k, pieces[at].from_rad, pieces[at].length_rad, low, high);
+          moments[at].add(ring_at, low, high);
         } else {
-          all_along[at].mean += k.mean;
-          all_along[at].second += k.second;
-          all_along[at].column += k.column;
-          all_along[at].row += k.row;
-          all_along[at].axial += k.axial;
+          all_along[at].add(ring_at(0.5));
         }
       });
     }
     for (std::size_t e = 0; e < pieces.size(); ++e) {
       if (!out_.mesh.topology.pieces[e].records) continue;
-      moments[e].add(all_along[e], pieces[e].from_rad, pieces[e].length_rad, 0.0, 1.0);
+      const auto together_at = [&](double share) {
+        return all_along[e].turned((share - 0.5) * pieces[e].length_rad);
+      };
+      moments[e].add(together_at, 0.0, 1.0);
+      moments[e].flush();
       moments[e].matrix(table_, turn_, out_.pieces[e].stiffness);
     }
   }
@@ -386,8 +430,7 @@ class Builder {
     const std::vector<CutMesh::Piece>& pieces = out_.mesh.pieces;
     for (const EdgeContact& contact : contacts_.contacts) {
       for_parts(contact, [&](std::size_t at, double low, double high, double from) {
-        Harmonics k;
-        k.add(contacts_.rings[contact.ring], contact.turn_rad + from - pieces[at].from_rad);
+        const Harmonics k(contacts_.rings[contact.ring], contact.turn_rad + from);  // at the start of the piece
         // Parts that look into one piece each.
         double done = low;
         while (done < high) {
@@ -430,9 +473,8 @@ class Builder {
     for (std::size_t q = 0; q < rule.node.size(); ++q) {
       const double x = low + (high - low) * rule.node[q];
       const double rotation = piece.from_rad + x * piece.length_rad;
-      const std::array<double, entries> value = k.at(rotation);
-      const Eigen::Matrix3d in_tool = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(value.data());
-      const Eigen::Matrix3d weighted = (high - low) * rule.weight[q] * (turn_ * in_tool * turn_.transpose());
+      const Eigen::Matrix3d weighted =
+          (high - low) * rule.weight[q] * (turn_ * k.at(x * piece.length_rad) * turn_.transpose());
       const double seen = (rotation - delay_rad - origin_rad) / source_length;
       for (std::size_t i = 0; i < table_.nodes; ++i) {
         now[i] = lagrange(table_.rule->node, i, x) / table_.rule->weight[i];
