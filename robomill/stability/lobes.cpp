@@ -7,6 +7,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/stability/chart/chart.hpp"
+#include "robomill/stability/chart/gain_search.hpp"
 #include "robomill/stability/frequency_domain/frequency_lobes.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 
@@ -14,22 +15,6 @@ namespace robomill::stability {
 namespace {
 
 using namespace detail;
-
-PointResult point_result(PointEvaluator& evaluator, const OperatingPoint& point) {
-  Outcome outcome;
-  evaluator.evaluate({&point, 1}, {.estimate = true, .motion = true}, {&outcome, 1});
-  PointResult result;
-  result.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
-  result.axial_depth_m = point.axial_depth_m;
-  result.spectral_radius = outcome.spectral_radius;
-  result.multiplier = outcome.multiplier;
-  result.stable = result.spectral_radius < 1.0;
-  result.error_estimate = outcome.error_estimate;
-  result.chatter_frequency_hz = outcome.chatter_frequency_hz;
-  result.kind = outcome.kind;
-  result.mode = outcome.mode;
-  return result;
-}
 
 Eigen::VectorXd to_eigen(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -82,6 +67,8 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   for (const OperatingPoint& point : options.points) {
     progress.check();
     result.points.push_back(point_result(*evaluator, point));
+    if (!problem.in_three_directions()) continue;
+    result.points.back().gain_margin = gain_of(search_gain(*evaluator, point, options.tolerance, progress));
   }
   count.add(*evaluator);
   result.evaluations = count.evaluations;

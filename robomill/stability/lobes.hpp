@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <complex>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -121,6 +122,9 @@ struct PointResult {
   double chatter_frequency_hz = 0.0;      ///< at which this multiplier's motion is greatest [Hz]; 0 where it overflows
   BifurcationType kind = BifurcationType::hopf;
   modal::ModeId mode = {};  ///< that moves most in it; unknown where it overflows
+  /// Of a cut in three directions in a chart or a sweep: smallest factor on its stiffness at which the spectral radius
+  /// is 1 (GainMargin in sweep.hpp); infinity: none up to 1,000. NaN: not looked for.
+  double gain_margin = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A point where the spectral radius is 1.

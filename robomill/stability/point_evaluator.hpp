@@ -52,5 +52,7 @@ class Scheme {
 std::unique_ptr<Scheme> make_scheme(const LobesProblem& problem, const LobesOptions& options);
 std::unique_ptr<Scheme> semi_discretization(const LobesProblem& problem, int intervals);
 std::unique_ptr<Scheme> collocation(const LobesProblem& problem, double tolerance);
+/// A cut in three directions; what its points call their axial depth is the parameter's value.
+std::unique_ptr<Scheme> sweep_collocation(const LobesProblem& problem, SweptParameter parameter, double tolerance);
 
 }  // namespace robomill::stability::detail

@@ -1,5 +1,6 @@
 #pragma once
 #include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/force.hpp"
 
@@ -41,5 +42,9 @@ enum class SweptParameter {
   lead,          ///< [rad]
   tilt           ///< [rad]
 };
+inline constexpr Name<SweptParameter> swept_names[] = {{"axial_depth", SweptParameter::axial_depth},
+                                                       {"radial_depth", SweptParameter::radial_depth},
+                                                       {"lead", SweptParameter::lead},
+                                                       {"tilt", SweptParameter::tilt}};
 
 }  // namespace robomill::stability

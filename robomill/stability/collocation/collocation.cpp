@@ -141,11 +141,14 @@ void CollocationEvaluator::evaluate_at(std::span<const OperatingPoint> points, i
 }
 
 std::unique_ptr<Scheme> collocation(const LobesProblem& problem, double tolerance) {
-  if (problem.in_three_directions()) {
-    const int teeth = problem.spatial ? problem.spatial->cutter.mill.teeth : problem.drilling->lips;
-    return std::make_unique<Collocation>(std::make_unique<SpatialModel>(spatial_parts(problem)), teeth, tolerance);
-  }
+  if (problem.in_three_directions()) return sweep_collocation(problem, SweptParameter::axial_depth, tolerance);
   return std::make_unique<Collocation>(std::make_unique<MillingModel>(problem), problem.milling.tool.teeth, tolerance);
+}
+
+std::unique_ptr<Scheme> sweep_collocation(const LobesProblem& problem, SweptParameter parameter, double tolerance) {
+  const int teeth = problem.spatial ? problem.spatial->cutter.mill.teeth : problem.drilling->lips;
+  return std::make_unique<Collocation>(std::make_unique<SpatialModel>(spatial_parts(problem, parameter)), teeth,
+                                       tolerance);
 }
 
 }  // namespace robomill::stability::detail

@@ -43,6 +43,6 @@ class SpatialModel final : public CollocationModel {
 };
 
 /// Of a problem in three directions; a chart varies `sweep`.
-SpatialModel::Parts spatial_parts(const LobesProblem& problem, SweptParameter sweep = SweptParameter::axial_depth);
+SpatialModel::Parts spatial_parts(const LobesProblem& problem, SweptParameter sweep);
 
 }  // namespace robomill::stability::detail

@@ -16,9 +16,15 @@ io::Json grid_json(const Eigen::VectorXd& values, double unit) {
   return out;
 }
 
-io::Json point_json(double spindle_speed_rad_per_s, double axial_depth_m) {
+/// What a chart varies beside the speed.
+struct Varied {
+  const char* key = "axial_depth_mm";
+  double unit = units::mm;
+};
+
+io::Json point_json(double spindle_speed_rad_per_s, double value, const Varied& varied = {}) {
   return {{"spindle_speed_rpm", io::number(spindle_speed_rad_per_s / units::rpm)},
-          {"axial_depth_mm", io::number(axial_depth_m / units::mm)}};
+          {varied.key, io::number(value / varied.unit)}};
 }
 
 template <class Point>
@@ -26,6 +32,25 @@ void add_chatter(io::Json& json, const Point& point) {
   json["chatter_frequency_hz"] = io::number(point.chatter_frequency_hz);
   json["kind"] = to_string(point.kind);
   modal::set_mode(json, point.mode);
+}
+
+io::Json boundary_json(const BoundaryPoint& point, const Varied& varied = {}) {
+  io::Json row = point_json(point.spindle_speed_rad_per_s, point.axial_depth_m, varied);
+  add_chatter(row, point);
+  row["curve"] = point.curve;
+  row["error_estimate"] = io::number(point.error_estimate);
+  return row;
+}
+
+io::Json evaluated_json(const PointResult& point, const Varied& varied = {}) {
+  io::Json row = point_json(point.spindle_speed_rad_per_s, point.axial_depth_m, varied);
+  row["spectral_radius"] = io::number(point.spectral_radius);
+  row["stable"] = point.stable;
+  row["error_estimate"] = io::number(point.error_estimate);
+  row["multiplier"] = io::complex_number(point.multiplier);
+  add_chatter(row, point);
+  if (!std::isnan(point.gain_margin)) row["gain_margin"] = io::number(point.gain_margin);
+  return row;
 }
 
 io::Json map_json(const Eigen::MatrixXd& spectral_radius) {
@@ -67,12 +92,7 @@ io::Json lobes_object(const LobesResult& result, const UncertainLimits& uncertai
   json["axial_depth_mm"] = grid_json(result.axial_depth_m, units::mm);
   if (result.spectral_radius.size() > 0) json["spectral_radius"] = map_json(result.spectral_radius);
   json["boundary"] = io::Json::array();
-  for (const BoundaryPoint& point : result.boundary) {
-    json["boundary"].push_back(point_json(point.spindle_speed_rad_per_s, point.axial_depth_m));
-    add_chatter(json["boundary"].back(), point);
-    json["boundary"].back()["curve"] = point.curve;
-    json["boundary"].back()["error_estimate"] = io::number(point.error_estimate);
-  }
+  for (const BoundaryPoint& point : result.boundary) json["boundary"].push_back(boundary_json(point));
   json["limit"] = io::Json::array();
   for (const Limit& limit : result.limit) {
     io::Json row = point_json(limit.spindle_speed_rad_per_s, limit.axial_depth_m);
@@ -85,15 +105,7 @@ io::Json lobes_object(const LobesResult& result, const UncertainLimits& uncertai
     json["limit"].push_back(row);
   }
   json["points"] = io::Json::array();
-  for (const PointResult& point : result.points) {
-    io::Json row = point_json(point.spindle_speed_rad_per_s, point.axial_depth_m);
-    row["spectral_radius"] = io::number(point.spectral_radius);
-    row["stable"] = point.stable;
-    row["error_estimate"] = io::number(point.error_estimate);
-    row["multiplier"] = io::complex_number(point.multiplier);
-    add_chatter(row, point);
-    json["points"].push_back(row);
-  }
+  for (const PointResult& point : result.points) json["points"].push_back(evaluated_json(point));
   json["method"] = to_string(result.method);
   json["period"] = to_string(result.period);
   json["evaluations"] = result.evaluations;
@@ -112,6 +124,38 @@ io::Json lobes_object(const LobesResult& result, const UncertainLimits& uncertai
 
 std::string lobes_json(const LobesResult& result, const UncertainLimits& uncertain, const SurfaceMap& surface) {
   return io::dump(lobes_object(result, uncertain, surface));
+}
+
+std::string sweep_json(const SweepResult& result) {
+  const bool angle = result.parameter == SweptParameter::lead || result.parameter == SweptParameter::tilt;
+  const std::string name(name_in(swept_names, result.parameter));
+  const std::string key = name + (angle ? "_deg" : "_mm");
+  const Varied varied = {.key = key.c_str(), .unit = angle ? units::deg : units::mm};
+  io::Json json;
+  json["sweep"] = name;
+  json["spindle_speed_rpm"] = grid_json(result.spindle_speed_rad_per_s, units::rpm);
+  json[key] = grid_json(result.value, varied.unit);
+  json["spectral_radius"] = map_json(result.spectral_radius);
+  json["boundary"] = io::Json::array();
+  for (const BoundaryPoint& point : result.boundary) json["boundary"].push_back(boundary_json(point, varied));
+  json["stable"] = io::Json::array();
+  for (std::size_t s = 0; s < result.stable.size(); ++s) {
+    io::Json intervals = io::Json::array();
+    for (const StableInterval& interval : result.stable[s]) {
+      intervals.push_back({io::number(interval.from / varied.unit), io::number(interval.to / varied.unit)});
+    }
+    const double speed = result.spindle_speed_rad_per_s(static_cast<Eigen::Index>(s));
+    json["stable"].push_back({{"spindle_speed_rpm", io::number(speed / units::rpm)}, {"intervals", intervals}});
+  }
+  json["points"] = io::Json::array();
+  for (const PointResult& point : result.points) json["points"].push_back(evaluated_json(point, varied));
+  json["method"] = to_string(Method::collocation);
+  json["period"] = to_string(result.period);
+  json["evaluations"] = result.evaluations;
+  json["unsettled"] = result.unsettled;
+  json["uncertain"] = result.uncertain;
+  json["seconds"] = io::number(result.seconds);
+  return io::dump(json);
 }
 
 std::string comparison_json(const MethodComparison& comparison) {
