@@ -21,6 +21,7 @@ void print_summary(const stability::LobesResult& result, const stability::Surfac
       fmt::print("|μ| = {:.6g} ± {:.1g}, ", point.spectral_radius, point.error_estimate);
     }
     fmt::print("{}", point.stable ? "stable" : "chatter");
+    if (!std::isnan(point.gain_margin)) fmt::print(", gain margin {:.4g}", point.gain_margin);
     if (!point.stable) {
       fmt::print(" at {:.1f} Hz ({}, {})", point.chatter_frequency_hz, to_string(point.mode), to_string(point.kind));
     }
@@ -61,6 +62,30 @@ std::string percent(double share) {
   return std::isfinite(share) ? fmt::format("{:.2g} %", 100.0 * share) : "-";
 }
 
+void print_sweep(const stability::SweepResult& sweep) {
+  using stability::SweptParameter;
+  const bool angle = sweep.parameter == SweptParameter::lead || sweep.parameter == SweptParameter::tilt;
+  const double unit = angle ? units::deg : units::mm;
+  const char* const name = angle ? "degrees" : "mm";
+  const std::string_view what = name_in(stability::swept_names, sweep.parameter);
+  for (const stability::PointResult& point : sweep.points) {
+    fmt::print("{:.6g} rpm, {} {:.4g} {}: |μ| = {:.6g} ± {:.1g}, {}, gain margin {:.4g}\n",
+               point.spindle_speed_rad_per_s / units::rpm, what, point.axial_depth_m / unit, name,
+               point.spectral_radius, point.error_estimate, point.stable ? "stable" : "chatter", point.gain_margin);
+  }
+  for (std::size_t s = 0; s < sweep.stable.size(); ++s) {
+    fmt::print("{:.6g} rpm: ", sweep.spindle_speed_rad_per_s(static_cast<Eigen::Index>(s)) / units::rpm);
+    if (sweep.stable[s].empty()) fmt::print("stable at no {}", what);
+    for (std::size_t i = 0; i < sweep.stable[s].size(); ++i) {
+      const stability::StableInterval& interval = sweep.stable[s][i];
+      fmt::print("{}{:.4g} to {:.4g}", i == 0 ? "stable from " : ", ", interval.from / unit, interval.to / unit);
+    }
+    fmt::print("{}\n", sweep.stable[s].empty() ? "" : std::string(" ") + name);
+  }
+  fmt::print("{} points of the chart in {:.2f} s.\n", sweep.evaluations, sweep.seconds);
+  if (sweep.uncertain > 0) fmt::print("{} points are less accurate than the tolerance.\n", sweep.uncertain);
+}
+
 /// Every method beside the first: a row each.
 void print_comparison(const stability::MethodComparison& comparison) {
   fmt::print("{:<34}{:>14}{:>14}{:>14}{:>8}{:>10}\n", "method", "lowest limit", "median error", "worst error", "differ",
@@ -92,11 +117,14 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
   for (const std::string& text : command.at) job.points.push_back(parse_point(text));
   const jobs::LobesJobResult result = jobs::run_lobes(job, progress);
   write_output(common, [&result](io::Format) {
+    if (result.sweep) return stability::sweep_json(*result.sweep);
     return result.comparison ? stability::comparison_json(*result.comparison)
                              : stability::lobes_json(result.lobes, result.uncertain, result.surface);
   });
   if (!common.wants_summary()) return done;
-  if (result.comparison) {
+  if (result.sweep) {
+    print_sweep(*result.sweep);
+  } else if (result.comparison) {
     print_comparison(*result.comparison);
   } else {
     print_summary(result.lobes, result.surface);

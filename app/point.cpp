@@ -1,6 +1,7 @@
 #include "point.hpp"
 
 #include <charconv>
+#include <cmath>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
@@ -18,7 +19,7 @@ stability::OperatingPoint parse_point(const std::string& text) {
   const std::from_chars_result first = std::from_chars(text.data(), end, rpm);
   if (first.ec != std::errc() || first.ptr == end || *first.ptr != ',') throw reject();
   const std::from_chars_result second = std::from_chars(first.ptr + 1, end, mm);
-  if (second.ec != std::errc() || second.ptr != end || !(rpm > 0.0) || !(mm >= 0.0)) throw reject();
+  if (second.ec != std::errc() || second.ptr != end || !(rpm > 0.0) || !std::isfinite(mm)) throw reject();
   return {.spindle_speed_rad_per_s = rpm * units::rpm, .axial_depth_m = mm * units::mm};
 }
 

@@ -2,13 +2,28 @@
 
 #include <algorithm>
 
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+
 namespace robomill::jobs {
 
 LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   LobesJobResult result;
   LobesFile& cut = result.cut;
-  cut = read_milling(job.lobes, "robomill simulate takes drilling");
+  cut = read_lobes(job.lobes);
+  load_dynamics(cut);
+  cut.validate();
   cut.options.points = job.points;
+  if (cut.sweep != stability::SweptParameter::axial_depth) {
+    if (job.compare) throw InvalidInput(job.lobes.string(), "lobes.sweep does not go with a comparison of methods");
+    const bool angle =
+        cut.sweep == stability::SweptParameter::lead || cut.sweep == stability::SweptParameter::tilt;
+    for (stability::OperatingPoint& point : cut.options.points) {
+      if (angle) point.axial_depth_m *= units::deg / units::mm;
+    }
+    result.sweep = stability::compute_sweep(cut.problem, sweep_options(cut), progress);
+    return result;
+  }
   if (job.compare) {
     constexpr int most_speeds = 60;
     const int speeds = std::min(cut.options.grid[0], most_speeds);

@@ -19,7 +19,9 @@ namespace robomill::jobs {
 /// lobes.toml and what else to make of it.
 struct LobesJob {
   std::filesystem::path lobes;                         ///< lobes.toml
-  std::vector<stability::OperatingPoint> points = {};  ///< evaluated beside the chart
+  /// Evaluated beside the chart. Where the file sweeps another parameter the second number is its value: in m, or 1e-3 a
+  /// degree.
+  std::vector<stability::OperatingPoint> points = {};
   bool compare = false;                                ///< the limits by every method, in place of the chart
   std::uint64_t seed = 1;                              ///< of the uncertainty's samples
 };
@@ -27,7 +29,8 @@ struct LobesJob {
 /// The chart with what the file asks for beside it, or the methods compared. What was not asked for is empty.
 struct LobesJobResult {
   LobesFile cut;                         ///< with its dynamics and the job's points; its notes are for the user
-  stability::LobesResult lobes;          ///< empty where methods are compared
+  stability::LobesResult lobes;          ///< empty where methods are compared or another parameter is swept
+  std::optional<stability::SweepResult> sweep;  ///< where lobes.sweep asks for it
   stability::UncertainLimits uncertain;  ///< samples: 0 unless the file has [uncertainty]
   stability::SurfaceMap surface;         ///< empty unless the file has [surface_error]
   std::optional<stability::MethodComparison> comparison;
@@ -35,7 +38,7 @@ struct LobesJobResult {
 
 /// The stability lobes of lobes.toml, with their uncertainty and the surface that stable cuts leave; or the limits by
 /// every method, at the grid's speeds or 60 of their range, whichever is less.
-/// @throws InvalidInput with file, line, key and value, or if the cut is drilling; Interrupted
+/// @throws InvalidInput with file, line, key and value; Interrupted
 [[nodiscard]] ROBOMILL_API LobesJobResult run_lobes(const LobesJob& job, Progress& progress = Progress::none());
 
 }  // namespace robomill::jobs

@@ -365,6 +365,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   result.job = read_job(job);
   // Everything that is quick to reject is read before the long work starts.
   result.cut = read_lobes(result.job.lobes);
+  require_plane(result.cut, "plan chooses depth and speed of such a cut; robomill lobes judges any");
   if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
                        "plan needs it for the removal rate");

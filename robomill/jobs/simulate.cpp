@@ -4,6 +4,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/simulation/drilling.hpp"
+#include "robomill/simulation/posture.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -43,6 +44,27 @@ simulation::DrillingCut drilling_of(const LobesFile& file, const stability::Oper
   return cut;
 }
 
+simulation::PostureCut posture_of(const LobesFile& file, const stability::OperatingPoint& point) {
+  const stability::SpatialMilling& milling = *file.problem.spatial;
+  cutting::Cut at_depth = milling.cut;
+  at_depth.axial_depth_m = point.axial_depth_m;
+  const modal::TipModes structure = stability::tip_modes(file.problem);
+  simulation::PostureCut cut;
+  cut.cutter = milling.cutter;
+  cut.engagement = cutting::engage(milling.cutter, at_depth);
+  cut.coefficients = milling.coefficients;
+  cut.motion = {.feed_per_tooth_m = milling.feed_per_tooth_m, .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s};
+  cut.structure =
+      milling.modes_turn_with_tool ? modal::turned(structure, cut.engagement.feed_from_tool) : structure;
+  return cut;
+}
+
+simulation::Simulation simulated(const LobesFile& cut, const SimulateJob& job, Progress& progress) {
+  if (cut.drilling) return simulation::simulate(drilling_of(cut, job.point), job.options, progress);
+  if (cut.problem.spatial) return simulation::simulate(posture_of(cut, job.point), job.options, progress);
+  return simulation::simulate(milling_of(cut, job.point), job.options, progress);
+}
+
 }  // namespace
 
 SimulateResult run_simulate(const SimulateJob& job, Progress& progress) {
@@ -61,8 +83,7 @@ SimulateResult run_simulate(const SimulateJob& job, Progress& progress) {
                                            .rule = "must be given and > 0",
                                            .hint = "Without feed nothing is cut"});
   }
-  result.simulation = cut.drilling ? simulation::simulate(drilling_of(cut, job.point), job.options, progress)
-                                   : simulation::simulate(milling_of(cut, job.point), job.options, progress);
+  result.simulation = simulated(cut, job, progress);
   return result;
 }
 

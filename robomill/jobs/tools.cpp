@@ -19,7 +19,7 @@ namespace {
 /// A cut that suits any cutter.
 void check_cut(const LobesFile& cut) {
   const std::string where = cut.path.string();
-  if (cut.drilling) throw InvalidInput(where, "lobes are those of milling", "A list of tools needs a milling cut");
+  require_plane(cut, "A list of tools needs a milling cut");
   const cutting::FlatEndMill& tool = cut.problem.milling.tool;
   if (!tool.pitch_rad.empty() || !tool.tooth_helix_rad.empty() || tool.runout_m > 0.0) {
     throw InvalidInput(where, "tool.pitch_deg, runout_um and a helix a tooth are those of one cutter",

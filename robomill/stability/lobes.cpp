@@ -36,6 +36,7 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   const auto begin = std::chrono::steady_clock::now();
   problem.validate();
   options.validate();
+  require_known(problem, options.method);
   if (in_frequency_domain(options.method)) {
     LobesResult result = frequency_lobes(problem, options, progress);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -84,6 +85,7 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
 
 PointResult evaluate_point(const LobesProblem& problem, const LobesOptions& options, const OperatingPoint& point) {
   problem.validate();
+  require_known(problem, options.method);
   LobesOptions checked = options;
   checked.spindle_speed_rad_per_s = {1.0, 2.0};
   checked.axial_depth_m = {0.0, 0.1};
@@ -97,6 +99,7 @@ PointResult evaluate_point(const LobesProblem& problem, const LobesOptions& opti
 std::vector<Limit> limit_depths(const LobesProblem& problem, const LobesOptions& options,
                                 const std::vector<double>& spindle_speeds_rad_per_s, Progress& progress) {
   problem.validate();
+  require_known(problem, options.method);
   LobesOptions checked = options;
   checked.spindle_speed_rad_per_s = {1.0, 2.0};
   checked.validate();

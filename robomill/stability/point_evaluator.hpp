@@ -49,6 +49,8 @@ class Scheme {
   virtual void expect(std::span<const double> depths_m) { static_cast<void>(depths_m); }
 };
 
+/// @throws InvalidInput if the method knows no such problem
+void require_known(const LobesProblem& problem, Method method);
 std::unique_ptr<Scheme> make_scheme(const LobesProblem& problem, const LobesOptions& options);
 std::unique_ptr<Scheme> semi_discretization(const LobesProblem& problem, int intervals);
 std::unique_ptr<Scheme> collocation(const LobesProblem& problem, double tolerance);

@@ -8,17 +8,18 @@
 
 namespace robomill::stability::detail {
 
+void require_known(const LobesProblem& problem, Method method) {
+  if (!problem.in_three_directions() || method == Method::collocation) return;
+  throw InvalidInput("method", std::string(to_string(method)) + " is for an upright flat end in x and y",
+                     "Take method = \"collocation\"");
+}
+
 std::unique_ptr<Scheme> make_scheme(const LobesProblem& problem, const LobesOptions& options) {
   if (problem.has_measured()) {
     throw InvalidInput(
         "dynamics.frf",
         std::string("does not go with ") + std::string(to_string(options.method)) + ", which needs modes",
         "Take method = \"multi-frequency\", or fit modes first: robomill modes");
-  }
-  if (problem.in_three_directions() && options.method != Method::collocation) {
-    throw InvalidInput("lobes.method",
-                       std::string(to_string(options.method)) + " is for cylindrical cutters in x and y",
-                       "Take method = \"collocation\"");
   }
   switch (options.method) {
     case Method::semi_discretization:

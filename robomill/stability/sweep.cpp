@@ -70,6 +70,7 @@ SweepResult compute_sweep(const LobesProblem& problem, const SweepOptions& optio
   if (!problem.spatial) throw InvalidInput("spatial", "must be there: a sweep is one of a cut in three directions");
   const std::unique_ptr<Scheme> scheme = sweep_collocation(problem, options.parameter, options.tolerance);
   const Axes axes = {even(options.spindle_speed_rad_per_s, options.grid[0]), even(options.range, options.grid[1])};
+  scheme->expect(axes.axial_depth_m);
   SweepResult result;
   result.parameter = options.parameter;
   result.spindle_speed_rad_per_s = to_eigen(axes.spindle_speed_rad_per_s);

@@ -58,6 +58,26 @@ void read_mill(io::TomlFile& file, cutting::FlatEndMill& tool) {
   file.locate([&] { tool.validate(); });
 }
 
+void read_cutter(io::TomlFile& file, cutting::Cutter& cutter) {
+  file.choice<cutting::CutterKind>("tool.kind",
+                                   {{"flat-end", cutting::CutterKind::flat_end},
+                                    {"ball-end", cutting::CutterKind::ball_end},
+                                    {"bull-nose", cutting::CutterKind::bull_nose},
+                                    {"general", cutting::CutterKind::general}},
+                                   cutter.kind);
+  read_mill(file, cutter.mill);
+  const auto length = [&](const char* key, const char* member, double& out) {
+    file.number(key, member, units::mm, out);
+  };
+  length("tool.cutting_height_mm", "cutting_height_m", cutter.cutting_height_m);
+  length("tool.corner_radius_mm", "corner_radius_m", cutter.corner_radius_m);
+  length("tool.corner_center_radius_mm", "corner_center_radius_m", cutter.corner_center_radius_m);
+  length("tool.corner_center_height_mm", "corner_center_height_m", cutter.corner_center_height_m);
+  file.number("tool.bottom_angle_deg", "bottom_angle_rad", units::deg, cutter.bottom_angle_rad);
+  file.number("tool.side_angle_deg", "side_angle_rad", units::deg, cutter.side_angle_rad);
+  file.locate([&] { cutter.validate(); });
+}
+
 bool read_direction(io::TomlFile& file, cutting::MillingDirection& direction) {
   return file.choice<cutting::MillingDirection>("cut.direction",
                                                 {{"up", cutting::MillingDirection::up},

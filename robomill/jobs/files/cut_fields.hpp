@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "robomill/cutting/milling.hpp"
+#include "robomill/cutting/cutter.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/modal/modes.hpp"
@@ -13,6 +13,9 @@ namespace robomill::jobs {
 
 /// [tool]: teeth, diameter, helix, pitch, runout; checked.
 void read_mill(io::TomlFile& file, cutting::FlatEndMill& tool);
+
+/// [tool] of any cutter: the same, its kind (a flat end where it is absent) and outline; checked.
+void read_cutter(io::TomlFile& file, cutting::Cutter& cutter);
 
 /// cut.direction; false where it is absent.
 bool read_direction(io::TomlFile& file, cutting::MillingDirection& direction);

@@ -14,27 +14,6 @@
 namespace robomill::jobs {
 namespace {
 
-void read_cutter(io::TomlFile& file, cutting::Cutter& cutter) {
-  file.require("tool.kind", "\"flat-end\", \"ball-end\", \"bull-nose\" or \"general\"");
-  file.choice<cutting::CutterKind>("tool.kind",
-                                   {{"flat-end", cutting::CutterKind::flat_end},
-                                    {"ball-end", cutting::CutterKind::ball_end},
-                                    {"bull-nose", cutting::CutterKind::bull_nose},
-                                    {"general", cutting::CutterKind::general}},
-                                   cutter.kind);
-  read_mill(file, cutter.mill);
-  const auto length = [&](const char* key, const char* member, double& out) {
-    file.number(key, member, units::mm, out);
-  };
-  length("tool.cutting_height_mm", "cutting_height_m", cutter.cutting_height_m);
-  length("tool.corner_radius_mm", "corner_radius_m", cutter.corner_radius_m);
-  length("tool.corner_center_radius_mm", "corner_center_radius_m", cutter.corner_center_radius_m);
-  length("tool.corner_center_height_mm", "corner_center_height_m", cutter.corner_center_height_m);
-  file.number("tool.bottom_angle_deg", "bottom_angle_rad", units::deg, cutter.bottom_angle_rad);
-  file.number("tool.side_angle_deg", "side_angle_rad", units::deg, cutter.side_angle_rad);
-  file.locate([&] { cutter.validate(); });
-}
-
 /// The radius of a curved surface, > 0 where it is convex, to its curvature.
 void read_radius(io::TomlFile& file, const char* key, double& curvature_per_m) {
   double radius_m = 0.0;
@@ -165,6 +144,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
   ForcesFile out;
   out.path = path;
   out.job = job;
+  file.require("tool.kind", "\"flat-end\", \"ball-end\", \"bull-nose\" or \"general\"");
   read_cutter(file, out.cutter);
   read_cut(file, job, out);
   out.coefficients = cutting::read_coefficient_table(file);

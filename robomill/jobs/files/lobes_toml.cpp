@@ -1,5 +1,6 @@
 #include "robomill/jobs/files/lobes_toml.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -10,6 +11,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
+#include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/polynomial.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
@@ -33,9 +35,88 @@ void read_drilling(io::TomlFile& file, LobesFile& out) {
   out.problem.milling.immersion = {.entry_rad = 0.0, .exit_rad = std::numbers::pi};
 }
 
+/// The same for its lobes, once its coefficients are known.
+stability::Drilling drill_of(io::TomlFile& file, const LobesFile& out) {
+  stability::Drilling drill;
+  drill.lips = out.problem.milling.tool.teeth;
+  drill.diameter_m = out.problem.milling.tool.diameter_m;
+  if (out.point_angle_rad != 0.0) drill.point_angle_rad = out.point_angle_rad;
+  drill.coefficients = out.problem.milling.coefficients;
+  file.locate([&] { drill.validate(); });
+  return drill;
+}
+
+/// Whether lobes.toml speaks of what the plane does not know: another cutter, a posture, forces along the axis.
+bool is_spatial(io::TomlFile& file, const cutting::Cutter& cutter, stability::SweptParameter sweep) {
+  double lead = 0.0;
+  double tilt = 0.0;
+  file.number("cut.lead_deg", "lead_rad", units::deg, lead);
+  file.number("cut.tilt_deg", "tilt_rad", units::deg, tilt);
+  return cutter.kind != cutting::CutterKind::flat_end || lead != 0.0 || tilt != 0.0 ||
+         sweep != stability::SweptParameter::axial_depth || file.has("coefficients.axial_n_per_mm2");
+}
+
+/// What is left of the file's cut for a cutter in three directions.
+void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& out) {
+  for (const char* key : {"cut.entry_deg", "cut.exit_deg", "process_damping", "speed_variation", "surface_error"}) {
+    if (file.has(key)) throw file.reject(key, "is for an upright flat end in x and y");
+  }
+  stability::SpatialMilling milling;
+  milling.cutter = cutter;
+  file.number("cut.feed_per_tooth_mm", "feed_per_tooth_m", units::mm, milling.feed_per_tooth_m);
+  file.number("cut.feed_direction_deg", "feed_direction_rad", units::deg, out.problem.feed_direction_rad);
+  file.number("cut.lead_deg", "lead_rad", units::deg, milling.cut.lead_rad);
+  file.number("cut.tilt_deg", "tilt_rad", units::deg, milling.cut.tilt_rad);
+  if (!read_direction(file, milling.cut.direction)) file.require("cut.direction", "\"up\", \"down\" or \"slot\"");
+  const bool slot = milling.cut.direction == cutting::MillingDirection::slot;
+  const bool radial = read_radial_depth(file, milling.cut.radial_depth_m);
+  if (!radial && !slot && out.sweep != stability::SweptParameter::radial_depth) file.require("cut.radial_depth_mm");
+  const bool depth = file.number("cut.axial_depth_mm", "cut.axial_depth_m", units::mm, milling.cut.axial_depth_m);
+  if (!depth && out.sweep != stability::SweptParameter::axial_depth) {
+    file.require("cut.axial_depth_mm", "The chart varies something else");
+  }
+  milling.coefficients = cutting::read_coefficient_table(file);
+  file.choice<bool>("dynamics.axes", {{"feed", false}, {"tool", true}}, milling.modes_turn_with_tool);
+  out.problem.milling.tool = cutter.mill;
+  out.problem.milling.feed_per_tooth_m = milling.feed_per_tooth_m;
+  out.direction = milling.cut.direction;
+  out.radial_depth_m = slot && !radial ? cutter.mill.diameter_m : milling.cut.radial_depth_m;
+  out.problem.spatial = milling;
+}
+
+/// The engagement at both ends of the chart shows what only the cut itself can: a shank in it, coefficients below 0.
+void check_spatial(io::TomlFile& file, LobesFile& out) {
+  using stability::SweptParameter;
+  stability::SpatialMilling& milling = *out.problem.spatial;
+  if (out.sweep == SweptParameter::axial_depth) milling.cut.axial_depth_m = out.options.axial_depth_m[1];
+  if (out.sweep == SweptParameter::radial_depth) milling.cut.radial_depth_m = out.sweep_range[1];
+  constexpr double tip_rad = 5.0 * units::deg;
+  bool tip_cuts = false;
+  const auto look = [&](const cutting::Cut& cut) {
+    const cutting::Engagement engagement = cutting::engage(milling.cutter, cut);
+    if (engagement.slices.empty()) return;
+    const auto [low, high] = std::ranges::minmax_element(engagement.slices, {}, &cutting::EdgeSlice::position_rad);
+    milling.coefficients.validate(low->position_rad, high->position_rad);
+    tip_cuts = tip_cuts || low->position_rad < tip_rad;
+  };
+  file.locate([&] {
+    milling.validate();
+    for (const double end : out.sweep_range) {
+      cutting::Cut cut = milling.cut;
+      if (out.sweep == SweptParameter::lead) cut.lead_rad = end;
+      if (out.sweep == SweptParameter::tilt) cut.tilt_rad = end;
+      look(cut);
+    }
+  });
+  if (tip_cuts && milling.cutter.kind == cutting::CutterKind::ball_end) {
+    out.notes.push_back(
+        "the ball's tip is in the cut: there the cutting speed goes to 0 and material is ploughed, not cut; the "
+        "coefficients are taken to hold there too");
+  }
+}
+
 void read_cut(io::TomlFile& file, LobesFile& out) {
   cutting::Milling& milling = out.problem.milling;
-  file.choice<bool>("cut.kind", {{"milling", false}, {"drilling", true}}, out.drilling);
   if (out.drilling) {
     read_drilling(file, out);
     return;
@@ -118,11 +199,33 @@ void read_pair(io::TomlFile& file, const char* key, const char* member, double f
   out = {values[0], values[1]};
 }
 
-void read_chart(io::TomlFile& file, stability::LobesOptions& options) {
+void read_chart(io::TomlFile& file, LobesFile& out) {
+  stability::LobesOptions& options = out.options;
   file.require("lobes.spindle_speed_rpm", "[from, to]");
-  file.require("lobes.axial_depth_mm", "[from, to]");
   read_pair(file, "lobes.spindle_speed_rpm", "spindle_speed_rad_per_s", units::rpm, options.spindle_speed_rad_per_s);
-  read_pair(file, "lobes.axial_depth_mm", "axial_depth_m", units::mm, options.axial_depth_m);
+  using stability::SweptParameter;
+  switch (out.sweep) {
+    case SweptParameter::axial_depth:
+      file.require("lobes.axial_depth_mm", "[from, to]");
+      read_pair(file, "lobes.axial_depth_mm", "axial_depth_m", units::mm, options.axial_depth_m);
+      break;
+    case SweptParameter::radial_depth:
+      file.require("lobes.radial_depth_mm", "[from, to], what the chart varies");
+      read_pair(file, "lobes.radial_depth_mm", "range", units::mm, out.sweep_range);
+      break;
+    case SweptParameter::lead:
+      file.require("lobes.lead_deg", "[from, to], what the chart varies");
+      read_pair(file, "lobes.lead_deg", "range", units::deg, out.sweep_range);
+      break;
+    case SweptParameter::tilt:
+      file.require("lobes.tilt_deg", "[from, to], what the chart varies");
+      read_pair(file, "lobes.tilt_deg", "range", units::deg, out.sweep_range);
+      break;
+  }
+  if (out.sweep != SweptParameter::axial_depth) {
+    options.axial_depth_m = {0.0, std::max(out.problem.spatial->cut.axial_depth_m, 1e-6)};  // does not count
+    options.grid = {60, 40};
+  }
   std::vector<int> grid;
   if (file.integers("lobes.grid", "grid", grid)) {
     if (grid.size() != 2) throw file.reject("lobes.grid", "must be [speeds, depths]");
@@ -133,7 +236,10 @@ void read_chart(io::TomlFile& file, stability::LobesOptions& options) {
       "lobes.output", {{"boundary", stability::Output::boundary}, {"map", stability::Output::map}}, options.output);
   file.integer("lobes.intervals", "intervals", options.intervals);
   file.number("lobes.tolerance", "tolerance", 1.0, options.tolerance);
-  file.locate([&] { options.validate(); });
+  file.locate([&] {
+    options.validate();
+    if (out.sweep != SweptParameter::axial_depth) sweep_options(out).validate();
+  });
 }
 
 void read_uncertainty(io::TomlFile& file, stability::Uncertainty& u) {
@@ -157,14 +263,25 @@ void read_uncertainty(io::TomlFile& file, stability::Uncertainty& u) {
 LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   LobesFile out;
   out.path = path;
-  read_mill(file, out.problem.milling.tool);
-  read_cut(file, out);
-  read_forces(file, out.problem.milling);
+  cutting::Cutter cutter;
+  read_cutter(file, cutter);
+  out.problem.milling.tool = cutter.mill;
+  file.choice<bool>("cut.kind", {{"milling", false}, {"drilling", true}}, out.drilling);
+  file.choice("lobes.sweep", stability::swept_names, out.sweep);
+  const bool spatial = !out.drilling && is_spatial(file, cutter, out.sweep);
+  if (spatial) {
+    read_spatial(file, cutter, out);
+  } else {
+    read_cut(file, out);
+    read_forces(file, out.problem.milling);
+  }
+  if (out.drilling) out.problem.drilling = drill_of(file, out);
   read_structure(file, "dynamics", out.modes, out.frf, out.problem.dynamics);
   if (!out.drilling) out.directions = read_missing_directions(file, "dynamics", out.problem.dynamics);
   file.integers("dynamics.keep_modes", "keep_modes", out.problem.keep_modes);
   read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf, out.problem.workpiece_dynamics);
-  read_chart(file, out.options);
+  read_chart(file, out);
+  if (spatial) check_spatial(file, out);
   read_uncertainty(file, out.uncertainty);
   if (file.has("surface_error")) {
     std::vector<int> grid = {60, 60};
@@ -180,6 +297,17 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+stability::SweepOptions sweep_options(const LobesFile& file) {
+  stability::SweepOptions sweep;
+  sweep.parameter = file.sweep;
+  sweep.range = file.sweep_range;
+  sweep.spindle_speed_rad_per_s = file.options.spindle_speed_rad_per_s;
+  sweep.grid = file.options.grid;
+  sweep.tolerance = file.options.tolerance;
+  sweep.points = file.options.points;
+  return sweep;
+}
 
 void LobesFile::drop_dynamics() {
   modes.clear();
@@ -227,10 +355,15 @@ void load_dynamics(LobesFile& file) {
   if (words) file.notes.push_back(*words);
 }
 
+void require_plane(const LobesFile& file, const std::string& hint) {
+  if (!file.problem.in_three_directions()) return;
+  throw InvalidInput(file.path.string(), "must be a milling cut of an upright flat end in x and y here", hint);
+}
+
 LobesFile read_milling(const std::filesystem::path& path, const std::string& hint) {
   LobesFile file = read_lobes(path);
   load_dynamics(file);
-  if (file.drilling) throw InvalidInput(path.string(), "lobes are those of milling", hint);
+  require_plane(file, hint);
   file.validate();
   return file;
 }

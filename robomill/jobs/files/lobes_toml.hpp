@@ -9,6 +9,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/sweep.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
 // Method: robomill/jobs/README.md, "Files"
@@ -33,6 +34,10 @@ struct LobesFile {
   stability::Uncertainty uncertainty = {};                  ///< samples: 0 where the file has none
   double radial_depth_m = 0.0;                              ///< b [m]; from the angles where they are given
   std::optional<cutting::MillingDirection> direction = {};  ///< cut.direction; none where the angles are given
+  /// lobes.sweep: what the chart varies beside the speed, and over which range [m] or [rad]; options then holds an axial
+  /// depth that does not count.
+  stability::SweptParameter sweep = stability::SweptParameter::axial_depth;
+  std::array<double, 2> sweep_range = {0.0, 0.0};
   bool drilling = false;               ///< cut.kind: the next two count, and of the cut neither angles nor radial depth
   double point_angle_rad = 0.0;        ///< of the drill [rad]; 0: not given
   double feed_per_revolution_m = 0.0;  ///< of the drill [m]
@@ -55,9 +60,16 @@ struct LobesFile {
 ///     there), and where milling needs a direction that was not measured and the file does not say what it is taken for
 ROBOMILL_API void load_dynamics(LobesFile& file);
 
-/// A milling cut with the structure that its file names, everything checked.
+/// The sweep that its table [lobes] asks for.
+[[nodiscard]] ROBOMILL_API stability::SweepOptions sweep_options(const LobesFile& file);
+
+/// @param hint  for whoever gave another cut
+/// @throws InvalidInput unless the cut is milling with an upright flat end, in x and y
+ROBOMILL_API void require_plane(const LobesFile& file, const std::string& hint = {});
+
+/// A milling cut in x and y with the structure that its file names, everything checked.
 /// @param hint  for whoever gave drilling
-/// @throws InvalidInput as read_lobes, load_dynamics and validate, or if the cut is drilling, which has no lobes
+/// @throws InvalidInput as read_lobes, load_dynamics and validate, or as require_plane
 [[nodiscard]] ROBOMILL_API LobesFile read_milling(const std::filesystem::path& path, const std::string& hint = {});
 
 }  // namespace robomill::jobs

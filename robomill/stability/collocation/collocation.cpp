@@ -12,7 +12,7 @@ namespace {
 
 class Collocation final : public Scheme {
  public:
-  Collocation(std::unique_ptr<const CollocationModel> model, int teeth, double tolerance)
+  Collocation(std::unique_ptr<CollocationModel> model, int teeth, double tolerance)
       : model_(std::move(model)), teeth_(teeth), tolerance_(tolerance) {}
   [[nodiscard]] std::unique_ptr<PointEvaluator> evaluator() const override {
     return std::make_unique<CollocationEvaluator>(*model_, tolerance_);
@@ -23,8 +23,10 @@ class Collocation final : public Scheme {
                : Period::revolution;
   }
 
+  void expect(std::span<const double> depths_m) override { model_->expect(depths_m); }
+
  private:
-  std::unique_ptr<const CollocationModel> model_;
+  std::unique_ptr<CollocationModel> model_;
   int teeth_;
   double tolerance_;
 };

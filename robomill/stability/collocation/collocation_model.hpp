@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <complex>
 #include <cstddef>
+#include <span>
 
 #include "robomill/stability/collocation/collocation_case.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -19,6 +20,9 @@ class CollocationModel {
   [[nodiscard]] virtual bool depends_on_depth() const = 0;
   /// What the stiffness of a case is multiplied by at a point, gain included.
   [[nodiscard]] virtual double factor(const OperatingPoint& point) const = 0;
+  /// Depths that will be asked for often.
+  virtual void expect(std::span<const double> depths_m) { static_cast<void>(depths_m); }
+  /// By several threads at once.
   virtual void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const = 0;
   /// Where the search for an accuracy starts.
   [[nodiscard]] virtual int first_level(const OperatingPoint& point, double tolerance) const = 0;

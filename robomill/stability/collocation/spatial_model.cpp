@@ -109,18 +109,32 @@ int SpatialModel::first_level(const OperatingPoint& point, double tolerance) con
   return level_for(period_rad_ * fastest_rad_per_s_ / point.spindle_speed_rad_per_s, 1.0, tolerance);
 }
 
+std::shared_ptr<const SpatialModel::Looked> SpatialModel::look(double depth, int rings) const {
+  const bool kept = std::ranges::find(expected_, depth) != expected_.end();
+  const std::pair<double, int> key(depth, rings);
+  if (kept) {
+    const std::scoped_lock lock(kept_mutex_);
+    if (const auto known = kept_.find(key); known != kept_.end()) return known->second;
+  }
+  const cutting::Engagement engagement = parts_.engage(depth, rings);
+  auto looked = std::make_shared<Looked>();
+  looked->contacts = edge_contacts(parts_.cutter, engagement, parts_.coefficients, parts_.feed_per_tooth_m);
+  looked->feed_from_tool = engagement.feed_from_tool;
+  if (kept) {
+    const std::scoped_lock lock(kept_mutex_);
+    kept_.emplace(key, looked);
+  }
+  return looked;
+}
+
 void SpatialModel::prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const {
   out.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
   out.axial_depth_m = point.axial_depth_m;
   out.level = level;
-  const cutting::Engagement engagement =
-      parts_.engage(point.axial_depth_m, (level.nodes + 4) * level.splits);
-  const EdgeContacts contacts =
-      edge_contacts(parts_.cutter, engagement, parts_.coefficients, parts_.feed_per_tooth_m);
-  const Eigen::Matrix3d axes =
-      parts_.turns_with_tool ? Eigen::Matrix3d::Identity() : Eigen::Matrix3d(engagement.feed_from_tool);
+  const std::shared_ptr<const Looked> looked = look(point.axial_depth_m, (level.nodes + 4) * level.splits);
+  const Eigen::Matrix3d axes = parts_.turns_with_tool ? Eigen::Matrix3d::Identity() : looked->feed_from_tool;
   const double speed = point.spindle_speed_rad_per_s;
-  build_spatial_mesh(contacts, fastest_rad_per_s_ / speed, axes, level, out);
+  build_spatial_mesh(looked->contacts, fastest_rad_per_s_ / speed, axes, level, out);
   out.plans.clear();
   for (std::size_t e = 0; e < out.pieces.size(); ++e) {
     const bool records = out.mesh.topology.pieces[e].records;

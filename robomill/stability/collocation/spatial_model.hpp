@@ -1,5 +1,11 @@
 #pragma once
 #include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "robomill/stability/collocation/collocation_model.hpp"
 #include "robomill/stability/collocation/edge_contacts.hpp"
@@ -25,6 +31,7 @@ class SpatialModel final : public CollocationModel {
   [[nodiscard]] std::size_t modes() const override { return static_cast<std::size_t>(tip_.pole.size()); }
   [[nodiscard]] bool depends_on_depth() const override { return parts_.varies; }
   [[nodiscard]] double factor(const OperatingPoint& point) const override { return point.gain; }
+  void expect(std::span<const double> depths_m) override { expected_.assign(depths_m.begin(), depths_m.end()); }
   void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const override;
   [[nodiscard]] int first_level(const OperatingPoint& point, double tolerance) const override;
   /// With several delays a piece has a matrix for each other one that it looks back to.
@@ -35,7 +42,16 @@ class SpatialModel final : public CollocationModel {
                               const Eigen::VectorXcd& vector) const override;
 
  private:
+  struct Looked {
+    EdgeContacts contacts;
+    Eigen::Matrix3d feed_from_tool;
+  };
+  [[nodiscard]] std::shared_ptr<const Looked> look(double depth, int rings) const;
+
   Parts parts_;
+  std::vector<double> expected_;  ///< depths whose engagements are kept
+  mutable std::mutex kept_mutex_;
+  mutable std::map<std::pair<double, int>, std::shared_ptr<const Looked>> kept_;  ///< by depth and rings
   TipDynamicsIn<3> tip_;
   double fastest_rad_per_s_ = 0.0;
   bool equal_teeth_ = true;
