@@ -76,7 +76,7 @@ TEST(RunExplain, RejectsWhatIsMissingAndACutWithoutModes) {
                           replaced(replaced(io::read_file(example), "../../data/robot-modes.toml", modes.string()),
                                    "direction = \"up\"\nradial_depth_mm = 1.8\nfeed_per_tooth_mm = 0.01\n",
                                    "kind = \"drilling\"\nfeed_per_revolution_mm = 0.1\n"));
-  EXPECT_NE(rejects().find("drill.toml: lobes are those of milling"), std::string::npos) << rejects();
+  EXPECT_NE(rejects().find("drill.toml: must be a milling cut of an upright flat end"), std::string::npos) << rejects();
   job.modes = folder.at("missing.json");
   EXPECT_NE(rejects().find("missing.json"), std::string::npos);
 }

@@ -60,18 +60,67 @@ TEST(RunLobes, ComparesMethodsInPlaceOfTheChart) {
   EXPECT_EQ(result.surface.axial_depth_m.size(), 0);
 }
 
-TEST(RunLobes, RejectsWhatHasNoLobes) {
+TEST(RunLobes, RejectsAMissingFile) {
   const test::Folder folder;
-  const auto rejects = [](const std::filesystem::path& path) {
-    return rejection([&] { static_cast<void>(run_lobes({.lobes = path})); });
-  };
-  EXPECT_NE(rejects(folder.at("missing.toml")).find("missing.toml"), std::string::npos);
+  const std::string said = rejection([&] { static_cast<void>(run_lobes({.lobes = folder.at("missing.toml")})); });
+  EXPECT_NE(said.find("missing.toml"), std::string::npos);
+}
+
+constexpr const char* ball = R"([tool]
+kind = "ball-end"
+teeth = 2
+diameter_mm = 6
+helix_deg = 30
+[cut]
+direction = "up"
+stepover_mm = 0.8
+axial_depth_mm = 0.25
+lead_deg = -10
+tilt_deg = 15
+[coefficients]
+tangential_n_per_mm2 = 1500
+radial_n_per_mm2 = 900
+axial_n_per_mm2 = 300
+[dynamics]
+x = [{ frequency_hz = 850, damping_ratio = 0.02, modal_mass_kg = 0.06 }]
+y = [{ frequency_hz = 900, damping_ratio = 0.04, modal_mass_kg = 0.06 }]
+z = [{ frequency_hz = 2200, damping_ratio = 0.03, modal_mass_kg = 0.06 }]
+[lobes]
+spindle_speed_rpm = [11000, 13000]
+grid = [3, 20]
+)";
+
+// The limit at 12,000 rpm and the radius at 20,000 are those of an independent solver (stability/spatial_test.cpp).
+TEST(RunLobes, JudgesABallInThreeDirections) {
+  const test::Folder folder;
+  const auto path = folder.file("ball.toml", std::string(ball) + "axial_depth_mm = [0, 0.6]\n");
+  const LobesJobResult result = run_lobes({.lobes = path, .points = {{20000.0 * units::rpm, 0.6e-3}}});
+  EXPECT_NEAR(result.lobes.limit[1].axial_depth_m, 0.1651169e-3, 2e-9);
+  EXPECT_NEAR(result.lobes.points[0].spectral_radius, 1.287170672, 2e-6);
+  EXPECT_LT(result.lobes.points[0].gain_margin, 1.0);
+  ASSERT_EQ(result.cut.notes.size(), 1U);
+  EXPECT_NE(result.cut.notes[0].find("tip is in the cut"), std::string::npos);
+}
+
+TEST(RunLobes, SweepsTheLead) {
+  const test::Folder folder;
+  const auto path = folder.file("lead.toml", std::string(ball) + "sweep = \"lead\"\nlead_deg = [-30, 30]\n");
+  const LobesJobResult result = run_lobes({.lobes = path, .points = {{12000.0 * units::rpm, -10.0 * units::mm}}});
+  ASSERT_TRUE(result.sweep);
+  EXPECT_EQ(result.sweep->stable.size(), 3U);
+  EXPECT_NEAR(result.sweep->points[0].axial_depth_m, -10.0 * units::deg, 1e-12);
+  EXPECT_LT(result.sweep->points[0].gain_margin, 1.0);
+  EXPECT_TRUE(result.lobes.limit.empty());
+}
+
+TEST(RunLobes, JudgesDrilling) {
+  const test::Folder folder;
   const auto drill = folder.file(
       "drill.toml", replaced(quick("[6, 12]"), "direction = \"up\"\nradial_depth_mm = 1.8\nfeed_per_tooth_mm = 0.01\n",
                              "kind = \"drilling\"\nfeed_per_revolution_mm = 0.1\n"));
-  const std::string said = rejects(drill);
-  EXPECT_NE(said.find("drill.toml: lobes are those of milling. robomill simulate takes drilling"), std::string::npos)
-      << said;
+  const LobesJobResult result = run_lobes({.lobes = drill});
+  ASSERT_EQ(result.lobes.limit.size(), 6U);
+  EXPECT_EQ(result.lobes.limit[0].status, stability::Limit::Status::found);
 }
 
 }  // namespace lobes_test

@@ -16,10 +16,6 @@ namespace {
 
 using namespace detail;
 
-Eigen::VectorXd to_eigen(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
 /// Points of the boundary and limits have the radius 1.
 template <class Points>
 long long count_uncertain(const Points& points, double tolerance) {

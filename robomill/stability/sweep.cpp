@@ -14,10 +14,6 @@ namespace {
 
 using namespace detail;
 
-Eigen::VectorXd to_eigen(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
 /// Of one grid speed, from the stability of its lowest value and the boundary's crossings of its column.
 std::vector<StableInterval> stable_intervals(const Axes& axes, std::size_t speed, bool unstable_at_start,
                                              const std::vector<BoundaryPoint>& boundary) {

@@ -282,6 +282,10 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf, out.problem.workpiece_dynamics);
   read_chart(file, out);
   if (spatial) check_spatial(file, out);
+  if (out.drilling && out.options.axial_depth_m[1] > 0.5 * cutter.mill.diameter_m * (1.0 + 1e-12)) {
+    throw file.reject("lobes.axial_depth_mm", "must end at the drill's radius at most",
+                      "Of drilling it is the lips' radial width, from the pilot hole to the rim");
+  }
   read_uncertainty(file, out.uncertainty);
   if (file.has("surface_error")) {
     std::vector<int> grid = {60, 60};

@@ -248,5 +248,47 @@ TEST(LobesToml, RejectsInTheFilesWords) {
   expect("[dynamics]", "[dynamics]\nkeep_modes = [3]", "lobes.toml:14: dynamics.keep_modes");
 }
 
+/// A ball end, of which a line is replaced.
+std::string ball_without(const std::string& line, const std::string& by) {
+  const std::string text =
+      "[tool]\nkind = \"ball-end\"\nteeth = 2\ndiameter_mm = 6\nhelix_deg = 30\n[cut]\ndirection = \"up\"\n"
+      "stepover_mm = 0.8\nlead_deg = -10\nfeed_per_tooth_mm = 0.05\n[coefficients]\ntangential_n_per_mm2 = 1500\n"
+      "radial_n_per_mm2 = [100, 900]\naxial_n_per_mm2 = 300\n[dynamics]\naxes = \"tool\"\nx = [{ frequency_hz = 850, "
+      "damping_ratio = 0.02, modal_mass_kg = 0.06 }]\ny = []\n[lobes]\nspindle_speed_rpm = [8000, 24000]\n"
+      "axial_depth_mm = [0, 1]\n";
+  return line.empty() ? text : test_support::replaced(text, line, by);
+}
+
+TEST(LobesToml, ReadsAnyCutterInAnyPosture) {
+  const test::Folder folder;
+  const LobesFile file = read_lobes(folder.file("lobes.toml", ball_without("", "")));
+  ASSERT_TRUE(file.problem.spatial);
+  const stability::SpatialMilling& milling = *file.problem.spatial;
+  EXPECT_EQ(milling.cutter.kind, cutting::CutterKind::ball_end);
+  EXPECT_NEAR(milling.cut.lead_rad, -10.0 * units::deg, 1e-12);
+  EXPECT_NEAR(milling.cut.radial_depth_m, 0.8e-3, 1e-15);
+  EXPECT_EQ(milling.coefficients.radial_n_per_m2.size(), 2U);
+  EXPECT_TRUE(milling.modes_turn_with_tool);
+  EXPECT_THROW(require_plane(file), InvalidInput);
+}
+
+TEST(LobesToml, NamesWhatACutInThreeDirectionsLacks) {
+  const test::Folder folder;
+  const std::pair<std::array<std::string, 2>, std::string> cases[] = {
+      {{"stepover_mm = 0.8", ""}, "lobes.toml:6: cut.radial_depth_mm: is missing"},
+      {{"direction = \"up\"", "direction = \"up\"\nentry_deg = 10"}, "cut.entry_deg = 10 deg; is for an upright flat end"},
+      {{"axial_depth_mm = [0, 1]", "sweep = \"lead\"\nlead_deg = [-10, 10]"}, "cut.axial_depth_mm: is missing"},
+      {{"axial_depth_mm = [0, 1]", "sweep = \"speed\""}, "lobes.sweep"},
+      {{"axial_depth_mm = [0, 1]", "axial_depth_mm = [0, 20]"}, "axial_depth"},
+      {{"axial_n_per_mm2 = 300", "axial_n_per_mm2 = 0.3"}, "coefficients.axial_n_per_mm2 = 0.3 N/mm^2"},
+      {{"feed_per_tooth_mm = 0.05", "feed_per_tooth_mm = 0.05\n[process_damping]\nfriction = 0.3"}, "process_damping"},
+      {{"axes = \"tool\"", "axes = \"base\""}, "dynamics.axes"}};
+  for (const auto& [change, expected] : cases) {
+    const auto path = folder.file("lobes.toml", ball_without(change[0], change[1]));
+    const std::string said = test::rejection([&] { static_cast<void>(read_lobes(path)); });
+    EXPECT_NE(said.find(expected), std::string::npos) << said;
+  }
+}
+
 }  // namespace lobes_toml_test
 }  // namespace robomill::jobs

@@ -32,6 +32,7 @@ struct Axes {
 
 /// The options' grid.
 Axes even_axes(const LobesOptions& options);
+Eigen::VectorXd to_eigen(const std::vector<double>& values);
 std::vector<double> even(const std::array<double, 2>& range, int count);
 
 /// Spectral radius on the grid, a row a depth. A node that nobody had to look at has the stability of its surroundings

@@ -10,9 +10,6 @@
 namespace robomill::stability::detail {
 namespace {
 
-constexpr double same_angle = 1e-10;
-constexpr double longest_piece_rad = 8.0;  // of the fastest mode
-
 /// Rotation over which some of a contact's edge is in the cut.
 struct Span {
   double from_rad = 0.0, to_rad = 0.0;

@@ -15,8 +15,6 @@
 namespace robomill::stability::detail {
 namespace {
 
-constexpr double longest_piece_rad = 8.0;  // of the fastest mode
-constexpr double same_angle = 1e-10;
 constexpr double narrow_share = 1e-6;  // of the period: a gap that is none
 constexpr double step_share = 0.1;     // of a tooth's stiffness, that comes or goes within
 constexpr double step_width = 0.25;    // of a piece
@@ -303,9 +301,9 @@ class Moments {
   std::size_t filled_ = 0;
 };
 
-class Builder {
+class SpatialBuilder {
  public:
-  Builder(const EdgeContacts& contacts, const Eigen::Matrix3d& axes_from_tool, const MeshLevel& level,
+  SpatialBuilder(const EdgeContacts& contacts, const Eigen::Matrix3d& axes_from_tool, const MeshLevel& level,
           CollocationCase& out)
       : contacts_(contacts), turn_(axes_from_tool), table_(node_table(level.nodes)), level_(level), out_(out) {}
 
@@ -500,7 +498,7 @@ class Builder {
 
 void build_spatial_mesh(const EdgeContacts& contacts, double fastest_per_rad, const Eigen::Matrix3d& axes_from_tool,
                         const MeshLevel& level, CollocationCase& out) {
-  Builder(contacts, axes_from_tool, level, out).build(fastest_per_rad);
+  SpatialBuilder(contacts, axes_from_tool, level, out).build(fastest_per_rad);
 }
 
 }  // namespace robomill::stability::detail
