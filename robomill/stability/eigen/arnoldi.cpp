@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::size_t first_extra = 9;  // columns beyond 2n at the first look
 constexpr std::size_t between = 4;      // columns from look to look
+// More modes than this are warmed up: whatever fades quicker than the dominant motion is gone before the first vector.
+constexpr std::size_t many = 2 * 10;
+constexpr std::size_t first_warm = 16;  // columns at the first look after that
 
 std::complex<double> upper_half(std::complex<double> value) {
   return {value.real(), std::abs(value.imag())};
@@ -36,6 +39,23 @@ void Arnoldi::start(std::size_t size) {
   const double scale = 1.0 / std::sqrt(square);
   for (std::size_t i = 0; i < size; ++i) {
     for (double& lane : basis_[i].v) lane = start_[i] * scale;
+  }
+}
+
+/// Takes the start vector over three periods for each entry of the modes, normed each time.
+void Arnoldi::warm_up(PeriodMap& map) {
+  Lanes* x = basis_.data();
+  Lanes* next = basis_.data() + size_;
+  for (std::size_t pass = 0; pass < 3 * map.modal_size(); ++pass) {
+    map.apply(x, next);
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+      double square = 0.0;
+      for (std::size_t i = 0; i < size_; ++i) square += next[i].v[lane] * next[i].v[lane];
+      // A motion that overflows or vanishes within a period starts as it is.
+      const double scale = std::isfinite(square) && square > 0.0 ? 1.0 / std::sqrt(square) : 0.0;
+      if (scale == 0.0) continue;
+      for (std::size_t i = 0; i < size_; ++i) x[i].v[lane] = next[i].v[lane] * scale;
+    }
   }
 }
 
@@ -68,7 +88,10 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out) {
   start(size_);
   std::array<bool, lane_count> done = {};
   std::size_t left = out.size();
-  std::size_t look = options_.full_matrix_only ? most_ + 1 : std::min(most_, map.modal_size() + first_extra);
+  const bool warm = map.modal_size() > many && !options_.full_matrix_only;
+  if (warm) warm_up(map);
+  const std::size_t first = warm ? first_warm : map.modal_size() + first_extra;
+  std::size_t look = options_.full_matrix_only ? most_ + 1 : std::min(most_, first);
   OrthogonalArguments arguments;
   arguments.size = size_;
   arguments.basis = basis_.data();
@@ -78,7 +101,7 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out) {
     arguments.coefficients = hessenberg_.data() + k * (most_ + 1);
     orthogonalise(arguments);
     if (k + 1 != look) continue;
-    look = std::min(most_, look + between);
+    look = std::min(most_, look + (warm ? look / 2 : between));
     for (std::size_t lane = 0; lane < out.size(); ++lane) {
       if (done[lane]) continue;
       done[lane] = converged(lane, k + 1, k + 1 == size_, out[lane]);

@@ -30,7 +30,8 @@ struct ArnoldiOptions {
 
 /// Arnoldi's iteration from one start vector for the eight lanes of a PeriodMap at once. A lane is done when the
 /// residual of its dominant Ritz pair is small enough, and then keeps what it has while others go on. Where that does
-/// not happen the matrix is formed and solved whole.
+/// not happen the matrix is formed and solved whole. With many modes the start vector first goes through many
+/// periods, so that few vectors find what is left of it.
 class Arnoldi {
  public:
   explicit Arnoldi(const ArnoldiOptions& options = {}) : options_(options) {}
@@ -41,6 +42,7 @@ class Arnoldi {
 
  private:
   void start(std::size_t size);
+  void warm_up(PeriodMap& map);
   bool converged(std::size_t lane, std::size_t columns, bool whole_space, Dominant& out);
   void full_matrix(PeriodMap& map, std::span<Dominant> out);
 
