@@ -16,8 +16,7 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   cut.options.points = job.points;
   if (cut.sweep != stability::SweptParameter::axial_depth) {
     if (job.compare) throw InvalidInput(job.lobes.string(), "lobes.sweep does not go with a comparison of methods");
-    const bool angle =
-        cut.sweep == stability::SweptParameter::lead || cut.sweep == stability::SweptParameter::tilt;
+    const bool angle = cut.sweep == stability::SweptParameter::lead || cut.sweep == stability::SweptParameter::tilt;
     for (stability::OperatingPoint& point : cut.options.points) {
       if (angle) point.axial_depth_m *= units::deg / units::mm;
     }

@@ -18,21 +18,21 @@ namespace robomill::jobs {
 
 /// lobes.toml and what else to make of it.
 struct LobesJob {
-  std::filesystem::path lobes;                         ///< lobes.toml
-  /// Evaluated beside the chart. Where the file sweeps another parameter the second number is its value: in m, or 1e-3 a
-  /// degree.
+  std::filesystem::path lobes;  ///< lobes.toml
+  /// Evaluated beside the chart. Where the file sweeps another parameter the second number is its value: in m, or 1e-3
+  /// a degree.
   std::vector<stability::OperatingPoint> points = {};
-  bool compare = false;                                ///< the limits by every method, in place of the chart
-  std::uint64_t seed = 1;                              ///< of the uncertainty's samples
+  bool compare = false;    ///< the limits by every method, in place of the chart
+  std::uint64_t seed = 1;  ///< of the uncertainty's samples
 };
 
 /// The chart with what the file asks for beside it, or the methods compared. What was not asked for is empty.
 struct LobesJobResult {
-  LobesFile cut;                         ///< with its dynamics and the job's points; its notes are for the user
-  stability::LobesResult lobes;          ///< empty where methods are compared or another parameter is swept
+  LobesFile cut;                                ///< with its dynamics and the job's points; its notes are for the user
+  stability::LobesResult lobes;                 ///< empty where methods are compared or another parameter is swept
   std::optional<stability::SweepResult> sweep;  ///< where lobes.sweep asks for it
-  stability::UncertainLimits uncertain;  ///< samples: 0 unless the file has [uncertainty]
-  stability::SurfaceMap surface;         ///< empty unless the file has [surface_error]
+  stability::UncertainLimits uncertain;         ///< samples: 0 unless the file has [uncertainty]
+  stability::SurfaceMap surface;                ///< empty unless the file has [surface_error]
   std::optional<stability::MethodComparison> comparison;
 };
 

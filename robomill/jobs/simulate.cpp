@@ -54,8 +54,7 @@ simulation::PostureCut posture_of(const LobesFile& file, const stability::Operat
   cut.engagement = cutting::engage(milling.cutter, at_depth);
   cut.coefficients = milling.coefficients;
   cut.motion = {.feed_per_tooth_m = milling.feed_per_tooth_m, .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s};
-  cut.structure =
-      milling.modes_turn_with_tool ? modal::turned(structure, cut.engagement.feed_from_tool) : structure;
+  cut.structure = milling.modes_turn_with_tool ? modal::turned(structure, cut.engagement.feed_from_tool) : structure;
   return cut;
 }
 

@@ -45,8 +45,7 @@ modal::Mode random_mode(Random& random, double stiffness) {
 
 modal::ModalModel random_structure(Random& random) {
   modal::ModalModel model;
-  model.excitations = model.responses = {
-      {.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
+  model.excitations = model.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
   const std::size_t modes = 1 + random.index(4);
   for (std::size_t k = 0; k < modes; ++k) model.modes.push_back(random_mode(random, random.uniform(1e6, 6e6)));
   if (random.index(5) == 0) model.residuals = {{.name = modal::parse_frf_name("zz"), .stiffness = 5e-9}};
@@ -145,7 +144,8 @@ SmallVibration simulated(const Drawn& drawn) {
   const stability::SpatialMilling& milling = *drawn.problem.spatial;
   PostureCut cut;
   cut.cutter = milling.cutter;
-  cut.engagement = cutting::engage(milling.cutter, milling.cut, {.slices = milling.cutter.kind == cutting::CutterKind::ball_end ? 60 : 240});
+  cut.engagement = cutting::engage(milling.cutter, milling.cut,
+                                   {.slices = milling.cutter.kind == cutting::CutterKind::ball_end ? 60 : 240});
   cut.coefficients = milling.coefficients;
   cut.motion = {.feed_per_tooth_m = milling.feed_per_tooth_m, .spindle_speed_rad_per_s = speed};
   cut.structure = milling.modes_turn_with_tool ? modal::turned(structure, cut.engagement.feed_from_tool) : structure;
@@ -159,8 +159,8 @@ TEST(SpatialAgreement, OfSmallVibrationAndFloquetTheoryOverRandomCuts) {
     if (!drawn) continue;
     ++drawn_cuts;
     const SmallVibration small = simulated(*drawn);
-    const stability::PointResult point = stability::evaluate_point(
-        drawn->problem, {.tolerance = 1e-5}, {drawn->speed_rpm * testing::rpm, drawn->depth_m});
+    const stability::PointResult point = stability::evaluate_point(drawn->problem, {.tolerance = 1e-5},
+                                                                   {drawn->speed_rpm * testing::rpm, drawn->depth_m});
     const double expected = point.spectral_radius;
     if (expected > 1e6) continue;  // the simulation's snapshots overflow
     ASSERT_EQ(small.status, SmallVibration::Status::found) << seed;

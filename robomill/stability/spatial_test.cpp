@@ -15,7 +15,6 @@ namespace spatial_test {
 using testing::rpm;
 using testing::SpatialReference;
 
-
 TEST(Spatial, HasTheRadiiOfAnIndependentSolver) {
   for (const SpatialReference& known : testing::spatial_references()) {
     const PointResult point = evaluate_point(known.problem, {}, {known.speed_rpm * rpm, 1e-3 * known.depth_mm});
@@ -134,8 +133,8 @@ TEST(Spatial, ADrillAlongItsAxisHasTheTurnedShaftsLimit) {
   drill.coefficients = {.tangential_n_per_m2 = 8e8, .radial_n_per_m2 = 5e8};
   LobesProblem problem;
   problem.drilling = drill;
-  problem.dynamics =
-      testing::spatial_model({{frequency, zeta, mass, Eigen::Vector3d::UnitZ()}, {5000.0, 0.05, 50.0, Eigen::Vector3d::UnitX()}});
+  problem.dynamics = testing::spatial_model(
+      {{frequency, zeta, mass, Eigen::Vector3d::UnitZ()}, {5000.0, 0.05, 50.0, Eigen::Vector3d::UnitX()}});
   const double omega = 2.0 * std::numbers::pi * frequency;
   // Two lips of b / sin p, each K_r sin² p along z.
   const double per_width = 2.0 * 5e8 * std::sin(0.5 * drill.point_angle_rad);

@@ -29,12 +29,12 @@ struct StableInterval {
 
 struct SweepResult {
   SweptParameter parameter = SweptParameter::lead;
-  Eigen::VectorXd spindle_speed_rad_per_s;           ///< length grid[0]
-  Eigen::VectorXd value;                             ///< length grid[1] [m] or [rad]
-  Eigen::MatrixXd spectral_radius;                   ///< grid[1] x grid[0]: a row a value
-  std::vector<BoundaryPoint> boundary;               ///< curve by curve; axial_depth_m is the parameter's value
-  std::vector<std::vector<StableInterval>> stable;   ///< of each grid speed, increasing; none where nothing is stable
-  std::vector<PointResult> points;                   ///< axial_depth_m is the parameter's value
+  Eigen::VectorXd spindle_speed_rad_per_s;          ///< length grid[0]
+  Eigen::VectorXd value;                            ///< length grid[1] [m] or [rad]
+  Eigen::MatrixXd spectral_radius;                  ///< grid[1] x grid[0]: a row a value
+  std::vector<BoundaryPoint> boundary;              ///< curve by curve; axial_depth_m is the parameter's value
+  std::vector<std::vector<StableInterval>> stable;  ///< of each grid speed, increasing; none where nothing is stable
+  std::vector<PointResult> points;                  ///< axial_depth_m is the parameter's value
   Period period = Period::tooth;
   long long evaluations = 0, unsettled = 0, uncertain = 0;  ///< as of LobesResult
   double seconds = 0.0;
@@ -42,8 +42,8 @@ struct SweepResult {
 
 /// The spectral radius over speed and parameter, where it is 1, and where each grid speed is stable. An interval
 /// narrower than two neighbouring values is not seen.
-/// @throws InvalidInput if the problem is not one of SpatialMilling, a value of the range cannot be cut, or an option is
-/// out of range; Interrupted
+/// @throws InvalidInput if the problem is not one of SpatialMilling, a value of the range cannot be cut, or an option
+/// is out of range; Interrupted
 [[nodiscard]] ROBOMILL_API SweepResult compute_sweep(const LobesProblem& problem, const SweepOptions& options,
                                                      Progress& progress = Progress::none());
 

@@ -13,11 +13,11 @@ namespace robomill::stability::detail {
 /// Scaled so that ‖2 right_k‖ = 1: every z_k is then a displacement in m, whatever scale the mode came with.
 template <int D>
 struct TipDynamicsIn {
-  Eigen::VectorXcd pole;                                          ///< length n [rad/s]
+  Eigen::VectorXcd pole;                                         ///< length n [rad/s]
   Eigen::Matrix<std::complex<double>, D, Eigen::Dynamic> right;  ///< D x n
   Eigen::Matrix<std::complex<double>, D, Eigen::Dynamic> left;   ///< D x n [m/(N s)]
-  Eigen::Matrix<double, D, D> compliance;                         ///< S, real part of the stiffness residuals [m/N]
-  std::vector<modal::ModeId> id;                                  ///< length n: the workpiece's follow the tool's
+  Eigen::Matrix<double, D, D> compliance;                        ///< S, real part of the stiffness residuals [m/N]
+  std::vector<modal::ModeId> id;                                 ///< length n: the workpiece's follow the tool's
 };
 /// In x and y of the feed.
 using TipDynamics = TipDynamicsIn<2>;

@@ -16,8 +16,7 @@ struct RealMode {
 
 inline modal::ModalModel spatial_model(const std::vector<RealMode>& modes) {
   modal::ModalModel model;
-  model.excitations = model.responses = {
-      {.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
+  model.excitations = model.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
   for (const RealMode& real : modes) {
     modal::Mode mode;
     mode.frequency_hz = real.frequency_hz;
@@ -78,17 +77,17 @@ inline std::vector<SpatialReference> spatial_references() {
                                                  {900.0, 0.04, 0.06, Eigen::Vector3d::UnitY()},
                                                  {2200.0, 0.03, 0.06, Eigen::Vector3d::UnitZ()}});
   const modal::ModalModel oblique = spatial_model({{1200.0, 0.03, 0.06, Eigen::Vector3d::Ones().normalized()}});
-  return {{spatial_problem(Kind::ball_end, 6, 2, {0.3, 6, Direction::slot, 0, 0}, {1500, 600, 300}, xyz(.12, .12, .1)),
-           12000, 0.3, 0.977148949, 12000, 0.3295839, 2271.2},
-          {spatial_problem(Kind::ball_end, 6, 2, {0.6, 0.8, Direction::up, -10, 15}, {1500, 900, 300}, light), 20000,
-           0.6, 1.287170672, 12000, 0.1651169, 0},
-          {spatial_problem(Kind::ball_end, 10, 4, {0.8, 2, Direction::down, 0, 0}, {1000, 300, 200},
-                           xyz(.15, .15, .15)),
-           10000, 0.8, 1.157413297, 10000, 0.3746887, 0},
-          {spatial_problem(Kind::ball_end, 6, 2, {0.15, 6, Direction::slot, 15, 0}, {1500, 600, 300}, oblique), 13500,
-           0.15, 1.034890084, 16000, 0.6248149, 0},
-          {spatial_problem(Kind::flat_end, 10, 4, {0.4, 3, Direction::up, 10, 5}, {1000, 400, 200}, xyz(.2, .2, .2)),
-           8000, 0.4, 0.760276662, 8000, 0.9932483, 0}};
+  return {
+      {spatial_problem(Kind::ball_end, 6, 2, {0.3, 6, Direction::slot, 0, 0}, {1500, 600, 300}, xyz(.12, .12, .1)),
+       12000, 0.3, 0.977148949, 12000, 0.3295839, 2271.2},
+      {spatial_problem(Kind::ball_end, 6, 2, {0.6, 0.8, Direction::up, -10, 15}, {1500, 900, 300}, light), 20000, 0.6,
+       1.287170672, 12000, 0.1651169, 0},
+      {spatial_problem(Kind::ball_end, 10, 4, {0.8, 2, Direction::down, 0, 0}, {1000, 300, 200}, xyz(.15, .15, .15)),
+       10000, 0.8, 1.157413297, 10000, 0.3746887, 0},
+      {spatial_problem(Kind::ball_end, 6, 2, {0.15, 6, Direction::slot, 15, 0}, {1500, 600, 300}, oblique), 13500, 0.15,
+       1.034890084, 16000, 0.6248149, 0},
+      {spatial_problem(Kind::flat_end, 10, 4, {0.4, 3, Direction::up, 10, 5}, {1000, 400, 200}, xyz(.2, .2, .2)), 8000,
+       0.4, 0.760276662, 8000, 0.9932483, 0}};
 }
 
 }  // namespace robomill::stability::testing

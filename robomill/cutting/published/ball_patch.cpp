@@ -49,7 +49,8 @@ BallPatch::BallPatch(double radius_m, const Cut& cut, const Eigen::Matrix3d& fee
     if (borders_[i - 1] <= 0.0) continue;
     const double ratio = borders_[i] / borders_[i - 1];
     const int parts = static_cast<int>(std::ceil(std::log(ratio) / std::log(steepest)));
-    for (int k = 1; k < parts; ++k) between.push_back(borders_[i - 1] * std::pow(ratio, static_cast<double>(k) / parts));
+    for (int k = 1; k < parts; ++k)
+      between.push_back(borders_[i - 1] * std::pow(ratio, static_cast<double>(k) / parts));
   }
   borders_.insert(borders_.end(), between.begin(), between.end());
   std::ranges::sort(borders_);
@@ -91,8 +92,8 @@ void BallPatch::add_curve(Bound bound, double from, double to) {
       ends.push_back(highest_between([&](double t) { return sign * value(t); }, middle - step, middle + step));
     }
   } else {
-    const double turns = bound == Bound::surface ? std::atan2(-side_ * axis_.y(), axis_.x())
-                                                 : std::atan2(side_ * axis_.y(), axis_.z());
+    const double turns =
+        bound == Bound::surface ? std::atan2(-side_ * axis_.y(), axis_.x()) : std::atan2(side_ * axis_.y(), axis_.z());
     for (const double t : {turns - pi, turns, turns + pi}) {
       if (t > from && t < to) ends.push_back(t);
     }
@@ -113,8 +114,7 @@ double BallPatch::crossing(const Branch& branch, double cosine_wanted) const {
   // A cos(t - turns) = what is left of -cos κ.
   const bool surface = branch.bound == Bound::surface;
   const double across = surface ? width_ * std::hypot(axis_.x(), axis_.y()) : std::hypot(axis_.y(), axis_.z());
-  const double turns =
-      surface ? std::atan2(-side_ * axis_.y(), axis_.x()) : std::atan2(side_ * axis_.y(), axis_.z());
+  const double turns = surface ? std::atan2(-side_ * axis_.y(), axis_.x()) : std::atan2(side_ * axis_.y(), axis_.z());
   const double left = surface ? height_ * axis_.z() - cosine_wanted : cosine_wanted;
   const double away = std::acos(std::clamp(left / across, -1.0, 1.0));
   const double middle = 0.5 * (branch.from + branch.to);
@@ -136,7 +136,8 @@ ArcList BallPatch::arcs(double position_rad) const {
   for (const Branch& branch : branches_) {
     const double before = branch.cosine_from - cosine_wanted;
     const double after = branch.cosine_to - cosine_wanted;
-    if ((before > 0.0) == (after > 0.0) || std::abs(before - after) < same_cosine || count == crossings.size()) continue;
+    if ((before > 0.0) == (after > 0.0) || std::abs(before - after) < same_cosine || count == crossings.size())
+      continue;
     const Eigen::Vector3d normal = at(branch.bound, crossing(branch, cosine_wanted));
     double angle = std::atan2(normal.dot(rotation_.col(0)), normal.dot(rotation_.col(1)));
     if (angle < 0.0) angle += full_turn;

@@ -10,8 +10,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/cutting/files/coefficients_toml.hpp"
 #include "robomill/cutting/engagement.hpp"
+#include "robomill/cutting/files/coefficients_toml.hpp"
 #include "robomill/cutting/polynomial.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"

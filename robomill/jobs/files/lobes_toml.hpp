@@ -34,8 +34,8 @@ struct LobesFile {
   stability::Uncertainty uncertainty = {};                  ///< samples: 0 where the file has none
   double radial_depth_m = 0.0;                              ///< b [m]; from the angles where they are given
   std::optional<cutting::MillingDirection> direction = {};  ///< cut.direction; none where the angles are given
-  /// lobes.sweep: what the chart varies beside the speed, and over which range [m] or [rad]; options then holds an axial
-  /// depth that does not count.
+  /// lobes.sweep: what the chart varies beside the speed, and over which range [m] or [rad]; options then holds an
+  /// axial depth that does not count.
   stability::SweptParameter sweep = stability::SweptParameter::axial_depth;
   std::array<double, 2> sweep_range = {0.0, 0.0};
   bool drilling = false;               ///< cut.kind: the next two count, and of the cut neither angles nor radial depth

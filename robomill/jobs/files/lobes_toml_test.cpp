@@ -276,7 +276,8 @@ TEST(LobesToml, NamesWhatACutInThreeDirectionsLacks) {
   const test::Folder folder;
   const std::pair<std::array<std::string, 2>, std::string> cases[] = {
       {{"stepover_mm = 0.8", ""}, "lobes.toml:6: cut.radial_depth_mm: is missing"},
-      {{"direction = \"up\"", "direction = \"up\"\nentry_deg = 10"}, "cut.entry_deg = 10 deg; is for an upright flat end"},
+      {{"direction = \"up\"", "direction = \"up\"\nentry_deg = 10"},
+       "cut.entry_deg = 10 deg; is for an upright flat end"},
       {{"axial_depth_mm = [0, 1]", "sweep = \"lead\"\nlead_deg = [-10, 10]"}, "cut.axial_depth_mm: is missing"},
       {{"axial_depth_mm = [0, 1]", "sweep = \"speed\""}, "lobes.sweep"},
       {{"axial_depth_mm = [0, 1]", "axial_depth_mm = [0, 20]"}, "axial_depth"},

@@ -18,9 +18,7 @@ class Collocation final : public Scheme {
     return std::make_unique<CollocationEvaluator>(*model_, tolerance_);
   }
   [[nodiscard]] Period period() const override {
-    return model_->reported_rad() < 0.999 * 2.0 * std::numbers::pi || teeth_ == 1
-               ? Period::tooth
-               : Period::revolution;
+    return model_->reported_rad() < 0.999 * 2.0 * std::numbers::pi || teeth_ == 1 ? Period::tooth : Period::revolution;
   }
 
   void expect(std::span<const double> depths_m) override { model_->expect(depths_m); }

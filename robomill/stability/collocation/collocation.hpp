@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "robomill/stability/collocation/collocation_map.hpp"
-#include "robomill/stability/eigen/arnoldi.hpp"
 #include "robomill/stability/collocation/collocation_model.hpp"
+#include "robomill/stability/eigen/arnoldi.hpp"
 #include "robomill/stability/point_evaluator.hpp"
 
 namespace robomill::stability::detail {

@@ -27,9 +27,9 @@ Eigen::VectorXcd looked_back(const CollocationCase& point, const NodeLayout& lay
     Eigen::VectorXcd seen = Eigen::VectorXcd::Zero(channels);
     for (Eigen::Index l = 0; l < topology.nodes; ++l) {
       const bool exact = mesh.weights.empty();
-      const double weight = exact ? (l == node ? 1.0 : 0.0)
-                                  : mesh.weights[s * static_cast<std::size_t>(topology.nodes) +
-                                                 static_cast<std::size_t>(l)];
+      const double weight =
+          exact ? (l == node ? 1.0 : 0.0)
+                : mesh.weights[s * static_cast<std::size_t>(topology.nodes) + static_cast<std::size_t>(l)];
       seen += weight * memory.segment(static_cast<Eigen::Index>(from) + l * channels, channels);
     }
     if (topology.form == Form::several) seen = (mesh.delayed_stiffness[s] * seen).eval();

@@ -19,10 +19,10 @@ struct NodeBlock {
 };
 
 struct FactorArguments {
-  std::size_t nodes = 0;           ///< m
-  const Lanes* factor = nullptr;   ///< a
-  const Lanes* coupling = nullptr; ///< R, m x m, column by column
-  Lanes* factored = nullptr;       ///< out: m x m
+  std::size_t nodes = 0;            ///< m
+  const Lanes* factor = nullptr;    ///< a
+  const Lanes* coupling = nullptr;  ///< R, m x m, column by column
+  Lanes* factored = nullptr;        ///< out: m x m
 };
 /// Triangular factors of 1 - a R without pivots, for pieces so short that it is near enough to 1; the upper one's
 /// diagonal is stored inverted.

@@ -7,7 +7,7 @@
 
 namespace robomill::stability::detail {
 
-inline constexpr double same_angle = 1e-10;         ///< closer is at one place [rad]
+inline constexpr double same_angle = 1e-10;       ///< closer is at one place [rad]
 inline constexpr double longest_piece_rad = 8.0;  ///< of the fastest mode: what a piece's nodes can follow
 
 /// How finely the rotation is taken.

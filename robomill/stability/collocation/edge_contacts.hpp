@@ -10,8 +10,8 @@ namespace robomill::stability::detail {
 /// What an edge on a ring answers a displacement with, in T at the angle φ: K = f nᵀ [N/m],
 ///   n = (sin κ sin φ, sin κ cos φ, -cos κ),  f_y + i f_x = (outward - i tangential) e^{iφ},  f_z = upward.
 struct RingStiffness {
-  double sine = 0.0, cosine = 0.0;                           ///< of κ
-  double tangential = 0.0, outward = 0.0, upward = 0.0;      ///< width times coefficients [N/m]
+  double sine = 0.0, cosine = 0.0;                       ///< of κ
+  double tangential = 0.0, outward = 0.0, upward = 0.0;  ///< width times coefficients [N/m]
 };
 
 /// A rotation of the cutter over which one tooth's edge cuts on one ring, and what it meets.

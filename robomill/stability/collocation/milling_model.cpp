@@ -109,8 +109,7 @@ int MillingModel::first_level(const OperatingPoint& point, double tolerance) con
   // A piece is cut to the structure's own radians; the cut makes it quicker.
   const double stretch = std::min(milling.immersion.exit_rad - milling.immersion.entry_rad, contacts.period_rad()) *
                          fastest_rad_per_s / point.spindle_speed_rad_per_s;
-  const double quicker =
-      std::sqrt(1.0 + quickening * factor(point) / (fastest_rad_per_s * fastest_rad_per_s));
+  const double quicker = std::sqrt(1.0 + quickening * factor(point) / (fastest_rad_per_s * fastest_rad_per_s));
   return level_for(stretch, quicker, tolerance);
 }
 
@@ -141,8 +140,8 @@ void MillingModel::prepare(const OperatingPoint& point, const MeshLevel& level, 
       piece.plan = out.pieces[known].plan;
     } else {
       piece.plan = out.plans.size();
-      plan_piece(tip, turning, mesh.from_rad, mesh.length_rad,
-                 out.mesh.topology.pieces[e].records ? level.nodes : 1, velocities, out.plans.emplace_back());
+      plan_piece(tip, turning, mesh.from_rad, mesh.length_rad, out.mesh.topology.pieces[e].records ? level.nodes : 1,
+                 velocities, out.plans.emplace_back());
     }
     if (!out.mesh.topology.pieces[e].records) continue;
     const PiecePlan& plan = out.plans[piece.plan];

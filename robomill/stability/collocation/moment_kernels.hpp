@@ -13,11 +13,11 @@ inline constexpr std::size_t spatial_entries = 9;  ///< of a 3 x 3 matrix, row b
 ///   K_yz + i K_xz = column e^{iδ}, K_zy + i K_zx = row e^{iδ}, K_zz = axial.
 struct MomentArguments {
   std::size_t count = 0;
-  std::size_t points = 0;          ///< of Gauss's rule
-  const double* node = nullptr;    ///< on [0, 1]
+  std::size_t points = 0;        ///< of Gauss's rule
+  const double* node = nullptr;  ///< on [0, 1]
   const double* weight = nullptr;
-  Lanes middle = {}, half = {};    ///< of the part, in x
-  Lanes half_rad = {};             ///< the same in angle, at most π/2
+  Lanes middle = {}, half = {};  ///< of the part, in x
+  Lanes half_rad = {};           ///< the same in angle, at most π/2
   Lanes mean[2] = {}, second[2] = {}, column[2] = {}, row[2] = {}, axial = {};
   Lanes* sum = nullptr;  ///< [entry][count]
 };

@@ -31,7 +31,8 @@ double strength(const RingStiffness& ring) {
   return std::hypot(ring.tangential, ring.outward, ring.upward);
 }
 
-/// Where much of the stiffness comes or goes within a small part of a piece: the ends of such stretches, in [0, period).
+/// Where much of the stiffness comes or goes within a small part of a piece: the ends of such stretches, in [0,
+/// period).
 std::vector<double> find_steps(const EdgeContacts& c, double reach_rad) {
   struct End {
     double angle_rad = 0.0, strength = 0.0;
@@ -304,7 +305,7 @@ class Moments {
 class SpatialBuilder {
  public:
   SpatialBuilder(const EdgeContacts& contacts, const Eigen::Matrix3d& axes_from_tool, const MeshLevel& level,
-          CollocationCase& out)
+                 CollocationCase& out)
       : contacts_(contacts), turn_(axes_from_tool), table_(node_table(level.nodes)), level_(level), out_(out) {}
 
   void build(double fastest_per_rad) {
@@ -321,14 +322,12 @@ class SpatialBuilder {
   void lay_out(double fastest_per_rad) {
     double reach_rad = longest_piece_rad / fastest_per_rad;
     for (const EdgeContact& contact : contacts_.contacts) reach_rad = std::min(reach_rad, contact.delay_rad);
-    const std::vector<Run> runs =
-        divided(find_runs(contacts_), find_steps(contacts_, reach_rad), contacts_.period_rad);
+    const std::vector<Run> runs = divided(find_runs(contacts_), find_steps(contacts_, reach_rad), contacts_.period_rad);
     CutMesh& mesh = out_.mesh;
     mesh.period_rad = contacts_.period_rad;
     mesh.pieces.clear();
-    mesh.topology = {.nodes = level_.nodes,
-                     .form = contacts_.equal_teeth ? Form::whole : Form::blocks,
-                     .directions = 3};
+    mesh.topology = {
+        .nodes = level_.nodes, .form = contacts_.equal_teeth ? Form::whole : Form::blocks, .directions = 3};
     for (const Run& run : runs) {
       if (run.length_rad <= 0.0) continue;
       const bool seen = run.cuts || is_looked_back_to(run);
@@ -349,8 +348,7 @@ class SpatialBuilder {
     if (contacts_.equal_teeth) return false;
     return std::ranges::any_of(contacts_.contacts, [&](const EdgeContact& c) {
       const double from = wrap(c.from_rad - c.delay_rad - run.from_rad, contacts_.period_rad);
-      return from < run.length_rad - same_angle ||
-             from + (c.to_rad - c.from_rad) > contacts_.period_rad + same_angle;
+      return from < run.length_rad - same_angle || from + (c.to_rad - c.from_rad) > contacts_.period_rad + same_angle;
     });
   }
 
@@ -395,9 +393,7 @@ class SpatialBuilder {
     }
     for (std::size_t e = 0; e < pieces.size(); ++e) {
       if (!out_.mesh.topology.pieces[e].records) continue;
-      const auto together_at = [&](double share) {
-        return all_along[e].turned((share - 0.5) * pieces[e].length_rad);
-      };
+      const auto together_at = [&](double share) { return all_along[e].turned((share - 0.5) * pieces[e].length_rad); };
       moments[e].add(together_at, 0.0, 1.0);
       moments[e].flush();
       moments[e].matrix(table_, turn_, out_.pieces[e].stiffness);

@@ -15,15 +15,16 @@ namespace robomill::stability::detail {
 /// Any cutter in three directions.
 class SpatialModel final : public CollocationModel {
  public:
-  /// What cuts at a depth (or whatever a chart varies in its place), with so many rings in each smooth stretch of the cutter.
+  /// What cuts at a depth (or whatever a chart varies in its place), with so many rings in each smooth stretch of the
+  /// cutter.
   using Engage = std::function<cutting::Engagement(double depth, int rings)>;
   struct Parts {
     cutting::Cutter cutter;
     cutting::MillingCoefficients coefficients;
     double feed_per_tooth_m = 0.0;
     modal::TipModes structure = {};  ///< of the tool against the workpiece
-    bool turns_with_tool = false;  ///< the structure's axes are those of T; else those of F
-    bool varies = true;            ///< the engagement depends on the depth
+    bool turns_with_tool = false;    ///< the structure's axes are those of T; else those of F
+    bool varies = true;              ///< the engagement depends on the depth
     Engage engage = {};
   };
   explicit SpatialModel(Parts parts);

@@ -9,7 +9,8 @@ namespace robomill::stability::detail {
 
 /// What a piece of the rotation does to the structure, for a force that is a polynomial through its values f_j at p
 /// Gauss points of the angle: z(end) = E z + Σ_j W_j f_j; displacements there q_i = V_i z + Σ_j G_ij f_j, velocities
-/// likewise, in D directions. z in real form is Re z_1, Im z_1, Re z_2, …; every integral of the exponentials is exact to rounding.
+/// likewise, in D directions. z in real form is Re z_1, Im z_1, Re z_2, …; every integral of the exponentials is exact
+/// to rounding.
 struct PiecePlan {
   double duration_s = 0.0;
   std::vector<double> time_s;    ///< length p: nodes, from the start of the piece
