@@ -135,6 +135,8 @@
 #include "robomill/stability/frequency_response.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/peak_classification.hpp"
+#include "robomill/stability/spatial.hpp"
 #include "robomill/stability/surface_error.hpp"
+#include "robomill/stability/sweep.hpp"
 #include "robomill/stability/uncertainty.hpp"
 #include "robomill/version.hpp"

@@ -145,7 +145,7 @@ SmallVibration simulated(const Drawn& drawn) {
   PostureCut cut;
   cut.cutter = milling.cutter;
   cut.engagement = cutting::engage(milling.cutter, milling.cut,
-                                   {.slices = milling.cutter.kind == cutting::CutterKind::ball_end ? 60 : 240});
+                                   {.slices = milling.cutter.kind == cutting::CutterKind::ball_end ? 60 : 120});
   cut.coefficients = milling.coefficients;
   cut.motion = {.feed_per_tooth_m = milling.feed_per_tooth_m, .spindle_speed_rad_per_s = speed};
   cut.structure = milling.modes_turn_with_tool ? modal::turned(structure, cut.engagement.feed_from_tool) : structure;

@@ -4,7 +4,7 @@
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/force.hpp"
 
-// Method: robomill/stability/README.md, "Three directions"
+// Method: robomill/stability/README.md, "Three directions (`spatial.hpp`, `collocation/spatial_model.hpp`)"
 
 namespace robomill::stability {
 

@@ -5,7 +5,7 @@
 
 #include "robomill/stability/lobes.hpp"
 
-// Method: robomill/stability/README.md, "Three directions"
+// Method: robomill/stability/README.md, "Three directions (`spatial.hpp`, `collocation/spatial_model.hpp`)"
 
 namespace robomill::stability {
 

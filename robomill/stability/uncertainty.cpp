@@ -45,12 +45,24 @@ void draw_modes(Random& random, const Uncertainty& u, modal::ModalModel& model) 
   }
 }
 
+/// A polynomial moves as a whole.
+void draw_coefficient(Random& random, double deviation, std::vector<double>& k) {
+  const double before = k.empty() ? 0.0 : k.back();
+  const double after = drawn(random, before, deviation);
+  if (!k.empty()) k.back() = after;
+}
+
 LobesProblem draw(const LobesProblem& problem, const Uncertainty& u, std::uint64_t sample) {
   Random random(u.seed, sample);
   LobesProblem one = problem;
-  cutting::ForceCoefficients& k = one.milling.coefficients;
-  k.tangential_n_per_m2 = drawn(random, k.tangential_n_per_m2, u.tangential_std_n_per_m2);
-  k.radial_n_per_m2 = drawn(random, k.radial_n_per_m2, u.radial_std_n_per_m2);
+  if (one.spatial) {
+    draw_coefficient(random, u.tangential_std_n_per_m2, one.spatial->coefficients.tangential_n_per_m2);
+    draw_coefficient(random, u.radial_std_n_per_m2, one.spatial->coefficients.radial_n_per_m2);
+  } else {
+    cutting::ForceCoefficients& k = one.drilling ? one.drilling->coefficients : one.milling.coefficients;
+    k.tangential_n_per_m2 = drawn(random, k.tangential_n_per_m2, u.tangential_std_n_per_m2);
+    k.radial_n_per_m2 = drawn(random, k.radial_n_per_m2, u.radial_std_n_per_m2);
+  }
   draw_modes(random, u, one.dynamics);
   draw_modes(random, u, one.workpiece_dynamics);
   return one;

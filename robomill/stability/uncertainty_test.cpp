@@ -8,6 +8,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "testing/stability/problems.hpp"
+#include "testing/stability/spatial_cases.hpp"
 
 namespace robomill::stability {
 namespace uncertainty_test {
@@ -120,6 +121,23 @@ TEST(Uncertainty, RejectsWhatCannotBe) {
   EXPECT_EQ(field([](Uncertainty& u) { u.frequency_std_ratio = 2.0; }), "frequency_std_ratio");
   EXPECT_EQ(field([](Uncertainty& u) { u.damping_std_ratio = 10.0; }), "damping_std_ratio");
   EXPECT_EQ(field([](Uncertainty& u) { u.residue_std_ratio = 5.0; }), "residue_std_ratio");
+}
+
+TEST(Uncertainty, DrawsTheCoefficientsOfACutInThreeDirections) {
+  const LobesProblem problem = testing::spatial_references()[0].problem;
+  LobesOptions options;
+  options.spindle_speed_rad_per_s = {11500.0 * testing::rpm, 12000.0 * testing::rpm};
+  options.axial_depth_m = {0.0, 0.6e-3};
+  Uncertainty u;
+  u.samples = 20;
+  u.grid = {2, 13};
+  u.tangential_std_n_per_m2 = 1e8;
+  const UncertainLimits wide = uncertain_limits(problem, options, u);
+  EXPECT_GT(wide.limit_95_percent_m(1), 1.02 * wide.limit_5_percent_m(1));
+  u.tangential_std_n_per_m2 = 0.0;
+  const UncertainLimits narrow = uncertain_limits(problem, options, u);
+  EXPECT_EQ(narrow.limit_95_percent_m(1), narrow.limit_5_percent_m(1));
+  EXPECT_NEAR(narrow.limit_50_percent_m(1), 0.3295839e-3, 2e-9);
 }
 
 }  // namespace uncertainty_test

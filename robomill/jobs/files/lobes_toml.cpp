@@ -353,6 +353,11 @@ void load_dynamics(LobesFile& file) {
   };
   if (!file.frf.empty()) file.problem.measured = measured(file.frf);
   if (!file.workpiece_frf.empty()) file.problem.workpiece_measured = measured(file.workpiece_frf);
+  const auto along_axis = [](const modal::Dof& dof) { return dof.axis == modal::Axis::z; };
+  if (file.problem.in_three_directions() && !file.problem.dynamics.modes.empty() &&
+      std::ranges::none_of(file.problem.dynamics.responses, along_axis)) {
+    file.notes.push_back("z was not measured and is taken as rigid.");
+  }
   if (file.drilling) return;
   const auto words = complete_directions(file.problem.dynamics, file.problem.measured, file.directions,
                                          file.path.string(), "dynamics");

@@ -377,6 +377,7 @@ class SpatialBuilder {
   void answer_now() {
     const std::vector<CutMesh::Piece>& pieces = out_.mesh.pieces;
     std::vector<Moments> moments;
+    moments.reserve(pieces.size());
     for (const CutMesh::Piece& piece : pieces) moments.emplace_back(table_.moments, piece.length_rad);
     std::vector<Harmonics> all_along(pieces.size());  // at the middle, of edges that cut over the whole piece
     for (const EdgeContact& contact : contacts_.contacts) {
