@@ -84,7 +84,7 @@ void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& 
   out.problem.spatial = milling;
 }
 
-/// The engagement at both ends of the chart shows what only the cut itself can: a shank in it, coefficients below 0.
+/// The engagement over the chart shows what only the cut itself can: a shank in it, coefficients below 0.
 void check_spatial(io::TomlFile& file, LobesFile& out) {
   using stability::SweptParameter;
   stability::SpatialMilling& milling = *out.problem.spatial;
@@ -101,11 +101,14 @@ void check_spatial(io::TomlFile& file, LobesFile& out) {
   };
   file.locate([&] {
     milling.validate();
-    for (const double end : out.sweep_range) {
+    constexpr int looks = 8;
+    for (int i = 0; i <= looks; ++i) {
+      const double value = out.sweep_range[0] + (out.sweep_range[1] - out.sweep_range[0]) * i / looks;
       cutting::Cut cut = milling.cut;
-      if (out.sweep == SweptParameter::lead) cut.lead_rad = end;
-      if (out.sweep == SweptParameter::tilt) cut.tilt_rad = end;
+      if (out.sweep == SweptParameter::lead) cut.lead_rad = value;
+      if (out.sweep == SweptParameter::tilt) cut.tilt_rad = value;
       look(cut);
+      if (out.sweep != SweptParameter::lead && out.sweep != SweptParameter::tilt) break;  // all are alike
     }
   });
   if (tip_cuts && milling.cutter.kind == cutting::CutterKind::ball_end) {
