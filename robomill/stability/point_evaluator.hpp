@@ -32,6 +32,9 @@ class PointEvaluator {
   virtual ~PointEvaluator() = default;
   /// One to eight points; out has as many.
   virtual void evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) = 0;
+  /// How many points to ask for where the later ones may turn out not to be needed: fewer than eight where a point costs
+  /// most before they are solved together.
+  [[nodiscard]] virtual std::size_t at_a_time() const { return lane_count; }
   [[nodiscard]] long long evaluations() const { return evaluations_; }
   [[nodiscard]] long long unsettled() const { return unsettled_; }
 

@@ -243,8 +243,8 @@ class Climb {
     std::vector<std::size_t> marks;
     for (std::size_t d = 0; d < steps; d += stride) marks.push_back(d);
     marks.push_back(steps);
-    for (std::size_t first = 0; first < marks.size(); first += lane_count) {
-      const std::size_t size = std::min(lane_count, marks.size() - first);
+    for (std::size_t first = 0; first < marks.size(); first += evaluator_.at_a_time()) {
+      const std::size_t size = std::min(evaluator_.at_a_time(), marks.size() - first);
       look(std::span(marks).subspan(first, size));
       for (std::size_t i = std::max<std::size_t>(first, 1); i < first + size; ++i) {
         if (between(marks[i - 1], marks[i])) return radii_;

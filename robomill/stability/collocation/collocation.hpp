@@ -17,6 +17,7 @@ class CollocationEvaluator final : public PointEvaluator {
   CollocationEvaluator(const CollocationModel& model, double tolerance, const ArnoldiOptions& options = {})
       : model_(model), tolerance_(tolerance), arnoldi_(options) {}
   void evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) override;
+  [[nodiscard]] std::size_t at_a_time() const override { return model_.at_a_time(); }
 
   /// Without any search, all at one level.
   void evaluate_at(std::span<const OperatingPoint> points, int level, std::span<Dominant> out);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 
+#include "robomill/base/lanes.hpp"
 #include "robomill/stability/collocation/collocation_case.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/motion.hpp"
@@ -26,6 +27,8 @@ class CollocationModel {
   virtual void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const = 0;
   /// Where the search for an accuracy starts.
   [[nodiscard]] virtual int first_level(const OperatingPoint& point, double tolerance) const = 0;
+  /// As of PointEvaluator.
+  [[nodiscard]] virtual std::size_t at_a_time() const { return lane_count; }
   /// Length of the state beyond which no finer level is taken.
   [[nodiscard]] virtual std::size_t largest_state() const = 0;
   /// Rotation over which the spectral radius is reported, and that of the whole period.

@@ -35,6 +35,7 @@ class SpatialModel final : public CollocationModel {
   void expect(std::span<const double> depths_m) override { expected_.assign(depths_m.begin(), depths_m.end()); }
   void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const override;
   [[nodiscard]] int first_level(const OperatingPoint& point, double tolerance) const override;
+  [[nodiscard]] std::size_t at_a_time() const override { return parts_.varies ? 3 : lane_count; }
   /// With several delays a piece has a matrix for each other one that it looks back to.
   [[nodiscard]] std::size_t largest_state() const override { return equal_teeth_ ? 4000 : 1500; }
   [[nodiscard]] double reported_rad() const override { return period_rad_; }
