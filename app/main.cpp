@@ -126,7 +126,8 @@ void CommandLine::add_cut_verbs() {
   CLI::App* sub =
       verb("lobes", "modes and a cut to stability lobes", [this](Progress& p) { return run(lobes, common, p); });
   sub->add_option("lobes", lobes.input, "lobes.toml")->required();
-  sub->add_option("--at", lobes.at, "RPM,MM: spectral radius at this point; may be repeated");
+  sub->add_option("--at", lobes.at,
+                  "RPM,MM (degrees where an angle is swept): spectral radius at this point; may be repeated");
   sub->add_flag("--compare", lobes.compare, "the limits by every method: error against collocation and time");
 
   sub = verb("explain", "measured peaks to what they are: rotation, tooth passing, or chatter and its mode",

@@ -11,6 +11,10 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   LobesJobResult result;
   LobesFile& cut = result.cut;
   cut = read_lobes(job.lobes);
+  if (cut.problem.in_three_directions() && !(cut.frf.empty() && cut.workpiece_frf.empty())) {
+    throw InvalidInput(job.lobes.string(), "a cut in three directions needs modes, not FRFs",
+                       "Fit them: robomill modes");
+  }
   load_dynamics(cut);
   cut.validate();
   cut.options.points = job.points;

@@ -27,6 +27,9 @@ struct ROBOMILL_API LobesProblem {
   std::optional<SpatialMilling> spatial = {};
   std::optional<Drilling> drilling = {};
   [[nodiscard]] bool in_three_directions() const { return spatial.has_value() || drilling.has_value(); }
+  /// @param what  that cannot be done otherwise, as "the surface"
+  /// @throws InvalidInput unless the cut is `milling`
+  void require_plane(const char* what) const;
   /// Modes at the tool tip in fixed axes x, y and, for a cut in three directions, z; others are ignored, and a
   /// direction that is not there is rigid. The stiffness residuals (real parts) act as a static compliance, the mass
   /// residuals are left out.
@@ -123,7 +126,8 @@ struct PointResult {
   BifurcationType kind = BifurcationType::hopf;
   modal::ModeId mode = {};  ///< that moves most in it; unknown where it overflows
   /// Of a cut in three directions in a chart or a sweep: smallest factor on its stiffness at which the spectral radius
-  /// is 1 (GainMargin in sweep.hpp); infinity: none up to 1,000. NaN: not looked for.
+  /// is 1 (GainMargin in sweep.hpp); infinity: none up to 1,000; 0.001: unstable there already.
+  /// NaN: not looked for.
   double gain_margin = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <string>
 
 #include "robomill/base/error.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -69,12 +70,23 @@ void LobesOptions::validate() const {
     require_positive("points.spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
     require_non_negative("points.axial_depth_m", point.axial_depth_m, "m");
     require_depth("points.axial_depth_m", point.axial_depth_m);
+    require_positive("points.gain", point.gain, "");
   }
+}
+
+void LobesProblem::require_plane(const char* what) const {
+  if (!in_three_directions()) return;
+  throw InvalidInput(spatial ? "spatial" : "drilling",
+                     std::string("must not be there: ") + what + " is known of an upright flat end in x and y alone");
 }
 
 void LobesProblem::validate() const {
   if (spatial && drilling) throw InvalidInput("spatial", "must not stand beside drilling");
   if (spatial) spatial->validate();
+  if (spatial && spatial->modes_turn_with_tool && !workpiece_dynamics.modes.empty()) {
+    throw InvalidInput("modes_turn_with_tool",
+                       "must be false where the workpiece vibrates: it does not lean with the tool");
+  }
   if (drilling) drilling->validate();
   if (!in_three_directions()) milling.validate();
   require_finite("feed_direction_rad", feed_direction_rad, "rad");

@@ -32,8 +32,8 @@ class PointEvaluator {
   virtual ~PointEvaluator() = default;
   /// One to eight points; out has as many.
   virtual void evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) = 0;
-  /// How many points to ask for where the later ones may turn out not to be needed: fewer than eight where a point costs
-  /// most before they are solved together.
+  /// How many points to ask for where the later ones may turn out not to be needed: fewer than eight where a point
+  /// costs most before they are solved together.
   [[nodiscard]] virtual std::size_t at_a_time() const { return lane_count; }
   [[nodiscard]] long long evaluations() const { return evaluations_; }
   [[nodiscard]] long long unsettled() const { return unsettled_; }
@@ -54,6 +54,7 @@ class Scheme {
 
 /// @throws InvalidInput if the method knows no such problem
 void require_known(const LobesProblem& problem, Method method);
+/// @throws InvalidInput as require_known
 std::unique_ptr<Scheme> make_scheme(const LobesProblem& problem, const LobesOptions& options);
 std::unique_ptr<Scheme> semi_discretization(const LobesProblem& problem, int intervals);
 std::unique_ptr<Scheme> collocation(const LobesProblem& problem, double tolerance);

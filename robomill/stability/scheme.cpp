@@ -15,6 +15,7 @@ void require_known(const LobesProblem& problem, Method method) {
 }
 
 std::unique_ptr<Scheme> make_scheme(const LobesProblem& problem, const LobesOptions& options) {
+  require_known(problem, options.method);
   if (problem.has_measured()) {
     throw InvalidInput(
         "dynamics.frf",

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "robomill/base/error.hpp"
+#include "robomill/stability/surface_error.hpp"
 #include "robomill/stability/sweep.hpp"
 #include "testing/stability/problems.hpp"
 #include "testing/stability/spatial_cases.hpp"
@@ -151,12 +152,29 @@ TEST(Spatial, ADrillAlongItsAxisHasTheTurnedShaftsLimit) {
   EXPECT_LT(lowest, 1.01 * limit_m);
 }
 
+TEST(Spatial, GainMarginKnowsWhereThereIsNone) {
+  LobesProblem problem = testing::spatial_references()[0].problem;
+  EXPECT_EQ(gain_margin(problem, {12000 * rpm, 0.0}).status, GainMargin::Status::unconditionally_stable);
+  EXPECT_NEAR(evaluate_point(problem, {}, {12000 * rpm, 0.0}).spectral_radius,
+              std::exp(-0.03 * 2.0 * std::numbers::pi * 850.0 * 0.0025), 1e-6);  // the slowest mode fades alone
+  problem.dynamics = testing::spatial_model({{850.0, 1e-6, 1e-6, Eigen::Vector3d::UnitX()}});
+  EXPECT_EQ(gain_margin(problem, {12000 * rpm, 1e-3}).status, GainMargin::Status::below_range);
+}
+
 TEST(Spatial, RejectsWhatItCannotJudge) {
   LobesProblem problem = testing::spatial_references()[0].problem;
   LobesOptions options;
   options.method = Method::semi_discretization;
   EXPECT_THROW(static_cast<void>(evaluate_point(problem, options, {1000.0, 1e-4})), InvalidInput);
   problem.spatial->cutter.mill.runout_m = 1e-5;
+  EXPECT_THROW(problem.validate(), InvalidInput);
+  problem = testing::spatial_references()[0].problem;
+  problem.spatial->coefficients.tangential_n_per_m2 = {1500.0};
+  EXPECT_THROW(static_cast<void>(evaluate_point(problem, {}, {1000.0, 1e-4})), InvalidInput);
+  EXPECT_THROW(static_cast<void>(surface_point(problem, {1000.0, 1e-4})), InvalidInput);
+  problem = testing::spatial_references()[0].problem;
+  problem.spatial->modes_turn_with_tool = true;
+  problem.workpiece_dynamics = problem.dynamics;
   EXPECT_THROW(problem.validate(), InvalidInput);
   problem = testing::benchmark(0.3);
   SweepOptions sweep;

@@ -164,6 +164,7 @@ SurfacePoint orbit_at(const MillingModel& model, const OperatingPoint& point, in
 }
 
 void require_feed(const LobesProblem& problem) {
+  problem.require_plane("the surface");
   if (!(problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput("feed_per_tooth_m", problem.milling.feed_per_tooth_m, "m", "must be > 0 for a surface");
   }

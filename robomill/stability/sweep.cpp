@@ -54,6 +54,12 @@ void SweepOptions::validate() const {
   for (const int count : grid) {
     if (count < 2 || count > 2000) throw InvalidInput("grid", count, "", "must lie between 2 and 2000");
   }
+  for (const OperatingPoint& point : points) {
+    require_positive("points.spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
+    require_finite("points.value", point.axial_depth_m, unit);
+    if (!angle) require_non_negative("points.value", point.axial_depth_m, unit);
+    require_positive("points.gain", point.gain, "");
+  }
   if (!(tolerance >= 1e-10 && tolerance <= 0.1)) {
     throw InvalidInput("tolerance", tolerance, "", "must lie between 1e-10 and 0.1");
   }
@@ -64,6 +70,10 @@ SweepResult compute_sweep(const LobesProblem& problem, const SweepOptions& optio
   problem.validate();
   options.validate();
   if (!problem.spatial) throw InvalidInput("spatial", "must be there: a sweep is one of a cut in three directions");
+  if (options.parameter == SweptParameter::radial_depth &&
+      problem.spatial->cut.direction == cutting::MillingDirection::slot) {
+    throw InvalidInput("parameter", "must not be the step-over of a slot, which has no neighbour");
+  }
   const std::unique_ptr<Scheme> scheme = sweep_collocation(problem, options.parameter, options.tolerance);
   const Axes axes = {even(options.spindle_speed_rad_per_s, options.grid[0]), even(options.range, options.grid[1])};
   scheme->expect(axes.axial_depth_m);

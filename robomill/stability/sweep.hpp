@@ -53,14 +53,14 @@ struct GainMargin {
   /// unstable.
   enum class Status { found, unconditionally_stable, below_range };
   Status status = Status::unconditionally_stable;
-  double gain = 0.0;  ///< > 1: stable as it is
+  double gain = 0.0;  ///< > 1: stable as it is; 0.001 where below_range
   double chatter_frequency_hz = 0.0;
   BifurcationType kind = BifurcationType::hopf;
   modal::ModeId mode = {};
 };
 
-/// At one point, by collocation; the engagement stays what it is. Factors are looked at in steps of a tenth and refined
-/// to the tolerance.
+/// At one point, by collocation; the engagement stays what it is. Every fourth of factors a tenth apart is looked at,
+/// those between where the radius comes near 1; the first that is unstable is refined to the tolerance.
 /// @throws InvalidInput as evaluate_point
 [[nodiscard]] ROBOMILL_API GainMargin gain_margin(const LobesProblem& problem, const OperatingPoint& point,
                                                   double tolerance = 1e-6);

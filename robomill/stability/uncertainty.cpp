@@ -4,11 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/cutting/polynomial.hpp"
 #include "robomill/stability/chart/chart.hpp"
 
 namespace robomill::stability {
@@ -45,11 +47,11 @@ void draw_modes(Random& random, const Uncertainty& u, modal::ModalModel& model) 
   }
 }
 
-/// A polynomial moves as a whole.
+/// A polynomial moves as a whole, by no more than leaves a tenth of its value at the side of the cutter.
 void draw_coefficient(Random& random, double deviation, std::vector<double>& k) {
-  const double before = k.empty() ? 0.0 : k.back();
-  const double after = drawn(random, before, deviation);
-  if (!k.empty()) k.back() = after;
+  const double side = cutting::detail::polynomial(k, 0.5 * std::numbers::pi);
+  const double after = drawn(random, side, deviation);
+  if (!k.empty()) k.back() += after - side;
 }
 
 LobesProblem draw(const LobesProblem& problem, const Uncertainty& u, std::uint64_t sample) {

@@ -404,6 +404,21 @@ TEST(AnalyticEngagement, RejectsWhatCannotBeCut) {
       "slices");
 }
 
+// A ball whose edges end below its equator: what stands above them is shank.
+TEST(AnalyticEngagement, ABallWithShortEdgesHasAShank) {
+  Cutter cutter;
+  cutter.kind = CutterKind::ball_end;
+  cutter.mill = {.teeth = 2, .diameter_m = 6e-3};
+  cutter.cutting_height_m = 1e-3;
+  const Cut deep = {.axial_depth_m = 2e-3, .radial_depth_m = 0.5e-3};
+  EXPECT_THROW(static_cast<void>(engage(cutter, deep)), InvalidInput);
+  const Cut shallow = {.axial_depth_m = 0.5e-3, .radial_depth_m = 0.5e-3};
+  Cutter whole = cutter;
+  whole.cutting_height_m = 0.0;
+  const double expected = patch_area_m2(engage(whole, shallow));
+  EXPECT_NEAR(patch_area_m2(engage(cutter, shallow)), expected, 1e-5 * expected);
+}
+
 TEST(AnalyticEngagement, RejectsACutOnTheShank) {
   Cutter cutter = ball_end(3.0 * mm);
   cutter.cutting_height_m = 3.0 * mm;

@@ -32,7 +32,8 @@ Patch::Patch(const Cutter& cutter, const Cut& cut)
   if (is_ball) ball_radius_ = 0.5 * cutter.mill.diameter_m;
   const bool flat = cut.curvature_along_feed_per_m == 0.0 && cut.curvature_across_feed_per_m == 0.0;
   if (cut.direction != MillingDirection::slot) add_neighbour(cut, is_ball, flat);
-  if (is_ball && flat && !reaches_from(ball_radius_)) ball_.emplace(ball_radius_, cut, rotation_);
+  const bool whole_ball = is_ball && profile_.height_m() >= ball_radius_;
+  if (whole_ball && flat && !reaches_from(ball_radius_)) ball_.emplace(ball_radius_, cut, rotation_);
 }
 
 void Patch::add_neighbour(const Cut& cut, bool is_ball, bool flat) {

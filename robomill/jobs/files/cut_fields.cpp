@@ -65,6 +65,12 @@ void read_cutter(io::TomlFile& file, cutting::Cutter& cutter) {
                                     {"bull-nose", cutting::CutterKind::bull_nose},
                                     {"general", cutting::CutterKind::general}},
                                    cutter.kind);
+  if (cutter.kind == cutting::CutterKind::flat_end || cutter.kind == cutting::CutterKind::ball_end) {
+    for (const char* key : {"tool.corner_radius_mm", "tool.corner_center_radius_mm", "tool.corner_center_height_mm",
+                            "tool.bottom_angle_deg", "tool.side_angle_deg"}) {
+      if (file.has(key)) throw file.reject(key, "is no part of this kind of cutter", "tool.kind says which it is");
+    }
+  }
   read_mill(file, cutter.mill);
   const auto length = [&](const char* key, const char* member, double& out) {
     file.number(key, member, units::mm, out);

@@ -23,7 +23,8 @@ namespace {
 
 /// What a drill needs; its lips are the tool's teeth, and in the cut all round.
 void read_drilling(io::TomlFile& file, LobesFile& out) {
-  for (const char* key : {"tool.pitch_deg", "tool.runout_um", "process_damping", "speed_variation"}) {
+  for (const char* key : {"tool.kind", "tool.corner_radius_mm", "tool.cutting_height_mm", "tool.pitch_deg",
+                          "tool.runout_um", "process_damping", "speed_variation", "lobes.sweep", "surface_error"}) {
     if (file.has(key)) throw file.reject(key, "is no part of drilling");
   }
   file.number("tool.point_angle_deg", "point_angle_rad", units::deg, out.point_angle_rad);
@@ -69,8 +70,11 @@ void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& 
   file.number("cut.tilt_deg", "tilt_rad", units::deg, milling.cut.tilt_rad);
   if (!read_direction(file, milling.cut.direction)) file.require("cut.direction", "\"up\", \"down\" or \"slot\"");
   const bool slot = milling.cut.direction == cutting::MillingDirection::slot;
+  if (slot && out.sweep == stability::SweptParameter::radial_depth) {
+    throw file.reject("lobes.sweep", "must not be the step-over of a slot, which has no neighbour");
+  }
   const bool radial = read_radial_depth(file, milling.cut.radial_depth_m);
-  if (!radial && !slot && out.sweep != stability::SweptParameter::radial_depth) file.require("cut.radial_depth_mm");
+  if (!radial && !slot) file.require("cut.radial_depth_mm");
   const bool depth = file.number("cut.axial_depth_mm", "cut.axial_depth_m", units::mm, milling.cut.axial_depth_m);
   if (!depth && out.sweep != stability::SweptParameter::axial_depth) {
     file.require("cut.axial_depth_mm", "The chart varies something else");
@@ -89,7 +93,6 @@ void check_spatial(io::TomlFile& file, LobesFile& out) {
   using stability::SweptParameter;
   stability::SpatialMilling& milling = *out.problem.spatial;
   if (out.sweep == SweptParameter::axial_depth) milling.cut.axial_depth_m = out.options.axial_depth_m[1];
-  if (out.sweep == SweptParameter::radial_depth) milling.cut.radial_depth_m = out.sweep_range[1];
   constexpr double tip_rad = 5.0 * units::deg;
   bool tip_cuts = false;
   const auto look = [&](const cutting::Cut& cut) {
@@ -105,6 +108,7 @@ void check_spatial(io::TomlFile& file, LobesFile& out) {
     for (int i = 0; i <= looks; ++i) {
       const double value = out.sweep_range[0] + (out.sweep_range[1] - out.sweep_range[0]) * i / looks;
       cutting::Cut cut = milling.cut;
+      if (out.sweep == SweptParameter::radial_depth) cut.radial_depth_m = out.sweep_range[1];
       if (out.sweep == SweptParameter::lead) cut.lead_rad = value;
       if (out.sweep == SweptParameter::tilt) cut.tilt_rad = value;
       look(cut);
@@ -226,6 +230,9 @@ void read_chart(io::TomlFile& file, LobesFile& out) {
       break;
   }
   if (out.sweep != SweptParameter::axial_depth) {
+    for (const char* key : {"lobes.method", "lobes.intervals", "lobes.output", "uncertainty"}) {
+      if (file.has(key)) throw file.reject(key, "does not go with a sweep of another parameter than the axial depth");
+    }
     options.axial_depth_m = {0.0, std::max(out.problem.spatial->cut.axial_depth_m, 1e-6)};  // does not count
     options.grid = {60, 40};
   }
@@ -284,7 +291,14 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   file.integers("dynamics.keep_modes", "keep_modes", out.problem.keep_modes);
   read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf, out.problem.workpiece_dynamics);
   read_chart(file, out);
-  if (spatial) check_spatial(file, out);
+  if (spatial) {
+    const bool part = !out.workpiece_modes.empty() || !out.problem.workpiece_dynamics.modes.empty();
+    if (part && out.problem.spatial->modes_turn_with_tool) {
+      throw file.reject("dynamics.axes",
+                        "must be \"feed\" beside workpiece_dynamics: a part does not lean with the tool");
+    }
+    check_spatial(file, out);
+  }
   if (out.drilling && out.options.axial_depth_m[1] > 0.5 * cutter.mill.diameter_m * (1.0 + 1e-12)) {
     throw file.reject("lobes.axial_depth_mm", "must end at the drill's radius at most",
                       "Of drilling it is the lips' radial width, from the pilot hole to the rim");

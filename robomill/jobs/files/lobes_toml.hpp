@@ -68,7 +68,7 @@ ROBOMILL_API void load_dynamics(LobesFile& file);
 ROBOMILL_API void require_plane(const LobesFile& file, const std::string& hint = {});
 
 /// A milling cut in x and y with the structure that its file names, everything checked.
-/// @param hint  for whoever gave drilling
+/// @param hint  for whoever gave another cut
 /// @throws InvalidInput as read_lobes, load_dynamics and validate, or as require_plane
 [[nodiscard]] ROBOMILL_API LobesFile read_milling(const std::filesystem::path& path, const std::string& hint = {});
 

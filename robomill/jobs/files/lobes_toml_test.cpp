@@ -272,6 +272,27 @@ TEST(LobesToml, ReadsAnyCutterInAnyPosture) {
   EXPECT_THROW(require_plane(file), InvalidInput);
 }
 
+TEST(LobesToml, RejectsWhatASweepCannotDo) {
+  const test::Folder folder;
+  const std::string sweep = "sweep = \"radial_depth\"\nradial_depth_mm = [0.1, 0.8]\n";
+  const std::string text = test_support::replaced(ball_without("axial_depth_mm = [0, 1]\n", sweep), "lead_deg = -10",
+                                                  "axial_depth_mm = 0.2");
+  const LobesFile file = read_lobes(folder.file("lobes.toml", text));
+  EXPECT_NEAR(file.problem.spatial->cut.radial_depth_m, 0.8e-3, 1e-15);
+  EXPECT_NEAR(file.sweep_range[0], 0.1e-3, 1e-15);
+  const std::pair<std::array<std::string, 2>, std::string> cases[] = {
+      {{"direction = \"up\"", "direction = \"slot\""},
+       "lobes.sweep = \"radial_depth\"; must not be the step-over of a slot"},
+      {{"[lobes]", "[lobes]\nmethod = \"zeroth-order\""}, "lobes.method = \"zeroth-order\"; does not go with a sweep"},
+      {{"[lobes]", "[uncertainty]\nsamples = 20\n[lobes]"}, "uncertainty"},
+      {{"direction = \"up\"", "kind = \"drilling\"\nfeed_per_revolution_mm = 0.1"}, "is no part of drilling"}};
+  for (const auto& [change, expected] : cases) {
+    const auto path = folder.file("lobes.toml", test_support::replaced(text, change[0], change[1]));
+    const std::string said = test::rejection([&] { static_cast<void>(read_lobes(path)); });
+    EXPECT_NE(said.find(expected), std::string::npos) << said;
+  }
+}
+
 TEST(LobesToml, NamesWhatACutInThreeDirectionsLacks) {
   const test::Folder folder;
   const std::pair<std::array<std::string, 2>, std::string> cases[] = {
@@ -283,7 +304,11 @@ TEST(LobesToml, NamesWhatACutInThreeDirectionsLacks) {
       {{"axial_depth_mm = [0, 1]", "axial_depth_mm = [0, 20]"}, "axial_depth"},
       {{"axial_n_per_mm2 = 300", "axial_n_per_mm2 = 0.3"}, "coefficients.axial_n_per_mm2 = 0.3 N/mm^2"},
       {{"feed_per_tooth_mm = 0.05", "feed_per_tooth_mm = 0.05\n[process_damping]\nfriction = 0.3"}, "process_damping"},
-      {{"axes = \"tool\"", "axes = \"base\""}, "dynamics.axes"}};
+      {{"axes = \"tool\"", "axes = \"base\""}, "dynamics.axes"},
+      {{"[lobes]",
+        "[workpiece_dynamics]\nx = [{ frequency_hz = 300, damping_ratio = 0.02, modal_mass_kg = 9 }]\n[lobes]"},
+       "a part does not lean with the tool"},
+      {{"helix_deg = 30", "helix_deg = 30\ncorner_radius_mm = 1"}, "tool.corner_radius_mm"}};
   for (const auto& [change, expected] : cases) {
     const auto path = folder.file("lobes.toml", ball_without(change[0], change[1]));
     const std::string said = test::rejection([&] { static_cast<void>(read_lobes(path)); });

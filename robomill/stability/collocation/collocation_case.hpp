@@ -52,7 +52,7 @@ struct NodeForces {
   using Vector = Eigen::Matrix<std::complex<double>, D, 1>;
   std::vector<double> time_s, weight_s;  ///< of the nodes; weights integrate over the period
   std::vector<Vector> force_n;
-  std::vector<Vector> displacement_m;    ///< at the nodes of pieces with contact; Form::several alone
+  std::vector<Vector> displacement_m;    ///< at the nodes of pieces with contact; Form::several and blocks
   std::vector<Eigen::VectorXcd> starts;  ///< modes at the start of each piece
   Eigen::VectorXcd end;                  ///< state after the period
 };

@@ -1,5 +1,6 @@
 #include "robomill/stability/collocation/edge_contacts.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "robomill/base/units.hpp"
@@ -31,6 +32,10 @@ EdgeContacts edge_contacts(const cutting::Cutter& cutter, const cutting::Engagem
   out.equal_teeth = mill.has_equal_pitch() && mill.has_equal_helix() && mill.runout_m == 0.0;
   out.period_rad = out.equal_teeth ? units::revolution / mill.teeth : units::revolution;
   out.teeth = out.equal_teeth ? 1 : mill.teeth;
+  if (!engagement.slices.empty()) {
+    const auto [low, high] = std::ranges::minmax_element(engagement.slices, {}, &cutting::EdgeSlice::position_rad);
+    coefficients.validate(low->position_rad, high->position_rad);
+  }
   const Eigen::RowVector3d feed = engagement.feed_from_tool.row(0);
   cutting::detail::ChipShare chips;
   for (std::size_t i = 0; i < engagement.slices.size(); ++i) {

@@ -33,7 +33,7 @@ struct EdgeContacts {
 };
 
 /// @param feed_per_tooth_m  decides with runout who misses; > 0 where there is runout
-/// @throws InvalidInput if a coefficient is negative at an engaged angle
+/// @throws InvalidInput as coefficients.validate over the engaged angles
 [[nodiscard]] EdgeContacts edge_contacts(const cutting::Cutter& cutter, const cutting::Engagement& engagement,
                                          const cutting::MillingCoefficients& coefficients, double feed_per_tooth_m);
 

@@ -106,7 +106,8 @@ SpatialModel::SpatialModel(Parts parts)
 }
 
 int SpatialModel::first_level(const OperatingPoint& point, double tolerance) const {
-  return level_for(period_rad_ * fastest_rad_per_s_ / point.spindle_speed_rad_per_s, 1.0, tolerance);
+  const double quicker = std::sqrt(std::max(point.gain, 1.0));
+  return level_for(period_rad_ * fastest_rad_per_s_ / point.spindle_speed_rad_per_s, quicker, tolerance);
 }
 
 std::shared_ptr<const SpatialModel::Looked> SpatialModel::look(double depth, int rings) const {

@@ -24,18 +24,17 @@ class SpatialModel final : public CollocationModel {
     double feed_per_tooth_m = 0.0;
     modal::TipModes structure = {};  ///< of the tool against the workpiece
     bool turns_with_tool = false;    ///< the structure's axes are those of T; else those of F
-    bool varies = true;              ///< the engagement depends on the depth
     Engage engage = {};
   };
   explicit SpatialModel(Parts parts);
 
   [[nodiscard]] std::size_t modes() const override { return static_cast<std::size_t>(tip_.pole.size()); }
-  [[nodiscard]] bool depends_on_depth() const override { return parts_.varies; }
+  [[nodiscard]] bool depends_on_depth() const override { return true; }
   [[nodiscard]] double factor(const OperatingPoint& point) const override { return point.gain; }
   void expect(std::span<const double> depths_m) override { expected_.assign(depths_m.begin(), depths_m.end()); }
   void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const override;
   [[nodiscard]] int first_level(const OperatingPoint& point, double tolerance) const override;
-  [[nodiscard]] std::size_t at_a_time() const override { return parts_.varies ? 3 : lane_count; }
+  [[nodiscard]] std::size_t at_a_time() const override { return 3; }
   /// With several delays a piece has a matrix for each other one that it looks back to.
   [[nodiscard]] std::size_t largest_state() const override { return equal_teeth_ ? 4000 : 1500; }
   [[nodiscard]] double reported_rad() const override { return period_rad_; }
