@@ -31,6 +31,7 @@ void add_surface(Operation& op, const stability::LobesProblem& problem) {
 Recommendation choose(const stability::LobesProblem& problem, const stability::LobesOptions& lobes,
                       const std::vector<stability::Limit>& limits, RecommendOptions options, const FinishLimits& finish,
                       Progress& progress) {
+  require_finishable(problem, finish);
   const cutting::Milling& milling = problem.milling;
   options.teeth = milling.tool.teeth;
   options.diameter_m = milling.tool.diameter_m;
@@ -38,7 +39,6 @@ Recommendation choose(const stability::LobesProblem& problem, const stability::L
   options.searched_depth_m = lobes.axial_depth_m[1];
   // The mean torque is proportional to depth, so one metre of depth gives the factor.
   options.torque_per_depth_n = cutting::mean_load(milling, 1.0, milling.feed_per_tooth_m, 1.0).torque_n_m;
-  require_finishable(problem, finish);
   std::vector<DepthLimit> depths(limits.size());
   if (finish.any()) progress.start("finishing depths", limits.size());
   parallel_for(limits.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -30,6 +30,7 @@ void FinishLimits::validate() const {
 }
 
 void require_finishable(const stability::LobesProblem& problem, const FinishLimits& limits) {
+  problem.require_plane("a recommendation");
   limits.validate();
   if (!limits.any()) return;
   if (problem.has_measured()) {
