@@ -63,8 +63,7 @@ std::string percent(double share) {
 }
 
 void print_sweep(const stability::SweepResult& sweep) {
-  using stability::SweptParameter;
-  const bool angle = sweep.parameter == SweptParameter::lead || sweep.parameter == SweptParameter::tilt;
+  const bool angle = stability::is_angle(sweep.parameter);
   const double unit = angle ? units::deg : units::mm;
   const char* const name = angle ? "degrees" : "mm";
   const std::string_view what = name_in(stability::swept_names, sweep.parameter);

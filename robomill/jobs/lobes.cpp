@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/units.hpp"
 
 namespace robomill::jobs {
 
@@ -20,10 +19,6 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   cut.options.points = job.points;
   if (cut.sweep != stability::SweptParameter::axial_depth) {
     if (job.compare) throw InvalidInput(job.lobes.string(), "lobes.sweep does not go with a comparison of methods");
-    const bool angle = cut.sweep == stability::SweptParameter::lead || cut.sweep == stability::SweptParameter::tilt;
-    for (stability::OperatingPoint& point : cut.options.points) {
-      if (angle) point.axial_depth_m *= units::deg / units::mm;
-    }
     result.sweep = stability::compute_sweep(cut.problem, sweep_options(cut), progress);
     return result;
   }

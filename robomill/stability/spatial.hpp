@@ -42,6 +42,10 @@ enum class SweptParameter {
   lead,          ///< [rad]
   tilt           ///< [rad]
 };
+/// Whether it is one in rad, and not in m.
+[[nodiscard]] constexpr bool is_angle(SweptParameter parameter) {
+  return parameter == SweptParameter::lead || parameter == SweptParameter::tilt;
+}
 inline constexpr Name<SweptParameter> swept_names[] = {{"axial_depth", SweptParameter::axial_depth},
                                                        {"radial_depth", SweptParameter::radial_depth},
                                                        {"lead", SweptParameter::lead},

@@ -37,7 +37,7 @@ std::vector<StableInterval> stable_intervals(const Axes& axes, std::size_t speed
 }  // namespace
 
 void SweepOptions::validate() const {
-  const bool angle = parameter == SweptParameter::lead || parameter == SweptParameter::tilt;
+  const bool angle = is_angle(parameter);
   const char* const unit = angle ? "rad" : "m";
   for (const double end : range) require_finite("range", end, unit);
   if (!(range[1] > range[0])) {

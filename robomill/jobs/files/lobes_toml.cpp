@@ -327,6 +327,9 @@ stability::SweepOptions sweep_options(const LobesFile& file) {
   sweep.grid = file.options.grid;
   sweep.tolerance = file.options.tolerance;
   sweep.points = file.options.points;
+  for (stability::OperatingPoint& point : sweep.points) {
+    if (stability::is_angle(file.sweep)) point.axial_depth_m *= units::deg / units::mm;
+  }
   return sweep;
 }
 

@@ -60,7 +60,7 @@ struct LobesFile {
 ///     there), and where milling needs a direction that was not measured and the file does not say what it is taken for
 ROBOMILL_API void load_dynamics(LobesFile& file);
 
-/// The sweep that its table [lobes] asks for.
+/// The sweep that its table [lobes] asks for. Points of an angle were read as mm and are degrees.
 [[nodiscard]] ROBOMILL_API stability::SweepOptions sweep_options(const LobesFile& file);
 
 /// @param hint  for whoever gave another cut

@@ -8,7 +8,6 @@ namespace {
 using Form = MeshTopology::Form;
 
 /// c of one piece: what it looks back to.
-template <int D>
 Eigen::VectorXcd looked_back(const CollocationCase& point, const NodeLayout& layout, std::size_t e,
                              const Eigen::VectorXcd& memory) {
   const MeshTopology& topology = point.mesh.topology;
@@ -107,7 +106,7 @@ NodeForces<D> trace(const CollocationCase& point, double factor, const Eigen::Ve
       end(k + 1) = turn.imag() * z(k) + turn.real() * z(k + 1);
     }
     if (topology.pieces[e].records) {
-      Eigen::VectorXcd c = looked_back<D>(point, layout, e, memory);
+      Eigen::VectorXcd c = looked_back(point, layout, e, memory);
       for (Eigen::Index i = 0; i < topology.nodes && !forcing_n_per_m.empty(); ++i) {
         c.template segment<D>(D * i) -= forcing_n_per_m[out.force_n.size() + static_cast<std::size_t>(i)];
       }

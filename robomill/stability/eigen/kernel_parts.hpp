@@ -65,9 +65,4 @@ CORE void multiply(std::size_t rows, std::size_t columns, const Lanes* block, co
   }
 }
 
-/// Where entry (row, column) of such a block stands.
-[[nodiscard]] constexpr std::size_t in_block(std::size_t row, std::size_t column, std::size_t columns) {
-  return row / 4 * 4 * columns + 4 * column + row % 4;
-}
-
 }  // namespace robomill::stability::detail

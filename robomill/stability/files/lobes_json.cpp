@@ -127,7 +127,7 @@ std::string lobes_json(const LobesResult& result, const UncertainLimits& uncerta
 }
 
 std::string sweep_json(const SweepResult& result) {
-  const bool angle = result.parameter == SweptParameter::lead || result.parameter == SweptParameter::tilt;
+  const bool angle = is_angle(result.parameter);
   const std::string name(name_in(swept_names, result.parameter));
   const std::string key = name + (angle ? "_deg" : "_mm");
   const Varied varied = {.key = key.c_str(), .unit = angle ? units::deg : units::mm};
