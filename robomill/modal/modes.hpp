@@ -19,9 +19,10 @@ struct Mode {
   double damping_ratio = 0.0;  ///< ζ, in (0, 1)
   Eigen::VectorXcd left;       ///< length of ModalModel::excitations [sqrt(s/kg)]
   Eigen::VectorXcd right;      ///< length of ModalModel::responses [sqrt(s/kg)]
-  /// Standard deviations from a fit; NaN where unknown.
+  /// Standard deviations, from a fit or a posture model; NaN where unknown.
   double frequency_std_hz = std::numeric_limits<double>::quiet_NaN();
   double damping_ratio_std = std::numeric_limits<double>::quiet_NaN();
+  double residue_std_ratio = std::numeric_limits<double>::quiet_NaN();  ///< of the residue matrix's size, relative
 };
 
 /// What the modes outside the band leave in it: mass / (-ω²) + stiffness.
