@@ -113,6 +113,9 @@ void WalkOptions::validate() const {
   require_non_negative("max_step_m", max_step_m, "m");
   require_positive("max_turn_rad", max_turn_rad, "rad");
   if (batch < 1) throw InvalidInput("batch", static_cast<double>(batch), "", "must be at least 1");
+  for (const Vector3d& offset_m : tip_offset_m) {
+    if (!offset_m.allFinite()) throw InvalidInput("tip_offset_m", "must be finite");
+  }
 }
 
 /// Goes along the profile piece by piece, whose rings were looked at in their middles, and adds those parts of it that
@@ -288,6 +291,9 @@ class Walker {
         finder_(cutter, workpiece.dexel_m(), options),
         profile_(cutter),
         max_step_m_(options.max_step_m > 0.0 ? options.max_step_m : 0.5 * profile_.max_radius_m()) {
+    if (!options.tip_offset_m.empty() && options.tip_offset_m.size() != program.blocks.size()) {
+      throw InvalidInput("tip_offset_m", "must hold one offset a block of the program");
+    }
     double poses = 0.0;
     for (std::size_t i = 0; i < program.blocks.size(); ++i) poses += parts_of(i);
     if (!(poses * finder_.looks() <= most_looks)) {
@@ -323,10 +329,15 @@ class Walker {
     return std::max({std::ceil(way_m / max_step_m_), std::ceil(turn / options_.max_turn_rad), 1.0});
   }
 
+  [[nodiscard]] Vector3d offset_m() const {
+    return options_.tip_offset_m.empty() ? Vector3d(Vector3d::Zero()) : options_.tip_offset_m[block_];
+  }
+
   void begin_block() {
     const program::Block& block = program_.blocks[block_];
     const program::Pose& begin = program_.begin_of(block_);
     at_ = begin;
+    at_.tip_m += offset_m();
     motion_ = {};
     parts_ = static_cast<std::size_t>(parts_of(block_));
     way_m_ = (block.end.tip_m - begin.tip_m).norm();
@@ -349,6 +360,7 @@ class Walker {
     part.share_to = static_cast<double>(part_) / parts;
     part.duration_s = block.duration_s / parts;
     part.pose = part_ == parts_ ? block.end : program::between(program_.begin_of(block_), block.end, part.share_to);
+    part.pose.tip_m += offset_m();
     if (block.kind == program::Block::Kind::dwell) return;  // the tool stands where it has cut already
     if (feed) part.cut = finder_.at(workpiece_, part.pose, motion_, std::max(0.0, 0.5 * dexel - way_m_ / parts));
     const Removal removal = workpiece_.remove(profile_, at_, part.pose);

@@ -38,6 +38,9 @@ struct ROBOMILL_API WalkOptions {
   double max_step_m = 0.0;      ///< >= 0; way of the tip between two looks <= this; 0: half the cutter's radius
   double max_turn_rad = 0.05;   ///< > 0; turn of the axis between two looks <= this
   std::size_t batch = 256;      ///< results handed out at once, >= 1
+  /// One a block, or none: how far the tip stands from where the program has it while the block runs, in W. Between
+  /// blocks it jumps. Finite.
+  std::vector<Eigen::Vector3d> tip_offset_m = {};
   /// @throws InvalidInput naming the member
   void validate() const;
 };

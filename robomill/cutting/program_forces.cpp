@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
@@ -159,6 +160,12 @@ std::vector<BlockForce> program_forces(const program::Program& program, const Cu
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const BlockEngagement& part = parts[i];
       account.add(part.block, part.duration_s, forces[i]);
+      if (options.observe && !part.cut.engagement.empty()) {
+        options.observe({.block = part.block,
+                         .cut = part.cut,
+                         .feed_per_tooth_m = forces[i].feed_per_tooth_m,
+                         .mean_force_n = forces[i].mean_force_n});
+      }
       BlockForce& block = blocks[part.block];
       block.axial_depth_m = std::max(block.axial_depth_m, part.cut.axial_depth_m);
       block.radial_depth_m = std::max(block.radial_depth_m, part.cut.radial_depth_m);
@@ -182,6 +189,7 @@ std::vector<BlockForce> local_program_forces(const program::Program& program, co
   std::vector<BlockForce> blocks = turning_blocks(program, options);
   const LocalCuts cuts(program, cutter.mill.diameter_m);
   std::vector<PartForce> forces(blocks.size());
+  std::vector<PoseEngagement> seen(options.observe ? blocks.size() : 0);
   progress.start("forces", blocks.size());
   parallel_for(blocks.size(), grain, [&](std::size_t begin, std::size_t end) {
     ForceKernel kernel(cutter, coefficients, options.force);
@@ -208,15 +216,29 @@ std::vector<BlockForce> local_program_forces(const program::Program& program, co
       check_feed(force.feed_per_tooth_m, block);
       out.axial_depth_m = axial_depth_m;
       out.radial_depth_m = surface.cut.radial_depth_m;
-      force.summary = kernel.summary(
-          engage(cutter, surface.cut),
-          {.feed_per_tooth_m = force.feed_per_tooth_m, .spindle_speed_rad_per_s = out.spindle_speed_rad_per_s});
+      Engagement engagement = engage(cutter, surface.cut);
+      force.summary = kernel.summary(engagement, {.feed_per_tooth_m = force.feed_per_tooth_m,
+                                                  .spindle_speed_rad_per_s = out.spindle_speed_rad_per_s});
       force.mean_force_n = surface.work_from_feed * force.summary.mean_n;
       out.removed_volume_m3 = force.summary.removal_rate_m3_per_s * block.duration_s;
+      if (options.observe) {
+        seen[i] = {.engagement = std::move(engagement),
+                   .work_from_feed = surface.work_from_feed,
+                   .feed_speed_m_per_s = way / block.duration_s,
+                   .axial_depth_m = axial_depth_m,
+                   .radial_depth_m = out.radial_depth_m};
+      }
     }
   });
   Account account(options, blocks);
-  for (std::size_t i = 0; i < blocks.size(); ++i) account.add(i, program.blocks[i].duration_s, forces[i]);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    account.add(i, program.blocks[i].duration_s, forces[i]);
+    if (!options.observe || seen[i].engagement.empty()) continue;
+    options.observe({.block = i,
+                     .cut = seen[i],
+                     .feed_per_tooth_m = forces[i].feed_per_tooth_m,
+                     .mean_force_n = forces[i].mean_force_n});
+  }
   account.close();
   return blocks;
 }

@@ -40,11 +40,21 @@ struct BlockForce {
   [[nodiscard]] bool cuts() const { return cutting_time_s > 0.0; }
 };
 
+/// A part of a block that cuts, as it is found.
+struct PartOfBlock {
+  std::size_t block = 0;      ///< of the program
+  const PoseEngagement& cut;  ///< at the part's end
+  double feed_per_tooth_m = 0.0;
+  Eigen::Vector3d mean_force_n = Eigen::Vector3d::Zero();  ///< over a revolution, in W
+};
+
 struct ROBOMILL_API ProgramForceOptions {
   double spindle_speed_rad_per_s = 0.0;  ///< Ω [rad/s]; 0: what the program says
   double power_time_s = 0.1;             ///< > 0: over which sustained_power_w is a mean
   /// How heavy a force is in a block, say the deflection that it makes there. Empty: its magnitude.
   std::function<double(std::size_t block, const Eigen::Vector3d& force_n)> weight = {};
+  /// Sees every part that cuts, in their order; what it refers to lasts as long as the call.
+  std::function<void(const PartOfBlock& part)> observe = {};
   ForceOptions force = {.steps = 180};
   WalkOptions walk = {};
   /// @throws InvalidInput naming the member

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
@@ -101,6 +104,37 @@ TEST(ProgramForces, EnergyIsThatOfTheVolume) {
     }
     EXPECT_NEAR(energy, 900e6 * volume, 0.03 * energy) << axis.transpose();
   }
+}
+
+// A tip that stands aside of the program is one whose program stands there. What is observed is what the
+// means are made of.
+TEST(ProgramForces, AnOffsetTipIsThatOfAShiftedProgram) {
+  const Eigen::Vector3d aside(0.07e-3, -0.03e-3, 0.11e-3);
+  const Program program = two_passes({0.1, -0.2, 1.0});
+  Program shifted = program;
+  shifted.start.tip_m += aside;
+  for (Block& block : shifted.blocks) block.end.tip_m += aside;
+  ProgramForceOptions options = {.spindle_speed_rad_per_s = speed};
+  Workpiece one(slab(), 0.2e-3);
+  const std::vector<BlockForce> expected = program_forces(shifted, ball(), tangential_only(), one, options);
+  options.walk.tip_offset_m.assign(program.blocks.size(), aside);
+  std::vector<double> largest(program.blocks.size(), 0.0);
+  options.observe = [&](const PartOfBlock& part) {
+    largest[part.block] = std::max(largest[part.block], part.mean_force_n.norm());
+    EXPECT_FALSE(part.cut.engagement.empty());
+  };
+  Workpiece other(slab(), 0.2e-3);
+  const std::vector<BlockForce> found = program_forces(program, ball(), tangential_only(), other, options);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_NEAR((found[i].mean_force_n - expected[i].mean_force_n).norm(), 0.0, 1e-6) << i;
+    EXPECT_NEAR(found[i].removed_volume_m3, expected[i].removed_volume_m3, 1e-3 * expected[i].removed_volume_m3) << i;
+    EXPECT_NEAR(largest[i], found[i].heaviest_force_n.norm(), 1e-12) << i;
+  }
+  options.walk.tip_offset_m.pop_back();
+  EXPECT_NE(test::rejection([&] {
+              static_cast<void>(program_forces(program, ball(), tangential_only(), other, options));
+            }).find("one offset a block"),
+            std::string::npos);
 }
 
 /// A flat end mill along x through air, 40 mm of material and air again, in one block of 600 mm.
