@@ -47,6 +47,13 @@ struct BlockResult {
   /// Under that mean force of a revolution which bends the robot most.
   Eigen::Vector3d peak_deflection_m = Eigen::Vector3d::Zero();
   double condition_number = 0.0;
+  /// Where the engagement feels the deflection (ProgramForces::deflected).
+  enum class Settled {
+    found,      ///< the deflection is that of the force which the deflected tool feels
+    unsettled,  ///< it still changes after the last pass: force and deflection drive each other
+    lost        ///< the tool is pushed out of the cut that the program asks for
+  };
+  Settled settled = Settled::found;
 };
 
 /// What a program starts from.
@@ -61,6 +68,9 @@ struct ProgramForces {
   std::optional<ProgramStock> stock = {};  ///< none: each block beside its neighbouring pass
   double seconds = 0.0;
   double removed_volume_m3 = 0.0;
+  bool deflected = false;  ///< the tool cuts where the robot bends to; else where the program has it
+  /// Where each block has most of the cutter in the material; empty engagement: it does not cut. Only where asked for.
+  std::vector<cutting::PoseEngagement> cuts = {};
   /// Blocks in which teeth were found in the material: the one meaning of "cuts" in summary, documents and page.
   [[nodiscard]] ROBOMILL_API std::size_t cutting_blocks() const;
 };

@@ -94,27 +94,6 @@ std::vector<robot::Position6> joints_near(const CellFile& file, const program::P
   return out;
 }
 
-/// Joints at the end of every block.
-std::vector<robot::Position6> joints_along(const CellFile& file, const program::Program& program,
-                                           const std::filesystem::path& path) {
-  const robot::Cell& cell = file.cell;
-  std::vector<Eigen::Isometry3d> flanges;
-  flanges.reserve(program.blocks.size());
-  for (const program::Block& block : program.blocks) {
-    flanges.push_back(robot::flange_pose(
-        cell, {.tip_m = block.end.tip_m, .axis = block.end.axis, .gamma_rad = file.redundant_gamma_rad}));
-  }
-  const std::optional<robot::SphericalWristInverse> inverse = spherical_wrist(cell.arm);
-  if (!inverse) return joints_near(file, program, flanges, path);
-  std::optional<robot::Position6> start;
-  if (file.start_joints.size() == 6) start = robot::Position6(file.start_joints.data());
-  const robot::Followed way = robot::follow(cell.arm, *inverse, flanges, start, {.point_m = robot::tip_point(cell)});
-  if (way.status != robot::Reach::Status::found) {
-    throw out_of_the_way(path, program.blocks[way.reached], reason(way.last));
-  }
-  return way.position_rad;
-}
-
 /// Compliance of the tip in W at the end of each block, without load: what forces are weighed by.
 std::vector<Eigen::Matrix3d> compliances(const CellFile& file, const std::vector<robot::Position6>& joints) {
   const robot::Cell& cell = file.cell;
@@ -171,18 +150,117 @@ ProgramStock stock_of(const ForcesFile& file, const program::Program& program) {
   return {.stock = assumed.stock, .assumed = assumed};
 }
 
+/// One run through the material: the forces of every block, and where it has most of the cutter in the material.
+std::vector<BlockForce> run_once(const ForcesFile& file, const ProgramForces& out,
+                                 const cutting::ProgramForceOptions& options, Progress& progress) {
+  if (file.neighbours) {
+    return cutting::local_program_forces(out.program, file.cutter, file.coefficients, file.cut.axial_depth_m, options,
+                                         progress);
+  }
+  cutting::Workpiece workpiece(out.stock->stock, file.dexel_m);
+  return cutting::program_forces(out.program, file.cutter, file.coefficients, workpiece, options, progress);
+}
+
+/// Passes through the material until force and deflection agree.
+constexpr int most_passes = 5;
+/// They agree where the deflection changes by less than this, or by less than this share of it.
+constexpr double settled_m = 1e-6, settled_share = 0.05;
+
+/// Where the tool stands in the next pass, and whether any block has still to settle.
+bool deflect_on(const std::vector<Eigen::Matrix3d>& compliance, int pass, double most_m,
+                std::vector<Eigen::Vector3d>& offset_m, std::vector<BlockResult>& rows) {
+  bool moves = false;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    BlockResult& row = rows[i];
+    Eigen::Vector3d bent = compliance[i] * row.force.mean_force_n;
+    if (bent.norm() > most_m) bent *= most_m / bent.norm();
+    const Eigen::Vector3d change = bent - offset_m[i];
+    const bool settled = change.norm() <= std::max(settled_m, settled_share * offset_m[i].norm());
+    if (!settled) moves = true;
+    if (row.settled != BlockResult::Settled::lost) {
+      row.settled = settled ? BlockResult::Settled::found : BlockResult::Settled::unsettled;
+    }
+    // From the third pass on by halves: a tool that jumps out of the cut and back settles between.
+    if (!settled) offset_m[i] += (pass >= 2 ? 0.5 : 1.0) * change;
+  }
+  return moves;
+}
+
+/// Fills the forces, and the cuts where they are kept. Where the tool deflects, the passes repeat with each block's tip
+/// where the mean force of the pass before has bent it.
+void cut_program(const ForcesFile& file, bool keep_cuts, const std::vector<Eigen::Matrix3d>& compliance,
+                 ProgramForces& out, Progress& progress) {
+  cutting::ProgramForceOptions options = {.spindle_speed_rad_per_s = file.motion.spindle_speed_rad_per_s,
+                                          .power_time_s = file.power_time_s,
+                                          .force = file.force};
+  if (!compliance.empty()) {
+    options.weight = [&compliance](std::size_t block, const Eigen::Vector3d& force_n) {
+      return (compliance[block] * force_n).norm();
+    };
+  }
+  std::vector<double> area_m2;
+  if (keep_cuts) {
+    options.observe = [&](const cutting::PartOfBlock& part) {
+      const double area = cutting::patch_area_m2(part.cut.engagement);
+      if (area <= area_m2[part.block]) return;
+      area_m2[part.block] = area;
+      out.cuts[part.block] = part.cut;
+    };
+  }
+  const std::size_t count = out.blocks.size();
+  std::vector<bool> rigid_cuts(count);
+  std::vector<Eigen::Vector3d> offset_m(out.deflected ? count : 0, Eigen::Vector3d::Zero());
+  for (int pass = 0; pass < most_passes; ++pass) {
+    if (keep_cuts) {
+      area_m2.assign(count, 0.0);
+      out.cuts.assign(count, {});
+    }
+    options.walk.tip_offset_m = offset_m;
+    const std::vector<BlockForce> forces = run_once(file, out, options, progress);
+    for (std::size_t i = 0; i < count; ++i) {
+      out.blocks[i].force = forces[i];
+      if (pass == 0) rigid_cuts[i] = forces[i].cuts();
+      const bool lost = rigid_cuts[i] && !forces[i].cuts();
+      out.blocks[i].settled = lost ? BlockResult::Settled::lost : BlockResult::Settled::found;
+    }
+    if (!out.deflected) return;
+    if (!deflect_on(compliance, pass, 0.5 * file.cutter.mill.diameter_m, offset_m, out.blocks)) return;
+  }
+}
+
 /// The first of the blocks for which something is so, and how many they are.
 template <class Is>
 void warn_of(const ProgramForces& program, std::vector<std::string>& warnings, Is is, const char* text) {
   std::size_t count = 0;
   std::size_t first = 0;
   for (const BlockResult& row : program.blocks) {
-    if (!is(row.force)) continue;
-    if (count == 0) first = program.program.blocks[row.force.block].line;
+    if (!is(row)) continue;
+    if (count == 0) first = row.force.block;
     ++count;
   }
   if (count > 0)
-    warnings.push_back(fmt::format("{} block{} {}, the first in line {}.", count, count == 1 ? "" : "s", text, first));
+    warnings.push_back(fmt::format("{} block{} {}, the first in line {} (block {}).", count, count == 1 ? "" : "s",
+                                   text, program.program.blocks[first].line, first + 1));
+}
+
+void warn_of_blocks(const ForcesFile& file, const ProgramForces& out, std::vector<std::string>& warnings) {
+  using Settled = BlockResult::Settled;
+  const auto of_force = [](auto is) { return [is](const BlockResult& row) { return is(row.force); }; };
+  warn_of(out, warnings, of_force([](const BlockForce& f) { return f.shank_depth_m > 0.0; }),
+          "run the shank into material");
+  warn_of(out, warnings, of_force([](const BlockForce& f) { return f.rapid_in_material; }),
+          "move through material in rapid");
+  const double least_m3 = std::pow(file.dexel_m, 3);  // less is what rays see of a cutter that slides along
+  warn_of(out, warnings, of_force([least_m3](const BlockForce& f) {
+            return !f.cuts() && !f.rapid_in_material && f.removed_volume_m3 > least_m3;
+          }),
+          "remove material where no tooth was found in it, and have no force");
+  warn_of(
+      out, warnings, [](const BlockResult& row) { return row.settled == Settled::lost; },
+      "lose the engagement: the force pushes the tool out of the cut");
+  warn_of(
+      out, warnings, [](const BlockResult& row) { return row.settled == Settled::unsettled; },
+      "have a deflection that does not settle: force and deflection drive each other");
 }
 
 }  // namespace
@@ -205,51 +283,50 @@ std::string stock_text(const ProgramForces& program) {
   return fmt::format("assumed, since none is given: a box {}, {}", box, top);
 }
 
+std::vector<robot::Position6> joints_along(const CellFile& file, const program::Program& program,
+                                           const std::filesystem::path& path) {
+  const robot::Cell& cell = file.cell;
+  std::vector<Eigen::Isometry3d> flanges;
+  flanges.reserve(program.blocks.size());
+  for (const program::Block& block : program.blocks) {
+    flanges.push_back(robot::flange_pose(
+        cell, {.tip_m = block.end.tip_m, .axis = block.end.axis, .gamma_rad = file.redundant_gamma_rad}));
+  }
+  const std::optional<robot::SphericalWristInverse> inverse = spherical_wrist(cell.arm);
+  if (!inverse) return joints_near(file, program, flanges, path);
+  std::optional<robot::Position6> start;
+  if (file.start_joints.size() == 6) start = robot::Position6(file.start_joints.data());
+  const robot::Followed way = robot::follow(cell.arm, *inverse, flanges, start, {.point_m = robot::tip_point(cell)});
+  if (way.status != robot::Reach::Status::found) {
+    throw out_of_the_way(path, program.blocks[way.reached], reason(way.last));
+  }
+  return way.position_rad;
+}
+
 ProgramForces run_program(const ForcesFile& file, const std::optional<CellFile>& cell,
                           const std::filesystem::path& path, std::vector<std::string>& warnings,
-                          std::vector<std::string>& notes, Progress& progress) {
+                          std::vector<std::string>& notes, Progress& progress, const ProgramRun& run) {
   const auto begun = std::chrono::steady_clock::now();
   ProgramForces out;
-  out.program = program::read_program(path, cell ? program_reading(*cell) : program::ProgramReading{});
+  const program::ProgramReading reading = cell ? program_reading(*cell) : program::ProgramReading{};
+  out.program = program::read_program(path, run.reading.value_or(reading));
   if (out.program.blocks.empty()) {
     throw InvalidInput(InvalidInput::Parts{.where = path.string(), .rule = "has no move"});
   }
-  std::vector<robot::Position6> joints;
-  if (cell) reported_of_cell(*cell, [&] { joints = joints_along(*cell, out.program, path); });
+  std::vector<robot::Position6> joints = run.joints;
+  if (cell && joints.size() != out.program.blocks.size()) {
+    reported_of_cell(*cell, [&] { joints = joints_along(*cell, out.program, path); });
+  }
   if (!file.neighbours) {
     out.stock = file.located([&] { return stock_of(file, out.program); });
   }
-  cutting::ProgramForceOptions options = {.spindle_speed_rad_per_s = file.motion.spindle_speed_rad_per_s,
-                                          .power_time_s = file.power_time_s,
-                                          .force = file.force};
-  if (cell) {
-    options.weight = [compliance = compliances(*cell, joints)](std::size_t block, const Eigen::Vector3d& force_n) {
-      return (compliance[block] * force_n).norm();
-    };
-  }
-  const std::vector<BlockForce> forces = file.located([&] {
-    if (file.neighbours) {
-      return cutting::local_program_forces(out.program, file.cutter, file.coefficients, file.cut.axial_depth_m, options,
-                                           progress);
-    }
-    cutting::Workpiece workpiece(out.stock->stock, file.dexel_m);
-    return cutting::program_forces(out.program, file.cutter, file.coefficients, workpiece, options, progress);
-  });
-  out.blocks.reserve(forces.size());
-  for (const BlockForce& force : forces) {
-    out.blocks.push_back({.force = force});
-    out.removed_volume_m3 += force.removed_volume_m3;
-  }
+  out.blocks.resize(out.program.blocks.size());
+  out.deflected = run.deflect && cell && !file.neighbours;
+  const std::vector<Eigen::Matrix3d> compliance = cell ? compliances(*cell, joints) : std::vector<Eigen::Matrix3d>();
+  file.located([&] { cut_program(file, run.keep_cuts, compliance, out, progress); });
+  for (const BlockResult& row : out.blocks) out.removed_volume_m3 += row.force.removed_volume_m3;
   if (cell) reported_of_cell(*cell, [&] { bend(*cell, joints, out.program, path, out.blocks); });
-  warn_of(
-      out, warnings, [](const BlockForce& f) { return f.shank_depth_m > 0.0; }, "run the shank into material");
-  warn_of(
-      out, warnings, [](const BlockForce& f) { return f.rapid_in_material; }, "move through material in rapid");
-  const double least_m3 = std::pow(file.dexel_m, 3);  // less is what rays see of a cutter that slides along
-  warn_of(
-      out, warnings,
-      [&](const BlockForce& f) { return !f.cuts() && !f.rapid_in_material && f.removed_volume_m3 > least_m3; },
-      "remove material where no tooth was found in it, and have no force");
+  warn_of_blocks(file, out, warnings);
   if (!out.program.skipped.empty()) {
     notes.push_back(fmt::format("{} words of the program were not read, the first in line {}: {}.",
                                 out.program.skipped.size(), out.program.skipped.front().line,
