@@ -1,0 +1,465 @@
+#include "robomill/modal/posture/calibration.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "robomill/base/parallel.hpp"
+
+namespace robomill::modal::detail {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Residuals along neighbouring lines are alike: so many count as one.
+constexpr double alike_lines = 4.0;
+/// Of what differs from posture to posture, the share that nearby postures do not have in common.
+constexpr double own_share = 0.2;
+constexpr double process_length_rad = 1.0;
+/// From the first stage on, the damping that is added to find the way, as a share of each frequency.
+constexpr double stages[] = {0.2, 0.1, 0.05, 0.025, 0.0125};
+constexpr int stage_lines[] = {60, 80, 110, 150, 200};
+
+/// One posture's share of the cost, its gradient and Gauss-Newton matrix.
+struct Normal {
+  double cost = 0.0;       ///< Σ |r|² loss'd
+  double error = 0.0;      ///< Σ |ΔH|, and …
+  double size = 0.0;       ///< … Σ |H|
+  double residuals = 0.0;  ///< how many
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd gradient;
+};
+
+/// Large residuals count less: c² ln(1 + r²/c²).
+constexpr double robust = 4.0;
+
+Normal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, const SmoothedFrf& frf,
+                 const Eigen::VectorXd& parameters, bool derivatives) {
+  const Eigen::Index count = parameters.size();
+  const FlexibleArm::System system = arm.at(joints, parameters, derivatives);
+  Normal out;
+  out.matrix = Eigen::MatrixXd::Zero(count, count);
+  out.gradient = Eigen::VectorXd::Zero(count);
+  Eigen::Matrix<Complex, 9, Eigen::Dynamic> derivative(9, count);
+  Eigen::MatrixXd real(18, count);
+  for (std::size_t i = 0; i < frf.s.size(); ++i) {
+    Eigen::Matrix3cd value;
+    if (derivatives) {
+      arm.receptance(system, frf.s[i], value, derivative);
+    } else {
+      value = FlexibleArm::receptance(system, frf.s[i]);
+    }
+    const Eigen::Map<const Eigen::Matrix<Complex, 9, 1>> model(value.data());
+    Eigen::Matrix<double, 18, 1> r;
+    r.setZero();
+    if (derivatives) real.setZero();
+    for (Eigen::Index e = 0; e < 9; ++e) {
+      const double weight = frf.weight(e, static_cast<Eigen::Index>(i));
+      if (weight == 0.0) continue;
+      const Complex miss = (model(e) - frf.value(e, static_cast<Eigen::Index>(i))) * weight;
+      const double square = std::norm(miss);
+      out.cost += robust * robust * std::log1p(square / (robust * robust));
+      out.error += std::abs(miss) / weight;
+      out.size += std::abs(frf.value(e, static_cast<Eigen::Index>(i)));
+      out.residuals += 2.0;
+      if (!derivatives) continue;
+      const double damp = 1.0 / std::sqrt(1.0 + square / (robust * robust));
+      r(2 * e) = miss.real() * damp;
+      r(2 * e + 1) = miss.imag() * damp;
+      real.row(2 * e) = derivative.row(e).real() * (weight * damp);
+      real.row(2 * e + 1) = derivative.row(e).imag() * (weight * damp);
+    }
+    if (!derivatives) continue;
+    out.matrix.selfadjointView<Eigen::Lower>().rankUpdate(real.transpose());
+    out.gradient.noalias() += real.transpose() * r;
+  }
+  if (derivatives) out.matrix.triangularView<Eigen::StrictlyUpper>() = out.matrix.transpose();
+  return out;
+}
+
+/// Everything that stays the same while the parameters are sought.
+class Search {
+ public:
+  Search(const FlexibleArm& arm, const std::vector<PostureData>& data, bool varying)
+      : arm_(arm), data_(data), start_(arm.start()) {
+    prior_.resize(start_.size());
+    for (Eigen::Index p = 0; p < start_.size(); ++p) {
+      const ArmParameter& parameter = arm.parameters()[static_cast<std::size_t>(p)];
+      prior_(p) = 1.0 / (parameter.deviation * parameter.deviation);
+      if (varying && parameter.posture_deviation > 0.0) {
+        deviating_.push_back(p);
+        deviation_.push_back(parameter.posture_deviation);
+      }
+    }
+    const Eigen::Index n = static_cast<Eigen::Index>(data.size());
+    Eigen::MatrixXd kernel(n, n);
+    for (Eigen::Index a = 0; a < n; ++a) {
+      for (Eigen::Index b = 0; b < n; ++b) {
+        kernel(a, b) =
+            kernel_of(data[static_cast<std::size_t>(a)].joints(), data[static_cast<std::size_t>(b)].joints());
+      }
+    }
+    kernel.diagonal().array() += own_share;
+    inverse_kernel_ = kernel.llt().solve(Eigen::MatrixXd::Identity(n, n));
+    common_ = start_;
+    differing_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(deviating_.size()), n);
+  }
+
+  static double kernel_of(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    const double d = posture_distance(a, b) / process_length_rad;
+    return (1.0 - own_share) * std::exp(-0.5 * d * d);
+  }
+
+  void stage(double share, int lines) {
+    frfs_.clear();
+    for (const PostureData& posture : data_) frfs_.push_back(posture.smoothed(share, lines));
+  }
+
+  [[nodiscard]] Eigen::VectorXd parameters_of(std::size_t posture) const {
+    return parameters_of(common_, differing_, posture);
+  }
+
+  /// Levenberg-Marquardt over θ (and u).
+  void descend(int iterations, bool with_differing, Progress& progress) {
+    evaluate(common_, differing_, true);
+    double cost = total(common_, differing_);
+    double damping = 1e-2;
+    for (int i = 0; i < iterations; ++i) {
+      progress.check();
+      bool better = false;
+      double gain = 0.0;
+      for (int attempt = 0; attempt < 6 && !better; ++attempt) {
+        const Eigen::VectorXd step = solve_step(with_differing, damping, SIZE_MAX);
+        Eigen::VectorXd common = common_ + step.head(common_.size());
+        Eigen::MatrixXd differing = differing_;
+        if (with_differing) {
+          differing +=
+              Eigen::Map<const Eigen::MatrixXd>(step.data() + common_.size(), differing_.rows(), differing_.cols());
+        }
+        const double trial = trial_cost(common, differing);
+        if (trial < cost) {
+          gain = cost - trial;
+          better = true;
+          common_ = common;
+          differing_ = differing;
+          cost = trial;
+          damping = std::max(damping * 0.2, 1e-9);
+        } else {
+          damping *= 6.0;
+        }
+      }
+      if (!better) break;
+      evaluate(common_, differing_, true);
+      if (gain < 1e-4 * cost) break;
+    }
+    final_cost_ = cost;
+  }
+
+  /// From residuals: the variance of one, alike lines counted once.
+  void estimate_noise() {
+    double cost = 0.0, residuals = 0.0;
+    for (const Normal& normal : normals_) {
+      cost += normal.cost;
+      residuals += normal.residuals;
+    }
+    noise_ = std::max(alike_lines * cost / std::max(residuals, 1.0), 1e-6);
+  }
+  [[nodiscard]] double noise() const { return noise_; }
+  [[nodiscard]] double error() const {
+    double error = 0.0, size = 0.0;
+    for (const Normal& normal : normals_) {
+      error += normal.error;
+      size += normal.size;
+    }
+    return error / size;
+  }
+
+  /// (θ, u) without one posture, from the Gauss-Newton matrices at the solution; its covariance too.
+  struct LeftOut {
+    Eigen::VectorXd parameters;  ///< φ of the posture left out
+    Eigen::MatrixXd covariance;  ///< of them
+  };
+  [[nodiscard]] LeftOut without(std::size_t posture) const {
+    const Eigen::MatrixXd precision = assemble(true, 0.0, posture);
+    const Eigen::LLT<Eigen::MatrixXd> factor(precision);
+    const Eigen::VectorXd step = factor.solve(-gradient(true, posture));
+    const Eigen::VectorXd common = common_ + step.head(common_.size());
+    Eigen::MatrixXd differing = differing_;
+    if (differing_.size() > 0) {
+      differing +=
+          Eigen::Map<const Eigen::MatrixXd>(step.data() + common_.size(), differing_.rows(), differing_.cols());
+    }
+    const Eigen::MatrixXd pick = picked(posture);
+    return {.parameters = parameters_of(common, differing, posture),
+            .covariance = pick * factor.solve(pick.transpose())};
+  }
+  [[nodiscard]] Normal evaluate_at(std::size_t posture, const Eigen::VectorXd& parameters, bool derivatives) const {
+    return normal_of(arm_, data_[posture].joints(), frfs_[posture], parameters, derivatives);
+  }
+  [[nodiscard]] Eigen::MatrixXd covariance() const {
+    const Eigen::MatrixXd precision = assemble(true, 0.0, SIZE_MAX);
+    return precision.llt().solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()));
+  }
+  [[nodiscard]] const Eigen::VectorXd& common() const { return common_; }
+  [[nodiscard]] const Eigen::MatrixXd& differing() const { return differing_; }
+  [[nodiscard]] const std::vector<Eigen::Index>& deviating() const { return deviating_; }
+  [[nodiscard]] const Eigen::VectorXd& prior() const { return prior_; }
+
+ private:
+  [[nodiscard]] Eigen::VectorXd parameters_of(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing,
+                                              std::size_t posture) const {
+    Eigen::VectorXd out = common;
+    for (std::size_t d = 0; d < deviating_.size(); ++d) {
+      out(deviating_[d]) += differing(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(posture));
+    }
+    return out;
+  }
+
+  void evaluate(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing, bool derivatives) {
+    normals_.resize(data_.size());
+    parallel_for(data_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        normals_[k] = evaluate_at(k, parameters_of(common, differing, k), derivatives);
+      }
+    });
+  }
+
+  double trial_cost(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing) {
+    std::vector<double> costs(data_.size());
+    parallel_for(data_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        costs[k] = evaluate_at(k, parameters_of(common, differing, k), false).cost;
+      }
+    });
+    double cost = 0.0;
+    for (const double c : costs) cost += c / noise_;
+    return std::isfinite(cost) ? cost + prior_cost(common, differing) : std::numeric_limits<double>::infinity();
+  }
+  double total(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing) const {
+    double cost = prior_cost(common, differing);
+    for (const Normal& normal : normals_) cost += normal.cost / noise_;
+    return cost;
+  }
+  [[nodiscard]] double prior_cost(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing) const {
+    double cost = (common - start_).cwiseAbs2().dot(prior_);
+    for (Eigen::Index d = 0; d < differing.rows(); ++d) {
+      const double s = deviation_[static_cast<std::size_t>(d)];
+      cost += (differing.row(d) * inverse_kernel_ * differing.row(d).transpose()).value() / (s * s);
+    }
+    return cost;
+  }
+
+  /// The precision of θ and u, or of θ alone. @param damping  Marquardt's, on the diagonal
+  [[nodiscard]] Eigen::MatrixXd assemble(bool with_differing, double damping, std::size_t left_out) const {
+    const Eigen::Index p = common_.size(), d = differing_.rows();
+    const Eigen::Index n = static_cast<Eigen::Index>(data_.size());
+    const Eigen::Index size = p + (with_differing ? d * n : 0);
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, size);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      if (static_cast<std::size_t>(k) == left_out) continue;
+      const Eigen::MatrixXd matrix = normals_[static_cast<std::size_t>(k)].matrix / noise_;
+      out.topLeftCorner(p, p) += matrix;
+      if (!with_differing) continue;
+      const Eigen::Index at = p + k * d;
+      for (Eigen::Index a = 0; a < d; ++a) {
+        out.col(at + a).head(p) += matrix.col(deviating_[static_cast<std::size_t>(a)]);
+        out.row(at + a).head(p) += matrix.row(deviating_[static_cast<std::size_t>(a)]);
+        for (Eigen::Index b = 0; b < d; ++b) {
+          out(at + a, at + b) +=
+              matrix(deviating_[static_cast<std::size_t>(a)], deviating_[static_cast<std::size_t>(b)]);
+        }
+      }
+    }
+    const Eigen::VectorXd marquardt = damping * out.diagonal();
+    out.diagonal() += marquardt;
+    out.diagonal().head(p) += prior_;
+    for (Eigen::Index k = 0; with_differing && k < n; ++k) {
+      for (Eigen::Index l = 0; l < n; ++l) {
+        for (Eigen::Index a = 0; a < d; ++a) {
+          const double s = deviation_[static_cast<std::size_t>(a)];
+          out(p + k * d + a, p + l * d + a) += inverse_kernel_(k, l) / (s * s);
+        }
+      }
+    }
+    return out;
+  }
+  [[nodiscard]] Eigen::VectorXd gradient(bool with_differing, std::size_t left_out) const {
+    const Eigen::Index p = common_.size(), d = differing_.rows();
+    const Eigen::Index n = static_cast<Eigen::Index>(data_.size());
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(p + (with_differing ? d * n : 0));
+    out.head(p) = prior_.cwiseProduct(common_ - start_);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      if (static_cast<std::size_t>(k) == left_out) continue;
+      const Eigen::VectorXd part = normals_[static_cast<std::size_t>(k)].gradient / noise_;
+      out.head(p) += part;
+      for (Eigen::Index a = 0; with_differing && a < d; ++a)
+        out(p + k * d + a) += part(deviating_[static_cast<std::size_t>(a)]);
+    }
+    if (!with_differing) return out;
+    for (Eigen::Index a = 0; a < d; ++a) {
+      const double s = deviation_[static_cast<std::size_t>(a)];
+      const Eigen::VectorXd row = inverse_kernel_ * differing_.row(a).transpose() / (s * s);
+      for (Eigen::Index k = 0; k < n; ++k) out(p + k * d + a) += row(k);
+    }
+    return out;
+  }
+  [[nodiscard]] Eigen::VectorXd solve_step(bool with_differing, double damping, std::size_t left_out) const {
+    return assemble(with_differing, damping, left_out).llt().solve(-gradient(with_differing, left_out));
+  }
+  /// φ of a posture from (θ, u).
+  [[nodiscard]] Eigen::MatrixXd picked(std::size_t posture) const {
+    const Eigen::Index p = common_.size(), d = differing_.rows();
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(p, p + d * static_cast<Eigen::Index>(data_.size()));
+    out.leftCols(p).setIdentity();
+    for (Eigen::Index a = 0; a < d; ++a) {
+      out(deviating_[static_cast<std::size_t>(a)], p + static_cast<Eigen::Index>(posture) * d + a) = 1.0;
+    }
+    return out;
+  }
+
+  const FlexibleArm& arm_;
+  const std::vector<PostureData>& data_;
+  Eigen::VectorXd start_, prior_;
+  std::vector<Eigen::Index> deviating_;
+  std::vector<double> deviation_;
+  Eigen::MatrixXd inverse_kernel_;
+  std::vector<SmoothedFrf> frfs_;
+  std::vector<Normal> normals_;
+  Eigen::VectorXd common_;
+  Eigen::MatrixXd differing_;
+  double noise_ = alike_lines;
+  double final_cost_ = 0.0;
+};
+
+double quantile95(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::ranges::sort(values);
+  return values[static_cast<std::size_t>(0.95 * static_cast<double>(values.size() - 1))];
+}
+
+/// Predicted deviations of one posture's modes.
+struct Spread {
+  Eigen::VectorXd log_frequency, damping_ratio, residue;
+};
+Spread spread_of(const FlexibleArm& arm, const FlexibleArm::System& system, const FlexibleArm::Modes& modes,
+                 const Eigen::MatrixXd& covariance) {
+  const FlexibleArm::Sensitivity by = arm.sensitivity(system, modes);
+  const Eigen::Index m = modes.pole.size();
+  Spread out{.log_frequency = Eigen::VectorXd(m), .damping_ratio = Eigen::VectorXd(m), .residue = Eigen::VectorXd(m)};
+  for (Eigen::Index k = 0; k < m; ++k) {
+    out.log_frequency(k) =
+        std::sqrt(std::max(0.0, (by.log_frequency.row(k) * covariance * by.log_frequency.row(k).transpose()).value()));
+    out.damping_ratio(k) =
+        std::sqrt(std::max(0.0, (by.damping_ratio.row(k) * covariance * by.damping_ratio.row(k).transpose()).value()));
+    const Eigen::MatrixXcd& r = by.residue[static_cast<std::size_t>(k)];
+    out.residue(k) = std::sqrt(std::max(0.0, (r * covariance * r.adjoint()).trace().real()));
+  }
+  return out;
+}
+
+/// How far the left-out postures' own modes lie from their predictions, in predicted deviations.
+void scale_deviations(const FlexibleArm& arm, const Search& search, const std::vector<PostureData>& data,
+                      double highest_hz, Calibration& out) {
+  std::vector<std::vector<double>> z(3);
+  double error = 0.0, size = 0.0;
+  for (std::size_t k = 0; k < data.size(); ++k) {
+    const Search::LeftOut left = search.without(k);
+    const Normal at = search.evaluate_at(k, left.parameters, true);
+    error += at.error;
+    size += at.size;
+    // The posture's own parameters: its receptances, with its prediction as a wide prior.
+    Eigen::MatrixXd own = at.matrix / search.noise();
+    own.diagonal() += search.prior();
+    const Eigen::LLT<Eigen::MatrixXd> factor(own);
+    const Eigen::VectorXd refined = left.parameters - factor.solve(at.gradient / search.noise());
+    const FlexibleArm::System before = arm.at(data[k].joints(), left.parameters, true);
+    const FlexibleArm::Modes predicted = arm.modes(before, highest_hz);
+    const FlexibleArm::Modes found = arm.modes(arm.at(data[k].joints(), refined, false), highest_hz);
+    const Spread spread = spread_of(arm, before, predicted, left.covariance);
+    const Eigen::Index m = std::min(predicted.pole.size(), found.pole.size());
+    for (Eigen::Index i = 0; i < m; ++i) {
+      const double was = std::abs(predicted.pole(i)), is = std::abs(found.pole(i));
+      z[0].push_back(std::abs(std::log(is / was)) / std::max(spread.log_frequency(i), 1e-9));
+      const double zeta_was = -predicted.pole(i).real() / was, zeta_is = -found.pole(i).real() / is;
+      z[1].push_back(std::abs(zeta_is - zeta_was) / std::max(spread.damping_ratio(i), 1e-12));
+      const Eigen::Matrix3cd a = predicted.at_tip.col(i) * predicted.at_tip.col(i).transpose();
+      const Eigen::Matrix3cd b = found.at_tip.col(i) * found.at_tip.col(i).transpose();
+      z[2].push_back((a - b).norm() / a.norm() / std::max(spread.residue(i), 1e-9));
+    }
+  }
+  out.left_out_error = error / size;
+  const auto scale = [&](std::size_t i) { return std::clamp(quantile95(z[i]) / 1.96, 0.5, 10.0); };
+  out.frequency_scale = scale(0);
+  out.damping_scale = scale(1);
+  out.residue_scale = scale(2);
+}
+
+}  // namespace
+
+double posture_distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  const Eigen::Index n = a.size() - 1;
+  return n > 0 ? (a.tail(n) - b.tail(n)).norm() : 0.0;
+}
+
+Calibration calibrate(const FlexibleArm& arm, const std::vector<PostureData>& data, double highest_hz, bool varying,
+                      Progress& progress) {
+  Calibration out;
+  Search search(arm, data, varying);
+  out.length_rad = process_length_rad;
+  if (!data.empty()) {
+    constexpr int stage_iterations = 8, last_iterations = 15;
+    for (std::size_t i = 0; i < std::size(stages); ++i) {
+      search.stage(stages[i], stage_lines[i]);
+      const bool last = i + 1 == std::size(stages);
+      search.descend(last ? last_iterations : stage_iterations, varying && i + 2 >= std::size(stages), progress);
+      search.estimate_noise();
+      progress.advance();
+    }
+    search.descend(4, varying, progress);
+    out.error = search.error();
+    out.noise = search.noise();
+  }
+  out.common = search.common();
+  out.differing = search.differing();
+  out.deviating = search.deviating();
+  out.covariance = search.covariance();
+  out.left_out_error = std::numeric_limits<double>::quiet_NaN();
+  if (data.size() >= 3) scale_deviations(arm, search, data, highest_hz, out);
+  return out;
+}
+
+PostureParameters predict(const FlexibleArm& arm, const Calibration& calibration,
+                          const std::vector<Eigen::VectorXd>& postures, const Eigen::VectorXd& joints) {
+  const Eigen::Index p = calibration.common.size(), d = calibration.differing.rows();
+  const Eigen::Index n = static_cast<Eigen::Index>(postures.size());
+  PostureParameters out{.mean = calibration.common, .covariance = calibration.covariance.topLeftCorner(p, p)};
+  if (d == 0) return out;
+  Eigen::MatrixXd kernel(n, n);
+  Eigen::VectorXd to(n);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    for (Eigen::Index b = 0; b < n; ++b) {
+      kernel(a, b) = Search::kernel_of(postures[static_cast<std::size_t>(a)], postures[static_cast<std::size_t>(b)]);
+    }
+    to(a) = Search::kernel_of(postures[static_cast<std::size_t>(a)], joints);
+  }
+  kernel.diagonal().array() += own_share;
+  const Eigen::VectorXd weights = kernel.llt().solve(to);
+  const double left = 1.0 - to.dot(weights);
+  Eigen::MatrixXd pick = Eigen::MatrixXd::Zero(p, p + d * n);
+  pick.leftCols(p).setIdentity();
+  for (Eigen::Index a = 0; a < d; ++a) {
+    const Eigen::Index row = calibration.deviating[static_cast<std::size_t>(a)];
+    out.mean(row) += calibration.differing.row(a).dot(weights);
+    for (Eigen::Index k = 0; k < n; ++k) pick(row, p + k * d + a) = weights(k);
+  }
+  out.covariance = pick * calibration.covariance * pick.transpose();
+  for (Eigen::Index a = 0; a < d; ++a) {
+    const Eigen::Index row = calibration.deviating[static_cast<std::size_t>(a)];
+    const double s = arm.parameters()[static_cast<std::size_t>(row)].posture_deviation;
+    out.covariance(row, row) += s * s * left;
+  }
+  return out;
+}
+
+}  // namespace robomill::modal::detail

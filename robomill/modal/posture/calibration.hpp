@@ -1,0 +1,43 @@
+#pragma once
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+#include "robomill/base/progress.hpp"
+#include "robomill/modal/posture/flexible_arm.hpp"
+#include "robomill/modal/posture/smoothed_frf.hpp"
+
+namespace robomill::modal::detail {
+
+/// θ, u and their joint deviations: a Gaussian about the least cost.
+struct Calibration {
+  Eigen::VectorXd common;               ///< θ, length P
+  Eigen::MatrixXd differing;            ///< u, a column a posture; rows as `deviating`
+  std::vector<Eigen::Index> deviating;  ///< parameters that u moves
+  Eigen::MatrixXd covariance;           ///< of (θ, u posture by posture)
+  double length_rad = 1.0;              ///< of the process
+  double noise = 1.0;                   ///< variance of a residual in units of its weight
+  double error = 0.0;                   ///< mean |ΔH| / |H|
+  double left_out_error = 0.0;
+  /// Factors on the predicted deviations of ln f, ζ and residues, from left-out postures.
+  double frequency_scale = 1.0, damping_scale = 1.0, residue_scale = 1.0;
+};
+
+/// The parameters of a posture as the calibration predicts them.
+struct PostureParameters {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+};
+
+/// Distance between postures over all joints but the first, on which nothing depends.
+[[nodiscard]] double posture_distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
+/// @param varying  whether joints may differ from posture to posture
+[[nodiscard]] Calibration calibrate(const FlexibleArm& arm, const std::vector<PostureData>& data, double highest_hz,
+                                    bool varying, Progress& progress);
+
+/// @param joints  of the measured postures
+[[nodiscard]] PostureParameters predict(const FlexibleArm& arm, const Calibration& calibration,
+                                        const std::vector<Eigen::VectorXd>& postures, const Eigen::VectorXd& joints);
+
+}  // namespace robomill::modal::detail

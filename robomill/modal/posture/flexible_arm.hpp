@@ -1,0 +1,126 @@
+#pragma once
+#include <Eigen/Core>
+#include <complex>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "robomill/modal/modes.hpp"
+#include "robomill/robot/arm.hpp"
+
+// Method: robomill/modal/README.md, "Modes over posture (`posture_model.hpp`)"
+
+namespace robomill::modal::detail {
+
+/// Which compliances a model of an arm has beside the turning of its joints.
+struct ArmStructure {
+  bool bearings = false;  ///< each joint tilts about two axes across its own
+  bool bracket = false;   ///< what hangs on the flange turns on it about three axes
+  int tool_modes = 0;     ///< pairs of cantilever modes of spindle and tool, along the flange's x and y
+  bool load = false;      ///< a joint's stiffness depends on the weight that it carries
+};
+
+/// One number that a calibration may change.
+struct ArmParameter {
+  enum class Kind {
+    joint_stiffness,  ///< ln of [N m/rad]
+    joint_damping,    ///< ln of [N m s/rad]
+    joint_load,       ///< slope of ln stiffness over |gravity torque| / its largest
+    joint_unloaded,   ///< ln stiffness gained where a joint carries no weight: backlash makes it negative
+    tilt_stiffness,   ///< ln
+    tilt_damping,     ///< ln
+    bracket_stiffness,
+    bracket_damping,
+    tool_mass,       ///< ln of [kg]
+    tool_stiffness,  ///< ln of [N/m]
+    tool_damping,    ///< ln of [N s/m]
+    compliance,      ///< of the tip in flange axes [1e-8 m/N]: modes above those of the model
+    rotor_inertia,   ///< ln
+    body_mass,       ///< ln of mass and inertia together
+    body_inertia,    ///< ln of the inertia alone
+    body_center      ///< [m], along one axis of the link's frame
+  };
+  Kind kind = Kind::joint_stiffness;
+  std::size_t index = 0;         ///< of the joint, coordinate, body or axis
+  std::size_t axis = 0;          ///< of body_center
+  double start = 0.0;            ///< where the calibration starts
+  double deviation = 1.0;        ///< prior standard deviation about the start
+  double posture_deviation = 0;  ///< by how much it may differ from posture to posture; 0: it does not
+};
+
+/// A serial arm with compliant joints that carries a spindle and a tool, M ẍ + C ẋ + K x = Bᵀ F with x the small turns
+/// and displacements of its structure. Rigid bodies and geometry are the cell's; the parameters are those listed.
+class FlexibleArm {
+ public:
+  struct Tool {
+    double frequency_hz = 0.0, mass_kg = 0.0;
+  };
+  /// @param payload  what hangs on the flange beside the last link
+  FlexibleArm(const robot::Cell& cell, const std::optional<robot::Link>& payload, const ArmStructure& structure,
+              const std::vector<Tool>& tools);
+
+  [[nodiscard]] const std::vector<ArmParameter>& parameters() const { return parameters_; }
+  [[nodiscard]] const ArmStructure& structure() const { return structure_; }
+  [[nodiscard]] Eigen::VectorXd start() const;
+  /// Sets the largest gravity torques, which the load is counted from.
+  void scale_loads(const std::vector<Eigen::VectorXd>& postures);
+
+  /// The structure at one posture.
+  struct System {
+    Eigen::MatrixXd mass, input;         ///< n x n; n x 3, the tip's Jacobian in B
+    Eigen::VectorXd stiffness, damping;  ///< length n: diagonal
+    Eigen::Matrix3d flange_axes = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d compliance = Eigen::Vector3d::Zero();  ///< in flange axes [m/N]
+    Eigen::VectorXd load;                                  ///< of each joint, |gravity torque| over its largest
+    std::vector<Eigen::MatrixXd> mass_derivative;          ///< of each parameter that moves the mass matrix; else empty
+    std::vector<Eigen::Index> coordinate;  ///< of each parameter of stiffness or damping or rotor; -1: none
+  };
+  [[nodiscard]] System at(const Eigen::VectorXd& joints, const Eigen::VectorXd& parameters, bool derivatives) const;
+
+  /// H(s), 3 x 3 in B.
+  static Eigen::Matrix3cd receptance(const System& system, std::complex<double> s);
+  /// The same with its derivative by every parameter, a column each: the nine entries of ∂H, column by column.
+  void receptance(const System& system, std::complex<double> s, Eigen::Matrix3cd& value,
+                  Eigen::Ref<Eigen::Matrix<std::complex<double>, 9, Eigen::Dynamic>> derivative) const;
+
+  /// Modes up to a frequency at the tip in B, the rest as a compliance.
+  struct Modes {
+    Eigen::VectorXcd pole;     ///< length m, rising
+    Eigen::MatrixXcd shape;    ///< n x m, ψᵀ (C + 2 λ M) ψ = 1
+    Eigen::Matrix3Xcd at_tip;  ///< 3 x m: R = L
+    Eigen::Matrix3d rest;      ///< [m/N]
+  };
+  [[nodiscard]] Modes modes(const System& system, double highest_hz) const;
+  /// ∂ ln f, ∂ ζ and ‖∂(R Rᵀ)‖ over ‖R Rᵀ‖ of each mode by each parameter, m x parameters each.
+  struct Sensitivity {
+    Eigen::MatrixXd log_frequency, damping_ratio;
+    std::vector<Eigen::MatrixXcd> residue;  ///< of each mode, 9 x parameters, over ‖R Rᵀ‖
+  };
+  [[nodiscard]] Sensitivity sensitivity(const System& system, const Modes& modes) const;
+
+ private:
+  struct Coordinate {
+    enum class Kind { joint, tilt, bracket, tool } kind = Kind::joint;
+    std::size_t joint = 0, pair = 0;
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< in the frame before the joint turns, or of the flange
+  };
+  struct Body {
+    std::size_t joint = 0;  ///< that moves it
+    bool on_bracket = false;
+    robot::Link link;
+  };
+  void add(ArmParameter::Kind kind, std::size_t index, double start, double deviation, double posture_deviation = 0.0,
+           std::size_t axis = 0);
+  void add_coordinates();
+  void add_parameters(const std::vector<Tool>& tools);
+  [[nodiscard]] Eigen::VectorXd gravity_torque(const Eigen::VectorXd& joints) const;
+
+  robot::Cell cell_;
+  ArmStructure structure_;
+  std::vector<Coordinate> coordinates_;
+  std::vector<Body> bodies_;
+  std::vector<ArmParameter> parameters_;
+  Eigen::VectorXd largest_load_;
+};
+
+}  // namespace robomill::modal::detail

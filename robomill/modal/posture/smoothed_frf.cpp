@@ -1,0 +1,136 @@
+#include "robomill/modal/posture/smoothed_frf.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+
+namespace robomill::modal::detail {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double pi = std::numbers::pi;
+/// An error counts over this share of the receptance, and of the matrix where an entry is small beside it.
+constexpr double counted_share = 0.05;
+constexpr double small_entry = 0.1;
+
+int row_of(const Dof& dof) {
+  return dof.point == 0 && static_cast<int>(dof.axis) <= 3 ? static_cast<int>(dof.axis) - 1 : -1;
+}
+
+}  // namespace
+
+PostureData::PostureData(const MeasuredPosture& measured, const PostureModelOptions& options)
+    : joints_(measured.joints), modes_(measured.modes) {
+  if (modes_) {
+    double highest = 0.0, lowest = 1e300;
+    for (const Mode& mode : modes_->modes) {
+      highest = std::max(highest, mode.frequency_hz);
+      lowest = std::min(lowest, mode.frequency_hz);
+    }
+    for (const Dof& response : modes_->responses) {
+      for (const Dof& excitation : modes_->excitations) {
+        if (row_of(response) >= 0 && row_of(excitation) >= 0) known_(row_of(response) + 3 * row_of(excitation)) = true;
+      }
+    }
+    low_hz_ = std::max(options.band_low_hz, 0.5 * lowest);
+    high_hz_ = std::min(options.band_high_hz, 1.1 * highest);
+  } else {
+    std::vector<Eigen::Index> lines;
+    for (Eigen::Index k = 0; k < measured.frfs.frequency_hz.size(); ++k) {
+      const double f = measured.frfs.frequency_hz(k);
+      if (f > 0.0 && f >= options.band_low_hz && f <= options.band_high_hz) lines.push_back(k);
+    }
+    if (lines.size() < 20) {
+      throw InvalidInput(measured.name, "has fewer than 20 lines within the band of the postures",
+                         "Measure from 5 to 700 Hz, a line a hertz or finer");
+    }
+    const Eigen::Index count = static_cast<Eigen::Index>(lines.size());
+    frequency_hz_.resize(count);
+    value_.setZero(9, count);
+    for (Eigen::Index k = 0; k < count; ++k)
+      frequency_hz_(k) = measured.frfs.frequency_hz(lines[static_cast<std::size_t>(k)]);
+    for (const Frf& frf : measured.frfs.frfs) {
+      const int row = row_of(frf.name.response), column = row_of(frf.name.excitation);
+      if (row < 0 || column < 0) continue;
+      known_(row + 3 * column) = true;
+      for (Eigen::Index k = 0; k < count; ++k) {
+        value_(row + 3 * column, k) = frf.receptance(lines[static_cast<std::size_t>(k)]);
+      }
+    }
+    low_hz_ = frequency_hz_(0);
+    high_hz_ = frequency_hz_(count - 1);
+  }
+  if (!known_.any()) {
+    throw InvalidInput(measured.name, "has nothing at the tool's tip in x, y or z", "The tip carries no number");
+  }
+}
+
+SmoothedFrf PostureData::smoothed(double share, int lines) const {
+  SmoothedFrf out;
+  const Eigen::Index count = frequency_hz_.size();
+  const double spacing_hz = count > 1 ? (high_hz_ - low_hz_) / static_cast<double>(count - 1) : 0.0;
+  // Beyond the last line the integral knows nothing: the lines end where it would matter.
+  const double last_hz = modes_ ? high_hz_ : high_hz_ / (1.0 + 2.0 * share);
+  const double ratio = std::pow(last_hz / low_hz_, 1.0 / (lines - 1));
+  double f = low_hz_;
+  std::vector<double> frequency;
+  while (f <= last_hz * (1.0 + 1e-12)) {
+    frequency.push_back(f);
+    f = std::max(f * ratio, f + spacing_hz);
+  }
+  const Eigen::Index n = static_cast<Eigen::Index>(frequency.size());
+  out.value.setZero(9, n);
+  out.weight.setZero(9, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double at = frequency[static_cast<std::size_t>(i)];
+    const double sigma_hz = std::max(share * at, spacing_hz);
+    const Complex s(2.0 * pi * sigma_hz, 2.0 * pi * at);
+    out.s.push_back(s);
+    Eigen::Matrix<Complex, 9, 1> sum = Eigen::Matrix<Complex, 9, 1>::Zero();
+    if (modes_) {
+      for (const Mode& mode : modes_->modes) {
+        const Complex lambda = pole(mode);
+        for (std::size_t r = 0; r < modes_->responses.size(); ++r) {
+          for (std::size_t e = 0; e < modes_->excitations.size(); ++e) {
+            const int row = row_of(modes_->responses[r]), column = row_of(modes_->excitations[e]);
+            if (row < 0 || column < 0) continue;
+            const Complex residue = mode.right(static_cast<Eigen::Index>(r)) * mode.left(static_cast<Eigen::Index>(e));
+            sum(row + 3 * column) += residue / (s - lambda) + std::conj(residue) / (s - std::conj(lambda));
+          }
+        }
+      }
+      for (const Residual& residual : modes_->residuals) {
+        const int row = row_of(residual.name.response), column = row_of(residual.name.excitation);
+        if (row >= 0 && column >= 0) sum(row + 3 * column) += residual.stiffness + residual.mass / (s * s);
+      }
+    } else {
+      // Each line stands for the cell about it; below the first one the receptance is static.
+      const auto share_of = [&](double from, double to) {
+        return (std::atan((to - at) / sigma_hz) - std::atan((from - at) / sigma_hz)) / pi;
+      };
+      double whole = 0.0;
+      for (Eigen::Index k = 0; k < count; ++k) {
+        const double from = k == 0 ? frequency_hz_(0) : 0.5 * (frequency_hz_(k - 1) + frequency_hz_(k));
+        const double to = k + 1 == count ? frequency_hz_(k) : 0.5 * (frequency_hz_(k) + frequency_hz_(k + 1));
+        const double positive = share_of(from, to), negative = share_of(-to, -from);
+        sum += positive * value_.col(k) + negative * value_.col(k).conjugate();
+        whole += positive + negative;
+      }
+      const double middle = share_of(-frequency_hz_(0), frequency_hz_(0));
+      sum += middle * value_.col(0).real().cast<Complex>();
+      whole += middle;
+      sum /= whole;
+    }
+    const double norm = sum.norm() / 3.0;
+    for (Eigen::Index e = 0; e < 9; ++e) {
+      if (!known_(e)) continue;
+      out.value(e, i) = sum(e);
+      out.weight(e, i) = 1.0 / (counted_share * std::hypot(std::abs(sum(e)), small_entry * norm));
+    }
+  }
+  return out;
+}
+
+}  // namespace robomill::modal::detail

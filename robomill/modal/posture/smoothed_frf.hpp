@@ -1,0 +1,37 @@
+#pragma once
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+#include "robomill/modal/posture_model.hpp"
+
+namespace robomill::modal::detail {
+
+/// Receptances of one posture right of the imaginary axis, s = σ + iω with σ = max(share · ω, a line's distance).
+struct SmoothedFrf {
+  std::vector<std::complex<double>> s;
+  Eigen::Matrix<std::complex<double>, 9, Eigen::Dynamic> value;  ///< H column by column; 0 where not measured
+  Eigen::Matrix<double, 9, Eigen::Dynamic> weight;               ///< over what an error counts; 0 where not measured
+};
+
+/// What was measured in one posture.
+class PostureData {
+ public:
+  /// @throws InvalidInput as PostureModel
+  PostureData(const MeasuredPosture& measured, const PostureModelOptions& options);
+  [[nodiscard]] const Eigen::VectorXd& joints() const { return joints_; }
+  /// H(σ + iω) from measured lines by Poisson's integral for the half plane, in which H is analytic,
+  ///     H(σ + iω) = 1/π ∫ H(iν) σ / ((ω − ν)² + σ²) dν,
+  /// or from modes by their sum.
+  [[nodiscard]] SmoothedFrf smoothed(double share, int lines) const;
+
+ private:
+  Eigen::VectorXd joints_;
+  Eigen::VectorXd frequency_hz_;                                  ///< length L; empty where modes are given
+  Eigen::Matrix<std::complex<double>, 9, Eigen::Dynamic> value_;  ///< 9 x L
+  Eigen::Matrix<bool, 9, 1> known_ = Eigen::Matrix<bool, 9, 1>::Constant(false);
+  std::optional<ModalModel> modes_;
+  double low_hz_ = 0.0, high_hz_ = 0.0;
+};
+
+}  // namespace robomill::modal::detail

@@ -1,0 +1,292 @@
+#include "robomill/modal/posture_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "robomill/base/error.hpp"
+#include "robomill/modal/fit.hpp"
+#include "robomill/modal/posture/calibration.hpp"
+#include "robomill/modal/posture/inverse_distance.hpp"
+#include "robomill/modal/posture/tool_peaks.hpp"
+
+namespace robomill::modal {
+
+class PostureModel::Source {
+ public:
+  virtual ~Source() = default;
+  [[nodiscard]] virtual ModalModel at(const Eigen::VectorXd& joints) const = 0;
+  robot::Cell cell;
+  PostureReport report;
+  std::vector<Eigen::VectorXd> postures;
+  std::vector<std::string> names;
+};
+
+namespace {
+
+using namespace detail;
+using std::numbers::pi;
+
+std::vector<Dof> tip_dofs() {
+  return {{.point = 0, .axis = Axis::x}, {.point = 0, .axis = Axis::y}, {.point = 0, .axis = Axis::z}};
+}
+
+void require_position(const robot::Cell& cell, const Eigen::VectorXd& joints, const std::string& name) {
+  if (joints.size() != cell.arm.size()) {
+    throw InvalidInput(name, fmt::format("must have {} joints; it has {}", cell.arm.size(), joints.size()));
+  }
+  for (Eigen::Index i = 0; i < joints.size(); ++i) require_finite("joints", joints(i), "rad");
+  const robot::LimitCheck limits = robot::within_limits(cell.arm, joints);
+  if (limits.inside) return;
+  const bool slides = cell.arm.joints[static_cast<std::size_t>(limits.joint)].prismatic;
+  throw InvalidInput(
+      name, fmt::format("takes joint {} {:.4g} {} beyond its limit", limits.joint + 1,
+                        slides ? -limits.distance * 1e3 : -limits.distance * 180.0 / pi, slides ? "mm" : "deg"));
+}
+
+std::vector<FrfName> names_of(const MeasuredPosture& posture) {
+  std::vector<FrfName> out;
+  if (posture.modes) {
+    for (const Dof& response : posture.modes->responses) {
+      for (const Dof& excitation : posture.modes->excitations) out.push_back({response, excitation});
+    }
+  } else {
+    for (const Frf& frf : posture.frfs.frfs) out.push_back(frf.name);
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+/// Postures are compared with each other: the same directions over the same band.
+void require_alike(const std::vector<MeasuredPosture>& measured) {
+  for (const MeasuredPosture& posture : measured) {
+    const MeasuredPosture& first = measured.front();
+    if (names_of(posture) != names_of(first)) {
+      throw InvalidInput(posture.name, "has other directions than " + first.name,
+                         "Measure every posture with the same forces and responses");
+    }
+    if (posture.modes || first.modes) continue;
+    const Eigen::VectorXd &a = first.frfs.frequency_hz, &b = posture.frfs.frequency_hz;
+    const double step = a.size() > 1 ? (a(a.size() - 1) - a(0)) / static_cast<double>(a.size() - 1) : 0.0;
+    if (std::abs(a(0) - b(0)) > 2.0 * step || std::abs(a(a.size() - 1) - b(b.size() - 1)) > 2.0 * step) {
+      throw InvalidInput(posture.name,
+                         fmt::format("covers {:.5g} to {:.5g} Hz, {} {:.5g} to {:.5g} Hz: the bands must be one", b(0),
+                                     b(b.size() - 1), first.name, a(0), a(a.size() - 1)));
+    }
+  }
+}
+
+/// Whether the cell says enough for a model of the arm.
+bool has_model(const robot::Cell& cell) {
+  return std::ranges::all_of(cell.arm.joints, [](const robot::Joint& j) { return j.stiffness > 0.0; }) &&
+         std::ranges::any_of(cell.arm.joints, [](const robot::Joint& j) { return j.link.mass_kg > 0.0; });
+}
+
+/// How far apart measured postures are: beyond that nothing was measured nearby.
+double region_of(const std::vector<Eigen::VectorXd>& postures) {
+  double widest = 0.0;
+  for (std::size_t a = 0; a < postures.size(); ++a) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t b = 0; b < postures.size(); ++b) {
+      if (a != b) nearest = std::min(nearest, posture_distance(postures[a], postures[b]));
+    }
+    if (std::isfinite(nearest)) widest = std::max(widest, nearest);
+  }
+  return widest;
+}
+
+}  // namespace
+
+/// A model of the arm, calibrated or as the cell says.
+class PostureModel::Calibrated final : public Source {
+ public:
+  Calibrated(const robot::Cell& told, const std::optional<robot::Link>& payload,
+             const std::vector<MeasuredPosture>& measured, const PostureModelOptions& options, Progress& progress)
+      : highest_hz_(options.band_high_hz) {
+    cell = told;
+    std::vector<PostureData> data;
+    for (const MeasuredPosture& posture : measured) {
+      data.emplace_back(posture, options);
+      postures.push_back(posture.joints);
+    }
+    report.source = measured.empty() ? PostureReport::Source::cell : PostureReport::Source::calibrated;
+    if (measured.empty()) {
+      take({.bearings = false, .bracket = false, .tool_modes = 0, .load = false}, {}, payload, data, false, progress);
+      report.notes.push_back(
+          "No posture was measured: the modes are those of the cell's own numbers, with rigid bearings and no tool.");
+      return;
+    }
+    choose(payload, data, progress);
+  }
+
+  [[nodiscard]] ModalModel at(const Eigen::VectorXd& joints) const override {
+    const PostureParameters parameters = predict(*arm_, calibration_, postures, joints);
+    const FlexibleArm::System system = arm_->at(joints, parameters.mean, true);
+    const FlexibleArm::Modes modes = arm_->modes(system, highest_hz_);
+    const FlexibleArm::Sensitivity by = arm_->sensitivity(system, modes);
+    ModalModel out{.excitations = tip_dofs(), .responses = tip_dofs(), .modes = {}};
+    for (Eigen::Index k = 0; k < modes.pole.size(); ++k) {
+      Mode mode;
+      const double rate = std::abs(modes.pole(k));
+      mode.frequency_hz = rate / (2.0 * pi);
+      mode.damping_ratio = std::clamp(-modes.pole(k).real() / rate, 1e-6, 0.999);
+      mode.left = mode.right = modes.at_tip.col(k);
+      const auto deviation = [&](const Eigen::RowVectorXd& row) {
+        return std::sqrt(std::max(0.0, (row * parameters.covariance * row.transpose()).value()));
+      };
+      mode.frequency_std_hz = mode.frequency_hz * calibration_.frequency_scale * deviation(by.log_frequency.row(k));
+      mode.damping_ratio_std = calibration_.damping_scale * deviation(by.damping_ratio.row(k));
+      const Eigen::MatrixXcd& r = by.residue[static_cast<std::size_t>(k)];
+      mode.residue_std_ratio = calibration_.residue_scale *
+                               std::sqrt(std::max(0.0, (r * parameters.covariance * r.adjoint()).trace().real()));
+      normalise(mode);
+      out.modes.push_back(std::move(mode));
+    }
+    const std::vector<Dof> dofs = tip_dofs();
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) {
+        out.residuals.push_back({.name = {dofs[static_cast<std::size_t>(i)], dofs[static_cast<std::size_t>(j)]},
+                                 .stiffness = modes.rest(i, j)});
+      }
+    }
+    return out;
+  }
+
+ private:
+  /// Keeps a structure.
+  void take(const ArmStructure& structure, const std::vector<FlexibleArm::Tool>& tools,
+            const std::optional<robot::Link>& payload, const std::vector<PostureData>& data, bool varying,
+            Progress& progress) {
+    auto arm = std::make_unique<FlexibleArm>(cell, payload, structure, tools);
+    if (!postures.empty()) arm->scale_loads(postures);
+    Calibration calibration = calibrate(*arm, data, highest_hz_, varying, progress);
+    const double was = std::isfinite(calibration_.left_out_error) && arm_ ? calibration_.left_out_error : HUGE_VAL;
+    const double is = std::isfinite(calibration.left_out_error) ? calibration.left_out_error : calibration.error;
+    // A richer structure has to pay for itself.
+    constexpr double worth = 0.97;
+    if (arm_ && !(is < worth * was)) return;
+    arm_ = std::move(arm);
+    calibration_ = std::move(calibration);
+    report.bearings = structure.bearings;
+    report.bracket = structure.bracket;
+    report.tool_modes = static_cast<int>(tools.size());
+    report.varies = varying;
+    report.error = calibration_.error;
+    report.left_out_error = calibration_.left_out_error;
+    tools_ = tools;
+  }
+
+  void choose(const std::optional<robot::Link>& payload, const std::vector<PostureData>& data, Progress& progress) {
+    const bool several = data.size() >= 3;
+    const std::vector<FlexibleArm::Tool> peaks = tool_peaks(cell, data, highest_hz_);
+    ArmStructure structure{.bearings = true, .bracket = false, .tool_modes = 0, .load = several};
+    take(structure, {}, payload, data, several, progress);
+    if (!several) return;
+    std::vector<FlexibleArm::Tool> tools;
+    for (const FlexibleArm::Tool& peak : peaks) {
+      std::vector<FlexibleArm::Tool> more = tools_;
+      more.push_back(peak);
+      take(structure, more, payload, data, several, progress);
+    }
+    structure.bracket = true;
+    take(structure, tools_, payload, data, several, progress);
+    if (report.bracket) {
+      for (const FlexibleArm::Tool& peak : peaks) {
+        if (std::ranges::any_of(tools_,
+                                [&](const FlexibleArm::Tool& t) { return t.frequency_hz == peak.frequency_hz; }))
+          continue;
+        std::vector<FlexibleArm::Tool> more = tools_;
+        more.push_back(peak);
+        take(structure, more, payload, data, several, progress);
+      }
+    }
+  }
+
+  double highest_hz_;
+  std::unique_ptr<FlexibleArm> arm_;
+  Calibration calibration_;
+  std::vector<FlexibleArm::Tool> tools_;
+};
+
+/// Measured modes weighted by inverse distance, for a cell that says too little of its arm.
+class PostureModel::Interpolated final : public Source {
+ public:
+  Interpolated(const robot::Cell& told, const std::vector<MeasuredPosture>& measured,
+               const PostureModelOptions& options, Progress& progress) {
+    cell = told;
+    report.source = PostureReport::Source::interpolated;
+    for (const MeasuredPosture& posture : measured) {
+      postures.push_back(posture.joints);
+      if (posture.modes) {
+        modes_.push_back({posture.joints, *posture.modes});
+        continue;
+      }
+      FitOptions fit;
+      fit.band_low_hz = options.band_low_hz;
+      fit.band_high_hz = options.band_high_hz;
+      modes_.push_back({posture.joints, fit_modes(posture.frfs, fit, progress).model});
+    }
+    report.notes.push_back(
+        "The cell has no masses (robot.links) or no joint stiffness: measured modes are interpolated by inverse "
+        "distance, which is far less accurate than a calibrated arm.");
+  }
+  [[nodiscard]] ModalModel at(const Eigen::VectorXd& joints) const override {
+    return inverse_distance(modes_, cell.arm, joints, ResidueAxes::flange);
+  }
+
+ private:
+  std::vector<PostureModes> modes_;
+};
+
+void PostureModelOptions::validate() const {
+  require_non_negative("band_low_hz", band_low_hz, "Hz");
+  require_finite("band_high_hz", band_high_hz, "Hz");
+  if (!(band_high_hz > band_low_hz)) throw InvalidInput("band_high_hz", band_high_hz, "Hz", "must be > band_low_hz");
+}
+
+PostureModel::PostureModel(const robot::Cell& cell, const std::optional<robot::Link>& payload,
+                           const std::vector<MeasuredPosture>& measured, const PostureModelOptions& options,
+                           Progress& progress) {
+  cell.validate();
+  options.validate();
+  for (const MeasuredPosture& posture : measured) require_position(cell, posture.joints, posture.name);
+  if (!measured.empty()) require_alike(measured);
+  if (has_model(cell)) {
+    source_ = std::make_unique<Calibrated>(cell, payload, measured, options, progress);
+  } else if (!measured.empty()) {
+    source_ = std::make_unique<Interpolated>(cell, measured, options, progress);
+  } else {
+    throw InvalidInput("cell", "has neither measured postures nor masses and joint stiffness",
+                       "Write [[postures]], or robot.links and robot.joint_stiffness_n_m_per_rad");
+  }
+  for (const MeasuredPosture& posture : measured) source_->names.push_back(posture.name);
+  source_->report.postures = measured.size();
+  source_->report.region_rad = region_of(source_->postures);
+}
+PostureModel::~PostureModel() = default;
+PostureModel::PostureModel(PostureModel&&) noexcept = default;
+PostureModel& PostureModel::operator=(PostureModel&&) noexcept = default;
+
+PosturePrediction PostureModel::at(const Eigen::VectorXd& joints) const {
+  require_position(source_->cell, joints, "joints");
+  PosturePrediction out;
+  out.modes = source_->at(joints);
+  out.distance_rad = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < source_->postures.size(); ++k) {
+    const double distance = posture_distance(source_->postures[k], joints);
+    if (distance >= out.distance_rad) continue;
+    out.distance_rad = distance;
+    out.nearest = source_->names[k];
+  }
+  out.measured_nearby = out.distance_rad <= source_->report.region_rad;
+  return out;
+}
+
+const PostureReport& PostureModel::report() const {
+  return source_->report;
+}
+
+}  // namespace robomill::modal

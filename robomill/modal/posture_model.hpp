@@ -1,0 +1,92 @@
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/modal/frf.hpp"
+#include "robomill/modal/modes.hpp"
+#include "robomill/robot/arm.hpp"
+
+// Method: robomill/modal/README.md, "Modes over posture (`posture_model.hpp`)"
+
+namespace robomill::modal {
+
+/// What was measured at the tool's tip in one posture, in the robot's base axes: FRFs or modes.
+struct MeasuredPosture {
+  std::string name = {};                 ///< for messages: "postures[3]", a file
+  Eigen::VectorXd joints = {};           ///< length n [rad or m]
+  FrfSet frfs = {};                      ///< of the tip, x, y, z; at least one force; empty where modes are given
+  std::optional<ModalModel> modes = {};  ///< of the tip in x, y, z
+};
+
+struct ROBOMILL_API PostureModelOptions {
+  double band_low_hz = 0.0;     ///< FRFs count from here [Hz], >= 0
+  double band_high_hz = 700.0;  ///< to here [Hz], > band_low_hz; modes are given up to there
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// The dynamics of a posture, predicted.
+struct PosturePrediction {
+  ModalModel modes;           ///< of the tip in B, x, y and z, with deviations; the rest of the structure as residuals
+  double distance_rad = 0.0;  ///< to the nearest measured posture, over the joints that count; infinite: none
+  std::string nearest = {};   ///< its name
+  bool measured_nearby = false;  ///< within the measured region: distance_rad <= PostureReport::region_rad
+};
+
+/// What a calibration came to.
+struct PostureReport {
+  enum class Source {
+    cell,          ///< nothing was measured: the cell's numbers alone
+    calibrated,    ///< the arm's model, calibrated with every posture
+    interpolated,  ///< the cell has no masses or no stiffness: measured modes by inverse distance
+  };
+  Source source = Source::cell;
+  bool bearings = false, bracket = false;  ///< what the left-out postures bear out
+  int tool_modes = 0;                      ///< pairs found
+  bool varies = false;                     ///< joints differ from posture to posture beyond the model
+  std::size_t postures = 0;
+  double error = 0.0;           ///< mean |H_fit − H| over |H|, all postures
+  double left_out_error = 0.0;  ///< the same of each posture predicted from the others; NaN below three postures
+  double region_rad = 0.0;      ///< how far from a measured posture counts as measured
+  std::vector<std::string> notes = {};
+};
+
+/// The dynamics of a robot at any posture. One model of the arm (compliant joints, tilting bearings, a bracket under
+/// the spindle, cantilever modes of spindle and tool) is calibrated over the FRFs of all postures together,
+///     minimise Σ |H(φ_p) − H_p|² / d² + prior,  φ_p = θ + S u_p,  H = Bᵀ (K + sC + s²M)⁻¹ B + C_rest,
+/// where u_p, a Gaussian process over the joints, is what the joints' stiffness and damping differ by in posture p.
+/// Which structure is kept is decided by the receptances of left-out postures.
+class ROBOMILL_API PostureModel {
+ public:
+  /// @param cell      with tool_length_m; links with mass and joints with stiffness, else measured modes are
+  ///     interpolated
+  /// @param payload   what hangs on the flange beside the last link, in flange axes
+  /// @param measured  may be empty
+  /// @throws InvalidInput naming the posture: a position of another length or outside the joints' limits, FRFs with
+  ///     other names or another band than the first's, nothing at the tip; neither a model nor measurements;
+  ///     Interrupted
+  PostureModel(const robot::Cell& cell, const std::optional<robot::Link>& payload,
+               const std::vector<MeasuredPosture>& measured, const PostureModelOptions& options = {},
+               Progress& progress = Progress::none());
+  ~PostureModel();
+  PostureModel(PostureModel&&) noexcept;
+  PostureModel& operator=(PostureModel&&) noexcept;
+
+  /// @param joints  length n
+  /// @throws InvalidInput if it has another length, is not finite or outside the joints' limits (which, by how much)
+  [[nodiscard]] PosturePrediction at(const Eigen::VectorXd& joints) const;
+  [[nodiscard]] const PostureReport& report() const;
+
+ private:
+  class Source;
+  std::unique_ptr<Source> source_;
+  class Calibrated;
+  class Interpolated;
+};
+
+}  // namespace robomill::modal
