@@ -19,6 +19,7 @@ Exit run(const PlanCommand& command, const Common& common, Progress& progress) {
   }
   if (common.wants_summary()) fmt::print("{}", jobs::summary(result));
   if (result.path && !result.path->holds()) return not_reached;
+  if (result.blocks && !result.recommends()) return done;  // an unstable block is an answer
   return result.recommendation.status == decision::Recommendation::Status::found ? done : not_reached;
 }
 

@@ -8,9 +8,9 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/jobs/blocks/dynamics.hpp"
 #include "robomill/jobs/program_forces.hpp"
 #include "robomill/modal/tip.hpp"
-#include "robomill/robot/dynamics.hpp"
 #include "robomill/robot/inverse.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/stiffness.hpp"
@@ -79,25 +79,11 @@ CutPosture posture_of(const ForcesFile& file, const robot::Cell& cell, const Eig
 /// The robot's own modes as the cut sees them.
 modal::TipModes robot_modes(const ForcesFile& file, const robot::Cell& cell, const Eigen::VectorXd& joints,
                             const Eigen::Matrix3d& base_from_feed) {
-  const bool weighs = std::ranges::any_of(cell.arm.joints, [](const robot::Joint& j) { return j.link.mass_kg > 0.0; });
-  const bool damped = std::ranges::all_of(cell.arm.joints, [](const robot::Joint& j) { return j.damping > 0.0; });
-  if (!weighs || !damped) {
+  if (!vibrates(cell.arm)) {
     throw reject(file, "robot.vibration", "needs the masses of the links and the damping of the joints",
                  "The cell says them as links and joint_damping_n_m_s_per_rad");
   }
-  const robot::ToolModes found = robot::tool_modes(cell.arm, joints, robot::tip_point(cell));
-  modal::ModalModel model;
-  model.excitations = model.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
-  model.modes.reserve(found.modes.size());
-  for (const robot::ToolMode& swing : found.modes) {
-    modal::Mode mode;
-    mode.frequency_hz = swing.frequency_hz;
-    mode.damping_ratio = swing.damping_ratio;
-    mode.right = base_from_feed.transpose() * swing.right.head<3>();
-    mode.left = base_from_feed.transpose() * swing.left.head<3>();
-    model.modes.push_back(std::move(mode));
-  }
-  return modal::tip_modes(model, {}, 0.0);
+  return modal::turned(modal::tip_modes(arm_modes(cell, joints), {}, 0.0), base_from_feed.transpose());
 }
 
 /// What vibrates, in F: tool, robot, and the part with its fixture. Each moves against the next, so receptances add.
@@ -210,11 +196,16 @@ ForcesResult run_forces(const std::filesystem::path& forces, const std::filesyst
 
 ForcesResult run_forces(ForcesFile forces, const std::filesystem::path& program, std::optional<CellFile> cell,
                         Progress& progress) {
+  return run_forces(std::move(forces), program, std::move(cell), ProgramRun{}, progress);
+}
+
+ForcesResult run_forces(ForcesFile forces, const std::filesystem::path& program, std::optional<CellFile> cell,
+                        const ProgramRun& run, Progress& progress) {
   ForcesResult result = {.file = std::move(forces), .cell = std::move(cell)};
   if (!result.cell && !result.file.cell.empty()) result.cell = read_cell(result.file.cell);
   if (result.cell) result.notes = result.cell->notes;
   if (!program.empty()) {
-    result.program = run_program(result.file, result.cell, program, result.warnings, result.notes, progress);
+    result.program = run_program(result.file, result.cell, program, result.warnings, result.notes, progress, run);
   } else {
     run_revolution(result, progress);
   }

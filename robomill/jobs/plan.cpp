@@ -12,6 +12,7 @@
 #include "robomill/decision/choose.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
+#include "robomill/jobs/program_forces.hpp"
 #include "robomill/jobs/test_cuts.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -357,45 +358,47 @@ void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
   result.uncertain = stability::uncertain_limits(result.cut.problem, options, uncertainty, progress);
 }
 
-}  // namespace
+/// Where the robot stands along a program: as the smoothed path has it, where there is one.
+ProgramRun program_run(const PlanResult& result) {
+  ProgramRun run = {.keep_cuts = true, .deflect = true};
+  if (result.path && !result.path->block_joints.empty()) {
+    run.reading = result.path->reading;
+    run.joints = result.path->block_joints;
+  }
+  return run;
+}
 
-PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress,
-                   const std::filesystem::path& folder, bool accept_fit) {
-  PlanResult result;
-  result.job = read_job(job);
-  // Everything that is quick to reject is read before the long work starts.
-  result.cut = read_lobes(result.job.lobes);
-  require_plane(result.cut, "plan chooses depth and speed of such a cut; robomill lobes judges any");
-  if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
-    throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
-                       "plan needs it for the removal rate");
+/// What vibrates along the program: the cell's, or the job's in every posture.
+DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell) {
+  if (!result.job.has_structure()) {
+    result.notes.emplace_back(
+        "The dynamics of the program's blocks are those of the cell's model: the arm alone, nothing was measured.");
+    return dynamics_of_arm(cell);
   }
-  const std::optional<CellFile> cell = cell_of(result.job);
-  const bool with_path = wants_path(result.job, cell);
-  try {
-    decision::require_finishable(result.cut.problem, result.job.finish);
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(InvalidInput::Parts{
-        .where = job.string(), .field = "finishing", .rule = error.parts().rule, .hint = error.parts().hint});
+  result.notes.emplace_back(
+      "The dynamics of the program's blocks are the job's, the same in every posture, in the robot's base axes.");
+  return constant_dynamics(result.model);
+}
+
+/// Forces, and with a program and a robot the stability of every block.
+void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, Progress& progress) {
+  if (result.job.forces.empty()) return;
+  const bool along = !result.job.program.empty();
+  ForcesFile file = read_forces(result.job.forces, along ? ForcesJob::program : ForcesJob::revolution);
+  if (!result.job.judges_blocks()) {
+    result.forces = run_forces(std::move(file), result.job.program, cell, progress);
+  } else {
+    result.forces = run_forces(std::move(file), result.job.program, cell, program_run(result), progress);
   }
-  measure(result, progress);
-  if (!result.job.forces.empty()) {
-    const bool along = !result.job.program.empty();
-    result.forces = run_forces(read_forces(result.job.forces, along ? ForcesJob::program : ForcesJob::revolution),
-                               result.job.program, cell, progress);
-    result.forces->spindle = capacity_along(*result.forces, result.job.recommend.spindle);
-    warn_of_spindle(result);
-  }
-  fit(result, seed, progress);
-  if (result.fit && accept_fit) result.fit->accepted = true;
-  if (result.fit && !result.fit->usable()) {
-    result.recommendation.reason = fmt::format(
-        "The modes do not describe the FRFs: the fit differs from them by {:.3g} %, and from {:.3g} % on nothing is "
-        "computed from it. Fit a better band (job.band_hz), or accept it with --accept-fit.",
-        100.0 * result.fit->relative_error, 100.0 * modal::unusable_fit_error);
-    return result;
-  }
-  if (with_path) smooth(result, *cell, folder, progress);
+  result.forces->spindle = capacity_along(*result.forces, result.job.recommend.spindle);
+  warn_of_spindle(result);
+  const bool usable = !result.fit || result.fit->usable();
+  if (!result.job.judges_blocks() || !usable) return;
+  result.blocks = judge_blocks(*result.forces, dynamics_along(result, *cell), {}, progress);
+}
+
+/// Lobes of the job's cut, the recommendation, and what stands beside it.
+void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progress) {
   result.cut.drop_dynamics();  // the job's stand in their place
   load_dynamics(result.cut);
   result.cut.problem.dynamics = result.model;
@@ -412,6 +415,58 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   pairs(result, progress);
   turn_feed(result, progress);
   compare(result, progress);
+}
+
+/// lobes.toml, and what a plan asks of it.
+void read_cut(PlanResult& result) {
+  result.cut = read_lobes(result.job.lobes);
+  require_plane(result.cut, "plan chooses depth and speed of such a cut; robomill lobes judges any");
+  if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
+    throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
+                       "plan needs it for the removal rate");
+  }
+  try {
+    decision::require_finishable(result.cut.problem, result.job.finish);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(InvalidInput::Parts{.where = result.job.file.string(),
+                                           .field = "finishing",
+                                           .rule = error.parts().rule,
+                                           .hint = error.parts().hint});
+  }
+}
+
+}  // namespace
+
+PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progress& progress,
+                   const std::filesystem::path& folder, bool accept_fit) {
+  PlanResult result;
+  result.job = read_job(job);
+  // Everything that is quick to reject is read before the long work starts.
+  if (result.recommends()) read_cut(result);
+  const std::optional<CellFile> cell = cell_of(result.job);
+  const bool with_path = wants_path(result.job, cell);
+  if (result.job.has_structure()) {
+    measure(result, progress);
+    fit(result, seed, progress);
+  }
+  if (result.fit && accept_fit) result.fit->accepted = true;
+  const bool usable = !result.fit || result.fit->usable();
+  if (usable && with_path) smooth(result, *cell, folder, progress);
+  load_and_judge(result, cell, progress);
+  if (!usable) {
+    result.recommendation.reason = fmt::format(
+        "The modes do not describe the FRFs: the fit differs from them by {:.3g} %, and from {:.3g} % on nothing is "
+        "computed from it. Fit a better band (job.band_hz), or accept it with --accept-fit.",
+        100.0 * result.fit->relative_error, 100.0 * modal::unusable_fit_error);
+    return result;
+  }
+  if (result.recommends()) {
+    choose_conditions(result, seed, progress);
+  } else {
+    result.notes.emplace_back(
+        "The job names no lobes.toml: there are no lobes, no recommended speed and depth, and test cuts are not "
+        "compared.");
+  }
   return result;
 }
 

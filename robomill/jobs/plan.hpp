@@ -8,6 +8,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/decision/recommend.hpp"
+#include "robomill/jobs/blocks.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/forces.hpp"
@@ -55,13 +56,16 @@ struct PlanResult {
   std::vector<PartLimits> pairs;         ///< of modes 1–2, 3–4, …
   std::optional<FeedDirections> feed_directions;
   decision::Recommendation recommendation;
-  std::optional<ForcesResult> forces;  ///< of a job that asks for them
-  std::optional<SmoothResult> path;    ///< of a job with a program and a cell with [smoothing]
+  std::optional<ForcesResult> forces;   ///< of a job that asks for them
+  std::optional<ProgramBlocks> blocks;  ///< of a job with forces, a cell and a program
+  std::optional<SmoothResult> path;     ///< of a job with a program and a cell with [smoothing]
   std::vector<ComparedCut> cuts;
   std::vector<Recording> recordings;
   std::vector<std::string> warnings, notes;
 
   [[nodiscard]] bool has_lobes() const { return !lobes.limit.empty(); }
+  /// Whether the job chooses depth and speed; else it judges the blocks of its program alone.
+  [[nodiscard]] bool recommends() const { return !job.lobes.empty(); }
 };
 
 /// Runs a job: hits, or tool and holder, ─▶ FRFs ─▶ modes ─▶ lobes ─▶ a recommended speed and depth, and its comparison

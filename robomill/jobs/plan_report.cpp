@@ -65,6 +65,7 @@ std::string limited_by_text(const decision::Operation& operation) {
 
 std::vector<DepthCurve> other_limits(const PlanResult& result) {
   std::vector<DepthCurve> curves;
+  if (!result.recommends()) return curves;
   if (result.job.recommend.spindle.size() > 1) {
     curves.push_back(spindle_curve(result, "spindle torque", true));
     curves.push_back(spindle_curve(result, "spindle power", false));
@@ -109,7 +110,7 @@ page::Report report_of(const PlanResult& result, const std::vector<page::StageFi
   if (result.prediction) report.assembly = io::dump(plan.at("assembly"));
   if (result.prediction && result.prediction->measured) report.measured = modal::frf_json(*result.prediction->measured);
   report.plan = io::dump(decision_json(result));
-  report.modes = io::dump(plan.at("modes"));
+  if (plan.contains("modes")) report.modes = io::dump(plan.at("modes"));
   const modal::ModalModel& workpiece = result.cut.problem.workpiece_dynamics;
   if (!workpiece.modes.empty()) report.workpiece_modes = modal::modes_json(workpiece);
   if (result.has_lobes()) report.lobes = io::dump(plan.at("lobes"));

@@ -25,6 +25,10 @@ struct ProgramRun {
 [[nodiscard]] std::vector<robot::Position6> joints_along(const CellFile& file, const program::Program& program,
                                                          const std::filesystem::path& path);
 
+/// run_forces of a program that is run so.
+[[nodiscard]] ForcesResult run_forces(ForcesFile forces, const std::filesystem::path& program,
+                                      std::optional<CellFile> cell, const ProgramRun& run, Progress& progress);
+
 /// Forces along a program, and the robot under them where there is a cell.
 /// @throws InvalidInput with file and line, also where a block is out of the robot's reach; Interrupted
 [[nodiscard]] ProgramForces run_program(const ForcesFile& file, const std::optional<CellFile>& cell,

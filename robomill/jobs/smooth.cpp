@@ -9,6 +9,7 @@
 #include <span>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
@@ -35,6 +36,7 @@ struct Bench {
   path::SmoothingFile smoothing;
   std::array<bool, 6> prismatic = {};
   std::unique_ptr<program::ProgramFile> program;
+  program::ProgramReading reading;
   path::PostureChoice posture;
 };
 
@@ -84,7 +86,8 @@ Bench prepare(const SmoothJob& job, CellFile cell) {
   bench.smoothing =
       path::read_smoothing(*bench.cell.document, bench.machine->limits(), bench.machine->joints(), job.method);
   bench.prismatic = prismatic_of(bench.cell);
-  program::ProgramReading reading = program_reading(bench.cell);
+  program::ProgramReading& reading = bench.reading;
+  reading = program_reading(bench.cell);
   reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
   reading.axis_tolerance_rad = std::max(turn_share * bench.smoothing.options.axis_tolerance_rad, least_turn_rad);
   bench.program = program::open_program(job.program, reading);
@@ -150,11 +153,22 @@ class DriveModel {
   path::DriveModel model_;
 };
 
+/// Keeps the last sample of each block.
+void note_joints(std::span<const path::Sample> samples, std::vector<robot::Position6>& block_joints) {
+  for (const path::Sample& sample : samples) {
+    // A block too short for a sample ends where the next one begins.
+    if (sample.block >= block_joints.size()) block_joints.resize(sample.block + 1, sample.joints);
+    block_joints[sample.block] = sample.joints;
+  }
+}
+
 /// One method over the whole program.
-/// @param file      takes the samples; may be null
-/// @param recorder  as well
+/// @param file          takes the samples; may be null
+/// @param recorder      as well
+/// @param block_joints  as well
 path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::SampleFile* file,
-                           path::MotionRecorder* recorder, Progress& progress) {
+                           path::MotionRecorder* recorder, std::vector<robot::Position6>* block_joints,
+                           Progress& progress) {
   path::SmoothingOptions options = bench.smoothing.options;
   options.method = method;
   path::SmoothedBy out{.method = method};
@@ -162,6 +176,7 @@ path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::Sample
   std::optional<DriveModel> drive_model;
   const auto take = [&](std::span<const path::Sample> samples) {
     if (file != nullptr) file->add(samples);
+    if (block_joints != nullptr) note_joints(samples, *block_joints);
     if (recorder != nullptr) {
       recorder->add(samples);
     } else if (drive_model) {
@@ -170,6 +185,7 @@ path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::Sample
   };
   const auto restart = [&] {
     if (file != nullptr) file->restart();
+    if (block_joints != nullptr) block_joints->clear();
     if (!drives.empty()) drive_model.emplace(drives, options.sample_period_s);
     if (recorder == nullptr) return;
     recorder->restart(drive_model ? path::Tracking([&](const path::Sample& s) { return drive_model->follow(s); })
@@ -264,6 +280,7 @@ SmoothResult run_smooth(const SmoothJob& job, CellFile cell, Progress& progress)
   SmoothResult result;
   result.options = bench.smoothing.options;
   result.posture = bench.posture;
+  result.reading = bench.reading;
   std::unique_ptr<path::SampleFile> file = open_output(job, bench);
   std::optional<path::MotionRecorder> recorder;
   if (job.record) {
@@ -279,7 +296,8 @@ SmoothResult run_smooth(const SmoothJob& job, CellFile cell, Progress& progress)
             path::read_smoothing(*bench.cell.document, bench.machine->limits(), bench.machine->joints(), method));
       }
       result.smoothed.methods.push_back(located_in_program(job.program, [&] {
-        return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr, progress);
+        return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr,
+                         asked_for ? &result.block_joints : nullptr, progress);
       }));
     } catch (const InvalidInput& error) {
       if (asked_for) throw;

@@ -40,6 +40,9 @@ struct SmoothResult {
   path::PostureChoice posture = {};
   path::ProgramOutline outline = {};       ///< this and the next only of a job that records
   std::vector<path::Motion> motions = {};  ///< one a method
+  /// Where the robot stands as each block of the program ends, of the method asked for.
+  std::vector<robot::Position6> block_joints = {};
+  program::ProgramReading reading = {};  ///< how the program was read: blocks of another reading are other chords
 
   [[nodiscard]] const path::SmoothedBy& first() const { return smoothed.methods.front(); }
   /// Whether the trajectory asked for breaks no limit.

@@ -172,10 +172,30 @@ void add_disagreement(std::string& out, const Agreement& count) {
          count.disagree, count.agree + count.disagree);
 }
 
+/// How many blocks chatter, first of all.
+void add_blocks(std::string& out, const ForcesResult& forces, const ProgramBlocks& blocks) {
+  append(out, "blocks       {} of {} that cut are unstable", blocks.unstable, blocks.cutting);
+  if (blocks.cutting == 0) {
+    append(out, "\n");
+    return;
+  }
+  const BlockRow& worst = blocks.rows[blocks.worst];
+  append(out, "; least margin {:.3g} in line {} (block {}): {:.4g} mm deep, ", worst.stability_margin,
+         forces.program->program.blocks[blocks.worst].line, blocks.worst + 1, worst.axial_depth_m / units::mm);
+  if (std::isfinite(worst.cut.limit_depth_m)) {
+    append(out, "limit {:.4g} mm, {} at {:.4g} Hz", worst.cut.limit_depth_m / units::mm, worst.cut.regime,
+           worst.cut.chatter_frequency_hz);
+  } else {
+    append(out, "no limit up to {:.4g} mm", worst.cut.searched_depth_m / units::mm);
+  }
+  append(out, "\n             {} evaluations in {:.2f} s\n", blocks.evaluations, blocks.seconds);
+}
+
 }  // namespace
 
 std::string summary(const PlanResult& result) {
   std::string out;
+  if (result.blocks) add_blocks(out, *result.forces, *result.blocks);
   const Agreement count = agreement(result.cuts);
   add_disagreement(out, count);
   if (result.hits) {
@@ -193,7 +213,7 @@ std::string summary(const PlanResult& result) {
     add_operation(out, "recommended", *result.recommendation.recommended);
     add_details(out, *result.recommendation.recommended);
     for (const decision::Operation& op : result.recommendation.alternatives) add_operation(out, "alternative", op);
-  } else {
+  } else if (result.recommends() || !result.recommendation.reason.empty()) {
     append(out, "{}: {}\n", result.has_lobes() ? "no safe depth" : "no answer", result.recommendation.reason);
   }
   if (result.path) {
@@ -205,8 +225,10 @@ std::string summary(const PlanResult& result) {
     append(out, "test cuts    {} agree, {} disagree, {} without a result\n", count.agree, count.disagree,
            count.not_compared);
   }
+  if (result.blocks) add_notes(out, result.blocks->warnings, "warning      ");
   add_notes(out, result.warnings, "warning      ");
   add_notes(out, result.notes, "note         ");
+  if (result.blocks) add_notes(out, result.blocks->notes, "note         ");
   return out;
 }
 

@@ -39,9 +39,10 @@ void read_sources(io::TomlFile& file, Job& job) {
   file.integer("job.fit_modes", "fit_modes", job.fit_modes);
   const int sources = (job.hits.empty() ? 0 : 1) + (job.frf.empty() ? 0 : 1) + (job.modes.empty() ? 0 : 1) +
                       (job.assembly.empty() ? 0 : 1);
-  if (sources != 1) {
-    throw file.reject("job", "must name exactly one of hits, frf, modes and assembly",
-                      sources == 0 ? "None is given" : "Several are given");
+  if (sources > 1 || (sources == 0 && !job.judges_blocks())) {
+    throw file.reject(
+        "job", "must name exactly one of hits, frf, modes and assembly",
+        sources == 0 ? "None is given; forces, cell and program together need none" : "Several are given");
   }
   if (measured && job.assembly.empty()) {
     throw file.reject("job.measured", "goes with job.assembly", "FRFs to start from are job.frf");
@@ -51,7 +52,11 @@ void read_sources(io::TomlFile& file, Job& job) {
       throw file.reject(key, "must not stand beside job.assembly", "Both directions of an assembly are predicted");
     }
   }
-  file.require("job.lobes", "It names the cut: lobes.toml");
+  if (!job.judges_blocks()) file.require("job.lobes", "It names the cut: lobes.toml");
+  if (sources == 0 && !job.lobes.empty()) {
+    throw file.reject("job.lobes", "needs one of hits, frf, modes and assembly",
+                      "Without lobes the blocks of the program are judged with what the cell knows");
+  }
 }
 
 void read_limits(io::TomlFile& file, Job& job) {

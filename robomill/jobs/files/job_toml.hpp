@@ -40,7 +40,7 @@ struct TestCut {
 };
 
 /// job.toml. Paths are resolved; an empty one is absent. Exactly one of hits, frf, modes and assembly
-/// is given.
+/// is given; a job that judges blocks may have none of them, nor lobes.
 struct Job {
   std::filesystem::path file = {};  ///< this one
   std::string title = {};
@@ -59,6 +59,11 @@ struct Job {
   decision::FinishLimits finish = {};
   std::vector<TestCut> cuts = {};
 
+  /// Whether every block of a program is looked at: forces along it, and a robot.
+  [[nodiscard]] bool judges_blocks() const { return !forces.empty() && !cell.empty() && !program.empty(); }
+  [[nodiscard]] bool has_structure() const {
+    return !hits.empty() || !frf.empty() || !modes.empty() || !assembly.empty();
+  }
   ROBOMILL_API void validate() const;
 };
 

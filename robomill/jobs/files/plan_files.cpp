@@ -7,7 +7,8 @@ namespace {
 
 /// What an earlier run computed from modes that this one has not.
 void remove_later_stages(const std::filesystem::path& folder) {
-  for (const char* name : {"lobes.json", "smooth.json", "trajectory.csv"}) io::remove_file(folder / name);
+  for (const char* name : {"lobes.json", "smooth.json", "trajectory.csv", "blocks.csv", "blocks.json"})
+    io::remove_file(folder / name);
 }
 
 /// What stands beside the report.
@@ -19,7 +20,8 @@ std::vector<page::StageFile> stage_files(const PlanResult& result) {
          .file = "tip.uff",
          .description = result.prediction ? "predicted FRFs, universal file 58" : "measured FRFs, universal file 58"});
   }
-  files.push_back({.stage = "modes", .file = "modes.json", .description = "modal parameters"});
+  if (result.job.has_structure())
+    files.push_back({.stage = "modes", .file = "modes.json", .description = "modal parameters"});
   if (result.has_lobes()) {
     files.push_back({.stage = "lobes", .file = "lobes.json", .description = "stability lobes"});
   }
@@ -28,6 +30,10 @@ std::vector<page::StageFile> stage_files(const PlanResult& result) {
                      .file = "forces.csv",
                      .description = result.forces->program ? "cutting forces, a row a block of the program"
                                                            : "cutting forces over a revolution"});
+  }
+  if (result.blocks) {
+    files.push_back({.stage = "blocks", .file = "blocks.csv", .description = "stability and load, a row a block"});
+    files.push_back({.stage = "blocks", .file = "blocks.json", .description = "the same by columns"});
   }
   if (result.path) {
     files.push_back({.stage = "path", .file = "smooth.json", .description = "the smoothed program beside its limits"});
@@ -49,13 +55,17 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   const page::Report report = report_of(result, stage_files(result), plan);
   const std::string page = page::report_html(report);
   if (result.frfs) modal::write_frfs(folder / "tip.uff", *result.frfs);
-  io::write_file(folder / "modes.json", report.modes);
+  if (!report.modes.empty()) io::write_file(folder / "modes.json", report.modes);
   if (result.has_lobes()) {
     io::write_file(folder / "lobes.json", report.lobes);
   } else {
     remove_later_stages(folder);
   }
   if (result.forces) io::write_file(folder / "forces.csv", forces_csv(*result.forces));
+  if (result.blocks) {
+    io::write_file(folder / "blocks.csv", blocks_csv(*result.forces, *result.blocks));
+    io::write_file(folder / "blocks.json", blocks_json(*result.forces, *result.blocks));
+  }
   if (result.path) {
     place(*result.path);
     io::write_file(folder / "smooth.json", report.smooth);

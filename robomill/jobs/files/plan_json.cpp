@@ -121,7 +121,7 @@ Json decision_json(const PlanResult& result) {
   const auto limit = [](double value_m) { return value_m > 0.0 ? number(value_m / units::um) : Json(); };
   Json json;
   const Agreement count = agreement(result.cuts);
-  json["facts"] = facts_json(result);
+  if (result.recommends()) json["facts"] = facts_json(result);
   json["agreement"] = {{"agree", count.agree}, {"disagree", count.disagree}, {"not_compared", count.not_compared}};
   json["recommended"] = result.recommendation.recommended ? operation_json(*result.recommendation.recommended) : Json();
   json["alternatives"] = Json::array();
@@ -178,9 +178,11 @@ Json plan_object(const PlanResult& result) {
   Json json = decision_json(result);
   if (result.prediction) json["assembly"] = prediction_object(*result.prediction);
   if (result.hits) json["frf"] = modal::hits_object(*result.hits);
-  json["modes"] = result.fit ? modal::modes_object(*result.fit) : modal::modes_object(result.model);
+  if (result.job.has_structure())
+    json["modes"] = result.fit ? modal::modes_object(*result.fit) : modal::modes_object(result.model);
   if (result.has_lobes()) json["lobes"] = stability::lobes_object(result.lobes, result.uncertain);
   if (result.forces) json["forces"] = forces_object(*result.forces);
+  if (result.blocks) json["blocks"] = blocks_summary(*result.forces, *result.blocks);
   if (result.path) json["path"] = path::smooth_object(result.path->smoothed);
   return json;
 }

@@ -14,6 +14,8 @@ namespace robomill::jobs {
 [[nodiscard]] io::Json recordings_json(const PlanResult& result);
 /// forces.json, and the member `assembly`.
 [[nodiscard]] io::Json forces_object(const ForcesResult& result);
+/// Of blocks.json how many blocks there are, how many chatter, and the worst.
+[[nodiscard]] io::Json blocks_summary(const ForcesResult& forces, const ProgramBlocks& blocks);
 [[nodiscard]] io::Json prediction_object(const TipPrediction& prediction);
 
 /// plan.json: the decision, and each stage's document as a member.

@@ -1,0 +1,105 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/jobs/forces.hpp"
+#include "robomill/modal/mode_id.hpp"
+#include "robomill/modal/modes.hpp"
+
+// Method: robomill/jobs/README.md, "Every block of a program (`blocks.hpp`)"
+
+namespace robomill::jobs {
+
+/// What vibrates where the robot stands.
+struct PostureDynamics {
+  modal::ModalModel modes = {};              ///< of the tool's tip, in the robot's base axes
+  std::optional<bool> measured_nearby = {};  ///< none: the dynamics do not come from measured postures
+  double joint_distance_rad = 0.0;           ///< to the nearest measured posture, largest of a joint
+};
+/// Of any posture; called by several threads at once.
+using DynamicsAt = std::function<PostureDynamics(const Eigen::VectorXd& joints)>;
+
+/// The modes of the cell's arm with its joints' stiffness and damping and its links' masses.
+/// @throws InvalidInput with the cell's file if these are missing
+[[nodiscard]] ROBOMILL_API DynamicsAt dynamics_of_arm(const CellFile& cell);
+/// The same modes in every posture.
+[[nodiscard]] ROBOMILL_API DynamicsAt constant_dynamics(modal::ModalModel modes);
+
+struct ROBOMILL_API BlocksOptions {
+  /// Blocks share an evaluation where no joint differs by more than this [rad], >= 0 …
+  double joint_tolerance_rad = 0.0174532925199433;
+  /// … and mean cutting stiffness (in base axes) and depth by no more than this share, >= 0.
+  double cut_tolerance = 0.02;
+  double tolerance = 1e-4;  ///< of the spectral radius, as LobesOptions::tolerance
+  int scan_points = 9;      ///< of each scan of the limit over the tool's pose, 0: none, or odd
+  /// @throws InvalidInput naming the member
+  void validate() const;
+};
+
+/// Whether one cut is stable.
+struct CutStability {
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double spectral_radius = none;
+  double limit_depth_m = none;  ///< lowest unstable depth; NaN: none up to searched_depth_m
+  double limit_5_percent_m = none, limit_50_percent_m = none, limit_95_percent_m = none;  ///< NaN: as above
+  double searched_depth_m = none;
+  double gain_margin = none;  ///< infinity: none up to 1,000
+  double chatter_frequency_hz = none;
+  modal::ModeId mode = {};
+  std::string regime = "none";  ///< "regenerative", "mode-coupling", "low-frequency"; "none": no limit
+  bool lower_bound = false;     ///< process damping is not known and would lift the limit
+  double surface_error_m = none;
+};
+
+/// One block of a program.
+struct BlockRow {
+  bool cuts = false;                                 ///< else nothing below is known
+  double axial_depth_m = 0.0, radial_depth_m = 0.0;  ///< where most of the cutter is in the material
+  double spindle_speed_rad_per_s = 0.0;
+  CutStability cut = {};
+  double stability_margin = CutStability::none;  ///< 1 - depth / limit (5 % quantile); no limit: of the depth searched
+  std::optional<bool> measured_nearby = {};
+  std::size_t evaluation = 0;  ///< which one it shares, from 0
+  std::string note = {};
+  [[nodiscard]] bool unstable() const { return cuts && cut.spectral_radius >= 1.0; }
+};
+
+/// The limit over one coordinate of the tool's pose, with the same engagement.
+struct LimitScan {
+  std::string parameter = {};        ///< "x_mm", "y_mm", "z_mm" (in W) or "gamma_deg"
+  std::vector<double> value = {};    ///< [m] or [rad]
+  std::vector<double> limit_m = {};  ///< NaN: none, or the robot cannot stand there
+};
+
+struct ProgramBlocks {
+  std::vector<BlockRow> rows = {};  ///< one a block of the program
+  std::size_t cutting = 0, unstable = 0;
+  std::size_t worst = 0;        ///< the block with the least margin; of those that cut
+  std::size_t evaluations = 0;  ///< different cuts that were looked at
+  std::size_t scanned = 0;      ///< the block around which `scans` are
+  std::vector<LimitScan> scans = {};
+  std::vector<std::string> warnings = {}, notes = {};
+  double seconds = 0.0;
+};
+
+/// Stability of every block that cuts: its engagement (ProgramForces::cuts), its posture, the dynamics there.
+/// Depths, speeds, tolerance and what is shared: robomill/jobs/README.md.
+/// @param forces  with a cell, and cuts kept
+/// @throws InvalidInput if an option is out of range, or dynamics do not fit the cut; Interrupted
+[[nodiscard]] ROBOMILL_API ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamics,
+                                                      const BlocksOptions& options = {},
+                                                      Progress& progress = Progress::none());
+
+/// A row a block.
+[[nodiscard]] ROBOMILL_API std::string blocks_csv(const ForcesResult& forces, const ProgramBlocks& blocks);
+/// The same by columns, with a summary and the scans.
+[[nodiscard]] ROBOMILL_API std::string blocks_json(const ForcesResult& forces, const ProgramBlocks& blocks);
+
+}  // namespace robomill::jobs

@@ -1,0 +1,73 @@
+#include "robomill/jobs/blocks/dynamics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/jobs/blocks.hpp"
+#include "robomill/modal/tip.hpp"
+#include "robomill/robot/dynamics.hpp"
+#include "robomill/robot/pose.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+const std::vector<modal::Dof> tip_axes = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
+
+}  // namespace
+
+bool vibrates(const robot::Arm& arm) {
+  return std::ranges::any_of(arm.joints, [](const robot::Joint& j) { return j.link.mass_kg > 0.0; }) &&
+         std::ranges::all_of(arm.joints, [](const robot::Joint& j) { return j.damping > 0.0; });
+}
+
+modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& joints) {
+  const robot::ToolModes found = robot::tool_modes(cell.arm, joints, robot::tip_point(cell));
+  modal::ModalModel model;
+  model.excitations = model.responses = tip_axes;
+  model.modes.reserve(found.modes.size());
+  for (const robot::ToolMode& swing : found.modes) {
+    modal::Mode mode;
+    mode.frequency_hz = swing.frequency_hz;
+    mode.damping_ratio = swing.damping_ratio;
+    mode.right = swing.right.head<3>();
+    mode.left = swing.left.head<3>();
+    model.modes.push_back(std::move(mode));
+  }
+  return model;
+}
+
+modal::ModalModel in_axes(const modal::ModalModel& model, const Eigen::Matrix3d& turn) {
+  const modal::TipModes tip = modal::turned(modal::tip_modes(model, {}, 0.0), turn);
+  modal::ModalModel out;
+  out.excitations = out.responses = tip_axes;
+  out.modes = model.modes;  // frequencies, damping ratios and their deviations
+  for (std::size_t k = 0; k < out.modes.size(); ++k) {
+    out.modes[k].right = tip.right.col(static_cast<Eigen::Index>(k));
+    out.modes[k].left = tip.left.col(static_cast<Eigen::Index>(k));
+  }
+  if (model.residuals.empty()) return out;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      out.residuals.push_back({.name = {tip_axes[static_cast<std::size_t>(i)], tip_axes[static_cast<std::size_t>(j)]},
+                               .stiffness = tip.compliance(i, j)});
+    }
+  }
+  return out;
+}
+
+DynamicsAt dynamics_of_arm(const CellFile& cell) {
+  if (!vibrates(cell.cell.arm)) {
+    throw InvalidInput(cell.path.string(), "does not say what vibrates",
+                       "Give modes or FRFs in the job, [[postures]] in the cell, or its links' masses and "
+                       "joint_damping_n_m_s_per_rad");
+  }
+  return [arm = cell.cell](const Eigen::VectorXd& joints) { return PostureDynamics{.modes = arm_modes(arm, joints)}; };
+}
+
+DynamicsAt constant_dynamics(modal::ModalModel modes) {
+  return [model = std::move(modes)](const Eigen::VectorXd&) { return PostureDynamics{.modes = model}; };
+}
+
+}  // namespace robomill::jobs

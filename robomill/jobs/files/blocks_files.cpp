@@ -1,0 +1,191 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "robomill/base/units.hpp"
+#include "robomill/io/append.hpp"
+#include "robomill/io/json.hpp"
+#include "robomill/jobs/files/plan_json.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+using io::Json;
+using io::number;
+
+/// One block with all that is known of it.
+struct BlockLine {
+  std::size_t index;
+  const program::Block& block;
+  const BlockResult& force;
+  const BlockRow& row;
+  double feed_m_per_s;
+};
+
+/// A column of both documents; null where there is none.
+struct BlockColumn {
+  std::string name;
+  std::function<Json(const BlockLine&)> value;
+  bool always = false;  ///< also of blocks that do not cut
+};
+
+using BlockNumber = double (*)(const BlockLine&);
+
+std::vector<BlockColumn> place_columns(Eigen::Index joints) {
+  std::vector<BlockColumn> columns = {
+      {"block", [](const BlockLine& r) { return Json(r.index + 1); }, true},
+      {"line", [](const BlockLine& r) { return Json(r.block.line); }, true},
+      {"x_mm", [](const BlockLine& r) { return number(r.block.end.tip_m.x() / units::mm); }, true},
+      {"y_mm", [](const BlockLine& r) { return number(r.block.end.tip_m.y() / units::mm); }, true},
+      {"z_mm", [](const BlockLine& r) { return number(r.block.end.tip_m.z() / units::mm); }, true},
+  };
+  for (Eigen::Index k = 0; k < joints; ++k) {
+    columns.push_back({fmt::format("q{}", k + 1), [k](const BlockLine& r) { return number(r.force.joints(k)); }, true});
+  }
+  return columns;
+}
+
+/// Columns of numbers in a shop's units, NaN and infinity: none.
+constexpr std::pair<const char*, BlockNumber> of_stability[] = {
+    {"axial_depth_mm", [](const BlockLine& r) { return r.row.axial_depth_m / units::mm; }},
+    {"radial_depth_mm", [](const BlockLine& r) { return r.row.radial_depth_m / units::mm; }},
+    {"spindle_speed_rpm", [](const BlockLine& r) { return r.row.spindle_speed_rad_per_s / units::rpm; }},
+    {"feed_mm_per_min", [](const BlockLine& r) { return r.feed_m_per_s / units::mm * units::minute; }},
+    {"spectral_radius", [](const BlockLine& r) { return r.row.cut.spectral_radius; }},
+    {"limit_depth_mm", [](const BlockLine& r) { return r.row.cut.limit_depth_m / units::mm; }},
+    {"stability_margin", [](const BlockLine& r) { return r.row.stability_margin; }},
+    {"chatter_frequency_hz", [](const BlockLine& r) { return r.row.cut.chatter_frequency_hz; }},
+};
+constexpr std::pair<const char*, BlockNumber> of_load[] = {
+    {"peak_f_n", [](const BlockLine& r) { return r.force.force.peak_force_n; }},
+    {"torque_n_m", [](const BlockLine& r) { return r.force.force.mean_torque_n_m; }},
+    {"power_w", [](const BlockLine& r) { return r.force.force.power_w; }},
+    {"deflection_um", [](const BlockLine& r) { return r.force.deflection_m.norm() / units::um; }},
+    {"surface_error_um", [](const BlockLine& r) { return r.row.cut.surface_error_m / units::um; }},
+    {"gain_margin", [](const BlockLine& r) { return r.row.cut.gain_margin; }},
+    {"limit_5_percent_mm", [](const BlockLine& r) { return r.row.cut.limit_5_percent_m / units::mm; }},
+    {"limit_95_percent_mm", [](const BlockLine& r) { return r.row.cut.limit_95_percent_m / units::mm; }},
+    {"condition_number", [](const BlockLine& r) { return r.force.condition_number; }},
+};
+
+std::vector<BlockColumn> block_columns(const ForcesResult& forces) {
+  std::vector<BlockColumn> columns = place_columns(forces.program->blocks.front().joints.size());
+  const auto add = [&columns](const auto& list) {
+    for (const auto& [name, get] : list)
+      columns.push_back({name, [get](const BlockLine& r) { return number(get(r)); }});
+  };
+  add(of_stability);
+  columns.push_back(
+      {"mode", [](const BlockLine& r) { return r.row.cut.mode.known() ? Json(to_string(r.row.cut.mode)) : Json(); }});
+  columns.push_back({"regime", [](const BlockLine& r) { return Json(r.row.cut.regime); }});
+  add(of_load);
+  columns.push_back({"lower_bound", [](const BlockLine& r) { return Json(r.row.cut.lower_bound); }});
+  columns.push_back({"measured_nearby",
+                     [](const BlockLine& r) { return r.row.measured_nearby ? Json(*r.row.measured_nearby) : Json(); }});
+  columns.push_back({"evaluation", [](const BlockLine& r) { return Json(r.row.evaluation + 1); }});
+  columns.push_back({"note", [](const BlockLine& r) { return r.row.note.empty() ? Json() : Json(r.row.note); }, true});
+  return columns;
+}
+
+/// Calls f with each block.
+template <class F>
+void each_block(const ForcesResult& forces, const ProgramBlocks& blocks, F&& f) {
+  const program::Program& program = forces.program->program;
+  for (std::size_t i = 0; i < blocks.rows.size(); ++i) {
+    const program::Block& block = program.blocks[i];
+    const double way_m = (block.end.tip_m - program.begin_of(i).tip_m).norm();
+    f(BlockLine{.index = i,
+                .block = block,
+                .force = forces.program->blocks[i],
+                .row = blocks.rows[i],
+                .feed_m_per_s = block.duration_s > 0.0 ? way_m / block.duration_s : 0.0});
+  }
+}
+
+Json block_cell(const BlockColumn& column, const BlockLine& row) {
+  return column.always || row.row.cuts ? column.value(row) : Json();
+}
+
+void append_block_cell(std::string& text, const Json& cell) {
+  if (cell.is_null()) return;
+  if (cell.is_string()) {
+    io::append(text, "\"{}\"", cell.get_ref<const std::string&>());
+  } else if (cell.is_boolean()) {
+    text += cell.get<bool>() ? "true" : "false";
+  } else if (cell.is_number_float()) {
+    io::append(text, "{:.9g}", cell.get<double>());
+  } else {
+    io::append(text, "{}", cell.get<std::size_t>());
+  }
+}
+
+Json scans_json(const ForcesResult& forces, const ProgramBlocks& blocks) {
+  Json list = Json::array();
+  for (const LimitScan& scan : blocks.scans) {
+    const double unit = scan.parameter.ends_with("_deg") ? units::deg : units::mm;
+    Json value = Json::array();
+    Json limit = Json::array();
+    for (const double v : scan.value) value.push_back(number(v / unit));
+    for (const double depth_m : scan.limit_m) limit.push_back(number(depth_m / units::mm));
+    list.push_back({{"parameter", scan.parameter},
+                    {"value", std::move(value)},
+                    {"limit_depth_mm", std::move(limit)},
+                    {"at_block", blocks.scanned + 1},
+                    {"at_line", forces.program->program.blocks[blocks.scanned].line}});
+  }
+  return list;
+}
+
+}  // namespace
+
+Json blocks_summary(const ForcesResult& forces, const ProgramBlocks& blocks) {
+  Json worst;
+  if (blocks.cutting > 0) {
+    const BlockRow& row = blocks.rows[blocks.worst];
+    worst = {{"block", blocks.worst + 1},
+             {"line", forces.program->program.blocks[blocks.worst].line},
+             {"axial_depth_mm", number(row.axial_depth_m / units::mm)},
+             {"limit_depth_mm", number(row.cut.limit_depth_m / units::mm)},
+             {"stability_margin", number(row.stability_margin)},
+             {"regime", row.cut.regime}};
+  }
+  std::vector<std::string> notes = blocks.warnings;
+  notes.insert(notes.end(), blocks.notes.begin(), blocks.notes.end());
+  return {{"blocks", blocks.rows.size()},      {"cutting", blocks.cutting},         {"unstable", blocks.unstable},
+          {"evaluations", blocks.evaluations}, {"seconds", number(blocks.seconds)}, {"worst", std::move(worst)},
+          {"notes", std::move(notes)}};
+}
+
+std::string blocks_csv(const ForcesResult& forces, const ProgramBlocks& blocks) {
+  const std::vector<BlockColumn> columns = block_columns(forces);
+  std::string text;
+  for (const BlockColumn& column : columns) text += (text.empty() ? "" : ",") + column.name;
+  text += '\n';
+  each_block(forces, blocks, [&](const BlockLine& row) {
+    for (const BlockColumn& column : columns) {
+      if (&column != &columns.front()) text += ',';
+      append_block_cell(text, block_cell(column, row));
+    }
+    text += '\n';
+  });
+  return text;
+}
+
+std::string blocks_json(const ForcesResult& forces, const ProgramBlocks& blocks) {
+  const std::vector<BlockColumn> columns = block_columns(forces);
+  std::vector<Json> lists(columns.size(), Json::array());
+  each_block(forces, blocks, [&](const BlockLine& row) {
+    for (std::size_t k = 0; k < columns.size(); ++k) lists[k].push_back(block_cell(columns[k], row));
+  });
+  Json by_column = Json::object();
+  for (std::size_t k = 0; k < columns.size(); ++k) by_column[columns[k].name] = std::move(lists[k]);
+  const Json out = {{"blocks", std::move(by_column)},
+                    {"summary", blocks_summary(forces, blocks)},
+                    {"limit_over", scans_json(forces, blocks)}};
+  return io::dump(out);
+}
+
+}  // namespace robomill::jobs
