@@ -13,6 +13,7 @@ namespace robomill::stability::detail {
 struct Ask {
   bool estimate = false;  ///< an estimate of the error, and the accuracy that the options ask for
   bool motion = false;    ///< frequency and mode
+  int level = 0;          ///< > 0: of collocation, the level that it starts from in place of its own choice
 };
 
 /// What is found at a point.

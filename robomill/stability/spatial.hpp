@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
 #include "robomill/cutting/engagement.hpp"
@@ -14,6 +16,10 @@ namespace robomill::stability {
 struct ROBOMILL_API SpatialMilling {
   cutting::Cutter cutter;
   cutting::Cut cut;  ///< what a chart varies of it is replaced
+  /// In place of cut: what a workpiece of rays shows (cutting/program_engagement.hpp). The depth of a chart is then the
+  /// height of the engaged part along the tool's axis: less clips what was found above its lowest place, more lets the
+  /// arcs of its upper quarter's widest ring go on upwards at the same angles, to the end of the edges.
+  std::optional<cutting::Engagement> engagement = {};
   cutting::MillingCoefficients coefficients;
   double feed_per_tooth_m = 0.0;  ///< f [m], >= 0; with runout, which needs it, it decides which teeth miss the cut
   /// The modes' x, y and z are those of the tool frame T and lean with it; else those of the feed's frame F.
@@ -21,6 +27,10 @@ struct ROBOMILL_API SpatialMilling {
   /// @throws InvalidInput naming the member
   void validate() const;
 };
+
+/// Height of the engaged part along the tool's axis, from the lowest edge of a ring to the highest [m]: the depth at
+/// which a cut with a given engagement is what was found. 0 where nothing cuts.
+[[nodiscard]] ROBOMILL_API double engaged_height_m(const cutting::Engagement& engagement);
 
 /// Drilling, or boring out with a drill: lips on a cone that cut all round. A chip is cut along
 /// n = (cos p sin φ, cos p cos φ, -sin p), p half the point angle, over the width b / sin p, b the depth of the chart:

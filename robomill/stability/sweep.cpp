@@ -70,7 +70,10 @@ SweepResult compute_sweep(const LobesProblem& problem, const SweepOptions& optio
   problem.validate();
   options.validate();
   if (!problem.spatial) throw InvalidInput("spatial", "must be there: a sweep is one of a cut in three directions");
-  if (options.parameter == SweptParameter::radial_depth &&
+  if (problem.spatial->engagement && options.parameter != SweptParameter::axial_depth) {
+    throw InvalidInput("parameter", "must be the axial depth where the engagement is given: the rest of it is fixed");
+  }
+  if (options.parameter == SweptParameter::radial_depth && !problem.spatial->engagement &&
       problem.spatial->cut.direction == cutting::MillingDirection::slot) {
     throw InvalidInput("parameter", "must not be the step-over of a slot, which has no neighbour");
   }

@@ -120,7 +120,7 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
 
 void CollocationEvaluator::evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) {
   for (std::size_t lane = 0; lane < points.size(); ++lane) {
-    const int level = model_.first_level(points[lane], tolerance_);
+    const int level = ask.level > 0 ? ask.level : model_.first_level(points[lane], tolerance_);
     lanes_[lane] = {.level = ask.estimate ? level - 1 : level};
     out[lane] = Outcome{};
   }
@@ -138,6 +138,11 @@ void CollocationEvaluator::evaluate_at(std::span<const OperatingPoint> points, i
     map_.prepare(model_.modes(), {&point, 1});
     arnoldi_.find(map_, out.subspan(lane, 1));
   }
+}
+
+std::unique_ptr<CollocationModel> collocation_model(const LobesProblem& problem) {
+  if (!problem.in_three_directions()) return std::make_unique<MillingModel>(problem);
+  return std::make_unique<SpatialModel>(spatial_parts(problem, SweptParameter::axial_depth));
 }
 
 std::unique_ptr<Scheme> collocation(const LobesProblem& problem, double tolerance) {

@@ -19,6 +19,9 @@ class CollocationEvaluator final : public PointEvaluator {
   void evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) override;
   [[nodiscard]] std::size_t at_a_time() const override { return model_.at_a_time(); }
 
+  /// Of the first point of the last evaluation, at its last level.
+  [[nodiscard]] const CollocationCase& last_case() const { return *at_[0]; }
+
   /// Without any search, all at one level.
   void evaluate_at(std::span<const OperatingPoint> points, int level, std::span<Dominant> out);
 

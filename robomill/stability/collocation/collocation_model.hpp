@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <complex>
 #include <cstddef>
+#include <memory>
 #include <span>
 
 #include "robomill/base/lanes.hpp"
@@ -39,6 +40,9 @@ class CollocationModel {
   [[nodiscard]] virtual Motion motion(const CollocationCase& at, double factor, std::complex<double> multiplier,
                                       const Eigen::VectorXcd& vector) const = 0;
 };
+
+/// Of a problem; in three directions its depth is the axial one.
+std::unique_ptr<CollocationModel> collocation_model(const LobesProblem& problem);
 
 /// Ever finer meshes: 4, 6, … 16 nodes in a piece, then 14 in halves, quarters, … of it.
 MeshLevel mesh_level(int number);

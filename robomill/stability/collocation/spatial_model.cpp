@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robomill/base/units.hpp"
+#include "robomill/stability/collocation/given_engagement.hpp"
 #include "robomill/stability/collocation/spatial_mesh.hpp"
 
 namespace robomill::stability::detail {
@@ -45,6 +46,10 @@ double& swept(cutting::Cut& cut, SweptParameter sweep) {
 
 SpatialModel::Engage engagement_of(const SpatialMilling& milling, SweptParameter sweep) {
   constexpr double least_depth_m = 1e-9;  // below it nothing is cut
+  if (milling.engagement) {
+    const auto given = std::make_shared<const GivenEngagement>(milling.cutter, *milling.engagement);
+    return [given](double depth_m, int rings) { return given->at(depth_m, rings); };
+  }
   return [milling, sweep](double value, int rings) {
     cutting::Cut cut = milling.cut;
     swept(cut, sweep) = value;
