@@ -29,6 +29,7 @@ struct Report {
   std::string workpiece_modes = {};  ///< the same, of a part that vibrates too
   std::string lobes = {};            ///< lobes.json; empty: none
   std::string forces = {};           ///< forces.json; empty: none
+  std::string blocks = {};           ///< blocks.json: stability of every block of a program; empty: none
   std::string smooth = {};           ///< smooth.json; empty: none
   std::string motion = {};  ///< the same program's outline and motion, recorded for the page alone; empty: none
 

@@ -19,7 +19,8 @@ using io::Json;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_rows = 6000;  ///< of a list, of a revolution
 constexpr int deepest_nesting = 256;
-constexpr std::size_t most_lines = 12000;  ///< of an axis that all FRFs of a document share
+constexpr std::size_t most_lines = 12000;   ///< of an axis that all FRFs of a document share
+constexpr std::size_t most_blocks = 40000;  ///< of a path in three dimensions
 
 double number_of(const Json& value) {
   return value.is_number() ? value.get<double>() : missing;
@@ -172,6 +173,63 @@ void thin_forces(Json& json) {
   if (const auto rotation = json.find("rotation_deg"); rotation != json.end()) thin_axis(json, rotation->size());
 }
 
+/// What the page draws and says of each block of blocks.json, a list each.
+constexpr const char* path_columns[] = {"block",
+                                        "line",
+                                        "x_mm",
+                                        "y_mm",
+                                        "z_mm",
+                                        "axial_depth_mm",
+                                        "radial_depth_mm",
+                                        "spindle_speed_rpm",
+                                        "feed_mm_per_min",
+                                        "spectral_radius",
+                                        "limit_depth_mm",
+                                        "limit_5_percent_mm",
+                                        "limit_95_percent_mm",
+                                        "stability_margin",
+                                        "gain_margin",
+                                        "chatter_frequency_hz",
+                                        "mode",
+                                        "regime",
+                                        "lower_bound",
+                                        "peak_f_n",
+                                        "torque_n_m",
+                                        "power_w",
+                                        "deflection_um",
+                                        "surface_error_um",
+                                        "condition_number",
+                                        "measured_nearby",
+                                        "note"};
+
+bool says_something(const Json& column) {
+  return std::ranges::any_of(column, [](const Json& cell) { return !cell.is_null(); });
+}
+
+/// Of blocks.json the columns that the page shows and that say something; of a long program the blocks at which one of
+/// them has an extreme.
+/// @throws Json::exception if the columns are no lists or have different lengths
+void thin_path(Json& json) {
+  if (!json.is_object() || !json.contains("limit_over")) return;
+  Json& all = json.at("blocks");
+  const std::size_t rows = all.at("block").size();
+  Json drawn = Json::object();
+  for (const char* name : path_columns) {
+    const auto column = all.find(name);
+    if (column == all.end()) continue;
+    if (!column->is_array() || column->size() != rows) throw Json::other_error::create(501, name, nullptr);
+    if (says_something(*column)) drawn[name] = std::move(*column);
+  }
+  std::vector<Eigen::VectorXd> curves;
+  for (const Json& column : drawn) {
+    if (rows <= most_blocks) break;
+    Eigen::VectorXd& curve = curves.emplace_back(static_cast<Eigen::Index>(rows));
+    for (std::size_t i = 0; i < rows; ++i) curve[static_cast<Eigen::Index>(i)] = number_of(column[i]);
+  }
+  if (!curves.empty()) keep_of_axis(drawn, rows, thin_curves(curves, most_blocks));
+  all = std::move(drawn);
+}
+
 /// The lines of each spectrum of a recorded cut.
 void thin_recordings(Json& json) {
   if (!json.is_array()) return;
@@ -204,6 +262,7 @@ Json document(const char* member, const std::string& text) {
     thin_frfs(json);
     thin_forces(json);
     thin_recordings(json);
+    thin_path(json);
     return shown(std::move(json), false);
   } catch (const InvalidInput&) {
     throw InvalidInput(member, "nests its values too deep");
@@ -230,6 +289,7 @@ Json page_data(const Report& report) {
                                        {"lobes", &Report::lobes},
                                        {"recordings", &Report::recordings},
                                        {"forces", &Report::forces},
+                                       {"blocks", &Report::blocks},
                                        {"smooth", &Report::smooth},
                                        {"motion", &Report::motion},
                                        {"monitor", &Report::monitor},

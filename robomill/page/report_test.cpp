@@ -16,6 +16,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/page/embedded.hpp"
 #include "robomill/page/json.hpp"
+#include "testing/page/blocks_sample.hpp"
 #include "testing/page/forces_sample.hpp"
 #include "testing/page/monitor_sample.hpp"
 #include "testing/page/plan_sample.hpp"
@@ -138,6 +139,39 @@ TEST(ReportJson, LongProgramsKeepTheirPeaks) {
   }
 }
 
+// A path keeps every block up to 40,000, of more the lowest margin and the highest force; columns stay one length, and
+// what no page shows is left out.
+TEST(ReportJson, LongPathsKeepTheirWorstBlocks) {
+  Random random(13);
+  constexpr std::size_t n = 50000;
+  json columns = {{"note", std::vector<json>(n)}, {"q1", std::vector<double>(n, 0.5)}};
+  for (std::size_t i = 0; i < n; ++i) {
+    columns["block"].push_back(i + 1);
+    columns["stability_margin"].push_back(i == 34567 ? -7.5 : random.uniform());
+    columns["peak_f_n"].push_back(i % 9 == 0 ? json() : json(i == 23455 ? 750.0 : random.uniform()));
+    columns["regime"].push_back(i % 9 == 0 ? json() : json("regenerative"));
+  }
+  Report report;
+  report.blocks = json{{"blocks", columns}, {"limit_over", json::array()}}.dump();
+  const json kept = json::parse(report_json(report))["blocks"]["blocks"];
+  const std::size_t count = kept["block"].size();
+  EXPECT_GT(count, 30000U);
+  EXPECT_LE(count, 40002U);
+  EXPECT_EQ(kept["block"].back(), n);
+  for (const auto& [name, column] : kept.items()) EXPECT_EQ(column.size(), count) << name;
+  EXPECT_FALSE(kept.contains("note")) << "no block has one";
+  EXPECT_FALSE(kept.contains("q1")) << "no page shows it";
+  const auto holds = [&](const char* name, std::size_t block, double value) {
+    const auto at = std::ranges::find(kept["block"], json(block)) - kept["block"].begin();
+    ASSERT_LT(static_cast<std::size_t>(at), count);
+    EXPECT_EQ(kept[name][static_cast<std::size_t>(at)], value);
+  };
+  holds("stability_margin", 34568, -7.5);
+  holds("peak_f_n", 23456, 750.0);
+  report.blocks = sample_blocks({}, 900);
+  EXPECT_EQ(json::parse(report_json(report))["blocks"]["blocks"]["block"].size(), 900U * 42U);
+}
+
 // Force and torque of a revolution in 50,000 steps keep the same ones, with the peak of each.
 TEST(ReportJson, ThinsALongRevolution) {
   constexpr int n = 50000;
@@ -202,6 +236,7 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.assembly = sample_assembly(evil);
   report.files = {{evil, evil, evil}};
   report.forces = sample_forces(evil);
+  report.blocks = sample_blocks(evil);
   report.smooth = sample_smooth(evil);
   report.monitor = sample_monitor(evil);
   report.calibration = sample_calibration(evil);
@@ -301,6 +336,12 @@ TEST(ReportJson, NamesTheMemberThatIsNoJson) {
   const json axis = std::vector<double>(13000, 1.0);
   report.measured = json{{"frequency_hz", axis}, {"receptance_m_per_n", {{"xx", {{"re", json::array()}}}}}}.dump();
   EXPECT_EQ(test::field_of([&] { static_cast<void>(report_json(report)); }), "measured");
+  report.measured.clear();
+  report.blocks = R"({"limit_over": [], "blocks": {"block": [1, 2], "x_mm": [0.0]}})";
+  EXPECT_EQ(test::field_of([&] { static_cast<void>(report_json(report)); }), "blocks");
+  report.blocks = R"({"limit_over": [], "blocks": [1, 2]})";
+  EXPECT_EQ(test::field_of([&] { static_cast<void>(report_json(report)); }), "blocks");
+  report.blocks.clear();
   report.measured = std::string(400, '[') + std::string(400, ']');
   EXPECT_EQ(test::field_of([&] { static_cast<void>(report_json(report)); }), "measured");
 }

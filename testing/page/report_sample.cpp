@@ -1,5 +1,6 @@
 #include "testing/page/report_sample.hpp"
 
+#include "testing/page/blocks_sample.hpp"
 #include "testing/page/forces_sample.hpp"
 #include "testing/page/monitor_sample.hpp"
 #include "testing/page/plan_sample.hpp"
@@ -21,6 +22,7 @@ Report sample_report() {
   report.plan = sample_plan();
   report.recordings = sample_recordings();
   report.forces = sample_forces();
+  report.blocks = sample_blocks();
   report.smooth = sample_smooth();
   report.motion = sample_motion();
   report.monitor = sample_monitor();

@@ -2,6 +2,7 @@
 #include <iostream>
 #include <string_view>
 
+#include "testing/page/blocks_sample.hpp"
 #include "testing/page/forces_sample.hpp"
 #include "testing/page/monitor_sample.hpp"
 #include "testing/page/plan_sample.hpp"
@@ -9,11 +10,11 @@
 #include "testing/page/smooth_sample.hpp"
 #include "testing/page/structure_sample.hpp"
 
-/// report_sample OUT.html [sample|hostile]: the sample page for the browser test; hostile puts markup into every text
-/// it can.
+/// report_sample OUT.html [sample|hostile|long]: the sample page for the browser test; hostile puts markup into every
+/// text it can; long has a program of 40,000 blocks and nothing else.
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "usage: report_sample OUT.html [sample|hostile]\n";
+    std::cerr << "usage: report_sample OUT.html [sample|hostile|long]\n";
     return 2;
   }
   robomill::page::Report report = robomill::page::sample_report();
@@ -26,9 +27,14 @@ int main(int argc, char** argv) {
     report.plan = robomill::page::sample_plan(evil);
     report.recordings = robomill::page::sample_recordings(evil);
     report.forces = robomill::page::sample_forces(evil);
+    report.blocks = robomill::page::sample_blocks(evil);
     report.smooth = robomill::page::sample_smooth(evil);
     report.monitor = robomill::page::sample_monitor(evil);
     report.calibration = robomill::page::sample_calibration(evil);
+  }
+  if (argc > 2 && std::string_view(argv[2]) == "long") {
+    report = {};
+    report.blocks = robomill::page::sample_blocks({}, 952);
   }
   std::ofstream(argv[1], std::ios::binary) << robomill::page::report_html(report);
   return 0;
