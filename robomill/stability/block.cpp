@@ -19,6 +19,7 @@ namespace robomill::stability {
 namespace {
 
 using namespace detail;
+constexpr std::size_t depths_at_a_time = 6;  // some of them may not be needed; each has a mesh of its own
 constexpr double none = std::numeric_limits<double>::infinity();
 
 class BlockSearch {
@@ -28,7 +29,7 @@ class BlockSearch {
         options_(options),
         point_(point),
         model_(collocation_model(problem)),
-        evaluator_(*model_, options.tolerance) {
+        evaluator_(*model_, options.tolerance, {.tolerance = 1e-3 * options.tolerance}) {
     crossing_.tolerance = options.tolerance;
     crossing_.level = model_->first_level(point, options.tolerance);
     crossing_.coarse_level = std::max(1, crossing_.level - 1);
@@ -55,6 +56,8 @@ class BlockSearch {
       evaluator_.evaluate(std::span(points).first(gains.size()), ask, outcomes);
     };
     crossing_.at_a_time = lane_count;
+    crossing_.cheap_lanes = true;
+    crossing_.estimate = false;
     const Crossing crossing =
         lowest_crossing(look, marks(1.0, 1.0 / options_.most_gain, options_.most_gain, 0.0), crossing_);
     out.gain.gain = crossing.at;
@@ -82,7 +85,9 @@ class BlockSearch {
     std::array<double, 2> range = options_.axial_depth_m;
     if (range[1] == 0.0) range = {point_.axial_depth_m / 16.0, 8.0 * point_.axial_depth_m};
     const bool guessed = out.gain.status == GainMargin::Status::found;
-    crossing_.at_a_time = evaluator_.at_a_time();
+    crossing_.at_a_time = depths_at_a_time;
+    crossing_.cheap_lanes = false;
+    crossing_.estimate = true;
     const double guess = guessed ? out.gain.gain * point_.axial_depth_m : 0.0;
     const Crossing crossing = lowest_crossing(look, marks(point_.axial_depth_m, range[0], range[1], guess), crossing_);
     out.limit.spindle_speed_rad_per_s = point_.spindle_speed_rad_per_s;
@@ -131,7 +136,7 @@ class BlockSearch {
            std::ranges::any_of(problem_.workpiece_dynamics.modes, knows);
   }
 
-  /// From low to high: factors of two below half of `here`, square roots of two above; closer about a guess.
+  /// From low to high: factors of four below half of `here`, square roots of two above; closer about a guess.
   static std::vector<double> marks(double here, double low, double high, double guess) {
     constexpr double beside = 1.04;
     std::vector<double> out = {low, high};
@@ -140,7 +145,7 @@ class BlockSearch {
       const bool beside_guess = guess > 0.0 && at > guess / 1.1 && at < guess * 1.1;
       if (inside && !beside_guess) out.push_back(at);
     };
-    for (double at = 0.25 * here; at > low; at *= 0.5) offer(at);
+    for (double at = 0.25 * here; at > low; at *= 0.25) offer(at);
     for (double at = 0.5 * here; at < high; at *= std::sqrt(2.0)) offer(at);
     for (const double at : {guess / beside, guess * beside}) {
       if (at > low * 1.01 && at < high / 1.01) out.push_back(at);

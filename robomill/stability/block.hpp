@@ -37,8 +37,8 @@ struct BlockStability {
 };
 
 /// Radius, lowest limit depth, gain margin, regime and quantiles of one cut. Depths and gains are looked at in steps of
-/// at most the square root of two, closer about where the margin points to, and where the radius has a peak near 1
-/// between two of them; what is narrower than a step and stays below it is not seen.
+/// the square root of two from half the cut on and of four below, closer about where the margin points to, and where
+/// the radius has a peak near 1 between two of them; what is narrower than a step and stays below it is not seen.
 /// @param axial_depth_m  a [m], > 0; of a given engagement its engaged_height_m
 /// @throws InvalidInput as evaluate_point, or if an option is out of range
 [[nodiscard]] ROBOMILL_API BlockStability block_stability(const LobesProblem& problem, double spindle_speed_rad_per_s,

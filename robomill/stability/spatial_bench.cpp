@@ -1,7 +1,10 @@
-// Cuts in three directions: one limit, a boundary, one radius, a gain margin.
+// Cuts in three directions: one limit, a boundary, one radius, a gain margin, a block of a program.
 #include <benchmark/benchmark.h>
 
+#include "robomill/base/random.hpp"
+#include "robomill/stability/block.hpp"
 #include "robomill/stability/sweep.hpp"
+#include "testing/stability/blocks.hpp"
 #include "testing/stability/problems.hpp"
 #include "testing/stability/spatial_cases.hpp"
 
@@ -51,6 +54,21 @@ void spatial_gain_margin(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(gain_margin(cut.problem, point));
 }
 
+/// Radius, limit, margin, regime and quantiles of one block after the other; the number of modes. Processor time.
+void block_of_a_program(benchmark::State& state) {
+  std::vector<testing::BlockCase> blocks;
+  for (std::uint64_t seed = 0; seed < 64; ++seed) {
+    Random random(731, seed);
+    blocks.push_back(testing::block_case(random, static_cast<int>(state.range(0))));
+  }
+  std::size_t at = 0;
+  for (auto _ : state) {
+    const testing::BlockCase& block = blocks[at++ % blocks.size()];
+    benchmark::DoNotOptimize(block_stability(block.problem, block.spindle_speed_rad_per_s, block.depth_m));
+  }
+}
+
+BENCHMARK(block_of_a_program)->Arg(4)->Arg(8)->Arg(10)->Arg(16)->Arg(32)->MinTime(1.0)->Unit(benchmark::kMillisecond);
 BENCHMARK(spatial_limit)->DenseRange(1, 5)->Unit(benchmark::kMillisecond);
 BENCHMARK(spatial_radius)->DenseRange(1, 5)->Unit(benchmark::kMillisecond);
 BENCHMARK(spatial_gain_margin)->DenseRange(1, 5)->Unit(benchmark::kMillisecond);

@@ -43,7 +43,7 @@ void draw_modes(Random& random, const Uncertainty& u, modal::ModalModel& model) 
     mode.frequency_hz =
         drawn(random, mode.frequency_hz, known_or(mode.frequency_std_hz, u.frequency_std_ratio * mode.frequency_hz));
     mode.damping_ratio = std::min(drawn(random, mode.damping_ratio, damping_std), 0.99);
-    mode.right *= drawn(random, 1.0, u.residue_std_ratio);
+    mode.right *= drawn(random, 1.0, known_or(mode.residue_std_ratio, u.residue_std_ratio));
   }
 }
 

@@ -20,7 +20,7 @@ struct ROBOMILL_API Uncertainty {
   double radial_std_n_per_m2 = 0.0;      ///< of Kr [N/m^2], >= 0
   double frequency_std_ratio = 0.0;      ///< of the frequency of modes that do not know their own, [0, 0.5]
   double damping_std_ratio = 0.0;        ///< of the damping ratio of modes that do not know their own, [0, 1]
-  double residue_std_ratio = 0.0;        ///< of the size of every mode's residue matrix, [0, 1]
+  double residue_std_ratio = 0.0;  ///< of the size of residue matrices, of modes that do not know their own, [0, 1]
   /// @throws InvalidInput naming the member
   void validate() const;
 };

@@ -55,6 +55,11 @@ TEST(Uncertainty, QuantilesOfAKnownDistribution) {
   options.axial_depth_m = {0.0, 10e-3};
   const double exact = limit_depths(problem, options, {5000 * rpm}).front().axial_depth_m;
   const UncertainLimits limits = uncertain_limits(problem, options, residue);
+  // A mode that knows its own is drawn with it.
+  Uncertainty none = residue;
+  none.residue_std_ratio = 0.3;
+  problem.dynamics.modes[0].residue_std_ratio = 0.05;
+  EXPECT_EQ(uncertain_limits(problem, options, none).limit_5_percent_m, limits.limit_5_percent_m);
   const double z = 1.6448536;
   EXPECT_NEAR(limits.limit_5_percent_m(0), exact / (1.0 + 0.05 * z), 3e-3 * exact);
   EXPECT_NEAR(limits.limit_50_percent_m(0), exact, 3e-3 * exact);

@@ -79,6 +79,12 @@ class Search {
     constexpr int most = 30;
     Crossing out;
     out.status = Crossing::Status::found;
+    if (options_.cheap_lanes) {
+      interpolate(low, high, out);
+      finish(out);
+      correct(out);
+      if (std::abs(std::log(out.outcome.spectral_radius)) <= options_.tolerance) return out;
+    }
     out.at = between(low, high);
     for (int i = 0; i < most; ++i) {
       const std::array<double, 2> places = {out.at, out.at * std::exp(apart)};
@@ -98,6 +104,36 @@ class Search {
     return out;
   }
 
+  /// From eight places within the bracket, which it narrows: a polynomial through the two on either side of the root.
+  void interpolate(Sample& low, Sample& high, Crossing& out) {
+    std::array<double, lane_count> places;
+    std::array<Outcome, lane_count> outcomes;
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      const double share = (static_cast<double>(i) + 0.5) / lane_count;
+      places[i] = low.at * std::pow(high.at / low.at, share);
+    }
+    look_(places, {.level = options_.level}, outcomes);
+    std::array<Sample, lane_count> seen;
+    for (std::size_t i = 0; i < lane_count; ++i) seen[i] = {places[i], std::log(outcomes[i].spectral_radius)};
+    const auto top = std::ranges::find_if(seen, [](const Sample& s) { return s.value >= 0.0; });
+    const std::size_t above = static_cast<std::size_t>(top - seen.begin());
+    if (above > 0) low = seen[above - 1];
+    if (above < lane_count) high = seen[above];
+    const std::size_t first = std::min(std::max<std::size_t>(above, 2) - 2, lane_count - 4);
+    out.at = between(low, high);
+    out.slope = (high.value - low.value) / std::log(high.at / low.at);
+    double place = 0.0;  // ln of the root, by the inverse polynomial
+    for (std::size_t i = first; i < first + 4; ++i) {
+      double weight = 1.0;
+      for (std::size_t j = first; j < first + 4; ++j) {
+        if (j != i) weight *= -seen[j].value / (seen[i].value - seen[j].value);
+      }
+      place += weight * std::log(seen[i].at);
+    }
+    const double root = std::exp(place);
+    if (root > low.at && root < high.at) out.at = root;
+  }
+
   /// By the secant, in logarithms.
   [[nodiscard]] static double between(const Sample& low, const Sample& high) {
     const double share = std::clamp(-low.value / (high.value - low.value), 0.05, 0.95);
@@ -105,7 +141,7 @@ class Search {
   }
 
   void finish(Crossing& out) {
-    look_({&out.at, 1}, {.estimate = true, .motion = true, .level = options_.level}, {&out.outcome, 1});
+    look_({&out.at, 1}, {.estimate = options_.estimate, .motion = true, .level = options_.level}, {&out.outcome, 1});
   }
 
   /// The finest level of the last look may differ from that of the search.

@@ -14,6 +14,8 @@ struct CrossingOptions {
   double tolerance = 1e-4;  ///< |radius - 1| there
   int coarse_level = 1, level = 2;
   std::size_t at_a_time = 1;  ///< marks that are worth looking at together
+  bool cheap_lanes = false;   ///< eight places cost what one does
+  bool estimate = true;       ///< of the error, where it ends
 };
 
 /// The lowest place where the radius is 1.

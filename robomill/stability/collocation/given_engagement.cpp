@@ -14,7 +14,7 @@ using cutting::Engagement;
 
 constexpr double degree = 0.017453292519943295;
 constexpr double alike_arc_rad = 1.0 * degree;       // by which ends of merged arcs may differ
-constexpr double alike_position_rad = 2.0 * degree;  // by which κ may grow in a merged ring
+constexpr double alike_position_rad = 1.0 * degree;  // by which κ may grow in a merged ring
 constexpr double alike_lag_rad = 2.0 * degree;       // by which the edge may lag along a merged ring
 
 double half_height_m(const EdgeSlice& ring) {

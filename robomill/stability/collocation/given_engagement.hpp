@@ -30,8 +30,8 @@ class GivenEngagement {
   std::size_t upper_ = 0;  ///< the ring whose arcs go on
 };
 
-/// Neighbouring rings as one where they have as many arcs and each end moves by less than a degree along the lag of
-/// the edge, κ by less than two degrees from the first to the last.
+/// Neighbouring rings as one where they have as many arcs, whose ends differ by less than a degree, κ grows by less
+/// than a degree and the edge lags by less than two.
 cutting::Engagement merged_rings(const cutting::Cutter& cutter, const cutting::Engagement& engagement);
 
 }  // namespace robomill::stability::detail
