@@ -44,6 +44,9 @@ class SimulatedArm {
   [[nodiscard]] int bracket_axes() const { return bracket_axes_; }          ///< 0: there is no bracket
   [[nodiscard]] bool is_spindle_across() const { return spindle_across_; }  ///< of the last axis
 
+  /// The spindle frame in the flange frame: `flange` of the cells' arms has it folded in.
+  [[nodiscard]] const Eigen::Isometry3d& mount() const { return mount_; }
+
   /// What somebody knows of it: geometry and joint limits exactly; links, rotors, stiffness and damping of the joints
   /// each off by up to 20 %. The last link holds the spindle; nothing is told of bearings, bracket and tool.
   [[nodiscard]] const robot::Cell& told() const { return told_; }
