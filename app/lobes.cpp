@@ -7,7 +7,6 @@
 #include "point.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/jobs/lobes.hpp"
-#include "robomill/stability/files/lobes_json.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
@@ -115,11 +114,7 @@ Exit run(const LobesCommand& command, const Common& common, Progress& progress) 
   jobs::LobesJob job = {.lobes = command.input, .compare = command.compare, .seed = common.seed};
   for (const std::string& text : command.at) job.points.push_back(parse_point(text));
   const jobs::LobesJobResult result = jobs::run_lobes(job, progress);
-  write_output(common, [&result](io::Format) {
-    if (result.sweep) return stability::sweep_json(*result.sweep);
-    return result.comparison ? stability::comparison_json(*result.comparison)
-                             : stability::lobes_json(result.lobes, result.uncertain, result.surface);
-  });
+  write_output(common, [&result](io::Format) { return jobs::lobes_document(result); });
   if (!common.wants_summary()) return done;
   if (result.sweep) {
     print_sweep(*result.sweep);

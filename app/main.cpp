@@ -12,6 +12,7 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/coupling/joint_fit.hpp"
+#include "robomill/jobs/posture.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/path/options.hpp"
 #include "robomill/version.hpp"
@@ -84,13 +85,21 @@ void CommandLine::add_structure_verbs() {
   sub->add_flag("--binary", frf.binary, "write .uff as data set 58b");
 
   sub = verb("modes", "frequency response functions to modes", [this](Progress& p) { return run(modes, common, p); });
-  sub->add_option("frfs", modes.inputs, "FRF files: .uff .csv .txt .mat .json")->required();
+  auto* const frfs = sub->add_option("frfs", modes.inputs, "FRF files: .uff .csv .txt .mat .json");
   sub->add_option("--as", modes.as, "names of headerless FRFs, one a file: xx,yy")->delimiter(',');
   sub->add_option("--band", modes.band_hz, "low,high in Hz")->delimiter(',')->expected(2);
   sub->add_option("--modes", modes.modes, "exactly this many modes")->check(CLI::PositiveNumber);
   sub->add_option("--method", modes.method, "hybrid, pso or lscf")->check(one_of_words(modal::fit_method_names));
   sub->add_option("--config", modes.config, "modes.toml: every option of the fit");
   sub->add_flag("--accept-fit", modes.accept_fit, "take modes whose relative error is 20 % or more");
+  auto* const cell = sub->add_option("--cell", modes.cell, "cell.toml: the modes of a posture, from its [[postures]]");
+  auto* const joints =
+      sub->add_option("--joints", modes.joints_deg, "of the posture, in degrees: q1,q2,…")->delimiter(',');
+  sub->add_option("--axes", modes.axes, "base or flange: what the posture's modes are written in")
+      ->check(one_of_words(jobs::posture_axes_names))
+      ->needs(cell);
+  cell->needs(joints)->excludes(frfs);
+  joints->needs(cell);
 
   sub = verb("couple", "a tool in a holder to the FRFs at its tip, without a tap test",
              [this](Progress& p) { return run(couple, common, p); });

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "robomill/jobs/posture.hpp"
 #include "robomill/modal/files/fit_toml.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
@@ -25,18 +26,23 @@ modal::FitOptions options_of(const ModesCommand& command, const Common& common) 
   return options;
 }
 
-void print_summary(const modal::FitResult& fit) {
+template <class Bounds>
+void print_modes(const modal::ModalModel& model, Bounds bounds_of) {
   fmt::print("mode  frequency Hz     damping %\n");
-  for (std::size_t k = 0; k < fit.model.modes.size(); ++k) {
-    const modal::Mode& mode = fit.model.modes[k];
+  for (std::size_t k = 0; k < model.modes.size(); ++k) {
+    const modal::Mode& mode = model.modes[k];
     const auto spread = [](double std) { return std::isfinite(std) ? fmt::format(" ± {:.2g}", std) : std::string(); };
-    std::string bounds;
-    for (const modal::FitBound bound : fit.bounds_of(static_cast<int>(k) + 1)) {
-      bounds += fmt::format("  at {}", to_string(bound));
-    }
     fmt::print("{:>4}  {:.6g}{}  {:.4g}{}{}\n", k + 1, mode.frequency_hz, spread(mode.frequency_std_hz),
-               100.0 * mode.damping_ratio, spread(100.0 * mode.damping_ratio_std), bounds);
+               100.0 * mode.damping_ratio, spread(100.0 * mode.damping_ratio_std), bounds_of(static_cast<int>(k) + 1));
   }
+}
+
+void print_summary(const modal::FitResult& fit) {
+  print_modes(fit.model, [&](int mode) {
+    std::string bounds;
+    for (const modal::FitBound bound : fit.bounds_of(mode)) bounds += fmt::format("  at {}", to_string(bound));
+    return bounds;
+  });
   fmt::print("\n{:.4g} to {:.4g} Hz: relative error {:.4g}, mean relative error {:.4g}\n", fit.band_low_hz,
              fit.band_high_hz, fit.relative_error, fit.mean_relative_error);
   print_notes(fit.warnings, "Warning: ");
@@ -44,8 +50,29 @@ void print_summary(const modal::FitResult& fit) {
 
 }  // namespace
 
+namespace {
+
+/// The modes of a cell's posture.
+Exit run_posture(const ModesCommand& command, const Common& common, Progress& progress) {
+  const jobs::PostureAxes axes = value_in(jobs::posture_axes_names, command.axes).value();
+  const jobs::ModesOfPosture posture = jobs::posture_modes(command.cell, command.joints_deg, axes, progress);
+  write_output(common, [&](io::Format) { return jobs::posture_modes_json(posture); });
+  if (!common.wants_summary()) return done;
+  print_modes(posture.prediction.modes, [](int) { return std::string(); });
+  print_notes(posture.warnings, "Warning: ");
+  print_notes(posture.notes, "Note: ");
+  return done;
+}
+
+}  // namespace
+
 Exit run(const ModesCommand& command, const Common& common, Progress& progress) {
   require_output(common, {io::Format::json}, "modes are written as .json");
+  if (!command.cell.empty()) return run_posture(command, common, progress);
+  if (command.inputs.empty()) {
+    fmt::print(stderr, "robomill: modes needs FRF files, or --cell with --joints\n");
+    return wrong_usage;
+  }
   const modal::FrfFile file = modal::read_frfs(command.inputs, command.as);
   modal::FitOptions options = options_of(command, common);
   if (file.added_decay_per_s > 0.0) options.exponential_decay_per_s = file.added_decay_per_s;

@@ -36,7 +36,10 @@ struct ModesCommand {
   int modes = 0;                ///< 0: chosen by the fit
   std::optional<std::string> method;
   std::filesystem::path config;
-  bool accept_fit = false;  ///< modes that do not describe the FRFs will do
+  bool accept_fit = false;         ///< modes that do not describe the FRFs will do
+  std::filesystem::path cell;      ///< in place of inputs: the modes of one of its postures
+  std::vector<double> joints_deg;  ///< that posture
+  std::string axes = "base";       ///< that they are written in
 };
 struct CoupleCommand {
   std::filesystem::path input;

@@ -3,6 +3,9 @@
 #include <algorithm>
 
 #include "robomill/base/error.hpp"
+#include "robomill/jobs/files/posture_json.hpp"
+#include "robomill/stability/files/lobes_json.hpp"
+#include "robomill/stability/files/lobes_object.hpp"
 
 namespace robomill::jobs {
 
@@ -14,7 +17,7 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
     throw InvalidInput(job.lobes.string(), "a cut in three directions needs modes, not FRFs",
                        "Fit them: robomill modes");
   }
-  load_dynamics(cut);
+  load_dynamics(cut, progress);
   cut.validate();
   cut.options.points = job.points;
   if (cut.sweep != stability::SweptParameter::axial_depth) {
@@ -37,6 +40,14 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
     result.surface = stability::surface_map(cut.problem, cut.options, cut.surface_grid, progress);
   }
   return result;
+}
+
+std::string lobes_document(const LobesJobResult& result) {
+  if (result.sweep) return stability::sweep_json(*result.sweep);
+  if (result.comparison) return stability::comparison_json(*result.comparison);
+  io::Json json = stability::lobes_object(result.lobes, result.uncertain, result.surface);
+  if (result.cut.posture) json["posture"] = posture_object(*result.cut.posture);
+  return io::dump(json);
 }
 
 }  // namespace robomill::jobs

@@ -41,4 +41,7 @@ struct LobesJobResult {
 /// @throws InvalidInput with file, line, key and value; Interrupted
 [[nodiscard]] ROBOMILL_API LobesJobResult run_lobes(const LobesJob& job, Progress& progress = Progress::none());
 
+/// lobes.json: the chart, the sweep or the comparison, and the posture that the modes are of.
+[[nodiscard]] ROBOMILL_API std::string lobes_document(const LobesJobResult& result);
+
 }  // namespace robomill::jobs

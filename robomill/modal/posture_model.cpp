@@ -105,21 +105,22 @@ class PostureModel::Calibrated final : public Source {
  public:
   Calibrated(const robot::Cell& told, const std::optional<robot::Link>& payload,
              const std::vector<MeasuredPosture>& measured, const PostureModelOptions& options, Progress& progress)
-      : highest_hz_(options.band_high_hz) {
+      : highest_hz_(options.band_high_hz), payload_(payload) {
     cell = told;
     std::vector<PostureData> data;
     for (const MeasuredPosture& posture : measured) {
       data.emplace_back(posture, options);
       postures.push_back(posture.joints);
     }
+    data_ = std::make_unique<CalibrationData>(data);
     report.source = measured.empty() ? PostureReport::Source::cell : PostureReport::Source::calibrated;
-    if (measured.empty()) {
-      take({.bearings = false, .bracket = false, .tool_modes = 0, .load = false}, {}, payload, data, false, progress);
-      report.notes.push_back(
-          "No posture was measured: the modes are those of the cell's own numbers, with rigid bearings and no tool.");
+    if (!measured.empty()) {
+      choose(tool_peaks(cell, data, highest_hz_), progress);
       return;
     }
-    choose(payload, data, progress);
+    keep(candidate({}, {}, nullptr, progress));
+    report.notes.push_back(
+        "No posture was measured: the modes are those of the cell's own numbers, with rigid bearings and no tool.");
   }
 
   [[nodiscard]] ModalModel at(const Eigen::VectorXd& joints) const override {
@@ -156,59 +157,75 @@ class PostureModel::Calibrated final : public Source {
   }
 
  private:
-  /// Keeps a structure.
-  void take(const ArmStructure& structure, const std::vector<FlexibleArm::Tool>& tools,
-            const std::optional<robot::Link>& payload, const std::vector<PostureData>& data, bool varying,
-            Progress& progress) {
-    auto arm = std::make_unique<FlexibleArm>(cell, payload, structure, tools);
-    if (!postures.empty()) arm->scale_loads(postures);
-    Calibration calibration = calibrate(*arm, data, highest_hz_, varying, progress);
-    const double was = std::isfinite(calibration_.left_out_error) && arm_ ? calibration_.left_out_error : HUGE_VAL;
-    const double is = std::isfinite(calibration.left_out_error) ? calibration.left_out_error : calibration.error;
-    // A richer structure has to pay for itself.
-    constexpr double worth = 0.97;
-    if (arm_ && !(is < worth * was)) return;
-    arm_ = std::move(arm);
-    calibration_ = std::move(calibration);
-    report.bearings = structure.bearings;
-    report.bracket = structure.bracket;
-    report.tool_modes = static_cast<int>(tools.size());
-    report.varies = varying;
-    report.error = calibration_.error;
-    report.left_out_error = calibration_.left_out_error;
-    tools_ = tools;
+  /// A structure calibrated.
+  struct Candidate {
+    ArmStructure structure;
+    std::vector<FlexibleArm::Tool> tools;
+    std::unique_ptr<FlexibleArm> arm;
+    Calibration calibration;
+    /// What it is judged by: receptances of left-out postures, where there are enough.
+    [[nodiscard]] double error() const {
+      return std::isfinite(calibration.left_out_error) ? calibration.left_out_error : calibration.error;
+    }
+  };
+
+  /// @param near  a structure to start from; null: the cell's numbers
+  [[nodiscard]] Candidate candidate(const ArmStructure& structure, const std::vector<FlexibleArm::Tool>& tools,
+                                    const Candidate* near, Progress& progress) const {
+    Candidate out{.structure = structure, .tools = tools, .arm = nullptr, .calibration = {}};
+    out.arm = std::make_unique<FlexibleArm>(cell, payload_, structure, tools);
+    if (!postures.empty()) out.arm->scale_loads(postures);
+    std::optional<Eigen::VectorXd> start;
+    if (near != nullptr) start = out.arm->start_near(*near->arm, near->calibration.common);
+    out.calibration = calibrate(*out.arm, *data_, highest_hz_, postures.size() >= 3, start, progress);
+    progress.advance();
+    return out;
   }
 
-  void choose(const std::optional<robot::Link>& payload, const std::vector<PostureData>& data, Progress& progress) {
-    const bool several = data.size() >= 3;
-    const std::vector<FlexibleArm::Tool> peaks = tool_peaks(cell, data, highest_hz_);
-    ArmStructure structure{.bearings = true, .bracket = false, .tool_modes = 0, .load = several};
-    take(structure, {}, payload, data, several, progress);
-    if (!several) return;
-    std::vector<FlexibleArm::Tool> tools;
-    for (const FlexibleArm::Tool& peak : peaks) {
-      std::vector<FlexibleArm::Tool> more = tools_;
-      more.push_back(peak);
-      take(structure, more, payload, data, several, progress);
-    }
-    structure.bracket = true;
-    take(structure, tools_, payload, data, several, progress);
-    if (report.bracket) {
+  void keep(Candidate best) {
+    report.bearings = best.structure.bearings;
+    report.bracket = best.structure.bracket;
+    report.tool_modes = static_cast<int>(best.tools.size());
+    report.error = best.calibration.error;
+    report.left_out_error = best.calibration.left_out_error;
+    arm_ = std::move(best.arm);
+    calibration_ = std::move(best.calibration);
+  }
+
+  /// The structure that predicts left-out receptances best; a richer one has to pay for itself.
+  void choose(const std::vector<FlexibleArm::Tool>& peaks, Progress& progress) {
+    constexpr double worth = 0.97;
+    const bool several = postures.size() >= 3;
+    progress.start("posture model", several ? 3 + 3 * peaks.size() : 1);
+    const ArmStructure stiff{.bearings = true, .bracket = false, .tool_modes = 0, .load = several};
+    ArmStructure tilting = stiff;
+    tilting.bracket = true;
+    Candidate best = candidate(stiff, {}, nullptr, progress);
+    const auto offer = [&](Candidate other) {
+      if (other.error() < worth * best.error()) best = std::move(other);
+    };
+    if (several) {
+      // A second pair of the tool can stand in for a missing bracket: the bracket is tried first, with and without it.
+      offer(candidate(tilting, {}, nullptr, progress));
       for (const FlexibleArm::Tool& peak : peaks) {
-        if (std::ranges::any_of(tools_,
-                                [&](const FlexibleArm::Tool& t) { return t.frequency_hz == peak.frequency_hz; }))
-          continue;
-        std::vector<FlexibleArm::Tool> more = tools_;
-        more.push_back(peak);
-        take(structure, more, payload, data, several, progress);
+        std::vector<FlexibleArm::Tool> tools = best.tools;
+        tools.push_back(peak);
+        const ArmStructure before = best.structure;
+        Candidate more = candidate(before, tools, &best, progress);
+        offer(std::move(more));
+        if (best.tools.size() < tools.size()) continue;
+        if (!best.structure.bracket) offer(candidate(tilting, tools, nullptr, progress));
+        offer(candidate(tilting, best.tools, &best, progress));
       }
     }
+    keep(std::move(best));
   }
 
   double highest_hz_;
   std::unique_ptr<FlexibleArm> arm_;
   Calibration calibration_;
-  std::vector<FlexibleArm::Tool> tools_;
+  std::optional<robot::Link> payload_;
+  std::unique_ptr<CalibrationData> data_;
 };
 
 /// Measured modes weighted by inverse distance, for a cell that says too little of its arm.

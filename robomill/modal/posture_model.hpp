@@ -48,7 +48,7 @@ struct PostureReport {
   Source source = Source::cell;
   bool bearings = false, bracket = false;  ///< what the left-out postures bear out
   int tool_modes = 0;                      ///< pairs found
-  bool varies = false;                     ///< joints differ from posture to posture beyond the model
+
   std::size_t postures = 0;
   double error = 0.0;           ///< mean |H_fit − H| over |H|, all postures
   double left_out_error = 0.0;  ///< the same of each posture predicted from the others; NaN below three postures

@@ -306,6 +306,35 @@ void read_end_effector(io::TomlFile& file, CellFile& out) {
   }
 }
 
+/// Where the dynamics were measured, and what holds them.
+void read_postures(io::TomlFile& file, CellFile& out) {
+  const robot::Arm& arm = out.cell.arm;
+  for (std::size_t i = 0; i < file.tables("postures"); ++i) {
+    const std::string row = fmt::format("postures[{}].", i), key = row + "joints_deg";
+    PostureEntry entry;
+    file.require(key, "One value a joint");
+    file.numbers(key, fmt::format("postures[{}].joints", i + 1), units::deg, entry.joints);
+    if (entry.joints.size() != arm.joints.size()) {
+      throw file.reject(
+          key, fmt::format("must hold one value a joint, {}; it holds {}", arm.joints.size(), entry.joints.size()));
+    }
+    for (std::size_t k = 0; k < arm.joints.size(); ++k) {
+      const robot::Joint& joint = arm.joints[k];
+      if (joint.prismatic) throw file.reject(key, fmt::format("must be angles; joint {} is prismatic", k + 1));
+      if (entry.joints[k] >= joint.min_position && entry.joints[k] <= joint.max_position) continue;
+      throw file.reject(key, fmt::format("must lie within the limits; joint {} has {:.6g} to {:.6g} deg", k + 1,
+                                         joint.min_position / units::deg, joint.max_position / units::deg));
+    }
+    const bool frf = file.path(row + "frf", entry.frf), modes = file.path(row + "modes", entry.modes);
+    if (frf == modes) {
+      if (!frf) file.require(row + "frf", "FRFs of the tool's tip in that posture; or modes");
+      throw file.reject(row + "frf", "must not stand beside modes");
+    }
+    file.choice<bool>(row + "axes", {{"base", false}, {"flange", true}}, entry.flange_axes);
+    out.postures.push_back(std::move(entry));
+  }
+}
+
 /// What the words A, B and C of programs mean.
 void read_program_words(io::TomlFile& file, CellFile& out) {
   const auto of_key = [&](const char* key, const auto& parse) {
@@ -338,6 +367,7 @@ CellFile read_cell(const std::filesystem::path& path, Robots usable) {
   file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
   read_end_effector(file, out);
   read_program_words(file, out);
+  if (!out.hybrid) read_postures(file, out);
   file.done();
   if (out.hybrid) {
     out.hybrid->workpiece = out.cell.workpiece;

@@ -20,6 +20,13 @@ class TomlFile;
 
 namespace robomill::jobs {
 
+/// A posture of [[postures]] whose dynamics were measured.
+struct PostureEntry {
+  std::vector<double> joints = {};             ///< [rad or m]
+  std::filesystem::path frf = {}, modes = {};  ///< one of them, of the tool's tip
+  bool flange_axes = false;                    ///< in the axes of the flange before any mount; else in the base's
+};
+
 /// cell.toml: a robot with its tool before a workpiece.
 struct CellFile {
   std::filesystem::path path = {};
@@ -32,6 +39,7 @@ struct CellFile {
   bool gamma_given = false;                           ///< the file says so; else it is free to choose where a stage can
   std::vector<double> start_joints = {};              ///< where the arm stands first [rad]; empty where not said
   path::EndEffector end_effector = {};                ///< for exported programs
+  std::vector<PostureEntry> postures = {};            ///< measured
   std::vector<std::string> notes = {};                ///< sentences for the user
   std::shared_ptr<io::TomlFile> document = {};        ///< that [smoothing] is read from; empty where built in memory
 };
@@ -42,7 +50,8 @@ enum class Robots {
   any      ///< serial arms and the hybrid machine: what needs kinematics alone
 };
 
-/// Reads [robot], [workpiece], [tool], [spindle] and [program]; [smoothing] is another reader's.
+/// Reads [robot], [workpiece], [tool], [spindle], [program] and [[postures]], of which no file is opened; [smoothing]
+/// is another reader's.
 /// @throws InvalidInput with file, line, key and value, or with the URDF, its link or joint
 [[nodiscard]] ROBOMILL_API CellFile read_cell(const std::filesystem::path& path, Robots usable = Robots::serial);
 

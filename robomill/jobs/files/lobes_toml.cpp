@@ -1,5 +1,7 @@
 #include "robomill/jobs/files/lobes_toml.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -80,7 +82,9 @@ void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& 
     file.require("cut.axial_depth_mm", "The chart varies something else");
   }
   milling.coefficients = cutting::read_coefficient_table(file);
-  file.choice<bool>("dynamics.axes", {{"feed", false}, {"tool", true}}, milling.modes_turn_with_tool);
+  if (!file.has("dynamics.cell")) {
+    file.choice<bool>("dynamics.axes", {{"feed", false}, {"tool", true}}, milling.modes_turn_with_tool);
+  }
   out.problem.milling.tool = cutter.mill;
   out.problem.milling.feed_per_tooth_m = milling.feed_per_tooth_m;
   out.direction = milling.cut.direction;
@@ -270,6 +274,19 @@ void read_uncertainty(io::TomlFile& file, stability::Uncertainty& u) {
   file.locate([&] { u.validate(); });
 }
 
+/// A cell, and where its robot stands.
+void read_posture(io::TomlFile& file, LobesFile& out) {
+  const bool cell = file.path("dynamics.cell", out.cell);
+  const bool joints = file.numbers("dynamics.joints_deg", "joints_deg", 1.0, out.joints_deg);
+  if (cell && !joints) file.require("dynamics.joints_deg", "The posture: one value a joint");
+  if (joints && !cell) file.require("dynamics.cell", "Whose joints?");
+  if (!cell) return;
+  file.choice("dynamics.axes", posture_axes_names, out.posture_axes);
+  if (!out.modes.empty() || !out.frf.empty() || !out.problem.dynamics.modes.empty()) {
+    throw file.reject("dynamics.cell", "must not stand beside modes, frf, x, y or z");
+  }
+}
+
 LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   LobesFile out;
   out.path = path;
@@ -287,6 +304,7 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   }
   if (out.drilling) out.problem.drilling = drill_of(file, out);
   read_structure(file, "dynamics", out.modes, out.frf, out.problem.dynamics);
+  read_posture(file, out);
   if (!out.drilling) out.directions = read_missing_directions(file, "dynamics", out.problem.dynamics);
   file.integers("dynamics.keep_modes", "keep_modes", out.problem.keep_modes);
   read_structure(file, "workpiece_dynamics", out.workpiece_modes, out.workpiece_frf, out.problem.workpiece_dynamics);
@@ -336,6 +354,8 @@ stability::SweepOptions sweep_options(const LobesFile& file) {
 void LobesFile::drop_dynamics() {
   modes.clear();
   frf.clear();
+  cell.clear();
+  posture.reset();
   directions = {};
   problem.dynamics = {};
   problem.measured = {};
@@ -343,7 +363,7 @@ void LobesFile::drop_dynamics() {
 
 void LobesFile::validate() const {
   const bool nothing = problem.dynamics.modes.empty() && problem.measured.frfs.empty();
-  const char* const rule = "must name the structure: modes, frf, or x and y";
+  const char* const rule = "must name the structure: modes, frf, x and y, or cell and joints_deg";
   if (!document) {
     if (nothing) throw InvalidInput("dynamics", rule);
     return problem.validate();
@@ -359,7 +379,35 @@ LobesFile read_lobes(const std::filesystem::path& path) {
   return out;
 }
 
-void load_dynamics(LobesFile& file) {
+namespace {
+
+/// The modes of the cell's posture, with the uncertainty that they come with.
+void load_posture(LobesFile& file, Progress& progress) {
+  auto posture =
+      std::make_shared<ModesOfPosture>(posture_modes(file.cell, file.joints_deg, file.posture_axes, progress));
+  file.problem.dynamics = posture->prediction.modes;
+  for (const std::vector<std::string>* notes : {&posture->warnings, &posture->notes}) {
+    file.notes.insert(file.notes.end(), notes->begin(), notes->end());
+  }
+  constexpr double noticed_rad = 5.0 * units::deg;
+  if (file.posture_axes == PostureAxes::base && posture->axis_off_z_rad > noticed_rad) {
+    file.notes.push_back(
+        fmt::format("The cut's z is the base's z, from which the tool's axis stands off by {:.3g} deg in this posture.",
+                    posture->axis_off_z_rad / units::deg));
+  }
+  const bool known = std::ranges::any_of(file.problem.dynamics.modes,
+                                         [](const modal::Mode& mode) { return std::isfinite(mode.frequency_std_hz); });
+  if (known && file.uncertainty.samples == 0 && file.sweep == stability::SweptParameter::axial_depth) {
+    file.uncertainty.samples = 100;
+    file.uncertainty.grid = {40, 30};
+  }
+  file.posture = std::move(posture);
+}
+
+}  // namespace
+
+void load_dynamics(LobesFile& file, Progress& progress) {
+  if (!file.cell.empty()) load_posture(file, progress);
   if (!file.modes.empty()) file.problem.dynamics = modal::read_modes(file.modes);
   if (!file.workpiece_modes.empty()) file.problem.workpiece_dynamics = modal::read_modes(file.workpiece_modes);
   const auto measured = [&file](const std::filesystem::path& path) {

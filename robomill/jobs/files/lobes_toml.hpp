@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robomill/base/export.hpp"
+#include "robomill/jobs/posture.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/sweep.hpp"
@@ -20,7 +21,8 @@ class TomlFile;
 
 namespace robomill::jobs {
 
-/// lobes.toml. What it says of the structure is one of: nothing, a file of modes, a file of FRFs, or modes of its own.
+/// lobes.toml. What it says of the structure is one of: nothing, a file of modes, a file of FRFs, modes of its own, or
+/// a cell and one posture of it.
 struct LobesFile {
   std::filesystem::path path;
   stability::LobesProblem problem;                          ///< dynamics is empty unless modes stand in the file itself
@@ -28,6 +30,10 @@ struct LobesFile {
   std::filesystem::path modes = {};                         ///< dynamics.modes, resolved; empty where absent
   std::filesystem::path frf = {};                           ///< dynamics.frf, resolved; empty where absent
   modal::MissingDirections directions = {};                 ///< of the tool's structure
+  std::filesystem::path cell = {};                          ///< dynamics.cell, resolved; empty where absent
+  std::vector<double> joints_deg = {};                      ///< dynamics.joints_deg, the posture
+  PostureAxes posture_axes = PostureAxes::base;             ///< dynamics.axes beside a cell: those of the cut
+  std::shared_ptr<const ModesOfPosture> posture = {};       ///< what load_dynamics() found there
   std::filesystem::path workpiece_modes = {};               ///< workpiece_dynamics.modes, the same
   std::filesystem::path workpiece_frf = {};                 ///< workpiece_dynamics.frf, the same
   std::array<int, 2> surface_grid = {0, 0};                 ///< speeds and depths of the map of surface errors; 0: none
@@ -55,10 +61,11 @@ struct LobesFile {
 /// Everything but the structure is checked. @throws InvalidInput with file, line, key and value
 [[nodiscard]] ROBOMILL_API LobesFile read_lobes(const std::filesystem::path& path);
 
-/// Reads the files of modes and of FRFs that it names, of the tool and of the workpiece, into its problem.
+/// Reads the files of modes and of FRFs that it names, of the tool and of the workpiece, into its problem; of a cell
+/// the modes of its posture. Without [uncertainty] these bring their own.
 /// @throws InvalidInput, also where an exponential window's damping is still in FRFs (without modes it stays
 ///     there), and where milling needs a direction that was not measured and the file does not say what it is taken for
-ROBOMILL_API void load_dynamics(LobesFile& file);
+ROBOMILL_API void load_dynamics(LobesFile& file, Progress& progress = Progress::none());
 
 /// The sweep that its table [lobes] asks for. Points of an angle were read as mm and are degrees.
 [[nodiscard]] ROBOMILL_API stability::SweepOptions sweep_options(const LobesFile& file);

@@ -115,6 +115,7 @@ ModalModel read_modes_json(const std::filesystem::path& path) {
     if (node.has("std") && node.at("std").json().is_object()) {
       named[k].mode.frequency_std_hz = number_or_nan(node.at("std"), "frequency_hz");
       named[k].mode.damping_ratio_std = number_or_nan(node.at("std"), "damping_ratio");
+      named[k].mode.residue_std_ratio = number_or_nan(node.at("std"), "residue");
     }
   }
   ModalModel model = to_model(named);
@@ -199,7 +200,8 @@ io::Json modes_object(const ModalModel& model) {
                              {"right", vector_json(mode.right, model.responses, false)},
                              {"std",
                               {{"frequency_hz", io::number(mode.frequency_std_hz)},
-                               {"damping_ratio", io::number(mode.damping_ratio_std)}}}});
+                               {"damping_ratio", io::number(mode.damping_ratio_std)},
+                               {"residue", io::number(mode.residue_std_ratio)}}}});
   }
   json["residuals"] = io::Json::object();
   for (const Residual& residual : model.residuals) {

@@ -81,7 +81,7 @@ Normal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, const Sm
 /// Everything that stays the same while the parameters are sought.
 class Search {
  public:
-  Search(const FlexibleArm& arm, const std::vector<PostureData>& data, bool varying)
+  Search(const FlexibleArm& arm, const CalibrationData& data, bool varying, const Eigen::VectorXd& near)
       : arm_(arm), data_(data), start_(arm.start()) {
     prior_.resize(start_.size());
     for (Eigen::Index p = 0; p < start_.size(); ++p) {
@@ -97,12 +97,12 @@ class Search {
     for (Eigen::Index a = 0; a < n; ++a) {
       for (Eigen::Index b = 0; b < n; ++b) {
         kernel(a, b) =
-            kernel_of(data[static_cast<std::size_t>(a)].joints(), data[static_cast<std::size_t>(b)].joints());
+            kernel_of(data.joints()[static_cast<std::size_t>(a)], data.joints()[static_cast<std::size_t>(b)]);
       }
     }
     kernel.diagonal().array() += own_share;
     inverse_kernel_ = kernel.llt().solve(Eigen::MatrixXd::Identity(n, n));
-    common_ = start_;
+    common_ = near;
     differing_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(deviating_.size()), n);
   }
 
@@ -111,10 +111,7 @@ class Search {
     return (1.0 - own_share) * std::exp(-0.5 * d * d);
   }
 
-  void stage(double share, int lines) {
-    frfs_.clear();
-    for (const PostureData& posture : data_) frfs_.push_back(posture.smoothed(share, lines));
-  }
+  void stage(std::size_t i) { frfs_ = &data_.stage(i); }
 
   [[nodiscard]] Eigen::VectorXd parameters_of(std::size_t posture) const {
     return parameters_of(common_, differing_, posture);
@@ -195,7 +192,35 @@ class Search {
             .covariance = pick * factor.solve(pick.transpose())};
   }
   [[nodiscard]] Normal evaluate_at(std::size_t posture, const Eigen::VectorXd& parameters, bool derivatives) const {
-    return normal_of(arm_, data_[posture].joints(), frfs_[posture], parameters, derivatives);
+    return normal_of(arm_, data_.joints()[posture], (*frfs_)[posture], parameters, derivatives);
+  }
+  /// A posture's own parameters: its receptances, with a wide prior about what was predicted.
+  [[nodiscard]] Eigen::VectorXd refined(std::size_t posture, const Eigen::VectorXd& predicted, Normal at) const {
+    Eigen::VectorXd now = predicted;
+    const auto cost = [&](const Normal& normal, const Eigen::VectorXd& where) {
+      return normal.cost / noise_ + (where - predicted).cwiseAbs2().dot(prior_);
+    };
+    constexpr int rounds = 3;
+    for (int i = 0; i < rounds; ++i) {
+      Eigen::MatrixXd matrix = at.matrix / noise_;
+      matrix.diagonal() += prior_;
+      const Eigen::VectorXd gradient = at.gradient / noise_ + prior_.cwiseProduct(now - predicted);
+      const Eigen::VectorXd step = matrix.llt().solve(-gradient);
+      const double before = cost(at, now);
+      double share = 1.0;
+      Eigen::VectorXd next = now + step;
+      Normal then = evaluate_at(posture, next, true);
+      constexpr double smallest_share = 0.1;
+      while (!(cost(then, next) < before) && share > smallest_share) {
+        share *= 0.4;
+        next = now + share * step;
+        then = evaluate_at(posture, next, true);
+      }
+      if (!(cost(then, next) < before)) break;
+      now = next;
+      at = std::move(then);
+    }
+    return now;
   }
   [[nodiscard]] Eigen::MatrixXd covariance() const {
     const Eigen::MatrixXd precision = assemble(true, 0.0, SIZE_MAX);
@@ -319,12 +344,12 @@ class Search {
   }
 
   const FlexibleArm& arm_;
-  const std::vector<PostureData>& data_;
+  const CalibrationData& data_;
   Eigen::VectorXd start_, prior_;
   std::vector<Eigen::Index> deviating_;
   std::vector<double> deviation_;
   Eigen::MatrixXd inverse_kernel_;
-  std::vector<SmoothedFrf> frfs_;
+  const std::vector<SmoothedFrf>* frfs_ = nullptr;
   std::vector<Normal> normals_;
   Eigen::VectorXd common_;
   Eigen::MatrixXd differing_;
@@ -358,9 +383,26 @@ Spread spread_of(const FlexibleArm& arm, const FlexibleArm::System& system, cons
   return out;
 }
 
+/// The mode of another model that is most like one: near in frequency, and of its shape.
+Eigen::Index counterpart(const FlexibleArm::Modes& of, Eigen::Index mode, const FlexibleArm::Modes& among) {
+  Eigen::Index best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  const Eigen::Vector3cd a = of.at_tip.col(mode);
+  for (Eigen::Index j = 0; j < among.pole.size(); ++j) {
+    const Eigen::Vector3cd b = among.at_tip.col(j);
+    const double alike = std::norm(a.dot(b)) / std::max(a.squaredNorm() * b.squaredNorm(), 1e-300);
+    const double apart = std::abs(std::log(std::abs(among.pole(j)) / std::abs(of.pole(mode)))) + 0.1 * (1.0 - alike);
+    if (apart < least) {
+      least = apart;
+      best = j;
+    }
+  }
+  return best;
+}
+
 /// How far the left-out postures' own modes lie from their predictions, in predicted deviations.
-void scale_deviations(const FlexibleArm& arm, const Search& search, const std::vector<PostureData>& data,
-                      double highest_hz, Calibration& out) {
+void scale_deviations(const FlexibleArm& arm, const Search& search, const CalibrationData& data, double highest_hz,
+                      Calibration& out) {
   std::vector<std::vector<double>> z(3);
   double error = 0.0, size = 0.0;
   for (std::size_t k = 0; k < data.size(); ++k) {
@@ -368,23 +410,19 @@ void scale_deviations(const FlexibleArm& arm, const Search& search, const std::v
     const Normal at = search.evaluate_at(k, left.parameters, true);
     error += at.error;
     size += at.size;
-    // The posture's own parameters: its receptances, with its prediction as a wide prior.
-    Eigen::MatrixXd own = at.matrix / search.noise();
-    own.diagonal() += search.prior();
-    const Eigen::LLT<Eigen::MatrixXd> factor(own);
-    const Eigen::VectorXd refined = left.parameters - factor.solve(at.gradient / search.noise());
-    const FlexibleArm::System before = arm.at(data[k].joints(), left.parameters, true);
+    const Eigen::VectorXd refined = search.refined(k, left.parameters, at);
+    const FlexibleArm::System before = arm.at(data.joints()[k], left.parameters, true);
     const FlexibleArm::Modes predicted = arm.modes(before, highest_hz);
-    const FlexibleArm::Modes found = arm.modes(arm.at(data[k].joints(), refined, false), highest_hz);
+    const FlexibleArm::Modes found = arm.modes(arm.at(data.joints()[k], refined, false), highest_hz);
     const Spread spread = spread_of(arm, before, predicted, left.covariance);
-    const Eigen::Index m = std::min(predicted.pole.size(), found.pole.size());
-    for (Eigen::Index i = 0; i < m; ++i) {
-      const double was = std::abs(predicted.pole(i)), is = std::abs(found.pole(i));
+    for (Eigen::Index i = 0; i < predicted.pole.size() && found.pole.size() > 0; ++i) {
+      const Eigen::Index j = counterpart(predicted, i, found);
+      const double was = std::abs(predicted.pole(i)), is = std::abs(found.pole(j));
       z[0].push_back(std::abs(std::log(is / was)) / std::max(spread.log_frequency(i), 1e-9));
-      const double zeta_was = -predicted.pole(i).real() / was, zeta_is = -found.pole(i).real() / is;
+      const double zeta_was = -predicted.pole(i).real() / was, zeta_is = -found.pole(j).real() / is;
       z[1].push_back(std::abs(zeta_is - zeta_was) / std::max(spread.damping_ratio(i), 1e-12));
       const Eigen::Matrix3cd a = predicted.at_tip.col(i) * predicted.at_tip.col(i).transpose();
-      const Eigen::Matrix3cd b = found.at_tip.col(i) * found.at_tip.col(i).transpose();
+      const Eigen::Matrix3cd b = found.at_tip.col(j) * found.at_tip.col(j).transpose();
       z[2].push_back((a - b).norm() / a.norm() / std::max(spread.residue(i), 1e-9));
     }
   }
@@ -402,19 +440,31 @@ double posture_distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return n > 0 ? (a.tail(n) - b.tail(n)).norm() : 0.0;
 }
 
-Calibration calibrate(const FlexibleArm& arm, const std::vector<PostureData>& data, double highest_hz, bool varying,
-                      Progress& progress) {
+CalibrationData::CalibrationData(const std::vector<PostureData>& postures) {
+  for (const PostureData& posture : postures) joints_.push_back(posture.joints());
+  for (std::size_t i = 0; i < std::size(stages); ++i) {
+    std::vector<SmoothedFrf>& stage = stages_.emplace_back(postures.size());
+    parallel_for(postures.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        stage[k] = postures[k].smoothed(stages[i], stage_lines[i], i + 1 == std::size(stages));
+      }
+    });
+  }
+}
+
+Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, double highest_hz, bool varying,
+                      const std::optional<Eigen::VectorXd>& near, Progress& progress) {
   Calibration out;
-  Search search(arm, data, varying);
+  Search search(arm, data, varying, near.value_or(arm.start()));
   out.length_rad = process_length_rad;
-  if (!data.empty()) {
+  if (data.size() > 0) {
     constexpr int stage_iterations = 8, last_iterations = 15;
-    for (std::size_t i = 0; i < std::size(stages); ++i) {
-      search.stage(stages[i], stage_lines[i]);
+    constexpr std::size_t near_stage = 2;
+    for (std::size_t i = near ? near_stage : 0; i < std::size(stages); ++i) {
+      search.stage(i);
       const bool last = i + 1 == std::size(stages);
       search.descend(last ? last_iterations : stage_iterations, varying && i + 2 >= std::size(stages), progress);
       search.estimate_noise();
-      progress.advance();
     }
     search.descend(4, varying, progress);
     out.error = search.error();

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include "robomill/base/progress.hpp"
@@ -32,9 +33,23 @@ struct PostureParameters {
 /// Distance between postures over all joints but the first, on which nothing depends.
 [[nodiscard]] double posture_distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 
+/// Receptances of all postures at every stage of the search: with much added damping first, with hardly any last.
+class CalibrationData {
+ public:
+  explicit CalibrationData(const std::vector<PostureData>& postures);
+  [[nodiscard]] std::size_t size() const { return joints_.size(); }
+  [[nodiscard]] const std::vector<Eigen::VectorXd>& joints() const { return joints_; }
+  [[nodiscard]] const std::vector<SmoothedFrf>& stage(std::size_t i) const { return stages_[i]; }
+
+ private:
+  std::vector<Eigen::VectorXd> joints_;
+  std::vector<std::vector<SmoothedFrf>> stages_;
+};
+
 /// @param varying  whether joints may differ from posture to posture
-[[nodiscard]] Calibration calibrate(const FlexibleArm& arm, const std::vector<PostureData>& data, double highest_hz,
-                                    bool varying, Progress& progress);
+/// @param near     parameters to start from, with little added damping; none: the arm's own, from the first stage on
+[[nodiscard]] Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, double highest_hz,
+                                    bool varying, const std::optional<Eigen::VectorXd>& near, Progress& progress);
 
 /// @param joints  of the measured postures
 [[nodiscard]] PostureParameters predict(const FlexibleArm& arm, const Calibration& calibration,

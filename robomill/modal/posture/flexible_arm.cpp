@@ -171,6 +171,28 @@ Eigen::VectorXd FlexibleArm::start() const {
   return out;
 }
 
+Eigen::VectorXd FlexibleArm::start_near(const FlexibleArm& other, const Eigen::VectorXd& values) const {
+  // Coordinates of a kind stand in one row; those of the tool begin later where there is a bracket.
+  const auto first = [](const FlexibleArm& arm, Kind kind) {
+    std::size_t least = SIZE_MAX;
+    for (const ArmParameter& parameter : arm.parameters_) {
+      if (parameter.kind == kind) least = std::min(least, parameter.index);
+    }
+    return least;
+  };
+  Eigen::VectorXd out = start();
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    const ArmParameter& own = parameters_[p];
+    for (std::size_t q = 0; q < other.parameters_.size(); ++q) {
+      const ArmParameter& its = other.parameters_[q];
+      if (its.kind != own.kind || its.axis != own.axis) continue;
+      if (its.index - first(other, its.kind) != own.index - first(*this, own.kind)) continue;
+      out(static_cast<Eigen::Index>(p)) = values(static_cast<Eigen::Index>(q));
+    }
+  }
+  return out;
+}
+
 namespace {
 
 /// Frames of joints and flange.

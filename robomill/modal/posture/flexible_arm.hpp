@@ -62,6 +62,8 @@ class FlexibleArm {
   [[nodiscard]] const std::vector<ArmParameter>& parameters() const { return parameters_; }
   [[nodiscard]] const ArmStructure& structure() const { return structure_; }
   [[nodiscard]] Eigen::VectorXd start() const;
+  /// The start, with the values of another arm's parameters where it has the same ones.
+  [[nodiscard]] Eigen::VectorXd start_near(const FlexibleArm& other, const Eigen::VectorXd& values) const;
   /// Sets the largest gravity torques, which the load is counted from.
   void scale_loads(const std::vector<Eigen::VectorXd>& postures);
 

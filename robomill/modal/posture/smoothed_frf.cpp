@@ -67,67 +67,79 @@ PostureData::PostureData(const MeasuredPosture& measured, const PostureModelOpti
   }
 }
 
-SmoothedFrf PostureData::smoothed(double share, int lines) const {
+Eigen::Matrix<Complex, 9, 1> PostureData::of_modes(Complex s) const {
+  Eigen::Matrix<Complex, 9, 1> sum = Eigen::Matrix<Complex, 9, 1>::Zero();
+  for (const Mode& mode : modes_->modes) {
+    const Complex lambda = pole(mode);
+    for (std::size_t r = 0; r < modes_->responses.size(); ++r) {
+      for (std::size_t e = 0; e < modes_->excitations.size(); ++e) {
+        const int row = row_of(modes_->responses[r]), column = row_of(modes_->excitations[e]);
+        if (row < 0 || column < 0) continue;
+        const Complex residue = mode.right(static_cast<Eigen::Index>(r)) * mode.left(static_cast<Eigen::Index>(e));
+        sum(row + 3 * column) += residue / (s - lambda) + std::conj(residue) / (s - std::conj(lambda));
+      }
+    }
+  }
+  for (const Residual& residual : modes_->residuals) {
+    const int row = row_of(residual.name.response), column = row_of(residual.name.excitation);
+    if (row >= 0 && column >= 0) sum(row + 3 * column) += residual.stiffness + residual.mass / (s * s);
+  }
+  return sum;
+}
+
+Eigen::Matrix<Complex, 9, 1> PostureData::of_lines(double at_hz, double sigma_hz) const {
+  // Each line stands for the cell about it; below the first one the receptance is static.
+  const Eigen::Index count = frequency_hz_.size();
+  const auto share_of = [&](double from, double to) {
+    return (std::atan((to - at_hz) / sigma_hz) - std::atan((from - at_hz) / sigma_hz)) / pi;
+  };
+  const double middle = share_of(-frequency_hz_(0), frequency_hz_(0));
+  double whole = middle;
+  Eigen::Matrix<Complex, 9, 1> sum = middle * value_.col(0).real().cast<Complex>();
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double from = k == 0 ? frequency_hz_(0) : 0.5 * (frequency_hz_(k - 1) + frequency_hz_(k));
+    const double to = k + 1 == count ? frequency_hz_(k) : 0.5 * (frequency_hz_(k) + frequency_hz_(k + 1));
+    const double positive = share_of(from, to), negative = share_of(-to, -from);
+    sum += positive * value_.col(k) + negative * value_.col(k).conjugate();
+    whole += positive + negative;
+  }
+  return sum / whole;
+}
+
+SmoothedFrf PostureData::smoothed(double share, int lines, bool resolved) const {
   SmoothedFrf out;
   const Eigen::Index count = frequency_hz_.size();
   const double spacing_hz = count > 1 ? (high_hz_ - low_hz_) / static_cast<double>(count - 1) : 0.0;
   // Beyond the last line the integral knows nothing: the lines end where it would matter.
   const double last_hz = modes_ ? high_hz_ : high_hz_ / (1.0 + 2.0 * share);
   const double ratio = std::pow(last_hz / low_hz_, 1.0 / (lines - 1));
+  std::vector<Eigen::Matrix<Complex, 9, 1>> values;
+  const auto put = [&](double at_hz, double sigma_hz, const Eigen::Matrix<Complex, 9, 1>& value) {
+    out.s.emplace_back(2.0 * pi * sigma_hz, 2.0 * pi * at_hz);
+    values.push_back(value);
+  };
   double f = low_hz_;
-  std::vector<double> frequency;
-  while (f <= last_hz * (1.0 + 1e-12)) {
-    frequency.push_back(f);
-    f = std::max(f * ratio, f + spacing_hz);
+  if (resolved && !modes_) {
+    constexpr double lines_a_width = 2.0;
+    for (Eigen::Index k = 0; k < count && share * frequency_hz_(k) < lines_a_width * spacing_hz; ++k) {
+      put(frequency_hz_(k), 0.0, value_.col(k));
+      f = frequency_hz_(k) + spacing_hz;
+    }
   }
-  const Eigen::Index n = static_cast<Eigen::Index>(frequency.size());
+  for (; f <= last_hz * (1.0 + 1e-12); f = std::max(f * ratio, f + spacing_hz)) {
+    const double sigma_hz = std::max(share * f, spacing_hz);
+    put(f, sigma_hz, modes_ ? of_modes({2.0 * pi * sigma_hz, 2.0 * pi * f}) : of_lines(f, sigma_hz));
+  }
+  const Eigen::Index n = static_cast<Eigen::Index>(values.size());
   out.value.setZero(9, n);
   out.weight.setZero(9, n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double at = frequency[static_cast<std::size_t>(i)];
-    const double sigma_hz = std::max(share * at, spacing_hz);
-    const Complex s(2.0 * pi * sigma_hz, 2.0 * pi * at);
-    out.s.push_back(s);
-    Eigen::Matrix<Complex, 9, 1> sum = Eigen::Matrix<Complex, 9, 1>::Zero();
-    if (modes_) {
-      for (const Mode& mode : modes_->modes) {
-        const Complex lambda = pole(mode);
-        for (std::size_t r = 0; r < modes_->responses.size(); ++r) {
-          for (std::size_t e = 0; e < modes_->excitations.size(); ++e) {
-            const int row = row_of(modes_->responses[r]), column = row_of(modes_->excitations[e]);
-            if (row < 0 || column < 0) continue;
-            const Complex residue = mode.right(static_cast<Eigen::Index>(r)) * mode.left(static_cast<Eigen::Index>(e));
-            sum(row + 3 * column) += residue / (s - lambda) + std::conj(residue) / (s - std::conj(lambda));
-          }
-        }
-      }
-      for (const Residual& residual : modes_->residuals) {
-        const int row = row_of(residual.name.response), column = row_of(residual.name.excitation);
-        if (row >= 0 && column >= 0) sum(row + 3 * column) += residual.stiffness + residual.mass / (s * s);
-      }
-    } else {
-      // Each line stands for the cell about it; below the first one the receptance is static.
-      const auto share_of = [&](double from, double to) {
-        return (std::atan((to - at) / sigma_hz) - std::atan((from - at) / sigma_hz)) / pi;
-      };
-      double whole = 0.0;
-      for (Eigen::Index k = 0; k < count; ++k) {
-        const double from = k == 0 ? frequency_hz_(0) : 0.5 * (frequency_hz_(k - 1) + frequency_hz_(k));
-        const double to = k + 1 == count ? frequency_hz_(k) : 0.5 * (frequency_hz_(k) + frequency_hz_(k + 1));
-        const double positive = share_of(from, to), negative = share_of(-to, -from);
-        sum += positive * value_.col(k) + negative * value_.col(k).conjugate();
-        whole += positive + negative;
-      }
-      const double middle = share_of(-frequency_hz_(0), frequency_hz_(0));
-      sum += middle * value_.col(0).real().cast<Complex>();
-      whole += middle;
-      sum /= whole;
-    }
-    const double norm = sum.norm() / 3.0;
+    const Eigen::Matrix<Complex, 9, 1>& value = values[static_cast<std::size_t>(i)];
+    const double norm = value.norm() / 3.0;
     for (Eigen::Index e = 0; e < 9; ++e) {
       if (!known_(e)) continue;
-      out.value(e, i) = sum(e);
-      out.weight(e, i) = 1.0 / (counted_share * std::hypot(std::abs(sum(e)), small_entry * norm));
+      out.value(e, i) = value(e);
+      out.weight(e, i) = 1.0 / (counted_share * std::hypot(std::abs(value(e)), small_entry * norm));
     }
   }
   return out;

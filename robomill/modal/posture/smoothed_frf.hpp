@@ -23,9 +23,12 @@ class PostureData {
   /// H(σ + iω) from measured lines by Poisson's integral for the half plane, in which H is analytic,
   ///     H(σ + iω) = 1/π ∫ H(iν) σ / ((ω − ν)² + σ²) dν,
   /// or from modes by their sum.
-  [[nodiscard]] SmoothedFrf smoothed(double share, int lines) const;
+  /// @param resolved  where the lines are too far apart for that width, they themselves, σ = 0
+  [[nodiscard]] SmoothedFrf smoothed(double share, int lines, bool resolved = false) const;
 
  private:
+  [[nodiscard]] Eigen::Matrix<std::complex<double>, 9, 1> of_modes(std::complex<double> s) const;
+  [[nodiscard]] Eigen::Matrix<std::complex<double>, 9, 1> of_lines(double at_hz, double sigma_hz) const;
   Eigen::VectorXd joints_;
   Eigen::VectorXd frequency_hz_;                                  ///< length L; empty where modes are given
   Eigen::Matrix<std::complex<double>, 9, Eigen::Dynamic> value_;  ///< 9 x L

@@ -1,0 +1,57 @@
+#include "robomill/jobs/files/posture_json.hpp"
+
+#include "robomill/base/units.hpp"
+#include "robomill/modal/files/modal_objects.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+const char* source_text(modal::PostureReport::Source source) {
+  switch (source) {
+    case modal::PostureReport::Source::calibrated:
+      return "calibrated";
+    case modal::PostureReport::Source::interpolated:
+      return "interpolated";
+    case modal::PostureReport::Source::cell:
+      break;
+  }
+  return "cell";
+}
+
+}  // namespace
+
+io::Json posture_object(const ModesOfPosture& posture) {
+  io::Json joints = io::Json::array(), modes = io::Json::array();
+  for (const double joint : posture.joints) joints.push_back(io::number(joint / units::deg));
+  for (const modal::Mode& mode : posture.prediction.modes.modes) {
+    modes.push_back({{"frequency_hz", io::number(mode.frequency_hz)},
+                     {"frequency_std_hz", io::number(mode.frequency_std_hz)},
+                     {"damping_ratio", io::number(mode.damping_ratio)},
+                     {"damping_std", io::number(mode.damping_ratio_std)},
+                     {"residue_std", io::number(mode.residue_std_ratio)}});
+  }
+  return {{"joints_deg", joints},
+          {"modes", modes},
+          {"measured_nearby", posture.prediction.measured_nearby},
+          {"distance_deg", io::number(posture.prediction.distance_rad / units::deg)},
+          {"region_deg", io::number(posture.report.region_rad / units::deg)},
+          {"nearest", posture.prediction.nearest},
+          {"source", source_text(posture.report.source)},
+          {"measured_postures", posture.report.postures},
+          {"structure",
+           {{"bearings", posture.report.bearings},
+            {"bracket", posture.report.bracket},
+            {"tool_modes", posture.report.tool_modes}}},
+          {"relative_error", io::number(posture.report.error)},
+          {"left_out_relative_error", io::number(posture.report.left_out_error)}};
+}
+
+std::string posture_modes_json(const ModesOfPosture& posture) {
+  io::Json json = modal::modes_object(posture.prediction.modes);
+  json["posture"] = posture_object(posture);
+  json["warnings"] = posture.warnings;
+  json["notes"] = posture.notes;
+  return io::dump(json);
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,186 @@
+#include "robomill/jobs/posture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/modal/files/frf_files.hpp"
+#include "robomill/modal/files/modes_files.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+/// Of the flange before any mount, in base axes.
+Eigen::Matrix3d flange_axes(const CellFile& cell, const Eigen::VectorXd& joints) {
+  return robot::forward(cell.cell.arm, joints).linear() * cell.end_effector.tip.linear().transpose();
+}
+
+Eigen::VectorXd to_vector(const std::vector<double>& joints) {
+  return Eigen::Map<const Eigen::VectorXd>(joints.data(), static_cast<Eigen::Index>(joints.size()));
+}
+
+const std::vector<modal::Dof>& tip_axes() {
+  static const std::vector<modal::Dof> axes = {
+      {.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
+  return axes;
+}
+
+/// q' = T q, F' = T F of modes that know x, y and z at the tip.
+modal::ModalModel turned(const modal::ModalModel& model, const Eigen::Matrix3d& turn, const std::string& name) {
+  if (model.excitations != tip_axes() || model.responses != tip_axes()) {
+    throw InvalidInput(name, "must know x, y and z of the tip to be turned from the flange's axes",
+                       "Give them in base axes");
+  }
+  modal::ModalModel out = model;
+  for (modal::Mode& mode : out.modes) {
+    mode.left = turn * mode.left;
+    mode.right = turn * mode.right;
+  }
+  Eigen::Matrix3cd mass = Eigen::Matrix3cd::Zero(), stiffness = mass;
+  for (const modal::Residual& residual : model.residuals) {
+    const int row = static_cast<int>(residual.name.response.axis) - 1;
+    const int column = static_cast<int>(residual.name.excitation.axis) - 1;
+    mass(row, column) = residual.mass;
+    stiffness(row, column) = residual.stiffness;
+  }
+  if (out.residuals.empty()) return out;
+  mass = (turn * mass * turn.transpose()).eval();
+  stiffness = (turn * stiffness * turn.transpose()).eval();
+  out.residuals.clear();
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      out.residuals.push_back(
+          {.name = {tip_axes()[static_cast<std::size_t>(i)], tip_axes()[static_cast<std::size_t>(j)]},
+           .mass = mass(i, j),
+           .stiffness = stiffness(i, j)});
+    }
+  }
+  return out;
+}
+
+/// The same of FRFs, all nine of them.
+modal::FrfSet turned(const modal::FrfSet& set, const Eigen::Matrix3d& turn, const std::string& name) {
+  modal::FrfSet out{.frequency_hz = set.frequency_hz, .frfs = {}};
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      modal::Frf sum{.name = {tip_axes()[static_cast<std::size_t>(i)], tip_axes()[static_cast<std::size_t>(j)]},
+                     .receptance = Eigen::VectorXcd::Zero(set.frequency_hz.size())};
+      for (int l = 0; l < 3; ++l) {
+        for (int k = 0; k < 3; ++k) {
+          const modal::Frf* frf =
+              set.find({tip_axes()[static_cast<std::size_t>(k)], tip_axes()[static_cast<std::size_t>(l)]});
+          if (frf == nullptr) {
+            throw InvalidInput(name, "must hold all nine FRFs of the tip to be turned from the flange's axes",
+                               "Give them in base axes, where the force columns x and y will do");
+          }
+          sum.receptance += turn(i, k) * turn(j, l) * frf->receptance;
+        }
+      }
+      out.frfs.push_back(std::move(sum));
+    }
+  }
+  return out;
+}
+
+modal::MeasuredPosture measured(const CellFile& cell, std::size_t index, std::vector<std::string>& notes) {
+  const PostureEntry& entry = cell.postures[index];
+  modal::MeasuredPosture out;
+  out.joints = to_vector(entry.joints);
+  const std::filesystem::path& path = entry.frf.empty() ? entry.modes : entry.frf;
+  out.name = fmt::format("{}: posture {} ({})", cell.path.string(), index + 1, path.filename().string());
+  const Eigen::Matrix3d turn = flange_axes(cell, out.joints);
+  if (!entry.modes.empty()) {
+    out.modes = modal::read_modes(entry.modes);
+    if (entry.flange_axes) out.modes = turned(*out.modes, turn, out.name);
+    return out;
+  }
+  modal::FrfFile file = modal::read_frfs({entry.frf});
+  for (const std::string& note : file.notes) notes.push_back(fmt::format("Posture {}: {}", index + 1, note));
+  if (file.added_decay_per_s > 0.0) {
+    throw InvalidInput(path.string(), "still holds the damping of an exponential window",
+                       "Estimate the FRFs with remove_added_damping");
+  }
+  out.frfs = entry.flange_axes ? turned(file.set, turn, out.name) : std::move(file.set);
+  return out;
+}
+
+/// What hangs on the flange beside the last link, in that link's frame: a compact body.
+std::optional<robot::Link> payload_of(const CellFile& cell) {
+  if (!cell.end_effector.mass_kg) return std::nullopt;
+  constexpr double radius_of_gyration_m = 0.1;
+  const Eigen::Isometry3d flange = cell.cell.arm.flange * Eigen::Isometry3d(cell.end_effector.tip.linear().transpose());
+  robot::Link link;
+  link.mass_kg = *cell.end_effector.mass_kg;
+  link.center_m = flange * cell.end_effector.center_m.value_or(Eigen::Vector3d::Zero());
+  link.inertia_kg_m2 = link.mass_kg * radius_of_gyration_m * radius_of_gyration_m * Eigen::Matrix3d::Identity();
+  return link;
+}
+
+std::string description(const modal::PostureReport& report) {
+  if (report.source != modal::PostureReport::Source::calibrated) return {};
+  std::string text = fmt::format(
+      "The arm's model is calibrated over {} postures: compliant joints{}{}{}. It misses their "
+      "receptances by {:.2g} %",
+      report.postures, report.bearings ? ", bearings" : "", report.bracket ? ", the spindle's bracket" : "",
+      report.tool_modes > 0
+          ? fmt::format(", {} pair{} of tool modes", report.tool_modes, report.tool_modes == 1 ? "" : "s")
+          : "",
+      100.0 * report.error);
+  if (std::isfinite(report.left_out_error)) {
+    text += fmt::format(", those of a posture left out by {:.2g} %", 100.0 * report.left_out_error);
+  }
+  return text + ".";
+}
+
+}  // namespace
+
+CellDynamics cell_dynamics(const CellFile& cell, Progress& progress) {
+  CellDynamics out;
+  std::vector<modal::MeasuredPosture> postures;
+  for (std::size_t i = 0; i < cell.postures.size(); ++i) postures.push_back(measured(cell, i, out.notes));
+  try {
+    out.model = std::make_shared<modal::PostureModel>(cell.cell, payload_of(cell), postures,
+                                                      modal::PostureModelOptions{}, progress);
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    if (parts.field == "cell") parts.field = cell.path.string();
+    throw InvalidInput(parts);
+  }
+  const modal::PostureReport& report = out.model->report();
+  if (const std::string text = description(report); !text.empty()) out.notes.push_back(text);
+  out.notes.insert(out.notes.end(), report.notes.begin(), report.notes.end());
+  return out;
+}
+
+ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vector<double>& joints_deg, PostureAxes axes,
+                             Progress& progress) {
+  const CellFile cell = read_cell(path);
+  ModesOfPosture out;
+  for (const double angle : joints_deg) out.joints.push_back(angle * units::deg);
+  if (out.joints.size() != cell.cell.arm.joints.size()) {
+    throw InvalidInput("joints_deg", fmt::format("must hold one value a joint, {}; it holds {}",
+                                                 cell.cell.arm.joints.size(), out.joints.size()));
+  }
+  const Eigen::VectorXd joints = to_vector(out.joints);
+  CellDynamics dynamics = cell_dynamics(cell, progress);
+  out.prediction = dynamics.model->at(joints);
+  out.report = dynamics.model->report();
+  out.notes = std::move(dynamics.notes);
+  const double along = robot::forward(cell.cell.arm, joints).linear()(2, 2);
+  out.axis_off_z_rad = std::acos(std::clamp(std::abs(along), 0.0, 1.0));
+  if (!out.prediction.measured_nearby && out.report.postures > 0) {
+    out.warnings.push_back(fmt::format(
+        "The posture lies outside the measured region: {:.3g} deg from the nearest measured one (at most {:.3g} deg "
+        "within it). Its deviations grow with that.",
+        out.prediction.distance_rad / units::deg, out.report.region_rad / units::deg));
+  }
+  if (axes == PostureAxes::flange) {
+    out.prediction.modes = turned(out.prediction.modes, flange_axes(cell, joints).transpose(), "joints_deg");
+  }
+  return out;
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,51 @@
+#pragma once
+#include <Eigen/Core>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
+#include "robomill/base/progress.hpp"
+#include "robomill/jobs/files/cell_toml.hpp"
+#include "robomill/modal/posture_model.hpp"
+
+// Method: robomill/jobs/README.md, "Dynamics of a posture (`posture.hpp`)"
+
+namespace robomill::jobs {
+
+/// The dynamics of a cell's robot over its postures, from what [[postures]] name and from the cell's own numbers.
+struct CellDynamics {
+  std::shared_ptr<const modal::PostureModel> model;
+  std::vector<std::string> notes = {};  ///< sentences for the user, of the files read and of the calibration
+};
+
+/// Reads the FRFs and modes of [[postures]], turns them into base axes and calibrates the model.
+/// @throws InvalidInput with file, line and posture; Interrupted
+[[nodiscard]] ROBOMILL_API CellDynamics cell_dynamics(const CellFile& cell, Progress& progress = Progress::none());
+
+/// Axes that a posture's modes are written in: the robot's base, or its flange before any mount.
+enum class PostureAxes { base, flange };
+inline constexpr Name<PostureAxes> posture_axes_names[] = {{"base", PostureAxes::base},
+                                                           {"flange", PostureAxes::flange}};
+
+/// The dynamics of one posture of a cell.
+struct ModesOfPosture {
+  std::vector<double> joints = {};  ///< [rad or m]
+  modal::PosturePrediction prediction;
+  modal::PostureReport report;
+  double axis_off_z_rad = 0.0;  ///< of the tool's axis from the base's z
+  std::vector<std::string> warnings = {}, notes = {};
+};
+/// @param joints_deg  one value a joint
+/// @throws InvalidInput as cell_dynamics, or naming the joint that is outside its limits
+[[nodiscard]] ROBOMILL_API ModesOfPosture posture_modes(const std::filesystem::path& cell,
+                                                        const std::vector<double>& joints_deg,
+                                                        PostureAxes axes = PostureAxes::base,
+                                                        Progress& progress = Progress::none());
+
+/// modes.json of a posture: its modes, and under "posture" where it is and how well it is known.
+[[nodiscard]] ROBOMILL_API std::string posture_modes_json(const ModesOfPosture& posture);
+
+}  // namespace robomill::jobs
