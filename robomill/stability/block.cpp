@@ -29,7 +29,7 @@ class BlockSearch {
         options_(options),
         point_(point),
         model_(collocation_model(problem)),
-        evaluator_(*model_, options.tolerance, {.tolerance = 1e-3 * options.tolerance}) {
+        evaluator_(*model_, options.tolerance, {.tolerance = 1e-3 * options.tolerance, .between = 8}) {
     crossing_.tolerance = options.tolerance;
     crossing_.level = model_->first_level(point, options.tolerance);
     crossing_.coarse_level = std::max(1, crossing_.level - 1);
@@ -83,7 +83,10 @@ class BlockSearch {
       evaluator_.evaluate(std::span(points).first(depths.size()), ask, outcomes);
     };
     std::array<double, 2> range = options_.axial_depth_m;
-    if (range[1] == 0.0) range = {point_.axial_depth_m / 16.0, 8.0 * point_.axial_depth_m};
+    if (range[1] == 0.0) {
+      const double deepest_m = std::clamp(8.0 * point_.axial_depth_m, point_.axial_depth_m, most_depth_m());
+      range = {point_.axial_depth_m / 16.0, deepest_m};
+    }
     const bool guessed = out.gain.status == GainMargin::Status::found;
     crossing_.at_a_time = depths_at_a_time;
     crossing_.cheap_lanes = false;
@@ -101,6 +104,14 @@ class BlockSearch {
     out.limit.error_estimate = crossing.outcome.error_estimate;
     out.limit_5_percent_m = out.limit_50_percent_m = out.limit_95_percent_m = crossing.at;
     explain(crossing, out);
+  }
+
+  /// An analytic cut must not reach the shank; what a given engagement lacks above the edges is left out by itself.
+  [[nodiscard]] double most_depth_m() const {
+    if (!problem_.spatial || problem_.spatial->engagement) return none;
+    const cutting::Cut& cut = problem_.spatial->cut;
+    const double upright = std::cos(cut.lead_rad) * std::cos(cut.tilt_rad);
+    return std::max(point_.axial_depth_m, 0.5 * cutting::Profile(problem_.spatial->cutter).height_m() * upright);
   }
 
   /// At the limit, whose case is the evaluator's last one.

@@ -12,7 +12,8 @@ namespace robomill::stability {
 /// What is asked of one block of a program.
 struct ROBOMILL_API BlockOptions {
   double tolerance = 1e-4;  ///< as of LobesOptions: of the spectral radii, and of |μ| = 1 at limit and margin
-  /// Where the limit is looked for [m], increasing; {0, 0}: from a sixteenth of the depth to eight times it.
+  /// Where the limit is looked for [m], increasing; {0, 0}: from a sixteenth of the depth to eight times it; of an
+  /// analytic cut to half the height of the edges at most.
   std::array<double, 2> axial_depth_m = {0.0, 0.0};
   double most_gain = 16.0;  ///< up to which the gain margin is looked for, in [2, 1000]; its reciprocal is the least
   bool regime = true;

@@ -4,8 +4,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/stability/lobes.hpp"
 
-// Method: robomill/stability/README.md, "Sensitivity of a limit (`sensitivity.hpp`,
-// `collocation/mode_sensitivity.hpp`)"
+// Method: robomill/stability/README.md, "Sensitivity of a limit (`sensitivity.hpp`)"
 namespace robomill::stability {
 
 /// How the spectral radius at a point answers small relative changes of what the structure is made of.

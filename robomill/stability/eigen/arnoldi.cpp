@@ -12,7 +12,6 @@ namespace robomill::stability::detail {
 namespace {
 
 constexpr std::size_t first_extra = 9;  // columns beyond 2n at the first look
-constexpr std::size_t between = 4;      // columns from look to look
 // More modes than this are warmed up: whatever fades quicker than the dominant motion is gone before the first vector.
 constexpr std::size_t many = 2 * 10;
 constexpr std::size_t first_warm = 16;  // columns at the first look after that
@@ -101,7 +100,7 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out) {
     arguments.coefficients = hessenberg_.data() + k * (most_ + 1);
     orthogonalise(arguments);
     if (k + 1 != look) continue;
-    look = std::min(most_, look + (warm ? look / 2 : between));
+    look = std::min(most_, look + (warm ? look / 2 : options_.between));
     for (std::size_t lane = 0; lane < out.size(); ++lane) {
       if (done[lane]) continue;
       done[lane] = converged(lane, k + 1, k + 1 == size_, out[lane]);

@@ -23,6 +23,7 @@ double spectral_radius(const Dominant& dominant);
 
 struct ArnoldiOptions {
   double tolerance = 1e-12;           ///< converged where the residual is at most this times (|μ| + 0.1 ‖H‖)
+  std::size_t between = 4;            ///< vectors from look to look
   std::size_t extra = 72;             ///< vectors beyond 2n before the matrix is formed
   std::size_t largest_matrix = 1200;  ///< beyond this the matrix is not formed
   bool full_matrix_only = false;      ///< for tests
