@@ -26,9 +26,11 @@ struct PostureDynamics {
 /// Of any posture; called by several threads at once.
 using DynamicsAt = std::function<PostureDynamics(const Eigen::VectorXd& joints)>;
 
-/// The modes of the cell's arm with its joints' stiffness and damping and its links' masses.
-/// @throws InvalidInput with the cell's file if these are missing
-[[nodiscard]] ROBOMILL_API DynamicsAt dynamics_of_arm(const CellFile& cell);
+/// Of the cell's measured postures, or of its arm's numbers alone (posture.hpp).
+/// @param notes  for the user are added
+/// @throws InvalidInput as cell_dynamics, or with the cell's file if nothing is known to vibrate; Interrupted
+[[nodiscard]] ROBOMILL_API DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& notes,
+                                                       Progress& progress = Progress::none());
 /// The same modes in every posture.
 [[nodiscard]] ROBOMILL_API DynamicsAt constant_dynamics(modal::ModalModel modes);
 

@@ -368,12 +368,18 @@ ProgramRun program_run(const PlanResult& result) {
   return run;
 }
 
-/// What vibrates along the program: the cell's, or the job's in every posture.
-DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell) {
-  if (!result.job.has_structure()) {
-    result.notes.emplace_back(
-        "The dynamics of the program's blocks are those of the cell's model: the arm alone, nothing was measured.");
-    return dynamics_of_arm(cell);
+/// What vibrates along the program: the cell's measured postures, else the job's structure in every posture, else the
+/// cell's arm.
+DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& progress) {
+  if (!cell.postures.empty() || !result.job.has_structure()) {
+    if (result.job.has_structure()) {
+      result.notes.emplace_back(
+          "The dynamics of the program's blocks are those of the cell's postures, not the job's.");
+    } else if (cell.postures.empty()) {
+      result.notes.emplace_back(
+          "The dynamics of the program's blocks are those of the cell's arm alone; nothing was measured.");
+    }
+    return dynamics_of_cell(cell, result.notes, progress);
   }
   result.notes.emplace_back(
       "The dynamics of the program's blocks are the job's, the same in every posture, in the robot's base axes.");
@@ -394,7 +400,7 @@ void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, Pro
   warn_of_spindle(result);
   const bool usable = !result.fit || result.fit->usable();
   if (!result.job.judges_blocks() || !usable) return;
-  result.blocks = judge_blocks(*result.forces, dynamics_along(result, *cell), {}, progress);
+  result.blocks = judge_blocks(*result.forces, dynamics_along(result, *cell, progress), {}, progress);
 }
 
 /// Lobes of the job's cut, the recommendation, and what stands beside it.

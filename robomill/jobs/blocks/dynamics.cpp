@@ -1,11 +1,11 @@
 #include "robomill/jobs/blocks/dynamics.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/jobs/blocks.hpp"
+#include "robomill/jobs/posture.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/robot/dynamics.hpp"
 #include "robomill/robot/pose.hpp"
@@ -13,7 +13,8 @@
 namespace robomill::jobs {
 namespace {
 
-const std::vector<modal::Dof> tip_axes = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
+const std::vector<modal::Dof> feed_axes = {
+    {.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
 
 }  // namespace
 
@@ -25,7 +26,7 @@ bool vibrates(const robot::Arm& arm) {
 modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& joints) {
   const robot::ToolModes found = robot::tool_modes(cell.arm, joints, robot::tip_point(cell));
   modal::ModalModel model;
-  model.excitations = model.responses = tip_axes;
+  model.excitations = model.responses = feed_axes;
   model.modes.reserve(found.modes.size());
   for (const robot::ToolMode& swing : found.modes) {
     modal::Mode mode;
@@ -41,7 +42,7 @@ modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& join
 modal::ModalModel in_axes(const modal::ModalModel& model, const Eigen::Matrix3d& turn) {
   const modal::TipModes tip = modal::turned(modal::tip_modes(model, {}, 0.0), turn);
   modal::ModalModel out;
-  out.excitations = out.responses = tip_axes;
+  out.excitations = out.responses = feed_axes;
   out.modes = model.modes;  // frequencies, damping ratios and their deviations
   for (std::size_t k = 0; k < out.modes.size(); ++k) {
     out.modes[k].right = tip.right.col(static_cast<Eigen::Index>(k));
@@ -50,20 +51,28 @@ modal::ModalModel in_axes(const modal::ModalModel& model, const Eigen::Matrix3d&
   if (model.residuals.empty()) return out;
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
-      out.residuals.push_back({.name = {tip_axes[static_cast<std::size_t>(i)], tip_axes[static_cast<std::size_t>(j)]},
+      out.residuals.push_back({.name = {feed_axes[static_cast<std::size_t>(i)], feed_axes[static_cast<std::size_t>(j)]},
                                .stiffness = tip.compliance(i, j)});
     }
   }
   return out;
 }
 
-DynamicsAt dynamics_of_arm(const CellFile& cell) {
-  if (!vibrates(cell.cell.arm)) {
+DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& notes, Progress& progress) {
+  if (cell.postures.empty() && !vibrates(cell.cell.arm)) {
     throw InvalidInput(cell.path.string(), "does not say what vibrates",
                        "Give modes or FRFs in the job, [[postures]] in the cell, or its links' masses and "
                        "joint_damping_n_m_s_per_rad");
   }
-  return [arm = cell.cell](const Eigen::VectorXd& joints) { return PostureDynamics{.modes = arm_modes(arm, joints)}; };
+  const CellDynamics dynamics = cell_dynamics(cell, progress);
+  notes.insert(notes.end(), dynamics.notes.begin(), dynamics.notes.end());
+  const bool measured = dynamics.model->report().postures > 0;
+  return [model = dynamics.model, measured](const Eigen::VectorXd& joints) {
+    modal::PosturePrediction there = model->at(joints);
+    PostureDynamics out = {.modes = std::move(there.modes), .joint_distance_rad = there.distance_rad};
+    if (measured) out.measured_nearby = there.measured_nearby;
+    return out;
+  };
 }
 
 DynamicsAt constant_dynamics(modal::ModalModel modes) {

@@ -4,14 +4,14 @@
 #include <numbers>
 
 #include "robomill/jobs/blocks/dynamics.hpp"
+#include "robomill/stability/block.hpp"
 #include "robomill/stability/lobes.hpp"
-#include "robomill/stability/sweep.hpp"
 
 namespace robomill::jobs {
 namespace {
 
-/// Limits are searched up to this multiple of the depth, and no higher than the edges reach.
-constexpr double depths_searched = 4.0;
+/// Limits are searched from the depth over this to this multiple of it.
+constexpr double depths_searched = 8.0;
 
 stability::LobesProblem block_problem(const BlockCut& at, const modal::ModalModel& modes) {
   const cutting::FlatEndMill& mill = at.file.cutter.mill;
@@ -27,15 +27,6 @@ stability::LobesProblem block_problem(const BlockCut& at, const modal::ModalMode
   return problem;
 }
 
-stability::LobesOptions block_options(const BlockCut& at, double depth_m) {
-  stability::LobesOptions options;
-  options.axial_depth_m = {0.0, depths_searched * depth_m};
-  options.spindle_speed_rad_per_s = {at.spindle_speed_rad_per_s, 2.0 * at.spindle_speed_rad_per_s};
-  options.grid = {2, 17};
-  options.tolerance = at.tolerance;
-  return options;
-}
-
 }  // namespace
 
 double engaged_depth_m(const cutting::PoseEngagement& cut) {
@@ -44,35 +35,38 @@ double engaged_depth_m(const cutting::PoseEngagement& cut) {
 
 CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
   const double depth_m = engaged_depth_m(at.cut);
-  const stability::LobesProblem problem = block_problem(at, modes);
-  const stability::LobesOptions options = block_options(at, depth_m);
-  const stability::OperatingPoint point = {.spindle_speed_rad_per_s = at.spindle_speed_rad_per_s,
-                                           .axial_depth_m = depth_m};
-  const stability::PointResult here = stability::evaluate_point(problem, options, point);
-  const stability::Limit limit = stability::limit_depths(problem, options, {at.spindle_speed_rad_per_s}).front();
-  const stability::GainMargin gain = stability::gain_margin(problem, point, at.tolerance);
+  stability::BlockOptions options;
+  options.tolerance = at.tolerance;
+  options.axial_depth_m = {depth_m / depths_searched, depth_m * depths_searched};
+  const stability::BlockStability block =
+      stability::block_stability(block_problem(at, modes), at.spindle_speed_rad_per_s, depth_m, options);
   CutStability out;
-  out.spectral_radius = here.spectral_radius;
+  out.spectral_radius = block.at.spectral_radius;
   out.searched_depth_m = options.axial_depth_m[1];
-  out.chatter_frequency_hz = here.chatter_frequency_hz;
-  out.mode = here.mode;
-  if (limit.status == stability::Limit::Status::found) {
-    out.limit_depth_m = limit.axial_depth_m;
-    out.chatter_frequency_hz = limit.chatter_frequency_hz;
-    out.mode = limit.mode;
-    out.regime = "regenerative";
+  out.chatter_frequency_hz = block.at.chatter_frequency_hz;
+  out.mode = block.at.mode;
+  if (block.limit.status == stability::Limit::Status::found) {
+    out.limit_depth_m = block.limit.axial_depth_m;
+    out.limit_5_percent_m = block.limit_5_percent_m;
+    out.limit_50_percent_m = block.limit_50_percent_m;
+    out.limit_95_percent_m = block.limit_95_percent_m;
+    out.chatter_frequency_hz = block.limit.chatter_frequency_hz;
+    out.mode = block.limit.mode;
   }
-  out.gain_margin = gain.status == stability::GainMargin::Status::unconditionally_stable
-                        ? std::numeric_limits<double>::infinity()
-                        : gain.gain;
+  out.regime = to_string(block.regime);
+  out.lower_bound = block.lower_bound;
+  out.gain_margin = block.at.gain_margin;
   return out;
 }
 
 double limit_depth_m(const BlockCut& at, const modal::ModalModel& modes) {
+  const double depth_m = engaged_depth_m(at.cut);
+  stability::BlockOptions options;
+  options.tolerance = at.tolerance;
+  options.axial_depth_m = {depth_m / depths_searched, depth_m * depths_searched};
+  options.regime = options.quantiles = false;
   const stability::Limit limit =
-      stability::limit_depths(block_problem(at, modes), block_options(at, engaged_depth_m(at.cut)),
-                              {at.spindle_speed_rad_per_s})
-          .front();
+      stability::block_stability(block_problem(at, modes), at.spindle_speed_rad_per_s, depth_m, options).limit;
   return limit.status == stability::Limit::Status::found ? limit.axial_depth_m : CutStability::none;
 }
 

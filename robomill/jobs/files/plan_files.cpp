@@ -64,7 +64,7 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
   if (result.forces) io::write_file(folder / "forces.csv", forces_csv(*result.forces));
   if (result.blocks) {
     io::write_file(folder / "blocks.csv", blocks_csv(*result.forces, *result.blocks));
-    io::write_file(folder / "blocks.json", blocks_json(*result.forces, *result.blocks));
+    io::write_file(folder / "blocks.json", report.blocks);
   }
   if (result.path) {
     place(*result.path);
