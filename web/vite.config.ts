@@ -13,14 +13,20 @@ function safeInScriptElement(): Plugin {
   };
 }
 
-export default defineConfig({
+/** Two scripts: the page, and with `--mode path` what draws a path in three dimensions, for reports that have one. */
+const scripts = {
+  page: { entry: 'src/main.tsx', name: 'robomillReport' },
+  path: { entry: 'src/path/main.ts', name: 'robomillPathScript' },
+};
+
+export default defineConfig(({ mode }) => ({
   esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
   build: {
     target: 'es2020',
-    outDir: 'dist',
+    outDir: mode === 'path' ? 'dist-path' : 'dist',
     chunkSizeWarningLimit: 4000,
-    lib: { entry: 'src/main.tsx', formats: ['iife'], name: 'robomillReport', fileName: () => 'page.js' },
+    lib: { ...scripts[mode === 'path' ? 'path' : 'page'], formats: ['iife'], fileName: () => (mode === 'path' ? 'page-path.js' : 'page.js') },
   },
   plugins: [safeInScriptElement()],
   test: { include: ['src/**/*.test.{ts,tsx}'] },
-});
+}));

@@ -27,6 +27,9 @@ extern const char robomill_page_style_end[];
 ROBOMILL_EMBED(robomill_page_script, ROBOMILL_PAGE_SCRIPT);
 extern const char robomill_page_script_begin[];
 extern const char robomill_page_script_end[];
+ROBOMILL_EMBED(robomill_page_path_script, ROBOMILL_PAGE_PATH_SCRIPT);
+extern const char robomill_page_path_script_begin[];
+extern const char robomill_page_path_script_end[];
 #endif
 }
 
@@ -39,6 +42,15 @@ std::string_view page_style() {
 std::string_view page_script() {
 #ifdef ROBOMILL_PAGE_SCRIPT
   return {robomill_page_script_begin, static_cast<std::size_t>(robomill_page_script_end - robomill_page_script_begin)};
+#else
+  return {};
+#endif
+}
+
+std::string_view page_path_script() {
+#ifdef ROBOMILL_PAGE_SCRIPT
+  return {robomill_page_path_script_begin,
+          static_cast<std::size_t>(robomill_page_path_script_end - robomill_page_path_script_begin)};
 #else
   return {};
 #endif

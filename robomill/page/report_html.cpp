@@ -70,6 +70,13 @@ std::string in_text(const std::string& title, const std::string& summary, const 
                      escape(summary));
 }
 
+void append_script(std::string& page, std::string_view script) {
+  if (script.empty()) return;
+  page += "<script>\n";
+  page += script;
+  page += "\n</script>\n";
+}
+
 }  // namespace
 
 std::string report_html(const Report& report) {
@@ -91,11 +98,8 @@ std::string report_html(const Report& report) {
             in_text(title, summary, "Tables and plots need JavaScript. This is the summary.") + "</noscript>\n";
   }
   page += "<script type=\"application/json\" id=\"report-data\">" + escape_json_for_script(json.dump()) + "</script>\n";
-  if (!script.empty()) {
-    page += "<script>\n";
-    page += script;
-    page += "\n</script>\n";
-  }
+  if (!json["blocks"].is_null()) append_script(page, page_path_script());
+  append_script(page, script);
   return page + "</body></html>\n";
 }
 

@@ -130,7 +130,7 @@ Json scan(const char* parameter, double centre, double reach, double slope) {
     value.push_back(centre + reach * share);
     limit.push_back(i == half && slope > 0.3 ? Json() : Json(1.2 + slope * share - 0.2 * share * share));
   }
-  return {{"parameter", parameter}, {"value", value}, {"limit_depth_mm", limit}, {"at_block", 337}, {"at_line", 350}};
+  return {{"parameter", parameter}, {"value", value}, {"limit_depth_mm", limit}, {"at_block", 360}, {"at_line", 373}};
 }
 
 }  // namespace

@@ -250,6 +250,54 @@ export interface Forces extends Remarks, Partial<Revolution>, Partial<Program> {
   force_on: 'tool' | 'workpiece';
 }
 
+export type Regime = 'regenerative' | 'mode-coupling' | 'low-frequency' | 'none';
+
+/** Columns of blocks.json, a value a block, null in air; one that says nothing is left out. */
+export interface BlockColumns {
+  block: number[];
+  line: number[];
+  x_mm: Num[]; // where it ends
+  y_mm: Num[];
+  z_mm: Num[];
+  axial_depth_mm?: Num[];
+  radial_depth_mm?: Num[];
+  spindle_speed_rpm?: Num[];
+  feed_mm_per_min?: Num[];
+  spectral_radius?: Num[];
+  limit_depth_mm?: Num[]; // null: none up to the depth that was searched
+  limit_5_percent_mm?: Num[];
+  limit_95_percent_mm?: Num[];
+  stability_margin?: Num[];
+  gain_margin?: Num[];
+  chatter_frequency_hz?: Num[];
+  mode?: (string | null)[];
+  regime?: (Regime | null)[];
+  lower_bound?: (boolean | null)[];
+  peak_f_n?: Num[];
+  torque_n_m?: Num[];
+  power_w?: Num[];
+  deflection_um?: Num[];
+  surface_error_um?: Num[];
+  condition_number?: Num[];
+  measured_nearby?: (boolean | null)[];
+  note?: (string | null)[];
+}
+
+/** The limit over one coordinate of the tool's pose, around one block. */
+export interface LimitOver {
+  parameter: 'x_mm' | 'y_mm' | 'z_mm' | 'gamma_deg';
+  value: Num[];
+  limit_depth_mm: Num[];
+  at_block: number;
+}
+
+/** blocks.json: stability of every block of a program */
+export interface BlocksDocument {
+  blocks: BlockColumns;
+  summary: { blocks: number; cutting: number; unstable: number; evaluations: number; seconds: Num; notes: string[] };
+  limit_over: LimitOver[];
+}
+
 /** The limit with some of the modes alone. */
 export interface PartLimits {
   label: string;
@@ -439,6 +487,7 @@ export interface Report {
   workpiece_modes: ModesDocument | null;
   lobes: LobesDocument | null;
   forces: Forces | null;
+  blocks: BlocksDocument | null;
   smooth: SmoothDocument | null;
   motion: MotionDocument | null; // of the same program
   monitor: Monitor | null;

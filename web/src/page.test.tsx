@@ -29,6 +29,7 @@ function empty(): Report {
     workpiece_modes: null,
     lobes: null,
     forces: null,
+    blocks: null,
     smooth: null,
     motion: null,
     monitor: null,

@@ -6,6 +6,7 @@ import { AssemblySection } from './sections/assembly';
 import { ForcesSection } from './sections/forces';
 import { FeedSection, LobesSection, PairsSection } from './sections/lobes';
 import { CalibrationSection, MonitorSection } from './sections/monitor';
+import { ProgramSection } from './sections/program';
 import { RecommendationSection } from './sections/recommendation';
 import { RecordingsSection } from './sections/recordings';
 import { SmoothSection } from './sections/smooth';
@@ -19,7 +20,7 @@ interface Entry {
 }
 
 function entries(report: Report): Entry[] {
-  const { plan, monitor, calibration, forces, smooth, assembly, recordings, files } = report;
+  const { plan, monitor, calibration, forces, blocks, smooth, assembly, recordings, files } = report;
   const { cuts = [], pairs = [], feed_directions: feed = [], notes = [] } = plan ?? {};
   const lobes = report.lobes && lobesOf(report.lobes);
   const modes = modesOf(report);
@@ -30,6 +31,7 @@ function entries(report: Report): Entry[] {
     { id: 'calibration', name: 'Calibration', content: calibration && <CalibrationSection calibration={calibration} /> },
     { id: 'lobes', name: 'Lobes', content: (lobes || cuts.length > 0) && <LobesSection lobes={lobes} plan={plan} /> },
     { id: 'feed', name: 'Feed direction', content: plan && feed.length > 0 && <FeedSection plan={plan} searched={lobes?.searched_depth_mm ?? null} /> },
+    { id: 'program', name: 'Program', content: blocks && <ProgramSection document={blocks} /> },
     { id: 'forces', name: 'Forces', content: forces && <ForcesSection forces={forces} /> },
     { id: 'smooth', name: 'Smoothed program', content: smooth && <SmoothSection smooth={smooth} motion={report.motion} /> },
     { id: 'assembly', name: 'Tool and holder', content: assembly && <AssemblySection document={assembly} /> },

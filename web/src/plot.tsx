@@ -12,6 +12,13 @@ interface Place {
   root: HTMLElement;
   draw: Draw;
   width: number; // at which it was drawn last
+  picked: ((x: number) => void) | undefined; // where a point was clicked
+}
+
+/** What Plotly makes of the element. */
+interface Plotted {
+  on?: (event: 'plotly_click', listener: (event: { points: { x: number }[] }) => void) => void;
+  removeAllListeners?: (event: 'plotly_click') => void;
 }
 
 const config = {
@@ -36,10 +43,19 @@ async function draw(place: Place, width?: number): Promise<void> {
     const bar = room > 300 && window.innerWidth > narrow;
     if (!bar) Object.assign(figure.layout['margin'] as object, { r: 12 });
     await Plotly.react(root, figure.data, figure.layout, { ...config, displayModeBar: bar ? 'hover' : false });
+    if (place.picked) listen(root as Plotted, place);
   } catch (error) {
     root.textContent = 'This plot could not be drawn.';
     console.error(error);
   }
+}
+
+function listen(root: Plotted, place: Place): void {
+  root.removeAllListeners?.('plotly_click');
+  root.on?.('plotly_click', ({ points }) => {
+    const x = points[0]?.x;
+    if (x !== undefined) place.picked?.(x);
+  });
 }
 
 /** Draws every plot that can be seen, anew. */
@@ -82,12 +98,28 @@ export function drawOnEvents(): void {
   });
 }
 
+/** Calls now and whenever the page gets other colours; what it gives ends that. Paper is light. */
+export function onColours(changed: (isDark: boolean) => void): () => void {
+  const scheme = darkScheme();
+  const asShown = () => changed(scheme.matches);
+  const asPrinted = () => changed(false);
+  asShown();
+  scheme.addEventListener('change', asShown);
+  window.addEventListener('beforeprint', asPrinted);
+  window.addEventListener('afterprint', asShown);
+  return () => {
+    scheme.removeEventListener('change', asShown);
+    window.removeEventListener('beforeprint', asPrinted);
+    window.removeEventListener('afterprint', asShown);
+  };
+}
+
 /** Draws when its drawing changes; the first time drawAll does. */
-function Canvas({ make, name, shows }: { make: Draw; name: string; shows?: string }) {
+function Canvas({ make, name, shows, picked }: { make: Draw; name: string; shows?: string; picked?: ((x: number) => void) | undefined }) {
   const root = useRef<HTMLDivElement>(null);
   const place = useRef<Place | null>(null);
   useLayoutEffect(() => {
-    const own: Place = { root: root.current!, draw: make, width: 0 };
+    const own: Place = { root: root.current!, draw: make, width: 0, picked };
     place.current = own;
     places.add(own);
     return () => void places.delete(own);
@@ -105,10 +137,11 @@ interface PlotProps {
   shows: string; // to someone who cannot see it
   caption: string;
   draw: Draw | Draw[]; // several: side by side
+  picked?: (x: number) => void; // where a point of a single plot was clicked
   children?: ComponentChildren; // what chooses above the plot
 }
 
-export function Plot({ which, shows, caption, draw: make, children }: PlotProps) {
+export function Plot({ which, shows, caption, draw: make, picked, children }: PlotProps) {
   return (
     <figure data-plot={which}>
       {children && <div class="controls">{children}</div>}
@@ -119,7 +152,7 @@ export function Plot({ which, shows, caption, draw: make, children }: PlotProps)
           ))}
         </div>
       ) : (
-        <Canvas make={make} name="canvas" shows={shows} />
+        <Canvas make={make} name="canvas" shows={shows} picked={picked} />
       )}
       <figcaption>{caption}</figcaption>
     </figure>

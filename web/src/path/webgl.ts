@@ -1,0 +1,64 @@
+// Draws the path with WebGL: all cutting blocks in one geometry with a colour a block.
+import { BufferAttribute, BufferGeometry, Color, ColorManagement, LinearSRGBColorSpace, LineBasicMaterial, LineSegments, Scene, WebGLRenderer, type OrthographicCamera } from 'three';
+import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
+import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
+import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
+import { inAir, type PathColours, type PathData } from './contract';
+import { cutting, drawn, isUnstable } from './project';
+import type { Painter } from './painter';
+
+/** Both ends of each block. */
+function segments({ ends }: PathData, blocks: number[]): Float32Array {
+  const out = new Float32Array(6 * blocks.length);
+  blocks.forEach((i, k) => out.set(ends.subarray(3 * i - 3, 3 * i + 3), 6 * k));
+  return out;
+}
+
+function wide(positions: Float32Array, material: LineMaterial, order: number): LineSegments2 {
+  const geometry = new LineSegmentsGeometry();
+  geometry.setPositions(positions);
+  const lines = new LineSegments2(geometry, material);
+  lines.renderOrder = order;
+  lines.frustumCulled = false;
+  return lines;
+}
+
+/** null where there is no WebGL. */
+export function webglPainter(data: PathData): Painter | null {
+  const canvas = document.createElement('canvas');
+  const context = canvas.getContext('webgl2', { antialias: true, alpha: true, preserveDrawingBuffer: true });
+  if (context === null) return null;
+  ColorManagement.enabled = false; // the colours are those of the page
+  const renderer = new WebGLRenderer({ canvas, context, antialias: true, alpha: true, preserveDrawingBuffer: true });
+  renderer.outputColorSpace = LinearSRGBColorSpace;
+  renderer.setClearColor(0, 0);
+
+  const cuts = drawn(data, cutting);
+  const airGeometry = new BufferGeometry();
+  airGeometry.setAttribute('position', new BufferAttribute(segments(data, drawn(data, (kind) => kind === inAir)), 3));
+  const air = new LineBasicMaterial({ transparent: true, opacity: 0.6 });
+  const halo = new LineMaterial({ linewidth: 8, depthWrite: false });
+  const cut = new LineMaterial({ linewidth: 3, vertexColors: true });
+  const cutLines = wide(segments(data, cuts), cut, 1);
+  const scene = new Scene();
+  scene.add(new LineSegments(airGeometry, air), wide(segments(data, drawn(data, isUnstable)), halo, 0), cutLines);
+  return {
+    name: 'webgl',
+    canvas,
+    resize: (width, height, ratio) => {
+      renderer.setPixelRatio(ratio);
+      renderer.setSize(width, height, false);
+    },
+    paint: (colours: PathColours) => {
+      const both = new Float32Array(6 * cuts.length);
+      cuts.forEach((i, k) => {
+        for (let c = 0; c < 3; ++c) both[6 * k + c] = both[6 * k + 3 + c] = colours.blocks[3 * i + c]! / 255;
+      });
+      cutLines.geometry.setColors(both);
+      air.color = new Color(colours.air);
+      halo.color = new Color(colours.unstable);
+    },
+    draw: (camera: OrthographicCamera) => renderer.render(scene, camera),
+    dispose: () => renderer.dispose(),
+  };
+}

@@ -1,0 +1,149 @@
+// The place of the path in three dimensions: what chooses above it, the block under the pointer beside it, its colours below.
+import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks';
+import type { BlockColumns, Fact } from '../documents';
+import { dark, light, thinSpace, type Theme } from '../figures/theme';
+import { Facts } from '../parts';
+import type { PathView, Side } from '../path/contract';
+import { coloursOf, gradient, pathData, rangeOf, regimes, worstBlocks, type Quantity } from '../path_views';
+import { Choice, onColours } from '../plot';
+import { significant } from '../text';
+
+interface PathProps {
+  columns: BlockColumns;
+  quantities: Quantity[];
+  selected: number | null;
+  select: (index: number | null) => void;
+  facts: (index: number) => Fact[];
+}
+
+function Regimes({ theme }: { theme: Theme }) {
+  return (
+    <ul class="key">
+      {regimes.map(({ name, colour }) => (
+        <li>
+          <span style={{ background: colour(theme) }} />
+          {name}
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+function ColourBar({ columns, quantity, theme }: { columns: BlockColumns; quantity: Quantity; theme: Theme }) {
+  const { key, name, unit, worse } = quantity;
+  const range = useMemo(() => rangeOf(key === 'regime' ? [] : (columns[key] ?? [])), [columns, key]);
+  if (key === 'regime') return <Regimes theme={theme} />;
+  const { low, high, below, above } = range;
+  return (
+    <div class="colour-bar">
+      <div>{unit === '' ? name : `${name} (${unit})`}</div>
+      <div class="scale" style={{ background: gradient(theme, worse) }} />
+      <div class="ends">
+        <span>{`${below ? `≤${thinSpace}` : ''}${significant(low)}`}</span>
+        <span>{significant((low + high) / 2)}</span>
+        <span>{`${above ? `≥${thinSpace}` : ''}${significant(high)}`}</span>
+      </div>
+    </div>
+  );
+}
+
+const sides: { side: Side; name: string }[] = [
+  { side: 'above', name: 'From above' },
+  { side: 'front', name: 'From the front' },
+  { side: 'right', name: 'From the right' },
+  { side: 'corner', name: 'From a corner' },
+];
+
+function Buttons({ view, columns, selected, select }: { view: () => PathView | null } & Pick<PathProps, 'columns' | 'selected' | 'select'>) {
+  const count = columns.block.length;
+  const step = (by: number) => select(selected === null ? 0 : Math.min(count - 1, Math.max(0, selected + by)));
+  return (
+    <div class="controls buttons">
+      <button type="button" onClick={() => view()?.fit()}>
+        Fit
+      </button>
+      {sides.map(({ side, name }) => (
+        <button type="button" onClick={() => view()?.fit(side)}>
+          {name}
+        </button>
+      ))}
+      <span class="steps">
+        <button type="button" aria-label="Block before" onClick={() => step(-1)}>
+          ◂
+        </button>
+        <label>
+          Block{' '}
+          <input
+            type="number"
+            min={columns.block[0]}
+            max={columns.block[count - 1]}
+            value={selected === null ? '' : columns.block[selected]}
+            onChange={({ currentTarget }) => {
+              const index = columns.block.indexOf(currentTarget.valueAsNumber);
+              if (index >= 0) select(index);
+            }}
+          />
+        </label>
+        <button type="button" aria-label="Block after" onClick={() => step(1)}>
+          ▸
+        </button>
+        <button type="button" onClick={() => select(worstBlocks(columns, 1)[0] ?? null)}>
+          Worst block
+        </button>
+      </span>
+    </div>
+  );
+}
+
+/** The view in its element, opened once for its columns. */
+function useView(columns: BlockColumns, quantity: Quantity | undefined, selected: number | null, select: PathProps['select']) {
+  const root = useRef<HTMLDivElement>(null);
+  const view = useRef<PathView | null>(null);
+  const [theme, setTheme] = useState(light);
+  const [hovered, setHovered] = useState<number | null>(null);
+  const [painter, setPainter] = useState<'webgl' | 'canvas' | 'none' | 'unknown'>('unknown');
+  useLayoutEffect(() => {
+    if (!window.robomillPath) return setPainter('none');
+    view.current = window.robomillPath(root.current!, pathData(columns), { picked: select, hovered: setHovered, painter: setPainter });
+    return () => view.current?.dispose();
+  }, [columns]);
+  useLayoutEffect(() => {
+    if (!quantity) return undefined;
+    return onColours((isDark) => {
+      const colours = isDark ? dark : light;
+      setTheme(colours);
+      view.current?.paint(coloursOf(columns, quantity, colours));
+    });
+  }, [columns, quantity]);
+  useLayoutEffect(() => view.current?.mark(selected), [columns, selected]);
+  return { root, view, theme, hovered, painter };
+}
+
+export function PathFigure({ columns, quantities, selected, select, facts }: PathProps) {
+  const [chosen, choose] = useState(0);
+  const quantity = quantities[chosen];
+  const { root, view, theme, hovered, painter } = useView(columns, quantity, selected, select);
+  if (!quantity) return <p class="notice">No block of the program cuts.</p>;
+  const shown = hovered ?? selected;
+  const press = (event: KeyboardEvent) => {
+    if (!event.ctrlKey && !event.metaKey && !event.altKey && view.current?.key(event.key)) event.preventDefault();
+  };
+  return (
+    <figure class="path" data-painter={painter}>
+      <div class="controls">
+        <Choice legend="Colour" names={quantities.map(({ name }) => name)} chosen={chosen} choose={choose} />
+      </div>
+      <div class="path-and-block">
+        <div ref={root} class="path-view" tabIndex={0} role="group" aria-label="The path in three dimensions; arrow keys turn it, plus and minus zoom, 0 fits it" onKeyDown={press} />
+        <div class="path-block" aria-live="polite">
+          {shown === null ? <p class="lead">Point at a block to see what is known of it; click to select it.</p> : <Facts facts={facts(shown)} />}
+        </div>
+      </div>
+      <ColourBar columns={columns} quantity={quantity} theme={theme} />
+      <Buttons view={() => view.current} columns={columns} selected={selected} select={select} />
+      {painter === 'canvas' && <p class="notice">This browser has no WebGL: the path is drawn in the plane, nearer blocks not always over those behind.</p>}
+      {painter === 'none' && <p class="notice">This page has no script for the path.</p>}
+      <figcaption>Lined with red: unstable. Thin and grey: not cutting; grey: no value. Drag turns, shift and drag moves; after a click the wheel zooms.</figcaption>
+    </figure>
+  );
+}

@@ -1,0 +1,95 @@
+// The program: its path in three dimensions, limits over its blocks, the worst of them.
+import { useCallback, useMemo, useState } from 'preact/hooks';
+import type { BlockColumns, BlocksDocument, LimitOver } from '../documents';
+import { deepest, limitFigure, overFigure } from '../figures/program_limit';
+import type { Theme } from '../figures/theme';
+import { Bullets, Facts, Section, Table, type Column } from '../parts';
+import { blockFacts, isUnstable, limitOf, numberAt, programFacts, quantitiesOf, regimeName, worstBlocks } from '../path_views';
+import { Plot, type Draw } from '../plot';
+import { dash, fixed, significant } from '../text';
+import { PathFigure } from './path';
+
+type Select = (index: number | null) => void;
+
+/** A short name stays on its line. */
+function together(name: string): string {
+  return name.length > 16 ? name : name.replace(/ /g, '\u00a0');
+}
+
+function WorstTable({ columns, select }: { columns: BlockColumns; select: Select }) {
+  const rows = useMemo(() => worstBlocks(columns, 10), [columns]);
+  if (rows.length === 0) return null;
+  const number = (heading: string, column: (number | null)[] | undefined): Column<number> => ({
+    heading,
+    number: true,
+    optional: true,
+    cell: (i) => significant(numberAt(column, i)),
+  });
+  const shown: Column<number>[] = [
+    {
+      heading: 'Block',
+      number: true,
+      cell: (i) => (
+        <button type="button" class="link" onClick={() => select(i)}>
+          {fixed(columns.block[i]!, 0)}
+        </button>
+      ),
+    },
+    { heading: 'Line', number: true, cell: (i) => fixed(columns.line[i] ?? null, 0) },
+    number('Margin', columns.stability_margin),
+    number('|μ|', columns.spectral_radius),
+    number('Depth (mm)', columns.axial_depth_mm),
+    { heading: 'Limit, 5 – 95 % (mm)', number: true, cell: (i) => limitOf(columns, i) },
+    number('Chatter (Hz)', columns.chatter_frequency_hz),
+    { heading: 'Mode', optional: true, cell: (i) => together(columns.mode?.[i] ?? dash) },
+    { heading: 'Regime', optional: true, cell: (i) => together(regimeName(columns, i)) },
+    number('Peak force (N)', columns.peak_f_n),
+    number('Deflection (µm)', columns.deflection_um),
+  ];
+  return <Table caption="The blocks with the least margin" columns={shown} rows={rows} rowClass={(i) => (isUnstable(columns, i) ? 'chatter' : '')} />;
+}
+
+const names: Record<LimitOver['parameter'], string> = { x_mm: 'x', y_mm: 'y', z_mm: 'z', gamma_deg: 'γ' };
+
+function Scans({ scans, columns }: { scans: LimitOver[]; columns: BlockColumns }) {
+  const depth = numberAt(columns.axial_depth_mm, columns.block.indexOf(scans[0]!.at_block));
+  const draw = useMemo(() => scans.map((scan): Draw => (theme) => overFigure(scan, deepest(scans, depth), depth, theme)), [scans, depth]);
+  const over = scans.map(({ parameter }) => names[parameter]).join(', ');
+  return (
+    <>
+      <h3>What the posture does to the limit</h3>
+      <Plot
+        which="limit-over"
+        shows={`Limit depth over ${over}`}
+        caption={`Limit depth with the cut of block ${fixed(scans[0]!.at_block, 0)} at other places, one coordinate at a time; dashed: its programmed depth. Gaps: no limit found, or out of the robot's reach.`}
+        draw={draw}
+      />
+    </>
+  );
+}
+
+export function ProgramSection({ document }: { document: BlocksDocument }) {
+  const { blocks: columns, summary, limit_over: scans } = document;
+  const [selected, select] = useState<number | null>(null);
+  const quantities = useMemo(() => quantitiesOf(columns), [columns]);
+  const draw = useMemo((): Draw => (theme: Theme) => limitFigure(columns, selected, theme), [columns, selected]);
+  const picked = useCallback((block: number) => void (columns.block.includes(block) && select(columns.block.indexOf(block))), [columns]);
+  return (
+    <Section id="program" heading="Program" lead="How far each block of the program is from chatter.">
+      <Facts facts={programFacts(document)} />
+      <PathFigure columns={columns} quantities={quantities} selected={selected} select={select} facts={(i) => blockFacts(columns, i)} />
+      {summary.cutting > 0 && (
+        <Plot
+          which="program-limit"
+          shows="Limit depth and programmed depth over the blocks of the program"
+          caption="Click on a block to select it. Gaps in the depth: no cut; in the limit: none found up to the depth that was searched."
+          draw={draw}
+          picked={picked}
+        />
+      )}
+      <WorstTable columns={columns} select={select} />
+      {scans.length > 0 && <Scans scans={scans} columns={columns} />}
+      <Bullets texts={summary.notes} />
+    </Section>
+  );
+}
