@@ -29,7 +29,8 @@ class BlockSearch {
         options_(options),
         point_(point),
         model_(collocation_model(problem)),
-        evaluator_(*model_, options.tolerance, {.tolerance = 1e-3 * options.tolerance, .between = 8}) {
+        evaluator_(*model_, options.tolerance,
+                   {.tolerance = 1e-3 * options.tolerance, .between = 8, .most_cold_modes = 40}) {
     crossing_.tolerance = options.tolerance;
     crossing_.level = model_->first_level(point, options.tolerance);
     crossing_.coarse_level = std::max(1, crossing_.level - 1);

@@ -12,9 +12,7 @@ namespace robomill::stability::detail {
 namespace {
 
 constexpr std::size_t first_extra = 9;  // columns beyond 2n at the first look
-// More modes than this are warmed up: whatever fades quicker than the dominant motion is gone before the first vector.
-constexpr std::size_t many = 2 * 10;
-constexpr std::size_t first_warm = 16;  // columns at the first look after that
+constexpr std::size_t first_warm = 16;  // columns at the first look after a warm-up
 
 std::complex<double> upper_half(std::complex<double> value) {
   return {value.real(), std::abs(value.imag())};
@@ -87,7 +85,7 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out) {
   start(size_);
   std::array<bool, lane_count> done = {};
   std::size_t left = out.size();
-  const bool warm = map.modal_size() > many && !options_.full_matrix_only;
+  const bool warm = map.modal_size() > 2 * options_.most_cold_modes && !options_.full_matrix_only;
   if (warm) warm_up(map);
   const std::size_t first = warm ? first_warm : map.modal_size() + first_extra;
   std::size_t look = options_.full_matrix_only ? most_ + 1 : std::min(most_, first);

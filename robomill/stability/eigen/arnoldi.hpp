@@ -22,8 +22,11 @@ struct Dominant {
 double spectral_radius(const Dominant& dominant);
 
 struct ArnoldiOptions {
-  double tolerance = 1e-12;           ///< converged where the residual is at most this times (|μ| + 0.1 ‖H‖)
-  std::size_t between = 4;            ///< vectors from look to look
+  double tolerance = 1e-12;  ///< converged where the residual is at most this times (|μ| + 0.1 ‖H‖)
+  std::size_t between = 4;   ///< vectors from look to look
+  /// More modes than this are warmed up: whatever fades quicker than the dominant motion is gone before the first
+  /// vector.
+  std::size_t most_cold_modes = 10;
   std::size_t extra = 72;             ///< vectors beyond 2n before the matrix is formed
   std::size_t largest_matrix = 1200;  ///< beyond this the matrix is not formed
   bool full_matrix_only = false;      ///< for tests
