@@ -1,10 +1,11 @@
 // node browser_check.mjs REPORT.html [--shots FOLDER] [--chromium PATH] [--quick]
 // Opens a report in headless Chromium and looks: every plot is there, no script error, nothing fetched, nothing too wide. Exit 0 or 1.
-// --quick looks at one width only.
+// --quick looks at one width only, and at the path with WebGL only.
 import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { launch, openPage } from './chromium.mjs';
+import { tryPath } from './path_check.mjs';
 
 function argument(name, fallback) {
   const at = process.argv.indexOf(name);
@@ -68,6 +69,7 @@ async function look(browser, url, view, problems, shots) {
   const fetched = page.requests.filter((address) => address !== url && !/^(data|blob):/.test(address));
   for (const address of fetched) problems.push(`${where}: fetched ${address}`);
   if (shots) writeFileSync(join(shots, `${view.name}-open.png`), await page.screenshot(await whole(page, view)));
+  await tryPath(page, where, problems, view);
   if (hasPlots && view.controls) await tryControls(page, where, problems);
   if (hasPlots && view.controls) await tryResize(page, where, problems, view);
   if (hasPlots && view.controls) await tryPrint(page, where, problems, shots && join(shots, `${view.name}-print.png`));
@@ -127,6 +129,20 @@ async function tryPrint(page, where, problems, shot) {
   await page.evaluate(`window.dispatchEvent(new Event('afterprint'))`);
 }
 
+/** Once more in a browser without WebGL, if the report has a path. */
+async function lookWithoutWebgl(chromium, url, name, problems, shots) {
+  const browser = await launch(chromium, ['--disable-3d-apis']);
+  try {
+    const view = { name: `${name}-plane`, width: 1280, scheme: 'light', controls: true, painter: 'canvas' };
+    const page = await openPage(browser, url, view);
+    await page.until(`document.documentElement.dataset.plots === 'ready'`, 'plots ready');
+    await tryPath(page, `${view.name} (${view.width} px, ${view.scheme})`, problems, view);
+    if (shots) writeFileSync(join(shots, `${view.name}.png`), await page.screenshot(await whole(page, view)));
+  } finally {
+    await browser.close();
+  }
+}
+
 async function main() {
   const file = process.argv[2];
   if (!file || file.startsWith('--') || !existsSync(file)) {
@@ -143,10 +159,13 @@ async function main() {
     { name: `${name}-narrow`, width: 360, scheme: 'light' },
   ];
   const problems = [];
-  const browser = await launch(argument('--chromium', process.env['CHROMIUM'] ?? '/usr/bin/chromium'));
+  const chromium = argument('--chromium', process.env['CHROMIUM'] ?? '/usr/bin/chromium');
+  const quick = process.argv.includes('--quick');
+  const browser = await launch(chromium);
   try {
     let seen;
-    for (const view of process.argv.includes('--quick') ? views.slice(0, 1) : views) seen = await look(browser, url, view, problems, shots);
+    for (const view of quick ? views.slice(0, 1) : views) seen = await look(browser, url, view, problems, shots);
+    if (!quick) await lookWithoutWebgl(chromium, url, name, problems, shots);
     if (problems.length === 0) {
       console.log(`${file}: ${seen.plots.map((plot) => `${plot.name} (${plot.panels})`).join(', ')}; ${seen.drawing.labels} labels in the drawing; ${seen.tables} tables; no error, nothing fetched`);
     }

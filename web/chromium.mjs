@@ -18,10 +18,10 @@ const flags = [
   '--remote-debugging-pipe',
 ];
 
-/** Starts a browser with a fresh profile. `send(method, params, sessionId)` resolves with the answer; `on(listener)` receives every event. */
-export async function launch(executable) {
+/** Starts a browser with a fresh profile and more flags. `send(method, params, sessionId)` resolves with the answer; `on(listener)` receives every event. */
+export async function launch(executable, more = []) {
   const profile = mkdtempSync(join(tmpdir(), 'robomill-browser-'));
-  const child = spawn(executable, [...flags, `--user-data-dir=${profile}`, 'about:blank'], {
+  const child = spawn(executable, [...flags, ...more, `--user-data-dir=${profile}`, 'about:blank'], {
     stdio: ['ignore', 'ignore', 'pipe', 'pipe', 'pipe'],
   });
   const [, , errors, input, output] = child.stdio;

@@ -1,0 +1,61 @@
+// Looks at the path in three dimensions of an open report: it is drawn, and a click in it, in its plot or on a button selects a block.
+
+/** Runs in the page: how many pixels are coloured, and where in the window one of them is. */
+function coloured() {
+  const drawn = document.querySelector('.path-view canvas');
+  const copy = document.createElement('canvas');
+  [copy.width, copy.height] = [drawn.width, drawn.height];
+  const context = copy.getContext('2d');
+  context.drawImage(drawn, 0, 0);
+  const { data } = context.getImageData(0, 0, copy.width, copy.height);
+  const found = [];
+  for (let i = 0; i < data.length; i += 4) {
+    const [r, g, b, a] = data.subarray(i, i + 4);
+    if (a > 250 && Math.max(r, g, b) - Math.min(r, g, b) > 60) found.push(i / 4);
+  }
+  const box = drawn.getBoundingClientRect();
+  const middle = found[Math.floor(found.length / 2)] ?? 0;
+  const ratio = copy.width / box.width;
+  return { count: found.length, x: box.x + ((middle % copy.width) + 0.5) / ratio, y: box.y + (Math.floor(middle / copy.width) + 0.5) / ratio };
+}
+
+const settle = `new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`;
+const selected = `document.querySelector('.path input[type=number]').value`;
+
+async function click(page, { x, y }) {
+  await page.send('Input.dispatchMouseEvent', { type: 'mouseMoved', x, y });
+  await page.evaluate(settle);
+  for (const type of ['mousePressed', 'mouseReleased']) await page.send('Input.dispatchMouseEvent', { type, x, y, button: 'left', clickCount: 1 });
+  await page.evaluate(settle);
+}
+
+async function intoView(page, selector) {
+  await page.evaluate(`document.documentElement.style.scrollBehavior = 'auto'; document.querySelector('${selector}').scrollIntoView({ block: 'center' })`);
+  await page.evaluate(settle);
+}
+
+/** Nothing where the report has no path. */
+export async function tryPath(page, where, problems, { controls, painter = 'webgl' }) {
+  if (!(await page.evaluate(`document.querySelector('.path') !== null`))) return;
+  const used = await page.evaluate(`document.querySelector('.path').dataset.painter`);
+  if (used !== painter) problems.push(`${where}: the path is drawn by ${used}, not by ${painter}`);
+  await intoView(page, '.path-view');
+  const seen = await page.evaluate(`(${coloured})()`);
+  if (seen.count < 300) problems.push(`${where}: the path has ${seen.count} coloured pixels`);
+  if (!controls) return;
+  await click(page, seen);
+  const byClick = await page.evaluate(selected);
+  if (byClick === '') problems.push(`${where}: a click on the path selects no block`);
+  if (!(await page.evaluate(`document.querySelector('[data-plot="program-limit"] .shapelayer path') !== null`))) {
+    problems.push(`${where}: the block that was clicked is not marked in the plot`);
+  }
+  await page.evaluate(`document.querySelector('.path-view').focus()`);
+  await page.send('Input.dispatchKeyEvent', { type: 'keyDown', key: 'ArrowLeft', code: 'ArrowLeft', windowsVirtualKeyCode: 37 });
+  await page.evaluate(settle);
+  const turned = await page.evaluate(`(${coloured})()`);
+  if (turned.x === seen.x && turned.y === seen.y && turned.count === seen.count) problems.push(`${where}: the arrow key does not turn the path`);
+  await intoView(page, '[data-plot="program-limit"]');
+  const box = await page.evaluate(`(() => { const { x, y, width, height } = document.querySelector('[data-plot="program-limit"] .nsewdrag').getBoundingClientRect(); return { x: x + 0.31 * width, y: y + height / 2 }; })()`);
+  await click(page, box);
+  await page.until(`${selected} !== '' && ${selected} !== ${JSON.stringify(byClick)}`, `${where}: a click in the plot selects another block`, 10);
+}
