@@ -38,7 +38,9 @@ class BlockSearch {
 
   BlockStability run() {
     BlockStability out;
-    look_at_gains(out);
+    if (options_.margin) look_at_gains(out);
+    out.at = point_result(evaluator_, point_);
+    if (options_.margin) out.at.gain_margin = gain_of(out.gain);
     look_at_depths(out);
     out.evaluations = evaluator_.evaluations();
     out.unsettled = evaluator_.unsettled();
@@ -46,7 +48,7 @@ class BlockSearch {
   }
 
  private:
-  /// The point itself and its margin: one engagement.
+  /// The margin: one engagement.
   void look_at_gains(BlockStability& out) {
     const LookAlong look = [&](std::span<const double> gains, const Ask& ask, std::span<Outcome> outcomes) {
       std::array<OperatingPoint, lane_count> points;
@@ -70,8 +72,6 @@ class BlockSearch {
       out.gain.kind = crossing.outcome.kind;
       out.gain.mode = crossing.outcome.mode;
     }
-    out.at = point_result(evaluator_, point_);
-    out.at.gain_margin = gain_of(out.gain);
   }
 
   void look_at_depths(BlockStability& out) {

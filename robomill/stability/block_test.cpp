@@ -33,6 +33,11 @@ TEST(BlockStability, IsTheLimitMarginAndRadiusOfTheReferenceCuts) {
     EXPECT_EQ(block.at.gain_margin, block.gain.gain);
     EXPECT_EQ(block.at.stable, at.stable);
     EXPECT_EQ(block.regime, Regime::regenerative);
+    const BlockStability alone =
+        block_stability(known.problem, point.spindle_speed_rad_per_s, point.axial_depth_m, {.margin = false});
+    EXPECT_NEAR(alone.limit.axial_depth_m, block.limit.axial_depth_m, 2e-4 * block.limit.axial_depth_m);
+    EXPECT_LT(alone.evaluations, block.evaluations);
+    EXPECT_TRUE(std::isnan(alone.at.gain_margin));
     // Nothing is known of deviations.
     EXPECT_EQ(block.limit_5_percent_m, block.limit.axial_depth_m);
     EXPECT_EQ(block.limit_95_percent_m, block.limit.axial_depth_m);
