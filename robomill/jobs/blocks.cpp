@@ -92,6 +92,7 @@ std::string note_of(const BlockResult& force, const BlockRow& row) {
   if (force.settled == BlockResult::Settled::lost) return "engagement lost";
   if (!row.cuts) return {};
   if (force.settled == BlockResult::Settled::unsettled) return "deflection does not settle";
+  if (row.cut.below_range) return "unstable at the least depth that was looked at: the limit is no higher";
   if (row.cut.lower_bound) return "limit is a lower bound: process damping is not known";
   if (!std::isfinite(row.cut.limit_depth_m)) {
     return fmt::format("no limit up to {:.4g} mm", row.cut.searched_depth_m / units::mm);

@@ -44,7 +44,7 @@ Eigen::Matrix3d mean_stiffness(const cutting::PoseEngagement& cut, const cutting
     const Eigen::Matrix3d force = polynomial(coefficients.tangential_n_per_m2, kappa) * tangent -
                                   polynomial(coefficients.radial_n_per_m2, kappa) * normal +
                                   polynomial(coefficients.axial_n_per_m2, kappa) * axial;
-    sum += ring.radius_m * ring.width_m * force * over * normal.transpose();
+    sum += ring.width_m * force * over * normal.transpose();
   }
   const Eigen::Matrix3d work_from_tool = cut.work_from_feed * e.feed_from_tool;
   return work_from_tool * sum * work_from_tool.transpose();

@@ -8,7 +8,7 @@
 
 namespace robomill::jobs {
 
-/// ∫ f nᵀ dA over the engaged part, in W [N/m]: times teeth over a turn the mean cutting stiffness of the cut. f is the
+/// ∫∫ f nᵀ dφ db over the engaged part, in W [N/m]: times N/(2π) the mean cutting stiffness of the cut. f is the
 /// force on the tool of a chip of one metre.
 [[nodiscard]] Eigen::Matrix3d mean_stiffness(const cutting::PoseEngagement& cut,
                                              const cutting::MillingCoefficients& coefficients);

@@ -10,8 +10,8 @@
 namespace robomill::jobs {
 namespace {
 
-/// Limits are searched from the depth over this to this multiple of it.
-constexpr double depths_searched = 8.0;
+/// Limits are searched from the depth over the first to the second multiple of it.
+constexpr double depths_below = 16.0, depths_above = 8.0;
 
 stability::LobesProblem block_problem(const BlockCut& at, const modal::ModalModel& modes) {
   const cutting::FlatEndMill& mill = at.file.cutter.mill;
@@ -37,7 +37,7 @@ CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
   const double depth_m = engaged_depth_m(at.cut);
   stability::BlockOptions options;
   options.tolerance = at.tolerance;
-  options.axial_depth_m = {depth_m / depths_searched, depth_m * depths_searched};
+  options.axial_depth_m = {depth_m / depths_below, depth_m * depths_above};
   const stability::BlockStability block =
       stability::block_stability(block_problem(at, modes), at.spindle_speed_rad_per_s, depth_m, options);
   CutStability out;
@@ -47,6 +47,7 @@ CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
   out.mode = block.at.mode;
   if (block.limit.status == stability::Limit::Status::found) {
     out.limit_depth_m = block.limit.axial_depth_m;
+    out.below_range = block.limit.axial_depth_m <= options.axial_depth_m[0];
     out.limit_5_percent_m = block.limit_5_percent_m;
     out.limit_50_percent_m = block.limit_50_percent_m;
     out.limit_95_percent_m = block.limit_95_percent_m;
@@ -63,7 +64,7 @@ double limit_depth_m(const BlockCut& at, const modal::ModalModel& modes) {
   const double depth_m = engaged_depth_m(at.cut);
   stability::BlockOptions options;
   options.tolerance = at.tolerance;
-  options.axial_depth_m = {depth_m / depths_searched, depth_m * depths_searched};
+  options.axial_depth_m = {depth_m / depths_below, depth_m * depths_above};
   options.regime = options.quantiles = false;
   const stability::Limit limit =
       stability::block_stability(block_problem(at, modes), at.spindle_speed_rad_per_s, depth_m, options).limit;

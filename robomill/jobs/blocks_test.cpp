@@ -1,0 +1,247 @@
+#include "robomill/jobs/blocks.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+#include <string>
+
+#include "robomill/base/parallel.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/cutting/static_deflection.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/jobs/blocks/classes.hpp"
+#include "robomill/jobs/plan.hpp"
+#include "robomill/robot/pose.hpp"
+#include "robomill/robot/stiffness.hpp"
+#include "robomill/stability/lobes.hpp"
+#include "testing/support.hpp"
+
+namespace robomill::jobs {
+namespace blocks_test {
+
+const std::string source = ROBOMILL_SOURCE_DIR;
+
+class Blocks : public testing::Test {
+ protected:
+  /// @param stiffness  factor on the joints'
+  void write_cell(double stiffness = 1.0) {
+    std::string cell = io::read_file(source + "/examples/force-along-program/cell.toml");
+    const std::size_t begin = cell.find("joint_stiffness_n_m_per_rad");
+    const std::size_t end = cell.find('\n', begin);
+    cell.replace(begin, end - begin,
+                 fmt::format("joint_stiffness_n_m_per_rad = [{0}, {0}, {0}, {0}, {0}, {0}]", 2e6 * stiffness));
+    folder_.file("cell.toml", cell);
+  }
+  void write_forces(double axial_n_per_mm2 = 150.0) {
+    folder_.file("forces.toml", fmt::format(R"([tool]
+kind = "ball-end"
+diameter_mm = 6
+teeth = 2
+helix_deg = 30
+[coefficients]
+tangential_n_per_mm2 = 900
+radial_n_per_mm2 = 350
+axial_n_per_mm2 = {}
+[stock]
+kind = "box"
+min_mm = [-20, -8, -8]
+max_mm = [20, 8, 0]
+dexel_mm = 0.2
+)",
+                                            axial_n_per_mm2));
+  }
+  /// A slot along x, 1 mm deep, then back 1 mm beside it, in moves of 2 mm.
+  void write_program() {
+    std::string text = "G21 G90 G94\nS12000 M3\nG0 X-18 Y0 Z5\nG0 Z-1\n";
+    for (int i = 1; i <= 18; ++i) text += fmt::format("G1 X{} F900\n", -18 + 2 * i);
+    text += "G1 Y1\n";
+    for (int i = 1; i <= 18; ++i) text += fmt::format("G1 X{}\n", 18 - 2 * i);
+    folder_.file("part.ngc", text + "G0 Z5\nM2\n");
+  }
+  PlanResult run(const std::string& more) {
+    return run_job(folder_.file("job.toml",
+                                "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = "
+                                "\"part.ngc\"\n" +
+                                    more),
+                   1);
+  }
+  PlanResult run_with_modes() { return run("modes = \"" + source + "/data/robot-modes.toml\"\n"); }
+  /// Forces and cuts of the program.
+  static ForcesResult forces_of(const PlanResult& plan) { return *plan.forces; }
+  static DynamicsAt dynamics() {
+    return constant_dynamics(modal::modes_from_mass({{410, 0.03, 6.0}}, {{530, 0.03, 5.0}}, {{780, 0.03, 8.0}}));
+  }
+  test::Folder folder_;
+};
+
+// A chip f (n·x_F) makes the mean force f N/(2π) ∫∫ f nᵀ dφ db x_F: the force kernel's own mean, without edge forces.
+TEST_F(Blocks, MeanStiffnessTimesTheFeedIsTheMeanForce) {
+  write_cell(1e3);
+  write_forces();
+  write_program();
+  const ForcesResult forces = forces_of(run_with_modes());
+  std::size_t compared = 0;
+  for (const cutting::PoseEngagement& cut : forces.program->cuts) {
+    if (cut.engagement.empty()) continue;
+    ++compared;
+    const double speed = 12000.0 * units::rpm;
+    const double teeth = forces.file.cutter.mill.teeth;
+    const double feed_m = cut.feed_speed_m_per_s * 2.0 * std::numbers::pi / (speed * teeth);
+    const cutting::CuttingForce force =
+        cutting::cutting_force(forces.file.cutter, cut.engagement, forces.file.coefficients,
+                               {.feed_per_tooth_m = feed_m, .spindle_speed_rad_per_s = speed});
+    const Eigen::Vector3d expected = cut.work_from_feed * force.mean_n;
+    const Eigen::Vector3d found = mean_stiffness(cut, forces.file.coefficients) * cut.work_from_feed.col(0) *
+                                  (feed_m * teeth / (2.0 * std::numbers::pi));
+    EXPECT_LT((found - expected).norm(), 1e-9 * expected.norm());
+  }
+  EXPECT_GT(compared, 30U);
+}
+
+// Two ways: the dexels' engagement in the posture, and the analytic slot with the modes in the feed's frame.
+TEST_F(Blocks, ASlotIsThatOfTheAnalyticCut) {
+  write_cell(1e4);
+  write_forces();
+  write_program();
+  const ForcesResult forces = forces_of(run_with_modes());
+  const ProgramBlocks blocks = judge_blocks(forces, dynamics(), {.scan_points = 3});
+  stability::LobesProblem problem;
+  problem.spatial.emplace();
+  problem.spatial->cutter = forces.file.cutter;
+  problem.spatial->cut = {.axial_depth_m = 1e-3, .direction = cutting::MillingDirection::slot};
+  problem.spatial->coefficients = forces.file.coefficients;
+  // The feed runs along x of W, which is x of B: F is B.
+  problem.dynamics = dynamics()(Eigen::VectorXd::Zero(6)).modes;
+  stability::LobesOptions options;
+  options.axial_depth_m = {0.0, 8e-3};
+  const double speed = 12000.0 * units::rpm;
+  options.spindle_speed_rad_per_s = {speed, 2.0 * speed};
+  const stability::PointResult point = stability::evaluate_point(problem, options, {speed, 1e-3});
+  const BlockRow& row = blocks.rows[9];  // amid the slot
+  ASSERT_TRUE(row.cuts);
+  EXPECT_NEAR(row.axial_depth_m, 1e-3, 0.03e-3);
+  EXPECT_NEAR(row.cut.spectral_radius, point.spectral_radius, 0.02 * point.spectral_radius);
+  // Constant dynamics: where the robot stands does not matter.
+  ASSERT_EQ(blocks.scans.size(), 4U);
+  for (const LimitScan& scan : blocks.scans) {
+    for (const double limit_m : scan.limit_m) {
+      if (std::isnan(limit_m)) continue;
+      EXPECT_NEAR(limit_m, scan.limit_m[1], 1e-9) << scan.parameter;
+    }
+  }
+}
+
+// What is shared differs little from what each block would have got, and threads do not matter.
+TEST_F(Blocks, SharedEvaluationsAreCloseToOwnOnes) {
+  write_cell();
+  write_forces();
+  write_program();
+  const ForcesResult forces = forces_of(run_with_modes());
+  const ProgramBlocks own =
+      judge_blocks(forces, dynamics(), {.joint_tolerance_rad = 0.0, .cut_tolerance = 0.0, .scan_points = 0});
+  const ProgramBlocks shared = judge_blocks(forces, dynamics(), {.scan_points = 0});
+  EXPECT_EQ(own.evaluations, own.cutting);
+  EXPECT_LT(shared.evaluations, own.cutting / 2);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < own.rows.size(); ++i) {
+    if (!own.rows[i].cuts) continue;
+    const double radius = own.rows[i].cut.spectral_radius;
+    largest = std::max(largest, std::abs(shared.rows[i].cut.spectral_radius - radius) / std::max(1.0, radius));
+  }
+  EXPECT_LT(largest, 0.03);
+  RecordProperty("largest_difference", std::to_string(largest));
+  const int threads = thread_count();
+  set_thread_count(1);
+  ProgramBlocks alone = judge_blocks(forces, dynamics(), {.scan_points = 0});
+  set_thread_count(threads);
+  alone.seconds = shared.seconds;
+  EXPECT_EQ(blocks_json(forces, alone), blocks_json(forces, shared));
+}
+
+// The fixed point along a program against that of one cut: a straight slot under its own force.
+TEST_F(Blocks, TheEngagementFeelsTheDeflection) {
+  write_cell(0.5);
+  write_forces(600.0);  // pushes the tool up
+  write_program();
+  const ForcesResult forces = forces_of(run_with_modes());
+  ASSERT_TRUE(forces.program->deflected);
+  const BlockResult& row = forces.program->blocks[9];
+  EXPECT_EQ(row.settled, BlockResult::Settled::found);
+  const robot::Stiffness stiffness =
+      robot::stiffness(forces.cell->cell.arm, row.joints, robot::tip_point(forces.cell->cell), {});
+  const double feed_m = 0.9 / 60.0 / (200.0 * 2.0);
+  const cutting::StaticDeflection one = cutting::static_deflection(
+      forces.file.cutter, {.axial_depth_m = 1e-3, .direction = cutting::MillingDirection::slot},
+      forces.file.coefficients, {.feed_per_tooth_m = feed_m, .spindle_speed_rad_per_s = 12000.0 * units::rpm},
+      stiffness.compliance.topLeftCorner<3, 3>());
+  ASSERT_EQ(one.status, cutting::StaticDeflection::Status::found);
+  ASSERT_LT(one.cut.axial_depth_m, 0.97e-3);
+  EXPECT_NEAR(row.force.axial_depth_m, one.cut.axial_depth_m, 0.02e-3);
+}
+
+TEST_F(Blocks, SaysWhereTheEngagementIsLost) {
+  write_cell(2e-3);
+  write_forces(2000.0);
+  write_program();
+  const PlanResult plan = run_with_modes();
+  const auto said = std::ranges::count_if(plan.forces->warnings, [](const std::string& text) {
+    return (text.find("lose the engagement") != std::string::npos ||
+            text.find("does not settle") != std::string::npos) &&
+           text.find("the first in line") != std::string::npos;
+  });
+  EXPECT_GE(said, 1);
+  ASSERT_TRUE(plan.blocks);
+  EXPECT_TRUE(std::ranges::any_of(plan.blocks->rows, [](const BlockRow& row) { return !row.note.empty(); }));
+}
+
+TEST_F(Blocks, APlanWithoutLobesWritesThem) {
+  write_cell();
+  write_forces();
+  write_program();
+  const PlanResult plan = run_with_modes();
+  ASSERT_TRUE(plan.blocks);
+  EXPECT_FALSE(plan.has_lobes());
+  const std::filesystem::path out = folder_.at("out");
+  write_plan(out, plan);
+  std::istringstream table(io::read_file(out / "blocks.csv"));
+  std::string header;
+  std::getline(table, header);
+  EXPECT_TRUE(
+      header.starts_with("block,line,x_mm,y_mm,z_mm,q1,q2,q3,q4,q5,q6,axial_depth_mm,radial_depth_mm,"
+                         "spindle_speed_rpm,feed_mm_per_min,spectral_radius,limit_depth_mm,stability_margin,"
+                         "chatter_frequency_hz,mode,regime,peak_f_n,torque_n_m,power_w,deflection_um,"
+                         "surface_error_um,gain_margin"));
+  const auto json = nlohmann::json::parse(io::read_file(out / "blocks.json"));
+  EXPECT_EQ(json["blocks"]["block"].size(), plan.blocks->rows.size());
+  EXPECT_EQ(json["limit_over"].size(), 4U);
+  for (std::size_t i = 0; i < plan.blocks->rows.size(); ++i) {
+    const BlockRow& row = plan.blocks->rows[i];
+    EXPECT_EQ(json["blocks"]["stability_margin"][i].is_null(), !row.cuts);
+    if (!row.cuts || !std::isfinite(row.cut.limit_depth_m)) continue;
+    EXPECT_NEAR(row.stability_margin, 1.0 - row.axial_depth_m / row.cut.limit_5_percent_m, 1e-12);
+    EXPECT_LE(row.cut.limit_5_percent_m, row.cut.limit_95_percent_m);
+  }
+  EXPECT_EQ(json["summary"]["cutting"], plan.blocks->cutting);
+}
+
+TEST_F(Blocks, SaysWhatIsMissing) {
+  write_cell();
+  write_forces();
+  write_program();
+  const std::string still = test::rejection([&] { static_cast<void>(run("")); });
+  EXPECT_NE(still.find("does not say what vibrates"), std::string::npos) << still;
+  folder_.file("part.ngc", "G21 G90 G94\nG0 X-18 Y0 Z5\nG0 Z-1\nG1 X18 F900\nM2\n");
+  const std::string slow = test::rejection([&] { static_cast<void>(run_with_modes()); });
+  EXPECT_NE(slow.find("line 4 of the program cuts without one"), std::string::npos) << slow;
+  const std::string lobes = test::rejection([&] { static_cast<void>(run("lobes = \"lobes.toml\"\n")); });
+  EXPECT_NE(lobes.find("needs one of hits, frf, modes and assembly"), std::string::npos) << lobes;
+}
+
+}  // namespace blocks_test
+}  // namespace robomill::jobs
