@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "examples/postures/limits_svg.hpp"
 #include "examples/postures/ten_postures.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
@@ -30,8 +31,9 @@ std::string depth_mm(double limit_m) {
   return std::isfinite(limit_m) ? fmt::format("{:.4f}", 1e3 * limit_m) : std::string();
 }
 
-/// A row a posture and speed, and how far the curves of each direction lie apart.
-std::string limits_csv(const modal::testing::SimulatedArm& arm, const std::vector<Eigen::VectorXd>& joints) {
+/// limits.csv, a row a posture and speed, and its figure; how far the curves of each direction lie apart.
+void write_limits(const std::filesystem::path& directory, const modal::testing::SimulatedArm& arm,
+                  const std::vector<Eigen::VectorXd>& joints) {
   std::vector<double> speeds;
   for (double rpm = 3000.0; rpm <= 15000.0; rpm += 200.0) speeds.push_back(rpm);
   std::vector<std::vector<double>> all, few;
@@ -53,7 +55,10 @@ std::string limits_csv(const modal::testing::SimulatedArm& arm, const std::vecto
     fmt::print("limits over {}: {:.0f} % apart; of the modes at 500 to 600 Hz alone: {:.0f} %\n", direction.name,
                100.0 * examples::spread(of_all), 100.0 * examples::spread(of_few));
   }
-  return out;
+  write_text(directory / "limits.csv", out);
+  write_text(directory / "limits.svg",
+             examples::limits_svg(speeds, {{.title = "modes at 500 to 600 Hz", .limit_m = few},
+                                           {.title = "all modes", .limit_m = all}}));
 }
 
 void run(const std::filesystem::path& directory) {
@@ -65,7 +70,7 @@ void run(const std::filesystem::path& directory) {
     write_text(directory / fmt::format("lobes_{}.toml", p + 1), examples::lobes_toml(joints[p]));
   }
   write_text(directory / "cell.toml", examples::cell_toml(arm, joints));
-  write_text(directory / "limits.csv", limits_csv(arm, joints));
+  write_limits(directory, arm, joints);
   fmt::print("{} postures in {}\n", joints.size(), directory.string());
 }
 
