@@ -23,6 +23,26 @@ function wide(positions: Float32Array, material: LineMaterial, order: number): L
   return lines;
 }
 
+const many = 8000; // wide lines of more blocks take a browser without a graphics card a second a picture, and cover each other anyway
+
+interface Cuts {
+  lines: LineSegments | LineSegments2;
+  colour: (values: Float32Array) => void; // red, green, blue of both ends of each
+}
+
+/** All cutting blocks as one object. */
+function cutsOf(positions: Float32Array): Cuts {
+  if (positions.length <= 6 * many) {
+    const lines = wide(positions, new LineMaterial({ linewidth: 3, vertexColors: true }), 1);
+    return { lines, colour: (values) => void lines.geometry.setColors(values) };
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(positions, 3));
+  const lines = new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true }));
+  lines.renderOrder = 1;
+  return { lines, colour: (values) => void geometry.setAttribute('color', new BufferAttribute(values, 3)) };
+}
+
 /** null where there is no WebGL. */
 export function webglPainter(data: PathData): Painter | null {
   const canvas = document.createElement('canvas');
@@ -37,11 +57,10 @@ export function webglPainter(data: PathData): Painter | null {
   const airGeometry = new BufferGeometry();
   airGeometry.setAttribute('position', new BufferAttribute(segments(data, drawn(data, (kind) => kind === inAir)), 3));
   const air = new LineBasicMaterial({ transparent: true, opacity: 0.6 });
-  const halo = new LineMaterial({ linewidth: 8, depthWrite: false });
-  const cut = new LineMaterial({ linewidth: 3, vertexColors: true });
-  const cutLines = wide(segments(data, cuts), cut, 1);
+  const halo = new LineMaterial({ linewidth: cuts.length > many ? 4 : 8, depthWrite: false });
+  const cut = cutsOf(segments(data, cuts));
   const scene = new Scene();
-  scene.add(new LineSegments(airGeometry, air), wide(segments(data, drawn(data, isUnstable)), halo, 0), cutLines);
+  scene.add(new LineSegments(airGeometry, air), wide(segments(data, drawn(data, isUnstable)), halo, 0), cut.lines);
   return {
     name: 'webgl',
     canvas,
@@ -54,7 +73,7 @@ export function webglPainter(data: PathData): Painter | null {
       cuts.forEach((i, k) => {
         for (let c = 0; c < 3; ++c) both[6 * k + c] = both[6 * k + 3 + c] = colours.blocks[3 * i + c]! / 255;
       });
-      cutLines.geometry.setColors(both);
+      cut.colour(both);
       air.color = new Color(colours.air);
       halo.color = new Color(colours.unstable);
     },
