@@ -54,10 +54,22 @@ it('shows every part of a report', () => {
   ]) {
     expect(html).toContain(part);
   }
-  for (const id of ['lobes', 'feed', 'forces', 'smooth', 'assembly', 'frf', 'modes', 'pairs', 'monitor', 'calibration']) {
+  for (const id of ['lobes', 'feed', 'program', 'forces', 'smooth', 'assembly', 'frf', 'modes', 'pairs', 'monitor', 'calibration']) {
     expect(html).toContain(`<section id="${id}"`);
     expect(html).toContain(`href="#${id}"`);
   }
+});
+
+it('names the worst blocks of a program, and says where none cuts', () => {
+  const blocks = report.blocks!;
+  const worst = Math.min(...blocks.blocks.stability_margin!.filter((margin) => margin !== null));
+  expect(page()).toContain(`${Number(worst.toPrecision(3))} in block`);
+  expect(page()).toContain('The blocks with the least margin');
+  expect(page()).toContain('data-plot="limit-over"');
+  const { block, line, x_mm, y_mm, z_mm } = blocks.blocks;
+  report.blocks = { blocks: { block, line, x_mm, y_mm, z_mm }, summary: { ...blocks.summary, cutting: 0, unstable: 0 }, limit_over: [] };
+  expect(page()).toContain('No block of the program cuts.');
+  expect(page()).not.toContain('data-plot="program-limit"');
 });
 
 it('names the chatter frequency once', () => {
