@@ -125,7 +125,7 @@ class PostureModel::Calibrated final : public Source {
 
   [[nodiscard]] ModalModel at(const Eigen::VectorXd& joints) const override {
     const PostureParameters parameters = predict(*arm_, calibration_, postures, joints);
-    const FlexibleArm::System system = arm_->at(joints, parameters.mean, true);
+    const FlexibleArm::System system = arm_->at(joints, parameters.mean);
     const FlexibleArm::Modes modes = arm_->modes(system, highest_hz_);
     const FlexibleArm::Sensitivity by = arm_->sensitivity(system, modes);
     ModalModel out{.excitations = tip_dofs(), .responses = tip_dofs(), .modes = {}};

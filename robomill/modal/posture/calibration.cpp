@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,8 +19,8 @@ constexpr double alike_lines = 4.0;
 constexpr double own_share = 0.2;
 constexpr double process_length_rad = 1.0;
 /// From the first stage on, the damping that is added to find the way, as a share of each frequency.
-constexpr double stages[] = {0.2, 0.1, 0.05, 0.025, 0.0125};
-constexpr int stage_lines[] = {60, 80, 110, 150, 200};
+constexpr double stages[] = {0.2, 0.1, 0.05, 0.02};
+constexpr int stage_lines[] = {50, 70, 100, 150};
 
 /// One posture's share of the cost, its gradient and Gauss-Newton matrix.
 struct Normal {
@@ -37,44 +38,59 @@ constexpr double robust = 4.0;
 Normal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, const SmoothedFrf& frf,
                  const Eigen::VectorXd& parameters, bool derivatives) {
   const Eigen::Index count = parameters.size();
-  const FlexibleArm::System system = arm.at(joints, parameters, derivatives);
+  const FlexibleArm::System system = arm.at(joints, parameters);
   Normal out;
   out.matrix = Eigen::MatrixXd::Zero(count, count);
   out.gradient = Eigen::VectorXd::Zero(count);
+  const Eigen::Index lines = static_cast<Eigen::Index>(frf.s.size());
   Eigen::Matrix<Complex, 9, Eigen::Dynamic> derivative(9, count);
-  Eigen::MatrixXd real(18, count);
-  for (std::size_t i = 0; i < frf.s.size(); ++i) {
+  // The model is symmetric: the two entries that mirror each other have one row of derivatives.
+  constexpr std::array<std::array<Eigen::Index, 2>, 6> mirrored = {{{0, 0}, {4, 4}, {8, 8}, {1, 3}, {2, 6}, {5, 7}}};
+  constexpr Eigen::Index rows_a_line = 12;
+  Eigen::MatrixXd real;
+  Eigen::VectorXd residual;
+  if (derivatives) {
+    real.setZero(rows_a_line * lines, count);
+    residual.setZero(rows_a_line * lines);
+  }
+  for (Eigen::Index i = 0; i < lines; ++i) {
     Eigen::Matrix3cd value;
     if (derivatives) {
-      arm.receptance(system, frf.s[i], value, derivative);
+      arm.receptance(system, frf.s[static_cast<std::size_t>(i)], value, derivative);
     } else {
-      value = FlexibleArm::receptance(system, frf.s[i]);
+      value = FlexibleArm::receptance(system, frf.s[static_cast<std::size_t>(i)]);
     }
     const Eigen::Map<const Eigen::Matrix<Complex, 9, 1>> model(value.data());
-    Eigen::Matrix<double, 18, 1> r;
-    r.setZero();
-    if (derivatives) real.setZero();
-    for (Eigen::Index e = 0; e < 9; ++e) {
-      const double weight = frf.weight(e, static_cast<Eigen::Index>(i));
-      if (weight == 0.0) continue;
-      const Complex miss = (model(e) - frf.value(e, static_cast<Eigen::Index>(i))) * weight;
-      const double square = std::norm(miss);
-      out.cost += robust * robust * std::log1p(square / (robust * robust));
-      out.error += std::abs(miss) / weight;
-      out.size += std::abs(frf.value(e, static_cast<Eigen::Index>(i)));
-      out.residuals += 2.0;
-      if (!derivatives) continue;
-      const double damp = 1.0 / std::sqrt(1.0 + square / (robust * robust));
-      r(2 * e) = miss.real() * damp;
-      r(2 * e + 1) = miss.imag() * damp;
-      real.row(2 * e) = derivative.row(e).real() * (weight * damp);
-      real.row(2 * e + 1) = derivative.row(e).imag() * (weight * damp);
+    for (std::size_t pair = 0; pair < mirrored.size(); ++pair) {
+      double weights = 0.0;
+      Complex weighted = 0.0;
+      for (std::size_t side = 0; side < (mirrored[pair][0] == mirrored[pair][1] ? 1U : 2U); ++side) {
+        const Eigen::Index e = mirrored[pair][side];
+        const double weight = frf.weight(e, i);
+        if (weight == 0.0) continue;
+        const Complex miss = model(e) - frf.value(e, i);
+        const double square = std::norm(miss) * weight * weight;
+        out.cost += robust * robust * std::log1p(square / (robust * robust));
+        out.error += std::abs(miss);
+        out.size += std::abs(frf.value(e, i));
+        out.residuals += 2.0;
+        const double counted = weight * weight / (1.0 + square / (robust * robust));
+        weights += counted;
+        weighted += counted * miss;
+      }
+      if (!derivatives || weights == 0.0) continue;
+      const double root = std::sqrt(weights);
+      const Eigen::Index row = rows_a_line * i + 2 * static_cast<Eigen::Index>(pair);
+      real.row(row) = root * derivative.row(mirrored[pair][0]).real();
+      real.row(row + 1) = root * derivative.row(mirrored[pair][0]).imag();
+      residual(row) = weighted.real() / root;
+      residual(row + 1) = weighted.imag() / root;
     }
-    if (!derivatives) continue;
-    out.matrix.selfadjointView<Eigen::Lower>().rankUpdate(real.transpose());
-    out.gradient.noalias() += real.transpose() * r;
   }
-  if (derivatives) out.matrix.triangularView<Eigen::StrictlyUpper>() = out.matrix.transpose();
+  if (!derivatives) return out;
+  out.matrix.selfadjointView<Eigen::Lower>().rankUpdate(real.transpose());
+  out.matrix.triangularView<Eigen::StrictlyUpper>() = out.matrix.transpose();
+  out.gradient.noalias() = real.transpose() * residual;
   return out;
 }
 
@@ -411,9 +427,9 @@ void scale_deviations(const FlexibleArm& arm, const Search& search, const Calibr
     error += at.error;
     size += at.size;
     const Eigen::VectorXd refined = search.refined(k, left.parameters, at);
-    const FlexibleArm::System before = arm.at(data.joints()[k], left.parameters, true);
+    const FlexibleArm::System before = arm.at(data.joints()[k], left.parameters);
     const FlexibleArm::Modes predicted = arm.modes(before, highest_hz);
-    const FlexibleArm::Modes found = arm.modes(arm.at(data.joints()[k], refined, false), highest_hz);
+    const FlexibleArm::Modes found = arm.modes(arm.at(data.joints()[k], refined), highest_hz);
     const Spread spread = spread_of(arm, before, predicted, left.covariance);
     for (Eigen::Index i = 0; i < predicted.pole.size() && found.pole.size() > 0; ++i) {
       const Eigen::Index j = counterpart(predicted, i, found);
@@ -463,7 +479,7 @@ Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, doubl
     for (std::size_t i = near ? near_stage : 0; i < std::size(stages); ++i) {
       search.stage(i);
       const bool last = i + 1 == std::size(stages);
-      search.descend(last ? last_iterations : stage_iterations, varying && i + 2 >= std::size(stages), progress);
+      search.descend(last ? last_iterations : stage_iterations, varying && last, progress);
       search.estimate_noise();
     }
     search.descend(4, varying, progress);

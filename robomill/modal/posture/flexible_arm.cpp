@@ -51,7 +51,8 @@ FlexibleArm::FlexibleArm(const robot::Cell& cell, const std::optional<robot::Lin
   if (payload) bodies_.push_back({.joint = n - 1, .on_bracket = true, .link = *payload});
   largest_load_ = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(n));
   add_coordinates();
-  add_parameters(tools);
+  add_coordinate_parameters(tools);
+  add_mass_parameters(tools);
 }
 
 void FlexibleArm::add_coordinates() {
@@ -89,68 +90,54 @@ void FlexibleArm::add(Kind kind, std::size_t index, double start, double deviati
                          .posture_deviation = posture_deviation});
 }
 
-void FlexibleArm::add_parameters(const std::vector<Tool>& tools) {
-  // What a coordinate moves at the middle of its range decides its first guess of damping: 2 % of critical.
-  const Eigen::Index n = cell_.arm.size();
-  Eigen::VectorXd middle = Eigen::VectorXd::Constant(n, 0.5);
-  Eigen::VectorXd none = Eigen::VectorXd::Zero(0);
-  constexpr double first_damping = 0.02;
+double FlexibleArm::first_stiffness(const Coordinate& at, const std::vector<Tool>& tools) const {
   constexpr double tilts_over_joint = 6.0;
-  std::vector<double> stiffness(coordinates_.size());
-  for (std::size_t c = 0; c < coordinates_.size(); ++c) {
-    const Coordinate& at = coordinates_[c];
-    const auto joint = [&](std::size_t i) {
-      return cell_.arm.joints[std::min(i, cell_.arm.joints.size() - 1)].stiffness;
-    };
-    switch (at.kind) {
-      case Coordinate::Kind::joint:
-        stiffness[c] = joint(at.joint);
-        break;
-      case Coordinate::Kind::tilt:
-        stiffness[c] = tilts_over_joint * joint(at.joint);
-        break;
-      case Coordinate::Kind::bracket:
-        stiffness[c] = tilts_over_joint * joint(at.joint);
-        break;
-      case Coordinate::Kind::tool: {
-        const double rate = 2.0 * std::numbers::pi * tools[at.pair].frequency_hz;
-        stiffness[c] = tools[at.pair].mass_kg * rate * rate;
-        break;
-      }
-    }
+  if (at.kind == Coordinate::Kind::tool) {
+    const double rate = 2.0 * std::numbers::pi * tools[at.pair].frequency_hz;
+    return tools[at.pair].mass_kg * rate * rate;
   }
-  const System plain = at(middle, none, false);
+  const double joint = cell_.arm.joints[std::min(at.joint, cell_.arm.joints.size() - 1)].stiffness;
+  return at.kind == Coordinate::Kind::joint ? joint : tilts_over_joint * joint;
+}
+
+void FlexibleArm::add_coordinate_parameters(const std::vector<Tool>& tools) {
+  // What a coordinate moves in the middle of its range decides its first guess of damping.
+  constexpr double first_damping_ratio = 0.02;
+  constexpr double stiffness_varies = 0.06, damping_varies = 0.15;
+  const System plain = at(Eigen::VectorXd::Constant(cell_.arm.size(), 0.5), {});
   for (std::size_t c = 0; c < coordinates_.size(); ++c) {
     const Coordinate& at = coordinates_[c];
     const bool tool = at.kind == Coordinate::Kind::tool;
     const Eigen::Index row = static_cast<Eigen::Index>(c);
     const double mass = tool ? tools[at.pair].mass_kg : plain.mass(row, row);
-    double damping = 2.0 * first_damping * std::sqrt(stiffness[c] * std::max(mass, 1e-9));
-    constexpr double stiffness_varies = 0.06, damping_varies = 0.15;
+    const double stiffness = first_stiffness(at, tools);
+    double damping = 2.0 * first_damping_ratio * std::sqrt(stiffness * std::max(mass, 1e-9));
     switch (at.kind) {
       case Coordinate::Kind::joint:
         if (cell_.arm.joints[at.joint].damping > 0.0) damping = cell_.arm.joints[at.joint].damping;
-        add(Kind::joint_stiffness, c, std::log(stiffness[c]), 0.4, stiffness_varies);
+        add(Kind::joint_stiffness, c, std::log(stiffness), 0.4, stiffness_varies);
         add(Kind::joint_damping, c, std::log(damping), 1.0, damping_varies);
-        if (structure_.load) {
-          add(Kind::joint_load, at.joint, 0.0, 0.15);
-          add(Kind::joint_unloaded, at.joint, 0.0, 0.1);
-        }
+        if (!structure_.load) break;
+        add(Kind::joint_load, at.joint, 0.0, 0.15);
+        add(Kind::joint_unloaded, at.joint, 0.0, 0.1);
         break;
       case Coordinate::Kind::tilt:
-        add(Kind::tilt_stiffness, c, std::log(stiffness[c]), 1.0);
+        add(Kind::tilt_stiffness, c, std::log(stiffness), 1.0);
         add(Kind::tilt_damping, c, std::log(damping), 1.0);
         break;
       case Coordinate::Kind::bracket:
-        add(Kind::bracket_stiffness, c, std::log(stiffness[c]), 1.5);
+        add(Kind::bracket_stiffness, c, std::log(stiffness), 1.5);
         add(Kind::bracket_damping, c, std::log(damping), 1.0);
         break;
       case Coordinate::Kind::tool:
-        add(Kind::tool_stiffness, c, std::log(stiffness[c]), 0.5);
+        add(Kind::tool_stiffness, c, std::log(stiffness), 0.5);
         add(Kind::tool_damping, c, std::log(damping), 1.0);
         break;
     }
   }
+}
+
+void FlexibleArm::add_mass_parameters(const std::vector<Tool>& tools) {
   for (std::size_t t = 0; t < tools.size(); ++t) add(Kind::tool_mass, t, std::log(tools[t].mass_kg), 0.7);
   for (std::size_t k = 0; k < 3; ++k) add(Kind::compliance, k, 0.0, 3.0);
   for (std::size_t i = 0; i < cell_.arm.joints.size(); ++i) {
@@ -239,164 +226,227 @@ void FlexibleArm::scale_loads(const std::vector<Eigen::VectorXd>& postures) {
   for (const Eigen::VectorXd& joints : postures) largest_load_ = largest_load_.cwiseMax(gravity_torque(joints));
 }
 
-FlexibleArm::System FlexibleArm::at(const Eigen::VectorXd& joints, const Eigen::VectorXd& parameters,
-                                    bool derivatives) const {
-  const Eigen::Index n = static_cast<Eigen::Index>(coordinates_.size());
-  std::vector<Eigen::Isometry3d> before;
-  const Placed placed = place_joints(cell_, joints, before);
-  System out;
-  out.flange_axes = placed.flange.linear();
-  const Eigen::Vector3d tip = placed.flange * Eigen::Vector3d(0.0, 0.0, cell_.tool_length_m);
-  Eigen::Matrix3Xd axis(3, n), origin(3, n);
-  for (Eigen::Index c = 0; c < n; ++c) {
-    const Coordinate& at = coordinates_[static_cast<std::size_t>(c)];
-    const bool outside = at.joint >= before.size();
-    const Eigen::Isometry3d& frame = outside ? placed.flange : before[at.joint];
-    axis.col(c) = frame.linear() * at.axis;
-    origin.col(c) = frame.translation();
-  }
-  const auto translates = [&](const Coordinate& at) {
-    return at.kind == Coordinate::Kind::tool ||
-           (at.kind == Coordinate::Kind::joint && cell_.arm.joints[at.joint].prismatic);
-  };
-  const auto velocity = [&](Eigen::Index c, const Eigen::Vector3d& point) -> Eigen::Vector3d {
-    const Coordinate& at = coordinates_[static_cast<std::size_t>(c)];
-    return translates(at) ? Eigen::Vector3d(axis.col(c)) : Eigen::Vector3d(axis.col(c)).cross(point - origin.col(c));
-  };
-  out.input.resize(n, 3);
-  for (Eigen::Index c = 0; c < n; ++c) out.input.row(c) = velocity(c, tip).transpose();
+bool FlexibleArm::translates(const Coordinate& at) const {
+  return at.kind == Coordinate::Kind::tool ||
+         (at.kind == Coordinate::Kind::joint && cell_.arm.joints[at.joint].prismatic);
+}
 
-  // What the parameters say.
-  Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(n), damping = Eigen::VectorXd::Zero(n);
-  Eigen::VectorXd rotor = Eigen::VectorXd::Zero(n);
+Eigen::Index FlexibleArm::coordinate_of(const ArmParameter& parameter) const {
+  switch (parameter.kind) {
+    case Kind::joint_load:
+    case Kind::joint_unloaded:
+    case Kind::rotor_inertia:
+      // Each joint's coordinates follow those of the one before.
+      return static_cast<Eigen::Index>(parameter.index) * (structure_.bearings ? 3 : 1);
+    case Kind::joint_stiffness:
+    case Kind::joint_damping:
+    case Kind::tilt_stiffness:
+    case Kind::tilt_damping:
+    case Kind::bracket_stiffness:
+    case Kind::bracket_damping:
+    case Kind::tool_stiffness:
+    case Kind::tool_damping:
+      return static_cast<Eigen::Index>(parameter.index);
+    default:
+      return -1;
+  }
+}
+
+/// What the parameters say of bodies.
+struct FlexibleArm::Values {
+  std::vector<double> mass_scale, inertia_scale;
+  std::vector<Eigen::Vector3d> shift_m;
+};
+
+FlexibleArm::Values FlexibleArm::values_of(const Eigen::VectorXd& parameters, System& out) const {
+  const Eigen::Index n = static_cast<Eigen::Index>(coordinates_.size());
+  Values values{.mass_scale = std::vector<double>(bodies_.size(), 1.0),
+                .inertia_scale = std::vector<double>(bodies_.size(), 1.0),
+                .shift_m = std::vector<Eigen::Vector3d>(bodies_.size(), Eigen::Vector3d::Zero())};
+  out.stiffness = out.damping = out.rotor = Eigen::VectorXd::Zero(n);
+  out.tool_mass_kg.assign(static_cast<std::size_t>(structure_.tool_modes), 0.0);
   for (Eigen::Index c = 0; c < n; ++c) {
     const Coordinate& at = coordinates_[static_cast<std::size_t>(c)];
-    if (at.kind == Coordinate::Kind::joint) rotor(c) = cell_.arm.joints[at.joint].rotor_inertia;
+    if (at.kind == Coordinate::Kind::joint) out.rotor(c) = cell_.arm.joints[at.joint].rotor_inertia;
   }
-  std::vector<double> mass_scale(bodies_.size(), 1.0), inertia_scale(bodies_.size(), 1.0);
-  std::vector<Eigen::Vector3d> shift(bodies_.size(), Eigen::Vector3d::Zero());
-  std::vector<double> tool_mass(static_cast<std::size_t>(structure_.tool_modes), 0.0);
-  out.load = (gravity_torque(joints).array() / largest_load_.array()).min(2.0);
-  out.coordinate.assign(parameters_.size(), -1);
-  const auto joint_coordinate = [&](std::size_t joint) {
-    for (Eigen::Index c = 0; c < n; ++c) {
-      const Coordinate& at = coordinates_[static_cast<std::size_t>(c)];
-      if (at.kind == Coordinate::Kind::joint && at.joint == joint) return c;
-    }
-    return Eigen::Index{-1};
-  };
+  if (parameters.size() == 0) return values;
   Eigen::VectorXd log_factor = Eigen::VectorXd::Zero(n);
-  const bool known = parameters.size() > 0;
-  for (std::size_t p = 0; known && p < parameters_.size(); ++p) {
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    const ArmParameter& parameter = parameters_[p];
     const double value = parameters(static_cast<Eigen::Index>(p));
-    const std::size_t index = parameters_[p].index;
-    const Eigen::Index c = static_cast<Eigen::Index>(index);
-    switch (parameters_[p].kind) {
+    const Eigen::Index c = coordinate_of(parameter);
+    const Eigen::Index index = static_cast<Eigen::Index>(parameter.index);
+    switch (parameter.kind) {
       case Kind::joint_stiffness:
       case Kind::tilt_stiffness:
       case Kind::bracket_stiffness:
       case Kind::tool_stiffness:
-        stiffness(c) = std::exp(value);
-        out.coordinate[p] = c;
+        out.stiffness(c) = std::exp(value);
         break;
       case Kind::joint_damping:
       case Kind::tilt_damping:
       case Kind::bracket_damping:
       case Kind::tool_damping:
-        damping(c) = std::exp(value);
-        out.coordinate[p] = c;
+        out.damping(c) = std::exp(value);
         break;
       case Kind::joint_load:
-        out.coordinate[p] = joint_coordinate(index);
-        log_factor(out.coordinate[p]) += value * out.load(c);
+        log_factor(c) += value * out.load(index);
         break;
       case Kind::joint_unloaded:
-        out.coordinate[p] = joint_coordinate(index);
-        log_factor(out.coordinate[p]) += value * unloaded(out.load(c));
+        log_factor(c) += value * unloaded(out.load(index));
         break;
       case Kind::tool_mass:
-        tool_mass[index] = std::exp(value);
+        out.tool_mass_kg[parameter.index] = std::exp(value);
         break;
       case Kind::compliance:
-        out.compliance(c) = value * compliance_unit_m_per_n;
+        out.compliance(index) = value * compliance_unit_m_per_n;
         break;
       case Kind::rotor_inertia:
-        out.coordinate[p] = joint_coordinate(index);
-        rotor(out.coordinate[p]) = std::exp(value);
+        out.rotor(c) = std::exp(value);
         break;
       case Kind::body_mass:
-        mass_scale[index] = std::exp(value);
+        values.mass_scale[parameter.index] = std::exp(value);
         break;
       case Kind::body_inertia:
-        inertia_scale[index] = std::exp(value);
+        values.inertia_scale[parameter.index] = std::exp(value);
         break;
       case Kind::body_center:
-        shift[index](static_cast<Eigen::Index>(parameters_[p].axis)) = value;
+        values.shift_m[parameter.index](static_cast<Eigen::Index>(parameter.axis)) = value;
         break;
     }
   }
-  out.stiffness = stiffness.array() * log_factor.array().exp();
-  out.damping = damping;
+  out.stiffness = out.stiffness.array() * log_factor.array().exp();
+  return values;
+}
 
-  // Masses: bodies, rotors, tool.
-  out.mass = Eigen::MatrixXd(rotor.asDiagonal());
-  if (derivatives) out.mass_derivative.resize(parameters_.size());
-  std::vector<Eigen::MatrixXd> of_mass(bodies_.size()), of_inertia(bodies_.size());
-  std::vector<std::array<Eigen::MatrixXd, 3>> of_center(bodies_.size());
+FlexibleArm::System FlexibleArm::at(const Eigen::VectorXd& joints, const Eigen::VectorXd& parameters) const {
+  const Eigen::Index n = static_cast<Eigen::Index>(coordinates_.size());
+  std::vector<Eigen::Isometry3d> before;
+  const Placed placed = place_joints(cell_, joints, before);
+  System out;
+  out.flange_axes = placed.flange.linear();
+  out.load = (gravity_torque(joints).array() / largest_load_.array()).min(2.0);
+  Eigen::Matrix3Xd axis(3, n), origin(3, n);
+  for (Eigen::Index c = 0; c < n; ++c) {
+    const Coordinate& at = coordinates_[static_cast<std::size_t>(c)];
+    const Eigen::Isometry3d& frame = at.joint >= before.size() ? placed.flange : before[at.joint];
+    axis.col(c) = frame.linear() * at.axis;
+    origin.col(c) = frame.translation();
+  }
+  const auto velocity = [&](Eigen::Index c, const Eigen::Vector3d& point) -> Eigen::Vector3d {
+    if (translates(coordinates_[static_cast<std::size_t>(c)])) return axis.col(c);
+    return Eigen::Vector3d(axis.col(c)).cross(point - origin.col(c));
+  };
+  const Eigen::Vector3d tip = placed.flange * Eigen::Vector3d(0.0, 0.0, cell_.tool_length_m);
+  out.input.resize(n, 3);
+  for (Eigen::Index c = 0; c < n; ++c) out.input.row(c) = velocity(c, tip).transpose();
+  const Values values = values_of(parameters, out);
+  out.mass = Eigen::MatrixXd(out.rotor.asDiagonal());
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Body& body = bodies_[b];
     const Eigen::Isometry3d& frame = placed.after[body.joint];
-    const Eigen::Vector3d center = frame * (body.link.center_m + shift[b]);
-    const double mass = mass_scale[b] * body.link.mass_kg;
-    const Eigen::Matrix3d inertia =
-        mass_scale[b] * inertia_scale[b] * frame.linear() * body.link.inertia_kg_m2 * frame.linear().transpose();
-    Eigen::Matrix3Xd linear = Eigen::Matrix3Xd::Zero(3, n), turning = Eigen::Matrix3Xd::Zero(3, n);
+    const Eigen::Vector3d center = frame * (body.link.center_m + values.shift_m[b]);
+    BodyMotion motion{.mass_kg = values.mass_scale[b] * body.link.mass_kg,
+                      .inertia = values.mass_scale[b] * values.inertia_scale[b] * frame.linear() *
+                                 body.link.inertia_kg_m2 * frame.linear().transpose(),
+                      .axes = frame.linear(),
+                      .linear = Eigen::Matrix3Xd::Zero(3, n),
+                      .turning = Eigen::Matrix3Xd::Zero(3, n)};
     for (Eigen::Index c = 0; c < n; ++c) {
       const Coordinate& at = coordinates_[static_cast<std::size_t>(c)];
       const bool moved = at.kind == Coordinate::Kind::bracket ? body.on_bracket
                          : at.kind == Coordinate::Kind::tool  ? false
                                                               : at.joint <= body.joint;
       if (!moved) continue;
-      linear.col(c) = velocity(c, center);
-      if (!translates(at)) turning.col(c) = axis.col(c);
+      motion.linear.col(c) = velocity(c, center);
+      if (!translates(at)) motion.turning.col(c) = axis.col(c);
     }
-    const Eigen::MatrixXd turned = turning.transpose() * inertia * turning;
-    const Eigen::MatrixXd whole = mass * (linear.transpose() * linear) + turned;
-    out.mass += whole;
-    if (!derivatives) continue;
-    of_mass[b] = whole;
-    of_inertia[b] = turned;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      Eigen::Matrix3Xd moved = Eigen::Matrix3Xd::Zero(3, n);
-      for (Eigen::Index c = 0; c < n; ++c) {
-        if (!turning.col(c).isZero(0.0)) moved.col(c) = turning.col(c).cross(Eigen::Vector3d(frame.linear().col(k)));
-      }
-      const Eigen::MatrixXd half = mass * (moved.transpose() * linear);
-      of_center[b][static_cast<std::size_t>(k)] = half + half.transpose();
-    }
+    out.mass += motion.mass_kg * (motion.linear.transpose() * motion.linear) +
+                motion.turning.transpose() * motion.inertia * motion.turning;
+    out.bodies.push_back(std::move(motion));
   }
-  std::vector<Eigen::MatrixXd> of_tool(tool_mass.size());
-  for (std::size_t t = 0; t < tool_mass.size(); ++t) {
+  for (std::size_t t = 0; t < out.tool_mass_kg.size(); ++t) {
     Eigen::MatrixXd moved = out.input;
     for (Eigen::Index c = 0; c < n; ++c) {
       const Coordinate& at = coordinates_[static_cast<std::size_t>(c)];
       if (at.kind == Coordinate::Kind::tool && at.pair != t) moved.row(c).setZero();
     }
-    const Eigen::MatrixXd whole = tool_mass[t] * (moved * moved.transpose());
-    out.mass += whole;
-    if (derivatives) of_tool[t] = whole;
+    out.mass += out.tool_mass_kg[t] * (moved * moved.transpose());
+    out.tool_input.push_back(std::move(moved));
   }
-  for (std::size_t p = 0; derivatives && p < parameters_.size(); ++p) {
-    const ArmParameter& parameter = parameters_[p];
-    if (parameter.kind == Kind::body_mass) out.mass_derivative[p] = of_mass[parameter.index];
-    if (parameter.kind == Kind::body_inertia) out.mass_derivative[p] = of_inertia[parameter.index];
-    if (parameter.kind == Kind::body_center) out.mass_derivative[p] = of_center[parameter.index][parameter.axis];
-    if (parameter.kind == Kind::tool_mass) out.mass_derivative[p] = of_tool[parameter.index];
-    if (parameter.kind == Kind::rotor_inertia) {
-      out.mass_derivative[p] = Eigen::MatrixXd::Zero(n, n);
-      out.mass_derivative[p](out.coordinate[p], out.coordinate[p]) = rotor(out.coordinate[p]);
-    }
+  return out;
+}
+
+std::pair<double, double> FlexibleArm::diagonal_change(const System& system, const ArmParameter& parameter) const {
+  const Eigen::Index c = coordinate_of(parameter);
+  const auto load = [&] { return system.load(static_cast<Eigen::Index>(parameter.index)); };
+  switch (parameter.kind) {
+    case Kind::joint_stiffness:
+    case Kind::tilt_stiffness:
+    case Kind::bracket_stiffness:
+    case Kind::tool_stiffness:
+      return {system.stiffness(c), 0.0};
+    case Kind::joint_load:
+      return {system.stiffness(c) * load(), 0.0};
+    case Kind::joint_unloaded:
+      return {system.stiffness(c) * unloaded(load()), 0.0};
+    case Kind::joint_damping:
+    case Kind::tilt_damping:
+    case Kind::bracket_damping:
+    case Kind::tool_damping:
+      return {0.0, system.damping(c)};
+    default:
+      return {0.0, 0.0};
   }
+}
+
+namespace {
+
+bool moves_mass(Kind kind) {
+  switch (kind) {
+    case Kind::tool_mass:
+    case Kind::rotor_inertia:
+    case Kind::body_mass:
+    case Kind::body_inertia:
+    case Kind::body_center:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// The velocity of a centre that moves out by a unit along an axis of its link, from the angular one.
+template <class Matrix>
+Matrix swung(const FlexibleArm::BodyMotion& body, std::size_t axis, const Matrix& turned) {
+  const Eigen::Vector3d out = body.axes.col(static_cast<Eigen::Index>(axis));
+  Eigen::Matrix3d cross;
+  cross << 0.0, out.z(), -out.y(), -out.z(), 0.0, out.x(), out.y(), -out.x(), 0.0;
+  return cross * turned;
+}
+
+}  // namespace
+
+Eigen::MatrixXcd FlexibleArm::mass_change(const System& system, const ArmParameter& parameter,
+                                          const Eigen::MatrixXcd& x) const {
+  if (parameter.kind == Kind::rotor_inertia) {
+    const Eigen::Index c = coordinate_of(parameter);
+    Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(x.rows(), x.cols());
+    out.row(c) = system.rotor(c) * x.row(c);
+    return out;
+  }
+  if (parameter.kind == Kind::tool_mass) {
+    const Eigen::MatrixXd& input = system.tool_input[parameter.index];
+    return system.tool_mass_kg[parameter.index] * (input * (input.transpose() * x));
+  }
+  const BodyMotion& body = system.bodies[parameter.index];
+  const Eigen::MatrixXcd turned = body.turning * x, moved = body.linear * x;
+  if (parameter.kind == Kind::body_center) {
+    const Eigen::MatrixXcd out = swung(body, parameter.axis, turned);
+    const Eigen::Matrix3Xd arm = swung(body, parameter.axis, body.turning);
+    return body.mass_kg * (arm.transpose() * moved + body.linear.transpose() * out);
+  }
+  Eigen::MatrixXcd out = body.turning.transpose() * (body.inertia * turned);
+  if (parameter.kind == Kind::body_mass) out += body.mass_kg * (body.linear.transpose() * moved);
   return out;
 }
 
@@ -421,46 +471,42 @@ Eigen::Matrix3cd FlexibleArm::receptance(const System& system, Complex s) {
 
 void FlexibleArm::receptance(const System& system, Complex s, Eigen::Matrix3cd& value,
                              Eigen::Ref<Eigen::Matrix<Complex, 9, Eigen::Dynamic>> derivative) const {
-  const Eigen::MatrixXcd g = dynamic_stiffness(system, s).partialPivLu().solve(system.input.cast<Complex>());
+  const Eigen::Matrix<Complex, Eigen::Dynamic, 3> g =
+      dynamic_stiffness(system, s).partialPivLu().solve(system.input.cast<Complex>());
   value = system.input.transpose() * g + in_base(system);
-  const auto store = [&](std::size_t p, const Eigen::Matrix3cd& d) {
-    derivative.col(static_cast<Eigen::Index>(p)) = Eigen::Map<const Eigen::Matrix<Complex, 9, 1>>(d.data());
-  };
+  // ∂H = −gᵀ (∂K + s ∂C + s² ∂M) g; of a body from the motion of its centre and its turning, 3 x 3 each.
+  std::vector<Eigen::Matrix3cd> moved, turned;
+  for (const BodyMotion& body : system.bodies) {
+    moved.emplace_back(body.linear * g);
+    turned.emplace_back(body.turning * g);
+  }
   for (std::size_t p = 0; p < parameters_.size(); ++p) {
-    const Eigen::Index c = system.coordinate[p];
-    const auto along = [&](Complex factor) { store(p, factor * (g.row(c).transpose() * g.row(c))); };
-    switch (parameters_[p].kind) {
-      case Kind::joint_stiffness:
-      case Kind::tilt_stiffness:
-      case Kind::bracket_stiffness:
-      case Kind::tool_stiffness:
-        along(-system.stiffness(c));
-        break;
-      case Kind::joint_load:
-        along(-system.stiffness(c) * system.load(static_cast<Eigen::Index>(parameters_[p].index)));
-        break;
-      case Kind::joint_unloaded:
-        along(-system.stiffness(c) * unloaded(system.load(static_cast<Eigen::Index>(parameters_[p].index))));
-        break;
-      case Kind::joint_damping:
-      case Kind::tilt_damping:
-      case Kind::bracket_damping:
-      case Kind::tool_damping:
-        along(-s * system.damping(c));
-        break;
-      case Kind::compliance: {
-        const Eigen::Vector3d axis = system.flange_axes.col(static_cast<Eigen::Index>(parameters_[p].index));
-        store(p, (compliance_unit_m_per_n * axis * axis.transpose()).cast<Complex>());
-        break;
-      }
-      case Kind::tool_mass:
-      case Kind::rotor_inertia:
-      case Kind::body_mass:
-      case Kind::body_inertia:
-      case Kind::body_center:
-        store(p, -s * s * (g.transpose() * (system.mass_derivative[p] * g)));
-        break;
+    const ArmParameter& parameter = parameters_[p];
+    const std::size_t index = parameter.index;
+    Eigen::Matrix3cd change;
+    if (parameter.kind == Kind::compliance) {
+      const Eigen::Vector3d axis = system.flange_axes.col(static_cast<Eigen::Index>(index));
+      change = (compliance_unit_m_per_n * axis * axis.transpose()).cast<Complex>();
+    } else if (parameter.kind == Kind::body_center) {
+      const Eigen::Matrix3cd half = system.bodies[index].mass_kg *
+                                    swung(system.bodies[index], parameter.axis, turned[index]).transpose() *
+                                    moved[index];
+      change = -s * s * (half + half.transpose());
+    } else if (parameter.kind == Kind::body_mass || parameter.kind == Kind::body_inertia) {
+      const BodyMotion& body = system.bodies[index];
+      change = turned[index].transpose() * body.inertia * turned[index];
+      if (parameter.kind == Kind::body_mass) change += body.mass_kg * moved[index].transpose() * moved[index];
+      change *= -s * s;
+    } else if (parameter.kind == Kind::tool_mass) {
+      const Eigen::Matrix3cd at = system.tool_input[index].transpose() * g;
+      change = -s * s * system.tool_mass_kg[index] * at.transpose() * at;
+    } else {
+      const Eigen::Index c = coordinate_of(parameter);
+      const auto [stiffness, damping] = diagonal_change(system, parameter);
+      const double rotor = parameter.kind == Kind::rotor_inertia ? system.rotor(c) : 0.0;
+      change = -(stiffness + s * damping + s * s * rotor) * (g.row(c).transpose() * g.row(c));
     }
+    derivative.col(static_cast<Eigen::Index>(p)) = Eigen::Map<const Eigen::Matrix<Complex, 9, 1>>(change.data());
   }
 }
 
@@ -538,43 +584,20 @@ FlexibleArm::Sensitivity FlexibleArm::sensitivity(const System& system, const Mo
   for (Eigen::Index p = 0; p < count; ++p) {
     const ArmParameter& parameter = parameters_[static_cast<std::size_t>(p)];
     if (parameter.kind == Kind::compliance) continue;
-    const Eigen::Index c = system.coordinate[static_cast<std::size_t>(p)];
-    const Eigen::MatrixXd& mass = system.mass_derivative[static_cast<std::size_t>(p)];
-    double stiffness = 0.0, damping = 0.0;
-    switch (parameter.kind) {
-      case Kind::joint_load:
-        stiffness = system.stiffness(c) * system.load(static_cast<Eigen::Index>(parameter.index));
-        break;
-      case Kind::joint_unloaded:
-        stiffness = system.stiffness(c) * unloaded(system.load(static_cast<Eigen::Index>(parameter.index)));
-        break;
-      case Kind::joint_stiffness:
-      case Kind::tilt_stiffness:
-      case Kind::bracket_stiffness:
-      case Kind::tool_stiffness:
-        stiffness = system.stiffness(c);
-        break;
-      case Kind::joint_damping:
-      case Kind::tilt_damping:
-      case Kind::bracket_damping:
-      case Kind::tool_damping:
-        damping = system.damping(c);
-        break;
-      default:
-        break;
-    }
+    const Eigen::Index c = coordinate_of(parameter);
+    const bool mass = moves_mass(parameter.kind);
+    const auto [stiffness, damping] = diagonal_change(system, parameter);
+    const Eigen::MatrixXcd moved = mass ? mass_change(system, parameter, modes.shape) : Eigen::MatrixXcd();
     for (Eigen::Index k = 0; k < m; ++k) {
       const Complex pole = modes.pole(k);
-      // u = (dK + λ dC + λ² dM) ψ
+      // u = (∂K + λ ∂C + λ² ∂M) ψ
       Eigen::VectorXcd projected;
       Complex self_norm = 0.0;
-      if (mass.size() > 0) {
-        const Eigen::VectorXcd moved = mass * modes.shape.col(k);
-        projected = basis.transpose() * moved * (pole * pole);
-        self_norm = 2.0 * pole * (modes.shape.col(k).transpose() * moved).value();
+      if (mass) {
+        projected = basis.transpose() * moved.col(k) * (pole * pole);
+        self_norm = 2.0 * pole * (modes.shape.col(k).transpose() * moved.col(k)).value();
       } else {
-        const Complex factor = stiffness + pole * damping;
-        projected = basis.row(c).transpose() * (factor * modes.shape(c, k));
+        projected = basis.row(c).transpose() * ((stiffness + pole * damping) * modes.shape(c, k));
         self_norm = damping * modes.shape(c, k) * modes.shape(c, k);
       }
       const Complex shift = -projected(k);  // dλ

@@ -3,6 +3,7 @@
 #include <complex>
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "robomill/modal/modes.hpp"
@@ -67,6 +68,13 @@ class FlexibleArm {
   /// Sets the largest gravity torques, which the load is counted from.
   void scale_loads(const std::vector<Eigen::VectorXd>& postures);
 
+  /// A rigid body's motion by the coordinates.
+  struct BodyMotion {
+    double mass_kg = 0.0;
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();   ///< in B
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< of the link's frame, in B
+    Eigen::Matrix3Xd linear, turning;                    ///< 3 x n: of its centre, and angular
+  };
   /// The structure at one posture.
   struct System {
     Eigen::MatrixXd mass, input;         ///< n x n; n x 3, the tip's Jacobian in B
@@ -74,10 +82,12 @@ class FlexibleArm {
     Eigen::Matrix3d flange_axes = Eigen::Matrix3d::Identity();
     Eigen::Vector3d compliance = Eigen::Vector3d::Zero();  ///< in flange axes [m/N]
     Eigen::VectorXd load;                                  ///< of each joint, |gravity torque| over its largest
-    std::vector<Eigen::MatrixXd> mass_derivative;          ///< of each parameter that moves the mass matrix; else empty
-    std::vector<Eigen::Index> coordinate;  ///< of each parameter of stiffness or damping or rotor; -1: none
+    Eigen::VectorXd rotor;                                 ///< length n: inertia of the drives
+    std::vector<BodyMotion> bodies;
+    std::vector<double> tool_mass_kg;         ///< of each pair
+    std::vector<Eigen::MatrixXd> tool_input;  ///< n x 3: the tip without the other pairs
   };
-  [[nodiscard]] System at(const Eigen::VectorXd& joints, const Eigen::VectorXd& parameters, bool derivatives) const;
+  [[nodiscard]] System at(const Eigen::VectorXd& joints, const Eigen::VectorXd& parameters) const;
 
   /// H(s), 3 x 3 in B.
   static Eigen::Matrix3cd receptance(const System& system, std::complex<double> s);
@@ -114,8 +124,19 @@ class FlexibleArm {
   void add(ArmParameter::Kind kind, std::size_t index, double start, double deviation, double posture_deviation = 0.0,
            std::size_t axis = 0);
   void add_coordinates();
-  void add_parameters(const std::vector<Tool>& tools);
+  [[nodiscard]] double first_stiffness(const Coordinate& at, const std::vector<Tool>& tools) const;
+  void add_coordinate_parameters(const std::vector<Tool>& tools);
+  void add_mass_parameters(const std::vector<Tool>& tools);
+  [[nodiscard]] Eigen::Index coordinate_of(const ArmParameter& parameter) const;
+  [[nodiscard]] bool translates(const Coordinate& at) const;
   [[nodiscard]] Eigen::VectorXd gravity_torque(const Eigen::VectorXd& joints) const;
+  struct Values;
+  [[nodiscard]] Values values_of(const Eigen::VectorXd& parameters, System& out) const;
+  /// What a unit of a parameter of stiffness or damping adds to the diagonals.
+  [[nodiscard]] std::pair<double, double> diagonal_change(const System& system, const ArmParameter& parameter) const;
+  /// ∂M x by a parameter of mass.
+  [[nodiscard]] Eigen::MatrixXcd mass_change(const System& system, const ArmParameter& parameter,
+                                             const Eigen::MatrixXcd& x) const;
 
   robot::Cell cell_;
   ArmStructure structure_;
