@@ -146,6 +146,13 @@ void add(const PostureScore& one, PostureScore& all) {
   all.banded_limits += one.banded_limits;
 }
 
+std::string name_of(std::uint64_t seed) {
+  const SimulatedArm arm(seed);
+  return fmt::format("{} {}{}{}", seed, arm.is_heavy() ? "KR" : "UR",
+                     arm.bracket_axes() > 0 ? fmt::format(", bracket {}", arm.bracket_axes()) : "",
+                     arm.is_spindle_across() ? ", across" : "");
+}
+
 void print(const std::vector<ArmResult>& results, const Settings& settings) {
   fmt::print(
       "| arm | frequency error, %: median / 95 % | missed | residue error, %: median / 95 % | frequencies in 95 % band "
@@ -155,11 +162,7 @@ void print(const std::vector<ArmResult>& results, const Settings& settings) {
   std::vector<double> ratios;
   for (std::size_t k = 0; k < results.size(); ++k) {
     const ArmResult& result = results[k];
-    const std::uint64_t seed = settings.first + k;
-    const SimulatedArm arm(seed);
-    const std::string name = fmt::format("{} {}{}{}", seed, arm.is_heavy() ? "KR" : "UR",
-                                         arm.bracket_axes() > 0 ? fmt::format(", bracket {}", arm.bracket_axes()) : "",
-                                         arm.is_spindle_across() ? ", across" : "");
+    const std::string name = name_of(settings.first + k);
     if (!result.error.empty()) {
       fmt::print("| {} | failed: {} |\n", name, result.error);
     } else {
@@ -200,7 +203,12 @@ int main(int argc, char** argv) {
   }
   std::vector<ArmResult> results(settings.arms);
   parallel_for(settings.arms, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) results[k] = study(settings.first + k, settings);
+    for (std::size_t k = begin; k < end; ++k) {
+      results[k] = study(settings.first + k, settings);
+      const PostureScore& model = results[k].score[0];
+      fmt::print(stderr, "{}: limits {:.1f} %, ratio {:.2f}\n", name_of(settings.first + k),
+                 100.0 * median_limit(model), ratio(results[k]));
+    }
   });
   print(results, settings);
   return 0;
