@@ -65,7 +65,7 @@ double limit_depth_m(const BlockCut& at, const modal::ModalModel& modes) {
   stability::BlockOptions options;
   options.tolerance = at.tolerance;
   options.axial_depth_m = {depth_m / depths_below, depth_m * depths_above};
-  options.regime = options.quantiles = false;
+  options.margin = options.regime = options.quantiles = false;
   const stability::Limit limit =
       stability::block_stability(block_problem(at, modes), at.spindle_speed_rad_per_s, depth_m, options).limit;
   return limit.status == stability::Limit::Status::found ? limit.axial_depth_m : CutStability::none;
