@@ -66,6 +66,8 @@ it('names the worst blocks of a program, and says where none cuts', () => {
   expect(page()).toContain(`${Number(worst.toPrecision(3))} in block`);
   expect(page()).toContain('The blocks with the least margin');
   expect(page()).toContain('data-plot="limit-over"');
+  for (const scan of blocks.limit_over.slice(1)) scan.limit_depth_mm.fill(null);
+  expect(page()).toContain('With the cut of block 360 no limit was found anywhere along y, z, γ.');
   const { block, line, x_mm, y_mm, z_mm } = blocks.blocks;
   report.blocks = { blocks: { block, line, x_mm, y_mm, z_mm }, summary: { ...blocks.summary, cutting: 0, unstable: 0 }, limit_over: [] };
   expect(page()).toContain('No block of the program cuts.');

@@ -24,6 +24,8 @@ it('limits have a band a stretch, marks where the cut is unstable, and a line wh
   expect(data[4]).toMatchObject({ x: [2], y: [1] });
   expect(layout['shapes']).toMatchObject([{ x0: 4, x1: 4 }]);
   expect(limitFigure(columns, null, light).layout['shapes']).toEqual([]);
+  const uncertain = { ...columns, limit_95_percent_mm: [1.4, 900, null, 2, null] };
+  expect((limitFigure(uncertain, null, light).layout['yaxis'] as { range: number[] }).range[1]).toBeCloseTo(1.15 * 1.9);
 });
 
 it('where there is nothing but depths, they are drawn', () => {

@@ -48,6 +48,7 @@ export function limitFigure(columns: BlockColumns, selected: number | null, them
       hovertemplate: 'unstable<extra></extra>',
     });
   }
+  const most = highest([limit, low, depth]); // the upper edge of the band may be far above everything
   const at = selected === null ? null : columns.block[selected]!;
   const shapes: Layout[] = at === null ? [] : [{ type: 'line', xref: 'x', yref: 'paper', x0: at, x1: at, y0: 0, y1: 1, line: { color: theme.muted, width: 2 } }];
   return {
@@ -57,7 +58,7 @@ export function limitFigure(columns: BlockColumns, selected: number | null, them
       uirevision: 'blocks',
       margin: { l: 64, r: 36, t: 36, b: 48 },
       xaxis: axis(theme, 'Block', { tickformat: 'd' }),
-      yaxis: axis(theme, 'Axial depth (mm)', { rangemode: 'tozero' }),
+      yaxis: axis(theme, 'Axial depth (mm)', { range: [0, 1.15 * most || 1] }),
       shapes,
     }),
   };
@@ -104,7 +105,12 @@ export function overFigure(scan: LimitOver, most: number, depth: Num, theme: The
   };
 }
 
+/** The highest value of some columns; 0 where there is none. */
+function highest(columns: Num[][]): number {
+  return columns.reduce((most, column) => column.reduce<number>((so, value) => Math.max(so, value ?? 0), most), 0);
+}
+
 /** The deepest of all limits and of this depth. */
 export function deepest(scans: LimitOver[], depth: Num): number {
-  return scans.flatMap((scan) => scan.limit_depth_mm).reduce<number>((most, value) => Math.max(most, value ?? 0), depth ?? 0);
+  return highest([[depth], ...scans.map((scan) => scan.limit_depth_mm)]);
 }

@@ -44,26 +44,31 @@ function WorstTable({ columns, select }: { columns: BlockColumns; select: Select
     { heading: 'Mode', optional: true, cell: (i) => together(columns.mode?.[i] ?? dash) },
     { heading: 'Regime', optional: true, cell: (i) => together(regimeName(columns, i)) },
     number('Peak force (N)', columns.peak_f_n),
-    number('Deflection (µm)', columns.deflection_um),
   ];
   return <Table caption="The blocks with the least margin" columns={shown} rows={rows} rowClass={(i) => (isUnstable(columns, i) ? 'chatter' : '')} />;
 }
 
 const names: Record<LimitOver['parameter'], string> = { x_mm: 'x', y_mm: 'y', z_mm: 'z', gamma_deg: 'γ' };
 
-function Scans({ scans, columns }: { scans: LimitOver[]; columns: BlockColumns }) {
-  const depth = numberAt(columns.axial_depth_mm, columns.block.indexOf(scans[0]!.at_block));
+function Scans({ scans: all, columns }: { scans: LimitOver[]; columns: BlockColumns }) {
+  const at = all[0]!.at_block;
+  const scans = useMemo(() => all.filter((scan) => scan.limit_depth_mm.some((limit) => limit !== null)), [all]);
+  const depth = numberAt(columns.axial_depth_mm, columns.block.indexOf(at));
   const draw = useMemo(() => scans.map((scan): Draw => (theme) => overFigure(scan, deepest(scans, depth), depth, theme)), [scans, depth]);
-  const over = scans.map(({ parameter }) => names[parameter]).join(', ');
+  const namesOf = (some: LimitOver[]) => some.map(({ parameter }) => names[parameter]).join(', ');
+  const without = namesOf(all.filter((scan) => !scans.includes(scan)));
   return (
     <>
       <h3>What the posture does to the limit</h3>
-      <Plot
-        which="limit-over"
-        shows={`Limit depth over ${over}`}
-        caption={`Limit depth with the cut of block ${fixed(scans[0]!.at_block, 0)} at other places, one coordinate at a time; dashed: its programmed depth. Gaps: no limit found, or out of the robot's reach.`}
-        draw={draw}
-      />
+      {without !== '' && <p>{`With the cut of block ${fixed(at, 0)} no limit was found anywhere along ${without}.`}</p>}
+      {scans.length > 0 && (
+        <Plot
+          which="limit-over"
+          shows={`Limit depth over ${namesOf(scans)}`}
+          caption={`Limit depth with the cut of block ${fixed(at, 0)} at other places, one coordinate at a time; dashed: its programmed depth. Gaps: no limit found, or out of the robot's reach.`}
+          draw={draw}
+        />
+      )}
     </>
   );
 }
