@@ -114,7 +114,7 @@ std::optional<robot::Link> payload_of(const CellFile& cell) {
   const Eigen::Isometry3d flange = cell.cell.arm.flange * Eigen::Isometry3d(cell.end_effector.tip.linear().transpose());
   robot::Link link;
   link.mass_kg = *cell.end_effector.mass_kg;
-  link.center_m = flange * cell.end_effector.center_m.value_or(Eigen::Vector3d::Zero());
+  link.center_m = flange * cell.end_effector.center_m.value_or(0.5 * cell.end_effector.tip.translation());
   link.inertia_kg_m2 = link.mass_kg * radius_of_gyration_m * radius_of_gyration_m * Eigen::Matrix3d::Identity();
   return link;
 }

@@ -1,0 +1,118 @@
+#include "robomill/modal/posture_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+
+#include "robomill/base/error.hpp"
+#include "robomill/robot/dynamics.hpp"
+#include "robomill/robot/pose.hpp"
+#include "testing/modal/posture_judge.hpp"
+#include "testing/modal/simulated_arm.hpp"
+#include "testing/support.hpp"
+
+namespace robomill::modal {
+namespace posture_model_test {
+
+std::vector<MeasuredPosture> hit(const testing::SimulatedArm& arm, const testing::Hammering& hammering = {}) {
+  std::vector<MeasuredPosture> out;
+  for (std::size_t i = 0; i < arm.measured_postures().size(); ++i) {
+    const Eigen::VectorXd& joints = arm.measured_postures()[i];
+    out.push_back(
+        {.name = "posture " + std::to_string(i + 1), .joints = joints, .frfs = arm.measure(joints, i, hammering)});
+  }
+  return out;
+}
+
+// Two methods: the cell's joints by robot/dynamics, and as the model of the arm without measurements.
+TEST(PostureModel, WithoutMeasurementsHasTheModesOfTheCellsJoints) {
+  const testing::SimulatedArm arm(0);
+  const PostureModel model(arm.told(), {}, {}, {.band_high_hz = 2000.0});
+  EXPECT_EQ(model.report().source, PostureReport::Source::cell);
+  ASSERT_FALSE(model.report().notes.empty());
+  for (const Eigen::VectorXd& joints : arm.held_out_postures()) {
+    const PosturePrediction predicted = model.at(joints);
+    EXPECT_FALSE(predicted.measured_nearby);
+    const robot::ToolModes expected = robot::tool_modes(arm.told().arm, joints, robot::tip_point(arm.told()));
+    ASSERT_EQ(predicted.modes.modes.size(), expected.modes.size());
+    for (std::size_t k = 0; k < expected.modes.size(); ++k) {
+      const Mode& mode = predicted.modes.modes[k];
+      EXPECT_NEAR(mode.frequency_hz, expected.modes[k].frequency_hz, 1e-7 * mode.frequency_hz);
+      EXPECT_NEAR(mode.damping_ratio, expected.modes[k].damping_ratio, 1e-7);
+      const Eigen::Matrix3cd residue = mode.right * mode.left.transpose();
+      const Eigen::Matrix3cd other = expected.modes[k].right.head<3>() * expected.modes[k].left.head<3>().transpose();
+      EXPECT_LT((residue - other).norm(), 1e-6 * other.norm());
+      EXPECT_GT(mode.frequency_std_hz, 0.0);
+    }
+  }
+}
+
+// The truth (tilting bearings, bracket, backlash, stiffness that depends on the load) is written apart from the model,
+// and the cell is told 20 % off.
+TEST(PostureModel, PredictsPosturesThatWereNotMeasured) {
+  const int arms = test::seeds(10);
+  for (int seed = 0; seed < arms; ++seed) {
+    const testing::SimulatedArm arm(static_cast<std::uint64_t>(seed));
+    const PostureModel model(arm.told(), {}, hit(arm));
+    EXPECT_EQ(model.report().source, PostureReport::Source::calibrated);
+    EXPECT_LT(model.report().left_out_error, 0.15) << "arm " << seed;
+    const testing::PostureJudge judge(arm, {.limits = false, .bands = false});
+    const testing::PostureScore score =
+        judge.judge([&](const Eigen::VectorXd& joints) { return model.at(joints).modes; });
+    EXPECT_LT(testing::quantile(score.frequency_error, 0.5), 0.005) << "arm " << seed;
+    EXPECT_LT(testing::quantile(score.frequency_error, 0.9), 0.04) << "arm " << seed;
+    EXPECT_GT(score.frequencies_in_band, 0.75 * score.banded) << "arm " << seed;
+  }
+}
+
+TEST(PostureModel, GrowsLessCertainAwayFromMeasuredPostures) {
+  const testing::SimulatedArm arm(0);
+  std::vector<MeasuredPosture> measured = hit(arm);
+  measured.resize(4);
+  const PostureModel model(arm.told(), {}, measured);
+  const auto spread = [&](const Eigen::VectorXd& joints) {
+    double sum = 0.0;
+    const ModalModel modes = model.at(joints).modes;
+    for (std::size_t k = 0; k < 6; ++k) sum += modes.modes[k].frequency_std_hz / modes.modes[k].frequency_hz;
+    return sum;
+  };
+  Eigen::VectorXd away = measured.front().joints;
+  away(3) += 1.5;
+  away(4) = -away(4);
+  EXPECT_GT(spread(away), spread(measured.front().joints));
+  EXPECT_TRUE(model.at(measured.front().joints).measured_nearby);
+  EXPECT_NEAR(model.at(measured.front().joints).distance_rad, 0.0, 1e-12);
+}
+
+TEST(PostureModel, RejectsPosturesThatCannotBeCompared) {
+  const testing::SimulatedArm arm(0);
+  const std::vector<MeasuredPosture> measured = hit(arm);
+  const auto message = [&](std::vector<MeasuredPosture> with) -> std::string {
+    try {
+      const PostureModel model(arm.told(), {}, with);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return {};
+  };
+  std::vector<MeasuredPosture> outside = {measured[0], measured[1]};
+  outside[1].joints(2) = 50.0;
+  EXPECT_NE(message(outside).find("joint 3"), std::string::npos) << message(outside);
+  EXPECT_NE(message(outside).find("posture 2"), std::string::npos);
+  std::vector<MeasuredPosture> others = {measured[0], measured[1]};
+  others[1].frfs.frfs.pop_back();
+  EXPECT_NE(message(others).find("other directions"), std::string::npos) << message(others);
+  std::vector<MeasuredPosture> narrow = {measured[0], measured[1]};
+  narrow[1].frfs = arm.measure(measured[1].joints, 1, {.last_line_hz = 300.0});
+  EXPECT_NE(message(narrow).find("bands"), std::string::npos) << message(narrow);
+  std::vector<MeasuredPosture> elsewhere = {measured[0]};
+  for (Frf& frf : elsewhere[0].frfs.frfs) frf.name.response.point = 3;
+  EXPECT_NE(message(elsewhere).find("tip"), std::string::npos) << message(elsewhere);
+  robot::Cell bare = arm.told();
+  for (robot::Joint& joint : bare.arm.joints) joint.link = {};
+  EXPECT_THROW(PostureModel(bare, {}, {}), InvalidInput);
+}
+
+}  // namespace posture_model_test
+}  // namespace robomill::modal
