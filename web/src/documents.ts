@@ -337,7 +337,7 @@ export interface FeedDirection {
 
 /** What plan.json says beside its stages' documents. */
 export interface Plan {
-  facts: Fact[];
+  facts?: Fact[]; // of a cut that lobes were computed for
   agreement: Agreement;
   recommended: Recommendation | null;
   alternatives: Recommendation[];

@@ -74,6 +74,12 @@ it('names the worst blocks of a program, and says where none cuts', () => {
   expect(page()).not.toContain('data-plot="program-limit"');
 });
 
+it('needs no lobes beside a program', () => {
+  delete report.plan!.facts;
+  report.lobes = null;
+  expect(page()).toContain('<section id="program"');
+});
+
 it('names the chatter frequency once', () => {
   expect(page()).toContain('Chatter would be at 566');
   report.plan!.recommended!.limited_by = 'chatter of mode 8 at 566.4 Hz';

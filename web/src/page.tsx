@@ -62,7 +62,7 @@ function Header({ title, created, plan }: Report) {
     <header>
       <h1>{title}</h1>
       {created !== '' && <p class="created">{created}</p>}
-      {plan && <Facts facts={plan.facts} />}
+      {plan?.facts && <Facts facts={plan.facts} />}
     </header>
   );
 }
