@@ -19,6 +19,11 @@ namespace {
 /// Warnings of stretches beyond these are counted.
 constexpr std::size_t most_stretches = 8;
 
+/// Beyond every margin: limits are looked for down to a sixteenth of the depth.
+constexpr double chatters = 1e3;
+/// A limit whose 95 % quantile is this multiple of the 5 % one is hardly known.
+constexpr double hardly_known = 4.0;
+
 /// Each cutting block to a class; evaluation is its number.
 std::vector<std::size_t> classes_of(const ForcesResult& forces, const BlocksOptions& options,
                                     std::vector<BlockRow>& rows) {
@@ -93,6 +98,9 @@ std::string note_of(const BlockResult& force, const BlockRow& row) {
   if (!row.cuts) return {};
   if (force.settled == BlockResult::Settled::unsettled) return "deflection does not settle";
   if (row.cut.below_range) return "unstable at the least depth that was looked at: the limit is no higher";
+  if (row.cut.limit_95_percent_m > hardly_known * row.cut.limit_5_percent_m) {
+    return "the limit is hardly known: see its 5 and 95 % quantiles";
+  }
   if (row.cut.lower_bound) return "limit is a lower bound: process damping is not known";
   if (!std::isfinite(row.cut.limit_depth_m)) {
     return fmt::format("no limit up to {:.4g} mm", row.cut.searched_depth_m / units::mm);
@@ -151,8 +159,10 @@ void sum_up(const ForcesResult& forces, const std::vector<Shared>& shared, Progr
     ++out.cutting;
     if (row.unstable()) ++out.unstable;
     if (row.cut.lower_bound) ++bounds;
-    if (row.stability_margin < least) {
-      least = row.stability_margin;
+    // A block that chatters is worse than one that may.
+    const double margin = row.stability_margin - (row.unstable() ? chatters : 0.0);
+    if (margin < least) {
+      least = margin;
       out.worst = i;
     }
   }

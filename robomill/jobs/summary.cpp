@@ -180,7 +180,7 @@ void add_blocks(std::string& out, const ForcesResult& forces, const ProgramBlock
     return;
   }
   const BlockRow& worst = blocks.rows[blocks.worst];
-  append(out, "; least margin {:.3g} in line {} (block {}): {:.4g} mm deep, ", worst.stability_margin,
+  append(out, "; the worst, margin {:.3g}, is in line {} (block {}): {:.4g} mm deep, ", worst.stability_margin,
          forces.program->program.blocks[blocks.worst].line, blocks.worst + 1, worst.axial_depth_m / units::mm);
   if (std::isfinite(worst.cut.limit_depth_m)) {
     append(out, "limit {:.4g} mm, {} at {:.4g} Hz", worst.cut.limit_depth_m / units::mm, worst.cut.regime,

@@ -37,7 +37,7 @@ class Classes {
 
  private:
   [[nodiscard]] bool alike(const CutLook& a, const CutLook& b) const;
-  static constexpr std::size_t remembered = 64;
+  static constexpr std::size_t remembered = 512;
   LookTolerance tolerance_;
   std::vector<std::size_t> first_ = {};
   std::vector<CutLook> latest_ = {};  ///< of class k at k % remembered

@@ -48,9 +48,13 @@ CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
   if (block.limit.status == stability::Limit::Status::found) {
     out.limit_depth_m = block.limit.axial_depth_m;
     out.below_range = block.limit.axial_depth_m <= options.axial_depth_m[0];
-    out.limit_5_percent_m = block.limit_5_percent_m;
-    out.limit_50_percent_m = block.limit_50_percent_m;
-    out.limit_95_percent_m = block.limit_95_percent_m;
+    // The first order knows nothing of depths that were not looked at.
+    const auto looked_at = [&](double depth) {
+      return std::clamp(depth, options.axial_depth_m[0], options.axial_depth_m[1]);
+    };
+    out.limit_5_percent_m = looked_at(block.limit_5_percent_m);
+    out.limit_50_percent_m = looked_at(block.limit_50_percent_m);
+    out.limit_95_percent_m = looked_at(block.limit_95_percent_m);
     out.chatter_frequency_hz = block.limit.chatter_frequency_hz;
     out.mode = block.limit.mode;
   }
