@@ -244,6 +244,57 @@ TEST_F(Blocks, APlanWithoutLobesWritesThem) {
   EXPECT_EQ(json["summary"]["cutting"], plan.blocks->cutting);
 }
 
+// By forward kinematics the joints of a smoothed path hold the tip where each block ends, to the tolerance and a
+// sample.
+TEST_F(Blocks, PosturesAreThoseOfTheSmoothedPath) {
+  write_cell();
+  write_forces();
+  write_program();
+  std::string cell = io::read_file(folder_.at("cell.toml"));
+  cell.insert(cell.find("[workpiece]"),
+              "joint_max_velocity = [2.1, 2.0, 1.9, 3.1, 3.0, 3.8]\njoint_max_acceleration = [3, 3, 3, 8, 8, 10]\n"
+              "joint_max_jerk = [60, 60, 60, 200, 200, 250]\n");
+  cell +=
+      "\n[smoothing]\ntip_tolerance_mm = 0.02\naxis_tolerance_deg = 0.1\nmax_velocity_mm_per_s = 50\n"
+      "max_acceleration_mm_per_s2 = 500\nmax_jerk_mm_per_s3 = 10000\nmax_angular_velocity_deg_per_s = 60\n"
+      "max_angular_acceleration_deg_per_s2 = 600\nmax_angular_jerk_deg_per_s3 = 12000\n";
+  folder_.file("cell.toml", cell);
+  const PlanResult plan = run_with_modes();
+  ASSERT_TRUE(plan.path && plan.blocks);
+  const ProgramForces& program = *plan.forces->program;
+  ASSERT_EQ(plan.path->block_joints.size(), program.blocks.size());
+  const robot::Cell& arm = plan.forces->cell->cell;
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
+    EXPECT_EQ(program.blocks[i].joints, plan.path->block_joints[i]);
+    const robot::ToolPose pose = robot::tool_pose(arm, robot::forward(arm.arm, program.blocks[i].joints));
+    EXPECT_LT((pose.tip_m - program.program.blocks[i].end.tip_m).norm(), 0.1e-3) << i;
+  }
+}
+
+TEST_F(Blocks, SaysWhereTheProgramLeavesTheMeasuredRegion) {
+  write_cell();
+  write_forces();
+  write_program();
+  const ForcesResult forces = forces_of(run_with_modes());
+  const DynamicsAt known = dynamics();
+  const double border = forces.program->blocks[10].joints(0);
+  const ProgramBlocks blocks = judge_blocks(forces,
+                                            [&](const Eigen::VectorXd& joints) {
+                                              PostureDynamics out = known(joints);
+                                              out.measured_nearby = joints(0) > border;
+                                              out.joint_distance_rad = 0.2;
+                                              for (modal::Mode& mode : out.modes.modes)
+                                                mode.frequency_std_hz = 0.01 * mode.frequency_hz;
+                                              return out;
+                                            },
+                                            {.joint_tolerance_rad = 1e-3, .scan_points = 0});
+  const auto said = std::ranges::count_if(blocks.warnings, [](const std::string& text) {
+    return text.find("(line ") != std::string::npos && text.find("11.5° of a joint") != std::string::npos;
+  });
+  EXPECT_GE(said, 1);
+  EXPECT_LE(said, 3);
+}
+
 TEST_F(Blocks, SaysWhatIsMissing) {
   write_cell();
   write_forces();
