@@ -17,7 +17,7 @@ constexpr double matching_log_frequency = 0.2;  // frequencies this far apart ar
 constexpr double no_match = 1.0;                // a pair that costs as much is none
 constexpr double same_posture = 1e-9;           // [rad or m]
 
-const std::vector<Dof>& tip_dofs() {
+const std::vector<Dof>& tip_directions() {
   static const std::vector<Dof> dofs{
       {.point = 0, .axis = Axis::x}, {.point = 0, .axis = Axis::y}, {.point = 0, .axis = Axis::z}};
   return dofs;
@@ -50,7 +50,7 @@ void check(const std::vector<PostureModes>& measured, const robot::Arm& arm, con
     } catch (const InvalidInput& error) {
       throw within(path, error);
     }
-    const std::vector<Dof>& dofs = tip_dofs();
+    const std::vector<Dof>& dofs = tip_directions();
     if (model.responses != dofs || model.excitations.size() > dofs.size() ||
         !std::equal(model.excitations.begin(), model.excitations.end(), dofs.begin())) {
       throw InvalidInput(path + "modes",
@@ -196,8 +196,8 @@ void add_residuals(const std::vector<Residuals>& residuals, const Eigen::VectorX
   const Eigen::Matrix3cd mass = turn * mean.mass * turn.transpose(), stiff = turn * mean.stiffness * turn.transpose();
   for (Eigen::Index j = 0; j < 3; ++j) {
     for (Eigen::Index i = 0; i < 3; ++i) {
-      out.residuals.push_back({.name = {.response = tip_dofs()[static_cast<std::size_t>(i)],
-                                        .excitation = tip_dofs()[static_cast<std::size_t>(j)]},
+      out.residuals.push_back({.name = {.response = tip_directions()[static_cast<std::size_t>(i)],
+                                        .excitation = tip_directions()[static_cast<std::size_t>(j)]},
                                .mass = mass(i, j),
                                .stiffness = stiff(i, j)});
     }
@@ -231,7 +231,7 @@ ModalModel inverse_distance(const std::vector<PostureModes>& measured, const rob
     residuals[p] = {.mass = turn * of.mass * turn.transpose(), .stiffness = turn * of.stiffness * turn.transpose()};
   }
   ModalModel out;
-  out.excitations = out.responses = tip_dofs();
+  out.excitations = out.responses = tip_directions();
   const Eigen::Matrix3d to_base = axes_at(arm, joints, axes);
   for (const Track& track : tracks) {
     double known = 0.0;
