@@ -41,7 +41,9 @@ std::string hollow_program(int passes, int moves_a_pass) {
       out += fmt::format("G1 {} Z{:.3f} A{:.3f} C0.000 F{}\n", place, height_mm(share), lean_deg(share),
                          i == 0 ? 300 : 900);
     }
-    out += "G0 Z4.000\n";
+    // Away along the leant axis.
+    const double back_rad = lean_deg(1.0) / 180.0 * std::numbers::pi;
+    out += fmt::format("G0 Y{:.3f} Z4.000\n", y_mm + (4.0 - height_mm(1.0)) * std::tan(back_rad));
   }
   return out + "M2\n";
 }

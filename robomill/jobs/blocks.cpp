@@ -184,15 +184,6 @@ void sum_up(const ForcesResult& forces, const std::vector<Shared>& shared, Progr
   warn_of_region(forces, shared, out);
 }
 
-/// The middle one of the blocks that cut.
-std::size_t middle_block(const ProgramBlocks& blocks) {
-  std::size_t left = blocks.cutting / 2;
-  for (std::size_t i = 0; i < blocks.rows.size(); ++i) {
-    if (blocks.rows[i].cuts && left-- == 0) return i;
-  }
-  return 0;
-}
-
 }  // namespace
 
 void BlocksOptions::validate() const {
@@ -227,8 +218,7 @@ ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamic
   }
   sum_up(forces, shared, out);
   if (out.cutting > 0 && options.scan_points > 0) {
-    out.scanned = middle_block(out);
-    out.scans = limit_scans(forces, out.scanned, dynamics, options);
+    out.scans = limit_scans(forces, out.worst, dynamics, options);
   }
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   return out;

@@ -84,10 +84,9 @@ struct LimitScan {
 struct ProgramBlocks {
   std::vector<BlockRow> rows = {};  ///< one a block of the program
   std::size_t cutting = 0, unstable = 0;
-  std::size_t worst = 0;        ///< the block with the least margin, of those that chatter where some do
-  std::size_t evaluations = 0;  ///< different cuts that were looked at
-  std::size_t scanned = 0;      ///< the block around which `scans` are
-  std::vector<LimitScan> scans = {};
+  std::size_t worst = 0;              ///< the block with the least margin, of those that chatter where some do
+  std::size_t evaluations = 0;        ///< different cuts that were looked at
+  std::vector<LimitScan> scans = {};  ///< around the worst block
   std::vector<std::string> warnings = {}, notes = {};
   double seconds = 0.0;
 };

@@ -133,8 +133,8 @@ Json scans_json(const ForcesResult& forces, const ProgramBlocks& blocks) {
     list.push_back({{"parameter", scan.parameter},
                     {"value", std::move(value)},
                     {"limit_depth_mm", std::move(limit)},
-                    {"at_block", blocks.scanned + 1},
-                    {"at_line", forces.program->program.blocks[blocks.scanned].line}});
+                    {"at_block", blocks.worst + 1},
+                    {"at_line", forces.program->program.blocks[blocks.worst].line}});
   }
   return list;
 }
