@@ -23,7 +23,7 @@ constexpr double stages[] = {0.2, 0.1, 0.05, 0.02};
 constexpr int stage_lines[] = {50, 70, 100, 150};
 
 /// One posture's share of the cost, its gradient and Gauss-Newton matrix.
-struct Normal {
+struct PostureNormal {
   double cost = 0.0;       ///< Σ |r|² loss'd
   double error = 0.0;      ///< Σ |ΔH|, and …
   double size = 0.0;       ///< … Σ |H|
@@ -35,11 +35,11 @@ struct Normal {
 /// Large residuals count less: c² ln(1 + r²/c²).
 constexpr double robust = 4.0;
 
-Normal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, const SmoothedFrf& frf,
-                 const Eigen::VectorXd& parameters, bool derivatives) {
+PostureNormal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, const SmoothedFrf& frf,
+                        const Eigen::VectorXd& parameters, bool derivatives) {
   const Eigen::Index count = parameters.size();
   const FlexibleArm::System system = arm.at(joints, parameters);
-  Normal out;
+  PostureNormal out;
   out.matrix = Eigen::MatrixXd::Zero(count, count);
   out.gradient = Eigen::VectorXd::Zero(count);
   const Eigen::Index lines = static_cast<Eigen::Index>(frf.s.size());
@@ -95,9 +95,9 @@ Normal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, const Sm
 }
 
 /// Everything that stays the same while the parameters are sought.
-class Search {
+class CalibrationSearch {
  public:
-  Search(const FlexibleArm& arm, const CalibrationData& data, bool varying, const Eigen::VectorXd& near)
+  CalibrationSearch(const FlexibleArm& arm, const CalibrationData& data, bool varying, const Eigen::VectorXd& near)
       : arm_(arm), data_(data), start_(arm.start()) {
     prior_.resize(start_.size());
     for (Eigen::Index p = 0; p < start_.size(); ++p) {
@@ -172,7 +172,7 @@ class Search {
   /// From residuals: the variance of one, alike lines counted once.
   void estimate_noise() {
     double cost = 0.0, residuals = 0.0;
-    for (const Normal& normal : normals_) {
+    for (const PostureNormal& normal : normals_) {
       cost += normal.cost;
       residuals += normal.residuals;
     }
@@ -181,7 +181,7 @@ class Search {
   [[nodiscard]] double noise() const { return noise_; }
   [[nodiscard]] double error() const {
     double error = 0.0, size = 0.0;
-    for (const Normal& normal : normals_) {
+    for (const PostureNormal& normal : normals_) {
       error += normal.error;
       size += normal.size;
     }
@@ -207,13 +207,14 @@ class Search {
     return {.parameters = parameters_of(common, differing, posture),
             .covariance = pick * factor.solve(pick.transpose())};
   }
-  [[nodiscard]] Normal evaluate_at(std::size_t posture, const Eigen::VectorXd& parameters, bool derivatives) const {
+  [[nodiscard]] PostureNormal evaluate_at(std::size_t posture, const Eigen::VectorXd& parameters,
+                                          bool derivatives) const {
     return normal_of(arm_, data_.joints()[posture], (*frfs_)[posture], parameters, derivatives);
   }
   /// A posture's own parameters: its receptances, with a wide prior about what was predicted.
-  [[nodiscard]] Eigen::VectorXd refined(std::size_t posture, const Eigen::VectorXd& predicted, Normal at) const {
+  [[nodiscard]] Eigen::VectorXd refined(std::size_t posture, const Eigen::VectorXd& predicted, PostureNormal at) const {
     Eigen::VectorXd now = predicted;
-    const auto cost = [&](const Normal& normal, const Eigen::VectorXd& where) {
+    const auto cost = [&](const PostureNormal& normal, const Eigen::VectorXd& where) {
       return normal.cost / noise_ + (where - predicted).cwiseAbs2().dot(prior_);
     };
     constexpr int rounds = 3;
@@ -225,7 +226,7 @@ class Search {
       const double before = cost(at, now);
       double share = 1.0;
       Eigen::VectorXd next = now + step;
-      Normal then = evaluate_at(posture, next, true);
+      PostureNormal then = evaluate_at(posture, next, true);
       constexpr double smallest_share = 0.1;
       while (!(cost(then, next) < before) && share > smallest_share) {
         share *= 0.4;
@@ -279,7 +280,7 @@ class Search {
   }
   double total(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing) const {
     double cost = prior_cost(common, differing);
-    for (const Normal& normal : normals_) cost += normal.cost / noise_;
+    for (const PostureNormal& normal : normals_) cost += normal.cost / noise_;
     return cost;
   }
   [[nodiscard]] double prior_cost(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing) const {
@@ -366,7 +367,7 @@ class Search {
   std::vector<double> deviation_;
   Eigen::MatrixXd inverse_kernel_;
   const std::vector<SmoothedFrf>* frfs_ = nullptr;
-  std::vector<Normal> normals_;
+  std::vector<PostureNormal> normals_;
   Eigen::VectorXd common_;
   Eigen::MatrixXd differing_;
   double noise_ = alike_lines;
@@ -380,14 +381,15 @@ double quantile95(std::vector<double> values) {
 }
 
 /// Predicted deviations of one posture's modes.
-struct Spread {
+struct ModeSpread {
   Eigen::VectorXd log_frequency, damping_ratio, residue;
 };
-Spread spread_of(const FlexibleArm& arm, const FlexibleArm::System& system, const FlexibleArm::Modes& modes,
-                 const Eigen::MatrixXd& covariance) {
+ModeSpread spread_of(const FlexibleArm& arm, const FlexibleArm::System& system, const FlexibleArm::Modes& modes,
+                     const Eigen::MatrixXd& covariance) {
   const FlexibleArm::Sensitivity by = arm.sensitivity(system, modes);
   const Eigen::Index m = modes.pole.size();
-  Spread out{.log_frequency = Eigen::VectorXd(m), .damping_ratio = Eigen::VectorXd(m), .residue = Eigen::VectorXd(m)};
+  ModeSpread out{
+      .log_frequency = Eigen::VectorXd(m), .damping_ratio = Eigen::VectorXd(m), .residue = Eigen::VectorXd(m)};
   for (Eigen::Index k = 0; k < m; ++k) {
     out.log_frequency(k) =
         std::sqrt(std::max(0.0, (by.log_frequency.row(k) * covariance * by.log_frequency.row(k).transpose()).value()));
@@ -417,20 +419,20 @@ Eigen::Index counterpart(const FlexibleArm::Modes& of, Eigen::Index mode, const 
 }
 
 /// How far the left-out postures' own modes lie from their predictions, in predicted deviations.
-void scale_deviations(const FlexibleArm& arm, const Search& search, const CalibrationData& data, double highest_hz,
-                      Calibration& out) {
+void scale_deviations(const FlexibleArm& arm, const CalibrationSearch& search, const CalibrationData& data,
+                      double highest_hz, Calibration& out) {
   std::vector<std::vector<double>> z(3);
   double error = 0.0, size = 0.0;
   for (std::size_t k = 0; k < data.size(); ++k) {
-    const Search::LeftOut left = search.without(k);
-    const Normal at = search.evaluate_at(k, left.parameters, true);
+    const CalibrationSearch::LeftOut left = search.without(k);
+    const PostureNormal at = search.evaluate_at(k, left.parameters, true);
     error += at.error;
     size += at.size;
     const Eigen::VectorXd refined = search.refined(k, left.parameters, at);
     const FlexibleArm::System before = arm.at(data.joints()[k], left.parameters);
     const FlexibleArm::Modes predicted = arm.modes(before, highest_hz);
     const FlexibleArm::Modes found = arm.modes(arm.at(data.joints()[k], refined), highest_hz);
-    const Spread spread = spread_of(arm, before, predicted, left.covariance);
+    const ModeSpread spread = spread_of(arm, before, predicted, left.covariance);
     for (Eigen::Index i = 0; i < predicted.pole.size() && found.pole.size() > 0; ++i) {
       const Eigen::Index j = counterpart(predicted, i, found);
       const double was = std::abs(predicted.pole(i)), is = std::abs(found.pole(j));
@@ -471,7 +473,7 @@ CalibrationData::CalibrationData(const std::vector<PostureData>& postures) {
 Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, double highest_hz, bool varying,
                       const std::optional<Eigen::VectorXd>& near, Progress& progress) {
   Calibration out;
-  Search search(arm, data, varying, near.value_or(arm.start()));
+  CalibrationSearch search(arm, data, varying, near.value_or(arm.start()));
   out.length_rad = process_length_rad;
   if (data.size() > 0) {
     constexpr int stage_iterations = 8, last_iterations = 15;
@@ -505,9 +507,10 @@ PostureParameters predict(const FlexibleArm& arm, const Calibration& calibration
   Eigen::VectorXd to(n);
   for (Eigen::Index a = 0; a < n; ++a) {
     for (Eigen::Index b = 0; b < n; ++b) {
-      kernel(a, b) = Search::kernel_of(postures[static_cast<std::size_t>(a)], postures[static_cast<std::size_t>(b)]);
+      kernel(a, b) =
+          CalibrationSearch::kernel_of(postures[static_cast<std::size_t>(a)], postures[static_cast<std::size_t>(b)]);
     }
-    to(a) = Search::kernel_of(postures[static_cast<std::size_t>(a)], joints);
+    to(a) = CalibrationSearch::kernel_of(postures[static_cast<std::size_t>(a)], joints);
   }
   kernel.diagonal().array() += own_share;
   const Eigen::VectorXd weights = kernel.llt().solve(to);

@@ -19,7 +19,7 @@ constexpr double compliance_unit_m_per_n = 1e-8;
 constexpr double unloaded_share = 0.1;
 
 /// Where every coordinate and body stands.
-struct Placed {
+struct PlacedArm {
   Eigen::Matrix3Xd axis, origin;         ///< of each coordinate, in B
   std::vector<Eigen::Isometry3d> after;  ///< frame after each joint
   Eigen::Isometry3d flange = Eigen::Isometry3d::Identity();
@@ -48,11 +48,26 @@ FlexibleArm::FlexibleArm(const robot::Cell& cell, const std::optional<robot::Lin
     const robot::Link& link = cell.arm.joints[i].link;
     if (link.mass_kg > 0.0) bodies_.push_back({.joint = i, .on_bracket = i + 1 == n && !payload, .link = link});
   }
+  if (structure.bracket && !payload && n > 0 && cell.arm.joints[n - 1].link.mass_kg > 0.0) split_last_link();
   if (payload) bodies_.push_back({.joint = n - 1, .on_bracket = true, .link = *payload});
   largest_load_ = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(n));
   add_coordinates();
   add_coordinate_parameters(tools);
   add_mass_parameters(tools);
+}
+
+void FlexibleArm::split_last_link() {
+  // What of it does not ride on the bracket is not told: a quarter, between joint and flange, is where to start.
+  constexpr double inner_share = 0.25, inner_inertia_share = 0.1;
+  Body& outer = bodies_.back();
+  Body inner = outer;
+  inner.on_bracket = false;
+  inner.loose = outer.loose = true;
+  inner.link.mass_kg *= inner_share;
+  inner.link.center_m = 0.5 * cell_.arm.flange.translation();
+  inner.link.inertia_kg_m2 *= inner_inertia_share;
+  outer.link.mass_kg *= 1.0 - inner_share;
+  bodies_.push_back(inner);
 }
 
 void FlexibleArm::add_coordinates() {
@@ -145,10 +160,11 @@ void FlexibleArm::add_mass_parameters(const std::vector<Tool>& tools) {
     if (rotor > 0.0) add(Kind::rotor_inertia, i, std::log(rotor), 0.2);
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    add(Kind::body_mass, b, 0.0, 0.2);
-    add(Kind::body_inertia, b, 0.0, 0.2);
+    const double known = bodies_[b].loose ? 0.7 : 0.2;
+    add(Kind::body_mass, b, 0.0, known);
+    add(Kind::body_inertia, b, 0.0, known);
     const double arm = bodies_[b].link.center_m.norm();
-    for (std::size_t k = 0; k < 3; ++k) add(Kind::body_center, b, 0.0, 0.02 + 0.1 * arm, 0.0, k);
+    for (std::size_t k = 0; k < 3; ++k) add(Kind::body_center, b, 0.0, 0.02 + 0.5 * known * arm, 0.0, k);
   }
 }
 
@@ -183,8 +199,8 @@ Eigen::VectorXd FlexibleArm::start_near(const FlexibleArm& other, const Eigen::V
 namespace {
 
 /// Frames of joints and flange.
-Placed place_joints(const robot::Cell& cell, const Eigen::VectorXd& joints, std::vector<Eigen::Isometry3d>& before) {
-  Placed out;
+PlacedArm place_joints(const robot::Cell& cell, const Eigen::VectorXd& joints, std::vector<Eigen::Isometry3d>& before) {
+  PlacedArm out;
   Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
   for (std::size_t i = 0; i < cell.arm.joints.size(); ++i) {
     const robot::Joint& joint = cell.arm.joints[i];
@@ -206,7 +222,7 @@ Placed place_joints(const robot::Cell& cell, const Eigen::VectorXd& joints, std:
 
 Eigen::VectorXd FlexibleArm::gravity_torque(const Eigen::VectorXd& joints) const {
   std::vector<Eigen::Isometry3d> before;
-  const Placed placed = place_joints(cell_, joints, before);
+  const PlacedArm placed = place_joints(cell_, joints, before);
   Eigen::VectorXd torque = Eigen::VectorXd::Zero(joints.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
     const Eigen::Vector3d axis = before[i].linear() * cell_.arm.joints[i].axis.normalized();
@@ -322,7 +338,7 @@ FlexibleArm::Values FlexibleArm::values_of(const Eigen::VectorXd& parameters, Sy
 FlexibleArm::System FlexibleArm::at(const Eigen::VectorXd& joints, const Eigen::VectorXd& parameters) const {
   const Eigen::Index n = static_cast<Eigen::Index>(coordinates_.size());
   std::vector<Eigen::Isometry3d> before;
-  const Placed placed = place_joints(cell_, joints, before);
+  const PlacedArm placed = place_joints(cell_, joints, before);
   System out;
   out.flange_axes = placed.flange.linear();
   out.load = (gravity_torque(joints).array() / largest_load_.array()).min(2.0);

@@ -119,10 +119,12 @@ class FlexibleArm {
   struct Body {
     std::size_t joint = 0;  ///< that moves it
     bool on_bracket = false;
+    bool loose = false;  ///< a part of a link, told with the rest of it
     robot::Link link;
   };
   void add(ArmParameter::Kind kind, std::size_t index, double start, double deviation, double posture_deviation = 0.0,
            std::size_t axis = 0);
+  void split_last_link();
   void add_coordinates();
   [[nodiscard]] double first_stiffness(const Coordinate& at, const std::vector<Tool>& tools) const;
   void add_coordinate_parameters(const std::vector<Tool>& tools);

@@ -10,12 +10,12 @@ namespace robomill::modal::detail {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// An error counts over this share of the receptance, and of the matrix where an entry is small beside it.
 constexpr double counted_share = 0.05;
 constexpr double small_entry = 0.1;
 
-int row_of(const Dof& dof) {
+int axis_row(const Dof& dof) {
   return dof.point == 0 && static_cast<int>(dof.axis) <= 3 ? static_cast<int>(dof.axis) - 1 : -1;
 }
 
@@ -31,7 +31,8 @@ PostureData::PostureData(const MeasuredPosture& measured, const PostureModelOpti
     }
     for (const Dof& response : modes_->responses) {
       for (const Dof& excitation : modes_->excitations) {
-        if (row_of(response) >= 0 && row_of(excitation) >= 0) known_(row_of(response) + 3 * row_of(excitation)) = true;
+        if (axis_row(response) >= 0 && axis_row(excitation) >= 0)
+          known_(axis_row(response) + 3 * axis_row(excitation)) = true;
       }
     }
     low_hz_ = std::max(options.band_low_hz, 0.5 * lowest);
@@ -52,7 +53,7 @@ PostureData::PostureData(const MeasuredPosture& measured, const PostureModelOpti
     for (Eigen::Index k = 0; k < count; ++k)
       frequency_hz_(k) = measured.frfs.frequency_hz(lines[static_cast<std::size_t>(k)]);
     for (const Frf& frf : measured.frfs.frfs) {
-      const int row = row_of(frf.name.response), column = row_of(frf.name.excitation);
+      const int row = axis_row(frf.name.response), column = axis_row(frf.name.excitation);
       if (row < 0 || column < 0) continue;
       known_(row + 3 * column) = true;
       for (Eigen::Index k = 0; k < count; ++k) {
@@ -73,7 +74,7 @@ Eigen::Matrix<Complex, 9, 1> PostureData::of_modes(Complex s) const {
     const Complex lambda = pole(mode);
     for (std::size_t r = 0; r < modes_->responses.size(); ++r) {
       for (std::size_t e = 0; e < modes_->excitations.size(); ++e) {
-        const int row = row_of(modes_->responses[r]), column = row_of(modes_->excitations[e]);
+        const int row = axis_row(modes_->responses[r]), column = axis_row(modes_->excitations[e]);
         if (row < 0 || column < 0) continue;
         const Complex residue = mode.right(static_cast<Eigen::Index>(r)) * mode.left(static_cast<Eigen::Index>(e));
         sum(row + 3 * column) += residue / (s - lambda) + std::conj(residue) / (s - std::conj(lambda));
@@ -81,7 +82,7 @@ Eigen::Matrix<Complex, 9, 1> PostureData::of_modes(Complex s) const {
     }
   }
   for (const Residual& residual : modes_->residuals) {
-    const int row = row_of(residual.name.response), column = row_of(residual.name.excitation);
+    const int row = axis_row(residual.name.response), column = axis_row(residual.name.excitation);
     if (row >= 0 && column >= 0) sum(row + 3 * column) += residual.stiffness + residual.mass / (s * s);
   }
   return sum;
