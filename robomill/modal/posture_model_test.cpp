@@ -25,6 +25,15 @@ std::vector<MeasuredPosture> hit(const testing::SimulatedArm& arm, const testing
   return out;
 }
 
+std::vector<MeasuredPosture> with_modes(const testing::SimulatedArm& arm) {
+  std::vector<MeasuredPosture> out;
+  for (std::size_t i = 0; i < arm.measured_postures().size(); ++i) {
+    const Eigen::VectorXd& joints = arm.measured_postures()[i];
+    out.push_back({.name = "posture " + std::to_string(i + 1), .joints = joints, .modes = arm.modes(joints)});
+  }
+  return out;
+}
+
 // Two methods: the cell's joints by robot/dynamics, and as the model of the arm without measurements.
 TEST(PostureModel, WithoutMeasurementsHasTheModesOfTheCellsJoints) {
   const testing::SimulatedArm arm(0);
@@ -54,7 +63,11 @@ TEST(PostureModel, PredictsPosturesThatWereNotMeasured) {
   const int arms = test::seeds(10);
   for (int seed = 0; seed < arms; ++seed) {
     const testing::SimulatedArm arm(static_cast<std::uint64_t>(seed));
-    const PostureModel model(arm.told(), {}, hit(arm));
+    // From FRFs, from FRFs of the force columns x and y alone, or from modes.
+    const PostureModel model(arm.told(), {},
+                             seed % 3 == 0   ? hit(arm)
+                             : seed % 3 == 1 ? hit(arm, {.force_in_z = false})
+                                             : with_modes(arm));
     EXPECT_EQ(model.report().source, PostureReport::Source::calibrated);
     EXPECT_LT(model.report().left_out_error, 0.15) << "arm " << seed;
     const testing::PostureJudge judge(arm, {.limits = false, .bands = false});
@@ -63,6 +76,20 @@ TEST(PostureModel, PredictsPosturesThatWereNotMeasured) {
     EXPECT_LT(testing::quantile(score.frequency_error, 0.5), 0.005) << "arm " << seed;
     EXPECT_LT(testing::quantile(score.frequency_error, 0.9), 0.04) << "arm " << seed;
     EXPECT_GT(score.frequencies_in_band, 0.75 * score.banded) << "arm " << seed;
+  }
+}
+
+TEST(PostureModel, InterpolatesMeasuredModesWhereTheCellHasNoMasses) {
+  const testing::SimulatedArm arm(0);
+  robot::Cell bare = arm.told();
+  for (robot::Joint& joint : bare.arm.joints) joint.link = {};
+  const PostureModel model(bare, {}, with_modes(arm));
+  EXPECT_EQ(model.report().source, PostureReport::Source::interpolated);
+  ASSERT_FALSE(model.report().notes.empty());
+  const Eigen::VectorXd& joints = arm.measured_postures()[4];
+  const ModalModel predicted = model.at(joints).modes, measured = arm.modes(joints);
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_NEAR(predicted.modes[k].frequency_hz, measured.modes[k].frequency_hz, 1e-6 * measured.modes[k].frequency_hz);
   }
 }
 
