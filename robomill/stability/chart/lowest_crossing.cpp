@@ -11,9 +11,9 @@ struct Sample {
   double at = 0.0, value = 0.0;  ///< ln of the radius
 };
 
-class Search {
+class LowestSearch {
  public:
-  Search(const LookAlong& look, const CrossingOptions& options) : look_(look), options_(options) {}
+  LowestSearch(const LookAlong& look, const CrossingOptions& options) : look_(look), options_(options) {}
 
   Crossing run(const std::vector<double>& marks) {
     for (std::size_t first = 0; first < marks.size() && !unstable_; first += options_.at_a_time) {
@@ -163,7 +163,7 @@ class Search {
 }  // namespace
 
 Crossing lowest_crossing(const LookAlong& look, const std::vector<double>& marks, const CrossingOptions& options) {
-  return Search(look, options).run(marks);
+  return LowestSearch(look, options).run(marks);
 }
 
 }  // namespace robomill::stability::detail
