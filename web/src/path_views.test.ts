@@ -74,7 +74,7 @@ describe('a block', () => {
   it('says what is known of it', () => {
     expect(values(0)).toMatchObject({ Block: '1', Line: '10', Cut: 'none' });
     expect(values(2)).toMatchObject({ Verdict: 'unstable', Regime: 'mode coupling', Note: '<b>far</b>', Dynamics: 'far from every measured posture' });
-    expect(values(2)['Limit (5 – 95 %)']).toMatch(/^0\.7 \(0\.6.*0\.8\).*a lower bound$/);
+    expect(values(2)['Limit (5\u00a0–\u00a095\u00a0%)']).toMatch(/^0\.7 \(0\.6.*0\.8\).*a lower bound$/);
     expect(values(1)['Torque']).toBeUndefined();
   });
   it('without a limit says so', () => {

@@ -172,7 +172,7 @@ export function blockFacts(columns: BlockColumns, index: number): Fact[] {
     { label: 'Verdict', value: isUnstable(columns, index) ? 'unstable' : 'stable' },
     { label: '|μ|', value: at('spectral_radius', '') },
     { label: 'Axial, radial depth', value: `${at('axial_depth_mm', '')}, ${at('radial_depth_mm', 'mm')}` },
-    { label: 'Limit (5 – 95 %)', value: `${limitOf(columns, index)}${thinSpace}mm${bound}` },
+    { label: 'Limit (5\u00a0–\u00a095\u00a0%)', value: `${limitOf(columns, index)}${thinSpace}mm${bound}` },
     { label: 'Stability margin', value: at('stability_margin', '') },
     { label: 'Gain margin', value: at('gain_margin', '') },
     { label: 'Chatter frequency', value: at('chatter_frequency_hz', 'Hz') },
