@@ -1,0 +1,135 @@
+#include "robomill/jobs/posture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "robomill/base/units.hpp"
+#include "robomill/jobs/lobes.hpp"
+#include "robomill/modal/files/frf_files.hpp"
+#include "testing/support.hpp"
+
+namespace robomill::jobs {
+namespace posture_test {
+
+using robomill::test::Folder;
+using robomill::test::rejection;
+
+const std::string cell = R"([robot]
+dh = [{ a_mm = 350, alpha_deg = -90, d_mm = 449.4 }, { a_mm = 1150, theta_offset_deg = -90 },
+      { a_mm = 41, alpha_deg = -90, theta_offset_deg = 180 }, { alpha_deg = 90, d_mm = -1200 }, { alpha_deg = -90 },
+      { alpha_deg = 180, d_mm = -420, theta_offset_deg = 180 }]
+joint_min_position_deg = [-180, -120, -120, -350, -120, -350]
+joint_max_position_deg = [180, 120, 120, 350, 120, 350]
+joint_stiffness_n_m_per_rad = [2.2072e6, 3.37672e6, 2.77569e6, 2.35016e6, 2.15746e6, 0.467056e6]
+joint_damping_n_m_s_per_rad = [1200, 1500, 900, 400, 300, 60]
+joint_rotor_inertia_kg_m2 = [60, 50, 40, 10, 8, 4]
+links = [{ mass_kg = 300, center_mm = [-100, 50, 0], inertia_kg_m2 = [10, 20, 30, 1, 2, 3] },
+         { mass_kg = 200, inertia_kg_m2 = [5, 9, 9, 0, 0, 0] }, { mass_kg = 150, inertia_kg_m2 = [4, 4, 4, 0, 0, 0] },
+         { mass_kg = 50, inertia_kg_m2 = [1, 1, 1, 0, 0, 0] }, { mass_kg = 30, inertia_kg_m2 = [0.5, 0.5, 0.5, 0, 0, 0] },
+         { mass_kg = 20, inertia_kg_m2 = [0.5, 0.5, 0.5, 0, 0, 0] }]
+[tool]
+length_mm = 300
+mount_rotation_deg = [0, 90, 0]
+)";
+const std::vector<double> joints_deg = {10.0, -5.0, 15.0, 20.0, 60.0, -10.0};
+
+std::string with_postures(const std::string& postures) {
+  return cell + postures;
+}
+
+TEST(Posture, OfACellWithoutMeasurementsIsMarkedSo) {
+  const Folder folder;
+  const ModesOfPosture posture = posture_modes(folder.file("cell.toml", cell), joints_deg);
+  const nlohmann::json json = nlohmann::json::parse(posture_modes_json(posture));
+  EXPECT_EQ(json["posture"]["source"], "cell");
+  EXPECT_EQ(json["posture"]["measured_nearby"], false);
+  EXPECT_TRUE(json["posture"]["distance_deg"].is_null());
+  EXPECT_EQ(json["posture"]["joints_deg"].size(), 6U);
+  ASSERT_EQ(json["modes"].size(), json["posture"]["modes"].size());
+  EXPECT_GT(json["modes"][0]["std"]["residue"], 0.0);
+  EXPECT_FALSE(json["notes"].empty());
+}
+
+TEST(Posture, IsTheSameFromMeasurementsInFlangeAndInBaseAxes) {
+  const Folder folder;
+  const std::filesystem::path plain = folder.file("cell.toml", cell);
+  const Eigen::VectorXd lines = Eigen::VectorXd::LinSpaced(496, 5.0, 500.0);
+  for (const PostureAxes axes : {PostureAxes::base, PostureAxes::flange}) {
+    const ModesOfPosture true_modes = posture_modes(plain, joints_deg, axes);
+    modal::write_frfs(folder.path() / (axes == PostureAxes::base ? "base.uff" : "flange.uff"),
+                      modal::synthesize(true_modes.prediction.modes, lines));
+  }
+  const std::string at = "[[postures]]\njoints_deg = [10, -5, 15, 20, 60, -10]\n";
+  const auto modes = [&](const char* name, const std::string& rest) {
+    return posture_modes(folder.file(name, with_postures(at + rest)), {5.0, 0.0, 10.0, 0.0, 50.0, 0.0}).prediction;
+  };
+  const modal::PosturePrediction base = modes("base.toml", "frf = \"base.uff\"\n");
+  const modal::PosturePrediction flange = modes("flange.toml", "frf = \"flange.uff\"\naxes = \"flange\"\n");
+  ASSERT_EQ(base.modes.modes.size(), flange.modes.modes.size());
+  for (std::size_t k = 0; k < base.modes.modes.size(); ++k) {
+    const modal::Mode &a = base.modes.modes[k], &b = flange.modes.modes[k];
+    EXPECT_NEAR(a.frequency_hz, b.frequency_hz, 1e-4 * a.frequency_hz);
+    const Eigen::Matrix3cd one = a.right * a.left.transpose(), other = b.right * b.left.transpose();
+    EXPECT_LT((one - other).norm(), 1e-2 * one.norm());
+  }
+}
+
+TEST(Posture, GivesLobesTheirModesAndTheirUncertainty) {
+  const Folder folder;
+  folder.file("cell.toml", cell);
+  const std::string lobes = R"([tool]
+teeth = 3
+diameter_mm = 16
+[cut]
+direction = "up"
+radial_depth_mm = 8
+[coefficients]
+tangential_n_per_mm2 = 800
+radial_n_per_mm2 = 250
+[lobes]
+spindle_speed_rpm = [3000, 15000]
+axial_depth_mm = [0, 5]
+grid = [10, 10]
+[uncertainty]
+samples = 20
+grid = [4, 4]
+[dynamics]
+cell = "cell.toml"
+)";
+  const LobesJobResult result =
+      run_lobes({.lobes = folder.file("lobes.toml", lobes + "joints_deg = [10, -5, 15, 20, 60, -10]\n")});
+  const nlohmann::json json = nlohmann::json::parse(lobes_document(result));
+  EXPECT_EQ(json["posture"]["joints_deg"][3], 20.0);
+  EXPECT_TRUE(json.contains("uncertainty"));
+  EXPECT_NE(
+      rejection([&] { (void)run_lobes({.lobes = folder.file("none.toml", lobes)}); }).find("is missing"),
+      std::string::npos);
+}
+
+TEST(Posture, RejectsWhatCannotBeAPosture) {
+  const Folder folder;
+  const auto read = [&](const std::string& postures) {
+    return rejection([&] { (void)read_cell(folder.file("cell.toml", with_postures(postures))); });
+  };
+  EXPECT_NE(read("[[postures]]\njoints_deg = [1, 2, 3]\nfrf = \"a.uff\"\n").find("one value a joint"),
+            std::string::npos);
+  EXPECT_NE(read("[[postures]]\njoints_deg = [1, 2, 300, 4, 5, 6]\nfrf = \"a.uff\"\n").find("joint 3"),
+            std::string::npos);
+  EXPECT_NE(read("[[postures]]\njoints_deg = [1, 2, 3, 4, 5, 6]\n").find("is missing"), std::string::npos);
+  EXPECT_NE(read("[[postures]]\njoints_deg = [1, 2, 3, 4, 5, 6]\nfrf = \"a.uff\"\nmodes = \"b.json\"\n").find("beside"),
+            std::string::npos);
+  EXPECT_NE(read("[[postures]]\njoints_deg = [1, 2, 3, 4, 5, 6]\nfrf = \"a.uff\"\naxes = \"tool\"\n").find("axes"),
+            std::string::npos);
+  const std::filesystem::path good = folder.file("good.toml", cell);
+  EXPECT_NE(rejection([&] { (void)posture_modes(good, {1.0, 2.0}); }).find("one value a joint"), std::string::npos);
+  EXPECT_NE(rejection([&] {
+              (void)posture_modes(good, {1.0, 2.0, 400.0, 4.0, 5.0, 6.0});
+            }).find("joint 3"),
+            std::string::npos);
+}
+
+}  // namespace posture_test
+}  // namespace robomill::jobs
