@@ -208,14 +208,16 @@ class PostureModel::Calibrated final : public Source {
       // A second pair of the tool can stand in for a missing bracket: the bracket is tried first, with and without it.
       offer(candidate(tilting, {}, nullptr, progress));
       for (const FlexibleArm::Tool& peak : peaks) {
+        const std::size_t kept = best.tools.size();
         std::vector<FlexibleArm::Tool> tools = best.tools;
         tools.push_back(peak);
-        const ArmStructure before = best.structure;
-        Candidate more = candidate(before, tools, &best, progress);
-        offer(std::move(more));
-        if (best.tools.size() < tools.size()) continue;
+        offer(candidate(best.structure, tools, &best, progress));
+        if (best.tools.size() == kept) {
+          if (kept > 0) break;
+          continue;
+        }
         if (!best.structure.bracket) offer(candidate(tilting, tools, nullptr, progress));
-        offer(candidate(tilting, best.tools, &best, progress));
+        if (!best.structure.bracket) offer(candidate(tilting, tools, &best, progress));
       }
     }
     keep(std::move(best));

@@ -134,7 +134,8 @@ class CalibrationSearch {
   }
 
   /// Levenberg-Marquardt over θ (and u).
-  void descend(int iterations, bool with_differing, Progress& progress) {
+  /// @param least_gain  of the cost, a share: less ends it
+  void descend(int iterations, double least_gain, bool with_differing, Progress& progress) {
     evaluate(common_, differing_, true);
     double cost = total(common_, differing_);
     double damping = 1e-2;
@@ -164,7 +165,7 @@ class CalibrationSearch {
       }
       if (!better) break;
       evaluate(common_, differing_, true);
-      if (gain < 1e-4 * cost) break;
+      if (gain < least_gain * cost) break;
     }
     final_cost_ = cost;
   }
@@ -476,15 +477,17 @@ Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, doubl
   CalibrationSearch search(arm, data, varying, near.value_or(arm.start()));
   out.length_rad = process_length_rad;
   if (data.size() > 0) {
-    constexpr int stage_iterations = 8, last_iterations = 15;
+    constexpr int stage_iterations = 6, last_iterations = 12, settling_iterations = 3;
+    constexpr double stage_gain = 5e-3, last_gain = 3e-4;
     constexpr std::size_t near_stage = 2;
     for (std::size_t i = near ? near_stage : 0; i < std::size(stages); ++i) {
       search.stage(i);
       const bool last = i + 1 == std::size(stages);
-      search.descend(last ? last_iterations : stage_iterations, varying && last, progress);
+      search.descend(last ? last_iterations : stage_iterations, last ? last_gain : stage_gain, varying && last,
+                     progress);
       search.estimate_noise();
     }
-    search.descend(4, varying, progress);
+    search.descend(settling_iterations, last_gain, varying, progress);
     out.error = search.error();
     out.noise = search.noise();
   }
