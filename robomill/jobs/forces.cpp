@@ -196,11 +196,11 @@ ForcesResult run_forces(const std::filesystem::path& forces, const std::filesyst
 
 ForcesResult run_forces(ForcesFile forces, const std::filesystem::path& program, std::optional<CellFile> cell,
                         Progress& progress) {
-  return run_forces(std::move(forces), program, std::move(cell), ProgramRun{}, progress);
+  return run_forces_with(std::move(forces), program, std::move(cell), ProgramRun{}, progress);
 }
 
-ForcesResult run_forces(ForcesFile forces, const std::filesystem::path& program, std::optional<CellFile> cell,
-                        const ProgramRun& run, Progress& progress) {
+ForcesResult run_forces_with(ForcesFile forces, const std::filesystem::path& program, std::optional<CellFile> cell,
+                             const ProgramRun& run, Progress& progress) {
   ForcesResult result = {.file = std::move(forces), .cell = std::move(cell)};
   if (!result.cell && !result.file.cell.empty()) result.cell = read_cell(result.file.cell);
   if (result.cell) result.notes = result.cell->notes;

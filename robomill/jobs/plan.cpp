@@ -394,7 +394,7 @@ void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, Pro
   if (!result.job.judges_blocks()) {
     result.forces = run_forces(std::move(file), result.job.program, cell, progress);
   } else {
-    result.forces = run_forces(std::move(file), result.job.program, cell, program_run(result), progress);
+    result.forces = run_forces_with(std::move(file), result.job.program, cell, program_run(result), progress);
   }
   result.forces->spindle = capacity_along(*result.forces, result.job.recommend.spindle);
   warn_of_spindle(result);

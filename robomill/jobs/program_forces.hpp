@@ -26,8 +26,8 @@ struct ProgramRun {
                                                          const std::filesystem::path& path);
 
 /// run_forces of a program that is run so.
-[[nodiscard]] ForcesResult run_forces(ForcesFile forces, const std::filesystem::path& program,
-                                      std::optional<CellFile> cell, const ProgramRun& run, Progress& progress);
+[[nodiscard]] ForcesResult run_forces_with(ForcesFile forces, const std::filesystem::path& program,
+                                           std::optional<CellFile> cell, const ProgramRun& run, Progress& progress);
 
 /// Forces along a program, and the robot under them where there is a cell.
 /// @throws InvalidInput with file and line, also where a block is out of the robot's reach; Interrupted

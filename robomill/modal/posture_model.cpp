@@ -176,7 +176,8 @@ class PostureModel::Calibrated final : public Source {
     out.arm = std::make_unique<FlexibleArm>(cell, payload_, structure, tools);
     if (!postures.empty()) out.arm->scale_loads(postures);
     std::optional<Eigen::VectorXd> start;
-    if (near != nullptr) start = out.arm->start_near(*near->arm, near->calibration.common);
+    if (near != nullptr)
+      start = out.arm->start_near(*near->arm, near->calibration.common, tools.size() >= near->tools.size());
     out.calibration = calibrate(*out.arm, *data_, highest_hz_, postures.size() >= 3, start, progress);
     progress.advance();
     return out;
@@ -196,7 +197,7 @@ class PostureModel::Calibrated final : public Source {
   void choose(const std::vector<FlexibleArm::Tool>& peaks, Progress& progress) {
     constexpr double worth = 0.97;
     const bool several = postures.size() >= 3;
-    progress.start("posture model", several ? 3 + 3 * peaks.size() : 1);
+    progress.start("posture model", several ? 2 + 3 * peaks.size() : 1);
     const ArmStructure stiff{.bearings = true, .bracket = false, .tool_modes = 0, .load = several};
     ArmStructure tilting = stiff;
     tilting.bracket = true;
@@ -204,21 +205,23 @@ class PostureModel::Calibrated final : public Source {
     const auto offer = [&](Candidate other) {
       if (other.error() < worth * best.error()) best = std::move(other);
     };
-    if (several) {
-      // A second pair of the tool can stand in for a missing bracket: the bracket is tried first, with and without it.
-      offer(candidate(tilting, {}, nullptr, progress));
+    const auto add_peaks = [&] {
       for (const FlexibleArm::Tool& peak : peaks) {
+        const auto same = [&](const FlexibleArm::Tool& tool) { return tool.frequency_hz == peak.frequency_hz; };
+        if (std::ranges::any_of(best.tools, same)) continue;
         const std::size_t kept = best.tools.size();
         std::vector<FlexibleArm::Tool> tools = best.tools;
         tools.push_back(peak);
         offer(candidate(best.structure, tools, &best, progress));
-        if (best.tools.size() == kept) {
-          if (kept > 0) break;
-          continue;
-        }
-        if (!best.structure.bracket) offer(candidate(tilting, tools, nullptr, progress));
-        if (!best.structure.bracket) offer(candidate(tilting, tools, &best, progress));
+        if (kept > 0 && best.tools.size() == kept) break;
       }
+    };
+    if (several) {
+      add_peaks();
+      // A peak may be the bracket's: one pair of the tool is tried beside it at each, from the cell's numbers on.
+      offer(candidate(tilting, {}, nullptr, progress));
+      for (const FlexibleArm::Tool& peak : peaks) offer(candidate(tilting, {peak}, nullptr, progress));
+      if (best.structure.bracket) add_peaks();
     }
     keep(std::move(best));
   }

@@ -174,7 +174,7 @@ Eigen::VectorXd FlexibleArm::start() const {
   return out;
 }
 
-Eigen::VectorXd FlexibleArm::start_near(const FlexibleArm& other, const Eigen::VectorXd& values) const {
+Eigen::VectorXd FlexibleArm::start_near(const FlexibleArm& other, const Eigen::VectorXd& values, bool tools) const {
   // Coordinates of a kind stand in one row; those of the tool begin later where there is a bracket.
   const auto first = [](const FlexibleArm& arm, Kind kind) {
     std::size_t least = SIZE_MAX;
@@ -188,7 +188,9 @@ Eigen::VectorXd FlexibleArm::start_near(const FlexibleArm& other, const Eigen::V
     const ArmParameter& own = parameters_[p];
     for (std::size_t q = 0; q < other.parameters_.size(); ++q) {
       const ArmParameter& its = other.parameters_[q];
-      if (its.kind != own.kind || its.axis != own.axis) continue;
+      const bool tool =
+          own.kind == Kind::tool_stiffness || own.kind == Kind::tool_damping || own.kind == Kind::tool_mass;
+      if (its.kind != own.kind || its.axis != own.axis || (tool && !tools)) continue;
       if (its.index - first(other, its.kind) != own.index - first(*this, own.kind)) continue;
       out(static_cast<Eigen::Index>(p)) = values(static_cast<Eigen::Index>(q));
     }
