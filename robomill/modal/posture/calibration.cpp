@@ -2,11 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "robomill/base/parallel.hpp"
+#include "robomill/modal/posture/posture_normal.hpp"
 
 namespace robomill::modal::detail {
 namespace {
@@ -21,78 +21,6 @@ constexpr double process_length_rad = 1.0;
 /// From the first stage on, the damping that is added to find the way, as a share of each frequency.
 constexpr double stages[] = {0.2, 0.1, 0.05, 0.02};
 constexpr int stage_lines[] = {50, 70, 100, 150};
-
-/// One posture's share of the cost, its gradient and Gauss-Newton matrix.
-struct PostureNormal {
-  double cost = 0.0;       ///< Σ |r|² loss'd
-  double error = 0.0;      ///< Σ |ΔH|, and …
-  double size = 0.0;       ///< … Σ |H|
-  double residuals = 0.0;  ///< how many
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd gradient;
-};
-
-/// Large residuals count less: c² ln(1 + r²/c²).
-constexpr double robust = 4.0;
-
-PostureNormal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, const SmoothedFrf& frf,
-                        const Eigen::VectorXd& parameters, bool derivatives) {
-  const Eigen::Index count = parameters.size();
-  const FlexibleArm::System system = arm.at(joints, parameters);
-  PostureNormal out;
-  out.matrix = Eigen::MatrixXd::Zero(count, count);
-  out.gradient = Eigen::VectorXd::Zero(count);
-  const Eigen::Index lines = static_cast<Eigen::Index>(frf.s.size());
-  Eigen::Matrix<Complex, 9, Eigen::Dynamic> derivative(9, count);
-  // The model is symmetric: the two entries that mirror each other have one row of derivatives.
-  constexpr std::array<std::array<Eigen::Index, 2>, 6> mirrored = {{{0, 0}, {4, 4}, {8, 8}, {1, 3}, {2, 6}, {5, 7}}};
-  constexpr Eigen::Index rows_a_line = 12;
-  Eigen::MatrixXd real;
-  Eigen::VectorXd residual;
-  if (derivatives) {
-    real.setZero(rows_a_line * lines, count);
-    residual.setZero(rows_a_line * lines);
-  }
-  for (Eigen::Index i = 0; i < lines; ++i) {
-    Eigen::Matrix3cd value;
-    if (derivatives) {
-      arm.receptance(system, frf.s[static_cast<std::size_t>(i)], value, derivative);
-    } else {
-      value = FlexibleArm::receptance(system, frf.s[static_cast<std::size_t>(i)]);
-    }
-    const Eigen::Map<const Eigen::Matrix<Complex, 9, 1>> model(value.data());
-    for (std::size_t pair = 0; pair < mirrored.size(); ++pair) {
-      double weights = 0.0;
-      Complex weighted = 0.0;
-      for (std::size_t side = 0; side < (mirrored[pair][0] == mirrored[pair][1] ? 1U : 2U); ++side) {
-        const Eigen::Index e = mirrored[pair][side];
-        const double weight = frf.weight(e, i);
-        if (weight == 0.0) continue;
-        const Complex miss = model(e) - frf.value(e, i);
-        const double square = std::norm(miss) * weight * weight;
-        out.cost += robust * robust * std::log1p(square / (robust * robust));
-        out.error += std::abs(miss);
-        out.size += std::abs(frf.value(e, i));
-        out.residuals += 2.0;
-        const double counted = weight * weight / (1.0 + square / (robust * robust));
-        weights += counted;
-        weighted += counted * miss;
-      }
-      if (!derivatives || weights == 0.0) continue;
-      const double root = std::sqrt(weights);
-      const Eigen::Index row = rows_a_line * i + 2 * static_cast<Eigen::Index>(pair);
-      real.row(row) = root * derivative.row(mirrored[pair][0]).real();
-      real.row(row + 1) = root * derivative.row(mirrored[pair][0]).imag();
-      residual(row) = weighted.real() / root;
-      residual(row + 1) = weighted.imag() / root;
-    }
-  }
-  if (!derivatives) return out;
-  out.matrix.selfadjointView<Eigen::Lower>().rankUpdate(real.transpose());
-  out.matrix.triangularView<Eigen::StrictlyUpper>() = out.matrix.transpose();
-  out.gradient.noalias() = real.transpose() * residual;
-  return out;
-}
 
 /// Everything that stays the same while the parameters are sought.
 class CalibrationSearch {
