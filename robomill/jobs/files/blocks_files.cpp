@@ -74,8 +74,9 @@ constexpr std::pair<const char*, BlockNumber> of_load[] = {
 std::vector<BlockColumn> block_columns(const ForcesResult& forces) {
   std::vector<BlockColumn> columns = place_columns(forces.program->blocks.front().joints.size());
   const auto add = [&columns](const auto& list) {
-    for (const auto& [name, get] : list)
-      columns.push_back({name, [get](const BlockLine& r) { return number(get(r)); }});
+    for (const auto& [name, get] : list) {
+      columns.push_back({name, [value = get](const BlockLine& r) { return number(value(r)); }});
+    }
   };
   add(of_stability);
   columns.push_back(
