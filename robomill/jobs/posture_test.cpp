@@ -104,9 +104,8 @@ cell = "cell.toml"
   const nlohmann::json json = nlohmann::json::parse(lobes_document(result));
   EXPECT_EQ(json["posture"]["joints_deg"][3], 20.0);
   EXPECT_TRUE(json.contains("uncertainty"));
-  EXPECT_NE(
-      rejection([&] { (void)run_lobes({.lobes = folder.file("none.toml", lobes)}); }).find("is missing"),
-      std::string::npos);
+  EXPECT_NE(rejection([&] { (void)run_lobes({.lobes = folder.file("none.toml", lobes)}); }).find("is missing"),
+            std::string::npos);
 }
 
 TEST(Posture, RejectsWhatCannotBeAPosture) {
