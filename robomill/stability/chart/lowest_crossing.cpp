@@ -106,7 +106,7 @@ class LowestSearch {
 
   /// From eight places within the bracket, which it narrows: a polynomial through the two on either side of the root.
   void interpolate(Sample& low, Sample& high, Crossing& out) {
-    std::array<double, lane_count> places;
+    std::array<double, lane_count> places = {};
     std::array<Outcome, lane_count> outcomes;
     for (std::size_t i = 0; i < lane_count; ++i) {
       const double share = (static_cast<double>(i) + 0.5) / lane_count;
