@@ -176,8 +176,7 @@ class PostureModel::Calibrated final : public Source {
     out.arm = std::make_unique<FlexibleArm>(cell, payload_, structure, tools);
     if (!postures.empty()) out.arm->scale_loads(postures);
     std::optional<Eigen::VectorXd> start;
-    if (near != nullptr)
-      start = out.arm->start_near(*near->arm, near->calibration.common, tools.size() >= near->tools.size());
+    if (near != nullptr) start = out.arm->start_near(*near->arm, near->calibration.common);
     out.calibration = calibrate(*out.arm, *data_, highest_hz_, postures.size() >= 3, start, progress);
     progress.advance();
     return out;

@@ -95,7 +95,6 @@ class CalibrationSearch {
       evaluate(common_, differing_, true);
       if (gain < least_gain * cost) break;
     }
-    final_cost_ = cost;
   }
 
   /// From residuals: the variance of one, alike lines counted once.
@@ -300,7 +299,6 @@ class CalibrationSearch {
   Eigen::VectorXd common_;
   Eigen::MatrixXd differing_;
   double noise_ = alike_lines;
-  double final_cost_ = 0.0;
 };
 
 double quantile95(std::vector<double> values) {
@@ -403,7 +401,6 @@ Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, doubl
                       const std::optional<Eigen::VectorXd>& near, Progress& progress) {
   Calibration out;
   CalibrationSearch search(arm, data, varying, near.value_or(arm.start()));
-  out.length_rad = process_length_rad;
   if (data.size() > 0) {
     constexpr int stage_iterations = 6, last_iterations = 12, settling_iterations = 3;
     constexpr double stage_gain = 5e-3, last_gain = 3e-4;
@@ -417,7 +414,6 @@ Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, doubl
     }
     search.descend(settling_iterations, last_gain, varying, progress);
     out.error = search.error();
-    out.noise = search.noise();
   }
   out.common = search.common();
   out.differing = search.differing();

@@ -16,8 +16,6 @@ struct Calibration {
   Eigen::MatrixXd differing;            ///< u, a column a posture; rows as `deviating`
   std::vector<Eigen::Index> deviating;  ///< parameters that u moves
   Eigen::MatrixXd covariance;           ///< of (θ, u posture by posture)
-  double length_rad = 1.0;              ///< of the process
-  double noise = 1.0;                   ///< variance of a residual in units of its weight
   double error = 0.0;                   ///< mean |ΔH| / |H|
   double left_out_error = 0.0;
   /// Factors on the predicted deviations of ln f, ζ and residues, from left-out postures.

@@ -18,9 +18,8 @@ constexpr double compliance_unit_m_per_n = 1e-8;
 /// A joint counts as unloaded below this share of its largest gravity torque.
 constexpr double unloaded_share = 0.1;
 
-/// Where every coordinate and body stands.
+/// Where joints and flange stand.
 struct PlacedArm {
-  Eigen::Matrix3Xd axis, origin;         ///< of each coordinate, in B
   std::vector<Eigen::Isometry3d> after;  ///< frame after each joint
   Eigen::Isometry3d flange = Eigen::Isometry3d::Identity();
 };
@@ -174,7 +173,7 @@ Eigen::VectorXd FlexibleArm::start() const {
   return out;
 }
 
-Eigen::VectorXd FlexibleArm::start_near(const FlexibleArm& other, const Eigen::VectorXd& values, bool tools) const {
+Eigen::VectorXd FlexibleArm::start_near(const FlexibleArm& other, const Eigen::VectorXd& values) const {
   // Coordinates of a kind stand in one row; those of the tool begin later where there is a bracket.
   const auto first = [](const FlexibleArm& arm, Kind kind) {
     std::size_t least = SIZE_MAX;
@@ -188,9 +187,7 @@ Eigen::VectorXd FlexibleArm::start_near(const FlexibleArm& other, const Eigen::V
     const ArmParameter& own = parameters_[p];
     for (std::size_t q = 0; q < other.parameters_.size(); ++q) {
       const ArmParameter& its = other.parameters_[q];
-      const bool tool =
-          own.kind == Kind::tool_stiffness || own.kind == Kind::tool_damping || own.kind == Kind::tool_mass;
-      if (its.kind != own.kind || its.axis != own.axis || (tool && !tools)) continue;
+      if (its.kind != own.kind || its.axis != own.axis) continue;
       if (its.index - first(other, its.kind) != own.index - first(*this, own.kind)) continue;
       out(static_cast<Eigen::Index>(p)) = values(static_cast<Eigen::Index>(q));
     }

@@ -64,8 +64,7 @@ class FlexibleArm {
   [[nodiscard]] const ArmStructure& structure() const { return structure_; }
   [[nodiscard]] Eigen::VectorXd start() const;
   /// The start, with the values of another arm's parameters where it has the same ones.
-  /// @param tools  those of its first tools too
-  [[nodiscard]] Eigen::VectorXd start_near(const FlexibleArm& other, const Eigen::VectorXd& values, bool tools) const;
+  [[nodiscard]] Eigen::VectorXd start_near(const FlexibleArm& other, const Eigen::VectorXd& values) const;
   /// Sets the largest gravity torques, which the load is counted from.
   void scale_loads(const std::vector<Eigen::VectorXd>& postures);
 
