@@ -9,6 +9,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
+#include "robomill/modal/tip.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -22,61 +23,31 @@ Eigen::VectorXd to_vector(const std::vector<double>& joints) {
   return Eigen::Map<const Eigen::VectorXd>(joints.data(), static_cast<Eigen::Index>(joints.size()));
 }
 
-const std::vector<modal::Dof>& tip_axes() {
-  static const std::vector<modal::Dof> axes = {
-      {.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
-  return axes;
-}
-
-/// q' = T q, F' = T F of modes that know x, y and z at the tip.
+/// Modes that know x, y and z at the tip, in other axes.
 modal::ModalModel turned(const modal::ModalModel& model, const Eigen::Matrix3d& turn, const std::string& name) {
-  if (model.excitations != tip_axes() || model.responses != tip_axes()) {
+  if (model.excitations != modal::tip_axes() || model.responses != modal::tip_axes()) {
     throw InvalidInput(name, "must know x, y and z of the tip to be turned from the flange's axes",
                        "Give them in base axes");
   }
-  modal::ModalModel out = model;
-  for (modal::Mode& mode : out.modes) {
-    mode.left = turn * mode.left;
-    mode.right = turn * mode.right;
-  }
-  Eigen::Matrix3cd mass = Eigen::Matrix3cd::Zero(), stiffness = mass;
-  for (const modal::Residual& residual : model.residuals) {
-    const int row = static_cast<int>(residual.name.response.axis) - 1;
-    const int column = static_cast<int>(residual.name.excitation.axis) - 1;
-    mass(row, column) = residual.mass;
-    stiffness(row, column) = residual.stiffness;
-  }
-  if (out.residuals.empty()) return out;
-  mass = (turn * mass * turn.transpose()).eval();
-  stiffness = (turn * stiffness * turn.transpose()).eval();
-  out.residuals.clear();
-  for (int j = 0; j < 3; ++j) {
-    for (int i = 0; i < 3; ++i) {
-      out.residuals.push_back(
-          {.name = {tip_axes()[static_cast<std::size_t>(i)], tip_axes()[static_cast<std::size_t>(j)]},
-           .mass = mass(i, j),
-           .stiffness = stiffness(i, j)});
-    }
-  }
-  return out;
+  return modal::turned(model, turn);
 }
 
 /// The same of FRFs, all nine of them.
 modal::FrfSet turned(const modal::FrfSet& set, const Eigen::Matrix3d& turn, const std::string& name) {
+  const std::vector<modal::Dof>& axes = modal::tip_axes();
   modal::FrfSet out{.frequency_hz = set.frequency_hz, .frfs = {}};
-  for (int j = 0; j < 3; ++j) {
-    for (int i = 0; i < 3; ++i) {
-      modal::Frf sum{.name = {tip_axes()[static_cast<std::size_t>(i)], tip_axes()[static_cast<std::size_t>(j)]},
-                     .receptance = Eigen::VectorXcd::Zero(set.frequency_hz.size())};
-      for (int l = 0; l < 3; ++l) {
-        for (int k = 0; k < 3; ++k) {
-          const modal::Frf* frf =
-              set.find({tip_axes()[static_cast<std::size_t>(k)], tip_axes()[static_cast<std::size_t>(l)]});
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      modal::Frf sum{.name = {axes[i], axes[j]}, .receptance = Eigen::VectorXcd::Zero(set.frequency_hz.size())};
+      for (std::size_t l = 0; l < 3; ++l) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const modal::Frf* frf = set.find({axes[k], axes[l]});
           if (frf == nullptr) {
             throw InvalidInput(name, "must hold all nine FRFs of the tip to be turned from the flange's axes",
                                "Give them in base axes, where the force columns x and y will do");
           }
-          sum.receptance += turn(i, k) * turn(j, l) * frf->receptance;
+          const auto index = [](std::size_t axis) { return static_cast<Eigen::Index>(axis); };
+          sum.receptance += turn(index(i), index(k)) * turn(index(j), index(l)) * frf->receptance;
         }
       }
       out.frfs.push_back(std::move(sum));

@@ -113,6 +113,43 @@ TipModes turned(const TipModes& modes, const Eigen::Matrix3d& turn) {
   return other;
 }
 
+const std::vector<Dof>& tip_axes() {
+  static const std::vector<Dof> axes = {{.axis = Axis::x}, {.axis = Axis::y}, {.axis = Axis::z}};
+  return axes;
+}
+
+ModalModel turned(const ModalModel& model, const Eigen::Matrix3d& turn) {
+  const int point = tip_point(model);
+  ModalModel out{.excitations = tip_axes(), .responses = tip_axes(), .modes = model.modes};
+  for (std::size_t k = 0; k < out.modes.size(); ++k) {
+    Mode& mode = out.modes[k];
+    mode.right = turn * at_point(model.modes[k].right, model.responses, point);
+    mode.left = turn * at_point(model.modes[k].left, model.excitations, point);
+    normalise(mode);
+  }
+  if (model.residuals.empty()) return out;
+  Eigen::Matrix3cd mass = Eigen::Matrix3cd::Zero();
+  Eigen::Matrix3cd stiffness = Eigen::Matrix3cd::Zero();
+  for (const Residual& residual : model.residuals) {
+    const auto& [response, excitation] = residual.name;
+    const bool here = response.point == point && excitation.point == point;
+    if (!here || row_of(response) < 0 || row_of(excitation) < 0) continue;
+    mass(row_of(response), row_of(excitation)) = residual.mass;
+    stiffness(row_of(response), row_of(excitation)) = residual.stiffness;
+  }
+  mass = (turn * mass * turn.transpose()).eval();
+  stiffness = (turn * stiffness * turn.transpose()).eval();
+  for (const Dof& excitation : tip_axes()) {
+    for (const Dof& response : tip_axes()) {
+      const Eigen::Index row = row_of(response);
+      const Eigen::Index column = row_of(excitation);
+      out.residuals.push_back(
+          {.name = {response, excitation}, .mass = mass(row, column), .stiffness = stiffness(row, column)});
+    }
+  }
+  return out;
+}
+
 TipModes joined(const TipModes& one, const TipModes& other) {
   TipModes both = one;
   const Eigen::Index n = one.pole.size();

@@ -33,6 +33,14 @@ struct TipModes {
 /// @param turn  T, orthogonal
 [[nodiscard]] ROBOMILL_API TipModes turned(const TipModes& modes, const Eigen::Matrix3d& turn);
 
+/// x, y and z of the tip.
+[[nodiscard]] ROBOMILL_API const std::vector<Dof>& tip_axes();
+
+/// The same of a modal model at its tip, over tip_axes(): modes with their deviations, and residuals. A direction that
+/// the model does not know stays rigid.
+/// @throws InvalidInput if the model knows neither x nor y at a tip, or has several points that could be the tip
+[[nodiscard]] ROBOMILL_API ModalModel turned(const ModalModel& model, const Eigen::Matrix3d& turn);
+
 /// The modes of one structure and then of the other, tool and workpiece: what counts in a cut is the displacement of
 /// one against the other, and the force that pushes one pushes the other back, so that receptances add.
 [[nodiscard]] ROBOMILL_API TipModes joined(const TipModes& one, const TipModes& other);

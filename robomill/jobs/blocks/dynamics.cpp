@@ -11,12 +11,6 @@
 #include "robomill/robot/pose.hpp"
 
 namespace robomill::jobs {
-namespace {
-
-const std::vector<modal::Dof> feed_axes = {
-    {.axis = modal::Axis::x}, {.axis = modal::Axis::y}, {.axis = modal::Axis::z}};
-
-}  // namespace
 
 bool vibrates(const robot::Arm& arm) {
   return std::ranges::any_of(arm.joints, [](const robot::Joint& j) { return j.link.mass_kg > 0.0; }) &&
@@ -26,7 +20,7 @@ bool vibrates(const robot::Arm& arm) {
 modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& joints) {
   const robot::ToolModes found = robot::tool_modes(cell.arm, joints, robot::tip_point(cell));
   modal::ModalModel model;
-  model.excitations = model.responses = feed_axes;
+  model.excitations = model.responses = modal::tip_axes();
   model.modes.reserve(found.modes.size());
   for (const robot::ToolMode& swing : found.modes) {
     modal::Mode mode;
@@ -37,25 +31,6 @@ modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& join
     model.modes.push_back(std::move(mode));
   }
   return model;
-}
-
-modal::ModalModel in_axes(const modal::ModalModel& model, const Eigen::Matrix3d& turn) {
-  const modal::TipModes tip = modal::turned(modal::tip_modes(model, {}, 0.0), turn);
-  modal::ModalModel out;
-  out.excitations = out.responses = feed_axes;
-  out.modes = model.modes;  // frequencies, damping ratios and their deviations
-  for (std::size_t k = 0; k < out.modes.size(); ++k) {
-    out.modes[k].right = tip.right.col(static_cast<Eigen::Index>(k));
-    out.modes[k].left = tip.left.col(static_cast<Eigen::Index>(k));
-  }
-  if (model.residuals.empty()) return out;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      out.residuals.push_back({.name = {feed_axes[static_cast<std::size_t>(i)], feed_axes[static_cast<std::size_t>(j)]},
-                               .stiffness = tip.compliance(i, j)});
-    }
-  }
-  return out;
 }
 
 DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& notes, Progress& progress) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "robomill/jobs/blocks/dynamics.hpp"
+#include "robomill/modal/tip.hpp"
 #include "robomill/stability/block.hpp"
 #include "robomill/stability/lobes.hpp"
 
@@ -23,7 +23,7 @@ stability::LobesProblem block_problem(const BlockCut& at, const modal::ModalMode
   cut.coefficients = at.file.coefficients;
   cut.feed_per_tooth_m = at.cut.feed_speed_m_per_s / teeth_per_s;
   const Eigen::Matrix3d base_from_feed = at.base_from_work * at.cut.work_from_feed;
-  problem.dynamics = in_axes(modes, base_from_feed.transpose());
+  problem.dynamics = modal::turned(modes, base_from_feed.transpose());
   return problem;
 }
 
