@@ -135,6 +135,7 @@ std::vector<double> limit_curve(const modal::ModalModel& modes, const std::vecto
   options.grid = {2, 100};
   options.tolerance = 1e-4;
   std::vector<double> speeds;
+  speeds.reserve(spindle_speed_rpm.size());
   for (const double rpm : spindle_speed_rpm) speeds.push_back(rpm * std::numbers::pi / 30.0);
   std::vector<double> out;
   for (const stability::Limit& limit : stability::limit_depths(problem, options, speeds)) {

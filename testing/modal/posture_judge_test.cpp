@@ -50,7 +50,7 @@ TEST(PostureJudge, MeasuresErrorsThatAreKnown) {
 // tell.
 TEST(PostureJudge, FindsTheTruthInBandsThatAreToldRightly) {
   PostureScore all;
-  for (const std::uint64_t seed : {0, 3}) {
+  for (const std::uint64_t seed : {0U, 3U}) {
     const SimulatedArm arm(seed);
     const PostureJudge judge(arm, {.limits = false});
     Random random(seed, 99);
