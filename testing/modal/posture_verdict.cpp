@@ -9,6 +9,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/robot/stiffness.hpp"
 #include "robomill/simulation/posture.hpp"
@@ -17,8 +18,6 @@ namespace robomill::modal::testing {
 namespace {
 
 using std::numbers::pi;
-constexpr double rpm = 2.0 * pi / 60.0;
-constexpr double degree = pi / 180.0;
 
 /// Table 4-5 of [RobotMillingChatter]: four depths at each speed, here as shares of their mean, which stands for the
 /// limit that they lie around. Up-milling, 12 mm, 1.8 mm radial, 0.01 mm a tooth; two teeth fit its results best.
@@ -61,14 +60,14 @@ Drawn random_cut(bool ball, Random& random) {
   cutting::FlatEndMill& mill = out.milling.cutter.mill;
   mill.teeth = 2 + static_cast<int>(random.index(3));
   mill.diameter_m = ball ? random.uniform(0.006, 0.012) : random.uniform(0.008, 0.016);
-  mill.helix_rad = random.uniform(0.0, 40.0) * degree;
+  mill.helix_rad = random.uniform(0.0, 40.0) * units::deg;
   cutting::Cut& cut = out.milling.cut;
   cut.direction = static_cast<cutting::MillingDirection>(random.index(3));
   cut.radial_depth_m = mill.diameter_m * (ball ? random.uniform(0.05, 0.3) : random.uniform(0.05, 0.6));
   if (ball) {
     out.milling.cutter.kind = cutting::CutterKind::ball_end;
-    cut.lead_rad = random.uniform(-25.0, 25.0) * degree;
-    cut.tilt_rad = random.uniform(-25.0, 25.0) * degree;
+    cut.lead_rad = random.uniform(-25.0, 25.0) * units::deg;
+    cut.tilt_rad = random.uniform(-25.0, 25.0) * units::deg;
   }
   const double tangential = random.uniform(6e8, 1.2e9);
   out.milling.coefficients = {.tangential_n_per_m2 = {tangential},
@@ -97,7 +96,7 @@ std::optional<JudgedCut> placed(const Drawn& drawn, const SimulatedArm& arm, con
   JudgedCut out;
   out.cut.spatial = drawn.milling;
   cutting::Cut& cut = out.cut.spatial->cut;
-  out.spindle_speed_rad_per_s = drawn.spindle_speed_rpm * rpm;
+  out.spindle_speed_rad_per_s = drawn.spindle_speed_rpm * units::rpm;
   out.feed_from_base = feed_from_base(arm, joints, cut, random);
   try {
     cut.axial_depth_m = 2.0 * drawn.deepest_m;
@@ -129,7 +128,7 @@ bool simulated_chatter(const JudgedCut& judged, const ModalModel& truth) {
   simulation::PostureCut cut;
   cut.cutter = milling.cutter;
   cut.engagement = cutting::engage(milling.cutter, milling.cut,
-                                   {.slices = ball ? 40 : 1 + static_cast<int>(std::ceil(lag / (3.0 * degree)))});
+                                   {.slices = ball ? 40 : 1 + static_cast<int>(std::ceil(lag / (3.0 * units::deg)))});
   cut.coefficients = milling.coefficients;
   cut.motion = {.feed_per_tooth_m = milling.feed_per_tooth_m,
                 .spindle_speed_rad_per_s = judged.spindle_speed_rad_per_s};

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "robomill/stability/lobes.hpp"
@@ -32,10 +33,11 @@ struct JudgedCut {
 };
 
 struct PostureVerdictOptions {
-  int cuts = 32;             ///< in each posture: half published ones, a quarter flat and a quarter ball ends
+  int cuts = 16;             ///< in each posture: half published ones, a quarter flat and a quarter ball ends
   std::size_t postures = 8;  ///< of the held-out ones, the first
-  double up_to_hz = 700.0;   ///< modes of the arm above it stand still in the simulation, as SimulatedArm::modes has it
-  std::uint64_t seed = 1;    ///< of the cuts
+  /// What the arm has above it stands still in the simulation, as SimulatedArm::modes says; infinite: nothing does.
+  double up_to_hz = std::numeric_limits<double>::infinity();
+  std::uint64_t seed = 1;  ///< of the cuts
 };
 
 struct VerdictCounts {
