@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/jobs/posture.hpp"
 #include "robomill/modal/files/fit_toml.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -52,14 +56,30 @@ void print_summary(const modal::FitResult& fit) {
 
 namespace {
 
+/// The posture of --joints, with errors in the option's words.
+jobs::ModesOfPosture posture_of(const ModesCommand& command, Progress& progress) {
+  std::vector<double> joints;
+  for (const double angle : command.joints_deg) joints.push_back(angle * units::deg);
+  try {
+    return jobs::posture_modes(command.cell, joints, value_in(jobs::posture_axes_names, command.axes).value(),
+                               progress);
+  } catch (const InvalidInput& error) {
+    InvalidInput::Parts parts = error.parts();
+    if (!parts.where.empty() || !parts.field.starts_with("joints")) throw;
+    parts.field = "--" + parts.field;
+    if (parts.number) *parts.number /= units::deg;
+    if (parts.number) parts.unit = "deg";
+    throw InvalidInput(std::move(parts));
+  }
+}
+
 /// The modes of a cell's posture.
 Exit run_posture(const ModesCommand& command, const Common& common, Progress& progress) {
-  const jobs::PostureAxes axes = value_in(jobs::posture_axes_names, command.axes).value();
-  const jobs::ModesOfPosture posture = jobs::posture_modes(command.cell, command.joints_deg, axes, progress);
+  const jobs::ModesOfPosture posture = posture_of(command, progress);
   write_output(common, [&](io::Format) { return jobs::posture_modes_json(posture); });
   if (!common.wants_summary()) return done;
   print_modes(posture.prediction.modes, [](int) { return std::string(); });
-  print_notes(posture.warnings, "Warning: ");
+  print_notes(jobs::posture_warnings(posture), "Warning: ");
   print_notes(posture.notes, "Note: ");
   return done;
 }

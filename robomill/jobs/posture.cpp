@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/units.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/modal/tip.hpp"
@@ -90,6 +89,20 @@ std::optional<robot::Link> payload_of(const CellFile& cell) {
   return link;
 }
 
+/// Before the long work starts.
+void require_posture(const robot::Arm& arm, const std::vector<double>& joints) {
+  if (joints.size() != arm.joints.size()) {
+    throw InvalidInput("joints",
+                       fmt::format("must hold one value a joint, {}; it holds {}", arm.joints.size(), joints.size()));
+  }
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const robot::Joint& joint = arm.joints[k];
+    if (std::isfinite(joints[k]) && joints[k] >= joint.min_position && joints[k] <= joint.max_position) continue;
+    throw InvalidInput(fmt::format("joints[{}]", k + 1), joints[k], joint.prismatic ? "m" : "rad",
+                       "must lie within the joint's limits, robot.joint_min_position_deg and joint_max_position_deg");
+  }
+}
+
 std::string description(const modal::PostureReport& report) {
   if (report.source != modal::PostureReport::Source::calibrated) return {};
   std::string text = fmt::format(
@@ -126,15 +139,12 @@ CellDynamics cell_dynamics(const CellFile& cell, Progress& progress) {
   return out;
 }
 
-ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vector<double>& joints_deg, PostureAxes axes,
-                             Progress& progress) {
+ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vector<double>& joints_given,
+                             PostureAxes axes, Progress& progress) {
   const CellFile cell = read_cell(path);
+  require_posture(cell.cell.arm, joints_given);
   ModesOfPosture out;
-  for (const double angle : joints_deg) out.joints.push_back(angle * units::deg);
-  if (out.joints.size() != cell.cell.arm.joints.size()) {
-    throw InvalidInput("joints_deg", fmt::format("must hold one value a joint, {}; it holds {}",
-                                                 cell.cell.arm.joints.size(), out.joints.size()));
-  }
+  out.joints = joints_given;
   const Eigen::VectorXd joints = to_vector(out.joints);
   CellDynamics dynamics = cell_dynamics(cell, progress);
   out.prediction = dynamics.model->at(joints);
@@ -142,14 +152,8 @@ ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vecto
   out.notes = std::move(dynamics.notes);
   const double along = robot::forward(cell.cell.arm, joints).linear()(2, 2);
   out.axis_off_z_rad = std::acos(std::clamp(std::abs(along), 0.0, 1.0));
-  if (!out.prediction.measured_nearby && out.report.postures > 0) {
-    out.warnings.push_back(fmt::format(
-        "The posture lies outside the measured region: {:.3g} deg from the nearest measured one (at most {:.3g} deg "
-        "within it). Its deviations grow with that.",
-        out.prediction.distance_rad / units::deg, out.report.region_rad / units::deg));
-  }
   if (axes == PostureAxes::flange) {
-    out.prediction.modes = turned(out.prediction.modes, flange_axes(cell, joints).transpose(), "joints_deg");
+    out.prediction.modes = turned(out.prediction.modes, flange_axes(cell, joints).transpose(), "joints");
   }
   return out;
 }

@@ -36,15 +36,17 @@ struct ModesOfPosture {
   modal::PosturePrediction prediction;
   modal::PostureReport report;
   double axis_off_z_rad = 0.0;  ///< of the tool's axis from the base's z
-  std::vector<std::string> warnings = {}, notes = {};
+  std::vector<std::string> notes = {};
 };
-/// @param joints_deg  one value a joint
-/// @throws InvalidInput as cell_dynamics, or naming the joint that is outside its limits
+/// @param joints  one value a joint [rad or m]
+/// @throws InvalidInput as cell_dynamics, or naming "joints[k]" (k from 1) that is outside its limits
 [[nodiscard]] ROBOMILL_API ModesOfPosture posture_modes(const std::filesystem::path& cell,
-                                                        const std::vector<double>& joints_deg,
+                                                        const std::vector<double>& joints,
                                                         PostureAxes axes = PostureAxes::base,
                                                         Progress& progress = Progress::none());
 
+/// Sentences for the user: how far the posture lies outside the measured region; empty: it does not.
+[[nodiscard]] ROBOMILL_API std::vector<std::string> posture_warnings(const ModesOfPosture& posture);
 /// modes.json of a posture: its modes, and under "posture" where it is and how well it is known.
 [[nodiscard]] ROBOMILL_API std::string posture_modes_json(const ModesOfPosture& posture);
 

@@ -34,53 +34,13 @@ links = [{ mass_kg = 300, center_mm = [-100, 50, 0], inertia_kg_m2 = [10, 20, 30
 length_mm = 300
 mount_rotation_deg = [0, 90, 0]
 )";
-const std::vector<double> joints_deg = {10.0, -5.0, 15.0, 20.0, 60.0, -10.0};
-
-std::string with_postures(const std::string& postures) {
-  return cell + postures;
+std::vector<double> radians(std::vector<double> degrees) {
+  for (double& angle : degrees) angle *= units::deg;
+  return degrees;
 }
+const std::vector<double> joints = radians({10.0, -5.0, 15.0, 20.0, 60.0, -10.0});
 
-TEST(Posture, OfACellWithoutMeasurementsIsMarkedSo) {
-  const Folder folder;
-  const ModesOfPosture posture = posture_modes(folder.file("cell.toml", cell), joints_deg);
-  const nlohmann::json json = nlohmann::json::parse(posture_modes_json(posture));
-  EXPECT_EQ(json["posture"]["source"], "cell");
-  EXPECT_EQ(json["posture"]["measured_nearby"], false);
-  EXPECT_TRUE(json["posture"]["distance_deg"].is_null());
-  EXPECT_EQ(json["posture"]["joints_deg"].size(), 6U);
-  ASSERT_EQ(json["modes"].size(), json["posture"]["modes"].size());
-  EXPECT_GT(json["modes"][0]["std"]["residue"], 0.0);
-  EXPECT_FALSE(json["notes"].empty());
-}
-
-TEST(Posture, IsTheSameFromMeasurementsInFlangeAndInBaseAxes) {
-  const Folder folder;
-  const std::filesystem::path plain = folder.file("cell.toml", cell);
-  const Eigen::VectorXd lines = Eigen::VectorXd::LinSpaced(496, 5.0, 500.0);
-  for (const PostureAxes axes : {PostureAxes::base, PostureAxes::flange}) {
-    const ModesOfPosture true_modes = posture_modes(plain, joints_deg, axes);
-    modal::write_frfs(folder.path() / (axes == PostureAxes::base ? "base.uff" : "flange.uff"),
-                      modal::synthesize(true_modes.prediction.modes, lines));
-  }
-  const std::string at = "[[postures]]\njoints_deg = [10, -5, 15, 20, 60, -10]\n";
-  const auto modes = [&](const char* name, const std::string& rest) {
-    return posture_modes(folder.file(name, with_postures(at + rest)), {5.0, 0.0, 10.0, 0.0, 50.0, 0.0}).prediction;
-  };
-  const modal::PosturePrediction base = modes("base.toml", "frf = \"base.uff\"\n");
-  const modal::PosturePrediction flange = modes("flange.toml", "frf = \"flange.uff\"\naxes = \"flange\"\n");
-  ASSERT_EQ(base.modes.modes.size(), flange.modes.modes.size());
-  for (std::size_t k = 0; k < base.modes.modes.size(); ++k) {
-    const modal::Mode &a = base.modes.modes[k], &b = flange.modes.modes[k];
-    EXPECT_NEAR(a.frequency_hz, b.frequency_hz, 1e-4 * a.frequency_hz);
-    const Eigen::Matrix3cd one = a.right * a.left.transpose(), other = b.right * b.left.transpose();
-    EXPECT_LT((one - other).norm(), 1e-2 * one.norm());
-  }
-}
-
-TEST(Posture, GivesLobesTheirModesAndTheirUncertainty) {
-  const Folder folder;
-  folder.file("cell.toml", cell);
-  const std::string lobes = R"([tool]
+const std::string lobes_of_cell = R"([tool]
 teeth = 3
 diameter_mm = 16
 [cut]
@@ -99,12 +59,58 @@ grid = [4, 4]
 [dynamics]
 cell = "cell.toml"
 )";
+
+std::string with_postures(const std::string& postures) {
+  return cell + postures;
+}
+
+TEST(Posture, OfACellWithoutMeasurementsIsMarkedSo) {
+  const Folder folder;
+  const ModesOfPosture posture = posture_modes(folder.file("cell.toml", cell), joints);
+  const nlohmann::json json = nlohmann::json::parse(posture_modes_json(posture));
+  EXPECT_EQ(json["posture"]["source"], "cell");
+  EXPECT_EQ(json["posture"]["measured_nearby"], false);
+  EXPECT_TRUE(json["posture"]["distance_deg"].is_null());
+  EXPECT_EQ(json["posture"]["joints_deg"].size(), 6U);
+  ASSERT_EQ(json["modes"].size(), json["posture"]["modes"].size());
+  EXPECT_GT(json["modes"][0]["std"]["residue"], 0.0);
+  EXPECT_FALSE(json["notes"].empty());
+}
+
+TEST(Posture, IsTheSameFromMeasurementsInFlangeAndInBaseAxes) {
+  const Folder folder;
+  const std::filesystem::path plain = folder.file("cell.toml", cell);
+  const Eigen::VectorXd lines = Eigen::VectorXd::LinSpaced(496, 5.0, 500.0);
+  for (const PostureAxes axes : {PostureAxes::base, PostureAxes::flange}) {
+    const ModesOfPosture true_modes = posture_modes(plain, joints, axes);
+    modal::write_frfs(folder.path() / (axes == PostureAxes::base ? "base.uff" : "flange.uff"),
+                      modal::synthesize(true_modes.prediction.modes, lines));
+  }
+  const std::string at = "[[postures]]\njoints_deg = [10, -5, 15, 20, 60, -10]\n";
+  const auto modes = [&](const char* name, const std::string& rest) {
+    return posture_modes(folder.file(name, with_postures(at + rest)), radians({5.0, 0.0, 10.0, 0.0, 50.0, 0.0}))
+        .prediction;
+  };
+  const modal::PosturePrediction base = modes("base.toml", "frf = \"base.uff\"\n");
+  const modal::PosturePrediction flange = modes("flange.toml", "frf = \"flange.uff\"\naxes = \"flange\"\n");
+  ASSERT_EQ(base.modes.modes.size(), flange.modes.modes.size());
+  for (std::size_t k = 0; k < base.modes.modes.size(); ++k) {
+    const modal::Mode &a = base.modes.modes[k], &b = flange.modes.modes[k];
+    EXPECT_NEAR(a.frequency_hz, b.frequency_hz, 1e-4 * a.frequency_hz);
+    const Eigen::Matrix3cd one = a.right * a.left.transpose(), other = b.right * b.left.transpose();
+    EXPECT_LT((one - other).norm(), 1e-2 * one.norm());
+  }
+}
+
+TEST(Posture, GivesLobesTheirModesAndTheirUncertainty) {
+  const Folder folder;
+  folder.file("cell.toml", cell);
   const LobesJobResult result =
-      run_lobes({.lobes = folder.file("lobes.toml", lobes + "joints_deg = [10, -5, 15, 20, 60, -10]\n")});
+      run_lobes({.lobes = folder.file("lobes.toml", lobes_of_cell + "joints_deg = [10, -5, 15, 20, 60, -10]\n")});
   const nlohmann::json json = nlohmann::json::parse(lobes_document(result));
   EXPECT_EQ(json["posture"]["joints_deg"][3], 20.0);
   EXPECT_TRUE(json.contains("uncertainty"));
-  EXPECT_NE(rejection([&] { (void)run_lobes({.lobes = folder.file("none.toml", lobes)}); }).find("is missing"),
+  EXPECT_NE(rejection([&] { (void)run_lobes({.lobes = folder.file("none.toml", lobes_of_cell)}); }).find("is missing"),
             std::string::npos);
 }
 
@@ -123,10 +129,26 @@ TEST(Posture, RejectsWhatCannotBeAPosture) {
   EXPECT_NE(read("[[postures]]\njoints_deg = [1, 2, 3, 4, 5, 6]\nfrf = \"a.uff\"\naxes = \"tool\"\n").find("axes"),
             std::string::npos);
   const std::filesystem::path good = folder.file("good.toml", cell);
-  EXPECT_NE(rejection([&] { (void)posture_modes(good, {1.0, 2.0}); }).find("one value a joint"), std::string::npos);
   EXPECT_NE(rejection([&] {
-              (void)posture_modes(good, {1.0, 2.0, 400.0, 4.0, 5.0, 6.0});
-            }).find("joint 3"),
+              (void)posture_modes(good, {1.0, 2.0});
+            }).find("joints: must hold one value a joint, 6"),
+            std::string::npos);
+  const std::string beyond = rejection([&] { (void)posture_modes(good, radians({1.0, 2.0, 400.0, 4.0, 5.0, 6.0})); });
+  EXPECT_NE(beyond.find("joints[3] = 6.98"), std::string::npos) << beyond;
+}
+
+// In the file's words: line, key and degrees.
+TEST(Posture, OfLobesIsRejectedWithItsLine) {
+  const Folder folder;
+  folder.file("cell.toml", cell);
+  const auto said = [&](const std::string& angles) {
+    const std::filesystem::path file = folder.file("lobes.toml", lobes_of_cell + "joints_deg = [" + angles + "]\n");
+    return rejection([&] { (void)run_lobes({.lobes = file}); });
+  };
+  EXPECT_NE(said("10, -5, 400, 20, 60, -10").find("lobes.toml:19: dynamics.joints_deg[3] = 400 deg; must lie within"),
+            std::string::npos)
+      << said("10, -5, 400, 20, 60, -10");
+  EXPECT_NE(said("10, -5").find("lobes.toml:19: dynamics.joints_deg: must hold one value a joint, 6; it holds 2"),
             std::string::npos);
 }
 

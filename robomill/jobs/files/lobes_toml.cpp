@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -277,7 +279,7 @@ void read_uncertainty(io::TomlFile& file, stability::Uncertainty& u) {
 /// A cell, and where its robot stands.
 void read_posture(io::TomlFile& file, LobesFile& out) {
   const bool cell = file.path("dynamics.cell", out.cell);
-  const bool joints = file.numbers("dynamics.joints_deg", "joints_deg", 1.0, out.joints_deg);
+  const bool joints = file.numbers("dynamics.joints_deg", "joints", units::deg, out.joints);
   if (cell && !joints) file.require("dynamics.joints_deg", "The posture: one value a joint");
   if (joints && !cell) file.require("dynamics.cell", "Whose joints?");
   if (!cell) return;
@@ -383,12 +385,16 @@ namespace {
 
 /// The modes of the cell's posture, with the uncertainty that they come with.
 void load_posture(LobesFile& file, Progress& progress) {
-  auto posture =
-      std::make_shared<ModesOfPosture>(posture_modes(file.cell, file.joints_deg, file.posture_axes, progress));
-  file.problem.dynamics = posture->prediction.modes;
-  for (const std::vector<std::string>* notes : {&posture->warnings, &posture->notes}) {
-    file.notes.insert(file.notes.end(), notes->begin(), notes->end());
+  const auto posture = std::make_shared<ModesOfPosture>();
+  const auto find = [&] { *posture = posture_modes(file.cell, file.joints, file.posture_axes, progress); };
+  if (file.document) {
+    file.document->locate(find);
+  } else {
+    find();
   }
+  file.problem.dynamics = posture->prediction.modes;
+  std::ranges::move(posture_warnings(*posture), std::back_inserter(file.notes));
+  file.notes.insert(file.notes.end(), posture->notes.begin(), posture->notes.end());
   constexpr double noticed_rad = 5.0 * units::deg;
   if (file.posture_axes == PostureAxes::base && posture->axis_off_z_rad > noticed_rad) {
     file.notes.push_back(
@@ -401,7 +407,7 @@ void load_posture(LobesFile& file, Progress& progress) {
     file.uncertainty.samples = 100;
     file.uncertainty.grid = {40, 30};
   }
-  file.posture = std::move(posture);
+  file.posture = posture;
 }
 
 }  // namespace

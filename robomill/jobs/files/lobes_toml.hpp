@@ -31,7 +31,7 @@ struct LobesFile {
   std::filesystem::path frf = {};                           ///< dynamics.frf, resolved; empty where absent
   modal::MissingDirections directions = {};                 ///< of the tool's structure
   std::filesystem::path cell = {};                          ///< dynamics.cell, resolved; empty where absent
-  std::vector<double> joints_deg = {};                      ///< dynamics.joints_deg, the posture
+  std::vector<double> joints = {};                          ///< dynamics.joints_deg, the posture [rad or m]
   PostureAxes posture_axes = PostureAxes::base;             ///< dynamics.axes beside a cell: those of the cut
   std::shared_ptr<const ModesOfPosture> posture = {};       ///< what load_dynamics() found there
   std::filesystem::path workpiece_modes = {};               ///< workpiece_dynamics.modes, the same

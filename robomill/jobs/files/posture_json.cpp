@@ -1,5 +1,7 @@
 #include "robomill/jobs/files/posture_json.hpp"
 
+#include <fmt/format.h>
+
 #include "robomill/base/units.hpp"
 #include "robomill/modal/files/modal_objects.hpp"
 
@@ -46,10 +48,18 @@ io::Json posture_object(const ModesOfPosture& posture) {
           {"left_out_relative_error", io::number(posture.report.left_out_error)}};
 }
 
+std::vector<std::string> posture_warnings(const ModesOfPosture& posture) {
+  if (posture.prediction.measured_nearby || posture.report.postures == 0) return {};
+  return {fmt::format(
+      "The posture lies outside the measured region: {:.3g} deg from the nearest measured one (at most {:.3g} deg "
+      "within it). Its deviations grow with that.",
+      posture.prediction.distance_rad / units::deg, posture.report.region_rad / units::deg)};
+}
+
 std::string posture_modes_json(const ModesOfPosture& posture) {
   io::Json json = modal::modes_object(posture.prediction.modes);
   json["posture"] = posture_object(posture);
-  json["warnings"] = posture.warnings;
+  json["warnings"] = posture_warnings(posture);
   json["notes"] = posture.notes;
   return io::dump(json);
 }
