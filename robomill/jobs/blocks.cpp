@@ -1,28 +1,20 @@
 #include "robomill/jobs/blocks.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <tuple>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/base/units.hpp"
 #include "robomill/jobs/blocks/classes.hpp"
 #include "robomill/jobs/blocks/scans.hpp"
 #include "robomill/jobs/blocks/stability.hpp"
 
 namespace robomill::jobs {
 namespace {
-
-/// Warnings of stretches beyond these are counted.
-constexpr std::size_t most_stretches = 8;
-
-/// Beyond every margin: limits are looked for down to a sixteenth of the depth.
-constexpr double chatters = 1e3;
-/// A limit whose 95 % quantile is this multiple of the 5 % one is hardly known.
-constexpr double hardly_known = 4.0;
 
 /// Each cutting block to a class; evaluation is its number.
 std::vector<std::size_t> classes_of(const ForcesResult& forces, const BlocksOptions& options,
@@ -56,11 +48,6 @@ struct Shared {
   double joint_distance_rad = 0.0;
 };
 
-/// "block 12 (line 40)"
-std::string named_block(const ForcesResult& forces, std::size_t block) {
-  return fmt::format("block {} (line {})", block + 1, forces.program->program.blocks[block].line);
-}
-
 std::vector<Shared> evaluate_classes(const ForcesResult& forces, const std::vector<std::size_t>& first,
                                      const DynamicsAt& dynamics, const BlocksOptions& options, Progress& progress) {
   std::vector<Shared> shared(first.size());
@@ -93,98 +80,64 @@ double margin_of(const BlockRow& row) {
   return 1.0 - row.axial_depth_m / limit_m;
 }
 
-std::string note_of(const BlockResult& force, const BlockRow& row) {
-  if (force.settled == BlockResult::Settled::lost) return "engagement lost";
-  if (!row.cuts) return {};
-  if (force.settled == BlockResult::Settled::unsettled) return "deflection does not settle";
-  if (row.cut.below_range) return "unstable at the least depth that was looked at: the limit is no higher";
-  if (row.cut.limit_95_percent_m > hardly_known * row.cut.limit_5_percent_m) {
-    return "the limit is hardly known: see its 5 and 95 % quantiles";
-  }
-  if (row.cut.lower_bound) return "limit is a lower bound: process damping is not known";
-  if (!std::isfinite(row.cut.limit_depth_m)) {
-    return fmt::format("no limit up to {:.4g} mm", row.cut.searched_depth_m / units::mm);
-  }
-  return {};
+/// (95 % - 5 % quantile) / limit; 0 where it is not known.
+double band_of(const CutStability& cut) {
+  const double band = (cut.limit_95_percent_m - cut.limit_5_percent_m) / cut.limit_depth_m;
+  return std::isfinite(band) ? band : 0.0;
 }
 
 /// Stretches of blocks that lie beyond the measured postures.
-void warn_of_region(const ForcesResult& forces, const std::vector<Shared>& shared, ProgramBlocks& out) {
-  std::size_t stretches = 0;
-  std::size_t from = 0;
-  std::size_t to = 0;
-  double farthest_rad = 0.0;
-  double spread = 0.0;
+std::vector<BeyondMeasured> stretches_beyond(const std::vector<BlockRow>& rows, const std::vector<Shared>& shared) {
+  std::vector<BeyondMeasured> out;
   bool open = false;
-  const auto close = [&] {
-    if (open && ++stretches <= most_stretches) {
-      std::string text =
-          fmt::format("From {} to {} the robot stands up to {:.3g}° of a joint from the nearest measured posture",
-                      named_block(forces, from), named_block(forces, to), farthest_rad / units::deg);
-      if (spread > 0.0)
-        text += fmt::format("; the 5 to 95 % band of the limit is up to {:.0f} % of it", 100.0 * spread);
-      out.warnings.push_back(text + ".");
-    }
-    open = false;
-  };
-  for (std::size_t i = 0; i < out.rows.size(); ++i) {
-    const BlockRow& row = out.rows[i];
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const BlockRow& row = rows[i];
     if (!row.cuts) continue;
-    if (row.measured_nearby.value_or(true)) {
-      close();
-      continue;
+    const bool beyond = !row.measured_nearby.value_or(true);
+    if (beyond) {
+      if (!open) out.push_back({.first = i});
+      BeyondMeasured& stretch = out.back();
+      stretch.last = i;
+      stretch.farthest_rad = std::max(stretch.farthest_rad, shared[row.evaluation].joint_distance_rad);
+      stretch.band = std::max(stretch.band, band_of(row.cut));
     }
-    if (!open) {
-      open = true;
-      from = i;
-      farthest_rad = spread = 0.0;
-    }
-    to = i;
-    farthest_rad = std::max(farthest_rad, shared[row.evaluation].joint_distance_rad);
-    const double band = (row.cut.limit_95_percent_m - row.cut.limit_5_percent_m) / row.cut.limit_depth_m;
-    if (std::isfinite(band)) spread = std::max(spread, band);
+    open = beyond;
   }
-  close();
-  if (stretches > most_stretches) {
-    out.warnings.push_back(fmt::format("{} more stretches leave the measured postures.", stretches - most_stretches));
-  }
+  return out;
 }
 
-void sum_up(const ForcesResult& forces, const std::vector<Shared>& shared, ProgramBlocks& out) {
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t bounds = 0;
+/// The median of the blocks within the measured postures.
+double band_within(const std::vector<BlockRow>& rows) {
+  std::vector<double> bands;
+  for (const BlockRow& row : rows) {
+    const double band = row.cuts && row.measured_nearby.value_or(false) ? band_of(row.cut) : 0.0;
+    if (band > 0.0) bands.push_back(band);
+  }
+  if (bands.empty()) return 0.0;
+  const auto middle = bands.begin() + static_cast<std::ptrdiff_t>(bands.size() / 2);
+  std::ranges::nth_element(bands, middle);
+  return *middle;
+}
+
+void sum_up(ProgramBlocks& out) {
   for (std::size_t i = 0; i < out.rows.size(); ++i) {
     const BlockRow& row = out.rows[i];
     if (!row.cuts) continue;
+    if (out.cutting == 0 || worse(row, out.rows[out.worst])) out.worst = i;
     ++out.cutting;
     if (row.unstable()) ++out.unstable;
-    if (row.cut.lower_bound) ++bounds;
-    // A block that chatters is worse than one that may.
-    const double margin = row.stability_margin - (row.unstable() ? chatters : 0.0);
-    if (margin < least) {
-      least = margin;
-      out.worst = i;
-    }
   }
-  if (out.unstable > 0) {
-    const BlockRow& row = out.rows[out.worst];
-    out.warnings.insert(
-        out.warnings.begin(),
-        fmt::format("{} of {} blocks that cut are predicted to chatter; the worst is {}: {:.4g} mm deep at a limit of "
-                    "{:.4g} mm, {} chatter of {} at {:.4g} Hz.",
-                    out.unstable, out.cutting, named_block(forces, out.worst), row.axial_depth_m / units::mm,
-                    row.cut.limit_depth_m / units::mm, row.cut.regime, to_string(row.cut.mode),
-                    row.cut.chatter_frequency_hz));
-  }
-  if (bounds > 0) {
-    out.notes.push_back(fmt::format(
-        "The limits of {} blocks are lower bounds: process damping, which is not known, lifts limits at low speed.",
-        bounds));
-  }
-  warn_of_region(forces, shared, out);
 }
 
 }  // namespace
+
+bool worse(const BlockRow& a, const BlockRow& b) {
+  const auto rank = [](const BlockRow& row) {
+    const auto known = [](double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; };
+    return std::tuple(!row.unstable(), known(row.cut.gain_margin), known(row.stability_margin));
+  };
+  return rank(a) < rank(b);
+}
 
 void BlocksOptions::validate() const {
   require_non_negative("joint_tolerance_rad", joint_tolerance_rad, "rad");
@@ -209,14 +162,15 @@ ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamic
   const std::vector<Shared> shared = evaluate_classes(forces, first, dynamics, options, progress);
   for (std::size_t i = 0; i < out.rows.size(); ++i) {
     BlockRow& row = out.rows[i];
-    if (row.cuts) {
-      row.cut = shared[row.evaluation].cut;
-      row.measured_nearby = shared[row.evaluation].measured_nearby;
-      row.stability_margin = margin_of(row);
-    }
-    row.note = note_of(forces.program->blocks[i], row);
+    if (!row.cuts) continue;
+    row.cut = shared[row.evaluation].cut;
+    row.measured_nearby = shared[row.evaluation].measured_nearby;
+    row.stability_margin = margin_of(row);
   }
-  sum_up(forces, shared, out);
+  sum_up(out);
+  out.beyond = stretches_beyond(out.rows, shared);
+  out.band_within = band_within(out.rows);
+  out.rigid_workpiece = options.workpiece_vibrates || !forces.file.workpiece_dynamics.modes.empty();
   if (out.cutting > 0 && options.scan_points > 0) {
     out.scans = limit_scans(forces, out.worst, dynamics, options);
   }

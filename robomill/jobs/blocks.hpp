@@ -41,6 +41,8 @@ struct ROBOMILL_API BlocksOptions {
   double cut_tolerance = 0.02;
   double tolerance = 1e-4;  ///< of the spectral radius, as LobesOptions::tolerance
   int scan_points = 9;      ///< of each scan of the limit over the tool's pose, 0: none, or odd
+  /// The job knows a workpiece that vibrates, beside that of forces.toml.
+  bool workpiece_vibrates = false;
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -70,7 +72,6 @@ struct BlockRow {
   double stability_margin = CutStability::none;  ///< 1 - depth / limit (5 % quantile); no limit: of the depth searched
   std::optional<bool> measured_nearby = {};
   std::size_t evaluation = 0;  ///< which one it shares, from 0
-  std::string note = {};
   [[nodiscard]] bool unstable() const { return cuts && cut.spectral_radius >= 1.0; }
 };
 
@@ -81,15 +82,28 @@ struct LimitScan {
   std::vector<double> limit_m = {};  ///< NaN: none, or the robot cannot stand there
 };
 
+/// Blocks on end, of those that cut, in which the robot stands beyond the measured postures.
+struct BeyondMeasured {
+  std::size_t first = 0, last = 0;
+  double farthest_rad = 0.0;  ///< from the nearest measured posture, largest of a joint
+  double band = 0.0;          ///< (95 % - 5 % quantile) / limit, the largest of them; 0: none is known
+};
+
 struct ProgramBlocks {
   std::vector<BlockRow> rows = {};  ///< one a block of the program
   std::size_t cutting = 0, unstable = 0;
-  std::size_t worst = 0;              ///< the block with the least margin, of those that chatter where some do
-  std::size_t evaluations = 0;        ///< different cuts that were looked at
-  std::vector<LimitScan> scans = {};  ///< around the worst block
-  std::vector<std::string> warnings = {}, notes = {};
+  std::size_t worst = 0;                    ///< of worse()
+  std::size_t evaluations = 0;              ///< different cuts that were looked at
+  std::vector<LimitScan> scans = {};        ///< around the worst block
+  std::vector<BeyondMeasured> beyond = {};  ///< in the program's order
+  double band_within = 0.0;                 ///< as BeyondMeasured::band, the median of the blocks within; 0: none
+  bool rigid_workpiece = false;  ///< the files know a workpiece that vibrates, and it takes no part in the blocks
   double seconds = 0.0;
 };
+
+/// Which of two blocks that cut is nearer to chatter: unstable before stable, then by gain margin, then by
+/// stability_margin.
+[[nodiscard]] ROBOMILL_API bool worse(const BlockRow& a, const BlockRow& b);
 
 /// Stability of every block that cuts: its engagement (ProgramForces::cuts), its posture, the dynamics there.
 /// Depths, speeds, tolerance and what is shared: robomill/jobs/README.md.
@@ -98,6 +112,14 @@ struct ProgramBlocks {
 [[nodiscard]] ROBOMILL_API ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamics,
                                                       const BlocksOptions& options = {},
                                                       Progress& progress = Progress::none());
+
+/// Sentences for the user: blocks that chatter, stretches beyond the measured postures.
+[[nodiscard]] ROBOMILL_API std::vector<std::string> block_warnings(const ForcesResult& forces,
+                                                                   const ProgramBlocks& blocks);
+/// Sentences for the user: what the limits leave out.
+[[nodiscard]] ROBOMILL_API std::vector<std::string> block_notes(const ProgramBlocks& blocks);
+/// What is to be known of one block's numbers; empty: nothing.
+[[nodiscard]] ROBOMILL_API std::string block_note(const BlockResult& force, const BlockRow& row);
 
 /// A row a block.
 [[nodiscard]] ROBOMILL_API std::string blocks_csv(const ForcesResult& forces, const ProgramBlocks& blocks);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
@@ -211,7 +213,11 @@ TEST_F(Blocks, SaysWhereTheEngagementIsLost) {
   });
   EXPECT_GE(said, 1);
   ASSERT_TRUE(plan.blocks);
-  EXPECT_TRUE(std::ranges::any_of(plan.blocks->rows, [](const BlockRow& row) { return !row.note.empty(); }));
+  const ProgramForces& program = *plan.forces->program;
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
+    const std::string note = block_note(program.blocks[i], plan.blocks->rows[i]);
+    EXPECT_EQ(note == "engagement lost", program.blocks[i].settled == BlockResult::Settled::lost) << i;
+  }
 }
 
 TEST_F(Blocks, APlanWithoutLobesWritesThem) {
@@ -276,7 +282,7 @@ TEST_F(Blocks, SaysWhereTheProgramLeavesTheMeasuredRegion) {
   write_forces();
   write_program();
   const ForcesResult forces = forces_of(run_with_modes());
-  const DynamicsAt known = dynamics();
+  const DynamicsAt known = dynamics(0.1);
   const double border = forces.program->blocks[10].joints(0);
   const ProgramBlocks blocks = judge_blocks(forces,
                                             [&](const Eigen::VectorXd& joints) {
@@ -288,11 +294,51 @@ TEST_F(Blocks, SaysWhereTheProgramLeavesTheMeasuredRegion) {
                                               return out;
                                             },
                                             {.joint_tolerance_rad = 1e-3, .scan_points = 0});
-  const auto said = std::ranges::count_if(blocks.warnings, [](const std::string& text) {
-    return text.find("(line ") != std::string::npos && text.find("11.5° of a joint") != std::string::npos;
+  const auto said = std::ranges::count_if(block_warnings(forces, blocks), [](const std::string& text) {
+    return text.find("(line ") != std::string::npos && text.find("11.5° of a joint") != std::string::npos &&
+           text.find("median within the measured region") != std::string::npos;
   });
   EXPECT_GE(said, 1);
   EXPECT_LE(said, 3);
+  EXPECT_EQ(static_cast<std::size_t>(said), blocks.beyond.size());
+  for (const BeyondMeasured& stretch : blocks.beyond) {
+    EXPECT_NEAR(stretch.farthest_rad, 0.2, 1e-12);
+    for (std::size_t i = stretch.first; i <= stretch.last; ++i) {
+      EXPECT_FALSE(blocks.rows[i].cuts && blocks.rows[i].measured_nearby.value()) << i;
+    }
+  }
+}
+
+// Chatter before none, then the gain that is left: what the tables list first.
+TEST(WorstBlock, IsTheOneNearestToChatter) {
+  const auto row = [](double radius, double gain, double margin) {
+    BlockRow out{.cuts = true, .stability_margin = margin};
+    out.cut.spectral_radius = radius;
+    out.cut.gain_margin = gain;
+    return out;
+  };
+  const double none = std::numeric_limits<double>::infinity();
+  const BlockRow rows[] = {row(1.2, 0.5, -1.0),  row(1.01, 0.9, -9.0), row(0.99, 0.8, 0.3), row(0.99, 1.1, 0.1),
+                           row(0.998, 1.8, -14), row(0.99, none, 0.2), row(0.99, none, 0.9)};
+  for (std::size_t i = 0; i < std::size(rows); ++i) {
+    for (std::size_t j = 0; j < std::size(rows); ++j) EXPECT_EQ(worse(rows[i], rows[j]), i < j) << i << ' ' << j;
+  }
+}
+
+TEST_F(Blocks, SayThatTheWorkpieceTakesNoPart) {
+  write_cell();
+  write_forces();
+  write_program();
+  ForcesResult forces = forces_of(run_with_modes());
+  const auto says = [&](const BlocksOptions& options) {
+    const ProgramBlocks blocks = judge_blocks(forces, dynamics(), options);
+    const nlohmann::json json = nlohmann::json::parse(blocks_json(forces, blocks));
+    return json["summary"]["notes"].dump().find("The workpiece is taken as rigid") != std::string::npos;
+  };
+  EXPECT_FALSE(says({.scan_points = 0}));
+  EXPECT_TRUE(says({.scan_points = 0, .workpiece_vibrates = true}));
+  forces.file.workpiece_dynamics = modal::modes_from_mass({{300, 0.02, 2.0}}, {});
+  EXPECT_TRUE(says({.scan_points = 0}));
 }
 
 TEST_F(Blocks, SaysWhatIsMissing) {

@@ -400,7 +400,10 @@ void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, Pro
   warn_of_spindle(result);
   const bool usable = !result.fit || result.fit->usable();
   if (!result.job.judges_blocks() || !usable) return;
-  result.blocks = judge_blocks(*result.forces, dynamics_along(result, *cell, progress), {}, progress);
+  const LobesFile& cut = result.cut;
+  const BlocksOptions options = {.workpiece_vibrates = !cut.workpiece_modes.empty() || !cut.workpiece_frf.empty() ||
+                                                       !cut.problem.workpiece_dynamics.modes.empty()};
+  result.blocks = judge_blocks(*result.forces, dynamics_along(result, *cell, progress), options, progress);
 }
 
 /// Lobes of the job's cut, the recommendation, and what stands beside it.

@@ -180,7 +180,8 @@ void add_blocks(std::string& out, const ForcesResult& forces, const ProgramBlock
     return;
   }
   const BlockRow& worst = blocks.rows[blocks.worst];
-  append(out, "; the worst, margin {:.3g}, is in line {} (block {}): {:.4g} mm deep, ", worst.stability_margin,
+  append(out, "; the worst, gain margin {}, is in line {} (block {}): {:.4g} mm deep, ",
+         std::isfinite(worst.cut.gain_margin) ? fmt::format("{:.3g}", worst.cut.gain_margin) : "without end",
          forces.program->program.blocks[blocks.worst].line, blocks.worst + 1, worst.axial_depth_m / units::mm);
   if (std::isfinite(worst.cut.limit_depth_m)) {
     append(out, "limit {:.4g} mm, {} at {:.4g} Hz", worst.cut.limit_depth_m / units::mm, worst.cut.regime,
@@ -225,10 +226,10 @@ std::string summary(const PlanResult& result) {
     append(out, "test cuts    {} agree, {} disagree, {} without a result\n", count.agree, count.disagree,
            count.not_compared);
   }
-  if (result.blocks) add_notes(out, result.blocks->warnings, "warning      ");
+  if (result.blocks) add_notes(out, block_warnings(*result.forces, *result.blocks), "warning      ");
   add_notes(out, result.warnings, "warning      ");
   add_notes(out, result.notes, "note         ");
-  if (result.blocks) add_notes(out, result.blocks->notes, "note         ");
+  if (result.blocks) add_notes(out, block_notes(*result.blocks), "note         ");
   return out;
 }
 

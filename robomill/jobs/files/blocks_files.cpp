@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,43 @@ struct BlockColumn {
   std::function<Json(const BlockLine&)> value;
   bool always = false;  ///< also of blocks that do not cut
 };
+
+/// Warnings of stretches beyond these are counted.
+constexpr std::size_t most_stretches = 8;
+/// A limit whose 95 % quantile is this multiple of the 5 % one is hardly known.
+constexpr double hardly_known = 4.0;
+
+/// "block 12 (line 40)"
+std::string named_block(const ForcesResult& forces, std::size_t block) {
+  return fmt::format("block {} (line {})", block + 1, forces.program->program.blocks[block].line);
+}
+
+std::string chatter_warning(const ForcesResult& forces, const ProgramBlocks& blocks) {
+  const BlockRow& row = blocks.rows[blocks.worst];
+  std::string text =
+      fmt::format("{} of {} blocks that cut are predicted to chatter; the worst is {}: {:.4g} mm deep", blocks.unstable,
+                  blocks.cutting, named_block(forces, blocks.worst), row.axial_depth_m / units::mm);
+  if (std::isfinite(row.cut.limit_depth_m)) {
+    text += fmt::format(" at a limit of {:.4g} mm", row.cut.limit_depth_m / units::mm);
+  }
+  return text + fmt::format(", {} chatter of {} at {:.4g} Hz.", row.cut.regime, to_string(row.cut.mode),
+                            row.cut.chatter_frequency_hz);
+}
+
+std::string beyond_warning(const ForcesResult& forces, const BeyondMeasured& stretch, double band_within) {
+  std::string text = stretch.first == stretch.last ? fmt::format("In {}", named_block(forces, stretch.first))
+                                                   : fmt::format("From {} to {}", named_block(forces, stretch.first),
+                                                                 named_block(forces, stretch.last));
+  text += fmt::format(" the robot stands up to {:.3g}° of a joint from the nearest measured posture",
+                      stretch.farthest_rad / units::deg);
+  if (stretch.band > 0.0) {
+    text += fmt::format("; the 5 to 95 % band of the limit is up to {:.0f} % of it", 100.0 * stretch.band);
+    if (band_within > 0.0) {
+      text += fmt::format(" (median within the measured region: {:.0f} %)", 100.0 * band_within);
+    }
+  }
+  return text + ".";
+}
 
 using BlockNumber = double (*)(const BlockLine&);
 
@@ -87,7 +126,11 @@ std::vector<BlockColumn> block_columns(const ForcesResult& forces) {
   columns.push_back({"measured_nearby",
                      [](const BlockLine& r) { return r.row.measured_nearby ? Json(*r.row.measured_nearby) : Json(); }});
   columns.push_back({"evaluation", [](const BlockLine& r) { return Json(r.row.evaluation + 1); }});
-  columns.push_back({"note", [](const BlockLine& r) { return r.row.note.empty() ? Json() : Json(r.row.note); }, true});
+  columns.push_back({"note",
+                     [](const BlockLine& r) {
+                       return block_note(r.force, r.row).empty() ? Json() : Json(block_note(r.force, r.row));
+                     },
+                     true});
   return columns;
 }
 
@@ -142,6 +185,49 @@ Json scans_json(const ForcesResult& forces, const ProgramBlocks& blocks) {
 
 }  // namespace
 
+std::string block_note(const BlockResult& force, const BlockRow& row) {
+  if (force.settled == BlockResult::Settled::lost) return "engagement lost";
+  if (!row.cuts) return {};
+  if (force.settled == BlockResult::Settled::unsettled) return "deflection does not settle";
+  if (row.cut.below_range) return "unstable at the least depth that was looked at: the limit is no higher";
+  if (row.cut.limit_95_percent_m > hardly_known * row.cut.limit_5_percent_m) {
+    return "the limit is hardly known: see its 5 and 95 % quantiles";
+  }
+  if (row.cut.lower_bound) return "limit is a lower bound: process damping is not known";
+  if (!std::isfinite(row.cut.limit_depth_m)) {
+    return fmt::format("no limit up to {:.4g} mm", row.cut.searched_depth_m / units::mm);
+  }
+  return {};
+}
+
+std::vector<std::string> block_warnings(const ForcesResult& forces, const ProgramBlocks& blocks) {
+  std::vector<std::string> out;
+  if (blocks.unstable > 0) out.push_back(chatter_warning(forces, blocks));
+  for (std::size_t i = 0; i < std::min(most_stretches, blocks.beyond.size()); ++i) {
+    out.push_back(beyond_warning(forces, blocks.beyond[i], blocks.band_within));
+  }
+  if (blocks.beyond.size() > most_stretches) {
+    out.push_back(fmt::format("{} more stretches leave the measured postures.", blocks.beyond.size() - most_stretches));
+  }
+  return out;
+}
+
+std::vector<std::string> block_notes(const ProgramBlocks& blocks) {
+  std::vector<std::string> out;
+  const auto bounds = std::ranges::count_if(blocks.rows, [](const BlockRow& row) { return row.cut.lower_bound; });
+  if (bounds > 0) {
+    out.push_back(fmt::format(
+        "The limits of {} blocks are lower bounds: process damping, which is not known, lifts limits at low speed.",
+        bounds));
+  }
+  if (blocks.rigid_workpiece) {
+    out.emplace_back(
+        "The workpiece is taken as rigid in the blocks: the structure that the files give it takes no part. A thin "
+        "part has lower limits than these.");
+  }
+  return out;
+}
+
 Json blocks_summary(const ForcesResult& forces, const ProgramBlocks& blocks) {
   Json worst;
   if (blocks.cutting > 0) {
@@ -151,10 +237,11 @@ Json blocks_summary(const ForcesResult& forces, const ProgramBlocks& blocks) {
              {"axial_depth_mm", number(row.axial_depth_m / units::mm)},
              {"limit_depth_mm", number(row.cut.limit_depth_m / units::mm)},
              {"stability_margin", number(row.stability_margin)},
+             {"gain_margin", number(row.cut.gain_margin)},
              {"regime", row.cut.regime}};
   }
-  std::vector<std::string> notes = blocks.warnings;
-  notes.insert(notes.end(), blocks.notes.begin(), blocks.notes.end());
+  std::vector<std::string> notes = block_warnings(forces, blocks);
+  std::ranges::move(block_notes(blocks), std::back_inserter(notes));
   return {{"blocks", blocks.rows.size()},      {"cutting", blocks.cutting},         {"unstable", blocks.unstable},
           {"evaluations", blocks.evaluations}, {"seconds", number(blocks.seconds)}, {"worst", std::move(worst)},
           {"notes", std::move(notes)}};
