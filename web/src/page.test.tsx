@@ -62,9 +62,9 @@ it('shows every part of a report', () => {
 
 it('names the worst blocks of a program, and says where none cuts', () => {
   const blocks = report.blocks!;
-  const worst = Math.min(...blocks.blocks.stability_margin!.filter((margin) => margin !== null));
-  expect(page()).toContain(`${Number(worst.toPrecision(3))} in block`);
-  expect(page()).toContain('The blocks with the least margin');
+  const least = Math.min(...blocks.blocks.gain_margin!.filter((gain) => gain !== null));
+  expect(page()).toContain(`, gain margin ${Number(least.toPrecision(3))}`);
+  expect(page()).toContain('The blocks nearest to chatter');
   expect(page()).toContain('data-plot="limit-over"');
   for (const scan of blocks.limit_over.slice(1)) scan.limit_depth_mm.fill(null);
   expect(page()).toContain('With the cut of block 360 no limit was found anywhere along y, z, γ.');

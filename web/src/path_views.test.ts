@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { BlockColumns, BlocksDocument } from './documents';
 import { dark, light } from './figures/theme';
-import { blockFacts, colourAt, coloursOf, gradient, limitOf, pathData, programFacts, quantitiesOf, rangeOf, thinned, worstBlocks } from './path_views';
+import { blockFacts, boundOf, colourAt, coloursOf, gradient, limitOf, pathData, programFacts, quantitiesOf, rangeOf, thinned, worstBlocks } from './path_views';
 
 /** In air, stable, unstable, without a limit. */
 const columns: BlockColumns = {
@@ -83,12 +83,33 @@ describe('a block', () => {
   });
 });
 
-it('names the blocks with the least margin first', () => {
+it('names the blocks nearest to chatter first', () => {
   expect(worstBlocks(columns, 2)).toEqual([2, 1]);
   const document = { blocks: columns, summary: { blocks: 4, cutting: 3, unstable: 1, evaluations: 3, seconds: 0.1, notes: [] }, limit_over: [] } satisfies BlocksDocument;
   const facts = programFacts(document);
-  expect(facts).toContainEqual({ label: 'Least margin', value: '-0.7 in block 3' });
+  expect(facts).toContainEqual({ label: 'Nearest to chatter', value: 'block 3, margin -0.7' });
   expect(facts).toContainEqual({ label: 'Far from measured postures', value: '1' });
+});
+
+it('ranks what is unstable first, then the gain that is left', () => {
+  const none: null[] = [];
+  const ranked = { block: [1, 2, 3, 4, 5, 6], line: [1, 2, 3, 4, 5, 6], x_mm: none, y_mm: none, z_mm: none };
+  const numbers = {
+    spectral_radius: [0.998, 0.99, 1.01, 1.2, 0.99, 0.99],
+    gain_margin: [1.8, 1.1, 0.9, 0.5, null, 0.8],
+    stability_margin: [-14.8, 0.1, -9, -1, 0.9, 0.3],
+    limit_depth_mm: [2, 2, 2, 2, null, 2],
+    lower_bound: [true, false, false, false, true, false],
+  };
+  const all = { ...ranked, ...numbers };
+  expect(worstBlocks(all, 10).map((i) => all.block[i])).toEqual([4, 3, 6, 2, 1, 5]);
+  expect(programFacts({ blocks: all, summary: { blocks: 6, cutting: 6, unstable: 2, evaluations: 6, seconds: null, notes: [] }, limit_over: [] })).toContainEqual({
+    label: 'Nearest to chatter',
+    value: 'block 4, gain margin 0.5',
+  });
+  expect(boundOf(all, 0)).toMatch(/^≥.2$/);
+  expect(boundOf(all, 1)).toBe('2');
+  expect(boundOf(all, 4)).toBe('none found');
 });
 
 it('thins long columns without losing an extreme or a gap', () => {

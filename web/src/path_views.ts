@@ -131,11 +131,17 @@ export function gradient(theme: Theme, worse: Quantity['worse']): string {
   return `linear-gradient(to right, ${stops.map(({ at, colour }) => `${colour} ${(100 * at).toFixed(0)}%`).join(', ')})`;
 }
 
-/** The blocks that cut with the least margin; of the others nothing is known. */
+/** The blocks nearest to chatter, as blocks.json ranks its worst: unstable before stable, then by gain margin, then by stability margin. */
 export function worstBlocks(columns: BlockColumns, count: number): number[] {
-  const margins = columns.stability_margin ?? [];
-  const known = columns.block.map((_, i) => i).filter((i) => numberAt(margins, i) !== null);
-  return known.sort((a, b) => margins[a]! - margins[b]!).slice(0, count);
+  const known = columns.block.map((_, i) => i).filter((i) => numberAt(columns.stability_margin, i) !== null);
+  const rank = (i: number) => [isUnstable(columns, i) ? 0 : 1, numberAt(columns.gain_margin, i) ?? Infinity, numberAt(columns.stability_margin, i)!];
+  const ranks = new Map(known.map((i) => [i, rank(i)]));
+  const order = (a: number, b: number) => {
+    const [one, other] = [ranks.get(a)!, ranks.get(b)!];
+    const k = one.findIndex((value, place) => value !== other[place]);
+    return k < 0 ? a - b : one[k]! < other[k]! ? -1 : 1;
+  };
+  return known.sort(order).slice(0, count);
 }
 
 function withUnit(value: Num, unit: string): string {
@@ -149,6 +155,11 @@ export function limitOf(columns: BlockColumns, index: number): string {
   const high = numberAt(columns.limit_95_percent_mm, index);
   const band = low === null ? '' : ` (${significant(low)}${thinSpace}–${thinSpace}${high === null ? 'none' : significant(high)})`;
   return `${limit === null ? 'none found' : significant(limit)}${band}`;
+}
+
+/** The same, "≥" before a lower bound. */
+export function boundOf(columns: BlockColumns, index: number): string {
+  return `${columns.lower_bound?.[index] && numberAt(columns.limit_depth_mm, index) !== null ? `≥${thinSpace}` : ''}${limitOf(columns, index)}`;
 }
 
 export function regimeName(columns: BlockColumns, index: number): string {
@@ -199,7 +210,11 @@ export function programFacts({ blocks, summary }: BlocksDocument): Fact[] {
     { label: 'Cut', value: fixed(summary.cutting, 0) },
     { label: 'Unstable', value: fixed(summary.unstable, 0) },
   ];
-  if (worst !== undefined) facts.push({ label: 'Least margin', value: `${significant(blocks.stability_margin![worst]!)} in block ${blocks.block[worst]!}` });
+  if (worst !== undefined) {
+    const gain = numberAt(blocks.gain_margin, worst);
+    const left = gain === null ? `margin ${significant(blocks.stability_margin![worst]!)}` : `gain margin ${significant(gain)}`;
+    facts.push({ label: 'Nearest to chatter', value: `block ${blocks.block[worst]!}, ${left}` });
+  }
   if (away > 0) facts.push({ label: 'Far from measured postures', value: fixed(away, 0) });
   facts.push({ label: 'Different cuts looked at', value: `${fixed(summary.evaluations, 0)}${summary.seconds === null ? '' : ` in ${significant(summary.seconds)}${thinSpace}s`}` });
   return facts;

@@ -4,7 +4,7 @@ import type { BlockColumns, BlocksDocument, LimitOver } from '../documents';
 import { deepest, limitFigure, overFigure } from '../figures/program_limit';
 import type { Theme } from '../figures/theme';
 import { Bullets, Facts, Section, Table, type Column } from '../parts';
-import { blockFacts, isUnstable, limitOf, numberAt, programFacts, quantitiesOf, regimeName, worstBlocks } from '../path_views';
+import { blockFacts, boundOf, isUnstable, numberAt, programFacts, quantitiesOf, regimeName, worstBlocks } from '../path_views';
 import { Plot, type Draw } from '../plot';
 import { dash, fixed, significant } from '../text';
 import { PathFigure } from './path';
@@ -36,16 +36,19 @@ function WorstTable({ columns, select }: { columns: BlockColumns; select: Select
       ),
     },
     { heading: 'Line', number: true, cell: (i) => fixed(columns.line[i] ?? null, 0) },
-    number('Margin', columns.stability_margin),
     number('|μ|', columns.spectral_radius),
+    number('Gain margin', columns.gain_margin),
+    number('Margin', columns.stability_margin),
     number('Depth (mm)', columns.axial_depth_mm),
-    { heading: 'Limit, 5 – 95 % (mm)', number: true, cell: (i) => limitOf(columns, i) },
+    { heading: 'Limit, 5 – 95 % (mm)', number: true, cell: (i) => boundOf(columns, i) },
     number('Chatter (Hz)', columns.chatter_frequency_hz),
     { heading: 'Mode', optional: true, cell: (i) => together(columns.mode?.[i] ?? dash) },
     { heading: 'Regime', optional: true, cell: (i) => together(regimeName(columns, i)) },
     number('Peak force (N)', columns.peak_f_n),
   ];
-  return <Table caption="The blocks with the least margin" columns={shown} rows={rows} rowClass={(i) => (isUnstable(columns, i) ? 'chatter' : '')} />;
+  const bounds = rows.some((i) => columns.lower_bound?.[i]) ? '; ≥: a lower bound, for process damping is not known' : '';
+  const caption = `The blocks nearest to chatter: unstable ones first, then by gain margin, how much stiffer the cut may get${bounds}`;
+  return <Table caption={caption} columns={shown} rows={rows} rowClass={(i) => (isUnstable(columns, i) ? 'chatter' : '')} />;
 }
 
 const names: Record<LimitOver['parameter'], string> = { x_mm: 'x', y_mm: 'y', z_mm: 'z', gamma_deg: 'γ' };
