@@ -123,12 +123,12 @@ std::optional<JudgedCut> placed(const Drawn& drawn, const SimulatedArm& arm, con
 bool simulated_chatter(const JudgedCut& judged, const ModalModel& truth) {
   const stability::SpatialMilling& milling = *judged.cut.spatial;
   const cutting::FlatEndMill& mill = milling.cutter.mill;
-  const bool ball = milling.cutter.kind == cutting::CutterKind::ball_end;
   const double lag = mill.lag_rad_per_m(0) * judged.axial_depth_m;
+  cutting::EngagementOptions rings{.slices = 1 + static_cast<int>(std::ceil(lag / (3.0 * units::deg)))};
+  if (milling.cutter.kind == cutting::CutterKind::ball_end) rings = {.rings_per_stretch = 6};
   simulation::PostureCut cut;
   cut.cutter = milling.cutter;
-  cut.engagement = cutting::engage(milling.cutter, milling.cut,
-                                   {.slices = ball ? 40 : 1 + static_cast<int>(std::ceil(lag / (3.0 * units::deg)))});
+  cut.engagement = cutting::engage(milling.cutter, milling.cut, rings);
   cut.coefficients = milling.coefficients;
   cut.motion = {.feed_per_tooth_m = milling.feed_per_tooth_m,
                 .spindle_speed_rad_per_s = judged.spindle_speed_rad_per_s};
