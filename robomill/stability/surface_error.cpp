@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "robomill/base/error.hpp"
@@ -15,6 +17,7 @@
 #include "robomill/stability/collocation/collocation.hpp"
 #include "robomill/stability/collocation/milling_model.hpp"
 #include "robomill/stability/gauss.hpp"
+#include "robomill/stability/surface_error_spatial.hpp"
 
 namespace robomill::stability {
 namespace {
@@ -111,18 +114,32 @@ double y_at(const MillingModel& model, const CollocationCase& at, const NodeForc
   return missing;
 }
 
-/// Of every tooth and wall the error that is greatest in magnitude; NaN where no tooth finishes a wall.
-double wall_error(const MillingModel& model, const CollocationCase& at, const NodeForces<2>& orbit) {
-  double worst = missing;
-  const auto look = [&](double wall_rad, double sign) {
-    for (int tooth = 0; tooth < model.milling.tool.teeth; ++tooth) {
-      const double error = sign * y_at(model, at, orbit, wall_rad - model.milling.tool.standing_angle(tooth));
-      if (!(std::abs(error) <= std::abs(worst))) worst = error;
+/// Of the walls the error that is greatest in magnitude; none where no tooth finishes a wall. At each the tooth that
+/// reaches farthest counts, a stiff tool's reaching as far as its radius.
+SurfacePlace wall_error(const MillingModel& model, const CollocationCase& at, const NodeForces<2>& orbit) {
+  const cutting::FlatEndMill& mill = model.milling.tool;
+  SurfacePlace worst;
+  const auto look = [&](double wall_rad, double outwards) {
+    SurfacePlace wall = {.normal_rad = outwards * 0.5 * std::numbers::pi,
+                         .position_rad = 0.5 * std::numbers::pi,
+                         .angle_rad = wall_rad,
+                         .height_m = 0.0};
+    double stiff_m = -std::numeric_limits<double>::infinity();
+    double reach_m = stiff_m;
+    for (int tooth = 0; tooth < mill.teeth; ++tooth) {
+      const double longer = mill.radius_deviation_m(tooth, 0.0);
+      const double reach = longer + outwards * y_at(model, at, orbit, wall_rad - mill.standing_angle(tooth));
+      stiff_m = std::max(stiff_m, longer);
+      if (reach <= reach_m) continue;
+      reach_m = reach;
+      wall.tooth = tooth;
     }
+    wall.error_m = stiff_m - reach_m;
+    if (!(std::abs(wall.error_m) <= std::abs(worst.error_m))) worst = wall;
   };
   // A tooth at φ = 0 stands at the wall on the left, at φ = π at that on the right.
-  if (model.milling.immersion.entry_rad <= 1e-9) look(0.0, -1.0);
-  if (model.milling.immersion.exit_rad >= std::numbers::pi - 1e-9) look(std::numbers::pi, 1.0);
+  if (model.milling.immersion.entry_rad <= 1e-9) look(0.0, 1.0);
+  if (model.milling.immersion.exit_rad >= std::numbers::pi - 1e-9) look(std::numbers::pi, -1.0);
   return worst;
 }
 
@@ -159,35 +176,68 @@ SurfacePoint orbit_at(const MillingModel& model, const OperatingPoint& point, in
   result.peak_to_peak_x_m = high(0) - low(0);
   result.peak_to_peak_y_m = high(1) - low(1);
   result.peak_deflection_m = peak_deflection(model, at, orbit);
-  result.surface_location_error_m = wall_error(model, at, orbit);
+  result.peak_to_peak_z_m = 0.0;
+  result.place = wall_error(model, at, orbit);
+  result.surface_location_error_m = result.place.error_m;
   return result;
 }
 
 void require_feed(const LobesProblem& problem) {
-  problem.require_plane("the surface");
-  if (!(problem.milling.feed_per_tooth_m > 0.0)) {
-    throw InvalidInput("feed_per_tooth_m", problem.milling.feed_per_tooth_m, "m", "must be > 0 for a surface");
-  }
+  if (problem.drilling) throw InvalidInput("drilling", "must not be there: a drill leaves no surface that is known");
+  const double feed_m = problem.spatial ? problem.spatial->feed_per_tooth_m : problem.milling.feed_per_tooth_m;
+  if (!(feed_m > 0.0)) throw InvalidInput("feed_per_tooth_m", feed_m, "m", "must be > 0 for a surface");
 }
 
-SurfacePoint unstable_point() {
-  return {false, missing, missing, missing, missing};
-}
-
-}  // namespace
-
-SurfacePoint surface_point(const LobesProblem& problem, const OperatingPoint& point, double tolerance) {
+void check(const LobesProblem& problem, const OperatingPoint& point) {
   problem.validate();
   require_feed(problem);
   require_positive("axial_depth_m", point.axial_depth_m, "m");
   require_positive("spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
-  const MillingModel model(problem, MeshTopology::Form::several);
-  const MillingModel plain(problem);
-  CollocationEvaluator evaluator(plain, tolerance);
+}
+
+/// Surfaces of stable cuts; shared by threads.
+class Surfaces {
+ public:
+  explicit Surfaces(const LobesProblem& problem) {
+    if (problem.spatial) {
+      spatial_.emplace(problem);
+    } else {
+      plane_.emplace(problem, MeshTopology::Form::several);
+    }
+  }
+  /// @param finer  levels of the plane beyond that of the tolerance
+  [[nodiscard]] SurfacePoint at(const OperatingPoint& point, double tolerance, int finer) const {
+    if (spatial_) return spatial_->at(point, spatial_->model().first_level(point, tolerance));
+    return orbit_at(*plane_, point, plane_->first_level(point, tolerance) + finer);
+  }
+
+ private:
+  std::optional<SpatialSurface> spatial_;
+  std::optional<MillingModel> plane_;
+};
+
+}  // namespace
+
+SurfacePoint surface_of_stable_cut(const LobesProblem& problem, const OperatingPoint& point, double tolerance) {
+  check(problem, point);
+  return Surfaces(problem).at(point, tolerance, 1);
+}
+
+SurfacePoint surface_point(const LobesProblem& problem, const OperatingPoint& point, double tolerance) {
+  check(problem, point);
+  const std::unique_ptr<CollocationModel> model = collocation_model(problem);
+  CollocationEvaluator evaluator(*model, tolerance);
   Outcome outcome;
   evaluator.evaluate({&point, 1}, {.estimate = true}, {&outcome, 1});
-  if (outcome.spectral_radius >= 1.0) return unstable_point();
-  return orbit_at(model, point, model.first_level(point, tolerance) + 1);
+  if (outcome.spectral_radius >= 1.0) return {};
+  return Surfaces(problem).at(point, tolerance, 1);
+}
+
+std::vector<SurfacePlace> surface_profile(const LobesProblem& problem, const OperatingPoint& point, double tolerance) {
+  check(problem, point);
+  if (!problem.spatial) throw InvalidInput("spatial", "must be there: a wall in the plane has no profile");
+  const SpatialSurface surface(problem);
+  return surface.profile(point, surface.model().first_level(point, tolerance));
 }
 
 SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options, const std::array<int, 2>& grid,
@@ -202,7 +252,7 @@ SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options,
   depths.erase(depths.begin());
   const Axes axes = {even(options.spindle_speed_rad_per_s, grid[0]), depths};
   const std::unique_ptr<Scheme> scheme = collocation(problem, options.tolerance);
-  const MillingModel model(problem, MeshTopology::Form::several);
+  const Surfaces surfaces(problem);
   Count count;
   const GridRadii radii = evaluate_grid(*scheme, axes, options.tolerance, count, progress);
   SurfaceMap map;
@@ -220,9 +270,10 @@ SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options,
         const Eigen::Index row = static_cast<Eigen::Index>(d);
         const Eigen::Index column = static_cast<Eigen::Index>(s);
         if (radii.unstable(row, column)) continue;
-        const SurfacePoint point = orbit_at(model, axes.at(s, d), model.first_level(axes.at(s, d), options.tolerance));
+        const SurfacePoint point = surfaces.at(axes.at(s, d), options.tolerance, 0);
         map.surface_location_error_m(row, column) = point.surface_location_error_m;
-        map.peak_to_peak_m(row, column) = std::max(point.peak_to_peak_x_m, point.peak_to_peak_y_m);
+        map.peak_to_peak_m(row, column) =
+            std::max({point.peak_to_peak_x_m, point.peak_to_peak_y_m, point.peak_to_peak_z_m});
       }
       progress.advance();
     }
