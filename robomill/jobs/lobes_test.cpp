@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/stability/surface_error.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
@@ -100,6 +102,33 @@ TEST(RunLobes, JudgesABallInThreeDirections) {
   EXPECT_LT(result.lobes.points[0].gain_margin, 1.0);
   ASSERT_EQ(result.cut.notes.size(), 1U);
   EXPECT_NE(result.cut.notes[0].find("tip is in the cut"), std::string::npos);
+}
+
+TEST(RunLobes, MapsTheSurfaceThatABallLeaves) {
+  const test::Folder folder;
+  const auto file = [&](const std::string& end) {
+    const std::string text = replaced(std::string(ball), "[cut]\n", "[cut]\nfeed_per_tooth_mm = 0.05\n");
+    return folder.file("ball.toml", text + end);
+  };
+  const LobesJobResult result =
+      run_lobes({.lobes = file("axial_depth_mm = [0, 0.3]\n[surface_error]\ngrid = [3, 4]\n")});
+  int stable = 0;
+  for (Eigen::Index s = 0; s < 3; ++s) {
+    for (Eigen::Index d = 0; d < 4; ++d) {
+      const double error_m = result.surface.surface_location_error_m(d, s);
+      if (std::isnan(error_m)) continue;
+      ++stable;
+      const stability::SurfacePoint there = stability::surface_point(
+          result.cut.problem, {result.surface.spindle_speed_rad_per_s(s), result.surface.axial_depth_m(d)});
+      EXPECT_NEAR(error_m, there.surface_location_error_m, 1e-6 * there.peak_deflection_m);
+    }
+  }
+  EXPECT_GT(stable, 2);
+  EXPECT_LT(stable, 12);
+  const std::string said = rejection([&] {
+    static_cast<void>(run_lobes({.lobes = file("sweep = \"lead\"\nlead_deg = [-30, 30]\n[surface_error]\n")}));
+  });
+  EXPECT_NE(said.find("surface_error: goes with a chart over the axial depth"), std::string::npos) << said;
 }
 
 TEST(RunLobes, SweepsTheLead) {

@@ -6,6 +6,7 @@
 #include "robomill/modal/tip.hpp"
 #include "robomill/stability/block.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/surface_error.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -27,6 +28,13 @@ stability::LobesProblem block_problem(const BlockCut& at, const modal::ModalMode
   return problem;
 }
 
+/// What the pass leaves; none where it is not fed or chatters, which has no steady motion.
+double surface_error_m(const stability::LobesProblem& problem, const stability::PointResult& point, double tolerance) {
+  if (!point.stable || !(problem.spatial->feed_per_tooth_m > 0.0)) return CutStability::none;
+  return stability::surface_of_stable_cut(problem, {point.spindle_speed_rad_per_s, point.axial_depth_m}, tolerance)
+      .surface_location_error_m;
+}
+
 }  // namespace
 
 double engaged_depth_m(const cutting::PoseEngagement& cut) {
@@ -38,8 +46,9 @@ CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
   stability::BlockOptions options;
   options.tolerance = at.tolerance;
   options.axial_depth_m = {depth_m / depths_below, depth_m * depths_above};
+  const stability::LobesProblem problem = block_problem(at, modes);
   const stability::BlockStability block =
-      stability::block_stability(block_problem(at, modes), at.spindle_speed_rad_per_s, depth_m, options);
+      stability::block_stability(problem, at.spindle_speed_rad_per_s, depth_m, options);
   CutStability out;
   out.spectral_radius = block.at.spectral_radius;
   out.searched_depth_m = options.axial_depth_m[1];
@@ -61,6 +70,7 @@ CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
   out.regime = to_string(block.regime);
   out.lower_bound = block.lower_bound;
   out.gain_margin = block.at.gain_margin;
+  out.surface_error_m = surface_error_m(problem, block.at, at.tolerance);
   return out;
 }
 

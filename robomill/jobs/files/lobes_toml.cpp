@@ -63,8 +63,11 @@ bool is_spatial(io::TomlFile& file, const cutting::Cutter& cutter, stability::Sw
 
 /// What is left of the file's cut for a cutter in three directions.
 void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& out) {
-  for (const char* key : {"cut.entry_deg", "cut.exit_deg", "process_damping", "speed_variation", "surface_error"}) {
+  for (const char* key : {"cut.entry_deg", "cut.exit_deg", "process_damping", "speed_variation"}) {
     if (file.has(key)) throw file.reject(key, "is for an upright flat end in x and y");
+  }
+  if (file.has("surface_error") && out.sweep != stability::SweptParameter::axial_depth) {
+    throw file.reject("surface_error", "goes with a chart over the axial depth");
   }
   stability::SpatialMilling milling;
   milling.cutter = cutter;
