@@ -22,6 +22,7 @@
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/stiffness.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/surface_error.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -146,6 +147,39 @@ TEST_F(Blocks, ASlotIsThatOfTheAnalyticCut) {
       EXPECT_NEAR(limit_m, scan.limit_m[1], 1e-9) << scan.parameter;
     }
   }
+}
+
+// The same two ways to the surface that the slot's edges leave.
+TEST_F(Blocks, TheSurfaceErrorOfASlotIsThatOfTheAnalyticCut) {
+  write_cell(1e4);
+  write_forces();
+  write_program();
+  const ForcesResult forces = forces_of(run_with_modes());
+  const ProgramBlocks blocks = judge_blocks(forces, dynamics(), {.scan_points = 0});
+  const double speed = 12000.0 * units::rpm;
+  const cutting::PoseEngagement& cut = forces.program->cuts[9];  // amid the slot
+  stability::LobesProblem problem;
+  problem.spatial.emplace();
+  problem.spatial->cutter = forces.file.cutter;
+  problem.spatial->cut = {.axial_depth_m = 1e-3, .direction = cutting::MillingDirection::slot};
+  problem.spatial->coefficients = forces.file.coefficients;
+  problem.spatial->feed_per_tooth_m = cut.feed_speed_m_per_s * 2.0 * std::numbers::pi / (2.0 * speed);
+  problem.dynamics = dynamics()(Eigen::VectorXd::Zero(6)).modes;  // F is B
+  const stability::SurfacePoint surface = stability::surface_point(problem, {speed, 1e-3});
+  ASSERT_TRUE(surface.stable);
+  // Of two teeth one stands at either flank at once: the errors are alike, their signs are not.
+  EXPECT_NEAR(std::abs(blocks.rows[9].cut.surface_error_m), std::abs(surface.surface_location_error_m),
+              0.05 * surface.peak_deflection_m);
+  int known = 0;
+  for (const BlockRow& row : blocks.rows) {
+    if (!row.cuts) continue;
+    EXPECT_FALSE(row.unstable() && std::isfinite(row.cut.surface_error_m));
+    if (std::isfinite(row.cut.surface_error_m)) ++known;
+  }
+  EXPECT_GE(known, 30);
+  const ProgramBlocks heavy_cut = judge_blocks(forces, dynamics(1e-3), {.scan_points = 0});
+  ASSERT_TRUE(heavy_cut.rows[9].unstable());
+  EXPECT_TRUE(std::isnan(heavy_cut.rows[9].cut.surface_error_m));
 }
 
 // What is shared differs little from what each block would have got, and threads do not matter.
