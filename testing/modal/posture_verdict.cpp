@@ -118,8 +118,8 @@ std::optional<JudgedCut> placed(const Drawn& drawn, const SimulatedArm& arm, con
   return out;
 }
 
-/// The cut with loss of contact, from rest: for a second, and longer where that and the growth of a small vibration
-/// say different things.
+/// The cut with loss of contact, from rest: for a second, and longer until what its motion does agrees with the growth
+/// of a small vibration or, where that is not known, changes clearly.
 bool simulated_chatter(const JudgedCut& judged, const ModalModel& truth) {
   const stability::SpatialMilling& milling = *judged.cut.spatial;
   const cutting::FlatEndMill& mill = milling.cutter.mill;
@@ -134,12 +134,14 @@ bool simulated_chatter(const JudgedCut& judged, const ModalModel& truth) {
                 .spindle_speed_rad_per_s = judged.spindle_speed_rad_per_s};
   cut.structure = tip_modes(turned(truth, judged.feed_from_base), {}, 0.0);
   bool chatters = false;
-  for (const double seconds : {1.0, 4.0}) {
+  for (const double seconds : {1.0, 4.0, 16.0}) {
     const simulation::Simulation run =
         simulation::simulate(cut, {.seconds = seconds, .sample_rate_hz = 2048.0, .tolerance = 1e-2});
-    chatters = run.verdict != simulation::Verdict::stable;
+    chatters = run.verdict == simulation::Verdict::undecided ? run.growth_per_period >= 1.0
+                                                             : run.verdict == simulation::Verdict::chatter;
+    const double change = std::pow(run.growth_per_period, 0.25 * seconds / run.period_s);
     const bool known = run.small.status == simulation::SmallVibration::Status::found;
-    if (known && chatters == (run.small.spectral_radius >= 1.0)) break;
+    if (known ? chatters == (run.small.spectral_radius >= 1.0) : change < 0.7 || change > 1.4) break;
   }
   return chatters;
 }
