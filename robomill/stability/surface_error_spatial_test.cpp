@@ -283,20 +283,21 @@ double looked_up(const Leaning& drawn, const std::vector<Eigen::Vector3d>& q) {
 // Integrated in time, and the profile that remains found by looking: no code in common but the engagement.
 TEST(SurfaceErrorSpatial, OfLeaningBallsAndBullNosesIsWhatTheSimulationLeaves) {
   int compared = 0, unequal = 0;
-  const int cuts = std::max(20, test::seeds(100));
+  const int cuts = test::seeds(300);
   for (std::uint64_t seed = 0; compared < cuts; ++seed) {
     ASSERT_LT(seed, 1000U);
     const std::optional<Leaning> drawn = leaning(seed);
     if (!drawn) continue;
-    if (evaluate_point(drawn->problem, {.tolerance = 1e-4}, drawn->point).spectral_radius > 0.9) continue;
-    const SurfacePoint found = surface_point(drawn->problem, drawn->point);
-    ASSERT_TRUE(found.stable);
+    if (evaluate_point(drawn->problem, {.tolerance = 1e-2}, drawn->point).spectral_radius > 0.8) continue;
+    const SurfacePoint found = surface_of_stable_cut(drawn->problem, drawn->point, 1e-4);
     const std::vector<Eigen::Vector3d> q = simulated(*drawn, 720);
     double largest = 0.0;
     for (const Eigen::Vector3d& at : q) largest = std::max(largest, at.norm());
-    EXPECT_NEAR(found.peak_deflection_m, largest, 0.01 * largest) << seed;
-    EXPECT_NEAR(found.surface_location_error_m, looked_up(*drawn, q), 0.01 * largest) << seed;
+    EXPECT_NEAR(found.peak_deflection_m, largest, 0.02 * largest) << seed;  // found at 16 looks a period
     const cutting::FlatEndMill& mill = drawn->problem.spatial->cutter.mill;
+    // Which tooth misses changes along the profile, where neither places a ring.
+    const double share = mill.runout_m > 0.0 ? 0.03 : 0.01;
+    EXPECT_NEAR(found.surface_location_error_m, looked_up(*drawn, q), share * largest) << seed;
     unequal += mill.teeth > 1 && (mill.runout_m > 0.0 || !mill.pitch_rad.empty()) ? 1 : 0;
     ++compared;
   }
