@@ -1,10 +1,14 @@
 #include "examples/postures/ten_postures.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <numbers>
 
 #include "robomill/jobs/files/cell_toml.hpp"
+#include "robomill/jobs/posture.hpp"
+#include "robomill/modal/files/frf_files.hpp"
 #include "robomill/robot/dynamics.hpp"
 #include "testing/support.hpp"
 
@@ -48,6 +52,37 @@ TEST(TenPostures, HaveACellThatReadsBackAsWhatIsTold) {
     EXPECT_NEAR(read.cell.arm.joints[k].stiffness / arm.told().arm.joints[k].stiffness, 1.0, 1e-5);
     EXPECT_NEAR(read.cell.arm.joints[k].damping / arm.told().arm.joints[k].damping, 1.0, 1e-5);
   }
+}
+
+// Each measurement in its place: nothing to say. Two of them swapped, or one in another unit: said which.
+TEST(TenPostures, AreNamedWhereAMeasurementDoesNotBelong) {
+  const test::Folder folder;
+  const modal::testing::SimulatedArm arm(arm_seed);
+  const std::vector<Eigen::VectorXd> all = joints_of_poses(arm);
+  const std::vector<Eigen::VectorXd> joints = {all[0], all[2], all[4], all[6], all[8], all[9]};
+  for (std::size_t p = 0; p < joints.size(); ++p) {
+    modal::write_frfs(folder.at(fmt::format("posture_{}.uff", p + 1)),
+                      arm.measure(joints[p], p + 1, {.line_spacing_hz = 3.0}));
+  }
+  const auto warnings = [&] {
+    return jobs::cell_dynamics(jobs::read_cell(folder.file("cell.toml", cell_toml(arm, joints)))).warnings;
+  };
+  EXPECT_TRUE(warnings().empty()) << testing::PrintToString(warnings());
+  std::filesystem::rename(folder.at("posture_2.uff"), folder.at("swapped.uff"));
+  std::filesystem::rename(folder.at("posture_5.uff"), folder.at("posture_2.uff"));
+  std::filesystem::rename(folder.at("swapped.uff"), folder.at("posture_5.uff"));
+  const std::string said = testing::PrintToString(warnings());
+  EXPECT_NE(said.find("posture 2 (posture_2.uff) does not belong to the others"), std::string::npos) << said;
+  EXPECT_NE(said.find("posture 5 (posture_5.uff) does not belong to the others"), std::string::npos) << said;
+  for (const int other : {1, 3, 4, 6}) {
+    EXPECT_EQ(said.find(fmt::format("posture {} (", other)), std::string::npos) << said;
+  }
+  std::filesystem::rename(folder.at("posture_2.uff"), folder.at("posture_5.uff"));
+  modal::FrfSet wrong = arm.measure(joints[1], 2, {.line_spacing_hz = 3.0});
+  for (modal::Frf& frf : wrong.frfs) frf.receptance *= 1e3;
+  modal::write_frfs(folder.at("posture_2.uff"), wrong);
+  const std::string unit = testing::PrintToString(warnings());
+  EXPECT_NE(unit.find("do not use what follows from it"), std::string::npos) << unit;
 }
 
 // [RobotMillingChatter] section 4.5.4 and fig. 4-14: below 15,000 rpm x, y and z matter little for the lobes, γ much.

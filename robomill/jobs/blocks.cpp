@@ -1,5 +1,7 @@
 #include "robomill/jobs/blocks.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,10 +12,16 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/jobs/blocks/classes.hpp"
+#include "robomill/jobs/blocks/named_block.hpp"
 #include "robomill/jobs/blocks/scans.hpp"
 #include "robomill/jobs/blocks/stability.hpp"
 
 namespace robomill::jobs {
+
+std::string named_block(const ForcesResult& forces, std::size_t block) {
+  return fmt::format("block {} (line {})", block + 1, forces.program->program.blocks[block].line);
+}
+
 namespace {
 
 /// Each cutting block to a class; evaluation is its number.
@@ -46,26 +54,36 @@ struct Shared {
   CutStability cut = {};
   std::optional<bool> measured_nearby = {};
   double joint_distance_rad = 0.0;
+  std::size_t unmatched = 0;
 };
+
+Shared evaluate(const ForcesResult& forces, std::size_t block, const DynamicsAt& dynamics,
+                const BlocksOptions& options) {
+  const BlockResult& row = forces.program->blocks[block];
+  try {
+    const PostureDynamics there = dynamics(row.joints);
+    return {.cut = cut_stability({.file = forces.file,
+                                  .cut = forces.program->cuts[block],
+                                  .base_from_work = forces.cell->cell.workpiece.linear(),
+                                  .spindle_speed_rad_per_s = row.force.spindle_speed_rad_per_s,
+                                  .tolerance = options.tolerance},
+                                 there.modes),
+            .measured_nearby = there.measured_nearby,
+            .joint_distance_rad = there.joint_distance_rad,
+            .unmatched = there.unmatched};
+  } catch (const InvalidInput& error) {
+    throw within(named_block(forces, block) + ": ", error);
+  }
+}
 
 std::vector<Shared> evaluate_classes(const ForcesResult& forces, const std::vector<std::size_t>& first,
                                      const DynamicsAt& dynamics, const BlocksOptions& options, Progress& progress) {
   std::vector<Shared> shared(first.size());
-  const ProgramForces& program = *forces.program;
   progress.start("stability of blocks", first.size());
   parallel_for(first.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       progress.check();
-      const std::size_t block = first[k];
-      const PostureDynamics there = dynamics(program.blocks[block].joints);
-      shared[k].measured_nearby = there.measured_nearby;
-      shared[k].joint_distance_rad = there.joint_distance_rad;
-      shared[k].cut = cut_stability({.file = forces.file,
-                                     .cut = program.cuts[block],
-                                     .base_from_work = forces.cell->cell.workpiece.linear(),
-                                     .spindle_speed_rad_per_s = program.blocks[block].force.spindle_speed_rad_per_s,
-                                     .tolerance = options.tolerance},
-                                    there.modes);
+      shared[k] = evaluate(forces, first[k], dynamics, options);
       progress.advance();
     }
   });
@@ -165,6 +183,7 @@ ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamic
     if (!row.cuts) continue;
     row.cut = shared[row.evaluation].cut;
     row.measured_nearby = shared[row.evaluation].measured_nearby;
+    row.unmatched = shared[row.evaluation].unmatched;
     row.stability_margin = margin_of(row);
   }
   sum_up(out);

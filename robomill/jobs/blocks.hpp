@@ -22,14 +22,16 @@ struct PostureDynamics {
   modal::ModalModel modes = {};              ///< of the tool's tip, in the robot's base axes
   std::optional<bool> measured_nearby = {};  ///< none: the dynamics do not come from measured postures
   double joint_distance_rad = 0.0;           ///< to the nearest measured posture, largest of a joint
+  std::size_t unmatched = 0;                 ///< as CellDynamics::unmatched
 };
 /// Of any posture; called by several threads at once.
 using DynamicsAt = std::function<PostureDynamics(const Eigen::VectorXd& joints)>;
 
 /// Of the cell's measured postures, or of its arm's numbers alone (posture.hpp).
-/// @param notes  for the user are added
+/// @param warnings, notes  for the user are added
 /// @throws InvalidInput as cell_dynamics, or with the cell's file if nothing is known to vibrate; Interrupted
-[[nodiscard]] ROBOMILL_API DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& notes,
+[[nodiscard]] ROBOMILL_API DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& warnings,
+                                                       std::vector<std::string>& notes,
                                                        Progress& progress = Progress::none());
 /// The same modes in every posture.
 [[nodiscard]] ROBOMILL_API DynamicsAt constant_dynamics(modal::ModalModel modes);
@@ -71,6 +73,7 @@ struct BlockRow {
   CutStability cut = {};
   double stability_margin = CutStability::none;  ///< 1 - depth / limit (5 % quantile); no limit: of the depth searched
   std::optional<bool> measured_nearby = {};
+  std::size_t unmatched = 0;   ///< as CellDynamics::unmatched
   std::size_t evaluation = 0;  ///< which one it shares, from 0
   [[nodiscard]] bool unstable() const { return cuts && cut.spectral_radius >= 1.0; }
 };
@@ -108,7 +111,8 @@ struct ProgramBlocks {
 /// Stability of every block that cuts: its engagement (ProgramForces::cuts), its posture, the dynamics there.
 /// Depths, speeds, tolerance and what is shared: robomill/jobs/README.md.
 /// @param forces  with a cell, and cuts kept
-/// @throws InvalidInput if an option is out of range, or dynamics do not fit the cut; Interrupted
+/// @throws InvalidInput if an option is out of range, or dynamics are not known in a block or do not fit its cut,
+/// naming block and line; Interrupted
 [[nodiscard]] ROBOMILL_API ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamics,
                                                       const BlocksOptions& options = {},
                                                       Progress& progress = Progress::none());

@@ -375,6 +375,23 @@ TEST_F(Blocks, SayThatTheWorkpieceTakesNoPart) {
   EXPECT_TRUE(says({.scan_points = 0}));
 }
 
+TEST_F(Blocks, SaysInWhichBlockTheDynamicsAreNotKnown) {
+  write_cell();
+  write_forces();
+  write_program();
+  const ForcesResult forces = forces_of(run_with_modes());
+  const DynamicsAt known = dynamics();
+  const double border = forces.program->blocks[10].joints(0);
+  const auto fails = [&](const Eigen::VectorXd& joints) {
+    if (!(joints(0) > border)) throw InvalidInput("joints", "is where no mode is known");
+    return known(joints);
+  };
+  const std::string said = test::rejection(
+      [&] { static_cast<void>(judge_blocks(forces, fails, {.joint_tolerance_rad = 1e-3, .scan_points = 0})); });
+  EXPECT_TRUE(said.starts_with("block ")) << said;
+  EXPECT_NE(said.find("): joints: is where no mode is known"), std::string::npos) << said;
+}
+
 TEST_F(Blocks, SaysWhatIsMissing) {
   write_cell();
   write_forces();

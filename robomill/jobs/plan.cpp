@@ -379,7 +379,7 @@ DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& pr
       result.notes.emplace_back(
           "The dynamics of the program's blocks are those of the cell's arm alone; nothing was measured.");
     }
-    return dynamics_of_cell(cell, result.notes, progress);
+    return dynamics_of_cell(cell, result.warnings, result.notes, progress);
   }
   result.notes.emplace_back(
       "The dynamics of the program's blocks are the job's, the same in every posture, in the robot's base axes.");

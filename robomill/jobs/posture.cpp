@@ -8,6 +8,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
+#include "robomill/modal/fit.hpp"
 #include "robomill/modal/tip.hpp"
 
 namespace robomill::jobs {
@@ -103,12 +104,96 @@ void require_posture(const robot::Arm& arm, const std::vector<double>& joints) {
   }
 }
 
+/// One file for two postures is a slip of the pen.
+void require_different_files(const CellFile& cell) {
+  const auto file_of = [](const PostureEntry& entry) { return entry.frf.empty() ? entry.modes : entry.frf; };
+  for (std::size_t i = 0; i < cell.postures.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (file_of(cell.postures[i]) != file_of(cell.postures[j])) continue;
+      throw InvalidInput(fmt::format("{}: posture {}", cell.path.string(), i + 1),
+                         fmt::format("names {}, as posture {} does", file_of(cell.postures[i]).string(), j + 1),
+                         "Each posture has a measurement of its own");
+    }
+  }
+}
+
+/// What a posture was measured to be; modes as the receptances that they make, a line a hertz.
+modal::FrfSet measured_frfs(const modal::MeasuredPosture& posture, const modal::PostureModelOptions& options) {
+  if (!posture.modes) return posture.frfs;
+  const double low_hz = std::max(1.0, options.band_low_hz);
+  const auto lines = static_cast<Eigen::Index>(options.band_high_hz - low_hz) + 1;
+  return modal::synthesize(*posture.modes, Eigen::VectorXd::LinSpaced(lines, low_hz, options.band_high_hz));
+}
+
+/// ‖H_fit − H‖ / ‖H‖ of a posture, over all its receptances: the mean over the lines within the band.
+double misfit(const modal::PostureModel& model, const modal::MeasuredPosture& posture,
+              const modal::PostureModelOptions& options) {
+  const modal::FrfSet set = measured_frfs(posture, options);
+  const modal::FrfSet fitted = modal::synthesize(model.at(posture.joints).modes, set.frequency_hz);
+  double sum = 0.0;
+  std::size_t lines = 0;
+  for (Eigen::Index line = 0; line < set.frequency_hz.size(); ++line) {
+    const double at_hz = set.frequency_hz(line);
+    if (at_hz < options.band_low_hz || at_hz > options.band_high_hz) continue;
+    double error = 0.0, size = 0.0;
+    for (const modal::Frf& frf : set.frfs) {
+      const modal::Frf* const other = fitted.find(frf.name);
+      if (other == nullptr) continue;
+      error += std::norm(other->receptance(line) - frf.receptance(line));
+      size += std::norm(frf.receptance(line));
+    }
+    if (!(size > 0.0)) continue;
+    sum += std::sqrt(error / size);
+    ++lines;
+  }
+  return lines > 0 ? sum / static_cast<double>(lines) : 0.0;
+}
+
+/// A model that misses what was measured, and a posture that does not belong to the others.
+void warn_of_misfits(const modal::PostureModel& model, const std::vector<modal::MeasuredPosture>& postures,
+                     const modal::PostureModelOptions& options, std::vector<std::string>& warnings) {
+  if (model.report().error >= modal::unusable_fit_error) {
+    warnings.push_back(
+        fmt::format("The arm's model misses the measured receptances by {:.2g} %: do not use what follows from it. Are "
+                    "units, axes and joints_deg of [[postures]] right?",
+                    100.0 * model.report().error));
+  }
+  // Simulated arms: within 1.1 of the median with each measurement in its place, 2.1 and more where two are swapped.
+  constexpr double outlier = 1.75, noticed = 0.15;
+  std::vector<double> missed;
+  for (const modal::MeasuredPosture& posture : postures) missed.push_back(misfit(model, posture, options));
+  std::vector<double> sorted = missed;
+  std::ranges::sort(sorted);
+  const double median = sorted[sorted.size() / 2];
+  for (std::size_t p = 0; p < missed.size() && missed.size() > 2; ++p) {
+    if (missed[p] < noticed || missed[p] < outlier * median) continue;
+    warnings.push_back(
+        fmt::format("{} does not belong to the others: the arm's model misses its receptances {:.2g} times as far as "
+                    "theirs (median). Are its joints_deg, axes, unit and file right?",
+                    postures[p].name, missed[p] / median));
+  }
+}
+
+/// Joints whose damping the cell does not give.
+std::string assumed_damping(const CellFile& cell, const modal::PostureReport& report) {
+  if (report.source == modal::PostureReport::Source::interpolated) return {};
+  std::string joints;
+  for (std::size_t k = 0; k < cell.cell.arm.joints.size(); ++k) {
+    if (cell.cell.arm.joints[k].damping > 0.0) continue;
+    joints += fmt::format("{}{}", joints.empty() ? "" : ", ", k + 1);
+  }
+  if (joints.empty()) return {};
+  return fmt::format("The cell gives no joint_damping_n_m_s_per_rad of joints {}: 2 % of critical {}.", joints,
+                     report.postures > 0 ? "is what the calibration starts from" : "is assumed of each");
+}
+
 std::string description(const modal::PostureReport& report) {
   if (report.source != modal::PostureReport::Source::calibrated) return {};
   std::string text = fmt::format(
-      "The arm's model is calibrated over {} postures: compliant joints{}{}{}. It misses their "
+      "The arm's model is calibrated over {} posture{}: compliant joints{}{}{}. It misses their "
       "receptances by {:.2g} %",
-      report.postures, report.bearings ? ", bearings" : "", report.bracket ? ", the spindle's bracket" : "",
+      report.postures, report.postures == 1 ? "" : "s", report.bearings ? ", bearings" : "",
+      report.bracket ? ", the spindle's bracket" : "",
       report.tool_modes > 0
           ? fmt::format(", {} pair{} of tool modes", report.tool_modes, report.tool_modes == 1 ? "" : "s")
           : "",
@@ -123,20 +208,48 @@ std::string description(const modal::PostureReport& report) {
 
 CellDynamics cell_dynamics(const CellFile& cell, Progress& progress) {
   CellDynamics out;
+  require_different_files(cell);
   std::vector<modal::MeasuredPosture> postures;
   for (std::size_t i = 0; i < cell.postures.size(); ++i) postures.push_back(measured(cell, i, out.notes));
+  const modal::PostureModelOptions options;
   try {
-    out.model = std::make_shared<modal::PostureModel>(cell.cell, payload_of(cell), postures,
-                                                      modal::PostureModelOptions{}, progress);
+    out.model = std::make_shared<modal::PostureModel>(cell.cell, payload_of(cell), postures, options, progress);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
     if (parts.field == "cell") parts.field = cell.path.string();
     throw InvalidInput(parts);
   }
   const modal::PostureReport& report = out.model->report();
+  if (report.source == modal::PostureReport::Source::calibrated) {
+    warn_of_misfits(*out.model, postures, options, out.warnings);
+  }
+  if (report.source == modal::PostureReport::Source::interpolated) {
+    for (const modal::MeasuredPosture& posture : postures) {
+      out.modes_of[posture.name] = out.model->at(posture.joints).modes.modes.size();
+    }
+  }
   if (const std::string text = description(report); !text.empty()) out.notes.push_back(text);
   out.notes.insert(out.notes.end(), report.notes.begin(), report.notes.end());
+  if (const std::string text = assumed_damping(cell, report); !text.empty()) out.notes.push_back(text);
   return out;
+}
+
+modal::PosturePrediction CellDynamics::at(const Eigen::VectorXd& joints) const {
+  modal::PosturePrediction out = model->at(joints);
+  if (!out.modes.modes.empty()) return out;
+  throw InvalidInput(modes_of.empty() ? "modes" : "[[postures]]",
+                     modes_of.empty()
+                         ? "has no mode within the band"
+                         : "the modes of the measured postures cannot be matched with each other here; the "
+                           "nearest is " +
+                               out.nearest,
+                     "Give the cell robot.links and robot.joint_stiffness_n_m_per_rad, or measure a posture nearby");
+}
+
+std::size_t CellDynamics::unmatched(const modal::PosturePrediction& prediction) const {
+  const auto nearest = modes_of.find(prediction.nearest);
+  if (nearest == modes_of.end()) return 0;
+  return nearest->second - std::min(nearest->second, prediction.modes.modes.size());
 }
 
 ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vector<double>& joints_given,
@@ -147,8 +260,14 @@ ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vecto
   out.joints = joints_given;
   const Eigen::VectorXd joints = to_vector(out.joints);
   CellDynamics dynamics = cell_dynamics(cell, progress);
-  out.prediction = dynamics.model->at(joints);
+  try {
+    out.prediction = dynamics.at(joints);
+  } catch (const InvalidInput& error) {
+    throw within(path.string() + ": ", error);
+  }
+  out.unmatched = dynamics.unmatched(out.prediction);
   out.report = dynamics.model->report();
+  out.warnings = std::move(dynamics.warnings);
   out.notes = std::move(dynamics.notes);
   const double along = robot::forward(cell.cell.arm, joints).linear()(2, 2);
   out.axis_off_z_rad = std::acos(std::clamp(std::abs(along), 0.0, 1.0));

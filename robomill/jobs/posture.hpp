@@ -1,6 +1,8 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,7 +20,15 @@ namespace robomill::jobs {
 /// The dynamics of a cell's robot over its postures, from what [[postures]] name and from the cell's own numbers.
 struct CellDynamics {
   std::shared_ptr<const modal::PostureModel> model;
-  std::vector<std::string> notes = {};  ///< sentences for the user, of the files read and of the calibration
+  /// Modes of each measured posture by its name, where they are interpolated; else empty.
+  std::map<std::string, std::size_t> modes_of = {};
+  /// Sentences for the user, of the files read and of the calibration.
+  std::vector<std::string> warnings = {}, notes = {};
+
+  /// As model->at. @throws InvalidInput also where the measured postures have no mode in common there
+  [[nodiscard]] ROBOMILL_API modal::PosturePrediction at(const Eigen::VectorXd& joints) const;
+  /// Modes of the nearest measured posture that the others have no counterpart of: they are left out.
+  [[nodiscard]] ROBOMILL_API std::size_t unmatched(const modal::PosturePrediction& prediction) const;
 };
 
 /// Reads the FRFs and modes of [[postures]], turns them into base axes and calibrates the model.
@@ -35,8 +45,9 @@ struct ModesOfPosture {
   std::vector<double> joints = {};  ///< [rad or m]
   modal::PosturePrediction prediction;
   modal::PostureReport report;
-  double axis_off_z_rad = 0.0;  ///< of the tool's axis from the base's z
-  std::vector<std::string> notes = {};
+  double axis_off_z_rad = 0.0;                         ///< of the tool's axis from the base's z
+  std::size_t unmatched = 0;                           ///< as CellDynamics::unmatched
+  std::vector<std::string> warnings = {}, notes = {};  ///< of the files read and of the calibration
 };
 /// @param joints  one value a joint [rad or m]
 /// @throws InvalidInput as cell_dynamics, or naming "joints[k]" (k from 1) that is outside its limits
@@ -45,7 +56,8 @@ struct ModesOfPosture {
                                                         PostureAxes axes = PostureAxes::base,
                                                         Progress& progress = Progress::none());
 
-/// Sentences for the user: how far the posture lies outside the measured region; empty: it does not.
+/// Those of the calibration, and sentences about this posture: how far it lies outside the measured region, modes left
+/// out.
 [[nodiscard]] ROBOMILL_API std::vector<std::string> posture_warnings(const ModesOfPosture& posture);
 /// modes.json of a posture: its modes, and under "posture" where it is and how well it is known.
 [[nodiscard]] ROBOMILL_API std::string posture_modes_json(const ModesOfPosture& posture);

@@ -137,6 +137,65 @@ TEST(Posture, RejectsWhatCannotBeAPosture) {
   EXPECT_NE(beyond.find("joints[3] = 6.98"), std::string::npos) << beyond;
 }
 
+TEST(Posture, SaysWhatItAssumesOfDamping) {
+  const Folder folder;
+  std::string text = cell;
+  const std::size_t begin = text.find("joint_damping");
+  text.erase(begin, text.find('\n', begin) + 1 - begin);
+  const auto notes = [&](const std::string& of) {
+    return nlohmann::json::parse(posture_modes_json(posture_modes(folder.file("cell.toml", of), joints)))["notes"]
+        .dump();
+  };
+  EXPECT_NE(notes(text).find("joints 1, 2, 3, 4, 5, 6: 2 % of critical is assumed of each"), std::string::npos);
+  EXPECT_EQ(notes(cell).find("of critical"), std::string::npos);
+}
+
+TEST(Posture, HasAMeasurementOfItsOwn) {
+  const Folder folder;
+  const std::string of = "[[postures]]\nfrf = \"a.uff\"\njoints_deg = ";
+  modal::write_frfs(folder.at("a.uff"),
+                    modal::synthesize(posture_modes(folder.file("plain.toml", cell), joints).prediction.modes,
+                                      Eigen::VectorXd::LinSpaced(99, 4.0, 200.0)));
+  const std::filesystem::path twice =
+      folder.file("cell.toml", cell + of + "[1, 2, 3, 4, 5, 6]\n" + of + "[9, 2, 3, 4, 5, 6]\n");
+  const std::string said = rejection([&] { (void)cell_dynamics(read_cell(twice)); });
+  EXPECT_NE(said.find("posture 2: names"), std::string::npos) << said;
+  EXPECT_NE(said.find("as posture 1 does"), std::string::npos) << said;
+}
+
+// Without masses measured modes are interpolated: those that do not recur are named, and none left is an error.
+TEST(Posture, SaysThatModesCannotBeMatched) {
+  const Folder folder;
+  std::string bare = cell;
+  const std::size_t begin = bare.find("links = ");
+  bare.erase(begin, bare.find("[tool]") - begin);
+  const auto mode = [](double frequency_hz) {
+    const std::string along_z = "{ x = [0, 0], y = [0, 0], z = [0.01, 0] }";
+    return "[[modes]]\nfrequency_hz = " + std::to_string(frequency_hz) + "\ndamping_ratio = 0.03\nleft = " + along_z +
+           "\nright = " + along_z + "\n";
+  };
+  // Three postures about as far from the fourth, the first the nearest.
+  const std::vector<double> between = radians({9.9, 5.7, 0, 0, 40, 0});
+  const auto cell_with = [&](const std::string& all, const std::string& first) {
+    folder.file("a.toml", all + first);
+    folder.file("b.toml", all + mode(2500));
+    folder.file("c.toml", all + mode(6000));
+    return folder.file("cell.toml", bare +
+                                        "[[postures]]\njoints_deg = [0, 0, 0, 0, 40, 0]\nmodes = \"a.toml\"\n"
+                                        "[[postures]]\njoints_deg = [20, 0, 0, 0, 40, 0]\nmodes = \"b.toml\"\n"
+                                        "[[postures]]\njoints_deg = [10, 17.3, 0, 0, 40, 0]\nmodes = \"c.toml\"\n");
+  };
+  const ModesOfPosture some = posture_modes(cell_with(mode(40), mode(900)), between);
+  ASSERT_EQ(some.prediction.modes.modes.size(), 1U);
+  EXPECT_EQ(some.unmatched, 1U);
+  const std::vector<std::string> warnings = posture_warnings(some);
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_NE(warnings[0].find("1 of the 2 modes of the nearest posture"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("posture 1 (a.toml)"), std::string::npos) << warnings[0];
+  const std::string none = rejection([&] { (void)posture_modes(cell_with("", mode(900)), between); });
+  EXPECT_NE(none.find("cannot be matched with each other here; the nearest is"), std::string::npos) << none;
+}
+
 // In the file's words: line, key and degrees.
 TEST(Posture, OfLobesIsRejectedWithItsLine) {
   const Folder folder;

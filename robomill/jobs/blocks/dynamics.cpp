@@ -33,19 +33,23 @@ modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& join
   return model;
 }
 
-DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& notes, Progress& progress) {
+DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& warnings, std::vector<std::string>& notes,
+                            Progress& progress) {
   if (cell.postures.empty() && !vibrates(cell.cell.arm)) {
     throw InvalidInput(cell.path.string(), "does not say what vibrates",
                        "Give modes or FRFs in the job, [[postures]] in the cell, or its links' masses and "
                        "joint_damping_n_m_s_per_rad");
   }
   const CellDynamics dynamics = cell_dynamics(cell, progress);
+  warnings.insert(warnings.end(), dynamics.warnings.begin(), dynamics.warnings.end());
   notes.insert(notes.end(), dynamics.notes.begin(), dynamics.notes.end());
   const bool measured = dynamics.model->report().postures > 0;
-  return [model = dynamics.model, measured](const Eigen::VectorXd& joints) {
-    modal::PosturePrediction there = model->at(joints);
-    PostureDynamics out = {.modes = std::move(there.modes), .joint_distance_rad = there.distance_rad};
+  return [dynamics, measured](const Eigen::VectorXd& joints) {
+    modal::PosturePrediction there = dynamics.at(joints);
+    PostureDynamics out = {.modes = {}, .joint_distance_rad = there.distance_rad};
+    out.unmatched = dynamics.unmatched(there);
     if (measured) out.measured_nearby = there.measured_nearby;
+    out.modes = std::move(there.modes);
     return out;
   };
 }

@@ -10,6 +10,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/append.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/jobs/blocks/named_block.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
 
 namespace robomill::jobs {
@@ -39,11 +40,6 @@ constexpr std::size_t most_stretches = 8;
 /// A limit whose 95 % quantile is this multiple of the 5 % one is hardly known.
 constexpr double hardly_known = 4.0;
 
-/// "block 12 (line 40)"
-std::string named_block(const ForcesResult& forces, std::size_t block) {
-  return fmt::format("block {} (line {})", block + 1, forces.program->program.blocks[block].line);
-}
-
 std::string chatter_warning(const ForcesResult& forces, const ProgramBlocks& blocks) {
   const BlockRow& row = blocks.rows[blocks.worst];
   std::string text =
@@ -54,6 +50,14 @@ std::string chatter_warning(const ForcesResult& forces, const ProgramBlocks& blo
   }
   return text + fmt::format(", {} chatter of {} at {:.4g} Hz.", row.cut.regime, to_string(row.cut.mode),
                             row.cut.chatter_frequency_hz);
+}
+
+std::string unmatched_warning(const ForcesResult& forces, const ProgramBlocks& blocks, std::size_t first) {
+  const auto count = std::ranges::count_if(blocks.rows, [](const BlockRow& row) { return row.unmatched > 0; });
+  return fmt::format(
+      "In {} blocks, the first {}, modes of the nearest measured posture have no counterpart in the others ({} there) "
+      "and are left out: the limits are too deep where these would chatter.",
+      count, named_block(forces, first), blocks.rows[first].unmatched);
 }
 
 std::string beyond_warning(const ForcesResult& forces, const BeyondMeasured& stretch, double band_within) {
@@ -203,6 +207,10 @@ std::string block_note(const BlockResult& force, const BlockRow& row) {
 std::vector<std::string> block_warnings(const ForcesResult& forces, const ProgramBlocks& blocks) {
   std::vector<std::string> out;
   if (blocks.unstable > 0) out.push_back(chatter_warning(forces, blocks));
+  if (const auto unmatched = std::ranges::find_if(blocks.rows, [](const BlockRow& row) { return row.unmatched > 0; });
+      unmatched != blocks.rows.end()) {
+    out.push_back(unmatched_warning(forces, blocks, static_cast<std::size_t>(unmatched - blocks.rows.begin())));
+  }
   for (std::size_t i = 0; i < std::min(most_stretches, blocks.beyond.size()); ++i) {
     out.push_back(beyond_warning(forces, blocks.beyond[i], blocks.band_within));
   }

@@ -49,11 +49,25 @@ io::Json posture_object(const ModesOfPosture& posture) {
 }
 
 std::vector<std::string> posture_warnings(const ModesOfPosture& posture) {
-  if (posture.prediction.measured_nearby || posture.report.postures == 0) return {};
-  return {fmt::format(
-      "The posture lies outside the measured region: {:.3g} deg from the nearest measured one (at most {:.3g} deg "
-      "within it). Its deviations grow with that.",
-      posture.prediction.distance_rad / units::deg, posture.report.region_rad / units::deg)};
+  std::vector<std::string> out = posture.warnings;
+  const modal::PosturePrediction& there = posture.prediction;
+  if (posture.unmatched > 0) {
+    out.push_back(fmt::format(
+        "{} of the {} modes of the nearest posture ({}) have no counterpart in the others and are left out: limits "
+        "computed from the rest are too deep where these would chatter.",
+        posture.unmatched, posture.unmatched + there.modes.modes.size(), there.nearest));
+  }
+  if (there.measured_nearby || posture.report.postures == 0) return out;
+  const double away_deg = there.distance_rad / units::deg;
+  out.push_back(
+      posture.report.postures == 1
+          ? fmt::format("The posture lies {:.3g} deg from the only measured one. Its deviations grow with that.",
+                        away_deg)
+          : fmt::format(
+                "The posture lies outside the measured region: {:.3g} deg from the nearest measured one (at most "
+                "{:.3g} deg within it). Its deviations grow with that.",
+                away_deg, posture.report.region_rad / units::deg));
+  return out;
 }
 
 std::string posture_modes_json(const ModesOfPosture& posture) {
