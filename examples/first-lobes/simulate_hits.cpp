@@ -7,25 +7,18 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "examples/first-lobes/hammer.hpp"
 #include "robomill/io/append.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 
 namespace {
 
 using namespace robomill;
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(fmt::format("{}: cannot be written", path.string()));
-}
 
 std::string column_of(const modal::HitChannel& channel) {
   return fmt::format("a{}_m_per_s2", modal::to_string(channel.dof));
@@ -75,8 +68,8 @@ void run(const std::filesystem::path& directory, const std::filesystem::path& mo
   const modal::ModalModel model = modal::read_modes(modes);
   const std::vector<modal::Hit> hits = examples::simulate_hits(model, 5, 0.05, examples::Hammer{}, seed);
   std::filesystem::create_directories(directory);
-  for (const modal::Hit& hit : hits) write_text(directory / hit.file, csv_of(hit));
-  write_text(directory / "hits.toml", toml_of(hits, seed));
+  for (const modal::Hit& hit : hits) io::write_file(directory / hit.file, csv_of(hit));
+  io::write_file(directory / "hits.toml", toml_of(hits, seed));
   fmt::print("{} hits in {}\n", hits.size(), directory.string());
 }
 

@@ -8,24 +8,16 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
-#include <stdexcept>
 #include <string>
 
 #include "examples/postures/limits_svg.hpp"
 #include "examples/postures/ten_postures.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
 namespace {
 
 using namespace robomill;
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(fmt::format("{}: cannot be written", path.string()));
-}
 
 std::string depth_mm(double limit_m) {
   return std::isfinite(limit_m) ? fmt::format("{:.4f}", 1e3 * limit_m) : std::string();
@@ -55,10 +47,10 @@ void write_limits(const std::filesystem::path& directory, const modal::testing::
     fmt::print("limits over {}: {:.0f} % apart; of the modes at 500 to 600 Hz alone: {:.0f} %\n", direction.name,
                100.0 * examples::spread(of_all), 100.0 * examples::spread(of_few));
   }
-  write_text(directory / "limits.csv", out);
-  write_text(directory / "limits.svg",
-             examples::limits_svg(speeds, {{.title = "modes at 500 to 600 Hz", .limit_m = few},
-                                           {.title = "all modes", .limit_m = all}}));
+  io::write_file(directory / "limits.csv", out);
+  io::write_file(directory / "limits.svg",
+                 examples::limits_svg(speeds, {{.title = "modes at 500 to 600 Hz", .limit_m = few},
+                                               {.title = "all modes", .limit_m = all}}));
 }
 
 void run(const std::filesystem::path& directory) {
@@ -67,9 +59,9 @@ void run(const std::filesystem::path& directory) {
   std::filesystem::create_directories(directory);
   for (std::size_t p = 0; p < joints.size(); ++p) {
     modal::write_frfs(directory / fmt::format("posture_{}.uff", p + 1), arm.measure(joints[p], p + 1));
-    write_text(directory / fmt::format("lobes_{}.toml", p + 1), examples::lobes_toml(joints[p]));
+    io::write_file(directory / fmt::format("lobes_{}.toml", p + 1), examples::lobes_toml(joints[p]));
   }
-  write_text(directory / "cell.toml", examples::cell_toml(arm, joints));
+  io::write_file(directory / "cell.toml", examples::cell_toml(arm, joints));
   write_limits(directory, arm, joints);
   fmt::print("{} postures in {}\n", joints.size(), directory.string());
 }

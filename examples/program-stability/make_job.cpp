@@ -6,24 +6,16 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <fstream>
-#include <stdexcept>
 #include <string>
 
 #include "examples/postures/ten_postures.hpp"
 #include "examples/program-stability/hollow.hpp"
+#include "robomill/io/file.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
 namespace {
 
 using namespace robomill;
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(path.string() + ": cannot be written");
-}
 
 void run(const std::filesystem::path& directory, int passes, int moves_a_pass) {
   const modal::testing::SimulatedArm arm(examples::arm_seed);
@@ -32,13 +24,13 @@ void run(const std::filesystem::path& directory, int passes, int moves_a_pass) {
   for (std::size_t p = 0; p < joints.size(); ++p) {
     modal::write_frfs(directory / fmt::format("posture_{}.uff", p + 1), arm.measure(joints[p], p + 1));
   }
-  write_text(directory / "cell.toml",
-             examples::cell_toml(arm, joints) + "\n[program]\nmachine = \"xyzac-trt\"  # tip positions\n");
-  write_text(directory / "forces.toml", examples::hollow_forces(passes, moves_a_pass));
-  write_text(directory / "part.ngc", examples::hollow_program(passes, moves_a_pass));
-  write_text(directory / "job.toml",
-             "[job]\ntitle = \"Stability of every block\"\nforces = \"forces.toml\"\ncell = \"cell.toml\"\n"
-             "program = \"part.ngc\"\n");
+  io::write_file(directory / "cell.toml",
+                 examples::cell_toml(arm, joints) + "\n[program]\nmachine = \"xyzac-trt\"  # tip positions\n");
+  io::write_file(directory / "forces.toml", examples::hollow_forces(passes, moves_a_pass));
+  io::write_file(directory / "part.ngc", examples::hollow_program(passes, moves_a_pass));
+  io::write_file(directory / "job.toml",
+                 "[job]\ntitle = \"Stability of every block\"\nforces = \"forces.toml\"\ncell = \"cell.toml\"\n"
+                 "program = \"part.ngc\"\n");
   fmt::print("{} postures and {} passes in {}\n", joints.size(), passes, directory.string());
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "robomill/page/json.hpp"
+#include "robomill/page/path_columns.hpp"
 #include "robomill/page/thin.hpp"
 
 namespace robomill::page {
@@ -172,35 +173,6 @@ void thin_forces(Json& json) {
   }
   if (const auto rotation = json.find("rotation_deg"); rotation != json.end()) thin_axis(json, rotation->size());
 }
-
-/// What the page draws and says of each block of blocks.json, a list each.
-constexpr const char* path_columns[] = {"block",
-                                        "line",
-                                        "x_mm",
-                                        "y_mm",
-                                        "z_mm",
-                                        "axial_depth_mm",
-                                        "radial_depth_mm",
-                                        "spindle_speed_rpm",
-                                        "feed_mm_per_min",
-                                        "spectral_radius",
-                                        "limit_depth_mm",
-                                        "limit_5_percent_mm",
-                                        "limit_95_percent_mm",
-                                        "stability_margin",
-                                        "gain_margin",
-                                        "chatter_frequency_hz",
-                                        "mode",
-                                        "regime",
-                                        "lower_bound",
-                                        "peak_f_n",
-                                        "torque_n_m",
-                                        "power_w",
-                                        "deflection_um",
-                                        "surface_error_um",
-                                        "condition_number",
-                                        "measured_nearby",
-                                        "note"};
 
 bool says_something(const Json& column) {
   return std::ranges::any_of(column, [](const Json& cell) { return !cell.is_null(); });

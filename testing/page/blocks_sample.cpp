@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "robomill/page/path_columns.hpp"
+
 namespace robomill::page {
 namespace {
 
@@ -22,34 +24,6 @@ double dome_mm(double x_mm, double y_mm) {
   return std::sqrt(radius_mm * radius_mm - x_mm * x_mm - y_mm * y_mm) - radius_mm;
 }
 
-constexpr const char* columns[] = {"block",
-                                   "line",
-                                   "x_mm",
-                                   "y_mm",
-                                   "z_mm",
-                                   "axial_depth_mm",
-                                   "radial_depth_mm",
-                                   "spindle_speed_rpm",
-                                   "feed_mm_per_min",
-                                   "spectral_radius",
-                                   "limit_depth_mm",
-                                   "limit_5_percent_mm",
-                                   "limit_95_percent_mm",
-                                   "stability_margin",
-                                   "gain_margin",
-                                   "chatter_frequency_hz",
-                                   "mode",
-                                   "regime",
-                                   "lower_bound",
-                                   "peak_f_n",
-                                   "torque_n_m",
-                                   "power_w",
-                                   "deflection_um",
-                                   "surface_error_um",
-                                   "condition_number",
-                                   "measured_nearby",
-                                   "note"};
-
 struct Where {
   double x_mm, y_mm, z_mm;
 };
@@ -58,7 +32,7 @@ struct Where {
 class Columns {
  public:
   explicit Columns(std::string text) : text_(std::move(text)) {
-    for (const char* column : columns) json_[column] = Json::array();
+    for (const char* column : path_columns) json_[column] = Json::array();
   }
   void add(const Where& at, bool cuts) {
     Json row = {{"block", rows_ + 1},
@@ -67,7 +41,7 @@ class Columns {
                 {"y_mm", at.y_mm},
                 {"z_mm", at.z_mm}};
     if (cuts) add_cut(row, at);
-    for (const char* column : columns) json_[column].push_back(row.contains(column) ? row[column] : Json());
+    for (const char* column : path_columns) json_[column].push_back(row.contains(column) ? row[column] : Json());
     ++rows_;
     cutting_ += cuts ? 1 : 0;
   }
