@@ -46,7 +46,7 @@ void narrow(Search& s, double value) {
     if (s.side == -1) s.value_low *= 0.5;
     s.side = -1;
   }
-  s.dragging = s.high - s.low > 0.5 * width ? s.dragging + 1 : 0;
+  s.dragging = s.high - s.low > 0.51 * width ? s.dragging + 1 : 0;  // a halving is none, whatever it rounds to
   choose(s);
 }
 

@@ -72,6 +72,10 @@ void CollocationEvaluator::assess(std::size_t lane, std::size_t column, const Do
   if (!here.done) {
     here.coarse = reported;
     here.compared = true;
+    here.nodes = at_[lane]->level.nodes;
+    const Eigen::VectorXcd vector = arnoldi_.vector(column);
+    here.motion = vector.real() + vector.imag();
+    if (!(radius < 1e100) || !here.motion.allFinite()) here.motion.setZero();
     ++here.level;
     return;
   }
@@ -90,6 +94,14 @@ void CollocationEvaluator::assess(std::size_t lane, std::size_t column, const Do
   out.mode = motion.mode;
 }
 
+/// What the level below found, on the nodes of this one.
+void CollocationEvaluator::guess(std::span<const std::size_t> lane_of) {
+  guess_.assign(map_.size(), Lanes{});
+  for (std::size_t i = 0; i < lane_of.size(); ++i) {
+    map_.take_over(lanes_[lane_of[i]].motion, lanes_[lane_of[i]].nodes, i, guess_);
+  }
+}
+
 void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) {
   std::array<bool, lane_count> waits = {};
   at_.fill(nullptr);
@@ -104,13 +116,17 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
     std::array<Dominant, lane_count> found;
     std::size_t count = 0;
     for (std::size_t lane = first; lane < points.size(); ++lane) {
-      if (!waits[lane] || !(at_[lane]->mesh.topology == at_[first]->mesh.topology)) continue;
+      if (!waits[lane] || lanes_[lane].compared != lanes_[first].compared) continue;
+      if (!(at_[lane]->mesh.topology == at_[first]->mesh.topology)) continue;
       together[count] = {at_[lane], model_.factor(points[lane])};
       lane_of[count++] = lane;
       waits[lane] = false;
     }
     map_.prepare(model_.modes(), std::span(together).first(count));
-    arnoldi_.find(map_, std::span(found).first(count));
+    guess_.clear();
+    const bool another = ask.estimate && !lanes_[first].compared;
+    if (lanes_[first].compared) guess(std::span(lane_of).first(count));
+    arnoldi_.find(map_, std::span(found).first(count), guess_, another ? coarse_tolerance_ : fine_tolerance_);
     evaluations_ += static_cast<long long>(count);
     for (std::size_t i = 0; i < count; ++i) {
       assess(lane_of[i], i, found[i], points[lane_of[i]], ask, out[lane_of[i]]);

@@ -1,5 +1,7 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "robomill/stability/collocation/collocation_map.hpp"
@@ -15,7 +17,11 @@ class CollocationEvaluator final : public PointEvaluator {
  public:
   /// model must outlive this.
   CollocationEvaluator(const CollocationModel& model, double tolerance, const ArnoldiOptions& options = {})
-      : model_(model), tolerance_(tolerance), arnoldi_(options) {}
+      : model_(model),
+        tolerance_(tolerance),
+        fine_tolerance_(std::max(options.tolerance, 1e-5 * tolerance)),
+        coarse_tolerance_(std::max(options.tolerance, 1e-3 * tolerance)),
+        arnoldi_(options) {}
   void evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) override;
   [[nodiscard]] std::size_t at_a_time() const override { return model_.at_a_time(); }
 
@@ -30,7 +36,10 @@ class CollocationEvaluator final : public PointEvaluator {
     int level = 0;
     double coarse = 0.0;  ///< spectral radius one level below
     bool compared = false, done = false;
+    Eigen::VectorXd motion = {};  ///< one of the dominant ones there
+    int nodes = 0;                ///< of a piece there
   };
+  void guess(std::span<const std::size_t> lane_of);
   const CollocationCase& find_case(std::size_t lane, const OperatingPoint& point, int level);
   void run(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out);
   void assess(std::size_t lane, std::size_t column, const Dominant& dominant, const OperatingPoint& point, Ask ask,
@@ -38,9 +47,11 @@ class CollocationEvaluator final : public PointEvaluator {
 
   const CollocationModel& model_;
   double tolerance_;
+  double fine_tolerance_, coarse_tolerance_;  ///< of a residual; coarse: of a level that another one follows
   CollocationMap map_;
   Arnoldi arnoldi_;
   std::array<Lane, lane_count> lanes_;
+  std::vector<Lanes> guess_;
   std::array<std::array<CollocationCase, lane_count>, 2> cases_;  ///< by parity of the level
   std::array<const CollocationCase*, lane_count> at_ = {};
 };

@@ -41,18 +41,28 @@ CORE void solve(std::size_t m, const Lanes* factored, Lanes* x, std::size_t lane
   }
 }
 
+/// What a matrix has for the lanes at hand.
+CORE const V& entry(const Lanes& of, std::size_t lane) {
+  return L(of);
+}
+CORE double entry(const double& of, std::size_t) {
+  return of;
+}
+#define E(operand) entry<V>(operand, lane)
+
 /// out = matrix in, row by row, four rows at a time.
-CORE void multiply_rows(std::size_t rows, std::size_t columns, const Lanes* matrix, const Lanes* in, Lanes* out,
-                        std::size_t lane) {
+template <class V, class Entry>
+__attribute__((always_inline)) inline void multiply_rows(std::size_t rows, std::size_t columns, const Entry* matrix,
+                                                         const Lanes* in, Lanes* out, std::size_t lane) {
   std::size_t r = 0;
   for (; r + 4 <= rows; r += 4, matrix += 4 * columns) {
     V sum0 = {}, sum1 = {}, sum2 = {}, sum3 = {};
     for (std::size_t c = 0; c < columns; ++c) {
       const V x = L(in[c]);
-      sum0 += L(matrix[c]) * x;
-      sum1 += L(matrix[columns + c]) * x;
-      sum2 += L(matrix[2 * columns + c]) * x;
-      sum3 += L(matrix[3 * columns + c]) * x;
+      sum0 += E(matrix[c]) * x;
+      sum1 += E(matrix[columns + c]) * x;
+      sum2 += E(matrix[2 * columns + c]) * x;
+      sum3 += E(matrix[3 * columns + c]) * x;
     }
     L(out[r]) = sum0;
     L(out[r + 1]) = sum1;
@@ -61,33 +71,35 @@ CORE void multiply_rows(std::size_t rows, std::size_t columns, const Lanes* matr
   }
   for (; r < rows; ++r, matrix += columns) {
     V sum = {};
-    for (std::size_t c = 0; c < columns; ++c) sum += L(matrix[c]) * L(in[c]);
+    for (std::size_t c = 0; c < columns; ++c) sum += E(matrix[c]) * L(in[c]);
     L(out[r]) = sum;
   }
 }
 
 /// z and, in the place of c, u.
-CORE void pass_block(const PeriodOfNodes& a, const NodePiece& piece, Lanes* z, Lanes* c, std::size_t lane) {
-  const NodeBlock& block = a.blocks[piece.block];
+template <class V, class Entry>
+__attribute__((always_inline)) inline void pass_block(const PeriodOfNodes& a, const NodePiece& piece,
+                                                      const NodeBlock<Entry>& block, Lanes* z, Lanes* c,
+                                                      std::size_t lane) {
   const std::size_t m = a.nodes;
   const V factor = L(*a.factor);
   Lanes* g = c + m;
   Lanes* moved = g + m;
-  multiply_rows<V>(m, a.modal, block.observation, z, g, lane);
+  multiply_rows<V, Entry>(m, a.modal, block.observation, z, g, lane);
   for (std::size_t i = 0; i < m; ++i) L(g[i]) -= L(c[i]);
   solve<V>(m, block.factored, g, lane);
   if (block.displacement == nullptr) {
     for (std::size_t i = 0; i < m; ++i) L(c[i]) += L(g[i]);
   } else {
-    multiply_rows<V>(m, m, block.node_response, g, c, lane);
+    multiply_rows<V, Entry>(m, m, block.node_response, g, c, lane);
     for (std::size_t i = 0; i < m; ++i) {
       V sum = L(c[i]) * factor;
-      const Lanes* row = block.displacement + i * a.modal;
-      for (std::size_t k = 0; k < a.modal; ++k) sum += L(row[k]) * L(z[k]);
+      const Entry* row = block.displacement + i * a.modal;
+      for (std::size_t k = 0; k < a.modal; ++k) sum += E(row[k]) * L(z[k]);
       L(c[i]) = sum;
     }
   }
-  multiply_rows<V>(a.modal, m, block.influence, g, moved, lane);
+  multiply_rows<V, Entry>(a.modal, m, block.influence, g, moved, lane);
   coast<V>(a.modal, a.factors + piece.factor, z, lane);
   for (std::size_t k = 0; k < a.modal; ++k) L(z[k]) += factor * L(moved[k]);
 }
@@ -154,7 +166,11 @@ CORE void run_period_of_nodes_core(PeriodOfNodes& a, std::size_t lane) {
       continue;
     }
     gather<V>(a, piece, c, lane);
-    pass_block<V>(a, piece, z, c, lane);
+    if (a.shared_blocks != nullptr) {
+      pass_block<V>(a, piece, a.shared_blocks[piece.block], z, c, lane);
+    } else {
+      pass_block<V>(a, piece, a.blocks[piece.block], z, c, lane);
+    }
     for (std::size_t n = 0; n < a.nodes; ++n) L(a.memory[piece.record + n]) = L(c[n]);
   }
   for (std::size_t k = 0; k < a.modal; ++k) L(a.out[k]) = L(z[k]);

@@ -10,12 +10,14 @@ namespace robomill::stability::detail {
 /// One piece with contact maps the modes z at its start and what it looks back to, c, to the modes at its end and to
 /// what is remembered of its nodes, u:
 ///   (1 - a R) g = O z - c,  z' = E z + a W g,  u = g + c, or u = D z + a C g where `displacement` is given.
+/// Entry: Lanes, or double where all lanes have the same matrices.
+template <class Entry>
 struct NodeBlock {
   const Lanes* factored = nullptr;       ///< 1 - a R in its triangular factors, m x m, column by column
-  const Lanes* observation = nullptr;    ///< O, m x 2n
-  const Lanes* influence = nullptr;      ///< W, 2n x m
-  const Lanes* displacement = nullptr;   ///< D, m x 2n, or nullptr
-  const Lanes* node_response = nullptr;  ///< C, m x m
+  const Entry* observation = nullptr;    ///< O, m x 2n
+  const Entry* influence = nullptr;      ///< W, 2n x m
+  const Entry* displacement = nullptr;   ///< D, m x 2n, or nullptr
+  const Entry* node_response = nullptr;  ///< C, m x m
 };
 
 struct FactorArguments {
@@ -57,8 +59,9 @@ struct PeriodOfNodes {
   const Lanes* weights = nullptr;
   const Lanes* matrices = nullptr;
   const Lanes* factors = nullptr;
-  const Lanes* factor = nullptr;  ///< a
-  const NodeBlock* blocks = nullptr;
+  const Lanes* factor = nullptr;                     ///< a
+  const NodeBlock<Lanes>* blocks = nullptr;          ///< or nullptr where
+  const NodeBlock<double>* shared_blocks = nullptr;  ///< are given
   Lanes* memory = nullptr;
   std::size_t carried = 0;              ///< first entries of memory: what comes from the period before
   const std::size_t* handed = nullptr;  ///< length carried: entries of memory that go to the next

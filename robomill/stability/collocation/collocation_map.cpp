@@ -2,15 +2,25 @@
 
 #include <algorithm>
 
+#include "robomill/stability/gauss.hpp"
+
 namespace robomill::stability::detail {
 namespace {
 
 using Form = MeshTopology::Form;
 
+double& lane_of(Lanes& entry, std::size_t lane) {
+  return entry.v[lane];
+}
+double& lane_of(double& entry, std::size_t) {
+  return entry;
+}
+
 /// Row by row into one lane, from entry `from` on.
-void put(std::vector<Lanes>& to, std::size_t from, std::size_t lane, const Eigen::MatrixXd& matrix) {
+template <class Entry>
+void put(std::vector<Entry>& to, std::size_t from, std::size_t lane, const Eigen::MatrixXd& matrix) {
   for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) to[from++].v[lane] = matrix(r, c);
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) lane_of(to[from++], lane) = matrix(r, c);
   }
 }
 
@@ -19,6 +29,39 @@ void put_columns(std::vector<Lanes>& to, std::size_t from, std::size_t lane, con
 }
 
 }  // namespace
+
+template <class Entry>
+void CollocationMap::Matrices<Entry>::resize(std::size_t contacts, std::size_t m, std::size_t modal,
+                                             bool remembers_motion) {
+  observation.resize(contacts * m * modal);
+  influence.resize(contacts * m * modal);
+  displacement.resize(remembers_motion ? contacts * m * modal : 0);
+  node_response.resize(remembers_motion ? contacts * m * m : 0);
+  blocks.resize(contacts);
+}
+
+template <class Entry>
+void CollocationMap::Matrices<Entry>::set(std::size_t contact, std::size_t lane, std::size_t m,
+                                          const CollocationCase::Piece& piece) {
+  const std::size_t size = static_cast<std::size_t>(piece.observation.size());
+  put(observation, contact * size, lane, piece.observation);
+  put(influence, contact * size, lane, piece.influence);
+  if (displacement.empty()) return;
+  put(displacement, contact * size, lane, piece.displacement);
+  put(node_response, contact * m * m, lane, piece.node_response);
+}
+
+template <class Entry>
+void CollocationMap::Matrices<Entry>::set_blocks(const Lanes* factored, std::size_t m, std::size_t modal) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    blocks[i] = {.factored = factored + i * m * m,
+                 .observation = observation.data() + i * m * modal,
+                 .influence = influence.data() + i * m * modal};
+    if (displacement.empty()) continue;
+    blocks[i].displacement = displacement.data() + i * m * modal;
+    blocks[i].node_response = node_response.data() + i * m * m;
+  }
+}
 
 void CollocationMap::prepare(std::size_t modes, std::span<const Point> points) {
   const MeshTopology& topology = points.front().at->mesh.topology;
@@ -41,7 +84,7 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
   const bool remembers_motion = several || blocks;
   pieces_.clear();
   looks_.clear();
-  std::size_t contacts = 0;
+  contacts_ = 0;
   std::size_t weights = 0;
   std::size_t matrices = 0;
   for (std::size_t e = 0; e < topology.pieces.size(); ++e) {
@@ -50,7 +93,7 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
     piece.factor = e * modal;
     piece.first_look = looks_.size();
     if (!piece.coasts) {
-      piece.block = contacts++;
+      piece.block = contacts_++;
       piece.record = layout_.record[e];
     }
     for (std::size_t s = 0; s < topology.pieces[e].sources.size(); ++s) {
@@ -76,16 +119,13 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
     piece.last_look = looks_.size();
     pieces_.push_back(piece);
   }
-  coupling_.resize(contacts * m * m);
-  observation_.resize(contacts * m * modal);
-  influence_.resize(contacts * m * modal);
-  displacement_.resize(remembers_motion ? contacts * m * modal : 0);
-  node_response_.resize(remembers_motion ? contacts * m * m : 0);
+  coupling_.resize(contacts_ * m * m);
+  own_.resize(contacts_, m, modal, remembers_motion);
+  common_.resize(contacts_, m, modal, remembers_motion);
   factors_.resize(topology.pieces.size() * modal);
   weights_.resize(weights);
   matrices_.resize(matrices);
-  factored_.resize(contacts * m * m);
-  blocks_.resize(contacts);
+  factored_.resize(contacts_ * m * m);
   memory_.resize(layout_.memory);
   state_.resize(2 * modal + 2 * m);
 }
@@ -106,49 +146,85 @@ void CollocationMap::fill_looks(const CollocationCase& at, std::size_t e, std::s
 }
 
 void CollocationMap::fill(std::span<const Point> points) {
-  const std::size_t m = layout_.nodes;
-  const std::size_t modal = layout_.modal;
+  shared_ = std::ranges::all_of(points, [&](const Point& point) { return point.at == points.front().at; });
   for (std::size_t lane = 0; lane < lane_count; ++lane) {
     const Point& point = points[std::min(lane, points.size() - 1)];
     factor_.v[lane] = point.factor;
-    std::size_t contact = 0;
-    for (std::size_t e = 0; e < pieces_.size(); ++e) {
-      const CollocationCase::Piece& piece = point.at->pieces[e];
-      const PiecePlan& plan = point.at->plans[piece.plan];
-      for (std::size_t k = 0; k < modal / 2; ++k) {
-        factors_[pieces_[e].factor + 2 * k].v[lane] = plan.factor(static_cast<Eigen::Index>(k)).real();
-        factors_[pieces_[e].factor + 2 * k + 1].v[lane] = plan.factor(static_cast<Eigen::Index>(k)).imag();
-      }
-      if (pieces_[e].coasts) continue;
-      put_columns(coupling_, contact * m * m, lane, piece.coupling);
-      put(observation_, contact * m * modal, lane, piece.observation);
-      put(influence_, contact * m * modal, lane, piece.influence);
-      if (!displacement_.empty()) {
-        put(displacement_, contact * m * modal, lane, piece.displacement);
-        put(node_response_, contact * m * m, lane, piece.node_response);
-      }
-      ++contact;
-      fill_looks(*point.at, e, lane);
+    fill(point, lane);
+  }
+}
+
+void CollocationMap::fill(const Point& point, std::size_t lane) {
+  const std::size_t m = layout_.nodes;
+  for (std::size_t e = 0; e < pieces_.size(); ++e) {
+    const CollocationCase::Piece& piece = point.at->pieces[e];
+    const PiecePlan& plan = point.at->plans[piece.plan];
+    for (std::size_t k = 0; k < layout_.modal / 2; ++k) {
+      factors_[pieces_[e].factor + 2 * k].v[lane] = plan.factor(static_cast<Eigen::Index>(k)).real();
+      factors_[pieces_[e].factor + 2 * k + 1].v[lane] = plan.factor(static_cast<Eigen::Index>(k)).imag();
+    }
+    if (pieces_[e].coasts) continue;
+    const std::size_t contact = pieces_[e].block;
+    put_columns(coupling_, contact * m * m, lane, piece.coupling);
+    fill_looks(*point.at, e, lane);
+    if (!shared_) {
+      own_.set(contact, lane, m, piece);
+    } else if (lane == 0) {
+      common_.set(contact, lane, m, piece);
     }
   }
 }
 
 void CollocationMap::factor() {
   const std::size_t m = layout_.nodes;
-  const std::size_t modal = layout_.modal;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+  for (std::size_t i = 0; i < contacts_; ++i) {
     FactorArguments a;
     a.nodes = m;
     a.factor = &factor_;
     a.coupling = coupling_.data() + i * m * m;
     a.factored = factored_.data() + i * m * m;
     factor_node_block(a);
-    blocks_[i] = {.factored = a.factored,
-                  .observation = observation_.data() + i * m * modal,
-                  .influence = influence_.data() + i * m * modal};
-    if (displacement_.empty()) continue;
-    blocks_[i].displacement = displacement_.data() + i * m * modal;
-    blocks_[i].node_response = node_response_.data() + i * m * m;
+  }
+  own_.set_blocks(factored_.data(), m, layout_.modal);
+  common_.set_blocks(factored_.data(), m, layout_.modal);
+}
+
+double CollocationMap::work() const {
+  const double m = static_cast<double>(layout_.nodes);
+  const double modal = static_cast<double>(layout_.modal);
+  const double remembered = own_.displacement.empty() ? 0.0 : m * (m + modal);
+  double sum = 2.0 * modal * static_cast<double>(pieces_.size());
+  sum += static_cast<double>(contacts_) * (m * m + 2.0 * m * modal + remembered);
+  if (topology_.form == Form::blocks) sum += m * m * static_cast<double>(looks_.size());
+  return sum;
+}
+
+void CollocationMap::take_over(const Eigen::VectorXd& coarse, int nodes, std::size_t lane, std::span<Lanes> out) const {
+  const std::size_t modal = layout_.modal;
+  const std::size_t channels = static_cast<std::size_t>(topology_.channels());
+  const std::size_t p = static_cast<std::size_t>(topology_.nodes);
+  const std::size_t before = static_cast<std::size_t>(nodes);  // nodes there
+  const std::size_t blocks = (layout_.size() - modal) / layout_.nodes;
+  const std::size_t known = (static_cast<std::size_t>(coarse.size()) - modal) / (before * channels);
+  const auto at = [&](std::size_t i) { return coarse(static_cast<Eigen::Index>(i)); };
+  for (std::size_t k = 0; k < modal; ++k) out[k].v[lane] = at(k);
+  const bool fits = known > 0 && blocks % known == 0;
+  for (std::size_t i = modal; i < layout_.size() && !fits; ++i) out[i].v[lane] = 0.0;
+  if (!fits) return;
+  const std::size_t parts = blocks / known;
+  const std::vector<double>& there = gauss_rule(nodes).node;
+  const std::vector<double>& here = gauss_rule(topology_.nodes).node;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    for (std::size_t i = 0; i < p; ++i) {
+      const double x = (static_cast<double>(b % parts) + here[i]) / static_cast<double>(parts);
+      Lanes* to = out.data() + modal + (b * p + i) * channels;
+      for (std::size_t c = 0; c < channels; ++c) to[c].v[lane] = 0.0;
+      for (std::size_t l = 0; l < before; ++l) {
+        const double weight = lagrange(there, l, x);
+        const std::size_t from = modal + (b / parts * before + l) * channels;
+        for (std::size_t c = 0; c < channels; ++c) to[c].v[lane] += weight * at(from + c);
+      }
+    }
   }
 }
 
@@ -164,7 +240,11 @@ void CollocationMap::apply(const Lanes* in, Lanes* out) {
   a.matrices = matrices_.data();
   a.factors = factors_.data();
   a.factor = &factor_;
-  a.blocks = blocks_.data();
+  if (shared_) {
+    a.shared_blocks = common_.blocks.data();
+  } else {
+    a.blocks = own_.blocks.data();
+  }
   a.memory = memory_.data();
   a.carried = layout_.handed.size();
   a.handed = layout_.handed.data();

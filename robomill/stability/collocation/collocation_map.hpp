@@ -21,10 +21,26 @@ class CollocationMap final : public PeriodMap {
   [[nodiscard]] std::size_t size() const override { return layout_.size(); }
   [[nodiscard]] std::size_t modal_size() const override { return layout_.modal; }
   void apply(const Lanes* in, Lanes* out) override;
+  [[nodiscard]] double work() const override;
+
+  /// A state of this mesh from one of a coarser mesh of the same cut, with other nodes in the same pieces or in the
+  /// same parts of them; where the pieces do not fit, of the modes alone. @param nodes  of the other mesh
+  void take_over(const Eigen::VectorXd& coarse, int nodes, std::size_t lane, std::span<Lanes> out) const;
 
  private:
+  /// Matrices of the pieces one after the other.
+  template <class Entry>
+  struct Matrices {
+    std::vector<Entry> observation, influence, displacement, node_response;
+    std::vector<NodeBlock<Entry>> blocks;
+    void resize(std::size_t contacts, std::size_t m, std::size_t modal, bool remembers_motion);
+    void set(std::size_t contact, std::size_t lane, std::size_t m, const CollocationCase::Piece& piece);
+    void set_blocks(const Lanes* factored, std::size_t m, std::size_t modal);
+  };
+
   void lay_out(const MeshTopology& topology);
   void fill(std::span<const Point> points);
+  void fill(const Point& point, std::size_t lane);
   void fill_looks(const CollocationCase& at, std::size_t piece, std::size_t lane);
   void factor();
 
@@ -32,11 +48,14 @@ class CollocationMap final : public PeriodMap {
   MeshTopology topology_;
   std::vector<NodePiece> pieces_;
   std::vector<NodeLook> looks_;
-  // What the points say; matrices of the pieces one after the other.
+  std::size_t contacts_ = 0;
+  // What the points say; one case may be that of all of them.
+  bool shared_ = false;
   Lanes factor_ = {};
-  std::vector<Lanes> coupling_, observation_, influence_, displacement_, node_response_, factors_, weights_, matrices_;
+  Matrices<Lanes> own_;
+  Matrices<double> common_;
+  std::vector<Lanes> coupling_, factors_, weights_, matrices_;
   std::vector<Lanes> factored_, memory_, state_;
-  std::vector<NodeBlock> blocks_;
 };
 
 }  // namespace robomill::stability::detail

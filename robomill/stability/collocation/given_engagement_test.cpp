@@ -6,6 +6,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/cutting/program_engagement.hpp"
+#include "robomill/modal/tip.hpp"
 #include "robomill/stability/collocation/given_engagement.hpp"
 #include "robomill/stability/sweep.hpp"
 #include "testing/stability/problems.hpp"
@@ -98,22 +99,12 @@ cutting::PoseEngagement seen_in_rays(const SpatialMilling& milling, double dexel
       .at(part, pose(0.0, 0.0), {.tip_m_per_s = {0.02, 0.0, 0.0}}, 0.0);
 }
 
-/// The same structure in axes turned by R: q' = R q.
-modal::ModalModel turned(const modal::ModalModel& model, const Eigen::Matrix3d& turn) {
-  modal::ModalModel out = model;
-  for (modal::Mode& mode : out.modes) {
-    mode.left = turn * mode.left;
-    mode.right = turn * mode.right;
-  }
-  return out;
-}
-
 TEST(GivenEngagement, OfAWorkpieceOfRaysIsNearTheAnalyticOne) {
   for (const SpatialReference& known : testing::spatial_references()) {
     const cutting::PoseEngagement seen = seen_in_rays(*known.problem.spatial, 0.05e-3);
     LobesProblem problem = known.problem;
     problem.spatial->engagement = seen.engagement;
-    problem.dynamics = turned(problem.dynamics, seen.work_from_feed.transpose());
+    problem.dynamics = modal::turned(problem.dynamics, seen.work_from_feed.transpose());
     const double height_m = engaged_height_m(seen.engagement);
     EXPECT_NEAR(height_m, seen.axial_depth_m, 1e-12);
     const PointResult point = evaluate_point(problem, {}, {known.speed_rpm * rpm, height_m});

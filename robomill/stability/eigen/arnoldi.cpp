@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "robomill/base/random.hpp"
 #include "robomill/stability/eigen/kernels.hpp"
@@ -11,8 +12,11 @@
 namespace robomill::stability::detail {
 namespace {
 
-constexpr std::size_t first_extra = 9;  // columns beyond 2n at the first look
-constexpr std::size_t first_warm = 16;  // columns at the first look after a warm-up
+constexpr std::size_t first_extra = 9;     // columns beyond 2n at the first look
+constexpr std::size_t first_warm = 16;     // … after a warm-up
+constexpr std::size_t first_guessed = 15;  // … from a guess
+constexpr int most_rounds = 3;             // of warming up
+constexpr double guess_is_off = 1e-4;
 
 std::complex<double> upper_half(std::complex<double> value) {
   return {value.real(), std::abs(value.imag())};
@@ -25,87 +29,232 @@ double spectral_radius(const Dominant& dominant) {
   return std::isfinite(modulus) && modulus < 1e100 ? modulus : 1e100;
 }
 
-void Arnoldi::start(std::size_t size) {
-  if (start_.size() < size) {
+/// The same vector in all lanes, or what is guessed and a little of that: what a guess lacks must not stay away.
+void Arnoldi::start(std::span<const Lanes> guess) {
+  if (start_.size() < size_) {
     Random random(20040101);
     start_.clear();
-    for (std::size_t i = 0; i < size; ++i) start_.push_back(random.uniform(-1.0, 1.0));
+    for (std::size_t i = 0; i < size_; ++i) start_.push_back(random.uniform(-1.0, 1.0));
   }
   double square = 0.0;
-  for (std::size_t i = 0; i < size; ++i) square += start_[i] * start_[i];
-  const double scale = 1.0 / std::sqrt(square);
-  for (std::size_t i = 0; i < size; ++i) {
-    for (double& lane : basis_[i].v) lane = start_[i] * scale;
+  for (std::size_t i = 0; i < size_; ++i) square += start_[i] * start_[i];
+  double scale = 1.0 / std::sqrt(square);
+  if (!guess.empty()) {
+    NormaliseArguments a;
+    a.size = size_;
+    a.from = guess.data();
+    a.to = basis_.data();
+    std::fill_n(basis_.data(), size_, Lanes{});
+    normalise(a);
+    scale *= guess_is_off;
+  }
+  for (std::size_t i = 0; i < size_; ++i) {
+    for (double& lane : basis_[i].v) lane = (guess.empty() ? 0.0 : lane) + start_[i] * scale;
+  }
+  if (guess.empty()) return;
+  NormaliseArguments a;
+  a.size = size_;
+  a.from = a.to = basis_.data();
+  normalise(a);
+}
+
+/// Whether a start vector that went through many periods and few columns cost less than many columns.
+bool Arnoldi::pays_to_warm_up(const PeriodMap& map, bool guessed) const {
+  if (options_.full_matrix_only) return false;
+  if (map.work() == 0.0) return !guessed && map.modal_size() > 2 * options_.most_cold_modes;
+  const auto cost = [&](std::size_t passes, std::size_t count) {
+    const double columns = static_cast<double>(count);
+    return static_cast<double>(passes + count) * map.work() +
+           columns * columns * (1.5 * static_cast<double>(size_) + 4.0 * columns);
+  };
+  const std::size_t cold = std::min(size_, guessed ? 2 * first_guessed : map.modal_size() + first_extra);
+  return cost(passes(map, guessed), std::max(first_warm, cold / 2)) < cost(0, cold);
+}
+
+/// How many periods a column goes through: as many as cost what it costs beside. More in a later round, which has to
+/// tell apart motions that fade alike.
+int Arnoldi::periods(const PeriodMap& map, int round) const {
+  constexpr double columns = first_warm;
+  if (map.work() == 0.0) return 1;
+  const double beside = columns * (1.5 * static_cast<double>(size_) + 5.0 * columns);
+  return static_cast<int>(std::clamp(beside / map.work(), 1.0, 8.0)) << (3 * round);
+}
+
+std::size_t Arnoldi::passes(const PeriodMap& map, bool guessed) {
+  const std::size_t all = std::max<std::size_t>(64, 4 * map.modal_size());
+  return guessed ? all / 4 : all;
+}
+
+/// Takes the start vector over many periods, normed each time.
+void Arnoldi::warm_up(PeriodMap& map, std::size_t passes) {
+  Lanes* x = basis_.data();
+  Lanes* next = basis_.data() + size_;
+  for (std::size_t pass = 0; pass < passes; ++pass) {
+    map.apply(x, next);
+    NormaliseArguments a;  // a motion that overflows or vanishes within a period starts as it is
+    a.size = size_;
+    a.from = next;
+    a.to = x;
+    normalise(a);
   }
 }
 
-/// Takes the start vector over three periods for each entry of the modes, normed each time.
-void Arnoldi::warm_up(PeriodMap& map) {
-  Lanes* x = basis_.data();
-  Lanes* next = basis_.data() + size_;
-  for (std::size_t pass = 0; pass < 3 * map.modal_size(); ++pass) {
-    map.apply(x, next);
-    for (std::size_t lane = 0; lane < lane_count; ++lane) {
-      double square = 0.0;
-      for (std::size_t i = 0; i < size_; ++i) square += next[i].v[lane] * next[i].v[lane];
-      // A motion that overflows or vanishes within a period starts as it is.
-      const double scale = std::isfinite(square) && square > 0.0 ? 1.0 / std::sqrt(square) : 0.0;
-      if (scale == 0.0) continue;
-      for (std::size_t i = 0; i < size_; ++i) x[i].v[lane] = next[i].v[lane] * scale;
+/// Starts again from what is known: the dominant Ritz vector and a little of the vector before.
+void Arnoldi::start_again(std::span<const bool> done, std::span<const Dominant> out) {
+  constexpr double little = 1e-2;
+  for (std::size_t lane = 0; lane < out.size(); ++lane) {
+    if (done[lane] && full_[lane].size() == 0) full_[lane] = vector(lane);
+    if (done[lane] || !std::isfinite(out[lane].multiplier.real())) continue;
+    const Eigen::VectorXcd ritz = vector(lane);
+    const Eigen::VectorXd motion = ritz.real() + ritz.imag();
+    for (std::size_t i = 0; i < size_; ++i) {
+      double& entry = basis_[i].v[lane];
+      entry = motion(static_cast<Eigen::Index>(i)) + little * entry;
     }
   }
 }
 
-bool Arnoldi::converged(std::size_t lane, std::size_t columns, bool whole_space, Dominant& out) {
+/// Looks at the dominant Ritz pairs of the lanes that are not done, in the first columns of the basis.
+void Arnoldi::look(PeriodMap& map, std::size_t columns, std::span<bool> done, std::span<Dominant> out) {
+  ritz_values_.resize(columns);
+  for (std::size_t c = 0; c < columns; ++c) {
+    const Lanes* column = hessenberg_.data() + c * (most_ + 1);
+    for (std::size_t r = 0; r < std::min(columns, c + 2); ++r) ritz_values_(r, c) = column[r];
+  }
+  std::array<bool, lane_count> wanted = {};
+  for (std::size_t lane = 0; lane < out.size(); ++lane) wanted[lane] = !done[lane];
+  std::array<std::complex<double>, lane_count> value = {};
+  const std::array<bool, lane_count> found = ritz_values_.dominant(wanted, value);
+  for (std::size_t lane = 0; lane < out.size(); ++lane) {
+    if (done[lane]) continue;
+    // What is not finite overflows within a period.
+    out[lane].multiplier = found[lane] ? value[lane] : std::numeric_limits<double>::infinity();
+    done[lane] = found[lane] && converged(lane, columns, out[lane]);
+    wanted[lane] = done[lane];
+  }
+  if (periods_ == 1) return;
+  for (std::size_t lane = out.size(); lane < lane_count; ++lane) wanted[lane] = false;
+  confirm(map, wanted, done, out);
+}
+
+/// A Ritz pair of several periods: the root that its vector shows in a single one. Where two motions have the same
+/// multiplier after several periods the vector is none of one period, and the lane is not done.
+void Arnoldi::confirm(PeriodMap& map, const std::array<bool, lane_count>& fresh, std::span<bool> done,
+                      std::span<Dominant> out) {
+  constexpr double least = 1e-9;  // residual that rounding may leave
+  if (std::ranges::find(fresh, true) == fresh.end()) return;
+  side_.assign(4 * size_, Lanes{});
+  Lanes* const real = side_.data();
+  Lanes* const imaginary = real + size_;
+  for (std::size_t lane = 0; lane < out.size(); ++lane) {
+    if (!fresh[lane]) continue;
+    full_[lane].resize(0);
+    full_[lane] = vector(lane);
+    for (std::size_t i = 0; i < size_; ++i) {
+      real[i].v[lane] = full_[lane](static_cast<Eigen::Index>(i)).real();
+      imaginary[i].v[lane] = full_[lane](static_cast<Eigen::Index>(i)).imag();
+    }
+  }
+  Lanes* const after_real = imaginary + size_;
+  Lanes* const after_imaginary = after_real + size_;
+  map.apply(real, after_real);
+  map.apply(imaginary, after_imaginary);
+  for (std::size_t lane = 0; lane < out.size(); ++lane) {
+    if (!fresh[lane]) continue;
+    std::complex<double> quotient = 0.0;
+    double square = 0.0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const std::complex<double> x(real[i].v[lane], imaginary[i].v[lane]);
+      quotient += std::conj(x) * std::complex<double>(after_real[i].v[lane], after_imaginary[i].v[lane]);
+      square += std::norm(x);
+    }
+    quotient /= square;
+    const double modulus = std::pow(std::abs(out[lane].multiplier), 1.0 / periods_);
+    const double phase = std::arg(out[lane].multiplier) / periods_;
+    const double turn = 2.0 * std::numbers::pi / periods_;
+    const std::complex<double> root =
+        std::polar(modulus, phase + turn * std::round((std::arg(quotient) - phase) / turn));
+    double rest = 0.0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const std::complex<double> x(real[i].v[lane], imaginary[i].v[lane]);
+      rest += std::norm(std::complex<double>(after_real[i].v[lane], after_imaginary[i].v[lane]) - root * x);
+    }
+    out[lane].residual = std::sqrt(rest / square);
+    done[lane] = out[lane].residual <= std::max(least, 1e3 * tolerance_) * (1.0 + std::abs(root));
+    if (!done[lane]) {
+      full_[lane].resize(0);
+      out[lane].by = Dominant::By::unsettled;
+      continue;
+    }
+    out[lane].multiplier = upper_half(root);
+    if (root.imag() < 0.0) full_[lane] = full_[lane].conjugate().eval();
+  }
+}
+
+bool Arnoldi::converged(std::size_t lane, std::size_t columns, Dominant& out) {
   small_.resize(columns);
   for (std::size_t c = 0; c < columns; ++c) {
     const Lanes* column = hessenberg_.data() + c * (most_ + 1);
     for (std::size_t r = 0; r < std::min(columns, c + 2); ++r) small_(r, c) = column[r].v[lane];
   }
-  if (!small_.dominant(out.multiplier)) {
-    out.multiplier = std::numeric_limits<double>::infinity();  // the motion overflows within a period
-    return false;
-  }
   ritz_[lane] = small_.vector(out.multiplier);
   const double next = hessenberg_[(columns - 1) * (most_ + 1) + columns].v[lane];
-  out.residual = whole_space ? 0.0 : next * std::abs(ritz_[lane].back());
+  out.residual = columns == size_ ? 0.0 : next * std::abs(ritz_[lane].back());
   out.iterations = static_cast<int>(columns);
-  if (!(out.residual <= options_.tolerance * (std::abs(out.multiplier) + 0.1 * small_.norm()))) return false;
+  if (!(out.residual <= tolerance_ * (std::abs(out.multiplier) + 0.1 * small_.norm()))) return false;
   out.by = Dominant::By::arnoldi;
   return true;
 }
 
-void Arnoldi::find(PeriodMap& map, std::span<Dominant> out) {
+void Arnoldi::find(PeriodMap& map, std::span<Dominant> out, std::span<const Lanes> guess, double tolerance) {
+  tolerance_ = tolerance;
   size_ = map.size();
   most_ = std::min(size_, map.modal_size() + options_.extra);
   basis_.resize((most_ + 1) * size_);
   hessenberg_.resize((most_ + 1) * most_);
   std::ranges::fill(out, Dominant{});
   for (auto& vector : full_) vector.resize(0);
-  start(size_);
+  start(guess);
   std::array<bool, lane_count> done = {};
-  std::size_t left = out.size();
-  const bool warm = map.modal_size() > 2 * options_.most_cold_modes && !options_.full_matrix_only;
-  if (warm) warm_up(map);
-  const std::size_t first = warm ? first_warm : map.modal_size() + first_extra;
-  std::size_t look = options_.full_matrix_only ? most_ + 1 : std::min(most_, first);
+  const std::span<bool> undone = std::span(done).first(out.size());
+  const auto is_left = [&] { return std::ranges::find(undone, false) != undone.end(); };
+  const bool guessed = !guess.empty();
+  const bool warm = pays_to_warm_up(map, guessed);
+  const std::size_t first = warm ? first_warm : guessed ? first_guessed : map.modal_size() + first_extra;
+  const bool again = warm && periods(map, 0) > 1;  // passes are cheap
+  const int rounds = options_.full_matrix_only ? 0 : again ? most_rounds : 1;
+  for (int round = 0; round < rounds && is_left(); ++round) {
+    if (round > 0) start_again(undone, out);
+    if (warm) warm_up(map, passes(map, guessed && round == 0));
+    const bool last = round + 1 == rounds;
+    periods_ = last ? 1 : periods(map, round);
+    extend(map, std::min(most_, first), last ? most_ : std::min(most_, first + (1 + round) * first / 2),
+           warm || guessed ? 0 : options_.between, undone, out);
+  }
+  if (is_left()) full_matrix(map, out);
+}
+
+/// Columns up to `most`, looked at from the first look on: every `between`, or where 0 after half as many again.
+void Arnoldi::extend(PeriodMap& map, std::size_t first, std::size_t most, std::size_t between, std::span<bool> done,
+                     std::span<Dominant> out) {
   OrthogonalArguments arguments;
   arguments.size = size_;
   arguments.basis = basis_.data();
-  for (std::size_t k = 0; k < most_ && left > 0 && !options_.full_matrix_only; ++k) {
-    map.apply(basis_.data() + k * size_, basis_.data() + (k + 1) * size_);
+  std::size_t next_look = first;
+  for (std::size_t k = 0; k < most && std::ranges::find(done, false) != done.end(); ++k) {
+    Lanes* const next = basis_.data() + (k + 1) * size_;
+    map.apply(basis_.data() + k * size_, next);
+    for (int period = 1; period < periods_; ++period) {
+      side_.assign(next, next + size_);
+      map.apply(side_.data(), next);
+    }
     arguments.column = k;
     arguments.coefficients = hessenberg_.data() + k * (most_ + 1);
     orthogonalise(arguments);
-    if (k + 1 != look) continue;
-    look = std::min(most_, look + (warm ? look / 2 : options_.between));
-    for (std::size_t lane = 0; lane < out.size(); ++lane) {
-      if (done[lane]) continue;
-      done[lane] = converged(lane, k + 1, k + 1 == size_, out[lane]);
-      if (done[lane]) --left;
-    }
+    if (k + 1 != next_look) continue;
+    next_look = std::min(most, next_look + (between == 0 ? next_look / 2 : between));
+    look(map, k + 1, done, out);
   }
-  if (left > 0) full_matrix(map, out);
 }
 
 void Arnoldi::full_matrix(PeriodMap& map, std::span<Dominant> out) {

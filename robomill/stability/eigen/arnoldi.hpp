@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "robomill/stability/eigen/hessenberg.hpp"
+#include "robomill/stability/eigen/hessenberg_lanes.hpp"
 #include "robomill/stability/eigen/period_map.hpp"
 
 namespace robomill::stability::detail {
@@ -40,20 +41,35 @@ class Arnoldi {
  public:
   explicit Arnoldi(const ArnoldiOptions& options = {}) : options_(options) {}
   /// Of the first out.size() lanes.
-  void find(PeriodMap& map, std::span<Dominant> out);
+  void find(PeriodMap& map, std::span<Dominant> out) { find(map, out, {}, options_.tolerance); }
+  /// @param guess      of the motion that fades least, length size() of the map, or empty; a lane of zeros has none
+  /// @param tolerance  in the place of that of the options
+  void find(PeriodMap& map, std::span<Dominant> out, std::span<const Lanes> guess, double tolerance);
   /// Eigenvector of a lane of the last find, ‖x‖ = 1; length size().
   [[nodiscard]] Eigen::VectorXcd vector(std::size_t lane);
 
  private:
-  void start(std::size_t size);
-  void warm_up(PeriodMap& map);
-  bool converged(std::size_t lane, std::size_t columns, bool whole_space, Dominant& out);
+  void start(std::span<const Lanes> guess);
+  [[nodiscard]] bool pays_to_warm_up(const PeriodMap& map, bool guessed) const;
+  [[nodiscard]] static std::size_t passes(const PeriodMap& map, bool guessed);
+  void warm_up(PeriodMap& map, std::size_t passes);
+  void start_again(std::span<const bool> done, std::span<const Dominant> out);
+  void extend(PeriodMap& map, std::size_t first, std::size_t most, std::size_t between, std::span<bool> done,
+              std::span<Dominant> out);
+  [[nodiscard]] int periods(const PeriodMap& map, int round) const;
+  void confirm(PeriodMap& map, const std::array<bool, lane_count>& fresh, std::span<bool> done,
+               std::span<Dominant> out);
+  void look(PeriodMap& map, std::size_t columns, std::span<bool> done, std::span<Dominant> out);
+  bool converged(std::size_t lane, std::size_t columns, Dominant& out);
   void full_matrix(PeriodMap& map, std::span<Dominant> out);
 
   ArnoldiOptions options_;
+  double tolerance_ = 0.0;
+  int periods_ = 1;  ///< that a column goes through
   std::size_t size_ = 0, most_ = 0;
   std::vector<double> start_;
-  std::vector<Lanes> basis_, hessenberg_;
+  std::vector<Lanes> basis_, hessenberg_, side_;
+  HessenbergLanes ritz_values_;
   Hessenberg small_;
   std::array<std::vector<std::complex<double>>, lane_count> ritz_;  ///< in the basis
   std::array<Eigen::VectorXcd, lane_count> full_;                   ///< of the matrix, where that was needed

@@ -215,30 +215,58 @@ CORE void subtract_and_dot(std::size_t size, const V& h, const Lanes* v, const L
   sum = even + odd;
 }
 
-CORE void orthogonalise_core(OrthogonalArguments& a, std::size_t lane) {
-  Lanes* w = a.basis + (a.column + 1) * a.size;
+/// Modified Gram-Schmidt. The product with the next vector is taken on the way; the last one, `left`, with w itself.
+/// `takes` is 0 in the lanes that are to stay as they are, else 1.
+CORE void take_out(OrthogonalArguments& a, Lanes* w, const V& takes, V& left, std::size_t lane) {
   V h = {};
-  for (std::size_t j = 0; j <= a.column; ++j) L(a.coefficients[j]) = h;
-  // Modified Gram-Schmidt, twice, so that nothing of the basis is left where little of w remains. The product with the
-  // next vector is taken on the way; the last one with w itself.
-  for (int pass = 0; pass < 2; ++pass) {
-    h = V{};
-    subtract_and_dot<V>(a.size, h, a.basis, a.basis, w, h, lane);
-    for (std::size_t j = 0; j <= a.column; ++j) {
-      const Lanes* v = a.basis + j * a.size;
-      const V along = h;
-      L(a.coefficients[j]) += along;
-      subtract_and_dot<V>(a.size, along, v, j < a.column ? v + a.size : w, w, h, lane);
-    }
+  subtract_and_dot<V>(a.size, h, a.basis, a.basis, w, h, lane);
+  for (std::size_t j = 0; j <= a.column; ++j) {
+    const Lanes* v = a.basis + j * a.size;
+    const V along = h * takes;
+    L(a.coefficients[j]) += along;
+    subtract_and_dot<V>(a.size, along, v, j < a.column ? v + a.size : w, w, h, lane);
   }
+  left = h;
+}
+
+CORE void orthogonalise_core(OrthogonalArguments& a, std::size_t lane) {
+  constexpr double much = 0.01;  // of the square that must be left: else rounding leaves something of the basis
+  Lanes* w = a.basis + (a.column + 1) * a.size;
+  const V nothing = {};
+  const V one = nothing + 1.0;
+  for (std::size_t j = 0; j <= a.column; ++j) L(a.coefficients[j]) = nothing;
+  V before, left;
+  subtract_and_dot<V>(a.size, nothing, w, w, w, before, lane);
+  take_out<V>(a, w, one, left, lane);
+  const V again = left > much * before ? nothing : one;
+  bool any = false;
+  for (std::size_t i = 0; i < sizeof(V) / sizeof(double); ++i) any = any || again[i] != 0.0;
+  if (any) take_out<V>(a, w, again, left, lane);
   V inverse = {};
   for (std::size_t i = 0; i < sizeof(V) / sizeof(double); ++i) {
-    const double length = std::sqrt(h[i]);
-    h[i] = length;
+    const double length = std::sqrt(left[i]);
+    left[i] = length;
     inverse[i] = length > 1e-150 ? 1.0 / length : 0.0;
   }
-  L(a.coefficients[a.column + 1]) = h;
+  L(a.coefficients[a.column + 1]) = left;
   for (std::size_t i = 0; i < a.size; ++i) L(w[i]) *= inverse;
+}
+
+CORE void normalise_core(NormaliseArguments& a, std::size_t lane) {
+  V even = {}, odd = {};
+  std::size_t i = 0;
+  for (; i + 2 <= a.size; i += 2) {
+    even += L(a.from[i]) * L(a.from[i]);
+    odd += L(a.from[i + 1]) * L(a.from[i + 1]);
+  }
+  if (i < a.size) even += L(a.from[i]) * L(a.from[i]);
+  const V square = even + odd;
+  V scale = {};
+  for (std::size_t k = 0; k < sizeof(V) / sizeof(double); ++k) {
+    if (std::isfinite(square[k]) && square[k] > 0.0) scale[k] = 1.0 / std::sqrt(square[k]);
+  }
+  const V nothing = {};
+  for (i = 0; i < a.size; ++i) L(a.to[i]) = scale > nothing ? L(a.from[i]) * scale : L(a.to[i]);
 }
 
 }  // namespace
@@ -246,5 +274,6 @@ CORE void orthogonalise_core(OrthogonalArguments& a, std::size_t lane) {
 ROBOMILL_KERNEL(build_block, BlockArguments)
 ROBOMILL_KERNEL(run_period, PeriodArguments)
 ROBOMILL_KERNEL(orthogonalise, OrthogonalArguments)
+ROBOMILL_KERNEL(normalise, NormaliseArguments)
 
 }  // namespace robomill::stability::detail

@@ -72,8 +72,8 @@ struct PeriodArguments {
 };
 void run_period(PeriodArguments& a);
 
-/// Takes out of w = basis_{column+1} what lies along basis_0 … basis_column and norms it. A lane whose rest is nothing
-/// gets a zero vector.
+/// Takes out of w = basis_{column+1} what lies along basis_0 … basis_column and norms it; twice in the lanes where
+/// little is left of it. A lane whose rest is nothing gets a zero vector.
 struct OrthogonalArguments {
   std::size_t size = 0;
   std::size_t column = 0;
@@ -81,5 +81,13 @@ struct OrthogonalArguments {
   Lanes* coefficients = nullptr;  ///< out: column + 2
 };
 void orthogonalise(OrthogonalArguments& a);
+
+/// to = from / ‖from‖; a lane whose norm is zero or not finite keeps what is in `to`.
+struct NormaliseArguments {
+  std::size_t size = 0;
+  const Lanes* from = nullptr;
+  Lanes* to = nullptr;
+};
+void normalise(NormaliseArguments& a);
 
 }  // namespace robomill::stability::detail

@@ -16,6 +16,8 @@ class PeriodMap {
   [[nodiscard]] virtual std::size_t modal_size() const = 0;
   /// out = state after one period. Lengths size(); they must not overlap.
   virtual void apply(const Lanes* in, Lanes* out) = 0;
+  /// About how many multiplications that takes; 0: not known.
+  [[nodiscard]] virtual double work() const { return 0.0; }
 };
 
 /// One that goes through the period in equal time steps.
