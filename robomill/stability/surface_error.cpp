@@ -123,7 +123,8 @@ SurfacePlace wall_error(const MillingModel& model, const CollocationCase& at, co
     SurfacePlace wall = {.normal_rad = outwards * 0.5 * std::numbers::pi,
                          .position_rad = 0.5 * std::numbers::pi,
                          .angle_rad = wall_rad,
-                         .height_m = 0.0};
+                         .height_m = 0.0,
+                         .radius_m = 0.5 * mill.diameter_m};
     double stiff_m = -std::numeric_limits<double>::infinity();
     double reach_m = stiff_m;
     for (int tooth = 0; tooth < mill.teeth; ++tooth) {
@@ -182,15 +183,19 @@ SurfacePoint orbit_at(const MillingModel& model, const OperatingPoint& point, in
   return result;
 }
 
-void require_feed(const LobesProblem& problem) {
+void require_surface(const LobesProblem& problem) {
   if (problem.drilling) throw InvalidInput("drilling", "must not be there: a drill leaves no surface that is known");
+  if (problem.has_measured()) {
+    throw InvalidInput("dynamics.frf", "does not go with a surface, which needs modes",
+                       "Fit them first: robomill modes");
+  }
   const double feed_m = problem.spatial ? problem.spatial->feed_per_tooth_m : problem.milling.feed_per_tooth_m;
   if (!(feed_m > 0.0)) throw InvalidInput("feed_per_tooth_m", feed_m, "m", "must be > 0 for a surface");
 }
 
 void check(const LobesProblem& problem, const OperatingPoint& point) {
   problem.validate();
-  require_feed(problem);
+  require_surface(problem);
   require_positive("axial_depth_m", point.axial_depth_m, "m");
   require_positive("spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
 }
@@ -244,7 +249,7 @@ SurfaceMap surface_map(const LobesProblem& problem, const LobesOptions& options,
                        Progress& progress) {
   problem.validate();
   options.validate();
-  require_feed(problem);
+  require_surface(problem);
   for (const int points : grid) {
     if (points < 2 || points > 2000) throw InvalidInput("grid", points, "", "must lie between 2 and 2000");
   }

@@ -23,6 +23,7 @@ struct SurfacePlace {
   double position_rad = no_surface;  ///< κ on the cutter
   double angle_rad = no_surface;     ///< φ at which an edge passes it
   double height_m = no_surface;      ///< above the tip, along the tool's axis
+  double radius_m = no_surface;      ///< from that axis; the place is (r sin φ, r cos φ, height) in T
   int tooth = -1;                    ///< that leaves it, from 0; of equal teeth the first
 };
 
@@ -58,7 +59,8 @@ struct SurfaceMap {
 /// state. In three directions the structure's exact answer to the steady force, with what unequal teeth regenerate by
 /// collocation; derivation in docs/theory/three-directions.md. Forces on the tool come from feed_per_tooth_m.
 /// @param tolerance  as LobesOptions::tolerance: of the spectral radius, |Δradius| <= tolerance · max(1, radius)
-/// @throws InvalidInput if the problem or the point is out of range, the feed or the depth is not > 0, or of drilling
+/// @throws InvalidInput if the problem or the point is out of range, the feed or the depth is not > 0, of drilling, or
+/// of measured FRFs in place of modes
 [[nodiscard]] ROBOMILL_API SurfacePoint surface_point(const LobesProblem& problem, const OperatingPoint& point,
                                                       double tolerance = 1e-6);
 

@@ -74,6 +74,7 @@ SurfacePlace SpatialSurface::at(const SilhouettePoint& place, const Motion& moti
   out.position_rad = place.on_profile.position_rad;
   out.angle_rad = place.angle_rad;
   out.height_m = height_m;
+  out.radius_m = place.on_profile.radius_m;
   out.normal_rad = std::atan2(place.normal.y(), -place.normal.z());
   double stiff_m = -std::numeric_limits<double>::infinity();
   double reach_m = stiff_m;

@@ -324,7 +324,10 @@ TEST(SurfaceErrorSpatial, OfABallLooksFromCuspToCusp) {
       const SurfacePoint point = surface_point(problem, {9000 * rpm, 0.4e-3});
       EXPECT_TRUE(point.remains);
       double worst = 0.0;
-      for (const SurfacePlace& place : profile) worst = std::max(worst, std::abs(place.error_m));
+      for (const SurfacePlace& place : profile) {
+        worst = std::max(worst, std::abs(place.error_m));
+        EXPECT_NEAR(std::hypot(place.radius_m, place.height_m - 5e-3), 5e-3, 1e-12);
+      }
       EXPECT_EQ(std::abs(point.surface_location_error_m), worst);
     }
   }

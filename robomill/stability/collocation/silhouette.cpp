@@ -106,8 +106,7 @@ std::vector<double> Silhouette::parameters(const Stretch& stretch, int side, dou
     return out;
   }
   const double from = std::max(stretch.first.position_rad, least_rad_ + from_bottom_rad);
-  const double to = std::min(
-      stretch.kind == Stretch::Kind::corner ? stretch.last.position_rad : stretch.last.position_rad, pi - least_rad_);
+  const double to = std::min(stretch.last.position_rad, pi - least_rad_);
   if (!(to > from)) return out;
   const int steps = static_cast<int>(std::ceil((to - from) / angle_step_rad)) + 1;
   for (int i = 0; i <= steps; ++i) out.push_back(from + (to - from) * i / steps);
