@@ -19,6 +19,7 @@
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/blocks/classes.hpp"
 #include "robomill/jobs/plan.hpp"
+#include "robomill/jobs/summary.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/stiffness.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -247,7 +248,15 @@ TEST_F(Blocks, SaysWhereTheEngagementIsLost) {
   });
   EXPECT_GE(said, 1);
   ASSERT_TRUE(plan.blocks);
+  const std::string text = summary(plan);
+  EXPECT_TRUE(text.find("lose the engagement") != std::string::npos ||
+              text.find("does not settle") != std::string::npos)
+      << text;
   const ProgramForces& program = *plan.forces->program;
+  const auto lost = std::ranges::count_if(
+      program.blocks, [](const BlockResult& block) { return block.settled == BlockResult::Settled::lost; });
+  const auto json = nlohmann::json::parse(blocks_json(*plan.forces, *plan.blocks));
+  EXPECT_EQ(json["summary"]["engagement_lost"], lost);
   for (std::size_t i = 0; i < program.blocks.size(); ++i) {
     const std::string note = block_note(program.blocks[i], plan.blocks->rows[i]);
     EXPECT_EQ(note == "engagement lost", program.blocks[i].settled == BlockResult::Settled::lost) << i;

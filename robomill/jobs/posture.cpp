@@ -149,14 +149,19 @@ double misfit(const modal::PostureModel& model, const modal::MeasuredPosture& po
   return lines > 0 ? sum / static_cast<double>(lines) : 0.0;
 }
 
+/// "4.5 %", "110 %"
+std::string percent(double share) {
+  return share < 0.995 ? fmt::format("{:.2g} %", 100.0 * share) : fmt::format("{:.0f} %", 100.0 * share);
+}
+
 /// A model that misses what was measured, and a posture that does not belong to the others.
 void warn_of_misfits(const modal::PostureModel& model, const std::vector<modal::MeasuredPosture>& postures,
                      const modal::PostureModelOptions& options, std::vector<std::string>& warnings) {
   if (model.report().error >= modal::unusable_fit_error) {
     warnings.push_back(
-        fmt::format("The arm's model misses the measured receptances by {:.2g} %: do not use what follows from it. Are "
+        fmt::format("The arm's model misses the measured receptances by {}: do not use what follows from it. Are "
                     "units, axes and joints_deg of [[postures]] right?",
-                    100.0 * model.report().error));
+                    percent(model.report().error)));
   }
   // Simulated arms: within 1.1 of the median with each measurement in its place, 2.1 and more where two are swapped.
   constexpr double outlier = 1.75, noticed = 0.15;
@@ -191,15 +196,15 @@ std::string description(const modal::PostureReport& report) {
   if (report.source != modal::PostureReport::Source::calibrated) return {};
   std::string text = fmt::format(
       "The arm's model is calibrated over {} posture{}: compliant joints{}{}{}. It misses their "
-      "receptances by {:.2g} %",
+      "receptances by {}",
       report.postures, report.postures == 1 ? "" : "s", report.bearings ? ", bearings" : "",
       report.bracket ? ", the spindle's bracket" : "",
       report.tool_modes > 0
           ? fmt::format(", {} pair{} of tool modes", report.tool_modes, report.tool_modes == 1 ? "" : "s")
           : "",
-      100.0 * report.error);
+      percent(report.error));
   if (std::isfinite(report.left_out_error)) {
-    text += fmt::format(", those of a posture left out by {:.2g} %", 100.0 * report.left_out_error);
+    text += fmt::format(", those of a posture left out by {}", percent(report.left_out_error));
   }
   return text + ".";
 }

@@ -227,6 +227,7 @@ std::string summary(const PlanResult& result) {
            count.not_compared);
   }
   if (result.blocks) add_notes(out, block_warnings(*result.forces, *result.blocks), "warning      ");
+  if (result.forces) add_notes(out, result.forces->warnings, "warning      ");
   add_notes(out, result.warnings, "warning      ");
   add_notes(out, result.notes, "note         ");
   if (result.blocks) add_notes(out, block_notes(*result.blocks), "note         ");

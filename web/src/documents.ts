@@ -294,7 +294,7 @@ export interface LimitOver {
 /** blocks.json: stability of every block of a program */
 export interface BlocksDocument {
   blocks: BlockColumns;
-  summary: { blocks: number; cutting: number; unstable: number; evaluations: number; seconds: Num; notes: string[] };
+  summary: { blocks: number; cutting: number; unstable: number; engagement_lost?: number; evaluations: number; seconds: Num; notes: string[] };
   limit_over: LimitOver[];
 }
 

@@ -85,10 +85,11 @@ describe('a block', () => {
 
 it('names the blocks nearest to chatter first', () => {
   expect(worstBlocks(columns, 2)).toEqual([2, 1]);
-  const document = { blocks: columns, summary: { blocks: 4, cutting: 3, unstable: 1, evaluations: 3, seconds: 0.1, notes: [] }, limit_over: [] } satisfies BlocksDocument;
+  const document = { blocks: columns, summary: { blocks: 4, cutting: 3, unstable: 1, engagement_lost: 2, evaluations: 3, seconds: 0.1, notes: [] }, limit_over: [] } satisfies BlocksDocument;
   const facts = programFacts(document);
   expect(facts).toContainEqual({ label: 'Nearest to chatter', value: 'block 3, margin -0.7' });
   expect(facts).toContainEqual({ label: 'Far from measured postures', value: '1' });
+  expect(facts).toContainEqual({ label: 'Engagement lost', value: '2' });
 });
 
 it('ranks what is unstable first, then the gain that is left', () => {

@@ -215,6 +215,7 @@ export function programFacts({ blocks, summary }: BlocksDocument): Fact[] {
     const left = gain === null ? `margin ${significant(blocks.stability_margin![worst]!)}` : `gain margin ${significant(gain)}`;
     facts.push({ label: 'Nearest to chatter', value: `block ${blocks.block[worst]!}, ${left}` });
   }
+  if ((summary.engagement_lost ?? 0) > 0) facts.push({ label: 'Engagement lost', value: fixed(summary.engagement_lost!, 0) });
   if (away > 0) facts.push({ label: 'Far from measured postures', value: fixed(away, 0) });
   facts.push({ label: 'Different cuts looked at', value: `${fixed(summary.evaluations, 0)}${summary.seconds === null ? '' : ` in ${significant(summary.seconds)}${thinSpace}s`}` });
   return facts;

@@ -225,8 +225,8 @@ std::vector<std::string> block_notes(const ProgramBlocks& blocks) {
   const auto bounds = std::ranges::count_if(blocks.rows, [](const BlockRow& row) { return row.cut.lower_bound; });
   if (bounds > 0) {
     out.push_back(fmt::format(
-        "The limits of {} blocks are lower bounds: process damping, which is not known, lifts limits at low speed.",
-        bounds));
+        "{} a lower bound: process damping, which is not known, lifts limits at low speed.",
+        bounds == 1 ? "The limit of one block is" : fmt::format("The limit of each of {} blocks is", bounds)));
   }
   if (blocks.rigid_workpiece) {
     out.emplace_back(
@@ -250,9 +250,11 @@ Json blocks_summary(const ForcesResult& forces, const ProgramBlocks& blocks) {
   }
   std::vector<std::string> notes = block_warnings(forces, blocks);
   std::ranges::move(block_notes(blocks), std::back_inserter(notes));
-  return {{"blocks", blocks.rows.size()},      {"cutting", blocks.cutting},         {"unstable", blocks.unstable},
-          {"evaluations", blocks.evaluations}, {"seconds", number(blocks.seconds)}, {"worst", std::move(worst)},
-          {"notes", std::move(notes)}};
+  const auto lost = std::ranges::count_if(
+      forces.program->blocks, [](const BlockResult& block) { return block.settled == BlockResult::Settled::lost; });
+  return {{"engagement_lost", lost},     {"blocks", blocks.rows.size()},      {"cutting", blocks.cutting},
+          {"unstable", blocks.unstable}, {"evaluations", blocks.evaluations}, {"seconds", number(blocks.seconds)},
+          {"worst", std::move(worst)},   {"notes", std::move(notes)}};
 }
 
 std::string blocks_csv(const ForcesResult& forces, const ProgramBlocks& blocks) {

@@ -38,6 +38,7 @@ io::Json posture_object(const ModesOfPosture& posture) {
           {"distance_deg", io::number(posture.prediction.distance_rad / units::deg)},
           {"region_deg", io::number(posture.report.region_rad / units::deg)},
           {"nearest", posture.prediction.nearest},
+          {"unmatched_modes", posture.unmatched},
           {"source", source_text(posture.report.source)},
           {"measured_postures", posture.report.postures},
           {"structure",
