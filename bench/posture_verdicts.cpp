@@ -56,6 +56,16 @@ std::vector<modal::MeasuredPosture> measure(const SimulatedArm& arm, std::uint64
   return out;
 }
 
+/// What the weightings know. A fit that finds nothing makes no posture.
+std::vector<modal::PostureModes> modes_of(const std::vector<modal::MeasuredPosture>& measured) {
+  std::vector<modal::PostureModes> out;
+  for (const modal::MeasuredPosture& posture : measured) {
+    ModalModel found = modal::fit_modes(posture.frfs, {.max_modes = 30}).model;
+    if (!found.modes.empty()) out.push_back({.joints = posture.joints, .modes = std::move(found)});
+  }
+  return out;
+}
+
 void judge(const SimulatedArm& arm, std::uint64_t seed, const Settings& settings, ArmResult& out) {
   modal::testing::PostureVerdictOptions options = settings.verdicts;
   options.seed = seed;
@@ -65,10 +75,7 @@ void judge(const SimulatedArm& arm, std::uint64_t seed, const Settings& settings
   out.score[truth] = verdicts.judge([&](const Eigen::VectorXd& joints) { return arm.modes(joints, options.up_to_hz); });
   out.score[in_band] = verdicts.judge([&](const Eigen::VectorXd& joints) { return arm.modes(joints, band_hz); });
   const std::vector<modal::MeasuredPosture> measured = measure(arm, seed);
-  std::vector<modal::PostureModes> known;
-  for (const modal::MeasuredPosture& posture : measured) {
-    known.push_back({.joints = posture.joints, .modes = modal::fit_modes(posture.frfs, {.max_modes = 30}).model});
-  }
+  const std::vector<modal::PostureModes> known = modes_of(measured);
   for (const auto& [predictor, axes] :
        {std::pair{base_axes, modal::ResidueAxes::base}, std::pair{flange_axes, modal::ResidueAxes::flange}}) {
     out.score[predictor] = verdicts.judge(

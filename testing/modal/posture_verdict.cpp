@@ -207,7 +207,10 @@ VerdictScore PostureVerdicts::judge(const PosturePredictor& predict) const {
   parallel_for(cuts_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       stability::LobesProblem problem = cuts_[i].cut;
-      problem.dynamics = turned(predicted[cuts_[i].posture], cuts_[i].feed_from_base);
+      const ModalModel& modes = predicted[cuts_[i].posture];
+      stable[i] = 1;
+      if (modes.modes.empty()) continue;
+      problem.dynamics = turned(modes, cuts_[i].feed_from_base);
       const stability::PointResult point = stability::evaluate_point(
           problem, {.tolerance = 1e-4}, {cuts_[i].spindle_speed_rad_per_s, cuts_[i].axial_depth_m});
       stable[i] = point.stable ? 1 : 0;

@@ -57,7 +57,8 @@ class PostureVerdicts {
  public:
   /// @param arm  outlives this
   explicit PostureVerdicts(const SimulatedArm& arm, const PostureVerdictOptions& options = {});
-  /// Whether |μ| < 1 with the predicted modes says of each cut what the simulation with the true modes shows.
+  /// Whether |μ| < 1 with the predicted modes says of each cut what the simulation with the true modes shows. What has
+  /// no modes is stable.
   [[nodiscard]] VerdictScore judge(const PosturePredictor& predict) const;
   [[nodiscard]] const std::vector<JudgedCut>& cuts() const { return cuts_; }
 
