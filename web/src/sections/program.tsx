@@ -46,9 +46,13 @@ function WorstTable({ columns, select }: { columns: BlockColumns; select: Select
     { heading: 'Regime', optional: true, cell: (i) => together(regimeName(columns, i)) },
     number('Peak force (N)', columns.peak_f_n),
   ];
-  const bounds = rows.some((i) => columns.lower_bound?.[i]) ? '; ≥: a lower bound, for process damping is not known' : '';
-  const caption = `The blocks nearest to chatter: unstable ones first, then by gain margin, how much stiffer the cut may get${bounds}`;
-  return <Table caption={caption} columns={shown} rows={rows} rowClass={(i) => (isUnstable(columns, i) ? 'chatter' : '')} />;
+  const bounds = rows.some((i) => columns.lower_bound?.[i]) ? ' ≥: a lower bound, for process damping is not known.' : '';
+  return (
+    <>
+      <Table caption="The blocks nearest to chatter" columns={shown} rows={rows} rowClass={(i) => (isUnstable(columns, i) ? 'chatter' : '')} />
+      <p>{`Unstable blocks first, then by gain margin: the factor by which the cut may get stiffer before it chatters.${bounds}`}</p>
+    </>
+  );
 }
 
 const names: Record<LimitOver['parameter'], string> = { x_mm: 'x', y_mm: 'y', z_mm: 'z', gamma_deg: 'γ' };
