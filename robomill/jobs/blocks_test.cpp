@@ -384,6 +384,22 @@ TEST_F(Blocks, SayThatTheWorkpieceTakesNoPart) {
   EXPECT_TRUE(says({.scan_points = 0}));
 }
 
+TEST_F(Blocks, SayThatTheDynamicsOfTheForcesTakeNoPart) {
+  write_cell();
+  write_forces();
+  write_program();
+  const auto says = [](const PlanResult& plan) {
+    return std::ranges::any_of(plan.notes, [](const std::string& text) { return text.starts_with("[dynamics]"); });
+  };
+  EXPECT_FALSE(says(run_with_modes()));
+  const std::string forces = io::read_file(folder_.at("forces.toml"));
+  const auto mode = [](const char* direction) {
+    return fmt::format("[[dynamics.{}]]\nfrequency_hz = 300\ndamping_ratio = 0.02\nmodal_mass_kg = 2\n", direction);
+  };
+  folder_.file("forces.toml", forces + mode("x") + mode("y"));
+  EXPECT_TRUE(says(run_with_modes()));
+}
+
 TEST_F(Blocks, SaysInWhichBlockTheDynamicsAreNotKnown) {
   write_cell();
   write_forces();

@@ -371,6 +371,9 @@ ProgramRun program_run(const PlanResult& result) {
 /// What vibrates along the program: the cell's measured postures, else the job's structure in every posture, else the
 /// cell's arm.
 DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& progress) {
+  if (!result.forces->file.dynamics.modes.empty()) {
+    result.notes.emplace_back("[dynamics] of forces.toml takes no part in the stability of the program's blocks.");
+  }
   if (!cell.postures.empty() || !result.job.has_structure()) {
     if (result.job.has_structure()) {
       result.notes.emplace_back(
