@@ -54,6 +54,17 @@ void spatial_gain_margin(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(gain_margin(cut.problem, point));
 }
 
+/// Every node of a map to 1e-6, of a ball end's slot and a structure of a robot's kind with so many modes.
+void spatial_map(benchmark::State& state) {
+  Random random(731);
+  LobesProblem problem = testing::spatial_references().front().problem;
+  problem.dynamics = testing::robot_like_modes(random, static_cast<int>(state.range(0)));
+  LobesOptions options = depths();
+  options.grid = {50, 40};
+  options.output = Output::map;
+  for (auto _ : state) benchmark::DoNotOptimize(compute_lobes(problem, options));
+}
+
 /// Radius, limit, margin, regime and quantiles of one block after the other; the number of modes. Processor time.
 void block_of_a_program(benchmark::State& state) {
   std::vector<testing::BlockCase> blocks;
@@ -73,6 +84,7 @@ BENCHMARK(spatial_limit)->DenseRange(1, 5)->Unit(benchmark::kMillisecond);
 BENCHMARK(spatial_radius)->DenseRange(1, 5)->Unit(benchmark::kMillisecond);
 BENCHMARK(spatial_gain_margin)->DenseRange(1, 5)->Unit(benchmark::kMillisecond);
 BENCHMARK(spatial_limits_of_100_speeds)->DenseRange(1, 4)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(spatial_map)->Arg(8)->Arg(32)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 BENCHMARK(spatial_boundary)->DenseRange(1, 4)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace

@@ -108,6 +108,7 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
   for (std::size_t lane = 0; lane < points.size(); ++lane) {
     waits[lane] = !lanes_[lane].done;
     if (waits[lane]) at_[lane] = &find_case(lane, points[lane], lanes_[lane].level);
+    if (lane == 0 && waits[0]) last_ = at_[0];
   }
   for (std::size_t first = 0; first < points.size(); ++first) {
     if (!waits[first]) continue;

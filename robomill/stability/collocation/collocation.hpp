@@ -26,7 +26,7 @@ class CollocationEvaluator final : public PointEvaluator {
   [[nodiscard]] std::size_t at_a_time() const override { return model_.at_a_time(); }
 
   /// Of the first point of the last evaluation, at its last level.
-  [[nodiscard]] const CollocationCase& last_case() const { return *at_[0]; }
+  [[nodiscard]] const CollocationCase& last_case() const { return *last_; }
 
   /// Without any search, all at one level.
   void evaluate_at(std::span<const OperatingPoint> points, int level, std::span<Dominant> out);
@@ -54,6 +54,7 @@ class CollocationEvaluator final : public PointEvaluator {
   std::vector<Lanes> guess_;
   std::array<std::array<CollocationCase, lane_count>, 2> cases_;  ///< by parity of the level
   std::array<const CollocationCase*, lane_count> at_ = {};
+  const CollocationCase* last_ = nullptr;
 };
 
 }  // namespace robomill::stability::detail

@@ -81,7 +81,6 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
   const std::size_t channels = static_cast<std::size_t>(topology.channels());
   const bool several = topology.form == Form::several;
   const bool blocks = topology.form == Form::blocks;
-  const bool remembers_motion = several || blocks;
   pieces_.clear();
   looks_.clear();
   contacts_ = 0;
@@ -120,8 +119,6 @@ void CollocationMap::lay_out(const MeshTopology& topology) {
     pieces_.push_back(piece);
   }
   coupling_.resize(contacts_ * m * m);
-  own_.resize(contacts_, m, modal, remembers_motion);
-  common_.resize(contacts_, m, modal, remembers_motion);
   factors_.resize(topology.pieces.size() * modal);
   weights_.resize(weights);
   matrices_.resize(matrices);
@@ -147,6 +144,11 @@ void CollocationMap::fill_looks(const CollocationCase& at, std::size_t e, std::s
 
 void CollocationMap::fill(std::span<const Point> points) {
   shared_ = std::ranges::all_of(points, [&](const Point& point) { return point.at == points.front().at; });
+  if (shared_) {
+    common_.resize(contacts_, layout_.nodes, layout_.modal, remembers_motion());
+  } else {
+    own_.resize(contacts_, layout_.nodes, layout_.modal, remembers_motion());
+  }
   for (std::size_t lane = 0; lane < lane_count; ++lane) {
     const Point& point = points[std::min(lane, points.size() - 1)];
     factor_.v[lane] = point.factor;
@@ -185,14 +187,17 @@ void CollocationMap::factor() {
     a.factored = factored_.data() + i * m * m;
     factor_node_block(a);
   }
-  own_.set_blocks(factored_.data(), m, layout_.modal);
-  common_.set_blocks(factored_.data(), m, layout_.modal);
+  if (shared_) {
+    common_.set_blocks(factored_.data(), m, layout_.modal);
+  } else {
+    own_.set_blocks(factored_.data(), m, layout_.modal);
+  }
 }
 
 double CollocationMap::work() const {
   const double m = static_cast<double>(layout_.nodes);
   const double modal = static_cast<double>(layout_.modal);
-  const double remembered = own_.displacement.empty() ? 0.0 : m * (m + modal);
+  const double remembered = remembers_motion() ? m * (m + modal) : 0.0;
   double sum = 2.0 * modal * static_cast<double>(pieces_.size());
   sum += static_cast<double>(contacts_) * (m * m + 2.0 * m * modal + remembered);
   if (topology_.form == Form::blocks) sum += m * m * static_cast<double>(looks_.size());

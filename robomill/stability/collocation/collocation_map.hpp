@@ -38,6 +38,9 @@ class CollocationMap final : public PeriodMap {
     void set_blocks(const Lanes* factored, std::size_t m, std::size_t modal);
   };
 
+  [[nodiscard]] bool remembers_motion() const {
+    return topology_.form == MeshTopology::Form::several || topology_.form == MeshTopology::Form::blocks;
+  }
   void lay_out(const MeshTopology& topology);
   void fill(std::span<const Point> points);
   void fill(const Point& point, std::size_t lane);

@@ -192,6 +192,60 @@ TEST(Collocation, EigenvectorComesBackMultiplied) {
   }
 }
 
+/// Modes as an arm and its tool have them: many that hardly fade within a tooth period, and close ones among them.
+LobesProblem many_modes(Random& random, std::size_t count) {
+  LobesProblem problem = random_problem(random);
+  problem.dynamics.modes.clear();
+  problem.dynamics.excitations = problem.dynamics.responses = {{.axis = modal::Axis::x}, {.axis = modal::Axis::y}};
+  for (std::size_t k = 0; k < count; ++k) {
+    double frequency_hz = 15.0 * std::pow(150.0, random.uniform(0.0, 1.0));
+    if (k > 0 && random.index(3) == 0) {
+      frequency_hz = problem.dynamics.modes.back().frequency_hz * random.uniform(1.0, 1.05);
+    }
+    const double damping_ratio = 0.003 * std::pow(30.0, random.uniform(0.0, 1.0));
+    modal::Mode mode = testing::mass_mode(0, frequency_hz, damping_ratio, 1.0);
+    const double size = std::sqrt(1.0 / (2.0 * random.uniform(0.1, 10.0) * modal::pole(mode).imag()));
+    const auto entry = [&] { return size * std::complex<double>(random.normal(), 0.3 * random.normal()); };
+    mode.left << entry(), entry();
+    mode.right << entry(), entry();
+    problem.dynamics.modes.push_back(mode);
+  }
+  return problem;
+}
+
+// Whatever is warmed up, taken over from a coarser level or passed through many periods at once.
+TEST(Collocation, ManyModesHaveTheMultiplierOfTheWholeMatrix) {
+  int unsettled = 0;
+  for (int seed = 0; seed < seeds(300); ++seed) {
+    Random random(91, static_cast<std::uint64_t>(seed));
+    const LobesProblem problem = many_modes(random, 3 + random.index(30));
+    const MillingModel model(problem);
+    CollocationEvaluator evaluator(model, 1e-6);
+    std::vector<OperatingPoint> points;
+    for (std::size_t i = 0; i < 1 + random.index(lane_count); ++i) {
+      const double depth_m = 1e-5 * std::pow(300.0, random.uniform(0.0, 1.0));
+      points.push_back({random.uniform(2000.0, 20000.0) * rpm, depth_m});
+    }
+    std::vector<Outcome> outcomes(points.size());
+    evaluator.evaluate(points, {.estimate = true}, outcomes);
+    const CollocationCase& finest = evaluator.last_case();
+    CollocationMap map;
+    const CollocationMap::Point mapped{&finest, model.factor(points.front())};
+    map.prepare(model.modes(), {&mapped, 1});
+    Arnoldi whole({.full_matrix_only = true});
+    Dominant expected;
+    whole.find(map, {&expected, 1});
+    if (expected.by != Dominant::By::full_matrix) {
+      ++unsettled;
+      continue;
+    }
+    const double share = model.reported_rad() / model.whole_rad();
+    const double radius = std::pow(spectral_radius(expected), share);
+    EXPECT_NEAR(outcomes.front().spectral_radius, radius, 1e-8 * std::max(1.0, radius)) << seed;
+  }
+  EXPECT_LE(unsettled, seeds(300) / 20);
+}
+
 LobesProblem three_teeth() {
   LobesProblem problem = benchmark(0.3);
   problem.milling.tool.teeth = 3;

@@ -116,25 +116,46 @@ void Arnoldi::start_again(std::span<const bool> done, std::span<const Dominant> 
 
 /// Looks at the dominant Ritz pairs of the lanes that are not done, in the first columns of the basis.
 void Arnoldi::look(PeriodMap& map, std::size_t columns, std::span<bool> done, std::span<Dominant> out) {
-  ritz_values_.resize(columns);
-  for (std::size_t c = 0; c < columns; ++c) {
-    const Lanes* column = hessenberg_.data() + c * (most_ + 1);
-    for (std::size_t r = 0; r < std::min(columns, c + 2); ++r) ritz_values_(r, c) = column[r];
-  }
-  std::array<bool, lane_count> wanted = {};
-  for (std::size_t lane = 0; lane < out.size(); ++lane) wanted[lane] = !done[lane];
+  std::array<bool, lane_count> fresh = {};
+  for (std::size_t lane = 0; lane < out.size(); ++lane) fresh[lane] = !done[lane];
   std::array<std::complex<double>, lane_count> value = {};
-  const std::array<bool, lane_count> found = ritz_values_.dominant(wanted, value);
+  const std::array<bool, lane_count> found = ritz_values(columns, fresh, value);
   for (std::size_t lane = 0; lane < out.size(); ++lane) {
     if (done[lane]) continue;
     // What is not finite overflows within a period.
     out[lane].multiplier = found[lane] ? value[lane] : std::numeric_limits<double>::infinity();
     done[lane] = found[lane] && converged(lane, columns, out[lane]);
-    wanted[lane] = done[lane];
+    fresh[lane] = done[lane];
   }
-  if (periods_ == 1) return;
-  for (std::size_t lane = out.size(); lane < lane_count; ++lane) wanted[lane] = false;
-  confirm(map, wanted, done, out);
+  if (periods_ > 1) confirm(map, fresh, done, out);
+}
+
+/// Eight matrices at once cost as much as two one after the other.
+std::array<bool, lane_count> Arnoldi::ritz_values(std::size_t columns, const std::array<bool, lane_count>& wanted,
+                                                  std::array<std::complex<double>, lane_count>& value) {
+  if (std::ranges::count(wanted, true) <= 2) {
+    std::array<bool, lane_count> found = {};
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+      if (!wanted[lane]) continue;
+      take_small(lane, columns);
+      found[lane] = small_.dominant(value[lane]);
+    }
+    return found;
+  }
+  ritz_values_.resize(columns);
+  for (std::size_t c = 0; c < columns; ++c) {
+    const Lanes* column = hessenberg_.data() + c * (most_ + 1);
+    for (std::size_t r = 0; r < std::min(columns, c + 2); ++r) ritz_values_(r, c) = column[r];
+  }
+  return ritz_values_.dominant(wanted, value);
+}
+
+void Arnoldi::take_small(std::size_t lane, std::size_t columns) {
+  small_.resize(columns);
+  for (std::size_t c = 0; c < columns; ++c) {
+    const Lanes* column = hessenberg_.data() + c * (most_ + 1);
+    for (std::size_t r = 0; r < std::min(columns, c + 2); ++r) small_(r, c) = column[r].v[lane];
+  }
 }
 
 /// A Ritz pair of several periods: the root that its vector shows in a single one. Where two motions have the same
@@ -192,11 +213,7 @@ void Arnoldi::confirm(PeriodMap& map, const std::array<bool, lane_count>& fresh,
 }
 
 bool Arnoldi::converged(std::size_t lane, std::size_t columns, Dominant& out) {
-  small_.resize(columns);
-  for (std::size_t c = 0; c < columns; ++c) {
-    const Lanes* column = hessenberg_.data() + c * (most_ + 1);
-    for (std::size_t r = 0; r < std::min(columns, c + 2); ++r) small_(r, c) = column[r].v[lane];
-  }
+  take_small(lane, columns);
   ritz_[lane] = small_.vector(out.multiplier);
   const double next = hessenberg_[(columns - 1) * (most_ + 1) + columns].v[lane];
   out.residual = columns == size_ ? 0.0 : next * std::abs(ritz_[lane].back());

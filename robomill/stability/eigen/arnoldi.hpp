@@ -60,6 +60,9 @@ class Arnoldi {
   void confirm(PeriodMap& map, const std::array<bool, lane_count>& fresh, std::span<bool> done,
                std::span<Dominant> out);
   void look(PeriodMap& map, std::size_t columns, std::span<bool> done, std::span<Dominant> out);
+  std::array<bool, lane_count> ritz_values(std::size_t columns, const std::array<bool, lane_count>& wanted,
+                                           std::array<std::complex<double>, lane_count>& value);
+  void take_small(std::size_t lane, std::size_t columns);
   bool converged(std::size_t lane, std::size_t columns, Dominant& out);
   void full_matrix(PeriodMap& map, std::span<Dominant> out);
 

@@ -22,7 +22,7 @@ void find_windows(HessenbergArguments& a);
 void sweep_windows(HessenbergArguments& a);
 
 /// The eigenvalue of greatest modulus of eight small upper Hessenberg matrices at once, one a lane: as
-/// Hessenberg::dominant finds it. What is found in one lane does not depend on the others.
+/// Hessenberg::dominant finds it, with the same digits. What is found in one lane does not depend on the others.
 class HessenbergLanes {
  public:
   /// Makes room for size x size matrices, all zero.

@@ -7,6 +7,7 @@
 
 #include "robomill/base/linear_algebra.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/stability/eigen/hessenberg.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::stability::detail {
@@ -92,6 +93,36 @@ TEST(HessenbergLanes, DoNotMeet) {
     one[lane] = true;
     EXPECT_EQ(lanes.dominant(one, values), one);
     EXPECT_EQ(values[lane], reference[lane]) << lane;
+  }
+}
+
+// A lane may be solved by itself in the place of eight at once.
+TEST(HessenbergLanes, HaveTheDigitsOfOneAlone) {
+  for (int seed = 0; seed < test::seeds(1000); ++seed) {
+    Random random(29, static_cast<std::uint64_t>(seed));
+    const std::size_t size = 1 + random.index(40);
+    HessenbergLanes lanes;
+    lanes.resize(size);
+    Wanted all;
+    all.fill(true);
+    std::array<Eigen::MatrixXd, lane_count> matrices;
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+      matrices[lane] = random_matrix(random, size);
+      put(matrices[lane], lane, lanes);
+    }
+    Values values = {};
+    lanes.dominant(all, values);
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+      Hessenberg alone;
+      alone.resize(size);
+      for (std::size_t i = 0; i < size * size; ++i) {
+        alone(i / size, i % size) =
+            matrices[lane](static_cast<Eigen::Index>(i / size), static_cast<Eigen::Index>(i % size));
+      }
+      std::complex<double> value;
+      ASSERT_TRUE(alone.dominant(value));
+      EXPECT_EQ(values[lane], value) << seed;
+    }
   }
 }
 
