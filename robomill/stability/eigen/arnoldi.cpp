@@ -16,7 +16,12 @@ constexpr std::size_t first_extra = 9;     // columns beyond 2n at the first loo
 constexpr std::size_t first_warm = 16;     // … after a warm-up
 constexpr std::size_t first_guessed = 15;  // … from a guess
 constexpr int most_rounds = 3;             // of warming up
-constexpr double guess_is_off = 1e-4;
+constexpr double guess_is_off = 1e-6;
+
+/// From a guess.
+std::size_t first_look(const PeriodMap& map) {
+  return std::max(first_guessed, map.modal_size() / 2);
+}
 
 std::complex<double> upper_half(std::complex<double> value) {
   return {value.real(), std::abs(value.imag())};
@@ -67,7 +72,7 @@ bool Arnoldi::pays_to_warm_up(const PeriodMap& map, bool guessed) const {
     return static_cast<double>(passes + count) * map.work() +
            columns * columns * (1.5 * static_cast<double>(size_) + 4.0 * columns);
   };
-  const std::size_t cold = std::min(size_, guessed ? 2 * first_guessed : map.modal_size() + first_extra);
+  const std::size_t cold = std::min(size_, guessed ? 2 * first_look(map) : map.modal_size() + first_extra);
   return cost(passes(map, guessed), std::max(first_warm, cold / 2)) < cost(0, cold);
 }
 
@@ -237,7 +242,7 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out, std::span<const Lane
   const auto is_left = [&] { return std::ranges::find(undone, false) != undone.end(); };
   const bool guessed = !guess.empty();
   const bool warm = pays_to_warm_up(map, guessed);
-  const std::size_t first = warm ? first_warm : guessed ? first_guessed : map.modal_size() + first_extra;
+  const std::size_t first = warm ? first_warm : guessed ? first_look(map) : map.modal_size() + first_extra;
   const bool again = warm && periods(map, 0) > 1;  // passes are cheap
   const int rounds = options_.full_matrix_only ? 0 : again ? most_rounds : 1;
   for (int round = 0; round < rounds && is_left(); ++round) {
@@ -245,14 +250,13 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out, std::span<const Lane
     if (warm) warm_up(map, passes(map, guessed && round == 0));
     const bool last = round + 1 == rounds;
     periods_ = last ? 1 : periods(map, round);
-    extend(map, std::min(most_, first), last ? most_ : std::min(most_, first + (1 + round) * first / 2),
-           warm || guessed ? 0 : options_.between, undone, out);
+    extend(map, std::min(most_, first), last ? most_ : std::min(most_, first + (1 + round) * first / 2), undone, out);
   }
   if (is_left()) full_matrix(map, out);
 }
 
-/// Columns up to `most`, looked at from the first look on: every `between`, or where 0 after half as many again.
-void Arnoldi::extend(PeriodMap& map, std::size_t first, std::size_t most, std::size_t between, std::span<bool> done,
+/// Columns up to `most`, looked at from the first look on, after half as many again up to those of a cold start.
+void Arnoldi::extend(PeriodMap& map, std::size_t first, std::size_t most, std::span<bool> done,
                      std::span<Dominant> out) {
   OrthogonalArguments arguments;
   arguments.size = size_;
@@ -269,7 +273,10 @@ void Arnoldi::extend(PeriodMap& map, std::size_t first, std::size_t most, std::s
     arguments.coefficients = hessenberg_.data() + k * (most_ + 1);
     orthogonalise(arguments);
     if (k + 1 != next_look) continue;
-    next_look = std::min(most, next_look + (between == 0 ? next_look / 2 : between));
+    const std::size_t whole = map.modal_size() + first_extra;  // from here on every few columns
+    const std::size_t few = std::max(options_.between, map.modal_size() / 8);
+    const std::size_t further = next_look < whole ? std::min(next_look + next_look / 2, whole) : next_look + few;
+    next_look = std::min(most, further);
     look(map, k + 1, done, out);
   }
 }

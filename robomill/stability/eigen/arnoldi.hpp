@@ -24,7 +24,7 @@ double spectral_radius(const Dominant& dominant);
 
 struct ArnoldiOptions {
   double tolerance = 1e-12;  ///< converged where the residual is at most this times (|μ| + 0.1 ‖H‖)
-  std::size_t between = 4;   ///< vectors from look to look
+  std::size_t between = 4;   ///< vectors from look to look, at least
   /// More modes than this are warmed up: whatever fades quicker than the dominant motion is gone before the first
   /// vector.
   std::size_t most_cold_modes = 10;
@@ -54,8 +54,7 @@ class Arnoldi {
   [[nodiscard]] static std::size_t passes(const PeriodMap& map, bool guessed);
   void warm_up(PeriodMap& map, std::size_t passes);
   void start_again(std::span<const bool> done, std::span<const Dominant> out);
-  void extend(PeriodMap& map, std::size_t first, std::size_t most, std::size_t between, std::span<bool> done,
-              std::span<Dominant> out);
+  void extend(PeriodMap& map, std::size_t first, std::size_t most, std::span<bool> done, std::span<Dominant> out);
   [[nodiscard]] int periods(const PeriodMap& map, int round) const;
   void confirm(PeriodMap& map, const std::array<bool, lane_count>& fresh, std::span<bool> done,
                std::span<Dominant> out);
