@@ -18,9 +18,9 @@ constexpr std::size_t first_guessed = 15;  // … from a guess
 constexpr int most_rounds = 3;             // of warming up
 constexpr double guess_is_off = 1e-6;
 
-/// From a guess.
-std::size_t first_look(const PeriodMap& map) {
-  return std::max(first_guessed, map.modal_size() / 2);
+std::size_t first_look(const PeriodMap& map, bool guessed) {
+  const std::size_t cold = map.modal_size() + first_extra;
+  return guessed ? std::min(cold, std::max(first_guessed, map.modal_size() / 2)) : cold;
 }
 
 std::complex<double> upper_half(std::complex<double> value) {
@@ -72,7 +72,8 @@ bool Arnoldi::pays_to_warm_up(const PeriodMap& map, bool guessed) const {
     return static_cast<double>(passes + count) * map.work() +
            columns * columns * (1.5 * static_cast<double>(size_) + 4.0 * columns);
   };
-  const std::size_t cold = std::min(size_, guessed ? 2 * first_look(map) : map.modal_size() + first_extra);
+  const std::size_t whole = map.modal_size() + first_extra;
+  const std::size_t cold = std::min({size_, whole, 2 * first_look(map, guessed)});
   return cost(passes(map, guessed), std::max(first_warm, cold / 2)) < cost(0, cold);
 }
 
@@ -242,7 +243,7 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out, std::span<const Lane
   const auto is_left = [&] { return std::ranges::find(undone, false) != undone.end(); };
   const bool guessed = !guess.empty();
   const bool warm = pays_to_warm_up(map, guessed);
-  const std::size_t first = warm ? first_warm : guessed ? first_look(map) : map.modal_size() + first_extra;
+  const std::size_t first = warm ? first_warm : first_look(map, guessed);
   const bool again = warm && periods(map, 0) > 1;  // passes are cheap
   const int rounds = options_.full_matrix_only ? 0 : again ? most_rounds : 1;
   for (int round = 0; round < rounds && is_left(); ++round) {
