@@ -125,9 +125,9 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
     }
     map_.prepare(model_.modes(), std::span(together).first(count));
     guess_.clear();
-    const bool another = ask.estimate && !lanes_[first].compared;
     if (lanes_[first].compared) guess(std::span(lane_of).first(count));
-    arnoldi_.find(map_, std::span(found).first(count), guess_, another ? coarse_tolerance_ : fine_tolerance_);
+    arnoldi_.find(map_, std::span(found).first(count), guess_,
+                  lanes_[first].compared ? next_tolerance_ : first_tolerance_);
     evaluations_ += static_cast<long long>(count);
     for (std::size_t i = 0; i < count; ++i) {
       assess(lane_of[i], i, found[i], points[lane_of[i]], ask, out[lane_of[i]]);

@@ -19,8 +19,9 @@ class CollocationEvaluator final : public PointEvaluator {
   CollocationEvaluator(const CollocationModel& model, double tolerance, const ArnoldiOptions& options = {})
       : model_(model),
         tolerance_(tolerance),
-        fine_tolerance_(std::max(options.tolerance, 1e-5 * tolerance)),
-        coarse_tolerance_(std::max(options.tolerance, 1e-3 * tolerance)),
+        first_tolerance_(model.modes() > options.most_cold_modes ? options.tolerance
+                                                                 : std::max(options.tolerance, 1e-5 * tolerance)),
+        next_tolerance_(std::max(options.tolerance, 1e-5 * tolerance)),
         arnoldi_(options) {}
   void evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) override;
   [[nodiscard]] std::size_t at_a_time() const override { return model_.at_a_time(); }
@@ -47,7 +48,9 @@ class CollocationEvaluator final : public PointEvaluator {
 
   const CollocationModel& model_;
   double tolerance_;
-  double fine_tolerance_, coarse_tolerance_;  ///< of a residual; coarse: of a level that another one follows
+  /// Of a residual. Among many modes that fade alike a pair that is not the dominant one settles first where less is
+  /// asked; from a level's result the next one takes the pair that it follows.
+  double first_tolerance_, next_tolerance_;
   CollocationMap map_;
   Arnoldi arnoldi_;
   std::array<Lane, lane_count> lanes_;

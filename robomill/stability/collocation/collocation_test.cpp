@@ -217,7 +217,8 @@ LobesProblem many_modes(Random& random, std::size_t count) {
 TEST(Collocation, ManyModesHaveTheMultiplierOfTheWholeMatrix) {
   int unsettled = 0;
   for (int seed = 0; seed < seeds(300); ++seed) {
-    Random random(91, static_cast<std::uint64_t>(seed));
+    // In 1585 a motion that fades a little quicker settles before the dominant one, among nine between 15 and 30 Hz.
+    Random random(91, seed == 0 ? 1585 : static_cast<std::uint64_t>(seed));
     const LobesProblem problem = many_modes(random, 3 + random.index(30));
     const MillingModel model(problem);
     CollocationEvaluator evaluator(model, 1e-6);

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t first_extra = 9;     // columns beyond 2n at the first look
 constexpr std::size_t first_warm = 16;     // … after a warm-up
 constexpr std::size_t first_guessed = 15;  // … from a guess
-constexpr int most_rounds = 3;             // of warming up
+constexpr std::size_t most_rounds = 3;     // of warming up
 constexpr double guess_is_off = 1e-6;
 
 std::size_t first_look(const PeriodMap& map, bool guessed) {
@@ -66,7 +66,9 @@ void Arnoldi::start(std::span<const Lanes> guess) {
 /// Whether a start vector that went through many periods and few columns cost less than many columns.
 bool Arnoldi::pays_to_warm_up(const PeriodMap& map, bool guessed) const {
   if (options_.full_matrix_only) return false;
-  if (map.work() == 0.0) return !guessed && map.modal_size() > 2 * options_.most_cold_modes;
+  // Of many modes that fade alike the columns of a cold start may miss the one that fades least.
+  if (!guessed && map.modal_size() > 2 * options_.most_cold_modes) return true;
+  if (map.work() == 0.0) return false;
   const auto cost = [&](std::size_t passes, std::size_t count) {
     const double columns = static_cast<double>(count);
     return static_cast<double>(passes + count) * map.work() +
@@ -79,7 +81,7 @@ bool Arnoldi::pays_to_warm_up(const PeriodMap& map, bool guessed) const {
 
 /// How many periods a column goes through: as many as cost what it costs beside. More in a later round, which has to
 /// tell apart motions that fade alike.
-int Arnoldi::periods(const PeriodMap& map, int round) const {
+int Arnoldi::periods(const PeriodMap& map, std::size_t round) const {
   constexpr double columns = first_warm;
   if (map.work() == 0.0) return 1;
   const double beside = columns * (1.5 * static_cast<double>(size_) + 5.0 * columns);
@@ -245,8 +247,8 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out, std::span<const Lane
   const bool warm = pays_to_warm_up(map, guessed);
   const std::size_t first = warm ? first_warm : first_look(map, guessed);
   const bool again = warm && periods(map, 0) > 1;  // passes are cheap
-  const int rounds = options_.full_matrix_only ? 0 : again ? most_rounds : 1;
-  for (int round = 0; round < rounds && is_left(); ++round) {
+  const std::size_t rounds = options_.full_matrix_only ? 0 : again ? most_rounds : 1;
+  for (std::size_t round = 0; round < rounds && is_left(); ++round) {
     if (round > 0) start_again(undone, out);
     if (warm) warm_up(map, passes(map, guessed && round == 0));
     const bool last = round + 1 == rounds;

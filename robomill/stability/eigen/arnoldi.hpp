@@ -25,8 +25,8 @@ double spectral_radius(const Dominant& dominant);
 struct ArnoldiOptions {
   double tolerance = 1e-12;  ///< converged where the residual is at most this times (|μ| + 0.1 ‖H‖)
   std::size_t between = 4;   ///< vectors from look to look, at least
-  /// More modes than this are warmed up: whatever fades quicker than the dominant motion is gone before the first
-  /// vector.
+  /// More modes than this are warmed up whatever it costs: what fades quicker than the dominant motion is gone before
+  /// the first vector.
   std::size_t most_cold_modes = 10;
   std::size_t extra = 72;             ///< vectors beyond 2n before the matrix is formed
   std::size_t largest_matrix = 1200;  ///< beyond this the matrix is not formed
@@ -35,8 +35,9 @@ struct ArnoldiOptions {
 
 /// Arnoldi's iteration from one start vector for the eight lanes of a PeriodMap at once. A lane is done when the
 /// residual of its dominant Ritz pair is small enough, and then keeps what it has while others go on. Where that does
-/// not happen the matrix is formed and solved whole. With many modes the start vector first goes through many
-/// periods, so that few vectors find what is left of it.
+/// not happen the matrix is formed and solved whole. Where that costs less, by the work that the map states, the start
+/// vector first goes through many periods and a vector of the basis through several, so that few find what is left; a
+/// guess of the dominant motion stands in for most of it. Method: robomill/stability/README.md, "Dominant multiplier".
 class Arnoldi {
  public:
   explicit Arnoldi(const ArnoldiOptions& options = {}) : options_(options) {}
@@ -55,7 +56,7 @@ class Arnoldi {
   void warm_up(PeriodMap& map, std::size_t passes);
   void start_again(std::span<const bool> done, std::span<const Dominant> out);
   void extend(PeriodMap& map, std::size_t first, std::size_t most, std::span<bool> done, std::span<Dominant> out);
-  [[nodiscard]] int periods(const PeriodMap& map, int round) const;
+  [[nodiscard]] int periods(const PeriodMap& map, std::size_t round) const;
   void confirm(PeriodMap& map, const std::array<bool, lane_count>& fresh, std::span<bool> done,
                std::span<Dominant> out);
   void look(PeriodMap& map, std::size_t columns, std::span<bool> done, std::span<Dominant> out);
