@@ -15,9 +15,9 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/random.hpp"
-#include "robomill/modal/fit.hpp"
 #include "robomill/modal/posture/inverse_distance.hpp"
 #include "robomill/modal/posture_model.hpp"
+#include "testing/modal/measured_arm.hpp"
 #include "testing/modal/posture_judge.hpp"
 
 namespace {
@@ -65,24 +65,13 @@ modal::testing::PosturePredictor cheat(const SimulatedArm& arm, std::uint64_t se
   };
 }
 
-std::vector<modal::MeasuredPosture> measure(const SimulatedArm& arm, std::uint64_t seed) {
-  std::vector<modal::MeasuredPosture> out;
-  for (std::size_t p = 0; p < arm.measured_postures().size(); ++p) {
-    const Eigen::VectorXd& joints = arm.measured_postures()[p];
-    out.push_back(
-        {.name = fmt::format("postures[{}]", p + 1), .joints = joints, .frfs = arm.measure(joints, 1000 * seed + p)});
-  }
-  return out;
-}
-
 /// What the weightings know.
 std::vector<modal::PostureModes> modes_of(const SimulatedArm& arm, const std::vector<modal::MeasuredPosture>& measured,
                                           bool exact) {
+  if (!exact) return modal::testing::fit_postures(measured);
   std::vector<modal::PostureModes> out;
-  for (const modal::MeasuredPosture& posture : measured) {
-    out.push_back(
-        {.joints = posture.joints,
-         .modes = exact ? arm.modes(posture.joints) : modal::fit_modes(posture.frfs, {.max_modes = 30}).model});
+  for (const Eigen::VectorXd& joints : arm.measured_postures()) {
+    out.push_back({.joints = joints, .modes = arm.modes(joints)});
   }
   return out;
 }
@@ -100,7 +89,7 @@ ArmResult study(std::uint64_t seed, const Settings& settings) {
   const SimulatedArm arm(seed);
   const modal::testing::PostureJudge judge(arm, {.bands = !settings.quick});
   ArmResult out;
-  const std::vector<modal::MeasuredPosture> measured = measure(arm, seed);
+  const std::vector<modal::MeasuredPosture> measured = modal::testing::measure_postures(arm, seed);
   const std::vector<modal::PostureModes> known = modes_of(arm, measured, settings.exact);
   constexpr std::array axes{modal::ResidueAxes::base, modal::ResidueAxes::flange};
   for (std::size_t k = 0; k < axes.size(); ++k) {

@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "robomill/base/parallel.hpp"
-#include "robomill/modal/fit.hpp"
 #include "robomill/modal/posture/inverse_distance.hpp"
 #include "robomill/modal/posture_model.hpp"
+#include "testing/modal/measured_arm.hpp"
 #include "testing/modal/posture_verdict.hpp"
 
 namespace {
@@ -46,26 +46,6 @@ struct ArmResult {
   std::string error = {};
 };
 
-std::vector<modal::MeasuredPosture> measure(const SimulatedArm& arm, std::uint64_t seed) {
-  std::vector<modal::MeasuredPosture> out;
-  for (const Eigen::VectorXd& joints : arm.measured_postures()) {
-    const std::size_t p = out.size();
-    out.push_back(
-        {.name = fmt::format("postures[{}]", p + 1), .joints = joints, .frfs = arm.measure(joints, 1000 * seed + p)});
-  }
-  return out;
-}
-
-/// What the weightings know. A fit that finds nothing makes no posture.
-std::vector<modal::PostureModes> modes_of(const std::vector<modal::MeasuredPosture>& measured) {
-  std::vector<modal::PostureModes> out;
-  for (const modal::MeasuredPosture& posture : measured) {
-    ModalModel found = modal::fit_modes(posture.frfs, {.max_modes = 30}).model;
-    if (!found.modes.empty()) out.push_back({.joints = posture.joints, .modes = std::move(found)});
-  }
-  return out;
-}
-
 void judge(const SimulatedArm& arm, std::uint64_t seed, const Settings& settings, ArmResult& out) {
   modal::testing::PostureVerdictOptions options = settings.verdicts;
   options.seed = seed;
@@ -74,8 +54,8 @@ void judge(const SimulatedArm& arm, std::uint64_t seed, const Settings& settings
       std::count_if(verdicts.cuts().begin(), verdicts.cuts().end(), [](const auto& cut) { return cut.chatters; }));
   out.score[truth] = verdicts.judge([&](const Eigen::VectorXd& joints) { return arm.modes(joints, options.up_to_hz); });
   out.score[in_band] = verdicts.judge([&](const Eigen::VectorXd& joints) { return arm.modes(joints, band_hz); });
-  const std::vector<modal::MeasuredPosture> measured = measure(arm, seed);
-  const std::vector<modal::PostureModes> known = modes_of(measured);
+  const std::vector<modal::MeasuredPosture> measured = modal::testing::measure_postures(arm, seed);
+  const std::vector<modal::PostureModes> known = modal::testing::fit_postures(measured);
   for (const auto& [predictor, axes] :
        {std::pair{base_axes, modal::ResidueAxes::base}, std::pair{flange_axes, modal::ResidueAxes::flange}}) {
     out.score[predictor] = verdicts.judge(

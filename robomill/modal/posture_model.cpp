@@ -118,7 +118,10 @@ class PostureModel::Calibrated final : public Source {
       choose(tool_peaks(cell, data, highest_hz_), progress);
       return;
     }
-    keep(candidate({}, {}, nullptr, progress));
+    Candidate as_told{.arm = arm_of({}, {})};
+    as_told.calibration =
+        calibrate(*as_told.arm, *data_, highest_hz_, false, {.parameters = as_told.arm->start()}, progress);
+    keep(std::move(as_told));
     report.notes.push_back(
         "No posture was measured: the modes are those of the cell's own numbers, with rigid bearings and no tool.");
   }
@@ -157,70 +160,78 @@ class PostureModel::Calibrated final : public Source {
   }
 
  private:
+  /// Fewer postures do not tell structures apart.
+  static constexpr std::size_t fewest_for_structure = 3;
+
   /// A structure calibrated.
   struct Candidate {
-    ArmStructure structure;
-    std::vector<FlexibleArm::Tool> tools;
-    std::unique_ptr<FlexibleArm> arm;
-    Calibration calibration;
+    std::unique_ptr<FlexibleArm> arm = nullptr;
+    Calibration calibration = {};
     /// What it is judged by: receptances of left-out postures, where there are enough.
     [[nodiscard]] double error() const {
       return std::isfinite(calibration.left_out_error) ? calibration.left_out_error : calibration.error;
     }
   };
 
-  /// @param near  a structure to start from; null: the cell's numbers
-  [[nodiscard]] Candidate candidate(const ArmStructure& structure, const std::vector<FlexibleArm::Tool>& tools,
-                                    const Candidate* near, Progress& progress) const {
-    Candidate out{.structure = structure, .tools = tools, .arm = nullptr, .calibration = {}};
-    out.arm = std::make_unique<FlexibleArm>(cell, payload_, structure, tools);
-    if (!postures.empty()) out.arm->scale_loads(postures);
-    std::optional<Eigen::VectorXd> start;
-    if (near != nullptr) start = out.arm->start_near(*near->arm, near->calibration.common);
-    out.calibration = calibrate(*out.arm, *data_, highest_hz_, postures.size() >= 3, start, progress);
+  [[nodiscard]] std::unique_ptr<FlexibleArm> arm_of(const ArmStructure& structure,
+                                                    const std::vector<FlexibleArm::Tool>& tools) const {
+    auto out = std::make_unique<FlexibleArm>(cell, payload_, structure, tools);
+    if (!postures.empty()) out->scale_loads(postures);
+    return out;
+  }
+
+  /// A structure calibrated from the best of several starts, told by their structure's and tools' first guesses.
+  [[nodiscard]] Candidate candidate(const std::vector<std::pair<ArmStructure, std::vector<FlexibleArm::Tool>>>& starts,
+                                    Progress& progress) const {
+    Candidate out;
+    Beginning best{.parameters = {}, .noise = std::numeric_limits<double>::infinity()};
+    for (const auto& [structure, tools] : starts) {
+      std::unique_ptr<FlexibleArm> arm = arm_of(structure, tools);
+      Beginning beginning = begin_calibration(*arm, *data_, progress);
+      progress.advance();
+      if (out.arm != nullptr && !(beginning.noise < best.noise)) continue;
+      best = std::move(beginning);
+      out.arm = std::move(arm);
+    }
+    out.calibration = calibrate(*out.arm, *data_, highest_hz_, postures.size() >= fewest_for_structure, best, progress);
     progress.advance();
     return out;
   }
 
   void keep(Candidate best) {
-    report.bearings = best.structure.bearings;
-    report.bracket = best.structure.bracket;
-    report.tool_modes = static_cast<int>(best.tools.size());
+    report.bearings = best.arm->structure().bearings;
+    report.bracket = best.arm->structure().bracket;
+    report.tool_modes = best.arm->structure().tool_modes;
     report.error = best.calibration.error;
     report.left_out_error = best.calibration.left_out_error;
     arm_ = std::move(best.arm);
     calibration_ = std::move(best.calibration);
   }
 
-  /// The structure that predicts left-out receptances best; a richer one has to pay for itself.
+  /// The structure that predicts left-out receptances best; a bracket has to pay for itself.
   void choose(const std::vector<FlexibleArm::Tool>& peaks, Progress& progress) {
     constexpr double worth = 0.97;
-    const bool several = postures.size() >= 3;
-    progress.start("posture model", several ? 2 + 3 * peaks.size() : 1);
-    const ArmStructure stiff{.bearings = true, .bracket = false, .tool_modes = 0, .load = several};
-    ArmStructure tilting = stiff;
-    tilting.bracket = true;
-    Candidate best = candidate(stiff, {}, nullptr, progress);
-    const auto offer = [&](Candidate other) {
-      if (other.error() < worth * best.error()) best = std::move(other);
-    };
-    const auto add_peaks = [&] {
-      for (const FlexibleArm::Tool& peak : peaks) {
-        const auto same = [&](const FlexibleArm::Tool& tool) { return tool.frequency_hz == peak.frequency_hz; };
-        if (std::ranges::any_of(best.tools, same)) continue;
-        const std::size_t kept = best.tools.size();
-        std::vector<FlexibleArm::Tool> tools = best.tools;
-        tools.push_back(peak);
-        offer(candidate(best.structure, tools, &best, progress));
-        if (kept > 0 && best.tools.size() == kept) break;
+    const bool several = postures.size() >= fewest_for_structure;
+    // A chain of two masses: a peak's, and one with its own mode beyond the band, which still moves within it.
+    constexpr double beyond_band = 1.25, beyond_mass_share = 0.25;
+    std::vector<std::vector<FlexibleArm::Tool>> chains;
+    for (const FlexibleArm::Tool& peak : peaks) {
+      chains.push_back({{.frequency_hz = peak.frequency_hz, .mass_kg = (1.0 - beyond_mass_share) * peak.mass_kg},
+                        {.frequency_hz = beyond_band * highest_hz_, .mass_kg = beyond_mass_share * peak.mass_kg}});
+    }
+    if (chains.empty() || !several) chains.assign(1, {});
+    std::vector<std::pair<ArmStructure, std::vector<FlexibleArm::Tool>>> stiff, tilting;
+    for (const std::vector<FlexibleArm::Tool>& chain : chains) {
+      stiff.push_back({{.bearings = true, .load = several}, chain});
+      for (const double inner_share : {0.25, 0.5}) {
+        tilting.push_back({{.bearings = true, .bracket = true, .inner_share = inner_share, .load = several}, chain});
       }
-    };
+    }
+    progress.start("posture model", stiff.size() + 1 + (several ? tilting.size() + 1 : 0));
+    Candidate best = candidate(stiff, progress);
     if (several) {
-      add_peaks();
-      // A peak may be the bracket's: one pair of the tool is tried beside it at each, from the cell's numbers on.
-      offer(candidate(tilting, {}, nullptr, progress));
-      for (const FlexibleArm::Tool& peak : peaks) offer(candidate(tilting, {peak}, nullptr, progress));
-      if (best.structure.bracket) add_peaks();
+      Candidate other = candidate(tilting, progress);
+      if (other.error() < worth * best.error()) best = std::move(other);
     }
     keep(std::move(best));
   }

@@ -19,15 +19,17 @@ constexpr double alike_lines = 4.0;
 constexpr double own_share = 0.2;
 constexpr double process_length_rad = 1.0;
 /// From the first stage on, the damping that is added to find the way, as a share of each frequency.
-constexpr double stages[] = {0.2, 0.1, 0.05, 0.02};
-constexpr int stage_lines[] = {50, 70, 100, 150};
+constexpr double stages[] = {0.15, 0.08, 0.04, 0.02};
+constexpr int stage_lines[] = {30, 50, 80, 150};
+constexpr std::size_t last_stage = std::size(stages) - 1;
+/// The variance of a residual before anything is known, of 5 % each: the cell's numbers count until the data agree.
+constexpr double first_noise = 40.0;
 
 /// Everything that stays the same while the parameters are sought.
 class CalibrationSearch {
  public:
   CalibrationSearch(const FlexibleArm& arm, const CalibrationData& data, bool varying, const Eigen::VectorXd& near)
-      : arm_(arm), data_(data), start_(arm.start()) {
-    prior_.resize(start_.size());
+      : arm_(arm), data_(data), start_(arm.start()), prior_(start_.size()) {
     for (Eigen::Index p = 0; p < start_.size(); ++p) {
       const ArmParameter& parameter = arm.parameters()[static_cast<std::size_t>(p)];
       prior_(p) = 1.0 / (parameter.deviation * parameter.deviation);
@@ -55,7 +57,14 @@ class CalibrationSearch {
     return (1.0 - own_share) * std::exp(-0.5 * d * d);
   }
 
-  void stage(std::size_t i) { frfs_ = &data_.stage(i); }
+  void stage(std::size_t i) {
+    frfs_ = &data_.stage(i);
+    // The first stages find the way, for which half of many postures do.
+    constexpr std::size_t many = 8, thinned_stages = 2;
+    const std::size_t step = i < thinned_stages && data_.size() >= many ? 2 : 1;
+    active_.clear();
+    for (std::size_t k = 0; k < data_.size(); k += step) active_.push_back(k);
+  }
 
   [[nodiscard]] Eigen::VectorXd parameters_of(std::size_t posture) const {
     return parameters_of(common_, differing_, posture);
@@ -87,6 +96,7 @@ class CalibrationSearch {
           differing_ = differing;
           cost = trial;
           damping = std::max(damping * 0.2, 1e-9);
+          marquardt_ = damping;
         } else {
           damping *= 6.0;
         }
@@ -100,18 +110,19 @@ class CalibrationSearch {
   /// From residuals: the variance of one, alike lines counted once.
   void estimate_noise() {
     double cost = 0.0, residuals = 0.0;
-    for (const PostureNormal& normal : normals_) {
-      cost += normal.cost;
-      residuals += normal.residuals;
+    for (const std::size_t k : active_) {
+      cost += normals_[k].cost;
+      residuals += normals_[k].residuals;
     }
     noise_ = std::max(alike_lines * cost / std::max(residuals, 1.0), 1e-6);
   }
   [[nodiscard]] double noise() const { return noise_; }
+  void expect_noise(double noise) { noise_ = noise; }
   [[nodiscard]] double error() const {
     double error = 0.0, size = 0.0;
-    for (const PostureNormal& normal : normals_) {
-      error += normal.error;
-      size += normal.size;
+    for (const std::size_t k : active_) {
+      error += normals_[k].error;
+      size += normals_[k].size;
     }
     return error / size;
   }
@@ -122,15 +133,24 @@ class CalibrationSearch {
     Eigen::MatrixXd covariance;  ///< of them
   };
   [[nodiscard]] LeftOut without(std::size_t posture) const {
-    const Eigen::MatrixXd precision = assemble(true, 0.0, posture);
-    const Eigen::LLT<Eigen::MatrixXd> factor(precision);
-    const Eigen::VectorXd step = factor.solve(-gradient(true, posture));
-    const Eigen::VectorXd common = common_ + step.head(common_.size());
-    Eigen::MatrixXd differing = differing_;
-    if (differing_.size() > 0) {
-      differing +=
-          Eigen::Map<const Eigen::MatrixXd>(step.data() + common_.size(), differing_.rows(), differing_.cols());
+    // A step too far for the linearised problem is damped until it does the other postures good.
+    const double before = total(common_, differing_, posture);
+    Eigen::VectorXd common;
+    Eigen::MatrixXd differing, precision;
+    double damping = 0.0;
+    for (int attempt = 0; attempt < 6; ++attempt) {
+      precision = assemble(true, damping, posture);
+      const Eigen::VectorXd step = precision.llt().solve(-gradient(true, posture));
+      common = common_ + step.head(common_.size());
+      differing = differing_;
+      if (differing_.size() > 0) {
+        differing +=
+            Eigen::Map<const Eigen::MatrixXd>(step.data() + common_.size(), differing_.rows(), differing_.cols());
+      }
+      if (trial_cost(common, differing, posture) < before) break;
+      damping = damping == 0.0 ? marquardt_ : 6.0 * damping;
     }
+    const Eigen::LLT<Eigen::MatrixXd> factor(damping > 0.0 ? assemble(true, 0.0, posture) : precision);
     const Eigen::MatrixXd pick = picked(posture);
     return {.parameters = parameters_of(common, differing, posture),
             .covariance = pick * factor.solve(pick.transpose())};
@@ -188,27 +208,33 @@ class CalibrationSearch {
 
   void evaluate(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing, bool derivatives) {
     normals_.resize(data_.size());
-    parallel_for(data_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
+    parallel_for(active_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t k = active_[i];
         normals_[k] = evaluate_at(k, parameters_of(common, differing, k), derivatives);
       }
     });
   }
 
-  double trial_cost(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing) {
-    std::vector<double> costs(data_.size());
-    parallel_for(data_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        costs[k] = evaluate_at(k, parameters_of(common, differing, k), false).cost;
+  /// @param left_out  a posture that does not count
+  [[nodiscard]] double trial_cost(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing,
+                                  std::size_t left_out = SIZE_MAX) const {
+    std::vector<double> costs(active_.size(), 0.0);
+    parallel_for(active_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t k = active_[i];
+        if (k != left_out) costs[i] = evaluate_at(k, parameters_of(common, differing, k), false).cost;
       }
     });
     double cost = 0.0;
     for (const double c : costs) cost += c / noise_;
     return std::isfinite(cost) ? cost + prior_cost(common, differing) : std::numeric_limits<double>::infinity();
   }
-  double total(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing) const {
+  double total(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing, std::size_t left_out = SIZE_MAX) const {
     double cost = prior_cost(common, differing);
-    for (const PostureNormal& normal : normals_) cost += normal.cost / noise_;
+    for (const std::size_t k : active_) {
+      if (k != left_out) cost += normals_[k].cost / noise_;
+    }
     return cost;
   }
   [[nodiscard]] double prior_cost(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing) const {
@@ -226,8 +252,9 @@ class CalibrationSearch {
     const Eigen::Index n = static_cast<Eigen::Index>(data_.size());
     const Eigen::Index size = p + (with_differing ? d * n : 0);
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, size);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      if (static_cast<std::size_t>(k) == left_out) continue;
+    for (const std::size_t active : active_) {
+      if (active == left_out) continue;
+      const Eigen::Index k = static_cast<Eigen::Index>(active);
       const Eigen::MatrixXd matrix = normals_[static_cast<std::size_t>(k)].matrix / noise_;
       out.topLeftCorner(p, p) += matrix;
       if (!with_differing) continue;
@@ -259,8 +286,9 @@ class CalibrationSearch {
     const Eigen::Index n = static_cast<Eigen::Index>(data_.size());
     Eigen::VectorXd out = Eigen::VectorXd::Zero(p + (with_differing ? d * n : 0));
     out.head(p) = prior_.cwiseProduct(common_ - start_);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      if (static_cast<std::size_t>(k) == left_out) continue;
+    for (const std::size_t active : active_) {
+      if (active == left_out) continue;
+      const Eigen::Index k = static_cast<Eigen::Index>(active);
       const Eigen::VectorXd part = normals_[static_cast<std::size_t>(k)].gradient / noise_;
       out.head(p) += part;
       for (Eigen::Index a = 0; with_differing && a < d; ++a)
@@ -298,7 +326,8 @@ class CalibrationSearch {
   std::vector<PostureNormal> normals_;
   Eigen::VectorXd common_;
   Eigen::MatrixXd differing_;
-  double noise_ = alike_lines;
+  std::vector<std::size_t> active_;
+  double noise_ = first_noise, marquardt_ = 1e-3;
 };
 
 double quantile95(std::vector<double> values) {
@@ -397,22 +426,30 @@ CalibrationData::CalibrationData(const std::vector<PostureData>& postures) {
   }
 }
 
+Beginning begin_calibration(const FlexibleArm& arm, const CalibrationData& data, Progress& progress) {
+  CalibrationSearch search(arm, data, false, arm.start());
+  constexpr int iterations = 20;
+  constexpr double least_gain = 1e-3;
+  for (std::size_t i = 0; i < last_stage; ++i) {
+    search.stage(i);
+    search.descend(iterations, least_gain, false, progress);
+    search.estimate_noise();
+  }
+  return {.parameters = search.common(), .noise = search.noise()};
+}
+
 Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, double highest_hz, bool varying,
-                      const std::optional<Eigen::VectorXd>& near, Progress& progress) {
+                      const Beginning& beginning, Progress& progress) {
   Calibration out;
-  CalibrationSearch search(arm, data, varying, near.value_or(arm.start()));
+  CalibrationSearch search(arm, data, varying, beginning.parameters);
+  search.stage(last_stage);
   if (data.size() > 0) {
-    constexpr int stage_iterations = 6, last_iterations = 12, settling_iterations = 3;
-    constexpr double stage_gain = 5e-3, last_gain = 3e-4;
-    constexpr std::size_t near_stage = 2;
-    for (std::size_t i = near ? near_stage : 0; i < std::size(stages); ++i) {
-      search.stage(i);
-      const bool last = i + 1 == std::size(stages);
-      search.descend(last ? last_iterations : stage_iterations, last ? last_gain : stage_gain, varying && last,
-                     progress);
-      search.estimate_noise();
-    }
-    search.descend(settling_iterations, last_gain, varying, progress);
+    constexpr int iterations = 20, settling_iterations = 3;
+    constexpr double least_gain = 3e-4;
+    search.expect_noise(beginning.noise);
+    search.descend(iterations, least_gain, varying, progress);
+    search.estimate_noise();
+    search.descend(settling_iterations, least_gain, varying, progress);
     out.error = search.error();
   }
   out.common = search.common();

@@ -44,10 +44,18 @@ class CalibrationData {
   std::vector<std::vector<SmoothedFrf>> stages_;
 };
 
+/// Where a calibration begins.
+struct Beginning {
+  Eigen::VectorXd parameters;
+  double noise = 0.0;  ///< variance of a residual, of 5 % of the receptance each: the less, the better the fit
+};
+
+/// The common parameters from much added damping down to little: from the cell's rough numbers into the right valley.
+[[nodiscard]] Beginning begin_calibration(const FlexibleArm& arm, const CalibrationData& data, Progress& progress);
+
 /// @param varying  whether joints may differ from posture to posture
-/// @param near     parameters to start from, with little added damping; none: the arm's own, from the first stage on
 [[nodiscard]] Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, double highest_hz,
-                                    bool varying, const std::optional<Eigen::VectorXd>& near, Progress& progress);
+                                    bool varying, const Beginning& beginning, Progress& progress);
 
 /// @param joints  of the measured postures
 [[nodiscard]] PostureParameters predict(const FlexibleArm& arm, const Calibration& calibration,

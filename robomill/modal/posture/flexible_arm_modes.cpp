@@ -12,20 +12,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-bool moves_mass(ArmParameter::Kind kind) {
-  using Kind = ArmParameter::Kind;
-  switch (kind) {
-    case Kind::tool_mass:
-    case Kind::rotor_inertia:
-    case Kind::body_mass:
-    case Kind::body_inertia:
-    case Kind::body_center:
-      return true;
-    default:
-      return false;
-  }
-}
-
 }  // namespace
 
 FlexibleArm::Modes FlexibleArm::modes(const System& system, double highest_hz) const {
@@ -37,7 +23,7 @@ FlexibleArm::Modes FlexibleArm::modes(const System& system, double highest_hz) c
   const Eigen::MatrixXd root =
       scale.asDiagonal() * masses.vectors * masses.values.cwiseMax(1e-12).cwiseSqrt().cwiseInverse().asDiagonal();
   const linear_algebra::SymmetricEigenPairs undamped =
-      linear_algebra::symmetric_eigen_pairs(root.transpose() * system.stiffness.asDiagonal() * root);
+      linear_algebra::symmetric_eigen_pairs(root.transpose() * system.stiffness * root);
   const Eigen::MatrixXd shapes = root * undamped.vectors;
   const double beyond = std::pow(2.0 * std::numbers::pi * 2.5 * highest_hz, 2.0);
   Eigen::Index kept = 0;
@@ -48,7 +34,7 @@ FlexibleArm::Modes FlexibleArm::modes(const System& system, double highest_hz) c
   Eigen::MatrixXd state = Eigen::MatrixXd::Zero(2 * kept, 2 * kept);
   state.topRightCorner(kept, kept).setIdentity();
   state.bottomLeftCorner(kept, kept) = -(undamped.values.head(kept) / (rate * rate)).asDiagonal().toDenseMatrix();
-  state.bottomRightCorner(kept, kept) = -(phi.transpose() * system.damping.asDiagonal() * phi) / rate;
+  state.bottomRightCorner(kept, kept) = -(phi.transpose() * system.damping * phi) / rate;
   const linear_algebra::EigenPairs pairs = linear_algebra::eigen_pairs(state);
   std::vector<Eigen::Index> order;
   for (Eigen::Index k = 0; k < 2 * kept; ++k) {
@@ -57,7 +43,7 @@ FlexibleArm::Modes FlexibleArm::modes(const System& system, double highest_hz) c
   std::ranges::sort(order, {}, [&](Eigen::Index k) { return std::abs(pairs.values(k)); });
   const Eigen::Matrix3Xd at_tip = system.input.transpose() * phi;
   Eigen::Matrix3d all = system.flange_axes * system.compliance.asDiagonal() * system.flange_axes.transpose();
-  all += system.input.transpose() * system.stiffness.cwiseInverse().asDiagonal() * system.input;
+  all += system.input.transpose() * linear_algebra::solve(system.stiffness, system.input);
   Modes out;
   out.rest = all;
   std::vector<Eigen::Index> inside;
@@ -73,8 +59,8 @@ FlexibleArm::Modes FlexibleArm::modes(const System& system, double highest_hz) c
     const Complex pole = pairs.values(from) * rate;
     Eigen::VectorXcd small = pairs.vectors.col(from).head(kept);
     const Eigen::VectorXcd whole = phi * small;
-    const Complex norm = (whole.transpose() * system.damping.asDiagonal() * whole).value() +
-                         2.0 * pole * (small.transpose() * small).value();
+    const Complex norm =
+        (whole.transpose() * system.damping * whole).value() + 2.0 * pole * (small.transpose() * small).value();
     const Complex root_norm = std::sqrt(norm);
     out.pole(k) = pole;
     out.shape.col(k) = whole / root_norm;
@@ -102,10 +88,12 @@ FlexibleArm::Sensitivity FlexibleArm::sensitivity(const System& system, const Mo
   for (Eigen::Index p = 0; p < count; ++p) {
     const ArmParameter& parameter = parameters_[static_cast<std::size_t>(p)];
     if (parameter.kind == ArmParameter::Kind::compliance) continue;
-    const Eigen::Index c = coordinate_of(parameter);
-    const bool mass = moves_mass(parameter.kind);
-    const auto [stiffness, damping] = diagonal_change(system, parameter);
+    const SpringChange& spring = system.springs[static_cast<std::size_t>(p)];
+    const bool mass = spring.count == 0;
     const Eigen::MatrixXcd moved = mass ? mass_change(system, parameter, modes.shape) : Eigen::MatrixXcd();
+    const Eigen::Matrix3Xcd of_input = parameter.kind == ArmParameter::Kind::bracket_pivot
+                                           ? pivot_change(system, parameter.index, modes.shape)
+                                           : Eigen::Matrix3Xcd::Zero(3, m);
     for (Eigen::Index k = 0; k < m; ++k) {
       const Complex pole = modes.pole(k);
       // u = (∂K + λ ∂C + λ² ∂M) ψ
@@ -115,8 +103,12 @@ FlexibleArm::Sensitivity FlexibleArm::sensitivity(const System& system, const Mo
         projected = basis.transpose() * moved.col(k) * (pole * pole);
         self_norm = 2.0 * pole * (modes.shape.col(k).transpose() * moved.col(k)).value();
       } else {
-        projected = basis.row(c).transpose() * ((stiffness + pole * damping) * modes.shape(c, k));
-        self_norm = damping * modes.shape(c, k) * modes.shape(c, k);
+        const Eigen::Index r = spring.first, n_rows = spring.count;
+        const Eigen::VectorXcd own = modes.shape.col(k).segment(r, n_rows);
+        const Eigen::MatrixXd damping = spring.damping.topLeftCorner(n_rows, n_rows);
+        projected = basis.middleRows(r, n_rows).transpose() *
+                    (spring.stiffness.topLeftCorner(n_rows, n_rows) * own + pole * (damping * own));
+        self_norm = (own.transpose() * (damping * own)).value();
       }
       const Complex shift = -projected(k);  // dλ
       const double size = std::abs(pole);
@@ -124,7 +116,7 @@ FlexibleArm::Sensitivity FlexibleArm::sensitivity(const System& system, const Mo
       out.log_frequency(k, p) = d_size / size;
       out.damping_ratio(k, p) = -shift.real() / size + pole.real() * d_size / (size * size);
       // ψ' = Σ_j a_j ψ_j with a_j = −(ψ_jᵀ u) / (λ_k − λ_j), a_k from the norm; ψᵀ(C + 2λM)ψ = 1 in state space.
-      Eigen::Vector3cd moved_tip = Eigen::Vector3cd::Zero();
+      Eigen::Vector3cd moved_tip = of_input.col(k);
       for (Eigen::Index j = 0; j < 2 * m; ++j) {
         if (j == k) continue;
         moved_tip += tips.col(j) * (-projected(j) / (poles(k) - poles(j)));

@@ -22,7 +22,7 @@ PostureNormal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, c
   out.matrix = Eigen::MatrixXd::Zero(count, count);
   out.gradient = Eigen::VectorXd::Zero(count);
   const Eigen::Index lines = static_cast<Eigen::Index>(frf.s.size());
-  Eigen::Matrix<Complex, 9, Eigen::Dynamic> derivative(9, count);
+  Eigen::Matrix<Complex, 9, Eigen::Dynamic> derivative(9, count), derivative_farther(9, count);
   // The model is symmetric: the two entries that mirror each other have one row of derivatives.
   constexpr std::array<std::array<Eigen::Index, 2>, 6> mirrored = {{{0, 0}, {4, 4}, {8, 8}, {1, 3}, {2, 6}, {5, 7}}};
   constexpr Eigen::Index rows_a_line = 12;
@@ -34,23 +34,38 @@ PostureNormal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, c
   }
   for (Eigen::Index i = 0; i < lines; ++i) {
     Eigen::Matrix3cd value;
+    const Complex s = frf.s[static_cast<std::size_t>(i)];
     if (derivatives) {
-      arm.receptance(system, frf.s[static_cast<std::size_t>(i)], value, derivative);
+      arm.receptance(system, s, value, derivative);
     } else {
-      value = FlexibleArm::receptance(system, frf.s[static_cast<std::size_t>(i)]);
+      value = FlexibleArm::receptance(system, s);
+    }
+    if (s.real() > 0.0) {  // 2 H(σ) − H(2σ)
+      Eigen::Matrix3cd farther;
+      if (derivatives) {
+        arm.receptance(system, s + s.real(), farther, derivative_farther);
+        derivative = 2.0 * derivative - derivative_farther;
+      } else {
+        farther = FlexibleArm::receptance(system, s + s.real());
+      }
+      value = 2.0 * value - farther;
     }
     const Eigen::Map<const Eigen::Matrix<Complex, 9, 1>> model(value.data());
     for (std::size_t pair = 0; pair < mirrored.size(); ++pair) {
       double weights = 0.0;
-      Complex weighted = 0.0;
+      Complex weighted = 0.0, slope = 1.0;
       for (std::size_t side = 0; side < (mirrored[pair][0] == mirrored[pair][1] ? 1U : 2U); ++side) {
         const Eigen::Index e = mirrored[pair][side];
         const double weight = frf.weight(e, i);
         if (weight == 0.0) continue;
-        const Complex miss = model(e) - frf.value(e, i);
+        // Logarithms of what lies on the diagonal, which is never zero: too stiff counts as too soft.
+        const bool diagonal = mirrored[pair][0] == mirrored[pair][1];
+        const Complex data = frf.value(e, i);
+        const Complex miss = diagonal ? std::abs(data) * std::log(model(e) / data) : model(e) - data;
+        if (diagonal) slope = std::abs(data) / model(e);
         const double square = std::norm(miss) * weight * weight;
         out.cost += robust * robust * std::log1p(square / (robust * robust));
-        out.error += std::abs(miss);
+        out.error += std::abs(model(e) - data);
         out.size += std::abs(frf.value(e, i));
         out.residuals += 2.0;
         const double counted = weight * weight / (1.0 + square / (robust * robust));
@@ -60,8 +75,8 @@ PostureNormal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, c
       if (!derivatives || weights == 0.0) continue;
       const double root = std::sqrt(weights);
       const Eigen::Index row = rows_a_line * i + 2 * static_cast<Eigen::Index>(pair);
-      real.row(row) = root * derivative.row(mirrored[pair][0]).real();
-      real.row(row + 1) = root * derivative.row(mirrored[pair][0]).imag();
+      real.row(row) = root * (slope * derivative.row(mirrored[pair][0])).real();
+      real.row(row + 1) = root * (slope * derivative.row(mirrored[pair][0])).imag();
       residual(row) = weighted.real() / root;
       residual(row + 1) = weighted.imag() / root;
     }

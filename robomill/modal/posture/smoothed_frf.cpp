@@ -14,6 +14,7 @@ using std::numbers::pi;
 /// An error counts over this share of the receptance, and of the matrix where an entry is small beside it.
 constexpr double counted_share = 0.05;
 constexpr double small_entry = 0.1;
+constexpr double usual_damping_ratio = 0.03;
 
 int axis_row(const Dof& dof) {
   return dof.point == 0 && static_cast<int>(dof.axis) <= 3 ? static_cast<int>(dof.axis) - 1 : -1;
@@ -91,9 +92,11 @@ Eigen::Matrix<Complex, 9, 1> PostureData::of_modes(Complex s) const {
 Eigen::Matrix<Complex, 9, 1> PostureData::of_lines(double at_hz, double sigma_hz) const {
   // Each line stands for the cell about it; below the first one the receptance is static.
   const Eigen::Index count = frequency_hz_.size();
-  const auto share_of = [&](double from, double to) {
-    return (std::atan((to - at_hz) / sigma_hz) - std::atan((from - at_hz) / sigma_hz)) / pi;
+  const auto below = [&](double f) {
+    const double x = (f - at_hz) / sigma_hz;
+    return (2.0 * std::atan(x) - std::atan(0.5 * x)) / pi;
   };
+  const auto share_of = [&](double from, double to) { return below(to) - below(from); };
   const double middle = share_of(-frequency_hz_(0), frequency_hz_(0));
   double whole = middle;
   Eigen::Matrix<Complex, 9, 1> sum = middle * value_.col(0).real().cast<Complex>();
@@ -111,8 +114,9 @@ SmoothedFrf PostureData::smoothed(double share, int lines, bool resolved) const 
   SmoothedFrf out;
   const Eigen::Index count = frequency_hz_.size();
   const double spacing_hz = count > 1 ? (high_hz_ - low_hz_) / static_cast<double>(count - 1) : 0.0;
-  // Beyond the last line the integral knows nothing: the lines end where it would matter.
-  const double last_hz = modes_ ? high_hz_ : high_hz_ / (1.0 + 2.0 * share);
+  // Beyond the last line the integral knows nothing: the lines end where two per cent of the kernel lie there.
+  constexpr double widths_to_the_end = 3.0;
+  const double last_hz = modes_ ? high_hz_ : high_hz_ / (1.0 + widths_to_the_end * share);
   const double ratio = std::pow(last_hz / low_hz_, 1.0 / (lines - 1));
   std::vector<Eigen::Matrix<Complex, 9, 1>> values;
   const auto put = [&](double at_hz, double sigma_hz, const Eigen::Matrix<Complex, 9, 1>& value) {
@@ -129,7 +133,14 @@ SmoothedFrf PostureData::smoothed(double share, int lines, bool resolved) const 
   }
   for (; f <= last_hz * (1.0 + 1e-12); f = std::max(f * ratio, f + spacing_hz)) {
     const double sigma_hz = std::max(share * f, spacing_hz);
-    put(f, sigma_hz, modes_ ? of_modes({2.0 * pi * sigma_hz, 2.0 * pi * f}) : of_lines(f, sigma_hz));
+    put(f, sigma_hz,
+        modes_ ? 2.0 * of_modes({2.0 * pi * sigma_hz, 2.0 * pi * f}) - of_modes({4.0 * pi * sigma_hz, 2.0 * pi * f})
+               : of_lines(f, sigma_hz));
+  }
+  if (resolved && !modes_) {
+    for (Eigen::Index k = 0; k < count; ++k) {
+      if (frequency_hz_(k) > last_hz) put(frequency_hz_(k), 0.0, value_.col(k));
+    }
   }
   const Eigen::Index n = static_cast<Eigen::Index>(values.size());
   out.value.setZero(9, n);
@@ -137,10 +148,14 @@ SmoothedFrf PostureData::smoothed(double share, int lines, bool resolved) const 
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Matrix<Complex, 9, 1>& value = values[static_cast<std::size_t>(i)];
     const double norm = value.norm() / 3.0;
+    // Lines farther apart than a mode is wide miss its peak, and so does their integral.
+    const Complex at = out.s[static_cast<std::size_t>(i)];
+    const double missed =
+        at.real() > 0.0 && spacing_hz > 0.0 ? std::exp(-usual_damping_ratio * at.imag() / spacing_hz) : 0.0;
     for (Eigen::Index e = 0; e < 9; ++e) {
       if (!known_(e)) continue;
       out.value(e, i) = value(e);
-      out.weight(e, i) = 1.0 / (counted_share * std::hypot(std::abs(value(e)), small_entry * norm));
+      out.weight(e, i) = 1.0 / (std::hypot(counted_share, missed) * std::hypot(std::abs(value(e)), small_entry * norm));
     }
   }
   return out;

@@ -7,10 +7,12 @@
 
 namespace robomill::modal::detail {
 
-/// Receptances of one posture right of the imaginary axis, s = σ + iω with σ = max(share · ω, a line's distance).
+/// Receptances of one posture, smoothed: of s = σ + iω with σ = max(share · ω, a line's distance) the value
+///     2 H(σ + iω) − H(2σ + iω),
+/// and H itself where σ = 0.
 struct SmoothedFrf {
   std::vector<std::complex<double>> s;
-  Eigen::Matrix<std::complex<double>, 9, Eigen::Dynamic> value;  ///< H column by column; 0 where not measured
+  Eigen::Matrix<std::complex<double>, 9, Eigen::Dynamic> value;  ///< column by column; 0 where not measured
   Eigen::Matrix<double, 9, Eigen::Dynamic> weight;               ///< over what an error counts; 0 where not measured
 };
 
@@ -20,10 +22,11 @@ class PostureData {
   /// @throws InvalidInput as PostureModel
   PostureData(const MeasuredPosture& measured, const PostureModelOptions& options);
   [[nodiscard]] const Eigen::VectorXd& joints() const { return joints_; }
-  /// H(σ + iω) from measured lines by Poisson's integral for the half plane, in which H is analytic,
+  /// From measured lines by Poisson's integral for the half plane, in which H is analytic,
   ///     H(σ + iω) = 1/π ∫ H(iν) σ / ((ω − ν)² + σ²) dν,
-  /// or from modes by their sum.
-  /// @param resolved  where the lines are too far apart for that width, they themselves, σ = 0
+  /// or from modes by their sum. Of 2 H(σ) − H(2σ) the kernel falls with the fourth power of the distance, and what
+  /// lies beyond the last line hardly counts.
+  /// @param resolved  where the lines are too far apart for that width, or too near the last, they themselves, σ = 0
   [[nodiscard]] SmoothedFrf smoothed(double share, int lines, bool resolved = false) const;
 
  private:

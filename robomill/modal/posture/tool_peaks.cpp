@@ -34,8 +34,9 @@ std::vector<FlexibleArm::Tool> tool_peaks(const robot::Cell& cell, const std::ve
     const double f = rate / (2.0 * std::numbers::pi);
     if (f < lowest_hz || f > highest_hz || !(loss(i) > loss(i - 1) && loss(i) >= loss(i + 1))) continue;
     // A mode of mass m with ζ of 2 % peaks at 1 / (2 m ω (ζ ω + σ)) right of the axis.
-    const double decay = s[static_cast<std::size_t>(i)].real() + 0.02 * rate;
-    const double mass = std::clamp(1.0 / (std::exp(loss(i)) * 2.0 * rate * decay), 0.02, 200.0);
+    const double sigma = s[static_cast<std::size_t>(i)].real(), decay = 0.02 * rate;
+    const double peak = 2.0 / (decay + sigma) - 1.0 / (decay + 2.0 * sigma);
+    const double mass = std::clamp(peak / (std::exp(loss(i)) * 2.0 * rate), 0.02, 200.0);
     peaks.push_back({std::exp(loss(i)) * rate, {.frequency_hz = f, .mass_kg = mass}});
   }
   std::ranges::sort(peaks, [](const auto& a, const auto& b) { return a.first > b.first; });
