@@ -47,7 +47,7 @@ struct PostureReport {
   };
   Source source = Source::cell;
   bool bearings = false, bracket = false;  ///< what the left-out postures bear out
-  int tool_modes = 0;                      ///< pairs found
+  int tool_modes = 0;                      ///< masses in the chain of spindle and tool
 
   std::size_t postures = 0;
   double error = 0.0;           ///< mean |H_fit − H| over |H|, all postures
@@ -57,7 +57,7 @@ struct PostureReport {
 };
 
 /// The dynamics of a robot at any posture. One model of the arm (compliant joints, tilting bearings, a bracket under
-/// the spindle, cantilever modes of spindle and tool) is calibrated over the FRFs of all postures together,
+/// the spindle, a chain of masses for spindle and tool) is calibrated over the FRFs of all postures together,
 ///     minimise Σ |H(φ_p) − H_p|² / d² + prior,  φ_p = θ + S u_p,  H = Bᵀ (K + sC + s²M)⁻¹ B + C_rest,
 /// where u_p, a Gaussian process over the joints, is what the joints' stiffness and damping differ by in posture p.
 /// Which structure is kept is decided by the receptances of left-out postures.

@@ -6,6 +6,7 @@
 #include <complex>
 #include <numbers>
 
+#include "robomill/modal/posture/posture_normal.hpp"
 #include "robomill/modal/posture/smoothed_frf.hpp"
 #include "robomill/robot/dynamics.hpp"
 #include "testing/modal/simulated_arm.hpp"
@@ -107,6 +108,27 @@ TEST(FlexibleArm, KnowsHowItsModesMoveWithItsParameters) {
           Eigen::Map<const Eigen::Matrix3cd>(by.residue[static_cast<std::size_t>(k)].col(p).data());
       EXPECT_LT((change - analytic).norm(), 2e-3 * std::max(1.0, change.norm())) << "parameter " << p << ", mode " << k;
     }
+  }
+}
+
+// Gradient and cost of residuals whose logarithm is taken, by differences; a line that is zero leaves both finite.
+TEST(PostureNormal, HasTheGradientOfItsCost) {
+  const FlexibleArm arm = whole_arm();
+  const Eigen::VectorXd parameters = moved_from_start(arm);
+  const Eigen::VectorXd& joints = simulated().measured_postures()[2];
+  MeasuredPosture measured{.name = "one", .joints = joints, .frfs = simulated().measure(joints, 5)};
+  measured.frfs.frfs[0].receptance(40) = 0.0;
+  const SmoothedFrf frf = PostureData(measured, {}).smoothed(0.02, 40, true);
+  const PostureNormal here = normal_of(arm, joints, frf, parameters, true);
+  ASSERT_TRUE(std::isfinite(here.cost));
+  constexpr double step = 1e-6;
+  for (Eigen::Index p = 0; p < parameters.size(); p += 5) {
+    Eigen::VectorXd up = parameters, down = parameters;
+    up(p) += step;
+    down(p) -= step;
+    const double slope =
+        (normal_of(arm, joints, frf, up, false).cost - normal_of(arm, joints, frf, down, false).cost) / (2.0 * step);
+    EXPECT_NEAR(2.0 * here.gradient(p), slope, 1e-5 * std::abs(slope) + 1e-6 * here.cost) << "parameter " << p;
   }
 }
 

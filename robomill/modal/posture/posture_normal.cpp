@@ -58,9 +58,9 @@ PostureNormal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, c
         const Eigen::Index e = mirrored[pair][side];
         const double weight = frf.weight(e, i);
         if (weight == 0.0) continue;
-        // Logarithms of what lies on the diagonal, which is never zero: too stiff counts as too soft.
-        const bool diagonal = mirrored[pair][0] == mirrored[pair][1];
+        // Logarithms of what lies on the diagonal: too stiff counts as much as too soft.
         const Complex data = frf.value(e, i);
+        const bool diagonal = mirrored[pair][0] == mirrored[pair][1] && data != 0.0;
         const Complex miss = diagonal ? std::abs(data) * std::log(model(e) / data) : model(e) - data;
         if (diagonal) slope = std::abs(data) / model(e);
         const double square = std::norm(miss) * weight * weight;

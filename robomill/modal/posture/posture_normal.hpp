@@ -16,7 +16,8 @@ struct PostureNormal {
   Eigen::VectorXd gradient;
 };
 
-/// At these parameters, Σ c² ln(1 + |H_model − H|² weight² / c²) over lines and entries: large residuals count less.
+/// At these parameters, Σ c² ln(1 + |Δ|² weight² / c²) over lines and entries: large residuals count less. Δ is
+/// |H| ln(H_model / H) on the diagonal, H_model − H beside it.
 /// @param derivatives  else matrix and gradient stay zero
 [[nodiscard]] PostureNormal normal_of(const FlexibleArm& arm, const Eigen::VectorXd& joints, const SmoothedFrf& frf,
                                       const Eigen::VectorXd& parameters, bool derivatives);
