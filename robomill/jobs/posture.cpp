@@ -200,7 +200,7 @@ std::string description(const modal::PostureReport& report) {
       report.postures, report.postures == 1 ? "" : "s", report.bearings ? ", bearings" : "",
       report.bracket ? ", the spindle's bracket" : "",
       report.tool_modes > 0
-          ? fmt::format(", {} pair{} of tool modes", report.tool_modes, report.tool_modes == 1 ? "" : "s")
+          ? fmt::format(", spindle and tool as {} mass{}", report.tool_modes, report.tool_modes == 1 ? "" : "es")
           : "",
       percent(report.error));
   if (std::isfinite(report.left_out_error)) {

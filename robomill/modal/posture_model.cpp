@@ -98,6 +98,23 @@ double region_of(const std::vector<Eigen::VectorXd>& postures) {
   return widest;
 }
 
+/// Relative standard deviation of a mode's residue. Modes whose peaks overlap swap shares from posture to posture while
+/// the sum of their residues stays: of those it is the deviation of the sum.
+double residue_deviation(const FlexibleArm::Modes& modes, const FlexibleArm::Sensitivity& by,
+                         const Eigen::MatrixXd& covariance, Eigen::Index k) {
+  Eigen::MatrixXcd change = Eigen::MatrixXcd::Zero(9, covariance.rows());
+  Eigen::Matrix3cd sum = Eigen::Matrix3cd::Zero();
+  for (Eigen::Index j = 0; j < modes.pole.size(); ++j) {
+    const double apart = std::abs(std::abs(modes.pole(j)) - std::abs(modes.pole(k)));
+    if (apart > -modes.pole(j).real() - modes.pole(k).real()) continue;
+    const Eigen::Matrix3cd residue = modes.at_tip.col(j) * modes.at_tip.col(j).transpose();
+    change += residue.norm() * by.residue[static_cast<std::size_t>(j)];
+    sum += residue;
+  }
+  const double variance = (change * covariance * change.adjoint()).trace().real();
+  return std::sqrt(std::max(0.0, variance)) / sum.norm();
+}
+
 }  // namespace
 
 /// A model of the arm, calibrated or as the cell says.
@@ -143,9 +160,7 @@ class PostureModel::Calibrated final : public Source {
       };
       mode.frequency_std_hz = mode.frequency_hz * calibration_.frequency_scale * deviation(by.log_frequency.row(k));
       mode.damping_ratio_std = calibration_.damping_scale * deviation(by.damping_ratio.row(k));
-      const Eigen::MatrixXcd& r = by.residue[static_cast<std::size_t>(k)];
-      mode.residue_std_ratio = calibration_.residue_scale *
-                               std::sqrt(std::max(0.0, (r * parameters.covariance * r.adjoint()).trace().real()));
+      mode.residue_std_ratio = calibration_.residue_scale * residue_deviation(modes, by, parameters.covariance, k);
       normalise(mode);
       out.modes.push_back(std::move(mode));
     }
