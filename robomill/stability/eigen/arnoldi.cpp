@@ -239,6 +239,7 @@ void Arnoldi::find(PeriodMap& map, std::span<Dominant> out, std::span<const Lane
   hessenberg_.resize((most_ + 1) * most_);
   std::ranges::fill(out, Dominant{});
   for (auto& vector : full_) vector.resize(0);
+  for (auto& vector : ritz_) vector.clear();
   start(guess);
   std::array<bool, lane_count> done = {};
   const std::span<bool> undone = std::span(done).first(out.size());
@@ -319,6 +320,7 @@ void Arnoldi::full_matrix(PeriodMap& map, std::span<Dominant> out) {
   }
 }
 
+/// Zero where no look found a pair.
 Eigen::VectorXcd Arnoldi::vector(std::size_t lane) {
   if (full_[lane].size() > 0) return full_[lane];
   Eigen::VectorXcd x = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(size_));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 #include <cstring>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -179,6 +180,39 @@ TEST(Arnoldi, ItsVectorComesBackTimesTheMultiplier) {
   }
   EXPECT_NEAR(x.norm(), 1.0, 1e-12);
   EXPECT_LT((image - dominant.multiplier * x).norm(), 1e-11);
+}
+
+/// Each entry of the state by itself: 1, a half, a quarter, … of `first`.
+class Halving final : public PeriodMap {
+ public:
+  Halving(std::size_t size, double first) : size_(size), first_(first) {}
+  [[nodiscard]] std::size_t size() const override { return size_; }
+  [[nodiscard]] std::size_t modal_size() const override { return 2; }
+  void apply(const Lanes* in, Lanes* out) override {
+    double factor = first_;
+    for (std::size_t i = 0; i < size_; ++i, factor *= 0.5) {
+      for (std::size_t lane = 0; lane < lane_count; ++lane) out[i].v[lane] = factor * in[i].v[lane];
+    }
+  }
+
+ private:
+  std::size_t size_;
+  double first_;
+};
+
+TEST(Arnoldi, KeepsNoVectorOfTheFindBefore) {
+  Halving fades(40, 0.9);
+  Halving overflows(10, std::numeric_limits<double>::infinity());
+  Arnoldi arnoldi;
+  Dominant dominant;
+  arnoldi.find(fades, {&dominant, 1});
+  EXPECT_NEAR(dominant.multiplier.real(), 0.9, 1e-10);
+  EXPECT_NEAR(std::abs(arnoldi.vector(0)(0)), 1.0, 1e-10);
+  arnoldi.find(overflows, {&dominant, 1});
+  EXPECT_EQ(dominant.by, Dominant::By::unsettled);
+  EXPECT_EQ(spectral_radius(dominant), 1e100);
+  ASSERT_EQ(arnoldi.vector(0).size(), 10);
+  EXPECT_TRUE(arnoldi.vector(0).isZero(0.0));
 }
 
 // Steps that nobody looks back at are not remembered: 45.6° of 120° are in cut, 16 of 40 steps.
