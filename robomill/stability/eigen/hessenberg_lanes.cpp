@@ -141,7 +141,7 @@ CORE void sweep_windows_core(HessenbergArguments& a, std::size_t lane) {
     V works = place >= low ? one : nothing;
     works = place < high ? works : nothing;
     works = square > 1e-280 ? works : nothing;  // scaled to about 1: what would underflow here is nothing beside it
-    LaneReflector<V> reflector;
+    LaneReflector<V> reflector = {};
     set_reflector<V>(x, y, z, square, works, reflector);
     if (k > reach.first) {
       const V moves = place > low ? works : nothing;
