@@ -178,8 +178,7 @@ ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamic
   const std::vector<std::size_t> first = classes_of(forces, options, out.rows);
   out.evaluations = first.size();
   const std::vector<Shared> shared = evaluate_classes(forces, first, dynamics, options, progress);
-  for (std::size_t i = 0; i < out.rows.size(); ++i) {
-    BlockRow& row = out.rows[i];
+  for (BlockRow& row : out.rows) {
     if (!row.cuts) continue;
     row.cut = shared[row.evaluation].cut;
     row.measured_nearby = shared[row.evaluation].measured_nearby;
