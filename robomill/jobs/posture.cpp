@@ -166,6 +166,7 @@ void warn_of_misfits(const modal::PostureModel& model, const std::vector<modal::
   // Simulated arms: within 1.1 of the median with each measurement in its place, 2.1 and more where two are swapped.
   constexpr double outlier = 1.75, noticed = 0.15;
   std::vector<double> missed;
+  missed.reserve(postures.size());
   for (const modal::MeasuredPosture& posture : postures) missed.push_back(misfit(model, posture, options));
   std::vector<double> sorted = missed;
   std::ranges::sort(sorted);
