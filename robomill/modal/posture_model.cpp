@@ -195,20 +195,30 @@ class PostureModel::Calibrated final : public Source {
     return out;
   }
 
-  /// A structure calibrated from the best of several starts, told by their structure's and tools' first guesses.
-  [[nodiscard]] Candidate candidate(const std::vector<std::pair<ArmStructure, std::vector<FlexibleArm::Tool>>>& starts,
-                                    Progress& progress) const {
-    Candidate out;
-    Beginning best{.parameters = {}, .noise = std::numeric_limits<double>::infinity()};
+  using Start = std::pair<ArmStructure, std::vector<FlexibleArm::Tool>>;
+  struct Begun {
+    std::unique_ptr<FlexibleArm> arm = nullptr;
+    Beginning at = {.parameters = {}, .noise = std::numeric_limits<double>::infinity()};
+  };
+
+  /// The best of several starts, told by their structures' and tools' first guesses.
+  [[nodiscard]] Begun begin(const std::vector<Start>& starts, Progress& progress) const {
+    Begun out;
     for (const auto& [structure, tools] : starts) {
       std::unique_ptr<FlexibleArm> arm = arm_of(structure, tools);
-      Beginning beginning = begin_calibration(*arm, *data_, progress);
+      Beginning at = begin_calibration(*arm, *data_, progress);
       progress.advance();
-      if (out.arm != nullptr && !(beginning.noise < best.noise)) continue;
-      best = std::move(beginning);
+      if (out.arm != nullptr && !(at.noise < out.at.noise)) continue;
+      out.at = std::move(at);
       out.arm = std::move(arm);
     }
-    out.calibration = calibrate(*out.arm, *data_, highest_hz_, postures.size() >= fewest_for_structure, best, progress);
+    return out;
+  }
+
+  [[nodiscard]] Candidate finish(Begun begun, Progress& progress) const {
+    Candidate out{.arm = std::move(begun.arm)};
+    out.calibration =
+        calibrate(*out.arm, *data_, highest_hz_, postures.size() >= fewest_for_structure, begun.at, progress);
     progress.advance();
     return out;
   }
@@ -227,28 +237,42 @@ class PostureModel::Calibrated final : public Source {
   void choose(const std::vector<FlexibleArm::Tool>& peaks, Progress& progress) {
     constexpr double worth = 0.97;
     const bool several = postures.size() >= fewest_for_structure;
-    // A chain of two masses: a peak's, and one with its own mode beyond the band, which still moves within it.
-    constexpr double beyond_band = 1.25, beyond_mass_share = 0.25;
-    std::vector<std::vector<FlexibleArm::Tool>> chains;
-    for (const FlexibleArm::Tool& peak : peaks) {
-      chains.push_back({{.frequency_hz = peak.frequency_hz, .mass_kg = (1.0 - beyond_mass_share) * peak.mass_kg},
-                        {.frequency_hz = beyond_band * highest_hz_, .mass_kg = beyond_mass_share * peak.mass_kg}});
-    }
-    if (chains.empty() || !several) chains.assign(1, {});
-    std::vector<std::pair<ArmStructure, std::vector<FlexibleArm::Tool>>> stiff, tilting;
-    for (const std::vector<FlexibleArm::Tool>& chain : chains) {
-      stiff.push_back({{.bearings = true, .load = several}, chain});
+    std::vector<Start> stiff, tilting, stiffer;
+    if (peaks.empty() || !several) stiff.push_back({{.bearings = true, .load = several}, {}});
+    for (std::size_t k = 0; several && k < std::max<std::size_t>(peaks.size(), 1); ++k) {
+      // What carries the tool lowers the peak below the tool's own frequency, a soft bracket by much.
+      const auto tools = [&](double above_peak) {
+        return peaks.empty() ? std::vector<FlexibleArm::Tool>{} : chain(peaks[k], above_peak);
+      };
+      constexpr double far_above = 1.25;
+      if (!peaks.empty()) stiff.push_back({{.bearings = true, .load = true}, tools(1.0)});
       for (const double inner_share : {0.25, 0.5}) {
-        tilting.push_back({{.bearings = true, .bracket = true, .inner_share = inner_share, .load = several}, chain});
+        const ArmStructure structure{.bearings = true, .bracket = true, .inner_share = inner_share, .load = true};
+        tilting.push_back({structure, tools(1.0)});
+        stiffer.push_back({structure, tools(far_above)});
       }
     }
-    progress.start("posture model", stiff.size() + 1 + (several ? tilting.size() + 1 : 0));
-    Candidate best = candidate(stiff, progress);
+    progress.start("posture model", stiff.size() + 1 + (several ? tilting.size() + stiffer.size() + 1 : 0));
+    Candidate best = finish(begin(stiff, progress), progress);
     if (several) {
-      Candidate other = candidate(tilting, progress);
+      // In units of 5 % of the receptance squared, neighbouring lines alike: more is a wrong valley.
+      constexpr double well_fitted = 4.0;
+      Begun begun = begin(tilting, progress);
+      if (begun.at.noise > well_fitted) {
+        Begun again = begin(stiffer, progress);
+        if (again.at.noise < begun.at.noise) begun = std::move(again);
+      }
+      Candidate other = finish(std::move(begun), progress);
       if (other.error() < worth * best.error()) best = std::move(other);
     }
     keep(std::move(best));
+  }
+
+  /// Two masses: a peak's, and one with its own mode beyond the band, which still acts within it.
+  [[nodiscard]] std::vector<FlexibleArm::Tool> chain(const FlexibleArm::Tool& peak, double above_peak) const {
+    constexpr double beyond_band = 1.25, beyond_mass_share = 0.25;
+    return {{.frequency_hz = above_peak * peak.frequency_hz, .mass_kg = (1.0 - beyond_mass_share) * peak.mass_kg},
+            {.frequency_hz = beyond_band * highest_hz_, .mass_kg = beyond_mass_share * peak.mass_kg}};
   }
 
   double highest_hz_;
