@@ -11,8 +11,6 @@
 namespace robomill::modal::detail {
 namespace {
 
-using Complex = std::complex<double>;
-
 /// Residuals along neighbouring lines are alike: so many count as one.
 constexpr double alike_lines = 4.0;
 /// Of what differs from posture to posture, the share that nearby postures do not have in common.
@@ -194,7 +192,6 @@ class CalibrationSearch {
   [[nodiscard]] const Eigen::VectorXd& common() const { return common_; }
   [[nodiscard]] const Eigen::MatrixXd& differing() const { return differing_; }
   [[nodiscard]] const std::vector<Eigen::Index>& deviating() const { return deviating_; }
-  [[nodiscard]] const Eigen::VectorXd& prior() const { return prior_; }
 
  private:
   [[nodiscard]] Eigen::VectorXd parameters_of(const Eigen::VectorXd& common, const Eigen::MatrixXd& differing,
