@@ -1,0 +1,100 @@
+#include "robomill/decision/program/looks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "robomill/base/parallel.hpp"
+
+namespace robomill::decision {
+namespace {
+
+/// Looked at before anyone asks whether one of them has failed: the same at any number of threads.
+constexpr std::size_t at_a_time = 8;
+
+bool at_least(ProgramLimit limit) {
+  return limit == ProgramLimit::stability || limit == ProgramLimit::least_chip;
+}
+
+}  // namespace
+
+double shortfall(const LimitUse& use) {
+  if (use.limit == ProgramLimit::none) return 0.0;
+  const double scale = std::max(std::abs(use.allowed), 1e-12);
+  const double beyond = at_least(use.limit) ? use.allowed - use.value : use.value - use.allowed;
+  return std::isfinite(beyond) ? beyond / scale : HUGE_VAL;
+}
+
+std::optional<CutLook> Looks::known(const LookAt& at, std::size_t candidate) const {
+  CutLook out;
+  bool whole = true;
+  bool first = true;
+  for (const std::size_t speed : speeds_[candidate].window) {
+    const auto found = memo_.find(key(at, speed));
+    if (found == memo_.end()) {
+      whole = false;
+      continue;
+    }
+    const CutLook& look = found->second;
+    if (!look.holds) return look;
+    const double feed_m =
+        first ? look.most_feed_per_tooth_m : std::min(out.most_feed_per_tooth_m, look.most_feed_per_tooth_m);
+    if (first || look.by.value < out.by.value) out = look;
+    out.most_feed_per_tooth_m = feed_m;
+    first = false;
+  }
+  if (!whole) return std::nullopt;
+  return out;
+}
+
+void Looks::run(const std::vector<Task>& tasks) {
+  std::vector<CutLook> found(tasks.size());
+  parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      progress_.check();
+      found[i] = model_.look(tasks[i].at.look_class, speeds_.speed(tasks[i].speed), tasks[i].at.gamma);
+    }
+  });
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    memo_.emplace(key(tasks[i].at, tasks[i].speed), found[i]);
+    if (!found[i].holds) ++failures_[tasks[i].at.look_class];
+  }
+}
+
+void Looks::ask(const std::vector<LookAt>& at, std::size_t candidate) {
+  std::vector<Task> tasks;
+  for (const LookAt& one : at) {
+    for (const std::size_t speed : speeds_[candidate].window) {
+      if (!memo_.contains(key(one, speed))) tasks.push_back({.at = one, .speed = speed});
+    }
+  }
+  run(tasks);
+}
+
+std::optional<LookAt> Looks::ask_until_failure(std::vector<LookAt> at, std::size_t candidate) {
+  const auto fails = [&](const LookAt& one) {
+    const std::optional<CutLook> look = known(one, candidate);
+    return look && !look->holds;
+  };
+  const auto failed = std::ranges::find_if(at, fails);
+  if (failed != at.end()) return *failed;
+  const auto failures = [&](const LookAt& one) {
+    const auto found = failures_.find(one.look_class);
+    return found == failures_.end() ? 0 : found->second;
+  };
+  std::ranges::stable_sort(at, std::ranges::greater{}, failures);
+  std::vector<Task> tasks;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    for (const std::size_t speed : speeds_[candidate].window) {
+      if (!memo_.contains(key(at[i], speed))) tasks.push_back({.at = at[i], .speed = speed});
+    }
+    if (tasks.size() < at_a_time && i + 1 < at.size()) continue;
+    run(tasks);
+    for (const Task& task : tasks) {
+      if (fails(task.at)) return task.at;
+    }
+    tasks.clear();
+  }
+  return std::nullopt;
+}
+
+}  // namespace robomill::decision

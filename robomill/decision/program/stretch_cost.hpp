@@ -1,0 +1,52 @@
+#pragma once
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "robomill/decision/program/looks.hpp"
+#include "robomill/decision/program_decision.hpp"
+
+namespace robomill::decision {
+
+inline constexpr double no_time = std::numeric_limits<double>::infinity();
+
+/// One stretch at one speed.
+struct StretchAt {
+  double time_s = no_time;         ///< infinite: a limit stops it
+  LimitUse stopped_by = {};        ///< … this one
+  std::size_t cut = 0;             ///< … here
+  std::vector<double> least = {};  ///< feed of each of its cuts [m/s], at least
+  std::vector<double> most = {};   ///< … at most
+  std::vector<LimitUse> most_by = {};
+  std::vector<std::size_t> gamma = {};  ///< where each group of its cuts begins, and where the last ends
+  std::vector<std::size_t> group = {};  ///< of each of its cuts
+};
+
+/// Finds the least time of a stretch at a candidate speed.
+class StretchCost {
+ public:
+  StretchCost(const std::vector<ProgramCut>& cuts, const ProgramModel& model, const ProgramOptions& options,
+              const CandidateSpeeds& speeds, Looks& looks)
+      : cuts_(cuts), model_(model), options_(options), speeds_(speeds), looks_(looks) {}
+
+  /// What needs no dynamics: time_s is a lower bound.
+  [[nodiscard]] StretchAt bound(const ProgramStretch& stretch, std::size_t candidate) const;
+  [[nodiscard]] StretchAt exact(const ProgramStretch& stretch, std::size_t candidate);
+
+ private:
+  void at_programmed_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out);
+  void along_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out);
+  /// The greatest feed of a cut of what a look allows.
+  [[nodiscard]] double most_feed(std::size_t cut, const CutLook& look, std::size_t candidate) const;
+  void limit_feed(const ProgramStretch& stretch, std::size_t cut, const CutLook& look, std::size_t candidate,
+                  StretchAt& out) const;
+  void sum_up(const ProgramStretch& stretch, StretchAt& out) const;
+
+  const std::vector<ProgramCut>& cuts_;
+  const ProgramModel& model_;
+  const ProgramOptions& options_;
+  const CandidateSpeeds& speeds_;
+  Looks& looks_;
+};
+
+}  // namespace robomill::decision
