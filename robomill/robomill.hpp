@@ -29,6 +29,7 @@
 #include "robomill/cutting/workpiece.hpp"
 #include "robomill/decision/choose.hpp"
 #include "robomill/decision/finish.hpp"
+#include "robomill/decision/program_decision.hpp"
 #include "robomill/decision/recommend.hpp"
 #include "robomill/io/sample_source.hpp"
 #include "robomill/jobs/blocks.hpp"
