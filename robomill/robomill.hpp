@@ -117,6 +117,7 @@
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/identify.hpp"
 #include "robomill/robot/inverse.hpp"
+#include "robomill/robot/joint_load.hpp"
 #include "robomill/robot/kinematics.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/redundancy.hpp"

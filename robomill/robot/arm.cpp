@@ -63,6 +63,7 @@ void validate_joint(const Joint& joint) {
   require_non_negative("stiffness", joint.stiffness, prismatic ? "N/m" : "N m/rad");
   require_non_negative("damping", joint.damping, prismatic ? "N s/m" : "N m s/rad");
   require_non_negative("rotor_inertia", joint.rotor_inertia, prismatic ? "kg" : "kg m^2");
+  require_non_negative("max_torque", joint.max_torque, prismatic ? "N" : "N m");
   validate_link(joint.link);
 }
 

@@ -28,6 +28,7 @@ struct Joint {
   double stiffness = 0.0;                                             ///< Kθ [N m/rad or N/m]; 0: not given
   double damping = 0.0;                                               ///< [N m s/rad or N s/m]
   double rotor_inertia = 0.0;                                         ///< of the drive, at the joint [kg m² or kg]
+  double max_torque = 0.0;                                            ///< of the drive [N m or N]; 0: no limit
   Link link = {};                                                     ///< what it moves
 };
 

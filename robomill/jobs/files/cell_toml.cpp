@@ -26,6 +26,7 @@ constexpr io::Field<robot::Joint> joint_lists[] = {
     {"robot.joint_stiffness_n_m_per_rad", "stiffness", 1.0, &robot::Joint::stiffness},
     {"robot.joint_damping_n_m_s_per_rad", "damping", 1.0, &robot::Joint::damping},
     {"robot.joint_rotor_inertia_kg_m2", "rotor_inertia", 1.0, &robot::Joint::rotor_inertia},
+    {"robot.joint_max_torque_n_m", "max_torque", 1.0, &robot::Joint::max_torque},
 };
 
 /// Where each of joint_limits goes, of an arm and of the hybrid machine.

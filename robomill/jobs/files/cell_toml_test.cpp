@@ -98,6 +98,27 @@ TEST(CellToml, ReadsADhArmWithAllItsLists) {
   EXPECT_TRUE(file.notes.empty());
 }
 
+// 0 and no list: no limit.
+TEST(CellToml, ReadsTheTorqueThatDrivesCanGive) {
+  const Folder folder;
+  const auto read = [&](const std::string& row) {
+    return read_cell(folder.file("cell.toml", with("joint_rotor_inertia_kg_m2 = [6, 5, 4, 3, 2, 1]", row)))
+        .cell.arm.joints;
+  };
+  const std::vector<robot::Joint> joints = read("joint_max_torque_n_m = [9000, 8000, 6000, 1500, 1200, 0]");
+  EXPECT_EQ(joints[0].max_torque, 9000.0);
+  EXPECT_EQ(joints[4].max_torque, 1200.0);
+  EXPECT_EQ(joints[5].max_torque, 0.0);
+  for (const robot::Joint& joint : read("")) EXPECT_EQ(joint.max_torque, 0.0);
+  const auto said = [&](const std::string& row) { return rejection([&] { (void)read(row); }); };
+  EXPECT_NE(said("joint_max_torque_n_m = [9000, 8000]")
+                .find("cell.toml:18: robot.joint_max_torque_n_m: must hold one number a joint, 6; it holds 2"),
+            std::string::npos);
+  EXPECT_NE(said("joint_max_torque_n_m = [9000, 8000, -6000, 1500, 1200, 0]")
+                .find("cell.toml:18: robot.joint_max_torque_n_m[3] = -6000 N m; must be >= 0"),
+            std::string::npos);
+}
+
 TEST(CellToml, ReadsLinksInTheFrameOfTheirRow) {
   const Folder folder;
   const robot::Link link = read_cell(folder.file("cell.toml", good)).cell.arm.joints[0].link;
