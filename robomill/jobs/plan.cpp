@@ -60,6 +60,8 @@ void warn_of_prediction(PlanResult& result) {
   result.notes.push_back(
       prediction.measured ? "The FRFs are predicted from the assembly; the measured ones are only compared with them."
                           : "The FRFs are predicted from the assembly, not measured.");
+  append(result.notes, prediction.file.joint_notes);
+  append(result.warnings, prediction.file.joint_warnings);
   warn_of_distance(prediction, result.warnings);
   if (!prediction.tip.suspect_hz.empty()) {
     result.warnings.push_back(fmt::format(
@@ -93,7 +95,7 @@ void measure(PlanResult& result, Progress& progress) {
     result.frfs = file.set;
     result.added_decay_per_s = file.added_decay_per_s;
   } else if (!result.job.assembly.empty()) {
-    result.prediction = predict_tip(result.job.assembly, result.job.measured, {}, progress);
+    result.prediction = predict_tip(result.job.assembly, result.job.measured, {}, progress, result.job.joint);
     result.frfs = result.prediction->tip.frfs;
     warn_of_prediction(result);
   }

@@ -190,9 +190,9 @@ std::vector<PeakFound> find_peaks(const Eigen::VectorXd& frequency_hz, const Eig
 }
 
 TipPrediction predict_tip(const std::filesystem::path& assembly, const std::filesystem::path& measured,
-                          const coupling::TipOptions& options, Progress& progress) {
+                          const coupling::TipOptions& options, Progress& progress, const std::filesystem::path& joint) {
   TipPrediction out;
-  out.file = coupling::read_assembly(assembly);
+  out.file = coupling::read_assembly(assembly, {.joint = joint});
   progress.check();
   out.tip = couple(out.file, options);
   out.holder = holder_with_deviation(out.file);

@@ -41,13 +41,15 @@ struct TipPrediction {
 };
 
 /// @param measured  FRFs to compare with; empty: none
+/// @param joint     joint.json, in place of the assembly's joint; empty: the assembly's own
 /// @throws InvalidInput naming the file, as read_assembly, tip_frfs and read_frfs, or if nothing measured can be
 ///     compared
 /// @throws Interrupted when progress asks to stop
 [[nodiscard]] ROBOMILL_API TipPrediction predict_tip(const std::filesystem::path& assembly,
                                                      const std::filesystem::path& measured = {},
                                                      const coupling::TipOptions& options = {},
-                                                     Progress& progress = Progress::none());
+                                                     Progress& progress = Progress::none(),
+                                                     const std::filesystem::path& joint = {});
 
 /// The modes of predicted FRFs, without standard deviations. A round tool is fitted in x, and the same modes stand in
 /// y.

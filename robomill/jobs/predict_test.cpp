@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <filesystem>
@@ -11,6 +12,7 @@
 
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -130,6 +132,30 @@ TEST_F(Predicted, PlanWarnsOfAMeasurementFarAway) {
   EXPECT_NE(far.find("stands at 294.7"), std::string::npos) << far;
   measure("soft.toml");
   EXPECT_EQ(warnings().find("differs from the measured one"), std::string::npos);
+}
+
+// What robomill joint found replaces the assembly's own: of the rigid bar with it the plan is that of the soft one.
+TEST_F(Predicted, PlanTakesTheJointThatWasFound) {
+  const TipPrediction soft = predict_tip(examples / "joint-bar/soft.toml");
+  coupling::JointFitResult found;
+  found.status = coupling::JointFitResult::Status::converged;
+  found.joint = *soft.file.assembly.joint;
+  found.knowledge[0].identifiable = found.knowledge[2].identifiable = true;
+  folder_.file("joint.json", coupling::joint_json(found));
+  folder_.file("job.toml", "[job]\nassembly = \"" + (examples / "joint-bar/rigid.toml").string() +
+                               "\"\njoint = \"joint.json\"\nlobes = \"lobes.toml\"\nband_hz = [200, 600]\n");
+  const PlanResult plan = run_job(folder_.at("job.toml"), 1);
+  EXPECT_EQ(plan.prediction->tip.frfs.frfs.at(0).receptance, soft.tip.frfs.frfs.at(0).receptance);
+  const auto says = [](const std::vector<std::string>& texts, const std::string& part) {
+    return std::ranges::any_of(texts, [&](const std::string& text) { return text.find(part) != std::string::npos; });
+  };
+  EXPECT_TRUE(says(plan.notes, "The joint is that of joint.json"));
+  EXPECT_TRUE(says(plan.warnings, "joint.json: translational damping and rotational damping are not identifiable"));
+  folder_.file("joint.json", "{\"joint\": {}}");
+  EXPECT_NE(test::rejection([&] {
+              static_cast<void>(run_job(folder_.at("job.toml"), 1));
+            }).find("joint.json: joint.translational_stiffness_n_per_m: is missing"),
+            std::string::npos);
 }
 
 // With a measured holder the prediction stands on the holder's lines and is compared between them.

@@ -8,6 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/coupling/files/segment_fields.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/modal/files/frf_files.hpp"
@@ -41,8 +42,12 @@ std::vector<Segment> read_segments(io::TomlFile& file, const std::string& table)
   return out;
 }
 
-void read_joint(io::TomlFile& file, const AssemblyReading& reading, std::optional<Joint>& out) {
-  if (!file.has("joint")) return;
+void read_joint(io::TomlFile& file, const AssemblyReading& reading, const std::optional<JointFile>& found,
+                std::optional<Joint>& out) {
+  if (!file.has("joint")) {
+    if (found) out = found->joint;
+    return;
+  }
   Joint joint;
   constexpr const char* cross = "joint.cross_stiffness_n_per_rad";
   file.number(cross, cross, 1.0, joint.cross_stiffness_n_per_rad);
@@ -52,9 +57,15 @@ void read_joint(io::TomlFile& file, const AssemblyReading& reading, std::optiona
     joint.translational_stiffness_n_per_m = joint.rotational_stiffness_n_m_per_rad =
         std::max(1e6, 2.0 * std::abs(joint.cross_stiffness_n_per_rad));
     joint.translational_damping_n_s_per_m = joint.rotational_damping_n_m_s_per_rad = 0.0;
+  } else if (found) {
+    for (const io::Field<Joint>& field : joint_fields) joint.*field.value = found->joint.*field.value;
   }
   file.number("joint.insertion_length_mm", "joint.insertion_length_m", units::mm, joint.insertion_length_m);
   file.integer("joint.points", "joint.points", joint.points);
+  if (found && joint.points > 1) {
+    throw file.reject("joint.points", "must be 1 where the joint is that of " + reading.joint.filename().string(),
+                      "A joint that was found stands at the mouth of the holder");
+  }
   joint.shank = read_segments(file, "joint.shank");
   try {
     joint.validate();
@@ -263,7 +274,13 @@ AssemblyFile read_assembly(const std::filesystem::path& path, const AssemblyRead
   file.require("tool", "Write [[tool]] above each segment, from the tip to the joint");
   out.assembly.tool = read_segments(file, "tool");
   if (out.assembly.tool.empty()) throw file.reject("tool", "must have at least one segment");
-  read_joint(file, reading, out.assembly.joint);
+  std::optional<JointFile> found;
+  if (!reading.joint.empty()) {
+    found = read_joint_json(reading.joint);
+    out.joint_notes = found->notes;
+    out.joint_warnings = found->warnings;
+  }
+  read_joint(file, reading, found, out.assembly.joint);
   read_holder(file, out);
   read_search(file, out.search);
   file.done();

@@ -28,18 +28,24 @@ struct AssemblyFile {
   std::filesystem::path receptances = {};   ///< holder.receptances, resolved; empty where absent
   std::optional<HolderResult> holder = {};  ///< where rotations were completed or an artefact taken off
   std::vector<std::string> notes = {};      ///< sentences for the user
+  /// Where the joint is that of AssemblyReading::joint: that it is, and what of it is not to be relied on.
+  std::vector<std::string> joint_notes = {}, joint_warnings = {};
 };
 
 struct AssemblyReading {
   /// The joint is what is looked for: its stiffness and damping may be left out and are not used (any valid values
   /// stand there), and no frequencies are needed.
   bool joint_sought = false;
+  /// joint.json, whose four values stand in place of those of [joint], which may be missing there, and so may the
+  /// table. The cross stiffness stays the assembly's. Empty: none.
+  std::filesystem::path joint = {};
 };
 
 /// Reads the assembly, its holder's receptances, and makes of these what tip_frfs takes: as they are where they hold
 /// rotations, by coupling::complete_rotations where holder.points_mm says where they were measured, and by
 /// coupling::remove_artefact where holder.artefact says on what.
-/// @throws InvalidInput with file, line, key and value, or with the file of receptances and the FRFs that it lacks
+/// @throws InvalidInput with file, line, key and value, or with the file of receptances and the FRFs that it lacks; as
+///     read_joint_json; or if joint.json is to stand in place of a joint of several points
 [[nodiscard]] ROBOMILL_API AssemblyFile read_assembly(const std::filesystem::path& path,
                                                       const AssemblyReading& reading = {});
 

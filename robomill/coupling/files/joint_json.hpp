@@ -1,5 +1,7 @@
 #pragma once
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/coupling/joint_fit.hpp"
@@ -11,5 +13,18 @@ namespace robomill::coupling {
 /// joint.json as text: the joint in the keys of assembly.toml, how well it fits and what the FRF shows of it. A
 /// deviation that is infinite is null.
 [[nodiscard]] ROBOMILL_API std::string joint_json(const JointFitResult& result);
+
+/// What joint.json says of a joint.
+struct JointFile {
+  Joint joint = {};                        ///< the four values; one point, no cross stiffness
+  std::vector<std::string> notes = {};     ///< sentences for the user
+  std::vector<std::string> warnings = {};  ///< which values its FRF did not show, and a search that did not converge
+};
+
+/// Reads "joint" of joint.json, and of "identifiable" and "convergence", where they are there, what is to be warned of.
+/// All else in it is left alone.
+/// @throws InvalidInput with the file and "joint.rotational_stiffness_n_m_per_rad" if a value is missing, no finite
+///     number or out of its range
+[[nodiscard]] ROBOMILL_API JointFile read_joint_json(const std::filesystem::path& path);
 
 }  // namespace robomill::coupling

@@ -17,6 +17,9 @@ void read_sources(io::TomlFile& file, Job& job) {
   file.path("job.modes", job.modes);
   file.path("job.lobes", job.lobes);
   file.path("job.assembly", job.assembly);
+  if (file.path("job.joint", job.joint) && job.assembly.empty()) {
+    throw file.reject("job.joint", "goes with job.assembly", "It stands in place of the assembly's [joint]");
+  }
   file.path("job.forces", job.forces);
   for (const auto& [key, path] : {std::pair{"job.cell", &job.cell}, std::pair{"job.program", &job.program}}) {
     file.path(key, *path);

@@ -57,6 +57,14 @@ TEST_F(JobToml, TakesAnAssemblyAndAMeasurementOfItsTip) {
       read_job(write("job.toml", "[job]\nassembly = \"a.toml\"\nmeasured = \"tip.uff\"\nlobes = \"l.toml\"\n"));
   EXPECT_EQ(job.assembly, folder_.at("a.toml"));
   EXPECT_EQ(job.measured, folder_.at("tip.uff"));
+  EXPECT_TRUE(job.joint.empty());
+}
+
+TEST_F(JobToml, TakesAJointInPlaceOfTheAssemblys) {
+  const std::string rest = "joint = \"joint.json\"\nlobes = \"l.toml\"\n";
+  EXPECT_EQ(read_job(write("job.toml", "[job]\nassembly = \"a.toml\"\n" + rest)).joint, folder_.at("joint.json"));
+  EXPECT_NE(rejection("[job]\nmodes = \"m.json\"\n" + rest).find("job.toml:3: job.joint"), std::string::npos);
+  EXPECT_NE(rejection("[job]\nmodes = \"m.json\"\n" + rest).find("goes with job.assembly"), std::string::npos);
 }
 
 TEST_F(JobToml, TakesAProgramWithItsCell) {
