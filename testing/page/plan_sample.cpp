@@ -12,6 +12,7 @@
 #include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
+#include "testing/page/decision_sample.hpp"
 #include "testing/page/structure_sample.hpp"
 
 namespace robomill::page {
@@ -240,6 +241,7 @@ std::string sample_plan(const std::string& text) {
       {"hit_directions", {"x", "x", "x", "x", "x", "y", "y", "y", "y", "y"}},
       {"feed_direction_deg", 0},
       {"feed_directions", feed_directions_json()},
+      {"decision", Json::parse(sample_decision(text))},
       {"warnings", Json::array({said("The measured model is not passive: Im H_yy > 0 on 46 % of lines.")})},
       {"notes",
        Json::array({said("The lobes on this page come from a formula for the feed direction alone; they serve to "
