@@ -5,7 +5,7 @@ import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { launch, openPage } from './chromium.mjs';
-import { tryPath } from './path_check.mjs';
+import { tryDecision, tryPath } from './path_check.mjs';
 
 function argument(name, fallback) {
   const at = process.argv.indexOf(name);
@@ -70,6 +70,7 @@ async function look(browser, url, view, problems, shots) {
   for (const address of fetched) problems.push(`${where}: fetched ${address}`);
   if (shots) writeFileSync(join(shots, `${view.name}-open.png`), await page.screenshot(await whole(page, view)));
   await tryPath(page, where, problems, view);
+  if (view.controls) await tryDecision(page, where, problems);
   if (hasPlots && view.controls) await tryControls(page, where, problems);
   if (hasPlots && view.controls) await tryResize(page, where, problems, view);
   if (hasPlots && view.controls) await tryPrint(page, where, problems, shots && join(shots, `${view.name}-print.png`));

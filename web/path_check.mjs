@@ -1,4 +1,4 @@
-// Looks at the path in three dimensions of an open report: it is drawn, and a click in it, in its plot or on a button selects a block.
+// Looks at the path in three dimensions of an open report: it is drawn, and a click in it, in a plot or on a link of the decision selects a block.
 
 /** Runs in the page: how many pixels are coloured, and where in the window one of them is. */
 function coloured() {
@@ -54,8 +54,30 @@ export async function tryPath(page, where, problems, { controls, painter = 'webg
   await page.evaluate(settle);
   const turned = await page.evaluate(`(${coloured})()`);
   if (turned.x === seen.x && turned.y === seen.y && turned.count === seen.count) problems.push(`${where}: the arrow key does not turn the path`);
-  await intoView(page, '[data-plot="program-limit"]');
-  const box = await page.evaluate(`(() => { const { x, y, width, height } = document.querySelector('[data-plot="program-limit"] .nsewdrag').getBoundingClientRect(); return { x: x + 0.31 * width, y: y + height / 2 }; })()`);
-  await click(page, box);
+  await clickInPlot(page, 'program-limit');
   await page.until(`${selected} !== '' && ${selected} !== ${JSON.stringify(byClick)}`, `${where}: a click in the plot selects another block`, 10);
+}
+
+async function clickInPlot(page, plot) {
+  await intoView(page, `[data-plot="${plot}"]`);
+  await click(page, await page.evaluate(`(() => { const { x, y, width, height } = document.querySelector('[data-plot="${plot}"] .nsewdrag').getBoundingClientRect(); return { x: x + 0.31 * width, y: y + height / 2 }; })()`));
+}
+
+/** A link of the decision goes to its block in the path, a click in the map over γ selects one; nothing where the report has no decision on a path. */
+export async function tryDecision(page, where, problems) {
+  if (!(await page.evaluate(`document.querySelector('#decision') !== null && document.querySelector('.path') !== null`))) return;
+  const link = `document.querySelector('#decision a.block-link')`;
+  const named = await page.evaluate(`${link}.textContent.match(/block (\\d+)/)[1]`);
+  await page.evaluate(`${link}.focus()`);
+  await page.send('Input.dispatchKeyEvent', { type: 'keyDown', key: 'Enter', code: 'Enter', windowsVirtualKeyCode: 13, text: '\r' });
+  await page.until(`${selected} === '${named}'`, `${where}: the link selects block ${named}`, 10);
+  await page.until(`(({ top, bottom }) => top < window.innerHeight && bottom > 0)(document.querySelector('.path-view').getBoundingClientRect())`, `${where}: the link goes to the path`, 10);
+  if (!(await page.evaluate(`document.querySelector('[data-plot="gamma-map"]') !== null`))) return;
+  const marked = `(document.querySelector('[data-plot="gamma-map"] .shapelayer path')?.getAttribute('d') ?? '')`;
+  await page.until(`${marked} !== ''`, `${where}: the linked block is marked in the map over γ`, 10);
+  const before = await page.evaluate(marked);
+  await clickInPlot(page, 'gamma-map');
+  await page.until(`${selected} !== '${named}' && ${marked} !== ${JSON.stringify(before)}`, `${where}: a click in the map over γ selects another block`, 10);
+  const facts = await page.evaluate(`document.querySelector('#decision [aria-live]').textContent`);
+  if (!facts.includes(await page.evaluate(selected))) problems.push(`${where}: nothing is said of the place that was clicked in the map over γ`);
 }

@@ -1,4 +1,5 @@
 // What robomill writes into the page: shop units, null for "none".
+import type { Decision } from './decision';
 import type { Monitor, MotionDocument } from './recorded';
 
 export * from './recorded';
@@ -350,6 +351,7 @@ export interface Plan {
   hit_directions?: string[]; // of each hit: "x", "-y"
   feed_direction_deg?: Num;
   feed_directions?: FeedDirection[];
+  decision?: Decision | null; // on a program
   warnings: string[];
   notes: string[];
 }

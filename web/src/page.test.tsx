@@ -4,6 +4,7 @@ import { renderToString } from 'preact-render-to-string';
 import { beforeEach, expect, it, vi } from 'vitest';
 import type { Report } from './documents';
 import { Page } from './page';
+import type { Decision } from './decision';
 import { smoothedBy } from './smooth_views';
 
 vi.mock('plotly.js-cartesian-dist-min', () => ({}));
@@ -60,6 +61,79 @@ it('shows every part of a report', () => {
   }
 });
 
+/** The page of the decision alone, with something else in it. */
+function decisionPage(change: Partial<Decision>): string {
+  const decision = { ...report.plan!.decision!, ...change };
+  report = { ...empty(), blocks: report.blocks, plan: { ...report.plan!, recommended: null, alternatives: [], decision } };
+  return page();
+}
+
+it('shows the decision first: what to run, beside what was programmed and what was not chosen', () => {
+  const html = page();
+  expect(html.indexOf('<section id="decision"')).toBeLessThan(html.indexOf('<section id="recommendation"'));
+  for (const part of [
+    'href="#decision"',
+    'within every limit',
+    '14\u202f200\u202f–\u202f15\u202f600 <small>rpm',
+    '18\u202f% less than the 52.4\u202fs programmed',
+    '<div class="unknown"><dt>Peak deflection</dt><dd>not known',
+    '641 lines, 3 spindle speeds, 38 feeds',
+    'Collisions were not checked. Other turns γ move',
+    '1234, 2 exact runs in 7.1\u202fs',
+    '<small>allowed: 40\u202fµm</small>',
+    'href="#path">block 253 (line 266)</a>',
+    'chatters in <a class="block-link" href="#path">block 512 (line 525)</a> at every feed',
+    'data-plot="gamma-map"',
+  ]) {
+    expect(html).toContain(part);
+  }
+  // The warnings stand once: below the card.
+  expect(html.split('The measured model is not passive')).toHaveLength(2);
+  delete report.plan!.decision;
+  expect(page()).not.toContain('id="decision"');
+  expect(page().split('The measured model is not passive')).toHaveLength(2);
+});
+
+it('says why nothing was decided, and shows the program as it is', () => {
+  const html = decisionPage({ status: 'infeasible', reason: 'block 512 (line 525) chatters at every speed', decided: null, stretches: [], changes: null, gamma_map: null });
+  expect(html).toContain('</a> chatters at every speed');
+  expect(html).toContain('As programmed</th>');
+  for (const part of ['class="figures"', 'As decided', 'Collisions were', 'Stretch by stretch', 'gamma-map']) expect(html).not.toContain(part);
+});
+
+it('shows a decision of which no number is known, without a path to go to', () => {
+  report.blocks = null;
+  const { decided } = report.plan!.decision!;
+  const none = Object.fromEntries(Object.keys(decided!).map((key) => [key, null]));
+  const outcome = { ...none, violations: [] } as unknown as NonNullable<Decision['decided']>;
+  const html = decisionPage({ as_programmed: outcome, decided: outcome, stretches: [], evaluations: null, collisions_checked: true });
+  expect(html.match(/<div class="unknown">/g)).toHaveLength(9);
+  expect(html).not.toContain('href="#path"');
+  expect(html).not.toMatch(/NaN|undefined|null|Collisions were/);
+  expect(html).toContain('chatters in block 512 (line 525) at every feed');
+});
+
+it('shows of many stretches those that take longest, and all of them on a click', () => {
+  const [stretch] = report.plan!.decision!.stretches;
+  const stretches = Array.from({ length: 300 }, (_, i) => ({ ...stretch!, first_block: 2 * i + 1, last_block: 2 * i + 2, cutting_time_s: i }));
+  const html = decisionPage({ stretches });
+  const table = (caption: string) => html.split(`${caption}</caption>`)[1]!.split('</table>')[0]!;
+  expect(table('The 10 stretches that take longest').match(/<tr>/g)).toHaveLength(11);
+  expect(table('The 10 stretches that take longest')).toContain('block 599 (line 14)');
+  expect(table('Stretch by stretch').match(/<tr>/g)).toHaveLength(201);
+  expect(html).toContain('The first 200 of 300.');
+});
+
+it('says of a decision that violates limits which, and what is allowed', () => {
+  const decided = report.plan!.decision!.decided!;
+  const violation = { limit: 'spindle_power', block: 12, line: 25, value: 9.1, allowed: 7.5, unit: 'kW' };
+  const html = decisionPage({ decided: { ...decided, violations: [violation, { ...violation, block: 13, value: 9.4 }] } });
+  expect(html).toContain('violates 1 limit<');
+  expect(html).toContain('<div class="over"><dt>Peak power</dt>');
+  expect(html).toContain('allowed: 7.5\u202fkW');
+  expect(html).toContain('<td>Spindle power</td><td class="number">2</td><td class="number">9.4\u202fkW</td>');
+});
+
 it('names the worst blocks of a program, and says where none cuts', () => {
   const blocks = report.blocks!;
   const least = Math.min(...blocks.blocks.gain_margin!.filter((gain) => gain !== null));
@@ -91,6 +165,10 @@ it('shows test cuts that disagree before the recommendation they contradict', ()
   expect(banner).toBeGreaterThan(0);
   expect(banner).toBeLessThan(page().indexOf('<dl class="figures">'));
   expect(banner).toBeLessThan(page().indexOf('id="lobes"'));
+  expect(page().split('test cuts disagree')).toHaveLength(2);
+  delete report.plan!.decision;
+  expect(page().indexOf('test cuts disagree')).toBeLessThan(page().indexOf('<dl class="figures">'));
+  expect(page().split('test cuts disagree')).toHaveLength(2);
   report.plan!.agreement = { agree: 6, disagree: 0, not_compared: 0 };
   expect(page()).not.toContain('test cuts disagree');
 });

@@ -3,6 +3,7 @@ import { Component, type ComponentChildren } from 'preact';
 import type { Report } from './documents';
 import { Bullets, Facts } from './parts';
 import { AssemblySection } from './sections/assembly';
+import { DecisionSection } from './sections/decision';
 import { ForcesSection } from './sections/forces';
 import { FeedSection, LobesSection, PairsSection } from './sections/lobes';
 import { CalibrationSection, MonitorSection } from './sections/monitor';
@@ -11,6 +12,7 @@ import { RecommendationSection } from './sections/recommendation';
 import { RecordingsSection } from './sections/recordings';
 import { SmoothSection } from './sections/smooth';
 import { FrfSection, HitsSection, ModesSection, NotesSection } from './sections/structure';
+import { Selection } from './selection';
 import { frfsOf, hitsOf, lobesOf, modesOf } from './views';
 
 interface Entry {
@@ -77,28 +79,41 @@ function Warnings({ warnings }: { warnings: string[] }) {
   );
 }
 
+/** The numbers of the blocks whose places the page has. */
+function placedBlocks({ blocks }: Report): number[] {
+  return blocks?.blocks.block ?? [];
+}
+
 export function Page({ report }: { report: Report }) {
+  const { plan } = report;
+  const decision = plan?.decision ?? null;
   const shown = entries(report);
+  const links = decision ? [{ id: 'decision', name: 'Decision' }, ...shown] : shown;
   return (
-    <>
+    <Selection blocks={placedBlocks(report)}>
       <a class="skip" href="#main">
         Skip to the content
       </a>
       <Header {...report} />
-      {shown.length > 1 && (
+      {links.length > 1 && (
         <nav aria-label="Sections">
-          {shown.map(({ id, name }) => (
+          {links.map(({ id, name }) => (
             <a href={`#${id}`}>{name}</a>
           ))}
         </nav>
       )}
       <main id="main">
-        {report.plan && <RecommendationSection plan={report.plan} hasLobes={report.lobes !== null} />}
-        {report.plan && <Warnings warnings={report.plan.warnings} />}
+        {plan && decision && (
+          <Contained>
+            <DecisionSection decision={decision} plan={plan} />
+          </Contained>
+        )}
+        {plan && <RecommendationSection plan={plan} hasLobes={report.lobes !== null} />}
+        {plan && !decision && <Warnings warnings={plan.warnings} />}
         {shown.map(({ content }) => (
           <Contained>{content}</Contained>
         ))}
       </main>
-    </>
+    </Selection>
   );
 }

@@ -21,15 +21,16 @@ export function Section({ id, heading, lead, children }: SectionProps) {
   );
 }
 
-/** A column of a table; `number`: its cells are numbers; `optional`: not shown where no cell says anything. */
+/** A column of a table; `number`: its cells are numbers; `long`: sentences; `optional`: not shown where no cell says anything. */
 export interface Column<Row> {
   heading: string;
   number?: boolean;
+  long?: boolean;
   optional?: boolean;
   cell: (row: Row, index: number) => ComponentChildren;
 }
 
-interface TableProps<Row> {
+export interface TableProps<Row> {
   caption: string;
   quiet?: boolean; // the caption is only for who cannot see the heading above it
   columns: Column<Row>[];
@@ -37,9 +38,9 @@ interface TableProps<Row> {
   rowClass?: (row: Row) => string;
 }
 
-function cellClass(number: boolean | undefined, content: ComponentChildren): string | undefined {
+function cellClass<Row>({ number, long }: Column<Row>, content: ComponentChildren): string | undefined {
   if (number) return 'number';
-  return typeof content === 'string' && content.length > 24 ? 'long' : undefined;
+  return long || (typeof content === 'string' && content.length > 24) ? 'long' : undefined;
 }
 
 export function Table<Row>({ caption, quiet, columns: all, rows, rowClass }: TableProps<Row>) {
@@ -60,9 +61,9 @@ export function Table<Row>({ caption, quiet, columns: all, rows, rowClass }: Tab
         <tbody>
           {rows.map((row, index) => (
             <tr class={rowClass?.(row) || undefined}>
-              {columns.map(({ number, cell }) => {
-                const content = cell(row, index);
-                return <td class={cellClass(number, content)}>{content}</td>;
+              {columns.map((column) => {
+                const content = column.cell(row, index);
+                return <td class={cellClass(column, content)}>{content}</td>;
               })}
             </tr>
           ))}
@@ -94,6 +95,69 @@ export function Facts({ facts }: { facts: Fact[] }) {
         </div>
       ))}
     </dl>
+  );
+}
+
+/** A number in large type. */
+export interface KeyFigure {
+  label: string;
+  value: string;
+  unit: string;
+  note?: string; // below it
+  state?: 'over' | 'unknown' | undefined; // beyond its limit; no number
+  wide?: boolean; // needs the room of two
+}
+
+export function KeyFigures({ figures }: { figures: KeyFigure[] }) {
+  return (
+    <dl class="figures">
+      {figures.map(({ label, value, unit, note, state, wide }) => (
+        <div class={[state, wide && 'wide'].filter(Boolean).join(' ') || undefined}>
+          <dt>{label}</dt>
+          <dd>
+            {value} <small>{state === 'unknown' ? '' : unit}</small>
+          </dd>
+          {note !== undefined && note !== '' && <dd class="note">{note}</dd>}
+        </div>
+      ))}
+    </dl>
+  );
+}
+
+interface BlockStepsProps {
+  blocks: number[]; // their numbers
+  selected: number | null; // an index
+  select: (index: number) => void;
+  children?: ComponentChildren; // more buttons
+}
+
+/** Buttons and a number that select a block without a pointer. */
+export function BlockSteps({ blocks, selected, select, children }: BlockStepsProps) {
+  const last = blocks.length - 1;
+  const step = (by: number) => select(selected === null ? 0 : Math.min(last, Math.max(0, selected + by)));
+  return (
+    <span class="steps">
+      <button type="button" aria-label="Block before" onClick={() => step(-1)}>
+        ◂
+      </button>
+      <label>
+        Block{' '}
+        <input
+          type="number"
+          min={blocks[0]}
+          max={blocks[last]}
+          value={selected === null ? '' : blocks[selected]}
+          onChange={({ currentTarget }) => {
+            const index = blocks.indexOf(currentTarget.valueAsNumber);
+            if (index >= 0) select(index);
+          }}
+        />
+      </label>
+      <button type="button" aria-label="Block after" onClick={() => step(1)}>
+        ▸
+      </button>
+      {children}
+    </span>
   );
 }
 

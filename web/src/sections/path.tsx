@@ -2,7 +2,7 @@
 import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks';
 import type { BlockColumns, Fact } from '../documents';
 import { dark, light, thinSpace, type Theme } from '../figures/theme';
-import { Facts } from '../parts';
+import { BlockSteps, Facts } from '../parts';
 import type { PathView, Side } from '../path/contract';
 import { coloursOf, gradient, pathData, rangeOf, regimes, worstBlocks, type Quantity } from '../path_views';
 import { Choice, onColours } from '../plot';
@@ -55,8 +55,6 @@ const sides: { side: Side; name: string }[] = [
 ];
 
 function Buttons({ view, columns, selected, select }: { view: () => PathView | null } & Pick<PathProps, 'columns' | 'selected' | 'select'>) {
-  const count = columns.block.length;
-  const step = (by: number) => select(selected === null ? 0 : Math.min(count - 1, Math.max(0, selected + by)));
   return (
     <div class="controls buttons">
       <button type="button" onClick={() => view()?.fit()}>
@@ -67,30 +65,11 @@ function Buttons({ view, columns, selected, select }: { view: () => PathView | n
           {name}
         </button>
       ))}
-      <span class="steps">
-        <button type="button" aria-label="Block before" onClick={() => step(-1)}>
-          ◂
-        </button>
-        <label>
-          Block{' '}
-          <input
-            type="number"
-            min={columns.block[0]}
-            max={columns.block[count - 1]}
-            value={selected === null ? '' : columns.block[selected]}
-            onChange={({ currentTarget }) => {
-              const index = columns.block.indexOf(currentTarget.valueAsNumber);
-              if (index >= 0) select(index);
-            }}
-          />
-        </label>
-        <button type="button" aria-label="Block after" onClick={() => step(1)}>
-          ▸
-        </button>
+      <BlockSteps blocks={columns.block} selected={selected} select={select}>
         <button type="button" onClick={() => select(worstBlocks(columns, 1)[0] ?? null)}>
           Worst block
         </button>
-      </span>
+      </BlockSteps>
     </div>
   );
 }
@@ -129,7 +108,7 @@ export function PathFigure({ columns, quantities, selected, select, facts }: Pat
     if (!event.ctrlKey && !event.metaKey && !event.altKey && view.current?.key(event.key)) event.preventDefault();
   };
   return (
-    <figure class="path" data-painter={painter}>
+    <figure id="path" class="path" data-painter={painter}>
       <div class="controls">
         <Choice legend="Colour" names={quantities.map(({ name }) => name)} chosen={chosen} choose={choose} />
       </div>

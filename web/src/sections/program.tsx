@@ -1,11 +1,12 @@
 // The program: its path in three dimensions, limits over its blocks, the worst of them.
-import { useCallback, useMemo, useState } from 'preact/hooks';
+import { useCallback, useMemo } from 'preact/hooks';
 import type { BlockColumns, BlocksDocument, LimitOver } from '../documents';
 import { deepest, limitFigure, overFigure } from '../figures/program_limit';
 import type { Theme } from '../figures/theme';
 import { Bullets, Facts, Section, Table, type Column } from '../parts';
 import { blockFacts, boundOf, isUnstable, numberAt, programFacts, quantitiesOf, regimeName, worstBlocks } from '../path_views';
 import { Plot, type Draw } from '../plot';
+import { useSelection } from '../selection';
 import { dash, fixed, significant } from '../text';
 import { PathFigure } from './path';
 
@@ -82,10 +83,12 @@ function Scans({ scans: all, columns }: { scans: LimitOver[]; columns: BlockColu
 
 export function ProgramSection({ document }: { document: BlocksDocument }) {
   const { blocks: columns, summary, limit_over: scans } = document;
-  const [selected, select] = useState<number | null>(null);
+  const { block, select: selectBlock } = useSelection();
+  const selected = useMemo(() => (block !== null && columns.block.includes(block) ? columns.block.indexOf(block) : null), [columns, block]);
+  const select = useCallback((index: number | null) => selectBlock(index === null ? null : columns.block[index]!), [columns, selectBlock]);
   const quantities = useMemo(() => quantitiesOf(columns), [columns]);
   const draw = useMemo((): Draw => (theme: Theme) => limitFigure(columns, selected, theme), [columns, selected]);
-  const picked = useCallback((block: number) => void (columns.block.includes(block) && select(columns.block.indexOf(block))), [columns]);
+  const picked = useCallback((at: number) => void (columns.block.includes(at) && selectBlock(at)), [columns, selectBlock]);
   return (
     <Section id="program" heading="Program" lead="How far each block of the program is from chatter.">
       <Facts facts={programFacts(document)} />

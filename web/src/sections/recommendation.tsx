@@ -1,7 +1,7 @@
 // What to cut, and what keeps it from being faster.
 import type { ComponentChildren } from 'preact';
 import type { Agreement, Finishing, Plan, Recommendation } from '../documents';
-import { Table } from '../parts';
+import { KeyFigures, Table, type KeyFigure } from '../parts';
 import { fixed, modeName, percent, significant } from '../text';
 
 function limitedBy(cut: Recommendation): string {
@@ -9,7 +9,7 @@ function limitedBy(cut: Recommendation): string {
 }
 
 /** The cuts that were made say that the model is wrong: nothing below is worth more than that. */
-function Disagreement({ agree, disagree }: Agreement) {
+export function Disagreement({ agree, disagree }: Agreement) {
   if (disagree === 0) return null;
   return (
     <p class="why none">
@@ -21,31 +21,19 @@ function Disagreement({ agree, disagree }: Agreement) {
   );
 }
 
-function Figures({ cut }: { cut: Recommendation }) {
-  const figures: [string, string, string][] = [
-    ['Spindle speed', fixed(cut.spindle_speed_rpm, 0), 'rpm'],
-    ['Axial depth', fixed(cut.axial_depth_mm, 2), 'mm'],
-    ['Feed', significant(cut.feed_mm_per_min), 'mm/min'],
-    ['Feed per tooth', significant(cut.feed_per_tooth_mm), 'mm'],
-    ['Cutting speed', significant(cut.cutting_speed_m_per_min), 'm/min'],
-    ['Removal rate', significant(cut.removal_rate_mm3_per_s), 'mm³/s'],
-    ['Mean torque', significant(cut.torque_n_m), 'N·m'],
-    ['Mean power', significant(cut.power_w), 'W'],
-    ['Surface error', significant(cut.surface_error_um), 'µm'],
-    ['Peak deflection', significant(cut.peak_deflection_um), 'µm'],
+function figuresOf(cut: Recommendation): KeyFigure[] {
+  return [
+    { label: 'Spindle speed', value: fixed(cut.spindle_speed_rpm, 0), unit: 'rpm' },
+    { label: 'Axial depth', value: fixed(cut.axial_depth_mm, 2), unit: 'mm' },
+    { label: 'Feed', value: significant(cut.feed_mm_per_min), unit: 'mm/min' },
+    { label: 'Feed per tooth', value: significant(cut.feed_per_tooth_mm), unit: 'mm' },
+    { label: 'Cutting speed', value: significant(cut.cutting_speed_m_per_min), unit: 'm/min' },
+    { label: 'Removal rate', value: significant(cut.removal_rate_mm3_per_s), unit: 'mm³/s' },
+    { label: 'Mean torque', value: significant(cut.torque_n_m), unit: 'N·m' },
+    { label: 'Mean power', value: significant(cut.power_w), unit: 'W' },
+    { label: 'Surface error', value: significant(cut.surface_error_um), unit: 'µm' },
+    { label: 'Peak deflection', value: significant(cut.peak_deflection_um), unit: 'µm' },
   ];
-  return (
-    <dl class="figures">
-      {figures.map(([label, value, unit]) => (
-        <div>
-          <dt>{label}</dt>
-          <dd>
-            {value} <small>{unit}</small>
-          </dd>
-        </div>
-      ))}
-    </dl>
-  );
 }
 
 /** What forced vibration leaves, and whether anything limits it. */
@@ -101,17 +89,19 @@ function Alternatives({ cuts }: { cuts: Recommendation[] }) {
   );
 }
 
+/** Test cuts that disagree are said here unless a decision above says so. */
 export function RecommendationSection({ plan, hasLobes }: { plan: Plan; hasLobes: boolean }) {
   const { recommended: cut, reason = '', alternatives, agreement } = plan;
   const answered = cut !== null || reason !== '' || alternatives.length > 0;
-  if (!answered && agreement.disagree === 0) return null;
+  const saidAbove = Boolean(plan.decision);
+  if (!answered && (saidAbove || agreement.disagree === 0)) return null;
   return (
     <section id="recommendation" class="hero">
       <h2>{answered ? 'Recommended cut' : 'Test cuts'}</h2>
-      <Disagreement {...agreement} />
+      {!saidAbove && <Disagreement {...agreement} />}
       {cut !== null && (
         <>
-          <Figures cut={cut} />
+          <KeyFigures figures={figuresOf(cut)} />
           <Why cut={cut} />
           <p class="why">{surfaceSentence(cut, plan.finishing)}</p>
         </>

@@ -1,0 +1,80 @@
+// What plan.json says of the decision on a program: "decision".
+import type { Num } from './documents';
+
+/** A limit that a program violates, in one block. */
+export interface Violation {
+  limit: string; // "stability", "spindle_power"
+  block: Num; // from 1
+  line: Num;
+  value: Num;
+  allowed: Num;
+  unit: string;
+}
+
+/** What a program comes to; null: not known. */
+export interface Outcome {
+  cutting_time_s: Num;
+  total_time_s: Num;
+  lowest_spindle_speed_rpm: Num;
+  highest_spindle_speed_rpm: Num;
+  unstable_blocks: Num;
+  least_stability_margin: Num;
+  peak_force_n: Num;
+  peak_torque_n_m: Num;
+  peak_power_w: Num;
+  peak_deflection_um: Num;
+  worst_surface_error_um: Num;
+  violations: Violation[];
+}
+
+/** A spindle speed that was not chosen. */
+export interface OtherSpeed {
+  spindle_speed_rpm: Num;
+  cutting_time_s: Num; // null: nothing is permitted at this speed
+  stopped_by: string; // "slower": it is permitted
+  limit: string | null;
+  block: Num;
+  line: Num;
+}
+
+/** Blocks that follow each other at one spindle speed. */
+export interface Stretch {
+  first_block: number;
+  last_block: number;
+  first_line: Num;
+  last_line: Num;
+  spindle_speed_rpm: Num;
+  lowest_feed_mm_per_min: Num;
+  highest_feed_mm_per_min: Num;
+  cutting_time_s: Num;
+  limited_by: string;
+}
+
+/** Stability margin over the place along the path and the turn γ about the spindle's axis. */
+export interface GammaMap {
+  block: number[];
+  path_mm: number[];
+  gamma_deg: number[];
+  margin: Num[][]; // a row a γ; null: the robot cannot stand there
+  chosen_deg: Num[];
+  programmed_deg: Num[];
+  least_margin: Num; // what is asked for
+}
+
+export interface Decision {
+  status: 'found' | 'infeasible';
+  reason: string; // of infeasible: which limit, where, by how much
+  goal: 'time' | 'removal_rate';
+  free: string[]; // "spindle_speed", "feed", "gamma"
+  collisions_checked: boolean;
+  evaluations: Num;
+  exact_runs: Num;
+  seconds: Num;
+  as_programmed: Outcome;
+  decided: Outcome | null;
+  alternatives: OtherSpeed[];
+  stretches: Stretch[];
+  changes: { lines: Num; speeds: Num; feeds: Num } | null;
+  notes: string[];
+  gamma_map: GammaMap | null;
+}

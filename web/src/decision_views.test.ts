@@ -1,0 +1,84 @@
+import { expect, it } from 'vitest';
+import type { Decision, GammaMap, Outcome } from './decision';
+import { allowedText, brokenLimits, collisionCaution, columnFacts, feedText, leastAlong, limited, limitName, marginAt, nearest, rangeText, savedText, violationOf } from './decision_views';
+
+const map: GammaMap = {
+  block: [3, 5, 9],
+  path_mm: [10, 20, 40],
+  gamma_deg: [-10, 0, 10],
+  margin: [
+    [-0.2, 0.1, null],
+    [0.2, 0.3, null],
+    [0.4, null, null],
+  ],
+  chosen_deg: [5, 0, null],
+  programmed_deg: [-10, -5, 0],
+  least_margin: 0.1,
+};
+
+it('reads the map between its rows, not where the robot cannot stand', () => {
+  expect(marginAt(map, 0, 5)).toBeCloseTo(0.3);
+  expect(marginAt(map, 1, 0)).toBe(0.3);
+  expect(marginAt(map, 1, 5)).toBeNull();
+  expect(marginAt(map, 0, 11)).toBeNull();
+  expect(marginAt(map, 0, null)).toBeNull();
+  expect(leastAlong(map, map.chosen_deg)).toBeCloseTo(0.3);
+  expect(leastAlong(map, map.programmed_deg)).toBeCloseTo(-0.2);
+  expect(leastAlong(map, [null, null, 0])).toBeNull();
+});
+
+it('finds a place along the path, and a block that is not in the map', () => {
+  expect([0, 14, 16, 31, 99].map((at) => nearest(map.path_mm, at))).toEqual([0, 0, 1, 2, 2]);
+  expect(nearest(map.block, 6)).toBe(1);
+});
+
+it('says what is known of one place', () => {
+  expect(columnFacts(map, 0).map(({ value }) => value)).toEqual(['3', '10.0\u202fmm', '-10°, margin -0.2', '5°, margin 0.3', '0.4 at 10°']);
+  expect(columnFacts(map, 2).map(({ value }) => value)).toEqual(['9', '40.0\u202fmm', '0°, margin –', 'the robot cannot stand here']);
+});
+
+it('says what is saved', () => {
+  expect(savedText(50, 41)).toBe('18\u202f% less than the 50.0\u202fs programmed');
+  expect(savedText(50, 60)).toBe('20\u202f% more than the 50.0\u202fs programmed');
+  expect(savedText(50, 50.1)).toBe('as the 50.0\u202fs programmed');
+  for (const [before, after] of [[null, 1], [1, null], [0, 1]] as const) expect(savedText(before, after)).toBe('');
+});
+
+it('joins what is lowest and highest', () => {
+  const text = (value: number) => value.toFixed(0);
+  expect(rangeText(1, 2, text)).toBe('1\u202f–\u202f2');
+  expect(rangeText(1, 1.2, text)).toBe('1');
+  expect(rangeText(null, 2, text)).toBe('2');
+  expect(rangeText(null, null, text)).toBe('not known');
+  const stretch = (low: number | null, high: number | null) => ({ lowest_feed_mm_per_min: low, highest_feed_mm_per_min: high });
+  expect(feedText({ stretches: [stretch(800, 900), stretch(null, 700)] } as unknown as Decision)).toBe('700\u202f–\u202f900');
+  expect(feedText({ stretches: [] } as unknown as Decision)).toBe('not known');
+});
+
+it('takes the worst violation of each limit, also of a limit from below, and keeps those of joints apart', () => {
+  const row = (limit: string, block: number, value: number | null, allowed: number | null) => ({ limit, block, line: null, value, allowed, unit: '' });
+  const outcome = { violations: [row('stability', 1, 0.1, 0.2), row('spindle_power', 2, 9, 8), row('stability', 3, -0.4, 0.2), row('joint_torque', 4, null, null)] } as unknown as Outcome;
+  expect(brokenLimits(outcome).map(({ limit, count, worst }) => [limit, count, worst.block])).toEqual([
+    ['stability', 2, 3],
+    ['spindle_power', 1, 2],
+    ['joint_torque', 1, 4],
+  ]);
+  expect(limited.map((measure) => violationOf(outcome, measure)?.block ?? null)).toEqual([3, null, null, 2, null, null]);
+});
+
+it('says of stability what was violated: the spectral radius or the margin', () => {
+  const violation = { limit: 'stability', block: 1, line: 2, value: 1.03, allowed: 1, unit: '' };
+  expect([limitName(violation), allowedText(violation)]).toEqual(['Stability, |μ|', 'chatter']);
+  const margin = { ...violation, value: 0.05, allowed: 0.1 };
+  expect([limitName(margin), allowedText(margin)]).toEqual(['Stability margin', 'asked for: 0.1']);
+  const chip = { ...violation, limit: 'least_chip', value: 0.004, allowed: 0.01, unit: 'mm' };
+  expect([limitName(chip), allowedText(chip)]).toEqual(['Least chip', 'allowed: 0.01\u202fmm']);
+});
+
+it('warns of collisions where there is something to run', () => {
+  const decision = { collisions_checked: false, decided: {}, free: ['feed'] } as unknown as Decision;
+  expect(collisionCaution(decision)).toBe('Collisions were not checked. Run the program in the air first.');
+  expect(collisionCaution({ ...decision, free: ['gamma'] })).toContain('Other turns γ move');
+  expect(collisionCaution({ ...decision, decided: null })).toBe('');
+  expect(collisionCaution({ ...decision, collisions_checked: true })).toBe('');
+});

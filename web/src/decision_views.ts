@@ -1,0 +1,207 @@
+// What the section of a decision needs, made of plan.json's "decision".
+import type { Decision, GammaMap, Outcome, Violation } from './decision';
+import type { Fact, Num } from './documents';
+import { thinSpace } from './figures/theme';
+import { dash, fixed, percent, significant } from './text';
+import { valueAt } from './views';
+
+export const unknown = 'not known';
+
+/** A number of an outcome, and the name of its limit. */
+export interface Measure {
+  name: string;
+  unit: string;
+  limit?: string;
+  chatters?: (outcome: Outcome) => boolean; // it says that some block is unstable
+  text: (outcome: Outcome) => string;
+}
+
+function time(value: number): string {
+  return fixed(value, 1);
+}
+
+function whole(value: number): string {
+  return fixed(value, 0);
+}
+
+function said(value: Num, text: (value: number) => string = significant): string {
+  return value === null ? unknown : text(value);
+}
+
+/** "9600 – 12 000", or one number where both are the same. */
+export function rangeText(low: Num, high: Num, text: (value: number) => string): string {
+  const [from, to] = [low ?? high, high ?? low];
+  if (from === null || to === null) return unknown;
+  return text(from) === text(to) ? text(from) : `${text(from)}${thinSpace}–${thinSpace}${text(to)}`;
+}
+
+export function speedText({ lowest_spindle_speed_rpm: low, highest_spindle_speed_rpm: high }: Outcome): string {
+  return rangeText(low, high, whole);
+}
+
+export function cuttingTimeText({ cutting_time_s: value }: Outcome): string {
+  return said(value, time);
+}
+
+/** Those with a limit. */
+export const limited: Measure[] = [
+  { name: 'Least stability margin', unit: '', limit: 'stability', chatters: ({ least_stability_margin: least }) => (least ?? 0) < 0, text: (outcome) => said(outcome.least_stability_margin) },
+  { name: 'Peak force', unit: 'N', limit: 'force', text: (outcome) => said(outcome.peak_force_n) },
+  { name: 'Peak torque', unit: 'N·m', limit: 'torque', text: (outcome) => said(outcome.peak_torque_n_m) },
+  { name: 'Peak power', unit: 'W', limit: 'power', text: (outcome) => said(outcome.peak_power_w) },
+  { name: 'Peak deflection', unit: 'µm', limit: 'deflection', text: (outcome) => said(outcome.peak_deflection_um) },
+  { name: 'Surface error', unit: 'µm', limit: 'surface_error', text: (outcome) => said(outcome.worst_surface_error_um) },
+];
+
+export const measures: Measure[] = [
+  { name: 'Cutting time', unit: 's', text: cuttingTimeText },
+  { name: 'Time with moves in air', unit: 's', text: (outcome) => said(outcome.total_time_s, time) },
+  { name: 'Spindle speed', unit: 'rpm', text: speedText },
+  { name: 'Unstable blocks', unit: '', chatters: ({ unstable_blocks: count }) => (count ?? 0) > 0, text: (outcome) => said(outcome.unstable_blocks, whole) },
+  ...limited,
+];
+
+export function withUnit(text: string, unit: string): string {
+  return unit === '' || text === dash || text === unknown ? text : `${text}${thinSpace}${unit}`;
+}
+
+/** The worst violation of a measure's limit; null where it stays within. */
+export function violationOf(outcome: Outcome, { limit }: Measure): Violation | null {
+  if (limit === undefined) return null;
+  return brokenLimits(outcome).find((broken) => broken.limit.replace(/^spindle_/, '') === limit)?.worst ?? null;
+}
+
+/** Stability is violated as a spectral radius, of which 1 is allowed, or as a margin, of which some is asked for. */
+function isMargin({ limit, allowed }: Violation): boolean {
+  return limit === 'stability' && (allowed ?? 1) < 1;
+}
+
+/** "allowed: 7.5 kW" */
+export function allowedText(violation: Violation): string {
+  const { limit, allowed, unit } = violation;
+  if (isMargin(violation)) return `asked for: ${significant(allowed)}`;
+  return limit === 'stability' ? 'chatter' : `allowed: ${withUnit(significant(allowed), unit)}`;
+}
+
+/** "Spindle power" of "spindle_power" */
+export function limitName(violation: Violation): string {
+  const { limit } = violation;
+  if (limit === 'stability') return isMargin(violation) ? 'Stability margin' : 'Stability, |μ|';
+  const words = limit.replace(/_/g, ' ');
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/** The violations of one limit, and the one furthest from what is allowed. */
+export interface BrokenLimit {
+  limit: string;
+  count: number;
+  worst: Violation;
+}
+
+function excess({ value, allowed }: Violation): number {
+  return value === null || allowed === null ? 0 : Math.abs(value - allowed);
+}
+
+export function brokenLimits({ violations }: Outcome): BrokenLimit[] {
+  const found = new Map<string, BrokenLimit>();
+  for (const violation of violations) {
+    const { limit } = violation;
+    const before = found.get(limit);
+    const worst = before && excess(before.worst) >= excess(violation) ? before.worst : violation;
+    found.set(limit, { limit, count: (before?.count ?? 0) + 1, worst });
+  }
+  return [...found.values()];
+}
+
+/** From the lowest to the highest feed of all stretches. */
+export function feedText({ stretches }: Decision): string {
+  const feeds = stretches.flatMap(({ lowest_feed_mm_per_min: low, highest_feed_mm_per_min: high }) => [low, high]).filter((feed): feed is number => feed !== null);
+  return feeds.length === 0 ? unknown : rangeText(Math.min(...feeds), Math.max(...feeds), significant);
+}
+
+/** "18 % less than the 52.4 s programmed"; empty where one of the times is not known. */
+export function savedText(programmed: Num, decided: Num): string {
+  if (programmed === null || decided === null || !(programmed > 0)) return '';
+  const share = decided / programmed - 1;
+  const before = withUnit(time(programmed), 's');
+  if (Math.abs(share) < 0.005) return `as the ${before} programmed`;
+  return `${percent(Math.abs(share), 0)} ${share < 0 ? 'less' : 'more'} than the ${before} programmed`;
+}
+
+function counted(count: number, one: string, many: string): string {
+  return `${fixed(count, 0)} ${count === 1 ? one : many}`;
+}
+
+function changesText(changes: Decision['changes']): string {
+  if (changes === null) return '';
+  const { lines, speeds, feeds } = changes;
+  const said: string[] = [];
+  if (lines !== null) said.push(counted(lines, 'line', 'lines'));
+  if (speeds !== null) said.push(counted(speeds, 'spindle speed', 'spindle speeds'));
+  if (feeds !== null) said.push(counted(feeds, 'feed', 'feeds'));
+  return said.join(', ');
+}
+
+const goals: Record<Decision['goal'], string> = { time: 'shortest cutting time', removal_rate: 'highest removal rate' };
+const freedoms: Record<string, string> = { spindle_speed: 'spindle speed', feed: 'feed', gamma: 'γ', axial_depth: 'axial depth', lead: 'lead', tilt: 'tilt' };
+
+export function decisionFacts({ goal, free, changes, collisions_checked, evaluations, exact_runs, seconds }: Decision): Fact[] {
+  const facts: Fact[] = [
+    { label: 'Goal', value: goals[goal] ?? goal },
+    { label: 'Free to choose', value: free.map((name) => freedoms[name] ?? name).join(', ') || 'nothing' },
+    { label: 'Collisions', value: collisions_checked ? 'checked' : 'not checked' },
+  ];
+  const changed = changesText(changes);
+  if (changed !== '') facts.push({ label: 'Changed in the program', value: changed });
+  if (evaluations !== null) {
+    const exact = exact_runs === null ? '' : `, ${counted(exact_runs, 'exact run', 'exact runs')}`;
+    facts.push({ label: 'Evaluations', value: `${fixed(evaluations, 0)}${exact}${seconds === null ? '' : ` in ${withUnit(significant(seconds), 's')}`}` });
+  }
+  return facts;
+}
+
+/** What to do before the program is run as decided. */
+export function collisionCaution({ collisions_checked, decided, free }: Decision): string {
+  if (collisions_checked || decided === null) return '';
+  const why = free.includes('gamma') ? ' Other turns γ move the holder, the spindle and the arm.' : '';
+  return `Collisions were not checked.${why} Run the program in the air first.`;
+}
+
+function column({ margin }: GammaMap, index: number): Num[] {
+  return margin.map((row) => row[index] ?? null);
+}
+
+/** Between the rows of the map; null where γ is not known or the robot cannot stand. */
+export function marginAt(map: GammaMap, index: number, gamma: Num): Num {
+  return gamma === null ? null : valueAt(map.gamma_deg, column(map, index), gamma);
+}
+
+/** The least margin along a line over the map; null where none is known. */
+export function leastAlong(map: GammaMap, gamma: Num[]): Num {
+  return map.block.reduce<Num>((least, _, index) => {
+    const at = marginAt(map, index, gamma[index] ?? null);
+    return at === null ? least : Math.min(least ?? at, at);
+  }, null);
+}
+
+/** The index of the value nearest to another: of a map's places, or of its blocks, which may be some of the program's. */
+export function nearest(values: number[], to: number): number {
+  return values.reduce((best, value, index) => (Math.abs(value - to) < Math.abs(values[best]! - to) ? index : best), 0);
+}
+
+/** What the map says of one column. */
+export function columnFacts(map: GammaMap, index: number): Fact[] {
+  const known = column(map, index).flatMap((margin, row) => (margin === null ? [] : [{ margin, gamma: map.gamma_deg[row]! }]));
+  const best = known.length === 0 ? null : known.reduce((a, b) => (b.margin > a.margin ? b : a));
+  const at = (gamma: Num) => `${significant(gamma)}°, margin ${significant(marginAt(map, index, gamma))}`;
+  const chosen = map.chosen_deg[index] ?? null;
+  const programmed = map.programmed_deg[index] ?? null;
+  const facts: Fact[] = [
+    { label: 'Block', value: fixed(map.block[index]!, 0) },
+    { label: 'Along the path', value: withUnit(fixed(map.path_mm[index]!, 1), 'mm') },
+  ];
+  if (programmed !== null) facts.push({ label: 'γ as programmed', value: at(programmed) });
+  if (chosen !== null) facts.push({ label: 'γ as chosen', value: at(chosen) });
+  facts.push({ label: 'Highest margin', value: best === null ? 'the robot cannot stand here' : `${significant(best.margin)} at ${significant(best.gamma)}°` });
+  return facts;
+}
