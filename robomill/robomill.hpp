@@ -43,6 +43,7 @@
 #include "robomill/jobs/joint.hpp"
 #include "robomill/jobs/lobes.hpp"
 #include "robomill/jobs/monitor.hpp"
+#include "robomill/jobs/monitor_plan.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/posture.hpp"
 #include "robomill/jobs/predict.hpp"
