@@ -33,29 +33,26 @@ double highest(const Json& blocks, const char* column) {
   return std::ranges::max(known(blocks, column));
 }
 
-/// Blocks whose value in a column is above what is allowed, the highest first.
-std::vector<Json> violations(const Json& blocks, const char* column, const std::string& limit, double allowed,
-                             const char* unit) {
-  std::vector<Json> rows;
-  for (std::size_t i = 0; i < blocks.at("block").size(); ++i) {
+/// The block whose value in a column is the highest, where it is more than is allowed.
+Json worst(const Json& blocks, const char* column, const std::string& limit, double allowed, const char* unit) {
+  std::size_t at = 0;
+  double most = allowed;
+  for (std::size_t i = 0; i < blocks.at(column).size(); ++i) {
     const Json& value = blocks.at(column)[i];
-    if (!value.is_number() || value.get<double>() <= allowed) continue;
-    rows.push_back({{"limit", limit},
-                    {"block", blocks.at("block")[i]},
-                    {"line", blocks.at("line")[i]},
-                    {"value", value},
-                    {"allowed", allowed},
-                    {"unit", unit}});
+    if (!value.is_number() || value.get<double>() <= most) continue;
+    most = value.get<double>();
+    at = i;
   }
-  std::ranges::sort(rows, std::greater<>(), [](const Json& row) { return row.at("value").get<double>(); });
-  return rows;
+  return {{"limit", limit},
+          {"block", blocks.at("block")[at]},
+          {"line", blocks.at("line")[at]},
+          {"value", most},
+          {"allowed", allowed},
+          {"unit", unit}};
 }
 
 Json as_programmed(const Json& blocks, const std::string& text) {
-  std::vector<Json> broken = violations(blocks, "spectral_radius", text.empty() ? "stability" : text, 1.0, "");
-  const std::size_t unstable = broken.size();
-  for (Json& row : violations(blocks, "surface_error_um", "surface_error", allowed_surface_error_um, "µm"))
-    broken.push_back(std::move(row));
+  const auto unstable = std::ranges::count_if(known(blocks, "spectral_radius"), [](double at) { return at >= 1.0; });
   return {{"cutting_time_s", 52.4},
           {"total_time_s", 61.9},
           {"lowest_spindle_speed_rpm", programmed_speed_rpm},
@@ -67,7 +64,9 @@ Json as_programmed(const Json& blocks, const std::string& text) {
           {"peak_power_w", highest(blocks, "power_w")},
           {"peak_deflection_um", highest(blocks, "deflection_um")},
           {"worst_surface_error_um", highest(blocks, "surface_error_um")},
-          {"violations", std::move(broken)}};
+          {"violations",
+           Json::array({worst(blocks, "spectral_radius", text.empty() ? "stability" : text, 1.0, ""),
+                        worst(blocks, "surface_error_um", "surface_error", allowed_surface_error_um, "µm")})}};
 }
 
 Json as_decided() {
@@ -86,15 +85,21 @@ Json as_decided() {
 }
 
 Json alternatives_json(const std::function<std::string(const char*)>& said) {
-  const auto row = [](double rpm, Json time_s, const std::string& stopped_by, Json limit, Json block) -> Json {
+  const auto row = [](double rpm, int stretch, Json time_s, const std::string& stopped_by, Json limit,
+                      Json block) -> Json {
     const Json line = block.is_null() ? Json() : Json(block.get<int>() + 13);
-    return {{"spindle_speed_rpm", rpm},  {"cutting_time_s", std::move(time_s)}, {"stopped_by", stopped_by},
-            {"limit", std::move(limit)}, {"block", std::move(block)},           {"line", line}};
+    return {{"spindle_speed_rpm", rpm},
+            {"stretch", stretch},
+            {"cutting_time_s", std::move(time_s)},
+            {"stopped_by", stopped_by},
+            {"limit", std::move(limit)},
+            {"block", std::move(block)},
+            {"line", line}};
   };
   return Json::array(
-      {row(13400, 46.8, said("slower"), nullptr, nullptr), row(12000, 58.0, said("slower"), nullptr, nullptr),
-       row(15600, nullptr, said("chatters in block 512 (line 525) at every feed"), "stability", 512),
-       row(16400, nullptr, said("needs 0.42 kW of 0.4 kW in block 130 (line 143)"), "spindle_power", 130)});
+      {row(14200, 2, 14.8, said("slower"), nullptr, nullptr),
+       row(16400, 3, 12.0, said("power 0.42 kW; at most 0.4 kW in block 512 (line 525)"), "power", 512),
+       row(15600, 1, nullptr, said("stability margin 0.03; at least 0.1 in block 130 (line 143)"), "stability", 130)});
 }
 
 Json stretches_json(const std::function<std::string(const char*)>& said) {
@@ -110,9 +115,10 @@ Json stretches_json(const std::function<std::string(const char*)>& said) {
             {"cutting_time_s", time_s},
             {"limited_by", limited_by}};
   };
-  return Json::array({row(1, 252, 14200, 1440, 1820, 16.9, said("stability margin in block 130 (line 143)")),
-                      row(253, 462, 15600, 1440, 1990, 13.0, said("feed per tooth")),
-                      row(463, 672, 14200, 1250, 1820, 13.2, said("surface error in block 512 (line 525)"))});
+  return Json::array(
+      {row(1, 252, 14200, 1440, 1820, 16.9, said("stability margin 0.11; at least 0.1 in block 130 (line 143)")),
+       row(253, 462, 15600, 1440, 1990, 13.0, said("chip thickness 0.04 mm; at most 0.04 mm in block 300 (line 313)")),
+       row(463, 672, 14200, 1250, 1820, 13.2, said("surface error 39.8 µm; at most 40 µm in block 512 (line 525)"))});
 }
 
 /// Margin over the place along the path and γ: a bank of stable postures that winds along the path, no reach at one

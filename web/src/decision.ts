@@ -1,7 +1,7 @@
 // What plan.json says of the decision on a program: "decision".
 import type { Num } from './documents';
 
-/** A limit that a program violates, in one block. */
+/** A limit that a program violates, in the block where it is worst. */
 export interface Violation {
   limit: string; // "stability", "spindle_power"
   block: Num; // from 1
@@ -14,7 +14,7 @@ export interface Violation {
 /** What a program comes to; null: not known. */
 export interface Outcome {
   cutting_time_s: Num;
-  total_time_s: Num;
+  total_time_s: Num; // without rapids
   lowest_spindle_speed_rpm: Num;
   highest_spindle_speed_rpm: Num;
   unstable_blocks: Num;
@@ -30,7 +30,8 @@ export interface Outcome {
 /** A spindle speed that was not chosen. */
 export interface OtherSpeed {
   spindle_speed_rpm: Num;
-  cutting_time_s: Num; // null: nothing is permitted at this speed
+  stretch?: Num; // from 1
+  cutting_time_s: Num; // of the stretch; null: not known
   stopped_by: string; // "slower": it is permitted
   limit: string | null;
   block: Num;
@@ -50,7 +51,7 @@ export interface Stretch {
   limited_by: string;
 }
 
-/** Stability margin over the place along the path and the turn γ about the spindle's axis. */
+/** Stability margin over the place along the path and the turn γ of the flange about the tool's axis. */
 export interface GammaMap {
   block: number[];
   path_mm: number[];

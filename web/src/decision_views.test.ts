@@ -1,6 +1,6 @@
 import { expect, it } from 'vitest';
 import type { Decision, GammaMap, Outcome } from './decision';
-import { allowedText, brokenLimits, collisionCaution, columnFacts, feedText, leastAlong, limited, limitName, marginAt, nearest, rangeText, savedText, violationOf } from './decision_views';
+import { allowedText, beyondText, collisionCaution, columnFacts, feedText, leastAlong, limited, limitName, marginAt, nearest, rangeText, savedText, valueText, violationOf } from './decision_views';
 
 const map: GammaMap = {
   block: [3, 5, 9],
@@ -55,24 +55,20 @@ it('joins what is lowest and highest', () => {
   expect(feedText({ stretches: [] } as unknown as Decision)).toBe('not known');
 });
 
-it('takes the worst violation of each limit, also of a limit from below, and keeps those of joints apart', () => {
-  const row = (limit: string, block: number, value: number | null, allowed: number | null) => ({ limit, block, line: null, value, allowed, unit: '' });
-  const outcome = { violations: [row('stability', 1, 0.1, 0.2), row('spindle_power', 2, 9, 8), row('stability', 3, -0.4, 0.2), row('joint_torque', 4, null, null)] } as unknown as Outcome;
-  expect(brokenLimits(outcome).map(({ limit, count, worst }) => [limit, count, worst.block])).toEqual([
-    ['stability', 2, 3],
-    ['spindle_power', 1, 2],
-    ['joint_torque', 1, 4],
-  ]);
+it('finds the violation of each measure, and keeps limits of joints apart from those of the spindle', () => {
+  const row = (limit: string, block: number) => ({ limit, block, line: null, value: 2, allowed: 1, unit: '' });
+  const outcome = { violations: [row('joint_torque', 4), row('spindle_power', 2), row('stability', 3)] } as unknown as Outcome;
   expect(limited.map((measure) => violationOf(outcome, measure)?.block ?? null)).toEqual([3, null, null, 2, null, null]);
 });
 
 it('says of stability what was violated: the spectral radius or the margin', () => {
   const violation = { limit: 'stability', block: 1, line: 2, value: 1.03, allowed: 1, unit: '' };
-  expect([limitName(violation), allowedText(violation)]).toEqual(['Stability, |μ|', 'chatter']);
+  expect([limitName(violation), allowedText(violation), beyondText(violation)]).toEqual(['Stability, |μ|', 'at most 1', 'chatter']);
   const margin = { ...violation, value: 0.05, allowed: 0.1 };
-  expect([limitName(margin), allowedText(margin)]).toEqual(['Stability margin', 'asked for: 0.1']);
+  expect([limitName(margin), beyondText(margin)]).toEqual(['Stability margin', 'at least 0.1']);
+  expect([valueText({ ...violation, limit: 'posture' }), allowedText({ ...violation, limit: 'posture' })]).toEqual(['–', '–']);
   const chip = { ...violation, limit: 'least_chip', value: 0.004, allowed: 0.01, unit: 'mm' };
-  expect([limitName(chip), allowedText(chip)]).toEqual(['Least chip', 'allowed: 0.01\u202fmm']);
+  expect([limitName(chip), allowedText(chip)]).toEqual(['Least chip', 'at least 0.01\u202fmm']);
 });
 
 it('warns of collisions where there is something to run', () => {

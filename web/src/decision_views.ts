@@ -55,7 +55,7 @@ export const limited: Measure[] = [
 
 export const measures: Measure[] = [
   { name: 'Cutting time', unit: 's', text: cuttingTimeText },
-  { name: 'Time with moves in air', unit: 's', text: (outcome) => said(outcome.total_time_s, time) },
+  { name: 'Time without rapids', unit: 's', text: (outcome) => said(outcome.total_time_s, time) },
   { name: 'Spindle speed', unit: 'rpm', text: speedText },
   { name: 'Unstable blocks', unit: '', chatters: ({ unstable_blocks: count }) => (count ?? 0) > 0, text: (outcome) => said(outcome.unstable_blocks, whole) },
   ...limited,
@@ -65,52 +65,39 @@ export function withUnit(text: string, unit: string): string {
   return unit === '' || text === dash || text === unknown ? text : `${text}${thinSpace}${unit}`;
 }
 
-/** The worst violation of a measure's limit; null where it stays within. */
+/** The violation of a measure's limit; null where it stays within. */
 export function violationOf(outcome: Outcome, { limit }: Measure): Violation | null {
   if (limit === undefined) return null;
-  return brokenLimits(outcome).find((broken) => broken.limit.replace(/^spindle_/, '') === limit)?.worst ?? null;
+  return outcome.violations.find((violation) => violation.limit.replace(/^spindle_/, '') === limit) ?? null;
 }
 
-/** Stability is violated as a spectral radius, of which 1 is allowed, or as a margin, of which some is asked for. */
-function isMargin({ limit, allowed }: Violation): boolean {
-  return limit === 'stability' && (allowed ?? 1) < 1;
+/** Stability is violated as a spectral radius, of which 1 is allowed, or as a margin, of which less than 1 is asked for. */
+function isRadius({ limit, allowed }: Violation): boolean {
+  return limit === 'stability' && (allowed ?? 1) >= 1;
 }
 
-/** "allowed: 7.5 kW" */
-export function allowedText(violation: Violation): string {
-  const { limit, allowed, unit } = violation;
-  if (isMargin(violation)) return `asked for: ${significant(allowed)}`;
-  return limit === 'stability' ? 'chatter' : `allowed: ${withUnit(significant(allowed), unit)}`;
+/** "9.1 kW"; a posture has no number. */
+export function valueText({ limit, value, unit }: Violation): string {
+  return limit === 'posture' ? dash : withUnit(significant(value), unit);
+}
+
+/** "at most 7.5 kW", "at least 0.1" */
+export function allowedText({ limit, value, allowed, unit }: Violation): string {
+  if (limit === 'posture' || allowed === null) return dash;
+  return `${value !== null && value < allowed ? 'at least' : 'at most'} ${withUnit(significant(allowed), unit)}`;
+}
+
+/** The same below a measure, which is no spectral radius. */
+export function beyondText(violation: Violation): string {
+  return isRadius(violation) ? 'chatter' : allowedText(violation);
 }
 
 /** "Spindle power" of "spindle_power" */
 export function limitName(violation: Violation): string {
   const { limit } = violation;
-  if (limit === 'stability') return isMargin(violation) ? 'Stability margin' : 'Stability, |μ|';
+  if (limit === 'stability') return isRadius(violation) ? 'Stability, |μ|' : 'Stability margin';
   const words = limit.replace(/_/g, ' ');
   return words.charAt(0).toUpperCase() + words.slice(1);
-}
-
-/** The violations of one limit, and the one furthest from what is allowed. */
-export interface BrokenLimit {
-  limit: string;
-  count: number;
-  worst: Violation;
-}
-
-function excess({ value, allowed }: Violation): number {
-  return value === null || allowed === null ? 0 : Math.abs(value - allowed);
-}
-
-export function brokenLimits({ violations }: Outcome): BrokenLimit[] {
-  const found = new Map<string, BrokenLimit>();
-  for (const violation of violations) {
-    const { limit } = violation;
-    const before = found.get(limit);
-    const worst = before && excess(before.worst) >= excess(violation) ? before.worst : violation;
-    found.set(limit, { limit, count: (before?.count ?? 0) + 1, worst });
-  }
-  return [...found.values()];
 }
 
 /** From the lowest to the highest feed of all stretches. */

@@ -1,8 +1,8 @@
 // What was decided for a program: the numbers to run it with, beside those it had.
-import type { Decision, OtherSpeed, Outcome, Stretch, Violation } from '../decision';
+import type { Decision, OtherSpeed, Outcome, Stretch } from '../decision';
 import {
   allowedText,
-  brokenLimits,
+  beyondText,
   collisionCaution,
   cuttingTimeText,
   decisionFacts,
@@ -14,12 +14,12 @@ import {
   savedText,
   speedText,
   unknown,
+  valueText,
   violationOf,
-  withUnit,
-  type BrokenLimit,
   type Measure,
 } from '../decision_views';
 import type { Plan } from '../documents';
+import { thinSpace } from '../figures/theme';
 import { Bullets, Details, Facts, KeyFigures, Table, WarningBox, type Column, type KeyFigure, type TableProps } from '../parts';
 import { BlockLink, LinkedText } from '../selection';
 import { fixed, significant } from '../text';
@@ -39,15 +39,15 @@ function cardFigures(decision: Decision, decided: Outcome): KeyFigure[] {
     ...limited.map((measure): KeyFigure => {
       const violation = violationOf(decided, measure);
       const figure = keyFigure(measure.name, measure.text(decided), measure.unit);
-      return violation ? { ...figure, note: allowedText(violation), state: 'over' } : figure;
+      return violation ? { ...figure, note: beyondText(violation), state: 'over' } : figure;
     }),
   ];
 }
 
 function Verdict({ outcome }: { outcome: Outcome }) {
-  const limits = brokenLimits(outcome);
-  if (limits.length === 0) return <span class="verdict stable">within every limit</span>;
-  return <span class="verdict chatter">{`violates ${limits.length} ${limits.length === 1 ? 'limit' : 'limits'}`}</span>;
+  const count = outcome.violations.length;
+  if (count === 0) return <span class="verdict stable">within every limit</span>;
+  return <span class="verdict chatter">{`violates ${count} ${count === 1 ? 'limit' : 'limits'}`}</span>;
 }
 
 function Card({ decision }: { decision: Decision }) {
@@ -75,7 +75,7 @@ function measured(outcome: Outcome, measure: Measure) {
   if (violation) {
     return (
       <strong class="over">
-        {text} <small>{allowedText(violation)}</small>
+        {text} <small>{beyondText(violation)}</small>
       </strong>
     );
   }
@@ -108,39 +108,18 @@ function ManyRows<Row>(table: TableProps<Row>) {
 
 function Violations({ outcome, which }: { outcome: Outcome; which: string }) {
   const { violations } = outcome;
-  const number = ({ value, unit }: Violation) => withUnit(significant(value), unit);
-  const allowed = ({ allowed: most, unit }: Violation) => withUnit(significant(most), unit);
   if (violations.length === 0) return <p>{`Nothing is violated ${which}.`}</p>;
-  const limits = brokenLimits(outcome);
   return (
-    <>
-      <Table<BrokenLimit>
-        caption={`Violated ${which}`}
-        rows={limits}
-        columns={[
-          { heading: 'Limit', cell: ({ worst }) => limitName(worst) },
-          { heading: 'Blocks', number: true, cell: ({ count }) => fixed(count, 0) },
-          { heading: 'Worst', number: true, cell: ({ worst }) => number(worst) },
-          { heading: 'Allowed', number: true, cell: ({ worst }) => allowed(worst) },
-          { heading: 'Where', cell: ({ worst: { block, line } }) => <BlockLink block={block} line={line} /> },
-        ]}
-      />
-      {violations.length > limits.length && (
-        <Details summary={`Every violation ${which}`}>
-          <ManyRows
-            caption={`Every violation ${which}`}
-            quiet
-            rows={violations}
-            columns={[
-              { heading: 'Limit', cell: limitName },
-              { heading: 'Value', number: true, cell: number },
-              { heading: 'Allowed', number: true, cell: allowed },
-              { heading: 'Where', cell: ({ block, line }) => <BlockLink block={block} line={line} /> },
-            ]}
-          />
-        </Details>
-      )}
-    </>
+    <ManyRows
+      caption={`Violated ${which}, each where it is worst`}
+      rows={violations}
+      columns={[
+        { heading: 'Limit', cell: limitName },
+        { heading: 'Value', number: true, cell: valueText },
+        { heading: 'Allowed', number: true, cell: allowedText },
+        { heading: 'Where', cell: ({ block, line }) => <BlockLink block={block} line={line} /> },
+      ]}
+    />
   );
 }
 
@@ -184,7 +163,13 @@ function stopped({ stopped_by: text, block, line }: OtherSpeed) {
   );
 }
 
-function OtherSpeeds({ speeds }: { speeds: OtherSpeed[] }) {
+/** Where a limit stops it, the time is the least that it would take. */
+function timeText({ cutting_time_s: time, limit }: OtherSpeed): string {
+  return time !== null && limit !== null ? `≥${thinSpace}${fixed(time, 1)}` : fixed(time, 1);
+}
+
+/** `several`: each is of one of several stretches. */
+function OtherSpeeds({ speeds, several }: { speeds: OtherSpeed[]; several: boolean }) {
   if (speeds.length === 0) return null;
   return (
     <Table
@@ -192,7 +177,8 @@ function OtherSpeeds({ speeds }: { speeds: OtherSpeed[] }) {
       rows={speeds}
       columns={[
         { heading: 'Spindle speed (rpm)', number: true, cell: (row) => fixed(row.spindle_speed_rpm, 0) },
-        { heading: 'Cutting time (s)', number: true, cell: (row) => fixed(row.cutting_time_s, 1) },
+        { heading: 'Stretch', number: true, optional: true, cell: ({ stretch }) => fixed(several ? (stretch ?? null) : null, 0) },
+        { heading: several ? 'Its cutting time (s)' : 'Cutting time (s)', number: true, cell: timeText },
         { heading: 'Why not', long: true, cell: stopped },
       ]}
     />
@@ -218,8 +204,8 @@ export function DecisionSection({ decision, plan: { agreement, warnings } }: { d
         </div>
       </div>
       <Stretches stretches={stretches} />
-      <OtherSpeeds speeds={alternatives} />
-      {map && map.block.length > 0 && <GammaSection map={map} />}
+      <OtherSpeeds speeds={alternatives} several={alternatives.some(({ stretch }) => (stretch ?? 1) > 1)} />
+      {map && map.block.length > 1 && map.gamma_deg.length > 1 && <GammaSection map={map} />}
     </section>
   );
 }

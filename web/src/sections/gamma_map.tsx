@@ -1,4 +1,4 @@
-// What the turn about the spindle's axis does to the margin, all along the path.
+// What the turn about the tool's axis does to the margin, all along the path.
 import { useCallback, useMemo } from 'preact/hooks';
 import type { GammaMap } from '../decision';
 import { columnFacts, leastAlong, marginAt, nearest } from '../decision_views';
@@ -54,11 +54,11 @@ export function GammaSection({ map }: { map: GammaMap }) {
   const words = useMemo(() => sentence(map), [map]);
   return (
     <>
-      <h3>The turn γ about the spindle's axis along the path</h3>
+      <h3>The turn γ about the tool's axis along the path</h3>
       {words !== '' && <p class="why">{words}</p>}
       <Plot
         which="gamma-map"
-        shows="Stability margin over the place along the path and the turn γ about the spindle's axis, with γ as programmed and as chosen"
+        shows="Stability margin over the place along the path and the turn γ about the tool's axis, with γ as programmed and as chosen"
         caption={caption(map)}
         draw={draw}
         picked={picked}
