@@ -16,6 +16,7 @@ namespace robomill::jobs {
 /// What makes two blocks alike.
 struct CutLook {
   double spindle_speed_rad_per_s = 0.0, axial_depth_m = 0.0;
+  double feed_per_tooth_m = 0.0;                        ///< 0 in all of them: it does not count
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< mean_stiffness
   Eigen::VectorXd joints = {};
 };

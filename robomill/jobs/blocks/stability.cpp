@@ -14,6 +14,15 @@ namespace {
 /// Limits are searched from the depth over the first to the second multiple of it.
 constexpr double depths_below = 16.0, depths_above = 8.0;
 
+/// What the pass leaves; none where it is not fed or chatters, which has no steady motion.
+double surface_error_m(const stability::LobesProblem& problem, const stability::PointResult& point, double tolerance) {
+  if (!point.stable || !(problem.spatial->feed_per_tooth_m > 0.0)) return CutStability::none;
+  return stability::surface_of_stable_cut(problem, {point.spindle_speed_rad_per_s, point.axial_depth_m}, tolerance)
+      .surface_location_error_m;
+}
+
+}  // namespace
+
 stability::LobesProblem block_problem(const BlockCut& at, const modal::ModalModel& modes) {
   const cutting::FlatEndMill& mill = at.file.cutter.mill;
   const double teeth_per_s = at.spindle_speed_rad_per_s * mill.teeth / (2.0 * std::numbers::pi);
@@ -27,15 +36,6 @@ stability::LobesProblem block_problem(const BlockCut& at, const modal::ModalMode
   problem.dynamics = modal::turned(modes, base_from_feed.transpose());
   return problem;
 }
-
-/// What the pass leaves; none where it is not fed or chatters, which has no steady motion.
-double surface_error_m(const stability::LobesProblem& problem, const stability::PointResult& point, double tolerance) {
-  if (!point.stable || !(problem.spatial->feed_per_tooth_m > 0.0)) return CutStability::none;
-  return stability::surface_of_stable_cut(problem, {point.spindle_speed_rad_per_s, point.axial_depth_m}, tolerance)
-      .surface_location_error_m;
-}
-
-}  // namespace
 
 double engaged_depth_m(const cutting::PoseEngagement& cut) {
   return stability::engaged_height_m(cut.engagement);

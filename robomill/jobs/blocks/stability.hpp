@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 
 #include "robomill/jobs/blocks.hpp"
+#include "robomill/stability/lobes.hpp"
 
 namespace robomill::jobs {
 
@@ -13,6 +14,11 @@ struct BlockCut {
   double spindle_speed_rad_per_s = 0.0;
   double tolerance = 1e-4;
 };
+
+/// The cut and what vibrates, in F.
+/// @param modes  in B
+/// @throws InvalidInput if the modes know neither x nor y at a tip
+[[nodiscard]] stability::LobesProblem block_problem(const BlockCut& at, const modal::ModalModel& modes);
 
 /// @param modes  in B
 /// @throws InvalidInput where modes or cut are out of range
