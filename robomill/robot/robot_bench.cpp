@@ -4,6 +4,7 @@
 
 #include "robomill/robot/arm.hpp"
 #include "robomill/robot/choose.hpp"
+#include "robomill/robot/collision.hpp"
 #include "robomill/robot/dynamics.hpp"
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/inverse.hpp"
@@ -11,6 +12,7 @@
 #include "robomill/robot/serial_kinematics.hpp"
 #include "robomill/robot/stiffness.hpp"
 #include "testing/robot/arms.hpp"
+#include "testing/robot/cells.hpp"
 #include "testing/robot/kinematics.hpp"
 
 namespace {
@@ -153,5 +155,53 @@ BENCHMARK_CAPTURE(follow_poses, offset_wrist, offset_wrist, bent);
 BENCHMARK_CAPTURE(follow_jets, offset_wrist, offset_wrist, bent);
 BENCHMARK_CAPTURE(follow_poses, hybrid, hybrid, raised);
 BENCHMARK_CAPTURE(follow_jets, hybrid, hybrid, raised);
+
+/// A ball of 82,000 triangles before an arm whose links have 20,000 each.
+struct DetailedCell {
+  Cell cell = testing::kr210_cell();
+  CellGeometry geometry = testing::block_on_table(cell);
+  DetailedCell() {
+    geometry.part = {{"ball", testing::sphere({0.0, 0.0, 0.0}, 0.12, 6)}};
+    for (LinkBody& body : geometry.arm) {
+      const Eigen::Vector3d to_m = body.capsule->to_m;
+      body.mesh = testing::sphere(to_m / 2.0, 1.0, 5);
+      for (Eigen::Vector3d& vertex : body.mesh.vertices_m) {
+        const Eigen::Vector3d out = vertex - to_m / 2.0;
+        vertex = to_m / 2.0 + 0.1 * out + to_m / 2.0 * to_m.normalized().dot(out);
+      }
+      body.capsule.reset();
+    }
+  }
+};
+
+/// The tool's tip on a line out of the ball's middle, its axis tilted from that line.
+void check_collisions(benchmark::State& state, double out_m, double tilt_rad, double reach_m) {
+  const DetailedCell detailed;
+  const CollisionChecker checker(detailed.cell, detailed.geometry);
+  std::vector<Eigen::VectorXd> at;
+  Random random(3);
+  while (at.size() < 200) {
+    const Eigen::Vector3d out = (Eigen::Vector3d(0, 0, 3) + testing::random_vector(random)).normalized();
+    const Eigen::Vector3d aside = out.cross(testing::random_vector(random)).normalized();
+    const ToolPose pose{.tip_m = out_m * out, .axis = Eigen::AngleAxisd(tilt_rad, aside) * out};
+    const Eigen::VectorXd position = testing::position_at(detailed.cell, pose);
+    if (position.size() > 0) at.push_back(position);
+  }
+  std::size_t k = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(checker.check(at[k], reach_m));
+    k = k + 1 == at.size() ? 0 : k + 1;
+  }
+}
+BENCHMARK_CAPTURE(check_collisions, far, 0.4, 0.0, 0.0);
+BENCHMARK_CAPTURE(check_collisions, on_the_part, 0.12, 0.0, 0.0);
+BENCHMARK_CAPTURE(check_collisions, nearest_within_100_mm, 0.12, 0.0, 0.1);
+BENCHMARK_CAPTURE(check_collisions, gouging_by_1_mm, 0.12, 0.3, 0.0);
+
+void checker_of_190000_triangles(benchmark::State& state) {
+  const DetailedCell detailed;
+  for (auto _ : state) benchmark::DoNotOptimize(CollisionChecker(detailed.cell, detailed.geometry).notes().data());
+}
+BENCHMARK(checker_of_190000_triangles);
 
 }  // namespace

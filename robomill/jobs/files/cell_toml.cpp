@@ -14,12 +14,17 @@
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/program/files/gcode.hpp"
+#include "robomill/robot/files/geometry_toml.hpp"
 #include "robomill/robot/files/joint_limits.hpp"
+#include "robomill/robot/files/pose_toml.hpp"
 #include "robomill/robot/files/urdf.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
 
 namespace robomill::jobs {
 namespace {
+
+using robot::read_pose;
+using robot::read_vector;
 
 /// Other lists with one value a joint.
 constexpr io::Field<robot::Joint> joint_lists[] = {
@@ -36,26 +41,6 @@ constexpr std::array<double robot::Joint::*, robot::joint_limits.size()> of_join
 constexpr std::array<robot::Position6 robot::JointLimits::*, robot::joint_limits.size()> of_hybrid = {
     &robot::JointLimits::min_position, &robot::JointLimits::max_position, &robot::JointLimits::max_velocity,
     &robot::JointLimits::max_acceleration, &robot::JointLimits::max_jerk};
-
-std::optional<Eigen::Vector3d> read_vector(io::TomlFile& file, const char* key, const char* member, double factor) {
-  std::vector<double> values;
-  if (!file.numbers(key, member, factor, values)) return std::nullopt;
-  if (values.size() != 3) throw file.reject(key, "must hold three numbers");
-  return Eigen::Vector3d(values[0], values[1], values[2]);
-}
-
-/// R = Rz Ry Rx, as the file says it.
-Eigen::Isometry3d read_pose(io::TomlFile& file, const char* origin_key, const char* rotation_key) {
-  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-  if (const auto origin_m = read_vector(file, origin_key, "origin_m", units::mm)) out.translation() = *origin_m;
-  if (const auto angle_rad = read_vector(file, rotation_key, "rotation_rad", units::deg)) {
-    out.linear() = (Eigen::AngleAxisd(angle_rad->z(), Eigen::Vector3d::UnitZ()) *
-                    Eigen::AngleAxisd(angle_rad->y(), Eigen::Vector3d::UnitY()) *
-                    Eigen::AngleAxisd(angle_rad->x(), Eigen::Vector3d::UnitX()))
-                       .toRotationMatrix();
-  }
-  return out;
-}
 
 enum class Kind { serial, hybrid };
 
@@ -98,8 +83,7 @@ void read_links(io::TomlFile& file, const std::vector<robot::DhRow>& rows, robot
     robot::Link link;
     file.require(key + "mass_kg");
     file.number(key + "mass_kg", member + "mass_kg", 1.0, link.mass_kg);
-    if (const auto center_m =
-            read_vector(file, (key + "center_mm").c_str(), (member + "center_m").c_str(), units::mm)) {
+    if (const auto center_m = read_vector(file, key + "center_mm", member + "center_m", units::mm)) {
       link.center_m = *center_m;
     }
     std::vector<double> tensor;
@@ -162,7 +146,8 @@ InvalidInput located(const io::TomlFile& file, const robot::Arm& arm, const Inva
   return file.located(error);
 }
 
-void read_arm(io::TomlFile& file, CellFile& out) {
+/// @return of the base and of every link the frame that [geometry] means, in B and in that after the link's joint
+std::vector<Eigen::Isometry3d> read_arm(io::TomlFile& file, CellFile& out) {
   std::filesystem::path urdf;
   const bool from_urdf = file.path("robot.urdf", urdf);
   if (from_urdf == file.has("robot.dh")) {
@@ -191,7 +176,8 @@ void read_arm(io::TomlFile& file, CellFile& out) {
   read_joint_lists(file, arm, out.notes);
   read_links(file, rows, arm);
   robot::Joint& first = arm.joints.front();
-  first.before = read_pose(file, "robot.base_origin_mm", "robot.base_rotation_deg") * first.before;
+  const Eigen::Isometry3d base = read_pose(file, "robot.base_origin_mm", "robot.base_rotation_deg");
+  first.before = base * first.before;
   out.end_effector.tip = read_pose(file, "tool.mount_origin_mm", "tool.mount_rotation_deg");
   arm.flange = arm.flange * out.end_effector.tip;
   try {
@@ -199,6 +185,10 @@ void read_arm(io::TomlFile& file, CellFile& out) {
   } catch (const InvalidInput& error) {
     throw located(file, arm, error);
   }
+  std::vector<Eigen::Isometry3d> link_frames = {base};
+  for (const robot::DhRow& row : rows) link_frames.push_back(robot::dh_link(row));
+  link_frames.resize(arm.joints.size() + 1, Eigen::Isometry3d::Identity());  // a URDF's links are where its joints are
+  return link_frames;
 }
 
 void read_start(io::TomlFile& file, CellFile& out) {
@@ -232,7 +222,7 @@ constexpr io::Field<HybridMachine> hybrid_sizes[] = {
 
 void read_hybrid(io::TomlFile& file, CellFile& out) {
   for (const char* key : {"robot.dh", "robot.urdf", "robot.links", "robot.start_joints_deg", "robot.gamma_deg",
-                          "tool.mount_origin_mm", "tool.mount_rotation_deg"}) {
+                          "tool.mount_origin_mm", "tool.mount_rotation_deg", "geometry"}) {
     if (file.has(key)) throw file.reject(key, "goes with kind = \"serial\"");
   }
   HybridMachine& machine = out.hybrid.emplace();
@@ -247,13 +237,15 @@ void read_hybrid(io::TomlFile& file, CellFile& out) {
   }
 }
 
-void read_serial(io::TomlFile& file, CellFile& out) {
+/// @return as read_arm
+std::vector<Eigen::Isometry3d> read_serial(io::TomlFile& file, CellFile& out) {
   for (const io::Field<HybridMachine>& size : hybrid_sizes) {
     if (file.has(size.key)) throw file.reject(size.key, "goes with kind = \"hybrid-2upr-rpu\"");
   }
-  read_arm(file, out);
+  std::vector<Eigen::Isometry3d> link_frames = read_arm(file, out);
   read_start(file, out);
   out.gamma_given = file.number("robot.gamma_deg", "redundant_gamma_rad", units::deg, out.redundant_gamma_rad);
+  return link_frames;
 }
 
 /// A name that a controller takes.
@@ -362,13 +354,17 @@ CellFile read_cell(const std::filesystem::path& path, Robots usable) {
   file.skip("smoothing");
   file.require("robot", "Write [robot] with the arm, kind = \"serial\" and dh or urdf");
   const Kind kind = read_kind(file, usable);
-  if (kind == Kind::serial) read_serial(file, out);
+  std::vector<Eigen::Isometry3d> link_frames;
+  if (kind == Kind::serial) link_frames = read_serial(file, out);
   if (kind == Kind::hybrid) read_hybrid(file, out);
   out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
   file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
   read_end_effector(file, out);
   read_program_words(file, out);
-  if (!out.hybrid) read_postures(file, out);
+  if (!out.hybrid) {
+    read_postures(file, out);
+    out.geometry = robot::read_geometry(file, out.cell, link_frames, out.notes);
+  }
   file.done();
   if (out.hybrid) {
     out.hybrid->workpiece = out.cell.workpiece;

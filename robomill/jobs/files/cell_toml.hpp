@@ -9,6 +9,7 @@
 #include "robomill/path/files/end_effector.hpp"
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/robot/arm.hpp"
+#include "robomill/robot/collision.hpp"
 #include "robomill/robot/hybrid.hpp"
 #include "robomill/robot/kinematics.hpp"
 
@@ -40,6 +41,7 @@ struct CellFile {
   std::vector<double> start_joints = {};              ///< where the arm stands first [rad]; empty where not said
   path::EndEffector end_effector = {};                ///< for exported programs
   std::vector<PostureEntry> postures = {};            ///< measured
+  std::optional<robot::CellGeometry> geometry = {};   ///< for collisions; the cutter's edges are the caller's to give
   std::vector<std::string> notes = {};                ///< sentences for the user
   std::shared_ptr<io::TomlFile> document = {};        ///< that [smoothing] is read from; empty where built in memory
 };
@@ -50,8 +52,8 @@ enum class Robots {
   any      ///< serial arms and the hybrid machine: what needs kinematics alone
 };
 
-/// Reads [robot], [workpiece], [tool], [spindle], [program] and [[postures]], of which no file is opened; [smoothing]
-/// is another reader's.
+/// Reads [robot], [workpiece], [tool], [spindle], [program], [geometry] with its STL files, and [[postures]], of which
+/// no file is opened; [smoothing] is another reader's.
 /// @throws InvalidInput with file, line, key and value, or with the URDF, its link or joint
 [[nodiscard]] ROBOMILL_API CellFile read_cell(const std::filesystem::path& path, Robots usable = Robots::serial);
 

@@ -10,6 +10,7 @@
 #include "robomill/robot/files/stiffness_files.hpp"
 #include "robomill/robot/pose.hpp"
 #include "testing/robot/arms.hpp"
+#include "testing/robot/cells.hpp"
 #include "testing/support.hpp"
 #include "testing/text.hpp"
 
@@ -434,6 +435,49 @@ TEST(CellToml, MakesTheMachineOfTheCell) {
   const auto one = folder.file("one.toml", "[robot]\nurdf = \"one.urdf\"\nurdf_tip = \"tool0\"\n");
   const std::string said = rejection([&] { (void)kinematics(read_cell(one)); });
   EXPECT_NE(said.find("one.toml: robot = 1 joints; must be six"), std::string::npos) << said;
+}
+
+const std::string geometry = R"([geometry]
+part = "part.stl"
+arm = [{ link = 0, box_from_mm = [-200, -200, 0], box_to_mm = [200, 200, 200] },
+       { link = 2, from_mm = [-1150, 0, 0], to_mm = [0, 0, 0], diameter_mm = 300 }]
+stickout_mm = 50
+holder = [{ length_mm = 50, diameter_mm = 40 }]
+clearance_mm = 2
+gouge_tolerance_mm = 0.05
+)";
+
+// A capsule from joint 2 to joint 3 stands there in every posture, and the base's box on the base.
+TEST(CellToml, PlacesTheLinksOfItsGeometry) {
+  const Folder folder;
+  folder.file("part.stl", arms::binary_stl(arms::box({0, 0, 0}, {0.1, 0.1, 0.05})));
+  EXPECT_FALSE(read_cell(folder.file("plain.toml", good)).geometry);
+  const CellFile file = read_cell(folder.file("cell.toml", good + geometry));
+  ASSERT_TRUE(file.geometry);
+  EXPECT_TRUE(file.geometry->tool.edges.empty());
+  EXPECT_NEAR(file.geometry->arm[0].pose.translation().z(), 0.2256, 1e-12);
+  const robot::LinkBody& upper_arm = file.geometry->arm[1];
+  Random random(3);
+  for (int k = 0; k < 20; ++k) {
+    const Eigen::VectorXd position = arms::random_position(random, 6);
+    const Eigen::Isometry3d pose = arms::link_frame(file.cell.arm, 2, position) * upper_arm.pose;
+    robot::Posture posture;
+    posture.update(file.cell.arm, position);
+    EXPECT_LT((pose * upper_arm.capsule->from_m - posture.origin_m.col(1)).norm(), 1e-12);
+    EXPECT_LT((pose * upper_arm.capsule->to_m - posture.origin_m.col(2)).norm(), 1e-12);
+  }
+}
+
+TEST(CellToml, RejectsAGeometryThatCannotBe) {
+  const Folder folder;
+  const auto said = [&](const std::string& text) {
+    return rejection([&] { (void)read_cell(folder.file("cell.toml", text), Robots::any); });
+  };
+  EXPECT_NE(said(good + geometry).find("part.stl"), std::string::npos);  // no such file
+  EXPECT_NE(said(good + "[geometry]\nstickout_mm = 50\n").find("geometry.holder: is missing"), std::string::npos);
+  const std::string machine = "[robot]\nkind = \"hybrid-2upr-rpu\"\n";
+  EXPECT_NE(said(machine + geometry).find("geometry: goes with kind = \"serial\""), std::string::npos)
+      << said(machine + geometry);
 }
 
 TEST(CellToml, DamagedFilesAreReadOrRejected) {
