@@ -20,17 +20,17 @@ constexpr double round_excess_m = 20e-6;  // of meshes around cylinders and cone
 constexpr double touch_m = 1e-9;          // edges that stand no deeper than this touch
 constexpr double most_looks = 1e6;
 
-enum class Role { part, fixture, link, tool, edges };  // cell is a fixture
+enum class BodyRole { part, fixture, link, tool, edges };  // cell is a fixture
 
-struct Placed {
+struct PlacedBody {
   std::string name;
-  Role role;
+  BodyRole role;
   int frame;  // 0: B; k: after joint k; n + 1: E
   Eigen::Isometry3d pose;
   Solid solid;
 };
 
-struct Pair {
+struct BodyPair {
   std::size_t first, second;
   bool of_edges;  // which may come as near as they like
 };
@@ -65,8 +65,8 @@ void require_position(const char* field, const Eigen::Ref<const Eigen::VectorXd>
 struct CollisionChecker::State {
   Arm arm;
   double clearance_m = 0.0, gouge_tolerance_m = 0.0;
-  std::vector<Placed> bodies;
-  std::vector<Pair> pairs;                   // whose distance counts
+  std::vector<PlacedBody> bodies;
+  std::vector<BodyPair> pairs;               // whose distance counts
   std::vector<std::size_t> closed_to_edges;  // bodies that the edges must not enter
   std::size_t edges = 0;                     // which body they are
   ConvexRevolution cutter;
@@ -81,11 +81,11 @@ struct CollisionChecker::State {
     add_cell(cell, geometry);
     add_tool(tool_in_flange(cell), geometry.tool);
     for (const LinkBody& body : geometry.arm) {
-      add(body.name, Role::link, body.link, body.pose, body.capsule ? Solid(*body.capsule) : Solid(body.mesh));
+      add(body.name, BodyRole::link, body.link, body.pose, body.capsule ? Solid(*body.capsule) : Solid(body.mesh));
     }
     add_pairs(geometry);
     measure_reach();
-    for (const Placed& body : bodies) {
+    for (const PlacedBody& body : bodies) {
       if (body.solid.open_edges() == 0) continue;
       notes.push_back(
           fmt::format("{} is not closed, {} of its edges are open: only its surface is checked, and what is "
@@ -95,47 +95,51 @@ struct CollisionChecker::State {
   }
 
   [[nodiscard]] int flange_frame() const { return static_cast<int>(arm.size()) + 1; }
-  void add(const std::string& name, Role role, int frame, const Eigen::Isometry3d& pose, Solid body) {
+  void add(const std::string& name, BodyRole role, int frame, const Eigen::Isometry3d& pose, Solid body) {
     bodies.push_back({name, role, frame, pose, std::move(body)});
   }
 
   void add_cell(const Cell& cell, const CellGeometry& geometry) {
-    const auto all = [&](const std::vector<Body>& list, Role role, const Eigen::Isometry3d& pose) {
+    const auto all = [&](const std::vector<Body>& list, BodyRole role, const Eigen::Isometry3d& pose) {
       for (const Body& body : list) add(body.name, role, 0, pose, Solid(body.mesh));
     };
-    all(geometry.part, Role::part, cell.workpiece);
-    all(geometry.fixtures, Role::fixture, cell.workpiece);
-    all(geometry.cell, Role::fixture, Eigen::Isometry3d::Identity());
+    all(geometry.part, BodyRole::part, cell.workpiece);
+    all(geometry.fixtures, BodyRole::fixture, cell.workpiece);
+    all(geometry.cell, BodyRole::fixture, Eigen::Isometry3d::Identity());
   }
 
   void add_tool(const Eigen::Isometry3d& pose, const ToolGeometry& tool) {
-    const auto turned = [&](const char* name, Role role, const std::vector<OutlinePoint>& outline) {
+    const auto turned = [&](const char* name, BodyRole role, const std::vector<OutlinePoint>& outline) {
       if (!outline.empty()) add(name, role, flange_frame(), pose, Solid(revolve(outline, round_excess_m)));
     };
     edges = bodies.size();
-    turned(cutter_name, Role::edges, tool.edges);
+    turned(cutter_name, BodyRole::edges, tool.edges);
     double height_m = tool.edges.back().height_m;
     const double shank_m = tool.shank_diameter_m > 0.0 ? tool.shank_diameter_m : 2.0 * tool.edges.back().radius_m;
     if (tool.stickout_m > height_m && shank_m > 0.0) {
       const ToolSection shank{
           .length_m = tool.stickout_m - height_m, .lower_diameter_m = shank_m, .upper_diameter_m = shank_m};
-      turned(shank_name, Role::tool, outline_of({shank}, height_m));
+      turned(shank_name, BodyRole::tool, outline_of({shank}, height_m));
     }
     height_m = tool.stickout_m;
-    turned(holder_name, Role::tool, outline_of(tool.holder, height_m));
-    turned(spindle_name, Role::tool, outline_of(tool.spindle, height_m));
+    turned(holder_name, BodyRole::tool, outline_of(tool.holder, height_m));
+    turned(spindle_name, BodyRole::tool, outline_of(tool.spindle, height_m));
     for (const Body& body : tool.spindle_bodies) {
-      add(body.name, Role::tool, flange_frame(), Eigen::Isometry3d::Identity(), Solid(body.mesh));
+      add(body.name, BodyRole::tool, flange_frame(), Eigen::Isometry3d::Identity(), Solid(body.mesh));
     }
   }
 
-  [[nodiscard]] bool is_checked(const Placed& a, const Placed& b, const CellGeometry& geometry) const {
+  [[nodiscard]] bool is_checked(const PlacedBody& a, const PlacedBody& b, const CellGeometry& geometry) const {
     const bool ignored = std::ranges::any_of(geometry.ignored, [&](const auto& pair) {
       return (pair.first == a.name && pair.second == b.name) || (pair.first == b.name && pair.second == a.name);
     });
     if (ignored) return false;
-    const auto stands = [](const Placed& body) { return body.role == Role::part || body.role == Role::fixture; };
-    const auto on_tool = [](const Placed& body) { return body.role == Role::tool || body.role == Role::edges; };
+    const auto stands = [](const PlacedBody& body) {
+      return body.role == BodyRole::part || body.role == BodyRole::fixture;
+    };
+    const auto on_tool = [](const PlacedBody& body) {
+      return body.role == BodyRole::tool || body.role == BodyRole::edges;
+    };
     if (stands(a) && stands(b)) return false;
     if (stands(a) || stands(b)) return (stands(a) ? b : a).frame > 0;
     if (on_tool(a) && on_tool(b)) return false;
@@ -153,7 +157,7 @@ struct CollisionChecker::State {
           continue;
         }
         const std::size_t other = i == edges ? j : i;
-        if (bodies[other].role == Role::link) {
+        if (bodies[other].role == BodyRole::link) {
           pairs.push_back({i, j, true});
         } else {
           closed_to_edges.push_back(other);
@@ -165,7 +169,7 @@ struct CollisionChecker::State {
   void measure_reach() {
     from_origin_m.assign(arm.joints.size(), 0.0);
     from_axis_m = from_origin_m;
-    for (const Placed& body : bodies) {
+    for (const PlacedBody& body : bodies) {
       if (body.frame == 0) continue;
       const bool tool = body.frame == flange_frame();
       const auto joint = static_cast<std::size_t>(tool ? body.frame - 2 : body.frame - 1);
@@ -192,7 +196,7 @@ struct CollisionChecker::State {
     frames[n + 1] = frames[n] * arm.flange;
     std::vector<Eigen::Isometry3d> out;
     out.reserve(bodies.size());
-    for (const Placed& body : bodies) out.push_back(frames[static_cast<std::size_t>(body.frame)] * body.pose);
+    for (const PlacedBody& body : bodies) out.push_back(frames[static_cast<std::size_t>(body.frame)] * body.pose);
     return out;
   }
 
@@ -204,8 +208,8 @@ struct CollisionChecker::State {
 
   /// The nearest pair; whether one intersects.
   bool find_nearest(const std::vector<Eigen::Isometry3d>& poses, Clearance& out) const {
-    const Pair* nearest = nullptr;
-    for (const Pair& pair : pairs) {
+    const BodyPair* nearest = nullptr;
+    for (const BodyPair& pair : pairs) {
       const double within_m = pair.of_edges ? 0.0 : out.distance_m;
       const Solid &a = bodies[pair.first].solid, &b = bodies[pair.second].solid;
       const Eigen::Isometry3d relative = poses[pair.first].inverse() * poses[pair.second];
@@ -228,7 +232,7 @@ struct CollisionChecker::State {
 
   /// What the edges stand in: fixtures first, then the part.
   void find_depth(const std::vector<Eigen::Isometry3d>& poses, Clearance& out) const {
-    const auto look = [&](Role role, double tolerance_m, Clearance::Status status) {
+    const auto look = [&](BodyRole role, double tolerance_m, Clearance::Status status) {
       for (const std::size_t other : closed_to_edges) {
         if (bodies[other].role != role) continue;
         const Eigen::Isometry3d to_cutter = poses[edges].inverse() * poses[other];
@@ -239,12 +243,12 @@ struct CollisionChecker::State {
         say(out, status, edges, other);
       }
     };
-    look(Role::fixture, touch_m, Clearance::Status::collision);
+    look(BodyRole::fixture, touch_m, Clearance::Status::collision);
     if (out.status == Clearance::Status::collision) {
       out.distance_m = 0.0;
       return;
     }
-    look(Role::part, gouge_tolerance_m, Clearance::Status::gouge);
+    look(BodyRole::part, gouge_tolerance_m, Clearance::Status::gouge);
   }
 
   [[nodiscard]] Clearance check(const Eigen::Ref<const Eigen::VectorXd>& position, double reach_m) const {
