@@ -15,6 +15,7 @@
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/program/files/gcode.hpp"
 #include "robomill/program/files/program_files.hpp"
+#include "robomill/program/files/rewrite.hpp"
 
 namespace robomill {
 namespace {
@@ -127,6 +128,36 @@ BENCHMARK_CAPTURE(stream, gcode, "part.ngc", five_axis_moves, 1000000)->Unit(ben
 BENCHMARK_CAPTURE(stream, apt, "part.apt", apt_moves, 1000000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(stream, csv, "part.csv", csv_moves, 1000000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(stream, arcs, "arcs.ngc", arcs, 100000)->Unit(benchmark::kMillisecond);
+
+/// A program rewritten: every third move slower, each ten moves at another speed.
+void rewrite(benchmark::State& state, const std::string& name, std::string (*text)(int), int lines) {
+  const program::ProgramReading reading = {.machine = program::Machine::xyzac_trt};
+  const std::string program_text = text(lines);
+  const program::Program read = program::read_program_text(program_text, name, reading);
+  program::Program wanted = read;
+  for (std::size_t i = 0; i < wanted.blocks.size(); ++i) {
+    program::Block& block = wanted.blocks[i];
+    if (block.line % 3 == 0) block.duration_s *= 1.25;
+    if (block.spindle != program::Spindle::not_given)
+      block.spindle_speed_rad_per_s *= block.line / 10 % 2 == 0 ? 1.0 : 1.1;
+  }
+  std::size_t changed = 0;
+  for (auto _ : state) {
+    const program::Rewritten out = program::rewrite_program_text(program_text, name, reading, read, wanted);
+    changed = out.changed_lines + out.added_lines;
+  }
+  state.counters["changed"] = static_cast<double>(changed);
+  state.SetItemsProcessed(state.iterations() * lines);
+}
+std::string turning_moves(int lines) {
+  return "M3 S12000\n" + five_axis_moves(lines);
+}
+std::string turning_apt_moves(int lines) {
+  return "SPINDL/12000,RPM,CLW\n" + apt_moves(lines);
+}
+BENCHMARK_CAPTURE(rewrite, gcode, "part.ngc", turning_moves, 200000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(rewrite, apt, "part.apt", turning_apt_moves, 200000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(rewrite, csv, "part.csv", csv_moves, 200000)->Unit(benchmark::kMillisecond);
 
 /// Four FRFs of 3,500 lines, written and read.
 void frfs(benchmark::State& state, const std::string& ending, bool write) {

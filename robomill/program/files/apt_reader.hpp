@@ -13,6 +13,21 @@ class AptReader final : public ProgramReader {
  public:
   using ProgramReader::ProgramReader;
 
+  /// What holds after the lines that have been taken.
+  struct Modes {
+    bool inches = false;
+    double feed = 0.0;  ///< a minute or a revolution; 0: none yet
+    bool feed_in_inches = false, feed_per_revolution = false;
+  };
+  [[nodiscard]] Modes modes() const {
+    return {.inches = inches_,
+            .feed = feed_,
+            .feed_in_inches = feed_in_inches_,
+            .feed_per_revolution = feed_per_revolution_};
+  }
+
+  [[nodiscard]] Part part_of(std::string_view line, char ahead, bool continued) const override;
+
  private:
   using Take = void (AptReader::*)();
   struct Statement {
@@ -21,7 +36,6 @@ class AptReader final : public ProgramReader {
   };
   static const std::vector<Statement>& statements();
 
-  [[nodiscard]] Part part_of(std::string_view line, char ahead, bool continued) const override;
   void read(std::string_view statement) override;
 
   void split(std::string_view statement);

@@ -46,6 +46,17 @@ void GcodeReader::Line::leave_out(const GcodeWords::Word& word) {
   left_out += word.text.substr(1);
 }
 
+GcodeReader::Modes GcodeReader::modes() const {
+  return {.motion = motion_,
+          .feed_mode = feed_mode_,
+          .inches = inches_,
+          .incremental = incremental_,
+          .centers_absolute = centers_absolute_,
+          .feed_in_inches = feed_in_inches_,
+          .feed = feed_,
+          .rotary_deg = rotary_deg_};
+}
+
 double GcodeReader::unit_m() const {
   return inches_ ? units::inch : units::mm;
 }

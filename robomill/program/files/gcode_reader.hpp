@@ -17,10 +17,24 @@ namespace robomill::program {
 class GcodeReader final : public ProgramReader {
  public:
   using ProgramReader::ProgramReader;
+  GcodeReader(const GcodeReader&) = default;
+
+  enum class Motion : std::uint8_t { none, rapid, feed, clockwise, counterclockwise };
+  enum class FeedMode : std::uint8_t { per_minute, inverse_time };
+  /// What holds after the lines that have been taken.
+  struct Modes {
+    Motion motion = Motion::none;
+    FeedMode feed_mode = FeedMode::per_minute;
+    bool inches = false, incremental = false, centers_absolute = false;
+    bool feed_in_inches = false;
+    std::optional<double> feed = {};                       ///< under G94, a minute
+    Eigen::Vector3d rotary_deg = Eigen::Vector3d::Zero();  ///< A, B, C
+  };
+  [[nodiscard]] Modes modes() const;
+
+  [[nodiscard]] Part part_of(std::string_view line, char ahead, bool continued) const override;
 
  private:
-  enum class Motion { none, rapid, feed, clockwise, counterclockwise };
-  enum class FeedMode { per_minute, inverse_time };
   /// The plane of arcs: its axes turn from first to second; normal is the third.
   struct Plane {
     Eigen::Index first = 0, second = 1, normal = 2;
@@ -60,7 +74,6 @@ class GcodeReader final : public ProgramReader {
     [[nodiscard]] Eigen::Vector3d tip_at(double share) const;
   };
 
-  [[nodiscard]] Part part_of(std::string_view line, char ahead, bool continued) const override;
   void read(std::string_view statement) override;
   bool advance() override;
 

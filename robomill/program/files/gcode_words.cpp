@@ -27,25 +27,38 @@ bool is_letter(char c) {
   return c >= 'a' && c <= 'z';
 }
 
+/// Hands over place and letter of what is no blank and no comment. Where a comment begins that does not end; the line's
+/// length where all of them end.
+template <class Take>
+std::size_t each_letter(std::string_view line, Take take) {
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == ';') break;
+    if (c == '(') {
+      const std::size_t end = line.find(')', i);
+      if (end == std::string_view::npos) return i;
+      i = end;
+    } else if (c != ' ' && c != '\t' && c != '\r' && c != '\f' && c != '\v') {
+      take(i, c);
+    }
+  }
+  return line.size();
+}
+
 /// Lower case, without blanks and comments.
 void compact_line(std::string_view line, const Place& place, std::string& out) {
   out.clear();
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == ';') return;
-    if (c == '(') {
-      const std::size_t end = line.find(')', i);
-      if (end == std::string_view::npos) reject(place, line.substr(i), "is a comment that does not end");
-      i = end;
-    } else if (c >= 'A' && c <= 'Z') {
-      out += static_cast<char>(c - 'A' + 'a');
-    } else if (c != ' ' && c != '\t' && c != '\r' && c != '\f' && c != '\v') {
-      out += c;
-    }
-  }
+  const std::size_t end = each_letter(
+      line, [&](std::size_t, char c) { out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (end != line.size()) reject(place, line.substr(end), "is a comment that does not end");
 }
 
 }  // namespace
+
+void GcodeWords::find_letters(std::string_view line, std::vector<std::size_t>& places) {
+  places.clear();
+  static_cast<void>(each_letter(line, [&](std::size_t place, char) { places.push_back(place); }));
+}
 
 void GcodeWords::scan(std::string_view line, const std::string& file, std::size_t number) {
   const Place place = {.file = file, .line = number};

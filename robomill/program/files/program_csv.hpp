@@ -13,10 +13,15 @@ class CsvReader final : public ProgramReader {
  public:
   using ProgramReader::ProgramReader;
 
+  /// Of each column of the file, which of x, y, z, i, j, k, feed it is; none before the header.
+  [[nodiscard]] const std::vector<std::size_t>& columns() const { return column_; }
+  [[nodiscard]] char separator() const { return separator_; }
+
+  [[nodiscard]] Part part_of(std::string_view line, char, bool) const override { return {.text = line}; }
+
  private:
   static constexpr std::size_t known_columns = 7;
 
-  [[nodiscard]] Part part_of(std::string_view line, char, bool) const override { return {.text = line}; }
   void read(std::string_view statement) override;
 
   void take_header(std::string_view line);

@@ -34,7 +34,9 @@ std::unique_ptr<ProgramReader> make_reader(ProgramFormat format, const std::stri
 class Walk {
  public:
   Walk(const std::filesystem::path& path, const ProgramReading& reading, std::size_t kept)
-      : lines_((reading.validate(), path)),
+      : Walk(ProgramLines((reading.validate(), path)), path, reading, kept) {}
+  Walk(ProgramLines lines, const std::filesystem::path& path, const ProgramReading& reading, std::size_t kept)
+      : lines_(std::move(lines)),
         file_(path.string()),
         reading_(reading),
         format_(reading.format.value_or(program_format_of(path))),
@@ -163,8 +165,9 @@ std::unique_ptr<ProgramFile> open_program(const std::filesystem::path& path, con
   return std::make_unique<ProgramFile>(path, reading);
 }
 
-Program read_program(const std::filesystem::path& path, const ProgramReading& reading) {
-  Walk walk(path, reading, std::numeric_limits<std::size_t>::max());
+namespace {
+
+Program whole(Walk& walk) {
   Program out;
   out.start = walk.start();
   Block block;
@@ -172,6 +175,19 @@ Program read_program(const std::filesystem::path& path, const ProgramReading& re
   out.skipped = std::move(walk.remarks().skipped());
   out.notes = walk.remarks().notes();
   return out;
+}
+
+}  // namespace
+
+Program read_program(const std::filesystem::path& path, const ProgramReading& reading) {
+  Walk walk(path, reading, std::numeric_limits<std::size_t>::max());
+  return whole(walk);
+}
+
+Program read_program_text(std::string text, const std::filesystem::path& name, const ProgramReading& reading) {
+  reading.validate();
+  Walk walk(ProgramLines(name.string(), std::move(text)), name, reading, std::numeric_limits<std::size_t>::max());
+  return whole(walk);
 }
 
 }  // namespace robomill::program

@@ -99,4 +99,9 @@ class ROBOMILL_API ProgramFile final : public Source {
 /// The whole program, with all that was left out. @throws InvalidInput as ProgramFile
 [[nodiscard]] ROBOMILL_API Program read_program(const std::filesystem::path& path, const ProgramReading& reading = {});
 
+/// The same of a text in memory.
+/// @param name  as of a file, for errors; its ending is the format's where the reading names none
+[[nodiscard]] ROBOMILL_API Program read_program_text(std::string text, const std::filesystem::path& name,
+                                                     const ProgramReading& reading = {});
+
 }  // namespace robomill::program

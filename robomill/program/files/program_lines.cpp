@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -18,15 +20,20 @@ constexpr std::size_t least_bytes = 2 * (ProgramLines::longest + 2);
 
 }  // namespace
 
-ProgramLines::ProgramLines(std::filesystem::path path)
-    : path_(std::move(path)), in_(io::open_file(path_)), buffer_(buffer_bytes) {
+ProgramLines::ProgramLines(const std::filesystem::path& path)
+    : ProgramLines(path.string(), std::make_unique<std::ifstream>(io::open_file(path))) {}
+
+ProgramLines::ProgramLines(std::string name, std::string text)
+    : ProgramLines(std::move(name), std::make_unique<std::istringstream>(std::move(text))) {}
+
+ProgramLines::ProgramLines(std::string name, std::unique_ptr<std::istream> in)
+    : name_(std::move(name)), in_(std::move(in)), buffer_(buffer_bytes) {
   fill();
-  if (end_ == 0) throw InvalidInput(path_.string(), "is empty");
+  if (end_ == 0) throw InvalidInput(name_, "is empty");
   const std::string_view head(buffer_.data(), std::min<std::size_t>(end_, 4096));
   if (head.find('\0') == std::string_view::npos) return;
   const bool utf16 = head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
-  throw InvalidInput(path_.string(), "is no plain text",
-                     utf16 ? "It is UTF-16: save it as UTF-8" : "Is it a binary file?");
+  throw InvalidInput(name_, "is no plain text", utf16 ? "It is UTF-16: save it as UTF-8" : "Is it a binary file?");
 }
 
 void ProgramLines::fill() {
@@ -34,10 +41,10 @@ void ProgramLines::fill() {
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
-  in_.read(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
-  end_ += static_cast<std::size_t>(in_.gcount());
-  if (in_.bad()) throw InvalidInput(path_.string(), "cannot be read to its end");
-  whole_ = !in_;
+  in_->read(buffer_.data() + end_, static_cast<std::streamsize>(buffer_.size() - end_));
+  end_ += static_cast<std::size_t>(in_->gcount());
+  if (in_->bad()) throw InvalidInput(name_, "cannot be read to its end");
+  whole_ = !*in_;
   if (first && std::string_view(buffer_.data(), end_).starts_with("\xEF\xBB\xBF")) begin_ = 3;
 }
 
@@ -52,7 +59,7 @@ bool ProgramLines::next(std::string_view& line) {
   begin_ += ending != nullptr ? length + 1 : count;
   if (length > 0 && first[length - 1] == '\r') --length;
   if (length > longest) {
-    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", path_.string(), line_),
+    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", name_, line_),
                                            .rule = fmt::format("is a line of more than {} bytes", longest),
                                            .hint = "Is it a text file with line ends?"});
   }
@@ -68,9 +75,9 @@ char ProgramLines::ahead() const {
 }
 
 void ProgramLines::rewind() {
-  in_.clear();
-  if (!in_.seekg(0)) {
-    throw InvalidInput(path_.string(), "cannot be read a second time", "It is read twice; is it a pipe? Give a file");
+  in_->clear();
+  if (!in_->seekg(0)) {
+    throw InvalidInput(name_, "cannot be read a second time", "It is read twice; is it a pipe? Give a file");
   }
   begin_ = end_ = line_ = 0;
   whole_ = false;

@@ -1,19 +1,23 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
+#include <istream>
+#include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace robomill::program {
 
-/// The lines of a text file one after another, in memory that does not grow with it.
+/// The lines of a text one after another; of a file in memory that does not grow with it.
 class ProgramLines {
  public:
   static constexpr std::size_t longest = std::size_t{1} << 15;  ///< bytes of a line
 
   /// @throws InvalidInput if the file cannot be read, is empty, or is no plain text
-  explicit ProgramLines(std::filesystem::path path);
+  explicit ProgramLines(const std::filesystem::path& path);
+  /// A text in memory. @param name  of it, for errors
+  ProgramLines(std::string name, std::string text);
 
   /// The next line without its ending, good until the next call; false at the end.
   /// @throws InvalidInput with file and line if it is too long
@@ -24,10 +28,11 @@ class ProgramLines {
   void rewind();
 
  private:
+  ProgramLines(std::string name, std::unique_ptr<std::istream> in);
   void fill();
 
-  std::filesystem::path path_;
-  std::ifstream in_;
+  std::string name_;
+  std::unique_ptr<std::istream> in_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;  ///< of what the buffer holds
   std::size_t line_ = 0;

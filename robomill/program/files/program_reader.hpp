@@ -56,9 +56,7 @@ class ProgramReader {
   /// @param remarks  outlive the reader
   ProgramReader(std::string file, const ProgramReading& reading, ProgramRemarks& remarks);
   virtual ~ProgramReader() = default;
-  ProgramReader(const ProgramReader&) = delete;
   ProgramReader& operator=(const ProgramReader&) = delete;
-  ProgramReader(ProgramReader&&) = delete;
   ProgramReader& operator=(ProgramReader&&) = delete;
 
   /// Takes the next line, when the blocks of those before have been taken away.
@@ -73,15 +71,25 @@ class ProgramReader {
   [[nodiscard]] bool ended() const { return ended_; }
   /// Where the first block begins; empty until that is known.
   [[nodiscard]] const std::optional<Pose>& start() const { return start_; }
+  /// Where the tool stands after the lines taken.
+  [[nodiscard]] const Pose& pose() const { return pose_; }
+  [[nodiscard]] double spindle_speed_rad_per_s() const { return spindle_speed_rad_per_s_; }
+  /// The statement of the line taken last goes on in the next one.
+  [[nodiscard]] bool continued() const { return continued_; }
 
- protected:
-  static constexpr double farthest_m = 1e3;  ///< of a coordinate or a radius
   struct Part {
     std::string_view text;   ///< what of a line counts
     bool continues = false;  ///< the statement goes on in the next line
   };
+  /// @param ahead      first letter of the line after it
   /// @param continued  the line before it goes on in this one
   [[nodiscard]] virtual Part part_of(std::string_view line, char ahead, bool continued) const = 0;
+
+ protected:
+  /// A reader that stands where the other one does.
+  ProgramReader(const ProgramReader&) = default;
+
+  static constexpr double farthest_m = 1e3;  ///< of a coordinate or a radius
   /// Carries out a statement; calls begin_at, move or dwell at most once.
   virtual void read(std::string_view statement) = 0;
   /// Turns `block_` into the statement's next block; false where it has none.

@@ -1,0 +1,50 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/program/files/program_files.hpp"
+#include "robomill/program/program.hpp"
+
+// Method: robomill/program/README.md, "Rewriting"
+
+namespace robomill::program {
+
+/// A program's text with other speeds, feeds or positions.
+struct Rewritten {
+  std::string text;               ///< the whole program
+  std::size_t changed_lines = 0;  ///< of the program
+  std::size_t added_lines = 0;    ///< beside the header's
+  std::size_t first_changed = 0;  ///< the program's first line that is changed or preceded by another; 0: none
+};
+
+/// The program with other spindle speeds, feeds and positions, in its own dialect; what needs no change keeps its
+/// bytes.
+///
+/// The new text is read again by the program's reader. Each block must then be the wanted one: its tip within 0.2 um
+/// (0.1 um and the digits written), its axis within 1e-7 rad, its speed and its feed within 1e-5 (the feed beyond by
+/// what the digits change of the way's length); kind, spindle, coolant, stops and the line that it comes from alike.
+/// While the spindle is off its speed does not count.
+///
+/// @param reading  as the program was read
+/// @param as_read  what read_program gives for the file
+/// @param wanted   the same blocks and start with other spindle_speed_rad_per_s, other duration_s of feed moves and
+///     other tips; axes, kinds and all else are those of as_read
+/// @param header   sentences that become comments at the program's head, one a line. What is not plain ASCII becomes
+///     a question mark, parentheses in G-code brackets
+/// @throws InvalidInput with file and line: as read_program; as_read is not the file's; wanted differs in what cannot
+///     be rewritten; and what the dialect cannot say
+[[nodiscard]] ROBOMILL_API Rewritten rewrite_program(const std::filesystem::path& path, const ProgramReading& reading,
+                                                     const Program& as_read, const Program& wanted,
+                                                     const std::vector<std::string>& header = {});
+
+/// The same of a text in memory.
+/// @param name  as of a file, for errors; its ending is the format's where the reading names none
+[[nodiscard]] ROBOMILL_API Rewritten rewrite_program_text(const std::string& text, const std::filesystem::path& name,
+                                                          const ProgramReading& reading, const Program& as_read,
+                                                          const Program& wanted,
+                                                          const std::vector<std::string>& header = {});
+
+}  // namespace robomill::program
