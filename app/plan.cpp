@@ -18,6 +18,7 @@ Exit run(const PlanCommand& command, const Common& common, Progress& progress) {
     jobs::write_plan(common.output, result);
   }
   if (common.wants_summary()) fmt::print("{}", jobs::summary(result));
+  if (result.decision && result.decision->status == jobs::DecideResult::Status::infeasible) return not_reached;
   if (result.path && !result.path->holds()) return not_reached;
   if (result.blocks && !result.recommends()) return done;  // an unstable block is an answer
   return result.recommendation.status == decision::Recommendation::Status::found ? done : not_reached;

@@ -32,7 +32,8 @@ class HollowJob {
     write("cell.toml", examples::cell_toml(arm, joints) + "\n[program]\nmachine = \"xyzac-trt\"\n");
     write("forces.toml", examples::hollow_forces(passes, moves_a_pass));
     write("part.ngc", examples::hollow_program(passes, moves_a_pass));
-    write("job.toml", "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = \"part.ngc\"\n");
+    write("job.toml",
+          "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = \"part.ngc\"\n[decide]\nfree = []\n");
   }
   HollowJob(const HollowJob&) = delete;
   HollowJob& operator=(const HollowJob&) = delete;

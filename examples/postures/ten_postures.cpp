@@ -83,7 +83,8 @@ std::vector<Eigen::VectorXd> joints_of_poses(const modal::testing::SimulatedArm&
   return out;
 }
 
-std::string cell_toml(const modal::testing::SimulatedArm& arm, const std::vector<Eigen::VectorXd>& joints) {
+std::string cell_toml(const modal::testing::SimulatedArm& arm, const std::vector<Eigen::VectorXd>& joints,
+                      const std::string& drives) {
   const robot::Cell& cell = arm.told();
   std::string out =
       "# A KR 210-like arm with a spindle, simulated; masses, stiffness and damping as somebody may know them: up to\n"
@@ -98,7 +99,7 @@ std::string cell_toml(const modal::testing::SimulatedArm& arm, const std::vector
   out += joint_list(cell.arm, "joint_stiffness_n_m_per_rad", &robot::Joint::stiffness, 1.0);
   out += joint_list(cell.arm, "joint_damping_n_m_s_per_rad", &robot::Joint::damping, 1.0);
   out += joint_list(cell.arm, "joint_rotor_inertia_kg_m2", &robot::Joint::rotor_inertia, 1.0);
-  out += "\n# The last link holds the spindle.\n";
+  out += drives + "\n# The last link holds the spindle.\n";
   for (std::size_t i = 0; i < rows.size(); ++i) out += link_toml(cell.arm.joints[i].link, rows[i]);
   const Eigen::Isometry3d& mount = arm.mount();
   const double turn = std::atan2(mount.linear()(2, 1), mount.linear()(1, 1));  // mounts turn about x alone

@@ -42,8 +42,9 @@ struct Direction {
 [[nodiscard]] std::vector<Eigen::VectorXd> joints_of_poses(const modal::testing::SimulatedArm& arm);
 
 /// cell.toml of a KR210-like arm: what is told of it, and [[postures]] with posture_1.uff …
-[[nodiscard]] std::string cell_toml(const modal::testing::SimulatedArm& arm,
-                                    const std::vector<Eigen::VectorXd>& joints);
+/// @param drives  further keys of [robot]
+[[nodiscard]] std::string cell_toml(const modal::testing::SimulatedArm& arm, const std::vector<Eigen::VectorXd>& joints,
+                                    const std::string& drives = {});
 /// lobes.toml of the cut below at a posture of cell.toml.
 [[nodiscard]] std::string lobes_toml(const Eigen::VectorXd& joints);
 

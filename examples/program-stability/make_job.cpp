@@ -30,7 +30,7 @@ void run(const std::filesystem::path& directory, int passes, int moves_a_pass) {
   io::write_file(directory / "part.ngc", examples::hollow_program(passes, moves_a_pass));
   io::write_file(directory / "job.toml",
                  "[job]\ntitle = \"Stability of every block\"\nforces = \"forces.toml\"\ncell = \"cell.toml\"\n"
-                 "program = \"part.ngc\"\n");
+                 "program = \"part.ngc\"\n\n[decide]\nfree = []  # the program is judged as it is\n");
   fmt::print("{} postures and {} passes in {}\n", joints.size(), passes, directory.string());
 }
 

@@ -90,4 +90,23 @@ double chip_area_m2(const Engagement& engagement) {
   return area;
 }
 
+double greatest_chip_share(const Engagement& engagement) {
+  const Eigen::RowVector3d feed = engagement.feed_from_tool.row(0);  // x_F in T
+  const double steepest_rad = std::atan2(feed.x(), feed.y());        // where sin φ x + cos φ y is greatest
+  double greatest = 0.0;
+  for (std::size_t i = 0; i < engagement.slices.size(); ++i) {
+    const double kappa = engagement.slices[i].position_rad;
+    const auto share = [&](double phi) {
+      return std::sin(kappa) * (std::sin(phi) * feed.x() + std::cos(phi) * feed.y()) - std::cos(kappa) * feed.z();
+    };
+    for (const Arc& arc : engagement.of(i)) {
+      greatest = std::max({greatest, share(arc.entry_rad), share(arc.exit_rad)});
+      const double ahead = std::remainder(steepest_rad - arc.entry_rad, 2.0 * std::numbers::pi);
+      const double into = ahead < 0.0 ? ahead + 2.0 * std::numbers::pi : ahead;
+      if (into < arc.exit_rad - arc.entry_rad) greatest = std::max(greatest, share(steepest_rad));
+    }
+  }
+  return greatest;
+}
+
 }  // namespace robomill::cutting

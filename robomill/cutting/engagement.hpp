@@ -78,5 +78,7 @@ struct ROBOMILL_API Engagement {
 [[nodiscard]] ROBOMILL_API double patch_area_m2(const Engagement& engagement);
 /// Area of the chip across the feed, ∫ (n·x_F) dA [m²], in closed form over each arc. Removal is feed times this.
 [[nodiscard]] ROBOMILL_API double chip_area_m2(const Engagement& engagement);
+/// Greatest n·x_F over the arcs: chip thickness over the feed per tooth, without runout; 0 of an empty engagement.
+[[nodiscard]] ROBOMILL_API double greatest_chip_share(const Engagement& engagement);
 
 }  // namespace robomill::cutting

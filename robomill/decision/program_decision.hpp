@@ -28,7 +28,8 @@ enum class ProgramLimit {
   spindle_range,  ///< speeds that the spindle has
   tip_speed,      ///< of the tip along its path
   joint_speed,    ///< of a joint
-  joint_torque,   ///< of a joint
+  joint_torque,   ///< of a joint, as a share of what its drive gives
+  reversal,       ///< of a joint's load while it cuts: its backlash opens
   posture         ///< the robot cannot stand there, or not without a collision
 };
 inline constexpr Name<ProgramLimit> program_limit_names[] = {{"none", ProgramLimit::none},
@@ -45,6 +46,7 @@ inline constexpr Name<ProgramLimit> program_limit_names[] = {{"none", ProgramLim
                                                              {"tip_speed", ProgramLimit::tip_speed},
                                                              {"joint_speed", ProgramLimit::joint_speed},
                                                              {"joint_torque", ProgramLimit::joint_torque},
+                                                             {"reversal", ProgramLimit::reversal},
                                                              {"posture", ProgramLimit::posture}};
 [[nodiscard]] ROBOMILL_API std::string_view to_string(ProgramLimit limit);
 

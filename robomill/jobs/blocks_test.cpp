@@ -80,7 +80,7 @@ dexel_mm = 0.2
     return run_job(folder_.file("job.toml",
                                 "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = "
                                 "\"part.ngc\"\n" +
-                                    more),
+                                    more + "[decide]\nfree = []\n"),
                    1);
   }
   PlanResult run_with_modes() { return run("modes = \"" + source + "/data/robot-modes.toml\"\n"); }

@@ -63,6 +63,7 @@ struct ProgramStock {
 };
 
 struct ProgramForces {
+  std::filesystem::path path = {};  ///< of its file
   program::Program program;
   std::vector<BlockResult> blocks = {};
   std::optional<ProgramStock> stock = {};  ///< none: each block beside its neighbouring pass

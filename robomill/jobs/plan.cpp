@@ -12,6 +12,7 @@
 #include "robomill/decision/choose.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
+#include "robomill/jobs/plan_decision.hpp"
 #include "robomill/jobs/program_forces.hpp"
 #include "robomill/jobs/test_cuts.hpp"
 #include "robomill/modal/directions.hpp"
@@ -391,8 +392,9 @@ DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& pr
   return constant_dynamics(result.model);
 }
 
-/// Forces, and with a program and a robot the stability of every block.
-void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, Progress& progress) {
+/// Forces, and with a program and a robot the stability of every block and the conditions to cut it at.
+void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, const std::filesystem::path& folder,
+                    Progress& progress) {
   if (result.job.forces.empty()) return;
   const bool along = !result.job.program.empty();
   ForcesFile file = read_forces(result.job.forces, along ? ForcesJob::program : ForcesJob::revolution);
@@ -408,7 +410,9 @@ void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, Pro
   const LobesFile& cut = result.cut;
   const BlocksOptions options = {.workpiece_vibrates = !cut.workpiece_modes.empty() || !cut.workpiece_frf.empty() ||
                                                        !cut.problem.workpiece_dynamics.modes.empty()};
-  result.blocks = judge_blocks(*result.forces, dynamics_along(result, *cell, progress), options, progress);
+  const DynamicsAt dynamics = dynamics_along(result, *cell, progress);
+  result.blocks = judge_blocks(*result.forces, dynamics, options, progress);
+  if (!result.job.decide.free.empty()) decide_conditions(result, *cell, dynamics, options, folder, progress);
 }
 
 /// Lobes of the job's cut, the recommendation, and what stands beside it.
@@ -466,7 +470,7 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   if (result.fit && accept_fit) result.fit->accepted = true;
   const bool usable = !result.fit || result.fit->usable();
   if (usable && with_path) smooth(result, *cell, folder, progress);
-  load_and_judge(result, cell, progress);
+  load_and_judge(result, cell, folder, progress);
   if (!usable) {
     result.recommendation.reason = fmt::format(
         "The modes do not describe the FRFs: the fit differs from them by {:.3g} %, and from {:.3g} % on nothing is "

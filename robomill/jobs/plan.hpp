@@ -9,15 +9,18 @@
 #include "robomill/base/progress.hpp"
 #include "robomill/decision/recommend.hpp"
 #include "robomill/jobs/blocks.hpp"
+#include "robomill/jobs/decide.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
 #include "robomill/jobs/forces.hpp"
+#include "robomill/jobs/monitor_plan.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/smooth.hpp"
 #include "robomill/jobs/test_cuts.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/hits.hpp"
 #include "robomill/page/report.hpp"
+#include "robomill/program/files/rewrite.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/uncertainty.hpp"
 
@@ -58,7 +61,13 @@ struct PlanResult {
   decision::Recommendation recommendation;
   std::optional<ForcesResult> forces;   ///< of a job that asks for them
   std::optional<ProgramBlocks> blocks;  ///< of a job with forces, a cell and a program
-  std::optional<SmoothResult> path;     ///< of a job with a program and a cell with [smoothing]
+  /// Of a job that judges blocks and leaves something free. Where it found conditions, forces, blocks and path are
+  /// those of the decided program.
+  std::optional<DecideResult> decision;
+  std::optional<program::Rewritten> program_out;  ///< the decided program in its dialect
+  std::string program_name;                       ///< … and its file's name
+  std::optional<PlannedMonitor> monitor;          ///< of that program
+  std::optional<SmoothResult> path;               ///< of a job with a program and a cell with [smoothing]
   std::vector<ComparedCut> cuts;
   std::vector<Recording> recordings;
   std::vector<std::string> warnings, notes;

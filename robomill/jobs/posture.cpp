@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "robomill/base/error.hpp"
+#include "robomill/jobs/blocks/dynamics.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/modal/fit.hpp"
@@ -76,18 +77,6 @@ modal::MeasuredPosture measured(const CellFile& cell, std::size_t index, std::ve
   }
   out.frfs = entry.flange_axes ? turned(file.set, turn, out.name) : std::move(file.set);
   return out;
-}
-
-/// What hangs on the flange beside the last link, in that link's frame: a compact body.
-std::optional<robot::Link> payload_of(const CellFile& cell) {
-  if (!cell.end_effector.mass_kg) return std::nullopt;
-  constexpr double radius_of_gyration_m = 0.1;
-  const Eigen::Isometry3d flange = cell.cell.arm.flange * Eigen::Isometry3d(cell.end_effector.tip.linear().transpose());
-  robot::Link link;
-  link.mass_kg = *cell.end_effector.mass_kg;
-  link.center_m = flange * cell.end_effector.center_m.value_or(0.5 * cell.end_effector.tip.translation());
-  link.inertia_kg_m2 = link.mass_kg * radius_of_gyration_m * radius_of_gyration_m * Eigen::Matrix3d::Identity();
-  return link;
 }
 
 /// Before the long work starts.

@@ -309,7 +309,8 @@ ProgramForces run_program(const ForcesFile& file, const std::optional<CellFile>&
   const auto begun = std::chrono::steady_clock::now();
   ProgramForces out;
   const program::ProgramReading reading = cell ? program_reading(*cell) : program::ProgramReading{};
-  out.program = program::read_program(path, run.reading.value_or(reading));
+  out.path = path;
+  out.program = run.program ? *run.program : program::read_program(path, run.reading.value_or(reading));
   if (out.program.blocks.empty()) {
     throw InvalidInput(InvalidInput::Parts{.where = path.string(), .rule = "has no move"});
   }

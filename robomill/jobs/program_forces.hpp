@@ -14,6 +14,7 @@ namespace robomill::jobs {
 
 /// How a program is run.
 struct ProgramRun {
+  std::optional<program::Program> program = {};         ///< none: read from its file
   std::optional<program::ProgramReading> reading = {};  ///< none: the cell's
   std::vector<robot::Position6> joints = {};            ///< at the end of each block; none: found here
   bool keep_cuts = false;                               ///< ProgramForces::cuts

@@ -79,6 +79,10 @@ auto located_in_program(const std::filesystem::path& program, F&& f) {
   }
 }
 
+std::string name_of(const SmoothJob& job) {
+  return job.program_name.empty() ? job.program.filename().string() : job.program_name;
+}
+
 Bench prepare(const SmoothJob& job, CellFile cell) {
   Bench bench;
   bench.cell = std::move(cell);
@@ -91,7 +95,11 @@ Bench prepare(const SmoothJob& job, CellFile cell) {
   reading.chord_tolerance_m = std::max(chord_share * bench.smoothing.options.tip_tolerance_m, least_chord_m);
   reading.axis_tolerance_rad = std::max(turn_share * bench.smoothing.options.axis_tolerance_rad, least_turn_rad);
   bench.program = program::open_program(job.program, reading);
-  bench.posture = located_in_program(job.program, [&] { return posture_of(bench); });
+  if (job.posture) {
+    bench.posture.posture = *job.posture;
+  } else {
+    bench.posture = located_in_program(job.program, [&] { return posture_of(bench); });
+  }
   return bench;
 }
 
@@ -104,7 +112,7 @@ std::unique_ptr<path::SampleFile> open_output(const SmoothJob& job, const Bench&
   info.sample_period_s = bench.smoothing.options.sample_period_s;
   info.program_period_s = job.program_period_s;
   info.cell = bench.cell.path.filename().string();
-  info.program = job.program.filename().string();
+  info.program = name_of(job);
   info.end_effector = bench.cell.end_effector;
   return path::open_sample_file(job.output, info);
 }
@@ -241,7 +249,7 @@ std::string length_note(const path::ProgramRun& run) {
 
 void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   path::SmoothedProgram& smoothed = result.smoothed;
-  smoothed.program = job.program.filename().string();
+  smoothed.program = name_of(job);
   smoothed.cell = bench.cell.path.filename().string();
   smoothed.prismatic = bench.prismatic;
   const std::vector<double>& gamma_rad = bench.posture.posture.gamma_rad;

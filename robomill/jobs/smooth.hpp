@@ -22,13 +22,15 @@ namespace robomill::jobs {
 /// A program to smooth and what to make of it.
 struct SmoothJob {
   std::filesystem::path program, cell;
-  std::filesystem::path output = {};        ///< of the trajectory, by its ending; empty: none
-  std::optional<path::Method> method = {};  ///< not given: the cell's
-  bool compare = false;                     ///< all other methods too
-  bool keep_violations = false;             ///< write a trajectory that breaks limits all the same
-  bool record = true;                       ///< curves for a report
-  double program_period_s = 0.0;            ///< of joint programs; 0: path::TrajectoryInfo's
-  bool place = true;                        ///< at the end; else place() is the caller's to call
+  std::filesystem::path output = {};          ///< of the trajectory, by its ending; empty: none
+  std::optional<path::Method> method = {};    ///< not given: the cell's
+  bool compare = false;                       ///< all other methods too
+  bool keep_violations = false;               ///< write a trajectory that breaks limits all the same
+  bool record = true;                         ///< curves for a report
+  double program_period_s = 0.0;              ///< of joint programs; 0: path::TrajectoryInfo's
+  bool place = true;                          ///< at the end; else place() is the caller's to call
+  std::string program_name = {};              ///< as files and reports name it; empty: its file's name
+  std::optional<path::Posture> posture = {};  ///< not given: chosen
 };
 
 struct SmoothResult {

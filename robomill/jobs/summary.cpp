@@ -192,10 +192,42 @@ void add_blocks(std::string& out, const ForcesResult& forces, const ProgramBlock
   append(out, "\n             {} evaluations in {:.2f} s\n", blocks.evaluations, blocks.seconds);
 }
 
+void add_decision(std::string& out, const PlanResult& result) {
+  const DecideResult& decision = *result.decision;
+  const Outcome& before = decision.as_programmed;
+  const auto rpm = [](const Outcome& o) {
+    const double low = o.lowest_spindle_speed_rad_per_s / units::rpm;
+    const double high = o.highest_spindle_speed_rad_per_s / units::rpm;
+    return low == high ? fmt::format("{:.0f} rpm", low) : fmt::format("{:.0f} to {:.0f} rpm", low, high);
+  };
+  const auto add = [&](const char* word, const Outcome& o) {
+    append(out, "{} {}, {:.4g} s of cutting, least stability margin {:.2f}, {} blocks chatter\n", word, rpm(o),
+           o.cutting_time_s, o.least_stability_margin, o.unstable_blocks);
+    for (const Violation& v : o.violations) {
+      append(out, "               {} in block {}\n",
+             limit_text({.limit = v.limit, .value = v.value, .allowed = v.allowed}), v.block + 1);
+    }
+  };
+  add("as programmed", before);
+  if (decision.decided) {
+    add("as decided   ", *decision.decided);
+    append(out, "             {} changes of S, {} of F, {} lines of {} changed; {} cuts looked at, {} runs, {:.3g} s\n",
+           decision.speeds_changed, decision.feeds_changed, result.program_out ? result.program_out->changed_lines : 0,
+           result.program_name, decision.evaluations, decision.exact_runs, decision.seconds);
+  } else {
+    append(out, "no conditions: {}\n", decision.reason);
+  }
+  for (const RejectedAlternative& one : decision.alternatives) {
+    append(out, "rejected      {:.0f} rpm: {}\n", one.speed.spindle_speed_rad_per_s / units::rpm,
+           limit_text(one.speed.stopped_by));
+  }
+}
+
 }  // namespace
 
 std::string summary(const PlanResult& result) {
   std::string out;
+  if (result.decision) add_decision(out, result);
   if (result.blocks) add_blocks(out, *result.forces, *result.blocks);
   const Agreement count = agreement(result.cuts);
   add_disagreement(out, count);
@@ -231,6 +263,7 @@ std::string summary(const PlanResult& result) {
   add_notes(out, result.warnings, "warning      ");
   add_notes(out, result.notes, "note         ");
   if (result.blocks) add_notes(out, block_notes(*result.blocks), "note         ");
+  if (result.decision) add_notes(out, result.decision->notes, "note         ");
   return out;
 }
 

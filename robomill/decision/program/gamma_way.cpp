@@ -13,7 +13,7 @@ constexpr double unreachable = std::numeric_limits<double>::infinity();
 /// each other.
 constexpr double turn_share = 1e-6;
 
-double widest_step(const std::vector<double>& gamma_rad) {
+double largest_step(const std::vector<double>& gamma_rad) {
   double widest = 0.0;
   for (std::size_t g = 1; g < gamma_rad.size(); ++g) widest = std::max(widest, gamma_rad[g] - gamma_rad[g - 1]);
   return widest;
@@ -22,7 +22,7 @@ double widest_step(const std::vector<double>& gamma_rad) {
 }  // namespace
 
 GammaWay::GammaWay(const std::vector<double>& times_s, const ProgramOptions& options) {
-  const double least_s = widest_step(options.gamma_rad) / options.gamma_rate_rad_per_s;
+  const double least_s = largest_step(options.gamma_rad) / options.gamma_rate_rad_per_s;
   double group_s = 0.0;
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     if (i == 0 || group_s >= least_s) {

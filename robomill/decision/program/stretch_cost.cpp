@@ -32,7 +32,7 @@ StretchAt StretchCost::bound(const ProgramStretch& stretch, std::size_t candidat
   StretchAt out;
   out.time_s = 0.0;
   const double speed = speeds_[candidate].spindle_speed_rad_per_s;
-  double worst = 0.0;
+  double worst = -no_time;
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
     FeedRange range = model_.feeds(c, speed);
     std::optional<LimitUse> broken;

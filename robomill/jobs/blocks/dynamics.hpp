@@ -1,10 +1,15 @@
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 
+#include "robomill/jobs/files/cell_toml.hpp"
 #include "robomill/modal/modes.hpp"
 #include "robomill/robot/arm.hpp"
 
 namespace robomill::jobs {
+
+/// What hangs on the flange beside the last link, in that link's frame: a compact body.
+[[nodiscard]] std::optional<robot::Link> payload_of(const CellFile& cell);
 
 /// Whether the arm's own modes can be computed: masses of links and damping of every joint are there.
 [[nodiscard]] bool vibrates(const robot::Arm& arm);

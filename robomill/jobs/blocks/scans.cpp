@@ -7,8 +7,8 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/jobs/blocks/stability.hpp"
+#include "robomill/jobs/blocks/stand_at.hpp"
 #include "robomill/jobs/program_forces.hpp"
-#include "robomill/robot/choose.hpp"
 #include "robomill/robot/pose.hpp"
 
 namespace robomill::jobs {
@@ -16,24 +16,6 @@ namespace {
 
 constexpr double scan_reach_m = 0.2, scan_reach_rad = 0.5 * std::numbers::pi;
 constexpr std::array<const char*, 4> scan_parameters = {"x_mm", "y_mm", "z_mm", "gamma_deg"};
-
-/// Joints at which the arm holds the tool so; none where it cannot stand there.
-std::optional<Eigen::VectorXd> stand_at(const robot::Cell& cell,
-                                        const std::optional<robot::SphericalWristInverse>& inverse,
-                                        const robot::ToolPose& pose, const Eigen::VectorXd& near) {
-  const Eigen::Isometry3d flange = robot::flange_pose(cell, pose);
-  if (inverse) {
-    const robot::Position6 previous(near);
-    const robot::Choice choice =
-        robot::choose(cell.arm, inverse->solve(flange, previous), previous, {.point_m = robot::tip_point(cell)});
-    if (choice.status != robot::Reach::Status::found) return std::nullopt;
-    return choice.position_rad;
-  }
-  const robot::NearResult found = robot::solve_near(cell.arm, flange, near);
-  const bool there =
-      found.status == robot::NearResult::Status::converged && robot::within_limits(cell.arm, found.position).inside;
-  return there ? std::optional(found.position) : std::nullopt;
-}
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include "robomill/io/records.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
+#include "robomill/jobs/files/decide_toml.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -152,6 +153,7 @@ Job read_job(const std::filesystem::path& path) {
   Job job{.file = path};
   read_sources(file, job);
   read_limits(file, job);
+  job.decide = read_decide(file);
   read_cuts(file, job);
   std::filesystem::path more_cuts;
   if (file.path("job.cuts", more_cuts)) {

@@ -8,6 +8,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
 #include "robomill/decision/finish.hpp"
+#include "robomill/jobs/decide_options.hpp"
 #include "robomill/modal/directions.hpp"
 
 // Method: robomill/jobs/README.md, "Files"
@@ -58,6 +59,7 @@ struct Job {
   int fit_modes = 0;                             ///< 0: chosen by the fit
   decision::RecommendOptions recommend = {};     ///< of the cutter, the spindle and safety; the cut has the rest
   decision::FinishLimits finish = {};
+  DecideOptions decide = {};  ///< of a job that judges blocks
   std::vector<TestCut> cuts = {};
 
   /// Whether every block of a program is looked at: forces along it, and a robot.

@@ -11,6 +11,24 @@ void remove_later_stages(const std::filesystem::path& folder) {
     io::remove_file(folder / name);
 }
 
+constexpr const char* monitor_name = "monitor.toml";
+
+/// The decided program and its monitor; without them what an earlier run left.
+void write_decided(const std::filesystem::path& folder, const PlanResult& result) {
+  if (!result.decision) return;
+  if (result.program_out) {
+    io::write_file(folder / result.program_name, result.program_out->text);
+  } else {
+    io::remove_file(folder / ("program" + result.job.program.extension().string()));
+  }
+  if (result.monitor) {
+    io::write_file(folder / monitor_modes_name, result.monitor->modes_json);
+    io::write_file(folder / monitor_name, result.monitor->toml);
+  } else {
+    for (const char* name : {monitor_modes_name, monitor_name}) io::remove_file(folder / name);
+  }
+}
+
 /// What stands beside the report.
 std::vector<page::StageFile> stage_files(const PlanResult& result) {
   std::vector<page::StageFile> files;
@@ -43,6 +61,10 @@ std::vector<page::StageFile> stage_files(const PlanResult& result) {
                        .description = "joints and tool, a row a sample"});
     }
   }
+  if (result.program_out) {
+    files.push_back(
+        {.stage = "plan", .file = result.program_name, .description = "the program at the decided speeds and feeds"});
+  }
   files.push_back({.stage = "plan", .file = "plan.json", .description = "recommendation and every stage's result"});
   return files;
 }
@@ -66,6 +88,7 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result) {
     io::write_file(folder / "blocks.csv", blocks_csv(*result.forces, *result.blocks));
     io::write_file(folder / "blocks.json", report.blocks);
   }
+  write_decided(folder, result);
   if (result.path) {
     place(*result.path);
     io::write_file(folder / "smooth.json", report.smooth);

@@ -140,6 +140,7 @@ Json decision_json(const PlanResult& result) {
     json["feed_directions"] = feed_directions_json(*result.feed_directions);
   }
   if (result.hits) json["hit_directions"] = result.hit_directions;
+  if (result.decision) json["decision"] = program_decision_json(result);
   json["warnings"] = result.warnings;
   json["notes"] = result.notes;
   return json;

@@ -1,0 +1,343 @@
+#include "robomill/jobs/decide.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/parallel.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/jobs/blocks/named_block.hpp"
+#include "robomill/jobs/blocks/scans.hpp"
+#include "robomill/jobs/decide/apply.hpp"
+#include "robomill/jobs/decide/block_model.hpp"
+#include "robomill/jobs/decide/outcome.hpp"
+#include "robomill/jobs/program_forces.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+using decision::LimitUse;
+using decision::ProgramDecision;
+using decision::ProgramLimit;
+
+/// Choices that the exact run may send back.
+constexpr int most_rounds = 4;
+/// What a block that broke a limit must keep from it beyond what it missed.
+constexpr double tightening = 0.01;
+/// Of the force of a block whose load turns round.
+constexpr double reversal_step = 0.3;
+/// Points of the map of γ along the path.
+constexpr std::size_t most_map_points = 400;
+/// … and its steps of γ to each side where γ is not free.
+constexpr double map_step_rad = 30.0 * units::deg;
+constexpr int map_steps = 3;
+
+/// The program at a choice, run and judged.
+struct Tried {
+  program::Program program;
+  std::vector<double> gamma_offset_rad;
+  ForcesResult forces;
+  ProgramBlocks blocks;
+};
+
+/// Runs and judges a program with the same blocks, turned by γ.
+Tried run_exactly(const DecideProblem& problem, program::Program program, std::vector<double> gamma_offset_rad,
+                  Progress& progress) {
+  Tried out;
+  const ProgramRun run = {.program = program,
+                          .joints = joints_at(problem.forces, program, gamma_offset_rad),
+                          .keep_cuts = true,
+                          .deflect = problem.forces.program->deflected};
+  ForcesFile file = problem.forces.file;
+  file.motion.spindle_speed_rad_per_s = 0.0;  // the program's own
+  out.forces = run_forces_with(std::move(file), problem.forces.program->path, problem.forces.cell, run, progress);
+  BlocksOptions options = problem.blocks_options;
+  options.scan_points = 0;
+  out.blocks = judge_blocks(out.forces, problem.dynamics, options, progress);
+  out.program = std::move(program);
+  out.gamma_offset_rad = std::move(gamma_offset_rad);
+  return out;
+}
+
+Tried run_choice(const DecideProblem& problem, const BlockModel& model, const ProgramDecision& choice,
+                 Progress& progress) {
+  program::Program program = decided_program(problem.forces, model.units(), choice);
+  std::vector<double> gamma_offset_rad;
+  if (problem.options.is_free(Free::gamma)) gamma_offset_rad = gamma_offsets(program, model.units(), choice);
+  return run_exactly(problem, std::move(program), std::move(gamma_offset_rad), progress);
+}
+
+/// Holds what broke a limit further from it; false: that is not possible.
+bool tighten(BlockModel& model, const std::vector<Violation>& violations) {
+  std::vector<std::size_t> lines;
+  for (const Violation& v : violations) {
+    switch (v.limit) {
+      case ProgramLimit::stability:
+        model.tighten_margin(v.block, v.allowed - v.value + tightening);
+        break;
+      case ProgramLimit::force:
+      case ProgramLimit::torque:
+      case ProgramLimit::power:
+      case ProgramLimit::deflection:
+      case ProgramLimit::joint_torque:
+      case ProgramLimit::greatest_chip:
+      case ProgramLimit::surface_error:
+        model.tighten_feed(v.block, v.allowed / v.value * (1.0 - tightening));
+        break;
+      case ProgramLimit::reversal:
+        model.tighten_feed(v.block, 1.0 - reversal_step);
+        break;
+      default:
+        return false;
+    }
+  }
+  return true;
+}
+
+std::string at_block(const DecideProblem& problem, std::size_t block) {
+  return " in " + named_block(problem.forces, block);
+}
+
+/// The block of a line that stands for it in messages: the first that cuts.
+std::size_t block_of(const BlockModel& model, std::size_t cut) {
+  return model.units().lines[cut].cutting.front();
+}
+
+std::string infeasible_reason(const DecideProblem& problem, const BlockModel& model, const ProgramDecision& choice) {
+  if (choice.rejected.empty()) return "no spindle speed is within the spindle's range";
+  const decision::RejectedSpeed& nearest = choice.rejected.front();
+  const std::string speed = fmt::format("{:.0f} rpm", nearest.spindle_speed_rad_per_s / units::rpm);
+  return fmt::format("no spindle speed from {:.0f} to {:.0f} rpm keeps every limit; the nearest, {}: {}{}",
+                     model.search().min_spindle_speed_rad_per_s / units::rpm,
+                     model.search().max_spindle_speed_rad_per_s / units::rpm, speed, limit_text(nearest.stopped_by),
+                     at_block(problem, block_of(model, nearest.cut)));
+}
+
+void keep_alternatives(const BlockModel& model, const ProgramDecision& choice, DecideResult& out) {
+  for (const decision::RejectedSpeed& rejected : choice.rejected) {
+    out.alternatives.push_back({.speed = rejected, .block = block_of(model, rejected.cut)});
+  }
+}
+
+void keep_stretches(const BlockModel& model, const ProgramDecision& choice, DecideResult& out) {
+  const ProgramUnits& units = model.units();
+  for (std::size_t k = 0; k < units.stretches.size(); ++k) {
+    const decision::ProgramStretch& stretch = units.stretches[k];
+    const auto feeds = std::span(choice.feed_m_per_s).subspan(stretch.begin, stretch.end - stretch.begin);
+    const auto [low, high] = std::ranges::minmax(feeds);
+    const decision::DecidedStretch& decided = choice.stretches[k];
+    out.stretches.push_back({.first_block = units.lines[stretch.begin].first_block,
+                             .last_block = units.lines[stretch.end - 1].last_block,
+                             .spindle_speed_rad_per_s = decided.spindle_speed_rad_per_s,
+                             .lowest_feed_m_per_s = low,
+                             .highest_feed_m_per_s = high,
+                             .cutting_time_s = decided.cutting_time_s,
+                             .limited_by = decided.limited_by,
+                             .limiting_block = block_of(model, decided.limiting_cut)});
+    const double before = k == 0 ? 0.0 : choice.stretches[k - 1].spindle_speed_rad_per_s;
+    if (decided.spindle_speed_rad_per_s != before) ++out.speeds_changed;
+  }
+  for (std::size_t c = 0; c < choice.feed_m_per_s.size(); ++c) {
+    if (c == 0 || choice.feed_m_per_s[c] != choice.feed_m_per_s[c - 1]) ++out.feeds_changed;
+  }
+}
+
+/// Stability margin over path and γ at the speeds that were chosen, one look a class.
+GammaMap gamma_map(const DecideProblem& problem, const BlockModel& model, const DecideResult& result) {
+  GammaMap out;
+  out.least_margin = problem.machine.depth_margin;
+  std::vector<double>& gamma = out.gamma_rad;
+  gamma = model.search().gamma_rad;
+  if (gamma.size() < 2) {
+    gamma.clear();
+    for (int k = -map_steps; k <= map_steps; ++k) gamma.push_back(k * map_step_rad);
+  }
+  const program::Program& program = result.program ? *result.program : problem.forces.program->program;
+  std::vector<std::size_t> cutting;
+  std::vector<double> way(program.blocks.size() + 1, 0.0);
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
+    way[i + 1] = way[i] + (program.blocks[i].end.tip_m - program.begin_of(i).tip_m).norm();
+    if (problem.blocks.rows[i].cuts) cutting.push_back(i);
+  }
+  const std::size_t stride = (cutting.size() + most_map_points - 1) / most_map_points;
+  for (std::size_t k = 0; k < cutting.size(); k += std::max<std::size_t>(1, stride)) out.block.push_back(cutting[k]);
+  const auto speed_at = [&](std::size_t block) {
+    return result.blocks ? program.blocks[block].spindle_speed_rad_per_s
+                         : problem.blocks.rows[block].spindle_speed_rad_per_s;
+  };
+  // Blocks of a class at one speed share their column.
+  std::map<std::pair<std::size_t, double>, std::size_t> column;
+  std::vector<std::size_t> first;
+  for (const std::size_t block : out.block) {
+    if (column.emplace(std::pair(model.class_of(block), speed_at(block)), first.size()).second) first.push_back(block);
+  }
+  Eigen::MatrixXd margin(std::ssize(gamma), std::ssize(first));
+  parallel_for(first.size() * gamma.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t block = first[i / gamma.size()];
+      margin(static_cast<Eigen::Index>(i % gamma.size()), static_cast<Eigen::Index>(i / gamma.size())) =
+          model.margin(model.class_of(block), speed_at(block), gamma[i % gamma.size()]);
+    }
+  });
+  out.margin.resize(std::ssize(gamma), std::ssize(out.block));
+  for (std::size_t k = 0; k < out.block.size(); ++k) {
+    const std::size_t from = column.at({model.class_of(out.block[k]), speed_at(out.block[k])});
+    out.margin.col(static_cast<Eigen::Index>(k)) = margin.col(static_cast<Eigen::Index>(from));
+  }
+  for (const std::size_t block : out.block) {
+    out.path_m.push_back(way[block + 1]);
+    out.chosen_rad.push_back(result.gamma_offset_rad.empty() ? 0.0 : result.gamma_offset_rad[block + 1]);
+  }
+  return out;
+}
+
+/// Moves the finishing passes of what was found by the deflection that is predicted, where every limit still holds.
+void compensate_found(const DecideProblem& problem, const BlockModel& model, DecideResult& out, Progress& progress) {
+  const CompensateOptions options = {.controller_compensates = problem.options.controller_compensates,
+                                     .max_offset_m = problem.options.max_offset_m,
+                                     .tolerance = problem.blocks_options.tolerance};
+  Compensation moved = compensate(*out.forces, problem.dynamics, options, progress);
+  out.notes.insert(out.notes.end(), moved.warnings.begin(), moved.warnings.end());
+  out.notes.insert(out.notes.end(), moved.notes.begin(), moved.notes.end());
+  const bool has_moved =
+      moved.status == Compensation::Status::settled || moved.status == Compensation::Status::unsettled;
+  if (!has_moved) return;
+  Tried tried = run_exactly(problem, moved.program, out.gamma_offset_rad, progress);
+  ++out.exact_runs;
+  const JudgedRun run(problem, tried.forces, tried.blocks);
+  const std::vector<Violation> violations = violations_of(run, model.chip_m());
+  if (!violations.empty()) {
+    const Violation& first = violations.front();
+    out.notes.push_back(fmt::format("The path is not compensated: the moved one breaks a limit, {}{}.",
+                                    limit_text({.limit = first.limit, .value = first.value, .allowed = first.allowed}),
+                                    at_block(problem, first.block)));
+    return;
+  }
+  out.decided = outcome_of(run, model.chip_m());
+  out.program = std::move(tried.program);
+  out.forces = std::move(tried.forces);
+  out.blocks = std::move(tried.blocks);
+  out.compensation = std::move(moved);
+}
+
+void check_problem(const DecideProblem& problem) {
+  problem.options.validate();
+  const ForcesResult& forces = problem.forces;
+  if (!forces.cell || !forces.program || forces.program->cuts.size() != forces.program->blocks.size()) {
+    throw InvalidInput("forces", "must be those along a program, with a cell and the cut of each block");
+  }
+  if (problem.blocks.cutting == 0) throw InvalidInput("program", "has no block that cuts");
+}
+
+/// What was assumed because nobody said it.
+std::vector<std::string> assumptions(const DecideProblem& problem, const BlockModel& model) {
+  std::vector<std::string> out;
+  const decision::ProgramOptions& search = model.search();
+  const auto& asked = problem.options.chip_thickness_m;
+  if (asked[0] <= 0.0 || asked[1] <= 0.0) {
+    out.push_back(fmt::format(
+        "Chip thickness is kept between {:.3g} and {:.3g} mm, as far as decide.chip_thickness_mm does not say it: the "
+        "least and the greatest of the program as it is.",
+        model.chip_m()[0] / units::mm, model.chip_m()[1] / units::mm));
+  }
+  if (problem.machine.spindle.empty()) {
+    out.push_back("Torque and power of the spindle are not limited: [[spindle.curve]] is not given.");
+    if (search.free_speed && !(problem.machine.max_spindle_speed_rad_per_s > 0.0)) {
+      out.push_back(fmt::format(
+          "Spindle speeds are looked for from {:.0f} to {:.0f} rpm, about the program's own: "
+          "spindle.min_speed_rpm and max_speed_rpm are not given.",
+          search.min_spindle_speed_rad_per_s / units::rpm, search.max_spindle_speed_rad_per_s / units::rpm));
+    }
+  }
+  if (problem.options.is_free(Free::gamma)) {
+    out.push_back("Nothing checked the turned flange for collisions.");
+  }
+  return out;
+}
+
+}  // namespace
+
+bool DecideOptions::is_free(Free what) const {
+  return std::ranges::find(free, what) != free.end();
+}
+
+void DecideOptions::validate() const {
+  for (const Free what : {Free::axial_depth, Free::lead, Free::tilt}) {
+    if (!is_free(what)) continue;
+    throw InvalidInput("free", "must not hold \"" + std::string(name_in(free_names, what)) + "\" along a program",
+                       what == Free::axial_depth ? "Its depths are those of the CAM: change them there"
+                                                 : "Its axes are those of the CAM: nothing checks other ones for "
+                                                   "gouges and collisions");
+  }
+  require_positive("spindle_ramp_rad_per_s2", spindle_ramp_rad_per_s2, "rad/s^2");
+  require_non_negative("max_force_n", max_force_n, "N");
+  require_non_negative("max_deflection_m", max_deflection_m, "m");
+  require_non_negative("max_feed_m_per_s", max_feed_m_per_s, "m/s");
+  for (const auto& [name, range, unit] : {std::tuple("chip_thickness_m", chip_thickness_m, "m"),
+                                          std::tuple("cutting_speed_m_per_s", cutting_speed_m_per_s, "m/s")}) {
+    require_non_negative(name, range[0], unit);
+    require_non_negative(name, range[1], unit);
+    if (range[1] > 0.0 && range[0] > range[1]) throw InvalidInput(name, range[0], unit, "must not be above the most");
+  }
+  require_positive("max_offset_m", max_offset_m, "m");
+  require_positive("gamma_step_rad", gamma_step_rad, "rad");
+  if (!(gamma_range_rad[0] <= 0.0 && gamma_range_rad[1] >= 0.0)) {
+    throw InvalidInput("gamma_range_rad", "must hold 0, where the program has it");
+  }
+}
+
+DecideResult decide(const DecideProblem& problem, Progress& progress) {
+  check_problem(problem);
+  const auto begun = std::chrono::steady_clock::now();
+  DecideResult out;
+  BlockModel model(problem);
+  out.notes = assumptions(problem, model);
+  out.as_programmed = outcome_of(JudgedRun(problem, problem.forces, problem.blocks), model.chip_m());
+  for (int round = 0; round < most_rounds; ++round) {
+    const ProgramDecision choice =
+        decision::decide_program(model.units().cuts, model.units().stretches, model, model.search(), progress);
+    out.alternatives.clear();
+    keep_alternatives(model, choice, out);
+    if (choice.status == ProgramDecision::Status::infeasible) {
+      out.reason = infeasible_reason(problem, model, choice);
+      break;
+    }
+    Tried tried = run_choice(problem, model, choice, progress);
+    ++out.exact_runs;
+    const JudgedRun run(problem, tried.forces, tried.blocks);
+    const std::vector<Violation> violations = violations_of(run, model.chip_m());
+    if (violations.empty()) {
+      out.status = DecideResult::Status::found;
+      out.decided = outcome_of(run, model.chip_m());
+      keep_stretches(model, choice, out);
+      out.gamma_offset_rad = std::move(tried.gamma_offset_rad);
+      out.program = std::move(tried.program);
+      out.forces = std::move(tried.forces);
+      out.blocks = std::move(tried.blocks);
+      break;
+    }
+    const Violation& first = violations.front();
+    out.reason =
+        fmt::format("the choice was run {} times and each time broke a limit, the last time {}{}", out.exact_runs,
+                    limit_text({.limit = first.limit, .value = first.value, .allowed = first.allowed}),
+                    at_block(problem, first.block));
+    if (!tighten(model, violations)) break;
+  }
+  if (out.status == DecideResult::Status::found) {
+    out.reason.clear();
+    if (problem.options.compensate) compensate_found(problem, model, out, progress);
+    if (problem.blocks_options.scan_points > 0) {
+      out.blocks->scans = limit_scans(*out.forces, out.blocks->worst, problem.dynamics, problem.blocks_options);
+    }
+  }
+  out.gamma_map = gamma_map(problem, model, out);
+  out.evaluations = model.evaluations();
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return out;
+}
+
+}  // namespace robomill::jobs

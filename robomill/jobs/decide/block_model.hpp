@@ -1,0 +1,89 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "robomill/decision/program_decision.hpp"
+#include "robomill/jobs/decide.hpp"
+#include "robomill/jobs/decide/loads.hpp"
+#include "robomill/jobs/decide/units.hpp"
+#include "robomill/robot/inverse.hpp"
+
+namespace robomill::jobs {
+
+/// A program's blocks as the search asks of them: loads over feed, and one look a class of blocks.
+class BlockModel final : public decision::ProgramModel {
+ public:
+  /// @param problem  outlives the model
+  explicit BlockModel(const DecideProblem& problem);
+
+  [[nodiscard]] decision::FeedRange feeds(std::size_t cut, double spindle_speed_rad_per_s) const override;
+  [[nodiscard]] decision::CutLook look(std::size_t look_class, double spindle_speed_rad_per_s,
+                                       std::size_t gamma) const override;
+
+  [[nodiscard]] const ProgramUnits& units() const { return units_; }
+  [[nodiscard]] const decision::ProgramOptions& search() const { return search_; }
+  [[nodiscard]] const std::array<double, 2>& chip_m() const { return chip_m_; }
+  /// The stability margin of a class at γ [rad], of a limit up to eight times the depth; NaN: the robot cannot stand
+  /// so.
+  [[nodiscard]] double margin(std::size_t look_class, double spindle_speed_rad_per_s, double gamma_rad) const;
+  [[nodiscard]] std::size_t classes() const { return first_.size(); }
+  /// The class of a block that cuts.
+  [[nodiscard]] std::size_t class_of(std::size_t block) const { return class_of_[block]; }
+  [[nodiscard]] long long evaluations() const;
+
+  /// Holds a block's line further from a limit of its feed, by that share of what it may have.
+  void tighten_feed(std::size_t block, double share);
+  /// Asks so much more margin of the block's class.
+  void tighten_margin(std::size_t block, double more);
+
+ private:
+  /// What vibrates where a class's first block stands turned by γ.
+  struct Stand {
+    bool reachable = false;
+    modal::ModalModel modes = {};
+  };
+  /// One class at one speed in one posture.
+  struct Raw {
+    bool reachable = false;
+    bool stable = false;
+    double margin = 0.0;
+    std::array<double, 2> surface_m = {0.0, 0.0};  ///< magnitudes at the ends of the class's range of feeds; NaN: none
+  };
+  using RawKey = std::tuple<std::size_t, double, double>;  ///< class, speed, γ
+
+  void sort_into_classes();
+  void set_search();
+  [[nodiscard]] const Stand& stand(std::size_t look_class, double gamma_rad) const;
+  /// 1 - depth / limit, of the 5 % quantile, and of the depth searched where there is no limit.
+  [[nodiscard]] double margin_at(std::size_t look_class, const modal::ModalModel& modes, double speed, double deepest,
+                                 bool& stable) const;
+  [[nodiscard]] Raw compute(std::size_t look_class, double speed, double gamma_rad) const;
+  [[nodiscard]] Raw raw(std::size_t look_class, double speed, double gamma_rad) const;
+  [[nodiscard]] double most_surface_m() const { return problem_.finish.max_surface_error_m; }
+
+  const DecideProblem& problem_;
+  ProgramUnits units_;
+  std::array<double, 2> chip_m_ = {};
+  std::vector<BlockLoad> loads_ = {};       ///< one a block
+  std::vector<double> feed_share_ = {};     ///< of each line, <= 1: tightened
+  std::vector<std::size_t> class_of_ = {};  ///< of each block
+  std::vector<std::size_t> first_ = {};     ///< block of each class
+  std::vector<double> more_margin_ = {};    ///< of each class
+  std::vector<std::size_t> line_of_ = {};   ///< of each block that cuts
+  decision::ProgramOptions search_ = {};
+  std::optional<robot::SphericalWristInverse> inverse_ = {};
+  mutable std::mutex mutex_;
+  mutable std::map<std::pair<std::size_t, double>, Stand> stands_ = {};
+  mutable std::map<RawKey, Raw> raw_ = {};
+  mutable std::atomic<long long> map_looks_ = 0;
+};
+
+}  // namespace robomill::jobs

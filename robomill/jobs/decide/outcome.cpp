@@ -1,0 +1,127 @@
+#include "robomill/jobs/decide/outcome.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "robomill/decision/program/looks.hpp"
+#include "robomill/jobs/decide/joint_torques.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+using decision::ProgramLimit;
+
+/// Rounding of feeds and what dexels see of the same cut twice.
+constexpr double violation_tolerance = 0.005;
+
+void add_if_broken(std::vector<Violation>& out, const Violation& violation) {
+  const double short_by =
+      decision::shortfall({.limit = violation.limit, .value = violation.value, .allowed = violation.allowed});
+  if (short_by > violation_tolerance) out.push_back(violation);
+}
+
+void of_spindle(const DecideProblem& problem, const BlockResult& row, std::size_t block, std::vector<Violation>& out) {
+  if (problem.machine.spindle.empty()) return;
+  const double speed = row.force.spindle_speed_rad_per_s;
+  const decision::SpindleCapacity able = decision::capacity_at(problem.machine.spindle, speed);
+  if (!(able.torque_n_m > 0.0)) {
+    const double last = problem.machine.spindle.back().spindle_speed_rad_per_s;
+    out.push_back({.limit = ProgramLimit::spindle_range, .block = block, .value = speed, .allowed = last});
+    return;
+  }
+  add_if_broken(out, {ProgramLimit::torque, block, row.force.revolution_torque_n_m, able.torque_n_m});
+  add_if_broken(out, {ProgramLimit::power, block, row.force.sustained_power_w, able.power_w});
+}
+
+void of_block(const JudgedRun& run, std::size_t block, const std::array<double, 2>& chip_m,
+              std::vector<Violation>& out) {
+  const auto& [problem, forces, blocks, torques, reversals] = run;
+  const BlockRow& row = blocks.rows[block];
+  const BlockResult& load = forces.program->blocks[block];
+  const DecideOptions& options = problem.options;
+  const double margin = row.unstable() ? std::min(row.stability_margin, 0.0) : row.stability_margin;
+  add_if_broken(out, {ProgramLimit::stability, block, margin, problem.machine.depth_margin});
+  if (options.max_force_n > 0.0) {
+    add_if_broken(out, {ProgramLimit::force, block, load.force.peak_force_n, options.max_force_n});
+  }
+  for (const double most_m : {options.max_deflection_m, problem.finish.max_deflection_m}) {
+    if (most_m > 0.0) add_if_broken(out, {ProgramLimit::deflection, block, load.peak_deflection_m.norm(), most_m});
+  }
+  const double surface_m = std::abs(row.cut.surface_error_m);
+  if (problem.finish.max_surface_error_m > 0.0 && std::isfinite(surface_m)) {
+    add_if_broken(out, {ProgramLimit::surface_error, block, surface_m, problem.finish.max_surface_error_m});
+  }
+  const double chip =
+      load.force.feed_per_tooth_m * cutting::greatest_chip_share(forces.program->cuts[block].engagement);
+  if (chip_m[1] > 0.0) add_if_broken(out, {ProgramLimit::greatest_chip, block, chip, chip_m[1]});
+  of_spindle(problem, load, block, out);
+  const double share = greatest_torque_share(forces.cell->cell.arm, torques[block]);
+  add_if_broken(out, {ProgramLimit::joint_torque, block, share, 1.0});
+  if (!problem.options.avoid_reversals) return;
+  if (std::ranges::find(reversals, block, &robot::LoadReversal::block) != reversals.end()) {
+    out.push_back({.limit = ProgramLimit::reversal, .block = block, .value = 1.0, .allowed = 0.0});
+  }
+}
+
+}  // namespace
+
+JudgedRun::JudgedRun(const DecideProblem& asked, const ForcesResult& run, const ProgramBlocks& judged)
+    : problem(asked),
+      forces(run),
+      blocks(judged),
+      torques(joint_torques(run, judged)),
+      reversals(robot::load_reversals(torques)) {}
+
+std::vector<Violation> violations_of(const JudgedRun& run, const std::array<double, 2>& chip_m) {
+  std::vector<Violation> out;
+  for (std::size_t i = 0; i < run.blocks.rows.size(); ++i) {
+    if (run.blocks.rows[i].cuts) of_block(run, i, chip_m, out);
+  }
+  return out;
+}
+
+Outcome outcome_of(const JudgedRun& run, const std::array<double, 2>& chip_m) {
+  const auto& [problem, forces, blocks, torques, reversals] = run;
+  Outcome out;
+  double last_speed = 0.0;
+  for (std::size_t i = 0; i < blocks.rows.size(); ++i) {
+    const program::Block& block = forces.program->program.blocks[i];
+    out.total_time_s += block.duration_s;
+    const BlockRow& row = blocks.rows[i];
+    if (!row.cuts) continue;
+    const BlockResult& load = forces.program->blocks[i];
+    out.cutting_time_s += block.duration_s;
+    const double speed = row.spindle_speed_rad_per_s;
+    if (last_speed > 0.0) out.total_time_s += std::abs(speed - last_speed) / problem.options.spindle_ramp_rad_per_s2;
+    out.lowest_spindle_speed_rad_per_s = last_speed > 0.0 ? std::min(out.lowest_spindle_speed_rad_per_s, speed) : speed;
+    out.highest_spindle_speed_rad_per_s = std::max(out.highest_spindle_speed_rad_per_s, speed);
+    last_speed = speed;
+    if (row.unstable()) ++out.unstable_blocks;
+    out.least_stability_margin = std::fmin(out.least_stability_margin, row.stability_margin);
+    out.peak_force_n = std::max(out.peak_force_n, load.force.peak_force_n);
+    out.peak_torque_n_m = std::max(out.peak_torque_n_m, load.force.revolution_torque_n_m);
+    out.peak_power_w = std::max(out.peak_power_w, load.force.sustained_power_w);
+    out.peak_deflection_m = std::max(out.peak_deflection_m, load.peak_deflection_m.norm());
+    out.greatest_torque_share =
+        std::max(out.greatest_torque_share, greatest_torque_share(forces.cell->cell.arm, torques[i]));
+    out.worst_surface_error_m = std::fmax(out.worst_surface_error_m, std::abs(row.cut.surface_error_m));
+  }
+  std::vector<std::size_t> turned;
+  for (const robot::LoadReversal& reversal : reversals) turned.push_back(reversal.block);
+  turned.erase(std::ranges::unique(turned).begin(), turned.end());
+  out.reversals = turned.size();
+  for (const Violation& violation : violations_of(run, chip_m)) {
+    const auto same = std::ranges::find(out.violations, violation.limit, &Violation::limit);
+    const auto badness = [](const Violation& v) {
+      return decision::shortfall({.limit = v.limit, .value = v.value, .allowed = v.allowed});
+    };
+    if (same == out.violations.end()) {
+      out.violations.push_back(violation);
+    } else if (badness(violation) > badness(*same)) {
+      *same = violation;
+    }
+  }
+  return out;
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,10 @@
+#include "robomill/jobs/files/scratch_program.hpp"
+
+namespace robomill::jobs {
+
+ScratchProgram::ScratchProgram(const std::filesystem::path& folder, const std::string& name, std::string_view text)
+    : file_((folder.empty() ? std::filesystem::temp_directory_path() : folder) / name) {
+  io::write_file(file_.temporary(), text);
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,130 @@
+#include "robomill/jobs/plan_decision.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/jobs/blocks/stand_at.hpp"
+#include "robomill/jobs/files/scratch_program.hpp"
+#include "robomill/jobs/program_forces.hpp"
+#include "robomill/program/files/program_files.hpp"
+#include "robomill/robot/pose.hpp"
+#include "robomill/version.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+std::vector<std::string> header_of(const PlanResult& result) {
+  const DecideResult& decision = *result.decision;
+  std::vector<std::string> out = {
+      fmt::format("Spindle speeds and feeds by robomill {}, from {}", ROBOMILL_VERSION,
+                  result.job.program.filename().string()),
+      fmt::format("{} changes of S, {} of F. Least stability margin {:.2f}, cutting time {:.4g} s",
+                  decision.speeds_changed, decision.feeds_changed, decision.decided->least_stability_margin,
+                  decision.decided->cutting_time_s)};
+  const bool turned = std::ranges::any_of(decision.gamma_offset_rad, [](double turn) { return turn != 0.0; });
+  out.emplace_back(turned ? "The flange turns about the tool otherwise than in the program as it was: the trajectory "
+                            "has it. Nothing was checked for collisions"
+                          : "Path and tool axes are those of the program as it was. Nothing was checked for "
+                            "collisions");
+  return out;
+}
+
+/// As the blocks were numbered: as the smoothed path read them, where there is one.
+program::ProgramReading reading_of(const PlanResult& result, const CellFile& cell) {
+  return result.path ? result.path->reading : program_reading(cell);
+}
+
+void write_program(PlanResult& result, const CellFile& cell) {
+  const program::Program read = program::read_program(result.job.program, reading_of(result, cell));
+  result.program_out = program::rewrite_program(result.job.program, reading_of(result, cell), read,
+                                                *result.decision->program, header_of(result));
+  result.program_name = "program" + result.job.program.extension().string();
+}
+
+/// Where the machine starts and how the flange stands along the way; none: as it was chosen.
+std::optional<path::Posture> posture_of(const PlanResult& result, const CellFile& cell) {
+  const std::vector<double>& turn = result.decision->gamma_offset_rad;
+  if (std::ranges::all_of(turn, [](double t) { return t == 0.0; })) return std::nullopt;
+  const path::Posture& before = result.path->posture.posture;
+  path::Posture out;
+  for (std::size_t i = 0; i < turn.size(); ++i) {
+    const double gamma = before.gamma_rad.size() > 1    ? before.gamma_rad.at(i)
+                         : before.gamma_rad.size() == 1 ? before.gamma_rad.front()
+                                                        : cell.redundant_gamma_rad;
+    out.gamma_rad.push_back(gamma + turn[i]);
+  }
+  const program::Pose& start = result.decision->program->start;
+  const std::optional<Eigen::VectorXd> joints =
+      stand_at(cell.cell, spherical_wrist(cell.cell.arm),
+               {.tip_m = start.tip_m, .axis = start.axis, .gamma_rad = out.gamma_rad.front()}, before.start);
+  if (!joints) throw InvalidInput("gamma", turn.front() / units::deg, "°", "cannot be taken where the program starts");
+  out.start = *joints;
+  return out;
+}
+
+/// The decided program as the robot will run it.
+void smooth_decided(PlanResult& result, const CellFile& cell, const std::filesystem::path& folder, Progress& progress) {
+  const ScratchProgram file(folder, result.program_name, result.program_out->text);
+  SmoothJob job = {.program = file.path(),
+                   .cell = cell.path,
+                   .place = false,
+                   .program_name = result.program_name,
+                   .posture = posture_of(result, cell)};
+  if (!folder.empty()) job.output = folder / "trajectory.csv";
+  result.path = run_smooth(job, cell, progress);
+}
+
+/// What watches the program while it runs: the modes of the block that is nearest to chatter.
+PlannedMonitor monitor_of(const PlanResult& result, const DynamicsAt& dynamics) {
+  const program::Program& program = *result.decision->program;
+  MonitorPlan plan = {.teeth = result.forces->file.cutter.mill.teeth};
+  for (const DecidedLines& lines : result.decision->stretches) {
+    plan.speeds.push_back({.spindle_speed_rad_per_s = lines.spindle_speed_rad_per_s,
+                           .line = static_cast<int>(program.blocks[lines.first_block].line)});
+  }
+  const std::size_t worst = result.blocks->worst;
+  plan.modes = dynamics(result.forces->program->blocks[worst].joints).modes;
+  plan.modes_line = static_cast<int>(program.blocks[worst].line);
+  return plan_monitor(plan);
+}
+
+/// No trajectory of a program that is not to be run.
+void withdraw(SmoothResult& path) {
+  path.trajectory.reset();
+  path.smoothed.written = false;
+  std::error_code ignored;
+  path.stale = !path.output.empty() && std::filesystem::is_regular_file(path.output, ignored);
+}
+
+}  // namespace
+
+void decide_conditions(PlanResult& result, const CellFile& cell, const DynamicsAt& dynamics,
+                       const BlocksOptions& blocks, const std::filesystem::path& folder, Progress& progress) {
+  DecideProblem problem = {.forces = *result.forces,
+                           .blocks = *result.blocks,
+                           .dynamics = dynamics,
+                           .blocks_options = blocks,
+                           .machine = result.job.recommend,
+                           .finish = result.job.finish,
+                           .options = result.job.decide};
+  if (result.path) problem.max_tip_speed_m_per_s = result.path->options.max_velocity_m_per_s;
+  result.decision = decide(problem, progress);
+  if (result.decision->status != DecideResult::Status::found) {
+    if (result.path) withdraw(*result.path);
+    return;
+  }
+  write_program(result, cell);
+  if (result.path) smooth_decided(result, cell, folder, progress);
+  result.forces = *std::exchange(result.decision->forces, std::nullopt);
+  result.blocks = *std::exchange(result.decision->blocks, std::nullopt);
+  result.monitor = monitor_of(result, dynamics);
+}
+
+}  // namespace robomill::jobs
