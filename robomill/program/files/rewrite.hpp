@@ -28,6 +28,9 @@ struct Rewritten {
 /// what the digits change of the way's length); kind, spindle, coolant, stops and the line that it comes from alike.
 /// While the spindle is off its speed does not count.
 ///
+/// A feed is the wanted way over the wanted time: whoever moves tips and means to keep feeds scales the times by the
+/// ways.
+///
 /// @param reading  as the program was read
 /// @param as_read  what read_program gives for the file
 /// @param wanted   the same blocks and start with other spindle_speed_rad_per_s, other duration_s of feed moves and

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "robomill/base/units.hpp"
+#include "robomill/program/files/rewriter.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::program {
@@ -269,6 +270,46 @@ TEST(Rewrite, RejectsWhatCannotBeWanted) {
   bad.move_lines(3, 3, {-1.0, 0.0, 0.0});
   bad.wanted.blocks[1].end.tip_m = bad.wanted.blocks[0].end.tip_m;
   bad.expect_rejected("part.ngc:3: could not be rewritten: it makes 0 blocks instead of 1");
+}
+
+// What the verification compares of a block.
+TEST(Rewrite, ABlockThatDiffersIsSeen) {
+  const Pose begin;
+  Block wanted = {.end = {.tip_m = {0.01, 0.0, 0.0}}, .duration_s = 1.0, .spindle_speed_rad_per_s = 100.0};
+  wanted.spindle = Spindle::clockwise;
+  const auto says = [&](auto change) {
+    Block got = wanted;
+    change(got);
+    return block_difference(wanted, begin, got, begin);
+  };
+  EXPECT_EQ(says([](Block&) {}), "");
+  EXPECT_EQ(says([](Block& block) { block.end.tip_m.y() = 1e-7; }), "");
+  EXPECT_EQ(says([](Block& block) { block.end.tip_m.y() = 3e-7; }),
+            "the tip comes to (10, 0.0003, 0) mm, off by 0.0003 mm");
+  EXPECT_EQ(says([](Block& block) { block.end.axis = Vector3d(1e-6, 0.0, 1.0).normalized(); }), "the axis is another");
+  EXPECT_EQ(says([](Block& block) { block.duration_s = 1.0001; }), "its feed is 599.940006 mm/min instead of 600");
+  EXPECT_EQ(says([](Block& block) { block.spindle_speed_rad_per_s = 100.01; }),
+            "the spindle's speed is 955.025152 rpm instead of 954.929659");
+  EXPECT_EQ(says([](Block& block) { block.kind = Block::Kind::rapid; }), "it is another kind of move");
+  EXPECT_EQ(says([](Block& block) { block.coolant.flood = true; }), "spindle, coolant or stop are others");
+  EXPECT_EQ(says([](Block& block) { block.spindle = Spindle::off; }), "spindle, coolant or stop are others");
+  // Where the axis alone turns, the time counts.
+  wanted.end = {.tip_m = Vector3d::Zero(), .axis = Vector3d::UnitX()};
+  EXPECT_EQ(says([](Block& block) { block.duration_s = 1.000009; }), "");
+  EXPECT_EQ(says([](Block& block) { block.duration_s = 1.0001; }), "it takes 1.0001 s instead of 1");
+  wanted.kind = Block::Kind::dwell;
+  EXPECT_EQ(says([](Block& block) { block.duration_s = 1.000009; }), "the dwell takes another time");
+}
+
+TEST(Rewrite, NumbersAreWrittenWithoutZerosAtTheirEnd) {
+  EXPECT_EQ(decimal_text(10.0, 4, false), "10");
+  EXPECT_EQ(decimal_text(10.0, 0, true), "10.");
+  EXPECT_EQ(decimal_text(-0.00004, 4, true), "0.");
+  EXPECT_EQ(decimal_text(-0.05, 4, false), "-0.05");
+  EXPECT_EQ(significant_text(3999.9999999999995, false), "4000");
+  EXPECT_EQ(significant_text(0.000123456789, false), "0.0001234568");
+  EXPECT_EQ(significant_text(12345678.9, true), "12345679.");
+  EXPECT_EQ(significant_text(0.0, false), "0");
 }
 
 TEST(Rewrite, ReadsAndNamesTheFile) {
