@@ -1,9 +1,12 @@
 #include "robomill/cutting/published/profile_nodes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <numeric>
+#include <optional>
 
 #include "robomill/base/gauss.hpp"
 
@@ -11,11 +14,15 @@ namespace robomill::cutting::detail {
 namespace {
 
 constexpr int samples = 48;
+/// Of an interval of a ball, to look how fast more of them converge.
+constexpr int few_rings = 5;
 
 struct Interval {
   double from = 0.0, to = 0.0;
   bool straight = false;
   double area_m2 = 0.0;  ///< of the patch, roughly
+  /// Of a ball: Gauss's rule with few rings is off by error_m2, which falls by `ratio` with each further one.
+  double error_m2 = 0.0, ratio = 0.5;
   [[nodiscard]] double length() const { return to - from; }
 };
 
@@ -156,15 +163,79 @@ void add_intervals(const Patch& patch, const Profile::Piece& piece, const std::v
   }
 }
 
+/// Where within an interval of a ball the engaged angle is far steeper than beside it, in the variable that Gauss's
+/// rule is laid in: a ring nearly touches the patch's border there. Empty: nowhere.
+std::optional<double> steep_place(const BallPatch& ball, double radius, double from, double to) {
+  constexpr int cells = 10;
+  constexpr double steep = 1.5;  // times as steep as the cells beside it
+  const auto place = [&](double x) { return from + (to - from) * x * x * (3.0 - 2.0 * x); };
+  const auto angle = [&](double x) { return ball.arcs(place(x) / radius).length(); };
+  std::array<double, cells + 1> at = {};
+  for (int i = 0; i <= cells; ++i) at.at(static_cast<std::size_t>(i)) = angle((i + 0.01) / (cells + 0.02));
+  const auto change = [&](std::size_t i) { return std::abs(at.at(i + 1) - at.at(i)); };
+  std::size_t steepest = 0;
+  for (std::size_t i = 1; i + 1 < cells; ++i) {
+    const double beside = std::max(change(i - 1), change(i + 1));
+    const bool more = change(i) > steep * beside && (steepest == 0 || change(i) > change(steepest));
+    if (more) steepest = i;
+  }
+  if (steepest == 0) return std::nullopt;
+  double low = (static_cast<double>(steepest) + 0.01) / (cells + 0.02);
+  double high = low + 1.0 / (cells + 0.02);
+  for (int i = 0; i < 12; ++i) {
+    const double middle = 0.5 * (low + high);
+    const double here = angle(middle);
+    (std::abs(here - angle(low)) > std::abs(angle(high) - here) ? high : low) = middle;
+  }
+  return place(0.5 * (low + high));
+}
+
+void add_gauss_nodes(const Interval& interval, const GaussRule& rule, std::vector<Node>& nodes) {
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const double x = rule.node[i];  // 3 x² - 2 x³ on [0, 1]
+    const double weight = rule.node.size() > 1 ? 6.0 * x * (1.0 - x) * rule.weight[i] : 1.0;
+    nodes.push_back({.length_m = interval.from + interval.length() * x * x * (3.0 - 2.0 * x),
+                     .width_m = interval.length() * weight});
+  }
+}
+
+/// An interval of a ball with how fast Gauss's rule converges over it.
+Interval ball_interval(const BallPatch& ball, double radius, double from, double to) {
+  static const std::array<GaussRule, 3> rules = {make_gauss_rule(few_rings - 2), make_gauss_rule(few_rings),
+                                                 make_gauss_rule(few_rings + 5)};
+  Interval out = {.from = from, .to = to};
+  std::array<double, 3> area = {};
+  for (std::size_t k = 0; k < rules.size(); ++k) {
+    std::vector<Node> nodes;
+    add_gauss_nodes(out, rules.at(k), nodes);
+    for (const Node& node : nodes) {
+      const double kappa = node.length_m / radius;
+      area.at(k) += node.width_m * radius * std::sin(kappa) * ball.arcs(kappa).length();
+    }
+  }
+  out.area_m2 = area[2];
+  const double coarse = std::abs(area[0] - area[2]);
+  out.error_m2 = std::max(std::abs(area[1] - area[2]), 1e-12 * area[2]);
+  out.ratio = std::clamp(coarse > 0.0 ? std::sqrt(out.error_m2 / coarse) : 0.0, 0.3, 0.9);
+  return out;
+}
+
 /// Of a ball, whose border says where arcs change.
 void add_ball_intervals(const Patch& patch, const BallPatch& ball, std::vector<Interval>& intervals) {
   const double radius = patch.profile().pieces().front().arc_radius_m;
+  const auto add = [&](const Interval& interval) {
+    if (interval.area_m2 > 0.0) intervals.push_back(interval);
+  };
   const std::vector<double>& borders = ball.borders();
   for (std::size_t i = 1; i < borders.size(); ++i) {
-    const double middle = 0.5 * (borders[i - 1] + borders[i]);
-    Interval interval = {.from = radius * borders[i - 1], .to = radius * borders[i]};
-    interval.area_m2 = interval.length() * radius * std::sin(middle) * ball.arcs(middle).length();
-    if (interval.area_m2 > 0.0) intervals.push_back(interval);
+    const double from = radius * borders[i - 1];
+    const double to = radius * borders[i];
+    if (const std::optional<double> steep = steep_place(ball, radius, from, to)) {
+      add(ball_interval(ball, radius, from, *steep));
+      add(ball_interval(ball, radius, *steep, to));
+    } else {
+      add(ball_interval(ball, radius, from, to));
+    }
   }
 }
 
@@ -187,15 +258,6 @@ bool is_even(const Patch& patch, const Interval& interval) {
   return true;
 }
 
-void add_gauss_nodes(const Interval& interval, const GaussRule& rule, std::vector<Node>& nodes) {
-  for (std::size_t i = 0; i < rule.node.size(); ++i) {
-    const double x = rule.node[i];  // 3 x² - 2 x³ on [0, 1]
-    const double weight = rule.node.size() > 1 ? 6.0 * x * (1.0 - x) * rule.weight[i] : 1.0;
-    nodes.push_back({.length_m = interval.from + interval.length() * x * x * (3.0 - 2.0 * x),
-                     .width_m = interval.length() * weight});
-  }
-}
-
 void add_nodes(const Patch& patch, const Interval& interval, int count, std::vector<Node>& nodes) {
   if (!is_even(patch, interval)) {
     add_gauss_nodes(interval, make_gauss_rule(count), nodes);
@@ -203,6 +265,54 @@ void add_nodes(const Patch& patch, const Interval& interval, int count, std::vec
   }
   const double width = interval.length() / count;
   for (int i = 0; i < count; ++i) nodes.push_back({.length_m = interval.from + width * (i + 0.5), .width_m = width});
+}
+
+/// The rings of each interval, by the square roots of their areas.
+std::vector<int> rings_by_area(const std::vector<Interval>& intervals, int count) {
+  double left = 0.0;
+  for (const Interval& interval : intervals) left += std::sqrt(interval.area_m2);
+  const int least = std::clamp(count / std::max(2 * static_cast<int>(intervals.size()), 1), 1, 6);
+  int spare = std::max(count - least * static_cast<int>(intervals.size()), 0);
+  std::vector<int> out;
+  for (const Interval& interval : intervals) {
+    const double weight = std::sqrt(interval.area_m2);
+    const int more = static_cast<int>(std::lround(spare * std::min(weight / left, 1.0)));
+    out.push_back(least + more);
+    spare -= more;
+    left -= weight;
+  }
+  return out;
+}
+
+/// The rings of each interval of a ball such that all of them err alike, as far as that can be told from few, and then
+/// by area.
+std::vector<int> rings_by_error(const std::vector<Interval>& intervals, int count) {
+  if (count < 2 * few_rings * static_cast<int>(intervals.size())) return rings_by_area(intervals, count);
+  const auto rings_at = [&](double error_m2) {
+    std::vector<int> out;
+    for (const Interval& interval : intervals) {
+      const double more = std::log(error_m2 / interval.error_m2) / std::log(interval.ratio);
+      out.push_back(std::max(few_rings, few_rings + static_cast<int>(std::lround(more))));
+    }
+    return out;
+  };
+  const auto sum = [](const std::vector<int>& rings) { return std::accumulate(rings.begin(), rings.end(), 0); };
+  double area = 0.0;
+  for (const Interval& interval : intervals) area += interval.area_m2;
+  double low = 1e-10 * area;
+  double high = area;
+  std::vector<int> rings = rings_at(low);
+  if (sum(rings) <= count) {
+    const std::vector<int> spare = rings_by_area(intervals, count - sum(rings));
+    for (std::size_t i = 0; i < rings.size(); ++i) rings[i] += spare[i];
+    return rings;
+  }
+  for (int i = 0; i < 30; ++i) {
+    const double middle = std::sqrt(low * high);
+    rings = rings_at(middle);
+    (sum(rings) > count ? low : high) = middle;
+  }
+  return rings_at(high);
 }
 
 std::vector<Interval> intervals_of(const Patch& patch) {
@@ -227,19 +337,10 @@ std::vector<Node> profile_nodes_each(const Patch& patch, int count) {
 
 std::vector<Node> profile_nodes(const Patch& patch, int count) {
   const std::vector<Interval> intervals = intervals_of(patch);
-  double left = 0.0;
-  for (const Interval& interval : intervals) left += std::sqrt(interval.area_m2);
+  const std::vector<int> rings = patch.ball() ? rings_by_error(intervals, count) : rings_by_area(intervals, count);
   std::vector<Node> nodes;
   nodes.reserve(static_cast<std::size_t>(count) + 8 * intervals.size());
-  const int least = std::clamp(count / std::max(2 * static_cast<int>(intervals.size()), 1), 1, 6);
-  int spare = std::max(count - least * static_cast<int>(intervals.size()), 0);
-  for (const Interval& interval : intervals) {
-    const double weight = std::sqrt(interval.area_m2);
-    const int more = static_cast<int>(std::lround(spare * std::min(weight / left, 1.0)));
-    add_nodes(patch, interval, least + more, nodes);
-    spare -= more;
-    left -= weight;
-  }
+  for (std::size_t i = 0; i < intervals.size(); ++i) add_nodes(patch, intervals[i], rings[i], nodes);
   return nodes;
 }
 
