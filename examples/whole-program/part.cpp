@@ -82,12 +82,12 @@ std::string hollow_program() {
     for (int i = 0; i <= hollow_moves; ++i) {
       const double share = static_cast<double>(i) / hollow_moves;
       const double lean_deg = 10.0 + 10.0 * std::sin(pi * share);
-      const double depth_mm = 0.1 + 0.3 * std::sin(pi * share);
+      const double depth_mm = 0.15 + 0.45 * std::sin(pi * share);
       const std::string place = fmt::format("X{:.3f} Y{:.3f}", way * hollow_half_mm * (2.0 * share - 1.0), y_mm);
       if (i == 0) out += fmt::format("G0 {} Z4.000 A{:.3f} C0.000\n", place, -lean_deg);
       out += fmt::format("G1 {} Z{:.3f} A{:.3f} C0.000 F{}\n", place, -depth_mm, -lean_deg, i == 0 ? 300 : 900);
     }
-    out += fmt::format("G0 Y{:.3f} Z4.000\n", y_mm - 4.1 * std::tan(rad(10.0)));
+    out += fmt::format("G0 Y{:.3f} Z4.000\n", y_mm - 4.15 * std::tan(rad(10.0)));
   }
   return out + "M2\n";
 }

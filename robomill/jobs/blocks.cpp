@@ -43,6 +43,7 @@ std::vector<std::size_t> classes_of(const ForcesResult& forces, const BlocksOpti
         base_from_work * mean_stiffness(cut, forces.file.coefficients) * base_from_work.transpose();
     row.evaluation = classes.add(i, {.spindle_speed_rad_per_s = row.spindle_speed_rad_per_s,
                                      .axial_depth_m = row.axial_depth_m,
+                                     .feed_per_tooth_m = force.force.feed_per_tooth_m,
                                      .stiffness = stiffness,
                                      .joints = force.joints});
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -14,6 +15,7 @@
 #include "robomill/jobs/blocks/scans.hpp"
 #include "robomill/jobs/decide/apply.hpp"
 #include "robomill/jobs/decide/block_model.hpp"
+#include "robomill/jobs/decide/collisions.hpp"
 #include "robomill/jobs/decide/outcome.hpp"
 #include "robomill/jobs/program_forces.hpp"
 
@@ -71,28 +73,25 @@ Tried run_choice(const DecideProblem& problem, const BlockModel& model, const Pr
   return run_exactly(problem, std::move(program), std::move(gamma_offset_rad), progress);
 }
 
+/// Loads that a lower feed lowers.
+bool rises_with_feed(ProgramLimit limit) {
+  constexpr std::array loads = {ProgramLimit::force,        ProgramLimit::torque,       ProgramLimit::power,
+                                ProgramLimit::deflection,   ProgramLimit::joint_torque, ProgramLimit::greatest_chip,
+                                ProgramLimit::surface_error};
+  return std::ranges::find(loads, limit) != loads.end();
+}
+
 /// Holds what broke a limit further from it; false: that is not possible.
 bool tighten(BlockModel& model, const std::vector<Violation>& violations) {
-  std::vector<std::size_t> lines;
   for (const Violation& v : violations) {
-    switch (v.limit) {
-      case ProgramLimit::stability:
-        model.tighten_margin(v.block, v.allowed - v.value + tightening);
-        break;
-      case ProgramLimit::force:
-      case ProgramLimit::torque:
-      case ProgramLimit::power:
-      case ProgramLimit::deflection:
-      case ProgramLimit::joint_torque:
-      case ProgramLimit::greatest_chip:
-      case ProgramLimit::surface_error:
-        model.tighten_feed(v.block, v.allowed / v.value * (1.0 - tightening));
-        break;
-      case ProgramLimit::reversal:
-        model.tighten_feed(v.block, 1.0 - reversal_step);
-        break;
-      default:
-        return false;
+    if (v.limit == ProgramLimit::stability) {
+      model.tighten_margin(v.block, v.allowed - v.value + tightening);
+    } else if (v.limit == ProgramLimit::reversal) {
+      model.tighten_feed(v.block, 1.0 - reversal_step);
+    } else if (rises_with_feed(v.limit)) {
+      model.tighten_feed(v.block, v.allowed / v.value * (1.0 - tightening));
+    } else {
+      return false;
     }
   }
   return true;
@@ -195,6 +194,37 @@ GammaMap gamma_map(const DecideProblem& problem, const BlockModel& model, const 
   return out;
 }
 
+/// Where the way first comes too near to something; none also where nothing is known of what stands about.
+std::optional<NearMiss> near_miss(const DecideProblem& problem, const BlockModel& model, const Tried& tried) {
+  if (model.checker() == nullptr) return std::nullopt;
+  std::vector<robot::Position6> joints;
+  for (const BlockResult& block : tried.forces.program->blocks) joints.emplace_back(block.joints);
+  return first_near_miss(*model.checker(), *problem.forces.cell->geometry, joints);
+}
+
+/// A program whose ends were moved, at the feeds that it had.
+program::Program at_feeds_of(const program::Program& moved, const program::Program& before) {
+  program::Program out = moved;
+  for (std::size_t i = 0; i < out.blocks.size(); ++i) {
+    const double way_m = (before.blocks[i].end.tip_m - before.begin_of(i).tip_m).norm();
+    const double moved_m = (out.blocks[i].end.tip_m - out.begin_of(i).tip_m).norm();
+    if (way_m > 0.0 && moved_m > 0.0) out.blocks[i].duration_s *= moved_m / way_m;
+  }
+  return out;
+}
+
+/// Feeds lines slower that break a limit of their feed; false: one breaks another limit.
+bool slow_down(program::Program& program, const std::vector<Violation>& violations) {
+  for (const Violation& v : violations) {
+    if (!rises_with_feed(v.limit)) return false;
+    const double slower = v.value / v.allowed * (1.0 + tightening);
+    for (program::Block& block : program.blocks) {
+      if (block.line == program.blocks[v.block].line) block.duration_s *= slower;
+    }
+  }
+  return true;
+}
+
 /// Moves the finishing passes of what was found by the deflection that is predicted, where every limit still holds.
 void compensate_found(const DecideProblem& problem, const BlockModel& model, DecideResult& out, Progress& progress) {
   const CompensateOptions options = {.controller_compensates = problem.options.controller_compensates,
@@ -206,22 +236,27 @@ void compensate_found(const DecideProblem& problem, const BlockModel& model, Dec
   const bool has_moved =
       moved.status == Compensation::Status::settled || moved.status == Compensation::Status::unsettled;
   if (!has_moved) return;
-  Tried tried = run_exactly(problem, moved.program, out.gamma_offset_rad, progress);
-  ++out.exact_runs;
-  const JudgedRun run(problem, tried.forces, tried.blocks);
-  const std::vector<Violation> violations = violations_of(run, model.chip_m());
-  if (!violations.empty()) {
-    const Violation& first = violations.front();
-    out.notes.push_back(fmt::format("The path is not compensated: the moved one breaks a limit, {}{}.",
-                                    limit_text({.limit = first.limit, .value = first.value, .allowed = first.allowed}),
-                                    at_block(problem, first.block)));
-    return;
+  program::Program program = at_feeds_of(moved.program, *out.program);
+  std::vector<Violation> violations;
+  for (int round = 0; round < most_rounds; ++round) {
+    Tried tried = run_exactly(problem, program, out.gamma_offset_rad, progress);
+    ++out.exact_runs;
+    const JudgedRun run(problem, tried.forces, tried.blocks);
+    violations = violations_of(run, model.chip_m());
+    if (violations.empty()) {
+      out.decided = outcome_of(run, model.chip_m());
+      out.program = std::move(tried.program);
+      out.forces = std::move(tried.forces);
+      out.blocks = std::move(tried.blocks);
+      out.compensation = std::move(moved);
+      return;
+    }
+    if (!slow_down(program, violations)) break;
   }
-  out.decided = outcome_of(run, model.chip_m());
-  out.program = std::move(tried.program);
-  out.forces = std::move(tried.forces);
-  out.blocks = std::move(tried.blocks);
-  out.compensation = std::move(moved);
+  const Violation& first = violations.front();
+  out.notes.push_back(fmt::format("The path is not compensated: the moved one breaks a limit, {}{}.",
+                                  limit_text({.limit = first.limit, .value = first.value, .allowed = first.allowed}),
+                                  at_block(problem, first.block)));
 }
 
 void check_problem(const DecideProblem& problem) {
@@ -253,8 +288,8 @@ std::vector<std::string> assumptions(const DecideProblem& problem, const BlockMo
           search.min_spindle_speed_rad_per_s / units::rpm, search.max_spindle_speed_rad_per_s / units::rpm));
     }
   }
-  if (problem.options.is_free(Free::gamma)) {
-    out.push_back("Nothing checked the turned flange for collisions.");
+  if (problem.options.is_free(Free::gamma) && model.checker() == nullptr) {
+    out.push_back("Nothing checked the turned flange for collisions: the cell has no [geometry].");
   }
   return out;
 }
@@ -309,8 +344,18 @@ DecideResult decide(const DecideProblem& problem, Progress& progress) {
     Tried tried = run_choice(problem, model, choice, progress);
     ++out.exact_runs;
     const JudgedRun run(problem, tried.forces, tried.blocks);
+    const std::optional<NearMiss> miss = near_miss(problem, model, tried);
+    if (miss && problem.options.is_free(Free::gamma)) {
+      out.reason = fmt::format("on its way {}{}", near_miss_text(miss->clearance), at_block(problem, miss->block));
+      break;
+    }
     const std::vector<Violation> violations = violations_of(run, model.chip_m());
     if (violations.empty()) {
+      if (miss) {
+        out.notes.push_back(fmt::format("The program as it is: {}{}.", near_miss_text(miss->clearance),
+                                        at_block(problem, miss->block)));
+      }
+      out.collisions_checked = model.checker() != nullptr;
       out.status = DecideResult::Status::found;
       out.decided = outcome_of(run, model.chip_m());
       keep_stretches(model, choice, out);

@@ -29,10 +29,16 @@ std::vector<std::string> header_of(const PlanResult& result) {
                   decision.speeds_changed, decision.feeds_changed, decision.decided->least_stability_margin,
                   decision.decided->cutting_time_s)};
   const bool turned = std::ranges::any_of(decision.gamma_offset_rad, [](double turn) { return turn != 0.0; });
-  out.emplace_back(turned ? "The flange turns about the tool otherwise than in the program as it was: the trajectory "
-                            "has it. Nothing was checked for collisions"
-                          : "Path and tool axes are those of the program as it was. Nothing was checked for "
-                            "collisions");
+  std::string path = turned ? "The flange turns about the tool otherwise than in the program as it was: the trajectory "
+                              "has it. "
+                            : "Tool axes are those of the program as it was. ";
+  if (decision.compensation) {
+    path += fmt::format("Finishing passes are moved by up to {:.3g} mm against the deflection that is predicted. ",
+                        decision.compensation->largest_offset_m / units::mm);
+  }
+  path += decision.collisions_checked ? "The way was checked against the cell's geometry"
+                                      : "Nothing was checked for collisions";
+  out.push_back(std::move(path));
   return out;
 }
 

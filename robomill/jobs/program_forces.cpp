@@ -209,6 +209,7 @@ void cut_program(const ForcesFile& file, bool keep_cuts, const std::vector<Eigen
   }
   const std::size_t count = out.blocks.size();
   std::vector<bool> rigid_cuts(count);
+  std::vector<bool> rigid_rapid(count);  // a rapid that springs back out of a bent cut is no move through material
   std::vector<Eigen::Vector3d> offset_m(out.deflected ? count : 0, Eigen::Vector3d::Zero());
   for (int pass = 0; pass < most_passes; ++pass) {
     if (keep_cuts) {
@@ -219,7 +220,11 @@ void cut_program(const ForcesFile& file, bool keep_cuts, const std::vector<Eigen
     const std::vector<BlockForce> forces = run_once(file, out, options, progress);
     for (std::size_t i = 0; i < count; ++i) {
       out.blocks[i].force = forces[i];
-      if (pass == 0) rigid_cuts[i] = forces[i].cuts();
+      if (pass == 0) {
+        rigid_cuts[i] = forces[i].cuts();
+        rigid_rapid[i] = forces[i].rapid_in_material;
+      }
+      out.blocks[i].force.rapid_in_material = forces[i].rapid_in_material && rigid_rapid[i];
       const bool lost = rigid_cuts[i] && !forces[i].cuts();
       out.blocks[i].settled = lost ? BlockResult::Settled::lost : BlockResult::Settled::found;
     }
@@ -251,8 +256,9 @@ void warn_of_blocks(const ForcesFile& file, const ProgramForces& out, std::vecto
   warn_of(out, warnings, of_force([](const BlockForce& f) { return f.rapid_in_material; }),
           "move through material in rapid");
   const double least_m3 = std::pow(file.dexel_m, 3);  // less is what rays see of a cutter that slides along
-  warn_of(out, warnings, of_force([least_m3](const BlockForce& f) {
-            return !f.cuts() && !f.rapid_in_material && f.removed_volume_m3 > least_m3;
+  warn_of(out, warnings, of_force([&](const BlockForce& f) {
+            const bool feeds = out.program.blocks[f.block].kind == program::Block::Kind::feed;
+            return feeds && !f.cuts() && f.removed_volume_m3 > least_m3;
           }),
           "remove material where no tooth was found in it, and have no force");
   warn_of(

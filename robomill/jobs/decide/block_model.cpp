@@ -79,6 +79,7 @@ BlockModel::BlockModel(const DecideProblem& problem)
   loads_ = block_loads(problem.forces, problem.blocks, chip_m_);
   feed_share_.assign(units_.lines.size(), 1.0);
   inverse_ = spherical_wrist(problem.forces.cell->cell.arm);
+  checker_ = collision_checker(*problem.forces.cell, problem.forces.file.cutter);
   sort_into_classes();
   set_search();
 }
@@ -212,6 +213,8 @@ const BlockModel::Stand& BlockModel::stand(std::size_t look_class, double gamma_
     robot::ToolPose pose = robot::tool_pose(cell, robot::forward(cell.arm, programmed));
     pose.gamma_rad += gamma_rad;
     joints = stand_at(cell, inverse_, pose, programmed);
+    const bool clear = !joints || !checker_ || checker_->check(*joints).status == robot::Clearance::Status::clear;
+    if (!clear) joints.reset();
   }
   if (joints) out = {.reachable = true, .modes = problem_.dynamics(*joints).modes};
   const std::scoped_lock lock(mutex_);

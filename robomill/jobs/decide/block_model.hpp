@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "robomill/decision/program_decision.hpp"
 #include "robomill/jobs/decide.hpp"
+#include "robomill/jobs/decide/collisions.hpp"
 #include "robomill/jobs/decide/loads.hpp"
 #include "robomill/jobs/decide/units.hpp"
 #include "robomill/robot/inverse.hpp"
@@ -38,6 +40,8 @@ class BlockModel final : public decision::ProgramModel {
   /// The class of a block that cuts.
   [[nodiscard]] std::size_t class_of(std::size_t block) const { return class_of_[block]; }
   [[nodiscard]] long long evaluations() const;
+  /// Of the cell and the cutter; null: the cell has no [geometry].
+  [[nodiscard]] const robot::CollisionChecker* checker() const { return checker_.get(); }
 
   /// Holds a block's line further from a limit of its feed, by that share of what it may have.
   void tighten_feed(std::size_t block, double share);
@@ -80,6 +84,7 @@ class BlockModel final : public decision::ProgramModel {
   std::vector<std::size_t> line_of_ = {};   ///< of each block that cuts
   decision::ProgramOptions search_ = {};
   std::optional<robot::SphericalWristInverse> inverse_ = {};
+  std::unique_ptr<robot::CollisionChecker> checker_ = {};  ///< none: nothing is known of what stands about
   mutable std::mutex mutex_;
   mutable std::map<std::pair<std::size_t, double>, Stand> stands_ = {};
   mutable std::map<RawKey, Raw> raw_ = {};

@@ -171,7 +171,7 @@ Json program_decision_json(const PlanResult& plan) {
               {"reason", result.reason},
               {"goal", name_in(goal_names, plan.job.decide.goal)},
               {"free", std::move(free)},
-              {"collisions_checked", false},
+              {"collisions_checked", result.collisions_checked},
               {"evaluations", result.evaluations},
               {"exact_runs", result.exact_runs},
               {"seconds", number(result.seconds)},
