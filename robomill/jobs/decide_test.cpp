@@ -303,6 +303,53 @@ TEST_F(Decide, TurnsGammaWhereThatAloneHelps) {
   }
 }
 
+// What stands about the tool counts as soon as a posture differs from the program's.
+TEST_F(Decide, TurnedPosturesAreCheckedForCollisions) {
+  const DynamicsAt dynamics = constant_dynamics(modes(20.0));
+  const std::string cell = io::read_file(folder_.at("cell.toml"));
+  const auto with_box = [&](const std::string& box) {
+    folder_.file("cell.toml", cell +
+                                  "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\nholder = [{ length_mm = 20, "
+                                  "diameter_mm = 30 }]\nfixtures = [{ " +
+                                  box + " }]\n");
+    const Judged judged = judge(dynamics);
+    DecideProblem asked = problem(judged, dynamics);
+    asked.options.free = {Free::feed, Free::gamma};
+    asked.options.gamma_step_rad = 45.0 * units::deg;
+    return decide(asked);
+  };
+  const DecideResult clear = with_box("box_from_mm = [500, 500, 0], box_to_mm = [520, 520, 20]");
+  ASSERT_EQ(clear.status, DecideResult::Status::found) << clear.reason;
+  EXPECT_TRUE(clear.collisions_checked);
+  const DecideResult blocked = with_box("box_from_mm = [-30, -30, 35], box_to_mm = [30, 30, 45]");
+  EXPECT_EQ(blocked.status, DecideResult::Status::infeasible);
+  EXPECT_NE(blocked.reason.find("holder"), std::string::npos) << blocked.reason;
+}
+
+TEST_F(Decide, FinishingPassesAreMovedWhereThatIsAskedFor) {
+  const DynamicsAt dynamics = constant_dynamics(modes(5.0));
+  const Judged judged = judge(dynamics);
+  DecideProblem asked = problem(judged, dynamics);
+  const DecideResult plain = decide(asked);
+  asked.options.compensate = true;
+  const DecideResult moved = decide(asked);
+  ASSERT_EQ(moved.status, DecideResult::Status::found) << moved.reason;
+  ASSERT_TRUE(moved.compensation.has_value());
+  EXPECT_LT(moved.compensation->rms_after_m, 0.5 * moved.compensation->rms_before_m);
+  EXPECT_TRUE(moved.decided->violations.empty());
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < moved.program->blocks.size(); ++i) {
+    farthest = std::max(
+        farthest, (moved.program->blocks[i].end.tip_m - judged.forces.program->program.blocks[i].end.tip_m).norm());
+  }
+  EXPECT_GT(farthest, 0.0);
+  EXPECT_LE(farthest, asked.options.max_offset_m);
+  asked.options.controller_compensates = true;
+  const DecideResult left = decide(asked);
+  EXPECT_FALSE(left.compensation.has_value());
+  EXPECT_NEAR(left.decided->cutting_time_s, plain.decided->cutting_time_s, 1e-9);
+}
+
 TEST_F(Decide, SpeedsChangeInRapidMovesAlone) {
   const DynamicsAt dynamics = constant_dynamics(modes());
   const Judged judged = judge(dynamics);
