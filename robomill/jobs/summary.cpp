@@ -192,6 +192,9 @@ void add_blocks(std::string& out, const ForcesResult& forces, const ProgramBlock
   append(out, "\n             {} evaluations in {:.2f} s\n", blocks.evaluations, blocks.seconds);
 }
 
+/// Rejected speeds beyond these are counted.
+constexpr std::size_t most_rejected = 6;
+
 void add_decision(std::string& out, const PlanResult& result) {
   const DecideResult& decision = *result.decision;
   const Outcome& before = decision.as_programmed;
@@ -217,9 +220,13 @@ void add_decision(std::string& out, const PlanResult& result) {
   } else {
     append(out, "no conditions: {}\n", decision.reason);
   }
-  for (const RejectedAlternative& one : decision.alternatives) {
-    append(out, "rejected      {:.0f} rpm: {}\n", one.speed.spindle_speed_rad_per_s / units::rpm,
-           limit_text(one.speed.stopped_by));
+  for (std::size_t i = 0; i < std::min(most_rejected, decision.alternatives.size()); ++i) {
+    const RejectedAlternative& one = decision.alternatives[i];
+    append(out, "rejected      {:.0f} rpm: {}, block {}\n", one.speed.spindle_speed_rad_per_s / units::rpm,
+           limit_text(one.speed.stopped_by), one.block + 1);
+  }
+  if (decision.alternatives.size() > most_rejected) {
+    append(out, "              {} more in plan.json\n", decision.alternatives.size() - most_rejected);
   }
 }
 

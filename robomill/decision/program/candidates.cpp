@@ -47,6 +47,10 @@ std::size_t CandidateSpeeds::grid_speed(int step) {
     double speed = low * std::pow(window_.ratio, static_cast<double>(step) / fine_steps);
     const double unit = options_.speed_step_rad_per_s;
     if (unit > 0.0) speed = std::max(1.0, std::round(speed / unit)) * unit;
+    // Rounding must not take the ends of the range out of a spindle's curve that ends there too.
+    for (const double end : {low, options_.max_spindle_speed_rad_per_s}) {
+      if (std::abs(speed - end) < 1e-9 * end) speed = end;
+    }
     speeds_.push_back(speed);
   }
   return found->second;

@@ -13,6 +13,8 @@ namespace {
 
 /// Limits are searched from the depth over the first to the second multiple of it.
 constexpr double depths_below = 16.0, depths_above = 8.0;
+/// Of a flat bottom that cuts alone, whose engagement has no height: it is stable at every depth or at none.
+constexpr double least_depth_m = 1e-6;
 
 /// What the pass leaves; none where it is not fed or chatters, which has no steady motion.
 double surface_error_m(const stability::LobesProblem& problem, const stability::PointResult& point, double tolerance) {
@@ -38,7 +40,7 @@ stability::LobesProblem block_problem(const BlockCut& at, const modal::ModalMode
 }
 
 double engaged_depth_m(const cutting::PoseEngagement& cut) {
-  return stability::engaged_height_m(cut.engagement);
+  return std::max(stability::engaged_height_m(cut.engagement), least_depth_m);
 }
 
 CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {

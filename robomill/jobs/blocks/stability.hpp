@@ -27,7 +27,7 @@ struct BlockCut {
 /// The limit depth alone; NaN: none.
 [[nodiscard]] double limit_depth_m(const BlockCut& cut, const modal::ModalModel& modes);
 
-/// Height of the engaged part along the tool's axis: what limits are compared with.
+/// Height of the engaged part along the tool's axis, 1 µm at least: what limits are compared with.
 [[nodiscard]] double engaged_depth_m(const cutting::PoseEngagement& cut);
 
 }  // namespace robomill::jobs

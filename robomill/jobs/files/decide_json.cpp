@@ -102,18 +102,27 @@ Json alternatives_json(const DecideResult& result, const ForcesResult& forces) {
   return rows;
 }
 
+/// "chip thickness of 0.05 mm": the limit that a feed goes up to.
+std::string reached_text(const decision::LimitUse& use) {
+  const LimitWords* words = words_of(use.limit);
+  if (words == nullptr) return "its programmed feed";
+  const std::string unit = *words->unit == '\0' ? "" : std::string(" ") + words->unit;
+  return fmt::format("{} of {:.3g}{}", words->name, use.allowed / words->factor, unit);
+}
+
 Json stretches_json(const DecideResult& result, const ForcesResult& forces) {
   Json rows = Json::array();
   for (const DecidedLines& lines : result.stretches) {
-    rows.push_back({{"first_block", lines.first_block + 1},
-                    {"last_block", lines.last_block + 1},
-                    {"first_line", line_of(result, forces, lines.first_block)},
-                    {"last_line", line_of(result, forces, lines.last_block)},
-                    {"spindle_speed_rpm", number(lines.spindle_speed_rad_per_s / units::rpm)},
-                    {"lowest_feed_mm_per_min", number(feed_of(lines.lowest_feed_m_per_s))},
-                    {"highest_feed_mm_per_min", number(feed_of(lines.highest_feed_m_per_s))},
-                    {"cutting_time_s", number(lines.cutting_time_s)},
-                    {"limited_by", limit_text(lines.limited_by) + " in " + named_block(forces, lines.limiting_block)}});
+    rows.push_back(
+        {{"first_block", lines.first_block + 1},
+         {"last_block", lines.last_block + 1},
+         {"first_line", line_of(result, forces, lines.first_block)},
+         {"last_line", line_of(result, forces, lines.last_block)},
+         {"spindle_speed_rpm", number(lines.spindle_speed_rad_per_s / units::rpm)},
+         {"lowest_feed_mm_per_min", number(feed_of(lines.lowest_feed_m_per_s))},
+         {"highest_feed_mm_per_min", number(feed_of(lines.highest_feed_m_per_s))},
+         {"cutting_time_s", number(lines.cutting_time_s)},
+         {"limited_by", reached_text(lines.limited_by) + " in " + named_block(forces, lines.limiting_block)}});
   }
   return rows;
 }
