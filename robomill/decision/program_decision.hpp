@@ -103,8 +103,8 @@ struct ROBOMILL_API ProgramOptions {
   bool free_speed = true, free_feed = true;  ///< else as programmed
   double min_spindle_speed_rad_per_s = 0.0;  ///< > 0; required where the speed is free
   double max_spindle_speed_rad_per_s = 0.0;  ///< >= min
-  /// In [0, 0.5): what is looked at holds at n (1 + w/2)^k, k = -2 … 2; speeds are looked for in steps of w/2, 1 % at
-  /// least.
+  /// w in [0, 0.5): what is looked at holds from n (1 - w) to n (1 + w), in steps of w/2, of 0.25 to 1 %; speeds are
+  /// looked for in the same steps.
   double speed_window = 0.02;
   bool one_speed = false;           ///< for all stretches
   double ramp_rad_per_s2 = 0.0;     ///< >= 0; a change between stretches takes |Δn| / ramp; 0: no time

@@ -55,7 +55,8 @@ Tried run_exactly(const DecideProblem& problem, program::Program program, std::v
                           .keep_cuts = true,
                           .deflect = problem.forces.program->deflected};
   ForcesFile file = problem.forces.file;
-  file.motion.spindle_speed_rad_per_s = 0.0;  // the program's own
+  if (problem.options.is_free(Free::spindle_speed)) file.motion.spindle_speed_rad_per_s = 0.0;  // the program's own
+  if (problem.forces.program->stock) file.stock = problem.forces.program->stock->stock;  // not one about a moved path
   out.forces = run_forces_with(std::move(file), problem.forces.program->path, problem.forces.cell, run, progress);
   BlocksOptions options = problem.blocks_options;
   options.scan_points = 0;
@@ -67,7 +68,7 @@ Tried run_exactly(const DecideProblem& problem, program::Program program, std::v
 
 Tried run_choice(const DecideProblem& problem, const BlockModel& model, const ProgramDecision& choice,
                  Progress& progress) {
-  program::Program program = decided_program(problem.forces, model.units(), choice);
+  program::Program program = decided_program(problem.forces, model.units(), choice, model.search().free_speed);
   std::vector<double> gamma_offset_rad;
   if (problem.options.is_free(Free::gamma)) gamma_offset_rad = gamma_offsets(program, model.units(), choice);
   return run_exactly(problem, std::move(program), std::move(gamma_offset_rad), progress);
@@ -81,19 +82,24 @@ bool rises_with_feed(ProgramLimit limit) {
   return std::ranges::find(loads, limit) != loads.end();
 }
 
-/// Holds what broke a limit further from it; false: that is not possible.
+/// Holds what broke a limit further from it, by its worst block; false: that is not possible.
 bool tighten(BlockModel& model, const std::vector<Violation>& violations) {
+  std::map<std::size_t, double> more_margin;  // of a class
+  std::map<std::size_t, double> feed_share;   // of a line
   for (const Violation& v : violations) {
     if (v.limit == ProgramLimit::stability) {
-      model.tighten_margin(v.block, v.allowed - v.value + tightening);
-    } else if (v.limit == ProgramLimit::reversal) {
-      model.tighten_feed(v.block, 1.0 - reversal_step);
-    } else if (rises_with_feed(v.limit)) {
-      model.tighten_feed(v.block, v.allowed / v.value * (1.0 - tightening));
-    } else {
-      return false;
+      double& more = more_margin[model.class_of(v.block)];
+      more = std::max(more, v.allowed - v.value + tightening);
+      continue;
     }
+    const bool reversal = v.limit == ProgramLimit::reversal;
+    if (!reversal && !rises_with_feed(v.limit)) return false;
+    const double share = reversal ? 1.0 - reversal_step : v.allowed / v.value * (1.0 - tightening);
+    double& least = feed_share.try_emplace(model.line_of(v.block), 1.0).first->second;
+    least = std::min(least, share);
   }
+  for (const auto& [look_class, more] : more_margin) model.tighten_margin(look_class, more);
+  for (const auto& [line, share] : feed_share) model.tighten_feed(line, share);
   return true;
 }
 
@@ -110,6 +116,10 @@ std::string infeasible_reason(const DecideProblem& problem, const BlockModel& mo
   if (choice.rejected.empty()) return "no spindle speed is within the spindle's range";
   const decision::RejectedSpeed& nearest = choice.rejected.front();
   const std::string speed = fmt::format("{:.0f} rpm", nearest.spindle_speed_rad_per_s / units::rpm);
+  if (!model.search().free_speed) {
+    return fmt::format("the programmed spindle speed does not keep every limit, {}: {}{}", speed,
+                       limit_text(nearest.stopped_by), at_block(problem, block_of(model, nearest.cut)));
+  }
   return fmt::format("no spindle speed from {:.0f} to {:.0f} rpm keeps every limit; the nearest, {}: {}{}",
                      model.search().min_spindle_speed_rad_per_s / units::rpm,
                      model.search().max_spindle_speed_rad_per_s / units::rpm, speed, limit_text(nearest.stopped_by),
@@ -122,26 +132,41 @@ void keep_alternatives(const BlockModel& model, const ProgramDecision& choice, D
   }
 }
 
+double way_m(const program::Program& program, std::size_t first, std::size_t last) {
+  double way = 0.0;
+  for (std::size_t i = first; i <= last; ++i) way += (program.blocks[i].end.tip_m - program.begin_of(i).tip_m).norm();
+  return way;
+}
+
+/// Speeds, feeds and times of the stretches of the program that was found.
 void keep_stretches(const BlockModel& model, const ProgramDecision& choice, DecideResult& out) {
   const ProgramUnits& units = model.units();
+  const program::Program& program = *out.program;
+  double last_speed = 0.0;
+  double last_feed = 0.0;
   for (std::size_t k = 0; k < units.stretches.size(); ++k) {
     const decision::ProgramStretch& stretch = units.stretches[k];
-    const auto feeds = std::span(choice.feed_m_per_s).subspan(stretch.begin, stretch.end - stretch.begin);
-    const auto [low, high] = std::ranges::minmax(feeds);
-    const decision::DecidedStretch& decided = choice.stretches[k];
-    out.stretches.push_back({.first_block = units.lines[stretch.begin].first_block,
-                             .last_block = units.lines[stretch.end - 1].last_block,
-                             .spindle_speed_rad_per_s = decided.spindle_speed_rad_per_s,
-                             .lowest_feed_m_per_s = low,
-                             .highest_feed_m_per_s = high,
-                             .cutting_time_s = decided.cutting_time_s,
-                             .limited_by = decided.limited_by,
-                             .limiting_block = block_of(model, decided.limiting_cut)});
-    const double before = k == 0 ? 0.0 : choice.stretches[k - 1].spindle_speed_rad_per_s;
-    if (decided.spindle_speed_rad_per_s != before) ++out.speeds_changed;
-  }
-  for (std::size_t c = 0; c < choice.feed_m_per_s.size(); ++c) {
-    if (c == 0 || choice.feed_m_per_s[c] != choice.feed_m_per_s[c - 1]) ++out.feeds_changed;
+    DecidedLines lines = {.first_block = units.lines[stretch.begin].first_block,
+                          .last_block = units.lines[stretch.end - 1].last_block,
+                          .spindle_speed_rad_per_s = choice.stretches[k].spindle_speed_rad_per_s,
+                          .limited_by = choice.stretches[k].limited_by,
+                          .limiting_block = block_of(model, choice.stretches[k].limiting_cut)};
+    for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
+      const LineUnit& unit = units.lines[c];
+      double time_s = 0.0;
+      for (std::size_t i = unit.first_block; i <= unit.last_block; ++i) time_s += program.blocks[i].duration_s;
+      lines.cutting_time_s += time_s;
+      if (unit.turns_only) continue;
+      const double feed = way_m(program, unit.first_block, unit.last_block) / time_s;
+      const bool first = lines.highest_feed_m_per_s == 0.0;
+      lines.lowest_feed_m_per_s = first ? feed : std::min(lines.lowest_feed_m_per_s, feed);
+      lines.highest_feed_m_per_s = std::max(lines.highest_feed_m_per_s, feed);
+      if (std::abs(feed - last_feed) > 1e-6 * feed) ++out.feeds_changed;
+      last_feed = feed;
+    }
+    if (lines.spindle_speed_rad_per_s != last_speed) ++out.speeds_changed;
+    last_speed = lines.spindle_speed_rad_per_s;
+    out.stretches.push_back(lines);
   }
 }
 
@@ -202,25 +227,31 @@ std::optional<NearMiss> near_miss(const DecideProblem& problem, const BlockModel
   return first_near_miss(*model.checker(), *problem.forces.cell->geometry, joints);
 }
 
-/// A program whose ends were moved, at the feeds that it had.
+/// A program whose ends were moved, at the feeds that its lines had.
 program::Program at_feeds_of(const program::Program& moved, const program::Program& before) {
   program::Program out = moved;
-  for (std::size_t i = 0; i < out.blocks.size(); ++i) {
-    const double way_m = (before.blocks[i].end.tip_m - before.begin_of(i).tip_m).norm();
-    const double moved_m = (out.blocks[i].end.tip_m - out.begin_of(i).tip_m).norm();
-    if (way_m > 0.0 && moved_m > 0.0) out.blocks[i].duration_s *= moved_m / way_m;
+  for (std::size_t first = 0; first < out.blocks.size();) {
+    std::size_t last = first;
+    while (last + 1 < out.blocks.size() && out.blocks[last + 1].line == out.blocks[first].line) ++last;
+    const double was_m = way_m(before, first, last);
+    const double is_m = way_m(out, first, last);
+    for (std::size_t i = first; i <= last && was_m > 0.0 && is_m > 0.0; ++i) out.blocks[i].duration_s *= is_m / was_m;
+    first = last + 1;
   }
   return out;
 }
 
 /// Feeds lines slower that break a limit of their feed; false: one breaks another limit.
-bool slow_down(program::Program& program, const std::vector<Violation>& violations) {
+bool slow_down(const BlockModel& model, program::Program& program, const std::vector<Violation>& violations) {
+  std::map<std::size_t, double> slower;  // of a line
   for (const Violation& v : violations) {
     if (!rises_with_feed(v.limit)) return false;
-    const double slower = v.value / v.allowed * (1.0 + tightening);
-    for (program::Block& block : program.blocks) {
-      if (block.line == program.blocks[v.block].line) block.duration_s *= slower;
-    }
+    double& most = slower[model.line_of(v.block)];
+    most = std::max(most, v.value / v.allowed * (1.0 + tightening));
+  }
+  for (const auto& [line, factor] : slower) {
+    const LineUnit& unit = model.units().lines[line];
+    for (std::size_t i = unit.first_block; i <= unit.last_block; ++i) program.blocks[i].duration_s *= factor;
   }
   return true;
 }
@@ -243,6 +274,12 @@ void compensate_found(const DecideProblem& problem, const BlockModel& model, Dec
     ++out.exact_runs;
     const JudgedRun run(problem, tried.forces, tried.blocks);
     violations = violations_of(run, model.chip_m());
+    const std::optional<NearMiss> miss = near_miss(problem, model, tried);
+    if (miss && out.collision.empty()) {
+      out.notes.push_back(fmt::format("The path is not compensated: {}{}.", near_miss_text(miss->clearance),
+                                      at_block(problem, miss->block)));
+      return;
+    }
     if (violations.empty()) {
       out.decided = outcome_of(run, model.chip_m());
       out.program = std::move(tried.program);
@@ -251,7 +288,7 @@ void compensate_found(const DecideProblem& problem, const BlockModel& model, Dec
       out.compensation = std::move(moved);
       return;
     }
-    if (!slow_down(program, violations)) break;
+    if (!slow_down(model, program, violations)) break;
   }
   const Violation& first = violations.front();
   out.notes.push_back(fmt::format("The path is not compensated: the moved one breaks a limit, {}{}.",
@@ -281,7 +318,9 @@ std::vector<std::string> assumptions(const DecideProblem& problem, const BlockMo
   }
   if (problem.machine.spindle.empty()) {
     out.push_back("Torque and power of the spindle are not limited: [[spindle.curve]] is not given.");
-    if (search.free_speed && !(problem.machine.max_spindle_speed_rad_per_s > 0.0)) {
+    const bool whole =
+        problem.machine.min_spindle_speed_rad_per_s > 0.0 && problem.machine.max_spindle_speed_rad_per_s > 0.0;
+    if (search.free_speed && !whole) {
       out.push_back(fmt::format(
           "Spindle speeds are looked for from {:.0f} to {:.0f} rpm, about the program's own: "
           "spindle.min_speed_rpm and max_speed_rpm are not given.",
@@ -332,6 +371,7 @@ DecideResult decide(const DecideProblem& problem, Progress& progress) {
   BlockModel model(problem);
   out.notes = assumptions(problem, model);
   out.as_programmed = outcome_of(JudgedRun(problem, problem.forces, problem.blocks), model.chip_m());
+  ProgramDecision found;
   for (int round = 0; round < most_rounds; ++round) {
     const ProgramDecision choice =
         decision::decide_program(model.units().cuts, model.units().stretches, model, model.search(), progress);
@@ -352,17 +392,17 @@ DecideResult decide(const DecideProblem& problem, Progress& progress) {
     const std::vector<Violation> violations = violations_of(run, model.chip_m());
     if (violations.empty()) {
       if (miss) {
-        out.notes.push_back(fmt::format("The program as it is: {}{}.", near_miss_text(miss->clearance),
-                                        at_block(problem, miss->block)));
+        out.collision = near_miss_text(miss->clearance) + at_block(problem, miss->block);
+        out.notes.push_back("The program as it is: " + out.collision + ".");
       }
       out.collisions_checked = model.checker() != nullptr;
       out.status = DecideResult::Status::found;
       out.decided = outcome_of(run, model.chip_m());
-      keep_stretches(model, choice, out);
       out.gamma_offset_rad = std::move(tried.gamma_offset_rad);
       out.program = std::move(tried.program);
       out.forces = std::move(tried.forces);
       out.blocks = std::move(tried.blocks);
+      found = choice;
       break;
     }
     const Violation& first = violations.front();
@@ -375,6 +415,7 @@ DecideResult decide(const DecideProblem& problem, Progress& progress) {
   if (out.status == DecideResult::Status::found) {
     out.reason.clear();
     if (problem.options.compensate) compensate_found(problem, model, out, progress);
+    keep_stretches(model, found, out);
     if (problem.blocks_options.scan_points > 0) {
       out.blocks->scans = limit_scans(*out.forces, out.blocks->worst, problem.dynamics, problem.blocks_options);
     }

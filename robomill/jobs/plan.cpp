@@ -392,6 +392,21 @@ DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& pr
   return constant_dynamics(result.model);
 }
 
+/// The stability of every block, and the conditions to cut the program at.
+void judge(PlanResult& result, const CellFile& cell, const std::filesystem::path& folder, Progress& progress) {
+  const LobesFile& cut = result.cut;
+  const BlocksOptions options = {.workpiece_vibrates = !cut.workpiece_modes.empty() || !cut.workpiece_frf.empty() ||
+                                                       !cut.problem.workpiece_dynamics.modes.empty()};
+  const DynamicsAt dynamics = dynamics_along(result, cell, progress);
+  result.blocks = judge_blocks(*result.forces, dynamics, options, progress);
+  if (result.job.decide.free.empty()) return;
+  if (result.blocks->cutting == 0) {
+    result.notes.emplace_back("No block of the program cuts: there are no conditions to decide.");
+    return;
+  }
+  decide_conditions(result, cell, dynamics, options, folder, progress);
+}
+
 /// Forces, and with a program and a robot the stability of every block and the conditions to cut it at.
 void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, const std::filesystem::path& folder,
                     Progress& progress) {
@@ -403,16 +418,10 @@ void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, con
   } else {
     result.forces = run_forces_with(std::move(file), result.job.program, cell, program_run(result), progress);
   }
+  const bool usable = !result.fit || result.fit->usable();
+  if (result.job.judges_blocks() && usable) judge(result, *cell, folder, progress);
   result.forces->spindle = capacity_along(*result.forces, result.job.recommend.spindle);
   warn_of_spindle(result);
-  const bool usable = !result.fit || result.fit->usable();
-  if (!result.job.judges_blocks() || !usable) return;
-  const LobesFile& cut = result.cut;
-  const BlocksOptions options = {.workpiece_vibrates = !cut.workpiece_modes.empty() || !cut.workpiece_frf.empty() ||
-                                                       !cut.problem.workpiece_dynamics.modes.empty()};
-  const DynamicsAt dynamics = dynamics_along(result, *cell, progress);
-  result.blocks = judge_blocks(*result.forces, dynamics, options, progress);
-  if (!result.job.decide.free.empty()) decide_conditions(result, *cell, dynamics, options, folder, progress);
 }
 
 /// Lobes of the job's cut, the recommendation, and what stands beside it.

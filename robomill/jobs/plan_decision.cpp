@@ -36,8 +36,12 @@ std::vector<std::string> header_of(const PlanResult& result) {
     path += fmt::format("Finishing passes are moved by up to {:.3g} mm against the deflection that is predicted. ",
                         decision.compensation->largest_offset_m / units::mm);
   }
-  path += decision.collisions_checked ? "The way was checked against the cell's geometry"
-                                      : "Nothing was checked for collisions";
+  if (!decision.collision.empty()) {
+    path += "CAUTION: " + decision.collision;
+  } else {
+    path += decision.collisions_checked ? "The way was checked against the cell's geometry"
+                                        : "Nothing was checked for collisions";
+  }
   out.push_back(std::move(path));
   return out;
 }

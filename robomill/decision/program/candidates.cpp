@@ -7,7 +7,7 @@ namespace robomill::decision {
 namespace {
 
 /// The coarse grid's steps are no wider; the fine grid has so many in each.
-constexpr double widest_step = 0.01;
+constexpr double widest_step = 0.01, narrowest_step = 0.0025;
 constexpr int fine_steps = 4;
 
 }  // namespace
@@ -15,8 +15,8 @@ constexpr int fine_steps = 4;
 CandidateSpeeds::CandidateSpeeds(const std::vector<ProgramStretch>& stretches, const ProgramOptions& options)
     : options_(options) {
   if (options.speed_window > 0.0) {
-    const double step = std::min(widest_step, 0.5 * options.speed_window);
-    window_ = {.ratio = 1.0 + step, .half = static_cast<int>(std::lround(options.speed_window / step))};
+    const double step = std::clamp(0.5 * options.speed_window, narrowest_step, widest_step);
+    window_ = {.ratio = 1.0 + step, .half = static_cast<int>(std::ceil(options.speed_window / step - 1e-9))};
   }
   if (options.free_speed) {
     const double range = std::log(options.max_spindle_speed_rad_per_s / options.min_spindle_speed_rad_per_s);
@@ -44,21 +44,25 @@ std::size_t CandidateSpeeds::grid_speed(int step) {
   const auto [found, is_new] = grid_.try_emplace(step, speeds_.size());
   if (is_new) {
     const double low = options_.min_spindle_speed_rad_per_s;
-    double speed = low * std::pow(window_.ratio, static_cast<double>(step) / fine_steps);
-    const double unit = options_.speed_step_rad_per_s;
-    if (unit > 0.0) speed = std::max(1.0, std::round(speed / unit)) * unit;
-    // Rounding must not take the ends of the range out of a spindle's curve that ends there too.
-    for (const double end : {low, options_.max_spindle_speed_rad_per_s}) {
-      if (std::abs(speed - end) < 1e-9 * end) speed = end;
-    }
+    const double speed = low * std::pow(window_.ratio, static_cast<double>(step) / fine_steps);
     speeds_.push_back(speed);
   }
   return found->second;
 }
 
+double CandidateSpeeds::rounded(double speed) const {
+  const double unit = options_.speed_step_rad_per_s;
+  if (unit > 0.0) speed = std::max(1.0, std::round(speed / unit)) * unit;
+  // Rounding must not take the ends of the range out of a spindle's curve that ends there too.
+  for (const double end : {options_.min_spindle_speed_rad_per_s, options_.max_spindle_speed_rad_per_s}) {
+    if (std::abs(speed - end) < 1e-9 * end) speed = end;
+  }
+  return speed;
+}
+
 void CandidateSpeeds::add_step(int step) {
   const std::size_t center = grid_speed(step);
-  CandidateSpeed candidate = {.spindle_speed_rad_per_s = speeds_[center], .step = step};
+  CandidateSpeed candidate = {.spindle_speed_rad_per_s = rounded(speeds_[center]), .step = step};
   const bool inside = candidate.spindle_speed_rad_per_s >= options_.min_spindle_speed_rad_per_s * (1.0 - 1e-12) &&
                       candidate.spindle_speed_rad_per_s <= options_.max_spindle_speed_rad_per_s * (1.0 + 1e-12);
   const bool there = std::ranges::any_of(candidates_, [&](const CandidateSpeed& c) {

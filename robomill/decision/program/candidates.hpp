@@ -34,6 +34,8 @@ class CandidateSpeeds {
   void add_step(int step);
   void add_alone(double speed);
   [[nodiscard]] std::size_t grid_speed(int step);
+  /// To a whole multiple of the step that speeds are given in.
+  [[nodiscard]] double rounded(double speed) const;
 
   const ProgramOptions& options_;
   Window window_;

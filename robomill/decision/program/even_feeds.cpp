@@ -36,12 +36,6 @@ std::vector<double> levels_of(const std::vector<FeedBounds>& cuts, double step) 
   const double ratio = std::min(level_ratio, std::pow(own.front() / own.back(), 1.0 / most_levels));
   std::vector<double> levels;
   for (double level = own.back(); level > own.front(); level *= ratio) levels.push_back(stepped(0.0, level, step));
-  // A cut whose bounds hold none of them keeps its own.
-  for (const FeedBounds& cut : cuts) {
-    const bool inside = std::ranges::any_of(
-        levels, [&](double level) { return level >= cut.least_m_per_s && level <= cut.most_m_per_s; });
-    if (!inside) levels.push_back(stepped(cut.least_m_per_s, cut.most_m_per_s, step));
-  }
   std::ranges::sort(levels);
   levels.erase(std::ranges::unique(levels).begin(), levels.end());
   return levels;
@@ -50,7 +44,12 @@ std::vector<double> levels_of(const std::vector<FeedBounds>& cuts, double step) 
 /// Feeds of the least time + penalty · changes.
 class LevelPath {
  public:
-  LevelPath(const std::vector<FeedBounds>& cuts, std::vector<double> levels) : cuts_(cuts), levels_(std::move(levels)) {
+  /// @param own  feeds of cuts whose bounds hold no level
+  LevelPath(const std::vector<FeedBounds>& cuts, std::vector<double> levels, const std::vector<double>& own)
+      : cuts_(cuts), levels_(std::move(levels)), own_(own) {
+    for (const FeedBounds& cut : cuts) {
+      held_.push_back(std::ranges::any_of(levels_, [&](double level) { return holds(cut, level); }));
+    }
     from_.resize(cuts_.size() * levels_.size());
     cost_.resize(levels_.size());
   }
@@ -69,20 +68,24 @@ class LevelPath {
     std::vector<double> feeds(cuts_.size());
     auto level = static_cast<std::size_t>(std::ranges::min_element(cost_) - cost_.begin());
     for (std::size_t i = cuts_.size(); i-- > 0;) {
-      feeds[i] = levels_[level];
+      feeds[i] = held_[i] ? levels_[level] : own_[i];
       level = from_[i * levels_.size() + level];
     }
     return feeds;
   }
 
  private:
+  static bool holds(const FeedBounds& bounds, double feed) {
+    return feed >= bounds.least_m_per_s * (1.0 - 1e-12) && feed <= bounds.most_m_per_s * (1.0 + 1e-12);
+  }
   [[nodiscard]] double time_at(std::size_t cut, double feed) const {
-    const FeedBounds& bounds = cuts_[cut];
-    const bool inside = feed >= bounds.least_m_per_s * (1.0 - 1e-12) && feed <= bounds.most_m_per_s * (1.0 + 1e-12);
-    return inside ? bounds.length_m / feed : none;
+    if (!held_[cut]) return cuts_[cut].length_m / own_[cut];
+    return holds(cuts_[cut], feed) ? cuts_[cut].length_m / feed : none;
   }
   const std::vector<FeedBounds>& cuts_;
   std::vector<double> levels_;
+  const std::vector<double>& own_;
+  std::vector<bool> held_ = {};  ///< its bounds hold some level
   std::vector<std::uint16_t> from_;
   std::vector<double> cost_;
 };
@@ -94,7 +97,8 @@ std::vector<double> even_feeds(const std::vector<FeedBounds>& cuts, double slack
   for (const FeedBounds& cut : cuts) best.push_back(stepped(cut.least_m_per_s, cut.most_m_per_s, step_m_per_s));
   if (cuts.empty() || slack <= 0.0) return best;
   const double allowed_s = (1.0 + slack) * time_of(cuts, best);
-  LevelPath path(cuts, levels_of(cuts, step_m_per_s));
+  const std::vector<double> own = best;
+  LevelPath path(cuts, levels_of(cuts, step_m_per_s), own);
   double low = 0.0;
   double high = allowed_s;
   for (int i = 0; i < 20; ++i) {

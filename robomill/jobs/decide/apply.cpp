@@ -16,21 +16,21 @@
 namespace robomill::jobs {
 
 program::Program decided_program(const ForcesResult& forces, const ProgramUnits& units,
-                                 const decision::ProgramDecision& decision) {
+                                 const decision::ProgramDecision& decision, bool free_speed) {
   program::Program out = forces.program->program;
-  for (std::size_t k = 0; k < units.stretches.size(); ++k) {
+  for (std::size_t k = 0; k < units.stretches.size() && free_speed; ++k) {
     const std::size_t end = k + 1 < units.stretches.size() ? units.speed_from[k + 1] : out.blocks.size();
     for (std::size_t i = units.speed_from[k]; i < end; ++i) {
+      if (out.blocks[i].spindle == program::Spindle::off) continue;
       out.blocks[i].spindle_speed_rad_per_s = decision.stretches[k].spindle_speed_rad_per_s;
     }
   }
   for (std::size_t c = 0; c < units.lines.size(); ++c) {
     const LineUnit& line = units.lines[c];
     if (line.turns_only) continue;
-    for (std::size_t i = line.first_block; i <= line.last_block; ++i) {
-      const double way_m = (out.blocks[i].end.tip_m - out.begin_of(i).tip_m).norm();
-      if (way_m > 0.0) out.blocks[i].duration_s = way_m / decision.feed_m_per_s[c];
-    }
+    // One factor a line: chords of an arc keep their shares of its time.
+    const double slower = units.cuts[c].feed_m_per_s / decision.feed_m_per_s[c];
+    for (std::size_t i = line.first_block; i <= line.last_block; ++i) out.blocks[i].duration_s *= slower;
   }
   return out;
 }

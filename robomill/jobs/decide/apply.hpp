@@ -10,8 +10,9 @@
 namespace robomill::jobs {
 
 /// The program at the speeds and feeds that were decided. A speed holds from the rapid move on that leads to its cuts.
+/// @param free_speed  else speeds stay as they are
 [[nodiscard]] program::Program decided_program(const ForcesResult& forces, const ProgramUnits& units,
-                                               const decision::ProgramDecision& decision);
+                                               const decision::ProgramDecision& decision, bool free_speed);
 
 /// γ at the program's start and at each block's end: as decided along the cuts, even in time between them.
 [[nodiscard]] std::vector<double> gamma_offsets(const program::Program& program, const ProgramUnits& units,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/jobs/blocks/classes.hpp"
 #include "robomill/jobs/blocks/stability.hpp"
@@ -70,12 +71,16 @@ JointSpeed joint_speed(const ForcesResult& forces, std::size_t block) {
 }  // namespace
 
 BlockModel::BlockModel(const DecideProblem& problem)
-    : problem_(problem), units_(program_units(problem.forces, problem.blocks)) {
+    : problem_(problem),
+      units_(program_units(problem.forces, problem.blocks, !problem.options.is_free(Free::spindle_speed))) {
   const std::array<double, 2> programmed = programmed_chips_m(problem.forces, problem.blocks);
   for (std::size_t k = 0; k < 2; ++k) {
     const double asked = problem.options.chip_thickness_m.at(k);
     chip_m_.at(k) = asked > 0.0 ? asked : programmed.at(k);
   }
+  // A side that is not asked for gives way to the one that is.
+  if (problem.options.chip_thickness_m[0] <= 0.0) chip_m_[0] = std::min(chip_m_[0], chip_m_[1]);
+  if (problem.options.chip_thickness_m[1] <= 0.0) chip_m_[1] = std::max(chip_m_[0], chip_m_[1]);
   loads_ = block_loads(problem.forces, problem.blocks, chip_m_);
   feed_share_.assign(units_.lines.size(), 1.0);
   inverse_ = spherical_wrist(problem.forces.cell->cell.arm);
@@ -129,7 +134,11 @@ void BlockModel::set_search() {
       std::ranges::minmax(units_.stretches, {}, &decision::ProgramStretch::programmed_spindle_speed_rad_per_s);
   const double about_low = (1.0 - default_speed_range) * slowest.programmed_spindle_speed_rad_per_s;
   const double about_high = (1.0 + default_speed_range) * fastest.programmed_spindle_speed_rad_per_s;
-  search_.min_spindle_speed_rad_per_s = low > 0.0 ? low : about_low;
+  if (low > 0.0 && high > 0.0 && low > high) {
+    throw InvalidInput("spindle", "has no speed that both its range and its curve hold",
+                       "Look at spindle.min_speed_rpm, max_speed_rpm and curve");
+  }
+  search_.min_spindle_speed_rad_per_s = low > 0.0 ? low : (high > 0.0 ? std::min(about_low, high) : about_low);
   search_.max_spindle_speed_rad_per_s = high > 0.0 ? high : std::max(about_high, search_.min_spindle_speed_rad_per_s);
   if (!options.is_free(Free::gamma)) return;
   search_.gamma_rad.clear();
@@ -145,6 +154,17 @@ FeedRange BlockModel::feeds(std::size_t cut, double speed) const {
   if (line.turns_only) {
     range.least_m_per_s = range.most_m_per_s = units_.cuts[cut].feed_m_per_s;
     return range;
+  }
+  const decision::RecommendOptions& machine = problem_.machine;
+  if (speed < machine.min_spindle_speed_rad_per_s * (1.0 - 1e-9)) {
+    cap(range, 0.0, {ProgramLimit::spindle_range, speed, machine.min_spindle_speed_rad_per_s});
+  }
+  if (machine.max_spindle_speed_rad_per_s > 0.0 && speed > machine.max_spindle_speed_rad_per_s * (1.0 + 1e-9)) {
+    cap(range, 0.0, {ProgramLimit::spindle_range, speed, machine.max_spindle_speed_rad_per_s});
+  }
+  if (line.plunges) {
+    cap(range, units_.cuts[cut].feed_m_per_s,
+        {ProgramLimit::tip_speed, units_.cuts[cut].feed_m_per_s, units_.cuts[cut].feed_m_per_s});
   }
   if (options.max_feed_m_per_s > 0.0) {
     cap(range, options.max_feed_m_per_s,
@@ -241,13 +261,16 @@ double BlockModel::margin_at(std::size_t look_class, const modal::ModalModel& mo
   return 1.0 - depth_m / (limited ? std::min(found.limit_5_percent_m, deepest * depth_m) : deepest * depth_m);
 }
 
+double BlockModel::deepest() const {
+  return std::max(2.5, 2.0 / (1.0 - problem_.machine.depth_margin));
+}
+
 BlockModel::Raw BlockModel::compute(std::size_t look_class, double speed, double gamma_rad) const {
   Raw out;
   const Stand& there = stand(look_class, gamma_rad);
   out.reachable = there.reachable;
   if (!out.reachable) return out;
-  const double deepest = std::max(2.0, 1.5 / (1.0 - problem_.machine.depth_margin));
-  out.margin = margin_at(look_class, there.modes, speed, deepest, out.stable);
+  out.margin = margin_at(look_class, there.modes, speed, deepest(), out.stable);
   if (!(most_surface_m() > 0.0) || !out.stable) return out;
   const double teeth_per_s = speed * search_.teeth / (2.0 * std::numbers::pi);
   const std::size_t block = first_[look_class];
@@ -286,17 +309,21 @@ decision::CutLook BlockModel::look(std::size_t look_class, double speed, std::si
     out.by = {ProgramLimit::posture, 1.0, 0.0};
     return out;
   }
-  const double asked = problem_.machine.depth_margin + more_margin_[look_class];
+  // No look finds more than the depths that it searches can show.
+  const double asked = std::min(problem_.machine.depth_margin + more_margin_[look_class], 1.0 - 1.01 / deepest());
   out.by = {ProgramLimit::stability, found.margin, asked};
   out.holds = found.stable && found.margin >= asked;
   const double allowed = most_surface_m() * (1.0 - class_reserve);
   if (!out.holds || !(allowed > 0.0) || std::isnan(found.surface_m[1])) return out;
+  if (found.surface_m[1] <= allowed) return out;  // where it falls with the feed the exact run looks at it
   const std::array<double, 3>& feed = loads_[first_[look_class]].feed_per_tooth_m;
-  if (found.surface_m[1] > allowed) {
-    const double share = (allowed - found.surface_m[0]) / (found.surface_m[1] - found.surface_m[0]);
-    out.by = {ProgramLimit::surface_error, found.surface_m[0], most_surface_m()};
-    out.most_feed_per_tooth_m = share > 0.0 ? std::lerp(feed[0], feed[2], share) : 0.0;
+  out.by = {ProgramLimit::surface_error, found.surface_m[0], most_surface_m()};
+  if (found.surface_m[0] > allowed) {
+    out.holds = false;
+    return out;
   }
+  const double share = (allowed - found.surface_m[0]) / (found.surface_m[1] - found.surface_m[0]);
+  out.most_feed_per_tooth_m = std::lerp(feed[0], feed[2], share);
   return out;
 }
 
@@ -312,12 +339,12 @@ long long BlockModel::evaluations() const {
   return static_cast<long long>(raw_.size()) + map_looks_;
 }
 
-void BlockModel::tighten_feed(std::size_t block, double share) {
-  feed_share_[line_of_[block]] *= share;
+void BlockModel::tighten_feed(std::size_t line, double share) {
+  feed_share_[line] *= share;
 }
 
-void BlockModel::tighten_margin(std::size_t block, double more) {
-  more_margin_[class_of_[block]] += more;
+void BlockModel::tighten_margin(std::size_t look_class, double more) {
+  more_margin_[look_class] += more;
 }
 
 }  // namespace robomill::jobs

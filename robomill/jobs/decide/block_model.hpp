@@ -43,10 +43,13 @@ class BlockModel final : public decision::ProgramModel {
   /// Of the cell and the cutter; null: the cell has no [geometry].
   [[nodiscard]] const robot::CollisionChecker* checker() const { return checker_.get(); }
 
-  /// Holds a block's line further from a limit of its feed, by that share of what it may have.
-  void tighten_feed(std::size_t block, double share);
-  /// Asks so much more margin of the block's class.
-  void tighten_margin(std::size_t block, double more);
+  /// The line of a block that cuts.
+  [[nodiscard]] std::size_t line_of(std::size_t block) const { return line_of_[block]; }
+
+  /// Holds a line further from the limits of its feed, by that share of what it may have.
+  void tighten_feed(std::size_t line, double share);
+  /// Asks so much more margin of a class.
+  void tighten_margin(std::size_t look_class, double more);
 
  private:
   /// What vibrates where a class's first block stands turned by γ.
@@ -71,6 +74,8 @@ class BlockModel final : public decision::ProgramModel {
                                  bool& stable) const;
   [[nodiscard]] Raw compute(std::size_t look_class, double speed, double gamma_rad) const;
   [[nodiscard]] Raw raw(std::size_t look_class, double speed, double gamma_rad) const;
+  /// Depths that looks search up to, as a multiple of the cut's.
+  [[nodiscard]] double deepest() const;
   [[nodiscard]] double most_surface_m() const { return problem_.finish.max_surface_error_m; }
 
   const DecideProblem& problem_;

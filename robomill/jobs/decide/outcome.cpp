@@ -21,12 +21,24 @@ void add_if_broken(std::vector<Violation>& out, const Violation& violation) {
 }
 
 void of_spindle(const DecideProblem& problem, const BlockResult& row, std::size_t block, std::vector<Violation>& out) {
-  if (problem.machine.spindle.empty()) return;
   const double speed = row.force.spindle_speed_rad_per_s;
+  const double slowest = problem.machine.min_spindle_speed_rad_per_s;
+  const double fastest = problem.machine.max_spindle_speed_rad_per_s;
+  if (speed < slowest * (1.0 - 1e-9)) {
+    out.push_back({.limit = ProgramLimit::spindle_range, .block = block, .value = speed, .allowed = slowest});
+  }
+  if (fastest > 0.0 && speed > fastest * (1.0 + 1e-9)) {
+    out.push_back({.limit = ProgramLimit::spindle_range, .block = block, .value = speed, .allowed = fastest});
+  }
+  if (problem.machine.spindle.empty()) return;
   const decision::SpindleCapacity able = decision::capacity_at(problem.machine.spindle, speed);
   if (!(able.torque_n_m > 0.0)) {
+    const double first = problem.machine.spindle.front().spindle_speed_rad_per_s;
     const double last = problem.machine.spindle.back().spindle_speed_rad_per_s;
-    out.push_back({.limit = ProgramLimit::spindle_range, .block = block, .value = speed, .allowed = last});
+    out.push_back({.limit = ProgramLimit::spindle_range,
+                   .block = block,
+                   .value = speed,
+                   .allowed = speed < first ? first : last});
     return;
   }
   add_if_broken(out, {ProgramLimit::torque, block, row.force.revolution_torque_n_m, able.torque_n_m});

@@ -29,6 +29,8 @@ decision::ProgramCut cut_of(const ForcesResult& forces, LineUnit& unit) {
   if (unit.turns_only) return cut;
   cut.tooth_feed_share = 0.0;
   for (const std::size_t i : unit.cutting) {
+    const Eigen::Vector3d move_m = program.blocks[i].end.tip_m - program.begin_of(i).tip_m;
+    if (-move_m.dot(program.blocks[i].end.axis) > 0.5 * move_m.norm()) unit.plunges = true;
     const double tip_m_per_s = way_m(program, i) / program.blocks[i].duration_s;
     cut.tooth_feed_share = std::max(cut.tooth_feed_share, forces.program->cuts[i].feed_speed_m_per_s / tip_m_per_s);
   }
@@ -38,7 +40,7 @@ decision::ProgramCut cut_of(const ForcesResult& forces, LineUnit& unit) {
 
 }  // namespace
 
-ProgramUnits program_units(const ForcesResult& forces, const ProgramBlocks& blocks) {
+ProgramUnits program_units(const ForcesResult& forces, const ProgramBlocks& blocks, bool at_speeds) {
   const Program& program = forces.program->program;
   ProgramUnits out;
   std::optional<std::size_t> rapid;  // the first since the last cut
@@ -55,12 +57,13 @@ ProgramUnits program_units(const ForcesResult& forces, const ProgramBlocks& bloc
     }
     if (block.kind == Block::Kind::rapid && !rapid) rapid = unit.first_block;
     if (unit.cutting.empty()) continue;
-    if (out.stretches.empty() || rapid) {
-      out.speed_from.push_back(out.stretches.empty() ? 0 : *rapid);
-      out.stretches.push_back({.begin = out.lines.size(),
-                               .end = out.lines.size(),
-                               .programmed_spindle_speed_rad_per_s =
-                                   forces.program->blocks[unit.cutting.front()].force.spindle_speed_rad_per_s});
+    const double speed = forces.program->blocks[unit.cutting.front()].force.spindle_speed_rad_per_s;
+    const bool other =
+        at_speeds && !out.stretches.empty() && speed != out.stretches.back().programmed_spindle_speed_rad_per_s;
+    if (out.stretches.empty() || rapid || other) {
+      out.speed_from.push_back(out.stretches.empty() ? 0 : rapid.value_or(unit.first_block));
+      out.stretches.push_back(
+          {.begin = out.lines.size(), .end = out.lines.size(), .programmed_spindle_speed_rad_per_s = speed});
     }
     rapid.reset();
     ++out.stretches.back().end;

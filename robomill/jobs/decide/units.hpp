@@ -13,6 +13,7 @@ struct LineUnit {
   std::size_t first_block = 0, last_block = 0;
   std::vector<std::size_t> cutting = {};
   bool turns_only = false;  ///< the tip stands: its feed is an angle, and stays
+  bool plunges = false;  ///< the tool runs down along its axis by more than 30°: it is fed no faster than programmed
 };
 
 /// The lines that cut and the stretches between rapid moves.
@@ -24,6 +25,7 @@ struct ProgramUnits {
   std::vector<std::size_t> speed_from = {};
 };
 
-[[nodiscard]] ProgramUnits program_units(const ForcesResult& forces, const ProgramBlocks& blocks);
+/// @param at_speeds  stretches end where the spindle changes its speed too
+[[nodiscard]] ProgramUnits program_units(const ForcesResult& forces, const ProgramBlocks& blocks, bool at_speeds);
 
 }  // namespace robomill::jobs
