@@ -215,6 +215,8 @@ FeedRange BlockModel::feeds(std::size_t cut, double speed) const {
       cap(range, 0.0, {ProgramLimit::cutting_speed, cutting_speed, slowest});
     }
   }
+  // A plunge is not held up by the chip that it would need to be fed faster for.
+  if (line.plunges) range.least_m_per_s = std::min(range.least_m_per_s, range.most_m_per_s);
   if (!std::isfinite(range.most_m_per_s)) range.least_m_per_s = range.most_m_per_s = units_.cuts[cut].feed_m_per_s;
   return range;
 }
