@@ -230,7 +230,7 @@ void put_together(const std::vector<ProgramCut>& cuts, const std::vector<Program
       bounds.push_back({.length_m = cuts[c].length_m, .least_m_per_s = at.least[i], .most_m_per_s = at.most[i]});
       // Where its group has no time of its own for a step, γ runs evenly over it.
       const std::size_t group = at.group[i];
-      const auto [first, last] = std::ranges::equal_range(at.group, group);
+      const auto [first, last] = std::equal_range(at.group.begin(), at.group.end(), group);
       const auto begin = static_cast<double>(i - static_cast<std::size_t>(first - at.group.begin()));
       const auto count = static_cast<double>(last - first);
       const double from = options.gamma_rad[at.gamma[group]];

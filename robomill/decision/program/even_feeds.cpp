@@ -31,13 +31,13 @@ std::vector<double> levels_of(const std::vector<FeedBounds>& cuts, double step) 
   std::vector<double> own;
   for (const FeedBounds& cut : cuts) own.push_back(stepped(cut.least_m_per_s, cut.most_m_per_s, step));
   std::ranges::sort(own);
-  own.erase(std::ranges::unique(own).begin(), own.end());
+  own.erase(std::unique(own.begin(), own.end()), own.end());
   if (own.size() <= most_levels) return own;
   const double ratio = std::min(level_ratio, std::pow(own.front() / own.back(), 1.0 / most_levels));
   std::vector<double> levels;
   for (double level = own.back(); level > own.front(); level *= ratio) levels.push_back(stepped(0.0, level, step));
   std::ranges::sort(levels);
-  levels.erase(std::ranges::unique(levels).begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
   return levels;
 }
 

@@ -120,7 +120,7 @@ Outcome outcome_of(const JudgedRun& run, const std::array<double, 2>& chip_m) {
   }
   std::vector<std::size_t> turned;
   for (const robot::LoadReversal& reversal : reversals) turned.push_back(reversal.block);
-  turned.erase(std::ranges::unique(turned).begin(), turned.end());
+  turned.erase(std::unique(turned.begin(), turned.end()), turned.end());
   out.reversals = turned.size();
   for (const Violation& violation : violations_of(run, chip_m)) {
     const auto same = std::ranges::find(out.violations, violation.limit, &Violation::limit);
