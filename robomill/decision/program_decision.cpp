@@ -234,7 +234,7 @@ void put_together(const std::vector<ProgramCut>& cuts, const std::vector<Program
       const auto begin = static_cast<double>(i - static_cast<std::size_t>(first - at.group.begin()));
       const auto count = static_cast<double>(last - first);
       const double from = options.gamma_rad[at.gamma[group]];
-      const double to = options.gamma_rad[at.gamma[group + (options.gamma_rad.size() > 1 ? 1 : 0)]];
+      const double to = options.gamma_rad[at.gamma[group + 1]];
       out.gamma_begin_rad.push_back(std::lerp(from, to, begin / count));
       out.gamma_end_rad.push_back(std::lerp(from, to, (begin + 1.0) / count));
     }

@@ -73,7 +73,8 @@ struct ProgramStretch {
 /// Feeds that a cut may have at a speed, as far as they need no dynamics.
 struct FeedRange {
   double least_m_per_s = 0.0, most_m_per_s = 0.0;  ///< none where least > most
-  LimitUse least_by = {}, most_by = {};            ///< what limits them; value: at the programmed feed
+  LimitUse least_by = {},
+           most_by = {};  ///< what limits them; value: of loads at the least feed, else at the programmed one
 };
 
 /// A class of cuts at a speed in a posture.

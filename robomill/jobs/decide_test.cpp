@@ -9,17 +9,14 @@
 #include <string>
 
 #include "robomill/base/error.hpp"
-#include "robomill/base/random.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/blocks/stability.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/modal/tip.hpp"
-#include "robomill/program/files/program_files.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/simulation/posture.hpp"
-#include "robomill/stability/lobes.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {

@@ -13,7 +13,6 @@
 #include "robomill/jobs/blocks/stand_at.hpp"
 #include "robomill/jobs/files/scratch_program.hpp"
 #include "robomill/jobs/program_forces.hpp"
-#include "robomill/program/files/program_files.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/version.hpp"
 
@@ -52,9 +51,9 @@ program::ProgramReading reading_of(const PlanResult& result, const CellFile& cel
 }
 
 void write_program(PlanResult& result, const CellFile& cell) {
-  const program::Program read = program::read_program(result.job.program, reading_of(result, cell));
-  result.program_out = program::rewrite_program(result.job.program, reading_of(result, cell), read,
-                                                *result.decision->program, header_of(result));
+  result.program_out =
+      program::rewrite_program(result.job.program, reading_of(result, cell), result.forces->program->program,
+                               *result.decision->program, header_of(result));
   result.program_name = "program" + result.job.program.extension().string();
 }
 

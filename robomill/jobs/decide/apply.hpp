@@ -14,7 +14,7 @@ namespace robomill::jobs {
 [[nodiscard]] program::Program decided_program(const ForcesResult& forces, const ProgramUnits& units,
                                                const decision::ProgramDecision& decision, bool free_speed);
 
-/// γ at the program's start and at each block's end: as decided along the cuts, even in time between them.
+/// γ at the program's start and at each block's end: as decided along the cuts, even along the way between them.
 [[nodiscard]] std::vector<double> gamma_offsets(const program::Program& program, const ProgramUnits& units,
                                                 const decision::ProgramDecision& decision);
 

@@ -47,11 +47,11 @@ double engaged_radius_m(const cutting::Engagement& engagement) {
   return radius;
 }
 
-/// The greatest feed of the tip at which no joint is faster than its limit over a block.
-struct JointSpeed {
-  double feed_m_per_s = std::numeric_limits<double>::infinity();
-  double allowed = 0.0;
-};
+/// Of the two limits the one that holds; 0: none.
+double stricter(double a, double b) {
+  return a > 0.0 && b > 0.0 ? std::min(a, b) : std::max(a, b);
+}
+
 JointSpeed joint_speed(const ForcesResult& forces, std::size_t block) {
   JointSpeed out;
   if (block == 0) return out;
@@ -82,6 +82,13 @@ BlockModel::BlockModel(const DecideProblem& problem)
   if (problem.options.chip_thickness_m[0] <= 0.0) chip_m_[0] = std::min(chip_m_[0], chip_m_[1]);
   if (problem.options.chip_thickness_m[1] <= 0.0) chip_m_[1] = std::max(chip_m_[0], chip_m_[1]);
   loads_ = block_loads(problem.forces, problem.blocks, chip_m_);
+  pace_.resize(loads_.size());
+  for (const LineUnit& line : units_.lines) {
+    for (const std::size_t block : line.cutting) {
+      pace_[block] = {.joint = joint_speed(problem.forces, block),
+                      .radius_m = engaged_radius_m(problem.forces.program->cuts[block].engagement)};
+    }
+  }
   feed_share_.assign(units_.lines.size(), 1.0);
   inverse_ = spherical_wrist(problem.forces.cell->cell.arm);
   checker_ = collision_checker(*problem.forces.cell, problem.forces.file.cutter);
@@ -147,6 +154,44 @@ void BlockModel::set_search() {
   for (int k = -below; k <= above; ++k) search_.gamma_rad.push_back(k * options.gamma_step_rad);
 }
 
+void BlockModel::limit_by_block(std::size_t cut, std::size_t block, double speed, FeedRange& range) const {
+  const BlockLoad& load = loads_[block];
+  if (!(load.chip_share > 0.0)) return;
+  const DecideOptions& options = problem_.options;
+  const BlockPace& pace = pace_[block];
+  const double per_tooth = speed * search_.teeth / (2.0 * std::numbers::pi) / units_.cuts[cut].tooth_feed_share;
+  const double programmed_chip_m = units_.cuts[cut].feed_m_per_s / per_tooth * load.chip_share;
+  cap(range, pace.joint.feed_m_per_s, {ProgramLimit::joint_speed, pace.joint.allowed, pace.joint.allowed});
+  const double least = load.feed_per_tooth_m[0] * per_tooth;
+  if (least > range.least_m_per_s) {
+    range.least_m_per_s = least;
+    range.least_by = {ProgramLimit::least_chip, programmed_chip_m, chip_m_[0]};
+  }
+  cap(range, feed_share_[cut] * load.feed_per_tooth_m[2] * per_tooth,
+      {ProgramLimit::greatest_chip, programmed_chip_m, chip_m_[1]});
+  const double share = (1.0 - class_reserve) * feed_share_[cut];
+  const auto keep = [&](ProgramLimit what, const LoadSamples& samples, double factor, double allowed) {
+    cap(range, most_feed_per_tooth_m(load, samples, share * allowed / factor) * per_tooth,
+        {what, samples[0] * factor, allowed});
+  };
+  if (options.max_force_n > 0.0) keep(ProgramLimit::force, load.force_n, 1.0, options.max_force_n);
+  const double deflection_m = stricter(options.max_deflection_m, problem_.finish.max_deflection_m);
+  if (deflection_m > 0.0) keep(ProgramLimit::deflection, load.deflection_m, 1.0, deflection_m);
+  if (!problem_.machine.spindle.empty()) {
+    const decision::SpindleCapacity able = decision::capacity_at(problem_.machine.spindle, speed);
+    keep(ProgramLimit::torque, load.torque_n_m, 1.0, able.torque_n_m);
+    keep(ProgramLimit::power, load.torque_n_m, speed, able.power_w);
+  }
+  const double cutting_speed = speed * pace.radius_m;
+  const auto& [slowest, fastest] = options.cutting_speed_m_per_s;
+  if (fastest > 0.0 && cutting_speed > fastest) {
+    cap(range, 0.0, {ProgramLimit::cutting_speed, cutting_speed, fastest});
+  }
+  if (slowest > 0.0 && cutting_speed < slowest) {
+    cap(range, 0.0, {ProgramLimit::cutting_speed, cutting_speed, slowest});
+  }
+}
+
 FeedRange BlockModel::feeds(std::size_t cut, double speed) const {
   const LineUnit& line = units_.lines[cut];
   const DecideOptions& options = problem_.options;
@@ -174,49 +219,9 @@ FeedRange BlockModel::feeds(std::size_t cut, double speed) const {
     cap(range, problem_.max_tip_speed_m_per_s,
         {ProgramLimit::tip_speed, units_.cuts[cut].feed_m_per_s, problem_.max_tip_speed_m_per_s});
   }
-  const bool has_curve = !problem_.machine.spindle.empty();
-  const decision::SpindleCapacity able =
-      has_curve ? decision::capacity_at(problem_.machine.spindle, speed) : decision::SpindleCapacity{};
-  const double per_tooth = speed * search_.teeth / (2.0 * std::numbers::pi) / units_.cuts[cut].tooth_feed_share;
-  for (const std::size_t block : line.cutting) {
-    const BlockLoad& load = loads_[block];
-    if (!(load.chip_share > 0.0)) continue;
-    const JointSpeed joint = joint_speed(problem_.forces, block);
-    cap(range, joint.feed_m_per_s, {ProgramLimit::joint_speed, joint.allowed, joint.allowed});
-    const double least = load.feed_per_tooth_m[0] * per_tooth;
-    if (least > range.least_m_per_s) {
-      range.least_m_per_s = least;
-      range.least_by = {ProgramLimit::least_chip, units_.cuts[cut].feed_m_per_s / per_tooth * load.chip_share,
-                        chip_m_[0]};
-    }
-    cap(range, feed_share_[cut] * load.feed_per_tooth_m[2] * per_tooth,
-        {ProgramLimit::greatest_chip, units_.cuts[cut].feed_m_per_s / per_tooth * load.chip_share, chip_m_[1]});
-    const auto keep = [&](ProgramLimit what, const LoadSamples& samples, double factor, double allowed) {
-      const double share = (1.0 - class_reserve) * feed_share_[cut];
-      cap(range, most_feed_per_tooth_m(load, samples, share * allowed / factor) * per_tooth,
-          {what, samples[0] * factor, allowed});
-    };
-    if (options.max_force_n > 0.0) keep(ProgramLimit::force, load.force_n, 1.0, options.max_force_n);
-    const double deflection_m = options.max_deflection_m > 0.0 && problem_.finish.max_deflection_m > 0.0
-                                    ? std::min(options.max_deflection_m, problem_.finish.max_deflection_m)
-                                    : std::max(options.max_deflection_m, problem_.finish.max_deflection_m);
-    if (deflection_m > 0.0) keep(ProgramLimit::deflection, load.deflection_m, 1.0, deflection_m);
-    if (has_curve) {
-      keep(ProgramLimit::torque, load.torque_n_m, 1.0, able.torque_n_m);
-      keep(ProgramLimit::power, load.torque_n_m, speed, able.power_w);
-    }
-    const double cutting_speed = speed * engaged_radius_m(problem_.forces.program->cuts[block].engagement);
-    const double fastest = options.cutting_speed_m_per_s[1];
-    if (fastest > 0.0 && cutting_speed > fastest) {
-      cap(range, 0.0, {ProgramLimit::cutting_speed, cutting_speed, fastest});
-    }
-    const double slowest = options.cutting_speed_m_per_s[0];
-    if (slowest > 0.0 && cutting_speed < slowest) {
-      cap(range, 0.0, {ProgramLimit::cutting_speed, cutting_speed, slowest});
-    }
-  }
+  for (const std::size_t block : line.cutting) limit_by_block(cut, block, speed, range);
   // A plunge is not held up by the chip that it would need to be fed faster for.
-  if (line.plunges) range.least_m_per_s = std::min(range.least_m_per_s, range.most_m_per_s);
+  if (line.plunges) range.least_m_per_s = std::min(range.least_m_per_s, units_.cuts[cut].feed_m_per_s);
   if (!std::isfinite(range.most_m_per_s)) range.least_m_per_s = range.most_m_per_s = units_.cuts[cut].feed_m_per_s;
   return range;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -19,6 +20,18 @@
 #include "robomill/robot/inverse.hpp"
 
 namespace robomill::jobs {
+
+/// The greatest feed of the tip at which no joint is faster than its limit over a block.
+struct JointSpeed {
+  double feed_m_per_s = std::numeric_limits<double>::infinity();
+  double allowed = 0.0;  ///< speed of that joint
+};
+
+/// What of a block's limits does not depend on spindle speed and feed.
+struct BlockPace {
+  JointSpeed joint = {};
+  double radius_m = 0.0;  ///< of the outermost point that cuts
+};
 
 /// A program's blocks as the search asks of them: loads over feed, and one look a class of blocks.
 class BlockModel final : public decision::ProgramModel {
@@ -66,6 +79,8 @@ class BlockModel final : public decision::ProgramModel {
   };
   using RawKey = std::tuple<std::size_t, double, double>;  ///< class, speed, γ
 
+  /// Narrows the feeds of a line by what one of its blocks bears.
+  void limit_by_block(std::size_t cut, std::size_t block, double speed, decision::FeedRange& range) const;
   void sort_into_classes();
   void set_search();
   [[nodiscard]] const Stand& stand(std::size_t look_class, double gamma_rad) const;
@@ -82,6 +97,7 @@ class BlockModel final : public decision::ProgramModel {
   ProgramUnits units_;
   std::array<double, 2> chip_m_ = {};
   std::vector<BlockLoad> loads_ = {};       ///< one a block
+  std::vector<BlockPace> pace_ = {};        ///< one a block
   std::vector<double> feed_share_ = {};     ///< of each line, <= 1: tightened
   std::vector<std::size_t> class_of_ = {};  ///< of each block
   std::vector<std::size_t> first_ = {};     ///< block of each class
