@@ -29,6 +29,7 @@ double time_of(const std::vector<FeedBounds>& cuts, const std::vector<double>& f
 
 std::vector<double> levels_of(const std::vector<FeedBounds>& cuts, double step) {
   std::vector<double> own;
+  own.reserve(cuts.size());
   for (const FeedBounds& cut : cuts) own.push_back(stepped(cut.least_m_per_s, cut.most_m_per_s, step));
   std::ranges::sort(own);
   own.erase(std::unique(own.begin(), own.end()), own.end());
@@ -94,6 +95,7 @@ class LevelPath {
 
 std::vector<double> even_feeds(const std::vector<FeedBounds>& cuts, double slack, double step_m_per_s) {
   std::vector<double> best;
+  best.reserve(cuts.size());
   for (const FeedBounds& cut : cuts) best.push_back(stepped(cut.least_m_per_s, cut.most_m_per_s, step_m_per_s));
   if (cuts.empty() || slack <= 0.0) return best;
   const double allowed_s = (1.0 + slack) * time_of(cuts, best);

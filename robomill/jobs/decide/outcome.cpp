@@ -119,6 +119,7 @@ Outcome outcome_of(const JudgedRun& run, const std::array<double, 2>& chip_m) {
     out.worst_surface_error_m = std::fmax(out.worst_surface_error_m, std::abs(row.cut.surface_error_m));
   }
   std::vector<std::size_t> turned;
+  turned.reserve(reversals.size());
   for (const robot::LoadReversal& reversal : reversals) turned.push_back(reversal.block);
   turned.erase(std::unique(turned.begin(), turned.end()), turned.end());
   out.reversals = turned.size();
