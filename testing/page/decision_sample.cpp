@@ -16,7 +16,6 @@ namespace {
 using io::Json;
 
 constexpr double programmed_speed_rpm = 12000.0;
-constexpr double programmed_feed_mm_per_min = 1440.0;
 constexpr double least_margin = 0.1;
 constexpr double allowed_surface_error_um = 40.0;
 

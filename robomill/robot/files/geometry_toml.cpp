@@ -161,7 +161,7 @@ class GeometryReader {
     return out;
   }
 
-  Body mesh_of(const std::string& row, std::string usual = {}) {
+  Body mesh_of(const std::string& row, const std::string& usual = {}) {
     const bool from_file = file_.has(row + "file"), from_box = file_.has(row + "box_from_mm");
     if (from_file && from_box) throw file_.reject(row + "file", "must not stand beside box_from_mm");
     Body out;
