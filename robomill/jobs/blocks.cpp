@@ -12,6 +12,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/jobs/blocks/classes.hpp"
+#include "robomill/jobs/blocks/finished_surface.hpp"
 #include "robomill/jobs/blocks/named_block.hpp"
 #include "robomill/jobs/blocks/scans.hpp"
 #include "robomill/jobs/blocks/stability.hpp"
@@ -45,6 +46,7 @@ std::vector<std::size_t> classes_of(const ForcesResult& forces, const BlocksOpti
                                      .axial_depth_m = row.axial_depth_m,
                                      .feed_per_tooth_m = force.force.feed_per_tooth_m,
                                      .stiffness = stiffness,
+                                     .along_feed = stiffness * (base_from_work * cut.work_from_feed.col(0)),
                                      .joints = force.joints});
   }
   return classes.first_blocks();
@@ -53,22 +55,34 @@ std::vector<std::size_t> classes_of(const ForcesResult& forces, const BlocksOpti
 /// A result that several blocks share.
 struct Shared {
   CutStability cut = {};
+  std::vector<LeftPlace> places = {};  ///< by falling magnitude of the error; empty without a stock
   std::optional<bool> measured_nearby = {};
   double joint_distance_rad = 0.0;
   std::size_t unmatched = 0;
 };
+
+/// The greatest error first, so that a search for it among those that remain ends early.
+std::vector<LeftPlace> sorted_places(const ForcesResult& forces, const std::vector<stability::SurfacePlace>& surface) {
+  if (!forces.program->stock || surface.empty()) return {};
+  std::vector<LeftPlace> out = left_places(surface, cutting::Profile(forces.file.cutter), forces.file);
+  std::ranges::stable_sort(
+      out, [](const LeftPlace& a, const LeftPlace& b) { return std::abs(a.error_m) > std::abs(b.error_m); });
+  return out;
+}
 
 Shared evaluate(const ForcesResult& forces, std::size_t block, const DynamicsAt& dynamics,
                 const BlocksOptions& options) {
   const BlockResult& row = forces.program->blocks[block];
   try {
     const PostureDynamics there = dynamics(row.joints);
-    return {.cut = cut_stability({.file = forces.file,
-                                  .cut = forces.program->cuts[block],
-                                  .base_from_work = forces.cell->cell.workpiece.linear(),
-                                  .spindle_speed_rad_per_s = row.force.spindle_speed_rad_per_s,
-                                  .tolerance = options.tolerance},
-                                 there.modes),
+    const JudgedCut judged = judged_cut({.file = forces.file,
+                                         .cut = forces.program->cuts[block],
+                                         .base_from_work = forces.cell->cell.workpiece.linear(),
+                                         .spindle_speed_rad_per_s = row.force.spindle_speed_rad_per_s,
+                                         .tolerance = options.tolerance},
+                                        there.modes);
+    return {.cut = judged.stability,
+            .places = sorted_places(forces, judged.surface),
             .measured_nearby = there.measured_nearby,
             .joint_distance_rad = there.joint_distance_rad,
             .unmatched = there.unmatched};
@@ -103,6 +117,17 @@ double margin_of(const BlockRow& row) {
 double band_of(const CutStability& cut) {
   const double band = (cut.limit_95_percent_m - cut.limit_5_percent_m) / cut.limit_depth_m;
   return std::isfinite(band) ? band : 0.0;
+}
+
+/// What blocks leave of the finished surface, from the places of the cut that they share.
+void fill_surface_left(const ForcesResult& forces, const std::vector<Shared>& shared, std::vector<BlockRow>& rows,
+                       Progress& progress) {
+  std::vector<const std::vector<LeftPlace>*> places(rows.size(), nullptr);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].cuts) places[i] = &shared[rows[i].evaluation].places;
+  }
+  const std::vector<double> left_m = surface_left_m(forces, places, progress);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].surface_left_m = left_m[i];
 }
 
 /// Stretches of blocks that lie beyond the measured postures.
@@ -186,6 +211,7 @@ ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamic
     row.unmatched = shared[row.evaluation].unmatched;
     row.stability_margin = margin_of(row);
   }
+  fill_surface_left(forces, shared, out.rows, progress);
   sum_up(out);
   out.beyond = stretches_beyond(out.rows, shared);
   out.band_within = band_within(out.rows);

@@ -60,9 +60,9 @@ struct CutStability {
   double gain_margin = none;  ///< infinity: none up to 1,000
   double chatter_frequency_hz = none;
   modal::ModeId mode = {};
-  std::string regime = "none";  ///< "regenerative", "mode-coupling", "low-frequency"; "none": no limit
-  bool lower_bound = false;     ///< process damping is not known and would lift the limit
-  double surface_error_m = none;
+  std::string regime = "none";    ///< "regenerative", "mode-coupling", "low-frequency"; "none": no limit
+  bool lower_bound = false;       ///< process damping is not known and would lift the limit
+  double surface_error_m = none;  ///< over all that the pass leaves, flanks that later passes take away included
 };
 
 /// One block of a program.
@@ -72,6 +72,9 @@ struct BlockRow {
   double spindle_speed_rad_per_s = 0.0;
   CutStability cut = {};
   double stability_margin = CutStability::none;  ///< 1 - depth / limit (5 % quantile); no limit: of the depth searched
+  /// Of the places of the finished surface, that no later block takes away, the error of greatest magnitude; > 0:
+  /// material is left standing. NaN: the block leaves none of it, chatters, or the program has no stock.
+  double surface_left_m = CutStability::none;
   std::optional<bool> measured_nearby = {};
   std::size_t unmatched = 0;   ///< as CellDynamics::unmatched
   std::size_t evaluation = 0;  ///< which one it shares, from 0

@@ -24,6 +24,7 @@
 #include "robomill/robot/stiffness.hpp"
 #include "robomill/stability/lobes.hpp"
 #include "robomill/stability/surface_error.hpp"
+#include "testing/jobs/program_files.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
@@ -35,30 +36,10 @@ class Blocks : public testing::Test {
  protected:
   /// @param stiffness  factor on the joints'
   void write_cell(double stiffness = 1.0) {
-    std::string cell = io::read_file(source + "/examples/force-along-program/cell.toml");
-    const std::size_t begin = cell.find("joint_stiffness_n_m_per_rad");
-    const std::size_t end = cell.find('\n', begin);
-    cell.replace(begin, end - begin,
-                 fmt::format("joint_stiffness_n_m_per_rad = [{0}, {0}, {0}, {0}, {0}, {0}]", 2e6 * stiffness));
-    folder_.file("cell.toml", cell);
+    folder_.file("cell.toml", test_support::arm_cell(source, 2e6 * stiffness));
   }
-  void write_forces(double axial_n_per_mm2 = 150.0) {
-    folder_.file("forces.toml", fmt::format(R"([tool]
-kind = "ball-end"
-diameter_mm = 6
-teeth = 2
-helix_deg = 30
-[coefficients]
-tangential_n_per_mm2 = 900
-radial_n_per_mm2 = 350
-axial_n_per_mm2 = {}
-[stock]
-kind = "box"
-min_mm = [-20, -8, -8]
-max_mm = [20, 8, 0]
-dexel_mm = 0.2
-)",
-                                            axial_n_per_mm2));
+  void write_forces(const test_support::CutFile& cut = {}) {
+    folder_.file("forces.toml", test_support::forces_file(cut));
   }
   /// A slot along x, 1 mm deep, then back 1 mm beside it, in moves of 2 mm.
   void write_program() {
@@ -218,7 +199,7 @@ TEST_F(Blocks, SharedEvaluationsAreCloseToOwnOnes) {
 // The fixed point along a program against that of one cut: a straight slot under its own force.
 TEST_F(Blocks, TheEngagementFeelsTheDeflection) {
   write_cell(0.5);
-  write_forces(600.0);  // pushes the tool up
+  write_forces({.axial_n_per_mm2 = 600.0});  // pushes the tool up
   write_program();
   const ForcesResult forces = forces_of(run_with_modes());
   ASSERT_TRUE(forces.program->deflected);
@@ -238,7 +219,7 @@ TEST_F(Blocks, TheEngagementFeelsTheDeflection) {
 
 TEST_F(Blocks, SaysWhereTheEngagementIsLost) {
   write_cell(2e-3);
-  write_forces(2000.0);
+  write_forces({.axial_n_per_mm2 = 2000.0});
   write_program();
   const PlanResult plan = run_with_modes();
   const auto said = std::ranges::count_if(plan.forces->warnings, [](const std::string& text) {
@@ -279,7 +260,7 @@ TEST_F(Blocks, APlanWithoutLobesWritesThem) {
       header.starts_with("block,line,x_mm,y_mm,z_mm,q1,q2,q3,q4,q5,q6,axial_depth_mm,radial_depth_mm,"
                          "spindle_speed_rpm,feed_mm_per_min,spectral_radius,limit_depth_mm,stability_margin,"
                          "chatter_frequency_hz,mode,regime,peak_f_n,torque_n_m,power_w,deflection_um,"
-                         "surface_error_um,gain_margin"));
+                         "surface_error_um,surface_left_um,gain_margin"));
   const auto json = nlohmann::json::parse(io::read_file(out / "blocks.json"));
   EXPECT_EQ(json["blocks"]["block"].size(), plan.blocks->rows.size());
   EXPECT_EQ(json["limit_over"].size(), 4U);

@@ -13,12 +13,11 @@
 #include <vector>
 
 #include "robomill/base/units.hpp"
-#include "robomill/io/file.hpp"
-#include "robomill/jobs/program_forces.hpp"
 #include "robomill/robot/pose.hpp"
 #include "robomill/robot/stiffness.hpp"
 #include "robomill/stability/surface_error.hpp"
 #include "testing/cutting/deflected_wall.hpp"
+#include "testing/jobs/program_files.hpp"
 #include "testing/stability/spatial_cases.hpp"
 #include "testing/support.hpp"
 
@@ -81,33 +80,27 @@ class Compensate : public testing::Test {
  protected:
   /// Forces along the program of a job; in the cell W's axes are those of B.
   ForcesResult forces_of(const WallJob& job) {
-    folder_.file("cell.toml",
-                 io::read_file(std::string(ROBOMILL_SOURCE_DIR) + "/examples/force-along-program/cell.toml"));
     const double skin = job.side * (WallJob::radius - job.radial - job.roughed);
     double low = std::min(skin, job.side * (WallJob::radius + 4.0));
     double high = std::max(skin, job.side * (WallJob::radius + 4.0));
     if (job.slot) high = -(low = -(WallJob::radius + 4.0));
-    folder_.file("forces.toml", fmt::format(R"([tool]
-kind = "flat-end"
-diameter_mm = 12
-teeth = {}
-helix_deg = 40
-[coefficients]
-tangential_n_per_mm2 = 800
-radial_n_per_mm2 = 300
-axial_n_per_mm2 = 150
-tangential_edge_n_per_mm = 10
-radial_edge_n_per_mm = 15
-[stock]
-kind = "box"
-min_mm = [0, {}, 0]
-max_mm = [{}, {}, {}]
-dexel_mm = 0.25
-)",
-                                            job.teeth, low, job.length, high, job.depth));
-    folder_.file("part.ngc", wall_program(job));
-    return run_forces_with(read_forces(folder_.at("forces.toml"), ForcesJob::program), folder_.at("part.ngc"),
-                           read_cell(folder_.at("cell.toml")), {}, Progress::none());
+    const test_support::CutFile cut = {.kind = "flat-end",
+                                       .diameter_mm = 12.0,
+                                       .teeth = job.teeth,
+                                       .helix_deg = 40.0,
+                                       .tangential_n_per_mm2 = 800.0,
+                                       .radial_n_per_mm2 = 300.0,
+                                       .tangential_edge_n_per_mm = 10.0,
+                                       .radial_edge_n_per_mm = 15.0,
+                                       .min_mm = {0.0, low, 0.0},
+                                       .max_mm = {job.length, high, job.depth},
+                                       .dexel_mm = 0.25};
+    return forces_along(test_support::forces_file(cut), wall_program(job));
+  }
+  ForcesResult forces_along(const std::string& forces, const std::string& program) {
+    return test_support::forces_along(
+        folder_, {.cell = test_support::arm_cell(ROBOMILL_SOURCE_DIR), .forces = forces, .program = program},
+        {.keep_cuts = true});
   }
   static std::string pass(const WallJob& job, double y) {
     const double feed = job.feed_per_tooth * job.teeth * WallJob::speed_rpm;
@@ -196,33 +189,15 @@ TEST_F(Compensate, TheWallLandsWhereItWasAskedFor) {
 // Two ways to what a ball end leaves between its neighbours: the places that still stand on the rays at the program's
 // end, and the analytic cut, which knows its step-over.
 TEST_F(Compensate, ABallEndIsMovedByWhatRemainsBetweenItsPasses) {
-  folder_.file("cell.toml",
-               io::read_file(std::string(ROBOMILL_SOURCE_DIR) + "/examples/force-along-program/cell.toml"));
-  folder_.file("forces.toml", R"([tool]
-kind = "ball-end"
-diameter_mm = 8
-teeth = 2
-helix_deg = 30
-[coefficients]
-tangential_n_per_mm2 = 900
-radial_n_per_mm2 = 350
-axial_n_per_mm2 = 150
-[stock]
-kind = "box"
-min_mm = [0, -8, -4]
-max_mm = [20, 8, 0]
-dexel_mm = 0.2
-)");
   std::string text = "G21 G90 G94\nS9000 M3\n";
   for (int k = 0; k < 7; ++k) {
     text += fmt::format("G0 X-6 Y{:.2f} Z10\nG0 Z-0.4\n", -1.8 + 0.6 * k);
     for (int i = 1; i <= 16; ++i) text += fmt::format("G1 X{} F1800\n", -6 + 2 * i);
     text += "G0 Z10\n";
   }
-  folder_.file("part.ngc", text + "M2\n");
-  const ForcesResult forces =
-      run_forces_with(read_forces(folder_.at("forces.toml"), ForcesJob::program), folder_.at("part.ngc"),
-                      read_cell(folder_.at("cell.toml")), {}, Progress::none());
+  const ForcesResult forces = forces_along(
+      test_support::forces_file({.diameter_mm = 8.0, .min_mm = {0.0, -8.0, -4.0}, .max_mm = {20.0, 8.0, 0.0}}),
+      text + "M2\n");
   const DynamicsAt dynamics = dynamics_of(arm_swings());
   const Compensation result = compensate(forces, dynamics);
   EXPECT_EQ(result.status, Compensation::Status::settled);
@@ -330,6 +305,32 @@ TEST_F(Compensate, RoughingIsLeftAlone) {
     if (left[i].state != SurfaceLeft::State::known) continue;
     EXPECT_EQ(left[i].error_m, result.blocks[i].before.error_m);
   }
+}
+
+// What a block is judged to leave of the finished surface is what the wall's judge finds there, of the pass that leaves
+// it; a roughing pass before it leaves nothing, whatever its own error.
+TEST_F(Compensate, BlocksAreJudgedByTheWallThatTheyLeave) {
+  const WallJob job = {.depth = 4.0, .roughed = 0.5};
+  const ForcesResult forces = forces_of(job);
+  const ProgramBlocks blocks = judge_blocks(forces, dynamics_of(arm_and_tool()), {.scan_points = 0});
+  const auto wall = judged(job, forces, forces.program->program, arm_and_tool());
+  int rough = 0;
+  int compared = 0;
+  for (std::size_t i = 0; i < blocks.rows.size(); ++i) {
+    const BlockRow& row = blocks.rows[i];
+    if (!row.cuts) continue;
+    const Vector3d end_mm = forces.program->program.blocks[i].end.tip_m / mm;
+    if (end_mm.y() > 0.25) {
+      ++rough;
+      EXPECT_TRUE(std::isnan(row.surface_left_m)) << i;
+      EXPECT_TRUE(std::isfinite(row.cut.surface_error_m)) << i;
+    } else if (end_mm.x() > 0.5 * job.length && end_mm.x() < job.length - 8.0) {
+      ++compared;
+      EXPECT_NEAR(row.surface_left_m, wall.worst_m, 0.1 * std::abs(wall.worst_m)) << i;
+    }
+  }
+  EXPECT_GE(rough, 20);
+  EXPECT_GE(compared, 6);
 }
 
 // At resonance the tool swings between the walls, and stands off one as a tooth passes it, and half a tooth later off

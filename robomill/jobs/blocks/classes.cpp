@@ -51,10 +51,12 @@ Eigen::Matrix3d mean_stiffness(const cutting::PoseEngagement& cut, const cutting
 }
 
 bool Classes::alike(const CutLook& a, const CutLook& b) const {
+  const double apart = std::min((a.along_feed - b.along_feed).norm(), (a.along_feed + b.along_feed).norm());
   return a.spindle_speed_rad_per_s == b.spindle_speed_rad_per_s &&
          std::abs(a.axial_depth_m - b.axial_depth_m) <= tolerance_.cut_share * b.axial_depth_m &&
          std::abs(a.feed_per_tooth_m - b.feed_per_tooth_m) <= tolerance_.cut_share * b.feed_per_tooth_m &&
          (a.stiffness - b.stiffness).norm() <= tolerance_.cut_share * b.stiffness.norm() &&
+         apart <= tolerance_.cut_share * b.along_feed.norm() &&
          (a.joints - b.joints).cwiseAbs().maxCoeff() <= tolerance_.joint_rad;
 }
 

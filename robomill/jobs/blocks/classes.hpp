@@ -18,6 +18,9 @@ struct CutLook {
   double spindle_speed_rad_per_s = 0.0, axial_depth_m = 0.0;
   double feed_per_tooth_m = 0.0;                        ///< 0 in all of them: it does not count
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< mean_stiffness
+  /// stiffness · x_F, its sign does not count: a flat end's slot has much the same stiffness in any direction, and not
+  /// the same force before the structure. Turned by half a turn the slot and what it leaves turn with it.
+  Eigen::Vector3d along_feed = Eigen::Vector3d::Zero();
   Eigen::VectorXd joints = {};
 };
 

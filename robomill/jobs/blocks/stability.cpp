@@ -1,12 +1,13 @@
 #include "robomill/jobs/blocks/stability.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "robomill/modal/tip.hpp"
 #include "robomill/stability/block.hpp"
 #include "robomill/stability/lobes.hpp"
-#include "robomill/stability/surface_error.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -16,11 +17,13 @@ constexpr double depths_below = 16.0, depths_above = 8.0;
 /// Of a flat bottom that cuts alone, whose engagement has no height: it is stable at every depth or at none.
 constexpr double least_depth_m = 1e-6;
 
-/// What the pass leaves; none where it is not fed or chatters, which has no steady motion.
-double surface_error_m(const stability::LobesProblem& problem, const stability::PointResult& point, double tolerance) {
-  if (!point.stable || !(problem.spatial->feed_per_tooth_m > 0.0)) return CutStability::none;
-  return stability::surface_of_stable_cut(problem, {point.spindle_speed_rad_per_s, point.axial_depth_m}, tolerance)
-      .surface_location_error_m;
+/// The error of greatest magnitude; none where no edge leaves a surface.
+double worst_error_m(const std::vector<stability::SurfacePlace>& surface) {
+  double out = CutStability::none;
+  for (const stability::SurfacePlace& place : surface) {
+    if (!(std::abs(place.error_m) <= std::abs(out))) out = place.error_m;
+  }
+  return out;
 }
 
 }  // namespace
@@ -43,7 +46,7 @@ double engaged_depth_m(const cutting::PoseEngagement& cut) {
   return std::max(stability::engaged_height_m(cut.engagement), least_depth_m);
 }
 
-CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
+JudgedCut judged_cut(const BlockCut& at, const modal::ModalModel& modes) {
   const double depth_m = engaged_depth_m(at.cut);
   stability::BlockOptions options;
   options.tolerance = at.tolerance;
@@ -51,7 +54,8 @@ CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
   const stability::LobesProblem problem = block_problem(at, modes);
   const stability::BlockStability block =
       stability::block_stability(problem, at.spindle_speed_rad_per_s, depth_m, options);
-  CutStability out;
+  JudgedCut judged;
+  CutStability& out = judged.stability;
   out.spectral_radius = block.at.spectral_radius;
   out.searched_depth_m = options.axial_depth_m[1];
   out.chatter_frequency_hz = block.at.chatter_frequency_hz;
@@ -72,8 +76,16 @@ CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
   out.regime = to_string(block.regime);
   out.lower_bound = block.lower_bound;
   out.gain_margin = block.at.gain_margin;
-  out.surface_error_m = surface_error_m(problem, block.at, at.tolerance);
-  return out;
+  if (block.at.stable && problem.spatial->feed_per_tooth_m > 0.0) {
+    judged.surface =
+        stability::surface_profile(problem, {block.at.spindle_speed_rad_per_s, block.at.axial_depth_m}, at.tolerance);
+  }
+  out.surface_error_m = worst_error_m(judged.surface);
+  return judged;
+}
+
+CutStability cut_stability(const BlockCut& at, const modal::ModalModel& modes) {
+  return judged_cut(at, modes).stability;
 }
 
 double limit_depth_m(const BlockCut& at, const modal::ModalModel& modes) {

@@ -1,8 +1,10 @@
 #pragma once
 #include <Eigen/Core>
+#include <vector>
 
 #include "robomill/jobs/blocks.hpp"
 #include "robomill/stability/lobes.hpp"
+#include "robomill/stability/surface_error.hpp"
 
 namespace robomill::jobs {
 
@@ -20,8 +22,19 @@ struct BlockCut {
 /// @throws InvalidInput if the modes know neither x nor y at a tip
 [[nodiscard]] stability::LobesProblem block_problem(const BlockCut& at, const modal::ModalModel& modes);
 
+/// A cut's stability, and what it leaves place by place.
+struct JudgedCut {
+  CutStability stability = {};
+  /// stability::surface_profile; empty where the cut is not fed or chatters, so that it has no steady motion.
+  std::vector<stability::SurfacePlace> surface = {};
+};
+
 /// @param modes  in B
 /// @throws InvalidInput where modes or cut are out of range
+[[nodiscard]] JudgedCut judged_cut(const BlockCut& cut, const modal::ModalModel& modes);
+
+/// Its stability alone.
+/// @throws InvalidInput as above
 [[nodiscard]] CutStability cut_stability(const BlockCut& cut, const modal::ModalModel& modes);
 
 /// The limit depth alone; NaN: none.

@@ -1,6 +1,5 @@
 #include "robomill/jobs/compensate/surface_runs.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -82,6 +81,7 @@ void SurfaceRuns::sort_cuts(const std::vector<cutting::BlockForce>& forces) {
                                  .axial_depth_m = engaged_depth_m(cut),
                                  .feed_per_tooth_m = cut.feed_speed_m_per_s / teeth_per_s,
                                  .stiffness = stiffness,
+                                 .along_feed = stiffness * (base_from_work * cut.work_from_feed.col(0)),
                                  .joints = forces_.program->blocks[i].joints});
   }
   first_ = classes.first_blocks();
@@ -138,73 +138,25 @@ bool SurfaceRuns::bend(const std::vector<cutting::BlockForce>& forces, int pass)
   return moves;
 }
 
-/// By how much the depth at a place may differ from 0 and count as being on the surface: a share of a dexel, and what
-/// straight lines between rays miss of an arc.
-double SurfaceRuns::tolerance_m(const stability::SurfacePlace& place) const {
-  const double dexel_m = forces_.file.dexel_m;
-  double out = 0.02 * dexel_m;
-  for (const cutting::Profile::Piece& piece : profile_.pieces()) {
-    const bool here = place.height_m >= piece.first.height_m && place.height_m <= piece.last.height_m;
-    if (here && piece.arc_radius_m > 0.0) out += dexel_m * dexel_m / (8.0 * piece.arc_radius_m);
-  }
-  return out;
-}
-
 void SurfaceRuns::find_places(Cut& cut) const {
   if (!(cut.problem.spatial->feed_per_tooth_m > 0.0)) return;
-  for (const stability::SurfacePlace& place : stability::surface_profile(cut.problem, cut.point, options_.tolerance)) {
-    if (!std::isfinite(place.error_m)) continue;
-    const double psi = place.normal_rad;
-    cut.places.push_back({.in_tool_m = {place.radius_m * std::sin(place.angle_rad),
-                                        place.radius_m * std::cos(place.angle_rad), place.height_m},
-                          .normal_in_feed = {0.0, std::sin(psi), -std::cos(psi)},
-                          .error_m = place.error_m,
-                          .tolerance_m = tolerance_m(place)});
-  }
-  // A place stands for half the way to those beside it. Along a stretch of the profile they rise from one to the next;
-  // lower or far ones belong to another stretch.
-  const double apart_m = 0.25 * forces_.file.cutter.mill.diameter_m;
-  for (std::size_t i = 1; i < cut.places.size(); ++i) {
-    const Eigen::Vector3d way = cut.places[i].in_tool_m - cut.places[i - 1].in_tool_m;
-    const double way_m = way.norm();
-    if (way_m > apart_m || way.z() < 0.0) continue;
-    cut.places[i - 1].width_m += 0.5 * way_m;
-    cut.places[i].width_m += 0.5 * way_m;
-  }
-  for (Place& place : cut.places) {
-    if (place.width_m == 0.0) place.width_m = 0.01 * apart_m;  // one that stands alone
-  }
+  cut.places =
+      left_places(stability::surface_profile(cut.problem, cut.point, options_.tolerance), profile_, forces_.file);
 }
 
 /// Of the places that a block leaves those that stand on the surface at the end, each with the share of the block along
 /// which it does.
 std::vector<decision::WallPlace> SurfaceRuns::remaining(const program::Program& program, std::size_t block,
                                                         const cutting::Workpiece& workpiece) const {
-  const program::Pose& begin = program.begin_of(block);
-  const program::Pose& end = program.blocks[block].end;
-  const double way_m = (end.tip_m - begin.tip_m).norm();
-  const int stations = std::clamp(static_cast<int>(std::ceil(way_m / profile_.max_radius_m())), 1, 8);
   const cutting::PoseEngagement& cut = engaged_[block];
-  const Eigen::Matrix3d work_from_tool = cut.work_from_feed * cut.engagement.feed_from_tool;
-  std::vector<program::Pose> stands;
-  std::vector<Eigen::Matrix3d> frames;
-  for (int k = 0; k < stations; ++k) {
-    stands.push_back(program::between(begin, end, (k + 0.5) / stations));
-    stands.back().tip_m += bend_m_[block];
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(work_from_tool.col(2), stands.back().axis);
-    frames.emplace_back(turn.toRotationMatrix() * work_from_tool);
-  }
+  const BlockStations stations(program, block, bend_m_[block], cut, profile_);
   std::vector<decision::WallPlace> out;
-  for (const Place& place : cuts_[cut_of_[block]].places) {
-    int there = 0;
-    for (std::size_t k = 0; k < stands.size(); ++k) {
-      const double depth_m = workpiece.depth_m(stands[k].tip_m + frames[k] * place.in_tool_m);
-      if (std::abs(depth_m) <= place.tolerance_m) ++there;
-    }
-    if (there == 0) continue;
+  for (const LeftPlace& place : cuts_[cut_of_[block]].places) {
+    const double share = stations.share_on(workpiece, place);
+    if (share == 0.0) continue;
     out.push_back({.normal = cut.work_from_feed * place.normal_in_feed,
                    .error_m = place.error_m,
-                   .width_m = place.width_m * there / stations});
+                   .width_m = place.width_m * share});
   }
   return out;
 }

@@ -7,9 +7,9 @@
 #include "robomill/cutting/workpiece.hpp"
 #include "robomill/decision/mirror.hpp"
 #include "robomill/jobs/blocks/classes.hpp"
+#include "robomill/jobs/blocks/finished_surface.hpp"
 #include "robomill/jobs/compensate.hpp"
 #include "robomill/stability/lobes.hpp"
-#include "robomill/stability/surface_error.hpp"
 
 namespace robomill::jobs {
 
@@ -37,16 +37,11 @@ class SurfaceRuns {
   [[nodiscard]] bool settled() const { return settled_; }
 
  private:
-  /// A place that an edge leaves, in T and F.
-  struct Place {
-    Eigen::Vector3d in_tool_m, normal_in_feed;
-    double error_m = 0.0, width_m = 0.0, tolerance_m = 0.0;
-  };
   struct Cut {
     stability::LobesProblem problem;
     stability::OperatingPoint point;
     Eigen::Matrix3d compliance_m_per_n;  ///< static, in W
-    std::vector<Place> places;
+    std::vector<LeftPlace> places;
     bool leaves = false, stable = true;
   };
   [[nodiscard]] std::vector<cutting::BlockForce> cut_once(const program::Program& program,
@@ -55,7 +50,6 @@ class SurfaceRuns {
   void find_structures(const std::vector<cutting::BlockForce>& forces);
   [[nodiscard]] bool bend(const std::vector<cutting::BlockForce>& forces, int pass);
   void find_places(Cut& cut) const;
-  [[nodiscard]] double tolerance_m(const stability::SurfacePlace& place) const;
   [[nodiscard]] std::vector<decision::WallPlace> remaining(const program::Program& program, std::size_t block,
                                                            const cutting::Workpiece& workpiece) const;
   template <class F>

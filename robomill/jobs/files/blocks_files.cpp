@@ -108,6 +108,7 @@ constexpr std::pair<const char*, BlockNumber> of_load[] = {
     {"power_w", [](const BlockLine& r) { return r.force.force.power_w; }},
     {"deflection_um", [](const BlockLine& r) { return r.force.deflection_m.norm() / units::um; }},
     {"surface_error_um", [](const BlockLine& r) { return r.row.cut.surface_error_m / units::um; }},
+    {"surface_left_um", [](const BlockLine& r) { return r.row.surface_left_m / units::um; }},
     {"gain_margin", [](const BlockLine& r) { return r.row.cut.gain_margin; }},
     {"limit_5_percent_mm", [](const BlockLine& r) { return r.row.cut.limit_5_percent_m / units::mm; }},
     {"limit_95_percent_mm", [](const BlockLine& r) { return r.row.cut.limit_95_percent_m / units::mm; }},
@@ -227,6 +228,12 @@ std::vector<std::string> block_notes(const ProgramBlocks& blocks) {
     out.push_back(fmt::format(
         "{} a lower bound: process damping, which is not known, lifts limits at low speed.",
         bounds == 1 ? "The limit of one block is" : fmt::format("The limit of each of {} blocks is", bounds)));
+  }
+  const auto with_error = [](const BlockRow& row) { return std::isfinite(row.cut.surface_error_m); };
+  const auto with_left = [](const BlockRow& row) { return std::isfinite(row.surface_left_m); };
+  if (std::ranges::any_of(blocks.rows, with_error) && std::ranges::none_of(blocks.rows, with_left)) {
+    out.emplace_back(
+        "What blocks leave of the finished surface is not known: surface_error_um counts what later passes take away.");
   }
   if (blocks.rigid_workpiece) {
     out.emplace_back(
