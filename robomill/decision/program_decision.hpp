@@ -68,6 +68,8 @@ struct ProgramCut {
 struct ProgramStretch {
   std::size_t begin = 0, end = 0;                   ///< cuts [begin, end)
   double programmed_spindle_speed_rad_per_s = 0.0;  ///< > 0
+  /// First cuts of the same lines made otherwise, as many each: [others[k], others[k] + end - begin).
+  std::vector<std::size_t> others = {};
 };
 
 /// Feeds that a cut may have at a speed, as far as they need no dynamics.
@@ -115,7 +117,9 @@ struct ROBOMILL_API ProgramOptions {
   /// Turns of the flange about the tool's axis from where it is programmed, increasing, with 0.
   std::vector<double> gamma_rad = {0.0};
   double gamma_rate_rad_per_s = 0.5;  ///< > 0; γ takes one step of gamma_rad in so much time of cutting
-  int alternatives = 6;               ///< >= 0
+  /// >= 0; another way of a stretch is taken where the program's own takes more than (1 + other_gain) times as long.
+  double other_gain = 0.02;
+  int alternatives = 6;  ///< >= 0
   /// @throws InvalidInput naming the member
   void validate() const;
 };
@@ -124,6 +128,7 @@ struct ROBOMILL_API ProgramOptions {
 struct DecidedStretch {
   double spindle_speed_rad_per_s = 0.0;
   double cutting_time_s = 0.0;
+  std::size_t way = 0;       ///< 0: as the program makes it; k: ProgramStretch::others[k - 1]
   LimitUse limited_by = {};  ///< of the cut that gives away most time to its limit
   std::size_t limiting_cut = 0;
 };
@@ -131,10 +136,10 @@ struct DecidedStretch {
 /// A speed that was not taken.
 struct RejectedSpeed {
   double spindle_speed_rad_per_s = 0.0;
-  std::size_t stretch = 0;
-  double cutting_time_s = 0.0;  ///< of the stretch: at least where a limit stops it
-  LimitUse stopped_by = {};     ///< none: it is slower
-  std::size_t cut = 0;          ///< where
+  std::size_t stretch = 0;      ///< one speed for all: that which is stopped
+  double cutting_time_s = 0.0;  ///< of the stretch, one speed for all: of all; at least where a limit stops it
+  LimitUse stopped_by = {};     ///< none: it is slower; of several ways that were looked at the one that comes nearest
+  std::size_t cut = 0;          ///< where, of that way
 };
 
 struct ProgramDecision {
@@ -144,21 +149,24 @@ struct ProgramDecision {
   };
   Status status = Status::infeasible;
   std::vector<DecidedStretch> stretches = {};  ///< one a stretch
-  std::vector<double> feed_m_per_s = {};       ///< one a cut
-  /// Of gamma_rad, one where each cut begins and ends: linear between.
+  std::vector<double> feed_m_per_s = {};       ///< one a cut; 0 of ways that were not taken
+  /// Of gamma_rad, one where each cut begins and ends: linear between. 0 of ways that were not taken.
   std::vector<double> gamma_begin_rad = {}, gamma_end_rad = {};
   double cutting_time_s = 0.0, ramp_time_s = 0.0;
-  /// found: faster ones and what stopped them, and slower ones. infeasible: what stopped each speed of that stretch.
+  /// found: faster ones and what stopped them, and slower ones. infeasible: what stopped each speed of that stretch,
+  /// one speed for all: of the stretch that misses most.
   std::vector<RejectedSpeed> rejected = {};
   long long looks = 0;  ///< calls of ProgramModel::look
 };
 
-/// The spindle speed of every stretch, the feed of every cut and γ along them with the least time
+/// The spindle speed of every stretch, the way in which it is made, the feed of every cut and γ along them with the
+/// least time
 ///     Σ length / feed + Σ |Δn| / ramp
 /// such that every cut keeps its limits. Speeds are a grid; on it the answer is exact: a shortest path through
-/// stretches × speeds (and, of each, through cuts × γ) is sought with bounds in place of what has not been looked at,
-/// its unseen nodes are looked at, and so on until it has none. Feeds are then evened out: the fewest changes that cost
-/// no more than feed_slack of the time.
+/// stretches × ways × speeds (and, of each, through cuts × γ) is sought with bounds in place of what has not been
+/// looked at, its unseen nodes are looked at, and so on until it has none. Feeds are then evened out: the fewest
+/// changes that cost no more than feed_slack of the time.
+/// @param cuts  those of the stretches first, one after another; behind them those of other ways, each of one at most
 /// @throws InvalidInput if an option, a cut or a stretch is out of range; Interrupted
 [[nodiscard]] ROBOMILL_API ProgramDecision decide_program(const std::vector<ProgramCut>& cuts,
                                                           const std::vector<ProgramStretch>& stretches,

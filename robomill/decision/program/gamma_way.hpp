@@ -8,7 +8,8 @@
 namespace robomill::decision {
 
 /// γ along a stretch, by dynamic programming. Cuts are grouped so that γ may take one step of its grid in the time of a
-/// group; it runs from where a group begins to where it ends, and the group's cuts must hold at both.
+/// group; it runs from where a group begins to where it ends, and the group's cuts must hold at both. Along a group
+/// alone γ stays, for that is never slower: so it does along a stretch without the time for a step.
 class GammaWay {
  public:
   /// A cut, of the stretch, with a γ at which it must hold.

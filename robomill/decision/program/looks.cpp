@@ -15,6 +15,15 @@ bool at_least(ProgramLimit limit) {
   return limit == ProgramLimit::stability || limit == ProgramLimit::least_chip;
 }
 
+/// Which of two looks that hold limits a cut more. Limits of several kinds are compared by their shares.
+bool limits_more(const CutLook& one, const CutLook& other) {
+  if (one.most_feed_per_tooth_m != other.most_feed_per_tooth_m) {
+    return one.most_feed_per_tooth_m < other.most_feed_per_tooth_m;
+  }
+  if (one.by.limit == ProgramLimit::none) return false;
+  return other.by.limit == ProgramLimit::none || shortfall(one.by) > shortfall(other.by);
+}
+
 }  // namespace
 
 double shortfall(const LimitUse& use) {
@@ -25,9 +34,8 @@ double shortfall(const LimitUse& use) {
 }
 
 std::optional<CutLook> Looks::known(const LookAt& at, std::size_t candidate) const {
-  CutLook out;
+  std::optional<CutLook> out;
   bool whole = true;
-  bool first = true;
   for (const std::size_t speed : speeds_[candidate].window) {
     const auto found = memo_.find(key(at, speed));
     if (found == memo_.end()) {
@@ -36,14 +44,9 @@ std::optional<CutLook> Looks::known(const LookAt& at, std::size_t candidate) con
     }
     const CutLook& look = found->second;
     if (!look.holds) return look;
-    const double feed_m =
-        first ? look.most_feed_per_tooth_m : std::min(out.most_feed_per_tooth_m, look.most_feed_per_tooth_m);
-    if (first || look.by.value < out.by.value) out = look;
-    out.most_feed_per_tooth_m = feed_m;
-    first = false;
+    if (!out || limits_more(look, *out)) out = look;
   }
-  if (!whole) return std::nullopt;
-  return out;
+  return whole ? out : std::nullopt;
 }
 
 void Looks::run(const std::vector<Task>& tasks) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <compare>
 #include <cstddef>
 #include <optional>
 #include <unordered_map>
@@ -15,7 +16,7 @@ namespace robomill::decision {
 /// A class of cuts with γ.
 struct LookAt {
   std::size_t look_class = 0, gamma = 0;
-  friend bool operator==(const LookAt&, const LookAt&) = default;
+  friend auto operator<=>(const LookAt&, const LookAt&) = default;
 };
 
 /// What a model says, asked once.
@@ -25,8 +26,8 @@ class Looks {
         Progress& progress)
       : model_(model), speeds_(speeds), classes_(classes), gammas_(gammas), progress_(progress) {}
 
-  /// Over the window of a candidate: the first that does not hold, else what is nearest to its limit; none where some
-  /// of it has not been looked at and what was holds.
+  /// Over the window of a candidate: the first that does not hold, else that which allows the least feed, of those
+  /// alike that which is nearest to its limit; none where some of it has not been looked at and what was holds.
   [[nodiscard]] std::optional<CutLook> known(const LookAt& at, std::size_t candidate) const;
   /// Looks at all of them over the candidate's window.
   void ask(const std::vector<LookAt>& at, std::size_t candidate);

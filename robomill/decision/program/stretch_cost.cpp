@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "robomill/decision/program/gamma_way.hpp"
 
@@ -12,58 +13,66 @@ namespace {
 
 constexpr double rounding = 1e-12;
 
-void stop(StretchAt& out, const LimitUse& by, std::size_t cut) {
-  out.time_s = no_time;
-  out.stopped_by = by;
-  out.cut = cut;
+/// A feed that is too high or too low for the other.
+double apart(double least, double most) {
+  return least > 0.0 ? 1.0 - most / least : 0.0;
 }
 
-/// Whether the feed as programmed keeps its limits; where not, which it breaks.
-std::optional<LimitUse> broken_by(double feed, double least, double most, const LimitUse& least_by,
-                                  const LimitUse& most_by) {
-  if (feed > most * (1.0 + rounding)) return most_by;
-  if (feed < least * (1.0 - rounding)) return least_by;
+/// @param feed_missed  share of a feed, which counts where the limit itself is kept
+StretchTime stopped(const LimitUse& by, double feed_missed, std::size_t cut) {
+  const double own = shortfall(by);
+  return {.stopped_by = by, .missed = std::max(own > 0.0 ? own : feed_missed, rounding), .cut = cut};
+}
+
+/// What keeps a feed from being programmed.
+std::optional<StretchTime> broken_by(double feed, const FeedRange& range, std::size_t cut) {
+  if (feed > range.most_m_per_s * (1.0 + rounding)) {
+    return stopped(range.most_by, apart(feed, range.most_m_per_s), cut);
+  }
+  if (feed < range.least_m_per_s * (1.0 - rounding)) {
+    return stopped(range.least_by, apart(range.least_m_per_s, feed), cut);
+  }
   return std::nullopt;
 }
 
 }  // namespace
 
-StretchAt StretchCost::bound(const ProgramStretch& stretch, std::size_t candidate) const {
+StretchTime StretchCost::bound(const ProgramStretch& stretch, std::size_t candidate) const {
+  return by_feeds(stretch, candidate).time;
+}
+
+StretchAt StretchCost::by_feeds(const ProgramStretch& stretch, std::size_t candidate) const {
   StretchAt out;
-  out.time_s = 0.0;
+  out.time.time_s = 0.0;
   const double speed = speeds_[candidate].spindle_speed_rad_per_s;
-  double worst = -no_time;
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
     FeedRange range = model_.feeds(c, speed);
-    std::optional<LimitUse> broken;
+    std::optional<StretchTime> broken;
     if (range.least_m_per_s > range.most_m_per_s * (1.0 + rounding)) {
-      broken = range.most_by;
+      broken = stopped(range.most_by, apart(range.least_m_per_s, range.most_m_per_s), c);
     } else if (!options_.free_feed) {
       const double feed = cuts_[c].feed_m_per_s;
-      broken = broken_by(feed, range.least_m_per_s, range.most_m_per_s, range.least_by, range.most_by);
+      broken = broken_by(feed, range, c);
       range.least_m_per_s = range.most_m_per_s = feed;
     }
-    if (broken && shortfall(*broken) >= worst) {
-      worst = shortfall(*broken);
-      stop(out, *broken, c);
-    }
-    out.least.push_back(range.least_m_per_s);
+    if (broken && broken->missed >= out.time.missed) out.time = *broken;
+    out.least.push_back(std::min(range.least_m_per_s, range.most_m_per_s));  // apart by rounding at most, else stopped
     out.most.push_back(range.most_m_per_s);
     out.most_by.push_back(range.most_by);
-    out.time_s += cuts_[c].length_m / range.most_m_per_s;
+    out.time.time_s += cuts_[c].length_m / range.most_m_per_s;
   }
   return out;
 }
 
 StretchAt StretchCost::exact(const ProgramStretch& stretch, std::size_t candidate) {
-  StretchAt out = bound(stretch, candidate);
-  if (!std::isfinite(out.time_s)) return out;
+  StretchAt out = by_feeds(stretch, candidate);
+  if (!std::isfinite(out.time.time_s)) return out;
   if (options_.gamma_rad.size() > 1) {
     along_gamma(stretch, candidate, out);
   } else {
     at_programmed_gamma(stretch, candidate, out);
   }
-  if (std::isfinite(out.time_s)) sum_up(stretch, out);
+  if (std::isfinite(out.time.time_s)) sum_up(stretch, out);
   return out;
 }
 
@@ -79,14 +88,15 @@ void StretchCost::limit_feed(const ProgramStretch& stretch, std::size_t cut, con
   if (most >= out.most[i]) return;
   out.most[i] = most;
   out.most_by[i] = look.by;
-  if (most < out.least[i]) stop(out, look.by, cut);
+  if (most < out.least[i]) out.time = stopped(look.by, apart(out.least[i], most), cut);
 }
 
 void StretchCost::at_programmed_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out) {
   std::vector<LookAt> at;
+  std::set<LookAt> there;
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
     for (const std::size_t look : cuts_[c].looks) {
-      if (std::ranges::find(at, LookAt{.look_class = look}) == at.end()) at.push_back({.look_class = look});
+      if (there.insert({.look_class = look}).second) at.push_back({.look_class = look});
     }
   }
   const std::optional<LookAt> failed = looks_.ask_until_failure(at, candidate);
@@ -94,9 +104,12 @@ void StretchCost::at_programmed_gamma(const ProgramStretch& stretch, std::size_t
     for (const std::size_t look_class : cuts_[c].looks) {
       if (failed && look_class != failed->look_class) continue;
       const CutLook look = *looks_.known({.look_class = look_class}, candidate);
-      if (failed) return stop(out, look.by, c);
+      if (failed) {
+        out.time = stopped(look.by, 0.0, c);
+        return;
+      }
       limit_feed(stretch, c, look, candidate, out);
-      if (!std::isfinite(out.time_s)) return;
+      if (!std::isfinite(out.time.time_s)) return;
     }
   }
   out.gamma = {0, 0};
@@ -105,6 +118,7 @@ void StretchCost::at_programmed_gamma(const ProgramStretch& stretch, std::size_t
 
 void StretchCost::along_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out) {
   std::vector<double> times;
+  times.reserve(stretch.end - stretch.begin);
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
     times.push_back(cuts_[c].length_m / out.most[c - stretch.begin]);
   }
@@ -123,11 +137,11 @@ void StretchCost::along_gamma(const ProgramStretch& stretch, std::size_t candida
   };
   while (way.solve(time_at)) {
     std::vector<LookAt> unseen;
+    std::set<LookAt> there;
     for (const GammaWay::Place& place : way.places()) {
       for (const std::size_t look_class : cuts_[stretch.begin + place.cut].looks) {
         const LookAt at = {.look_class = look_class, .gamma = place.gamma};
-        if (looks_.known(at, candidate) || std::ranges::find(unseen, at) != unseen.end()) continue;
-        unseen.push_back(at);
+        if (there.insert(at).second && !looks_.known(at, candidate)) unseen.push_back(at);
       }
     }
     if (unseen.empty()) {
@@ -143,33 +157,45 @@ void StretchCost::along_gamma(const ProgramStretch& stretch, std::size_t candida
     }
     looks_.ask(unseen, candidate);
   }
-  // The cut that no γ suits: of each cut the γ that comes nearest, of those the farthest.
-  double worst = -no_time;
-  for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
-    double least = no_time;
-    LimitUse by;
-    for (std::size_t gamma = 0; gamma < options_.gamma_rad.size(); ++gamma) {
-      for (const std::size_t look_class : cuts_[c].looks) {
-        const std::optional<CutLook> look = looks_.known({.look_class = look_class, .gamma = gamma}, candidate);
-        const double short_by = look ? (look->holds ? 0.0 : shortfall(look->by)) : no_time;
-        if (look && short_by < least) {
-          least = short_by;
-          by = look->by;
-        }
-      }
-    }
-    if (std::isfinite(least) && least > worst) {
-      worst = least;
-      stop(out, by, c);
-    }
+  stop_along_gamma(stretch, candidate, out);
+}
+
+StretchTime StretchCost::at_gamma(std::size_t cut, std::size_t gamma, double least_m_per_s,
+                                  std::size_t candidate) const {
+  StretchTime out;
+  for (const std::size_t look_class : cuts_[cut].looks) {
+    const std::optional<CutLook> look = looks_.known({.look_class = look_class, .gamma = gamma}, candidate);
+    if (!look) continue;
+    const double most = look->holds ? most_feed(cut, *look, candidate) : no_time;
+    if (look->holds && most >= least_m_per_s) continue;
+    const StretchTime by = stopped(look->by, look->holds ? apart(least_m_per_s, most) : 0.0, cut);
+    if (by.missed > out.missed) out = by;
   }
-  out.time_s = no_time;
+  return out;
+}
+
+void StretchCost::stop_along_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out) const {
+  const auto missed_less = [](const StretchTime& a, const StretchTime& b) { return a.missed < b.missed; };
+  const std::size_t gammas = options_.gamma_rad.size();
+  StretchTime no_gamma;                       // the cut that no γ suits: at the γ that comes nearest
+  std::vector<StretchTime> farthest(gammas);  // of each γ the cut that it suits least
+  for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
+    std::vector<StretchTime> at;
+    at.reserve(gammas);
+    for (std::size_t g = 0; g < gammas; ++g) {
+      at.push_back(at_gamma(c, g, out.least[c - stretch.begin], candidate));
+      farthest[g] = std::max(farthest[g], at.back(), missed_less);
+    }
+    no_gamma = std::max(no_gamma, *std::ranges::min_element(at, missed_less), missed_less);
+  }
+  // Where some γ suits every cut, but γ cannot step from each to the next: the γ that comes nearest to suiting all.
+  out.time = no_gamma.missed > 0.0 ? no_gamma : *std::ranges::min_element(farthest, missed_less);
 }
 
 void StretchCost::sum_up(const ProgramStretch& stretch, StretchAt& out) const {
-  out.time_s = 0.0;
+  out.time.time_s = 0.0;
   for (std::size_t c = stretch.begin; c < stretch.end; ++c) {
-    out.time_s += cuts_[c].length_m / out.most[c - stretch.begin];
+    out.time.time_s += cuts_[c].length_m / out.most[c - stretch.begin];
   }
 }
 

@@ -10,11 +10,17 @@ namespace robomill::decision {
 
 inline constexpr double no_time = std::numeric_limits<double>::infinity();
 
+/// Time of a stretch at a speed, or what stops it.
+struct StretchTime {
+  double time_s = no_time;   ///< infinite: a limit stops it
+  LimitUse stopped_by = {};  ///< … this one
+  double missed = 0.0;       ///< … by this share of it, > 0
+  std::size_t cut = 0;       ///< … here
+};
+
 /// One stretch at one speed.
 struct StretchAt {
-  double time_s = no_time;         ///< infinite: a limit stops it
-  LimitUse stopped_by = {};        ///< … this one
-  std::size_t cut = 0;             ///< … here
+  StretchTime time = {};
   std::vector<double> least = {};  ///< feed of each of its cuts [m/s], at least
   std::vector<double> most = {};   ///< … at most
   std::vector<LimitUse> most_by = {};
@@ -22,20 +28,26 @@ struct StretchAt {
   std::vector<std::size_t> group = {};  ///< of each of its cuts
 };
 
-/// Finds the least time of a stretch at a candidate speed.
+/// Finds the least time of a stretch at a candidate speed. Of a stretch it takes the cuts [begin, end) alone.
 class StretchCost {
  public:
   StretchCost(const std::vector<ProgramCut>& cuts, const ProgramModel& model, const ProgramOptions& options,
               const CandidateSpeeds& speeds, Looks& looks)
       : cuts_(cuts), model_(model), options_(options), speeds_(speeds), looks_(looks) {}
 
-  /// What needs no dynamics: time_s is a lower bound.
-  [[nodiscard]] StretchAt bound(const ProgramStretch& stretch, std::size_t candidate) const;
+  /// What needs no dynamics: a lower bound.
+  [[nodiscard]] StretchTime bound(const ProgramStretch& stretch, std::size_t candidate) const;
   [[nodiscard]] StretchAt exact(const ProgramStretch& stretch, std::size_t candidate);
 
  private:
+  [[nodiscard]] StretchAt by_feeds(const ProgramStretch& stretch, std::size_t candidate) const;
   void at_programmed_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out);
   void along_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out);
+  /// What stops a stretch along which there is no way of γ.
+  void stop_along_gamma(const ProgramStretch& stretch, std::size_t candidate, StretchAt& out) const;
+  /// What keeps a cut from γ, as far as it is known.
+  [[nodiscard]] StretchTime at_gamma(std::size_t cut, std::size_t gamma, double least_m_per_s,
+                                     std::size_t candidate) const;
   /// The greatest feed of a cut of what a look allows.
   [[nodiscard]] double most_feed(std::size_t cut, const CutLook& look, std::size_t candidate) const;
   void limit_feed(const ProgramStretch& stretch, std::size_t cut, const CutLook& look, std::size_t candidate,
