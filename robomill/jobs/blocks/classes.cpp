@@ -56,7 +56,7 @@ bool Classes::alike(const CutLook& a, const CutLook& b) const {
          std::abs(a.axial_depth_m - b.axial_depth_m) <= tolerance_.cut_share * b.axial_depth_m &&
          std::abs(a.feed_per_tooth_m - b.feed_per_tooth_m) <= tolerance_.cut_share * b.feed_per_tooth_m &&
          (a.stiffness - b.stiffness).norm() <= tolerance_.cut_share * b.stiffness.norm() &&
-         apart <= tolerance_.cut_share * b.along_feed.norm() &&
+         apart <= tolerance_.cut_share * b.stiffness.norm() &&
          (a.joints - b.joints).cwiseAbs().maxCoeff() <= tolerance_.joint_rad;
 }
 
