@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -31,6 +32,11 @@ struct DecideProblem {
   decision::FinishLimits finish = {};
   DecideOptions options = {};
   double max_tip_speed_m_per_s = 0.0;  ///< of the path; 0: not known
+  /// Of a program that was run and judged, and γ as in DecideResult, as the robot runs it: of each block the greatest
+  /// share of its torque that a drive gives, inertia too. Empty: weight and cut alone count.
+  std::function<std::vector<double>(const ForcesResult& forces, const ProgramBlocks& blocks,
+                                    const std::vector<double>& gamma_offset_rad)>
+      torque_shares = {};
 };
 
 /// A limit that a block does not keep.
@@ -59,6 +65,9 @@ struct Outcome {
 struct DecidedLines {
   std::size_t first_block = 0, last_block = 0;
   double spindle_speed_rad_per_s = 0.0;
+  /// How the tool leans from where the program has it, about the centre of its ball: along the stretch's main feed and
+  /// across it.
+  double lead_rad = 0.0, tilt_rad = 0.0;
   double lowest_feed_m_per_s = 0.0, highest_feed_m_per_s = 0.0;
   double cutting_time_s = 0.0;
   decision::LimitUse limited_by = {};

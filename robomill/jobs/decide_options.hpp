@@ -46,11 +46,14 @@ struct ROBOMILL_API DecideOptions {
   std::array<double, 2> cutting_speed_m_per_s = {0, 0};  ///< of the outermost point that cuts; 0: no limit
   /// Turns of the flange about the tool's axis, from where the program has it.
   std::array<double, 2> gamma_range_rad = {-1.5707963267949, 1.5707963267949};
-  double gamma_step_rad = 0.261799387799149;  ///< > 0
-  bool compensate = false;                    ///< finishing passes are moved by the deflection that is predicted
-  double max_offset_m = 0.5e-3;               ///< > 0; … by this at most
-  bool controller_compensates = false;        ///< the robot's controller does that already
+  double gamma_step_rad = 0.261799387799149;  ///< >= 1°
+  /// Leans of the tool from where the program has it, where lead or tilt are free: in (0, 45°], and its steps, >= 1°.
+  double cone_rad = 0.261799387799149, cone_step_rad = 0.130899693899575;
+  bool compensate = false;              ///< finishing passes are moved by the deflection that is predicted
+  double max_offset_m = 0.5e-3;         ///< > 0; … by this at most
+  bool controller_compensates = false;  ///< the robot's controller does that already
   [[nodiscard]] bool is_free(Free what) const;
+  [[nodiscard]] bool leans_free() const;  ///< lead or tilt
   /// @throws InvalidInput naming the member
   void validate() const;
 };

@@ -15,79 +15,16 @@
 #include "robomill/jobs/plan.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/modal/tip.hpp"
-#include "robomill/robot/pose.hpp"
 #include "robomill/simulation/posture.hpp"
+#include "testing/jobs/three_passes.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::jobs {
 namespace decide_test {
 
-const std::string source = ROBOMILL_SOURCE_DIR;
 constexpr double teeth = 2.0;
 
-/// Three passes of a 6 mm ball end beside each other, the first a slot, with rapid moves between.
-class Decide : public testing::Test {
- protected:
-  void SetUp() override {
-    std::string cell = io::read_file(source + "/examples/force-along-program/cell.toml");
-    const std::size_t begin = cell.find("joint_stiffness_n_m_per_rad");
-    cell.replace(begin, cell.find('\n', begin) - begin, "joint_stiffness_n_m_per_rad = [2e8, 2e8, 2e8, 2e8, 2e8, 2e8]");
-    folder_.file("cell.toml", cell);
-    folder_.file("forces.toml", R"([tool]
-kind = "ball-end"
-diameter_mm = 6
-teeth = 2
-helix_deg = 30
-[coefficients]
-tangential_n_per_mm2 = 900
-radial_n_per_mm2 = 350
-axial_n_per_mm2 = 150
-[stock]
-kind = "box"
-min_mm = [-20, -8, -8]
-max_mm = [20, 8, 0]
-dexel_mm = 0.25
-)");
-    folder_.file("part.ngc", program());
-  }
-  static std::string program(const std::string& speed = "S12000") {
-    std::string text = "(three passes)\nG21 G90 G94\n" + speed + " M3\n";
-    for (int pass = 0; pass < 3; ++pass) {
-      text += fmt::format("G0 X-12 Y{0} Z5\nG0 Z-{1}\n", pass, 0.6 + 0.2 * pass);
-      for (int i = 1; i <= 6; ++i) text += fmt::format("G1 X{} F{} (pass {})\n", -12 + 4 * i, 600, pass + 1);
-      text += "G0 Z5\n";
-    }
-    return text + "M2\n";
-  }
-  PlanResult judged() {
-    return run_job(folder_.file("judge.toml",
-                                "[job]\nforces = \"forces.toml\"\ncell = \"cell.toml\"\nprogram = \"part.ngc\"\n"
-                                "modes = \"" +
-                                    source + "/data/robot-modes.toml\"\n[decide]\nfree = []\n"),
-                   1);
-  }
-  /// Modes that chatter in the deeper passes at 12,000 rpm.
-  static modal::ModalModel modes(double mass = 1.0) {
-    return modal::modes_from_mass({{410, 0.03, 0.6 * mass}}, {{530, 0.03, 0.5 * mass}}, {{780, 0.03, 0.8 * mass}});
-  }
-  struct Judged {
-    ForcesResult forces;
-    ProgramBlocks blocks;
-  };
-  Judged judge(const DynamicsAt& dynamics) {
-    ForcesResult forces = *judged().forces;
-    ProgramBlocks blocks = judge_blocks(forces, dynamics, {.scan_points = 0});
-    return {.forces = std::move(forces), .blocks = std::move(blocks)};
-  }
-  static DecideProblem problem(const Judged& judged, const DynamicsAt& dynamics) {
-    DecideProblem out = {.forces = judged.forces, .blocks = judged.blocks, .dynamics = dynamics};
-    out.blocks_options.scan_points = 0;
-    out.machine.min_spindle_speed_rad_per_s = 6000.0 * units::rpm;
-    out.machine.max_spindle_speed_rad_per_s = 18000.0 * units::rpm;
-    return out;
-  }
-  test::Folder folder_;
-};
+using Decide = jobs::testing::ThreePasses;
 
 TEST_F(Decide, KeepsEveryLimitThatTheProgramBrokeAndIsFaster) {
   const DynamicsAt dynamics = constant_dynamics(modes());
@@ -238,6 +175,40 @@ TEST_F(Decide, ForceDeflectionTorqueAndPowerAreKept) {
       &Outcome::peak_power_w, power);
 }
 
+// The run that is written keeps what the search kept by the engagement of the program as it was.
+TEST_F(Decide, ChipsAndCuttingSpeedsHoldInTheRunThatIsWritten) {
+  const DynamicsAt dynamics = constant_dynamics(modes(20.0));
+  const Judged judged = judge(dynamics);
+  DecideProblem asked = problem(judged, dynamics);
+  asked.options.chip_thickness_m = {0.02e-3, 0.03e-3};
+  asked.options.cutting_speed_m_per_s = {1.0, 2.0};
+  const DecideResult result = decide(asked);
+  ASSERT_EQ(result.status, DecideResult::Status::found) << result.reason;
+  int looked = 0;
+  for (std::size_t i = 0; i < result.blocks->rows.size(); ++i) {
+    if (!result.blocks->rows[i].cuts) continue;
+    ++looked;
+    const cutting::Engagement& engagement = result.forces->program->cuts[i].engagement;
+    const double chip_m =
+        result.forces->program->blocks[i].force.feed_per_tooth_m * cutting::greatest_chip_share(engagement);
+    EXPECT_GE(chip_m, 0.994 * 0.02e-3) << i;
+    EXPECT_LE(chip_m, 1.006 * 0.03e-3) << i;
+    double radius_m = 0.0;
+    for (std::size_t s = 0; s < engagement.slices.size(); ++s) {
+      if (!engagement.of(s).empty()) radius_m = std::max(radius_m, engagement.slices[s].radius_m);
+    }
+    const double speed = radius_m * result.blocks->rows[i].spindle_speed_rad_per_s;
+    EXPECT_GE(speed, 0.994) << i;
+    EXPECT_LE(speed, 2.006 * 1.0) << i;
+  }
+  EXPECT_GT(looked, 10);
+  asked.options.cutting_speed_m_per_s = {20.0, 30.0};
+  const DecideResult none = decide(asked);
+  EXPECT_EQ(none.status, DecideResult::Status::infeasible);
+  EXPECT_NE(none.reason.find("cutting speed"), std::string::npos) << none.reason;
+  EXPECT_NE(none.reason.find("at least"), std::string::npos) << none.reason;
+}
+
 TEST_F(Decide, AGapInTheSpindlesCurveIsLeftOut) {
   const DynamicsAt dynamics = constant_dynamics(modes(20.0));
   const Judged judged = judge(dynamics);
@@ -268,59 +239,6 @@ TEST_F(Decide, SaysWhichLimitNoSpeedKeepsAndWhere) {
   const DecideResult none = decide(contradictory);
   EXPECT_EQ(none.status, DecideResult::Status::infeasible);
   EXPECT_NE(none.reason.find("peak force"), std::string::npos) << none.reason;
-}
-
-// A structure that is stiffer where the last joint stands elsewhere: as programmed it chatters at its speed.
-TEST_F(Decide, TurnsGammaWhereThatAloneHelps) {
-  const double programmed = judged().forces->program->blocks[10].joints(5);
-  const DynamicsAt turning = [programmed](const Eigen::VectorXd& joints) {
-    const double away = std::sin(joints(5) - programmed);
-    return PostureDynamics{.modes = modes(0.05 + 20.0 * away * away)};
-  };
-  const Judged judged = judge(turning);
-  EXPECT_GT(judged.blocks.unstable, 0U);
-  DecideProblem asked = problem(judged, turning);
-  asked.options.free = {Free::feed};
-  EXPECT_EQ(decide(asked).status, DecideResult::Status::infeasible);
-  asked.options.free = {Free::feed, Free::gamma};
-  asked.options.gamma_step_rad = 15.0 * units::deg;
-  const DecideResult turned = decide(asked);
-  ASSERT_EQ(turned.status, DecideResult::Status::found) << turned.reason;
-  EXPECT_TRUE(std::ranges::any_of(turned.gamma_offset_rad, [](double g) { return g != 0.0; }));
-  EXPECT_GE(turned.decided->least_stability_margin, 0.2 * 0.995);
-  ASSERT_TRUE(turned.gamma_map.has_value());
-  EXPECT_EQ(turned.gamma_map->margin.cols(), std::ssize(turned.gamma_map->block));
-  EXPECT_EQ(turned.gamma_map->margin.rows(), std::ssize(turned.gamma_map->gamma_rad));
-  // By forward kinematics: the tip is where the program has it, turned by what was decided.
-  const robot::Cell& cell = judged.forces.cell->cell;
-  for (std::size_t i = 0; i < turned.program->blocks.size(); ++i) {
-    const robot::ToolPose pose =
-        robot::tool_pose(cell, robot::forward(cell.arm, turned.forces->program->blocks[i].joints));
-    EXPECT_LT((pose.tip_m - turned.program->blocks[i].end.tip_m).norm(), 1e-9) << i;
-  }
-}
-
-// What stands about the tool counts as soon as a posture differs from the program's.
-TEST_F(Decide, TurnedPosturesAreCheckedForCollisions) {
-  const DynamicsAt dynamics = constant_dynamics(modes(20.0));
-  const std::string cell = io::read_file(folder_.at("cell.toml"));
-  const auto with_box = [&](const std::string& box) {
-    folder_.file("cell.toml", cell +
-                                  "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\nholder = [{ length_mm = 20, "
-                                  "diameter_mm = 30 }]\nfixtures = [{ " +
-                                  box + " }]\n");
-    const Judged judged = judge(dynamics);
-    DecideProblem asked = problem(judged, dynamics);
-    asked.options.free = {Free::feed, Free::gamma};
-    asked.options.gamma_step_rad = 45.0 * units::deg;
-    return decide(asked);
-  };
-  const DecideResult clear = with_box("box_from_mm = [500, 500, 0], box_to_mm = [520, 520, 20]");
-  ASSERT_EQ(clear.status, DecideResult::Status::found) << clear.reason;
-  EXPECT_TRUE(clear.collisions_checked);
-  const DecideResult blocked = with_box("box_from_mm = [-30, -30, 35], box_to_mm = [30, 30, 45]");
-  EXPECT_EQ(blocked.status, DecideResult::Status::infeasible);
-  EXPECT_NE(blocked.reason.find("holder"), std::string::npos) << blocked.reason;
 }
 
 TEST_F(Decide, FinishingPassesAreMovedWhereThatIsAskedFor) {
@@ -376,8 +294,11 @@ TEST_F(Decide, RejectsBadTables) {
     EXPECT_NE(text.find("bad.toml"), std::string::npos) << text;
   };
   rejects("free = [\"depth\"]\n", "decide.free");
-  rejects("free = [\"lead\"]\n", "gouges");
   rejects("free = [\"axial_depth\"]\n", "CAM");
+  rejects("free = [\"feed\", \"lead\"]\n", "spindle_speed");
+  rejects("free = [\"spindle_speed\", \"lead\"]\ncone_deg = 50\n", "cone_deg");
+  rejects("cone_step_deg = 0.5\n", "cone_step_deg");
+  rejects("gamma_step_deg = 0.01\n", "gamma_step_deg");
   rejects("goal = \"money\"\n", "goal");
   rejects("max_force_n = -1\n", "max_force_n");
   rejects("chip_thickness_mm = [0.1]\n", "[least, most]");

@@ -174,9 +174,10 @@ void note_joints(std::span<const path::Sample> samples, std::vector<robot::Posit
 /// @param file          takes the samples; may be null
 /// @param recorder      as well
 /// @param block_joints  as well
+/// @param observe       as well; may be empty
 path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::SampleFile* file,
                            path::MotionRecorder* recorder, std::vector<robot::Position6>* block_joints,
-                           Progress& progress) {
+                           const path::SampleSink& observe, Progress& progress) {
   path::SmoothingOptions options = bench.smoothing.options;
   options.method = method;
   path::SmoothedBy out{.method = method};
@@ -185,6 +186,7 @@ path::SmoothedBy smooth_by(path::Method method, const Bench& bench, path::Sample
   const auto take = [&](std::span<const path::Sample> samples) {
     if (file != nullptr) file->add(samples);
     if (block_joints != nullptr) note_joints(samples, *block_joints);
+    if (observe) observe(samples);
     if (recorder != nullptr) {
       recorder->add(samples);
     } else if (drive_model) {
@@ -305,7 +307,8 @@ SmoothResult run_smooth(const SmoothJob& job, CellFile cell, Progress& progress)
       }
       result.smoothed.methods.push_back(located_in_program(job.program, [&] {
         return smooth_by(method, bench, asked_for ? file.get() : nullptr, recorder ? &*recorder : nullptr,
-                         asked_for ? &result.block_joints : nullptr, progress);
+                         asked_for ? &result.block_joints : nullptr, asked_for ? job.observe : path::SampleSink{},
+                         progress);
       }));
     } catch (const InvalidInput& error) {
       if (asked_for) throw;

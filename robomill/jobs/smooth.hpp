@@ -14,6 +14,7 @@
 #include "robomill/path/posture.hpp"
 #include "robomill/path/record/motion_recorder.hpp"
 #include "robomill/path/record/outline.hpp"
+#include "robomill/path/sample.hpp"
 
 // Method: robomill/jobs/README.md, "Smoothed programs (`smooth.hpp`)"
 
@@ -31,6 +32,7 @@ struct SmoothJob {
   bool place = true;                          ///< at the end; else place() is the caller's to call
   std::string program_name = {};              ///< as files and reports name it; empty: its file's name
   std::optional<path::Posture> posture = {};  ///< not given: chosen
+  path::SampleSink observe = {};              ///< takes the samples too, of the method asked for; time 0 begins anew
 };
 
 struct SmoothResult {

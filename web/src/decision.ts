@@ -45,6 +45,8 @@ export interface Stretch {
   first_line: Num;
   last_line: Num;
   spindle_speed_rpm: Num;
+  lead_deg?: Num; // from where the program has the tool's axis
+  tilt_deg?: Num;
   lowest_feed_mm_per_min: Num;
   highest_feed_mm_per_min: Num;
   cutting_time_s: Num;

@@ -1,6 +1,22 @@
 import { expect, it } from 'vitest';
-import type { Decision, GammaMap, Outcome } from './decision';
-import { allowedText, beyondText, collisionCaution, columnFacts, feedText, leastAlong, limited, limitName, marginAt, nearest, rangeText, savedText, valueText, violationOf } from './decision_views';
+import type { Decision, GammaMap, Outcome, Stretch } from './decision';
+import {
+  allowedText,
+  beyondText,
+  collisionCaution,
+  columnFacts,
+  feedText,
+  leanText,
+  leastAlong,
+  limited,
+  limitName,
+  marginAt,
+  nearest,
+  rangeText,
+  savedText,
+  valueText,
+  violationOf,
+} from './decision_views';
 
 const map: GammaMap = {
   block: [3, 5, 9],
@@ -53,6 +69,13 @@ it('joins what is lowest and highest', () => {
   const stretch = (low: number | null, high: number | null) => ({ lowest_feed_mm_per_min: low, highest_feed_mm_per_min: high });
   expect(feedText({ stretches: [stretch(800, 900), stretch(null, 700)] } as unknown as Decision)).toBe('700\u202f–\u202f900');
   expect(feedText({ stretches: [] } as unknown as Decision)).toBe('not known');
+});
+
+it('says how the tool leans where it leans', () => {
+  const stretch = (lead_deg: number, tilt_deg: number) => ({ lead_deg, tilt_deg }) as Stretch;
+  expect(leanText(stretch(0, 0))).toBe('');
+  expect(leanText({} as Stretch)).toBe('');
+  expect(leanText(stretch(-7.5, 15))).toBe('-7.5°, 15.0°');
 });
 
 it('finds the violation of each measure, and keeps limits of joints apart from those of the spindle', () => {

@@ -1,5 +1,5 @@
 // What the section of a decision needs, made of plan.json's "decision".
-import type { Decision, GammaMap, Outcome, Violation } from './decision';
+import type { Decision, GammaMap, Outcome, Stretch, Violation } from './decision';
 import type { Fact, Num } from './documents';
 import { thinSpace } from './figures/theme';
 import { dash, fixed, percent, significant } from './text';
@@ -98,6 +98,11 @@ export function limitName(violation: Violation): string {
   if (limit === 'stability') return isRadius(violation) ? 'Stability, |μ|' : 'Stability margin';
   const words = limit.replace(/_/g, ' ');
   return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/** How the tool leans in a stretch from where the program has it: lead and tilt; empty: as there. */
+export function leanText({ lead_deg: lead, tilt_deg: tilt }: Stretch): string {
+  return lead || tilt ? `${fixed(lead ?? 0, 1)}°, ${fixed(tilt ?? 0, 1)}°` : '';
 }
 
 /** From the lowest to the highest feed of all stretches. */

@@ -1,42 +1,38 @@
 #include "robomill/jobs/decide/apply.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
+#include <utility>
 
-#include "robomill/base/error.hpp"
-#include "robomill/base/units.hpp"
-#include "robomill/jobs/blocks/named_block.hpp"
 #include "robomill/jobs/blocks/stand_at.hpp"
 #include "robomill/jobs/program_forces.hpp"
 #include "robomill/robot/pose.hpp"
 
 namespace robomill::jobs {
 
-program::Program decided_program(const ForcesResult& forces, const ProgramUnits& units,
-                                 const decision::ProgramDecision& decision, bool free_speed) {
-  program::Program out = forces.program->program;
-  for (std::size_t k = 0; k < units.stretches.size() && free_speed; ++k) {
-    const std::size_t end = k + 1 < units.stretches.size() ? units.speed_from[k + 1] : out.blocks.size();
-    for (std::size_t i = units.speed_from[k]; i < end; ++i) {
-      if (out.blocks[i].spindle == program::Spindle::off) continue;
-      out.blocks[i].spindle_speed_rad_per_s = decision.stretches[k].spindle_speed_rad_per_s;
+program::Program at_conditions(program::Program program, const ProgramUnits& units,
+                               const std::vector<StretchConditions>& conditions) {
+  for (std::size_t k = 0; k < units.stretches.size(); ++k) {
+    const std::optional<double>& speed = conditions[k].spindle_speed_rad_per_s;
+    const std::size_t end = k + 1 < units.stretches.size() ? units.speed_from[k + 1] : program.blocks.size();
+    for (std::size_t i = units.speed_from[k]; speed && i < end; ++i) {
+      if (program.blocks[i].spindle == program::Spindle::off) continue;
+      program.blocks[i].spindle_speed_rad_per_s = *speed;
+    }
+    for (std::size_t c = units.stretches[k].begin; c < units.stretches[k].end; ++c) {
+      // One factor a line: chords of an arc keep their shares of its time.
+      const double slower = conditions[k].slower[c - units.stretches[k].begin];
+      for (std::size_t i = units.lines[c].first_block; i <= units.lines[c].last_block; ++i) {
+        program.blocks[i].duration_s *= slower;
+      }
     }
   }
-  for (std::size_t c = 0; c < units.lines.size(); ++c) {
-    const LineUnit& line = units.lines[c];
-    if (line.turns_only) continue;
-    // One factor a line: chords of an arc keep their shares of its time.
-    const double slower = units.cuts[c].feed_m_per_s / decision.feed_m_per_s[c];
-    for (std::size_t i = line.first_block; i <= line.last_block; ++i) out.blocks[i].duration_s *= slower;
-  }
-  return out;
+  return program;
 }
 
 std::vector<double> gamma_offsets(const program::Program& program, const ProgramUnits& units,
-                                  const decision::ProgramDecision& decision) {
+                                  const std::vector<LineGamma>& lines) {
   constexpr double unset = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> out(program.blocks.size() + 1, unset);
   std::vector<double> way(out.size(), 0.0);
@@ -47,8 +43,7 @@ std::vector<double> gamma_offsets(const program::Program& program, const Program
     const LineUnit& line = units.lines[c];
     const double blocks = static_cast<double>(line.last_block - line.first_block + 1);
     for (std::size_t i = line.first_block; i <= line.last_block + 1; ++i) {
-      out[i] = std::lerp(decision.gamma_begin_rad[c], decision.gamma_end_rad[c],
-                         static_cast<double>(i - line.first_block) / blocks);
+      out[i] = std::lerp(lines[c].begin_rad, lines[c].end_rad, static_cast<double>(i - line.first_block) / blocks);
     }
   }
   std::optional<std::size_t> known;
@@ -65,31 +60,42 @@ std::vector<double> gamma_offsets(const program::Program& program, const Program
   return out;
 }
 
-std::vector<robot::Position6> joints_at(const ForcesResult& forces, const program::Program& program,
-                                        const std::vector<double>& gamma_offset_rad) {
+Stands joints_at(const ForcesResult& forces, const program::Program& program,
+                 const std::vector<double>& gamma_offset_rad) {
   const robot::Cell& cell = forces.cell->cell;
+  const program::Program& before = forces.program->program;
   const std::optional<robot::SphericalWristInverse> inverse = spherical_wrist(cell.arm);
-  std::vector<robot::Position6> out;
-  for (std::size_t i = 0; i < forces.program->blocks.size(); ++i) {
+  Stands out;
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
     const Eigen::VectorXd& programmed = forces.program->blocks[i].joints;
     const double turn = gamma_offset_rad.empty() ? 0.0 : gamma_offset_rad[i + 1];
-    const Eigen::Vector3d move_m = program.blocks[i].end.tip_m - forces.program->program.blocks[i].end.tip_m;
-    if (turn == 0.0 && move_m.isZero(0.0)) {
-      out.emplace_back(programmed);
+    const Eigen::Vector3d move_m = program.blocks[i].end.tip_m - before.blocks[i].end.tip_m;
+    const bool leans = program.blocks[i].end.axis != before.blocks[i].end.axis;
+    if (turn == 0.0 && move_m.isZero(0.0) && !leans) {
+      out.joints.emplace_back(programmed);
       continue;
     }
     robot::ToolPose pose = robot::tool_pose(cell, robot::forward(cell.arm, programmed));
     pose.gamma_rad += turn;
     pose.tip_m += move_m;
-    const Eigen::VectorXd near = i > 0 ? Eigen::VectorXd(out.back()) : programmed;
+    if (leans) pose.axis = program.blocks[i].end.axis;
+    const Eigen::VectorXd near = i > 0 ? Eigen::VectorXd(out.joints.back()) : programmed;
     const std::optional<Eigen::VectorXd> joints = stand_at(cell, inverse, pose, near);
     if (!joints) {
-      throw InvalidInput(InvalidInput::Parts{
-          .where = named_block(forces, i),
-          .field = "γ and offset",
-          .rule = fmt::format("cannot be taken: {:.3g}° and {:.3g} mm", turn / units::deg, move_m.norm() / units::mm)});
+      out.lost = i;
+      return out;
     }
-    out.emplace_back(*joints);
+    out.joints.emplace_back(*joints);
+  }
+  // The flange stands about the tool as it does where the first block ends.
+  robot::ToolPose begin = robot::tool_pose(cell, robot::forward(cell.arm, out.joints.front()));
+  begin.tip_m = program.start.tip_m;
+  begin.axis = program.start.axis;
+  if (!gamma_offset_rad.empty()) begin.gamma_rad += gamma_offset_rad[0] - gamma_offset_rad[1];
+  if (const std::optional<Eigen::VectorXd> joints = stand_at(cell, inverse, begin, out.joints.front())) {
+    out.start = robot::Position6(*joints);
+  } else {
+    out.lost = 0;
   }
   return out;
 }

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "robomill/decision/program_decision.hpp"
@@ -9,19 +11,35 @@
 
 namespace robomill::jobs {
 
-/// The program at the speeds and feeds that were decided. A speed holds from the rapid move on that leads to its cuts.
-/// @param free_speed  else speeds stay as they are
-[[nodiscard]] program::Program decided_program(const ForcesResult& forces, const ProgramUnits& units,
-                                               const decision::ProgramDecision& decision, bool free_speed);
+/// What was decided of one stretch, as its program is made.
+struct StretchConditions {
+  std::optional<double> spindle_speed_rad_per_s = {};  ///< none: as programmed
+  std::vector<double> slower = {};                     ///< factor on the duration of each of its lines
+};
 
-/// γ at the program's start and at each block's end: as decided along the cuts, even along the way between them.
+/// A program with other speeds and feeds. A speed holds from the rapid move on that leads to its cuts.
+/// @param program     with the blocks that the units are of
+/// @param conditions  one a stretch
+[[nodiscard]] program::Program at_conditions(program::Program program, const ProgramUnits& units,
+                                             const std::vector<StretchConditions>& conditions);
+
+/// γ along a line.
+struct LineGamma {
+  double begin_rad = 0.0, end_rad = 0.0;
+};
+/// γ at the program's start and at each block's end: as decided along the lines, even along the way between them.
 [[nodiscard]] std::vector<double> gamma_offsets(const program::Program& program, const ProgramUnits& units,
-                                                const decision::ProgramDecision& decision);
+                                                const std::vector<LineGamma>& lines);
 
+/// Where the robot stands along a program.
+struct Stands {
+  robot::Position6 start = robot::Position6::Zero();  ///< where the program begins
+  std::vector<robot::Position6> joints = {};          ///< at each block's end, up to `lost`
+  std::optional<std::size_t> lost = {};               ///< the first block in which it cannot stand so
+};
 /// Joints at each block's end, turned by γ from where they are and moved to where a program with the same blocks has
-/// the tip.
-/// @throws InvalidInput naming block and line where the robot cannot stand so
-[[nodiscard]] std::vector<robot::Position6> joints_at(const ForcesResult& forces, const program::Program& program,
-                                                      const std::vector<double>& gamma_offset_rad);
+/// the tip and the tool's axis.
+[[nodiscard]] Stands joints_at(const ForcesResult& forces, const program::Program& program,
+                               const std::vector<double>& gamma_offset_rad);
 
 }  // namespace robomill::jobs

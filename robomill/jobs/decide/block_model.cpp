@@ -2,121 +2,86 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
+#include <map>
+#include <utility>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/jobs/blocks/classes.hpp"
-#include "robomill/jobs/blocks/stability.hpp"
-#include "robomill/jobs/blocks/stand_at.hpp"
+#include "robomill/jobs/decide/outcome.hpp"
 #include "robomill/jobs/program_forces.hpp"
-#include "robomill/stability/block.hpp"
-#include "robomill/stability/surface_error.hpp"
 
 namespace robomill::jobs {
 namespace {
 
-using decision::FeedRange;
-using decision::LimitUse;
+using decision::ProgramDecision;
 using decision::ProgramLimit;
 
-/// Blocks that one look stands for differ by no more: it is the exact run that judges each of them.
-constexpr double class_joint_rad = 2.0 * units::deg, class_cut_share = 0.05;
-/// Limits are searched from this multiple of the depth on; of the map up to the other.
-constexpr double shallowest = 0.25, map_deepest = 8.0;
-/// What a look reserves of each limit for the blocks of its class.
-constexpr double class_reserve = 0.01;
 /// A speed is looked for within this of the programmed ones where the spindle's range is not given.
 constexpr double default_speed_range = 0.4;
-constexpr double not_reachable = std::numeric_limits<double>::quiet_NaN();
+/// What a block that broke a limit must keep from it beyond what it missed.
+constexpr double tightening = 0.01;
+/// Of the force of a block whose load turns round.
+constexpr double reversal_step = 0.3;
 
-/// Lowers the upper end of a range of feeds.
-void cap(FeedRange& range, double most_m_per_s, const LimitUse& by) {
-  if (most_m_per_s >= range.most_m_per_s) return;
-  range.most_m_per_s = most_m_per_s;
-  range.most_by = by;
-}
-
-/// Radius of the outermost point that cuts.
-double engaged_radius_m(const cutting::Engagement& engagement) {
-  double radius = 0.0;
-  for (std::size_t i = 0; i < engagement.slices.size(); ++i) {
-    if (!engagement.of(i).empty()) radius = std::max(radius, engagement.slices[i].radius_m);
-  }
-  return radius;
-}
-
-/// Of the two limits the one that holds; 0: none.
-double stricter(double a, double b) {
-  return a > 0.0 && b > 0.0 ? std::min(a, b) : std::max(a, b);
-}
-
-JointSpeed joint_speed(const ForcesResult& forces, std::size_t block) {
-  JointSpeed out;
-  if (block == 0) return out;
-  const program::Program& program = forces.program->program;
-  const double way_m = (program.blocks[block].end.tip_m - program.begin_of(block).tip_m).norm();
-  const Eigen::VectorXd turn = forces.program->blocks[block].joints - forces.program->blocks[block - 1].joints;
-  const std::vector<robot::Joint>& joints = forces.cell->cell.arm.joints;
-  for (Eigen::Index k = 0; k < turn.size(); ++k) {
-    const double most = joints[static_cast<std::size_t>(k)].max_velocity;
-    if (!(most > 0.0) || !(std::abs(turn(k)) > 0.0)) continue;
-    const double feed = way_m * most / std::abs(turn(k));
-    if (feed < out.feed_m_per_s) out = {.feed_m_per_s = feed, .allowed = most};
-  }
+/// Greatest chip thickness, least and most: as asked, else as programmed.
+std::array<double, 2> chips_m(const DecideProblem& problem, const ProgramUnits& units) {
+  const std::array<double, 2> programmed = programmed_chips_m(problem.forces, units.lines);
+  const std::array<double, 2>& asked = problem.options.chip_thickness_m;
+  std::array<double, 2> out = {};
+  for (std::size_t k = 0; k < 2; ++k) out.at(k) = asked.at(k) > 0.0 ? asked.at(k) : programmed.at(k);
+  // A side that is not asked for gives way to the one that is.
+  if (asked[0] <= 0.0) out[0] = std::min(out[0], out[1]);
+  if (asked[1] <= 0.0) out[1] = std::max(out[0], out[1]);
   return out;
 }
 
 }  // namespace
 
-BlockModel::BlockModel(const DecideProblem& problem)
-    : problem_(problem),
-      units_(program_units(problem.forces, problem.blocks, !problem.options.is_free(Free::spindle_speed))) {
-  const std::array<double, 2> programmed = programmed_chips_m(problem.forces, problem.blocks);
-  for (std::size_t k = 0; k < 2; ++k) {
-    const double asked = problem.options.chip_thickness_m.at(k);
-    chip_m_.at(k) = asked > 0.0 ? asked : programmed.at(k);
+BlockModel::BlockModel(const DecideProblem& problem, Progress& progress)
+    : problem_(problem), checker_(collision_checker(*problem.forces.cell, problem.forces.file.cutter)) {
+  ProgramUnits units = program_units(problem.forces, problem.blocks, !problem.options.is_free(Free::spindle_speed));
+  setting_ = {.problem = &problem,
+              .chip_m = chips_m(problem, units),
+              .checker = checker_.get(),
+              .posture_free = problem.options.is_free(Free::gamma) || (problem.options.leans_free() && checker_),
+              .inverse = spherical_wrist(problem.forces.cell->cell.arm)};
+  line_of_.assign(problem.blocks.rows.size(), no_line);
+  for (std::size_t k = 0; k < units.lines.size(); ++k) {
+    for (std::size_t i = units.lines[k].first_block; i <= units.lines[k].last_block; ++i) line_of_[i] = k;
   }
-  // A side that is not asked for gives way to the one that is.
-  if (problem.options.chip_thickness_m[0] <= 0.0) chip_m_[0] = std::min(chip_m_[0], chip_m_[1]);
-  if (problem.options.chip_thickness_m[1] <= 0.0) chip_m_[1] = std::max(chip_m_[0], chip_m_[1]);
-  loads_ = block_loads(problem.forces, problem.blocks, chip_m_);
-  pace_.resize(loads_.size());
-  for (const LineUnit& line : units_.lines) {
-    for (const std::size_t block : line.cutting) {
-      pace_[block] = {.joint = joint_speed(problem.forces, block),
-                      .radius_m = engaged_radius_m(problem.forces.program->cuts[block].engagement)};
-    }
-  }
-  feed_share_.assign(units_.lines.size(), 1.0);
-  inverse_ = spherical_wrist(problem.forces.cell->cell.arm);
-  checker_ = collision_checker(*problem.forces.cell, problem.forces.file.cutter);
-  sort_into_classes();
+  stretches_ = units.stretches;
+  other_ways_.resize(stretches_.size());
+  add_way(std::make_unique<WayModel>(setting_, problem.forces, std::move(units)));
+  if (problem.options.leans_free()) add_leans(progress);
   set_search();
 }
 
-void BlockModel::sort_into_classes() {
-  const ProgramForces& program = *problem_.forces.program;
-  const Eigen::Matrix3d base_from_work = problem_.forces.cell->cell.workpiece.linear();
-  Classes classes({.joint_rad = class_joint_rad, .cut_share = class_cut_share});
-  class_of_.assign(program.blocks.size(), 0);
-  line_of_.assign(program.blocks.size(), 0);
-  for (std::size_t line = 0; line < units_.lines.size(); ++line) {
-    std::vector<std::size_t>& looks = units_.cuts[line].looks;
-    for (const std::size_t block : units_.lines[line].cutting) {
-      const cutting::PoseEngagement& cut = program.cuts[block];
-      const Eigen::Matrix3d stiffness =
-          base_from_work * mean_stiffness(cut, problem_.forces.file.coefficients) * base_from_work.transpose();
-      class_of_[block] = classes.add(
-          block,
-          {.axial_depth_m = engaged_depth_m(cut), .stiffness = stiffness, .joints = program.blocks[block].joints});
-      line_of_[block] = line;
-      if (std::ranges::find(looks, class_of_[block]) == looks.end()) looks.push_back(class_of_[block]);
+void BlockModel::add_way(std::unique_ptr<WayModel> way) {
+  const std::size_t first_class = looks_.size();
+  for (std::size_t k = 0; k < way->classes(); ++k) looks_.push_back({.way = ways_.size(), .look_class = k});
+  for (decision::ProgramCut cut : way->units().cuts) {
+    for (std::size_t& look : cut.looks) look += first_class;
+    cuts_.push_back(std::move(cut));
+  }
+  ways_.push_back(std::move(way));
+}
+
+void BlockModel::add_leans(Progress& progress) {
+  if (checker_ == nullptr) {
+    notes_.emplace_back("Lead and tilt stay as programmed: the cell has no [geometry] to check other ones by.");
+    return;
+  }
+  frames_ = stretch_frames(problem_.forces, units());
+  leans_ = lean_ways(problem_, units(), frames_, *checker_, notes_, progress);
+  for (const LeanWay& lean : leans_) {
+    const std::size_t way = ways_.size();
+    add_way(std::make_unique<WayModel>(setting_, lean.forces, units_again(units(), lean.forces)));
+    for (std::size_t k = 0; k < stretches_.size(); ++k) {
+      if (!lean.fails[k].empty()) continue;
+      stretches_[k].others.push_back(way * lines() + stretches_[k].begin);
+      other_ways_[k].push_back(way);
     }
   }
-  first_ = classes.first_blocks();
-  more_margin_.assign(first_.size(), 0.0);
 }
 
 void BlockModel::set_search() {
@@ -138,7 +103,7 @@ void BlockModel::set_search() {
     high = high > 0.0 ? std::min(high, last) : last;
   }
   const auto [slowest, fastest] =
-      std::ranges::minmax(units_.stretches, {}, &decision::ProgramStretch::programmed_spindle_speed_rad_per_s);
+      std::ranges::minmax(units().stretches, {}, &decision::ProgramStretch::programmed_spindle_speed_rad_per_s);
   const double about_low = (1.0 - default_speed_range) * slowest.programmed_spindle_speed_rad_per_s;
   const double about_high = (1.0 + default_speed_range) * fastest.programmed_spindle_speed_rad_per_s;
   if (low > 0.0 && high > 0.0 && low > high) {
@@ -154,204 +119,139 @@ void BlockModel::set_search() {
   for (int k = -below; k <= above; ++k) search_.gamma_rad.push_back(k * options.gamma_step_rad);
 }
 
-void BlockModel::limit_by_block(std::size_t cut, std::size_t block, double speed, FeedRange& range) const {
-  const BlockLoad& load = loads_[block];
-  if (!(load.chip_share > 0.0)) return;
-  const DecideOptions& options = problem_.options;
-  const BlockPace& pace = pace_[block];
-  const double per_tooth = speed * search_.teeth / (2.0 * std::numbers::pi) / units_.cuts[cut].tooth_feed_share;
-  const double programmed_chip_m = units_.cuts[cut].feed_m_per_s / per_tooth * load.chip_share;
-  cap(range, pace.joint.feed_m_per_s, {ProgramLimit::joint_speed, pace.joint.allowed, pace.joint.allowed});
-  const double least = load.feed_per_tooth_m[0] * per_tooth;
-  if (least > range.least_m_per_s) {
-    range.least_m_per_s = least;
-    range.least_by = {ProgramLimit::least_chip, programmed_chip_m, chip_m_[0]};
-  }
-  cap(range, feed_share_[cut] * load.feed_per_tooth_m[2] * per_tooth,
-      {ProgramLimit::greatest_chip, programmed_chip_m, chip_m_[1]});
-  const double share = (1.0 - class_reserve) * feed_share_[cut];
-  const auto keep = [&](ProgramLimit what, const LoadSamples& samples, double factor, double allowed) {
-    cap(range, most_feed_per_tooth_m(load, samples, share * allowed / factor) * per_tooth,
-        {what, samples[0] * factor, allowed});
-  };
-  if (options.max_force_n > 0.0) keep(ProgramLimit::force, load.force_n, 1.0, options.max_force_n);
-  const double deflection_m = stricter(options.max_deflection_m, problem_.finish.max_deflection_m);
-  if (deflection_m > 0.0) keep(ProgramLimit::deflection, load.deflection_m, 1.0, deflection_m);
-  if (!problem_.machine.spindle.empty()) {
-    const decision::SpindleCapacity able = decision::capacity_at(problem_.machine.spindle, speed);
-    keep(ProgramLimit::torque, load.torque_n_m, 1.0, able.torque_n_m);
-    keep(ProgramLimit::power, load.torque_n_m, speed, able.power_w);
-  }
-  const double cutting_speed = speed * pace.radius_m;
-  const auto& [slowest, fastest] = options.cutting_speed_m_per_s;
-  if (fastest > 0.0 && cutting_speed > fastest) {
-    cap(range, 0.0, {ProgramLimit::cutting_speed, cutting_speed, fastest});
-  }
-  if (slowest > 0.0 && cutting_speed < slowest) {
-    cap(range, 0.0, {ProgramLimit::cutting_speed, cutting_speed, slowest});
-  }
-}
-
-FeedRange BlockModel::feeds(std::size_t cut, double speed) const {
-  const LineUnit& line = units_.lines[cut];
-  const DecideOptions& options = problem_.options;
-  FeedRange range = {.least_m_per_s = 0.0, .most_m_per_s = std::numeric_limits<double>::infinity()};
-  if (line.turns_only) {
-    range.least_m_per_s = range.most_m_per_s = units_.cuts[cut].feed_m_per_s;
-    return range;
-  }
-  const decision::RecommendOptions& machine = problem_.machine;
-  if (speed < machine.min_spindle_speed_rad_per_s * (1.0 - 1e-9)) {
-    cap(range, 0.0, {ProgramLimit::spindle_range, speed, machine.min_spindle_speed_rad_per_s});
-  }
-  if (machine.max_spindle_speed_rad_per_s > 0.0 && speed > machine.max_spindle_speed_rad_per_s * (1.0 + 1e-9)) {
-    cap(range, 0.0, {ProgramLimit::spindle_range, speed, machine.max_spindle_speed_rad_per_s});
-  }
-  if (line.plunges) {
-    cap(range, units_.cuts[cut].feed_m_per_s,
-        {ProgramLimit::tip_speed, units_.cuts[cut].feed_m_per_s, units_.cuts[cut].feed_m_per_s});
-  }
-  if (options.max_feed_m_per_s > 0.0) {
-    cap(range, options.max_feed_m_per_s,
-        {ProgramLimit::tip_speed, units_.cuts[cut].feed_m_per_s, options.max_feed_m_per_s});
-  }
-  if (problem_.max_tip_speed_m_per_s > 0.0) {
-    cap(range, problem_.max_tip_speed_m_per_s,
-        {ProgramLimit::tip_speed, units_.cuts[cut].feed_m_per_s, problem_.max_tip_speed_m_per_s});
-  }
-  for (const std::size_t block : line.cutting) limit_by_block(cut, block, speed, range);
-  // A plunge is not held up by the chip that it would need to be fed faster for.
-  if (line.plunges) range.least_m_per_s = std::min(range.least_m_per_s, units_.cuts[cut].feed_m_per_s);
-  if (!std::isfinite(range.most_m_per_s)) range.least_m_per_s = range.most_m_per_s = units_.cuts[cut].feed_m_per_s;
-  return range;
-}
-
-const BlockModel::Stand& BlockModel::stand(std::size_t look_class, double gamma_rad) const {
-  const std::pair key(look_class, gamma_rad);
-  {
-    const std::scoped_lock lock(mutex_);
-    if (const auto found = stands_.find(key); found != stands_.end()) return found->second;
-  }
-  const robot::Cell& cell = problem_.forces.cell->cell;
-  const Eigen::VectorXd& programmed = problem_.forces.program->blocks[first_[look_class]].joints;
-  Stand out;
-  std::optional<Eigen::VectorXd> joints = programmed;
-  if (gamma_rad != 0.0) {
-    robot::ToolPose pose = robot::tool_pose(cell, robot::forward(cell.arm, programmed));
-    pose.gamma_rad += gamma_rad;
-    joints = stand_at(cell, inverse_, pose, programmed);
-    const bool clear = !joints || !checker_ || checker_->check(*joints).status == robot::Clearance::Status::clear;
-    if (!clear) joints.reset();
-  }
-  if (joints) out = {.reachable = true, .modes = problem_.dynamics(*joints).modes};
-  const std::scoped_lock lock(mutex_);
-  return stands_.emplace(key, std::move(out)).first->second;
-}
-
-double BlockModel::margin_at(std::size_t look_class, const modal::ModalModel& modes, double speed, double deepest,
-                             bool& stable) const {
-  const cutting::PoseEngagement& cut = problem_.forces.program->cuts[first_[look_class]];
-  const BlockCut at = {.file = problem_.forces.file,
-                       .cut = cut,
-                       .base_from_work = problem_.forces.cell->cell.workpiece.linear(),
-                       .spindle_speed_rad_per_s = speed,
-                       .tolerance = problem_.blocks_options.tolerance};
-  const double depth_m = engaged_depth_m(cut);
-  const stability::BlockStability found =
-      stability::block_stability(block_problem(at, modes), speed, depth_m,
-                                 {.tolerance = at.tolerance,
-                                  .axial_depth_m = {shallowest * depth_m, deepest * depth_m},
-                                  .margin = false,
-                                  .regime = false});
-  stable = found.at.stable;
-  const bool limited = found.limit.status == stability::Limit::Status::found;
-  return 1.0 - depth_m / (limited ? std::min(found.limit_5_percent_m, deepest * depth_m) : deepest * depth_m);
-}
-
-double BlockModel::deepest() const {
-  return std::max(2.5, 2.0 / (1.0 - problem_.machine.depth_margin));
-}
-
-BlockModel::Raw BlockModel::compute(std::size_t look_class, double speed, double gamma_rad) const {
-  Raw out;
-  const Stand& there = stand(look_class, gamma_rad);
-  out.reachable = there.reachable;
-  if (!out.reachable) return out;
-  out.margin = margin_at(look_class, there.modes, speed, deepest(), out.stable);
-  if (!(most_surface_m() > 0.0) || !out.stable) return out;
-  const double teeth_per_s = speed * search_.teeth / (2.0 * std::numbers::pi);
-  const std::size_t block = first_[look_class];
-  cutting::PoseEngagement cut = problem_.forces.program->cuts[block];
-  const BlockCut at = {.file = problem_.forces.file,
-                       .cut = cut,
-                       .base_from_work = problem_.forces.cell->cell.workpiece.linear(),
-                       .spindle_speed_rad_per_s = speed,
-                       .tolerance = problem_.blocks_options.tolerance};
-  const double depth_m = engaged_depth_m(cut);
-  for (std::size_t k = 0; k < 2; ++k) {
-    cut.feed_speed_m_per_s = loads_[block].feed_per_tooth_m.at(2 * k) * teeth_per_s;
-    const stability::SurfacePoint surface =
-        stability::surface_of_stable_cut(block_problem(at, there.modes), {speed, depth_m}, at.tolerance);
-    out.surface_m.at(k) = std::abs(surface.surface_location_error_m);
-  }
-  return out;
-}
-
-BlockModel::Raw BlockModel::raw(std::size_t look_class, double speed, double gamma_rad) const {
-  const RawKey key(look_class, speed, gamma_rad);
-  {
-    const std::scoped_lock lock(mutex_);
-    if (const auto found = raw_.find(key); found != raw_.end()) return found->second;
-  }
-  const Raw out = compute(look_class, speed, gamma_rad);
-  const std::scoped_lock lock(mutex_);
-  raw_.emplace(key, out);
-  return out;
+decision::FeedRange BlockModel::feeds(std::size_t cut, double speed) const {
+  return ways_[cut / lines()]->feeds(cut % lines(), speed);
 }
 
 decision::CutLook BlockModel::look(std::size_t look_class, double speed, std::size_t gamma) const {
-  const Raw found = raw(look_class, speed, search_.gamma_rad[gamma]);
-  decision::CutLook out;
-  if (!found.reachable) {
-    out.by = {ProgramLimit::posture, 1.0, 0.0};
-    return out;
-  }
-  // No look finds more than the depths that it searches can show.
-  const double asked = std::min(problem_.machine.depth_margin + more_margin_[look_class], 1.0 - 1.01 / deepest());
-  out.by = {ProgramLimit::stability, found.margin, asked};
-  out.holds = found.stable && found.margin >= asked;
-  const double allowed = most_surface_m() * (1.0 - class_reserve);
-  if (!out.holds || !(allowed > 0.0) || std::isnan(found.surface_m[1])) return out;
-  if (found.surface_m[1] <= allowed) return out;  // where it falls with the feed the exact run looks at it
-  const std::array<double, 3>& feed = loads_[first_[look_class]].feed_per_tooth_m;
-  out.by = {ProgramLimit::surface_error, found.surface_m[0], most_surface_m()};
-  if (found.surface_m[0] > allowed) {
-    out.holds = false;
-    return out;
-  }
-  const double share = (allowed - found.surface_m[0]) / (found.surface_m[1] - found.surface_m[0]);
-  out.most_feed_per_tooth_m = std::lerp(feed[0], feed[2], share);
-  return out;
-}
-
-double BlockModel::margin(std::size_t look_class, double speed, double gamma_rad) const {
-  const Stand& there = stand(look_class, gamma_rad);
-  bool stable = false;
-  ++map_looks_;
-  return there.reachable ? margin_at(look_class, there.modes, speed, map_deepest, stable) : not_reachable;
+  const Look& look = looks_[look_class];
+  if (look.forbidden.contains(gamma)) return {.holds = false, .by = {ProgramLimit::posture, 1.0, 0.0}};
+  return ways_[look.way]->look(look.look_class, speed, search_.gamma_rad[gamma]);
 }
 
 long long BlockModel::evaluations() const {
-  const std::scoped_lock lock(mutex_);
-  return static_cast<long long>(raw_.size()) + map_looks_;
+  long long out = 0;
+  for (const auto& way : ways_) out += way->evaluations();
+  return out;
 }
 
-void BlockModel::tighten_feed(std::size_t line, double share) {
-  feed_share_[line] *= share;
+std::size_t BlockModel::stretch_of(std::size_t line) const {
+  const auto after = std::ranges::upper_bound(stretches_, line, {}, &decision::ProgramStretch::begin);
+  return static_cast<std::size_t>(after - stretches_.begin() - 1);
 }
 
-void BlockModel::tighten_margin(std::size_t look_class, double more) {
-  more_margin_[look_class] += more;
+std::size_t BlockModel::way_of(const ProgramDecision& choice, std::size_t line) const {
+  const std::size_t stretch = stretch_of(line);
+  const std::size_t way = choice.stretches[stretch].way;
+  return way == 0 ? 0 : other_ways_[stretch][way - 1];
+}
+
+std::size_t BlockModel::chosen_cut(const ProgramDecision& choice, std::size_t line) const {
+  return way_of(choice, line) * lines() + line;
+}
+
+const WayModel& BlockModel::way_at(const ProgramDecision& choice, std::size_t block) const {
+  return *ways_[way_of(choice, line_of(block))];
+}
+
+std::size_t BlockModel::block_of(std::size_t cut) const {
+  const LineUnit& line = ways_[cut / lines()]->units().lines[cut % lines()];
+  return line.cutting.empty() ? line.first_block : line.cutting.front();
+}
+
+std::vector<Lean> BlockModel::leans(const ProgramDecision& choice) const {
+  std::vector<Lean> out;
+  for (const decision::ProgramStretch& stretch : stretches_) {
+    const std::size_t way = way_of(choice, stretch.begin);
+    out.push_back(way == 0 ? Lean{} : leans_[way - 1].lean);
+  }
+  return out;
+}
+
+program::Program BlockModel::chosen_program(const ProgramDecision& choice) const {
+  program::Program program =
+      frames_.empty() ? problem_.forces.program->program : leant(problem_.forces, units(), frames_, leans(choice));
+  std::vector<StretchConditions> conditions(stretches_.size());
+  for (std::size_t k = 0; k < stretches_.size(); ++k) {
+    if (search_.free_speed) conditions[k].spindle_speed_rad_per_s = choice.stretches[k].spindle_speed_rad_per_s;
+    for (std::size_t line = stretches_[k].begin; line < stretches_[k].end; ++line) {
+      const std::size_t cut = chosen_cut(choice, line);
+      const bool stands = ways_[cut / lines()]->units().lines[line].turns_only;
+      conditions[k].slower.push_back(stands ? 1.0 : cuts_[cut].feed_m_per_s / choice.feed_m_per_s[cut]);
+    }
+  }
+  return at_conditions(std::move(program), units(), conditions);
+}
+
+std::vector<double> BlockModel::chosen_gamma(const program::Program& program, const ProgramDecision& choice) const {
+  if (!problem_.options.is_free(Free::gamma)) return {};
+  std::vector<LineGamma> gamma;
+  for (std::size_t line = 0; line < lines(); ++line) {
+    const std::size_t cut = chosen_cut(choice, line);
+    gamma.push_back({.begin_rad = choice.gamma_begin_rad[cut], .end_rad = choice.gamma_end_rad[cut]});
+  }
+  return gamma_offsets(program, units(), gamma);
+}
+
+bool BlockModel::tighten(const ProgramDecision& choice, const std::vector<Violation>& violations) {
+  std::map<std::pair<std::size_t, std::size_t>, double> more_margin;  // of a class of a way
+  std::map<std::size_t, double> feed_share, chip_factor;              // of a cut
+  for (const Violation& v : violations) {
+    const std::size_t cut = chosen_cut(choice, line_of(v.block));
+    if (v.limit == ProgramLimit::stability) {
+      const std::size_t way = cut / lines();
+      const std::optional<std::size_t> look_class = ways_[way]->class_of(v.block);
+      if (!look_class) return false;
+      double& more = more_margin[{way, *look_class}];
+      more = std::max(more, v.allowed - v.value + tightening);
+    } else if (v.limit == ProgramLimit::least_chip) {
+      double& factor = chip_factor.try_emplace(cut, 1.0).first->second;
+      factor = std::max(factor, v.allowed / v.value * (1.0 + tightening));
+    } else if (v.limit == ProgramLimit::cutting_speed) {
+      const double speed = choice.stretches[stretch_of(line_of(v.block))].spindle_speed_rad_per_s;
+      ways_[cut / lines()]->set_radius(v.block, v.value / speed);
+    } else if (v.limit == ProgramLimit::reversal || rises_with_feed(v.limit)) {
+      const double share =
+          v.limit == ProgramLimit::reversal ? 1.0 - reversal_step : v.allowed / v.value * (1.0 - tightening);
+      double& least = feed_share.try_emplace(cut, 1.0).first->second;
+      least = std::min(least, share);
+    } else {
+      return false;
+    }
+  }
+  for (const auto& [at, more] : more_margin) ways_[at.first]->tighten_margin(at.second, more);
+  for (const auto& [cut, share] : feed_share) ways_[cut / lines()]->tighten_feed(cut % lines(), share);
+  for (const auto& [cut, factor] : chip_factor) ways_[cut / lines()]->tighten_chip(cut % lines(), factor);
+  return true;
+}
+
+bool BlockModel::forbid_at(const ProgramDecision& choice, std::size_t line) {
+  const std::size_t cut = chosen_cut(choice, line);
+  const std::vector<double>& grid = search_.gamma_rad;
+  std::vector<std::size_t> gammas;
+  for (const double gamma : {choice.gamma_begin_rad[cut], choice.gamma_end_rad[cut]}) {
+    const auto above = std::ranges::lower_bound(grid, gamma - 1e-9);
+    const auto k = static_cast<std::size_t>(above - grid.begin());
+    if (k < grid.size()) gammas.push_back(k);
+    if (k > 0 && (k == grid.size() || grid[k] > gamma + 1e-9)) gammas.push_back(k - 1);
+  }
+  // The line alone: its classes become its own.
+  for (std::size_t& look : cuts_[cut].looks) {
+    Look own = looks_[look];
+    own.forbidden.insert(gammas.begin(), gammas.end());
+    look = looks_.size();
+    looks_.push_back(std::move(own));
+  }
+  return !cuts_[cut].looks.empty();
+}
+
+bool BlockModel::forbid(const ProgramDecision& choice, std::size_t block) {
+  if (line_of_[block] != no_line) return forbid_at(choice, line_of_[block]);
+  // On the way from one line to another: what stands at its end, else at its beginning.
+  const auto next = std::ranges::find_if(line_of_.begin() + static_cast<std::ptrdiff_t>(block), line_of_.end(),
+                                         [](std::size_t line) { return line != no_line; });
+  const std::size_t after = next == line_of_.end() ? lines() : *next;
+  return (after < lines() && forbid_at(choice, after)) || (after > 0 && forbid_at(choice, after - 1));
 }
 
 }  // namespace robomill::jobs

@@ -1,115 +1,101 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
-#include <atomic>
 #include <cstddef>
-#include <limits>
-#include <map>
 #include <memory>
-#include <mutex>
-#include <optional>
+#include <set>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "robomill/decision/program_decision.hpp"
 #include "robomill/jobs/decide.hpp"
+#include "robomill/jobs/decide/apply.hpp"
 #include "robomill/jobs/decide/collisions.hpp"
-#include "robomill/jobs/decide/loads.hpp"
-#include "robomill/jobs/decide/units.hpp"
-#include "robomill/robot/inverse.hpp"
+#include "robomill/jobs/decide/lean_ways.hpp"
+#include "robomill/jobs/decide/way_model.hpp"
 
 namespace robomill::jobs {
 
-/// The greatest feed of the tip at which no joint is faster than its limit over a block.
-struct JointSpeed {
-  double feed_m_per_s = std::numeric_limits<double>::infinity();
-  double allowed = 0.0;  ///< speed of that joint
-};
-
-/// What of a block's limits does not depend on spindle speed and feed.
-struct BlockPace {
-  JointSpeed joint = {};
-  double radius_m = 0.0;  ///< of the outermost point that cuts
-};
-
-/// A program's blocks as the search asks of them: loads over feed, and one look a class of blocks.
+/// A program as the search asks of it: as programmed and, where lead or tilt are free, with every lean that it can
+/// have. Cuts and classes of one way stand behind those of the other.
 class BlockModel final : public decision::ProgramModel {
  public:
   /// @param problem  outlives the model
-  explicit BlockModel(const DecideProblem& problem);
+  /// @throws InvalidInput as lean_ways; Interrupted
+  BlockModel(const DecideProblem& problem, Progress& progress);
 
   [[nodiscard]] decision::FeedRange feeds(std::size_t cut, double spindle_speed_rad_per_s) const override;
   [[nodiscard]] decision::CutLook look(std::size_t look_class, double spindle_speed_rad_per_s,
                                        std::size_t gamma) const override;
 
-  [[nodiscard]] const ProgramUnits& units() const { return units_; }
+  [[nodiscard]] const WayModel& as_programmed() const { return *ways_.front(); }
+  /// As programmed.
+  [[nodiscard]] const ProgramUnits& units() const { return ways_.front()->units(); }
+  [[nodiscard]] const std::vector<decision::ProgramCut>& cuts() const { return cuts_; }
+  [[nodiscard]] const std::vector<decision::ProgramStretch>& stretches() const { return stretches_; }
   [[nodiscard]] const decision::ProgramOptions& search() const { return search_; }
-  [[nodiscard]] const std::array<double, 2>& chip_m() const { return chip_m_; }
-  /// The stability margin of a class at γ [rad], of a limit up to eight times the depth; NaN: the robot cannot stand
-  /// so.
-  [[nodiscard]] double margin(std::size_t look_class, double spindle_speed_rad_per_s, double gamma_rad) const;
-  [[nodiscard]] std::size_t classes() const { return first_.size(); }
-  /// The class of a block that cuts.
-  [[nodiscard]] std::size_t class_of(std::size_t block) const { return class_of_[block]; }
-  [[nodiscard]] long long evaluations() const;
+  [[nodiscard]] const std::array<double, 2>& chip_m() const { return setting_.chip_m; }
   /// Of the cell and the cutter; null: the cell has no [geometry].
   [[nodiscard]] const robot::CollisionChecker* checker() const { return checker_.get(); }
+  /// Sentences on what was left out.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  [[nodiscard]] long long evaluations() const;
 
-  /// The line of a block that cuts.
+  /// How the tool leans in each stretch of a choice.
+  [[nodiscard]] std::vector<Lean> leans(const decision::ProgramDecision& choice) const;
+  /// The program at a choice.
+  [[nodiscard]] program::Program chosen_program(const decision::ProgramDecision& choice) const;
+  /// γ at its start and at each block's end; empty where it is not free.
+  [[nodiscard]] std::vector<double> chosen_gamma(const program::Program& program,
+                                                 const decision::ProgramDecision& choice) const;
+  /// The block that stands for a cut in messages: the first of its line that cuts.
+  [[nodiscard]] std::size_t block_of(std::size_t cut) const;
+  /// Whether a block is one of a line that cuts.
+  [[nodiscard]] bool in_line(std::size_t block) const { return line_of_[block] != no_line; }
+  /// … of which line.
   [[nodiscard]] std::size_t line_of(std::size_t block) const { return line_of_[block]; }
+  /// The way of a block that cuts.
+  [[nodiscard]] const WayModel& way_at(const decision::ProgramDecision& choice, std::size_t block) const;
 
-  /// Holds a line further from the limits of its feed, by that share of what it may have.
-  void tighten_feed(std::size_t line, double share);
-  /// Asks so much more margin of a class.
-  void tighten_margin(std::size_t look_class, double more);
+  /// Holds what broke a limit further from it, by its worst block; false: that is not possible.
+  bool tighten(const decision::ProgramDecision& choice, const std::vector<Violation>& violations);
+  /// Whether γ or the lean may differ from the program's.
+  [[nodiscard]] bool posture_free() const { return setting_.posture_free; }
+  /// The posture of a choice in which the robot cannot stand at a block, or not without a collision, is left out at the
+  /// block's line. false: no line is there.
+  bool forbid(const decision::ProgramDecision& choice, std::size_t block);
 
  private:
-  /// What vibrates where a class's first block stands turned by γ.
-  struct Stand {
-    bool reachable = false;
-    modal::ModalModel modes = {};
+  static constexpr std::size_t no_line = static_cast<std::size_t>(-1);
+  /// A class of a way, and the γ at which it must not stand.
+  struct Look {
+    std::size_t way = 0, look_class = 0;
+    std::set<std::size_t> forbidden = {};
   };
-  /// One class at one speed in one posture.
-  struct Raw {
-    bool reachable = false;
-    bool stable = false;
-    double margin = 0.0;
-    std::array<double, 2> surface_m = {0.0, 0.0};  ///< magnitudes at the ends of the class's range of feeds; NaN: none
-  };
-  using RawKey = std::tuple<std::size_t, double, double>;  ///< class, speed, γ
 
-  /// Narrows the feeds of a line by what one of its blocks bears.
-  void limit_by_block(std::size_t cut, std::size_t block, double speed, decision::FeedRange& range) const;
-  void sort_into_classes();
+  void add_way(std::unique_ptr<WayModel> way);
+  void add_leans(Progress& progress);
   void set_search();
-  [[nodiscard]] const Stand& stand(std::size_t look_class, double gamma_rad) const;
-  /// 1 - depth / limit, of the 5 % quantile, and of the depth searched where there is no limit.
-  [[nodiscard]] double margin_at(std::size_t look_class, const modal::ModalModel& modes, double speed, double deepest,
-                                 bool& stable) const;
-  [[nodiscard]] Raw compute(std::size_t look_class, double speed, double gamma_rad) const;
-  [[nodiscard]] Raw raw(std::size_t look_class, double speed, double gamma_rad) const;
-  /// Depths that looks search up to, as a multiple of the cut's.
-  [[nodiscard]] double deepest() const;
-  [[nodiscard]] double most_surface_m() const { return problem_.finish.max_surface_error_m; }
+  [[nodiscard]] std::size_t lines() const { return units().lines.size(); }
+  [[nodiscard]] std::size_t stretch_of(std::size_t line) const;
+  [[nodiscard]] std::size_t way_of(const decision::ProgramDecision& choice, std::size_t line) const;
+  /// The cut of a line in a choice.
+  [[nodiscard]] std::size_t chosen_cut(const decision::ProgramDecision& choice, std::size_t line) const;
+  [[nodiscard]] bool forbid_at(const decision::ProgramDecision& choice, std::size_t line);
 
   const DecideProblem& problem_;
-  ProgramUnits units_;
-  std::array<double, 2> chip_m_ = {};
-  std::vector<BlockLoad> loads_ = {};       ///< one a block
-  std::vector<BlockPace> pace_ = {};        ///< one a block
-  std::vector<double> feed_share_ = {};     ///< of each line, <= 1: tightened
-  std::vector<std::size_t> class_of_ = {};  ///< of each block
-  std::vector<std::size_t> first_ = {};     ///< block of each class
-  std::vector<double> more_margin_ = {};    ///< of each class
-  std::vector<std::size_t> line_of_ = {};   ///< of each block that cuts
+  WaySetting setting_;
+  std::unique_ptr<robot::CollisionChecker> checker_ = {};
+  std::vector<Eigen::Matrix3d> frames_ = {};          ///< of the stretches, where leans are free
+  std::vector<LeanWay> leans_ = {};                   ///< of way k: leans_[k - 1]
+  std::vector<std::unique_ptr<WayModel>> ways_ = {};  ///< the first as programmed
+  std::vector<decision::ProgramCut> cuts_ = {};       ///< of way w and line k: w · lines + k
+  std::vector<decision::ProgramStretch> stretches_ = {};
+  std::vector<std::vector<std::size_t>> other_ways_ = {};  ///< of each stretch: the way of each of its `others`
+  std::vector<Look> looks_ = {};
+  std::vector<std::size_t> line_of_ = {};  ///< of each block; no_line: none cuts in it
   decision::ProgramOptions search_ = {};
-  std::optional<robot::SphericalWristInverse> inverse_ = {};
-  std::unique_ptr<robot::CollisionChecker> checker_ = {};  ///< none: nothing is known of what stands about
-  mutable std::mutex mutex_;
-  mutable std::map<std::pair<std::size_t, double>, Stand> stands_ = {};
-  mutable std::map<RawKey, Raw> raw_ = {};
-  mutable std::atomic<long long> map_looks_ = 0;
+  std::vector<std::string> notes_ = {};
 };
 
 }  // namespace robomill::jobs

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "robomill/base/parallel.hpp"
 #include "robomill/base/units.hpp"
 
 namespace robomill::jobs {
@@ -36,15 +37,21 @@ std::unique_ptr<robot::CollisionChecker> collision_checker(const CellFile& cell,
   return std::make_unique<robot::CollisionChecker>(cell.cell, geometry);
 }
 
-std::optional<NearMiss> first_near_miss(const robot::CollisionChecker& checker, const robot::CellGeometry& geometry,
-                                        const std::vector<robot::Position6>& joints) {
-  const double step_m = std::clamp(2.0 * geometry.clearance_m, shortest_step_m, longest_step_m);
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const robot::Clearance clearance =
-        i == 0 ? checker.check(joints[i]) : checker.check_move(joints[i - 1], joints[i], step_m).clearance;
-    if (clearance.status != robot::Clearance::Status::clear) return NearMiss{.block = i, .clearance = clearance};
+std::vector<NearMiss> near_misses(const robot::CollisionChecker* checker, const CellFile& cell, const Stands& stands) {
+  if (checker == nullptr) return {};
+  const double step_m = std::clamp(2.0 * cell.geometry->clearance_m, shortest_step_m, longest_step_m);
+  std::vector<robot::Clearance> clearance(stands.joints.size());
+  parallel_for(clearance.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const robot::Position6& from = i == 0 ? stands.start : stands.joints[i - 1];
+      clearance[i] = checker->check_move(from, stands.joints[i], step_m).clearance;
+    }
+  });
+  std::vector<NearMiss> out;
+  for (std::size_t i = 0; i < clearance.size(); ++i) {
+    if (clearance[i].status != robot::Clearance::Status::clear) out.push_back({.block = i, .clearance = clearance[i]});
   }
-  return std::nullopt;
+  return out;
 }
 
 std::string near_miss_text(const robot::Clearance& clearance) {

@@ -1,13 +1,12 @@
 #pragma once
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "robomill/cutting/cutter.hpp"
+#include "robomill/jobs/decide/apply.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
 #include "robomill/robot/collision.hpp"
-#include "robomill/robot/kinematics.hpp"
 
 namespace robomill::jobs {
 
@@ -16,15 +15,17 @@ namespace robomill::jobs {
 [[nodiscard]] std::unique_ptr<robot::CollisionChecker> collision_checker(const CellFile& cell,
                                                                          const cutting::Cutter& cutter);
 
-/// Where a program first comes too near to something.
+/// Where a program comes too near to something.
 struct NearMiss {
   std::size_t block = 0;
   robot::Clearance clearance = {};
 };
-/// Along the joints at the end of each block, moved evenly from one to the next.
-[[nodiscard]] std::optional<NearMiss> first_near_miss(const robot::CollisionChecker& checker,
-                                                      const robot::CellGeometry& geometry,
-                                                      const std::vector<robot::Position6>& joints);
+/// Of each block in order, from where the program begins along the joints at the blocks' ends, moved evenly from one to
+/// the next.
+/// @param checker  null: nothing is known of what stands about, and nothing is near
+/// @param cell     the checker's
+[[nodiscard]] std::vector<NearMiss> near_misses(const robot::CollisionChecker* checker, const CellFile& cell,
+                                                const Stands& stands);
 
 /// "holder comes within 0.4 mm of vise".
 [[nodiscard]] std::string near_miss_text(const robot::Clearance& clearance);

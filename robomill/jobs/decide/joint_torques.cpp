@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "robomill/base/parallel.hpp"
-#include "robomill/jobs/blocks/dynamics.hpp"
+#include "robomill/jobs/decide/motion_loads.hpp"
 #include "robomill/robot/pose.hpp"
 
 namespace robomill::jobs {
@@ -45,8 +45,7 @@ class TorqueSampler {
 }  // namespace
 
 std::vector<robot::LoadedBlock> joint_torques(const ForcesResult& forces, const ProgramBlocks& blocks) {
-  const std::optional<robot::Link> payload = payload_of(*forces.cell);
-  const robot::Arm arm = payload ? robot::with_payload(forces.cell->cell.arm, *payload) : forces.cell->cell.arm;
+  const robot::Arm arm = loaded_arm(*forces.cell);
   std::vector<robot::LoadedBlock> out(blocks.rows.size());
   parallel_for(out.size(), 64, [&](std::size_t begin, std::size_t end) {
     TorqueSampler sampler(forces, arm);

@@ -70,6 +70,14 @@ class LoadSampler {
 
 }  // namespace
 
+double engaged_radius_m(const cutting::Engagement& engagement) {
+  double radius = 0.0;
+  for (std::size_t i = 0; i < engagement.slices.size(); ++i) {
+    if (!engagement.of(i).empty()) radius = std::max(radius, engagement.slices[i].radius_m);
+  }
+  return radius;
+}
+
 double most_feed_per_tooth_m(const BlockLoad& load, const LoadSamples& samples, double allowed) {
   const std::array<double, 3>& feed = load.feed_per_tooth_m;
   if (samples[0] > allowed) return 0.0;
@@ -81,27 +89,28 @@ double most_feed_per_tooth_m(const BlockLoad& load, const LoadSamples& samples, 
   return feed[2];
 }
 
-std::array<double, 2> programmed_chips_m(const ForcesResult& forces, const ProgramBlocks& blocks) {
+std::array<double, 2> programmed_chips_m(const ForcesResult& forces, const std::vector<LineUnit>& lines) {
   std::array<double, 2> out = {std::numeric_limits<double>::infinity(), 0.0};
-  for (std::size_t i = 0; i < blocks.rows.size(); ++i) {
-    if (!blocks.rows[i].cuts) continue;
-    const double chip_m = forces.program->blocks[i].force.feed_per_tooth_m *
-                          cutting::greatest_chip_share(forces.program->cuts[i].engagement);
-    if (!(chip_m > 0.0)) continue;
-    out[0] = std::min(out[0], chip_m);
-    out[1] = std::max(out[1], chip_m);
+  for (const LineUnit& line : lines) {
+    for (const std::size_t block : line.cutting) {
+      const double chip_m = forces.program->blocks[block].force.feed_per_tooth_m *
+                            cutting::greatest_chip_share(forces.program->cuts[block].engagement);
+      if (!(chip_m > 0.0)) continue;
+      out[0] = std::min(out[0], chip_m);
+      out[1] = std::max(out[1], chip_m);
+    }
   }
   return out;
 }
 
-std::vector<BlockLoad> block_loads(const ForcesResult& forces, const ProgramBlocks& blocks,
+std::vector<BlockLoad> block_loads(const ForcesResult& forces, const std::vector<LineUnit>& lines,
                                    const std::array<double, 2>& chip_m) {
-  std::vector<BlockLoad> out(blocks.rows.size());
-  parallel_for(out.size(), 64, [&](std::size_t begin, std::size_t end) {
+  std::vector<BlockLoad> out(forces.program->blocks.size());
+  std::vector<std::size_t> cutting;
+  for (const LineUnit& line : lines) cutting.insert(cutting.end(), line.cutting.begin(), line.cutting.end());
+  parallel_for(cutting.size(), 64, [&](std::size_t begin, std::size_t end) {
     LoadSampler sampler(forces);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (blocks.rows[i].cuts) out[i] = sampler.at(i, chip_m);
-    }
+    for (std::size_t i = begin; i < end; ++i) out[cutting[i]] = sampler.at(cutting[i], chip_m);
   });
   return out;
 }

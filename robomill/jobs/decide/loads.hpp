@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "robomill/jobs/blocks.hpp"
+#include "robomill/jobs/decide/units.hpp"
 #include "robomill/jobs/forces.hpp"
 
 namespace robomill::jobs {
@@ -19,16 +19,19 @@ struct BlockLoad {
   LoadSamples force_n = {}, torque_n_m = {}, deflection_m = {};
 };
 
+/// Radius of the outermost point that cuts.
+[[nodiscard]] double engaged_radius_m(const cutting::Engagement& engagement);
+
 /// Greatest feed per tooth at which a load stays at most `allowed`, within the samples; 0: at none.
 [[nodiscard]] double most_feed_per_tooth_m(const BlockLoad& load, const LoadSamples& samples, double allowed);
 
 /// Chip thickness of each block as programmed, least and most of all that cut.
-[[nodiscard]] std::array<double, 2> programmed_chips_m(const ForcesResult& forces, const ProgramBlocks& blocks);
+[[nodiscard]] std::array<double, 2> programmed_chips_m(const ForcesResult& forces, const std::vector<LineUnit>& lines);
 
-/// Of every block that cuts; the others are empty. At the programmed feed they are those of the block.
+/// Of every block of the lines that cuts; the others are empty. At the programmed feed they are those of the block.
 /// @param chip_m  greatest chip thickness, least and most: the samples' range
 /// @throws InvalidInput as cutting::ForceKernel
-[[nodiscard]] std::vector<BlockLoad> block_loads(const ForcesResult& forces, const ProgramBlocks& blocks,
+[[nodiscard]] std::vector<BlockLoad> block_loads(const ForcesResult& forces, const std::vector<LineUnit>& lines,
                                                  const std::array<double, 2>& chip_m);
 
 }  // namespace robomill::jobs

@@ -1,10 +1,13 @@
 #include "robomill/jobs/decide/outcome.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "robomill/decision/program/looks.hpp"
 #include "robomill/jobs/decide/joint_torques.hpp"
+#include "robomill/jobs/decide/loads.hpp"
+#include "robomill/jobs/decide/units.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -45,6 +48,44 @@ void of_spindle(const DecideProblem& problem, const BlockResult& row, std::size_
   add_if_broken(out, {ProgramLimit::power, block, row.force.sustained_power_w, able.power_w});
 }
 
+/// Feed, the speeds of the joints, and the chip where it is to be thick enough.
+void of_motion(const JudgedRun& run, std::size_t block, double chip_m, double least_chip_m,
+               std::vector<Violation>& out) {
+  const DecideOptions& options = run.problem.options;
+  const program::Program& program = run.forces.program->program;
+  const double duration_s = program.blocks[block].duration_s;
+  const double feed = way_m(program, block, block) / duration_s;
+  for (const double most : {options.max_feed_m_per_s, run.problem.max_tip_speed_m_per_s}) {
+    if (most > 0.0) add_if_broken(out, {ProgramLimit::tip_speed, block, feed, most});
+  }
+  const std::vector<robot::Joint>& joints = run.forces.cell->cell.arm.joints;
+  Violation fastest = {.limit = ProgramLimit::joint_speed, .block = block};
+  for (std::size_t k = 0; k < joints.size() && block > 0; ++k) {
+    const auto joint = static_cast<Eigen::Index>(k);
+    const double turn =
+        run.forces.program->blocks[block].joints(joint) - run.forces.program->blocks[block - 1].joints(joint);
+    const double speed = std::abs(turn) / duration_s;
+    if (!(joints[k].max_velocity > 0.0)) continue;
+    if (fastest.allowed > 0.0 && speed / joints[k].max_velocity <= fastest.value / fastest.allowed) continue;
+    fastest.value = speed;
+    fastest.allowed = joints[k].max_velocity;
+  }
+  if (fastest.allowed > 0.0) add_if_broken(out, fastest);
+  // A tip that stands has no feed to raise, and a plunge keeps the one it has.
+  if (least_chip_m > 0.0 && feed > 0.0 && !plunges_in_line(program, block)) {
+    add_if_broken(out, {ProgramLimit::least_chip, block, chip_m, least_chip_m});
+  }
+}
+
+void of_cutting_speed(const JudgedRun& run, std::size_t block, std::vector<Violation>& out) {
+  const double speed =
+      run.blocks.rows[block].spindle_speed_rad_per_s * engaged_radius_m(run.forces.program->cuts[block].engagement);
+  const auto& [slowest, fastest] = run.problem.options.cutting_speed_m_per_s;
+  const bool too_fast = fastest > 0.0 && speed > fastest * (1.0 + violation_tolerance);
+  const bool too_slow = speed < slowest * (1.0 - violation_tolerance);
+  if (too_fast || too_slow) out.push_back({ProgramLimit::cutting_speed, block, speed, too_fast ? fastest : slowest});
+}
+
 void of_block(const JudgedRun& run, std::size_t block, const std::array<double, 2>& chip_m,
               std::vector<Violation>& out) {
   const auto& [problem, forces, blocks, torques, reversals] = run;
@@ -59,13 +100,15 @@ void of_block(const JudgedRun& run, std::size_t block, const std::array<double, 
   for (const double most_m : {options.max_deflection_m, problem.finish.max_deflection_m}) {
     if (most_m > 0.0) add_if_broken(out, {ProgramLimit::deflection, block, load.peak_deflection_m.norm(), most_m});
   }
-  const double surface_m = std::abs(row.cut.surface_error_m);
+  const double surface_m = left_surface_error_m(forces, row);
   if (problem.finish.max_surface_error_m > 0.0 && std::isfinite(surface_m)) {
     add_if_broken(out, {ProgramLimit::surface_error, block, surface_m, problem.finish.max_surface_error_m});
   }
   const double chip =
       load.force.feed_per_tooth_m * cutting::greatest_chip_share(forces.program->cuts[block].engagement);
   if (chip_m[1] > 0.0) add_if_broken(out, {ProgramLimit::greatest_chip, block, chip, chip_m[1]});
+  of_motion(run, block, chip, options.chip_thickness_m[0], out);
+  of_cutting_speed(run, block, out);
   of_spindle(problem, load, block, out);
   const double share = greatest_torque_share(forces.cell->cell.arm, torques[block]);
   add_if_broken(out, {ProgramLimit::joint_torque, block, share, 1.0});
@@ -76,6 +119,17 @@ void of_block(const JudgedRun& run, std::size_t block, const std::array<double, 
 }
 
 }  // namespace
+
+bool rises_with_feed(ProgramLimit limit) {
+  constexpr std::array loads = {ProgramLimit::force,        ProgramLimit::torque,        ProgramLimit::power,
+                                ProgramLimit::deflection,   ProgramLimit::tip_speed,     ProgramLimit::joint_speed,
+                                ProgramLimit::joint_torque, ProgramLimit::greatest_chip, ProgramLimit::surface_error};
+  return std::ranges::find(loads, limit) != loads.end();
+}
+
+double left_surface_error_m(const ForcesResult& forces, const BlockRow& row) {
+  return std::abs(forces.program->stock ? row.surface_left_m : row.cut.surface_error_m);
+}
 
 JudgedRun::JudgedRun(const DecideProblem& asked, const ForcesResult& run, const ProgramBlocks& judged)
     : problem(asked),
@@ -116,7 +170,7 @@ Outcome outcome_of(const JudgedRun& run, const std::array<double, 2>& chip_m) {
     out.peak_deflection_m = std::max(out.peak_deflection_m, load.peak_deflection_m.norm());
     out.greatest_torque_share =
         std::max(out.greatest_torque_share, greatest_torque_share(forces.cell->cell.arm, torques[i]));
-    out.worst_surface_error_m = std::fmax(out.worst_surface_error_m, std::abs(row.cut.surface_error_m));
+    out.worst_surface_error_m = std::fmax(out.worst_surface_error_m, left_surface_error_m(forces, row));
   }
   std::vector<std::size_t> turned;
   turned.reserve(reversals.size());

@@ -18,6 +18,13 @@ struct JudgedRun {
   std::vector<robot::LoadReversal> reversals;
 };
 
+/// Loads that a lower feed lowers.
+[[nodiscard]] bool rises_with_feed(decision::ProgramLimit limit);
+
+/// Magnitude of what a block leaves of the finished surface; without a stock of all that it leaves. NaN: nothing, or
+/// not known.
+[[nodiscard]] double left_surface_error_m(const ForcesResult& forces, const BlockRow& row);
+
 /// Every violation, block by block.
 /// @param chip_m  greatest chip thickness, least and most
 [[nodiscard]] std::vector<Violation> violations_of(const JudgedRun& run, const std::array<double, 2>& chip_m);

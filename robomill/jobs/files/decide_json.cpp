@@ -119,6 +119,8 @@ Json stretches_json(const DecideResult& result, const ForcesResult& forces) {
          {"first_line", line_of(result, forces, lines.first_block)},
          {"last_line", line_of(result, forces, lines.last_block)},
          {"spindle_speed_rpm", number(lines.spindle_speed_rad_per_s / units::rpm)},
+         {"lead_deg", number(lines.lead_rad / units::deg)},
+         {"tilt_deg", number(lines.tilt_rad / units::deg)},
          {"lowest_feed_mm_per_min", number(feed_of(lines.lowest_feed_m_per_s))},
          {"highest_feed_mm_per_min", number(feed_of(lines.highest_feed_m_per_s))},
          {"cutting_time_s", number(lines.cutting_time_s)},
@@ -167,8 +169,10 @@ std::string limit_text(const decision::LimitUse& use) {
   const LimitWords* words = words_of(use.limit);
   if (words == nullptr) return use.limit == ProgramLimit::posture ? "the robot cannot stand so" : "slower";
   const std::string unit = *words->unit == '\0' ? "" : std::string(" ") + words->unit;
+  const bool both_sides = use.limit == ProgramLimit::cutting_speed || use.limit == ProgramLimit::spindle_range;
+  const bool at_least = words->at_least || (both_sides && use.value < use.allowed);
   return fmt::format("{} {:.3g}{}; {} {:.3g}{}", words->name, use.value / words->factor, unit,
-                     words->at_least ? "at least" : "at most", use.allowed / words->factor, unit);
+                     at_least ? "at least" : "at most", use.allowed / words->factor, unit);
 }
 
 Json program_decision_json(const PlanResult& plan) {

@@ -44,6 +44,8 @@ DecideOptions read_decide(io::TomlFile& file) {
              out.cutting_speed_m_per_s);
   read_range(file, "decide.gamma_range_deg", "gamma_range_rad", units::deg, out.gamma_range_rad);
   file.number("decide.gamma_step_deg", "gamma_step_rad", units::deg, out.gamma_step_rad);
+  file.number("decide.cone_deg", "cone_rad", units::deg, out.cone_rad);
+  file.number("decide.cone_step_deg", "cone_step_rad", units::deg, out.cone_step_rad);
   file.boolean("decide.compensate", out.compensate);
   file.number("decide.max_offset_um", "max_offset_m", units::um, out.max_offset_m);
   file.boolean("decide.controller_compensates", out.controller_compensates);

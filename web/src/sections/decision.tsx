@@ -7,6 +7,7 @@ import {
   cuttingTimeText,
   decisionFacts,
   feedText,
+  leanText,
   limited,
   limitName,
   measures,
@@ -128,6 +129,7 @@ const stretchColumns: Column<Stretch>[] = [
   { heading: 'To', cell: ({ last_block: block, last_line: line }) => <BlockLink block={block} line={line} /> },
   { heading: 'Spindle speed (rpm)', number: true, cell: (row) => fixed(row.spindle_speed_rpm, 0) },
   { heading: 'Feed (mm/min)', number: true, cell: (row) => rangeText(row.lowest_feed_mm_per_min, row.highest_feed_mm_per_min, significant) },
+  { heading: 'Lead, tilt', number: true, optional: true, cell: leanText },
   { heading: 'Cutting time (s)', number: true, cell: (row) => fixed(row.cutting_time_s, 1) },
   { heading: 'Limited by', long: true, cell: ({ limited_by: text }) => <LinkedText text={text} /> },
 ];
