@@ -92,9 +92,10 @@ Stands joints_at(const ForcesResult& forces, const program::Program& program,
   begin.tip_m = program.start.tip_m;
   begin.axis = program.start.axis;
   if (!gamma_offset_rad.empty()) begin.gamma_rad += gamma_offset_rad[0] - gamma_offset_rad[1];
+  const bool turned = !gamma_offset_rad.empty() && gamma_offset_rad[0] != 0.0;
   if (const std::optional<Eigen::VectorXd> joints = stand_at(cell, inverse, begin, out.joints.front())) {
     out.start = robot::Position6(*joints);
-  } else {
+  } else if (turned || program.start.axis != before.start.axis) {
     out.lost = 0;
   }
   return out;

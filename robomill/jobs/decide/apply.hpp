@@ -33,9 +33,10 @@ struct LineGamma {
 
 /// Where the robot stands along a program.
 struct Stands {
-  robot::Position6 start = robot::Position6::Zero();  ///< where the program begins
-  std::vector<robot::Position6> joints = {};          ///< at each block's end, up to `lost`
-  std::optional<std::size_t> lost = {};               ///< the first block in which it cannot stand so
+  /// Where the program begins; none: there it cannot stand as it is programmed.
+  std::optional<robot::Position6> start = {};
+  std::vector<robot::Position6> joints = {};  ///< at each block's end, up to `lost`
+  std::optional<std::size_t> lost = {};       ///< the first block in which it cannot stand so
 };
 /// Joints at each block's end, turned by γ from where they are and moved to where a program with the same blocks has
 /// the tip and the tool's axis.

@@ -43,7 +43,7 @@ std::vector<NearMiss> near_misses(const robot::CollisionChecker* checker, const 
   std::vector<robot::Clearance> clearance(stands.joints.size());
   parallel_for(clearance.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const robot::Position6& from = i == 0 ? stands.start : stands.joints[i - 1];
+      const robot::Position6 from = i == 0 ? stands.start.value_or(stands.joints[0]) : stands.joints[i - 1];
       clearance[i] = checker->check_move(from, stands.joints[i], step_m).clearance;
     }
   });
