@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -259,8 +260,10 @@ TEST_F(DecidePostures, LoadsOfAMotionAreThoseOfItsDerivatives) {
   const Eigen::VectorXd middle = forces.program->blocks[5].joints;
   const Eigen::VectorXd swing = Eigen::VectorXd::LinSpaced(6, 0.05, 0.3);
   const double rate = 7.0, period_s = 0.002;
-  MotionLoads loads(file, period_s);
   const std::size_t blocks = forces.program->blocks.size();
+  std::vector<std::size_t> each(blocks);
+  std::iota(each.begin(), each.end(), std::size_t{0});
+  MotionLoads loads(file, period_s, each);
   std::vector<double> expected(blocks, 0.0);
   for (int i = 0; i <= 1500; ++i) {
     const double time_s = i * period_s;

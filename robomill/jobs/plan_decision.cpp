@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -70,23 +71,69 @@ void write_program(PlanResult& result, const CellFile& cell) {
   result.program_name = "program" + result.job.program.extension().string();
 }
 
+/// A program as it is written, for a robot that is to run it.
+class WrittenProgram {
+ public:
+  WrittenProgram(const std::filesystem::path& folder, const std::string& name, const std::string& text,
+                 const program::ProgramReading& reading, const program::Program& wanted)
+      : wanted_(wanted), file_(folder, name, text), read_(program::read_program(file_.path(), reading)) {
+    // A move that turns the tool may be read as several blocks, and rapids that run on as fewer.
+    std::size_t next = 0;
+    for (const program::Block& block : read_.blocks) {
+      std::size_t k = next;
+      while (k + 1 < wanted.blocks.size() && !same_end(block, wanted.blocks[k]) &&
+             wanted.blocks[k].kind == program::Block::Kind::rapid) {
+        ++k;
+      }
+      const bool ends = same_end(block, wanted.blocks[k]);
+      block_of_.push_back(ends ? k : next);
+      if (ends) next = std::min(k + 1, wanted.blocks.size() - 1);
+    }
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
+  /// Of each block that is read the one that was wanted.
+  [[nodiscard]] const std::vector<std::size_t>& block_of() const { return block_of_; }
+  /// Of values at the wanted program's start and at each block's end those of the program that is read.
+  [[nodiscard]] std::vector<double> along(const std::vector<double>& wanted) const {
+    std::vector<double> out = {wanted.front()};
+    for (std::size_t i = 0; i < read_.blocks.size(); ++i) {
+      const std::size_t k = block_of_[i];
+      const Eigen::Vector3d& from_m = wanted_.begin_of(k).tip_m;
+      const double way_m = (wanted_.blocks[k].end.tip_m - from_m).norm();
+      const bool part = way_m > 0.0 && !same_end(read_.blocks[i], wanted_.blocks[k]);
+      const double share = part ? std::min((read_.blocks[i].end.tip_m - from_m).norm() / way_m, 1.0) : 1.0;
+      out.push_back(std::lerp(wanted[k], wanted[k + 1], share));
+    }
+    return out;
+  }
+
+ private:
+  static bool same_end(const program::Block& a, const program::Block& b) {
+    constexpr double same_m = 1e-6, same_axis = 1e-6;
+    return a.kind == b.kind && (a.end.tip_m - b.end.tip_m).norm() <= same_m &&
+           (a.end.axis - b.end.axis).norm() <= same_axis;
+  }
+  const program::Program& wanted_;
+  ScratchProgram file_;
+  program::Program read_;
+  std::vector<std::size_t> block_of_ = {};
+};
+
 /// Where the machine starts and how the flange stands along a program, turned by γ from where it was along the one that
 /// was smoothed.
-path::Posture posture_of(const SmoothResult& smoothed, const program::Program& program,
+path::Posture posture_of(const SmoothResult& smoothed, const WrittenProgram& written, const program::Program& program,
                          const std::vector<double>& gamma_offset_rad, const CellFile& cell) {
   const path::Posture& before = smoothed.posture.posture;
-  if (gamma_offset_rad.empty() && before.gamma_rad.size() <= 1) return before;
-  path::Posture out;
-  for (std::size_t i = 0; i <= program.blocks.size(); ++i) {
-    const double gamma = before.gamma_rad.size() > 1    ? before.gamma_rad.at(i)
-                         : before.gamma_rad.size() == 1 ? before.gamma_rad.front()
-                                                        : cell.redundant_gamma_rad;
-    out.gamma_rad.push_back(gamma + (gamma_offset_rad.empty() ? 0.0 : gamma_offset_rad[i]));
+  path::Posture out = before;
+  if (out.gamma_rad.empty()) out.gamma_rad = {cell.redundant_gamma_rad};
+  if (!gamma_offset_rad.empty() || out.gamma_rad.size() > 1) {
+    out.gamma_rad.resize(program.blocks.size() + 1, out.gamma_rad.front());
+    for (std::size_t i = 0; i < gamma_offset_rad.size(); ++i) out.gamma_rad[i] += gamma_offset_rad[i];
+    out.gamma_rad = written.along(out.gamma_rad);
   }
-  const program::Pose& start = program.start;
-  const std::optional<Eigen::VectorXd> joints =
-      stand_at(cell.cell, spherical_wrist(cell.cell.arm),
-               {.tip_m = start.tip_m, .axis = start.axis, .gamma_rad = out.gamma_rad.front()}, before.start);
+  const std::optional<Eigen::VectorXd> joints = stand_at(
+      cell.cell, spherical_wrist(cell.cell.arm),
+      {.tip_m = program.start.tip_m, .axis = program.start.axis, .gamma_rad = out.gamma_rad.front()}, before.start);
   if (!joints) {
     throw InvalidInput("gamma", out.gamma_rad.front() / units::deg, "°", "cannot be taken where the program starts");
   }
@@ -97,12 +144,13 @@ path::Posture posture_of(const SmoothResult& smoothed, const program::Program& p
 /// The decided program as the robot will run it.
 void smooth_decided(PlanResult& result, const CellFile& cell, const std::filesystem::path& folder, Progress& progress) {
   const DecideResult& decision = *result.decision;
-  const ScratchProgram file(folder, result.program_name, result.program_out->text);
-  SmoothJob job = {.program = file.path(),
+  const WrittenProgram written(folder, result.program_name, result.program_out->text, reading_of(result, cell),
+                               *decision.program);
+  SmoothJob job = {.program = written.path(),
                    .cell = cell.path,
                    .place = false,
                    .program_name = result.program_name,
-                   .posture = posture_of(*result.path, *decision.program, decision.gamma_offset_rad, cell)};
+                   .posture = posture_of(*result.path, written, *decision.program, decision.gamma_offset_rad, cell)};
   if (!folder.empty()) job.output = folder / "trajectory.csv";
   result.path = run_smooth(job, cell, progress);
 }
@@ -117,17 +165,19 @@ struct TurnedRun {
 /// What the drives give while the robot runs a program, by the trajectory that it would be smoothed to.
 std::vector<double> torque_shares(const PlanResult& result, const CellFile& cell, const std::filesystem::path& folder,
                                   const TurnedRun& run, Progress& progress) {
+  const program::Program& program = run.forces.program->program;
   const std::string name = "program" + result.job.program.extension().string();
-  const program::Rewritten text = program::rewrite_program(
-      result.job.program, reading_of(result, cell), result.forces->program->program, run.forces.program->program);
-  const ScratchProgram file(folder, name, text.text);
-  MotionLoads loads(cell, result.path->options.sample_period_s);
-  const SmoothJob job = {.program = file.path(),
+  const program::ProgramReading reading = reading_of(result, cell);
+  const program::Rewritten text =
+      program::rewrite_program(result.job.program, reading, result.forces->program->program, program);
+  const WrittenProgram written(folder, name, text.text, reading, program);
+  MotionLoads loads(cell, result.path->options.sample_period_s, written.block_of());
+  const SmoothJob job = {.program = written.path(),
                          .cell = cell.path,
                          .record = false,
                          .place = false,
                          .program_name = name,
-                         .posture = posture_of(*result.path, run.forces.program->program, run.gamma_rad, cell),
+                         .posture = posture_of(*result.path, written, program, run.gamma_rad, cell),
                          .observe = [&loads](std::span<const path::Sample> samples) { loads.add(samples); }};
   static_cast<void>(run_smooth(job, cell, progress));
   return loads.shares(run.forces, joint_torques(run.forces, run.blocks));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "robomill/jobs/blocks/dynamics.hpp"
 #include "robomill/robot/pose.hpp"
@@ -23,8 +24,11 @@ bool knows_torques(const CellFile& cell) {
   return false;
 }
 
-MotionLoads::MotionLoads(const CellFile& cell, double sample_period_s)
-    : arm_(loaded_arm(cell)), tip_m_(robot::tip_point(cell.cell)), period_s_(sample_period_s) {}
+MotionLoads::MotionLoads(const CellFile& cell, double sample_period_s, std::vector<std::size_t> block_of)
+    : arm_(loaded_arm(cell)),
+      tip_m_(robot::tip_point(cell.cell)),
+      period_s_(sample_period_s),
+      block_of_(std::move(block_of)) {}
 
 void MotionLoads::add(std::span<const path::Sample> samples) {
   for (const path::Sample& sample : samples) {
@@ -33,7 +37,7 @@ void MotionLoads::add(std::span<const path::Sample> samples) {
       last_.clear();
     }
     if (last_.size() == 2) {
-      look(last_[1].block, last_[0].joints, last_[1].joints, sample.joints);
+      look(block_of_.at(last_[1].block), last_[0].joints, last_[1].joints, sample.joints);
       last_.erase(last_.begin());
     }
     last_.push_back(sample);

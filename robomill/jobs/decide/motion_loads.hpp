@@ -22,7 +22,8 @@ namespace robomill::jobs {
 class MotionLoads {
  public:
   /// @param sample_period_s  of the trajectory, > 0
-  MotionLoads(const CellFile& cell, double sample_period_s);
+  /// @param block_of         of each block that samples name the one that `shares` counts it to
+  MotionLoads(const CellFile& cell, double sample_period_s, std::vector<std::size_t> block_of);
   /// In order of time; a sample at time 0 begins anew.
   void add(std::span<const path::Sample> samples);
   /// Of each block the greatest share of its torque that a drive gives, with the force of the cut over a revolution; 0
@@ -41,6 +42,7 @@ class MotionLoads {
   robot::Arm arm_;
   Eigen::Vector3d tip_m_;
   double period_s_;
+  std::vector<std::size_t> block_of_;
   std::vector<path::Sample> last_ = {};  ///< two at most
   std::vector<Range> blocks_ = {};
 };

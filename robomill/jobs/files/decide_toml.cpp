@@ -19,20 +19,47 @@ void read_range(io::TomlFile& file, const std::string& key, const std::string& m
   out = {range[0], range[1]};
 }
 
+void read_free(io::TomlFile& file, DecideOptions& out) {
+  std::vector<std::string> free;
+  if (!file.texts("decide.free", free)) return;
+  out.free.clear();
+  for (const std::string& word : free) {
+    const std::optional<Free> what = value_in(free_names, word);
+    if (!what) throw file.reject("decide.free", "of \"" + word + "\": each " + one_of(free_names));
+    if (!out.is_free(*what)) out.free.push_back(*what);
+  }
+}
+
+/// A plan without a program recommends speed and depth by removal rate: what says something else would have no effect.
+void check_without_program(io::TomlFile& file, const DecideOptions& options) {
+  constexpr const char* needed = "A decision needs job.program with job.forces and job.cell";
+  if (file.has("decide.goal") && options.goal != Goal::removal_rate) {
+    throw file.reject("decide.goal", "must be \"removal_rate\" in a job without a program", needed);
+  }
+  const bool speed_and_depth =
+      options.free.size() == 2 && options.is_free(Free::spindle_speed) && options.is_free(Free::axial_depth);
+  if (file.has("decide.free") && !speed_and_depth) {
+    throw file.reject("decide.free", "must be [\"spindle_speed\", \"axial_depth\"] in a job without a program", needed);
+  }
+  for (const char* key :
+       {"speed_changes", "spindle_ramp_rpm_per_s", "max_force_n", "max_deflection_um", "avoid_reversals",
+        "max_feed_mm_per_min", "chip_thickness_mm", "cutting_speed_m_per_min", "gamma_range_deg", "gamma_step_deg",
+        "cone_deg", "cone_step_deg", "compensate", "max_offset_um", "controller_compensates"}) {
+    const std::string path = std::string("decide.") + key;
+    if (file.has(path)) throw file.reject(path, "has no effect in a job without a program", needed);
+  }
+}
+
 }  // namespace
 
-DecideOptions read_decide(io::TomlFile& file) {
+DecideOptions read_decide(io::TomlFile& file, bool along_program) {
   DecideOptions out;
-  std::vector<std::string> free;
-  if (file.texts("decide.free", free)) {
-    out.free.clear();
-    for (const std::string& word : free) {
-      const std::optional<Free> what = value_in(free_names, word);
-      if (!what) throw file.reject("decide.free", "of \"" + word + "\": each " + one_of(free_names));
-      if (!out.is_free(*what)) out.free.push_back(*what);
-    }
-  }
+  read_free(file, out);
   file.choice("decide.goal", goal_names, out.goal);
+  if (!along_program) {
+    check_without_program(file, out);
+    return out;
+  }
   file.choice("decide.speed_changes", speed_change_names, out.speed_changes);
   file.number("decide.spindle_ramp_rpm_per_s", "spindle_ramp_rad_per_s2", units::rpm, out.spindle_ramp_rad_per_s2);
   file.number("decide.max_force_n", "max_force_n", 1.0, out.max_force_n);

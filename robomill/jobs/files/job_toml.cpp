@@ -153,7 +153,7 @@ Job read_job(const std::filesystem::path& path) {
   Job job{.file = path};
   read_sources(file, job);
   read_limits(file, job);
-  job.decide = read_decide(file);
+  job.decide = read_decide(file, job.judges_blocks());
   read_cuts(file, job);
   std::filesystem::path more_cuts;
   if (file.path("job.cuts", more_cuts)) {

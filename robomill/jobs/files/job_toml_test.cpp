@@ -116,5 +116,18 @@ TEST_F(JobToml, SaysWhatIsWrongInTheFilesOwnWords) {
   EXPECT_NE(rejection(source + "[spindel]\nmax_speed_rpm = 5\n").find("spindel"), std::string::npos);
 }
 
+// Without a program speed and depth are free, and what asks for something else is no silent wish.
+TEST_F(JobToml, ADecisionWithoutAProgramIsThatOfSpeedAndDepth) {
+  const std::string job = "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n[decide]\n";
+  EXPECT_NO_THROW(static_cast<void>(
+      read_job(write("job.toml", job + "free = [\"axial_depth\", \"spindle_speed\"]\ngoal = \"removal_rate\"\n"))));
+  for (const char* line : {"free = [\"spindle_speed\", \"feed\"]", "free = [\"axial_depth\"]", "goal = \"time\"",
+                           "max_force_n = 100", "cone_deg = 10", "compensate = true"}) {
+    const std::string text = rejection(job + line + "\n");
+    EXPECT_NE(text.find("job.program"), std::string::npos) << text;
+    EXPECT_NE(text.find("job.toml:5"), std::string::npos) << text;
+  }
+}
+
 }  // namespace job_toml_test
 }  // namespace robomill::jobs
