@@ -7,7 +7,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
-#include "robomill/decision/program/made_up_program.hpp"
+#include "testing/decision/made_up_program.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::decision::program_decision_test {

@@ -10,8 +10,8 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/decision/program/looks.hpp"
-#include "robomill/decision/program/made_up_program.hpp"
 #include "robomill/decision/program_decision.hpp"
+#include "testing/decision/made_up_program.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::decision::program_ways_test {

@@ -29,7 +29,10 @@ bool limits_more(const CutLook& one, const CutLook& other) {
 double shortfall(const LimitUse& use) {
   if (use.limit == ProgramLimit::none) return 0.0;
   const double scale = std::max(std::abs(use.allowed), 1e-12);
-  const double beyond = at_least(use.limit) ? use.allowed - use.value : use.value - use.allowed;
+  // These bound from both sides, and are named where they are broken alone.
+  const bool both_sides = use.limit == ProgramLimit::cutting_speed || use.limit == ProgramLimit::spindle_range;
+  const double above = use.value - use.allowed;
+  const double beyond = both_sides ? std::abs(above) : at_least(use.limit) ? -above : above;
   return std::isfinite(beyond) ? beyond / scale : HUGE_VAL;
 }
 

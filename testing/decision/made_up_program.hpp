@@ -1,5 +1,5 @@
 #pragma once
-// A program made up, with its times by brute force. Tests alone include it.
+// A program made up, with its times by brute force.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
