@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace robomill::program {
@@ -33,13 +34,70 @@ Eigen::Vector3d tool_axis(Machine machine, double a_rad, double b_rad, double c_
   return Eigen::Vector3d::UnitZ();
 }
 
+Eigen::Index tilt_index(Machine machine) {
+  return machine == Machine::xyzac_trt || machine == Machine::xyzac_head ? 0 : 1;
+}
+
+namespace {
+
+/// C of a tool that a positive tilt leans to (x, y).
+double turn_towards(Machine machine, double x, double y) {
+  switch (machine) {
+    case Machine::xyzac_trt:
+      return std::atan2(x, y);
+    case Machine::xyzbc_trt:
+      return std::atan2(y, -x);
+    case Machine::xyzac_head:
+      return std::atan2(x, -y);
+    case Machine::xyzbc_head:
+      return std::atan2(y, x);
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+std::array<Eigen::Vector3d, 2> rotary_of_axis(Machine machine, const Eigen::Vector3d& axis, double free_c_rad) {
+  constexpr double pole_rad = 1e-13;
+  const double across = std::hypot(axis.x(), axis.y());
+  const bool free = across <= pole_rad;
+  const double tilt_rad = free ? (axis.z() > 0.0 ? 0.0 : std::numbers::pi) : std::atan2(across, axis.z());
+  const double c_rad = free ? free_c_rad : turn_towards(machine, axis.x(), axis.y());
+  std::array<Eigen::Vector3d, 2> out = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  out[0][tilt_index(machine)] = tilt_rad;
+  out[0].z() = c_rad;
+  out[1][tilt_index(machine)] = -tilt_rad;
+  out[1].z() = free ? c_rad : c_rad + std::numbers::pi;
+  return out;
+}
+
+Eigen::Vector3d nearest_rotary(Machine machine, const Eigen::Vector3d& axis, const Eigen::Vector3d& from_rad) {
+  constexpr double turn = 2.0 * std::numbers::pi;
+  constexpr double equal_rad = 1e-9;
+  const Eigen::Index tilt = tilt_index(machine);
+  Eigen::Vector3d best = from_rad;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& solution : rotary_of_axis(machine, axis, from_rad.z())) {
+    Eigen::Vector3d at = from_rad;
+    for (const Eigen::Index i : {tilt, Eigen::Index{2}}) {
+      at[i] = solution[i] + turn * std::round((from_rad[i] - solution[i]) / turn);
+    }
+    const double distance = (at - from_rad).norm();
+    if (distance >= nearest - equal_rad) continue;
+    nearest = distance;
+    best = at;
+  }
+  return best;
+}
+
 Eigen::Vector3d RotaryMove::axis_at(double share) const {
-  const Eigen::Vector3d at = begin_rad + share * (end_rad - begin_rad);
+  // To the bit at its end, so that the same words again move nothing.
+  const Eigen::Vector3d at = share == 1.0 ? end_rad : Eigen::Vector3d(begin_rad + share * (end_rad - begin_rad));
   return tool_axis(machine, at.x(), at.y(), at.z());
 }
 
 RotaryMove::Bounds RotaryMove::bounds() const {
-  const Eigen::Index tilt = machine == Machine::xyzac_trt || machine == Machine::xyzac_head ? 0 : 1;
+  const Eigen::Index tilt = tilt_index(machine);
   const double from = begin_rad[tilt], to = end_rad[tilt];
   const double tilted = std::abs(to - from), turned = std::abs(end_rad.z() - begin_rad.z());
   const double sine = largest_sine(from, to);

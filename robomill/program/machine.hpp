@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 
 #include "robomill/base/export.hpp"
 
@@ -24,6 +25,26 @@ enum class Machine {
 ///   xyzbc_head: Rz(C) Ry(B) e_z = ( cC sB,  sC sB, cB)
 /// The angle that the machine does not have is not looked at.
 [[nodiscard]] ROBOMILL_API Eigen::Vector3d tool_axis(Machine machine, double a_rad, double b_rad, double c_rad);
+
+/// Which of A, B and C tilts the tool: 0, A, or 1, B. C turns it.
+[[nodiscard]] ROBOMILL_API Eigen::Index tilt_index(Machine machine);
+
+/// Where the rotary axes stand (A, B, C [rad]) for a tool axis: the inverse of tool_axis. With the angle t in [0, π]
+/// from e_z to the axis, and the turn c in (-π, π] of C that puts a tool tilted by t there,
+///     first: tilt t, C = c        second: tilt -t, C = c + π
+/// both give it, within 1e-12 (1e-15 off the poles). At a pole, within 1e-13 rad of ±e_z, C is free.
+/// @param axis        unit vector from the tip to the spindle, in W
+/// @param free_c_rad  C where it is free
+/// The angle that the machine does not have is 0.
+[[nodiscard]] ROBOMILL_API std::array<Eigen::Vector3d, 2> rotary_of_axis(Machine machine, const Eigen::Vector3d& axis,
+                                                                         double free_c_rad);
+
+/// Of both solutions of rotary_of_axis with any whole turns of either angle, the one nearest to where the rotary axes
+/// stand: least √(Δtilt² + ΔC²), so that C neither unwinds nor swings round where the tool passes the pole. Where C is
+/// free it stays. Of two that are equally near within 1e-9, the first.
+/// @param from_rad  A, B, C as they stand; the angle that the machine does not have stays
+[[nodiscard]] ROBOMILL_API Eigen::Vector3d nearest_rotary(Machine machine, const Eigen::Vector3d& axis,
+                                                          const Eigen::Vector3d& from_rad);
 
 /// A move of the rotary axes, each evenly in time: at the share s of the time, in [0, 1], the axis is tool_axis at
 /// begin + s (end − begin).

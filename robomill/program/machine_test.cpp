@@ -44,9 +44,84 @@ TEST(Machine, LeansTheToolAsTheTableTips) {
   EXPECT_LT((tool_axis(Machine::xyzbc_head, 0.0, quarter, 0.0) - Vector3d::UnitX()).norm(), 1e-15);
 }
 
+constexpr Machine machines[] = {Machine::xyzac_trt, Machine::xyzbc_trt, Machine::xyzac_head, Machine::xyzbc_head};
+
+Vector3d axis_at(Machine machine, const Vector3d& rotary_rad) {
+  return tool_axis(machine, rotary_rad.x(), rotary_rad.y(), rotary_rad.z());
+}
+
+/// Anywhere, and often at or near a pole or the equator.
+Vector3d random_axis(Random& random) {
+  const double near = std::pow(10.0, -random.uniform(0.0, 17.0));
+  switch (random.index(5)) {
+    case 0:
+      return {0.0, 0.0, random.index(2) == 0 ? 1.0 : -1.0};
+    case 1:
+      return Vector3d(near * random.normal(), near * random.normal(), random.index(2) == 0 ? 1.0 : -1.0).normalized();
+    case 2:
+      return Vector3d(random.normal(), random.normal(), near * random.normal()).normalized();
+    default:
+      return Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+  }
+}
+
+TEST(Machine, BothSolutionsGiveTheAxis) {
+  Random random(7);
+  for (int i = 0; i < test::seeds(100000); ++i) {
+    const Machine machine = machines[random.index(4)];
+    const Vector3d axis = random_axis(random);
+    const double free = random.uniform(-9.0, 9.0);
+    const auto [first, second] = rotary_of_axis(machine, axis, free);
+    ASSERT_LT((axis_at(machine, first) - axis).norm(), 1e-12) << i;
+    ASSERT_LT((axis_at(machine, second) - axis).norm(), 1e-12) << i;
+    const Eigen::Index tilt = tilt_index(machine);
+    ASSERT_GE(first[tilt], 0.0);
+    ASSERT_EQ(second[tilt], -first[tilt]);
+    ASSERT_EQ(first[1 - tilt], 0.0);
+    const bool pole = axis.head<2>().norm() <= 1e-13;
+    ASSERT_EQ(second.z(), pole ? first.z() : first.z() + std::numbers::pi);
+    if (pole) {
+      ASSERT_EQ(first.z(), free) << "C is free";
+    }
+  }
+}
+
+// The solutions are all there are: angles that are known come back, up to whole turns or as the other one.
+TEST(Machine, NearestRotaryIsTheNearestOfAllThatGiveTheAxis) {
+  Random random(8);
+  for (int i = 0; i < test::seeds(20000); ++i) {
+    const Machine machine = machines[random.index(4)];
+    const Eigen::Index tilt = tilt_index(machine);
+    Vector3d from = Vector3d::Zero();
+    from[tilt] = random.uniform(-7.0, 7.0);
+    from.z() = random.uniform(-30.0, 30.0);
+    const Vector3d axis = random_axis(random);
+    const Vector3d nearest = nearest_rotary(machine, axis, from);
+    ASSERT_LT((axis_at(machine, nearest) - axis).norm(), 1e-12) << i;
+    ASSERT_EQ(nearest[1 - tilt], 0.0);
+    if (axis.head<2>().norm() <= 1e-13) {
+      ASSERT_NEAR(nearest.z(), from.z(), 1e-14) << "C stays";
+      continue;
+    }
+    for (const Vector3d& solution : rotary_of_axis(machine, axis, 0.0)) {
+      for (int k = -12; k < 12; ++k) {
+        Vector3d other = solution;
+        other.z() += 2.0 * std::numbers::pi * k;
+        other[tilt] += 2.0 * std::numbers::pi * static_cast<double>(static_cast<int>(random.index(5)) - 2);
+        ASSERT_LE((nearest - from).norm(), (other - from).norm() + 2e-9) << i;
+      }
+    }
+    // What stands stays, and what moves a little moves on.
+    ASSERT_LT((nearest_rotary(machine, axis_at(machine, nearest), nearest) - nearest).norm(),
+              1e-12 + 1e-15 / axis.head<2>().norm());
+  }
+  // Through the pole C stands still and the tilt goes on to the other side.
+  const Vector3d over =
+      nearest_rotary(Machine::xyzac_trt, {0.0, -std::sin(0.1), std::cos(0.1)}, {0.1, 0.0, 6.0 * std::numbers::pi});
+  EXPECT_LT((over - Vector3d(-0.1, 0.0, 6.0 * std::numbers::pi)).norm(), 1e-14);
+}
+
 RotaryMove random_move(Random& random) {
-  static constexpr Machine machines[] = {Machine::xyzac_trt, Machine::xyzbc_trt, Machine::xyzac_head,
-                                         Machine::xyzbc_head};
   const double size = std::exp(random.uniform(std::log(1e-3), std::log(10.0)));
   RotaryMove move = {.machine = machines[random.index(4)]};
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -66,6 +141,7 @@ TEST(RotaryMove, PartsLeaveTheCurveByNoMoreThanTheirBound) {
     const double tolerance = std::exp(random.uniform(std::log(1e-6), std::log(1e-2)));
     const double parts = move.parts(tolerance);
     const double bound = move.deviation_rad(parts);
+    ASSERT_EQ(move.axis_at(1.0), axis_at(move.machine, move.end_rad)) << "to the bit";
     ASSERT_LE(bound, tolerance * (1.0 + 1e-9));
     for (int k = 0; k < 20; ++k) {
       const double part = std::floor(random.uniform(0.0, parts));

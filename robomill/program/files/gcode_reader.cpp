@@ -21,9 +21,7 @@ std::string letter_name(char letter) {
 }
 
 bool has_axis(Machine machine, std::size_t rotary) {
-  if (rotary == 2) return true;
-  const bool with_a = machine == Machine::xyzac_trt || machine == Machine::xyzac_head;
-  return with_a == (rotary == 0);
+  return rotary == 2 || static_cast<Eigen::Index>(rotary) == tilt_index(machine);
 }
 
 bool any(const std::array<std::optional<double>, 3>& words) {

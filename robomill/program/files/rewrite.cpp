@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/program/files/rewriter.hpp"
 
 namespace robomill::program {
 namespace {
+
+constexpr const char* unit_rule = "must be a vector of length 1, within 1e-9";
+constexpr double largest_wanted_turn_rad = 179.9 * units::deg;
 
 [[noreturn]] void reject_wanted(const std::string& file, std::size_t line, const std::string& field, const char* rule) {
   throw InvalidInput(
@@ -25,18 +30,20 @@ void check_wanted(const std::string& file, const Program& as_read, const Program
   }
   const auto others = [](const Block& block, const Block& read) {
     return block.kind != read.kind || block.line != read.line || block.spindle != read.spindle ||
-           block.coolant != read.coolant || block.operator_stop != read.operator_stop ||
-           block.end.axis != read.end.axis;
+           block.coolant != read.coolant || block.operator_stop != read.operator_stop;
   };
+  const auto is_unit = [](const Eigen::Vector3d& axis) { return std::abs(axis.norm() - 1.0) <= 1e-9; };
   if (!wanted.start.tip_m.allFinite()) reject_wanted(file, 1, "start.tip_m", "must be finite");
+  if (!is_unit(wanted.start.axis)) reject_wanted(file, 1, "start.axis", unit_rule);
   for (std::size_t i = 0; i < wanted.blocks.size(); ++i) {
     const Block& block = wanted.blocks[i];
     const Block& read = as_read.blocks[i];
     const auto reject = [&](const char* member, const char* rule) {
       reject_wanted(file, read.line, fmt::format("blocks[{}]{}", i, member), rule);
     };
-    if (others(block, read)) reject("", "may differ from what was read in speed, time and tip alone");
+    if (others(block, read)) reject("", "may differ from what was read in speed, time, tip and axis alone");
     if (!block.end.tip_m.allFinite()) reject(".end.tip_m", "must be finite");
+    if (!is_unit(block.end.axis)) reject(".end.axis", unit_rule);
     if (!(block.spindle_speed_rad_per_s >= 0.0 && std::isfinite(block.spindle_speed_rad_per_s))) {
       reject(".spindle_speed_rad_per_s", "must be finite and >= 0");
     }
@@ -45,8 +52,13 @@ void check_wanted(const std::string& file, const Program& as_read, const Program
     } else if (!(block.duration_s > 0.0 && std::isfinite(block.duration_s))) {
       reject(".duration_s", "must be finite and > 0 for a move at feed");
     }
-    if (block.kind == Block::Kind::dwell && (block.end.tip_m - wanted.begin_of(i).tip_m).norm() > 1e-10) {
-      reject(".end.tip_m", "must be where the block before it ends: a dwell stands still");
+    const Pose& begin = wanted.begin_of(i);
+    if (block.kind == Block::Kind::dwell) {
+      constexpr const char* rule = "must be where the block before it ends: a dwell stands still";
+      if ((block.end.tip_m - begin.tip_m).norm() > 1e-10) reject(".end.tip_m", rule);
+      if (!same_axis(block.end.axis, begin.axis)) reject(".end.axis", rule);
+    } else if (block.kind == Block::Kind::feed && angle_between(begin.axis, block.end.axis) > largest_wanted_turn_rad) {
+      reject(".end.axis", "must be less than half a circle from where the block begins, whose way would be any");
     }
   }
 }
@@ -66,17 +78,26 @@ void verify(const RewriteJob& job, const std::filesystem::path& name, const Rewr
     throw InvalidInput(std::move(parts));
   }
   const auto origin = [&](std::size_t line) { return line <= result.origins.size() ? result.origins[line - 1] : 0; };
-  for (std::size_t i = 0; i < job.wanted.blocks.size(); ++i) {
-    const Block& wanted = job.wanted.blocks[i];
-    if (i == again.blocks.size()) fail(wanted.line, "the program ends before this line");
-    const Block& got = again.blocks[i];
-    if (origin(got.line) != wanted.line) fail(wanted.line, "another line makes its block");
-    const std::string problem = block_difference(wanted, job.wanted.begin_of(i), got, again.begin_of(i));
-    if (!problem.empty()) fail(wanted.line, problem);
+  const std::span<const Block> wanted = job.wanted.blocks;
+  const std::span<const Block> got = again.blocks;
+  if (!pose_difference(job.wanted.start, again.start).empty()) fail(1, "the program starts elsewhere");
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < wanted.size();) {
+    const std::size_t line = wanted[i].line;
+    std::size_t end = i;
+    while (end < wanted.size() && wanted[end].line == line) ++end;
+    std::size_t got_end = at;
+    while (got_end < got.size() && origin(got[got_end].line) == line) ++got_end;
+    if (at == got.size()) fail(line, "the program ends before this line");
+    if (at == got_end) fail(line, "another line makes its block");
+    const std::string problem =
+        blocks_difference(wanted.subspan(i, end - i), job.wanted.begin_of(i), got.subspan(at, got_end - at),
+                          again.begin_of(at), job.reading.axis_tolerance_rad);
+    if (!problem.empty()) fail(line, problem);
+    i = end;
+    at = got_end;
   }
-  if (again.blocks.size() != job.wanted.blocks.size()) {
-    fail(origin(again.blocks[job.wanted.blocks.size()].line), "the program has more moves");
-  }
+  if (at != got.size()) fail(origin(got[at].line), "the program has more moves");
   if (again.skipped.size() != job.as_read.skipped.size()) fail(1, "other words are left out");
   for (std::size_t i = 0; i < again.skipped.size(); ++i) {
     const Skipped& read = job.as_read.skipped[i];

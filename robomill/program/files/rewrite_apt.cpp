@@ -1,7 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -52,9 +54,16 @@ class AptRewriter final : public Rewriter {
   [[nodiscard]] const Field* number_field() const;
   [[nodiscard]] bool says_speed() const;
   [[nodiscard]] double unit_m(std::size_t index) const { return modes_[index].inches ? units::inch : units::mm; }
+  [[nodiscard]] std::size_t place_of_field(const Statement& statement, const Field& field) const;
   void set_field(const Statement& statement, const Field& field, std::string text, Composed& composed) const;
-  void set_ends(std::size_t index, Composed& composed) const;
-  void set_step(std::size_t index, Composed& composed) const;
+  [[nodiscard]] std::size_t count_numbers() const;
+  void set_ends(std::size_t index, Composed& composed);
+  void set_axis(std::size_t index, Composed& composed);
+  /// @throws InvalidInput where no axis can be added to a statement that has none
+  void check_says_axis(std::size_t line) const;
+  void set_step(std::size_t index, Composed& composed);
+  /// A step becomes the position and the axis that it comes to.
+  void set_position(std::size_t index, const Eigen::Vector3d& axis, Composed& composed);
   void keep_template(std::size_t index, std::optional<Template>& kept) const;
   void set_said_feed(std::size_t index, Composed& composed);
   void set_said_speed(std::size_t index, Composed& composed);
@@ -70,7 +79,11 @@ class AptRewriter final : public Rewriter {
   std::vector<Field> fields_;
   std::string_view joined_text_;
   std::optional<Template> feed_template_, speed_template_;
-  double speed_rad_per_s_ = 0.0;  ///< that holds behind what has been composed
+  double speed_rad_per_s_ = 0.0;       ///< that holds behind what has been composed
+  bool says_axes_ = false;             ///< some position comes with its axis
+  std::optional<bool> multax_;         ///< MULTAX is on; none: not said yet
+  Vector3d axis_ = Vector3d::UnitZ();  ///< as written last behind what has been composed
+  Motions motions_;                    ///< of the statement composed last
 };
 
 void AptRewriter::split(const Statement& statement) {
@@ -125,6 +138,7 @@ void AptRewriter::note(Statement& statement) {
     for (std::size_t i = 0; i < std::min<std::size_t>(fields_.size(), 3); ++i) {
       if (fields_[i].text.find_first_of("ED") == std::string::npos) note_position(fields_[i].text);
     }
+    says_axes_ = says_axes_ || count_numbers() > 3;
   }
   const bool point = std::ranges::any_of(fields_, [](const Field& f) { return f.text.find('.') != std::string::npos; });
   statement.says_feed = word_ == "FEDRAT";
@@ -139,43 +153,124 @@ void AptRewriter::note(Statement& statement) {
   if (modes.feed_in_inches && move.read_way_m > 0.0) statement.per_minute *= units::inch / units::mm;
 }
 
-void AptRewriter::set_field(const Statement& statement, const Field& field, std::string text,
-                            Composed& composed) const {
+std::size_t AptRewriter::place_of_field(const Statement& statement, const Field& field) const {
   const std::optional<std::size_t> place = place_of(field.begin, field.end);
-  if (!place) {
-    reject(statement.line, word_, "has a number over two lines, which cannot be changed", "Write it on one");
-  }
-  composed.edits.push_back({.begin = *place, .end = *place + (field.end - field.begin), .text = std::move(text)});
+  if (place) return *place;
+  reject(statement.line, word_, "has a number over two lines, which cannot be changed", "Write it on one");
 }
 
-void AptRewriter::set_ends(std::size_t index, Composed& composed) const {
+void AptRewriter::set_field(const Statement& statement, const Field& field, std::string text,
+                            Composed& composed) const {
+  const std::size_t place = place_of_field(statement, field);
+  composed.edits.push_back({.begin = place, .end = place + (field.end - field.begin), .text = std::move(text)});
+}
+
+std::size_t AptRewriter::count_numbers() const {
+  const bool ends_empty = !fields_.empty() && fields_.back().text.empty();
+  return fields_.size() - (ends_empty ? 1 : 0);
+}
+
+void AptRewriter::set_ends(std::size_t index, Composed& composed) {
   const Statement& statement = statements()[index];
   const Move move = move_of(statement);
   const Vector3d from_m = out_.pose().tip_m;
   const bool stays = !statement.starts && (move.count == 0 || move.still());
+  Vector3d end_m = from_m;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     const double target_m = stays ? from_m[axis] : statement.starts ? job().wanted.start.tip_m[axis] : move.end_m[axis];
-    const Coordinate to =
-        coordinate(io::parse_number(fields_[i].text), target_m, from_m[axis], false, unit_m(index), stays);
+    const Coordinate to = coordinate(io::parse_number(fields_[i].text), target_m, from_m[axis], false,
+                                     position_digits(unit_m(index)), stays);
     if (to.act != Coordinate::Act::keep) set_field(statement, fields_[i], to.text, composed);
+    end_m[axis] = to.end;
+  }
+  motions_.way_m = (end_m - from_m).norm();
+}
+
+void AptRewriter::check_says_axis(std::size_t line) const {
+  if (multax_.value_or(says_axes_)) return;
+  reject(line, word_,
+         "cannot say a tool axis: " +
+             std::string(multax_ ? "MULTAX is off here" : "the program has no MULTAX, and no position with its axis"),
+         "Let the CAM system write the program for five axes, with MULTAX/ON");
+}
+
+void AptRewriter::set_axis(std::size_t index, Composed& composed) {
+  const Statement& statement = statements()[index];
+  const Move move = move_of(statement);
+  const Vector3d from = out_.pose().axis;
+  const Vector3d target = wanted_axis(statement, move);
+  const bool stays = !statement.starts && move.count == 0;
+  if (count_numbers() < 6) {
+    if (same_axis(from, target)) return;
+    check_says_axis(statement.line);
+    const AxisNumbers to = axis_numbers({}, target);
+    axis_ = to.written;
+    motions_.turn_deg = angle_between(from, to.axis) / units::deg;
+    const std::size_t end = place_of_field(statement, fields_[2]) + (fields_[2].end - fields_[2].begin);
+    composed.edits.push_back({.begin = end, .end = end, .text = fmt::format(",{}", fmt::join(to.texts, ","))});
+    return;
+  }
+  Vector3d numbers;
+  for (std::size_t i = 0; i < 3; ++i)
+    numbers[static_cast<Eigen::Index>(i)] = io::parse_number(fields_[3 + i].text).value();
+  AxisNumbers to = axis_numbers(numbers, target);
+  // What moves nothing says the very axis of the position before it.
+  if (stays && to.axis != from) to = {.keep = false, .texts = exact_texts(axis_), .written = axis_, .axis = from};
+  axis_ = to.written;
+  motions_.turn_deg = angle_between(from, to.axis) / units::deg;
+  for (std::size_t i = 0; i < 3 && !to.keep; ++i) set_field(statement, fields_[3 + i], to.texts[i], composed);
+}
+
+void AptRewriter::set_position(std::size_t index, const Vector3d& axis, Composed& composed) {
+  const Statement& statement = statements()[index];
+  const Move move = move_of(statement);
+  check_says_axis(statement.line);
+  const AxisNumbers to = axis_numbers({}, axis);
+  motions_.turn_deg = angle_between(out_.pose().axis, to.axis) / units::deg;
+  axis_ = to.written;
+  std::array<std::string, 3> numbers;
+  for (std::size_t i = 0; i < 3; ++i) {
+    numbers[i] = decimal_text(move.end_m[static_cast<Eigen::Index>(i)] / unit_m(index),
+                              position_digits(unit_m(index)).decimals, points_.position);
+  }
+  const std::size_t slash = joined_text_.find('/');
+  std::size_t begin = slash;
+  while (begin > 0 && (is_apt_blank(joined_text_[begin - 1]) ||
+                       std::isalpha(static_cast<unsigned char>(joined_text_[begin - 1])) != 0))
+    --begin;
+  while (is_apt_blank(joined_text_[begin])) ++begin;
+  const bool small = joined_text_[begin] == 'g';
+  set_field(statement, {.begin = begin, .end = slash, .text = {}}, small ? "goto" : "GOTO", composed);
+  numbers[2] += fmt::format(",{}", fmt::join(to.texts, ","));
+  if (count_numbers() == 3) {
+    for (std::size_t i = 0; i < 3; ++i) set_field(statement, fields_[i], numbers[i], composed);
+  } else {
+    set_field(statement, fields_[0], fmt::format("{}", fmt::join(numbers, ",")), composed);
   }
 }
 
-void AptRewriter::set_step(std::size_t index, Composed& composed) const {
+void AptRewriter::set_step(std::size_t index, Composed& composed) {
   const Statement& statement = statements()[index];
   const Move move = move_of(statement);
   if (move.count == 0) return;
+  motions_.way_m = move.way_m;
+  if (const Vector3d axis = wanted_axis(statement, move); !same_axis(axis, out_.pose().axis)) {
+    set_position(index, axis, composed);
+    return;
+  }
   const Vector3d from_m = out_.pose().tip_m;
   // A step along the axis stays where it brings the tip near enough; else it becomes one of three numbers.
-  const bool along_axis = fields_.size() < 3;
-  const Vector3d kept_m = from_m + (move.read_end_m - move.read_begin_m);
-  if (along_axis && (kept_m - move.end_m).cwiseAbs().maxCoeff() <= 0.5 * resolution_m(unit_m(index))) return;
+  const bool along_axis = count_numbers() < 3;
+  const Digits digits = position_digits(unit_m(index));
+  const double step_m = along_axis ? io::parse_number(fields_[0].text).value() * unit_m(index) : 0.0;
+  const Vector3d kept_m = from_m + step_m * out_.pose().axis;
+  if (along_axis && (kept_m - move.end_m).cwiseAbs().maxCoeff() <= 0.5 * digits.resolution()) return;
   std::array<std::string, 3> steps;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
     const std::optional<double> number = along_axis ? std::nullopt : io::parse_number(fields_[i].text);
-    const Coordinate to = coordinate(number, move.end_m[axis], from_m[axis], true, unit_m(index), false);
+    const Coordinate to = coordinate(number, move.end_m[axis], from_m[axis], true, digits, false);
     steps[i] = to.act == Coordinate::Act::keep ? "0" : to.text;
     if (!along_axis && to.act != Coordinate::Act::keep) set_field(statement, fields_[i], to.text, composed);
   }
@@ -257,7 +352,7 @@ void AptRewriter::add_speed(std::size_t index, Composed& composed) {
 void AptRewriter::add_feed(std::size_t index, Composed& composed) {
   const Statement& statement = statements()[index];
   if (!statement.moves_at_feed) return;
-  const Feed needed = needed_feed(index);
+  const Feed needed = needed_feed(index, motions_);
   const AptReader::Modes held = out_.modes();
   const double rpm = speed_rad_per_s_ / units::rpm;
   const double value = said(needed.per_minute, held.feed_in_inches, needed.degrees, held.feed_per_revolution, rpm);
@@ -275,7 +370,12 @@ Rewriter::Composed AptRewriter::compose(std::size_t index) {
   const Statement& statement = statements()[index];
   split(statement);
   Composed composed;
-  if (word_ == "GOTO" || word_ == "FROM") set_ends(index, composed);
+  motions_ = {};
+  if (word_ == "MULTAX") multax_ = count_numbers() == 0 || fields_[0].text != "OFF";
+  if (word_ == "GOTO" || word_ == "FROM") {
+    set_ends(index, composed);
+    set_axis(index, composed);
+  }
   if (word_ == "GODLTA") set_step(index, composed);
   if (statement.says_feed) set_said_feed(index, composed);
   if (statement.says_speed) set_said_speed(index, composed);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -34,13 +35,17 @@ class CsvRewriter final : public Rewriter {
     return job().text.substr(field.begin, field.end - field.begin);
   }
   void set_field(const Field& field, std::string number, Composed& composed) const;
-  void set_ends(const Statement& statement, Composed& composed) const;
+  /// The tip's way then [m].
+  double set_ends(const Statement& statement, Composed& composed) const;
+  /// By how much it turns then [deg].
+  double set_axis(const Statement& statement, Composed& composed);
 
   ProgramRemarks remarks_{0};
   CsvReader in_, out_;
-  std::vector<bool> rows_;       ///< of each statement, whether it is a row of numbers
-  std::vector<Field> fields_;    ///< of the row split last, by column of the file
-  bool decimal_commas_ = false;  ///< the program writes some
+  std::vector<bool> rows_;                           ///< of each statement, whether it is a row of numbers
+  std::vector<Field> fields_;                        ///< of the row split last, by column of the file
+  bool decimal_commas_ = false;                      ///< the program writes some
+  Eigen::Vector3d axis_ = Eigen::Vector3d::UnitZ();  ///< i, j, k of the row composed last
 };
 
 void CsvRewriter::split(const Statement& statement) {
@@ -95,18 +100,43 @@ void CsvRewriter::set_field(const Field& field, std::string number, Composed& co
   composed.edits.push_back({.begin = field.begin, .end = field.end, .text = std::move(number)});
 }
 
-void CsvRewriter::set_ends(const Statement& statement, Composed& composed) const {
+double CsvRewriter::set_ends(const Statement& statement, Composed& composed) const {
   const Move move = move_of(statement);
   const bool stays = !statement.starts && (move.count == 0 || move.still());
   const Eigen::Vector3d from_m = out_.pose().tip_m;
+  Eigen::Vector3d end_m = from_m;
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     if (in_.columns()[i] > 2) continue;
     const auto axis = static_cast<Eigen::Index>(in_.columns()[i]);
     const double target_m = stays ? from_m[axis] : statement.starts ? job().wanted.start.tip_m[axis] : move.end_m[axis];
-    const Coordinate to =
-        coordinate(io::parse_cell(text_of(fields_[i])), target_m, from_m[axis], false, units::mm, stays);
+    const Coordinate to = coordinate(io::parse_cell(text_of(fields_[i])), target_m, from_m[axis], false,
+                                     position_digits(units::mm), stays);
     if (to.act != Coordinate::Act::keep) set_field(fields_[i], to.text, composed);
+    end_m[axis] = to.end;
   }
+  return (end_m - from_m).norm();
+}
+
+double CsvRewriter::set_axis(const Statement& statement, Composed& composed) {
+  constexpr std::size_t first = 3;  // of the known columns
+  std::array<const Field*, 3> components = {};
+  Eigen::Vector3d numbers;
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    const std::size_t component = in_.columns()[i] - first;
+    if (component > 2) continue;
+    components[component] = &fields_[i];
+    numbers[static_cast<Eigen::Index>(component)] = io::parse_cell(text_of(fields_[i])).value();
+  }
+  const Move move = move_of(statement);
+  const Eigen::Vector3d from = out_.pose().axis;
+  AxisNumbers to = axis_numbers(numbers, wanted_axis(statement, move));
+  // A row that moves nothing says the very axis of the row before it.
+  if (!statement.starts && move.count == 0 && to.axis != from) {
+    to = {.keep = false, .texts = exact_texts(axis_), .written = axis_, .axis = from};
+  }
+  axis_ = to.written;
+  for (std::size_t i = 0; i < 3 && !to.keep; ++i) set_field(*components[i], to.texts[i], composed);
+  return angle_between(from, to.axis) / units::deg;
 }
 
 Rewriter::Composed CsvRewriter::compose(std::size_t index) {
@@ -121,9 +151,10 @@ Rewriter::Composed CsvRewriter::compose(std::size_t index) {
   if (!rows_[index]) return {};
   split(statement);
   Composed composed;
-  set_ends(statement, composed);
+  Motions motions = {.way_m = set_ends(statement, composed)};
+  motions.turn_deg = set_axis(statement, composed);
   if (!statement.moves_at_feed) return composed;
-  const double needed = needed_feed(index).per_minute;
+  const double needed = needed_feed(index, motions).per_minute;
   if (same_rate(needed, statement.per_minute)) return composed;
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     if (in_.columns()[i] == 6) set_field(fields_[i], significant_text(needed, false), composed);

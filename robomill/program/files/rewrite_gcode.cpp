@@ -94,6 +94,8 @@ void GcodeRewriter::note(Statement& statement) {
     if (word.letter == 'f') points_.feed = points_.feed || point;
     if (word.letter == 's') points_.speed = points_.speed || point;
   }
+  const bool straight = after.motion == Motion::rapid || after.motion == Motion::feed;
+  by_vector_ = by_vector_ || (straight && find('i') != nullptr);
   const bool modal = after.feed_mode == GcodeReader::FeedMode::per_minute;
   statement.says_speed = find('s') != nullptr;
   statement.says_feed = modal && find('f') != nullptr;
@@ -159,12 +161,14 @@ void GcodeRewriter::add(char letter, std::string_view number, Composed& composed
 }
 
 void GcodeRewriter::add_axis(char letter, std::string_view number, Composed& composed) const {
+  constexpr std::string_view order = "xyzabcijk";
   const Word* before = nullptr;
   const Word* behind = nullptr;
   for (const Word& word : words_) {
-    if (word.letter < 'x' || word.letter > 'z') continue;
-    if (word.letter < letter) before = &word;
-    if (word.letter > letter && behind == nullptr) behind = &word;
+    const std::size_t place = order.find(word.letter);
+    if (place == std::string_view::npos) continue;
+    if (place < order.find(letter)) before = &word;
+    if (place > order.find(letter) && behind == nullptr) behind = &word;
   }
   const Word* const code = find('g');
   if (before == nullptr && behind == nullptr) before = code;
@@ -206,8 +210,8 @@ Vector3d GcodeRewriter::set_ends(std::size_t index, const Move& move, Composed& 
     const Word* const word = find(axis_letters[i]);
     const double target_m = statement.starts ? job().wanted.start.tip_m[axis] : move.count > 0 ? move.end_m[axis] : 0.0;
     const Coordinate to = coordinate(word != nullptr ? std::optional(word->number) : std::nullopt, target_m,
-                                     from_m[axis], modes.incremental, unit_m, stays);
-    end_m[axis] = to.end_m;
+                                     from_m[axis], modes.incremental, position_digits(unit_m), stays);
+    end_m[axis] = to.end;
     if (to.act == Coordinate::Act::keep) continue;
     if (word == nullptr) {
       add_axis(axis_letters[i], to.text, composed);
@@ -227,7 +231,7 @@ void GcodeRewriter::set_centers(std::size_t index, const Vector3d& offset_m, Com
     const Word* const word = find(center_letters[i]);
     if (word == nullptr) continue;
     const Coordinate to = coordinate(word->number, word->number * unit_m + offset_m[static_cast<Eigen::Index>(i)], 0.0,
-                                     false, unit_m, false);
+                                     false, position_digits(unit_m), false);
     if (to.act != Coordinate::Act::keep) set_number(statements()[index], *word, to.text, composed);
   }
 }
@@ -279,7 +283,7 @@ void GcodeRewriter::set_feed_for_later(std::size_t index, Composed& composed) co
   set_number(statement, word, feed_text(needed.per_minute, modes_[index].inches, needed.degrees, &word), composed);
 }
 
-void GcodeRewriter::set_feed(std::size_t index, bool stands, Composed& composed) const {
+void GcodeRewriter::set_feed(std::size_t index, const Motions& motions, Composed& composed) const {
   const Statement& statement = statements()[index];
   const Modes& modes = modes_[index];
   if (modes.feed_mode == GcodeReader::FeedMode::inverse_time) {
@@ -290,13 +294,14 @@ void GcodeRewriter::set_feed(std::size_t index, bool stands, Composed& composed)
     set_feed_for_later(index, composed);
     return;
   }
-  const Feed needed = needed_feed(index);
+  const bool stands = !statement.round && motions.stands();
+  const double needed = needed_feed(index, motions).per_minute;
   const Modes held = out_->modes();
   const Word* const word = find('f');
   const std::optional<double> feed = word != nullptr ? word->number : held.feed;
   const bool inches = word != nullptr ? modes.inches : held.feed_in_inches;
-  if (feed && same_rate(per_minute(*feed, inches, stands), needed.per_minute)) return;
-  const std::string number = feed_text(needed.per_minute, modes.inches, stands, word);
+  if (feed && same_rate(per_minute(*feed, inches, stands), needed)) return;
+  const std::string number = feed_text(needed, modes.inches, stands, word);
   if (word != nullptr) {
     set_number(statement, *word, number, composed);
   } else {
@@ -306,19 +311,20 @@ void GcodeRewriter::set_feed(std::size_t index, bool stands, Composed& composed)
 
 void GcodeRewriter::compose_kept(std::size_t index, const Move& move, Composed& composed) const {
   const Statement& statement = statements()[index];
-  bool stands = false;
+  Motions motions;
   if (moves()) {
     set_motion(index, composed);
     const Vector3d end_m = set_ends(index, move, composed);
-    stands = !statement.round && end_m == out_->pose().tip_m;
+    motions.way_m = (end_m - out_->pose().tip_m).norm();
+    motions.turn_deg = set_axis(index, move, composed);
     if (statement.round) set_centers(index, move.begin_m - move.read_begin_m, composed);
   }
   set_speed(index, composed);
-  set_feed(index, stands, composed);
+  set_feed(index, motions, composed);
 }
 
 bool GcodeRewriter::parts_fit(const Statement& statement, const Move& move) const {
-  const double most_m = resolution_m(units::mm);
+  const double most_m = position_digits(units::mm).resolution();
   const Vector3d offset_m = move.begin_m - move.read_begin_m;
   for (std::size_t i = 0; i < move.count; ++i) {
     const Vector3d& wanted_m = job().wanted.blocks[move.first + i].end.tip_m;
@@ -330,21 +336,30 @@ bool GcodeRewriter::parts_fit(const Statement& statement, const Move& move) cons
   return true;
 }
 
-Rewriter::Composed GcodeRewriter::compose_parted(std::size_t index, const Move& move) {
-  const Statement& statement = statements()[index];
-  if (!parts_fit(statement, move)) return split(index, move);
-  if (move.at_feed) check_one_feed(statement, move);
-  Composed kept;
-  compose_kept(index, move, kept);
-  if (!statement.round) return kept;
-  // Digits may spoil an arc, above all one by its radius and near half a turn.
+bool GcodeRewriter::reads_well(const Statement& statement, Composed& composed) const {
   GcodeReader trial(*out_);
   try {
-    if (read_back(trial, assemble(statement, kept), statement).empty()) return kept;
+    return read_back(trial, assemble(statement, composed), statement).empty();
   } catch (const InvalidInput&) {
-    return split(index, move);
+    return false;
   }
-  return split(index, move);
+}
+
+Rewriter::Composed GcodeRewriter::compose_parted(std::size_t index, const Move& move) {
+  const Statement& statement = statements()[index];
+  const bool turned = move.at_feed && axes_changed(index);
+  if (!parts_fit(statement, move)) return split(index, pieces_of(index, move));
+  Composed kept;
+  if (move.at_feed && !turned) check_one_feed(statement, move);
+  try {
+    compose_kept(index, move, kept);
+  } catch (const InvalidInput&) {
+    if (turned) return split(index, pieces_of(index, move));  // what one line cannot say, several may
+    throw;
+  }
+  // Digits may spoil an arc, above all one by its radius and near half a turn; and a machine may turn another way.
+  if (!(statement.round || turned) || reads_well(statement, kept)) return kept;
+  return split(index, pieces_of(index, move));
 }
 
 Rewriter::Composed GcodeRewriter::compose(std::size_t index) {
@@ -353,6 +368,10 @@ Rewriter::Composed GcodeRewriter::compose(std::size_t index) {
   if (words_.empty()) return {};
   const Move move = move_of(statement);
   if (move.count > 1 || statement.round) return compose_parted(index, move);
+  if (move.count == 1 && move.at_feed && axes_changed(index)) {
+    const std::vector<Piece> pieces = pieces_of(index, move);
+    if (pieces.size() > 1) return split(index, pieces);
+  }
   Composed composed;
   compose_kept(index, move, composed);
   return composed;

@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +24,7 @@ class GcodeRewriter final : public Rewriter {
  private:
   using Motion = GcodeReader::Motion;
   using Modes = GcodeReader::Modes;
+  static constexpr int rotary_decimals = 6;  ///< of a degree: within 1e-8 rad
 
   struct Word {
     char letter = 0;  ///< lower case
@@ -58,7 +61,7 @@ class GcodeRewriter final : public Rewriter {
   Eigen::Vector3d set_ends(std::size_t index, const Move& move, Composed& composed) const;
   void set_centers(std::size_t index, const Eigen::Vector3d& offset_m, Composed& composed) const;
   void set_speed(std::size_t index, Composed& composed) const;
-  void set_feed(std::size_t index, bool stands, Composed& composed) const;
+  void set_feed(std::size_t index, const Motions& motions, Composed& composed) const;
   void set_inverse_time(std::size_t index, Composed& composed) const;
   void set_feed_for_later(std::size_t index, Composed& composed) const;
   /// What a modal F asks for [mm or deg a minute].
@@ -67,29 +70,66 @@ class GcodeRewriter final : public Rewriter {
   [[nodiscard]] std::string feed_text(double per_minute, bool inches, bool degrees, const Word* word) const;
 
   Composed compose_parted(std::size_t index, const Move& move);
-  /// Whether one line can say where the parts of a move end.
+  /// Whether one line can say where the tips of a move's parts end.
   [[nodiscard]] bool parts_fit(const Statement& statement, const Move& move) const;
+  /// Whether a line, taken by a machine that stands where the new text does, is what is wanted.
+  [[nodiscard]] bool reads_well(const Statement& statement, Composed& composed) const;
+
+  // rewrite_gcode_axes.cpp
+  /// A and C, B and C; else I, J, K.
+  [[nodiscard]] bool by_rotary() const { return !by_vector_ && job().reading.machine.has_value(); }
+  /// Whether the rotary axes stand where those of the program as read stood before a statement.
+  [[nodiscard]] bool stand_as_read(std::size_t index) const;
+  /// Whether a statement's tool axes, or where the rotary axes stand, are not those as read.
+  [[nodiscard]] bool axes_changed(std::size_t index) const;
+  /// Where the rotary axes stand at the end of a statement.
+  [[nodiscard]] Eigen::Vector3d rotary_goal_deg(std::size_t index, const Move& move) const;
+  [[nodiscard]] Eigen::Vector3d nearest_deg(const Eigen::Vector3d& axis, const Eigen::Vector3d& from_deg) const;
+  /// @throws InvalidInput where the program says no axes
+  void check_says_axis(const Statement& statement) const;
+  /// By how much the line turns, as a feed counts it [deg].
+  double set_axis(std::size_t index, const Move& move, Composed& composed) const;
+  double set_rotary(std::size_t index, const Move& move, Composed& composed) const;
+  double set_vector(std::size_t index, const Move& move, Composed& composed) const;
+  /// What one line of a move says: some of a wanted block.
+  struct Piece {
+    std::size_t block = 0;
+    double begin = 0.0, end = 1.0;  ///< shares of it
+    Eigen::Vector3d rotary_deg;     ///< at its end
+  };
+  /// The pieces of which each is one block for the machine. Where the rotary axes stand is left behind the last.
+  void add_pieces(std::size_t block, Eigen::Vector3d& rotary_deg, std::vector<Piece>& out) const;
+  [[nodiscard]] std::vector<Piece> pieces_of(std::size_t index, const Move& move) const;
 
   // rewrite_gcode_split.cpp
   /// What holds from one of the lines of a split move to the next.
   struct Running {
-    Eigen::Vector3d tip_m, rotary_deg;
+    Eigen::Vector3d tip_m, axis, rotary_deg;
     double speed_rad_per_s = 0.0;
     std::optional<double> feed = {};
     bool feed_in_inches = false;
   };
-  /// Says a move of several blocks by a line for each.
-  [[nodiscard]] Composed split(std::size_t index, const Move& move) const;
-  void split_axes(std::size_t index, const Move& move, std::size_t part, Running& running, Composed& composed,
-                  std::string& line) const;
-  void split_rates(std::size_t index, const Move& move, std::size_t part, double way_m, Running& running,
-                   Composed& composed, std::string& line) const;
+  /// One of the lines of a split move: the first is the program's, with edits, the others are new.
+  struct SplitLine {
+    bool first = false, last = false;
+    std::string text;
+  };
+  /// Says a move by a line for each of its pieces.
+  [[nodiscard]] Composed split(std::size_t index, const std::vector<Piece>& pieces) const;
+  void say(const Statement& statement, char letter, const std::string& number, SplitLine& line,
+           Composed& composed) const;
+  void split_tip(std::size_t index, const Piece& piece, Running& running, Composed& composed, SplitLine& line) const;
+  /// By how much the line turns [deg].
+  double split_axis(std::size_t index, const Piece& piece, Running& running, Composed& composed, SplitLine& line) const;
+  void split_rates(std::size_t index, const Piece& piece, const Motions& motions, Running& running, Composed& composed,
+                   SplitLine& line) const;
   [[nodiscard]] std::string take_late_codes(const Statement& statement, Composed& composed) const;
 
   ProgramRemarks remarks_{0};
   GcodeReader in_;
   std::unique_ptr<GcodeReader> out_;
   std::vector<Modes> modes_;  ///< after each statement
+  bool by_vector_ = false;    ///< the program says its axes by I, J and K
   std::size_t header_place_ = 0;
   bool in_head_ = true;
 

@@ -243,8 +243,11 @@ TEST(Rewrite, RejectsWhatCannotBeWanted) {
   bad.wanted.blocks.pop_back();
   bad.expect_rejected("part.ngc: wanted has 2 blocks where the program has 3");
   bad = good;
-  bad.wanted.blocks[0].end.axis = Vector3d::UnitX();
-  bad.expect_rejected("part.ngc:3: wanted.blocks[0]: may differ from what was read in speed, time and tip alone");
+  for (Block& block : bad.wanted.blocks) block.end.axis = Vector3d::UnitX();
+  bad.expect_rejected("part.ngc:3: tool axis: cannot be said by this program");
+  bad = good;
+  bad.wanted.blocks[0].coolant.flood = true;
+  bad.expect_rejected("part.ngc:3: wanted.blocks[0]: may differ from what was read in speed, time, tip and axis alone");
   bad = good;
   bad.wanted.blocks[0].duration_s = 0.0;
   bad.expect_rejected("part.ngc:3: wanted.blocks[0].duration_s: must be finite and > 0 for a move at feed");

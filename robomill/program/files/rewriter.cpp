@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "robomill/base/error.hpp"
@@ -13,14 +14,8 @@
 namespace robomill::program {
 namespace {
 
-constexpr double tip_tolerance_m = 2e-7;
-constexpr double turned_tolerance = 1e-7;
-constexpr double rate_tolerance = 1e-5;
+constexpr double one_feed_tolerance = 0.5e-5;  ///< half of what is compared
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
-bool near_rate(double a, double b, double tolerance) {
-  return std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b));
-}
 
 struct TextLine {
   std::string_view text;  ///< without its ending
@@ -52,19 +47,6 @@ double number_in(const std::string& text) {
   return number;
 }
 
-std::string feed_difference(const Block& wanted, double wanted_way_m, const Block& got, double way_m) {
-  if (wanted_way_m > 0.0 && way_m > 0.0) {
-    const double feed = wanted_way_m / wanted.duration_s;
-    const double got_feed = way_m / got.duration_s;
-    const double allowed = rate_tolerance + std::abs(way_m - wanted_way_m) / wanted_way_m;
-    if (std::abs(got_feed - feed) <= allowed * feed) return {};
-    return fmt::format("its feed is {:.9g} mm/min instead of {:.9g}", got_feed / units::mm * units::minute,
-                       feed / units::mm * units::minute);
-  }
-  if (near_rate(got.duration_s, wanted.duration_s, rate_tolerance)) return {};
-  return fmt::format("it takes {:.9g} s instead of {:.9g}", got.duration_s, wanted.duration_s);
-}
-
 }  // namespace
 
 std::string decimal_text(double value, int decimals, bool point) {
@@ -84,33 +66,6 @@ std::string significant_text(double value, bool point) {
 
 bool same_rate(double a, double b) {
   return near_rate(a, b, 1e-6);
-}
-
-std::string block_difference(const Block& wanted, const Pose& wanted_begin, const Block& got, const Pose& got_begin) {
-  if (got.kind != wanted.kind) return "it is another kind of move";
-  if (got.spindle != wanted.spindle || got.coolant != wanted.coolant || got.operator_stop != wanted.operator_stop) {
-    return "spindle, coolant or stop are others";
-  }
-  if (const double off_m = (got.end.tip_m - wanted.end.tip_m).norm(); !(off_m <= tip_tolerance_m)) {
-    return fmt::format("the tip comes to ({:.7g}, {:.7g}, {:.7g}) mm, off by {:.3g} mm", got.end.tip_m.x() / units::mm,
-                       got.end.tip_m.y() / units::mm, got.end.tip_m.z() / units::mm, off_m / units::mm);
-  }
-  if (!((got.end.axis - wanted.end.axis).norm() <= turned_tolerance)) return "the axis is another";
-  const bool turns = wanted.spindle != Spindle::off;
-  if (turns && !near_rate(got.spindle_speed_rad_per_s, wanted.spindle_speed_rad_per_s, rate_tolerance)) {
-    return fmt::format("the spindle's speed is {:.9g} rpm instead of {:.9g}", got.spindle_speed_rad_per_s / units::rpm,
-                       wanted.spindle_speed_rad_per_s / units::rpm);
-  }
-  switch (wanted.kind) {
-    case Block::Kind::rapid:
-      return {};
-    case Block::Kind::dwell:
-      return got.duration_s == wanted.duration_s ? "" : "the dwell takes another time";
-    case Block::Kind::feed:
-      break;
-  }
-  return feed_difference(wanted, (wanted.end.tip_m - wanted_begin.tip_m).norm(), got,
-                         (got.end.tip_m - got_begin.tip_m).norm());
 }
 
 void Rewriter::reject(std::size_t line, std::string field, std::string rule, std::string hint) const {
@@ -156,7 +111,8 @@ void Rewriter::read_statements() {
     statement.starts = !statement.after_start && in().start().has_value();
     note(statement);
   }
-  if (blocks != job_.as_read.blocks.size() || !in().start() || in().start()->tip_m != job_.as_read.start.tip_m) {
+  if (blocks != job_.as_read.blocks.size() || !in().start() || in().start()->tip_m != job_.as_read.start.tip_m ||
+      in().start()->axis != job_.as_read.start.axis) {
     reject(line, "as_read", "is not what this file gives", "Read the program again");
   }
 }
@@ -231,15 +187,29 @@ double Rewriter::turn_deg(std::size_t index) const {
          units::deg;
 }
 
-Rewriter::Feed Rewriter::needed_feed(std::size_t index) const {
+Eigen::Vector3d Rewriter::wanted_axis(const Statement& statement, const Move& move) {
+  if (statement.starts) return job_.wanted.start.axis;
+  return move.count > 0 ? job_.wanted.blocks[move.first + move.count - 1].end.axis : out().pose().axis;
+}
+
+double Rewriter::Motions::counted_way_m(double wanted_way_m) const {
+  constexpr double much = 0.01;
+  const bool changed = std::abs(way_m - wanted_way_m) > much * wanted_way_m;
+  return changed && turn_deg > 0.0 ? way_m : wanted_way_m;
+}
+
+Rewriter::Feed Rewriter::needed_feed(std::size_t index, const std::optional<Motions>& motions) const {
   const Statement& statement = statements_[index];
   const Move move = move_of(statement);
   const double minutes = move.time_s / units::minute;
   // An arc's way is what its feed says of it.
   const double read_way = statement.per_minute * move.read_time_s / units::minute;
   if (statement.round) return {.per_minute = read_way / minutes};
-  if (!move.still()) return {.per_minute = move.way_m / units::mm / minutes};
-  const double turn = move.read_way_m > 0.0 ? turn_deg(index) : read_way;
+  if (!move.still() && !(motions && motions->stands())) {
+    const double way_m = motions ? motions->counted_way_m(move.way_m) : move.way_m;
+    return {.per_minute = way_m / units::mm / minutes};
+  }
+  const double turn = motions ? motions->turn_deg : move.read_way_m > 0.0 ? turn_deg(index) : read_way;
   return {.per_minute = turn / minutes, .degrees = true};
 }
 
@@ -253,7 +223,7 @@ std::size_t Rewriter::first_turning(std::size_t first, std::size_t last) const {
 void Rewriter::check_one_feed(const Statement& statement, const Move& move) const {
   const double part_s = move.time_s / static_cast<double>(move.count);
   for (std::size_t i = move.first; i < move.first + move.count; ++i) {
-    if (near_rate(job_.wanted.blocks[i].duration_s, part_s, 0.5 * rate_tolerance)) continue;
+    if (near_rate(job_.wanted.blocks[i].duration_s, part_s, one_feed_tolerance)) continue;
     reject(statement.line, "feed",
            fmt::format("must be one for all {} parts of the {} that this line says", move.count,
                        statement.round ? "arc" : "move"),
@@ -286,30 +256,60 @@ void Rewriter::note_position(std::string_view number) {
   position_decimals_ = std::max(position_decimals_, std::min(digits, most));
 }
 
-// 0.1 um, or as the program writes itself.
-int Rewriter::decimals(double unit_m) const {
-  return std::max(position_decimals_, unit_m == units::inch ? 6 : 4);
+double Rewriter::Digits::resolution() const {
+  return unit * std::pow(10.0, -decimals);
 }
 
-double Rewriter::resolution_m(double unit_m) const {
-  return unit_m * std::pow(10.0, -decimals(unit_m));
+Rewriter::Digits Rewriter::position_digits(double unit_m) const {
+  return {.unit = unit_m, .decimals = std::max(position_decimals_, unit_m == units::inch ? 6 : 4)};
 }
 
-Rewriter::Coordinate Rewriter::coordinate(std::optional<double> number, double target_m, double from_m, bool step,
-                                          double unit_m, bool stays) const {
-  const double base_m = step ? from_m : 0.0;
-  const double kept_m = number ? *number * unit_m + base_m : from_m;
+Rewriter::Coordinate Rewriter::coordinate(std::optional<double> number, double target, double from, bool step,
+                                          const Digits& digits, bool stays) const {
+  const double base = step ? from : 0.0;
+  const double kept = number ? *number * digits.unit + base : from;
   constexpr double half = 0.5001;
-  if (stays ? kept_m == from_m : std::abs(kept_m - target_m) <= half * resolution_m(unit_m)) return {.end_m = kept_m};
-  const double wanted = ((stays ? from_m : target_m) - base_m) / unit_m;
+  if (stays ? kept == from : std::abs(kept - target) <= half * digits.resolution()) return {.end = kept};
+  const double wanted = ((stays ? from : target) - base) / digits.unit;
   Coordinate out = {.act = Coordinate::Act::write};
   constexpr int most = 12;
-  for (int digits = decimals(unit_m); digits <= most; ++digits) {
-    out.text = decimal_text(wanted, digits, points_.position);
-    out.end_m = number_in(out.text) * unit_m + base_m;
-    if (!stays || out.end_m == from_m) return out;
+  for (int decimals = digits.decimals; decimals <= most; ++decimals) {
+    out.text = decimal_text(wanted, decimals, points_.position);
+    out.end = number_in(out.text) * digits.unit + base;
+    if (!stays || out.end == from) return out;
   }
-  return {.act = Coordinate::Act::drop, .text = fmt::format("{}", wanted), .end_m = from_m};
+  return {.act = Coordinate::Act::drop, .text = fmt::format("{}", wanted), .end = from};
+}
+
+// Eight decimals: within 1e-8 rad.
+Rewriter::AxisNumbers Rewriter::axis_numbers(const std::optional<Eigen::Vector3d>& numbers,
+                                             const Eigen::Vector3d& target) const {
+  constexpr int decimals = 8;
+  AxisNumbers out;
+  if (numbers) {
+    out.written = *numbers;
+    out.axis = out.written / out.written.norm();
+    if (same_axis(out.axis, target)) return out;
+  }
+  out.keep = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto component = static_cast<Eigen::Index>(i);
+    out.texts[i] = decimal_text(target[component], decimals, points_.position);
+    out.written[component] = number_in(out.texts[i]);
+  }
+  out.axis = out.written / out.written.norm();
+  return out;
+}
+
+std::array<std::string, 3> Rewriter::exact_texts(const Eigen::Vector3d& numbers) {
+  std::array<std::string, 3> out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::array<char, 400> letters = {};  // of the least double
+    const std::to_chars_result end = std::to_chars(letters.data(), letters.data() + letters.size(),
+                                                   numbers[static_cast<Eigen::Index>(i)], std::chars_format::fixed);
+    out[i].assign(letters.data(), end.ptr);
+  }
+  return out;
 }
 
 std::string Rewriter::assemble(const Statement& statement, Composed& composed) const {
@@ -332,33 +332,25 @@ std::string Rewriter::assemble(const Statement& statement, Composed& composed) c
 }
 
 std::string Rewriter::read_back(ProgramReader& reader, std::string_view piece, const Statement& statement) const {
-  Pose begin = reader.pose();
-  Pose wanted_begin = job_.wanted.begin_of(statement.first_block);
-  std::size_t count = 0;
-  std::string problem;
+  const Pose begin = reader.pose();
+  std::vector<Block> got;
+  got.reserve(statement.blocks);
   Block block;
   for (std::size_t at = 0; at < piece.size();) {
     const TextLine line = line_at(piece, at);
     at = line.next;
     reader.take(line.text, letter_ahead(piece, at));
     if (at == piece.size() && statement.end == job_.text.size()) reader.finish();
-    while (reader.pop(block)) {
-      if (count < statement.blocks && problem.empty()) {
-        const Block& wanted = job_.wanted.blocks[statement.first_block + count];
-        problem = block_difference(wanted, wanted_begin, block, begin);
-        wanted_begin = wanted.end;
-      }
-      begin = block.end;
-      ++count;
-    }
+    while (reader.pop(block)) got.push_back(block);
   }
-  if (!problem.empty()) return problem;
-  if (count != statement.blocks) return fmt::format("it makes {} blocks instead of {}", count, statement.blocks);
-  if (statement.starts &&
-      !(reader.start() && (reader.start()->tip_m - job_.wanted.start.tip_m).norm() <= tip_tolerance_m)) {
-    return "the program starts elsewhere";
+  std::string problem =
+      blocks_difference(std::span(job_.wanted.blocks).subspan(statement.first_block, statement.blocks),
+                        job_.wanted.begin_of(statement.first_block), got, begin, job_.reading.axis_tolerance_rad);
+  if (problem.empty() && statement.starts &&
+      !(reader.start() && pose_difference(job_.wanted.start, *reader.start()).empty())) {
+    problem = "the program starts elsewhere";
   }
-  return {};
+  return problem;
 }
 
 void Rewriter::write(std::size_t index, Result& result) {

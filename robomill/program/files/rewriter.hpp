@@ -11,6 +11,7 @@
 
 #include "robomill/program/files/program_reader.hpp"
 #include "robomill/program/files/rewrite.hpp"
+#include "robomill/program/files/rewrite_compare.hpp"
 
 namespace robomill::program {
 
@@ -22,10 +23,6 @@ struct RewriteJob {
   const Program& as_read;
   const Program& wanted;
 };
-
-/// In what a block read again is not the wanted one; empty where it is.
-[[nodiscard]] std::string block_difference(const Block& wanted, const Pose& wanted_begin, const Block& got,
-                                           const Pose& got_begin);
 
 /// A number without trailing zeros. @param point  a whole one ends with its point
 [[nodiscard]] std::string decimal_text(double value, int decimals, bool point);
@@ -100,12 +97,24 @@ class Rewriter {
     std::vector<std::string> before = {}, after = {};  ///< lines
   };
 
-  /// How one coordinate comes where it is wanted.
+  /// How numbers of a kind are written.
+  struct Digits {
+    double unit = 1.0;  ///< of the program, in what is compared
+    int decimals = 0;
+    [[nodiscard]] double resolution() const;
+  };
+  /// How one coordinate or one angle comes where it is wanted.
   struct Coordinate {
     enum class Act { keep, write, drop };
     Act act = Act::keep;
     std::string text = {};
-    double end_m = 0.0;  ///< where it is then
+    double end = 0.0;  ///< where it is then
+  };
+  /// How the three components of a tool axis come where they are wanted.
+  struct AxisNumbers {
+    bool keep = true;
+    std::array<std::string, 3> texts = {};
+    Eigen::Vector3d written, axis;  ///< as they stand there then, and as they are read
   };
 
   [[nodiscard]] virtual ProgramReader& in() = 0;
@@ -130,7 +139,18 @@ class Rewriter {
   [[nodiscard]] std::optional<std::size_t> place_of(std::size_t begin, std::size_t end) const;
 
   [[nodiscard]] Move move_of(const Statement& statement) const;
-  [[nodiscard]] Feed needed_feed(std::size_t index) const;
+  /// What a statement as written moves.
+  struct Motions {
+    double way_m = 0.0;     ///< of the tip from end to end: one below the digits is none
+    double turn_deg = 0.0;  ///< of the axis, as a feed counts it
+    [[nodiscard]] bool stands() const { return way_m == 0.0; }
+    /// The way that a feed counts. Digits that change a short one must not change the time in which the axis turns.
+    [[nodiscard]] double counted_way_m(double wanted_way_m) const;
+  };
+  /// @param motions  none: not written yet
+  [[nodiscard]] Feed needed_feed(std::size_t index, const std::optional<Motions>& motions = {}) const;
+  /// The axis that is wanted where a statement ends: of its last move, of the start; else where the new text stands.
+  [[nodiscard]] Eigen::Vector3d wanted_axis(const Statement& statement, const Move& move);
   /// The first block in [first, last) whose spindle speed counts; none where none does.
   [[nodiscard]] std::size_t first_turning(std::size_t first, std::size_t last) const;
   /// @throws InvalidInput where the parts of one move ask for several feeds
@@ -147,12 +167,19 @@ class Rewriter {
   };
   Points points_;
   /// @param number  that stands in the program, if one does
-  /// @param from_m  where the tip is
+  /// @param from    where the tip or the angle is
   /// @param step    the number counts from there
-  /// @param stays   the coordinate must not change at all
-  [[nodiscard]] Coordinate coordinate(std::optional<double> number, double target_m, double from_m, bool step,
-                                      double unit_m, bool stays) const;
-  [[nodiscard]] double resolution_m(double unit_m) const;
+  /// @param stays   it must not change at all
+  [[nodiscard]] Coordinate coordinate(std::optional<double> number, double target, double from, bool step,
+                                      const Digits& digits, bool stays) const;
+  /// Of positions: 0.1 um, or as the program writes itself.
+  [[nodiscard]] Digits position_digits(double unit_m) const;
+  /// @param numbers  that stand in the statement, if they do
+  /// @param target   unit vector
+  [[nodiscard]] AxisNumbers axis_numbers(const std::optional<Eigen::Vector3d>& numbers,
+                                         const Eigen::Vector3d& target) const;
+  /// The texts of numbers that are read as the very same numbers.
+  [[nodiscard]] static std::array<std::string, 3> exact_texts(const Eigen::Vector3d& numbers);
 
   /// In what the text of a statement, taken by a reader, is not what is wanted; empty where it is.
   [[nodiscard]] std::string read_back(ProgramReader& reader, std::string_view piece, const Statement& statement) const;
@@ -168,7 +195,6 @@ class Rewriter {
   void look_ahead();
   void write(std::size_t index, Result& result);
   void write_header(const std::vector<std::string>& header, Result& result) const;
-  [[nodiscard]] int decimals(double unit_m) const;
 
   const RewriteJob job_;
   std::vector<Statement> statements_;
