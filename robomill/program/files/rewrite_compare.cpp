@@ -131,7 +131,7 @@ std::size_t count_parts(const Block& wanted, const Pose& wanted_begin, std::span
 
 std::string moves_difference(std::span<const Block> wanted, Pose wanted_begin, std::span<const Block> got,
                              Pose got_begin, double axis_tolerance_rad) {
-  const std::string counts = count_difference(wanted.size(), got.size());
+  std::string counts = count_difference(wanted.size(), got.size());
   const auto rapids = [](std::span<const Block> blocks) {
     const auto end = std::ranges::find_if(blocks, [](const Block& b) { return b.kind != Block::Kind::rapid; });
     return static_cast<std::size_t>(end - blocks.begin());
