@@ -56,7 +56,7 @@ Vector3d GcodeRewriter::nearest_deg(const Vector3d& axis, const Vector3d& from_d
 // A rapid brings the rotary axes back to where the program's own words have them, a feed goes on where they stand.
 Vector3d GcodeRewriter::rotary_goal_deg(std::size_t index, const Move& move) const {
   const Statement& statement = statements()[index];
-  const Vector3d stand_deg = out_->modes().rotary_deg;
+  Vector3d stand_deg = out_->modes().rotary_deg;
   if (!statement.starts && move.count == 0) return stand_deg;
   const std::size_t last = move.first + move.count;
   const Vector3d& read = statement.starts ? job().as_read.start.axis : job().as_read.blocks[last - 1].end.axis;
