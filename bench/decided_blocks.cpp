@@ -87,11 +87,14 @@ bool chatters(const simulation::Simulation& run) {
 
 /// Simulated for time_constants of the slowest mode, and twice as long each time until the motion tells, and not
 /// otherwise than the growth of a small vibration does: a mode that grows slowly may still hide behind one that dies.
+/// The steps are those that the forced vibration needs: chatter and a hard entry ask for ever shorter ones.
 void simulate(const simulation::PostureCut& cut, bool fine, InTime& out) {
+  constexpr double forced_s = 0.05;
   simulation::SimulationOptions options = {
-      .seconds = std::clamp(time_constants * time_constant_s(cut.structure), shortest_s, longest_s),
-      .sample_rate_hz = 2048.0,
-      .tolerance = 1e-2};
+      .seconds = forced_s, .sample_rate_hz = 2048.0, .regeneration = false, .tolerance = 1e-2};
+  options.steps_per_revolution = simulation::simulate(cut, options).steps_per_revolution;
+  options.regeneration = true;
+  options.seconds = std::clamp(time_constants * time_constant_s(cut.structure), shortest_s, longest_s);
   for (;; options.seconds *= 2.0) {
     const simulation::Simulation run = simulation::simulate(cut, options);
     const bool known = run.small.status == simulation::SmallVibration::Status::found;
@@ -99,7 +102,7 @@ void simulate(const simulation::PostureCut& cut, bool fine, InTime& out) {
     out.seconds = options.seconds;
     out.quarters = std::pow(run.growth_per_period, std::floor(0.25 * std::floor(options.seconds / run.period_s)));
     out.multiplier = known ? run.small.spectral_radius : 0.0;
-    out.steps_per_revolution = run.steps_per_revolution;
+    out.steps_per_revolution = options.steps_per_revolution;
     out.resolved = run.resolved;
     out.frequency_hz = run.chatter_frequency_hz;
     const bool grows_in_small = known && out.multiplier >= 1.0;
@@ -108,7 +111,7 @@ void simulate(const simulation::PostureCut& cut, bool fine, InTime& out) {
     if ((told && (!known || out.chatters == grows_in_small)) || 2.0 * options.seconds > longest_s) break;
   }
   if (!fine) return;
-  options.steps_per_revolution = 2 * out.steps_per_revolution;
+  options.steps_per_revolution *= 2;
   out.fine_differs = chatters(simulation::simulate(cut, options)) != out.chatters;
 }
 
@@ -175,6 +178,7 @@ struct Score {
   int chatter = 0;          ///< in time
   int stable_chatters = 0;  ///< … and told stable
   int chatter_stable = 0;   ///< told to chatter, and stable in time
+  int multipliers = 0;      ///< of small vibrations that were found
   double longest_s = 0.0, multiplier_off = 0.0;
   int least_steps = std::numeric_limits<int>::max(), most_steps = 0;
   void add(const InTime& found, const jobs::BlockRow& row) {
@@ -195,18 +199,19 @@ struct Score {
     least_steps = std::min(least_steps, found.steps_per_revolution);
     most_steps = std::max(most_steps, found.steps_per_revolution);
     if (found.multiplier > 0.0) {
+      ++multipliers;
       multiplier_off = std::max(multiplier_off, std::abs(found.multiplier - row.cut.spectral_radius));
     }
   }
-  void print(const char* name) const {
+  void print(const char* name, bool fine) const {
     if (simulated == 0) return;
     fmt::print(
         "- {}: {} of {} chatter in time; {} verdicts agree with |μ|, told stable and chatters: {}, told to chatter and "
-        "stable: {}. {} told by motion that dies or grows. The small vibration's |μ| differs by {:.1e} at most. {} to "
-        "{} steps "
-        "a revolution, up to {:.3g} s; {} not resolved, {} failed, {} otherwise with half the step.\n",
-        name, chatter, simulated, agree, stable_chatters, chatter_stable, by_motion, multiplier_off, least_steps,
-        most_steps, longest_s, unresolved, failed, fine_differ);
+        "stable: {}. {} told by motion that dies or grows. The small vibration's |μ|, found for {}, differs by {:.1e} "
+        "at most. {} to {} steps a revolution, up to {:.3g} s; {} not resolved, {} failed{}.\n",
+        name, chatter, simulated, agree, stable_chatters, chatter_stable, by_motion, multipliers, multiplier_off,
+        least_steps, most_steps, longest_s, unresolved, failed,
+        fine ? fmt::format(", {} otherwise with half the step", fine_differ) : std::string());
   }
 };
 
@@ -261,10 +266,10 @@ bool judge_in_time(const std::array<Judged, 2>& programs, const jobs::DynamicsAt
       "\n†: not drawn, but told to chatter as programmed. The number: changes of the motion from period to period in "
       "the last quarter of the time over those in the one before; *: they neither die nor grow, and the small "
       "vibration tells, or chatter has its full size.\n\n");
-  score[0].print("as programmed, drawn");
-  score[1].print("as decided, drawn");
-  unstable_too[0].print("as programmed, told to chatter");
-  unstable_too[1].print("as decided, the same blocks");
+  score[0].print("as programmed, drawn", settings.fine);
+  score[1].print("as decided, drawn", settings.fine);
+  unstable_too[0].print("as programmed, told to chatter", settings.fine);
+  unstable_too[1].print("as decided, the same blocks", settings.fine);
   const auto holds = [](const Score& s) { return s.chatter == 0 && s.failed == 0; };
   return holds(score[1]) && holds(unstable_too[1]);
 }
