@@ -123,6 +123,11 @@ void require_report_place(const std::filesystem::path& path) {
   throw InvalidInput(path.string(), "a report is written as .html or .json");
 }
 
+void show(const Common& common, const std::string& summary, const std::function<page::Report()>& page) {
+  if (!common.report.empty()) write_report(common.report, page());
+  if (common.wants_summary()) fmt::print("{}", summary);
+}
+
 void write_report(const std::filesystem::path& path, const page::Report& page, const std::string& json) {
   io::write_file(path, is_html(path) ? page::report_html(page) : json.empty() ? page::report_json(page) : json);
 }

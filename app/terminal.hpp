@@ -29,6 +29,9 @@ void write_output(const Common& common, const std::function<std::string(io::Form
 [[nodiscard]] bool is_html(const std::filesystem::path& path);
 /// @throws InvalidInput unless the path is empty or ends in .html or .json
 void require_report_place(const std::filesystem::path& path);
+/// The summary where one is wanted, and where --report asks for it the page, or its data.
+/// @param page  is made only then
+void show(const Common& common, const std::string& summary, const std::function<page::Report()>& page);
 /// The page, or where the path ends in .json this document; without one, the page's data.
 void write_report(const std::filesystem::path& path, const page::Report& page, const std::string& json = {});
 

@@ -14,7 +14,7 @@ function argument(name, fallback) {
 
 /** Runs in the page: what each plot shows. A panel without a drawn mark is a missing plot. */
 function inspect() {
-  const marks = '.scatterlayer .trace path, .heatmaplayer image, .contourlayer path, .scatterlayer .point';
+  const marks = '.scatterlayer .trace path, .heatmaplayer image, .contourlayer path, .scatterlayer .point, .barlayer .point path';
   const plots = [...document.querySelectorAll('figure[data-plot]')].map((figure) => {
     const canvas = figure.querySelector('.canvas');
     const roots = canvas.classList.contains('several') ? [...canvas.children] : [canvas];

@@ -75,7 +75,7 @@ export async function launch(executable, more = []) {
   return { send, on: (listener) => listeners.push(listener), close };
 }
 
-/** A page at a width and colour scheme; collects its errors and requests from before it loads. */
+/** A page at a width and colour scheme; collects its errors and requests from before it loads. A hand (hand.mjs) works it. */
 export async function openPage(browser, url, { width, height = 900, scheme = 'light' }) {
   const { targetId } = await browser.send('Target.createTarget', { url: 'about:blank' });
   const { sessionId } = await browser.send('Target.attachToTarget', { targetId, flatten: true });

@@ -220,7 +220,6 @@ std::string blind_summary(const live::MetricValues& m) {
 }  // namespace
 
 Exit run(const MonitorCommand& command, const Common& common, Progress& progress) {
-  require_report_place(command.report);
   monitor::MonitorFile file = read_config(command);
   std::atomic<bool> ended{false};
   Input input = open_input(command, file, ended);
@@ -229,7 +228,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   EventFile events(common, input.is_live);
 
   std::optional<live::Recorder> recorder;
-  if (!command.report.empty()) {
+  if (!common.report.empty()) {
     const std::vector<std::string>& channels = file.columns.channels;
     recorder.emplace(file.options, channels, unit_of(channels, file.options.tachometer_channel));
   }
@@ -281,7 +280,11 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     if (input.is_stream || !file.mqtt.events_topic.empty() || !file.mqtt.commands_topic.empty()) {
       connection.emplace(file, input.is_stream, session.queue(), session.notices(), session.metrics());
       broker = &*connection;
-      if (!input.is_stream) broker->wait_a_little();
+      if (input.is_stream) {
+        broker->require_connection(stop);
+      } else {
+        broker->wait_a_little();
+      }
     }
     std::optional<live::SourceInput> reader;
     if (input.source) {
@@ -299,7 +302,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     const live::RecordedRun recorded = recorder->run();
     page::Report page = monitor_page(recorded, file, input.name);
     page.summary = summary + run_summary(recorded);
-    write_report(command.report, page);
+    write_report(common.report, page);
   }
   if (common.wants_summary()) fmt::print("{}{}", summary, blind_summary(session.metrics()));
   return stop ? static_cast<Exit>(exit_of_signal()) : done;

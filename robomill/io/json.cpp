@@ -59,7 +59,7 @@ std::size_t line_of(std::string_view content, std::size_t byte) {
 }
 
 /// What copies, compares or writes JSON calls itself once a level.
-void require_shallow(std::string_view content, const std::filesystem::path& path) {
+void require_shallow(std::string_view content, const std::string& name) {
   int depth = 0;
   bool quoted = false;
   for (std::size_t i = 0; i < content.size(); ++i) {
@@ -75,7 +75,7 @@ void require_shallow(std::string_view content, const std::filesystem::path& path
     }
     if (depth <= deepest_nesting) continue;
     throw InvalidInput(InvalidInput::Parts{
-        .where = fmt::format("{}:{}", path.string(), line_of(content, i)),
+        .where = fmt::format("{}:{}", name, line_of(content, i)),
         .rule = fmt::format("is no JSON that is read here: it nests its values more than {} deep", deepest_nesting)});
   }
 }
@@ -102,6 +102,16 @@ Json numbers(const Eigen::Ref<const Eigen::VectorXd>& values) {
 
 Json complex_numbers(const Eigen::Ref<const Eigen::VectorXcd>& values) {
   return {{"re", numbers(values.real())}, {"im", numbers(values.imag())}};
+}
+
+Json assumed_json(const std::vector<Assumption>& assumed) {
+  const auto text_or_null = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
+  Json list = Json::array();
+  for (const Assumption& one : assumed) {
+    list.push_back(
+        {{"what", one.what}, {"taken", one.taken}, {"key", text_or_null(one.key)}, {"file", text_or_null(one.file)}});
+  }
+  return list;
 }
 
 std::string dump(const Json& json) {
@@ -180,8 +190,11 @@ std::string JsonNode::text() const {
 }
 
 Json read_json(const std::filesystem::path& path) {
-  const std::string content = read_file(path);
-  require_shallow(content, path);
+  return parse_json(read_file(path), path.string());
+}
+
+Json parse_json(std::string_view content, const std::string& name) {
+  require_shallow(content, name);
   try {
     return Json::parse(content);
   } catch (const nlohmann::json::exception& error) {
@@ -189,8 +202,7 @@ Json read_json(const std::filesystem::path& path) {
     const std::size_t line = line_of(content, parse != nullptr ? parse->byte : 0);
     std::string reason = error.what();
     reason = reason.substr(std::min(reason.find("] ") + 2, reason.size()));
-    throw InvalidInput(
-        InvalidInput::Parts{.where = fmt::format("{}:{}", path.string(), line), .rule = "is no JSON: " + reason});
+    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", name, line), .rule = "is no JSON: " + reason});
   }
 }
 

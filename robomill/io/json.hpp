@@ -6,7 +6,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/error.hpp"
 
 namespace robomill::io {
@@ -23,6 +26,9 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json numbers(const Eigen::Ref<const Eigen::VectorXd>& values);
 /// {"re": […], "im": […]}
 [[nodiscard]] Json complex_numbers(const Eigen::Ref<const Eigen::VectorXcd>& values);
+
+/// [{"what", "taken", "key", "file"}, …]; key and file null where there is none.
+[[nodiscard]] Json assumed_json(const std::vector<Assumption>& assumed);
 
 /// JSON text for people too: objects over lines, lists of plain values on one; null for what is not finite; a line's
 /// end last.
@@ -57,5 +63,8 @@ class JsonNode {
 
 /// @throws InvalidInput with file and line if the file is missing, empty or no JSON
 [[nodiscard]] Json read_json(const std::filesystem::path& path);
+/// @param name  of the text, in errors
+/// @throws InvalidInput with name and line if it is no JSON, or nests deeply
+[[nodiscard]] Json parse_json(std::string_view content, const std::string& name);
 
 }  // namespace robomill::io

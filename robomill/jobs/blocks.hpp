@@ -28,10 +28,11 @@ struct PostureDynamics {
 using DynamicsAt = std::function<PostureDynamics(const Eigen::VectorXd& joints)>;
 
 /// Of the cell's measured postures, or of its arm's numbers alone (posture.hpp).
-/// @param warnings, notes  for the user are added
+/// @param warnings, notes, assumed  for the user are added
 /// @throws InvalidInput as cell_dynamics, or with the cell's file if nothing is known to vibrate; Interrupted
 [[nodiscard]] ROBOMILL_API DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& warnings,
                                                        std::vector<std::string>& notes,
+                                                       std::vector<Assumption>& assumed,
                                                        Progress& progress = Progress::none());
 /// The same modes in every posture.
 [[nodiscard]] ROBOMILL_API DynamicsAt constant_dynamics(modal::ModalModel modes);

@@ -12,6 +12,7 @@
 #include "robomill/decision/choose.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
+#include "robomill/jobs/plan_assumed.hpp"
 #include "robomill/jobs/plan_decision.hpp"
 #include "robomill/jobs/program_forces.hpp"
 #include "robomill/jobs/test_cuts.hpp"
@@ -82,6 +83,7 @@ void measure(PlanResult& result, Progress& progress) {
   if (!result.job.hits.empty()) {
     const modal::HitsFile hits = modal::read_hits(result.job.hits);
     append(result.notes, hits.notes);
+    add_assumed(result.assumed, hits.assumed);
     for (const modal::Hit& hit : hits.hits) {
       result.hit_directions.push_back(
           fmt::format("{}{}", hit.against_axis ? "-" : "", modal::to_string(hit.excitation)));
@@ -93,11 +95,13 @@ void measure(PlanResult& result, Progress& progress) {
   } else if (!result.job.frf.empty()) {
     const modal::FrfFile file = modal::read_frfs(result.job.frf, result.job.frf_as);
     append(result.notes, file.notes);
+    add_assumed(result.assumed, file.assumed);
     result.frfs = file.set;
     result.added_decay_per_s = file.added_decay_per_s;
   } else if (!result.job.assembly.empty()) {
     result.prediction = predict_tip(result.job.assembly, result.job.measured, {}, progress, result.job.joint);
     result.frfs = result.prediction->tip.frfs;
+    add_assumed(result.assumed, result.prediction->file.assumed);
     warn_of_prediction(result);
   }
 }
@@ -107,8 +111,8 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   modal::FrfSet measured = result.frfs.value_or(modal::FrfSet{});
   if (!result.frfs) result.model = modal::read_modes(result.job.modes);
   const modal::MissingDirections& directions = result.job.directions;
-  const auto words = complete_directions(result.model, measured, directions, result.job.file.string(), "job");
-  if (words) result.warnings.push_back(*words);
+  const auto assumed = complete_directions(result.model, measured, directions, result.job.file, "job");
+  if (assumed) add_assumed(result.assumed, {*assumed});
   if (!result.frfs) return;
   modal::FitOptions options;
   options.seed = seed;
@@ -374,6 +378,12 @@ ProgramRun program_run(const PlanResult& result) {
 /// What vibrates along the program: the cell's measured postures, else the job's structure in every posture, else the
 /// cell's arm.
 DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& progress) {
+  const auto assume = [&](const char* taken) {
+    result.assumed.push_back({.what = "Dynamics along the program",
+                              .taken = taken,
+                              .key = "postures",
+                              .file = cell.path.filename().string()});
+  };
   if (!result.forces->file.dynamics.modes.empty()) {
     result.notes.emplace_back("[dynamics] of forces.toml takes no part in the stability of the program's blocks.");
   }
@@ -382,13 +392,11 @@ DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& pr
       result.notes.emplace_back(
           "The dynamics of the program's blocks are those of the cell's postures, not the job's.");
     } else if (cell.postures.empty()) {
-      result.notes.emplace_back(
-          "The dynamics of the program's blocks are those of the cell's arm alone; nothing was measured.");
+      assume("those of the cell's arm alone; nothing was measured");
     }
-    return dynamics_of_cell(cell, result.warnings, result.notes, progress);
+    return dynamics_of_cell(cell, result.warnings, result.notes, result.assumed, progress);
   }
-  result.notes.emplace_back(
-      "The dynamics of the program's blocks are the job's, the same in every posture, in the robot's base axes.");
+  assume("the job's, the same in every posture, in the robot's base axes");
   return constant_dynamics(result.model);
 }
 
@@ -447,6 +455,7 @@ void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progres
 /// lobes.toml, and what a plan asks of it.
 void read_cut(PlanResult& result) {
   result.cut = read_lobes(result.job.lobes);
+  append(result.notes, result.cut.notes);
   require_plane(result.cut, "plan chooses depth and speed of such a cut; robomill lobes judges any");
   if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
@@ -485,16 +494,22 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
         "The modes do not describe the FRFs: the fit differs from them by {:.3g} %, and from {:.3g} % on nothing is "
         "computed from it. Fit a better band (job.band_hz), or accept it with --accept-fit.",
         100.0 * result.fit->relative_error, 100.0 * modal::unusable_fit_error);
-    return result;
-  }
-  if (result.recommends()) {
+  } else if (result.recommends()) {
     choose_conditions(result, seed, progress);
   } else {
     result.notes.emplace_back(
         "The job names no lobes.toml: there are no lobes, no recommended speed and depth, and test cuts are not "
         "compared.");
   }
+  gather_assumed(result, cell ? &*cell : nullptr);
   return result;
+}
+
+bool reached(const PlanResult& result) {
+  if (result.decision && result.decision->status == DecideResult::Status::infeasible) return false;
+  if (result.path && !result.path->holds()) return false;
+  if (result.blocks && !result.recommends()) return true;  // an unstable block is an answer
+  return result.recommendation.status == decision::Recommendation::Status::found;
 }
 
 }  // namespace robomill::jobs

@@ -71,6 +71,7 @@ struct PlanResult {
   std::vector<ComparedCut> cuts;
   std::vector<Recording> recordings;
   std::vector<std::string> warnings, notes;
+  std::vector<Assumption> assumed;  ///< of all stages
 
   [[nodiscard]] bool has_lobes() const { return !lobes.limit.empty(); }
   /// Whether the job chooses depth and speed; else it judges the blocks of its program alone.
@@ -88,6 +89,9 @@ struct PlanResult {
 [[nodiscard]] ROBOMILL_API PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
                                               Progress& progress = Progress::none(),
                                               const std::filesystem::path& folder = {}, bool accept_fit = false);
+
+/// Whether the job has the answer that it is for: conditions or a recommendation within every limit, a path that holds.
+[[nodiscard]] ROBOMILL_API bool reached(const PlanResult& result);
 
 /// The report of a job.
 /// @param files  that stand beside it

@@ -286,7 +286,7 @@ std::string stock_text(const ProgramForces& program) {
                         assumed.highest_pass_m / units::mm, line)
           : fmt::format("its top cut.axial_depth_mm above the highest pass (z = {:.5g} mm, line {})",
                         assumed.highest_pass_m / units::mm, line);
-  return fmt::format("assumed, since none is given: a box {}, {}", box, top);
+  return fmt::format("a box {}, {}", box, top);
 }
 
 std::vector<robot::Position6> joints_along(const CellFile& file, const program::Program& program,

@@ -104,7 +104,7 @@ UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions
   uncertainty.validate();
   LobesOptions chart = options;
   chart.grid = uncertainty.grid;
-  const Axes axes = even_axes(chart);
+  const Axes axes = column_axes(chart, even(chart.spindle_speed_rad_per_s, chart.grid[0]));
   const std::size_t speeds = axes.spindle_speed_rad_per_s.size();
   const std::size_t count = static_cast<std::size_t>(uncertainty.samples);
   constexpr double none = std::numeric_limits<double>::infinity();
@@ -113,6 +113,7 @@ UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions
   parallel_for(count, 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const std::unique_ptr<Scheme> scheme = make_scheme(draw(problem, uncertainty, i), options);
+      scheme->expect(axes.axial_depth_m, axes.fine > 1);
       const std::unique_ptr<PointEvaluator> evaluator = scheme->evaluator();
       const std::vector<Limit> limits = limits_between(*evaluator, axes, 0, speeds, options.tolerance, progress);
       for (std::size_t s = 0; s < speeds; ++s) {
@@ -124,10 +125,10 @@ UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions
 
   UncertainLimits result;
   const Eigen::Index n = static_cast<Eigen::Index>(speeds);
-  const Eigen::Index m = static_cast<Eigen::Index>(axes.axial_depth_m.size());
+  const Eigen::Index m = chart.grid[1];
   result.samples = uncertainty.samples;
   result.spindle_speed_rad_per_s = Eigen::Map<const Eigen::VectorXd>(axes.spindle_speed_rad_per_s.data(), n);
-  result.axial_depth_m = Eigen::Map<const Eigen::VectorXd>(axes.axial_depth_m.data(), m);
+  result.axial_depth_m = to_eigen(even(chart.axial_depth_m, chart.grid[1]));
   result.limit_5_percent_m.resize(n);
   result.limit_50_percent_m.resize(n);
   result.limit_95_percent_m.resize(n);

@@ -1,8 +1,24 @@
 // What robomill writes into the page: shop units, null for "none".
+import type { CellDocument } from './cell_document';
 import type { Decision } from './decision';
 import type { Monitor, MotionDocument } from './recorded';
+import type {
+  Assumption,
+  ChartPoint,
+  CoefficientsDocument,
+  ComparisonDocument,
+  ExplanationDocument,
+  JointDocument,
+  SimulationDocument,
+  StiffnessDocument,
+  SurfaceDocument,
+  SweepDocument,
+  ToolsDocument,
+  VibrationDocument,
+} from './verb_documents';
 
 export * from './recorded';
+export * from './verb_documents';
 export type Num = number | null;
 
 export interface Fact {
@@ -148,6 +164,8 @@ export interface LobesDocument {
   spectral_radius?: Num[][]; // a row a depth
   boundary: BoundaryPoint[];
   limit: BoundaryPoint[];
+  points?: ChartPoint[]; // that were asked for
+  surface?: SurfaceDocument;
   uncertainty?: { samples: number; spindle_speed_rpm: number[]; limit_5_percent_mm: Num[]; limit_95_percent_mm: Num[] };
 }
 
@@ -492,8 +510,21 @@ export interface Report {
   blocks: BlocksDocument | null;
   smooth: SmoothDocument | null;
   motion: MotionDocument | null; // of the same program
+  cell: CellDocument | null;
   monitor: Monitor | null;
   calibration: Calibration | null;
   recordings: Recording[] | null;
+  joint: JointDocument | null; // found with the FRFs above
+  tools: ToolsDocument | null;
+  sweep: SweepDocument | null;
+  comparison: ComparisonDocument | null;
+  explanation: ExplanationDocument | null;
+  simulation: SimulationDocument | null;
+  vibration: VibrationDocument | null; // of the same cut
+  coefficients: CoefficientsDocument | null;
+  stiffness: StiffnessDocument | null;
+  assumed: Assumption[];
+  warnings: string[]; // that no document holds
+  notes: string[];
   files: StageFile[];
 }

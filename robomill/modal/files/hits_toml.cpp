@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/toml_file.hpp"
@@ -22,8 +23,6 @@ struct Sensors {
   bool has_scale = false;
   double sample_rate_hz = 0.0;
 };
-
-constexpr double millivolts_per_volt = 1e3;
 
 const char* unit_of(ResponseKind kind) {
   switch (kind) {
@@ -65,18 +64,38 @@ void read_options(io::TomlFile& file, HitOptions& o) {
   number("exponential_time_constant_s", "exponential_time_constant_s", o.exponential_time_constant_s);
 }
 
-/// mV per unit, where the records hold volts; a sensor mounted the other way round may be negative.
-void sensitivity(io::TomlFile& file, const std::string& key, double& factor) {
+/// Of a sensor in mV per unit; one that is mounted the other way round may be negative.
+/// @param record_mv  what a 1 of the record is
+bool sensitivity(io::TomlFile& file, const std::string& key, double record_mv, double unit, double& factor) {
   double mv_per_unit = 0.0;
-  if (!file.number(key, key, 1.0, mv_per_unit)) return;
+  if (!file.number(key, key, 1.0, mv_per_unit)) return false;
   if (mv_per_unit == 0.0) throw file.reject(key, "must not be 0", "It stands on the sensor's calibration sheet");
-  factor = millivolts_per_volt / mv_per_unit;
+  factor = record_mv / mv_per_unit * unit;
+  return true;
+}
+
+/// Without sensitivities the records are in N and the SI unit of the response.
+void read_sensitivities(io::TomlFile& file, ResponseKind kind, Sensors& sensors) {
+  const std::string voltage = "acquisition.voltage_unit", in_g = "acquisition.response_mv_per_g";
+  double record_mv = 1e3;
+  file.choice<double>(voltage, {{"V", 1e3}, {"mV", 1.0}}, record_mv);
+  const std::string response = fmt::format("acquisition.response_mv_per_{}", unit_of(kind));
+  bool any = sensitivity(file, "acquisition.force_mv_per_n", record_mv, 1.0, sensors.force_factor);
+  any = sensitivity(file, response, record_mv, 1.0, sensors.response_factor) || any;
+  if (kind == ResponseKind::acceleration) {
+    if (file.has(in_g) && file.has(response)) {
+      throw file.reject(in_g, fmt::format("must not stand beside {}", response), "They say the same in two units");
+    }
+    any = sensitivity(file, in_g, record_mv, units::standard_gravity, sensors.response_factor) || any;
+  }
+  if (file.has(voltage) && !any) {
+    throw file.reject(voltage, "goes with the sensors' sensitivities: force_mv_per_n, response_mv_per_g");
+  }
 }
 
 Sensors read_sensors(io::TomlFile& file, ResponseKind kind) {
   Sensors sensors;
-  sensitivity(file, "acquisition.force_mv_per_n", sensors.force_factor);
-  sensitivity(file, fmt::format("acquisition.response_mv_per_{}", unit_of(kind)), sensors.response_factor);
+  read_sensitivities(file, kind, sensors);
   sensors.has_scale = file.number("acquisition.scale", "scale", 1.0, sensors.scale);
   if (file.number("acquisition.sample_rate_hz", "sample_rate_hz", 1.0, sensors.sample_rate_hz) &&
       !(sensors.sample_rate_hz > 0.0)) {
@@ -160,10 +179,39 @@ Hit read_hit(io::TomlFile& file, std::size_t index, const Sensors& sensors, std:
   return hit;
 }
 
+/// What is taken where the file does not say it.
+std::vector<Assumption> assumed_of(const io::TomlFile& file, const Sensors& sensors, ResponseKind kind,
+                                   const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  std::vector<Assumption> out;
+  if (!file.has("acquisition.response")) {
+    out.push_back({.what = "Responses", .taken = "accelerations", .key = "acquisition.response", .file = name});
+  }
+  if (sensors.force_factor == 1.0) {
+    out.push_back(
+        {.what = "Forces in records without a unit", .taken = "N", .key = "acquisition.force_mv_per_n", .file = name});
+  }
+  if (sensors.response_factor == 1.0) {
+    out.push_back({.what = "Responses in records without a unit",
+                   .taken = kind == ResponseKind::acceleration ? "m/s²"
+                            : kind == ResponseKind::velocity   ? "m/s"
+                                                               : "m",
+                   .key = fmt::format("acquisition.response_mv_per_{}", unit_of(kind)),
+                   .file = name});
+  }
+  if (kind == ResponseKind::acceleration && !file.has("acquisition.accelerometer_mass_kg")) {
+    out.push_back({.what = "Accelerometer's mass",
+                   .taken = "0 kg, nothing is taken out of the FRFs",
+                   .key = "acquisition.accelerometer_mass_kg",
+                   .file = name});
+  }
+  return out;
+}
+
 }  // namespace
 
-HitsFile read_hits(const std::filesystem::path& path) {
-  io::TomlFile file(path);
+HitsFile read_hits(const io::TomlSource& source) {
+  io::TomlFile file(source);
   HitsFile out;
   read_options(file, out.options);
   const Sensors sensors = read_sensors(file, out.options.response);
@@ -171,6 +219,7 @@ HitsFile read_hits(const std::filesystem::path& path) {
   if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] above each record");
   for (std::size_t i = 0; i < file.tables("hits"); ++i) out.hits.push_back(read_hit(file, i, sensors, out.notes));
   file.done();
+  out.assumed = assumed_of(file, sensors, out.options.response, source.path);
   return out;
 }
 

@@ -22,8 +22,11 @@ class CollocationModel {
   [[nodiscard]] virtual bool depends_on_depth() const = 0;
   /// What the stiffness of a case is multiplied by at a point, gain included.
   [[nodiscard]] virtual double factor(const OperatingPoint& point) const = 0;
-  /// Depths that will be asked for often.
-  virtual void expect(std::span<const double> depths_m) { static_cast<void>(depths_m); }
+  /// Depths that will be asked for often, as of Scheme.
+  virtual void expect(std::span<const double> depths_m, bool picture) {
+    static_cast<void>(depths_m);
+    static_cast<void>(picture);
+  }
   /// By several threads at once.
   virtual void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const = 0;
   /// Where the search for an accuracy starts.

@@ -50,6 +50,11 @@ io::Json evaluated_json(const PointResult& point, const Varied& varied = {}) {
   row["multiplier"] = io::complex_number(point.multiplier);
   add_chatter(row, point);
   if (!std::isnan(point.gain_margin)) row["gain_margin"] = io::number(point.gain_margin);
+  if (!std::isnan(point.limit_depth_m)) {
+    row["limit_depth_mm"] = io::number(point.limit_depth_m / units::mm);
+    const bool limited = std::isfinite(point.limit_depth_m);
+    row["margin"] = limited ? io::number(1.0 - point.axial_depth_m / point.limit_depth_m) : io::Json(nullptr);
+  }
   return row;
 }
 

@@ -35,20 +35,20 @@ function PredictionTable({ frfs }: { frfs: Frf[] }) {
   return <Table caption="How far the curves are apart" columns={columns} rows={frfs} />;
 }
 
+/** Nothing where FRFs are neither graded nor fitted. */
 function QualityTable({ frfs }: { frfs: Frf[] }) {
-  return (
-    <Table
-      caption="Quality before the fit"
-      rows={frfs}
-      columns={[
-        { heading: 'FRF', cell: ({ name }) => name },
-        { heading: 'Grade', cell: ({ grade }) => <span class={`grade ${grade ?? 'unknown'}`}>{grade ?? 'not graded'}</span> },
-        { heading: 'What was found', cell: ({ findings }) => findings.join('; ') },
-        { heading: 'What to do', cell: ({ remedies }) => remedies.join('; ') },
-        { heading: 'Fit error', number: true, cell: (frf) => percent(frf.relative_error, 2) },
-      ]}
-    />
-  );
+  if (frfs.every(({ grade, relative_error: error }) => grade === null && error === null)) return null;
+  const graded = frfs.some(({ grade }) => grade !== null);
+  const columns: Column<Frf>[] = [{ heading: 'FRF', cell: ({ name }) => name }];
+  if (graded) {
+    columns.push(
+      { heading: 'Grade', cell: ({ grade }) => <span class={`grade ${grade ?? 'unknown'}`}>{grade ?? 'not graded'}</span> },
+      { heading: 'What was found', cell: ({ findings }) => findings.join('; ') },
+      { heading: 'What to do', cell: ({ remedies }) => remedies.join('; ') },
+    );
+  }
+  columns.push({ heading: 'Fit error', number: true, optional: true, cell: (frf) => percent(frf.relative_error, 2) });
+  return <Table caption={graded ? 'Quality before the fit' : 'Error of the fit'} columns={columns} rows={frfs} />;
 }
 
 export function FrfSection({ frfs, modes, predicted }: { frfs: Frf[]; modes: Mode[]; predicted: boolean }) {
@@ -74,8 +74,7 @@ function directions(vector: ModeVector): string {
   return Object.entries(vector).map(([dof, value]) => `${dof} ${percent(size(value) ** 2 / total, 0)}`).join(', ');
 }
 
-function ShareBar({ share }: { share: Num }) {
-  if (share === null) return <>{dash}</>;
+function ShareBar({ share }: { share: number }) {
   return (
     <>
       <span class="bar" aria-hidden="true">
@@ -169,7 +168,7 @@ export function ModesSection({ modes, document }: { modes: Mode[]; document: Mod
             { heading: 'Damping (%)', number: true, cell: (mode) => withDeviation(mode.damping_ratio, mode.std.damping_ratio, 100, 2) },
             { heading: 'Force that drives it', cell: (mode) => directions(mode.left) },
             { heading: 'Motion', cell: (mode) => directions(mode.right) },
-            { heading: 'Share in the limit', cell: (mode) => <ShareBar share={mode.limit_share} /> },
+            { heading: 'Share in the limit', optional: true, cell: ({ limit_share: share }) => (share === null ? dash : <ShareBar share={share} />) },
           ]}
         />
       )}
@@ -190,7 +189,7 @@ export function HitsSection({ hits }: { hits: Hit[] }) {
       rowClass={({ accepted }) => (accepted ? '' : 'rejected')}
       columns={[
         { heading: 'File', cell: ({ file }) => file },
-        { heading: 'Force', cell: ({ direction }) => direction },
+        { heading: 'Force', optional: true, cell: ({ direction }) => direction },
         { heading: 'Used', cell: ({ accepted }) => (accepted ? 'yes' : <strong>no</strong>) },
         { heading: 'Remarks', cell: ({ reasons }) => reasons.join('; ') },
       ]}

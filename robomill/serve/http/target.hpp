@@ -1,0 +1,15 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace robomill::serve {
+
+/// A request's target as path and query, percent signs decoded: "/api/file?path=a%2Fb".
+/// @return false for one that does not begin with "/", is badly encoded, names a key twice, or holds a control
+/// character
+[[nodiscard]] bool split_target(std::string_view target, std::string& path,
+                                std::map<std::string, std::string, std::less<>>& query);
+
+}  // namespace robomill::serve

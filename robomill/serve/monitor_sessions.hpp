@@ -1,0 +1,42 @@
+#pragma once
+#include <cstddef>
+#include <map>
+#include <memory>
+
+#include "robomill/serve/files/folder.hpp"
+#include "robomill/serve/http/server.hpp"
+#include "robomill/serve/monitor_session.hpp"
+#include "robomill/serve/serve.hpp"
+
+// Method: robomill/serve/README.md, "Monitor"
+
+namespace robomill::serve {
+
+/// The spindles that are listened to, and what the addresses at /api/monitors answer. Used by one thread.
+class MonitorSessions {
+ public:
+  static constexpr std::size_t most = 8;
+  /// @param open_stream  none: there are no streams
+  /// @param publish      MonitorSession's
+  MonitorSessions(const Folder& folder, OpenStream open_stream, MonitorSession::Publish publish);
+  /// Ends all.
+  ~MonitorSessions();
+  MonitorSessions(const MonitorSessions&) = delete;
+  MonitorSessions& operator=(const MonitorSessions&) = delete;
+
+  /// Of GET and POST /api/monitors, GET and DELETE /api/monitors/N.
+  /// @throws InvalidInput if a session cannot begin, io::Json::exception if the body is none
+  [[nodiscard]] HttpResponse answer(const HttpRequest& request);
+
+ private:
+  [[nodiscard]] HttpResponse start(const io::Json& body);
+  [[nodiscard]] HttpResponse list() const;
+
+  const Folder& folder_;
+  OpenStream open_stream_;
+  MonitorSession::Publish publish_;
+  std::map<int, std::unique_ptr<MonitorSession>> sessions_;
+  int last_ = 0;
+};
+
+}  // namespace robomill::serve

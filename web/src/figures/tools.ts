@@ -1,0 +1,44 @@
+import type { Num, ToolRow } from '../documents';
+import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
+import { suffix } from './rows';
+
+interface Bars {
+  title: string;
+  unit: string;
+  values: Num[];
+}
+
+/** What the tools come to, one above the other: compliance, and where a cut is given limit and removal rate. */
+export function toolsFigure(tools: ToolRow[], theme: Theme): Figure {
+  const all: Bars[] = [
+    { title: 'Peak (µm/N)', unit: 'µm/N', values: tools.map((tool) => tool.peak_um_per_n) },
+    { title: 'Lowest limit (mm)', unit: 'mm', values: tools.map((tool) => tool.lowest_limit_mm) },
+    { title: 'Removal (mm³/s)', unit: 'mm³/s', values: tools.map((tool) => tool.recommended?.removal_rate_mm3_per_s ?? null) },
+  ];
+  const rows = all.filter(({ values }) => values.some((value) => value !== null));
+  const names = tools.map(({ tool }, i) => plain(`${i + 1} ${tool}`));
+  const share = 1 / Math.max(rows.length, 1);
+  const axes: Layout = {};
+  const data: Trace[] = rows.map(({ title, unit, values }, index) => {
+    const top = 1 - index * share;
+    axes[`yaxis${suffix(index)}`] = axis(theme, title, { domain: [Math.max(0, top - share + 0.05), top], rangemode: 'tozero', nticks: 5, exponentformat: 'none' });
+    return {
+      type: 'bar',
+      name: title,
+      x: names,
+      y: values,
+      yaxis: `y${suffix(index)}`,
+      marker: { color: theme.series[index] },
+      hovertemplate: `%{x}: %{y:.4g}${thinSpace}${unit}<extra></extra>`,
+    };
+  });
+  return {
+    data,
+    layout: layout(theme, 170 * rows.length + 90, {
+      showlegend: false,
+      margin: { l: 72, r: 36, t: 16, b: 90 },
+      xaxis: axis(theme, 'Tool', { type: 'category', anchor: `y${suffix(Math.max(rows.length - 1, 0))}`, categoryorder: 'array', categoryarray: names }),
+      ...axes,
+    }),
+  };
+}

@@ -1,0 +1,131 @@
+// Curves that follow the sliders: asks while they move, and for all when they rest.
+import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
+import { lobesOf, type Lobes } from '../views';
+import { ApiError, asApiError, faultOf, type Api } from './api';
+import type { EvaluatedPoint, LobesAnswer, LobesRequest } from './documents';
+import { Latest } from './latest';
+import { firstPoint, keysOf, sameCurves, type FileValues, type Settings } from './settings';
+
+const rest_ms = 120; // after the last movement
+
+interface Question {
+  settings: Settings;
+  answer: LobesRequest['answer'];
+  started: number | null; // when the hand moved, on the clock of events
+}
+
+/** A curve that was answered. */
+export interface Curves {
+  lobes: Lobes;
+  limit: LobesAnswer['lobes']['limit'];
+  settings: Settings; // that it belongs to
+  whole: boolean; // with boundary and band
+  started: number | null;
+}
+
+export interface Live {
+  curves: Curves | null;
+  points: EvaluatedPoint[];
+  answer: LobesAnswer | null; // the last
+  settings: Settings;
+  file: FileValues | null; // known with the first answer
+  error: ApiError | null;
+  move: (change: Partial<Settings>, started: number | null) => void;
+  rest: () => void;
+  wrote: (file: FileValues) => void; // the file says this now
+}
+
+/** The answer as the figures need it; while the hand moves the limit is all that is known of the boundary. */
+export function curvesOf({ lobes }: LobesAnswer, { settings, answer, started }: Question): Curves {
+  const found = lobes.limit.filter((row) => row.axial_depth_mm !== null);
+  const boundary = lobes.boundary && lobes.boundary.length > 0 ? lobes.boundary : found;
+  return { lobes: lobesOf({ ...lobes, boundary }), limit: lobes.limit, settings, whole: answer === 'chart', started };
+}
+
+/** A hidden page has no frames. */
+function nextFrame(): Promise<void> {
+  return new Promise((resolve) => void (document.hidden ? setTimeout(resolve, 0) : requestAnimationFrame(() => resolve())));
+}
+
+/** A file that sweeps another parameter than the axial depth has no limit to draw. */
+function withLimit(answer: LobesAnswer, path: string): LobesAnswer {
+  if (Array.isArray((answer.lobes as { limit?: unknown }).limit)) return answer;
+  throw new ApiError(0, faultOf(`${path} sweeps another parameter than the axial depth (lobes.sweep): its map is drawn by robomill lobes alone.`));
+}
+
+export function useLive(api: Api, path: string): Live {
+  const [settings, setSettings] = useState<Settings>({ set: {}, modes: null, point: null });
+  const [curves, setCurves] = useState<Curves | null>(null);
+  const [answer, setAnswer] = useState<LobesAnswer | null>(null);
+  const [file, setFile] = useState<FileValues | null>(null);
+  const [error, setError] = useState<ApiError | null>(null);
+  const now = useRef({ settings, curves });
+  const timer = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
+  const client = useMemo(() => Math.random().toString(36).slice(2), []);
+
+  const set = (next: Settings) => {
+    now.current.settings = next;
+    setSettings(next);
+  };
+  /** A point that moves leaves the curves as they are. */
+  const answered = (got: LobesAnswer, question: Question) => {
+    setError(null);
+    setAnswer(got);
+    const before = now.current.curves;
+    const keep = before !== null && question.answer === 'limit' && sameCurves(before.settings, question.settings);
+    if (!keep) {
+      now.current.curves = curvesOf(got, question);
+      setCurves(now.current.curves);
+    }
+    if (before === null) begin(got);
+  };
+  const begin = (got: LobesAnswer) => {
+    setFile({ fields: got.fields, modes: got.modes.filter(({ kept }) => kept).map(({ number }) => number) });
+    set({ ...now.current.settings, point: firstPoint(now.current.curves!.lobes) });
+    latest.put({ settings: now.current.settings, answer: 'chart', started: null });
+  };
+  const latest = useMemo(
+    () =>
+      new Latest<Question, LobesAnswer>({
+        ask: ({ settings: { point, ...rest }, answer: wanted }, sequence, signal) =>
+          api.lobes({ file: path, set: keysOf({ ...rest, point }), answer: wanted, at: point ? [point] : [], client, channel: 'a', sequence }, signal).then((got) => withLimit(got, path)),
+        interruptible: (question) => question.answer === 'chart',
+        drawn: nextFrame,
+        answered,
+        failed: (thrown) => {
+          const failure = asApiError(thrown);
+          if (!failure.superseded) setError(failure);
+        },
+      }),
+    [],
+  );
+  useEffect(() => {
+    latest.put({ settings: now.current.settings, answer: 'limit', started: null });
+    return () => {
+      clearTimeout(timer.current);
+      latest.stop();
+    };
+  }, []);
+
+  return {
+    curves,
+    points: answer?.lobes.points ?? [],
+    answer,
+    settings,
+    file,
+    error,
+    move: (change, started) => {
+      clearTimeout(timer.current);
+      set({ ...now.current.settings, ...change });
+      latest.put({ settings: now.current.settings, answer: 'limit', started });
+    },
+    rest: () => {
+      clearTimeout(timer.current);
+      timer.current = setTimeout(() => {
+        const { settings: last, curves: shown } = now.current;
+        if (!shown?.whole || !sameCurves(shown.settings, last)) latest.put({ settings: last, answer: 'chart', started: null });
+      }, rest_ms);
+    },
+    wrote: setFile,
+  };
+}
