@@ -192,6 +192,21 @@ class Editor {
   std::set<std::size_t> inner_;
 };
 
+/// What a document has at a key, as toml++ writes it, so that it can be compared; nothing where it is no TOML, or has
+/// no such key.
+std::optional<std::string> value_in(const std::string& document, const std::string& key) {
+  try {
+    const toml::table root = parse_toml(document, key);
+    const toml::node* node = find_node(root, key);
+    if (node == nullptr) return std::nullopt;
+    std::ostringstream out;
+    node->visit([&out](const auto& value) { out << value; });
+    return out.str();
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 std::string toml_quoted(std::string_view text) {
@@ -212,20 +227,12 @@ std::string toml_quoted(std::string_view text) {
 std::optional<std::string> setting_of(std::string_view document, std::string_view key) {
   const toml::table root = parse_toml(document, std::string(key));
   const toml::node* node = find_node(root, key);
-  if (node == nullptr) return std::nullopt;
-  std::ostringstream out;
-  node->visit([&out](const auto& value) { out << value; });
-  return out.str();
+  if (node == nullptr || has_header(*node)) return std::nullopt;
+  const std::size_t begin = offset_of(document, node->source().begin);
+  return std::string(document.substr(begin, offset_of(document, node->source().end) - begin));
 }
 
 std::string with_setting(std::string_view document, const TomlSetting& setting) {
-  const auto value_in = [](const std::string& text, const std::string& key) -> std::optional<std::string> {
-    try {
-      return setting_of(text, key);
-    } catch (const InvalidInput&) {
-      return std::nullopt;
-    }
-  };
   // A value alone, and not one with further keys in lines of their own.
   const std::optional<std::string> wanted =
       setting.value.find('\n') == std::string::npos ? value_in("value = " + setting.value, "value") : std::nullopt;

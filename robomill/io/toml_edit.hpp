@@ -11,7 +11,8 @@ namespace robomill::io {
 /// A text as TOML writes it, in quotes.
 [[nodiscard]] ROBOMILL_API std::string toml_quoted(std::string_view text);
 
-/// What a document has at a key, as TOML writes it: "3", "\"up\""; nothing where it has no such key.
+/// What a document has at a key, as it stands there: "3", "\"up\"", "[1, 2]"; nothing where it has no such key, or a
+/// table below a header.
 /// @throws InvalidInput naming the key if the document is no TOML
 [[nodiscard]] ROBOMILL_API std::optional<std::string> setting_of(std::string_view document, std::string_view key);
 

@@ -98,6 +98,16 @@ TEST(TomlEdit, SurvivesMutations) {
   }
 }
 
+TEST(TomlEdit, GivesAValueAsItStandsThere) {
+  EXPECT_EQ(setting_of(example, "tool.teeth"), "3");
+  EXPECT_EQ(setting_of(example, "tool.pitch_deg"), "[100, 120,\n  140.0]");
+  EXPECT_EQ(setting_of(example, "tool.pitch_deg[2]"), "140.0");
+  EXPECT_EQ(setting_of(example, "hits[0].responses"), "{ x = \"ax\" }");
+  EXPECT_EQ(setting_of(example, "tool.helix_deg"), std::nullopt);
+  EXPECT_EQ(setting_of(example, "tool"), std::nullopt);
+  EXPECT_EQ(setting_of("a = 1", "a"), "1");
+}
+
 TEST(TomlEdit, QuotesAnyText) {
   EXPECT_EQ(toml_quoted("a \"b\" \\ c\n"), "\"a \\\"b\\\" \\\\ c\\u000A\"");
 }

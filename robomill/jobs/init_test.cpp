@@ -166,27 +166,42 @@ std::vector<io::TomlSetting> keys_of(Template kind, bool commented) {
   return keys;
 }
 
+/// A template with a key taken out of its comment; of a table that is commented out as a whole with those before it.
+std::string with_key(Template kind, const std::vector<io::TomlSetting>& commented, const io::TomlSetting& key) {
+  std::string text(template_text(kind));
+  const auto table_of = [](const std::string& name) { return name.substr(0, name.rfind('.')); };
+  const std::string table = table_of(key.key);
+  const bool takes_effect = text.find("\n[" + table + "]") != std::string::npos;
+  for (const io::TomlSetting& other : commented) {
+    if (other.key == key.key) break;
+    if (!takes_effect && table_of(other.key) == table) text = io::with_setting(text, other);
+  }
+  return io::with_setting(text, key);
+}
+
+/// Whether docs/formats.md has a key; units of joints' limits stand there apart from it.
+bool documented(const std::string& key) {
+  static const std::string docs = slurp(std::filesystem::path(ROBOMILL_SOURCE_DIR) / "docs" / "formats.md");
+  const std::string last = key.substr(key.rfind('.') + 1);
+  return docs.find(last.starts_with("joint_max") ? last.substr(0, last.find("_deg")) : last) != std::string::npos;
+}
+
 // A line taken out of its comment may ask for a file, or go without what stands beside it, but the key is known.
 TEST_F(Init, NoTemplateHasAKeyThatIsNotKnown) {
-  const std::string docs = slurp(std::filesystem::path(ROBOMILL_SOURCE_DIR) / "docs" / "formats.md");
   for (const Template kind : every) {
     const InitFiles files = made({.kind = kind});
     const std::filesystem::path path = files.files.front().path;
     const std::vector<io::TomlSetting> commented = keys_of(kind, true);
     EXPECT_GE(commented.size(), 3U) << path;
     for (const io::TomlSetting& key : commented) {
-      const std::string text = io::with_setting(template_text(kind), key);
-      EXPECT_NE(text, template_text(kind)) << key.key;
       try {
-        read(kind, io::TomlSource(path, text));
+        read(kind, io::TomlSource(path, with_key(kind, commented, key)));
       } catch (const InvalidInput& error) {
         EXPECT_EQ(std::string(error.what()).find("is not known here"), std::string::npos) << error.what();
       }
-      EXPECT_NE(docs.find(key.key.substr(key.key.rfind('.') + 1)), std::string::npos) << key.key;
+      EXPECT_TRUE(documented(key.key)) << key.key;
     }
-    for (const io::TomlSetting& key : keys_of(kind, false)) {
-      EXPECT_NE(docs.find(key.key.substr(key.key.rfind('.') + 1)), std::string::npos) << key.key;
-    }
+    for (const io::TomlSetting& key : keys_of(kind, false)) EXPECT_TRUE(documented(key.key)) << key.key;
     std::filesystem::remove_all(folder_.at("begin"));
   }
 }

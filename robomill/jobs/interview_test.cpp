@@ -91,7 +91,7 @@ TEST_F(Asked, DefaultsLeaveTheTemplateAsItIs) {
 TEST_F(Asked, AnswersStandInTheirPlaces) {
   InitFiles files = begun(Template::lobes);
   tell(Template::lobes, files, {"inch", "3000 rpm", "200 Hz", "1/2", "4", "7075", "climb", "1 mm", "0.2", "0.003"});
-  EXPECT_EQ(value(files, Template::lobes, "lobes.spindle_speed_rpm"), "[ 3000, 12000 ]");
+  EXPECT_EQ(value(files, Template::lobes, "lobes.spindle_speed_rpm"), "[3000, 12000]");
   EXPECT_EQ(value(files, Template::lobes, "tool.diameter_mm"), "12.7");
   EXPECT_EQ(value(files, Template::lobes, "tool.teeth"), "4");
   EXPECT_EQ(value(files, Template::lobes, "coefficients.material"), "\"7075-t6\"");
@@ -161,7 +161,7 @@ TEST_F(Asked, AJobAsksForItsHitsAndItsCutToo) {
   EXPECT_EQ(value(files, Template::hits, "acquisition.force_mv_per_n"), "2.3");
   EXPECT_EQ(value(files, Template::hits, "acquisition.response_mv_per_g"), "10");
   EXPECT_EQ(value(files, Template::hits, "acquisition.accelerometer_mass_kg"), "0.004");
-  EXPECT_EQ(value(files, Template::lobes, "lobes.spindle_speed_rpm"), "[ 6000, 18000 ]");
+  EXPECT_EQ(value(files, Template::lobes, "lobes.spindle_speed_rpm"), "[6000, 18000]");
   EXPECT_EQ(value(files, Template::lobes, "tool.diameter_mm"), "10");
   EXPECT_EQ(value(files, Template::lobes, "tool.teeth"), "2");
   const Job job = read_job(io::TomlSource("job.toml", files.document(Template::job)->text));
@@ -190,7 +190,7 @@ TEST_F(Asked, ARobotBringsItsPlace) {
   EXPECT_NE(interview.question()->find("[150 mm]"), std::string::npos) << *interview.question();
   while (interview.question()) interview.answer("");
   EXPECT_EQ(value(files, Template::cell, "robot.model"), "\"ur-5e\"");
-  EXPECT_EQ(value(files, Template::cell, "workpiece.origin_mm"), "[ -500, -133, 0 ]");
+  EXPECT_EQ(value(files, Template::cell, "workpiece.origin_mm"), "[-500, -133, 0]");
   EXPECT_NE(files.document(Template::cell)->text.find("\n# joint_max_velocity_deg_per_s = [180, 180, 180,"),
             std::string::npos);
 }

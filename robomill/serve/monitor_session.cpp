@@ -32,6 +32,19 @@ std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+Json counts_of(const live::MetricValues& metrics) {
+  Json blind = Json::object();
+  for (const monitor::BlindReason reason : monitor::blind_reasons) {
+    const double blind_s = metrics.blind_for_s(reason);
+    if (blind_s > 0.0) blind[std::string(monitor::to_string(reason))] = io::number(blind_s);
+  }
+  return {{"alarm_count", metrics.alarms.load()},
+          {"decision_count", metrics.decisions.load()},
+          {"dropped_hops", metrics.dropped_hops.load()},
+          {"lost_blocks", metrics.lost_blocks.load()},
+          {"blind_s", std::move(blind)}};
+}
+
 }  // namespace
 
 MonitorSession::MonitorSession(Options options, MonitorInput input, Publish publish)
@@ -40,6 +53,7 @@ MonitorSession::MonitorSession(Options options, MonitorInput input, Publish publ
       input_(std::move(input)),
       is_stream_(!input_.recording),
       spectrum_(input_.file.options),
+      counts_(counts_of(live::MetricValues())),
       frames_(input_.file.options.alarm_below),
       history_(input_.file.columns.channels, input_.file.options.alarm_below) {
   if (is_stream_ && !options_.open_stream) {
@@ -119,7 +133,7 @@ void MonitorSession::listen(const std::stop_token& stop) {
   {
     const std::lock_guard lock(mutex_);
     history_.end(session.time_s());
-    counts_ = counts(session.metrics());
+    counts_ = counts_of(session.metrics());
   }
   publish_due(true);
 }
@@ -216,7 +230,7 @@ void MonitorSession::publish_due(bool last) {
     const std::lock_guard lock(mutex_);
     frames_.add(frame);
     message["alarms"] = history_.take_changed();
-    counts_ = counts(*metrics_);
+    counts_ = counts_of(*metrics_);
     message.update(counts_);
   }
   publish_("monitor", dumped(message));
@@ -230,19 +244,6 @@ void MonitorSession::set_status(Status status, Json error) {
     if (status == Status::done || status == Status::failed) ended_s_ = clock_s();
   }
   publish_("monitors", "{}");
-}
-
-Json MonitorSession::counts(const live::MetricValues& metrics) const {
-  Json blind = Json::object();
-  for (const monitor::BlindReason reason : monitor::blind_reasons) {
-    const double blind_s = metrics.blind_for_s(reason);
-    if (blind_s > 0.0) blind[std::string(monitor::to_string(reason))] = io::number(blind_s);
-  }
-  return {{"alarm_count", metrics.alarms.load()},
-          {"decision_count", metrics.decisions.load()},
-          {"dropped_hops", metrics.dropped_hops.load()},
-          {"lost_blocks", metrics.lost_blocks.load()},
-          {"blind_s", std::move(blind)}};
 }
 
 Json MonitorSession::summary() const {

@@ -67,7 +67,6 @@ class MonitorSession {
   void set_status(Status status, io::Json error = nullptr);
   [[nodiscard]] double clock_s() const;
   [[nodiscard]] double pace(const MonitorFrame& frame);
-  [[nodiscard]] io::Json counts(const live::MetricValues& metrics) const;
 
   const Options options_;
   const Publish publish_;
@@ -87,7 +86,7 @@ class MonitorSession {
 
   mutable std::mutex mutex_;  ///< of the rest
   Status status_ = Status::starting;
-  io::Json error_ = nullptr, counts_ = io::Json::object();
+  io::Json error_ = nullptr, counts_;
   double ended_s_ = NAN;
   int teeth_ = 0;
   FrameRing frames_;

@@ -234,7 +234,7 @@ TEST_F(MonitorSessionsTest, TakesStreams) {
   EXPECT_EQ(all["input"], "mqtt://127.0.0.1:1883/spindle");
   EXPECT_TRUE(all["speed"].is_null());
   // Nothing comes any more: that is no stable cut.
-  all = wait_for(id, [](const json& now) { return now["frame"]["reason"] == "no-signal"; });
+  all = wait_for(id, [](const json& now) { return !now["frame"].is_null() && now["frame"]["reason"] == "no-signal"; });
   EXPECT_EQ(all["frame"]["state"], "blind");
   EXPECT_EQ(all["alarms"][0]["kind"], "blind");
   EXPECT_EQ(open_streams, 1);
@@ -265,10 +265,12 @@ TEST_F(MonitorSessionsTest, IsServed) {
   test::HttpConnection events(server->port());
   events.send(test::http_text(server->port(), "GET", "/api/events"));
   ASSERT_TRUE(events.wait_for("text/event-stream"));
-  EXPECT_EQ(send("POST", "/api/monitors", R"({"config":"monitor.toml","input":"cut.wav","speed":20})").status, 200);
-  EXPECT_TRUE(events.wait_for("event: monitors"));
-  EXPECT_TRUE(events.wait_for("event: monitor\ndata: {\"id\":1"));
-  EXPECT_TRUE(events.wait_for("\"state\":\"chatter\""));
+  const test::HttpAnswer begun =
+      send("POST", "/api/monitors", R"({"config":"monitor.toml","input":"cut.wav","speed":20})");
+  EXPECT_EQ(begun.status, 200) << begun.body;
+  ASSERT_TRUE(events.wait_for("event: monitors"));
+  ASSERT_TRUE(events.wait_for("event: monitor\ndata: {\"id\":1"));
+  ASSERT_TRUE(events.wait_for("\"state\":\"chatter\""));
   EXPECT_EQ(json::parse(test::http_ask(server->port(), "GET", "/api/monitors").body).size(), 1U);
   EXPECT_EQ(send("DELETE", "/api/monitors/1", "").status, 200);
   EXPECT_EQ(send("GET", "/api/monitors/1", "").status, 404);

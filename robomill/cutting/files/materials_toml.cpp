@@ -158,9 +158,17 @@ const Material& material(std::string_view name) {
     all.push_back(known.name);
     all.insert(all.end(), known.other_names.begin(), known.other_names.end());
   }
-  const std::string near = io::nearest_word(name, all);
-  throw InvalidInput("material", fmt::format("must be one of {}", fmt::join(names, ", ")),
-                     near.empty() ? "Give the coefficients of others" : fmt::format("Did you mean {}?", near));
+  std::string near = io::nearest_word(name, all);
+  if (near.empty()) {
+    const auto longer = [&](const std::string& other) {
+      return !bare(name).empty() && bare(other).starts_with(bare(name));
+    };
+    const auto found = std::ranges::find_if(all, longer);
+    if (found != all.end()) near = *found;
+  }
+  throw InvalidInput(
+      "material", fmt::format("must be one of {}", fmt::join(names, ", ")),
+      near.empty() ? "Give the coefficients of another as numbers" : fmt::format("Did you mean {}?", near));
 }
 
 }  // namespace robomill::cutting

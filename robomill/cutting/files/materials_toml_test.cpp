@@ -117,6 +117,8 @@ TEST(MaterialsToml, FoundByAnyOfItsNames) {
   }
   const std::string near = test::rejection([] { static_cast<void>(material("6016-t6")); });
   EXPECT_NE(near.find("Did you mean"), std::string::npos) << near;
+  const std::string shorter = test::rejection([] { static_cast<void>(material("Inconel")); });
+  EXPECT_NE(shorter.find("Did you mean inconel-718?"), std::string::npos) << shorter;
   const std::string far = test::rejection([] { static_cast<void>(material("cheese")); });
   EXPECT_NE(far.find("must be one of 6061-t6, 7075-t6"), std::string::npos) << far;
 }

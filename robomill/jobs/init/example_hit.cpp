@@ -14,7 +14,7 @@ constexpr double rate_hz = 12'800.0;
 constexpr int samples = 3200;
 constexpr double before_s = 0.02;  ///< from the record's begin to the hit
 constexpr double pulse_s = 1e-3, peak_force_n = 200.0;
-constexpr double force_noise_n = 0.05, response_noise_m_per_s2 = 0.1;
+constexpr double force_noise_n = 0.01, response_noise_m_per_s2 = 0.005;
 constexpr double mass_kg = 0.6, frequency_hz = 620.0, damping_ratio = 0.03;
 
 /// A half sine.

@@ -126,12 +126,6 @@ std::string hit_table(const FoundHit& hit) {
                               guessed_from(first_of(hit, Role::response)->from));
 }
 
-/// Of a list of toml++, without the blanks that it writes inside its brackets.
-std::string tight(std::string list) {
-  if (list.starts_with("[ ") && list.ends_with(" ]")) list = fmt::format("[{}]", list.substr(2, list.size() - 4));
-  return list;
-}
-
 }  // namespace
 
 std::string hits_document(const FoundHits& found) {
@@ -180,7 +174,7 @@ std::string cell_document(const std::string& robot) {
   text = io::with_setting(text, {.key = "robot.model", .value = io::toml_quoted(robot)});
   const auto take = [&](const std::string& key) {
     const std::optional<std::string> value = io::setting_of(cell, key);
-    if (value) text = io::with_setting(text, {.key = key, .value = tight(*value)});
+    if (value) text = io::with_setting(text, {.key = key, .value = *value});
     return value.has_value();
   };
   for (const char* key : {"workpiece.origin_mm", "tool.length_mm"}) take(key);

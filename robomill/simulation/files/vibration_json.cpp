@@ -31,7 +31,7 @@ io::Json columns_json(const Simulation::Columns& columns, double unit, double sa
   return json;
 }
 
-/// Null of a record that is too short for a spectrum.
+/// About the mean, which is the static deflection. Null of a record that is too short for a spectrum.
 io::Json spectrum_json(const Simulation& result) {
   constexpr Eigen::Index least = 16;
   const Eigen::Index n = result.displacement_m.rows() / 2;
@@ -42,7 +42,8 @@ io::Json spectrum_json(const Simulation& result) {
     Eigen::VectorXd last = result.displacement_m.col(static_cast<Eigen::Index>(axis)).tail(n);
     last.array() -= last.mean();
     if (!(last.cwiseAbs().maxCoeff() > 0.0)) continue;
-    const signal::Spectrum spectrum = signal::amplitude_spectrum(last, result.sample_rate_hz);
+    const signal::Spectrum spectrum =
+        signal::amplitude_spectrum(last.array() - last.mean(), result.sample_rate_hz);
     json["frequency_hz"] = io::numbers(spectrum.frequency_hz);
     json[std::string(axis_names.at(axis)) + "_um"] = io::numbers(spectrum.amplitude / units::um);
   }

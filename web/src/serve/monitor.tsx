@@ -126,7 +126,7 @@ export function Spindles({ spindles, selected, stop }: SpindlesProps) {
         { heading: 'Speed (rpm)', number: true, cell: ({ frame }) => fixed(frame?.spindle_speed_rpm ?? null, 0) },
         { heading: 'Suggested (rpm)', number: true, cell: ({ frame }) => fixed(frame?.suggested_spindle_speed_rpm ?? null, 0) },
         { heading: 'Chatter at', number: true, cell: ({ frame }) => (frame ? chatterText(frame) : dash) },
-        { heading: 'Alarms', number: true, cell: ({ alarm_count: count }) => fixed(count ?? 0, 0) },
+        { heading: 'Alarms', number: true, cell: ({ alarm_count: count }) => fixed(count, 0) },
         {
           heading: '',
           cell: (spindle) => (

@@ -58,7 +58,7 @@ export interface MonitorCounts {
   blind_s: Record<string, number>; // by reason
 }
 
-export interface MonitorSummary extends Partial<MonitorCounts> {
+export interface MonitorSummary extends MonitorCounts {
   id: number;
   config: string;
   input: string;

@@ -44,13 +44,13 @@ export function factsOf(summary: MonitorSummary): Fact[] {
   if (frame === null) return facts;
   facts.push({ label: summary.speed === null ? 'Listened for' : 'Time in the recording', value: timeText(frame.time_s) });
   if (summary.speed !== null && frame.pace !== null) facts.push({ label: 'Pace', value: `${fixed(frame.pace, 1)} of ${fixed(summary.speed, 1)} ×` });
-  facts.push({ label: 'Alarms', value: fixed(summary.alarm_count ?? 0, 0) });
+  facts.push({ label: 'Alarms', value: fixed(summary.alarm_count, 0) });
   if (frame.compute_us !== null) facts.push({ label: 'A decision takes', value: `${significant(frame.compute_us)} µs` });
-  const blind = Object.entries(summary.blind_s ?? {}).map(([reason, seconds]) => `${reasonText(reason)}, ${duration(seconds)}`);
+  const blind = Object.entries(summary.blind_s).map(([reason, seconds]) => `${reasonText(reason)}, ${duration(seconds)}`);
   if (blind.length > 0) facts.push({ label: 'Could not tell', value: blind.join('; ') });
   const lost = [
-    [summary.lost_blocks ?? 0, 'blocks of the stream'],
-    [summary.dropped_hops ?? 0, 'hops that came too fast'],
+    [summary.lost_blocks, 'blocks of the stream'],
+    [summary.dropped_hops, 'hops that came too fast'],
   ] as const;
   const losses = lost.filter(([count]) => count > 0).map(([count, of]) => `${count} ${of}`);
   if (losses.length > 0) facts.push({ label: 'Lost', value: losses.join(', ') });
