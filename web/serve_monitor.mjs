@@ -62,7 +62,7 @@ async function choose(page, label, value) {
 
 /** Starts to monitor a recording in the open view. */
 export async function startMonitor(page, config, recording, speed) {
-  await page.until(`document.querySelector('[data-panel="monitor-start"] select') !== null`, 'the form to begin', 10);
+  await page.until(`document.querySelector('[data-panel="monitor-start"] option[value=${JSON.stringify(recording)}]') !== null`, 'the form to begin', 20);
   await choose(page, 'Settings', config);
   await choose(page, 'Samples from', recording);
   await page.until(`document.querySelector('[data-panel="monitor-start"] input[type=number]') !== null`, 'the speed', 5);

@@ -13,6 +13,7 @@
 #include "robomill/jobs/cell_check/drawing.hpp"
 #include "robomill/jobs/cell_check/placement.hpp"
 #include "robomill/jobs/cell_check/shown.hpp"
+#include "robomill/jobs/cell_check/tool_places.hpp"
 #include "robomill/path/postures/posture_walk.hpp"
 #include "robomill/program/files/program_files.hpp"
 
@@ -22,13 +23,6 @@ namespace {
 /// Finer than what reach and limits are judged by, and coarse enough for long arcs.
 constexpr double chord_tolerance_m = 1e-4, axis_tolerance_rad = 0.1 * units::deg;
 constexpr std::size_t most_blocks = 200'000;
-
-robot::Position6 to_position(const std::vector<double>& values) {
-  robot::Position6 out = robot::Position6::Zero();
-  for (std::size_t i = 0; i < std::min<std::size_t>(values.size(), 6); ++i)
-    out(static_cast<Eigen::Index>(i)) = values[i];
-  return out;
-}
 
 /// The flange, before any mount, in B.
 Eigen::Isometry3d flange_at(const CellFile& cell, const robot::Position6& position) {
@@ -64,7 +58,7 @@ CellStand stand_at(const CellFile& cell, const robot::Kinematics& machine, std::
 
 /// Where the cell says that the machine begins; else joints at 0, or in the middle of limits that 0 is not within.
 robot::Position6 home_of(const CellFile& cell, const robot::Kinematics& machine) {
-  if (!cell.home.empty()) return to_position(cell.home);
+  if (!cell.home.empty()) return position_of(cell.home);
   robot::Position6 out = robot::Position6::Zero();
   for (int i = 0; i < machine.joints(); ++i) {
     const double low = machine.limits().min_position(i), high = machine.limits().max_position(i);
@@ -160,7 +154,7 @@ CellCheck run_cell_check(const CellCheckJob& job, CellFile read, Progress& progr
 
   const robot::Position6 home = home_of(cell, *machine);
   if (!job.joints.empty()) {
-    out.stands.push_back(stand_at(cell, *machine, "as asked for", to_position(job.joints)));
+    out.stands.push_back(stand_at(cell, *machine, "as asked for", position_of(job.joints)));
   }
   out.stands.push_back(stand_at(cell, *machine, "home", home));
   add_limit_stands(*machine, home, out);

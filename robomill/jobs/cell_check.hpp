@@ -62,11 +62,11 @@ struct Miss {
 struct Placement {
   Eigen::Isometry3d workpiece = Eigen::Isometry3d::Identity();  ///< W in B
   std::size_t poses = 0;            ///< looked at: the start and the end of each block, or the origin alone
-  std::size_t missed = 0;           ///< … and could not be taken
-  std::vector<Miss> misses = {};    ///< of these the first hundred; the rest were not looked at
+  std::vector<Miss> misses = {};    ///< those that could not be taken, at most a hundred …
+  bool complete = true;             ///< … else the poses after these were not looked at
   std::string no_way = {};          ///< each pose can be taken, but not one after the other: where and why
   path::PostureChoice choice = {};  ///< of a program that can be followed: how; without a program its start alone
-  [[nodiscard]] bool works() const { return missed == 0 && no_way.empty(); }
+  [[nodiscard]] bool works() const { return misses.empty() && no_way.empty(); }
 };
 
 /// A pose of the workpiece that serves, found near the given one.

@@ -23,7 +23,7 @@ using stability::Method;
 constexpr std::size_t most_settings = 64, most_points = 16, longest_name = 64;
 constexpr double picture_tolerance = 1e-4;  // of radii
 constexpr int limit_speeds = 100;
-constexpr int picture_steps = 256;  // of the depths' range: a limit lies between two of them
+constexpr int picture_steps = 150;  // of the depths' range: a limit lies between two of them
 
 /// A value as TOML writes it: of plain values and lists of them JSON writes the same.
 std::string toml_value(const io::JsonNode& node) {
@@ -75,7 +75,7 @@ LobesOptions picture_options(const jobs::LobesFile& cut, bool chart, std::vector
     const std::array<int, 2> most = slow ? std::array{60, 60} : spatial ? std::array{80, 33} : std::array{120, 61};
     options.grid = {std::min(options.grid[0], most[0]), std::min(options.grid[1], most[1])};
   } else {
-    options.grid = {limit_speeds, spatial ? 33 : 97};
+    options.grid = {limit_speeds, std::clamp(options.grid[1], 25, spatial ? 41 : 200)};
   }
   return options;
 }
@@ -91,10 +91,12 @@ stability::Uncertainty band_of(const jobs::LobesFile& cut) {
   const bool known = std::ranges::any_of(problem.dynamics.modes, knows) ||
                      std::ranges::any_of(problem.workpiece_dynamics.modes, knows);
   if (problem.has_measured() || (band.samples == 0 && !known)) return {};
-  const std::size_t modes = problem.dynamics.modes.size() + problem.workpiece_dynamics.modes.size();
-  const int most = problem.in_three_directions() ? 20 : modes > 12 ? 30 : 60;
+  const double modes = static_cast<double>(problem.dynamics.modes.size() + problem.workpiece_dynamics.modes.size());
+  const bool by_depth = problem.in_three_directions() || problem.milling.tool.helix_rad != 0.0;
+  const double work = (by_depth ? 3.0 : 1.0) * std::max(1.0, modes / 8.0);  // beside a straight tooth and eight modes
+  const int most = std::max(20, static_cast<int>(60.0 / work));
   band.samples = band.samples == 0 ? most : std::min(band.samples, most);
-  band.grid = {std::min(band.grid[0], 40), std::min(band.grid[1], 25)};
+  band.grid = {std::min(band.grid[0], work > 3.0 ? 20 : 40), std::min(band.grid[1], 25)};
   return band;
 }
 

@@ -54,6 +54,7 @@ Json placement(const std::string& text) {
       {"program", said("part.ngc")},
       {"whole", true},
       {"poses", 6},
+      {"complete", true},
       {"missed", 2},
       {"misses",
        Json::array({{{"block", 2},

@@ -38,6 +38,7 @@ function cell(change: Partial<CellDocument> = {}): CellDocument {
       program: null,
       whole: true,
       poses: 1,
+      complete: true,
       missed: 0,
       misses: [],
       no_way: null,
@@ -99,7 +100,7 @@ describe('the picture of a cell', () => {
     });
     const { views, words } = layOutCell(failing);
     expect(views.map(({ misses }) => misses.length)).toEqual([1, 1]);
-    expect(views[0]!.frames.map(({ name }) => name)).toEqual(['base', 'workpiece', 'proposal 1']);
+    expect(views[0]!.frames.map(({ kind, name }) => `${kind} ${name}`)).toEqual(['base base', 'workpiece workpiece', 'proposal 1']);
     expect(words).toBe('An arm does not reach the workpiece as it stands; 1 other place is marked. Seen from the side and from above.');
   });
   it('turns a frame about x, then y, then z', () => {

@@ -53,6 +53,7 @@ export interface CellPlacement extends WorkpiecePose, Partial<Reached> {
   program: string | null;
   whole: boolean;
   poses: number;
+  complete: boolean; // else the poses after the last miss were not looked at
   missed: number;
   misses: CellMiss[];
   no_way: string | null;

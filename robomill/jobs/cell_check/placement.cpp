@@ -14,8 +14,10 @@ constexpr std::size_t most_misses = 100;
 /// Each pose for itself, the next one from where the last one stands.
 void look_at_poses(const ToolPlaces& places, const path::Head& head, Placement& out, Progress& progress) {
   std::optional<ToolPlaces::Stand> before;
-  for (std::size_t i = 0; i < head.pose.size() && out.missed < most_misses; ++i) {
+  for (std::size_t i = 0; i < head.pose.size(); ++i) {
     progress.check();
+    out.complete = out.misses.size() < most_misses;
+    if (!out.complete) return;
     ++out.poses;
     const program::Pose& pose = head.pose[i];
     if (before) {
@@ -31,7 +33,6 @@ void look_at_poses(const ToolPlaces& places, const path::Head& head, Placement& 
     }
     before = found.stand;
     if (found.stand) continue;
-    ++out.missed;
     found.miss.block = i;
     found.miss.line = i > 0 ? head.line[i - 1] : 0;
     out.misses.push_back(std::move(found.miss));
@@ -44,14 +45,10 @@ Placement judge(const CellFile& cell, const Eigen::Isometry3d& workpiece, const 
   Placement out{.workpiece = workpiece};
   const ToolPlaces places(cell, workpiece);
   look_at_poses(places, targets.head, out, progress);
-  if (out.missed > 0 || targets.source == nullptr || targets.head.line.empty()) return out;
+  if (!out.misses.empty() || targets.source == nullptr || targets.head.line.empty()) return out;
   path::PostureOptions options;
   if (cell.gamma_given) options.gamma_rad = cell.redundant_gamma_rad;
-  if (!cell.start_joints.empty()) {
-    robot::Position6 start = robot::Position6::Zero();
-    for (Eigen::Index i = 0; i < 6; ++i) start(i) = cell.start_joints[static_cast<std::size_t>(i)];
-    options.start = start;
-  }
+  if (!cell.start_joints.empty()) options.start = position_of(cell.start_joints);
   try {
     out.choice = path::choose_posture(*targets.source, places.machine(), options);
   } catch (const InvalidInput& error) {

@@ -82,7 +82,7 @@ class ProposalSearch {
   /// Whether the places looked at can be taken, and not just so.
   [[nodiscard]] bool looks_well(const Proposal& proposal) const {
     const ToolPlaces places(cell_, proposal.placement.workpiece);
-    ToolPlaces::Stand stand = home();
+    ToolPlaces::Stand stand{.position = position_of(cell_.home), .gamma_rad = cell_.redundant_gamma_rad};
     for (const std::size_t i : looks_) {
       const std::optional<ToolPlaces::Stand> next = places.find_quickly(targets_.head.pose[i], stand);
       if (!next) return false;
@@ -95,6 +95,12 @@ class ProposalSearch {
     return true;
   }
 
+  /// Whether a turn with a shift does what the shift alone does not.
+  [[nodiscard]] bool needs_its_turn(const Change& direction, double size) const {
+    const Change shift(direction.x(), direction.y(), direction.z(), 0.0);
+    return direction(3) == 0.0 || shift.isZero() || !looks_well(changed(shift, size));
+  }
+
   /// The smallest change in a direction that looks well, between one that does not and one that does.
   [[nodiscard]] double least_size(const Change& direction, double bad, double good) const {
     for (int i = 0; i < halvings; ++i) {
@@ -105,15 +111,6 @@ class ProposalSearch {
   }
 
  private:
-  [[nodiscard]] ToolPlaces::Stand home() const {
-    ToolPlaces::Stand out;
-    for (std::size_t i = 0; i < std::min<std::size_t>(cell_.home.size(), 6); ++i) {
-      out.position(static_cast<Eigen::Index>(i)) = cell_.home[i];
-    }
-    out.gamma_rad = cell_.redundant_gamma_rad;
-    return out;
-  }
-
   const CellFile& cell_;
   const Placement& failed_;
   const Targets& targets_;
@@ -145,7 +142,8 @@ std::vector<Proposal> propose(const CellFile& cell, const Placement& failed, con
     for (const Change& direction : directions) {
       progress.advance();
       if (!is_new(direction) || !search.looks_well(search.changed(direction, size))) continue;
-      candidates.push_back({direction, search.least_size(direction, before, size)});
+      const double least = search.least_size(direction, before, size);
+      if (search.needs_its_turn(direction, least)) candidates.push_back({direction, least});
     }
     std::ranges::stable_sort(candidates, {}, &Candidate::size);
     for (const Candidate& candidate : candidates) {

@@ -117,7 +117,15 @@ std::string place_of(const CellCheck& check, const Miss& miss) {
   return fmt::format("block {} (line {})", miss.block, miss.line);
 }
 
-/// "at γ 30°", "at γ 30° to 45°"; nothing of a machine that has none.
+/// By how much a pose is missed, for comparison: out of reach weighs more than limits, these more than a singularity.
+double excess_of(const Miss& miss) {
+  if (miss.status == robot::Reach::Status::out_of_reach) return 1e6 + miss.out_of_reach_m + miss.out_of_reach_rad;
+  double most = 0.0;
+  for (const BeyondLimit& beyond : miss.beyond) most = std::max(most, std::abs(beyond.position - beyond.limit));
+  return most;
+}
+
+/// " with γ 30°", " with γ from 30° to 45°"; nothing of a machine that has none.
 std::string gamma_text(const CellCheck& check, const path::PostureChoice& choice) {
   const std::vector<double>& gamma_rad = choice.posture.gamma_rad;
   if (check.cell.hybrid || gamma_rad.empty()) return {};
@@ -138,14 +146,18 @@ void add_placement(std::string& out, const CellCheck& check) {
   if (!placement.no_way.empty()) {
     append(out, "every block of {} can be reached for itself, but {}\n", what, placement.no_way);
   } else {
-    append(out, "{} of {} poses of {} cannot be taken\n", placement.missed, placement.poses, what);
+    append(out, "{} of {}{} poses of {} cannot be taken{}\n", placement.misses.size(),
+           placement.complete ? "" : "the first ", placement.poses, what,
+           placement.complete ? "" : "; the rest was not looked at");
   }
   for (std::size_t i = 0; i < std::min(placement.misses.size(), most_misses_shown); ++i) {
     const Miss& miss = placement.misses[i];
     append(out, "  {}: {}\n", place_of(check, miss), what_misses(miss, check.prismatic));
   }
   if (placement.misses.size() > most_misses_shown) {
-    append(out, "  … and {} more\n", placement.misses.size() - most_misses_shown);
+    const Miss& worst = *std::ranges::max_element(placement.misses, {}, excess_of);
+    append(out, "  … and {} more, of all the worst {}: {}\n", placement.misses.size() - most_misses_shown,
+           place_of(check, worst), what_misses(worst, check.prismatic));
   }
 }
 

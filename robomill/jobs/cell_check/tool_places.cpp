@@ -11,13 +11,23 @@
 namespace robomill::jobs {
 namespace {
 
+constexpr double homing = 0.05;  // of margin that half a turn of a joint away from home is worth
 constexpr int turns_in_closed_form = 72, turns_by_search = 24;  // a search costs a thousand times as much
 
 }  // namespace
 
+robot::Position6 position_of(const std::vector<double>& joints) {
+  robot::Position6 out = robot::Position6::Zero();
+  for (std::size_t i = 0; i < std::min<std::size_t>(joints.size(), 6); ++i) {
+    out(static_cast<Eigen::Index>(i)) = joints[i];
+  }
+  return out;
+}
+
 /// What a search over ways and turns has met.
 struct ToolPlaces::Search {
   std::optional<Stand> best = {};
+  double best_score = -HUGE_VAL;
   double least_beyond = HUGE_VAL;  ///< of the ways outside limits: the largest excess of the best of them
   robot::Position6 beyond_at = robot::Position6::Zero();
   double beyond_gamma_rad = 0.0;
@@ -26,6 +36,7 @@ struct ToolPlaces::Search {
 };
 
 ToolPlaces::ToolPlaces(const CellFile& cell, const Eigen::Isometry3d& workpiece) : cell_(&cell) {
+  home_ = position_of(cell.home);
   if (cell.hybrid) {
     robot::HybridMachine machine = *cell.hybrid;
     machine.workpiece = workpiece;
@@ -107,7 +118,9 @@ void ToolPlaces::consider(const robot::ToolPose& pose, const robot::Position6& w
     return;
   }
   const double margin = std::min(path::limit_share(*machine_, placed).share, regularity);
-  if (search.best && !(margin > search.best->margin)) return;
+  const double score = margin - homing * (placed - home_).cwiseAbs().maxCoeff() / std::numbers::pi;
+  if (!(score > search.best_score)) return;
+  search.best_score = score;
   search.best = Stand{.position = placed, .gamma_rad = pose.gamma_rad, .margin = margin};
 }
 

@@ -13,6 +13,9 @@
 
 namespace robomill::jobs {
 
+/// Up to six joints; the rest, or all of an empty list, at 0.
+[[nodiscard]] robot::Position6 position_of(const std::vector<double>& joints);
+
 /// Which poses of the tool a machine can take, with the workpiece where it is put.
 class ToolPlaces {
  public:
@@ -30,8 +33,8 @@ class ToolPlaces {
     std::optional<Stand> stand = {};
     Miss miss = {};  ///< without one: why
   };
-  /// The way with the largest margin, of all branches and all turns about the tool's axis that are free. An arm without
-  /// closed form is searched at a third of the turns.
+  /// The way with the largest margin, of all branches and all turns about the tool's axis that are free; of those that
+  /// are alike the one near home. An arm without closed form is searched at a third of the turns.
   [[nodiscard]] Found find(const program::Pose& pose) const;
   /// The way that follows from another one at the same turn; none where it ends there.
   [[nodiscard]] std::optional<Stand> follow(const program::Pose& pose, const Stand& before) const;
@@ -59,7 +62,8 @@ class ToolPlaces {
   std::unique_ptr<robot::Kinematics> machine_;           ///< within the joints' limits
   std::unique_ptr<robot::Kinematics> unlimited_;         ///< every branch once; none in closed form
   std::optional<robot::SphericalWristInverse> inverse_;  ///< of a spherical wrist
-  std::vector<double> gamma_rad_;                        ///< to try
+  robot::Position6 home_ = robot::Position6::Zero();
+  std::vector<double> gamma_rad_;  ///< to try
 };
 
 }  // namespace robomill::jobs

@@ -140,7 +140,8 @@ Json placement_json(const CellCheck& check) {
   out["program"] = check.program.empty() ? Json() : Json(check.program);
   out["whole"] = check.whole;
   out["poses"] = placement.poses;
-  out["missed"] = placement.missed;
+  out["complete"] = placement.complete;
+  out["missed"] = placement.misses.size();
   out["misses"] = Json::array();
   for (const Miss& miss : placement.misses) out["misses"].push_back(miss_json(check, miss));
   out["no_way"] = placement.no_way.empty() ? Json() : Json(placement.no_way);

@@ -33,22 +33,24 @@ function Arm({ figure }: { figure: FigureLines }) {
   );
 }
 
-function FrameArrows({ frame: { name, origin, axes } }: { frame: FrameMark }) {
+function FrameArrows({ frame: { kind, name, origin, axes } }: { frame: FrameMark }) {
   const [x, y] = origin;
   return (
-    <g class={`frame ${name.split(' ')[0]}`}>
+    <g class={`frame ${kind}`}>
       {axes
         .filter(({ to: [u, v] }) => Math.hypot(u - x, v - y) > 2)
         .map(({ name: axis, to: [u, v] }) => (
           <>
             <line x1={tenths(x)} y1={tenths(y)} x2={tenths(u)} y2={tenths(v)} />
-            <text class="axis" x={tenths(u + 3)} y={tenths(v + 4)}>
-              {axis}
-            </text>
+            {kind !== 'proposal' && (
+              <text class="axis" x={tenths(u + 3)} y={tenths(v + 4)}>
+                {axis}
+              </text>
+            )}
           </>
         ))}
       <circle cx={tenths(x)} cy={tenths(y)} r="3" />
-      <text x={tenths(x + 5)} y={tenths(y + 17)}>
+      <text x={tenths(kind === 'proposal' ? x - 14 : x + 5)} y={tenths(kind === 'proposal' ? y - 5 : y + 17)}>
         {name}
       </text>
     </g>
@@ -95,7 +97,7 @@ export function CellDrawing({ document }: { document: CellDocument }) {
       </div>
       <figcaption>
         Joints by their numbers, the tool thick, frames as arrows.{several ? ' Faint: home.' : ''} Tinted: where the wrist (joint 5) can be, from the side with joint 1 at
-        0. Dots in red: poses that cannot be taken.
+        0. Dots in red: poses that cannot be taken; dashed, by their numbers: where the workpiece could stand.
       </figcaption>
     </figure>
   );

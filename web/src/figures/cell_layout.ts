@@ -13,7 +13,8 @@ const axisLength = 0.09; // of a frame, as a share of the picture's width in mil
 
 /** A frame as three arrows from its origin. */
 export interface FrameMark {
-  name: string;
+  kind: 'base' | 'workpiece' | 'proposal';
+  name: string; // of a proposal its number
   origin: Point;
   axes: { name: 'x' | 'y' | 'z'; to: Point }[];
 }
@@ -67,8 +68,7 @@ export function axesOf([a, b, c]: Vector): Vector[] {
   ];
 }
 
-interface Frame {
-  name: string;
+interface Frame extends Pick<FrameMark, 'kind' | 'name'> {
   origin: Vector;
   axes: Vector[];
 }
@@ -76,9 +76,9 @@ interface Frame {
 function framesOf({ placement, proposals }: CellDocument): Frame[] {
   const identity: Vector[] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
   return [
-    { name: 'base', origin: [0, 0, 0], axes: identity },
-    { name: 'workpiece', origin: placement.origin_mm, axes: axesOf(placement.rotation_deg) },
-    ...proposals.map(({ origin_mm, rotation_deg }, i): Frame => ({ name: `proposal ${i + 1}`, origin: origin_mm, axes: axesOf(rotation_deg) })),
+    { kind: 'base', name: 'base', origin: [0, 0, 0], axes: identity },
+    { kind: 'workpiece', name: 'workpiece', origin: placement.origin_mm, axes: axesOf(placement.rotation_deg) },
+    ...proposals.map(({ origin_mm, rotation_deg }, i): Frame => ({ kind: 'proposal', name: `${i + 1}`, origin: origin_mm, axes: axesOf(rotation_deg) })),
   ];
 }
 
@@ -130,7 +130,8 @@ function placed(document: CellDocument, view: View, to: (point: Point) => Point,
   const { drawing, placement } = document;
   const place = (point: Vector) => to(view.across(point));
   const reachOf = (outline: [number, number][]) => outline.map(to);
-  const frames = framesOf(document).map(({ name, origin, axes }): FrameMark => ({
+  const frames = framesOf(document).map(({ kind, name, origin, axes }): FrameMark => ({
+    kind,
     name,
     origin: place(origin),
     axes: axes.map((axis, i) => {

@@ -1,7 +1,7 @@
 import type { Num, Slot, StiffnessDocument } from '../documents';
 import { slotGroups } from '../verb_views';
 import { dashes } from './smooth';
-import { axis, layout, logTicks, plain, thinSpace, type Figure, type Theme, type Trace } from './theme';
+import { axis, directionSeries, layout, logTicks, plain, thinSpace, type Figure, type Theme, type Trace } from './theme';
 
 const directions = ['x', 'y', 'z'] as const;
 const symbols = ['circle', 'square', 'diamond'] as const;
@@ -10,7 +10,7 @@ const symbols = ['circle', 'square', 'diamond'] as const;
 export function slotsFigure(slots: Slot[], theme: Theme): Figure {
   const groups = slotGroups(slots);
   const data: Trace[] = directions.flatMap((name, i) => {
-    const color = theme.series[i]!;
+    const color = theme.series[directionSeries[i]!]!;
     const common = { type: 'scatter', legendgroup: name };
     const measured = {
       ...common,
@@ -56,7 +56,7 @@ export function slotResidualFigure(slots: Slot[], theme: Theme): Figure {
       y: slots.map((slot) => slot.residual_n[i]!),
       text: slots.map((slot) => `line ${slot.line}`),
       hovertemplate: `%{y:.4g}${thinSpace}N, %{text}<extra>${name}</extra>`,
-      marker: { symbol: symbols[i], size: 8, color: theme.series[i] },
+      marker: { symbol: symbols[i], size: 8, color: theme.series[directionSeries[i]!] },
     })),
     layout: layout(theme, 300, {
       hovermode: 'closest',
@@ -111,7 +111,7 @@ export function displacementFigure({ displacement_mm: measured, residual_mm: res
         y: predicted.map((load) => load[i]!),
         text: line.map((at) => `line ${at}`),
         hovertemplate: `measured %{x:.4g}${thinSpace}mm, predicted %{y:.4g}${thinSpace}mm, %{text}<extra>${name}</extra>`,
-        marker: { symbol: symbols[i], size: 8, color: theme.series[i] },
+        marker: { symbol: symbols[i], size: 8, color: theme.series[directionSeries[i]!] },
       })),
     ],
     layout: layout(theme, 460, {

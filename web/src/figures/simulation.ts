@@ -3,7 +3,7 @@ import type { Num, SimulationDocument, VibrationDocument } from '../documents';
 import { overTime, type Line } from './rows';
 import { dashes } from './smooth';
 import { harmonics, verticals } from './spectrum';
-import { axis, layout, thinSpace, type Figure, type Theme, type Trace } from './theme';
+import { axis, directionSeries, layout, thinSpace, type Figure, type Theme, type Trace } from './theme';
 
 const axes = ['x', 'y', 'z'] as const;
 
@@ -12,7 +12,7 @@ export function timeFigure(vibration: VibrationDocument, theme: Theme): Figure {
   const lines = (of: Record<string, Band>): Line[] =>
     axes.flatMap((name, i) => {
       const band = of[name];
-      return band ? { name, ...bandCurve(band, vibration.run_s), color: theme.series[i]!, dash: dashes[i]! } : [];
+      return band ? { name, ...bandCurve(band, vibration.run_s), color: theme.series[directionSeries[i]!]!, dash: dashes[i]! } : [];
     });
   const rows = [
     { title: 'Displacement (µm)', unit: 'µm', lines: lines(vibration.displacement_um), limit: null, both: true },
@@ -34,7 +34,7 @@ export function vibrationSpectrumFigure(
 ): Figure {
   const lines = axes.flatMap((name, i) => {
     const values: Num[] | undefined = spectrum[`${name}_um`];
-    return values ? { name, values, color: theme.series[i]!, dash: dashes[i]! } : [];
+    return values ? { name, values, color: theme.series[directionSeries[i]!]!, dash: dashes[i]! } : [];
   });
   const all = spectrum.frequency_hz;
   const highest = Math.max(...lines.map(({ values }) => values.reduce<number>((most, value) => Math.max(most, value ?? 0), 0)), 0) || 1;

@@ -28,7 +28,7 @@ export function toolsFigure(tools: ToolRow[], theme: Theme): Figure {
       x: names,
       y: values,
       yaxis: `y${suffix(index)}`,
-      marker: { color: theme.series[index] },
+      marker: { color: theme.accent },
       hovertemplate: `%{x}: %{y:.4g}${thinSpace}${unit}<extra></extra>`,
     };
   });
@@ -36,7 +36,8 @@ export function toolsFigure(tools: ToolRow[], theme: Theme): Figure {
     data,
     layout: layout(theme, 170 * rows.length + 90, {
       showlegend: false,
-      margin: { l: 72, r: 36, t: 16, b: 90 },
+      bargap: 0.5,
+      margin: { l: 72, r: 36, t: 16, b: 48 },
       xaxis: axis(theme, 'Tool', { type: 'category', anchor: `y${suffix(Math.max(rows.length - 1, 0))}`, categoryorder: 'array', categoryarray: names }),
       ...axes,
     }),

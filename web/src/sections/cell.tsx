@@ -19,7 +19,7 @@ function Verdict({ placement }: { placement: CellPlacement }) {
   return (
     <p class="why none">
       {placement.no_way === null ? (
-        <strong>{`${placement.missed} of ${placement.poses} poses cannot be taken where the workpiece stands.`}</strong>
+        <strong>{`${placement.missed} of ${placement.complete ? '' : 'the first '}${placement.poses} poses cannot be taken where the workpiece stands.`}</strong>
       ) : (
         <>
           Every block can be reached for itself, but <strong>{placement.no_way}</strong>.

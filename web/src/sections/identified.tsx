@@ -45,13 +45,7 @@ export function CoefficientsSection({ document }: { document: CoefficientsDocume
         caption="Points are measured, lines are the fit; one line a depth and speed."
         draw={(theme) => slotsFigure(slots, theme)}
       />
-      {found.depends_on_speed && (
-        <p>
-          <strong>The coefficients depend on the spindle speed</strong>
-          {found.speed_probability !== null && `: the chance that they do not is ${percent(found.speed_probability, 1)}`}.
-        </p>
-      )}
-      {found.by_speed.length > 1 &&
+      {found.depends_on_speed &&
         found.by_speed.map((group) => <CoefficientTable caption={`At ${fixed(group.spindle_speed_rpm, 0)} rpm, ${group.rows} slots`} rows={coefficientRows(group)} />)}
       <Plot
         which="slot-residuals"

@@ -14,7 +14,8 @@ function FrfPlot({ frfs, modes, predicted }: { frfs: Frf[]; modes: Mode[]; predi
   const shows = predicted
     ? 'Frequency response functions, predicted, measured where known, and fitted: magnitude and phase'
     : 'Frequency response functions, measured and fitted: magnitude, phase and coherence';
-  const caption = `A peak is a frequency at which the tool tip is compliant${predicted ? '.' : '; coherence near 1 means the hits agree.'}`;
+  const coherent = !predicted && frfs.some(({ coherence }) => coherence !== null);
+  const caption = `A peak is a frequency at which the tool tip is compliant${coherent ? '; coherence near 1 means the hits agree.' : '.'}`;
   return (
     <Plot which="frf" shows={shows} caption={caption} draw={(theme) => frfFigure(frfs[shown]!, modes, logarithmic, theme)}>
       <Choice legend="FRF" names={frfs.map(({ name }) => name)} chosen={shown} choose={setShown} />
@@ -23,16 +24,20 @@ function FrfPlot({ frfs, modes, predicted }: { frfs: Frf[]; modes: Mode[]; predi
   );
 }
 
-/** How far the modes are from predicted FRFs, and these from a measurement. */
+/** How far the modes are from predicted FRFs, and these from a measurement; nothing where there is neither. */
 function PredictionTable({ frfs }: { frfs: Frf[] }) {
-  const columns: Column<Frf>[] = [
-    { heading: 'FRF', cell: ({ name }) => name },
-    { heading: 'Fit from prediction', number: true, cell: (frf) => percent(frf.relative_error, 2) },
-  ];
-  if (frfs.some((frf) => frf.prediction_error !== null)) {
-    columns.push({ heading: 'Prediction from measurement', number: true, cell: (frf) => percent(frf.prediction_error, 1) });
-  }
-  return <Table caption="How far the curves are apart" columns={columns} rows={frfs} />;
+  if (frfs.every(({ relative_error: fit, prediction_error: prediction }) => fit === null && prediction === null)) return null;
+  return (
+    <Table
+      caption="How far the curves are apart"
+      rows={frfs}
+      columns={[
+        { heading: 'FRF', cell: ({ name }) => name },
+        { heading: 'Fit from prediction', number: true, optional: true, cell: (frf) => percent(frf.relative_error, 2) },
+        { heading: 'Prediction from measurement', number: true, optional: true, cell: (frf) => percent(frf.prediction_error, 1) },
+      ]}
+    />
+  );
 }
 
 /** Nothing where FRFs are neither graded nor fitted. */
