@@ -1,4 +1,6 @@
 // Works the lobes: a slider and the point are dragged, a mode is switched, two settings are overlaid.
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { click, drag, placeOf, press } from './hand.mjs';
 
 const curve = `(document.querySelector('.chart-place .scatterlayer')?.innerHTML ?? '')`;
@@ -53,6 +55,35 @@ async function movePoint({ page, problems }) {
   if (!/stable|chatter/.test(facts) || !/Margin/.test(facts)) problems.push(`the point says: ${facts}`);
 }
 
+/** Marks a button by its words, and clicks it. */
+async function button(page, words) {
+  await page.evaluate(`(() => {
+    for (const one of document.querySelectorAll('.live-controls button')) {
+      delete one.dataset.wanted;
+      if (one.textContent.startsWith(${JSON.stringify(words)})) one.dataset.wanted = 'true';
+    }
+  })()`);
+  await click(page, '.live-controls [data-wanted]');
+}
+
+/** What the sliders changed stands in the file after it was shown; then the file is as before. */
+async function writeBack({ page, lobes, folder, problems, figures }) {
+  const file = join(folder, lobes);
+  const before = readFileSync(file, 'utf8');
+  await button(page, 'Write into');
+  await page.until(`document.querySelector('[data-panel="changes"] tbody tr') !== null`, 'the changes are shown', 10);
+  const changes = await page.evaluate(`[...document.querySelectorAll('[data-panel="changes"] tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent))`);
+  await button(page, 'Write');
+  await page.until(`document.querySelector('[data-panel="changes"]') === null`, 'the changes are written', 10);
+  const after = readFileSync(file, 'utf8').split('\n');
+  for (const [key, , , value] of changes) {
+    const last = key.slice(key.lastIndexOf('.') + 1);
+    if (!after.some((line) => line.trim().startsWith(last) && line.includes(value))) problems.push(`${key} = ${value} is not in the file`);
+  }
+  figures.push(`written into the file: ${changes.map(([key, , was, value]) => `${key} ${was} to ${value}`).join(', ')}`);
+  writeFileSync(file, before);
+}
+
 export async function moveLobes(at) {
   const { page, lobes, open, problems, figures } = at;
   if (!lobes) throw new Error('the folder has no lobes.toml');
@@ -69,17 +100,15 @@ export async function moveLobes(at) {
     await changes(page, before, 'a mode that is switched off changes the curve');
     await page.until(whole, 'the whole chart without the mode', 30);
   }
-  const button = (text) => page.evaluate(`(() => { for (const one of document.querySelectorAll('.live-controls button')) if (one.textContent === ${JSON.stringify(text)}) one.dataset.wanted = ${JSON.stringify(text)}; })()`);
-  await button('Keep this curve');
-  await click(page, `[data-wanted="Keep this curve"]`);
+  await button(page, 'Keep this curve');
   await page.evaluate(`document.querySelector('.slider[data-key="tool.teeth"] input[type=range], .slider[data-key^="cut."] input[type=range]').focus()`);
   for (let i = 0; i < 3; ++i) await press(page, 'ArrowLeft');
   await page.until(`/kept: /.test(document.querySelector('.chart-place .legend')?.textContent ?? '')`, 'the kept curve in the legend', 20);
   await page.until(`!/same settings/.test(document.querySelector('.chart-place .legend')?.textContent)`, 'the legend says what differs', 20);
   figures.push(`overlaid: ${await page.evaluate(`[...document.querySelectorAll('.chart-place .legendtext')].map((text) => text.textContent).join(' | ')`)}`);
   await page.until(whole, 'the whole chart beside the kept curve', 30);
-  await button('Reset all');
-  await click(page, `[data-wanted="Reset all"]`);
+  await writeBack(at);
+  await button(page, 'Reset all');
   await page.until(whole, 'the whole chart after a reset', 30);
   if (!(await page.evaluate(`document.querySelector('.live-controls .buttons button:last-of-type').disabled`))) problems.push('after a reset there are still changes to write');
 }

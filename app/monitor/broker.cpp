@@ -40,9 +40,10 @@ Broker::~Broker() {
   if (!events_topic_.empty() || !commands_topic_.empty()) client_->flush(publish_wait);
 }
 
-void Broker::require_connection(const std::atomic<bool>& stop) {
+void Broker::require_connection(const std::atomic<bool>& stop, const std::function<void()>& waiting) {
   const auto begin = std::chrono::steady_clock::now();
   while (!stop && !client_->wait_until_connected(connection_wait)) {
+    if (waiting) waiting();
     const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - begin;
     if (connect_timeout_s_ == 0.0 || waited.count() < connect_timeout_s_) continue;
     const std::scoped_lock lock(mutex_);

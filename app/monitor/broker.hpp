@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -27,8 +28,9 @@ class Broker {
   /// Where it stands, for messages.
   [[nodiscard]] const std::string& address() const { return address_; }
   /// Where samples come from it: waits for the first connection, or until `stop` becomes true.
+  /// @param waiting  called again and again meanwhile
   /// @throws InvalidInput if there is none within mqtt.connect_timeout_s; 0: without end
-  void require_connection(const std::atomic<bool>& stop);
+  void require_connection(const std::atomic<bool>& stop, const std::function<void()>& waiting = {});
   /// For inputs that do not come from it: their first events should not be lost.
   void wait_a_little() const;
   /// Publishes to the topic of the events, where there is one; adds a notice where it cannot.

@@ -281,7 +281,7 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
       connection.emplace(file, input.is_stream, session.queue(), session.notices(), session.metrics());
       broker = &*connection;
       if (input.is_stream) {
-        broker->require_connection(stop);
+        broker->require_connection(stop, [&session] { session.emit_notices(); });
       } else {
         broker->wait_a_little();
       }

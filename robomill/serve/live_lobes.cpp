@@ -105,7 +105,9 @@ void compute_chart(jobs::LobesJobResult& result, const LobesOptions& options, st
   const jobs::LobesFile& cut = result.cut;
   result.lobes = stability::compute_lobes(cut.problem, options, progress);
   if (const stability::Uncertainty band = band_of(cut); band.samples > 0) {
-    result.uncertain = stability::uncertain_limits(cut.problem, options, band, progress);
+    LobesOptions rough = options;
+    rough.limit_step_m *= 3.0;
+    result.uncertain = stability::uncertain_limits(cut.problem, rough, band, progress);
     notes.push_back(fmt::format("The band is that of {} samples.", band.samples));
   }
   if (cut.surface_grid[0] > 0) notes.emplace_back("The surface error is not drawn here: robomill lobes computes it.");

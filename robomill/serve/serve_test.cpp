@@ -29,7 +29,12 @@ class Serve : public ::testing::Test {
     fs::create_directories(place_.at("served"));
     place_.file("outside.toml", "[tool]\nteeth = 42\n");
     place_.file("served/lobes.toml", lobes);
-    place_.file("served/job.toml", "[job]\nlobes = \"lobes.toml\"\n");
+    // A job brings its own structure.
+    std::string cut = lobes;
+    cut.erase(cut.find("[dynamics]"), cut.find("[lobes]") - cut.find("[dynamics]"));
+    place_.file("served/cut.toml", cut);
+    place_.file("served/modes.json", modes);
+    place_.file("served/job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"cut.toml\"\n");
     server_ = std::make_unique<Server>(ServeOptions{.folder = place_.at("served"), .port = 0});
     const std::string page = ask("GET", "/").body;
     const std::string mark = "id=\"serve-config\">";
@@ -54,9 +59,10 @@ class Serve : public ::testing::Test {
   /// Minutes, unless it is stopped.
   void write_slow_job() const {
     std::string slow = lobes;
+    slow.erase(slow.find("[dynamics]"), slow.find("[lobes]") - slow.find("[dynamics]"));
     slow.replace(slow.find("[40, 30]"), 8, "[4000, 4000]");
     place_.file("served/slow.toml", slow + "method = \"semi-discretization\"\noutput = \"map\"\n");
-    place_.file("served/slow-job.toml", "[job]\nlobes = \"slow.toml\"\n");
+    place_.file("served/slow-job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"slow.toml\"\n");
   }
   [[nodiscard]] json wait_for_end(int id) const {
     for (;;) {
@@ -83,6 +89,10 @@ spindle_speed_rpm = [6000, 18000]
 axial_depth_mm = [0, 3]
 grid = [40, 30]
 )";
+  /// 900 and 950 Hz, 2 %, 0.1 kg, in x and in y.
+  static constexpr const char* modes = R"({"modes":[
+{"frequency_hz":900,"damping_ratio":0.02,"left":{"x":[1,0],"y":[0,0]},"right":{"x":[0,-8.8437e-4],"y":[0,0]}},
+{"frequency_hz":950,"damping_ratio":0.02,"left":{"x":[0,0],"y":[1,0]},"right":{"x":[0,0],"y":[0,-8.3782e-4]}}]})";
   test::Folder place_;
   std::unique_ptr<Server> server_;
   std::string token_;
@@ -149,7 +159,7 @@ TEST_F(Serve, ReadsNothingOutside) {
     EXPECT_EQ(answer.body.find("42"), std::string::npos);
   }
   // Nor what a document inside names.
-  const std::string job = "[job]\nlobes = \"../outside.toml\"\n";
+  const std::string job = "[job]\nmodes = \"../outside.toml\"\nlobes = \"cut.toml\"\n";
   EXPECT_EQ(ask("PUT", "/api/file?path=away.toml", job, {{"If-None-Match", "*"}}).status, 200);
   const json ended = wait_for_end(post("/api/jobs", {{"verb", "plan"}, {"input", "away.toml"}})["id"]);
   EXPECT_EQ(ended["state"], "failed");

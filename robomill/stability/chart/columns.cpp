@@ -222,7 +222,7 @@ class FineColumns {
       const FineColumn& column = columns_[i];
       const double value = ln(outcomes_[i].spectral_radius);
       const double differs = value - column.value_at_top();
-      const bool as_it_was = column.found() ? std::abs(differs) <= column.rise()
+      const bool as_it_was = column.found() ? value >= 0.0 && std::abs(differs) <= column.rise()
                                             : std::abs(differs) <= 0.25 * std::abs(column.value_at_top());
       if (!as_it_was && !last) {
         again.push_back(column.speed());

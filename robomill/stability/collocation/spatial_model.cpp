@@ -143,7 +143,7 @@ std::shared_ptr<const SpatialModel::Looked> SpatialModel::look(double depth, int
 /// there are: in a picture speeds whose ratio is below 2^(1/4) take the same, as many as the slowest one needs.
 void SpatialModel::mesh(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const {
   double fastest_per_rad = fastest_rad_per_s_ / point.spindle_speed_rad_per_s;
-  constexpr int picture_rings = 10;
+  constexpr int picture_rings = 10;  // of a level and of the one above it, which looks at the same depths
   const int rings = (picture_ ? picture_rings : level.nodes + 4) * level.splits;
   const auto build = [&](CollocationCase& to) {
     const std::shared_ptr<const Looked> looked = look(point.axial_depth_m, rings);
