@@ -21,7 +21,7 @@ using stability::LobesOptions;
 using stability::Method;
 
 constexpr std::size_t most_settings = 64, most_points = 16, longest_name = 64;
-constexpr double picture_tolerance = 1e-4;  // of radii
+constexpr double picture_tolerance = 1e-5;  // of radii
 constexpr int limit_speeds = 100;
 constexpr int picture_steps = 150;  // of the depths' range: a limit lies between two of them
 

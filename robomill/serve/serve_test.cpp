@@ -78,6 +78,7 @@ teeth = 2           # edges
 diameter_mm = 10
 [cut]
 direction = "slot"
+feed_per_tooth_mm = 0.05
 [coefficients]
 tangential_n_per_mm2 = 700
 radial_n_per_mm2 = 200
