@@ -440,6 +440,8 @@ it('shows tools side by side, and why one has no result', () => {
 
 it('has no column of grades or shares where a verb knows none', () => {
   report = { ...empty(), frf: { ...report.frf!, grades: {} }, fitted: report.fitted, modes: report.modes };
+  expect(page()).not.toContain('Error of the fit');
+  report.modes!.fit!.relative_error_by_frf = { xx: 0.02 };
   expect(page()).toContain('Error of the fit');
   for (const part of ['not graded', 'Share in the limit', '>Force<']) expect(page()).not.toContain(part);
 });
