@@ -45,7 +45,8 @@ class PageOfVerb : public ProgramTest {
     return false;
   }
   void write_assembly(const std::string& joint = {}) {
-    const std::string bar = "diameter_mm = 12\nyoungs_modulus_gpa = 200\ndensity_kg_per_m3 = 7800\n";
+    const std::string bar =
+        "diameter_mm = 12\nyoungs_modulus_gpa = 200\ndensity_kg_per_m3 = 7800\nloss_factor = 0.02\n";
     write("assembly.toml", "[frequency]\nrange_hz = [20, 900]\nstep_hz = 2\n[[tool]]\nlength_mm = 119\n" + bar + joint +
                                "[[holder.segments]]\nlength_mm = 51\n" + bar);
   }
@@ -106,7 +107,7 @@ TEST_F(PageOfVerb, ShowsTheStabilityOfACut) {
 
 TEST_F(PageOfVerb, ShowsASweep) {
   write("lead.toml",
-        "[tool]\nkind = \"ball\"\nteeth = 2\ndiameter_mm = 10\n[cut]\ndirection = \"slot\"\naxial_depth_mm = 0.5\n"
+        "[tool]\nkind = \"ball-end\"\nteeth = 2\ndiameter_mm = 10\n[cut]\ndirection = \"slot\"\naxial_depth_mm = 0.5\n"
         "feed_per_tooth_mm = 0.05\n[coefficients]\ntangential_n_per_mm2 = 712\nradial_n_per_mm2 = 287\n[dynamics]\n"
         "modes = \"" ROBOMILL_SOURCE_DIR
         "/data/robot-modes.toml\"\n[lobes]\nspindle_speed_rpm = [6000, 9000]\nsweep = \"lead\"\n"

@@ -92,7 +92,9 @@ std::string sample_coefficients(const std::string& text) {
         {"noise_n", of_each(1.1, 1.6, 0.9)},
         {"depends_on_speed", true},
         {"speed_probability", 0.0021},
-        {"notes", Json::array({text.empty() ? "The coefficients depend on the spindle speed beyond the scatter of the rows." : text})},
+        {"notes",
+         Json::array(
+             {text.empty() ? "The coefficients depend on the spindle speed beyond the scatter of the rows." : text})},
         {"residuals", slots()},
         {"by_speed", by_speed}}}};
   return json.dump();

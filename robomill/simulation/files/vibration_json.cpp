@@ -42,8 +42,7 @@ io::Json spectrum_json(const Simulation& result) {
     Eigen::VectorXd last = result.displacement_m.col(static_cast<Eigen::Index>(axis)).tail(n);
     last.array() -= last.mean();
     if (!(last.cwiseAbs().maxCoeff() > 0.0)) continue;
-    const signal::Spectrum spectrum =
-        signal::amplitude_spectrum(last.array() - last.mean(), result.sample_rate_hz);
+    const signal::Spectrum spectrum = signal::amplitude_spectrum(last, result.sample_rate_hz);
     json["frequency_hz"] = io::numbers(spectrum.frequency_hz);
     json[std::string(axis_names.at(axis)) + "_um"] = io::numbers(spectrum.amplitude / units::um);
   }

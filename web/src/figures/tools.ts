@@ -1,11 +1,18 @@
 import type { Num, ToolRow } from '../documents';
-import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 import { suffix } from './rows';
+import { axis, layout, plain, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
 interface Bars {
   title: string;
   unit: string;
   values: Num[];
+}
+
+const longest = 18; // of a name below its bars
+
+function shortened(name: string): string {
+  const letters = [...name];
+  return plain(letters.length > longest ? `${letters.slice(0, longest - 1).join('')}…` : name);
 }
 
 /** What the tools come to, one above the other: compliance, and where a cut is given limit and removal rate. */
@@ -16,7 +23,7 @@ export function toolsFigure(tools: ToolRow[], theme: Theme): Figure {
     { title: 'Removal (mm³/s)', unit: 'mm³/s', values: tools.map((tool) => tool.recommended?.removal_rate_mm3_per_s ?? null) },
   ];
   const rows = all.filter(({ values }) => values.some((value) => value !== null));
-  const names = tools.map(({ tool }, i) => plain(`${i + 1} ${tool}`));
+  const places = tools.map((_, i) => i + 1);
   const share = 1 / Math.max(rows.length, 1);
   const axes: Layout = {};
   const data: Trace[] = rows.map(({ title, unit, values }, index) => {
@@ -25,11 +32,12 @@ export function toolsFigure(tools: ToolRow[], theme: Theme): Figure {
     return {
       type: 'bar',
       name: title,
-      x: names,
+      x: places,
+      customdata: tools.map(({ tool }) => plain(tool)),
       y: values,
       yaxis: `y${suffix(index)}`,
       marker: { color: theme.accent },
-      hovertemplate: `%{x}: %{y:.4g}${thinSpace}${unit}<extra></extra>`,
+      hovertemplate: `%{customdata}: %{y:.4g}${thinSpace}${unit}<extra></extra>`,
     };
   });
   return {
@@ -38,7 +46,12 @@ export function toolsFigure(tools: ToolRow[], theme: Theme): Figure {
       showlegend: false,
       bargap: 0.5,
       margin: { l: 72, r: 36, t: 16, b: 48 },
-      xaxis: axis(theme, 'Tool', { type: 'category', anchor: `y${suffix(Math.max(rows.length - 1, 0))}`, categoryorder: 'array', categoryarray: names }),
+      xaxis: axis(theme, 'Tool', {
+        anchor: `y${suffix(Math.max(rows.length - 1, 0))}`,
+        range: [0.4, tools.length + 0.6],
+        tickvals: places,
+        ticktext: tools.map(({ tool }) => shortened(tool)),
+      }),
       ...axes,
     }),
   };

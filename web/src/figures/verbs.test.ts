@@ -141,8 +141,10 @@ describe('tools', () => {
   it('have the rows that say something, tools of one name apart', () => {
     const { data, layout } = toolsFigure([tool('a', 1), tool('a', null)], light);
     expect(data).toHaveLength(1);
-    expect(data[0]).toMatchObject({ type: 'bar', x: ['1 a', '2 a'], y: [1, null] });
-    expect(layout['xaxis']).toMatchObject({ anchor: 'y' });
+    expect(data[0]).toMatchObject({ type: 'bar', x: [1, 2], y: [1, null], customdata: ['a', 'a'] });
+    expect(layout['xaxis']).toMatchObject({ anchor: 'y', ticktext: ['a', 'a'] });
+    const long = toolsFigure([tool(`<b>${'x'.repeat(40)}`, 1)], light);
+    expect((long.layout['xaxis'] as { ticktext: string[] }).ticktext).toEqual([`&lt;b&gt;${'x'.repeat(14)}…`]);
     const cut = { ...tool('b', 1), lowest_limit_mm: 0.5 };
     expect(toolsFigure([cut], light).layout).toHaveProperty('yaxis2');
   });
