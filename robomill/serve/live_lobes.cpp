@@ -21,7 +21,6 @@ using stability::LobesOptions;
 using stability::Method;
 
 constexpr std::size_t most_settings = 64, most_points = 16, longest_name = 64;
-constexpr double picture_tolerance = 1e-5;  // of radii
 constexpr int limit_speeds = 100;
 constexpr int picture_steps = 150;  // of the depths' range: a limit lies between two of them
 
@@ -55,10 +54,15 @@ std::vector<stability::OperatingPoint> points_of(const io::JsonNode& root) {
   return points;
 }
 
+/// Of radii. In the plane more digits cost next to nothing, and at fewer an island may be seen where none is.
+double picture_tolerance(const stability::LobesProblem& problem) {
+  return problem.in_three_directions() ? 1e-4 : 1e-6;
+}
+
 /// What a picture needs of the file's options; what it does without is added to the notes.
 LobesOptions picture_options(const jobs::LobesFile& cut, bool chart, std::vector<std::string>& notes) {
   LobesOptions options = cut.options;
-  options.tolerance = std::max(options.tolerance, picture_tolerance);
+  options.tolerance = std::max(options.tolerance, picture_tolerance(cut.problem));
   options.limit_step_m = (options.axial_depth_m[1] - options.axial_depth_m[0]) / picture_steps;
   options.output = chart ? stability::Output::boundary : stability::Output::limits;
   if (options.method == Method::multi_frequency) {
@@ -121,7 +125,7 @@ void compute(jobs::LobesJobResult& result, const LiveLobesRequest& request, std:
     stability::SweepOptions sweep = jobs::sweep_options(cut);
     const std::array<int, 2> most = request.chart ? std::array{60, 40} : std::array{25, 21};
     sweep.grid = {std::min(sweep.grid[0], most[0]), std::min(sweep.grid[1], most[1])};
-    sweep.tolerance = std::max(sweep.tolerance, picture_tolerance);
+    sweep.tolerance = std::max(sweep.tolerance, picture_tolerance(cut.problem));
     result.sweep = stability::compute_sweep(cut.problem, sweep, progress);
     return;
   }

@@ -96,16 +96,18 @@ TEST(LiveLobes, NamesModeAndFrequencyOfEachLimit) {
   const json limits = answer(live, first_lobes)["lobes"]["limit"];
   for (const json& row : limits) speeds.push_back(row["spindle_speed_rpm"].get<double>() * units::rpm);
   const std::vector<Limit> exact = stability::limit_depths(cut.problem, cut.options, speeds);
-  int alike = 0;
+  int alike = 0, found = 0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
     if (limits[i]["axial_depth_mm"].is_null()) continue;
+    ++found;
     const double frequency_hz = limits[i]["chatter_frequency_hz"].get<double>();
     alike += limits[i]["mode"] == exact[i].mode.number &&
                      std::abs(frequency_hz - exact[i].chatter_frequency_hz) < 2e-3 * exact[i].chatter_frequency_hz
                  ? 1
                  : 0;
   }
-  EXPECT_GE(alike, 95);  // where two lobes meet either one may be named
+  EXPECT_GT(found, 50);
+  EXPECT_GE(alike, found - 3);  // where two lobes meet either one may be named
 }
 
 TEST(LiveLobes, SetKeysAreAsThoseOfAnEditedFile) {
@@ -385,7 +387,8 @@ TEST(LiveLobesRequest, RejectsWhatItIsNot) {
   };
   EXPECT_NE(said("{").find("is no JSON"), std::string::npos);
   EXPECT_NE(said("[]").find("must be an object"), std::string::npos);
-  EXPECT_NE(said("{}").find("file is missing"), std::string::npos);
+  EXPECT_NE(said("{}").find("file"), std::string::npos);
+  EXPECT_NE(said("{}").find("is missing"), std::string::npos);
   EXPECT_NE(said(R"({"file": 3})").find("file = 3; must be text"), std::string::npos);
   EXPECT_NE(said(R"({"file": "a", "set": {"x": null}})").find("set.x"), std::string::npos);
   EXPECT_NE(said(R"({"file": "a", "set": {"x": {"y": 1}}})").find("set.x"), std::string::npos);

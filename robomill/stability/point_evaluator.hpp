@@ -14,7 +14,7 @@ struct Ask {
   bool estimate = false;  ///< an estimate of the error, and the accuracy that the options ask for
   bool motion = false;    ///< frequency and mode
   int level = 0;          ///< > 0: of collocation, the level that it starts from in place of its own choice
-  int coarser = 0;        ///< levels below its own choice
+  bool rough = false;     ///< for a search that looks once more where it ends: of collocation perhaps a coarser level
 };
 
 /// What is found at a point.

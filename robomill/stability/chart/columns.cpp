@@ -181,20 +181,19 @@ class FineColumns {
   FineColumns(PointEvaluator& evaluator, const Axes& axes, const Progress& progress)
       : evaluator_(evaluator), axes_(axes), progress_(progress) {}
 
-  /// Of the speeds from `first` on. One level coarser than the axes' tolerance asks for, and once more at its own where
-  /// that shows another limit.
+  /// Of the speeds from `first` on: roughly, and once more where the limit then is another one.
   void find(std::size_t first, std::span<Limit> limits) {
     std::vector<std::size_t> speeds(limits.size());
     std::iota(speeds.begin(), speeds.end(), first);
-    for (const int coarser : {1, 0}) {
-      search(speeds, coarser);
-      speeds.clear();
-      finish(first, limits, coarser == 0, speeds);
+    for (const bool rough : {true, false}) {
+      search(speeds, rough);
+      speeds = finish(first, limits, rough);
+      if (speeds.empty()) return;
     }
   }
 
  private:
-  void search(const std::vector<std::size_t>& speeds, int coarser) {
+  void search(const std::vector<std::size_t>& speeds, bool rough) {
     columns_.clear();
     for (const std::size_t speed : speeds) columns_.emplace_back(axes_, speed);
     for (;;) {
@@ -207,24 +206,21 @@ class FineColumns {
         open[count++] = &column;
       }
       if (count == 0) return;
-      evaluator_.evaluate(std::span(points_).first(count), {.coarser = coarser}, std::span(outcomes_).first(count));
+      evaluator_.evaluate(std::span(points_).first(count), {.rough = rough}, std::span(outcomes_).first(count));
       for (std::size_t i = 0; i < count; ++i) open[i]->take(ln(outcomes_[i].spectral_radius));
     }
   }
 
-  /// At their own level: the motion there, and how far it moves the limit.
-  void finish(std::size_t first, std::span<Limit> limits, bool last, std::vector<std::size_t>& again) {
+  /// The limits with their motion. Of a rough search, the speeds whose limit is another one.
+  std::vector<std::size_t> finish(std::size_t first, std::span<Limit> limits, bool rough) {
+    std::vector<std::size_t> again;
     const std::size_t count = columns_.size();
-    if (count == 0) return;
     for (std::size_t i = 0; i < count; ++i) points_[i] = axes_.at(columns_[i].speed(), columns_[i].top());
     evaluator_.evaluate(std::span(points_).first(count), {.motion = true}, std::span(outcomes_).first(count));
     for (std::size_t i = 0; i < count; ++i) {
       const FineColumn& column = columns_[i];
       const double value = ln(outcomes_[i].spectral_radius);
-      const double differs = value - column.value_at_top();
-      const bool as_it_was = column.found() ? value >= 0.0 && std::abs(differs) <= column.rise()
-                                            : std::abs(differs) <= 0.25 * std::abs(column.value_at_top());
-      if (!as_it_was && !last) {
+      if (rough && !confirms(column, value)) {
         again.push_back(column.speed());
         continue;
       }
@@ -234,6 +230,14 @@ class FineColumns {
       if (column.found()) points_[i].axial_depth_m = depth_of(column, value);
       limit = limit_at(boundary_point(points_[i], outcomes_[i]));
     }
+    return again;
+  }
+
+  /// Whether ln |μ| at the top, looked at once more, leaves the limit where it is to one depth.
+  static bool confirms(const FineColumn& column, double value) {
+    const double moved = std::abs(value - column.value_at_top());
+    if (!column.found()) return moved <= 0.25 * std::abs(column.value_at_top());
+    return value >= 0.0 && moved <= column.rise();
   }
 
   /// Where ln |μ| is 0 on the straight line of the bracket's slope through what was found above it.

@@ -138,7 +138,7 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
 void CollocationEvaluator::evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) {
   for (std::size_t lane = 0; lane < points.size(); ++lane) {
     const int own = model_.first_level(points[lane], tolerance_);
-    const int level = ask.level > 0 ? ask.level : std::max(own - ask.coarser, 1);
+    const int level = ask.level > 0 ? ask.level : ask.rough ? model_.rough_level(own) : own;
     lanes_[lane] = {.level = ask.estimate ? level - 1 : level};
     out[lane] = Outcome{};
   }

@@ -31,6 +31,8 @@ class CollocationModel {
   virtual void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const = 0;
   /// Where the search for an accuracy starts.
   [[nodiscard]] virtual int first_level(const OperatingPoint& point, double tolerance) const = 0;
+  /// In its place where a search looks once more.
+  [[nodiscard]] virtual int rough_level(int first) const { return first; }
   /// As of PointEvaluator.
   [[nodiscard]] virtual std::size_t at_a_time() const { return lane_count; }
   /// Length of the state beyond which no finer level is taken.

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <map>
@@ -35,6 +36,7 @@ class SpatialModel final : public CollocationModel {
   void expect(std::span<const double> depths_m, bool picture) override;
   void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const override;
   [[nodiscard]] int first_level(const OperatingPoint& point, double tolerance) const override;
+  [[nodiscard]] int rough_level(int first) const override { return std::max(first - 1, 1); }
   [[nodiscard]] std::size_t at_a_time() const override { return 3; }
   /// With several delays a piece has a matrix for each other one that it looks back to.
   [[nodiscard]] std::size_t largest_state() const override { return equal_teeth_ ? 4000 : 1500; }
