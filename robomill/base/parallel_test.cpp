@@ -8,7 +8,7 @@
 namespace robomill {
 namespace parallel_test {
 
-class ParallelFor : public testing::TestWithParam<int> {
+class ParallelFor : public ::testing::TestWithParam<int> {
  protected:
   void SetUp() override { set_thread_count(GetParam()); }
   void TearDown() override { set_thread_count(0); }

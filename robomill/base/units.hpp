@@ -20,6 +20,9 @@ inline constexpr double kw = 1e3;
 inline constexpr double gpa = 1e9;
 inline constexpr double deg = std::numbers::pi / 180.0;
 inline constexpr double rpm = std::numbers::pi / 30.0;        ///< rad/s
+inline constexpr double standard_gravity = 9.80665;           ///< m/s², "g" of accelerometers
+inline constexpr double pound_force = 4.4482216152605;        ///< N
+inline constexpr double horsepower = 745.69987158227;         ///< W, 550 ft lbf/s
 inline constexpr double revolution = 2.0 * std::numbers::pi;  ///< rad
 
 }  // namespace robomill::units

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/confinement.hpp"
 #include "robomill/io/pending_names.hpp"
 
 namespace robomill::io {
@@ -47,6 +48,11 @@ bool is_special(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
+/// A device or a pipe keeps who opens it waiting. On a command line that is wanted; a server names none.
+void require_regular_if_confined(const fs::path& path) {
+  if (is_confined() && is_special(path)) reject(path, "is a device or a pipe, not a file");
+}
+
 }  // namespace
 
 Format format_of(const fs::path& path) {
@@ -71,10 +77,12 @@ Format format_of(const fs::path& path) {
 }
 
 std::ifstream open_file(const fs::path& path) {
+  require_inside(path);
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   if (!fs::exists(status)) reject(path, "there is no such file");
   if (fs::is_directory(status)) reject(path, "is a folder, not a file");
+  require_regular_if_confined(path);
   std::ifstream in(path, std::ios::binary);
   if (!in) reject(path, "cannot be read", "Are its permissions right?");
   return in;
@@ -100,6 +108,8 @@ std::string read_file(const fs::path& path, std::uintmax_t max_bytes) {
 }
 
 void write_file(const fs::path& path, std::string_view content) {
+  require_inside(path);
+  require_regular_if_confined(path);
   if (is_special(path)) {
     write_all(path, path, content);
     return;
@@ -110,12 +120,14 @@ void write_file(const fs::path& path, std::string_view content) {
 }
 
 void make_folder(const fs::path& folder) {
+  require_inside(folder);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) reject(folder, "cannot be made: " + error.message(), "Give a folder that you may write to");
 }
 
 bool remove_file(const fs::path& path) {
+  require_inside(path);
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return false;
   const bool removed = fs::remove(behind_link(path), error);
@@ -124,6 +136,7 @@ bool remove_file(const fs::path& path) {
 }
 
 PendingFile::PendingFile(fs::path path) : path_(std::move(path)) {
+  require_inside(path_);
   static std::atomic<unsigned> counter{0};
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) reject(path_, "is a folder, not a file");
@@ -155,6 +168,8 @@ void PendingFile::commit() {
 }
 
 LineFile::LineFile(fs::path path, bool live) : path_(std::move(path)), live_(live) {
+  require_inside(path_);
+  require_regular_if_confined(path_);
   if (!is_special(path_)) pending_.emplace(path_);
   if (live) pending_.reset();  // it has checked the place
   file_.open(pending_ ? pending_->temporary() : path_, std::ios::binary | std::ios::trunc);

@@ -17,7 +17,9 @@ enum class Format { uff, csv, text, mat, json, toml, wav, unknown };
 [[nodiscard]] ROBOMILL_API Format format_of(const std::filesystem::path& path);
 
 /// A file opened to be read.
-/// @throws InvalidInput if there is no such file, it is a directory, or cannot be read
+/// @throws InvalidInput if there is no such file, it is a directory, or cannot be read; or while a Confinement lives,
+/// if
+///     it is a device or a pipe
 [[nodiscard]] std::ifstream open_file(const std::filesystem::path& path);
 
 /// The whole content of a file.

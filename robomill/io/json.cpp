@@ -26,11 +26,6 @@ bool on_one_line(const Json& json) {
          });
 }
 
-/// One place for text that is not UTF-8: file names may be anything.
-std::string plain_text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 void append(std::string& out, const Json& json, std::size_t depth) {
   if (is_plain(json) || json.empty()) {
     out += plain_text(json);
@@ -59,7 +54,7 @@ std::size_t line_of(std::string_view content, std::size_t byte) {
 }
 
 /// What copies, compares or writes JSON calls itself once a level.
-void require_shallow(std::string_view content, const std::filesystem::path& path) {
+void require_shallow(std::string_view content, const std::string& name) {
   int depth = 0;
   bool quoted = false;
   for (std::size_t i = 0; i < content.size(); ++i) {
@@ -75,7 +70,7 @@ void require_shallow(std::string_view content, const std::filesystem::path& path
     }
     if (depth <= deepest_nesting) continue;
     throw InvalidInput(InvalidInput::Parts{
-        .where = fmt::format("{}:{}", path.string(), line_of(content, i)),
+        .where = fmt::format("{}:{}", name, line_of(content, i)),
         .rule = fmt::format("is no JSON that is read here: it nests its values more than {} deep", deepest_nesting)});
   }
 }
@@ -100,8 +95,31 @@ Json numbers(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return list;
 }
 
+Json numbers_in(double unit, const Eigen::Ref<const Eigen::VectorXd>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number(value / unit));
+  return list;
+}
+
 Json complex_numbers(const Eigen::Ref<const Eigen::VectorXcd>& values) {
   return {{"re", numbers(values.real())}, {"im", numbers(values.imag())}};
+}
+
+Json assumed_json(const std::vector<Assumption>& assumed) {
+  Json list = Json::array();
+  for (const Assumption& one : assumed) {
+    list.push_back(
+        {{"what", one.what}, {"taken", one.taken}, {"key", text_or_null(one.key)}, {"file", text_or_null(one.file)}});
+  }
+  return list;
+}
+
+Json text_or_null(std::string_view text) {
+  return text.empty() ? Json() : Json(text);
+}
+
+std::string plain_text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string dump(const Json& json) {
@@ -180,8 +198,11 @@ std::string JsonNode::text() const {
 }
 
 Json read_json(const std::filesystem::path& path) {
-  const std::string content = read_file(path);
-  require_shallow(content, path);
+  return parse_json(read_file(path), path.string());
+}
+
+Json parse_json(std::string_view content, const std::string& name) {
+  require_shallow(content, name);
   try {
     return Json::parse(content);
   } catch (const nlohmann::json::exception& error) {
@@ -189,8 +210,7 @@ Json read_json(const std::filesystem::path& path) {
     const std::size_t line = line_of(content, parse != nullptr ? parse->byte : 0);
     std::string reason = error.what();
     reason = reason.substr(std::min(reason.find("] ") + 2, reason.size()));
-    throw InvalidInput(
-        InvalidInput::Parts{.where = fmt::format("{}:{}", path.string(), line), .rule = "is no JSON: " + reason});
+    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", name, line), .rule = "is no JSON: " + reason});
   }
 }
 

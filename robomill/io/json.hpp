@@ -6,7 +6,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/error.hpp"
 
 namespace robomill::io {
@@ -21,9 +24,18 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json complex_number(const std::complex<double>& value);
 /// A list of all digits of each.
 [[nodiscard]] Json numbers(const Eigen::Ref<const Eigen::VectorXd>& values);
+/// A list of each in a unit, of 15 significant digits.
+[[nodiscard]] Json numbers_in(double unit, const Eigen::Ref<const Eigen::VectorXd>& values);
 /// {"re": […], "im": […]}
 [[nodiscard]] Json complex_numbers(const Eigen::Ref<const Eigen::VectorXcd>& values);
 
+/// [{"what", "taken", "key", "file"}, …]; key and file null where there is none.
+[[nodiscard]] Json assumed_json(const std::vector<Assumption>& assumed);
+
+/// Null where it is empty.
+[[nodiscard]] Json text_or_null(std::string_view text);
+/// JSON text on one line; text that is not UTF-8 (file names may be anything) has its wrong bytes replaced.
+[[nodiscard]] std::string plain_text(const Json& json);
 /// JSON text for people too: objects over lines, lists of plain values on one; null for what is not finite; a line's
 /// end last.
 [[nodiscard]] std::string dump(const Json& json);
@@ -57,5 +69,8 @@ class JsonNode {
 
 /// @throws InvalidInput with file and line if the file is missing, empty or no JSON
 [[nodiscard]] Json read_json(const std::filesystem::path& path);
+/// @param name  of the text, in errors
+/// @throws InvalidInput with name and line if it is no JSON, or nests deeply
+[[nodiscard]] Json parse_json(std::string_view content, const std::string& name);
 
 }  // namespace robomill::io

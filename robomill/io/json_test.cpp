@@ -42,6 +42,13 @@ TEST(JsonText, GivesBackEveryBit) {
   EXPECT_EQ(JsonNode(read, "f.json").at("values").numbers(), values);
 }
 
+TEST(AssumedJson, HasNullWhereThereIsNoKey) {
+  const Json list = assumed_json({{.what = "Stock", .taken = "a box", .key = "stock.kind", .file = "forces.toml"},
+                                  {.what = "Unit", .taken = "m/N"}});
+  EXPECT_EQ(list[0], Json::parse(R"({"what":"Stock","taken":"a box","key":"stock.kind","file":"forces.toml"})"));
+  EXPECT_EQ(list[1], Json::parse(R"({"what":"Unit","taken":"m/N","key":null,"file":null})"));
+}
+
 TEST(JsonNode, ReportsErrorsWithTheirPath) {
   const Json json = Json::parse(R"({"modes": [{"f": 1}, {"f": "two", "left": {"x": [1, null]}}], "n": 5})");
   const JsonNode root(json, "f.json");

@@ -2,13 +2,7 @@
 
 #include <fmt/format.h>
 
-// toml++ asserts, or even lets the compiler assume, what "[*]" breaks; without either it reports an error as it should.
-#undef NDEBUG
-#define TOML_ASSERT(expr) static_assert(true)
-#include <toml++/toml.h>
-
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -17,11 +11,11 @@
 
 #include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/toml_synonyms.hpp"
+#include "robomill/io/toml_tree.hpp"
 
 namespace robomill::io {
 namespace {
-
-constexpr int most_key_parts = 32;
 
 /// One reading call: what stands in the file and what it became.
 struct Row {
@@ -47,39 +41,10 @@ std::string shown(std::string_view key) {
   return text;
 }
 
-/// Takes "[3]" off the front of a path.
-std::optional<std::size_t> take_index(std::string_view& path) {
-  if (path.empty() || path.front() != '[') return std::nullopt;
-  std::size_t index = 0;
-  const std::from_chars_result read = std::from_chars(path.data() + 1, path.data() + path.size(), index);
-  const std::size_t used = static_cast<std::size_t>(read.ptr - path.data());
-  if (read.ec != std::errc() || used >= path.size() || path[used] != ']') return std::nullopt;
-  path.remove_prefix(used + 1);
-  return index;
-}
-
-const toml::node* find(const toml::table& root, std::string_view path) {
-  const toml::node* node = &root;
-  while (node != nullptr && !path.empty()) {
-    if (path.front() == '[') {
-      const std::optional<std::size_t> index = take_index(path);
-      const toml::array* array = node->as_array();
-      node = index && array != nullptr ? array->get(*index) : nullptr;
-    } else {
-      if (path.front() == '.') path.remove_prefix(1);
-      const std::string_view name = path.substr(0, path.find_first_of(".["));
-      const toml::table* table = node->as_table();
-      node = table != nullptr ? table->get(name) : nullptr;
-      path.remove_prefix(name.size());
-    }
-  }
-  return node;
-}
-
 /// The key, or the innermost table around it that the file has; none where that is the file itself.
 const toml::node* nearest(const toml::table& root, std::string_view key) {
   for (;;) {
-    if (const toml::node* node = find(root, key)) return node;
+    if (const toml::node* node = find_node(root, key)) return node;
     const std::size_t end = key.find_last_of(".[");
     if (end == std::string_view::npos) return nullptr;
     key = key.substr(0, end);
@@ -120,53 +85,32 @@ std::size_t match(std::string_view field, const std::string& member) {
   return whole || tail ? member.size() : 0;
 }
 
-bool is_list_of_tables(const toml::array& array) {
-  return !array.empty() && std::all_of(array.begin(), array.end(), [](const toml::node& n) { return n.is_table(); });
-}
-
-/// One past the end of the text or comment that begins at `at`; `at` where neither does.
-std::size_t skip_text(std::string_view content, std::size_t at) {
-  const auto after = [&](std::string_view closing, std::size_t from, bool escapes) {
-    for (std::size_t i = from; i < content.size(); ++i) {
-      if (content.substr(i).starts_with(closing)) return i + closing.size();
-      if (closing.size() == 1 && content[i] == '\n') return i;  // unclosed
-      if (escapes && content[i] == '\\') ++i;
+/// Puts a value at a path below a node, with the tables that are missing on the way; false where there is no way.
+bool put(toml::node& node, std::string_view path, const toml::node& value) {
+  toml::node* below = nullptr;
+  if (path.starts_with('[')) {
+    const std::optional<std::size_t> index = take_index(path);
+    toml::array* array = node.as_array();
+    if (!index || array == nullptr || *index >= array->size()) return false;
+    if (path.empty()) {
+      array->replace(array->cbegin() + static_cast<std::ptrdiff_t>(*index), value);
+      return true;
     }
-    return content.size();
-  };
-  const char quote = content[at];
-  if (quote == '#') return std::min(content.find('\n', at), content.size());
-  if (quote != '"' && quote != '\'') return at;
-  const std::string three(3, quote);
-  if (!content.substr(at).starts_with(three)) return after(three.substr(2), at + 1, quote == '"');
-  std::size_t end = after(three, at + 3, quote == '"');
-  // Up to two quotes of the text itself may stand before the three that close it.
-  for (int own = 0; own < 2 && end < content.size() && content[end] == quote; ++own) ++end;
-  return end;
-}
-
-/// toml++ bounds how deeply values nest, but not the parts of a dotted key; what takes a table apart calls itself once
-/// a level.
-void require_short_keys(std::string_view content, const std::string& file) {
-  int parts = 1;
-  for (std::size_t i = 0; i < content.size(); ++i) {
-    const std::size_t end = skip_text(content, i);
-    if (end > i) {
-      i = end - 1;
-      continue;
+    below = array->get(*index);
+  } else {
+    const std::string_view name = path.substr(0, path.find_first_of(".["));
+    toml::table* table = node.as_table();
+    if (name.empty() || table == nullptr) return false;
+    path.remove_prefix(name.size());
+    if (path.empty()) {
+      table->insert_or_assign(name, value);
+      return true;
     }
-    const char letter = content[i];
-    if (letter == '.') {
-      ++parts;
-    } else if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '-' && letter != '_' &&
-               letter != ' ' && letter != '\t') {
-      parts = 1;
-    }
-    if (parts <= most_key_parts) continue;
-    const auto line = std::count(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(i), '\n') + 1;
-    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", file, line),
-                                           .rule = fmt::format("has a key of more than {} parts", most_key_parts)});
+    if (path.front() == '.') table->insert(name, toml::table{});  // unless it is there
+    below = table->get(name);
   }
+  if (path.front() == '.') path.remove_prefix(1);
+  return below != nullptr && !path.empty() && put(*below, path, value);
 }
 
 }  // namespace
@@ -179,27 +123,47 @@ struct TomlFile::State {
 
   const toml::node* ask(std::string_view key) {
     known.emplace(key);
-    return find(root, key);
+    return find_node(root, key);
   }
   [[nodiscard]] std::string where(const toml::node* node) const {
     const std::string file = path.string();
-    return node != nullptr ? fmt::format("{}:{}", file, node->source().begin.line) : file;
+    const bool in_text = node != nullptr && node->source().begin.line > 0;  // and not set
+    return in_text ? fmt::format("{}:{}", file, node->source().begin.line) : file;
   }
+  void set(const TomlSetting& setting);
   [[nodiscard]] std::string suggestion(std::string_view key) const;
+  [[nodiscard]] InvalidInput unknown(const std::string& key) const;
+  [[nodiscard]] std::string written_for(std::string_view key) const;
   void check_known(const toml::node& node, const std::string& path_here) const;
   [[nodiscard]] const Row* row_of(const InvalidInput::Parts& parts) const;
 };
 
-TomlFile::TomlFile(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
-  state_->path = path;
-  const std::string content = read_file(path, std::uintmax_t{64} << 20);
-  require_short_keys(content, path.string());
+void TomlFile::State::set(const TomlSetting& setting) {
+  const auto rejected = [&](std::string rule) {
+    return InvalidInput(InvalidInput::Parts{.where = path.string(),
+                                            .field = shown(setting.key),
+                                            .value = setting.value.substr(0, 60),
+                                            .rule = std::move(rule)});
+  };
+  const std::string line = "value = " + setting.value;
+  toml::table one;
   try {
-    state_->root = toml::parse(content);
-  } catch (const toml::parse_error& error) {
-    throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", path.string(), error.source().begin.line),
-                                           .rule = "is no TOML: " + std::string(error.description())});
+    require_short_keys(setting.key, path.string());
+    require_short_keys(line, path.string());
+    one = toml::parse(line);
+  } catch (const toml::parse_error&) {
+    throw rejected("is no value of TOML");
   }
+  if (one.size() != 1) throw rejected("is no value of TOML");
+  if (!put(root, setting.key, *one.get("value"))) throw rejected("is no key of this document that can be set");
+}
+
+TomlFile::TomlFile(const TomlSource& source) : state_(std::make_unique<State>()) {
+  const std::string name = source.path.string();
+  state_->path = source.path;
+  const std::string content = source.text ? *source.text : read_file(source.path, std::uintmax_t{64} << 20);
+  state_->root = parse_toml(content, name);
+  for (const TomlSetting& setting : source.settings) state_->set(setting);
 }
 
 TomlFile::~TomlFile() = default;
@@ -321,11 +285,11 @@ void TomlFile::skip(std::string_view key) {
 }
 
 bool TomlFile::has(std::string_view key) const {
-  return find(state_->root, key) != nullptr;
+  return find_node(state_->root, key) != nullptr;
 }
 
 bool TomlFile::is_number(std::string_view key) const {
-  const toml::node* node = find(state_->root, key);
+  const toml::node* node = find_node(state_->root, key);
   return node != nullptr && node->is_number();
 }
 
@@ -354,6 +318,8 @@ std::vector<std::string> TomlFile::keys(std::string_view table) const {
 
 void TomlFile::require(std::string_view key, std::string_view hint) const {
   if (has(key)) return;
+  state_->known.emplace(key);
+  if (const std::string other = state_->written_for(key); !other.empty()) throw state_->unknown(other);
   throw InvalidInput(InvalidInput::Parts{.where = state_->where(nearest(state_->root, key)),
                                          .field = shown(key),
                                          .rule = "is missing",
@@ -361,7 +327,7 @@ void TomlFile::require(std::string_view key, std::string_view hint) const {
 }
 
 InvalidInput TomlFile::reject(std::string_view key, std::string rule, std::string hint) const {
-  const toml::node* node = find(state_->root, key);
+  const toml::node* node = find_node(state_->root, key);
   InvalidInput::Parts parts{.where = state_->where(nearest(state_->root, key)),
                             .field = shown(key),
                             .rule = std::move(rule),
@@ -395,6 +361,9 @@ InvalidInput TomlFile::located(const InvalidInput& error) const {
   InvalidInput::Parts parts = error.parts();
   const Row* row = parts.where.empty() && !parts.field.empty() ? state_->row_of(parts) : nullptr;
   if (row == nullptr) return error;
+  if (!row->present) {
+    if (const std::string other = state_->written_for(row->key); !other.empty()) return state_->unknown(other);
+  }
   const bool entry = parts.field.back() == ']' && row->member.back() != ']';
   const std::string index = entry ? parts.field.substr(parts.field.rfind('[')) : "";
   parts.where = state_->where(nearest(state_->root, row->key));
@@ -421,8 +390,26 @@ std::string TomlFile::State::suggestion(std::string_view key) const {
       return fmt::format("It belongs in [{}]", shown(std::string_view(other).substr(0, dot)));
     }
   }
+  if (std::string hint = synonym_hint(key, known); !hint.empty()) return hint;
   const std::string near = nearest_word(key, known);
   return near.empty() ? near : fmt::format("Did you mean {}?", shown(near));
+}
+
+InvalidInput TomlFile::State::unknown(const std::string& key) const {
+  return InvalidInput(InvalidInput::Parts{
+      .where = where(find_node(root, key)), .field = shown(key), .rule = "is not known here", .hint = suggestion(key)});
+}
+
+/// The key beside a missing one that somebody wrote in its place: "tool.flutes" for "tool.teeth"; empty where none is.
+std::string TomlFile::State::written_for(std::string_view key) const {
+  const std::size_t dot = key.rfind('.');
+  const toml::node* node = dot != std::string_view::npos ? find_node(root, key.substr(0, dot)) : nullptr;
+  if (node == nullptr || !node->is_table()) return {};
+  for (const auto& [name, value] : *node->as_table()) {
+    std::string other = fmt::format("{}.{}", key.substr(0, dot), name.str());
+    if (!known.contains(other) && is_written_for(name.str(), key.substr(dot + 1))) return other;
+  }
+  return {};
 }
 
 void TomlFile::State::check_known(const toml::node& node, const std::string& key) const {
@@ -441,8 +428,7 @@ void TomlFile::State::check_known(const toml::node& node, const std::string& key
   } else if (list != nullptr) {
     for (std::size_t i = 0; i < list->size(); ++i) check_known((*list)[i], fmt::format("{}[{}]", key, i));
   } else {
-    throw InvalidInput(InvalidInput::Parts{
-        .where = where(&node), .field = shown(key), .rule = "is not known here", .hint = suggestion(key)});
+    throw unknown(key);
   }
 }
 

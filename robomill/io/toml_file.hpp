@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/names.hpp"
+#include "robomill/io/toml_source.hpp"
 
 namespace robomill::io {
 
@@ -30,8 +31,9 @@ struct Field {
 /// InvalidInput with file, line, key and value.
 class TomlFile {
  public:
-  /// @throws InvalidInput if the file is missing, empty or no TOML (with line)
-  explicit TomlFile(const std::filesystem::path& path);
+  /// A key that the source sets has no line in errors.
+  /// @throws InvalidInput if the file is missing, empty or no TOML (with line), or if a key cannot be set
+  explicit TomlFile(const TomlSource& source);
   ~TomlFile();
   TomlFile(const TomlFile&) = delete;
   TomlFile& operator=(const TomlFile&) = delete;
