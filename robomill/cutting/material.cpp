@@ -1,7 +1,6 @@
 #include "robomill/cutting/material.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 
@@ -12,16 +11,31 @@ namespace {
 
 using std::numbers::pi;
 
-/// Orthogonal tests are published per degree of rake and for h in mm.
-constexpr double per_degree = 180.0 / pi;
+/// Powers of the chip thickness are published for h in mm.
 constexpr double thickness_unit_m = 1e-3;
 
 void require_acute(const char* field, double angle_rad) {
   if (!(std::abs(angle_rad) < 0.5 * pi)) throw InvalidInput(field, angle_rad, "rad", "must lie between -π/2 and π/2");
 }
 
-bool same_word(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// Standard deviation of a sample over its mean. Of two values, which say little of one, half their distance.
+double spread_ratio(const std::vector<double>& values) {
+  if (values.size() < 2) return 0.0;
+  const double mean = mean_of(values);
+  double sum = 0.0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  const std::size_t freedom = values.size() == 2 ? 2 : values.size() - 1;
+  return std::sqrt(sum / static_cast<double>(freedom)) / mean;
+}
+
+void require_chip(double chip_thickness_m) {
+  require_positive("chip_thickness_m", chip_thickness_m, "m", "In a slot the mean is 2/π of the feed per tooth");
 }
 
 }  // namespace
@@ -67,14 +81,14 @@ ObliqueCoefficients oblique_coefficients(const OrthogonalCut& cut, double inclin
           .axial_n_per_m2 = -pressure * (std::cos(lean) * tan_i - along_edge)};
 }
 
-OrthogonalCut Material::cut(double rake_rad, double chip_thickness_m) const {
-  require_positive("chip_thickness_m", chip_thickness_m, "m", "In a slot the mean is 2/π of the feed per tooth");
+OrthogonalCut OrthogonalTests::cut(double rake_rad, double chip_thickness_m) const {
+  require_chip(chip_thickness_m);
   require_acute("rake_rad", rake_rad);
   const double factor = chip_ratio + chip_ratio_per_rad * rake_rad;
   const double power = chip_ratio_power + chip_ratio_power_per_rad * rake_rad;
   const double ratio = factor * std::pow(chip_thickness_m / thickness_unit_m, power);
   if (!(ratio > 0.0) || !std::isfinite(ratio)) {
-    throw InvalidInput("rake_rad", rake_rad, "rad", "is beyond what the tests of " + name + " reached");
+    throw InvalidInput("rake_rad", rake_rad, "rad", "is beyond what the tests of [" + source + "] reached");
   }
   OrthogonalCut out{.shear_stress_n_per_m2 = shear_stress_n_per_m2,
                     .friction_angle_rad = friction_angle_rad + friction_angle_per_rake * rake_rad,
@@ -84,40 +98,67 @@ OrthogonalCut Material::cut(double rake_rad, double chip_thickness_m) const {
   return out;
 }
 
-const std::vector<Material>& materials() {
-  static const std::vector<Material> known = {{.name = "Ti6Al4V",
-                                               .source = "BudakAltintasArmarego1996",
-                                               .shear_stress_n_per_m2 = 613e6,
-                                               .friction_angle_rad = 19.1 / per_degree,
-                                               .friction_angle_per_rake = 0.29,
-                                               .chip_ratio = 1.755,
-                                               .chip_ratio_per_rad = -0.028 * per_degree,
-                                               .chip_ratio_power = 0.331,
-                                               .chip_ratio_power_per_rad = -0.0082 * per_degree,
-                                               .tangential_edge_n_per_m = 24e3,
-                                               .radial_edge_n_per_m = 43e3}};
-  return known;
-}
-
-const Material& material(std::string_view name) {
-  std::string names;
-  for (const Material& known : materials()) {
-    if (same_word(known.name, name)) return known;
-    names += (names.empty() ? "" : ", ") + known.name;
-  }
-  throw InvalidInput("material", "must be one of " + names, "Give the coefficients of others");
-}
-
-MillingCoefficients milling_coefficients(const Material& material, double rake_rad, double helix_rad,
+MillingCoefficients milling_coefficients(const OrthogonalTests& tests, double rake_rad, double helix_rad,
                                          double chip_thickness_m) {
   require_acute("helix_rad", helix_rad);
-  const ObliqueCoefficients oblique = oblique_coefficients(material.cut(rake_rad, chip_thickness_m), helix_rad);
+  const ObliqueCoefficients oblique = oblique_coefficients(tests.cut(rake_rad, chip_thickness_m), helix_rad);
   return {.tangential_n_per_m2 = {oblique.tangential_n_per_m2},
           .radial_n_per_m2 = {oblique.radial_n_per_m2},
           .axial_n_per_m2 = {oblique.axial_n_per_m2},
-          .tangential_edge_n_per_m = {material.tangential_edge_n_per_m},
-          .radial_edge_n_per_m = {material.radial_edge_n_per_m},
+          .tangential_edge_n_per_m = {tests.tangential_edge_n_per_m},
+          .radial_edge_n_per_m = {tests.radial_edge_n_per_m},
           .axial_edge_n_per_m = {}};
+}
+
+MillingCoefficients PublishedCoefficients::at(double chip_thickness_m) const {
+  if (!is_power()) return line;
+  require_chip(chip_thickness_m);
+  const double secant = specific_force_n_per_m2 * std::pow(chip_thickness_m / thickness_unit_m, -thickness_power);
+  MillingCoefficients out;
+  out.tangential_n_per_m2 = {(1.0 - thickness_power) * secant};
+  out.tangential_edge_n_per_m = {thickness_power * secant * chip_thickness_m};
+  return out;
+}
+
+std::optional<double> CuttingConditions::feed_at(double cutter_diameter_m) const {
+  const std::vector<double>&x = diameter_m, &y = feed_per_tooth_m;
+  if (x.empty()) return std::nullopt;
+  const auto i = static_cast<std::size_t>(std::ranges::lower_bound(x, cutter_diameter_m) - x.begin());
+  if (i == 0) return y.front();
+  if (i == x.size()) return y.back();
+  return std::lerp(y[i - 1], y[i], (cutter_diameter_m - x[i - 1]) / (x[i] - x[i - 1]));
+}
+
+std::optional<std::size_t> best_set(const Material& material, CutterKind kind) {
+  std::optional<std::size_t> best;
+  int best_rank = -1;
+  for (std::size_t i = 0; i < material.coefficients.size(); ++i) {
+    const PublishedCoefficients& set = material.coefficients[i];
+    const int rank = (set.has_radial() ? 3 : 0) + (set.kind == kind ? 2 : set.kind ? 0 : 1);
+    if (rank <= best_rank) continue;
+    best = i;
+    best_rank = rank;
+  }
+  return best;
+}
+
+SetSpread spread_of_sets(const Material& material) {
+  std::vector<double> tangential;
+  for (const PublishedCoefficients& set : material.coefficients) {
+    if (set.is_power()) continue;
+    tangential.push_back(set.line.tangential_n_per_m2.front());
+  }
+  SetSpread out;
+  if (tangential.empty()) return out;
+  const auto [low, high] = std::ranges::minmax(tangential);
+  out = {.sets = tangential.size(), .tangential_n_per_m2 = {low, high}, .std_ratio = spread_ratio(tangential)};
+  return out;
+}
+
+double mean_chip_thickness_m(const Immersion& immersion, double feed_per_tooth_m) {
+  immersion.validate();
+  return feed_per_tooth_m * (std::cos(immersion.entry_rad) - std::cos(immersion.exit_rad)) /
+         (immersion.exit_rad - immersion.entry_rad);
 }
 
 }  // namespace robomill::cutting

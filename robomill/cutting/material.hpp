@@ -1,13 +1,16 @@
 #pragma once
+#include <array>
+#include <cstddef>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/cutting/force.hpp"
+#include "robomill/cutting/milling.hpp"
 
-/// Force coefficients of a milling cutter from orthogonal cutting tests of the material, so that no cutter need be
-/// calibrated.
+/// What sources state of materials: force coefficients, orthogonal cutting tests, speeds and feeds. The table of those
+/// known is in files/materials_toml.hpp.
 // Method: robomill/cutting/README.md, "Coefficients (`coefficients.hpp`, `material.hpp`)"
 namespace robomill::cutting {
 
@@ -44,10 +47,9 @@ struct ObliqueCoefficients {
 /// Source: [BudakAltintasArmarego1996]
 [[nodiscard]] ROBOMILL_API ObliqueCoefficients oblique_coefficients(const OrthogonalCut& cut, double inclination_rad);
 
-/// What orthogonal tests have measured of a material.
-struct ROBOMILL_API Material {
-  std::string name;
-  std::string source;  ///< a key of docs/bibliography.md
+/// What orthogonal tests have measured of a material, so that no cutter need be calibrated.
+struct ROBOMILL_API OrthogonalTests {
+  std::string source = {};  ///< a key of docs/bibliography.md
   double shear_stress_n_per_m2 = 0.0;
   double friction_angle_rad = 0.0;  ///< at rake 0
   double friction_angle_per_rake = 0.0;
@@ -59,17 +61,70 @@ struct ROBOMILL_API Material {
   [[nodiscard]] OrthogonalCut cut(double rake_rad, double chip_thickness_m) const;
 };
 
-/// Those that are known here.
-[[nodiscard]] ROBOMILL_API const std::vector<Material>& materials();
-/// By its name, whatever its case. @throws InvalidInput "material" that lists those known
-[[nodiscard]] ROBOMILL_API const Material& material(std::string_view name);
-
 /// Constants for a cutter: those of the oblique cut at a mean chip thickness, and the orthogonal edge forces along the
 /// edge; none of these tests measures an axial edge force.
 /// @param helix_rad         β
 /// @param chip_thickness_m  mean of the cut, in a slot 2 c / π with the feed per tooth c
-/// @throws InvalidInput as Material::cut and oblique_coefficients
-[[nodiscard]] ROBOMILL_API MillingCoefficients milling_coefficients(const Material& material, double rake_rad,
+/// @throws InvalidInput as OrthogonalTests::cut and oblique_coefficients
+[[nodiscard]] ROBOMILL_API MillingCoefficients milling_coefficients(const OrthogonalTests& tests, double rake_rad,
                                                                     double helix_rad, double chip_thickness_m);
+
+using FromTo = std::array<double, 2>;  ///< from, to
+
+/// One set of force coefficients as a source states them: a straight line over the chip, K h + Ke; or Kienzle's power
+/// of it, F = k b h (h / 1 mm)^-m, which is the tangential force alone.
+struct ROBOMILL_API PublishedCoefficients {
+  std::string cutter = {};                               ///< in words
+  std::optional<CutterKind> kind = {};                   ///< where the source states it
+  std::string source = {};                               ///< a key of docs/bibliography.md
+  MillingCoefficients line = {};                         ///< no tangential one where it is a power
+  double specific_force_n_per_m2 = 0.0;                  ///< k at 1 mm [N/m^2]; 0 where it is a line
+  double thickness_power = 0.0;                          ///< m, in [0, 1)
+  double tangential_std_n_per_m2 = 0.0;                  ///< of K over the tests [N/m^2]; 0: not stated
+  std::optional<FromTo> tangential_range_n_per_m2 = {};  ///< of K or k over the tests
+  std::optional<FromTo> tested_speed_m_per_s = {}, tested_feed_per_tooth_m = {}, tested_chip_m = {};
+  [[nodiscard]] bool is_power() const { return specific_force_n_per_m2 > 0.0; }
+  [[nodiscard]] bool has_radial() const { return !line.radial_n_per_m2.empty(); }
+  /// The line; of a power its tangent at h: K = (1 - m) k (h / 1 mm)^-m and Ke = m k h (h / 1 mm)^-m, which has its
+  /// value and its slope there.
+  /// @throws InvalidInput "chip_thickness_m" where it is a power, unless 0 < h
+  [[nodiscard]] MillingCoefficients at(double chip_thickness_m) const;
+};
+
+/// What a handbook or a maker recommends.
+struct ROBOMILL_API CuttingConditions {
+  std::string cutter = {};  ///< in words
+  std::string source = {};  ///< a key of docs/bibliography.md
+  std::optional<FromTo> cutting_speed_m_per_s = {};
+  std::vector<double> diameter_m = {}, feed_per_tooth_m = {};  ///< a feed for each diameter; empty: not stated
+  /// On straight lines between the diameters, beyond them as at the outermost one [m]; none where no feed is stated.
+  [[nodiscard]] std::optional<double> feed_at(double cutter_diameter_m) const;
+};
+
+/// A material and what sources state of it.
+struct Material {
+  std::string name = {};  ///< "7075-t6"
+  std::vector<std::string> other_names = {};
+  std::string description = {};
+  std::vector<PublishedCoefficients> coefficients = {};
+  std::optional<OrthogonalTests> orthogonal = {};
+  std::vector<CuttingConditions> conditions = {};
+};
+
+/// Which set serves a kind of cutter, from 0: one with a radial coefficient before one without, then one for this kind,
+/// then one for any; of equal ones the first. None where there are no sets.
+[[nodiscard]] ROBOMILL_API std::optional<std::size_t> best_set(const Material& material, CutterKind kind);
+
+/// How far the sets of a material that are lines lie apart, and how many those are.
+struct SetSpread {
+  std::size_t sets = 0;
+  FromTo tangential_n_per_m2 = {0.0, 0.0};
+  double std_ratio = 0.0;  ///< standard deviation of the tangential ones over their mean; of two half their distance
+};
+[[nodiscard]] ROBOMILL_API SetSpread spread_of_sets(const Material& material);
+
+/// Mean over the arc in the cut, c (cos entry - cos exit) / (exit - entry) [m]. @param feed_per_tooth_m  c
+/// @throws InvalidInput as Immersion::validate
+[[nodiscard]] ROBOMILL_API double mean_chip_thickness_m(const Immersion& immersion, double feed_per_tooth_m);
 
 }  // namespace robomill::cutting

@@ -5,8 +5,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "robomill/base/random.hpp"
+#include "robomill/cutting/files/materials_toml.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
@@ -100,8 +102,8 @@ TEST(ShearAngle, FollowsFromTheChipRatio) {
 // Source: [BudakAltintasArmarego1996] Ti6Al4V, its formulas by hand at rake 0 and h = 0.05 mm:
 // r = 1.755 * 0.05^0.331 = 0.65106, φ = 33.067°, β = 19.1°.
 TEST(Material, TitaniumByItsPublishedFormulas) {
-  const Material& titanium = material("ti6al4v");
-  EXPECT_EQ(titanium.name, "Ti6Al4V");
+  ASSERT_TRUE(material("Ti6Al4V").orthogonal);
+  const OrthogonalTests& titanium = *material("Ti6Al4V").orthogonal;
   const OrthogonalCut cut = titanium.cut(0.0, 0.05e-3);
   EXPECT_NEAR(std::tan(cut.shear_angle_rad), 1.755 * std::pow(0.05, 0.331), 1e-12);
   EXPECT_NEAR(cut.friction_angle_rad, 19.1 * degree, 1e-15);
@@ -119,8 +121,7 @@ TEST(Material, TitaniumByItsPublishedFormulas) {
 }
 
 TEST(Material, RejectsWhatCannotBe) {
-  const Material& titanium = materials().front();
-  EXPECT_NE(test::rejection([] { static_cast<void>(material("cheese")); }).find("Ti6Al4V"), std::string::npos);
+  const OrthogonalTests& titanium = *material("Ti6Al4V").orthogonal;
   const auto field = [&](double rake, double helix, double thickness) {
     return field_of([&] { static_cast<void>(milling_coefficients(titanium, rake, helix, thickness)); });
   };
@@ -135,6 +136,74 @@ TEST(Material, RejectsWhatCannotBe) {
   EXPECT_EQ(field_of([&] { cut.validate(); }), "shear_angle_rad");
   cut.shear_stress_n_per_m2 = 0.0;
   EXPECT_EQ(field_of([&] { cut.validate(); }), "shear_stress_n_per_m2");
+}
+
+PublishedCoefficients power_law(double force_n_per_m2, double power) {
+  return {.source = "someone", .specific_force_n_per_m2 = force_n_per_m2, .thickness_power = power};
+}
+
+PublishedCoefficients straight(double tangential_n_per_m2, std::optional<double> radial_n_per_m2,
+                               std::optional<CutterKind> kind = {}) {
+  PublishedCoefficients set{.kind = kind, .source = "someone"};
+  set.line.tangential_n_per_m2 = {tangential_n_per_m2};
+  if (radial_n_per_m2) set.line.radial_n_per_m2 = {*radial_n_per_m2};
+  return set;
+}
+
+// The straight line at h touches k h^(1-m): force and stiffness against a change of chip are those of the power.
+TEST(Material, ALineTouchesAPowerOfTheChip) {
+  Random random(4);
+  for (int seed = 0; seed < seeds(500); ++seed) {
+    const double force = random.uniform(2e7, 3e9), power = random.uniform(0.0, 0.9), h = random.uniform(5e-6, 3e-4);
+    const PublishedCoefficients set = power_law(force, power);
+    const MillingCoefficients k = set.at(h);
+    const auto per_width = [&](double chip_m) { return force * std::pow(chip_m / 1e-3, -power) * chip_m; };
+    const double slope = k.tangential_n_per_m2.front(), edge = k.tangential_edge_n_per_m.front();
+    EXPECT_NEAR(slope * h + edge, per_width(h), 1e-12 * per_width(h));
+    const double step = 1e-4 * h;
+    EXPECT_NEAR(slope, (per_width(h + step) - per_width(h - step)) / (2.0 * step), 1e-6 * slope);
+    EXPECT_TRUE(k.radial_n_per_m2.empty());
+    // Concave: the power lies below its tangent everywhere else.
+    EXPECT_LE(per_width(2.0 * h), (slope * 2.0 * h + edge) * (1.0 + 1e-12));
+    EXPECT_LE(per_width(0.5 * h), (slope * 0.5 * h + edge) * (1.0 + 1e-12));
+  }
+  EXPECT_EQ(field_of([] { static_cast<void>(power_law(8e8, 0.25).at(0.0)); }), "chip_thickness_m");
+  EXPECT_EQ(straight(7e8, 2e8).at(0.0).tangential_n_per_m2.front(), 7e8) << "a line needs no chip";
+}
+
+TEST(Material, TheSetForTheCutterIsTaken) {
+  Material some;
+  EXPECT_FALSE(best_set(some, CutterKind::flat_end));
+  some.coefficients = {power_law(8e8, 0.25), straight(7e8, {}, CutterKind::flat_end)};
+  EXPECT_EQ(best_set(some, CutterKind::flat_end), 1U);
+  EXPECT_EQ(best_set(some, CutterKind::ball_end), 0U) << "one that names no kind before one for another kind";
+  some.coefficients.push_back(straight(6e8, 2e8, CutterKind::ball_end));
+  some.coefficients.push_back(straight(5e8, 2e8));
+  some.coefficients.push_back(straight(4e8, 2e8));
+  EXPECT_EQ(best_set(some, CutterKind::ball_end), 2U);
+  EXPECT_EQ(best_set(some, CutterKind::flat_end), 3U) << "the first of two that are alike";
+}
+
+TEST(Material, SpreadIsThatOfTheLines) {
+  Material some;
+  EXPECT_EQ(spread_of_sets(some).sets, 0U);
+  some.coefficients = {straight(6e8, 1e8), power_law(8e8, 0.25), straight(8e8, {})};
+  EXPECT_EQ(spread_of_sets(some).sets, 2U);
+  EXPECT_NEAR(spread_of_sets(some).std_ratio, 1e8 / 7e8, 1e-12) << "half the distance of two";
+  some.coefficients.push_back(straight(1e9, 2e8));
+  some.coefficients.push_back(straight(8e8, 3e8));
+  const SetSpread spread = spread_of_sets(some);
+  EXPECT_EQ(spread.sets, 4U);
+  EXPECT_EQ(spread.tangential_n_per_m2, (FromTo{6e8, 1e9}));
+  EXPECT_NEAR(spread.std_ratio, std::sqrt(8e16 / 3.0) / 8e8, 1e-12);
+  some.coefficients = {straight(6e8, 1e8)};
+  EXPECT_EQ(spread_of_sets(some).std_ratio, 0.0);
+}
+
+TEST(Material, MeanChipOverTheArc) {
+  EXPECT_NEAR(mean_chip_thickness_m({.entry_rad = 0.0, .exit_rad = pi}, 1e-4), 2e-4 / pi, 1e-18);
+  EXPECT_NEAR(mean_chip_thickness_m({.entry_rad = 0.25 * pi, .exit_rad = 0.5 * pi}, 1e-4),
+              1e-4 * std::cos(0.25 * pi) / (0.25 * pi), 1e-18);
 }
 
 }  // namespace material_test

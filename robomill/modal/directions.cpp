@@ -147,10 +147,15 @@ FrfSet with_equal_directions(const FrfSet& set) {
   return out;
 }
 
-std::optional<std::string> in_words(const MissingDirections& said) {
-  if (said.equal) return "One direction was measured; the other is taken equal to it, without cross terms.";
+std::optional<Assumption> assumed_of(const MissingDirections& said) {
+  if (said.equal) {
+    return Assumption{.what = "The direction that was not measured",
+                      .taken = "equal to the measured one, without cross terms",
+                      .key = "equal_directions"};
+  }
   if (said.rigid.empty()) return std::nullopt;
-  return list_of(said.rigid) + " was not measured and is taken as rigid.";
+  return Assumption{
+      .what = "Direction " + list_of(said.rigid) + ", not measured", .taken = "rigid", .key = "rigid_directions"};
 }
 
 }  // namespace robomill::modal

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/frf.hpp"
@@ -36,7 +37,7 @@ ROBOMILL_API void require_said(const std::vector<Axis>& unknown, const MissingDi
 /// The same of one FRF, xx or yy. @throws InvalidInput if the set holds another, or several
 [[nodiscard]] ROBOMILL_API FrfSet with_equal_directions(const FrfSet& set);
 
-/// A sentence on what was taken for measured, or nothing where nothing was.
-[[nodiscard]] ROBOMILL_API std::optional<std::string> in_words(const MissingDirections& said);
+/// What stands in place of a measurement, with the option's name as key; nothing where nothing does.
+[[nodiscard]] ROBOMILL_API std::optional<Assumption> assumed_of(const MissingDirections& said);
 
 }  // namespace robomill::modal

@@ -91,5 +91,12 @@ TEST(MissingDirections, HaveToBeSaid) {
   EXPECT_NE(said.find("equal_directions = true"), std::string::npos) << said;
 }
 
+TEST(MissingDirections, AreListedWhereTheyAreAssumed) {
+  EXPECT_FALSE(assumed_of({}));
+  EXPECT_EQ(assumed_of({.rigid = {Axis::y}})->what, "Direction y, not measured");
+  EXPECT_EQ(assumed_of({.rigid = {Axis::x, Axis::y}})->what, "Direction x and y, not measured");
+  EXPECT_EQ(assumed_of({.equal = true})->key, "equal_directions");
+}
+
 }  // namespace directions_test
 }  // namespace robomill::modal

@@ -316,4 +316,11 @@ ModalModel without_added_decay(const ModalModel& model, double decay_per_s) {
   return freed;
 }
 
+std::array<double, 2> FrfResult::band_hz() const {
+  double highest_hz = 0.0;
+  for (const FrfGrade& grade : grades) highest_hz = std::max(highest_hz, grade.excited_high_hz);
+  if (!(highest_hz > lowest_trustworthy_frequency_hz)) highest_hz = std::numeric_limits<double>::infinity();
+  return {lowest_trustworthy_frequency_hz, highest_hz};
+}
+
 }  // namespace robomill::modal

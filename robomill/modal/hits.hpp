@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -121,6 +122,9 @@ struct FrfResult {
   bool added_decay_removed = false;  ///< whether `set` is free of it (else correct the modes: without_added_decay)
   std::vector<FrfGrade> grades;      ///< one for each FRF of the set, in its order
   std::vector<std::string> notes;    ///< what a reader of the result must know: windows, mass, resolution
+  /// Where modes can be fitted without more being said: from lowest_trustworthy_frequency_hz to the highest frequency
+  /// that some hit excites, infinity where none lies above it [Hz].
+  [[nodiscard]] ROBOMILL_API std::array<double, 2> band_hz() const;
 };
 
 /// Receptances from hammer hits: accepted hits of each excitation are averaged (`estimator`), integrated to

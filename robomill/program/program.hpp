@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 
 /// Work frame W: the program's own, fixed in the part; docs/frames.md.
@@ -74,7 +75,8 @@ struct ROBOMILL_API Program {
   Pose start;                 ///< where the first block begins
   std::vector<Block> blocks;  ///< no block without motion but dwells
   std::vector<Skipped> skipped = {};
-  std::vector<std::string> notes = {};  ///< sentences for the user: what was corrected or taken for granted
+  std::vector<std::string> notes = {};  ///< sentences for the user: what was corrected
+  std::vector<Assumption> assumed = {};
   /// Where block i begins.
   [[nodiscard]] const Pose& begin_of(std::size_t block) const { return block == 0 ? start : blocks[block - 1].end; }
 };

@@ -32,6 +32,7 @@ program::Program read_text(std::string_view text, const program::ProgramReading&
   if (reader.start()) out.start = *reader.start();
   out.skipped = std::move(remarks.skipped());
   out.notes = remarks.notes();
+  out.assumed = remarks.assumed();
   return out;
 }
 

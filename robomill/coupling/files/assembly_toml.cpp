@@ -183,7 +183,7 @@ void number_one_point(modal::FrfFile& measured) {
   for (modal::Frf& frf : measured.set.frfs) {
     for (modal::Dof* dof : {&frf.name.response, &frf.name.excitation}) dof->point = std::max(dof->point, 1);
   }
-  std::erase_if(measured.notes, [](const std::string& note) { return note.ends_with(modal::taken_as_tip); });
+  std::erase_if(measured.assumed, [](const Assumption& one) { return one.taken == modal::taken_as_tip; });
 }
 
 void read_measured(io::TomlFile& file, AssemblyFile& out) {
@@ -208,6 +208,7 @@ void read_measured(io::TomlFile& file, AssemblyFile& out) {
   }
   if (points && position_m.size() == 1 && !artefact.empty()) number_one_point(measured);
   out.notes.insert(out.notes.end(), measured.notes.begin(), measured.notes.end());
+  add_assumed(out.assumed, measured.assumed);
   Holder& holder = out.assembly.holder;
   if (!points) {
     require_rotations(measured.set, out.receptances);
@@ -222,10 +223,7 @@ void read_measured(io::TomlFile& file, AssemblyFile& out) {
 }
 
 void read_holder(io::TomlFile& file, AssemblyFile& out) {
-  if (!file.has("holder")) {
-    out.notes.emplace_back("No [holder]: the tool stands on a rigid wall");
-    return;
-  }
+  if (!file.has("holder")) return;
   const bool measured = file.path("holder.receptances", out.receptances);
   if (measured && file.has("holder.segments")) {
     throw file.reject("holder.receptances", "must not stand beside segments", "Measured or built of beams, not both");
@@ -242,6 +240,50 @@ void read_holder(io::TomlFile& file, AssemblyFile& out) {
   }
   out.assembly.holder.segments = read_segments(file, "holder.segments");
   if (out.assembly.holder.segments.empty()) out.notes.emplace_back("No segments: the tool stands on a rigid wall");
+}
+
+/// A number of segments that some of a table leave to its default.
+/// @param counts  whether it counts for a segment
+template <class Counts>
+void add_default(const io::TomlFile& file, const char* table, const std::vector<Segment>& segments, const char* key,
+                 const std::string& what, const std::string& taken, Counts counts, AssemblyFile& out) {
+  std::size_t without = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (counts(segments[i]) && !file.has(fmt::format("{}[{}].{}", table, i, key))) ++without;
+  }
+  if (without == 0) return;
+  out.assumed.push_back({.what = fmt::format("{}, {} of {} segments of [[{}]]", what, without, segments.size(), table),
+                         .taken = taken,
+                         .key = fmt::format("{}.{}", table, key),
+                         .file = out.path.filename().string()});
+}
+
+/// What the file leaves to the usual case.
+void add_defaults(const io::TomlFile& file, const AssemblyReading& reading, AssemblyFile& out) {
+  const auto add = [&](const char* what, const char* taken, const char* key) {
+    out.assumed.push_back({.what = what, .taken = taken, .key = key, .file = out.path.filename().string()});
+  };
+  const std::optional<Joint>& joint = out.assembly.joint;
+  const bool sought = reading.joint_sought || !reading.joint.empty();
+  const bool damped =
+      file.has("joint.translational_damping_n_s_per_m") || file.has("joint.rotational_damping_n_m_s_per_rad");
+  if (!joint && !sought) add("Joint between tool and holder", "rigid", "joint");
+  if (joint && !sought && !damped) add("Damping of the joint", "none", "joint.translational_damping_n_s_per_m");
+  if (!file.has("holder")) add("Holder", "none, the tool stands on a rigid wall", "holder");
+  const auto segments = [&](const char* table, const std::vector<Segment>& of) {
+    add_default(
+        file, table, of, "loss_factor", "Loss factor", "0, the material does not damp",
+        [](const Segment&) { return true; }, out);
+    add_default(
+        file, table, of, "poissons_ratio", "Poisson's ratio", "0.3",
+        [](const Segment& segment) { return segment.beam == Beam::timoshenko; }, out);
+    add_default(
+        file, table, of, "flute_diameter_ratio", "Diameter that flutes count with", "0.8 of the cutter's",
+        [](const Segment& segment) { return segment.flutes > 0; }, out);
+  };
+  segments("tool", out.assembly.tool);
+  if (joint) segments("joint.shank", joint->shank);
+  segments("holder.segments", out.assembly.holder.segments);
 }
 
 /// Where the file gives no lines of its own, the measured holder's within the range.
@@ -266,9 +308,9 @@ void choose_lines(const io::TomlFile& file, const Eigen::VectorXd& own, Assembly
 
 }  // namespace
 
-AssemblyFile read_assembly(const std::filesystem::path& path, const AssemblyReading& reading) {
-  io::TomlFile file(path);
-  AssemblyFile out{.path = path};
+AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& reading) {
+  io::TomlFile file(source);
+  AssemblyFile out{.path = source.path};
   read_range(file, out);
   const Eigen::VectorXd lines = read_step(file, out);
   file.require("tool", "Write [[tool]] above each segment, from the tip to the joint");
@@ -283,9 +325,10 @@ AssemblyFile read_assembly(const std::filesystem::path& path, const AssemblyRead
   read_joint(file, reading, found, out.assembly.joint);
   read_holder(file, out);
   read_search(file, out.search);
+  add_defaults(file, reading, out);
   file.done();
   if (!reading.joint_sought) choose_lines(file, lines, out);
-  about(file, out.receptances.empty() ? path : out.receptances, [&] { out.assembly.validate(); });
+  about(file, out.receptances.empty() ? source.path : out.receptances, [&] { out.assembly.validate(); });
   return out;
 }
 

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/coupling/assembly.hpp"
 #include "robomill/coupling/holder.hpp"
 #include "robomill/coupling/joint_fit.hpp"
+#include "robomill/io/toml_source.hpp"
 
 // Method: robomill/coupling/README.md, "Files"
 
@@ -28,6 +30,7 @@ struct AssemblyFile {
   std::filesystem::path receptances = {};   ///< holder.receptances, resolved; empty where absent
   std::optional<HolderResult> holder = {};  ///< where rotations were completed or an artefact taken off
   std::vector<std::string> notes = {};      ///< sentences for the user
+  std::vector<Assumption> assumed = {};
   /// Where the joint is that of AssemblyReading::joint: that it is, and what of it is not to be relied on.
   std::vector<std::string> joint_notes = {}, joint_warnings = {};
 };
@@ -46,7 +49,7 @@ struct AssemblyReading {
 /// coupling::remove_artefact where holder.artefact says on what.
 /// @throws InvalidInput with file, line, key and value, or with the file of receptances and the FRFs that it lacks; as
 ///     read_joint_json; or if joint.json is to stand in place of a joint of several points
-[[nodiscard]] ROBOMILL_API AssemblyFile read_assembly(const std::filesystem::path& path,
+[[nodiscard]] ROBOMILL_API AssemblyFile read_assembly(const io::TomlSource& source,
                                                       const AssemblyReading& reading = {});
 
 /// The lines of a set within [low_hz, high_hz] and above 0 Hz.

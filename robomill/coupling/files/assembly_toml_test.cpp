@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <complex>
 #include <string>
 #include <utility>
@@ -181,9 +182,36 @@ TEST(AssemblyToml, WithoutAHolderTheToolStandsOnAWall) {
     EXPECT_FALSE(file.assembly.joint);
     EXPECT_TRUE(file.assembly.holder.segments.empty());
     EXPECT_TRUE(file.assembly.holder.receptances.frfs.empty());
-    ASSERT_EQ(file.notes.size(), 1U);
-    EXPECT_NE(file.notes[0].find("rigid wall"), std::string::npos);
+    const bool said = *holder != '\0';
+    EXPECT_EQ(file.notes.size(), said ? 1U : 0U);
+    EXPECT_EQ(std::ranges::any_of(file.assumed, [](const Assumption& one) { return one.key == "holder"; }), !said);
   }
+}
+
+// What the file leaves open is listed with its key, of segments by how many of a table leave it.
+TEST(AssemblyToml, ListsWhatItAssumes) {
+  const test::Folder folder;
+  const std::string lines = "[frequency]\nrange_hz = [1, 2]\nstep_hz = 1\n";
+  const std::string segment = "length_mm = 20\ndiameter_mm = 12\nyoungs_modulus_gpa = 200\ndensity_kg_per_m3 = 7800\n";
+  const auto text_of = [&](const std::string& text) {
+    return assumed_text(read_assembly(folder.file("assembly.toml", lines + text)).assumed);
+  };
+  EXPECT_EQ(
+      text_of("[[tool]]\n" + segment + "flutes = 2\nloss_factor = 0.01\n[[tool]]\n" + segment),
+      "Assumed, because not given:\n"
+      "  Joint between tool and holder: rigid (joint of assembly.toml)\n"
+      "  Holder: none, the tool stands on a rigid wall (holder of assembly.toml)\n"
+      "  Loss factor, 1 of 2 segments of [[tool]]: 0, the material does not damp (tool.loss_factor of assembly.toml)\n"
+      "  Poisson's ratio, 2 of 2 segments of [[tool]]: 0.3 (tool.poissons_ratio of assembly.toml)\n"
+      "  Diameter that flutes count with, 1 of 2 segments of [[tool]]: 0.8 of the cutter's "
+      "(tool.flute_diameter_ratio of assembly.toml)\n");
+  const std::string said = segment + "loss_factor = 0.01\npoissons_ratio = 0.3\n";
+  EXPECT_EQ(text_of("[[tool]]\n" + said +
+                    "[joint]\ntranslational_stiffness_n_per_m = 1e8\nrotational_stiffness_n_m_per_rad = 1e6\n"
+                    "[[holder.segments]]\n" +
+                    said),
+            "Assumed, because not given:\n"
+            "  Damping of the joint: none (joint.translational_damping_n_s_per_m of assembly.toml)\n");
 }
 
 TEST(AssemblyToml, RejectsInTheFilesWords) {
@@ -429,7 +457,7 @@ TEST(AssemblyToml, TakesAnArtefactOffFromOnePoint) {
         "assembly.toml", bar + "[holder]\nreceptances = \"rod.mat\"\npoints_mm = [0]\nregularisation = 0\n"
                                "[[holder.artefact]]\nlength_mm = 60\ndiameter_mm = 12\nyoungs_modulus_gpa = 200\n"
                                "density_kg_per_m3 = 7800\nloss_factor = 0.02\n"));
-    for (const std::string& note : file.notes) EXPECT_EQ(note.find("taken as the tip"), std::string::npos) << note;
+    for (const Assumption& one : file.assumed) EXPECT_NE(one.taken, modal::taken_as_tip);
     for (const char* name : {"xx", "ry:my"}) {
       const Eigen::VectorXcd& expected = holder.find(modal::parse_frf_name(name))->receptance;
       const modal::Frf* found = file.assembly.holder.receptances.find(modal::parse_frf_name(name));

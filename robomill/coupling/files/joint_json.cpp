@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "robomill/coupling/files/segment_fields.hpp"
+#include "robomill/io/csv.hpp"
 #include "robomill/io/json.hpp"
 
 namespace robomill::coupling {
@@ -74,6 +75,16 @@ std::string joint_json(const JointFitResult& result) {
   json["suspect_hz"] = suspect;
   json["notes"] = notes;
   return io::dump(json);
+}
+
+std::string joint_csv(const JointFitResult& result) {
+  std::string out = "parameter,value,std,identifiable\n";
+  for (std::size_t i = 0; i < joint_unknowns; ++i) {
+    const JointKnowledge& knowledge = result.knowledge[i];
+    io::add_csv_row(out, {joint_fields[i].key, io::csv_number(result.joint.*joint_fields[i].value),
+                          io::csv_number(knowledge.deviation), knowledge.identifiable ? "true" : "false"});
+  }
+  return out;
 }
 
 JointFile read_joint_json(const std::filesystem::path& path) {

@@ -14,6 +14,9 @@ namespace robomill::coupling {
 /// deviation that is infinite is null.
 [[nodiscard]] ROBOMILL_API std::string joint_json(const JointFitResult& result);
 
+/// A row for each of the four: value, standard deviation (empty where it is infinite), whether it is identifiable.
+[[nodiscard]] ROBOMILL_API std::string joint_csv(const JointFitResult& result);
+
 /// What joint.json says of a joint.
 struct JointFile {
   Joint joint = {};                        ///< the four values; one point, no cross stiffness

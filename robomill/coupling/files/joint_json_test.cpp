@@ -56,6 +56,13 @@ TEST(JointJson, HoldsWhatWasFound) {
   EXPECT_EQ(json["notes"][1], "a note");
 }
 
+TEST(JointCsv, HasARowAParameter) {
+  EXPECT_EQ(joint_csv(found()),
+            "parameter,value,std,identifiable\ntranslational_stiffness_n_per_m,20000000,10000,true\n"
+            "translational_damping_n_s_per_m,40,0,false\nrotational_stiffness_n_m_per_rad,50000,0,false\n"
+            "rotational_damping_n_m_s_per_rad,0.5,,false\n");
+}
+
 // The keys are those of assembly.toml: what was found can be pasted there.
 TEST(JointJson, ItsKeysAreThoseOfTheAssembly) {
   const test::Folder folder;

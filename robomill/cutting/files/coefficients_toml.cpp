@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/cutting/material.hpp"
+#include "robomill/cutting/files/materials_toml.hpp"
 #include "robomill/io/toml_file.hpp"
 
 namespace robomill::cutting {
@@ -51,20 +55,162 @@ double read_helix(io::TomlFile& file) {
   return helix_rad;
 }
 
-MillingCoefficients read_material(io::TomlFile& file, const std::string& name) {
+const Material& find_material(const io::TomlFile& file, const std::string& key, const std::string& name) {
+  try {
+    return material(name);
+  } catch (const InvalidInput& error) {
+    throw file.reject(key, error.parts().rule, error.parts().hint);
+  }
+}
+
+MillingCoefficients from_orthogonal_tests(io::TomlFile& file, const Material& known) {
   double rake_rad = 0.0, chip_thickness_m = 0.0;
-  file.require("coefficients.rake_deg", "Of the cutter's edges");
   file.require("coefficients.chip_thickness_mm", "The mean of the cut; in a slot 0.64 of the feed per tooth");
   file.number("coefficients.rake_deg", "rake_rad", units::deg, rake_rad);
   file.number("coefficients.chip_thickness_mm", "chip_thickness_m", units::mm, chip_thickness_m);
+  if (!known.orthogonal) {
+    throw file.reject("coefficients.rake_deg",
+                      fmt::format("is for orthogonal tests, and of {} none are known", known.name),
+                      "Leave it out: the material's published coefficients are taken then");
+  }
   const double helix_rad = read_helix(file);
   try {
-    return milling_coefficients(material(name), rake_rad, helix_rad, chip_thickness_m);
+    return milling_coefficients(*known.orthogonal, rake_rad, helix_rad, chip_thickness_m);
   } catch (const InvalidInput& error) {
     const InvalidInput reported = file.located(error);
     if (!reported.parts().where.empty()) throw reported;
-    throw file.reject("coefficients.material", error.parts().rule, error.parts().hint);
+    throw file.reject("coefficients.rake_deg", error.parts().rule, error.parts().hint);
   }
+}
+
+/// One of the material's sets: coefficients.set, counted from 1, else the best for the cutter.
+std::size_t chosen_set(io::TomlFile& file, const std::string& key, const Material& known, CutterKind kind) {
+  const std::optional<std::size_t> best = best_set(known, kind);
+  if (!best) {
+    throw file.reject(key, "is a material of which no force coefficients are known here",
+                      "Only speeds and feeds; give its coefficients as numbers");
+  }
+  int set = 0;
+  if (!file.integer("coefficients.set", "set", set)) return *best;
+  const std::size_t sets = known.coefficients.size();
+  if (set < 1 || static_cast<std::size_t>(set) > sets) {
+    throw file.reject("coefficients.set", fmt::format("must lie between 1 and {}, the sets of {}", sets, known.name));
+  }
+  return static_cast<std::size_t>(set) - 1;
+}
+
+/// At which chip thickness a power law is taken as a straight line.
+double chip_of(io::TomlFile& file, const PublishedCoefficients& set, const CutAtHand& cut) {
+  double chip_thickness_m = cut.mean_chip_thickness_m;
+  const char* const key = "coefficients.chip_thickness_mm";
+  if (!set.is_power()) {
+    if (file.has(key)) {
+      throw file.reject(key, "has no part in coefficients of a straight line over the chip",
+                        "Beside coefficients.rake_deg it takes those of orthogonal tests");
+    }
+    return chip_thickness_m;
+  }
+  const bool given = file.number(key, "chip_thickness_m", units::mm, chip_thickness_m);
+  if (given && !(chip_thickness_m > 0.0)) throw file.reject(key, "must be > 0");
+  if (!(chip_thickness_m > 0.0)) {
+    file.require(key,
+                 "The force is a power of the chip: give its mean here, or cut.feed_per_tooth_mm where depth and "
+                 "direction tell it");
+  }
+  return chip_thickness_m;
+}
+
+/// Kr over Kt for a set that has no radial coefficient.
+std::optional<double> radial_ratio_of(io::TomlFile& file, const std::string& key, const Material& known,
+                                      const PublishedCoefficients& set) {
+  double ratio = 0.0;
+  const bool given = file.number("coefficients.radial_ratio", "radial_ratio", 1.0, ratio);
+  if (set.has_radial()) {
+    if (given)
+      throw file.reject("coefficients.radial_ratio", "has no part: the set has a radial coefficient of its own");
+    return std::nullopt;
+  }
+  if (!given) {
+    throw file.reject(
+        key, fmt::format("has no radial coefficient: [{}] states the tangential one alone", set.source),
+        fmt::format("Write [coefficients] with material = \"{}\" and radial_ratio, Kr over Kt: 0.16 to 0.6 "
+                    "where the sources here state both",
+                    known.name));
+  }
+  if (!(ratio >= 0.0 && ratio <= 2.0)) throw file.reject("coefficients.radial_ratio", "must lie between 0 and 2");
+  return ratio;
+}
+
+std::vector<double> times(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+std::string in_n_per_mm2(double value_n_per_m2) {
+  return fmt::format("{:.4g}", value_n_per_m2 / units::n_per_mm2);
+}
+
+/// Which set was taken, and how far tests and sets lie apart.
+std::vector<std::string> notes_of(const Material& known, std::size_t index, const SetSpread& spread) {
+  const PublishedCoefficients& set = known.coefficients[index];
+  std::vector<std::string> notes = {fmt::format("The coefficients are those of {}, set {} of {}: {} [{}].", known.name,
+                                                index + 1, known.coefficients.size(), set.cutter, set.source)};
+  if (set.tangential_range_n_per_m2) {
+    notes.push_back(fmt::format("Over its tests the tangential one reaches from {} to {} N/mm^2.",
+                                in_n_per_mm2((*set.tangential_range_n_per_m2)[0]),
+                                in_n_per_mm2((*set.tangential_range_n_per_m2)[1])));
+  }
+  if (spread.sets > 1) {
+    notes.push_back(fmt::format(
+        "The {} sets of {} reach from {} to {} N/mm^2 tangentially: measure yours where it counts.", spread.sets,
+        known.name, in_n_per_mm2(spread.tangential_n_per_m2[0]), in_n_per_mm2(spread.tangential_n_per_m2[1])));
+  }
+  return notes;
+}
+
+CoefficientTable from_published(io::TomlFile& file, const std::string& key, const Material& known,
+                                const CutAtHand& cut) {
+  const std::size_t index = chosen_set(file, key, known, cut.kind);
+  const PublishedCoefficients& set = known.coefficients[index];
+  CoefficientTable out;
+  MillingCoefficients& k = out.coefficients;
+  const std::optional<double> ratio = radial_ratio_of(file, key, known, set);
+  k = set.at(chip_of(file, set, cut));
+  if (ratio) {
+    k.radial_n_per_m2 = times(k.tangential_n_per_m2, *ratio);
+    k.radial_edge_n_per_m = times(k.tangential_edge_n_per_m, *ratio);
+  }
+  const SetSpread spread = spread_of_sets(known);
+  if (!set.is_power()) {
+    const bool tests = set.tangential_std_n_per_m2 > 0.0;
+    out.std_ratio = tests ? set.tangential_std_n_per_m2 / set.line.tangential_n_per_m2.front() : spread.std_ratio;
+    out.std_of = tests ? "the tests of its source" : "the sets of its material";
+  }
+  out.notes = notes_of(known, index, spread);
+  if (set.kind && *set.kind != cut.kind) out.notes.emplace_back("Its tests had another kind of cutter than tool.kind.");
+  out.published = set;
+  return out;
+}
+
+CoefficientTable from_material(io::TomlFile& file, const std::string& key, const std::string& name,
+                               const CutAtHand& cut) {
+  const Material& known = find_material(file, key, name);
+  CoefficientTable out;
+  if (file.has("coefficients.rake_deg")) {
+    out.coefficients = from_orthogonal_tests(file, known);
+    out.notes.push_back(fmt::format("The coefficients are those of {} by orthogonal tests [{}].", known.name,
+                                    known.orthogonal->source));
+  } else {
+    out = from_published(file, key, known, cut);
+  }
+  out.material = known.name;
+  out.conditions = known.conditions;
+  return out;
+}
+
+std::string words_of(const FromTo& range, double factor) {
+  return range[0] == range[1] ? fmt::format("{:.3g}", range[0] / factor)
+                              : fmt::format("{:.3g} to {:.3g}", range[0] / factor, range[1] / factor);
 }
 
 /// A material's coefficients with those of the edge that the table gives in place of its own.
@@ -76,27 +222,29 @@ MillingCoefficients with_own_edge(MillingCoefficients material, const MillingCoe
   return material;
 }
 
-}  // namespace
-
-MillingCoefficients read_coefficient_table(io::TomlFile& file) {
-  MillingCoefficients out;
+/// The table [coefficients].
+CoefficientTable read_unscaled(io::TomlFile& file, const CutAtHand& cut) {
+  CoefficientTable out;
+  MillingCoefficients& k = out.coefficients;
   std::filesystem::path other;
-  std::string material;
+  std::string name;
   const char* cutting = nullptr;  // a coefficient that the table itself gives
   const char* edge = nullptr;
   for (const Field& field : fields) {
-    if (!file.numbers(std::string("coefficients.") + field.key, field.member, field.factor, out.*field.values))
-      continue;
+    if (!file.numbers(std::string("coefficients.") + field.key, field.member, field.factor, k.*field.values)) continue;
     (field.edge ? edge : cutting) = field.key;
   }
-  const bool measured = read_edge_measure(file, out);
-  if (file.text("coefficients.material", material)) {
+  const bool measured = read_edge_measure(file, k);
+  if (file.text("coefficients.material", name)) {
     if (cutting != nullptr) {
       throw file.reject("coefficients.material", fmt::format("must not stand beside {}", cutting),
                         "Edge coefficients may; they replace the material's");
     }
     if (file.has("coefficients.file")) throw file.reject("coefficients.material", "must not stand beside a file");
-    return with_own_edge(read_material(file, material), out);
+    const MillingCoefficients own = std::move(k);
+    out = from_material(file, "coefficients.material", name, cut);
+    k = with_own_edge(out.coefficients, own);
+    return out;
   }
   if (!file.path("coefficients.file", other)) {
     file.require("coefficients.tangential_n_per_mm2",
@@ -106,13 +254,104 @@ MillingCoefficients read_coefficient_table(io::TomlFile& file) {
   if (cutting != nullptr || edge != nullptr || measured) {
     throw file.reject("coefficients.file", "must not stand beside coefficients of its own");
   }
-  return read_coefficients(other);
+  k = read_coefficients(other);
+  return out;
 }
 
-MillingCoefficients read_coefficients(const std::filesystem::path& path) {
-  io::TomlFile file(path);
+/// Harder or softer than the material or the file says.
+void take_scale(io::TomlFile& file, CoefficientTable& out) {
+  constexpr double most = 10.0;
+  const char* const key = "coefficients.scale";
+  double scale = 1.0;
+  if (!file.number(key, "", 1.0, scale)) return;
+  if (!file.has("coefficients.material") && !file.has("coefficients.file")) {
+    throw file.reject(key, "must stand beside a material or a file", "Numbers of one's own are given as they are");
+  }
+  if (!(scale > 0.0 && scale <= most)) throw file.reject(key, fmt::format("must be > 0 and at most {}", most));
+  for (const Field& field : fields) {
+    for (double& value : out.coefficients.*field.values) value *= scale;
+  }
+  if (scale != 1.0) out.notes.push_back(fmt::format("All coefficients are taken times {:.4g}.", scale));
+}
+
+}  // namespace
+
+bool names_a_material(const io::TomlFile& file) {
+  // Of tables no value is shown.
+  return file.has("coefficients") && !file.reject("coefficients", "").parts().value.empty();
+}
+
+std::vector<std::string> CoefficientTable::outside(const CutAtHand& cut) const {
+  std::vector<std::string> out;
+  if (!published) return out;
+  const auto look = [&](const char* what, const char* unit, double factor, const std::optional<FromTo>& tested,
+                        const FromTo& asked) {
+    constexpr double rounding = 1e-3;
+    if (!tested || !(asked[1] > 0.0)) return;
+    if (asked[0] >= (1.0 - rounding) * (*tested)[0] && asked[1] <= (1.0 + rounding) * (*tested)[1]) return;
+    out.push_back(
+        fmt::format("{} of {} {} lies outside the tests of [{}], {} {}: the coefficients are taken to hold there "
+                    "too.",
+                    what, words_of(asked, factor), unit, published->source, words_of(*tested, factor), unit));
+  };
+  look("A cutting speed", "m/min", 1.0 / units::minute, published->tested_speed_m_per_s, cut.cutting_speed_m_per_s);
+  look("A feed per tooth", "mm", units::mm, published->tested_feed_per_tooth_m,
+       {cut.feed_per_tooth_m, cut.feed_per_tooth_m});
+  look("A mean chip thickness", "mm", units::mm, published->tested_chip_m,
+       {cut.mean_chip_thickness_m, cut.mean_chip_thickness_m});
+  return out;
+}
+
+std::vector<std::string> CoefficientTable::unlike_recommended(const CutAtHand& cut) const {
+  constexpr double m_per_min = 1.0 / units::minute;
+  constexpr double far_off = 2.0;  // a source states one feed for roughing, of which a finish takes less
+  std::vector<std::string> out;
+  std::string speeds, feeds;
+  double least_m = HUGE_VAL, most_m = 0.0;
+  bool fast_or_slow = cut.cutting_speed_m_per_s[1] > 0.0;
+  const auto add = [](std::string& list, const std::string& what, const std::string& source) {
+    list += fmt::format("{}{} [{}]", list.empty() ? "" : ", ", what, source);
+  };
+  for (const CuttingConditions& entry : conditions) {
+    if (entry.cutting_speed_m_per_s) {
+      const FromTo& range = *entry.cutting_speed_m_per_s;
+      add(speeds, words_of(range, m_per_min), entry.source);
+      fast_or_slow =
+          fast_or_slow && (cut.cutting_speed_m_per_s[1] < range[0] || cut.cutting_speed_m_per_s[0] > range[1]);
+    }
+    if (const std::optional<double> feed_m = entry.feed_at(cut.diameter_m)) {
+      add(feeds, words_of({*feed_m, *feed_m}, units::mm), entry.source);
+      least_m = std::min(least_m, *feed_m);
+      most_m = std::max(most_m, *feed_m);
+    }
+  }
+  if (!speeds.empty() && fast_or_slow) {
+    out.push_back(fmt::format("A cutting speed of {} m/min is none that is recommended for {}: {} m/min.",
+                              words_of(cut.cutting_speed_m_per_s, m_per_min), material, speeds));
+  }
+  const double feed_m = cut.feed_per_tooth_m;
+  if (!feeds.empty() && feed_m > 0.0 && cut.diameter_m > 0.0 &&
+      (feed_m < least_m / far_off || feed_m > most_m * far_off)) {
+    out.push_back(fmt::format("A feed per tooth of {:.3g} mm is {} of what is recommended for {} at {:.3g} mm: {} mm.",
+                              feed_m / units::mm, feed_m < least_m ? "less than half" : "more than twice", material,
+                              cut.diameter_m / units::mm, feeds));
+  }
+  return out;
+}
+
+CoefficientTable read_coefficient_table(io::TomlFile& file, const CutAtHand& cut) {
+  if (std::string name; names_a_material(file) && file.text("coefficients", name)) {
+    return from_material(file, "coefficients", name, cut);
+  }
+  CoefficientTable out = read_unscaled(file, cut);
+  take_scale(file, out);
+  return out;
+}
+
+MillingCoefficients read_coefficients(const io::TomlSource& source) {
+  io::TomlFile file(source);
   if (file.has("coefficients.file")) throw file.reject("coefficients.file", "must not name a further file");
-  MillingCoefficients out = read_coefficient_table(file);
+  MillingCoefficients out = read_coefficient_table(file).coefficients;
   for (const char* reported : {"identification", "source"}) file.skip(reported);
   file.done();
   return out;

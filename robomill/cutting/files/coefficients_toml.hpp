@@ -1,9 +1,12 @@
 #pragma once
-#include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "robomill/base/export.hpp"
 #include "robomill/cutting/force.hpp"
+#include "robomill/cutting/material.hpp"
+#include "robomill/io/toml_source.hpp"
 
 // Method: robomill/cutting/README.md, "Files"
 
@@ -13,15 +16,46 @@ class TomlFile;
 
 namespace robomill::cutting {
 
-/// The table [coefficients] of a TOML file: each a number or a polynomial in κ [rad], highest power first; or
-/// coefficients.file, a file with such a table; or coefficients.material with rake_deg, chip_thickness_mm and the
-/// helix, which is coefficients.helix_deg or the tool's. edge_per says what edge forces are per: "width" or
-/// "edge-length".
+/// The cut that coefficients are read for; 0: not known.
+struct CutAtHand {
+  CutterKind kind = CutterKind::flat_end;
+  double mean_chip_thickness_m = 0.0;
+  double feed_per_tooth_m = 0.0;
+  FromTo cutting_speed_m_per_s = {0.0, 0.0};
+  double diameter_m = 0.0;
+};
+
+/// What [coefficients] says, and where it names a material what that brings along.
+struct ROBOMILL_API CoefficientTable {
+  MillingCoefficients coefficients = {};
+  std::optional<PublishedCoefficients> published = {};  ///< the set that was taken
+  /// How far all of them together may be off, as a share: that of the set's tests, else that between the material's
+  /// sets; 0: unknown.
+  double std_ratio = 0.0;
+  const char* std_of = "";                         ///< "the tests of its source", "the sets of its material"
+  std::string material = {};                       ///< whose conditions these are
+  std::vector<CuttingConditions> conditions = {};  ///< what is recommended of it
+  std::vector<std::string> notes = {};  ///< sentences for the user: which set of which source, and its spread
+  /// A sentence for each of speed, feed and chip that is known and leaves the range of the set's tests.
+  [[nodiscard]] std::vector<std::string> outside(const CutAtHand& cut) const;
+  /// A sentence where no speed of the milling cut lies within a recommended range, and where its feed per tooth is
+  /// below half or above twice of what is recommended for the cutter's diameter.
+  [[nodiscard]] std::vector<std::string> unlike_recommended(const CutAtHand& cut) const;
+};
+
+/// `coefficients` of a TOML file, which is the name of a material or a table. The table holds each coefficient, a
+/// number or a polynomial in κ [rad], highest power first; or `file`, a file with such a table; or `material`. Beside a
+/// material stand `set`, one of its published sets by its number, and `radial_ratio` where that set has no radial
+/// coefficient; or rake_deg, chip_thickness_mm and the helix, which is helix_deg or the tool's, for its orthogonal
+/// tests. edge_per says what edge forces are per: "width" or "edge-length".
 /// @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API MillingCoefficients read_coefficient_table(io::TomlFile& file);
+[[nodiscard]] ROBOMILL_API CoefficientTable read_coefficient_table(io::TomlFile& file, const CutAtHand& cut = {});
+
+/// Whether `coefficients` is a name, and not a table.
+[[nodiscard]] ROBOMILL_API bool names_a_material(const io::TomlFile& file);
 
 /// coefficients.toml. @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API MillingCoefficients read_coefficients(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API MillingCoefficients read_coefficients(const io::TomlSource& source);
 
 /// The table as text, for coefficients.toml.
 [[nodiscard]] ROBOMILL_API std::string coefficients_toml(const MillingCoefficients& coefficients);

@@ -10,6 +10,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
+#include "robomill/io/csv.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/table.hpp"
@@ -105,7 +106,21 @@ io::Json of_each(const Fit& fit, double CoefficientPair::*value) {
   return out;
 }
 
-io::Json identification(const SlotFit& fit, const SlotsFile& file) {
+io::Json vector_json(const Eigen::Vector3d& v) {
+  return {io::number(v.x()), io::number(v.y()), io::number(v.z())};
+}
+
+/// A slot as the file has it, and how far its force is from the fit's.
+io::Json residual_json(const SlotForce& slot, std::size_t line, const Eigen::Vector3d& residual_n) {
+  return {{"line", line},
+          {"feed_per_tooth_mm", io::number(slot.feed_per_tooth_m / units::mm)},
+          {"axial_depth_mm", io::number(slot.axial_depth_m / units::mm)},
+          {"spindle_speed_rpm", io::positive(slot.spindle_speed_rad_per_s, units::rpm)},
+          {"force_n", vector_json(slot.mean_force_n)},
+          {"residual_n", vector_json(residual_n)}};
+}
+
+io::Json identification(const SlotFit& fit, const SlotsFile& file, const std::vector<Assumption>& assumed) {
   io::Json json;
   const bool identified = fit.status == SlotFit::Status::identified;
   json["status"] = identified ? "identified" : "edge unknown";
@@ -117,11 +132,10 @@ io::Json identification(const SlotFit& fit, const SlotsFile& file) {
   json["depends_on_speed"] = fit.depends_on_speed;
   json["speed_probability"] = io::number(fit.speed_probability);
   json["notes"] = fit.notes;
+  json["assumed"] = io::assumed_json(assumed);
   io::Json residuals = io::Json::array();
   for (std::size_t i = 0; i < file.lines.size(); ++i) {
-    const Eigen::Vector3d r = fit.residual_n.col(static_cast<Eigen::Index>(i));
-    residuals.push_back(
-        {{"line", file.lines[i]}, {"residual_n", {io::number(r.x()), io::number(r.y()), io::number(r.z())}}});
+    residuals.push_back(residual_json(file.slots[i], file.lines[i], fit.residual_n.col(static_cast<Eigen::Index>(i))));
   }
   json["residuals"] = residuals;
   io::Json speeds = io::Json::array();
@@ -163,20 +177,38 @@ SlotsFile read_slots(const std::filesystem::path& path) {
   return out;
 }
 
-std::string slot_fit_toml(const SlotFit& fit, const SlotsFile& file) {
+std::string slot_fit_toml(const SlotFit& fit, const SlotsFile& file, const std::vector<Assumption>& assumed) {
   std::string text = coefficients_toml(fit.coefficients()) + "\n[identification]\n";
-  const io::Json reported = identification(fit, file);
+  const io::Json reported = identification(fit, file, assumed);
   for (const auto& [key, value] : reported.items()) {
     if (!value.is_null()) text += fmt::format("{} = {}\n", key, inline_toml(value));
   }
   return text;
 }
 
-std::string slot_fit_json(const SlotFit& fit, const SlotsFile& file) {
+std::string slot_fit_json(const SlotFit& fit, const SlotsFile& file, const std::vector<Assumption>& assumed) {
   io::Json json;
   json["coefficients"] = coefficients_of(fit);
-  json["identification"] = identification(fit, file);
+  json["identification"] = identification(fit, file, assumed);
   return io::dump(json);
+}
+
+std::string slot_fit_csv(const SlotFit& fit) {
+  std::string out = "spindle_speed_rpm,coefficient,value,std,r_squared,noise_n\n";
+  const auto add = [&out](const std::string& speed, const auto& of) {
+    for (const auto& [name, pair] : pairs_of(of)) {
+      const std::string quality = io::csv_number(pair->r_squared) + "," + io::csv_number(pair->noise_n);
+      io::add_csv_row(
+          out, {speed, fmt::format("{}_n_per_mm2", name), io::csv_number(pair->cutting_n_per_m2, units::n_per_mm2),
+                io::csv_number(pair->cutting_deviation_n_per_m2, units::n_per_mm2), quality});
+      io::add_csv_row(
+          out, {speed, fmt::format("{}_edge_n_per_mm", name), io::csv_number(pair->edge_n_per_m, units::n_per_mm),
+                io::csv_number(pair->edge_deviation_n_per_m, units::n_per_mm), quality});
+    }
+  };
+  add("", fit);
+  for (const SpeedGroup& group : fit.by_speed) add(io::csv_number(group.spindle_speed_rad_per_s, units::rpm), group);
+  return out;
 }
 
 }  // namespace robomill::cutting

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/cutting/coefficients.hpp"
 
@@ -23,8 +24,13 @@ struct SlotsFile {
 
 /// coefficients.toml: the coefficients, and a table [identification] that says how well they are known. What is
 /// infinite or not known is left out.
-[[nodiscard]] ROBOMILL_API std::string slot_fit_toml(const SlotFit& fit, const SlotsFile& file);
+/// @param assumed  what the caller took because nobody said it
+[[nodiscard]] ROBOMILL_API std::string slot_fit_toml(const SlotFit& fit, const SlotsFile& file,
+                                                     const std::vector<Assumption>& assumed = {});
 /// The same as JSON, with null for it.
-[[nodiscard]] ROBOMILL_API std::string slot_fit_json(const SlotFit& fit, const SlotsFile& file);
+[[nodiscard]] ROBOMILL_API std::string slot_fit_json(const SlotFit& fit, const SlotsFile& file,
+                                                     const std::vector<Assumption>& assumed = {});
+/// A row a coefficient; those of each speed below, where there are several.
+[[nodiscard]] ROBOMILL_API std::string slot_fit_csv(const SlotFit& fit);
 
 }  // namespace robomill::cutting

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -98,7 +99,30 @@ TEST(SlotsCsv, WritesCoefficientsThatAreReadAgain) {
               fit.radial.edge_deviation_n_per_m * 1e-3, 1e-9);
   EXPECT_EQ(json["identification"]["by_speed"].size(), 2U);
   EXPECT_EQ(json["identification"]["residuals"][11]["line"], 13);
+  EXPECT_EQ(json["identification"]["residuals"][11]["axial_depth_mm"], 5.0);
+  EXPECT_NEAR(json["identification"]["residuals"][11]["force_n"][0].get<double>(), file.slots[11].mean_force_n.x(),
+              1e-9);
   EXPECT_TRUE(json["identification"]["depends_on_speed"].get<bool>());
+}
+
+TEST(SlotsCsv, WritesATableOfCoefficients) {
+  const SlotsFile file = two_speeds(0.0);
+  const std::string table = slot_fit_csv(identify_from_slots(file.slots, {.teeth = 4}));
+  EXPECT_TRUE(table.starts_with("spindle_speed_rpm,coefficient,value,std,r_squared,noise_n\n,tangential_n_per_mm2,"));
+  EXPECT_NE(table.find("\n,radial_edge_n_per_mm,55.7,"), std::string::npos) << table;
+  EXPECT_NE(table.find("\n954.929659,tangential_n_per_mm2,1825,"), std::string::npos) << table;
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 19);
+}
+
+TEST(SlotsCsv, SaysWhatWasAssumed) {
+  const test::Folder folder;
+  const SlotsFile file = two_speeds(3.0);
+  const SlotFit fit = identify_from_slots(file.slots, {.teeth = 4});
+  const std::vector<Assumption> assumed = {{.what = "Teeth", .taken = "4", .key = "--teeth"}};
+  const std::string toml = slot_fit_toml(fit, file, assumed);
+  EXPECT_NE(toml.find("assumed = [{ what = \"Teeth\", taken = \"4\", key = \"--teeth\" }]"), std::string::npos) << toml;
+  static_cast<void>(read_coefficients(folder.file("coefficients.toml", toml)));
+  EXPECT_EQ(nlohmann::json::parse(slot_fit_json(fit, file, assumed))["identification"]["assumed"][0]["taken"], "4");
 }
 
 TEST(SlotsCsv, WhatIsNotDeterminedIsLeftOut) {

@@ -5,8 +5,8 @@
 
 namespace robomill::modal {
 
-FitOptions read_fit_options(const std::filesystem::path& path) {
-  io::TomlFile file(path);
+FitOptions read_fit_options(const io::TomlSource& source) {
+  io::TomlFile file(source);
   FitOptions o;
   file.choice("fit.method", fit_method_names, o.method);
   file.choice<Weighting>("fit.weighting",

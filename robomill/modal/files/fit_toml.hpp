@@ -1,7 +1,7 @@
 #pragma once
-#include <filesystem>
 
 #include "robomill/base/export.hpp"
+#include "robomill/io/toml_source.hpp"
 #include "robomill/modal/fit.hpp"
 
 // Method: robomill/modal/README.md, "Files"
@@ -10,6 +10,6 @@ namespace robomill::modal {
 
 /// Reads how modes are to be fitted: the table [fit], whose keys are the members of FitOptions; band_hz = [low, high].
 /// @throws InvalidInput with file, line and key
-[[nodiscard]] ROBOMILL_API FitOptions read_fit_options(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API FitOptions read_fit_options(const io::TomlSource& source);
 
 }  // namespace robomill::modal

@@ -43,7 +43,7 @@ std::string polar(double unit, double angle) {
 }
 constexpr double deg = std::numbers::pi / 180.0;
 
-class FrfCheck : public testing::Test {
+class FrfCheck : public ::testing::Test {
  protected:
   FrfFile read(const std::string& text) { return read_frfs({folder_.file("a.csv", text)}); }
   std::string rejection(const std::string& text) {
@@ -63,13 +63,18 @@ class FrfCheck : public testing::Test {
 
 TEST_F(FrfCheck, SaysWhatIsTakenForGranted) {
   const FrfFile bare = read(cartesian(receptance));
-  ASSERT_EQ(bare.notes.size(), 1U);
-  EXPECT_NE(bare.notes[0].find("a.csv: has no header; taken as Hz, real and imaginary part in m/N"), std::string::npos);
+  EXPECT_TRUE(bare.notes.empty());
+  ASSERT_EQ(bare.assumed.size(), 2U);
+  EXPECT_EQ(bare.assumed[0].taken, "Hz, real and imaginary part in m/N");
+  EXPECT_EQ(bare.assumed[0].file, "a.csv");
+  EXPECT_EQ(bare.assumed[1].taken, "xx");
+  EXPECT_EQ(bare.assumed[1].key, "--as");
   const FrfFile unitless = read("frequency_hz,xx_re,xx_im\n" + cartesian(receptance));
-  ASSERT_EQ(unitless.notes.size(), 1U);
-  EXPECT_NE(unitless.notes[0].find("does not say a unit; taken as m/N"), std::string::npos);
-  EXPECT_EQ(read("Frequency (Hz),Real,Imag\n" + cartesian(receptance)).notes.size(), 1U);
-  EXPECT_TRUE(read("frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n" + cartesian(receptance)).notes.empty());
+  ASSERT_EQ(unitless.assumed.size(), 1U);
+  EXPECT_EQ(unitless.assumed[0].what, "Unit of FRFs");
+  EXPECT_EQ(unitless.assumed[0].taken, "m/N");
+  EXPECT_EQ(read("Frequency (Hz),Real,Imag\n" + cartesian(receptance)).assumed.size(), 2U);
+  EXPECT_TRUE(read("frequency_hz,xx_re_m_per_n,xx_im_m_per_n\n" + cartesian(receptance)).assumed.empty());
 }
 
 TEST_F(FrfCheck, ReadsMagnitudeAndPhase) {

@@ -1,5 +1,7 @@
 #include "robomill/modal/files/frf_files.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -94,13 +96,14 @@ void require_same_axis(const FrfParts& first, const FrfParts& other) {
 }
 
 /// `as` names all FRFs, or those without a name; one alone is xx.
-void give_names(std::vector<FrfPart*>& frfs, const std::vector<std::string>& as) {
+void give_names(std::vector<FrfPart*>& frfs, const std::vector<std::string>& as, std::vector<Assumption>& assumed) {
   std::vector<FrfPart*> unnamed;
   std::copy_if(frfs.begin(), frfs.end(), std::back_inserter(unnamed), [](const FrfPart* f) { return !f->name; });
   if (as.empty()) {
-    if (unnamed.size() == 1 && frfs.size() == 1)
+    if (unnamed.size() == 1 && frfs.size() == 1) {
       unnamed.front()->name = parse_frf_name("xx");
-    else if (!unnamed.empty()) {
+      assumed.push_back({.what = "Directions of the FRF without a name", .taken = "xx", .key = "--as"});
+    } else if (!unnamed.empty()) {
       throw InvalidInput("--as",
                          "must name the FRFs that the files leave unnamed (" + std::to_string(unnamed.size()) + ")",
                          "For example --as xx,yy");
@@ -117,11 +120,13 @@ void give_names(std::vector<FrfPart*>& frfs, const std::vector<std::string>& as)
 }
 
 /// FRFs that all stand at one numbered point are those of the tip.
-void number_less(std::vector<FrfPart*>& frfs, std::vector<std::string>& notes) {
+void number_less(std::vector<FrfPart*>& frfs, std::vector<Assumption>& assumed) {
   std::set<int> points;
   for (const FrfPart* frf : frfs) points.insert({frf->name->response.point, frf->name->excitation.point});
   if (points.size() != 1 || *points.begin() == 0) return;
-  notes.push_back("All FRFs stand at point " + std::to_string(*points.begin()) + std::string(taken_as_tip));
+  assumed.push_back({.what = fmt::format("Point {}, where all FRFs stand", *points.begin()),
+                     .taken = std::string(taken_as_tip),
+                     .key = "names of the FRFs"});
   for (FrfPart* frf : frfs) frf->name->response.point = frf->name->excitation.point = 0;
 }
 
@@ -175,10 +180,11 @@ FrfFile read_frfs(const std::vector<std::filesystem::path>& paths, const std::ve
     require_same_axis(all.front(), parts);
     for (FrfPart& frf : parts.frfs) frfs.push_back(&frf);
     out.notes.insert(out.notes.end(), parts.notes.begin(), parts.notes.end());
+    add_assumed(out.assumed, parts.assumed);
     out.added_decay_per_s = std::max(out.added_decay_per_s, parts.added_decay_per_s);
   }
-  give_names(frfs, as);
-  number_less(frfs, out.notes);
+  give_names(frfs, as, out.assumed);
+  number_less(frfs, out.assumed);
   out.set.frequency_hz = all.front().frequency_hz;
   for (FrfPart* frf : frfs) {
     out.set.frfs.push_back({.name = *frf->name,

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/modal/frf.hpp"
 #include "robomill/modal/hits.hpp"
@@ -12,14 +13,15 @@
 
 namespace robomill::modal {
 
-/// How the note ends on a file whose FRFs all stand at one numbered point: they have lost the number.
-constexpr std::string_view taken_as_tip = ": taken as the tip";
+/// What FrfFile::assumed says of FRFs that all stand at one numbered point: they have lost the number.
+constexpr std::string_view taken_as_tip = "the tool's tip";
 
 /// FRFs as files hold them, and what a reader of the result must know: data sets skipped, lines left out, units
 /// converted.
 struct FrfFile {
   FrfSet set;
   std::vector<std::string> notes = {};
+  std::vector<Assumption> assumed = {};  ///< of units, names and points that no file states
   /// 1/τ of an exponential window whose damping is still in the FRFs (.json only); 0 where there is none.
   double added_decay_per_s = 0.0;
 };
@@ -59,6 +61,7 @@ struct FrfDoubts {
   std::vector<double> suspect_hz = {};     ///< lines where the measured holder would create energy
   std::vector<double> unreliable_hz = {};  ///< lines where an error of the holder's measurement became a large one
   std::vector<std::string> notes = {};     ///< sentences for the user
+  std::vector<Assumption> assumed = {};
 };
 /// tip.json with these.
 [[nodiscard]] ROBOMILL_API std::string frf_json(const FrfSet& set, const FrfDoubts& doubts);

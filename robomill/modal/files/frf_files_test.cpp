@@ -163,9 +163,10 @@ TEST(FrfFiles, UniversalFilesKeepTheirUnits) {
   };
   const auto first = [&](const io::UffFunction& function) { return read({function}).set.frfs[0].receptance(0); };
   io::UffFunction function = one_function();
-  // Nothing said: m/N, and a note.
+  // Nothing said: m/N is assumed.
   EXPECT_EQ(first(function), std::complex<double>(1.0));
-  EXPECT_EQ(read({function}).notes.size(), 1U);
+  ASSERT_EQ(read({function}).assumed.size(), 1U);
+  EXPECT_EQ(read({function}).assumed[0].taken, "receptances in m/N");
   function.numerator = {.type = 8, .unit = "mm"};
   function.denominator = {.type = 13, .unit = "kN"};
   EXPECT_DOUBLE_EQ(first(function).real(), 1e-6);
@@ -314,7 +315,9 @@ TEST(FrfFiles, OneNumberedPointIsTheTip) {
   write_frfs(folder.at("p.json"), set);
   const FrfFile file = read_frfs({folder.at("p.json")});
   EXPECT_EQ(to_string(file.set.frfs[0].name), "xx");
-  EXPECT_NE(file.notes.back().find("point 4"), std::string::npos);
+  ASSERT_EQ(file.assumed.size(), 1U);
+  EXPECT_EQ(file.assumed[0].what, "Point 4, where all FRFs stand");
+  EXPECT_EQ(file.assumed[0].taken, taken_as_tip);
   set.frfs.push_back({.name = parse_frf_name("4ry:4x"), .receptance = Eigen::Vector2cd(1.0, 2.0)});
   write_frfs(folder.at("p.uff"), set);
   EXPECT_NE(read_frfs({folder.at("p.uff")}).set.find(parse_frf_name("ry:x")), nullptr);

@@ -114,6 +114,7 @@ std::string frf_json(const FrfSet& set, const FrfDoubts& doubts) {
   json["suspect_hz"] = doubts.suspect_hz;
   json["unreliable_hz"] = doubts.unreliable_hz;
   json["notes"] = doubts.notes;
+  json["assumed"] = io::assumed_json(doubts.assumed);
   return io::dump(json);
 }
 

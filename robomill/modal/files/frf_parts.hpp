@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/modal/frf.hpp"
 
 namespace robomill::modal {
@@ -25,6 +26,7 @@ struct FrfParts {
   Eigen::VectorXd frequency_hz = {};
   std::vector<FrfPart> frfs = {};
   std::vector<std::string> notes = {};
+  std::vector<Assumption> assumed = {};
   double added_decay_per_s = 0.0;
 };
 

@@ -312,8 +312,10 @@ FrfParts read_frf_table(const std::filesystem::path& path) {
                        "Columns are frequency_hz, xx_re_m_per_n, xx_im_m_per_n, yx_re_m_per_n, …");
   }
   if (std::any_of(out.frfs.begin(), out.frfs.end(), [](const FrfPart& frf) { return !frf.stated; })) {
-    out.notes.push_back(table.names.empty() ? where + ": has no header; taken as Hz, real and imaginary part in m/N"
-                                            : where + ": does not say a unit; taken as m/N");
+    out.assumed.push_back({.what = table.names.empty() ? "Columns of FRFs without a header" : "Unit of FRFs",
+                           .taken = table.names.empty() ? "Hz, real and imaginary part in m/N" : "m/N",
+                           .key = "names of its columns, as xx_re_um_per_n",
+                           .file = path.filename().string()});
   }
   return out;
 }

@@ -120,7 +120,10 @@ class UffFrfs {
                          "Dynamic stiffnesses and transmissibilities are not read");
     }
     if (response.quantity == io::Quantity::unknown) {
-      note(function, "does not say what it holds; taken as a receptance in m/N");
+      add_assumed(out_.assumed, {{.what = "Quantity of FRFs",
+                                  .taken = "receptances in m/N",
+                                  .key = "units of data set 58",
+                                  .file = out_.file.filename().string()}});
       part.stated = false;
     } else {
       part.derivatives = static_cast<int>(response.quantity);

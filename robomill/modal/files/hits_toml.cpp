@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/records.hpp"
 #include "robomill/io/toml_file.hpp"
@@ -22,20 +23,6 @@ struct Sensors {
   bool has_scale = false;
   double sample_rate_hz = 0.0;
 };
-
-constexpr double millivolts_per_volt = 1e3;
-
-const char* unit_of(ResponseKind kind) {
-  switch (kind) {
-    case ResponseKind::acceleration:
-      return "m_per_s2";
-    case ResponseKind::velocity:
-      return "m_per_s";
-    case ResponseKind::displacement:
-      break;
-  }
-  return "m";
-}
 
 void read_options(io::TomlFile& file, HitOptions& o) {
   file.choice<ResponseKind>("acquisition.response",
@@ -59,24 +46,59 @@ void read_options(io::TomlFile& file, HitOptions& o) {
   number("max_frequency_hz", "max_frequency_hz", o.max_frequency_hz);
   number("frequency_resolution_hz", "frequency_resolution_hz", o.frequency_resolution_hz);
   number("force_overload_n", "force_overload_n", o.force_overload_n);
-  number(fmt::format("response_overload_{}", unit_of(o.response)), "response_overload", o.response_overload);
+  number(fmt::format("response_overload_{}", response_unit(o.response)), "response_overload", o.response_overload);
   number("double_hit_limit", "double_hit_limit", o.double_hit_limit);
   number("force_window_s", "force_window_s", o.force_window_s);
   number("exponential_time_constant_s", "exponential_time_constant_s", o.exponential_time_constant_s);
 }
 
-/// mV per unit, where the records hold volts; a sensor mounted the other way round may be negative.
-void sensitivity(io::TomlFile& file, const std::string& key, double& factor) {
+/// Of a sensor in mV per unit; one that is mounted the other way round may be negative.
+/// @param record_mv  what a 1 of the record is
+bool sensitivity(io::TomlFile& file, const std::string& key, double record_mv, double unit, double& factor) {
   double mv_per_unit = 0.0;
-  if (!file.number(key, key, 1.0, mv_per_unit)) return;
+  if (!file.number(key, key, 1.0, mv_per_unit)) return false;
   if (mv_per_unit == 0.0) throw file.reject(key, "must not be 0", "It stands on the sensor's calibration sheet");
-  factor = millivolts_per_volt / mv_per_unit;
+  factor = record_mv / mv_per_unit * unit;
+  return true;
+}
+
+constexpr const char* force_key = "acquisition.force_mv_per_n";
+constexpr const char* response_in_g_key = "acquisition.response_mv_per_g";
+
+std::string response_key(ResponseKind kind) {
+  return fmt::format("acquisition.response_mv_per_{}", response_unit(kind));
+}
+
+/// Without sensitivities the records are in N and the SI unit of the response.
+void read_sensitivities(io::TomlFile& file, ResponseKind kind, Sensors& sensors) {
+  const char* const voltage = "acquisition.voltage_unit";
+  const char* const response_voltage = "acquisition.response_voltage_unit";
+  double force_mv = 1e3;
+  file.choice<double>(voltage, {{"V", 1e3}, {"mV", 1.0}}, force_mv);
+  double response_mv = force_mv;
+  file.choice<double>(response_voltage, {{"V", 1e3}, {"mV", 1.0}}, response_mv);
+  const std::string in_si = response_key(kind);
+  const bool force = sensitivity(file, force_key, force_mv, 1.0, sensors.force_factor);
+  bool response = sensitivity(file, in_si, response_mv, 1.0, sensors.response_factor);
+  if (kind == ResponseKind::acceleration) {
+    if (file.has(response_in_g_key) && response) {
+      throw file.reject(response_in_g_key, fmt::format("must not stand beside {}", in_si),
+                        "They say the same in two units");
+    }
+    response =
+        sensitivity(file, response_in_g_key, response_mv, units::standard_gravity, sensors.response_factor) || response;
+  }
+  if (file.has(voltage) && !force && !response) {
+    throw file.reject(voltage, "goes with the sensors' sensitivities: force_mv_per_n, response_mv_per_g");
+  }
+  if (file.has(response_voltage) && !response) {
+    throw file.reject(response_voltage, "goes with the response's sensitivity: response_mv_per_g");
+  }
 }
 
 Sensors read_sensors(io::TomlFile& file, ResponseKind kind) {
   Sensors sensors;
-  sensitivity(file, "acquisition.force_mv_per_n", sensors.force_factor);
-  sensitivity(file, fmt::format("acquisition.response_mv_per_{}", unit_of(kind)), sensors.response_factor);
+  read_sensitivities(file, kind, sensors);
   sensors.has_scale = file.number("acquisition.scale", "scale", 1.0, sensors.scale);
   if (file.number("acquisition.sample_rate_hz", "sample_rate_hz", 1.0, sensors.sample_rate_hz) &&
       !(sensors.sample_rate_hz > 0.0)) {
@@ -125,9 +147,29 @@ double rate_of(const io::TomlFile& file, const std::string& key, const io::Recor
   return record.sample_rate_hz > 0.0 ? record.sample_rate_hz : given_hz;
 }
 
+HitRow read_row(io::TomlFile& file, const std::string& row) {
+  for (const char* key : {"force", "force_direction", "responses"}) file.require(row + key);
+  HitRow out;
+  std::string text;
+  file.text(row + "force_direction", text);
+  const Direction push = direction(file, row + "force_direction", text);
+  out.excitation = push.dof;
+  out.against_axis = push.against_axis;
+  out.force = column(file, row + "force");
+  const std::vector<std::string> responses = file.keys(row + "responses");
+  if (responses.empty()) throw file.reject(row + "responses", "must name a column for one direction at least");
+  for (const std::string& name : responses) {
+    const std::string key = row + "responses." + name;
+    const Direction sensed = direction(file, key, name);
+    out.responses.push_back({.dof = sensed.dof, .against_axis = sensed.against_axis, .column = column(file, key)});
+  }
+  return out;
+}
+
 Hit read_hit(io::TomlFile& file, std::size_t index, const Sensors& sensors, std::vector<std::string>& notes) {
   const std::string row = fmt::format("hits[{}].", index);
-  for (const char* key : {"file", "force", "force_direction", "responses"}) file.require(row + key);
+  file.require(row + "file");
+  const HitRow columns = read_row(file, row);
   std::filesystem::path path;
   file.path(row + "file", path);
   if (io::format_of(path) == io::Format::wav && !sensors.has_scale) {
@@ -141,35 +183,87 @@ Hit read_hit(io::TomlFile& file, std::size_t index, const Sensors& sensors, std:
 
   Hit hit;
   hit.file = path.string();
-  std::string text;
-  file.text(row + "force_direction", text);
-  const Direction push = direction(file, row + "force_direction", text);
-  hit.excitation = push.dof;
-  hit.against_axis = push.against_axis;
+  hit.excitation = columns.excitation;
+  hit.against_axis = columns.against_axis;
   hit.sample_rate_hz = rate_of(file, row + "file", record, sensors.sample_rate_hz);
-  hit.force_n = record.column(column(file, row + "force")) * sensors.force_factor;
-  const std::vector<std::string> responses = file.keys(row + "responses");
-  if (responses.empty()) throw file.reject(row + "responses", "must name a column for one direction at least");
-  for (const std::string& name : responses) {
-    const std::string key = row + "responses." + name;
-    const Direction sensed = direction(file, key, name);
-    hit.responses.push_back({.dof = sensed.dof,
-                             .samples = record.column(column(file, key)) * sensors.response_factor,
-                             .against_axis = sensed.against_axis});
+  hit.force_n = record.column(columns.force) * sensors.force_factor;
+  for (const HitRow::Response& response : columns.responses) {
+    hit.responses.push_back({.dof = response.dof,
+                             .samples = record.column(response.column) * sensors.response_factor,
+                             .against_axis = response.against_axis});
   }
   return hit;
 }
 
+/// What is taken where the file does not say it.
+std::vector<Assumption> assumed_of(const io::TomlFile& file, ResponseKind kind, const std::filesystem::path& path) {
+  const std::string response = response_key(kind), name = path.filename().string();
+  std::vector<Assumption> out;
+  if (!file.has("acquisition.response")) {
+    out.push_back({.what = "Responses", .taken = "accelerations", .key = "acquisition.response", .file = name});
+  }
+  if (!file.has(force_key)) {
+    out.push_back({.what = "Forces in records without a unit", .taken = "N", .key = force_key, .file = name});
+  }
+  if (!file.has(response) && !file.has(response_in_g_key)) {
+    out.push_back({.what = "Responses in records without a unit",
+                   .taken = kind == ResponseKind::acceleration ? "m/s²"
+                            : kind == ResponseKind::velocity   ? "m/s"
+                                                               : "m",
+                   .key = response,
+                   .file = name});
+  }
+  if (kind == ResponseKind::acceleration && !file.has("acquisition.accelerometer_mass_kg")) {
+    out.push_back({.what = "Accelerometer's mass",
+                   .taken = "0 kg, nothing is taken out of the FRFs",
+                   .key = "acquisition.accelerometer_mass_kg",
+                   .file = name});
+  }
+  return out;
+}
+
 }  // namespace
 
-HitsFile read_hits(const std::filesystem::path& path) {
-  io::TomlFile file(path);
+const char* response_unit(ResponseKind kind) {
+  switch (kind) {
+    case ResponseKind::acceleration:
+      return "m_per_s2";
+    case ResponseKind::velocity:
+      return "m_per_s";
+    case ResponseKind::displacement:
+      break;
+  }
+  return "m";
+}
+
+HitsFile read_hits(const io::TomlSource& source) {
+  io::TomlFile file(source);
   HitsFile out;
   read_options(file, out.options);
   const Sensors sensors = read_sensors(file, out.options.response);
   file.locate([&] { out.options.validate(); });
   if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] above each record");
   for (std::size_t i = 0; i < file.tables("hits"); ++i) out.hits.push_back(read_hit(file, i, sensors, out.notes));
+  file.done();
+  out.assumed = assumed_of(file, out.options.response, source.path);
+  return out;
+}
+
+HitRows read_hit_rows(const io::TomlSource& source) {
+  io::TomlFile file(source);
+  HitRows out;
+  read_options(file, out.options);
+  const Sensors sensors = read_sensors(file, out.options.response);
+  file.locate([&] { out.options.validate(); });
+  out.force_factor = sensors.force_factor;
+  out.response_factor = sensors.response_factor;
+  out.sample_rate_hz = sensors.sample_rate_hz;
+  if (file.tables("hits") == 0) file.require("hits", "Write [[hits]] with the columns and the direction");
+  for (std::size_t i = 0; i < file.tables("hits"); ++i) {
+    const std::string row = fmt::format("hits[{}].", i);
+    for (const char* key : {"file", "time"}) file.skip(row + key);
+    out.rows.push_back(read_row(file, row));
+  }
   file.done();
   return out;
 }

@@ -47,6 +47,58 @@ responses = { x = "ax", -y = 4 }
   EXPECT_EQ(file.options.accelerometer_mass_kg, 0.004);
 }
 
+// 100 mV/g are 100 / 9.80665 mV per m/s²: 1 V is 10 g.
+TEST(HitsToml, TakesSensitivitiesInGAndRecordsInMillivolts) {
+  const test::Folder folder;
+  static_cast<void>(folder.file("a.csv", record));
+  const std::string row =
+      "[[hits]]\nfile = \"a.csv\"\nforce = \"force_v\"\nforce_direction = \"x\"\nresponses = { x = \"ax\" }\n";
+  const auto read = [&](const std::string& keys) {
+    return read_hits(folder.file("hits.toml", "[acquisition]\n" + keys + row)).hits[0];
+  };
+  const Hit in_volts = read("force_mv_per_n = 2.5\nresponse_mv_per_g = 100\n");
+  EXPECT_NEAR(in_volts.responses[0].samples(1), 3.0 * 10.0 * 9.80665, 1e-10);
+  const Hit in_mv = read("voltage_unit = \"mV\"\nforce_mv_per_n = 2.5\nresponse_mv_per_g = 100\n");
+  EXPECT_NEAR(in_mv.responses[0].samples(1), 3.0 * 0.01 * 9.80665, 1e-13);
+  EXPECT_DOUBLE_EQ(in_mv.force_n(1), 0.5 / 2.5);
+  const auto say = [&](const std::string& keys) { return test::rejection([&] { static_cast<void>(read(keys)); }); };
+  EXPECT_NE(say("response_mv_per_g = 100\nresponse_mv_per_m_per_s2 = 10\n").find("must not stand beside"),
+            std::string::npos);
+  EXPECT_NE(say("response_mv_per_g = 0\n").find("hits.toml:2: acquisition.response_mv_per_g = 0"), std::string::npos);
+  EXPECT_NE(say("voltage_unit = \"mV\"\n").find("goes with the sensors' sensitivities"), std::string::npos);
+  EXPECT_NE(say("voltage_unit = \"kV\"\nforce_mv_per_n = 1\n").find("must be one of \"V\", \"mV\""), std::string::npos);
+  EXPECT_NE(say("response = \"velocity\"\nresponse_mv_per_g = 100\n").find("response_mv_per_g: is not known here"),
+            std::string::npos);
+}
+
+TEST(HitsToml, ListsWhatItAssumes) {
+  const test::Folder folder;
+  static_cast<void>(folder.file("a.csv", record));
+  const auto keys = [&](const std::string& acquisition) {
+    std::vector<std::string> out;
+    for (const Assumption& one :
+         read_hits(folder.file("hits.toml", acquisition + "[[hits]]\nfile = \"a.csv\"\nforce = \"force_v\"\n"
+                                                          "force_direction = \"x\"\nresponses = { x = \"ax\" }\n"))
+             .assumed) {
+      EXPECT_EQ(one.file, "hits.toml");
+      out.push_back(one.key);
+    }
+    return out;
+  };
+  EXPECT_EQ(keys(""),
+            (std::vector<std::string>{"acquisition.response", "acquisition.force_mv_per_n",
+                                      "acquisition.response_mv_per_m_per_s2", "acquisition.accelerometer_mass_kg"}));
+  EXPECT_EQ(keys("[acquisition]\nresponse = \"displacement\"\nforce_mv_per_n = 2\n"),
+            std::vector<std::string>{"acquisition.response_mv_per_m"});
+  EXPECT_TRUE(keys("[acquisition]\nresponse = \"acceleration\"\nforce_mv_per_n = 2\nresponse_mv_per_g = 100\n"
+                   "accelerometer_mass_kg = 0\n")
+                  .empty());
+  // 1 mV/N of a record in mV is 1, and given all the same.
+  EXPECT_TRUE(keys("[acquisition]\nresponse = \"acceleration\"\nvoltage_unit = \"mV\"\nforce_mv_per_n = 1\n"
+                   "response_mv_per_m_per_s2 = 1\naccelerometer_mass_kg = 0\n")
+                  .empty());
+}
+
 TEST(HitsToml, TakesTheRateFromTheFileWhereThereIsNoTime) {
   const test::Folder folder;
   static_cast<void>(folder.file("b.txt", "0 1\n2 3\n0 5\n"));

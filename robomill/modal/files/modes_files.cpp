@@ -7,6 +7,7 @@
 #include <set>
 
 #include "robomill/base/error.hpp"
+#include "robomill/io/csv.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/toml_file.hpp"
@@ -100,9 +101,11 @@ void require_usable(const io::JsonNode& root) {
               "Fit them better, or take them as they are with robomill modes --accept-fit");
 }
 
-ModalModel read_modes_json(const std::filesystem::path& path) {
-  const io::Json json = io::read_json(path);
-  const io::JsonNode root(json, path.string());
+/// Of JSON nothing is set.
+ModalModel read_modes_json(const io::TomlSource& source) {
+  const std::string name = source.path.string();
+  const io::Json json = source.text ? io::parse_json(*source.text, name) : io::read_json(source.path);
+  const io::JsonNode root(json, name);
   require_usable(root);
   const io::JsonNode list = root.at("modes");
   std::vector<NamedMode> named(list.size());
@@ -134,7 +137,7 @@ ModalModel read_modes_json(const std::filesystem::path& path) {
       }
     }
   }
-  validate(model, path.string());
+  validate(model, name);
   return model;
 }
 
@@ -154,8 +157,8 @@ std::vector<std::pair<Dof, std::complex<double>>> read_vector(io::TomlFile& file
   return out;
 }
 
-ModalModel read_modes_toml(const std::filesystem::path& path) {
-  io::TomlFile file(path);
+ModalModel read_modes_toml(const io::TomlSource& source) {
+  io::TomlFile file(source);
   if (file.tables("modes") == 0) file.require("modes", "Write [[modes]] above each");
   std::vector<NamedMode> named(file.tables("modes"));
   for (std::size_t k = 0; k < named.size(); ++k) {
@@ -176,16 +179,16 @@ ModalModel read_modes_toml(const std::filesystem::path& path) {
 
 }  // namespace
 
-ModalModel read_modes(const std::filesystem::path& path) {
-  switch (io::format_of(path)) {
+ModalModel read_modes(const io::TomlSource& source) {
+  switch (io::format_of(source.path)) {
     case io::Format::json:
-      return read_modes_json(path);
+      return read_modes_json(source);
     case io::Format::toml:
-      return read_modes_toml(path);
+      return read_modes_toml(source);
     default:
       break;
   }
-  throw InvalidInput(path.string(), "must end in .json or .toml to hold modes",
+  throw InvalidInput(source.path.string(), "must end in .json or .toml to hold modes",
                      "FRFs become modes with robomill modes FILE -o modes.json");
 }
 
@@ -246,6 +249,33 @@ std::string modes_json(const ModalModel& model) {
 
 std::string modes_json(const FitResult& fit) {
   return io::dump(modes_object(fit));
+}
+
+std::string modes_csv(const ModalModel& model) {
+  model.validate();
+  std::string out = "mode,frequency_hz,frequency_std_hz,damping_ratio,damping_ratio_std,residue_std_ratio";
+  const auto add_names = [&out](const char* side, const std::vector<Dof>& dofs, bool as_excitation) {
+    for (const Dof& dof : dofs) {
+      const std::string name = to_string(dof, as_excitation);
+      out += fmt::format(",{}_{}_re,{}_{}_im", side, name, side, name);
+    }
+  };
+  add_names("left", model.excitations, true);
+  add_names("right", model.responses, false);
+  out += '\n';
+  for (std::size_t k = 0; k < model.modes.size(); ++k) {
+    const Mode& mode = model.modes[k];
+    std::string vectors;
+    for (const Eigen::VectorXcd* vector : {&mode.left, &mode.right}) {
+      for (const std::complex<double>& entry : *vector) {
+        vectors += "," + io::csv_number(entry.real()) + "," + io::csv_number(entry.imag());
+      }
+    }
+    io::add_csv_row(out, {std::to_string(k + 1), io::csv_number(mode.frequency_hz),
+                          io::csv_number(mode.frequency_std_hz), io::csv_number(mode.damping_ratio),
+                          io::csv_number(mode.damping_ratio_std), io::csv_number(mode.residue_std_ratio) + vectors});
+  }
+  return out;
 }
 
 }  // namespace robomill::modal

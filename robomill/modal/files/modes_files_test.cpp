@@ -44,6 +44,19 @@ TEST(ModesFiles, JsonGivesTheModelBack) {
   EXPECT_EQ(read.residuals[0].stiffness, std::complex<double>(3e-9, 4e-9));
 }
 
+TEST(ModesFiles, CsvHasARowAMode) {
+  ModalModel model = data::robot_modes();
+  model.modes.resize(2);
+  model.modes[1].frequency_std_hz = 0.01;
+  const std::string table = modes_csv(model);
+  EXPECT_TRUE(
+      table.starts_with("mode,frequency_hz,frequency_std_hz,damping_ratio,damping_ratio_std,residue_std_ratio,"
+                        "left_x_re,left_x_im,left_y_re,left_y_im,right_x_re,right_x_im,right_y_re,right_y_im\n"
+                        "1,17.4,,0.0127,,,-5.2e-05,8.8e-05,"))
+      << table;
+  EXPECT_NE(table.find("\n2,19.57,0.01,0.0223,,,"), std::string::npos) << table;
+}
+
 TEST(ModesFiles, RejectsWithTheJsonPath) {
   const test::Folder folder;
   const auto say = [&](const std::string& text) {

@@ -201,7 +201,7 @@ TEST(GcodeMachine, WithoutTheToolCentrePointTurnedAxesAreRejected) {
     const std::string turned = fmt::format("{}\nG0 X0 Y0 Z0 A-30 C5\nG1 X1 F60\n{}\n", on, off);
     const Program program = read(turned + "M30\n");
     EXPECT_EQ(program.blocks.size(), 1U);
-    EXPECT_TRUE(program.notes.empty());
+    EXPECT_TRUE(program.assumed.empty());
     for (const Skipped& skipped : program.skipped) {
       EXPECT_TRUE(skipped.what == "H1" || skipped.what == "G49") << skipped.what << ": what is obeyed is not skipped";
     }
@@ -212,11 +212,10 @@ TEST(GcodeMachine, WithoutTheToolCentrePointTurnedAxesAreRejected) {
                   "line 4 moves");
   EXPECT_EQ(said_of("M129\nG0 X0 Y0 Z0\nG1 X1 F60\n"), "") << "nothing is turned";
   const Program program = read("G0 X0 Y0 Z0 A0 C0\nG1 X1 F60\nG1 X2 A-30\nG1 X3\n");
-  ASSERT_EQ(program.notes.size(), 1U);
-  EXPECT_EQ(
-      program.notes[0],
-      "Positions are taken as those of the tool's tip from line 3 on, where rotary axes are turned; no G43.4, M128 "
-      "or M428 says so.");
+  EXPECT_TRUE(program.notes.empty());
+  EXPECT_EQ(program.assumed, (std::vector<Assumption>{{.what = "Positions with rotary axes turned, from line 3 on",
+                                                       .taken = "those of the tool's tip",
+                                                       .key = "G43.4, M128 or M428"}}));
 }
 
 }  // namespace gcode_machine_test

@@ -161,6 +161,10 @@ std::vector<std::string> ProgramFile::notes() const {
   return state_->walk.remarks().notes();
 }
 
+std::vector<Assumption> ProgramFile::assumed() const {
+  return state_->walk.remarks().assumed();
+}
+
 std::unique_ptr<ProgramFile> open_program(const std::filesystem::path& path, const ProgramReading& reading) {
   return std::make_unique<ProgramFile>(path, reading);
 }
@@ -174,6 +178,7 @@ Program whole(Walk& walk) {
   while (walk.next(block)) out.blocks.push_back(block);
   out.skipped = std::move(walk.remarks().skipped());
   out.notes = walk.remarks().notes();
+  out.assumed = walk.remarks().assumed();
   return out;
 }
 

@@ -85,8 +85,10 @@ class ROBOMILL_API ProgramFile final : public Source {
   [[nodiscard]] const std::vector<Skipped>& skipped() const;
   /// … and how many they are.
   [[nodiscard]] std::size_t skipped_count() const;
-  /// What was corrected or taken for granted so far, in sentences.
+  /// What was corrected so far, in sentences.
   [[nodiscard]] std::vector<std::string> notes() const;
+  /// What was taken for granted so far.
+  [[nodiscard]] std::vector<Assumption> assumed() const;
 
  private:
   struct State;

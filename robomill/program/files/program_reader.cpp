@@ -70,13 +70,14 @@ std::vector<std::string> ProgramRemarks::notes() const {
         "in a trajectory.",
         operator_stops_.count, operator_stops_.count == 1 ? "" : "s", operator_stops_.first_line));
   }
-  if (no_center_point_.count > 0) {
-    out.push_back(
-        fmt::format("Positions are taken as those of the tool's tip from line {} on, where rotary axes are turned; no "
-                    "G43.4, M128 or M428 says so.",
-                    no_center_point_.first_line));
-  }
   return out;
+}
+
+std::vector<Assumption> ProgramRemarks::assumed() const {
+  if (no_center_point_.count == 0) return {};
+  return {{.what = fmt::format("Positions with rotary axes turned, from line {} on", no_center_point_.first_line),
+           .taken = "those of the tool's tip",
+           .key = "G43.4, M128 or M428"}};
 }
 
 std::string printable(std::string_view text, std::size_t most) {

@@ -30,6 +30,7 @@ class ProgramRemarks {
   [[nodiscard]] std::vector<Skipped>& skipped() { return skipped_; }
   [[nodiscard]] std::size_t skipped_count() const { return skipped_count_; }
   [[nodiscard]] std::vector<std::string> notes() const;
+  [[nodiscard]] std::vector<Assumption> assumed() const;
 
  private:
   struct Counted {

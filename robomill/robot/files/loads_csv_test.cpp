@@ -92,7 +92,7 @@ TEST(LoadsCsv, GivesTheStiffnessBackThroughFiles) {
   const Eigen::Vector3d point_m(0.1, 0.0, 0.2);
   const LoadsFile file = read_loads(folder.file("loads.csv", measured(arm, point_m, 12)), arm);
   const IdentifiedStiffness found = identify_joint_stiffness(arm, point_m, file);
-  const auto json = nlohmann::json::parse(stiffness_json(found));
+  const auto json = nlohmann::json::parse(stiffness_json(found, arm, file));
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(json["joint_stiffness_n_m_per_rad"][i].get<double>(), arm.joints[i].stiffness,
                 1e-8 * arm.joints[i].stiffness);
@@ -102,6 +102,9 @@ TEST(LoadsCsv, GivesTheStiffnessBackThroughFiles) {
   }
   EXPECT_EQ(json["convergence"]["status"], "converged");
   EXPECT_EQ(json["residual_mm"].size(), 12U);
+  EXPECT_EQ(json["displacement_mm"].size(), 12U);
+  EXPECT_EQ(json["line"][0], 2);
+  EXPECT_EQ(json["unit"][0], "N m/rad");
   EXPECT_LT(json["rms_mm"].get<double>(), 1e-9);
 }
 
@@ -111,11 +114,14 @@ TEST(LoadsCsv, AJointThatIsNotSeenKeepsItsStiffness) {
   const Eigen::Vector3d on_axis_6(0.0, 0.0, 0.2);
   const LoadsFile file = read_loads(folder.file("loads.csv", measured(arm, on_axis_6, 12)), arm);
   const IdentifiedStiffness found = identify_joint_stiffness(arm, on_axis_6, file);
-  const auto json = nlohmann::json::parse(stiffness_json(found));
+  const auto json = nlohmann::json::parse(stiffness_json(found, arm, file));
   EXPECT_TRUE(json["joint_stiffness_n_m_per_rad"][5].is_null());
   EXPECT_TRUE(json["std"][5].is_null());
   EXPECT_FALSE(json["identifiable"][5].get<bool>());
   EXPECT_FALSE(json["reason"][5].get<std::string>().empty());
+  const std::string table = stiffness_csv(found, arm);
+  EXPECT_TRUE(table.starts_with("joint,stiffness,std,unit,identifiable,reason\n1,")) << table;
+  EXPECT_NE(table.find("\n6,,,N m/rad,false,\""), std::string::npos) << table;
   EXPECT_NE(stiffness_toml(found, arm).find("467056]"), std::string::npos);
   EXPECT_NE(stiffness_toml(found, arm).find("# Joint 6, as before: "), std::string::npos);
   Arm bare = arm;

@@ -4,14 +4,23 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/csv.hpp"
 #include "robomill/io/json.hpp"
 
 namespace robomill::robot {
+namespace {
 
-std::string stiffness_json(const IdentifiedStiffness& result) {
+const char* unit_of(const Joint& joint) {
+  return joint.prismatic ? "N/m" : "N m/rad";
+}
+
+}  // namespace
+
+std::string stiffness_json(const IdentifiedStiffness& result, const Arm& arm, const LoadsFile& file) {
   io::Json stiffness = io::Json::array(), deviation = io::Json::array(), identifiable = io::Json::array(),
-           reason = io::Json::array();
+           reason = io::Json::array(), unit = io::Json::array();
   io::Json compliance = io::Json::array(), compliance_deviation = io::Json::array();
+  for (const Joint& joint : arm.joints) unit.push_back(unit_of(joint));
   for (const IdentifiedJoint& joint : result.joints) {
     stiffness.push_back(joint.identifiable ? io::number(joint.stiffness) : io::Json());
     deviation.push_back(io::number(joint.deviation));
@@ -20,19 +29,20 @@ std::string stiffness_json(const IdentifiedStiffness& result) {
     identifiable.push_back(joint.identifiable);
     reason.push_back(joint.reason.empty() ? io::Json() : io::Json(joint.reason));
   }
-  io::Json residual = io::Json::array();
-  for (Eigen::Index k = 0; k < result.residual_m.cols(); ++k) {
-    residual.push_back({io::number(result.residual_m(0, k) / units::mm),
-                        io::number(result.residual_m(1, k) / units::mm),
-                        io::number(result.residual_m(2, k) / units::mm)});
-  }
+  io::Json residual = io::Json::array(), displacement = io::Json::array();
+  for (Eigen::Index k = 0; k < result.residual_m.cols(); ++k)
+    residual.push_back(io::numbers_in(units::mm, result.residual_m.col(k)));
+  for (const Load& load : file.loads) displacement.push_back(io::numbers_in(units::mm, load.displacement_m));
   io::Json json;
   json["joint_stiffness_n_m_per_rad"] = stiffness;
+  json["unit"] = unit;
   json["std"] = deviation;
   json["identifiable"] = identifiable;
   json["reason"] = reason;
   json["joint_compliance_rad_per_n_m"] = compliance;
   json["compliance_std"] = compliance_deviation;
+  json["line"] = file.line;
+  json["displacement_mm"] = displacement;
   json["residual_mm"] = residual;
   json["rms_mm"] = io::number(result.rms_m / units::mm);
   json["r_squared"] = io::number(result.r_squared);
@@ -40,6 +50,18 @@ std::string stiffness_json(const IdentifiedStiffness& result) {
   const bool converged = result.status == IdentifiedStiffness::Status::converged;
   json["convergence"] = {{"status", converged ? "converged" : "not converged"}, {"iterations", result.iterations}};
   return io::dump(json);
+}
+
+std::string stiffness_csv(const IdentifiedStiffness& result, const Arm& arm) {
+  std::string out = "joint,stiffness,std,unit,identifiable,reason\n";
+  for (std::size_t i = 0; i < result.joints.size(); ++i) {
+    const IdentifiedJoint& joint = result.joints[i];
+    io::add_csv_row(out,
+                    {std::to_string(i + 1), joint.identifiable ? io::csv_number(joint.stiffness) : "",
+                     io::csv_number(joint.deviation), unit_of(arm.joints[i]), joint.identifiable ? "true" : "false",
+                     joint.reason.empty() ? "" : io::csv_text(joint.reason)});
+  }
+  return out;
 }
 
 std::string stiffness_toml(const IdentifiedStiffness& result, const Arm& arm) {

@@ -1,0 +1,45 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/io/records.hpp"
+#include "robomill/modal/hits.hpp"
+
+// Method: robomill/modal/README.md, "Files"
+
+namespace robomill::modal {
+
+/// What a column of a record seems to hold.
+struct ColumnGuess {
+  enum class Role { unknown, time, force, response };
+  std::string name = {};  ///< as hits.toml names it: its name, or its number from 1 where it has none of its own
+  std::string unit = {};  ///< as its name says it: "V", "m/s^2"; empty where it does not
+  Role role = Role::unknown;
+  std::string from = {};                           ///< what that is guessed from: "its name"; empty of unknown ones
+  ResponseKind kind = ResponseKind::acceleration;  ///< of a response
+  char axis = 0;                                   ///< 'x', 'y' or 'z' where the name says it
+  double si_per_unit = 1;  ///< s, N or the SI unit of the kind are so many of what the column holds
+  double volts = 0;        ///< a 1 of the column; 0: no voltage
+};
+
+/// What the record of a hammer hit seems to hold.
+struct HitGuess {
+  std::vector<ColumnGuess> columns = {};  ///< one a column of the record
+  std::string force_direction = "x";
+  std::string direction_from = {};  ///< what that is guessed from; empty: nothing says it
+
+  /// Places in `columns` of what has that role.
+  [[nodiscard]] ROBOMILL_API std::vector<std::size_t> with(ColumnGuess::Role role) const;
+  /// Whether there are a force and a response.
+  [[nodiscard]] ROBOMILL_API bool is_hit() const;
+};
+
+/// Guesses by the names of columns ("force_n", "Hammer (N)", "acc x [g]"), their units, the name of the file
+/// ("tap_y_2.csv") and, where names say nothing, by the signal: a time rises evenly, a hammer's force has the sharpest
+/// peak. A force is a hammer's where it is one short pulse, bounces aside; that of a cut is not. Of responses of
+/// several kinds or units, or of one direction twice, the first counts. Of records of anything else it finds no hit.
+[[nodiscard]] ROBOMILL_API HitGuess guess_hit(const io::Record& record);
+
+}  // namespace robomill::modal
