@@ -12,7 +12,7 @@
 
 namespace robomill::live {
 
-/// Something that befell the stream: "lost-blocks", "broker-lost", …
+/// A fault of the stream, or another news of it: "lost-blocks", "broker-lost", …
 struct Notice {
   std::string what;
   std::uint64_t count = 1;  ///< times since the last notice of the same

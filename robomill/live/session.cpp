@@ -69,8 +69,9 @@ void Session::run(const std::atomic<bool>& stop) {
     if (taken == HopQueue::Taken::hop) {
       if (silence_s_ > 0.0) check_silence(Clock::now());
       process(std::move(hop));
-    } else if (options_.live) {
-      check_silence(Clock::now());
+    } else {
+      if (outputs_.idle) outputs_.idle();
+      if (options_.live) check_silence(Clock::now());
     }
     metrics_.queued_hops = queue_.size();
     emit_notices();

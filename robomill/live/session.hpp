@@ -39,6 +39,7 @@ struct SessionOutputs {
   std::function<void(std::uint64_t frames)> skipped = {};
   /// So much more time went by without samples, by the clock.
   std::function<void(double seconds)> silent = {};
+  std::function<void()> idle = {};  ///< no hop came within the wait, 0.1 s at most
 };
 
 struct SessionOptions {

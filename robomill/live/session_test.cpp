@@ -230,6 +230,28 @@ TEST(Session, IsBlindWhereNoSamplesCome) {
   }
 }
 
+// Whether or not samples come by the clock, and long before the time-out.
+TEST(Session, SaysThatItIsIdle) {
+  for (const bool live : {false, true}) {
+    monitor::MonitorFile file = some_file();
+    file.timeout_s = 3600.0;
+    std::atomic<int> idle{0}, decisions{0};
+    std::atomic<bool> stop{false};
+    SessionOutputs outputs;
+    outputs.idle = [&] { ++idle; };
+    outputs.decision = [&](const monitor::Decision&, double, double) { ++decisions; };
+    Session session(file, {.live = live}, std::move(outputs));
+    std::jthread thread([&] { session.run(stop); });
+    ASSERT_TRUE(wait_for([&] { return idle >= 2; }));
+    Random random(1);
+    ASSERT_TRUE(session.queue().push(noise(random)));
+    ASSERT_TRUE(wait_for([&] { return decisions == 1; }));
+    const int before = idle;
+    EXPECT_TRUE(wait_for([&] { return idle > before; }));
+    session.queue().close();
+  }
+}
+
 // A file that is slow to read, or is kept waiting, has no clock.
 TEST(Session, AwaitsNoSamplesOfARecording) {
   Random random(1);

@@ -2,22 +2,7 @@
 
 #include <cstddef>
 
-// The assembler reads the files into read-only data; the compiler never sees their content.
-#define ROBOMILL_EMBED(symbol, file)        \
-  __asm__(                                  \
-      ".section .rodata\n"                  \
-      ".global " #symbol                    \
-      "_begin\n"                            \
-      ".hidden " #symbol "_begin\n" #symbol \
-      "_begin:\n"                           \
-      ".incbin \"" file                     \
-      "\"\n"                                \
-      ".global " #symbol                    \
-      "_end\n"                              \
-      ".hidden " #symbol "_end\n" #symbol   \
-      "_end:\n"                             \
-      ".byte 0\n"                           \
-      ".previous\n")
+#include "robomill/base/embed.hpp"
 
 extern "C" {
 ROBOMILL_EMBED(robomill_page_style, ROBOMILL_PAGE_STYLE);

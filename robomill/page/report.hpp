@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 
 // Method: robomill/page/README.md, "Method"
@@ -32,9 +33,21 @@ struct Report {
   std::string blocks = {};           ///< blocks.json: stability of every block of a program; empty: none
   std::string smooth = {};           ///< smooth.json; empty: none
   std::string motion = {};  ///< the same program's outline and motion, recorded for the page alone; empty: none
+  std::string cell = {};    ///< check.json of a robot cell; empty: none
 
-  std::string monitor = {};      ///< a monitored recording, live/files/recorded_run_json.hpp; empty: none
-  std::string calibration = {};  ///< calibration.json; empty: none
+  std::string monitor = {};              ///< a monitored recording, live/files/recorded_run_json.hpp; empty: none
+  std::string calibration = {};          ///< calibration.json; empty: none
+  std::string joint = {};                ///< joint.json, of FRFs in `frf` and `fitted`; empty: none
+  std::string tools = {};                ///< the table of a list of tools as JSON; empty: none
+  std::string sweep = {};                ///< lobes.json of a sweep; empty: none
+  std::string comparison = {};           ///< lobes.json of methods compared; empty: none
+  std::string explanation = {};          ///< explain.json; empty: none
+  std::string simulation = {};           ///< simulation.json; empty: none
+  std::string vibration = {};            ///< its columns, recorded for the page alone; empty: none
+  std::string coefficients = {};         ///< coefficients.json; empty: none
+  std::string stiffness = {};            ///< stiffness.json; empty: none
+  std::vector<Assumption> assumed = {};  ///< because nobody said it
+  std::vector<std::string> warnings = {}, notes = {};  ///< that no document holds
   std::vector<StageFile> files = {};
 };
 

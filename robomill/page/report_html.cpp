@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "robomill/page/embedded.hpp"
+#include "robomill/page/escape.hpp"
 #include "robomill/page/json.hpp"
 
 namespace robomill::page {
@@ -13,56 +14,6 @@ namespace {
 constexpr const char* policy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
     "base-uri 'none'; form-action 'none'";
-
-/// & < > " ' as entities: safe as text and inside a quoted attribute.
-std::string escape(std::string_view text) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
-/// JSON text that may stand inside a script element.
-std::string escape_json_for_script(std::string_view json) {
-  std::string out;
-  out.reserve(json.size());
-  for (const char c : json) {
-    switch (c) {
-      case '<':
-        out += "\\u003c";
-        break;
-      case '>':
-        out += "\\u003e";
-        break;
-      case '&':
-        out += "\\u0026";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 /// What stands where no script runs.
 std::string in_text(const std::string& title, const std::string& summary, const char* why) {

@@ -210,6 +210,13 @@ void thin_recordings(Json& json) {
   }
 }
 
+/// The lines of the spectrum of a simulated cut.
+void thin_vibration(Json& json) {
+  if (!json.is_object() || !json.contains("displacement_um")) return;
+  Json& spectrum = json["spectrum"];
+  if (spectrum.is_object() && spectrum.contains("frequency_hz")) thin_axis(spectrum, spectrum["frequency_hz"].size());
+}
+
 /// Times keep their digits: of an hour, six are not a hundredth of a second.
 bool is_time(std::string_view key) {
   return key.ends_with("_s") && !key.ends_with("_per_s");
@@ -234,6 +241,7 @@ Json document(const char* member, const std::string& text) {
     thin_frfs(json);
     thin_forces(json);
     thin_recordings(json);
+    thin_vibration(json);
     thin_path(json);
     return shown(std::move(json), false);
   } catch (const InvalidInput&) {
@@ -241,6 +249,12 @@ Json document(const char* member, const std::string& text) {
   } catch (const Json::exception&) {
     throw InvalidInput(member, "is not the JSON document that it should be");
   }
+}
+
+Json texts(const std::vector<std::string>& lines) {
+  Json list = Json::array();
+  for (const std::string& line : lines) list.push_back(text(line));
+  return list;
 }
 
 struct Member {
@@ -264,12 +278,30 @@ Json page_data(const Report& report) {
                                        {"blocks", &Report::blocks},
                                        {"smooth", &Report::smooth},
                                        {"motion", &Report::motion},
+                                       {"cell", &Report::cell},
                                        {"monitor", &Report::monitor},
-                                       {"calibration", &Report::calibration}};
+                                       {"calibration", &Report::calibration},
+                                       {"joint", &Report::joint},
+                                       {"tools", &Report::tools},
+                                       {"sweep", &Report::sweep},
+                                       {"comparison", &Report::comparison},
+                                       {"explanation", &Report::explanation},
+                                       {"simulation", &Report::simulation},
+                                       {"vibration", &Report::vibration},
+                                       {"coefficients", &Report::coefficients},
+                                       {"stiffness", &Report::stiffness}};
   Json json = Json::object();
   json["title"] = text(report.title);
   json["created"] = text(report.created);
   for (const Member& member : members) json[member.name] = document(member.name, report.*member.text);
+  json["assumed"] = io::assumed_json(report.assumed);
+  for (Json& one : json["assumed"]) {
+    for (Json& part : one) {
+      if (part.is_string()) part = text(part.get<std::string>());
+    }
+  }
+  json["warnings"] = texts(report.warnings);
+  json["notes"] = texts(report.notes);
   json["files"] = Json::array();
   for (const StageFile& file : report.files) {
     json["files"].push_back(

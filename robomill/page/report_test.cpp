@@ -17,7 +17,9 @@
 #include "robomill/page/embedded.hpp"
 #include "robomill/page/json.hpp"
 #include "testing/page/blocks_sample.hpp"
+#include "testing/page/cut_sample.hpp"
 #include "testing/page/forces_sample.hpp"
+#include "testing/page/identified_sample.hpp"
 #include "testing/page/monitor_sample.hpp"
 #include "testing/page/plan_sample.hpp"
 #include "testing/page/report_sample.hpp"
@@ -216,6 +218,44 @@ TEST(ReportJson, ThinsALongSpectrum) {
   EXPECT_EQ(kept[1]["amplitude"].size(), 100U);
 }
 
+TEST(ReportJson, ThinsTheSpectrumOfASimulation) {
+  json frequency = json::array(), x = json::array(), low = json::array();
+  for (int i = 0; i < 20000; ++i) {
+    frequency.push_back(0.25 * i);
+    x.push_back(i == 7777 ? 9.0 : 1e-3 * (i % 7));
+  }
+  for (int run = 0; run < 2000; ++run) low.push_back(run);
+  Report report;
+  report.vibration = json{{"run_s", 0.01},
+                          {"displacement_um", {{"x", {{"low", low}, {"high", low}}}}},
+                          {"force_n", json::object()},
+                          {"spectrum", {{"from_s", 1.0}, {"frequency_hz", frequency}, {"x_um", x}}}}
+                         .dump();
+  const json kept = json::parse(report_json(report))["vibration"];
+  EXPECT_LT(kept["spectrum"]["frequency_hz"].size(), 6010U);
+  ASSERT_EQ(kept["spectrum"]["frequency_hz"].size(), kept["spectrum"]["x_um"].size());
+  EXPECT_EQ(*std::ranges::max_element(kept["spectrum"]["x_um"]), 9.0);
+  EXPECT_EQ(kept["displacement_um"]["x"]["low"].size(), 2000U);
+  report.vibration = R"({"displacement_um": {}, "force_n": {}, "run_s": 1, "spectrum": null})";
+  EXPECT_TRUE(json::parse(report_json(report))["vibration"]["spectrum"].is_null());
+}
+
+TEST(ReportJson, ListsWhatWasAssumedAndSaid) {
+  Report report;
+  report.assumed = {{.what = "Stock", .taken = "a box", .key = "stock.kind", .file = "forces.toml"},
+                    {.what = "Noise\xff", .taken = "white"}};
+  report.warnings = {"a warning"};
+  report.notes = {"a note"};
+  const json page = json::parse(report_json(report));
+  EXPECT_EQ(page["assumed"][0],
+            (json{{"what", "Stock"}, {"taken", "a box"}, {"key", "stock.kind"}, {"file", "forces.toml"}}));
+  EXPECT_EQ(page["assumed"][1]["what"], "Noise\xef\xbf\xbd");
+  EXPECT_TRUE(page["assumed"][1]["key"].is_null());
+  EXPECT_EQ(page["warnings"], json::array({"a warning"}));
+  EXPECT_EQ(page["notes"], json::array({"a note"}));
+  EXPECT_EQ(json::parse(report_json({}))["assumed"], json::array());
+}
+
 TEST(ReportJson, StrayBytesBecomeValidText) {
   Report report;
   report.title = "Fr\xe4ser";
@@ -240,6 +280,13 @@ TEST(ReportHtml, TextsCannotBreakOut) {
   report.smooth = sample_smooth(evil);
   report.monitor = sample_monitor(evil);
   report.calibration = sample_calibration(evil);
+  report.joint = sample_joint(evil);
+  report.tools = sample_tools(evil);
+  report.comparison = sample_comparison(evil);
+  report.coefficients = sample_coefficients(evil);
+  report.stiffness = sample_stiffness(evil);
+  report.assumed = sample_assumed(evil);
+  report.warnings = report.notes = {evil};
   const std::string html = report_html(report);
   EXPECT_EQ(count(html, "<script"), scripts);
   EXPECT_EQ(html.find("<img"), std::string::npos);

@@ -58,7 +58,7 @@ void expect_within(const CheckResult& result, double largest_override) {
   }
 }
 
-class Disturbed : public testing::TestWithParam<std::tuple<Machine, Case>> {};
+class Disturbed : public ::testing::TestWithParam<std::tuple<Machine, Case>> {};
 
 TEST_P(Disturbed, RunsKeepEveryLimitAndEndAtTheEnd) {
   const auto& [kind, given] = GetParam();

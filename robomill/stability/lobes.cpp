@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/stability/chart/chart.hpp"
@@ -26,6 +30,46 @@ long long count_uncertain(const Points& points, double tolerance) {
   });
 }
 
+/// The limits at the points' speeds, and before them those of the grid where nothing else is wanted.
+void add_limits(Scheme& scheme, const LobesOptions& options, LobesResult& result, Count& count, Progress& progress) {
+  std::vector<double> speeds;
+  if (options.output == Output::limits) speeds = even(options.spindle_speed_rad_per_s, options.grid[0]);
+  const std::size_t of_grid = speeds.size();
+  for (const OperatingPoint& point : options.points) speeds.push_back(point.spindle_speed_rad_per_s);
+  if (speeds.empty()) return;
+  const Axes columns = column_axes(options, speeds);
+  scheme.expect(columns.axial_depth_m, columns.fine > 1);
+  std::vector<Limit> limits = column_limits(scheme, columns, options.tolerance, count, progress);
+  for (std::size_t i = 0; i < result.points.size(); ++i) {
+    const Limit& limit = limits[of_grid + i];
+    const bool found = limit.status == Limit::Status::found;
+    result.points[i].limit_depth_m = found ? limit.axial_depth_m : std::numeric_limits<double>::infinity();
+  }
+  limits.resize(of_grid);
+  if (options.output == Output::limits) result.limit = std::move(limits);
+}
+
+/// Map, boundary and the grid's limits.
+long long add_chart(Scheme& scheme, const LobesOptions& options, LobesResult& result, Count& count,
+                    Progress& progress) {
+  const Axes axes = even_axes(options);
+  scheme.expect(axes.axial_depth_m);
+  GridRadii grid;
+  if (options.output == Output::boundary) {
+    grid = find_boundary_nodes(scheme, axes, count, progress);
+  } else {
+    // The discretizations estimate the error that their intervals leave; a map of it would triple their cost.
+    const bool collocated = options.method == Method::collocation;
+    grid = evaluate_grid(scheme, axes, collocated ? std::optional(options.tolerance) : std::nullopt, count, progress);
+    result.spectral_radius = grid.radius;
+  }
+  if (options.output != Output::map) {
+    result.boundary = string_boundary(scheme, axes, grid, options.tolerance, count, progress);
+  }
+  result.limit = grid_limits(scheme, axes, grid, result.boundary, options.tolerance, count, progress);
+  return grid.uncertain;
+}
+
 }  // namespace
 
 LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& options, Progress& progress) {
@@ -40,39 +84,29 @@ LobesResult compute_lobes(const LobesProblem& problem, const LobesOptions& optio
   }
   const std::unique_ptr<Scheme> scheme = make_scheme(problem, options);
   const Axes axes = even_axes(options);
+  const bool alone = options.output == Output::limits;
   LobesResult result;
   result.spindle_speed_rad_per_s = to_eigen(axes.spindle_speed_rad_per_s);
   result.axial_depth_m = to_eigen(axes.axial_depth_m);
   result.method = options.method;
   result.period = scheme->period();
-  scheme->expect(axes.axial_depth_m);
-  const bool collocated = options.method == Method::collocation;
   Count count;
-  GridRadii grid;
-  if (options.output == Output::boundary) {
-    grid = find_boundary_nodes(*scheme, axes, count, progress);
-  } else {
-    // The discretizations estimate the error that their intervals leave; a map of it would triple their cost.
-    grid = evaluate_grid(*scheme, axes, collocated ? std::optional(options.tolerance) : std::nullopt, count, progress);
-    result.spectral_radius = grid.radius;
-  }
-  if (options.output != Output::map) {
-    result.boundary = string_boundary(*scheme, axes, grid, options.tolerance, count, progress);
-  }
-  result.limit = grid_limits(*scheme, axes, grid, result.boundary, options.tolerance, count, progress);
+  const long long uncertain = alone ? 0 : add_chart(*scheme, options, result, count, progress);
   const std::unique_ptr<PointEvaluator> evaluator = scheme->evaluator();
   for (const OperatingPoint& point : options.points) {
     progress.check();
     result.points.push_back(point_result(*evaluator, point));
-    if (!problem.in_three_directions()) continue;
+    if (!problem.in_three_directions() || alone) continue;
     result.points.back().gain_margin = gain_of(search_gain(*evaluator, point, options.tolerance, progress));
   }
+  add_limits(*scheme, options, result, count, progress);
   count.add(*evaluator);
   result.evaluations = count.evaluations;
   result.unsettled = count.unsettled;
-  if (collocated) {
-    result.uncertain = grid.uncertain + count_uncertain(result.boundary, options.tolerance) +
-                       count_uncertain(result.limit, options.tolerance) +
+  if (options.method == Method::collocation) {
+    const bool estimated = !alone || options.limit_step_m == 0.0;
+    result.uncertain = uncertain + count_uncertain(result.boundary, options.tolerance) +
+                       (estimated ? count_uncertain(result.limit, options.tolerance) : 0) +
                        count_uncertain(result.points, options.tolerance);
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -104,8 +138,8 @@ std::vector<Limit> limit_depths(const LobesProblem& problem, const LobesOptions&
     return frequency_limits(problem, options, spindle_speeds_rad_per_s, progress);
   }
   const std::unique_ptr<Scheme> scheme = make_scheme(problem, options);
-  const Axes axes = {spindle_speeds_rad_per_s, even(options.axial_depth_m, options.grid[1])};
-  scheme->expect(axes.axial_depth_m);
+  const Axes axes = column_axes(options, spindle_speeds_rad_per_s);
+  scheme->expect(axes.axial_depth_m, axes.fine > 1);
   Count count;
   return column_limits(*scheme, axes, options.tolerance, count, progress);
 }

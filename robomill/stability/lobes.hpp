@@ -71,7 +71,8 @@ inline constexpr Name<Method> method_names[] = {
 enum class Output {
   boundary,  ///< curves on which the spectral radius is 1; the grid only shows where to look
   map,       ///< the spectral radius at every node of the grid
-  both       ///< the map and the boundary
+  both,      ///< the map and the boundary
+  limits     ///< neither: the limits of the grid's speeds alone, as limit_depths; points without their gain margin
 };
 /// Which time a multiplier, and so the spectral radius, is of.
 enum class Period {
@@ -107,6 +108,10 @@ struct ROBOMILL_API LobesOptions {
   /// |Δradius| <= tolerance · max(1, radius). Boundary and limit end where |spectral radius - 1| <= tolerance; those of
   /// multi_frequency where |Δlimit| <= tolerance · limit.
   double tolerance = 1e-6;
+  /// > 0: limits at single speeds (limit_depths, uncertain_limits) are looked for among depths this far apart at most
+  /// [m] and taken from a straight line between two of them, without an estimate: for a picture. Not in the frequency
+  /// domain.
+  double limit_step_m = 0.0;
   Output output = Output::boundary;
   std::vector<OperatingPoint> points = {};  ///< evaluated beside the grid; may lie outside its range
   /// @throws InvalidInput naming the member
@@ -129,6 +134,8 @@ struct PointResult {
   /// is 1 (GainMargin in sweep.hpp); infinity: none up to 1,000; 0.001: unstable there already.
   /// NaN: not looked for.
   double gain_margin = std::numeric_limits<double>::quiet_NaN();
+  /// Lowest unstable depth at its speed, in a chart [m]; infinity: none in its range. NaN: not looked for.
+  double limit_depth_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A point where the spectral radius is 1.
@@ -159,8 +166,8 @@ struct Limit {
 struct LobesResult {
   Eigen::VectorXd spindle_speed_rad_per_s;  ///< length grid[0]
   Eigen::VectorXd axial_depth_m;            ///< length grid[1]
-  Eigen::MatrixXd spectral_radius;          ///< grid[1] x grid[0]: a row a depth; empty for Output::boundary
-  std::vector<BoundaryPoint> boundary;      ///< curve by curve, along each; empty for Output::map
+  Eigen::MatrixXd spectral_radius;          ///< grid[1] x grid[0]: a row a depth; empty for Output::boundary, limits
+  std::vector<BoundaryPoint> boundary;      ///< curve by curve, along each; empty for Output::map, limits
   std::vector<Limit> limit;                 ///< one a grid speed
   std::vector<PointResult> points;          ///< one for each of LobesOptions::points
   Method method = Method::collocation;
@@ -188,7 +195,8 @@ struct LobesResult {
                                                       const OperatingPoint& point);
 
 /// The lowest unstable depth at each of these speeds; depths are searched on the grid of options.axial_depth_m and
-/// refined to options.tolerance. Of the options the speeds do not count.
+/// refined to options.tolerance, or to options.limit_step_m where that is given. Of the options the speeds do not
+/// count.
 /// @throws InvalidInput if the problem, a speed or an option is out of range
 [[nodiscard]] ROBOMILL_API std::vector<Limit> limit_depths(const LobesProblem& problem, const LobesOptions& options,
                                                            const std::vector<double>& spindle_speeds_rad_per_s,

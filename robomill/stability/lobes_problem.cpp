@@ -66,6 +66,10 @@ void LobesOptions::validate() const {
   if (!(tolerance >= 1e-10 && tolerance <= 0.1)) {
     throw InvalidInput("tolerance", tolerance, "", "must lie between 1e-10 and 0.1");
   }
+  require_non_negative("limit_step_m", limit_step_m, "m");
+  if (limit_step_m > 0.0 && limit_step_m * 20000.0 < axial_depth_m[1] - axial_depth_m[0]) {
+    throw InvalidInput("limit_step_m", limit_step_m, "m", "must be at least a 20000th of the depths' range");
+  }
   for (const OperatingPoint& point : points) {
     require_positive("points.spindle_speed_rad_per_s", point.spindle_speed_rad_per_s, "rad/s");
     require_non_negative("points.axial_depth_m", point.axial_depth_m, "m");

@@ -14,6 +14,7 @@ struct Ask {
   bool estimate = false;  ///< an estimate of the error, and the accuracy that the options ask for
   bool motion = false;    ///< frequency and mode
   int level = 0;          ///< > 0: of collocation, the level that it starts from in place of its own choice
+  bool rough = false;     ///< for a search that looks once more where it ends: of collocation perhaps a coarser level
 };
 
 /// What is found at a point.
@@ -50,7 +51,11 @@ class Scheme {
   [[nodiscard]] virtual std::unique_ptr<PointEvaluator> evaluator() const = 0;
   [[nodiscard]] virtual Period period() const = 0;
   /// Called with the depths that will be asked for often, before evaluators are made.
-  virtual void expect(std::span<const double> depths_m) { static_cast<void>(depths_m); }
+  /// @param picture  speeds that lie near each other may share what depends little on them
+  virtual void expect(std::span<const double> depths_m, bool picture = false) {
+    static_cast<void>(depths_m);
+    static_cast<void>(picture);
+  }
 };
 
 /// @throws InvalidInput if the method knows no such problem

@@ -54,6 +54,20 @@ void draw_coefficient(Random& random, double deviation, std::vector<double>& k) 
   if (!k.empty()) k.back() += after - side;
 }
 
+/// All coefficients together: a material is harder or softer than it is said to be.
+void scale_coefficients(double factor, LobesProblem& problem) {
+  if (problem.spatial) {
+    cutting::MillingCoefficients& k = problem.spatial->coefficients;
+    for (std::vector<double>* const polynomial : {&k.tangential_n_per_m2, &k.radial_n_per_m2, &k.axial_n_per_m2}) {
+      for (double& value : *polynomial) value *= factor;
+    }
+    return;
+  }
+  cutting::ForceCoefficients& k = problem.drilling ? problem.drilling->coefficients : problem.milling.coefficients;
+  k.tangential_n_per_m2 *= factor;
+  k.radial_n_per_m2 *= factor;
+}
+
 LobesProblem draw(const LobesProblem& problem, const Uncertainty& u, std::uint64_t sample) {
   Random random(u.seed, sample);
   LobesProblem one = problem;
@@ -67,6 +81,7 @@ LobesProblem draw(const LobesProblem& problem, const Uncertainty& u, std::uint64
   }
   draw_modes(random, u, one.dynamics);
   draw_modes(random, u, one.workpiece_dynamics);
+  scale_coefficients(drawn(random, 1.0, u.coefficient_std_ratio), one);
   return one;
 }
 
@@ -91,6 +106,7 @@ void Uncertainty::validate() const {
   }
   require_non_negative("tangential_std_n_per_m2", tangential_std_n_per_m2, "N/m^2");
   require_non_negative("radial_std_n_per_m2", radial_std_n_per_m2, "N/m^2");
+  require_ratio("coefficient_std_ratio", coefficient_std_ratio, 1.0);
   require_ratio("frequency_std_ratio", frequency_std_ratio, 0.5);
   require_ratio("damping_std_ratio", damping_std_ratio, 1.0);
   require_ratio("residue_std_ratio", residue_std_ratio, 1.0);
@@ -104,7 +120,7 @@ UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions
   uncertainty.validate();
   LobesOptions chart = options;
   chart.grid = uncertainty.grid;
-  const Axes axes = even_axes(chart);
+  const Axes axes = column_axes(chart, even(chart.spindle_speed_rad_per_s, chart.grid[0]));
   const std::size_t speeds = axes.spindle_speed_rad_per_s.size();
   const std::size_t count = static_cast<std::size_t>(uncertainty.samples);
   constexpr double none = std::numeric_limits<double>::infinity();
@@ -113,6 +129,7 @@ UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions
   parallel_for(count, 4, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const std::unique_ptr<Scheme> scheme = make_scheme(draw(problem, uncertainty, i), options);
+      scheme->expect(axes.axial_depth_m, axes.fine > 1);
       const std::unique_ptr<PointEvaluator> evaluator = scheme->evaluator();
       const std::vector<Limit> limits = limits_between(*evaluator, axes, 0, speeds, options.tolerance, progress);
       for (std::size_t s = 0; s < speeds; ++s) {
@@ -124,10 +141,10 @@ UncertainLimits uncertain_limits(const LobesProblem& problem, const LobesOptions
 
   UncertainLimits result;
   const Eigen::Index n = static_cast<Eigen::Index>(speeds);
-  const Eigen::Index m = static_cast<Eigen::Index>(axes.axial_depth_m.size());
+  const Eigen::Index m = chart.grid[1];
   result.samples = uncertainty.samples;
   result.spindle_speed_rad_per_s = Eigen::Map<const Eigen::VectorXd>(axes.spindle_speed_rad_per_s.data(), n);
-  result.axial_depth_m = Eigen::Map<const Eigen::VectorXd>(axes.axial_depth_m.data(), m);
+  result.axial_depth_m = to_eigen(even(chart.axial_depth_m, chart.grid[1]));
   result.limit_5_percent_m.resize(n);
   result.limit_50_percent_m.resize(n);
   result.limit_95_percent_m.resize(n);

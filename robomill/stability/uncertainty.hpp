@@ -18,6 +18,7 @@ struct ROBOMILL_API Uncertainty {
   std::uint64_t seed = 1;                ///< the same seed draws the same problems
   double tangential_std_n_per_m2 = 0.0;  ///< of Kt [N/m^2], >= 0
   double radial_std_n_per_m2 = 0.0;      ///< of Kr [N/m^2], >= 0
+  double coefficient_std_ratio = 0.0;    ///< of one factor on all cutting coefficients, [0, 1]: harder or softer
   double frequency_std_ratio = 0.0;      ///< of the frequency of modes that do not know their own, [0, 0.5]
   double damping_std_ratio = 0.0;        ///< of the damping ratio of modes that do not know their own, [0, 1]
   double residue_std_ratio = 0.0;  ///< of the size of residue matrices, of modes that do not know their own, [0, 1]

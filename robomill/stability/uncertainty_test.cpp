@@ -66,6 +66,30 @@ TEST(Uncertainty, QuantilesOfAKnownDistribution) {
   EXPECT_NEAR(limits.limit_95_percent_m(0), exact / (1.0 - 0.05 * z), 5e-3 * exact);
 }
 
+// The limit is inversely proportional to the coefficients together, as it is to the residue: b ~ 1 / (K G).
+TEST(Uncertainty, OneFactorMovesAllCoefficients) {
+  Uncertainty factor;
+  factor.grid = {2, 200};
+  factor.samples = 4000;
+  factor.coefficient_std_ratio = 0.3;
+  LobesOptions options = small_chart();
+  options.grid = {2, 20};
+  options.axial_depth_m = {0.0, 10e-3};
+  const LobesProblem problem = benchmark(0.05, 1);
+  const double exact = limit_depths(problem, options, {5000 * rpm}).front().axial_depth_m;
+  const UncertainLimits limits = uncertain_limits(problem, options, factor);
+  const double z = 1.6448536;
+  EXPECT_NEAR(limits.limit_5_percent_m(0), exact / (1.0 + 0.3 * z), 0.02 * exact);
+  EXPECT_NEAR(limits.limit_50_percent_m(0), exact, 0.02 * exact);
+  EXPECT_NEAR(limits.limit_95_percent_m(0), exact / (1.0 - 0.3 * z), 0.12 * exact);
+  // Each for itself they compensate each other in part.
+  Uncertainty own = factor;
+  own.coefficient_std_ratio = 0.0;
+  own.tangential_std_n_per_m2 = 0.3 * problem.milling.coefficients.tangential_n_per_m2;
+  own.radial_std_n_per_m2 = 0.3 * problem.milling.coefficients.radial_n_per_m2;
+  EXPECT_NE(uncertain_limits(problem, options, own).limit_5_percent_m, limits.limit_5_percent_m);
+}
+
 TEST(Uncertainty, ProbabilityRisesWithDepthAndOrdersQuantiles) {
   Uncertainty u;
   u.samples = 60;
@@ -115,6 +139,7 @@ TEST(Uncertainty, RejectsWhatCannotBe) {
   EXPECT_EQ(field([](Uncertainty&) {}), "accepted");
   EXPECT_EQ(field([](Uncertainty& u) { u.samples = 0; }), "samples");
   EXPECT_EQ(field([](Uncertainty& u) { u.samples = 2'000'000; }), "samples");
+  EXPECT_EQ(field([](Uncertainty& u) { u.coefficient_std_ratio = 1.5; }), "coefficient_std_ratio");
   EXPECT_EQ(field([](Uncertainty& u) { u.grid = {1, 20}; }), "grid");
   EXPECT_EQ(field([](Uncertainty& u) {
               u.samples = 100'000;

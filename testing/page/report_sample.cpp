@@ -1,7 +1,10 @@
 #include "testing/page/report_sample.hpp"
 
 #include "testing/page/blocks_sample.hpp"
+#include "testing/page/cell_sample.hpp"
+#include "testing/page/cut_sample.hpp"
 #include "testing/page/forces_sample.hpp"
+#include "testing/page/identified_sample.hpp"
 #include "testing/page/monitor_sample.hpp"
 #include "testing/page/plan_sample.hpp"
 #include "testing/page/smooth_sample.hpp"
@@ -25,8 +28,20 @@ Report sample_report() {
   report.blocks = sample_blocks();
   report.smooth = sample_smooth();
   report.motion = sample_motion();
+  report.cell = sample_cell();
   report.monitor = sample_monitor();
   report.calibration = sample_calibration();
+  report.joint = sample_joint();
+  report.tools = sample_tools();
+  report.sweep = sample_sweep();
+  report.comparison = sample_comparison();
+  report.explanation = sample_explanation();
+  report.simulation = sample_simulation();
+  report.vibration = sample_vibration();
+  report.coefficients = sample_coefficients();
+  report.stiffness = sample_stiffness();
+  report.assumed = sample_assumed();
+  report.notes = {"A note that no document holds."};
   report.files = {{"frf", "tip.uff", "frequency response functions"},
                   {"modes", "modes.json", "modal parameters"},
                   {"lobes", "lobes.json", "limit and boundary"}};

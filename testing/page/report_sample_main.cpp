@@ -3,7 +3,10 @@
 #include <string_view>
 
 #include "testing/page/blocks_sample.hpp"
+#include "testing/page/cell_sample.hpp"
+#include "testing/page/cut_sample.hpp"
 #include "testing/page/forces_sample.hpp"
+#include "testing/page/identified_sample.hpp"
 #include "testing/page/monitor_sample.hpp"
 #include "testing/page/plan_sample.hpp"
 #include "testing/page/report_sample.hpp"
@@ -29,8 +32,16 @@ int main(int argc, char** argv) {
     report.forces = robomill::page::sample_forces(evil);
     report.blocks = robomill::page::sample_blocks(evil);
     report.smooth = robomill::page::sample_smooth(evil);
+    report.cell = robomill::page::sample_cell(evil);
     report.monitor = robomill::page::sample_monitor(evil);
     report.calibration = robomill::page::sample_calibration(evil);
+    report.joint = robomill::page::sample_joint(evil);
+    report.tools = robomill::page::sample_tools(evil);
+    report.comparison = robomill::page::sample_comparison(evil);
+    report.coefficients = robomill::page::sample_coefficients(evil);
+    report.stiffness = robomill::page::sample_stiffness(evil);
+    report.assumed = robomill::page::sample_assumed(evil);
+    report.warnings = report.notes = {evil};
   }
   if (argc > 2 && std::string_view(argv[2]) == "long") {
     report = {};

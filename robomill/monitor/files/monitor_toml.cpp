@@ -12,6 +12,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/append.hpp"
+#include "robomill/io/toml_edit.hpp"
 #include "robomill/monitor/files/monitor_tables.hpp"
 
 namespace robomill::monitor {
@@ -56,6 +57,10 @@ void read_mqtt(io::TomlFile& file, MqttSettings& mqtt) {
   if (file.integer("mqtt.qos", "qos", mqtt.qos) && (mqtt.qos < 0 || mqtt.qos > 2)) {
     throw file.reject("mqtt.qos", "must be 0, 1 or 2");
   }
+  if (file.number("mqtt.connect_timeout_s", "connect_timeout_s", 1.0, mqtt.connect_timeout_s) &&
+      !(mqtt.connect_timeout_s >= 0.0 && mqtt.connect_timeout_s <= 86'400.0)) {
+    throw file.reject("mqtt.connect_timeout_s", "must lie between 0 and 86400", "0 waits for ever");
+  }
 }
 
 void read_act(io::TomlFile& file, ActSettings& act) {
@@ -99,22 +104,6 @@ void read_outputs(io::TomlFile& file, MonitorFile& out) {
       !(out.recording_s > 0.0 && out.recording_s <= 3600.0)) {
     throw file.reject("recording.seconds", "must lie between 0 and 3600");
   }
-}
-
-/// Text in quotes as TOML has it.
-std::string in_quotes(std::string_view text) {
-  std::string out = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') {
-      out += '\\';
-      out += letter;
-    } else if (static_cast<unsigned char>(letter) < 32 || letter == 127) {
-      out += fmt::format("\\u{:04X}", static_cast<unsigned>(static_cast<unsigned char>(letter)));
-    } else {
-      out += letter;
-    }
-  }
-  return out + '"';
 }
 
 std::string number_text(double value) {
@@ -203,10 +192,10 @@ void check_options(const io::TomlFile& file, const MonitorFile& monitor) {
   });
 }
 
-MonitorFile read_monitor(const std::filesystem::path& path) {
-  io::TomlFile file(path);
+MonitorFile read_monitor(const io::TomlSource& source) {
+  io::TomlFile file(source);
   MonitorFile out;
-  out.path = path;
+  out.path = source.path;
   read_signal(file, out);
   read_process(file, out);
   file.path("process.modes", out.modes);
@@ -256,7 +245,7 @@ std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
   std::string names, tachometer;
   for (int channel = 0; const std::string& name : file.columns.channels) {
     std::string& list = channel++ == o.tachometer_channel ? tachometer : names;
-    list += (list.empty() ? "" : ", ") + in_quotes(name);
+    list += (list.empty() ? "" : ", ") + io::toml_quoted(name);
   }
   line("channels", "[" + names + "]");
   if (!tachometer.empty()) line("tachometer", tachometer);
@@ -267,17 +256,17 @@ std::string monitor_toml(const MonitorFile& file, const std::string& remarks) {
   out += "\n[process]\n";
   if (o.spindle_speed_rad_per_s > 0.0) line("spindle_speed_rpm", number_text(o.spindle_speed_rad_per_s / units::rpm));
   if (o.teeth > 0) line("teeth", std::to_string(o.teeth));
-  if (!file.modes.empty()) line("modes", in_quotes(file.modes.string()));
-  if (!file.lobes.empty()) line("lobes", in_quotes(file.lobes.string()));
+  if (!file.modes.empty()) line("modes", io::toml_quoted(file.modes.string()));
+  if (!file.lobes.empty()) line("lobes", io::toml_quoted(file.lobes.string()));
   out += "\n[detector]\n";
-  line("kind", in_quotes(to_string(o.kind)));
+  line("kind", io::toml_quoted(to_string(o.kind)));
   line("window_ms", number_text(o.window_s / units::ms));
   line("hop_ms", number_text(o.hop_s / units::ms));
   line("bands", std::to_string(o.bands));
   if (o.kind == Kind::energy_entropy) {
-    line("entropy", in_quotes(to_string(o.entropy)));
+    line("entropy", io::toml_quoted(to_string(o.entropy)));
     line("threshold", number_text(o.threshold));
-    line("alarm", in_quotes(o.alarm_below ? "below" : "above"));
+    line("alarm", io::toml_quoted(o.alarm_below ? "below" : "above"));
   } else {
     line("false_alarms_per_hour", number_text(o.false_alarms_per_hour));
   }

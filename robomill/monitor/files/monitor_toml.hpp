@@ -6,6 +6,7 @@
 #include "robomill/base/names.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/sample_source.hpp"
+#include "robomill/io/toml_source.hpp"
 #include "robomill/monitor/monitor.hpp"
 
 // Method: robomill/monitor/README.md, "Files"
@@ -26,6 +27,9 @@ struct MqttSettings {
   std::filesystem::path ca_file = {};  ///< who signed the broker's certificate; empty: the system's list
   std::filesystem::path certificate_file = {}, key_file = {};  ///< the monitor's own, where the broker asks for one
   int qos = 1;                                                 ///< 0, 1 or 2
+  /// Of the broker that samples come from: without a first connection for so long the monitor ends; 0: it waits for
+  /// ever.
+  double connect_timeout_s = 10.0;
 
   [[nodiscard]] int port_or_default() const { return port != 0 ? port : (tls ? 8883 : 1883); }
 };
@@ -71,7 +75,7 @@ struct MonitorFile {
 
 /// Everything but the sample rate, where it is missing, is checked.
 /// @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API MonitorFile read_monitor(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API MonitorFile read_monitor(const io::TomlSource& source);
 
 /// Checks the options once the sample rate is known. @throws InvalidInput in the words of the file
 ROBOMILL_API void validate(const MonitorFile& file);

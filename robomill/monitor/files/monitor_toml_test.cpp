@@ -28,7 +28,7 @@ TEST(MonitorToml, ReadsEveryKey) {
       "[mqtt]\nhost = \"broker\"\nport = 8884\ntopic = \"cell/ax\"\n"
       "events_topic = \"cell/events\"\ncommands_topic = \"cell/commands\"\nclient_id = \"me\"\nuser = \"u\"\n"
       "password_file = \"secret\"\ntls = true\nca_file = \"ca.pem\"\n"
-      "certificate_file = \"c.pem\"\nkey_file = \"k.pem\"\nqos = 0\n"
+      "certificate_file = \"c.pem\"\nkey_file = \"k.pem\"\nqos = 0\nconnect_timeout_s = 2.5\n"
       "[metrics]\nport = 9110\nhost = \"0.0.0.0\"\n"
       "[act]\nrule = \"hold\"\nreduce_to = 0.4\nretract_mm = 3\n"
       "spindle_speed_rpm = [3000, 9000]\nsettle_s = 1.5\ncalm_s = 4\n"
@@ -69,6 +69,7 @@ TEST(MonitorToml, ReadsEveryKey) {
   EXPECT_TRUE(file.mqtt.tls);
   EXPECT_EQ(file.mqtt.key_file, folder.at("k.pem"));
   EXPECT_EQ(file.mqtt.qos, 0);
+  EXPECT_EQ(file.mqtt.connect_timeout_s, 2.5);
   EXPECT_EQ(file.metrics_port, 9110);
   EXPECT_EQ(file.metrics_host, "0.0.0.0");
   EXPECT_EQ(file.recording_folder, folder.at("alarms"));
@@ -128,6 +129,7 @@ TEST(MonitorToml, ReportsWhatIsWrongWithLineAndKey) {
   expect("[mqtt]\ntls = true\nkey_file = \"k\"\n", "go together");
   expect("[mqtt]\npassword_file = \"k\"\n", "needs mqtt.user");
   expect("[mqtt]\nqos = 3\n", "must be 0, 1 or 2");
+  expect("[mqtt]\nconnect_timeout_s = -1\n", "m.toml:5: mqtt.connect_timeout_s = -1 s; must lie between 0 and 86400");
   expect("[mqtt]\nevents_topic = \"a/#\"\n", "without + and #");
   expect("[mqtt]\ncommands_topic = \"a/+\"\n", "m.toml:5: mqtt.commands_topic = \"a/+\"; must be one topic");
   expect("[mqtt]\ntopic = \"a\"\ncommands_topic = \"a\"\n", "must differ from mqtt.topic");

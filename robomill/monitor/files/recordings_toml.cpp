@@ -34,10 +34,10 @@ LabelledRecording read_recording(io::TomlFile& file, std::size_t index, double s
 
 }  // namespace
 
-RecordingsFile read_recordings(const std::filesystem::path& path) {
-  io::TomlFile file(path);
+RecordingsFile read_recordings(const io::TomlSource& source) {
+  io::TomlFile file(source);
   RecordingsFile out;
-  out.monitor.path = path;
+  out.monitor.path = source.path;
   out.monitor.options.kind = Kind::energy_entropy;
   out.monitor.options.threshold = 0.0;  // calibration sets it
   read_signal(file, out.monitor);
@@ -61,7 +61,7 @@ RecordingsFile read_recordings(const std::filesystem::path& path) {
     const auto count = std::count_if(out.recordings.begin(), out.recordings.end(), chatters);
     if ((chatter ? count : static_cast<std::ptrdiff_t>(out.recordings.size()) - count) >= 2) continue;
     throw InvalidInput(
-        path.string(),
+        source.path.string(),
         fmt::format("must name two recordings at least with label = \"{}\"", chatter ? "chatter" : "stable"),
         "One half of each kind sets the threshold, the other verifies it");
   }

@@ -5,6 +5,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
+#include "robomill/io/toml_source.hpp"
 #include "robomill/monitor/calibration.hpp"
 #include "robomill/monitor/files/monitor_toml.hpp"
 
@@ -28,7 +29,7 @@ struct RecordingsFile {
 };
 
 /// @throws InvalidInput with file, line, key and value, also where no recording chatters or none is stable
-[[nodiscard]] ROBOMILL_API RecordingsFile read_recordings(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API RecordingsFile read_recordings(const io::TomlSource& source);
 
 /// The samples of the labelled recordings, in their order. All run at one rate: that of recordings.toml, else the first
 /// one's, which is then the file's.

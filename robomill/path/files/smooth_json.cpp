@@ -120,6 +120,7 @@ io::Json smooth_object(const SmoothedProgram& smoothed) {
     json["skipped"].push_back({{"line", item.line}, {"what", item.what}});
   }
   json["notes"] = smoothed.notes;
+  json["assumed"] = io::assumed_json(smoothed.assumed);
   json["robot_program"] = smoothed.robot_program ? run_json(*smoothed.robot_program) : io::Json();
   if (smoothed.methods.size() > 1) {
     json["methods"] = io::Json::array();

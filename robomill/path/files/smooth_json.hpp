@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/path/files/trajectory.hpp"
 #include "robomill/path/options.hpp"
@@ -32,6 +33,7 @@ struct SmoothedProgram {
   std::optional<ProgramRun> robot_program = {};  ///< of the first, where it is written as one
   std::vector<program::Skipped> skipped = {};
   std::vector<std::string> notes = {};
+  std::vector<Assumption> assumed = {};
 };
 
 /// smooth.json: of the first method, and under "methods" of each where there are several. docs/formats.md.

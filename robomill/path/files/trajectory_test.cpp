@@ -64,7 +64,7 @@ TEST(TrajectoryCsv, HasAColumnForEachJointOfTheMachine) {
   EXPECT_EQ(io::parse_table(io::read_file(folder.at("t.csv")), "t.csv").names.size(), 13U);
 }
 
-class AnyEnding : public testing::TestWithParam<const char*> {};
+class AnyEnding : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(AnyEnding, AppearsWholeOrNotAtAll) {
   const Folder folder;

@@ -205,89 +205,6 @@ class BoundarySearch {
   GridRadii grid_;
 };
 
-Limit limit_at(const BoundaryPoint& b) {
-  Limit limit;
-  limit.spindle_speed_rad_per_s = b.spindle_speed_rad_per_s;
-  limit.status = Limit::Status::found;
-  limit.axial_depth_m = b.axial_depth_m;
-  limit.chatter_frequency_hz = b.chatter_frequency_hz;
-  limit.kind = b.kind;
-  limit.mode = b.mode;
-  limit.error_estimate = b.error_estimate;
-  return limit;
-}
-
-/// Already unstable at the least depth.
-Limit limit_at_start(PointEvaluator& evaluator, const OperatingPoint& point) {
-  Outcome outcome;
-  evaluator.evaluate({&point, 1}, {.estimate = true, .motion = true}, {&outcome, 1});
-  return limit_at(boundary_point(point, outcome));
-}
-
-/// One speed's radii, looked at from the lowest depth up to the first that is unstable: every fourth depth, and those
-/// between two of them where stability changes, or where ln |μ| changes as much from one to the other as it is away
-/// from 0, so that an island could hide. The others stay NaN.
-class Climb {
- public:
-  Climb(PointEvaluator& evaluator, const Axes& axes, std::size_t speed, const Progress& progress)
-      : evaluator_(evaluator),
-        axes_(axes),
-        speed_(speed),
-        progress_(progress),
-        radii_(axes.axial_depth_m.size(), std::numeric_limits<double>::quiet_NaN()) {}
-
-  std::vector<double> run() {
-    // As many marks as are evaluated at once, but none further apart than the corners of a coarse cell.
-    const std::size_t steps = radii_.size() - 1;
-    const std::size_t stride = std::clamp<std::size_t>((steps + lane_count - 2) / (lane_count - 1), 1, widest);
-    std::vector<std::size_t> marks;
-    for (std::size_t d = 0; d < steps; d += stride) marks.push_back(d);
-    marks.push_back(steps);
-    for (std::size_t first = 0; first < marks.size(); first += evaluator_.at_a_time()) {
-      const std::size_t size = std::min(evaluator_.at_a_time(), marks.size() - first);
-      look(std::span(marks).subspan(first, size));
-      for (std::size_t i = std::max<std::size_t>(first, 1); i < first + size; ++i) {
-        if (between(marks[i - 1], marks[i])) return radii_;
-      }
-    }
-    return radii_;
-  }
-
- private:
-  static constexpr std::size_t widest = 4;
-  static_assert(widest - 1 <= lane_count);
-
-  void look(std::span<const std::size_t> depths) {
-    progress_.check();
-    std::array<OperatingPoint, lane_count> points;
-    std::array<Outcome, lane_count> outcomes;
-    for (std::size_t i = 0; i < depths.size(); ++i) points[i] = axes_.at(speed_, depths[i]);
-    evaluator_.evaluate(std::span(points).first(depths.size()), {}, std::span(outcomes).first(depths.size()));
-    for (std::size_t i = 0; i < depths.size(); ++i) radii_[depths[i]] = outcomes[i].spectral_radius;
-  }
-
-  /// Whether an unstable depth was found from `low` to `high`.
-  bool between(std::size_t low, std::size_t high) {
-    if (radii_[low] >= 1.0) return true;
-    const double a = std::log(radii_[low]);
-    const double b = std::log(radii_[high]);
-    const bool unstable = radii_[high] >= 1.0;
-    if (!unstable && std::min(std::abs(a), std::abs(b)) > 2.0 * std::abs(a - b)) return false;
-    std::array<std::size_t, widest> depths{};
-    std::size_t size = 0;
-    for (std::size_t d = low + 1; d < high; ++d) depths[size++] = d;
-    if (size > 0) look(std::span<const std::size_t>(depths).first(size));
-    return unstable || std::any_of(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(size),
-                                   [&](std::size_t d) { return radii_[d] >= 1.0; });
-  }
-
-  PointEvaluator& evaluator_;
-  const Axes& axes_;
-  std::size_t speed_;
-  const Progress& progress_;
-  std::vector<double> radii_;
-};
-
 }  // namespace
 
 Eigen::VectorXd to_eigen(const std::vector<double>& values) {
@@ -357,45 +274,6 @@ std::vector<Limit> grid_limits(const Scheme& scheme, const Axes& axes, const Gri
     }
     const std::vector<BoundaryPoint> found = refine(*evaluator, edges, tolerance, progress);
     for (std::size_t i = 0; i < found.size(); ++i) limits[owner[i]] = limit_at(found[i]);
-    counts[begin].add(*evaluator);
-    progress.advance(end - begin);
-  });
-  for (const Count& c : counts) count.add(c);
-  return limits;
-}
-
-std::vector<Limit> limits_between(PointEvaluator& evaluator, const Axes& axes, std::size_t first, std::size_t last,
-                                  double tolerance, const Progress& progress) {
-  std::vector<Limit> limits(last - first);
-  std::vector<Edge> edges;
-  std::vector<std::size_t> owner;
-  for (std::size_t s = first; s < last; ++s) {
-    const std::vector<double> radii = Climb(evaluator, axes, s, progress).run();
-    limits[s - first].spindle_speed_rad_per_s = axes.spindle_speed_rad_per_s[s];
-    const auto unstable = std::ranges::find_if(radii, [](double radius) { return radius >= 1.0; });
-    if (unstable == radii.begin()) {
-      limits[s - first] = limit_at_start(evaluator, axes.at(s, 0));
-    } else if (unstable != radii.end()) {
-      const std::size_t d = static_cast<std::size_t>(unstable - radii.begin());
-      edges.push_back({axes.at(s, d - 1), axes.at(s, d), radii[d - 1], radii[d]});
-      owner.push_back(s - first);
-    }
-  }
-  const std::vector<BoundaryPoint> found = refine(evaluator, edges, tolerance, progress);
-  for (std::size_t i = 0; i < found.size(); ++i) limits[owner[i]] = limit_at(found[i]);
-  return limits;
-}
-
-std::vector<Limit> column_limits(const Scheme& scheme, const Axes& axes, double tolerance, Count& count,
-                                 Progress& progress) {
-  const std::size_t speeds = axes.spindle_speed_rad_per_s.size();
-  std::vector<Limit> limits(speeds);
-  std::vector<Count> counts(speeds);
-  progress.start("stability limits", speeds);
-  parallel_for(speeds, lane_count, [&](std::size_t begin, std::size_t end) {
-    const std::unique_ptr<PointEvaluator> evaluator = scheme.evaluator();
-    const std::vector<Limit> found = limits_between(*evaluator, axes, begin, end, tolerance, progress);
-    std::ranges::copy(found, limits.begin() + static_cast<std::ptrdiff_t>(begin));
     counts[begin].add(*evaluator);
     progress.advance(end - begin);
   });

@@ -25,6 +25,7 @@ struct Count {
 /// Where a chart is looked at.
 struct Axes {
   std::vector<double> spindle_speed_rad_per_s, axial_depth_m;
+  std::size_t fine = 1;  ///< columns: every so manieth depth is looked at, the others show where a limit lies between
   [[nodiscard]] OperatingPoint at(std::size_t speed, std::size_t depth) const {
     return {spindle_speed_rad_per_s[speed], axial_depth_m[depth]};
   }
@@ -64,8 +65,15 @@ std::vector<Limit> grid_limits(const Scheme& scheme, const Axes& axes, const Gri
                                const std::vector<BoundaryPoint>& boundary, double tolerance, Count& count,
                                Progress& progress);
 
+Limit limit_at(const BoundaryPoint& point);
+/// Already unstable at the least depth.
+Limit limit_at_start(PointEvaluator& evaluator, const OperatingPoint& point);
+
+/// The options' depths at these speeds, for columns.
+Axes column_axes(const LobesOptions& options, std::vector<double> spindle_speed_rad_per_s);
 /// The same without a grid, of the speeds first to last - 1: depths are looked at from the lowest up to the first that
-/// is unstable, those between two that are alike and far from unstable left out.
+/// is unstable, those between two that are alike and far from unstable left out. Where axes are fine a limit is known
+/// when it lies between two neighbouring depths: on a straight line of ln |μ| between these, without an estimate.
 std::vector<Limit> limits_between(PointEvaluator& evaluator, const Axes& axes, std::size_t first, std::size_t last,
                                   double tolerance, const Progress& progress);
 /// Of all speeds, on all threads:

@@ -21,7 +21,7 @@ class Collocation final : public Scheme {
     return model_->reported_rad() < 0.999 * 2.0 * std::numbers::pi || teeth_ == 1 ? Period::tooth : Period::revolution;
   }
 
-  void expect(std::span<const double> depths_m) override { model_->expect(depths_m); }
+  void expect(std::span<const double> depths_m, bool picture) override { model_->expect(depths_m, picture); }
 
  private:
   std::unique_ptr<CollocationModel> model_;
@@ -137,7 +137,8 @@ void CollocationEvaluator::run(std::span<const OperatingPoint> points, Ask ask, 
 
 void CollocationEvaluator::evaluate(std::span<const OperatingPoint> points, Ask ask, std::span<Outcome> out) {
   for (std::size_t lane = 0; lane < points.size(); ++lane) {
-    const int level = ask.level > 0 ? ask.level : model_.first_level(points[lane], tolerance_);
+    const int own = model_.first_level(points[lane], tolerance_);
+    const int level = ask.level > 0 ? ask.level : ask.rough ? model_.rough_level(own) : own;
     lanes_[lane] = {.level = ask.estimate ? level - 1 : level};
     out[lane] = Outcome{};
   }

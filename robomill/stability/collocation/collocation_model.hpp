@@ -22,12 +22,17 @@ class CollocationModel {
   [[nodiscard]] virtual bool depends_on_depth() const = 0;
   /// What the stiffness of a case is multiplied by at a point, gain included.
   [[nodiscard]] virtual double factor(const OperatingPoint& point) const = 0;
-  /// Depths that will be asked for often.
-  virtual void expect(std::span<const double> depths_m) { static_cast<void>(depths_m); }
+  /// Depths that will be asked for often, as of Scheme.
+  virtual void expect(std::span<const double> depths_m, bool picture) {
+    static_cast<void>(depths_m);
+    static_cast<void>(picture);
+  }
   /// By several threads at once.
   virtual void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const = 0;
   /// Where the search for an accuracy starts.
   [[nodiscard]] virtual int first_level(const OperatingPoint& point, double tolerance) const = 0;
+  /// In its place where a search looks once more.
+  [[nodiscard]] virtual int rough_level(int first) const { return first; }
   /// As of PointEvaluator.
   [[nodiscard]] virtual std::size_t at_a_time() const { return lane_count; }
   /// Length of the state beyond which no finer level is taken.

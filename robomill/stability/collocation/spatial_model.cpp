@@ -110,13 +110,19 @@ SpatialModel::SpatialModel(Parts parts)
   period_rad_ = equal_teeth_ ? units::revolution / mill.teeth : units::revolution;
 }
 
+void SpatialModel::expect(std::span<const double> depths_m, bool picture) {
+  picture_ = picture;
+  expected_.assign(depths_m.begin(), depths_m.end());
+  std::ranges::sort(expected_);
+}
+
 int SpatialModel::first_level(const OperatingPoint& point, double tolerance) const {
   const double quicker = std::sqrt(std::max(point.gain, 1.0));
   return level_for(period_rad_ * fastest_rad_per_s_ / point.spindle_speed_rad_per_s, quicker, tolerance);
 }
 
 std::shared_ptr<const SpatialModel::Looked> SpatialModel::look(double depth, int rings) const {
-  const bool kept = std::ranges::find(expected_, depth) != expected_.end();
+  const bool kept = std::ranges::binary_search(expected_, depth);
   const std::pair<double, int> key(depth, rings);
   if (kept) {
     const std::scoped_lock lock(kept_mutex_);
@@ -133,14 +139,42 @@ std::shared_ptr<const SpatialModel::Looked> SpatialModel::look(double depth, int
   return looked;
 }
 
+/// The pieces of a period and what the force answers at their nodes. The speed decides no more than how many pieces
+/// there are: in a picture speeds whose ratio is below 2^(1/4) take the same, as many as the slowest one needs.
+void SpatialModel::mesh(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const {
+  double fastest_per_rad = fastest_rad_per_s_ / point.spindle_speed_rad_per_s;
+  constexpr int picture_rings = 10;  // of a level and of the one above it, which looks at the same depths
+  const int rings = (picture_ ? picture_rings : level.nodes + 4) * level.splits;
+  const auto build = [&](CollocationCase& to) {
+    const std::shared_ptr<const Looked> looked = look(point.axial_depth_m, rings);
+    const Eigen::Matrix3d axes = parts_.turns_with_tool ? Eigen::Matrix3d::Identity() : looked->feed_from_tool;
+    build_spatial_mesh(looked->contacts, fastest_per_rad, axes, level, to);
+  };
+  if (!picture_ || !std::ranges::binary_search(expected_, point.axial_depth_m)) return build(out);
+  fastest_per_rad = std::exp2(0.25 * std::ceil(4.0 * std::log2(fastest_per_rad)));
+  const std::array<double, 4> key = {point.axial_depth_m, static_cast<double>(level.nodes),
+                                     static_cast<double>(level.splits), fastest_per_rad};
+  std::shared_ptr<const CollocationCase> known;
+  {
+    const std::scoped_lock lock(kept_mutex_);
+    if (const auto at = meshes_.find(key); at != meshes_.end()) known = at->second;
+  }
+  if (!known) {
+    auto made = std::make_shared<CollocationCase>();
+    build(*made);
+    const std::scoped_lock lock(kept_mutex_);
+    known = meshes_.emplace(key, made).first->second;
+  }
+  out.mesh = known->mesh;
+  out.pieces = known->pieces;
+}
+
 void SpatialModel::prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const {
-  out.spindle_speed_rad_per_s = point.spindle_speed_rad_per_s;
+  const double speed = point.spindle_speed_rad_per_s;
+  out.spindle_speed_rad_per_s = speed;
   out.axial_depth_m = point.axial_depth_m;
   out.level = level;
-  const std::shared_ptr<const Looked> looked = look(point.axial_depth_m, (level.nodes + 4) * level.splits);
-  const Eigen::Matrix3d axes = parts_.turns_with_tool ? Eigen::Matrix3d::Identity() : looked->feed_from_tool;
-  const double speed = point.spindle_speed_rad_per_s;
-  build_spatial_mesh(looked->contacts, fastest_rad_per_s_ / speed, axes, level, out);
+  mesh(point, level, out);
   out.plans.clear();
   for (std::size_t e = 0; e < out.pieces.size(); ++e) {
     const bool records = out.mesh.topology.pieces[e].records;

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -31,9 +33,10 @@ class SpatialModel final : public CollocationModel {
   [[nodiscard]] std::size_t modes() const override { return static_cast<std::size_t>(tip_.pole.size()); }
   [[nodiscard]] bool depends_on_depth() const override { return true; }
   [[nodiscard]] double factor(const OperatingPoint& point) const override { return point.gain; }
-  void expect(std::span<const double> depths_m) override { expected_.assign(depths_m.begin(), depths_m.end()); }
+  void expect(std::span<const double> depths_m, bool picture) override;
   void prepare(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const override;
   [[nodiscard]] int first_level(const OperatingPoint& point, double tolerance) const override;
+  [[nodiscard]] int rough_level(int first) const override { return std::max(first - 1, 1); }
   [[nodiscard]] std::size_t at_a_time() const override { return 3; }
   /// With several delays a piece has a matrix for each other one that it looks back to.
   [[nodiscard]] std::size_t largest_state() const override { return equal_teeth_ ? 4000 : 1500; }
@@ -48,11 +51,15 @@ class SpatialModel final : public CollocationModel {
     Eigen::Matrix3d feed_from_tool;
   };
   [[nodiscard]] std::shared_ptr<const Looked> look(double depth, int rings) const;
+  void mesh(const OperatingPoint& point, const MeshLevel& level, CollocationCase& out) const;
 
   Parts parts_;
-  std::vector<double> expected_;  ///< depths whose engagements are kept
+  std::vector<double> expected_;  ///< depths whose engagements are kept, increasing
   mutable std::mutex kept_mutex_;
+  bool picture_ = false;
   mutable std::map<std::pair<double, int>, std::shared_ptr<const Looked>> kept_;  ///< by depth and rings
+  /// Of a picture: mesh and stiffness by depth, level and how fast the modes are beside the cutter.
+  mutable std::map<std::array<double, 4>, std::shared_ptr<const CollocationCase>> meshes_;
   TipDynamicsIn<3> tip_;
   double fastest_rad_per_s_ = 0.0;
   bool equal_teeth_ = true;

@@ -50,6 +50,11 @@ io::Json evaluated_json(const PointResult& point, const Varied& varied = {}) {
   row["multiplier"] = io::complex_number(point.multiplier);
   add_chatter(row, point);
   if (!std::isnan(point.gain_margin)) row["gain_margin"] = io::number(point.gain_margin);
+  if (!std::isnan(point.limit_depth_m)) {
+    row["limit_depth_mm"] = io::number(point.limit_depth_m / units::mm);
+    const bool limited = std::isfinite(point.limit_depth_m);
+    row["margin"] = limited ? io::number(1.0 - point.axial_depth_m / point.limit_depth_m) : io::Json(nullptr);
+  }
   return row;
 }
 
@@ -176,7 +181,7 @@ std::string comparison_json(const MethodComparison& comparison) {
                                {"median_error", io::number(row.median_error)},
                                {"worst_error", io::number(row.worst_error)},
                                {"differ", row.differ},
-                               {"refusal", row.rejection},
+                               {"rejection", row.rejection},
                                {"seconds", io::number(row.seconds)}});
   }
   return io::dump(json);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -67,6 +68,20 @@ TEST(LobesJson, SaysEverythingInShopUnits) {
   EXPECT_EQ(json["unsettled"], 2);
   EXPECT_EQ(json["uncertain"], 1);
   EXPECT_EQ(json["seconds"], 0.25);
+}
+
+TEST(LobesJson, HasLimitAndMarginOfAPointWhereTheyAreKnown) {
+  LobesResult result = small_result();
+  result.points[0].axial_depth_m = 0.6e-3;
+  EXPECT_FALSE(nlohmann::json::parse(lobes_json(result))["points"][0].contains("margin"));
+  result.points[0].limit_depth_m = 0.8e-3;
+  nlohmann::json point = nlohmann::json::parse(lobes_json(result))["points"][0];
+  EXPECT_EQ(point["limit_depth_mm"], 0.8);
+  EXPECT_EQ(point["margin"], 0.25);
+  result.points[0].limit_depth_m = std::numeric_limits<double>::infinity();
+  point = nlohmann::json::parse(lobes_json(result))["points"][0];
+  EXPECT_TRUE(point["limit_depth_mm"].is_null());
+  EXPECT_TRUE(point["margin"].is_null());
 }
 
 TEST(LobesJson, LeavesOutTheMapWhereNobodyAskedForIt) {

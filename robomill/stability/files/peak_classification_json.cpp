@@ -1,6 +1,9 @@
 #include "robomill/stability/files/peak_classification_json.hpp"
 
+#include <utility>
+
 #include "robomill/base/units.hpp"
+#include "robomill/io/csv.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/modal/files/mode_json.hpp"
 
@@ -57,6 +60,28 @@ std::string peak_classification_json(const PeakClassification& classification, c
     modal::set_mode(json["chatter"], verdict->mode);
   }
   return io::dump(json);
+}
+
+std::string peaks_csv(const PeakClassification& classification) {
+  using io::csv_number;
+  std::string out =
+      "frequency_hz,state,kind,rotations,mirrored,of_tooth_passing,mode,mode_of,mode_frequency_hz,expected_hz,"
+      "difference_hz,tolerance_hz,chatter_frequency_hz,other_readings\n";
+  for (const ExplainedPeak& peak : classification.peaks) {
+    const Explanation& e = peak.best;
+    const bool named = peak.state == ExplainedPeak::State::named;
+    const bool moded = named && e.mode.known();
+    const auto where_named = [named](std::string cell) { return named ? std::move(cell) : std::string(); };
+    io::add_csv_row(out,
+                    {csv_number(peak.frequency_hz), std::string(to_string(peak.state)), std::string(to_string(e.kind)),
+                     where_named(std::to_string(e.harmonic)), where_named(e.mirrored ? "true" : "false"),
+                     where_named(e.of_tooth_passing ? "true" : "false"), moded ? std::to_string(e.mode.number) : "",
+                     moded ? std::string(to_string(e.mode.of)) : "", moded ? csv_number(e.mode_frequency_hz) : "",
+                     where_named(csv_number(e.expected_hz)), where_named(csv_number(e.difference_hz)),
+                     where_named(csv_number(e.tolerance_hz)), csv_number(peak.chatter_frequency_hz),
+                     std::to_string(peak.others.size())});
+  }
+  return out;
 }
 
 }  // namespace robomill::stability

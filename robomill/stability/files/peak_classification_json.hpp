@@ -13,4 +13,7 @@ namespace robomill::stability {
 [[nodiscard]] ROBOMILL_API std::string peak_classification_json(const PeakClassification& classification,
                                                                 const ChatterMechanism* verdict);
 
+/// A row a peak, with the best reading of those that are named.
+[[nodiscard]] ROBOMILL_API std::string peaks_csv(const PeakClassification& classification);
+
 }  // namespace robomill::stability

@@ -53,5 +53,13 @@ TEST(PeakClassificationJson, NamesNothingThatCannotBeDetermined) {
   EXPECT_LT(peak["others"][0]["likelihood_per_hz"], 3.0 * peak["others"][1]["likelihood_per_hz"].get<double>());
 }
 
+TEST(PeaksCsv, HasARowAPeak) {
+  const std::string table = peaks_csv(explain({{324.99, 666.98, 539.5}, 6500.0 * units::rpm, 3}, data::robot_modes()));
+  const auto starts = [&](const char* row) { return table.find(std::string("\n") + row) != std::string::npos; };
+  EXPECT_TRUE(starts("324.99,named,tooth passing,3,false,true,,,,")) << table;
+  EXPECT_TRUE(starts("666.98,named,chatter,6,false,true,1,tool,17.4,")) << table;
+  EXPECT_TRUE(starts("539.5,cannot be told,chatter,,,,,,,,,,")) << table;
+}
+
 }  // namespace peak_classification_json_test
 }  // namespace robomill::stability

@@ -1,5 +1,6 @@
 #include "robomill/stability/frequency_domain/frequency_lobes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -81,9 +82,26 @@ PointResult to_point(const FrequencyLimit& found, const OperatingPoint& point) {
 }
 
 void require_depth(const LobesOptions& options) {
-  if (options.output != Output::boundary) {
+  if (options.output != Output::boundary && options.output != Output::limits) {
     throw InvalidInput("output", std::string(to_string(options.method)) + " knows limits, not the spectral radius",
                        "Take output = \"boundary\"");
+  }
+}
+
+/// With the limits at their speeds.
+void add_points(const LobesProblem& problem, const LobesOptions& options, LobesResult& result, Progress& progress) {
+  if (options.points.empty()) return;
+  double deepest_m = options.axial_depth_m[1];
+  std::vector<double> speeds;
+  for (const OperatingPoint& point : options.points) {
+    deepest_m = std::max(deepest_m, point.axial_depth_m);
+    speeds.push_back(point.spindle_speed_rad_per_s);
+  }
+  const std::vector<FrequencyLimit> limits = solve(problem, options, speeds, deepest_m, false, progress);
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const bool limited = limits[i].status != FrequencyLimit::Status::stable_in_range;
+    PointResult& point = result.points.emplace_back(to_point(limits[i], options.points[i]));
+    point.limit_depth_m = limited ? limits[i].axial_depth_m : std::numeric_limits<double>::infinity();
   }
 }
 
@@ -116,10 +134,12 @@ LobesResult frequency_lobes(const LobesProblem& problem, const LobesOptions& opt
       Eigen::Map<const Eigen::VectorXd>(axes.spindle_speed_rad_per_s.data(), options.grid[0]);
   result.axial_depth_m = Eigen::Map<const Eigen::VectorXd>(axes.axial_depth_m.data(), options.grid[1]);
   const std::vector<FrequencyLimit> found =
-      solve(problem, options, axes.spindle_speed_rad_per_s, options.axial_depth_m[1], true, progress);
+      solve(problem, options, axes.spindle_speed_rad_per_s, options.axial_depth_m[1],
+            options.output == Output::boundary, progress);
   for (const FrequencyLimit& limit : found) {
     result.limit.push_back(to_limit(limit));
     if (limit.status == FrequencyLimit::Status::not_converged) ++result.uncertain;
+    if (options.output == Output::limits) continue;
     for (const DepthCrossing& crossing : limit.crossings) {
       if (crossing.axial_depth_m < options.axial_depth_m[0]) continue;
       result.boundary.push_back(
@@ -127,7 +147,7 @@ LobesResult frequency_lobes(const LobesProblem& problem, const LobesOptions& opt
            crossing.axial_depth_m == limit.axial_depth_m ? limit.mode : modal::ModeId{}, error_share(limit), 0});
     }
   }
-  for (const OperatingPoint& point : options.points) result.points.push_back(frequency_point(problem, options, point));
+  add_points(problem, options, result, progress);
   result.evaluations = static_cast<long long>(found.size() + options.points.size());
   return result;
 }

@@ -67,7 +67,7 @@ class SemiDiscretization final : public Scheme {
     return std::make_unique<SteppedEvaluator>(problem_, intervals_, model_, depths_);
   }
   [[nodiscard]] Period period() const override { return model_.cut.period(); }
-  void expect(std::span<const double> depths_m) override { depths_.expect(model_.cut, depths_m); }
+  void expect(std::span<const double> depths_m, bool) override { depths_.expect(model_.cut, depths_m); }
 
  private:
   LobesProblem problem_;

@@ -117,7 +117,7 @@ class NodeScheme final : public Scheme {
     return std::make_unique<NodePointEvaluator>(problem_, model_, depths_);
   }
   [[nodiscard]] Period period() const override { return Period::tooth; }
-  void expect(std::span<const double> depths_m) override { depths_.expect(model_.halves, depths_m); }
+  void expect(std::span<const double> depths_m, bool) override { depths_.expect(model_.halves, depths_m); }
 
  private:
   LobesProblem problem_;

@@ -32,7 +32,7 @@ struct Case {
   double resolution;  // of its digits
 };
 
-class Program : public testing::TestWithParam<Case> {
+class Program : public ::testing::TestWithParam<Case> {
  protected:
   std::string written(const std::vector<Sample>& samples, TrajectoryInfo info = test::arm_info()) {
     const auto path = folder_.at(std::string("1 – part") + GetParam().ending);
