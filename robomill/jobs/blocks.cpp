@@ -13,6 +13,7 @@
 #include "robomill/base/parallel.hpp"
 #include "robomill/jobs/blocks/classes.hpp"
 #include "robomill/jobs/blocks/finished_surface.hpp"
+#include "robomill/jobs/blocks/joint_torques.hpp"
 #include "robomill/jobs/blocks/named_block.hpp"
 #include "robomill/jobs/blocks/scans.hpp"
 #include "robomill/jobs/blocks/stability.hpp"
@@ -212,6 +213,7 @@ ProgramBlocks judge_blocks(const ForcesResult& forces, const DynamicsAt& dynamic
     row.stability_margin = margin_of(row);
   }
   fill_surface_left(forces, shared, out.rows, progress);
+  add_joint_torques(forces, out);
   sum_up(out);
   out.beyond = stretches_beyond(out.rows, shared);
   out.band_within = band_within(out.rows);

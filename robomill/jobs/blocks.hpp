@@ -12,6 +12,7 @@
 #include "robomill/jobs/forces.hpp"
 #include "robomill/modal/mode_id.hpp"
 #include "robomill/modal/modes.hpp"
+#include "robomill/robot/joint_load.hpp"
 
 // Method: robomill/jobs/README.md, "Every block of a program (`blocks.hpp`)"
 
@@ -28,10 +29,11 @@ struct PostureDynamics {
 using DynamicsAt = std::function<PostureDynamics(const Eigen::VectorXd& joints)>;
 
 /// Of the cell's measured postures, or of its arm's numbers alone (posture.hpp).
-/// @param warnings, notes  for the user are added
+/// @param warnings, notes, assumed  for the user are added
 /// @throws InvalidInput as cell_dynamics, or with the cell's file if nothing is known to vibrate; Interrupted
 [[nodiscard]] ROBOMILL_API DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& warnings,
                                                        std::vector<std::string>& notes,
+                                                       std::vector<Assumption>& assumed,
                                                        Progress& progress = Progress::none());
 /// The same modes in every posture.
 [[nodiscard]] ROBOMILL_API DynamicsAt constant_dynamics(modal::ModalModel modes);
@@ -75,6 +77,8 @@ struct BlockRow {
   /// Of the places of the finished surface, that no later block takes away, the error of greatest magnitude; > 0:
   /// material is left standing. NaN: the block leaves none of it, chatters, or the program has no stock.
   double surface_left_m = CutStability::none;
+  double joint_torque_share = CutStability::none;    ///< the greatest of a drive's, weight and cut; NaN: not known
+  double cut_joint_torque_n_m = CutStability::none;  ///< the greatest that the cut alone puts on a joint that turns
   std::optional<bool> measured_nearby = {};
   std::size_t unmatched = 0;   ///< as CellDynamics::unmatched
   std::size_t evaluation = 0;  ///< which one it shares, from 0
@@ -96,7 +100,8 @@ struct BeyondMeasured {
 };
 
 struct ProgramBlocks {
-  std::vector<BlockRow> rows = {};  ///< one a block of the program
+  std::vector<BlockRow> rows = {};                   ///< one a block of the program
+  std::vector<robot::LoadedBlock> joint_loads = {};  ///< one a block: weight and cut over a revolution
   std::size_t cutting = 0, unstable = 0;
   std::size_t worst = 0;                    ///< of worse()
   std::size_t evaluations = 0;              ///< different cuts that were looked at

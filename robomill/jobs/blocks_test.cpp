@@ -32,7 +32,7 @@ namespace blocks_test {
 
 const std::string source = ROBOMILL_SOURCE_DIR;
 
-class Blocks : public testing::Test {
+class Blocks : public ::testing::Test {
  protected:
   /// @param stiffness  factor on the joints'
   void write_cell(double stiffness = 1.0) {

@@ -76,7 +76,7 @@ DynamicsAt dynamics_of(const std::vector<Swing>& swings) {
   return constant_dynamics(stability::testing::spatial_model(modes));
 }
 
-class Compensate : public testing::Test {
+class Compensate : public ::testing::Test {
  protected:
   /// Forces along the program of a job; in the cell W's axes are those of B.
   ForcesResult forces_of(const WallJob& job) {

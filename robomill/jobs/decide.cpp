@@ -97,30 +97,29 @@ void check_problem(const DecideProblem& problem) {
   if (problem.blocks.cutting == 0) throw InvalidInput("program", "has no block that cuts");
 }
 
-/// What was assumed because nobody said it.
-std::vector<std::string> assumptions(const DecideProblem& problem, const BlockModel& model) {
-  std::vector<std::string> out = model.notes();
+std::vector<Assumption> assumed_of(const DecideProblem& problem, const BlockModel& model) {
+  std::vector<Assumption> out;
+  const auto add = [&out](const char* what, std::string taken, const char* key) {
+    out.push_back({.what = what, .taken = std::move(taken), .key = key});
+  };
   const decision::ProgramOptions& search = model.search();
   const auto& asked = problem.options.chip_thickness_m;
   if (asked[0] <= 0.0 || asked[1] <= 0.0) {
-    out.push_back(fmt::format(
-        "Chip thickness is kept between {:.3g} and {:.3g} mm, as far as decide.chip_thickness_mm does not say it: the "
-        "least and the greatest of the program as it is.",
-        model.chip_m()[0] / units::mm, model.chip_m()[1] / units::mm));
+    add("Chip thickness",
+        fmt::format("from {:.3g} to {:.3g} mm, the least and the greatest of the program as it is",
+                    model.chip_m()[0] / units::mm, model.chip_m()[1] / units::mm),
+        "decide.chip_thickness_mm");
   }
   if (problem.machine.spindle.empty()) {
-    out.push_back("Torque and power of the spindle are not limited: [[spindle.curve]] is not given.");
+    add("Torque and power of the spindle", "not limited", "spindle.curve");
     const bool whole =
         problem.machine.min_spindle_speed_rad_per_s > 0.0 && problem.machine.max_spindle_speed_rad_per_s > 0.0;
     if (search.free_speed && !whole) {
-      out.push_back(fmt::format(
-          "Spindle speeds are looked for from {:.0f} to {:.0f} rpm, about the program's own: "
-          "spindle.min_speed_rpm and max_speed_rpm are not given.",
-          search.min_spindle_speed_rad_per_s / units::rpm, search.max_spindle_speed_rad_per_s / units::rpm));
+      add("Spindle speeds",
+          fmt::format("from {:.0f} to {:.0f} rpm, about the program's own",
+                      search.min_spindle_speed_rad_per_s / units::rpm, search.max_spindle_speed_rad_per_s / units::rpm),
+          "spindle.min_speed_rpm");
     }
-  }
-  if (problem.options.is_free(Free::gamma) && model.checker() == nullptr) {
-    out.push_back("Nothing checked the turned flange for collisions: the cell has no [geometry].");
   }
   return out;
 }
@@ -139,7 +138,8 @@ class Decider {
       : problem_(problem), progress_(progress), model_(problem, progress) {}
 
   DecideResult run() {
-    out_.notes = assumptions(problem_, model_);
+    out_.notes = model_.notes();
+    out_.assumed = assumed_of(problem_, model_);
     const JudgedRun programmed(problem_, problem_.forces, problem_.blocks);
     out_.as_programmed = outcome_of(programmed, model_.chip_m());
     std::vector<Violation> of_motion;

@@ -115,6 +115,7 @@ struct DecideResult {
   int exact_runs = 0;               ///< of the whole program, as it was chosen
   double seconds = 0.0;
   std::vector<std::string> notes = {};
+  std::vector<Assumption> assumed = {};
 };
 
 /// Chooses spindle speeds, feeds and γ of a program by decision::decide_program with one look a class of blocks, runs

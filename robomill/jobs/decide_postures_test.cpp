@@ -13,8 +13,8 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/workpiece.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/jobs/blocks/joint_torques.hpp"
 #include "robomill/jobs/decide.hpp"
-#include "robomill/jobs/decide/joint_torques.hpp"
 #include "robomill/jobs/decide/motion_loads.hpp"
 #include "robomill/robot/pose.hpp"
 #include "testing/jobs/three_passes.hpp"
@@ -30,6 +30,18 @@ class DecidePostures : public jobs::testing::ThreePasses {
                                   "\n[geometry]\nstickout_mm = 30\nclearance_mm = 1\n"
                                   "holder = [{ length_mm = 20, diameter_mm = 30 }]\n" +
                                   keys);
+  }
+  /// Masses of the links and torques of the drives.
+  void add_links() {
+    std::string cell = io::read_file(folder_.at("cell.toml"));
+    std::string links = "joint_max_torque_n_m = [9000, 20000, 9000, 2000, 2000, 1000]\nlinks = [\n";
+    for (const double mass_kg : {300.0, 250.0, 150.0, 60.0, 30.0, 20.0}) {
+      links +=
+          fmt::format("  {{ mass_kg = {0}, center_mm = [{0}, 20, -{0}], inertia_kg_m2 = [{1}, {1}, {1}, 0, 0, 0] }},\n",
+                      mass_kg, 0.02 * mass_kg);
+    }
+    cell.insert(cell.find("joint_stiffness"), links + "]\n");
+    folder_.file("cell.toml", cell);
   }
   static constexpr const char* far_box = "fixtures = [{ box_from_mm = [500, 500, 0], box_to_mm = [520, 520, 20] }]\n";
 };
@@ -243,17 +255,49 @@ TEST_F(DecidePostures, AMotionThatTheDrivesCannotGiveIsFedSlower) {
   for (const DecidedLines& lines : result.stretches) EXPECT_LE(lines.highest_feed_m_per_s, most_m_per_s);
 }
 
+// Two ways to the same: Jacobian and forces of the cut, and what is left of the loads without the weight.
+TEST_F(DecidePostures, LoadsOfJointsAreWeightAndCut) {
+  add_links();
+  const Judged judged = judge(constant_dynamics(modes(20.0)));
+  const CellFile& file = *judged.forces.cell;
+  const robot::Arm& arm = file.cell.arm;
+  ASSERT_EQ(judged.blocks.joint_loads.size(), judged.blocks.rows.size());
+  for (std::size_t i = 0; i < judged.blocks.rows.size(); ++i) {
+    const BlockRow& row = judged.blocks.rows[i];
+    if (!row.cuts) continue;
+    const std::vector<robot::JointLoad> at_rest =
+        robot::joint_loads(loaded_arm(file), judged.forces.program->blocks[i].joints, robot::tip_point(file.cell));
+    double cut = 0.0, share = 0.0;
+    for (std::size_t k = 0; k < at_rest.size(); ++k) {
+      const robot::JointLoadRange& load = judged.blocks.joint_loads[i].joints[k];
+      cut = std::max({cut, std::abs(load.min - at_rest[k].gravity), std::abs(load.max - at_rest[k].gravity)});
+      share = std::max(share, std::max(std::abs(load.min), std::abs(load.max)) / arm.joints[k].max_torque);
+    }
+    EXPECT_GT(cut, 0.0);
+    EXPECT_NEAR(row.cut_joint_torque_n_m, cut, 1e-9 * (cut + std::abs(at_rest[1].gravity))) << i;
+    EXPECT_NEAR(row.joint_torque_share, share, 1e-12) << i;
+  }
+}
+
+// What hangs on the flange is part of what the drives hold: a plan that does not know it says so.
+TEST_F(DecidePostures, LoadsWithoutTheSpindleAreAssumed) {
+  const auto assumes_mass = [this] {
+    const std::vector<Assumption> assumed = judged().assumed;
+    const auto found = std::ranges::find(assumed, "tool.mass_kg", &Assumption::key);
+    return found != assumed.end() && found->taken == "none" && found->file == "cell.toml";
+  };
+  EXPECT_FALSE(assumes_mass()) << "no drive has a limit";
+  add_links();
+  EXPECT_TRUE(assumes_mass());
+  std::string cell = io::read_file(folder_.at("cell.toml"));
+  cell.insert(cell.find("length_mm = "), "mass_kg = 40\n");
+  folder_.file("cell.toml", cell);
+  EXPECT_FALSE(assumes_mass());
+}
+
 // Against the equation of motion at speeds and accelerations in closed form.
 TEST_F(DecidePostures, LoadsOfAMotionAreThoseOfItsDerivatives) {
-  std::string cell = io::read_file(folder_.at("cell.toml"));
-  std::string links = "joint_max_torque_n_m = [9000, 20000, 9000, 2000, 2000, 1000]\nlinks = [\n";
-  for (const double mass_kg : {300.0, 250.0, 150.0, 60.0, 30.0, 20.0}) {
-    links +=
-        fmt::format("  {{ mass_kg = {0}, center_mm = [{0}, 20, -{0}], inertia_kg_m2 = [{1}, {1}, {1}, 0, 0, 0] }},\n",
-                    mass_kg, 0.02 * mass_kg);
-  }
-  cell.insert(cell.find("joint_stiffness"), links + "]\n");
-  folder_.file("cell.toml", cell);
+  add_links();
   const ForcesResult forces = *judged().forces;
   const CellFile& file = *forces.cell;
   ASSERT_TRUE(knows_torques(file));
@@ -286,7 +330,8 @@ TEST_F(DecidePostures, LoadsOfAMotionAreThoseOfItsDerivatives) {
   // No block cuts: what each bears beside its weight is nothing.
   ProgramBlocks none;
   none.rows.resize(blocks);
-  const std::vector<double> found = loads.shares(forces, joint_torques(forces, none));
+  add_joint_torques(forces, none);
+  const std::vector<double> found = loads.shares(forces, none.joint_loads);
   double greatest = 0.0;
   for (std::size_t i = 0; i < blocks; ++i) {
     EXPECT_NEAR(found[i], expected[i], 2e-3 * expected[i]) << i;

@@ -22,6 +22,7 @@ struct ExplainJob {
 
 struct ExplainResult {
   stability::PeakClassification peaks;
+  int teeth = 0;                                              ///< of the cutter, as the job has them
   std::optional<LobesFile> cut = {};                          ///< with its dynamics
   std::optional<stability::ChatterMechanism> mechanism = {};  ///< whether the cut's chatter needs the delay
 };

@@ -9,6 +9,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/jobs/blocks/dynamics.hpp"
+#include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/program_forces.hpp"
 #include "robomill/modal/tip.hpp"
 #include "robomill/robot/inverse.hpp"
@@ -199,16 +200,37 @@ ForcesResult run_forces(ForcesFile forces, const std::filesystem::path& program,
   return run_forces_with(std::move(forces), program, std::move(cell), ProgramRun{}, progress);
 }
 
+namespace {
+
+std::vector<Assumption> assumed_of(const ForcesResult& result, const ProgramRun& run) {
+  std::vector<Assumption> out;
+  if (result.program && result.program->stock && result.program->stock->assumed) {
+    out.push_back({.what = "Stock",
+                   .taken = stock_text(*result.program),
+                   .key = "stock.kind",
+                   .file = result.file.path.filename().string()});
+  }
+  add_assumed(out, assumed_of(result.file, result.cell.has_value()));
+  if (result.program) add_assumed(out, result.program->program.assumed);
+  if (result.cell && !result.program) add_assumed(out, result.cell->assumed);
+  if (result.cell && result.program) add_assumed(out, assumed_along_program(*result.cell, !run.joints.empty()));
+  return out;
+}
+
+}  // namespace
+
 ForcesResult run_forces_with(ForcesFile forces, const std::filesystem::path& program, std::optional<CellFile> cell,
                              const ProgramRun& run, Progress& progress) {
   ForcesResult result = {.file = std::move(forces), .cell = std::move(cell)};
   if (!result.cell && !result.file.cell.empty()) result.cell = read_cell(result.file.cell);
-  if (result.cell) result.notes = result.cell->notes;
+  result.notes = result.file.notes;
+  if (result.cell) result.notes.insert(result.notes.end(), result.cell->notes.begin(), result.cell->notes.end());
   if (!program.empty()) {
     result.program = run_program(result.file, result.cell, program, result.warnings, result.notes, progress, run);
   } else {
     run_revolution(result, progress);
   }
+  result.assumed = assumed_of(result, run);
   return result;
 }
 

@@ -83,6 +83,7 @@ struct ForcesResult {
   std::optional<ProgramForces> program = {};
   std::optional<decision::SpindleCapacity> spindle = {};  ///< what it has along the program, where the job knows
   std::vector<std::string> warnings = {}, notes = {};
+  std::vector<Assumption> assumed = {};
 };
 
 /// Forces of forces.toml: over one revolution, or, with a program, block by block along it.
@@ -108,7 +109,8 @@ struct SpindleLoad {
 /// Of one revolution, or of every block that cuts.
 [[nodiscard]] ROBOMILL_API std::vector<SpindleLoad> spindle_loads(const ForcesResult& result);
 
-/// The stock in words, with what was assumed; empty for one beside neighbouring passes.
+/// The stock in words, of one that was assumed with where its height comes from; empty for one beside neighbouring
+/// passes.
 [[nodiscard]] ROBOMILL_API std::string stock_text(const ProgramForces& program);
 
 /// A row a step of rotation, or a row a block.

@@ -209,7 +209,10 @@ TEST(RunForces, APocketWithoutStockIsNoDeeperThanItIs) {
   EXPECT_EQ(json["stock"]["assumed"], true);
   EXPECT_EQ(json["stock"]["top_from"], "program zero");
   EXPECT_EQ(json["stock"]["max_mm"][2], 0.0);
-  EXPECT_NE(stock_text(*result.program).find("assumed, since none is given"), std::string::npos);
+  ASSERT_FALSE(result.assumed.empty());
+  EXPECT_EQ(result.assumed[0].what, "Stock");
+  EXPECT_EQ(result.assumed[0].taken, stock_text(*result.program));
+  EXPECT_EQ(result.assumed[0].key, "stock.kind");
   const ForcesResult with_depth =
       run_forces(folder.file("forces.toml", "cut = { axial_depth_mm = 1.5 }\n" + pocket_tool), program, {});
   EXPECT_EQ(nlohmann::json::parse(forces_json(with_depth))["stock"]["max_mm"][2], -0.5);

@@ -35,14 +35,16 @@ JointResult run_joint(const JointJob& job, Progress& progress) {
   options.seed = job.seed;
   JointResult out;
   try {
-    out.fit = coupling::fit_joint(file.assembly, coupling::lines_between(measured.set, file.low_hz, file.high_hz),
-                                  options, progress);
+    out.measured = coupling::lines_between(measured.set, file.low_hz, file.high_hz);
+    out.fit = coupling::fit_joint(file.assembly, out.measured, options, progress);
   } catch (const InvalidInput& error) {
     throw with_file(error, job);
   }
   out.notes = file.notes;
   out.notes.insert(out.notes.end(), measured.notes.begin(), measured.notes.end());
   if (file.holder) out.notes.insert(out.notes.end(), file.holder->notes.begin(), file.holder->notes.end());
+  out.assumed = file.assumed;
+  add_assumed(out.assumed, measured.assumed);
   return out;
 }
 

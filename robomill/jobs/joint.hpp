@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/coupling/joint_fit.hpp"
+#include "robomill/modal/frf.hpp"
 
 // Method: robomill/jobs/README.md, "Joints (`joint.hpp`)"
 
@@ -26,7 +28,9 @@ struct JointJob {
 
 struct JointResult {
   coupling::JointFitResult fit;
+  modal::FrfSet measured;          ///< the lines within the assembly's range
   std::vector<std::string> notes;  ///< on the files: sentences for the user
+  std::vector<Assumption> assumed = {};
 };
 
 /// Finds the joint with which the assembly's tip moves as measured: coupling::fit_joint over the measured lines within

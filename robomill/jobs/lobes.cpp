@@ -4,6 +4,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/jobs/files/posture_json.hpp"
+#include "robomill/stability/files/lobes_csv.hpp"
 #include "robomill/stability/files/lobes_json.hpp"
 #include "robomill/stability/files/lobes_object.hpp"
 
@@ -13,10 +14,7 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   LobesJobResult result;
   LobesFile& cut = result.cut;
   cut = read_lobes(job.lobes);
-  if (cut.problem.in_three_directions() && !(cut.frf.empty() && cut.workpiece_frf.empty())) {
-    throw InvalidInput(job.lobes.string(), "a cut in three directions needs modes, not FRFs",
-                       "Fit them: robomill modes");
-  }
+  require_modes_in_three_directions(cut);
   load_dynamics(cut, progress);
   cut.validate();
   cut.options.points = job.points;
@@ -34,12 +32,23 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   result.lobes = stability::compute_lobes(cut.problem, cut.options, progress);
   cut.uncertainty.seed = job.seed;
   if (cut.uncertainty.samples > 0) {
+    if (!cut.band_note.empty()) cut.notes.push_back(cut.band_note);
     result.uncertain = stability::uncertain_limits(cut.problem, cut.options, cut.uncertainty, progress);
   }
   if (cut.surface_grid[0] > 0) {
     result.surface = stability::surface_map(cut.problem, cut.options, cut.surface_grid, progress);
   }
   return result;
+}
+
+std::string lobes_table(const LobesJobResult& result) {
+  if (result.comparison) return stability::comparison_csv(*result.comparison);
+  if (result.sweep && !result.sweep->points.empty()) {
+    return stability::points_csv(result.sweep->points, result.sweep->parameter);
+  }
+  if (result.sweep) return stability::sweep_csv(*result.sweep);
+  if (!result.lobes.points.empty()) return stability::points_csv(result.lobes.points);
+  return stability::limits_csv(result.lobes, result.uncertain);
 }
 
 std::string lobes_document(const LobesJobResult& result) {

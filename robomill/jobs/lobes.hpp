@@ -43,5 +43,7 @@ struct LobesJobResult {
 
 /// lobes.json: the chart, the sweep or the comparison, and the posture that the modes are of.
 [[nodiscard]] ROBOMILL_API std::string lobes_document(const LobesJobResult& result);
+/// The same as a table: the sweep, the comparison, the points where the job has some, else the limit.
+[[nodiscard]] ROBOMILL_API std::string lobes_table(const LobesJobResult& result);
 
 }  // namespace robomill::jobs

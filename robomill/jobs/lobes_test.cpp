@@ -150,7 +150,7 @@ TEST(RunLobes, JudgesDrilling) {
   const LobesJobResult result = run_lobes({.lobes = drill});
   ASSERT_EQ(result.lobes.limit.size(), 6U);
   EXPECT_EQ(result.lobes.limit[0].status, stability::Limit::Status::found);
-  EXPECT_EQ(result.cut.notes.back(), "z was not measured and is taken as rigid.");
+  EXPECT_EQ(result.cut.assumed.back().what, "Direction z, not measured");
 }
 
 }  // namespace lobes_test

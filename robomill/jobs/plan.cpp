@@ -4,17 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/decision/choose.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
+#include "robomill/jobs/plan_assumed.hpp"
 #include "robomill/jobs/plan_decision.hpp"
+#include "robomill/jobs/plan_lobes.hpp"
 #include "robomill/jobs/program_forces.hpp"
-#include "robomill/jobs/test_cuts.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/hits_toml.hpp"
@@ -23,12 +22,6 @@
 
 namespace robomill::jobs {
 namespace {
-
-constexpr Eigen::Index feed_directions = 36;
-constexpr int speeds_a_direction = 40;
-/// Depths at which the comparisons beside the main lobes look for the limit, before they refine it.
-constexpr int comparison_depths = 30;
-constexpr int comparison_speeds = 100;
 
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
@@ -82,6 +75,7 @@ void measure(PlanResult& result, Progress& progress) {
   if (!result.job.hits.empty()) {
     const modal::HitsFile hits = modal::read_hits(result.job.hits);
     append(result.notes, hits.notes);
+    add_assumed(result.assumed, hits.assumed);
     for (const modal::Hit& hit : hits.hits) {
       result.hit_directions.push_back(
           fmt::format("{}{}", hit.against_axis ? "-" : "", modal::to_string(hit.excitation)));
@@ -93,11 +87,13 @@ void measure(PlanResult& result, Progress& progress) {
   } else if (!result.job.frf.empty()) {
     const modal::FrfFile file = modal::read_frfs(result.job.frf, result.job.frf_as);
     append(result.notes, file.notes);
+    add_assumed(result.assumed, file.assumed);
     result.frfs = file.set;
     result.added_decay_per_s = file.added_decay_per_s;
   } else if (!result.job.assembly.empty()) {
     result.prediction = predict_tip(result.job.assembly, result.job.measured, {}, progress, result.job.joint);
     result.frfs = result.prediction->tip.frfs;
+    add_assumed(result.assumed, result.prediction->file.assumed);
     warn_of_prediction(result);
   }
 }
@@ -107,8 +103,8 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   modal::FrfSet measured = result.frfs.value_or(modal::FrfSet{});
   if (!result.frfs) result.model = modal::read_modes(result.job.modes);
   const modal::MissingDirections& directions = result.job.directions;
-  const auto words = complete_directions(result.model, measured, directions, result.job.file.string(), "job");
-  if (words) result.warnings.push_back(*words);
+  const auto assumed = complete_directions(result.model, measured, directions, result.job.file, "job");
+  if (assumed) add_assumed(result.assumed, {*assumed});
   if (!result.frfs) return;
   modal::FitOptions options;
   options.seed = seed;
@@ -117,11 +113,9 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
     options.band_low_hz = result.job.band_low_hz;
     options.band_high_hz = result.job.band_high_hz;
   } else if (result.hits) {
-    // Without a band from the user: where the sensors can be trusted and the hammer excites.
-    options.band_low_hz = result.hits->lowest_trustworthy_frequency_hz;
-    double highest = 0.0;
-    for (const modal::FrfGrade& grade : result.hits->grades) highest = std::max(highest, grade.excited_high_hz);
-    if (highest > options.band_low_hz) options.band_high_hz = highest;
+    const auto [low_hz, high_hz] = result.hits->band_hz();
+    options.band_low_hz = low_hz;
+    options.band_high_hz = high_hz;
   }
   options.exponential_decay_per_s = result.added_decay_per_s;
   result.fit =
@@ -131,40 +125,6 @@ void fit(PlanResult& result, std::uint64_t seed, Progress& progress) {
   append(result.warnings, result.fit->warnings);
   if (result.fit->status == modal::FitResult::Status::not_converged) {
     result.warnings.push_back("The fit of the modes did not converge: look at the FRFs before using a number.");
-  }
-}
-
-stability::LobesOptions comparison_options(const PlanResult& result) {
-  stability::LobesOptions options = result.cut.options;
-  options.grid[1] = std::min(options.grid[1], comparison_depths);
-  return options;
-}
-
-/// The limit of each pair of neighbouring modes alone.
-void pairs(PlanResult& result, Progress& progress) {
-  const int modes = static_cast<int>(result.model.modes.size());
-  if (modes < 3 || !result.cut.problem.keep_modes.empty()) return;
-  const stability::LobesOptions options = comparison_options(result);
-  const Eigen::Index count = std::min<Eigen::Index>(options.grid[0], comparison_speeds);
-  const Eigen::VectorXd axis =
-      Eigen::VectorXd::LinSpaced(count, options.spindle_speed_rad_per_s[0], options.spindle_speed_rad_per_s[1]);
-  const std::vector<double> speeds(axis.begin(), axis.end());
-  for (int k = 1; k <= modes; k += 2) {
-    stability::LobesProblem problem = result.cut.problem;
-    problem.keep_modes = k < modes ? std::vector<int>{k, k + 1} : std::vector<int>{k};
-    const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
-    PartLimits part;
-    part.label = k < modes ? fmt::format("modes {}–{}", k, k + 1) : fmt::format("mode {}", k);
-    if (!problem.workpiece_dynamics.modes.empty()) part.label += " and the workpiece's";
-    part.modes = problem.keep_modes;
-    part.spindle_speed_rad_per_s = axis;
-    part.limit_depth_m.resize(static_cast<Eigen::Index>(limits.size()));
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-      const bool found = limits[i].status == stability::Limit::Status::found;
-      part.limit_depth_m(static_cast<Eigen::Index>(i)) =
-          found ? limits[i].axial_depth_m : std::numeric_limits<double>::quiet_NaN();
-    }
-    result.pairs.push_back(std::move(part));
   }
 }
 
@@ -241,126 +201,6 @@ void smooth(PlanResult& result, const CellFile& cell, const std::filesystem::pat
   }
 }
 
-/// A mode that a multiple of tooth passing excites within its half-power width.
-struct Resonance {
-  modal::ModeId mode = {};
-  double frequency_hz = 0.0;
-  double harmonic = 0.0;
-  double distance = 1.0;  ///< in half-power half-widths ζ f
-};
-
-Resonance nearest_resonance(const PlanResult& result, double tooth_passing_hz) {
-  Resonance nearest;
-  const auto look = [&](const modal::ModalModel& model, modal::ModeOwner owner) {
-    int number = 0;
-    for (const modal::Mode& mode : model.modes) {
-      ++number;
-      const double harmonic = std::max(1.0, std::round(mode.frequency_hz / tooth_passing_hz));
-      const double distance =
-          std::abs(harmonic * tooth_passing_hz - mode.frequency_hz) / (mode.damping_ratio * mode.frequency_hz);
-      if (distance < nearest.distance) nearest = {{number, owner}, mode.frequency_hz, harmonic, distance};
-    }
-  };
-  look(result.model, modal::ModeOwner::tool);
-  look(result.cut.problem.workpiece_dynamics, modal::ModeOwner::workpiece);
-  return nearest;
-}
-
-/// The deepest pockets of the lobes stand where tooth passing meets a mode: no chatter there, but forced vibration.
-void report_resonance(PlanResult& result) {
-  if (!result.recommendation.recommended) return;
-  const decision::Operation& op = *result.recommendation.recommended;
-  const double tooth_passing_hz =
-      op.spindle_speed_rad_per_s / (2.0 * std::numbers::pi) * result.cut.problem.milling.tool.teeth;
-  const Resonance nearest = nearest_resonance(result, tooth_passing_hz);
-  if (!nearest.mode.known()) return;
-  std::string text = fmt::format(
-      "At the recommended speed {:.0f} × tooth passing ({:.1f} Hz) excites {} ({:.1f} Hz): no chatter, but forced "
-      "vibration is greatest there.",
-      nearest.harmonic, nearest.harmonic * tooth_passing_hz, to_string(nearest.mode), nearest.frequency_hz);
-  if (result.job.finish.any()) {
-    result.notes.push_back(text + " It keeps the limits of [finishing].");
-  } else {
-    result.warnings.push_back(text +
-                              " Its surface error and deflection stand beside the recommendation; [finishing] "
-                              "in the job limits them.");
-  }
-}
-
-/// The limit as the feed turns through the plane: a robot is not the same in every direction.
-void turn_feed(PlanResult& result, Progress& progress) {
-  FeedDirections out;
-  const stability::LobesOptions options = comparison_options(result);
-  const double low = options.spindle_speed_rad_per_s[0];
-  const double high = options.spindle_speed_rad_per_s[1];
-  std::vector<double> speeds;
-  speeds.reserve(speeds_a_direction + 1);
-  for (int i = 0; i < speeds_a_direction; ++i)
-    speeds.push_back(std::lerp(low, high, static_cast<double>(i) / (speeds_a_direction - 1)));
-  const bool recommended = result.recommendation.recommended.has_value();
-  if (recommended) {
-    speeds.push_back(result.recommendation.recommended->spindle_speed_rad_per_s);
-    out.limit_at_speed_m.resize(feed_directions);
-  }
-  out.direction_rad.resize(feed_directions);
-  out.lowest_limit_m.setConstant(feed_directions, std::numeric_limits<double>::quiet_NaN());
-  stability::LobesProblem problem = result.cut.problem;
-  // Turning the feed by half a turn turns forces and displacements alike: the limit is the same.
-  constexpr Eigen::Index half = feed_directions / 2;
-  for (Eigen::Index i = 0; i < half; ++i) {
-    problem.feed_direction_rad = std::numbers::pi * static_cast<double>(i) / half;
-    out.direction_rad(i) = problem.feed_direction_rad;
-    out.direction_rad(i + half) = problem.feed_direction_rad + std::numbers::pi;
-    const std::vector<stability::Limit> limits = stability::limit_depths(problem, options, speeds, progress);
-    for (std::size_t k = 0; k < limits.size(); ++k) {
-      const double depth = limits[k].status == stability::Limit::Status::found
-                               ? limits[k].axial_depth_m
-                               : std::numeric_limits<double>::quiet_NaN();
-      if (k < speeds_a_direction) {
-        out.lowest_limit_m(i) = std::fmin(out.lowest_limit_m(i), depth);
-      } else {
-        out.limit_at_speed_m(i) = depth;
-      }
-    }
-  }
-  out.lowest_limit_m.tail(half) = out.lowest_limit_m.head(half);
-  if (recommended) out.limit_at_speed_m.tail(half) = out.limit_at_speed_m.head(half);
-  result.feed_directions = out;
-}
-
-void compare(PlanResult& result, Progress& progress) {
-  result.cuts = compare_cuts(result.job.cuts, result.cut.problem, result.cut.options, progress);
-  for (std::size_t i = 0; i < result.job.cuts.size(); ++i) {
-    const TestCut& cut = result.job.cuts[i];
-    if (cut.file.empty()) continue;
-    result.recordings.push_back(read_recording(cut, result.cut.problem));
-    const Recording& recording = result.recordings.back();
-    ComparedCut& row = result.cuts[i];
-    if (row.result == Verdict::unknown) {
-      row.result = recording.verdict;
-      const bool clear = row.result == Verdict::stable || row.result == Verdict::chatter;
-      if (clear) row.agrees = row.result == row.predicted;
-    }
-    row.note += "; " + recording.file + ": " + recording.reason;
-  }
-}
-
-/// How far the limit moves with what the fit, and the file of the cut, leave uncertain.
-void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
-  const auto known = [](const modal::Mode& mode) { return std::isfinite(mode.frequency_std_hz); };
-  stability::Uncertainty& uncertainty = result.cut.uncertainty;
-  if (uncertainty.samples == 0 && std::ranges::any_of(result.model.modes, known)) {
-    uncertainty.samples = 100;
-    uncertainty.grid = {40, 30};
-  }
-  if (uncertainty.samples == 0) return;
-  uncertainty.seed = seed;
-  // A band needs no more than three digits of each limit.
-  stability::LobesOptions options = result.cut.options;
-  options.tolerance = std::max(options.tolerance, 1e-4);
-  result.uncertain = stability::uncertain_limits(result.cut.problem, options, uncertainty, progress);
-}
-
 /// Where the robot stands along a program: as the smoothed path has it, where there is one.
 ProgramRun program_run(const PlanResult& result) {
   ProgramRun run = {.keep_cuts = true, .deflect = true};
@@ -374,6 +214,12 @@ ProgramRun program_run(const PlanResult& result) {
 /// What vibrates along the program: the cell's measured postures, else the job's structure in every posture, else the
 /// cell's arm.
 DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& progress) {
+  const auto assume = [&](const char* taken) {
+    result.assumed.push_back({.what = "Dynamics along the program",
+                              .taken = taken,
+                              .key = "postures",
+                              .file = cell.path.filename().string()});
+  };
   if (!result.forces->file.dynamics.modes.empty()) {
     result.notes.emplace_back("[dynamics] of forces.toml takes no part in the stability of the program's blocks.");
   }
@@ -382,13 +228,11 @@ DynamicsAt dynamics_along(PlanResult& result, const CellFile& cell, Progress& pr
       result.notes.emplace_back(
           "The dynamics of the program's blocks are those of the cell's postures, not the job's.");
     } else if (cell.postures.empty()) {
-      result.notes.emplace_back(
-          "The dynamics of the program's blocks are those of the cell's arm alone; nothing was measured.");
+      assume("those of the cell's arm alone; nothing was measured");
     }
-    return dynamics_of_cell(cell, result.warnings, result.notes, progress);
+    return dynamics_of_cell(cell, result.warnings, result.notes, result.assumed, progress);
   }
-  result.notes.emplace_back(
-      "The dynamics of the program's blocks are the job's, the same in every posture, in the robot's base axes.");
+  assume("the job's, the same in every posture, in the robot's base axes");
   return constant_dynamics(result.model);
 }
 
@@ -398,6 +242,7 @@ void judge(PlanResult& result, const CellFile& cell, const std::filesystem::path
   const BlocksOptions options = {.workpiece_vibrates = !cut.workpiece_modes.empty() || !cut.workpiece_frf.empty() ||
                                                        !cut.problem.workpiece_dynamics.modes.empty()};
   const DynamicsAt dynamics = dynamics_along(result, cell, progress);
+  result.judging = {.dynamics = dynamics, .options = options};
   result.blocks = judge_blocks(*result.forces, dynamics, options, progress);
   if (result.job.decide.free.empty()) return;
   if (result.blocks->cutting == 0) {
@@ -424,29 +269,10 @@ void load_and_judge(PlanResult& result, const std::optional<CellFile>& cell, con
   warn_of_spindle(result);
 }
 
-/// Lobes of the job's cut, the recommendation, and what stands beside it.
-void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progress) {
-  result.cut.drop_dynamics();  // the job's stand in their place
-  load_dynamics(result.cut);
-  result.cut.problem.dynamics = result.model;
-  result.cut.validate();
-  // The report draws the boundary in any case.
-  if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
-  result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
-  spread(result, seed, progress);
-  decision::RecommendOptions recommend = result.job.recommend;
-  recommend.radial_depth_m = result.cut.radial_depth_m;
-  result.recommendation = decision::choose(result.cut.problem, result.cut.options, result.lobes.limit, recommend,
-                                           result.job.finish, progress);
-  report_resonance(result);
-  pairs(result, progress);
-  turn_feed(result, progress);
-  compare(result, progress);
-}
-
 /// lobes.toml, and what a plan asks of it.
 void read_cut(PlanResult& result) {
   result.cut = read_lobes(result.job.lobes);
+  append(result.notes, result.cut.notes);
   require_plane(result.cut, "plan chooses depth and speed of such a cut; robomill lobes judges any");
   if (!(result.cut.problem.milling.feed_per_tooth_m > 0.0)) {
     throw InvalidInput(result.job.lobes.string(), "cut.feed_per_tooth_mm is missing",
@@ -485,16 +311,22 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
         "The modes do not describe the FRFs: the fit differs from them by {:.3g} %, and from {:.3g} % on nothing is "
         "computed from it. Fit a better band (job.band_hz), or accept it with --accept-fit.",
         100.0 * result.fit->relative_error, 100.0 * modal::unusable_fit_error);
-    return result;
-  }
-  if (result.recommends()) {
+  } else if (result.recommends()) {
     choose_conditions(result, seed, progress);
   } else {
     result.notes.emplace_back(
         "The job names no lobes.toml: there are no lobes, no recommended speed and depth, and test cuts are not "
         "compared.");
   }
+  gather_assumed(result, cell ? &*cell : nullptr);
   return result;
+}
+
+bool reached(const PlanResult& result) {
+  if (result.decision && result.decision->status == DecideResult::Status::infeasible) return false;
+  if (result.path && !result.path->holds()) return false;
+  if (result.blocks && !result.recommends()) return true;  // an unstable block is an answer
+  return result.recommendation.status == decision::Recommendation::Status::found;
 }
 
 }  // namespace robomill::jobs

@@ -43,6 +43,12 @@ struct FeedDirections {
   Eigen::VectorXd limit_at_speed_m = {};  ///< length n, at the recommended speed; empty where none was recommended
 };
 
+/// How the blocks of a program were judged.
+struct BlocksJudging {
+  DynamicsAt dynamics = {};
+  BlocksOptions options = {};
+};
+
 /// Everything a job came to, stage by stage. What the job did not ask for is empty.
 struct PlanResult {
   Job job;
@@ -59,8 +65,9 @@ struct PlanResult {
   std::vector<PartLimits> pairs;         ///< of modes 1–2, 3–4, …
   std::optional<FeedDirections> feed_directions;
   decision::Recommendation recommendation;
-  std::optional<ForcesResult> forces;   ///< of a job that asks for them
-  std::optional<ProgramBlocks> blocks;  ///< of a job with forces, a cell and a program
+  std::optional<ForcesResult> forces;    ///< of a job that asks for them
+  std::optional<ProgramBlocks> blocks;   ///< of a job with forces, a cell and a program
+  std::optional<BlocksJudging> judging;  ///< … how they were judged
   /// Of a job that judges blocks and leaves something free. Where it found conditions, forces, blocks and path are
   /// those of the decided program.
   std::optional<DecideResult> decision;
@@ -71,6 +78,7 @@ struct PlanResult {
   std::vector<ComparedCut> cuts;
   std::vector<Recording> recordings;
   std::vector<std::string> warnings, notes;
+  std::vector<Assumption> assumed;  ///< of all stages
 
   [[nodiscard]] bool has_lobes() const { return !lobes.limit.empty(); }
   /// Whether the job chooses depth and speed; else it judges the blocks of its program alone.
@@ -88,6 +96,9 @@ struct PlanResult {
 [[nodiscard]] ROBOMILL_API PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed,
                                               Progress& progress = Progress::none(),
                                               const std::filesystem::path& folder = {}, bool accept_fit = false);
+
+/// Whether the job has the answer that it is for: conditions or a recommendation within every limit, a path that holds.
+[[nodiscard]] ROBOMILL_API bool reached(const PlanResult& result);
 
 /// The report of a job.
 /// @param files  that stand beside it

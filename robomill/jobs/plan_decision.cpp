@@ -13,7 +13,6 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/jobs/blocks/stand_at.hpp"
-#include "robomill/jobs/decide/joint_torques.hpp"
 #include "robomill/jobs/decide/motion_loads.hpp"
 #include "robomill/jobs/files/scratch_program.hpp"
 #include "robomill/jobs/program_forces.hpp"
@@ -180,7 +179,7 @@ std::vector<double> torque_shares(const PlanResult& result, const CellFile& cell
                          .posture = posture_of(*result.path, written, program, run.gamma_rad, cell),
                          .observe = [&loads](std::span<const path::Sample> samples) { loads.add(samples); }};
   static_cast<void>(run_smooth(job, cell, progress));
-  return loads.shares(run.forces, joint_torques(run.forces, run.blocks));
+  return loads.shares(run.forces, run.blocks.joint_loads);
 }
 
 /// What watches the program while it runs: the modes of the block that is nearest to chatter.

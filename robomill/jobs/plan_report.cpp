@@ -1,29 +1,18 @@
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-
-#include <ctime>
 
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/milling.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
+#include "robomill/jobs/modes.hpp"
+#include "robomill/jobs/pages.hpp"
 #include "robomill/jobs/plan.hpp"
 #include "robomill/jobs/summary.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/path/files/motion_json.hpp"
-#include "robomill/version.hpp"
 
 namespace robomill::jobs {
 namespace {
-
-/// The FRFs of the modes at the lines they were fitted to. A mass residual has no value at 0 Hz.
-modal::FrfSet fitted(const PlanResult& result) {
-  const Eigen::VectorXd& lines = result.frfs->frequency_hz;
-  modal::FrfSet all =
-      modal::synthesize(result.fit->model, lines(0) == 0.0 ? lines.tail(lines.size() - 1).eval() : lines);
-  std::erase_if(all.frfs, [&](const modal::Frf& frf) { return result.frfs->find(frf.name) == nullptr; });
-  return all;
-}
 
 DepthCurve spindle_curve(const PlanResult& result, const std::string& label, bool torque) {
   const double per_depth =
@@ -103,10 +92,10 @@ page::Report make_report(const PlanResult& result, const std::vector<page::Stage
 page::Report report_of(const PlanResult& result, const std::vector<page::StageFile>& files, const io::Json& plan) {
   page::Report report;
   if (!result.job.title.empty()) report.title = result.job.title;
-  report.created = fmt::format("{:%Y-%m-%d %H:%M} UTC, robomill " ROBOMILL_VERSION, fmt::gmtime(std::time(nullptr)));
+  report.created = created_now();
   report.summary = summary(result);
   if (result.frfs) report.frf = result.hits ? modal::frf_json(*result.hits) : modal::frf_json(*result.frfs);
-  if (result.frfs && result.fit) report.fitted = modal::frf_json(fitted(result));
+  if (result.frfs && result.fit) report.fitted = modal::frf_json(fitted_frfs(result.fit->model, *result.frfs));
   if (result.prediction) report.assembly = io::dump(plan.at("assembly"));
   if (result.prediction && result.prediction->measured) report.measured = modal::frf_json(*result.prediction->measured);
   report.plan = io::dump(decision_json(result));
@@ -121,6 +110,7 @@ page::Report report_of(const PlanResult& result, const std::vector<page::StageFi
     report.smooth = io::dump(plan.at("path"));
     report.motion = path::motion_json(result.path->outline, result.path->motions);
   }
+  report.assumed = result.assumed;
   report.files = files;
   return report;
 }

@@ -23,7 +23,7 @@ namespace plan_test {
 
 const std::string data = ROBOMILL_SOURCE_DIR "/data/";
 
-class Plan : public testing::Test {
+class Plan : public ::testing::Test {
  protected:
   void SetUp() override {
     write("lobes.toml", test_support::lobes_file(R"(spindle_speed_rpm = [6000, 9000]
@@ -186,7 +186,9 @@ TEST_F(Plan, ADirectionThatWasNotMeasuredHasToBeSaid) {
   EXPECT_NE(said.find("rigid_directions = [\"y\"]"), std::string::npos) << said;
   const PlanResult rigid = plan("rigid_directions = [\"y\"]\n");
   EXPECT_EQ(rigid.model.modes.size(), 2U);
-  EXPECT_NE(std::ranges::find(rigid.warnings, "y was not measured and is taken as rigid."), rigid.warnings.end());
+  EXPECT_TRUE(std::ranges::any_of(rigid.assumed, [](const Assumption& one) {
+    return one.what == "Direction y, not measured" && one.taken == "rigid" && one.key == "job.rigid_directions";
+  }));
   EXPECT_NE(test::rejection([&] {
               static_cast<void>(plan("rigid_directions = [\"x\"]\n"));
             }).find("job.rigid_directions: names x, which was measured"),

@@ -57,7 +57,7 @@ modal::FrfSet turned(const modal::FrfSet& set, const Eigen::Matrix3d& turn, cons
   return out;
 }
 
-modal::MeasuredPosture measured(const CellFile& cell, std::size_t index, std::vector<std::string>& notes) {
+modal::MeasuredPosture measured(const CellFile& cell, std::size_t index, CellDynamics& told) {
   const PostureEntry& entry = cell.postures[index];
   modal::MeasuredPosture out;
   out.joints = to_vector(entry.joints);
@@ -70,7 +70,8 @@ modal::MeasuredPosture measured(const CellFile& cell, std::size_t index, std::ve
     return out;
   }
   modal::FrfFile file = modal::read_frfs({entry.frf});
-  for (const std::string& note : file.notes) notes.push_back(fmt::format("Posture {}: {}", index + 1, note));
+  for (const std::string& note : file.notes) told.notes.push_back(fmt::format("Posture {}: {}", index + 1, note));
+  add_assumed(told.assumed, file.assumed);
   if (file.added_decay_per_s > 0.0) {
     throw InvalidInput(path.string(), "still holds the damping of an exponential window",
                        "Estimate the FRFs with remove_added_damping");
@@ -170,7 +171,7 @@ void warn_of_misfits(const modal::PostureModel& model, const std::vector<modal::
 }
 
 /// Joints whose damping the cell does not give.
-std::string assumed_damping(const CellFile& cell, const modal::PostureReport& report) {
+std::vector<Assumption> assumed_damping(const CellFile& cell, const modal::PostureReport& report) {
   if (report.source == modal::PostureReport::Source::interpolated) return {};
   std::string joints;
   for (std::size_t k = 0; k < cell.cell.arm.joints.size(); ++k) {
@@ -178,8 +179,11 @@ std::string assumed_damping(const CellFile& cell, const modal::PostureReport& re
     joints += fmt::format("{}{}", joints.empty() ? "" : ", ", k + 1);
   }
   if (joints.empty()) return {};
-  return fmt::format("The cell gives no joint_damping_n_m_s_per_rad of joints {}: 2 % of critical {}.", joints,
-                     report.postures > 0 ? "is what the calibration starts from" : "is assumed of each");
+  return {
+      {.what = "Damping of joints " + joints,
+       .taken = report.postures > 0 ? "2 % of critical, where the calibration starts from" : "2 % of critical of each",
+       .key = "robot.joint_damping_n_m_s_per_rad",
+       .file = cell.path.filename().string()}};
 }
 
 std::string description(const modal::PostureReport& report) {
@@ -205,7 +209,7 @@ CellDynamics cell_dynamics(const CellFile& cell, Progress& progress) {
   CellDynamics out;
   require_different_files(cell);
   std::vector<modal::MeasuredPosture> postures;
-  for (std::size_t i = 0; i < cell.postures.size(); ++i) postures.push_back(measured(cell, i, out.notes));
+  for (std::size_t i = 0; i < cell.postures.size(); ++i) postures.push_back(measured(cell, i, out));
   const modal::PostureModelOptions options;
   try {
     out.model = std::make_shared<modal::PostureModel>(cell.cell, payload_of(cell), postures, options, progress);
@@ -225,7 +229,7 @@ CellDynamics cell_dynamics(const CellFile& cell, Progress& progress) {
   }
   if (const std::string text = description(report); !text.empty()) out.notes.push_back(text);
   out.notes.insert(out.notes.end(), report.notes.begin(), report.notes.end());
-  if (const std::string text = assumed_damping(cell, report); !text.empty()) out.notes.push_back(text);
+  add_assumed(out.assumed, assumed_damping(cell, report));
   return out;
 }
 
@@ -264,6 +268,7 @@ ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vecto
   out.report = dynamics.model->report();
   out.warnings = std::move(dynamics.warnings);
   out.notes = std::move(dynamics.notes);
+  out.assumed = std::move(dynamics.assumed);
   const double along = robot::forward(cell.cell.arm, joints).linear()(2, 2);
   out.axis_off_z_rad = std::acos(std::clamp(std::abs(along), 0.0, 1.0));
   if (axes == PostureAxes::flange) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
 #include "robomill/base/progress.hpp"
@@ -24,6 +25,7 @@ struct CellDynamics {
   std::map<std::string, std::size_t> modes_of = {};
   /// Sentences for the user, of the files read and of the calibration.
   std::vector<std::string> warnings = {}, notes = {};
+  std::vector<Assumption> assumed = {};
 
   /// As model->at. @throws InvalidInput also where the measured postures have no mode in common there
   [[nodiscard]] ROBOMILL_API modal::PosturePrediction at(const Eigen::VectorXd& joints) const;
@@ -48,6 +50,7 @@ struct ModesOfPosture {
   double axis_off_z_rad = 0.0;                         ///< of the tool's axis from the base's z
   std::size_t unmatched = 0;                           ///< as CellDynamics::unmatched
   std::vector<std::string> warnings = {}, notes = {};  ///< of the files read and of the calibration
+  std::vector<Assumption> assumed = {};
 };
 /// @param joints  one value a joint [rad or m]
 /// @throws InvalidInput as cell_dynamics, or naming "joints[k]" (k from 1) that is outside its limits

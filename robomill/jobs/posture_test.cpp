@@ -143,12 +143,14 @@ TEST(Posture, SaysWhatItAssumesOfDamping) {
   std::string text = cell;
   const std::size_t begin = text.find("joint_damping");
   text.erase(begin, text.find('\n', begin) + 1 - begin);
-  const auto notes = [&](const std::string& of) {
-    return nlohmann::json::parse(posture_modes_json(posture_modes(folder.file("cell.toml", of), joints)))["notes"]
-        .dump();
+  const auto assumed = [&](const std::string& of) {
+    return nlohmann::json::parse(posture_modes_json(posture_modes(folder.file("cell.toml", of), joints)))["assumed"];
   };
-  EXPECT_NE(notes(text).find("joints 1, 2, 3, 4, 5, 6: 2 % of critical is assumed of each"), std::string::npos);
-  EXPECT_EQ(notes(cell).find("of critical"), std::string::npos);
+  ASSERT_EQ(assumed(text).size(), 1U);
+  EXPECT_EQ(assumed(text)[0]["what"], "Damping of joints 1, 2, 3, 4, 5, 6");
+  EXPECT_EQ(assumed(text)[0]["taken"], "2 % of critical of each");
+  EXPECT_EQ(assumed(text)[0]["file"], "cell.toml");
+  EXPECT_TRUE(assumed(cell).empty());
 }
 
 TEST(Posture, HasAMeasurementOfItsOwn) {

@@ -76,6 +76,7 @@ modal::FrfSet predict_at(const TipPrediction& prediction, const Eigen::VectorXd&
 void compare(TipPrediction& prediction, const std::filesystem::path& path) {
   modal::FrfFile file = modal::read_frfs({path});
   prediction.notes.insert(prediction.notes.end(), file.notes.begin(), file.notes.end());
+  add_assumed(prediction.file.assumed, file.assumed);
   if (file.added_decay_per_s > 0.0) {
     prediction.notes.emplace_back(
         "The measured FRFs hold the damping of an exponential window: their peaks are lower than the tool's.");

@@ -67,7 +67,7 @@ TEST(FitTip, WarnsWhereAModeStandsCloseBehindTheLastLine) {
   EXPECT_NE(fit.warnings.back().find("close beyond the last line"), std::string::npos) << fit.relative_error;
 }
 
-class Predicted : public testing::Test {
+class Predicted : public ::testing::Test {
  protected:
   Predicted() {
     folder_.file("lobes.toml", R"([tool]

@@ -109,25 +109,18 @@ std::vector<Eigen::Matrix3d> compliances(const CellFile& file, const std::vector
   return out;
 }
 
-/// How the tip is displaced by a force in W, at the end of a block.
-Eigen::Vector3d deflection(const CellFile& file, const program::Block& block, const std::filesystem::path& path,
-                           const Eigen::Vector3d& force_n, BlockResult& row) {
-  const robot::Cell& cell = file.cell;
-  const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
-  const Eigen::Vector3d force = base_from_work * force_n;
-  const robot::Stiffness stiffness = robot::stiffness(cell.arm, row.joints, robot::tip_point(cell), {.force_n = force});
-  if (stiffness.status == robot::Stiffness::Status::singular) {
-    throw out_of_the_way(
-        path, block, fmt::format("is singular for the robot (condition number {:.3g})", stiffness.condition_number));
+void require_held(robot::Stiffness::Status status, const program::Block& block, const std::filesystem::path& path,
+                  const BlockResult& row) {
+  if (status == robot::Stiffness::Status::singular) {
+    throw out_of_the_way(path, block,
+                         fmt::format("is singular for the robot (condition number {:.3g})", row.condition_number));
   }
-  if (stiffness.status == robot::Stiffness::Status::buckled) {
+  if (status == robot::Stiffness::Status::buckled) {
     throw InvalidInput(InvalidInput::Parts{.where = where(path, block),
                                            .field = "this block",
                                            .rule = "bends the robot beyond what its joints hold",
                                            .hint = "Is joint_stiffness_n_m_per_rad right?"});
   }
-  row.condition_number = stiffness.condition_number;
-  return base_from_work.transpose() * (stiffness.compliance.topLeftCorner<3, 3>() * force);
 }
 
 /// The tip's deflection under the forces of every block.
@@ -135,10 +128,8 @@ void bend(const CellFile& file, const std::vector<robot::Position6>& joints, con
           const std::filesystem::path& path, std::vector<BlockResult>& rows) {
   parallel_for(rows.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      BlockResult& row = rows[i];
-      row.joints = joints[i];
-      row.peak_deflection_m = deflection(file, program.blocks[i], path, row.force.heaviest_force_n, row);
-      row.deflection_m = deflection(file, program.blocks[i], path, row.force.mean_force_n, row);
+      rows[i].joints = joints[i];
+      require_held(bend_block(file.cell, rows[i]), program.blocks[i], path, rows[i]);
     }
   });
 }
@@ -271,6 +262,23 @@ void warn_of_blocks(const ForcesFile& file, const ProgramForces& out, std::vecto
 
 }  // namespace
 
+robot::Stiffness::Status bend_block(const robot::Cell& cell, BlockResult& row) {
+  const Eigen::Matrix3d base_from_work = cell.workpiece.linear();
+  const auto bend_under = [&](const Eigen::Vector3d& force_in_work_n, Eigen::Vector3d& deflection_m) {
+    const Eigen::Vector3d force_n = base_from_work * force_in_work_n;
+    const robot::Stiffness stiffness =
+        robot::stiffness(cell.arm, row.joints, robot::tip_point(cell), {.force_n = force_n});
+    row.condition_number = stiffness.condition_number;
+    if (stiffness.status == robot::Stiffness::Status::regular) {
+      deflection_m = base_from_work.transpose() * (stiffness.compliance.topLeftCorner<3, 3>() * force_n);
+    }
+    return stiffness.status;
+  };
+  const robot::Stiffness::Status at_peak = bend_under(row.force.heaviest_force_n, row.peak_deflection_m);
+  if (at_peak != robot::Stiffness::Status::regular) return at_peak;
+  return bend_under(row.force.mean_force_n, row.deflection_m);
+}
+
 std::string stock_text(const ProgramForces& program) {
   if (!program.stock) return {};
   const Eigen::Vector3d low = program.stock->stock.lowest_m() / units::mm;
@@ -286,7 +294,7 @@ std::string stock_text(const ProgramForces& program) {
                         assumed.highest_pass_m / units::mm, line)
           : fmt::format("its top cut.axial_depth_mm above the highest pass (z = {:.5g} mm, line {})",
                         assumed.highest_pass_m / units::mm, line);
-  return fmt::format("assumed, since none is given: a box {}, {}", box, top);
+  return fmt::format("a box {}, {}", box, top);
 }
 
 std::vector<robot::Position6> joints_along(const CellFile& file, const program::Program& program,

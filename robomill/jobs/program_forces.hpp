@@ -6,6 +6,7 @@
 
 #include "robomill/jobs/forces.hpp"
 #include "robomill/robot/inverse.hpp"
+#include "robomill/robot/stiffness.hpp"
 
 namespace robomill::jobs {
 
@@ -25,6 +26,10 @@ struct ProgramRun {
 /// @throws InvalidInput with file and line where a block is out of the robot's reach
 [[nodiscard]] std::vector<robot::Position6> joints_along(const CellFile& file, const program::Program& program,
                                                          const std::filesystem::path& path);
+
+/// Fills what the forces of a block do to the robot where it stands (BlockResult::joints): deflections and condition
+/// number. Not regular: the deflections from there on are left as they are.
+[[nodiscard]] robot::Stiffness::Status bend_block(const robot::Cell& cell, BlockResult& row);
 
 /// run_forces of a program that is run so.
 [[nodiscard]] ForcesResult run_forces_with(ForcesFile forces, const std::filesystem::path& program,

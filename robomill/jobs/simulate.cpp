@@ -68,6 +68,7 @@ simulation::Simulation simulated(const LobesFile& cut, const SimulateJob& job, P
 
 SimulateResult run_simulate(const SimulateJob& job, Progress& progress) {
   SimulateResult result;
+  result.point = job.point;
   LobesFile& cut = result.cut;
   stability::LobesProblem& problem = cut.problem;
   cut = read_lobes(job.lobes);

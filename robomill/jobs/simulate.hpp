@@ -22,6 +22,7 @@ struct SimulateJob {
 
 struct SimulateResult {
   LobesFile cut;                                       ///< with modes in the place of FRFs; its notes are for the user
+  stability::OperatingPoint point;                     ///< that the job asks for
   std::optional<modal::FitResult> fit, workpiece_fit;  ///< of a file that names FRFs
   simulation::Simulation simulation;
 };

@@ -15,6 +15,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/toml_file.hpp"
+#include "robomill/jobs/files/assumed.hpp"
 #include "robomill/path/drive.hpp"
 #include "robomill/path/files/smoothing_toml.hpp"
 #include "robomill/path/files/trajectory.hpp"
@@ -249,6 +250,22 @@ std::string length_note(const path::ProgramRun& run) {
                       : "Split the NC program where the tool is clear of the part.");
 }
 
+/// @param exported  the trajectory is written as a robot program, which sets the load
+std::vector<Assumption> assumed_of(const Bench& bench, bool exported) {
+  std::vector<Assumption> out = assumed_along_program(bench.cell, true);
+  add_assumed(out, bench.program->assumed());
+  const path::EndEffector& end = bench.cell.end_effector;
+  if (exported && end.mass_kg && !end.load_number && end.tool_name.empty()) {
+    out.push_back({.what = "Load on the flange",
+                   .taken = end.center_m ? "without moments of inertia"
+                                         : "its centre half-way to the tip, without moments of inertia",
+                   .key = end.center_m ? "tool.load_number" : "tool.center_mm",
+                   .file = bench.cell.path.filename().string()});
+  }
+  out.push_back({.what = "Collisions", .taken = "none; nothing was checked"});
+  return out;
+}
+
 void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   path::SmoothedProgram& smoothed = result.smoothed;
   smoothed.program = name_of(job);
@@ -264,6 +281,7 @@ void report(SmoothResult& result, const SmoothJob& job, const Bench& bench) {
   notes.insert(notes.end(), bench.cell.notes.begin(), bench.cell.notes.end());
   const std::vector<std::string> corrected = bench.program->notes();
   notes.insert(notes.end(), corrected.begin(), corrected.end());
+  smoothed.assumed = assumed_of(bench, smoothed.robot_program.has_value());
   const std::size_t left_out = bench.program->skipped_count();
   if (left_out > smoothed.skipped.size()) {
     notes.push_back(fmt::format("{} statements of the program were left out; the first {} are listed.", left_out,

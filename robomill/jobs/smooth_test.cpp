@@ -61,7 +61,7 @@ const std::string zigzag =
     "X6 "
     "Y12 I6 J0\nG4 P0.1\nG1 X6 Y6 Z2\nM30\n";
 
-class Smoothing : public testing::Test {
+class Smoothing : public ::testing::Test {
  protected:
   SmoothJob job(const std::string& cell = hybrid(), const std::string& program = zigzag) {
     SmoothJob out;

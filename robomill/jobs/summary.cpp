@@ -13,15 +13,15 @@
 #include "robomill/base/printable.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/append.hpp"
+#include "robomill/jobs/forces.hpp"
+#include "robomill/jobs/plan.hpp"
+#include "robomill/jobs/smooth.hpp"
+#include "robomill/jobs/summary_parts.hpp"
 
 namespace robomill::jobs {
 namespace {
 
 using io::append;
-
-void add_notes(std::string& out, const std::vector<std::string>& notes, std::string_view label) {
-  for (const std::string& note : notes) append(out, "{}{}\n", label, printable(note));
-}
 
 void add_vector(std::string& out, const char* label, const Eigen::Vector3d& v) {
   append(out, "{:<12} {:>10.4g} {:>10.4g} {:>10.4g} N\n", label, v.x(), v.y(), v.z());
@@ -77,7 +77,7 @@ void add_program(std::string& out, const ProgramForces& program, double power_ti
   };
   append(out, "{} blocks, {} of them cut; {:.4g} mm³ removed; {:.2f} s\n", program.blocks.size(),
          program.cutting_blocks(), program.removed_volume_m3 / units::mm3, program.seconds);
-  if (program.stock) append(out, "stock        {}\n", stock_text(program));
+  if (program.stock && !program.stock->assumed) append(out, "stock        {}\n", stock_text(program));
   append(out, "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "the block of", "line", "force N",
          "torque Nm", "power W", "power W", "bends µm", "depth mm");
   append(out, "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "", "", "peak", "1 turn", "1 turn",
@@ -271,7 +271,7 @@ std::string summary(const PlanResult& result) {
   add_notes(out, result.notes, "note         ");
   if (result.blocks) add_notes(out, block_notes(*result.blocks), "note         ");
   if (result.decision) add_notes(out, result.decision->notes, "note         ");
-  return out;
+  return out + assumed_text(result.assumed);
 }
 
 std::string summary(const ForcesResult& result) {
@@ -280,7 +280,7 @@ std::string summary(const ForcesResult& result) {
   if (result.program) add_program(out, *result.program, result.file.power_time_s);
   add_notes(out, result.warnings, "warning      ");
   add_notes(out, result.notes, "note         ");
-  return out;
+  return out + assumed_text(result.assumed);
 }
 
 std::string summary(const SmoothResult& result) {
@@ -299,7 +299,7 @@ std::string summary(const SmoothResult& result) {
   for (const program::Skipped& item : result.smoothed.skipped)
     append(out, "skipped    line {}: {}\n", item.line, printable(item.what));
   add_notes(out, result.smoothed.notes, "note       ");
-  return out;
+  return out + assumed_text(result.smoothed.assumed);
 }
 
 }  // namespace robomill::jobs

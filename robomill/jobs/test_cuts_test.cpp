@@ -65,7 +65,7 @@ TEST(ExplainPeak, KnowsTheModesOfTheWorkpiece) {
   EXPECT_EQ(peak.text, "mode 1 of the workpiece");
 }
 
-class RecordedCut : public testing::Test {
+class RecordedCut : public ::testing::Test {
  protected:
   // 6,000 rpm, three teeth: tooth passing at 300 Hz with amplitude 1, and something else at 1,234.5 Hz.
   Recording record(double chatter_amplitude, double length_s = 1.0, double chatter_hz = 1234.5) {

@@ -127,4 +127,18 @@ std::vector<ToolResult> try_tools(const coupling::AssemblyFile& assembly,
   return out;
 }
 
+ToolsResult run_tools(const ToolsJob& job, Progress& progress) {
+  ToolsResult out;
+  out.assembly = coupling::read_assembly(job.assembly);
+  const auto tools = coupling::read_tools(job.tools, out.assembly.assembly.tool.front());
+  if (!job.lobes.empty()) {
+    out.cut = read_lobes(job.lobes);
+    // Each tool brings its own dynamics; those of a workpiece stay.
+    out.cut->drop_dynamics();
+    load_dynamics(*out.cut);
+  }
+  out.tools = try_tools(out.assembly, tools, out.cut, job.seed, progress);
+  return out;
+}
+
 }  // namespace robomill::jobs

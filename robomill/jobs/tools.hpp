@@ -50,6 +50,23 @@ struct ToolResult {
                                                              const std::optional<LobesFile>& cut, std::uint64_t seed,
                                                              Progress& progress);
 
+/// A list of tools, the assembly whose holder takes them, and the cut that each is to make.
+struct ToolsJob {
+  std::filesystem::path assembly, tools;  ///< assembly.toml, tools.csv
+  std::filesystem::path lobes = {};       ///< lobes.toml; empty: no cut
+  std::uint64_t seed = 1;
+};
+
+struct ToolsResult {
+  coupling::AssemblyFile assembly;
+  std::optional<LobesFile> cut = {};  ///< without the tool's dynamics
+  std::vector<ToolResult> tools = {};
+};
+
+/// Reads the files and tries every tool of the list.
+/// @throws InvalidInput with file, line and key or column, or as try_tools; Interrupted
+[[nodiscard]] ROBOMILL_API ToolsResult run_tools(const ToolsJob& job, Progress& progress = Progress::none());
+
 /// A row a tool. Columns that hold nothing for any tool are empty.
 [[nodiscard]] ROBOMILL_API std::string tools_csv(const std::vector<ToolResult>& results);
 /// @param holder  where it was found from a measurement: its unreliable lines and notes stand beside the rows

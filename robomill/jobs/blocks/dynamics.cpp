@@ -45,7 +45,7 @@ modal::ModalModel arm_modes(const robot::Cell& cell, const Eigen::VectorXd& join
 }
 
 DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& warnings, std::vector<std::string>& notes,
-                            Progress& progress) {
+                            std::vector<Assumption>& assumed, Progress& progress) {
   if (cell.postures.empty() && !vibrates(cell.cell.arm)) {
     throw InvalidInput(cell.path.string(), "does not say what vibrates",
                        "Give modes or FRFs in the job, [[postures]] in the cell, or its links' masses and "
@@ -54,6 +54,7 @@ DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& warn
   const CellDynamics dynamics = cell_dynamics(cell, progress);
   warnings.insert(warnings.end(), dynamics.warnings.begin(), dynamics.warnings.end());
   notes.insert(notes.end(), dynamics.notes.begin(), dynamics.notes.end());
+  add_assumed(assumed, dynamics.assumed);
   const bool measured = dynamics.model->report().postures > 0;
   return [dynamics, measured](const Eigen::VectorXd& joints) {
     modal::PosturePrediction there = dynamics.at(joints);

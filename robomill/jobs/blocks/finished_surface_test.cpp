@@ -45,7 +45,7 @@ double greatest_error_m(const ForcesResult& forces, std::size_t block, const mod
   return out;
 }
 
-class FinishedSurface : public testing::Test {
+class FinishedSurface : public ::testing::Test {
  protected:
   /// Of an arm that hardly bends.
   ForcesResult forces_of(const std::string& program, const test_support::CutFile& cut = {}) {

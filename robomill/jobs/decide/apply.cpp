@@ -35,10 +35,7 @@ std::vector<double> gamma_offsets(const program::Program& program, const Program
                                   const std::vector<LineGamma>& lines) {
   constexpr double unset = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> out(program.blocks.size() + 1, unset);
-  std::vector<double> way(out.size(), 0.0);
-  for (std::size_t i = 0; i < program.blocks.size(); ++i) {
-    way[i + 1] = way[i] + (program.blocks[i].end.tip_m - program.begin_of(i).tip_m).norm();
-  }
+  const std::vector<double> way = ways_m(program);
   for (std::size_t c = 0; c < units.lines.size(); ++c) {
     const LineUnit& line = units.lines[c];
     const double blocks = static_cast<double>(line.last_block - line.first_block + 1);

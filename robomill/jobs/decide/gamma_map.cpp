@@ -24,6 +24,13 @@ struct MapColumn {
 
 }  // namespace
 
+std::vector<std::size_t> map_columns(const std::vector<std::size_t>& cutting) {
+  const std::size_t stride = std::max<std::size_t>(1, (cutting.size() + most_map_points - 1) / most_map_points);
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < cutting.size(); k += stride) out.push_back(cutting[k]);
+  return out;
+}
+
 GammaMap gamma_map(const DecideProblem& problem, const BlockModel& model, const decision::ProgramDecision* choice,
                    const DecideResult& result, Progress& progress) {
   GammaMap out;
@@ -36,16 +43,14 @@ GammaMap gamma_map(const DecideProblem& problem, const BlockModel& model, const 
   }
   const program::Program& program = result.program ? *result.program : problem.forces.program->program;
   std::vector<std::size_t> cutting;
-  std::vector<double> way(program.blocks.size() + 1, 0.0);
+  const std::vector<double> way = ways_m(program);
   const auto way_of = [&](std::size_t block) -> const WayModel& {
     return choice != nullptr ? model.way_at(*choice, block) : model.as_programmed();
   };
   for (std::size_t i = 0; i < program.blocks.size(); ++i) {
-    way[i + 1] = way[i] + (program.blocks[i].end.tip_m - program.begin_of(i).tip_m).norm();
     if (problem.blocks.rows[i].cuts && way_of(i).class_of(i)) cutting.push_back(i);
   }
-  const std::size_t stride = (cutting.size() + most_map_points - 1) / most_map_points;
-  for (std::size_t k = 0; k < cutting.size(); k += std::max<std::size_t>(1, stride)) out.block.push_back(cutting[k]);
+  out.block = map_columns(cutting);
   std::map<std::tuple<const WayModel*, std::size_t, double>, std::size_t> known;
   std::vector<MapColumn> columns;
   std::vector<std::size_t> column_of;

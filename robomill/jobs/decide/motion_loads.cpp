@@ -4,15 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "robomill/jobs/blocks/dynamics.hpp"
+#include "robomill/jobs/blocks/joint_torques.hpp"
 #include "robomill/robot/pose.hpp"
 
 namespace robomill::jobs {
-
-robot::Arm loaded_arm(const CellFile& cell) {
-  const std::optional<robot::Link> payload = payload_of(cell);
-  return payload ? robot::with_payload(cell.cell.arm, *payload) : cell.cell.arm;
-}
 
 bool knows_torques(const CellFile& cell) {
   const robot::Arm arm = loaded_arm(cell);

@@ -11,9 +11,6 @@
 
 namespace robomill::jobs {
 
-/// The arm with what hangs on its flange, as far as the cell knows it.
-[[nodiscard]] robot::Arm loaded_arm(const CellFile& cell);
-
 /// Whether some drive has a torque limit and a load that is known.
 [[nodiscard]] bool knows_torques(const CellFile& cell);
 
@@ -29,7 +26,7 @@ class MotionLoads {
   /// Of each block the greatest share of its torque that a drive gives, with the force of the cut over a revolution; 0
   /// where no sample lies in it or nothing is known.
   /// @param forces  of the program that runs
-  /// @param cut     its joint_torques
+  /// @param cut     ProgramBlocks::joint_loads of it
   [[nodiscard]] std::vector<double> shares(const ForcesResult& forces,
                                            const std::vector<robot::LoadedBlock>& cut) const;
 

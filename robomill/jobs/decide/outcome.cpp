@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "robomill/decision/program/looks.hpp"
-#include "robomill/jobs/decide/joint_torques.hpp"
+#include "robomill/jobs/blocks/joint_torques.hpp"
 #include "robomill/jobs/decide/loads.hpp"
 #include "robomill/jobs/decide/units.hpp"
 
@@ -135,7 +135,7 @@ JudgedRun::JudgedRun(const DecideProblem& asked, const ForcesResult& run, const 
     : problem(asked),
       forces(run),
       blocks(judged),
-      torques(joint_torques(run, judged)),
+      torques(judged.joint_loads),
       reversals(robot::load_reversals(torques)) {}
 
 std::vector<Violation> violations_of(const JudgedRun& run, const std::array<double, 2>& chip_m) {

@@ -41,6 +41,13 @@ decision::ProgramCut cut_of(const ForcesResult& forces, LineUnit& unit) {
 
 }  // namespace
 
+std::vector<double> ways_m(const Program& program) {
+  std::vector<double> out = {0.0};
+  out.reserve(program.blocks.size() + 1);
+  for (std::size_t i = 0; i < program.blocks.size(); ++i) out.push_back(out.back() + way_m(program, i, i));
+  return out;
+}
+
 double way_m(const Program& program, std::size_t first, std::size_t last) {
   double way = 0.0;
   for (std::size_t i = first; i <= last; ++i) way += (program.blocks[i].end.tip_m - program.begin_of(i).tip_m).norm();

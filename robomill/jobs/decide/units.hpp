@@ -28,6 +28,9 @@ struct ProgramUnits {
   std::vector<std::size_t> lean_from = {};
 };
 
+/// Way of the tip up to the program's start and up to each block's end: a value more than blocks.
+[[nodiscard]] std::vector<double> ways_m(const program::Program& program);
+
 /// Way of the tip over blocks [first, last].
 [[nodiscard]] double way_m(const program::Program& program, std::size_t first, std::size_t last);
 

@@ -7,7 +7,6 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/jobs/blocks/classes.hpp"
 #include "robomill/jobs/blocks/named_block.hpp"
 #include "robomill/jobs/blocks/stability.hpp"
 #include "robomill/jobs/blocks/stand_at.hpp"
@@ -22,8 +21,6 @@ using decision::FeedRange;
 using decision::LimitUse;
 using decision::ProgramLimit;
 
-/// Blocks that one look stands for differ by no more: it is the exact run that judges each of them.
-constexpr double class_joint_rad = 2.0 * units::deg, class_cut_share = 0.05;
 /// Limits are searched from this multiple of the depth on; of the map up to the other.
 constexpr double shallowest = 0.25, map_deepest = 8.0;
 /// What a look reserves of each limit for the blocks of its class.
@@ -87,7 +84,7 @@ WayModel::WayModel(const WaySetting& setting, const ForcesResult& forces, Progra
 void WayModel::sort_into_classes() {
   const ProgramForces& program = *forces_.program;
   const Eigen::Matrix3d base_from_work = forces_.cell->cell.workpiece.linear();
-  Classes classes({.joint_rad = class_joint_rad, .cut_share = class_cut_share});
+  Classes classes(look_tolerance);
   class_of_.assign(program.blocks.size(), no_class);
   for (std::size_t line = 0; line < units_.lines.size(); ++line) {
     std::vector<std::size_t>& looks = units_.cuts[line].looks;

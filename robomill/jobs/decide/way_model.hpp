@@ -9,7 +9,9 @@
 #include <tuple>
 #include <vector>
 
+#include "robomill/base/units.hpp"
 #include "robomill/decision/program_decision.hpp"
+#include "robomill/jobs/blocks/classes.hpp"
 #include "robomill/jobs/decide.hpp"
 #include "robomill/jobs/decide/loads.hpp"
 #include "robomill/jobs/decide/units.hpp"
@@ -17,6 +19,9 @@
 #include "robomill/robot/inverse.hpp"
 
 namespace robomill::jobs {
+
+/// Blocks that one look stands for differ by no more: it is the exact run that judges each of them.
+inline constexpr LookTolerance look_tolerance = {.joint_rad = 2.0 * units::deg, .cut_share = 0.05};
 
 /// The greatest feed of the tip at which no joint is faster than its limit over a block.
 struct JointSpeed {

@@ -113,6 +113,8 @@ constexpr std::pair<const char*, BlockNumber> of_load[] = {
     {"limit_5_percent_mm", [](const BlockLine& r) { return r.row.cut.limit_5_percent_m / units::mm; }},
     {"limit_95_percent_mm", [](const BlockLine& r) { return r.row.cut.limit_95_percent_m / units::mm; }},
     {"condition_number", [](const BlockLine& r) { return r.force.condition_number; }},
+    {"joint_torque_share", [](const BlockLine& r) { return r.row.joint_torque_share; }},
+    {"cut_joint_torque_n_m", [](const BlockLine& r) { return r.row.cut_joint_torque_n_m; }},
 };
 
 std::vector<BlockColumn> block_columns(const ForcesResult& forces) {
@@ -279,7 +281,7 @@ std::string blocks_csv(const ForcesResult& forces, const ProgramBlocks& blocks) 
   return text;
 }
 
-std::string blocks_json(const ForcesResult& forces, const ProgramBlocks& blocks) {
+Json blocks_object(const ForcesResult& forces, const ProgramBlocks& blocks) {
   const std::vector<BlockColumn> columns = block_columns(forces);
   std::vector<Json> lists(columns.size(), Json::array());
   each_block(forces, blocks, [&](const BlockLine& row) {
@@ -287,10 +289,13 @@ std::string blocks_json(const ForcesResult& forces, const ProgramBlocks& blocks)
   });
   Json by_column = Json::object();
   for (std::size_t k = 0; k < columns.size(); ++k) by_column[columns[k].name] = std::move(lists[k]);
-  const Json out = {{"blocks", std::move(by_column)},
-                    {"summary", blocks_summary(forces, blocks)},
-                    {"limit_over", scans_json(forces, blocks)}};
-  return io::dump(out);
+  return {{"blocks", std::move(by_column)},
+          {"summary", blocks_summary(forces, blocks)},
+          {"limit_over", scans_json(forces, blocks)}};
+}
+
+std::string blocks_json(const ForcesResult& forces, const ProgramBlocks& blocks) {
+  return io::dump(blocks_object(forces, blocks));
 }
 
 }  // namespace robomill::jobs

@@ -13,11 +13,11 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_file.hpp"
+#include "robomill/jobs/files/arm_toml.hpp"
 #include "robomill/program/files/gcode.hpp"
 #include "robomill/robot/files/geometry_toml.hpp"
 #include "robomill/robot/files/joint_limits.hpp"
 #include "robomill/robot/files/pose_toml.hpp"
-#include "robomill/robot/files/urdf.hpp"
 #include "robomill/robot/serial_kinematics.hpp"
 
 namespace robomill::jobs {
@@ -26,18 +26,7 @@ namespace {
 using robot::read_pose;
 using robot::read_vector;
 
-/// Other lists with one value a joint.
-constexpr io::Field<robot::Joint> joint_lists[] = {
-    {"robot.joint_stiffness_n_m_per_rad", "stiffness", 1.0, &robot::Joint::stiffness},
-    {"robot.joint_damping_n_m_s_per_rad", "damping", 1.0, &robot::Joint::damping},
-    {"robot.joint_rotor_inertia_kg_m2", "rotor_inertia", 1.0, &robot::Joint::rotor_inertia},
-    {"robot.joint_max_torque_n_m", "max_torque", 1.0, &robot::Joint::max_torque},
-};
-
-/// Where each of joint_limits goes, of an arm and of the hybrid machine.
-constexpr std::array<double robot::Joint::*, robot::joint_limits.size()> of_joint = {
-    &robot::Joint::min_position, &robot::Joint::max_position, &robot::Joint::max_velocity,
-    &robot::Joint::max_acceleration, &robot::Joint::max_jerk};
+/// Where each of joint_limits goes, of the hybrid machine.
 constexpr std::array<robot::Position6 robot::JointLimits::*, robot::joint_limits.size()> of_hybrid = {
     &robot::JointLimits::min_position, &robot::JointLimits::max_position, &robot::JointLimits::max_velocity,
     &robot::JointLimits::max_acceleration, &robot::JointLimits::max_jerk};
@@ -52,143 +41,6 @@ Kind read_kind(io::TomlFile& file, Robots usable) {
                       "Forces and stiffness at the joints are known of serial arms alone; robomill smooth takes both");
   }
   return kind;
-}
-
-std::vector<robot::DhRow> read_dh(io::TomlFile& file) {
-  std::vector<robot::DhRow> rows(file.tables("robot.dh"));
-  if (rows.empty())
-    throw file.reject("robot.dh", "must hold a row a joint", "dh = [{ a_mm = 350, alpha_deg = -90, … }, …]");
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto number = [&](const char* name, const char* member, double factor, double& value) {
-      file.number(fmt::format("robot.dh[{}].{}", i, name), fmt::format("dh[{}].{}", i + 1, member), factor, value);
-    };
-    number("a_mm", "a_m", units::mm, rows[i].a_m);
-    number("alpha_deg", "alpha_rad", units::deg, rows[i].alpha_rad);
-    number("d_mm", "d_m", units::mm, rows[i].d_m);
-    number("theta_offset_deg", "theta_offset_rad", units::deg, rows[i].theta_offset_rad);
-  }
-  return rows;
-}
-
-/// Bodies of the links; with DH they are given in the row's own frame.
-void read_links(io::TomlFile& file, const std::vector<robot::DhRow>& rows, robot::Arm& arm) {
-  if (!file.has("robot.links")) return;
-  const std::size_t count = file.tables("robot.links");
-  if (count != arm.joints.size()) {
-    throw file.reject("robot.links",
-                      fmt::format("must hold one table a joint, {}; it holds {}", arm.joints.size(), count));
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::string key = fmt::format("robot.links[{}].", i), member = fmt::format("joints[{}].link.", i + 1);
-    robot::Link link;
-    file.require(key + "mass_kg");
-    file.number(key + "mass_kg", member + "mass_kg", 1.0, link.mass_kg);
-    if (const auto center_m = read_vector(file, key + "center_mm", member + "center_m", units::mm)) {
-      link.center_m = *center_m;
-    }
-    std::vector<double> tensor;
-    if (file.numbers(key + "inertia_kg_m2", member + "inertia_kg_m2", 1.0, tensor)) {
-      if (tensor.size() != 6) throw file.reject(key + "inertia_kg_m2", "must be [xx, yy, zz, xy, xz, yz]");
-      link.inertia_kg_m2 << tensor[0], tensor[3], tensor[4], tensor[3], tensor[1], tensor[5], tensor[4], tensor[5],
-          tensor[2];
-    }
-    if (!rows.empty()) {
-      const Eigen::Isometry3d frame = robot::dh_link(rows[i]);
-      link.center_m = frame * link.center_m;
-      link.inertia_kg_m2 = (frame.linear() * link.inertia_kg_m2 * frame.linear().transpose()).eval();
-    }
-    arm.joints[i].link = link;
-  }
-}
-
-std::vector<bool> prismatic_joints(const robot::Arm& arm) {
-  std::vector<bool> prismatic;
-  for (const robot::Joint& joint : arm.joints) prismatic.push_back(joint.prismatic);
-  return prismatic;
-}
-
-void read_joint_lists(io::TomlFile& file, robot::Arm& arm, std::vector<std::string>& notes) {
-  for (std::size_t k = 0; k < robot::joint_limits.size(); ++k) {
-    const auto values = robot::read_joint_limit(file, robot::joint_limits[k], prismatic_joints(arm), notes);
-    for (std::size_t i = 0; i < values.size(); ++i)
-      arm.joints[i].*of_joint[k] = values[i].value_or(arm.joints[i].*of_joint[k]);
-  }
-  for (const io::Field<robot::Joint>& list : joint_lists) {
-    std::vector<double> values;
-    if (!file.numbers(list.key, list.member, list.factor, values)) continue;
-    if (values.size() != arm.joints.size()) {
-      throw file.reject(list.key,
-                        fmt::format("must hold one number a joint, {}; it holds {}", arm.joints.size(), values.size()));
-    }
-    for (std::size_t i = 0; i < values.size(); ++i) arm.joints[i].*list.value = values[i];
-  }
-}
-
-/// An error about a joint's member, reported with the list's key and the joint's place in it.
-InvalidInput located(const io::TomlFile& file, const robot::Arm& arm, const InvalidInput& error) {
-  const InvalidInput::Parts& parts = error.parts();
-  const auto is_of = [&](const char* member) {
-    return parts.field.starts_with("joints[") && parts.field.ends_with(std::string("].") + member);
-  };
-  for (const robot::JointLimit& limit : robot::joint_limits) {
-    if (!is_of(limit.name)) continue;
-    return robot::located_limit(file, limit, prismatic_joints(arm), std::stoul(parts.field.substr(7)) - 1, error);
-  }
-  for (const io::Field<robot::Joint>& list : joint_lists) {
-    if (!is_of(list.member) || !file.has(list.key)) continue;
-    InvalidInput::Parts reported = file.reject(list.key, parts.rule, parts.hint).parts();
-    reported.field += parts.field.substr(6, parts.field.find(']') - 5);
-    reported.number = parts.number;
-    reported.unit = parts.unit;
-    reported.value.clear();
-    return InvalidInput(std::move(reported));
-  }
-  return file.located(error);
-}
-
-/// @return of the base and of every link the frame that [geometry] means, in B and in that after the link's joint
-std::vector<Eigen::Isometry3d> read_arm(io::TomlFile& file, CellFile& out) {
-  std::filesystem::path urdf;
-  const bool from_urdf = file.path("robot.urdf", urdf);
-  if (from_urdf == file.has("robot.dh")) {
-    if (!from_urdf)
-      file.require("robot.dh",
-                   "Give the arm as dh = [{ a_mm = …, alpha_deg = …, d_mm = … }, …] or as urdf = \"arm.urdf\"");
-    throw file.reject("robot.urdf", "must not stand beside dh");
-  }
-  robot::Arm& arm = out.cell.arm;
-  std::vector<robot::DhRow> rows;
-  robot::UrdfReading reading;
-  file.text("robot.urdf_tip", reading.tip);
-  file.text("robot.urdf_base", reading.base);
-  if (from_urdf) {
-    file.require("robot.urdf_tip", "The link that is the flange");
-    robot::UrdfArm read = robot::read_urdf(urdf, reading);
-    arm = std::move(read.arm);
-    out.notes = std::move(read.notes);
-  } else {
-    for (const char* key : {"robot.urdf_tip", "robot.urdf_base"}) {
-      if (file.has(key)) throw file.reject(key, "goes with robot.urdf");
-    }
-    rows = read_dh(file);
-    arm = file.locate([&] { return robot::arm_from_dh(rows); });
-  }
-  read_joint_lists(file, arm, out.notes);
-  read_links(file, rows, arm);
-  robot::Joint& first = arm.joints.front();
-  const Eigen::Isometry3d base = read_pose(file, "robot.base_origin_mm", "robot.base_rotation_deg");
-  first.before = base * first.before;
-  out.end_effector.tip = read_pose(file, "tool.mount_origin_mm", "tool.mount_rotation_deg");
-  arm.flange = arm.flange * out.end_effector.tip;
-  try {
-    arm.validate();
-  } catch (const InvalidInput& error) {
-    throw located(file, arm, error);
-  }
-  std::vector<Eigen::Isometry3d> link_frames = {base};
-  for (const robot::DhRow& row : rows) link_frames.push_back(robot::dh_link(row));
-  link_frames.resize(arm.joints.size() + 1, Eigen::Isometry3d::Identity());  // a URDF's links are where its joints are
-  return link_frames;
 }
 
 void read_start(io::TomlFile& file, CellFile& out) {
@@ -221,8 +73,8 @@ constexpr io::Field<HybridMachine> hybrid_sizes[] = {
 };
 
 void read_hybrid(io::TomlFile& file, CellFile& out) {
-  for (const char* key : {"robot.dh", "robot.urdf", "robot.links", "robot.start_joints_deg", "robot.gamma_deg",
-                          "tool.mount_origin_mm", "tool.mount_rotation_deg", "geometry"}) {
+  for (const char* key : {"robot.model", "robot.dh", "robot.urdf", "robot.links", "robot.start_joints_deg",
+                          "robot.gamma_deg", "tool.mount_origin_mm", "tool.mount_rotation_deg", "geometry"}) {
     if (file.has(key)) throw file.reject(key, "goes with kind = \"serial\"");
   }
   HybridMachine& machine = out.hybrid.emplace();
@@ -244,6 +96,7 @@ std::vector<Eigen::Isometry3d> read_serial(io::TomlFile& file, CellFile& out) {
   }
   std::vector<Eigen::Isometry3d> link_frames = read_arm(file, out);
   read_start(file, out);
+  if (!out.start_joints.empty()) out.home = out.start_joints;
   out.gamma_given = file.number("robot.gamma_deg", "redundant_gamma_rad", units::deg, out.redundant_gamma_rad);
   return link_frames;
 }
@@ -347,16 +200,17 @@ void read_program_words(io::TomlFile& file, CellFile& out) {
 
 }  // namespace
 
-CellFile read_cell(const std::filesystem::path& path, Robots usable) {
-  CellFile out{.path = path};
-  out.document = std::make_shared<io::TomlFile>(path);
+CellFile read_cell(const io::TomlSource& source, Robots usable) {
+  CellFile out{.path = source.path};
+  out.document = std::make_shared<io::TomlFile>(source);
   io::TomlFile& file = *out.document;
   file.skip("smoothing");
-  file.require("robot", "Write [robot] with the arm, kind = \"serial\" and dh or urdf");
+  file.require("robot", "Write [robot] with the arm: model, or dh, or urdf");
   const Kind kind = read_kind(file, usable);
   std::vector<Eigen::Isometry3d> link_frames;
   if (kind == Kind::serial) link_frames = read_serial(file, out);
   if (kind == Kind::hybrid) read_hybrid(file, out);
+  read_origin(file, out);
   out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
   file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
   read_end_effector(file, out);

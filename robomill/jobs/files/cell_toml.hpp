@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
+#include "robomill/io/toml_source.hpp"
 #include "robomill/path/files/end_effector.hpp"
 #include "robomill/program/files/program_files.hpp"
 #include "robomill/robot/arm.hpp"
@@ -39,11 +41,15 @@ struct CellFile {
   double redundant_gamma_rad = 0.0;                   ///< turn of the flange about the tool's axis, robot::ToolPose
   bool gamma_given = false;                           ///< the file says so; else it is free to choose where a stage can
   std::vector<double> start_joints = {};              ///< where the arm stands first [rad]; empty where not said
-  path::EndEffector end_effector = {};                ///< for exported programs
-  std::vector<PostureEntry> postures = {};            ///< measured
-  std::optional<robot::CellGeometry> geometry = {};   ///< for collisions; the cutter's edges are the caller's to give
-  std::vector<std::string> notes = {};                ///< sentences for the user
-  std::shared_ptr<io::TomlFile> document = {};        ///< that [smoothing] is read from; empty where built in memory
+  std::vector<double> home = {};  ///< start_joints, else those of the model's own cell; empty where neither is said
+  std::string model = {};         ///< robot.model: one of known_arms(); empty where not by name
+  std::string description = {}, source = {};  ///< of the arm, and where its numbers come from; empty where not said
+  std::vector<Assumption> assumed = {};       ///< of these, what nobody publishes
+  path::EndEffector end_effector = {};        ///< its mass in torques and modes too
+  std::vector<PostureEntry> postures = {};    ///< measured
+  std::optional<robot::CellGeometry> geometry = {};  ///< for collisions; the cutter's edges are the caller's to give
+  std::vector<std::string> notes = {};               ///< sentences for the user
+  std::shared_ptr<io::TomlFile> document = {};       ///< that [smoothing] is read from; empty where built in memory
 };
 
 /// What kinds of robots a reader of the cell can use.
@@ -52,10 +58,10 @@ enum class Robots {
   any      ///< serial arms and the hybrid machine: what needs kinematics alone
 };
 
-/// Reads [robot], [workpiece], [tool], [spindle], [program], [geometry] with its STL files, and [[postures]], of which
-/// no file is opened; [smoothing] is another reader's.
+/// Reads [robot], with the arm that it may take by name, [workpiece], [tool], [spindle], [program], [geometry] with its
+/// STL files, and [[postures]], of which no file is opened; [smoothing] is another reader's.
 /// @throws InvalidInput with file, line, key and value, or with the URDF, its link or joint
-[[nodiscard]] ROBOMILL_API CellFile read_cell(const std::filesystem::path& path, Robots usable = Robots::serial);
+[[nodiscard]] ROBOMILL_API CellFile read_cell(const io::TomlSource& source, Robots usable = Robots::serial);
 
 /// The cell's machine with its derivatives.
 /// @throws InvalidInput with the file, if a serial arm has not six joints, all revolute

@@ -8,6 +8,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/text.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -85,11 +86,19 @@ void read_cutter(io::TomlFile& file, cutting::Cutter& cutter) {
 }
 
 bool read_direction(io::TomlFile& file, cutting::MillingDirection& direction) {
-  return file.choice<cutting::MillingDirection>("cut.direction",
-                                                {{"up", cutting::MillingDirection::up},
-                                                 {"down", cutting::MillingDirection::down},
-                                                 {"slot", cutting::MillingDirection::slot}},
-                                                direction);
+  constexpr Name<cutting::MillingDirection> names[] = {{"up", cutting::MillingDirection::up},
+                                                       {"down", cutting::MillingDirection::down},
+                                                       {"slot", cutting::MillingDirection::slot}};
+  constexpr const char* key = "cut.direction";
+  std::string word;
+  if (file.text(key, word) && !value_in(names, word)) {
+    word = io::lowered(word);
+    const char* const hint = word.starts_with("climb")          ? "Climb milling is \"down\" here"
+                             : word.starts_with("conventional") ? "Conventional milling is \"up\" here"
+                                                                : "";
+    throw file.reject(key, one_of(names), hint);
+  }
+  return file.choice(key, names, direction);
 }
 
 bool read_radial_depth(io::TomlFile& file, double& radial_depth_m) {
@@ -113,9 +122,9 @@ modal::MissingDirections read_missing_directions(io::TomlFile& file, const std::
   return out;
 }
 
-std::optional<std::string> complete_directions(modal::ModalModel& modes, modal::FrfSet& measured,
-                                               const modal::MissingDirections& said, const std::string& where,
-                                               const std::string& table) {
+std::optional<Assumption> complete_directions(modal::ModalModel& modes, modal::FrfSet& measured,
+                                              const modal::MissingDirections& said, const std::filesystem::path& where,
+                                              const std::string& table) {
   if (modes.modes.empty() && measured.frfs.empty()) return std::nullopt;
   const bool fitted = !modes.modes.empty();
   try {
@@ -124,11 +133,16 @@ std::optional<std::string> complete_directions(modal::ModalModel& modes, modal::
     if (said.equal && !fitted) measured = with_equal_directions(measured);
   } catch (const InvalidInput& error) {
     InvalidInput::Parts parts = error.parts();
-    parts.where = where;
+    parts.where = where.string();
     parts.field = parts.field.empty() ? table : table + "." + parts.field;
     throw InvalidInput(std::move(parts));
   }
-  return in_words(said);
+  std::optional<Assumption> assumed = modal::assumed_of(said);
+  if (assumed) {
+    assumed->key = table + "." + assumed->key;
+    assumed->file = where.filename().string();
+  }
+  return assumed;
 }
 
 void read_structure(io::TomlFile& file, const std::string& table, std::filesystem::path& modes,

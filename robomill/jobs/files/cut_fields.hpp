@@ -30,11 +30,12 @@ bool read_radial_depth(io::TomlFile& file, double& radial_depth_m);
                                                                modal::ModalModel& own);
 
 /// Takes the directions that modes, or else FRFs, do not know for what the file says.
-/// @return a sentence on it
+/// @return that, where it does
 /// @throws InvalidInput with where and the table's key, if it does not say so or says what is wrong
-[[nodiscard]] std::optional<std::string> complete_directions(modal::ModalModel& modes, modal::FrfSet& measured,
-                                                             const modal::MissingDirections& said,
-                                                             const std::string& where, const std::string& table);
+[[nodiscard]] std::optional<Assumption> complete_directions(modal::ModalModel& modes, modal::FrfSet& measured,
+                                                            const modal::MissingDirections& said,
+                                                            const std::filesystem::path& where,
+                                                            const std::string& table);
 
 /// A table that holds a structure: a file of modes, a file of FRFs, or modes of its own in x, y and z.
 void read_structure(io::TomlFile& file, const std::string& table, std::filesystem::path& modes,

@@ -356,7 +356,8 @@ Json facts_json(const ForcesResult& result) {
   }
   if (result.program) {
     add("Program", fmt::format("{} blocks", result.program->blocks.size()));
-    if (result.program->stock) add("Stock", stock_text(*result.program));
+    const std::optional<ProgramStock>& stock = result.program->stock;
+    if (stock && !stock->assumed) add("Stock", stock_text(*result.program));
   }
   return facts;
 }
@@ -374,6 +375,7 @@ Json forces_object(const ForcesResult& result) {
   out["facts"] = facts_json(result);
   out["warnings"] = result.warnings;
   out["notes"] = result.notes;
+  out["assumed"] = io::assumed_json(result.assumed);
   return out;
 }
 

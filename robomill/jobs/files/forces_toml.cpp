@@ -1,6 +1,8 @@
 #include "robomill/jobs/files/forces_toml.hpp"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <string>
 
 #include "robomill/base/error.hpp"
@@ -140,6 +142,28 @@ void read_stock(io::TomlFile& file, ForcesFile& out) {
   out.stock = stock;
 }
 
+/// A material's are those at the cut's mean chip, which depth and direction tell of an upright flat end alone.
+void read_coefficients(io::TomlFile& file, ForcesJob job, ForcesFile& out) {
+  cutting::CutAtHand cut;
+  cut.kind = out.cutter.kind;
+  if (job == ForcesJob::revolution) {
+    const double speed_m_per_s = 0.5 * out.cutter.mill.diameter_m * out.motion.spindle_speed_rad_per_s;
+    cut.cutting_speed_m_per_s = {speed_m_per_s, speed_m_per_s};
+    cut.feed_per_tooth_m = out.motion.feed_per_tooth_m;
+    cut.diameter_m = out.cutter.mill.diameter_m;
+    if (cut.kind == cutting::CutterKind::flat_end && out.cut.lead_rad == 0.0 && out.cut.tilt_rad == 0.0) {
+      cut.mean_chip_thickness_m = cutting::mean_chip_thickness_m(
+          cutting::immersion(out.cut.direction, out.cut.radial_depth_m, out.cutter.mill.diameter_m),
+          cut.feed_per_tooth_m);
+    }
+  }
+  const cutting::CoefficientTable table = cutting::read_coefficient_table(file, cut);
+  out.coefficients = table.coefficients;
+  out.notes = table.notes;
+  std::ranges::move(table.outside(cut), std::back_inserter(out.notes));
+  std::ranges::move(table.unlike_recommended(cut), std::back_inserter(out.notes));
+}
+
 ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob job) {
   ForcesFile out;
   out.path = path;
@@ -147,7 +171,7 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
   file.require("tool.kind", "\"flat-end\", \"ball-end\", \"bull-nose\" or \"general\"");
   read_cutter(file, out.cutter);
   read_cut(file, job, out);
-  out.coefficients = cutting::read_coefficient_table(file);
+  read_coefficients(file, job, out);
   read_stock(file, out);
   file.integer("forces.steps", "steps", out.force.steps);
   file.integer("forces.slices", "slices", out.slices);
@@ -183,7 +207,9 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
   };
   structure("dynamics", out.dynamics);
   modal::FrfSet none;
-  static_cast<void>(complete_directions(out.dynamics, none, said, path.string(), "dynamics"));
+  if (const auto assumed = complete_directions(out.dynamics, none, said, path, "dynamics")) {
+    out.assumed.push_back(*assumed);
+  }
   structure("workpiece_dynamics", out.workpiece_dynamics);
   file.done();
   return out;
@@ -193,18 +219,18 @@ ForcesFile read(io::TomlFile& file, const std::filesystem::path& path, ForcesJob
 
 InvalidInput ForcesFile::in_its_words(const InvalidInput& error) const {
   if (!error.parts().where.empty()) return error;
-  io::TomlFile file(path);
-  static_cast<void>(read(file, path, job));
-  InvalidInput reported = file.located(error);
+  InvalidInput reported = document ? document->located(error) : error;
   if (!reported.parts().where.empty()) return reported;
   InvalidInput::Parts parts = error.parts();
   parts.where = path.string();
   return InvalidInput(std::move(parts));
 }
 
-ForcesFile read_forces(const std::filesystem::path& path, ForcesJob job) {
-  io::TomlFile file(path);
-  return read(file, path, job);
+ForcesFile read_forces(const io::TomlSource& source, ForcesJob job) {
+  const auto document = std::make_shared<io::TomlFile>(source);
+  ForcesFile out = read(*document, source.path, job);
+  out.document = document;
+  return out;
 }
 
 }  // namespace robomill::jobs

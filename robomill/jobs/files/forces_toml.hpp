@@ -1,18 +1,26 @@
 #pragma once
 #include <Eigen/Core>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/export.hpp"
 #include "robomill/cutting/cutter.hpp"
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/force.hpp"
 #include "robomill/cutting/workpiece.hpp"
+#include "robomill/io/toml_source.hpp"
 #include "robomill/modal/modes.hpp"
 
 // Method: robomill/jobs/README.md, "Files"
+
+namespace robomill::io {
+class TomlFile;
+}
 
 namespace robomill::jobs {
 
@@ -41,7 +49,9 @@ struct ForcesFile {
   std::optional<cutting::Stock> stock = {};                  ///< none: a box around the program
   bool neighbours = false;  ///< stock.kind: no stock, but the neighbouring pass of each block
   double dexel_m = 0.25e-3;
-  double power_time_s = 0.1;  ///< forces.power_time_s: over which a program's power is a mean for the spindle
+  std::vector<Assumption> assumed = {};  ///< of its structure
+  double power_time_s = 0.1;            ///< forces.power_time_s: over which a program's power is a mean for the spindle
+  std::vector<std::string> notes = {};  ///< sentences for the user, of a material that it names
   /// Calls f; an InvalidInput about a member that this file gave comes out in its words.
   template <class F>
   auto located(F&& f) const {
@@ -52,12 +62,12 @@ struct ForcesFile {
     }
   }
   [[nodiscard]] ROBOMILL_API InvalidInput in_its_words(const InvalidInput& error) const;
-  ForcesJob job = ForcesJob::revolution;  ///< that it was read for
+  ForcesJob job = ForcesJob::revolution;              ///< that it was read for
+  std::shared_ptr<const io::TomlFile> document = {};  ///< for errors in its words; empty where built in memory
 };
 
 /// The files of modes and coefficients that it names are read too.
 /// @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API ForcesFile read_forces(const std::filesystem::path& path,
-                                                  ForcesJob job = ForcesJob::revolution);
+[[nodiscard]] ROBOMILL_API ForcesFile read_forces(const io::TomlSource& source, ForcesJob job = ForcesJob::revolution);
 
 }  // namespace robomill::jobs

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
@@ -93,6 +95,66 @@ TEST(ForcesToml, AProgramNeedsNoCut) {
   EXPECT_FALSE(file.stock.has_value());
   EXPECT_NE(rejection([&] { static_cast<void>(read_forces(path)); }).find("cut.axial_depth_mm: is missing"),
             std::string::npos);
+}
+
+// [BudakAltintasArmarego1996]; its tests had a flat end.
+TEST(ForcesToml, TheNameOfAMaterialStandsForItsNumbers) {
+  const Folder folder;
+  const std::string table =
+      "[coefficients]\ntangential_n_per_mm2 = [100, 900]\nradial_n_per_mm2 = 350\naxial_edge_n_per_mm = -3\n";
+  const auto named = [&](const std::string& name) {
+    return read_forces(folder.file("forces.toml", "coefficients = \"" + name + "\"\n" + with(table, "")));
+  };
+  const ForcesFile file = named("Ti6Al4V");
+  const ForcesFile typed =
+      read_forces(folder.file("typed.toml", with(table,
+                                                 "[coefficients]\ntangential_n_per_mm2 = 1825\nradial_n_per_mm2 = 770\n"
+                                                 "axial_n_per_mm2 = -735\ntangential_edge_n_per_mm = 29.7\n"
+                                                 "radial_edge_n_per_mm = 55.7\naxial_edge_n_per_mm = -1.8\n")));
+  EXPECT_EQ(file.coefficients.tangential_n_per_m2, typed.coefficients.tangential_n_per_m2);
+  EXPECT_EQ(file.coefficients.radial_n_per_m2, typed.coefficients.radial_n_per_m2);
+  EXPECT_EQ(file.coefficients.axial_n_per_m2, typed.coefficients.axial_n_per_m2);
+  EXPECT_EQ(file.coefficients.tangential_edge_n_per_m, typed.coefficients.tangential_edge_n_per_m);
+  EXPECT_EQ(file.coefficients.radial_edge_n_per_m, typed.coefficients.radial_edge_n_per_m);
+  EXPECT_EQ(file.coefficients.axial_edge_n_per_m, typed.coefficients.axial_edge_n_per_m);
+  EXPECT_TRUE(typed.notes.empty());
+  ASSERT_EQ(file.notes.size(), 3U);
+  EXPECT_NE(file.notes[0].find("ti-6al-4v, set 1 of 1: end mill, 4 teeth [BudakAltintasArmarego1996]"),
+            std::string::npos)
+      << file.notes[0];
+  EXPECT_NE(file.notes[1].find("another kind of cutter"), std::string::npos) << file.notes[1];
+  EXPECT_NE(file.notes[2].find("recommended for ti-6al-4v"), std::string::npos) << file.notes[2];
+  const std::string said = rejection([&] { static_cast<void>(named("6061-T66")); });
+  EXPECT_NE(said.find("forces.toml:1: coefficients = \"6061-T66\""), std::string::npos) << said;
+  EXPECT_NE(said.find("Did you mean 6061-t6?"), std::string::npos) << said;
+}
+
+// A power of the chip is taken at the mean chip of the cut where the file tells it: of an upright flat end.
+TEST(ForcesToml, APowerOfTheChipIsTakenAtTheCutsMeanChip) {
+  const Folder folder;
+  const std::string flat = "[tool]\nkind = \"flat-end\"\ndiameter_mm = 10\nteeth = 2\n";
+  const std::string tool = flat + "[coefficients]\nmaterial = \"1045\"\nradial_ratio = 0.4\n";
+  const std::string cut =
+      "[cut]\naxial_depth_mm = 1\ndirection = \"slot\"\nfeed_per_tooth_mm = 0.05\nspindle_speed_rpm = 3000\n";
+  const auto tangential = [&](const std::string& text, ForcesJob job) {
+    return read_forces(folder.file("forces.toml", text), job).coefficients.tangential_n_per_m2.front();
+  };
+  const double chip_m = 2.0 * 0.05e-3 / std::numbers::pi;
+  EXPECT_NEAR(tangential(tool + cut, ForcesJob::revolution), 0.78 * 1500e6 * std::pow(chip_m / 1e-3, -0.22), 1.0);
+  EXPECT_NE(rejection([&] {
+              static_cast<void>(tangential(tool, ForcesJob::program));
+            }).find("coefficients.chip_thickness_mm: is missing"),
+            std::string::npos);
+  EXPECT_NEAR(tangential(tool + "chip_thickness_mm = 0.02\n", ForcesJob::program),
+              0.78 * 1500e6 * std::pow(0.02, -0.22), 1.0);
+  const ForcesFile aluminium = read_forces(folder.file("forces.toml", "coefficients = \"6061-t6\"\n" + flat + cut));
+  ASSERT_EQ(aluminium.notes.size(), 4U);
+  EXPECT_NE(aluminium.notes[2].find("A feed per tooth of 0.05 mm lies outside the tests of [Du2024], 0.02 mm"),
+            std::string::npos)
+      << aluminium.notes[2];
+  EXPECT_EQ(aluminium.notes[3],
+            "A cutting speed of 94.2 m/min is none that is recommended for 6061-t6: 305 to 610 [Fullerton], 244 to 610 "
+            "[Niagara2016] m/min.");
 }
 
 TEST(ForcesToml, SaysWhatIsWrongAndWhere) {

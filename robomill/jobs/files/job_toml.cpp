@@ -148,9 +148,9 @@ std::string_view to_string(Verdict verdict) {
   return name_in(verdict_names, verdict);
 }
 
-Job read_job(const std::filesystem::path& path) {
-  io::TomlFile file(path);
-  Job job{.file = path};
+Job read_job(const io::TomlSource& source) {
+  io::TomlFile file(source);
+  Job job{.file = source.path};
   read_sources(file, job);
   read_limits(file, job);
   job.decide = read_decide(file, job.judges_blocks());

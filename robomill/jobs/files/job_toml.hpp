@@ -8,6 +8,7 @@
 #include "robomill/base/export.hpp"
 #include "robomill/base/names.hpp"
 #include "robomill/decision/finish.hpp"
+#include "robomill/io/toml_source.hpp"
 #include "robomill/jobs/decide_options.hpp"
 #include "robomill/modal/directions.hpp"
 
@@ -71,7 +72,7 @@ struct Job {
 };
 
 /// @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API Job read_job(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API Job read_job(const io::TomlSource& source);
 
 /// What was recorded of a test cut.
 struct CutSignal {

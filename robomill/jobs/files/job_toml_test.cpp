@@ -11,7 +11,7 @@
 namespace robomill::jobs {
 namespace job_toml_test {
 
-class JobToml : public testing::Test {
+class JobToml : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const std::string& text) { return folder_.file(name, text); }
   std::string rejection(const std::string& text) {
@@ -127,6 +127,18 @@ TEST_F(JobToml, ADecisionWithoutAProgramIsThatOfSpeedAndDepth) {
     EXPECT_NE(text.find("job.program"), std::string::npos) << text;
     EXPECT_NE(text.find("job.toml:5"), std::string::npos) << text;
   }
+}
+
+TEST_F(JobToml, AnswersSynonymsWithTheRightKey) {
+  const std::string source = "[job]\nmodes = \"m.json\"\nlobes = \"l.toml\"\n";
+  EXPECT_NE(rejection(source + "[spindle]\nmax_power_kw = 5\n")
+                .find("job.toml:5: spindle.max_power_kw: is not known here. Here it is curve = [{ speed_rpm = "),
+            std::string::npos)
+      << rejection(source + "[spindle]\nmax_power_kw = 5\n");
+  EXPECT_NE(rejection(source + "[[cuts]]\nrpm = 6000\naxial_depth_mm = 1\n")
+                .find("job.toml:5: cuts[1].rpm: is not known here. Here it is spindle_speed_rpm"),
+            std::string::npos)
+      << rejection(source + "[[cuts]]\nrpm = 6000\naxial_depth_mm = 1\n");
 }
 
 }  // namespace job_toml_test

@@ -19,8 +19,6 @@
 #include "robomill/cutting/polynomial.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
-#include "robomill/modal/files/frf_files.hpp"
-#include "robomill/modal/files/modes_files.hpp"
 
 namespace robomill::jobs {
 namespace {
@@ -61,8 +59,21 @@ bool is_spatial(io::TomlFile& file, const cutting::Cutter& cutter, stability::Sw
          sweep != stability::SweptParameter::axial_depth || file.has("coefficients.axial_n_per_mm2");
 }
 
+/// The same cut, as far as a material's coefficients ask for it.
+cutting::CutAtHand cut_at_hand(const LobesFile& cut, cutting::CutterKind kind) {
+  const cutting::Milling& milling = cut.problem.milling;
+  cutting::CutAtHand out;
+  out.kind = kind;
+  if (cut.drilling) return out;
+  out.feed_per_tooth_m = milling.feed_per_tooth_m;
+  if (kind == cutting::CutterKind::flat_end && milling.immersion.exit_rad > milling.immersion.entry_rad) {
+    out.mean_chip_thickness_m = cutting::mean_chip_thickness_m(milling.immersion, milling.feed_per_tooth_m);
+  }
+  return out;
+}
+
 /// What is left of the file's cut for a cutter in three directions.
-void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& out) {
+void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& out, cutting::CoefficientTable& table) {
   for (const char* key : {"cut.entry_deg", "cut.exit_deg", "process_damping", "speed_variation"}) {
     if (file.has(key)) throw file.reject(key, "is for an upright flat end in x and y");
   }
@@ -86,12 +97,13 @@ void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& 
   if (!depth && out.sweep != stability::SweptParameter::axial_depth) {
     file.require("cut.axial_depth_mm", "The chart varies something else");
   }
-  milling.coefficients = cutting::read_coefficient_table(file);
+  out.problem.milling.feed_per_tooth_m = milling.feed_per_tooth_m;
+  table = cutting::read_coefficient_table(file, cut_at_hand(out, cutter.kind));
+  milling.coefficients = table.coefficients;
   if (!file.has("dynamics.cell")) {
     file.choice<bool>("dynamics.axes", {{"feed", false}, {"tool", true}}, milling.modes_turn_with_tool);
   }
   out.problem.milling.tool = cutter.mill;
-  out.problem.milling.feed_per_tooth_m = milling.feed_per_tooth_m;
   out.direction = milling.cut.direction;
   out.radial_depth_m = slot && !radial ? cutter.mill.diameter_m : milling.cut.radial_depth_m;
   out.problem.spatial = milling;
@@ -176,10 +188,13 @@ cutting::ForceCoefficients of_the_side(const cutting::MillingCoefficients& k, do
           .radial_edge_n_per_m = stretch * value(k.radial_edge_n_per_m)};
 }
 
-void read_coefficients_of(io::TomlFile& file, const cutting::FlatEndMill& tool, cutting::ForceCoefficients& k) {
-  const char* const named = file.has("coefficients.file") ? "coefficients.file" : "coefficients.material";
+void read_coefficients_of(io::TomlFile& file, LobesFile& out, cutting::CoefficientTable& table) {
+  cutting::ForceCoefficients& k = out.problem.milling.coefficients;
+  const char* named = file.has("coefficients.file") ? "coefficients.file" : "coefficients.material";
+  if (cutting::names_a_material(file)) named = "coefficients";
   if (file.has(named)) {
-    k = of_the_side(cutting::read_coefficient_table(file), tool.helix_rad);
+    table = cutting::read_coefficient_table(file, cut_at_hand(out, cutting::CutterKind::flat_end));
+    k = of_the_side(table.coefficients, out.problem.milling.tool.helix_rad);
     try {
       k.validate();
     } catch (const InvalidInput& error) {
@@ -196,8 +211,9 @@ void read_coefficients_of(io::TomlFile& file, const cutting::FlatEndMill& tool, 
 }
 
 /// What pushes on the teeth: coefficients, process damping; and how the spindle turns.
-void read_forces(io::TomlFile& file, cutting::Milling& milling) {
-  read_coefficients_of(file, milling.tool, milling.coefficients);
+void read_forces(io::TomlFile& file, LobesFile& out, cutting::CoefficientTable& table) {
+  read_coefficients_of(file, out, table);
+  cutting::Milling& milling = out.problem.milling;
   cutting::ProcessDamping& damping = milling.process_damping;
   file.number("process_damping.indentation_n_per_mm3", "indentation_n_per_m3", units::n_per_mm3,
               damping.indentation_n_per_m3);
@@ -268,6 +284,7 @@ void read_uncertainty(io::TomlFile& file, stability::Uncertainty& u) {
   file.number("uncertainty.tangential_std_n_per_mm2", "tangential_std_n_per_m2", units::n_per_mm2,
               u.tangential_std_n_per_m2);
   file.number("uncertainty.radial_std_n_per_mm2", "radial_std_n_per_m2", units::n_per_mm2, u.radial_std_n_per_m2);
+  file.number("uncertainty.coefficient_std_ratio", "coefficient_std_ratio", 1.0, u.coefficient_std_ratio);
   file.number("uncertainty.frequency_std_ratio", "frequency_std_ratio", 1.0, u.frequency_std_ratio);
   file.number("uncertainty.damping_std_ratio", "damping_std_ratio", 1.0, u.damping_std_ratio);
   file.number("uncertainty.residue_std_ratio", "residue_std_ratio", 1.0, u.residue_std_ratio);
@@ -277,6 +294,27 @@ void read_uncertainty(io::TomlFile& file, stability::Uncertainty& u) {
     u.grid = {grid[0], grid[1]};
   }
   file.locate([&] { u.validate(); });
+}
+
+/// What a material brings along: its spread where [uncertainty] gives none, and what to know of its source.
+void take_material(const io::TomlFile& file, const cutting::CoefficientTable& table, cutting::CutterKind kind,
+                   LobesFile& out) {
+  out.notes.insert(out.notes.end(), table.notes.begin(), table.notes.end());
+  cutting::CutAtHand cut = cut_at_hand(out, kind);
+  const double radius_m = 0.5 * out.problem.milling.tool.diameter_m;
+  for (std::size_t i = 0; i < 2; ++i) cut.cutting_speed_m_per_s[i] = radius_m * out.options.spindle_speed_rad_per_s[i];
+  cut.diameter_m = 2.0 * radius_m;
+  std::ranges::move(table.outside(cut), std::back_inserter(out.notes));
+  if (!out.drilling) std::ranges::move(table.unlike_recommended(cut), std::back_inserter(out.notes));
+  if (table.std_ratio == 0.0) return;
+  for (const char* key : {"tangential_std_n_per_mm2", "radial_std_n_per_mm2", "coefficient_std_ratio"}) {
+    if (file.has(std::string("uncertainty.") + key)) return;
+  }
+  out.uncertainty.coefficient_std_ratio = table.std_ratio;
+  out.band_note = fmt::format(
+      "In the limits' uncertainty the coefficients count with one factor, whose standard deviation is that of {}, "
+      "{:.3g} %, unless [uncertainty] says another.",
+      table.std_of, 100.0 * table.std_ratio);
 }
 
 /// A cell, and where its robot stands.
@@ -301,11 +339,12 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
   file.choice<bool>("cut.kind", {{"milling", false}, {"drilling", true}}, out.drilling);
   file.choice("lobes.sweep", stability::swept_names, out.sweep);
   const bool spatial = !out.drilling && is_spatial(file, cutter, out.sweep);
+  cutting::CoefficientTable table;
   if (spatial) {
-    read_spatial(file, cutter, out);
+    read_spatial(file, cutter, out, table);
   } else {
     read_cut(file, out);
-    read_forces(file, out.problem.milling);
+    read_forces(file, out, table);
   }
   if (out.drilling) out.problem.drilling = drill_of(file, out);
   read_structure(file, "dynamics", out.modes, out.frf, out.problem.dynamics);
@@ -327,6 +366,7 @@ LobesFile read(io::TomlFile& file, const std::filesystem::path& path) {
                       "Of drilling it is the lips' radial width, from the pilot hole to the rim");
   }
   read_uncertainty(file, out.uncertainty);
+  take_material(file, table, cutter.kind, out);
   if (file.has("surface_error")) {
     std::vector<int> grid = {60, 60};
     file.integers("surface_error.grid", "grid", grid);
@@ -377,73 +417,21 @@ void LobesFile::validate() const {
   document->locate([&] { problem.validate(); });
 }
 
-LobesFile read_lobes(const std::filesystem::path& path) {
-  const auto document = std::make_shared<io::TomlFile>(path);
-  LobesFile out = read(*document, path);
+LobesFile read_lobes(const io::TomlSource& source) {
+  const auto document = std::make_shared<io::TomlFile>(source);
+  LobesFile out = read(*document, source.path);
   out.document = document;
   return out;
-}
-
-namespace {
-
-/// The modes of the cell's posture, with the uncertainty that they come with.
-void load_posture(LobesFile& file, Progress& progress) {
-  const auto posture = std::make_shared<ModesOfPosture>();
-  const auto find = [&] { *posture = posture_modes(file.cell, file.joints, file.posture_axes, progress); };
-  if (file.document) {
-    file.document->locate(find);
-  } else {
-    find();
-  }
-  file.problem.dynamics = posture->prediction.modes;
-  std::ranges::move(posture_warnings(*posture), std::back_inserter(file.notes));
-  file.notes.insert(file.notes.end(), posture->notes.begin(), posture->notes.end());
-  constexpr double noticed_rad = 5.0 * units::deg;
-  if (file.posture_axes == PostureAxes::base && posture->axis_off_z_rad > noticed_rad) {
-    file.notes.push_back(
-        fmt::format("The cut's z is the base's z, from which the tool's axis stands off by {:.3g} deg in this posture.",
-                    posture->axis_off_z_rad / units::deg));
-  }
-  const bool known = std::ranges::any_of(file.problem.dynamics.modes,
-                                         [](const modal::Mode& mode) { return std::isfinite(mode.frequency_std_hz); });
-  if (known && file.uncertainty.samples == 0 && file.sweep == stability::SweptParameter::axial_depth) {
-    file.uncertainty.samples = 100;
-    file.uncertainty.grid = {40, 30};
-  }
-  file.posture = posture;
-}
-
-}  // namespace
-
-void load_dynamics(LobesFile& file, Progress& progress) {
-  if (!file.cell.empty()) load_posture(file, progress);
-  if (!file.modes.empty()) file.problem.dynamics = modal::read_modes(file.modes);
-  if (!file.workpiece_modes.empty()) file.problem.workpiece_dynamics = modal::read_modes(file.workpiece_modes);
-  const auto measured = [&file](const std::filesystem::path& path) {
-    modal::FrfFile frfs = modal::read_frfs({path});
-    file.notes.insert(file.notes.end(), frfs.notes.begin(), frfs.notes.end());
-    if (frfs.added_decay_per_s > 0.0) {
-      throw InvalidInput(path.string(), "still holds the damping of an exponential window",
-                         "Fit modes, which can do without it, or estimate the FRFs with remove_added_damping");
-    }
-    return std::move(frfs.set);
-  };
-  if (!file.frf.empty()) file.problem.measured = measured(file.frf);
-  if (!file.workpiece_frf.empty()) file.problem.workpiece_measured = measured(file.workpiece_frf);
-  const auto along_axis = [](const modal::Dof& dof) { return dof.axis == modal::Axis::z; };
-  if (file.problem.in_three_directions() && !file.problem.dynamics.modes.empty() &&
-      std::ranges::none_of(file.problem.dynamics.responses, along_axis)) {
-    file.notes.push_back("z was not measured and is taken as rigid.");
-  }
-  if (file.drilling) return;
-  const auto words = complete_directions(file.problem.dynamics, file.problem.measured, file.directions,
-                                         file.path.string(), "dynamics");
-  if (words) file.notes.push_back(*words);
 }
 
 void require_plane(const LobesFile& file, const std::string& hint) {
   if (!file.problem.in_three_directions()) return;
   throw InvalidInput(file.path.string(), "must be a milling cut of an upright flat end in x and y here", hint);
+}
+
+void require_modes_in_three_directions(const LobesFile& file) {
+  if (!file.problem.in_three_directions() || (file.frf.empty() && file.workpiece_frf.empty())) return;
+  throw InvalidInput(file.path.string(), "a cut in three directions needs modes, not FRFs", "Fit them: robomill modes");
 }
 
 LobesFile read_milling(const std::filesystem::path& path, const std::string& hint) {

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "robomill/base/assumption.hpp"
 #include "robomill/base/export.hpp"
+#include "robomill/io/toml_source.hpp"
 #include "robomill/jobs/posture.hpp"
 #include "robomill/modal/directions.hpp"
 #include "robomill/stability/lobes.hpp"
@@ -47,7 +49,10 @@ struct LobesFile {
   bool drilling = false;               ///< cut.kind: the next two count, and of the cut neither angles nor radial depth
   double point_angle_rad = 0.0;        ///< of the drill [rad]; 0: not given
   double feed_per_revolution_m = 0.0;  ///< of the drill [m]
-  std::vector<std::string> notes = {};  ///< sentences for the user, of the files that load_dynamics() read
+  std::vector<std::string> notes =
+      {};                      ///< sentences for the user, of a material and of the files that load_dynamics() read
+  std::string band_note = {};  ///< for the user where a band of the limits is computed
+  std::vector<Assumption> assumed = {};               ///< of these files
   std::shared_ptr<const io::TomlFile> document = {};  ///< for errors in its words; empty where built in memory
 
   /// Forgets the tool's structure: another stands in its place.
@@ -59,7 +64,7 @@ struct LobesFile {
 };
 
 /// Everything but the structure is checked. @throws InvalidInput with file, line, key and value
-[[nodiscard]] ROBOMILL_API LobesFile read_lobes(const std::filesystem::path& path);
+[[nodiscard]] ROBOMILL_API LobesFile read_lobes(const io::TomlSource& source);
 
 /// Reads the files of modes and of FRFs that it names, of the tool and of the workpiece, into its problem; of a cell
 /// the modes of its posture. Without [uncertainty] these bring their own.
@@ -73,6 +78,9 @@ ROBOMILL_API void load_dynamics(LobesFile& file, Progress& progress = Progress::
 /// @param hint  for whoever gave another cut
 /// @throws InvalidInput unless the cut is milling with an upright flat end, in x and y
 ROBOMILL_API void require_plane(const LobesFile& file, const std::string& hint = {});
+
+/// @throws InvalidInput if a cut in three directions names FRFs
+ROBOMILL_API void require_modes_in_three_directions(const LobesFile& file);
 
 /// A milling cut in x and y with the structure that its file names, everything checked.
 /// @param hint  for whoever gave another cut

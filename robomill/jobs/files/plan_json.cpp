@@ -177,6 +177,7 @@ Json recordings_json(const PlanResult& result) {
 
 Json plan_object(const PlanResult& result) {
   Json json = decision_json(result);
+  json["assumed"] = io::assumed_json(result.assumed);
   if (result.prediction) json["assembly"] = prediction_object(*result.prediction);
   if (result.hits) json["frf"] = modal::hits_object(*result.hits);
   if (result.job.has_structure())

@@ -16,6 +16,8 @@ namespace robomill::jobs {
 [[nodiscard]] io::Json forces_object(const ForcesResult& result);
 /// Of blocks.json how many blocks there are, how many chatter, and the worst.
 [[nodiscard]] io::Json blocks_summary(const ForcesResult& forces, const ProgramBlocks& blocks);
+/// blocks.json.
+[[nodiscard]] io::Json blocks_object(const ForcesResult& forces, const ProgramBlocks& blocks);
 /// The decision of plan.json.
 [[nodiscard]] io::Json program_decision_json(const PlanResult& plan);
 [[nodiscard]] io::Json prediction_object(const TipPrediction& prediction);

@@ -76,6 +76,7 @@ std::string posture_modes_json(const ModesOfPosture& posture) {
   json["posture"] = posture_object(posture);
   json["warnings"] = posture_warnings(posture);
   json["notes"] = posture.notes;
+  json["assumed"] = io::assumed_json(posture.assumed);
   return io::dump(json);
 }
 

@@ -66,6 +66,7 @@ std::string tip_json(const TipPrediction& prediction) {
   }
   note(prediction.file.notes);
   note(prediction.tip.notes);
+  doubts.assumed = prediction.file.assumed;
   return modal::frf_json(prediction.tip.frfs, doubts);
 }
 

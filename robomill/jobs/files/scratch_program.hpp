@@ -10,7 +10,7 @@ namespace robomill::jobs {
 /// A program's text as a file, for readers that read files, as long as this lives.
 class ScratchProgram {
  public:
-  /// @param folder  empty: that of temporary files
+  /// @param folder  empty: io::scratch_folder
   /// @param name    whose ending is the program's format
   /// @throws InvalidInput if it cannot be written
   ScratchProgram(const std::filesystem::path& folder, const std::string& name, std::string_view text);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "robomill/base/units.hpp"
+#include "robomill/io/csv.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
@@ -33,15 +34,6 @@ std::string remark_of(const ToolResult& tool) {
   std::string text = best_of(tool) == nullptr ? reason_of(tool) : "";
   for (const std::string& note : tool.notes) text += (text.empty() ? "" : "; ") + note;
   return text;
-}
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char letter : text) {
-    if (letter == '"') out += '"';  // a quote within quotes is written twice
-    out += letter == '\n' || letter == '\r' ? ' ' : letter;
-  }
-  return out + "\"";
 }
 
 /// In the file's unit; empty where there is none.
@@ -100,7 +92,7 @@ std::string tools_csv(const std::vector<ToolResult>& results) {
           return std::abs(a.frequency_hz - tool.peak_hz) < std::abs(b.frequency_hz - tool.peak_hz);
         });
     const bool mode = nearest != tool.modes.modes.end();
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(tool.name),
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", io::csv_text(tool.name),
                        tool.teeth > 0 ? std::to_string(tool.teeth) : std::string(), cell(tool.diameter_m, units::mm),
                        cell(tool.overhang_m, units::mm), cell(tool.peak_hz, 1.0, done),
                        cell(tool.peak_m_per_n, units::um, done), tool.modes.modes.size(),
@@ -108,7 +100,8 @@ std::string tools_csv(const std::vector<ToolResult>& results) {
                        cell(tool.lowest_limit_m.value_or(0.0), units::mm, tool.lowest_limit_m.has_value()),
                        best != nullptr ? cell(best->spindle_speed_rad_per_s, units::rpm) : "",
                        best != nullptr ? cell(best->axial_depth_m, units::mm) : "",
-                       best != nullptr ? cell(best->removal_rate_m3_per_s, units::mm3) : "", quoted(remark_of(tool)));
+                       best != nullptr ? cell(best->removal_rate_m3_per_s, units::mm3) : "",
+                       io::csv_text(remark_of(tool)));
   }
   return out;
 }

@@ -1,0 +1,60 @@
+#include "robomill/jobs/cell_check/placement.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/jobs/cell_check/tool_places.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+constexpr std::size_t most_misses = 100;
+
+/// Each pose for itself, the next one from where the last one stands.
+void look_at_poses(const ToolPlaces& places, const path::Head& head, Placement& out, Progress& progress) {
+  std::optional<ToolPlaces::Stand> before;
+  for (std::size_t i = 0; i < head.pose.size(); ++i) {
+    progress.check();
+    out.complete = out.misses.size() < most_misses;
+    if (!out.complete) return;
+    ++out.poses;
+    const program::Pose& pose = head.pose[i];
+    if (before) {
+      if (const auto next = places.follow(pose, *before)) {
+        before = next;
+        continue;
+      }
+    }
+    ToolPlaces::Found found = places.find(pose);
+    if (i == 0 && found.stand) {
+      out.choice.posture = {.start = found.stand->position, .gamma_rad = {found.stand->gamma_rad}};
+      out.choice.margin.least = found.stand->margin;
+    }
+    before = found.stand;
+    if (found.stand) continue;
+    found.miss.block = i;
+    found.miss.line = i > 0 ? head.line[i - 1] : 0;
+    out.misses.push_back(std::move(found.miss));
+  }
+}
+
+}  // namespace
+
+Placement judge(const CellFile& cell, const Eigen::Isometry3d& workpiece, const Targets& targets, Progress& progress) {
+  Placement out{.workpiece = workpiece};
+  const ToolPlaces places(cell, workpiece);
+  look_at_poses(places, targets.head, out, progress);
+  if (!out.misses.empty() || targets.source == nullptr || targets.head.line.empty()) return out;
+  path::PostureOptions options;
+  if (cell.gamma_given) options.gamma_rad = cell.redundant_gamma_rad;
+  if (!cell.start_joints.empty()) options.start = position_of(cell.start_joints);
+  try {
+    out.choice = path::choose_posture(*targets.source, places.machine(), options);
+  } catch (const InvalidInput& error) {
+    out.no_way = error.parts().field + " " + error.parts().rule;
+  }
+  return out;
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,253 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/records.hpp"
+#include "robomill/io/text.hpp"
+#include "robomill/io/toml_edit.hpp"
+#include "robomill/jobs/files/known_arms.hpp"
+#include "robomill/jobs/init.hpp"
+#include "robomill/jobs/init/example_hit.hpp"
+#include "robomill/jobs/init/hits_document.hpp"
+#include "robomill/jobs/init/template_lines.hpp"
+#include "robomill/modal/files/hits_toml.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// More files of a folder are not looked at, nor larger ones.
+constexpr std::size_t most_records = 200;
+constexpr std::size_t most_notes = 10;
+constexpr std::uintmax_t largest_record_bytes = std::uintmax_t{256} << 20;
+
+/// A link too, whatever it points to.
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::symlink_status(path, ignored).type() > fs::file_type::not_found;
+}
+
+/// Numbers in names count as numbers: hit_2 before hit_10.
+bool comes_before(const std::string& a, const std::string& b) {
+  const auto digit = [](char letter) { return std::isdigit(static_cast<unsigned char>(letter)) != 0; };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (digit(a[i]) && digit(b[j])) {
+      const auto number = [&digit](const std::string& text, std::size_t& at) {
+        while (at + 1 < text.size() && text[at] == '0' && digit(text[at + 1])) ++at;
+        const std::size_t begin = at;
+        while (at < text.size() && digit(text[at])) ++at;
+        return text.substr(begin, at - begin);
+      };
+      const std::string left = number(a, i), right = number(b, j);
+      if (left != right) return std::pair(left.size(), left) < std::pair(right.size(), right);
+    } else if (a[i] != b[j]) {
+      return a[i] < b[j];
+    } else {
+      ++i;
+      ++j;
+    }
+  }
+  return std::pair(a.size() - i, a) < std::pair(b.size() - j, b);
+}
+
+/// Files of a folder that are records by their ending.
+std::vector<fs::path> records_in(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  try {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      const io::Format format = io::format_of(entry.path());
+      const bool record = format == io::Format::csv || format == io::Format::text || format == io::Format::mat ||
+                          format == io::Format::uff || format == io::Format::wav;
+      if (record && entry.is_regular_file() && entry.file_size() <= largest_record_bytes) paths.push_back(entry.path());
+    }
+  } catch (const fs::filesystem_error& error) {
+    throw InvalidInput(folder.string(), "cannot be looked through: " + error.code().message());
+  }
+  std::ranges::sort(paths,
+                    [](const fs::path& a, const fs::path& b) { return comes_before(a.filename(), b.filename()); });
+  return paths;
+}
+
+FoundHits find_hits(const fs::path& data, const fs::path& folder) {
+  FoundHits found;
+  std::vector<fs::path> paths = records_in(data);
+  if (paths.size() > most_records) {
+    found.left_out.push_back(fmt::format("{} files more in {}", paths.size() - most_records, data.string()));
+    paths.resize(most_records);
+  }
+  for (const fs::path& path : paths) {
+    const std::string name = fs::absolute(path)
+                                 .lexically_normal()
+                                 .lexically_proximate(fs::absolute(folder).lexically_normal())
+                                 .generic_string();
+    try {
+      const io::Record record = io::read_record(path);
+      modal::HitGuess guess = modal::guess_hit(record);
+      if (!guess.is_hit()) {
+        found.left_out.push_back(name + ": no column looks like a hammer's force, one short pulse, beside a response");
+        continue;
+      }
+      FoundHit hit{.file = name, .format = io::format_of(path), .sample_rate_hz = record.sample_rate_hz};
+      const std::vector<std::size_t> times = guess.with(modal::ColumnGuess::Role::time);
+      if (!times.empty()) {
+        const double per_unit = guess.columns[times.front()].si_per_unit;
+        hit.sample_rate_hz = io::sample_rate_of(record.columns[times.front()], path.string()) / per_unit;
+      }
+      hit.guess = std::move(guess);
+      found.hits.push_back(std::move(hit));
+    } catch (const InvalidInput& error) {
+      InvalidInput::Parts parts = error.parts();
+      found.left_out.push_back(fmt::format("{}: {}", name, parts.rule));
+    }
+  }
+  keep_what_goes_together(found);
+  return found;
+}
+
+void add_hits(const InitOptions& options, const fs::path& path, InitFiles& out, MeasuredAxes& measured) {
+  const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
+  FoundHits found;
+  const fs::path data = options.data.empty() ? folder : options.data;
+  if (!options.data.empty() || fs::is_directory(data)) found = find_hits(data, folder);
+  // A made-up one of an earlier call is no measurement.
+  std::erase_if(found.hits, [](const FoundHit& hit) { return fs::path(hit.file).filename() == example_hit_name; });
+  NewFile document{.path = path, .text = hits_document(found), .kind = Template::hits};
+  if (found.hits.empty()) {
+    const fs::path example = path.parent_path() / example_hit_name;
+    measured = {.excitations = {'x'}, .responses = {'x'}};
+    out.files.push_back(std::move(document));
+    if (is_there(example)) {
+      out.kept.push_back(example);
+    } else {
+      out.files.push_back({.path = example, .text = example_hit_csv()});
+    }
+    out.notes.push_back(fmt::format("No records of hits were found in {}: {} is made up, so that the file runs.",
+                                    data.string(), example_hit_name));
+  } else {
+    measured = measured_axes(found);
+    out.files.push_back(std::move(document));
+    const bool one = found.hits.size() == 1;
+    out.notes.push_back(fmt::format("{} record{} of hits {} found in {}: what is guessed is marked, check it.",
+                                    found.hits.size(), one ? "" : "s", one ? "was" : "were", data.string()));
+  }
+  for (std::size_t i = 0; i < std::min(found.left_out.size(), most_notes); ++i) {
+    out.notes.push_back(fmt::format("Left out: {}.", found.left_out[i]));
+  }
+  if (found.left_out.size() > most_notes) {
+    out.notes.push_back(fmt::format("Left out: {} more.", found.left_out.size() - most_notes));
+  }
+}
+
+/// What a hits.toml that is there already knows.
+MeasuredAxes axes_of(const fs::path& hits_toml) {
+  MeasuredAxes axes;
+  const auto letter = [](const modal::Dof& dof) { return modal::to_string(modal::Dof{.axis = dof.axis}).front(); };
+  for (const modal::Hit& hit : modal::read_hits(hits_toml).hits) {
+    axes.excitations.insert(letter(hit.excitation));
+    for (const modal::HitChannel& channel : hit.responses) axes.responses.insert(letter(channel.dof));
+  }
+  return axes;
+}
+
+void add_job(const InitOptions& options, const fs::path& path, InitFiles& out) {
+  const fs::path hits = path.parent_path() / "hits.toml", lobes = path.parent_path() / "lobes.toml";
+  NewFile& job = out.files.emplace_back(NewFile{.path = path, .kind = Template::job});
+  MeasuredAxes measured;
+  InitFiles beside;
+  if (is_there(hits)) {
+    out.kept.push_back(hits);
+    measured = axes_of(hits);
+  } else {
+    add_hits(options, hits, beside, measured);
+  }
+  job.text = job_document(measured);
+  if (is_there(lobes)) {
+    out.kept.push_back(lobes);
+  } else {
+    out.files.push_back({.path = lobes, .text = std::string(template_text(Template::lobes)), .kind = Template::lobes});
+  }
+  std::ranges::move(beside.files, std::back_inserter(out.files));
+  std::ranges::move(beside.kept, std::back_inserter(out.kept));
+  out.notes = std::move(beside.notes);
+}
+
+/// The command that runs a document.
+std::string command_for(Template kind, const fs::path& path) {
+  switch (kind) {
+    case Template::job:
+      return fmt::format("plan {} -o out/", path.string());
+    case Template::hits:
+      return fmt::format("frf {} -o tip.uff", path.string());
+    case Template::lobes:
+      return fmt::format("lobes {} -o lobes.json", path.string());
+    case Template::cell:
+      return fmt::format("cell check {}", path.string());
+    case Template::assembly:
+      return fmt::format("couple {} -o tip.uff", path.string());
+    case Template::forces:
+      return fmt::format("forces {} -o forces.csv --report forces.html", path.string());
+    case Template::monitor:
+      break;
+  }
+  return fmt::format("monitor {} --input cut.wav -o events.jsonl", path.string());
+}
+
+}  // namespace
+
+NewFile* InitFiles::document(Template kind) {
+  const auto found = std::ranges::find(files, std::optional(kind), &NewFile::kind);
+  return found != files.end() ? &*found : nullptr;
+}
+
+InitFiles init_files(const InitOptions& options) {
+  const std::string usual = fmt::format("{}.toml", name_in(template_names, options.kind));
+  fs::path path = options.file.empty() ? fs::path(usual) : options.file;
+  if (fs::is_directory(path)) path /= usual;
+  if (io::format_of(path) != io::Format::toml) {
+    throw InvalidInput(path.string(), "must end in .toml", "It is what robomill reads");
+  }
+  if (!options.robot.empty() && options.kind != Template::cell) throw InvalidInput("--robot", "goes with init cell");
+  if (!options.data.empty() && options.kind != Template::hits && options.kind != Template::job) {
+    throw InvalidInput("--data", "goes with init hits and init job");
+  }
+  InitFiles out;
+  MeasuredAxes measured;
+  switch (options.kind) {
+    case Template::job:
+      add_job(options, path, out);
+      break;
+    case Template::hits:
+      add_hits(options, path, out, measured);
+      break;
+    case Template::cell:
+      out.files.push_back({.path = path, .text = cell_document(options.robot), .kind = options.kind});
+      break;
+    default:
+      out.files.push_back({.path = path, .text = std::string(template_text(options.kind)), .kind = options.kind});
+  }
+  out.next = command_for(options.kind, path);
+  return out;
+}
+
+void require_new(const InitFiles& files) {
+  for (const NewFile& file : files.files) {
+    if (is_there(file.path)) {
+      throw InvalidInput(file.path.string(), "exists, and is not overwritten", "Name another file by -o, or move it");
+    }
+  }
+}
+
+void write_init(const InitFiles& files) {
+  require_new(files);
+  for (std::size_t i = files.files.size(); i-- > 0;) io::write_file(files.files[i].path, files.files[i].text);
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <utility>
+
+#include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/io/toml_file.hpp"
+#include "robomill/jobs/files/cut_fields.hpp"
+#include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/modal/files/frf_files.hpp"
+#include "robomill/modal/files/modes_files.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+/// The modes of the cell's posture, with the uncertainty that they come with.
+void load_posture(LobesFile& file, Progress& progress) {
+  const auto posture = std::make_shared<ModesOfPosture>();
+  const auto find = [&] { *posture = posture_modes(file.cell, file.joints, file.posture_axes, progress); };
+  if (file.document) {
+    file.document->locate(find);
+  } else {
+    find();
+  }
+  file.problem.dynamics = posture->prediction.modes;
+  std::ranges::move(posture_warnings(*posture), std::back_inserter(file.notes));
+  file.notes.insert(file.notes.end(), posture->notes.begin(), posture->notes.end());
+  add_assumed(file.assumed, posture->assumed);
+  constexpr double noticed_rad = 5.0 * units::deg;
+  if (file.posture_axes == PostureAxes::base && posture->axis_off_z_rad > noticed_rad) {
+    file.notes.push_back(
+        fmt::format("The cut's z is the base's z, from which the tool's axis stands off by {:.3g} deg in this posture.",
+                    posture->axis_off_z_rad / units::deg));
+  }
+  const bool known = std::ranges::any_of(file.problem.dynamics.modes,
+                                         [](const modal::Mode& mode) { return std::isfinite(mode.frequency_std_hz); });
+  if (known && file.uncertainty.samples == 0 && file.sweep == stability::SweptParameter::axial_depth) {
+    file.uncertainty.samples = 100;
+    file.uncertainty.grid = {40, 30};
+  }
+  file.posture = posture;
+}
+
+}  // namespace
+
+void load_dynamics(LobesFile& file, Progress& progress) {
+  if (!file.cell.empty()) load_posture(file, progress);
+  if (!file.modes.empty()) file.problem.dynamics = modal::read_modes(file.modes);
+  if (!file.workpiece_modes.empty()) file.problem.workpiece_dynamics = modal::read_modes(file.workpiece_modes);
+  const auto measured = [&file](const std::filesystem::path& path) {
+    modal::FrfFile frfs = modal::read_frfs({path});
+    file.notes.insert(file.notes.end(), frfs.notes.begin(), frfs.notes.end());
+    add_assumed(file.assumed, frfs.assumed);
+    if (frfs.added_decay_per_s > 0.0) {
+      throw InvalidInput(path.string(), "still holds the damping of an exponential window",
+                         "Fit modes, which can do without it, or estimate the FRFs with remove_added_damping");
+    }
+    return std::move(frfs.set);
+  };
+  if (!file.frf.empty()) file.problem.measured = measured(file.frf);
+  if (!file.workpiece_frf.empty()) file.problem.workpiece_measured = measured(file.workpiece_frf);
+  const auto along_axis = [](const modal::Dof& dof) { return dof.axis == modal::Axis::z; };
+  if (file.problem.in_three_directions() && !file.problem.dynamics.modes.empty() &&
+      std::ranges::none_of(file.problem.dynamics.responses, along_axis)) {
+    add_assumed(file.assumed, {{.what = "Direction z, not measured",
+                                .taken = "rigid",
+                                .key = "dynamics",
+                                .file = file.path.filename().string()}});
+  }
+  if (file.drilling) return;
+  const auto assumed =
+      complete_directions(file.problem.dynamics, file.problem.measured, file.directions, file.path, "dynamics");
+  if (assumed) add_assumed(file.assumed, {*assumed});
+}
+
+}  // namespace robomill::jobs

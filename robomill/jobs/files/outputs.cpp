@@ -1,0 +1,176 @@
+#include "robomill/jobs/outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "robomill/base/error.hpp"
+#include "robomill/coupling/files/joint_json.hpp"
+#include "robomill/cutting/files/slots_csv.hpp"
+#include "robomill/jobs/cell_check.hpp"
+#include "robomill/jobs/coefficients.hpp"
+#include "robomill/jobs/explain.hpp"
+#include "robomill/jobs/files/cell_check_json.hpp"
+#include "robomill/jobs/forces.hpp"
+#include "robomill/jobs/frf.hpp"
+#include "robomill/jobs/joint.hpp"
+#include "robomill/jobs/lobes.hpp"
+#include "robomill/jobs/modes.hpp"
+#include "robomill/jobs/posture.hpp"
+#include "robomill/jobs/predict.hpp"
+#include "robomill/jobs/simulate.hpp"
+#include "robomill/jobs/smooth.hpp"
+#include "robomill/jobs/stiffness.hpp"
+#include "robomill/jobs/tools.hpp"
+#include "robomill/modal/files/modes_files.hpp"
+#include "robomill/robot/files/stiffness_files.hpp"
+#include "robomill/simulation/files/simulation_files.hpp"
+#include "robomill/stability/files/peak_classification_json.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+using io::Format;
+
+/// The endings of a document; JSON is always one.
+struct Endings {
+  Document document;
+  std::array<Format, 4> others;  ///< json in place of none
+  const char* rule;
+};
+constexpr Format none = Format::json;
+constexpr std::array<Endings, 11> endings = {
+    {{Document::frfs,
+      {Format::uff, Format::csv, Format::text, Format::mat},
+      "FRFs are written as .uff, .csv, .txt, .mat or .json"},
+     {Document::tools, {Format::csv, none, none, none}, "a table of tools is written as .csv or .json"},
+     {Document::modes, {Format::csv, none, none, none}, "modes are written as .csv or .json"},
+     {Document::joint, {Format::csv, none, none, none}, "joints are written as .csv or .json"},
+     {Document::lobes, {Format::csv, none, none, none}, "lobes are written as .csv or .json"},
+     {Document::explanation, {Format::csv, none, none, none}, "explanations are written as .csv or .json"},
+     {Document::simulation,
+      {Format::csv, Format::mat, Format::wav, none},
+      "a simulation is written as .csv, .mat, .wav or .json"},
+     {Document::forces, {Format::csv, none, none, none}, "forces are written as .csv or .json"},
+     {Document::coefficients,
+      {Format::toml, Format::csv, none, none},
+      "coefficients are written as .toml, .csv or .json"},
+     {Document::stiffness,
+      {Format::csv, Format::toml, none, none},
+      "joint stiffness is written as .csv, .json or as .toml, a line for cell.toml"},
+     {Document::cell_check, {none, none, none, none}, "a cell's check is written as .json"}}};
+
+template <class Result>
+void write_text(const std::filesystem::path& path, const Result& result) {
+  io::write_file(path, document(result, io::format_of(path)));
+}
+
+}  // namespace
+
+void require_output(Document document, const std::filesystem::path& path) {
+  const Format format = io::format_of(path);
+  const auto* const known = std::ranges::find(endings, document, &Endings::document);
+  if (format == Format::json || std::ranges::find(known->others, format) != known->others.end()) return;
+  throw InvalidInput(path.string(), known->rule);
+}
+
+void require_holder(const TipPrediction& result, const std::string& option) {
+  if (!result.holder.frfs.empty()) return;
+  throw InvalidInput(option, "needs a measured holder",
+                     "A holder of segments, or a rigid wall, has nothing to keep for the next tool");
+}
+
+std::string document(const FrfJobResult& result, Format) {
+  return modal::frf_json(result.frfs);
+}
+std::string document(const ModesResult& result, Format format) {
+  return format == Format::csv ? modal::modes_csv(result.fit.model) : modal::modes_json(result.fit);
+}
+std::string document(const ModesOfPosture& result, Format format) {
+  return format == Format::csv ? modal::modes_csv(result.prediction.modes) : posture_modes_json(result);
+}
+std::string document(const TipPrediction& result, Format) {
+  return tip_json(result);
+}
+std::string document(const ToolsResult& result, Format format) {
+  return format == Format::csv ? tools_csv(result.tools) : tools_json(result.tools, result.assembly.holder);
+}
+std::string document(const JointResult& result, Format format) {
+  return format == Format::csv ? coupling::joint_csv(result.fit) : coupling::joint_json(result.fit);
+}
+std::string document(const LobesJobResult& result, Format format) {
+  return format == Format::csv ? lobes_table(result) : lobes_document(result);
+}
+std::string document(const ExplainResult& result, Format format) {
+  if (format == Format::csv) return stability::peaks_csv(result.peaks);
+  return stability::peak_classification_json(result.peaks, result.mechanism ? &*result.mechanism : nullptr);
+}
+std::string document(const SimulateResult& result, Format) {
+  return simulation::simulation_json(result.simulation, result.point.spindle_speed_rad_per_s,
+                                     result.point.axial_depth_m);
+}
+std::string document(const ForcesResult& result, Format format) {
+  return format == Format::csv ? forces_csv(result) : forces_json(result);
+}
+std::string document(const CoefficientsResult& result, Format format) {
+  if (format == Format::csv) return cutting::slot_fit_csv(result.fit);
+  if (format == Format::toml) return cutting::slot_fit_toml(result.fit, result.file, result.assumed);
+  return cutting::slot_fit_json(result.fit, result.file, result.assumed);
+}
+std::string document(const StiffnessResult& result, Format format) {
+  const robot::Arm& arm = result.cell.cell.arm;
+  if (format == Format::csv) return robot::stiffness_csv(result.found, arm);
+  if (format == Format::toml) return robot::stiffness_toml(result.found, arm);
+  return robot::stiffness_json(result.found, arm, result.loads);
+}
+std::string document(const CellCheck& result, Format) {
+  return cell_check_json(result);
+}
+
+void write_document(const std::filesystem::path& path, const FrfJobResult& result,
+                    const modal::FrfWriteOptions& options) {
+  modal::write_frfs(path, result.frfs, options);
+}
+void write_document(const std::filesystem::path& path, const ModesResult& result) {
+  write_text(path, result);
+}
+void write_document(const std::filesystem::path& path, const ModesOfPosture& result) {
+  write_text(path, result);
+}
+void write_document(const std::filesystem::path& path, const TipPrediction& result) {
+  if (io::format_of(path) == Format::json) return write_text(path, result);  // with what was found out beside the FRFs
+  modal::write_frfs(path, result.tip.frfs);
+}
+void write_document(const std::filesystem::path& path, const ToolsResult& result) {
+  write_text(path, result);
+}
+void write_document(const std::filesystem::path& path, const JointResult& result) {
+  write_text(path, result);
+}
+void write_document(const std::filesystem::path& path, const LobesJobResult& result) {
+  write_text(path, result);
+}
+void write_document(const std::filesystem::path& path, const ExplainResult& result) {
+  write_text(path, result);
+}
+void write_document(const std::filesystem::path& path, const SimulateResult& result) {
+  if (io::format_of(path) == Format::json) return write_text(path, result);
+  simulation::write_simulation(path, result.simulation);
+}
+void write_document(const std::filesystem::path& path, const ForcesResult& result) {
+  write_text(path, result);
+}
+void write_document(const std::filesystem::path& path, const CoefficientsResult& result) {
+  write_text(path, result);
+}
+void write_document(const std::filesystem::path& path, const StiffnessResult& result) {
+  // A line for cell.toml says nothing of its convergence.
+  if (result.converged() || io::format_of(path) != Format::toml) write_text(path, result);
+}
+void write_document(const std::filesystem::path& path, const CellCheck& result) {
+  write_text(path, result);
+}
+
+}  // namespace robomill::jobs

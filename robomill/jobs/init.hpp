@@ -1,0 +1,63 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/base/names.hpp"
+
+// Method: robomill/jobs/README.md, "Files to begin with (`init.hpp`)"
+
+namespace robomill::jobs {
+
+/// What `robomill init` writes.
+enum class Template { job, hits, lobes, cell, assembly, forces, monitor };
+inline constexpr Name<Template> template_names[] = {{"job", Template::job},           {"hits", Template::hits},
+                                                    {"lobes", Template::lobes},       {"cell", Template::cell},
+                                                    {"assembly", Template::assembly}, {"forces", Template::forces},
+                                                    {"monitor", Template::monitor}};
+
+/// The commented document as it is in templates/: made up, but such that its verb runs.
+[[nodiscard]] ROBOMILL_API std::string_view template_text(Template kind);
+
+struct InitOptions {
+  Template kind = Template::job;
+  std::filesystem::path file = {};  ///< where the document is to stand; a folder or nothing: KIND.toml there
+  std::filesystem::path data = {};  ///< a folder with records of hits; nothing: that of `file`
+  std::string robot = {};           ///< of a cell: one of known_arms(); nothing: that of the template
+};
+
+/// A file that is to be written.
+struct NewFile {
+  std::filesystem::path path = {};
+  std::string text = {};
+  std::optional<Template> kind = {};  ///< nothing: a record
+};
+
+/// Files to begin with, not written yet.
+struct InitFiles {
+  std::vector<NewFile> files = {};               ///< the document that was asked for, then what it names
+  std::vector<std::filesystem::path> kept = {};  ///< what it names that was there before
+  std::vector<std::string> notes = {};           ///< what was found in records
+  std::string next = {};                         ///< the command that runs the document, without the program's name
+
+  /// The document of a kind among `files`, or null.
+  [[nodiscard]] ROBOMILL_API NewFile* document(Template kind);
+};
+
+/// Makes the files. Where records of hits lie in the folder, hits.toml names them, with guesses of their columns and
+/// directions that are marked as such (modal::guess_hit); elsewhere it names one that is made up beside it. A job
+/// brings hits.toml and lobes.toml along, unless they are there.
+/// @throws InvalidInput if a name does not end in .toml, a robot is not known, the folder of data cannot be read, or a
+///     hits.toml that the job would keep cannot
+[[nodiscard]] ROBOMILL_API InitFiles init_files(const InitOptions& options);
+
+/// @throws InvalidInput naming a file of theirs that exists
+ROBOMILL_API void require_new(const InitFiles& files);
+/// Writes all of them, the document that was asked for last. @throws InvalidInput as require_new, and where a place
+/// cannot be written
+ROBOMILL_API void write_init(const InitFiles& files);
+
+}  // namespace robomill::jobs

@@ -1,0 +1,43 @@
+#include "robomill/jobs/plan_assumed.hpp"
+
+#include <vector>
+
+#include "robomill/jobs/decide/motion_loads.hpp"
+#include "robomill/jobs/files/assumed.hpp"
+
+namespace robomill::jobs {
+
+void gather_assumed(PlanResult& result, const CellFile* cell) {
+  std::vector<Assumption> of_job;
+  if (result.recommends()) {
+    if (result.job.recommend.max_axial_depth_m <= 0.0) {
+      of_job.push_back({.what = "Depth of the cutter", .taken = "not limited", .key = "tool.max_axial_depth_mm"});
+    }
+    if (result.job.recommend.spindle.empty()) {
+      of_job.push_back({.what = "Torque and power of the spindle", .taken = "not limited", .key = "spindle.curve"});
+    }
+  }
+  if (result.decision) add_assumed(of_job, result.decision->assumed);
+  for (Assumption& one : of_job) one.file = result.job.file.filename().string();
+  add_assumed(result.assumed, of_job);
+  if (result.recommends()) add_assumed(result.assumed, assumed_of(result.cut, CutUse::motion));
+  if (result.forces) add_assumed(result.assumed, result.forces->assumed);
+  if (result.path) add_assumed(result.assumed, result.path->smoothed.assumed);
+  if (cell != nullptr && result.blocks && !cell->end_effector.mass_kg && knows_torques(*cell)) {
+    // What the drives bear is looked at, without the spindle's weight.
+    add_assumed(result.assumed, {{.what = "Mass on the flange",
+                                  .taken = "none",
+                                  .key = "tool.mass_kg",
+                                  .file = cell->path.filename().string()}});
+  }
+  const Assumption unchecked = {.what = "Collisions", .taken = "none; nothing was checked"};
+  std::erase(result.assumed, unchecked);
+  if (cell == nullptr || result.job.program.empty() || (result.decision && result.decision->collisions_checked)) return;
+  result.assumed.push_back(unchecked);
+  if (result.decision) {
+    result.assumed.back().key = "geometry";
+    result.assumed.back().file = cell->path.filename().string();
+  }
+}
+
+}  // namespace robomill::jobs

@@ -1,0 +1,13 @@
+#pragma once
+#include <cstdint>
+
+#include "robomill/base/progress.hpp"
+#include "robomill/jobs/plan.hpp"
+
+namespace robomill::jobs {
+
+/// Lobes of the job's cut with the modes that were found, the recommendation, and what stands beside it: the band,
+/// pairs of modes, the limit over feed direction, test cuts.
+void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progress);
+
+}  // namespace robomill::jobs
