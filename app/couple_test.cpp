@@ -202,7 +202,7 @@ TEST_F(CoupleVerb, JointRejectsWhatDoesNotFit) {
     EXPECT_EQ(run.exit, 1) << run.out;
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
   };
-  rejected("assembly.toml --measured tip.csv -o joint.uff", "joints are written as .json");
+  rejected("assembly.toml --measured tip.csv -o joint.uff", "joints are written as .csv or .json");
   rejected("assembly.toml --measured missing.csv", "missing.csv");
   write("lone.txt", "10 1e-6 0\n20 1e-6 0\n");
   rejected("assembly.toml --measured lone.txt --axis y", "lone.txt: lacks yy");

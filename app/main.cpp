@@ -7,11 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "help.hpp"
+#include "options.hpp"
 #include "robomill/base/error.hpp"
 #include "robomill/base/names.hpp"
 #include "robomill/base/parallel.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/coupling/joint_fit.hpp"
+#include "robomill/jobs/init.hpp"
 #include "robomill/jobs/posture.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/path/options.hpp"
@@ -33,6 +36,7 @@ CLI::IsMember one_of_words(const Name<Value> (&names)[n]) {
 struct CommandLine {
   CLI::App parser{"robomill keeps a milling robot out of chatter: hammer hits to safe cutting conditions.", "robomill"};
   Common common;
+  InitCommand init;
   FrfCommand frf;
   ModesCommand modes;
   CoupleCommand couple;
@@ -43,38 +47,74 @@ struct CommandLine {
   ForcesCommand forces;
   CoefficientsCommand coefficients;
   StiffnessCommand stiffness;
+  CellCheckCommand cell_check;
   SmoothCommand smooth;
   MonitorCommand monitor;
   CalibrateCommand calibrate;
   PlanCommand plan;
+  ServeCommand serve;
   std::function<Exit(Progress&)> chosen;
 
   CommandLine();
+  void add_first_verbs();
   void add_structure_verbs();
   void add_cut_verbs();
   void add_robot_verbs();
   void add_machine_verbs();
-  CLI::App* verb(const char* name, const char* description, std::function<Exit(Progress&)> run);
+  CLI::App* verb(const char* name, const char* description, std::function<Exit(Progress&)> run,
+                 CLI::App* above = nullptr);
 };
 
-CLI::App* CommandLine::verb(const char* name, const char* description, std::function<Exit(Progress&)> run) {
-  CLI::App* sub = parser.add_subcommand(name, description);
+/// @param above  the verb that it is one of; null: a verb of its own
+CLI::App* CommandLine::verb(const char* name, const char* description, std::function<Exit(Progress&)> run,
+                            CLI::App* above) {
+  CLI::App* sub = (above != nullptr ? above : &parser)->add_subcommand(name, description);
   sub->add_option("-o,--output", common.output,
                   "write here, the format by its ending; - writes JSON to standard output");
+  sub->add_option("--report", common.report, "a page to look at (.html), or its data (.json)");
   sub->add_flag("--quiet", common.quiet, "no summary and no progress");
-  sub->add_option("--threads", common.threads, "threads to use (default: one a core)")->check(CLI::PositiveNumber);
-  sub->add_option("--seed", common.seed, "seed of every random number (default: 1)");
+  sub->add_option("--threads", common.threads, "threads to use (default: one a core)")->check(whole_number(1));
+  sub->add_option("--seed", common.seed, "seed of every random number (default: 1)")->check(unsigned_number());
   sub->callback([this, run = std::move(run)] { chosen = run; });
   return sub;
+}
+
+/// Below the help of each verb: an example and where to read on.
+void add_footers(CLI::App& parser, const std::string& parents) {
+  for (CLI::App* verb : parser.get_subcommands([](CLI::App*) { return true; })) {
+    const std::string name = parents + verb->get_name();
+    for (const VerbHelp& help : verb_helps) {
+      if (help.verb != name) continue;
+      verb->footer("Example: robomill " + std::string(help.example) +
+                   "\nDocumentation: " + std::string(help.documentation));
+    }
+    add_footers(*verb, name + " ");
+  }
 }
 
 CommandLine::CommandLine() {
   parser.set_version_flag("--version", "robomill " ROBOMILL_VERSION);
   parser.require_subcommand(1);
+  add_first_verbs();
   add_structure_verbs();
   add_cut_verbs();
   add_robot_verbs();
   add_machine_verbs();
+  add_footers(parser, {});
+}
+
+/// Files to begin with.
+void CommandLine::add_first_verbs() {
+  CLI::App* sub = verb("init", "a commented file to begin with, that runs as it is",
+                       [this](Progress& p) { return run(init, common, p); });
+  sub->remove_option(sub->get_option("--report"));
+  sub->add_option("kind", init.kind, "job, hits, lobes, cell, assembly, forces or monitor")
+      ->check(one_of_words(jobs::template_names))
+      ->required();
+  sub->get_option("--output")->description("write here (default: KIND.toml); - writes to standard output");
+  sub->add_flag("--interactive", init.interactive, "ask for what is known, in shop terms and any unit");
+  sub->add_option("--data", init.data, "of hits and job: a folder with recorded hits (default: that of the file)");
+  sub->add_option("--robot", init.robot, "of a cell: an arm by its name, kuka-kr210-r2700 for one");
 }
 
 /// Hits, FRFs, modes, and the tool in its holder.
@@ -87,14 +127,15 @@ void CommandLine::add_structure_verbs() {
   sub = verb("modes", "frequency response functions to modes", [this](Progress& p) { return run(modes, common, p); });
   auto* const frfs = sub->add_option("frfs", modes.inputs, "FRF files: .uff .csv .txt .mat .json");
   sub->add_option("--as", modes.as, "names of headerless FRFs, one a file: xx,yy")->delimiter(',');
-  sub->add_option("--band", modes.band_hz, "low,high in Hz")->delimiter(',')->expected(2);
-  sub->add_option("--modes", modes.modes, "exactly this many modes")->check(CLI::PositiveNumber);
+  sub->add_option("--band", modes.band_hz, "low,high in Hz")->delimiter(',')->expected(2)->check(number());
+  sub->add_option("--modes", modes.modes, "exactly this many modes")->check(whole_number(1));
   sub->add_option("--method", modes.method, "hybrid, pso or lscf")->check(one_of_words(modal::fit_method_names));
   sub->add_option("--config", modes.config, "modes.toml: every option of the fit");
   sub->add_flag("--accept-fit", modes.accept_fit, "take modes whose relative error is 20 % or more");
   auto* const cell = sub->add_option("--cell", modes.cell, "cell.toml: the modes of a posture, from its [[postures]]");
-  auto* const joints =
-      sub->add_option("--joints", modes.joints_deg, "of the posture, in degrees: q1,q2,…")->delimiter(',');
+  auto* const joints = sub->add_option("--joints", modes.joints_deg, "of the posture, in degrees: q1,q2,…")
+                           ->delimiter(',')
+                           ->check(number());
   sub->add_option("--axes", modes.axes, "base or flange: what the posture's modes are written in")
       ->check(one_of_words(jobs::posture_axes_names))
       ->needs(cell);
@@ -141,24 +182,29 @@ void CommandLine::add_cut_verbs() {
 
   sub = verb("explain", "measured peaks to what they are: rotation, tooth passing, or chatter and its mode",
              [this](Progress& p) { return run(explain, common, p); });
-  sub->add_option("--peaks", explain.peaks_hz, "frequencies of the peaks in Hz: F,F,...")->delimiter(',')->required();
-  sub->add_option("--rpm", explain.rpm, "spindle speed")->required();
-  sub->add_option("--teeth", explain.teeth, "teeth of the cutter")->required();
+  sub->add_option("--peaks", explain.peaks_hz, "frequencies of the peaks in Hz: F,F,...")
+      ->delimiter(',')
+      ->check(number())
+      ->required();
+  sub->add_option("--rpm", explain.rpm, "spindle speed")->check(number())->required();
+  sub->add_option("--teeth", explain.teeth, "teeth of the cutter")->check(whole_number(1))->required();
   sub->add_option("--modes", explain.modes, "modes.json or modes.toml")->required();
   sub->add_option(
-      "--tolerance-hz", explain.tolerance_hz,
-      "how far a peak may lie from what explains it, or half a mode's width where that is more (default: 1)");
+         "--tolerance-hz", explain.tolerance_hz,
+         "how far a peak may lie from what explains it, or half a mode's width where that is more (default: 1)")
+      ->check(number());
   sub->add_option("--speed-tolerance-percent", explain.speed_tolerance_percent,
-                  "by how much the true speed may differ from --rpm (default: 0.2)");
+                  "by how much the true speed may differ from --rpm (default: 0.2)")
+      ->check(number());
   sub->add_option("--lobes", explain.lobes, "lobes.toml of the cut: decides whether its chatter is regenerative");
-  sub->add_option("--at", explain.at, "RPM,MM of the cut, with --lobes")->delimiter(',')->expected(2);
+  sub->add_option("--at", explain.at, "RPM,MM of the cut, with --lobes")->delimiter(',')->expected(2)->check(number());
 
   sub = verb("simulate", "a cut in the time domain: vibration, forces, the wall, stable or chatter",
              [this](Progress& p) { return run(simulate, common, p); });
   sub->add_option("lobes", simulate.input, "lobes.toml")->required();
   sub->add_option("--at", simulate.at, "RPM,MM: spindle speed and axial depth")->required();
-  sub->add_option("--seconds", simulate.seconds, "how long to cut (default: 2)");
-  sub->add_option("--sample-rate-hz", simulate.sample_rate_hz, "of the output (default: 10240)");
+  sub->add_option("--seconds", simulate.seconds, "how long to cut (default: 2)")->check(number());
+  sub->add_option("--sample-rate-hz", simulate.sample_rate_hz, "of the output (default: 10240)")->check(number());
   sub->add_flag("--linear", simulate.linear, "no loss of contact, as lobes take the cut");
 
   sub = verb("forces", "a cutter in its cut, or along a program, to cutting forces",
@@ -166,13 +212,12 @@ void CommandLine::add_cut_verbs() {
   sub->add_option("forces", forces.input, "forces.toml")->required();
   sub->add_option("--program", forces.program, "an NC program: a row a block in place of one revolution");
   sub->add_option("--cell", forces.cell, "cell.toml: the robot that the cut bends");
-  sub->add_option("--report", forces.report, "a page to look at (.html), or its data (.json)");
 
   sub = verb("coefficients", "average forces of slots to cutting force coefficients",
              [this](Progress& p) { return run(coefficients, common, p); });
   sub->add_option("slots", coefficients.slots, "slots.csv")->required();
-  sub->add_option("--teeth", coefficients.teeth, "teeth of the cutter (default: 4, stated in the notes)")
-      ->check(CLI::Range(1, 100));
+  sub->add_option("--teeth", coefficients.teeth, "teeth of the cutter (default: 4, listed as assumed)")
+      ->check(whole_number(1, 100));
 }
 
 /// The robot under load, and along a program.
@@ -184,21 +229,32 @@ void CommandLine::add_robot_verbs() {
   sub->add_option("--point-mm", stiffness.point_mm,
                   "X,Y,Z where the load attacks, in the flange frame (default: the tool's tip)")
       ->delimiter(',')
-      ->expected(3);
+      ->expected(3)
+      ->check(number());
+
+  CLI::App* cell = parser.add_subcommand("cell", "a robot before a workpiece, cell.toml");
+  cell->require_subcommand(1);
+  sub = verb(
+      "check", "a cell's poses, limits and reach, and workpiece poses that work where its own does not",
+      [this](Progress& p) { return run(cell_check, common, p); }, cell);
+  sub->add_option("cell", cell_check.cell, "cell.toml")->required();
+  sub->add_option("--joints", cell_check.joints, "show this position too: q1,q2,… in degrees (mm where joints slide)")
+      ->delimiter(',')
+      ->check(number());
+  sub->add_option("--program", cell_check.program, "an NC program that the tool must follow there");
 
   sub = verb("smooth", "an NC program to a joint trajectory within every limit of the robot",
              [this](Progress& p) { return run(smooth, common, p); });
   sub->add_option("program", smooth.program, "an NC program: .ngc .nc .gcode, .apt .cls, .csv")->required();
   sub->add_option("--cell", smooth.cell, "cell.toml: the robot, its joints' limits, [smoothing]")->required();
-  sub->add_option("--report", smooth.report, "a page to look at (.html), or its figures (.json)");
   sub->add_option("--method", smooth.method, "verified, optimal, paper, paper-as-printed or no-joint-jerk")
       ->check(one_of_words(path::method_names));
   sub->add_flag("--compare", smooth.compare, "all other methods beside it, in the summary and the report");
   sub->add_flag("--keep-violations,--keep-breaches", smooth.keep_violations,
                 "write the trajectory even where it violates a limit");
-  sub->add_option(
-      "--program-period-ms", smooth.program_period_ms,
-      "longest time between the points of a joint program (default: 20; 2 for .script and .servoj, always)");
+  sub->add_option("--program-period-ms", smooth.program_period_ms,
+                  "longest time between the points of a joint program (default: 20; 2 for .script and .servoj, always)")
+      ->check(number());
 }
 
 /// While cutting, and the whole job.
@@ -215,21 +271,28 @@ void CommandLine::add_machine_verbs() {
   sub->add_flag("--live", monitor.live, "do not keep standard input waiting: leave out hops that come too fast");
   sub->add_flag("--every-window", monitor.every_window, "an event each hop, not only on change");
   sub->add_flag("--watch", monitor.watch, "level, score, state and spectrum on standard error");
-  sub->add_option("--report", monitor.report, "a page to look at (.html), or its figures (.json)");
   sub->add_option("--record", monitor.record, "a folder for the seconds before each alarm, as WAV");
   sub->add_option("--metrics-port", monitor.metrics_port, "answer GET /metrics on loopback; 0: any port that is free")
-      ->check(CLI::Range(0, 65535));
-  sub->add_option("--seconds", monitor.seconds, "process so much of the stream, then end")->check(CLI::PositiveNumber);
+      ->check(whole_number(0, 65535));
+  sub->add_option("--seconds", monitor.seconds, "process so much of the stream, then end")->check(number_above_zero());
 
   sub = verb("calibrate", "labelled recordings to the published detector's threshold",
              [this](Progress& p) { return run(calibrate, common, p); });
   sub->add_option("recordings", calibrate.recordings, "recordings.toml: files with labels")->required();
-  sub->add_option("--report", calibrate.report, "a page to look at (.html), or its figures (.json)");
 
   sub = verb("plan", "the whole job: hits to safe cutting conditions",
              [this](Progress& p) { return run(plan, common, p); });
   sub->add_option("job", plan.job, "job.toml")->required();
   sub->add_flag("--accept-fit", plan.accept_fit, "go on with modes whose relative error is 20 % or more");
+
+  sub = verb("serve", "the page of a folder, over HTTP", [this](Progress& p) { return run(serve, common, p); });
+  sub->remove_option(sub->get_option("--report"));
+  serve::ServeOptions& options = serve.options;
+  sub->add_option("folder", options.folder, "what is served, and nothing outside it (default: the current folder)");
+  sub->add_option("--port", options.port, "to listen at; 0: any that is free (default: 8437)")
+      ->check(whole_number(0, 65535));
+  sub->add_option("--host", options.host, "address to listen at (default: 127.0.0.1); another machine's needs --token");
+  sub->add_option("--token", options.token, "that whoever asks must know: 16 or more letters and digits");
 }
 
 int report_error(const char* text, int exit) {
@@ -254,6 +317,7 @@ int run_chosen(int argc, char** argv) {
     return report_usage(line.parser, error);
   }
   try {
+    require_report_place(line.common.report);
     set_thread_count(line.common.threads);
     ProgressBar bar(line.common.quiet);
     return line.chosen(bar.progress());

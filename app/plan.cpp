@@ -5,6 +5,7 @@
 #include <string>
 
 #include "robomill/jobs/summary.hpp"
+#include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
@@ -17,11 +18,8 @@ Exit run(const PlanCommand& command, const Common& common, Progress& progress) {
   } else if (!common.output.empty()) {
     jobs::write_plan(common.output, result);
   }
-  if (common.wants_summary()) fmt::print("{}", jobs::summary(result));
-  if (result.decision && result.decision->status == jobs::DecideResult::Status::infeasible) return not_reached;
-  if (result.path && !result.path->holds()) return not_reached;
-  if (result.blocks && !result.recommends()) return done;  // an unstable block is an answer
-  return result.recommendation.status == decision::Recommendation::Status::found ? done : not_reached;
+  show(common, jobs::summary(result), [&] { return jobs::make_report(result, {}); });
+  return jobs::reached(result) ? done : not_reached;
 }
 
 }  // namespace robomill::app

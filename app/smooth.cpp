@@ -3,27 +3,15 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <string>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
-#include "robomill/jobs/summary.hpp"
-#include "robomill/path/files/motion_json.hpp"
+#include "robomill/jobs/pages.hpp"
 #include "terminal.hpp"
 #include "verbs.hpp"
 
 namespace robomill::app {
 namespace {
-
-/// @param recorded  whether the job has recorded curves
-page::Report page_of(const jobs::SmoothResult& result, bool recorded) {
-  page::Report page;
-  page.title = "Smoothed program";
-  page.summary = jobs::summary(result);
-  page.smooth = path::smooth_json(result.smoothed);
-  if (recorded) page.motion = path::motion_json(result.outline, result.motions);
-  return page;
-}
 
 /// Runs the job; what it rejects of the command line is reported by the option's name.
 jobs::SmoothResult run_job(const jobs::SmoothJob& job, Progress& progress) {
@@ -38,7 +26,6 @@ jobs::SmoothResult run_job(const jobs::SmoothJob& job, Progress& progress) {
 }  // namespace
 
 Exit run(const SmoothCommand& command, const Common& common, Progress& progress) {
-  require_report_place(command.report);
   jobs::SmoothJob job;
   job.program = command.program;
   job.cell = command.cell;
@@ -46,31 +33,19 @@ Exit run(const SmoothCommand& command, const Common& common, Progress& progress)
   if (command.method) job.method = value_in(path::method_names, *command.method);
   job.compare = command.compare;
   job.keep_violations = command.keep_violations;
-  job.record = is_html(command.report);
+  job.record = is_html(common.report);
   if (command.program_period_ms) {
     require_positive("--program-period-ms", *command.program_period_ms, "ms");
     job.program_period_s = *command.program_period_ms * units::ms;
   }
   const jobs::SmoothResult result = run_job(job, progress);
   if (common.to_stdout()) fmt::print("{}", path::smooth_json(result.smoothed));
-  if (!command.report.empty()) {
-    const page::Report page = page_of(result, job.record);
-    write_report(command.report, page, page.smooth);
+  if (!common.report.empty()) {
+    const page::Report page = jobs::page_of(result);
+    write_report(common.report, page, page.smooth);
   }
   if (common.wants_summary()) fmt::print("{}", jobs::summary(result));
-  if (result.holds()) return done;
-  std::string become;
-  if (!job.output.empty() && !result.smoothed.written) {
-    become = "; it was not written";
-    if (result.stale) become += fmt::format(", and the {} of an earlier run was removed", job.output.string());
-  }
-  const char* what = "the trajectory breaks limits";
-  if (result.trajectory_holds()) {
-    what = result.smoothed.robot_program->too_long() ? "the robot program is too long for its controller, see the notes"
-                                                     : "the robot program leaves its tolerances, see the notes";
-  }
-  fmt::print(stderr, "robomill: {}{}\n", what, become);
-  return not_reached;
+  return exit_of(jobs::shortfall(result));
 }
 
 }  // namespace robomill::app

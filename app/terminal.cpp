@@ -100,6 +100,10 @@ void print_notes(const std::vector<std::string>& notes, std::string_view label) 
   for (const std::string& note : notes) fmt::print("{}{}\n", label, printable(note));
 }
 
+void require_output(const Common& common, jobs::Document document) {
+  if (!common.output.empty() && !common.to_stdout()) jobs::require_output(document, common.output);
+}
+
 void require_output(const Common& common, std::initializer_list<io::Format> formats, const char* rule) {
   if (common.output.empty() || common.to_stdout()) return;
   if (std::ranges::find(formats, io::format_of(common.output)) == formats.end())
@@ -123,8 +127,19 @@ void require_report_place(const std::filesystem::path& path) {
   throw InvalidInput(path.string(), "a report is written as .html or .json");
 }
 
+void show(const Common& common, const std::string& summary, const std::function<page::Report()>& page) {
+  if (!common.report.empty()) write_report(common.report, page());
+  if (common.wants_summary()) fmt::print("{}", summary);
+}
+
 void write_report(const std::filesystem::path& path, const page::Report& page, const std::string& json) {
   io::write_file(path, is_html(path) ? page::report_html(page) : json.empty() ? page::report_json(page) : json);
+}
+
+Exit exit_of(const std::string& shortfall) {
+  if (shortfall.empty()) return done;
+  fmt::print(stderr, "robomill: {}\n", printable(shortfall));
+  return not_reached;
 }
 
 int exit_of_signal() noexcept {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "robomill/base/progress.hpp"
+#include "robomill/serve/serve.hpp"
 
 namespace robomill::app {
 
@@ -16,7 +17,8 @@ enum Exit : int { done = 0, bad_input = 1, wrong_usage = 2, not_reached = 3 };
 
 /// What every verb takes.
 struct Common {
-  std::string output;  ///< path, "-" for JSON on standard output, empty for a summary alone
+  std::string output;            ///< path, "-" for JSON on standard output, empty for a summary alone
+  std::filesystem::path report;  ///< .html or .json; empty: none
   bool quiet = false;
   int threads = 0;
   std::uint64_t seed = 1;
@@ -25,6 +27,12 @@ struct Common {
   [[nodiscard]] bool wants_summary() const { return !quiet && !to_stdout(); }
 };
 
+struct InitCommand {
+  std::string kind;  ///< one of jobs::template_names
+  bool interactive = false;
+  std::filesystem::path data;  ///< of hits and job: a folder with records; empty: that of the output
+  std::string robot;           ///< of a cell; empty: the template's
+};
 struct FrfCommand {
   std::filesystem::path hits;
   bool binary = false;  ///< .uff as data set 58b
@@ -81,7 +89,6 @@ struct ForcesCommand {
   std::filesystem::path input;
   std::filesystem::path program;  ///< empty: one revolution
   std::filesystem::path cell;     ///< empty: the one that the input names, if any
-  std::filesystem::path report;   ///< .html or .json; empty: none
 };
 struct CoefficientsCommand {
   std::filesystem::path slots;
@@ -91,9 +98,13 @@ struct StiffnessCommand {
   std::filesystem::path loads, cell;
   std::vector<double> point_mm;  ///< in the flange frame; empty: the tool's tip
 };
+struct CellCheckCommand {
+  std::filesystem::path cell;
+  std::vector<double> joints;     ///< one more position: degrees, or millimetres where joints slide
+  std::filesystem::path program;  ///< empty: the workpiece's origin
+};
 struct SmoothCommand {
   std::filesystem::path program, cell;
-  std::filesystem::path report;             ///< .html or .json; empty: none
   std::optional<std::string> method;        ///< the cell's unless given
   bool compare = false;                     ///< the other methods beside it
   bool keep_violations = false;             ///< write a trajectory that breaks limits
@@ -105,20 +116,22 @@ struct MonitorCommand {
   std::string format = "auto";  ///< of bytes without an ending: auto, f32, i16, csv
   bool every_window = false, watch = false;
   bool live = false;             ///< standard input is not kept waiting
-  std::filesystem::path report;  ///< .html or .json; empty: none
   std::filesystem::path record;  ///< folder for alarms; empty: the file's
   std::optional<int> metrics_port;
   double seconds = 0.0;  ///< of the stream; 0: to its end
 };
 struct CalibrateCommand {
   std::filesystem::path recordings;
-  std::filesystem::path report;  ///< .html or .json; empty: none
 };
 struct PlanCommand {
   std::filesystem::path job;
   bool accept_fit = false;  ///< go on with modes that do not describe the FRFs
 };
+struct ServeCommand {
+  serve::ServeOptions options;
+};
 
+Exit run(const InitCommand& command, const Common& common, Progress& progress);
 Exit run(const FrfCommand& command, const Common& common, Progress& progress);
 Exit run(const ModesCommand& command, const Common& common, Progress& progress);
 Exit run(const CoupleCommand& command, const Common& common, Progress& progress);
@@ -129,9 +142,11 @@ Exit run(const SimulateCommand& command, const Common& common, Progress& progres
 Exit run(const ForcesCommand& command, const Common& common, Progress& progress);
 Exit run(const CoefficientsCommand& command, const Common& common, Progress& progress);
 Exit run(const StiffnessCommand& command, const Common& common, Progress& progress);
+Exit run(const CellCheckCommand& command, const Common& common, Progress& progress);
 Exit run(const SmoothCommand& command, const Common& common, Progress& progress);
 Exit run(const MonitorCommand& command, const Common& common, Progress& progress);
 Exit run(const CalibrateCommand& command, const Common& common, Progress& progress);
 Exit run(const PlanCommand& command, const Common& common, Progress& progress);
+Exit run(const ServeCommand& command, const Common& common, Progress& progress);
 
 }  // namespace robomill::app

@@ -6,12 +6,13 @@
 #include <string_view>
 #include <utility>
 
+#include "robomill/base/error.hpp"
 #include "robomill/live/files/command_json.hpp"
 
 namespace robomill::app {
 namespace {
 
-constexpr std::chrono::milliseconds publish_wait{2000};
+constexpr std::chrono::milliseconds publish_wait{2000}, connection_wait{50};
 
 }  // namespace
 
@@ -20,6 +21,8 @@ Broker::Broker(const monitor::MonitorFile& file, bool stream, live::HopQueue& qu
     : address_(fmt::format("{}:{}", file.mqtt.host, file.mqtt.port_or_default())),
       events_topic_(file.mqtt.events_topic),
       commands_topic_(file.mqtt.commands_topic),
+      connect_timeout_s_(file.mqtt.connect_timeout_s),
+      has_file_(!file.path.empty()),
       notices_(&notices),
       metrics_(&metrics) {
   if (stream) stream_.emplace(file, queue, notices, metrics);
@@ -38,6 +41,22 @@ Broker::~Broker() {
   if (!events_topic_.empty() || !commands_topic_.empty()) client_->flush(publish_wait);
 }
 
+void Broker::require_connection(const std::atomic<bool>& stop, const std::function<void()>& waiting) {
+  const auto begin = std::chrono::steady_clock::now();
+  while (!stop && !client_->wait_until_connected(connection_wait)) {
+    if (waiting) waiting();
+    const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - begin;
+    if (connect_timeout_s_ == 0.0 || waited.count() < connect_timeout_s_) continue;
+    const std::scoped_lock lock(mutex_);
+    throw InvalidInput("mqtt://" + address_,
+                       fmt::format("no connection within {:.6g} s: {}", connect_timeout_s_,
+                                   why_.empty() ? "the broker does not answer" : why_),
+                       has_file_ ? "Does the broker run, and is its address right? mqtt.connect_timeout_s of "
+                                   "monitor.toml waits longer, 0 for ever"
+                                 : "Does the broker run, and is its address right?");
+  }
+}
+
 void Broker::wait_a_little() const {
   client_->wait_until_connected(publish_wait);
 }
@@ -54,6 +73,7 @@ void Broker::connection(bool connected, const std::string& why) {
   }
   notices_->add(was ? "broker-lost" : "broker-unreachable", fmt::format("{}: {}; trying again", address_, why));
   const std::scoped_lock lock(mutex_);
+  why_ = why;
   if (stream_) stream_->give_up();
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,6 +27,10 @@ class Broker {
 
   /// Where it stands, for messages.
   [[nodiscard]] const std::string& address() const { return address_; }
+  /// Where samples come from it: waits for the first connection, or until `stop` becomes true.
+  /// @param waiting  called again and again meanwhile
+  /// @throws InvalidInput if there is none within mqtt.connect_timeout_s; 0: without end
+  void require_connection(const std::atomic<bool>& stop, const std::function<void()>& waiting = {});
   /// For inputs that do not come from it: their first events should not be lost.
   void wait_a_little() const;
   /// Publishes to the topic of the events, where there is one; adds a notice where it cannot.
@@ -38,9 +44,12 @@ class Broker {
   void connection(bool connected, const std::string& why);
 
   std::string address_, events_topic_, commands_topic_;
+  double connect_timeout_s_;
+  bool has_file_;  ///< whose settings could be others
   live::Notices* notices_;
   live::MetricValues* metrics_;
   std::mutex mutex_;  ///< messages and lost connections come from several threads
+  std::string why_;   ///< there is no connection
   std::optional<live::StreamIntake> stream_;
   std::unique_ptr<MqttClient> client_;
 };

@@ -47,7 +47,6 @@ std::string summary_of(const Calibration& calibration) {
 
 Exit run(const CalibrateCommand& command, const Common& common, Progress& progress) {
   require_output(common, {io::Format::toml}, "a calibrated detector is written as .toml");
-  require_report_place(command.report);
   const jobs::CalibrateResult result = jobs::run_calibrate(command.recordings, common.seed, progress);
   const std::string json = monitor::calibration_json(result.calibration);
   const bool found = result.calibration.status == Calibration::Status::found;
@@ -56,12 +55,12 @@ Exit run(const CalibrateCommand& command, const Common& common, Progress& progre
       return format == io::Format::toml ? jobs::calibrated_toml(result, common.output) : json;
     });
   }
-  if (!command.report.empty()) {
+  if (!common.report.empty()) {
     page::Report page;
     page.title = "Calibration of the chatter monitor";
     page.summary = summary_of(result.calibration);
     page.calibration = json;
-    write_report(command.report, page, json);
+    write_report(common.report, page, json);
   }
   if (common.wants_summary()) fmt::print("{}", summary_of(result.calibration));
   if (found) return done;

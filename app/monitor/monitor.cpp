@@ -217,59 +217,101 @@ std::string blind_summary(const live::MetricValues& m) {
   return out;
 }
 
+/// Where what a session finds goes: lines of events, what the terminal shows, the broker, the report.
+class Outlets {
+ public:
+  Outlets(const MonitorCommand& command, const Common& common, const monitor::MonitorFile& file, bool is_live)
+      : common_(&common), events_(common, is_live) {
+    if (!common.report.empty()) {
+      const std::vector<std::string>& channels = file.columns.channels;
+      recorder_.emplace(file.options, channels, unit_of(channels, file.options.tachometer_channel));
+    }
+    if (command.watch) watch_.emplace();
+  }
+  Outlets(const Outlets&) = delete;
+  Outlets& operator=(const Outlets&) = delete;
+
+  /// Calls back into this.
+  live::SessionOutputs outputs(const live::Advisor& advisor, bool commands) {
+    live::SessionOutputs out;
+    out.event = [this](const MonitorEvent& event, const std::string& line) { return take(event, line); };
+    out.decision = [this](const monitor::Decision& decision, double time_s, double compute_s) {
+      take(decision, time_s, compute_s);
+    };
+    out.advise = [&advisor](MonitorEvent& event) { advisor.advise(event); };
+    if (commands) {
+      out.command = [this](const live::Command& issued) {
+        if (broker_) broker_->publish(issued);
+      };
+    }
+    if (recorder_) {
+      out.samples = [this](std::span<const float> samples) { recorder_->add(samples); };
+      out.skipped = [this](std::uint64_t frames) { recorder_->skip(frames); };
+      out.silent = [this](double seconds) { recorder_->silent(seconds); };
+    }
+    return out;
+  }
+
+  void send_by(Broker& broker) { broker_ = &broker; }
+  /// @throws InvalidInput if an event could not be written
+  void close() {
+    watch_.reset();
+    events_.close();
+  }
+  /// Null without a report.
+  live::Recorder* recorder() { return recorder_ ? &*recorder_ : nullptr; }
+
+ private:
+  bool take(const MonitorEvent& event, const std::string& line) {
+    if (recorder_ && event.kind != MonitorEvent::Kind::window) recorder_->add(event);
+    if (broker_) broker_->publish(event, line);
+    const bool news = common_->wants_summary() || (!common_->quiet && event.kind == MonitorEvent::Kind::stream);
+    if (news && !watch_) print_event(common_->wants_summary() ? stdout : stderr, event);
+    // That no samples come is no decision.
+    if (watch_ && event.decision.state == monitor::State::blind) watch_->show(event.decision, event.time_s);
+    return events_.write(line);
+  }
+  void take(const monitor::Decision& decision, double time_s, double compute_s) {
+    if (recorder_) {
+      monitor::Decision placed = decision;
+      placed.time_s = time_s;
+      recorder_->add(placed, compute_s);
+    }
+    if (watch_) watch_->show(decision, time_s);
+  }
+
+  const Common* common_;
+  EventFile events_;
+  std::optional<live::Recorder> recorder_;
+  std::optional<Watch> watch_;
+  Broker* broker_ = nullptr;
+};
+
+/// The broker that the file or the command line names, once it answers; a recording waits for it a little.
+void connect(const Input& input, const monitor::MonitorFile& file, live::Session& session,
+             const std::atomic<bool>& stop, Outlets& outlets, std::optional<Broker>& broker) {
+  if (!input.is_stream && file.mqtt.events_topic.empty() && file.mqtt.commands_topic.empty()) return;
+  broker.emplace(file, input.is_stream, session.queue(), session.notices(), session.metrics());
+  outlets.send_by(*broker);
+  if (input.is_stream) {
+    broker->require_connection(stop, [&session] { session.emit_notices(); });
+  } else {
+    broker->wait_a_little();
+  }
+}
+
 }  // namespace
 
 Exit run(const MonitorCommand& command, const Common& common, Progress& progress) {
-  require_report_place(command.report);
   monitor::MonitorFile file = read_config(command);
   std::atomic<bool> ended{false};
   Input input = open_input(command, file, ended);
   monitor::validate(file);
   const live::Advisor advisor(jobs::read_advice_basis(file, progress));
-  EventFile events(common, input.is_live);
-
-  std::optional<live::Recorder> recorder;
-  if (!command.report.empty()) {
-    const std::vector<std::string>& channels = file.columns.channels;
-    recorder.emplace(file.options, channels, unit_of(channels, file.options.tachometer_channel));
-  }
-  std::optional<Watch> watch;
-  if (command.watch) watch.emplace();
-  std::FILE* const people = common.wants_summary() ? stdout : stderr;
-  Broker* broker = nullptr;
-  live::SessionOutputs outputs;
-  outputs.event = [&](const MonitorEvent& event, const std::string& line) {
-    if (recorder && event.kind != MonitorEvent::Kind::window) recorder->add(event);
-    if (broker) broker->publish(event, line);
-    const bool news = common.wants_summary() || (!common.quiet && event.kind == MonitorEvent::Kind::stream);
-    if (news && !watch) print_event(people, event);
-    // That no samples come is no decision.
-    if (watch && event.decision.state == monitor::State::blind) watch->show(event.decision, event.time_s);
-    return events.write(line);
-  };
-  outputs.decision = [&](const monitor::Decision& decision, double time_s, double compute_s) {
-    if (recorder) {
-      monitor::Decision placed = decision;
-      placed.time_s = time_s;
-      recorder->add(placed, compute_s);
-    }
-    if (watch) watch->show(decision, time_s);
-  };
-  outputs.advise = [&](MonitorEvent& event) { advisor.advise(event); };
-  if (!file.mqtt.commands_topic.empty()) {
-    outputs.command = [&](const live::Command& issued) {
-      if (broker) broker->publish(issued);
-    };
-  }
-  if (recorder) {
-    outputs.samples = [&](std::span<const float> samples) { recorder->add(samples); };
-    outputs.skipped = [&](std::uint64_t frames) { recorder->skip(frames); };
-    outputs.silent = [&](double seconds) { recorder->silent(seconds); };
-  }
-
+  Outlets outlets(command, common, file, input.is_live);
   live::Session session(file,
                         {.every_window = command.every_window, .seconds = command.seconds, .live = input.by_clock},
-                        std::move(outputs));
+                        outlets.outputs(advisor, !file.mqtt.commands_topic.empty()));
   std::optional<MetricsServer> metrics;
   if (file.metrics_port >= 0) {
     metrics.emplace(session.metrics(), file.metrics_host, file.metrics_port);
@@ -277,12 +319,8 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   }
   const std::atomic<bool>& stop = stop_on_signal();
   {
-    std::optional<Broker> connection;
-    if (input.is_stream || !file.mqtt.events_topic.empty() || !file.mqtt.commands_topic.empty()) {
-      connection.emplace(file, input.is_stream, session.queue(), session.notices(), session.metrics());
-      broker = &*connection;
-      if (!input.is_stream) broker->wait_a_little();
-    }
+    std::optional<Broker> broker;
+    connect(input, file, session, stop, outlets, broker);
     std::optional<live::SourceInput> reader;
     if (input.source) {
       reader.emplace(std::move(input.source), file, session.queue(), session.notices(), session.metrics(),
@@ -292,14 +330,13 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
     session.run(stop);
     take_time_to_end(saving_s);
   }
-  watch.reset();
-  events.close();
+  outlets.close();
   const std::string summary = summary_of(session, input.name);
-  if (recorder) {
+  if (live::Recorder* const recorder = outlets.recorder()) {
     const live::RecordedRun recorded = recorder->run();
     page::Report page = monitor_page(recorded, file, input.name);
     page.summary = summary + run_summary(recorded);
-    write_report(command.report, page);
+    write_report(common.report, page);
   }
   if (common.wants_summary()) fmt::print("{}{}", summary, blind_summary(session.metrics()));
   return stop ? static_cast<Exit>(exit_of_signal()) : done;

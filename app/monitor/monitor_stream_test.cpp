@@ -53,6 +53,37 @@ TEST_F(MonitorVerb, MissesSamplesOfAPipe) {
   EXPECT_GE((*blind)["duration_s"].get<double>(), 0.2);
 }
 
+/// A port at which connections are taken and nothing is ever said.
+class SilentPort {
+ public:
+  SilentPort() : port_(test::free_port()), descriptor_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    const sockaddr_in address = test::loopback(port_);
+    EXPECT_EQ(::bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+    EXPECT_EQ(::listen(descriptor_, 8), 0);
+  }
+  ~SilentPort() { ::close(descriptor_); }
+  SilentPort(const SilentPort&) = delete;
+  SilentPort& operator=(const SilentPort&) = delete;
+  [[nodiscard]] int port() const { return port_; }
+
+ private:
+  int port_, descriptor_;
+};
+
+// Nobody listens at the one port, and what listens at the other is no broker.
+TEST_F(MonitorVerb, EndsWhereNoBrokerAnswers) {
+  folder_.file("monitor.toml", config_ + "[mqtt]\nconnect_timeout_s = 0.3\n");
+  const SilentPort silent;
+  for (const int port : {test::free_port(), silent.port()}) {
+    const std::string address = "mqtt://127.0.0.1:" + std::to_string(port);
+    const Ended run = shell("timeout 60 '" ROBOMILL_PROGRAM "' monitor monitor.toml --input " + address + "/cell/ax");
+    EXPECT_EQ(run.exit, 1) << run.err;
+    EXPECT_NE(run.err.find("robomill: " + address + ": no connection within 0.3 s: "), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("mqtt.connect_timeout_s"), std::string::npos) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+}
+
 /// With a broker, a monitor that listens to it and a client that sends.
 class MonitorStream : public MonitorVerb {
  protected:

@@ -53,7 +53,7 @@ class MonitorVerb : public ProgramTest {
     }
     return out;
   }
-  /// Of one kind: "state", or what befell a stream.
+  /// Of one kind: "state", or faults of a stream.
   [[nodiscard]] std::vector<json> events_of(const std::string& what) const {
     std::vector<json> out;
     for (const json& event : events()) {

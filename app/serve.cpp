@@ -1,0 +1,42 @@
+#include "robomill/serve/serve.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "monitor/broker.hpp"
+#include "robomill/base/error.hpp"
+#include "terminal.hpp"
+#include "verbs.hpp"
+
+namespace robomill::app {
+
+Exit run(const ServeCommand& command, const Common& common, Progress&) {
+  if (!common.output.empty()) throw InvalidInput("--output", "serve writes nothing by itself", "Leave -o out");
+  const std::atomic<bool>& stop = stop_on_signal();
+  serve::ServeOptions options = command.options;
+  options.open_stream = [](const monitor::MonitorFile& file, const serve::StreamSink& sink,
+                           const std::atomic<bool>& ended) -> std::shared_ptr<void> {
+    auto broker = std::make_shared<Broker>(file, true, sink.queue, sink.notices, sink.metrics);
+    broker->require_connection(ended);
+    return broker;
+  };
+  const serve::Server server(options);
+  fmt::print("{}\n", server.address());
+  if (!common.quiet) {
+    fmt::print("Serves {}. Ctrl-C ends it.\n", std::filesystem::canonical(command.options.folder).string());
+    if (!command.options.token.empty()) {
+      fmt::print("Reachable at {} by whoever has the token: they can read and write the folder and run jobs.\n",
+                 command.options.host);
+    }
+  }
+  std::fflush(stdout);
+  while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  take_time_to_end(5.0);  // for jobs that run
+  return done;
+}
+
+}  // namespace robomill::app

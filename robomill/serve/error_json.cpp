@@ -1,0 +1,70 @@
+#include "robomill/serve/error_json.hpp"
+
+#include <charconv>
+#include <string>
+#include <utility>
+
+#include "robomill/base/printable.hpp"
+#include "robomill/base/progress.hpp"
+
+namespace robomill::serve {
+std::string client_text(std::string text, const std::filesystem::path& root) {
+  const std::string way = root.string() + "/";
+  for (std::size_t at = text.find(way); at != std::string::npos; at = text.find(way, at)) text.erase(at, way.size());
+  return printable(text);
+}
+
+io::Json error_object(const InvalidInput& error, const std::filesystem::path& root) {
+  const InvalidInput::Parts& parts = error.parts();
+  std::string file = client_text(parts.where, root);
+  io::Json line = nullptr;
+  if (const std::size_t colon = file.rfind(':'); colon != std::string::npos) {
+    int number = 0;
+    const char* const end = file.data() + file.size();
+    const std::from_chars_result read = std::from_chars(file.data() + colon + 1, end, number);
+    if (read.ec == std::errc() && read.ptr == end) {
+      line = number;
+      file.resize(colon);
+    }
+  }
+  io::Json value = parts.number ? io::number(*parts.number) : io::text_or_null(client_text(parts.value, root));
+  return {{"text", client_text(error.what(), root)},
+          {"file", io::text_or_null(file)},
+          {"line", std::move(line)},
+          {"field", io::text_or_null(client_text(parts.field, root))},
+          {"value", std::move(value)},
+          {"unit", io::text_or_null(parts.unit)},
+          {"rule", io::text_or_null(client_text(parts.rule, root))},
+          {"hint", io::text_or_null(client_text(parts.hint, root))}};
+}
+
+io::Json error_object(const std::string& text) {
+  return {{"text", text},     {"file", nullptr}, {"line", nullptr}, {"field", nullptr},
+          {"value", nullptr}, {"unit", nullptr}, {"rule", nullptr}, {"hint", nullptr}};
+}
+
+HttpResponse json_response(const io::Json& json, int status) {
+  return {.status = status, .body = io::plain_text(json) + "\n"};
+}
+
+HttpResponse error_response(int status, const std::string& text) {
+  return json_response({{"error", error_object(text)}}, status);
+}
+
+HttpResponse answer_of(const std::filesystem::path& root, const std::function<HttpResponse()>& f) {
+  try {
+    return f();
+  } catch (const InvalidInput& error) {
+    return json_response({{"error", error_object(error, root)}}, 400);
+  } catch (const Interrupted&) {
+    return json_response({{"superseded", true}}, 409);
+  } catch (const io::Json::exception& error) {
+    return error_response(400, "the body is not the JSON that is expected: " + std::string(error.what()));
+  } catch (const std::bad_alloc&) {
+    return error_response(500, "not enough memory for this");
+  } catch (const std::exception& error) {
+    return error_response(500, client_text(error.what(), root));
+  }
+}
+
+}  // namespace robomill::serve

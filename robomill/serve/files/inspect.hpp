@@ -1,0 +1,14 @@
+#pragma once
+#include <filesystem>
+
+#include "robomill/io/json.hpp"
+
+namespace robomill::serve {
+
+/// What a file looks like, for somebody who has just brought it: {"kind", "columns": [{"name", "unit", "guess",
+/// "direction", "from"}], "rows", "sample_rate_hz", "direction_guess", "questions"}; of what is no recording the kind
+/// alone.
+/// @throws InvalidInput if a recording cannot be read
+[[nodiscard]] io::Json inspect(const std::filesystem::path& path);
+
+}  // namespace robomill::serve

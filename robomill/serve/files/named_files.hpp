@@ -1,0 +1,13 @@
+#pragma once
+#include <filesystem>
+#include <vector>
+
+// Method: robomill/serve/README.md, "Jobs"
+
+namespace robomill::serve {
+
+/// The files that a TOML document names, and those that the documents among them name: every text of it that leads from
+/// its folder to a file that is there. None of a file that is no such document.
+[[nodiscard]] std::vector<std::filesystem::path> files_named_in(const std::filesystem::path& document);
+
+}  // namespace robomill::serve

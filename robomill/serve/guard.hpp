@@ -1,0 +1,43 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "robomill/serve/http/server.hpp"
+
+// Method: robomill/serve/README.md, "Who may ask"
+
+namespace robomill::serve {
+
+/// Decides from a request's header whether it comes from the page of this server.
+class Guard {
+ public:
+  /// @param host   address of the server
+  /// @param token  that others than loopback need; empty: none
+  Guard(std::string host, std::string token);
+  void set_port(int port) { port_ = port; }
+
+  /// What the page writes with: random, new with each server.
+  [[nodiscard]] const std::string& write_token() const { return write_token_; }
+  /// The answer where the request is rejected: a foreign Host (a name that was made to point here), another origin, a
+  /// write without the page's token, no or a wrong access token.
+  [[nodiscard]] std::optional<HttpResponse> reject(const HttpRequest& request) const;
+  /// The header that makes a browser remember the access token, where the page was asked for with it in its address.
+  [[nodiscard]] std::optional<std::string> cookie_for(const HttpRequest& request) const;
+
+ private:
+  [[nodiscard]] bool is_own_host(std::string_view host) const;
+  /// "robomill-8437=": cookies are of a host, not of a port, and another server may run there.
+  [[nodiscard]] std::string cookie_name() const;
+  [[nodiscard]] bool has_access(const HttpRequest& request) const;
+  std::string host_, token_, write_token_;
+  int port_ = 0;
+};
+
+/// Whether an address reaches this machine alone: 127.0.0.0/8 or ::1.
+[[nodiscard]] bool is_loopback(const std::string& host);
+
+/// Takes as long whatever the texts have in common.
+[[nodiscard]] bool equal_secrets(std::string_view given, std::string_view secret);
+
+}  // namespace robomill::serve
