@@ -4,17 +4,14 @@
 import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
+import { argument, chromiumPath, run } from './arguments.mjs';
 import { launch, openPage } from './chromium.mjs';
+import { settle } from './hand.mjs';
 import { tryDecision, tryPath } from './path_check.mjs';
-
-function argument(name, fallback) {
-  const at = process.argv.indexOf(name);
-  return at > 0 ? process.argv[at + 1] : fallback;
-}
 
 /** Runs in the page: what each plot shows. A panel without a drawn mark is a missing plot. */
 function inspect() {
-  const marks = '.scatterlayer .trace path, .heatmaplayer image, .contourlayer path, .scatterlayer .point';
+  const marks = '.scatterlayer .trace path, .heatmaplayer image, .contourlayer path, .scatterlayer .point, .barlayer .point path';
   const plots = [...document.querySelectorAll('figure[data-plot]')].map((figure) => {
     const canvas = figure.querySelector('.canvas');
     const roots = canvas.classList.contains('several') ? [...canvas.children] : [canvas];
@@ -51,7 +48,7 @@ async function look(browser, url, view, problems, shots) {
     if (shots) writeFileSync(join(shots, `${view.name}.png`), await page.screenshot(await whole(page, view)));
     await page.evaluate(openAll);
     await page.until(allDrawn, 'all drawn', 15).catch(() => {}); // which is missing, inspect says
-    await page.evaluate(`new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`);
+    await settle(page);
   } else {
     problems.push(`${where}: the report has no plots`);
   }
@@ -88,7 +85,7 @@ async function tryControls(page, where, problems) {
   const count = await page.evaluate(`document.querySelectorAll('fieldset.choice input').length`);
   for (let i = 0; i < count; ++i) {
     await page.evaluate(`document.querySelectorAll('fieldset.choice input')[${i}].click()`);
-    await page.evaluate(`new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`);
+    await settle(page);
   }
   const names = await page.evaluate(`[...document.querySelectorAll('[data-plot="frf"] fieldset.choice')]
     .filter((group) => group.querySelector('legend').textContent === 'FRF')
@@ -121,7 +118,7 @@ async function tryPrint(page, where, problems, shot) {
   await page.send('Emulation.setDeviceMetricsOverride', { width, height: 970, deviceScaleFactor: 1, mobile: false });
   await page.send('Emulation.setEmulatedMedia', { media: 'print', features: [{ name: 'prefers-color-scheme', value: 'dark' }] });
   await page.evaluate(`window.dispatchEvent(new Event('beforeprint'))`);
-  await page.evaluate(`new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`);
+  await settle(page);
   const widest = await page.evaluate(`Math.max(...[...document.querySelectorAll('svg.main-svg')].map((svg) => svg.getBoundingClientRect().right))`);
   if (widest > width) problems.push(`${where}: printed, a plot reaches ${widest} px on ${width} px of paper`);
   const ink = await page.evaluate(`getComputedStyle(document.querySelector('.xtitle')).fill`);
@@ -160,7 +157,7 @@ async function main() {
     { name: `${name}-narrow`, width: 360, scheme: 'light' },
   ];
   const problems = [];
-  const chromium = argument('--chromium', process.env['CHROMIUM'] ?? '/usr/bin/chromium');
+  const chromium = chromiumPath();
   const quick = process.argv.includes('--quick');
   const browser = await launch(chromium);
   try {
@@ -177,7 +174,4 @@ async function main() {
   return problems.length === 0 ? 0 : 1;
 }
 
-process.exitCode = await main().catch((error) => {
-  console.error(error.message);
-  return 1;
-});
+await run(main);

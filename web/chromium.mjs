@@ -18,7 +18,12 @@ const flags = [
   '--remote-debugging-pipe',
 ];
 
-/** Starts a browser with a fresh profile and more flags. `send(method, params, sessionId)` resolves with the answer; `on(listener)` receives every event. */
+const answer_ms = 60000; // no command takes as long, also where the machine is busy
+
+/**
+ * Starts a browser with a fresh profile and more flags. `send(method, params, sessionId)` resolves with the answer, and fails where none comes, the browser ends or
+ * the session's page has crashed; `on(listener)` receives every event. When node is interrupted the browser is ended, so that whoever waits for it fails and closes all.
+ */
 export async function launch(executable, more = []) {
   const profile = mkdtempSync(join(tmpdir(), 'robomill-browser-'));
   const child = spawn(executable, [...flags, ...more, `--user-data-dir=${profile}`, 'about:blank'], {
@@ -30,16 +35,26 @@ export async function launch(executable, more = []) {
   let last = 0;
   let dead = null;
   const waiting = new Map();
+  const lost = new Map(); // sessions whose page is gone, and why
   const listeners = [];
   const gone = new Promise((resolve) => {
     child.once('error', (error) => resolve(`cannot start ${executable}: ${error.message}`));
-    child.once('exit', (code) => resolve(`${executable} ended with ${code}: ${complaint.slice(-500)}`));
+    child.once('exit', (code, signal) => resolve(`${executable} ended with ${signal ?? code}: ${complaint.slice(-500)}`));
   });
+  const interrupted = () => child.kill('SIGKILL');
+  for (const signal of ['SIGINT', 'SIGTERM']) process.on(signal, interrupted);
+  const fail = (reason, concerned) => {
+    for (const { sessionId, reject } of [...waiting.values()]) if (concerned(sessionId)) reject(new Error(reason));
+  };
   gone.then((reason) => {
     dead = reason;
-    for (const { reject } of waiting.values()) reject(new Error(reason));
-    waiting.clear();
+    for (const signal of ['SIGINT', 'SIGTERM']) process.off(signal, interrupted);
+    fail(reason, () => true);
   });
+  const lose = (session, reason) => {
+    lost.set(session, reason);
+    fail(reason, (one) => one === session);
+  };
   errors.setEncoding('utf8').on('data', (text) => (complaint = (complaint + text).slice(-4000)));
   input.on('error', () => {});
   output.setEncoding('utf8').on('data', (text) => {
@@ -47,27 +62,35 @@ export async function launch(executable, more = []) {
     buffered = messages.pop();
     for (const message of messages.map((part) => JSON.parse(part))) {
       if (message.id === undefined) {
+        if (message.method === 'Inspector.targetCrashed') lose(message.sessionId, 'the page has crashed');
+        if (message.method === 'Target.detachedFromTarget') lose(message.params.sessionId, 'the page was closed');
         for (const listener of listeners) listener(message);
         continue;
       }
-      const { resolve, reject } = waiting.get(message.id);
-      waiting.delete(message.id);
-      if (message.error) reject(new Error(message.error.message));
-      else resolve(message.result);
+      const asked = waiting.get(message.id); // nobody, where it was given up
+      if (message.error) asked?.reject(new Error(message.error.message));
+      else asked?.resolve(message.result);
     }
   });
 
   const send = (method, params = {}, sessionId = undefined) =>
     new Promise((resolve, reject) => {
-      if (dead !== null) return reject(new Error(dead));
+      const reason = dead ?? lost.get(sessionId);
+      if (reason !== undefined) return reject(new Error(reason));
       const id = ++last;
-      waiting.set(id, { resolve, reject });
+      const timer = setTimeout(() => waiting.get(id).reject(new Error(`${method}: no answer within ${answer_ms / 1000} s`)), answer_ms);
+      const ends = (act) => (value) => {
+        clearTimeout(timer);
+        waiting.delete(id);
+        act(value);
+      };
+      waiting.set(id, { sessionId, resolve: ends(resolve), reject: ends(reject) });
       input.write(`${JSON.stringify({ id, method, params, sessionId })}\0`);
       return undefined;
     });
   const close = async () => {
-    await send('Browser.close').catch(() => {});
     const timer = setTimeout(() => child.kill('SIGKILL'), 5000);
+    await send('Browser.close').catch(() => {});
     await gone;
     clearTimeout(timer);
     rmSync(profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 100 });
@@ -75,15 +98,14 @@ export async function launch(executable, more = []) {
   return { send, on: (listener) => listeners.push(listener), close };
 }
 
-/** A page at a width and colour scheme; collects its errors and requests from before it loads. */
+/** A page at a width and colour scheme; collects its errors and requests from before it loads. A hand (hand.mjs) works it. */
 export async function openPage(browser, url, { width, height = 900, scheme = 'light' }) {
   const { targetId } = await browser.send('Target.createTarget', { url: 'about:blank' });
   const { sessionId } = await browser.send('Target.attachToTarget', { targetId, flatten: true });
   const send = (method, params) => browser.send(method, params, sessionId);
   const errors = [];
   const requests = [];
-  let loaded;
-  const load = new Promise((resolve) => (loaded = resolve));
+  let isLoaded = false;
   browser.on((event) => {
     if (event.sessionId !== sessionId) return;
     const { method, params } = event;
@@ -100,33 +122,34 @@ export async function openPage(browser, url, { width, height = 900, scheme = 'li
     } else if (method === 'Network.requestWillBeSent') {
       requests.push(params.request.url);
     } else if (method === 'Page.loadEventFired') {
-      loaded();
+      isLoaded = true;
     }
   });
-  for (const domain of ['Page', 'Runtime', 'Log', 'Network']) await send(`${domain}.enable`);
+  for (const domain of ['Inspector', 'Page', 'Runtime', 'Log', 'Network']) await send(`${domain}.enable`);
   await send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: false });
   await send('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: scheme }] });
   const { errorText } = await send('Page.navigate', { url });
   if (errorText) throw new Error(`${url}: ${errorText}`);
-  await load;
 
   const evaluate = async (expression) => {
     const { result, exceptionDetails } = await send('Runtime.evaluate', { expression, awaitPromise: true, returnByValue: true });
     if (exceptionDetails) throw new Error(exceptionDetails.exception?.description ?? exceptionDetails.text);
     return result.value;
   };
-  /** Polls until the expression is true. */
-  const until = async (expression, what, seconds = 60) => {
+  const poll = async (isTrue, what, seconds) => {
     const end = Date.now() + 1000 * seconds;
-    while (!(await evaluate(expression))) {
+    while (!(await isTrue())) {
       if (Date.now() > end) throw new Error(`${what}: not within ${seconds} s; ${errors.join('; ')}`);
       await new Promise((resolve) => setTimeout(resolve, 50));
     }
   };
+  /** Polls until the expression is true. */
+  const until = (expression, what, seconds = 60) => poll(() => evaluate(expression), what, seconds);
   const screenshot = async (clip) => {
     const { data } = await send('Page.captureScreenshot', { format: 'png', captureBeyondViewport: true, ...(clip ? { clip } : {}) });
     return Buffer.from(data, 'base64');
   };
   const close = () => browser.send('Target.closeTarget', { targetId });
+  await poll(() => isLoaded, `${url} is loaded`, 60);
   return { send, evaluate, until, screenshot, close, errors, requests };
 }

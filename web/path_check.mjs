@@ -1,4 +1,5 @@
 // Looks at the path in three dimensions of an open report: it is drawn, and a click in it, in a plot or on a link of the decision selects a block.
+import { clickAt, placeOf, press, settle } from './hand.mjs';
 
 /** Runs in the page: how many pixels are coloured, and where in the window one of them is. */
 function coloured() {
@@ -19,39 +20,26 @@ function coloured() {
   return { count: found.length, x: box.x + ((middle % copy.width) + 0.5) / ratio, y: box.y + (Math.floor(middle / copy.width) + 0.5) / ratio };
 }
 
-const settle = `new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))`;
 const selected = `document.querySelector('.path input[type=number]').value`;
-
-async function click(page, { x, y }) {
-  await page.send('Input.dispatchMouseEvent', { type: 'mouseMoved', x, y });
-  await page.evaluate(settle);
-  for (const type of ['mousePressed', 'mouseReleased']) await page.send('Input.dispatchMouseEvent', { type, x, y, button: 'left', clickCount: 1 });
-  await page.evaluate(settle);
-}
-
-async function intoView(page, selector) {
-  await page.evaluate(`document.documentElement.style.scrollBehavior = 'auto'; document.querySelector('${selector}').scrollIntoView({ block: 'center' })`);
-  await page.evaluate(settle);
-}
 
 /** Nothing where the report has no path. */
 export async function tryPath(page, where, problems, { controls, painter = 'webgl' }) {
   if (!(await page.evaluate(`document.querySelector('.path') !== null`))) return;
   const used = await page.evaluate(`document.querySelector('.path').dataset.painter`);
   if (used !== painter) problems.push(`${where}: the path is drawn by ${used}, not by ${painter}`);
-  await intoView(page, '.path-view');
+  await placeOf(page, '.path-view');
+  await settle(page);
   const seen = await page.evaluate(`(${coloured})()`);
   if (seen.count < 300) problems.push(`${where}: the path has ${seen.count} coloured pixels`);
   if (!controls) return;
-  await click(page, seen);
+  await clickAt(page, seen);
   const byClick = await page.evaluate(selected);
   if (byClick === '') problems.push(`${where}: a click on the path selects no block`);
   if (!(await page.evaluate(`document.querySelector('[data-plot="program-limit"] .shapelayer path') !== null`))) {
     problems.push(`${where}: the block that was clicked is not marked in the plot`);
   }
   await page.evaluate(`document.querySelector('.path-view').focus()`);
-  await page.send('Input.dispatchKeyEvent', { type: 'keyDown', key: 'ArrowLeft', code: 'ArrowLeft', windowsVirtualKeyCode: 37 });
-  await page.evaluate(settle);
+  await press(page, 'ArrowLeft');
   const turned = await page.evaluate(`(${coloured})()`);
   if (turned.x === seen.x && turned.y === seen.y && turned.count === seen.count) problems.push(`${where}: the arrow key does not turn the path`);
   await clickInPlot(page, 'program-limit');
@@ -59,8 +47,9 @@ export async function tryPath(page, where, problems, { controls, painter = 'webg
 }
 
 async function clickInPlot(page, plot) {
-  await intoView(page, `[data-plot="${plot}"]`);
-  await click(page, await page.evaluate(`(() => { const { x, y, width, height } = document.querySelector('[data-plot="${plot}"] .nsewdrag').getBoundingClientRect(); return { x: x + 0.31 * width, y: y + height / 2 }; })()`));
+  await placeOf(page, `[data-plot="${plot}"]`);
+  await settle(page);
+  await clickAt(page, await placeOf(page, `[data-plot="${plot}"] .nsewdrag`, [0.31, 0.5]));
 }
 
 /** A link of the decision goes to its block in the path, a click in the map over γ selects one; nothing where the report has no decision on a path. */
@@ -69,7 +58,7 @@ export async function tryDecision(page, where, problems) {
   const link = `document.querySelector('#decision a.block-link')`;
   const named = await page.evaluate(`${link}.textContent.match(/block (\\d+)/)[1]`);
   await page.evaluate(`${link}.focus()`);
-  await page.send('Input.dispatchKeyEvent', { type: 'keyDown', key: 'Enter', code: 'Enter', windowsVirtualKeyCode: 13, text: '\r' });
+  await press(page, 'Enter');
   await page.until(`${selected} === '${named}'`, `${where}: the link selects block ${named}`, 10);
   await page.until(`(({ top, bottom }) => top < window.innerHeight && bottom > 0)(document.querySelector('.path-view').getBoundingClientRect())`, `${where}: the link goes to the path`, 10);
   if (!(await page.evaluate(`document.querySelector('[data-plot="gamma-map"]') !== null`))) return;

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { Monitor, MonitorAlarm, MonitorStay, Num } from './documents';
-import { aliasText, chatterMarks, duration, faultText, findings, frequencyText, multiplesOver, reasonText, shadedStays, speedStretches } from './monitor_views';
+import { aliasText, chatterMarks, duration, inputFaultText, findings, frequencyText, multiplesOver, reasonText, shadedStays, speedStretches } from './monitor_views';
 
 const alarm: MonitorAlarm = {
   count: 3,
@@ -71,7 +71,7 @@ describe('what was found, in words', () => {
     expect(reasonText(null)).toBe('reason unknown');
   });
   it('has words for every fault', () => {
-    expect(['not-finite', 'wrong-sample-rate', 'moon'].map(faultText)).toEqual(['samples that are no number', 'the sample rate is another one', 'moon']);
+    expect(['not-finite', 'wrong-sample-rate', 'moon'].map(inputFaultText)).toEqual(['samples that are no number', 'the sample rate is another one', 'moon']);
   });
   it('writes durations as people say them', () => {
     expect([0, 0.625, 12.44, 99.96, 320, 7500].map(duration)).toEqual(['0.00 s', '0.63 s', '12.4 s', '1 min 40 s', '5 min 20 s', '2 h 5 min']);

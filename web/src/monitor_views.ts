@@ -28,7 +28,7 @@ const faultTexts: Record<string, string> = {
 };
 
 /** What is wrong with the input, in words. */
-export function faultText(fault: string): string {
+export function inputFaultText(fault: string): string {
   return faultTexts[fault] ?? fault;
 }
 

@@ -33,9 +33,22 @@ function empty(): Report {
     blocks: null,
     smooth: null,
     motion: null,
+    cell: null,
     monitor: null,
     calibration: null,
     recordings: null,
+    joint: null,
+    tools: null,
+    sweep: null,
+    comparison: null,
+    explanation: null,
+    simulation: null,
+    vibration: null,
+    coefficients: null,
+    stiffness: null,
+    assumed: [],
+    warnings: [],
+    notes: [],
     files: [],
   };
 }
@@ -52,10 +65,16 @@ it('shows every part of a report', () => {
     '<strong>3 of 6</strong> test cuts with a result',
     'Limited by <strong>mode 8',
     'id="recordings"',
+    'class="cell-drawing"',
+    'joint 5 is 6.2° above its upper limit of 125°',
+    '<strong>2 of 6 poses cannot be taken where the workpiece stands.</strong>',
   ]) {
     expect(html).toContain(part);
   }
-  for (const id of ['lobes', 'feed', 'program', 'forces', 'smooth', 'assembly', 'frf', 'modes', 'pairs', 'monitor', 'calibration']) {
+  for (const id of [
+    'lobes', 'feed', 'program', 'forces', 'smooth', 'cell', 'assembly', 'frf', 'modes', 'pairs', 'monitor', 'calibration',
+    'peaks', 'simulation', 'sweep', 'comparison', 'coefficients', 'stiffness', 'tools', 'joint',
+  ]) {
     expect(html).toContain(`<section id="${id}"`);
     expect(html).toContain(`href="#${id}"`);
   }
@@ -345,6 +364,86 @@ it('says where no threshold works, and of what its numbers are', () => {
     expect(page()).toContain(part);
   }
   for (const part of ['Chatter is', 'chosen', 'How the threshold was set']) expect(page()).not.toContain(part);
+});
+
+it('lists what was assumed once, near the top, with the key to give', () => {
+  const html = page();
+  const box = html.indexOf('aria-label="Assumed"');
+  expect(box).toBeGreaterThan(html.indexOf('id="decision"'));
+  expect(box).toBeLessThan(html.indexOf('<section id="monitor"'));
+  expect(html).toContain('<td class="long">the bounding box of the program, up to program zero</td><td><code>stock</code></td>');
+  expect(html).toContain('<code>loss_factor</code> of assembly.toml');
+  expect(html.split('Accelerations of the joints')).toHaveLength(2); // of the cell's own list
+  report.assumed = [{ what: 'Collisions', taken: 'none', key: 'geometry', file: 'cell.toml' }];
+  report.cell = null;
+  expect(page()).not.toContain('aria-label="Assumed"'); // the decision has said it
+  delete report.plan!.decision;
+  expect(page()).toContain('<code>geometry</code> of cell.toml');
+});
+
+it('shows warnings and notes that no document holds', () => {
+  expect(page()).toContain('A note that no document holds.');
+  report = { ...empty(), warnings: ['a warning of its own'], lobes: report.lobes };
+  expect(page()).toContain('Before you use these numbers</h2><ul><li>a warning of its own');
+});
+
+it('names peaks, and says what the chatter is', () => {
+  for (const part of ['<strong>Chatter of mode 8</strong> at 568.10 Hz', 'the surface wave that the previous tooth cut sustains it', 'mode 8 at 566.40 Hz + 3 × rotation', '<td>cut or chatter</td><td>the cut, or chatter</td>', '4 × rotation; mode 8 at 566.40 Hz']) {
+    expect(page()).toContain(part);
+  }
+  report = { ...empty(), explanation: { ...report.explanation!, state: 'no chatter', chatter: null } };
+  expect(page()).toContain('No peak is chatter of a known mode.');
+  expect(page()).not.toContain('By the model');
+});
+
+it('shows a cut in time', () => {
+  for (const part of ['<span class="verdict chatter">chatter</span> Chatter at 566.4 Hz, 23.1 µm. A small vibration grows', 'data-plot="simulated"', 'data-plot="simulated-spectrum"', '<td>leave</td><td class="number">12.4</td>']) {
+    expect(page()).toContain(part);
+  }
+  report = { ...empty(), simulation: { ...report.simulation!, verdict: 'undecided', chatter_frequency_hz: null, walls: [], diverged: true } };
+  for (const part of ['Simulated for longer it would show.', 'grew beyond every bound']) expect(page()).toContain(part);
+  for (const part of ['data-plot', 'Surface left']) expect(page()).not.toContain(part);
+});
+
+it('shows sweeps, methods, and points that were asked for', () => {
+  for (const part of ['<td class="number">9200</td><td class="number">3</td><td><span class="verdict chatter">', 'Radial depth (mm)', 'multi-frequency: takes no helix', 'Methods that do not take this cut']) {
+    expect(page()).toContain(part);
+  }
+  report.lobes!.points = report.sweep!.points.map((point) => ({ ...point, axial_depth_mm: 1.5, limit_depth_mm: 1.25 }));
+  report = { ...empty(), lobes: report.lobes };
+  expect(page()).toContain('Points that were asked for');
+  expect(page()).toContain('<td class="number">1.5</td><td class="number">1.250</td>');
+});
+
+it('shows values that were identified, with their deviations', () => {
+  for (const part of [
+    '<td>tangential</td><td class="number">712.0\u202f±\u202f7.1</td>',
+    'The coefficients depend on the spindle speed',
+    'At 6000 rpm, 4 slots',
+    '99.84\u202f% of the displacement is explained',
+    '<td><strong>no</strong></td><td class="long">no load turns it</td>',
+    'Translational stiffness</td><td class="number">2.1·10⁷</td>',
+    'At 2 lines the measured holder would create energy',
+  ]) {
+    expect(page()).toContain(part);
+  }
+});
+
+it('shows tools side by side, and why one has no result', () => {
+  for (const part of ['data-plot="tools"', 'overhang_mm is above the 80 mm', 'long: Two modes are closer than their half widths.', 'Modes of every tool']) {
+    expect(page()).toContain(part);
+  }
+  for (const tool of report.tools!.tools) Object.assign(tool, { peak_um_per_n: null, peak_hz: null, lowest_limit_mm: null, recommended: null, modes: [], notes: [] });
+  report = { ...empty(), tools: report.tools };
+  for (const part of ['data-plot', 'Modes of every tool', 'Removal (mm³/s)']) expect(page()).not.toContain(part);
+});
+
+it('has no column of grades or shares where a verb knows none', () => {
+  report = { ...empty(), frf: { ...report.frf!, grades: {} }, fitted: report.fitted, modes: report.modes };
+  expect(page()).not.toContain('Error of the fit');
+  report.modes!.fit!.relative_error_by_frf = { xx: 0.02 };
+  expect(page()).toContain('Error of the fit');
+  for (const part of ['not graded', 'Share in the limit', '>Force<']) expect(page()).not.toContain(part);
 });
 
 it('keeps markup in texts as text', () => {

@@ -36,6 +36,7 @@ export interface TableProps<Row> {
   columns: Column<Row>[];
   rows: Row[];
   rowClass?: (row: Row) => string;
+  rowKey?: (row: Row) => string | number; // where rows come, go or move: what has the focus stays with its row
 }
 
 function cellClass<Row>({ number, long }: Column<Row>, content: ComponentChildren): string | undefined {
@@ -43,7 +44,7 @@ function cellClass<Row>({ number, long }: Column<Row>, content: ComponentChildre
   return long || (typeof content === 'string' && content.length > 24) ? 'long' : undefined;
 }
 
-export function Table<Row>({ caption, quiet, columns: all, rows, rowClass }: TableProps<Row>) {
+export function Table<Row>({ caption, quiet, columns: all, rows, rowClass, rowKey }: TableProps<Row>) {
   const columns = all.filter(({ optional, cell }) => !optional || rows.some((row, index) => !['', dash].includes(cell(row, index) as string)));
   return (
     <div class="table" tabIndex={0} role="region" aria-label={caption}>
@@ -60,7 +61,7 @@ export function Table<Row>({ caption, quiet, columns: all, rows, rowClass }: Tab
         </thead>
         <tbody>
           {rows.map((row, index) => (
-            <tr class={rowClass?.(row) || undefined}>
+            <tr key={rowKey?.(row)} class={rowClass?.(row) || undefined}>
               {columns.map((column) => {
                 const content = column.cell(row, index);
                 return <td class={cellClass(column, content)}>{content}</td>;

@@ -23,6 +23,8 @@ const all: Quantity[] = [
   { key: 'torque_n_m', name: 'Torque', unit: 'N·m', worse: 'high' },
   { key: 'power_w', name: 'Power', unit: 'W', worse: 'high' },
   { key: 'deflection_um', name: 'Deflection', unit: 'µm', worse: 'high' },
+  { key: 'joint_torque_share', name: 'Joint load, share of the drive', unit: '', worse: 'high' },
+  { key: 'cut_joint_torque_n_m', name: 'Joint load of the cut', unit: 'N·m', worse: 'high' },
   { key: 'surface_error_um', name: 'Surface error', unit: 'µm', worse: 'high' },
   { key: 'condition_number', name: 'Condition number', unit: '', worse: 'high' },
 ];
@@ -62,6 +64,12 @@ export function pathData(columns: BlockColumns): PathData {
     kinds[i] = !cuts(columns, i) ? inAir : isUnstable(columns, i) ? unstable : stable;
   }
   return { ends, kinds };
+}
+
+/** Whether the blocks of two paths end at the same places; a report has them to six digits, other documents to more. */
+export function samePlaces({ ends: a }: PathData, { ends: b }: PathData): boolean {
+  const same = (one: number, other: number) => Object.is(one, other) || Math.abs(one - other) <= 1e-3 + 1e-5 * Math.abs(one);
+  return a === b || (a.length === b.length && a.every((value, i) => same(value, b[i]!)));
 }
 
 export interface ColourRange {
@@ -195,6 +203,8 @@ export function blockFacts(columns: BlockColumns, index: number): Fact[] {
     { label: 'Torque', value: at('torque_n_m', 'N·m') },
     { label: 'Power', value: at('power_w', 'W') },
     { label: 'Deflection', value: at('deflection_um', 'µm') },
+    { label: 'Joint load, share of the drive', value: at('joint_torque_share', '') },
+    { label: 'Joint load of the cut', value: at('cut_joint_torque_n_m', 'N·m') },
     { label: 'Surface error', value: at('surface_error_um', 'µm') },
     { label: 'Condition number', value: at('condition_number', '') },
   ];

@@ -13,6 +13,7 @@ interface Place {
   draw: Draw;
   width: number; // at which it was drawn last
   picked: ((x: number) => void) | undefined; // where a point was clicked
+  drawn: ((root: HTMLElement) => void) | undefined;
 }
 
 /** What Plotly makes of the element. */
@@ -30,6 +31,7 @@ const config = {
 const places = new Set<Place>();
 const darkScheme = () => window.matchMedia('(prefers-color-scheme: dark)');
 let printing = false;
+let drawing = false; // drawAll was called: a place that comes later is drawn when it comes
 
 /** Draws, unless the place is inside a closed part of the page: it has no width yet and is drawn when it opens. */
 async function draw(place: Place, width?: number): Promise<void> {
@@ -44,6 +46,7 @@ async function draw(place: Place, width?: number): Promise<void> {
     if (!bar) Object.assign(figure.layout['margin'] as object, { r: 12 });
     await Plotly.react(root, figure.data, figure.layout, { ...config, displayModeBar: bar ? 'hover' : false });
     if (place.picked) listen(root as Plotted, place);
+    place.drawn?.(root);
   } catch (error) {
     root.textContent = 'This plot could not be drawn.';
     console.error(error);
@@ -60,6 +63,7 @@ function listen(root: Plotted, place: Place): void {
 
 /** Draws every plot that can be seen, anew. */
 export function drawAll(): Promise<void[]> {
+  drawing = true;
   return Promise.all([...places].map((place) => draw(place)));
 }
 
@@ -114,18 +118,28 @@ export function onColours(changed: (isDark: boolean) => void): () => void {
   };
 }
 
-/** Draws when its drawing changes; the first time drawAll does. */
-function Canvas({ make, name, shows, picked }: { make: Draw; name: string; shows?: string; picked?: ((x: number) => void) | undefined }) {
+interface CanvasProps extends Partial<Pick<Place, 'picked' | 'drawn'>> {
+  make: Draw;
+  name: string;
+  shows?: string;
+}
+
+/** Draws when its drawing changes; until drawAll was called, that does it the first time. */
+function Canvas({ make, name, shows, picked, drawn }: CanvasProps) {
   const root = useRef<HTMLDivElement>(null);
   const place = useRef<Place | null>(null);
   useLayoutEffect(() => {
-    const own: Place = { root: root.current!, draw: make, width: 0, picked };
+    const own: Place = { root: root.current!, draw: make, width: 0, picked, drawn };
     place.current = own;
     places.add(own);
+    if (drawing) void draw(own);
     return () => void places.delete(own);
   }, []);
   useLayoutEffect(() => {
-    if (place.current === null || place.current.draw === make) return;
+    if (place.current === null) return;
+    place.current.picked = picked;
+    place.current.drawn = drawn;
+    if (place.current.draw === make) return;
     place.current.draw = make;
     void draw(place.current);
   });
@@ -138,10 +152,11 @@ interface PlotProps {
   caption: string;
   draw: Draw | Draw[]; // several: side by side
   picked?: (x: number) => void; // where a point of a single plot was clicked
+  drawn?: (root: HTMLElement) => void; // after each drawing of a single plot
   children?: ComponentChildren; // what chooses above the plot
 }
 
-export function Plot({ which, shows, caption, draw: make, picked, children }: PlotProps) {
+export function Plot({ which, shows, caption, draw: make, picked, drawn, children }: PlotProps) {
   return (
     <figure data-plot={which}>
       {children && <div class="controls">{children}</div>}
@@ -152,7 +167,7 @@ export function Plot({ which, shows, caption, draw: make, picked, children }: Pl
           ))}
         </div>
       ) : (
-        <Canvas make={make} name="canvas" shows={shows} picked={picked} />
+        <Canvas make={make} name="canvas" shows={shows} picked={picked} drawn={drawn} />
       )}
       <figcaption>{caption}</figcaption>
     </figure>

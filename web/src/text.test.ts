@@ -20,6 +20,7 @@ it('writes numbers that read well', () => {
   expect(withDeviation(17.4123, null, 1, 2)).toBe('17.41');
   expect(withDeviation(12345.6789, 0.0012, 1, 1)).toBe('12\u202f345.6789\u202f±\u202f0.0012');
   expect(withDeviation(0.021, 0.0012, 100, 2)).toBe('2.10\u202f±\u202f0.12');
+  expect(withDeviation(1771.65, 9e-13, 1, 1)).toBe('1771.7');
 });
 
 it('says whose mode it is', () => {

@@ -47,11 +47,11 @@ export function percent(ratio: Num, decimals: number): string {
   return ratio === null ? dash : `${(100 * ratio).toFixed(decimals)}${thinSpace}%`;
 }
 
-/** "17.412 ± 0.035": decimals so that the standard deviation shows two digits; without one, `decimals`. */
+/** "17.412 ± 0.035": decimals so that the standard deviation shows two digits; without one, or with one of mere rounding, `decimals`. */
 export function withDeviation(value: Num, deviation: Num, scale: number, decimals: number): string {
   if (value === null) return dash;
   const spread = deviation === null ? 0 : scale * deviation;
-  if (!(spread > 0)) return fixed(scale * value, decimals);
+  if (!(spread > 1e-9 * Math.abs(scale * value))) return fixed(scale * value, decimals);
   const shown = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(spread))));
   return `${fixed(scale * value, shown)}${thinSpace}±${thinSpace}${spread.toFixed(shown)}`;
 }

@@ -1,4 +1,4 @@
-import type { BoundaryPoint, Cut, DepthCurve, Num, Recommendation, Verdict } from '../documents';
+import type { BoundaryPoint, ChartPoint, Cut, DepthCurve, Num, Recommendation, SurfaceDocument, Verdict } from '../documents';
 import type { Lobes } from '../views';
 import { axis, layout, plain, rpm, thinSpace, type Figure, type Layout, type Theme, type Trace } from './theme';
 
@@ -8,11 +8,12 @@ export interface LobesInput {
   cuts: Cut[];
   recommendation: Recommendation | null;
   alternatives: Recommendation[];
+  points?: ChartPoint[]; // that were asked for
 }
 
 const dashes = ['dash', 'dot', 'dashdot', 'longdash'];
-const speedAxis = 'Spindle speed (rpm)';
-const depthAxis = 'Axial depth (mm)';
+export const speedAxis = 'Spindle speed (rpm)';
+export const depthAxis = 'Axial depth (mm)';
 
 /** The depth up to which a cut is stable at each speed: the limit, or all that was searched where there is none. */
 export function stableDepth(lobes: Lobes): number[] {
@@ -163,6 +164,28 @@ function recommendationTraces(input: LobesInput, theme: Theme): Trace[] {
   return traces;
 }
 
+/** Points that were asked for; `height`: where each stands. */
+export function pointTraces(points: ChartPoint[], height: (point: ChartPoint) => Num, theme: Theme): Trace[] {
+  const looks = [
+    { stable: true, name: 'asked for, stable', symbol: 'circle-open', colour: theme.stable },
+    { stable: false, name: 'asked for, chatter', symbol: 'x-open', colour: theme.chatter },
+  ];
+  return looks.flatMap(({ stable, name, symbol, colour }) => {
+    const chosen = points.filter((point) => point.stable === stable);
+    if (chosen.length === 0) return [];
+    return {
+      type: 'scatter',
+      mode: 'markers',
+      name,
+      x: chosen.map((point) => point.spindle_speed_rpm),
+      y: chosen.map(height),
+      customdata: chosen.map((point) => point.spectral_radius),
+      hovertemplate: `%{x:.0f}${thinSpace}rpm, %{y:.4g}: spectral radius %{customdata:.3f}<extra></extra>`,
+      marker: { symbol, size: 11, color: colour, line: { width: 2 } },
+    };
+  });
+}
+
 /** From the recommended point to both axes. */
 function guides(best: Recommendation | null, left: number, theme: Theme): Layout[] {
   if (best === null) return [];
@@ -223,6 +246,7 @@ function speedRange(lobes: Lobes): [number, number] {
 export function depthTop(input: LobesInput): number {
   const shown: Num[] = [searchedDepth(input.lobes), input.recommendation?.axial_depth_mm ?? 0];
   for (const cut of input.cuts) shown.push(cut.axial_depth_mm);
+  for (const point of input.points ?? []) shown.push(point.axial_depth_mm ?? null);
   return 1.04 * shown.reduce<number>((most, depth) => Math.max(most, depth ?? 0), 0);
 }
 
@@ -249,6 +273,7 @@ export function lobesFigure(input: LobesInput, theme: Theme, narrow: boolean): F
       hovertemplate: `${plain(curve.label)}: %{y:.3f}${thinSpace}mm<extra></extra>`,
     })),
     ...cutTraces(input.cuts, theme),
+    ...pointTraces(input.points ?? [], (point) => point.axial_depth_mm ?? null, theme),
     ...recommendationTraces(input, theme),
     ...frequencies,
   ];
@@ -299,12 +324,15 @@ export function pairFigure(part: Lobes, all: Lobes, cuts: Cut[], theme: Theme): 
   };
 }
 
-/** The spectral radius on the whole grid, with the line where it is 1. */
-export function mapFigure(lobes: Lobes, theme: Theme): Figure {
-  const map = lobes.map;
-  if (map === null) return { data: [], layout: layout(theme, 200) };
-  const z = map.spectral_radius;
-  const points = { x: map.spindle_speed_rpm, y: map.axial_depth_mm, z };
+/** Values of a grid, a row an y. */
+interface Grid {
+  x: number[];
+  y: number[];
+  z: Num[][];
+}
+
+/** The spectral radius on a grid, with the line where it is 1. */
+export function radiusMap(points: Grid, height: { title: string; unit: string }, theme: Theme): Figure {
   return {
     data: [
       {
@@ -319,7 +347,7 @@ export function mapFigure(lobes: Lobes, theme: Theme): Figure {
           [1, theme.chatter],
         ],
         colorbar: { title: { text: 'Spectral radius', side: 'right' }, thickness: 12, outlinewidth: 0 },
-        hovertemplate: `%{x:.0f}${thinSpace}rpm, %{y:.3f}${thinSpace}mm: %{z:.3f}<extra></extra>`,
+        hovertemplate: `%{x:.0f}${thinSpace}rpm, %{y:.3f}${height.unit}: %{z:.3f}<extra></extra>`,
       },
       {
         type: 'contour',
@@ -332,7 +360,46 @@ export function mapFigure(lobes: Lobes, theme: Theme): Figure {
     ],
     layout: layout(theme, 460, {
       xaxis: axis(theme, speedAxis, { tickformat: ',d' }),
-      yaxis: axis(theme, depthAxis),
+      yaxis: axis(theme, height.title),
+    }),
+  };
+}
+
+const depths = { title: depthAxis, unit: `${thinSpace}mm` };
+
+/** The spectral radius over speed and depth. */
+export function mapFigure({ map }: Lobes, theme: Theme): Figure {
+  if (map === null) return { data: [], layout: layout(theme, 200) };
+  return radiusMap({ x: map.spindle_speed_rpm, y: map.axial_depth_mm, z: map.spectral_radius }, depths, theme);
+}
+
+/** The error of the surface over speed and depth, where a cut is stable. */
+export function surfaceFigure(surface: SurfaceDocument, theme: Theme): Figure {
+  const z = surface.surface_location_error_um;
+  const most = z.flat().reduce<number>((largest, value) => Math.max(largest, Math.abs(value ?? 0)), 0) || 1;
+  return {
+    data: [
+      {
+        type: 'heatmap',
+        x: surface.spindle_speed_rpm,
+        y: surface.axial_depth_mm,
+        z,
+        zmin: -most,
+        zmax: most,
+        hoverongaps: false,
+        colorscale: [
+          [0, theme.accent],
+          [0.5, theme.panel],
+          [1, theme.chatter],
+        ],
+        colorbar: { title: { text: 'Surface error (µm)', side: 'right' }, thickness: 12, outlinewidth: 0 },
+        hovertemplate: `%{x:.0f}${thinSpace}rpm, %{y:.3f}${thinSpace}mm: %{z:.2f}${thinSpace}µm<extra></extra>`,
+      },
+    ],
+    layout: layout(theme, 460, {
+      plot_bgcolor: theme.unknown, // shows where a cut chatters
+      xaxis: axis(theme, speedAxis, { tickformat: ',d', showgrid: false }),
+      yaxis: axis(theme, depthAxis, { showgrid: false }),
     }),
   };
 }

@@ -1,7 +1,8 @@
 import { describe, expect, it } from 'vitest';
 import { cornerFigure, movesInView, pathFigure, tube } from './corners';
 import type { Corner, JointMotion, Motion, MotionDocument, SmoothDocument, SmoothedBy } from '../documents';
-import { jointFigure, magnitude, speedFigure } from './smooth';
+import { magnitude } from './rows';
+import { jointFigure, speedFigure } from './smooth';
 import { dark, light } from './theme';
 
 const band = (...values: number[]) => ({ low: values, high: values });

@@ -10,7 +10,7 @@ export function harmonics(base: number, most: number, skip = Infinity): number[]
 }
 
 /** Vertical lines as one trace, so that the legend can switch them. */
-function verticals(name: string, at: number[], base: number, top: number, bottom: number, line: object): Trace {
+export function verticals(name: string, at: number[], base: number, top: number, bottom: number, line: object): Trace {
   const x: (number | null)[] = [];
   const y: (number | null)[] = [];
   const text: string[] = [];
@@ -23,7 +23,7 @@ function verticals(name: string, at: number[], base: number, top: number, bottom
   return { type: 'scatter', mode: 'lines', name, x, y, text, hovertemplate: '%{text}<extra></extra>', line };
 }
 
-const looks: Record<Peak['kind'], { name: string; symbol: string; colour: keyof Theme }> = {
+export const looks: Record<Peak['kind'], { name: string; symbol: string; colour: keyof Theme }> = {
   chatter: { name: 'chatter', symbol: 'x', colour: 'chatter' },
   'cut or chatter': { name: 'the cut or chatter', symbol: 'diamond-open', colour: 'borderline' },
   unexplained: { name: 'neither', symbol: 'diamond', colour: 'borderline' },

@@ -62,6 +62,9 @@ export interface Figure {
   layout: Layout;
 }
 
+/** Of a theme's series, those of x, y and z: none of them is the colour of chatter or of stable. */
+export const directionSeries = [0, 3, 4] as const;
+
 export const thinSpace = '\u202f';
 
 /** An axis with a title, in the theme's colours. */

@@ -26,6 +26,7 @@ export interface PathEvents {
 
 export interface PathView {
   paint(colours: PathColours): void; // before it returns
+  judge(kinds: Uint8Array): void; // other kinds at the same places; a paint follows
   mark(selected: number | null): void;
   fit(side?: Side): void;
   key(name: string): boolean; // whether it was one

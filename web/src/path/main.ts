@@ -19,7 +19,7 @@ const still = 4; // px: a click that moved less is none of turning
 
 class PathScene implements PathView {
   private readonly bounds: Bounds;
-  private readonly cuts: number[];
+  private cuts: number[];
   private readonly camera = new OrthographicCamera();
   private readonly over = document.createElement('canvas');
   private readonly controls: OrbitControls;
@@ -35,7 +35,7 @@ class PathScene implements PathView {
 
   constructor(
     private readonly root: HTMLElement,
-    private readonly data: PathData,
+    private data: PathData,
     private readonly events: PathEvents,
   ) {
     this.bounds = boundsOf(data);
@@ -63,6 +63,12 @@ class PathScene implements PathView {
     this.colours = colours;
     this.painter.paint(colours);
     this.draw();
+  }
+
+  judge(kinds: Uint8Array): void {
+    this.data = { ends: this.data.ends, kinds };
+    this.cuts = drawn(this.data, cutting);
+    this.painter.load(this.data);
   }
 
   mark(selected: number | null): void {

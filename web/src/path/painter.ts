@@ -7,6 +7,7 @@ export interface Painter {
   name: 'webgl' | 'canvas';
   canvas: HTMLCanvasElement;
   resize(width: number, height: number, ratio: number): void;
+  load(data: PathData): void; // in the place of what it drew until now; a paint follows
   paint(colours: PathColours): void;
   draw(camera: OrthographicCamera, places: Float32Array): void; // places in pixels, as project gives them
   dispose(): void;
@@ -27,15 +28,14 @@ export function byColour(blocks: number[], colours: Uint8Array): Map<string, num
 export function canvasPainter(data: PathData): Painter {
   const canvas = document.createElement('canvas');
   const context = canvas.getContext('2d')!;
-  const air = drawn(data, (kind) => kind === inAir);
-  const cuts = drawn(data, cutting);
-  const unstableBlocks = drawn(data, isUnstable);
+  const blocksOf = (of: PathData) => ({ air: drawn(of, (kind) => kind === inAir), cuts: drawn(of, cutting), unstable: drawn(of, isUnstable) });
+  let blocks = blocksOf(data);
   let colours: PathColours | null = null;
   let groups = new Map<string, number[]>();
   let ratio = 1;
-  const stroke = (blocks: number[], places: Float32Array, style: string, width: number) => {
+  const stroke = (some: number[], places: Float32Array, style: string, width: number) => {
     context.beginPath();
-    for (const i of blocks) {
+    for (const i of some) {
       context.moveTo(places[3 * i - 3]!, places[3 * i - 2]!);
       context.lineTo(places[3 * i]!, places[3 * i + 1]!);
     }
@@ -51,18 +51,21 @@ export function canvasPainter(data: PathData): Painter {
       canvas.width = Math.round(width * ratio);
       canvas.height = Math.round(height * ratio);
     },
+    load: (given) => {
+      blocks = blocksOf(given);
+    },
     paint: (given) => {
       colours = given;
-      groups = byColour(cuts, given.blocks);
+      groups = byColour(blocks.cuts, given.blocks);
     },
     draw: (_camera, places) => {
       if (colours === null) return;
       context.setTransform(ratio, 0, 0, ratio, 0, 0);
       context.clearRect(0, 0, canvas.width, canvas.height);
       context.lineCap = 'round';
-      stroke(air, places, colours.air, 0.7);
-      stroke(unstableBlocks, places, colours.unstable, 8);
-      for (const [colour, blocks] of groups) stroke(blocks, places, colour, 3);
+      stroke(blocks.air, places, colours.air, 0.7);
+      stroke(blocks.unstable, places, colours.unstable, 8);
+      for (const [colour, some] of groups) stroke(some, places, colour, 3);
     },
     dispose: () => {},
   };

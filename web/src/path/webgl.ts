@@ -43,6 +43,42 @@ function cutsOf(positions: Float32Array): Cuts {
   return { lines, colour: (values) => void geometry.setAttribute('color', new BufferAttribute(values, 3)) };
 }
 
+/** What is drawn of a path. */
+class Lines {
+  private readonly cuts: number[];
+  private readonly cut: Cuts;
+  private readonly air = new LineBasicMaterial({ transparent: true, opacity: 0.6 });
+  private readonly halo: LineMaterial;
+  readonly scene = new Scene();
+
+  constructor(data: PathData) {
+    this.cuts = drawn(data, cutting);
+    this.cut = cutsOf(segments(data, this.cuts));
+    this.halo = new LineMaterial({ linewidth: this.cuts.length > many ? 4 : 8, depthWrite: false });
+    const airGeometry = new BufferGeometry();
+    airGeometry.setAttribute('position', new BufferAttribute(segments(data, drawn(data, (kind) => kind === inAir)), 3));
+    this.scene.add(new LineSegments(airGeometry, this.air), wide(segments(data, drawn(data, isUnstable)), this.halo, 0), this.cut.lines);
+  }
+
+  paint({ blocks, air, unstable }: PathColours): void {
+    const both = new Float32Array(6 * this.cuts.length);
+    this.cuts.forEach((i, k) => {
+      for (let c = 0; c < 3; ++c) both[6 * k + c] = both[6 * k + 3 + c] = blocks[3 * i + c]! / 255;
+    });
+    this.cut.colour(both);
+    this.air.color = new Color(air);
+    this.halo.color = new Color(unstable);
+  }
+
+  dispose(): void {
+    for (const child of this.scene.children) {
+      const { geometry, material } = child as LineSegments;
+      geometry.dispose();
+      (material as LineBasicMaterial).dispose();
+    }
+  }
+}
+
 /** null where there is no WebGL. */
 export function webglPainter(data: PathData): Painter | null {
   const canvas = document.createElement('canvas');
@@ -53,14 +89,7 @@ export function webglPainter(data: PathData): Painter | null {
   renderer.outputColorSpace = LinearSRGBColorSpace;
   renderer.setClearColor(0, 0);
 
-  const cuts = drawn(data, cutting);
-  const airGeometry = new BufferGeometry();
-  airGeometry.setAttribute('position', new BufferAttribute(segments(data, drawn(data, (kind) => kind === inAir)), 3));
-  const air = new LineBasicMaterial({ transparent: true, opacity: 0.6 });
-  const halo = new LineMaterial({ linewidth: cuts.length > many ? 4 : 8, depthWrite: false });
-  const cut = cutsOf(segments(data, cuts));
-  const scene = new Scene();
-  scene.add(new LineSegments(airGeometry, air), wide(segments(data, drawn(data, isUnstable)), halo, 0), cut.lines);
+  let lines = new Lines(data);
   return {
     name: 'webgl',
     canvas,
@@ -68,16 +97,12 @@ export function webglPainter(data: PathData): Painter | null {
       renderer.setPixelRatio(ratio);
       renderer.setSize(width, height, false);
     },
-    paint: (colours: PathColours) => {
-      const both = new Float32Array(6 * cuts.length);
-      cuts.forEach((i, k) => {
-        for (let c = 0; c < 3; ++c) both[6 * k + c] = both[6 * k + 3 + c] = colours.blocks[3 * i + c]! / 255;
-      });
-      cut.colour(both);
-      air.color = new Color(colours.air);
-      halo.color = new Color(colours.unstable);
+    load: (given) => {
+      lines.dispose();
+      lines = new Lines(given);
     },
-    draw: (camera: OrthographicCamera) => renderer.render(scene, camera),
+    paint: (colours) => lines.paint(colours),
+    draw: (camera: OrthographicCamera) => renderer.render(lines.scene, camera),
     dispose: () => renderer.dispose(),
   };
 }

@@ -1,10 +1,10 @@
 // Stability lobes, over speed, over feed direction, and of some modes alone.
-import type { Agreement, Cut, Num, Plan, Verdict } from '../documents';
-import { lobesFigure, mapFigure, pairFigure } from '../figures/lobes';
+import type { Agreement, ChartPoint, Cut, LobesDocument, Num, Plan, SurfaceDocument, Verdict } from '../documents';
+import { lobesFigure, mapFigure, pairFigure, surfaceFigure } from '../figures/lobes';
 import { polarFigure } from '../figures/polar';
 import { Details, Section, someOf, Table, type Column } from '../parts';
 import { narrow, Plot } from '../plot';
-import { dash, fixed, significant } from '../text';
+import { dash, fixed, modeName, significant } from '../text';
 import { feedOf, partOf, type Lobes } from '../views';
 
 export function VerdictBadge({ verdict }: { verdict: Verdict | null }) {
@@ -65,7 +65,54 @@ function LimitTable({ lobes }: { lobes: Lobes }) {
   );
 }
 
-export function LobesSection({ lobes, plan }: { lobes: Lobes | null; plan: Plan | null }) {
+interface PointsTableProps {
+  points: ChartPoint[];
+  heading: string; // of what varies beside the speed
+  valueOf: (point: ChartPoint) => Num;
+}
+
+/** Points that were asked for; nothing where there are none. */
+export function PointsTable({ points, heading, valueOf }: PointsTableProps) {
+  if (points.length === 0) return null;
+  return (
+    <Table
+      caption="Points that were asked for"
+      rows={points}
+      columns={[
+        { heading: 'Spindle speed (rpm)', number: true, cell: (point) => fixed(point.spindle_speed_rpm, 0) },
+        { heading, number: true, cell: (point) => significant(valueOf(point)) },
+        { heading: 'Limit there (mm)', number: true, optional: true, cell: ({ limit_depth_mm: limit = null }) => fixed(limit, 3) },
+        { heading: 'Stability', cell: ({ stable }) => <VerdictBadge verdict={stable ? 'stable' : 'chatter'} /> },
+        { heading: 'Spectral radius', number: true, cell: (point) => fixed(point.spectral_radius, 4) },
+        { heading: 'Gain margin', number: true, optional: true, cell: ({ gain_margin: gain = null }) => significant(gain) },
+        { heading: 'Chatter at (Hz)', number: true, optional: true, cell: (point) => (point.stable ? dash : fixed(point.chatter_frequency_hz, 1)) },
+        { heading: 'Mode', optional: true, cell: (point) => (point.stable ? dash : modeName(point)) },
+      ]}
+    />
+  );
+}
+
+function Surface({ surface }: { surface: SurfaceDocument }) {
+  return (
+    <Details summary="Error of the surface">
+      <Plot
+        which="surface"
+        shows="Error of the surface over spindle speed and axial depth"
+        caption="Of stable cuts, positive where material is left; grey: the cut chatters."
+        draw={(theme) => surfaceFigure(surface, theme)}
+      />
+    </Details>
+  );
+}
+
+interface LobesSectionProps {
+  lobes: Lobes | null;
+  plan: Plan | null;
+  document: LobesDocument | null;
+}
+
+export function LobesSection({ lobes, plan, document }: LobesSectionProps) {
+  const { points = [], surface } = document ?? {};
   const { other_limits: otherLimits = [], cuts = [], recommended: recommendation = null, alternatives = [] } = plan ?? {};
   return (
     <Section id="lobes" heading="Stability lobes" lead="How deep the cutter may go at each spindle speed before chatter starts.">
@@ -76,7 +123,7 @@ export function LobesSection({ lobes, plan }: { lobes: Lobes | null; plan: Plan 
             which="lobes"
             shows="Stability lobes: limit depth over spindle speed, with the recommended point and the test cuts"
             caption="Below the line a cut is stable, above it the tool chatters; the lower plot says at which frequency."
-            draw={(theme, width) => lobesFigure({ lobes, otherLimits, cuts, recommendation, alternatives }, theme, width < narrow)}
+            draw={(theme, width) => lobesFigure({ lobes, otherLimits, cuts, recommendation, alternatives, points }, theme, width < narrow)}
           />
           {lobes.map !== null && (
             <Details summary="Spectral radius">
@@ -88,6 +135,8 @@ export function LobesSection({ lobes, plan }: { lobes: Lobes | null; plan: Plan 
               />
             </Details>
           )}
+          {surface && <Surface surface={surface} />}
+          <PointsTable points={points} heading="Axial depth (mm)" valueOf={(point) => point.axial_depth_mm ?? null} />
           <LimitTable lobes={lobes} />
         </>
       )}

@@ -1,7 +1,7 @@
 // What the chatter monitor detected, and how it was calibrated.
 import type { CalibratedHalf, Calibration, CalibrationRecording, Fact, Monitor, MonitorAlarm, MonitorEvent, Num } from '../documents';
 import { rocFigure, scoreFigure, spectrogramFigure, waveFigure } from '../figures/monitor';
-import { chatterNotes, faultText, findings, frequencyText, reasonText } from '../monitor_views';
+import { chatterNotes, inputFaultText, findings, frequencyText, reasonText } from '../monitor_views';
 import { Bullets, Details, Facts, Section, Table, WarningBox } from '../parts';
 import { narrow, Plot } from '../plot';
 import { dash, fixed, general, modeName, percent, significant, withDeviation } from '../text';
@@ -17,7 +17,7 @@ function isState({ event }: MonitorEvent): boolean {
 /** What an event says beside numbers. Where no command is possible the message says why there is no speed. */
 function noteOf(of: MonitorEvent): string {
   const { event, state, reason, command, faults, what, file, message } = of;
-  if (event === 'fault') return faults.length === 0 ? 'the input is well again' : `input: ${faults.map(faultText).join(', ')}`;
+  if (event === 'fault') return faults.length === 0 ? 'the input is well again' : `input: ${faults.map(inputFaultText).join(', ')}`;
   if (event === 'stream') return message ?? what ?? '';
   if (event === 'recording') return `recorded ${file ?? ''}`;
   const explained = command === 'none' ? { ...of, no_speed: null, line_frequencies_hz: [] } : of;

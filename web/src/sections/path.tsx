@@ -3,8 +3,8 @@ import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks';
 import type { BlockColumns, Fact } from '../documents';
 import { dark, light, thinSpace, type Theme } from '../figures/theme';
 import { BlockSteps, Facts } from '../parts';
-import type { PathView, Side } from '../path/contract';
-import { coloursOf, gradient, pathData, rangeOf, regimes, worstBlocks, type Quantity } from '../path_views';
+import type { PathData, PathView, Side } from '../path/contract';
+import { coloursOf, gradient, pathData, rangeOf, regimes, samePlaces, worstBlocks, type Quantity } from '../path_views';
 import { Choice, onColours } from '../plot';
 import { significant } from '../text';
 
@@ -74,18 +74,35 @@ function Buttons({ view, columns, selected, select }: { view: () => PathView | n
   );
 }
 
-/** The view in its element, opened once for its columns. */
+/** What is known of the path, and the one that it was opened with: another where a place moved. */
+function useData(columns: BlockColumns): { data: PathData; opened: PathData } {
+  const data = useMemo(() => pathData(columns), [columns]);
+  const first = useRef(data);
+  if (!samePlaces(first.current, data)) first.current = data;
+  return { data, opened: first.current };
+}
+
+/** The view in its element, opened once for its places. */
 function useView(columns: BlockColumns, quantity: Quantity | undefined, selected: number | null, select: PathProps['select']) {
   const root = useRef<HTMLDivElement>(null);
   const view = useRef<PathView | null>(null);
+  const { data, opened } = useData(columns);
+  const judged = useRef<PathData | null>(null); // what the view shows
+  const picked = useRef(select);
+  picked.current = select;
   const [theme, setTheme] = useState(light);
   const [hovered, setHovered] = useState<number | null>(null);
   const [painter, setPainter] = useState<'webgl' | 'canvas' | 'none' | 'unknown'>('unknown');
   useLayoutEffect(() => {
     if (!window.robomillPath) return setPainter('none');
-    view.current = window.robomillPath(root.current!, pathData(columns), { picked: select, hovered: setHovered, painter: setPainter });
+    judged.current = data;
+    view.current = window.robomillPath(root.current!, data, { picked: (index) => picked.current(index), hovered: setHovered, painter: setPainter });
     return () => view.current?.dispose();
-  }, [columns]);
+  }, [opened]);
+  useLayoutEffect(() => {
+    if (judged.current !== data) view.current?.judge(data.kinds);
+    judged.current = data;
+  }, [data]);
   useLayoutEffect(() => {
     if (!quantity) return undefined;
     return onColours((isDark) => {
@@ -94,12 +111,13 @@ function useView(columns: BlockColumns, quantity: Quantity | undefined, selected
       view.current?.paint(coloursOf(columns, quantity, colours));
     });
   }, [columns, quantity]);
-  useLayoutEffect(() => view.current?.mark(selected), [columns, selected]);
+  useLayoutEffect(() => view.current?.mark(selected), [opened, selected]);
   return { root, view, theme, hovered, painter };
 }
 
 export function PathFigure({ columns, quantities, selected, select, facts }: PathProps) {
-  const [chosen, choose] = useState(0);
+  const [key, choose] = useState<Quantity['key'] | null>(null);
+  const chosen = Math.max(0, quantities.findIndex((one) => one.key === key));
   const quantity = quantities[chosen];
   const { root, view, theme, hovered, painter } = useView(columns, quantity, selected, select);
   if (!quantity) return <p class="notice">No block of the program cuts.</p>;
@@ -110,7 +128,7 @@ export function PathFigure({ columns, quantities, selected, select, facts }: Pat
   return (
     <figure id="path" class="path" data-painter={painter}>
       <div class="controls">
-        <Choice legend="Colour" names={quantities.map(({ name }) => name)} chosen={chosen} choose={choose} />
+        <Choice legend="Colour" names={quantities.map(({ name }) => name)} chosen={chosen} choose={(index) => choose(quantities[index]!.key)} />
       </div>
       <div class="path-and-block">
         <div ref={root} class="path-view" tabIndex={0} role="group" aria-label="The path in three dimensions; arrow keys turn it, plus and minus zoom, 0 fits it" onKeyDown={press} />

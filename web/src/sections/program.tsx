@@ -17,9 +17,16 @@ function together(name: string): string {
   return name.length > 16 ? name : name.replace(/ /g, '\u00a0');
 }
 
-function WorstTable({ columns, select }: { columns: BlockColumns; select: Select }) {
-  const rows = useMemo(() => worstBlocks(columns, 10), [columns]);
-  if (rows.length === 0) return null;
+interface BlocksTableProps {
+  caption: string;
+  columns: BlockColumns;
+  rows: number[];
+  selected: number | null;
+  select: Select;
+}
+
+/** Some of the blocks; the number of each selects it. */
+export function BlocksTable({ caption, columns, rows, selected, select }: BlocksTableProps) {
   const number = (heading: string, column: (number | null)[] | undefined): Column<number> => ({
     heading,
     number: true,
@@ -47,11 +54,24 @@ function WorstTable({ columns, select }: { columns: BlockColumns; select: Select
     { heading: 'Regime', optional: true, cell: (i) => together(regimeName(columns, i)) },
     number('Peak force (N)', columns.peak_f_n),
   ];
+  const rowClass = (i: number) => [isUnstable(columns, i) && 'chatter', i === selected && 'selected'].filter(Boolean).join(' ');
+  return <Table caption={caption} columns={shown} rows={rows} rowClass={rowClass} />;
+}
+
+/** What the order and the signs of a table of the worst blocks say. */
+export function worstText(columns: BlockColumns, rows: number[]): string {
   const bounds = rows.some((i) => columns.lower_bound?.[i]) ? ' ≥: a lower bound, for process damping is not known.' : '';
+  return `Unstable blocks first, then by gain margin: the factor by which the cut may get stiffer before it chatters.${bounds}`;
+}
+
+function WorstTable(props: Omit<BlocksTableProps, 'caption' | 'rows'>) {
+  const { columns } = props;
+  const rows = useMemo(() => worstBlocks(columns, 10), [columns]);
+  if (rows.length === 0) return null;
   return (
     <>
-      <Table caption="The blocks nearest to chatter" columns={shown} rows={rows} rowClass={(i) => (isUnstable(columns, i) ? 'chatter' : '')} />
-      <p>{`Unstable blocks first, then by gain margin: the factor by which the cut may get stiffer before it chatters.${bounds}`}</p>
+      <BlocksTable caption="The blocks nearest to chatter" rows={rows} {...props} />
+      <p>{worstText(columns, rows)}</p>
     </>
   );
 }
@@ -102,7 +122,7 @@ export function ProgramSection({ document }: { document: BlocksDocument }) {
           picked={picked}
         />
       )}
-      <WorstTable columns={columns} select={select} />
+      <WorstTable columns={columns} selected={selected} select={select} />
       {scans.length > 0 && <Scans scans={scans} columns={columns} />}
       <Bullets texts={summary.notes} />
     </Section>

@@ -14,7 +14,8 @@ function FrfPlot({ frfs, modes, predicted }: { frfs: Frf[]; modes: Mode[]; predi
   const shows = predicted
     ? 'Frequency response functions, predicted, measured where known, and fitted: magnitude and phase'
     : 'Frequency response functions, measured and fitted: magnitude, phase and coherence';
-  const caption = `A peak is a frequency at which the tool tip is compliant${predicted ? '.' : '; coherence near 1 means the hits agree.'}`;
+  const coherent = !predicted && frfs.some(({ coherence }) => coherence !== null);
+  const caption = `A peak is a frequency at which the tool tip is compliant${coherent ? '; coherence near 1 means the hits agree.' : '.'}`;
   return (
     <Plot which="frf" shows={shows} caption={caption} draw={(theme) => frfFigure(frfs[shown]!, modes, logarithmic, theme)}>
       <Choice legend="FRF" names={frfs.map(({ name }) => name)} chosen={shown} choose={setShown} />
@@ -23,32 +24,36 @@ function FrfPlot({ frfs, modes, predicted }: { frfs: Frf[]; modes: Mode[]; predi
   );
 }
 
-/** How far the modes are from predicted FRFs, and these from a measurement. */
+/** How far the modes are from predicted FRFs, and these from a measurement; nothing where there is neither. */
 function PredictionTable({ frfs }: { frfs: Frf[] }) {
-  const columns: Column<Frf>[] = [
-    { heading: 'FRF', cell: ({ name }) => name },
-    { heading: 'Fit from prediction', number: true, cell: (frf) => percent(frf.relative_error, 2) },
-  ];
-  if (frfs.some((frf) => frf.prediction_error !== null)) {
-    columns.push({ heading: 'Prediction from measurement', number: true, cell: (frf) => percent(frf.prediction_error, 1) });
-  }
-  return <Table caption="How far the curves are apart" columns={columns} rows={frfs} />;
-}
-
-function QualityTable({ frfs }: { frfs: Frf[] }) {
+  if (frfs.every(({ relative_error: fit, prediction_error: prediction }) => fit === null && prediction === null)) return null;
   return (
     <Table
-      caption="Quality before the fit"
+      caption="How far the curves are apart"
       rows={frfs}
       columns={[
         { heading: 'FRF', cell: ({ name }) => name },
-        { heading: 'Grade', cell: ({ grade }) => <span class={`grade ${grade ?? 'unknown'}`}>{grade ?? 'not graded'}</span> },
-        { heading: 'What was found', cell: ({ findings }) => findings.join('; ') },
-        { heading: 'What to do', cell: ({ remedies }) => remedies.join('; ') },
-        { heading: 'Fit error', number: true, cell: (frf) => percent(frf.relative_error, 2) },
+        { heading: 'Fit from prediction', number: true, optional: true, cell: (frf) => percent(frf.relative_error, 2) },
+        { heading: 'Prediction from measurement', number: true, optional: true, cell: (frf) => percent(frf.prediction_error, 1) },
       ]}
     />
   );
+}
+
+/** Nothing where FRFs are neither graded nor fitted. */
+function QualityTable({ frfs }: { frfs: Frf[] }) {
+  if (frfs.every(({ grade, relative_error: error }) => grade === null && error === null)) return null;
+  const graded = frfs.some(({ grade }) => grade !== null);
+  const columns: Column<Frf>[] = [{ heading: 'FRF', cell: ({ name }) => name }];
+  if (graded) {
+    columns.push(
+      { heading: 'Grade', cell: ({ grade }) => <span class={`grade ${grade ?? 'unknown'}`}>{grade ?? 'not graded'}</span> },
+      { heading: 'What was found', cell: ({ findings }) => findings.join('; ') },
+      { heading: 'What to do', cell: ({ remedies }) => remedies.join('; ') },
+    );
+  }
+  columns.push({ heading: 'Fit error', number: true, optional: true, cell: (frf) => percent(frf.relative_error, 2) });
+  return <Table caption={graded ? 'Quality before the fit' : 'Error of the fit'} columns={columns} rows={frfs} />;
 }
 
 export function FrfSection({ frfs, modes, predicted }: { frfs: Frf[]; modes: Mode[]; predicted: boolean }) {
@@ -74,8 +79,7 @@ function directions(vector: ModeVector): string {
   return Object.entries(vector).map(([dof, value]) => `${dof} ${percent(size(value) ** 2 / total, 0)}`).join(', ');
 }
 
-function ShareBar({ share }: { share: Num }) {
-  if (share === null) return <>{dash}</>;
+function ShareBar({ share }: { share: number }) {
   return (
     <>
       <span class="bar" aria-hidden="true">
@@ -169,7 +173,7 @@ export function ModesSection({ modes, document }: { modes: Mode[]; document: Mod
             { heading: 'Damping (%)', number: true, cell: (mode) => withDeviation(mode.damping_ratio, mode.std.damping_ratio, 100, 2) },
             { heading: 'Force that drives it', cell: (mode) => directions(mode.left) },
             { heading: 'Motion', cell: (mode) => directions(mode.right) },
-            { heading: 'Share in the limit', cell: (mode) => <ShareBar share={mode.limit_share} /> },
+            { heading: 'Share in the limit', optional: true, cell: ({ limit_share: share }) => (share === null ? dash : <ShareBar share={share} />) },
           ]}
         />
       )}
@@ -190,7 +194,7 @@ export function HitsSection({ hits }: { hits: Hit[] }) {
       rowClass={({ accepted }) => (accepted ? '' : 'rejected')}
       columns={[
         { heading: 'File', cell: ({ file }) => file },
-        { heading: 'Force', cell: ({ direction }) => direction },
+        { heading: 'Force', optional: true, cell: ({ direction }) => direction },
         { heading: 'Used', cell: ({ accepted }) => (accepted ? 'yes' : <strong>no</strong>) },
         { heading: 'Remarks', cell: ({ reasons }) => reasons.join('; ') },
       ]}

@@ -1,0 +1,37 @@
+import type { ComparisonDocument, SweepDocument } from '../documents';
+import { sweptOf } from '../verb_views';
+import { dashes } from './smooth';
+import { depthAxis, pointTraces, radiusMap, speedAxis } from './lobes';
+import { axis, layout, plain, thinSpace, type Figure, type Theme } from './theme';
+
+/** The spectral radius over speed and what is swept, with the points that were asked for. */
+export function sweepFigure(sweep: SweepDocument, theme: Theme): Figure {
+  const { name, unit, values, valueOf } = sweptOf(sweep);
+  const height = { title: `${name} (${unit})`, unit: unit === '°' ? unit : `${thinSpace}${unit}` };
+  const { data, layout: whole } = radiusMap({ x: sweep.spindle_speed_rpm, y: values, z: sweep.spectral_radius }, height, theme);
+  return { data: [...data, ...pointTraces(sweep.points, valueOf, theme)], layout: { ...whole, hovermode: 'closest' } };
+}
+
+/** The limit by each method that takes the cut. */
+export function comparisonFigure({ spindle_speed_rpm: speed, methods }: ComparisonDocument, theme: Theme): Figure {
+  const taken = methods.filter(({ limit_mm: limit }) => limit.length > 0);
+  return {
+    data: taken.map(({ method, limit_mm: limit }, i) => ({
+      type: 'scatter',
+      mode: 'lines+markers',
+      name: plain(method),
+      x: speed,
+      y: limit,
+      connectgaps: false,
+      line: { color: theme.series[i % theme.series.length], width: i === 0 ? 3 : 1.6, dash: dashes[i % dashes.length] },
+      marker: { size: i === 0 ? 5 : 4, color: theme.series[i % theme.series.length] },
+      hovertemplate: `%{y:.4g}${thinSpace}mm at %{x:.0f}${thinSpace}rpm<extra>${plain(method)}</extra>`,
+    })),
+    layout: layout(theme, 460, {
+      hovermode: 'closest',
+      margin: { l: 56, r: 36, t: 40, b: 48 },
+      xaxis: axis(theme, speedAxis, { tickformat: ',d', hoverformat: '.0f' }),
+      yaxis: axis(theme, depthAxis, { rangemode: 'tozero' }),
+    }),
+  };
+}

@@ -1,0 +1,107 @@
+// What tables and plots need of the documents of single verbs.
+import type { ChartPoint, CoefficientsDocument, ExplainedPeak, ExplanationDocument, JointDocument, JointParameter, Num, Reading, Slot, SweepDocument } from './documents';
+import { fixed, modeName, significant } from './text';
+
+/** What a sweep varies beside the speed. */
+export interface Swept {
+  name: string;
+  unit: string;
+  values: number[];
+  valueOf: (point: ChartPoint) => Num;
+}
+
+export function sweptOf(sweep: SweepDocument): Swept {
+  if (sweep.sweep === 'radial_depth') {
+    return { name: 'Radial depth', unit: 'mm', values: sweep.radial_depth_mm ?? [], valueOf: (point) => point.radial_depth_mm ?? null };
+  }
+  const key = sweep.sweep === 'lead' ? 'lead_deg' : 'tilt_deg';
+  return { name: sweep.sweep === 'lead' ? 'Lead' : 'Tilt', unit: '°', values: sweep[key] ?? [], valueOf: (point) => point[key] ?? null };
+}
+
+/** "0.5 to 1.2, 2 to 3"; empty: at no value. */
+export function intervalsText(intervals: [number, number][]): string {
+  return intervals.map(([from, to]) => `${significant(from)} to ${significant(to)}`).join(', ');
+}
+
+function turnsText(rotations: number): string {
+  return `${Math.abs(rotations)} × rotation`;
+}
+
+/** What a peak is read as: "12 × rotation", "mode 3 at 433.0 Hz + 2 × rotation"; its kind alone where nothing more is known. */
+export function readingText(reading: Pick<ExplainedPeak, 'kind'> & Partial<Reading>): string {
+  const { kind, rotations, mode = null, mode_of = null, mode_frequency_hz: own = null, mirrored = false } = reading;
+  if (rotations === undefined) return kind === 'chatter' ? 'chatter of a mode that cannot be told' : kind === 'cut or chatter' ? 'the cut, or chatter' : 'nothing known';
+  if (kind === 'rotation' || kind === 'tooth passing') return turnsText(rotations);
+  if (kind !== 'chatter') return 'nothing known';
+  const name = `${modeName({ mode, mode_of })}${own === null ? '' : ` at ${own.toFixed(2)} Hz`}`;
+  if (rotations === 0) return name;
+  if (rotations > 0) return `${name} + ${turnsText(rotations)}`;
+  return mirrored ? `${turnsText(rotations)} − ${name}` : `${name} − ${turnsText(rotations)}`;
+}
+
+/** Up to where a plot of the peaks goes. */
+export function reachOf({ peaks, spindle_speed_rpm: speed }: ExplanationDocument): number {
+  return 1.06 * peaks.reduce((most, peak) => Math.max(most, peak.frequency_hz), 2 * speed / 60);
+}
+
+/** Slots of one depth and speed, by feed. */
+export interface SlotGroup {
+  label: string;
+  slots: Slot[];
+}
+
+export function slotGroups(slots: Slot[]): SlotGroup[] {
+  const groups = new Map<string, Slot[]>();
+  for (const slot of slots) {
+    const speed = slot.spindle_speed_rpm === null ? '' : `, ${fixed(slot.spindle_speed_rpm, 0)} rpm`;
+    const label = `${significant(slot.axial_depth_mm)} mm deep${speed}`;
+    groups.set(label, [...(groups.get(label) ?? []), slot]);
+  }
+  return [...groups].map(([label, own]) => ({ label, slots: [...own].sort((a, b) => a.feed_per_tooth_mm - b.feed_per_tooth_mm) }));
+}
+
+/** A row of the table of coefficients: cutting and edge of one direction. */
+export interface CoefficientRow {
+  direction: string;
+  cutting: { value: Num; std: Num };
+  edge: { value: Num; std: Num };
+  r_squared: Num;
+  noise_n: Num;
+}
+
+type Fitted = Pick<CoefficientsDocument['identification'], 'std'> & Pick<CoefficientsDocument, 'coefficients'>;
+
+export function coefficientRows({ coefficients, std }: Fitted, quality?: CoefficientsDocument['identification']): CoefficientRow[] {
+  return ['tangential', 'radial', 'axial'].flatMap((direction) => {
+    const pair = (key: string) => ({ value: coefficients[key] ?? null, std: std[key] ?? null });
+    const row = {
+      direction,
+      cutting: pair(`${direction}_n_per_mm2`),
+      edge: pair(`${direction}_edge_n_per_mm`),
+      r_squared: quality?.r_squared[direction] ?? null,
+      noise_n: quality?.noise_n[direction] ?? null,
+    };
+    return row.cutting.value === null && row.edge.value === null ? [] : row;
+  });
+}
+
+/** A value of a joint as it is shown. */
+export interface JointRow {
+  name: string;
+  unit: string;
+  value: Num;
+  std: Num;
+  identifiable: boolean;
+  visible_up_to: Num;
+}
+
+const jointNames: [JointParameter, string, string][] = [
+  ['translational_stiffness_n_per_m', 'Translational stiffness', 'N/m'],
+  ['translational_damping_n_s_per_m', 'Translational damping', 'N·s/m'],
+  ['rotational_stiffness_n_m_per_rad', 'Rotational stiffness', 'N·m/rad'],
+  ['rotational_damping_n_m_s_per_rad', 'Rotational damping', 'N·m·s/rad'],
+];
+
+export function jointRows({ joint, std, identifiable, visible_up_to: visible }: JointDocument): JointRow[] {
+  return jointNames.map(([key, name, unit]) => ({ name, unit, value: joint[key], std: std[key], identifiable: identifiable[key], visible_up_to: visible[key] ?? null }));
+}
