@@ -64,7 +64,7 @@ TEST(PublishedThreshold, IsTenToTheFifthRatherThan105) {
   EXPECT_EQ(found_1e5, 4);
 }
 
-class CalibrateHoles : public testing::Test {
+class CalibrateHoles : public ::testing::Test {
  protected:
   void run(const std::string& command) {
     const std::string full = "cd '" + folder_.path().string() + "' && " + command + " >out.txt 2>err.txt";

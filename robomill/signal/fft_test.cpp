@@ -18,7 +18,7 @@ Eigen::VectorXcd random_signal(Eigen::Index n) {
   return x;
 }
 
-class Fft : public testing::TestWithParam<int> {};
+class Fft : public ::testing::TestWithParam<int> {};
 
 TEST_P(Fft, IsTheDefiningSum) {
   const Eigen::Index n = GetParam();
