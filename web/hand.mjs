@@ -116,3 +116,11 @@ export async function chooseFiles(page, selector, files) {
   const { nodeId } = await page.send('DOM.querySelector', { nodeId: root.nodeId, selector });
   await page.send('DOM.setFileInputFiles', { nodeId, files });
 }
+
+/** Files dragged from outside over the middle of an element and let go there. */
+export async function dropFiles(page, selector, files) {
+  const { x, y } = await placeOf(page, selector);
+  const data = { items: [], files, dragOperationsMask: 1 };
+  for (const type of ['dragEnter', 'dragOver', 'drop']) await page.send('Input.dispatchDragEvent', { type, x, y, data });
+  await settle(page);
+}

@@ -1,19 +1,7 @@
 // Works the other views: a file is edited, a job is run, files are sent, hits are taken.
 import { copyFileSync, existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, extname, join } from 'node:path';
-import { chooseFiles, click, fill, press, type } from './hand.mjs';
-
-/** Marks a button by its words, for a selector. */
-async function button(page, words) {
-  const found = await page.evaluate(`(() => {
-    for (const one of document.querySelectorAll('[data-wanted]')) delete one.dataset.wanted;
-    const one = [...document.querySelectorAll('#view button')].find((button) => button.textContent.startsWith(${JSON.stringify(words)}) && !button.disabled);
-    if (one) one.dataset.wanted = 'true';
-    return one !== undefined;
-  })()`);
-  if (!found) throw new Error(`there is no button "${words}"`);
-  await click(page, '[data-wanted]');
-}
+import { button, chooseFiles, click, dropFiles, fill, press, type } from './hand.mjs';
 
 const ready = `document.querySelector('.editor textarea')?.value.length > 0 && document.querySelector('.fields .field') !== null`;
 
@@ -165,6 +153,11 @@ export async function sendFiles({ page, state, folder, problems, open, shot }) {
   await button(page, 'Write it');
   await page.until(`/Open /.test(document.querySelector('[data-panel="hits-form"]').textContent)`, `${path} is written`, 10);
   if (!existsSync(join(folder, path)) || !/\[\[hits\]\]/.test(readFileSync(join(folder, path), 'utf8'))) problems.push(`${path} has no hits`);
+  const dropped = join(dirname(folder), 'dropped.ngc');
+  writeFileSync(dropped, 'G21 G90\nG0 X0 Y0 Z10\nG1 Z0 F60\nG1 X10\n');
+  await dropFiles(page, '#view h1', [dropped]);
+  await page.until(`[...document.querySelectorAll('#view td, #view th')].some(({ textContent }) => textContent.includes('dropped.ngc'))`, 'a program that is dropped stands in the list', 20);
+  if (!existsSync(join(folder, 'dropped.ngc'))) problems.push('a program that was dropped is not in the folder');
 }
 
 /** Hits that appear in the folder are taken one by one. */
