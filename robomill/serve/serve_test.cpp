@@ -229,7 +229,8 @@ TEST_F(Serve, RunsOtherVerbsWithTheirOptions) {
   EXPECT_EQ(job["inputs"], json({"lobes.toml"}));
   EXPECT_EQ(job["options"]["at"], json({9000, 0.1}));
   EXPECT_FALSE(get("/api/jobs/" + std::to_string(job["id"].get<int>()) + "/report")["simulation"].is_null());
-  for (const json& file : get("/api/state")["files"]) {
+  const json state = get("/api/state");
+  for (const json& file : state["files"]) {
     const bool vibration = file["path"] == "out/vibration.csv";
     EXPECT_EQ(file["document"], vibration ? json("vibration") : json(nullptr)) << file;
   }
