@@ -10,6 +10,7 @@
 #include "robomill/io/json.hpp"
 #include "robomill/jobs/init.hpp"
 #include "robomill/serve/files/folder.hpp"
+#include "testing/serve/slot.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::serve {
@@ -44,23 +45,7 @@ class JobVerbs : public ::testing::Test {
 
   test::Folder place_;
   Folder folder_{place_.path()};
-  static constexpr const char* lobes = R"([tool]
-teeth = 2
-diameter_mm = 10
-[cut]
-direction = "slot"
-feed_per_tooth_mm = 0.05
-[coefficients]
-tangential_n_per_mm2 = 700
-radial_n_per_mm2 = 200
-[dynamics]
-x = [{ frequency_hz = 900, damping_ratio = 0.02, modal_mass_kg = 0.1 }]
-y = [{ frequency_hz = 950, damping_ratio = 0.02, modal_mass_kg = 0.1 }]
-[lobes]
-spindle_speed_rpm = [6000, 18000]
-axial_depth_mm = [0, 3]
-grid = [12, 8]
-)";
+  static constexpr const char* lobes = test::slot_lobes;
   static constexpr const char* assembly = R"([frequency]
 range_hz = [200, 3000]
 step_hz = 20

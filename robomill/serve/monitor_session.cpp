@@ -31,10 +31,6 @@ struct AtEnd {
   ~AtEnd() { act(); }
 };
 
-std::string dumped(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 Json counts_of(const live::MetricValues& metrics) {
   Json blind = Json::object();
   for (const monitor::BlindReason reason : monitor::blind_reasons) {
@@ -254,7 +250,7 @@ void MonitorSession::publish_due(bool last) {
     message["alarms"] = history_.take_changed();
     message.update(counts());
   }
-  send("monitor", dumped(message));
+  send("monitor", io::plain_text(message));
 }
 
 /// Rows that changed with the stream's end, or were more than the last message took.
@@ -270,7 +266,7 @@ void MonitorSession::publish_rest() {
       message = {{"id", options_.id}, {"frame", frame_json(frame)}, {"alarms", std::move(changed)}};
       message.update(counts());
     }
-    send("monitor", dumped(message));
+    send("monitor", io::plain_text(message));
   }
 }
 

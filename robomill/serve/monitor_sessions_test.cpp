@@ -460,64 +460,6 @@ TEST(FrameJson, HasTheSpectrumInLetters) {
   EXPECT_TRUE(out["spectrum"].is_null());
 }
 
-TEST(MonitorHistory, KeepsTheLastRows) {
-  MonitorHistory history({"ax"}, false);
-  monitor::MonitorEvent lost;
-  lost.kind = monitor::MonitorEvent::Kind::stream;
-  lost.what = "lost-blocks";
-  lost.count = 2;
-  for (int i = 0; i < 3; ++i) history.add(lost, "gone", 0.0);
-  for (int i = 0; i < 3000; ++i) {
-    monitor::Decision decision;
-    decision.state = i % 3 == 1 ? monitor::State::chatter : monitor::State::stable;
-    decision.score = i;
-    decision.chatter_frequency_hz = i % 3 == 1 ? 500.0 + i : 0.0;
-    history.add(decision, i, 0.5 * i);
-    if (i == 1) {
-      EXPECT_EQ(history.rows()[1]["count"], 6);  // of one kind: one row
-    }
-  }
-  const io::Json rows = history.rows();
-  ASSERT_EQ(rows.size(), MonitorHistory::most_rows);
-  EXPECT_EQ(rows[0]["number"], 1001);
-  EXPECT_EQ(rows[0]["from_s"], 2998.0);
-  EXPECT_EQ(rows[0]["to_s"], 2999.0);
-  EXPECT_EQ(rows[0]["clock_s"], 1499.0);
-  EXPECT_EQ(rows[0]["channel"], "ax");
-  // What is more than a message holds comes with the next ones.
-  std::size_t next = 1001;
-  for (std::size_t taken = 0; taken < MonitorHistory::most_rows; taken += MonitorHistory::most_changed) {
-    const io::Json changed = history.take_changed();
-    ASSERT_EQ(changed.size(), MonitorHistory::most_changed);
-    for (const io::Json& row : changed) EXPECT_EQ(row["number"], next--);
-  }
-  EXPECT_TRUE(history.take_changed().empty());
-}
-
-TEST(LiveSpectrum, ShowsAToneInItsBandAtAnyRate) {
-  for (const double at_hz : {100.0, 2048.0, 10'240.0, 51'200.0, 192'000.0}) {
-    monitor::MonitorOptions options = {.sample_rate_hz = at_hz, .channels = 3, .tachometer_channel = 0};
-    LiveSpectrum spectrum(options);
-    const std::vector<double>& edges_hz = spectrum.edges_hz();
-    EXPECT_LE(edges_hz.size(), LiveSpectrum::most_bands + 1);
-    EXPECT_GE(edges_hz.back(), std::min(at_hz / 2.0, 9950.0));
-    EXPECT_TRUE(spectrum.take().empty());
-    const double tone_hz = 0.3 * std::min(at_hz / 2.0, 10e3);
-    std::vector<float> samples;
-    for (int i = 0; i < static_cast<int>(0.5 * at_hz); ++i) {
-      samples.insert(samples.end(), {1e6F, std::nanf(""),
-                                     static_cast<float>(3.0 * std::sin(2.0 * std::numbers::pi * tone_hz * i / at_hz))});
-    }
-    spectrum.add(samples);
-    const std::vector<float> amplitude = spectrum.take();
-    ASSERT_EQ(amplitude.size() + 1, edges_hz.size());
-    const auto strongest = static_cast<std::size_t>(std::ranges::max_element(amplitude) - amplitude.begin());
-    EXPECT_NEAR(tone_hz, std::clamp(tone_hz, edges_hz[strongest], edges_hz[strongest + 1]), 1e-9 * tone_hz) << at_hz;
-    EXPECT_NEAR(amplitude[strongest], 3.0F, 0.5F);  // up to 1.4 dB less between two lines
-    EXPECT_TRUE(spectrum.take().empty());
-  }
-}
-
 TEST(PacedSource, ComesByTheClockAndCanBeEnded) {
   using Clock = std::chrono::steady_clock;
   const std::vector<float> samples(1000, 1.0F);

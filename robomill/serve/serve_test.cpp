@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "testing/serve/http_client.hpp"
+#include "testing/serve/slot.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::serve {
@@ -79,24 +80,7 @@ class Serve : public ::testing::Test {
   }
   [[nodiscard]] json wait_for_end(int id) const { return wait_for_state(id, {"done", "failed", "cancelled"}); }
 
-  static constexpr const char* lobes = R"(# a slot
-[tool]
-teeth = 2           # edges
-diameter_mm = 10
-[cut]
-direction = "slot"
-feed_per_tooth_mm = 0.05
-[coefficients]
-tangential_n_per_mm2 = 700
-radial_n_per_mm2 = 200
-[dynamics]
-x = [{ frequency_hz = 900, damping_ratio = 0.02, modal_mass_kg = 0.1 }]
-y = [{ frequency_hz = 950, damping_ratio = 0.02, modal_mass_kg = 0.1 }]
-[lobes]
-spindle_speed_rpm = [6000, 18000]
-axial_depth_mm = [0, 3]
-grid = [40, 30]
-)";
+  static constexpr const char* lobes = test::slot_lobes;
   /// 900 and 950 Hz, 2 %, 0.1 kg, in x and in y.
   static constexpr const char* modes = R"({"modes":[
 {"frequency_hz":900,"damping_ratio":0.02,"left":{"x":[1,0],"y":[0,0]},"right":{"x":[0,-8.8437e-4],"y":[0,0]}},

@@ -15,10 +15,6 @@ namespace {
 
 constexpr int hits_per_direction = 5;
 
-std::string event_text(const io::Json& json) {
-  return json.dump(-1, ' ', false, io::Json::error_handler_t::replace);
-}
-
 }  // namespace
 
 TapSession::TapSession(const Options& options, Publish publish)
@@ -43,7 +39,7 @@ TapSession::TapSession(const Options& options, Publish publish)
     stream_ = std::make_unique<TapStream>(
         std::move(stream), [this] { wake(); },
         [this](const io::Json& status) {
-          send("tap-stream", event_text({{"id", options_.id}, {"stream", status}}));
+          send("tap-stream", io::plain_text({{"id", options_.id}, {"stream", status}}));
         });
   }
   update();
@@ -157,7 +153,7 @@ std::string TapSession::state() const {
   const std::lock_guard lock(mutex_);
   out["revision"] = revision_;
   out.update(state_);
-  return event_text(out);
+  return io::plain_text(out);
 }
 
 bool TapSession::set_accepted(std::size_t number, bool accepted) {

@@ -168,7 +168,7 @@ void TapStream::publish_changes() {
   // The level follows the noise all the time: twice or half of it is a change.
   io::Json compared = now;
   if (now["level_n"].is_number()) compared["level_n"] = std::round(std::log2(now["level_n"].get<double>()));
-  std::string text = compared.dump(-1, ' ', false, io::Json::error_handler_t::replace);
+  std::string text = io::plain_text(compared);
   if (text == published_) return;
   published_ = std::move(text);
   changed_(now);
