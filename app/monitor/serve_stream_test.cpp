@@ -165,10 +165,10 @@ TEST_F(ServeStream, MonitorsTwoSpindles) {
   const std::string other = "mqtt://127.0.0.1:" + std::to_string(broker_.port()) + "/cell/bx";
   const int second = ask("POST", "/api/monitors", json{{"config", "monitor.toml"}, {"input", other}}.dump())["id"];
   // What is sent before a subscription stands does not come: the first block again, until it does.
-  for (const auto& [topic, id] : {std::pair("cell/ax", first), std::pair("cell/bx", second)}) {
+  for (const auto& spindle : {std::pair("cell/ax", first), std::pair("cell/bx", second)}) {
     ASSERT_TRUE(wait_for([&] {
-      send(topic, 0);
-      return decisions(id) >= 1.0;
+      send(spindle.first, 0);
+      return decisions(spindle.second) >= 1.0;
     }));
   }
   for (std::uint64_t i = 1; i < 150; ++i) {

@@ -160,7 +160,7 @@ TEST(PostureModel, GrowsLessCertainAwayFromMeasuredPostures) {
 TEST(PostureModel, RejectsPosturesThatCannotBeCompared) {
   const testing::SimulatedArm arm(0);
   const std::vector<MeasuredPosture> measured = hit(arm);
-  const auto message = [&](std::vector<MeasuredPosture> with) -> std::string {
+  const auto message = [&](const std::vector<MeasuredPosture>& with) -> std::string {
     try {
       const PostureModel model(arm.told(), {}, with);
     } catch (const InvalidInput& error) {

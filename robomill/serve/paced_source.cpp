@@ -34,7 +34,8 @@ bool PacedSource::wait() {
 
 bool PacedSource::next(std::size_t frames, io::SampleBlock& block) {
   if (!wait() || !source_->next(frames, block)) return false;
-  frames_ += static_cast<double>(block.samples.size() / channels_);
+  const std::size_t came = block.samples.size() / channels_;
+  frames_ += static_cast<double>(came);
   unreadable_rows_ = source_->unreadable_rows();
   first_unreadable_line_ = source_->first_unreadable_line();
   misaligned_frames_ = source_->misaligned_frames();

@@ -193,6 +193,7 @@ TapWritten TapSession::save(const std::filesystem::path& path, bool replace) {
   if (folder_) folder_->ignore(path);
   // Of these hits: the average after the last change may still be on its way.
   std::vector<modal::Hit> hits;
+  hits.reserve(accepted.size());
   for (const auto& [number, taken] : accepted) hits.push_back(*taken.hit);
   return write_tap_frfs(path, modal::estimate_frfs(hits, settings_.options()), replace);
 }

@@ -41,7 +41,7 @@ class Checker {
       case Takes::numbers:
         return check_numbers();
       case Takes::texts:
-        return check_list([this](const io::Json& one) { return is_text(one); }, "must be a list of texts");
+        return check_list([](const io::Json& one) { return is_text(one); }, "must be a list of texts");
       case Takes::word:
         return check_word();
       case Takes::file:
@@ -49,14 +49,14 @@ class Checker {
       case Takes::new_folder:
         return check_path(value_, "must be the path of a file");
       case Takes::files:
-        check_list([this](const io::Json& one) { return is_text(one); }, "must be a list of paths");
+        check_list([](const io::Json& one) { return is_text(one); }, "must be a list of paths");
         for (const io::Json& one : value_) check_path(one, "must be a list of paths");
         return;
       case Takes::point:
         if (!is_point(value_)) throw reject(point_rule);
         return;
       case Takes::points:
-        return check_list([this](const io::Json& one) { return is_point(one); },
+        return check_list([](const io::Json& one) { return is_point(one); },
                           "must be a list of [spindle speed in rpm, > 0, depth in mm]");
     }
   }
@@ -128,6 +128,7 @@ io::Json checked_options(std::string_view verb, const std::vector<VerbOption>& o
     const auto known = std::ranges::find(options, std::string_view(name), &VerbOption::name);
     if (known == options.end()) {
       std::vector<std::string> names;
+      names.reserve(options.size());
       for (const VerbOption& option : options) names.emplace_back(option.name);
       const std::string nearest = io::nearest_word(name, names);
       throw InvalidInput("options." + name.substr(0, longest_text), fmt::format("is no option of {}", verb),

@@ -62,6 +62,7 @@ class VerbJob {
  private:
   [[nodiscard]] std::vector<std::filesystem::path> below(const std::vector<std::string>& names) const {
     std::vector<std::filesystem::path> out;
+    out.reserve(names.size());
     for (const std::string& name : names) out.push_back(root_ / name);
     return out;
   }

@@ -14,7 +14,7 @@ namespace robomill::serve {
 class Worker {
  public:
   explicit Worker(std::size_t most_waiting)
-      : most_(most_waiting), thread_([this](std::stop_token stop) { run(stop); }) {}
+      : most_(most_waiting), thread_([this](const std::stop_token& stop) { run(stop); }) {}
   ~Worker() {
     thread_.request_stop();
     arrived_.notify_all();

@@ -127,8 +127,9 @@ Material read_material(io::TomlFile& file, const std::string& name) {
 /// Without what people write differently: "Ti 6Al-4V" and "ti6al4v" are one.
 std::string bare(std::string_view name) {
   std::string out;
-  for (const unsigned char letter : name) {
-    if (letter != '-' && letter != '_' && letter != ' ') out += static_cast<char>(std::tolower(letter));
+  for (const char letter : name) {
+    if (letter == '-' || letter == '_' || letter == ' ') continue;
+    out += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   }
   return out;
 }

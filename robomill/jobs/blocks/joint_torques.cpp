@@ -22,7 +22,7 @@ class TorqueSampler {
 
   void look(std::size_t block, BlockRow& judged, robot::LoadedBlock& load) {
     const BlockResult& row = forces_.program->blocks[block];
-    load = {.joints = std::vector<robot::JointLoadRange>(arm_.size()), .cuts = judged.cuts};
+    load = {.joints = std::vector<robot::JointLoadRange>(arm_.joints.size()), .cuts = judged.cuts};
     if (!row.joints.allFinite()) return;  // the robot cannot stand there
     const Eigen::Vector3d tip_m = robot::tip_point(forces_.cell->cell);
     std::vector<robot::Wrench> wrenches(1);

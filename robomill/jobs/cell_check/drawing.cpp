@@ -65,8 +65,8 @@ std::vector<double> over_range(const robot::Joint& joint, int count) {
     low = middle - std::numbers::pi;
     high = middle + std::numbers::pi;
   }
-  std::vector<double> out;
-  for (int k = 0; k < count; ++k) out.push_back(low + (high - low) * k / (count - 1));
+  std::vector<double> out(static_cast<std::size_t>(count));
+  for (int k = 0; k < count; ++k) out[static_cast<std::size_t>(k)] = low + (high - low) * k / (count - 1);
   return out;
 }
 

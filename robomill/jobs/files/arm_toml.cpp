@@ -220,7 +220,7 @@ std::vector<robot::DhRow> read_kinematics(io::TomlFile& file, CellFile& out) {
   for (const char* key : {"robot.urdf_tip", "robot.urdf_base"}) {
     if (file.has(key)) throw file.reject(key, "goes with robot.urdf");
   }
-  const std::vector<robot::DhRow> rows = read_dh(file);
+  std::vector<robot::DhRow> rows = read_dh(file);
   out.cell.arm = file.locate([&] { return robot::arm_from_dh(rows); });
   return rows;
 }

@@ -23,7 +23,7 @@ std::string template_line(std::string_view key, std::string_view value, std::str
 
 std::string with_remark(std::string_view document, const std::string& key, const std::string& value,
                         std::string_view remark) {
-  const std::string text = io::with_setting(document, {.key = key, .value = value});
+  std::string text = io::with_setting(document, {.key = key, .value = value});
   const std::string begin = fmt::format("\n{} = {}", last_of(key), value);
   const std::size_t at = text.find(begin);
   if (at == std::string::npos) return text;

@@ -32,7 +32,7 @@ io::Json name_of(Role role) {
 /// What only the person who measured knows.
 io::Json questions(const modal::HitGuess& guess, const io::Record& record) {
   io::Json out = io::Json::array();
-  const auto ask = [&out](std::string text) { out.push_back(printable(text)); };
+  const auto ask = [&out](const std::string& text) { out.push_back(printable(text)); };
   if (guess.with(Role::force).empty()) ask("Which column is the hammer's force?");
   if (guess.with(Role::response).empty()) ask("Which columns are the responses, and in which direction?");
   for (const modal::ColumnGuess& column : guess.columns) {
