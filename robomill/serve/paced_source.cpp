@@ -34,8 +34,8 @@ bool PacedSource::wait() {
 
 bool PacedSource::next(std::size_t frames, io::SampleBlock& block) {
   if (!wait() || !source_->next(frames, block)) return false;
-  const std::size_t came = block.samples.size() / channels_;
-  frames_ += static_cast<double>(came);
+  const std::size_t frames_read = block.samples.size() / channels_;
+  frames_ += static_cast<double>(frames_read);
   unreadable_rows_ = source_->unreadable_rows();
   first_unreadable_line_ = source_->first_unreadable_line();
   misaligned_frames_ = source_->misaligned_frames();
