@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "robomill/base/error.hpp"
+#include "robomill/cutting/polynomial.hpp"
 
 namespace robomill::cutting {
 namespace {
@@ -36,6 +38,15 @@ double spread_ratio(const std::vector<double>& values) {
 
 void require_chip(double chip_thickness_m) {
   require_positive("chip_thickness_m", chip_thickness_m, "m", "In a slot the mean is 2/π of the feed per tooth");
+}
+
+/// Force per width on the side of a cutter at a usual chip.
+double compared_force_n_per_m(const PublishedCoefficients& set) {
+  constexpr double chip_m = 0.05e-3;
+  const MillingCoefficients k = set.at(chip_m);
+  const auto at_side = [](const std::vector<double>& values) { return detail::polynomial(values, 0.5 * pi); };
+  return std::hypot(at_side(k.tangential_n_per_m2) * chip_m + at_side(k.tangential_edge_n_per_m),
+                    at_side(k.radial_n_per_m2) * chip_m + at_side(k.radial_edge_n_per_m));
 }
 
 }  // namespace
@@ -131,11 +142,12 @@ std::optional<double> CuttingConditions::feed_at(double cutter_diameter_m) const
 
 std::optional<std::size_t> best_set(const Material& material, CutterKind kind) {
   std::optional<std::size_t> best;
-  int best_rank = -1;
+  std::pair<int, double> best_rank = {-1, 0.0};
   for (std::size_t i = 0; i < material.coefficients.size(); ++i) {
     const PublishedCoefficients& set = material.coefficients[i];
-    const int rank = (set.has_radial() ? 3 : 0) + (set.kind == kind ? 2 : set.kind ? 0 : 1);
-    if (rank <= best_rank) continue;
+    const bool fits = !set.kind || *set.kind == kind;
+    const std::pair<int, double> rank = {(set.has_radial() ? 2 : 0) + (fits ? 1 : 0), compared_force_n_per_m(set)};
+    if (best && rank <= best_rank) continue;
     best = i;
     best_rank = rank;
   }

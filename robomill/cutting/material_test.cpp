@@ -175,13 +175,20 @@ TEST(Material, TheSetForTheCutterIsTaken) {
   Material some;
   EXPECT_FALSE(best_set(some, CutterKind::flat_end));
   some.coefficients = {power_law(8e8, 0.25), straight(7e8, {}, CutterKind::flat_end)};
-  EXPECT_EQ(best_set(some, CutterKind::flat_end), 1U);
+  EXPECT_EQ(best_set(some, CutterKind::flat_end), 0U) << "84.6 N/mm at 0.05 mm against 35";
   EXPECT_EQ(best_set(some, CutterKind::ball_end), 0U) << "one that names no kind before one for another kind";
   some.coefficients.push_back(straight(6e8, 2e8, CutterKind::ball_end));
   some.coefficients.push_back(straight(5e8, 2e8));
   some.coefficients.push_back(straight(4e8, 2e8));
   EXPECT_EQ(best_set(some, CutterKind::ball_end), 2U);
-  EXPECT_EQ(best_set(some, CutterKind::flat_end), 3U) << "the first of two that are alike";
+  EXPECT_EQ(best_set(some, CutterKind::flat_end), 3U) << "of two that serve alike the one with the larger force";
+  some.coefficients.push_back(straight(9e8, 2e8));
+  EXPECT_EQ(best_set(some, CutterKind::flat_end), 5U);
+  some.coefficients[4].line.tangential_edge_n_per_m = {4e4};
+  EXPECT_EQ(best_set(some, CutterKind::flat_end), 4U) << "edge forces count: 20 + 40 N/mm against 45";
+  some.coefficients[4].line.tangential_edge_n_per_m = {};
+  some.coefficients.push_back(straight(3e8, 2e8, CutterKind::flat_end));
+  EXPECT_EQ(best_set(some, CutterKind::flat_end), 5U) << "that a set names the kind makes it no safer";
 }
 
 TEST(Material, SpreadIsThatOfTheLines) {

@@ -7,6 +7,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/cutting/chip.hpp"
 
 namespace robomill::cutting {
 namespace {
@@ -90,6 +91,25 @@ Eigen::Matrix2d stiffness_between(const Milling& milling, const ForceCoefficient
   const double low = std::min(tip, top);
   const double high = std::max(tip, top);
   return integral(pair_harmonics(coefficients), milling.immersion, low, high) * ((high_m - low_m) / (high - low));
+}
+
+/// Of the engaged edges, the share that cuts nothing because of runout.
+double missed_share(const Milling& milling, double axial_depth_m, double feed_per_tooth_m) {
+  const FlatEndMill& tool = milling.tool;
+  if (tool.runout_m == 0.0) return 0.0;
+  const Arc arc = {.entry_rad = milling.immersion.entry_rad, .exit_rad = milling.immersion.exit_rad};
+  const detail::Forwards forwards = {.mean = 0.0, .amplitude = 1.0, .middle_rad = 0.5 * pi};
+  constexpr int heights = 24;
+  detail::ChipShare chips;
+  double missed_rad = 0.0;
+  for (int h = 0; h < heights; ++h) {
+    const double height_m = axial_depth_m * (h + 0.5) / heights;
+    for (int tooth = 0; tooth < tool.teeth; ++tooth) {
+      chips.set(tool, tooth, height_m, 1.0, feed_per_tooth_m * tool.teeth);
+      (void)chips.pieces(arc, forwards, missed_rad);
+    }
+  }
+  return missed_rad / (heights * tool.teeth * (arc.exit_rad - arc.entry_rad));
 }
 
 void require_material(const char* field, double value, const char* hint) {
@@ -299,16 +319,21 @@ CutLoad mean_load(const Milling& milling, double axial_depth_m, double feed_per_
   require_non_negative("axial_depth_m", axial_depth_m, "m");
   require_non_negative("feed_per_tooth_m", feed_per_tooth_m, "m");
   require_non_negative("spindle_speed_rad_per_s", spindle_speed_rad_per_s, "rad/s");
-  const double area = radial_depth(milling.immersion, milling.tool.diameter_m) * feed_per_tooth_m;
+  const Immersion& immersion = milling.immersion;
+  const ForceCoefficients& k = milling.coefficients;
+  const double area = radial_depth(immersion, milling.tool.diameter_m) * feed_per_tooth_m;
   const double volume_per_rad = milling.tool.teeth * area * axial_depth_m / units::revolution;
-  const double kt = milling.coefficients.tangential_n_per_m2;
-  const double thickest = std::clamp(0.5 * pi, milling.immersion.entry_rad, milling.immersion.exit_rad);
+  const double edge_area_per_rad = milling.tool.teeth * 0.5 * milling.tool.diameter_m *
+                                   (immersion.exit_rad - immersion.entry_rad) * axial_depth_m / units::revolution;
+  const double rubs =
+      k.tangential_edge_n_per_m > 0.0 ? 1.0 - missed_share(milling, axial_depth_m, feed_per_tooth_m) : 0.0;
+  const double thickest_m = feed_per_tooth_m * std::sin(std::clamp(0.5 * pi, immersion.entry_rad, immersion.exit_rad));
   CutLoad load;
-  load.torque_n_m = kt * volume_per_rad;
+  load.torque_n_m = k.tangential_n_per_m2 * volume_per_rad + k.tangential_edge_n_per_m * rubs * edge_area_per_rad;
   load.power_w = load.torque_n_m * spindle_speed_rad_per_s;
   load.removal_rate_m3_per_s = volume_per_rad * spindle_speed_rad_per_s;
-  load.peak_tooth_force_n =
-      std::hypot(kt, milling.coefficients.radial_n_per_m2) * axial_depth_m * feed_per_tooth_m * std::sin(thickest);
+  load.peak_tooth_force_n = axial_depth_m * std::hypot(k.tangential_n_per_m2 * thickest_m + k.tangential_edge_n_per_m,
+                                                       k.radial_n_per_m2 * thickest_m + k.radial_edge_n_per_m);
   return load;
 }
 

@@ -132,12 +132,16 @@ struct ROBOMILL_API Milling {
 [[nodiscard]] ROBOMILL_API Eigen::Matrix2d mean_cutting_stiffness(const Milling& milling, int tooth, double from_rad,
                                                                   double to_rad, double axial_depth_m);
 
-/// What a steady cut asks of the spindle, on average over a revolution.
+/// What a steady cut asks of the spindle, on average over a revolution: that of cutting_force (force.hpp), in closed
+/// form. Runout moves chip from tooth to tooth and not out of the sum, so only the edges that miss the cut are left
+/// out.
 struct CutLoad {
-  double torque_n_m = 0.0;             ///< N D Kt a f (cos entry - cos exit) / 4π
+  /// N D a (Kt f (cos entry - cos exit) + Kte (exit - entry) (1 - missed share)) / 4π
+  double torque_n_m = 0.0;
   double power_w = 0.0;                ///< torque times spindle speed
   double removal_rate_m3_per_s = 0.0;  ///< a b f N Ω / 2π
-  double peak_tooth_force_n = 0.0;     ///< greatest sqrt(Kt² + Kr²) a f sin φ of one tooth without helix
+  /// Greatest force on one tooth without helix and runout, a |(Kt f sin φ + Kte, Kr f sin φ + Kre)|.
+  double peak_tooth_force_n = 0.0;
 };
 
 /// @param axial_depth_m            a [m], >= 0

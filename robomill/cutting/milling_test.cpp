@@ -9,6 +9,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/random.hpp"
+#include "robomill/cutting/force.hpp"
 #include "testing/support.hpp"
 
 namespace robomill::cutting {
@@ -187,6 +188,45 @@ TEST(MeanLoad, AgreesWithTheForceOverARevolution) {
   EXPECT_NEAR(load.removal_rate_m3_per_s, depth * 1.8e-3 * feed * 3.0 * speed / (2.0 * pi), 1e-20);
   EXPECT_NEAR(load.power_w, 712e6 * load.removal_rate_m3_per_s, 1e-12 * load.power_w);
   EXPECT_NEAR(load.peak_tooth_force_n, std::hypot(712e6, 287e6) * depth * feed * std::sin(m.immersion.exit_rad), 1e-9);
+}
+
+// Two methods: the closed form, and the sum over a revolution of the force model. Edge forces, helix, runout so large
+// that teeth miss the cut, and unequal pitch.
+TEST(MeanLoad, IsThatOfTheForceModel) {
+  Random random(7);
+  for (int seed = 0; seed < seeds(300); ++seed) {
+    Milling m = robot_cut();
+    m.tool.teeth = 1 + static_cast<int>(random.uniform(0.0, 4.999));
+    m.tool.helix_rad = random.uniform(0.0, 0.8);
+    m.coefficients.tangential_edge_n_per_m = random.uniform(0.0, 3e4);
+    m.coefficients.radial_edge_n_per_m = random.uniform(0.0, 3e4);
+    const double feed = random.uniform(0.01e-3, 0.1e-3);
+    if (seed % 2 == 0) m.tool.runout_m = random.uniform(0.0, 60e-6);
+    m.tool.runout_angle_rad = random.uniform(0.0, 6.0);
+    m.feed_per_tooth_m = feed;
+    if (seed % 3 == 0) {
+      double sum = 0.0;
+      for (int j = 0; j < m.tool.teeth; ++j) m.tool.pitch_rad.push_back(random.uniform(0.8, 1.2));
+      for (const double pitch : m.tool.pitch_rad) sum += pitch;
+      for (double& pitch : m.tool.pitch_rad) pitch *= 2.0 * pi / sum;
+    }
+    const MillingDirection directions[] = {MillingDirection::up, MillingDirection::down, MillingDirection::slot};
+    const Cut cut = {.axial_depth_m = random.uniform(0.1e-3, 10e-3),
+                     .radial_depth_m = random.uniform(0.05, 1.0) * m.tool.diameter_m,
+                     .direction = directions[seed % 3]};
+    m.immersion = immersion(cut.direction, cut.radial_depth_m, m.tool.diameter_m);
+    const Cutter cutter = {.kind = CutterKind::flat_end, .mill = m.tool};
+    const MillingCoefficients k = {.tangential_n_per_m2 = {m.coefficients.tangential_n_per_m2},
+                                   .radial_n_per_m2 = {m.coefficients.radial_n_per_m2},
+                                   .tangential_edge_n_per_m = {m.coefficients.tangential_edge_n_per_m},
+                                   .radial_edge_n_per_m = {m.coefficients.radial_edge_n_per_m}};
+    const CutMotion motion = {.feed_per_tooth_m = feed, .spindle_speed_rad_per_s = 800.0};
+    const CuttingForce force = cutting_force(cutter, engage(cutter, cut, {.slices = 200}), k, motion);
+    const CutLoad load = mean_load(m, cut.axial_depth_m, feed, 800.0);
+    EXPECT_NEAR(load.torque_n_m, force.mean_torque_n_m, 1e-3 * force.mean_torque_n_m) << seed;
+    EXPECT_NEAR(load.power_w, force.power_w, 1e-3 * force.power_w) << seed;
+    EXPECT_NEAR(load.removal_rate_m3_per_s, force.removal_rate_m3_per_s, 1e-6 * force.removal_rate_m3_per_s) << seed;
+  }
 }
 
 TEST(Milling, RejectsWhatCannotBe) {

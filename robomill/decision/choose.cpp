@@ -4,21 +4,28 @@
 
 #include "robomill/base/parallel.hpp"
 #include "robomill/cutting/milling.hpp"
+#include "robomill/stability/forced_vibration.hpp"
 #include "robomill/stability/surface_error.hpp"
 
 namespace robomill::decision {
 namespace {
 
+/// What limits the depth at one speed beside chatter and the spindle.
 DepthLimit with_finish(const stability::Limit& chatter, const stability::LobesProblem& problem,
-                       const RecommendOptions& options, const FinishLimits& finish) {
-  if (!finish.any()) return {.chatter = chatter};
+                       const stability::ForcedResponse& response, const RecommendOptions& options,
+                       const FinishLimits& finish) {
   const bool found = chatter.status == stability::Limit::Status::found;
   double deepest_m = (found ? chatter.axial_depth_m : options.searched_depth_m) * (1.0 - options.depth_margin);
   if (options.max_axial_depth_m > 0.0) deepest_m = std::min(deepest_m, options.max_axial_depth_m);
-  return {.chatter = chatter, .finish = finish_depth(problem, chatter.spindle_speed_rad_per_s, deepest_m, finish)};
+  const double speed = chatter.spindle_speed_rad_per_s;
+  const FinishDepth surface = finish_depth(problem, speed, deepest_m, finish);
+  const FinishDepth vibration = vibration_depth(response, speed, deepest_m, options.feed_per_tooth_m);
+  return {.chatter = chatter, .finish = vibration.axial_depth_m < surface.axial_depth_m ? vibration : surface};
 }
 
-void add_surface(Operation& op, const stability::LobesProblem& problem) {
+void add_surface(Operation& op, const stability::LobesProblem& problem, const stability::ForcedResponse& response) {
+  if (!(op.axial_depth_m > 0.0)) return;
+  op.vibration = response.at({op.spindle_speed_rad_per_s, op.axial_depth_m});
   if (problem.has_measured()) return;  // without modes
   const stability::SurfacePoint surface =
       stability::surface_point(problem, {op.spindle_speed_rad_per_s, op.axial_depth_m});
@@ -27,6 +34,12 @@ void add_surface(Operation& op, const stability::LobesProblem& problem) {
 }
 
 }  // namespace
+
+std::function<double(double)> mean_torque_of(const cutting::Milling& milling) {
+  return [milling](double depth_m) {
+    return cutting::mean_load(milling, depth_m, milling.feed_per_tooth_m, 1.0).torque_n_m;
+  };
+}
 
 Recommendation choose(const stability::LobesProblem& problem, const stability::LobesOptions& lobes,
                       const std::vector<stability::Limit>& limits, RecommendOptions options, const FinishLimits& finish,
@@ -37,23 +50,23 @@ Recommendation choose(const stability::LobesProblem& problem, const stability::L
   options.diameter_m = milling.tool.diameter_m;
   options.feed_per_tooth_m = milling.feed_per_tooth_m;
   options.searched_depth_m = lobes.axial_depth_m[1];
-  // The mean torque is proportional to depth, so one metre of depth gives the factor.
-  options.torque_per_depth_n = cutting::mean_load(milling, 1.0, milling.feed_per_tooth_m, 1.0).torque_n_m;
+  options.mean_torque_n_m = mean_torque_of(milling);
+  const stability::ForcedResponse response(problem);
   std::vector<DepthLimit> depths(limits.size());
   if (finish.any()) progress.start("finishing depths", limits.size());
   parallel_for(limits.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       progress.check();
-      depths[i] = with_finish(limits[i], problem, options, finish);
+      depths[i] = with_finish(limits[i], problem, response, options, finish);
       if (finish.any()) progress.advance();
     }
   });
   Recommendation result = recommend(depths, options, [&](double speed) {
     progress.check();
-    return with_finish(stability::limit_depths(problem, lobes, {speed}).front(), problem, options, finish);
+    return with_finish(stability::limit_depths(problem, lobes, {speed}).front(), problem, response, options, finish);
   });
-  if (result.recommended) add_surface(*result.recommended, problem);
-  for (Operation& op : result.alternatives) add_surface(op, problem);
+  if (result.recommended) add_surface(*result.recommended, problem, response);
+  for (Operation& op : result.alternatives) add_surface(op, problem, response);
   return result;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -10,6 +11,9 @@
 // Method: robomill/decision/README.md, "The recommendation (`recommend.hpp`)"
 
 namespace robomill::decision {
+
+/// Mean torque of a cut at a depth [m], as RecommendOptions::mean_torque_n_m takes it: that of cutting::mean_load.
+[[nodiscard]] ROBOMILL_API std::function<double(double)> mean_torque_of(const cutting::Milling& milling);
 
 /// The best operation of a cut whose limits were found at its speeds, with the surface that forced vibration leaves at
 /// it and at the alternatives; that surface is unknown where tool or workpiece are measured FRFs without modes.

@@ -22,6 +22,35 @@ std::optional<LimitedBy> broken(const stability::SurfacePoint& surface, const Fi
   return std::nullopt;
 }
 
+/// @param look  what a depth breaks, if anything
+template <class Look>
+FinishDepth deepest_kept(double deepest_m, const Look& look) {
+  constexpr int looks = 6;
+  constexpr int halvings = 12;
+  constexpr double tolerance = 0.02;
+  if (!(deepest_m > 0.0)) return {};
+  double kept_m = 0.0;
+  for (int i = 1; i <= looks; ++i) {
+    double broken_m = deepest_m * i / looks;
+    std::optional<LimitedBy> reason = look(broken_m);
+    if (!reason) {
+      kept_m = broken_m;
+      continue;
+    }
+    for (int k = 0; k < halvings && broken_m - kept_m > tolerance * broken_m; ++k) {
+      const double middle_m = 0.5 * (kept_m + broken_m);
+      if (const std::optional<LimitedBy> here = look(middle_m)) {
+        broken_m = middle_m;
+        reason = here;
+      } else {
+        kept_m = middle_m;
+      }
+    }
+    return {.axial_depth_m = kept_m, .reason = *reason};
+  }
+  return {};
+}
+
 }  // namespace
 
 void FinishLimits::validate() const {
@@ -47,34 +76,18 @@ void require_finishable(const stability::LobesProblem& problem, const FinishLimi
 
 FinishDepth finish_depth(const stability::LobesProblem& problem, double spindle_speed_rad_per_s, double deepest_m,
                          const FinishLimits& limits) {
-  constexpr int looks = 6;
-  constexpr int halvings = 12;
-  constexpr double tolerance = 0.02;
-  FinishDepth found;
-  if (!limits.any() || !(deepest_m > 0.0)) return found;
-  const auto look = [&](double depth_m) {
+  if (!limits.any()) return {};
+  return deepest_kept(deepest_m, [&](double depth_m) {
     return broken(stability::surface_point(problem, {spindle_speed_rad_per_s, depth_m}), limits);
-  };
-  double kept_m = 0.0;
-  for (int i = 1; i <= looks; ++i) {
-    double broken_m = deepest_m * i / looks;
-    std::optional<LimitedBy> reason = look(broken_m);
-    if (!reason) {
-      kept_m = broken_m;
-      continue;
-    }
-    for (int k = 0; k < halvings && broken_m - kept_m > tolerance * broken_m; ++k) {
-      const double middle_m = 0.5 * (kept_m + broken_m);
-      if (const std::optional<LimitedBy> here = look(middle_m)) {
-        broken_m = middle_m;
-        reason = here;
-      } else {
-        kept_m = middle_m;
-      }
-    }
-    return {.axial_depth_m = kept_m, .reason = *reason};
-  }
-  return found;
+  });
+}
+
+FinishDepth vibration_depth(const stability::ForcedResponse& response, double spindle_speed_rad_per_s, double deepest_m,
+                            double feed_per_tooth_m) {
+  return deepest_kept(deepest_m, [&](double depth_m) -> std::optional<LimitedBy> {
+    if (response.at({spindle_speed_rad_per_s, depth_m}).amplitude_m <= feed_per_tooth_m) return std::nullopt;
+    return LimitedBy::forced_vibration;
+  });
 }
 
 }  // namespace robomill::decision

@@ -27,4 +27,11 @@ ROBOMILL_API void require_finishable(const stability::LobesProblem& problem, con
                                                     double spindle_speed_rad_per_s, double deepest_m,
                                                     const FinishLimits& limits);
 
+/// The same for any cut, roughing too: at which the amplitude of forced vibration is at most the feed per tooth. Beyond
+/// it teeth leave the cut and meet it again, which neither force nor stability of the linear cut describe.
+/// @throws InvalidInput as stability::ForcedResponse::at
+[[nodiscard]] ROBOMILL_API FinishDepth vibration_depth(const stability::ForcedResponse& response,
+                                                       double spindle_speed_rad_per_s, double deepest_m,
+                                                       double feed_per_tooth_m);
+
 }  // namespace robomill::decision

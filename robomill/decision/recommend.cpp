@@ -51,14 +51,17 @@ Operation operation_at(double speed, const Window& window, const RecommendOption
     }
   };
   if (options.max_axial_depth_m > 0.0) cap(options.max_axial_depth_m, LimitedBy::cutter);
-  if (!options.spindle.empty() && options.torque_per_depth_n > 0.0) {
+  if (!options.spindle.empty() && options.mean_torque_n_m) {
     const SpindleCapacity capacity = capacity_at(options.spindle, speed);
-    cap(capacity.torque_n_m / options.torque_per_depth_n, LimitedBy::spindle_torque);
-    cap(capacity.power_w / (options.torque_per_depth_n * speed), LimitedBy::spindle_power);
+    const auto depth_of = [&](double torque_n_m) {
+      return depth_of_torque_m(options.mean_torque_n_m, torque_n_m, op.axial_depth_m);
+    };
+    cap(depth_of(capacity.torque_n_m), LimitedBy::spindle_torque);
+    cap(depth_of(capacity.power_w / speed), LimitedBy::spindle_power);
   }
   cap(window.finish.axial_depth_m, window.finish.reason);
   op.margin = op.limit_depth_m > 0.0 ? 1.0 - op.axial_depth_m / op.limit_depth_m : 0.0;
-  op.torque_n_m = options.torque_per_depth_n * op.axial_depth_m;
+  op.torque_n_m = options.mean_torque_n_m ? options.mean_torque_n_m(op.axial_depth_m) : 0.0;
   op.power_w = op.torque_n_m * speed;
   op.removal_rate_m3_per_s = op.axial_depth_m * options.radial_depth_m * op.feed_m_per_s;
   return op;
@@ -159,6 +162,24 @@ SpindleCapacity capacity_at(const std::vector<SpindleCapacity>& curve, double sp
           .power_w = std::lerp(low.power_w, above->power_w, t)};
 }
 
+double depth_of_torque_m(const std::function<double(double)>& mean_torque_n_m, double torque_n_m, double deepest_m) {
+  if (!(mean_torque_n_m(deepest_m) > torque_n_m)) return deepest_m;
+  // Nearly proportional to depth: a chord from 0 is close, and every next one closer.
+  double low_m = 0.0;
+  double high_m = deepest_m;
+  double low = -torque_n_m;
+  double high = mean_torque_n_m(deepest_m) - torque_n_m;
+  for (int i = 0; i < 60 && high_m - low_m > 1e-12 * deepest_m && low < 0.0; ++i) {
+    // Halving every third time bounds the number of steps.
+    const double at_m = i % 3 == 2 ? 0.5 * (low_m + high_m) : low_m - low * (high_m - low_m) / (high - low);
+    const double excess = mean_torque_n_m(at_m) - torque_n_m;
+    if (std::abs(excess) <= 1e-12 * torque_n_m) return at_m;
+    (excess > 0.0 ? high_m : low_m) = at_m;
+    (excess > 0.0 ? high : low) = excess;
+  }
+  return low_m;
+}
+
 void RecommendOptions::validate() const {
   if (teeth < 1) throw InvalidInput("teeth", teeth, "", "must be >= 1");
   require_positive("radial_depth_m", radial_depth_m, "m");
@@ -166,7 +187,6 @@ void RecommendOptions::validate() const {
   require_positive("feed_per_tooth_m", feed_per_tooth_m, "m");
   require_positive("searched_depth_m", searched_depth_m, "m");
   require_non_negative("max_axial_depth_m", max_axial_depth_m, "m");
-  require_non_negative("torque_per_depth_n", torque_per_depth_n, "N");
   if (!(depth_margin >= 0.0 && depth_margin < 1.0))
     throw InvalidInput("depth_margin", depth_margin, "", "must be in [0, 1)");
   if (!(speed_window >= 0.0 && speed_window < 0.5)) {
@@ -195,7 +215,8 @@ Recommendation recommend(const std::vector<DepthLimit>& limits, const RecommendO
     if (checked.axial_depth_m > 0.0) chosen.push_back(checked);
   }
   if (chosen.empty()) {
-    result.reason = "every spindle speed chatters at any depth, the spindle gives no torque, or no depth finishes";
+    result.reason =
+        "every spindle speed chatters at any depth, the spindle gives no torque, or forced vibration allows no depth";
     return result;
   }
   std::sort(chosen.begin(), chosen.end(), better);

@@ -7,6 +7,7 @@
 
 #include "robomill/base/export.hpp"
 #include "robomill/modal/mode_id.hpp"
+#include "robomill/stability/forced_vibration.hpp"
 #include "robomill/stability/lobes.hpp"
 
 // Method: robomill/decision/README.md, "The recommendation (`recommend.hpp`)"
@@ -21,10 +22,12 @@ enum class LimitedBy {
   spindle_torque,  ///< the mean cutting torque reaches what the spindle gives at this speed
   spindle_power,   ///< the mean cutting power reaches what the spindle gives at this speed
   surface_error,   ///< FinishLimits::max_surface_error_m
-  deflection       ///< FinishLimits::max_deflection_m
+  deflection,      ///< FinishLimits::max_deflection_m
+  /// Forced vibration, its mean apart, as far as the feed per tooth: teeth would leave the cut and meet it again.
+  forced_vibration
 };
 
-/// How deep a finishing cut may go at one speed.
+/// How deep forced vibration lets a cut go at one speed.
 struct FinishDepth {
   double axial_depth_m = std::numeric_limits<double>::infinity();  ///< infinite: nothing limits it
   LimitedBy reason = LimitedBy::surface_error;
@@ -46,15 +49,20 @@ struct SpindleCapacity {
 [[nodiscard]] ROBOMILL_API SpindleCapacity capacity_at(const std::vector<SpindleCapacity>& curve,
                                                        double spindle_speed_rad_per_s);
 
+/// The depth in [0, deepest_m] at which an increasing torque of depth reaches torque_n_m; deepest_m where it does not.
+[[nodiscard]] ROBOMILL_API double depth_of_torque_m(const std::function<double(double)>& mean_torque_n_m,
+                                                    double torque_n_m, double deepest_m);
+
 /// What recommend needs to know of the cut and how careful it is.
 struct RecommendOptions {
-  int teeth = 0;                             ///< >= 1; required
-  double radial_depth_m = 0.0;               ///< > 0; required
-  double diameter_m = 0.0;                   ///< of the cutter, for the cutting speed; 0: unknown
-  double feed_per_tooth_m = 0.0;             ///< > 0; required
-  double searched_depth_m = 0.0;             ///< largest depth that the limits were looked for at, > 0; required
-  double max_axial_depth_m = 0.0;            ///< the cutter's: depth <= max_axial_depth_m; 0: searched_depth_m
-  double torque_per_depth_n = 0.0;           ///< mean cutting torque per axial depth [N m/m], >= 0
+  int teeth = 0;                   ///< >= 1; required
+  double radial_depth_m = 0.0;     ///< > 0; required
+  double diameter_m = 0.0;         ///< of the cutter, for the cutting speed; 0: unknown
+  double feed_per_tooth_m = 0.0;   ///< > 0; required
+  double searched_depth_m = 0.0;   ///< largest depth that the limits were looked for at, > 0; required
+  double max_axial_depth_m = 0.0;  ///< the cutter's: depth <= max_axial_depth_m; 0: searched_depth_m
+  /// Mean cutting torque over a revolution of a depth [m], increasing [N m]; empty: none.
+  std::function<double(double)> mean_torque_n_m = {};
   double min_spindle_speed_rad_per_s = 0.0;  ///< min <= speed <= max
   double max_spindle_speed_rad_per_s = 0.0;  ///< 0: as far as the limits go
   std::vector<SpindleCapacity> spindle =
@@ -84,6 +92,7 @@ struct Operation {
   /// Of the forced vibration, where it was computed; else NaN. See stability::SurfacePoint.
   double surface_error_m = std::numeric_limits<double>::quiet_NaN();
   double peak_deflection_m = std::numeric_limits<double>::quiet_NaN();
+  stability::ForcedVibration vibration = {};
 };
 
 struct Recommendation {

@@ -100,7 +100,7 @@ TEST(Recommend, ObeysCutterAndSpindle) {
   EXPECT_DOUBLE_EQ(op.axial_depth_m, 0.1e-3);
 
   o = options();
-  o.torque_per_depth_n = 1000.0;
+  o.mean_torque_n_m = [](double depth_m) { return 1000.0 * depth_m; };
   o.spindle = {{.spindle_speed_rad_per_s = 300.0, .torque_n_m = 0.2, .power_w = 1e6},
                {.spindle_speed_rad_per_s = 2000.0, .torque_n_m = 0.2, .power_w = 1e6}};
   op = *recommend(lobes(), o, lobe).recommended;

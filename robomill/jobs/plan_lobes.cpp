@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -54,50 +55,36 @@ void pairs(PlanResult& result, Progress& progress) {
   }
 }
 
-/// A mode that a multiple of tooth passing excites within its half-power width.
-struct Resonance {
-  modal::ModeId mode = {};
-  double frequency_hz = 0.0;
-  double harmonic = 0.0;
-  double distance = 1.0;  ///< in half-power half-widths ζ f
-};
-
-Resonance nearest_resonance(const PlanResult& result, double tooth_passing_hz) {
-  Resonance nearest;
-  const auto look = [&](const modal::ModalModel& model, modal::ModeOwner owner) {
-    int number = 0;
-    for (const modal::Mode& mode : model.modes) {
-      ++number;
-      const double harmonic = std::max(1.0, std::round(mode.frequency_hz / tooth_passing_hz));
-      const double distance =
-          std::abs(harmonic * tooth_passing_hz - mode.frequency_hz) / (mode.damping_ratio * mode.frequency_hz);
-      if (distance < nearest.distance) nearest = {{number, owner}, mode.frequency_hz, harmonic, distance};
-    }
-  };
-  look(result.model, modal::ModeOwner::tool);
-  look(result.cut.problem.workpiece_dynamics, modal::ModeOwner::workpiece);
-  return nearest;
-}
-
-/// The deepest pockets of the lobes stand where tooth passing meets a mode: no chatter there, but forced vibration.
-void report_resonance(PlanResult& result) {
+/// Of the vibration at the recommended cut: which harmonic makes most of it, and which mode answers.
+void report_vibration(PlanResult& result) {
   if (!result.recommendation.recommended) return;
   const decision::Operation& op = *result.recommendation.recommended;
-  const double tooth_passing_hz =
-      op.spindle_speed_rad_per_s / (2.0 * std::numbers::pi) * result.cut.problem.milling.tool.teeth;
-  const Resonance nearest = nearest_resonance(result, tooth_passing_hz);
-  if (!nearest.mode.known()) return;
+  const stability::ForcedVibration& v = op.vibration;
+  if (!std::isfinite(v.amplitude_m)) return;
+  constexpr double mentioned = 0.1;  // of the feed per tooth
+  constexpr double warned = 0.5;
+  const double share = v.amplitude_m / op.feed_per_tooth_m;
+  if (share < mentioned) return;
   std::string text = fmt::format(
-      "At the recommended speed {:.0f} × tooth passing ({:.1f} Hz) excites {} ({:.1f} Hz): no chatter, but forced "
-      "vibration is greatest there.",
-      nearest.harmonic, nearest.harmonic * tooth_passing_hz, to_string(nearest.mode), nearest.frequency_hz);
-  if (result.job.finish.any()) {
-    result.notes.push_back(text + " It keeps the limits of [finishing].");
-  } else {
-    result.warnings.push_back(text +
-                              " Its surface error and deflection stand beside the recommendation; [finishing] "
-                              "in the job limits them.");
+      "Forced vibration at the recommended cut: the tip moves {:.3g} µm to either side of its mean position, {:.0f} % "
+      "of "
+      "the feed per tooth. The largest part, {:.3g} µm, is {} × {} ({:.1f} Hz)",
+      v.amplitude_m / units::um, 100.0 * share, v.harmonic_m / units::um, v.harmonic,
+      v.of_tooth_passing ? "tooth passing" : "the rotation", v.frequency_hz);
+  if (v.mode.known()) {
+    const modal::ModalModel& model =
+        v.mode.of == modal::ModeOwner::workpiece ? result.cut.problem.workpiece_dynamics : result.model;
+    text += fmt::format(", in which {} ({:.1f} Hz) moves most", to_string(v.mode),
+                        model.modes[static_cast<std::size_t>(v.mode.number) - 1].frequency_hz);
   }
+  text += '.';
+  if (share < warned) {
+    result.notes.push_back(text);
+    return;
+  }
+  result.warnings.push_back(
+      text + (result.job.finish.any() ? " It keeps the limits of [finishing]."
+                                      : " A speed off its resonance vibrates less; [finishing] in the job limits it."));
 }
 
 /// The limit as the feed turns through the plane: a robot is not the same in every direction.
@@ -175,6 +162,72 @@ void spread(PlanResult& result, std::uint64_t seed, Progress& progress) {
   result.uncertain = stability::uncertain_limits(result.cut.problem, options, uncertainty, progress);
 }
 
+/// As many nodes a length as before.
+int nodes_for(int before, double old_length, double new_length) {
+  constexpr double most = 2000.0;
+  return static_cast<int>(std::clamp(std::ceil(before * new_length / old_length), 2.0, most));
+}
+
+/// Speeds that the spindle has and the chart does not are searched too.
+void cover_spindle(PlanResult& result) {
+  const decision::RecommendOptions& machine = result.job.recommend;
+  double from = machine.min_spindle_speed_rad_per_s;
+  double to = machine.max_spindle_speed_rad_per_s;
+  if (!machine.spindle.empty()) {
+    from = std::max(from, machine.spindle.front().spindle_speed_rad_per_s);
+    const double end = machine.spindle.back().spindle_speed_rad_per_s;
+    to = to > 0.0 ? std::min(to, end) : end;
+  }
+  std::array<double, 2>& chart = result.cut.options.spindle_speed_rad_per_s;
+  const std::array<double, 2> asked = chart;
+  if (from <= 0.0) from = asked[0];
+  const double high = std::max(asked[1], to);
+  // Slow speeds cost most and remove least.
+  constexpr double slowest = 0.1;
+  const double low = std::min(asked[0], std::max(from, slowest * high));
+  if (low >= asked[0] && high <= asked[1]) return;
+  chart = {low, high};
+  result.cut.options.grid[0] = nodes_for(result.cut.options.grid[0], asked[1] - asked[0], high - low);
+  std::string text = fmt::format(
+      "The chart of {} goes from {:.0f} to {:.0f} rpm, the spindle from {:.0f} to {:.0f} rpm: {:.0f} to {:.0f} rpm "
+      "were "
+      "searched.",
+      result.cut.path.filename().string(), asked[0] / units::rpm, asked[1] / units::rpm, from / units::rpm,
+      std::max(to, asked[1]) / units::rpm, low / units::rpm, high / units::rpm);
+  if (from < low) text += " Slower ones were not.";
+  result.notes.push_back(text);
+}
+
+/// Whether a cut ends where the chart does, and cutter and spindle would take more.
+bool ends_with_chart(const PlanResult& result) {
+  if (!(result.job.recommend.max_axial_depth_m > result.cut.options.axial_depth_m[1])) return false;
+  const auto at_end = [](const decision::Operation& op) { return op.limited_by == decision::LimitedBy::depth_range; };
+  const decision::Recommendation& found = result.recommendation;
+  return (found.recommended && at_end(*found.recommended)) || std::ranges::any_of(found.alternatives, at_end);
+}
+
+void find_limits(PlanResult& result, Progress& progress) {
+  result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
+  decision::RecommendOptions recommend = result.job.recommend;
+  recommend.radial_depth_m = result.cut.radial_depth_m;
+  result.recommendation = decision::choose(result.cut.problem, result.cut.options, result.lobes.limit, recommend,
+                                           result.job.finish, progress);
+}
+
+/// Depths up to the cutter's are searched where no chatter was found up to the chart's.
+void cover_cutter(PlanResult& result, Progress& progress) {
+  if (!ends_with_chart(result)) return;
+  std::array<double, 2>& chart = result.cut.options.axial_depth_m;
+  const double deepest = result.job.recommend.max_axial_depth_m;
+  result.notes.push_back(fmt::format(
+      "The chart of {} goes to {:.3g} mm, where no chatter was found at some speeds, the cutter's edges to {:.3g} mm: "
+      "all of it was searched.",
+      result.cut.path.filename().string(), chart[1] / units::mm, deepest / units::mm));
+  result.cut.options.grid[1] = nodes_for(result.cut.options.grid[1], chart[1] - chart[0], deepest - chart[0]);
+  chart[1] = deepest;
+  find_limits(result, progress);
+}
+
 }  // namespace
 
 void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progress) {
@@ -184,13 +237,11 @@ void choose_conditions(PlanResult& result, std::uint64_t seed, Progress& progres
   result.cut.validate();
   // The report draws the boundary in any case.
   if (result.cut.options.output == stability::Output::map) result.cut.options.output = stability::Output::both;
-  result.lobes = stability::compute_lobes(result.cut.problem, result.cut.options, progress);
+  cover_spindle(result);
+  find_limits(result, progress);
+  cover_cutter(result, progress);
   spread(result, seed, progress);
-  decision::RecommendOptions recommend = result.job.recommend;
-  recommend.radial_depth_m = result.cut.radial_depth_m;
-  result.recommendation = decision::choose(result.cut.problem, result.cut.options, result.lobes.limit, recommend,
-                                           result.job.finish, progress);
-  report_resonance(result);
+  report_vibration(result);
   pairs(result, progress);
   turn_feed(result, progress);
   compare(result, progress);

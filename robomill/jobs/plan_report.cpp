@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "robomill/base/units.hpp"
-#include "robomill/cutting/milling.hpp"
+#include "robomill/decision/choose.hpp"
 #include "robomill/jobs/files/plan_json.hpp"
 #include "robomill/jobs/modes.hpp"
 #include "robomill/jobs/pages.hpp"
@@ -15,8 +15,8 @@ namespace robomill::jobs {
 namespace {
 
 DepthCurve spindle_curve(const PlanResult& result, const std::string& label, bool torque) {
-  const double per_depth =
-      cutting::mean_load(result.cut.problem.milling, 1.0, result.cut.problem.milling.feed_per_tooth_m, 1.0).torque_n_m;
+  const auto torque_of = decision::mean_torque_of(result.cut.problem.milling);
+  const double deepest_m = 10.0 * result.cut.options.axial_depth_m[1];  // beyond any chart
   DepthCurve curve;
   curve.label = label;
   const auto n = static_cast<Eigen::Index>(result.job.recommend.spindle.size());
@@ -25,7 +25,8 @@ DepthCurve spindle_curve(const PlanResult& result, const std::string& label, boo
   for (Eigen::Index i = 0; i < n; ++i) {
     const decision::SpindleCapacity& p = result.job.recommend.spindle[static_cast<std::size_t>(i)];
     curve.spindle_speed_rad_per_s(i) = p.spindle_speed_rad_per_s;
-    curve.axial_depth_m(i) = (torque ? p.torque_n_m : p.power_w / p.spindle_speed_rad_per_s) / per_depth;
+    const double able_n_m = torque ? p.torque_n_m : p.power_w / p.spindle_speed_rad_per_s;
+    curve.axial_depth_m(i) = decision::depth_of_torque_m(torque_of, able_n_m, deepest_m);
   }
   return curve;
 }
@@ -37,7 +38,8 @@ std::string limited_by_text(const decision::Operation& operation) {
     case decision::LimitedBy::chatter:
       return fmt::format("chatter of {} at {:.1f} Hz", to_string(operation.mode), operation.chatter_frequency_hz);
     case decision::LimitedBy::depth_range:
-      return "the depth range of the lobes: no chatter found up to its end";
+      return fmt::format("the depth range of the lobes: no chatter found up to its end, {:.3g} mm",
+                         operation.limit_depth_m / units::mm);
     case decision::LimitedBy::cutter:
       return "the cutter's depth";
     case decision::LimitedBy::spindle_torque:
@@ -48,6 +50,9 @@ std::string limited_by_text(const decision::Operation& operation) {
       return "the permitted surface error";
     case decision::LimitedBy::deflection:
       return "the permitted deflection";
+    case decision::LimitedBy::forced_vibration:
+      return fmt::format("forced vibration, whose amplitude of {:.3g} µm may be the feed per tooth at most, {:.3g} µm",
+                         operation.vibration.amplitude_m / units::um, operation.feed_per_tooth_m / units::um);
   }
   return {};
 }

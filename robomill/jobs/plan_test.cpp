@@ -71,6 +71,38 @@ TEST_F(Plan, RecommendsADepthBelowTheLimitOfTheWholeWindow) {
   EXPECT_EQ(result.pairs.size(), 4U);
 }
 
+// A chart of a part of the spindle's speeds does not keep the best one from being found, and it is said what was
+// searched.
+TEST_F(Plan, SearchesTheSpindlesSpeeds) {
+  const PlanResult narrow = run_job(job(), 1);
+  const PlanResult wide = run_job(job("[spindle]\nmin_speed_rpm = 5000\nmax_speed_rpm = 16000\n"), 1);
+  EXPECT_NEAR(wide.lobes.spindle_speed_rad_per_s(0), 5000.0 * units::rpm, 1e-9);
+  EXPECT_NEAR(wide.lobes.spindle_speed_rad_per_s.tail(1)(0), 16000.0 * units::rpm, 1e-9);
+  EXPECT_EQ(wide.lobes.limit.size(), 114U) << "as many speeds to 1,000 rpm as before";
+  EXPECT_GT(wide.recommendation.recommended->removal_rate_m3_per_s,
+            narrow.recommendation.recommended->removal_rate_m3_per_s);
+  const auto says = [](const PlanResult& result, const char* words) {
+    return std::ranges::any_of(result.notes, [&](const std::string& n) { return n.find(words) != std::string::npos; });
+  };
+  EXPECT_TRUE(says(wide, "the spindle from 5000 to 16000 rpm: 5000 to 16000 rpm were searched"));
+  EXPECT_FALSE(says(narrow, "searched"));
+  const PlanResult slow = run_job(job("[spindle]\nmin_speed_rpm = 100\nmax_speed_rpm = 9000\n"), 1);
+  EXPECT_TRUE(says(slow, "900 to 9000 rpm were searched. Slower ones were not."));
+}
+
+// Where the chart ends before any chatter, the depths that the cutter has are searched.
+TEST_F(Plan, SearchesTheCuttersDepths) {
+  write("lobes.toml", test_support::lobes_file(R"(spindle_speed_rpm = [6000, 9000]
+axial_depth_mm = [0, 0.1]
+grid = [31, 10]
+)"));
+  const PlanResult shallow = run_job(job(), 1);
+  EXPECT_EQ(shallow.recommendation.recommended->limited_by, decision::LimitedBy::depth_range);
+  const PlanResult deep = run_job(job("[tool]\nmax_axial_depth_mm = 3\n"), 1);
+  EXPECT_EQ(deep.recommendation.recommended->limited_by, decision::LimitedBy::chatter);
+  EXPECT_GT(deep.recommendation.recommended->axial_depth_m, shallow.recommendation.recommended->axial_depth_m);
+}
+
 // Three modes of the part, softer than any of the tool's: with keep_modes its numbers are those of tool modes that take
 // no part. What limits is named by structure and number, and each limit counts for the mode that it names.
 TEST_F(Plan, ModesOfTheWorkpieceAreNotThoseOfTheTool) {

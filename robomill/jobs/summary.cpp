@@ -157,11 +157,15 @@ void add_details(std::string& out, const decision::Operation& op) {
   append(
       out, "             cutting speed {:.4g} m/min, feed {:.4g} mm/min, mean torque {:.3g} N·m, mean power {:.3g} W\n",
       op.cutting_speed_m_per_s * units::minute, op.feed_m_per_s / units::mm * units::minute, op.torque_n_m, op.power_w);
+  if (std::isfinite(op.vibration.amplitude_m)) {
+    append(out, "             forced vibration {:.3g} µm about the mean, most of it at {:.1f} Hz\n",
+           op.vibration.amplitude_m / units::um, op.vibration.frequency_hz);
+  }
   if (!std::isfinite(op.peak_deflection_m)) return;
   const std::string error = std::isfinite(op.surface_error_m)
                                 ? fmt::format("surface error {:+.3g} µm, ", op.surface_error_m / units::um)
                                 : std::string();
-  append(out, "             {}peak deflection {:.3g} µm, from forced vibration\n", error,
+  append(out, "             {}peak deflection {:.3g} µm, the mean one included\n", error,
          op.peak_deflection_m / units::um);
 }
 

@@ -33,6 +33,17 @@ export type Kind = 'hopf' | 'flip' | 'fold';
 /** The structure that a mode belongs to. */
 export type Owner = 'tool' | 'workpiece';
 
+/** Of the tip about its mean position. */
+export interface ForcedVibration {
+  amplitude_um: Num;
+  harmonic: number;
+  of: 'tooth passing' | 'rotation';
+  frequency_hz: Num;
+  harmonic_um: Num;
+  mode: Num;
+  mode_of: Owner | null;
+}
+
 export interface Recommendation {
   spindle_speed_rpm: number;
   axial_depth_mm: number;
@@ -45,6 +56,7 @@ export interface Recommendation {
   power_w: Num;
   surface_error_um: Num;
   peak_deflection_um: Num;
+  forced_vibration: ForcedVibration | null; // null: not computed
   limited_by: string;
   chatter_frequency_hz: Num;
   mode: Num;

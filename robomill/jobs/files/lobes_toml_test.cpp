@@ -119,8 +119,8 @@ TEST(LobesToml, TheNameOfAMaterialStandsForItsNumbers) {
   const LobesFile named = read_lobes(folder.file("lobes.toml", with_material("7075-T6")));
   const LobesFile typed = read_lobes(
       folder.file("typed.toml", with(coefficients,
-                                     "[coefficients]\ntangential_n_per_mm2 = 767.01\nradial_n_per_mm2 = 168.8\n"
-                                     "tangential_edge_n_per_mm = 27.7\nradial_edge_n_per_mm = 26.6\n")));
+                                     "[coefficients]\ntangential_n_per_mm2 = 1319.41\nradial_n_per_mm2 = 788.83\n"
+                                     "tangential_edge_n_per_mm = 19.65\nradial_edge_n_per_mm = 26.77\n")));
   EXPECT_NO_THROW(named.validate());
   const cutting::ForceCoefficients &k = named.problem.milling.coefficients, &same = typed.problem.milling.coefficients;
   EXPECT_EQ(k.tangential_n_per_m2, same.tangential_n_per_m2);
@@ -133,7 +133,8 @@ TEST(LobesToml, TheNameOfAMaterialStandsForItsNumbers) {
   };
   EXPECT_EQ(radius(named), radius(typed));
   const std::string notes = joined(named.notes);
-  EXPECT_NE(notes.find("those of 7075-t6, set 1 of 5: cemented carbide, dry [AviationAluminum2021]"), std::string::npos)
+  EXPECT_NE(notes.find("those of 7075-t6, set 3 of 5: cemented carbide, dry, 7075 [AviationAluminum2021]"),
+            std::string::npos)
       << notes;
   EXPECT_NE(notes.find("The 4 sets of 7075-t6 reach from 600.5 to 1319 N/mm^2"), std::string::npos) << notes;
   EXPECT_TRUE(typed.notes.empty());
@@ -184,7 +185,8 @@ TEST(LobesToml, SaysWhereACutLeavesTheTestsOfItsMaterial) {
   const std::string inside =
       notes(test_support::replaced(with_material("6061-T6"), "feed_per_tooth_mm = 0.1", "feed_per_tooth_mm = 0.02"));
   EXPECT_EQ(inside.find("outside"), std::string::npos) << inside;
-  const std::string board = notes(with(coefficients, "[coefficients]\nmaterial = \"mdf\"\nradial_ratio = 0.4\n"));
+  const std::string board =
+      notes(with(coefficients, "[coefficients]\nmaterial = \"mdf\"\nset = 1\nradial_ratio = 0.4\n"));
   EXPECT_NE(board.find("A cutting speed of 188 to 942 m/min lies outside the tests of [Goli2018], 754 m/min"),
             std::string::npos)
       << board;

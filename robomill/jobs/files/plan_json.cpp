@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string_view>
@@ -96,6 +97,17 @@ Json pairs_json(const PlanResult& result) {
   return list;
 }
 
+Json vibration_json(const stability::ForcedVibration& v) {
+  if (!std::isfinite(v.amplitude_m)) return {};
+  Json json = {{"amplitude_um", number(v.amplitude_m / units::um)},
+               {"harmonic", v.harmonic},
+               {"of", v.of_tooth_passing ? "tooth passing" : "rotation"},
+               {"frequency_hz", number(v.frequency_hz)},
+               {"harmonic_um", number(v.harmonic_m / units::um)}};
+  modal::set_mode(json, v.mode);
+  return json;
+}
+
 }  // namespace
 
 Json operation_json(const decision::Operation& op) {
@@ -112,7 +124,8 @@ Json operation_json(const decision::Operation& op) {
                {"torque_n_m", number(op.torque_n_m)},
                {"power_w", number(op.power_w)},
                {"surface_error_um", number(op.surface_error_m / units::um)},
-               {"peak_deflection_um", number(op.peak_deflection_m / units::um)}};
+               {"peak_deflection_um", number(op.peak_deflection_m / units::um)},
+               {"forced_vibration", vibration_json(op.vibration)}};
   modal::set_mode(json, op.mode);
   return json;
 }

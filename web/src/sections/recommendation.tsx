@@ -32,6 +32,7 @@ function figuresOf(cut: Recommendation): KeyFigure[] {
     { label: 'Mean torque', value: significant(cut.torque_n_m), unit: 'N·m' },
     { label: 'Mean power', value: significant(cut.power_w), unit: 'W' },
     { label: 'Surface error', value: significant(cut.surface_error_um), unit: 'µm' },
+    { label: 'Forced vibration, amplitude', value: significant(cut.forced_vibration?.amplitude_um ?? null), unit: 'µm' },
     { label: 'Peak deflection', value: significant(cut.peak_deflection_um), unit: 'µm' },
   ];
 }
