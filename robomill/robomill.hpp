@@ -164,6 +164,7 @@
 #include "robomill/stability/files/lobes_csv.hpp"
 #include "robomill/stability/files/lobes_json.hpp"
 #include "robomill/stability/files/peak_classification_json.hpp"
+#include "robomill/stability/forced_vibration.hpp"
 #include "robomill/stability/frequency_domain.hpp"
 #include "robomill/stability/frequency_response.hpp"
 #include "robomill/stability/lobes.hpp"

@@ -35,9 +35,9 @@ AngleHarmonics angle_harmonics(const cutting::ForceCoefficients& k, double slope
   // F = -(T cos φ + R sin φ, R cos φ - T sin φ), T = t0 + ts sin φ, R = r0 + rs sin φ.
   const Complex i(0.0, 1.0);
   AngleHarmonics h;
-  h.c[2] = -0.5 * Eigen::Vector2cd(rs, -ts);                            // of sin² φ: the mean
-  h.c[3] = -0.5 * Eigen::Vector2cd(t0 - i * r0, r0 + i * t0);           // of cos φ and sin φ
-  h.c[4] = -0.25 * Eigen::Vector2cd(-i * ts - rs, -i * rs + ts);        // of sin 2φ and cos 2φ
+  h.c[2] = -0.5 * Eigen::Vector2cd(rs, -ts);                      // of sin² φ: the mean
+  h.c[3] = -0.5 * Eigen::Vector2cd(t0 - i * r0, r0 + i * t0);     // of cos φ and sin φ
+  h.c[4] = -0.25 * Eigen::Vector2cd(-i * ts - rs, -i * rs + ts);  // of sin 2φ and cos 2φ
   h.c[1] = h.c[3].conjugate();
   h.c[0] = h.c[4].conjugate();
   return h;

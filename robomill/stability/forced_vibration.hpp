@@ -19,15 +19,15 @@ struct ForcedVibration {
   bool of_tooth_passing = true;
   double frequency_hz = 0.0;
   double harmonic_m = std::numeric_limits<double>::quiet_NaN();  ///< greatest displacement of that harmonic alone [m]
-  modal::ModeId mode = {};  ///< that moves most in it; unknown of measured FRFs
-  double mode_m = 0.0;      ///< greatest displacement of that mode in it [m]
+  modal::ModeId mode = {};                                       ///< that moves most in it; unknown of measured FRFs
+  double mode_m = 0.0;                                           ///< greatest displacement of that mode in it [m]
 };
 
 /// The tip's answer to the force of a rigid tool, harmonic by harmonic from the whole receptance:
 ///   q(t) = Σ_k G(i k Ω) F_k e^{i k Ω t},  k = ±1, ±2, …,
-/// with chips of the feed and of runout and edge forces in F. Of equal teeth, which meet the surface that the one before
-/// left with the same displacement, it is the steady motion of a stable cut; of teeth that differ what they regenerate
-/// is left out.
+/// with chips of the feed and of runout and edge forces in F. Of equal teeth, which meet the surface that the one
+/// before left with the same displacement, it is the steady motion of a stable cut; of teeth that differ what they
+/// regenerate is left out.
 class ROBOMILL_API ForcedResponse {
  public:
   /// @throws InvalidInput if the problem is not a valid milling cut in the plane, or its feed is not > 0

@@ -80,11 +80,12 @@ TEST(ForcedVibration, OfEqualTeethIsTheSteadyMotion) {
     const OperatingPoint point{speed_rpm * rpm, 0.1e-3};
     const SurfacePoint surface = surface_point(p, point);
     ASSERT_TRUE(surface.stable);
-    const simulation::Simulation in_time = simulation::simulate({.milling = p.milling,
-                                                                 .structure = tip_modes(p),
-                                                                 .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
-                                                                 .axial_depth_m = point.axial_depth_m},
-                                                                {.seconds = 1.0, .sample_rate_hz = 51200.0});
+    const simulation::Simulation in_time =
+        simulation::simulate({.milling = p.milling,
+                              .structure = tip_modes(p),
+                              .spindle_speed_rad_per_s = point.spindle_speed_rad_per_s,
+                              .axial_depth_m = point.axial_depth_m},
+                             {.seconds = 1.0, .sample_rate_hz = 51200.0});
     const double expected = half_width(in_time, in_time.displacement_m.rows() / 2);
     const ForcedVibration found = ForcedResponse(p).at(point);
     EXPECT_NEAR(found.amplitude_m, expected, 0.02 * expected);
