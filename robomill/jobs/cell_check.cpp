@@ -27,9 +27,7 @@ constexpr std::size_t most_blocks = 200'000;
 /// The flange, before any mount, in B.
 Eigen::Isometry3d flange_at(const CellFile& cell, const robot::Position6& position) {
   if (!cell.hybrid) {
-    // end_effector.tip is the mount and, along its z, the tool.
-    const Eigen::Isometry3d mount = cell.end_effector.tip * Eigen::Translation3d(0.0, 0.0, -cell.cell.tool_length_m);
-    return robot::forward(cell.cell.arm, position) * mount.inverse();
+    return robot::forward(cell.cell.arm, position) * cell.mount().inverse();
   }
   const robot::HybridMachine& machine = *cell.hybrid;
   const robot::PlatformPose platform = robot::HybridKinematics(machine).platform(position);

@@ -17,7 +17,7 @@ namespace {
 
 /// Of the flange before any mount, in base axes.
 Eigen::Matrix3d flange_axes(const CellFile& cell, const Eigen::VectorXd& joints) {
-  return robot::forward(cell.cell.arm, joints).linear() * cell.end_effector.tip.linear().transpose();
+  return robot::forward(cell.cell.arm, joints).linear() * cell.mount().linear().transpose();
 }
 
 Eigen::VectorXd to_vector(const std::vector<double>& joints) {

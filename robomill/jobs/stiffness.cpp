@@ -15,8 +15,9 @@ StiffnessResult run_stiffness(const StiffnessJob& job) {
   out.cell = read_cell(job.cell);
   const robot::Cell& cell = out.cell.cell;
   out.loads = robot::read_loads(job.loads, cell.arm);
-  const Eigen::Vector3d point_m = job.point_m.value_or(robot::tip_point(cell));
-  out.found = robot::identify_joint_stiffness(cell.arm, point_m, out.loads);
+  const Eigen::Isometry3d mount = out.cell.mount();
+  const Eigen::Vector3d point_m = job.point_m.value_or(mount * robot::tip_point(cell));
+  out.found = robot::identify_joint_stiffness(cell.arm, mount.inverse() * point_m, out.loads);
   if (!job.point_m) {
     const Eigen::Vector3d mm = point_m / units::mm;
     out.assumed.push_back({.what = "Point that the loads attack and that moved",

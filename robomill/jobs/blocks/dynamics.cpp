@@ -15,10 +15,10 @@ namespace robomill::jobs {
 std::optional<robot::Link> payload_of(const CellFile& cell) {
   if (!cell.end_effector.mass_kg) return std::nullopt;
   constexpr double radius_of_gyration_m = 0.1;
-  const Eigen::Isometry3d flange = cell.cell.arm.flange * Eigen::Isometry3d(cell.end_effector.tip.linear().transpose());
+  const Eigen::Isometry3d flange = cell.cell.arm.flange * cell.mount().inverse();  // after the last joint
   robot::Link link;
   link.mass_kg = *cell.end_effector.mass_kg;
-  link.center_m = flange * cell.end_effector.center_m.value_or(0.5 * cell.end_effector.tip.translation());
+  link.center_m = flange * cell.end_effector.center();
   link.inertia_kg_m2 = link.mass_kg * radius_of_gyration_m * radius_of_gyration_m * Eigen::Matrix3d::Identity();
   return link;
 }

@@ -217,7 +217,7 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
   read_program_words(file, out);
   if (!out.hybrid) {
     read_postures(file, out);
-    out.geometry = robot::read_geometry(file, out.cell, link_frames, out.notes);
+    out.geometry = robot::read_geometry(file, out.cell, out.mount(), link_frames, out.notes);
   }
   file.done();
   if (out.hybrid) {

@@ -50,6 +50,12 @@ struct CellFile {
   std::optional<robot::CellGeometry> geometry = {};  ///< for collisions; the cutter's edges are the caller's to give
   std::vector<std::string> notes = {};               ///< sentences for the user
   std::shared_ptr<io::TomlFile> document = {};       ///< that [smoothing] is read from; empty where built in memory
+
+  /// The spindle frame in the flange frame, tool.mount_…: cell.arm.flange leads to the spindle frame, and what users
+  /// say in the flange frame is before it.
+  [[nodiscard]] Eigen::Isometry3d mount() const {
+    return end_effector.tip * Eigen::Translation3d(0.0, 0.0, -cell.tool_length_m);
+  }
 };
 
 /// What kinds of robots a reader of the cell can use.

@@ -94,7 +94,9 @@ class GeometryReader {
     for (const std::string& row : rows("geometry.holder")) tool.holder.push_back(section(row, "holder", tool.holder));
   }
 
-  void spindle(ToolGeometry& tool) {
+  /// @param mount  the spindle frame in the flange frame, in which the file speaks
+  void spindle(ToolGeometry& tool, const Eigen::Isometry3d& mount) {
+    const Eigen::Isometry3d from_flange = mount.inverse();
     if (!file_.has("geometry.spindle")) return;
     const std::vector<std::string> all = rows("geometry.spindle");
     const auto is_section = [&](const std::string& row) { return file_.has(row + "length_mm"); };
@@ -105,6 +107,7 @@ class GeometryReader {
       } else {
         Body body = mesh_of(row, spindle_name);
         move(body.mesh, row);
+        for (Eigen::Vector3d& vertex : body.mesh.vertices_m) vertex = from_flange * vertex;
         tool.spindle_bodies.push_back(std::move(body));
       }
     }
@@ -239,14 +242,14 @@ void validate_without_edges(const io::TomlFile& file, const Cell& cell, CellGeom
 
 }  // namespace
 
-std::optional<CellGeometry> read_geometry(io::TomlFile& file, const Cell& cell,
+std::optional<CellGeometry> read_geometry(io::TomlFile& file, const Cell& cell, const Eigen::Isometry3d& mount,
                                           const std::vector<Eigen::Isometry3d>& link_frames,
                                           std::vector<std::string>& notes) {
   if (!file.has("geometry")) return std::nullopt;
   CellGeometry out;
   GeometryReader reader(file);
   reader.holder(out.tool);
-  reader.spindle(out.tool);
+  reader.spindle(out.tool, mount);
   out.part = reader.bodies("geometry.part");
   out.fixtures = reader.bodies("geometry.fixtures");
   out.cell = reader.bodies("geometry.cell");

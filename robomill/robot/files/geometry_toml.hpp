@@ -11,11 +11,13 @@ namespace robomill::robot {
 
 /// [geometry] of a cell.toml, with the STL files that it names; none where there is no such table. The outline of the
 /// cutter's edges is not in it: the caller gives it.
+/// @param mount        the spindle frame in the flange frame; cell.arm.flange leads to the former
 /// @param link_frames  of link k, 0 … n: the frame that the file means, in B for the base and in that after joint k for
 ///                     the others
 /// @param notes        gets sentences on what is not given and so not checked
 /// @throws InvalidInput with file, line and key, or with the STL file
 [[nodiscard]] std::optional<CellGeometry> read_geometry(io::TomlFile& file, const Cell& cell,
+                                                        const Eigen::Isometry3d& mount,
                                                         const std::vector<Eigen::Isometry3d>& link_frames,
                                                         std::vector<std::string>& notes);
 
