@@ -105,7 +105,7 @@ void read_spatial(io::TomlFile& file, const cutting::Cutter& cutter, LobesFile& 
   }
   out.problem.milling.tool = cutter.mill;
   out.direction = milling.cut.direction;
-  out.radial_depth_m = slot && !radial ? cutter.mill.diameter_m : milling.cut.radial_depth_m;
+  out.radial_depth_m = slot ? cutter.mill.diameter_m : milling.cut.radial_depth_m;
   out.problem.spatial = milling;
 }
 
@@ -168,7 +168,7 @@ void read_cut(io::TomlFile& file, LobesFile& out) {
   if (!named) file.require("cut.direction", "\"up\", \"down\" or \"slot\"; or give entry_deg and exit_deg");
   out.direction = direction;
   if (direction == cutting::MillingDirection::slot) {
-    if (!radial) out.radial_depth_m = diameter_m;
+    out.radial_depth_m = diameter_m;  // whatever step-over the file says: it has no neighbour
   } else if (!radial) {
     file.require("cut.radial_depth_mm");
   }

@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/decision/choose.hpp"
+#include "robomill/jobs/forces.hpp"
+#include "robomill/jobs/lobes.hpp"
+#include "robomill/jobs/monitor.hpp"
+#include "robomill/jobs/plan.hpp"
+#include "robomill/jobs/simulate.hpp"
+#include "robomill/modal/files/modes_files.hpp"
+#include "testing/support.hpp"
+
+/// One cut in the files of several verbs: what they say of it is the same.
+namespace robomill::jobs {
+namespace one_cut_test {
+
+using test::Folder;
+
+struct RandomCut {
+  std::string tool, cut, coefficients, dynamics;
+  bool planned = true;  ///< a flat end whose chart is quick: without runout
+};
+
+/// A stiff tool, so that a millimetre or so is stable.
+std::string dynamics_of(Random& random) {
+  const auto mode = [&] {
+    return fmt::format("[{{ frequency_hz = {:.6g}, damping_ratio = {:.3g}, modal_mass_kg = {:.3g} }}]",
+                       random.uniform(500.0, 1500.0), random.uniform(0.02, 0.05), random.uniform(0.2, 0.6));
+  };
+  std::string text = "x = " + mode() + "\ny = ";
+  text += mode() + "\n";
+  return text;
+}
+
+RandomCut random_cut(Random& random, int seed) {
+  RandomCut out;
+  const int teeth = 2 + seed % 3;
+  const double diameter_mm = random.uniform(8.0, 20.0);
+  const char* const kinds[] = {"flat-end", "flat-end", "ball-end", "bull-nose"};
+  const char* const kind = kinds[seed % 4];
+  const bool flat = seed % 4 < 2;
+  out.planned = flat && seed % 3 != 1;
+  out.tool = fmt::format("[tool]\nkind = \"{}\"\nteeth = {}\ndiameter_mm = {:.6g}\nhelix_deg = {:.4g}\n", kind, teeth,
+                         diameter_mm, random.uniform(0.0, 45.0));
+  if (seed % 4 == 3) out.tool += fmt::format("corner_radius_mm = {:.4g}\n", 0.2 * diameter_mm);
+  if (seed % 3 == 1) out.tool += fmt::format("runout_um = {:.3g}\nrunout_angle_deg = 20\n", random.uniform(2.0, 40.0));
+  if (seed % 5 == 2) {
+    const double unequal = random.uniform(0.0, 0.1) * 360.0 / teeth;
+    out.tool += "pitch_deg = [";
+    for (int j = 0; j < teeth; ++j) {
+      const double pitch = 360.0 / teeth + (j == 0 ? unequal : j == 1 ? -unequal : 0.0);
+      out.tool += fmt::format("{}{:.10g}", j > 0 ? ", " : "", pitch);
+    }
+    out.tool += "]\n";
+  }
+  // Of a corner's chip the cut in time knows the curvature too, f² cos² κ / 2 R beside f sin κ: little of small feeds.
+  const double feed_mm = flat ? random.uniform(0.03, 0.15) : random.uniform(0.005, 0.01);
+  const char* const directions[] = {"up", "down", "slot"};
+  out.cut = fmt::format("[cut]\ndirection = \"{}\"\nradial_depth_mm = {:.5g}\nfeed_per_tooth_mm = {:.4g}\n",
+                        directions[(seed / 2) % 3], random.uniform(0.1, 0.9) * diameter_mm, feed_mm);
+  out.coefficients = fmt::format(
+      "[coefficients]\ntangential_n_per_mm2 = {:.5g}\nradial_n_per_mm2 = {:.5g}\ntangential_edge_n_per_mm = {:.4g}\n"
+      "radial_edge_n_per_mm = {:.4g}\n",
+      random.uniform(500.0, 2000.0), random.uniform(100.0, 700.0), random.uniform(0.0, 30.0), random.uniform(0.0, 30.0));
+  if (!flat) out.coefficients += "axial_n_per_mm2 = 120\naxial_edge_n_per_mm = 3\n";
+  out.dynamics = dynamics_of(random);
+  if (!flat) out.dynamics += "z = [{ frequency_hz = 2000, damping_ratio = 0.03, modal_mass_kg = 2 }]\n";
+  return out;
+}
+
+std::string lobes_text(const RandomCut& c) {
+  return c.tool + c.cut + c.coefficients + "[dynamics]\n" + c.dynamics +
+         "[lobes]\nspindle_speed_rpm = [6000, 12000]\naxial_depth_mm = [0, 4]\ngrid = [21, 12]\n";
+}
+
+std::string forces_text(const RandomCut& c, const stability::OperatingPoint& at) {
+  return c.tool + c.cut +
+         fmt::format("axial_depth_mm = {:.12g}\nspindle_speed_rpm = {:.12g}\n", at.axial_depth_m / units::mm,
+                     at.spindle_speed_rad_per_s / units::rpm) +
+         c.coefficients;
+}
+
+int count() {
+  const char* asked = std::getenv("ROBOMILL_SEEDS");
+  return asked != nullptr ? std::atoi(asked) : test::seeds(100);
+}
+
+void expect_within(double a, double b, const std::string& what) {
+  EXPECT_NEAR(a, b, 0.01 * std::max(std::abs(a), std::abs(b)) + 1e-12) << what;
+}
+
+/// The mean of the force over the whole revolutions of the second half.
+Eigen::Vector3d mean_force(const simulation::Simulation& s, double speed_rad_per_s) {
+  const double samples_a_turn = s.sample_rate_hz * units::revolution / speed_rad_per_s;
+  const double turns = std::floor(0.5 * static_cast<double>(s.force_n.rows()) / samples_a_turn);
+  const auto last = static_cast<Eigen::Index>(std::lround(turns * samples_a_turn));
+  return s.force_n.bottomRows(last).colwise().mean();
+}
+
+/// What lobes --at, simulate and forces say of one point.
+void expect_one_cut(const RandomCut& c, const std::filesystem::path& lobes, const stability::OperatingPoint& at,
+                    const Folder& folder, const std::string& seed) {
+  const ForcesResult forces = run_forces(folder.file("forces.toml", forces_text(c, at)), {}, {});
+  const cutting::CuttingForce& force = forces.revolution->deflected.force;
+  // Chips as a rigid cutter cuts them: vibration of teeth that differ, or that leave the cut, changes the mean.
+  const SimulateResult in_time = run_simulate({.lobes = lobes,
+                                               .point = at,
+                                               .options = {.seconds = 0.25,
+                                                           .sample_rate_hz = 20480.0,
+                                                           .loss_of_contact = false,
+                                                           .regeneration = false}});
+  const LobesFile read = read_lobes(lobes);
+  if (!read.problem.spatial) {
+    const double torque_n_m = decision::mean_torque_of(read.problem.milling)(at.axial_depth_m);
+    expect_within(torque_n_m, force.mean_torque_n_m, seed + ": mean torque of the decision");
+  }
+  const Eigen::Vector3d mean = mean_force(in_time.simulation, at.spindle_speed_rad_per_s);
+  EXPECT_LE((mean - force.mean_n).norm(), 0.01 * force.rms_n.norm()) << seed << ": simulate's mean force";
+}
+
+// Flat ends: plan, lobes --at, forces, simulate and what the monitor advises from.
+TEST(OneCut, EveryVerbSaysTheSame) {
+  const Folder folder;
+  Random random(17);
+  const int seeds = count();
+  for (int n = 0; n < seeds; ++n) {
+    const std::string seed = fmt::format("seed {}", n);
+    const RandomCut c = random_cut(random, n);
+    const auto lobes = folder.file("lobes.toml", lobes_text(c));
+    if (!c.planned) {
+      const stability::OperatingPoint at{random.uniform(6000.0, 12000.0) * units::rpm, 1e-3};
+      expect_one_cut(c, lobes, at, folder, seed);
+      continue;
+    }
+    const auto job = folder.file(
+        "job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n[safety]\nspeed_window = 0\ndepth_margin = 0.4\n");
+    const LobesFile read = read_milling(lobes);
+    folder.file("modes.json", modal::modes_json(read.problem.dynamics));
+    const PlanResult plan = run_job(job, 1);
+    ASSERT_TRUE(plan.recommendation.recommended) << seed << plan.recommendation.reason;
+    const decision::Operation& op = *plan.recommendation.recommended;
+    const stability::OperatingPoint at{op.spindle_speed_rad_per_s, op.axial_depth_m};
+    const LobesJobResult chart = run_lobes({.lobes = lobes, .points = {at}});
+    const stability::PointResult& point = chart.lobes.points.front();
+    EXPECT_TRUE(point.stable) << seed;
+    if (std::isfinite(point.limit_depth_m)) {
+      expect_within(op.limit_depth_m, point.limit_depth_m, seed + ": limit");
+      expect_within(op.margin, 1.0 - op.axial_depth_m / point.limit_depth_m, seed + ": margin");
+    }
+    const ForcesResult forces =
+        run_forces(folder.file("forces.toml", forces_text(c, at)), {}, {});
+    const cutting::CuttingForce& force = forces.revolution->deflected.force;
+    expect_within(op.torque_n_m, force.mean_torque_n_m, seed + ": mean torque");
+    expect_within(op.power_w, force.power_w, seed + ": mean power");
+    expect_within(op.removal_rate_m3_per_s, force.removal_rate_m3_per_s, seed + ": removal rate");
+    expect_one_cut(c, lobes, at, folder, seed);
+
+    monitor::MonitorFile monitor;
+    monitor.lobes = lobes;
+    monitor.options.sample_rate_hz = 10240.0;
+    monitor.options.spindle_speed_rad_per_s = op.spindle_speed_rad_per_s;
+    const live::AdviceBasis basis = read_advice_basis(monitor, Progress::none());
+    ASSERT_TRUE(basis.lobes) << seed;
+    for (std::size_t i = 0; i < basis.lobes->limit.size(); ++i) {
+      const stability::Limit &advised = basis.lobes->limit[i], &planned = plan.lobes.limit[i];
+      ASSERT_EQ(advised.status, planned.status) << seed;
+      expect_within(advised.axial_depth_m, planned.axial_depth_m, seed + ": the monitor's limit");
+      expect_within(advised.chatter_frequency_hz, planned.chatter_frequency_hz, seed + ": its chatter frequency");
+    }
+  }
+}
+
+}  // namespace one_cut_test
+}  // namespace robomill::jobs
