@@ -102,6 +102,7 @@
 #include "robomill/modal/posture_model.hpp"
 #include "robomill/modal/structure.hpp"
 #include "robomill/modal/tip.hpp"
+#include "robomill/modal/weak_modes.hpp"
 #include "robomill/monitor/advice.hpp"
 #include "robomill/monitor/calibration.hpp"
 #include "robomill/monitor/entropy.hpp"

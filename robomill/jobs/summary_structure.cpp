@@ -19,6 +19,7 @@
 #include "robomill/jobs/summary.hpp"
 #include "robomill/jobs/summary_parts.hpp"
 #include "robomill/jobs/tools.hpp"
+#include "robomill/modal/weak_modes.hpp"
 
 // Measurements, modes, and the tool in its holder.
 
@@ -40,12 +41,18 @@ void add_highest_peaks(std::string& out, const std::vector<modal::FrfGrade>& gra
 /// @param bounds_of  what a mode of this number ended at, in words
 template <class Bounds>
 void add_modes(std::string& out, const modal::ModalModel& model, Bounds bounds_of) {
-  io::append(out, "mode  frequency Hz     damping %\n");
+  io::append(out, "mode  {:<18}  {:<16}  {:>14}  {:>8}\n", "frequency Hz", "damping %", "stiffness N/µm", "mass kg");
+  const auto known = [](double value, double std) {
+    return std::isfinite(std) ? fmt::format("{:.6g} ± {:.2g}", value, std) : fmt::format("{:.6g}", value);
+  };
+  const auto number = [](double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; };
   for (std::size_t k = 0; k < model.modes.size(); ++k) {
     const modal::Mode& mode = model.modes[k];
-    const auto spread = [](double std) { return std::isfinite(std) ? fmt::format(" ± {:.2g}", std) : std::string(); };
-    io::append(out, "{:>4}  {:.6g}{}  {:.4g}{}{}\n", k + 1, mode.frequency_hz, spread(mode.frequency_std_hz),
-               100.0 * mode.damping_ratio, spread(100.0 * mode.damping_ratio_std), bounds_of(static_cast<int>(k) + 1));
+    const modal::ModalStiffness spring = modal::modal_stiffness(model, k);
+    io::append(
+        out, "{:>4}  {:<18}  {:<16}  {:>14}  {:>8}{}{}\n", k + 1, known(mode.frequency_hz, mode.frequency_std_hz),
+        known(100.0 * mode.damping_ratio, 100.0 * mode.damping_ratio_std), number(spring.stiffness_n_per_m * units::um),
+        number(spring.mass_kg), mode.weak ? "  weak" : "", bounds_of(static_cast<int>(k) + 1));
   }
 }
 

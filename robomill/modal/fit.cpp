@@ -15,6 +15,7 @@
 #include "robomill/modal/fitting/fit_parts.hpp"
 #include "robomill/modal/fitting/fit_report.hpp"
 #include "robomill/modal/published/pso.hpp"
+#include "robomill/modal/weak_modes.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -179,6 +180,9 @@ void fit_by_poles(FitResult& result, const FrfSet& set, const FitOptions& option
     add_diagram(result, done);
     result.iterations += done.fit.iterations;
     result.best.insert(result.best.end(), done.fit.cost.begin(), done.fit.cost.end());
+    for (const double omega : done.fit.dropped_omega) {
+      result.dropped_hz.push_back(omega * done.part.omega_unit / (2.0 * std::numbers::pi));
+    }
     if (!done.fit.converged) result.status = FitResult::Status::not_converged;
     if (done.fit.held_back) {
       result.warnings.push_back(
@@ -300,6 +304,7 @@ FitResult fit_modes(const FrfSet& set, const FitOptions& options, Progress& prog
     result.warnings.emplace_back("No mode stands out of the noise in the band.");
   }
   detail::set_errors(result, band);
+  mark_weak_modes(result.model, band);
   detail::find_bounds(result, options);
   detail::add_warnings(result, band);
   take_out_decay(result, options.exponential_decay_per_s);

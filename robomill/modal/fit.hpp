@@ -111,7 +111,8 @@ struct FitResult {
   double mean_relative_error = 0.0;  ///< mean over lines and FRFs of |H_fit - H| / |H|, residuals included
   std::vector<FrfFitError> by_frf;   ///< in the order of the input
   std::vector<ModeAtBound> at_bounds;
-  bool accepted = false;  ///< somebody takes the modes whatever their error
+  std::vector<double> dropped_hz;  ///< weak modes without which the fit is as good, and which are not in the model
+  bool accepted = false;           ///< somebody takes the modes whatever their error
   int iterations = 0;
   /// The objective after each iteration. pso: mean relative error; hybrid: the relative error with lines weighted,
   /// which jumps where the weights are estimated anew or a mode comes or goes, part after part.

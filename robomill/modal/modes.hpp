@@ -23,6 +23,9 @@ struct Mode {
   double frequency_std_hz = std::numeric_limits<double>::quiet_NaN();
   double damping_ratio_std = std::numeric_limits<double>::quiet_NaN();
   double residue_std_ratio = std::numeric_limits<double>::quiet_NaN();  ///< of the residue matrix's size, relative
+  /// Its share of the FRF lies within the FRF's scatter: no warning, advice or name of a vibration rests on it. See
+  /// weak_modes.hpp.
+  bool weak = false;
 };
 
 /// What the modes outside the band leave in it: mass / (-ω²) + stiffness.

@@ -25,7 +25,9 @@ struct NaturalMode {
 void add_modes(const modal::ModalModel& model, modal::ModeOwner owner, std::vector<NaturalMode>& out) {
   int number = 0;
   for (const modal::Mode& mode : model.modes) {
-    out.push_back({{++number, owner}, mode.frequency_hz, mode.damping_ratio * mode.frequency_hz});
+    ++number;
+    if (mode.weak) continue;  // it moves too little to be heard
+    out.push_back({{number, owner}, mode.frequency_hz, mode.damping_ratio * mode.frequency_hz});
   }
 }
 

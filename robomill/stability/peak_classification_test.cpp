@@ -59,6 +59,21 @@ TEST(PeakClassification, NamesTheDocumentedPeaks) {
 }
 
 // The spindle runs 0.15 % slow under load: the 30th multiple is 5 Hz off, and still one.
+// A weak mode names no peak; the others keep their numbers.
+TEST(PeakClassification, WeakModesNameNothing) {
+  modal::ModalModel modes = data::robot_modes();
+  const MeasuredPeaks peaks{.frequency_hz = {666.98}, .spindle_speed_rad_per_s = 6500 * rpm, .teeth = 3};
+  const int named = explain(peaks, modes).peaks[0].best.mode.number;
+  ASSERT_EQ(named, 1);
+  modes.modes[0].weak = true;
+  const PeakClassification without = explain(peaks, modes);
+  EXPECT_NE(without.peaks[0].best.mode.number, 1);
+  for (const Explanation& other : without.peaks[0].others) EXPECT_NE(other.mode.number, 1);
+  modes.modes[0].weak = false;
+  for (std::size_t k = 1; k < modes.modes.size(); ++k) modes.modes[k].weak = true;
+  EXPECT_EQ(explain(peaks, modes).peaks[0].best.mode.number, 1);
+}
+
 TEST(PeakClassification, FindsTheTrueSpeedInThePeaks) {
   const double rotation_hz = 6500.0 / 60.0 * 0.9985;
   const PeakClassification found =

@@ -98,6 +98,9 @@ export interface ModesDocument {
     left: ModeVector;
     right: ModeVector;
     std: { frequency_hz: Num; damping_ratio: Num };
+    modal_stiffness_n_per_um?: Num; // in the direction in which the mode moves most
+    modal_mass_kg?: Num;
+    weak?: boolean; // the FRFs hardly show it
   }[];
   fit?: {
     relative_error: Num;

@@ -9,6 +9,9 @@ export interface Mode {
   std: { frequency_hz: Num; damping_ratio: Num };
   left: ModeVector;
   right: ModeVector;
+  modal_stiffness_n_per_um?: Num;
+  modal_mass_kg?: Num;
+  weak?: boolean;
   limit_share: Num; // of the speeds whose limit it sets
 }
 

@@ -15,12 +15,26 @@ namespace {
 
 modal::Mode read_inline_mode(io::TomlFile& file, const std::string& row, const std::string& member, Eigen::Index axis) {
   modal::MassMode mode;
-  for (const char* key : {"frequency_hz", "damping_ratio", "modal_mass_kg"}) file.require(row + key);
+  const std::string mass = row + "modal_mass_kg", stiffness = row + "modal_stiffness_n_per_um";
+  for (const char* key : {"frequency_hz", "damping_ratio"}) file.require(row + key);
   file.number(row + "frequency_hz", member + "frequency_hz", 1.0, mode.frequency_hz);
   file.number(row + "damping_ratio", member + "damping_ratio", 1.0, mode.damping_ratio);
-  file.number(row + "modal_mass_kg", member + "modal_mass_kg", 1.0, mode.modal_mass_kg);
-  if (!(mode.modal_mass_kg > 0.0)) throw file.reject(row + "modal_mass_kg", "must be > 0");
   if (!(mode.frequency_hz > 0.0)) throw file.reject(row + "frequency_hz", "must be > 0");
+  if (file.has(stiffness)) {
+    if (file.has(mass)) {
+      throw file.reject(stiffness, "must not stand beside modal_mass_kg",
+                        "One follows from the other and frequency_hz");
+    }
+    double stiffness_n_per_m = 0.0;
+    file.number(stiffness, member + "modal_stiffness_n_per_m", 1.0 / units::um, stiffness_n_per_m);
+    if (!(stiffness_n_per_m > 0.0)) throw file.reject(stiffness, "must be > 0");
+    const double omega = units::revolution * mode.frequency_hz;
+    mode.modal_mass_kg = stiffness_n_per_m / (omega * omega);
+  } else {
+    file.require(mass, "Or give modal_stiffness_n_per_um in its place");
+    file.number(mass, member + "modal_mass_kg", 1.0, mode.modal_mass_kg);
+    if (!(mode.modal_mass_kg > 0.0)) throw file.reject(mass, "must be > 0");
+  }
   if (!(mode.damping_ratio > 0.0 && mode.damping_ratio < 1.0)) {
     throw file.reject(row + "damping_ratio", "must lie between 0 and 1", "It is a ratio, not a percentage");
   }

@@ -1,5 +1,6 @@
 #include "robomill/jobs/files/lobes_toml.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -224,6 +225,36 @@ TEST(LobesToml, InlineModesHaveTheirModalMass) {
       EXPECT_LT(std::abs(found - expected), 1e-12 * std::abs(expected));
     }
   }
+}
+
+// k = m ω²: a mode is told by its mass or by its stiffness, in whichever table it stands.
+TEST(LobesToml, AModeHasAMassOrAStiffness) {
+  const test::Folder folder;
+  const double stiffness_n_per_um = 0.03993 * std::pow(2.0 * std::numbers::pi * 922.0, 2) * 1e-6;
+  const std::string stiffness = fmt::format("modal_stiffness_n_per_um = {:.17g}", stiffness_n_per_um);
+  const std::string mass = "modal_mass_kg = 0.03993";
+  const auto with = [&](const std::string& told) {
+    std::string text = good;
+    for (std::size_t at = text.find(mass); at != std::string::npos; at = text.find(mass, at + told.size())) {
+      text.replace(at, mass.size(), told);
+    }
+    return folder.file("lobes.toml", text);
+  };
+  const LobesFile by_mass = read_lobes(with(mass)), by_stiffness = read_lobes(with(stiffness));
+  ASSERT_EQ(by_stiffness.problem.dynamics.modes.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const modal::Mode &a = by_mass.problem.dynamics.modes[k], &b = by_stiffness.problem.dynamics.modes[k];
+    EXPECT_LT((a.right - b.right).norm(), 1e-14 * a.right.norm());
+    EXPECT_LT((a.left - b.left).norm(), 1e-14 * a.left.norm());
+  }
+  const auto said = [&](const std::string& told) {
+    return test::rejection([&] { static_cast<void>(read_lobes(with(told))); });
+  };
+  EXPECT_NE(said(mass + ", " + stiffness).find("modal_stiffness_n_per_um"), std::string::npos);
+  EXPECT_NE(said(mass + ", " + stiffness).find("must not stand beside modal_mass_kg"), std::string::npos);
+  EXPECT_NE(said("weight = 1").find("modal_stiffness_n_per_um"), std::string::npos) << said("weight = 1");
+  EXPECT_NE(said("modal_stiffness_n_per_um = 0").find("must be > 0"), std::string::npos);
+  EXPECT_NE(said("modal_stiffness_n_per_um = -3").find("must be > 0"), std::string::npos);
 }
 
 // A direction of the plane that nobody measured is rigid, or like the other, only where the file says so.

@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <set>
 
 #include "robomill/base/error.hpp"
+#include "robomill/base/units.hpp"
 #include "robomill/io/csv.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/json.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/modal/files/modal_objects.hpp"
+#include "robomill/modal/weak_modes.hpp"
 
 namespace robomill::modal {
 namespace {
@@ -28,6 +31,7 @@ io::Json vector_json(const Eigen::VectorXcd& vector, const std::vector<Dof>& dof
 struct NamedMode {
   Mode mode;
   std::vector<std::pair<Dof, std::complex<double>>> left, right;
+  std::optional<bool> weak = {};  ///< what the file says
 };
 
 std::vector<Dof> all_dofs(const std::vector<NamedMode>& modes,
@@ -57,6 +61,12 @@ ModalModel to_model(const std::vector<NamedMode>& named) {
     model.modes.push_back(mode);
   }
   return model;
+}
+
+/// Marks as the file says; where it says nothing, by the deviations.
+void mark_weak(ModalModel& model, const std::vector<NamedMode>& named) {
+  mark_weak_modes(model);
+  for (std::size_t k = 0; k < named.size(); ++k) model.modes[k].weak = named[k].weak.value_or(model.modes[k].weak);
 }
 
 /// Reports an error of the model with the file's name in front.
@@ -90,6 +100,11 @@ double number_or_nan(const io::JsonNode& node, const char* key) {
   return node.at(key).number();
 }
 
+bool boolean(const io::JsonNode& node) {
+  if (!node.json().is_boolean()) throw node.reject("must be true or false");
+  return node.json().get<bool>();
+}
+
 /// modes.json is written of a bad fit too, as its report; its modes are for nobody who has not accepted them.
 void require_usable(const io::JsonNode& root) {
   if (!root.has("fit") || !root.at("fit").has("usable")) return;
@@ -120,6 +135,7 @@ ModalModel read_modes_json(const io::TomlSource& source) {
       named[k].mode.damping_ratio_std = number_or_nan(node.at("std"), "damping_ratio");
       named[k].mode.residue_std_ratio = number_or_nan(node.at("std"), "residue");
     }
+    if (node.has("weak")) named[k].weak = boolean(node.at("weak"));
   }
   ModalModel model = to_model(named);
   if (root.has("residuals") && !root.at("residuals").json().is_null()) {
@@ -138,6 +154,7 @@ ModalModel read_modes_json(const io::TomlSource& source) {
     }
   }
   validate(model, name);
+  mark_weak(model, named);
   return model;
 }
 
@@ -170,10 +187,12 @@ ModalModel read_modes_toml(const io::TomlSource& source) {
     file.number(row + "damping_ratio", member + "damping_ratio", 1.0, named[k].mode.damping_ratio);
     named[k].left = read_vector(file, row + "left");
     named[k].right = read_vector(file, row + "right");
+    if (bool weak = false; file.boolean(row + "weak", weak)) named[k].weak = weak;
   }
   file.done();
   ModalModel model = to_model(named);
   file.locate([&] { model.validate(); });
+  mark_weak(model, named);
   return model;
 }
 
@@ -196,11 +215,16 @@ io::Json modes_object(const ModalModel& model) {
   model.validate();
   io::Json json;
   json["modes"] = io::Json::array();
-  for (const Mode& mode : model.modes) {
+  for (std::size_t k = 0; k < model.modes.size(); ++k) {
+    const Mode& mode = model.modes[k];
+    const ModalStiffness spring = modal_stiffness(model, k);
     json["modes"].push_back({{"frequency_hz", io::number(mode.frequency_hz)},
                              {"damping_ratio", io::number(mode.damping_ratio)},
                              {"left", vector_json(mode.left, model.excitations, true)},
                              {"right", vector_json(mode.right, model.responses, false)},
+                             {"modal_stiffness_n_per_um", io::number(spring.stiffness_n_per_m * units::um)},
+                             {"modal_mass_kg", io::number(spring.mass_kg)},
+                             {"weak", mode.weak},
                              {"std",
                               {{"frequency_hz", io::number(mode.frequency_std_hz)},
                                {"damping_ratio", io::number(mode.damping_ratio_std)},
@@ -223,13 +247,16 @@ io::Json modes_object(const FitResult& fit) {
   }
   io::Json by_frf = io::Json::object();
   for (const FrfFitError& error : fit.by_frf) by_frf[to_string(error.name)] = io::number(error.error.relative);
+  io::Json dropped = io::Json::array();
+  for (const double frequency_hz : fit.dropped_hz) dropped.push_back(io::number(frequency_hz));
   json["fit"] = {{"relative_error", io::number(fit.relative_error)},
                  {"relative_error_by_frf", by_frf},
                  {"mean_relative_error", io::number(fit.mean_relative_error)},
                  {"converged", fit.status == FitResult::Status::converged},
                  {"usable", fit.usable()},
                  {"band_hz", io::Json::array({io::number(fit.band_low_hz), io::number(fit.band_high_hz)})},
-                 {"lines", fit.lines}};
+                 {"lines", fit.lines},
+                 {"dropped_modes_hz", std::move(dropped)}};
   json["convergence"] = {{"iterations", fit.iterations}, {"best", fit.best}};
   json["stabilisation"] = io::Json::array();
   for (const StabilisationPoint& point : fit.stabilisation) {
@@ -262,7 +289,7 @@ std::string modes_csv(const ModalModel& model) {
   };
   add_names("left", model.excitations, true);
   add_names("right", model.responses, false);
-  out += '\n';
+  out += ",weak\n";
   for (std::size_t k = 0; k < model.modes.size(); ++k) {
     const Mode& mode = model.modes[k];
     std::string vectors;
@@ -271,9 +298,10 @@ std::string modes_csv(const ModalModel& model) {
         vectors += "," + io::csv_number(entry.real()) + "," + io::csv_number(entry.imag());
       }
     }
-    io::add_csv_row(out, {std::to_string(k + 1), io::csv_number(mode.frequency_hz),
-                          io::csv_number(mode.frequency_std_hz), io::csv_number(mode.damping_ratio),
-                          io::csv_number(mode.damping_ratio_std), io::csv_number(mode.residue_std_ratio) + vectors});
+    io::add_csv_row(out,
+                    {std::to_string(k + 1), io::csv_number(mode.frequency_hz), io::csv_number(mode.frequency_std_hz),
+                     io::csv_number(mode.damping_ratio), io::csv_number(mode.damping_ratio_std),
+                     io::csv_number(mode.residue_std_ratio) + vectors, mode.weak ? "1" : "0"});
   }
   return out;
 }

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include "robomill/base/random.hpp"
 #include "robomill/io/file.hpp"
@@ -51,10 +53,44 @@ TEST(ModesFiles, CsvHasARowAMode) {
   const std::string table = modes_csv(model);
   EXPECT_TRUE(
       table.starts_with("mode,frequency_hz,frequency_std_hz,damping_ratio,damping_ratio_std,residue_std_ratio,"
-                        "left_x_re,left_x_im,left_y_re,left_y_im,right_x_re,right_x_im,right_y_re,right_y_im\n"
+                        "left_x_re,left_x_im,left_y_re,left_y_im,right_x_re,right_x_im,right_y_re,right_y_im,weak\n"
                         "1,17.4,,0.0127,,,-5.2e-05,8.8e-05,"))
       << table;
   EXPECT_NE(table.find("\n2,19.57,0.01,0.0223,,,"), std::string::npos) << table;
+}
+
+// A file without the mark is marked by its deviations; one with it keeps it.
+TEST(ModesFiles, WeakModesAreMarked) {
+  const test::Folder folder;
+  ModalModel model = modes_from_mass({{.frequency_hz = 900.0, .damping_ratio = 0.03, .modal_mass_kg = 0.3},
+                                      {.frequency_hz = 3300.0, .damping_ratio = 0.2, .modal_mass_kg = 140.0}},
+                                     {});
+  for (Mode& mode : model.modes) {
+    mode.frequency_std_hz = 0.05 * mode.frequency_hz * mode.damping_ratio;
+    mode.damping_ratio_std = 0.05 * mode.damping_ratio;
+  }
+  io::Json json = io::parse_json(modes_json(model), "modes.json");
+  EXPECT_EQ(json["modes"][0]["weak"], false);
+  EXPECT_NEAR(json["modes"][1]["modal_mass_kg"].get<double>(), 140.0, 1e-9);
+  const double stiffness_n_per_um = 140.0 * std::pow(2.0 * std::numbers::pi * 3300.0, 2) * 1e-6;
+  EXPECT_NEAR(json["modes"][1]["modal_stiffness_n_per_um"].get<double>(), stiffness_n_per_um,
+              1e-9 * stiffness_n_per_um);
+  const auto weak = [&] {
+    const ModalModel read = read_modes(folder.file("modes.json", io::dump(json)));
+    return std::pair(read.modes[0].weak, read.modes[1].weak);
+  };
+  EXPECT_EQ(weak(), std::pair(false, false));
+  for (io::Json& mode : json["modes"]) mode.erase("weak");
+  EXPECT_EQ(weak(), std::pair(false, true));
+  json["modes"][0]["weak"] = true;
+  json["modes"][1]["weak"] = false;
+  EXPECT_EQ(weak(), std::pair(true, false));
+  json["modes"][1]["weak"] = "no";
+  EXPECT_NE(test::rejection([&] { static_cast<void>(weak()); }).find("modes[2].weak"), std::string::npos);
+  const auto path = folder.file("modes.toml",
+                                "[[modes]]\nfrequency_hz = 922\ndamping_ratio = 0.011\nleft = { x = [1, 0] }\n"
+                                "right = { x = [0, -1e-4] }\nweak = true\n");
+  EXPECT_TRUE(read_modes(path).modes[0].weak);
 }
 
 TEST(ModesFiles, RejectsWithTheJsonPath) {

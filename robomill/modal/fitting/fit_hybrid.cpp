@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robomill/modal/fitting/fit_noise.hpp"
+#include "robomill/modal/weak_modes.hpp"
 
 namespace robomill::modal::detail {
 namespace {
@@ -16,6 +17,8 @@ using Eigen::Index;
 constexpr double not_noise = 3.0;
 // … and an error that neighbouring lines share may well be so many times as large as what they differ by.
 constexpr double shared_to_scatter = 10.0;
+// By so much may the error of any FRF grow, as a share, where a weak mode is dropped.
+constexpr double tolerated_growth = 0.1;
 
 LscfOptions lscf_options(const FitOptions& options, const FitData& data) {
   // A quarter of the equations at most go into the fraction's coefficients.
@@ -107,6 +110,8 @@ Poles fewest(const Part& part, const Kernel& kernel, const Poles& start, double 
 
 void set_deviations(PartFit& fit, const FitData& data) {
   const Index modes = fit.poles.size();
+  fit.omega_std.resize(0);
+  fit.zeta_std.resize(0);
   if (modes == 0) return;
   const auto entries = static_cast<Index>(data.entries.size());
   const Index unknowns = 2 * modes * (data.excitations + data.responses) + (data.residuals ? 4 * entries : 0);
@@ -120,6 +125,59 @@ void set_deviations(PartFit& fit, const FitData& data) {
   for (Index k = 0; k < modes; ++k) {
     fit.omega_std(k) = std::sqrt(std::max(0.0, covariance(stride * k, stride * k)));
     fit.zeta_std(k) = std::sqrt(std::max(0.0, covariance(stride * k + 1, stride * k + 1)));
+  }
+}
+
+// The part's modes against the FRFs that it fits.
+ModalModel marked_model(const Part& part, const FrfSet& set, const PartFit& fit) {
+  FrfSet own{.frequency_hz = set.frequency_hz, .frfs = {}};
+  for (const std::size_t f : part.frfs) own.frfs.push_back(set.frfs[f]);
+  ModalModel model = empty_model(own);
+  add_to_model(model, part, fit, part.data.residuals);
+  mark_weak_modes(model, own);
+  return model;
+}
+
+// Whether no FRF is missed by much more, over the band and over one mode's half-power band, at least nine lines.
+bool is_as_good(const FitData& data, double omega, double zeta, const Evaluation& before, const Evaluation& after) {
+  const Index n = data.omega.size();
+  const double spacing = (data.omega(n - 1) - data.omega(0)) / static_cast<double>(n - 1);
+  const double reach = std::max(zeta * omega, 4.0 * spacing);
+  const Eigen::VectorXd near = ((data.omega.array() - omega).abs() <= reach).cast<double>();
+  const double most = (1.0 + tolerated_growth) * (1.0 + tolerated_growth);
+  for (Index f = 0; f < before.residual.cols(); ++f) {
+    const Eigen::VectorXd was = before.residual.col(f).cwiseAbs2();
+    const Eigen::VectorXd is = after.residual.col(f).cwiseAbs2();
+    if (is.sum() > most * was.sum() || is.dot(near) > most * was.dot(near)) return false;
+  }
+  return true;
+}
+
+// Takes out the weak modes without which the fit is as good, the least missed first.
+void drop_weak_modes(PartFit& fit, const Part& part, const FrfSet& set, const SearchOptions& options,
+                     Progress& progress) {
+  const Kernel kernel(part.data);
+  for (Index tried = 0; tried < fit.poles.size();) {
+    const ModalModel model = marked_model(part, set, fit);
+    std::vector<Index> weak;
+    for (Index k = 0; k < fit.poles.size(); ++k) {
+      if (model.modes[static_cast<std::size_t>(k)].weak) weak.push_back(k);
+    }
+    if (tried >= static_cast<Index>(weak.size())) return;
+    std::ranges::stable_sort(weak, [&](Index a, Index b) { return fit.at.loss(a) < fit.at.loss(b); });
+    const Index k = weak[static_cast<std::size_t>(tried)];
+    Refined without = refine(kernel, fit.poles.without(k), fine_options(options), progress);
+    if (!is_as_good(part.data, fit.poles.omega(k), fit.poles.zeta(k), fit.at, without.at)) {
+      ++tried;
+      continue;
+    }
+    tried = 0;
+    fit.dropped_omega.push_back(fit.poles.omega(k));
+    keep(fit, part.data, without.cost, without.iterations);
+    fit.poles = std::move(without.poles);
+    fit.at = std::move(without.at);
+    fit.converged = without.converged;
+    set_deviations(fit, part.data);
   }
 }
 
@@ -235,6 +293,7 @@ PartFit fit_hybrid(Part& part, const FrfSet& set, const FitOptions& options, int
   fit.at = last.at;
   fit.converged = last.converged && (modes == 0 || static_cast<int>(fit.poles.size()) == modes);
   set_deviations(fit, part.data);
+  if (modes == 0) drop_weak_modes(fit, part, set, search_for, progress);
   return fit;
 }
 

@@ -31,6 +31,7 @@ struct PartFit {
   Poles poles;
   Evaluation at;
   Eigen::VectorXd omega_std, zeta_std;  // empty where unknown
+  std::vector<double> dropped_omega;    // of weak modes without which the fit is as good
   bool converged = false;
   bool held_back = false;  // fewer modes than the criterion asks for: see fit_hybrid.cpp
   int iterations = 0;

@@ -87,11 +87,22 @@ void warn_of_jump(FitResult& result) {
 void warn_of_vague_modes(FitResult& result) {
   for (const Mode& mode : result.model.modes) {
     const double share = mode.damping_ratio_std / mode.damping_ratio;
-    if (!(share > 0.5)) continue;
+    if (mode.weak || !(share > 0.5)) continue;
     result.warnings.push_back(
         fmt::format("The mode at {:.1f} Hz is vague: the standard deviation of its damping ratio is {:.0f} % of it.",
                     mode.frequency_hz, 100.0 * share));
   }
+}
+
+void note_weak_modes(FitResult& result) {
+  std::vector<std::string> weak;
+  for (std::size_t k = 0; k < result.model.modes.size(); ++k) {
+    if (result.model.modes[k].weak) weak.push_back(std::to_string(k + 1));
+  }
+  if (weak.empty()) return;
+  result.warnings.push_back(
+      fmt::format("Weak: mode {}. The FRFs hardly show {}: no warning and no name of a vibration rests on {}.",
+                  list_of(weak), weak.size() == 1 ? "it" : "them", weak.size() == 1 ? "it" : "them"));
 }
 
 void warn_of_error(FitResult& result) {
@@ -175,6 +186,7 @@ void find_bounds(FitResult& result, const FitOptions& options) {
 void add_warnings(FitResult& result, const FrfSet& set) {
   warn_of_error(result);
   warn_of_bounds(result);
+  note_weak_modes(result);
   const FrfSet model = synthesize(result.model, set.frequency_hz);
   warn_of_gaps(result, set, model);
   warn_of_activity(result, model);
