@@ -186,8 +186,24 @@ std::vector<Assumption> assumed_damping(const CellFile& cell, const modal::Postu
        .file = cell.path.filename().string()}};
 }
 
-std::string description(const modal::PostureReport& report) {
-  if (report.source != modal::PostureReport::Source::calibrated) return {};
+/// "xx by 4.1 %, yy by 5 %; zz, along which nobody hit, is likely off by 30 %": a sentence.
+std::string direct_text(const modal::PostureReport& report, const Eigen::Vector3d& deviation) {
+  std::string measured, others;
+  for (std::size_t axis = 0; axis < report.direct.size(); ++axis) {
+    const std::string name(2, "xyz"[axis]);
+    const modal::PostureReport::Direct& direct = report.direct[axis];
+    if (direct.measured) {
+      const double error = std::isfinite(direct.left_out_error) ? direct.left_out_error : direct.error;
+      measured += fmt::format("{}{} by {}", measured.empty() ? "" : ", ", name, percent(error));
+    } else {
+      others += fmt::format("; {}, along which nobody hit, is likely off by {}", name,
+                            percent(deviation(static_cast<Eigen::Index>(axis))));
+    }
+  }
+  return measured.empty() ? std::string() : fmt::format(" It misses {}{}.", measured, others);
+}
+
+std::string description(const modal::PostureReport& report, const Eigen::Vector3d& deviation) {
   std::string text = fmt::format(
       "The arm's model is calibrated over {} posture{}: compliant joints{}{}{}. It misses their "
       "receptances by {}",
@@ -200,7 +216,14 @@ std::string description(const modal::PostureReport& report) {
   if (std::isfinite(report.left_out_error)) {
     text += fmt::format(", those of a posture left out by {}", percent(report.left_out_error));
   }
-  return text + ".";
+  return text + "." + direct_text(report, deviation);
+}
+
+/// The mean over the measured postures.
+Eigen::Vector3d mean_deviation(const modal::PostureModel& model, const std::vector<modal::MeasuredPosture>& postures) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const modal::MeasuredPosture& posture : postures) sum += model.direct_deviation(posture.joints);
+  return sum / static_cast<double>(postures.size());
 }
 
 }  // namespace
@@ -227,7 +250,10 @@ CellDynamics cell_dynamics(const CellFile& cell, Progress& progress) {
       out.modes_of[posture.name] = out.model->at(posture.joints).modes.modes.size();
     }
   }
-  if (const std::string text = description(report); !text.empty()) out.notes.push_back(text);
+  if (report.source == modal::PostureReport::Source::calibrated) {
+    out.direct_deviation = mean_deviation(*out.model, postures);
+    out.notes.push_back(description(report, out.direct_deviation));
+  }
   out.notes.insert(out.notes.end(), report.notes.begin(), report.notes.end());
   add_assumed(out.assumed, assumed_damping(cell, report));
   return out;
@@ -266,6 +292,7 @@ ModesOfPosture posture_modes(const std::filesystem::path& path, const std::vecto
   }
   out.unmatched = dynamics.unmatched(out.prediction);
   out.report = dynamics.model->report();
+  out.direct_deviation = dynamics.model->direct_deviation(joints);
   out.warnings = std::move(dynamics.warnings);
   out.notes = std::move(dynamics.notes);
   out.assumed = std::move(dynamics.assumed);

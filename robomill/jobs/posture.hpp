@@ -1,7 +1,9 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -23,6 +25,8 @@ struct CellDynamics {
   std::shared_ptr<const modal::PostureModel> model;
   /// Modes of each measured posture by its name, where they are interpolated; else empty.
   std::map<std::string, std::size_t> modes_of = {};
+  /// How far xx, yy and zz are likely off, the mean over the measured postures; NaN where unknown.
+  Eigen::Vector3d direct_deviation = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   /// Sentences for the user, of the files read and of the calibration.
   std::vector<std::string> warnings = {}, notes = {};
   std::vector<Assumption> assumed = {};
@@ -47,6 +51,8 @@ struct ModesOfPosture {
   std::vector<double> joints = {};  ///< [rad or m]
   modal::PosturePrediction prediction;
   modal::PostureReport report;
+  /// How far xx, yy and zz in base axes are likely off there (PostureModel::direct_deviation); NaN where unknown.
+  Eigen::Vector3d direct_deviation = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double axis_off_z_rad = 0.0;                         ///< of the tool's axis from the base's z
   std::size_t unmatched = 0;                           ///< as CellDynamics::unmatched
   std::vector<std::string> warnings = {}, notes = {};  ///< of the files read and of the calibration
@@ -59,9 +65,20 @@ struct ModesOfPosture {
                                                         PostureAxes axes = PostureAxes::base,
                                                         Progress& progress = Progress::none());
 
+/// What to do about axes that nobody hit along, where the cut depends on them: a sentence, empty where all were
+/// measured.
+/// @param deviation  of xx, yy and zz
+/// @param asked      whether each axis matters
+[[nodiscard]] ROBOMILL_API std::string unmeasured_axes_text(const modal::PostureReport& report,
+                                                            const Eigen::Vector3d& deviation,
+                                                            const std::array<bool, 3>& asked = {true, true, true});
+
 /// Those of the calibration, and sentences about this posture: how far it lies outside the measured region, modes left
-/// out.
-[[nodiscard]] ROBOMILL_API std::vector<std::string> posture_warnings(const ModesOfPosture& posture);
+/// out, axes that nobody hit along.
+/// @param asked  as of unmeasured_axes_text
+[[nodiscard]] ROBOMILL_API std::vector<std::string> posture_warnings(const ModesOfPosture& posture,
+                                                                     const std::array<bool, 3>& asked = {true, true,
+                                                                                                         true});
 /// modes.json of a posture: its modes, and under "posture" where it is and how well it is known.
 [[nodiscard]] ROBOMILL_API std::string posture_modes_json(const ModesOfPosture& posture);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -164,6 +165,43 @@ TEST(Posture, HasAMeasurementOfItsOwn) {
   const std::string said = rejection([&] { (void)cell_dynamics(read_cell(twice)); });
   EXPECT_NE(said.find("posture 2: names"), std::string::npos) << said;
   EXPECT_NE(said.find("as posture 1 does"), std::string::npos) << said;
+}
+
+// From forces along x and y zz follows from the model alone: its deviation is stated, and hits are asked for.
+TEST(Posture, AsksForHitsAlongAnAxisThatNobodyHit) {
+  const Folder folder;
+  const modal::FrfSet nine = modal::synthesize(posture_modes(folder.file("plain.toml", cell), joints).prediction.modes,
+                                               Eigen::VectorXd::LinSpaced(99, 4.0, 200.0));
+  modal::FrfSet six = nine;
+  six.frfs.resize(6);
+  modal::write_frfs(folder.at("nine.uff"), nine);
+  modal::write_frfs(folder.at("six.uff"), six);
+  const auto of = [&](const std::string& file) {
+    return posture_modes(
+        folder.file("cell.toml", cell + "[[postures]]\nfrf = \"" + file + "\"\njoints_deg = [1, 2, 3, 4, 5, 6]\n"),
+        radians({1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
+  };
+  const auto warned = [](const std::vector<std::string>& warnings) {
+    return std::ranges::any_of(warnings, [](const std::string& warning) {
+      return warning.find("Nobody hit along the base's z: zz") != std::string::npos;
+    });
+  };
+  const ModesOfPosture without = of("six.uff"), with = of("nine.uff");
+  EXPECT_TRUE(warned(posture_warnings(without)));
+  EXPECT_FALSE(warned(posture_warnings(without, {true, true, false})));
+  EXPECT_FALSE(warned(posture_warnings(with)));
+  const nlohmann::json some = nlohmann::json::parse(posture_modes_json(without))["posture"]["columns"];
+  const nlohmann::json all = nlohmann::json::parse(posture_modes_json(with))["posture"]["columns"];
+  EXPECT_EQ(some["z"]["measured"], false);
+  EXPECT_TRUE(some["z"]["relative_error"].is_null());
+  EXPECT_TRUE(some["x"]["held_out_relative_error"].is_number());
+  EXPECT_EQ(all["z"]["measured"], true);
+  EXPECT_TRUE(all["x"]["held_out_relative_error"].is_null());
+  for (const char* axis : {"x", "y", "z"}) {
+    EXPECT_GT(some[axis]["deviation"].get<double>(), 0.0) << axis;
+    EXPECT_GT(all[axis]["deviation"].get<double>(), 0.0) << axis;
+  }
+  EXPECT_GT(some["z"]["deviation"], all["z"]["deviation"]);
 }
 
 // Without masses measured modes are interpolated: those that do not recur are named, and none left is an error.

@@ -10,6 +10,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/modal/fit.hpp"
 #include "robomill/modal/posture/calibration.hpp"
+#include "robomill/modal/posture/column_deviation.hpp"
 #include "robomill/modal/posture/inverse_distance.hpp"
 #include "robomill/modal/posture/tool_peaks.hpp"
 
@@ -19,6 +20,7 @@ class PostureModel::Source {
  public:
   virtual ~Source() = default;
   [[nodiscard]] virtual ModalModel at(const Eigen::VectorXd& joints) const = 0;
+  [[nodiscard]] virtual Eigen::Vector3d direct_deviation(const Eigen::VectorXd& joints) const = 0;
   robot::Cell cell;
   PostureReport report;
   std::vector<Eigen::VectorXd> postures;
@@ -100,8 +102,9 @@ double region_of(const std::vector<Eigen::VectorXd>& postures) {
 
 /// Relative standard deviation of a mode's residue. Modes whose peaks overlap swap shares from posture to posture while
 /// the sum of their residues stays: of those it is the deviation of the sum.
+/// @param scale  factor on the deviation of each of the nine entries
 double residue_deviation(const FlexibleArm::Modes& modes, const FlexibleArm::Sensitivity& by,
-                         const Eigen::MatrixXd& covariance, Eigen::Index k) {
+                         const Eigen::MatrixXd& covariance, const Eigen::Matrix<double, 9, 1>& scale, Eigen::Index k) {
   Eigen::MatrixXcd change = Eigen::MatrixXcd::Zero(9, covariance.rows());
   Eigen::Matrix3cd sum = Eigen::Matrix3cd::Zero();
   for (Eigen::Index j = 0; j < modes.pole.size(); ++j) {
@@ -111,6 +114,7 @@ double residue_deviation(const FlexibleArm::Modes& modes, const FlexibleArm::Sen
     change += residue.norm() * by.residue[static_cast<std::size_t>(j)];
     sum += residue;
   }
+  change = scale.asDiagonal() * change;
   const double variance = (change * covariance * change.adjoint()).trace().real();
   return std::sqrt(std::max(0.0, variance)) / sum.norm();
 }
@@ -133,11 +137,12 @@ class PostureModel::Calibrated final : public Source {
     report.source = measured.empty() ? PostureReport::Source::cell : PostureReport::Source::calibrated;
     if (!measured.empty()) {
       choose(tool_peaks(cell, data, highest_hz_), progress);
+      judge_columns(progress);
       return;
     }
     Candidate as_told{.arm = arm_of({}, {})};
     as_told.calibration =
-        calibrate(*as_told.arm, *data_, highest_hz_, false, {.parameters = as_told.arm->start()}, progress);
+        calibrate(*as_told.arm, *data_, highest_hz_, {}, {.parameters = as_told.arm->start()}, progress);
     keep(std::move(as_told));
     report.notes.push_back(
         "No posture was measured: the modes are those of the cell's own numbers, with rigid bearings and no tool.");
@@ -158,9 +163,11 @@ class PostureModel::Calibrated final : public Source {
       const auto deviation = [&](const Eigen::RowVectorXd& row) {
         return std::sqrt(std::max(0.0, (row * parameters.covariance * row.transpose()).value()));
       };
-      mode.frequency_std_hz = mode.frequency_hz * calibration_.frequency_scale * deviation(by.log_frequency.row(k));
-      mode.damping_ratio_std = calibration_.damping_scale * deviation(by.damping_ratio.row(k));
-      mode.residue_std_ratio = calibration_.residue_scale * residue_deviation(modes, by, parameters.covariance, k);
+      const double unmeasured = unmeasured_share(modes.at_tip.col(k));
+      mode.frequency_std_hz =
+          mode.frequency_hz * widened(calibration_.frequency_scale, unmeasured) * deviation(by.log_frequency.row(k));
+      mode.damping_ratio_std = widened(calibration_.damping_scale, unmeasured) * deviation(by.damping_ratio.row(k));
+      mode.residue_std_ratio = residue_deviation(modes, by, parameters.covariance, entry_scale(), k);
       normalise(mode);
       out.modes.push_back(std::move(mode));
     }
@@ -174,9 +181,36 @@ class PostureModel::Calibrated final : public Source {
     return out;
   }
 
+  [[nodiscard]] Eigen::Vector3d direct_deviation(const Eigen::VectorXd& joints) const override {
+    const PostureParameters parameters = predict(*arm_, calibration_, postures, joints);
+    const FlexibleArm::System system = arm_->at(joints, parameters.mean);
+    const SmoothedFrf& lines = data_->last_stage().front();
+    Eigen::Vector3d out = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+    if (data_->size() == 0) return out;
+    const Eigen::Vector3d covered = detail::direct_deviation(*arm_, system, parameters.covariance, lines);
+    const Eigen::Vector3d beyond = unmodelled_ ? unmodelled_->deviation(system) : Eigen::Vector3d::Zero().eval();
+    double held_out = 0.0;
+    for (const PostureReport::Direct& direct : report.direct) held_out = std::fmax(held_out, direct.held_out_error);
+    for (std::size_t k = 0; k < report.direct.size(); ++k) {
+      const PostureReport::Direct& direct = report.direct[k];
+      const auto axis = static_cast<Eigen::Index>(k);
+      // What left-out postures show of a measured axis grows as the covariance does, away from what was measured.
+      const bool left_out = std::isfinite(direct.left_out_error);
+      const double usual = left_out ? calibration_.left_out_predicted(axis) : covered(axis);
+      const double shown = left_out ? direct.left_out_error : direct.error;
+      const double known = direct.measured ? shown * std::max(1.0, covered(axis) / usual)
+                                           : std::max(held_out, unmeasured_scale_ * covered(axis));
+      out(axis) = std::hypot(known, beyond(axis));
+    }
+    return out;
+  }
+
  private:
   /// Fewer postures do not tell structures apart.
   static constexpr std::size_t fewest_for_structure = 3;
+  /// Where one axis alone was measured, nothing shows what the covariance of an unmeasured one is worth.
+  static constexpr double scale_without_evidence = 3.0;
+  static constexpr double largest_scale = 10.0;  ///< of deviations
 
   /// A structure calibrated.
   struct Candidate {
@@ -217,8 +251,8 @@ class PostureModel::Calibrated final : public Source {
 
   [[nodiscard]] Candidate finish(Begun begun, Progress& progress) const {
     Candidate out{.arm = std::move(begun.arm)};
-    out.calibration =
-        calibrate(*out.arm, *data_, highest_hz_, postures.size() >= fewest_for_structure, begun.at, progress);
+    out.calibration = calibrate(*out.arm, *data_, highest_hz_, {.varying = postures.size() >= fewest_for_structure},
+                                begun.at, progress);
     progress.advance();
     return out;
   }
@@ -231,6 +265,84 @@ class PostureModel::Calibrated final : public Source {
     report.left_out_error = best.calibration.left_out_error;
     arm_ = std::move(best.arm);
     calibration_ = std::move(best.calibration);
+  }
+
+  /// How much wider than its covariance what was not measured is, over the measured postures.
+  void widen_bands(const std::vector<FlexibleArm::System>& systems) {
+    Eigen::Vector3d stated = Eigen::Vector3d::Zero(), covered = Eigen::Vector3d::Zero();
+    for (std::size_t p = 0; p < postures.size(); ++p) {
+      stated += direct_deviation(postures[p]);
+      covered += detail::direct_deviation(
+          *arm_, systems[p], predict(*arm_, calibration_, postures, postures[p]).covariance, data_->last_stage()[p]);
+    }
+    for (std::size_t axis = 0; axis < report.direct.size(); ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      if (!report.direct[axis].measured) band_scale_ = std::clamp(stated(a) / covered(a), band_scale_, largest_scale);
+    }
+  }
+
+  /// How well each direct receptance is known, and what an axis costs that nobody hit along.
+  void judge_columns(Progress& progress) {
+    std::vector<FlexibleArm::System> systems;
+    for (const Eigen::VectorXd& joints : postures) {
+      systems.push_back(arm_->at(joints, predict(*arm_, calibration_, postures, joints).mean));
+    }
+    int measured = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      PostureReport::Direct& direct = report.direct[static_cast<std::size_t>(axis)];
+      direct.measured = is_measured(*data_, axis);
+      if (!direct.measured) continue;
+      ++measured;
+      DirectError all;
+      for (std::size_t k = 0; k < data_->size(); ++k) {
+        const DirectError one = direct_error(systems[k], data_->last_stage()[k], axis);
+        all.error += one.error;
+        all.size += one.size;
+      }
+      direct.error = all.ratio();
+      if (std::isfinite(calibration_.left_out_error)) direct.left_out_error = calibration_.left_out_direct(axis);
+    }
+    unmodelled_.emplace(systems, *data_);
+    if (measured == 3) return;
+    if (measured < 2) {
+      unmeasured_scale_ = scale_without_evidence;
+      widen_bands(systems);
+      return;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      PostureReport::Direct& direct = report.direct[static_cast<std::size_t>(axis)];
+      if (!direct.measured) continue;
+      const HeldOut out = hold_out(*arm_, *data_, highest_hz_, postures.size() >= fewest_for_structure,
+                                   {.parameters = calibration_.common, .noise = calibration_.noise}, axis, progress);
+      direct.held_out_error = out.error;
+      unmeasured_scale_ = std::clamp(out.error / out.predicted, unmeasured_scale_, largest_scale);
+    }
+    widen_bands(systems);
+  }
+
+  /// Of a mode's residue, what lies in direct entries that nobody measured.
+  [[nodiscard]] double unmeasured_share(const Eigen::Vector3cd& at_tip) const {
+    double share = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!is_unmeasured(axis)) continue;
+      const double part = std::norm(at_tip(static_cast<Eigen::Index>(axis))) / at_tip.squaredNorm();
+      share += part * part;
+    }
+    return share;
+  }
+  [[nodiscard]] bool is_unmeasured(std::size_t axis) const {
+    return data_->size() > 0 && !report.direct[axis].measured;
+  }
+  [[nodiscard]] double widened(double scale, double unmeasured) const {
+    const double wide = std::max(scale, band_scale_);
+    return std::sqrt((1.0 - unmeasured) * scale * scale + unmeasured * wide * wide);
+  }
+  [[nodiscard]] Eigen::Matrix<double, 9, 1> entry_scale() const {
+    Eigen::Matrix<double, 9, 1> scale = Eigen::Matrix<double, 9, 1>::Constant(calibration_.residue_scale);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (is_unmeasured(axis)) scale(4 * static_cast<Eigen::Index>(axis)) = std::max(scale(0), band_scale_);
+    }
+    return scale;
   }
 
   /// The structure that predicts left-out receptances best; a bracket has to pay for itself.
@@ -276,6 +388,9 @@ class PostureModel::Calibrated final : public Source {
   }
 
   double highest_hz_;
+  std::optional<Unmodelled> unmodelled_;
+  double unmeasured_scale_ = 1.0;  ///< factor on the covariance's deviations along axes that nobody hit along
+  double band_scale_ = 1.0;        ///< the same of modes, with what lies beyond the model
   std::unique_ptr<FlexibleArm> arm_;
   Calibration calibration_;
   std::optional<robot::Link> payload_;
@@ -289,6 +404,10 @@ class PostureModel::Interpolated final : public Source {
                const PostureModelOptions& options, Progress& progress) {
     cell = told;
     report.source = PostureReport::Source::interpolated;
+    for (const FrfName& name : names_of(measured.front())) {
+      const auto axis = static_cast<std::size_t>(name.excitation.axis) - 1;
+      if (name.excitation.point == 0 && axis < report.direct.size()) report.direct[axis].measured = true;
+    }
     for (const MeasuredPosture& posture : measured) {
       postures.push_back(posture.joints);
       if (posture.modes) {
@@ -306,6 +425,9 @@ class PostureModel::Interpolated final : public Source {
   }
   [[nodiscard]] ModalModel at(const Eigen::VectorXd& joints) const override {
     return inverse_distance(modes_, cell.arm, joints, ResidueAxes::flange);
+  }
+  [[nodiscard]] Eigen::Vector3d direct_deviation(const Eigen::VectorXd& /*joints*/) const override {
+    return Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
 
  private:
@@ -354,6 +476,11 @@ PosturePrediction PostureModel::at(const Eigen::VectorXd& joints) const {
   }
   out.measured_nearby = out.distance_rad <= source_->report.region_rad;
   return out;
+}
+
+Eigen::Vector3d PostureModel::direct_deviation(const Eigen::VectorXd& joints) const {
+  require_position(source_->cell, joints, "joints");
+  return source_->direct_deviation(joints);
 }
 
 const PostureReport& PostureModel::report() const {

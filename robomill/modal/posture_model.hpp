@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,6 +55,15 @@ struct PostureReport {
   double error = 0.0;           ///< mean |H_fit − H| over |H|, all postures
   double left_out_error = 0.0;  ///< the same of each posture predicted from the others; NaN below three postures
   double region_rad = 0.0;      ///< how far from a measured posture counts as measured
+  /// The direct receptances xx, yy and zz, of a calibrated model each by Σ |ΔH| / Σ |H| over lines and postures.
+  struct Direct {
+    bool measured = false;                                             ///< somebody hit along that axis
+    double error = std::numeric_limits<double>::quiet_NaN();           ///< of the postures measured
+    double left_out_error = std::numeric_limits<double>::quiet_NaN();  ///< each predicted from the other postures
+    /// Predicted by a calibration without the forces along that axis. NaN where all three were measured, or one alone
+    double held_out_error = std::numeric_limits<double>::quiet_NaN();
+  };
+  std::array<Direct, 3> direct = {};
   std::vector<std::string> notes = {};
 };
 
@@ -80,6 +91,13 @@ class ROBOMILL_API PostureModel {
   /// @param joints  length n
   /// @throws InvalidInput if it has another length, is not finite or outside the joints' limits (which, by how much)
   [[nodiscard]] PosturePrediction at(const Eigen::VectorXd& joints) const;
+  /// Deviations of xx, yy and zz there, a share of each. Of a measured axis what left-out postures show, or more where
+  /// the parameters' covariance is larger than there. Of an unmeasured axis what the covariance leaves, times what
+  /// measured axes are missed by beyond theirs when the forces along them are left out, and no less than that miss. Of
+  /// both also what the measurements have beyond the model, as it moves with the flange. NaN of a model that is not
+  /// calibrated.
+  /// @throws InvalidInput as at
+  [[nodiscard]] Eigen::Vector3d direct_deviation(const Eigen::VectorXd& joints) const;
   [[nodiscard]] const PostureReport& report() const;
 
  private:

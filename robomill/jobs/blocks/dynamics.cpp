@@ -53,6 +53,8 @@ DynamicsAt dynamics_of_cell(const CellFile& cell, std::vector<std::string>& warn
   }
   const CellDynamics dynamics = cell_dynamics(cell, progress);
   warnings.insert(warnings.end(), dynamics.warnings.begin(), dynamics.warnings.end());
+  const std::string unmeasured = unmeasured_axes_text(dynamics.model->report(), dynamics.direct_deviation);
+  if (!unmeasured.empty()) warnings.push_back(unmeasured);
   notes.insert(notes.end(), dynamics.notes.begin(), dynamics.notes.end());
   add_assumed(assumed, dynamics.assumed);
   const bool measured = dynamics.model->report().postures > 0;

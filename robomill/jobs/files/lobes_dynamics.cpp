@@ -27,7 +27,9 @@ void load_posture(LobesFile& file, Progress& progress) {
     find();
   }
   file.problem.dynamics = posture->prediction.modes;
-  std::ranges::move(posture_warnings(*posture), std::back_inserter(file.notes));
+  // An upright cut in the plane of base x and y asks for nothing of base z.
+  const bool along_z = file.problem.in_three_directions() || file.posture_axes != PostureAxes::base;
+  std::ranges::move(posture_warnings(*posture, {true, true, along_z}), std::back_inserter(file.notes));
   file.notes.insert(file.notes.end(), posture->notes.begin(), posture->notes.end());
   add_assumed(file.assumed, posture->assumed);
   constexpr double noticed_rad = 5.0 * units::deg;

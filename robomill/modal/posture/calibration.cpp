@@ -2,10 +2,12 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "robomill/base/parallel.hpp"
+#include "robomill/modal/posture/column_deviation.hpp"
 #include "robomill/modal/posture/posture_normal.hpp"
 
 namespace robomill::modal::detail {
@@ -375,6 +377,7 @@ Eigen::Index counterpart(const FlexibleArm::Modes& of, Eigen::Index mode, const 
 void scale_deviations(const FlexibleArm& arm, const CalibrationSearch& search, const CalibrationData& data,
                       double highest_hz, Calibration& out) {
   std::vector<std::vector<double>> z(3);
+  std::array<DirectError, 3> direct;
   double error = 0.0, size = 0.0;
   for (std::size_t k = 0; k < data.size(); ++k) {
     const CalibrationSearch::LeftOut left = search.without(k);
@@ -383,6 +386,12 @@ void scale_deviations(const FlexibleArm& arm, const CalibrationSearch& search, c
     size += at.size;
     const Eigen::VectorXd refined = search.refined(k, left.parameters, at);
     const FlexibleArm::System before = arm.at(data.joints()[k], left.parameters);
+    out.left_out_predicted += direct_deviation(arm, before, left.covariance, data.last_stage()[k]);
+    for (std::size_t axis = 0; axis < direct.size(); ++axis) {
+      const DirectError one = direct_error(before, data.last_stage()[k], static_cast<int>(axis));
+      direct[axis].error += one.error;
+      direct[axis].size += one.size;
+    }
     const FlexibleArm::Modes predicted = arm.modes(before, highest_hz);
     const FlexibleArm::Modes found = arm.modes(arm.at(data.joints()[k], refined), highest_hz);
     const ModeSpread spread = spread_of(arm, before, predicted, left.covariance);
@@ -398,6 +407,10 @@ void scale_deviations(const FlexibleArm& arm, const CalibrationSearch& search, c
     }
   }
   out.left_out_error = error / size;
+  out.left_out_predicted /= static_cast<double>(data.size());
+  for (std::size_t axis = 0; axis < direct.size(); ++axis) {
+    out.left_out_direct(static_cast<Eigen::Index>(axis)) = direct[axis].ratio();
+  }
   const auto scale = [&](std::size_t i) { return std::clamp(quantile95(z[i]) / 1.96, 0.5, 10.0); };
   out.frequency_scale = scale(0);
   out.damping_scale = scale(1);
@@ -435,9 +448,21 @@ Beginning begin_calibration(const FlexibleArm& arm, const CalibrationData& data,
   return {.parameters = search.common(), .noise = search.noise()};
 }
 
-Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, double highest_hz, bool varying,
-                      const Beginning& beginning, Progress& progress) {
+CalibrationData CalibrationData::without_force(int axis) const {
+  CalibrationData out = *this;
+  for (std::vector<SmoothedFrf>& stage : out.stages_) {
+    for (SmoothedFrf& frf : stage) {
+      frf.value.middleRows(3 * axis, 3).setZero();
+      frf.weight.middleRows(3 * axis, 3).setZero();
+    }
+  }
+  return out;
+}
+
+Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, double highest_hz,
+                      const CalibrationChoice& choice, const Beginning& beginning, Progress& progress) {
   Calibration out;
+  const bool varying = choice.varying;
   CalibrationSearch search(arm, data, varying, beginning.parameters);
   search.stage(last_stage);
   if (data.size() > 0) {
@@ -449,12 +474,13 @@ Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, doubl
     search.descend(settling_iterations, least_gain, varying, progress);
     out.error = search.error();
   }
+  out.noise = search.noise();
   out.common = search.common();
   out.differing = search.differing();
   out.deviating = search.deviating();
   out.covariance = search.covariance();
   out.left_out_error = std::numeric_limits<double>::quiet_NaN();
-  if (data.size() >= 3) scale_deviations(arm, search, data, highest_hz, out);
+  if (choice.judged && data.size() >= 3) scale_deviations(arm, search, data, highest_hz, out);
   return out;
 }
 

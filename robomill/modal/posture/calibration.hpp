@@ -17,7 +17,10 @@ struct Calibration {
   std::vector<Eigen::Index> deviating;  ///< parameters that u moves
   Eigen::MatrixXd covariance;           ///< of (θ, u posture by posture)
   double error = 0.0;                   ///< mean |ΔH| / |H|
+  double noise = 0.0;                   ///< variance of a residual, of 5 % of the receptance each
   double left_out_error = 0.0;
+  Eigen::Vector3d left_out_direct = Eigen::Vector3d::Zero();     ///< Σ |ΔH| / Σ |H| of xx, yy, zz; 0: not measured
+  Eigen::Vector3d left_out_predicted = Eigen::Vector3d::Zero();  ///< what the covariance makes of it
   /// Factors on the predicted deviations of ln f, ζ and residues, from left-out postures.
   double frequency_scale = 1.0, damping_scale = 1.0, residue_scale = 1.0;
 };
@@ -38,6 +41,9 @@ class CalibrationData {
   [[nodiscard]] std::size_t size() const { return joints_.size(); }
   [[nodiscard]] const std::vector<Eigen::VectorXd>& joints() const { return joints_; }
   [[nodiscard]] const std::vector<SmoothedFrf>& stage(std::size_t i) const { return stages_[i]; }
+  [[nodiscard]] const std::vector<SmoothedFrf>& last_stage() const { return stages_.back(); }
+  /// The same as if no force along that axis, 0 to 2, had been measured.
+  [[nodiscard]] CalibrationData without_force(int axis) const;
 
  private:
   std::vector<Eigen::VectorXd> joints_;
@@ -53,9 +59,12 @@ struct Beginning {
 /// The common parameters from much added damping down to little: from the cell's rough numbers into the right valley.
 [[nodiscard]] Beginning begin_calibration(const FlexibleArm& arm, const CalibrationData& data, Progress& progress);
 
-/// @param varying  whether joints may differ from posture to posture
+struct CalibrationChoice {
+  bool varying = false;  ///< joints may differ from posture to posture
+  bool judged = true;    ///< left-out postures scale the deviations, where there are three or more
+};
 [[nodiscard]] Calibration calibrate(const FlexibleArm& arm, const CalibrationData& data, double highest_hz,
-                                    bool varying, const Beginning& beginning, Progress& progress);
+                                    const CalibrationChoice& choice, const Beginning& beginning, Progress& progress);
 
 /// @param joints  of the measured postures
 [[nodiscard]] PostureParameters predict(const FlexibleArm& arm, const Calibration& calibration,
