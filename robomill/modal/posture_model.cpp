@@ -182,11 +182,11 @@ class PostureModel::Calibrated final : public Source {
   }
 
   [[nodiscard]] Eigen::Vector3d direct_deviation(const Eigen::VectorXd& joints) const override {
+    Eigen::Vector3d out = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+    if (data_->size() == 0) return out;
     const PostureParameters parameters = predict(*arm_, calibration_, postures, joints);
     const FlexibleArm::System system = arm_->at(joints, parameters.mean);
     const SmoothedFrf& lines = data_->last_stage().front();
-    Eigen::Vector3d out = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    if (data_->size() == 0) return out;
     const Eigen::Vector3d covered = detail::direct_deviation(*arm_, system, parameters.covariance, lines);
     const Eigen::Vector3d beyond = unmodelled_ ? unmodelled_->deviation(system) : Eigen::Vector3d::Zero().eval();
     double held_out = 0.0;

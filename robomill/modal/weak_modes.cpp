@@ -52,8 +52,8 @@ struct ModeShare {
 };
 ModeShare share_of(const ModalModel& model, std::size_t k, const FrfSet& frfs, const FrfSet& fitted) {
   const Mode& mode = model.modes[k];
-  const FrfSet own = synthesize({.excitations = model.excitations, .responses = model.responses, .modes = {mode}},
-                                frfs.frequency_hz);
+  const FrfSet own =
+      synthesize({.excitations = model.excitations, .responses = model.responses, .modes = {mode}}, frfs.frequency_hz);
   const double half_width_hz = mode.damping_ratio * mode.frequency_hz;
   const LineRange peak = lines_around(frfs.frequency_hz, mode.frequency_hz, half_width_hz, fewest_lines);
   const LineRange wide = lines_around(frfs.frequency_hz, mode.frequency_hz, scatter_half_widths * half_width_hz,
@@ -106,8 +106,8 @@ void mark_weak_modes(ModalModel& model) {
     Mode& mode = model.modes[k];
     mode.weak = false;
     if (!knows_deviations(mode)) continue;
-    const Eigen::VectorXd band = mode.frequency_hz * Eigen::VectorXd::LinSpaced(lines, 1.0 - mode.damping_ratio,
-                                                                                1.0 + mode.damping_ratio);
+    const Eigen::VectorXd band =
+        mode.frequency_hz * Eigen::VectorXd::LinSpaced(lines, 1.0 - mode.damping_ratio, 1.0 + mode.damping_ratio);
     const FrfSet sum = synthesize(model, band);
     const ModeShare share = share_of(model, k, sum, sum);
     mode.weak = only_bends(mode, share) || vague_and_small(mode, share);

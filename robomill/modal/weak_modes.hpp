@@ -10,7 +10,8 @@
 
 namespace robomill::modal {
 
-/// Marks the modes that the FRFs do not bear out. A mode is weak where, over its half-power band f (1 ± ζ), in every FRF
+/// Marks the modes that the FRFs do not bear out. A mode is weak where, over its half-power band f (1 ± ζ), in every
+/// FRF
 ///   - ‖H_k‖ is within twice the scatter of the fit, the median line's |H_fit - H| there, or
 ///   - it bends a baseline: ζ > 0.1, and ‖H_k‖ below ζ ‖H‖, so that it makes no peak of its own, or
 ///   - it is vague and small: a deviation of ζ above ζ / 5 or of f above ζ f / 5, and ‖H_k‖ below a fifth of ‖H‖.
@@ -30,8 +31,9 @@ struct ModalStiffness {
   double mass_kg = std::numeric_limits<double>::quiet_NaN();            ///< m [kg]
 };
 
-/// At the point and in the direction in which the mode moves most: m = 1 / (2 ω sqrt(1 - ζ²) ‖R‖ ‖L‖), k = m ω², R and L
-/// of one point's translations that are both hit and measured. NaN where there are none or the mode does not move there.
+/// At the point and in the direction in which the mode moves most: m = 1 / (2 ω sqrt(1 - ζ²) ‖R‖ ‖L‖), k = m ω², R and
+/// L of one point's translations that are both hit and measured. NaN where there are none or the mode does not move
+/// there.
 /// @param mode  of the model, from 0
 /// @throws InvalidInput if the model is not valid
 [[nodiscard]] ROBOMILL_API ModalStiffness modal_stiffness(const ModalModel& model, std::size_t mode);

@@ -122,7 +122,8 @@ TEST(WeakModes, NoneThatStandsOutOfTheNoiseIsMarkedOrDropped) {
   EXPECT_EQ(tally.unmarked, 0);
 }
 
-// Records leave what no mode stands for: windows, a sensor's noise integrated twice. Fits fill it with modes of 1e9 N/m.
+// Records leave what no mode stands for: windows, a sensor's noise integrated twice. Fits fill it with modes of 1e9
+// N/m.
 TEST(WeakModes, GhostsOfHitsAreMarked) {
   const auto seeds = static_cast<std::uint64_t>(test::seeds(100));
   Tally tally;

@@ -148,7 +148,8 @@ Eigen::Vector3d Unmodelled::deviation(const FlexibleArm::System& system) const {
     const Eigen::Matrix3cd model = smoothed(system, line.s);
     for (int axis = 0; axis < 3; ++axis) {
       const Row6 row = product_row(system.flange_axes.row(axis), system.flange_axes.row(axis));
-      deviation(axis) += std::sqrt(std::norm((row * line.mean).value()) + (row * line.covariance * row.transpose()).value());
+      deviation(axis) +=
+          std::sqrt(std::norm((row * line.mean).value()) + (row * line.covariance * row.transpose()).value());
       size(axis) += std::abs(model(axis, axis));
     }
   }
