@@ -94,8 +94,8 @@ class ROBOMILL_API PostureModel {
   /// Deviations of xx, yy and zz there, a share of each. Of a measured axis what left-out postures show, or more where
   /// the parameters' covariance is larger than there. Of an unmeasured axis what the covariance leaves, times what
   /// measured axes are missed by beyond theirs when the forces along them are left out, and no less than that miss. Of
-  /// both also what the measurements have beyond the model, as it moves with the flange. NaN of a model that is not
-  /// calibrated.
+  /// both also twice what the measurements have beyond the model, as it moves with the flange. NaN of a model that is
+  /// not calibrated.
   /// @throws InvalidInput as at
   [[nodiscard]] Eigen::Vector3d direct_deviation(const Eigen::VectorXd& joints) const;
   [[nodiscard]] const PostureReport& report() const;
