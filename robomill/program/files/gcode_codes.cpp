@@ -162,6 +162,10 @@ const char* gcode_hint(int code) {
     case 16:
     case 7:
       return "It would change what the words of positions mean";
+    case 70:
+      return "G70 is the unit inch of DIN 66025 and Sinumerik: write G20. Elsewhere it is a cycle";
+    case 71:
+      return "G71 is the unit mm of DIN 66025 and Sinumerik: write G21. Elsewhere it is a cycle";
     case 95:
     case 96:
       return "Use G93 or G94, with a spindle speed in rpm";

@@ -108,6 +108,7 @@ void GcodeReader::take_word(const GcodeWords::Word& word, Line& line) {
     case 'y':
     case 'z':
       line.position[letter_index(word.letter) - letter_index('x')] = word.number;
+      remarks_.coordinate(line_, word.text, unit_name());
       return;
     case 'a':
     case 'b':
@@ -189,7 +190,9 @@ void GcodeReader::take_g(const GcodeWords::Word& word, Line& line) {
   } else {
     const GcodeGroup* const group = still_gcode(code);
     if (group == nullptr) {
-      reject("G", word.number, "", "is not read: it may move the tool or its frame", gcode_hint(code));
+      const bool unit = code == 700 || code == 710;
+      reject("G", word.number, "", unit ? "is a unit to some, and not read" : "is not read: it may move the tool or its frame",
+             gcode_hint(code));
     }
     claim(*group, word, line);
     if (*group == GcodeGroup::length) {

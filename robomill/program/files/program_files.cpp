@@ -1,5 +1,7 @@
 #include "robomill/program/files/program_files.hpp"
 
+#include <fmt/format.h>
+
 #include <limits>
 #include <string>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "robomill/program/files/program_csv.hpp"
 #include "robomill/program/files/program_lines.hpp"
 #include "robomill/program/files/program_reader.hpp"
+#include "robomill/program/files/unread_dialect.hpp"
 
 namespace robomill::program {
 namespace {
@@ -30,6 +33,16 @@ std::unique_ptr<ProgramReader> make_reader(ProgramFormat format, const std::stri
   return std::make_unique<GcodeReader>(file, reading, remarks);
 }
 
+/// What would be misread, or rejected for a word of it.
+void require_known_dialect(const std::filesystem::path& path, std::string_view head) {
+  const std::optional<UnreadDialect> other = unread_dialect(io::lowered(path.extension().string()), head);
+  if (!other) return;
+  throw InvalidInput(InvalidInput::Parts{.where = fmt::format("{}:{}", path.string(), other->line),
+                                         .field = fmt::format("\"{}\"", printable(other->shown, 40)),
+                                         .rule = std::string(other->rule),
+                                         .hint = std::string(other->hint)});
+}
+
 /// A file and what reads it.
 class Walk {
  public:
@@ -41,6 +54,7 @@ class Walk {
         reading_(reading),
         format_(reading.format.value_or(program_format_of(path))),
         remarks_(kept) {
+    if (format_ == ProgramFormat::gcode) require_known_dialect(path, lines_.head());
     begin();
     if (!reader_->start()) {
       throw InvalidInput(file_, "holds no complete position",

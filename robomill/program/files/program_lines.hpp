@@ -24,6 +24,8 @@ class ProgramLines {
   bool next(std::string_view& line);
   /// The first letter of the line that comes next, blanks aside; '\n' where there is none.
   [[nodiscard]] char ahead() const;
+  /// What of the text that comes next is in memory.
+  [[nodiscard]] std::string_view head() const { return {buffer_.data() + begin_, end_ - begin_}; }
   /// Begins anew. @throws InvalidInput if the file is a pipe
   void rewind();
 

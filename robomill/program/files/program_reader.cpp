@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -74,10 +75,28 @@ std::vector<std::string> ProgramRemarks::notes() const {
 }
 
 std::vector<Assumption> ProgramRemarks::assumed() const {
-  if (no_center_point_.count == 0) return {};
-  return {{.what = fmt::format("Positions with rotary axes turned, from line {} on", no_center_point_.first_line),
-           .taken = "those of the tool's tip",
-           .key = "G43.4, M128 or M428"}};
+  std::vector<Assumption> out;
+  if (no_center_point_.count > 0) {
+    out.push_back({.what = fmt::format("Positions with rotary axes turned, from line {} on", no_center_point_.first_line),
+                   .taken = "those of the tool's tip",
+                   .key = "G43.4, M128 or M428"});
+  }
+  if (points_end_words_ && whole_line_ > 0) {
+    out.push_back({.what = fmt::format("{} in line {}, without the point that other positions have", whole_word_,
+                                       whole_line_),
+                   .taken = whole_unit_ + ", where some controls count thousandths",
+                   .key = fmt::format("{}.", whole_word_)});
+  }
+  return out;
+}
+
+void ProgramRemarks::coordinate(std::size_t line, std::string_view word, std::string_view unit) {
+  if (word.ends_with('.')) points_end_words_ = true;
+  if (whole_line_ > 0 || word.find('.') != std::string_view::npos) return;
+  if (word.find_first_of("123456789") == std::string_view::npos) return;  // 0 is 0
+  whole_line_ = line;
+  whole_unit_ = unit;
+  for (const char letter : word) whole_word_ += static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
 }
 
 std::string printable(std::string_view text, std::size_t most) {

@@ -26,6 +26,8 @@ class ProgramRemarks {
   void operator_stop(std::size_t line);
   /// A move at feed with rotary axes turned, where nothing has said that positions are those of the tip.
   void no_center_point(std::size_t line);
+  /// A word of a position. Where some end in a point, "Z50.", others without one may count the smallest step.
+  void coordinate(std::size_t line, std::string_view word, std::string_view unit);
 
   [[nodiscard]] std::vector<Skipped>& skipped() { return skipped_; }
   [[nodiscard]] std::size_t skipped_count() const { return skipped_count_; }
@@ -45,6 +47,9 @@ class ProgramRemarks {
   std::vector<Skipped> skipped_;
   std::size_t skipped_count_ = 0;
   Counted normalised_, long_dwells_, operator_stops_, no_center_point_;
+  bool points_end_words_ = false;
+  std::size_t whole_line_ = 0;  ///< of the first whole number without a point, but 0
+  std::string whole_word_, whole_unit_;
 };
 
 /// Letters of a file as a message may show them: the first `most`, those that are not plain as \x1b.

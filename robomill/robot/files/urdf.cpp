@@ -145,7 +145,24 @@ void require_tree(const std::string& content, const std::string& where) {
   }
 }
 
+/// What is taken for a URDF and is none. A URDF that xacro wrote may still declare its namespace.
+void require_no_other_description(std::string_view content, const std::string& where) {
+  constexpr const char* as_urdf = "Write it as URDF";
+  const std::size_t xacro = content.find("<xacro:"), value = content.find("${");
+  if (xacro != std::string_view::npos || value != std::string_view::npos) {
+    const auto line = 1 + std::ranges::count(content.substr(0, std::min(xacro, value)), '\n');
+    throw InvalidInput(fmt::format("{}:{}", where, line), "is xacro, from which a URDF is made, and no URDF yet",
+                       "Write it out with the tool of ROS: xacro FILE.xacro > FILE.urdf, of a macro the file that uses it");
+  }
+  for (const auto& [begin, name] : {std::pair{"<sdf", "SDF (Gazebo)"}, {"<mujoco", "MJCF (MuJoCo)"}}) {
+    if (content.find(begin) != std::string_view::npos) {
+      throw InvalidInput(where, fmt::format("is {}, which is not read", name), as_urdf);
+    }
+  }
+}
+
 urdf::ModelInterfaceSharedPtr parse(std::string_view content, const std::string& where) {
+  require_no_other_description(content, where);
   require_shallow(content, where);
   require_tree(std::string(content), where);
   const Listener listener;

@@ -173,6 +173,22 @@ std::string fixed(const std::string& name, const std::string& parent, const std:
                      child);
 }
 
+TEST(Urdf, OtherDescriptionsAreNamed) {
+  const auto say = [](const std::string& text) { return rejection([&] { (void)parse_urdf(text, "arm.xacro", {}); }); };
+  const std::string head = "<?xml version=\"1.0\"?>\n<robot name=\"r\" xmlns:xacro=\"http://wiki.ros.org/xacro\">\n";
+  for (const char* body : {"<xacro:include filename=\"macro.xacro\"/>\n</robot>\n",
+                           "<link name=\"${prefix}base\"/>\n</robot>\n"}) {
+    const std::string said = say(head + body);
+    EXPECT_NE(said.find("arm.xacro:3: is xacro"), std::string::npos) << said;
+    EXPECT_NE(said.find("xacro FILE.xacro > FILE.urdf"), std::string::npos) << said;
+  }
+  EXPECT_NE(say("<sdf version=\"1.7\"><model name=\"a\"/></sdf>").find("is SDF"), std::string::npos);
+  EXPECT_NE(say("<mujoco model=\"a\"/>").find("is MJCF"), std::string::npos);
+  std::string written = good;
+  written.replace(written.find("<robot name"), 6, "<robot xmlns:xacro=\"http://wiki.ros.org/xacro\"");
+  EXPECT_NO_THROW((void)parse_urdf(written, "arm.urdf", {.tip = "flange"}));
+}
+
 TEST(Urdf, LinksThatAreNoTreeAreRejected) {
   const auto said = [](const std::string& text) {
     return rejection([&] { (void)parse_urdf(text, "two.urdf", {.tip = "flange"}); });
