@@ -48,7 +48,8 @@ Exit run(const InitCommand& command, const Common& common, Progress& /*progress*
   jobs::InitFiles files = jobs::init_files({.kind = kind,
                                             .file = common.to_stdout() ? std::string() : common.output,
                                             .data = command.data,
-                                            .robot = command.robot});
+                                            .robot = command.robot,
+                                            .example = command.example});
   if (common.to_stdout()) {
     if (command.interactive) ask(kind, files);
     fmt::print("{}", files.files.front().text);

@@ -18,8 +18,8 @@ class InitVerb : public ProgramTest {
   }
 };
 
-TEST_F(InitVerb, WritesFilesThatRun) {
-  const Ended job = robomill("init job");
+TEST_F(InitVerb, WritesExamplesThatRun) {
+  const Ended job = robomill("init job --example");
   ASSERT_EQ(job.exit, 0) << job.err;
   for (const char* name : {"job.toml", "hits.toml", "lobes.toml", "example_hit_x.csv"}) {
     EXPECT_NE(job.out.find(std::string("wrote ") + name + "\n"), std::string::npos) << job.out;
@@ -28,21 +28,48 @@ TEST_F(InitVerb, WritesFilesThatRun) {
   EXPECT_NE(job.out.find("Run: robomill plan job.toml -o out/\n"), std::string::npos) << job.out;
   const Ended plan = robomill("plan job.toml -o out");
   EXPECT_EQ(plan.exit, 0) << plan.err << plan.out;
+  for (const char* sample : {"Sample value left as it was: 3 (tool.teeth of lobes.toml)",
+                             "Sample value left as it was: \"example_hit_x.csv\" (hits[1].file of hits.toml)"}) {
+    EXPECT_NE(plan.out.find(sample), std::string::npos) << plan.out;
+  }
+  EXPECT_EQ(plan.out.find("dynamics.x"), std::string::npos) << "the hits bring another structure";
   EXPECT_TRUE(there("out/report.html"));
   EXPECT_EQ(robomill("frf hits.toml -o tip.uff").exit, 0);
   EXPECT_EQ(robomill("lobes lobes.toml --at 9000,1 -o lobes.json").exit, 0);
-  EXPECT_EQ(robomill("init forces").exit, 0);
+  EXPECT_EQ(robomill("init forces --example").exit, 0);
   EXPECT_EQ(robomill("forces forces.toml -o forces.csv").exit, 0);
-  EXPECT_EQ(robomill("init assembly").exit, 0);
+  EXPECT_EQ(robomill("init assembly --example").exit, 0);
   EXPECT_EQ(robomill("couple assembly.toml -o predicted.uff").exit, 0);
-  EXPECT_EQ(robomill("init cell --robot ur-10e").exit, 0);
+  EXPECT_EQ(robomill("init cell --robot ur-10e --example").exit, 0);
   write("part.ngc", "G21 G90 G94\nG0 X0 Y0 Z20\nG1 Z0 F600\nG1 X30 F1200\nG1 Y20\nG0 Z20\n");
   const Ended smooth = robomill("smooth part.ngc --cell cell.toml -o trajectory.csv");
   EXPECT_EQ(smooth.exit, 0) << smooth.err;
-  EXPECT_EQ(robomill("init monitor").exit, 0);
+  EXPECT_EQ(robomill("init monitor --example").exit, 0);
   EXPECT_EQ(robomill("simulate lobes.toml --at 9000,0.2 --seconds 1 -o cut.csv").exit, 0);
   const Ended monitor = robomill("monitor monitor.toml --input cut.csv -o events.jsonl");
   EXPECT_EQ(monitor.exit, 0) << monitor.err;
+}
+
+// Without an example each verb ends with exit 1 and names what it lacks.
+TEST_F(InitVerb, AsksForWhatNobodySaid) {
+  ASSERT_EQ(robomill("init job").exit, 0);
+  for (const char* name : {"job.toml", "hits.toml", "lobes.toml"}) EXPECT_TRUE(there(name)) << name;
+  EXPECT_FALSE(there("example_hit_x.csv"));
+  for (const char* kind : {"forces", "assembly", "cell", "monitor"}) {
+    ASSERT_EQ(robomill(std::string("init ") + kind).exit, 0) << kind;
+  }
+  const std::pair<const char*, const char*> runs[] = {{"lobes lobes.toml", "lobes.toml:8: tool.teeth: is missing"},
+                                                      {"plan job.toml -o out", "lobes.toml:8: tool.teeth: is missing"},
+                                                      {"frf hits.toml -o tip.uff", "hits[1].file: is missing"},
+                                                      {"forces forces.toml", "tool.kind: is missing"},
+                                                      {"couple assembly.toml", "tool[1].length_mm: is missing"},
+                                                      {"cell check cell.toml", "robot.dh: is missing"}};
+  for (const auto& [run, lacks] : runs) {
+    const Ended ended = robomill(run);
+    EXPECT_EQ(ended.exit, 1) << run;
+    EXPECT_NE(ended.err.find(lacks), std::string::npos) << run << ": " << ended.err;
+  }
+  EXPECT_FALSE(there("out/plan.json"));
 }
 
 TEST_F(InitVerb, OverwritesNothing) {
@@ -69,7 +96,8 @@ TEST_F(InitVerb, DashWritesTheDocumentAlone) {
 }
 
 TEST_F(InitVerb, AsksInShopTerms) {
-  const Ended run = told("lobes", "inch\n4000\n12000 rpm\nhalf an inch\n0.5\n4\n7075-t6\nclimb\n1/8\n0.2\n0.1 mm\n");
+  const Ended run =
+      told("lobes --example", "inch\n4000\n12000 rpm\nhalf an inch\n0.5\n4\n7075-t6\nclimb\n1/8\n0.2\n0.1 mm\n");
   ASSERT_EQ(run.exit, 0) << run.err;
   EXPECT_NE(run.err.find("Diameter of the cutter [12 mm]: "), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("\"half an inch\": is not a length. A number with one of mm, in"), std::string::npos)

@@ -112,6 +112,7 @@ void CommandLine::add_first_verbs() {
       ->check(one_of_words(jobs::template_names))
       ->required();
   sub->get_option("--output")->description("write here (default: KIND.toml); - writes to standard output");
+  sub->add_flag("--example", init.example, "made-up values that run as they are, each listed as assumed until changed");
   sub->add_flag("--interactive", init.interactive, "ask for what is known, in shop terms and any unit");
   sub->add_option("--data", init.data, "of hits and job: a folder with recorded hits (default: that of the file)");
   sub->add_option("--robot", init.robot, "of a cell: an arm by its name, kuka-kr210-r2700 for one");

@@ -30,6 +30,7 @@ struct Common {
 struct InitCommand {
   std::string kind;  ///< one of jobs::template_names
   bool interactive = false;
+  bool example = false;        ///< made up, and such that it runs
   std::filesystem::path data;  ///< of hits and job: a folder with records; empty: that of the output
   std::string robot;           ///< of a cell; empty: the template's
 };

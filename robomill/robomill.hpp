@@ -62,6 +62,7 @@
 #include "robomill/jobs/monitor_plan.hpp"
 #include "robomill/jobs/pages.hpp"
 #include "robomill/jobs/plan.hpp"
+#include "robomill/jobs/planned_cut.hpp"
 #include "robomill/jobs/posture.hpp"
 #include "robomill/jobs/predict.hpp"
 #include "robomill/jobs/simulate.hpp"

@@ -1,5 +1,5 @@
 // node serve_check.mjs PROGRAM [FOLDER] [--shots DIR] [--only TASK,TASK] [--chromium PATH]
-// Starts `PROGRAM serve` on a copy of FOLDER, or on what `PROGRAM init job` writes, and works its page as a person would, by input events alone. Exit 0 or 1; times are said, none fails.
+// Starts `PROGRAM serve` on a copy of FOLDER, or on what `PROGRAM init job --example` writes, and works its page as a person would, by input events alone. Exit 0 or 1; times are said, none fails.
 import { spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -134,7 +134,7 @@ async function check(browser, { program, folder, shots, wanted }) {
 /** A folder as somebody has it who begins. */
 function begin(program, folder) {
   mkdirSync(folder);
-  const { status, stderr } = spawnSync(program, ['init', 'job', '-o', join(folder, 'job.toml')], { encoding: 'utf8' });
+  const { status, stderr } = spawnSync(program, ['init', 'job', '--example', '-o', join(folder, 'job.toml')], { encoding: 'utf8' });
   if (status !== 0) throw new Error(`${program} init ended with ${status}: ${stderr}`);
 }
 

@@ -307,7 +307,8 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   std::atomic<bool> ended{false};
   Input input = open_input(command, file, ended);
   monitor::validate(file);
-  const live::Advisor advisor(jobs::read_advice_basis(file, progress));
+  const live::AdviceBasis basis = jobs::read_advice_basis(file, progress);
+  const live::Advisor advisor(basis);
   Outlets outlets(command, common, file, input.is_live);
   live::Session session(file,
                         {.every_window = command.every_window, .seconds = command.seconds, .live = input.by_clock},
@@ -335,10 +336,13 @@ Exit run(const MonitorCommand& command, const Common& common, Progress& progress
   if (live::Recorder* const recorder = outlets.recorder()) {
     const live::RecordedRun recorded = recorder->run();
     page::Report page = monitor_page(recorded, file, input.name);
-    page.summary = summary + run_summary(recorded);
+    page.assumed = basis.assumed;
+    page.summary = summary + run_summary(recorded) + assumed_text(basis.assumed);
     write_report(common.report, page);
   }
-  if (common.wants_summary()) fmt::print("{}{}", summary, blind_summary(session.metrics()));
+  if (common.wants_summary()) {
+    fmt::print("{}{}{}", summary, blind_summary(session.metrics()), assumed_text(basis.assumed));
+  }
   return stop ? static_cast<Exit>(exit_of_signal()) : done;
 }
 

@@ -27,9 +27,82 @@ Eigen::VectorXd vector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+struct UnreadEnding {
+  std::string_view ending, what;
+};
+constexpr UnreadEnding unread_endings[] = {{".lvm", "a LabVIEW measurement file"},
+                                           {".tdms", "a LabVIEW TDMS file"},
+                                           {".tdm", "a LabVIEW TDM file"},
+                                           {".npy", "a NumPy file"},
+                                           {".npz", "a NumPy file"},
+                                           {".h5", "an HDF5 file"},
+                                           {".hdf5", "an HDF5 file"},
+                                           {".mf4", "an ASAM MDF file"},
+                                           {".mdf", "an ASAM MDF file"},
+                                           {".dxd", "a Dewesoft file"},
+                                           {".d7d", "a Dewesoft file"},
+                                           {".xls", "a spreadsheet"},
+                                           {".xlsx", "a spreadsheet"},
+                                           {".ods", "a spreadsheet"},
+                                           {".flac", "a compressed sound file"},
+                                           {".mp3", "a compressed sound file"},
+                                           {".m4a", "a compressed sound file"},
+                                           {".ogg", "a compressed sound file"}};
+constexpr const char* as_csv =
+    "Export it as CSV with a column of time in s, or as a universal file (.uff); in N and m/s^2 where it can be chosen";
+
+InvalidInput unread_error(const Path& path, const UnreadRecord& unread) {
+  return InvalidInput(path.string(), "is " + unread.what, unread.remedy);
+}
+
+/// The number behind a word of a header's line, where the line has that word; in lower case.
+std::optional<double> number_behind(std::string_view line, std::string_view word, std::string_view& unit) {
+  const std::size_t at = line.find(word);
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; };
+  if (at == std::string_view::npos || (at > 0 && is_letter(line[at - 1]))) return std::nullopt;
+  std::string_view rest = line.substr(at + word.size());
+  if (!rest.empty() && is_letter(rest.front())) return std::nullopt;
+  const std::size_t begin = rest.find_first_of("0123456789.");
+  if (begin == std::string_view::npos) return std::nullopt;
+  unit = rest.substr(0, begin);  // "sample rate [kHz]: 25.6"
+  rest.remove_prefix(begin);
+  const std::size_t end = std::min(rest.find_first_not_of("0123456789.,e+-"), rest.size());
+  const std::string_view behind = trimmed(rest.substr(end));
+  if (!behind.empty() && is_letter(behind.front())) unit = behind;
+  return parse_cell(rest.substr(0, end));
+}
+
+/// The rate that the lines above the numbers state; 0: none.
+double stated_rate_hz(std::string_view content) {
+  constexpr int most_lines = 100;
+  constexpr std::string_view rates[] = {
+      "sample rate",        "sampling rate",    "sample_rate_hz", "sample_rate",    "samplerate", "sampling frequency",
+      "sampling_frequency", "sample frequency", "abtastrate",     "abtastfrequenz", "fs"};
+  constexpr std::string_view steps[] = {"delta_x",           "delta x",   "delta_t",       "sample interval",
+                                        "sampling interval", "time step", "time interval", "dt"};
+  for (int i = 0; i < most_lines && !content.empty(); ++i) {
+    const std::string line = lowered(content.substr(0, content.find('\n')));
+    content.remove_prefix(std::min(line.size() + 1, content.size()));
+    std::string_view unit;
+    for (const std::string_view word : rates) {
+      const std::optional<double> value = number_behind(line, word, unit);
+      if (value && *value > 0.0) return unit.find("khz") != std::string_view::npos ? 1e3 * *value : *value;
+    }
+    for (const std::string_view word : steps) {
+      const std::optional<double> value = number_behind(line, word, unit);
+      const bool ms = unit.find("ms") != std::string_view::npos, us = unit.find("us") != std::string_view::npos;
+      if (value && *value > 0.0) return (ms ? 1e3 : us ? 1e6 : 1.0) / *value;
+    }
+  }
+  return 0.0;
+}
+
 Record read_text_record(const Path& path) {
-  const Table table = parse_table(read_file(path), path.string());
+  const std::string content = read_file(path);
+  if (content.starts_with("LabVIEW Measurement")) throw unread_error(path, unread_record("record.lvm"));
+  const Table table = parse_table(content, path.string());
   Record record{.file = path, .names = table.names, .columns = {}};
+  record.sample_rate_hz = stated_rate_hz(std::string_view(content).substr(0, table.begin));
   record.names.resize(table.columns.size());
   for (const std::vector<double>& column : table.columns) record.columns.push_back(vector(column));
   return record;
@@ -122,6 +195,12 @@ void find_sample_rate(Record& record, const RecordOptions& options) {
     const auto known = std::find_if(record.names.begin(), record.names.end(), is_time_column);
     if (known == record.names.end()) return;
     time = *known;
+    // What it is too coarse for is left to who knows the rate.
+    if (rounded_sample_rate_of(record.column(time)) > 0.0) {
+      record.notes.push_back(
+          fmt::format("{}: column {} is rounded and does not count as the time", record.file.string(), time));
+      return;
+    }
   }
   record.sample_rate_hz = sample_rate_of(record.column(time), record.file.string());
 }
@@ -151,6 +230,29 @@ const Eigen::VectorXd& Record::column(const std::string& name_or_number) const {
   throw InvalidInput(file.string(), "has no column " + name_or_number,
                      fmt::format("It has {} column{}{}{}", columns.size(), columns.size() == 1 ? "" : "s",
                                  known.empty() ? "" : ": ", known));
+}
+
+UnreadRecord unread_record(const Path& path) {
+  const std::string ending = lowered(path.extension().string());
+  const auto* const found = std::ranges::find(unread_endings, ending, &UnreadEnding::ending);
+  if (found == std::end(unread_endings)) return {};
+  return {.what = fmt::format("{}, which is not read yet", found->what), .remedy = as_csv};
+}
+
+double rounded_sample_rate_of(const Eigen::VectorXd& time_s) {
+  constexpr double least_share = 0.01;  // of steps that are 0
+  constexpr double straight = 0.01;     // of the span
+  const Eigen::Index n = time_s.size();
+  if (n < 3) return 0.0;
+  const Eigen::ArrayXd steps = time_s.tail(n - 1) - time_s.head(n - 1);
+  const double span = time_s(n - 1) - time_s(0);
+  if (!(span > 0.0) || !(steps.minCoeff() >= 0.0)) return 0.0;
+  if (static_cast<double>((steps == 0.0).count()) < least_share * static_cast<double>(n)) return 0.0;
+  const Eigen::ArrayXd index =
+      Eigen::ArrayXd::LinSpaced(n, -0.5 * static_cast<double>(n - 1), 0.5 * static_cast<double>(n - 1));
+  const Eigen::ArrayXd about_mean = time_s.array() - time_s.mean();
+  const double step_s = (index * about_mean).sum() / index.square().sum();
+  return (about_mean - step_s * index).abs().maxCoeff() <= straight * span ? 1.0 / step_s : 0.0;
 }
 
 double sample_rate_of(const Eigen::VectorXd& time_s, const std::string& where) {
@@ -192,6 +294,7 @@ Record read_record(const Path& path, const RecordOptions& options) {
       break;
     default:
       (void)read_file(path);
+      if (const UnreadRecord unread = unread_record(path); !unread.what.empty()) throw unread_error(path, unread);
       throw InvalidInput(path.string(), "is no record by its ending", "Records are .csv, .txt, .mat, .uff and .wav");
   }
   if (record.columns.empty()) throw InvalidInput(path.string(), "holds no column of samples");

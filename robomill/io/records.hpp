@@ -28,12 +28,24 @@ struct RecordOptions {
   void validate() const;
 };
 
-/// Reads a record by its ending: .csv .txt .dat .asc (columns parted by commas, semicolons, tabs or blanks, with or
+/// Reads a record by its ending, of text without a column of time with the rate that its header states ("sample rate:
+/// 25600 Hz", "Delta_X 3.9e-5"): .csv .txt .dat .asc (columns parted by commas, semicolons, tabs or blanks, with or
 /// without header), .mat (v5, v7.3: one variable a column), .uff .unv .uf (time responses), .wav (one channel a
 /// column).
 /// @throws InvalidInput with file and line if it is missing or empty, a value is no finite number, a line has another
 ///     number of values than those before it, or the time does not run evenly
 [[nodiscard]] ROBOMILL_API Record read_record(const std::filesystem::path& path, const RecordOptions& options = {});
+
+/// What a file is that holds a record and is not read, and what to do: "a LabVIEW measurement file, which is not read
+/// yet". Empty texts where the ending says nothing of it.
+struct UnreadRecord {
+  std::string what = {}, remedy = {};
+};
+[[nodiscard]] ROBOMILL_API UnreadRecord unread_record(const std::filesystem::path& path);
+
+/// The rate of a column of time that never falls and has too few digits for its steps, some of which are therefore 0:
+/// that of the straight line through all of it. 0 where the column is none.
+[[nodiscard]] ROBOMILL_API double rounded_sample_rate_of(const Eigen::VectorXd& time_s);
 
 /// The rate of evenly rising times. @throws InvalidInput naming `where` if a step is more than half a step off
 [[nodiscard]] ROBOMILL_API double sample_rate_of(const Eigen::VectorXd& time_s, const std::string& where);

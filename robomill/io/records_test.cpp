@@ -69,6 +69,54 @@ TEST(Records, ReadsMatFiles) {
   EXPECT_EQ(record.notes.size(), 1u);
 }
 
+TEST(Records, TakesTheRateThatAFileStates) {
+  const Folder folder;
+  const auto rate = [&](const std::string& head) {
+    return read_record(folder.file("a.txt", head + "force\tacc\n0\t1\n1\t2\n0\t3\n")).sample_rate_hz;
+  };
+  EXPECT_EQ(rate(""), 0.0);
+  EXPECT_EQ(rate("Sampling rate: 25600 Hz\n"), 25600.0);
+  EXPECT_EQ(rate("# Sample Rate [kHz] = 25.6\n"), 25600.0);
+  EXPECT_EQ(rate("Fs\t51200\n"), 51200.0);
+  EXPECT_NEAR(rate("Delta_X\t3,906250E-5\n"), 25600.0, 1e-6);
+  EXPECT_NEAR(rate("dt = 0.2 ms\n"), 5000.0, 1e-9);
+  EXPECT_EQ(rate("Samples\t32768\nOffset 0.5\n"), 0.0);
+  // A column of time counts before what a header says.
+  const Record timed = read_record(folder.file("b.csv", "sample rate,100\ntime_s,f\n0,1\n0.5,2\n1.0,3\n"));
+  EXPECT_EQ(timed.sample_rate_hz, 2.0);
+}
+
+TEST(Records, WhatIsNotReadIsNamedWithWhatToDo) {
+  const Folder folder;
+  for (const auto& [name, what] : {std::pair{"a.lvm", "a LabVIEW measurement file"},
+                                   {"a.TDMS", "a LabVIEW TDMS file"},
+                                   {"a.h5", "an HDF5 file"},
+                                   {"a.xlsx", "a spreadsheet"}}) {
+    const std::string said = rejection([&, name = name] { (void)read_record(folder.file(name, "0 1\n1 2\n")); });
+    EXPECT_NE(said.find(std::string("is ") + what + ", which is not read yet"), std::string::npos) << said;
+    EXPECT_NE(said.find("Export it as CSV"), std::string::npos) << said;
+  }
+  const auto text = folder.file("a.txt", "LabVIEW Measurement\t\nDelta_X\t4e-5\n***End_of_Header***\n0\t1\n");
+  EXPECT_NE(rejection([&] { (void)read_record(text); }).find("LabVIEW measurement file"), std::string::npos);
+  EXPECT_EQ(unread_record("a.csv").what, "");
+}
+
+// Property: of a time that is rounded so far that values repeat the whole column gives the rate.
+TEST(Records, ARoundedTimeHasARate) {
+  Random random(7);
+  for (int i = 0; i < 50; ++i) {
+    const double rate_hz = random.uniform(500.0, 50'000.0);
+    const Eigen::Index n = 2000 + static_cast<Eigen::Index>(random.index(4000));
+    Eigen::VectorXd time(n);
+    for (Eigen::Index k = 0; k < n; ++k) time(k) = std::stod(fmt::format("{:.2e}", static_cast<double>(k) / rate_hz));
+    EXPECT_NEAR(rounded_sample_rate_of(time) / rate_hz, 1.0, 2e-3) << rate_hz;
+    for (Eigen::Index k = 0; k < n; ++k) time(k) = static_cast<double>(k) / rate_hz;
+    EXPECT_EQ(rounded_sample_rate_of(time), 0.0) << "it is exact";
+    time.tail(n / 2).array() += 0.3 * static_cast<double>(n) / rate_hz;
+    EXPECT_EQ(rounded_sample_rate_of(time), 0.0) << "samples are missing";
+  }
+}
+
 TEST(Records, ReadsUniversalFiles) {
   const Folder folder;
   UffFunction function;
@@ -125,7 +173,7 @@ TEST(Records, SaysWhatIsWrong) {
   };
   EXPECT_NE(says("a.csv", "t,x\n0,1\n1,nan\n").find("a.csv:3: x = \"nan\"; must be a finite number"),
             std::string::npos);
-  EXPECT_NE(says("a.xlsx", "PK").find("is no record by its ending"), std::string::npos);
+  EXPECT_NE(says("a.pdf", "PK").find("is no record by its ending"), std::string::npos);
   EXPECT_NE(says("a.wav", "RIFF").find("is no sound file"), std::string::npos);
   EXPECT_NE(says("a.mat", "hello, this is no MAT file").find("is no MAT file"), std::string::npos);
   EXPECT_NE(says("a.mat", "").find("is empty"), std::string::npos);

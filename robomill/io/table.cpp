@@ -88,7 +88,7 @@ std::string_view take_line(std::string_view& rest) {
 
 class TableReader {
  public:
-  TableReader(std::string_view content, const std::string& where) : rest_(content), where_(where) {}
+  TableReader(std::string_view content, const std::string& where) : content_(content), rest_(content), where_(where) {}
 
   Table read() {
     check_encoding(rest_, where_);
@@ -128,6 +128,7 @@ class TableReader {
       const auto is_number = [this](std::string_view field) { return parse_field(field, separator_).has_value(); };
       if (std::all_of(fields.begin(), fields.end(), is_number)) {
         rest_ = before;
+        table_.begin = static_cast<std::size_t>(before.data() - content_.data());
         --line_number_;
         take_names(header, fields.size());
         return;
@@ -153,6 +154,9 @@ class TableReader {
       std::vector<std::string_view> fields = split(line, separator);
       if (fields.size() != count && separator == '\t') fields = split(line, blanks);
       if (fields.size() != count) break;
+      // Above the names a number says something of the record: "sample rate, 25600".
+      const auto is_number = [this](std::string_view field) { return parse_field(field, separator_).has_value(); };
+      if (back == 2 && std::any_of(fields.begin(), fields.end(), is_number)) break;
       names = std::move(fields);
     }
     table_.names.assign(names.begin(), names.end());
@@ -205,7 +209,7 @@ class TableReader {
     }
   }
 
-  std::string_view rest_;
+  std::string_view content_, rest_;
   const std::string& where_;
   std::size_t line_number_ = 0;
   char separator_ = blanks;

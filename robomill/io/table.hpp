@@ -13,6 +13,7 @@ namespace robomill::io {
 struct Table {
   std::vector<std::string> names;            ///< one a column; empty where the file has no header
   std::vector<std::vector<double>> columns;  ///< all of one length, >= 1
+  std::size_t begin = 0;                     ///< of the first line of numbers in the text
 };
 
 /// Reads columns parted by semicolons, tabs, commas or blanks, whichever the first line of numbers shows, in this

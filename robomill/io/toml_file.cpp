@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "robomill/io/file.hpp"
 #include "robomill/io/text.hpp"
+#include "robomill/io/toml_lines.hpp"
 #include "robomill/io/toml_synonyms.hpp"
 #include "robomill/io/toml_tree.hpp"
 
@@ -24,22 +24,6 @@ struct Row {
   bool present = false;
   std::vector<double> si;  ///< values as the caller got them; without the key, what the caller had before
 };
-
-/// "hits[0].file" as messages show it, counted from 1.
-std::string shown(std::string_view key) {
-  std::string text;
-  while (!key.empty()) {
-    const std::size_t open = key.find('[');
-    text += key.substr(0, open);
-    if (open == std::string_view::npos) break;
-    key.remove_prefix(open + 1);
-    std::size_t index = 0;
-    const std::from_chars_result read = std::from_chars(key.data(), key.data() + key.size(), index);
-    text += fmt::format("[{}", index + 1);
-    key.remove_prefix(static_cast<std::size_t>(read.ptr - key.data()));
-  }
-  return text;
-}
 
 /// The key, or the innermost table around it that the file has; none where that is the file itself.
 const toml::node* nearest(const toml::table& root, std::string_view key) {
@@ -117,6 +101,7 @@ bool put(toml::node& node, std::string_view path, const toml::node& value) {
 
 struct TomlFile::State {
   std::filesystem::path path;
+  std::string content;
   toml::table root;
   std::set<std::string, std::less<>> known;  ///< every key that was asked for
   std::vector<Row> rows;
@@ -134,6 +119,7 @@ struct TomlFile::State {
   [[nodiscard]] std::string suggestion(std::string_view key) const;
   [[nodiscard]] InvalidInput unknown(const std::string& key) const;
   [[nodiscard]] std::string written_for(std::string_view key) const;
+  void point_at_comment(std::string_view key, InvalidInput::Parts& parts) const;
   void check_known(const toml::node& node, const std::string& path_here) const;
   [[nodiscard]] const Row* row_of(const InvalidInput::Parts& parts) const;
 };
@@ -141,7 +127,7 @@ struct TomlFile::State {
 void TomlFile::State::set(const TomlSetting& setting) {
   const auto rejected = [&](std::string rule) {
     return InvalidInput(InvalidInput::Parts{.where = path.string(),
-                                            .field = shown(setting.key),
+                                            .field = shown_key(setting.key),
                                             .value = setting.value.substr(0, 60),
                                             .rule = std::move(rule)});
   };
@@ -161,8 +147,8 @@ void TomlFile::State::set(const TomlSetting& setting) {
 TomlFile::TomlFile(const TomlSource& source) : state_(std::make_unique<State>()) {
   const std::string name = source.path.string();
   state_->path = source.path;
-  const std::string content = source.text ? *source.text : read_file(source.path, std::uintmax_t{64} << 20);
-  state_->root = parse_toml(content, name);
+  state_->content = source.text ? *source.text : read_file(source.path, std::uintmax_t{64} << 20);
+  state_->root = parse_toml(state_->content, name);
   for (const TomlSetting& setting : source.settings) state_->set(setting);
 }
 
@@ -320,16 +306,18 @@ void TomlFile::require(std::string_view key, std::string_view hint) const {
   if (has(key)) return;
   state_->known.emplace(key);
   if (const std::string other = state_->written_for(key); !other.empty()) throw state_->unknown(other);
-  throw InvalidInput(InvalidInput::Parts{.where = state_->where(nearest(state_->root, key)),
-                                         .field = shown(key),
-                                         .rule = "is missing",
-                                         .hint = std::string(hint)});
+  InvalidInput::Parts parts{.where = state_->where(nearest(state_->root, key)),
+                            .field = shown_key(key),
+                            .rule = "is missing",
+                            .hint = std::string(hint)};
+  state_->point_at_comment(key, parts);
+  throw InvalidInput(std::move(parts));
 }
 
 InvalidInput TomlFile::reject(std::string_view key, std::string rule, std::string hint) const {
   const toml::node* node = find_node(state_->root, key);
   InvalidInput::Parts parts{.where = state_->where(nearest(state_->root, key)),
-                            .field = shown(key),
+                            .field = shown_key(key),
                             .rule = std::move(rule),
                             .hint = std::move(hint)};
   if (node != nullptr) {
@@ -367,7 +355,7 @@ InvalidInput TomlFile::located(const InvalidInput& error) const {
   const bool entry = parts.field.back() == ']' && row->member.back() != ']';
   const std::string index = entry ? parts.field.substr(parts.field.rfind('[')) : "";
   parts.where = state_->where(nearest(state_->root, row->key));
-  parts.field = shown(row->key) + index;
+  parts.field = shown_key(row->key) + index;
   if (parts.number && !parts.unit.ends_with("entries")) {
     parts.number = round_15(*parts.number / row->factor);
     const std::string unit = unit_of_key(row->key);
@@ -378,6 +366,7 @@ InvalidInput TomlFile::located(const InvalidInput& error) const {
     if (useless) parts.number.reset();
     if (useless) parts.unit.clear();
     parts.rule = (useless ? "is missing; " : "is the default, not in the file; ") + parts.rule;
+    if (useless) state_->point_at_comment(row->key, parts);
   }
   return InvalidInput(std::move(parts));
 }
@@ -387,17 +376,19 @@ std::string TomlFile::State::suggestion(std::string_view key) const {
   for (const std::string& other : known) {
     const std::size_t dot = other.rfind('.');
     if (dot != std::string::npos && std::string_view(other).substr(dot + 1) == name) {
-      return fmt::format("It belongs in [{}]", shown(std::string_view(other).substr(0, dot)));
+      return fmt::format("It belongs in [{}]", shown_key(std::string_view(other).substr(0, dot)));
     }
   }
   if (std::string hint = synonym_hint(key, known); !hint.empty()) return hint;
   const std::string near = nearest_word(key, known);
-  return near.empty() ? near : fmt::format("Did you mean {}?", shown(near));
+  return near.empty() ? near : fmt::format("Did you mean {}?", shown_key(near));
 }
 
 InvalidInput TomlFile::State::unknown(const std::string& key) const {
-  return InvalidInput(InvalidInput::Parts{
-      .where = where(find_node(root, key)), .field = shown(key), .rule = "is not known here", .hint = suggestion(key)});
+  return InvalidInput(InvalidInput::Parts{.where = where(find_node(root, key)),
+                                          .field = shown_key(key),
+                                          .rule = "is not known here",
+                                          .hint = suggestion(key)});
 }
 
 /// The key beside a missing one that somebody wrote in its place: "tool.flutes" for "tool.teeth"; empty where none is.
@@ -410,6 +401,17 @@ std::string TomlFile::State::written_for(std::string_view key) const {
     if (!known.contains(other) && is_written_for(name.str(), key.substr(dot + 1))) return other;
   }
   return {};
+}
+
+/// Where a missing key stands behind a #, as in a template, the error is of that line.
+void TomlFile::State::point_at_comment(std::string_view key, InvalidInput::Parts& parts) const {
+  for (const TomlLine& line : toml_lines(content)) {
+    if (!line.is_comment || line.key != key) continue;
+    parts.where = fmt::format("{}:{}", path.string(), line.number);
+    if (!parts.hint.empty()) parts.hint += ". ";
+    parts.hint += "This line is a comment: write your own value and take the # away";
+    return;
+  }
 }
 
 void TomlFile::State::check_known(const toml::node& node, const std::string& key) const {

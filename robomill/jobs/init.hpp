@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "robomill/base/export.hpp"
@@ -19,14 +18,16 @@ inline constexpr Name<Template> template_names[] = {{"job", Template::job},     
                                                     {"assembly", Template::assembly}, {"forces", Template::forces},
                                                     {"monitor", Template::monitor}};
 
-/// The commented document as it is in templates/: made up, but such that its verb runs.
-[[nodiscard]] ROBOMILL_API std::string_view template_text(Template kind);
+/// The commented document of templates/. Of an example every value is there, made up such that its verb runs, and
+/// marked as a sample (io::sample_values); else what only its reader can know stands behind a #, to be filled in.
+[[nodiscard]] ROBOMILL_API std::string template_text(Template kind, bool example);
 
 struct InitOptions {
   Template kind = Template::job;
   std::filesystem::path file = {};  ///< where the document is to stand; a folder or nothing: KIND.toml there
   std::filesystem::path data = {};  ///< a folder with records of hits; nothing: that of `file`
   std::string robot = {};           ///< of a cell: one of known_arms(); nothing: that of the template
+  bool example = false;             ///< made up such that it runs as it is; without records of the folder
 };
 
 /// A file that is to be written.
@@ -42,16 +43,18 @@ struct InitFiles {
   std::vector<std::filesystem::path> kept = {};  ///< what it names that was there before
   std::vector<std::string> notes = {};           ///< what was found in records
   std::string next = {};                         ///< the command that runs the document, without the program's name
+  bool example = false;                          ///< as asked for
+  char unmeasured = 0;                           ///< 'x' or 'y' of a job whose hits leave that direction out; 0: none
 
   /// The document of a kind among `files`, or null.
   [[nodiscard]] ROBOMILL_API NewFile* document(Template kind);
 };
 
 /// Makes the files. Where records of hits lie in the folder, hits.toml names them, with guesses of their columns and
-/// directions that are marked as such (modal::guess_hit); elsewhere it names one that is made up beside it. A job
-/// brings hits.toml and lobes.toml along, unless they are there.
-/// @throws InvalidInput if a name does not end in .toml, a robot is not known, the folder of data cannot be read, or a
-///     hits.toml that the job would keep cannot
+/// directions that are marked as such (modal::guess_hit); what looks like a record and is not read is named in the
+/// notes. An example names a record that is made up beside it. A job brings hits.toml and lobes.toml along, unless they
+/// are there.
+/// @throws InvalidInput if a name does not end in .toml, a robot is not known, or the folder of data cannot be read
 [[nodiscard]] ROBOMILL_API InitFiles init_files(const InitOptions& options);
 
 /// @throws InvalidInput naming a file of theirs that exists

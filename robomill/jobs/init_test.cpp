@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -19,6 +20,7 @@
 
 #include "robomill/coupling/files/assembly_toml.hpp"
 #include "robomill/io/sample_source.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/toml_edit.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
 #include "robomill/jobs/files/forces_toml.hpp"
@@ -88,6 +90,14 @@ class Init : public ::testing::Test {
     return files;
   }
   [[nodiscard]] std::filesystem::path at(const std::string& name) const { return folder_.at("begin") / name; }
+  /// As the calibration sheets would say them.
+  void give_sensitivities() const {
+    std::string text = slurp(at("hits.toml"));
+    for (const auto& [key, value] : {std::pair{"force_mv_per_n", "2.25"}, {"response_mv_per_g", "100"}}) {
+      text = io::with_setting(text, {std::string("acquisition.") + key, value});
+    }
+    put("hits.toml", text);
+  }
   void put(const std::string& name, const std::string& content) const {
     std::filesystem::create_directories(folder_.at("begin"));
     folder_.file("begin/" + name, content);
@@ -96,17 +106,85 @@ class Init : public ::testing::Test {
   test::Folder folder_;
 };
 
-TEST_F(Init, EveryTemplateIsReadByItsVerb) {
+TEST_F(Init, EveryExampleIsReadByItsVerb) {
   for (const Template kind : every) {
-    const InitFiles files = made({.kind = kind});
+    const InitFiles files = made({.kind = kind, .example = true});
     EXPECT_NO_THROW(read(kind, files.files.front().path)) << name_in(template_names, kind);
     EXPECT_EQ(slurp(files.files.front().path), files.files.front().text);
     std::filesystem::remove_all(folder_.at("begin"));
   }
 }
 
+/// What a template says that is no comment.
+std::string said(const std::string& document) {
+  std::string out;
+  std::istringstream rows(document);
+  for (std::string row; std::getline(rows, row);) {
+    if (!row.empty() && !row.starts_with('#')) out += row.substr(0, row.find(" #")) + "\n";
+  }
+  return out;
+}
+
+// What nobody has said is no fact: each verb names the first key that it lacks, at the line that shows it.
+TEST_F(Init, WithoutAnExampleWhatNobodySaidIsAsked) {
+  const std::pair<Template, const char*> asks[] = {{Template::hits, "hits[1].file: is missing"},
+                                                   {Template::lobes, "tool.teeth: is missing"},
+                                                   {Template::cell, "robot.dh: is missing"},
+                                                   {Template::assembly, "tool[1].length_mm: is missing"},
+                                                   {Template::forces, "tool.kind: is missing"}};
+  for (const auto& [kind, asked] : asks) {
+    const InitFiles files = made({.kind = kind});
+    const std::string rejected = test::rejection([&] { read(kind, files.files.front().path); });
+    EXPECT_NE(rejected.find(asked), std::string::npos) << name_in(template_names, kind) << ": " << rejected;
+    EXPECT_NE(rejected.find(".toml:"), std::string::npos) << rejected;
+    if (kind != Template::cell) {
+      EXPECT_NE(rejected.find("This line is a comment: write your own value"), std::string::npos) << rejected;
+    }
+    EXPECT_FALSE(std::filesystem::exists(at("example_hit_x.csv")));
+    std::filesystem::remove_all(folder_.at("begin"));
+  }
+}
+
+// Of every template what is said without an example is said with one too, and nothing of what is marked needed.
+TEST_F(Init, ABlankTemplateHasNoSampleButChoicesThatAreMarked) {
+  for (const Template kind : every) {
+    const std::string blank = template_text(kind, false), example = template_text(kind, true);
+    const io::TomlSource source("t.toml", blank);
+    for (const Assumption& one : io::sample_values(source)) {
+      EXPECT_TRUE(one.key.starts_with("smoothing.") || one.key == "lobes.axial_depth_mm") << one.key;
+    }
+    EXPECT_GE(io::sample_values(io::TomlSource("t.toml", example)).size(), 2U) << name_in(template_names, kind);
+    EXPECT_LT(said(blank).size(), said(example).size()) << name_in(template_names, kind);
+    EXPECT_EQ(blank.find("#!"), std::string::npos);
+    EXPECT_EQ(example.find("#!"), std::string::npos);
+    EXPECT_NE(blank.find("needed"), std::string::npos) << name_in(template_names, kind);
+    for (const char* fact :
+         {"frequency_hz = 6", "modal_mass_kg", "material =", "origin_mm =", "stiffness_n", "teeth ="}) {
+      EXPECT_EQ(said(blank).find(fact), std::string::npos) << name_in(template_names, kind) << fact;
+    }
+  }
+}
+
+// What an example says is listed as assumed by the verb that reads it, until it is changed.
+TEST_F(Init, ASampleValueIsAssumedUntilItIsChanged) {
+  static_cast<void>(made({.kind = Template::lobes, .example = true}));
+  const auto samples = [&] {
+    std::vector<std::string> out;
+    for (const Assumption& one : read_lobes(at("lobes.toml")).assumed) {
+      if (one.what == io::sample_left) out.push_back(one.key);
+    }
+    return out;
+  };
+  EXPECT_EQ(std::ranges::count(samples(), "dynamics.x"), 1);
+  const std::size_t all = samples().size();
+  EXPECT_GE(all, 9U);
+  put("lobes.toml", test_support::replaced(slurp(at("lobes.toml")), "teeth = 3 ", "teeth = 4 "));
+  EXPECT_EQ(samples().size(), all - 1);
+  EXPECT_EQ(std::ranges::count(samples(), "tool.teeth"), 0);
+}
+
 TEST_F(Init, TheMadeUpHitHasItsMode) {
-  static_cast<void>(made({.kind = Template::hits}));
+  static_cast<void>(made({.kind = Template::hits, .example = true}));
   const modal::HitsFile hits = modal::read_hits(at("hits.toml"));
   const modal::FrfResult frfs = modal::estimate_frfs(hits.hits, hits.options);
   EXPECT_TRUE(frfs.hits.at(0).accepted);
@@ -121,11 +199,11 @@ TEST_F(Init, TheMadeUpHitHasItsMode) {
 }
 
 TEST_F(Init, ForcesAssemblyAndCellRun) {
-  static_cast<void>(made({.kind = Template::forces}));
+  static_cast<void>(made({.kind = Template::forces, .example = true}));
   EXPECT_TRUE(run_forces(at("forces.toml"), {}, {}, Progress::none()).revolution.has_value());
-  static_cast<void>(made({.kind = Template::assembly}));
+  static_cast<void>(made({.kind = Template::assembly, .example = true}));
   EXPECT_FALSE(predict_tip(at("assembly.toml")).peaks.empty());
-  static_cast<void>(made({.kind = Template::cell}));
+  static_cast<void>(made({.kind = Template::cell, .example = true}));
   const SmoothResult smoothed = run_smooth({.program = folder_.file("part.ngc", program), .cell = at("cell.toml")});
   EXPECT_TRUE(smoothed.holds());
 }
@@ -144,16 +222,16 @@ TEST_F(Init, MonitorTakesARecording) {
 /// The keys of a template, those commented out too, with their values: "tool.teeth", "3".
 std::vector<io::TomlSetting> keys_of(Template kind, bool commented) {
   std::vector<io::TomlSetting> keys;
-  std::istringstream rows{std::string(template_text(kind))};
+  std::istringstream rows{template_text(kind, true)};
   std::string table;
-  int tools = 0;
+  std::map<std::string, int> entries;
   for (std::string row; std::getline(rows, row);) {
     const bool comment = row.starts_with("# ");
     if (comment) row.erase(0, 2);
     const std::size_t equals = row.find(" = ");
     if (row.starts_with("[[")) {
       table = row.substr(2, row.find(']') - 2);
-      table += table == "tool" ? "[" + std::to_string(tools++) + "]" : "[0]";
+      table += "[" + std::to_string(comment ? 0 : entries[table]++) + "]";
     } else if (row.starts_with("[")) {
       table = row.substr(1, row.find(']') - 1);
     } else if (equals != std::string::npos &&
@@ -171,7 +249,7 @@ std::vector<io::TomlSetting> keys_of(Template kind, bool commented) {
 
 /// A template with a key taken out of its comment; of a table that is commented out as a whole with those before it.
 std::string with_key(Template kind, const std::vector<io::TomlSetting>& commented, const io::TomlSetting& key) {
-  std::string text(template_text(kind));
+  std::string text = template_text(kind, true);
   const auto table_of = [](const std::string& name) { return name.substr(0, name.rfind('.')); };
   const std::string table = table_of(key.key);
   const bool takes_effect = text.find("\n[" + table + "]") != std::string::npos;
@@ -192,7 +270,7 @@ bool documented(const std::string& key) {
 // A line taken out of its comment may ask for a file, or go without what stands beside it, but the key is known.
 TEST_F(Init, NoTemplateHasAKeyThatIsNotKnown) {
   for (const Template kind : every) {
-    const InitFiles files = made({.kind = kind});
+    const InitFiles files = made({.kind = kind, .example = true});
     const std::filesystem::path path = files.files.front().path;
     const std::vector<io::TomlSetting> commented = keys_of(kind, true);
     EXPECT_GE(commented.size(), 3U) << path;
@@ -237,7 +315,7 @@ TEST_F(Init, EveryKeyThatIsRequiredStandsInTheTemplate) {
   std::size_t all = 0;
   for (const Template kind : every) {
     for (const std::string& key : required_in_docs(kind)) {
-      const std::string text(template_text(kind));
+      const std::string text = template_text(kind, false);
       const bool stands = text.find("\n" + key + " = ") != std::string::npos;
       EXPECT_TRUE(stands || text.find("\n# " + key + " = ") != std::string::npos) << key;
       ++all;
@@ -257,7 +335,7 @@ TEST_F(Init, OverwritesNothing) {
 }
 
 TEST_F(Init, AJobBringsWhatItNames) {
-  const InitFiles files = made({.kind = Template::job});
+  const InitFiles files = made({.kind = Template::job, .example = true});
   for (const char* name : {"job.toml", "hits.toml", "lobes.toml", "example_hit_x.csv"}) {
     EXPECT_TRUE(std::filesystem::exists(at(name))) << name;
   }
@@ -318,10 +396,13 @@ TEST_F(Init, HitsInOtherUnitsAreConverted) {
   folder_.file("records/tap1.csv", record("Time (s),Hammer (mV),acc x (mV),acc y (mV)"));
   static_cast<void>(made({.kind = Template::hits, .data = folder_.at("records")}));
   const std::string text = slurp(at("hits.toml"));
-  for (const char* line : {"\nvoltage_unit = \"mV\" ", "\nforce_mv_per_n = 2.25 ", "\nresponse_mv_per_g = 100 ",
+  for (const char* line : {"\nvoltage_unit = \"mV\" ", "\n# force_mv_per_n = 2.25 ", "\n# response_mv_per_g = 100 ",
                            "\nfile = \"../records/tap1.csv\"\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << line << text;
   }
+  const std::string lacks = test::rejection([&] { (void)modal::read_hits(at("hits.toml")); });
+  EXPECT_NE(lacks.find("acquisition.force_mv_per_n: is missing"), std::string::npos) << lacks;
+  give_sensitivities();
   const modal::Hit in_mv = modal::read_hits(at("hits.toml")).hits.at(0);
   EXPECT_NEAR(in_mv.force_n(155), 100.0 / 2.25, 1e-3);
   std::filesystem::remove(at("hits.toml"));
@@ -341,6 +422,7 @@ TEST_F(Init, HitsMayHaveTwoVoltageUnits) {
         {"t (s),Hammer (mV),acc x (V),acc y (V)", 1e-3, 1.0}}) {
     put("tap.csv", record(names));
     static_cast<void>(made({.kind = Template::hits}));
+    give_sensitivities();
     const modal::Hit hit = modal::read_hits(at("hits.toml")).hits.at(0);
     const double swing = std::exp(-0.08) * std::sin(1.6);
     EXPECT_NEAR(hit.force_n(155), force_per_v * 100.0 * 1000.0 / 2.25, 1e-3) << names;
@@ -391,6 +473,9 @@ TEST_F(Init, HitsTakeSoundWithoutNames) {
   std::filesystem::create_directories(folder_.at("begin"));
   io::write_wav(at("hit_y.wav"), samples, 2, 10240.0);
   static_cast<void>(made({.kind = Template::hits}));
+  EXPECT_NE(test::rejection([&] { (void)modal::read_hits(at("hits.toml")); }).find("acquisition."), std::string::npos);
+  give_sensitivities();
+  put("hits.toml", io::with_setting(slurp(at("hits.toml")), {"acquisition.scale", "1"}));
   const modal::Hit hit = modal::read_hits(at("hits.toml")).hits.at(0);
   EXPECT_EQ(hit.excitation.axis, modal::Axis::y);
   EXPECT_NEAR(hit.force_n(305), 0.8 * 1000.0 / 2.25, 0.1);
@@ -399,7 +484,7 @@ TEST_F(Init, HitsTakeSoundWithoutNames) {
 
 TEST_F(Init, EveryKnownArmMakesACell) {
   for (const KnownArm& arm : known_arms()) {
-    const InitFiles files = made({.kind = Template::cell, .robot = arm.name});
+    const InitFiles files = made({.kind = Template::cell, .robot = arm.name, .example = true});
     EXPECT_NO_THROW((void)run_smooth({.program = folder_.file("part.ngc", program), .cell = at("cell.toml")}))
         << arm.name;
     // The lists that stand behind a # are the arm's own, and exceed no limit where they are taken.
@@ -425,6 +510,60 @@ TEST_F(Init, EveryKnownArmMakesACell) {
   EXPECT_THROW((void)init_files({.kind = Template::lobes, .robot = "ur-5e"}), InvalidInput);
   EXPECT_THROW((void)init_files({.kind = Template::lobes, .data = "."}), InvalidInput);
   EXPECT_THROW((void)init_files({.kind = Template::hits, .file = "h.toml", .data = folder_.at("none")}), InvalidInput);
+}
+
+// A placement and a length of data/cells are shown, and not taken.
+TEST_F(Init, ACellOfAKnownArmAsksWhereItStands) {
+  static_cast<void>(made({.kind = Template::cell, .robot = "ur-5e"}));
+  EXPECT_NE(test::rejection([&] { (void)read_cell(at("cell.toml")); }).find("workpiece.origin_mm: is missing"),
+            std::string::npos);
+  std::string text = io::with_setting(slurp(at("cell.toml")), {"workpiece.origin_mm", "[-500, -133, 0]"});
+  const std::string length = test::rejection([&] { (void)read_cell(io::TomlSource("cell.toml", text)); });
+  EXPECT_NE(length.find("tool.length_mm: is missing"), std::string::npos) << length;
+  text = io::with_setting(text, {"tool.length_mm", "150"});
+  EXPECT_EQ(read_cell(io::TomlSource("cell.toml", text)).model, "ur-5e");
+}
+
+// Which hits were made is known; what the other direction is like is not.
+TEST_F(Init, AJobAsksWhatADirectionIsLikeThatWasNotHit) {
+  put("hit_x_1.csv", record("time_s,force_n,ax_m_per_s2,unused"));
+  static_cast<void>(made({.kind = Template::job}));
+  const std::string text = slurp(at("job.toml"));
+  EXPECT_NE(text.find("\n# equal_directions = true           # needed: only x was hit: is y like it?"),
+            std::string::npos)
+      << text;
+  EXPECT_FALSE(read_job(at("job.toml")).directions.equal);
+}
+
+// Formats that are not read are named with what to do, and no example stands in their place.
+TEST_F(Init, RecordsThatAreNotReadAreNamed) {
+  put("hit_x_1.lvm", "LabVIEW Measurement\t\nWriter_Version\t2\n");
+  put("hit_x_2.tdms", "TDSm");
+  put("hit_x_3.txt", "LabVIEW Measurement\t\nDelta_X\t3.9e-5\n0\t1\n");
+  const InitFiles files = made({.kind = Template::hits});
+  EXPECT_EQ(files.files.size(), 1U);
+  EXPECT_EQ(slurp(at("hits.toml")).find("\nfile ="), std::string::npos);
+  ASSERT_EQ(files.notes.size(), 4U);
+  EXPECT_NE(files.notes[0].find("No records of hits were found"), std::string::npos);
+  for (const std::size_t i : {1U, 2U, 3U}) {
+    EXPECT_NE(files.notes[i].find("LabVIEW"), std::string::npos) << files.notes[i];
+    EXPECT_NE(files.notes[i].find("Export it as CSV"), std::string::npos) << files.notes[i];
+  }
+}
+
+// A time with three digits is no response; its rate is that of the whole column.
+TEST_F(Init, ARoundedTimeIsTheTime) {
+  std::string text = "X,force_n,acc x\n";
+  for (int i = 0; i < 2000; ++i) {
+    const double response = i < 150 ? 0.0 : std::exp(-0.01 * (i - 150)) * std::sin(0.4 * (i - 150));
+    text += fmt::format("{:.2e},{},{:.6f}\n", i / 4000.0, i == 150 ? 100 : 0, response);
+  }
+  put("hit_x_1.csv", text);
+  static_cast<void>(made({.kind = Template::hits}));
+  const modal::Hit hit = modal::read_hits(at("hits.toml")).hits.at(0);
+  EXPECT_NEAR(hit.sample_rate_hz, 4000.0, 1.0);
+  ASSERT_EQ(hit.responses.size(), 1U);
+  EXPECT_NEAR(hit.responses[0].samples(154), std::exp(-0.04) * std::sin(1.6), 1e-5);
 }
 
 }  // namespace init_test

@@ -5,10 +5,12 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/files/materials_toml.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/toml_edit.hpp"
 #include "robomill/jobs/files/job_toml.hpp"
 #include "robomill/jobs/files/known_arms.hpp"
@@ -23,8 +25,9 @@ namespace interview_test {
 class Asked : public ::testing::Test {
  protected:
   /// Files of a kind that no folder has.
-  InitFiles begun(Template kind) {
-    return init_files({.kind = kind, .file = folder_.at(std::string(name_in(template_names, kind)) + ".toml")});
+  InitFiles begun(Template kind, bool example = true) {
+    return init_files(
+        {.kind = kind, .file = folder_.at(std::string(name_in(template_names, kind)) + ".toml"), .example = example});
   }
   /// Gives the answers; those that are missing are the defaults.
   void tell(Template kind, InitFiles& files, const std::vector<std::string>& answers) {
@@ -43,6 +46,15 @@ class Asked : public ::testing::Test {
 
   test::Folder folder_;
 };
+
+/// A record of one hit beside its response, with the names of its two columns.
+std::string tap(const std::string& force, const std::string& response) {
+  std::string text = "time_s," + force + "," + response + "\n";
+  for (int i = 0; i < 200; ++i) {
+    text += std::to_string(1e-3 * i) + (i == 50 ? ",10," : ",0,") + (i > 50 ? "1" : "0") + "\n";
+  }
+  return text;
+}
 
 TEST(ShopUnits, AreUnderstoodAndConverted) {
   const auto mm = [](const char* text, const char* plain = "") {
@@ -103,10 +115,57 @@ TEST(ShopUnits, RejectACommaThatMayPartThousands) {
 TEST_F(Asked, DefaultsLeaveTheTemplateAsItIs) {
   for (const Template kind : {Template::lobes, Template::forces, Template::assembly, Template::cell, Template::monitor,
                               Template::hits, Template::job}) {
-    InitFiles files = begun(kind);
-    const std::string before = files.files.front().text;
-    tell(kind, files, {});
-    EXPECT_EQ(files.files.front().text, before);
+    for (const bool example : {true, false}) {
+      InitFiles files = begun(kind, example);
+      const std::string before = files.files.front().text;
+      tell(kind, files, {});
+      EXPECT_EQ(files.files.front().text, before);
+    }
+  }
+}
+
+// What is not answered stays behind its #, and nothing is offered for it.
+TEST_F(Asked, WithoutAnExampleNothingIsMadeUp) {
+  InitFiles files = begun(Template::lobes, false);
+  {
+    Interview interview(Template::lobes, files);
+    while (interview.question()) {
+      const std::string question = *interview.question();
+      const bool choice = question.starts_with("Lengths") || question.starts_with("Deepest");
+      EXPECT_EQ(question.find("[not known]") == std::string::npos, choice) << question;
+      interview.answer("");
+    }
+  }
+  tell(Template::lobes, files, {"", "6000", "", "12", "4"});
+  EXPECT_EQ(value(files, Template::lobes, "tool.teeth"), "4");
+  EXPECT_EQ(value(files, Template::lobes, "lobes.spindle_speed_rpm"), "none") << "half of a range is none";
+  tell(Template::lobes, files, {"", "6000", "18000", "", "", "7075", "up", "2", "", "0.1"});
+  EXPECT_EQ(value(files, Template::lobes, "lobes.spindle_speed_rpm"), "[6000, 18000]");
+  EXPECT_NO_THROW(static_cast<void>(read_lobes(io::TomlSource("lobes.toml", files.document(Template::lobes)->text))));
+}
+
+// An answer is a fact, though it be the example's.
+TEST_F(Asked, AnAnswerIsNoSample) {
+  InitFiles files = begun(Template::lobes);
+  const auto samples = [&] {
+    return io::sample_values(io::TomlSource("lobes.toml", files.document(Template::lobes)->text)).size();
+  };
+  const std::size_t before = samples();
+  tell(Template::lobes, files, {"", "", "", "12", "3"});
+  EXPECT_EQ(samples(), before - 2);
+}
+
+TEST_F(Asked, AJobAsksWhatADirectionIsLikeThatWasNotHit) {
+  static_cast<void>(folder_.file("tap_x.csv", tap("hammer (N)", "acc (m/s2)")));
+  for (const auto& [answer, key, told] : {std::tuple{"like", "job.equal_directions", "true"},
+                                          {"rigid", "job.rigid_directions", "[\"y\"]"},
+                                          {"", "job.equal_directions", "none"}}) {
+    InitFiles files = begun(Template::job, false);
+    Interview interview(Template::job, files);
+    while (interview.question()) {
+      interview.answer(interview.question()->starts_with("The direction that was not hit") ? answer : "");
+    }
+    EXPECT_EQ(value(files, Template::job, key), told);
   }
 }
 
@@ -205,19 +264,10 @@ TEST_F(Asked, AJobAsksForItsHitsAndItsCutToo) {
   EXPECT_DOUBLE_EQ(job.recommend.max_axial_depth_m, 0.03);
 }
 
-/// A record of one hit beside its response, with the names of its two columns.
-std::string tap(const std::string& force, const std::string& response) {
-  std::string text = "time_s," + force + "," + response + "\n";
-  for (int i = 0; i < 200; ++i) {
-    text += std::to_string(1e-3 * i) + (i == 50 ? ",10," : ",0,") + (i > 50 ? "1" : "0") + "\n";
-  }
-  return text;
-}
-
 // "V" in the names of columns is a guess, which the answer SI takes back.
 TEST_F(Asked, RecordsInSiHaveNoSensitivities) {
   static_cast<void>(folder_.file("tap.csv", tap("hammer (V)", "acc (V)")));
-  InitFiles files = begun(Template::hits);
+  InitFiles files = begun(Template::hits, false);
   EXPECT_EQ(value(files, Template::hits, "acquisition.voltage_unit"), "\"V\"");
   tell(Template::hits, files, {"SI"});
   for (const char* key : {"voltage_unit", "force_mv_per_n", "response_mv_per_g"}) {
@@ -232,7 +282,7 @@ TEST_F(Asked, RecordsInSiHaveNoSensitivities) {
 // What a 1 of a column in g is, no sensor's.
 TEST_F(Asked, RecordsInGKeepTheirSize) {
   static_cast<void>(folder_.file("tap.csv", tap("hammer (kN)", "acc (g)")));
-  InitFiles files = begun(Template::hits);
+  InitFiles files = begun(Template::hits, false);
   tell(Template::hits, files, {"SI"});
   const modal::HitsFile hits =
       modal::read_hits(io::TomlSource(folder_.at("hits.toml"), files.document(Template::hits)->text));

@@ -1,9 +1,12 @@
 #include "robomill/jobs/lobes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "robomill/base/error.hpp"
 #include "robomill/jobs/files/posture_json.hpp"
+#include "robomill/jobs/planned_cut.hpp"
 #include "robomill/stability/files/lobes_csv.hpp"
 #include "robomill/stability/files/lobes_json.hpp"
 #include "robomill/stability/files/lobes_object.hpp"
@@ -17,6 +20,11 @@ LobesJobResult run_lobes(const LobesJob& job, Progress& progress) {
   require_modes_in_three_directions(cut);
   load_dynamics(cut, progress);
   cut.validate();
+  if (const auto plan = job_of_cut(job.lobes)) {
+    cut.notes.push_back(
+        fmt::format("{} plans this cut with the structure of its own measurement, not with [dynamics] of {}.",
+                    plan->filename().string(), job.lobes.filename().string()));
+  }
   cut.options.points = job.points;
   if (cut.sweep != stability::SweptParameter::axial_depth) {
     if (job.compare) throw InvalidInput(job.lobes.string(), "lobes.sweep does not go with a comparison of methods");

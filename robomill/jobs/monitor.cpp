@@ -1,11 +1,15 @@
 #include "robomill/jobs/monitor.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/parallel.hpp"
+#include "robomill/io/samples.hpp"
+#include "robomill/jobs/files/assumed.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/jobs/planned_cut.hpp"
 #include "robomill/modal/files/modes_files.hpp"
 #include "robomill/stability/peak_classification.hpp"
 
@@ -32,6 +36,31 @@ std::vector<bool> coupling_above(const stability::LobesProblem& problem, const s
   return {found.begin(), found.end()};
 }
 
+/// The cut that process.lobes names: of a job as its plan has it, with its range and margin; else with the structure of
+/// its own, or with process.modes.
+LobesFile cut_of(const monitor::MonitorFile& file, live::AdviceBasis& basis, Progress& progress) {
+  LobesFile cut = read_lobes(file.lobes);
+  constexpr std::uint64_t seed = 1;  // as of robomill plan
+  if (const auto job = job_of_cut(file.lobes)) {
+    const PlanResult structure = run_structure(*job, seed, progress);
+    take_plan(cut, structure);
+    basis.depth_margin = structure.job.recommend.depth_margin;
+    basis.speed_window = structure.job.recommend.speed_window;
+    if (!(basis.highest_rad_per_s > 0.0)) {
+      basis.lowest_rad_per_s = cut.options.spindle_speed_rad_per_s[0];
+      basis.highest_rad_per_s = cut.options.spindle_speed_rad_per_s[1];
+    }
+  } else {
+    load_dynamics(cut, progress);
+    const bool nothing = cut.problem.dynamics.modes.empty() && cut.problem.measured.frfs.empty();
+    if (nothing && !file.modes.empty()) cut.problem.dynamics = modal::read_modes(file.modes);
+  }
+  require_plane(cut);
+  cut.validate();
+  add_assumed(basis.assumed, assumed_of(cut, CutUse::stability));
+  return cut;
+}
+
 }  // namespace
 
 live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& progress) {
@@ -41,8 +70,9 @@ live::AdviceBasis read_advice_basis(const monitor::MonitorFile& file, Progress& 
                           .lowest_rad_per_s = file.act.lowest_rad_per_s,
                           .highest_rad_per_s = file.act.highest_rad_per_s,
                           .unfiltered_sample_rate_hz = file.anti_alias_filter ? 0.0 : file.options.sample_rate_hz};
+  if (!file.path.empty()) add_assumed(basis.assumed, io::sample_values(file.path));
   if (!file.lobes.empty()) {
-    const LobesFile lobes = read_milling(file.lobes);
+    const LobesFile lobes = cut_of(file, basis, progress);
     if (basis.teeth == 0) basis.teeth = lobes.problem.milling.tool.teeth;
     if (!lobes.problem.dynamics.modes.empty()) basis.modes = lobes.problem.dynamics;
     basis.workpiece = lobes.problem.workpiece_dynamics;

@@ -322,6 +322,20 @@ PlanResult run_job(const std::filesystem::path& job, std::uint64_t seed, Progres
   return result;
 }
 
+PlanResult run_structure(const std::filesystem::path& job, std::uint64_t seed, Progress& progress) {
+  PlanResult result;
+  result.job = read_job(job);
+  measure(result, progress);
+  fit(result, seed, progress);
+  if (result.fit && !result.fit->usable()) {
+    throw InvalidInput(job.string(),
+                       fmt::format("gives modes that do not describe its FRFs: the fit differs from them by {:.3g} %",
+                                   100.0 * result.fit->relative_error),
+                       "Fit a better band: job.band_hz");
+  }
+  return result;
+}
+
 bool reached(const PlanResult& result) {
   if (result.decision && result.decision->status == DecideResult::Status::infeasible) return false;
   if (result.path && !result.path->holds()) return false;

@@ -97,6 +97,11 @@ struct PlanResult {
                                               Progress& progress = Progress::none(),
                                               const std::filesystem::path& folder = {}, bool accept_fit = false);
 
+/// The structure of a job as run_job() finds it: its FRFs, their fit and the modes, with warnings and what is assumed.
+/// @throws InvalidInput as run_job(), and where the modes do not describe the FRFs; Interrupted
+[[nodiscard]] ROBOMILL_API PlanResult run_structure(const std::filesystem::path& job, std::uint64_t seed,
+                                                    Progress& progress = Progress::none());
+
 /// Whether the job has the answer that it is for: conditions or a recommendation within every limit, a path that holds.
 [[nodiscard]] ROBOMILL_API bool reached(const PlanResult& result);
 

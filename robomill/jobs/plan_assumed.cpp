@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "robomill/io/samples.hpp"
 #include "robomill/jobs/decide/motion_loads.hpp"
 #include "robomill/jobs/files/assumed.hpp"
 
@@ -19,6 +20,7 @@ void gather_assumed(PlanResult& result, const CellFile* cell) {
   }
   if (result.decision) add_assumed(of_job, result.decision->assumed);
   for (Assumption& one : of_job) one.file = result.job.file.filename().string();
+  add_assumed(result.assumed, io::sample_values(result.job.file));
   add_assumed(result.assumed, of_job);
   if (result.recommends()) add_assumed(result.assumed, assumed_of(result.cut, CutUse::motion));
   if (result.forces) add_assumed(result.assumed, result.forces->assumed);

@@ -14,8 +14,6 @@ using monitor::NoSpeed;
 
 namespace {
 
-/// Of the limit of depth, as a plan keeps it.
-constexpr double depth_margin = 0.2;
 /// Of the speed: how near a limit of the chart must be to be that of the cut.
 constexpr double chart_reach = 0.05;
 /// Of the speed: a suggestion as near as that is the speed at which it chatters.
@@ -49,6 +47,7 @@ void Advisor::advise(monitor::MonitorEvent& event) const {
   monitor::AdviceOptions options;
   options.lowest_rad_per_s = basis_.lowest_rad_per_s;
   if (basis_.highest_rad_per_s > 0.0) options.highest_rad_per_s = basis_.highest_rad_per_s;
+  options.speed_window = basis_.speed_window;
   options.unfiltered_sample_rate_hz = basis_.unfiltered_sample_rate_hz;
   const monitor::Advice advice = monitor::advise(d.chatter_frequency_hz, d.chatter_frequency_std_hz, speed_rad_per_s,
                                                  basis_.teeth, basis_.modes ? &*basis_.modes : nullptr,
@@ -64,7 +63,7 @@ void Advisor::advise(monitor::MonitorEvent& event) const {
   }
   if (advice.best) {
     event.suggested_spindle_speed_rad_per_s = advice.best->spindle_speed_rad_per_s;
-    event.suggested_axial_depth_m = (1.0 - depth_margin) * advice.best->axial_depth_m;
+    event.suggested_axial_depth_m = (1.0 - basis_.depth_margin) * advice.best->axial_depth_m;
   } else if (!event.stable_speeds_rad_per_s.empty()) {
     event.suggested_spindle_speed_rad_per_s = event.stable_speeds_rad_per_s.front();
   }

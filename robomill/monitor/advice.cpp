@@ -88,12 +88,33 @@ void add_speeds(Advice& advice, double present_rad_per_s, int teeth, const Advic
   }
 }
 
+/// The lowest limit over the window about speed i of a chart; between its speeds on the line from one to the next.
+double lowest_in_window(const std::vector<double>& speeds, const std::vector<double>& depths, std::size_t i,
+                        double window) {
+  double lowest = depths[i];
+  for (const int step : {-1, 1}) {
+    const double end = speeds[i] * (1.0 + step * window);
+    for (std::size_t k = i; step < 0 ? k > 0 : k + 1 < speeds.size(); k = step < 0 ? k - 1 : k + 1) {
+      const std::size_t next = step < 0 ? k - 1 : k + 1;
+      const double share = std::abs(end - speeds[k]) / std::abs(speeds[next] - speeds[k]);
+      lowest = std::min(lowest, std::lerp(depths[k], depths[next], std::min(share, 1.0)));
+      if (share <= 1.0) break;
+    }
+  }
+  return lowest;
+}
+
 void choose(Advice& advice, const stability::LobesResult& lobes, const AdviceOptions& options) {
   const double deepest = lobes.axial_depth_m.size() > 0 ? lobes.axial_depth_m.maxCoeff() : 0.0;
+  std::vector<double> speeds, depths;
   for (const stability::Limit& limit : lobes.limit) {
-    const double speed = limit.spindle_speed_rad_per_s;
+    speeds.push_back(limit.spindle_speed_rad_per_s);
+    depths.push_back(limit.status == stability::Limit::Status::found ? limit.axial_depth_m : deepest);
+  }
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    const double speed = speeds[i];
     if (speed < options.lowest_rad_per_s || speed > options.highest_rad_per_s) continue;
-    const double depth = limit.status == stability::Limit::Status::found ? limit.axial_depth_m : deepest;
+    const double depth = lowest_in_window(speeds, depths, i, options.speed_window);
     if (!advice.best || depth > advice.best->axial_depth_m) {
       advice.best = stability::OperatingPoint{.spindle_speed_rad_per_s = speed, .axial_depth_m = depth};
     }
@@ -107,6 +128,9 @@ void AdviceOptions::validate() const {
   require_positive("highest_rad_per_s", highest_rad_per_s, "rad/s");
   if (highest_rad_per_s <= lowest_rad_per_s) {
     throw InvalidInput("highest_rad_per_s", highest_rad_per_s, "rad/s", "must be above lowest_rad_per_s");
+  }
+  if (!(speed_window >= 0.0 && speed_window < 0.5)) {
+    throw InvalidInput("speed_window", speed_window, "", "must be in [0, 0.5)");
   }
   if (most_speeds < 1) throw InvalidInput("most_speeds", most_speeds, "", "must be at least 1");
   require_non_negative("unfiltered_sample_rate_hz", unfiltered_sample_rate_hz, "Hz");

@@ -20,6 +20,7 @@ struct StableSpeed {
 struct AdviceOptions {
   double lowest_rad_per_s = 0.0;      ///< >= 0; of the spindle: lowest <= speed <= highest
   double highest_rad_per_s = 2100.0;  ///< > lowest; 20,000 rpm
+  double speed_window = 0.0;          ///< in [0, 0.5): the limit of a speed n is the lowest of n (1 ± speed_window)
   int most_speeds = 6;                ///< nearest to the present one; >= 1
   /// Of samples that no anti-alias filter is stated for, f_s > 0: then the line may be one of f_s - f and f_s + f that
   /// is folded to f. 0: a filter is stated.
@@ -43,8 +44,8 @@ struct Advice {
   /// lowest.
   double lowest_hz = 0.0;
   std::vector<StableSpeed> speeds;  ///< nearest to the present speed first
-  /// With a chart: the speed in range with the greatest limit of depth, and that limit; of a depth that is stable up to
-  /// the end of the chart, that end.
+  /// With a chart: the speed in range with the greatest limit of depth over its window, and that limit; of a depth that
+  /// is stable up to the end of the chart, that end.
   std::optional<stability::OperatingPoint> best = {};
 };
 

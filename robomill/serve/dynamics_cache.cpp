@@ -6,6 +6,8 @@
 
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cell_toml.hpp"
+#include "robomill/jobs/planned_cut.hpp"
+#include "robomill/serve/files/named_files.hpp"
 
 namespace robomill::serve {
 namespace fs = std::filesystem;
@@ -78,6 +80,27 @@ void DynamicsCache::load(jobs::LobesFile& file, Progress& progress) {
   file.posture = known->posture;
   file.notes.insert(file.notes.end(), known->notes.begin(), known->notes.end());
   add_assumed(file.assumed, known->assumed);
+}
+
+void DynamicsCache::load_plan(jobs::LobesFile& file, const fs::path& job, Progress& progress) {
+  constexpr std::uint64_t seed = 1;  // as of robomill plan
+  auto known = std::ranges::find(planned_, job, &Planned::job);
+  if (known != planned_.end() && stamps_of(known->watched) != known->stamps) {
+    planned_.erase(known);
+    known = planned_.end();
+  }
+  if (known == planned_.end()) {
+    Planned fresh{.job = job, .watched = files_named_in(job)};
+    fresh.watched.push_back(job);
+    fresh.stamps = stamps_of(fresh.watched);
+    fresh.structure = std::make_shared<const jobs::PlanResult>(jobs::run_structure(job, seed, progress));
+    ++reads_;
+    planned_.push_front(std::move(fresh));
+    if (planned_.size() > most_) planned_.pop_back();
+    known = planned_.begin();
+  }
+  planned_.splice(planned_.begin(), planned_, known);
+  jobs::take_plan(file, *known->structure);
 }
 
 }  // namespace robomill::serve

@@ -11,6 +11,7 @@
 #include "robomill/base/assumption.hpp"
 #include "robomill/base/progress.hpp"
 #include "robomill/jobs/files/lobes_toml.hpp"
+#include "robomill/jobs/plan.hpp"
 
 namespace robomill::serve {
 
@@ -23,6 +24,10 @@ class DynamicsCache {
   /// As jobs::load_dynamics, but that a default for [uncertainty] is left to the caller. Files are read again when one
   /// of them, or what the document says of the structure, has changed.
   void load(jobs::LobesFile& file, Progress& progress);
+
+  /// As jobs::take_plan, with the structure of a job. It is found again when one of the files that the job names
+  /// changes.
+  void load_plan(jobs::LobesFile& file, const std::filesystem::path& job, Progress& progress);
 
   /// How often files were read.
   [[nodiscard]] std::size_t reads() const { return reads_; }
@@ -50,13 +55,20 @@ class DynamicsCache {
     std::vector<std::string> notes = {};
     std::vector<Assumption> assumed = {};
   };
+  struct Planned {
+    std::filesystem::path job = {};
+    std::vector<std::filesystem::path> watched = {};
+    std::vector<Stamp> stamps = {};
+    std::shared_ptr<const jobs::PlanResult> structure = {};
+  };
   void read(jobs::LobesFile& file, Progress& progress);
   static Key key_of(const jobs::LobesFile& file);
   static std::vector<std::filesystem::path> watched_files(const jobs::LobesFile& file);
   static std::vector<Stamp> stamps_of(const std::vector<std::filesystem::path>& files);
 
   std::size_t most_, reads_ = 0;
-  std::list<Structure> kept_;  ///< the one that was asked for last stands first
+  std::list<Structure> kept_;   ///< the one that was asked for last stands first
+  std::list<Planned> planned_;  ///< the same of jobs
 };
 
 }  // namespace robomill::serve

@@ -22,7 +22,9 @@ using test::rejection;
 class JobVerbs : public ::testing::Test {
  protected:
   /// A file to begin with.
-  void begin(jobs::Template kind) const { jobs::write_init(jobs::init_files({.kind = kind, .file = place_.at("")})); }
+  void begin(jobs::Template kind) const {
+    jobs::write_init(jobs::init_files({.kind = kind, .file = place_.at(""), .example = true}));
+  }
   [[nodiscard]] JobRequest read(const Json& body) const {
     return read_job_request(body, [this](const std::string& path) { return folder_.resolve(path); });
   }

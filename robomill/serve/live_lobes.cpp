@@ -10,8 +10,10 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/io/json.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/lobes.hpp"
+#include "robomill/jobs/planned_cut.hpp"
 #include "robomill/serve/files/lobes_fields.hpp"
 #include "robomill/serve/toml_literal.hpp"
 
@@ -166,10 +168,19 @@ std::string LiveLobes::answer(const LiveLobesRequest& request, Progress& progres
   jobs::LobesFile& cut = result.cut;
   cut = jobs::read_lobes(source);
   jobs::require_modes_in_three_directions(cut);
-  dynamics_.load(cut, Progress::none());  // seconds of a posture are not thrown away: the next request needs them too
+  // Seconds of a posture or a fit are not thrown away: the next request needs them too.
+  if (const auto job = jobs::job_of_cut(request.file)) {
+    dynamics_.load_plan(cut, *job, Progress::none());
+  } else {
+    dynamics_.load(cut, Progress::none());
+  }
   progress.check();
   cut.validate();
   std::vector<std::string> notes = cut.notes;
+  for (const Assumption& one : cut.assumed) {
+    if (one.what == io::sample_left)
+      notes.push_back(fmt::format("Assumed: {} = {}, a sample value.", one.key, one.taken));
+  }
   cut.document->locate([&] { compute(result, request, notes, progress); });
   const std::string document = jobs::lobes_document(result);
   const io::Json fields = lobes_fields(source, cut);

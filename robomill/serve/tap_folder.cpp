@@ -8,6 +8,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/printable.hpp"
 #include "robomill/io/file.hpp"
+#include "robomill/io/records.hpp"
 
 namespace robomill::serve {
 namespace {
@@ -23,7 +24,7 @@ bool is_tap_record(const fs::path& path) {
     case io::Format::wav:
       return !path.filename().string().starts_with('.');
     default:
-      return false;
+      return !io::unread_record(path).what.empty();  // named with what to do
   }
 }
 
@@ -47,13 +48,13 @@ TapFolder::TapFolder(fs::path watch, std::vector<fs::path> named) : watch_(std::
   if (!fs::is_directory(watch_, error)) {
     throw InvalidInput("watch", "there is no folder " + printable(watch_.filename().string()));
   }
-  const auto is_named = [this](const fs::path& path) {
-    return std::ranges::any_of(named_, [&](const fs::path& name) { return key_of(name) == key_of(path); });
-  };
   const std::vector<fs::path> there = records_in(watch_, error);
   if (error) throw InvalidInput("watch", "the folder cannot be read: " + error.message());
   for (const fs::path& record : there) {
-    if (!is_named(record)) seen_[key_of(record)].done = true;
+    seen_[key_of(record)].done = true;
+  }
+  for (const fs::path& name : named_) {
+    if (fs::exists(name, error)) seen_[key_of(name)].done = true;
   }
 }
 

@@ -17,7 +17,8 @@ class TapFolder {
   using Clock = std::chrono::steady_clock;
   /// A record that did not change for so long is complete: who writes over a network pauses in between.
   static constexpr std::chrono::milliseconds settled{500};
-  /// @param named  records that are of the test though they are there already
+  /// What is there already is of an earlier test.
+  /// @param named  records of other folders that are of the test once they appear
   /// @throws InvalidInput if there is no such folder, or it cannot be read
   TapFolder(std::filesystem::path watch, std::vector<std::filesystem::path> named);
 

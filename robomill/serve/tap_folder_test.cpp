@@ -35,8 +35,10 @@ TEST(TapFolder, TakesWhatHasSettled) {
 TEST(TapFolder, LeavesOthersAlone) {
   const test::Folder place;
   place.file("before.csv", "1\n");
-  const std::filesystem::path named = place.file("named.csv", "1\n");
-  TapFolder folder(place.path(), {named, place.at("missing.csv")});
+  std::filesystem::create_directory(place.at("other"));
+  const std::filesystem::path old = place.file("old.csv", "1\n"), named = place.at("other/named.csv");
+  TapFolder folder(place.path(), {old, named, place.at("missing.csv")});
+  place.file("other/named.csv", "1\n");
   place.file(".hidden.csv", "1\n");
   place.file("notes.md", "1\n");
   place.file("empty.csv", "");
@@ -46,9 +48,12 @@ TEST(TapFolder, LeavesOthersAlone) {
   const TapFolder::Clock::time_point now = TapFolder::Clock::now();
   EXPECT_TRUE(folder.look(10, now).empty());
   EXPECT_EQ(folder.look(1, now + 1s), Paths{first});  // at most so many
-  EXPECT_EQ(folder.look(10, now + 1s), Paths{named});
-  std::filesystem::remove_all(place.path());  // a share that is gone
+  EXPECT_EQ(folder.look(10, now + 1s), Paths{named}) << "and none that its rows name and that was there";
+  const std::filesystem::path unread = place.file("hit.tdms", "TDSm");
   EXPECT_TRUE(folder.look(10, now + 2s).empty());
+  EXPECT_EQ(folder.look(10, now + 4s), Paths{unread}) << "to be named";
+  std::filesystem::remove_all(place.path());  // a share that is gone
+  EXPECT_TRUE(folder.look(10, now + 6s).empty());
 }
 
 }  // namespace tap_folder_test

@@ -10,6 +10,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/coupling/files/joint_json.hpp"
 #include "robomill/coupling/files/segment_fields.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/modal/files/frf_files.hpp"
 
@@ -327,6 +328,7 @@ AssemblyFile read_assembly(const io::TomlSource& source, const AssemblyReading& 
   read_search(file, out.search);
   add_defaults(file, reading, out);
   file.done();
+  add_assumed(out.assumed, io::sample_values(source));
   if (!reading.joint_sought) choose_lines(file, lines, out);
   about(file, out.receptances.empty() ? source.path : out.receptances, [&] { out.assembly.validate(); });
   return out;

@@ -11,6 +11,7 @@
 
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/arm_toml.hpp"
@@ -211,6 +212,9 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
   if (kind == Kind::serial) link_frames = read_serial(file, out);
   if (kind == Kind::hybrid) read_hybrid(file, out);
   read_origin(file, out);
+  for (const char* key : {"workpiece.origin_mm", "tool.length_mm"}) {
+    if (file.has(std::string(key).substr(0, std::string(key).find('.')))) file.require(key);
+  }
   out.cell.workpiece = read_pose(file, "workpiece.origin_mm", "workpiece.rotation_deg");
   file.number("tool.length_mm", "tool_length_m", units::mm, out.cell.tool_length_m);
   read_end_effector(file, out);
@@ -220,6 +224,7 @@ CellFile read_cell(const io::TomlSource& source, Robots usable) {
     out.geometry = robot::read_geometry(file, out.cell, out.mount(), link_frames, out.notes);
   }
   file.done();
+  add_assumed(out.assumed, io::sample_values(source));
   if (out.hybrid) {
     out.hybrid->workpiece = out.cell.workpiece;
     out.hybrid->tool_length_m = out.cell.tool_length_m;

@@ -9,6 +9,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
 #include "robomill/modal/files/modes_files.hpp"
@@ -230,6 +231,7 @@ ForcesFile read_forces(const io::TomlSource& source, ForcesJob job) {
   const auto document = std::make_shared<io::TomlFile>(source);
   ForcesFile out = read(*document, source.path, job);
   out.document = document;
+  add_assumed(out.assumed, io::sample_values(source));
   return out;
 }
 

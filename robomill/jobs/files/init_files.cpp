@@ -58,14 +58,15 @@ bool comes_before(const std::string& a, const std::string& b) {
   return std::pair(a.size() - i, a) < std::pair(b.size() - j, b);
 }
 
-/// Files of a folder that are records by their ending.
+/// Files of a folder that are records by their ending, read here or not.
 std::vector<fs::path> records_in(const fs::path& folder) {
   std::vector<fs::path> paths;
   try {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
       const io::Format format = io::format_of(entry.path());
       const bool record = format == io::Format::csv || format == io::Format::text || format == io::Format::mat ||
-                          format == io::Format::uff || format == io::Format::wav;
+                          format == io::Format::uff || format == io::Format::wav ||
+                          !io::unread_record(entry.path()).what.empty();
       if (record && entry.is_regular_file() && entry.file_size() <= largest_record_bytes) paths.push_back(entry.path());
     }
   } catch (const fs::filesystem_error& error) {
@@ -88,52 +89,64 @@ FoundHits find_hits(const fs::path& data, const fs::path& folder) {
                                  .lexically_normal()
                                  .lexically_proximate(fs::absolute(folder).lexically_normal())
                                  .generic_string();
+    if (path.filename() == example_hit_name) continue;  // made up by an earlier call
     try {
       const io::Record record = io::read_record(path);
       modal::HitGuess guess = modal::guess_hit(record);
       if (!guess.is_hit()) {
-        found.left_out.push_back(name + ": no column looks like a hammer's force, one short pulse, beside a response");
+        found.left_out.push_back(name +
+                                 ": no column looks like a hammer's force, one short pulse, beside a response. Of two "
+                                 "files, write force and "
+                                 "response beside each other in one CSV");
         continue;
       }
       FoundHit hit{.file = name, .format = io::format_of(path), .sample_rate_hz = record.sample_rate_hz};
       const std::vector<std::size_t> times = guess.with(modal::ColumnGuess::Role::time);
       if (!times.empty()) {
         const double per_unit = guess.columns[times.front()].si_per_unit;
-        hit.sample_rate_hz = io::sample_rate_of(record.columns[times.front()], path.string()) / per_unit;
+        const Eigen::VectorXd& time = record.columns[times.front()];
+        const double rounded_hz = io::rounded_sample_rate_of(time);
+        hit.rounded_time = rounded_hz > 0.0;
+        hit.sample_rate_hz = (hit.rounded_time ? rounded_hz : io::sample_rate_of(time, path.string())) / per_unit;
       }
       hit.guess = std::move(guess);
       found.hits.push_back(std::move(hit));
     } catch (const InvalidInput& error) {
-      InvalidInput::Parts parts = error.parts();
-      found.left_out.push_back(fmt::format("{}: {}", name, parts.rule));
+      const InvalidInput::Parts& parts = error.parts();
+      found.left_out.push_back(fmt::format("{}: {}{}{}", name, parts.rule, parts.hint.empty() ? "" : ". ", parts.hint));
     }
   }
   keep_what_goes_together(found);
   return found;
 }
 
+/// A record that is made up, unless an earlier call has made it.
+void add_example_hit(const fs::path& folder, InitFiles& out) {
+  const fs::path example = folder / example_hit_name;
+  if (is_there(example)) {
+    out.kept.push_back(example);
+  } else {
+    out.files.push_back({.path = example, .text = example_hit_csv()});
+  }
+  out.notes.push_back(fmt::format("{} is made up, so that the file runs.", example_hit_name));
+}
+
 void add_hits(const InitOptions& options, const fs::path& path, InitFiles& out, MeasuredAxes& measured) {
   const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
   FoundHits found;
   const fs::path data = options.data.empty() ? folder : options.data;
-  if (!options.data.empty() || fs::is_directory(data)) found = find_hits(data, folder);
-  // A made-up one of an earlier call is no measurement.
-  std::erase_if(found.hits, [](const FoundHit& hit) { return fs::path(hit.file).filename() == example_hit_name; });
-  NewFile document{.path = path, .text = hits_document(found), .kind = Template::hits};
-  if (found.hits.empty()) {
-    const fs::path example = path.parent_path() / example_hit_name;
+  const bool looks = !options.example && (!options.data.empty() || fs::is_directory(data));
+  if (looks) found = find_hits(data, folder);
+  out.files.push_back({.path = path, .text = hits_document(found, options.example), .kind = Template::hits});
+  if (options.example) {
     measured = {.excitations = {'x'}, .responses = {'x'}};
-    out.files.push_back(std::move(document));
-    if (is_there(example)) {
-      out.kept.push_back(example);
-    } else {
-      out.files.push_back({.path = example, .text = example_hit_csv()});
-    }
-    out.notes.push_back(fmt::format("No records of hits were found in {}: {} is made up, so that the file runs.",
-                                    data.string(), example_hit_name));
+    add_example_hit(path.parent_path(), out);
+  } else if (found.hits.empty()) {
+    out.notes.push_back(fmt::format(
+        "No records of hits were found in {}: write [[hits]] for each one, or lay them there and begin again.",
+        data.string()));
   } else {
     measured = measured_axes(found);
-    out.files.push_back(std::move(document));
     const bool one = found.hits.size() == 1;
     out.notes.push_back(fmt::format("{} record{} of hits {} found in {}: what is guessed is marked, check it.",
                                     found.hits.size(), one ? "" : "s", one ? "was" : "were", data.string()));
@@ -146,13 +159,17 @@ void add_hits(const InitOptions& options, const fs::path& path, InitFiles& out, 
   }
 }
 
-/// What a hits.toml that is there already knows.
+/// What a hits.toml that is there already knows; nothing where it is still to be filled in.
 MeasuredAxes axes_of(const fs::path& hits_toml) {
   MeasuredAxes axes;
   const auto letter = [](const modal::Dof& dof) { return modal::to_string(modal::Dof{.axis = dof.axis}).front(); };
-  for (const modal::Hit& hit : modal::read_hits(hits_toml).hits) {
-    axes.excitations.insert(letter(hit.excitation));
-    for (const modal::HitChannel& channel : hit.responses) axes.responses.insert(letter(channel.dof));
+  try {
+    for (const modal::Hit& hit : modal::read_hits(hits_toml).hits) {
+      axes.excitations.insert(letter(hit.excitation));
+      for (const modal::HitChannel& channel : hit.responses) axes.responses.insert(letter(channel.dof));
+    }
+  } catch (const InvalidInput&) {
+    return {};  // the job's run says what is wrong with it
   }
   return axes;
 }
@@ -168,11 +185,13 @@ void add_job(const InitOptions& options, const fs::path& path, InitFiles& out) {
   } else {
     add_hits(options, hits, beside, measured);
   }
-  job.text = job_document(measured);
+  job.text = job_document(measured, options.example);
+  out.unmeasured = unmeasured_axis(measured);
   if (is_there(lobes)) {
     out.kept.push_back(lobes);
   } else {
-    out.files.push_back({.path = lobes, .text = std::string(template_text(Template::lobes)), .kind = Template::lobes});
+    out.files.push_back(
+        {.path = lobes, .text = template_text(Template::lobes, options.example), .kind = Template::lobes});
   }
   std::ranges::move(beside.files, std::back_inserter(out.files));
   std::ranges::move(beside.kept, std::back_inserter(out.kept));
@@ -218,7 +237,10 @@ InitFiles init_files(const InitOptions& options) {
   if (!options.data.empty() && options.kind != Template::hits && options.kind != Template::job) {
     throw InvalidInput("--data", "goes with init hits and init job");
   }
-  InitFiles out;
+  if (!options.data.empty() && options.example) {
+    throw InvalidInput("--data", "does not go with --example", "An example has a record of its own");
+  }
+  InitFiles out = {.example = options.example};
   MeasuredAxes measured;
   switch (options.kind) {
     case Template::job:
@@ -228,10 +250,10 @@ InitFiles init_files(const InitOptions& options) {
       add_hits(options, path, out, measured);
       break;
     case Template::cell:
-      out.files.push_back({.path = path, .text = cell_document(options.robot), .kind = options.kind});
+      out.files.push_back({.path = path, .text = cell_document(options.robot, options.example), .kind = options.kind});
       break;
     default:
-      out.files.push_back({.path = path, .text = std::string(template_text(options.kind)), .kind = options.kind});
+      out.files.push_back({.path = path, .text = template_text(options.kind, options.example), .kind = options.kind});
   }
   out.next = command_for(options.kind, path);
   return out;

@@ -17,6 +17,7 @@
 #include "robomill/cutting/engagement.hpp"
 #include "robomill/cutting/files/coefficients_toml.hpp"
 #include "robomill/cutting/polynomial.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/toml_file.hpp"
 #include "robomill/jobs/files/cut_fields.hpp"
 
@@ -404,16 +405,18 @@ void LobesFile::drop_dynamics() {
   directions = {};
   problem.dynamics = {};
   problem.measured = {};
+  std::erase_if(assumed, [](const Assumption& one) { return one.key.starts_with("dynamics."); });
 }
 
 void LobesFile::validate() const {
   const bool nothing = problem.dynamics.modes.empty() && problem.measured.frfs.empty();
   const char* const rule = "must name the structure: modes, frf, x and y, or cell and joints_deg";
+  const char* const hint = "Measure it (robomill frf, then robomill modes); a plan leaves modes.json of its job";
   if (!document) {
     if (nothing) throw InvalidInput("dynamics", rule);
     return problem.validate();
   }
-  if (nothing) throw document->reject("dynamics", rule);
+  if (nothing) throw document->reject("dynamics", rule, hint);
   document->locate([&] { problem.validate(); });
 }
 
@@ -421,6 +424,7 @@ LobesFile read_lobes(const io::TomlSource& source) {
   const auto document = std::make_shared<io::TomlFile>(source);
   LobesFile out = read(*document, source.path);
   out.document = document;
+  add_assumed(out.assumed, io::sample_values(source));
   return out;
 }
 

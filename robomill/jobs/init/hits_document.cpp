@@ -67,7 +67,7 @@ class Acquisition {
       set("response", kind, guessed_from(response.from));
     }
     const bool sound = hit_.format == io::Format::wav;
-    if (sound) set("scale", "1", "guessed: 1 V per full scale. The recorder's manual says it: check");
+    if (sound) set("scale", "1", "V per full scale: the recorder's manual says it", to_give);
     const double volts = force.volts > 0.0 ? force.volts : response.volts;
     const double response_volts = response.volts > 0.0 ? response.volts : volts;
     if (volts > 0.0 || sound) {
@@ -86,13 +86,14 @@ class Acquisition {
  private:
   static double record_mv(double volts) { return volts == 1e-3 ? 1.0 : 1e3; }
   static const char* voltage_text(double volts) { return record_mv(volts) == 1.0 ? "\"mV\"" : "\"V\""; }
-  void set(const std::string& key, const std::string& value, const std::string& remark) {
-    text_ = with_remark(text_, "acquisition." + key, value, remark);
+  static constexpr std::string_view to_give = "#!";
+  void set(const std::string& key, const std::string& value, const std::string& remark, std::string_view mark = "#") {
+    text_ = with_remark(text_, "acquisition." + key, value, remark, mark);
   }
   void sensitivity(const std::string& key, double unit, const ColumnGuess& column, double record_mv, bool sound,
                    std::string_view usual) {
     if (column.volts > 0.0 || sound) {
-      set(key, std::string(usual), "a usual one: write that of the sensor's calibration sheet");
+      set(key, std::string(usual), "of the sensor's calibration sheet", to_give);
     } else if (column.si_per_unit != 1.0) {
       // What a 1 of the record is, as if it were a voltage.
       set(key, fmt::format("{:.6g}", record_mv * unit / column.si_per_unit),
@@ -101,11 +102,12 @@ class Acquisition {
   }
   void rate() {
     const ColumnGuess* const time = first_of(hit_, Role::time);
-    if (time != nullptr && time->si_per_unit != 1.0) {
+    if (time != nullptr && (time->si_per_unit != 1.0 || hit_.rounded_time)) {
       set("sample_rate_hz", fmt::format("{:.9g}", hit_.sample_rate_hz),
-          fmt::format("guessed from the column {}, which is not in s: check", time->name));
+          fmt::format("guessed from the column {}, which is {}: check", time->name,
+                      hit_.rounded_time ? "rounded" : "not in s"));
     } else if (time == nullptr && hit_.sample_rate_hz <= 0.0) {
-      set("sample_rate_hz", fmt::format("{:.6g}", usual_rate_hz), "a usual one: the records do not say it, check");
+      set("sample_rate_hz", fmt::format("{:.6g}", usual_rate_hz), "Hz: the records do not say it", to_give);
     }
   }
 
@@ -116,7 +118,7 @@ class Acquisition {
 std::string hit_table(const FoundHit& hit) {
   std::string text = "[[hits]]\n" + template_line("file", io::toml_quoted(hit.file), "");
   const ColumnGuess* const time = first_of(hit, Role::time);
-  if (time != nullptr && time->si_per_unit == 1.0) {
+  if (time != nullptr && time->si_per_unit == 1.0 && !hit.rounded_time) {
     text += template_line("time", column_text(time->name), guessed_from(time->from));
   }
   const ColumnGuess& force = *first_of(hit, Role::force);
@@ -212,13 +214,13 @@ void keep_what_goes_together(FoundHits& found) {
   }
 }
 
-std::string hits_document(const FoundHits& found) {
-  std::string text(template_text(Template::hits));
-  if (found.hits.empty()) return text;
+std::string hits_document(const FoundHits& found, bool example) {
+  std::string text(raw_template(Template::hits));
+  if (found.hits.empty()) return rendered(text, example);
   text.resize(text.find("\n[[hits]]\n") + 1);
   text = Acquisition(found.hits.front(), std::move(text)).filled();
   for (std::size_t i = 0; i < found.hits.size(); ++i) text += (i == 0 ? "" : "\n") + hit_table(found.hits[i]);
-  return text;
+  return rendered(text, example);
 }
 
 MeasuredAxes measured_axes(const FoundHits& found) {
@@ -230,32 +232,46 @@ MeasuredAxes measured_axes(const FoundHits& found) {
   return axes;
 }
 
-std::string job_document(const MeasuredAxes& measured) {
-  const std::string text(template_text(Template::job));
-  const auto known = [&](char axis) {
-    return measured.excitations.contains(axis) && measured.responses.contains(axis);
-  };
-  if (known('x') && known('y')) return commented_out(text, "job.equal_directions");
-  const char axis = known('y') ? 'y' : 'x', other = known('y') ? 'x' : 'y';
-  if (measured.excitations == measured.responses && measured.excitations == std::set<char>{axis}) {
-    return with_remark(
-        text, "job.equal_directions", "true",
-        fmt::format("only {} was hit: {} is taken to be like it. Leave it out where both were", axis, other));
-  }
-  return with_remark(commented_out(text, "job.equal_directions"), "job.rigid_directions",
-                     fmt::format("[\"{}\"]", other), fmt::format("{} was not hit and is taken as rigid: check", other));
+namespace {
+
+bool is_known(const MeasuredAxes& measured, char axis) {
+  return measured.excitations.contains(axis) && measured.responses.contains(axis);
 }
 
-std::string cell_document(const std::string& robot) {
-  std::string text(template_text(Template::cell));
-  if (robot.empty()) return text;
+}  // namespace
+
+char unmeasured_axis(const MeasuredAxes& measured) {
+  if (is_known(measured, 'x') == is_known(measured, 'y')) return 0;
+  return is_known(measured, 'x') ? 'y' : 'x';
+}
+
+std::string job_document(const MeasuredAxes& measured, bool example) {
+  const std::string text(raw_template(Template::job));
+  const char other = unmeasured_axis(measured);
+  if (other == 0) return rendered(commented_out(text, "job.equal_directions"), example);
+  const char axis = other == 'y' ? 'x' : 'y';
+  if (measured.excitations == measured.responses && measured.excitations == std::set<char>{axis}) {
+    return rendered(
+        with_remark(text, "job.equal_directions", "true",
+                    fmt::format("only {} was hit: is {} like it? Else take rigid_directions", axis, other), "#!"),
+        example);
+  }
+  return rendered(with_remark(commented_out(text, "job.equal_directions"), "job.rigid_directions",
+                              fmt::format("[\"{}\"]", other), fmt::format("{} was not hit: is it rigid?", other), "#!"),
+                  example);
+}
+
+std::string cell_document(const std::string& robot, bool example) {
+  std::string text(raw_template(Template::cell));
+  if (robot.empty()) return rendered(text, example);
   const std::string_view cell = known_arm_cell(robot);
   if (cell.empty()) {
     std::string names;
     for (const KnownArm& arm : known_arms()) names += (names.empty() ? "" : ", ") + arm.name;
     throw InvalidInput(fmt::format("\"{}\"", robot), "is no robot that is known here", "There are " + names);
   }
-  text = io::with_setting(text, {.key = "robot.model", .value = io::toml_quoted(robot)});
+  text = with_remark(text, "robot.model", io::toml_quoted(robot),
+                     "an arm of data/cells with its kinematics and limits; keys below stand before its own");
   const auto take = [&](const std::string& key) {
     const std::optional<std::string> value = io::setting_of(cell, key);
     if (value) text = io::with_setting(text, {.key = key, .value = *value});
@@ -267,7 +283,7 @@ std::string cell_document(const std::string& robot) {
     text = io::with_setting(text, {.key = list.key, .value = values_of(arm, list)});
     text = commented_out(std::move(text), list.key);
   }
-  return text;
+  return rendered(text, example);
 }
 
 }  // namespace robomill::jobs

@@ -13,6 +13,7 @@
 #include "robomill/base/error.hpp"
 #include "robomill/base/units.hpp"
 #include "robomill/cutting/files/materials_toml.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/text.hpp"
 #include "robomill/io/toml_edit.hpp"
 #include "robomill/jobs/files/known_arms.hpp"
@@ -88,8 +89,15 @@ constexpr std::pair<std::string_view, std::string_view> length_unit_words[] = {
     {"mm", "mm"}, {"inch", "in"}, {"inches", "in"}, {"zoll", "in"}};
 constexpr std::pair<std::string_view, std::string_view> direction_words[] = {
     {"climb", "down"}, {"down", "down"}, {"conventional", "up"}, {"up", "up"}, {"slot", "slot"}};
+constexpr std::pair<std::string_view, std::string_view> unmeasured_words[] = {
+    {"like", "like"}, {"same", "like"}, {"equal", "like"}, {"rigid", "rigid"}};
 constexpr std::pair<std::string_view, std::string_view> voltage_words[] = {
     {"v", "V"}, {"volts", "V"}, {"mv", "mV"}, {"millivolts", "mV"}, {"si", "SI"}};
+
+/// "origin_mm" of "origin_mm[2]"; empty of what is no entry of a list.
+std::string list_of(const std::string& key) {
+  return key.ends_with(']') && key.find('.') != std::string::npos ? key.substr(0, key.rfind('[')) : std::string();
+}
 
 }  // namespace
 
@@ -99,6 +107,8 @@ struct Interview::State {
   std::size_t at = 0;
   std::string length_unit = "mm";
   std::map<std::string_view, std::string> answers;  ///< by the id of the question: as files have it, without quotes
+  /// Entries of lists that the documents do not have: they count together or not at all.
+  std::map<std::pair<Template, std::string>, std::map<std::string, std::string>> lists;
 
   State(Template kind, InitFiles& documents) : files(documents), questions(questions_of(kind)) { skip(); }
 
@@ -114,11 +124,12 @@ struct Interview::State {
   [[nodiscard]] double checked(const Question& asked, std::string_view answer, double value) const;
   [[nodiscard]] bool applies(const Question& asked) const;
   void skip();
-  void put(const Question& asked, const std::string& value);
-  void set(Template document, const char* key, const std::string& value);
+  void put(const Question& asked, const std::string& value, bool given);
+  void set(Template document, const std::string& key, const std::string& value, bool given = true);
   void require_radial(const std::string& material);
   void take_voltages_back();
   void take(std::string_view text);
+  void put_lists();
   void finish();
 };
 
@@ -185,8 +196,10 @@ std::string Interview::State::value_of(const Question& asked, std::string_view a
       return std::string(one_of_words(answer, direction_words));
     case Answer::voltage:
       return std::string(one_of_words(answer, voltage_words));
+    case Answer::unmeasured:
+      return std::string(one_of_words(answer, unmeasured_words));
     case Answer::robot:
-      static_cast<void>(cell_document(std::string(answer)));
+      static_cast<void>(cell_document(std::string(answer), files.example));
       return std::string(answer);
     case Answer::material: {
       const cutting::Material& material = cutting::material(answer);
@@ -215,6 +228,7 @@ bool Interview::State::applies(const Question& asked) const {
                       return files.document(target.document) != nullptr;
                     });
   if (!here) return false;
+  if (asked.kind == Answer::unmeasured && (files.unmeasured == 0 || files.example)) return false;
   if ((asked.id == "hammer" || asked.id == "accelerometer") && answered("voltage", "SI")) return false;
   if (asked.id == "accelerometer" &&
       io::setting_of(files.document(Template::hits)->text, "acquisition.response") != "\"acceleration\"") {
@@ -227,9 +241,16 @@ void Interview::State::skip() {
   while (at < questions.size() && !applies(question())) ++at;
 }
 
-void Interview::State::set(Template document, const char* key, const std::string& value) {
+void Interview::State::set(Template document, const std::string& key, const std::string& value, bool given) {
   NewFile* const file = files.document(document);
-  if (file != nullptr && key != nullptr) file->text = io::with_setting(file->text, {.key = key, .value = value});
+  if (file == nullptr || key.empty()) return;
+  const std::string list = list_of(key);
+  if (!list.empty() && !io::setting_of(file->text, list)) {
+    lists[{document, list}][key] = value;
+    return;
+  }
+  file->text = io::with_setting(file->text, {.key = key, .value = value});
+  if (given) file->text = io::without_sample_mark(std::move(file->text), key);
 }
 
 /// Of a material whose source states the tangential coefficient alone the other one has to be said.
@@ -255,17 +276,24 @@ void Interview::State::take_voltages_back() {
   }
 }
 
-void Interview::State::put(const Question& asked, const std::string& value) {
+/// @param given  by who was asked; else it is the default that the document has
+void Interview::State::put(const Question& asked, const std::string& value, bool given) {
   if (asked.kind == Answer::robot) {
     // With its own workpiece and tool, which are asked for next.
-    if (NewFile* const file = files.document(Template::cell)) file->text = cell_document(value);
+    NewFile* const file = files.document(Template::cell);
+    if (file != nullptr && given) file->text = cell_document(value, files.example);
     return;
+  }
+  if (asked.kind == Answer::unmeasured) {
+    const bool like = value == "like";
+    return set(Template::job, like ? "job.equal_directions" : "job.rigid_directions",
+               like ? "true" : fmt::format("[\"{}\"]", files.unmeasured));
   }
   if (asked.kind == Answer::voltage && value == "SI") return take_voltages_back();
   if (asked.kind == Answer::material) require_radial(value);
   const bool bare = asked.kind == Answer::quantity || asked.kind == Answer::count;
   for (const Target& target : asked.targets) {
-    set(target.document, target.key, bare ? value : io::toml_quoted(value));
+    if (target.key != nullptr) set(target.document, target.key, bare ? value : io::toml_quoted(value), given);
   }
 }
 
@@ -281,7 +309,7 @@ void Interview::State::take(std::string_view text) {
   }
   if (asked.kind == Answer::length_unit) length_unit = value;
   if (!value.empty()) {
-    put(asked, value);
+    put(asked, value, !text.empty());
     answers[asked.id] = value;
   }
   ++at;
@@ -289,9 +317,29 @@ void Interview::State::take(std::string_view text) {
   if (at == questions.size()) finish();
 }
 
+/// A list of which every entry was answered.
+void Interview::State::put_lists() {
+  for (const auto& [place, entries] : lists) {
+    const auto& [document, list] = place;
+    std::size_t asked_for = 0;
+    for (const Question& question : questions) {
+      for (const Target& target : question.targets) {
+        const std::string key = target.key != nullptr ? target.key : "";
+        if (target.document == document && list_of(key) == list) ++asked_for;
+      }
+    }
+    if (entries.size() < asked_for) continue;
+    std::string text;
+    for (const auto& [key, value] : entries) text += (text.empty() ? "[" : ", ") + value;
+    set(document, list, text + "]");
+  }
+}
+
 /// What several answers make together.
 void Interview::State::finish() {
-  if (answers.contains("torque") || answers.contains("power")) {
+  put_lists();
+  const bool range = answers.contains("lowest speed") && answers.contains("highest speed");
+  if (range && (answers.contains("torque") || answers.contains("power"))) {
     const double low = number("lowest speed", 0.0), high = number("highest speed", 0.0);
     const auto power_kw = [](double torque_n_m, double rpm) { return torque_n_m * rpm * units::rpm / units::kw; };
     // Of which one is not known, it does not limit.
@@ -303,7 +351,7 @@ void Interview::State::finish() {
     };
     set(Template::job, "spindle.curve", fmt::format("[{}, {}]", point(low), point(high)));
   }
-  if (answers.contains("direction") && answers["direction"] == "slot") {
+  if (answers.contains("direction") && answers["direction"] == "slot" && answers.contains("diameter")) {
     for (const Template document : {Template::lobes, Template::forces}) {
       set(document, "cut.radial_depth_mm", answers["diameter"]);
     }

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "robomill/jobs/init/hits_document.hpp"
-
 namespace robomill::jobs {
 namespace {
 
@@ -22,20 +20,22 @@ constexpr Question all_questions[] = {
      .quantity = Quantity::force_sensitivity,
      .low = 1e-6,
      .high = 1e6,
-     .targets = {{Template::hits, "acquisition.force_mv_per_n"}},
-     .otherwise = usual_force_mv_per_n},
+     .targets = {{Template::hits, "acquisition.force_mv_per_n"}}},
     {.id = "accelerometer",
      .text = "Sensitivity of the accelerometer",
      .quantity = Quantity::acceleration_sensitivity,
      .low = 1e-6,
      .high = 1e6,
-     .targets = {{Template::hits, "acquisition.response_mv_per_g"}},
-     .otherwise = usual_response_mv_per_g},
+     .targets = {{Template::hits, "acquisition.response_mv_per_g"}}},
     {.id = "accelerometer mass",
      .text = "Mass of the accelerometer",
      .quantity = Quantity::mass,
      .high = 1.0,
      .targets = {{Template::hits, "acquisition.accelerometer_mass_kg"}}},
+    {.id = "unmeasured",
+     .text = "The direction that was not hit: is it like the other one, or rigid",
+     .kind = Answer::unmeasured,
+     .targets = {{Template::job, nullptr}}},
     {.id = "robot", .text = "Robot", .kind = Answer::robot, .targets = {{Template::cell, "robot.model"}}},
     {.id = "tool length",
      .text = "From the flange to the cutter's tip, along the spindle's axis",

@@ -34,7 +34,7 @@ class Targets {
 };
 
 /// What an answer is.
-enum class Answer { length_unit, quantity, count, material, direction, robot, voltage };
+enum class Answer { length_unit, quantity, count, material, direction, robot, voltage, unmeasured };
 
 struct Question {
   std::string_view id, text;

@@ -2,6 +2,7 @@
 
 #include "robomill/base/embed.hpp"
 #include "robomill/jobs/init.hpp"
+#include "robomill/jobs/init/template_lines.hpp"
 
 #define ROBOMILL_EMBED_TEMPLATE(kind)                                             \
   ROBOMILL_EMBED(robomill_template_##kind, ROBOMILL_TEMPLATES "/" #kind ".toml"); \
@@ -23,7 +24,7 @@ ROBOMILL_EMBED_TEMPLATE(monitor)
 
 namespace robomill::jobs {
 
-std::string_view template_text(Template kind) {
+std::string_view raw_template(Template kind) {
   const auto text = [](const char* begin, const char* end) {
     return std::string_view(begin, static_cast<std::size_t>(end - begin));
   };
@@ -37,6 +38,10 @@ std::string_view template_text(Template kind) {
     ROBOMILL_TEMPLATE(monitor)
   }
   return {};
+}
+
+std::string template_text(Template kind, bool example) {
+  return rendered(raw_template(kind), example);
 }
 
 }  // namespace robomill::jobs

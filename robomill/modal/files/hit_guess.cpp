@@ -119,6 +119,36 @@ bool rises_evenly(const Eigen::VectorXd& column) {
   }
 }
 
+/// Whether a column only rises, as a time does that may be rounded, and no signal.
+bool never_falls(const Eigen::VectorXd& column) {
+  constexpr double least_share = 0.05;  // of steps that rise
+  const Eigen::Index n = column.size();
+  if (n < 10) return false;
+  const Eigen::ArrayXd steps = column.tail(n - 1) - column.head(n - 1);
+  return steps.minCoeff() >= 0.0 && static_cast<double>((steps > 0.0).count()) >= least_share * static_cast<double>(n);
+}
+
+/// Whether it counts samples: 0, 1, 2.
+bool counts(const Eigen::VectorXd& column) {
+  const Eigen::Index n = column.size();
+  return n > 1 && ((column.tail(n - 1) - column.head(n - 1)).array() == 1.0).all();
+}
+
+/// What only rises is no signal, whatever its name seems to say: the first such column is the time, unless it counts.
+void find_times(const io::Record& record, HitGuess& guess) {
+  for (std::size_t i = 0; i < guess.columns.size(); ++i) {
+    ColumnGuess& column = guess.columns[i];
+    if (column.role == Role::time || column.role == Role::force || !never_falls(record.columns[i])) continue;
+    column.role = Role::other;
+    column.from.clear();
+    column.axis = 0;
+    if (!guess.with(Role::time).empty() || counts(record.columns[i])) continue;
+    column.role = Role::time;
+    column.from = "its even rise";
+    column.si_per_unit = 1.0;
+  }
+}
+
 /// Highest magnitude over rms; 0 of a column of zeros.
 double crest(const Eigen::VectorXd& column) {
   const double rms = std::sqrt(column.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(column.size(), 1)));
@@ -263,6 +293,7 @@ HitGuess guess_hit(const io::Record& record) {
     for (ColumnGuess& column : guess.columns) column.role = Role::unknown;
     return guess;
   }
+  find_times(record, guess);
   guess_by_signal(record, guess);
   drop_other_forces(record, guess);
   keep_one_of_each(guess);

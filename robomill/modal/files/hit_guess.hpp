@@ -13,7 +13,7 @@ namespace robomill::modal {
 
 /// What a column of a record seems to hold.
 struct ColumnGuess {
-  enum class Role { unknown, time, force, response };
+  enum class Role { unknown, time, force, response, other };  ///< other: a count, or a second time
   std::string name = {};  ///< as hits.toml names it: its name, or its number from 1 where it has none of its own
   std::string unit = {};  ///< as its name says it: "V", "m/s^2"; empty where it does not
   Role role = Role::unknown;
@@ -37,9 +37,10 @@ struct HitGuess {
 };
 
 /// Guesses by the names of columns ("force_n", "Hammer (N)", "acc x [g]"), their units, the name of the file
-/// ("tap_y_2.csv") and, where names say nothing, by the signal: a time rises evenly, a hammer's force has the sharpest
-/// peak. A force is a hammer's where it is one short pulse, bounces aside; that of a cut is not. Of responses of
-/// several kinds or units, or of one direction twice, the first counts. Of records of anything else it finds no hit.
+/// ("tap_y_2.csv") and, where names say nothing, by the signal: a time rises and never falls, rounded or not, a
+/// hammer's force has the sharpest peak. A force is a hammer's where it is one short pulse, bounces aside; that of a
+/// cut is not. Of responses of several kinds or units, or of one direction twice, the first counts. Of records of
+/// anything else it finds no hit.
 [[nodiscard]] ROBOMILL_API HitGuess guess_hit(const io::Record& record);
 
 }  // namespace robomill::modal

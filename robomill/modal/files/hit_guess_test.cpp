@@ -109,6 +109,35 @@ TEST_F(HitGuessTest, LooksAtTheSignalWhereNamesSayNothing) {
   EXPECT_EQ(roles(guess("a.csv", "t,ch1,ch2,ch3" + rows)), "time:t force:ch1 x:ch2 y:ch3");
 }
 
+/// A hit whose first column has few digits.
+std::string few_digits(const std::string& names, const char* format, double step) {
+  std::string text = names;
+  for (int i = 0; i < 600; ++i) {
+    text += fmt::format(fmt::runtime(format), step * i) +
+            fmt::format(" {} {:.4f}\n", i == 50 ? 9.0 : 0.0, 0.3 * std::sin(i));
+  }
+  return text;
+}
+
+// What only rises is no response and no force, rounded or not and whatever its name says.
+TEST_F(HitGuessTest, AColumnThatOnlyRisesIsTheTime) {
+  for (const char* names : {"", "X_Value Hammer acc_x\n", "x f ay\n", "Seconds force_n resp\n", "sensor f ax\n"}) {
+    for (const auto& [format, step] : {std::pair{"{:.2e}", 2.5e-4}, {"{:.3f}", 2.5e-4}, {"{:.6f}", 2.5e-4}}) {
+      const HitGuess found = guess("tap.txt", few_digits(names, format, step));
+      EXPECT_EQ(found.columns[0].role, Role::time) << names << format;
+      EXPECT_EQ(found.columns[1].role, Role::force) << names << format;
+      EXPECT_EQ(found.columns[2].role, Role::response) << names << format;
+    }
+  }
+  // A column that counts is neither; force and response alone, in two files, are no hit.
+  const HitGuess counted = guess("tap.txt", few_digits("", "{:.0f}", 1.0));
+  EXPECT_EQ(counted.columns[0].role, Role::other);
+  EXPECT_TRUE(counted.is_hit());
+  std::string force;
+  for (int i = 0; i < 600; ++i) force += fmt::format("{:.2e} {}\n", 2.5e-4 * i, i == 50 ? 9 : 0);
+  EXPECT_FALSE(guess("impact.txt", force).is_hit());
+}
+
 TEST_F(HitGuessTest, FindsNoHitInOtherRecords) {
   EXPECT_FALSE(guess("frf.csv", "frequency_hz,xx_re_m_per_n,xx_im_m_per_n,xx_coherence" + rows).is_hit());
   EXPECT_FALSE(guess("frf2.csv", "Hz,Real,Imag,Coherence" + rows).is_hit());

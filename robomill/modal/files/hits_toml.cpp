@@ -10,6 +10,7 @@
 #include "robomill/base/units.hpp"
 #include "robomill/io/file.hpp"
 #include "robomill/io/records.hpp"
+#include "robomill/io/samples.hpp"
 #include "robomill/io/toml_file.hpp"
 
 namespace robomill::modal {
@@ -88,8 +89,13 @@ void read_sensitivities(io::TomlFile& file, ResponseKind kind, Sensors& sensors)
     response =
         sensitivity(file, response_in_g_key, response_mv, units::standard_gravity, sensors.response_factor) || response;
   }
-  if (file.has(voltage) && !force && !response) {
-    throw file.reject(voltage, "goes with the sensors' sensitivities: force_mv_per_n, response_mv_per_g");
+  // Records in volts are neither N nor m/s^2.
+  if (file.has(voltage)) {
+    if (!force) file.require(force_key, "voltage_unit says that the records are in volts: it is on the hammer's sheet");
+    if (!response) {
+      file.require(kind == ResponseKind::acceleration ? std::string(response_in_g_key) : in_si,
+                   "voltage_unit says that the records are in volts: it is on the sensor's calibration sheet");
+    }
   }
   if (file.has(response_voltage) && !response) {
     throw file.reject(response_voltage, "goes with the response's sensitivity: response_mv_per_g");
@@ -170,6 +176,10 @@ Hit read_hit(io::TomlFile& file, std::size_t index, const Sensors& sensors, std:
   const std::string row = fmt::format("hits[{}].", index);
   file.require(row + "file");
   const HitRow columns = read_row(file, row);
+  if (file.has(row + "file[0]")) {
+    throw file.reject(row + "file", "must be one file",
+                      "Force and response in two files are not read yet: write them beside each other in one CSV");
+  }
   std::filesystem::path path;
   file.path(row + "file", path);
   if (io::format_of(path) == io::Format::wav && !sensors.has_scale) {
@@ -246,6 +256,7 @@ HitsFile read_hits(const io::TomlSource& source) {
   for (std::size_t i = 0; i < file.tables("hits"); ++i) out.hits.push_back(read_hit(file, i, sensors, out.notes));
   file.done();
   out.assumed = assumed_of(file, out.options.response, source.path);
+  add_assumed(out.assumed, io::sample_values(source));
   return out;
 }
 

@@ -65,7 +65,11 @@ TEST(HitsToml, TakesSensitivitiesInGAndRecordsInMillivolts) {
   EXPECT_NE(say("response_mv_per_g = 100\nresponse_mv_per_m_per_s2 = 10\n").find("must not stand beside"),
             std::string::npos);
   EXPECT_NE(say("response_mv_per_g = 0\n").find("hits.toml:2: acquisition.response_mv_per_g = 0"), std::string::npos);
-  EXPECT_NE(say("voltage_unit = \"mV\"\n").find("goes with the sensors' sensitivities"), std::string::npos);
+  EXPECT_NE(say("voltage_unit = \"mV\"\n").find("acquisition.force_mv_per_n: is missing"), std::string::npos);
+  EXPECT_NE(say("voltage_unit = \"mV\"\nforce_mv_per_n = 2.5\n").find("acquisition.response_mv_per_g: is missing"),
+            std::string::npos);
+  EXPECT_NE(say("voltage_unit = \"mV\"\nresponse_mv_per_g = 100\n").find("acquisition.force_mv_per_n: is missing"),
+            std::string::npos);
   EXPECT_NE(say("voltage_unit = \"kV\"\nforce_mv_per_n = 1\n").find("must be one of \"V\", \"mV\""), std::string::npos);
   EXPECT_NE(say("response = \"velocity\"\nresponse_mv_per_g = 100\n").find("response_mv_per_g: is not known here"),
             std::string::npos);

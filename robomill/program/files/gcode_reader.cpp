@@ -191,7 +191,8 @@ void GcodeReader::take_g(const GcodeWords::Word& word, Line& line) {
     const GcodeGroup* const group = still_gcode(code);
     if (group == nullptr) {
       const bool unit = code == 700 || code == 710;
-      reject("G", word.number, "", unit ? "is a unit to some, and not read" : "is not read: it may move the tool or its frame",
+      reject("G", word.number, "",
+             unit ? "is a unit to some, and not read" : "is not read: it may move the tool or its frame",
              gcode_hint(code));
     }
     claim(*group, word, line);

@@ -77,15 +77,16 @@ std::vector<std::string> ProgramRemarks::notes() const {
 std::vector<Assumption> ProgramRemarks::assumed() const {
   std::vector<Assumption> out;
   if (no_center_point_.count > 0) {
-    out.push_back({.what = fmt::format("Positions with rotary axes turned, from line {} on", no_center_point_.first_line),
-                   .taken = "those of the tool's tip",
-                   .key = "G43.4, M128 or M428"});
+    out.push_back(
+        {.what = fmt::format("Positions with rotary axes turned, from line {} on", no_center_point_.first_line),
+         .taken = "those of the tool's tip",
+         .key = "G43.4, M128 or M428"});
   }
   if (points_end_words_ && whole_line_ > 0) {
-    out.push_back({.what = fmt::format("{} in line {}, without the point that other positions have", whole_word_,
-                                       whole_line_),
-                   .taken = whole_unit_ + ", where some controls count thousandths",
-                   .key = fmt::format("{}.", whole_word_)});
+    out.push_back(
+        {.what = fmt::format("{} in line {}, without the point that other positions have", whole_word_, whole_line_),
+         .taken = whole_unit_ + ", where some controls count thousandths",
+         .key = fmt::format("{}.", whole_word_)});
   }
   return out;
 }

@@ -32,17 +32,17 @@ struct Dialect {
 
 constexpr std::string_view as_gcode = "Post-process the path as G-code (.nc, .ngc) or as APT/CL (.apt, .cls)";
 constexpr std::string_view what_it_came_from =
-    "It is what a robot runs. Give the path that it was made from: G-code (.nc), APT/CL (.apt, .cls), or a CSV of poses";
+    "It is what a robot runs. Give the path that it was made from: G-code (.nc), APT/CL (.apt, .cls), or a CSV of "
+    "poses";
 
 constexpr std::string_view klartext_endings[] = {".h"};
-constexpr Sign klartext_signs[] = {{"BEGIN PGM", Place::begin},      {"END PGM", Place::begin},
-                                   {"BLK FORM", Place::begin},       {"TOOL CALL", Place::begin},
-                                   {"CYCL DEF", Place::begin},       {"CYCL CALL", Place::begin},
-                                   {"PLANE SPATIAL", Place::begin},  {"FN #", Place::begin, false},
-                                   {"L X", Place::begin, false},     {"L Y", Place::begin, false},
-                                   {"L Z", Place::begin, false},     {"L IX", Place::begin, false},
-                                   {"L IZ", Place::begin, false},    {"CC X", Place::begin, false},
-                                   {"LBL", Place::begin, false},     {"FMAX", Place::anywhere, false}};
+constexpr Sign klartext_signs[] = {
+    {"BEGIN PGM", Place::begin},     {"END PGM", Place::begin},     {"BLK FORM", Place::begin},
+    {"TOOL CALL", Place::begin},     {"CYCL DEF", Place::begin},    {"CYCL CALL", Place::begin},
+    {"PLANE SPATIAL", Place::begin}, {"FN #", Place::begin, false}, {"L X", Place::begin, false},
+    {"L Y", Place::begin, false},    {"L Z", Place::begin, false},  {"L IX", Place::begin, false},
+    {"L IZ", Place::begin, false},   {"CC X", Place::begin, false}, {"LBL", Place::begin, false},
+    {"FMAX", Place::anywhere, false}};
 
 constexpr std::string_view sinumerik_endings[] = {".mpf", ".spf", ".arc"};
 constexpr Sign sinumerik_signs[] = {{"%_N_"},
@@ -71,11 +71,21 @@ constexpr Sign sinumerik_signs[] = {{"%_N_"},
                                     {"L#", Place::begin, false}};
 
 constexpr std::string_view krl_endings[] = {".src", ".dat", ".sub"};
-constexpr Sign krl_signs[] = {{"&ACCESS", Place::begin}, {"&REL", Place::begin},        {"$VEL."},
-                              {"$TOOL"},                 {"$BASE"},                     {"BAS (#"},
-                              {"BAS(#"},                 {"PTP {", Place::begin},       {"LIN {", Place::begin},
-                              {"CIRC {", Place::begin},  {"SPTP", Place::begin},        {"SLIN", Place::begin},
-                              {"PTP", Place::begin},     {"LIN", Place::begin, false},  {"DEF", Place::begin, false},
+constexpr Sign krl_signs[] = {{"&ACCESS", Place::begin},
+                              {"&REL", Place::begin},
+                              {"$VEL."},
+                              {"$TOOL"},
+                              {"$BASE"},
+                              {"BAS (#"},
+                              {"BAS(#"},
+                              {"PTP {", Place::begin},
+                              {"LIN {", Place::begin},
+                              {"CIRC {", Place::begin},
+                              {"SPTP", Place::begin},
+                              {"SLIN", Place::begin},
+                              {"PTP", Place::begin},
+                              {"LIN", Place::begin, false},
+                              {"DEF", Place::begin, false},
                               {";FOLD", Place::begin}};
 
 constexpr std::string_view tp_endings[] = {".ls"};
@@ -105,7 +115,8 @@ constexpr std::array<Dialect, 8> dialects = {{
      as_gcode},
     {krl_endings, krl_signs, "is a program of a KUKA robot (KRL), which is not read yet", what_it_came_from},
     {tp_endings, tp_signs, "is a program of a FANUC robot (TP listing), which is not read yet", what_it_came_from},
-    {inform_endings, inform_signs, "is a program of a Yaskawa robot (INFORM job), which is not read", what_it_came_from},
+    {inform_endings, inform_signs, "is a program of a Yaskawa robot (INFORM job), which is not read",
+     what_it_came_from},
     {urscript_endings, urscript_signs, "is a program of a Universal Robots arm (URScript), which is not read",
      what_it_came_from},
     {rapid_endings, rapid_signs, "is a program of an ABB robot (RAPID), which is not read yet", what_it_came_from},
@@ -150,7 +161,8 @@ std::string plain(std::string_view line) {
   std::string out;
   for (const char c : io::trimmed(line)) out += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   std::size_t at = 0;
-  if (at < out.size() && out[at] == 'N' && out.size() > 1 && std::isdigit(static_cast<unsigned char>(out[1])) != 0) ++at;
+  if (at < out.size() && out[at] == 'N' && out.size() > 1 && std::isdigit(static_cast<unsigned char>(out[1])) != 0)
+    ++at;
   const std::size_t digits = at;
   while (at < out.size() && std::isdigit(static_cast<unsigned char>(out[at])) != 0) ++at;
   if (at > digits && at < out.size() && out[at] == ' ') out.erase(0, out.find_first_not_of(' ', at));

@@ -8,7 +8,7 @@ namespace robomill::program {
 
 /// A language of machines or robots that no reader here knows.
 struct UnreadDialect {
-  std::size_t line = 0;   ///< from 1, where it shows
+  std::size_t line = 0;    ///< from 1, where it shows
   std::string shown = {};  ///< what shows it there: "BEGIN PGM"
   std::string_view rule = {}, hint = {};
 };

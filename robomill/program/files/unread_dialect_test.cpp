@@ -51,9 +51,10 @@ TEST(UnreadDialects, AreNamedWithTheirRemedy) {
 
 TEST(UnreadDialects, WhatMayBeGcodeIsRead) {
   for (const char* name : {"part.nc", "part.mpf", "part.h", "part.txt", "part"}) {
-    EXPECT_FALSE(unread_dialect(std::filesystem::path(name).extension().string(),
-                                "%\n(module of Klartext, TRAORI off, movel( [BEGIN PGM])\nN10 G21 G90 G17 ; MoveL, T=\"B\"\n"
-                                "N20 G0 X1 Y2 Z3.\nG1 Z0 F100\n/G1 X5\n//PLATE 1\nM30\n%\n"))
+    EXPECT_FALSE(
+        unread_dialect(std::filesystem::path(name).extension().string(),
+                       "%\n(module of Klartext, TRAORI off, movel( [BEGIN PGM])\nN10 G21 G90 G17 ; MoveL, T=\"B\"\n"
+                       "N20 G0 X1 Y2 Z3.\nG1 Z0 F100\n/G1 X5\n//PLATE 1\nM30\n%\n"))
         << name;
   }
 }

@@ -151,8 +151,9 @@ void require_no_other_description(std::string_view content, const std::string& w
   const std::size_t xacro = content.find("<xacro:"), value = content.find("${");
   if (xacro != std::string_view::npos || value != std::string_view::npos) {
     const auto line = 1 + std::ranges::count(content.substr(0, std::min(xacro, value)), '\n');
-    throw InvalidInput(fmt::format("{}:{}", where, line), "is xacro, from which a URDF is made, and no URDF yet",
-                       "Write it out with the tool of ROS: xacro FILE.xacro > FILE.urdf, of a macro the file that uses it");
+    throw InvalidInput(
+        fmt::format("{}:{}", where, line), "is xacro, from which a URDF is made, and no URDF yet",
+        "Write it out with the tool of ROS: xacro FILE.xacro > FILE.urdf, of a macro the file that uses it");
   }
   for (const auto& [begin, name] : {std::pair{"<sdf", "SDF (Gazebo)"}, {"<mujoco", "MJCF (MuJoCo)"}}) {
     if (content.find(begin) != std::string_view::npos) {

@@ -176,8 +176,8 @@ std::string fixed(const std::string& name, const std::string& parent, const std:
 TEST(Urdf, OtherDescriptionsAreNamed) {
   const auto say = [](const std::string& text) { return rejection([&] { (void)parse_urdf(text, "arm.xacro", {}); }); };
   const std::string head = "<?xml version=\"1.0\"?>\n<robot name=\"r\" xmlns:xacro=\"http://wiki.ros.org/xacro\">\n";
-  for (const char* body : {"<xacro:include filename=\"macro.xacro\"/>\n</robot>\n",
-                           "<link name=\"${prefix}base\"/>\n</robot>\n"}) {
+  for (const char* body :
+       {"<xacro:include filename=\"macro.xacro\"/>\n</robot>\n", "<link name=\"${prefix}base\"/>\n</robot>\n"}) {
     const std::string said = say(head + body);
     EXPECT_NE(said.find("arm.xacro:3: is xacro"), std::string::npos) << said;
     EXPECT_NE(said.find("xacro FILE.xacro > FILE.urdf"), std::string::npos) << said;

@@ -23,6 +23,7 @@ io::Json name_of(Role role) {
       return "force";
     case Role::response:
       return "response";
+    case Role::other:
     case Role::unknown:
       break;
   }

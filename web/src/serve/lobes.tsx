@@ -222,7 +222,7 @@ export function LobesView({ path }: { path: string }) {
     <View heading="Lobes" lead="How deep the cutter may go at each spindle speed before chatter starts, while the sliders move.">
       {files.length === 0 ? (
         <p class="notice">
-          The folder has no lobes.toml. <code>robomill init lobes -o lobes.toml</code> writes one that runs.
+          The folder has no lobes.toml. <code>robomill init lobes -o lobes.toml</code> writes one to fill in, with <code>--example</code> one that runs.
         </p>
       ) : (
         <ul>

@@ -38,7 +38,7 @@ export function ProgramStart({ none }: { none: boolean }) {
       </p>
       {files.length === 0 && (
         <p class="notice">
-          The folder has no job.toml. <code>robomill init job -o job.toml</code> writes one that runs.
+          The folder has no job.toml. <code>robomill init job -o job.toml</code> writes one to fill in, with <code>--example</code> one that runs.
         </p>
       )}
       {files.length > 1 && <Select label="Job" value={chosen} options={files.map((file) => ({ value: file, name: file }))} choose={setPath} />}

@@ -1,0 +1,64 @@
+#include "robomill/jobs/planned_cut.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <system_error>
+#include <vector>
+
+#include "robomill/base/error.hpp"
+#include "robomill/io/file.hpp"
+#include "robomill/io/toml_edit.hpp"
+
+namespace robomill::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t largest_job_bytes = std::uintmax_t{1} << 20;
+
+/// Whether a document is a job that measures or predicts a structure and names the cut.
+bool plans(const fs::path& document, const fs::path& lobes) {
+  try {
+    const std::string text = io::read_file(document, largest_job_bytes);
+    if (text.find("lobes") == std::string::npos || !io::setting_of(text, "job.lobes")) return false;
+    const Job job = read_job(io::TomlSource(document, text));
+    std::error_code error;
+    return job.has_structure() &&
+           (job.lobes.lexically_normal() == lobes.lexically_normal() || fs::equivalent(job.lobes, lobes, error));
+  } catch (const InvalidInput&) {
+    return false;  // another document, or a job that cannot be planned
+  }
+}
+
+}  // namespace
+
+std::optional<fs::path> job_of_cut(const fs::path& lobes) {
+  const fs::path folder = lobes.parent_path().empty() ? fs::path(".") : lobes.parent_path();
+  std::optional<fs::path> found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path path = lobes.parent_path() / entry->path().filename();
+    if (io::format_of(path) != io::Format::toml || !plans(path, lobes)) continue;
+    if (found) return std::nullopt;
+    found = path;
+  }
+  return found;
+}
+
+void take_plan(LobesFile& cut, const PlanResult& structure) {
+  cut.drop_dynamics();
+  load_dynamics(cut);
+  cut.problem.dynamics = structure.model;
+  const decision::RecommendOptions& limits = structure.job.recommend;
+  std::array<double, 2>& range = cut.options.spindle_speed_rad_per_s;
+  const double low = limits.min_spindle_speed_rad_per_s > 0.0 ? limits.min_spindle_speed_rad_per_s : range[0];
+  const double high = limits.max_spindle_speed_rad_per_s > 0.0 ? limits.max_spindle_speed_rad_per_s : range[1];
+  if (high > low) range = {low, high};
+  add_assumed(cut.assumed, structure.assumed);
+  cut.notes.insert(cut.notes.end(), structure.warnings.begin(), structure.warnings.end());
+  cut.notes.push_back(
+      fmt::format("The structure and the range of speeds are those of {}.", structure.job.file.filename().string()));
+}
+
+}  // namespace robomill::jobs

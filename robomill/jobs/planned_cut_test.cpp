@@ -1,0 +1,121 @@
+// One structure, range and margin behind the plan of a job, its chart and the advice of its monitor.
+#include "robomill/jobs/planned_cut.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "robomill/base/random.hpp"
+#include "robomill/base/units.hpp"
+#include "robomill/jobs/lobes.hpp"
+#include "robomill/jobs/monitor.hpp"
+#include "robomill/modal/files/modes_files.hpp"
+#include "robomill/stability/lobes.hpp"
+#include "testing/support.hpp"
+
+namespace robomill::jobs {
+namespace planned_cut_test {
+
+/// A cut with modes of its own that are stiff: what a template would show.
+std::string lobes_text(const std::string& dynamics) {
+  return "[tool]\nteeth = 3\ndiameter_mm = 12\n[cut]\ndirection = \"down\"\nradial_depth_mm = 6\n"
+         "feed_per_tooth_mm = 0.05\n[coefficients]\ntangential_n_per_mm2 = 700\nradial_n_per_mm2 = 200\n[dynamics]\n" +
+         dynamics + "[lobes]\nspindle_speed_rpm = [5000, 15000]\naxial_depth_mm = [0, 6]\ngrid = [60, 40]\n";
+}
+const std::string stiff =
+    "x = [{ frequency_hz = 620, damping_ratio = 0.03, modal_mass_kg = 9 }]\n"
+    "y = [{ frequency_hz = 660, damping_ratio = 0.03, modal_mass_kg = 9 }]\n";
+
+class Planned : public ::testing::Test {
+ protected:
+  /// A job that starts from modes which were measured.
+  std::filesystem::path job(double frequency_hz, double mass_kg, const std::string& more = {}) {
+    const std::string mode =
+        fmt::format("[{{ frequency_hz = {}, damping_ratio = 0.02, modal_mass_kg = {} }}]\n", frequency_hz, mass_kg);
+    const LobesFile measured = read_lobes(folder_.file("measured.toml", lobes_text("x = " + mode + "y = " + mode)));
+    folder_.file("modes.json", modal::modes_json(measured.problem.dynamics));
+    return folder_.file("job.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n" + more);
+  }
+  live::AdviceBasis basis(const std::filesystem::path& lobes) {
+    monitor::MonitorFile file;
+    file.options.sample_rate_hz = 10'240.0;
+    file.anti_alias_filter = true;
+    file.lobes = lobes;
+    return read_advice_basis(file, Progress::none());
+  }
+
+  test::Folder folder_;
+};
+
+TEST_F(Planned, TheJobIsTheOneDocumentThatNamesTheCut) {
+  const auto lobes = folder_.file("lobes.toml", lobes_text(stiff));
+  folder_.file("broken.toml", "[job\nlobes = \"lobes.toml\"\n");
+  folder_.file("other.toml", "[job]\nmodes = \"m.json\"\nlobes = \"another.toml\"\n");
+  EXPECT_FALSE(job_of_cut(lobes));
+  const auto one = job(500.0, 0.5);
+  EXPECT_EQ(job_of_cut(lobes), one);
+  folder_.file("second.toml", "[job]\nmodes = \"modes.json\"\nlobes = \"lobes.toml\"\n");
+  EXPECT_FALSE(job_of_cut(lobes)) << "either may be meant";
+}
+
+TEST_F(Planned, TakesStructureRangeAndMarginOfTheJob) {
+  const auto lobes = folder_.file("lobes.toml", lobes_text(stiff));
+  const auto path = job(500.0, 0.5,
+                        "[spindle]\nmin_speed_rpm = 6000\nmax_speed_rpm = 18000\n[safety]\ndepth_margin = 0.4\n"
+                        "speed_window = 0.05\n");
+  LobesFile cut = read_lobes(lobes);
+  take_plan(cut, run_structure(path, 1));
+  ASSERT_EQ(cut.problem.dynamics.modes.size(), 2U);
+  EXPECT_DOUBLE_EQ(cut.problem.dynamics.modes[0].frequency_hz, 500.0);
+  EXPECT_NEAR(cut.options.spindle_speed_rad_per_s[0] / units::rpm, 6000.0, 1e-9);
+  EXPECT_NEAR(cut.options.spindle_speed_rad_per_s[1] / units::rpm, 18000.0, 1e-9);
+  const live::AdviceBasis advised = basis(lobes);
+  EXPECT_EQ(advised.depth_margin, 0.4);
+  EXPECT_EQ(advised.speed_window, 0.05);
+  EXPECT_NEAR(advised.highest_rad_per_s / units::rpm, 18000.0, 1e-9);
+  EXPECT_DOUBLE_EQ(advised.modes->modes[0].frequency_hz, 500.0);
+  // The chart of the file alone says that it is another structure.
+  const LobesJobResult alone = run_lobes({.lobes = lobes});
+  ASSERT_FALSE(alone.cut.notes.empty());
+  EXPECT_NE(alone.cut.notes.back().find("job.toml plans this cut with the structure of its own measurement"),
+            std::string::npos);
+}
+
+// A blank cut has no structure: a job brings it, alone it is rejected.
+TEST_F(Planned, ACutWithoutAStructureNeedsItsJob) {
+  const auto lobes = folder_.file("lobes.toml", lobes_text(""));
+  const std::string said = test::rejection([&] { static_cast<void>(basis(lobes)); });
+  EXPECT_NE(said.find("lobes.toml:11: dynamics"), std::string::npos) << said;
+  static_cast<void>(job(500.0, 0.5));
+  EXPECT_FALSE(basis(lobes).lobes->limit.empty());
+}
+
+// Whatever the structure: what the monitor suggests is stable by the plan's own, with its margin to the limit.
+TEST_F(Planned, WhatIsSuggestedIsStable) {
+  for (int seed = 1; seed <= test::seeds(100); ++seed) {
+    Random random(static_cast<std::uint64_t>(seed));
+    const auto lobes = folder_.file("lobes.toml", lobes_text(stiff));
+    const auto path = job(random.uniform(300.0, 1500.0), random.uniform(0.1, 1.0));
+    LobesFile cut = read_lobes(lobes);
+    take_plan(cut, run_structure(path, 1));
+    const live::Advisor advisor(basis(lobes));
+    monitor::MonitorEvent event;
+    event.decision.spindle_speed_rad_per_s = random.uniform(6000.0, 14000.0) * units::rpm;
+    event.decision.chatter_frequency_hz = 1.02 * cut.problem.dynamics.modes[0].frequency_hz;
+    event.decision.chatter_frequency_std_hz = 2.0;
+    advisor.advise(event);
+    if (!(event.suggested_spindle_speed_rad_per_s > 0.0) || !(event.suggested_axial_depth_m > 0.0)) continue;
+    for (const double off : {0.98, 0.99, 1.0, 1.01, 1.02}) {
+      const double radius =
+          stability::evaluate_point(cut.problem, cut.options,
+                                    {off * event.suggested_spindle_speed_rad_per_s, event.suggested_axial_depth_m})
+              .spectral_radius;
+      EXPECT_LT(radius, 1.0) << seed << ' ' << off;
+    }
+  }
+}
+
+}  // namespace planned_cut_test
+}  // namespace robomill::jobs
