@@ -13,7 +13,7 @@
 namespace robomill::jobs {
 
 /// The job whose cut a lobes.toml is: the one document beside it whose job.lobes names it. None where none or several
-/// do, or where the job has no structure of its own.
+/// do, or where what the job's structure comes from is not there.
 [[nodiscard]] ROBOMILL_API std::optional<std::filesystem::path> job_of_cut(const std::filesystem::path& lobes);
 
 /// A cut as the plan of its job has it: its structure in place of what the file says, the range of the job's spindle in

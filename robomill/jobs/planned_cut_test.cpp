@@ -53,6 +53,7 @@ TEST_F(Planned, TheJobIsTheOneDocumentThatNamesTheCut) {
   const auto lobes = folder_.file("lobes.toml", lobes_text(stiff));
   folder_.file("broken.toml", "[job\nlobes = \"lobes.toml\"\n");
   folder_.file("other.toml", "[job]\nmodes = \"m.json\"\nlobes = \"another.toml\"\n");
+  folder_.file("unmeasured.toml", "[job]\nhits = \"hits.toml\"\nlobes = \"lobes.toml\"\n");
   EXPECT_FALSE(job_of_cut(lobes));
   const auto one = job(500.0, 0.5);
   EXPECT_EQ(job_of_cut(lobes), one);

@@ -106,6 +106,23 @@ TEST(Advise, TakesTheDeepestSpeedInRangeOfAChart) {
   EXPECT_EQ(slower.best->axial_depth_m, 3e-3);
 }
 
+// A peak that is narrower than the spindle holds its speed is none; between two speeds of the chart the limit lies on
+// the line between theirs.
+TEST(Advise, TakesTheLowestLimitOfTheWindow) {
+  stability::LobesResult lobes;
+  lobes.axial_depth_m = Eigen::VectorXd::LinSpaced(3, 0.0, 9e-3);
+  for (const auto& [speed, depth] :
+       {std::pair{700.0, 2e-3}, {800.0, 3e-3}, {810.0, 8e-3}, {820.0, 2.9e-3}, {900.0, 3.5e-3}}) {
+    lobes.limit.push_back(
+        {.spindle_speed_rad_per_s = speed, .status = stability::Limit::Status::found, .axial_depth_m = depth});
+  }
+  EXPECT_EQ(advise(600.0, 1.0, 700.0, 2, nullptr, &lobes).best->spindle_speed_rad_per_s, 810.0);
+  const Advice safe = advise(600.0, 1.0, 700.0, 2, nullptr, &lobes, {.speed_window = 0.02});
+  EXPECT_EQ(safe.best->spindle_speed_rad_per_s, 900.0);
+  EXPECT_NEAR(safe.best->axial_depth_m, 3.5e-3 - (0.02 * 900.0 / 80.0) * 0.6e-3, 1e-12);
+  EXPECT_THROW((void)advise(600.0, 1.0, 700.0, 2, nullptr, &lobes, {.speed_window = 0.5}), InvalidInput);
+}
+
 /// Modes of the tool at these frequencies, 0.5 % of damping each.
 modal::ModalModel modes_at(const std::vector<double>& frequencies_hz) {
   modal::ModalModel model;

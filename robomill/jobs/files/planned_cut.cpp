@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <system_error>
 #include <vector>
@@ -17,6 +18,16 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_job_bytes = std::uintmax_t{1} << 20;
 
+/// Whether what the structure of a job comes from is there.
+bool is_measured(const Job& job) {
+  std::vector<fs::path> sources = job.frf;
+  sources.insert(sources.end(), {job.hits, job.modes, job.assembly});
+  std::erase(sources, fs::path());
+  std::error_code error;
+  return !sources.empty() &&
+         std::ranges::all_of(sources, [&](const fs::path& path) { return fs::exists(path, error); });
+}
+
 /// Whether a document is a job that measures or predicts a structure and names the cut.
 bool plans(const fs::path& document, const fs::path& lobes) {
   try {
@@ -24,7 +35,7 @@ bool plans(const fs::path& document, const fs::path& lobes) {
     if (text.find("lobes") == std::string::npos || !io::setting_of(text, "job.lobes")) return false;
     const Job job = read_job(io::TomlSource(document, text));
     std::error_code error;
-    return job.has_structure() &&
+    return is_measured(job) &&
            (job.lobes.lexically_normal() == lobes.lexically_normal() || fs::equivalent(job.lobes, lobes, error));
   } catch (const InvalidInput&) {
     return false;  // another document, or a job that cannot be planned
