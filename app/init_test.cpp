@@ -63,7 +63,7 @@ TEST_F(InitVerb, AsksForWhatNobodySaid) {
                                                       {"frf hits.toml -o tip.uff", "hits[1].file: is missing"},
                                                       {"forces forces.toml", "tool.kind: is missing"},
                                                       {"couple assembly.toml", "tool[1].length_mm: is missing"},
-                                                      {"cell check cell.toml", "robot.dh: is missing"}};
+                                                      {"cell check cell.toml", "robot.model: is missing"}};
   for (const auto& [run, lacks] : runs) {
     const Ended ended = robomill(run);
     EXPECT_EQ(ended.exit, 1) << run;

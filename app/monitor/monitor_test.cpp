@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
@@ -59,7 +60,8 @@ TEST_F(MonitorVerb, NamesTheModeAndABetterSpeed) {
   EXPECT_NE(robomill("monitor toothless.toml --input rec.wav").err.find("process.teeth"), std::string::npos);
 }
 
-// The chart that robomill lobes writes of the same file: its deepest limit, of which a fifth is kept as a margin.
+// The chart that robomill lobes writes of the same file: its deepest limit over a window of 2 % of speed, of which a
+// fifth is kept as a margin.
 TEST_F(MonitorVerb, AdvisesTheBestSpeedAndDepthOfTheLobes) {
   wav("rec.wav", cut(6.0, true));
   folder_.file("lobes.toml",
@@ -72,14 +74,32 @@ TEST_F(MonitorVerb, AdvisesTheBestSpeedAndDepthOfTheLobes) {
   const Ended chart = robomill("lobes lobes.toml -o -");
   ASSERT_EQ(chart.exit, 0) << chart.err;
   const json lobes = json::parse(chart.out);
-  double best_rpm = 0.0, best_mm = 0.0, least_mm = 1e9;
+  std::vector<double> rpm, mm;
   for (const json& limit : lobes["limit"]) {
     ASSERT_FALSE(limit["axial_depth_mm"].is_null());
-    const auto depth_mm = limit["axial_depth_mm"].get<double>();
+    rpm.push_back(limit["spindle_speed_rpm"].get<double>());
+    mm.push_back(limit["axial_depth_mm"].get<double>());
+  }
+  // The limit at any speed, on the line between those of the chart.
+  const auto limit_at = [&](double speed_rpm) {
+    for (std::size_t i = 1; i < rpm.size(); ++i) {
+      if (speed_rpm <= rpm[i]) {
+        return std::lerp(mm[i - 1], mm[i], std::max(0.0, (speed_rpm - rpm[i - 1]) / (rpm[i] - rpm[i - 1])));
+      }
+    }
+    return mm.back();
+  };
+  double best_rpm = 0.0, best_mm = 0.0, least_mm = 1e9;
+  for (const double speed_rpm : rpm) {
+    double depth_mm = limit_at(speed_rpm);
+    for (int k = -20; k <= 20; ++k) depth_mm = std::min(depth_mm, limit_at(speed_rpm * (1.0 + 1e-3 * k)));
+    for (std::size_t i = 0; i < rpm.size(); ++i) {
+      if (std::abs(rpm[i] / speed_rpm - 1.0) <= 0.02) depth_mm = std::min(depth_mm, mm[i]);
+    }
     least_mm = std::min(least_mm, depth_mm);
     if (depth_mm <= best_mm) continue;
     best_mm = depth_mm;
-    best_rpm = limit["spindle_speed_rpm"].get<double>();
+    best_rpm = speed_rpm;
   }
   ASSERT_GT(best_mm, 1.2 * least_mm);  // otherwise any speed would do, or else the first or the last
   ASSERT_NE(best_rpm, lobes["limit"].front()["spindle_speed_rpm"].get<double>());

@@ -129,7 +129,7 @@ std::string said(const std::string& document) {
 TEST_F(Init, WithoutAnExampleWhatNobodySaidIsAsked) {
   const std::pair<Template, const char*> asks[] = {{Template::hits, "hits[1].file: is missing"},
                                                    {Template::lobes, "tool.teeth: is missing"},
-                                                   {Template::cell, "robot.dh: is missing"},
+                                                   {Template::cell, "robot.model: is missing"},
                                                    {Template::assembly, "tool[1].length_mm: is missing"},
                                                    {Template::forces, "tool.kind: is missing"}};
   for (const auto& [kind, asked] : asks) {
@@ -137,9 +137,7 @@ TEST_F(Init, WithoutAnExampleWhatNobodySaidIsAsked) {
     const std::string rejected = test::rejection([&] { read(kind, files.files.front().path); });
     EXPECT_NE(rejected.find(asked), std::string::npos) << name_in(template_names, kind) << ": " << rejected;
     EXPECT_NE(rejected.find(".toml:"), std::string::npos) << rejected;
-    if (kind != Template::cell) {
-      EXPECT_NE(rejected.find("This line is a comment: write your own value"), std::string::npos) << rejected;
-    }
+    EXPECT_NE(rejected.find("This line is a comment: write your own value"), std::string::npos) << rejected;
     EXPECT_FALSE(std::filesystem::exists(at("example_hit_x.csv")));
     std::filesystem::remove_all(folder_.at("begin"));
   }

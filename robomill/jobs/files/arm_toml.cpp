@@ -214,9 +214,11 @@ std::vector<robot::DhRow> read_kinematics(io::TomlFile& file, CellFile& out) {
     read_urdf_arm(file, out);
     return {};
   }
-  file.require("robot.dh",
-               "Give the arm as dh = [{ a_mm = …, alpha_deg = …, d_mm = … }, …], as urdf = \"arm.urdf\", or by its "
-               "name, model = \"kuka-kr210-r2700\"");
+  if (!file.has("robot.dh")) {
+    file.require(
+        "robot.model",
+        "Give the arm by its name, as urdf = \"arm.urdf\", or as dh = [{ a_mm = …, alpha_deg = …, d_mm = … }, …]");
+  }
   for (const char* key : {"robot.urdf_tip", "robot.urdf_base"}) {
     if (file.has(key)) throw file.reject(key, "goes with robot.urdf");
   }

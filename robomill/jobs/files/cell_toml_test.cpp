@@ -266,7 +266,7 @@ TEST(CellToml, SaysWhatIsWrongAndWhere) {
   expect("a_mm = 1150", "a_m = 1150",
          "cell.toml:4: robot.dh[2].a_m: is not known here. Did you mean robot.dh[2].a_mm?");
   EXPECT_EQ(said("[tool]\nlength_mm = 1\n").substr(0, 27), "cell.toml: robot: is missin");
-  EXPECT_NE(said("[robot]\nkind = \"serial\"\n").find("robot.dh: is missing"), std::string::npos);
+  EXPECT_NE(said("[robot]\nkind = \"serial\"\n").find("robot.model: is missing"), std::string::npos);
   EXPECT_NE(said("[robot]\nurdf = \"one.urdf\"\n").find("robot.urdf_tip: is missing"), std::string::npos);
   EXPECT_NE(said("[robot]\nurdf = \"one.urdf\"\nurdf_tip = \"tol0\"\n").find("Did you mean tool0?"), std::string::npos);
   EXPECT_NE(said("[robot]\nurdf = \"two.urdf\"\nurdf_tip = \"tool0\"\n").find("two.urdf"), std::string::npos);

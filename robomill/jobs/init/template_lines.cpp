@@ -40,7 +40,7 @@ std::string rendered_line(std::string_view line, bool example) {
     return with(fmt::format("# {}", setting), mark == '!' ? needed : std::string(remark));
   }
   const std::string sample = io::sample_mark(setting.substr(setting.find('=') + 1));
-  return with(std::string(setting), fmt::format("{}:{}{}", sample, remark.empty() ? "" : " ", remark));
+  return with(std::string(setting), fmt::format("{}{}{}", sample, remark.empty() ? "" : ": ", remark));
 }
 
 }  // namespace
