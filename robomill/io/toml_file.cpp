@@ -13,6 +13,7 @@
 #include "robomill/io/toml_lines.hpp"
 #include "robomill/io/toml_synonyms.hpp"
 #include "robomill/io/toml_tree.hpp"
+#include "robomill/io/usual_ranges.hpp"
 
 namespace robomill::io {
 namespace {
@@ -121,6 +122,7 @@ struct TomlFile::State {
   [[nodiscard]] std::string written_for(std::string_view key) const;
   void point_at_comment(std::string_view key, InvalidInput::Parts& parts) const;
   void check_known(const toml::node& node, const std::string& path_here) const;
+  void compare(const toml::node& node, const std::string& key, std::vector<std::string>& out) const;
   [[nodiscard]] const Row* row_of(const InvalidInput::Parts& parts) const;
 };
 
@@ -436,6 +438,39 @@ void TomlFile::State::check_known(const toml::node& node, const std::string& key
 
 void TomlFile::done() const {
   state_->check_known(state_->root, "");
+}
+
+void TomlFile::State::compare(const toml::node& node, const std::string& key, std::vector<std::string>& out) const {
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [name, value] : *table)
+      compare(value, key.empty() ? std::string(name.str()) : fmt::format("{}.{}", key, name.str()), out);
+    return;
+  }
+  std::vector<double> values;
+  const toml::array* array = node.as_array();
+  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
+    if (const std::optional<double> number = finite_number((*array)[i])) values.push_back(*number);
+    if ((*array)[i].is_table() || (*array)[i].is_array()) compare((*array)[i], fmt::format("{}[{}]", key, i), out);
+  }
+  if (array == nullptr) {
+    if (const std::optional<double> number = finite_number(node)) values.push_back(*number);
+  }
+  const std::optional<Unusual> found = unusual_value(key, values);
+  if (!found) return;
+  out.push_back(fmt::format("{}{}", warning_label,
+                            InvalidInput(InvalidInput::Parts{.where = where(&node),
+                                                             .field = shown(key),
+                                                             .number = found->value,
+                                                             .unit = unit_of_key(key),
+                                                             .rule = found->rule,
+                                                             .hint = found->hint})
+                                .what()));
+}
+
+std::vector<std::string> TomlFile::unusual() const {
+  std::vector<std::string> out;
+  state_->compare(state_->root, "", out);
+  return out;
 }
 
 }  // namespace robomill::io

@@ -95,6 +95,9 @@ class TomlFile {
   }
   /// @throws InvalidInput on a key that no call has read, naming the nearest known one
   void done() const;
+  /// A sentence for each number of the file outside its usual range (io/usual_ranges.hpp), in the order of the file's
+  /// keys: "Warning: file:line: key = value unit; is unusual: … is usual. hint".
+  [[nodiscard]] std::vector<std::string> unusual() const;
 
  private:
   struct State;

@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "robomill/base/export.hpp"
+#include "robomill/robot/arm.hpp"
+#include "robomill/robot/identify.hpp"
+
+// Method: robomill/robot/README.md, "Usual arms"
+
+namespace robomill::robot {
+
+/// How far joint 5 (or the last) of an arm comes from the first axis when it is stretched: its first offset, and the
+/// distances from joint to joint after it.
+/// @return 0 with fewer than two joints
+[[nodiscard]] ROBOMILL_API double stretched_reach_m(const Arm& arm);
+
+/// What is unusual about the masses of an arm, a sentence each: links that all weigh the same, links that weigh too
+/// little or too much together for the arm's reach, and a moment of inertia that does not go with its link's mass.
+/// Nothing of an arm without masses.
+///
+/// Makers' arms weigh 15 to 170 kg per cubic metre of their reach cubed, of 1.3 m reach and more (UR10e 15, KR 210
+/// R2700 54, KR 120 R2500 67, IRB 7600 147, M-2000iA/1200 166), and up to 260 below (Meca500); base included.
+[[nodiscard]] ROBOMILL_API std::vector<std::string> unusual_masses(const Arm& arm);
+
+/// What is unusual about measured displacements: that they go against their loads, or how stiff the arm would be at the
+/// point. Makers' arms have 0.1 to 10 N/µm there; 0.02 to 50 N/µm passes.
+[[nodiscard]] ROBOMILL_API std::vector<std::string> unusual_displacements(const std::vector<Load>& loads);
+
+}  // namespace robomill::robot
